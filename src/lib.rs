@@ -1,0 +1,22 @@
+//! netcert certifies, edge by edge, on which roads of an OpenStreetMap extract an articulated vehicle fits.
+//!
+//! The folders are the pipeline, in the order in which data flows; nothing flows back:
+//!
+//! | stage | folder | from → to |
+//! | --- | --- | --- |
+//! | read | [`osm`] | a `.osm.pbf` file → [`osm::Extract`]: drivable ways as facts, and where their nodes are |
+//! | network | [`network`] | `Extract` → [`network::Network`]: directed edges, cross sections, strokes |
+//! | corridors | [`corridor`] | a stroke → [`corridor::StrokeCorridor`]: C¹ centreline and width profile, in metres |
+//! | certificates | [`stet`] | a corridor and a [`vehicle`] → [`stet::Certificate`] |
+//! | store | [`store`] | network and certificates → a GeoPackage |
+//!
+//! `stet` is pure: no input or output, no clock, no threads.
+
+pub mod account;
+pub mod corridor;
+pub mod network;
+pub mod osm;
+pub mod stet;
+pub mod store;
+pub mod vehicle;
+pub mod verdict;

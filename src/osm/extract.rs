@@ -1,0 +1,103 @@
+//! What both passes leave in memory: roads as facts in flat arrays. Bounded by the roads, not by the file.
+
+use std::ops::Range;
+
+use crate::osm::facts::{PointFacts, WayFacts};
+
+/// A position in units of 1e-7 degree (the file's own resolution), WGS 84.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct LonLat {
+    /// Longitude, 1e-7 degree, −180°..=180°.
+    pub lon_e7: i32,
+    /// Latitude, 1e-7 degree, −90°..=90°.
+    pub lat_e7: i32,
+}
+
+impl LonLat {
+    /// Longitude and latitude in degrees.
+    #[must_use]
+    pub fn degrees(self) -> (f64, f64) {
+        (f64::from(self.lon_e7) * 1e-7, f64::from(self.lat_e7) * 1e-7)
+    }
+}
+
+/// A drivable way: its facts, and its node references in [`Extract::refs`] (at least two, consecutive ones distinct).
+#[derive(Debug, Clone)]
+pub struct Way {
+    /// OSM way id.
+    pub id: i64,
+    /// Where its node references stand in [`Extract::refs`].
+    pub refs: Range<u32>,
+    /// What its tags say.
+    pub facts: WayFacts,
+}
+
+/// Node positions: sorted by id, every node named by a kept way; a node that the file lacks has no position.
+#[derive(Debug, Clone, Default)]
+pub struct NodeTable {
+    /// Sorted, distinct.
+    pub ids: Vec<i64>,
+    /// Parallel to `ids`; `None` where the file has no such node (or at an invalid place).
+    pub places: Vec<Option<LonLat>>,
+}
+
+impl NodeTable {
+    /// The position of a node, if the file had it.
+    #[must_use]
+    pub fn place(&self, id: i64) -> Option<LonLat> {
+        self.index(id).and_then(|i| self.places[i])
+    }
+
+    /// The index of a node in the table, whether or not it has a position.
+    #[must_use]
+    pub fn index(&self, id: i64) -> Option<usize> {
+        self.ids.binary_search(&id).ok()
+    }
+}
+
+/// An interned string (names, refs) of a [`StringPool`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct StringId(pub u32);
+
+/// Interned strings; the same text has the same id, ids follow first use in way order.
+#[derive(Debug, Clone, Default)]
+pub struct StringPool {
+    texts: Vec<Box<str>>,
+    ids: rustc_hash::FxHashMap<Box<str>, u32>,
+}
+
+impl StringPool {
+    /// The id of `text`, new or old.
+    pub fn intern(&mut self, text: &str) -> StringId {
+        if let Some(&id) = self.ids.get(text) {
+            return StringId(id);
+        }
+        let id = self.texts.len() as u32;
+        self.texts.push(text.into());
+        self.ids.insert(text.into(), id);
+        StringId(id)
+    }
+
+    /// The text of an id of this pool.
+    #[must_use]
+    pub fn text(&self, id: StringId) -> &str {
+        &self.texts[id.0 as usize]
+    }
+}
+
+/// What reading leaves.
+#[derive(Debug, Clone, Default)]
+pub struct Extract {
+    /// Kept ways, sorted by id, ids distinct.
+    pub ways: Vec<Way>,
+    /// All ways' node references, one after the other.
+    pub refs: Vec<i64>,
+    /// Where those nodes are.
+    pub nodes: NodeTable,
+    /// Tagged nodes on kept ways that narrow or bar the road: sorted by node id.
+    pub points: Vec<(i64, PointFacts)>,
+    /// Names and refs of the ways.
+    pub strings: StringPool,
+    /// The account of everything read: by reason, how many ways were left out and why.
+    pub account: crate::osm::pbf::ReadAccount,
+}

@@ -1,0 +1,218 @@
+//! Tags become facts: class, direction, lanes, widths with their evidence, limits, access.
+//!
+//! Nothing here knows where a way is; country rules come in with [`CrossSection`]s, in `network`.
+
+use serde::{Deserialize, Serialize};
+
+use crate::osm::StringId;
+
+/// `highway=*` of a drivable way; `_link` classes are the class with [`WayFacts::link`] set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RoadClass {
+    /// highway=motorway
+    Motorway,
+    /// highway=trunk
+    Trunk,
+    /// highway=primary
+    Primary,
+    /// highway=secondary
+    Secondary,
+    /// highway=tertiary
+    Tertiary,
+    /// highway=unclassified, highway=road
+    Unclassified,
+    /// highway=residential
+    Residential,
+    /// highway=living_street
+    LivingStreet,
+    /// highway=service
+    Service,
+    /// highway=track
+    Track,
+    /// highway=busway, bus_guideway
+    Busway,
+}
+
+/// Which directions of travel exist, relative to the way's node order (roundabouts imply forward).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Oneway {
+    /// Both directions.
+    No,
+    /// Along the way's node order only.
+    Forward,
+    /// Against it only (`oneway=-1`).
+    Backward,
+}
+
+/// Direction of travel of a directed edge relative to its way's node order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Direction {
+    /// Along the way's node order.
+    Forward,
+    /// Against it.
+    Backward,
+}
+
+/// Where a width comes from, weakest first: a certificate is worth no more than its width.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum WidthSource {
+    /// From class and country only.
+    Assumed,
+    /// Tagged lane count times a lane width assumed from class and country.
+    FromLanes,
+    /// `est_width`, or `width` with a source that says estimated.
+    Estimated,
+    /// `width`, `width:carriageway`, `width:lanes`.
+    Tagged,
+    /// Tagged with a source that says surveyed or measured.
+    Surveyed,
+}
+
+/// A strip of road that a vehicle may use in one direction of travel: signed positions of its edges across
+/// the way's line, metres, positive to the left of *travel*. `left_m > right_m`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Strip {
+    /// Left edge (usually > 0 or the road's centre line).
+    pub left_m: f32,
+    /// Right edge.
+    pub right_m: f32,
+    /// The weakest evidence that went into it.
+    pub source: WidthSource,
+}
+
+impl Strip {
+    /// `left_m − right_m`
+    #[must_use]
+    pub fn width_m(&self) -> f32 {
+        self.left_m - self.right_m
+    }
+}
+
+/// Which width counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Policy {
+    /// Keep to one's lane: the one nearest the kerb that is open to heavy vehicles. The default.
+    Lane,
+    /// All lanes of one's direction.
+    Direction,
+    /// All that is paved between the edges.
+    Carriageway,
+}
+
+/// The strips of one direction of travel of one way. `None`: no usable width.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct CrossSection {
+    /// For [`Policy::Lane`].
+    pub lane: Option<Strip>,
+    /// For [`Policy::Direction`].
+    pub direction: Option<Strip>,
+    /// For [`Policy::Carriageway`].
+    pub carriageway: Option<Strip>,
+}
+
+impl CrossSection {
+    /// The strip of a policy.
+    #[must_use]
+    pub fn strip(&self, policy: Policy) -> Option<Strip> {
+        match policy {
+            Policy::Lane => self.lane,
+            Policy::Direction => self.direction,
+            Policy::Carriageway => self.carriageway,
+        }
+    }
+}
+
+/// A tagged limit that may be unreadable: then a vehicle is neither allowed nor forbidden by it, but `unknown`.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub enum Limit {
+    /// Not tagged, `none`, `default`, `unsigned`: no limit known.
+    #[default]
+    None,
+    /// Metres or tonnes.
+    At(f32),
+    /// Tagged, but not readable.
+    Unreadable,
+}
+
+/// Legal limits and access of one direction of travel, as tagged.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Legal {
+    /// Metres.
+    pub max_height: Limit,
+    /// Tonnes, gross mass of the combination.
+    pub max_weight: Limit,
+    /// Tonnes.
+    pub max_axle_load: Limit,
+    /// Metres.
+    pub max_length: Limit,
+    /// Metres, the lesser of legal and physical.
+    pub max_width: Limit,
+    /// Whether heavy goods vehicles may use it.
+    pub hgv: Permission,
+    /// Whether motor vehicles may use it at all.
+    pub motor_vehicle: Permission,
+}
+
+/// An access tag's meaning for a through journey.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum Permission {
+    /// yes, designated, permissive, or untagged.
+    #[default]
+    Yes,
+    /// destination, delivery, customers, discouraged: allowed, but not for through traffic.
+    Restricted,
+    /// no, private, agricultural, forestry …
+    No,
+}
+
+/// What the tags of a way say, country-free. Widths, lanes and kerb-side uses are behind
+/// `facts::cross_sections` and private to this folder.
+#[derive(Debug, Clone)]
+pub struct WayFacts {
+    /// Its class.
+    pub class: RoadClass,
+    /// A `_link` road.
+    pub link: bool,
+    /// `junction=roundabout|circular`
+    pub roundabout: bool,
+    /// Directions that exist for motor vehicles.
+    pub oneway: Oneway,
+    /// `name`
+    pub name: Option<StringId>,
+    /// `ref`
+    pub reference: Option<StringId>,
+    /// Limits and access along the node order.
+    pub legal_forward: Legal,
+    /// Limits and access against it.
+    pub legal_backward: Legal,
+}
+
+/// What the tags of a node on a road say.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PointFacts {
+    /// Limits that hold at the node, both directions.
+    pub legal: Legal,
+    /// Room between the parts of a barrier or choker, metres: narrows the corridor there.
+    pub passage_m: Option<f32>,
+    /// A barrier that no heavy vehicle passes (bollard, block, gate locked …).
+    pub barred: bool,
+}
+
+/// A way's or node's tags, in file order.
+pub type Tags<'t> = [(&'t str, &'t str)];
+
+/// A kept way's facts, its texts still borrowed from the block (the reader interns them: `facts.name` and
+/// `facts.reference` are `None` here).
+#[derive(Debug, Clone)]
+pub struct WayDraft<'t> {
+    /// All but the texts.
+    pub facts: WayFacts,
+    /// `name`
+    pub name: Option<&'t str>,
+    /// `ref`
+    pub reference: Option<&'t str>,
+}

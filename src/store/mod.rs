@@ -1,0 +1,1 @@
+//! The database: a GeoPackage, through sqlx, with the schema in `migrations/`.

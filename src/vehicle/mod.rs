@@ -1,0 +1,61 @@
+//! Vehicles: the chain of units, the catalogue, and the checks that keep an impossible one out.
+
+use serde::{Deserialize, Serialize};
+
+/// One unit of the chain (design section 1). A dolly is a unit of its own. Metres, radians.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Unit {
+    /// For people.
+    pub name: String,
+    /// L: front coupling (steer axle for unit 0) to the effective rear axle; > 0.
+    pub coupling_to_axle_m: f64,
+    /// d: effective rear axle back to the rear coupling; negative for a fifth wheel ahead of the axle.
+    pub hitch_offset_m: f64,
+    /// f: body ahead of the front coupling (negative: the body starts behind it).
+    pub front_overhang_m: f64,
+    /// r: body behind the axle.
+    pub rear_overhang_m: f64,
+    /// b: body width.
+    pub width_m: f64,
+    /// θ: the most that the hinge at its front coupling can turn; for unit 0 the steering lock.
+    pub max_articulation_rad: f64,
+    /// σ: the most by which the axle's motion may differ from its heading.
+    pub sway_rad: f64,
+}
+
+/// An articulated vehicle.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Vehicle {
+    /// Catalogue id.
+    pub id: String,
+    /// For people.
+    pub name: String,
+    /// Region code (`AU`, `EU`, `US`, `CA`, `indoor`, `airside`), or empty.
+    pub region: String,
+    /// Overall length, metres.
+    pub length_m: f64,
+    /// Height, metres, if known.
+    pub height_m: Option<f64>,
+    /// Gross mass of the combination, tonnes, if known.
+    pub gross_mass_t: Option<f64>,
+    /// Heaviest axle, tonnes, if known.
+    pub axle_load_t: Option<f64>,
+    /// ε: the steer axle stays within ±ε of the planned path, metres.
+    pub tracking_tolerance_m: f64,
+    /// m: the prime mover's course stays within ±m of the path's, radians.
+    pub tracking_heading_rad: f64,
+    /// γ_min: the least factor by which ε may be shrunk, in (0, 1].
+    pub min_shrink: f64,
+    /// Where the dimensions come from, and which are assumed.
+    pub source: String,
+    /// Front to rear; at least one.
+    pub units: Vec<Unit>,
+}
+
+impl Vehicle {
+    /// Greatest body width, metres.
+    #[must_use]
+    pub fn width_m(&self) -> f64 {
+        self.units.iter().fold(0.0, |w, u| w.max(u.width_m))
+    }
+}
