@@ -6,12 +6,15 @@
 mod access;
 mod class;
 mod country;
+mod layout;
 mod limits;
 mod notes;
 mod points;
 mod rules;
 mod section;
 mod section_reader;
+#[cfg(test)]
+mod tests;
 mod value;
 mod widths;
 

@@ -117,9 +117,9 @@ impl SectionReader {
         let mut count = 0;
         for part in text.split('|') {
             let step = value::metres(part).map_or(0.0, |width| (width / LANE_STEP_M + 1e-3).floor());
-            // 12 m is wider than any lane; a cycle lane may be half a metre.
+            // From half a metre (a cycle lane) to the widest lane.
             match steps.get_mut(count) {
-                Some(slot) if (10.0..=240.0).contains(&step) => *slot = step as u8,
+                Some(slot) if (10.0..=*LANE_M.end() / LANE_STEP_M).contains(&step) => *slot = step as u8,
                 _ => {
                     notes.add(Note::BadLaneWidths);
                     return;
@@ -171,10 +171,10 @@ impl SectionReader {
 
     fn shoulder(&mut self, suffix: &str, text: &str) {
         let (named, rest) = sides(suffix);
-        let sides: &[usize] = match (rest, text) {
+        let sides: &[usize] = match (suffix, text) {
             ("", "left") => &[0],
             ("", "right") => &[1],
-            ("", "both" | "yes" | "left;right") => named,
+            _ if rest.is_empty() && matches!(text, "both" | "yes" | "left;right") => named,
             _ => &[],
         };
         for &side in sides {
@@ -245,7 +245,12 @@ impl SectionReader {
 
     /// The tags together, once the way's directions are known.
     pub(super) fn finish(self, oneway: Oneway, reversible: bool, alternating: bool, notes: &mut Notes) -> SectionTags {
-        let [plain, forward, backward] = self.lists;
+        let [mut plain, mut forward, mut backward] = self.lists;
+        // A road of more lanes is a typing error in one of the tags: none is used.
+        if forward.count + backward.count + self.both_ways > value::MOST_LANES {
+            notes.add(Note::BadLanes);
+            [&mut plain, &mut forward, &mut backward].into_iter().for_each(|lists| lists.count = 0);
+        }
         let directions = match oneway {
             Oneway::Forward => [plain.or(forward).tags(), LaneTags::default()],
             Oneway::Backward => [LaneTags::default(), plain.or(backward).tags()],

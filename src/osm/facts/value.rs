@@ -15,6 +15,9 @@ const LONG_TON_T: f64 = 1.016_046_908_8;
 /// Beyond this nothing on a road makes sense, and `f32` still holds centimetres.
 const GREATEST: f64 = 100_000.0;
 
+/// A toll plaza may have this many in one direction.
+pub(super) const MOST_LANES: u8 = 16;
+
 /// Digits with at most one dot, at the start of `text`, and what follows them.
 fn number(text: &str) -> Option<(f64, &str)> {
     let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
@@ -92,7 +95,7 @@ pub(super) fn lane_count(text: &str) -> (Option<u8>, bool) {
     match text.trim() {
         "1.5" => (Some(1), false),
         text => {
-            let count = text.parse::<u8>().ok().filter(|n| (1..=16).contains(n) && !text.starts_with('+'));
+            let count = text.parse::<u8>().ok().filter(|n| (1..=MOST_LANES).contains(n) && !text.starts_with('+'));
             (count, count.is_some())
         }
     }
