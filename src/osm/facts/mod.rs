@@ -6,6 +6,15 @@ use serde::{Deserialize, Serialize};
 
 use crate::osm::StringId;
 
+/// Where a way is, as far as rules depend on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Place {
+    /// ISO 3166-1 alpha-2 code of the country.
+    pub country: [u8; 2],
+    /// Traffic keeps to the left here.
+    pub left_hand_traffic: bool,
+}
+
 /// `highway=*` of a drivable way; `_link` classes are the class with [`WayFacts::link`] set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
