@@ -1,0 +1,291 @@
+//! The smoothest C² curve within a tolerance of a polyline.
+//!
+//! A uniform cubic B-spline c(u), u the polyline's arc length, minimises ∫|c − p|² + λ∫|c‴|² + Σ wⱼ|c(uⱼ) − p(uⱼ)|². λ
+//! sets the cut-off wavelength; the weights wⱼ start at nothing and rise only where the curve would leave the tube, until
+//! none does. Promised: the deviation reported for a piece bounds the distance of *every* point of the curve there
+//! from the polyline. Where even the finest knots cannot stay in the tube, that bound is above the tolerance.
+
+use std::f64::consts::TAU;
+
+use super::band::Band;
+use super::polyline::Polyline;
+use super::spline::{Spline, basis, locate};
+
+/// What is asked of the curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Smoothing {
+    /// Greatest distance from the polyline, metres.
+    pub(crate) tolerance_m: f64,
+    /// Wavelengths above it survive where the tube does not decide, metres.
+    pub(crate) cutoff_m: f64,
+}
+
+/// A smoothed polyline.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Smoothed {
+    /// The curve, over the polyline's arc length.
+    pub(crate) curve: Spline<2>,
+    /// Where each piece ends (arc length), and how far the curve is from the polyline on it at most, metres.
+    pub(crate) pieces: Vec<(f64, f64)>,
+}
+
+impl Smoothed {
+    /// Bound on the distance from the polyline between `from` and `to`.
+    pub(crate) fn deviation_m(&self, from: f64, to: f64) -> f64 {
+        let first = self.pieces.partition_point(|&(end, _)| end <= from);
+        let beyond = self.pieces.partition_point(|&(end, _)| end < to);
+        self.pieces.iter().take(beyond + 1).skip(first).fold(0.0, |worst, &(_, bound)| worst.max(bound))
+    }
+
+    fn worst_m(&self) -> f64 {
+        self.pieces.iter().fold(0.0, |worst, &(_, bound)| worst.max(bound))
+    }
+}
+
+/// Knot spacings tried one after the other, metres: the first holds hairpins of 8 m radius within 0.5 m; the others are for
+/// corners that the mapper drew sharp.
+const KNOTS_M: [f64; 3] = [4.0, 2.0, 1.0];
+/// Rounds of raising weights before finer knots are tried.
+const ROUNDS: usize = 40;
+/// The data stays this far inside the tube, so that the bound between observations can be inside too.
+const MARGIN: f64 = 0.95;
+/// Extra weight of both ends, in units of the base weight a knot: they move a fifth as far.
+const END_WEIGHT: f64 = 20.0;
+
+/// Smooths a polyline of at least two vertices.
+pub(crate) fn smooth(line: &Polyline, asked: Smoothing) -> Smoothed {
+    let mut best = Fit::new(line, asked, KNOTS_M[0]).run();
+    for &knot in &KNOTS_M[1..] {
+        if best.worst_m() <= asked.tolerance_m {
+            break;
+        }
+        let finer = Fit::new(line, asked, knot).run();
+        if finer.worst_m() < best.worst_m() {
+            best = finer;
+        }
+    }
+    best
+}
+
+/// A place where the curve is held against the polyline: twice a cell, and at every vertex.
+struct Observation {
+    u: f64,
+    cell: usize,
+    /// Weights of the four active coefficients in the value, and in the derivative.
+    value: [f64; 4],
+    slope: [f64; 4],
+    /// Polyline minus reference curve, metres.
+    target: [f64; 2],
+    /// Slope of polyline minus reference on the piece that begins here; [`Observation::slope_before`] for the one that ends.
+    slope_after: [f64; 2],
+    slope_before: [f64; 2],
+    /// Weight beyond the base weight.
+    extra: f64,
+}
+
+struct Fit {
+    asked: Smoothing,
+    knot: f64,
+    observations: Vec<Observation>,
+    /// Penalty and base weights, which no round changes.
+    base: Band,
+    base_rhs: Vec<[f64; 2]>,
+    /// Coefficients of the reference: the polyline at the knots. Unknown is the difference, so that a straight stays
+    /// straight to the last bit and no digits go to large coordinates.
+    reference: Vec<[f64; 2]>,
+}
+
+impl Fit {
+    fn new(line: &Polyline, asked: Smoothing, knot_m: f64) -> Self {
+        let cells = ((line.length() / knot_m).ceil() as usize).max(4);
+        let knot = line.length() / cells as f64;
+        let reference = reference(line, cells, knot);
+        let observations = observations(line, cells, knot, &reference);
+        let mut fit = Self {
+            asked,
+            knot,
+            observations,
+            base: Band::zero(cells + 3),
+            base_rhs: vec![[0.0; 2]; cells + 3],
+            reference,
+        };
+        fit.add_base();
+        fit
+    }
+
+    /// One over λ's unit: the base weight of a whole knot is 1.
+    fn stiffness(&self) -> f64 {
+        (self.asked.cutoff_m / (TAU * self.knot)).powi(6)
+    }
+
+    fn add_base(&mut self) {
+        let (lambda, third) = (self.stiffness(), [-1.0, 3.0, -3.0, 1.0]);
+        for first in 0..self.reference.len() - 3 {
+            self.base.add_outer(first, &third, lambda);
+            let jerk = [0, 1].map(|k| (0..4).map(|i| third[i] * self.reference[first + i][k]).sum::<f64>());
+            for (rhs, t) in self.base_rhs[first..].iter_mut().zip(third) {
+                rhs[0] -= lambda * t * jerk[0];
+                rhs[1] -= lambda * t * jerk[1];
+            }
+        }
+        let last = self.observations.len() - 1;
+        for (i, o) in self.observations.iter().enumerate() {
+            let weight = o.extra + if i == 0 || i == last { END_WEIGHT } else { 0.0 };
+            observe(&mut self.base, &mut self.base_rhs, o, weight);
+        }
+        self.observations.iter_mut().for_each(|o| o.extra = 0.0);
+    }
+
+    fn run(mut self) -> Smoothed {
+        let mut difference = self.solve();
+        for _ in 0..ROUNDS {
+            if !self.raise(&difference) {
+                break;
+            }
+            difference = self.solve();
+        }
+        let pieces = self.pieces(&difference);
+        let coefficients = self.reference.iter().zip(&difference).map(|(r, d)| [r[0] + d[0], r[1] + d[1]]).collect();
+        Smoothed { curve: Spline { knot_m: self.knot, coefficients }, pieces }
+    }
+
+    fn solve(&self) -> Vec<[f64; 2]> {
+        let (mut matrix, mut rhs) = (self.base.clone(), self.base_rhs.clone());
+        for o in self.observations.iter().filter(|o| o.extra > 0.0) {
+            observe(&mut matrix, &mut rhs, o, o.extra);
+        }
+        matrix.solve_in_place(&mut rhs);
+        rhs
+    }
+
+    /// Raises the weight at the worst place of every stretch outside the tube; false if there is none.
+    ///
+    /// Where one observation alone holds the curve, its deviation is d₀/(1 + w·g), g the give of the base fit
+    /// (0.333·2π/cutoff a metre: the peak of the filter 1/(1 + (k·cutoff/2π)⁶)); the update is Newton's for that law,
+    /// stretched because neighbours make it stiffer.
+    fn raise(&mut self, difference: &[[f64; 2]]) -> bool {
+        let pieces = self.pieces(difference);
+        let tolerance = self.asked.tolerance_m;
+        let give = 1.0 / (TAU / self.asked.cutoff_m / 3.0 * self.knot);
+        let mut any = false;
+        let mut worst: Option<(usize, f64)> = None;
+        for i in 0..self.observations.len() {
+            let beside = if i == 0 { pieces[0].1 } else { pieces[i - 1].1 };
+            let at = norm(self.observations[i].error(difference)) / MARGIN;
+            let excess = at.max(beside).max(pieces.get(i).map_or(0.0, |p| p.1)) / tolerance;
+            if excess > 1.0 {
+                any = true;
+                if worst.is_none_or(|(_, e)| excess > e) {
+                    worst = Some((i, excess));
+                }
+                continue;
+            }
+            if let Some((i, excess)) = worst.take() {
+                self.raise_one(i, excess, give);
+            }
+        }
+        if let Some((i, excess)) = worst {
+            self.raise_one(i, excess, give);
+        }
+        any
+    }
+
+    fn raise_one(&mut self, i: usize, excess: f64, give: f64) {
+        let extra = &mut self.observations[i].extra;
+        *extra = (*extra + give) * excess.powf(1.5).min(100.0) - give;
+    }
+
+    /// Per piece between observations: the error is one cubic there, so the norms of its four Bézier points bound it.
+    fn pieces(&self, difference: &[[f64; 2]]) -> Vec<(f64, f64)> {
+        let mut pieces = Vec::with_capacity(self.observations.len());
+        for pair in self.observations.windows(2) {
+            let [a, b] = pair else { continue };
+            let third = (b.u - a.u) / 3.0;
+            let (ea, eb) = (a.error(difference), b.error(difference));
+            let (sa, sb) = (a.slope_error(difference, a.slope_after), b.slope_error(difference, b.slope_before));
+            let inner_a = [ea[0] + third * sa[0], ea[1] + third * sa[1]];
+            let inner_b = [eb[0] - third * sb[0], eb[1] - third * sb[1]];
+            pieces.push((b.u, norm(ea).max(norm(eb)).max(norm(inner_a)).max(norm(inner_b))));
+        }
+        pieces
+    }
+}
+
+impl Observation {
+    /// Curve minus polyline.
+    fn error(&self, difference: &[[f64; 2]]) -> [f64; 2] {
+        combine(&self.value, self.cell, difference, self.target)
+    }
+
+    fn slope_error(&self, difference: &[[f64; 2]], target: [f64; 2]) -> [f64; 2] {
+        combine(&self.slope, self.cell, difference, target)
+    }
+}
+
+fn combine(weights: &[f64; 4], cell: usize, coefficients: &[[f64; 2]], target: [f64; 2]) -> [f64; 2] {
+    weights
+        .iter()
+        .zip(&coefficients[cell..cell + 4])
+        .fold([-target[0], -target[1]], |sum, (w, c)| [sum[0] + w * c[0], sum[1] + w * c[1]])
+}
+
+fn norm(v: [f64; 2]) -> f64 {
+    v[0].hypot(v[1])
+}
+
+fn observe(matrix: &mut Band, rhs: &mut [[f64; 2]], o: &Observation, weight: f64) {
+    matrix.add_outer(o.cell, &o.value, weight);
+    for (rhs, value) in rhs[o.cell..].iter_mut().zip(o.value) {
+        rhs[0] += weight * value * o.target[0];
+        rhs[1] += weight * value * o.target[1];
+    }
+}
+
+/// The polyline at the abscissae of the coefficients, continued straight beyond its ends.
+fn reference(line: &Polyline, cells: usize, knot: f64) -> Vec<[f64; 2]> {
+    let mut segment = 0;
+    (0..cells + 3)
+        .map(|k| {
+            let u = (k as f64 - 1.0) * knot;
+            while segment + 2 < line.at.len() && line.at[segment + 1] < u {
+                segment += 1;
+            }
+            line.on_segment(segment, u)
+        })
+        .collect()
+}
+
+fn observations(line: &Polyline, cells: usize, knot: f64, reference: &[[f64; 2]]) -> Vec<Observation> {
+    let mut out = Vec::with_capacity(2 * cells + line.at.len());
+    let mut make = |u: f64, before: usize, after: usize, extra: f64| {
+        let (cell, t) = locate(u, knot, cells);
+        let [value, slope, ..] = basis(t);
+        let slope = slope.map(|s| s / knot);
+        let near = |target: [f64; 2], weights: &[f64; 4]| {
+            let there = combine(weights, cell, reference, [0.0; 2]);
+            [target[0] - there[0], target[1] - there[1]]
+        };
+        out.push(Observation {
+            u,
+            cell,
+            target: near(line.on_segment(after, u), &value),
+            slope_after: near(line.direction(after), &slope),
+            slope_before: near(line.direction(before), &slope),
+            value,
+            slope,
+            extra,
+        });
+    };
+    let last = line.at.len() - 2;
+    let mut segment = 0;
+    for j in 0..=2 * cells {
+        let u = 0.5 * j as f64 * knot;
+        while segment < last && line.at[segment + 1] <= u {
+            make(line.at[segment + 1], segment, segment + 1, 0.0);
+            segment += 1;
+        }
+        let end = j == 0 || j == 2 * cells;
+        make(u, segment, segment, if end { 0.25 } else { 0.5 });
+    }
+    out
+}
