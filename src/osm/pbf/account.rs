@@ -85,6 +85,7 @@ impl ReadAccount {
         row("relation", "left_out", "not_used", self.relations.read);
         row("relation", "noted", "restriction", self.relations.restrictions);
         row("relation", "noted", "restriction_broken", self.relations.broken_restrictions);
+        row("relation", "noted", "restriction_off_road", self.relations.restrictions_off_road);
         for (compression, &count) in &self.blobs {
             row("blob", "noted", compression, count);
         }

@@ -25,6 +25,7 @@ pub(super) struct WayGatherer {
     pub(super) read: u64,
     pub(super) left_out: BTreeMap<&'static str, u64>,
     pub(super) relations: RelationTally,
+    pub(super) vias: Vec<i64>,
     /// Largest id so far.
     largest: Option<i64>,
     /// Some way did not have a larger id than all before it.
@@ -40,6 +41,7 @@ impl WayGatherer {
             *self.left_out.entry(reason).or_default() += count;
         }
         self.relations.add(batch.relations);
+        self.vias.extend(batch.vias);
         let Some((first, last)) = batch.ends else { return Ok(()) };
         let in_order = batch.ascending && self.largest.is_none_or(|largest| largest < first);
         self.disordered |= !in_order;

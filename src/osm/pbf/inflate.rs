@@ -114,6 +114,10 @@ fn zlib(decoder: &mut Decompress, data: &[u8], out: &mut Vec<u8>) -> Result<(), 
         if decoder.total_out() as usize > declared {
             return Err(Problem::RawSize { declared, found: "more".to_owned() });
         }
+        // The decoder reports damage found with the buffer full only as "repeated call with bad state".
+        if end.as_ref().is_err_and(|error| error.to_string().contains("bad state")) {
+            return Err(damaged("the data is damaged".to_owned()));
+        }
     }
     match end {
         Ok(Status::StreamEnd) if decoder.total_out() as usize == declared => Ok(()),

@@ -198,6 +198,7 @@ where
         account.ways_left_out = ways.left_out;
         account.nodes = tally;
         account.relations = ways.relations;
+        account.relations.restrictions_off_road = ways.vias.iter().filter(|&&id| nodes.place(id).is_none()).count() as u64;
         Ok(Some(Extract { ways: ways.ways, refs: ways.refs, nodes, points, strings: ways.strings, account }))
     }
 }

@@ -20,6 +20,8 @@ pub struct RelationTally {
     pub restrictions: u64,
     /// Of these, without a way `from` and `to` and something `via`, of a kind nobody knows, or members of themselves.
     pub broken_restrictions: u64,
+    /// Of the others, with a `via` node that is on no kept way, or not in the file.
+    pub restrictions_off_road: u64,
 }
 
 impl RelationTally {
@@ -27,11 +29,17 @@ impl RelationTally {
         self.read += other.read;
         self.restrictions += other.restrictions;
         self.broken_restrictions += other.broken_restrictions;
+        self.restrictions_off_road += other.restrictions_off_road;
     }
 }
 
-/// Checks and counts one relation.
-pub(super) fn read(message: &[u8], strings: &Strings<'_>, tally: &mut RelationTally) -> Result<(), Problem> {
+/// Checks and counts one relation; of a whole restriction the `via` nodes are noted.
+pub(super) fn read(
+    message: &[u8],
+    strings: &Strings<'_>,
+    tally: &mut RelationTally,
+    vias: &mut Vec<i64>,
+) -> Result<(), Problem> {
     use Shape::{Bytes, Number, Numbers};
     wire::check(
         message,
@@ -60,7 +68,11 @@ pub(super) fn read(message: &[u8], strings: &Strings<'_>, tally: &mut RelationTa
     tally.read += 1;
     if kind == "restriction" || kind.starts_with("restriction:") {
         tally.restrictions += 1;
-        tally.broken_restrictions += u64::from(!members.complete() || !restriction.is_some_and(is_known));
+        if members.complete() && restriction.is_some_and(is_known) {
+            vias.extend(members.via_node);
+        } else {
+            tally.broken_restrictions += 1;
+        }
     }
     Ok(())
 }
@@ -78,6 +90,8 @@ fn is_known(restriction: &str) -> bool {
 struct Members {
     from: bool,
     via: bool,
+    /// The last one, if it is a node.
+    via_node: Option<i64>,
     to: bool,
     itself: bool,
 }
@@ -95,7 +109,10 @@ impl Members {
             match strings.text(role as u64, object)? {
                 "from" => found.from |= kind == MemberType::WAY,
                 "to" => found.to |= kind == MemberType::WAY,
-                "via" => found.via |= kind != MemberType::RELATION,
+                "via" => {
+                    found.via |= kind != MemberType::RELATION;
+                    found.via_node = (kind == MemberType::NODE).then_some(member);
+                }
                 _ => {}
             }
             found.itself |= kind == MemberType::RELATION && member == relation.id();

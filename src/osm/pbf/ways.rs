@@ -47,6 +47,8 @@ pub(super) struct WayBatch {
     pub(super) ascending: bool,
     pub(super) has_nodes: bool,
     pub(super) relations: RelationTally,
+    /// `via` nodes of turn restrictions.
+    pub(super) vias: Vec<i64>,
 }
 
 /// Reads the ways and relations of a block.
@@ -67,7 +69,8 @@ where
                 }
                 4 => {
                     reader.count()?;
-                    relations::read(field.bytes()?, &block.strings, &mut reader.batch.relations)?;
+                    let WayBatch { relations, vias, .. } = &mut reader.batch;
+                    relations::read(field.bytes()?, &block.strings, relations, vias)?;
                 }
                 _ => {}
             }
