@@ -29,7 +29,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for (stage, end) in ends.lock().map_err(|error| error.to_string())?.iter() {
         println!("{stage:?} until {end:.2} s");
     }
-    println!("reading {:.2} s, {} references, blake3 {}", start.elapsed().as_secs_f64(), extract.refs.len(), extract.account.blake3);
+    println!(
+        "reading {:.2} s, {} references, blake3 {}",
+        start.elapsed().as_secs_f64(),
+        extract.refs.len(),
+        extract.account.blake3
+    );
     println!("{} bytes a way", size_of::<netcert::osm::Way>());
     Ok(())
 }

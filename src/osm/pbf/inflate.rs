@@ -114,16 +114,15 @@ fn zlib(decoder: &mut Decompress, data: &[u8], out: &mut Vec<u8>) -> Result<(), 
         if decoder.total_out() as usize > declared {
             return Err(Problem::RawSize { declared, found: "more".to_owned() });
         }
-        // The decoder reports damage found with the buffer full only as "repeated call with bad state".
-        if end.as_ref().is_err_and(|error| error.to_string().contains("bad state")) {
-            return Err(damaged("the data is damaged".to_owned()));
-        }
     }
     match end {
         Ok(Status::StreamEnd) if decoder.total_out() as usize == declared => Ok(()),
         Ok(Status::StreamEnd) => Err(Problem::RawSize { declared, found: decoder.total_out().to_string() }),
         Ok(_) => Err(damaged("the data ends too early".to_owned())),
-        Err(error) => Err(damaged(error.to_string())),
+        // flate2 has no words for most errors of zlib-rs: "repeated call with bad state".
+        Err(error) => Err(damaged(
+            error.message().filter(|text| !text.contains("bad state")).unwrap_or("the data is damaged").to_owned(),
+        )),
     }
 }
 

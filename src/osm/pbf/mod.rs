@@ -188,7 +188,13 @@ where
             nodes.add(&batch);
             Ok(())
         };
-        pass::run(&mut self.source, &with_nodes, read_nodes, take_nodes, report(self.progress, Stage::Nodes, &with_nodes))?;
+        pass::run(
+            &mut self.source,
+            &with_nodes,
+            read_nodes,
+            take_nodes,
+            report(self.progress, Stage::Nodes, &with_nodes),
+        )?;
         if mistaken {
             return Ok(None);
         }
@@ -198,7 +204,8 @@ where
         account.ways_left_out = ways.left_out;
         account.nodes = tally;
         account.relations = ways.relations;
-        account.relations.restrictions_off_road = ways.vias.iter().filter(|&&id| nodes.place(id).is_none()).count() as u64;
+        account.relations.restrictions_off_road =
+            ways.vias.iter().filter(|&&id| nodes.place(id).is_none()).count() as u64;
         Ok(Some(Extract { ways: ways.ways, refs: ways.refs, nodes, points, strings: ways.strings, account }))
     }
 }

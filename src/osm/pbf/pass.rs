@@ -85,7 +85,8 @@ pub(super) fn run<T: Send>(
             },
             || {
                 let blobs = now.blobs();
-                let decode = |inflater: &mut Inflater, (frame, blob): &(Frame, &[u8])| (*frame, decode_blob(inflater, blob));
+                let decode =
+                    |inflater: &mut Inflater, (frame, blob): &(Frame, &[u8])| (*frame, decode_blob(inflater, blob));
                 blobs.par_iter().map_init(Inflater::default, decode).collect()
             },
         );
