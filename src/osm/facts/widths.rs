@@ -1,0 +1,335 @@
+//! From tags to strips: the cross section of a way, laid out from its left edge to its right one.
+//!
+//! Evidence in this order: `width:carriageway`, `width`, `est_width`, or `width:lanes`; else tagged lanes times an assumed
+//! lane width; else class and country. Parking, cycle lanes and shoulders are deducted from a tagged carriageway;
+//! they add nothing to an assumed one. The way's line is the middle of the carriageway unless `placement` says
+//! otherwise. Where tags contradict each other the narrower reading counts.
+
+use crate::osm::facts::country::Place;
+use crate::osm::facts::layout::{Layout, NO_SECTION, Segment, Use};
+use crate::osm::facts::rules::{ClassRule, KerbRule, Rules};
+use crate::osm::facts::section::{Decimetres, Kerb, LaneTags, Parking, Placement, SectionTags, UNTAGGED};
+use crate::osm::facts::{CrossSection, Direction, Oneway, WayFacts, WidthSource};
+
+/// Lanes outside these widths are no lanes: width or lane count is wrong, metres.
+pub(super) const LANE_M: std::ops::RangeInclusive<f32> = 1.8..=6.0;
+/// Below this a two-way road without tagged lanes has no lanes: both directions share it (no centre line is marked).
+const SHARED_BELOW_M: f32 = 5.0;
+/// Where lanes are not tagged a wide road may have more of them than assumed: no more than this is one lane.
+const WIDEST_UNTAGGED_LANE_M: f32 = 4.25;
+/// Widths by lane may exceed the carriageway's by this much (rounding by mappers) before they are dropped.
+const LISTED_SLACK_M: f32 = 0.3;
+
+/// The cross sections of a way for travel along its node order and against it.
+#[must_use]
+pub fn cross_sections(facts: &WayFacts, place: &Place, rules: &Rules) -> [CrossSection; 2] {
+    let class = rules.class(facts.class);
+    let builder = Builder {
+        tags: &facts.section,
+        // A ramp has one lane unless tagged otherwise, whatever its class.
+        class: if facts.link { ClassRule { lanes: 1, ..class } } else { class },
+        lane_m: rules.lane_m(facts.class, place.country),
+        left_hand_traffic: place.left_hand_traffic,
+        kerb_rule: rules.kerb,
+    };
+    let one = |direction| builder.one_way(direction).section(direction, place.left_hand_traffic);
+    match facts.oneway {
+        Oneway::Forward => [one(Direction::Forward), NO_SECTION],
+        Oneway::Backward => [NO_SECTION, one(Direction::Backward)],
+        Oneway::No if facts.section.reversible => [one(Direction::Forward), one(Direction::Backward)],
+        Oneway::No => {
+            let layout = builder.two_way();
+            [Direction::Forward, Direction::Backward]
+                .map(|direction| layout.section(direction, place.left_hand_traffic))
+        }
+    }
+}
+
+struct Builder<'a> {
+    tags: &'a SectionTags,
+    class: ClassRule,
+    lane_m: f32,
+    left_hand_traffic: bool,
+    kerb_rule: KerbRule,
+}
+
+impl Builder<'_> {
+    fn one_way(&self, direction: Direction) -> Layout {
+        let tags = self.lane_tags(direction);
+        let tagged = if tags.count > 0 { tags.count } else { self.tags.lanes };
+        let mut lanes = self.lanes(direction, tags, tagged);
+        if direction == Direction::Backward {
+            lanes.reverse();
+        }
+        let known = tagged > 0 || tags.listed > 0;
+        let narrow = self.tags.narrow && tagged <= 1 && tags.listed == 0;
+        let assumed_m = narrow.then_some(self.kerb_rule.narrow_m);
+        self.lay_out(lanes, known, assumed_m, &[direction])
+    }
+
+    fn two_way(&self) -> Layout {
+        let (forward, backward) = (self.lane_tags(Direction::Forward), self.lane_tags(Direction::Backward));
+        let listed = forward.listed > 0 || backward.listed > 0;
+        let known = self.tags.tagged_lanes().is_some() || listed;
+        let single = self.tags.alternating || (self.tags.tagged_lanes() == Some(1) && !listed);
+        let unmarked = !known && (self.class.shared_m.is_some() || self.tags.narrow);
+        if single || unmarked {
+            let assumed_m = match (self.tags.narrow, self.class.shared_m) {
+                (true, _) => self.kerb_rule.narrow_m,
+                (false, Some(shared_m)) if !known => shared_m,
+                (false, _) => self.lane_m,
+            };
+            // A wide road is not shared for want of a tag: then it has a half for each direction.
+            if single || self.tags.carriageway.is_none_or(|width| width.metres() < SHARED_BELOW_M) {
+                let shared = Segment { width_m: None, of: None, used: Use::Shared };
+                return self.lay_out(vec![shared], known, Some(assumed_m), &[Direction::Forward, Direction::Backward]);
+            }
+        }
+        let (n_forward, n_backward, n_centre) = self.lane_counts();
+        let mut forward = self.lanes(Direction::Forward, forward, n_forward);
+        let mut backward = self.lanes(Direction::Backward, backward, n_backward);
+        backward.reverse();
+        let centre = (0..n_centre).map(|_| Segment { width_m: None, of: None, used: Use::Paved });
+        let lanes = if self.left_hand_traffic {
+            forward.extend(centre);
+            forward.append(&mut backward);
+            forward
+        } else {
+            backward.extend(centre);
+            backward.append(&mut forward);
+            backward
+        };
+        self.lay_out(lanes, known, None, &[Direction::Forward, Direction::Backward])
+    }
+
+    fn lane_tags(&self, direction: Direction) -> &LaneTags {
+        &self.tags.directions[usize::from(direction == Direction::Backward)]
+    }
+
+    /// Lanes forward, backward, and for turning in the middle of a two-way road. An odd lane without a direction is
+    /// counted as a middle one: neither direction may rely on it.
+    fn lane_counts(&self) -> (u8, u8, u8) {
+        let [forward, backward] = [&self.tags.directions[0], &self.tags.directions[1]].map(|tags| tags.count);
+        let centre = self.tags.both_ways;
+        let rest = |taken: u8| self.tags.lanes.saturating_sub(centre).saturating_sub(taken).max(1);
+        match (forward, backward) {
+            (0, 0) if self.tags.lanes == 0 => (self.class.lanes, self.class.lanes, centre),
+            (0, 0) => {
+                let running = rest(0);
+                ((running / 2).max(1), (running / 2).max(1), centre + running % 2)
+            }
+            (forward, 0) => (forward, rest(forward), centre),
+            (0, backward) => (rest(backward), backward, centre),
+            (forward, backward) => (forward, backward, centre),
+        }
+    }
+
+    /// The lanes of one direction from left to right in direction of travel; `count` 0: not known.
+    fn lanes(&self, direction: Direction, tags: &LaneTags, count: u8) -> Vec<Segment> {
+        let of = Some(direction);
+        let plain = |n: u8| vec![Segment { width_m: None, of, used: Use::Lane(direction) }; usize::from(n)];
+        let mut lanes = if tags.listed > 0 && tags.listed >= count {
+            let mut lanes = plain(tags.listed);
+            if let Some(widths) = tags.widths_m() {
+                for (lane, width_m) in lanes.iter_mut().zip(widths) {
+                    lane.width_m = Some(width_m);
+                }
+            }
+            // `lanes` does not count cycle lanes, lists do: so many of the closed lanes are cycle lanes.
+            let cycle_lanes = if count > 0 { tags.listed - count } else { tags.listed };
+            self.close(&mut lanes, cycle_lanes, tags);
+            lanes
+        } else {
+            plain(if count > 0 { count } else { self.class.lanes })
+        };
+        if tags.closed == 0 {
+            self.from_the_kerb(&mut lanes).take(usize::from(tags.bus)).for_each(|lane| lane.used = Use::Paved);
+        }
+        lanes
+    }
+
+    fn close(&self, lanes: &mut [Segment], mut cycle_lanes: u8, tags: &LaneTags) {
+        let closed: Vec<bool> = (0..lanes.len())
+            .map(|at| tags.is_closed(at) || lanes[at].width_m.is_some_and(|width_m| width_m < *LANE_M.start()))
+            .collect();
+        let mut order: Vec<usize> = (0..lanes.len()).filter(|&at| closed[at]).collect();
+        if !self.left_hand_traffic {
+            order.reverse();
+        }
+        for at in order {
+            lanes[at].used = if cycle_lanes > 0 { Use::Aside } else { Use::Paved };
+            cycle_lanes = cycle_lanes.saturating_sub(1);
+        }
+    }
+
+    /// The lanes of one direction (in order of travel) from the kerb to the middle.
+    fn from_the_kerb<'l>(&self, lanes: &'l mut [Segment]) -> Box<dyn Iterator<Item = &'l mut Segment> + 'l> {
+        if self.left_hand_traffic { Box::new(lanes.iter_mut()) } else { Box::new(lanes.iter_mut().rev()) }
+    }
+
+    /// Gives every lane its width. `known`: the number of lanes is tagged. `assumed_m`: instead of the lanes' sum, if
+    /// nothing is tagged.
+    fn lay_out(
+        &self,
+        mut lanes: Vec<Segment>,
+        known: bool,
+        assumed_m: Option<f32>,
+        directions: &[Direction],
+    ) -> Layout {
+        let tagged = self.available(&lanes);
+        if let Some((available_m, _)) = tagged
+            && lanes.iter().filter_map(|lane| lane.width_m).sum::<f32>() > available_m + LISTED_SLACK_M
+        {
+            lanes.iter_mut().for_each(|lane| lane.width_m = None);
+        }
+        if lanes.iter().all(|lane| lane.width_m.is_some()) {
+            return self.limited(self.finish(lanes, WidthSource::Tagged, WidthSource::Tagged), directions);
+        }
+        self.give_cycle_lanes_width(&mut lanes);
+        if let Some((available_m, source)) = tagged {
+            if available_m < *LANE_M.start() {
+                return Layout::default();
+            }
+            if let Some(layout) = self.share_out(&lanes, available_m, source, known, directions) {
+                return self.limited(layout, directions);
+            }
+        }
+        let source = if known { WidthSource::FromLanes } else { WidthSource::Assumed };
+        let unknown = lanes.iter().filter(|lane| lane.width_m.is_none()).count().max(1) as f32;
+        let each_m = assumed_m.map_or(self.lane_m, |all_m| all_m / unknown);
+        for lane in &mut lanes {
+            lane.width_m = lane.width_m.or(Some(each_m));
+        }
+        self.limited(self.finish(lanes, source, source), directions)
+    }
+
+    /// Shares a tagged width out among the lanes; `None` if the lanes would be too wide to be the ones tagged.
+    fn share_out(
+        &self,
+        lanes: &[Segment],
+        available_m: f32,
+        source: WidthSource,
+        known: bool,
+        directions: &[Direction],
+    ) -> Option<Layout> {
+        let given_m: f32 = lanes.iter().filter_map(|lane| lane.width_m).sum();
+        let unknown = lanes.iter().filter(|lane| lane.width_m.is_none()).count() as f32;
+        let room_m = available_m - given_m;
+        let each_m = room_m / unknown;
+        let shared_already = lanes.iter().any(|lane| lane.used == Use::Shared);
+        if known && each_m > *LANE_M.end() {
+            return None;
+        }
+        let two_way = directions.len() == 2;
+        let too_narrow = each_m < *LANE_M.start() || (two_way && !known && available_m < SHARED_BELOW_M);
+        if too_narrow && !shared_already {
+            let used = if two_way { Use::Shared } else { directions.first().map_or(Use::Shared, |d| Use::Lane(*d)) };
+            let of = directions.first().copied().filter(|_| !two_way);
+            let one = Segment { width_m: Some(room_m.min(available_m)), of, used };
+            let divided = if lanes.len() > 1 { source.min(WidthSource::Estimated) } else { source };
+            return (room_m >= *LANE_M.start()).then(|| self.with_kerbs(vec![one], source, divided));
+        }
+        let mut out = Vec::with_capacity(lanes.len() + 2);
+        for lane in lanes {
+            let whole = Segment { width_m: lane.width_m.or(Some(each_m)), ..*lane };
+            let split = !known && lane.width_m.is_none() && each_m > WIDEST_UNTAGGED_LANE_M;
+            match lane.of {
+                Some(direction) if split => {
+                    let at_kerb = Segment { width_m: Some(WIDEST_UNTAGGED_LANE_M), ..*lane };
+                    let rest = Segment { width_m: Some(each_m - WIDEST_UNTAGGED_LANE_M), ..*lane };
+                    // The kerb is on the right of the way's order for one of driving side and direction, not both.
+                    if self.left_hand_traffic == (direction == Direction::Forward) {
+                        out.extend([at_kerb, rest]);
+                    } else {
+                        out.extend([rest, at_kerb]);
+                    }
+                }
+                _ => out.push(whole),
+            }
+        }
+        let divided = if known || out.len() == 1 { source } else { source.min(WidthSource::Estimated) };
+        Some(self.with_kerbs(out, source, divided))
+    }
+
+    /// The tagged carriageway less what is not for traffic, and its evidence.
+    fn available(&self, lanes: &[Segment]) -> Option<(f32, WidthSource)> {
+        let width_m = self.tags.carriageway?.metres();
+        let kerbs: Vec<Segment> =
+            self.kerb_segments(0, lanes).into_iter().chain(self.kerb_segments(1, lanes)).collect();
+        let taken_m: f32 = kerbs.iter().filter_map(|kerb| kerb.width_m).sum();
+        let assumed = self.tags.kerbs.iter().any(|k| [k.parking_dm, k.cycle_dm, k.shoulder_dm].contains(&UNTAGGED));
+        let source = if assumed { self.tags.source.min(WidthSource::Estimated) } else { self.tags.source };
+        Some((width_m - taken_m, source))
+    }
+
+    /// What lies beside the lanes on one side (0: left of the node order), from the edge inwards.
+    fn kerb_segments(&self, side: usize, lanes: &[Segment]) -> Vec<Segment> {
+        let Kerb { parking, parking_dm, cycle_dm, shoulder_dm } = self.tags.kerbs[side];
+        let rule = &self.kerb_rule;
+        let parking_m = match parking {
+            Parking::None | Parking::Parallel => rule.parallel_parking_m,
+            Parking::Diagonal => rule.diagonal_parking_m,
+            Parking::Perpendicular => rule.perpendicular_parking_m,
+        };
+        let metres = |dm: Decimetres, default_m: f32| if dm == UNTAGGED { default_m } else { f32::from(dm) / 10.0 };
+        let outermost = if side == 0 { lanes.first() } else { lanes.last() };
+        let listed = outermost.is_some_and(|lane| lane.used == Use::Aside);
+        let mut inwards = Vec::new();
+        for (dm, default_m, used) in [
+            (parking_dm, parking_m, Use::Aside),
+            (if listed { 0 } else { cycle_dm }, rule.cycle_lane_m, Use::Aside),
+            (shoulder_dm, rule.shoulder_m, Use::Paved),
+        ] {
+            if dm > 0 {
+                inwards.push(Segment { width_m: Some(metres(dm, default_m)), of: None, used });
+            }
+        }
+        inwards
+    }
+
+    fn give_cycle_lanes_width(&self, lanes: &mut [Segment]) {
+        for lane in lanes.iter_mut().filter(|lane| lane.used == Use::Aside) {
+            lane.width_m = lane.width_m.or(Some(self.kerb_rule.cycle_lane_m));
+        }
+    }
+
+    fn with_kerbs(&self, lanes: Vec<Segment>, whole: WidthSource, divided: WidthSource) -> Layout {
+        let mut segments = self.kerb_segments(0, &lanes);
+        let right = self.kerb_segments(1, &lanes);
+        segments.extend(lanes);
+        segments.extend(right.into_iter().rev());
+        self.finish(segments, whole, divided)
+    }
+
+    fn finish(&self, segments: Vec<Segment>, whole: WidthSource, divided: WidthSource) -> Layout {
+        // Somewhere between two places: the strips are where they would be around the middle, on weaker evidence.
+        let weakest =
+            if self.tags.placement == Placement::Transition { WidthSource::Estimated } else { WidthSource::Surveyed };
+        let placement = self.tags.placement;
+        Layout { segments, whole: Some(whole.min(weakest)), divided: Some(divided.min(weakest)), placement }
+    }
+
+    /// `maxwidth:physical` as an upper bound of all that is paved.
+    fn limited(&self, layout: Layout, directions: &[Direction]) -> Layout {
+        let Some(most_m) = self.tags.physical.map(|p| p.metres()) else { return layout };
+        let drivable_m: f32 = layout.segments.iter().filter(|s| s.used != Use::Aside).filter_map(|s| s.width_m).sum();
+        if drivable_m <= most_m {
+            return layout;
+        }
+        let one_lane = directions.len() == 1 || most_m < SHARED_BELOW_M;
+        let segments = match directions {
+            [direction] => vec![Segment { width_m: Some(most_m), of: Some(*direction), used: Use::Lane(*direction) }],
+            _ if one_lane => vec![Segment { width_m: Some(most_m), of: None, used: Use::Shared }],
+            _ => {
+                let order = if self.left_hand_traffic {
+                    [Direction::Forward, Direction::Backward]
+                } else {
+                    [Direction::Backward, Direction::Forward]
+                };
+                order.map(|d| Segment { width_m: Some(most_m / 2.0), of: Some(d), used: Use::Lane(d) }).to_vec()
+            }
+        };
+        let source = layout.whole.unwrap_or(WidthSource::Assumed).min(WidthSource::Tagged);
+        Layout { segments, whole: Some(source), divided: Some(source), placement: Placement::Middle }
+    }
+}
