@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::cut::{CutWay, Piece};
 use super::edge_id::edge_id;
 use super::vertices::{MISSING, Vertices, of_way};
-use super::{Edge, Narrowing, Network, NetworkAccount, Road, legal};
+use super::{Edge, Narrowing, Network, NetworkAccount, Road};
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, Place, WayFacts};
 use crate::osm::{LonLat, NodeTable, Way};
 
