@@ -37,6 +37,9 @@ pub(super) struct SectionReader {
     lists: [Lists; 3],
     kerbs: [Kerb; 2],
     orientations: [Parking; 2],
+    parked: [bool; 2],
+    /// Parked cars stand beside the carriageway after all.
+    parked_beside: [bool; 2],
     /// Cycle lanes on the carriageway: a width alone may be that of a track beside it.
     cycle_lanes: [bool; 2],
     placements: [Option<Placement>; 3],
@@ -56,7 +59,7 @@ impl SectionReader {
             "source" if matches!(suffix, "width" | "width:carriageway") => self.origin(text),
             // `limits` reads the same tag as a limit, and notes it there if it is unreadable.
             "maxwidth" if suffix == "physical" => {
-                self.physical = value::metres(text).and_then(Millimetres::from_metres)
+                self.physical = value::metres(text).and_then(Millimetres::from_metres);
             }
             "narrow" if suffix.is_empty() => self.narrow = text == "yes",
             "lanes" => self.lanes(suffix, text, notes),
@@ -99,7 +102,7 @@ impl SectionReader {
             },
         };
         let (count, sound) = value::lane_count(text);
-        if !sound && !(bus && text == "0") {
+        if !(sound || bus && text == "0") {
             notes.add(Note::BadLanes);
         }
         let count = count.unwrap_or(0);
@@ -210,21 +213,14 @@ impl SectionReader {
             _ => return,
         };
         for &side in sides {
-            // Half on the kerb still takes half a car; counted whole.
-            let on_street =
-                matches!(kind, "lane" | "on_street" | "half_on_kerb" | "yes" | "marked" | "painted_area_only");
             if rest == "orientation" || old {
-                self.orientations[side] = orientation;
+                self.orientations[side] = orientation.max(self.orientations[side]);
             }
             match kind {
-                "" => {}
-                _ if on_street && !(old && orientation == Parking::None) => {
-                    self.kerbs[side].parking = Parking::Parallel
-                }
-                // The older scheme's position tag takes a car off the carriageway again.
-                "street_side" | "on_kerb" | "lay_by" | "shoulder" | "no" | "separate" => {
-                    self.kerbs[side].parking = Parking::None;
-                    self.orientations[side] = Parking::None;
+                "street_side" | "on_kerb" | "lay_by" | "shoulder" | "separate" => self.parked_beside[side] = true,
+                // Half on the kerb is counted as whole.
+                "lane" | "on_street" | "half_on_kerb" | "yes" | "marked" | "painted_area_only" => {
+                    self.parked[side] |= !old || orientation != Parking::None;
                 }
                 _ => {}
             }
@@ -296,11 +292,11 @@ impl SectionReader {
     }
 
     fn kerb(&self, side: usize) -> Kerb {
-        let Kerb { parking, parking_dm, cycle_dm, shoulder_dm } = self.kerbs[side];
-        let parking = match (parking, self.orientations[side]) {
-            (Parking::None, _) => Parking::None,
-            (parking, Parking::None) => parking,
-            (_, orientation) => orientation,
+        let Kerb { parking_dm, cycle_dm, shoulder_dm, .. } = self.kerbs[side];
+        let parking = match self.orientations[side] {
+            _ if self.parked_beside[side] || !self.parked[side] => Parking::None,
+            Parking::None => Parking::Parallel,
+            orientation => orientation,
         };
         let tagged_or_default = |dm| if dm == 0 { UNTAGGED } else { dm };
         Kerb {

@@ -135,6 +135,11 @@ fn width_and_lanes_that_contradict_give_the_narrower_reading() {
         "highway=primary width=3 lanes=2",
         "150..-150 Estimated | 150..-150 Estimated | 150..-150 Estimated | 150..-150 Tagged",
     );
+    // 7 m for five lanes: neither is believed beyond one assumed lane.
+    check(
+        "highway=primary width=7 lanes=5 oneway=yes",
+        "162..-162 FromLanes | - | 162..-162 FromLanes | 162..-162 FromLanes",
+    );
     // 14 m for two lanes: the width is not that of the lanes.
     check(
         "highway=primary width=14 lanes=2",
@@ -172,6 +177,11 @@ fn kerb_side_uses_are_deducted_from_a_tagged_width() {
     check(
         "highway=motorway width=12 lanes=2 shoulder=right shoulder:right:width=2.5",
         "125..-350 Tagged | - | 600..-350 Tagged | 600..-600 Tagged",
+    );
+    // The width is that of the lanes alone.
+    check(
+        "highway=motorway width=7.5 lanes=2 shoulder=yes",
+        "0..-350 FromLanes | - | 350..-350 FromLanes | 350..-350 FromLanes",
     );
     // More cars than road.
     check("highway=residential width=6 parking:both=lane parking:both:orientation=perpendicular", "- | - | - | -");
@@ -231,6 +241,10 @@ fn a_physical_width_bounds_the_carriageway() {
     check(
         "highway=primary lanes=2 maxwidth:physical=3",
         "150..-150 FromLanes | 150..-150 FromLanes | 150..-150 FromLanes | 150..-150 FromLanes",
+    );
+    check(
+        "highway=primary oneway=yes lanes=2 maxwidth:physical=6",
+        "0..-300 FromLanes | - | 300..-300 FromLanes | 300..-300 FromLanes",
     );
     assert_eq!(draft("highway=primary maxwidth:physical=3").facts.legal_forward.max_width, Limit::At(3.0));
 }
@@ -602,6 +616,10 @@ proptest! {
                     prop_assert!(outer.left_m >= inner.left_m && outer.right_m <= inner.right_m, "{section:?}");
                 }
                 prop_assert!(pair[0].is_none() || pair[1].is_some());
+            }
+            let physical_m = tags.iter().find(|(key, _)| key == "maxwidth:physical").and_then(|(_, value)| metres(value));
+            if let (Some(most_m), Some(all)) = (physical_m, section.carriageway) {
+                prop_assert!(all.width_m() <= most_m + 1e-3, "{all:?} of at most {most_m}");
             }
             if let (Some(width_m), Some(all)) = (facts.tagged_width_m(), section.carriageway)
                 && all.source >= WidthSource::Tagged && !tags.iter().any(|(key, _)| key.starts_with("width:lanes"))
