@@ -205,10 +205,12 @@ impl LegalTags {
             }
             match dimension_condition(condition) {
                 Some((kind, limit)) if value == Permission::No => self.limit(kind, limit, directions, notes),
-                _ => {
+                _ if value > Permission::Yes => {
                     notes.add(Note::UndecidedCondition);
                     self.access.condition(head, directions, value);
                 }
+                // More lenient at times: not relied upon.
+                _ => {}
             }
         }
     }
