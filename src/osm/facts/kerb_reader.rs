@@ -88,7 +88,8 @@ impl KerbReader {
         }
     }
 
-    /// Both schemes: `parking:right=lane` with `parking:right:orientation`, and the older `parking:lane:right=parallel`.
+    /// Both schemes: `parking:right=lane` with `parking:right:orientation`, and the older
+    /// `parking:lane:right=parallel`.
     fn parking(&mut self, suffix: &str, text: &str) {
         let (old, suffix) = match suffix.strip_prefix("lane:") {
             Some(rest) => (true, rest),

@@ -1,7 +1,7 @@
 //! A cross section laid out from the left of the way's node order to its right, and the strips that follow from it.
 //!
-//! Everything about sides is here: positions, the kerb by driving side and direction, `placement`. A strip is at least as
-//! wide as the narrowest lane, its edges finite, or it is not given.
+//! Everything about sides is here: positions, the kerb by driving side and direction, `placement`. A strip is at least
+//! as wide as the narrowest lane, its edges finite, or it is not given.
 
 use crate::osm::facts::section::{LaneLine, Placement};
 use crate::osm::facts::widths::LANE_M;

@@ -1,7 +1,7 @@
 //! From tags to strips: the cross section of a way, laid out from its left edge to its right one.
 //!
-//! Evidence in this order: `width:carriageway`, `width`, `est_width`, or `width:lanes`; else tagged lanes times an assumed
-//! lane width; else class and country. Parking, cycle lanes and shoulders are deducted from a tagged carriageway;
+//! Evidence in this order: `width:carriageway`, `width`, `est_width`, or `width:lanes`; else tagged lanes times an
+//! assumed lane width; else class and country. Parking, cycle lanes and shoulders are deducted from a tagged carriageway;
 //! they add nothing to an assumed one. The way's line is the middle of the carriageway unless `placement` says
 //! otherwise. Where tags contradict each other the narrower reading counts.
 
