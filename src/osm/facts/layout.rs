@@ -1,7 +1,7 @@
 //! A cross section laid out from the left of the way's node order to its right, and the strips that follow from it.
 //!
-//! Everything about sides is here: positions, the kerb by driving side and direction, `placement`. A strip is at least as
-//! wide as the narrowest lane, its edges finite, or it is not given.
+//! Everything about sides is here: positions, the kerb by driving side and direction, `placement`. A strip is at least
+//! as wide as the narrowest lane, its edges finite, or it is not given.
 
 use crate::osm::facts::section::{LaneLine, Placement};
 use crate::osm::facts::widths::LANE_M;
@@ -30,10 +30,13 @@ pub(super) struct Segment {
 }
 
 impl Segment {
-    fn is_open_to(&self, direction: Direction) -> bool {
+    pub(super) fn is_open_to(&self, direction: Direction) -> bool {
         self.used == Use::Shared || self.used == Use::Lane(direction)
     }
 }
+
+/// One lane for both directions in turn.
+pub(super) const SHARED: Segment = Segment { width_m: None, of: None, used: Use::Shared };
 
 pub(super) const NO_SECTION: CrossSection = CrossSection { lane: None, direction: None, carriageway: None };
 
@@ -86,9 +89,8 @@ impl Layout {
 
     /// The strips of one direction of travel.
     pub(super) fn section(&self, direction: Direction, left_hand_traffic: bool) -> CrossSection {
-        let kerb_on_the_left_of_the_way = left_hand_traffic == (direction == Direction::Forward);
         let mut inwards: Vec<usize> = (0..self.segments.len()).collect();
-        if !kerb_on_the_left_of_the_way {
+        if !kerb_on_the_left_of_the_way(direction, left_hand_traffic) {
             inwards.reverse();
         }
         let (Some(whole), Some(divided)) = (self.whole, self.divided) else { return NO_SECTION };
@@ -118,4 +120,10 @@ impl Layout {
             carriageway: strip(first_paved, last_paved, whole),
         }
     }
+}
+
+/// The kerb of a direction's slow lane lies to the left of the node order for traffic on the left going forward, and
+/// for traffic on the right going backward.
+pub(super) fn kerb_on_the_left_of_the_way(direction: Direction, left_hand_traffic: bool) -> bool {
+    left_hand_traffic == (direction == Direction::Forward)
 }

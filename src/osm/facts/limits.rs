@@ -205,10 +205,12 @@ impl LegalTags {
             }
             match dimension_condition(condition) {
                 Some((kind, limit)) if value == Permission::No => self.limit(kind, limit, directions, notes),
-                _ => {
+                _ if value > Permission::Yes => {
                     notes.add(Note::UndecidedCondition);
                     self.access.condition(head, directions, value);
                 }
+                // More lenient at times: not relied upon.
+                _ => {}
             }
         }
     }
@@ -221,7 +223,7 @@ impl LegalTags {
     }
 }
 
-/// `value @ condition` pairs; semicolons inside parentheses belong to the condition. A clause without `@` has an empty one.
+/// `value @ condition` pairs; semicolons inside parentheses belong to the condition, which is empty without an `@`.
 fn clauses(text: &str) -> impl Iterator<Item = (&str, &str)> {
     let mut depth = 0_u32;
     text.split(move |c| {

@@ -6,6 +6,8 @@
 mod access;
 mod class;
 mod country;
+mod kerb_reader;
+mod lanes;
 mod layout;
 mod limits;
 mod notes;

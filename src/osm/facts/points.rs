@@ -3,7 +3,7 @@
 
 use crate::osm::facts::limits::LegalTags;
 use crate::osm::facts::notes::Notes;
-use crate::osm::facts::{Direction, Legal, Limit, PointFacts, Tags, value};
+use crate::osm::facts::{Direction, Limit, PointFacts, Tags, value};
 
 /// A choker or chicane without a tagged width leaves one lane: the lane width of a minor main road, assumed.
 const CALMED_PASSAGE_M: f32 = 3.0;
@@ -71,12 +71,4 @@ pub fn point_facts(tags: &Tags<'_>) -> Option<PointFacts> {
     };
     let facts = PointFacts { legal, passage_m, barred };
     (facts != PointFacts::default()).then_some(facts)
-}
-
-impl PointFacts {
-    /// No limit of any kind at the node.
-    #[must_use]
-    pub fn is_free(&self) -> bool {
-        self.legal == Legal::default() && self.passage_m.is_none() && !self.barred
-    }
 }

@@ -28,8 +28,8 @@ impl Millimetres {
     }
 }
 
-/// Cars parked on the carriageway.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+/// Cars parked on the carriageway; the more room they take, the greater.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(super) enum Parking {
     #[default]
     None,

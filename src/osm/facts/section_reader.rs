@@ -2,10 +2,9 @@
 //!
 //! A tag that cannot be used is noted and ignored; two tags of which one must be wrong are resolved to the narrower.
 
+use crate::osm::facts::kerb_reader::KerbReader;
 use crate::osm::facts::notes::{Note, Notes};
-use crate::osm::facts::section::{
-    Decimetres, Kerb, LANE_STEP_M, LISTED, LaneLine, LaneTags, Millimetres, Parking, Placement, SectionTags, UNTAGGED,
-};
+use crate::osm::facts::section::{LANE_STEP_M, LISTED, LaneLine, LaneTags, Millimetres, Placement, SectionTags};
 use crate::osm::facts::widths::LANE_M;
 use crate::osm::facts::{Direction, Oneway, WidthSource, value};
 
@@ -35,10 +34,7 @@ pub(super) struct SectionReader {
     both_ways: u8,
     /// Without a suffix, forward, backward.
     lists: [Lists; 3],
-    kerbs: [Kerb; 2],
-    orientations: [Parking; 2],
-    /// Cycle lanes on the carriageway: a width alone may be that of a track beside it.
-    cycle_lanes: [bool; 2],
+    kerbs: KerbReader,
     placements: [Option<Placement>; 3],
 }
 
@@ -56,7 +52,7 @@ impl SectionReader {
             "source" if matches!(suffix, "width" | "width:carriageway") => self.origin(text),
             // `limits` reads the same tag as a limit, and notes it there if it is unreadable.
             "maxwidth" if suffix == "physical" => {
-                self.physical = value::metres(text).and_then(Millimetres::from_metres)
+                self.physical = value::metres(text).and_then(Millimetres::from_metres);
             }
             "narrow" if suffix.is_empty() => self.narrow = text == "yes",
             "lanes" => self.lanes(suffix, text, notes),
@@ -66,9 +62,7 @@ impl SectionReader {
             {
                 self.closed_lanes(head, suffix, text, notes);
             }
-            "cycleway" => self.cycleway(suffix, text),
-            "shoulder" => self.shoulder(suffix, text),
-            "parking" => self.parking(suffix, text),
+            "cycleway" | "shoulder" | "parking" => self.kerbs.take(head, suffix, text),
             "busway" => self.busway(suffix, text),
             _ => {}
         }
@@ -99,7 +93,7 @@ impl SectionReader {
             },
         };
         let (count, sound) = value::lane_count(text);
-        if !sound && !(bus && text == "0") {
+        if !(sound || bus && text == "0") {
             notes.add(Note::BadLanes);
         }
         let count = count.unwrap_or(0);
@@ -156,89 +150,10 @@ impl SectionReader {
         self.lists[index].closed |= closed;
     }
 
-    fn cycleway(&mut self, suffix: &str, text: &str) {
-        let (sides, rest) = sides(suffix);
-        let on_carriageway = matches!(text, "lane" | "opposite_lane" | "soft_lane");
-        if (rest.is_empty() && on_carriageway) || (rest == "lane" && matches!(text, "exclusive" | "advisory")) {
-            for &side in sides {
-                self.cycle_lanes[side] = true;
-            }
-        }
-        if rest == "width" {
-            self.kerb_width(suffix, text, |kerb| &mut kerb.cycle_dm);
-        }
-    }
-
-    fn shoulder(&mut self, suffix: &str, text: &str) {
-        let (named, rest) = sides(suffix);
-        let sides: &[usize] = match (suffix, text) {
-            ("", "left") => &[0],
-            ("", "right") => &[1],
-            _ if rest.is_empty() && matches!(text, "both" | "yes" | "left;right") => named,
-            _ => &[],
-        };
-        for &side in sides {
-            if self.kerbs[side].shoulder_dm == 0 {
-                self.kerbs[side].shoulder_dm = UNTAGGED;
-            }
-        }
-        if rest == "width" {
-            self.kerb_width(suffix, text, |kerb| &mut kerb.shoulder_dm);
-        }
-    }
-
-    fn kerb_width(&mut self, suffix: &str, text: &str, slot: fn(&mut Kerb) -> &mut Decimetres) {
-        let Some(width) = value::metres(text).filter(|width| *width < 20.0) else { return };
-        for &side in sides(suffix).0 {
-            *slot(&mut self.kerbs[side]) = (width * 10.0 - 1e-3).ceil() as u8;
-        }
-    }
-
-    /// Both schemes: `parking:right=lane` with `parking:right:orientation`, and the older `parking:lane:right=parallel`.
-    fn parking(&mut self, suffix: &str, text: &str) {
-        let (old, suffix) = match suffix.strip_prefix("lane:") {
-            Some(rest) => (true, rest),
-            None => (false, suffix),
-        };
-        let (sides, rest) = sides(suffix);
-        let (orientation, kind) = match (old, rest) {
-            (true, "") => (orientation(text), "lane"),
-            (false, "") => (Parking::None, text),
-            (false, "orientation") => (orientation(text), ""),
-            (false, "width") => return self.kerb_width(suffix, text, |kerb| &mut kerb.parking_dm),
-            (true, "parallel" | "diagonal" | "perpendicular") => (orientation(rest), text),
-            _ => return,
-        };
-        for &side in sides {
-            // Half on the kerb still takes half a car; counted whole.
-            let on_street =
-                matches!(kind, "lane" | "on_street" | "half_on_kerb" | "yes" | "marked" | "painted_area_only");
-            if rest == "orientation" || old {
-                self.orientations[side] = orientation;
-            }
-            match kind {
-                "" => {}
-                _ if on_street && !(old && orientation == Parking::None) => {
-                    self.kerbs[side].parking = Parking::Parallel
-                }
-                // The older scheme's position tag takes a car off the carriageway again.
-                "street_side" | "on_kerb" | "lay_by" | "shoulder" | "no" | "separate" => {
-                    self.kerbs[side].parking = Parking::None;
-                    self.orientations[side] = Parking::None;
-                }
-                _ => {}
-            }
-        }
-    }
-
+    /// Which direction a side serves depends on the driving side; both directions get a bus lane at the kerb, so that
+    /// the lane beside it is the kerb-side lane whichever it is.
     fn busway(&mut self, suffix: &str, text: &str) {
-        if text != "lane" {
-            return;
-        }
-        // Which direction a side serves depends on the driving side; both get a bus lane at the kerb: the lane beside it
-        // is then the kerb-side lane whichever it is.
-        let (sides, rest) = sides(suffix);
-        if rest.is_empty() && !sides.is_empty() {
+        if text == "lane" && matches!(suffix, "" | "left" | "right" | "both") {
             self.lists[0].bus = self.lists[0].bus.max(1);
         }
     }
@@ -284,7 +199,7 @@ impl SectionReader {
             lanes: plain.count,
             both_ways: self.both_ways,
             directions,
-            kerbs: [self.kerb(0), self.kerb(1)],
+            kerbs: self.kerbs.finish(),
             placement: placement.unwrap_or_default(),
         };
         if let (Some(width), Some(lanes)) = (section.carriageway, section.tagged_lanes())
@@ -293,22 +208,6 @@ impl SectionReader {
             notes.add(Note::WidthContradictsLanes);
         }
         section
-    }
-
-    fn kerb(&self, side: usize) -> Kerb {
-        let Kerb { parking, parking_dm, cycle_dm, shoulder_dm } = self.kerbs[side];
-        let parking = match (parking, self.orientations[side]) {
-            (Parking::None, _) => Parking::None,
-            (parking, Parking::None) => parking,
-            (_, orientation) => orientation,
-        };
-        let tagged_or_default = |dm| if dm == 0 { UNTAGGED } else { dm };
-        Kerb {
-            parking,
-            parking_dm: if parking == Parking::None { 0 } else { tagged_or_default(parking_dm) },
-            cycle_dm: if self.cycle_lanes[side] { tagged_or_default(cycle_dm) } else { 0 },
-            shoulder_dm,
-        }
     }
 
     fn placement(&mut self, suffix: &str, text: &str, notes: &mut Notes) {
@@ -365,15 +264,6 @@ fn width(text: &str, notes: &mut Notes) -> Option<Millimetres> {
     width
 }
 
-fn orientation(text: &str) -> Parking {
-    match text {
-        "parallel" | "inline" | "half_on_kerb" | "marked" => Parking::Parallel,
-        "diagonal" => Parking::Diagonal,
-        "perpendicular" | "orthogonal" => Parking::Perpendicular,
-        _ => Parking::None,
-    }
-}
-
 fn placement(text: &str, direction: Direction) -> Option<Placement> {
     if text == "transition" {
         return Some(Placement::Transition);
@@ -396,15 +286,4 @@ fn side_index(suffix: &str) -> Option<usize> {
 /// The same of `lanes`, `lanes:forward`, `lanes:backward`.
 fn list_index(suffix: &str) -> Option<usize> {
     ["lanes", "lanes:forward", "lanes:backward"].iter().position(|side| *side == suffix)
-}
-
-/// The sides of the road that a suffix names (none named: both), and what follows.
-fn sides(suffix: &str) -> (&'static [usize], &str) {
-    let (side, rest) = suffix.split_once(':').unwrap_or((suffix, ""));
-    match side {
-        "left" => (&[0], rest),
-        "right" => (&[1], rest),
-        "both" => (&[0, 1], rest),
-        _ => (&[0, 1], suffix),
-    }
 }

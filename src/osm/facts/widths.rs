@@ -1,20 +1,20 @@
 //! From tags to strips: the cross section of a way, laid out from its left edge to its right one.
 //!
-//! Evidence in this order: `width:carriageway`, `width`, `est_width`, or `width:lanes`; else tagged lanes times an assumed
-//! lane width; else class and country. Parking, cycle lanes and shoulders are deducted from a tagged carriageway;
+//! Evidence in this order: `width:carriageway`, `width`, `est_width`, or `width:lanes`; else tagged lanes times an
+//! assumed lane width; else class and country. Parking, cycle lanes and shoulders are deducted from a tagged carriageway;
 //! they add nothing to an assumed one. The way's line is the middle of the carriageway unless `placement` says
 //! otherwise. Where tags contradict each other the narrower reading counts.
 
 use crate::osm::facts::country::Place;
-use crate::osm::facts::layout::{Layout, NO_SECTION, Segment, Use};
+use crate::osm::facts::layout::{Layout, NO_SECTION, SHARED, Segment, Use, kerb_on_the_left_of_the_way};
 use crate::osm::facts::rules::{ClassRule, KerbRule, Rules};
-use crate::osm::facts::section::{Decimetres, Kerb, LaneTags, Parking, Placement, SectionTags, UNTAGGED};
+use crate::osm::facts::section::{Decimetres, Kerb, Millimetres, Parking, Placement, SectionTags, UNTAGGED};
 use crate::osm::facts::{CrossSection, Direction, Oneway, WayFacts, WidthSource};
 
 /// Lanes outside these widths are no lanes: width or lane count is wrong, metres.
 pub(super) const LANE_M: std::ops::RangeInclusive<f32> = 1.8..=6.0;
 /// Below this a two-way road without tagged lanes has no lanes: both directions share it (no centre line is marked).
-const SHARED_BELOW_M: f32 = 5.0;
+pub(super) const SHARED_BELOW_M: f32 = 5.0;
 /// Where lanes are not tagged a wide road may have more of them than assumed: no more than this is one lane.
 const WIDEST_UNTAGGED_LANE_M: f32 = 4.25;
 /// Widths by lane may exceed the carriageway's by this much (rounding by mappers) before they are dropped.
@@ -45,225 +45,123 @@ pub fn cross_sections(facts: &WayFacts, place: &Place, rules: &Rules) -> [CrossS
     }
 }
 
-struct Builder<'a> {
-    tags: &'a SectionTags,
-    class: ClassRule,
-    lane_m: f32,
-    left_hand_traffic: bool,
-    kerb_rule: KerbRule,
+/// Lays a way's cross section out; the lanes themselves are in `lanes`.
+pub(super) struct Builder<'a> {
+    pub(super) tags: &'a SectionTags,
+    pub(super) class: ClassRule,
+    pub(super) lane_m: f32,
+    pub(super) left_hand_traffic: bool,
+    pub(super) kerb_rule: KerbRule,
 }
 
 impl Builder<'_> {
-    fn one_way(&self, direction: Direction) -> Layout {
-        let tags = self.lane_tags(direction);
-        let tagged = if tags.count > 0 { tags.count } else { self.tags.lanes };
-        let mut lanes = self.lanes(direction, tags, tagged);
-        if direction == Direction::Backward {
-            lanes.reverse();
-        }
-        let known = tagged > 0 || tags.listed > 0;
-        let narrow = self.tags.narrow && tagged <= 1 && tags.listed == 0;
-        let assumed_m = narrow.then_some(self.kerb_rule.narrow_m);
-        self.lay_out(lanes, known, assumed_m, &[direction])
-    }
-
-    fn two_way(&self) -> Layout {
-        let (forward, backward) = (self.lane_tags(Direction::Forward), self.lane_tags(Direction::Backward));
-        let listed = forward.listed > 0 || backward.listed > 0;
-        let known = self.tags.tagged_lanes().is_some() || listed;
-        let single = self.tags.alternating || (self.tags.tagged_lanes() == Some(1) && !listed);
-        let unmarked = !known && (self.class.shared_m.is_some() || self.tags.narrow);
-        if single || unmarked {
-            let assumed_m = match (self.tags.narrow, self.class.shared_m) {
-                (true, _) => self.kerb_rule.narrow_m,
-                (false, Some(shared_m)) if !known => shared_m,
-                (false, _) => self.lane_m,
-            };
-            // A wide road is not shared for want of a tag: then it has a half for each direction.
-            if single || self.tags.carriageway.is_none_or(|width| width.metres() < SHARED_BELOW_M) {
-                let shared = Segment { width_m: None, of: None, used: Use::Shared };
-                return self.lay_out(vec![shared], known, Some(assumed_m), &[Direction::Forward, Direction::Backward]);
-            }
-        }
-        let (n_forward, n_backward, n_centre) = self.lane_counts();
-        let mut forward = self.lanes(Direction::Forward, forward, n_forward);
-        let mut backward = self.lanes(Direction::Backward, backward, n_backward);
-        backward.reverse();
-        let centre = (0..n_centre).map(|_| Segment { width_m: None, of: None, used: Use::Paved });
-        let lanes = if self.left_hand_traffic {
-            forward.extend(centre);
-            forward.append(&mut backward);
-            forward
-        } else {
-            backward.extend(centre);
-            backward.append(&mut forward);
-            backward
-        };
-        self.lay_out(lanes, known, None, &[Direction::Forward, Direction::Backward])
-    }
-
-    fn lane_tags(&self, direction: Direction) -> &LaneTags {
-        &self.tags.directions[usize::from(direction == Direction::Backward)]
-    }
-
-    /// Lanes forward, backward, and for turning in the middle of a two-way road. An odd lane without a direction is
-    /// counted as a middle one: neither direction may rely on it.
-    fn lane_counts(&self) -> (u8, u8, u8) {
-        let [forward, backward] = [&self.tags.directions[0], &self.tags.directions[1]].map(|tags| tags.count);
-        let centre = self.tags.both_ways;
-        let rest = |taken: u8| self.tags.lanes.saturating_sub(centre).saturating_sub(taken).max(1);
-        match (forward, backward) {
-            (0, 0) if self.tags.lanes == 0 => (self.class.lanes, self.class.lanes, centre),
-            (0, 0) => {
-                let running = rest(0);
-                ((running / 2).max(1), (running / 2).max(1), centre + running % 2)
-            }
-            (forward, 0) => (forward, rest(forward), centre),
-            (0, backward) => (rest(backward), backward, centre),
-            (forward, backward) => (forward, backward, centre),
-        }
-    }
-
-    /// The lanes of one direction from left to right in direction of travel; `count` 0: not known.
-    fn lanes(&self, direction: Direction, tags: &LaneTags, count: u8) -> Vec<Segment> {
-        let of = Some(direction);
-        let plain = |n: u8| vec![Segment { width_m: None, of, used: Use::Lane(direction) }; usize::from(n)];
-        let mut lanes = if tags.listed > 0 && tags.listed >= count {
-            let mut lanes = plain(tags.listed);
-            if let Some(widths) = tags.widths_m() {
-                for (lane, width_m) in lanes.iter_mut().zip(widths) {
-                    lane.width_m = Some(width_m);
-                }
-            }
-            // `lanes` does not count cycle lanes, lists do: so many of the closed lanes are cycle lanes.
-            let cycle_lanes = if count > 0 { tags.listed - count } else { tags.listed };
-            self.close(&mut lanes, cycle_lanes, tags);
-            lanes
-        } else {
-            plain(if count > 0 { count } else { self.class.lanes })
-        };
-        if tags.closed == 0 {
-            self.from_the_kerb(&mut lanes).take(usize::from(tags.bus)).for_each(|lane| lane.used = Use::Paved);
-        }
-        lanes
-    }
-
-    fn close(&self, lanes: &mut [Segment], mut cycle_lanes: u8, tags: &LaneTags) {
-        let closed: Vec<bool> = (0..lanes.len())
-            .map(|at| tags.is_closed(at) || lanes[at].width_m.is_some_and(|width_m| width_m < *LANE_M.start()))
-            .collect();
-        let mut order: Vec<usize> = (0..lanes.len()).filter(|&at| closed[at]).collect();
-        if !self.left_hand_traffic {
-            order.reverse();
-        }
-        for at in order {
-            lanes[at].used = if cycle_lanes > 0 { Use::Aside } else { Use::Paved };
-            cycle_lanes = cycle_lanes.saturating_sub(1);
-        }
-    }
-
-    /// The lanes of one direction (in order of travel) from the kerb to the middle.
-    fn from_the_kerb<'l>(&self, lanes: &'l mut [Segment]) -> Box<dyn Iterator<Item = &'l mut Segment> + 'l> {
-        if self.left_hand_traffic { Box::new(lanes.iter_mut()) } else { Box::new(lanes.iter_mut().rev()) }
-    }
-
     /// Gives every lane its width. `known`: the number of lanes is tagged. `assumed_m`: instead of the lanes' sum, if
     /// nothing is tagged.
-    fn lay_out(
+    pub(super) fn lay_out(
         &self,
         mut lanes: Vec<Segment>,
         known: bool,
         assumed_m: Option<f32>,
-        directions: &[Direction],
+        two_way: bool,
     ) -> Layout {
         let tagged = self.available(&lanes);
-        if let Some((available_m, _)) = tagged
-            && lanes.iter().filter_map(|lane| lane.width_m).sum::<f32>() > available_m + LISTED_SLACK_M
+        if let Some(room) = &tagged
+            && given_m(&lanes) > room.width_m + LISTED_SLACK_M
         {
             lanes.iter_mut().for_each(|lane| lane.width_m = None);
         }
         if lanes.iter().all(|lane| lane.width_m.is_some()) {
-            return self.limited(self.finish(lanes, WidthSource::Tagged, WidthSource::Tagged), directions);
+            let source = self.tags.source.min(WidthSource::Tagged);
+            return self.limited(self.finish(lanes, source, source));
         }
         self.give_cycle_lanes_width(&mut lanes);
-        if let Some((available_m, source)) = tagged {
-            if available_m < *LANE_M.start() {
+        if let Some(room) = tagged {
+            if room.width_m < *LANE_M.start() {
                 return Layout::default();
             }
-            if let Some(layout) = self.share_out(&lanes, available_m, source, known, directions) {
-                return self.limited(layout, directions);
+            if let Some(layout) = self.share_out(&lanes, &room, known, two_way) {
+                return self.limited(layout);
             }
         }
         let source = if known { WidthSource::FromLanes } else { WidthSource::Assumed };
-        let unknown = lanes.iter().filter(|lane| lane.width_m.is_none()).count().max(1) as f32;
-        let each_m = assumed_m.map_or(self.lane_m, |all_m| all_m / unknown);
+        let each_m = assumed_m.map_or(self.lane_m, |all_m| all_m / unknown(&lanes).max(1.0));
         for lane in &mut lanes {
             lane.width_m = lane.width_m.or(Some(each_m));
         }
-        self.limited(self.finish(lanes, source, source), directions)
+        self.limited(self.finish(lanes, source, source))
     }
 
     /// Shares a tagged width out among the lanes; `None` if the lanes would be too wide to be the ones tagged.
-    fn share_out(
-        &self,
-        lanes: &[Segment],
-        available_m: f32,
-        source: WidthSource,
-        known: bool,
-        directions: &[Direction],
-    ) -> Option<Layout> {
-        let given_m: f32 = lanes.iter().filter_map(|lane| lane.width_m).sum();
-        let unknown = lanes.iter().filter(|lane| lane.width_m.is_none()).count() as f32;
-        let room_m = available_m - given_m;
-        let each_m = room_m / unknown;
+    fn share_out(&self, lanes: &[Segment], room: &Room, known: bool, two_way: bool) -> Option<Layout> {
+        let left_m = room.width_m - given_m(lanes);
+        let each_m = left_m / unknown(lanes);
         let shared_already = lanes.iter().any(|lane| lane.used == Use::Shared);
-        if known && each_m > *LANE_M.end() {
+        if (known || shared_already) && each_m > *LANE_M.end() {
             return None;
         }
-        let two_way = directions.len() == 2;
-        let too_narrow = each_m < *LANE_M.start() || (two_way && !known && available_m < SHARED_BELOW_M);
-        if too_narrow && !shared_already {
-            let used = if two_way { Use::Shared } else { directions.first().map_or(Use::Shared, |d| Use::Lane(*d)) };
-            let of = directions.first().copied().filter(|_| !two_way);
-            let one = Segment { width_m: Some(room_m.min(available_m)), of, used };
-            let divided = if lanes.len() > 1 { source.min(WidthSource::Estimated) } else { source };
-            return (room_m >= *LANE_M.start()).then(|| self.with_kerbs(vec![one], source, divided));
+        let narrow = each_m < *LANE_M.start() || (two_way && !known && room.width_m < SHARED_BELOW_M);
+        if narrow && !shared_already {
+            return Some(self.one_for_all(lanes, left_m, room, known, two_way));
         }
         let mut out = Vec::with_capacity(lanes.len() + 2);
         for lane in lanes {
-            let whole = Segment { width_m: lane.width_m.or(Some(each_m)), ..*lane };
-            let split = !known && lane.width_m.is_none() && each_m > WIDEST_UNTAGGED_LANE_M;
             match lane.of {
-                Some(direction) if split => {
-                    let at_kerb = Segment { width_m: Some(WIDEST_UNTAGGED_LANE_M), ..*lane };
-                    let rest = Segment { width_m: Some(each_m - WIDEST_UNTAGGED_LANE_M), ..*lane };
-                    // The kerb is on the right of the way's order for one of driving side and direction, not both.
-                    if self.left_hand_traffic == (direction == Direction::Forward) {
+                Some(direction) if !known && lane.width_m.is_none() && each_m > WIDEST_UNTAGGED_LANE_M => {
+                    let part = |width_m| Segment { width_m: Some(width_m), ..*lane };
+                    let (at_kerb, rest) = (part(WIDEST_UNTAGGED_LANE_M), part(each_m - WIDEST_UNTAGGED_LANE_M));
+                    if kerb_on_the_left_of_the_way(direction, self.left_hand_traffic) {
                         out.extend([at_kerb, rest]);
                     } else {
                         out.extend([rest, at_kerb]);
                     }
                 }
-                _ => out.push(whole),
+                _ => out.push(Segment { width_m: lane.width_m.or(Some(each_m)), ..*lane }),
             }
         }
-        let divided = if known || out.len() == 1 { source } else { source.min(WidthSource::Estimated) };
-        Some(self.with_kerbs(out, source, divided))
+        let divided = if known || out.len() == 1 { room.source } else { room.source.min(WidthSource::Estimated) };
+        Some(self.with_kerbs(out, room, divided))
+    }
+
+    /// A road too narrow for its lanes: one lane, in turn for both directions of a two-way road. Where lanes are tagged
+    /// one of the two tags is wrong, and it may be the width: then no more than an assumed lane.
+    fn one_for_all(&self, lanes: &[Segment], left_m: f32, room: &Room, known: bool, two_way: bool) -> Layout {
+        let Some(open) = lanes.iter().find(|lane| matches!(lane.used, Use::Lane(_))) else { return Layout::default() };
+        let width_m = left_m.min(if known { self.lane_m } else { SHARED_BELOW_M });
+        if width_m < *LANE_M.start() {
+            return Layout::default();
+        }
+        let one = if two_way {
+            Segment { width_m: Some(width_m), ..SHARED }
+        } else {
+            Segment { width_m: Some(width_m), ..*open }
+        };
+        let source = if width_m < left_m { room.source.min(WidthSource::FromLanes) } else { room.source };
+        let divided = if lanes.len() > 1 { source.min(WidthSource::Estimated) } else { source };
+        let whole = Room { source, ..*room };
+        self.with_kerbs(vec![one], &whole, divided)
     }
 
     /// The tagged carriageway less what is not for traffic, and its evidence.
-    fn available(&self, lanes: &[Segment]) -> Option<(f32, WidthSource)> {
-        let width_m = self.tags.carriageway?.metres();
-        let kerbs: Vec<Segment> =
-            self.kerb_segments(0, lanes).into_iter().chain(self.kerb_segments(1, lanes)).collect();
-        let taken_m: f32 = kerbs.iter().filter_map(|kerb| kerb.width_m).sum();
-        let assumed = self.tags.kerbs.iter().any(|k| [k.parking_dm, k.cycle_dm, k.shoulder_dm].contains(&UNTAGGED));
+    fn available(&self, lanes: &[Segment]) -> Option<Room> {
+        let carriageway_m = self.tags.carriageway?.metres();
+        let taken_m =
+            |shoulders| -> f32 { (0..2).map(|side| given_m(&self.kerb_segments(side, lanes, shoulders))).sum() };
+        let kerbs = &self.tags.kerbs;
+        let assumed = kerbs.iter().any(|k| [k.parking_dm, k.cycle_dm, k.shoulder_dm].contains(&UNTAGGED));
         let source = if assumed { self.tags.source.min(WidthSource::Estimated) } else { self.tags.source };
-        Some((width_m - taken_m, source))
+        let within = Room { width_m: carriageway_m - taken_m(true), source, shoulders: true };
+        let lanes_m = unknown(lanes) * self.lane_m + given_m(lanes);
+        if within.width_m >= lanes_m || kerbs.iter().all(|kerb| kerb.shoulder_dm == 0) {
+            return Some(within);
+        }
+        // Many mappers leave shoulders out of the width (motorways with width=7.5, lanes=2, shoulder=yes): if not even
+        // the assumed lanes fit beside them, the lanes are as assumed, but no wider than the tag.
+        let without_m = (carriageway_m - taken_m(false)).min(lanes_m);
+        Some(Room { width_m: without_m, source: source.min(WidthSource::FromLanes), shoulders: false })
     }
 
     /// What lies beside the lanes on one side (0: left of the node order), from the edge inwards.
-    fn kerb_segments(&self, side: usize, lanes: &[Segment]) -> Vec<Segment> {
+    fn kerb_segments(&self, side: usize, lanes: &[Segment], shoulders: bool) -> Vec<Segment> {
         let Kerb { parking, parking_dm, cycle_dm, shoulder_dm } = self.tags.kerbs[side];
         let rule = &self.kerb_rule;
         let parking_m = match parking {
@@ -278,7 +176,7 @@ impl Builder<'_> {
         for (dm, default_m, used) in [
             (parking_dm, parking_m, Use::Aside),
             (if listed { 0 } else { cycle_dm }, rule.cycle_lane_m, Use::Aside),
-            (shoulder_dm, rule.shoulder_m, Use::Paved),
+            (if shoulders { shoulder_dm } else { 0 }, rule.shoulder_m, Use::Paved),
         ] {
             if dm > 0 {
                 inwards.push(Segment { width_m: Some(metres(dm, default_m)), of: None, used });
@@ -293,12 +191,12 @@ impl Builder<'_> {
         }
     }
 
-    fn with_kerbs(&self, lanes: Vec<Segment>, whole: WidthSource, divided: WidthSource) -> Layout {
-        let mut segments = self.kerb_segments(0, &lanes);
-        let right = self.kerb_segments(1, &lanes);
+    fn with_kerbs(&self, lanes: Vec<Segment>, room: &Room, divided: WidthSource) -> Layout {
+        let mut segments = self.kerb_segments(0, &lanes, room.shoulders);
+        let right = self.kerb_segments(1, &lanes, room.shoulders);
         segments.extend(lanes);
         segments.extend(right.into_iter().rev());
-        self.finish(segments, whole, divided)
+        self.finish(segments, room.source, divided)
     }
 
     fn finish(&self, segments: Vec<Segment>, whole: WidthSource, divided: WidthSource) -> Layout {
@@ -309,27 +207,49 @@ impl Builder<'_> {
         Layout { segments, whole: Some(whole.min(weakest)), divided: Some(divided.min(weakest)), placement }
     }
 
-    /// `maxwidth:physical` as an upper bound of all that is paved.
-    fn limited(&self, layout: Layout, directions: &[Direction]) -> Layout {
-        let Some(most_m) = self.tags.physical.map(|p| p.metres()) else { return layout };
-        let drivable_m: f32 = layout.segments.iter().filter(|s| s.used != Use::Aside).filter_map(|s| s.width_m).sum();
-        if drivable_m <= most_m {
+    /// `maxwidth:physical` as an upper bound of all that is paved: every lane shrinks alike, or one is left.
+    fn limited(&self, mut layout: Layout) -> Layout {
+        let Some(most_m) = self.tags.physical.map(Millimetres::metres) else { return layout };
+        let paved = |s: &Segment| s.used != Use::Aside;
+        let paved_m: f32 = layout.segments.iter().filter(|s| paved(s)).filter_map(|s| s.width_m).sum();
+        if paved_m <= most_m {
             return layout;
         }
-        let one_lane = directions.len() == 1 || most_m < SHARED_BELOW_M;
-        let segments = match directions {
-            [direction] => vec![Segment { width_m: Some(most_m), of: Some(*direction), used: Use::Lane(*direction) }],
-            _ if one_lane => vec![Segment { width_m: Some(most_m), of: None, used: Use::Shared }],
-            _ => {
-                let order = if self.left_hand_traffic {
-                    [Direction::Forward, Direction::Backward]
-                } else {
-                    [Direction::Backward, Direction::Forward]
-                };
-                order.map(|d| Segment { width_m: Some(most_m / 2.0), of: Some(d), used: Use::Lane(d) }).to_vec()
+        let bounded = |source: Option<WidthSource>| source.map(|source| source.min(WidthSource::Tagged));
+        (layout.whole, layout.divided) = (bounded(layout.whole), bounded(layout.divided));
+        let mut shrunk =
+            layout.segments.iter().filter(|s| paved(s)).filter_map(|s| s.width_m).map(|m| m * most_m / paved_m);
+        if shrunk.all(|width_m| width_m >= *LANE_M.start()) {
+            for segment in layout.segments.iter_mut().filter(|s| paved(s)) {
+                segment.width_m = segment.width_m.map(|width_m| width_m * most_m / paved_m);
             }
+            return layout;
+        }
+        let used = |direction| layout.segments.iter().any(|s| s.is_open_to(direction));
+        let used = match (used(Direction::Forward), used(Direction::Backward)) {
+            (true, true) => Use::Shared,
+            (true, false) => Use::Lane(Direction::Forward),
+            (false, true) => Use::Lane(Direction::Backward),
+            (false, false) => return Layout::default(),
         };
-        let source = layout.whole.unwrap_or(WidthSource::Assumed).min(WidthSource::Tagged);
-        Layout { segments, whole: Some(source), divided: Some(source), placement: Placement::Middle }
+        let one = Segment { width_m: Some(most_m.min(self.lane_m)), of: None, used };
+        Layout { segments: vec![one], placement: Placement::Middle, ..layout }
     }
+}
+
+/// A tagged width that lanes may share, and whether shoulders were deducted from it.
+#[derive(Debug, Clone, Copy)]
+struct Room {
+    width_m: f32,
+    source: WidthSource,
+    shoulders: bool,
+}
+
+fn given_m(segments: &[Segment]) -> f32 {
+    segments.iter().filter_map(|segment| segment.width_m).sum()
+}
+
+/// How many have no width yet.
+fn unknown(segments: &[Segment]) -> f32 {
+    segments.iter().filter(|segment| segment.width_m.is_none()).count() as f32
 }
