@@ -112,7 +112,7 @@ where
             (self.facts)(&self.tags)
         };
         match draft {
-            Ok(WayDraft { mut facts, name, reference }) => {
+            Ok(WayDraft { mut facts, name, reference, .. }) => {
                 facts.name = name.map(|text| self.batch.strings.intern(text));
                 facts.reference = reference.map(|text| self.batch.strings.intern(text));
                 self.inline_places(way, object)?;
