@@ -57,7 +57,8 @@ CREATE TABLE certified_set (
 
 -- Millimetres, hundredths of a degree, thousandths and decimetres; every value is rounded to the safe side.
 -- shrink_milli NULL: 1. limiting_at: 2 × unit + (1 on the right). No foreign keys: the check costs more than the row;
--- the writer numbers the rows from the edges themselves.
+-- the writer numbers the rows from the edges themselves. The generated columns take no room; a view's column has a type
+-- only if it is one of a table, and without one GDAL shows numbers as text.
 CREATE TABLE certificate_compact (
     vehicle_no INTEGER NOT NULL,
     corridor_no INTEGER NOT NULL,
@@ -69,6 +70,13 @@ CREATE TABLE certificate_compact (
     shrink_milli INTEGER,
     limiting_s_dm INTEGER,
     limiting_at INTEGER,
+    rsc_m DOUBLE AS (rsc_mm / 1000.0),
+    rsc_published_m DOUBLE AS (rsc_published_mm / 1000.0),
+    hinge_margin_deg DOUBLE AS (hinge_margin_cdeg / 100.0),
+    shrink DOUBLE AS (CASE WHEN limiting_at NOT NULL THEN coalesce(shrink_milli, 1000) / 1000.0 END),
+    limiting_s_m DOUBLE AS (limiting_s_dm / 10.0),
+    limiting_unit INTEGER AS (limiting_at >> 1),
+    limiting_side TEXT AS (CASE limiting_at & 1 WHEN 0 THEN 'left' WHEN 1 THEN 'right' END),
     PRIMARY KEY (vehicle_no, corridor_no, fid)
 ) WITHOUT ROWID;
 
@@ -77,13 +85,13 @@ SELECT
     e.edge_id,
     v.vehicle_id,
     p.corridor,
-    c.rsc_mm / 1000.0 AS rsc_m,
-    c.rsc_published_mm / 1000.0 AS rsc_published_m,
-    c.hinge_margin_cdeg / 100.0 AS hinge_margin_deg,
-    CASE WHEN c.limiting_at IS NULL THEN NULL ELSE coalesce(c.shrink_milli, 1000) / 1000.0 END AS shrink,
-    c.limiting_s_dm / 10.0 AS limiting_s_m,
-    c.limiting_at >> 1 AS limiting_unit,
-    CASE c.limiting_at & 1 WHEN 0 THEN 'left' WHEN 1 THEN 'right' END AS limiting_side,
+    c.rsc_m,
+    c.rsc_published_m,
+    c.hinge_margin_deg,
+    c.shrink,
+    c.limiting_s_m,
+    c.limiting_unit,
+    c.limiting_side,
     w.verdict,
     w.reason,
     c.fid,
@@ -105,9 +113,9 @@ SELECT
     e.from_node,
     e.to_node,
     e.length_m,
-    c.rsc_mm / 1000.0 AS rsc_m,
-    c.hinge_margin_cdeg / 100.0 AS hinge_margin_deg,
-    coalesce(c.shrink_milli, 1000) / 1000.0 AS shrink,
+    c.rsc_m,
+    c.hinge_margin_deg,
+    c.shrink,
     CASE c.corridor_no
         WHEN 0 THEN e.width_source
         WHEN 1 THEN e.direction_width_source

@@ -12,6 +12,9 @@ use super::packed::Packed;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
+const COLUMNS: &str = "certificate_compact (vehicle_no, corridor_no, fid, verdict_no, rsc_mm, rsc_published_mm, \
+                       hinge_margin_cdeg, shrink_milli, limiting_s_dm, limiting_at)";
+
 /// Why rows are not a set, or `Ok`: every edge once. `rows` are sorted by edge.
 pub(super) fn check_complete(rows: &[Packed], edges: u32) -> Result<(), (u32, &'static str)> {
     for (row, expected) in rows.iter().zip(1..) {
@@ -44,7 +47,7 @@ impl Set<'_> {
     /// Inserts the rows and registers their layer. The set must not be there.
     pub(super) async fn insert(&self, c: &mut SqliteConnection, rows: &[Packed]) -> Sql<()> {
         let corridor = corridor_no(self.policy);
-        let mut bulk = Bulk::new("certificate_compact", 10);
+        let mut bulk = Bulk::new(COLUMNS, 10);
         for row in rows {
             bulk.add(self.vehicle_no)?;
             bulk.add(corridor)?;
@@ -97,9 +100,7 @@ impl Set<'_> {
         let view = format!(
             "CREATE VIEW {layer} AS SELECT e.fid AS OGC_FID, e.geom AS geom, e.edge_id, e.way_id, e.from_node, e.to_node, \
              e.direction, e.length_m, e.highway, e.name, e.ref, e.oneway, e.{width}_width_m AS width_m, \
-             e.{source} AS width_source, CAST(c.rsc_mm / 1000.0 AS REAL) AS rsc_m, \
-             CAST(c.hinge_margin_cdeg / 100.0 AS REAL) AS hinge_margin_deg, \
-             CAST(coalesce(c.shrink_milli, 1000) / 1000.0 AS REAL) AS shrink \
+             e.{source} AS width_source, c.rsc_m, c.hinge_margin_deg, c.shrink \
              FROM certificate_compact AS c JOIN edge AS e ON e.fid = c.fid \
              WHERE c.vehicle_no = {vehicle} AND c.corridor_no = {corridor} AND c.verdict_no = {SAFE}"
         );
