@@ -41,8 +41,7 @@ fn main() {
         (&["AU-ATRIPLE53"], 1),
         (&["AU-SEMI19", "AU-BDOUBLE26", "AU-ADOUBLE30", "AU-BTRIPLE36", "AU-ABTRIPLE44", "AU-ATRIPLE53"], 1),
     ] {
-        let models: Vec<Model> =
-            ids.iter().map(|id| Model::new(catalogue.get(id).unwrap()).unwrap()).collect();
+        let models: Vec<Model> = ids.iter().map(|id| Model::new(catalogue.get(id).unwrap()).unwrap()).collect();
         let lanes: Vec<&Model> = models.iter().flat_map(|m| std::iter::repeat_n(m, copies)).collect();
         let mut best = f64::INFINITY;
         let mut failed = 0;
