@@ -4,10 +4,7 @@
 
 use std::{path::PathBuf, sync::Mutex, time::Instant};
 
-use netcert::osm::pbf::{Progress, Stage, read_extract_with};
-
-#[path = "../tests/support/facts.rs"]
-mod facts;
+use netcert::osm::pbf::{Progress, Stage, read_extract};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = std::env::args_os().nth(1).map(PathBuf::from).ok_or("usage: read_extract FILE.osm.pbf")?;
@@ -22,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             *end = start.elapsed().as_secs_f64();
         }
     };
-    let extract = read_extract_with(&path, &note, facts::way, facts::point)?;
+    let extract = read_extract(&path, &note)?;
     for row in extract.account.rows() {
         println!("{:>10} {} {} {}", row.count, row.item, row.outcome, row.reason);
     }

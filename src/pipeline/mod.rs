@@ -161,7 +161,7 @@ pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunE
         command: "ingest".to_owned(),
         input_name: ask.input.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         input_blake3: Some(hash),
-        replication_timestamp: header.replication_timestamp.map(|t| t.to_string()),
+        replication_timestamp: header.replication_timestamp_s.and_then(utc),
         netcert_version: env!("CARGO_PKG_VERSION").to_owned(),
         started,
         finished: (ask.now)(),
@@ -303,6 +303,11 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
     reporter.end();
     summary.stage("store", clock, outcome.certificates(), "certificates");
     Ok(summary)
+}
+
+/// Seconds since 1970 as `2026-11-21T08:00:00Z`.
+fn utc(seconds: i64) -> Option<String> {
+    jiff::Timestamp::from_second(seconds).ok().map(|t| t.to_string())
 }
 
 /// A vehicle as the database keeps it.

@@ -82,6 +82,12 @@ impl Countries {
         self
     }
 
+    /// The rules that these countries come with.
+    #[must_use]
+    pub fn rules(&self) -> &Rules {
+        &self.rules
+    }
+
     /// Country and driving side of a position; overrides come first.
     #[must_use]
     pub fn place(&self, position: LonLat) -> Place {

@@ -22,6 +22,8 @@ pub struct ReadAccount {
     pub ways_kept: u64,
     /// Ways left out, by reason.
     pub ways_left_out: BTreeMap<&'static str, u64>,
+    /// Remarks on tags of ways that are roads, each at most once a way.
+    pub tag_notes: BTreeMap<&'static str, u64>,
     /// Node objects in the file.
     pub nodes: NodeTally,
     /// Relations in the file.
@@ -56,6 +58,26 @@ pub struct NodeTally {
 }
 
 impl ReadAccount {
+    /// What a person should be told. The format has no end mark: a file cut exactly between two blobs is a legal
+    /// shorter one, and only these signs are left of it.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let nodes = &self.nodes;
+        let mut warnings = Vec::new();
+        if self.ways_read == 0 {
+            warnings.push(format!("the file has {} nodes and no ways: was it cut off?", nodes.read));
+        } else if self.relations.read == 0 {
+            warnings
+                .push("the file has no relations: it was written without, or cut off between two blocks".to_owned());
+        }
+        let lost = nodes.missing + nodes.invalid - nodes.placed_by_ways;
+        if lost > 0 {
+            let named = nodes.named;
+            warnings.push(format!("{lost} of the {named} nodes of its roads are not in the file: roads are cut there"));
+        }
+        warnings
+    }
+
     /// The account as rows of stage `read`, in a fixed order.
     #[must_use]
     pub fn rows(&self) -> Vec<AccountRow> {
@@ -69,6 +91,9 @@ impl ReadAccount {
         row("way", "kept", "", self.ways_kept);
         for (reason, &count) in &self.ways_left_out {
             row("way", "left_out", reason, count);
+        }
+        for (note, &count) in &self.tag_notes {
+            row("tag", "noted", note, count);
         }
         let nodes = &self.nodes;
         row("node", "read", "", nodes.read);

@@ -24,6 +24,7 @@ pub(super) struct WayGatherer {
     pub(super) inline_places: Vec<(i64, LonLat)>,
     pub(super) read: u64,
     pub(super) left_out: BTreeMap<&'static str, u64>,
+    pub(super) notes: BTreeMap<&'static str, u64>,
     pub(super) relations: RelationTally,
     pub(super) vias: Vec<i64>,
     /// Largest id so far.
@@ -39,6 +40,9 @@ impl WayGatherer {
         self.read += (batch.kept.len() + batch.left_out.len()) as u64;
         for (reason, count) in &batch.reasons {
             *self.left_out.entry(reason).or_default() += count;
+        }
+        for (note, count) in &batch.notes {
+            *self.notes.entry(note).or_default() += count;
         }
         self.relations.add(batch.relations);
         self.vias.extend(batch.vias);

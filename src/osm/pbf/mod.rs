@@ -32,7 +32,7 @@ pub use wire::WireError;
 
 use crate::osm::{
     Extract,
-    facts::{PointFacts, WayDraft},
+    facts::{self, PointFacts, Tags, WayDraft},
 };
 
 use block::Block;
@@ -62,7 +62,15 @@ pub enum Stage {
     Nodes,
 }
 
-/// Reads an extract. `way` says what a way's tags mean, or why it is left out; `point` what those of a node on a kept
+/// Reads an extract.
+///
+/// # Errors
+/// If anything of the file is damaged, truncated or not supported.
+pub fn read_extract(path: &Path, progress: &(dyn Fn(Progress) + Sync)) -> Result<Extract, ReadError> {
+    read_extract_with(path, progress, facts::way_facts, facts::point_facts)
+}
+
+/// As [`read_extract`], with other facts: `way` says what a way's tags mean, or why it is left out; `point` what those of a node on a kept
 /// way mean, if anything. Both are called from many threads.
 ///
 /// # Errors
@@ -74,8 +82,8 @@ pub fn read_extract_with<W, P>(
     point: P,
 ) -> Result<Extract, ReadError>
 where
-    W: for<'t> Fn(&[(&'t str, &'t str)]) -> Result<WayDraft<'t>, &'static str> + Sync,
-    P: Fn(&[(&str, &str)]) -> Option<PointFacts> + Sync,
+    W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str> + Sync,
+    P: Fn(&Tags<'_>) -> Option<PointFacts> + Sync,
 {
     let mut source = Source::open(path)?;
     let total = source.len;
@@ -154,8 +162,8 @@ struct Reading<'p, W, P> {
 
 impl<W, P> Reading<'_, W, P>
 where
-    W: for<'t> Fn(&[(&'t str, &'t str)]) -> Result<WayDraft<'t>, &'static str> + Sync,
-    P: Fn(&[(&str, &str)]) -> Option<PointFacts> + Sync,
+    W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str> + Sync,
+    P: Fn(&Tags<'_>) -> Option<PointFacts> + Sync,
 {
     /// Both passes, the first `node_blobs` blobs being left to the second one; `None` if they hold more than nodes.
     fn run(&mut self, node_blobs: usize) -> Result<Option<Extract>, ReadError> {
@@ -202,6 +210,7 @@ where
         account.ways_read = ways.read;
         account.ways_kept = ways.ways.len() as u64;
         account.ways_left_out = ways.left_out;
+        account.tag_notes = ways.notes;
         account.nodes = tally;
         account.relations = ways.relations;
         account.relations.restrictions_off_road =

@@ -5,7 +5,10 @@
 use osmpbfreader::osmformat;
 use protobuf::Message;
 
-use crate::osm::{LonLat, facts::PointFacts};
+use crate::osm::{
+    LonLat,
+    facts::{PointFacts, Tags},
+};
 
 use super::{
     block::{self, Block},
@@ -37,7 +40,7 @@ pub(super) struct NodeBatch {
 /// Reads the nodes of a block; `ids` are those named, sorted and distinct.
 pub(super) fn read<P>(block: &Block<'_>, ids: &[i64], facts: &P) -> Result<NodeBatch, Problem>
 where
-    P: Fn(&[(&str, &str)]) -> Option<PointFacts>,
+    P: Fn(&Tags<'_>) -> Option<PointFacts>,
 {
     let mut reader =
         NodeReader { block, facts, named: Named { ids, at: 0 }, tags: Vec::new(), batch: NodeBatch::default() };
@@ -123,7 +126,7 @@ struct NodeReader<'b, 'a, P> {
 
 impl<P> NodeReader<'_, '_, P>
 where
-    P: Fn(&[(&str, &str)]) -> Option<PointFacts>,
+    P: Fn(&Tags<'_>) -> Option<PointFacts>,
 {
     /// Counts a node; its index if it is named and part of the map.
     #[inline]

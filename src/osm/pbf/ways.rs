@@ -6,7 +6,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::osm::{LonLat, StringPool, facts::WayDraft, facts::WayFacts};
+use crate::osm::{
+    LonLat, StringPool,
+    facts::{Tags, WayDraft, WayFacts},
+};
 
 use super::{
     block::{self, Block},
@@ -41,6 +44,8 @@ pub(super) struct WayBatch {
     /// Ways left out: how many kept ones stand before it, and its id.
     pub(super) left_out: Vec<(u32, i64)>,
     pub(super) reasons: BTreeMap<&'static str, u64>,
+    /// Remarks on tags of kept ways.
+    pub(super) notes: BTreeMap<&'static str, u64>,
     /// Ids of the first and the last way.
     pub(super) ends: Option<(i64, i64)>,
     /// Whether the ids of all ways ascend strictly.
@@ -54,7 +59,7 @@ pub(super) struct WayBatch {
 /// Reads the ways and relations of a block.
 pub(super) fn read<W>(block: &Block<'_>, facts: &W) -> Result<WayBatch, Problem>
 where
-    W: for<'t> Fn(&[(&'t str, &'t str)]) -> Result<WayDraft<'t>, &'static str>,
+    W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str>,
 {
     let mut reader = WayReader { block, facts, tags: Vec::new(), batch: WayBatch::default(), entities: 0 };
     reader.batch.ascending = true;
@@ -89,7 +94,7 @@ struct WayReader<'b, 'a, W> {
 
 impl<W> WayReader<'_, '_, W>
 where
-    W: for<'t> Fn(&[(&'t str, &'t str)]) -> Result<WayDraft<'t>, &'static str>,
+    W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str>,
 {
     fn count(&mut self) -> Result<(), Problem> {
         self.entities += 1;
@@ -112,7 +117,10 @@ where
             (self.facts)(&self.tags)
         };
         match draft {
-            Ok(WayDraft { mut facts, name, reference, .. }) => {
+            Ok(WayDraft { mut facts, name, reference, notes }) => {
+                for note in notes.names() {
+                    *self.batch.notes.entry(note).or_default() += 1;
+                }
                 facts.name = name.map(|text| self.batch.strings.intern(text));
                 facts.reference = reference.map(|text| self.batch.strings.intern(text));
                 self.inline_places(way, object)?;
