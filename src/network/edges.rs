@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::cut::{CutWay, Piece};
 use super::edge_id::edge_id;
 use super::vertices::{MISSING, Vertices, of_way};
-use super::{Edge, Narrowing, Network, NetworkAccount, Road, legal};
+use super::{Edge, Narrowing, Network, NetworkAccount, Road};
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, Place, WayFacts};
 use crate::osm::{LonLat, NodeTable, Way};
 
@@ -81,7 +81,7 @@ where
         for (i, &v) in line.iter().enumerate() {
             let Some(point) = self.vertices.point(v) else { continue };
             barred |= point.barred;
-            limits = Some(limits.map_or(point.legal, |known| legal::merge(&known, &point.legal)));
+            limits = Some(limits.map_or(point.legal, |known| known.merge(point.legal)));
             if let Some(passage_m) = point.passage_m {
                 part.network.narrowings.push(Narrowing { vertex: i as u32, passage_m });
             }
@@ -104,7 +104,7 @@ where
                 direction,
                 shape: (base + piece.vertices.start) as u32..(base + piece.vertices.end) as u32,
                 narrowings: narrowings.clone(),
-                legal: limits.map_or(of_road, |limits| legal::merge(&of_road, &limits)),
+                legal: limits.map_or(of_road, |limits| of_road.merge(limits)),
                 barred,
                 cut: piece.cut,
             };
@@ -152,7 +152,7 @@ fn road(way: &Way, place: &Place, sections: [CrossSection; 2]) -> Road {
         oneway: if facts.roundabout && facts.oneway == Oneway::No { Oneway::Forward } else { facts.oneway },
         name: facts.name,
         reference: facts.reference,
-        lanes: None,
+        lanes: facts.tagged_lanes(),
         country: place.country,
         left_hand_traffic: place.left_hand_traffic,
         sections,

@@ -9,7 +9,6 @@ mod cut;
 mod edge_id;
 mod edges;
 mod geometry;
-mod legal;
 mod pairing;
 mod stroke;
 mod vertices;

@@ -184,7 +184,7 @@ fn point_facts(
 /// Two tagged nodes at one place: what either forbids or narrows counts.
 fn both(a: &PointFacts, b: &PointFacts) -> PointFacts {
     PointFacts {
-        legal: super::legal::merge(&a.legal, &b.legal),
+        legal: a.legal.merge(b.legal),
         passage_m: match (a.passage_m, b.passage_m) {
             (Some(a), Some(b)) => Some(a.min(b)),
             (a, b) => a.or(b),
