@@ -59,9 +59,8 @@ where
     }
 
     fn add_way(&self, way: &Way, vertices: &[u32], cut: &CutWay, part: &mut Part) {
-        let first =
-            vertices.iter().find(|&&v| v != MISSING).map_or_else(|| self.position(cut.line[0]), |&v| self.position(v));
-        let place = (self.places)(first);
+        let first = vertices.iter().copied().find(|&v| v != MISSING).unwrap_or(cut.line[0]);
+        let place = (self.places)(self.position(first));
         let road = road(way, &place, (self.sections)(&way.facts, &place));
         let base = part.network.shapes.len();
         part.network.shapes.extend(cut.line.iter().map(|&v| self.position(v)));
