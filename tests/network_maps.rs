@@ -275,7 +275,7 @@ fn a_lollipop_is_a_stick_and_a_loop() {
         ",
     )
     .way("SABCDA", ROAD);
-    check(&map, "SA AS AA AA", "SAAS S>AA");
+    check(&map, "SA AS AA AA", "SAA S>AAS");
 }
 
 #[test]

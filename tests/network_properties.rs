@@ -207,8 +207,11 @@ fn shape_of_strokes(network: &Network) -> BTreeMap<(bool, Vec<Line>, Vec<Line>),
     strokes
 }
 
-/// Id by way, ends, direction, and the line, which tells apart edges that are alike in all else.
-fn ids(network: &Network) -> BTreeMap<(i64, i64, i64, Direction, Vec<LonLat>), Vec<i64>> {
+/// What tells an edge from others: way, ends, direction, line.
+type Name = (i64, i64, i64, Direction, Vec<LonLat>);
+
+/// Ids by name; several where a way runs over itself.
+fn ids(network: &Network) -> BTreeMap<Name, Vec<i64>> {
     let mut ids = BTreeMap::<_, Vec<i64>>::new();
     for edge in &network.edges {
         let line = network.positions(edge).collect();

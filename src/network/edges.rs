@@ -59,9 +59,8 @@ where
     }
 
     fn add_way(&self, way: &Way, vertices: &[u32], cut: &CutWay, part: &mut Part) {
-        let first =
-            vertices.iter().find(|&&v| v != MISSING).map_or_else(|| self.position(cut.line[0]), |&v| self.position(v));
-        let place = (self.places)(first);
+        let first = vertices.iter().copied().find(|&v| v != MISSING).unwrap_or(cut.line[0]);
+        let place = (self.places)(self.position(first));
         let road = road(way, &place, (self.sections)(&way.facts, &place));
         let base = part.network.shapes.len();
         part.network.shapes.extend(cut.line.iter().map(|&v| self.position(v)));
@@ -152,7 +151,7 @@ fn road(way: &Way, place: &Place, sections: [CrossSection; 2]) -> Road {
         oneway: if facts.roundabout && facts.oneway == Oneway::No { Oneway::Forward } else { facts.oneway },
         name: facts.name,
         reference: facts.reference,
-        lanes: None,
+        lanes: facts.tagged_lanes(),
         country: place.country,
         left_hand_traffic: place.left_hand_traffic,
         sections,

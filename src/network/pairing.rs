@@ -7,6 +7,8 @@ use rayon::prelude::*;
 
 use super::geometry::{Geometry, segment_deflection_deg};
 use super::{Edge, Network, Road, StrokeOptions};
+use crate::osm::LonLat;
+use crate::osm::facts::Direction;
 
 /// No edge.
 pub(super) const NONE: u32 = u32::MAX;
@@ -66,9 +68,13 @@ struct End {
     edge: u32,
 }
 
-/// How badly two edges continue each other; less is better. Thousandths of a degree, then what makes any two pairs
-/// differ, whichever way they are looked at from.
-type Cost = (u32, [(i64, i64); 2], [u32; 2]);
+/// Two edges, and how badly they continue each other.
+struct Candidate {
+    /// Less is better. Thousandths of a degree, so that rounding errors make no difference.
+    cost: u32,
+    /// The one that arrives and the one that leaves, in an order that does not depend on which is which.
+    ends: [End; 2],
+}
 
 struct Junction<'n> {
     network: &'n Network,
@@ -91,34 +97,61 @@ impl<'n> Junction<'n> {
 
     fn pair(&self, next: &[AtomicU32], before: &[AtomicU32]) {
         for a in self.arriving {
-            let best = self.leaving.iter().filter_map(|b| Some((self.straight_on(a.edge, b.edge)?, b.edge))).min();
-            if let Some((_, b)) = best
-                && self.best_arriving(b) == Some(a.edge)
+            let best = self.best(self.leaving, |b| self.straight_on(a, b));
+            if let Some(b) = best
+                && self.best(self.arriving, |a| self.straight_on(a, b)) == Some(a)
             {
-                next[a.edge as usize].store(b, Ordering::Relaxed);
-                before[b as usize].store(a.edge, Ordering::Relaxed);
+                next[a.edge as usize].store(b.edge, Ordering::Relaxed);
+                before[b.edge as usize].store(a.edge, Ordering::Relaxed);
             }
         }
         for b in self.leaving {
             let slot = &before[b.edge as usize];
             if slot.load(Ordering::Relaxed) == NONE {
-                let origin = self.arriving.iter().filter_map(|a| Some((self.from(a.edge, b.edge)?, a.edge))).min();
-                slot.store(origin.map_or(NONE, |(_, a)| a), Ordering::Relaxed);
+                let origin = self.best(self.arriving, |a| self.from(a, b));
+                slot.store(origin.map_or(NONE, |a| a.edge), Ordering::Relaxed);
             }
         }
     }
 
-    fn best_arriving(&self, b: u32) -> Option<u32> {
-        self.arriving.iter().filter_map(|a| Some((self.straight_on(a.edge, b)?, a.edge))).min().map(|(_, a)| a)
+    /// The end whose candidate is the least, if any has one.
+    fn best(&self, ends: &'n [End], candidate: impl Fn(&End) -> Option<Candidate>) -> Option<&'n End> {
+        let candidates = ends.iter().filter_map(|end| Some((candidate(end)?, end)));
+        candidates.min_by(|(x, _), (y, _)| self.compare(x, y)).map(|(_, end)| end)
     }
 
-    /// The cost of going straight on from `a` into `b`, if that is what one does.
-    fn straight_on(&self, a: u32, b: u32) -> Option<Cost> {
-        if reverse(self.network, a, b) {
+    /// One order of all pairs at a node, so that the least is the best of both its edges. No two are alike unless
+    /// they are in the same place and of the same way; those are taken in edge order.
+    fn compare(&self, x: &Candidate, y: &Candidate) -> std::cmp::Ordering {
+        let by_line =
+            || self.compare_ends(&x.ends[0], &y.ends[0]).then_with(|| self.compare_ends(&x.ends[1], &y.ends[1]));
+        let by_index = || x.ends.map(|end| end.edge).cmp(&y.ends.map(|end| end.edge));
+        x.cost.cmp(&y.cost).then_with(by_line).then_with(by_index)
+    }
+
+    /// By what an end of road is, seen from the node: its way, where it leads, and its line.
+    fn compare_ends(&self, x: &End, y: &End) -> std::cmp::Ordering {
+        let name = |end: &End| {
+            let edge = self.edge(end.edge);
+            (self.network.road(edge).way_id, if end.leaves { edge.to_node } else { edge.from_node })
+        };
+        name(x).cmp(&name(y)).then_with(|| self.outward(x).cmp(self.outward(y)))
+    }
+
+    fn outward(&self, end: &End) -> impl Iterator<Item = LonLat> + 'n {
+        let edge = self.edge(end.edge);
+        let shape = &self.network.shapes[edge.shape.start as usize..edge.shape.end as usize];
+        let in_way_order = (edge.direction == Direction::Forward) == end.leaves;
+        (0..shape.len()).map(move |i| shape[if in_way_order { i } else { shape.len() - 1 - i }])
+    }
+
+    /// Going straight on from `a` into `b`, if that is what one does.
+    fn straight_on(&self, a: &End, b: &End) -> Option<Candidate> {
+        if reverse(self.network, a.edge, b.edge) {
             return None;
         }
-        let (from, to) = (self.road(a), self.road(b));
-        let deflection_deg = self.geometry.deflection_deg(a, b);
+        let (from, to) = (self.road(a.edge), self.road(b.edge));
+        let deflection_deg = self.geometry.deflection_deg(a.edge, b.edge);
         let limit_deg = if self.two_ends {
             self.options.reversal_deg
         } else if from.roundabout != to.roundabout {
@@ -130,8 +163,8 @@ impl<'n> Junction<'n> {
         } else {
             self.options.straight_limit_deg
         };
-        let goes = deflection_deg <= limit_deg || (self.two_ends && self.bends_back(a, b) <= limit_deg);
-        goes.then(|| self.cost(a, b, deflection_deg + unlike_deg(from, to)))
+        let goes = deflection_deg <= limit_deg || (self.two_ends && self.bends_back(a.edge, b.edge) <= limit_deg);
+        goes.then(|| self.candidate(a, b, deflection_deg + unlike_deg(from, to)))
     }
 
     /// A hairpin whose apex is the node turns by more than the limit over its chords, but not at the node itself.
@@ -139,17 +172,16 @@ impl<'n> Junction<'n> {
         segment_deflection_deg(self.network, self.edge(a), self.edge(b))
     }
 
-    /// The cost of `a` as what one comes from into `b`, where nothing continues into `b`.
-    fn from(&self, a: u32, b: u32) -> Option<Cost> {
-        let deflection_deg = self.geometry.deflection_deg(a, b);
-        let plausible = deflection_deg <= self.options.approach_limit_deg && !reverse(self.network, a, b);
-        plausible.then(|| self.cost(a, b, deflection_deg))
+    /// `a` as what one comes from into `b`, where nothing continues into `b`.
+    fn from(&self, a: &End, b: &End) -> Option<Candidate> {
+        let deflection_deg = self.geometry.deflection_deg(a.edge, b.edge);
+        let plausible = deflection_deg <= self.options.approach_limit_deg && !reverse(self.network, a.edge, b.edge);
+        plausible.then(|| self.candidate(a, b, deflection_deg))
     }
 
-    fn cost(&self, a: u32, b: u32, cost_deg: f64) -> Cost {
-        let mut names = [(self.road(a).way_id, self.edge(a).from_node), (self.road(b).way_id, self.edge(b).to_node)];
-        names.sort_unstable();
-        ((cost_deg * 1e3).round() as u32, names, [a, b])
+    fn candidate(&self, a: &End, b: &End, cost_deg: f64) -> Candidate {
+        let ends = if self.compare_ends(a, b).is_le() { [*a, *b] } else { [*b, *a] };
+        Candidate { cost: (cost_deg * 1e3).round() as u32, ends }
     }
 
     fn edge(&self, edge: u32) -> &'n Edge {

@@ -33,7 +33,10 @@ const TAGGED: u8 = 4;
 impl Vertices {
     /// Resolves every reference of `ways`; `points` are the tagged nodes.
     pub(super) fn resolve(ways: &[Way], refs: &[i64], nodes: &NodeTable, points: &[(i64, PointFacts)]) -> Self {
-        let mut of_refs: Vec<u32> = refs.par_iter().map(|&id| located(nodes, id)).collect();
+        let buckets = Buckets::new(&nodes.ids);
+        let vertex = |&id: &i64| buckets.find(&nodes.ids, id).filter(|&v| nodes.places[v as usize].is_some());
+        let mut of_refs: Vec<u32> = refs.par_iter().map(|id| vertex(id).unwrap_or(MISSING)).collect();
+        drop(buckets);
         let missing = of_refs.par_iter().filter(|&&v| v == MISSING).count() as u64;
         let same = same_place_aliases(ways, &of_refs, nodes);
         if !same.is_empty() {
@@ -60,6 +63,46 @@ fn located(nodes: &NodeTable, id: i64) -> u32 {
     match nodes.index(id) {
         Some(i) if nodes.places[i].is_some() => i as u32,
         _ => MISSING,
+    }
+}
+
+/// Where in a sorted list of ids a search starts and ends: the ids that share their upper bits. With plain
+/// binary searches, a network of 3.0 million edges from 7.6 million references took 1.3 to 1.7 times as long.
+struct Buckets {
+    least: i64,
+    shift: u32,
+    /// By upper bits, less those of the least id: how many ids come before; one more entry than buckets.
+    starts: Vec<u32>,
+}
+
+impl Buckets {
+    /// Four ids a bucket, if they were evenly spread.
+    fn new(ids: &[i64]) -> Self {
+        let (Some(&least), Some(&most)) = (ids.first(), ids.last()) else {
+            return Self { least: 0, shift: 0, starts: Vec::new() };
+        };
+        let span = most.abs_diff(least);
+        let wanted = (ids.len() as u64 / 4).max(1);
+        let shift = (u64::BITS - (span / wanted).leading_zeros()).min(u64::BITS - 1);
+        let mut starts = vec![0_u32; (span >> shift) as usize + 2];
+        for &id in ids {
+            starts[(id.abs_diff(least) >> shift) as usize + 1] += 1;
+        }
+        for bucket in 1..starts.len() {
+            starts[bucket] += starts[bucket - 1];
+        }
+        Self { least, shift, starts }
+    }
+
+    fn find(&self, ids: &[i64], id: i64) -> Option<u32> {
+        if id < self.least {
+            return None;
+        }
+        let bucket = usize::try_from(id.abs_diff(self.least) >> self.shift).ok()?;
+        let start = *self.starts.get(bucket)?;
+        let end = *self.starts.get(bucket + 1)?;
+        let within = ids[start as usize..end as usize].binary_search(&id).ok()?;
+        Some(start + within as u32)
     }
 }
 
@@ -147,5 +190,30 @@ fn both(a: &PointFacts, b: &PointFacts) -> PointFacts {
             (a, b) => a.or(b),
         },
         barred: a.barred || b.barred,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn buckets_find_what_a_binary_search_finds() {
+        let lists: [&[i64]; 6] = [
+            &[],
+            &[5],
+            &[i64::MIN, -1, 0, i64::MAX],
+            &[1, 2, 3, 4, 5, 6, 7, 8, 9, 10],
+            &[1, 2, 3, 4, 5, 6, 7, 8, 9, 1 << 40],
+            &[-3, 7, 8, 9, 100, 101, 102, 4_000, 4_001, 90_000],
+        ];
+        for ids in lists {
+            let buckets = Buckets::new(ids);
+            let near = ids.iter().flat_map(|&id| [id.saturating_sub(1), id, id.saturating_add(1)]);
+            for id in near.chain([i64::MIN, 0, i64::MAX]) {
+                let expected = ids.binary_search(&id).ok().map(|i| i as u32);
+                assert_eq!(buckets.find(ids, id), expected, "{id} in {ids:?}");
+            }
+        }
     }
 }

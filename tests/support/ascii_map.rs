@@ -4,7 +4,7 @@
 //! `metres` wide and a row as high; north is up. Ways are named by their nodes in order, tagged as in OpenStreetMap.
 
 use netcert::network::{Edge, Network};
-use netcert::osm::facts::{CrossSection, Legal, Limit, Oneway, Place, PointFacts, RoadClass, WayFacts};
+use netcert::osm::facts::{self, CrossSection, Place, PointFacts, WayFacts};
 use netcert::osm::{Extract, LonLat, NodeTable, StringPool, Way};
 
 /// Where the upper left corner of a drawing lies.
@@ -113,43 +113,15 @@ pub(crate) fn offset(from: LonLat, east_m: f64, north_m: f64) -> LonLat {
     }
 }
 
-/// Facts of a way with `highway`, `oneway`, `junction`, `name`, `ref` and `maxheight` tags, written `key=value` with
-/// spaces between.
+/// Facts of a way with these tags, written `key=value` with spaces between.
 pub(crate) fn way_facts(tags: &str, strings: &mut StringPool) -> WayFacts {
-    let tag = |key: &str| tags.split_whitespace().filter_map(|t| t.split_once('=')).find(|t| t.0 == key).map(|t| t.1);
-    let highway = tag("highway").unwrap_or_else(|| panic!("no highway in {tags:?}"));
-    let roundabout = tag("junction") == Some("roundabout");
-    let legal = Legal {
-        max_height: tag("maxheight").map_or(Limit::None, |m| Limit::At(m.parse().unwrap())),
-        ..Legal::default()
-    };
-    WayFacts {
-        class: class(highway.trim_end_matches("_link")),
-        link: highway.ends_with("_link"),
-        roundabout,
-        oneway: match tag("oneway") {
-            Some("yes") => Oneway::Forward,
-            Some("-1") => Oneway::Backward,
-            _ if roundabout => Oneway::Forward,
-            _ => Oneway::No,
-        },
-        name: tag("name").map(|name| strings.intern(name)),
-        reference: tag("ref").map(|name| strings.intern(name)),
-        legal_forward: legal,
-        legal_backward: legal,
-    }
-}
-
-fn class(highway: &str) -> RoadClass {
-    match highway {
-        "motorway" => RoadClass::Motorway,
-        "trunk" => RoadClass::Trunk,
-        "primary" => RoadClass::Primary,
-        "secondary" => RoadClass::Secondary,
-        "residential" => RoadClass::Residential,
-        "service" => RoadClass::Service,
-        other => panic!("no class for highway={other}"),
-    }
+    let tags: Vec<_> = tags.split_whitespace().filter_map(|tag| tag.split_once('=')).collect();
+    let draft = facts::way_facts(&tags).unwrap_or_else(|why| panic!("{tags:?} is no road: {why}"));
+    let name = draft.name.map(|name| strings.intern(name));
+    let reference = draft.reference.map(|name| strings.intern(name));
+    let mut facts = draft.facts;
+    (facts.name, facts.reference) = (name, reference);
+    facts
 }
 
 /// The same country everywhere.
