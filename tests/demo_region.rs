@@ -1,6 +1,6 @@
 //! The shipped demo region is what its source draws, is one network, and holds what it is there to show.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, unreachable_pub)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[path = "../examples/draw_region/alignment.rs"]
 mod alignment;

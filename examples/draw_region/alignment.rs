@@ -6,24 +6,24 @@
 use anyhow::{Result, ensure};
 
 /// Metres east and north of the origin.
-pub type Point = [f64; 2];
+pub(crate) type Point = [f64; 2];
 
 /// Greatest distance between a curve and its chords: what tracing an aerial image at a good zoom leaves.
 const SAGITTA_M: f64 = 0.1;
 
 /// A corner of the tangent polygon.
 #[derive(Debug, Clone, Copy)]
-pub struct Corner {
+pub(crate) struct Corner {
     /// Where the tangents meet.
-    pub at: Point,
+    pub(crate) at: Point,
     /// Radius of the arc; 0 leaves the corner sharp.
-    pub radius_m: f64,
+    pub(crate) radius_m: f64,
     /// Length of each clothoid; 0 for a plain arc.
-    pub clothoid_m: f64,
+    pub(crate) clothoid_m: f64,
 }
 
 /// The aligned polyline through `corners` (at least two): starts at the first, ends at the last.
-pub fn align(corners: &[Corner]) -> Result<Vec<Point>> {
+pub(crate) fn align(corners: &[Corner]) -> Result<Vec<Point>> {
     let (Some(first), Some(last)) = (corners.first(), corners.last()) else { return Ok(Vec::new()) };
     let mut points = vec![first.at];
     let mut used_m = 0.0;
@@ -102,7 +102,7 @@ fn clothoid(length_m: f64, r: f64, fraction: f64) -> Point {
 }
 
 /// A circle of `radius_m` driven clockwise, as traffic on the left has it; the first point is not repeated.
-pub fn circle(centre: Point, radius_m: f64) -> Vec<Point> {
+pub(crate) fn circle(centre: Point, radius_m: f64) -> Vec<Point> {
     let step = (8.0 * SAGITTA_M / radius_m).sqrt();
     let count = (std::f64::consts::TAU / step).ceil().max(8.0) as usize;
     let angle = |i: usize| -std::f64::consts::TAU * i as f64 / count as f64;
@@ -110,7 +110,7 @@ pub fn circle(centre: Point, radius_m: f64) -> Vec<Point> {
 }
 
 /// The line `lateral_m` to the left of `line`.
-pub fn offset(line: &[Point], lateral_m: f64) -> Vec<Point> {
+pub(crate) fn offset(line: &[Point], lateral_m: f64) -> Vec<Point> {
     let ahead = |i: usize| line.get(i + 1).map(|&to| direction(line[i], to));
     (0..line.len())
         .filter_map(|i| {
@@ -123,12 +123,12 @@ pub fn offset(line: &[Point], lateral_m: f64) -> Vec<Point> {
 }
 
 /// Metres between two points.
-pub fn distance(a: Point, b: Point) -> f64 {
+pub(crate) fn distance(a: Point, b: Point) -> f64 {
     (b[0] - a[0]).hypot(b[1] - a[1])
 }
 
 /// Unit vector from `a` to `b`.
-pub fn direction(a: Point, b: Point) -> Point {
+pub(crate) fn direction(a: Point, b: Point) -> Point {
     let length = distance(a, b);
     [(b[0] - a[0]) / length, (b[1] - a[1]) / length]
 }

@@ -12,22 +12,22 @@ const SNAP_M: f64 = 1.0;
 
 /// A vertex of a drawn line.
 #[derive(Debug, Clone, Copy)]
-pub struct Vertex {
+pub(crate) struct Vertex {
     /// Metres along the road's axis.
-    pub station_m: f64,
+    pub(crate) station_m: f64,
     /// Where it is.
-    pub at: Point,
+    pub(crate) at: Point,
     /// The junction it belongs to.
-    pub junction: Option<usize>,
+    pub(crate) junction: Option<usize>,
 }
 
 /// A drawn line, before it is cut into ways.
 #[derive(Debug, Clone)]
-pub struct Line {
+pub(crate) struct Line {
     /// At least two; a closed line repeats its first vertex at the end.
-    pub vertices: Vec<Vertex>,
+    pub(crate) vertices: Vec<Vertex>,
     /// The layer of each segment (one fewer than vertices).
-    pub layers: Vec<i32>,
+    pub(crate) layers: Vec<i32>,
 }
 
 impl Line {
@@ -48,7 +48,7 @@ struct Spot {
 }
 
 /// Gives every line a shared vertex wherever it meets another; returns how many junctions there are.
-pub fn join(lines: &mut [Line]) -> usize {
+pub(crate) fn join(lines: &mut [Line]) -> usize {
     let mut meetings: Vec<(Point, Vec<Spot>)> = Vec::new();
     let mut meet = |at: Point, spots: [Spot; 2]| {
         match meetings.iter_mut().find(|(place, _)| distance(*place, at) < REACH_M) {

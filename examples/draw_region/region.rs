@@ -70,15 +70,15 @@ struct Spot {
 }
 
 /// What was drawn.
-pub struct Map {
+pub(crate) struct Map {
     /// The region's name.
-    pub name: String,
+    pub(crate) name: String,
     /// Ids ascend from 1.
-    pub nodes: Vec<NodeRecord>,
+    pub(crate) nodes: Vec<NodeRecord>,
     /// Ids ascend from 1.
-    pub ways: Vec<WayRecord>,
+    pub(crate) ways: Vec<WayRecord>,
     /// Of all ways.
-    pub length_m: f64,
+    pub(crate) length_m: f64,
 }
 
 /// A line with what its ways will be tagged.
@@ -91,7 +91,7 @@ struct Drawn<'s> {
 }
 
 /// Nodes and ways of a source.
-pub fn draw(text: &str) -> Result<Map> {
+pub(crate) fn draw(text: &str) -> Result<Map> {
     let source: Source = toml::from_str(text)?;
     let mut drawn: Vec<Drawn<'_>> = Vec::new();
     for road in &source.road {
