@@ -5,7 +5,9 @@
 #![allow(dead_code, unreachable_pub)]
 
 pub mod adversary;
+pub mod claim;
 pub mod draw;
+pub mod duel;
 pub mod fleet;
 pub mod path;
 pub mod road;
