@@ -12,3 +12,4 @@ pub mod fleet;
 pub mod path;
 pub mod road;
 pub mod simulator;
+pub mod turns;
