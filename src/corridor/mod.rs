@@ -2,6 +2,10 @@
 //!
 //! A corridor is what `stet` certifies; it knows nothing of maps.
 
+mod closed;
+
+pub use closed::CurvatureProfile;
+
 use std::ops::Range;
 
 use crate::verdict::UnknownReason;

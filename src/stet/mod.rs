@@ -2,10 +2,29 @@
 //!
 //! Pure: a corridor and a vehicle in, a certificate out; no input or output, no clock, no threads.
 
+mod gains;
+mod group;
+mod lanes;
+mod leeway;
+mod model;
+pub mod motion;
+mod plan;
+mod published;
+mod spans;
+mod sweep;
+mod track;
+
 use std::ops::Range;
 
 use crate::corridor::Corridor;
-use crate::vehicle::Vehicle;
+
+pub use model::{MAX_UNITS, Model, ModelError};
+pub use motion::steady_offtracking;
+
+use group::Group;
+use lanes::{LANES, V};
+use sweep::{Minima, sweep};
+use track::Track;
 
 /// Which edge of the corridor, seen in driving direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,21 +107,104 @@ pub struct Certificate {
     pub right_centred_m: Vec<f64>,
 }
 
-/// A vehicle made ready: gains, knots, run-in. Computed once a vehicle.
-#[derive(Debug, Clone)]
-pub struct Model {
-    /// What it was made from.
-    pub vehicle: Vehicle,
-}
-
-/// Results over `spans` of stations for one vehicle that sweeps the whole corridor. The vehicle enters straight, along
-/// the first station's heading, and leaves straight, along the last one's.
+/// Results over `spans` of stations for vehicles that sweep the whole corridor one after the other: one row a vehicle.
+///
+/// Every vehicle enters straight, along the first station's heading, and leaves straight, along the last one's. The
+/// result does not depend on which other vehicles are in `models`. An empty corridor gives empty rows.
 #[must_use]
 pub fn certify_spans(
-    _corridor: &Corridor,
-    _model: &Model,
-    _spans: &[Range<usize>],
-    _options: &Options,
-) -> Vec<SpanResult> {
-    Vec::new()
+    corridor: &Corridor,
+    models: &[&Model],
+    spans: &[Range<usize>],
+    options: &Options,
+) -> Vec<Vec<SpanResult>> {
+    let mut rows = vec![Vec::new(); models.len()];
+    if corridor.is_empty() {
+        return rows;
+    }
+    // Vehicles of about as many units share a group: a lane costs as much as the longest one in it.
+    let mut order: Vec<usize> = (0..models.len()).collect();
+    order.sort_by_key(|&i| models[i].units.len());
+    for chunk in order.chunks(LANES) {
+        let members: Vec<&Model> = chunk.iter().map(|&i| models[i]).collect();
+        let swept = Swept::new(corridor, &members, spans, options);
+        for (lane, &i) in chunk.iter().enumerate() {
+            rows[i] = spans.iter().map(|span| swept.result(lane, span)).collect();
+        }
+    }
+    rows
+}
+
+/// The certificate of one vehicle over a whole corridor.
+///
+/// `None` when the corridor has no station.
+#[must_use]
+pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<Certificate> {
+    if corridor.is_empty() {
+        return None;
+    }
+    let whole = 0..corridor.len();
+    let swept = Swept::new(corridor, &[model], std::slice::from_ref(&whole), options);
+    let track = &swept.track;
+    let centred = sweep::<true>(track, &swept.group, &vec![V::splat(0.0); track.len()]);
+    let own = |column: &[f64]| column[track.lead..track.lead + track.count].to_vec();
+    let shift_m: Vec<f64> = swept.shift[track.lead..track.lead + track.count].iter().map(|q| q.0[0]).collect();
+    let plan = (0..track.count)
+        .map(|k| {
+            let (sin, cos) = corridor.heading[k].sin_cos();
+            [corridor.x[k] - shift_m[k] * sin, corridor.y[k] + shift_m[k] * cos]
+        })
+        .collect();
+    Some(Certificate {
+        result: swept.result(0, &whole),
+        plan,
+        shift_m,
+        left_m: own(&swept.full[0].left),
+        right_m: own(&swept.full[0].right),
+        left_centred_m: own(&centred[0].left),
+        right_centred_m: own(&centred[0].right),
+    })
+}
+
+/// A group of vehicles after its sweeps.
+struct Swept<'m> {
+    track: Track,
+    group: Group<'m>,
+    shift: Vec<V>,
+    /// At γ = 1.
+    full: Vec<Minima>,
+    /// At γ_min; only where something failed.
+    least: Option<Vec<Minima>>,
+}
+
+impl<'m> Swept<'m> {
+    fn new(corridor: &Corridor, models: &[&'m Model], spans: &[Range<usize>], options: &Options) -> Self {
+        let group = Group::new(models, 1.0);
+        let (lead_m, tail_m) = sweep::extensions_m(&group, corridor.spacing_m);
+        let track = Track::new(corridor, lead_m, tail_m);
+        let shift = plan::best(&track, &group, spans, options);
+        let full = sweep::<true>(&track, &group, &shift);
+        let mut swept = Self { track, group, shift, full, least: None };
+        let fails = |lane: usize| spans.iter().any(|span| swept.at_full(lane, span).rsc_m < 0.0);
+        if (0..models.len()).any(fails) {
+            let tight = Group::new(models, 0.0);
+            swept.least = Some(sweep::<true>(&swept.track, &tight, &swept.shift));
+        }
+        swept
+    }
+
+    fn at_full(&self, lane: usize, span: &Range<usize>) -> SpanResult {
+        spans::result(&self.track, self.group.models[lane], span, &self.full[lane])
+    }
+
+    fn result(&self, lane: usize, span: &Range<usize>) -> SpanResult {
+        let at_full = self.at_full(lane, span);
+        match &self.least {
+            Some(least) if at_full.rsc_m < 0.0 => {
+                let model = self.group.models[lane];
+                spans::shrunk(&self.track, model, span, (&self.full[lane], &least[lane]), &at_full)
+            }
+            _ => at_full,
+        }
+    }
 }

@@ -1,6 +1,28 @@
 //! Vehicles: the chain of units, the catalogue, and the checks that keep an impossible one out.
+//!
+//! | file | for |
+//! | --- | --- |
+//! | `definition` | a vehicle in the file's units, as TOML and JSON have it, and to and from [`Vehicle`] |
+//! | `defaults` | what a definition that leaves something out gets, and why |
+//! | `check` | the bounds a definition must keep, as faults with a place |
+//! | `file` | TOML text → vehicles, or every fault with its line |
+//! | `catalogue` | the shipped vehicles, which of them belong to a country, and look-up by id |
+
+mod catalogue;
+mod check;
+mod defaults;
+mod definition;
+mod file;
+mod regions;
+#[cfg(test)]
+mod tests;
 
 use serde::{Deserialize, Serialize};
+
+pub use catalogue::{Catalogue, VehicleError};
+pub use check::Fault;
+pub use definition::{UnitDefinition, VehicleDefinition};
+pub use regions::{Region, Regions};
 
 /// One unit of the chain (design section 1). A dolly is a unit of its own. Metres, radians.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

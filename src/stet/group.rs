@@ -1,0 +1,89 @@
+//! Up to eight vehicles side by side: their constants in lanes, so that one sweep serves them all.
+
+use super::lanes::{LANES, V};
+use super::model::{MAX_UNITS, Model, UnitModel};
+
+/// Vehicles that sweep together. Empty lanes repeat the last vehicle and are not read.
+pub(super) struct Group<'m> {
+    pub(super) models: Vec<&'m Model>,
+    /// γ asked of all of them; each keeps to its own least.
+    pub(super) shrink: f64,
+    /// Most units of any of them.
+    pub(super) units: usize,
+    pub(super) chain: [UnitLanes; MAX_UNITS],
+    /// Allowance for the prime mover's course, radians.
+    pub(super) course: V,
+}
+
+/// Constants of one unit across the vehicles; a vehicle without this unit has a harmless stand-in.
+#[derive(Clone, Copy)]
+pub(super) struct UnitLanes {
+    pub(super) length: V,
+    pub(super) inverse_length: V,
+    /// L + d
+    pub(super) reach: V,
+    /// |d|
+    pub(super) hitch: V,
+    /// d/L
+    pub(super) ratio: V,
+    pub(super) sway: V,
+    pub(super) max_articulation: V,
+    /// At the group's γ: bounds on the straight of heading error, axle deviation and (hinge by hinge) coupling deviation.
+    pub(super) heading: V,
+    pub(super) axle: V,
+    pub(super) coupling: V,
+}
+
+impl<'m> Group<'m> {
+    /// `models` holds one to eight; `shrink` is γ of each.
+    pub(super) fn new(models: &[&'m Model], shrink: f64) -> Self {
+        let lane = |i: usize| models[i.min(models.len() - 1)];
+        let per_vehicle = |f: &dyn Fn(&Model) -> f64| {
+            let mut out = [0.0; LANES];
+            for (i, o) in out.iter_mut().enumerate() {
+                *o = f(lane(i));
+            }
+            V(out)
+        };
+        let tolerance = |m: &Model| m.vehicle.tracking_tolerance_m * gamma(m, shrink);
+        let unit = |u: usize| {
+            let of = |f: &dyn Fn(&UnitModel, f64) -> f64, absent: f64| {
+                per_vehicle(&|m: &Model| m.units.get(u).map_or(absent, |unit| f(unit, tolerance(m))))
+            };
+            UnitLanes {
+                length: of(&|u, _| u.length, 5.0),
+                inverse_length: of(&|u, _| 1.0 / u.length, 0.2),
+                reach: of(&|u, _| u.length + u.hitch, 5.0),
+                hitch: of(&|u, _| u.hitch.abs(), 0.0),
+                ratio: of(&|u, _| u.hitch / u.length, 0.0),
+                sway: of(&|u, _| u.sway, 0.0),
+                max_articulation: of(&|u, _| u.max_articulation, 0.0),
+                heading: of(&|u, e| u.heading.at(e), 0.0),
+                axle: of(&|u, e| u.axle.at(e), 0.0),
+                coupling: of(&|u, e| u.coupling.at(e), 0.0),
+            }
+        };
+        Self {
+            models: models.to_vec(),
+            shrink,
+            units: models.iter().map(|m| m.units.len()).max().unwrap_or(0),
+            chain: std::array::from_fn(unit),
+            course: per_vehicle(&|m| m.vehicle.tracking_heading_rad),
+        }
+    }
+
+    /// Longest vehicle, steer axle to rear, metres.
+    pub(super) fn length(&self) -> f64 {
+        self.models.iter().fold(0.0, |l, m| l.max(m.length))
+    }
+
+    /// Longest body ahead of a steer axle, metres.
+    pub(super) fn front(&self) -> f64 {
+        self.models.iter().fold(0.0, |l, m| l.max(m.front))
+    }
+}
+
+/// The γ that `model` allows when `shrink` is asked.
+pub(super) fn gamma(model: &Model, shrink: f64) -> f64 {
+    shrink.max(model.vehicle.min_shrink)
+}

@@ -1,0 +1,107 @@
+//! Eight numbers side by side. Plain arrays, so that one source serves every instruction set; no fused
+//! multiply-add, so that every machine gives the same bytes.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// How many lanes: vehicles in the motion, stations at the body points.
+pub(crate) const LANES: usize = 8;
+
+/// Eight `f64`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct V(pub(crate) [f64; LANES]);
+
+macro_rules! lanewise {
+    ($trait:ident, $method:ident, $op:tt) => {
+        impl $trait for V {
+            type Output = V;
+            #[inline(always)]
+            fn $method(self, other: V) -> V {
+                let mut out = [0.0; LANES];
+                for i in 0..LANES {
+                    out[i] = self.0[i] $op other.0[i];
+                }
+                V(out)
+            }
+        }
+        impl $trait<f64> for V {
+            type Output = V;
+            #[inline(always)]
+            fn $method(self, other: f64) -> V {
+                let mut out = [0.0; LANES];
+                for i in 0..LANES {
+                    out[i] = self.0[i] $op other;
+                }
+                V(out)
+            }
+        }
+    };
+}
+
+lanewise!(Add, add, +);
+lanewise!(Sub, sub, -);
+lanewise!(Mul, mul, *);
+lanewise!(Div, div, /);
+
+impl Neg for V {
+    type Output = V;
+    #[inline(always)]
+    fn neg(self) -> V {
+        self.map(|x| -x)
+    }
+}
+
+impl V {
+    #[inline(always)]
+    pub(crate) fn splat(x: f64) -> V {
+        V([x; LANES])
+    }
+
+    #[inline(always)]
+    fn map(self, f: impl Fn(f64) -> f64) -> V {
+        let mut out = [0.0; LANES];
+        for i in 0..LANES {
+            out[i] = f(self.0[i]);
+        }
+        V(out)
+    }
+
+    #[inline(always)]
+    fn zip(self, other: V, f: impl Fn(f64, f64) -> f64) -> V {
+        let mut out = [0.0; LANES];
+        for i in 0..LANES {
+            out[i] = f(self.0[i], other.0[i]);
+        }
+        V(out)
+    }
+
+    #[inline(always)]
+    pub(crate) fn abs(self) -> V {
+        self.map(f64::abs)
+    }
+
+    #[inline(always)]
+    pub(crate) fn sqrt(self) -> V {
+        self.map(f64::sqrt)
+    }
+
+    /// The greater of each pair: one instruction, unlike `f64::max`, at the price of an unordered NaN.
+    #[inline(always)]
+    pub(crate) fn max(self, other: V) -> V {
+        self.zip(other, |a, b| if a > b { a } else { b })
+    }
+
+    /// The lesser of each pair.
+    #[inline(always)]
+    pub(crate) fn min(self, other: V) -> V {
+        self.zip(other, |a, b| if a < b { a } else { b })
+    }
+
+    /// Each number with its lowest seven bits of mantissa replaced by `tag`: it moves by less than 3e-14 of itself.
+    #[inline(always)]
+    pub(crate) fn tagged(self, tag: u64) -> V {
+        self.map(|x| f64::from_bits((x.to_bits() & !TAG_MASK) | tag))
+    }
+}
+
+/// The bits of a [`V::tagged`] number that hold the tag.
+pub(crate) const TAG_MASK: u64 = 0x7f;

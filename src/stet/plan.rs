@@ -1,0 +1,94 @@
+//! CORRCEN: where to steer off the centreline, so that the union of all units' swept extents lies in the middle of the
+//! corridor (design section 5, Corrections).
+
+use std::ops::Range;
+
+use super::Options;
+use super::group::Group;
+use super::lanes::{LANES, V};
+use super::spans;
+use super::sweep::{Minima, UNVISITED_M, sweep};
+use super::track::Track;
+
+/// Of the centred path and its corrections, each vehicle's best by nominal leeway: never the last by default.
+pub(super) fn best(track: &Track, group: &Group<'_>, spans: &[Range<usize>], options: &Options) -> Vec<V> {
+    let mut shift = vec![V::splat(0.0); track.len()];
+    if options.max_shift_m <= 0.0 || options.correction_sweeps == 0 {
+        return shift;
+    }
+    let mut best = shift.clone();
+    let mut best_score = [f64::NEG_INFINITY; LANES];
+    for round in 0..=options.correction_sweeps {
+        let minima = sweep::<false>(track, group, &shift);
+        for (lane, m) in minima.iter().enumerate() {
+            let score = score(track, group, lane, spans, m);
+            if score > best_score[lane] {
+                best_score[lane] = score;
+                for (b, q) in best.iter_mut().zip(&shift) {
+                    b.0[lane] = q.0[lane];
+                }
+            }
+        }
+        if round < options.correction_sweeps {
+            shift = correct(track, group, &minima, &shift, options.max_shift_m);
+        }
+    }
+    best
+}
+
+/// Leeway summed over the spans by length; room beyond half a metre counts for nothing, what is missing counts thrice.
+fn score(track: &Track, group: &Group<'_>, lane: usize, spans: &[Range<usize>], minima: &Minima) -> f64 {
+    let model = group.models[lane];
+    let tolerance = model.vehicle.tracking_tolerance_m;
+    let tube = model.units.iter().flat_map(|u| &u.at).fold(0.0, |g: f64, gain| g.max(gain.at(tolerance)));
+    spans
+        .iter()
+        .map(|span| {
+            let stations = spans::stations(track, span);
+            let least = stations.fold(f64::INFINITY, |l, k| l.min(minima.left[k]).min(minima.right[k]));
+            let leeway = least - tube;
+            span.len() as f64 * (leeway.min(0.5) + 2.0 * leeway.min(0.0))
+        })
+        .sum()
+}
+
+/// The next shift: at each station half the difference of the leeways, smoothed over about the prime mover's length,
+/// within ±`max_shift_m`.
+fn correct(track: &Track, group: &Group<'_>, minima: &[Minima], shift: &[V], max_shift_m: f64) -> Vec<V> {
+    let wanted: Vec<V> = (0..track.len())
+        .map(|k| {
+            let half = |lane: usize| {
+                let m = &minima[lane.min(minima.len() - 1)];
+                if m.left[k] < UNVISITED_M { 0.5 * (m.left[k] - m.right[k]) } else { 0.0 }
+            };
+            shift[k] + V(std::array::from_fn(half))
+        })
+        .collect();
+    let halves: [usize; LANES] = std::array::from_fn(|lane| smoothing_half(track, group, lane));
+    let smooth = boxed(&boxed(&wanted, &halves), &halves);
+    let (low, high) = (V::splat(-max_shift_m), V::splat(max_shift_m));
+    smooth.into_iter().map(|q| q.max(low).min(high)).collect()
+}
+
+/// Half the prime mover's length, in stations.
+fn smoothing_half(track: &Track, group: &Group<'_>, lane: usize) -> usize {
+    let model = group.models[lane.min(group.models.len() - 1)];
+    (((model.units[0].length + model.front) / track.spacing / 2.0).round() as usize).max(1)
+}
+
+/// Running mean over `2·half + 1` stations of each lane; the ends are continued.
+fn boxed(values: &[V], halves: &[usize; LANES]) -> Vec<V> {
+    let last = values.len() as isize - 1;
+    let mut out = values.to_vec();
+    for (lane, &half) in halves.iter().enumerate() {
+        let half = half as isize;
+        let at = |k: isize| values[k.clamp(0, last) as usize].0[lane];
+        let scale = 1.0 / (2 * half + 1) as f64;
+        let mut sum: f64 = (-half..=half).map(at).sum();
+        for k in 0..=last {
+            out[k as usize].0[lane] = sum * scale;
+            sum += at(k + half + 1) - at(k - half);
+        }
+    }
+    out
+}

@@ -1,0 +1,27 @@
+//! The paper's shape map as printed, for the certificate 𝒞 that stands beside the deciding one and never decides.
+//!
+//! Read here: sway limit ±θ_i is the unit's slip bound σ_i, L its coupling-to-axle length, r_0 the half-length of the
+//! prime mover's body (design section 6); h_Ω is taken at each unit's own foot on the centreline, the reading that
+//! is kindest to the printed form.
+
+use crate::vehicle::Unit;
+
+/// r_N^max: the largest support radius of the last unit's ellipse, metres. Eq. 15 to 19, β° as printed (erratum E1).
+pub(super) fn last_radius_m(units: &[Unit]) -> f64 {
+    let Some(prime) = units.first() else { return 0.0 };
+    let half_length = 0.5 * (prime.front_overhang_m + prime.coupling_to_axle_m + prime.rear_overhang_m);
+    // Q⁻¹ in the axes of motion: squared semi-axes along and across. All rotations are equal on the straight, where δ = 0.
+    let (mut along, mut across) = (half_length.powi(2), (0.5 * prime.width_m).powi(2));
+    for unit in units.iter().skip(1) {
+        let l = unit.coupling_to_axle_m;
+        let a = (l * (1.0 - unit.sway_rad.cos())).powi(2);
+        let b = (l * unit.sway_rad.sin()).powi(2);
+        if a + b <= 0.0 {
+            continue;
+        }
+        let beta = ((a + b) / (along + across)).sqrt();
+        along = (1.0 + 1.0 / beta) * along + (1.0 + beta) * a;
+        across = (1.0 + 1.0 / beta) * across + (1.0 + beta) * b;
+    }
+    along.max(across).sqrt()
+}

@@ -1,0 +1,85 @@
+//! From stations to spans: least leeway, what limits it, and SHRINK.
+
+use std::ops::RangeInclusive;
+
+use super::group::gamma;
+use super::lanes::TAG_MASK;
+use super::model::Model;
+use super::sweep::Minima;
+use super::track::Track;
+use super::{Limiting, Side, SpanResult};
+
+/// Minima may stand on the neighbour of the station they belong to: a span takes this many more on each side.
+const SLACK: usize = 2;
+
+/// γ is stored in thousandths, rounded down.
+const SHRINK_STEPS: f64 = 1000.0;
+
+/// Extended stations of a span of corridor stations.
+pub(super) fn stations(track: &Track, span: &std::ops::Range<usize>) -> RangeInclusive<usize> {
+    let first = track.lead + span.start.saturating_sub(SLACK);
+    let last = track.lead + (span.end.max(span.start + 1) - 1 + SLACK).min(track.count - 1);
+    first..=last
+}
+
+/// The result over a span at γ = 1.
+pub(super) fn result(track: &Track, model: &Model, span: &std::ops::Range<usize>, full: &Minima) -> SpanResult {
+    let mut least = f64::INFINITY;
+    let mut limiting = Limiting { station: span.start, unit: 0, side: Side::Left, point_m: 0.0 };
+    let (mut hinge, mut hinge_unit) = (f64::INFINITY, 0);
+    let (mut offset, mut half_width) = (0.0_f64, f64::INFINITY);
+    for k in stations(track, span) {
+        for (value, side) in [(full.left[k], Side::Left), (full.right[k], Side::Right)] {
+            if value < least {
+                least = value;
+                let tag = value.to_bits() & TAG_MASK;
+                let (unit, point) = ((tag >> 4) as usize, (tag & 15) as usize);
+                let point_m = model.units.get(unit).and_then(|u| u.points.get(point)).copied().unwrap_or(0.0);
+                limiting = Limiting { station: k - track.lead, unit, side, point_m };
+            }
+        }
+        if full.hinge[k] < hinge {
+            hinge = full.hinge[k];
+            hinge_unit = ((hinge.to_bits() & TAG_MASK) >> 4) as usize;
+        }
+        offset = offset.max(full.offset[k]);
+        half_width = half_width.min(0.5 * (track.fields.left[k] + track.fields.right[k]));
+    }
+    SpanResult {
+        rsc_m: least,
+        rsc_published_m: half_width - (offset + model.published_radius),
+        hinge_margin_rad: hinge,
+        hinge_unit,
+        shrink: 1.0,
+        limiting,
+    }
+}
+
+/// SHRINK: the largest γ (in thousandths) for which no station of the span has negative leeway, from the leeways at
+/// γ = 1 and at γ_min. Every bound grows with γ as a sum of convex terms, so that the chord between the two is never
+/// above the leeway. Where γ_min does not suffice, its negative RSC is the result.
+pub(super) fn shrunk(
+    track: &Track,
+    model: &Model,
+    span: &std::ops::Range<usize>,
+    (full, least): (&Minima, &Minima),
+    at_full: &SpanResult,
+) -> SpanResult {
+    let at_least = result(track, model, span, least);
+    let floor = gamma(model, 0.0);
+    let keep = SpanResult { hinge_margin_rad: at_full.hinge_margin_rad, hinge_unit: at_full.hinge_unit, ..at_least };
+    let lowest = SpanResult { shrink: floor, rsc_published_m: at_full.rsc_published_m, ..keep };
+    if lowest.rsc_m < 0.0 || floor >= 1.0 {
+        return lowest;
+    }
+    let sides = |k: usize| [(full.left[k], least.left[k]), (full.right[k], least.right[k])];
+    let pairs = || stations(track, span).flat_map(sides);
+    let part = pairs().filter(|(f, _)| *f < 0.0).fold(1.0_f64, |part, (f, l)| part.min(l / (l - f)));
+    let shrink = ((floor + (1.0 - floor) * part) * SHRINK_STEPS).floor() / SHRINK_STEPS;
+    if shrink <= floor {
+        return lowest;
+    }
+    let part = (shrink - floor) / (1.0 - floor);
+    let rsc = pairs().fold(f64::INFINITY, |rsc, (f, l)| rsc.min(l + (f - l) * part));
+    SpanResult { rsc_m: rsc, shrink, limiting: at_full.limiting, ..lowest }
+}

@@ -1,0 +1,400 @@
+//! One sweep of a group of vehicles along a track: nominal motion and curved tubes with vehicles in lanes, then leeway
+//! at the body points with stations in lanes (design sections 3 to 5; the layout is the one measured to be fastest).
+//!
+//! Promises: no leeway left here is above what any bounded disturbance leaves, up to the model of the design page. Knows
+//! nothing of edges, corrections or shrinking.
+
+use super::group::Group;
+use super::lanes::{LANES, V};
+use super::leeway::{self, Body};
+use super::model::MAX_UNITS;
+use super::track::Track;
+
+/// Head stations a block.
+pub(super) const BLOCK: usize = 32;
+/// What the motion hands to the points: one row a field.
+pub(super) const FIELDS: usize = 10;
+/// Leeway at a station that no body point visits.
+pub(super) const UNVISITED_M: f64 = 1e9;
+
+/// Least leeways and margins at every extended station, for one vehicle.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Minima {
+    /// Tagged (see [`super::lanes::V::tagged`]) with `unit · 16 + point`.
+    pub(super) left: Vec<f64>,
+    pub(super) right: Vec<f64>,
+    /// Hinge margin, radians, tagged with the unit.
+    pub(super) hinge: Vec<f64>,
+    /// Lateral distance of the last axle from the steer path, metres.
+    pub(super) offset: Vec<f64>,
+}
+
+impl Minima {
+    fn new(stations: usize) -> Self {
+        Self {
+            left: vec![UNVISITED_M; stations],
+            right: vec![UNVISITED_M; stations],
+            hinge: vec![UNVISITED_M; stations],
+            offset: vec![0.0; stations],
+        }
+    }
+}
+
+/// Extension that a track needs before and after the corridor for this group, metres.
+pub(super) fn extensions_m(group: &Group<'_>, spacing: f64) -> (f64, f64) {
+    let slack = (BLOCK + 2 * LANES) as f64 * spacing;
+    (group.length() + slack, group.length() + 2.0 * group.front() + 2.0 * slack + 10.0)
+}
+
+/// Sweeps the steer path `shift` (metres left of the centreline at each extended station, vehicles in lanes).
+/// `CERTIFY`: all bounds deducted, hinges checked; otherwise the nominal leeway of a few points, for planning.
+pub(super) fn sweep<const CERTIFY: bool>(track: &Track, group: &Group<'_>, shift: &[V]) -> Vec<Minima> {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has AVX2, just asked.
+        return unsafe { sweep_avx2::<CERTIFY>(track, group, shift) };
+    }
+    sweep_with::<CERTIFY>(track, group, shift)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn sweep_avx2<const CERTIFY: bool>(track: &Track, group: &Group<'_>, shift: &[V]) -> Vec<Minima> {
+    sweep_with::<CERTIFY>(track, group, shift)
+}
+
+#[inline(always)]
+fn sweep_with<const CERTIFY: bool>(track: &Track, group: &Group<'_>, shift: &[V]) -> Vec<Minima> {
+    let mut minima = vec![Minima::new(track.len()); group.models.len()];
+    let mut rows = vec![0.0; group.units * LANES * FIELDS * BLOCK];
+    let mut motion = Motion::new(track);
+    let mut bodies: Vec<Vec<Body>> =
+        group.models.iter().map(|m| leeway::bodies::<CERTIFY>(m, track, group.shrink)).collect();
+    // The rear of the longest vehicle has left the corridor when the head is this far beyond.
+    let ahead = ((group.front() + 4.0) / track.spacing).ceil() as usize + LANES;
+    let last = track.len() - ahead - BLOCK;
+    let mut head = track.lead;
+    while head < last {
+        motion.block::<CERTIFY>(track, group, shift, head, &mut rows);
+        for (lane, (bodies, minima)) in bodies.iter_mut().zip(&mut minima).enumerate() {
+            for (unit, body) in bodies.iter_mut().enumerate() {
+                let start = (unit * LANES + lane) * FIELDS * BLOCK;
+                let block = &rows[start..start + FIELDS * BLOCK];
+                leeway::points::<CERTIFY>(track, body, block, shift, lane, minima);
+            }
+        }
+        head += BLOCK;
+    }
+    minima
+}
+
+/// State of the chain between two head stations, vehicles in lanes.
+struct Motion {
+    heading_x: [V; MAX_UNITS],
+    heading_y: [V; MAX_UNITS],
+    /// Last displacement of each front coupling, over its length.
+    along_x: [V; MAX_UNITS],
+    along_y: [V; MAX_UNITS],
+    /// Last heading change of each unit, radians.
+    turned: [V; MAX_UNITS],
+    turned_change: [V; MAX_UNITS],
+    /// What curvature adds to the bound on each axle's deviation.
+    extra: [V; MAX_UNITS],
+}
+
+/// One unit's step, as far as its tubes need it.
+#[derive(Clone, Copy)]
+struct Step {
+    moved: V,
+    advance: V,
+    sine: V,
+    cosine: V,
+    tangent: V,
+    secant: V,
+    hitch_cosine: V,
+    path_curvature: V,
+}
+
+const ZERO: V = V([0.0; LANES]);
+
+impl Motion {
+    /// All units stand behind the track's first station, along its heading.
+    #[inline(always)]
+    fn new(track: &Track) -> Self {
+        let (x, y) = (V::splat(track.fields.tangent_x[track.lead]), V::splat(track.fields.tangent_y[track.lead]));
+        Self {
+            heading_x: [x; MAX_UNITS],
+            heading_y: [y; MAX_UNITS],
+            along_x: [x; MAX_UNITS],
+            along_y: [y; MAX_UNITS],
+            turned: [ZERO; MAX_UNITS],
+            turned_change: [ZERO; MAX_UNITS],
+            extra: [ZERO; MAX_UNITS],
+        }
+    }
+
+    /// Drives [`BLOCK`] stations from `head` and leaves every unit's rows.
+    #[inline(always)]
+    fn block<const CERTIFY: bool>(
+        &mut self,
+        track: &Track,
+        group: &Group<'_>,
+        shift: &[V],
+        head: usize,
+        rows: &mut [f64],
+    ) {
+        let mut place = steer(track, shift, head);
+        for k in 0..BLOCK {
+            let next = steer(track, shift, head + k + 1);
+            self.station::<CERTIFY>(group, place, next, track.spacing, k, rows);
+            place = next;
+        }
+    }
+
+    /// One head station: rows of every unit there, then the step to the next.
+    #[inline(always)]
+    fn station<const CERTIFY: bool>(
+        &mut self,
+        group: &Group<'_>,
+        place: (V, V),
+        next: (V, V),
+        spacing: f64,
+        k: usize,
+        rows: &mut [f64],
+    ) {
+        let (mut x, mut y) = place;
+        let (mut vx, mut vy) = (next.0 - place.0, next.1 - place.1);
+        let mut steps = [Step {
+            moved: ZERO,
+            advance: ZERO,
+            sine: ZERO,
+            cosine: ZERO,
+            tangent: ZERO,
+            secant: ZERO,
+            hitch_cosine: ZERO,
+            path_curvature: ZERO,
+        }; MAX_UNITS];
+        let mut joints = [ZERO; MAX_UNITS];
+        let (mut ahead_x, mut ahead_y) = (ZERO, ZERO);
+        for unit in 0..group.units {
+            let of = &group.chain[unit];
+            let (ux, uy) = (self.heading_x[unit], self.heading_y[unit]);
+            // Axle, then the next coupling.
+            x = x - ux * of.length;
+            y = y - uy * of.length;
+            let mut store = |field: usize, value: V| {
+                for lane in 0..LANES {
+                    rows[((unit * LANES + lane) * FIELDS + field) * BLOCK + k] = value.0[lane];
+                }
+            };
+            store(row::X, x);
+            store(row::Y, y);
+            store(row::UX, ux);
+            store(row::UY, uy);
+            x = x - ux * (of.reach - of.length);
+            y = y - uy * (of.reach - of.length);
+
+            // The exact chord step: N/D = tan(β/2)·exp(−ℓ/L).
+            let sine = ux * vy - uy * vx;
+            let cosine = ux * vx + uy * vy;
+            let moved = (vx * vx + vy * vy + 1e-30).sqrt();
+            let (pn, pd) = decay(moved * of.inverse_length);
+            let n = sine * pn;
+            let d = (moved + cosine).max(V::splat(1e-12)) * pd;
+            let (nn, dd, nd2) = (n * n, d * d, n * d * 2.0);
+            let norm = V::splat(1.0) / ((nn + dd) * moved);
+            let (c, s) = ((dd - nn) * norm, nd2 * norm);
+            let (wx, wy) = (vx * c + vy * s, vy * c - vx * s);
+            if CERTIFY {
+                let inverse = V::splat(1.0) / (moved * (moved + cosine));
+                if unit == 0 {
+                    // tan(δ_0/2)
+                    joints[0] = sine.abs() * (inverse * moved);
+                } else {
+                    let cross = (ahead_x * uy - ahead_y * ux).abs();
+                    let dot = ahead_x * ux + ahead_y * uy;
+                    joints[unit] = cross / (dot + 1.0).max(V::splat(1e-12));
+                }
+                let bounded = cosine.max(moved * 0.05);
+                let both = V::splat(1.0) / (moved * bounded);
+                let (inverse_moved, inverse_cosine) = (bounded * both, moved * both);
+                let tangent = sine * inverse_cosine;
+                let hitch_tangent = tangent * of.ratio;
+                let (ax, ay) = (vx * inverse_moved, vy * inverse_moved);
+                let bend = self.along_x[unit] * ay - self.along_y[unit] * ax;
+                steps[unit] = Step {
+                    moved,
+                    advance: (cosine + vx * wx + vy * wy) * 0.5,
+                    sine: sine.abs() * inverse_moved,
+                    cosine: cosine * inverse_moved,
+                    tangent: tangent.abs(),
+                    secant: moved * inverse_cosine,
+                    hitch_cosine: V::splat(1.0) / (hitch_tangent * hitch_tangent + 1.0).sqrt(),
+                    path_curvature: bend.abs() * inverse_moved,
+                };
+                self.along_x[unit] = ax;
+                self.along_y[unit] = ay;
+                let turned = ux * wy - uy * wx;
+                let change = (turned - self.turned[unit]).abs();
+                store(row::CURVATURE, tangent * of.inverse_length);
+                store(row::JERK, change.max(self.turned_change[unit]) * (1.0 / (spacing * spacing)));
+                self.turned[unit] = turned;
+                self.turned_change[unit] = change;
+            }
+            (ahead_x, ahead_y) = (ux, uy);
+            vx = vx - of.reach * (wx - ux);
+            vy = vy - of.reach * (wy - uy);
+            self.heading_x[unit] = wx;
+            self.heading_y[unit] = wy;
+        }
+        if CERTIFY {
+            self.tubes(group, &steps, &joints, k, rows);
+        }
+    }
+
+    /// What curvature adds to the straight gains (design section 4, "Curved part and remainder"), and hinge margins.
+    #[inline(always)]
+    fn tubes(
+        &mut self,
+        group: &Group<'_>,
+        steps: &[Step; MAX_UNITS],
+        joints: &[V; MAX_UNITS],
+        k: usize,
+        rows: &mut [f64],
+    ) {
+        let one = V::splat(1.0);
+        let (mut least, mut most) = (steps[0].advance, steps[0].advance);
+        for step in &steps[1..group.units] {
+            least = least.min(step.advance);
+            most = most.max(step.advance);
+        }
+        // The reference path runs halfway between the fastest and the slowest axle.
+        let per_reference = V::splat(2.0) / (least + most).max(V::splat(1e-12));
+        let mut hitch_cosine = one;
+        // The plan is a smooth curve through the vertices: it leaves the chord by κℓ²/8 at most.
+        let mut coupling = steps[0].path_curvature * steps[0].moved * steps[0].moved * 0.125;
+        let (mut heading_ahead, mut shift_ahead) = (group.course, ZERO);
+        for unit in 0..group.units {
+            let of = &group.chain[unit];
+            let step = &steps[unit];
+            // η: how much more than on the straight the coupling's deviation counts.
+            let eta = (step.secant - 1.0).max((hitch_cosine * step.secant - 1.0).abs());
+            let extra_coupling = coupling + eta * (of.coupling + coupling);
+            let y = self.extra[unit];
+            let a = of.heading + (extra_coupling + y) * of.inverse_length;
+            let axle = of.axle + y;
+            let a2 = a * a;
+            // Second-order remainder.
+            let lean = of.length * a;
+            let swing = (axle + lean) * step.sine + lean * a * 0.5;
+            let r1 = step.tangent * of.length * a2 * 0.5
+                + of.length * a2 * a * (1.0 / 6.0)
+                + step.path_curvature * step.secant * swing * swing * 0.5;
+            let slip = a + of.sway;
+            let slip3 = slip_tangent_excess(slip);
+            let z = r1 + step.tangent * axle * (slip + slip3) + of.length * slip3;
+            let rho = (step.advance * per_reference - 1.0).abs();
+            let input = extra_coupling + z + rho * of.length * (a + of.sway);
+            // y' = (input − y)/L: grow by the coupling's arc length, decay by the axle's, which is the shorter.
+            let (pn, pd) = decay(step.moved * of.inverse_length);
+            let gain = one - pn / pd;
+            let change = (input - y) * gain;
+            self.extra[unit] = (y + change.max(change * step.cosine.max(ZERO))).min(V::splat(1e3));
+
+            let mut store = |field: usize, value: V| {
+                for lane in 0..LANES {
+                    rows[((unit * LANES + lane) * FIELDS + field) * BLOCK + k] = value.0[lane];
+                }
+            };
+            store(row::EXTRA_AXLE, y.max(self.extra[unit]));
+            store(row::EXTRA_COUPLING, extra_coupling);
+            store(row::REMAINDER, r1 * of.inverse_length);
+            // Hinge: articulation, heading errors on both sides of it, and the shift of the feet.
+            let own_shift = (of.coupling + extra_coupling) * step.sine * step.tangent * of.inverse_length;
+            let margin = of.max_articulation
+                - double_atan(joints[unit])
+                - heading_ahead
+                - a
+                - shift_ahead
+                - if unit == 0 { ZERO } else { own_shift };
+            // Valid while |δ| + A + σ < 90°: cos δ > sin(A + σ), and the series of the tangent needs A + σ ≤ 0.6.
+            let valid = (step.cosine - slip).min(V::splat(0.6) - slip);
+            store(row::HINGE, select_negative(valid, V::splat(-9.0), margin));
+            (heading_ahead, shift_ahead) = (a, own_shift);
+
+            // On to the next coupling.
+            let ratio = of.ratio.abs();
+            let hitch_sine = step.tangent * ratio * step.hitch_cosine;
+            let hitch_swing = (axle + of.hitch * a) * hitch_sine;
+            let zh = ratio * r1
+                + hitch_sine * of.hitch * a2 * 0.5
+                + step.path_curvature.max(step.tangent * of.inverse_length) * hitch_swing * hitch_swing * 0.5;
+            coupling = (of.ratio + 1.0).abs() * y.max(self.extra[unit]) + ratio * extra_coupling + zh;
+            hitch_cosine = step.hitch_cosine;
+        }
+    }
+}
+
+/// Rows of a unit's block.
+pub(super) mod row {
+    /// Axle position and heading.
+    pub(crate) const X: usize = 0;
+    pub(crate) const Y: usize = 1;
+    pub(crate) const UX: usize = 2;
+    pub(crate) const UY: usize = 3;
+    /// Curvature of the axle's path, signed.
+    pub(crate) const CURVATURE: usize = 4;
+    /// Change of the heading rate, 1/m².
+    pub(crate) const JERK: usize = 5;
+    /// Y − Y⁰ and Ẽ − E⁰ of the design page.
+    pub(crate) const EXTRA_AXLE: usize = 6;
+    pub(crate) const EXTRA_COUPLING: usize = 7;
+    /// R1/L
+    pub(crate) const REMAINDER: usize = 8;
+    pub(crate) const HINGE: usize = 9;
+}
+
+/// The steer path at an extended station.
+#[inline(always)]
+fn steer(track: &Track, shift: &[V], k: usize) -> (V, V) {
+    let f = &track.fields;
+    let q = shift[k];
+    (V::splat(f.x[k]) - q * f.tangent_y[k], V::splat(f.y[k]) + q * f.tangent_x[k])
+}
+
+/// exp(−x) as a fraction, by the square of the Padé form (3,3) at x/2: 3e-8 at x = 0.8, monotone to x = 9.
+#[inline(always)]
+fn decay(x: V) -> (V, V) {
+    let x = x * 0.5;
+    let x2 = x * x;
+    let even = x2 * 12.0 + 120.0;
+    let odd = x * (x2 + 60.0);
+    let (n, d) = (even - odd, even + odd);
+    (n * n, d * d)
+}
+
+/// tan x − x for 0 ≤ x ≤ 0.6, never too small.
+#[inline(always)]
+fn slip_tangent_excess(x: V) -> V {
+    let x2 = x * x;
+    x * x2 * ((x2 * 0.07 + 2.0 / 15.0) * x2 + 1.0 / 3.0)
+}
+
+/// 2·atan t for 0 ≤ t ≤ 1, never too small (Abramowitz and Stegun 4.4.47, error 1e-5, and an allowance of twice that); beyond
+/// 1, an angle over 90°, four radians, which no hinge allows.
+#[inline(always)]
+fn double_atan(t: V) -> V {
+    let t2 = t * t;
+    let p = t * ((((t2 * 0.020_835_1 - 0.085_133_0) * t2 + 0.180_141_0) * t2 - 0.330_299_5) * t2 + 0.999_866_0);
+    select_negative(V::splat(1.0) - t, V::splat(4.0), p * 2.0 + 4e-5)
+}
+
+/// `yes` where `sign` is negative, else `no`.
+#[inline(always)]
+fn select_negative(sign: V, yes: V, no: V) -> V {
+    let mut out = [0.0; LANES];
+    for i in 0..LANES {
+        out[i] = if sign.0[i] < 0.0 { yes.0[i] } else { no.0[i] };
+    }
+    V(out)
+}

@@ -1,0 +1,50 @@
+//! TOML text → vehicles, or every fault with the line it stands on.
+//!
+//! Unknown fields are refused: a misspelt `width_n` would otherwise leave a default in a certificate.
+
+use serde::Deserialize;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::Vehicle;
+use super::check::{Fault, Place, faults};
+use super::definition::VehicleDefinition;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct VehicleFile {
+    vehicle: Vec<VehicleDefinition>,
+}
+
+/// The vehicles of a file's text, in file order; at least one.
+pub(crate) fn parse(text: &str) -> Result<Vec<Vehicle>, Vec<Fault>> {
+    let unreadable = |e: &toml::de::Error| {
+        let line = e.span().map(|span| line_at(text, span.start));
+        vec![Fault { line, place: String::new(), problem: e.message().to_owned() }]
+    };
+    let tree = DeTable::parse(text).map_err(|e| unreadable(&e))?;
+    let file: VehicleFile = toml::from_str(text).map_err(|e| unreadable(&e))?;
+    if file.vehicle.is_empty() {
+        let problem = "no vehicle in the file; it needs at least one [[vehicle]]".to_owned();
+        return Err(vec![Fault { line: None, place: String::new(), problem }]);
+    }
+    let line_of = |place| Some(line_at(text, offset(&tree, place)?));
+    let faults = faults(&file.vehicle, &line_of);
+    if faults.is_empty() { Ok(file.vehicle.iter().map(VehicleDefinition::vehicle).collect()) } else { Err(faults) }
+}
+
+/// Byte offset of a field's value; of its unit or vehicle where the field is left out.
+fn offset(tree: &Spanned<DeTable<'_>>, place: Place) -> Option<usize> {
+    let vehicle = tree.get_ref().get("vehicle")?.get_ref().get(place.vehicle)?;
+    let table = match place.unit {
+        Some(unit) => vehicle.get_ref().get("unit")?.get_ref().get(unit)?,
+        None => vehicle,
+    };
+    let field: Option<&Spanned<DeValue<'_>>> = table.get_ref().get(place.field);
+    Some(field.unwrap_or(table).span().start)
+}
+
+/// Line of a byte offset, from 1.
+fn line_at(text: &str, offset: usize) -> usize {
+    1 + text.bytes().take(offset).filter(|&b| b == b'\n').count()
+}
