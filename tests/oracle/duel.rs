@@ -68,8 +68,10 @@ impl<'a> Duel<'a> {
         };
         let bounds = Bounds { steer_m, change_m: 0.0, slip };
         let mut duel = Self { drive, road: Road::new(corridor), calm, nominal, bounds, outcome };
-        let run = duel.drive.whole(&duel.calm);
-        duel.measure(&run, duel.on_road(), "nothing", true);
+        let range = duel.on_road();
+        let nominal = std::mem::replace(&mut duel.nominal, Run { first: 0, guide: Vec::new(), headings: Vec::new() });
+        duel.measure(&nominal, range, "nothing", true);
+        duel.nominal = nominal;
         duel.outcome.undisturbed_m = duel.outcome.least.clearance_m;
         duel
     }
