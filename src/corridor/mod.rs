@@ -11,6 +11,8 @@ mod resample;
 mod smooth;
 mod spline;
 mod stroke;
+#[cfg(test)]
+mod tests;
 
 use std::ops::Range;
 

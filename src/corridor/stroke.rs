@@ -75,7 +75,7 @@ pub fn stroke_corridor(
     let mut profile = profile(&stretches, &gaps(network, &links, &course, &smoothed));
     let folded = limit_offset(&mut profile, &smoothed.curve, 1.0 - LEAST_OFFSET_FACTOR, LEAST_SPEED);
 
-    let track = Track { curve: &|u| smoothed.curve.at(u), profile: &profile, centred: true };
+    let track = Track { curve: &|u| smoothed.curve.at(u), profile: &profile };
     let (corridor, arc) = track.resample(0.0, course.end, params.spacing_m);
     if !(arc.total() >= 0.5 * LEAST_LENGTH_M && all_finite(&corridor)) {
         return Err(UnknownReason::Geometry);
