@@ -4,7 +4,9 @@
 
 mod band;
 mod closed;
+mod file;
 mod frame;
+mod given;
 mod polyline;
 mod profile;
 mod resample;
@@ -17,7 +19,9 @@ mod tests;
 use std::ops::Range;
 
 pub use closed::CurvatureProfile;
-pub use frame::{Frame, FrameError};
+pub use file::{FileCorridor, FileError, corridor_from_file};
+pub use frame::{Frame, FrameError, HALF_WIDTH_M};
+pub use given::CentrelineError;
 pub use stroke::stroke_corridor;
 
 use crate::verdict::UnknownReason;

@@ -87,41 +87,6 @@ fn apart(left: f64, right: f64, middle: f64) -> [f64; 3] {
     [left, right, middle.clamp(right + half, left - half)]
 }
 
-/// The profile whose half-widths stay below the piecewise linear `left` and `right` given at arc lengths `at`.
-pub(crate) fn profile_below(at: &[f64], left: &[f64], right: &[f64], knot_m: f64) -> Profile {
-    let length = at.last().copied().unwrap_or(0.0);
-    let cells = ((length / knot_m).ceil() as usize).max(1);
-    let knot_m = length / cells as f64;
-    let limits: Vec<[f64; 2]> = (0..cells)
-        .map(|i| {
-            let (from, to) = (i as f64 * knot_m, (i + 1) as f64 * knot_m);
-            [lowest_between(at, left, from, to), -lowest_between(at, right, from, to)]
-        })
-        .collect();
-    let coefficients = reach(&limits).iter().map(|e| apart(e[0], e[1], 0.0)).collect();
-    Spline { knot_m, coefficients }
-}
-
-fn lowest_between(at: &[f64], values: &[f64], from: f64, to: f64) -> f64 {
-    let first = at.partition_point(|&a| a <= from);
-    let beyond = at.partition_point(|&a| a < to);
-    let inner = values[first.min(beyond)..beyond].iter().fold(f64::INFINITY, |m, &v| m.min(v));
-    inner.min(linear(at, values, from)).min(linear(at, values, to))
-}
-
-/// Piecewise linear interpolation, constant beyond the ends.
-pub(crate) fn linear(at: &[f64], values: &[f64], u: f64) -> f64 {
-    let i = at.partition_point(|&a| a <= u);
-    if i == 0 {
-        return values.first().copied().unwrap_or(0.0);
-    }
-    if i == at.len() {
-        return values[i - 1];
-    }
-    let t = (u - at[i - 1]) / (at[i] - at[i - 1]);
-    values[i - 1] + t * (values[i] - values[i - 1])
-}
-
 /// Adds, around every place where the strip shifts sideways, the strip it shifts from or to, as far as the lanes there
 /// allow: a lane that is added beside another moves the kerb lane over, and a vehicle follows within its carriageway. Without
 /// it, two strips 1.75 m apart would meet in a corridor of half a lane.

@@ -138,7 +138,7 @@ impl ArcLength {
     }
 
     /// Parameter at an arc length; `hint` moves forward with it.
-    fn parameter(&self, s: f64, hint: &mut usize) -> f64 {
+    pub(crate) fn parameter(&self, s: f64, hint: &mut usize) -> f64 {
         while *hint + 2 < self.nodes.len() && self.nodes[*hint + 1].0 <= s {
             *hint += 1;
         }
