@@ -82,7 +82,7 @@ fn add_stroke(n: &mut Network, degrees: &[[f64; 2]]) {
         let index = n.edges.len() as u32;
         n.edges.push(Edge {
             id: i64::from(index) + 1,
-            road: u32::from(index % 8 == 0),
+            road: u32::from(index.is_multiple_of(8)),
             from_node: 1,
             to_node: 2,
             direction: Direction::Forward,

@@ -2,7 +2,7 @@
 //!
 //! Left and right edge are cubic B-splines whose every coefficient is bounded by the narrowest strip in its reach; a
 //! B-spline being a convex mean, the corridor at every station is inside what that station's edge has (its strip; where
-//! the strip shifts sideways, within [`Profile::TAPER_M`] also the lanes it shifts across). No width is made up.
+//! the strip shifts sideways, within 60 m also the lanes it shifts across). No width is made up.
 
 use super::spline::Spline;
 
@@ -52,14 +52,12 @@ pub(crate) type Profile = Spline<3>;
 
 /// Knots of the profile: a narrow place reaches four of them to each side.
 pub(crate) const KNOT_M: f64 = 2.5;
-/// A change of strip is spread over this length, all inside the wider side: the reach of a coefficient (four knots) and
-/// of two running means over eleven.
-pub(crate) const TAPER_M: f64 = 60.0;
 /// A corridor is never narrower than this: no vehicle fits, but left stays left of right.
 pub(crate) const LEAST_WIDTH_M: f64 = 0.2;
 /// Half of a narrow place's own length, metres.
 const GAP_HALF_M: f64 = 0.5;
-/// Coefficients to each side over which strips are eroded and then smoothed.
+/// Coefficients to each side over which strips are eroded, and then smoothed by two running means of half the reach: with a
+/// coefficient's own four knots, a change of strip is spread over 24 knots, 60 m, all inside the wider side.
 const REACH: usize = 10;
 
 /// The widest smooth profile inside the stretches, which follow each other from 0 to the last one's end.
@@ -227,7 +225,7 @@ pub(crate) fn limit_offset(profile: &mut Profile, line: &Spline<2>, most: f64, l
         .map(|i| 0.5 * i as f64 * line.knot_m)
         .filter(|&u| {
             let [_, d1, d2, _] = line.at(u);
-            let speed = d1[0].hypot(d1[1]);
+            let speed = (d1[0] * d1[0] + d1[1] * d1[1]).sqrt();
             let [_, _, middle] = profile.at(u)[0];
             let curvature = (d1[0] * d2[1] - d1[1] * d2[0]) / (speed * speed * speed).max(1e-9);
             !(speed >= least_speed && curvature * middle <= most)

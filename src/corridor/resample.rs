@@ -35,7 +35,7 @@ impl<C: Fn(f64) -> Jet<2>> Track<'_, C> {
     fn at(&self, u: f64) -> Point {
         let [p, d1, d2, d3] = (self.curve)(u);
         let [[left, right, o], [.., b], [.., b1], _] = self.profile.at(u);
-        let speed = d1[0].hypot(d1[1]).max(1e-9);
+        let speed = (d1[0] * d1[0] + d1[1] * d1[1]).sqrt().max(1e-9);
         let t = [d1[0] / speed, d1[1] / speed];
         let speed1 = t[0] * d2[0] + t[1] * d2[1];
         let kappa = (t[0] * d2[1] - t[1] * d2[0]) / (speed * speed);
@@ -59,7 +59,8 @@ impl<C: Fn(f64) -> Jet<2>> Track<'_, C> {
         let squared = (d1[0] * d1[0] + d1[1] * d1[1]).max(1e-18);
         let speed = squared.sqrt();
         let kappa = (d1[0] * d2[1] - d1[1] * d2[0]) / (squared * speed);
-        (speed * (1.0 - kappa * o)).hypot(b)
+        let along = speed * (1.0 - kappa * o);
+        (along * along + b * b).sqrt()
     }
 
     /// Stations about `spacing_m` apart for parameters `from..=to`; also the arc length at steps of the parameter.

@@ -6,6 +6,7 @@
 //! from the polyline. Where even the finest knots cannot stay in the tube, that bound is above the tolerance.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use super::band::Band;
 use super::polyline::Polyline;
@@ -45,6 +46,8 @@ impl Smoothed {
 /// Knot spacings tried one after the other, metres: the first holds hairpins of 8 m radius within 0.5 m; the others are for
 /// corners that the mapper drew sharp.
 const KNOTS_M: [f64; 3] = [4.0, 2.0, 1.0];
+/// A raised weight moves the curve this far to each side; farther, the fit is left as it is. Metres.
+const WINDOW_M: f64 = 150.0;
 /// Rounds of raising weights before finer knots are tried.
 const ROUNDS: usize = 40;
 /// The data stays this far inside the tube, so that the bound between observations can be inside too.
@@ -99,6 +102,11 @@ struct Fit {
     /// Coefficients of the reference: the polyline at the knots. Unknown is the difference, so that a straight stays
     /// straight to the last bit and no digits go to large coordinates.
     reference: Vec<[f64; 2]>,
+    /// The solution so far: coefficients minus reference.
+    difference: Vec<[f64; 2]>,
+    /// Distance from the polyline at each observation, and a bound on it from each to the next, metres.
+    errors: Vec<f64>,
+    pieces: Vec<f64>,
 }
 
 impl Fit {
@@ -107,13 +115,17 @@ impl Fit {
         let knot = line.length() / cells as f64;
         let reference = reference(line, cells, knot);
         let observations = observations(line, cells, knot, &reference, asked.tolerance_m);
+        let (n, seen) = (cells + 3, observations.len());
         let mut fit = Self {
             asked,
             knot,
             observations,
-            base: Band::zero(cells + 3),
-            base_rhs: vec![[0.0; 2]; cells + 3],
+            base: Band::zero(n),
+            base_rhs: vec![[0.0; 2]; n],
             reference,
+            difference: vec![[0.0; 2]; n],
+            errors: vec![0.0; seen],
+            pieces: vec![0.0; seen - 1],
         };
         fit.add_base();
         fit
@@ -137,71 +149,109 @@ impl Fit {
         let last = self.observations.len() - 1;
         for (i, o) in self.observations.iter().enumerate() {
             let weight = o.extra + if i == 0 || i == last { END_WEIGHT } else { 0.0 };
-            observe(&mut self.base, &mut self.base_rhs, o, weight);
+            observe(&mut self.base, &mut self.base_rhs, o, o.cell, weight);
         }
         self.observations.iter_mut().for_each(|o| o.extra = 0.0);
     }
 
     fn run(mut self) -> Smoothed {
-        let mut difference = self.solve();
+        let all = 0..self.reference.len();
+        self.solve(all.clone());
+        self.measure(all);
         for _ in 0..ROUNDS {
-            if !self.raise(&difference) {
+            let windows = self.raise();
+            if windows.is_empty() {
                 break;
             }
-            difference = self.solve();
+            for window in windows {
+                self.solve(window.clone());
+                self.measure(window);
+            }
         }
-        let pieces = self.pieces(&difference);
-        let coefficients = self.reference.iter().zip(&difference).map(|(r, d)| [r[0] + d[0], r[1] + d[1]]).collect();
+        let coefficients =
+            self.reference.iter().zip(&self.difference).map(|(r, d)| [r[0] + d[0], r[1] + d[1]]).collect();
+        let pieces = self.observations.iter().skip(1).map(|o| o.u).zip(self.pieces).collect();
         Smoothed { curve: Spline { knot_m: self.knot, coefficients }, pieces }
     }
 
-    fn solve(&self) -> Vec<[f64; 2]> {
-        let (mut matrix, mut rhs) = (self.base.clone(), self.base_rhs.clone());
-        for o in self.observations.iter().filter(|o| o.extra > 0.0) {
-            observe(&mut matrix, &mut rhs, o, o.extra);
+    /// Solves for the coefficients of a window, those around it being what they are.
+    fn solve(&mut self, window: Range<usize>) {
+        let Range { start, end } = window;
+        let (low, high) = (start.saturating_sub(3), (end + 3).min(self.difference.len()));
+        let mut matrix = Band { rows: self.base.rows[low..high].to_vec() };
+        let mut rhs = self.base_rhs[low..high].to_vec();
+        let touching = self.observed(low..end);
+        for o in self.observations[touching].iter().filter(|o| o.extra > 0.0) {
+            observe(&mut matrix, &mut rhs, o, o.cell - low, o.extra);
         }
-        matrix.solve_in_place(&mut rhs);
-        rhs
+        for i in start..high {
+            for j in 1..=3.min(i - low) {
+                let (entry, column) = (matrix.rows[i - low][j], i - j);
+                let (unknown, known) = if i >= end { (column, i) } else { (i, column) };
+                if (start..end).contains(&unknown) && !(start..end).contains(&known) {
+                    rhs[unknown - low][0] -= entry * self.difference[known][0];
+                    rhs[unknown - low][1] -= entry * self.difference[known][1];
+                }
+            }
+        }
+        matrix.rows.truncate(end - low);
+        matrix.rows.drain(..start - low);
+        let solution = &mut rhs[start - low..end - low];
+        matrix.solve_in_place(solution);
+        self.difference[start..end].copy_from_slice(solution);
     }
 
-    /// Raises the weights outside the tube by the third power of the excess; false if none is outside.
+    /// The observations whose cell is in `cells`.
+    fn observed(&self, cells: Range<usize>) -> Range<usize> {
+        let before = |cell: usize| self.observations.partition_point(|o| o.cell < cell);
+        before(cells.start)..before(cells.end)
+    }
+
+    /// Raises the weights outside the tube by the third power of the excess; gives the windows that this changes.
     ///
     /// A weight raised w-fold over a stretch shortens the cut-off there by w^(1/6), and what smoothing cuts off a bend goes
     /// with the cut-off's square: the third power is Newton's step. Measured on a hairpin of 15 m: three rounds, where raising
-    /// only the worst place of each stretch, by the law of a point load, was not done after a hundred.
-    fn raise(&mut self, difference: &[[f64; 2]]) -> bool {
-        let pieces = self.pieces(difference);
-        let tolerance = self.asked.tolerance_m;
-        let excess: Vec<f64> = (0..self.observations.len())
-            .map(|i| {
-                let at = norm(self.observations[i].error(difference)) / MARGIN;
-                let before = if i == 0 { 0.0 } else { pieces[i - 1].1 };
-                at.max(before).max(pieces.get(i).map_or(0.0, |p| p.1)) / tolerance
-            })
-            .collect();
-        let mut any = false;
-        for (o, &e) in self.observations.iter_mut().zip(&excess) {
-            if e > 1.0 {
-                any = true;
-                o.extra = (o.extra + BASE) * (e * e * e).clamp(1.5, 1e4) - BASE;
+    /// only the worst places, by the law of a point load, was not done after forty.
+    fn raise(&mut self) -> Vec<Range<usize>> {
+        let reach = (WINDOW_M / self.knot).ceil() as usize;
+        let n = self.difference.len();
+        let mut windows: Vec<Range<usize>> = Vec::new();
+        for (i, o) in self.observations.iter_mut().enumerate() {
+            let beside = self.pieces[i.saturating_sub(1)].max(self.pieces[i.min(self.pieces.len() - 1)]);
+            let excess = (self.errors[i] / MARGIN).max(beside) / self.asked.tolerance_m;
+            if excess <= 1.0 {
+                continue;
+            }
+            o.extra = (o.extra + BASE) * (excess * excess * excess).clamp(1.5, 1e4) - BASE;
+            let (start, end) = (o.cell.saturating_sub(reach), (o.cell + 4 + reach).min(n));
+            match windows.last_mut() {
+                Some(last) if last.end >= start => last.end = end,
+                _ => windows.push(start..end),
             }
         }
-        any
+        windows
     }
 
-    /// Per piece between observations: the error is one cubic there, so the norms of its four Bézier points bound it.
-    fn pieces(&self, difference: &[[f64; 2]]) -> Vec<(f64, f64)> {
-        let mut pieces = Vec::with_capacity(self.observations.len());
-        for pair in self.observations.windows(2) {
-            let [a, b] = pair else { continue };
-            let third = (b.u - a.u) / 3.0;
-            let (ea, eb) = (a.error(difference), b.error(difference));
-            let (sa, sb) = (a.slope_error(difference, a.slope_after), b.slope_error(difference, b.slope_before));
-            let inner_a = [ea[0] + third * sa[0], ea[1] + third * sa[1]];
-            let inner_b = [eb[0] - third * sb[0], eb[1] - third * sb[1]];
-            pieces.push((b.u, norm(ea).max(norm(eb)).max(norm(inner_a)).max(norm(inner_b))));
+    /// Deviations of a window's curve. Per piece between observations the error is one cubic, so the norms of its four
+    /// Bézier points bound it.
+    fn measure(&mut self, window: Range<usize>) {
+        let Range { start, end } = self.observed(window.start.saturating_sub(4)..window.end + 1);
+        let Some((first, rest)) = self.observations[start..end].split_first() else { return };
+        let d = &self.difference;
+        let (mut u, mut error) = (first.u, first.error(d));
+        let mut slope = first.slope_error(d, first.slope_after);
+        self.errors[start] = norm(error);
+        for (i, o) in (start..).zip(rest) {
+            let third = (o.u - u) / 3.0;
+            let (to, slope_to) = (o.error(d), o.slope_error(d, o.slope_before));
+            let inner = [error[0] + third * slope[0], error[1] + third * slope[1]];
+            let inner_to = [to[0] - third * slope_to[0], to[1] - third * slope_to[1]];
+            let most = squared(error).max(squared(to)).max(squared(inner)).max(squared(inner_to));
+            self.pieces[i] = most.sqrt();
+            self.errors[i + 1] = norm(to);
+            let kink = [o.slope_before[0] - o.slope_after[0], o.slope_before[1] - o.slope_after[1]];
+            (u, error, slope) = (o.u, to, [slope_to[0] + kink[0], slope_to[1] + kink[1]]);
         }
-        pieces
     }
 }
 
@@ -223,13 +273,18 @@ fn combine(weights: &[f64; 4], cell: usize, coefficients: &[[f64; 2]], target: [
         .fold([-target[0], -target[1]], |sum, (w, c)| [sum[0] + w * c[0], sum[1] + w * c[1]])
 }
 
-fn norm(v: [f64; 2]) -> f64 {
-    v[0].hypot(v[1])
+fn squared(v: [f64; 2]) -> f64 {
+    v[0] * v[0] + v[1] * v[1]
 }
 
-fn observe(matrix: &mut Band, rhs: &mut [[f64; 2]], o: &Observation, weight: f64) {
-    matrix.add_outer(o.cell, &o.value, weight);
-    for (rhs, value) in rhs[o.cell..].iter_mut().zip(o.value) {
+/// Not `hypot`, which took a third of the whole stage's time; nothing here is near overflow.
+fn norm(v: [f64; 2]) -> f64 {
+    squared(v).sqrt()
+}
+
+fn observe(matrix: &mut Band, rhs: &mut [[f64; 2]], o: &Observation, first: usize, weight: f64) {
+    matrix.add_outer(first, &o.value, weight);
+    for (rhs, value) in rhs[first..].iter_mut().zip(o.value) {
         rhs[0] += weight * value * (o.target[0] + o.bulge[0]);
         rhs[1] += weight * value * (o.target[1] + o.bulge[1]);
     }
@@ -255,10 +310,10 @@ fn bends(line: &Polyline, tolerance_m: f64) -> Vec<f64> {
     let segments = line.at.len() - 1;
     let length = |i: usize| line.at[i + 1] - line.at[i];
     let mut vertex = vec![0.0; segments + 1];
-    for i in 1..segments {
+    for (i, vertex) in vertex.iter_mut().enumerate().take(segments).skip(1) {
         let (a, b) = (line.direction(i - 1), line.direction(i));
         let turn = (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]);
-        vertex[i] = 2.0 * turn / (length(i - 1) + length(i));
+        *vertex = 2.0 * turn / (length(i - 1) + length(i));
     }
     (0..segments)
         .map(|i| {

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 use proptest::prelude::*;
 
-use super::profile::{Across, Gap, LEAST_WIDTH_M, Stretch, TAPER_M, profile};
+use super::profile::{Across, Gap, LEAST_WIDTH_M, Stretch, profile};
 use super::*;
 use crate::network::{Edge, Narrowing, Network, Road, Stroke};
 use crate::osm::LonLat;
@@ -323,7 +323,7 @@ proptest! {
             let inside = |room: Across| Across { left_m: left - 1e-9, right_m: right + 1e-9 }.within(room);
             for s in stretches.iter().filter(|s| s.from <= u && u <= s.to) {
                 prop_assert!(inside(s.shift), "{u}: {left} {right} outside {:?}", s.shift);
-                let near_change = (u - s.from).min(s.to - u) <= TAPER_M + 6.0;
+                let near_change = (u - s.from).min(s.to - u) <= 60.0 + 6.0;
                 prop_assert!(near_change || inside(s.strip), "{u}: {left} {right} outside {:?}", s.strip);
             }
             prop_assert!((u - at).abs() > 0.5 || gaps.is_empty() || inside(gap.room), "{u}: {left} {right} in {gap:?}");
