@@ -48,8 +48,15 @@ impl Smoothed {
 const KNOTS_M: [f64; 3] = [4.0, 2.0, 1.0];
 /// A raised weight moves the curve this far to each side; farther, the fit is left as it is. Metres.
 const WINDOW_M: f64 = 150.0;
-/// Rounds of raising weights before finer knots are tried.
+/// Rounds of raising weights before finer knots are tried; most lines need three to six.
 const ROUNDS: usize = 40;
+/// Greatest weight, in units of λ: the curve then follows its observations to a fraction of a knot, and the matrix is
+/// still far from singular in double precision.
+const HEAVIEST: f64 = 1e7;
+/// After some rounds, each pushes this much harder than the one before: at a sharp corner weights must rise 1e11-fold,
+/// and the last centimetres would take a hundred rounds.
+const GENTLE_ROUNDS: usize = 10;
+const PUSH: f64 = 1.4;
 /// The data stays this far inside the tube, so that the bound between observations can be inside too.
 const MARGIN: f64 = 0.95;
 /// Share of the tolerance by which a chord may be taken for the chord of a bend.
@@ -158,8 +165,10 @@ impl Fit {
         let all = 0..self.reference.len();
         self.solve(all.clone());
         self.measure(all);
-        for _ in 0..ROUNDS {
-            let windows = self.raise();
+        let mut push = 1.0;
+        for round in 0..ROUNDS {
+            let windows = self.raise(push);
+            push *= if round < GENTLE_ROUNDS { 1.0 } else { PUSH };
             if windows.is_empty() {
                 break;
             }
@@ -212,9 +221,9 @@ impl Fit {
     /// A weight raised w-fold over a stretch shortens the cut-off there by w^(1/6), and what smoothing cuts off a bend goes
     /// with the cut-off's square: the third power is Newton's step. Measured on a hairpin of 15 m: three rounds, where raising
     /// only the worst places, by the law of a point load, was not done after forty.
-    fn raise(&mut self) -> Vec<Range<usize>> {
+    fn raise(&mut self, push: f64) -> Vec<Range<usize>> {
         let reach = (WINDOW_M / self.knot).ceil() as usize;
-        let n = self.difference.len();
+        let (n, heaviest) = (self.difference.len(), HEAVIEST * self.stiffness().max(1.0));
         let mut windows: Vec<Range<usize>> = Vec::new();
         for (i, o) in self.observations.iter_mut().enumerate() {
             let beside = self.pieces[i.saturating_sub(1)].max(self.pieces[i.min(self.pieces.len() - 1)]);
@@ -222,7 +231,8 @@ impl Fit {
             if excess <= 1.0 {
                 continue;
             }
-            o.extra = (o.extra + BASE) * (excess * excess * excess).clamp(1.5, 1e4) - BASE;
+            o.extra = (o.extra + BASE) * (push * excess * excess * excess).clamp(1.5, 1e4) - BASE;
+            o.extra = o.extra.min(heaviest);
             let (start, end) = (o.cell.saturating_sub(reach), (o.cell + 4 + reach).min(n));
             match windows.last_mut() {
                 Some(last) if last.end >= start => last.end = end,
