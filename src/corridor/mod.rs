@@ -7,6 +7,7 @@ mod closed;
 mod file;
 mod frame;
 mod given;
+mod observation;
 mod polyline;
 mod profile;
 mod resample;

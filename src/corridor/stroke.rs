@@ -64,7 +64,11 @@ pub fn stroke_corridor(
     policy: Policy,
     params: &Params,
 ) -> Result<StrokeCorridor, UnknownReason> {
-    let (links, approach) = links(network, stroke, policy, params)?;
+    let (mut links, approach) = links(network, stroke, policy, params)?;
+    if stroke.closed {
+        // A loop is its own approach.
+        links.drain(..approach);
+    }
     let course = if stroke.closed { closed_course(&links, params) } else { open_course(&links, approach) };
     if course.line.length() < LEAST_LENGTH_M {
         return Err(UnknownReason::Geometry);

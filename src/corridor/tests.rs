@@ -237,6 +237,28 @@ fn a_line_that_folds_back_is_unknown_where_it_does() {
 }
 
 #[test]
+fn an_approach_is_driven_but_has_no_span() {
+    let line = |from: i32, to: i32| (from..=to).map(|i| [50.0 * f64::from(i), 0.0]).collect::<Vec<_>>();
+    let known = section(strip(LANE), None);
+    let (n, mut s) = network(&[(line(0, 4), known), (line(4, 8), known), (line(8, 9), known)], false);
+    (s.approach, s.edges) = (0..1, 1..3);
+    let c = stroke_corridor(&n, &s, Policy::Lane, &Params::default()).unwrap();
+    let spans: Vec<_> = c.spans.iter().map(|s| (s.edge, s.stations.start, s.stations.end)).collect();
+    // The shared node may fall between two stations: both edges then have both.
+    assert_eq!(spans.len(), 2);
+    assert!(spans[0].0 == 1 && spans[0].1.abs_diff(200) <= 1 && spans[0].2.abs_diff(401) <= 1, "{spans:?}");
+    assert!(spans[1].0 == 2 && spans[1].1 < spans[0].2 && spans[1].2 == c.corridor.len(), "{spans:?}");
+}
+
+#[test]
+fn a_lane_inside_a_bend_too_tight_for_it_is_unknown_and_finite() {
+    let profile = CurvatureProfile::new(1.0).straight(60.0).arc(-1.0 / 3.0, 9.0).straight(60.0);
+    let c = corridor(vertices(&profile, 1), (0.0, -5.0));
+    assert_eq!(c.spans[0].unknown, Some(UnknownReason::Geometry));
+    assert!(c.corridor.x.iter().chain(&c.corridor.curvature).all(|v| v.is_finite()));
+}
+
+#[test]
 fn map_tolerance_comes_off_each_side() {
     let line: Vec<_> = (0..=10).map(|i| [20.0 * f64::from(i), 0.0]).collect();
     let (n, s) = network(&[(line, section(strip(LANE), None))], false);
