@@ -1,6 +1,6 @@
 //! The corridor file: a corridor drawn by a user, in metres or in degrees.
 //!
-//! The form is a promise to users (`README.md`, "Corridor file"). What is wrong is refused by the name of its field and index;
+//! The form is a promise to users. What is wrong is refused by the name of its field and index;
 //! nothing is repaired.
 
 use serde::Deserialize;
@@ -72,7 +72,7 @@ impl Widths {
     }
 }
 
-/// The corridor that a JSON text describes (see `formats`: frame, points, widths, smoothing tolerance), stations a metre
+/// The corridor that a JSON text describes (frame, points, widths, smoothing tolerance), stations a metre
 /// apart. Without `smoothing_tolerance_m`, 0.5 m.
 pub fn corridor_from_file(json: &str) -> Result<FileCorridor, FileError> {
     let form: Form = serde_json::from_str(json)?;
