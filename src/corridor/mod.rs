@@ -4,18 +4,25 @@
 
 mod band;
 mod closed;
+mod file;
 mod frame;
+mod given;
+mod observation;
 mod polyline;
 mod profile;
 mod resample;
 mod smooth;
 mod spline;
 mod stroke;
+#[cfg(test)]
+mod tests;
 
 use std::ops::Range;
 
 pub use closed::CurvatureProfile;
-pub use frame::{Frame, FrameError};
+pub use file::{FileCorridor, FileError, corridor_from_file};
+pub use frame::{Frame, FrameError, HALF_WIDTH_M};
+pub use given::CentrelineError;
 pub use stroke::stroke_corridor;
 
 use crate::verdict::UnknownReason;

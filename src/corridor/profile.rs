@@ -2,7 +2,7 @@
 //!
 //! Left and right edge are cubic B-splines whose every coefficient is bounded by the narrowest strip in its reach; a
 //! B-spline being a convex mean, the corridor at every station is inside what that station's edge has (its strip; where
-//! the strip shifts sideways, within [`Profile::TAPER_M`] also the lanes it shifts across). No width is made up.
+//! the strip shifts sideways, within 60 m also the lanes it shifts across). No width is made up.
 
 use super::spline::Spline;
 
@@ -47,19 +47,17 @@ pub(crate) struct Gap {
     pub(crate) room: Across,
 }
 
-/// Left and right edge across the way's line, as one spline of two components: `[left, right]`.
-pub(crate) type Profile = Spline<2>;
+/// Left and right edge and the corridor's centreline across the way's line: `[left, right, middle]`.
+pub(crate) type Profile = Spline<3>;
 
 /// Knots of the profile: a narrow place reaches four of them to each side.
 pub(crate) const KNOT_M: f64 = 2.5;
-/// A change of strip is spread over this length, all inside the wider side: the reach of a coefficient (four knots) and
-/// of two running means over eleven.
-pub(crate) const TAPER_M: f64 = 60.0;
 /// A corridor is never narrower than this: no vehicle fits, but left stays left of right.
 pub(crate) const LEAST_WIDTH_M: f64 = 0.2;
 /// Half of a narrow place's own length, metres.
 const GAP_HALF_M: f64 = 0.5;
-/// Coefficients to each side over which strips are eroded and then smoothed.
+/// Coefficients to each side over which strips are eroded, and then smoothed by two running means of half the reach: with a
+/// coefficient's own four knots, a change of strip is spread over 24 knots, 60 m, all inside the wider side.
 const REACH: usize = 10;
 
 /// The widest smooth profile inside the stretches, which follow each other from 0 to the last one's end.
@@ -67,67 +65,38 @@ pub(crate) fn profile(stretches: &[Stretch], gaps: &[Gap]) -> Profile {
     let length = stretches.last().map_or(0.0, |s| s.to);
     let cells = ((length / KNOT_M).ceil() as usize).max(1);
     let knot_m = length / cells as f64;
-    let mut coefficients = match stretches {
-        [first, rest @ ..] if rest.iter().all(|s| s.strip == first.strip) => {
-            vec![[first.strip.left_m, first.strip.right_m]; cells + 3]
-        }
-        _ => tapered(&cell_limits(&with_shifts(stretches), cells, knot_m)),
-    };
-    narrow(&mut coefficients, gaps, cells, knot_m);
-    for [left, right] in &mut coefficients {
-        if *left - *right < LEAST_WIDTH_M {
-            let middle = f64::midpoint(*left, *right);
-            (*left, *right) = (middle + 0.5 * LEAST_WIDTH_M, middle - 0.5 * LEAST_WIDTH_M);
-        }
-    }
+    let limits = cell_limits(&with_shifts(stretches, knot_m), cells, knot_m);
+    let mut edges = tapered(&limits);
+    // The vehicle lines up for a narrow place over a whole taper, though the road narrows only there.
+    let lined_up = if gaps.is_empty() { edges.clone() } else { tapered(&with_gaps(limits, gaps, knot_m)) };
+    narrow(&mut edges, gaps, knot_m);
+    let coefficients =
+        edges.iter().zip(&lined_up).map(|(e, [l, r])| apart(e[0], e[1], f64::midpoint(*l, *r))).collect();
     Spline { knot_m, coefficients }
 }
 
-/// The profile whose half-widths stay below the piecewise linear `left` and `right` given at arc lengths `at`.
-pub(crate) fn profile_below(at: &[f64], left: &[f64], right: &[f64], knot_m: f64) -> Profile {
-    let length = at.last().copied().unwrap_or(0.0);
-    let cells = ((length / knot_m).ceil() as usize).max(1);
-    let knot_m = length / cells as f64;
-    let limits: Vec<[f64; 2]> = (0..cells)
-        .map(|i| {
-            let (from, to) = (i as f64 * knot_m, (i + 1) as f64 * knot_m);
-            [lowest_between(at, left, from, to), -lowest_between(at, right, from, to)]
-        })
-        .collect();
-    Spline { knot_m, coefficients: reach(&limits) }
-}
-
-fn lowest_between(at: &[f64], values: &[f64], from: f64, to: f64) -> f64 {
-    let first = at.partition_point(|&a| a <= from);
-    let beyond = at.partition_point(|&a| a < to);
-    let inner = values[first.min(beyond)..beyond].iter().fold(f64::INFINITY, |m, &v| m.min(v));
-    inner.min(linear(at, values, from)).min(linear(at, values, to))
-}
-
-/// Piecewise linear interpolation, constant beyond the ends.
-pub(crate) fn linear(at: &[f64], values: &[f64], u: f64) -> f64 {
-    let i = at.partition_point(|&a| a <= u);
-    if i == 0 {
-        return values.first().copied().unwrap_or(0.0);
+/// Keeps the middle between the edges, and the edges apart.
+fn apart(left: f64, right: f64, middle: f64) -> [f64; 3] {
+    let half = 0.5 * LEAST_WIDTH_M;
+    if left - right < LEAST_WIDTH_M {
+        let middle = f64::midpoint(left, right);
+        return [middle + half, middle - half, middle];
     }
-    if i == at.len() {
-        return values[i - 1];
-    }
-    let t = (u - at[i - 1]) / (at[i] - at[i - 1]);
-    values[i - 1] + t * (values[i] - values[i - 1])
+    [left, right, middle.clamp(right + half, left - half)]
 }
 
 /// Adds, around every place where the strip shifts sideways, the strip it shifts from or to, as far as the lanes there
 /// allow: a lane that is added beside another moves the kerb lane over, and a vehicle follows within its carriageway. Without
 /// it, two strips 1.75 m apart would meet in a corridor of half a lane.
-fn with_shifts(stretches: &[Stretch]) -> Vec<Stretch> {
+fn with_shifts(stretches: &[Stretch], knot_m: f64) -> Vec<Stretch> {
     let mut out = stretches.to_vec();
     for pair in stretches.windows(2) {
         let [a, b] = pair else { continue };
         if a.strip.within(b.strip) || b.strip.within(a.strip) {
             continue;
         }
-        let length = TAPER_M + 2.0 * KNOT_M;
+        // As far as a change reaches: then both edges move over side by side, at full width.
+        let length = (2 * REACH + 4) as f64 * knot_m;
         let after = a.strip.within(b.shift);
         if after || !b.strip.within(a.shift) {
             allow(&mut out, a.to, a.to + length, a.strip);
@@ -185,6 +154,9 @@ fn narrowest(limits: &[[f64; 2]]) -> [f64; 2] {
 /// Erodes over ±REACH, then takes two running means over ±REACH/2 each: every mean is of values that are each within the
 /// limits here, so the result is.
 fn tapered(limits: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    if limits.windows(2).all(|w| w[0] == w[1]) {
+        return vec![limits[0]; limits.len() + 3];
+    }
     let base = reach(limits);
     let last = base.len() - 1;
     let eroded: Vec<[f64; 2]> =
@@ -208,16 +180,28 @@ fn running_mean(values: &[[f64; 2]], half: usize) -> Vec<[f64; 2]> {
         .collect()
 }
 
+/// The cells that a narrow place touches.
+fn cells_of(gap: &Gap, knot_m: f64, cells: usize) -> std::ops::RangeInclusive<usize> {
+    let cell = |u: f64| ((u / knot_m).max(0.0) as usize).min(cells - 1);
+    cell(gap.at - GAP_HALF_M)..=cell(gap.at + GAP_HALF_M)
+}
+
+fn with_gaps(mut limits: Vec<[f64; 2]>, gaps: &[Gap], knot_m: f64) -> Vec<[f64; 2]> {
+    let cells = limits.len();
+    for gap in gaps {
+        for limit in &mut limits[cells_of(gap, knot_m, cells)] {
+            *limit = [limit[0].min(gap.room.left_m), limit[1].max(gap.room.right_m)];
+        }
+    }
+    limits
+}
+
 /// Pulls the coefficients in so that the profile is inside each gap along its length: on a cell the profile is at most the
 /// largest of its four coefficients, so each gives up by how much that is too large.
-fn narrow(coefficients: &mut [[f64; 2]], gaps: &[Gap], cells: usize, knot_m: f64) {
-    if gaps.is_empty() {
-        return;
-    }
+fn narrow(coefficients: &mut [[f64; 2]], gaps: &[Gap], knot_m: f64) {
     let mut give_up = vec![[0.0_f64; 2]; coefficients.len()];
     for gap in gaps {
-        let cell = |u: f64| ((u / knot_m).max(0.0).floor() as usize).min(cells - 1);
-        for i in cell(gap.at - GAP_HALF_M)..=cell(gap.at + GAP_HALF_M) {
+        for i in cells_of(gap, knot_m, coefficients.len() - 3) {
             let (mut left, mut right) = (f64::NEG_INFINITY, f64::INFINITY);
             for c in &coefficients[i..i + 4] {
                 (left, right) = (left.max(c[0]), right.min(c[1]));
@@ -241,10 +225,10 @@ pub(crate) fn limit_offset(profile: &mut Profile, line: &Spline<2>, most: f64, l
         .map(|i| 0.5 * i as f64 * line.knot_m)
         .filter(|&u| {
             let [_, d1, d2, _] = line.at(u);
-            let speed = d1[0].hypot(d1[1]);
-            let sides = profile.at(u)[0];
+            let speed = (d1[0] * d1[0] + d1[1] * d1[1]).sqrt();
+            let [_, _, middle] = profile.at(u)[0];
             let curvature = (d1[0] * d2[1] - d1[1] * d2[0]) / (speed * speed * speed).max(1e-9);
-            !(speed >= least_speed && curvature * f64::midpoint(sides[0], sides[1]) <= most)
+            !(speed >= least_speed && curvature * middle <= most)
         })
         .collect();
     if bad.is_empty() {
@@ -258,8 +242,7 @@ pub(crate) fn limit_offset(profile: &mut Profile, line: &Spline<2>, most: f64, l
     }
     let share = running_mean(&share, REACH / 2);
     for (c, [share, _]) in profile.coefficients.iter_mut().zip(share) {
-        let shift = share * f64::midpoint(c[0], c[1]);
-        *c = [c[0] - shift, c[1] - shift];
+        *c = c.map(|across| across - share * c[2]);
     }
     bad
 }

@@ -1,6 +1,6 @@
 //! From a centreline and a profile about it to stations a uniform arc length apart.
 //!
-//! On a map's line the corridor's centreline runs in the middle of the profile: an offset curve. Heading and curvature
+//! The corridor's centreline runs across the way's line where the profile says: an offset curve. Heading and curvature
 //! come from derivatives in closed form, not from differences of positions.
 
 use super::Corridor;
@@ -14,10 +14,8 @@ pub(crate) const LEAST_OFFSET_FACTOR: f64 = 0.3;
 pub(crate) struct Track<'c, C> {
     /// Position and derivatives.
     pub(crate) curve: &'c C,
-    /// Edges across it, over the same parameter.
+    /// Edges and centreline across it, over the same parameter.
     pub(crate) profile: &'c Profile,
-    /// The corridor's centreline is the middle of the profile; else the curve itself.
-    pub(crate) centred: bool,
 }
 
 /// One point of the corridor's centreline.
@@ -36,9 +34,8 @@ impl<C: Fn(f64) -> Jet<2>> Track<'_, C> {
     /// C′ = a·t + b·n and C″ = (a′ − bκv)·t + (aκv + b′)·n.
     fn at(&self, u: f64) -> Point {
         let [p, d1, d2, d3] = (self.curve)(u);
-        let [side, side1, side2, _] = self.profile.at(u);
-        let (o, b, b1) = (self.middle(side), self.middle(side1), self.middle(side2));
-        let speed = d1[0].hypot(d1[1]).max(1e-9);
+        let [[left, right, o], [.., b], [.., b1], _] = self.profile.at(u);
+        let speed = (d1[0] * d1[0] + d1[1] * d1[1]).sqrt().max(1e-9);
         let t = [d1[0] / speed, d1[1] / speed];
         let speed1 = t[0] * d2[0] + t[1] * d2[1];
         let kappa = (t[0] * d2[1] - t[1] * d2[0]) / (speed * speed);
@@ -51,24 +48,19 @@ impl<C: Fn(f64) -> Jet<2>> Track<'_, C> {
             position: [p[0] - o * t[1], p[1] + o * t[0]],
             velocity: [a * t[0] - b * t[1], a * t[1] + b * t[0]],
             curvature: turning / (squared * squared.sqrt()).max(1e-12),
-            left_m: side[0] - o,
-            right_m: o - side[1],
+            left_m: left - o,
+            right_m: o - right,
         }
-    }
-
-    /// Where the centreline runs across the curve, or a derivative of that.
-    fn middle(&self, sides: [f64; 2]) -> f64 {
-        if self.centred { 0.5 * (sides[0] + sides[1]) } else { 0.0 }
     }
 
     fn speed(&self, u: f64) -> f64 {
         let [_, d1, d2, _] = (self.curve)(u);
-        let [side, side1, ..] = self.profile.at(u);
-        let (o, b) = (self.middle(side), self.middle(side1));
+        let [[.., o], [.., b], ..] = self.profile.at(u);
         let squared = (d1[0] * d1[0] + d1[1] * d1[1]).max(1e-18);
         let speed = squared.sqrt();
         let kappa = (d1[0] * d2[1] - d1[1] * d2[0]) / (squared * speed);
-        (speed * (1.0 - kappa * o)).hypot(b)
+        let along = speed * (1.0 - kappa * o);
+        (along * along + b * b).sqrt()
     }
 
     /// Stations about `spacing_m` apart for parameters `from..=to`; also the arc length at steps of the parameter.
@@ -147,7 +139,7 @@ impl ArcLength {
     }
 
     /// Parameter at an arc length; `hint` moves forward with it.
-    fn parameter(&self, s: f64, hint: &mut usize) -> f64 {
+    pub(crate) fn parameter(&self, s: f64, hint: &mut usize) -> f64 {
         while *hint + 2 < self.nodes.len() && self.nodes[*hint + 1].0 <= s {
             *hint += 1;
         }

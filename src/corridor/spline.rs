@@ -80,17 +80,15 @@ impl Interpolant {
         let last = self.at.len().saturating_sub(2);
         let i = self.at.partition_point(|&a| a <= u).saturating_sub(1).min(last);
         let (h, t) = (self.at[i + 1] - self.at[i], u - self.at[i]);
-        let mut out = [[0.0; 2]; 4];
-        for k in 0..2 {
+        let component = |k: usize| {
             let (m0, m1) = (self.second[i][k], self.second[i + 1][k]);
             let third = (m1 - m0) / h;
             let first = (self.points[i + 1][k] - self.points[i][k]) / h - h * (2.0 * m0 + m1) / 6.0;
-            out[0][k] = self.points[i][k] + t * (first + t * (0.5 * m0 + t * third / 6.0));
-            out[1][k] = first + t * (m0 + 0.5 * t * third);
-            out[2][k] = m0 + t * third;
-            out[3][k] = third;
-        }
-        out
+            let value = self.points[i][k] + t * (first + t * (0.5 * m0 + t * third / 6.0));
+            [value, first + t * (m0 + 0.5 * t * third), m0 + t * third, third]
+        };
+        let (x, y) = (component(0), component(1));
+        [0, 1, 2, 3].map(|d| [x[d], y[d]])
     }
 }
 

@@ -6,7 +6,7 @@
 use super::frame::Frame;
 use super::polyline::Polyline;
 use super::profile::{Across, Gap, Stretch, limit_offset, profile};
-use super::resample::{LEAST_OFFSET_FACTOR, Track};
+use super::resample::{ArcLength, LEAST_OFFSET_FACTOR, Track};
 use super::smooth::{Smoothed, Smoothing, smooth};
 use super::{Corridor, EdgeSpan, Params, StrokeCorridor};
 use crate::network::{Edge, Network, Stroke};
@@ -64,7 +64,11 @@ pub fn stroke_corridor(
     policy: Policy,
     params: &Params,
 ) -> Result<StrokeCorridor, UnknownReason> {
-    let (links, approach) = links(network, stroke, policy, params)?;
+    let (mut links, approach) = links(network, stroke, policy, params)?;
+    if stroke.closed {
+        // A loop is its own approach.
+        links.drain(..approach);
+    }
     let course = if stroke.closed { closed_course(&links, params) } else { open_course(&links, approach) };
     if course.line.length() < LEAST_LENGTH_M {
         return Err(UnknownReason::Geometry);
@@ -75,38 +79,49 @@ pub fn stroke_corridor(
     let mut profile = profile(&stretches, &gaps(network, &links, &course, &smoothed));
     let folded = limit_offset(&mut profile, &smoothed.curve, 1.0 - LEAST_OFFSET_FACTOR, LEAST_SPEED);
 
-    let track = Track { curve: &|u| smoothed.curve.at(u), profile: &profile, centred: true };
+    let track = Track { curve: &|u| smoothed.curve.at(u), profile: &profile };
     let (corridor, arc) = track.resample(0.0, course.end, params.spacing_m);
     if !(arc.total() >= 0.5 * LEAST_LENGTH_M && all_finite(&corridor)) {
         return Err(UnknownReason::Geometry);
     }
-    let mut spans = Vec::with_capacity(links.len() - approach);
-    for piece in course.pieces.iter().filter(|p| p.counted) {
-        let last = corridor.len() - 1;
-        let first = ((arc.at(piece.from) / corridor.spacing_m).floor() as usize).min(last);
-        let end = ((arc.at(piece.to) / corridor.spacing_m).ceil() as usize).clamp(first, last);
-        let deviation_m = smoothed.deviation_m(piece.from, piece.to);
-        let sharpest = corridor.curvature[first..=end].iter().fold(0.0_f64, |k, c| k.max(c.abs()));
-        let crossing = (first..=end)
-            .any(|i| corridor.curvature[i].abs() * corridor.left_m[i].max(corridor.right_m[i]) > MOST_CROSSING);
+    let cut = Cut { corridor: &corridor, arc: &arc, smoothed: &smoothed, folded: &folded, params };
+    let spans = course.pieces.iter().filter(|p| p.counted).map(|p| cut.span(p, &links[p.link])).collect();
+    Ok(StrokeCorridor { corridor, spans })
+}
+
+/// What a span is cut from.
+struct Cut<'c> {
+    corridor: &'c Corridor,
+    arc: &'c ArcLength,
+    smoothed: &'c Smoothed,
+    folded: &'c [f64],
+    params: &'c Params,
+}
+
+impl Cut<'_> {
+    fn span(&self, piece: &Piece, link: &Link<'_>) -> EdgeSpan {
+        let c = self.corridor;
+        let last = c.len() - 1;
+        let first = ((self.arc.at(piece.from) / c.spacing_m).floor() as usize).min(last);
+        let end = ((self.arc.at(piece.to) / c.spacing_m).ceil() as usize).clamp(first, last);
+        let centreline_deviation_m = self.smoothed.deviation_m(piece.from, piece.to);
+        let sharpest = c.curvature[first..=end].iter().fold(0.0_f64, |k, c| k.max(c.abs()));
         let broken = piece.to - piece.from < LEAST_EDGE_M
-            || deviation_m > params.tolerance_m
-            || crossing
-            || folded.iter().any(|&u| u >= piece.from && u <= piece.to);
-        let link = &links[piece.link];
-        spans.push(EdgeSpan {
+            || centreline_deviation_m > self.params.tolerance_m
+            || (first..=end).any(|i| c.curvature[i].abs() * c.left_m[i].max(c.right_m[i]) > MOST_CROSSING)
+            || self.folded.iter().any(|&u| u >= piece.from && u <= piece.to);
+        EdgeSpan {
             edge: link.index,
             stations: first..end + 1,
             min_radius_m: 1.0 / sharpest,
-            centreline_deviation_m: deviation_m,
+            centreline_deviation_m,
             unknown: match (broken, link.room) {
                 (true, _) => Some(UnknownReason::Geometry),
                 (false, None) => Some(UnknownReason::Width),
                 (false, Some(_)) => None,
             },
-        });
+        }
     }
-    Ok(StrokeCorridor { corridor, spans })
 }
 
 fn all_finite(c: &Corridor) -> bool {

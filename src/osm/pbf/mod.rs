@@ -62,6 +62,18 @@ pub enum Stage {
     Nodes,
 }
 
+impl Stage {
+    /// What a progress line calls it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Stage::Check => "check",
+            Stage::Ways => "ways",
+            Stage::Nodes => "nodes",
+        }
+    }
+}
+
 /// Reads an extract.
 ///
 /// # Errors
