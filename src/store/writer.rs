@@ -3,6 +3,7 @@
 //! Same calls, same bytes, in whatever order certificates come; time stamps are the caller's.
 
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqliteLockingMode, SqliteSynchronous};
 
@@ -148,8 +149,29 @@ impl Writer {
             check(c).await
         })?;
         self.session.close()?;
+        settle(&self.part.target)?;
         self.part.place()
     }
+}
+
+/// Waits until nobody is in the middle of changing the old database: its journal must not be taken away from under it.
+/// A journal alone says little: a killed program leaves one, too, which opening the database rolls back or ignores.
+fn settle(target: &Path) -> Result<(), StoreError> {
+    const LONGEST: Duration = Duration::from_secs(60);
+    let pending = ["-journal", "-wal"].iter().any(|suffix| with_suffix(target, suffix).exists());
+    let start = Instant::now();
+    while pending && target.exists() {
+        let alone = Database::open_to_change(target).and_then(|mut old| {
+            old.session.run(async |c| sqlx::raw_sql("BEGIN EXCLUSIVE; ROLLBACK").execute(c).await)?;
+            old.close()
+        });
+        match alone {
+            Err(busy @ StoreError::Busy(_)) if start.elapsed() > LONGEST => return Err(busy),
+            Err(StoreError::Busy(_)) => {} // SQLite has waited its five seconds already
+            _ => break,
+        }
+    }
+    Ok(())
 }
 
 fn unsound(vehicles: &[VehicleRecord], vehicle_no: u32, edge: u32, detail: String) -> StoreError {
