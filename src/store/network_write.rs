@@ -31,6 +31,9 @@ pub(super) async fn write(
     network: &Network,
     measures: &[EdgeMeasure],
 ) -> Sql<Option<Bounds>> {
+    if !measures.is_empty() && measures.len() != network.edges.len() {
+        return Err(content(format!("{} measures for {} edges", measures.len(), network.edges.len())));
+    }
     roads(c, network).await?;
     let bounds = edges(c, network, measures).await?;
     narrowings_and_strokes(c, network).await?;
