@@ -3,7 +3,7 @@
 -- (`fid` = index of the edge + 1), and single-precision values come back to the same bits.
 
 -- Distinct cross sections: signed positions of a strip's edges across the way's line, metres, positive to the left of
--- travel. NULL: no usable width. Few thousand in a region, so roads share them.
+-- travel. NULL: no usable width.
 CREATE TABLE section (
     section_no INTEGER PRIMARY KEY,
     lane_left_m DOUBLE, lane_right_m DOUBLE, lane_source TEXT,

@@ -1,5 +1,5 @@
 -- Vehicles and what was proved for them. A region times its vehicles is millions of certificates, so they are kept as
--- small integers, some 27 bytes each, behind the view `certificate` in metres and words.
+-- small integers, some 30 bytes each with all that pages cost, behind the view `certificate` in metres and words.
 
 CREATE TABLE vehicle (
     vehicle_no INTEGER PRIMARY KEY,

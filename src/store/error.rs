@@ -96,7 +96,10 @@ impl StoreError {
         if let sqlx::Error::Decode(detail) = &source {
             return Self::Damaged { path, detail: detail.to_string() };
         }
-        let code = source.as_database_error().and_then(|e| e.code()).and_then(|code| code.parse::<i32>().ok());
+        let code = source
+            .as_database_error()
+            .and_then(sqlx::error::DatabaseError::code)
+            .and_then(|code| code.parse::<i32>().ok());
         // Primary result codes (the low byte): https://www.sqlite.org/rescode.html
         match code.map(|code| code & 0xff) {
             Some(5 | 6) => Self::Busy(path),

@@ -142,12 +142,12 @@ mod tests {
 
     /// The match is exhaustive: a new reason does not compile until it stands here, and then must have a number.
     fn successor(verdict: Verdict) -> Option<Verdict> {
-        use {ForbiddenReason as F, UnknownReason as N, UnsafeReason as U, Verdict as V};
+        use {ForbiddenReason as F, UnknownReason as N, Verdict as V};
         Some(match verdict {
-            V::Safe => V::Unsafe(U::Width),
-            V::Unsafe(U::Width) => V::Unsafe(U::Articulation),
-            V::Unsafe(U::Articulation) => V::Unsafe(U::SteeringLock),
-            V::Unsafe(U::SteeringLock) => V::Forbidden(F::Height),
+            V::Safe => V::Unsafe(UnsafeReason::Width),
+            V::Unsafe(UnsafeReason::Width) => V::Unsafe(UnsafeReason::Articulation),
+            V::Unsafe(UnsafeReason::Articulation) => V::Unsafe(UnsafeReason::SteeringLock),
+            V::Unsafe(UnsafeReason::SteeringLock) => V::Forbidden(F::Height),
             V::Forbidden(F::Height) => V::Forbidden(F::Weight),
             V::Forbidden(F::Weight) => V::Forbidden(F::AxleLoad),
             V::Forbidden(F::AxleLoad) => V::Forbidden(F::Length),

@@ -1,4 +1,5 @@
-//! The network out of its tables: equal to the one that was written, but for the numbering of interned texts.
+//! The network out of its tables: equal to the one that was written, but for the numbering of interned texts, and for
+//! positions that no edge uses. Writing it again gives the same file.
 
 use std::ops::Range;
 

@@ -31,6 +31,9 @@ pub(super) async fn write(
     network: &Network,
     measures: &[EdgeMeasure],
 ) -> Sql<Option<Bounds>> {
+    if !measures.is_empty() && measures.len() != network.edges.len() {
+        return Err(content(format!("{} measures for {} edges", measures.len(), network.edges.len())));
+    }
     roads(c, network).await?;
     let bounds = edges(c, network, measures).await?;
     narrowings_and_strokes(c, network).await?;
@@ -74,6 +77,7 @@ async fn edges(c: &mut SqliteConnection, network: &Network, measures: &[EdgeMeas
     let mut bulk = Bulk::new("edge", 35);
     let mut boxes = Vec::with_capacity(network.edges.len());
     let mut line = Vec::new();
+    let starts = shape_starts(network)?;
     for (index, edge) in network.edges.iter().enumerate() {
         line.clear();
         line.extend(network.positions(edge));
@@ -96,13 +100,38 @@ async fn edges(c: &mut SqliteConnection, network: &Network, measures: &[EdgeMeas
         bulk.add(edge.barred)?;
         bulk.add(edge.cut)?;
         bulk.add(i64::from(edge.road) + 1)?;
-        bulk.add(edge.shape.start)?;
+        bulk.add(starts[index])?;
         bulk.add(edge.narrowings.start)?;
         bulk.add(edge.narrowings.end)?;
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await?;
     Ok(boxes)
+}
+
+/// Where each edge's shape starts when positions that no edge uses (of a piece that was left out) are not counted.
+/// Reading goes by it, edge after edge, so shapes must come in the order of the edges.
+fn shape_starts(network: &Network) -> Sql<Vec<u32>> {
+    let mut used = vec![false; network.shapes.len()];
+    for edge in &network.edges {
+        let shape = used.get_mut(edge.shape.start as usize..edge.shape.end as usize);
+        shape.ok_or_else(|| content("an edge's shape is out of range"))?.fill(true);
+    }
+    let before: Vec<u32> = used
+        .iter()
+        .scan(0, |count, &used| {
+            *count += u32::from(used);
+            Some(*count - u32::from(used))
+        })
+        .collect();
+    let mut end = 0;
+    let start = |edge: &Edge| {
+        let start = before.get(edge.shape.start as usize).copied().filter(|&start| start <= end);
+        let start = start.ok_or_else(|| content("the shapes are not in the order of the edges"))?;
+        end = end.max(start + edge.shape.len() as u32);
+        Ok(start)
+    };
+    network.edges.iter().map(start).collect()
 }
 
 /// The columns that users want beside an edge, though they belong to its road.

@@ -86,7 +86,8 @@ fn floor_to(value: f64, parts: f64) -> Option<i32> {
     if !value.is_finite() {
         return None;
     }
-    let mut whole = (value * parts).floor() as i32; // saturates at ± 2 147 km
+    // Rounded up first: the product may fall just short of a whole number that divides back to `value` itself.
+    let mut whole = (value * parts).ceil() as i32; // saturates at ± 2 147 km
     if f64::from(whole) / parts > value {
         whole = whole.saturating_sub(1);
     }

@@ -54,7 +54,8 @@ impl Part {
         }
     }
 
-    /// Everything to the disk, then over the target in one step. The database must be closed.
+    /// Everything to the disk, then over the target in one step. The database must be closed, and nobody in the middle of
+    /// changing the old one.
     pub(super) fn place(mut self) -> Result<(), StoreError> {
         let at = |e| StoreError::io(&self.target, e);
         self.file.sync_all().map_err(at)?;

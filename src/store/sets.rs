@@ -1,7 +1,7 @@
 //! A set: all certificates of one vehicle under one policy, complete or not there at all, and the layer that shows it.
 
+use sqlx::AssertSqlSafe;
 use sqlx::sqlite::SqliteConnection;
-use sqlx::{AssertSqlSafe, Row as _};
 
 use crate::osm::facts::Policy;
 
@@ -106,27 +106,18 @@ impl Set<'_> {
         );
         // Names and numbers in it are the program's own: letters, digits and underscores.
         sqlx::query(AssertSqlSafe(view)).persistent(false).execute(&mut *c).await?;
-        let bounds = self.bounds(c).await?;
         let description = format!("Roads that {} may use ({} policy)", self.vehicle_name, self.policy.name());
+        let bounds = network_bounds(c).await?;
         add_layer(c, layer, &description, self.time, bounds).await
     }
+}
 
-    async fn bounds(&self, c: &mut SqliteConnection) -> Sql<Option<Bounds>> {
-        let row = sqlx::query(
-            "SELECT min(r.minx), min(r.miny), max(r.maxx), max(r.maxy) FROM certificate_compact AS c \
-             JOIN rtree_edge_geom AS r ON r.id = c.fid WHERE c.vehicle_no = ? AND c.corridor_no = ? AND c.verdict_no = ?",
-        )
-        .bind(self.vehicle_no)
-        .bind(corridor_no(self.policy))
-        .bind(SAFE)
-        .fetch_one(c)
-        .await?;
-        let side = |column| row.try_get::<Option<f64>, _>(column);
-        let (Some(west), Some(south), Some(east), Some(north)) = (side(0)?, side(1)?, side(2)?, side(3)?) else {
-            return Ok(None);
-        };
-        Ok(Some(Bounds { west, south, east, north }))
-    }
+/// The box of the whole network serves every layer: a box of its own would cost a third of the time of a set (0.6 µs a
+/// certificate of 2 µs), and the standard calls it informative.
+async fn network_bounds(c: &mut SqliteConnection) -> Sql<Option<Bounds>> {
+    let sql = "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'edge' AND min_x NOT NULL";
+    let bounds = sqlx::query_as(sql).fetch_optional(c).await?;
+    Ok(bounds.map(|(west, south, east, north)| Bounds { west, south, east, north }))
 }
 
 /// Enters a table or view of lines as a layer.

@@ -41,6 +41,8 @@ fn add_way(network: &mut Network, way: u32) {
         sections: [section(way), section(way + 1)],
         legal: [legal(way), legal(way * 7 + 2)],
     });
+    // A position of a piece that was left out.
+    network.shapes.extend((way % 9 == 7).then_some(LonLat { lon_e7: 1, lat_e7: 2 }));
     let start = network.shapes.len() as u32;
     let (x, y) = ((way % 20) as i32 * 100_000 + 86_000_000, (way / 20) as i32 * 90_000 + 494_000_000);
     network.shapes.extend((0..7).map(|i| LonLat { lon_e7: x + i * 15_003, lat_e7: y + (i * i) * 311 - 7 }));
