@@ -12,7 +12,7 @@ use super::{
 };
 
 /// A window holds this many blobs, or as many as are [`WINDOW_BYTES`] large: enough to keep the threads busy, and
-/// small beside the result (on a file of 240 MB, 8 and 128 blobs were no faster).
+/// small beside the result.
 const WINDOW_BLOBS: usize = 32;
 const WINDOW_BYTES: usize = 16 << 20;
 
