@@ -1,1 +1,35 @@
-fn main() {}
+//! The program: a list of verbs. What was typed stops in `cli`; the work is the library's.
+//!
+//! Exit status: 0 done (also when the answer is "unsafe"), 1 failed, 2 wrong usage.
+
+mod cli;
+
+use std::process::ExitCode;
+
+use clap::Parser as _;
+
+use cli::{Cli, Verb};
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    match run(&cli) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) if cli::output::is_closed_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            cli::output::complain(&error);
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(cli: &Cli) -> anyhow::Result<()> {
+    let session = cli::Session::begin(cli)?;
+    match &cli.verb {
+        Verb::Ingest(verb) => verb.run(&session),
+        Verb::Certify(verb) => verb.run(&session),
+        Verb::Query(verb) => verb.run(&session),
+        Verb::Corridor(verb) => verb.run(&session),
+        Verb::Vehicles(verb) => verb.run(),
+        Verb::Stats(verb) => verb.run(),
+    }
+}

@@ -113,8 +113,10 @@ impl Frame {
         Ok(points.into_iter().map(|(lon, lat)| [lon, lat]).collect())
     }
 
-    /// A pipeline that needs no `proj.db`: a `PROJ_DATA` that points at another PROJ's database cannot break it.
-    fn definition(self) -> String {
+    /// What PROJ is asked for, degrees to metres. A pipeline that needs no `proj.db`: a `PROJ_DATA` that points at
+    /// another PROJ's database cannot break it.
+    #[must_use]
+    pub fn definition(self) -> String {
         format!(
             "+proj=pipeline +step +proj=unitconvert +xy_in=deg +xy_out=rad \
              +step +proj=tmerc +lat_0={} +lon_0={} +k=1 +ellps=WGS84",

@@ -13,8 +13,8 @@ const OWN_SHARE: f64 = 0.1;
 /// Which vehicles to certify.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Selection {
-    /// Those of the extract's own countries, and a 3-trailer road train.
-    Region,
+    /// Those of the extract's own countries, a 3-trailer road train, and these ids.
+    Region(Vec<String>),
     /// These ids.
     Ids(Vec<String>),
     /// The whole catalogue.
@@ -48,15 +48,17 @@ pub fn selected<'c>(
     let ids: Vec<&str> = match selection {
         Selection::None => return Ok(Vec::new()),
         Selection::All => return Ok(catalogue.iter().collect()),
-        Selection::Ids(ids) => {
-            let found = ids.iter().map(|id| catalogue.get(id)).collect::<Result<Vec<_>, _>>()?;
-            found.into_iter().map(|v| v.id.as_str()).collect()
-        }
-        Selection::Region => {
+        Selection::Ids(ids) => known(catalogue, ids)?,
+        Selection::Region(also) => {
             let regions = Regions::builtin()?;
             let of = |country| catalogue.for_country(&regions, country);
-            own_countries(network).into_iter().flat_map(of).map(|v| v.id.as_str()).collect()
+            let own = own_countries(network).into_iter().flat_map(of).map(|v| v.id.as_str());
+            own.chain(known(catalogue, also)?).collect()
         }
     };
     Ok(catalogue.iter().filter(|v| ids.contains(&v.id.as_str())).collect())
+}
+
+fn known<'c>(catalogue: &'c Catalogue, ids: &[String]) -> Result<Vec<&'c str>, RunError> {
+    ids.iter().map(|id| Ok(catalogue.get(id)?.id.as_str())).collect()
 }

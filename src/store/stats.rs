@@ -1,14 +1,14 @@
 //! How much road there is, and how much of it each vehicle may use, by class and verdict.
 
-use sqlx::Row as _;
+use sqlx::{AssertSqlSafe, Row as _};
 
-use crate::osm::facts::Policy;
+use crate::osm::facts::{Policy, WidthSource};
 use crate::verdict::Verdict;
 
 use super::database::Database;
 use super::error::{StoreError, content};
-use super::names::verdict_of;
-use super::network_read::word;
+use super::names::{Named, verdict_of};
+use super::network_read::{word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -36,6 +36,8 @@ pub struct Stats {
     pub roads: u64,
     /// Directed edges and their length in metres, by class.
     pub network: Vec<(String, u64, f64)>,
+    /// Where widths come from: directed edges and their length in metres, by policy; no source: no usable width.
+    pub widths: Vec<(Policy, Option<WidthSource>, u64, f64)>,
     /// By vehicle, policy, class and verdict; those with no edge are left out.
     pub certificates: Vec<StatsRow>,
 }
@@ -47,14 +49,25 @@ impl Database {
             let roads: i64 = sqlx::query_scalar("SELECT count(*) FROM road").fetch_one(&mut *c).await?;
             // A narrow copy: each vehicle's certificates meet it in order, without the geometries.
             sqlx::raw_sql(
-                "CREATE TEMP TABLE IF NOT EXISTS brief (fid INTEGER PRIMARY KEY, highway TEXT, length_m REAL);
+                "CREATE TEMP TABLE IF NOT EXISTS brief (fid INTEGER PRIMARY KEY, highway TEXT, length_m REAL, \
+                 lane TEXT, direction TEXT, carriageway TEXT);
                  DELETE FROM temp.brief;
-                 INSERT INTO temp.brief SELECT fid, highway, length_m FROM edge ORDER BY fid;",
+                 INSERT INTO temp.brief SELECT fid, highway, length_m, width_source, direction_width_source, \
+                 carriageway_width_source FROM edge ORDER BY fid;",
             )
             .execute(&mut *c)
             .await?;
             let network = "SELECT highway, count(*), total(length_m) FROM temp.brief GROUP BY highway ORDER BY highway";
             let network: Vec<(String, i64, f64)> = sqlx::query_as(network).fetch_all(&mut *c).await?;
+            let mut widths = Vec::new();
+            for &policy in Policy::ALL {
+                let source = policy.name(); // a column of `brief`
+                let sql = format!("SELECT {source}, count(*), total(length_m) FROM temp.brief GROUP BY {source}");
+                for row in sqlx::query(AssertSqlSafe(sql)).fetch_all(&mut *c).await? {
+                    let edges = row.try_get::<i64, _>(1)?.unsigned_abs();
+                    widths.push((policy, word_or_none(&row, 0)?, edges, row.try_get(2)?));
+                }
+            }
             let rows = "SELECT vehicle_id, corridor, highway, verdict_no, edges, length_m FROM ( \
                         SELECT c.vehicle_no, c.corridor_no, b.highway, c.verdict_no, count(*) AS edges, \
                         total(b.length_m) AS length_m FROM certificate_compact AS c CROSS JOIN temp.brief AS b \
@@ -65,7 +78,7 @@ impl Database {
             sqlx::raw_sql("DROP TABLE temp.brief").execute(c).await?;
             let network = network.into_iter().map(|(class, edges, m)| (class, edges.unsigned_abs(), m)).collect();
             let certificates = rows.iter().map(stats_row).collect::<Sql<_>>()?;
-            Ok(Stats { roads: roads.unsigned_abs(), network, certificates })
+            Ok(Stats { roads: roads.unsigned_abs(), network, widths, certificates })
         })
     }
 }

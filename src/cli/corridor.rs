@@ -1,0 +1,157 @@
+//! `netcert corridor`: one corridor drawn by the user, one vehicle, a whole certificate.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{anyhow, bail};
+use clap::Args;
+use netcert::corridor::{self, FileCorridor, corridor_from_file};
+use netcert::stet::{self, Certificate, Model, Options};
+use netcert::store::Named;
+
+use super::Session;
+use super::certificate_file;
+use super::fleet::Fleet;
+use super::output::results;
+use super::values::metres;
+
+/// A corridor is read whole: 64 MiB hold a million points.
+const MAX_FILE_BYTES: u64 = 64 << 20;
+
+/// Certify a vehicle through a corridor of your own: a lane, an aisle, a depot entry.
+///
+/// The corridor file is JSON:
+///
+///   {"frame": "metres", "points": [[0, 0], [60, 0], [100, 25]], "width_m": 7.0}
+///
+/// `frame` is `metres` or `lonlat`; `points` is the centreline in driving direction; instead of `width_m` there may be
+/// `left_m` and `right_m`; each is a number or a list with one number a point. The points may be rough: the smoothest
+/// line within `smoothing_tolerance_m` (0.5) of them is driven; 0 means they are the smooth centreline itself.
+#[derive(Args)]
+#[command(
+    verbatim_doc_comment,
+    after_help = "\
+Examples:
+  netcert corridor entry.json --vehicle EU-SEMI16.5
+  netcert corridor aisle.json --vehicle AGV-TUG4 --max-shift 0 --out certificate.json
+
+The vehicle enters straight, along the first point's heading, and leaves straight. Exit status 0 also when the answer is
+`unsafe`: read the certificate's `safe`."
+)]
+pub(crate) struct Corridor {
+    /// The corridor.
+    #[arg(value_name = "CORRIDOR.json")]
+    file: PathBuf,
+    /// The vehicle; `netcert vehicles list` shows the ids.
+    #[arg(long, value_name = "ID")]
+    vehicle: String,
+    /// Where its definition stands, if not in the catalogue.
+    #[arg(long, value_name = "F.toml")]
+    vehicle_file: Vec<PathBuf>,
+    /// How far the steer axle may be planned off the centreline to leave the trailers room.
+    #[arg(long, value_name = "METRES", value_parser = metres, default_value_t = Options::default().max_shift_m)]
+    max_shift: f64,
+    /// Write the certificate there, as JSON.
+    #[arg(long, value_name = "CERTIFICATE.json")]
+    out: Option<PathBuf>,
+}
+
+impl Corridor {
+    pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        let fleet = Fleet::new(&self.vehicle_file)?;
+        let model = Model::new(fleet.catalogue.get(&self.vehicle)?)?;
+        let given = read(&self.file)?;
+        let options = Options { max_shift_m: self.max_shift, ..Options::default() };
+        let Some(certificate) = stet::certify(&given.corridor, &model, &options) else {
+            bail!("{}: no station to certify; give two points or more", self.file.display());
+        };
+        if let Some(path) = &self.out {
+            let json = certificate_file::json(&given, &model, &certificate, &options)?;
+            std::fs::write(path, format!("{json}\n"))
+                .map_err(|e| anyhow!("{}: cannot write the certificate: {e}", path.display()))?;
+        }
+        let mut out = results();
+        writeln!(out, "{}", describe(&self.file, &given.corridor))?;
+        answer(&mut out, &model, &given.corridor, &certificate)?;
+        out.flush()?;
+        if let Some(path) = &self.out {
+            session.progress.say(&format!("{}: the whole certificate", path.display()));
+        }
+        Ok(())
+    }
+}
+
+fn read(path: &Path) -> anyhow::Result<FileCorridor> {
+    let name = path.display();
+    let cannot = |e: std::io::Error| anyhow!("{name}: cannot read the corridor: {e}");
+    let bytes = std::fs::metadata(path).map_err(cannot)?.len();
+    if bytes > MAX_FILE_BYTES {
+        bail!("{name}: {bytes} bytes are too many for a corridor; cut it into parts that overlap");
+    }
+    let text = std::fs::read_to_string(path).map_err(cannot)?;
+    corridor_from_file(&text).map_err(|e| anyhow!("{name}: {e}; see `netcert help corridor`"))
+}
+
+fn describe(file: &Path, corridor: &corridor::Corridor) -> String {
+    let length_m = corridor.spacing_m * (corridor.len() as f64 - 1.0);
+    let width = |k: usize| corridor.left_m[k] + corridor.right_m[k];
+    let (low, high) =
+        (0..corridor.len()).map(width).fold((f64::INFINITY, 0.0_f64), |(low, high), w| (low.min(w), high.max(w)));
+    let bend = corridor.curvature.iter().fold(0.0_f64, |most, k| most.max(k.abs()));
+    let wide = if high - low < 0.005 { format!("{low:.2} m") } else { format!("{low:.2} to {high:.2} m") };
+    let bent = if bend < 1e-4 { "straight".to_owned() } else { format!("radius down to {:.1} m", 1.0 / bend) };
+    format!("{}: {length_m:.1} m long, {wide} wide, {bent}", file.display())
+}
+
+fn answer(
+    out: &mut dyn Write,
+    model: &Model,
+    corridor: &corridor::Corridor,
+    certificate: &Certificate,
+) -> std::io::Result<()> {
+    let (vehicle, result) = (&model.vehicle, &certificate.result);
+    let unit = |i: usize| vehicle.units.get(i).map_or(String::new(), |unit| format!("{} (unit {i})", unit.name));
+    let verdict = if result.safe() { "SAFE" } else { "UNSAFE" };
+    writeln!(out, "{} {}: {verdict}\n", vehicle.id, vehicle.name)?;
+    let said = if result.rsc_m >= 0.0 { "to spare where it is tightest" } else { "missing where it is tightest" };
+    writeln!(out, "  RSC           {:>8.3} m  {said}, all error bounds deducted", result.rsc_m)?;
+    writeln!(
+        out,
+        "  RSC published {:>8.3} m  the paper's formula to the letter; it decides nothing",
+        result.rsc_published_m
+    )?;
+    let hinge = match result.hinge_unit {
+        0 => "from the steering lock".to_owned(),
+        i => format!("from the limit of the hinge ahead of {}", unit(i)),
+    };
+    let degrees = result.hinge_margin_rad.to_degrees();
+    writeln!(out, "  hinge margin  {degrees:>8.1} °  {hinge}")?;
+    let tolerance_m = result.shrink * vehicle.tracking_tolerance_m;
+    writeln!(
+        out,
+        "  shrink        {:>8.3}    the steer axle must stay within {tolerance_m:.3} m of the plan",
+        result.shrink
+    )?;
+    let shift = certificate.shift_m.iter().fold(0.0_f64, |most, &q| if q.abs() > most.abs() { q } else { most });
+    let side = if shift > 0.0 { "to the left of" } else { "to the right of" };
+    let shifted =
+        if shift == 0.0 { "the plan is the centreline".to_owned() } else { format!("at most, {side} the centreline") };
+    writeln!(out, "  planned shift {:>8.3} m  {shifted}", shift.abs())?;
+    let at = &result.limiting;
+    let along = if at.point_m >= 0.0 { "ahead of" } else { "behind" };
+    writeln!(
+        out,
+        "  tightest at   {:>8.1} m  along the corridor: {}, {} side, {:.1} m {along} its axle",
+        at.station as f64 * corridor.spacing_m,
+        unit(at.unit),
+        at.side.name(),
+        at.point_m.abs(),
+    )?;
+    let heading_deg = vehicle.tracking_heading_rad.to_degrees();
+    writeln!(
+        out,
+        "\nThis holds within the model: no tyre slip beyond each unit's sway bound, a course within {heading_deg:.1}° of the\n\
+         plan's, a corridor as wide as the file says, a vehicle as defined (`netcert vehicles show {}`).",
+        vehicle.id
+    )
+}

@@ -1,0 +1,33 @@
+//! Which vehicle an id means: the catalogue's, one of `--vehicle-file`, or one that a database keeps.
+
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use netcert::store::Database;
+use netcert::vehicle::{Catalogue, Vehicle};
+
+/// The shipped catalogue and the user's files, and the ids of the latter.
+pub(crate) struct Fleet {
+    pub(crate) catalogue: Catalogue,
+    pub(crate) own: Vec<String>,
+}
+
+impl Fleet {
+    pub(crate) fn new(files: &[PathBuf]) -> anyhow::Result<Self> {
+        let mut fleet = Self { catalogue: Catalogue::builtin()?, own: Vec::new() };
+        for file in files {
+            let more = Catalogue::from_path(file)?;
+            fleet.own.extend(more.iter().map(|vehicle| vehicle.id.clone()));
+            fleet.catalogue = fleet.catalogue.extended(more, &file.display().to_string())?;
+        }
+        Ok(fleet)
+    }
+}
+
+/// The vehicle as the database keeps it, if it does.
+pub(crate) fn kept(database: &mut Database, id: &str) -> anyhow::Result<Option<Vehicle>> {
+    let Some(record) = database.vehicles()?.into_iter().find(|record| record.id == id) else { return Ok(None) };
+    let vehicle = Vehicle::from_json(&record.definition)
+        .with_context(|| format!("vehicle {id} of the database cannot be read; run `netcert ingest` again"))?;
+    Ok(Some(vehicle))
+}

@@ -1,0 +1,172 @@
+//! `netcert ingest`: from an extract to a database with certificates.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::bail;
+use clap::{Args, ValueHint};
+use netcert::osm::facts::{Countries, Rules};
+use netcert::pipeline::{self, Selection};
+use serde_json::json;
+
+use super::Session;
+use super::fleet::Fleet;
+use super::how::{self, How};
+use super::progress::human;
+use super::values::country_code;
+
+/// Read an OpenStreetMap extract, certify its roads, and write a GeoPackage.
+///
+/// Every drivable road of the extract becomes directed edges, each with a certificate for every vehicle: safe, unsafe,
+/// forbidden by a tagged limit, or unknown, always with the reason. Unless told otherwise, the vehicles are those of
+/// the extract's own countries and a 3-trailer road train.
+///
+/// The database is put in place when it is whole: a run that fails or is killed leaves an older one as it was. A file
+/// that netcert did not make is never overwritten.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  netcert ingest data/demo.osm.pbf
+  netcert ingest victoria.osm.pbf --db /srv/victoria.gpkg --vehicle AU-BDOUBLE26 --vehicle AU-ATRIPLE53
+  netcert ingest island.osm.pbf --country NZ --vehicle-file ours.toml
+
+With SOURCE_DATE_EPOCH set (seconds since 1970), the same input gives the same bytes, time stamps included.")]
+pub(crate) struct Ingest {
+    /// The extract.
+    #[arg(value_name = "REGION.osm.pbf", value_hint = ValueHint::FilePath)]
+    input: PathBuf,
+    /// The database to write [default: the extract's name with .gpkg, in the current directory].
+    #[arg(long, value_name = "REGION.gpkg")]
+    db: Option<PathBuf>,
+    #[command(flatten)]
+    which: Which,
+    #[command(flatten)]
+    how: How,
+    #[command(flatten)]
+    roads: Roads,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "Which vehicles")]
+struct Which {
+    /// Certify this vehicle, and only those named so; `netcert vehicles list` shows the ids.
+    #[arg(long, value_name = "ID", num_args = 1.., conflicts_with_all = ["all_vehicles", "no_certify"])]
+    vehicle: Vec<String>,
+    /// Vehicles of your own; certified unless --vehicle says which.
+    #[arg(long, value_name = "F.toml")]
+    vehicle_file: Vec<PathBuf>,
+    /// Certify the whole catalogue.
+    #[arg(long, conflicts_with = "no_certify")]
+    all_vehicles: bool,
+    /// Write the roads only; `certify` or `query` add certificates later.
+    #[arg(long)]
+    no_certify: bool,
+}
+
+#[derive(Args)]
+#[command(next_help_heading = "What is assumed of the roads")]
+struct Roads {
+    /// All roads are in this country (ISO 3166-1, two letters) [default: looked up].
+    #[arg(long, value_name = "CC", value_parser = country_code)]
+    country: Option<String>,
+    /// Traffic keeps to this side everywhere [default: as the country].
+    #[arg(long, value_name = "SIDE", value_parser = ["left", "right"])]
+    driving_side: Option<String>,
+    /// Widths assumed where none are tagged, in the form of data/roads.toml [default: that file, built in].
+    #[arg(long = "roads", value_name = "F.toml")]
+    rules: Option<PathBuf>,
+}
+
+impl Ingest {
+    pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        let db = match &self.db {
+            Some(db) => db.clone(),
+            None => default_db(&self.input)?,
+        };
+        let fleet = Fleet::new(&self.which.vehicle_file)?;
+        let selection = self.which.selection(&fleet);
+        let countries = self.roads.countries()?;
+        let settings = self.how.settings();
+        let mut parameters = how::parameters(&settings);
+        parameters.insert("vehicles".into(), selection_words(&selection));
+        parameters.insert("country".into(), json!(self.roads.country));
+        parameters.insert("driving_side".into(), json!(self.roads.driving_side));
+        parameters.insert("roads".into(), json!(self.roads.rules));
+        let ask = pipeline::Ingest {
+            input: &self.input,
+            db: &db,
+            catalogue: &fleet.catalogue,
+            selection: &selection,
+            countries: &countries,
+            settings: &settings,
+            parameters: parameters.into(),
+            now: &|| session.clock.now(),
+        };
+        let summary = pipeline::ingest(&ask, &session.progress)?;
+        session.progress.summary(&summary);
+        let seconds = summary.stages.iter().map(|stage| stage.seconds).sum();
+        session.progress.say(&done(&db, &summary.vehicles, seconds));
+        Ok(())
+    }
+}
+
+fn done(db: &Path, vehicles: &[String], seconds: f64) -> String {
+    let (time, name) = (human(seconds), db.display());
+    let Some(last) = vehicles.last() else { return format!("{name}: the roads, with no certificates yet ({time})") };
+    format!(
+        "{name}: whole after {time}, with {} vehicles: {}\nnext: `netcert stats --db {name}` or `netcert query --db \
+         {name} --vehicle {last} --verdict safe`",
+        vehicles.len(),
+        vehicles.join(", "),
+    )
+}
+
+impl Which {
+    fn selection(&self, fleet: &Fleet) -> Selection {
+        match self {
+            Self { no_certify: true, .. } => Selection::None,
+            Self { all_vehicles: true, .. } => Selection::All,
+            Self { vehicle, .. } if !vehicle.is_empty() => Selection::Ids(vehicle.clone()),
+            _ => Selection::Region(fleet.own.clone()),
+        }
+    }
+}
+
+/// For the `run` record.
+fn selection_words(selection: &Selection) -> serde_json::Value {
+    match selection {
+        Selection::None => json!("none"),
+        Selection::All => json!("all"),
+        Selection::Ids(ids) => json!(ids),
+        Selection::Region(also) if also.is_empty() => json!("region"),
+        Selection::Region(also) => json!({"region": true, "also": also}),
+    }
+}
+
+impl Roads {
+    fn countries(&self) -> anyhow::Result<Countries> {
+        let rules = match &self.rules {
+            Some(path) => Rules::from_path(path)?,
+            None => Rules::builtin()?,
+        };
+        let mut countries = Countries::with_rules(rules)?;
+        if let Some(code) = &self.country {
+            countries = countries.in_country(code)?;
+        }
+        Ok(match self.driving_side.as_deref() {
+            Some(side) => countries.driving_on_the_left(side == "left"),
+            None => countries,
+        })
+    }
+}
+
+/// `x/region.osm.pbf` → `region.gpkg`.
+fn default_db(input: &Path) -> anyhow::Result<PathBuf> {
+    let Some(name) = input.file_name().and_then(|name| name.to_str()) else {
+        bail!("{}: no name to call the database by; give one with --db", input.display());
+    };
+    let stem = [".osm.pbf", ".pbf"].iter().find_map(|end| name.strip_suffix(end)).unwrap_or(name);
+    if stem.is_empty() {
+        bail!("{}: no name to call the database by; give one with --db", input.display());
+    }
+    Ok(format!("{stem}.gpkg").into())
+}

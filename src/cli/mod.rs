@@ -1,0 +1,77 @@
+//! What was typed, and the verbs: one file each. Strings stop here; what the library gets is typed.
+//!
+//! Results go to standard output; progress, counts and warnings to standard error.
+
+mod area;
+mod certificate_file;
+mod certify;
+mod clock;
+mod corridor;
+mod database;
+mod fleet;
+mod how;
+mod ingest;
+pub(crate) mod output;
+mod progress;
+mod query;
+mod rows;
+mod stats;
+mod table;
+mod values;
+mod vehicles;
+
+use clap::{Parser, Subcommand};
+
+use clock::Clock;
+use progress::Progress;
+
+/// Certifies, edge by edge, on which roads of an OpenStreetMap extract an articulated vehicle fits.
+#[derive(Parser)]
+#[command(
+    version,
+    max_term_width = 100,
+    after_help = "\
+Start with:
+  netcert ingest data/demo.osm.pbf                 makes demo.gpkg, with certificates
+  netcert query --vehicle AU-ATRIPLE53             the roads and what a 3-trailer road train may do there
+  netcert help VERB                                what a verb does, with examples
+
+Results go to standard output, everything else to standard error. Exit status: 0 done (also when the answer
+is `unsafe`), 1 failed, 2 wrong usage."
+)]
+pub(crate) struct Cli {
+    /// Print nothing but results and errors.
+    #[arg(long, short, global = true)]
+    quiet: bool,
+    /// Threads to use; the result does not depend on it [default: one for each processor].
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    #[command(subcommand)]
+    pub(crate) verb: Verb,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Verb {
+    Ingest(ingest::Ingest),
+    Certify(certify::Certify),
+    Query(query::Query),
+    Corridor(corridor::Corridor),
+    Vehicles(vehicles::Vehicles),
+    Stats(stats::Stats),
+}
+
+/// What every verb works with.
+pub(crate) struct Session {
+    progress: Progress,
+    clock: Clock,
+}
+
+impl Session {
+    /// Sets the number of threads, reads the clock's environment.
+    pub(crate) fn begin(cli: &Cli) -> anyhow::Result<Self> {
+        if let Some(threads) = cli.threads {
+            rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global()?;
+        }
+        Ok(Self { progress: Progress::new(cli.quiet), clock: Clock::from_environment()? })
+    }
+}

@@ -1,0 +1,46 @@
+//! The two streams: results to standard output, all else to standard error.
+
+use std::io::{self, BufWriter, StdoutLock, Write};
+
+/// Standard output, buffered: flush it and mind the error.
+pub(crate) fn results() -> BufWriter<StdoutLock<'static>> {
+    BufWriter::with_capacity(1 << 16, io::stdout().lock())
+}
+
+/// A line for people. That nobody reads it is no reason to fail.
+pub(crate) fn tell(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
+/// The one place where an error is printed. Messages are whole: what, where, and the way out.
+pub(crate) fn complain(error: &anyhow::Error) {
+    tell(&format!("error: {error}"));
+}
+
+/// Whether whoever read the results has enough of them (`netcert query … | head`).
+pub(crate) fn is_closed_pipe(error: &anyhow::Error) -> bool {
+    error.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe)
+}
+
+/// `1234567` as `1,234,567`.
+pub(crate) fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Metres as kilometres with one decimal.
+pub(crate) fn km(metres: f64) -> String {
+    format!("{:.1}", metres / 1000.0)
+}
+
+/// Text from a map or file, fit for a terminal: what would move the cursor is replaced.
+pub(crate) fn printable(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
+}

@@ -1,0 +1,193 @@
+//! `netcert query`: the roads and what a vehicle may do there.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use netcert::osm::facts::WidthSource;
+use netcert::pipeline::{self, Settings};
+use netcert::store::{Area, Bounds, Database, EdgeRow, Named, QueryOptions, VerdictKind, verdict_words};
+use netcert::vehicle::Vehicle;
+use serde_json::json;
+
+use super::Session;
+use super::area;
+use super::database::DatabaseArgs;
+use super::fleet::{self, Fleet};
+use super::how::{self, How};
+use super::output::{km, results};
+use super::rows::{Head, Sink};
+use super::values::{signed_metres, word};
+
+/// Which roads a vehicle may use, and why not the others.
+///
+/// One row for each directed edge: a stretch of road between two junctions, in one direction. A vehicle that is not
+/// certified in this database yet is certified then and there, and the result is kept. Rows come in the order of the
+/// network; a table ends, on standard error, with kilometres by verdict.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  netcert query --vehicle AU-ATRIPLE53
+  netcert query --vehicle EU-SEMI16.5 --verdict unsafe --bbox 8.6,49.3,8.8,49.5
+  netcert query --vehicle AU-BDOUBLE26 --within shire.geojson --width-source tagged --format csv > roads.csv
+  netcert query --vehicle US-WB67 --verdict safe --min-rsc 0.3 --format geojson > safe.geojson
+
+A length is counted once for each direction. `rsc` is the room that the worst body point has to spare, in metres, with
+all error bounds deducted; where it is negative, that much is missing. In JSON, edge_id is a whole number of up to 63
+bits: JavaScript needs BigInt to read it; a GeoJSON feature has it as text in `id` too.")]
+pub(crate) struct Query {
+    #[command(flatten)]
+    db: DatabaseArgs,
+    /// The vehicle; `netcert vehicles list` shows the ids.
+    #[arg(long, value_name = "ID")]
+    vehicle: String,
+    /// Where its definition stands, if not in the catalogue or the database.
+    #[arg(long, value_name = "F.toml")]
+    vehicle_file: Vec<PathBuf>,
+    /// Only edges that touch this box, degrees; west greater than east spans the 180th meridian.
+    #[arg(long, value_name = "W,S,E,N", value_parser = area::bounds, allow_hyphen_values = true)]
+    bbox: Option<Bounds>,
+    /// Only edges that touch the polygons of this GeoJSON file.
+    #[arg(long, value_name = "AREA.geojson", conflicts_with = "bbox")]
+    within: Option<PathBuf>,
+    /// Only this verdict.
+    #[arg(long, value_name = "VERDICT", value_parser = word::<VerdictKind>())]
+    verdict: Option<VerdictKind>,
+    /// Only with at least so many metres to spare.
+    #[arg(long, value_name = "METRES", value_parser = signed_metres, allow_hyphen_values = true)]
+    min_rsc: Option<f64>,
+    /// Only where the width comes from this source or a better one, worst to best as listed.
+    #[arg(long, value_name = "SOURCE", value_parser = word::<WidthSource>())]
+    width_source: Option<WidthSource>,
+    /// Form of the answer.
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+    #[command(flatten)]
+    how: How,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    Table,
+    Csv,
+    Json,
+    Geojson,
+}
+
+impl Query {
+    pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        let area = match (&self.within, self.bbox) {
+            (Some(path), _) => Some(Area::Polygons(area::polygons(path)?)),
+            (None, bbox) => bbox.map(Area::Bounds),
+        };
+        let path = self.db.path()?;
+        let mut database = Database::open(&path)?;
+        let settings = self.how.settings_for(&mut database)?;
+        let sets = database.certified()?;
+        let there = sets.iter().any(|set| set.vehicle_id == self.vehicle && set.policy == settings.policy);
+        if !there {
+            let vehicle = self.vehicle_to_certify(&mut database)?;
+            database.close()?;
+            self.certify(session, &path, &settings, &vehicle)?;
+            database = Database::open(&path)?;
+        }
+        let vehicle = fleet::kept(&mut database, &self.vehicle)?;
+        let options = QueryOptions {
+            area,
+            verdict: self.verdict,
+            min_rsc_m: self.min_rsc,
+            min_width_source: self.width_source,
+            ..QueryOptions::new(&self.vehicle, settings.policy)
+        };
+        let head = Head { vehicle: self.vehicle.clone(), policy: settings.policy, scope: scope(vehicle.as_ref()) };
+        let mut totals = Totals::default();
+        let mut sink = Sink::begin(self.format, &head, results())?;
+        for row in database.query(&options)? {
+            let row = row?;
+            totals.add(&row);
+            sink.row(&row)?;
+        }
+        sink.end()?;
+        session.progress.say(&totals.to_string());
+        session.progress.say(&head.scope);
+        Ok(())
+    }
+
+    /// The database's own definition comes first: its other certificates were made with it.
+    fn vehicle_to_certify(&self, database: &mut Database) -> anyhow::Result<Vehicle> {
+        let fleet = Fleet::new(&self.vehicle_file)?;
+        match fleet::kept(database, &self.vehicle)? {
+            Some(vehicle) if !fleet.own.contains(&self.vehicle) => Ok(vehicle),
+            _ => Ok(fleet.catalogue.get(&self.vehicle)?.clone()),
+        }
+    }
+
+    fn certify(&self, session: &Session, path: &Path, settings: &Settings, vehicle: &Vehicle) -> anyhow::Result<()> {
+        let (id, db, policy) = (&vehicle.id, path.display(), settings.policy.name());
+        session.progress.say(&format!("{id} is not certified in {db} under the {policy} policy yet: doing it now"));
+        let mut parameters = how::parameters(settings);
+        parameters.insert("vehicles".into(), json!([id]));
+        let ask = pipeline::Certify {
+            db: path,
+            vehicles: &[vehicle],
+            settings,
+            command: "query",
+            parameters: parameters.into(),
+            now: &|| session.clock.now(),
+        };
+        let summary = pipeline::certify(&ask, &session.progress)?;
+        session.progress.summary(&summary);
+        Ok(())
+    }
+}
+
+/// What `safe` means; never shown without it.
+fn scope(vehicle: Option<&Vehicle>) -> String {
+    let tracking = vehicle.map_or(String::new(), |v| {
+        format!(", steered within {} m of the planned path (times `shrink`)", v.tracking_tolerance_m)
+    });
+    format!(
+        "`safe` holds within the model: the vehicle as defined{tracking}, on a road as wide as its width_source says; it \
+         is no permit and says nothing of bridges, turns at junctions or traffic."
+    )
+}
+
+/// Metres of road by verdict, and where the widths behind `safe` come from.
+#[derive(Default)]
+struct Totals {
+    edges: u64,
+    by_verdict: BTreeMap<&'static str, f64>,
+    safe_by_source: BTreeMap<Option<WidthSource>, f64>,
+}
+
+impl Totals {
+    fn add(&mut self, row: &EdgeRow) {
+        self.edges += 1;
+        let (verdict, _) = verdict_words(row.verdict);
+        *self.by_verdict.entry(verdict).or_default() += row.length_m;
+        if verdict == VerdictKind::Safe.name() {
+            *self.safe_by_source.entry(row.width_source).or_default() += row.length_m;
+        }
+    }
+}
+
+impl std::fmt::Display for Totals {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let sum: f64 = self.by_verdict.values().sum();
+        write!(f, "{} edges, {} km", super::output::grouped(self.edges), km(sum))?;
+        for kind in VerdictKind::ALL {
+            if let Some(&metres) = self.by_verdict.get(kind.name()) {
+                write!(f, "; {} {} km ({:.0} %)", kind.name(), km(metres), 100.0 * metres / sum.max(1e-9))?;
+            }
+        }
+        let sources: Vec<_> = self
+            .safe_by_source
+            .iter()
+            .map(|(source, &metres)| format!("{} {} km", source.map_or("none", WidthSource::name), km(metres)))
+            .collect();
+        if !sources.is_empty() {
+            write!(f, "\nwidths behind `safe`: {}", sources.join(", "))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,199 @@
+//! Edges with their certificates as a table, CSV, JSON or GeoJSON, written as they come.
+//!
+//! Names are those of the database's tables `edge` and `certificate`, in their units.
+
+use std::io::{self, BufWriter, StdoutLock, Write};
+
+use netcert::osm::facts::{Direction, Policy, WidthSource};
+use netcert::stet::Side;
+use netcert::store::{EdgeRow, Named, verdict_words};
+use serde_json::{Map, Value, json};
+
+use super::output::printable;
+use super::query::Format;
+
+/// What holds for all rows.
+pub(crate) struct Head {
+    pub(crate) vehicle: String,
+    pub(crate) policy: Policy,
+    /// What `safe` means.
+    pub(crate) scope: String,
+}
+
+/// Where rows go.
+pub(crate) struct Sink<'h> {
+    format: Format,
+    head: &'h Head,
+    out: BufWriter<StdoutLock<'static>>,
+    rows: u64,
+}
+
+const COLUMNS: [&str; 23] = [
+    "edge_id",
+    "way_id",
+    "from_node",
+    "to_node",
+    "direction",
+    "highway",
+    "name",
+    "ref",
+    "length_m",
+    "width_m",
+    "width_source",
+    "min_radius_m",
+    "vehicle_id",
+    "corridor",
+    "verdict",
+    "reason",
+    "rsc_m",
+    "rsc_published_m",
+    "hinge_margin_deg",
+    "shrink",
+    "limiting_s_m",
+    "limiting_unit",
+    "limiting_side",
+];
+
+impl<'h> Sink<'h> {
+    /// Writes what comes before the first row.
+    pub(crate) fn begin(format: Format, head: &'h Head, out: BufWriter<StdoutLock<'static>>) -> io::Result<Self> {
+        let mut sink = Self { format, head, out, rows: 0 };
+        match format {
+            Format::Table => writeln!(
+                sink.out,
+                "{:>19}  {:>11} {:<8}  {:<14} {:>8}  {:>7} {:<10}  {:>7}  {:>8}  {:<22} road",
+                "edge_id", "way", "dir", "highway", "length", "width", "source", "rsc", "hinge", "verdict"
+            )?,
+            Format::Csv => writeln!(sink.out, "{}", COLUMNS.join(","))?,
+            Format::Json => {
+                let (vehicle, scope) = (json!(head.vehicle), json!(head.scope));
+                write!(
+                    sink.out,
+                    "{{\"netcert\":\"{}\",\"vehicle_id\":{vehicle},\"corridor\":\"{}\",\"scope\":{scope},\"edges\":[",
+                    env!("CARGO_PKG_VERSION"),
+                    head.policy.name()
+                )?;
+            }
+            // A foreign member beside the features: RFC 7946, section 6.1.
+            Format::Geojson => {
+                write!(sink.out, "{{\"type\":\"FeatureCollection\",\"scope\":{},\"features\":[", json!(head.scope))?;
+            }
+        }
+        Ok(sink)
+    }
+
+    pub(crate) fn row(&mut self, row: &EdgeRow) -> io::Result<()> {
+        match self.format {
+            Format::Table => self.line(row)?,
+            Format::Csv => {
+                let cells: Vec<String> = self.members(row).iter().map(|(_, value)| csv(value)).collect();
+                writeln!(self.out, "{}", cells.join(","))?;
+            }
+            Format::Json => {
+                let members = Value::Object(self.members(row));
+                self.item(&members)?;
+            }
+            Format::Geojson => {
+                let coordinates: Vec<Value> = row.line.iter().map(|place| json!(place.degrees())).collect();
+                let feature = json!({
+                    "type": "Feature",
+                    "id": row.edge_id.to_string(),
+                    "geometry": {"type": "LineString", "coordinates": coordinates},
+                    "properties": self.members(row),
+                });
+                self.item(&feature)?;
+            }
+        }
+        self.rows += 1;
+        Ok(())
+    }
+
+    /// Writes what comes after the last row.
+    pub(crate) fn end(mut self) -> io::Result<()> {
+        if matches!(self.format, Format::Json | Format::Geojson) {
+            writeln!(self.out, "\n]}}")?;
+        }
+        self.out.flush()
+    }
+
+    fn item(&mut self, value: &Value) -> io::Result<()> {
+        let between = if self.rows == 0 { "\n" } else { ",\n" };
+        write!(self.out, "{between}{value}")
+    }
+
+    fn line(&mut self, row: &EdgeRow) -> io::Result<()> {
+        let (verdict, reason) = verdict_words(row.verdict);
+        let verdict = if reason.is_empty() { verdict.to_owned() } else { format!("{verdict}: {reason}") };
+        let road: Vec<&str> = [&row.reference, &row.name].into_iter().flatten().map(String::as_str).collect();
+        let (metres, degrees) = (|m: f64| format!("{m:.2} m"), |d: f64| format!("{d:.1}°"));
+        writeln!(
+            self.out,
+            "{:>19}  {:>11} {:<8}  {:<14} {:>8}  {:>7} {:<10}  {:>7}  {:>8}  {:<22} {}",
+            row.edge_id,
+            row.way_id,
+            row.direction.name(),
+            row.highway,
+            format!("{:.0} m", row.length_m),
+            row.width_m.map_or(String::new(), metres),
+            row.width_source.map_or("", WidthSource::name),
+            row.rsc_m.map_or(String::new(), metres),
+            row.hinge_margin_deg.map_or(String::new(), degrees),
+            verdict,
+            printable(&road.join(" ")),
+        )
+    }
+
+    /// In the order of [`COLUMNS`].
+    fn members(&self, row: &EdgeRow) -> Map<String, Value> {
+        let (verdict, reason) = verdict_words(row.verdict);
+        let values: [Value; COLUMNS.len()] = [
+            json!(row.edge_id),
+            json!(row.way_id),
+            json!(row.from_node),
+            json!(row.to_node),
+            json!(Direction::name(row.direction)),
+            json!(row.highway),
+            json!(row.name),
+            json!(row.reference),
+            json!(row.length_m),
+            json!(row.width_m),
+            json!(row.width_source.map(WidthSource::name)),
+            json!(row.min_radius_m),
+            json!(self.head.vehicle),
+            json!(self.head.policy.name()),
+            json!(verdict),
+            json!((!reason.is_empty()).then_some(reason)),
+            json!(row.rsc_m),
+            json!(row.rsc_published_m),
+            json!(row.hinge_margin_deg),
+            json!(row.shrink),
+            json!(row.limiting_s_m),
+            json!(row.limiting_unit),
+            json!(row.limiting_side.map(Side::name)),
+        ];
+        COLUMNS.iter().map(|&name| name.to_owned()).zip(values).collect()
+    }
+}
+
+/// A cell as RFC 4180 has it; nothing for null.
+fn csv(value: &Value) -> String {
+    let text = match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        other => other.to_string(),
+    };
+    if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_that_csv_would_split_are_quoted() {
+        assert_eq!(csv(&json!("A 5")), "A 5");
+        assert_eq!(csv(&json!("Main St, \"old\"")), "\"Main St, \"\"old\"\"\"");
+        assert_eq!(csv(&json!("two\nlines")), "\"two\nlines\"");
+        assert_eq!((csv(&Value::Null), csv(&json!(-0.25))), (String::new(), "-0.25".to_owned()));
+    }
+}

@@ -1,0 +1,225 @@
+//! `netcert stats`: how much road there is, how much of it each vehicle may use, what limits it, and what made the file.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+
+use clap::{Args, ValueEnum};
+use netcert::account::AccountRow;
+use netcert::osm::facts::{Policy, WidthSource};
+use netcert::store::{self, Database, Named, Run, StatsRow, VerdictKind, verdict_words};
+use serde_json::{Value, json};
+
+use super::database::DatabaseArgs;
+use super::output::{grouped, km, results};
+use super::progress::refusals;
+use super::table::Table;
+
+/// How much of the roads each vehicle may use, by class and verdict, and what made the database.
+///
+/// A length is counted once for each direction.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  netcert stats
+  netcert stats --db region.gpkg --format json")]
+pub(crate) struct Stats {
+    #[command(flatten)]
+    db: DatabaseArgs,
+    /// Only this vehicle.
+    #[arg(long, value_name = "ID")]
+    vehicle: Option<String>,
+    /// Form of the answer.
+    #[arg(long, value_enum, default_value_t = Form::Table)]
+    format: Form,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Form {
+    Table,
+    Json,
+}
+
+/// A vehicle under a policy, and its rows.
+struct Set<'a> {
+    vehicle: &'a str,
+    policy: Policy,
+    rows: Vec<&'a StatsRow>,
+}
+
+impl Stats {
+    pub(crate) fn run(&self) -> anyhow::Result<()> {
+        let path = self.db.path()?;
+        let mut database = Database::open(&path)?;
+        let (stats, runs) = (database.stats()?, database.runs()?);
+        let names: BTreeMap<String, String> = database.vehicles()?.into_iter().map(|v| (v.id, v.name)).collect();
+        let mut sets = sets(&stats);
+        if let Some(wanted) = &self.vehicle {
+            sets.retain(|set| set.vehicle == wanted);
+            if sets.is_empty() {
+                let there: Vec<&str> = names.keys().map(String::as_str).collect();
+                let db = path.display();
+                anyhow::bail!(
+                    "{db}: {wanted} is not certified here; `netcert query --vehicle {wanted}` does that; \
+                               certified: {}",
+                    there.join(", ")
+                );
+            }
+        }
+        let mut out = results();
+        match self.format {
+            Form::Json => writeln!(out, "{:#}", to_json(&stats, &sets, &runs))?,
+            Form::Table => {
+                network(&mut out, &stats)?;
+                for set in &sets {
+                    let name = names.get(set.vehicle).map_or("", String::as_str);
+                    certificates(&mut out, set, name)?;
+                }
+                record(&mut out, &runs)?;
+            }
+        }
+        Ok(out.flush()?)
+    }
+}
+
+fn sets(stats: &store::Stats) -> Vec<Set<'_>> {
+    let mut sets: Vec<Set<'_>> = Vec::new();
+    for row in &stats.certificates {
+        match sets.last_mut() {
+            Some(set) if (set.vehicle, set.policy) == (&row.vehicle_id, row.policy) => set.rows.push(row),
+            _ => sets.push(Set { vehicle: &row.vehicle_id, policy: row.policy, rows: vec![row] }),
+        }
+    }
+    sets
+}
+
+fn network(out: &mut dyn Write, stats: &store::Stats) -> anyhow::Result<()> {
+    let edges: u64 = stats.network.iter().map(|class| class.1).sum();
+    let length_m: f64 = stats.network.iter().map(|class| class.2).sum();
+    let (roads, edges) = (grouped(stats.roads), grouped(edges));
+    writeln!(out, "Roads: {roads} ways, {edges} directed edges, {} km counting both directions", km(length_m))?;
+    let mut table =
+        Table::new(&["  widths of the", ">none", ">assumed", ">from lanes", ">estimated", ">tagged", ">surveyed"]);
+    for &policy in Policy::ALL {
+        let share = |source: Option<WidthSource>| {
+            let of: f64 = stats.widths.iter().filter(|w| w.0 == policy && w.1 == source).map(|w| w.3).sum();
+            percent(of, length_m)
+        };
+        let sources = std::iter::once(None).chain(WidthSource::ALL.iter().copied().map(Some));
+        table.row(std::iter::once(format!("  {}", policy.name())).chain(sources.map(share)));
+    }
+    Ok(table.write(out, "")?)
+}
+
+fn certificates(out: &mut dyn Write, set: &Set<'_>, name: &str) -> anyhow::Result<()> {
+    writeln!(out, "\n{}  {name}  ({} policy)", set.vehicle, set.policy.name())?;
+    let mut table = Table::new(&["class", ">km", ">safe", ">unsafe", ">forbidden", ">unknown"]);
+    let mut classes: Vec<&str> = set.rows.iter().map(|row| row.highway.as_str()).collect();
+    classes.dedup();
+    classes.sort_by_key(|class| rank(class));
+    for class in classes.into_iter().map(Some).chain([None]) {
+        let rows = || set.rows.iter().filter(|row| class.is_none_or(|class| row.highway == class));
+        let all: f64 = rows().map(|row| row.length_m).sum();
+        let share = |kind: &VerdictKind| {
+            let of = rows().filter(|row| verdict_words(row.verdict).0 == kind.name());
+            percent(of.map(|row| row.length_m).sum(), all)
+        };
+        let start = [class.unwrap_or("all").to_owned(), km(all)];
+        table.row(start.into_iter().chain(VerdictKind::ALL.iter().map(share)));
+    }
+    table.write(out, "  ")?;
+    for kind in &VerdictKind::ALL[1..] {
+        let mut reasons: BTreeMap<&str, f64> = BTreeMap::new();
+        for row in &set.rows {
+            let (verdict, reason) = verdict_words(row.verdict);
+            if verdict == kind.name() {
+                *reasons.entry(reason).or_default() += row.length_m;
+            }
+        }
+        let mut reasons: Vec<_> = reasons.into_iter().collect();
+        reasons.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let words: Vec<_> = reasons.into_iter().map(|(reason, metres)| format!("{reason} {} km", km(metres))).collect();
+        if !words.is_empty() {
+            writeln!(out, "  {} because of: {}", kind.name(), words.join(", "))?;
+        }
+    }
+    Ok(())
+}
+
+/// Motorways first, links after their class; as in OpenStreetMap's own order of importance.
+fn rank(class: &str) -> (usize, bool) {
+    use netcert::osm::facts::RoadClass;
+    let main = class.strip_suffix("_link").unwrap_or(class);
+    let at = RoadClass::ALL.iter().position(|c| Named::name(*c) == main);
+    (at.unwrap_or(usize::MAX), main != class)
+}
+
+fn record(out: &mut dyn Write, runs: &[(Run, Vec<AccountRow>)]) -> anyhow::Result<()> {
+    for (run, account) in runs {
+        let Run { command, input_name, netcert_version, started, finished, .. } = run;
+        writeln!(out, "\n{command} of {input_name} by netcert {netcert_version}, {started} to {finished}")?;
+        if let Some(hash) = &run.input_blake3 {
+            let of = run.replication_timestamp.as_deref().map_or(String::new(), |t| format!(", data of {t}"));
+            writeln!(out, "  input blake3 {hash}{of}")?;
+        }
+        writeln!(out, "  parameters {}", run.parameters)?;
+        for line in refusals(account) {
+            writeln!(out, "  {line}")?;
+        }
+        let noted: Vec<_> = account
+            .iter()
+            .filter(|row| row.outcome == "noted")
+            .map(|row| format!("{} ({}s) {}", row.reason, row.item, grouped(row.count)))
+            .collect();
+        if !noted.is_empty() {
+            writeln!(out, "  noted: {}", noted.join(", "))?;
+        }
+    }
+    Ok(())
+}
+
+fn percent(of: f64, all: f64) -> String {
+    if of == 0.0 || all == 0.0 { "-".to_owned() } else { format!("{:.1} %", 100.0 * of / all) }
+}
+
+fn to_json(stats: &store::Stats, sets: &[Set<'_>], runs: &[(Run, Vec<AccountRow>)]) -> Value {
+    let classes: Vec<Value> = stats
+        .network
+        .iter()
+        .map(|(highway, edges, length_m)| json!({"highway": highway, "edges": edges, "length_m": length_m}))
+        .collect();
+    let widths: Vec<Value> = stats
+        .widths
+        .iter()
+        .map(|(policy, source, edges, length_m)| {
+            let source = source.map(WidthSource::name);
+            json!({"corridor": policy.name(), "width_source": source, "edges": edges, "length_m": length_m})
+        })
+        .collect();
+    let certificates: Vec<Value> = sets
+        .iter()
+        .flat_map(|set| &set.rows)
+        .map(|row| {
+            let (verdict, reason) = verdict_words(row.verdict);
+            json!({
+                "vehicle_id": row.vehicle_id, "corridor": row.policy.name(), "highway": row.highway,
+                "verdict": verdict, "reason": (!reason.is_empty()).then_some(reason),
+                "edges": row.edges, "length_m": row.length_m,
+            })
+        })
+        .collect();
+    let runs: Vec<Value> = runs
+        .iter()
+        .map(|(run, account)| {
+            // Written by this program; text that is no JSON is shown as it is.
+            let parameters = serde_json::from_str(&run.parameters).unwrap_or_else(|_| json!(run.parameters));
+            json!({
+                "command": run.command, "input_name": run.input_name, "input_blake3": run.input_blake3,
+                "replication_timestamp": run.replication_timestamp, "netcert_version": run.netcert_version,
+                "started": run.started, "finished": run.finished, "parameters": parameters, "account": account,
+            })
+        })
+        .collect();
+    json!({
+        "roads": stats.roads, "network": classes, "widths": widths, "certificates": certificates, "runs": runs,
+    })
+}

@@ -1,0 +1,31 @@
+//! Values of options: words of the library's enumerations, and numbers within bounds.
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use netcert::store::Named;
+
+/// One of the enumeration's words; help lists them.
+pub(crate) fn word<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(T::ALL.iter().map(|value| value.name()))
+        .try_map(|word| T::named(&word).ok_or("not one of the words"))
+}
+
+/// Two letters, made capitals.
+pub(crate) fn country_code(text: &str) -> Result<String, String> {
+    let letters = text.len() == 2 && text.bytes().all(|b| b.is_ascii_alphabetic());
+    if letters { Ok(text.to_ascii_uppercase()) } else { Err("give two letters of ISO 3166-1, such as AU".to_owned()) }
+}
+
+/// Metres from 0 to 100.
+pub(crate) fn metres(text: &str) -> Result<f64, String> {
+    within(text, 0.0, 100.0)
+}
+
+/// Metres, also negative.
+pub(crate) fn signed_metres(text: &str) -> Result<f64, String> {
+    within(text, -100.0, 100.0)
+}
+
+fn within(text: &str, low: f64, high: f64) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| (low..=high).contains(value));
+    value.ok_or_else(|| format!("give a number of metres from {low} to {high}"))
+}

@@ -1,0 +1,142 @@
+//! `netcert vehicles`: the catalogue, and files of the user's own.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+use netcert::stet::{Model, steady_offtracking};
+use netcert::vehicle::{Catalogue, Vehicle, VehicleDefinition};
+use serde::Serialize;
+
+use super::fleet::Fleet;
+use super::output::results;
+use super::table::Table;
+
+/// Radii at which off-tracking is shown, metres: a town corner, a roundabout's approach, a rural bend.
+const RADII_M: [f64; 3] = [50.0, 100.0, 200.0];
+
+/// The vehicles that netcert knows, and checks of your own.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  netcert vehicles list --region AU
+  netcert vehicles show AU-ATRIPLE53 > ours.toml       a pattern for a vehicle of your own: change the id and the rest
+  netcert vehicles check ours.toml")]
+pub(crate) struct Vehicles {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Subcommand)]
+enum What {
+    /// All vehicles of the catalogue.
+    List {
+        /// Only this region: AU, CA, EU, US, indoor, airside.
+        #[arg(long, value_name = "REGION")]
+        region: Option<String>,
+    },
+    /// One vehicle's definition, with all defaults filled in, as a vehicle file.
+    Show {
+        /// Its id.
+        id: String,
+        /// Look here, too.
+        #[arg(long, value_name = "F.toml")]
+        vehicle_file: Vec<PathBuf>,
+        /// TOML as in a vehicle file, or JSON as in a certificate.
+        #[arg(long, value_enum, default_value_t = Form::Toml)]
+        format: Form,
+    },
+    /// Check a vehicle file: every fault with its line, or what the file holds.
+    Check {
+        /// The file.
+        file: PathBuf,
+    },
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Form {
+    Toml,
+    Json,
+}
+
+#[derive(Serialize)]
+struct VehicleFile {
+    vehicle: [VehicleDefinition; 1],
+}
+
+impl Vehicles {
+    pub(crate) fn run(&self) -> anyhow::Result<()> {
+        match &self.what {
+            What::List { region } => list(region.as_deref()),
+            What::Show { id, vehicle_file, format } => show(Fleet::new(vehicle_file)?.catalogue.get(id)?, *format),
+            What::Check { file } => check(file),
+        }
+    }
+}
+
+fn list(region: Option<&str>) -> anyhow::Result<()> {
+    let catalogue = Catalogue::builtin()?;
+    let wanted: Vec<&Vehicle> =
+        catalogue.iter().filter(|v| region.is_none_or(|region| v.region.eq_ignore_ascii_case(region))).collect();
+    if wanted.is_empty() {
+        let mut regions: Vec<&str> = catalogue.iter().map(|v| v.region.as_str()).collect();
+        regions.dedup();
+        anyhow::bail!("no vehicle of region {:?}; there are {}", region.unwrap_or_default(), regions.join(", "));
+    }
+    let mut out = results();
+    table(&wanted).write(&mut out, "")?;
+    Ok(out.flush()?)
+}
+
+fn table(vehicles: &[&Vehicle]) -> Table {
+    let mut table = Table::new(&["id", "region", ">length", ">units", ">mass", "name"]);
+    for v in vehicles {
+        table.row([
+            v.id.clone(),
+            v.region.clone(),
+            format!("{:.2} m", v.length_m),
+            v.units.len().to_string(),
+            v.gross_mass_t.map_or("not known".to_owned(), |t| format!("{t:.1} t")),
+            v.name.clone(),
+        ]);
+    }
+    table
+}
+
+fn show(vehicle: &Vehicle, form: Form) -> anyhow::Result<()> {
+    let mut out = results();
+    match form {
+        Form::Json => writeln!(out, "{:#}", vehicle.to_json()?)?,
+        Form::Toml => {
+            write!(out, "{}", toml::to_string(&VehicleFile { vehicle: [vehicle.definition()] })?)?;
+            writeln!(out, "\n# {}", offtracking(vehicle))?;
+        }
+    }
+    Ok(out.flush()?)
+}
+
+/// The last axle's steady off-tracking, by the closed form.
+fn offtracking(vehicle: &Vehicle) -> String {
+    let at = |radius_m: f64| match steady_offtracking(vehicle, radius_m) {
+        Some(metres) => format!("{metres:.2} m at {radius_m:.0} m"),
+        None => format!("no steady turn at {radius_m:.0} m"),
+    };
+    format!("The last axle cuts in, on a steady circle of the steer axle: {}", RADII_M.map(at).join(", "))
+}
+
+fn check(file: &PathBuf) -> anyhow::Result<()> {
+    let own = Catalogue::from_path(file)?;
+    // A clash with a shipped id, and what the certificate's model does not cover, are faults of the file too.
+    Catalogue::builtin()?.extended(own.clone(), &file.display().to_string())?;
+    for vehicle in own.iter() {
+        Model::new(vehicle).map_err(|refused| anyhow::anyhow!("{}: {refused}", file.display()))?;
+    }
+    let mut out = results();
+    let count = own.iter().len();
+    writeln!(out, "{}: {count} {}, no fault", file.display(), if count == 1 { "vehicle" } else { "vehicles" })?;
+    table(&own.iter().collect::<Vec<_>>()).write(&mut out, "  ")?;
+    for vehicle in own.iter() {
+        writeln!(out, "  {}: {}", vehicle.id, offtracking(vehicle))?;
+    }
+    Ok(out.flush()?)
+}
