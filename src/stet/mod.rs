@@ -13,6 +13,7 @@ mod published;
 mod spans;
 mod sweep;
 mod track;
+mod tube;
 
 use std::ops::Range;
 
@@ -20,6 +21,7 @@ use crate::corridor::Corridor;
 
 pub use model::{MAX_UNITS, Model, ModelError};
 pub use motion::steady_offtracking;
+pub use tube::{Tube, tubes};
 
 use group::Group;
 use lanes::{LANES, V};

@@ -89,7 +89,7 @@ fn sweep_with<const CERTIFY: bool>(track: &Track, group: &Group<'_>, shift: &[V]
 }
 
 /// State of the chain between two head stations, vehicles in lanes.
-struct Motion {
+pub(super) struct Motion {
     heading_x: [V; MAX_UNITS],
     heading_y: [V; MAX_UNITS],
     /// Last displacement of each front coupling, over its length.
@@ -120,7 +120,7 @@ const ZERO: V = V([0.0; LANES]);
 impl Motion {
     /// All units stand behind the track's first station, along its heading.
     #[inline(always)]
-    fn new(track: &Track) -> Self {
+    pub(super) fn new(track: &Track) -> Self {
         let (x, y) = (V::splat(track.fields.tangent_x[track.lead]), V::splat(track.fields.tangent_y[track.lead]));
         Self {
             heading_x: [x; MAX_UNITS],
@@ -135,7 +135,7 @@ impl Motion {
 
     /// Drives [`BLOCK`] stations from `head` and leaves every unit's rows.
     #[inline(always)]
-    fn block<const CERTIFY: bool>(
+    pub(super) fn block<const CERTIFY: bool>(
         &mut self,
         track: &Track,
         group: &Group<'_>,

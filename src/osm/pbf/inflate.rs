@@ -101,7 +101,7 @@ fn raw(data: &[u8], raw_size: Option<usize>) -> Result<&[u8], Problem> {
     }
 }
 
-fn zlib(decoder: &mut Decompress, data: &[u8], out: &mut Vec<u8>) -> Result<(), Problem> {
+fn zlib(decoder: &mut Decompress, data: &[u8], out: &mut [u8]) -> Result<(), Problem> {
     let damaged = |detail: String| Problem::Inflate { compression: "zlib", detail };
     decoder.reset(true);
     let declared = out.len();

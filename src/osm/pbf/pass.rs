@@ -55,6 +55,9 @@ impl<'f> Window<'f> {
     }
 }
 
+/// A blob, its compression and what was decoded from it, or what is wrong with it.
+type Decoded<T> = (Frame, Result<(Compression, T), Problem>);
+
 /// Inflates and decodes the blobs of `frames`, and merges what comes of them in the order of the file. `done` is told
 /// how many bytes of blobs are merged.
 pub(super) fn run<T: Send>(
@@ -69,7 +72,7 @@ pub(super) fn run<T: Send>(
         Ok((compression, decode(bytes)?))
     };
     let (mut now, mut next) = (Window::default(), Window::default());
-    let mut decoded: Vec<(Frame, Result<(Compression, T), Problem>)> = Vec::new();
+    let mut decoded: Vec<Decoded<T>> = Vec::new();
     let mut bytes = 0;
     now.fill(source, &mut frames)?;
     loop {
