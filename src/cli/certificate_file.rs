@@ -10,6 +10,8 @@ use netcert::stet::{Certificate, Model, Options};
 use netcert::store::Named;
 use serde_json::{Value, json};
 
+use super::tubes;
+
 pub(crate) fn json(
     given: &FileCorridor,
     model: &Model,
@@ -46,6 +48,7 @@ pub(crate) fn json(
             "left_centred": certificate.left_centred_m,
             "right_centred": certificate.right_centred_m,
         },
+        "tubes": tubes::json(given, model, certificate)?,
     }))
 }
 

@@ -19,14 +19,15 @@ use super::how::{self, How};
 /// Certify again, or add vehicles, in a database that exists.
 ///
 /// With no vehicle named, all that the database has are certified again, each as the catalogue defines it now. The
-/// extract is not needed: the roads are in the database. Each vehicle's certificates are replaced in one step.
+/// extract is not needed: the roads are in the database. Each vehicle's certificates are replaced in one step. Options
+/// not given are as they were for `ingest`.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  netcert certify --vehicle EU-SEMI16.5 US-WB67           add two vehicles of the catalogue
-  netcert certify --vehicle-file ours.toml                add all vehicles of a file
-  netcert certify --corridor direction                    again, with all lanes of one's direction
-  netcert certify --db region.gpkg --max-shift 0          again, with no planned shift off the centreline")]
+  netcert certify --vehicle EU-SEMI16.5 US-WB67     add two vehicles of the catalogue
+  netcert certify --vehicle-file ours.toml          add all vehicles of a file
+  netcert certify --corridor direction              with all lanes of one's direction
+  netcert certify --db region.gpkg --max-shift 0    with no shift off the centreline")]
 pub(crate) struct Certify {
     #[command(flatten)]
     db: DatabaseArgs,
@@ -45,7 +46,7 @@ impl Certify {
         let path = self.db.path()?;
         let fleet = Fleet::new(&self.vehicle_file)?;
         let mut database = Database::open(&path)?;
-        let settings = self.how.settings_for(&mut database)?;
+        let settings = self.how.over(how::recorded(&mut database)?);
         let work = self.work(&mut database, &fleet, settings.policy)?;
         database.close()?;
         if work.is_empty() {

@@ -24,9 +24,12 @@ const MAX_FILE_BYTES: u64 = 64 << 20;
 ///
 ///   {"frame": "metres", "points": [[0, 0], [60, 0], [100, 25]], "width_m": 7.0}
 ///
-/// `frame` is `metres` or `lonlat`; `points` is the centreline in driving direction; instead of `width_m` there may be
-/// `left_m` and `right_m`; each is a number or a list with one number a point. The points may be rough: the smoothest
-/// line within `smoothing_tolerance_m` (0.5) of them is driven; 0 means they are the smooth centreline itself.
+///   frame                  metres, or lonlat (degrees)
+///   points                 the centreline, in driving direction
+///   width_m                a number, or a list with one a point;
+///   left_m, right_m        or both sides on their own
+///   smoothing_tolerance_m  the smoothest line within so many metres of the
+///                          points is driven [0.5]; 0: the points are that line
 #[derive(Args)]
 #[command(
     verbatim_doc_comment,
@@ -35,8 +38,12 @@ Examples:
   netcert corridor entry.json --vehicle EU-SEMI16.5
   netcert corridor aisle.json --vehicle AGV-TUG4 --max-shift 0 --out certificate.json
 
-The vehicle enters straight, along the first point's heading, and leaves straight. Exit status 0 also when the answer is
-`unsafe`: read the certificate's `safe`."
+The vehicle enters straight, along the first point's heading, and leaves straight.
+Exit status 0 also when the answer is `unsafe`: read the certificate's `safe`.
+
+The certificate repeats vehicle and corridor and holds the plan of the steer axle, the leeway at
+every station before and after correction, and the tube of every axle. Its `t` is the time of a
+vehicle at 80 km/h, slower where 2 m/s² sideways would be exceeded."
 )]
 pub(crate) struct Corridor {
     /// The corridor.

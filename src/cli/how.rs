@@ -16,18 +16,16 @@ use super::values::{metres, word};
 #[derive(Args, Default)]
 #[command(next_help_heading = "How certificates are made")]
 pub(crate) struct How {
-    /// Which width counts: one's own lane, all lanes of one's direction, or the whole carriageway [default: lane, or
-    /// what the database was made with].
+    /// Which width counts: one's own lane, all lanes of one's direction, or the whole carriageway [default: lane].
     #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
     pub(crate) corridor: Option<Policy>,
-    /// How far the smoothed centreline may be from the map's line, metres [default: 0.5, or as the database].
+    /// How far the smoothed centreline may be from the map's line, metres [default: 0.5].
     #[arg(long, value_name = "METRES", value_parser = metres)]
     smoothing_tolerance: Option<f64>,
-    /// Taken off each side for what the map's own position is worth, metres [default: 0, or as the database].
+    /// Taken off each side for what the map's own position is worth, metres [default: 0].
     #[arg(long, value_name = "METRES", value_parser = metres)]
     map_tolerance: Option<f64>,
-    /// How far the steer axle may be planned off the centreline to leave the trailers room, metres [default: 1.5, or as
-    /// the database].
+    /// How far the steer axle may be planned off the centreline to leave the trailers room, metres [default: 1.5].
     #[arg(long, value_name = "METRES", value_parser = metres)]
     max_shift: Option<f64>,
 }
@@ -38,12 +36,8 @@ impl How {
         self.over(default_settings())
     }
 
-    /// The options over what the database was made with.
-    pub(crate) fn settings_for(&self, database: &mut Database) -> Result<Settings, StoreError> {
-        Ok(self.over(recorded(database)?))
-    }
-
-    fn over(&self, base: Settings) -> Settings {
+    /// The options over some settings.
+    pub(crate) fn over(&self, base: Settings) -> Settings {
         Settings {
             policy: self.corridor.unwrap_or(base.policy),
             corridor: Params {
@@ -60,8 +54,8 @@ fn default_settings() -> Settings {
     Settings { policy: Policy::Lane, corridor: Params::default(), stet: Options::default() }
 }
 
-/// What the database's ingest recorded.
-fn recorded(database: &mut Database) -> Result<Settings, StoreError> {
+/// What the database's ingest was given.
+pub(crate) fn recorded(database: &mut Database) -> Result<Settings, StoreError> {
     let runs = database.runs()?;
     let ingest = runs.iter().rev().find(|(run, _)| run.command == "ingest");
     let parameters: Value = ingest.and_then(|(run, _)| serde_json::from_str(&run.parameters).ok()).unwrap_or_default();

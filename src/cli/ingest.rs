@@ -26,10 +26,11 @@ use super::values::country_code;
 #[command(after_help = "\
 Examples:
   netcert ingest data/demo.osm.pbf
-  netcert ingest victoria.osm.pbf --db /srv/victoria.gpkg --vehicle AU-BDOUBLE26 --vehicle AU-ATRIPLE53
+  netcert ingest victoria.osm.pbf --db roads.gpkg --vehicle AU-BDOUBLE26 AU-ATRIPLE53
   netcert ingest island.osm.pbf --country NZ --vehicle-file ours.toml
 
-With SOURCE_DATE_EPOCH set (seconds since 1970), the same input gives the same bytes, time stamps included.")]
+With SOURCE_DATE_EPOCH set (seconds since 1970), the same input gives the same bytes, time
+stamps included.")]
 pub(crate) struct Ingest {
     /// The extract.
     #[arg(value_name = "REGION.osm.pbf", value_hint = ValueHint::FilePath)]
@@ -111,10 +112,10 @@ impl Ingest {
 
 fn done(db: &Path, vehicles: &[String], seconds: f64) -> String {
     let (time, name) = (human(seconds), db.display());
-    let Some(last) = vehicles.last() else { return format!("{name}: the roads, with no certificates yet ({time})") };
+    let Some(first) = vehicles.first() else { return format!("{name}: the roads, with no certificates yet ({time})") };
     format!(
         "{name}: whole after {time}, with {} vehicles: {}\nnext: `netcert stats --db {name}` or `netcert query --db \
-         {name} --vehicle {last} --verdict safe`",
+         {name} --vehicle {first} --verdict safe`",
         vehicles.len(),
         vehicles.join(", "),
     )

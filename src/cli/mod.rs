@@ -17,6 +17,7 @@ mod query;
 mod rows;
 mod stats;
 mod table;
+mod tubes;
 mod values;
 mod vehicles;
 
@@ -32,19 +33,21 @@ use progress::Progress;
     max_term_width = 100,
     after_help = "\
 Start with:
-  netcert ingest data/demo.osm.pbf                 makes demo.gpkg, with certificates
-  netcert query --vehicle AU-ATRIPLE53             the roads and what a 3-trailer road train may do there
-  netcert help VERB                                what a verb does, with examples
+  netcert ingest data/demo.osm.pbf        makes demo.gpkg, with certificates
+  netcert query --vehicle AU-ATRIPLE53    where a 3-trailer road train may drive
+  netcert help VERB                       what a verb does, with examples
 
-Results go to standard output, everything else to standard error. Exit status: 0 done (also when the answer
-is `unsafe`), 1 failed, 2 wrong usage."
+Results go to standard output, everything else to standard error.
+Exit status: 0 done (also when the answer is `unsafe`), 1 failed, 2 wrong usage.
+
+`safe` holds within the stated model, widths and error bounds; it is no permit."
 )]
 pub(crate) struct Cli {
     /// Print nothing but results and errors.
-    #[arg(long, short, global = true)]
+    #[arg(long, short, global = true, display_order = 900)]
     quiet: bool,
     /// Threads to use; the result does not depend on it [default: one for each processor].
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, global = true, display_order = 901, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     #[command(subcommand)]
     pub(crate) verb: Verb,

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use netcert::osm::facts::WidthSource;
+use netcert::osm::facts::{Policy, WidthSource};
 use netcert::pipeline::{self, Settings};
 use netcert::store::{Area, Bounds, Database, EdgeRow, Named, QueryOptions, VerdictKind, verdict_words};
 use netcert::vehicle::Vehicle;
@@ -14,7 +14,7 @@ use super::Session;
 use super::area;
 use super::database::DatabaseArgs;
 use super::fleet::{self, Fleet};
-use super::how::{self, How};
+use super::how;
 use super::output::{km, results};
 use super::rows::{Head, Sink};
 use super::values::{signed_metres, word};
@@ -29,12 +29,19 @@ use super::values::{signed_metres, word};
 Examples:
   netcert query --vehicle AU-ATRIPLE53
   netcert query --vehicle EU-SEMI16.5 --verdict unsafe --bbox 8.6,49.3,8.8,49.5
-  netcert query --vehicle AU-BDOUBLE26 --within shire.geojson --width-source tagged --format csv > roads.csv
+  netcert query --vehicle AU-BDOUBLE26 --within shire.geojson --format csv > shire.csv
   netcert query --vehicle US-WB67 --verdict safe --min-rsc 0.3 --format geojson > safe.geojson
 
-A length is counted once for each direction. `rsc` is the room that the worst body point has to spare, in metres, with
-all error bounds deducted; where it is negative, that much is missing. In JSON, edge_id is a whole number of up to 63
-bits: JavaScript needs BigInt to read it; a GeoJSON feature has it as text in `id` too.")]
+Columns:
+  rsc      metres that the worst body point has to spare, all error bounds deducted; where
+           negative, so much is missing
+  hinge    degrees left before the tightest hinge or the steering lock is at its limit
+  source   where the width comes from: assumed (by class and country), from_lanes (tagged
+           lanes of an assumed width), estimated, tagged, surveyed
+  verdict  with its reason: `unsafe: width`, `forbidden: weight`, `unknown: geometry`
+
+In JSON, edge_id is a whole number of up to 63 bits: JavaScript needs BigInt to read it. A
+GeoJSON feature has it as text, too, in `id`.")]
 pub(crate) struct Query {
     #[command(flatten)]
     db: DatabaseArgs,
@@ -62,8 +69,10 @@ pub(crate) struct Query {
     /// Form of the answer.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
-    #[command(flatten)]
-    how: How,
+    /// Which width counts: one's own lane, all lanes of one's direction, or the whole carriageway [default: as the
+    /// database was made with, lane unless told otherwise].
+    #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
+    corridor: Option<Policy>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -82,7 +91,8 @@ impl Query {
         };
         let path = self.db.path()?;
         let mut database = Database::open(&path)?;
-        let settings = self.how.settings_for(&mut database)?;
+        let mut settings = how::recorded(&mut database)?;
+        settings.policy = self.corridor.unwrap_or(settings.policy);
         let sets = database.certified()?;
         let there = sets.iter().any(|set| set.vehicle_id == self.vehicle && set.policy == settings.policy);
         if !there {

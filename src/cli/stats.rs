@@ -70,6 +70,7 @@ impl Stats {
             Form::Json => writeln!(out, "{:#}", to_json(&stats, &sets, &runs))?,
             Form::Table => {
                 network(&mut out, &stats)?;
+                overview(&mut out, &sets)?;
                 for set in &sets {
                     let name = names.get(set.vehicle).map_or("", String::as_str);
                     certificates(&mut out, set, name)?;
@@ -110,6 +111,26 @@ fn network(out: &mut dyn Write, stats: &store::Stats) -> anyhow::Result<()> {
     Ok(table.write(out, "")?)
 }
 
+/// One line a set.
+fn overview(out: &mut dyn Write, sets: &[Set<'_>]) -> anyhow::Result<()> {
+    let mut table = Table::new(&["vehicle", "policy", ">safe", ">unsafe", ">forbidden", ">unknown"]);
+    for set in sets {
+        let start = [set.vehicle.to_owned(), set.policy.name().to_owned()];
+        table.row(start.into_iter().chain(shares(&set.rows)));
+    }
+    writeln!(out)?;
+    Ok(table.write(out, "")?)
+}
+
+/// Of the rows' length, by verdict.
+fn shares<'a>(rows: &'a [&'a StatsRow]) -> impl Iterator<Item = String> + 'a {
+    let all: f64 = rows.iter().map(|row| row.length_m).sum();
+    VerdictKind::ALL.iter().map(move |kind| {
+        let of = rows.iter().filter(|row| verdict_words(row.verdict).0 == kind.name());
+        percent(of.map(|row| row.length_m).sum(), all)
+    })
+}
+
 fn certificates(out: &mut dyn Write, set: &Set<'_>, name: &str) -> anyhow::Result<()> {
     writeln!(out, "\n{}  {name}  ({} policy)", set.vehicle, set.policy.name())?;
     let mut table = Table::new(&["class", ">km", ">safe", ">unsafe", ">forbidden", ">unknown"]);
@@ -117,14 +138,11 @@ fn certificates(out: &mut dyn Write, set: &Set<'_>, name: &str) -> anyhow::Resul
     classes.dedup();
     classes.sort_by_key(|class| rank(class));
     for class in classes.into_iter().map(Some).chain([None]) {
-        let rows = || set.rows.iter().filter(|row| class.is_none_or(|class| row.highway == class));
-        let all: f64 = rows().map(|row| row.length_m).sum();
-        let share = |kind: &VerdictKind| {
-            let of = rows().filter(|row| verdict_words(row.verdict).0 == kind.name());
-            percent(of.map(|row| row.length_m).sum(), all)
-        };
+        let rows = set.rows.iter().filter(|row| class.is_none_or(|class| row.highway == class));
+        let rows: Vec<&StatsRow> = rows.copied().collect();
+        let all: f64 = rows.iter().map(|row| row.length_m).sum();
         let start = [class.unwrap_or("all").to_owned(), km(all)];
-        table.row(start.into_iter().chain(VerdictKind::ALL.iter().map(share)));
+        table.row(start.into_iter().chain(shares(&rows)));
     }
     table.write(out, "  ")?;
     for kind in &VerdictKind::ALL[1..] {
@@ -167,7 +185,7 @@ fn record(out: &mut dyn Write, runs: &[(Run, Vec<AccountRow>)]) -> anyhow::Resul
         }
         let noted: Vec<_> = account
             .iter()
-            .filter(|row| row.outcome == "noted")
+            .filter(|row| row.outcome == "noted" && row.count > 0)
             .map(|row| format!("{} ({}s) {}", row.reason, row.item, grouped(row.count)))
             .collect();
         if !noted.is_empty() {
