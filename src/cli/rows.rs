@@ -137,7 +137,8 @@ impl<'h> Sink<'h> {
             row.width_m.map_or(String::new(), metres),
             row.width_source.map_or("", WidthSource::name),
             row.rsc_m.map_or(String::new(), metres),
-            row.hinge_margin_deg.map_or(String::new(), degrees),
+            // Less is no angle, but a bound that does not hold.
+            row.hinge_margin_deg.filter(|&d| d > -180.0).map_or(String::new(), degrees),
             verdict,
             printable(&road.join(" ")),
         )

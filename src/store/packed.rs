@@ -81,13 +81,15 @@ impl EdgeCertificate {
     }
 }
 
-/// The greatest whole number of parts that is not above `value`, as the views divide it back.
+/// The greatest whole number of parts that is not above `value`, as the views divide it back. None for what is not
+/// finite or out of range (a bound that grew without limit), so that the spool, where the least number stands for
+/// none, and the database agree.
 fn floor_to(value: f64, parts: f64) -> Option<i32> {
-    if !value.is_finite() {
+    if !(value * parts).is_finite() || (value * parts).abs() > 2e9 {
         return None;
     }
     // Rounded up first: the product may fall just short of a whole number that divides back to `value` itself.
-    let mut whole = (value * parts).ceil() as i32; // saturates at ± 2 147 km
+    let mut whole = (value * parts).ceil() as i32;
     if f64::from(whole) / parts > value {
         whole = whole.saturating_sub(1);
     }
@@ -203,6 +205,14 @@ mod tests {
         assert!(pack(Verdict::Safe, measured(f64::NAN, 0.1, 1.0)).is_err());
         assert!(pack(Verdict::Safe, measured(0.1, f64::INFINITY, 1.0)).is_err());
         assert!(EdgeCertificate { edge: 0, verdict: Verdict::Safe, measured: None }.pack().is_err());
+    }
+
+    #[test]
+    fn what_is_out_of_range_is_missing_on_both_ways() {
+        for rsc in [-1e9, -3e6, 3e6, f64::NEG_INFINITY, f64::NAN] {
+            let packed = pack(UNSAFE, measured(rsc, -9.0, 0.3)).unwrap();
+            assert_eq!((packed.rsc_mm, Packed::from_bytes(&packed.to_bytes())), (None, packed));
+        }
     }
 
     #[test]

@@ -1,0 +1,125 @@
+//! The built program in a folder of its own: `place.netcert("query --vehicle X").succeeds().tells("…")`.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
+
+use tempfile::TempDir;
+
+/// A folder to work in, removed afterwards.
+pub(crate) struct Place(TempDir);
+
+/// What came of a run.
+pub(crate) struct Answer {
+    line: String,
+    output: Output,
+}
+
+pub(crate) fn demo() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("data/demo.osm.pbf")
+}
+
+impl Place {
+    pub(crate) fn empty() -> Self {
+        Self(TempDir::new().unwrap())
+    }
+
+    /// With `demo.gpkg`: AU-SEMI19 and AU-ATRIPLE53 certified. Made once.
+    pub(crate) fn with_demo() -> Self {
+        static MADE: OnceLock<Vec<u8>> = OnceLock::new();
+        let made = MADE.get_or_init(|| {
+            let place = Self::empty();
+            place.netcert("ingest {demo} --vehicle AU-SEMI19 AU-ATRIPLE53").succeeds();
+            place.read("demo.gpkg")
+        });
+        Self::empty().file("demo.gpkg", made)
+    }
+
+    pub(crate) fn file(self, name: &str, bytes: impl AsRef<[u8]>) -> Self {
+        std::fs::write(self.path(name), bytes).unwrap();
+        self
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub(crate) fn read(&self, name: &str) -> Vec<u8> {
+        std::fs::read(self.path(name)).unwrap()
+    }
+
+    /// Names of the files here, sorted.
+    pub(crate) fn files(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    /// Arguments are parted by blanks; `{demo}` is the region that ships.
+    pub(crate) fn command(&self, line: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_netcert"));
+        command.current_dir(self.0.path()).env_remove("SOURCE_DATE_EPOCH").stdin(Stdio::null());
+        command.args(line.split_whitespace().map(|word| if word == "{demo}" { demo() } else { word.into() }));
+        command
+    }
+
+    pub(crate) fn netcert(&self, line: &str) -> Answer {
+        Answer { line: line.to_owned(), output: self.command(line).output().unwrap() }
+    }
+}
+
+impl Answer {
+    pub(crate) fn of(line: &str, command: &mut Command) -> Self {
+        Self { line: line.to_owned(), output: command.output().unwrap() }
+    }
+
+    fn status(self, expected: i32) -> Self {
+        assert_eq!(self.output.status.code(), Some(expected), "{}\n{}\n{}", self.line, self.out(), self.err());
+        self
+    }
+
+    pub(crate) fn succeeds(self) -> Self {
+        self.status(0)
+    }
+
+    /// Exit status 1 and one error.
+    pub(crate) fn fails(self) -> Self {
+        assert_eq!(self.err().matches("error: ").count(), 1, "{}: {}", self.line, self.err());
+        self.status(1)
+    }
+
+    /// Exit status 2.
+    pub(crate) fn is_misused(self) -> Self {
+        self.status(2)
+    }
+
+    /// On standard output.
+    pub(crate) fn shows(self, text: &str) -> Self {
+        assert!(self.out().contains(text), "{}: no {text:?} in\n{}", self.line, self.out());
+        self
+    }
+
+    /// On standard error.
+    pub(crate) fn tells(self, text: &str) -> Self {
+        assert!(self.err().contains(text), "{}: no {text:?} in\n{}", self.line, self.err());
+        self
+    }
+
+    pub(crate) fn tells_nothing(self) -> Self {
+        assert_eq!(self.err(), "", "{}", self.line);
+        self
+    }
+
+    pub(crate) fn out(&self) -> String {
+        String::from_utf8(self.output.stdout.clone()).unwrap()
+    }
+
+    pub(crate) fn err(&self) -> String {
+        String::from_utf8(self.output.stderr.clone()).unwrap()
+    }
+
+    pub(crate) fn json(&self) -> serde_json::Value {
+        serde_json::from_str(&self.out()).unwrap_or_else(|e| panic!("{}: {e}\n{}", self.line, self.out()))
+    }
+}
