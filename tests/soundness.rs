@@ -84,7 +84,11 @@ fn random_case(index: u64) -> Case {
         2 => draw.log_between(60.0, 150.0),
         _ => draw.log_between(15.0f64.max(1.25 * tightest_m(&vehicle) + 3.0), 60.0),
     };
-    let bends = draw::bends(&mut draw, radius, (2.0 * vehicle.length_m).clamp(80.0, 160.0) + radius.min(100.0));
+    let mut bends = draw::bends(&mut draw, radius, (2.0 * vehicle.length_m).clamp(80.0, 160.0) + radius.min(100.0));
+    // Straight at both ends until the whole vehicle is on it, so that the plan has no slope where it stops: what it
+    // does beyond its ends is not part of a certificate.
+    bends.insert(0, (25.0, 0.0));
+    bends.push((vehicle.length_m + 20.0, 0.0));
     let low = 0.5 * vehicle.width_m() + 0.3;
     let high = low + 1.5 + tightest_m(&vehicle).powi(2) / (2.0 * radius);
     let corridor = draw::corridor(&mut draw, &bends, low, high);
