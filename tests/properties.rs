@@ -92,7 +92,7 @@ fn same(index: u64, vehicle: &Vehicle, a: &Corridor, b: &Corridor) {
     let tolerance = 2e-5 * a.rsc_m.abs().max(1.0) + rounding;
     assert!((a.rsc_m - b.rsc_m).abs() < tolerance, "{index}, {}: {} and {}", vehicle.id, a.rsc_m, b.rsc_m);
     assert!(
-        (a.hinge_margin_rad - b.hinge_margin_rad).abs() < 1e-6 + rounding,
+        (a.hinge_margin_rad - b.hinge_margin_rad).abs() < 2e-5 + rounding,
         "{index}, {}: hinge margins {} and {}",
         vehicle.id,
         a.hinge_margin_rad,
@@ -113,16 +113,24 @@ fn room_on_both_sides_raises_rsc_by_just_that() {
     }
 }
 
-/// Tries a change that can only make matters worse.
+/// Tries a change that can only make matters worse. Cases in which the worse vehicle has no certificate at γ = 1 (its
+/// bounds do not close) say nothing; they may be one in ten.
 fn never_raises(what: &str, worsen: impl Fn(&mut Draw, &mut Vehicle)) {
+    let mut silent = 0;
     for index in 0..CASES {
         let (mut draw, vehicle, bends, offtracking) = draw_case(index);
         let mut worse = vehicle.clone();
         worsen(&mut draw, &mut worse);
         let corridor = wide(&mut draw, &bends, &worse, offtracking);
-        let (before, after) = (rsc_m(&corridor, &vehicle), rsc_m(&corridor, &worse));
+        let after = certificate(&corridor, &worse, &FIXED).result;
+        if after.shrink < 1.0 {
+            silent += 1;
+            continue;
+        }
+        let (before, after) = (rsc_m(&corridor, &vehicle), after.rsc_m);
         assert!(after <= before + 1e-9, "{what} raised RSC: {index}, {}: {before} to {after}", vehicle.id);
     }
+    assert!(silent * 10 <= CASES, "{silent} of {CASES} cases say nothing");
 }
 
 #[test]
