@@ -10,12 +10,13 @@
 //! | certificates | [`stet`] | a corridor and a [`vehicle`] → [`stet::Certificate`] |
 //! | store | [`store`] | network and certificates → a GeoPackage |
 //!
-//! `stet` is pure: no input or output, no clock, no threads.
+//! [`pipeline`] runs them in that order. `stet` is pure: no input or output, no clock, no threads.
 
 pub mod account;
 pub mod corridor;
 pub mod network;
 pub mod osm;
+pub mod pipeline;
 pub mod stet;
 pub mod store;
 pub mod vehicle;

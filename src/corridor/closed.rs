@@ -72,7 +72,8 @@ fn clothoid_step(h: f64, theta: f64, k0: f64, k1: f64) -> (f64, f64) {
 /// Writes a curvature profile piece by piece: straight, arc, clothoid. Lengths are rounded to whole stations.
 #[derive(Debug, Clone)]
 pub struct CurvatureProfile {
-    spacing_m: f64,
+    /// Distance between stations, metres.
+    pub spacing_m: f64,
     /// One value a station, 1/m, as [`Corridor::from_curvature`] takes it; at least one.
     pub curvature: Vec<f64>,
 }

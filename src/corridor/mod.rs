@@ -2,13 +2,52 @@
 //!
 //! A corridor is what `stet` certifies; it knows nothing of maps.
 
+mod band;
 mod closed;
-
-pub use closed::CurvatureProfile;
+mod file;
+mod frame;
+mod given;
+mod observation;
+mod polyline;
+mod profile;
+mod resample;
+mod smooth;
+mod spline;
+mod stroke;
+#[cfg(test)]
+mod tests;
 
 use std::ops::Range;
 
+pub use closed::CurvatureProfile;
+pub use file::{FileCorridor, FileError, corridor_from_file};
+pub use frame::{Frame, FrameError, HALF_WIDTH_M};
+pub use given::CentrelineError;
+pub use stroke::stroke_corridor;
+
 use crate::verdict::UnknownReason;
+
+/// How corridors are made from map lines.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Params {
+    /// How far the smoothed way line may be from the map's, metres.
+    pub tolerance_m: f64,
+    /// Subtracted from each side for what the map's own position is worth, metres.
+    pub map_tolerance_m: f64,
+    /// Distance between stations, metres; met to within half a station over the whole.
+    pub spacing_m: f64,
+    /// Waves of the map's line longer than this are the road's, shorter ones the mapper's, as far as the tolerance
+    /// allows; metres.
+    pub cutoff_m: f64,
+    /// Driven round a closed stroke before the turn that counts, metres.
+    pub lead_in_m: f64,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self { tolerance_m: 0.5, map_tolerance_m: 0.0, spacing_m: 1.0, cutoff_m: 200.0, lead_in_m: 250.0 }
+    }
+}
 
 /// A route corridor, sampled at uniform arc length along its C¹ centreline. Metres, radians; `s` grows in driving
 /// direction, lateral is positive to the left. All vectors have one entry a station.

@@ -3,7 +3,21 @@
 //! Holds all that certification needs, so that a network loaded from a database certifies to the same bytes as one
 //! just built from a file.
 
+mod account;
+mod build;
+mod cut;
+mod edge_id;
+mod edges;
+mod geometry;
+mod pairing;
+mod stroke;
+mod vertices;
+
 use std::ops::Range;
+
+pub use account::NetworkAccount;
+pub use build::{build, build_with};
+pub use stroke::StrokeOptions;
 
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, RoadClass};
 use crate::osm::{LonLat, StringId, StringPool};

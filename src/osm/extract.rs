@@ -78,6 +78,11 @@ impl StringPool {
         StringId(id)
     }
 
+    /// All texts, in the order of their ids.
+    pub fn texts(&self) -> impl ExactSizeIterator<Item = &str> {
+        self.texts.iter().map(|text| &**text)
+    }
+
     /// The text of an id of this pool.
     #[must_use]
     pub fn text(&self, id: StringId) -> &str {

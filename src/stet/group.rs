@@ -3,6 +3,9 @@
 use super::lanes::{LANES, V};
 use super::model::{MAX_UNITS, Model, UnitModel};
 
+/// γ is stored in thousandths.
+pub(super) const SHRINK_STEPS: f64 = 1000.0;
+
 /// Vehicles that sweep together. Empty lanes repeat the last vehicle and are not read.
 pub(super) struct Group<'m> {
     pub(super) models: Vec<&'m Model>,
@@ -83,7 +86,8 @@ impl<'m> Group<'m> {
     }
 }
 
-/// The γ that `model` allows when `shrink` is asked.
+/// The γ that `model` allows when `shrink` is asked; its least is rounded up to the thousandths that are stored.
 pub(super) fn gamma(model: &Model, shrink: f64) -> f64 {
-    shrink.max(model.vehicle.min_shrink)
+    let least = (model.vehicle.min_shrink * SHRINK_STEPS).ceil() / SHRINK_STEPS;
+    shrink.max(least).min(1.0)
 }

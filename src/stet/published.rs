@@ -1,8 +1,8 @@
 //! The paper's shape map as printed, for the certificate 𝒞 that stands beside the deciding one and never decides.
 //!
-//! Read here: sway limit ±θ_i is the unit's slip bound σ_i, L its coupling-to-axle length, r_0 the half-length of the
-//! prime mover's body (design section 6); h_Ω is taken at each unit's own foot on the centreline, the reading that
-//! is kindest to the printed form.
+//! Read here: the sway limit ±θ_i is the hinge's physical limit (the paper's own words), but at most the 90° for which its
+//! Eq. 14 means anything; L is the unit's coupling-to-axle length, r_0 the half-length of the prime mover's body (design
+//! section 6); h_Ω is taken at each unit's own foot on the centreline, the reading that is kindest to the printed form.
 
 use crate::vehicle::Unit;
 
@@ -14,8 +14,9 @@ pub(super) fn last_radius_m(units: &[Unit]) -> f64 {
     let (mut along, mut across) = (half_length.powi(2), (0.5 * prime.width_m).powi(2));
     for unit in units.iter().skip(1) {
         let l = unit.coupling_to_axle_m;
-        let a = (l * (1.0 - unit.sway_rad.cos())).powi(2);
-        let b = (l * unit.sway_rad.sin()).powi(2);
+        let theta = unit.max_articulation_rad.min(std::f64::consts::FRAC_PI_2);
+        let a = (l * (1.0 - theta.cos())).powi(2);
+        let b = (l * theta.sin()).powi(2);
         if a + b <= 0.0 {
             continue;
         }

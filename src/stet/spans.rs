@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use super::group::gamma;
+use super::group::{SHRINK_STEPS, gamma};
 use super::lanes::TAG_MASK;
 use super::model::Model;
 use super::sweep::Minima;
@@ -11,9 +11,6 @@ use super::{Limiting, Side, SpanResult};
 
 /// Minima may stand on the neighbour of the station they belong to: a span takes this many more on each side.
 const SLACK: usize = 2;
-
-/// γ is stored in thousandths, rounded down.
-const SHRINK_STEPS: f64 = 1000.0;
 
 /// Extended stations of a span of corridor stations.
 pub(super) fn stations(track: &Track, span: &std::ops::Range<usize>) -> RangeInclusive<usize> {

@@ -1,1 +1,34 @@
 //! The database: a GeoPackage, through sqlx, with the schema in `migrations/`.
+//!
+//! [`Database::create`] makes a new file beside the old one and puts it in place when it is whole; [`Database::open`]
+//! reads one. Certificates are kept as small integers that never promise more than what was computed.
+//!
+//! Left out: turns, which have no tables yet.
+
+mod blob;
+mod bulk;
+mod database;
+mod error;
+mod names;
+mod network_read;
+mod network_write;
+mod packed;
+mod part;
+mod query;
+mod records;
+mod session;
+mod sets;
+mod spool;
+mod stats;
+mod writer;
+
+pub use blob::Bounds;
+pub use database::{CertifiedSet, Database};
+pub use error::StoreError;
+pub use names::{Named, verdict_words};
+pub use network_write::EdgeMeasure;
+pub use packed::{EdgeCertificate, Measured};
+pub use query::{Area, EdgeRow, QueryOptions, Rows, VerdictKind};
+pub use records::{Run, VehicleRecord};
+pub use stats::{Stats, StatsRow};
+pub use writer::{VehicleNo, Writer};

@@ -1,14 +1,13 @@
 //! What a vehicle definition that leaves something out gets. Every default errs to the wider, longer or less nimble
-//! side of the shipped catalogue, so that leaving a field out never makes a vehicle look easier to place than it is.
+//! side of the catalogue's lorries, so that leaving a field out does not make one look easier to place than it is.
 //!
-//! The catalogue itself relies on none of them: it states every value.
+//! L has none: nothing stands in for the length that the off-tracking comes from. Height, mass and axle load have none
+//! either: they stay unknown. The catalogue itself relies on no default: it states every value.
 
-/// L has no default: nothing stands in for the length that the off-tracking comes from.
-///
 /// d: the hitch over the axle. Steady off-tracking falls with d² whichever the sign, so 0 is its worst case.
 pub(crate) const HITCH_OFFSET_M: f64 = 0.0;
 
-/// f of the prime mover: the longest nose of a catalogue truck (AU-SEMI19, EU trailers' swing is bounded likewise).
+/// f of the prime mover: the longest nose of a catalogue lorry (AU-SEMI19; buses have up to 2.8 m).
 pub(crate) const FRONT_OVERHANG_FIRST_M: f64 = 1.6;
 
 /// f of a trailer: the front of the EU semi-trailer (2.04 m front swing radius, directive 96/53/EC) is 1.6 m ahead.
@@ -26,7 +25,8 @@ pub(crate) const STEERING_LOCK_DEG: f64 = 42.0;
 /// Hinges: the low end of what fifth wheels allow (70° to 90°). Assumed.
 pub(crate) const HINGE_DEG: f64 = 70.0;
 
-/// σ: assumed; about the side slip of a loaded truck tyre on a 3 % crossfall.
+/// σ: assumed; about the slip angle of lorry tyres on a 2.5 % crossfall (0.025 over a cornering stiffness of some seven
+/// times the load per radian).
 pub(crate) const SWAY_DEG: f64 = 0.2;
 
 /// ε: assumed; a careful driver's or lane keeping's tracking at low speed.

@@ -1,10 +1,36 @@
 //! Tags become facts: class, direction, lanes, widths with their evidence, limits, access.
 //!
-//! Nothing here knows where a way is; country rules come in with [`CrossSection`]s, in `network`.
+//! [`way_facts`] and [`point_facts`] know nothing of where a way is; country rules come in with [`cross_sections`].
+//! Tags that cannot be used are noted ([`Notes`]), and the result is then narrower or unknown, never wider.
+
+mod access;
+mod class;
+mod country;
+mod kerb_reader;
+mod lanes;
+mod layout;
+mod limits;
+mod notes;
+mod points;
+mod rules;
+mod section;
+mod section_reader;
+#[cfg(test)]
+mod tests;
+mod value;
+mod widths;
 
 use serde::{Deserialize, Serialize};
 
 use crate::osm::StringId;
+
+pub use class::{LEFT_OUT_REASONS, way_facts};
+pub use country::{Countries, CountriesError, Place};
+pub use notes::{Note, Notes};
+pub use points::point_facts;
+pub use rules::{Rules, RulesError};
+pub use value::{metres, tonnes};
+pub use widths::cross_sections;
 
 /// `highway=*` of a drivable way; `_link` classes are the class with [`WayFacts::link`] set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -157,8 +183,8 @@ pub struct Legal {
     pub motor_vehicle: Permission,
 }
 
-/// An access tag's meaning for a through journey.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+/// An access tag's meaning for a through journey; the stricter is the greater.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 pub enum Permission {
     /// yes, designated, permissive, or untagged.
     #[default]
@@ -189,6 +215,22 @@ pub struct WayFacts {
     pub legal_forward: Legal,
     /// Limits and access against it.
     pub legal_backward: Legal,
+    /// Widths, lanes and kerb-side uses as tagged.
+    section: section::SectionTags,
+}
+
+impl WayFacts {
+    /// Lanes of the carriageway as tagged, both directions together.
+    #[must_use]
+    pub fn tagged_lanes(&self) -> Option<u8> {
+        self.section.tagged_lanes()
+    }
+
+    /// The tagged width of the carriageway between its edges, metres, as used.
+    #[must_use]
+    pub fn tagged_width_m(&self) -> Option<f32> {
+        self.section.carriageway.map(section::Millimetres::metres)
+    }
 }
 
 /// What the tags of a node on a road say.
@@ -215,4 +257,6 @@ pub struct WayDraft<'t> {
     pub name: Option<&'t str>,
     /// `ref`
     pub reference: Option<&'t str>,
+    /// What could not be used as it stands.
+    pub notes: Notes,
 }

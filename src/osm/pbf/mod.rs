@@ -1,7 +1,237 @@
-//! The file: framing, inflating, index checks, two passes. See the folder's own files.
+//! The file: framing, inflating, index checks, two passes.
+//!
+//! Promises: a file is read whole or not at all; every blob is inflated and every message checked, whatever is kept of
+//! it; the result is the same for any number of threads. The first pass takes ways and relations, the second the nodes
+//! that kept ways name. Most files say that they are sorted (nodes, ways, relations); then the first pass passes over
+//! the blobs in front that look like nodes, and the second one makes sure that nothing else was in them.
+//!
+//! Bulk data (ways, dense nodes) is read in place by `wire`; the header, plain nodes and relations through the
+//! messages of `osmpbfreader`, after `wire` has checked what those let pass.
 
+mod account;
+mod block;
+mod error;
+mod frame;
+mod gather;
+mod header;
+mod inflate;
+mod nodes;
+mod pass;
+mod relations;
+mod ways;
+mod wire;
 pub mod write;
 
-/// The account of every object read: what was kept, and what was left out for which reason. Adds up.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct ReadAccount {}
+use std::path::Path;
+
+pub use account::{NodeTally, ReadAccount};
+pub use error::{ObjectId, Problem, ReadError};
+pub use header::HeaderInfo;
+pub use relations::RelationTally;
+pub use wire::WireError;
+
+use crate::osm::{
+    Extract,
+    facts::{self, PointFacts, Tags, WayDraft},
+};
+
+use block::Block;
+use frame::{Frame, Kind, Source};
+use gather::{NodeGatherer, WayGatherer};
+use inflate::{Compression, Inflater};
+
+/// How far a reading is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Progress {
+    /// What is being done.
+    pub stage: Stage,
+    /// Bytes of the file dealt with.
+    pub done: u64,
+    /// Bytes of the file to deal with in this stage.
+    pub total: u64,
+}
+
+/// The parts of a reading, in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    /// Framing and hash.
+    Check,
+    /// First pass.
+    Ways,
+    /// Second pass.
+    Nodes,
+}
+
+impl Stage {
+    /// What a progress line calls it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Stage::Check => "check",
+            Stage::Ways => "ways",
+            Stage::Nodes => "nodes",
+        }
+    }
+}
+
+/// Reads an extract.
+///
+/// # Errors
+/// If anything of the file is damaged, truncated or not supported.
+pub fn read_extract(path: &Path, progress: &(dyn Fn(Progress) + Sync)) -> Result<Extract, ReadError> {
+    read_extract_with(path, progress, facts::way_facts, facts::point_facts)
+}
+
+/// As [`read_extract`], with other facts: `way` says what a way's tags mean, or why it is left out; `point` what those of a node on a kept
+/// way mean, if anything. Both are called from many threads.
+///
+/// # Errors
+/// If anything of the file is damaged, truncated or not supported.
+pub fn read_extract_with<W, P>(
+    path: &Path,
+    progress: &(dyn Fn(Progress) + Sync),
+    way: W,
+    point: P,
+) -> Result<Extract, ReadError>
+where
+    W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str> + Sync,
+    P: Fn(&Tags<'_>) -> Option<PointFacts> + Sync,
+{
+    let mut source = Source::open(path)?;
+    let total = source.len;
+    let (frames, hash) = source.frames(|done| progress(Progress { stage: Stage::Check, done, total }))?;
+    let header = read_headers(&mut source, &frames)?;
+    let data: Vec<Frame> = frames.iter().copied().filter(|frame| frame.kind == Kind::Data).collect();
+    let node_blobs = if header.sorted { leading_node_blobs(&mut source, &data)? } else { 0 };
+    let mut reading = Reading { source, data, progress, way, point };
+    let mut extract = match reading.run(node_blobs)? {
+        Some(extract) => extract,
+        // The header's word was wrong: take nothing on trust.
+        None => reading.run(0)?.unwrap_or_default(),
+    };
+    reading.source.check_unchanged()?;
+    let account = &mut extract.account;
+    account.header = header;
+    account.bytes = total;
+    account.blake3 = hash.to_hex().to_string();
+    account.blobs_passed_over = frames.iter().filter(|frame| frame.kind == Kind::Other).count() as u64;
+    Ok(extract)
+}
+
+/// Checks every header of the file (concatenated files have several); what the first one says.
+fn read_headers(source: &mut Source, frames: &[Frame]) -> Result<HeaderInfo, ReadError> {
+    let mut first = None;
+    for frame in frames {
+        match frame.kind {
+            Kind::Header => {
+                let parsed = with_block(source, frame, header::parse)?;
+                // Two files one after the other are not sorted, whatever each of them says.
+                first = Some(first.map_or(parsed, |info| HeaderInfo { sorted: false, ..info }));
+            }
+            Kind::Data if first.is_none() => return Err(source.error(Some(frame.offset), Problem::NoHeader)),
+            Kind::Data | Kind::Other => {}
+        }
+    }
+    first.ok_or_else(|| source.error(None, Problem::NoHeader))
+}
+
+/// How many blobs in front hold nodes, in a file that is sorted as it says: found by bisection.
+fn leading_node_blobs(source: &mut Source, data: &[Frame]) -> Result<usize, ReadError> {
+    let (mut low, mut high) = (0, data.len());
+    while low < high {
+        let middle = low.midpoint(high);
+        let Some(frame) = data.get(middle) else { break };
+        if with_block(source, frame, nodes::only_nodes)? {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    Ok(low)
+}
+
+/// Reads one blob by itself.
+fn with_block<T>(
+    source: &mut Source,
+    frame: &Frame,
+    read: impl FnOnce(&[u8]) -> Result<T, Problem>,
+) -> Result<T, ReadError> {
+    let mut blob = vec![0; frame.size];
+    source.read_at(frame.body, &mut blob)?;
+    let mut inflater = Inflater::default();
+    let done = inflater.inflate(&blob).and_then(|(bytes, _)| read(bytes));
+    done.map_err(|problem| source.error(Some(frame.offset), problem))
+}
+
+/// A file on its way to an extract.
+struct Reading<'p, W, P> {
+    source: Source,
+    data: Vec<Frame>,
+    progress: &'p (dyn Fn(Progress) + Sync),
+    way: W,
+    point: P,
+}
+
+impl<W, P> Reading<'_, W, P>
+where
+    W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str> + Sync,
+    P: Fn(&Tags<'_>) -> Option<PointFacts> + Sync,
+{
+    /// Both passes, the first `node_blobs` blobs being left to the second one; `None` if they hold more than nodes.
+    fn run(&mut self, node_blobs: usize) -> Result<Option<Extract>, ReadError> {
+        let mut account = ReadAccount::default();
+        let (presumed, rest) = self.data.split_at_checked(node_blobs).unwrap_or_default();
+        let mut with_nodes = presumed.to_vec();
+        let mut ways = WayGatherer::default();
+        let read_ways = |bytes: &[u8]| ways::read(&Block::parse(bytes)?, &self.way);
+        let take_ways = |frame: Frame, compression: Compression, batch: ways::WayBatch| {
+            *account.blobs.entry(compression.name()).or_default() += 1;
+            if batch.has_nodes {
+                with_nodes.push(frame);
+            }
+            ways.add(batch)
+        };
+        pass::run(&mut self.source, rest, read_ways, take_ways, report(self.progress, Stage::Ways, rest))?;
+        ways.finish();
+
+        let ids = ways.node_ids();
+        let mut nodes = NodeGatherer::new(ids.len());
+        let mut mistaken = false;
+        let mut presumed_left = node_blobs;
+        let read_nodes = |bytes: &[u8]| nodes::read(&Block::parse(bytes)?, &ids, &self.point);
+        let take_nodes = |_: Frame, compression: Compression, batch: nodes::NodeBatch| {
+            if presumed_left > 0 {
+                presumed_left -= 1;
+                mistaken |= batch.has_others;
+                *account.blobs.entry(compression.name()).or_default() += 1;
+            }
+            nodes.add(&batch);
+            Ok(())
+        };
+        pass::run(
+            &mut self.source,
+            &with_nodes,
+            read_nodes,
+            take_nodes,
+            report(self.progress, Stage::Nodes, &with_nodes),
+        )?;
+        if mistaken {
+            return Ok(None);
+        }
+        let (nodes, points, tally) = nodes.finish(ids, &ways.inline_places);
+        account.ways_read = ways.read;
+        account.ways_kept = ways.ways.len() as u64;
+        account.ways_left_out = ways.left_out;
+        account.tag_notes = ways.notes;
+        account.nodes = tally;
+        account.relations = ways.relations;
+        account.relations.restrictions_off_road =
+            ways.vias.iter().filter(|&&id| nodes.place(id).is_none()).count() as u64;
+        Ok(Some(Extract { ways: ways.ways, refs: ways.refs, nodes, points, strings: ways.strings, account }))
+    }
+}
+
+fn report<'p>(progress: &'p (dyn Fn(Progress) + Sync), stage: Stage, frames: &[Frame]) -> impl FnMut(u64) + Send + 'p {
+    let total = frames.iter().map(|frame| frame.size as u64).sum();
+    move |done| progress(Progress { stage, done, total })
+}

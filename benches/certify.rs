@@ -1,0 +1,63 @@
+//! How fast whole certificates are made, on one core: kilometres of corridor times vehicles a second, stations a metre
+//! apart, all terms, corrections and shrinking included.
+//!
+//! `cargo bench --bench certify`. The road has straights, clothoids and arcs down to 25 m, as a rural road has; every
+//! figure is the best of five runs, because the machine is shared.
+
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
+
+use std::time::Instant;
+
+use netcert::corridor::{Corridor, CurvatureProfile};
+use netcert::stet::{Model, Options, certify_spans};
+use netcert::vehicle::Catalogue;
+
+const LANES: usize = 8;
+
+fn road(stations: usize) -> Corridor {
+    let radii = [600.0, -250.0, 150.0, -900.0, 60.0, -400.0, 2000.0, -100.0, 300.0, 25.0];
+    let mut profile = CurvatureProfile::new(1.0).straight(200.0);
+    for radius in radii.iter().cycle() {
+        if profile.curvature.len() >= stations {
+            break;
+        }
+        let curvature = 1.0 / radius;
+        let transition = (40.0_f64).min(0.5 * radius.abs());
+        let arc = (radius.abs() * 0.5).clamp(20.0, 150.0);
+        profile = profile.clothoid(curvature, transition).arc(curvature, arc).clothoid(0.0, transition).straight(150.0);
+    }
+    Corridor::from_curvature(1.0, [5000.0, -3000.0], 0.3, &profile.curvature, 1.75, 1.75)
+}
+
+fn main() {
+    let catalogue = Catalogue::builtin().unwrap();
+    let corridor = road(20_000);
+    let spans: Vec<_> = (0..corridor.len() / 200).map(|i| i * 200..(i + 1) * 200).collect();
+    println!("{:<34} {:>8} {:>14} {:>12}", "vehicles", "units", "km·vehicle/s", "failed spans");
+    for (ids, copies) in [
+        (["EU-SEMI16.5"].as_slice(), LANES),
+        (&["AU-ATRIPLE53"], LANES),
+        (&["EU-SEMI16.5"], 1),
+        (&["AU-ATRIPLE53"], 1),
+        (&["AU-SEMI19", "AU-BDOUBLE26", "AU-ADOUBLE30", "AU-BTRIPLE36", "AU-ABTRIPLE44", "AU-ATRIPLE53"], 1),
+    ] {
+        let models: Vec<Model> = ids.iter().map(|id| Model::new(catalogue.get(id).unwrap()).unwrap()).collect();
+        let lanes: Vec<&Model> = models.iter().flat_map(|m| std::iter::repeat_n(m, copies)).collect();
+        let mut best = f64::INFINITY;
+        let mut failed = 0;
+        for _ in 0..5 {
+            let start = Instant::now();
+            let rows = certify_spans(&corridor, &lanes, &spans, &Options::default());
+            best = best.min(start.elapsed().as_secs_f64());
+            failed = rows.iter().flatten().filter(|r| r.rsc_m < 0.0).count();
+        }
+        let rate = corridor.len() as f64 * 1e-3 * lanes.len() as f64 / best;
+        let name = format!("{} × {copies}", ids.join(" "));
+        let units = models.iter().map(|m| m.vehicle.units.len()).max().unwrap();
+        println!("{:<34.34} {:>8} {:>14.0} {:>9}/{}", name, units, rate, failed, rows_total(&lanes, &spans));
+    }
+}
+
+fn rows_total(lanes: &[&Model], spans: &[std::ops::Range<usize>]) -> usize {
+    lanes.len() * spans.len()
+}

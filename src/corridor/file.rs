@@ -1,0 +1,173 @@
+//! The corridor file: a corridor drawn by a user, in metres or in degrees.
+//!
+//! The form is a promise to users. What is wrong is refused by the name of its field and index;
+//! nothing is repaired.
+
+use serde::Deserialize;
+
+use super::given::CentrelineError;
+use super::{Corridor, Frame, FrameError, Params};
+
+/// Why a corridor file cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum FileError {
+    /// Not JSON, or not of this form; the message has line and column.
+    #[error("not a corridor file: {0}")]
+    Json(#[from] serde_json::Error),
+    /// A value that cannot be used.
+    #[error(transparent)]
+    Centreline(#[from] CentrelineError),
+    /// Points that have no common metric frame.
+    #[error("points: {0}")]
+    Frame(#[from] FrameError),
+}
+
+/// A corridor from a file, and the way back to the file's coordinates.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FileCorridor {
+    /// In metres.
+    pub corridor: Corridor,
+    /// Where its metres are, if the file has degrees.
+    pub frame: Option<Frame>,
+}
+
+impl FileCorridor {
+    /// Points of the corridor's frame (metres) in the file's coordinates: as they are, or longitude and latitude.
+    pub fn to_input(&self, points: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, FrameError> {
+        self.frame.map_or_else(|| Ok(points.to_vec()), |frame| frame.inverse(points))
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Form {
+    frame: FormFrame,
+    points: Vec<[f64; 2]>,
+    width_m: Option<Widths>,
+    left_m: Option<Widths>,
+    right_m: Option<Widths>,
+    smoothing_tolerance_m: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum FormFrame {
+    Metres,
+    LonLat,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a number of metres, or a list with one a point")]
+enum Widths {
+    All(f64),
+    Each(Vec<f64>),
+}
+
+impl Widths {
+    fn into_vec(self) -> Vec<f64> {
+        match self {
+            Self::All(width) => vec![width],
+            Self::Each(widths) => widths,
+        }
+    }
+}
+
+/// The corridor that a JSON text describes (frame, points, widths, smoothing tolerance), stations a metre
+/// apart. Without `smoothing_tolerance_m`, 0.5 m.
+pub fn corridor_from_file(json: &str) -> Result<FileCorridor, FileError> {
+    let form: Form = serde_json::from_str(json)?;
+    let (left, right) = half_widths(form.width_m, form.left_m, form.right_m)?;
+    let (frame, points) = match form.frame {
+        FormFrame::Metres => (None, form.points),
+        FormFrame::LonLat => {
+            let degrees: Vec<(f64, f64)> = form.points.iter().map(|p| (p[0], p[1])).collect();
+            let frame = Frame::around_degrees(degrees.iter().copied())?;
+            (Some(frame), frame.forward_degrees(degrees)?)
+        }
+    };
+    let params = Params::default();
+    let tolerance_m = form.smoothing_tolerance_m.unwrap_or(params.tolerance_m);
+    let corridor = Corridor::from_centreline(&points, &left, &right, tolerance_m, params.spacing_m)?;
+    Ok(FileCorridor { corridor, frame })
+}
+
+type HalfWidths = (Vec<f64>, Vec<f64>);
+
+fn half_widths(
+    width: Option<Widths>,
+    left: Option<Widths>,
+    right: Option<Widths>,
+) -> Result<HalfWidths, CentrelineError> {
+    match (width, left, right) {
+        (Some(width), None, None) => {
+            let width = width.into_vec();
+            if let Some(i) = width.iter().position(|w| !(*w > 0.0 && w.is_finite())) {
+                let field = if width.len() == 1 { "width_m".to_owned() } else { format!("width_m[{i}]") };
+                return Err(CentrelineError::value(
+                    field,
+                    format!("{} is no width in metres; expected more than 0", width[i]),
+                ));
+            }
+            let half: Vec<f64> = width.iter().map(|w| 0.5 * w).collect();
+            Ok((half.clone(), half))
+        }
+        (None, Some(left), Some(right)) => Ok((left.into_vec(), right.into_vec())),
+        (Some(_), ..) => {
+            Err(CentrelineError::value("width_m", "stands beside left_m or right_m; give one or the others"))
+        }
+        (None, Some(_), None) => Err(CentrelineError::value("right_m", "missing beside left_m")),
+        (None, None, Some(_)) => Err(CentrelineError::value("left_m", "missing beside right_m")),
+        (None, None, None) => Err(CentrelineError::value("width_m", "missing; give width_m, or left_m and right_m")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_file_in_metres_is_a_corridor_in_the_same_metres() {
+        let json = r#"{"frame": "metres", "points": [[1000, 10], [1050, 10], [1100, 10]], "width_m": 7.0}"#;
+        let c = corridor_from_file(json).unwrap();
+        assert_eq!((c.corridor.len(), c.corridor.left_m[50], c.corridor.right_m[100]), (101, 3.5, 3.5));
+        assert!((c.corridor.x[40] - 1040.0).abs() < 1e-9 && (c.corridor.y[40] - 10.0).abs() < 1e-9);
+        assert_eq!(c.to_input(&[[1.0, 2.0]]).unwrap(), [[1.0, 2.0]]);
+    }
+
+    #[test]
+    fn a_file_in_degrees_goes_to_metres_and_back() {
+        let json = r#"{"frame": "lonlat", "points": [[179.999, -36.5], [-179.999, -36.5]],
+            "left_m": [2, 3], "right_m": 1.5, "smoothing_tolerance_m": 0}"#;
+        let c = corridor_from_file(json).unwrap();
+        assert!((c.corridor.spacing_m * (c.corridor.len() - 1) as f64 - 179.2).abs() < 0.1);
+        let last = c.corridor.len() - 1;
+        assert_eq!((c.corridor.left_m[0], c.corridor.left_m[last], c.corridor.right_m[7]), (2.0, 3.0, 1.5));
+        let back = c.to_input(&[[c.corridor.x[last], c.corridor.y[last]]]).unwrap();
+        assert!((back[0][0] + 179.999).abs() < 1e-9 && (back[0][1] + 36.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named() {
+        let with = |rest: &str| {
+            let json = format!(r#"{{"points": [[0, 0], [9, 0]], {rest}}}"#);
+            corridor_from_file(&json).unwrap_err().to_string()
+        };
+        assert!(with(r#""width_m": 3"#).contains("missing field `frame`"));
+        assert!(with(r#""frame": "feet", "width_m": 3"#).contains("expected `metres` or `lonlat`"));
+        assert!(with(r#""frame": "metres", "width_m": "3 m""#).contains("expected a number of metres"));
+        assert!(with(r#""frame": "metres", "width": 3"#).contains("unknown field `width`"));
+        assert!(with(r#""frame": "metres""#).starts_with("width_m: missing"));
+        assert!(with(r#""frame": "metres", "left_m": 3"#).starts_with("right_m: missing"));
+        assert!(with(r#""frame": "metres", "left_m": 3, "width_m": 3"#).starts_with("width_m: stands beside"));
+        assert!(with(r#""frame": "metres", "width_m": [3, 0]"#).starts_with("width_m[1]: 0 is no width"));
+        assert!(with(r#""frame": "metres", "width_m": [3, 2, 3]"#).contains("3 values for 2 points"));
+        let off = r#"{"frame": "lonlat", "points": [[0, 0], [9, 91]], "width_m": 3}"#;
+        assert!(
+            corridor_from_file(off)
+                .unwrap_err()
+                .to_string()
+                .starts_with("points: position 1: longitude 9, latitude 91")
+        );
+    }
+}

@@ -1,0 +1,248 @@
+//! The width profile: from each edge's strip to two C² curves that never leave the strips.
+//!
+//! Left and right edge are cubic B-splines whose every coefficient is bounded by the narrowest strip in its reach; a
+//! B-spline being a convex mean, the corridor at every station is inside what that station's edge has (its strip; where
+//! the strip shifts sideways, within 60 m also the lanes it shifts across). No width is made up.
+
+use super::spline::Spline;
+
+/// Positions across the way's line, metres, positive left of travel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Across {
+    pub(crate) left_m: f64,
+    pub(crate) right_m: f64,
+}
+
+impl Across {
+    pub(crate) fn within(self, other: Self) -> bool {
+        self.left_m <= other.left_m && self.right_m >= other.right_m
+    }
+
+    fn meet(self, other: Self) -> Option<Self> {
+        let both = Self { left_m: self.left_m.min(other.left_m), right_m: self.right_m.max(other.right_m) };
+        (both.left_m > both.right_m).then_some(both)
+    }
+
+    fn hull(self, other: Self) -> Self {
+        Self { left_m: self.left_m.max(other.left_m), right_m: self.right_m.min(other.right_m) }
+    }
+}
+
+/// A stretch of the line with one strip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Stretch {
+    /// Arc length along the way's line.
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    /// What the vehicle may use.
+    pub(crate) strip: Across,
+    /// What it may also use while its strip shifts into another; contains `strip`.
+    pub(crate) shift: Across,
+}
+
+/// A narrow place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Gap {
+    pub(crate) at: f64,
+    pub(crate) room: Across,
+}
+
+/// Left and right edge and the corridor's centreline across the way's line: `[left, right, middle]`.
+pub(crate) type Profile = Spline<3>;
+
+/// Knots of the profile: a narrow place reaches four of them to each side.
+pub(crate) const KNOT_M: f64 = 2.5;
+/// A corridor is never narrower than this: no vehicle fits, but left stays left of right.
+pub(crate) const LEAST_WIDTH_M: f64 = 0.2;
+/// Half of a narrow place's own length, metres.
+const GAP_HALF_M: f64 = 0.5;
+/// Coefficients to each side over which strips are eroded, and then smoothed by two running means of half the reach: with a
+/// coefficient's own four knots, a change of strip is spread over 24 knots, 60 m, all inside the wider side.
+const REACH: usize = 10;
+
+/// The widest smooth profile inside the stretches, which follow each other from 0 to the last one's end.
+pub(crate) fn profile(stretches: &[Stretch], gaps: &[Gap]) -> Profile {
+    let length = stretches.last().map_or(0.0, |s| s.to);
+    let cells = ((length / KNOT_M).ceil() as usize).max(1);
+    let knot_m = length / cells as f64;
+    let limits = cell_limits(&with_shifts(stretches, knot_m), cells, knot_m);
+    let mut edges = tapered(&limits);
+    // The vehicle lines up for a narrow place over a whole taper, though the road narrows only there.
+    let lined_up = if gaps.is_empty() { edges.clone() } else { tapered(&with_gaps(limits, gaps, knot_m)) };
+    narrow(&mut edges, gaps, knot_m);
+    let coefficients =
+        edges.iter().zip(&lined_up).map(|(e, [l, r])| apart(e[0], e[1], f64::midpoint(*l, *r))).collect();
+    Spline { knot_m, coefficients }
+}
+
+/// Keeps the middle between the edges, and the edges apart.
+fn apart(left: f64, right: f64, middle: f64) -> [f64; 3] {
+    let half = 0.5 * LEAST_WIDTH_M;
+    if left - right < LEAST_WIDTH_M {
+        let middle = f64::midpoint(left, right);
+        return [middle + half, middle - half, middle];
+    }
+    [left, right, middle.clamp(right + half, left - half)]
+}
+
+/// Adds, around every place where the strip shifts sideways, the strip it shifts from or to, as far as the lanes there
+/// allow: a lane that is added beside another moves the kerb lane over, and a vehicle follows within its carriageway. Without
+/// it, two strips 1.75 m apart would meet in a corridor of half a lane.
+fn with_shifts(stretches: &[Stretch], knot_m: f64) -> Vec<Stretch> {
+    let mut out = stretches.to_vec();
+    for pair in stretches.windows(2) {
+        let [a, b] = pair else { continue };
+        if a.strip.within(b.strip) || b.strip.within(a.strip) {
+            continue;
+        }
+        // As far as a change reaches: then both edges move over side by side, at full width.
+        let length = (2 * REACH + 4) as f64 * knot_m;
+        let after = a.strip.within(b.shift);
+        if after || !b.strip.within(a.shift) {
+            allow(&mut out, a.to, a.to + length, a.strip);
+        }
+        if !after {
+            allow(&mut out, a.to - length, a.to, b.strip);
+        }
+    }
+    out
+}
+
+/// Widens the stretches between `from` and `to` by `strip`, as far as their lanes reach.
+fn allow(stretches: &mut Vec<Stretch>, from: f64, to: f64, strip: Across) {
+    let mut out = Vec::with_capacity(stretches.len() + 2);
+    for s in stretches.iter() {
+        let (inner_from, inner_to) = (s.from.max(from), s.to.min(to));
+        let Some(meet) = strip.meet(s.shift).filter(|_| inner_from < inner_to) else {
+            out.push(*s);
+            continue;
+        };
+        if s.from < inner_from {
+            out.push(Stretch { to: inner_from, ..*s });
+        }
+        out.push(Stretch { from: inner_from, to: inner_to, strip: s.strip.hull(meet), shift: s.shift });
+        if inner_to < s.to {
+            out.push(Stretch { from: inner_to, ..*s });
+        }
+    }
+    *stretches = out;
+}
+
+/// The narrowest of every cell, `[left, right]`.
+fn cell_limits(stretches: &[Stretch], cells: usize, knot_m: f64) -> Vec<[f64; 2]> {
+    let mut limits = vec![[f64::INFINITY, f64::NEG_INFINITY]; cells];
+    for s in stretches {
+        let first = ((s.from / knot_m).floor() as usize).min(cells - 1);
+        let last = ((s.to / knot_m).floor() as usize).min(cells - 1);
+        for limit in &mut limits[first..=last] {
+            *limit = [limit[0].min(s.strip.left_m), limit[1].max(s.strip.right_m)];
+        }
+    }
+    limits
+}
+
+/// Coefficients from cell limits: the narrowest of the four cells that a coefficient reaches.
+fn reach(limits: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let last = limits.len() - 1;
+    (0..limits.len() + 3).map(|k| narrowest(&limits[k.saturating_sub(3)..=k.min(last)])).collect()
+}
+
+fn narrowest(limits: &[[f64; 2]]) -> [f64; 2] {
+    limits.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |m, l| [m[0].min(l[0]), m[1].max(l[1])])
+}
+
+/// Erodes over ±REACH, then takes two running means over ±REACH/2 each: every mean is of values that are each within the
+/// limits here, so the result is.
+fn tapered(limits: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    if limits.windows(2).all(|w| w[0] == w[1]) {
+        return vec![limits[0]; limits.len() + 3];
+    }
+    let base = reach(limits);
+    let last = base.len() - 1;
+    let eroded: Vec<[f64; 2]> =
+        (0..base.len()).map(|k| narrowest(&base[k.saturating_sub(REACH)..=(k + REACH).min(last)])).collect();
+    running_mean(&running_mean(&eroded, REACH / 2), REACH / 2)
+}
+
+/// Mean over ±`half`, the ends repeated beyond themselves.
+fn running_mean(values: &[[f64; 2]], half: usize) -> Vec<[f64; 2]> {
+    let last = values.len() - 1;
+    let count = (2 * half + 1) as f64;
+    (0..values.len())
+        .map(|k| {
+            let at = |i: usize| values[(k + i).saturating_sub(half).min(last)];
+            let first = at(0);
+            // Differences from the first keep a constant constant to the last bit.
+            let sum =
+                (1..=2 * half).map(at).fold([0.0; 2], |s, v| [s[0] + (v[0] - first[0]), s[1] + (v[1] - first[1])]);
+            [first[0] + sum[0] / count, first[1] + sum[1] / count]
+        })
+        .collect()
+}
+
+/// The cells that a narrow place touches.
+fn cells_of(gap: &Gap, knot_m: f64, cells: usize) -> std::ops::RangeInclusive<usize> {
+    let cell = |u: f64| ((u / knot_m).max(0.0) as usize).min(cells - 1);
+    cell(gap.at - GAP_HALF_M)..=cell(gap.at + GAP_HALF_M)
+}
+
+fn with_gaps(mut limits: Vec<[f64; 2]>, gaps: &[Gap], knot_m: f64) -> Vec<[f64; 2]> {
+    let cells = limits.len();
+    for gap in gaps {
+        for limit in &mut limits[cells_of(gap, knot_m, cells)] {
+            *limit = [limit[0].min(gap.room.left_m), limit[1].max(gap.room.right_m)];
+        }
+    }
+    limits
+}
+
+/// Pulls the coefficients in so that the profile is inside each gap along its length: on a cell the profile is at most the
+/// largest of its four coefficients, so each gives up by how much that is too large.
+fn narrow(coefficients: &mut [[f64; 2]], gaps: &[Gap], knot_m: f64) {
+    let mut give_up = vec![[0.0_f64; 2]; coefficients.len()];
+    for gap in gaps {
+        for i in cells_of(gap, knot_m, coefficients.len() - 3) {
+            let (mut left, mut right) = (f64::NEG_INFINITY, f64::INFINITY);
+            for c in &coefficients[i..i + 4] {
+                (left, right) = (left.max(c[0]), right.min(c[1]));
+            }
+            for g in &mut give_up[i..i + 4] {
+                *g = [g[0].max(left - gap.room.left_m), g[1].max(gap.room.right_m - right)];
+            }
+        }
+    }
+    for (c, g) in coefficients.iter_mut().zip(give_up) {
+        *c = [c[0] - g[0], c[1] + g[1]];
+    }
+}
+
+/// Moves the profile onto the line itself where its middle would run round the inside of a bend too tight for it
+/// (κ·o > `most`) or where the line folds; gives the arc lengths where it would.
+///
+/// Those places get no certificate; the corridor only has to stay a curve there.
+pub(crate) fn limit_offset(profile: &mut Profile, line: &Spline<2>, most: f64, least_speed: f64) -> Vec<f64> {
+    let bad: Vec<f64> = (0..=2 * line.cells())
+        .map(|i| 0.5 * i as f64 * line.knot_m)
+        .filter(|&u| {
+            let [_, d1, d2, _] = line.at(u);
+            let speed = (d1[0] * d1[0] + d1[1] * d1[1]).sqrt();
+            let [_, _, middle] = profile.at(u)[0];
+            let curvature = (d1[0] * d2[1] - d1[1] * d2[0]) / (speed * speed * speed).max(1e-9);
+            !(speed >= least_speed && curvature * middle <= most)
+        })
+        .collect();
+    if bad.is_empty() {
+        return bad;
+    }
+    let mut share = vec![[0.0; 2]; profile.coefficients.len()];
+    for u in &bad {
+        let k = (u / profile.knot_m) as usize;
+        let to = (k + 3 + REACH).min(share.len() - 1);
+        share[k.saturating_sub(REACH).min(to)..=to].fill([1.0; 2]);
+    }
+    let share = running_mean(&share, REACH / 2);
+    for (c, [share, _]) in profile.coefficients.iter_mut().zip(share) {
+        *c = c.map(|across| across - share * c[2]);
+    }
+    bad
+}

@@ -1,0 +1,158 @@
+//! From a centreline and a profile about it to stations a uniform arc length apart.
+//!
+//! The corridor's centreline runs across the way's line where the profile says: an offset curve. Heading and curvature
+//! come from derivatives in closed form, not from differences of positions.
+
+use super::Corridor;
+use super::profile::Profile;
+use super::spline::Jet;
+
+/// Below this factor 1 − κ·o the offset curve is about to fold, and nothing is said of the edge.
+pub(crate) const LEAST_OFFSET_FACTOR: f64 = 0.3;
+
+/// A parametrised curve with edges across it.
+pub(crate) struct Track<'c, C> {
+    /// Position and derivatives.
+    pub(crate) curve: &'c C,
+    /// Edges and centreline across it, over the same parameter.
+    pub(crate) profile: &'c Profile,
+}
+
+/// One point of the corridor's centreline.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    position: [f64; 2],
+    /// Derivative of the position by the parameter.
+    velocity: [f64; 2],
+    curvature: f64,
+    left_m: f64,
+    right_m: f64,
+}
+
+impl<C: Fn(f64) -> Jet<2>> Track<'_, C> {
+    /// Offset curve C = c + o·n of c with unit tangent t, unit normal n: with speed v = |c′|, a = v(1 − κo) and b = o′,
+    /// C′ = a·t + b·n and C″ = (a′ − bκv)·t + (aκv + b′)·n.
+    fn at(&self, u: f64) -> Point {
+        let [p, d1, d2, d3] = (self.curve)(u);
+        let [[left, right, o], [.., b], [.., b1], _] = self.profile.at(u);
+        let speed = (d1[0] * d1[0] + d1[1] * d1[1]).sqrt().max(1e-9);
+        let t = [d1[0] / speed, d1[1] / speed];
+        let speed1 = t[0] * d2[0] + t[1] * d2[1];
+        let kappa = (t[0] * d2[1] - t[1] * d2[0]) / (speed * speed);
+        let kappa1 = (t[0] * d3[1] - t[1] * d3[0]) / (speed * speed) - 3.0 * kappa * speed1 / speed;
+        let a = speed * (1.0 - kappa * o);
+        let a1 = speed1 * (1.0 - kappa * o) - speed * (kappa1 * o + kappa * b);
+        let squared = a * a + b * b;
+        let turning = a * (a * kappa * speed + b1) - b * (a1 - b * kappa * speed);
+        Point {
+            position: [p[0] - o * t[1], p[1] + o * t[0]],
+            velocity: [a * t[0] - b * t[1], a * t[1] + b * t[0]],
+            curvature: turning / (squared * squared.sqrt()).max(1e-12),
+            left_m: left - o,
+            right_m: o - right,
+        }
+    }
+
+    fn speed(&self, u: f64) -> f64 {
+        let [_, d1, d2, _] = (self.curve)(u);
+        let [[.., o], [.., b], ..] = self.profile.at(u);
+        let squared = (d1[0] * d1[0] + d1[1] * d1[1]).max(1e-18);
+        let speed = squared.sqrt();
+        let kappa = (d1[0] * d2[1] - d1[1] * d2[0]) / (squared * speed);
+        let along = speed * (1.0 - kappa * o);
+        (along * along + b * b).sqrt()
+    }
+
+    /// Stations about `spacing_m` apart for parameters `from..=to`; also the arc length at steps of the parameter.
+    pub(crate) fn resample(&self, from: f64, to: f64, spacing_m: f64) -> (Corridor, ArcLength) {
+        let arc = ArcLength::measure(from, to, |u| self.speed(u));
+        let steps = ((arc.total() / spacing_m).round() as usize).max(1);
+        let n = steps + 1;
+        let spacing_m = arc.total() / steps as f64;
+        let mut c = Corridor {
+            spacing_m,
+            x: Vec::with_capacity(n),
+            y: Vec::with_capacity(n),
+            heading: Vec::with_capacity(n),
+            curvature: Vec::with_capacity(n),
+            left_m: Vec::with_capacity(n),
+            right_m: Vec::with_capacity(n),
+        };
+        let (mut hint, mut heading) = (0, 0.0_f64);
+        let mut before = [1.0, 0.0];
+        for i in 0..n {
+            let p = self.at(arc.parameter(i as f64 * spacing_m, &mut hint));
+            let v = p.velocity;
+            // The turn since the last station, so that the heading never jumps by 2π.
+            heading += (before[0] * v[1] - before[1] * v[0]).atan2(before[0] * v[0] + before[1] * v[1]);
+            before = v;
+            c.x.push(p.position[0]);
+            c.y.push(p.position[1]);
+            c.heading.push(heading);
+            c.curvature.push(p.curvature);
+            c.left_m.push(p.left_m);
+            c.right_m.push(p.right_m);
+        }
+        (c, arc)
+    }
+}
+
+/// Arc length as a function of a parameter, tabulated at steps near two metres, and back.
+#[derive(Debug, Clone)]
+pub(crate) struct ArcLength {
+    from: f64,
+    step: f64,
+    /// Arc length at the nodes, and the speed there.
+    nodes: Vec<(f64, f64)>,
+}
+
+impl ArcLength {
+    const STEP_M: f64 = 2.0;
+
+    fn measure(from: f64, to: f64, speed: impl Fn(f64) -> f64) -> Self {
+        let steps = (((to - from) / Self::STEP_M).ceil() as usize).max(1);
+        let step = (to - from) / steps as f64;
+        let mut before = speed(from);
+        let mut nodes = Vec::with_capacity(steps + 1);
+        nodes.push((0.0, before));
+        let mut sum = 0.0;
+        for i in 1..=steps {
+            let u = from + i as f64 * step;
+            let (middle, end) = (speed(u - 0.5 * step), speed(u));
+            sum += step / 6.0 * (before + 4.0 * middle + end);
+            nodes.push((sum, end));
+            before = end;
+        }
+        Self { from, step, nodes }
+    }
+
+    pub(crate) fn total(&self) -> f64 {
+        self.nodes.last().map_or(0.0, |n| n.0)
+    }
+
+    /// Arc length at a parameter: the cubic with the table's values and speeds.
+    pub(crate) fn at(&self, u: f64) -> f64 {
+        let scaled = ((u - self.from) / self.step).clamp(0.0, (self.nodes.len() - 1) as f64);
+        let i = (scaled as usize).min(self.nodes.len() - 2);
+        let (a, b) = (self.nodes[i], self.nodes[i + 1]);
+        hermite(scaled - i as f64, a.0, b.0, a.1 * self.step, b.1 * self.step)
+    }
+
+    /// Parameter at an arc length; `hint` moves forward with it.
+    pub(crate) fn parameter(&self, s: f64, hint: &mut usize) -> f64 {
+        while *hint + 2 < self.nodes.len() && self.nodes[*hint + 1].0 <= s {
+            *hint += 1;
+        }
+        let (a, b) = (self.nodes[*hint], self.nodes[*hint + 1]);
+        let length = b.0 - a.0;
+        let along = (s - a.0) / length.max(1e-12);
+        let inner = hermite(along, 0.0, self.step, length / a.1.max(1e-9), length / b.1.max(1e-9));
+        self.from + *hint as f64 * self.step + inner.clamp(0.0, self.step)
+    }
+}
+
+/// The cubic on 0..=1 with the given end values and slopes.
+fn hermite(t: f64, from: f64, to: f64, slope_from: f64, slope_to: f64) -> f64 {
+    let chord = to - from;
+    from + t * (chord + (1.0 - t) * ((1.0 - t) * (slope_from - chord) - t * (slope_to - chord)))
+}

@@ -1,0 +1,116 @@
+//! The account of network building: every way read gives edges or is left out for a reason, every direction of every
+//! piece of road is an edge or is not driven; the counts add up.
+
+use super::Edge;
+use super::cut::Unusable;
+use crate::account::AccountRow;
+
+/// Counts of a run. `ways_read = ways_kept + Σ left out`, `directions = edges + not_driven`.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct NetworkAccount {
+    /// Ways that came in.
+    pub ways_read: u64,
+    /// Ways that have edges.
+    pub ways_kept: u64,
+    /// Left out: the file has none of its nodes.
+    pub no_node_in_file: u64,
+    /// Left out: the file has some of its nodes, no two of them consecutive.
+    pub nodes_apart: u64,
+    /// Left out: all of its nodes stand at one place.
+    pub one_place: u64,
+    /// Node references that the file has no node for.
+    pub missing_references: u64,
+    /// Nodes made one with a neighbour at the same place.
+    pub same_place_nodes: u64,
+    /// Both directions of every piece of road between two cuts.
+    pub directions: u64,
+    /// Directed edges made.
+    pub edges: u64,
+    /// Directions that the tags do not allow.
+    pub not_driven: u64,
+    /// Edges at whose start or end a node is missing.
+    pub cut_edges: u64,
+    /// Edges barred by a barrier on them or at their ends.
+    pub barred_edges: u64,
+    /// Edges with a narrow place.
+    pub narrowed_edges: u64,
+    /// Edges with limits from a node.
+    pub node_limited_edges: u64,
+    /// Edges whose id was taken.
+    pub id_collisions: u64,
+    /// Strokes made.
+    pub strokes: u64,
+    /// Strokes that run into themselves.
+    pub closed_strokes: u64,
+    /// Strokes that begin because the one before became too long.
+    pub strokes_split: u64,
+    /// Open strokes with an approach.
+    pub strokes_with_approach: u64,
+    /// Nodes at which too many edges meet for any to be called straight on.
+    pub crowded_nodes: u64,
+}
+
+impl NetworkAccount {
+    pub(super) fn leave_out(&mut self, why: Unusable) {
+        match why {
+            Unusable::NoNodeInFile => self.no_node_in_file += 1,
+            Unusable::NodesApart => self.nodes_apart += 1,
+            Unusable::OnePlace => self.one_place += 1,
+        }
+    }
+
+    /// Counts an edge made; `limited`: by the tags of a node.
+    pub(super) fn count_edge(&mut self, edge: &Edge, limited: bool) {
+        self.edges += 1;
+        self.cut_edges += u64::from(edge.cut);
+        self.barred_edges += u64::from(edge.barred);
+        self.narrowed_edges += u64::from(!edge.narrowings.is_empty());
+        self.node_limited_edges += u64::from(limited);
+    }
+
+    /// Adds what a part of the ways counted.
+    pub(super) fn add_part(&mut self, part: &Self) {
+        self.ways_read += part.ways_read;
+        self.ways_kept += part.ways_kept;
+        self.no_node_in_file += part.no_node_in_file;
+        self.nodes_apart += part.nodes_apart;
+        self.one_place += part.one_place;
+        self.directions += part.directions;
+        self.edges += part.edges;
+        self.not_driven += part.not_driven;
+        self.cut_edges += part.cut_edges;
+        self.barred_edges += part.barred_edges;
+        self.narrowed_edges += part.narrowed_edges;
+        self.node_limited_edges += part.node_limited_edges;
+    }
+
+    /// The lines of the account, stage `network`. Edges are counted against both directions of every piece.
+    #[must_use]
+    pub fn rows(&self) -> Vec<AccountRow> {
+        [
+            ("way", "read", "", self.ways_read),
+            ("way", "kept", "", self.ways_kept),
+            ("way", "left_out", "no_node_in_file", self.no_node_in_file),
+            ("way", "left_out", "nodes_apart", self.nodes_apart),
+            ("way", "left_out", "one_place", self.one_place),
+            ("node", "noted", "missing_reference", self.missing_references),
+            ("node", "noted", "same_place_merged", self.same_place_nodes),
+            ("node", "noted", "crowded", self.crowded_nodes),
+            ("edge", "read", "", self.directions),
+            ("edge", "kept", "", self.edges),
+            ("edge", "left_out", "oneway", self.not_driven),
+            ("edge", "noted", "cut", self.cut_edges),
+            ("edge", "noted", "barred", self.barred_edges),
+            ("edge", "noted", "narrowed", self.narrowed_edges),
+            ("edge", "noted", "limited_by_node", self.node_limited_edges),
+            ("edge", "noted", "id_collision", self.id_collisions),
+            ("stroke", "read", "", self.strokes),
+            ("stroke", "noted", "closed", self.closed_strokes),
+            ("stroke", "noted", "split_by_length", self.strokes_split),
+            ("stroke", "noted", "with_approach", self.strokes_with_approach),
+        ]
+        .into_iter()
+        .map(|(item, outcome, reason, count)| AccountRow::new("network", item, outcome, reason, count))
+        .collect()
+    }
+}

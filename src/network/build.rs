@@ -1,0 +1,45 @@
+//! From an extract to a network: the steps, in order.
+//!
+//! The same extract gives the same network whatever the number of threads. Takes the extract by value and frees each
+//! part as soon as nothing needs it any more.
+
+use super::edges::Source;
+use super::vertices::Vertices;
+use super::{Network, NetworkAccount, StrokeOptions, edge_id, stroke};
+use crate::osm::facts::{CrossSection, Place, WayFacts};
+use crate::osm::{Extract, LonLat};
+
+/// [`build_with`] the default strokes.
+pub fn build(
+    extract: Extract,
+    places: &(impl Fn(LonLat) -> Place + Sync),
+    sections: &(impl Fn(&WayFacts, &Place) -> [CrossSection; 2] + Sync),
+) -> (Network, NetworkAccount) {
+    build_with(extract, places, sections, &StrokeOptions::default())
+}
+
+/// Cuts an extract's ways into directed edges and chains them into strokes.
+///
+/// `places` says which country's rules hold at a position; it is asked once a way, at its first located node.
+/// `sections` gives a way's strips along its node order and against it.
+pub fn build_with(
+    extract: Extract,
+    places: &(impl Fn(LonLat) -> Place + Sync),
+    sections: &(impl Fn(&WayFacts, &Place) -> [CrossSection; 2] + Sync),
+    options: &StrokeOptions,
+) -> (Network, NetworkAccount) {
+    let Extract { ways, refs, nodes, points, strings, .. } = extract;
+    let vertices = Vertices::resolve(&ways, &refs, &nodes, &points);
+    drop((refs, points));
+    let mut account = NetworkAccount {
+        missing_references: vertices.missing,
+        same_place_nodes: vertices.merged,
+        ..NetworkAccount::default()
+    };
+    let mut network = Network { strings, ..Network::default() };
+    Source { nodes: &nodes, vertices: &vertices, places, sections }.build(&ways, &mut network, &mut account);
+    drop((ways, nodes, vertices));
+    account.id_collisions = edge_id::resolve_collisions(&mut network.edges);
+    stroke::chain(&mut network, options, &mut account);
+    (network, account)
+}

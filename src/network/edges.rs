@@ -1,0 +1,182 @@
+//! Cut ways become roads and directed edges, in parallel, in batches whose results are joined in way order.
+//!
+//! A tagged node counts for every edge that touches it, its ends included: a gate drawn on a junction bars all roads
+//! that meet there. That may forbid too much, never too little; which arm the gate closes is not in the data.
+
+use rayon::prelude::*;
+
+use super::cut::{CutWay, Piece};
+use super::edge_id::edge_id;
+use super::vertices::{MISSING, Vertices, of_way};
+use super::{Edge, Narrowing, Network, NetworkAccount, Road};
+use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, Place, WayFacts};
+use crate::osm::{LonLat, NodeTable, Way};
+
+/// Ways a task, and tasks a batch: a batch's edges wait beside the network until they are joined to it, so it is small
+/// against a large extract, and a task is long against what handing it out costs.
+const WAYS_PER_TASK: usize = 1024;
+const TASKS_PER_BATCH: usize = 128;
+
+/// What all ways are built from.
+pub(super) struct Source<'s, P, S> {
+    pub(super) nodes: &'s NodeTable,
+    pub(super) vertices: &'s Vertices,
+    pub(super) places: &'s P,
+    pub(super) sections: &'s S,
+}
+
+impl<P, S> Source<'_, P, S>
+where
+    P: Fn(LonLat) -> Place + Sync,
+    S: Fn(&WayFacts, &Place) -> [CrossSection; 2] + Sync,
+{
+    /// Appends the roads and edges of all ways.
+    pub(super) fn build(&self, ways: &[Way], network: &mut Network, account: &mut NetworkAccount) {
+        for batch in ways.chunks(WAYS_PER_TASK * TASKS_PER_BATCH) {
+            let parts: Vec<Part> = batch.par_chunks(WAYS_PER_TASK).map(|ways| self.part(ways)).collect();
+            for part in parts {
+                account.add_part(&part.account);
+                join(network, part.network);
+            }
+        }
+    }
+
+    fn part(&self, ways: &[Way]) -> Part {
+        let mut part = Part::default();
+        let mut cut = CutWay::default();
+        for way in ways {
+            part.account.ways_read += 1;
+            let vertices = of_way(&self.vertices.of_refs, way);
+            match cut.cut(vertices, |v| self.vertices.is_junction(v)) {
+                Ok(()) => {
+                    part.account.ways_kept += 1;
+                    self.add_way(way, vertices, &cut, &mut part);
+                }
+                Err(why) => part.account.leave_out(why),
+            }
+        }
+        part
+    }
+
+    fn add_way(&self, way: &Way, vertices: &[u32], cut: &CutWay, part: &mut Part) {
+        let first = vertices.iter().copied().find(|&v| v != MISSING).unwrap_or(cut.line[0]);
+        let place = (self.places)(self.position(first));
+        let road = road(way, &place, (self.sections)(&way.facts, &place));
+        let base = part.network.shapes.len();
+        part.network.shapes.extend(cut.line.iter().map(|&v| self.position(v)));
+        let edges = part.network.edges.len();
+        for piece in &cut.pieces {
+            self.add_piece(&road, cut, piece, base, part);
+        }
+        number(&mut part.network.edges[edges..], way.id);
+        part.network.roads.push(road);
+    }
+
+    fn add_piece(&self, road: &Road, cut: &CutWay, piece: &Piece, base: usize, part: &mut Part) {
+        let line = &cut.line[piece.vertices.clone()];
+        let narrowings = part.network.narrowings.len() as u32;
+        let mut barred = false;
+        let mut limits: Option<Legal> = None;
+        for (i, &v) in line.iter().enumerate() {
+            let Some(point) = self.vertices.point(v) else { continue };
+            barred |= point.barred;
+            limits = Some(limits.map_or(point.legal, |known| known.merge(point.legal)));
+            if let Some(passage_m) = point.passage_m {
+                part.network.narrowings.push(Narrowing { vertex: i as u32, passage_m });
+            }
+        }
+        let narrowings = narrowings..part.network.narrowings.len() as u32;
+        let node = |v: Option<&u32>| v.map_or(0, |&v| self.nodes.ids[v as usize]);
+        let ends = [node(line.first()), node(line.last())];
+        for direction in [Direction::Forward, Direction::Backward] {
+            part.account.directions += 1;
+            if !driven(road.oneway, direction) {
+                part.account.not_driven += 1;
+                continue;
+            }
+            let of_road = road.legal[direction as usize];
+            let edge = Edge {
+                id: 0,
+                road: part.network.roads.len() as u32,
+                from_node: ends[direction as usize],
+                to_node: ends[1 - direction as usize],
+                direction,
+                shape: (base + piece.vertices.start) as u32..(base + piece.vertices.end) as u32,
+                narrowings: narrowings.clone(),
+                legal: limits.map_or(of_road, |limits| of_road.merge(limits)),
+                barred,
+                cut: piece.cut,
+            };
+            part.account.count_edge(&edge, limits.is_some_and(|limits| limits != Legal::default()));
+            part.network.edges.push(edge);
+        }
+    }
+
+    /// Vertices are located, or they would be [`MISSING`].
+    fn position(&self, vertex: u32) -> LonLat {
+        self.nodes.places[vertex as usize].unwrap_or(LonLat { lon_e7: 0, lat_e7: 0 })
+    }
+}
+
+/// Some consecutive ways' share of the network, with ranges and indices from 0.
+#[derive(Default)]
+struct Part {
+    network: Network,
+    account: NetworkAccount,
+}
+
+fn join(network: &mut Network, part: Network) {
+    let road = network.roads.len() as u32;
+    let shape = network.shapes.len() as u32;
+    let narrowing = network.narrowings.len() as u32;
+    network.roads.extend(part.roads);
+    network.shapes.extend(part.shapes);
+    network.narrowings.extend(part.narrowings);
+    network.edges.extend(part.edges.into_iter().map(|edge| Edge {
+        road: edge.road + road,
+        shape: edge.shape.start + shape..edge.shape.end + shape,
+        narrowings: edge.narrowings.start + narrowing..edge.narrowings.end + narrowing,
+        ..edge
+    }));
+}
+
+fn road(way: &Way, place: &Place, sections: [CrossSection; 2]) -> Road {
+    let facts = &way.facts;
+    Road {
+        way_id: way.id,
+        class: facts.class,
+        link: facts.link,
+        roundabout: facts.roundabout,
+        // Nobody drives a roundabout against its arrows, whatever else its tags say.
+        oneway: if facts.roundabout && facts.oneway == Oneway::No { Oneway::Forward } else { facts.oneway },
+        name: facts.name,
+        reference: facts.reference,
+        lanes: facts.tagged_lanes(),
+        country: place.country,
+        left_hand_traffic: place.left_hand_traffic,
+        sections,
+        legal: [facts.legal_forward, facts.legal_backward],
+    }
+}
+
+fn driven(oneway: Oneway, direction: Direction) -> bool {
+    match oneway {
+        Oneway::No => true,
+        Oneway::Forward => direction == Direction::Forward,
+        Oneway::Backward => direction == Direction::Backward,
+    }
+}
+
+/// Gives one way's edges their ids: those of which all else is the same are told apart by their order along the way.
+fn number(edges: &mut [Edge], way_id: i64) {
+    let same = |e: &Edge| (e.from_node, e.to_node, e.direction);
+    let mut order: Vec<usize> = (0..edges.len()).collect();
+    order.sort_by_key(|&i| same(&edges[i]));
+    let mut ordinal = 0;
+    for (k, &i) in order.iter().enumerate() {
+        let repeats = k > 0 && same(&edges[order[k - 1]]) == same(&edges[i]);
+        ordinal = if repeats { ordinal + 1 } else { 0 };
+        let (from, to, direction) = same(&edges[i]);
+        edges[i].id = edge_id(way_id, from, to, direction, ordinal);
+    }
+}

@@ -1,0 +1,133 @@
+//! Lengths and headings of edges, near enough to choose what goes straight on: on a sphere, locally flat. Certificates
+//! use the metric frame of `corridor` instead.
+
+use rayon::prelude::*;
+
+use super::{Edge, Network};
+use crate::osm::LonLat;
+
+/// Mean radius of the earth (IUGG), metres: lengths are right to 0.6 %.
+const EARTH_RADIUS_M: f64 = 6_371_008.8;
+
+/// What choosing needs to know of every edge.
+pub(super) struct Geometry {
+    /// Metres.
+    pub(super) length_m: Vec<f32>,
+    /// Direction in which the edge leaves its first node, and in which it leaves its last node going back; degrees
+    /// from east towards north.
+    pub(super) outward_deg: Vec<[f32; 2]>,
+}
+
+impl Geometry {
+    /// Measures all edges; a heading is that of the chord over the first `reach_m` of an edge.
+    pub(super) fn measure(network: &Network, reach_m: f64) -> Self {
+        let (length_m, outward_deg) = network
+            .edges
+            .par_iter()
+            .map(|edge| {
+                let length_m = length_m(network.positions(edge));
+                // The chord over the whole of a loop is nothing.
+                let reach_m = if edge.from_node == edge.to_node { reach_m.min(length_m / 2.0) } else { reach_m };
+                let ahead = chord_deg(network.positions(edge), reach_m);
+                let back = chord_deg(network.positions(edge).rev(), reach_m);
+                (length_m as f32, [ahead as f32, back as f32])
+            })
+            .unzip();
+        Self { length_m, outward_deg }
+    }
+
+    /// By how much a vehicle turns from edge `a` into edge `b`, degrees, 0..=180.
+    pub(super) fn deflection_deg(&self, a: u32, b: u32) -> f64 {
+        deflection_deg(f64::from(self.outward_deg[a as usize][1]), f64::from(self.outward_deg[b as usize][0]))
+    }
+}
+
+/// The same over the segments next to the node only.
+pub(super) fn segment_deflection_deg(network: &Network, a: &Edge, b: &Edge) -> f64 {
+    deflection_deg(chord_deg(network.positions(a).rev(), 0.0), chord_deg(network.positions(b), 0.0))
+}
+
+/// From two directions that leave a node: 0 where one is the other's opposite.
+fn deflection_deg(back: f64, ahead: f64) -> f64 {
+    let between = (back - ahead).abs() % 360.0;
+    180.0 - between.min(360.0 - between)
+}
+
+fn length_m(positions: impl Iterator<Item = LonLat>) -> f64 {
+    let mut last = None;
+    let mut sum = 0.0;
+    for position in positions {
+        if let Some(last) = last.replace(position) {
+            let [x, y] = offset_m(last, position);
+            sum += x.hypot(y);
+        }
+    }
+    sum
+}
+
+/// Direction of the chord from the first position to the point `reach_m` along the line, or to its end if it is
+/// shorter, but over one segment at least.
+fn chord_deg(mut positions: impl Iterator<Item = LonLat>, reach_m: f64) -> f64 {
+    let Some(mut last) = positions.next() else { return 0.0 };
+    let mut chord = [0.0_f64; 2];
+    let mut left_m = reach_m;
+    for position in positions {
+        let [x, y] = offset_m(last, position);
+        let length_m = x.hypot(y);
+        let share = if chord == [0.0, 0.0] && left_m <= 0.0 { 1.0 } else { (left_m / length_m).min(1.0) };
+        chord = [chord[0] + share * x, chord[1] + share * y];
+        left_m -= length_m;
+        last = position;
+        if left_m <= 0.0 {
+            break;
+        }
+    }
+    chord[1].atan2(chord[0]).to_degrees()
+}
+
+/// East and north from `a` to `b`, metres; across the date line the short way.
+fn offset_m(a: LonLat, b: LonLat) -> [f64; 2] {
+    const TURN_E7: i64 = 3_600_000_000;
+    let mut lon_e7 = i64::from(b.lon_e7) - i64::from(a.lon_e7);
+    if lon_e7.abs() > TURN_E7 / 2 {
+        lon_e7 -= lon_e7.signum() * TURN_E7;
+    }
+    let (lat_a, lat_b) = (a.degrees().1.to_radians(), b.degrees().1.to_radians());
+    let lon = (lon_e7 as f64 * 1e-7).to_radians();
+    [EARTH_RADIUS_M * lon * f64::midpoint(lat_a, lat_b).cos(), EARTH_RADIUS_M * (lat_b - lat_a)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(lon: f64, lat: f64) -> LonLat {
+        LonLat { lon_e7: (lon * 1e7).round() as i32, lat_e7: (lat * 1e7).round() as i32 }
+    }
+
+    #[test]
+    fn a_degree_has_its_length_also_across_the_date_line() {
+        let degree_m = EARTH_RADIUS_M.to_radians();
+        let across = length_m([at(179.5, 60.0), at(-179.5, 60.0)].into_iter());
+        assert!((across - degree_m / 2.0).abs() < 1e-3, "{across}");
+        let north = length_m([at(0.0, -0.5), at(0.0, 0.5)].into_iter());
+        assert!((north - degree_m).abs() < 1e-6, "{north}");
+    }
+
+    #[test]
+    fn a_heading_looks_past_a_tiny_first_segment() {
+        // One metre north, then a hundred metres east.
+        let line = [at(0.0, 0.0), at(0.0, 0.000_009), at(0.000_9, 0.000_009)];
+        assert!((chord_deg(line.into_iter(), 0.0) - 90.0).abs() < 1e-9);
+        let far = chord_deg(line.into_iter(), 15.0);
+        assert!((3.0..6.0).contains(&far), "{far}");
+    }
+
+    #[test]
+    fn straight_on_is_no_deflection_and_back_is_all() {
+        assert!(deflection_deg(180.0, 0.0).abs() < 1e-12);
+        assert!(deflection_deg(-170.0, 10.0).abs() < 1e-12);
+        assert!((deflection_deg(30.0, 30.0) - 180.0).abs() < 1e-12);
+        assert!((deflection_deg(-175.0, 95.0) - 90.0).abs() < 1e-12);
+    }
+}

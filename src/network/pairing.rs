@@ -1,0 +1,219 @@
+//! What goes straight on at each node: an incoming and an outgoing edge are paired where each is the other's best
+//! continuation. Independent of the order in which edges stand, and of the way's own direction.
+
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+
+use rayon::prelude::*;
+
+use super::geometry::{Geometry, segment_deflection_deg};
+use super::{Edge, Network, Road, StrokeOptions};
+use crate::osm::LonLat;
+use crate::osm::facts::Direction;
+
+/// No edge.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// Edges at one node beyond which none of them is called straight on: no real junction has them, and a made-up file
+/// could make the work quadratic.
+const CROWD: usize = 256;
+
+/// Which edge follows and precedes which.
+pub(super) struct Pairing {
+    /// By edge: the one straight on after it, or [`NONE`].
+    pub(super) next: Vec<u32>,
+    /// By edge: the one that continues into it, else the one that a vehicle most plausibly comes from, or [`NONE`].
+    pub(super) before: Vec<u32>,
+    /// Nodes with more edges than can be told apart.
+    pub(super) crowded: u64,
+}
+
+impl Pairing {
+    /// Whether the edge before `edge` continues straight on into it.
+    pub(super) fn continues(&self, edge: u32) -> bool {
+        let before = self.before[edge as usize];
+        before != NONE && self.next[before as usize] == edge
+    }
+
+    /// Pairs the edges at every node.
+    pub(super) fn find(network: &Network, geometry: &Geometry, options: &StrokeOptions) -> Self {
+        let mut ends: Vec<End> = (0..network.edges.len() as u32)
+            .into_par_iter()
+            .flat_map_iter(|edge| {
+                let e = &network.edges[edge as usize];
+                [End { node: e.to_node, leaves: false, edge }, End { node: e.from_node, leaves: true, edge }]
+            })
+            .collect();
+        ends.par_sort_unstable();
+        // Every slot belongs to one node, so that no two tasks write the same one.
+        let slots = || (0..network.edges.len()).map(|_| AtomicU32::new(NONE)).collect::<Vec<_>>();
+        let (next, before) = (slots(), slots());
+        let crowded = AtomicU64::new(0);
+        ends.par_chunk_by(|a, b| a.node == b.node).for_each(|ends| {
+            if ends.len() > CROWD {
+                crowded.fetch_add(1, Ordering::Relaxed);
+            } else {
+                Junction::new(network, geometry, options, ends).pair(&next, &before);
+            }
+        });
+        let plain = |slots: Vec<AtomicU32>| slots.into_iter().map(AtomicU32::into_inner).collect();
+        Self { next: plain(next), before: plain(before), crowded: crowded.into_inner() }
+    }
+}
+
+/// One end of a directed edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct End {
+    node: i64,
+    leaves: bool,
+    edge: u32,
+}
+
+/// Two edges, and how badly they continue each other.
+struct Candidate {
+    /// Less is better. Thousandths of a degree, so that rounding errors make no difference.
+    cost: u32,
+    /// The one that arrives and the one that leaves, in an order that does not depend on which is which.
+    ends: [End; 2],
+}
+
+struct Junction<'n> {
+    network: &'n Network,
+    geometry: &'n Geometry,
+    options: &'n StrokeOptions,
+    arriving: &'n [End],
+    leaving: &'n [End],
+    /// Two ends of road meet here and no more: the road goes on, however it bends.
+    two_ends: bool,
+}
+
+impl<'n> Junction<'n> {
+    fn new(network: &'n Network, geometry: &'n Geometry, options: &'n StrokeOptions, ends: &'n [End]) -> Self {
+        let (arriving, leaving) = ends.split_at(ends.partition_point(|end| !end.leaves));
+        // An edge that leaves and its reverse that arrives are one end of road.
+        let reversed = |end: &End| arriving.iter().any(|a| reverse(network, a.edge, end.edge));
+        let alone = leaving.iter().filter(|end| !reversed(end)).count();
+        Self { network, geometry, options, arriving, leaving, two_ends: arriving.len() + alone == 2 }
+    }
+
+    fn pair(&self, next: &[AtomicU32], before: &[AtomicU32]) {
+        for a in self.arriving {
+            let best = self.best(self.leaving, |b| self.straight_on(a, b));
+            if let Some(b) = best
+                && self.best(self.arriving, |a| self.straight_on(a, b)) == Some(a)
+            {
+                next[a.edge as usize].store(b.edge, Ordering::Relaxed);
+                before[b.edge as usize].store(a.edge, Ordering::Relaxed);
+            }
+        }
+        for b in self.leaving {
+            let slot = &before[b.edge as usize];
+            if slot.load(Ordering::Relaxed) == NONE {
+                let origin = self.best(self.arriving, |a| self.from(a, b));
+                slot.store(origin.map_or(NONE, |a| a.edge), Ordering::Relaxed);
+            }
+        }
+    }
+
+    /// The end whose candidate is the least, if any has one.
+    fn best(&self, ends: &'n [End], candidate: impl Fn(&End) -> Option<Candidate>) -> Option<&'n End> {
+        let candidates = ends.iter().filter_map(|end| Some((candidate(end)?, end)));
+        candidates.min_by(|(x, _), (y, _)| self.compare(x, y)).map(|(_, end)| end)
+    }
+
+    /// One order of all pairs at a node, so that the least is the best of both its edges. No two are alike unless
+    /// they are in the same place and of the same way; those are taken in edge order.
+    fn compare(&self, x: &Candidate, y: &Candidate) -> std::cmp::Ordering {
+        let by_line =
+            || self.compare_ends(&x.ends[0], &y.ends[0]).then_with(|| self.compare_ends(&x.ends[1], &y.ends[1]));
+        let by_index = || x.ends.map(|end| end.edge).cmp(&y.ends.map(|end| end.edge));
+        x.cost.cmp(&y.cost).then_with(by_line).then_with(by_index)
+    }
+
+    /// By what an end of road is, seen from the node: its way, where it leads, and its line.
+    fn compare_ends(&self, x: &End, y: &End) -> std::cmp::Ordering {
+        let name = |end: &End| {
+            let edge = self.edge(end.edge);
+            (self.network.road(edge).way_id, if end.leaves { edge.to_node } else { edge.from_node })
+        };
+        name(x).cmp(&name(y)).then_with(|| self.outward(x).cmp(self.outward(y)))
+    }
+
+    fn outward(&self, end: &End) -> impl Iterator<Item = LonLat> + 'n {
+        let edge = self.edge(end.edge);
+        let shape = &self.network.shapes[edge.shape.start as usize..edge.shape.end as usize];
+        let in_way_order = (edge.direction == Direction::Forward) == end.leaves;
+        (0..shape.len()).map(move |i| shape[if in_way_order { i } else { shape.len() - 1 - i }])
+    }
+
+    /// Going straight on from `a` into `b`, if that is what one does.
+    fn straight_on(&self, a: &End, b: &End) -> Option<Candidate> {
+        if reverse(self.network, a.edge, b.edge) {
+            return None;
+        }
+        let (from, to) = (self.road(a.edge), self.road(b.edge));
+        let deflection_deg = self.geometry.deflection_deg(a.edge, b.edge);
+        let limit_deg = if self.two_ends {
+            self.options.reversal_deg
+        } else if from.roundabout != to.roundabout {
+            return None;
+        } else if from.roundabout {
+            180.0
+        } else if from.way_id == to.way_id {
+            self.options.same_way_limit_deg
+        } else {
+            self.options.straight_limit_deg
+        };
+        let goes = deflection_deg <= limit_deg || (self.two_ends && self.bends_back(a.edge, b.edge) <= limit_deg);
+        goes.then(|| self.candidate(a, b, deflection_deg + unlike_deg(from, to)))
+    }
+
+    /// A hairpin whose apex is the node turns by more than the limit over its chords, but not at the node itself.
+    fn bends_back(&self, a: u32, b: u32) -> f64 {
+        segment_deflection_deg(self.network, self.edge(a), self.edge(b))
+    }
+
+    /// `a` as what one comes from into `b`, where nothing continues into `b`.
+    fn from(&self, a: &End, b: &End) -> Option<Candidate> {
+        let deflection_deg = self.geometry.deflection_deg(a.edge, b.edge);
+        let plausible = deflection_deg <= self.options.approach_limit_deg && !reverse(self.network, a.edge, b.edge);
+        plausible.then(|| self.candidate(a, b, deflection_deg))
+    }
+
+    fn candidate(&self, a: &End, b: &End, cost_deg: f64) -> Candidate {
+        let ends = if self.compare_ends(a, b).is_le() { [*a, *b] } else { [*b, *a] };
+        Candidate { cost: (cost_deg * 1e3).round() as u32, ends }
+    }
+
+    fn edge(&self, edge: u32) -> &'n Edge {
+        &self.network.edges[edge as usize]
+    }
+
+    fn road(&self, edge: u32) -> &'n Road {
+        self.network.road(self.edge(edge))
+    }
+}
+
+/// Whether two edges are the two directions of one piece of road.
+fn reverse(network: &Network, a: u32, b: u32) -> bool {
+    let (a, b) = (&network.edges[a as usize], &network.edges[b as usize]);
+    a.road == b.road && a.shape == b.shape && a.direction != b.direction
+}
+
+/// What a change of road counts for beside the angle, degrees: enough to tell the road from the ramp beside it, not
+/// enough to call a corner straight.
+fn unlike_deg(a: &Road, b: &Road) -> f64 {
+    if a.way_id == b.way_id {
+        return 0.0;
+    }
+    let known_same = |a: Option<_>, b: Option<_>| a.is_some() && a == b;
+    let same_ref = known_same(a.reference, b.reference);
+    let same_name = known_same(a.name, b.name);
+    let by_name = match (same_ref, same_name) {
+        (true, true) => 2.0,
+        (true, false) | (false, true) => 5.0,
+        (false, false) => 15.0,
+    };
+    let by_class = if a.class == b.class { 0.0 } else { 10.0 };
+    let by_link = if a.link == b.link { 0.0 } else { 10.0 };
+    by_name + by_class + by_link
+}

@@ -1,0 +1,145 @@
+//! Strokes: chains of edges, each continued straight on into the next, with the edges one comes from before the first.
+//!
+//! A certificate is made over a stroke, so that no kink stands where an edge ends and a vehicle longer than an edge has
+//! its real approach. Movements that are not straight on are turns, and not here.
+
+use super::geometry::Geometry;
+use super::pairing::{NONE, Pairing};
+use super::{Network, NetworkAccount, Stroke};
+
+/// What counts as straight on, and how long strokes and approaches are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StrokeOptions {
+    /// Headings at a node are taken over this much of an edge, metres: mapped junctions have bent ends.
+    pub heading_reach_m: f64,
+    /// The most that an edge turns into the next one, degrees.
+    pub straight_limit_deg: f64,
+    /// The same within one way: whoever drew it through meant it to go on, and on a hairpin of 12 m radius with a side
+    /// road at its apex two chords of 15 m stand at 72°.
+    pub same_way_limit_deg: f64,
+    /// Where only two ends of road meet, the road goes on unless it turns back by more than this, degrees.
+    pub reversal_deg: f64,
+    /// The most that an approach turns into a stroke's first edge, degrees.
+    pub approach_limit_deg: f64,
+    /// An approach ends with the edge that makes it this long, metres: a type 2 road train needs some 200 m to forget
+    /// how it came (design section 3).
+    pub approach_m: f64,
+    /// A stroke ends before the edge that would make it longer than this, metres.
+    pub max_length_m: f64,
+}
+
+impl Default for StrokeOptions {
+    fn default() -> Self {
+        Self {
+            heading_reach_m: 15.0,
+            straight_limit_deg: 45.0,
+            same_way_limit_deg: 75.0,
+            reversal_deg: 120.0,
+            approach_limit_deg: 60.0,
+            approach_m: 250.0,
+            max_length_m: 40_000.0,
+        }
+    }
+}
+
+/// Edges of an approach at most, however short they are.
+const APPROACH_EDGES: usize = 256;
+
+/// Fills `strokes` and `stroke_edges` of a network that has none. Strokes are sorted by their first edge; a closed one
+/// starts at its first edge in the network's order and has no approach, for its own last edges are.
+pub(super) fn chain(network: &mut Network, options: &StrokeOptions, account: &mut NetworkAccount) {
+    let geometry = Geometry::measure(network, options.heading_reach_m);
+    let pairing = Pairing::find(network, &geometry, options);
+    let chains = chains(&pairing, &geometry, options.max_length_m);
+    for chain in &chains {
+        let start = network.stroke_edges.len() as u32;
+        if !chain.closed {
+            approach(&pairing, &geometry, options.approach_m, chain.first, &mut network.stroke_edges);
+        }
+        let first = network.stroke_edges.len() as u32;
+        let following = |&edge: &u32| Some(pairing.next[edge as usize]);
+        network.stroke_edges.extend(std::iter::successors(Some(chain.first), following).take(chain.edges as usize));
+        let end = network.stroke_edges.len() as u32;
+        network.strokes.push(Stroke { approach: start..first, edges: first..end, closed: chain.closed });
+        account.strokes += 1;
+        account.closed_strokes += u64::from(chain.closed);
+        account.strokes_split += u64::from(chain.split);
+        account.strokes_with_approach += u64::from(first > start);
+    }
+    account.crowded_nodes = pairing.crowded;
+}
+
+/// A stroke before it is written out.
+struct Chain {
+    first: u32,
+    edges: u32,
+    closed: bool,
+    /// The one before became too long.
+    split: bool,
+}
+
+fn chains(pairing: &Pairing, geometry: &Geometry, max_length_m: f64) -> Vec<Chain> {
+    let edges = pairing.next.len() as u32;
+    let mut done = vec![false; edges as usize];
+    let mut chains = Vec::new();
+    for first in (0..edges).filter(|&edge| !pairing.continues(edge)) {
+        follow(first, pairing, geometry, max_length_m, &mut done, &mut chains);
+    }
+    // What is left runs round: the first edge met is the smallest of its ring.
+    for first in 0..edges {
+        if !done[first as usize] {
+            let strokes = chains.len();
+            follow(first, pairing, geometry, max_length_m, &mut done, &mut chains);
+            if let [ring] = &mut chains[strokes..] {
+                ring.closed = true;
+            }
+        }
+    }
+    chains.sort_unstable_by_key(|chain| chain.first);
+    chains
+}
+
+/// Follows the road from `first` to its end or back to `first`, as one chain or as several none of which is too long.
+fn follow(
+    first: u32,
+    pairing: &Pairing,
+    geometry: &Geometry,
+    max_length_m: f64,
+    done: &mut [bool],
+    chains: &mut Vec<Chain>,
+) {
+    let mut chain = Chain { first, edges: 0, closed: false, split: false };
+    let mut length_m = 0.0;
+    let mut edge = first;
+    while edge != NONE && !done[edge as usize] {
+        done[edge as usize] = true;
+        let edge_m = f64::from(geometry.length_m[edge as usize]);
+        if chain.edges > 0 && length_m + edge_m > max_length_m {
+            chains.push(std::mem::replace(&mut chain, Chain { first: edge, edges: 0, closed: false, split: true }));
+            length_m = 0.0;
+        }
+        chain.edges += 1;
+        length_m += edge_m;
+        edge = pairing.next[edge as usize];
+    }
+    chains.push(chain);
+}
+
+/// Appends the edges that lead to `first`, in driving order: back along what continues into it, then along what one
+/// most plausibly comes from, until they are long enough or come round to an edge already there.
+fn approach(pairing: &Pairing, geometry: &Geometry, approach_m: f64, first: u32, out: &mut Vec<u32>) {
+    let start = out.len();
+    let mut length_m = 0.0;
+    let mut edge = pairing.before[first as usize];
+    while edge != NONE
+        && edge != first
+        && length_m < approach_m
+        && out.len() - start < APPROACH_EDGES
+        && !out[start..].contains(&edge)
+    {
+        out.push(edge);
+        length_m += f64::from(geometry.length_m[edge as usize]);
+        edge = pairing.before[edge as usize];
+    }
+    out[start..].reverse();
+}

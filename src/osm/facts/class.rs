@@ -1,0 +1,178 @@
+//! Which ways are roads for heavy vehicles, and all that one way's tags say, read in one pass.
+//!
+//! Kept: motorway to residential, `road`, living streets, busways (closed unless tagged open), service roads
+//! including alleys (loading bays stand on service roads). Left out: parking aisles, driveways, drive-throughs and
+//! emergency accesses unless a tag for heavy goods vehicles opens them; tracks unless tagged open to motor vehicles
+//! and either of grade 1 or of known width. A way whose access is denied stays: its verdict says so.
+
+use crate::osm::facts::limits::LegalTags;
+use crate::osm::facts::notes::{Note, Notes};
+use crate::osm::facts::section_reader::SectionReader;
+use crate::osm::facts::{Direction, Oneway, Permission, RoadClass, Tags, WayDraft, WayFacts};
+
+/// Every reason that [`way_facts`] gives for leaving a way out.
+pub const LEFT_OUT_REASONS: [&str; 6] = [NO_HIGHWAY, NOT_A_ROAD, NOT_IN_USE, AREA, MINOR_SERVICE, TRACK];
+
+const NO_HIGHWAY: &str = "no_highway";
+const NOT_A_ROAD: &str = "not_a_road";
+const NOT_IN_USE: &str = "not_in_use";
+const AREA: &str = "area";
+const MINOR_SERVICE: &str = "minor_service";
+const TRACK: &str = "track";
+
+fn road_class(highway: &str) -> Result<RoadClass, &'static str> {
+    Ok(match highway.strip_suffix("_link").unwrap_or(highway) {
+        "motorway" => RoadClass::Motorway,
+        "trunk" => RoadClass::Trunk,
+        "primary" => RoadClass::Primary,
+        "secondary" => RoadClass::Secondary,
+        "tertiary" => RoadClass::Tertiary,
+        "unclassified" | "road" => RoadClass::Unclassified,
+        "residential" => RoadClass::Residential,
+        "living_street" => RoadClass::LivingStreet,
+        "service" => RoadClass::Service,
+        "track" => RoadClass::Track,
+        "busway" | "bus_guideway" => RoadClass::Busway,
+        "construction" | "proposed" | "planned" | "abandoned" | "disused" | "razed" | "demolished" => {
+            return Err(NOT_IN_USE);
+        }
+        _ => return Err(NOT_A_ROAD),
+    })
+}
+
+/// `oneway` with its exceptions for motor vehicles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum OnewayTag {
+    No,
+    Forward,
+    Backward,
+    Reversible,
+    Alternating,
+}
+
+fn oneway_tag(value: &str, notes: &mut Notes) -> Option<OnewayTag> {
+    Some(match value {
+        "no" | "false" | "0" => OnewayTag::No,
+        "yes" | "true" | "1" => OnewayTag::Forward,
+        "-1" | "reverse" => OnewayTag::Backward,
+        "reversible" => OnewayTag::Reversible,
+        "alternating" => OnewayTag::Alternating,
+        _ => {
+            notes.add(Note::BadOneway);
+            return None;
+        }
+    })
+}
+
+/// The tags that decide on class and direction.
+#[derive(Debug, Default)]
+struct Basics<'t> {
+    oneway: Option<OnewayTag>,
+    /// `oneway:motor_vehicle`, `oneway:hgv`: before `oneway`.
+    oneway_motor: Option<OnewayTag>,
+    roundabout: bool,
+    area: bool,
+    service: &'t str,
+    grade1: bool,
+    name: Option<&'t str>,
+    reference: Option<&'t str>,
+}
+
+impl<'t> Basics<'t> {
+    fn take(&mut self, key: &str, value: &'t str, notes: &mut Notes) {
+        match key {
+            "oneway" => self.oneway = oneway_tag(value, notes),
+            "oneway:motor_vehicle" | "oneway:hgv" => self.oneway_motor = oneway_tag(value, notes).or(self.oneway_motor),
+            "junction" => self.roundabout = matches!(value, "roundabout" | "circular"),
+            "area" => self.area = value == "yes",
+            "service" => self.service = value,
+            "tracktype" => self.grade1 = value == "grade1",
+            "name" => self.name = Some(value),
+            "ref" => self.reference = Some(value),
+            "maxspeed" => {
+                let leading = value.bytes().take_while(u8::is_ascii_digit).count();
+                if leading == 0 && !value.bytes().all(|b| b.is_ascii_alphabetic() || matches!(b, b':' | b'_'))
+                    || value == "NaN"
+                {
+                    notes.add(Note::BadSpeed);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn oneway(&self, class: RoadClass, link: bool) -> OnewayTag {
+        let implied = self.roundabout || (class == RoadClass::Motorway && !link);
+        let default = if implied { OnewayTag::Forward } else { OnewayTag::No };
+        self.oneway_motor.or(self.oneway).unwrap_or(default)
+    }
+}
+
+/// What the tags of a way say, or the reason (one of [`LEFT_OUT_REASONS`]) why it is no road for heavy vehicles.
+///
+/// # Errors
+/// The reason, a stable identifier.
+pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
+    let highway = tags.iter().find(|(key, _)| *key == "highway").map(|(_, value)| *value).ok_or(NO_HIGHWAY)?;
+    let class = road_class(highway)?;
+    let link = highway.ends_with("_link");
+
+    let mut notes = Notes::default();
+    let mut basics = Basics::default();
+    let mut legal = LegalTags::default();
+    let mut section = SectionReader::default();
+    for &(key, value) in tags {
+        basics.take(key, value, &mut notes);
+        let (head, suffix) = key.split_once(':').unwrap_or((key, ""));
+        legal.take(head, suffix, value, &mut notes);
+        section.take(head, suffix, value, &mut notes);
+    }
+
+    if basics.area {
+        return Err(AREA);
+    }
+    let minor =
+        matches!(basics.service, "parking_aisle" | "driveway" | "drive-through" | "drive_through" | "emergency_access");
+    if class == RoadClass::Service && minor && !legal.access.open_to_hgv() {
+        return Err(MINOR_SERVICE);
+    }
+    if class == RoadClass::Track && !(legal.access.explicitly_open() && (basics.grade1 || section.has_width())) {
+        return Err(TRACK);
+    }
+    if class == RoadClass::Busway {
+        legal.access.imply_no_motor_vehicles();
+    }
+
+    let oneway_tag = basics.oneway(class, link);
+    let oneway = match oneway_tag {
+        OnewayTag::Forward => Oneway::Forward,
+        OnewayTag::Backward => Oneway::Backward,
+        OnewayTag::No | OnewayTag::Reversible | OnewayTag::Alternating => Oneway::No,
+    };
+    let mut legals = [legal.resolve(Direction::Forward), legal.resolve(Direction::Backward)];
+    if oneway_tag == OnewayTag::Reversible {
+        notes.add(Note::Reversible);
+        for legal in &mut legals {
+            legal.hgv = legal.hgv.max(Permission::Restricted);
+        }
+    }
+    let section =
+        section.finish(oneway, oneway_tag == OnewayTag::Reversible, oneway_tag == OnewayTag::Alternating, &mut notes);
+    let [legal_forward, legal_backward] = legals;
+    Ok(WayDraft {
+        facts: WayFacts {
+            class,
+            link,
+            roundabout: basics.roundabout,
+            oneway,
+            name: None,
+            reference: None,
+            legal_forward,
+            legal_backward,
+            section,
+        },
+        name: basics.name,
+        reference: basics.reference,
+        notes,
+    })
+}

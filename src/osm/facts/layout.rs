@@ -1,0 +1,129 @@
+//! A cross section laid out from the left of the way's node order to its right, and the strips that follow from it.
+//!
+//! Everything about sides is here: positions, the kerb by driving side and direction, `placement`. A strip is at least
+//! as wide as the narrowest lane, its edges finite, or it is not given.
+
+use crate::osm::facts::section::{LaneLine, Placement};
+use crate::osm::facts::widths::LANE_M;
+use crate::osm::facts::{CrossSection, Direction, Strip, WidthSource};
+
+/// Who drives on a part of the cross section.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Use {
+    /// Heavy vehicles of one direction.
+    Lane(Direction),
+    /// Heavy vehicles of both directions, in turn.
+    Shared,
+    /// Paved, but not for them in normal running: bus lanes, turning lanes of both directions, shoulders.
+    Paved,
+    /// Parking, cycle lanes.
+    Aside,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Segment {
+    /// Metres; `None` until the carriageway has been shared out.
+    pub(super) width_m: Option<f32>,
+    /// Whose lane it is, open or not; placements count these.
+    pub(super) of: Option<Direction>,
+    pub(super) used: Use,
+}
+
+impl Segment {
+    pub(super) fn is_open_to(&self, direction: Direction) -> bool {
+        self.used == Use::Shared || self.used == Use::Lane(direction)
+    }
+}
+
+/// One lane for both directions in turn.
+pub(super) const SHARED: Segment = Segment { width_m: None, of: None, used: Use::Shared };
+
+pub(super) const NO_SECTION: CrossSection = CrossSection { lane: None, direction: None, carriageway: None };
+
+/// The parts of the road from the left of the way's node order to the right.
+#[derive(Debug, Default)]
+pub(super) struct Layout {
+    pub(super) segments: Vec<Segment>,
+    /// Of the carriageway as a whole, and of its division into lanes.
+    pub(super) whole: Option<WidthSource>,
+    pub(super) divided: Option<WidthSource>,
+    pub(super) placement: Placement,
+}
+
+impl Layout {
+    /// Left edges of the segments across the way's line, metres, positive to the left of the node order, and the last
+    /// right edge.
+    fn positions(&self) -> Vec<f32> {
+        let total_m: f32 = self.segments.iter().filter_map(|s| s.width_m).sum();
+        let mut at_m = total_m / 2.0;
+        let mut edges = vec![at_m];
+        for segment in &self.segments {
+            at_m -= segment.width_m.unwrap_or(0.0);
+            edges.push(at_m);
+        }
+        let line_m = self.way_line(&edges).unwrap_or(0.0);
+        edges.iter_mut().for_each(|edge| *edge -= line_m);
+        edges
+    }
+
+    /// Where `placement` puts the way's line, if there is such a lane.
+    fn way_line(&self, edges: &[f32]) -> Option<f32> {
+        let Placement::At(line, lane, direction) = self.placement else { return None };
+        let mut lanes: Vec<usize> = (0..self.segments.len())
+            .filter(|&at| self.segments[at].of == Some(direction) && self.segments[at].used != Use::Aside)
+            .collect();
+        if direction == Direction::Backward {
+            lanes.reverse();
+        }
+        let at = *lanes.get(usize::from(lane).checked_sub(1)?)?;
+        let (left, right) = match direction {
+            Direction::Forward => (edges[at], edges[at + 1]),
+            Direction::Backward => (edges[at + 1], edges[at]),
+        };
+        Some(match line {
+            LaneLine::Left => left,
+            LaneLine::Middle => (left + right) / 2.0,
+            LaneLine::Right => right,
+        })
+    }
+
+    /// The strips of one direction of travel.
+    pub(super) fn section(&self, direction: Direction, left_hand_traffic: bool) -> CrossSection {
+        let mut inwards: Vec<usize> = (0..self.segments.len()).collect();
+        if !kerb_on_the_left_of_the_way(direction, left_hand_traffic) {
+            inwards.reverse();
+        }
+        let (Some(whole), Some(divided)) = (self.whole, self.divided) else { return NO_SECTION };
+        let Some(kerb_side) = inwards.iter().position(|&at| self.segments[at].is_open_to(direction)) else {
+            return NO_SECTION;
+        };
+        let edges = self.positions();
+        let strip = |first: usize, last: usize, source| {
+            let (low, high) = (inwards[first].min(inwards[last]), inwards[first].max(inwards[last]));
+            let (left, right) = (edges[low], edges[high + 1]);
+            let (left_m, right_m) = match direction {
+                Direction::Forward => (left, right),
+                Direction::Backward => (-right, -left),
+            };
+            (left_m - right_m >= *LANE_M.start() - 1e-3).then_some(Strip { left_m, right_m, source })
+        };
+        let run = |from: usize, fits: &dyn Fn(&Segment) -> bool| {
+            let after = inwards[from..].iter().take_while(|&&at| fits(&self.segments[at])).count();
+            let before = inwards[..from].iter().rev().take_while(|&&at| fits(&self.segments[at])).count();
+            (from - before, from + after - 1)
+        };
+        let (_, last_open) = run(kerb_side, &|s| s.is_open_to(direction));
+        let (first_paved, last_paved) = run(kerb_side, &|s| s.used != Use::Aside);
+        CrossSection {
+            lane: strip(kerb_side, kerb_side, divided),
+            direction: strip(kerb_side, last_open, divided),
+            carriageway: strip(first_paved, last_paved, whole),
+        }
+    }
+}
+
+/// The kerb of a direction's slow lane lies to the left of the node order for traffic on the left going forward, and
+/// for traffic on the right going backward.
+pub(super) fn kerb_on_the_left_of_the_way(direction: Direction, left_hand_traffic: bool) -> bool {
+    left_hand_traffic == (direction == Direction::Forward)
+}

@@ -1,0 +1,251 @@
+//! Legal limits per direction of travel, conditional ones included, and their comparison with a vehicle.
+//!
+//! Where several tags limit the same thing the strictest counts. Conditions that only a clock or a calendar can decide
+//! are taken as always fulfilled for numeric limits, and as "not for through traffic" for access.
+
+use crate::osm::facts::access::{Access, is_access_key, permission};
+use crate::osm::facts::notes::{Note, Notes};
+use crate::osm::facts::{Direction, Legal, Limit, Permission, value};
+use crate::vehicle::Vehicle;
+use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
+
+/// Dimensions in tags have two decimals and limits are kept as `f32`: 2.55 must not exceed 2.55.
+const SLACK: f64 = 1e-3;
+
+impl Limit {
+    /// The stricter of two; an unreadable one may be stricter than any.
+    #[must_use]
+    pub fn stricter(self, other: Limit) -> Limit {
+        match (self, other) {
+            (Limit::Unreadable, _) | (_, Limit::Unreadable) => Limit::Unreadable,
+            (Limit::None, limit) | (limit, Limit::None) => limit,
+            (Limit::At(a), Limit::At(b)) => Limit::At(a.min(b)),
+        }
+    }
+}
+
+impl Legal {
+    /// Both sets of rules together: of each the stricter.
+    #[must_use]
+    pub fn merge(self, other: Legal) -> Legal {
+        Legal {
+            max_height: self.max_height.stricter(other.max_height),
+            max_weight: self.max_weight.stricter(other.max_weight),
+            max_axle_load: self.max_axle_load.stricter(other.max_axle_load),
+            max_length: self.max_length.stricter(other.max_length),
+            max_width: self.max_width.stricter(other.max_width),
+            hgv: self.hgv.max(other.hgv),
+            motor_vehicle: self.motor_vehicle.max(other.motor_vehicle),
+        }
+    }
+
+    /// `Forbidden` if a rule excludes the vehicle, `Unknown(Limit)` if only an unreadable limit stands against it, or
+    /// nothing. What is not known of the vehicle (height, masses) is not compared. `Permission::Restricted` does
+    /// not exclude: a lorry may have its destination here.
+    #[must_use]
+    pub fn forbids(&self, vehicle: &Vehicle) -> Option<Verdict> {
+        if self.motor_vehicle == Permission::No {
+            return Some(Verdict::Forbidden(ForbiddenReason::Access));
+        }
+        if self.hgv == Permission::No {
+            return Some(Verdict::Forbidden(ForbiddenReason::Hgv));
+        }
+        let compared = [
+            (self.max_height, vehicle.height_m, ForbiddenReason::Height),
+            (self.max_weight, vehicle.gross_mass_t, ForbiddenReason::Weight),
+            (self.max_axle_load, vehicle.axle_load_t, ForbiddenReason::AxleLoad),
+            (self.max_length, Some(vehicle.length_m), ForbiddenReason::Length),
+            (self.max_width, Some(vehicle.width_m()), ForbiddenReason::Width),
+        ];
+        let mut unreadable = false;
+        for (limit, size, reason) in compared {
+            match (limit, size) {
+                (Limit::At(most), Some(size)) if size > f64::from(most) + SLACK => {
+                    return Some(Verdict::Forbidden(reason));
+                }
+                (Limit::Unreadable, Some(_)) => unreadable = true,
+                _ => {}
+            }
+        }
+        unreadable.then_some(Verdict::Unknown(UnknownReason::Limit))
+    }
+}
+
+/// What a limit is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Height,
+    Weight,
+    AxleLoad,
+    Length,
+    Width,
+}
+
+impl Kind {
+    fn of_key(head: &str) -> Option<Kind> {
+        Some(match head {
+            "maxheight" => Kind::Height,
+            "maxweight" | "maxweightrating" | "maxgcweight" | "maxgcweightrating" => Kind::Weight,
+            "maxaxleload" => Kind::AxleLoad,
+            "maxlength" => Kind::Length,
+            "maxwidth" => Kind::Width,
+            _ => return None,
+        })
+    }
+
+    /// The words of conditions: `no @ (weight>7.5)`.
+    fn of_condition(word: &str) -> Option<Kind> {
+        Some(match word {
+            "height" => Kind::Height,
+            "weight" | "weightrating" | "maxweight" | "maxweightrating" | "gcweight" | "gcweightrating" => Kind::Weight,
+            "axleload" => Kind::AxleLoad,
+            "length" => Kind::Length,
+            "width" => Kind::Width,
+            _ => return None,
+        })
+    }
+
+    /// A value, refused above what any sign shows: there the unit is missing (kilograms, centimetres).
+    fn read(self, text: &str) -> Limit {
+        match self {
+            Kind::Height => value::limit(text, value::metres, 15.0),
+            Kind::Weight => value::limit(text, value::tonnes, 500.0),
+            Kind::AxleLoad => value::limit(text, value::tonnes, 60.0),
+            Kind::Length => value::limit(text, value::metres, 150.0),
+            Kind::Width => value::limit(text, value::metres, 30.0),
+        }
+    }
+
+    fn slot(self, legal: &mut Legal) -> &mut Limit {
+        match self {
+            Kind::Height => &mut legal.max_height,
+            Kind::Weight => &mut legal.max_weight,
+            Kind::AxleLoad => &mut legal.max_axle_load,
+            Kind::Length => &mut legal.max_length,
+            Kind::Width => &mut legal.max_width,
+        }
+    }
+}
+
+/// Limits and access of one way or node, while its tags are read.
+#[derive(Debug, Default)]
+pub(super) struct LegalTags {
+    limits: [Legal; 2],
+    pub(super) access: Access,
+}
+
+impl LegalTags {
+    /// Takes a tag if its key (split at the first colon) is about limits or access.
+    pub(super) fn take(&mut self, head: &str, suffix: &str, text: &str, notes: &mut Notes) {
+        let conditional = suffix == "conditional" || suffix.ends_with(":conditional");
+        let plain =
+            if conditional { suffix.strip_suffix("conditional").unwrap_or("").trim_end_matches(':') } else { suffix };
+        if let Some(kind) = Kind::of_key(head) {
+            self.take_limit(kind, plain, text, conditional, notes);
+        } else if is_access_key(head) {
+            if conditional {
+                self.take_conditional_access(head, plain, text, notes);
+            } else {
+                self.access.take(head, plain, text, notes);
+            }
+        }
+    }
+
+    fn take_limit(&mut self, kind: Kind, suffix: &str, text: &str, conditional: bool, notes: &mut Notes) {
+        let mut directions = [true; 2];
+        let mut by_lane = false;
+        for part in suffix.split(':').filter(|part| !part.is_empty()) {
+            match part {
+                "forward" => directions[1] = false,
+                "backward" => directions[0] = false,
+                "lanes" => by_lane = true,
+                "physical" | "legal" | "hgv" | "hgv_articulated" | "trailer" | "goods" => {}
+                // For buses, or a remark such as `maxweight:signed=no`.
+                _ => return,
+            }
+        }
+        if conditional {
+            for (limit, _) in clauses(text) {
+                self.limit(kind, kind.read(limit), directions, notes);
+            }
+        } else if by_lane {
+            for limit in text.split('|').filter(|limit| !limit.trim().is_empty()) {
+                self.limit(kind, kind.read(limit), directions, notes);
+            }
+        } else {
+            self.limit(kind, kind.read(text), directions, notes);
+        }
+    }
+
+    fn limit(&mut self, kind: Kind, limit: Limit, directions: [bool; 2], notes: &mut Notes) {
+        if limit == Limit::Unreadable {
+            notes.add(Note::BadLimit);
+        }
+        for (legal, on) in self.limits.iter_mut().zip(directions) {
+            if on {
+                let slot = kind.slot(legal);
+                *slot = slot.stricter(limit);
+            }
+        }
+    }
+
+    /// `no @ (weight>7.5)` is a weight limit. `no @ hazmat` does not concern dimensions. Any other condition is left
+    /// undecided.
+    fn take_conditional_access(&mut self, head: &str, suffix: &str, text: &str, notes: &mut Notes) {
+        let directions = match suffix {
+            "" => [true, true],
+            "forward" => [true, false],
+            "backward" => [false, true],
+            _ => return,
+        };
+        for (value, condition) in clauses(text) {
+            let value = permission(value, notes);
+            if condition.contains("hazmat") || condition.contains("placarded") {
+                continue;
+            }
+            match dimension_condition(condition) {
+                Some((kind, limit)) if value == Permission::No => self.limit(kind, limit, directions, notes),
+                _ if value > Permission::Yes => {
+                    notes.add(Note::UndecidedCondition);
+                    self.access.condition(head, directions, value);
+                }
+                // More lenient at times: not relied upon.
+                _ => {}
+            }
+        }
+    }
+
+    /// The rules of a direction.
+    pub(super) fn resolve(&self, direction: Direction) -> Legal {
+        let index = usize::from(direction == Direction::Backward);
+        let (motor_vehicle, hgv) = self.access.resolve(direction);
+        Legal { hgv, motor_vehicle, ..self.limits[index] }
+    }
+}
+
+/// `value @ condition` pairs; semicolons inside parentheses belong to the condition, which is empty without an `@`.
+fn clauses(text: &str) -> impl Iterator<Item = (&str, &str)> {
+    let mut depth = 0_u32;
+    text.split(move |c| {
+        match c {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        c == ';' && depth == 0
+    })
+    .filter(|clause| !clause.trim().is_empty())
+    .map(|clause| clause.split_once('@').unwrap_or((clause, "")))
+    .map(|(value, condition)| (value.trim(), condition.trim().trim_start_matches('(').trim_end_matches(')').trim()))
+}
+
+/// A condition that is exactly one comparison with a dimension.
+fn dimension_condition(condition: &str) -> Option<(Kind, Limit)> {
+    let (word, bound) = condition.split_once('>')?;
+    let kind = Kind::of_condition(word.trim())?;
+    // What is left is a number with its unit, or more than a comparison (`weight>7.5 AND 22:00-06:00`): undecided.
+    match kind.read(bound.trim_start_matches('=')) {
+        Limit::At(limit) => Some((kind, Limit::At(limit))),
+        Limit::None | Limit::Unreadable => None,
+    }
+}

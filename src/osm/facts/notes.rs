@@ -1,0 +1,66 @@
+//! Remarks on tags that were present but could not be used as they stand. They are counted, never silent: the
+//! reader sums them over all kept ways. A remark drops nothing by itself.
+
+/// One kind of remark; the names are stable identifiers in the account.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Note {
+    /// `width` and its kin: not a positive length in a known unit, or outside 1.8 m to 40 m. The tag is ignored.
+    BadWidth,
+    /// `lanes` and its kin: not a whole number from 1 to 16. Ignored, but 1.5 counts as 1.
+    BadLanes,
+    /// `width:lanes` unreadable, or with more than eight lanes. Ignored.
+    BadLaneWidths,
+    /// `placement` outside the documented values. Ignored.
+    BadPlacement,
+    /// `oneway` outside the documented values. Ignored.
+    BadOneway,
+    /// A legal limit that cannot be read: the limit counts as unreadable, the verdict becomes `unknown`.
+    BadLimit,
+    /// An access value outside the documented ones: counts as no.
+    BadAccess,
+    /// `maxspeed` that is no speed. It has no bearing on widths.
+    BadSpeed,
+    /// Tagged lanes and tagged width give lanes under 1.8 m or over 6 m.
+    WidthContradictsLanes,
+    /// A restriction under a condition that cannot be decided (a time of day, say): counts as not for through traffic.
+    UndecidedCondition,
+    /// `oneway=reversible`: both directions exist, but not always; counts as not for through traffic.
+    Reversible,
+}
+
+const NAMES: [(Note, &str); 11] = [
+    (Note::BadWidth, "bad_width"),
+    (Note::BadLanes, "bad_lanes"),
+    (Note::BadLaneWidths, "bad_lane_widths"),
+    (Note::BadPlacement, "bad_placement"),
+    (Note::BadOneway, "bad_oneway"),
+    (Note::BadLimit, "bad_limit"),
+    (Note::BadAccess, "bad_access"),
+    (Note::BadSpeed, "bad_speed"),
+    (Note::WidthContradictsLanes, "width_contradicts_lanes"),
+    (Note::UndecidedCondition, "undecided_condition"),
+    (Note::Reversible, "reversible"),
+];
+
+/// A set of [`Note`]s.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Notes(pub u32);
+
+impl Notes {
+    /// Adds a remark; the same one twice counts once per way.
+    pub fn add(&mut self, note: Note) {
+        self.0 |= 1 << note as u8;
+    }
+
+    /// Whether it holds the remark.
+    #[must_use]
+    pub fn has(self, note: Note) -> bool {
+        self.0 & (1 << note as u8) != 0
+    }
+
+    /// The names of the remarks in it, always in the same order.
+    pub fn names(self) -> impl Iterator<Item = &'static str> {
+        NAMES.iter().filter(move |(note, _)| self.has(*note)).map(|(_, name)| *name)
+    }
+}

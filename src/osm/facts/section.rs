@@ -1,0 +1,132 @@
+//! The tags of a way's cross section: widths, lanes, what else takes room at the kerb, where the way's line lies.
+//!
+//! Kept compact, since there is one for every way of a region; positions come out in `widths`. Directions are
+//! relative to the way's node order; lanes are listed from left to right in direction of travel (wiki: Lanes).
+
+use std::num::NonZeroU16;
+
+use crate::osm::facts::{Direction, WidthSource};
+
+/// Lanes with given widths per direction, at most.
+pub(super) const LISTED: usize = 8;
+/// `width:lanes` is kept in steps of 5 cm, rounded down.
+pub(super) const LANE_STEP_M: f32 = 0.05;
+
+/// A length up to 65 m, exact for what tags give, rounded down.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Millimetres(NonZeroU16);
+
+impl Millimetres {
+    pub(super) fn from_metres(metres: f32) -> Option<Millimetres> {
+        // The small addition: 3.3 m is 3299.9999 mm in f32.
+        let whole = (f64::from(metres) * 1000.0 + 0.01).floor();
+        if (1.0..=65535.0).contains(&whole) { NonZeroU16::new(whole as u16).map(Millimetres) } else { None }
+    }
+
+    pub(super) fn metres(self) -> f32 {
+        f32::from(self.0.get()) / 1000.0
+    }
+}
+
+/// Cars parked on the carriageway; the more room they take, the greater.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub(super) enum Parking {
+    #[default]
+    None,
+    Parallel,
+    Diagonal,
+    Perpendicular,
+}
+
+/// A use's own width in decimetres, rounded up: 0 where there is no such use, 255 where its width is not tagged.
+pub(super) type Decimetres = u8;
+pub(super) const UNTAGGED: Decimetres = u8::MAX;
+
+/// What takes room between the lanes and one edge of the carriageway.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Kerb {
+    pub(super) parking: Parking,
+    pub(super) parking_dm: Decimetres,
+    pub(super) cycle_dm: Decimetres,
+    pub(super) shoulder_dm: Decimetres,
+}
+
+/// Lanes of one direction of travel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct LaneTags {
+    /// `lanes:forward` and its kin; 0: untagged.
+    pub(super) count: u8,
+    /// Lanes of which access or widths are listed, cycle lanes included; 0: none.
+    pub(super) listed: u8,
+    /// Bit i: the listed lane i (from the left in direction of travel) is not for heavy vehicles.
+    pub(super) closed: u8,
+    /// Widths of the listed lanes in steps of 5 cm; the first is 0 where they are not known.
+    pub(super) width_steps: [u8; LISTED],
+    /// Bus lanes without a place (`lanes:psv=1`, `busway=lane`): at the kerb.
+    pub(super) bus: u8,
+}
+
+impl LaneTags {
+    pub(super) fn is_closed(&self, lane: usize) -> bool {
+        lane < LISTED && self.closed & (1 << lane) != 0
+    }
+
+    /// Widths of the listed lanes in metres, if all are known.
+    pub(super) fn widths_m(&self) -> Option<impl ExactSizeIterator<Item = f32> + '_> {
+        let steps = self.width_steps.get(..usize::from(self.listed))?;
+        (!steps.is_empty() && steps[0] > 0).then(|| steps.iter().map(|step| f32::from(*step) * LANE_STEP_M))
+    }
+}
+
+/// Which line of which lane the way's line follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Placement {
+    /// The middle of the carriageway.
+    #[default]
+    Middle,
+    /// On the way from one place to another: not known.
+    Transition,
+    /// A line of a lane, counted from 1 at the left in direction of travel.
+    At(LaneLine, u8, Direction),
+}
+
+/// See [`Placement::At`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum LaneLine {
+    Left,
+    Middle,
+    Right,
+}
+
+/// All that is tagged about the cross section.
+#[derive(Debug, Clone)]
+pub(super) struct SectionTags {
+    /// Between the edges of the carriageway.
+    pub(super) carriageway: Option<Millimetres>,
+    pub(super) source: WidthSource,
+    /// `maxwidth:physical`
+    pub(super) physical: Option<Millimetres>,
+    /// `narrow=yes`
+    pub(super) narrow: bool,
+    /// All lanes go one way at a time.
+    pub(super) reversible: bool,
+    /// One lane for both directions in turn.
+    pub(super) alternating: bool,
+    /// `lanes`; 0: untagged.
+    pub(super) lanes: u8,
+    /// `lanes:both_ways`
+    pub(super) both_ways: u8,
+    /// Forward, backward.
+    pub(super) directions: [LaneTags; 2],
+    /// On the left and on the right of the way's node order.
+    pub(super) kerbs: [Kerb; 2],
+    pub(super) placement: Placement,
+}
+
+impl SectionTags {
+    pub(super) fn tagged_lanes(&self) -> Option<u8> {
+        let by_direction = self.directions[0].count.saturating_add(self.directions[1].count);
+        let lanes = if self.lanes > 0 { self.lanes } else { by_direction.saturating_add(self.both_ways) };
+        (lanes > 0).then_some(lanes)
+    }
+}

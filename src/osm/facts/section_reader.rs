@@ -1,0 +1,289 @@
+//! Reads the tags of a cross section into [`SectionTags`], in whatever order they come.
+//!
+//! A tag that cannot be used is noted and ignored; two tags of which one must be wrong are resolved to the narrower.
+
+use crate::osm::facts::kerb_reader::KerbReader;
+use crate::osm::facts::notes::{Note, Notes};
+use crate::osm::facts::section::{LANE_STEP_M, LISTED, LaneLine, LaneTags, Millimetres, Placement, SectionTags};
+use crate::osm::facts::widths::LANE_M;
+use crate::osm::facts::{Direction, Oneway, WidthSource, value};
+
+/// A carriageway outside these bounds is a typing error or not a road for lorries, metres.
+const CARRIAGEWAY_M: std::ops::RangeInclusive<f32> = 1.8..=40.0;
+
+/// Lists of lanes of one direction (index 0: without a suffix), before it is known which direction they mean.
+#[derive(Debug, Clone, Copy, Default)]
+struct Lists {
+    listed: u8,
+    closed: u8,
+    width_steps: [u8; LISTED],
+    count: u8,
+    bus: u8,
+    unusable: bool,
+}
+
+/// Collects the tags of the cross section, in any order.
+#[derive(Debug, Default)]
+pub(super) struct SectionReader {
+    /// By precedence: `width:carriageway`, `width`, `est_width`.
+    widths: [Option<Millimetres>; 3],
+    estimated: bool,
+    surveyed: bool,
+    physical: Option<Millimetres>,
+    narrow: bool,
+    both_ways: u8,
+    /// Without a suffix, forward, backward.
+    lists: [Lists; 3],
+    kerbs: KerbReader,
+    placements: [Option<Placement>; 3],
+}
+
+impl SectionReader {
+    /// Takes a tag (key split at the first colon) if it is about the cross section.
+    pub(super) fn take(&mut self, head: &str, suffix: &str, text: &str, notes: &mut Notes) {
+        match head {
+            "width" => match suffix {
+                "" => self.widths[1] = width(text, notes),
+                "carriageway" => self.widths[0] = width(text, notes),
+                "source" => self.origin(text),
+                _ => self.lane_widths(suffix, text, notes),
+            },
+            "est_width" if suffix.is_empty() => self.widths[2] = width(text, notes),
+            "source" if matches!(suffix, "width" | "width:carriageway") => self.origin(text),
+            // `limits` reads the same tag as a limit, and notes it there if it is unreadable.
+            "maxwidth" if suffix == "physical" => {
+                self.physical = value::metres(text).and_then(Millimetres::from_metres);
+            }
+            "narrow" if suffix.is_empty() => self.narrow = text == "yes",
+            "lanes" => self.lanes(suffix, text, notes),
+            "placement" => self.placement(suffix, text, notes),
+            "access" | "vehicle" | "motor_vehicle" | "hgv" | "bus" | "psv" | "cycleway" | "bicycle"
+                if suffix.starts_with("lanes") =>
+            {
+                self.closed_lanes(head, suffix, text, notes);
+            }
+            "cycleway" | "shoulder" | "parking" => self.kerbs.take(head, suffix, text),
+            "busway" => self.busway(suffix, text),
+            _ => {}
+        }
+    }
+
+    pub(super) fn has_width(&self) -> bool {
+        self.widths.iter().any(Option::is_some)
+    }
+
+    fn origin(&mut self, text: &str) {
+        let text = text.to_ascii_lowercase();
+        let says = |words: &[&str]| words.iter().any(|word| text.contains(word));
+        self.estimated |=
+            says(&["estimat", "guess", "approx", "aerial", "imagery", "bing", "image", "streetcomplete", "geschätzt"]);
+        self.surveyed |= says(&["survey", "measure", "gemessen", "laser", "lidar", "arcore", "official", "cadastre"]);
+    }
+
+    fn lanes(&mut self, suffix: &str, text: &str, notes: &mut Notes) {
+        let (bus, side) = match suffix.strip_prefix("psv").or_else(|| suffix.strip_prefix("bus")) {
+            Some(rest) => (true, rest.trim_start_matches(':')),
+            None => (false, suffix),
+        };
+        let slot = match side {
+            "both_ways" if !bus => None,
+            _ => match side_index(side) {
+                Some(index) => Some(index),
+                None => return,
+            },
+        };
+        let (count, sound) = value::lane_count(text);
+        if !(sound || bus && text == "0") {
+            notes.add(Note::BadLanes);
+        }
+        let count = count.unwrap_or(0);
+        match slot {
+            None => self.both_ways = count,
+            Some(index) if bus => self.lists[index].bus = count,
+            Some(index) => self.lists[index].count = count,
+        }
+    }
+
+    fn lane_widths(&mut self, suffix: &str, text: &str, notes: &mut Notes) {
+        let Some(index) = list_index(suffix) else { return };
+        let lists = &mut self.lists[index];
+        let mut steps = [0; LISTED];
+        let mut count = 0;
+        for part in text.split('|') {
+            let step = value::metres(part).map_or(0.0, |width| (width / LANE_STEP_M + 1e-3).floor());
+            // From half a metre (a cycle lane) to the widest lane.
+            match steps.get_mut(count) {
+                Some(slot) if (10.0..=*LANE_M.end() / LANE_STEP_M).contains(&step) => *slot = step as u8,
+                _ => {
+                    notes.add(Note::BadLaneWidths);
+                    return;
+                }
+            }
+            count += 1;
+        }
+        lists.agree(count, notes);
+        lists.width_steps = steps;
+    }
+
+    /// A lane is closed if it is kept for others, or shut to any of access, vehicle, motor_vehicle, hgv.
+    fn closed_lanes(&mut self, head: &str, suffix: &str, text: &str, notes: &mut Notes) {
+        let Some(index) = list_index(suffix) else { return };
+        let mut count = 0;
+        let mut closed = 0_u8;
+        for part in text.split('|') {
+            let shut = match head {
+                "cycleway" => matches!(part, "lane" | "track"),
+                "bicycle" | "bus" | "psv" => part == "designated",
+                _ => !matches!(part, "" | "yes" | "designated" | "permissive" | "destination" | "delivery"),
+            };
+            if count < LISTED && shut {
+                closed |= 1 << count;
+            }
+            count += 1;
+        }
+        if count > LISTED {
+            notes.add(Note::BadLaneWidths);
+            self.lists[index].unusable = true;
+            return;
+        }
+        self.lists[index].agree(count, notes);
+        self.lists[index].closed |= closed;
+    }
+
+    /// Which direction a side serves depends on the driving side; both directions get a bus lane at the kerb, so that
+    /// the lane beside it is the kerb-side lane whichever it is.
+    fn busway(&mut self, suffix: &str, text: &str) {
+        if text == "lane" && matches!(suffix, "" | "left" | "right" | "both") {
+            self.lists[0].bus = self.lists[0].bus.max(1);
+        }
+    }
+
+    /// The tags together, once the way's directions are known.
+    pub(super) fn finish(self, oneway: Oneway, reversible: bool, alternating: bool, notes: &mut Notes) -> SectionTags {
+        let [mut plain, mut forward, mut backward] = self.lists;
+        // A road of more lanes is a typing error in one of the tags: none is used.
+        if forward.count + backward.count + self.both_ways > value::MOST_LANES {
+            notes.add(Note::BadLanes);
+            [&mut plain, &mut forward, &mut backward].into_iter().for_each(|lists| lists.count = 0);
+        }
+        let directions = match oneway {
+            Oneway::Forward => [plain.or(forward).tags(), LaneTags::default()],
+            Oneway::Backward => [LaneTags::default(), plain.or(backward).tags()],
+            // Lists without a suffix mean nothing on a two-way road.
+            Oneway::No => [forward, backward].map(|lists| {
+                let mut tags = lists.tags();
+                tags.bus = tags.bus.max(plain.bus.div_ceil(2));
+                tags
+            }),
+        };
+        let [plain_line, forward_line, backward_line] = self.placements;
+        let placement = match oneway {
+            Oneway::Forward => plain_line.or(forward_line),
+            Oneway::Backward => plain_line.or(backward_line).map(Placement::backward),
+            // Without a suffix it is not said which direction's lanes are counted: not known.
+            Oneway::No => forward_line.or(backward_line).or(plain_line.map(|_| Placement::Transition)),
+        };
+        let source = match self.widths {
+            [None, None, Some(_)] => WidthSource::Estimated,
+            _ if self.estimated => WidthSource::Estimated,
+            _ if self.surveyed => WidthSource::Surveyed,
+            _ => WidthSource::Tagged,
+        };
+        let section = SectionTags {
+            carriageway: self.widths.into_iter().flatten().next(),
+            source,
+            physical: self.physical,
+            narrow: self.narrow,
+            reversible,
+            alternating,
+            lanes: plain.count,
+            both_ways: self.both_ways,
+            directions,
+            kerbs: self.kerbs.finish(),
+            placement: placement.unwrap_or_default(),
+        };
+        if let (Some(width), Some(lanes)) = (section.carriageway, section.tagged_lanes())
+            && !LANE_M.contains(&(width.metres() / f32::from(lanes)))
+        {
+            notes.add(Note::WidthContradictsLanes);
+        }
+        section
+    }
+
+    fn placement(&mut self, suffix: &str, text: &str, notes: &mut Notes) {
+        let Some(index) = side_index(suffix) else { return };
+        let direction = if index == 2 { Direction::Backward } else { Direction::Forward };
+        self.placements[index] = placement(text, direction);
+        if self.placements[index].is_none() {
+            notes.add(Note::BadPlacement);
+        }
+    }
+}
+
+impl Placement {
+    /// The same line, counted in the lanes that lead against the node order.
+    fn backward(self) -> Placement {
+        match self {
+            Placement::At(line, lane, _) => Placement::At(line, lane, Direction::Backward),
+            other => other,
+        }
+    }
+}
+
+impl Lists {
+    /// What is given without a suffix, else with it.
+    fn or(self, other: Lists) -> Lists {
+        let lists = if self.listed > 0 { self } else { other };
+        Lists { count: if self.count > 0 { self.count } else { other.count }, bus: self.bus.max(other.bus), ..lists }
+    }
+
+    /// All lists of a direction have to have the same length; where they differ none is used.
+    fn agree(&mut self, count: usize, notes: &mut Notes) {
+        let count = count as u8;
+        if self.listed != 0 && self.listed != count {
+            notes.add(Note::BadLaneWidths);
+            self.unusable = true;
+        }
+        self.listed = count;
+    }
+
+    fn tags(self) -> LaneTags {
+        let Lists { count, bus, .. } = self;
+        if self.unusable {
+            return LaneTags { count, bus, ..LaneTags::default() };
+        }
+        LaneTags { count, listed: self.listed, closed: self.closed, width_steps: self.width_steps, bus }
+    }
+}
+
+fn width(text: &str, notes: &mut Notes) -> Option<Millimetres> {
+    let width = value::metres(text).filter(|width| CARRIAGEWAY_M.contains(width)).and_then(Millimetres::from_metres);
+    if width.is_none() {
+        notes.add(Note::BadWidth);
+    }
+    width
+}
+
+fn placement(text: &str, direction: Direction) -> Option<Placement> {
+    if text == "transition" {
+        return Some(Placement::Transition);
+    }
+    let (line, lane) = text.split_once(':')?;
+    let line = match line {
+        "left_of" => LaneLine::Left,
+        "middle_of" => LaneLine::Middle,
+        "right_of" => LaneLine::Right,
+        _ => return None,
+    };
+    Some(Placement::At(line, value::lane_count(lane).0?, direction))
+}
+
+/// Index into `[without, forward, backward]`.
+fn side_index(suffix: &str) -> Option<usize> {
+    ["", "forward", "backward"].iter().position(|side| *side == suffix)
+}
+
+/// The same of `lanes`, `lanes:forward`, `lanes:backward`.
+fn list_index(suffix: &str) -> Option<usize> {
+    ["lanes", "lanes:forward", "lanes:backward"].iter().position(|side| *side == suffix)
+}

@@ -1,0 +1,45 @@
+//! Tags in, strips and limits out, through the public functions only.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod legal;
+mod properties;
+mod sections;
+mod ways;
+
+use crate::osm::facts::*;
+
+const RIGHT: Place = Place { country: *b"ZZ", left_hand_traffic: false };
+const LEFT: Place = Place { country: *b"ZZ", left_hand_traffic: true };
+
+/// `highway=primary width=7` as tags.
+fn tags(text: &str) -> Vec<(&str, &str)> {
+    text.split_whitespace().map(|tag| tag.split_once('=').expect("key=value")).collect()
+}
+
+fn draft(text: &str) -> WayDraft<'_> {
+    way_facts(&tags(text)).expect("a road")
+}
+
+fn sections(text: &str, place: &Place) -> [CrossSection; 2] {
+    cross_sections(&draft(text).facts, place, &Rules::builtin().unwrap())
+}
+
+/// Left and right edge in centimetres, and the evidence.
+fn show(strip: Option<Strip>) -> String {
+    strip.map_or("-".to_owned(), |s| {
+        format!("{:.0}..{:.0} {:?}", s.left_m * 100.0 + 0.0, s.right_m * 100.0 + 0.0, s.source).replace("-0.", "0.")
+    })
+}
+
+/// `forward lane | backward lane | forward direction | carriageway`, traffic on the right.
+fn check(text: &str, expected: &str) {
+    check_at(text, &RIGHT, expected);
+}
+
+fn check_at(text: &str, place: &Place, expected: &str) {
+    let [forward, backward] = sections(text, place);
+    let carriageway = forward.carriageway.or(backward.carriageway);
+    let got = [forward.lane, backward.lane, forward.direction, carriageway].map(show).join(" | ");
+    assert_eq!(got, expected, "{text}");
+}

@@ -1,0 +1,194 @@
+//! Numbers with units as they stand in tags: metres and tonnes unless said otherwise.
+//!
+//! A result is finite and greater than zero, or there is none: signs, exponents, ranges, lists, comma decimals and
+//! words are not numbers here. Units: wiki pages Key:width, Key:maxheight, Key:maxweight.
+
+use crate::osm::facts::Limit;
+
+const FOOT_M: f64 = 0.3048;
+const INCH_M: f64 = 0.0254;
+const MILE_M: f64 = 1609.344;
+const POUND_T: f64 = 0.000_453_592_37;
+const SHORT_TON_T: f64 = 0.907_184_74;
+const LONG_TON_T: f64 = 1.016_046_908_8;
+
+/// Beyond this nothing on a road makes sense, and `f32` still holds centimetres.
+const GREATEST: f64 = 100_000.0;
+
+/// A toll plaza may have this many in one direction.
+pub(super) const MOST_LANES: u8 = 16;
+
+/// Digits with at most one dot, at the start of `text`, and what follows them.
+fn number(text: &str) -> Option<(f64, &str)> {
+    let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
+    let (digits, rest) = text.split_at(end);
+    if !digits.starts_with(|c: char| c.is_ascii_digit()) || digits.ends_with('.') {
+        return None;
+    }
+    Some((digits.parse().ok()?, rest.trim_start()))
+}
+
+fn usable(value: f64) -> Option<f32> {
+    (value > 0.0 && value <= GREATEST).then_some(value as f32).filter(|v| *v > 0.0)
+}
+
+/// Inches after feet: nothing, `6"`, `6 in`, or a bare `6`.
+fn inches(text: &str) -> Option<f64> {
+    if text.is_empty() {
+        return Some(0.0);
+    }
+    let (value, unit) = number(text)?;
+    (matches!(unit, "" | "\"" | "''" | "in" | "inch" | "inches") && value < 12.0).then_some(value)
+}
+
+/// A length in metres: `3.5`, `3.5 m`, `350 cm`, `0.6 mi`, `16'3"`, `12 ft 6 in`.
+#[must_use]
+pub fn metres(text: &str) -> Option<f32> {
+    let (value, unit) = number(text.trim())?;
+    let length = match unit {
+        "" | "m" | "metre" | "metres" | "meter" | "meters" => value,
+        "cm" => value / 100.0,
+        "mm" => value / 1000.0,
+        "km" => value * 1000.0,
+        "mi" => value * MILE_M,
+        "\"" | "''" | "in" | "inch" | "inches" => value * INCH_M,
+        _ => {
+            let rest = ["'", "feet", "foot", "ft"].iter().find_map(|foot| unit.strip_prefix(foot))?;
+            value * FOOT_M + inches(rest.trim_start())? * INCH_M
+        }
+    };
+    usable(length)
+}
+
+/// A mass in tonnes: `7.5`, `7.5 t`, `3500 kg`, `16000 lbs`, `10 st` (short tons), `10 lt` (long tons).
+#[must_use]
+pub fn tonnes(text: &str) -> Option<f32> {
+    let (value, unit) = number(text.trim())?;
+    let factor = match unit {
+        "" | "t" | "tonne" | "tonnes" => 1.0,
+        "kg" => 0.001,
+        "lb" | "lbs" => POUND_T,
+        "st" => SHORT_TON_T,
+        "lt" => LONG_TON_T,
+        _ => return None,
+    };
+    usable(value * factor)
+}
+
+/// A legal limit. Above `greatest` the unit was probably forgotten (`maxweight=7500`): unreadable, since reading it
+/// as it stands would allow what may be forbidden. `below_default` and `unknown` say that there is a limit, not which.
+#[must_use]
+pub(super) fn limit(text: &str, read: fn(&str) -> Option<f32>, greatest: f32) -> Limit {
+    match text.trim() {
+        "none" | "default" | "unsigned" | "no_sign" | "no_indications" => Limit::None,
+        text => match read(text) {
+            Some(value) if value <= greatest => Limit::At(value),
+            _ => Limit::Unreadable,
+        },
+    }
+}
+
+/// A lane count from 1 to 16; the second part says whether the value was as documented. `1.5`, once used for narrow
+/// two-way roads, counts as one lane.
+#[must_use]
+pub(super) fn lane_count(text: &str) -> (Option<u8>, bool) {
+    match text.trim() {
+        "1.5" => (Some(1), false),
+        text => {
+            let count = text.parse::<u8>().ok().filter(|n| (1..=MOST_LANES).contains(n) && !text.starts_with('+'));
+            (count, count.is_some())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_read_in_the_units_of_the_wiki() {
+        for (text, expected) in [
+            ("3.5", 3.5),
+            (" 2 m", 2.0),
+            ("3.5m", 3.5),
+            ("0.6 mi", 965.6064),
+            ("16'3\"", 4.953),
+            ("12'6\"", 3.81),
+            ("12' 6\"", 3.81),
+            ("6'", 1.8288),
+            ("11 ft", 3.3528),
+            ("13 ft 6 in", 4.1148),
+            ("75\"", 1.905),
+            ("350 cm", 3.5),
+            ("2 km", 2000.0),
+        ] {
+            let got = metres(text).unwrap_or(-1.0);
+            assert!((got - expected).abs() < 1e-4 * expected, "{text}: {got}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_positive_length_is_none() {
+        for text in [
+            "7,5",
+            "-3",
+            "0",
+            "0.0",
+            "NaN",
+            "inf",
+            "1e400",
+            "ten",
+            "99999999999999999999",
+            "1.5;2",
+            "",
+            " ",
+            "2-3",
+            "~3",
+            "3.",
+            ".",
+            ".5",
+            "1.2.3",
+            "+3",
+            "3 x",
+            "6'14\"",
+            "'",
+            "m",
+            "3 m m",
+            "0.0000000000000000000000000000000000000000000000001",
+        ] {
+            assert_eq!(metres(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn masses_are_read_in_their_units() {
+        for (text, expected) in
+            [("7.5", 7.5), ("7.5 t", 7.5), ("3500 kg", 3.5), ("10 st", 9.071_847), ("16000 lbs", 7.257_478)]
+        {
+            let got = tonnes(text).unwrap_or(-1.0);
+            assert!((got - expected).abs() < 1e-4, "{text}: {got}");
+        }
+        for text in ["-3", "7,5 t", "7.5 tons", "t", "NaN", "0"] {
+            assert_eq!(tonnes(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_limit_is_a_number_nothing_or_unreadable() {
+        assert_eq!(limit("default", metres, 15.0), Limit::None);
+        assert_eq!(limit("below_default", metres, 15.0), Limit::Unreadable);
+        assert_eq!(limit("0", metres, 15.0), Limit::Unreadable);
+        assert_eq!(limit("", metres, 15.0), Limit::Unreadable);
+        assert_eq!(limit("4", metres, 15.0), Limit::At(4.0));
+        assert_eq!(limit("7500", tonnes, 500.0), Limit::Unreadable);
+    }
+
+    #[test]
+    fn lane_counts_are_small_whole_numbers() {
+        assert_eq!(lane_count("2"), (Some(2), true));
+        assert_eq!(lane_count("1.5"), (Some(1), false));
+        for text in ["2;3", "-3", "0", "1e400", "99999999999999999999", "NaN", "", "+2", "17"] {
+            assert_eq!(lane_count(text), (None, false), "{text}");
+        }
+    }
+}

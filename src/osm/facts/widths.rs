@@ -1,0 +1,255 @@
+//! From tags to strips: the cross section of a way, laid out from its left edge to its right one.
+//!
+//! Evidence in this order: `width:carriageway`, `width`, `est_width`, or `width:lanes`; else tagged lanes times an
+//! assumed lane width; else class and country. Parking, cycle lanes and shoulders are deducted from a tagged carriageway;
+//! they add nothing to an assumed one. The way's line is the middle of the carriageway unless `placement` says
+//! otherwise. Where tags contradict each other the narrower reading counts.
+
+use crate::osm::facts::country::Place;
+use crate::osm::facts::layout::{Layout, NO_SECTION, SHARED, Segment, Use, kerb_on_the_left_of_the_way};
+use crate::osm::facts::rules::{ClassRule, KerbRule, Rules};
+use crate::osm::facts::section::{Decimetres, Kerb, Millimetres, Parking, Placement, SectionTags, UNTAGGED};
+use crate::osm::facts::{CrossSection, Direction, Oneway, WayFacts, WidthSource};
+
+/// Lanes outside these widths are no lanes: width or lane count is wrong, metres.
+pub(super) const LANE_M: std::ops::RangeInclusive<f32> = 1.8..=6.0;
+/// Below this a two-way road without tagged lanes has no lanes: both directions share it (no centre line is marked).
+pub(super) const SHARED_BELOW_M: f32 = 5.0;
+/// Where lanes are not tagged a wide road may have more of them than assumed: no more than this is one lane.
+const WIDEST_UNTAGGED_LANE_M: f32 = 4.25;
+/// Widths by lane may exceed the carriageway's by this much (rounding by mappers) before they are dropped.
+const LISTED_SLACK_M: f32 = 0.3;
+
+/// The cross sections of a way for travel along its node order and against it.
+#[must_use]
+pub fn cross_sections(facts: &WayFacts, place: &Place, rules: &Rules) -> [CrossSection; 2] {
+    let class = rules.class(facts.class);
+    let builder = Builder {
+        tags: &facts.section,
+        // A ramp has one lane unless tagged otherwise, whatever its class.
+        class: if facts.link { ClassRule { lanes: 1, ..class } } else { class },
+        lane_m: rules.lane_m(facts.class, place.country),
+        left_hand_traffic: place.left_hand_traffic,
+        kerb_rule: rules.kerb,
+    };
+    let one = |direction| builder.one_way(direction).section(direction, place.left_hand_traffic);
+    match facts.oneway {
+        Oneway::Forward => [one(Direction::Forward), NO_SECTION],
+        Oneway::Backward => [NO_SECTION, one(Direction::Backward)],
+        Oneway::No if facts.section.reversible => [one(Direction::Forward), one(Direction::Backward)],
+        Oneway::No => {
+            let layout = builder.two_way();
+            [Direction::Forward, Direction::Backward]
+                .map(|direction| layout.section(direction, place.left_hand_traffic))
+        }
+    }
+}
+
+/// Lays a way's cross section out; the lanes themselves are in `lanes`.
+pub(super) struct Builder<'a> {
+    pub(super) tags: &'a SectionTags,
+    pub(super) class: ClassRule,
+    pub(super) lane_m: f32,
+    pub(super) left_hand_traffic: bool,
+    pub(super) kerb_rule: KerbRule,
+}
+
+impl Builder<'_> {
+    /// Gives every lane its width. `known`: the number of lanes is tagged. `assumed_m`: instead of the lanes' sum, if
+    /// nothing is tagged.
+    pub(super) fn lay_out(
+        &self,
+        mut lanes: Vec<Segment>,
+        known: bool,
+        assumed_m: Option<f32>,
+        two_way: bool,
+    ) -> Layout {
+        let tagged = self.available(&lanes);
+        if let Some(room) = &tagged
+            && given_m(&lanes) > room.width_m + LISTED_SLACK_M
+        {
+            lanes.iter_mut().for_each(|lane| lane.width_m = None);
+        }
+        if lanes.iter().all(|lane| lane.width_m.is_some()) {
+            let source = self.tags.source.min(WidthSource::Tagged);
+            return self.limited(self.finish(lanes, source, source));
+        }
+        self.give_cycle_lanes_width(&mut lanes);
+        if let Some(room) = tagged {
+            if room.width_m < *LANE_M.start() {
+                return Layout::default();
+            }
+            if let Some(layout) = self.share_out(&lanes, &room, known, two_way) {
+                return self.limited(layout);
+            }
+        }
+        let source = if known { WidthSource::FromLanes } else { WidthSource::Assumed };
+        let each_m = assumed_m.map_or(self.lane_m, |all_m| all_m / unknown(&lanes).max(1.0));
+        for lane in &mut lanes {
+            lane.width_m = lane.width_m.or(Some(each_m));
+        }
+        self.limited(self.finish(lanes, source, source))
+    }
+
+    /// Shares a tagged width out among the lanes; `None` if the lanes would be too wide to be the ones tagged.
+    fn share_out(&self, lanes: &[Segment], room: &Room, known: bool, two_way: bool) -> Option<Layout> {
+        let left_m = room.width_m - given_m(lanes);
+        let each_m = left_m / unknown(lanes);
+        let shared_already = lanes.iter().any(|lane| lane.used == Use::Shared);
+        if (known || shared_already) && each_m > *LANE_M.end() {
+            return None;
+        }
+        let narrow = each_m < *LANE_M.start() || (two_way && !known && room.width_m < SHARED_BELOW_M);
+        if narrow && !shared_already {
+            return Some(self.one_for_all(lanes, left_m, room, known, two_way));
+        }
+        let mut out = Vec::with_capacity(lanes.len() + 2);
+        for lane in lanes {
+            match lane.of {
+                Some(direction) if !known && lane.width_m.is_none() && each_m > WIDEST_UNTAGGED_LANE_M => {
+                    let part = |width_m| Segment { width_m: Some(width_m), ..*lane };
+                    let (at_kerb, rest) = (part(WIDEST_UNTAGGED_LANE_M), part(each_m - WIDEST_UNTAGGED_LANE_M));
+                    if kerb_on_the_left_of_the_way(direction, self.left_hand_traffic) {
+                        out.extend([at_kerb, rest]);
+                    } else {
+                        out.extend([rest, at_kerb]);
+                    }
+                }
+                _ => out.push(Segment { width_m: lane.width_m.or(Some(each_m)), ..*lane }),
+            }
+        }
+        let divided = if known || out.len() == 1 { room.source } else { room.source.min(WidthSource::Estimated) };
+        Some(self.with_kerbs(out, room, divided))
+    }
+
+    /// A road too narrow for its lanes: one lane, in turn for both directions of a two-way road. Where lanes are tagged
+    /// one of the two tags is wrong, and it may be the width: then no more than an assumed lane.
+    fn one_for_all(&self, lanes: &[Segment], left_m: f32, room: &Room, known: bool, two_way: bool) -> Layout {
+        let Some(open) = lanes.iter().find(|lane| matches!(lane.used, Use::Lane(_))) else { return Layout::default() };
+        let width_m = left_m.min(if known { self.lane_m } else { SHARED_BELOW_M });
+        if width_m < *LANE_M.start() {
+            return Layout::default();
+        }
+        let one = if two_way {
+            Segment { width_m: Some(width_m), ..SHARED }
+        } else {
+            Segment { width_m: Some(width_m), ..*open }
+        };
+        let source = if width_m < left_m { room.source.min(WidthSource::FromLanes) } else { room.source };
+        let divided = if lanes.len() > 1 { source.min(WidthSource::Estimated) } else { source };
+        let whole = Room { source, ..*room };
+        self.with_kerbs(vec![one], &whole, divided)
+    }
+
+    /// The tagged carriageway less what is not for traffic, and its evidence.
+    fn available(&self, lanes: &[Segment]) -> Option<Room> {
+        let carriageway_m = self.tags.carriageway?.metres();
+        let taken_m =
+            |shoulders| -> f32 { (0..2).map(|side| given_m(&self.kerb_segments(side, lanes, shoulders))).sum() };
+        let kerbs = &self.tags.kerbs;
+        let assumed = kerbs.iter().any(|k| [k.parking_dm, k.cycle_dm, k.shoulder_dm].contains(&UNTAGGED));
+        let source = if assumed { self.tags.source.min(WidthSource::Estimated) } else { self.tags.source };
+        let within = Room { width_m: carriageway_m - taken_m(true), source, shoulders: true };
+        let lanes_m = unknown(lanes) * self.lane_m + given_m(lanes);
+        if within.width_m >= lanes_m || kerbs.iter().all(|kerb| kerb.shoulder_dm == 0) {
+            return Some(within);
+        }
+        // Many mappers leave shoulders out of the width (motorways with width=7.5, lanes=2, shoulder=yes): if not even
+        // the assumed lanes fit beside them, the lanes are as assumed, but no wider than the tag.
+        let without_m = (carriageway_m - taken_m(false)).min(lanes_m);
+        Some(Room { width_m: without_m, source: source.min(WidthSource::FromLanes), shoulders: false })
+    }
+
+    /// What lies beside the lanes on one side (0: left of the node order), from the edge inwards.
+    fn kerb_segments(&self, side: usize, lanes: &[Segment], shoulders: bool) -> Vec<Segment> {
+        let Kerb { parking, parking_dm, cycle_dm, shoulder_dm } = self.tags.kerbs[side];
+        let rule = &self.kerb_rule;
+        let parking_m = match parking {
+            Parking::None | Parking::Parallel => rule.parallel_parking_m,
+            Parking::Diagonal => rule.diagonal_parking_m,
+            Parking::Perpendicular => rule.perpendicular_parking_m,
+        };
+        let metres = |dm: Decimetres, default_m: f32| if dm == UNTAGGED { default_m } else { f32::from(dm) / 10.0 };
+        let outermost = if side == 0 { lanes.first() } else { lanes.last() };
+        let listed = outermost.is_some_and(|lane| lane.used == Use::Aside);
+        let mut inwards = Vec::new();
+        for (dm, default_m, used) in [
+            (parking_dm, parking_m, Use::Aside),
+            (if listed { 0 } else { cycle_dm }, rule.cycle_lane_m, Use::Aside),
+            (if shoulders { shoulder_dm } else { 0 }, rule.shoulder_m, Use::Paved),
+        ] {
+            if dm > 0 {
+                inwards.push(Segment { width_m: Some(metres(dm, default_m)), of: None, used });
+            }
+        }
+        inwards
+    }
+
+    fn give_cycle_lanes_width(&self, lanes: &mut [Segment]) {
+        for lane in lanes.iter_mut().filter(|lane| lane.used == Use::Aside) {
+            lane.width_m = lane.width_m.or(Some(self.kerb_rule.cycle_lane_m));
+        }
+    }
+
+    fn with_kerbs(&self, lanes: Vec<Segment>, room: &Room, divided: WidthSource) -> Layout {
+        let mut segments = self.kerb_segments(0, &lanes, room.shoulders);
+        let right = self.kerb_segments(1, &lanes, room.shoulders);
+        segments.extend(lanes);
+        segments.extend(right.into_iter().rev());
+        self.finish(segments, room.source, divided)
+    }
+
+    fn finish(&self, segments: Vec<Segment>, whole: WidthSource, divided: WidthSource) -> Layout {
+        // Somewhere between two places: the strips are where they would be around the middle, on weaker evidence.
+        let weakest =
+            if self.tags.placement == Placement::Transition { WidthSource::Estimated } else { WidthSource::Surveyed };
+        let placement = self.tags.placement;
+        Layout { segments, whole: Some(whole.min(weakest)), divided: Some(divided.min(weakest)), placement }
+    }
+
+    /// `maxwidth:physical` as an upper bound of all that is paved: every lane shrinks alike, or one is left.
+    fn limited(&self, mut layout: Layout) -> Layout {
+        let Some(most_m) = self.tags.physical.map(Millimetres::metres) else { return layout };
+        let paved = |s: &Segment| s.used != Use::Aside;
+        let paved_m: f32 = layout.segments.iter().filter(|s| paved(s)).filter_map(|s| s.width_m).sum();
+        if paved_m <= most_m {
+            return layout;
+        }
+        let bounded = |source: Option<WidthSource>| source.map(|source| source.min(WidthSource::Tagged));
+        (layout.whole, layout.divided) = (bounded(layout.whole), bounded(layout.divided));
+        let mut shrunk =
+            layout.segments.iter().filter(|s| paved(s)).filter_map(|s| s.width_m).map(|m| m * most_m / paved_m);
+        if shrunk.all(|width_m| width_m >= *LANE_M.start()) {
+            for segment in layout.segments.iter_mut().filter(|s| paved(s)) {
+                segment.width_m = segment.width_m.map(|width_m| width_m * most_m / paved_m);
+            }
+            return layout;
+        }
+        let used = |direction| layout.segments.iter().any(|s| s.is_open_to(direction));
+        let used = match (used(Direction::Forward), used(Direction::Backward)) {
+            (true, true) => Use::Shared,
+            (true, false) => Use::Lane(Direction::Forward),
+            (false, true) => Use::Lane(Direction::Backward),
+            (false, false) => return Layout::default(),
+        };
+        let one = Segment { width_m: Some(most_m.min(self.lane_m)), of: None, used };
+        Layout { segments: vec![one], placement: Placement::Middle, ..layout }
+    }
+}
+
+/// A tagged width that lanes may share, and whether shoulders were deducted from it.
+#[derive(Debug, Clone, Copy)]
+struct Room {
+    width_m: f32,
+    source: WidthSource,
+    shoulders: bool,
+}
+
+fn given_m(segments: &[Segment]) -> f32 {
+    segments.iter().filter_map(|segment| segment.width_m).sum()
+}
+
+/// How many have no width yet.
+fn unknown(segments: &[Segment]) -> f32 {
+    segments.iter().filter(|segment| segment.width_m.is_none()).count() as f32
+}

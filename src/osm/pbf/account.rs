@@ -1,0 +1,120 @@
+//! The account of a reading: what was read, kept, and left out for which reason.
+
+use std::collections::BTreeMap;
+
+use crate::account::AccountRow;
+
+use super::{header::HeaderInfo, relations::RelationTally};
+
+/// The account of every object read: what was kept, and what was left out for which reason. Adds up:
+/// `ways_read = ways_kept + Σ ways_left_out`, and likewise for nodes.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ReadAccount {
+    /// What the file says of itself.
+    pub header: HeaderInfo,
+    /// Size of the file.
+    pub bytes: u64,
+    /// blake3 hash of the file, in hexadecimal digits.
+    pub blake3: String,
+    /// Way objects in the file.
+    pub ways_read: u64,
+    /// Ways in the extract.
+    pub ways_kept: u64,
+    /// Ways left out, by reason.
+    pub ways_left_out: BTreeMap<&'static str, u64>,
+    /// Remarks on tags of ways that are roads, each at most once a way.
+    pub tag_notes: BTreeMap<&'static str, u64>,
+    /// Node objects in the file.
+    pub nodes: NodeTally,
+    /// Relations in the file.
+    pub relations: RelationTally,
+    /// Blobs of data, by compression.
+    pub blobs: BTreeMap<&'static str, u64>,
+    /// Blobs of a type that no one knows, passed over as the format demands.
+    pub blobs_passed_over: u64,
+}
+
+/// What became of the node objects: `read = placed + unnamed + deleted + invalid + superseded`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct NodeTally {
+    /// All objects.
+    pub read: u64,
+    /// Named by a kept way, and at a place on Earth.
+    pub placed: u64,
+    /// Named by no kept way.
+    pub unnamed: u64,
+    /// `visible=false`
+    pub deleted: u64,
+    /// Named, but at no place on Earth: as if missing.
+    pub invalid: u64,
+    /// Named, and followed by another object of the same id: the last of the file counts.
+    pub superseded: u64,
+    /// Distinct nodes that kept ways name, in the file or not.
+    pub named: u64,
+    /// Of these, not in the file.
+    pub missing: u64,
+    /// Of the missing or invalid ones, placed after all by a way that carries their place (`LocationsOnWays`).
+    pub placed_by_ways: u64,
+}
+
+impl ReadAccount {
+    /// What a person should be told. The format has no end mark: a file cut exactly between two blobs is a legal
+    /// shorter one, and only these signs are left of it.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let nodes = &self.nodes;
+        let mut warnings = Vec::new();
+        if self.ways_read == 0 {
+            warnings.push(format!("the file has {} nodes and no ways: was it cut off?", nodes.read));
+        } else if self.relations.read == 0 {
+            warnings
+                .push("the file has no relations: it was written without, or cut off between two blocks".to_owned());
+        }
+        let lost = nodes.missing + nodes.invalid - nodes.placed_by_ways;
+        if lost > 0 {
+            let named = nodes.named;
+            warnings.push(format!("{lost} of the {named} nodes of its roads are not in the file: roads are cut there"));
+        }
+        warnings
+    }
+
+    /// The account as rows of stage `read`, in a fixed order.
+    #[must_use]
+    pub fn rows(&self) -> Vec<AccountRow> {
+        let mut rows = Vec::new();
+        let mut row = |item: &str, outcome: &str, reason: &str, count: u64| {
+            if count > 0 || reason.is_empty() {
+                rows.push(AccountRow::new("read", item, outcome, reason, count));
+            }
+        };
+        row("way", "read", "", self.ways_read);
+        row("way", "kept", "", self.ways_kept);
+        for (reason, &count) in &self.ways_left_out {
+            row("way", "left_out", reason, count);
+        }
+        for (note, &count) in &self.tag_notes {
+            row("tag", "noted", note, count);
+        }
+        let nodes = &self.nodes;
+        row("node", "read", "", nodes.read);
+        row("node", "kept", "", nodes.placed);
+        row("node", "left_out", "deleted", nodes.deleted);
+        row("node", "left_out", "duplicate_id", nodes.superseded);
+        row("node", "left_out", "invalid_location", nodes.invalid);
+        row("node", "left_out", "not_on_a_road", nodes.unnamed);
+        row("node", "noted", "missing", nodes.missing);
+        row("node", "noted", "named_by_ways", nodes.named);
+        row("node", "noted", "placed_by_ways", nodes.placed_by_ways);
+        row("relation", "read", "", self.relations.read);
+        row("relation", "kept", "", 0);
+        row("relation", "left_out", "not_used", self.relations.read);
+        row("relation", "noted", "restriction", self.relations.restrictions);
+        row("relation", "noted", "restriction_broken", self.relations.broken_restrictions);
+        row("relation", "noted", "restriction_off_road", self.relations.restrictions_off_road);
+        for (compression, &count) in &self.blobs {
+            row("blob", "noted", compression, count);
+        }
+        row("blob", "noted", "unknown_type", self.blobs_passed_over);
+        rows
+    }
+}

@@ -1,0 +1,193 @@
+//! From the blocks' batches to the extract: one list of ways in order of id, one table of their nodes.
+//!
+//! Promises: the result does not depend on the order of blocks or ways in the file, but for one rule: of objects with
+//! the same id, the last in the file counts. In a sorted file nothing is remembered of what was left out.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
+use crate::osm::{LonLat, NodeTable, StringPool, Way, facts::PointFacts};
+
+use super::{account::NodeTally, error::Problem, nodes::NodeBatch, relations::RelationTally, ways::WayBatch};
+
+/// Left out: another way with the same id follows in the file.
+const DUPLICATE_ID: &str = "duplicate_id";
+
+/// The ways of the blocks read so far.
+#[derive(Debug, Default)]
+pub(super) struct WayGatherer {
+    pub(super) ways: Vec<Way>,
+    pub(super) refs: Vec<i64>,
+    pub(super) strings: StringPool,
+    pub(super) inline_places: Vec<(i64, LonLat)>,
+    pub(super) read: u64,
+    pub(super) left_out: BTreeMap<&'static str, u64>,
+    pub(super) notes: BTreeMap<&'static str, u64>,
+    pub(super) relations: RelationTally,
+    pub(super) vias: Vec<i64>,
+    /// Largest id so far.
+    largest: Option<i64>,
+    /// Some way did not have a larger id than all before it.
+    disordered: bool,
+    /// Ways left out that may supersede a kept one: id, and the references of kept ways before it.
+    overrides: Vec<(i64, u32)>,
+}
+
+impl WayGatherer {
+    pub(super) fn add(&mut self, batch: WayBatch) -> Result<(), Problem> {
+        self.read += (batch.kept.len() + batch.left_out.len()) as u64;
+        for (reason, count) in &batch.reasons {
+            *self.left_out.entry(reason).or_default() += count;
+        }
+        for (note, count) in &batch.notes {
+            *self.notes.entry(note).or_default() += count;
+        }
+        self.relations.add(batch.relations);
+        self.vias.extend(batch.vias);
+        let Some((first, last)) = batch.ends else { return Ok(()) };
+        let in_order = batch.ascending && self.largest.is_none_or(|largest| largest < first);
+        self.disordered |= !in_order;
+        let texts = batch.strings.texts().map(|text| self.strings.intern(text)).collect::<Vec<_>>();
+        let global = |local: crate::osm::StringId| texts.get(local.0 as usize).copied();
+        let mut left_out = batch.left_out.iter().peekable();
+        for (number, kept) in batch.kept.into_iter().enumerate() {
+            while let Some((_, id)) = left_out.next_if(|(before, _)| *before as usize <= number) {
+                self.note_left_out(*id, in_order);
+            }
+            let start = self.ways.last().map_or(0, |way| way.refs.end);
+            let end = start.checked_add(kept.refs).ok_or(Problem::TooLarge("node references"))?;
+            let mut facts = kept.facts;
+            facts.name = facts.name.and_then(global);
+            facts.reference = facts.reference.and_then(global);
+            self.ways.push(Way { id: kept.id, refs: start..end, facts });
+        }
+        left_out.for_each(|(_, id)| self.note_left_out(*id, in_order));
+        self.refs.extend_from_slice(&batch.refs);
+        self.inline_places.extend(batch.inline_places);
+        // Within a disordered batch any id may be the largest; the last one at least is seen.
+        self.largest = self.largest.max(Some(if batch.ascending { last } else { i64::MAX }));
+        Ok(())
+    }
+
+    fn note_left_out(&mut self, id: i64, in_order: bool) {
+        if !in_order {
+            self.overrides.push((id, self.ways.last().map_or(0, |way| way.refs.end)));
+        }
+    }
+
+    /// Sorts the ways by id and drops those that a later one of the same id supersedes.
+    pub(super) fn finish(&mut self) {
+        if !self.disordered {
+            return;
+        }
+        let before = self.ways.len();
+        // References grow in the order of the file, so they tell earlier from later.
+        self.ways.par_sort_unstable_by_key(|way| (way.id, way.refs.start));
+        self.ways.dedup_by(|later, earlier| {
+            let same = later.id == earlier.id;
+            if same {
+                std::mem::swap(later, earlier);
+            }
+            same
+        });
+        let mut overrides: FxHashMap<i64, u32> = FxHashMap::default();
+        for (id, refs_before) in self.overrides.drain(..) {
+            let last = overrides.entry(id).or_default();
+            *last = refs_before.max(*last);
+        }
+        self.ways.retain(|way| overrides.get(&way.id).is_none_or(|&refs_before| refs_before < way.refs.end));
+        let superseded = (before - self.ways.len()) as u64;
+        if superseded > 0 {
+            *self.left_out.entry(DUPLICATE_ID).or_default() += superseded;
+        }
+        self.renumber();
+    }
+
+    /// Lays references and strings out in the order of the ways, as a sorted file would have had them.
+    fn renumber(&mut self) {
+        let (old_refs, old_strings) = (std::mem::take(&mut self.refs), std::mem::take(&mut self.strings));
+        for way in &mut self.ways {
+            let start = self.refs.len() as u32;
+            let range = way.refs.start as usize..way.refs.end as usize;
+            self.refs.extend_from_slice(old_refs.get(range).unwrap_or_default());
+            way.refs = start..self.refs.len() as u32;
+            for text in [&mut way.facts.name, &mut way.facts.reference] {
+                *text = text.map(|id| self.strings.intern(old_strings.text(id)));
+            }
+        }
+    }
+
+    /// The distinct nodes that the ways name.
+    pub(super) fn node_ids(&self) -> Vec<i64> {
+        let mut ids = self.refs.clone();
+        ids.par_sort_unstable();
+        ids.dedup();
+        ids.shrink_to_fit();
+        ids
+    }
+}
+
+/// The places of named nodes found so far, parallel to their sorted ids.
+#[derive(Debug)]
+pub(super) struct NodeGatherer {
+    places: Vec<Option<LonLat>>,
+    seen: Vec<bool>,
+    points: FxHashMap<u32, PointFacts>,
+    tally: NodeTally,
+}
+
+impl NodeGatherer {
+    pub(super) fn new(named: usize) -> Self {
+        let tally = NodeTally { named: named as u64, ..NodeTally::default() };
+        Self { places: vec![None; named], seen: vec![false; named], points: FxHashMap::default(), tally }
+    }
+
+    pub(super) fn add(&mut self, batch: &NodeBatch) {
+        self.tally.read += batch.read;
+        self.tally.deleted += batch.deleted;
+        self.tally.unnamed += batch.read - batch.deleted - batch.hits.len() as u64;
+        let mut points = batch.points.iter().peekable();
+        for (number, hit) in batch.hits.iter().enumerate() {
+            let index = hit.index as usize;
+            let (Some(place), Some(seen)) = (self.places.get_mut(index), self.seen.get_mut(index)) else { continue };
+            *place = hit.place;
+            if std::mem::replace(seen, true) {
+                self.tally.superseded += 1;
+                self.points.remove(&hit.index);
+            }
+            if let Some((_, facts)) = points.next_if(|(of, _)| *of as usize == number) {
+                self.points.insert(hit.index, *facts);
+            }
+        }
+    }
+
+    /// The table, the facts of its tagged nodes, and the tally. A place that a way carries counts where the file has
+    /// no node; of several the last one of the file.
+    pub(super) fn finish(
+        mut self,
+        ids: Vec<i64>,
+        inline_places: &[(i64, LonLat)],
+    ) -> (NodeTable, Vec<(i64, PointFacts)>, NodeTally) {
+        for (place, seen) in self.places.iter().zip(&self.seen) {
+            match (seen, place) {
+                (false, _) => self.tally.missing += 1,
+                (true, None) => self.tally.invalid += 1,
+                (true, Some(_)) => self.tally.placed += 1,
+            }
+        }
+        let mut table = NodeTable { ids, places: self.places };
+        for &(id, place) in inline_places {
+            let Some(index) = table.index(id) else { continue };
+            if let (Some(slot), Some(false)) = (table.places.get_mut(index), self.seen.get(index)) {
+                self.tally.placed_by_ways += u64::from(slot.is_none());
+                *slot = Some(place);
+            }
+        }
+        let with_id = |(index, facts): (u32, PointFacts)| Some((*table.ids.get(index as usize)?, facts));
+        let mut points: Vec<_> = self.points.into_iter().filter_map(with_id).collect();
+        points.sort_unstable_by_key(|(id, _)| *id);
+        (table, points, self.tally)
+    }
+}

@@ -1,0 +1,261 @@
+//! The second pass over a block: where the nodes are that kept ways name, and what their tags say.
+//!
+//! Promises: every node of the block is checked, and counted under one heading, whether or not it is named.
+
+use osmpbfreader::osmformat;
+use protobuf::Message;
+
+use crate::osm::{
+    LonLat,
+    facts::{PointFacts, Tags},
+};
+
+use super::{
+    block::{self, Block},
+    error::{ObjectId, Problem},
+    wire::{self, Cursor, Packed, Shape},
+};
+
+/// A node that a kept way names.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Hit {
+    /// In the table of named nodes.
+    pub(super) index: u32,
+    /// `None`: not on Earth.
+    pub(super) place: Option<LonLat>,
+}
+
+/// What the second pass takes from one block.
+#[derive(Debug, Default)]
+pub(super) struct NodeBatch {
+    pub(super) hits: Vec<Hit>,
+    /// What tags of named nodes say: index in `hits`, ascending, and the facts.
+    pub(super) points: Vec<(u32, PointFacts)>,
+    pub(super) read: u64,
+    pub(super) deleted: u64,
+    /// The block holds ways or relations too.
+    pub(super) has_others: bool,
+}
+
+/// Reads the nodes of a block; `ids` are those named, sorted and distinct.
+pub(super) fn read<P>(block: &Block<'_>, ids: &[i64], facts: &P) -> Result<NodeBatch, Problem>
+where
+    P: Fn(&Tags<'_>) -> Option<PointFacts>,
+{
+    let mut reader =
+        NodeReader { block, facts, named: Named { ids, at: 0 }, tags: Vec::new(), batch: NodeBatch::default() };
+    for group in &block.groups {
+        let mut dense_groups = 0;
+        let mut cursor = Cursor::new(group);
+        while let Some(field) = cursor.field()? {
+            match field.number {
+                1 => reader.plain(field.bytes()?)?,
+                2 => {
+                    dense_groups += 1;
+                    block::limit_to_one(dense_groups)?;
+                    reader.dense(&RawDense::parse(field.bytes()?)?)?;
+                }
+                3 | 4 => reader.batch.has_others = true,
+                _ => {}
+            }
+        }
+    }
+    Ok(reader.batch)
+}
+
+/// Whether a block holds nodes and nothing else, by the kinds of its objects.
+pub(super) fn only_nodes(bytes: &[u8]) -> Result<bool, Problem> {
+    let mut found = false;
+    for group in Block::parse(bytes)?.groups {
+        let mut cursor = Cursor::new(group);
+        while let Some(field) = cursor.field()? {
+            match field.number {
+                1 | 2 => found = true,
+                3 | 4 => return Ok(false),
+                _ => {}
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// The sorted ids of named nodes, searched from where the last search ended: nodes of a file mostly ascend.
+struct Named<'n> {
+    ids: &'n [i64],
+    at: usize,
+}
+
+impl Named<'_> {
+    #[inline]
+    fn index(&mut self, id: i64) -> Option<u32> {
+        for _ in 0..8 {
+            match self.ids.get(self.at) {
+                Some(&here) if here < id => self.at += 1,
+                Some(&here) if here == id => return u32::try_from(self.at).ok(),
+                _ => break,
+            }
+        }
+        self.search(id)
+    }
+
+    fn search(&mut self, id: i64) -> Option<u32> {
+        let before = self.at.checked_sub(1).and_then(|i| self.ids.get(i));
+        if before.is_none_or(|&before| before < id) && self.ids.get(self.at).is_none_or(|&here| here > id) {
+            return None;
+        }
+        match self.ids.binary_search(&id) {
+            Ok(found) => {
+                self.at = found;
+                u32::try_from(found).ok()
+            }
+            Err(place) => {
+                self.at = place;
+                None
+            }
+        }
+    }
+}
+
+struct NodeReader<'b, 'a, P> {
+    block: &'b Block<'a>,
+    facts: &'b P,
+    named: Named<'b>,
+    tags: Vec<(&'a str, &'a str)>,
+    batch: NodeBatch,
+}
+
+impl<P> NodeReader<'_, '_, P>
+where
+    P: Fn(&Tags<'_>) -> Option<PointFacts>,
+{
+    /// Counts a node; its index if it is named and part of the map.
+    #[inline]
+    fn count(&mut self, id: i64, visible: bool) -> Option<u32> {
+        self.batch.read += 1;
+        if visible {
+            return self.named.index(id);
+        }
+        self.batch.deleted += 1;
+        None
+    }
+
+    /// Takes a named node, its tags being in `self.tags`.
+    fn take(&mut self, index: u32, place: Option<LonLat>) {
+        if !self.tags.is_empty()
+            && let Some(facts) = (self.facts)(&self.tags)
+        {
+            self.batch.points.push((self.batch.hits.len() as u32, facts));
+        }
+        self.batch.hits.push(Hit { index, place });
+    }
+
+    fn plain(&mut self, message: &[u8]) -> Result<(), Problem> {
+        use Shape::{Bytes, Number, Numbers};
+        wire::check(message, &[(1, Number), (2, Numbers), (3, Numbers), (4, Bytes), (8, Number), (9, Number)])?;
+        let node = osmformat::Node::parse_from_bytes(message)
+            .map_err(|error| Problem::Message { what: "node", detail: error.to_string() })?;
+        block::limit(self.batch.read as usize + 1, "the number of objects in a block")?;
+        let object = ObjectId::Node(node.id());
+        if node.keys.len() != node.vals.len() {
+            return Err(Problem::Lengths { object, what: "keys and values" });
+        }
+        self.tags.clear();
+        for (&key, &value) in node.keys.iter().zip(&node.vals) {
+            let strings = &self.block.strings;
+            self.tags.push((strings.text(key.into(), object)?, strings.text(value.into(), object)?));
+        }
+        let visible = node.info.as_ref().is_none_or(|info| info.visible.unwrap_or(true));
+        if let Some(index) = self.count(node.id(), visible) {
+            self.take(index, self.block.grid.place(node.lat(), node.lon()));
+        }
+        Ok(())
+    }
+
+    fn dense(&mut self, dense: &RawDense<'_>) -> Result<(), Problem> {
+        let (mut ids, mut lats, mut lons) = (dense.ids.cursor(), dense.lats.cursor(), dense.lons.cursor());
+        let (mut keys_values, mut visibles) = (dense.keys_values.cursor(), dense.visible.cursor());
+        let (tagged, known_visible) = (!keys_values.is_empty(), !visibles.is_empty());
+        let (mut id, mut lat, mut lon) = (0, 0, 0);
+        while !(ids.is_empty() || lats.is_empty() || lons.is_empty()) {
+            block::add(&mut id, ids.sint()?, ObjectId::DenseNodes, "an id")?;
+            let object = ObjectId::Node(id);
+            block::add(&mut lat, lats.sint()?, object, "a latitude")?;
+            block::add(&mut lon, lons.sint()?, object, "a longitude")?;
+            block::limit(self.batch.read as usize + 1, "the number of objects in a block")?;
+            if tagged {
+                self.dense_tags(&mut keys_values, object)?;
+            }
+            let visible = !known_visible || visibles.varint()? != 0;
+            if let Some(index) = self.count(id, visible) {
+                self.take(index, self.block.grid.place(lat, lon));
+            }
+        }
+        let object = ObjectId::DenseNodes;
+        if !(ids.is_empty() && lats.is_empty() && lons.is_empty()) {
+            return Err(Problem::Lengths { object, what: "ids, latitudes and longitudes" });
+        }
+        if !(keys_values.is_empty() && visibles.is_empty()) {
+            return Err(Problem::Lengths { object, what: "nodes and their tag lists or visible flags" });
+        }
+        self.tags.clear();
+        Ok(())
+    }
+
+    /// The next node's tags: pairs up to a 0.
+    #[inline]
+    fn dense_tags(&mut self, keys_values: &mut Cursor<'_>, object: ObjectId) -> Result<(), Problem> {
+        self.tags.clear();
+        loop {
+            if keys_values.is_empty() {
+                return Err(Problem::Lengths { object, what: "nodes and their tag lists" });
+            }
+            let key = keys_values.varint()?;
+            if key == 0 {
+                return Ok(());
+            }
+            if keys_values.is_empty() {
+                return Err(Problem::Lengths { object, what: "keys and values" });
+            }
+            let strings = &self.block.strings;
+            self.tags.push((strings.text(key, object)?, strings.text(keys_values.varint()?, object)?));
+        }
+    }
+}
+
+/// A `DenseNodes` message's arrays, still packed.
+#[derive(Debug, Default)]
+struct RawDense<'a> {
+    ids: Packed<'a>,
+    lats: Packed<'a>,
+    lons: Packed<'a>,
+    keys_values: Packed<'a>,
+    visible: Packed<'a>,
+}
+
+impl<'a> RawDense<'a> {
+    fn parse(message: &'a [u8]) -> Result<Self, Problem> {
+        let mut dense = Self::default();
+        let mut cursor = Cursor::new(message);
+        while let Some(field) = cursor.field()? {
+            match field.number {
+                1 => dense.ids.add(field)?,
+                5 => dense.parse_info(field.bytes()?)?,
+                8 => dense.lats.add(field)?,
+                9 => dense.lons.add(field)?,
+                10 => dense.keys_values.add(field)?,
+                _ => {}
+            }
+        }
+        Ok(dense)
+    }
+
+    fn parse_info(&mut self, info: &'a [u8]) -> Result<(), Problem> {
+        let mut cursor = Cursor::new(info);
+        while let Some(field) = cursor.field()? {
+            if field.number == 6 {
+                self.visible.add(field)?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,100 @@
+//! One pass over some of the file's blobs: read in order, decoded in parallel, merged in order.
+//!
+//! Promises: what is merged, and which error is reported, does not depend on the number of threads; at most two
+//! windows of blobs are in memory. While one window is decoded, the same pool merges the one before and reads the next.
+
+use rayon::prelude::*;
+
+use super::{
+    error::{Problem, ReadError},
+    frame::{Frame, Source},
+    inflate::{Compression, Inflater},
+};
+
+/// A window holds this many blobs, or as many as are [`WINDOW_BYTES`] large: enough to keep the threads busy, and
+/// small beside the result.
+const WINDOW_BLOBS: usize = 32;
+const WINDOW_BYTES: usize = 16 << 20;
+
+/// Blobs read together.
+#[derive(Default)]
+struct Window<'f> {
+    frames: &'f [Frame],
+    bytes: Vec<u8>,
+}
+
+impl<'f> Window<'f> {
+    /// Takes the next blobs off `frames` and reads them.
+    fn fill(&mut self, source: &mut Source, frames: &mut &'f [Frame]) -> Result<(), ReadError> {
+        let mut size = 0;
+        let fits = |frame: &&Frame| {
+            size += frame.size;
+            size <= WINDOW_BYTES
+        };
+        let count = frames.iter().take(WINDOW_BLOBS).take_while(fits).count().max(1).min(frames.len());
+        let (taken, rest) = frames.split_at(count);
+        (self.frames, *frames) = (taken, rest);
+        self.bytes.resize(taken.iter().map(|frame| frame.size).sum(), 0);
+        let mut free = self.bytes.as_mut_slice();
+        for frame in taken {
+            let Some((bytes, rest)) = free.split_at_mut_checked(frame.size) else { break };
+            source.read_at(frame.body, bytes)?;
+            free = rest;
+        }
+        Ok(())
+    }
+
+    fn blobs(&self) -> Vec<(Frame, &[u8])> {
+        let mut rest = self.bytes.as_slice();
+        let split = |frame: &Frame| {
+            let (bytes, after) = rest.split_at_checked(frame.size)?;
+            rest = after;
+            Some((*frame, bytes))
+        };
+        self.frames.iter().map_while(split).collect()
+    }
+}
+
+/// Inflates and decodes the blobs of `frames`, and merges what comes of them in the order of the file. `done` is told
+/// how many bytes of blobs are merged.
+pub(super) fn run<T: Send>(
+    source: &mut Source,
+    mut frames: &[Frame],
+    decode: impl Fn(&[u8]) -> Result<T, Problem> + Sync,
+    mut merge: impl FnMut(Frame, Compression, T) -> Result<(), Problem> + Send,
+    mut done: impl FnMut(u64) + Send,
+) -> Result<(), ReadError> {
+    let decode_blob = |inflater: &mut Inflater, blob: &[u8]| {
+        let (bytes, compression) = inflater.inflate(blob)?;
+        Ok((compression, decode(bytes)?))
+    };
+    let (mut now, mut next) = (Window::default(), Window::default());
+    let mut decoded: Vec<(Frame, Result<(Compression, T), Problem>)> = Vec::new();
+    let mut bytes = 0;
+    now.fill(source, &mut frames)?;
+    loop {
+        let (merged, results) = rayon::join(
+            || {
+                for (frame, result) in decoded.drain(..) {
+                    let merged = result.and_then(|(compression, item)| merge(frame, compression, item));
+                    merged.map_err(|problem| source.error(Some(frame.offset), problem))?;
+                    bytes += frame.size as u64;
+                }
+                done(bytes);
+                next.fill(source, &mut frames)
+            },
+            || {
+                let blobs = now.blobs();
+                let decode =
+                    |inflater: &mut Inflater, (frame, blob): &(Frame, &[u8])| (*frame, decode_blob(inflater, blob));
+                blobs.par_iter().map_init(Inflater::default, decode).collect()
+            },
+        );
+        decoded = results;
+        merged?;
+        if decoded.is_empty() && next.frames.is_empty() {
+            return Ok(());
+        }
+        std::mem::swap(&mut now, &mut next);
+    }
+}

@@ -1,0 +1,219 @@
+//! The first pass over a block: ways become facts and node references, relations are counted.
+//!
+//! Promises: every way is kept or counted under one reason. References keep their order, repeats next to each other
+//! are one. Ways are read in place: the generated message allocates four arrays a way, and half the ways are left
+//! out by their tags alone.
+
+use std::collections::BTreeMap;
+
+use crate::osm::{
+    LonLat, StringPool,
+    facts::{Tags, WayDraft, WayFacts},
+};
+
+use super::{
+    block::{self, Block},
+    error::{ObjectId, Problem},
+    relations::{self, RelationTally},
+    wire::{Cursor, Packed},
+};
+
+/// Left out: `visible=false`, not part of the map.
+const DELETED: &str = "deleted";
+/// Left out: fewer than two distinct nodes.
+const TOO_FEW_NODES: &str = "too_few_nodes";
+
+/// A kept way of a block; its texts are in the batch's own pool.
+#[derive(Debug)]
+pub(super) struct KeptWay {
+    pub(super) id: i64,
+    /// How many of the batch's references are its own.
+    pub(super) refs: u32,
+    pub(super) facts: WayFacts,
+}
+
+/// What the first pass takes from one block.
+#[derive(Debug, Default)]
+pub(super) struct WayBatch {
+    pub(super) kept: Vec<KeptWay>,
+    /// Of the kept ways, one after the other.
+    pub(super) refs: Vec<i64>,
+    /// Places that kept ways carry themselves (`LocationsOnWays`).
+    pub(super) inline_places: Vec<(i64, LonLat)>,
+    pub(super) strings: StringPool,
+    /// Ways left out: how many kept ones stand before it, and its id.
+    pub(super) left_out: Vec<(u32, i64)>,
+    pub(super) reasons: BTreeMap<&'static str, u64>,
+    /// Remarks on tags of kept ways.
+    pub(super) notes: BTreeMap<&'static str, u64>,
+    /// Ids of the first and the last way.
+    pub(super) ends: Option<(i64, i64)>,
+    /// Whether the ids of all ways ascend strictly.
+    pub(super) ascending: bool,
+    pub(super) has_nodes: bool,
+    pub(super) relations: RelationTally,
+    /// `via` nodes of turn restrictions.
+    pub(super) vias: Vec<i64>,
+}
+
+/// Reads the ways and relations of a block.
+pub(super) fn read<W>(block: &Block<'_>, facts: &W) -> Result<WayBatch, Problem>
+where
+    W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str>,
+{
+    let mut reader = WayReader { block, facts, tags: Vec::new(), batch: WayBatch::default(), entities: 0 };
+    reader.batch.ascending = true;
+    for group in &block.groups {
+        let mut cursor = Cursor::new(group);
+        while let Some(field) = cursor.field()? {
+            match field.number {
+                1 | 2 => reader.batch.has_nodes = true,
+                3 => {
+                    reader.count()?;
+                    reader.way(&RawWay::parse(field.bytes()?)?)?;
+                }
+                4 => {
+                    reader.count()?;
+                    let WayBatch { relations, vias, .. } = &mut reader.batch;
+                    relations::read(field.bytes()?, &block.strings, relations, vias)?;
+                }
+                _ => {}
+            }
+        }
+    }
+    Ok(reader.batch)
+}
+
+struct WayReader<'b, 'a, W> {
+    block: &'b Block<'a>,
+    facts: &'b W,
+    tags: Vec<(&'a str, &'a str)>,
+    batch: WayBatch,
+    entities: usize,
+}
+
+impl<W> WayReader<'_, '_, W>
+where
+    W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str>,
+{
+    fn count(&mut self) -> Result<(), Problem> {
+        self.entities += 1;
+        block::limit(self.entities, "the number of objects in a block")
+    }
+
+    fn way(&mut self, way: &RawWay<'_>) -> Result<(), Problem> {
+        self.note_order(way.id);
+        let object = ObjectId::Way(way.id);
+        self.block.strings.tags(&way.keys, &way.values, object, &mut self.tags)?;
+        let start = self.batch.refs.len();
+        self.references(way, object)?;
+        let refs = self.batch.refs.len() - start;
+        let draft = if way.deleted {
+            Err(DELETED)
+        } else if refs < 2 {
+            // Only after its tags, so that the reason is the road's and not the length of a fence.
+            (self.facts)(&self.tags).and(Err(TOO_FEW_NODES))
+        } else {
+            (self.facts)(&self.tags)
+        };
+        match draft {
+            Ok(WayDraft { mut facts, name, reference, notes }) => {
+                for note in notes.names() {
+                    *self.batch.notes.entry(note).or_default() += 1;
+                }
+                facts.name = name.map(|text| self.batch.strings.intern(text));
+                facts.reference = reference.map(|text| self.batch.strings.intern(text));
+                self.inline_places(way, object)?;
+                let refs = u32::try_from(refs).map_err(|_| Problem::TooLarge("node references"))?;
+                self.batch.kept.push(KeptWay { id: way.id, refs, facts });
+            }
+            Err(reason) => {
+                self.batch.refs.truncate(start);
+                self.batch.left_out.push((self.batch.kept.len() as u32, way.id));
+                *self.batch.reasons.entry(reason).or_default() += 1;
+            }
+        }
+        Ok(())
+    }
+
+    fn note_order(&mut self, id: i64) {
+        let first = match self.batch.ends {
+            Some((first, last)) => {
+                self.batch.ascending &= last < id;
+                first
+            }
+            None => id,
+        };
+        self.batch.ends = Some((first, id));
+    }
+
+    /// Appends the way's references, without repeats next to each other.
+    fn references(&mut self, way: &RawWay<'_>, object: ObjectId) -> Result<(), Problem> {
+        let start = self.batch.refs.len();
+        let (mut node, mut last) = (0, None);
+        let mut cursor = way.refs.cursor();
+        while !cursor.is_empty() {
+            block::add(&mut node, cursor.sint()?, object, "a node reference")?;
+            if last != Some(node) {
+                self.batch.refs.push(node);
+                last = Some(node);
+            }
+        }
+        block::limit(self.batch.refs.len() - start, "the number of nodes of a way")
+    }
+
+    /// Takes the places that the way carries for its nodes.
+    fn inline_places(&mut self, way: &RawWay<'_>, object: ObjectId) -> Result<(), Problem> {
+        if way.lats.is_empty() && way.lons.is_empty() {
+            return Ok(());
+        }
+        let (mut node, mut lat, mut lon) = (0, 0, 0);
+        let (mut refs, mut lats, mut lons) = (way.refs.cursor(), way.lats.cursor(), way.lons.cursor());
+        while !(refs.is_empty() || lats.is_empty() || lons.is_empty()) {
+            block::add(&mut node, refs.sint()?, object, "a node reference")?;
+            block::add(&mut lat, lats.sint()?, object, "a latitude")?;
+            block::add(&mut lon, lons.sint()?, object, "a longitude")?;
+            if let Some(place) = self.block.grid.place(lat, lon) {
+                self.batch.inline_places.push((node, place));
+            }
+        }
+        if refs.is_empty() && lats.is_empty() && lons.is_empty() {
+            return Ok(());
+        }
+        Err(Problem::Lengths { object, what: "node references and places" })
+    }
+}
+
+/// A `Way` message's fields, still packed.
+#[derive(Debug, Default)]
+struct RawWay<'a> {
+    id: i64,
+    keys: Packed<'a>,
+    values: Packed<'a>,
+    refs: Packed<'a>,
+    lats: Packed<'a>,
+    lons: Packed<'a>,
+    deleted: bool,
+}
+
+impl<'a> RawWay<'a> {
+    fn parse(message: &'a [u8]) -> Result<Self, Problem> {
+        let mut way = Self::default();
+        let mut id = None;
+        let mut cursor = Cursor::new(message);
+        while let Some(field) = cursor.field()? {
+            match field.number {
+                1 => id = Some(field.varint()? as i64),
+                2 => way.keys.add(field)?,
+                3 => way.values.add(field)?,
+                4 => way.deleted = !block::visible(field.bytes()?)?,
+                8 => way.refs.add(field)?,
+                9 => way.lats.add(field)?,
+                10 => way.lons.add(field)?,
+                _ => {}
+            }
+        }
+        way.id = id.ok_or(Problem::Missing("a way's id"))?;
+        Ok(way)
+    }
+}

@@ -1,0 +1,321 @@
+//! The whole run, stage by stage: read, network, corridors and certificates, store.
+//!
+//! [`ingest`] makes a database from an extract; [`certify`] adds or renews certificates in one that exists. Both use
+//! the same stages on the same network, so that the same edge and vehicle get the same bytes either way. Knows nothing
+//! of command lines and terminals: it reports through [`Reporter`].
+
+mod certificates;
+mod select;
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use thiserror::Error;
+
+pub use certificates::{Job, certify_network};
+pub use select::{Selection, own_countries, selected};
+
+use crate::account::AccountRow;
+use crate::corridor::Params;
+use crate::network::{self, Network};
+use crate::osm::facts::{Countries, CountriesError, Policy, RulesError, cross_sections};
+use crate::osm::pbf::{HeaderInfo, ReadError};
+use crate::osm::{self};
+use crate::stet::{Model, ModelError, Options};
+use crate::store::{Database, Run, StoreError, VehicleRecord, Writer};
+use crate::vehicle::{Catalogue, Vehicle, VehicleError};
+
+/// What can end a run.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The extract.
+    #[error(transparent)]
+    Read(#[from] ReadError),
+    /// The database.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The vehicle file or id.
+    #[error(transparent)]
+    Vehicle(#[from] VehicleError),
+    /// A vehicle that the certificate's model does not cover.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The road rules.
+    #[error(transparent)]
+    Rules(#[from] RulesError),
+    /// The country borders.
+    #[error(transparent)]
+    Countries(#[from] CountriesError),
+    /// A vehicle as JSON.
+    #[error("vehicle {id} cannot be written as JSON: {cause}")]
+    Definition {
+        /// Vehicle id.
+        id: String,
+        /// What serde says.
+        cause: serde_json::Error,
+    },
+    /// Nothing to certify.
+    #[error("{path}: no way of this file is a road that a heavy vehicle could use; the account: {account}")]
+    NoRoads {
+        /// The extract.
+        path: PathBuf,
+        /// Ways left out, by reason.
+        account: String,
+    },
+}
+
+/// What the caller shows while a run goes on. Called from many threads.
+pub trait Reporter: Sync {
+    /// A stage begins; `total` items are to be done (bytes when reading, edges when certifying).
+    fn begin(&self, stage: &'static str, total: u64);
+    /// So many of them are done.
+    fn advance(&self, done: u64);
+    /// The stage is over.
+    fn end(&self);
+    /// A remark for people.
+    fn note(&self, text: &str);
+}
+
+/// How certificates are made; all of it goes into the `run` record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Which width counts.
+    pub policy: Policy,
+    /// How corridors are made.
+    pub corridor: Params,
+    /// How corrections are made.
+    pub stet: Options,
+}
+
+/// What `ingest` is asked to do.
+pub struct Ingest<'a> {
+    /// The extract.
+    pub input: &'a Path,
+    /// The database to make.
+    pub db: &'a Path,
+    /// The catalogue, own vehicles included.
+    pub catalogue: &'a Catalogue,
+    /// Which of them to certify.
+    pub selection: &'a Selection,
+    /// Road rules, borders and driving sides, overrides included.
+    pub countries: &'a Countries,
+    /// How certificates are made.
+    pub settings: &'a Settings,
+    /// What the command line said, as JSON, for the `run` record.
+    pub parameters: serde_json::Value,
+    /// UTC now, `2026-11-21T08:00:00.000Z`: the only clock that reaches the file.
+    pub now: &'a dyn Fn() -> String,
+}
+
+/// One line of what a run ends with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StageSummary {
+    /// `read`, `network`, `certificates`, `store`
+    pub stage: &'static str,
+    /// Wall time, seconds.
+    pub seconds: f64,
+    /// How many.
+    pub items: u64,
+    /// Of what.
+    pub what: &'static str,
+}
+
+/// What a run ends with.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Summary {
+    /// In order.
+    pub stages: Vec<StageSummary>,
+    /// Everything counted.
+    pub account: Vec<AccountRow>,
+    /// Ids of the vehicles certified.
+    pub vehicles: Vec<String>,
+}
+
+impl Summary {
+    fn stage(&mut self, stage: &'static str, since: Instant, items: u64, what: &'static str) {
+        self.stages.push(StageSummary { stage, seconds: since.elapsed().as_secs_f64(), items, what });
+    }
+}
+
+/// Reads an extract, certifies its edges and puts the database in place when it is whole.
+///
+/// # Errors
+/// Whatever stops it; a database that stood at `db` is then as it was.
+pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunError> {
+    let started = (ask.now)();
+    let mut summary = Summary::default();
+    // Before the work: is the place writable, is nothing in the way?
+    let mut writer = Database::create(ask.db)?;
+    if writer.replaced_leftover() {
+        reporter.note("an earlier run was cut short: beginning afresh");
+    }
+    let (network, header, hash) = read_network(ask.input, ask.countries, reporter, &mut summary)?;
+    let vehicles = selected(ask.catalogue, ask.selection, &network)?;
+    let models = vehicles.iter().map(|v| Model::new(v)).collect::<Result<Vec<_>, _>>()?;
+    certify_into(&mut writer, &network, &models, ask.settings, reporter, &mut summary)?;
+
+    let clock = Instant::now();
+    reporter.begin("store", 0);
+    writer.account(&summary.account);
+    writer.finish(&Run {
+        command: "ingest".to_owned(),
+        input_name: ask.input.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        input_blake3: Some(hash),
+        replication_timestamp: header.replication_timestamp_s.and_then(utc),
+        netcert_version: env!("CARGO_PKG_VERSION").to_owned(),
+        started,
+        finished: (ask.now)(),
+        parameters: ask.parameters.to_string(),
+    })?;
+    reporter.end();
+    let certificates = network.edges.len() as u64 * models.len() as u64;
+    summary.stage("store", clock, certificates, "certificates");
+    summary.vehicles = models.iter().map(|m| m.vehicle.id.clone()).collect();
+    Ok(summary)
+}
+
+/// Stages one and two: from the file to the route graph.
+///
+/// # Errors
+/// Damage of the file, or no roads in it.
+pub fn read_network(
+    input: &Path,
+    countries: &Countries,
+    reporter: &dyn Reporter,
+    summary: &mut Summary,
+) -> Result<(Network, HeaderInfo, String), RunError> {
+    let clock = Instant::now();
+    let extract = read_reporting(input, reporter)?;
+    let (header, hash) = (extract.account.header.clone(), extract.account.blake3.clone());
+    summary.account.extend(extract.account.rows());
+    summary.stage("read", clock, extract.account.ways_read, "ways");
+    if extract.ways.is_empty() {
+        let left_out = extract.account.ways_left_out.iter().map(|(why, n)| format!("{why} {n}"));
+        let account = left_out.collect::<Vec<_>>().join(", ");
+        let account = if account.is_empty() { "no ways at all".to_owned() } else { account };
+        return Err(RunError::NoRoads { path: input.to_owned(), account });
+    }
+    let clock = Instant::now();
+    reporter.begin("network", 0);
+    let rules = countries.rules();
+    let (network, account) =
+        network::build(extract, &|p| countries.place(p), &|facts, place| cross_sections(facts, place, rules));
+    reporter.end();
+    summary.account.extend(account.rows());
+    summary.stage("network", clock, network.edges.len() as u64, "directed edges");
+    Ok((network, header, hash))
+}
+
+fn read_reporting(input: &Path, reporter: &dyn Reporter) -> Result<osm::Extract, ReadError> {
+    let begun = std::sync::Mutex::new(None);
+    let extract = osm::pbf::read_extract(input, &|p| {
+        let mut begun = begun.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if *begun != Some(p.stage) {
+            reporter.begin(p.stage.name(), p.total);
+            *begun = Some(p.stage);
+        }
+        reporter.advance(p.done);
+    });
+    reporter.end();
+    extract
+}
+
+/// Stages three and four into a new database.
+fn certify_into(
+    writer: &mut Writer,
+    network: &Network,
+    models: &[Model],
+    settings: &Settings,
+    reporter: &dyn Reporter,
+    summary: &mut Summary,
+) -> Result<(), RunError> {
+    let clock = Instant::now();
+    let numbers =
+        models.iter().map(|m| Ok(writer.vehicle(record(&m.vehicle)?))).collect::<Result<Vec<_>, RunError>>()?;
+    let job = Job { network, models, settings };
+    let outcome = certify_network(&job, reporter, |vehicle, certificate| {
+        writer.certificate(numbers[vehicle], settings.policy, certificate)
+    })?;
+    summary.account.extend(outcome.rows());
+    summary.stage("certificates", clock, outcome.certificates(), "certificates");
+    writer.network(network, &outcome.measures)?;
+    Ok(())
+}
+
+/// What `certify` is asked to do.
+pub struct Certify<'a> {
+    /// An existing database.
+    pub db: &'a Path,
+    /// The vehicles, whole.
+    pub vehicles: &'a [&'a Vehicle],
+    /// How certificates are made.
+    pub settings: &'a Settings,
+    /// `certify` or `query`, for the `run` record.
+    pub command: &'static str,
+    /// What the command line said, as JSON.
+    pub parameters: serde_json::Value,
+    /// UTC now.
+    pub now: &'a dyn Fn() -> String,
+}
+
+/// Certifies vehicles on the network of an existing database; each vehicle's certificates are replaced in one step.
+///
+/// # Errors
+/// Whatever stops it; vehicles not yet done keep their old certificates.
+pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, RunError> {
+    let mut summary = Summary::default();
+    let started = (ask.now)();
+    let clock = Instant::now();
+    reporter.begin("load", 0);
+    let mut db = Database::open_to_change(ask.db)?;
+    let network = db.load_network()?;
+    reporter.end();
+    summary.stage("load", clock, network.edges.len() as u64, "directed edges");
+
+    let clock = Instant::now();
+    let models = ask.vehicles.iter().map(|v| Model::new(v)).collect::<Result<Vec<_>, _>>()?;
+    let mut certificates = vec![Vec::new(); models.len()];
+    let job = Job { network: &network, models: &models, settings: ask.settings };
+    let outcome = certify_network(&job, reporter, |vehicle, certificate| {
+        certificates[vehicle].push(certificate.clone());
+        Ok::<(), StoreError>(())
+    })?;
+    summary.account.extend(outcome.rows());
+    summary.stage("certificates", clock, outcome.certificates(), "certificates");
+
+    let clock = Instant::now();
+    reporter.begin("store", 0);
+    for (model, certificates) in models.iter().zip(certificates) {
+        let run = Run {
+            command: ask.command.to_owned(),
+            input_name: ask.db.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            input_blake3: None,
+            replication_timestamp: None,
+            netcert_version: env!("CARGO_PKG_VERSION").to_owned(),
+            started: started.clone(),
+            finished: (ask.now)(),
+            parameters: ask.parameters.to_string(),
+        };
+        db.replace_certificates(&record(&model.vehicle)?, ask.settings.policy, certificates, &run, &summary.account)?;
+        summary.vehicles.push(model.vehicle.id.clone());
+    }
+    db.close()?;
+    reporter.end();
+    summary.stage("store", clock, outcome.certificates(), "certificates");
+    Ok(summary)
+}
+
+/// Seconds since 1970 as `2026-11-21T08:00:00Z`.
+fn utc(seconds: i64) -> Option<String> {
+    jiff::Timestamp::from_second(seconds).ok().map(|t| t.to_string())
+}
+
+/// A vehicle as the database keeps it.
+///
+/// # Errors
+/// A number that JSON has no form for; checked vehicles have none.
+pub fn record(vehicle: &Vehicle) -> Result<VehicleRecord, RunError> {
+    let definition =
+        vehicle.to_json().map_err(|cause| RunError::Definition { id: vehicle.id.clone(), cause })?.to_string();
+    Ok(VehicleRecord { id: vehicle.id.clone(), name: vehicle.name.clone(), definition })
+}

@@ -1,0 +1,118 @@
+//! Geometries as GeoPackage blobs: `GP`, version 0, XY envelope, WGS 84, then a WKB line string, all little endian
+//! (GeoPackage 1.3, clause 2.1.3). Positions are multiples of 1e-7 degree and come back exactly.
+
+use crate::osm::LonLat;
+
+/// Envelope of XY (code 1 in bits 1 to 3), little endian (bit 0).
+const FLAGS: u8 = 0b0000_0011;
+const SRS: i32 = 4326;
+const WKB_LINESTRING: u32 = 2;
+const HEADER_BYTES: usize = 8 + 4 * 8;
+const WKB_BYTES: usize = 1 + 4 + 4;
+
+/// A box in degrees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Least longitude.
+    pub west: f64,
+    /// Least latitude.
+    pub south: f64,
+    /// Greatest longitude.
+    pub east: f64,
+    /// Greatest latitude.
+    pub north: f64,
+}
+
+impl Bounds {
+    /// The box around some positions; `None` if there are none.
+    pub fn around(positions: impl IntoIterator<Item = LonLat>) -> Option<Self> {
+        positions.into_iter().map(LonLat::degrees).fold(None, |bounds, (lon, lat)| {
+            let point = Self { west: lon, south: lat, east: lon, north: lat };
+            Some(bounds.map_or(point, |b: Self| b.union(point)))
+        })
+    }
+
+    /// The smallest box that holds both.
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            west: self.west.min(other.west),
+            south: self.south.min(other.south),
+            east: self.east.max(other.east),
+            north: self.north.max(other.north),
+        }
+    }
+}
+
+/// The blob of a line, and its box. An empty line has no blob.
+pub(super) fn encode(positions: impl ExactSizeIterator<Item = LonLat> + Clone) -> Option<(Vec<u8>, Bounds)> {
+    let bounds = Bounds::around(positions.clone())?;
+    let mut blob = Vec::with_capacity(HEADER_BYTES + WKB_BYTES + 16 * positions.len());
+    blob.extend(b"GP");
+    blob.extend([0, FLAGS]);
+    blob.extend(SRS.to_le_bytes());
+    for side in [bounds.west, bounds.east, bounds.south, bounds.north] {
+        blob.extend(side.to_le_bytes());
+    }
+    blob.push(1);
+    blob.extend(WKB_LINESTRING.to_le_bytes());
+    blob.extend((positions.len() as u32).to_le_bytes());
+    for (lon, lat) in positions.map(LonLat::degrees) {
+        blob.extend(lon.to_le_bytes());
+        blob.extend(lat.to_le_bytes());
+    }
+    Some((blob, bounds))
+}
+
+/// The positions of a blob that [`encode`] wrote; `None` for anything else.
+pub(super) fn decode(blob: &[u8]) -> Option<Vec<LonLat>> {
+    let (header, wkb) = blob.split_at_checked(HEADER_BYTES)?;
+    let (wkb, points) = wkb.split_at_checked(WKB_BYTES)?;
+    let expected = header.starts_with(&[b'G', b'P', 0, FLAGS]) && wkb.starts_with(&[1, WKB_LINESTRING as u8, 0, 0, 0]);
+    let count = u32::from_le_bytes(wkb.get(5..9)?.try_into().ok()?);
+    let (points, []) = points.as_chunks::<16>() else { return None };
+    if !expected || points.len() != count as usize {
+        return None;
+    }
+    points.iter().map(|point| Some(LonLat { lon_e7: e7(&point[..8])?, lat_e7: e7(&point[8..])? })).collect()
+}
+
+fn e7(degrees: &[u8]) -> Option<i32> {
+    let e7 = (f64::from_le_bytes(degrees.try_into().ok()?) * 1e7).round();
+    // A cast of a finite value in range is exact.
+    (e7.abs() <= 1_800_000_000.0).then_some(e7 as i32)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn positions_come_back_exactly(
+            places in prop::collection::vec((-1_800_000_000..=1_800_000_000, -900_000_000..=900_000_000), 1..40)
+        ) {
+            let line: Vec<LonLat> = places.into_iter().map(|(lon_e7, lat_e7)| LonLat { lon_e7, lat_e7 }).collect();
+            let (blob, bounds) = encode(line.iter().copied()).unwrap();
+            prop_assert_eq!(decode(&blob).unwrap(), line.clone());
+            for place in line {
+                let (lon, lat) = place.degrees();
+                prop_assert!(bounds.west <= lon && lon <= bounds.east && bounds.south <= lat && lat <= bounds.north);
+            }
+        }
+
+        #[test]
+        fn anything_else_is_no_geometry(bytes in prop::collection::vec(any::<u8>(), 0..120)) {
+            prop_assert!(decode(&bytes).is_none());
+        }
+    }
+
+    #[test]
+    fn a_blob_cut_anywhere_is_no_geometry() {
+        let line = [LonLat { lon_e7: 10, lat_e7: 20 }, LonLat { lon_e7: -30, lat_e7: 40 }];
+        let (blob, _) = encode(line.into_iter()).unwrap();
+        assert!((0..blob.len()).all(|cut| decode(&blob[..cut]).is_none()));
+    }
+}

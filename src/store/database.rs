@@ -1,0 +1,250 @@
+//! An existing database: opened with every check that tells a wrong file from a right one, read, and changed one whole
+//! set of certificates at a time.
+
+use std::io::Read as _;
+use std::path::Path;
+use std::time::Duration;
+
+use sqlx::Row as _;
+use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqliteSynchronous};
+
+use crate::account::AccountRow;
+use crate::network::Network;
+use crate::osm::facts::Policy;
+
+use super::error::StoreError;
+use super::names::{Named, corridor_no};
+use super::network_read;
+use super::packed::{EdgeCertificate, Packed};
+use super::part::with_suffix;
+use super::records::{self, Run, VehicleRecord};
+use super::session::{MIGRATIONS, Session};
+use super::sets::{self, Set};
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// An open database. Its calls block: asynchronous code calls them from a blocking task.
+pub struct Database {
+    pub(super) session: Session,
+}
+
+/// A complete set of certificates: one for every edge.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CertifiedSet {
+    /// Of this vehicle.
+    pub vehicle_id: String,
+    /// Hash of the vehicle's definition that they were made with.
+    pub vehicle_blake3: String,
+    /// Under this policy.
+    pub policy: Policy,
+    /// The view that shows the permitted edges.
+    pub layer: String,
+}
+
+impl Database {
+    /// Opens for reading only.
+    pub fn open(path: &Path) -> Result<Self, StoreError> {
+        if with_suffix(path, "-journal").exists() {
+            // A killed `certify`: only one who may write can roll back to the old state.
+            Self::open_to_change(path)?.close()?;
+        }
+        Self::open_with(path, SqliteConnectOptions::new().read_only(true))
+    }
+
+    /// Opens for changes as well.
+    pub fn open_to_change(path: &Path) -> Result<Self, StoreError> {
+        let options = SqliteConnectOptions::new()
+            .journal_mode(SqliteJournalMode::Delete)
+            .synchronous(SqliteSynchronous::Full)
+            .foreign_keys(true);
+        Self::open_with(path, options)
+    }
+
+    fn open_with(path: &Path, options: SqliteConnectOptions) -> Result<Self, StoreError> {
+        check_header(path)?;
+        let options = options
+            .filename(path)
+            .create_if_missing(false)
+            .busy_timeout(Duration::from_secs(5))
+            .pragma("cache_size", "-65536")
+            .pragma("temp_store", "MEMORY");
+        let mut database = Self { session: Session::open(path, &options)? };
+        database.check_schema()?;
+        Ok(database)
+    }
+
+    /// Whether the schema is the one that this program writes.
+    fn check_schema(&mut self) -> Result<(), StoreError> {
+        let path = self.session.path.clone();
+        let applied = self.session.run(async |c| {
+            let tables = "SELECT count(*) FROM sqlite_schema WHERE name IN ('_sqlx_migrations', 'certificate_compact')";
+            if sqlx::query_scalar::<_, i64>(tables).fetch_one(&mut *c).await? < 2 {
+                return Ok(None);
+            }
+            let applied = "SELECT version, checksum FROM _sqlx_migrations WHERE success ORDER BY version";
+            sqlx::query_as::<_, (i64, Vec<u8>)>(applied).fetch_all(c).await.map(Some)
+        })?;
+        let Some(applied) = applied else { return Err(StoreError::NotNetcert(path)) };
+        let known = MIGRATIONS.iter().map(|m| m.version).max().unwrap_or(0);
+        if let Some(&(found, _)) = applied.last().filter(|row| row.0 > known) {
+            return Err(StoreError::Newer { path, found, known });
+        }
+        for migration in MIGRATIONS.iter() {
+            let detail = match applied.iter().find(|row| row.0 == migration.version) {
+                Some((_, checksum)) if checksum[..] == migration.checksum[..] => continue,
+                Some(_) => format!("version {} differs", migration.version),
+                None => format!("version {} is missing", migration.version),
+            };
+            return Err(StoreError::Older { path, detail });
+        }
+        Ok(())
+    }
+
+    /// Closes the file and says whether that worked (dropping it closes it, too).
+    pub fn close(self) -> Result<(), StoreError> {
+        self.session.close()
+    }
+
+    /// The network, equal to the one that was written.
+    pub fn load_network(&mut self) -> Result<Network, StoreError> {
+        self.session.run(async |c| network_read::read(c).await)
+    }
+
+    /// The vehicles, in the order in which they were added.
+    pub fn vehicles(&mut self) -> Result<Vec<VehicleRecord>, StoreError> {
+        self.session.run(async |c| {
+            let rows = sqlx::query_as("SELECT vehicle_id, name, definition FROM vehicle ORDER BY vehicle_no");
+            let rows: Vec<(String, String, String)> = rows.fetch_all(c).await?;
+            Ok(rows.into_iter().map(|(id, name, definition)| VehicleRecord { id, name, definition }).collect())
+        })
+    }
+
+    /// Which certificates there are.
+    pub fn certified(&mut self) -> Result<Vec<CertifiedSet>, StoreError> {
+        self.session.run(async |c| {
+            let sql = "SELECT vehicle_id, blake3, corridor, layer FROM certified_set JOIN vehicle USING (vehicle_no) \
+                       JOIN corridor USING (corridor_no) ORDER BY vehicle_no, corridor_no";
+            let rows = sqlx::query(sql).fetch_all(c).await?;
+            let set = |row| -> Sql<CertifiedSet> {
+                let policy = network_read::word(row, 2)?;
+                let (vehicle_id, vehicle_blake3) = (row.try_get(0)?, row.try_get(1)?);
+                Ok(CertifiedSet { vehicle_id, vehicle_blake3, policy, layer: row.try_get(3)? })
+            };
+            rows.iter().map(set).collect()
+        })
+    }
+
+    /// The runs that made the file, oldest first, each with its account.
+    pub fn runs(&mut self) -> Result<Vec<(Run, Vec<AccountRow>)>, StoreError> {
+        self.session.run(async |c| {
+            let mut runs = Vec::new();
+            for row in sqlx::query("SELECT * FROM run ORDER BY run_id").fetch_all(&mut *c).await? {
+                let run = Run {
+                    command: row.try_get(1)?,
+                    input_name: row.try_get(2)?,
+                    input_blake3: row.try_get(3)?,
+                    replication_timestamp: row.try_get(4)?,
+                    netcert_version: row.try_get(5)?,
+                    started: row.try_get(6)?,
+                    finished: row.try_get(7)?,
+                    parameters: row.try_get(8)?,
+                };
+                runs.push((run, account_of(c, row.try_get(0)?).await?));
+            }
+            Ok(runs)
+        })
+    }
+
+    /// Puts a complete set of certificates in place of the old one, in one step: killed, the old one stands. If the
+    /// vehicle's definition changed, its sets under other policies go as well. `certificates` may come in any order.
+    pub fn replace_certificates(
+        &mut self,
+        vehicle: &VehicleRecord,
+        policy: Policy,
+        certificates: impl IntoIterator<Item = EdgeCertificate>,
+        run: &Run,
+        account: &[AccountRow],
+    ) -> Result<(), StoreError> {
+        let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.id.clone(), detail };
+        let pack = |certificate: EdgeCertificate| certificate.pack().map_err(|why| unsound(certificate.edge, why));
+        let mut rows = certificates.into_iter().map(pack).collect::<Result<Vec<Packed>, _>>()?;
+        rows.sort_unstable_by_key(|row| row.fid);
+        let edges: u32 =
+            self.session.run(async |c| sqlx::query_scalar("SELECT count(*) FROM edge").fetch_one(c).await)?;
+        sets::check_complete(&rows, edges).map_err(|(edge, detail)| unsound(edge, detail.to_owned()))?;
+        self.session.run(async |c| {
+            sqlx::query("BEGIN IMMEDIATE").execute(&mut *c).await?;
+            let done = replace(c, vehicle, policy, &rows, run, account).await;
+            let end = if done.is_ok() { "COMMIT" } else { "ROLLBACK" };
+            let ended = sqlx::query(end).execute(&mut *c).await;
+            done.and(ended.map(|_| ()))
+        })
+    }
+}
+
+async fn replace(
+    c: &mut SqliteConnection,
+    vehicle: &VehicleRecord,
+    policy: Policy,
+    rows: &[Packed],
+    run: &Run,
+    account: &[AccountRow],
+) -> Sql<()> {
+    let known: Option<(u32, String)> = sqlx::query_as("SELECT vehicle_no, blake3 FROM vehicle WHERE vehicle_id = ?")
+        .bind(&vehicle.id)
+        .fetch_optional(&mut *c)
+        .await?;
+    let vehicle_no = match known {
+        Some((number, hash)) if hash == vehicle.blake3() => {
+            sets::remove(c, number, corridor_no(policy)).await?;
+            number
+        }
+        Some((number, _)) => {
+            for &other in Policy::ALL {
+                sets::remove(c, number, corridor_no(other)).await?;
+            }
+            sqlx::query("DELETE FROM vehicle WHERE vehicle_no = ?").bind(number).execute(&mut *c).await?;
+            records::add_vehicle(c, number, vehicle).await?;
+            number
+        }
+        None => {
+            let next = "SELECT coalesce(max(vehicle_no), 0) + 1 FROM vehicle";
+            let number = sqlx::query_scalar(next).fetch_one(&mut *c).await?;
+            records::add_vehicle(c, number, vehicle).await?;
+            number
+        }
+    };
+    let run_id = records::add_run(c, run, account).await?;
+    let (vehicle_id, vehicle_name) = (&vehicle.id, &vehicle.name);
+    Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished }.insert(c, rows).await
+}
+
+async fn account_of(c: &mut SqliteConnection, run_id: i64) -> Sql<Vec<AccountRow>> {
+    let sql = "SELECT stage, item, outcome, reason, count FROM account WHERE run_id = ? ORDER BY account_no";
+    let rows: Vec<(String, String, String, String, i64)> = sqlx::query_as(sql).bind(run_id).fetch_all(c).await?;
+    let row = |(stage, item, outcome, reason, count): (_, _, _, _, i64)| AccountRow {
+        stage,
+        item,
+        outcome,
+        reason,
+        count: count.unsigned_abs(),
+    };
+    Ok(rows.into_iter().map(row).collect())
+}
+
+/// The first hundred bytes tell most wrong files apart: https://www.sqlite.org/fileformat.html
+fn check_header(path: &Path) -> Result<(), StoreError> {
+    let mut header = Vec::with_capacity(100);
+    let file = std::fs::File::open(path).map_err(|e| match e.kind() {
+        std::io::ErrorKind::NotFound => StoreError::Missing(path.to_owned()),
+        _ => StoreError::io(path, e),
+    })?;
+    file.take(100).read_to_end(&mut header).map_err(|e| StoreError::io(path, e))?;
+    if header.len() < 100 || !header.starts_with(b"SQLite format 3\0") {
+        return Err(StoreError::NotSqlite(path.to_owned()));
+    }
+    if header[68..72] != *b"GPKG" {
+        return Err(StoreError::NotNetcert(path.to_owned()));
+    }
+    Ok(())
+}

@@ -1,0 +1,191 @@
+//! The network out of its tables: equal to the one that was written, but for the numbering of interned texts, and for
+//! positions that no edge uses. Writing it again gives the same file.
+
+use std::ops::Range;
+
+use futures_util::TryStreamExt as _;
+use sqlx::sqlite::{SqliteConnection, SqliteRow};
+use sqlx::{Row as _, Sqlite};
+
+use crate::network::{Edge, Narrowing, Network, Road, Stroke};
+use crate::osm::facts::{CrossSection, Legal, Limit, Strip};
+use crate::osm::{LonLat, StringPool};
+
+use super::blob;
+use super::error::content;
+use super::names::{Named, class_and_link};
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// Reads the whole network.
+pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
+    let sections = rows(c, "SELECT * FROM section ORDER BY section_no", |row| section(row, 1)).await?;
+    let legals = rows(c, "SELECT * FROM legal ORDER BY legal_no", |row| legal(row, 1)).await?;
+    let mut strings = StringPool::default();
+    let roads =
+        rows(c, "SELECT * FROM road ORDER BY road_no", |row| road(row, &sections, &legals, &mut strings)).await?;
+    let mut shapes = Vec::new();
+    let edges = "SELECT fid, edge_id, road_no, from_node, to_node, direction, geom, shape_start, narrowing_start, \
+                 narrowing_end, barred, cut, max_height_m, max_weight_t, max_axle_load_t, max_length_m, max_width_m, \
+                 unreadable_limits, hgv, motor_vehicle FROM edge ORDER BY fid";
+    let mut expected = 0;
+    let edges = rows(c, edges, |row| {
+        expected += 1;
+        edge(row, expected, roads.len(), &mut shapes)
+    })
+    .await?;
+    let narrowings = "SELECT vertex, passage_m FROM narrowing ORDER BY narrowing_no";
+    let narrowings = rows(c, narrowings, |row| {
+        Ok(Narrowing { vertex: row.try_get(0)?, passage_m: row.try_get::<f64, _>(1)? as f32 })
+    })
+    .await?;
+    let strokes = rows(c, "SELECT * FROM stroke ORDER BY stroke_no", |row| {
+        Ok(Stroke { approach: range(row, 1)?, edges: range(row, 3)?, closed: row.try_get(5)? })
+    })
+    .await?;
+    let stroke_edges =
+        rows(c, "SELECT fid FROM stroke_edge ORDER BY position", |row| index(row, 0, edges.len())).await?;
+    let network = Network { roads, edges, shapes, narrowings, strokes, stroke_edges, strings };
+    check_ranges(&network)?;
+    Ok(network)
+}
+
+async fn rows<T>(
+    c: &mut SqliteConnection,
+    sql: &'static str,
+    mut read: impl FnMut(&SqliteRow) -> Sql<T>,
+) -> Sql<Vec<T>> {
+    let mut all = Vec::new();
+    let mut stream = sqlx::query::<Sqlite>(sql).fetch(c);
+    while let Some(row) = stream.try_next().await? {
+        all.push(read(&row)?);
+    }
+    Ok(all)
+}
+
+/// Ranges index the arrays all over the program: none may point outside.
+fn check_ranges(network: &Network) -> Sql<()> {
+    let within = |range: &Range<u32>, length: usize| range.start <= range.end && range.end as usize <= length;
+    let edges = network.edges.iter().all(|edge| within(&edge.narrowings, network.narrowings.len()));
+    let length = network.stroke_edges.len();
+    let strokes = network.strokes.iter().all(|s| within(&s.approach, length) && within(&s.edges, length));
+    if edges && strokes { Ok(()) } else { Err(content("a narrow place or stroke points outside its table")) }
+}
+
+fn range(row: &SqliteRow, column: usize) -> Sql<Range<u32>> {
+    Ok(row.try_get(column)?..row.try_get(column + 1)?)
+}
+
+/// A number that counts from 1 in the database, as an index below `length`.
+fn index(row: &SqliteRow, column: usize, length: usize) -> Sql<u32> {
+    let number: i64 = row.try_get(column)?;
+    let index = number.checked_sub(1).and_then(|index| u32::try_from(index).ok());
+    index
+        .filter(|&index| (index as usize) < length)
+        .ok_or_else(|| content(format!("row {number} is referred to, but missing")))
+}
+
+/// The value of a word that stands in a column.
+pub(super) fn word<T: Named>(row: &SqliteRow, column: usize) -> Sql<T> {
+    let word: &str = row.try_get(column)?;
+    T::named(word).ok_or_else(|| content(format!("`{word}` is not a word that netcert writes")))
+}
+
+/// The same where there may be none.
+pub(super) fn word_or_none<T: Named>(row: &SqliteRow, column: usize) -> Sql<Option<T>> {
+    if row.try_get::<Option<&str>, _>(column)?.is_none() { Ok(None) } else { word(row, column).map(Some) }
+}
+
+fn strip(row: &SqliteRow, column: usize) -> Sql<Option<Strip>> {
+    let (Some(left_m), Some(right_m)) =
+        (row.try_get::<Option<f64>, _>(column)?, row.try_get::<Option<f64>, _>(column + 1)?)
+    else {
+        return Ok(None);
+    };
+    Ok(Some(Strip { left_m: left_m as f32, right_m: right_m as f32, source: word(row, column + 2)? }))
+}
+
+fn section(row: &SqliteRow, column: usize) -> Sql<CrossSection> {
+    Ok(CrossSection {
+        lane: strip(row, column)?,
+        direction: strip(row, column + 3)?,
+        carriageway: strip(row, column + 6)?,
+    })
+}
+
+fn legal(row: &SqliteRow, column: usize) -> Sql<Legal> {
+    let unreadable: Option<&str> = row.try_get(column + 5)?;
+    let limit = |at: usize, name: &str| -> Sql<Limit> {
+        if unreadable.is_some_and(|names| names.split(',').any(|other| other == name)) {
+            return Ok(Limit::Unreadable);
+        }
+        Ok(row.try_get::<Option<f64>, _>(column + at)?.map_or(Limit::None, |value| Limit::At(value as f32)))
+    };
+    Ok(Legal {
+        max_height: limit(0, "max_height")?,
+        max_weight: limit(1, "max_weight")?,
+        max_axle_load: limit(2, "max_axle_load")?,
+        max_length: limit(3, "max_length")?,
+        max_width: limit(4, "max_width")?,
+        hgv: word(row, column + 6)?,
+        motor_vehicle: word(row, column + 7)?,
+    })
+}
+
+fn road(row: &SqliteRow, sections: &[CrossSection], legals: &[Legal], strings: &mut StringPool) -> Sql<Road> {
+    let highway: &str = row.try_get(2)?;
+    let (class, link) = class_and_link(highway).ok_or_else(|| content(format!("`{highway}` is no class of road")))?;
+    let country: &str = row.try_get(8)?;
+    let section = |column| index(row, column, sections.len()).map(|i| sections[i as usize]);
+    let legal = |column| index(row, column, legals.len()).map(|i| legals[i as usize]);
+    Ok(Road {
+        way_id: row.try_get(1)?,
+        class,
+        link,
+        roundabout: row.try_get(3)?,
+        oneway: word(row, 4)?,
+        name: row.try_get::<Option<&str>, _>(5)?.map(|text| strings.intern(text)),
+        reference: row.try_get::<Option<&str>, _>(6)?.map(|text| strings.intern(text)),
+        lanes: row.try_get(7)?,
+        country: country.as_bytes().try_into().map_err(|_| content(format!("`{country}` is no country code")))?,
+        left_hand_traffic: row.try_get(9)?,
+        sections: [section(10)?, section(11)?],
+        legal: [legal(12)?, legal(13)?],
+    })
+}
+
+/// An edge; puts its positions where they stood in [`Network::shapes`] (neighbours and directions may share some).
+fn edge(row: &SqliteRow, expected: i64, roads: usize, shapes: &mut Vec<LonLat>) -> Sql<Edge> {
+    let fid: i64 = row.try_get(0)?;
+    if fid != expected {
+        return Err(content(format!("edge {expected} of the network is missing")));
+    }
+    let direction = word(row, 5)?;
+    let mut line = blob::decode(row.try_get(6)?).ok_or_else(|| content(format!("the geometry of edge {fid}")))?;
+    if direction == crate::osm::facts::Direction::Backward {
+        line.reverse();
+    }
+    let start: u32 = row.try_get(7)?;
+    // Shapes are written in order and touch: a jump ahead is no shape of this network, and could ask for any memory.
+    if start as usize > shapes.len() || line.len() < 2 {
+        return Err(content(format!("the shape of edge {fid}")));
+    }
+    let end = start as usize + line.len();
+    let known = shapes.len().min(end);
+    if shapes[start as usize..known] != line[..known - start as usize] {
+        return Err(content(format!("the shape of edge {fid} is not that of its neighbours")));
+    }
+    shapes.extend_from_slice(&line[known - start as usize..]);
+    Ok(Edge {
+        id: row.try_get(1)?,
+        road: index(row, 2, roads)?,
+        from_node: row.try_get(3)?,
+        to_node: row.try_get(4)?,
+        direction,
+        shape: start..end as u32,
+        narrowings: range(row, 8)?,
+        legal: legal(row, 12)?,
+        barred: row.try_get(10)?,
+        cut: row.try_get(11)?,
+    })
+}

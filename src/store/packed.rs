@@ -1,0 +1,214 @@
+//! A certificate as it is stored: small integers, each rounded to the safe side, so that a stored value never promises
+//! more than the computed one. A `safe` that does not survive the rounding is refused, not stored.
+
+use crate::stet::Side;
+use crate::verdict::Verdict;
+
+use super::names::verdict_no;
+
+/// The certificate of one edge, for a vehicle and policy named beside it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EdgeCertificate {
+    /// Index into `Network::edges`.
+    pub edge: u32,
+    /// With its reason.
+    pub verdict: Verdict,
+    /// What was computed; `None` where nothing was (`unknown`, or `forbidden` with no corridor). `Safe` needs it.
+    pub measured: Option<Measured>,
+}
+
+/// The numbers of a certificate. Not finite ones are stored as missing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measured {
+    /// Metres; rounded down to 1 mm.
+    pub rsc_m: f64,
+    /// Metres; rounded down to 1 mm.
+    pub rsc_published_m: f64,
+    /// Radians; rounded down to 0.01°.
+    pub hinge_margin_rad: f64,
+    /// γ, a multiple of 1/1000 in (0, 1]: RSC rests on it, so it is refused rather than rounded.
+    pub shrink: f64,
+    /// Where the least leeway stands, metres along the edge; rounded to 0.1 m.
+    pub limiting_s_m: f64,
+    /// Unit index there.
+    pub limiting_unit: usize,
+    /// Side there.
+    pub limiting_side: Side,
+}
+
+/// A row of `certificate_compact`, but for vehicle and corridor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Packed {
+    pub(super) fid: u32,
+    pub(super) verdict_no: u8,
+    pub(super) rsc_mm: Option<i32>,
+    pub(super) rsc_published_mm: Option<i32>,
+    pub(super) hinge_margin_cdeg: Option<i32>,
+    pub(super) shrink_milli: Option<u16>,
+    pub(super) limiting_s_dm: Option<u32>,
+    pub(super) limiting_at: Option<u16>,
+}
+
+impl EdgeCertificate {
+    /// Rounds; the error says why it may not be stored.
+    pub(super) fn pack(&self) -> Result<Packed, String> {
+        let verdict_no = verdict_no(self.verdict).ok_or("its verdict has no number")?;
+        let fid = self.edge.checked_add(1).ok_or("its index is out of range")?;
+        let mut packed = Packed {
+            fid,
+            verdict_no,
+            rsc_mm: None,
+            rsc_published_mm: None,
+            hinge_margin_cdeg: None,
+            shrink_milli: None,
+            limiting_s_dm: None,
+            limiting_at: None,
+        };
+        if let Some(m) = &self.measured {
+            packed.rsc_mm = floor_to(m.rsc_m, 1000.0);
+            packed.rsc_published_mm = floor_to(m.rsc_published_m, 1000.0);
+            packed.hinge_margin_cdeg = floor_to(m.hinge_margin_rad.to_degrees(), 100.0);
+            packed.shrink_milli = Some(shrink_milli(m.shrink)?).filter(|&milli| milli != 1000);
+            packed.limiting_s_dm = Some((m.limiting_s_m * 10.0).round() as u32); // saturates; not a number: 0
+            let unit = u16::try_from(m.limiting_unit).ok().filter(|&unit| unit < 1 << 14);
+            packed.limiting_at = Some(2 * unit.ok_or("its limiting unit is out of range")? + m.limiting_side as u16);
+        }
+        let holds = packed.rsc_mm >= Some(0) && packed.hinge_margin_cdeg >= Some(0);
+        if self.verdict == Verdict::Safe && !holds {
+            return Err(format!("it is called safe, but its numbers do not bear that out: {:?}", self.measured));
+        }
+        Ok(packed)
+    }
+}
+
+/// The greatest whole number of parts that is not above `value`, as the views divide it back.
+fn floor_to(value: f64, parts: f64) -> Option<i32> {
+    if !value.is_finite() {
+        return None;
+    }
+    // Rounded up first: the product may fall just short of a whole number that divides back to `value` itself.
+    let mut whole = (value * parts).ceil() as i32; // saturates at ± 2 147 km
+    if f64::from(whole) / parts > value {
+        whole = whole.saturating_sub(1);
+    }
+    Some(whole)
+}
+
+fn shrink_milli(shrink: f64) -> Result<u16, String> {
+    let milli = (shrink * 1000.0).round();
+    let quantised = (1.0..=1000.0).contains(&milli) && (milli / 1000.0 - shrink).abs() < 1e-9;
+    if quantised {
+        Ok(milli as u16)
+    } else {
+        Err(format!("its shrink, {shrink}, is not a multiple of 1/1000 in (0, 1]"))
+    }
+}
+
+impl Packed {
+    /// Bytes of [`Packed::to_bytes`].
+    pub(super) const BYTES: usize = 25;
+
+    /// For the spool.
+    pub(super) fn to_bytes(self) -> [u8; Self::BYTES] {
+        let mut bytes = [0; Self::BYTES];
+        bytes[0..4].copy_from_slice(&self.fid.to_le_bytes());
+        bytes[4] = self.verdict_no;
+        bytes[5..9].copy_from_slice(&self.rsc_mm.unwrap_or(i32::MIN).to_le_bytes());
+        bytes[9..13].copy_from_slice(&self.rsc_published_mm.unwrap_or(i32::MIN).to_le_bytes());
+        bytes[13..17].copy_from_slice(&self.hinge_margin_cdeg.unwrap_or(i32::MIN).to_le_bytes());
+        bytes[17..19].copy_from_slice(&self.shrink_milli.unwrap_or(u16::MAX).to_le_bytes());
+        bytes[19..23].copy_from_slice(&self.limiting_s_dm.unwrap_or(u32::MAX).to_le_bytes());
+        bytes[23..25].copy_from_slice(&self.limiting_at.unwrap_or(u16::MAX).to_le_bytes());
+        bytes
+    }
+
+    /// The reverse of [`Packed::to_bytes`]: the extreme value of each type stands for none.
+    pub(super) fn from_bytes(b: &[u8; Self::BYTES]) -> Self {
+        let signed = |at: usize| {
+            let value = i32::from_le_bytes([b[at], b[at + 1], b[at + 2], b[at + 3]]);
+            (value != i32::MIN).then_some(value)
+        };
+        let unsigned = |at: usize| u32::from_le_bytes([b[at], b[at + 1], b[at + 2], b[at + 3]]);
+        let short = |at: usize| Some(u16::from_le_bytes([b[at], b[at + 1]])).filter(|&value| value != u16::MAX);
+        Self {
+            fid: unsigned(0),
+            verdict_no: b[4],
+            rsc_mm: signed(5),
+            rsc_published_mm: signed(9),
+            hinge_margin_cdeg: signed(13),
+            shrink_milli: short(17),
+            limiting_s_dm: Some(unsigned(19)).filter(|&value| value != u32::MAX),
+            limiting_at: short(23),
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::verdict::UnsafeReason;
+    use proptest::prelude::*;
+
+    fn measured(rsc_m: f64, hinge_margin_rad: f64, shrink: f64) -> Measured {
+        Measured {
+            rsc_m,
+            rsc_published_m: rsc_m - 1.0,
+            hinge_margin_rad,
+            shrink,
+            limiting_s_m: 12.34,
+            limiting_unit: 3,
+            limiting_side: Side::Right,
+        }
+    }
+
+    fn pack(verdict: Verdict, m: Measured) -> Result<Packed, String> {
+        EdgeCertificate { edge: 6, verdict, measured: Some(m) }.pack()
+    }
+
+    const UNSAFE: Verdict = Verdict::Unsafe(UnsafeReason::Width);
+
+    proptest! {
+        #[test]
+        fn rounding_never_raises_and_loses_less_than_a_step(rsc in -50.0..50.0_f64, hinge in -3.0..3.0_f64, milli in 1..=1000_u16) {
+            let packed = pack(UNSAFE, measured(rsc, hinge, f64::from(milli) / 1000.0)).unwrap();
+            let rsc_back = f64::from(packed.rsc_mm.unwrap()) / 1000.0;
+            let hinge_back = f64::from(packed.hinge_margin_cdeg.unwrap()) / 100.0;
+            prop_assert!(rsc_back <= rsc && rsc - rsc_back < 1.0001e-3);
+            prop_assert!(hinge_back <= hinge.to_degrees() && hinge.to_degrees() - hinge_back < 1.0001e-2);
+            prop_assert_eq!(packed.shrink_milli.unwrap_or(1000), milli);
+        }
+
+        #[test]
+        fn the_spool_gives_back_what_it_got(rsc in prop::option::of(-50.0..50.0_f64), hinge in -3.0..3.0_f64, edge in 0..u32::MAX) {
+            let verdict = UNSAFE;
+            let packed = EdgeCertificate { edge, verdict, measured: rsc.map(|rsc| measured(rsc, hinge, 0.5)) }.pack().unwrap();
+            prop_assert_eq!(Packed::from_bytes(&packed.to_bytes()), packed);
+        }
+    }
+
+    #[test]
+    fn whole_millimetres_stay_what_they_are() {
+        for mm in -5000..5000 {
+            let packed = pack(UNSAFE, measured(f64::from(mm) / 1000.0, 0.0, 1.0)).unwrap();
+            assert_eq!(packed.rsc_mm, Some(mm));
+        }
+    }
+
+    #[test]
+    fn safe_is_refused_without_numbers_that_bear_it_out() {
+        assert!(pack(Verdict::Safe, measured(0.0, 0.0, 1.0)).is_ok());
+        assert!(pack(Verdict::Safe, measured(-1e-9, 0.1, 1.0)).is_err());
+        assert!(pack(Verdict::Safe, measured(0.1, -1e-9, 1.0)).is_err());
+        assert!(pack(Verdict::Safe, measured(f64::NAN, 0.1, 1.0)).is_err());
+        assert!(pack(Verdict::Safe, measured(0.1, f64::INFINITY, 1.0)).is_err());
+        assert!(EdgeCertificate { edge: 0, verdict: Verdict::Safe, measured: None }.pack().is_err());
+    }
+
+    #[test]
+    fn a_shrink_that_would_need_rounding_is_refused() {
+        for shrink in [0.0, -0.1, 0.3004, 1.001, f64::NAN] {
+            assert!(pack(UNSAFE, measured(0.1, 0.1, shrink)).is_err(), "{shrink}");
+        }
+    }
+}

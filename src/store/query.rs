@@ -1,0 +1,283 @@
+//! Which edges a vehicle may use, and why not the others: rows stream in order of the network, each with all that a
+//! table, CSV, JSON or GeoJSON needs.
+
+use std::pin::Pin;
+
+use futures_util::{Stream, TryStreamExt as _};
+use geo::{BoundingRect as _, Intersects as _};
+use sqlx::sqlite::{SqliteArguments, SqliteRow};
+use sqlx::{Arguments as _, AssertSqlSafe, Row as _};
+use tokio::runtime::Runtime;
+
+use crate::osm::LonLat;
+use crate::osm::facts::{Direction, Policy, WidthSource};
+use crate::stet::Side;
+use crate::verdict::Verdict;
+
+use super::blob::{self, Bounds};
+use super::database::Database;
+use super::error::{StoreError, content};
+use super::names::{Named, corridor_no, verdict_of};
+use super::network_read::{word, word_or_none};
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// A verdict without its reason.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[allow(missing_docs)] // as in `Verdict`
+pub enum VerdictKind {
+    Safe,
+    Unsafe,
+    Forbidden,
+    Unknown,
+}
+
+impl Named for VerdictKind {
+    const ALL: &'static [Self] = &[Self::Safe, Self::Unsafe, Self::Forbidden, Self::Unknown];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Safe => "safe",
+            Self::Unsafe => "unsafe",
+            Self::Forbidden => "forbidden",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+/// Part of the earth's surface, degrees. Edges that touch it count.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Area {
+    /// A box; `west > east` spans the 180th meridian.
+    Bounds(Bounds),
+    /// Polygons, as from a GeoJSON file.
+    Polygons(geo::MultiPolygon),
+}
+
+/// What is asked for. All conditions must hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct QueryOptions {
+    /// Vehicle id.
+    pub vehicle: String,
+    /// Which width counts.
+    pub policy: Policy,
+    /// Only edges that touch it.
+    pub area: Option<Area>,
+    /// Only this edge (`edge_id`).
+    pub edge_id: Option<i64>,
+    /// Only this verdict.
+    pub verdict: Option<VerdictKind>,
+    /// Only with an RSC of at least so many metres.
+    pub min_rsc_m: Option<f64>,
+    /// Only where the width comes from this or better.
+    pub min_width_source: Option<WidthSource>,
+}
+
+impl QueryOptions {
+    /// Every edge of a vehicle.
+    #[must_use]
+    pub fn new(vehicle: &str, policy: Policy) -> Self {
+        Self {
+            vehicle: vehicle.to_owned(),
+            policy,
+            area: None,
+            edge_id: None,
+            verdict: None,
+            min_rsc_m: None,
+            min_width_source: None,
+        }
+    }
+}
+
+/// One edge with its certificate, in the units of the view `certificate`.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)] // the columns of `edge` and `certificate`
+pub struct EdgeRow {
+    /// Index into `Network::edges`.
+    pub edge: u32,
+    pub edge_id: i64,
+    pub way_id: i64,
+    pub from_node: i64,
+    pub to_node: i64,
+    pub direction: Direction,
+    pub highway: String,
+    pub name: Option<String>,
+    pub reference: Option<String>,
+    pub length_m: f64,
+    /// Of the policy asked for.
+    pub width_m: Option<f64>,
+    pub width_source: Option<WidthSource>,
+    pub min_radius_m: Option<f64>,
+    pub verdict: Verdict,
+    pub rsc_m: Option<f64>,
+    pub rsc_published_m: Option<f64>,
+    pub hinge_margin_deg: Option<f64>,
+    pub shrink: Option<f64>,
+    pub limiting_s_m: Option<f64>,
+    pub limiting_unit: Option<u16>,
+    pub limiting_side: Option<Side>,
+    /// In direction of travel.
+    pub line: Vec<LonLat>,
+}
+
+/// Rows of a query, as they come from the file.
+pub struct Rows<'d> {
+    stream: Pin<Box<dyn Stream<Item = Sql<SqliteRow>> + Send + 'd>>,
+    runtime: &'d Runtime,
+    path: &'d std::path::Path,
+    area: Option<geo::MultiPolygon>,
+}
+
+impl Iterator for Rows<'_> {
+    type Item = Result<EdgeRow, StoreError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let row = self.runtime.block_on(self.stream.try_next());
+            match row.and_then(|row| row.as_ref().map(edge_row).transpose()) {
+                Ok(Some(row)) if !self.touches(&row.line) => {}
+                Ok(row) => return row.map(Ok),
+                Err(e) => return Some(Err(StoreError::sql(self.path, e))),
+            }
+        }
+    }
+}
+
+impl Rows<'_> {
+    /// The spatial index knows boxes only.
+    fn touches(&self, line: &[LonLat]) -> bool {
+        let Some(area) = &self.area else { return true };
+        let line: geo::LineString = line.iter().map(|place| place.degrees()).collect();
+        area.intersects(&line)
+    }
+}
+
+impl Database {
+    /// Edges with their certificates, in order of the network. A vehicle that is not certified under this policy is an
+    /// error ([`StoreError::NotThere`]), not an empty answer.
+    pub fn query(&mut self, options: &QueryOptions) -> Result<Rows<'_>, StoreError> {
+        let vehicle_no = self.vehicle_no_of_set(&options.vehicle, options.policy)?;
+        let area = options.area.as_ref().map(polygons);
+        let (sql, values) =
+            statement(options, vehicle_no, area.as_ref()).map_err(|e| StoreError::sql(&self.session.path, e))?;
+        let stream = sqlx::query_with(AssertSqlSafe(sql), values).fetch(&mut self.session.connection);
+        Ok(Rows { stream, runtime: &self.session.runtime, path: &self.session.path, area })
+    }
+
+    fn vehicle_no_of_set(&mut self, vehicle: &str, policy: Policy) -> Result<u32, StoreError> {
+        let number: Option<u32> = self.session.run(async |c| {
+            let sql = "SELECT vehicle_no FROM certified_set JOIN vehicle USING (vehicle_no) \
+                       WHERE vehicle_id = ? AND corridor_no = ?";
+            sqlx::query_scalar(sql).bind(vehicle).bind(corridor_no(policy)).fetch_optional(c).await
+        })?;
+        number.ok_or_else(|| StoreError::NotThere {
+            path: self.session.path.clone(),
+            detail: format!(
+                "{vehicle} is not certified here under the {policy} policy; run `netcert certify --vehicle {vehicle} \
+                 --corridor {policy}`",
+                policy = policy.name()
+            ),
+        })
+    }
+}
+
+fn polygons(area: &Area) -> geo::MultiPolygon {
+    let rect = |west, south, east, north| geo::Rect::new((west, south), (east, north)).to_polygon();
+    match area {
+        Area::Polygons(polygons) => polygons.clone(),
+        &Area::Bounds(Bounds { west, south, east, north }) if west <= east => {
+            geo::MultiPolygon(vec![rect(west, south, east, north)])
+        }
+        &Area::Bounds(Bounds { west, south, east, north }) => {
+            geo::MultiPolygon(vec![rect(west, south, 180.0, north), rect(-180.0, south, east, north)])
+        }
+    }
+}
+
+fn statement(
+    options: &QueryOptions,
+    vehicle_no: u32,
+    area: Option<&geo::MultiPolygon>,
+) -> Sql<(String, SqliteArguments)> {
+    let (width, source) = match options.policy {
+        Policy::Lane => ("lane_width_m", "width_source"),
+        Policy::Direction => ("direction_width_m", "direction_width_source"),
+        Policy::Carriageway => ("carriageway_width_m", "carriageway_width_source"),
+    };
+    let mut sql = format!(
+        "SELECT c.fid, e.edge_id, e.way_id, e.from_node, e.to_node, e.direction, e.highway, e.name, e.ref, e.length_m, \
+         e.{width}, e.{source}, e.min_radius_m, c.verdict_no, c.rsc_mm, c.rsc_published_mm, c.hinge_margin_cdeg, \
+         c.shrink_milli, c.limiting_s_dm, c.limiting_at, e.geom \
+         FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
+         WHERE c.vehicle_no = ? AND c.corridor_no = ?"
+    );
+    let mut values = SqliteArguments::default();
+    let mut bind = |value: f64| values.add(value).map_err(sqlx::Error::Encode);
+    bind(f64::from(vehicle_no))?;
+    bind(f64::from(corridor_no(options.policy)))?;
+    if let Some(kind) = options.verdict {
+        let first = 10.0 * f64::from(kind as u8); // numbers go by tens: see `names::VERDICTS`
+        sql += " AND c.verdict_no BETWEEN ? AND ?";
+        bind(first)?;
+        bind(first + 9.0)?;
+    }
+    if let Some(rsc_m) = options.min_rsc_m {
+        sql += " AND c.rsc_mm >= ?";
+        bind(rsc_m * 1000.0)?;
+    }
+    if let Some(least) = options.min_width_source {
+        let enough: Vec<_> =
+            WidthSource::ALL.iter().filter(|&&s| s >= least).map(|s| format!("'{}'", s.name())).collect();
+        sql += &format!(" AND e.{source} IN ({})", enough.join(","));
+    }
+    if let Some(area) = area {
+        let boxes: Vec<geo::Rect> = area.iter().filter_map(geo::Polygon::bounding_rect).collect();
+        let meets = vec!["(maxx >= ? AND minx <= ? AND maxy >= ? AND miny <= ?)"; boxes.len()].join(" OR ");
+        let meets = if boxes.is_empty() { "FALSE".to_owned() } else { meets };
+        sql += &format!(" AND c.fid IN (SELECT id FROM rtree_edge_geom WHERE {meets})");
+        for rect in boxes {
+            for side in [rect.min().x, rect.max().x, rect.min().y, rect.max().y] {
+                bind(side)?;
+            }
+        }
+    }
+    if let Some(edge_id) = options.edge_id {
+        sql += " AND c.fid = (SELECT fid FROM edge WHERE edge_id = ?)";
+        values.add(edge_id).map_err(sqlx::Error::Encode)?;
+    }
+    sql += " ORDER BY c.fid";
+    Ok((sql, values))
+}
+
+fn edge_row(row: &SqliteRow) -> Sql<EdgeRow> {
+    let fid: u32 = row.try_get(0)?;
+    let verdict_no: i64 = row.try_get(13)?;
+    let at: Option<u16> = row.try_get(19)?;
+    let parts = |column, parts: f64| -> Sql<Option<f64>> {
+        Ok(row.try_get::<Option<i64>, _>(column)?.map(|whole| whole as f64 / parts))
+    };
+    Ok(EdgeRow {
+        edge: fid.saturating_sub(1),
+        edge_id: row.try_get(1)?,
+        way_id: row.try_get(2)?,
+        from_node: row.try_get(3)?,
+        to_node: row.try_get(4)?,
+        direction: word(row, 5)?,
+        highway: row.try_get(6)?,
+        name: row.try_get(7)?,
+        reference: row.try_get(8)?,
+        length_m: row.try_get(9)?,
+        width_m: row.try_get(10)?,
+        width_source: word_or_none(row, 11)?,
+        min_radius_m: row.try_get(12)?,
+        verdict: verdict_of(verdict_no).ok_or_else(|| content(format!("verdict {verdict_no} of edge {fid}")))?,
+        rsc_m: parts(14, 1000.0)?,
+        rsc_published_m: parts(15, 1000.0)?,
+        hinge_margin_deg: parts(16, 100.0)?,
+        shrink: if at.is_some() { Some(parts(17, 1000.0)?.unwrap_or(1.0)) } else { None },
+        limiting_s_m: parts(18, 10.0)?,
+        limiting_unit: at.map(|at| at >> 1),
+        limiting_side: at.map(|at| if at & 1 == 0 { Side::Left } else { Side::Right }),
+        line: blob::decode(row.try_get(20)?).ok_or_else(|| content(format!("the geometry of edge {fid}")))?,
+    })
+}

@@ -1,0 +1,90 @@
+//! What a database says of itself: its vehicles, and the runs that made it.
+
+use sqlx::sqlite::SqliteConnection;
+
+use crate::account::AccountRow;
+
+use super::bulk::Bulk;
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// A vehicle as it is kept.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct VehicleRecord {
+    /// Catalogue id.
+    pub id: String,
+    /// For people.
+    pub name: String,
+    /// The whole vehicle as JSON, in the units of the vehicle file. Certificates stand and fall with these bytes.
+    pub definition: String,
+}
+
+impl VehicleRecord {
+    /// The hash of the definition.
+    #[must_use]
+    pub fn blake3(&self) -> String {
+        blake3::hash(self.definition.as_bytes()).to_hex().to_string()
+    }
+}
+
+/// One run of `ingest` or `certify`. Times are the caller's: nothing else in the file depends on the clock.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Run {
+    /// `ingest`, `certify`, `query`.
+    pub command: String,
+    /// Name of the file read.
+    pub input_name: String,
+    /// Its hash, if it was read.
+    pub input_blake3: Option<String>,
+    /// The extract's own time stamp.
+    pub replication_timestamp: Option<String>,
+    /// Version of the program.
+    pub netcert_version: String,
+    /// UTC, `2026-11-21T08:00:00.000Z`.
+    pub started: String,
+    /// The same; also the time stamp of the layers.
+    pub finished: String,
+    /// Every parameter, as JSON.
+    pub parameters: String,
+}
+
+/// Adds a run with its account; gives its number.
+pub(super) async fn add_run(c: &mut SqliteConnection, run: &Run, account: &[AccountRow]) -> Sql<i64> {
+    let run_id: i64 = sqlx::query_scalar("SELECT coalesce(max(run_id), 0) + 1 FROM run").fetch_one(&mut *c).await?;
+    sqlx::query("INSERT INTO run VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")
+        .bind(run_id)
+        .bind(&run.command)
+        .bind(&run.input_name)
+        .bind(&run.input_blake3)
+        .bind(&run.replication_timestamp)
+        .bind(&run.netcert_version)
+        .bind(&run.started)
+        .bind(&run.finished)
+        .bind(&run.parameters)
+        .execute(&mut *c)
+        .await?;
+    let mut bulk = Bulk::new("account (run_id, stage, item, outcome, reason, count)", 6);
+    for row in account {
+        bulk.add(run_id)?;
+        for text in [&row.stage, &row.item, &row.outcome, &row.reason] {
+            bulk.add(text.as_str())?;
+        }
+        bulk.add(i64::try_from(row.count).unwrap_or(i64::MAX))?;
+        bulk.end_row(c).await?;
+    }
+    bulk.finish(c).await?;
+    Ok(run_id)
+}
+
+/// Adds a vehicle under a number.
+pub(super) async fn add_vehicle(c: &mut SqliteConnection, number: u32, vehicle: &VehicleRecord) -> Sql<()> {
+    sqlx::query("INSERT INTO vehicle VALUES (?, ?, ?, ?, ?)")
+        .bind(number)
+        .bind(&vehicle.id)
+        .bind(&vehicle.name)
+        .bind(&vehicle.definition)
+        .bind(vehicle.blake3())
+        .execute(c)
+        .await?;
+    Ok(())
+}

@@ -1,0 +1,49 @@
+//! One connection with a small runtime under it, so that the rest of the program stays plain Rust.
+//!
+//! Blocks the calling thread: asynchronous callers go through a blocking task. Every error names the file.
+
+use std::path::{Path, PathBuf};
+
+use sqlx::migrate::Migrator;
+use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
+use sqlx::{ConnectOptions, Connection};
+use tokio::runtime::Runtime;
+
+use super::error::StoreError;
+
+/// The schema, embedded. The last one makes the triggers of the spatial index: they call functions that only spatial
+/// programs have (`ST_IsEmpty`), so nothing can be inserted into `edge` after it.
+pub(super) static MIGRATIONS: Migrator = sqlx::migrate!("./migrations");
+
+/// The last migration before the bulk of the data.
+pub(super) const BEFORE_DATA: i64 = 3;
+
+/// A connection, its runtime, and the name of the file for messages.
+pub(super) struct Session {
+    pub(super) path: PathBuf,
+    pub(super) runtime: Runtime,
+    pub(super) connection: SqliteConnection,
+}
+
+impl Session {
+    /// Connects with `options`; messages name `path`.
+    pub(super) fn open(path: &Path, options: &SqliteConnectOptions) -> Result<Self, StoreError> {
+        let runtime =
+            tokio::runtime::Builder::new_current_thread().enable_time().build().map_err(|e| StoreError::io(path, e))?;
+        let connection = runtime.block_on(options.connect()).map_err(|e| StoreError::sql(path, e))?;
+        Ok(Self { path: path.to_owned(), runtime, connection })
+    }
+
+    /// Runs some work on the connection.
+    pub(super) fn run<T>(
+        &mut self,
+        work: impl AsyncFnOnce(&mut SqliteConnection) -> Result<T, sqlx::Error>,
+    ) -> Result<T, StoreError> {
+        self.runtime.block_on(work(&mut self.connection)).map_err(|e| StoreError::sql(&self.path, e))
+    }
+
+    /// Closes the file and says whether that worked.
+    pub(super) fn close(self) -> Result<(), StoreError> {
+        self.runtime.block_on(self.connection.close()).map_err(|e| StoreError::sql(&self.path, e))
+    }
+}

@@ -1,0 +1,83 @@
+//! How much road there is, and how much of it each vehicle may use, by class and verdict.
+
+use sqlx::Row as _;
+
+use crate::osm::facts::Policy;
+use crate::verdict::Verdict;
+
+use super::database::Database;
+use super::error::{StoreError, content};
+use super::names::verdict_of;
+use super::network_read::word;
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// Edges and metres of road of one vehicle, policy, class and verdict. Both directions of a road count.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StatsRow {
+    /// Vehicle id.
+    pub vehicle_id: String,
+    /// Which width counts.
+    pub policy: Policy,
+    /// `highway`, with `_link`.
+    pub highway: String,
+    /// With its reason.
+    pub verdict: Verdict,
+    /// How many directed edges.
+    pub edges: u64,
+    /// Their length, metres.
+    pub length_m: f64,
+}
+
+/// The whole of it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Stats {
+    /// Ways.
+    pub roads: u64,
+    /// Directed edges and their length in metres, by class.
+    pub network: Vec<(String, u64, f64)>,
+    /// By vehicle, policy, class and verdict; those with no edge are left out.
+    pub certificates: Vec<StatsRow>,
+}
+
+impl Database {
+    /// Counts everything.
+    pub fn stats(&mut self) -> Result<Stats, StoreError> {
+        self.session.run(async |c| {
+            let roads: i64 = sqlx::query_scalar("SELECT count(*) FROM road").fetch_one(&mut *c).await?;
+            // A narrow copy: each vehicle's certificates meet it in order, without the geometries.
+            sqlx::raw_sql(
+                "CREATE TEMP TABLE IF NOT EXISTS brief (fid INTEGER PRIMARY KEY, highway TEXT, length_m REAL);
+                 DELETE FROM temp.brief;
+                 INSERT INTO temp.brief SELECT fid, highway, length_m FROM edge ORDER BY fid;",
+            )
+            .execute(&mut *c)
+            .await?;
+            let network = "SELECT highway, count(*), total(length_m) FROM temp.brief GROUP BY highway ORDER BY highway";
+            let network: Vec<(String, i64, f64)> = sqlx::query_as(network).fetch_all(&mut *c).await?;
+            let rows = "SELECT vehicle_id, corridor, highway, verdict_no, edges, length_m FROM ( \
+                        SELECT c.vehicle_no, c.corridor_no, b.highway, c.verdict_no, count(*) AS edges, \
+                        total(b.length_m) AS length_m FROM certificate_compact AS c CROSS JOIN temp.brief AS b \
+                        ON b.fid = c.fid GROUP BY c.vehicle_no, c.corridor_no, b.highway, c.verdict_no) \
+                        JOIN vehicle USING (vehicle_no) JOIN corridor USING (corridor_no) \
+                        ORDER BY vehicle_no, corridor_no, highway, verdict_no";
+            let rows = sqlx::query(rows).fetch_all(&mut *c).await?;
+            sqlx::raw_sql("DROP TABLE temp.brief").execute(c).await?;
+            let network = network.into_iter().map(|(class, edges, m)| (class, edges.unsigned_abs(), m)).collect();
+            let certificates = rows.iter().map(stats_row).collect::<Sql<_>>()?;
+            Ok(Stats { roads: roads.unsigned_abs(), network, certificates })
+        })
+    }
+}
+
+fn stats_row(row: &sqlx::sqlite::SqliteRow) -> Sql<StatsRow> {
+    let verdict_no: i64 = row.try_get(3)?;
+    Ok(StatsRow {
+        vehicle_id: row.try_get(0)?,
+        policy: word(row, 1)?,
+        highway: row.try_get(2)?,
+        verdict: verdict_of(verdict_no).ok_or_else(|| content(format!("verdict {verdict_no}")))?,
+        edges: row.try_get::<i64, _>(4)?.unsigned_abs(),
+        length_m: row.try_get(5)?,
+    })
+}

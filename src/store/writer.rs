@@ -1,0 +1,235 @@
+//! Writing a whole new database: everything goes to `PATH.part`; [`Writer::finish`] checks it and puts it in place.
+//!
+//! Same calls, same bytes, in whatever order certificates come; time stamps are the caller's.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqliteLockingMode, SqliteSynchronous};
+
+use crate::account::AccountRow;
+use crate::network::Network;
+use crate::osm::facts::Policy;
+
+use super::blob::Bounds;
+use super::database::Database;
+use super::error::{StoreError, content};
+use super::names::{Named, VERDICTS, corridor_no};
+use super::network_write::{self, EdgeMeasure};
+use super::packed::EdgeCertificate;
+use super::part::{Part, with_suffix};
+use super::records::{self, Run, VehicleRecord};
+use super::session::{BEFORE_DATA, MIGRATIONS, Session};
+use super::sets::{self, Set};
+use super::spool::Spool;
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// 5 M rows of 56 bytes took 2.69 s, 2.46 s and 2.31 s with pages of 4 (the default), 8 and 16 KiB; the middle is taken
+/// for the sake of edges that are looked up alone.
+const PAGE_BYTES: u32 = 8192;
+
+/// A vehicle of this writer, by number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct VehicleNo(u32);
+
+/// A database that is being made. Dropped unfinished, it leaves what was there as it was.
+pub struct Writer {
+    session: Session,
+    spool: Spool,
+    vehicles: Vec<VehicleRecord>,
+    account: Vec<AccountRow>,
+    network: Option<(u32, Option<Bounds>)>,
+    part: Part,
+}
+
+impl Database {
+    /// Begins a new database that will replace what is at `path`, unless that is something netcert did not make.
+    pub fn create(path: &Path) -> Result<Writer, StoreError> {
+        if path.exists() {
+            // Also rolls back what a killed `certify` left half done, so that its journal is no longer needed.
+            match Self::open_to_change(path) {
+                Ok(old) => old.close()?,
+                Err(StoreError::NotSqlite(_) | StoreError::NotNetcert(_)) => {
+                    return Err(StoreError::InTheWay(path.to_owned()));
+                }
+                Err(busy @ StoreError::Busy(_)) => return Err(busy),
+                Err(_) => {} // an old or damaged database of netcert's: that is what it is replaced for
+            }
+        }
+        let part = Part::create(path)?;
+        let options = SqliteConnectOptions::new()
+            .filename(&part.path)
+            .page_size(PAGE_BYTES)
+            // Killed, the part is thrown away: nothing to roll back, nothing to sync before the end.
+            .journal_mode(SqliteJournalMode::Off)
+            .synchronous(SqliteSynchronous::Off)
+            .locking_mode(SqliteLockingMode::Exclusive)
+            .pragma("cache_size", "-65536")
+            .pragma("temp_store", "MEMORY")
+            // Checked once over the whole file before it is put in place.
+            .foreign_keys(false);
+        let mut session = Session::open(path, &options)?;
+        session.run(async |c| {
+            migrate(c, Some(BEFORE_DATA)).await?;
+            sqlx::query("BEGIN").execute(&mut *c).await?;
+            add_words(c).await
+        })?;
+        let spool = Spool::create(with_suffix(&part.path, "-spool"))?;
+        Ok(Writer { session, spool, vehicles: Vec::new(), account: Vec::new(), network: None, part })
+    }
+}
+
+impl Writer {
+    /// Whether a killed run had left its part behind: it was begun afresh.
+    #[must_use]
+    pub fn replaced_leftover(&self) -> bool {
+        self.part.leftover
+    }
+
+    /// Writes the network, once. `measures`: one an edge, or empty. May come after the certificates, when the measures
+    /// are known.
+    pub fn network(&mut self, network: &Network, measures: &[EdgeMeasure]) -> Result<(), StoreError> {
+        let bounds = self.session.run(async |c| network_write::write(c, network, measures).await)?;
+        self.network = Some((network.edges.len() as u32, bounds));
+        Ok(())
+    }
+
+    /// Adds a vehicle; ids must be distinct.
+    pub fn vehicle(&mut self, vehicle: VehicleRecord) -> VehicleNo {
+        self.vehicles.push(vehicle);
+        VehicleNo(self.vehicles.len() as u32)
+    }
+
+    /// Adds the certificate of one edge, in any order. Of each vehicle and policy that gets any, every edge must get
+    /// exactly one. Refuses a `safe` that its numbers do not bear out.
+    pub fn certificate(
+        &mut self,
+        vehicle: VehicleNo,
+        policy: Policy,
+        certificate: &EdgeCertificate,
+    ) -> Result<(), StoreError> {
+        let packed =
+            certificate.pack().map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.edge, detail))?;
+        self.spool.push((vehicle.0, corridor_no(policy)), packed, &self.session.path)
+    }
+
+    /// Adds to the account of the run.
+    pub fn account(&mut self, rows: &[AccountRow]) {
+        self.account.extend_from_slice(rows);
+    }
+
+    /// Writes what is left, checks the file, and puts it in place of the old one.
+    pub fn finish(mut self, run: &Run) -> Result<(), StoreError> {
+        let Some((edges, bounds)) = self.network else {
+            return Err(StoreError::NotThere {
+                path: self.part.target.clone(),
+                detail: "no network was written".into(),
+            });
+        };
+        let (vehicles, account) = (&self.vehicles, &self.account);
+        let run_id = self.session.run(async |c| {
+            sets::add_layer(c, "edge", "Directed edges of the road network", &run.finished, bounds).await?;
+            for (number, vehicle) in (1..).zip(vehicles) {
+                records::add_vehicle(c, number, vehicle).await?;
+            }
+            records::add_run(c, run, account).await
+        })?;
+        while let Some(((vehicle_no, corridor), rows)) = self.spool.take_first(&self.session.path)? {
+            sets::check_complete(&rows, edges)
+                .map_err(|(edge, detail)| unsound(&self.vehicles, vehicle_no, edge, detail.to_owned()))?;
+            let policy = Policy::ALL[usize::from(corridor)];
+            let Some(vehicle) = self.vehicles.get(vehicle_no as usize - 1) else { continue };
+            let (vehicle_id, vehicle_name) = (&vehicle.id, &vehicle.name);
+            let set = Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished };
+            self.session.run(async |c| set.insert(c, &rows).await)?;
+        }
+        self.session.run(async |c| {
+            sqlx::query("COMMIT").execute(&mut *c).await?;
+            migrate(c, None).await?;
+            check(c).await
+        })?;
+        self.session.close()?;
+        settle(&self.part.target)?;
+        self.part.place()
+    }
+}
+
+/// Waits until nobody is in the middle of changing the old database: its journal must not be taken away from under it.
+/// A journal alone says little: a killed program leaves one, too, which opening the database rolls back or ignores.
+fn settle(target: &Path) -> Result<(), StoreError> {
+    const LONGEST: Duration = Duration::from_secs(60);
+    let pending = ["-journal", "-wal"].iter().any(|suffix| with_suffix(target, suffix).exists());
+    let start = Instant::now();
+    while pending && target.exists() {
+        let alone = Database::open_to_change(target).and_then(|mut old| {
+            old.session.run(async |c| sqlx::raw_sql("BEGIN EXCLUSIVE; ROLLBACK").execute(c).await)?;
+            old.close()
+        });
+        match alone {
+            Err(busy @ StoreError::Busy(_)) if start.elapsed() > LONGEST => return Err(busy),
+            Err(StoreError::Busy(_)) => {} // SQLite has waited its five seconds already
+            _ => break,
+        }
+    }
+    Ok(())
+}
+
+fn unsound(vehicles: &[VehicleRecord], vehicle_no: u32, edge: u32, detail: String) -> StoreError {
+    let vehicle = vehicles.get(vehicle_no as usize - 1).map_or("", |vehicle| &vehicle.id).to_owned();
+    StoreError::Unsound { edge, vehicle, detail }
+}
+
+/// The words that stand for numbers.
+async fn add_words(c: &mut SqliteConnection) -> Sql<()> {
+    for (no, _, verdict, reason) in VERDICTS {
+        sqlx::query("INSERT INTO verdict VALUES (?, ?, ?)")
+            .bind(no)
+            .bind(verdict)
+            .bind(reason)
+            .execute(&mut *c)
+            .await?;
+    }
+    for &policy in Policy::ALL {
+        let insert = sqlx::query("INSERT INTO corridor VALUES (?, ?)").bind(corridor_no(policy));
+        insert.bind(policy.name()).execute(&mut *c).await?;
+    }
+    Ok(())
+}
+
+/// Applies migrations. Their table notes when and how long, which would make every file different: it is written again
+/// without (and without a trace of the first writing).
+async fn migrate(c: &mut SqliteConnection, up_to: Option<i64>) -> Sql<()> {
+    let done = match up_to {
+        Some(version) => MIGRATIONS.run_to(version, &mut *c).await,
+        None => MIGRATIONS.run(&mut *c).await,
+    };
+    done.map_err(|e| match e {
+        sqlx::migrate::MigrateError::Execute(e) | sqlx::migrate::MigrateError::ExecuteMigration(e, _) => e,
+        other => sqlx::Error::Migrate(Box::new(other)),
+    })?;
+    sqlx::raw_sql(
+        "PRAGMA secure_delete = ON;
+         CREATE TEMP TABLE applied AS SELECT version, description, success, checksum FROM main._sqlx_migrations;
+         DELETE FROM _sqlx_migrations;
+         INSERT INTO _sqlx_migrations SELECT version, description, '1970-01-01 00:00:00', success, checksum, 0
+             FROM temp.applied ORDER BY version;
+         DROP TABLE temp.applied;
+         PRAGMA secure_delete = OFF;",
+    )
+    .execute(c)
+    .await?;
+    Ok(())
+}
+
+/// What a reader will rely on.
+async fn check(c: &mut SqliteConnection) -> Sql<()> {
+    let quick: String = sqlx::query_scalar("PRAGMA quick_check(1)").fetch_one(&mut *c).await?;
+    if quick != "ok" {
+        return Err(content(format!("SQLite's check says: {quick}")));
+    }
+    match sqlx::query("PRAGMA foreign_key_check").fetch_optional(&mut *c).await? {
+        Some(_) => Err(content("a row refers to one that is missing")),
+        None => Ok(()),
+    }
+}

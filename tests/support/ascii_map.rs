@@ -1,0 +1,171 @@
+//! A road network drawn in characters becomes an extract, and a network is told back in the same characters.
+//!
+//! Every letter or digit is a node whose id is its character code; everything else is decoration. A column is
+//! `metres` wide and a row as high; north is up. Ways are named by their nodes in order, tagged as in OpenStreetMap.
+
+use netcert::network::{Edge, Network};
+use netcert::osm::facts::{self, CrossSection, Place, PointFacts, WayFacts};
+use netcert::osm::{Extract, LonLat, NodeTable, StringPool, Way};
+
+/// Where the upper left corner of a drawing lies.
+const ORIGIN: LonLat = LonLat { lon_e7: 80_000_000, lat_e7: 490_000_000 };
+
+/// A drawing, with what the file lacks and which ways there are.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct AsciiMap {
+    nodes: Vec<(char, LonLat)>,
+    missing: Vec<char>,
+    ways: Vec<(i64, String, String)>,
+    points: Vec<(char, PointFacts)>,
+}
+
+impl AsciiMap {
+    /// The nodes of a drawing.
+    pub(crate) fn drawn(metres: f64, drawing: &str) -> Self {
+        let mut nodes = Vec::new();
+        for (row, line) in drawing.lines().enumerate() {
+            for (column, c) in line.chars().enumerate().filter(|(_, c)| c.is_alphanumeric()) {
+                assert!(nodes.iter().all(|&(other, _)| other != c), "{c} is drawn twice");
+                nodes.push((c, offset(ORIGIN, column as f64 * metres, -(row as f64) * metres)));
+            }
+        }
+        Self { nodes, ..Self::default() }
+    }
+
+    /// Adds a way through these nodes; ids count from 1.
+    pub(crate) fn way(self, nodes: &str, tags: &str) -> Self {
+        let id = self.ways.len() as i64 + 1;
+        self.way_of_id(id, nodes, tags)
+    }
+
+    /// Adds a way of this id.
+    pub(crate) fn way_of_id(mut self, id: i64, nodes: &str, tags: &str) -> Self {
+        self.ways.push((id, nodes.to_owned(), tags.to_owned()));
+        self
+    }
+
+    /// The file has no such node, though ways name it.
+    pub(crate) fn missing(mut self, node: char) -> Self {
+        self.missing.push(node);
+        self
+    }
+
+    /// Node `node` stands where `other` stands.
+    pub(crate) fn same_place(mut self, node: char, other: char) -> Self {
+        let at = self.nodes.iter().find(|n| n.0 == other).unwrap_or_else(|| panic!("{other} is not drawn")).1;
+        self.nodes.retain(|n| n.0 != node);
+        self.nodes.push((node, at));
+        self
+    }
+
+    /// Facts of a tagged node.
+    pub(crate) fn point(mut self, node: char, facts: PointFacts) -> Self {
+        self.points.push((node, facts));
+        self
+    }
+
+    /// What reading a file of this map leaves.
+    pub(crate) fn extract(&self) -> Extract {
+        let mut extract = Extract::default();
+        let mut ways = self.ways.clone();
+        ways.sort();
+        for (id, nodes, tags) in ways {
+            let start = extract.refs.len() as u32;
+            extract.refs.extend(nodes.chars().map(id_of));
+            let refs = start..extract.refs.len() as u32;
+            let facts = way_facts(&tags, &mut extract.strings);
+            extract.ways.push(Way { id, refs, facts });
+        }
+        let mut ids = extract.refs.clone();
+        ids.sort_unstable();
+        ids.dedup();
+        let places = ids.iter().map(|&id| self.place(id)).collect();
+        extract.nodes = NodeTable { ids, places };
+        extract.points = self.points.iter().map(|&(node, facts)| (id_of(node), facts)).collect();
+        extract.points.sort_by_key(|point| point.0);
+        extract
+    }
+
+    fn place(&self, id: i64) -> Option<LonLat> {
+        let (c, place) =
+            *self.nodes.iter().find(|n| id_of(n.0) == id).unwrap_or_else(|| panic!("node {id} is not drawn"));
+        (!self.missing.contains(&c)).then_some(place)
+    }
+}
+
+/// The id of a drawn node.
+pub(crate) fn id_of(node: char) -> i64 {
+    i64::from(u32::from(node))
+}
+
+/// The drawn node of an id.
+pub(crate) fn node_of(id: i64) -> char {
+    u32::try_from(id).ok().and_then(char::from_u32).unwrap_or('?')
+}
+
+/// East and north of a place, near enough for a drawing.
+pub(crate) fn offset(from: LonLat, east_m: f64, north_m: f64) -> LonLat {
+    const DEGREE_M: f64 = 111_195.0;
+    let cos = from.degrees().1.to_radians().cos();
+    LonLat {
+        lon_e7: from.lon_e7 + (east_m / (DEGREE_M * cos) * 1e7).round() as i32,
+        lat_e7: from.lat_e7 + (north_m / DEGREE_M * 1e7).round() as i32,
+    }
+}
+
+/// Facts of a way with these tags, written `key=value` with spaces between.
+pub(crate) fn way_facts(tags: &str, strings: &mut StringPool) -> WayFacts {
+    let tags: Vec<_> = tags.split_whitespace().filter_map(|tag| tag.split_once('=')).collect();
+    let draft = facts::way_facts(&tags).unwrap_or_else(|why| panic!("{tags:?} is no road: {why}"));
+    let name = draft.name.map(|name| strings.intern(name));
+    let reference = draft.reference.map(|name| strings.intern(name));
+    let mut facts = draft.facts;
+    (facts.name, facts.reference) = (name, reference);
+    facts
+}
+
+/// The same country everywhere.
+pub(crate) fn somewhere(_: LonLat) -> Place {
+    Place { country: *b"DE", left_hand_traffic: false }
+}
+
+/// No road has a width.
+pub(crate) fn no_sections(_: &WayFacts, _: &Place) -> [CrossSection; 2] {
+    [CrossSection { lane: None, direction: None, carriageway: None }; 2]
+}
+
+/// All edges in order: `AB` from A to B, `!` behind a barred one, `~` behind one that is cut.
+pub(crate) fn edges(network: &Network) -> String {
+    let edge = |e: &Edge| {
+        let mut text = ends(e);
+        text.extend(e.barred.then_some('!'));
+        text.extend(e.cut.then_some('~'));
+        text
+    };
+    network.edges.iter().map(edge).collect::<Vec<_>>().join(" ")
+}
+
+fn ends(edge: &Edge) -> String {
+    [edge.from_node, edge.to_node].into_iter().map(node_of).collect()
+}
+
+/// All strokes in order, a line each: the nodes in driving order, before a `>` those of the approach; `@` behind a
+/// closed one.
+pub(crate) fn strokes(network: &Network) -> String {
+    let nodes = |range: std::ops::Range<u32>| {
+        let edges = network.stroke_edges[range.start as usize..range.end as usize].iter();
+        let ends: Vec<String> = edges.map(|&e| ends(&network.edges[e as usize])).collect();
+        let first = ends.first().map_or("", |e| &e[..1]).to_owned();
+        first + &ends.iter().map(|e| &e[1..]).collect::<String>()
+    };
+    let stroke = |s: &netcert::network::Stroke| {
+        let approach = if s.approach.is_empty() {
+            String::new()
+        } else {
+            let nodes = nodes(s.approach.clone());
+            nodes[..nodes.len() - 1].to_owned() + ">"
+        };
+        approach + &nodes(s.edges.clone()) + if s.closed { "@" } else { "" }
+    };
+    network.strokes.iter().map(stroke).collect::<Vec<_>>().join(" ")
+}

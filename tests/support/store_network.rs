@@ -1,0 +1,146 @@
+//! A made-up network with every kind of value that the store must give back: all limits, permissions, sources and
+//! directions, shared shapes, narrow places, strokes with approach. Size to order.
+
+use netcert::network::{Edge, Narrowing, Network, Road, Stroke};
+use netcert::osm::LonLat;
+use netcert::osm::facts::{CrossSection, Direction, Legal, Limit, Oneway, Permission, RoadClass, Strip, WidthSource};
+use netcert::stet::Side;
+use netcert::store::{EdgeCertificate, Measured};
+use netcert::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
+
+const CLASSES: [RoadClass; 5] =
+    [RoadClass::Motorway, RoadClass::Primary, RoadClass::LivingStreet, RoadClass::Track, RoadClass::Busway];
+const SOURCES: [WidthSource; 5] =
+    [WidthSource::Assumed, WidthSource::FromLanes, WidthSource::Estimated, WidthSource::Tagged, WidthSource::Surveyed];
+
+/// A grid of `ways` roads, 20 in a row, each cut into two edges a direction (every third is a oneway).
+pub(crate) fn network(ways: u32) -> Network {
+    let mut network = Network::default();
+    for way in 0..ways {
+        add_way(&mut network, way);
+    }
+    add_strokes(&mut network);
+    network
+}
+
+fn add_way(network: &mut Network, way: u32) {
+    let oneway = if way.is_multiple_of(3) { Oneway::Forward } else { Oneway::No };
+    let name = (!way.is_multiple_of(4)).then(|| network.strings.intern(&format!("Straße {} 'Ost'", way % 7)));
+    let reference = way.is_multiple_of(5).then(|| network.strings.intern(&format!("A{}", way % 9)));
+    network.roads.push(Road {
+        way_id: 1_000_000_000_000 + i64::from(way) * 3,
+        class: CLASSES[way as usize % 5],
+        link: way.is_multiple_of(10),
+        roundabout: way % 11 == 3,
+        oneway,
+        name,
+        reference,
+        lanes: (way % 6 != 1).then_some((way % 6) as u8),
+        country: if way.is_multiple_of(2) { *b"DE" } else { *b"AU" },
+        left_hand_traffic: way % 2 == 1,
+        sections: [section(way), section(way + 1)],
+        legal: [legal(way), legal(way * 7 + 2)],
+    });
+    // A position of a piece that was left out.
+    network.shapes.extend((way % 9 == 7).then_some(LonLat { lon_e7: 1, lat_e7: 2 }));
+    let start = network.shapes.len() as u32;
+    let (x, y) = ((way % 20) as i32 * 100_000 + 86_000_000, (way / 20) as i32 * 90_000 + 494_000_000);
+    network.shapes.extend((0..7).map(|i| LonLat { lon_e7: x + i * 15_003, lat_e7: y + (i * i) * 311 - 7 }));
+    let narrow = network.narrowings.len() as u32;
+    if way % 6 == 2 {
+        network.narrowings.push(Narrowing { vertex: 1 + way % 2, passage_m: 2.6 + way as f32 * 0.01 });
+    }
+    let narrowings = narrow..network.narrowings.len() as u32;
+    // Two edges share the vertex where the way is cut, and both directions share a shape.
+    for (part, shape) in [start..start + 4, start + 3..start + 7].into_iter().enumerate() {
+        let nodes = [i64::from(way) * 10 + part as i64, i64::from(way) * 10 + part as i64 + 1];
+        for direction in [Direction::Forward, Direction::Backward] {
+            if direction == Direction::Backward && oneway == Oneway::Forward {
+                continue;
+            }
+            let forward = direction == Direction::Forward;
+            network.edges.push(Edge {
+                id: 7_000_000_000 + i64::from(way) * 8 + part as i64 * 2 + i64::from(forward),
+                road: way,
+                from_node: nodes[usize::from(!forward)],
+                to_node: nodes[usize::from(forward)],
+                direction,
+                shape: shape.clone(),
+                narrowings: if part == 0 { narrowings.clone() } else { narrowings.end..narrowings.end },
+                legal: legal(way + part as u32),
+                barred: way % 13 == 4,
+                cut: way % 17 == 5,
+            });
+        }
+    }
+}
+
+/// Edges in threes, each stroke with the last edge of the one before as its approach.
+fn add_strokes(network: &mut Network) {
+    let edges: Vec<u32> = (0..network.edges.len() as u32).collect();
+    for (no, chain) in edges.chunks(3).enumerate() {
+        let start = network.stroke_edges.len() as u32;
+        network.stroke_edges.extend(chain[0].checked_sub(1));
+        let first = network.stroke_edges.len() as u32;
+        network.stroke_edges.extend(chain.iter().rev());
+        let end = network.stroke_edges.len() as u32;
+        network.strokes.push(Stroke { approach: start..first, edges: first..end, closed: no % 8 == 7 });
+    }
+}
+
+fn section(k: u32) -> CrossSection {
+    let strip = |left_m: f32, right_m: f32, off: u32| {
+        (k % 9 != off).then_some(Strip { left_m, right_m, source: SOURCES[(k + off) as usize % 5] })
+    };
+    CrossSection {
+        lane: strip(0.0, -3.5 + (k % 4) as f32 * 0.1, 0),
+        direction: strip(0.05, -3.65, 1),
+        carriageway: strip(3.7, -3.7, 2),
+    }
+}
+
+fn legal(k: u32) -> Legal {
+    let limit = |at: u32, value: f32| match (k + at) % 6 {
+        0 => Limit::At(value),
+        1 => Limit::Unreadable,
+        _ => Limit::None,
+    };
+    let permission = |k: u32| [Permission::Yes, Permission::Restricted, Permission::No][k as usize % 3];
+    Legal {
+        max_height: limit(0, 3.8),
+        max_weight: limit(1, 7.5),
+        max_axle_load: limit(2, 11.5),
+        max_length: limit(3, 18.75),
+        max_width: limit(4, 2.3),
+        hgv: permission(k / 5),
+        motor_vehicle: permission(k / 7),
+    }
+}
+
+/// A certificate of every kind, by edge; `seed` tells vehicles apart.
+pub(crate) fn certificate(edge: u32, seed: u32) -> EdgeCertificate {
+    let k = edge.wrapping_mul(2_654_435_761).wrapping_add(seed.wrapping_mul(40_503)) >> 8;
+    let verdict = match k % 10 {
+        0..=4 => Verdict::Safe,
+        5 => Verdict::Unsafe(UnsafeReason::Width),
+        6 => Verdict::Unsafe(UnsafeReason::Articulation),
+        7 => Verdict::Forbidden(ForbiddenReason::Weight),
+        8 => Verdict::Forbidden(ForbiddenReason::Hgv),
+        _ => Verdict::Unknown(UnknownReason::Width),
+    };
+    let rsc_m = match verdict {
+        Verdict::Safe => f64::from(k % 700) / 1000.0 + 0.0004,
+        _ => -f64::from(k % 3000) / 1000.0 - 0.0004,
+    };
+    let measured = Measured {
+        rsc_m,
+        rsc_published_m: rsc_m - 3.0 - f64::from(k % 17),
+        hinge_margin_rad: f64::from(k % 60).to_radians(),
+        shrink: if k.is_multiple_of(3) { f64::from(300 + k % 700) / 1000.0 } else { 1.0 },
+        limiting_s_m: f64::from(k % 4000) / 10.0,
+        limiting_unit: (k % 5) as usize,
+        limiting_side: if k.is_multiple_of(2) { Side::Left } else { Side::Right },
+    };
+    let measured = (!matches!(verdict, Verdict::Unknown(_))).then_some(measured);
+    EdgeCertificate { edge, verdict, measured }
+}
