@@ -45,7 +45,8 @@ fn blobs(bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut blobs = Vec::new();
     while !rest.is_empty() {
         let header = 4 + u32::from_be_bytes(rest[..4].try_into().unwrap()) as usize;
-        let message: osmpbfreader::fileformat::BlobHeader = protobuf::Message::parse_from_bytes(&rest[4..header]).unwrap();
+        let message: osmpbfreader::fileformat::BlobHeader =
+            protobuf::Message::parse_from_bytes(&rest[4..header]).unwrap();
         let (blob, after) = rest.split_at(header + message.datasize() as usize);
         blobs.push(blob.to_vec());
         rest = after;
