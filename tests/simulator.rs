@@ -119,3 +119,17 @@ fn a_point_is_found_again_where_it_was_put() {
         }
     }
 }
+
+#[test]
+fn the_oracles_corridors_are_the_certifiers() {
+    let mut draw = Draw(11);
+    for _ in 0..50 {
+        let kappa = draw::curvature(&draw::bends(&mut draw, 15.0, 300.0));
+        let wide = vec![4.0; kappa.len()];
+        let ours = road::corridor(1.0, [100.0, -50.0], 0.7, &kappa, &wide, &wide);
+        let theirs = netcert::corridor::Corridor::from_curvature(1.0, [100.0, -50.0], 0.7, &kappa, 4.0, 4.0);
+        for k in 0..ours.len() {
+            assert!((ours.x[k] - theirs.x[k]).hypot(ours.y[k] - theirs.y[k]) < 1e-6, "station {k}");
+        }
+    }
+}

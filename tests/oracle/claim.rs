@@ -26,12 +26,12 @@ pub struct Place {
     pub ahead_m: f64,
 }
 
-/// Asks the certifier, with corrections as they are by default. `None`: it makes no finite claim.
+/// Asks the certifier, with corrections as they are by default. `None`: it makes no claim worth refuting.
 pub fn certify(corridor: &Corridor, vehicle: &Vehicle) -> Option<Claim> {
     claim(corridor, vehicle, &Options::default())
 }
 
-/// Asks the certifier. `None`: it makes no finite claim.
+/// Asks the certifier. `None`: it makes no claim worth refuting.
 pub fn claim(corridor: &Corridor, vehicle: &Vehicle, options: &Options) -> Option<Claim> {
     let model = Model::new(vehicle).expect("the oracle's vehicles are possible ones");
     let certificate = stet::certify(corridor, &model, options).expect("the corridor has stations");
@@ -43,5 +43,6 @@ pub fn claim(corridor: &Corridor, vehicle: &Vehicle, options: &Options) -> Optio
         ahead_m: result.limiting.point_m,
     };
     let (rsc_m, shrink, hinge_margin_rad) = (result.rsc_m, result.shrink, result.hinge_margin_rad);
-    rsc_m.is_finite().then_some(Claim { rsc_m, shrink, hinge_margin_rad, limiting, plan: certificate.plan })
+    // Where the recursion of the bounds does not close, RSC is a huge negative number: nothing to refute.
+    (rsc_m > -50.0).then_some(Claim { rsc_m, shrink, hinge_margin_rad, limiting, plan: certificate.plan })
 }

@@ -86,7 +86,8 @@ pub fn bends(draw: &mut Draw, radius_m: f64, length_m: f64) -> Bends {
     bends
 }
 
-/// Half-widths at `stations` stations: `low..high` in stretches of 30 to 150 m, with cosine tapers between them.
+/// Half-widths at `stations` stations: `low..high` in stretches of 30 to 150 m, with cosine tapers between them, and
+/// constant over the first and last 20 m.
 pub fn half_widths(draw: &mut Draw, stations: usize, low: f64, high: f64) -> Vec<f64> {
     let mut widths = Vec::with_capacity(stations);
     let mut now = draw.between(low, high);
@@ -102,6 +103,10 @@ pub fn half_widths(draw: &mut Draw, stations: usize, low: f64, high: f64) -> Vec
         now = next;
     }
     widths.truncate(stations);
+    let ends = 20.min(stations / 2);
+    let (first, last) = (widths[ends], widths[stations - 1 - ends]);
+    widths[..ends].fill(first);
+    widths[stations - ends..].fill(last);
     widths
 }
 

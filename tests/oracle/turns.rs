@@ -36,8 +36,13 @@ impl Turn {
         };
         let places: Vec<(V2, f64)> = (0..=before + arc + after).map(place).collect();
         let plan: Vec<V2> = places.iter().map(|p| p.0).collect();
-        let kappa: Vec<f64> =
-            (0..plan.len()).map(|k| if k > before && k < before + arc { 1.0 / radius_m } else { 0.0 }).collect();
+        // Curvature is linear between stations: half of it at both ends makes the turned angle exact.
+        let bend = |k: usize| match k {
+            _ if k == before || k == before + arc => 0.5 / radius_m,
+            _ if k > before && k < before + arc => 1.0 / radius_m,
+            _ => 0.0,
+        };
+        let kappa: Vec<f64> = (0..plan.len()).map(bend).collect();
         let wide = vec![0.0; plan.len()];
         let guide = road::corridor(pitch, plan[0], 0.0, &kappa, &wide, &wide);
         let path = Path::through(&plan, pitch, (0.0, angle), 1.0, 1.0);
@@ -61,12 +66,15 @@ impl Turn {
     }
 }
 
-/// Inner end of the last axle, from the arc's centre, when the steer axle has turned by `angle`.
-pub fn inside_radius_m(vehicle: &Vehicle, turn: &Turn, run: &Run, angle: f64) -> f64 {
+/// The least distance of the inner end of the last axle from the arc's centre over the whole turn and its exit.
+pub fn inside_radius_m(vehicle: &Vehicle, turn: &Turn, run: &Run) -> f64 {
     let drive = Drive::new(vehicle, &turn.path, 1);
     let last = vehicle.units.len() - 1;
-    let (guide, headings) = run.at(turn.span_at(angle));
-    turn.radius_of(drive.body_point(guide, headings, last, 0.0, 0.5 * vehicle.units[last].width_m))
+    let inner_end = |step: usize| {
+        let (guide, headings) = run.at(step);
+        turn.radius_of(drive.body_point(guide, headings, last, 0.0, 0.5 * vehicle.units[last].width_m))
+    };
+    run.steps().map(inner_end).fold(f64::INFINITY, f64::min)
 }
 
 /// An undisturbed run of the turn, a step a vertex.
