@@ -21,6 +21,8 @@ pub(super) struct Group<'m> {
 /// Constants of one unit across the vehicles; a vehicle without this unit has a harmless stand-in.
 #[derive(Clone, Copy)]
 pub(super) struct UnitLanes {
+    /// 1 where the vehicle has this unit, else 0.
+    pub(super) present: V,
     pub(super) length: V,
     pub(super) inverse_length: V,
     /// L + d
@@ -54,6 +56,7 @@ impl<'m> Group<'m> {
                 per_vehicle(&|m: &Model| m.units.get(u).map_or(absent, |unit| f(unit, tolerance(m))))
             };
             UnitLanes {
+                present: of(&|_, _| 1.0, 0.0),
                 length: of(&|u, _| u.length, 5.0),
                 inverse_length: of(&|u, _| 1.0 / u.length, 0.2),
                 reach: of(&|u, _| u.length + u.hitch, 5.0),
