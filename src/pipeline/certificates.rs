@@ -125,8 +125,9 @@ fn with_corridor(job: &Job<'_>, made: &StrokeCorridor) -> StrokeResult {
         .flat_map(|(vehicle, row)| made.spans.iter().zip(row).map(move |(span, result)| (vehicle, span, result)))
         .filter_map(|(vehicle, span, result)| {
             let edge = job.network.edges.get(span.edge as usize)?;
-            let verdict = verdict(edge, &job.models[vehicle], span.unknown, Some(result));
-            let measured = span.unknown.is_none().then(|| measured(made, span, result));
+            let result = seen(result).then_some(result);
+            let verdict = verdict(edge, &job.models[vehicle], span.unknown, result);
+            let measured = result.filter(|_| span.unknown.is_none()).map(|result| measured(made, span, result));
             Some((vehicle, EdgeCertificate { edge: span.edge, verdict, measured }))
         })
         .collect();
@@ -152,6 +153,15 @@ fn without_corridor(job: &Job<'_>, stroke: &Stroke, reason: UnknownReason) -> St
     );
     let measures = edges.iter().map(|&edge| (edge, EdgeMeasure::default(), Some(reason_name(reason))));
     StrokeResult { measures: measures.collect(), certificates: certificates.collect() }
+}
+
+/// More room than this is none that was measured.
+const MOST_ROOM: f64 = 1000.0;
+
+/// Whether any body point and hinge was seen at the span's stations. In a fold of the centreline the feet of all may jump
+/// over a short edge: then nothing can be said of it.
+fn seen(result: &SpanResult) -> bool {
+    result.rsc_m < MOST_ROOM && result.hinge_margin_rad < MOST_ROOM
 }
 
 fn reason_name(reason: UnknownReason) -> &'static str {
