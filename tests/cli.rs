@@ -77,9 +77,9 @@ fn every_format_holds_the_same_edges() {
         assert!(line.0.len() >= 2 && line.0.iter().all(|c| c.x.abs() <= 180.0 && c.y.abs() <= 90.0));
         match row["verdict"].as_str() {
             "safe" => {
-                assert!(row["reason"].is_empty() && !row["rsc_m"].starts_with('-') && !row["width_source"].is_empty())
+                assert!(row["reason"].is_empty() && !row["rsc_m"].starts_with('-') && !row["width_source"].is_empty());
             }
-            _ => assert!(!row["reason"].is_empty()),
+            _ => assert!(!row["reason"].is_empty(), "{row:?}"),
         }
     }
     assert!(json["scope"].as_str().unwrap().contains("no permit"), "the scope travels with the data");
@@ -254,7 +254,7 @@ fn wrong_usage_is_status_2() {
         "corridor x --vehicle X --max-shift -1",
         "stats --threads 0",
     ] {
-        place.netcert(line).is_misused();
+        place.netcert(line).ends_as_misuse();
     }
     place.netcert("query --vehicle X --bbox 1,2,3,1").tells("north of the north");
     for line in [

@@ -46,7 +46,7 @@ impl Certify {
         let path = self.db.path()?;
         let fleet = Fleet::new(&self.vehicle_file)?;
         let mut database = Database::open(&path)?;
-        let settings = self.how.over(how::recorded(&mut database)?);
+        let settings = self.how.over(&how::recorded(&mut database)?);
         let work = self.work(&mut database, &fleet, settings.policy)?;
         database.close()?;
         if work.is_empty() {

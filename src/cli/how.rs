@@ -33,11 +33,11 @@ pub(crate) struct How {
 impl How {
     /// The options over the defaults.
     pub(crate) fn settings(&self) -> Settings {
-        self.over(default_settings())
+        self.over(&default_settings())
     }
 
     /// The options over some settings.
-    pub(crate) fn over(&self, base: Settings) -> Settings {
+    pub(crate) fn over(&self, base: &Settings) -> Settings {
         Settings {
             policy: self.corridor.unwrap_or(base.policy),
             corridor: Params {

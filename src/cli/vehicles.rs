@@ -1,7 +1,7 @@
 //! `netcert vehicles`: the catalogue, and files of the user's own.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
 use netcert::stet::{Model, steady_offtracking};
@@ -124,7 +124,7 @@ fn offtracking(vehicle: &Vehicle) -> String {
     format!("The last axle cuts in, on a steady circle of the steer axle: {}", RADII_M.map(at).join(", "))
 }
 
-fn check(file: &PathBuf) -> anyhow::Result<()> {
+fn check(file: &Path) -> anyhow::Result<()> {
     let own = Catalogue::from_path(file)?;
     // A clash with a shipped id, and what the certificate's model does not cover, are faults of the file too.
     Catalogue::builtin()?.extended(own.clone(), &file.display().to_string())?;

@@ -156,7 +156,7 @@ pub(crate) fn strokes(network: &Network) -> String {
         let edges = network.stroke_edges[range.start as usize..range.end as usize].iter();
         let ends: Vec<String> = edges.map(|&e| ends(&network.edges[e as usize])).collect();
         let first = ends.first().map_or("", |e| &e[..1]).to_owned();
-        first + &ends.iter().map(|e| &e[1..]).collect::<String>()
+        first + ends.iter().map(|e| &e[1..]).collect::<String>().as_str()
     };
     let stroke = |s: &netcert::network::Stroke| {
         let approach = if s.approach.is_empty() {
@@ -165,7 +165,7 @@ pub(crate) fn strokes(network: &Network) -> String {
             let nodes = nodes(s.approach.clone());
             nodes[..nodes.len() - 1].to_owned() + ">"
         };
-        approach + &nodes(s.edges.clone()) + if s.closed { "@" } else { "" }
+        approach + nodes(s.edges.clone()).as_str() + if s.closed { "@" } else { "" }
     };
     network.strokes.iter().map(stroke).collect::<Vec<_>>().join(" ")
 }

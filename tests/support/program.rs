@@ -90,7 +90,7 @@ impl Answer {
     }
 
     /// Exit status 2.
-    pub(crate) fn is_misused(self) -> Self {
+    pub(crate) fn ends_as_misuse(self) -> Self {
         self.status(2)
     }
 
