@@ -125,9 +125,10 @@ fn with_corridor(job: &Job<'_>, made: &StrokeCorridor) -> StrokeResult {
         .flat_map(|(vehicle, row)| made.spans.iter().zip(row).map(move |(span, result)| (vehicle, span, result)))
         .filter_map(|(vehicle, span, result)| {
             let edge = job.network.edges.get(span.edge as usize)?;
-            let result = seen(result).then_some(result);
+            let result = result.seen().then_some(result);
             let verdict = verdict(edge, &job.models[vehicle], span.unknown, result);
-            let measured = result.filter(|_| span.unknown.is_none()).map(|result| measured(made, span, result));
+            let bounded = result.filter(|result| span.unknown.is_none() && result.closes());
+            let measured = bounded.map(|result| measured(made, span, result));
             Some((vehicle, EdgeCertificate { edge: span.edge, verdict, measured }))
         })
         .collect();
@@ -153,15 +154,6 @@ fn without_corridor(job: &Job<'_>, stroke: &Stroke, reason: UnknownReason) -> St
     );
     let measures = edges.iter().map(|&edge| (edge, EdgeMeasure::default(), Some(reason_name(reason))));
     StrokeResult { measures: measures.collect(), certificates: certificates.collect() }
-}
-
-/// More room than this is none that was measured.
-const MOST_ROOM: f64 = 1000.0;
-
-/// Whether any body point and hinge was seen at the span's stations. In a fold of the centreline the feet of all may jump
-/// over a short edge: then nothing can be said of it.
-fn seen(result: &SpanResult) -> bool {
-    result.rsc_m < MOST_ROOM && result.hinge_margin_rad < MOST_ROOM
 }
 
 fn reason_name(reason: UnknownReason) -> &'static str {
@@ -193,6 +185,7 @@ fn verdict(edge: &Edge, model: &Model, unknown: Option<UnknownReason>, result: O
     match (unknown, result) {
         (Some(reason), _) => Verdict::Unknown(reason),
         (None, None) => Verdict::Unknown(UnknownReason::Geometry),
+        (None, Some(result)) if !result.closes() => Verdict::Unsafe(UnsafeReason::Articulation),
         (None, Some(result)) if result.rsc_m.is_nan() || result.rsc_m < 0.0 => Verdict::Unsafe(UnsafeReason::Width),
         (None, Some(result)) if result.safe() => legal.unwrap_or(Verdict::Safe),
         (None, Some(result)) if result.hinge_unit == 0 => Verdict::Unsafe(UnsafeReason::SteeringLock),

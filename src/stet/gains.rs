@@ -201,19 +201,21 @@ mod tests {
         let (points, headings) = Chain::new(&units).gains(&[vec![0.0, 2.0, 7.0, -3.0]]);
         let expected = [1.0, 1.0, 0.4 + 1.4, 1.6 + 0.6];
         for (gain, want) in points[0].iter().zip(expected) {
-            assert!((gain.tracking - want).abs() < 1e-5, "{gain:?} {want}");
+            // Never below, and above by the quadrature's allowance only.
+            let above = gain.tracking - want;
+            assert!((-1e-9..5e-5).contains(&above), "{gain:?} {want}");
         }
         assert!((headings[0].tracking - 0.4).abs() < 1e-6);
         assert!((points[0][0].slip - 5.0 * 0.2_f64.to_radians().tan()).abs() < 1e-6);
     }
 
     #[test]
-    fn type_2_road_train_has_the_gain_of_the_design_page() {
-        // Design section 4: 0.33 m for the rear of the last trailer, ε 0.15 m, σ 0.2°.
+    fn a_type_2_road_train_swings_its_last_rear_by_a_third_of_a_metre() {
+        // 0.33 m by the design page; an independent adversary attains 0.3362 m (tests/simulator.rs).
         let units = [unit(5.3, -0.2), unit(9.5, 2.6), unit(5.0, 0.0), unit(9.5, 2.6), unit(5.0, 0.0), unit(9.5, 0.0)];
         let at: Vec<Vec<f64>> = units.iter().map(|_| vec![-2.8]).collect();
         let (points, _) = Chain::new(&units).gains(&at);
         let rear = points[5][0].at(0.15);
-        assert!((rear - 0.33).abs() < 0.006, "{rear}");
+        assert!((rear - 0.336).abs() < 0.001, "{rear}");
     }
 }

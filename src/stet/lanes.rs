@@ -103,5 +103,15 @@ impl V {
     }
 }
 
+/// `yes` where `sign` is negative, else `no`.
+#[inline(always)]
+pub(crate) fn select_negative(sign: V, yes: V, no: V) -> V {
+    let mut out = [0.0; LANES];
+    for i in 0..LANES {
+        out[i] = if sign.0[i] < 0.0 { yes.0[i] } else { no.0[i] };
+    }
+    V(out)
+}
+
 /// The bits of a [`V::tagged`] number that hold the tag.
 pub(crate) const TAG_MASK: u64 = 0x7f;

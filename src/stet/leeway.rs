@@ -4,13 +4,15 @@
 //! points (inside of a curve) and between two head stations.
 
 use super::group::gamma;
-use super::lanes::{LANES, V};
+use super::lanes::{LANES, V, select_negative};
 use super::model::Model;
 use super::sweep::{BLOCK, FIELDS, Minima, row};
-use super::track::{Fields, Track};
+use super::track::{BULGE_MOST, Fields, Track};
 
 /// A foot further along than this (metres) is looked up anew.
 const NEAR_M: f64 = 1.0;
+/// Stations walked at most to find a foot.
+const MOST_STEPS: usize = 128;
 /// Leeway of a point that has no foot: nothing is certified there.
 const LOST_M: f64 = -1e3;
 
@@ -21,8 +23,6 @@ pub(super) struct Body {
     /// A and g at the axle, at the sweep's γ.
     heading: f64,
     axle: f64,
-    /// Δa²/8 of the distance between points.
-    chord: f64,
     points: Vec<Point>,
     /// The last unit's axle, whose offset the published form needs.
     offset_foot: Option<usize>,
@@ -38,6 +38,8 @@ struct Point {
     /// |1 − a/L| and |a/L|
     from_axle: f64,
     from_coupling: f64,
+    /// Distance to the point before, metres; 0 for the first.
+    gap: f64,
     foot: usize,
 }
 
@@ -67,6 +69,7 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
                     slope_behind: (unit.behind[p].at(tolerance) - gain) / unit.half_width,
                     from_axle: (1.0 - unit.points[p] / unit.length).abs(),
                     from_coupling: (unit.points[p] / unit.length).abs(),
+                    gap: if p == 0 { 0.0 } else { unit.points[p - 1] - unit.points[p] },
                     foot: foot(unit.points[p]),
                 }
             });
@@ -75,7 +78,6 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
                 inverse_length: 1.0 / unit.length,
                 heading: unit.heading.at(tolerance),
                 axle: unit.axle.at(tolerance),
-                chord: unit.point_spacing.powi(2) / 8.0,
                 points: points.collect(),
                 offset_foot: (CERTIFY && index == last).then(|| foot(0.0)),
             }
@@ -101,6 +103,26 @@ struct Seen {
     at: Fields<V>,
     along: V,
     lateral: V,
+}
+
+/// Eight stations: consecutive ones, or any.
+#[derive(Clone, Copy)]
+enum Feet {
+    Run(usize),
+    Each([usize; LANES]),
+}
+
+/// A body point at eight head stations, before it lowers the minima.
+struct Sample {
+    feet: Feet,
+    tag: u64,
+    /// Leeway at the point, and with what its neighbours take off.
+    left: V,
+    right: V,
+    lowered_left: V,
+    lowered_right: V,
+    curvature: V,
+    bulge: V,
 }
 
 /// Lowers `minima` by all points of one unit over one block.
@@ -132,41 +154,25 @@ pub(super) fn points<const CERTIFY: bool>(
             extra_coupling: load(row::EXTRA_COUPLING),
             remainder: load(row::REMAINDER),
         };
+        let mut before: Option<Sample> = None;
         for index in 0..body.points.len() {
-            let (ahead, tag, first) = {
-                let point = &body.points[index];
-                (point.ahead, point.tag, point.foot)
-            };
-            let (x, y) = (s.x + s.ux * ahead, s.y + s.uy * ahead);
-            let seen = look(track, first, x, y);
-            if near(seen.along) {
-                let (left, right) = leeways::<CERTIFY>(&seen, &s, body, index, scale);
-                lower(&mut minima.left[first..first + LANES], left.tagged(tag));
-                lower(&mut minima.right[first..first + LANES], right.tagged(tag));
-                if CERTIFY && index == 0 {
-                    lower(&mut minima.hinge[first..first + LANES], load(row::HINGE).tagged(tag));
+            let mut sample = sample::<CERTIFY>(track, body, index, &s, scale);
+            if CERTIFY {
+                match &mut before {
+                    Some(before) => between_points(before, &mut sample, &s, body.points[index].gap),
+                    None => lower(&mut minima.hinge, sample.feet, load(row::HINGE).tagged(sample.tag)),
                 }
-                let last = LANES - 1;
-                body.points[index].foot = next_foot(track, first + last, seen.along.0[last]);
-            } else {
-                let (feet, seen) = follow(track, first, x, y);
-                let (left, right) = leeways::<CERTIFY>(&seen, &s, body, index, scale);
-                let hinge = load(row::HINGE);
-                for (i, &foot) in feet.iter().enumerate() {
-                    let lost = !(seen.along.0[i].abs() <= 1.5 * NEAR_M);
-                    let tagged = |v: f64| V::splat(if lost { LOST_M } else { v }).tagged(tag).0[0];
-                    minima.left[foot] = least(minima.left[foot], tagged(left.0[i]));
-                    minima.right[foot] = least(minima.right[foot], tagged(right.0[i]));
-                    if CERTIFY && index == 0 {
-                        minima.hinge[foot] = least(minima.hinge[foot], tagged(hinge.0[i]));
-                    }
-                }
-                let last = LANES - 1;
-                body.points[index].foot = next_foot(track, feet[last], seen.along.0[last]);
+            }
+            if let Some(before) = before.replace(sample) {
+                before.lower(minima);
             }
         }
+        if let Some(last) = before {
+            last.lower(minima);
+        }
         if CERTIFY && let Some(first) = body.offset_foot {
-            let (feet, seen) = follow(track, first, s.x, s.y);
+            let feet = follow(track, first, s.x, s.y);
+            let seen = place(track.fields.gather(&feet), s.x, s.y);
             for (i, &foot) in feet.iter().enumerate() {
                 let off = (seen.lateral.0[i] - shift[foot].0[lane]).abs();
                 minima.offset[foot] = minima.offset[foot].max(off);
@@ -176,10 +182,88 @@ pub(super) fn points<const CERTIFY: bool>(
     }
 }
 
-/// Eight points against eight consecutive stations.
+/// Passes over a block that needs no leeways.
+pub(super) fn skip(track: &Track, body: &mut Body) {
+    let on = |foot: usize| (foot + BLOCK).min(track.len() - LANES);
+    for point in &mut body.points {
+        point.foot = on(point.foot);
+    }
+    body.offset_foot = body.offset_foot.map(on);
+}
+
+/// One body point at eight head stations; its foot is ready for the next eight.
 #[inline(always)]
-fn look(track: &Track, first: usize, x: V, y: V) -> Seen {
-    place(track.fields.run(first), x, y)
+fn sample<const CERTIFY: bool>(track: &Track, body: &mut Body, index: usize, s: &States, scale: f64) -> Sample {
+    let (ahead, tag, first) = {
+        let point = &body.points[index];
+        (point.ahead, point.tag, point.foot)
+    };
+    let (x, y) = (s.x + s.ux * ahead, s.y + s.uy * ahead);
+    let last = LANES - 1;
+    let seen = place(track.fields.run(first), x, y);
+    if near(seen.along) {
+        body.points[index].foot = next_foot(track, first + last, seen.along.0[last]);
+        let (left, right) = leeways::<CERTIFY>(&seen, s, body, index, scale);
+        return Sample::new(&seen, Feet::Run(first), tag, left, right);
+    }
+    sample_apart::<CERTIFY>(track, body, index, s, scale)
+}
+
+/// As [`sample`], each point at its own nearest station. Apart, so that the common case stays in registers.
+#[cold]
+#[inline(never)]
+fn sample_apart<const CERTIFY: bool>(track: &Track, body: &mut Body, index: usize, s: &States, scale: f64) -> Sample {
+    let point = &body.points[index];
+    let (tag, x, y) = (point.tag, s.x + s.ux * point.ahead, s.y + s.uy * point.ahead);
+    let feet = follow(track, point.foot, x, y);
+    let seen = place(track.fields.gather(&feet), x, y);
+    let last = LANES - 1;
+    body.points[index].foot = next_foot(track, feet[last], seen.along.0[last]);
+    let (left, right) = leeways::<CERTIFY>(&seen, s, body, index, scale);
+    let found = |side: V| {
+        let one = |i: usize| if seen.along.0[i].abs() <= 1.5 * NEAR_M { side.0[i] } else { LOST_M };
+        V(std::array::from_fn(one))
+    };
+    Sample::new(&seen, Feet::Each(feet), tag, found(left), found(right))
+}
+
+impl Sample {
+    #[inline(always)]
+    fn new(seen: &Seen, feet: Feet, tag: u64, left: V, right: V) -> Self {
+        let (curvature, bulge) = (seen.at.curvature, seen.at.bulge);
+        Self { feet, tag, left, right, lowered_left: left, lowered_right: right, curvature, bulge }
+    }
+
+    #[inline(always)]
+    fn lower(&self, minima: &mut Minima) {
+        lower(&mut minima.left, self.feet, self.lowered_left.tagged(self.tag));
+        lower(&mut minima.right, self.feet, self.lowered_right.tagged(self.tag));
+    }
+}
+
+/// Between two body points the side is straight while the corridor bends: along the side, leeway is above the parabola
+/// through both ends whose second derivative is the bend (and what the width bulges). Its least value counts at both
+/// ends. Where the width bulges more than [`BULGE_MOST`] its places count one by one: a station sees both ends
+/// pass, and what passes between them is at most the whole sagitta lower.
+#[inline(always)]
+fn between_points(before: &mut Sample, sample: &mut Sample, s: &States, gap: f64) {
+    let bulge = before.bulge.max(sample.bulge);
+    let sway = s.jerk * gap;
+    let most = s.curvature.max(before.curvature).max(sample.curvature) + sway;
+    let least = s.curvature.min(before.curvature).min(sample.curvature) - sway;
+    let sag = |bend: V, f: V, g: V| {
+        let bend = bend.max(V::splat(0.0)) * 1.1;
+        let whole = (bend + bulge) * (0.5 * gap * gap) + 1e-9;
+        let short = (whole - (f - g).abs()).max(V::splat(0.0));
+        let parabola = short * short / (whole * 4.0);
+        select_negative(V::splat(BULGE_MOST) - bulge, bend * (gap * gap / 8.0), parabola)
+    };
+    let left = sag(most, before.left, sample.left);
+    let right = sag(-least, before.right, sample.right);
+    before.lowered_left = before.lowered_left.min(before.left - left);
+    before.lowered_right = before.lowered_right.min(before.right - right);
+    sample.lowered_left = sample.left - left;
+    sample.lowered_right = sample.right - right;
 }
 
 #[inline(always)]
@@ -192,49 +276,47 @@ fn place(at: Fields<V>, x: V, y: V) -> Seen {
 
 #[inline(always)]
 fn near(along: V) -> bool {
-    let mut worst = 0.0;
+    // A NaN is far: it compares to nothing.
+    let mut all = true;
     for a in along.0 {
-        let a = a.abs();
-        // Written so that a NaN is far.
-        worst = if a <= worst { worst } else { a };
+        all &= a.abs() <= NEAR_M;
     }
-    worst <= NEAR_M
+    all
 }
 
-/// Each point's own nearest station, walked to from `first`.
-#[inline(never)]
-fn follow(track: &Track, first: usize, x: V, y: V) -> ([usize; LANES], Seen) {
+/// Each point's own nearest station, walked to from `first`: a step at a time, since one point's foot is next to the
+/// other's.
+fn follow(track: &Track, first: usize, x: V, y: V) -> [usize; LANES] {
     let f = &track.fields;
     let last = track.len() - 1;
     let mut feet = [first; LANES];
-    let mut from = first;
+    let mut k = first.min(last);
     for (i, foot) in feet.iter_mut().enumerate() {
-        let mut k = from.min(last);
-        for _ in 0..64 {
+        for _ in 0..MOST_STEPS {
             let (dx, dy) = (x.0[i] - f.x[k], y.0[i] - f.y[k]);
             let along = dx * f.tangent_x[k] + dy * f.tangent_y[k];
             let lateral = dy * f.tangent_x[k] - dx * f.tangent_y[k];
-            // On the outside of a curve stations are further apart than 1, seen from the point.
-            let apart = track.spacing * (1.0 - f.curvature[k] * lateral).max(0.1);
-            let steps = (along / apart).round();
-            if steps == 0.0 || !steps.is_finite() {
+            // On the outside of a curve stations are further apart than on the line, seen from the point.
+            let half = 0.5 * track.spacing * (1.0 - f.curvature[k] * lateral).max(0.1);
+            if along > 1.04 * half && k < last {
+                k += 1;
+            } else if along < -1.04 * half && k > 0 {
+                k -= 1;
+            } else {
                 break;
             }
-            k = (k as f64 + steps.clamp(-16.0, 16.0)).clamp(0.0, last as f64) as usize;
         }
         *foot = k;
-        from = k;
     }
-    let seen = place(f.gather(&feet), x, y);
-    (feet, seen)
+    feet
 }
 
 /// The station to start the next eight from: one further than the last of these, corrected by what it is off.
 #[inline(always)]
 fn next_foot(track: &Track, foot: usize, along: f64) -> usize {
-    let off = if along.is_finite() { (along / track.spacing).round().clamp(-64.0, 64.0) } else { 0.0 };
-    let next = foot as f64 + 1.0 + off;
-    next.clamp(0.0, (track.len() - LANES) as f64) as usize
+    // Towards zero of a positive number is rounding, without a call where there is no instruction for it; NaN gives 0.
+    let off = (along / track.spacing + 64.5).clamp(0.0, 128.0) as usize;
+    (foot + 1 + off).saturating_sub(64).min(track.len() - LANES)
 }
 
 /// Leeway to the left and to the right of both side points at one along-offset.
@@ -279,12 +361,9 @@ fn leeways<const CERTIFY: bool>(seen: &Seen, s: &States, body: &Body, index: usi
     let series = bend * bend * bend * far2 * far2 * 0.2;
     let common = base + second + between + series;
     let slide = stretch * along;
-    // Between body points: a straight side cuts the inside of a curve.
-    let inside_left = s.curvature.max(at.curvature).max(V::splat(0.0)) * (1.1 * body.chord);
-    let inside_right = (-s.curvature).max(-at.curvature).max(V::splat(0.0)) * (1.1 * body.chord);
     (
-        left - common - lean_left - at.left_slope.abs() * slide - inside_left,
-        right - common - lean_right - at.right_slope.abs() * slide - inside_right,
+        left - common - lean_left - at.left_slope.abs() * slide,
+        right - common - lean_right - at.right_slope.abs() * slide,
     )
 }
 
@@ -298,9 +377,18 @@ fn foot(at: &Fields<V>, along: V, lateral: V) -> (V, V) {
 }
 
 #[inline(always)]
-fn lower(minima: &mut [f64], by: V) {
-    for (m, b) in minima.iter_mut().zip(by.0) {
-        *m = least(*m, b);
+fn lower(minima: &mut [f64], feet: Feet, by: V) {
+    match feet {
+        Feet::Run(first) => {
+            for (m, b) in minima[first..first + LANES].iter_mut().zip(by.0) {
+                *m = least(*m, b);
+            }
+        }
+        Feet::Each(feet) => {
+            for (foot, b) in feet.into_iter().zip(by.0) {
+                minima[foot] = least(minima[foot], b);
+            }
+        }
     }
 }
 

@@ -83,10 +83,24 @@ pub struct SpanResult {
 }
 
 impl SpanResult {
-    /// RSC ≥ 0 and hinge margin ≥ 0.
+    /// Whether the bounds' recursion closes all over the span. Where it does not, a unit stands so far across its path
+    /// that the numbers bound nothing: the verdict is `unsafe`, reason articulation.
+    #[must_use]
+    pub fn closes(&self) -> bool {
+        self.hinge_margin_rad > sweep::NOT_CLOSED_RAD + 1.0
+    }
+
+    /// RSC ≥ 0 and hinge margin ≥ 0, and every station was looked at.
     #[must_use]
     pub fn safe(&self) -> bool {
-        self.rsc_m >= 0.0 && self.hinge_margin_rad >= 0.0
+        self.seen() && self.rsc_m >= 0.0 && self.hinge_margin_rad >= 0.0
+    }
+
+    /// Whether body points passed all stations of the span. They do not where a corridor turns so sharply that feet jump: of
+    /// such a span nothing is known.
+    #[must_use]
+    pub fn seen(&self) -> bool {
+        self.rsc_m < sweep::UNVISITED_M / 2.0 && self.hinge_margin_rad < sweep::UNVISITED_M / 2.0
     }
 }
 
@@ -148,7 +162,7 @@ pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<
     let whole = 0..corridor.len();
     let swept = Swept::new(corridor, &[model], std::slice::from_ref(&whole), options);
     let track = &swept.track;
-    let centred = sweep::<true>(track, &swept.group, &vec![V::splat(0.0); track.len()]);
+    let centred = sweep::<true>(track, &swept.group, &vec![V::splat(0.0); track.len()], |_, _| true);
     let own = |column: &[f64]| column[track.lead..track.lead + track.count].to_vec();
     let shift_m: Vec<f64> = swept.shift[track.lead..track.lead + track.count].iter().map(|q| q.0[0]).collect();
     let plan = (0..track.count)
@@ -185,14 +199,31 @@ impl<'m> Swept<'m> {
         let (lead_m, tail_m) = sweep::extensions_m(&group, corridor.spacing_m);
         let track = Track::new(corridor, lead_m, tail_m);
         let shift = plan::best(&track, &group, spans, options);
-        let full = sweep::<true>(&track, &group, &shift);
+        let full = sweep::<true>(&track, &group, &shift, |_, _| true);
         let mut swept = Self { track, group, shift, full, least: None };
-        let fails = |lane: usize| spans.iter().any(|span| swept.at_full(lane, span).rsc_m < 0.0);
-        if (0..models.len()).any(fails) {
+        let failing: Vec<Vec<bool>> = (0..models.len()).map(|lane| swept.failing_blocks(lane, spans)).collect();
+        if failing.iter().flatten().any(|&fails| fails) {
             let tight = Group::new(models, 0.0);
-            swept.least = Some(sweep::<true>(&swept.track, &tight, &swept.shift));
+            let wanted = |lane: usize, head: usize| failing[lane][head / sweep::BLOCK];
+            swept.least = Some(sweep::<true>(&swept.track, &tight, &swept.shift, wanted));
         }
         swept
+    }
+
+    /// By block of head stations, whether the vehicle may then touch a span that fails at γ = 1.
+    fn failing_blocks(&self, lane: usize, spans: &[Range<usize>]) -> Vec<bool> {
+        let track = &self.track;
+        let ahead = ((self.group.front() + 4.0) / track.spacing).ceil() as usize + sweep::BLOCK;
+        let behind = ((self.group.length() + 10.0) / track.spacing).ceil() as usize + sweep::BLOCK;
+        let mut blocks = vec![false; track.len() / sweep::BLOCK + 1];
+        for span in spans.iter().filter(|span| self.at_full(lane, span).rsc_m < 0.0) {
+            let touched = spans::stations(track, span);
+            let first = touched.start().saturating_sub(ahead) / sweep::BLOCK;
+            let last = (touched.end() + behind) / sweep::BLOCK;
+            let end = (last + 1).min(blocks.len());
+            blocks[first..end].iter_mut().for_each(|block| *block = true);
+        }
+        blocks
     }
 
     fn at_full(&self, lane: usize, span: &Range<usize>) -> SpanResult {

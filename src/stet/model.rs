@@ -10,9 +10,9 @@ use crate::vehicle::{Unit, Vehicle};
 pub const MAX_UNITS: usize = 8;
 /// Most body points a side and unit, for the same reason.
 pub(super) const MAX_POINTS: usize = 16;
-/// Distance of body points along a side, at most. Between two points the chord error counts against the leeway: at
-/// 2.7 m it is 6 mm at a radius of 150 m, 15 mm at 60 m.
-const POINT_SPACING_M: f64 = 2.7;
+/// Distance of body points along a side, at most. What happens between two of them is bounded by a parabola through
+/// both (`leeway`), which is exact on a steady circle: closer points gain little.
+pub(super) const POINT_SPACING_M: f64 = 5.5;
 
 /// Why a vehicle cannot be certified.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -49,8 +49,6 @@ pub(super) struct UnitModel {
     pub(super) max_articulation: f64,
     /// Along-offsets of the body points, front to rear.
     pub(super) points: Vec<f64>,
-    /// Greatest distance between two body points.
-    pub(super) point_spacing: f64,
     /// g at each point, and half a width ahead of and behind it.
     pub(super) at: Vec<Gain>,
     pub(super) ahead: Vec<Gain>,
@@ -103,7 +101,6 @@ impl Model {
                 half_width: unit.width_m / 2.0,
                 sway: unit.sway_rad,
                 max_articulation: unit.max_articulation_rad,
-                point_spacing: points.windows(2).fold(0.0, |s: f64, p| s.max(p[0] - p[1])),
                 points,
                 at: gains[..n].to_vec(),
                 ahead: gains[n..2 * n].to_vec(),
@@ -142,12 +139,20 @@ fn next_coupling(unit: &Unit, e: Gain) -> Gain {
     }
 }
 
-/// Front corner to rear corner, evenly.
+/// Front corner to rear corner, with the axle between them: there a body is innermost on a steady circle.
 fn body_points(unit: &Unit) -> Vec<f64> {
-    let front = unit.coupling_to_axle_m + unit.front_overhang_m;
-    let length = front + unit.rear_overhang_m;
-    let gaps = ((length / POINT_SPACING_M).ceil() as usize).clamp(1, MAX_POINTS - 1);
-    (0..=gaps).map(|i| front - length * i as f64 / gaps as f64).collect()
+    let (front, rear) = (unit.coupling_to_axle_m + unit.front_overhang_m, -unit.rear_overhang_m);
+    let mut marks = vec![front, rear];
+    if front > 0.0 && rear < 0.0 {
+        marks.insert(1, 0.0);
+    }
+    let mut points = vec![front];
+    for pair in marks.windows(2) {
+        let length = pair[0] - pair[1];
+        let gaps = ((length / POINT_SPACING_M).ceil() as usize).clamp(1, (MAX_POINTS - 1) / 2);
+        points.extend((1..=gaps).map(|i| pair[0] - length * i as f64 / gaps as f64));
+    }
+    points
 }
 
 fn check(vehicle: &Vehicle) -> Result<(), ModelError> {

@@ -10,18 +10,21 @@ use super::spans;
 use super::sweep::{Minima, UNVISITED_M, sweep};
 use super::track::Track;
 
-/// Of the centred path and its corrections, each vehicle's best by nominal leeway: never the last by default.
+/// Of the centred path and its corrections, each vehicle's best by nominal leeway: never the last by default. Planned on
+/// every second station: it decides nothing.
 pub(super) fn best(track: &Track, group: &Group<'_>, spans: &[Range<usize>], options: &Options) -> Vec<V> {
-    let mut shift = vec![V::splat(0.0); track.len()];
     if options.max_shift_m <= 0.0 || options.correction_sweeps == 0 {
-        return shift;
+        return vec![V::splat(0.0); track.len()];
     }
+    let coarse = track.coarse();
+    let spans: Vec<_> = spans.iter().map(|s| s.start / 2..s.end.div_ceil(2)).collect();
+    let mut shift = vec![V::splat(0.0); coarse.len()];
     let mut best = shift.clone();
     let mut best_score = [f64::NEG_INFINITY; LANES];
     for round in 0..=options.correction_sweeps {
-        let minima = sweep::<false>(track, group, &shift);
+        let minima = sweep::<false>(&coarse, group, &shift, |_, _| true);
         for (lane, m) in minima.iter().enumerate() {
-            let score = score(track, group, lane, spans, m);
+            let score = score(&coarse, group, lane, &spans, m);
             if score > best_score[lane] {
                 best_score[lane] = score;
                 for (b, q) in best.iter_mut().zip(&shift) {
@@ -30,10 +33,23 @@ pub(super) fn best(track: &Track, group: &Group<'_>, spans: &[Range<usize>], opt
             }
         }
         if round < options.correction_sweeps {
-            shift = correct(track, group, &minima, &shift, options.max_shift_m);
+            shift = correct(&coarse, group, &minima, &shift, options.max_shift_m);
         }
     }
-    best
+    refine(track, &best)
+}
+
+/// The shift at every station from that at every second one: halfway in between, then rounded off.
+fn refine(track: &Track, coarse: &[V]) -> Vec<V> {
+    let first = track.lead % 2;
+    let last = coarse.len() - 1;
+    let at = |k: usize| {
+        let (i, odd) = (k.saturating_sub(first) / 2, k >= first && (k - first) % 2 == 1);
+        let next = coarse[(i + 1).min(last)];
+        if odd { (coarse[i.min(last)] + next) * 0.5 } else { coarse[i.min(last)] }
+    };
+    let fine: Vec<V> = (0..track.len()).map(at).collect();
+    boxed(&fine, &[2; LANES])
 }
 
 /// Leeway summed over the spans by length; room beyond half a metre counts for nothing, what is missing counts thrice.
@@ -65,9 +81,25 @@ fn correct(track: &Track, group: &Group<'_>, minima: &[Minima], shift: &[V], max
         })
         .collect();
     let halves: [usize; LANES] = std::array::from_fn(|lane| smoothing_half(track, group, lane));
+    let wanted = level_ends(track, &wanted, &halves);
     let smooth = boxed(&boxed(&wanted, &halves), &halves);
     let (low, high) = (V::splat(-max_shift_m), V::splat(max_shift_m));
     smooth.into_iter().map(|q| q.max(low).min(high)).collect()
+}
+
+/// Holds the ends so long that the smoothed shift has no slope where the corridor begins and ends: what is exported of
+/// the plan is then all of it, the vehicle comes and goes straight.
+fn level_ends(track: &Track, wanted: &[V], halves: &[usize; LANES]) -> Vec<V> {
+    let mut out = wanted.to_vec();
+    for (lane, half) in halves.iter().enumerate() {
+        // Two passes of the running mean reach 2·half stations, `refine` two more.
+        let hold = (2 * half + 3).min((track.count - 1) / 2);
+        let (first, last) = (track.lead + hold, track.lead + track.count - 1 - hold);
+        let (entry, exit) = (wanted[first].0[lane], wanted[last].0[lane]);
+        out[..first].iter_mut().for_each(|q| q.0[lane] = entry);
+        out[last..].iter_mut().for_each(|q| q.0[lane] = exit);
+    }
+    out
 }
 
 /// Half the prime mover's length, in stations.

@@ -5,17 +5,24 @@ use std::ops::RangeInclusive;
 use super::group::{SHRINK_STEPS, gamma};
 use super::lanes::TAG_MASK;
 use super::model::Model;
-use super::sweep::Minima;
+use super::sweep::{Minima, UNVISITED_M};
 use super::track::Track;
 use super::{Limiting, Side, SpanResult};
 
-/// Minima may stand on the neighbour of the station they belong to: a span takes this many more on each side.
-const SLACK: usize = 2;
+/// Minima may stand up to half a gap between body points from the station they belong to: a span takes this many more on
+/// each side, the first station of the straight extension included.
+const SLACK: usize = 3;
+
+/// So many stations in a row that no body point visits were jumped.
+const JUMPED: usize = 4;
+
+/// RSC where nothing bounds the vehicle.
+const NOTHING_M: f64 = -1000.0;
 
 /// Extended stations of a span of corridor stations.
 pub(super) fn stations(track: &Track, span: &std::ops::Range<usize>) -> RangeInclusive<usize> {
-    let first = track.lead + span.start.saturating_sub(SLACK);
-    let last = track.lead + (span.end.max(span.start + 1) - 1 + SLACK).min(track.count - 1);
+    let first = track.lead + span.start - SLACK;
+    let last = track.lead + span.end.max(span.start + 1) - 1 + SLACK;
     first..=last
 }
 
@@ -25,25 +32,31 @@ pub(super) fn result(track: &Track, model: &Model, span: &std::ops::Range<usize>
     let mut limiting = Limiting { station: span.start, unit: 0, side: Side::Left, point_m: 0.0 };
     let (mut hinge, mut hinge_unit) = (f64::INFINITY, 0);
     let (mut offset, mut half_width) = (0.0_f64, f64::INFINITY);
+    let mut unseen = 0;
     for k in stations(track, span) {
         for (value, side) in [(full.left[k], Side::Left), (full.right[k], Side::Right)] {
-            if value < least {
-                least = value;
+            // A NaN, which no input should give, is the least of all.
+            if !(value >= least) {
+                least = if value.is_nan() { NOTHING_M } else { value.max(NOTHING_M) };
                 let tag = value.to_bits() & TAG_MASK;
                 let (unit, point) = ((tag >> 4) as usize, (tag & 15) as usize);
                 let point_m = model.units.get(unit).and_then(|u| u.points.get(point)).copied().unwrap_or(0.0);
-                limiting = Limiting { station: k - track.lead, unit, side, point_m };
+                let station = k.saturating_sub(track.lead).min(track.count - 1);
+                limiting = Limiting { station, unit, side, point_m };
             }
         }
         if full.hinge[k] < hinge {
             hinge = full.hinge[k];
             hinge_unit = ((hinge.to_bits() & TAG_MASK) >> 4) as usize;
         }
+        // One or two stations may lie between two steps on the inside of a curve; a run of them was jumped.
+        let visited = full.left[k] < UNVISITED_M || k < track.lead || k >= track.lead + track.count;
+        unseen = if visited || unseen >= JUMPED { unseen * usize::from(unseen >= JUMPED) } else { unseen + 1 };
         offset = offset.max(full.offset[k]);
         half_width = half_width.min(0.5 * (track.fields.left[k] + track.fields.right[k]));
     }
     SpanResult {
-        rsc_m: least,
+        rsc_m: if unseen >= JUMPED && least >= 0.0 { UNVISITED_M } else { least },
         rsc_published_m: half_width - (offset + model.published_radius),
         hinge_margin_rad: hinge,
         hinge_unit,

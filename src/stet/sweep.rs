@@ -5,15 +5,19 @@
 //! nothing of edges, corrections or shrinking.
 
 use super::group::Group;
-use super::lanes::{LANES, V};
+use super::lanes::{LANES, V, select_negative};
 use super::leeway::{self, Body};
 use super::model::MAX_UNITS;
 use super::track::Track;
 
 /// Head stations a block.
 pub(super) const BLOCK: usize = 32;
+/// Hinge margin where the bounds' recursion does not close.
+pub(super) const NOT_CLOSED_RAD: f64 = -9.0;
 /// What the motion hands to the points: one row a field.
 pub(super) const FIELDS: usize = 10;
+/// Bounds beyond this (metres, radians) bound nothing any more.
+const MOST: f64 = 100.0;
 /// Leeway at a station that no body point visits.
 pub(super) const UNVISITED_M: f64 = 1e9;
 
@@ -54,23 +58,39 @@ pub(super) fn extensions_m(group: &Group<'_>, spacing: f64) -> (f64, f64) {
 
 /// Sweeps the steer path `shift` (metres left of the centreline at each extended station, vehicles in lanes).
 /// `CERTIFY`: all bounds deducted, hinges checked; otherwise the nominal leeway of a few points, for planning.
-pub(super) fn sweep<const CERTIFY: bool>(track: &Track, group: &Group<'_>, shift: &[V]) -> Vec<Minima> {
+/// Leeways are left out for a vehicle while its head is in a block that `wanted` (vehicle, head station) does not want.
+pub(super) fn sweep<const CERTIFY: bool>(
+    track: &Track,
+    group: &Group<'_>,
+    shift: &[V],
+    wanted: impl Fn(usize, usize) -> bool,
+) -> Vec<Minima> {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {
         // SAFETY: the processor has AVX2, just asked.
-        return unsafe { sweep_avx2::<CERTIFY>(track, group, shift) };
+        return unsafe { sweep_avx2::<CERTIFY>(track, group, shift, wanted) };
     }
-    sweep_with::<CERTIFY>(track, group, shift)
+    sweep_with::<CERTIFY>(track, group, shift, wanted)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn sweep_avx2<const CERTIFY: bool>(track: &Track, group: &Group<'_>, shift: &[V]) -> Vec<Minima> {
-    sweep_with::<CERTIFY>(track, group, shift)
+fn sweep_avx2<const CERTIFY: bool>(
+    track: &Track,
+    group: &Group<'_>,
+    shift: &[V],
+    wanted: impl Fn(usize, usize) -> bool,
+) -> Vec<Minima> {
+    sweep_with::<CERTIFY>(track, group, shift, wanted)
 }
 
 #[inline(always)]
-fn sweep_with<const CERTIFY: bool>(track: &Track, group: &Group<'_>, shift: &[V]) -> Vec<Minima> {
+fn sweep_with<const CERTIFY: bool>(
+    track: &Track,
+    group: &Group<'_>,
+    shift: &[V],
+    wanted: impl Fn(usize, usize) -> bool,
+) -> Vec<Minima> {
     let mut minima = vec![Minima::new(track.len()); group.models.len()];
     let mut rows = vec![0.0; group.units * LANES * FIELDS * BLOCK];
     let mut motion = Motion::new(track);
@@ -83,6 +103,10 @@ fn sweep_with<const CERTIFY: bool>(track: &Track, group: &Group<'_>, shift: &[V]
     while head < last {
         motion.block::<CERTIFY>(track, group, shift, head, &mut rows);
         for (lane, (bodies, minima)) in bodies.iter_mut().zip(&mut minima).enumerate() {
+            if !wanted(lane, head) {
+                bodies.iter_mut().for_each(|body| leeway::skip(track, body));
+                continue;
+            }
             for (unit, body) in bodies.iter_mut().enumerate() {
                 let start = (unit * LANES + lane) * FIELDS * BLOCK;
                 let block = &rows[start..start + FIELDS * BLOCK];
@@ -188,11 +212,7 @@ impl Motion {
             // Axle, then the next coupling.
             x = x - ux * of.length;
             y = y - uy * of.length;
-            let mut store = |field: usize, value: V| {
-                for lane in 0..LANES {
-                    rows[((unit * LANES + lane) * FIELDS + field) * BLOCK + k] = value.0[lane];
-                }
-            };
+            let mut store = |field: usize, value: V| store(rows, unit, field, k, value);
             store(row::X, x);
             store(row::Y, y);
             store(row::UX, ux);
@@ -282,14 +302,16 @@ impl Motion {
         // The plan is a smooth curve through the vertices: it leaves the chord by κℓ²/8 at most.
         let mut coupling = steps[0].path_curvature * steps[0].moved * steps[0].moved * 0.125;
         let (mut heading_ahead, mut shift_ahead) = (group.course, ZERO);
+        // Negative from the first unit on whose bounds do not close.
+        let mut closed = one;
         for unit in 0..group.units {
             let of = &group.chain[unit];
             let step = &steps[unit];
             // η: how much more than on the straight the coupling's deviation counts.
             let eta = (step.secant - 1.0).max((hitch_cosine * step.secant - 1.0).abs());
-            let extra_coupling = coupling + eta * (of.coupling + coupling);
+            let extra_coupling = (coupling + eta * (of.coupling + coupling)).min(V::splat(MOST));
             let y = self.extra[unit];
-            let a = of.heading + (extra_coupling + y) * of.inverse_length;
+            let a = (of.heading + (extra_coupling + y) * of.inverse_length).min(V::splat(MOST));
             let axle = of.axle + y;
             let a2 = a * a;
             // Second-order remainder.
@@ -307,14 +329,15 @@ impl Motion {
             let (pn, pd) = decay(step.moved * of.inverse_length);
             let gain = one - pn / pd;
             let change = (input - y) * gain;
-            self.extra[unit] = (y + change.max(change * step.cosine.max(ZERO))).min(V::splat(1e3));
+            let extra = (y + change.max(change * step.cosine.max(ZERO))).min(V::splat(MOST));
+            // Valid while |δ| + A + σ < 90°: cos δ > sin(A + σ), and the series of the tangent needs A + σ ≤ 0.6. Where it is
+            // not, nothing is certified while the vehicle stands here; a vehicle that is certified further on did not come
+            // through here, so that its bounds begin anew.
+            closed = closed.min((step.cosine - slip).min(V::splat(0.6) - slip));
+            self.extra[unit] = select_negative(closed, ZERO, extra);
 
-            let mut store = |field: usize, value: V| {
-                for lane in 0..LANES {
-                    rows[((unit * LANES + lane) * FIELDS + field) * BLOCK + k] = value.0[lane];
-                }
-            };
-            store(row::EXTRA_AXLE, y.max(self.extra[unit]));
+            let mut store = |field: usize, value: V| store(rows, unit, field, k, value);
+            store(row::EXTRA_AXLE, select_negative(closed, V::splat(MOST), y.max(extra)));
             store(row::EXTRA_COUPLING, extra_coupling);
             store(row::REMAINDER, r1 * of.inverse_length);
             // Hinge: articulation, heading errors on both sides of it, and the shift of the feet.
@@ -325,9 +348,7 @@ impl Motion {
                 - a
                 - shift_ahead
                 - if unit == 0 { ZERO } else { own_shift };
-            // Valid while |δ| + A + σ < 90°: cos δ > sin(A + σ), and the series of the tangent needs A + σ ≤ 0.6.
-            let valid = (step.cosine - slip).min(V::splat(0.6) - slip);
-            store(row::HINGE, select_negative(valid, V::splat(-9.0), margin));
+            store(row::HINGE, select_negative(closed, V::splat(NOT_CLOSED_RAD), margin));
             (heading_ahead, shift_ahead) = (a, own_shift);
 
             // On to the next coupling.
@@ -337,7 +358,8 @@ impl Motion {
             let zh = ratio * r1
                 + hitch_sine * of.hitch * a2 * 0.5
                 + step.path_curvature.max(step.tangent * of.inverse_length) * hitch_swing * hitch_swing * 0.5;
-            coupling = (of.ratio + 1.0).abs() * y.max(self.extra[unit]) + ratio * extra_coupling + zh;
+            let next = (of.ratio + 1.0).abs() * y.max(extra) + ratio * extra_coupling + zh;
+            coupling = select_negative(closed, ZERO, next);
             hitch_cosine = step.hitch_cosine;
         }
     }
@@ -360,6 +382,14 @@ pub(super) mod row {
     /// R1/L
     pub(crate) const REMAINDER: usize = 8;
     pub(crate) const HINGE: usize = 9;
+}
+
+/// Spreads a value of vehicles in lanes to the vehicles' own rows.
+#[inline(always)]
+fn store(rows: &mut [f64], unit: usize, field: usize, k: usize, value: V) {
+    for lane in 0..LANES {
+        rows[((unit * LANES + lane) * FIELDS + field) * BLOCK + k] = value.0[lane];
+    }
 }
 
 /// The steer path at an extended station.
@@ -395,14 +425,4 @@ fn double_atan(t: V) -> V {
     let t2 = t * t;
     let p = t * ((((t2 * 0.020_835_1 - 0.085_133_0) * t2 + 0.180_141_0) * t2 - 0.330_299_5) * t2 + 0.999_866_0);
     select_negative(V::splat(1.0) - t, V::splat(4.0), p * 2.0 + 4e-5)
-}
-
-/// `yes` where `sign` is negative, else `no`.
-#[inline(always)]
-fn select_negative(sign: V, yes: V, no: V) -> V {
-    let mut out = [0.0; LANES];
-    for i in 0..LANES {
-        out[i] = if sign.0[i] < 0.0 { yes.0[i] } else { no.0[i] };
-    }
-    V(out)
 }

@@ -2,10 +2,14 @@
 //! the sampling may rely on.
 
 use super::lanes::{LANES, V};
+use super::model::POINT_SPACING_M as MOST_GAP_M;
 use crate::corridor::Corridor;
 
 /// Half-width of the straight extensions: they are driven, not certified.
 const OPEN_M: f64 = 1e6;
+
+/// Convexity of a half-width, 1/m, above which each of its places counts for itself (`leeway`).
+pub(super) const BULGE_MOST: f64 = 0.005;
 
 /// Points are trusted to lie at their foot station while |κ·lateral| stays below this.
 const REACH: f64 = 0.9;
@@ -32,6 +36,8 @@ pub(super) struct Fields<T> {
     pub(super) right: T,
     pub(super) left_slope: T,
     pub(super) right_slope: T,
+    /// Greatest convexity of either half-width within a body gap, 1/m.
+    pub(super) bulge: T,
 }
 
 impl Track {
@@ -46,13 +52,20 @@ impl Track {
         let slope = |value: &dyn Fn(&Place) -> f64| -> Vec<f64> {
             (0..total)
                 .map(|k| {
-                    let (a, b) = (&places[k.saturating_sub(1)], &places[(k + 1).min(total - 1)]);
-                    // No slope into the open: the extension's width is not a width.
-                    if a.open != b.open { 0.0 } else { (value(b) - value(a)) / (2.0 * h) }
+                    // One-sided at the corridor's ends, none beyond them: the extension is not the corridor's.
+                    let inside = |k: usize| k >= lead && k < lead + count;
+                    let a = if k > 0 && inside(k - 1) { k - 1 } else { k };
+                    let b = if inside(k + 1) { k + 1 } else { k };
+                    if !inside(k) || a == b {
+                        0.0
+                    } else {
+                        (value(&places[b]) - value(&places[a])) / ((b - a) as f64 * h)
+                    }
                 })
                 .collect()
         };
         let column = |value: &dyn Fn(&Place) -> f64| -> Vec<f64> { places.iter().map(value).collect() };
+        let (left_dips, right_dips) = (dips(&places, |p| p.left), dips(&places, |p| p.right));
         let fields = Fields {
             x: column(&|p| p.x),
             y: column(&|p| p.y),
@@ -60,12 +73,34 @@ impl Track {
             tangent_y: column(&|p| p.heading.sin()),
             curvature: column(&|p| p.curvature),
             curvature_slope: slope(&|p| p.curvature),
-            left: sampled_width(&places, |p| p.left, 1.0),
-            right: sampled_width(&places, |p| p.right, -1.0),
+            left: sampled_width(&places, &left_dips, |p| p.left, 1.0),
+            right: sampled_width(&places, &right_dips, |p| p.right, -1.0),
             left_slope: slope(&|p| p.left),
             right_slope: slope(&|p| p.right),
+            bulge: bulge(&left_dips, &right_dips, h),
         };
         Self { spacing: h, lead, count, fields }
+    }
+
+    /// Every second station, for planning; the corridor's first is among them.
+    pub(super) fn coarse(&self) -> Self {
+        let first = self.lead % 2;
+        let of = |column: &Vec<f64>| column.iter().skip(first).step_by(2).copied().collect::<Vec<f64>>();
+        let f = &self.fields;
+        let fields = Fields {
+            x: of(&f.x),
+            y: of(&f.y),
+            tangent_x: of(&f.tangent_x),
+            tangent_y: of(&f.tangent_y),
+            curvature: of(&f.curvature),
+            curvature_slope: of(&f.curvature_slope),
+            left: of(&f.left),
+            right: of(&f.right),
+            left_slope: of(&f.left_slope),
+            right_slope: of(&f.right_slope),
+            bulge: of(&f.bulge),
+        };
+        Self { spacing: 2.0 * self.spacing, lead: self.lead / 2, count: self.count.div_ceil(2), fields }
     }
 
     /// Number of extended stations.
@@ -74,25 +109,48 @@ impl Track {
     }
 }
 
+/// How much each station's half-width lies below the mean of its neighbours', doubled: Δ²w where it is positive.
+fn dips(places: &[Place], width: impl Fn(&Place) -> f64) -> Vec<f64> {
+    (0..places.len())
+        .map(|k| {
+            let (a, b) = (&places[k.saturating_sub(1)], &places[(k + 1).min(places.len() - 1)]);
+            if a.open || places[k].open || b.open {
+                return 0.0;
+            }
+            (width(a) - 2.0 * width(&places[k]) + width(b)).max(0.0)
+        })
+        .collect()
+}
+
 /// A half-width that may be read anywhere within one station of where it stands: where the width dips between the
 /// places a body point is sampled at (a kink of slope change Δ²w), at most Δ²w/4 of the dip is missed. On the inside of
 /// a curve it ends before the centre of curvature.
-fn sampled_width(places: &[Place], width: impl Fn(&Place) -> f64, side: f64) -> Vec<f64> {
-    let total = places.len();
-    let dip = |k: usize| {
-        if k == 0 || k + 1 >= total || places[k - 1].open || places[k].open || places[k + 1].open {
-            return 0.0;
-        }
-        (width(&places[k - 1]) - 2.0 * width(&places[k]) + width(&places[k + 1])).max(0.0)
-    };
-    (0..total)
+fn sampled_width(places: &[Place], dips: &[f64], width: impl Fn(&Place) -> f64, side: f64) -> Vec<f64> {
+    (0..places.len())
         .map(|k| {
-            let worst = dip(k.saturating_sub(1)).max(dip(k)).max(dip((k + 1).min(total - 1)));
+            let worst = dips[k.saturating_sub(1)].max(dips[k]).max(dips[(k + 1).min(places.len() - 1)]);
             let inward = places[k].curvature * side;
             let reach = if inward > 0.0 { REACH / inward } else { f64::INFINITY };
             (width(&places[k]) - worst / 4.0).min(reach)
         })
         .collect()
+}
+
+/// The greatest dip of either side within a gap between body points of each station, as a second derivative.
+fn bulge(left: &[f64], right: &[f64], spacing: f64) -> Vec<f64> {
+    let around = (MOST_GAP_M / spacing).ceil() as usize + 1;
+    let mut out = vec![0.0; left.len()];
+    for k in 0..left.len() {
+        let dip = left[k].max(right[k]) / (spacing * spacing);
+        // A thousandth of a millimetre of roundness is rounding.
+        if dip > 1e-6 {
+            let end = (k + around + 1).min(out.len());
+            for o in &mut out[k.saturating_sub(around)..end] {
+                *o = dip.max(*o);
+            }
+        }
+    }
+    out
 }
 
 struct Place {
@@ -113,12 +171,13 @@ impl Place {
         let beyond = (k - i) as f64 * corridor.spacing_m;
         let i = i as usize;
         let heading = corridor.heading[i];
-        let open = beyond != 0.0;
+        // The first station beyond an end still has the end's width: points within half a station of it count.
+        let open = beyond.abs() > 1.5 * corridor.spacing_m;
         Self {
             x: corridor.x[i] + beyond * heading.cos(),
             y: corridor.y[i] + beyond * heading.sin(),
             heading,
-            curvature: if open { 0.0 } else { corridor.curvature[i] },
+            curvature: if beyond != 0.0 { 0.0 } else { corridor.curvature[i] },
             left: if open { OPEN_M } else { corridor.left_m[i] },
             right: if open { OPEN_M } else { corridor.right_m[i] },
             open,
@@ -164,6 +223,7 @@ impl Fields<Vec<f64>> {
             right: of(&self.right),
             left_slope: of(&self.left_slope),
             right_slope: of(&self.right_slope),
+            bulge: of(&self.bulge),
         }
     }
 }
