@@ -213,8 +213,10 @@ impl<'m> Swept<'m> {
     /// By block of head stations, whether the vehicle may then touch a span that fails at γ = 1.
     fn failing_blocks(&self, lane: usize, spans: &[Range<usize>]) -> Vec<bool> {
         let track = &self.track;
-        let ahead = ((self.group.front() + 4.0) / track.spacing).ceil() as usize + sweep::BLOCK;
-        let behind = ((self.group.length() + 10.0) / track.spacing).ceil() as usize + sweep::BLOCK;
+        // As long as the track's extensions allow, so that no other vehicle of the group matters.
+        let (behind_m, ahead_m) = sweep::reach_m(&self.group);
+        let ahead = (ahead_m / track.spacing).ceil() as usize + sweep::BLOCK;
+        let behind = (behind_m / track.spacing).ceil() as usize + sweep::BLOCK;
         let mut blocks = vec![false; track.len() / sweep::BLOCK + 1];
         for span in spans.iter().filter(|span| self.at_full(lane, span).rsc_m < 0.0) {
             let touched = spans::stations(track, span);

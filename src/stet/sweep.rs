@@ -49,10 +49,15 @@ impl Minima {
 const LEAST_LENGTH_M: f64 = 56.0;
 const LEAST_FRONT_M: f64 = 4.0;
 
+/// How far the group's vehicles are taken to reach behind and ahead of their steer axles, metres.
+pub(super) fn reach_m(group: &Group<'_>) -> (f64, f64) {
+    (group.length().max(LEAST_LENGTH_M), group.front().max(LEAST_FRONT_M))
+}
+
 /// Extension that a track needs before and after the corridor for this group, metres.
 pub(super) fn extensions_m(group: &Group<'_>, spacing: f64) -> (f64, f64) {
     let slack = (BLOCK + 2 * LANES) as f64 * spacing;
-    let (length, front) = (group.length().max(LEAST_LENGTH_M), group.front().max(LEAST_FRONT_M));
+    let (length, front) = reach_m(group);
     (length + slack, length + 2.0 * front + 2.0 * slack + 10.0)
 }
 
