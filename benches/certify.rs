@@ -15,7 +15,7 @@ use netcert::vehicle::Catalogue;
 const LANES: usize = 8;
 
 fn road(stations: usize) -> Corridor {
-    let radii = [600.0, -250.0, 150.0, -900.0, 60.0, -400.0, 2000.0, -100.0, 300.0, 25.0];
+    let radii: [f64; 10] = [600.0, -250.0, 150.0, -900.0, 60.0, -400.0, 2000.0, -100.0, 300.0, 25.0];
     let mut profile = CurvatureProfile::new(1.0).straight(200.0);
     for radius in radii.iter().cycle() {
         if profile.curvature.len() >= stations {

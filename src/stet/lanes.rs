@@ -1,6 +1,9 @@
 //! Eight numbers side by side. Plain arrays, so that one source serves every instruction set; no fused
 //! multiply-add, so that every machine gives the same bytes.
 
+// Index loops over fixed arrays: the form that the compiler turns into vector instructions.
+#![allow(clippy::needless_range_loop)]
+
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// How many lanes: vehicles in the motion, stations at the body points.

@@ -36,7 +36,7 @@ pub(super) fn result(track: &Track, model: &Model, span: &std::ops::Range<usize>
     for k in stations(track, span) {
         for (value, side) in [(full.left[k], Side::Left), (full.right[k], Side::Right)] {
             // A NaN, which no input should give, is the least of all.
-            if !(value >= least) {
+            if value < least || value.is_nan() {
                 least = if value.is_nan() { NOTHING_M } else { value.max(NOTHING_M) };
                 let tag = value.to_bits() & TAG_MASK;
                 let (unit, point) = ((tag >> 4) as usize, (tag & 15) as usize);

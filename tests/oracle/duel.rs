@@ -218,7 +218,7 @@ impl<'a> Duel<'a> {
             (0..=steps)
                 .map(|k| match kind {
                     0 => goal,
-                    1 => (phase + k as f64 / STEPS_PER_M as f64 * 6.283 / wave).sin(),
+                    1 => (phase + k as f64 / STEPS_PER_M as f64 * std::f64::consts::TAU / wave).sin(),
                     _ => {
                         if draw.below((wave * STEPS_PER_M as f64) as usize + 1) == 0 {
                             goal = -goal;

@@ -75,6 +75,7 @@ impl Path {
     }
 
     /// Within span `k`, at fraction `t` of it.
+    #[allow(clippy::needless_range_loop)] // both coordinates of four points and three derivatives
     pub fn jet(&self, k: usize, t: f64) -> Jet {
         let p = &self.vertices[k..k + 4];
         let mut jet = Jet { at: [0.0; 2], first: [0.0; 2], second: [0.0; 2] };
