@@ -121,12 +121,6 @@ impl Model {
             length: chain + rear.max(0.0),
         })
     }
-
-    /// Whether a body of half the width of `strip_m` could not even stand still within the strip: no sweep needed.
-    #[must_use]
-    pub fn wider_than(&self, strip_m: f64) -> bool {
-        self.vehicle.width_m() > strip_m
-    }
 }
 
 /// E of the next coupling: |1 + d/L| Y + |d/L| E, with Y = E + L tan σ.
