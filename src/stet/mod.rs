@@ -10,6 +10,7 @@ mod model;
 pub mod motion;
 mod plan;
 mod published;
+mod shift;
 mod spans;
 mod sweep;
 mod track;
@@ -21,6 +22,7 @@ use crate::corridor::Corridor;
 
 pub use model::{MAX_UNITS, Model, ModelError};
 pub use motion::steady_offtracking;
+pub use shift::{KNOT_STATIONS, Plan, STEP_M};
 pub use tube::{Tube, tubes};
 
 use group::Group;
@@ -104,6 +106,15 @@ impl SpanResult {
     }
 }
 
+/// One vehicle's results on a corridor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Planned {
+    /// What the steer axle is to follow.
+    pub plan: Plan,
+    /// One a span.
+    pub spans: Vec<SpanResult>,
+}
+
 /// A certificate over a whole corridor, with all that a picture, a file or a second program needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
@@ -111,8 +122,10 @@ pub struct Certificate {
     pub result: SpanResult,
     /// The steer axle's planned path: one point a station, metres in the corridor's frame.
     pub plan: Vec<[f64; 2]>,
-    /// Planned shift of the steer axle off the centreline at each station, metres, positive left.
+    /// Planned shift of the steer axle off the centreline at each station, metres, positive left: `shift` sampled.
     pub shift_m: Vec<f64>,
+    /// The planned shift itself.
+    pub shift: Plan,
     /// Leeway at each station on the left, after correction (at γ = 1), metres.
     pub left_m: Vec<f64>,
     /// On the right.
@@ -126,29 +139,31 @@ pub struct Certificate {
 /// Results over `spans` of stations for vehicles that sweep the whole corridor one after the other: one row a vehicle.
 ///
 /// Every vehicle enters straight, along the first station's heading, and leaves straight, along the last one's. The
-/// result does not depend on which other vehicles are in `models`. An empty corridor gives empty rows.
+/// result does not depend on which other vehicles are in `models`. An empty corridor gives no row at all.
 #[must_use]
 pub fn certify_spans(
     corridor: &Corridor,
     models: &[&Model],
     spans: &[Range<usize>],
     options: &Options,
-) -> Vec<Vec<SpanResult>> {
-    let mut rows = vec![Vec::new(); models.len()];
+) -> Vec<Planned> {
     if corridor.is_empty() {
-        return rows;
+        return Vec::new();
     }
     // Vehicles of about as many units share a group: a lane costs as much as the longest one in it.
     let mut order: Vec<usize> = (0..models.len()).collect();
     order.sort_by_key(|&i| models[i].units.len());
+    let mut rows: Vec<(usize, Planned)> = Vec::with_capacity(models.len());
     for chunk in order.chunks(LANES) {
         let members: Vec<&Model> = chunk.iter().map(|&i| models[i]).collect();
         let swept = Swept::new(corridor, &members, spans, options);
-        for (lane, &i) in chunk.iter().enumerate() {
-            rows[i] = spans.iter().map(|span| swept.result(lane, span)).collect();
+        for (lane, (&i, plan)) in chunk.iter().zip(&swept.plans).enumerate() {
+            let spans = spans.iter().map(|span| swept.result(lane, span)).collect();
+            rows.push((i, Planned { plan: plan.clone(), spans }));
         }
     }
-    rows
+    rows.sort_by_key(|(i, _)| *i);
+    rows.into_iter().map(|(_, row)| row).collect()
 }
 
 /// The certificate of one vehicle over a whole corridor.
@@ -164,7 +179,8 @@ pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<
     let track = &swept.track;
     let centred = sweep::<true>(track, &swept.group, &vec![V::splat(0.0); track.len()], |_, _| true);
     let own = |column: &[f64]| column[track.lead..track.lead + track.count].to_vec();
-    let shift_m: Vec<f64> = swept.shift[track.lead..track.lead + track.count].iter().map(|q| q.0[0]).collect();
+    let shift = swept.plans[0].clone();
+    let shift_m: Vec<f64> = (0..track.count).map(|k| shift.at_m(k)).collect();
     let plan = (0..track.count)
         .map(|k| {
             let (sin, cos) = corridor.heading[k].sin_cos();
@@ -175,6 +191,7 @@ pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<
         result: swept.result(0, &whole),
         plan,
         shift_m,
+        shift,
         left_m: own(&swept.full[0].left),
         right_m: own(&swept.full[0].right),
         left_centred_m: own(&centred[0].left),
@@ -186,6 +203,7 @@ pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<
 struct Swept<'m> {
     track: Track,
     group: Group<'m>,
+    plans: Vec<Plan>,
     shift: Vec<V>,
     /// At γ = 1.
     full: Vec<Minima>,
@@ -198,9 +216,10 @@ impl<'m> Swept<'m> {
         let group = Group::new(models, 1.0);
         let (lead_m, tail_m) = sweep::extensions_m(&group, corridor.spacing_m);
         let track = Track::new(corridor, lead_m, tail_m);
-        let shift = plan::best(&track, &group, spans, options);
+        let plans = plan::best(&track, &group, spans, options);
+        let shift = shift::lanes(&plans, track.lead, track.len(), track.count);
         let full = sweep::<true>(&track, &group, &shift, |_, _| true);
-        let mut swept = Self { track, group, shift, full, least: None };
+        let mut swept = Self { track, group, plans, shift, full, least: None };
         let failing: Vec<Vec<bool>> = (0..models.len()).map(|lane| swept.failing_blocks(lane, spans)).collect();
         if failing.iter().flatten().any(|&fails| fails) {
             let tight = Group::new(models, 0.0);
