@@ -13,6 +13,7 @@
 //! [`pipeline`] runs them in that order. `stet` is pure: no input or output, no clock, no threads.
 
 pub mod account;
+pub mod check;
 pub mod corridor;
 pub mod network;
 pub mod osm;

@@ -1,0 +1,170 @@
+//! What is claimed of one vehicle on one corridor, and what comes of it. Pure: no input or output.
+
+use std::ops::Range;
+
+use super::chain::Chain;
+use super::leeway::{Shortfall, Swept, Targets};
+use super::motion::{Motion, STEPS};
+use super::road::{Road, RoadError};
+use crate::corridor::Corridor;
+
+/// A claim counts as proved if the bound found here is no more than this below it, metres: the two programs cut the road into
+/// steps differently. It is deducted here and nowhere else.
+pub const TOLERANCE_M: f64 = 1e-3;
+/// The same for hinge margins, radians (0.02°).
+pub(crate) const TOLERANCE_RAD: f64 = 0.02 * std::f64::consts::PI / 180.0;
+
+/// What came of a claim.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// Proved, to the tolerance.
+    Confirmed,
+    /// Not proved; by how much the bound falls short, and where.
+    NotConfirmed(Vec<Finding>),
+    /// Not a claim that could be true: a value is missing, impossible or contradicts another.
+    Malformed(String),
+}
+
+/// One thing that is not proved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// `rsc_m`, `hinge_margin_deg`, `safe` …
+    pub claim: String,
+    /// By how much, and where, in words.
+    pub detail: String,
+}
+
+/// What is claimed of a span of stations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpanClaim {
+    /// Stations of the corridor, as `EdgeSpan` has them.
+    pub stations: Range<usize>,
+    /// Least leeway, metres; `None`: nothing is claimed.
+    pub rsc_m: Option<f64>,
+    /// Least hinge margin, radians.
+    pub hinge_margin_rad: Option<f64>,
+    /// γ.
+    pub shrink: f64,
+}
+
+/// A vehicle on a corridor along a plan.
+pub struct Subject<'a> {
+    pub(crate) chain: &'a Chain,
+    pub(crate) road: Road,
+    pub(crate) motion: Option<Motion>,
+}
+
+impl<'a> Subject<'a> {
+    /// `shift(s)`: the plan, metres left of the centreline at `s` stations from the corridor's first; it is held beyond both ends.
+    ///
+    /// # Errors
+    /// Stations that do not fit each other.
+    pub fn new(chain: &'a Chain, corridor: &Corridor, shift: impl Fn(f64) -> f64) -> Result<Self, RoadError> {
+        let (ahead, behind) = chain.reach_m();
+        let road = Road::new(corridor, ahead + 3.0 * corridor.spacing_m, 1.1 * behind + 3.0 * corridor.spacing_m)?;
+        let (lead, last) = (road.lead as f64, road.count as f64 - 1.0);
+        let motion = Motion::new(chain, &road, |s| shift((s - lead).clamp(0.0, last)));
+        Ok(Self { chain, road, motion })
+    }
+
+    /// What comes of each claim, and how many kilometres of corridor were swept.
+    #[must_use]
+    pub fn check(&self, claims: &[SpanClaim]) -> Vec<Vec<Finding>> {
+        let mut findings = vec![Vec::new(); claims.len()];
+        let Some(motion) = &self.motion else {
+            for (claim, found) in claims.iter().zip(&mut findings) {
+                if claim.rsc_m.is_some() {
+                    found.push(finding("rsc_m", "the plan cannot be driven: it turns back, or a unit stands across it"));
+                }
+            }
+            return findings;
+        };
+        let mut shrinks: Vec<f64> = claims.iter().map(|claim| claim.shrink).collect();
+        shrinks.sort_by(f64::total_cmp);
+        shrinks.dedup();
+        for shrink in shrinks {
+            let mut swept = Swept::new(self.chain, &self.road, motion, shrink * self.chain.tolerance_m);
+            let own: Vec<usize> = (0..claims.len()).filter(|&i| claims[i].shrink == shrink).collect();
+            self.leeway(&mut swept, claims, &own, &mut findings);
+            for i in own {
+                if let Some(short) = claims[i].hinge_margin_rad.and_then(|margin| self.hinges(&mut swept, &claims[i].stations, margin)) {
+                    findings[i].push(finding("hinge_margin_deg", &short));
+                }
+            }
+        }
+        findings
+    }
+
+    fn leeway(&self, swept: &mut Swept<'_>, claims: &[SpanClaim], own: &[usize], findings: &mut [Vec<Finding>]) {
+        let stretches = self.road.count - 1;
+        let mut side = vec![f64::NEG_INFINITY; stretches];
+        for &i in own {
+            if let Some(rsc_m) = claims[i].rsc_m {
+                for k in self.stretches(&claims[i].stations) {
+                    side[k] = side[k].max(rsc_m - TOLERANCE_M);
+                }
+            }
+        }
+        let shortfalls = swept.refute(&Targets([side.clone(), side.clone()]));
+        for &i in own {
+            let Some(rsc_m) = claims[i].rsc_m else { continue };
+            // A stretch that two spans share was asked for the greater claim.
+            let short = |s: &Shortfall, k: usize| s.short_m - (side[k] - (rsc_m - TOLERANCE_M));
+            let worst = shortfalls
+                .iter()
+                .filter_map(|s| {
+                    let k = (s.station.max(0.0) as usize).min(stretches - 1);
+                    let near = self.stretches(&claims[i].stations).contains(&k);
+                    (near && short(s, k) > 0.0).then(|| (short(s, k), s))
+                })
+                .max_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((short_m, at)) = worst {
+                findings[i].push(finding("rsc_m", &self.describe(short_m, at)));
+            }
+        }
+    }
+
+    fn describe(&self, short_m: f64, at: &Shortfall) -> String {
+        if short_m.is_infinite() {
+            return format!("{:.1} m: no bound at all there (unit {})", at.station * self.road.spacing, at.unit);
+        }
+        format!(
+            "off by {:.4} m or more at {:.1} m: unit {}, {} side, {:.1} m ahead of its axle",
+            short_m + TOLERANCE_M,
+            at.station * self.road.spacing,
+            at.unit,
+            ["left", "right"][at.side],
+            at.point_m
+        )
+    }
+
+    /// Stretches between the stations of a span; of a single station, those that meet there.
+    fn stretches(&self, stations: &Range<usize>) -> Range<usize> {
+        let last = self.road.count - 1;
+        let (from, to) = (stations.start.min(last), stations.end.saturating_sub(1).min(last));
+        if to > from { from..to } else { from.saturating_sub(1)..(from + 1).min(last) }
+    }
+
+    /// Why a hinge margin is not proved while the steer axle is on the span.
+    fn hinges(&self, swept: &mut Swept<'_>, stations: &Range<usize>, margin_rad: f64) -> Option<String> {
+        let stretches = self.stretches(stations);
+        let least = margin_rad - TOLERANCE_RAD;
+        let steps = (self.road.lead + stretches.start) * STEPS..(self.road.lead + stretches.end) * STEPS;
+        let mut worst: Option<(f64, String)> = None;
+        for step in steps {
+            for unit in 0..self.chain.links.len() {
+                let short = least - swept.hinge_margin(step, unit, least);
+                if short > 0.0 && worst.as_ref().is_none_or(|w| short > w.0) {
+                    let at = (step as f64 / STEPS as f64 - self.road.lead as f64) * self.road.spacing;
+                    let by = (short + TOLERANCE_RAD).to_degrees();
+                    worst = Some((short, format!("off by {by:.3}° at {at:.1} m: hinge {unit}")));
+                }
+            }
+        }
+        worst.map(|(_, text)| text)
+    }
+}
+
+pub(crate) fn finding(claim: &str, detail: &str) -> Finding {
+    Finding { claim: claim.to_owned(), detail: detail.to_owned() }
+}

@@ -1,0 +1,473 @@
+//! From tubes to leeway (proof, section 7), against what is claimed: branch and bound.
+//!
+//! A cell is one side of one body, from `a0` to `a1` ahead of its axle, during part of a step. Its leeway lies above that of
+//! its four corners but for what second derivatives along the body and in time can take away. Where that is not enough the
+//! cell is halved, or its tubes are replaced by the adjoint's. So nothing is sampled: every cell is decided, by a
+//! bound not below the claim, or by a place where the bound is below it.
+
+use std::collections::HashMap;
+
+use super::UP;
+use super::adjoint::{self, Output};
+use super::chain::Chain;
+use super::gains::Knots;
+use super::interval::Interval;
+use super::motion::{Motion, Pose, STEPS, along};
+use super::road::Road;
+use super::tubes::{Tube, Tubes};
+
+/// Decisions closer than this are repeated in intervals, metres.
+pub(crate) const CLOSE_M: f64 = 1e-6;
+/// What the road's own evaluation may be off, metres: its quadrature (1e-7) and rounding.
+const ROAD_M: f64 = 2e-7;
+/// Halvings of a cell at most: 15 m of body to 1 mm.
+const MOST_HALVINGS: u32 = 14;
+/// Second derivatives are taken at the corners of a cell; between them they may be greater by this factor.
+const BETWEEN: f64 = 1.25;
+/// Points of a body at which the adjoint is run, metres apart; linear between, which is never less (convex).
+const KNOT_M: f64 = 0.5;
+/// Steps of history over which second-order terms are taken from the adjoint's bounds, in vehicle lengths.
+const HISTORY_LENGTHS: f64 = 1.5;
+
+/// What leeway is claimed on each stretch between stations of the corridor, by side (0 left, 1 right), metres;
+/// −∞ where nothing is claimed.
+#[derive(Debug, Clone)]
+pub(crate) struct Targets(pub(crate) [Vec<f64>; 2]);
+
+/// A cell that does not reach what is claimed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Shortfall {
+    /// Station of the corridor, as a real number.
+    pub(crate) station: f64,
+    /// Unit, side (0 left, 1 right) and metres ahead of the axle.
+    pub(crate) unit: usize,
+    /// Side.
+    pub(crate) side: usize,
+    /// Body point.
+    pub(crate) point_m: f64,
+    /// By how much the bound is below the claim, metres.
+    pub(crate) short_m: f64,
+}
+
+/// The vehicle on the road along its plan, with tubes at one tolerance.
+pub(crate) struct Swept<'a> {
+    pub(crate) chain: &'a Chain,
+    pub(crate) road: &'a Road,
+    pub(crate) motion: &'a Motion,
+    pub(crate) tubes: Tubes,
+    /// Steps whose tubes the adjoint has been through.
+    tightened: Vec<bool>,
+    /// Adjoint bounds by unit and node, at knots from the rear end of the unit on.
+    exact: HashMap<(usize, usize), Vec<Option<f64>>>,
+}
+
+/// A corner of a cell.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    /// Foot, in stations.
+    s: f64,
+    /// Half-width less lateral place: nominal leeway.
+    clear: f64,
+    /// What the tubes take away at most.
+    dev: f64,
+    /// |second derivative| of the leeway as the point moves, per metre of the coupling's path.
+    bend: f64,
+    lateral: f64,
+    sin: f64,
+    slope: f64,
+}
+
+/// A cell: one side of one unit in one step.
+#[derive(Debug, Clone, Copy)]
+struct Cell {
+    unit: usize,
+    side: usize,
+    step: usize,
+    /// Shares of the step.
+    t: [f64; 2],
+    a: [f64; 2],
+    halvings: u32,
+}
+
+impl<'a> Swept<'a> {
+    pub(crate) fn new(chain: &'a Chain, road: &'a Road, motion: &'a Motion, tolerance_m: f64) -> Self {
+        let mut tubes = Tubes::new(chain, road.spacing, tolerance_m);
+        for _ in 0..motion.steps() {
+            tubes.advance(chain, motion);
+        }
+        Self { chain, road, motion, tubes, tightened: vec![false; motion.steps()], exact: HashMap::new() }
+    }
+
+    /// All places where the claims are not reached, the worst of each stretch and side.
+    pub(crate) fn refute(&mut self, targets: &Targets) -> Vec<Shortfall> {
+        let claimed = |k: &usize| targets.0.iter().any(|side| side[*k] > f64::NEG_INFINITY);
+        let stretches = targets.0[0].len();
+        let (Some(first), Some(last)) = ((0..stretches).find(claimed), (0..stretches).rev().find(claimed)) else {
+            return Vec::new();
+        };
+        let (ahead, behind) = self.chain.reach_m();
+        let stations = |metres: f64| (metres / self.road.spacing).ceil() as usize;
+        let from = (self.road.lead + first).saturating_sub(stations(ahead) + 1) * STEPS;
+        // A body that cuts a bend is never farther along than a straight one; a twentieth is for plans on the outside.
+        let to = ((self.road.lead + last + 2 + stations(1.05 * behind)) * STEPS).min(self.motion.steps());
+        let mut found = Shortfalls::new(stretches);
+        let mut feet = vec![f64::NAN; self.chain.links.len() * 4];
+        for step in from..to {
+            for unit in 0..self.chain.links.len() {
+                for side in 0..2 {
+                    let link = &self.chain.links[unit];
+                    let cell = Cell { unit, side, step, t: [0.0, 1.0], a: [link.rear, link.front], halvings: 0 };
+                    let at = (unit * 2 + side) * 2;
+                    let hints = [feet[at], feet[at + 1]];
+                    let ends = self.cell(&cell, hints, targets, &mut found);
+                    feet[at..at + 2].copy_from_slice(&ends);
+                }
+            }
+        }
+        found.worst.into_iter().flatten().flatten().collect()
+    }
+
+    /// Decides a cell; gives the feet of its ends when it is over.
+    fn cell(&mut self, cell: &Cell, hints: [f64; 2], targets: &Targets, found: &mut Shortfalls) -> [f64; 2] {
+        let poses = cell.t.map(|t| self.pose(cell.step, cell.unit, t));
+        let link = self.chain.links[cell.unit];
+        // Rough feet: straight on from the hint, or from where the road's stations are.
+        let guess = |k: usize| {
+            if hints[k].is_nan() { self.rough_foot(cell.step, cell.unit, cell.a[k]) } else { hints[k] }
+        };
+        let mut feet = [guess(0), guess(1)];
+        let mut corners = [[None; 2]; 2];
+        for (t, pose) in poses.iter().enumerate() {
+            for k in 0..2 {
+                corners[t][k] = self.corner(cell, *pose, cell.a[k], feet[k]);
+                if let Some(corner) = corners[t][k] {
+                    feet[k] = corner.s;
+                }
+            }
+        }
+        let [[Some(c00), Some(c01)], [Some(c10), Some(c11)]] = corners else {
+            // No foot, or nothing is bounded here: whatever is claimed near is not proved.
+            let reach = self.rough_foot(cell.step, cell.unit, 0.0);
+            let all = [reach - link.l.max(-link.rear), reach + link.front.max(link.l)];
+            found.unbounded(cell, self.range(all), targets);
+            return [f64::NAN; 2];
+        };
+        let all = [c00, c01, c10, c11];
+        let range = all.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], c| [lo.min(c.s), hi.max(c.s)]);
+        let (first, last) = self.range([range[0] - 0.01, range[1] + 0.01]);
+        let Some(target) = found.target(targets, cell.side, first, last) else { return feet };
+        let base = all.iter().map(|c| c.clear - c.dev).fold(f64::INFINITY, f64::min);
+        let (time, body) = self.allowances(cell, &all, range);
+        let bound = base - time - body;
+        if bound >= target + CLOSE_M || bound >= target && self.sure(cell, &poses, &all, time + body, target) {
+            return feet;
+        }
+        self.undecided(cell, &all, bound - target, [time, body], targets, found, (first, last));
+        feet
+    }
+
+    /// Halves the cell, sharpens its tubes, or gives it up.
+    #[allow(clippy::too_many_arguments)]
+    fn undecided(
+        &mut self,
+        cell: &Cell,
+        all: &[Corner; 4],
+        slack: f64,
+        [time, body]: [f64; 2],
+        targets: &Targets,
+        found: &mut Shortfalls,
+        (first, last): (usize, usize),
+    ) {
+        // Allowances shrink fourfold: as long as they are what is missing, halve.
+        let halving_helps = slack + 0.75 * (time + body) >= 0.0 && time + body > 0.0;
+        let exact = self.exact.contains_key(&(cell.unit, cell.step));
+        if !exact && (!halving_helps || cell.halvings > 5) && self.worth(cell) {
+            self.sharpen(cell);
+            let hints = [all[0].s, all[1].s];
+            self.cell(cell, hints, targets, found);
+            return;
+        }
+        // A cell over several stretches may just be asked for what is claimed of another.
+        let spread = last > first;
+        if cell.halvings < MOST_HALVINGS && (halving_helps || spread || cell.halvings < 4) {
+            let mut halves = [Cell { halvings: cell.halvings + 1, ..*cell }; 2];
+            let [[a0, a1], [t0, t1]] = [cell.a, cell.t];
+            let long = (a1 - a0).abs() > 4.0 * self.tubes.step_m * (t1 - t0);
+            if body > time || long {
+                let middle = f64::midpoint(a0, a1);
+                (halves[0].a[1], halves[1].a[0]) = (middle, middle);
+            } else {
+                let middle = f64::midpoint(t0, t1);
+                (halves[0].t[1], halves[1].t[0]) = (middle, middle);
+            }
+            for half in &halves {
+                self.cell(half, [f64::NAN; 2], targets, found);
+            }
+            return;
+        }
+        let least = all.iter().fold(all[0], |least, c| if c.clear - c.dev < least.clear - least.dev { *c } else { least });
+        let point_m = if least.s == all[0].s || least.s == all[2].s { cell.a[0] } else { cell.a[1] };
+        found.add(cell, least.s - self.road.lead as f64, point_m, -slack, (first, last), targets);
+    }
+
+    fn pose(&self, step: usize, unit: usize, t: f64) -> Pose {
+        if t == 0.0 {
+            return self.motion.pose(step, unit);
+        }
+        if t == 1.0 {
+            return self.motion.pose(step + 1, unit);
+        }
+        self.motion.swing(step, unit).pose(&self.chain.links[unit], self.motion.pose(step, unit), t)
+    }
+
+    /// Where the foot would be on a straight road.
+    fn rough_foot(&self, step: usize, unit: usize, a: f64) -> f64 {
+        let behind: f64 = self.chain.links[..unit].iter().map(|link| link.l + link.d).sum();
+        step as f64 / STEPS as f64 - (behind + self.chain.links[unit].l - a) / self.road.spacing
+    }
+
+    /// Stretches of the corridor between two feet (stations of the road).
+    fn range(&self, [from, to]: [f64; 2]) -> (usize, usize) {
+        let own = |s: f64| s - self.road.lead as f64;
+        let last = self.road.count - 2;
+        if own(to) < 0.0 || own(from) > (last + 1) as f64 {
+            return (1, 0);
+        }
+        ((own(from).max(0.0) as usize).min(last), (own(to).max(0.0) as usize).min(last))
+    }
+
+    /// A body point on the side of a cell; `None` without a foot near the guess, or without a bound.
+    fn corner(&self, cell: &Cell, pose: Pose, a: f64, guess: f64) -> Option<Corner> {
+        let link = &self.chain.links[cell.unit];
+        let sign = if cell.side == 0 { 1.0 } else { -1.0 };
+        let b = sign * link.half_width;
+        let x = point(pose, a, b);
+        let (s, place, lateral) = self.foot(x, guess)?;
+        let n = [-place.t[1], place.t[0]];
+        let cos = pose.u[0] * place.t[0] + pose.u[1] * place.t[1];
+        let sin = pose.u[0] * n[0] + pose.u[1] * n[1];
+        let (width, slope) = self.road.width(cell.side, s);
+        let tube = self.tubes.get(cell.step, cell.unit)?;
+        let narrow = 1.0 - (place.curvature * lateral).abs();
+        if !(cos > 0.2 && narrow > 0.1) {
+            return None;
+        }
+        let at = a - b * sin / cos;
+        let slide = cos * link.half_width * tube.a + sin.abs() * (tube.y + a.abs() * tube.a);
+        let second = cos * a.abs() * tube.r1 / link.l
+            + 0.5 * sin.abs() * a.abs() * tube.a * tube.a
+            + 0.5 * place.curvature.abs() / narrow * slide * slide
+            + slope.abs() * slide;
+        let dev = (cos * self.off(cell.step, cell.unit, at, tube) + second) * UP;
+        // Second derivative of the lateral place, per metre of the coupling's path.
+        let swing = self.motion.swing(cell.step, cell.unit);
+        let q = 1.0 + swing.before * swing.before;
+        let (sd, cd) = (2.0 * swing.before / q, (2.0 - q) / q);
+        let (v, w, dv, dw) = (cd, sd / link.l, sd * sd / link.l, -sd * cd / (link.l * link.l));
+        let along_road = (v - b * w) * cos - a * w * sin;
+        let across = (dv - a * w * w - b * dw) * sin + (v * w + a * dw - b * w * w) * cos;
+        let (_, rate) = self.road.sharpest(cell.side, s, s);
+        let feet = (w.abs() * (v + (a * w).abs()) + 2.0 * place.curvature.abs() * (sin.abs() + (a * w).abs())
+            + rate * lateral.abs())
+            / (narrow * narrow);
+        let bend = (across - place.curvature * along_road * along_road / (1.0 - place.curvature * lateral)).abs()
+            + slope.abs() * feet;
+        Some(Corner { s, clear: width - sign * lateral, dev, bend, lateral, sin, slope })
+    }
+
+    /// The foot of a point by Newton's method, to 1e-10 m; its place and lateral.
+    fn foot(&self, x: [f64; 2], guess: f64) -> Option<(f64, super::road::Place, f64)> {
+        let mut s = guess;
+        for _ in 0..30 {
+            let place = self.road.place(s);
+            let r = [x[0] - place.c[0], x[1] - place.c[1]];
+            let (off, lateral) = (r[0] * place.t[0] + r[1] * place.t[1], r[1] * place.t[0] - r[0] * place.t[1]);
+            if off.abs() < 1e-10 {
+                return Some((s, place, lateral));
+            }
+            s += off.clamp(-5.0, 5.0) / (1.0 - place.curvature * lateral).max(0.1) / self.road.spacing;
+        }
+        None
+    }
+
+    /// The first-order bound at `a` throughout a step.
+    fn off(&self, step: usize, unit: usize, a: f64, tube: &Tube) -> f64 {
+        let link = &self.chain.links[unit];
+        let filter = self.chain.gains.units[unit].point(a, self.tubes.tolerance_m)
+            + (1.0 - a / link.l).abs() * tube.extra
+            + (a / link.l).abs() * tube.extra_coupling;
+        self.exact.get(&(unit, step)).map_or(filter, |exact| {
+            let value = |k: usize| exact[k].unwrap_or(f64::INFINITY);
+            filter.min(Knots::new(link, KNOT_M).between(a, value, tube.a))
+        })
+    }
+
+    /// What a cell's inside may lie below its corners: in time, and along the body with the road's dips.
+    fn allowances(&self, cell: &Cell, all: &[Corner; 4], range: [f64; 2]) -> (f64, f64) {
+        let bend = all.iter().map(|c| c.bend).fold(0.0, f64::max) * BETWEEN + 1e-5;
+        let travel = self.motion.swing(cell.step, cell.unit).len * (cell.t[1] - cell.t[0]);
+        let lateral = all.iter().map(|c| c.lateral.abs()).fold(0.0, f64::max);
+        let (sharp, rate) = self.road.sharpest(cell.side, range[0], range[1]);
+        let inside = (1.0 - sharp * lateral).max(0.1);
+        let sin = all.iter().map(|c| c.sin.abs()).fold(0.0, f64::max);
+        let slope = all.iter().map(|c| c.slope.abs()).fold(0.0, f64::max);
+        let tube = self.tubes.get(cell.step, cell.unit).map_or(0.0, |tube| tube.a);
+        let turn = 2.0 * sharp * sharp * (sin + 0.05) + rate;
+        let curve = sharp / inside + slope * (3.0 * sharp * sin + rate * lateral) / (inside * inside)
+            + tube * self.chain.links[cell.unit].half_width * turn;
+        let length = cell.a[1] - cell.a[0];
+        (bend * travel * travel / 8.0, curve * length * length / 8.0 + self.road.dip(cell.side, range[0], range[1]))
+    }
+
+    /// The decision once more, in intervals: the corners' nominal leeway from poses, road and widths as they are.
+    fn sure(&self, cell: &Cell, poses: &[Pose; 2], all: &[Corner; 4], allowance: f64, target: f64) -> bool {
+        all.iter().enumerate().all(|(k, corner)| {
+            let (pose, a) = (poses[k / 2], cell.a[k % 2]);
+            let sign = if cell.side == 0 { 1.0 } else { -1.0 };
+            let at = |x: f64| Interval::at(x);
+            let place = self.road.place(corner.s);
+            let half = at(sign * self.chain.links[cell.unit].half_width);
+            let x = at(pose.p[0]) + at(pose.u[0]) * a - half * pose.u[1] - place.c[0];
+            let y = at(pose.p[1]) + at(pose.u[1]) * a + half * pose.u[0] - place.c[1];
+            let lateral = y * place.t[0] - x * place.t[1] + Interval::ball(ROAD_M);
+            // The foot is not exactly there: the half-width changes by its slope times what is missing.
+            let off = (x * place.t[0] + y * place.t[1]).abs() * corner.slope.abs();
+            let (width, _) = self.road.width(cell.side, corner.s);
+            let clear = Interval::at(width) * Interval::between(1.0, 1.0 - 1e-14) - lateral * sign - off;
+            (clear - corner.dev - allowance).lo >= target
+        })
+    }
+
+    /// Whether the adjoint could do better than the filter.
+    fn worth(&self, cell: &Cell) -> bool {
+        self.tubes.get(cell.step, cell.unit).is_some_and(|tube| tube.extra + tube.extra_coupling > 2e-4)
+    }
+
+    /// Bounds of the adjoint for a unit throughout a step, and for the second order of the history before it.
+    fn sharpen(&mut self, cell: &Cell) {
+        let (_, behind) = self.chain.reach_m();
+        let history = (HISTORY_LENGTHS * behind / self.tubes.step_m) as usize;
+        for step in cell.step.saturating_sub(history)..=cell.step {
+            self.tighten(step);
+        }
+        let link = &self.chain.links[cell.unit];
+        let knots = Knots::new(link, KNOT_M)
+            .places()
+            .map(|a| self.exact_over(cell.step, cell.unit, Output::Point(a)))
+            .collect();
+        self.exact.insert((cell.unit, cell.step), knots);
+    }
+
+    /// The adjoint's bound throughout a step: the greater of its ends', and what it may bow up between them.
+    fn exact_over(&self, step: usize, unit: usize, output: Output) -> Option<f64> {
+        let least = self.chain.links[..=unit].iter().map(|link| link.l).fold(f64::INFINITY, f64::min);
+        let bow = 1.0 + 0.5 * (self.tubes.step_m / least).powi(2);
+        let end = adjoint::bound(self.chain, &self.tubes, unit, step + 1, output)?;
+        let start = match step {
+            0 => end,
+            _ => adjoint::bound(self.chain, &self.tubes, unit, step, output)?,
+        };
+        Some(start.max(end) * bow)
+    }
+
+    /// Lets the adjoint bound axle and heading of all units in a step, so that its second order is that of what is so.
+    fn tighten(&mut self, step: usize) {
+        if std::mem::replace(&mut self.tightened[step], true) {
+            return;
+        }
+        for unit in 0..self.chain.links.len() {
+            let Some(tube) = self.tubes.get(step, unit).copied() else { return };
+            if tube.extra + tube.extra_coupling < 5e-3 {
+                continue;
+            }
+            let y = self.exact_over(step, unit, Output::Point(0.0));
+            let a = self.exact_over(step, unit, Output::Heading);
+            if let (Some(y), Some(a)) = (y, a) {
+                let a = a + tube.r1 / self.chain.links[unit].l;
+                self.tubes.tighten(self.chain, self.motion, step, unit, y, a);
+            }
+        }
+    }
+}
+
+/// A body point, `a` ahead of the axle and `b` to its left.
+fn point(pose: Pose, a: f64, b: f64) -> [f64; 2] {
+    along(along(pose.p, a, pose.u), b, [-pose.u[1], pose.u[0]])
+}
+
+/// The worst of each stretch and side.
+struct Shortfalls {
+    worst: [Vec<Option<Shortfall>>; 2],
+}
+
+impl Shortfalls {
+    fn new(stretches: usize) -> Self {
+        Self { worst: [vec![None; stretches], vec![None; stretches]] }
+    }
+
+    /// The most that is claimed of stretches `first..=last` and not refuted yet.
+    fn target(&self, targets: &Targets, side: usize, first: usize, last: usize) -> Option<f64> {
+        let mut most = f64::NEG_INFINITY;
+        for k in first..=last {
+            // One refutation of a stretch is enough.
+            if self.worst[side][k].is_none() {
+                most = most.max(targets.0[side][k]);
+            }
+        }
+        (most > f64::NEG_INFINITY).then_some(most)
+    }
+
+    fn add(&mut self, cell: &Cell, station: f64, point_m: f64, short_m: f64, (first, last): (usize, usize), targets: &Targets) {
+        let most = (first..=last).map(|k| targets.0[cell.side][k]).fold(f64::NEG_INFINITY, f64::max);
+        for k in first..=last {
+            let own = short_m - (most - targets.0[cell.side][k]);
+            let slot = &mut self.worst[cell.side][k];
+            if own > 0.0 && slot.is_none_or(|worst| own > worst.short_m) {
+                *slot = Some(Shortfall { station, unit: cell.unit, side: cell.side, point_m, short_m: own });
+            }
+        }
+    }
+
+    fn unbounded(&mut self, cell: &Cell, (first, last): (usize, usize), targets: &Targets) {
+        for k in first..=last {
+            if targets.0[cell.side][k] > f64::NEG_INFINITY {
+                let short_m = f64::INFINITY;
+                self.worst[cell.side][k] =
+                    Some(Shortfall { station: k as f64, unit: cell.unit, side: cell.side, point_m: 0.0, short_m });
+            }
+        }
+    }
+}
+
+impl Swept<'_> {
+    /// The margin of a hinge (0: the steering lock) throughout a step (proof, section 10), radians; by the adjoint where the
+    /// filter's is below `least`. −∞ where nothing is bounded.
+    pub(crate) fn hinge_margin(&mut self, step: usize, unit: usize, least: f64) -> f64 {
+        let margin = self.plain_hinge_margin(step, unit);
+        if margin >= least {
+            return margin;
+        }
+        self.tighten(step);
+        self.plain_hinge_margin(step, unit)
+    }
+
+    fn plain_hinge_margin(&self, step: usize, unit: usize) -> f64 {
+        let swing = |unit: usize| self.motion.swing(step, unit);
+        let angles = |unit: usize| [swing(unit).before, swing(unit).after].map(|half| 2.0 * half.atan());
+        let limit = self.chain.links[unit].limit;
+        let Some(tube) = self.tubes.get(step, unit) else { return f64::NEG_INFINITY };
+        let delta = angles(unit);
+        let Some(ahead) = unit.checked_sub(1) else {
+            return limit - (delta[0].abs().max(delta[1].abs()) + tube.a + self.chain.heading_rad);
+        };
+        let Some(before) = self.tubes.get(step, ahead) else { return f64::NEG_INFINITY };
+        let link = &self.chain.links[ahead];
+        let chi = angles(ahead).map(|delta| (-link.k * delta.tan()).atan());
+        let folded = (delta[0] - chi[0]).abs().max((delta[1] - chi[1]).abs());
+        let shift = |unit: usize, tube: &Tube| {
+            let delta = angles(unit)[0].abs();
+            delta.tan() / self.chain.links[unit].l * tube.e * delta.sin()
+        };
+        limit - (folded + before.a + tube.a + shift(ahead, before) + shift(unit, tube))
+    }
+}

@@ -1,0 +1,245 @@
+//! The filter (proof, section 5) with the second order and the foot shift (section 3): step by step, what every unit may be
+//! off at most anywhere in the step.
+//!
+//! In each step the coefficients are taken at their worst, so that the bounds hold between nodes as well.
+
+use super::UP;
+use super::adjoint::Coefficients;
+use super::chain::{Chain, Link};
+use super::motion::{Motion, STEPS, Swing};
+
+/// Assumption A3.
+const MOST_HEADING_RAD: f64 = 0.6;
+const QUARTER_TURN_RAD: f64 = std::f64::consts::FRAC_PI_2 - 1e-9;
+/// Rounds of guessing until a bound reproduces itself.
+const ROUNDS: usize = 60;
+
+/// Bounds of one unit throughout one step, metres and radians.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Tube {
+    /// Beyond the straight gain: of the axle and, times 1/cos δ, of the coupling.
+    pub(crate) extra: f64,
+    pub(crate) extra_coupling: f64,
+    /// Y, E and A, all included.
+    pub(crate) y: f64,
+    pub(crate) e: f64,
+    pub(crate) a: f64,
+    pub(crate) r1: f64,
+    pub(crate) z: f64,
+    /// z^h of the *front* coupling, foot shift and bulge included; of unit 0 the bulge of the plan.
+    pub(crate) zh: f64,
+}
+
+/// Coefficients of one unit in one step: at the beginning and the end.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Bend {
+    pub(crate) tan: f64,
+    pub(crate) sec: [f64; 2],
+    /// Cosine of χ, from the hitch.
+    pub(crate) cos_chi: [f64; 2],
+    pub(crate) tan_chi: f64,
+    /// Length of its coupling's chord over that of the road.
+    pub(crate) pace: f64,
+    pub(crate) angle: f64,
+}
+
+impl Bend {
+    pub(crate) fn of(link: &Link, swing: &Swing, step_m: f64) -> Self {
+        let (tan, sec) = Swing::tan_sec(swing.before);
+        let (tan_after, sec_after) = Swing::tan_sec(swing.after);
+        let cos_chi = |tan: f64| 1.0 / (1.0 + (link.k * tan).powi(2)).sqrt();
+        Self {
+            tan: tan.abs(),
+            sec: [sec, sec_after],
+            cos_chi: [cos_chi(tan), cos_chi(tan_after)],
+            tan_chi: (link.k * tan).abs(),
+            pace: swing.len / step_m,
+            angle: 2.0 * swing.before.abs().atan(),
+        }
+    }
+
+    /// ρ at the beginning and the end, for `pace` of its coupling.
+    pub(crate) fn rho(&self) -> [f64; 2] {
+        [self.pace / self.sec[0], self.pace / self.sec[1]]
+    }
+}
+
+/// All tubes; `None` in steps where nothing is bounded (A3 fails).
+pub(crate) struct Tubes {
+    pub(crate) step_m: f64,
+    pub(crate) tolerance_m: f64,
+    units: usize,
+    tubes: Vec<Option<Tube>>,
+    coefficients: Vec<Coefficients>,
+    /// `extra` at the end of the last step, a unit.
+    ends: Vec<f64>,
+}
+
+impl Tubes {
+    pub(crate) fn new(chain: &Chain, spacing: f64, tolerance_m: f64) -> Self {
+        let units = chain.links.len();
+        Self { step_m: spacing / STEPS as f64, tolerance_m, units, tubes: Vec::new(), coefficients: Vec::new(), ends: vec![0.0; units] }
+    }
+
+    /// Adds the next step. Where the recursion does not close, nothing is bounded in it, and the filter begins anew.
+    pub(crate) fn advance(&mut self, chain: &Chain, motion: &Motion) {
+        let step = self.tubes.len() / self.units;
+        let mut passed = Passed::steer_axle(self.tolerance_m, motion.swing(step, 0).bulge);
+        let first = self.tubes.len();
+        let bends: Vec<Bend> = (0..self.units).map(|i| Bend::of(&chain.links[i], motion.swing(step, i), self.step_m)).collect();
+        self.coefficients.extend(chain.links.iter().zip(&bends).map(|(link, bend)| Coefficients::of(link, bend)));
+        for (i, link) in chain.links.iter().enumerate() {
+            let swing = motion.swing(step, i);
+            let bend = bends[i];
+            let gains = &chain.gains.units[i];
+            let unit = Unit {
+                link,
+                bend,
+                curvature: swing.curvature,
+                gains: [gains.point(0.0, self.tolerance_m), gains.heading.at(self.tolerance_m), gains.coupling.at(self.tolerance_m)],
+                step_m: self.step_m,
+                extra: self.ends[i],
+            };
+            let before = step.checked_sub(1).and_then(|s| self.tubes[s * self.units + i]);
+            let Some((tube, end)) = unit.settle(&passed, before) else {
+                self.tubes.truncate(first);
+                self.tubes.extend(std::iter::repeat_n(None, self.units));
+                self.ends.fill(0.0);
+                return;
+            };
+            self.ends[i] = end;
+            self.tubes.push(Some(tube));
+            if let Some(next) = chain.links.get(i + 1) {
+                let swing = motion.swing(step, i + 1);
+                passed = unit.pass_on(&passed, &tube, next, &bends[i + 1], swing);
+            }
+        }
+    }
+
+    pub(crate) fn coefficients(&self, step: usize, unit: usize) -> &Coefficients {
+        &self.coefficients[step * self.units + unit]
+    }
+
+    pub(crate) fn get(&self, step: usize, unit: usize) -> Option<&Tube> {
+        self.tubes.get(step * self.units + unit)?.as_ref()
+    }
+
+    /// Takes better bounds for a unit in a step that is there: its own second order follows.
+    pub(crate) fn tighten(&mut self, chain: &Chain, motion: &Motion, step: usize, unit: usize, y: f64, a: f64) {
+        let swing = motion.swing(step, unit);
+        let link = &chain.links[unit];
+        let bend = Bend::of(link, swing, self.step_m);
+        if let Some(Some(tube)) = self.tubes.get_mut(step * self.units + unit) {
+            tube.y = tube.y.min(y);
+            tube.a = tube.a.min(a);
+            tube.r1 = tube.r1.min(r1(link, &bend, swing.curvature, tube.y, tube.a));
+            tube.z = tube.z.min(z(link, &bend, tube.y, tube.a, tube.r1));
+        }
+    }
+}
+
+/// What one unit hands to the next in a step.
+struct Passed {
+    /// E⁰, and E beyond it.
+    straight: f64,
+    extra: f64,
+    zh: f64,
+    /// Slope of what is smooth, and the rough part (foot shift).
+    slope: f64,
+    rough: f64,
+    cos_chi: [f64; 2],
+}
+
+impl Passed {
+    fn steer_axle(tolerance_m: f64, bulge: f64) -> Self {
+        Self { straight: tolerance_m, extra: bulge, zh: bulge, slope: 0.0, rough: tolerance_m, cos_chi: [1.0; 2] }
+    }
+}
+
+/// One unit in one step.
+struct Unit<'a> {
+    link: &'a Link,
+    bend: Bend,
+    curvature: f64,
+    /// ‖y‖, ‖α‖, ‖e‖ on the straight.
+    gains: [f64; 3],
+    step_m: f64,
+    /// `extra` when the step begins.
+    extra: f64,
+}
+
+impl Unit<'_> {
+    /// The bounds of the step: guessed, computed, raised until they reproduce themselves; and `extra` at its end.
+    fn settle(&self, passed: &Passed, before: Option<Tube>) -> Option<(Tube, f64)> {
+        let (link, bend) = (self.link, &self.bend);
+        let eta = (0..2).map(|k| (bend.sec[k] - 1.0).max((passed.cos_chi[k] * bend.sec[k] - 1.0).abs())).fold(0.0, f64::max);
+        // Steps begin with the larger angle; the ends of both ranges are opposite for χ.
+        let eta = eta.max((passed.cos_chi[1] * bend.sec[0] - 1.0).abs());
+        let extra_coupling = (passed.extra * (1.0 + eta) + eta * passed.straight) * UP;
+        let rho = bend.rho();
+        let off_pace = (rho[0] - 1.0).abs().max((rho[1] - 1.0).abs());
+        let decay = (-self.step_m / link.l).exp();
+        let e = self.gains[2] + passed.extra;
+        let mut guess = before.map_or([self.extra + 1e-6, self.gains[1] * 1.01], |tube| [tube.extra, tube.a]);
+        for _ in 0..ROUNDS {
+            let [extra, a] = guess;
+            if !(a + link.sway <= MOST_HEADING_RAD && bend.angle + a + link.sway < QUARTER_TURN_RAD) {
+                return None;
+            }
+            let y = self.gains[0] + extra;
+            let r1 = r1(link, bend, self.curvature, y, a);
+            let z = z(link, bend, y, a, r1);
+            let source = extra_coupling + rho[1].max(rho[0]) * z + off_pace * link.l * (a + link.sway);
+            let end = (self.extra * decay + source * (1.0 - decay)) * UP + 1e-12;
+            let most = end.max(self.extra);
+            let heading = (self.gains[1] + (most + extra_coupling + r1) / link.l) * UP;
+            if most <= extra && heading <= a {
+                let tube =
+                    Tube { extra: most, extra_coupling, y: self.gains[0] + most, e, a: heading, r1, z, zh: passed.zh };
+                return Some((tube, end));
+            }
+            let raised = |new: f64, old: f64| if new > old { new * 1.02 + 1e-9 } else { old };
+            guess = [raised(most, extra), raised(heading, a)];
+        }
+        None
+    }
+
+    /// From this unit's tube to the coupling of the next.
+    fn pass_on(&self, passed: &Passed, tube: &Tube, next: &Link, next_bend: &Bend, swing: &Swing) -> Passed {
+        let (link, bend) = (self.link, &self.bend);
+        let (through, back) = ((1.0 + link.k).abs(), link.k.abs());
+        let sin_chi = bend.tan_chi * bend.cos_chi[0];
+        let swung = tube.y + link.d.abs() * tube.a;
+        let slope = through * (tube.a + link.sway) + back * passed.slope * bend.sec[0];
+        let rough = passed.rough * back * bend.sec[0];
+        let foot = swung * (next_bend.tan + bend.tan_chi) * (slope + 2.0 * rough / next.l);
+        let zh = back * tube.r1
+            + 0.5 * sin_chi * link.d.abs() * tube.a * tube.a
+            + 0.5 * swing.curvature * (swung * sin_chi).powi(2)
+            + foot
+            + swing.bulge;
+        let straight_y = passed.straight + link.l * link.sway.tan();
+        Passed {
+            straight: (through * straight_y + back * passed.straight) * UP,
+            extra: (through * tube.extra + back * tube.extra_coupling + zh) * UP,
+            zh: zh * UP,
+            slope: slope * UP,
+            rough: rough * UP,
+            cos_chi: bend.cos_chi,
+        }
+    }
+}
+
+/// R1 of the proof.
+fn r1(link: &Link, bend: &Bend, curvature: f64, y: f64, a: f64) -> f64 {
+    let sin = bend.tan / bend.sec[0];
+    let along = (y + link.l * a) * sin + 0.5 * link.l * a * a;
+    (bend.tan * link.l * a * a / 2.0 + link.l * a.powi(3) / 6.0 + 0.5 * curvature * bend.sec[0] * along * along) * UP
+}
+
+/// z of the proof.
+fn z(link: &Link, bend: &Bend, y: f64, a: f64, r1: f64) -> f64 {
+    let x = a + link.sway;
+    let tan = core_math::tan(x);
+    (r1 + bend.tan * y * tan + link.l * (tan - x).max(0.0)) * UP + 1e-14
+}
