@@ -8,7 +8,7 @@ use super::group::Group;
 use super::lanes::{LANES, V};
 use super::shift::{KNOT_STATIONS, Plan};
 use super::spans;
-use super::sweep::{Minima, UNVISITED_M, sweep};
+use super::sweep::{Minima, UNVISITED_M, Wanted, sweep};
 use super::track::Track;
 
 /// Of the centred path and its corrections, each vehicle's best by nominal leeway: never the last by default. Planned on
@@ -23,7 +23,7 @@ pub(super) fn best(track: &Track, group: &Group<'_>, spans: &[Range<usize>], opt
     let mut best = shift.clone();
     let mut best_score = [f64::NEG_INFINITY; LANES];
     for round in 0..=options.correction_sweeps {
-        let minima = sweep::<false>(&coarse, group, &shift, |_, _| true);
+        let minima = sweep::<false>(&coarse, group, &shift, &Wanted::ALL);
         for (lane, m) in minima.iter().enumerate() {
             let score = score(&coarse, group, lane, &spans, m);
             if score > best_score[lane] {
