@@ -31,5 +31,6 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Verb::Corridor(verb) => verb.run(&session),
         Verb::Vehicles(verb) => verb.run(),
         Verb::Stats(verb) => verb.run(),
+        Verb::Verify(verb) => verb.run(&session),
     }
 }

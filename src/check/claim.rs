@@ -14,6 +14,9 @@ pub const TOLERANCE_M: f64 = 1e-3;
 /// The same for hinge margins, radians (0.02°).
 pub(crate) const TOLERANCE_RAD: f64 = 0.02 * std::f64::consts::PI / 180.0;
 
+/// A leeway below minus this says that nothing is bounded.
+const NOTHING_M: f64 = 50.0;
+
 /// What came of a claim.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
@@ -93,6 +96,57 @@ impl<'a> Subject<'a> {
             }
         }
         findings
+    }
+
+    /// Why a column of leeway, one entry a station on one side at γ = 1, is not proved: between two stations it claims the lesser.
+    pub(crate) fn leeway_column(&self, side: usize, column: &[f64]) -> Option<String> {
+        let Some(motion) = &self.motion else { return Some("the plan cannot be driven".to_owned()) };
+        let none = vec![f64::NEG_INFINITY; self.road.count - 1];
+        let mut targets = [none.clone(), none];
+        targets[side] = column.windows(2).map(|pair| pair[0].min(pair[1]) - TOLERANCE_M).collect();
+        // The column begins with the steer axle on the first station: what is ahead of it then has passed its first feet.
+        let (ahead, _) = self.chain.reach_m();
+        let begun = ((ahead / self.road.spacing).ceil() as usize).min(targets[side].len());
+        targets[side][..begun].fill(f64::NEG_INFINITY);
+        // A column that claims nothing (the bounds do not close) is true.
+        targets[side].iter_mut().filter(|target| **target < -NOTHING_M).for_each(|target| *target = f64::NEG_INFINITY);
+        let mut swept = Swept::new(self.chain, &self.road, motion, self.chain.tolerance_m);
+        let shortfalls = swept.refute(&Targets(targets));
+        let worst = shortfalls.iter().max_by(|a, b| a.short_m.total_cmp(&b.short_m))?;
+        Some(self.describe(worst.short_m, worst))
+    }
+
+    /// The leeway proved of a body point whose foot is `s` metres along the corridor.
+    pub(crate) fn leeway_at(&self, s: f64, unit: usize, side: usize, a: f64, tolerance_m: f64) -> Option<f64> {
+        let mut swept = Swept::new(self.chain, &self.road, self.motion.as_ref()?, tolerance_m);
+        swept.leeway_at(s / self.road.spacing + self.road.lead as f64, unit, side, a)
+    }
+
+    /// Whether a side of a unit has more than `m` metres of room wherever it is within a station of `s` metres along the corridor.
+    pub(crate) fn roomier(&self, s: f64, unit: usize, side: usize, tolerance_m: f64, m: f64) -> bool {
+        let Some(mut swept) = self.swept(tolerance_m) else { return false };
+        let stretches = self.road.count - 1;
+        let at = ((s / self.road.spacing) as usize).min(stretches - 1);
+        let mut targets = [vec![f64::NEG_INFINITY; stretches], vec![f64::NEG_INFINITY; stretches]];
+        targets[side][at.saturating_sub(1)..(at + 2).min(stretches)].fill(m);
+        swept.refute_only(&Targets(targets), Some(unit)).is_empty()
+    }
+
+    /// Nominal place of an axle (from the corridor's first station) when the steer axle is at station `k`, and how far off it may be;
+    /// the filter's bound if that is no more than `enough`, else the adjoint's.
+    pub(crate) fn tube_at(&self, swept: &mut Swept<'_>, k: usize, unit: usize, enough: f64) -> Option<([f64; 2], f64)> {
+        let step = (self.road.lead + k) * STEPS;
+        Some((swept.motion.pose(step, unit).p, swept.axle_bound(step.checked_sub(1)?, unit, enough)?))
+    }
+
+    /// The vehicle swept at a tolerance.
+    pub(crate) fn swept(&self, tolerance_m: f64) -> Option<Swept<'_>> {
+        Some(Swept::new(self.chain, &self.road, self.motion.as_ref()?, tolerance_m))
+    }
+
+    /// Foot of a point near `s` (stations of the road), and its lateral place.
+    pub(crate) fn foot(&self, x: [f64; 2], guess: f64) -> Option<(f64, super::road::Place, f64)> {
+        super::leeway::foot(&self.road, x, guess)
     }
 
     fn leeway(&self, swept: &mut Swept<'_>, claims: &[SpanClaim], own: &[usize], findings: &mut [Vec<Finding>]) {

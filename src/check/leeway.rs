@@ -13,7 +13,7 @@ use super::chain::Chain;
 use super::gains::Knots;
 use super::interval::Interval;
 use super::motion::{Motion, Pose, STEPS, along};
-use super::road::Road;
+use super::road::{Place, Road};
 use super::tubes::{Tube, Tubes};
 
 /// Decisions closer than this are repeated in intervals, metres.
@@ -100,6 +100,11 @@ impl<'a> Swept<'a> {
 
     /// All places where the claims are not reached, the worst of each stretch and side.
     pub(crate) fn refute(&mut self, targets: &Targets) -> Vec<Shortfall> {
+        self.refute_only(targets, None)
+    }
+
+    /// The same, of one unit only.
+    pub(crate) fn refute_only(&mut self, targets: &Targets, only: Option<usize>) -> Vec<Shortfall> {
         let claimed = |k: &usize| targets.0.iter().any(|side| side[*k] > f64::NEG_INFINITY);
         let stretches = targets.0[0].len();
         let (Some(first), Some(last)) = ((0..stretches).find(claimed), (0..stretches).rev().find(claimed)) else {
@@ -113,7 +118,7 @@ impl<'a> Swept<'a> {
         let mut found = Shortfalls::new(stretches);
         let mut feet = vec![f64::NAN; self.chain.links.len() * 4];
         for step in from..to {
-            for unit in 0..self.chain.links.len() {
+            for unit in only.map_or(0..self.chain.links.len(), |unit| unit..unit + 1) {
                 for side in 0..2 {
                     let link = &self.chain.links[unit];
                     let cell = Cell { unit, side, step, t: [0.0, 1.0], a: [link.rear, link.front], halvings: 0 };
@@ -242,7 +247,7 @@ impl<'a> Swept<'a> {
         let sign = if cell.side == 0 { 1.0 } else { -1.0 };
         let b = sign * link.half_width;
         let x = point(pose, a, b);
-        let (s, place, lateral) = self.foot(x, guess)?;
+        let (s, place, lateral) = foot(self.road, x, guess)?;
         let n = [-place.t[1], place.t[0]];
         let cos = pose.u[0] * place.t[0] + pose.u[1] * place.t[1];
         let sin = pose.u[0] * n[0] + pose.u[1] * n[1];
@@ -273,21 +278,6 @@ impl<'a> Swept<'a> {
         let bend = (across - place.curvature * along_road * along_road / (1.0 - place.curvature * lateral)).abs()
             + slope.abs() * feet;
         Some(Corner { s, clear: width - sign * lateral, dev, bend, lateral, sin, slope })
-    }
-
-    /// The foot of a point by Newton's method, to 1e-10 m; its place and lateral.
-    fn foot(&self, x: [f64; 2], guess: f64) -> Option<(f64, super::road::Place, f64)> {
-        let mut s = guess;
-        for _ in 0..30 {
-            let place = self.road.place(s);
-            let r = [x[0] - place.c[0], x[1] - place.c[1]];
-            let (off, lateral) = (r[0] * place.t[0] + r[1] * place.t[1], r[1] * place.t[0] - r[0] * place.t[1]);
-            if off.abs() < 1e-10 {
-                return Some((s, place, lateral));
-            }
-            s += off.clamp(-5.0, 5.0) / (1.0 - place.curvature * lateral).max(0.1) / self.road.spacing;
-        }
-        None
     }
 
     /// The first-order bound at `a` throughout a step.
@@ -390,6 +380,21 @@ impl<'a> Swept<'a> {
     }
 }
 
+/// The foot of a point by Newton's method, to 1e-10 m; its place and lateral.
+pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<(f64, Place, f64)> {
+    let mut s = guess;
+    for _ in 0..30 {
+        let place = road.place(s);
+        let r = [x[0] - place.c[0], x[1] - place.c[1]];
+        let (off, lateral) = (r[0] * place.t[0] + r[1] * place.t[1], r[1] * place.t[0] - r[0] * place.t[1]);
+        if off.abs() < 1e-10 {
+            return Some((s, place, lateral));
+        }
+        s += off.clamp(-5.0, 5.0) / (1.0 - place.curvature * lateral).max(0.1) / road.spacing;
+    }
+    None
+}
+
 /// A body point, `a` ahead of the axle and `b` to its left.
 fn point(pose: Pose, a: f64, b: f64) -> [f64; 2] {
     along(along(pose.p, a, pose.u), b, [-pose.u[1], pose.u[0]])
@@ -449,6 +454,37 @@ impl Swept<'_> {
         }
         self.tighten(step);
         self.plain_hinge_margin(step, unit)
+    }
+
+    /// |y| of an axle throughout a step; the adjoint's where the filter's is above `enough`.
+    pub(crate) fn axle_bound(&mut self, step: usize, unit: usize, enough: f64) -> Option<f64> {
+        let y = self.tubes.get(step, unit)?.y;
+        if y <= enough {
+            return Some(y);
+        }
+        Some(y.min(self.exact_over(step, unit, Output::Point(0.0))?))
+    }
+
+    /// The leeway proved of a body point when its foot is at `s` (stations of the road).
+    pub(crate) fn leeway_at(&mut self, s: f64, unit: usize, side: usize, a: f64) -> Option<f64> {
+        let place = self.road.place(s);
+        let sign = if side == 0 { 1.0 } else { -1.0 };
+        let b = sign * self.chain.links[unit].half_width;
+        let off = |node: usize| {
+            let x = point(self.motion.pose(node, unit), a, b);
+            (x[0] - place.c[0]) * place.t[0] + (x[1] - place.c[1]) * place.t[1]
+        };
+        // The first node at which the point is past the place, near it.
+        let near = |node: &usize| {
+            let x = self.motion.pose(*node, unit).p;
+            (x[0] - place.c[0]).hypot(x[1] - place.c[1]) < a.abs() + self.chain.links[unit].l + 20.0
+        };
+        let step = (0..self.motion.steps()).find(|step| near(step) && off(*step) < 0.0 && off(step + 1) >= 0.0)?;
+        let share = off(step) / (off(step) - off(step + 1));
+        let cell = Cell { unit, side, step, t: [share; 2], a: [a; 2], halvings: 0 };
+        self.sharpen(&cell);
+        let corner = self.corner(&cell, self.pose(step, unit, share), a, s)?;
+        Some(corner.clear - corner.dev)
     }
 
     fn plain_hinge_margin(&self, step: usize, unit: usize) -> f64 {

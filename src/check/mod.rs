@@ -16,8 +16,9 @@
 //! | `adjoint` | the exact time-varying bound (section 6), where the filter does not do |
 //! | `leeway` | from tubes to leeway (section 7), by branch and bound against what is claimed |
 //! | `claim` | what is said of one vehicle on one corridor, and what comes of it |
+//! | `printed` | the paper's 𝒞, which decides nothing |
 //! | `file`, `members` | certificate files |
-//! | `database`, `rows` | databases |
+//! | `database` | databases |
 //!
 //! How numbers are trusted. What is *chosen* – the nominal motion, feet, kernels – is plain `f64`: another choice would
 //! give another bound, not a wrong one, and what rounding does to it is counted (`motion::DEFECT_RAD`). What *bounds* is rounded
@@ -27,16 +28,22 @@
 mod adjoint;
 mod chain;
 mod claim;
+mod database;
+mod file;
 mod gains;
 mod interval;
 mod leeway;
+mod members;
 mod motion;
 mod plan;
+mod printed;
 mod road;
 mod tubes;
 
 pub use chain::Chain;
 pub use claim::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M};
+pub use database::{RowOutcome, SetClaim, SetReport};
+pub use file::{Report, certificate, sealed};
 pub use interval::Interval;
 pub use plan::shift;
 pub use road::RoadError;

@@ -4,7 +4,7 @@
 /// Stations between knots.
 const KNOT_STATIONS: f64 = 4.0;
 /// Metres a step.
-const STEP_M: f64 = 1.0 / 4096.0;
+pub(crate) const STEP_M: f64 = 1.0 / 4096.0;
 
 /// How many coefficients a corridor of `stations` stations has.
 #[must_use]
@@ -25,4 +25,14 @@ pub fn shift(coefficients: &[i32]) -> impl Fn(f64) -> f64 {
         let sum: f64 = coefficients[knot..knot + 4].iter().zip(weights).map(|(&c, w)| f64::from(c) * w).sum();
         sum * STEP_M / 6.0
     }
+}
+
+/// Whether a plan is level at both ends, where the vehicle comes from and goes to.
+pub(crate) fn level(coefficients: &[i32]) -> Result<(), String> {
+    let n = coefficients.len();
+    let same = |part: &[i32]| part.windows(2).all(|pair| pair[0] == pair[1]);
+    if n < 4 || !same(&coefficients[..3]) || !same(&coefficients[n - 3..]) {
+        return Err("not level at its ends".to_owned());
+    }
+    Ok(())
 }

@@ -42,6 +42,7 @@ pub(crate) fn json(
             "point_m": at.point_m,
         },
         "plan": given.to_input(&certificate.plan)?,
+        "shift": certificate.shift.coefficients,
         "leeway": {
             "left": certificate.left_m,
             "right": certificate.right_m,

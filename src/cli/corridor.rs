@@ -74,7 +74,7 @@ impl Corridor {
         };
         if let Some(path) = &self.out {
             let json = certificate_file::json(&given, &model, &certificate, &options)?;
-            std::fs::write(path, format!("{json}\n"))
+            std::fs::write(path, netcert::check::sealed(&json))
                 .map_err(|e| anyhow!("{}: cannot write the certificate: {e}", path.display()))?;
         }
         let mut out = results();

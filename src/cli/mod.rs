@@ -20,6 +20,7 @@ mod table;
 mod tubes;
 mod values;
 mod vehicles;
+mod verify;
 
 use clap::{Parser, Subcommand};
 
@@ -61,6 +62,7 @@ pub(crate) enum Verb {
     Corridor(corridor::Corridor),
     Vehicles(vehicles::Vehicles),
     Stats(stats::Stats),
+    Verify(verify::Verify),
 }
 
 /// What every verb works with.

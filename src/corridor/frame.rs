@@ -124,6 +124,14 @@ impl Frame {
         )
     }
 
+    /// The frame of a [`Frame::definition`]; `None` for any other text.
+    #[must_use]
+    pub fn defined(definition: &str) -> Option<Self> {
+        let whole = |key: &str| definition.split(key).nth(1)?.split(' ').next()?.parse().ok();
+        let frame = Self { lon_0: whole("+lon_0=")?, lat_0: whole("+lat_0=")? };
+        (frame.definition() == definition).then_some(frame)
+    }
+
     fn with_proj(self, run: impl FnOnce(&Proj) -> Result<(), proj::ProjError>) -> Result<(), FrameError> {
         let failed = |message: String| FrameError::Proj { definition: self.definition(), message };
         FRAMES.with_borrow_mut(|frames| {

@@ -10,8 +10,8 @@ use super::{Reporter, Settings};
 use crate::account::AccountRow;
 use crate::corridor::{EdgeSpan, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
-use crate::stet::{Model, SpanResult, certify_spans};
-use crate::store::{EdgeCertificate, EdgeMeasure, Measured, Named, VerdictKind, verdict_words};
+use crate::stet::{Model, Planned, SpanResult, certify_spans};
+use crate::store::{EdgeCertificate, EdgeMeasure, Measured, Named, StoredPlan, VerdictKind, verdict_words};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
 /// Strokes handed to the threads at a time: enough to keep them busy, few enough to hold.
@@ -37,6 +37,8 @@ pub struct Outcome {
     corridors: BTreeMap<Option<&'static str>, u64>,
     /// Certificates by verdict and reason, all vehicles together.
     verdicts: BTreeMap<(&'static str, &'static str), u64>,
+    /// Plans that are not the centreline, with their vehicle's index.
+    pub plans: Vec<(usize, StoredPlan)>,
 }
 
 impl Outcome {
@@ -70,6 +72,7 @@ struct StrokeResult {
     measures: Vec<(u32, EdgeMeasure, Option<&'static str>)>,
     /// Vehicle index and certificate.
     certificates: Vec<(usize, EdgeCertificate)>,
+    plans: Vec<(usize, StoredPlan)>,
 }
 
 /// Certifies every edge of the network for every vehicle: `sink` gets each certificate with its vehicle's index, in an
@@ -96,6 +99,7 @@ pub fn certify_network<E>(
                 }
                 *outcome.corridors.entry(why).or_default() += 1;
             }
+            outcome.plans.extend(result.plans);
             for (vehicle, certificate) in &result.certificates {
                 *outcome.verdicts.entry(verdict_words(certificate.verdict)).or_default() += 1;
                 sink(*vehicle, certificate)?;
@@ -140,7 +144,10 @@ fn with_corridor(job: &Job<'_>, made: &StrokeCorridor) -> StrokeResult {
         };
         (span.edge, measure, span.unknown.map(reason_name))
     });
-    StrokeResult { measures: measures.collect(), certificates }
+    let first = made.spans.first().map_or(0, |span| span.edge);
+    let plan = |(vehicle, row): (usize, &Planned)| Some((vehicle, StoredPlan::new(first, &row.plan.coefficients)?));
+    let plans = rows.iter().enumerate().filter_map(plan).collect();
+    StrokeResult { measures: measures.collect(), certificates, plans }
 }
 
 fn without_corridor(job: &Job<'_>, stroke: &Stroke, reason: UnknownReason) -> StrokeResult {
@@ -153,7 +160,7 @@ fn without_corridor(job: &Job<'_>, stroke: &Stroke, reason: UnknownReason) -> St
         },
     );
     let measures = edges.iter().map(|&edge| (edge, EdgeMeasure::default(), Some(reason_name(reason))));
-    StrokeResult { measures: measures.collect(), certificates: certificates.collect() }
+    StrokeResult { measures: measures.collect(), certificates: certificates.collect(), plans: Vec::new() }
 }
 
 fn reason_name(reason: UnknownReason) -> &'static str {

@@ -238,6 +238,9 @@ fn certify_into(
     })?;
     summary.account.extend(outcome.rows());
     summary.stage("certificates", clock, outcome.certificates(), "certificates");
+    for (vehicle, plan) in outcome.plans {
+        writer.plans(numbers[vehicle], settings.policy, vec![plan]);
+    }
     writer.network(network, &outcome.measures)?;
     Ok(())
 }
@@ -276,7 +279,7 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
     let models = ask.vehicles.iter().map(|v| Model::new(v)).collect::<Result<Vec<_>, _>>()?;
     let mut certificates = vec![Vec::new(); models.len()];
     let job = Job { network: &network, models: &models, settings: ask.settings };
-    let outcome = certify_network(&job, reporter, |vehicle, certificate| {
+    let mut outcome = certify_network(&job, reporter, |vehicle, certificate| {
         certificates[vehicle].push(certificate.clone());
         Ok::<(), StoreError>(())
     })?;
@@ -285,7 +288,11 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
 
     let clock = Instant::now();
     reporter.begin("store", 0);
-    for (model, certificates) in models.iter().zip(certificates) {
+    let mut plans = vec![Vec::new(); models.len()];
+    for (vehicle, plan) in std::mem::take(&mut outcome.plans) {
+        plans[vehicle].push(plan);
+    }
+    for ((model, certificates), plans) in models.iter().zip(certificates).zip(plans) {
         let run = Run {
             command: ask.command.to_owned(),
             input_name: ask.db.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -296,7 +303,8 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
             finished: (ask.now)(),
             parameters: ask.parameters.to_string(),
         };
-        db.replace_certificates(&record(&model.vehicle)?, ask.settings.policy, certificates, &run, &summary.account)?;
+        let vehicle = record(&model.vehicle)?;
+        db.replace_certificates(&vehicle, ask.settings.policy, certificates, plans, &run, &summary.account)?;
         summary.vehicles.push(model.vehicle.id.clone());
     }
     db.close()?;

@@ -17,6 +17,7 @@ use super::names::{Named, corridor_no};
 use super::network_read;
 use super::packed::{EdgeCertificate, Packed};
 use super::part::with_suffix;
+use super::plans::{self, StoredPlan};
 use super::records::{self, Run, VehicleRecord};
 use super::session::{MIGRATIONS, Session};
 use super::sets::{self, Set};
@@ -155,13 +156,14 @@ impl Database {
         })
     }
 
-    /// Puts a complete set of certificates in place of the old one, in one step: killed, the old one stands. If the
+    /// Puts a complete set of certificates, and the plans they rest on, in place of the old one, in one step: killed, the old one stands. If the
     /// vehicle's definition changed, its sets under other policies go as well. `certificates` may come in any order.
     pub fn replace_certificates(
         &mut self,
         vehicle: &VehicleRecord,
         policy: Policy,
         certificates: impl IntoIterator<Item = EdgeCertificate>,
+        mut plans: Vec<StoredPlan>,
         run: &Run,
         account: &[AccountRow],
     ) -> Result<(), StoreError> {
@@ -174,7 +176,7 @@ impl Database {
         sets::check_complete(&rows, edges).map_err(|(edge, detail)| unsound(edge, detail.to_owned()))?;
         self.session.run(async |c| {
             sqlx::query("BEGIN IMMEDIATE").execute(&mut *c).await?;
-            let done = replace(c, vehicle, policy, &rows, run, account).await;
+            let done = replace(c, vehicle, policy, &rows, &mut plans, run, account).await;
             let end = if done.is_ok() { "COMMIT" } else { "ROLLBACK" };
             let ended = sqlx::query(end).execute(&mut *c).await;
             done.and(ended.map(|_| ()))
@@ -187,6 +189,7 @@ async fn replace(
     vehicle: &VehicleRecord,
     policy: Policy,
     rows: &[Packed],
+    plans: &mut [StoredPlan],
     run: &Run,
     account: &[AccountRow],
 ) -> Sql<()> {
@@ -216,6 +219,7 @@ async fn replace(
     };
     let run_id = records::add_run(c, run, account).await?;
     let (vehicle_id, vehicle_name) = (&vehicle.id, &vehicle.name);
+    plans::insert(c, vehicle_no, corridor_no(policy), plans).await?;
     Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished }.insert(c, rows).await
 }
 

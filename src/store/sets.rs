@@ -163,6 +163,7 @@ pub(super) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_n
     let quoted = layer.replace('"', "\"\"");
     sqlx::query(AssertSqlSafe(format!("DROP VIEW \"{quoted}\""))).persistent(false).execute(&mut *c).await?;
     for sql in [
+        "DELETE FROM plan WHERE vehicle_no = ? AND corridor_no = ?",
         "DELETE FROM certified_set WHERE vehicle_no = ? AND corridor_no = ?",
         "DELETE FROM certificate_compact WHERE vehicle_no = ? AND corridor_no = ?",
     ] {

@@ -2,6 +2,7 @@
 //!
 //! Same calls, same bytes, in whatever order certificates come; time stamps are the caller's.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -18,6 +19,7 @@ use super::names::{Named, VERDICTS, corridor_no};
 use super::network_write::{self, EdgeMeasure};
 use super::packed::EdgeCertificate;
 use super::part::{Part, with_suffix};
+use super::plans::{self, StoredPlan};
 use super::records::{self, Run, VehicleRecord};
 use super::session::{BEFORE_DATA, MIGRATIONS, Session};
 use super::sets::{self, Set};
@@ -39,6 +41,7 @@ pub struct Writer {
     spool: Spool,
     vehicles: Vec<VehicleRecord>,
     account: Vec<AccountRow>,
+    plans: BTreeMap<(u32, u8), Vec<StoredPlan>>,
     network: Option<(u32, Option<Bounds>)>,
     part: Part,
 }
@@ -76,7 +79,7 @@ impl Database {
             add_words(c).await
         })?;
         let spool = Spool::create(with_suffix(&part.path, "-spool"))?;
-        Ok(Writer { session, spool, vehicles: Vec::new(), account: Vec::new(), network: None, part })
+        Ok(Writer { session, spool, vehicles: Vec::new(), account: Vec::new(), plans: BTreeMap::new(), network: None, part })
     }
 }
 
@@ -114,6 +117,11 @@ impl Writer {
         self.spool.push((vehicle.0, corridor_no(policy)), packed, &self.session.path)
     }
 
+    /// Adds plans that are not the centreline, in any order, one a stroke at most.
+    pub fn plans(&mut self, vehicle: VehicleNo, policy: Policy, plans: Vec<StoredPlan>) {
+        self.plans.entry((vehicle.0, corridor_no(policy))).or_default().extend(plans);
+    }
+
     /// Adds to the account of the run.
     pub fn account(&mut self, rows: &[AccountRow]) {
         self.account.extend_from_slice(rows);
@@ -144,9 +152,15 @@ impl Writer {
             let set = Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished };
             self.session.run(async |c| set.insert(c, &rows).await)?;
         }
+        let all_plans = &mut self.plans;
         self.session.run(async |c| {
             sqlx::query("COMMIT").execute(&mut *c).await?;
             migrate(c, None).await?;
+            sqlx::query("BEGIN").execute(&mut *c).await?;
+            for (&(vehicle_no, corridor), plans) in all_plans {
+                plans::insert(c, vehicle_no, corridor, plans).await?;
+            }
+            sqlx::query("COMMIT").execute(&mut *c).await?;
             check(c).await
         })?;
         self.session.close()?;

@@ -1,0 +1,238 @@
+//! The certificates of a database: every row of a vehicle's set, against the network that is in the same file.
+//!
+//! The road of a stroke is the network's own statement, made by `corridor`; it is checked here against cross sections and map
+//! lines before anything is said about vehicles on it. The plan is the database's; everything else is worked out again.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::chain::Chain;
+use super::claim::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, finding};
+use super::{plan, printed};
+use crate::corridor::{EdgeSpan, Params, StrokeCorridor, stroke_corridor};
+use crate::network::{Edge, Network, Stroke};
+use crate::osm::facts::Policy;
+use crate::store::{EdgeRow, Named as _};
+use crate::vehicle::Vehicle;
+use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
+
+/// Strips are measured across the way's line, widths across the corridor's: they differ by the angle between.
+const WIDTH_TOLERANCE_M: f64 = 0.01;
+/// Limiting places are kept to a decimetre; the leeway there may be this far above the RSC (see `file`).
+const LIMITING_TOLERANCE_M: f64 = 0.06;
+
+/// A vehicle's certificates under one policy.
+pub struct SetClaim<'a> {
+    /// The roads.
+    pub network: &'a Network,
+    /// The vehicle as the database defines it.
+    pub vehicle: &'a Vehicle,
+    /// Which width counts.
+    pub policy: Policy,
+    /// How corridors are made.
+    pub params: &'a Params,
+    /// Rows that are to be checked, by edge.
+    pub rows: &'a BTreeMap<u32, EdgeRow>,
+    /// Plans that are not the centreline, by the stroke's first edge.
+    pub plans: &'a BTreeMap<u32, Vec<i32>>,
+}
+
+/// What came of one row.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RowOutcome {
+    /// Index of the edge.
+    pub edge: u32,
+    /// `edge_id`.
+    pub edge_id: i64,
+    /// As claimed.
+    pub verdict: Verdict,
+    /// What came of it.
+    pub outcome: Outcome,
+}
+
+/// What came of a set.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SetReport {
+    /// One a row, in order of the network's strokes.
+    pub rows: Vec<RowOutcome>,
+    /// Corridor that was swept, approaches included, kilometres.
+    pub swept_km: f64,
+}
+
+impl SetClaim<'_> {
+    /// Checks all rows: strokes over threads, results in order.
+    #[must_use]
+    pub fn check(&self) -> SetReport {
+        let chain = Chain::new(self.vehicle);
+        let parts: Vec<SetReport> =
+            self.network.strokes.par_iter().map(|stroke| self.stroke(&chain, stroke)).collect();
+        let mut report = SetReport::default();
+        for part in parts {
+            report.rows.extend(part.rows);
+            report.swept_km += part.swept_km;
+        }
+        report
+    }
+
+    fn stroke(&self, chain: &Chain, stroke: &Stroke) -> SetReport {
+        let edges = self.network.stroke_edges.get(stroke.edges.start as usize..stroke.edges.end as usize);
+        let rows: Vec<&EdgeRow> = edges.unwrap_or_default().iter().filter_map(|edge| self.rows.get(edge)).collect();
+        let mut report = SetReport::default();
+        let Some(first) = edges.and_then(|edges| edges.first()).filter(|_| !rows.is_empty()) else { return report };
+        match stroke_corridor(self.network, stroke, self.policy, self.params) {
+            Err(reason) => {
+                let outcome = |row: &EdgeRow| self.without_claims(row, Some(reason));
+                report.rows = rows.iter().map(|row| said(row, outcome(row))).collect();
+            }
+            Ok(made) => {
+                report.swept_km = made.corridor.spacing_m * made.corridor.len() as f64 * 1e-3;
+                let none = vec![0; plan::count(made.corridor.len())];
+                let coefficients = self.plans.get(first).unwrap_or(&none);
+                report.rows = self.with_corridor(chain, &made, &rows, coefficients);
+            }
+        }
+        report
+    }
+
+    fn with_corridor(
+        &self,
+        chain: &Chain,
+        made: &StrokeCorridor,
+        rows: &[&EdgeRow],
+        coefficients: &[i32],
+    ) -> Vec<RowOutcome> {
+        let malformed = |why: String| rows.iter().map(|row| said(row, Outcome::Malformed(why.clone()))).collect();
+        if coefficients.len() != plan::count(made.corridor.len()) {
+            return malformed(format!("the plan has {} coefficients", coefficients.len()));
+        }
+        if let Err(why) = plan::level(coefficients) {
+            return malformed(format!("the plan is {why}"));
+        }
+        let subject = match Subject::new(chain, &made.corridor, plan::shift(coefficients)) {
+            Ok(subject) => subject,
+            // A stroke may hold a place that no corridor fits; its edges must not be called anything but unknown.
+            Err(e) => return rows.iter().map(|row| said(row, unfit(row, &e.to_string()))).collect(),
+        };
+        let span_of = |row: &EdgeRow| made.spans.iter().find(|span| span.edge == row.edge);
+        let (mut claims, mut claimed) = (Vec::new(), Vec::new());
+        for row in rows {
+            if let (Some(span), Some(claim)) = (span_of(row), span_of(row).and_then(|span| claim(row, span))) {
+                claimed.push((row.edge, span));
+                claims.push(claim);
+            }
+        }
+        let found = subject.check(&claims);
+        let mut found: BTreeMap<u32, Vec<Finding>> = claimed.iter().map(|(edge, _)| *edge).zip(found).collect();
+        let outcome = |row: &EdgeRow| {
+            let Some(span) = span_of(row) else { return Outcome::Malformed("its stroke does not pass it".to_owned()) };
+            let mut all = found.remove(&row.edge).unwrap_or_default();
+            if let Outcome::NotConfirmed(more) = self.without_claims(row, span.unknown) {
+                all.extend(more);
+            }
+            if span.unknown.is_none() {
+                all.extend(self.road(made, span));
+                all.extend(limiting(&subject, self.vehicle, row, span));
+                all.extend(self.printed(&subject, row, span));
+            }
+            if all.is_empty() { Outcome::Confirmed } else { Outcome::NotConfirmed(all) }
+        };
+        let mut outcome = outcome;
+        rows.iter().map(|row| said(row, outcome(row))).collect()
+    }
+
+    /// Verdict, reason and numbers must agree with each other, with the law and with whether there is a corridor.
+    fn without_claims(&self, row: &EdgeRow, unknown: Option<UnknownReason>) -> Outcome {
+        let wrong = |detail: String| Outcome::NotConfirmed(vec![finding("verdict", &detail)]);
+        let Some(edge) = self.network.edges.get(row.edge as usize) else {
+            return Outcome::Malformed("there is no such edge".to_owned());
+        };
+        let expected = expected(edge, self.vehicle, unknown, row);
+        if unknown.is_some() && (row.rsc_m.is_some() || row.hinge_margin_deg.is_some()) {
+            return wrong("it has numbers where nothing can be said".to_owned());
+        }
+        if expected == row.verdict { Outcome::Confirmed } else { wrong(format!("{:?}, but {expected:?} is what follows", row.verdict)) }
+    }
+
+    /// The corridor over a span keeps to the map: no wider than the strip, no further from the line than it may be.
+    fn road(&self, made: &StrokeCorridor, span: &EdgeSpan) -> Option<Finding> {
+        let edge = self.network.edges.get(span.edge as usize)?;
+        let section = &self.network.road(edge).sections[usize::from(edge.direction == crate::osm::facts::Direction::Backward)];
+        let strip = section.strip(self.policy)?;
+        if span.centreline_deviation_m > self.params.tolerance_m {
+            return Some(finding("corridor", &format!("{:.2} m off the map's line", span.centreline_deviation_m)));
+        }
+        let most = f64::from(strip.width_m()) - 2.0 * self.params.map_tolerance_m + WIDTH_TOLERANCE_M;
+        // The first and the last station are the neighbours' as well.
+        let inner = span.stations.start + 1..span.stations.end.saturating_sub(1);
+        inner.into_iter().find_map(|k| {
+            let width = made.corridor.left_m.get(k)? + made.corridor.right_m.get(k)?;
+            (width > most).then(|| finding("corridor", &format!("{width:.2} m wide at station {k}, the strip {most:.2} m")))
+        })
+    }
+
+    fn printed(&self, subject: &Subject<'_>, row: &EdgeRow, span: &EdgeSpan) -> Option<Finding> {
+        let claimed = row.rsc_published_m?;
+        let printed_m = printed::rsc_m(subject, self.vehicle, span.stations.clone());
+        (claimed > printed_m + TOLERANCE_M)
+            .then(|| finding("rsc_published_m", &format!("{claimed} is above {printed_m:.4}")))
+    }
+}
+
+fn said(row: &EdgeRow, outcome: Outcome) -> RowOutcome {
+    RowOutcome { edge: row.edge, edge_id: row.edge_id, verdict: row.verdict, outcome }
+}
+
+fn unfit(row: &EdgeRow, why: &str) -> Outcome {
+    match row.verdict {
+        Verdict::Unknown(_) | Verdict::Forbidden(_) => Outcome::Confirmed,
+        _ => Outcome::NotConfirmed(vec![finding("corridor", why)]),
+    }
+}
+
+/// What a row's numbers claim.
+fn claim(row: &EdgeRow, span: &EdgeSpan) -> Option<SpanClaim> {
+    (row.rsc_m.is_some() || row.hinge_margin_deg.is_some()).then(|| SpanClaim {
+        stations: span.stations.clone(),
+        rsc_m: row.rsc_m,
+        hinge_margin_rad: row.hinge_margin_deg.map(f64::to_radians),
+        shrink: row.shrink.unwrap_or(1.0),
+    })
+}
+
+/// The verdict that follows from the law, from whether there is a corridor, and from the row's own numbers.
+fn expected(edge: &Edge, vehicle: &Vehicle, unknown: Option<UnknownReason>, row: &EdgeRow) -> Verdict {
+    let legal = edge.legal.forbids(vehicle);
+    match (legal, edge.barred, unknown) {
+        (Some(forbidden @ Verdict::Forbidden(_)), ..) => return forbidden,
+        (_, true, _) => return Verdict::Forbidden(ForbiddenReason::Barrier),
+        (.., Some(reason)) => return Verdict::Unknown(reason),
+        _ => {}
+    }
+    match (row.rsc_m, row.hinge_margin_deg) {
+        (Some(rsc), Some(hinge)) if rsc >= 0.0 && hinge >= 0.0 => legal.unwrap_or(Verdict::Safe),
+        (Some(rsc), _) if rsc < 0.0 => Verdict::Unsafe(UnsafeReason::Width),
+        // Which of its joints fails is the row's word; that one does, its number says.
+        _ => match row.verdict {
+            Verdict::Unsafe(UnsafeReason::SteeringLock) => row.verdict,
+            // Without any number the sweep never passed there.
+            Verdict::Unknown(UnknownReason::Geometry) if row.rsc_m.is_none() => row.verdict,
+            _ => Verdict::Unsafe(UnsafeReason::Articulation),
+        },
+    }
+}
+
+/// The place that limits: on the edge, of a unit that there is, and the leeway there no greater than the RSC, nearly.
+fn limiting(subject: &Subject<'_>, vehicle: &Vehicle, row: &EdgeRow, span: &EdgeSpan) -> Option<Finding> {
+    let (s, unit, side) = (row.limiting_s_m?, usize::from(row.limiting_unit?), row.limiting_side?);
+    let at = span.stations.start as f64 * subject.road.spacing + s;
+    let end = span.stations.end as f64 * subject.road.spacing;
+    if unit >= vehicle.units.len() || at > end {
+        return Some(finding("limiting", &format!("unit {unit} at {s} m is not on the edge")));
+    }
+    let side = usize::from(side.name() == "right");
+    let tolerance_m = row.shrink.unwrap_or(1.0) * vehicle.tracking_tolerance_m;
+    subject
+        .roomier(at, unit, side, tolerance_m, row.rsc_m? + LIMITING_TOLERANCE_M)
+        .then(|| finding("limiting", &format!("unit {unit} has more room than the RSC at {s} m on that side")))
+}

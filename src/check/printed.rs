@@ -1,0 +1,45 @@
+//! The paper's certificate as printed, 𝒞 = w_min − (h_Ω + r_N), from its own formulas: no decision rests on it, but what a
+//! file says of it must be so. r_N: the largest radius of the last unit's ellipse (Eq. 15 to 19, β as printed); h_Ω: the most that
+//! the last axle is nominally off the centreline at its foot; w_min: the least half-width.
+
+use std::f64::consts::FRAC_PI_2;
+use std::ops::Range;
+
+use super::claim::Subject;
+use super::motion::STEPS;
+use crate::vehicle::Vehicle;
+
+pub(super) fn rsc_m(subject: &Subject<'_>, vehicle: &Vehicle, stations: Range<usize>) -> f64 {
+    let road = &subject.road;
+    let own = road.lead + stations.start..road.lead + stations.end.min(road.count);
+    let narrowest = road.widths[own.clone()].iter().flatten().fold(f64::INFINITY, |least, &w| least.min(w));
+    let last = vehicle.units.len() - 1;
+    let mut off: f64 = 0.0;
+    if let Some(motion) = &subject.motion {
+        for node in (0..=motion.steps()).step_by(STEPS) {
+            let p = motion.pose(node, last).p;
+            if let Some((s, _, lateral)) = subject.foot(p, node as f64 / STEPS as f64)
+                && (own.start as f64..=(own.end - 1) as f64).contains(&s)
+            {
+                off = off.max(lateral.abs());
+            }
+        }
+    }
+    narrowest - (off + last_radius_m(vehicle))
+}
+
+/// Squared semi-axes along and across, grown by each trailer's sway ellipse.
+fn last_radius_m(vehicle: &Vehicle) -> f64 {
+    let Some((prime, trailers)) = vehicle.units.split_first() else { return 0.0 };
+    let length = prime.front_overhang_m + prime.coupling_to_axle_m + prime.rear_overhang_m;
+    let mut q = [(0.5 * length).powi(2), (0.5 * prime.width_m).powi(2)];
+    for trailer in trailers {
+        let (sin, cos) = trailer.max_articulation_rad.min(FRAC_PI_2).sin_cos();
+        let sway = [trailer.coupling_to_axle_m * (1.0 - cos), trailer.coupling_to_axle_m * sin].map(|x| x * x);
+        let beta = ((sway[0] + sway[1]) / (q[0] + q[1])).sqrt();
+        if beta > 0.0 {
+            q = [0, 1].map(|k| (1.0 + 1.0 / beta) * q[k] + (1.0 + beta) * sway[k]);
+        }
+    }
+    q[0].max(q[1]).sqrt()
+}

@@ -1,0 +1,266 @@
+//! `netcert verify`: a second opinion on a certificate file or a database, by other code than made it.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::{anyhow, bail};
+use clap::Args;
+use netcert::account::AccountRow;
+use netcert::check::{self, Outcome, Report, RowOutcome, SetClaim, SetReport};
+use netcert::network::Network;
+use netcert::osm::facts::Policy;
+use netcert::store::{Area, Bounds, CertifiedSet, Database, EdgeRow, Named, QueryOptions, verdict_words};
+use netcert::vehicle::Vehicle;
+
+use super::Session;
+use super::area::bounds;
+use super::how;
+use super::output::{grouped, printable, results};
+use super::table::Table;
+use super::values::word;
+
+/// A certificate of a corridor of a million stations has some 700 MB.
+const MAX_FILE_BYTES: u64 = 1 << 30;
+/// Certificates that are not confirmed are listed up to so many; all are counted.
+const MOST_LISTED: usize = 100;
+/// `--sample` draws the same rows every time.
+const SEED: u64 = 0x6e65_7463_6572_7431;
+
+/// Check certificates again, independently of what made them.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  netcert corridor entry.json --vehicle EU-SEMI16.5 --out certificate.json
+  netcert verify certificate.json
+  netcert verify --db demo.gpkg
+  netcert verify --db demo.gpkg --vehicle AU-ATRIPLE53 --sample 1000
+
+Every claim is worked out again: geometry, motion along the plan, straight gains, tubes, leeway, hinges,
+RSC and hashes. It is confirmed if the bound found is no more than 1 mm below what is claimed, not confirmed
+(by how much, and where), or malformed. Exit status 1 if any claim is not confirmed.")]
+pub(crate) struct Verify {
+    /// The certificate file.
+    #[arg(value_name = "CERTIFICATE.json", required_unless_present = "db", conflicts_with = "db")]
+    file: Option<PathBuf>,
+    /// The database.
+    #[arg(long, value_name = "REGION.gpkg")]
+    db: Option<PathBuf>,
+    /// Only these vehicles.
+    #[arg(long, value_name = "ID", num_args = 1.., requires = "db")]
+    vehicle: Vec<String>,
+    /// Only certificates under this policy.
+    #[arg(long, value_name = "POLICY", value_parser = word::<Policy>(), requires = "db")]
+    corridor: Option<Policy>,
+    /// Only edges that touch this box, degrees.
+    #[arg(long, value_name = "W,S,E,N", value_parser = bounds, allow_hyphen_values = true, requires = "db")]
+    bbox: Option<Bounds>,
+    /// Only so many certificates of each vehicle, drawn with a fixed seed.
+    #[arg(long, value_name = "N", requires = "db")]
+    sample: Option<usize>,
+    /// The extract that the database was made from: its hash is compared.
+    #[arg(long, value_name = "REGION.osm.pbf", requires = "db")]
+    input: Option<PathBuf>,
+}
+
+impl Verify {
+    pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        match (&self.file, &self.db) {
+            (Some(file), _) => verify_file(file),
+            (None, Some(db)) => self.database(session, db),
+            (None, None) => bail!("name a certificate file, or a database with --db"),
+        }
+    }
+
+    fn database(&self, session: &Session, path: &Path) -> anyhow::Result<()> {
+        let mut database = Database::open(path)?;
+        let mut complaints = self.records(&mut database)?;
+        let network = database.load_network()?;
+        let sets = self.sets(&mut database)?;
+        let mut out = results();
+        let mut table = Table::new(&["vehicle", "corridor", "verdict", ">confirmed", ">not", ">malformed"]);
+        for set in &sets {
+            let begun = Instant::now();
+            let report = self.set(&mut database, &network, set)?;
+            let seconds = begun.elapsed().as_secs_f64();
+            session.progress.say(&format!(
+                "{} ({} policy): {} certificates on {:.0} km in {seconds:.1} s: {:.1} km × vehicle/s",
+                set.vehicle_id,
+                set.policy.name(),
+                grouped(report.rows.len() as u64),
+                report.swept_km,
+                report.swept_km / seconds.max(1e-9),
+            ));
+            count(&mut table, set, &report);
+            complaints.extend(report.rows.iter().filter_map(|row| complaint(set, row)));
+        }
+        table.write(&mut out, "")?;
+        for line in complaints.iter().take(MOST_LISTED) {
+            writeln!(out, "{}", printable(line))?;
+        }
+        out.flush()?;
+        if complaints.is_empty() {
+            return Ok(());
+        }
+        bail!("{}: {} claims are not confirmed", path.display(), grouped(complaints.len() as u64))
+    }
+
+    fn sets(&self, database: &mut Database) -> anyhow::Result<Vec<CertifiedSet>> {
+        let wanted = |set: &CertifiedSet| {
+            (self.vehicle.is_empty() || self.vehicle.contains(&set.vehicle_id))
+                && self.corridor.is_none_or(|policy| policy == set.policy)
+        };
+        let sets: Vec<_> = database.certified()?.into_iter().filter(wanted).collect();
+        if sets.is_empty() {
+            bail!("no such certificates here; `netcert stats` shows what there is");
+        }
+        Ok(sets)
+    }
+
+    fn set(&self, database: &mut Database, network: &Network, set: &CertifiedSet) -> anyhow::Result<SetReport> {
+        let records = database.vehicles()?;
+        let Some(record) = records.into_iter().find(|record| record.id == set.vehicle_id) else {
+            bail!("{}: its definition is missing", set.vehicle_id);
+        };
+        let vehicle = Vehicle::from_json(&record.definition)?;
+        let settings = how::recorded(database)?;
+        let query = QueryOptions {
+            area: self.bbox.map(Area::Bounds),
+            ..QueryOptions::new(&set.vehicle_id, set.policy)
+        };
+        let rows: Vec<EdgeRow> = database.query(&query)?.collect::<Result<_, _>>()?;
+        let rows: BTreeMap<u32, EdgeRow> = self.sampled(rows).into_iter().map(|row| (row.edge, row)).collect();
+        let plans = database.plans(&set.vehicle_id, set.policy)?;
+        let claim = SetClaim {
+            network,
+            vehicle: &vehicle,
+            policy: set.policy,
+            params: &settings.corridor,
+            rows: &rows,
+            plans: &plans,
+        };
+        Ok(claim.check())
+    }
+
+    /// Rows with the least hashes of seed and edge id.
+    fn sampled(&self, mut rows: Vec<EdgeRow>) -> Vec<EdgeRow> {
+        if let Some(n) = self.sample {
+            let key = |row: &EdgeRow| {
+                let mut bytes = SEED.to_le_bytes().to_vec();
+                bytes.extend(row.edge_id.to_le_bytes());
+                *blake3::hash(&bytes).as_bytes()
+            };
+            rows.sort_by_cached_key(key);
+            rows.truncate(n);
+        }
+        rows
+    }
+
+    /// Definitions' hashes, the runs' accounts, and the input's hash if it is given.
+    fn records(&self, database: &mut Database) -> anyhow::Result<Vec<String>> {
+        let mut complaints = Vec::new();
+        let sets = database.certified()?;
+        for record in database.vehicles()? {
+            let hash = record.blake3();
+            for set in sets.iter().filter(|set| set.vehicle_id == record.id && set.vehicle_blake3 != hash) {
+                complaints.push(format!("malformed      vehicle {}: its definition is not the one of its hash ({})", record.id, set.layer));
+            }
+            match Vehicle::from_json(&record.definition) {
+                Ok(vehicle) if vehicle.id == record.id && vehicle.name == record.name => {}
+                Ok(_) => complaints.push(format!("malformed      vehicle {}: id or name differ from the definition", record.id)),
+                Err(e) => complaints.push(format!("malformed      vehicle {}: {e}", record.id)),
+            }
+        }
+        let runs = database.runs()?;
+        for (k, (run, account)) in runs.iter().enumerate() {
+            complaints.extend(unbalanced(account).into_iter().map(|what| format!("malformed      run {}: {what}", k + 1)));
+            if let (Some(input), Some(said)) = (&self.input, &run.input_blake3) {
+                let mut hasher = blake3::Hasher::new();
+                let file = std::fs::File::open(input).map_err(|e| anyhow!("{}: {e}", input.display()))?;
+                hasher.update_reader(file).map_err(|e| anyhow!("{}: {e}", input.display()))?;
+                if hasher.finalize().to_hex().as_str() != said {
+                    complaints.push(format!("not confirmed  run {}: {} has another hash", k + 1, input.display()));
+                }
+            }
+        }
+        Ok(complaints)
+    }
+}
+
+/// Stages whose parts do not add up to what was read.
+fn unbalanced(account: &[AccountRow]) -> Vec<String> {
+    let parts = |total: &AccountRow| -> u64 {
+        let part = |row: &&AccountRow| row.stage == total.stage && row.item == total.item && !["read", "noted"].contains(&row.outcome.as_str());
+        account.iter().filter(part).map(|row| row.count).sum()
+    };
+    let total = account.iter().filter(|row| row.outcome == "read");
+    let wrong = |row: &&AccountRow| parts(row) != row.count;
+    total.filter(wrong).map(|row| format!("{} {}s of stage {} do not add up", row.count, row.item, row.stage)).collect()
+}
+
+fn count(table: &mut Table, set: &CertifiedSet, report: &SetReport) {
+    let mut counts: BTreeMap<&str, [u64; 3]> = BTreeMap::new();
+    for row in &report.rows {
+        let slot = match row.outcome {
+            Outcome::Confirmed => 0,
+            Outcome::NotConfirmed(_) => 1,
+            Outcome::Malformed(_) => 2,
+        };
+        counts.entry(verdict_words(row.verdict).0).or_default()[slot] += 1;
+    }
+    for (verdict, counts) in counts {
+        let [confirmed, not, malformed] = counts.map(grouped);
+        table.row([set.vehicle_id.clone(), set.policy.name().to_owned(), verdict.to_owned(), confirmed, not, malformed]);
+    }
+}
+
+fn complaint(set: &CertifiedSet, row: &RowOutcome) -> Option<String> {
+    let (word, why) = match &row.outcome {
+        Outcome::Confirmed => return None,
+        Outcome::NotConfirmed(found) => {
+            let each: Vec<_> = found.iter().map(|f| format!("{}: {}", f.claim, f.detail)).collect();
+            ("not confirmed", each.join("; "))
+        }
+        Outcome::Malformed(why) => ("malformed", why.clone()),
+    };
+    Some(format!("{word:<13}  {} edge {}: {why}", set.vehicle_id, row.edge_id))
+}
+
+fn verify_file(path: &Path) -> anyhow::Result<()> {
+    let report = check::certificate(&read(path)?);
+    let mut out = results();
+    for line in lines(&report) {
+        writeln!(out, "{line}")?;
+    }
+    out.flush()?;
+    if report.confirmed() {
+        return Ok(());
+    }
+    let refuted = report.claims.iter().filter(|(_, outcome)| *outcome != Outcome::Confirmed).count();
+    bail!("{}: {refuted} of {} claims are not confirmed", path.display(), report.claims.len())
+}
+
+fn read(path: &Path) -> anyhow::Result<String> {
+    let cannot = |e: std::io::Error| anyhow!("{}: cannot read the certificate: {e}", path.display());
+    let bytes = std::fs::metadata(path).map_err(cannot)?.len();
+    if bytes > MAX_FILE_BYTES {
+        bail!("{}: {bytes} bytes are too many for a certificate", path.display());
+    }
+    std::fs::read_to_string(path).map_err(cannot)
+}
+
+fn lines(report: &Report) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (claim, outcome) in &report.claims {
+        match outcome {
+            Outcome::Confirmed => lines.push(format!("confirmed      {claim}")),
+            Outcome::Malformed(why) => lines.push(format!("malformed      {}", printable(why))),
+            Outcome::NotConfirmed(findings) => {
+                lines.extend(findings.iter().map(|f| format!("not confirmed  {}: {}", f.claim, printable(&f.detail))));
+            }
+        }
+    }
+    lines.extend(report.unknown.iter().map(|name| format!("unknown        {}", printable(name))));
+    lines
+}
