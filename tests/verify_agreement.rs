@@ -37,7 +37,7 @@ fn explore() {
         let spans: Vec<_> = (0..n / 50).map(|k| k * 50..((k + 1) * 50 + 1).min(n)).collect();
         let row = planned(&corridor, &vehicle, &spans);
         let chain = Chain::new(&vehicle);
-        let subject = Subject::new(&chain, &corridor, shift(&row.plan.coefficients)).unwrap();
+        let subject = Subject::new(&chain, &corridor, shift(&row.plan.coefficients), false).unwrap();
         let claims: Vec<SpanClaim> = spans
             .iter()
             .zip(&row.spans)
@@ -47,6 +47,7 @@ fn explore() {
                 rsc_m: Some(r.rsc_m),
                 hinge_margin_rad: Some(r.hinge_margin_rad),
                 shrink: r.shrink,
+                limiting: None,
             })
             .collect();
         let start = std::time::Instant::now();
@@ -57,7 +58,14 @@ fn explore() {
         println!("{index} {} {} stations, {} claims, {:.1} ms", vehicle.id, n, claims.len(), 1e3 * seconds);
         for (claim, found) in claims.iter().zip(&found) {
             for finding in found {
-                println!("    {:?} rsc {:.4} γ {}: {} {}", claim.stations, claim.rsc_m.unwrap(), claim.shrink, finding.claim, finding.detail);
+                println!(
+                    "    {:?} rsc {:.4} γ {}: {} {}",
+                    claim.stations,
+                    claim.rsc_m.unwrap(),
+                    claim.shrink,
+                    finding.claim,
+                    finding.detail
+                );
             }
         }
     }

@@ -13,7 +13,8 @@ use serde_json::{Value, json};
 
 /// Name, vehicle, `--max-shift`, corridor.
 fn subjects() -> Vec<(&'static str, &'static str, &'static str, String)> {
-    let corridor = |points: &[[f64; 2]], width: f64| json!({"frame": "metres", "points": points, "width_m": width}).to_string();
+    let corridor =
+        |points: &[[f64; 2]], width: f64| json!({"frame": "metres", "points": points, "width_m": width}).to_string();
     let arc = |radius: f64, degrees: i32| -> Vec<[f64; 2]> {
         let turn = (0..=degrees).step_by(5).map(|d| f64::from(d).to_radians());
         let mut points = vec![[-20.0, 0.0], [-10.0, 0.0]];
@@ -57,7 +58,14 @@ fn honest_files_are_confirmed() {
     for (name, text) in certificates() {
         let report = certificate(&text);
         let v: Value = serde_json::from_str(&text).unwrap();
-        println!("{name}: rsc {} γ {} hinge {} at {}: {}", v["rsc_m"], v["shrink"], v["hinge_margin_deg"], v["limiting"], said(&report));
+        println!(
+            "{name}: rsc {} γ {} hinge {} at {}: {}",
+            v["rsc_m"],
+            v["shrink"],
+            v["hinge_margin_deg"],
+            v["limiting"],
+            said(&report)
+        );
         failed |= !(report.confirmed() && report.unknown.is_empty());
     }
     assert!(!failed);
@@ -86,31 +94,43 @@ fn mutations(document: &Value) -> Vec<Mutation> {
     with("tolerance", Box::new(|v| add(&mut v["tracking_tolerance_m"], 0.01)));
     with("version", Box::new(|v| v["netcert"] = json!("new")));
     with("max shift", Box::new(|v| v["max_shift_m"] = json!(-1.0)));
-    with("limiting side", Box::new(|v| {
-        let other = if v["limiting"]["side"] == "left" { "right" } else { "left" };
-        v["limiting"]["side"] = json!(other);
-        add(&mut v["limiting"]["s"], 30.0);
-    }));
+    with(
+        "limiting side",
+        Box::new(|v| {
+            let other = if v["limiting"]["side"] == "left" { "right" } else { "left" };
+            v["limiting"]["side"] = json!(other);
+            add(&mut v["limiting"]["s"], 30.0);
+        }),
+    );
     with("limiting unit", Box::new(|v| v["limiting"]["unit"] = json!(9)));
     with("limiting point", Box::new(|v| add(&mut v["limiting"]["point_m"], 30.0)));
     with("spacing", Box::new(|v| scaled(&mut v["corridor"]["spacing_m"], 1.01)));
     with("frame", Box::new(|v| v["corridor"]["frame"]["input"] = json!("lonlat")));
     if document["shrink"].as_f64().unwrap() < 1.0 {
-        with("shrink up", Box::new(|v| {
-            let shrink = v["shrink"].as_f64().unwrap();
-            v["shrink"] = json!((shrink + 0.4).min(1.0));
-        }));
+        with(
+            "shrink up",
+            Box::new(|v| {
+                let shrink = v["shrink"].as_f64().unwrap();
+                v["shrink"] = json!((shrink + 0.4).min(1.0));
+            }),
+        );
     } else {
         with("shrink beyond", Box::new(|v| v["shrink"] = json!(1.1)));
     }
     for side in ["left", "right"] {
-        with("narrower", Box::new(move |v| {
-            v["corridor"]["stations"].as_array_mut().unwrap().iter_mut().for_each(|s| add(&mut s[side], -0.1));
-        }));
+        with(
+            "narrower",
+            Box::new(move |v| {
+                v["corridor"]["stations"].as_array_mut().unwrap().iter_mut().for_each(|s| add(&mut s[side], -0.1));
+            }),
+        );
         for column in [side.to_owned(), format!("{side}_centred")] {
-            with("leeway up", Box::new(move |v| {
-                v["leeway"][&column].as_array_mut().unwrap().iter_mut().for_each(|x| add(x, 0.1));
-            }));
+            with(
+                "leeway up",
+                Box::new(move |v| {
+                    v["leeway"][&column].as_array_mut().unwrap().iter_mut().for_each(|x| add(x, 0.1));
+                }),
+            );
         }
     }
     let stations = document["corridor"]["stations"].as_array().unwrap().len();
@@ -131,21 +151,32 @@ fn mutations(document: &Value) -> Vec<Mutation> {
     with("plan to the right", Box::new(|v| plan_moved(v, -0.3)));
     for unit in 0..document["vehicle"]["unit"].as_array().unwrap().len() {
         for (field, by) in [
-            ("width_m", 0.2), ("coupling_to_axle_m", 0.5), ("hitch_offset_m", -0.4), ("front_overhang_m", 1.0),
-            ("rear_overhang_m", 1.0), ("sway_deg", 0.5), ("max_articulation_deg", -15.0),
+            ("width_m", 0.2),
+            ("coupling_to_axle_m", 0.5),
+            ("hitch_offset_m", -0.4),
+            ("front_overhang_m", 1.0),
+            ("rear_overhang_m", 1.0),
+            ("sway_deg", 0.5),
+            ("max_articulation_deg", -15.0),
         ] {
             with(&format!("unit {unit} {field}"), Box::new(move |v| add(&mut v["vehicle"]["unit"][unit][field], by)));
         }
     }
-    with("eps", Box::new(|v| {
-        add(&mut v["vehicle"]["tracking_tolerance_m"], 0.1);
-        add(&mut v["tracking_tolerance_m"], 0.1);
-    }));
+    with(
+        "eps",
+        Box::new(|v| {
+            add(&mut v["vehicle"]["tracking_tolerance_m"], 0.1);
+            add(&mut v["tracking_tolerance_m"], 0.1);
+        }),
+    );
     with("heading tolerance", Box::new(|v| add(&mut v["vehicle"]["tracking_heading_deg"], 5.0)));
     for member in document.as_object().unwrap().keys().filter(|name| *name != "sha256").cloned() {
-        with(&format!("without {member}"), Box::new(move |v| {
-            v.as_object_mut().unwrap().shift_remove(&member);
-        }));
+        with(
+            &format!("without {member}"),
+            Box::new(move |v| {
+                v.as_object_mut().unwrap().shift_remove(&member);
+            }),
+        );
     }
     all
 }

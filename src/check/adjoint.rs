@@ -69,13 +69,13 @@ pub(crate) fn bound(chain: &Chain, tubes: &Tubes, unit: usize, node: usize, outp
     let h = tubes.step_m;
     let mut mu = vec![0.0; unit + 1];
     let mut total = fold(chain, tubes, unit, last, output, &mut mu)?;
-    for step in (0..=last).rev() {
+    for step in (tubes.first..=last).rev() {
         total += back_one_step(chain, tubes, step, &mut mu, h)?;
         // Now μ stands at the beginning of `step`.
         let rest = |(j, mu): (usize, &f64)| Some(mu.abs() * tubes.get(step, j)?.y);
-        if step % 4 == 0 || step == 0 {
+        if step % 4 == 0 || step == tubes.first {
             let rest: f64 = mu.iter().enumerate().map(rest).sum::<Option<f64>>()?;
-            if rest < CUT || step == 0 {
+            if rest < CUT || step == tubes.first {
                 return Some((total + rest) * (1.0 + 1e-10));
             }
         }
@@ -136,9 +136,8 @@ fn back_one_step(chain: &Chain, tubes: &Tubes, step: usize, mu: &mut [f64], h: f
         mu[i] = from;
         // Slips and second order; then what varies within the step, on the axle and on the coupling.
         total += kernel.sum(h) * c.most_rho * (chain.links[i].sway + tube.z / chain.links[i].l);
-        let on_axle = kernel.most(h) * rate_off
-            + behind.most(h) * c.through[1]
-            + c.through[0].abs() * behind.bow * h * h / 8.0;
+        let on_axle =
+            kernel.most(h) * rate_off + behind.most(h) * c.through[1] + c.through[0].abs() * behind.bow * h * h / 8.0;
         total += h * on_axle * tube.y;
         let nu = Kernel {
             from: c.pace * from - c.back[0] * behind.from,

@@ -17,6 +17,13 @@ pub(crate) const TOLERANCE_RAD: f64 = 0.02 * std::f64::consts::PI / 180.0;
 /// A leeway below minus this says that nothing is bounded.
 const NOTHING_M: f64 = 50.0;
 
+/// Where the least leeway is said to be it may be found this much above the RSC, metres: the two programs deduct different amounts
+/// for what lies between their steps.
+pub(crate) const LIMITING_TOLERANCE_M: f64 = 0.06;
+
+/// … and so many stations beyond the end of the span: the prover looks at stations in blocks.
+const LIMITING_BEYOND: f64 = 8.0;
+
 /// What came of a claim.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
@@ -48,6 +55,8 @@ pub struct SpanClaim {
     pub hinge_margin_rad: Option<f64>,
     /// γ.
     pub shrink: f64,
+    /// Where the least leeway is said to be: metres along the corridor, unit, side (0 left, 1 right), as far as that is known.
+    pub limiting: Option<(f64, usize, usize)>,
 }
 
 /// A vehicle on a corridor along a plan.
@@ -59,12 +68,19 @@ pub struct Subject<'a> {
 
 impl<'a> Subject<'a> {
     /// `shift(s)`: the plan, metres left of the centreline at `s` stations from the corridor's first; it is held beyond both ends.
+    /// `lenient`: stations that do not fit make their stretch one on which nothing is confirmed, not an error.
     ///
     /// # Errors
     /// Stations that do not fit each other.
-    pub fn new(chain: &'a Chain, corridor: &Corridor, shift: impl Fn(f64) -> f64) -> Result<Self, RoadError> {
+    pub fn new(
+        chain: &'a Chain,
+        corridor: &Corridor,
+        shift: impl Fn(f64) -> f64,
+        lenient: bool,
+    ) -> Result<Self, RoadError> {
         let (ahead, behind) = chain.reach_m();
-        let road = Road::new(corridor, ahead + 3.0 * corridor.spacing_m, 1.1 * behind + 3.0 * corridor.spacing_m)?;
+        let road =
+            Road::new(corridor, ahead + 3.0 * corridor.spacing_m, 1.1 * behind + 3.0 * corridor.spacing_m, lenient)?;
         let (lead, last) = (road.lead as f64, road.count as f64 - 1.0);
         let motion = Motion::new(chain, &road, |s| shift((s - lead).clamp(0.0, last)));
         Ok(Self { chain, road, motion })
@@ -77,7 +93,8 @@ impl<'a> Subject<'a> {
         let Some(motion) = &self.motion else {
             for (claim, found) in claims.iter().zip(&mut findings) {
                 if claim.rsc_m.is_some() {
-                    found.push(finding("rsc_m", "the plan cannot be driven: it turns back, or a unit stands across it"));
+                    found
+                        .push(finding("rsc_m", "the plan cannot be driven: it turns back, or a unit stands across it"));
                 }
             }
             return findings;
@@ -85,13 +102,22 @@ impl<'a> Subject<'a> {
         let mut shrinks: Vec<f64> = claims.iter().map(|claim| claim.shrink).collect();
         shrinks.sort_by(f64::total_cmp);
         shrinks.dedup();
+        let whole = Swept::new(self.chain, &self.road, motion, self.chain.tolerance_m);
         for shrink in shrinks {
-            let mut swept = Swept::new(self.chain, &self.road, motion, shrink * self.chain.tolerance_m);
+            let spans =
+                claims.iter().filter(|claim| claim.shrink == shrink).map(|claim| self.stretches(&claim.stations));
+            let range = spans.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end)).unwrap_or(0..0);
+            let mut swept = whole.within(shrink.min(1.0) * self.chain.tolerance_m, range);
             let own: Vec<usize> = (0..claims.len()).filter(|&i| claims[i].shrink == shrink).collect();
             self.leeway(&mut swept, claims, &own, &mut findings);
             for i in own {
-                if let Some(short) = claims[i].hinge_margin_rad.and_then(|margin| self.hinges(&mut swept, &claims[i].stations, margin)) {
+                if let Some(short) =
+                    claims[i].hinge_margin_rad.and_then(|margin| self.hinges(&mut swept, &claims[i].stations, margin))
+                {
                     findings[i].push(finding("hinge_margin_deg", &short));
+                }
+                if let Some(found) = self.limiting(&mut swept, &claims[i]) {
+                    findings[i].push(found);
                 }
             }
         }
@@ -103,7 +129,12 @@ impl<'a> Subject<'a> {
         let Some(motion) = &self.motion else { return Some("the plan cannot be driven".to_owned()) };
         let none = vec![f64::NEG_INFINITY; self.road.count - 1];
         let mut targets = [none.clone(), none];
-        targets[side] = column.windows(2).map(|pair| pair[0].min(pair[1]) - TOLERANCE_M).collect();
+        // It says what is at stations: between them a straight side and a bending road part by up to κ h²/8 each way.
+        let between = |k: usize| {
+            let place = |k: usize| self.road.place((self.road.lead + k) as f64).curvature.abs();
+            0.25 * place(k).max(place(k + 1)) * self.road.spacing.powi(2) + TOLERANCE_M
+        };
+        targets[side] = column.windows(2).enumerate().map(|(k, pair)| pair[0].min(pair[1]) - between(k)).collect();
         // The column begins with the steer axle on the first station: what is ahead of it then has passed its first feet.
         let (ahead, _) = self.chain.reach_m();
         let begun = ((ahead / self.road.spacing).ceil() as usize).min(targets[side].len());
@@ -122,14 +153,23 @@ impl<'a> Subject<'a> {
         swept.leeway_at(s / self.road.spacing + self.road.lead as f64, unit, side, a)
     }
 
-    /// Whether a side of a unit has more than `m` metres of room wherever it is within a station of `s` metres along the corridor.
-    pub(crate) fn roomier(&self, s: f64, unit: usize, side: usize, tolerance_m: f64, m: f64) -> bool {
-        let Some(mut swept) = self.swept(tolerance_m) else { return false };
+    /// The place that limits must be on the span, and have no more room than the RSC, nearly.
+    fn limiting(&self, swept: &mut Swept<'_>, claim: &SpanClaim) -> Option<Finding> {
+        let ((at_m, unit, side), rsc_m) = (claim.limiting?, claim.rsc_m?);
+        let own = self.stretches(&claim.stations);
+        let at = at_m / self.road.spacing;
+        if unit >= self.chain.links.len() || at < own.start as f64 - 1.0 || at > own.end as f64 + LIMITING_BEYOND {
+            return Some(finding("limiting", &format!("unit {unit} at {at_m:.1} m is not on the span")));
+        }
         let stretches = self.road.count - 1;
-        let at = ((s / self.road.spacing) as usize).min(stretches - 1);
         let mut targets = [vec![f64::NEG_INFINITY; stretches], vec![f64::NEG_INFINITY; stretches]];
-        targets[side][at.saturating_sub(1)..(at + 2).min(stretches)].fill(m);
-        swept.refute_only(&Targets(targets), Some(unit)).is_empty()
+        let at = at.clamp(own.start as f64, own.end as f64 - 1.0);
+        let near = (at as usize).saturating_sub(1)..(at as usize + 2).min(stretches);
+        targets[side][near].fill(rsc_m + LIMITING_TOLERANCE_M);
+        let roomy = swept.refute_only(&Targets(targets), Some(unit)).is_empty();
+        roomy.then(|| {
+            finding("limiting", &format!("unit {unit} has more room than the RSC at {at_m:.1} m on that side"))
+        })
     }
 
     /// Nominal place of an axle (from the corridor's first station) when the steer axle is at station `k`, and how far off it may be;

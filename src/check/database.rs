@@ -19,9 +19,6 @@ use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
 /// Strips are measured across the way's line, widths across the corridor's: they differ by the angle between.
 const WIDTH_TOLERANCE_M: f64 = 0.01;
-/// Limiting places are kept to a decimetre; the leeway there may be this far above the RSC (see `file`).
-const LIMITING_TOLERANCE_M: f64 = 0.06;
-
 /// A vehicle's certificates under one policy.
 pub struct SetClaim<'a> {
     /// The roads.
@@ -65,8 +62,7 @@ impl SetClaim<'_> {
     #[must_use]
     pub fn check(&self) -> SetReport {
         let chain = Chain::new(self.vehicle);
-        let parts: Vec<SetReport> =
-            self.network.strokes.par_iter().map(|stroke| self.stroke(&chain, stroke)).collect();
+        let parts: Vec<SetReport> = self.network.strokes.par_iter().map(|stroke| self.stroke(&chain, stroke)).collect();
         let mut report = SetReport::default();
         for part in parts {
             report.rows.extend(part.rows);
@@ -109,7 +105,7 @@ impl SetClaim<'_> {
         if let Err(why) = plan::level(coefficients) {
             return malformed(format!("the plan is {why}"));
         }
-        let subject = match Subject::new(chain, &made.corridor, plan::shift(coefficients)) {
+        let subject = match Subject::new(chain, &made.corridor, plan::shift(coefficients), true) {
             Ok(subject) => subject,
             // A stroke may hold a place that no corridor fits; its edges must not be called anything but unknown.
             Err(e) => return rows.iter().map(|row| said(row, unfit(row, &e.to_string()))).collect(),
@@ -117,7 +113,9 @@ impl SetClaim<'_> {
         let span_of = |row: &EdgeRow| made.spans.iter().find(|span| span.edge == row.edge);
         let (mut claims, mut claimed) = (Vec::new(), Vec::new());
         for row in rows {
-            if let (Some(span), Some(claim)) = (span_of(row), span_of(row).and_then(|span| claim(row, span))) {
+            if let (Some(span), Some(claim)) =
+                (span_of(row), span_of(row).and_then(|span| claim(row, span, made.corridor.spacing_m)))
+            {
                 claimed.push((row.edge, span));
                 claims.push(claim);
             }
@@ -132,7 +130,6 @@ impl SetClaim<'_> {
             }
             if span.unknown.is_none() {
                 all.extend(self.road(made, span));
-                all.extend(limiting(&subject, self.vehicle, row, span));
                 all.extend(self.printed(&subject, row, span));
             }
             if all.is_empty() { Outcome::Confirmed } else { Outcome::NotConfirmed(all) }
@@ -151,13 +148,18 @@ impl SetClaim<'_> {
         if unknown.is_some() && (row.rsc_m.is_some() || row.hinge_margin_deg.is_some()) {
             return wrong("it has numbers where nothing can be said".to_owned());
         }
-        if expected == row.verdict { Outcome::Confirmed } else { wrong(format!("{:?}, but {expected:?} is what follows", row.verdict)) }
+        if expected == row.verdict {
+            Outcome::Confirmed
+        } else {
+            wrong(format!("{:?}, but {expected:?} is what follows", row.verdict))
+        }
     }
 
     /// The corridor over a span keeps to the map: no wider than the strip, no further from the line than it may be.
     fn road(&self, made: &StrokeCorridor, span: &EdgeSpan) -> Option<Finding> {
         let edge = self.network.edges.get(span.edge as usize)?;
-        let section = &self.network.road(edge).sections[usize::from(edge.direction == crate::osm::facts::Direction::Backward)];
+        let section =
+            &self.network.road(edge).sections[usize::from(edge.direction == crate::osm::facts::Direction::Backward)];
         let strip = section.strip(self.policy)?;
         if span.centreline_deviation_m > self.params.tolerance_m {
             return Some(finding("corridor", &format!("{:.2} m off the map's line", span.centreline_deviation_m)));
@@ -167,7 +169,8 @@ impl SetClaim<'_> {
         let inner = span.stations.start + 1..span.stations.end.saturating_sub(1);
         inner.into_iter().find_map(|k| {
             let width = made.corridor.left_m.get(k)? + made.corridor.right_m.get(k)?;
-            (width > most).then(|| finding("corridor", &format!("{width:.2} m wide at station {k}, the strip {most:.2} m")))
+            (width > most)
+                .then(|| finding("corridor", &format!("{width:.2} m wide at station {k}, the strip {most:.2} m")))
         })
     }
 
@@ -191,12 +194,15 @@ fn unfit(row: &EdgeRow, why: &str) -> Outcome {
 }
 
 /// What a row's numbers claim.
-fn claim(row: &EdgeRow, span: &EdgeSpan) -> Option<SpanClaim> {
+fn claim(row: &EdgeRow, span: &EdgeSpan, spacing_m: f64) -> Option<SpanClaim> {
     (row.rsc_m.is_some() || row.hinge_margin_deg.is_some()).then(|| SpanClaim {
         stations: span.stations.clone(),
         rsc_m: row.rsc_m,
         hinge_margin_rad: row.hinge_margin_deg.map(f64::to_radians),
         shrink: row.shrink.unwrap_or(1.0),
+        limiting: row.limiting_s_m.zip(row.limiting_unit).zip(row.limiting_side).map(|((s, unit), side)| {
+            (span.stations.start as f64 * spacing_m + s, usize::from(unit), usize::from(side.name() == "right"))
+        }),
     })
 }
 
@@ -220,19 +226,4 @@ fn expected(edge: &Edge, vehicle: &Vehicle, unknown: Option<UnknownReason>, row:
             _ => Verdict::Unsafe(UnsafeReason::Articulation),
         },
     }
-}
-
-/// The place that limits: on the edge, of a unit that there is, and the leeway there no greater than the RSC, nearly.
-fn limiting(subject: &Subject<'_>, vehicle: &Vehicle, row: &EdgeRow, span: &EdgeSpan) -> Option<Finding> {
-    let (s, unit, side) = (row.limiting_s_m?, usize::from(row.limiting_unit?), row.limiting_side?);
-    let at = span.stations.start as f64 * subject.road.spacing + s;
-    let end = span.stations.end as f64 * subject.road.spacing;
-    if unit >= vehicle.units.len() || at > end {
-        return Some(finding("limiting", &format!("unit {unit} at {s} m is not on the edge")));
-    }
-    let side = usize::from(side.name() == "right");
-    let tolerance_m = row.shrink.unwrap_or(1.0) * vehicle.tracking_tolerance_m;
-    subject
-        .roomier(at, unit, side, tolerance_m, row.rsc_m? + LIMITING_TOLERANCE_M)
-        .then(|| finding("limiting", &format!("unit {unit} has more room than the RSC at {s} m on that side")))
 }

@@ -7,7 +7,7 @@ use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
 use super::chain::Chain;
-use super::claim::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, finding};
+use super::claim::{Finding, LIMITING_TOLERANCE_M, Outcome, SpanClaim, Subject, TOLERANCE_M, finding};
 use super::leeway::Swept;
 use super::members::{Members, Wrong};
 use super::plan;
@@ -17,9 +17,6 @@ use crate::vehicle::Vehicle;
 
 /// Positions that are written in degrees come back to this, metres.
 const PLACE_TOLERANCE_M: f64 = 1e-4;
-/// The leeway found where a certificate says that it is least may be this far from its RSC, metres: the two programs deduct
-/// different amounts for what lies between their steps, 3 cm in the tightest bends.
-const LIMITING_TOLERANCE_M: f64 = 0.05;
 /// Most that a plan may be off the centreline, metres; beyond it nobody speaks of a correction.
 const MOST_SHIFT_M: f64 = 100.0;
 /// Marks the last member.
@@ -119,8 +116,22 @@ struct TubeClaim {
 }
 
 const MEMBERS: &[&str] = &[
-    "netcert", "vehicle", "corridor", "max_shift_m", "rsc_m", "rsc_published_m", "hinge_margin_deg", "safe",
-    "tracking_tolerance_m", "shrink", "limiting", "plan", "shift", "leeway", "tubes", "sha256",
+    "netcert",
+    "vehicle",
+    "corridor",
+    "max_shift_m",
+    "rsc_m",
+    "rsc_published_m",
+    "hinge_margin_deg",
+    "safe",
+    "tracking_tolerance_m",
+    "shrink",
+    "limiting",
+    "plan",
+    "shift",
+    "leeway",
+    "tubes",
+    "sha256",
 ];
 const COLUMNS: [&str; 4] = ["left", "right", "left_centred", "right_centred"];
 
@@ -165,8 +176,8 @@ impl Document {
 
     fn check(&self, claims: &mut Vec<(String, Outcome)>) {
         let chain = Chain::new(&self.vehicle);
-        let along = Subject::new(&chain, &self.corridor, plan::shift(&self.coefficients));
-        let centred = Subject::new(&chain, &self.corridor, |_| 0.0);
+        let along = Subject::new(&chain, &self.corridor, plan::shift(&self.coefficients), false);
+        let centred = Subject::new(&chain, &self.corridor, |_| 0.0, false);
         let (along, centred) = match (along, centred) {
             (Ok(along), Ok(centred)) => (along, centred),
             (Err(e), _) | (_, Err(e)) => {
@@ -180,6 +191,7 @@ impl Document {
             rsc_m: Some(self.rsc_m),
             hinge_margin_rad: Some(self.hinge_margin_deg.to_radians()),
             shrink: self.shrink,
+            limiting: None,
         };
         let mut found: Vec<Finding> = along.check(&[whole]).remove(0);
         found.extend(self.safety());
@@ -233,7 +245,8 @@ impl Document {
             return Some(("t", format!("t[{k}] is not after t[{}]", k - 1)));
         }
         for k in 0..claim.t.len() {
-            let Some((centre, lateral_m)) = along.tube_at(swept, k, claim.unit, claim.lateral_m[k] + TOLERANCE_M) else {
+            let Some((centre, lateral_m)) = along.tube_at(swept, k, claim.unit, claim.lateral_m[k] + TOLERANCE_M)
+            else {
                 continue; // nothing is bounded here, and a tube of a certificate that says `unsafe` claims nothing
             };
             let origin = [self.corridor.x[0], self.corridor.y[0]];
@@ -244,7 +257,10 @@ impl Document {
             }
             // By what its centre is off, the tube must be wider.
             if lateral_m > claim.lateral_m[k] + TOLERANCE_M + off {
-                return Some(("lateral_m", format!("lateral_m[{k}] is {:.4}, proved is {lateral_m:.4}", claim.lateral_m[k])));
+                return Some((
+                    "lateral_m",
+                    format!("lateral_m[{k}] is {:.4}, proved is {lateral_m:.4}", claim.lateral_m[k]),
+                ));
             }
             let [q11, q12, q22] = claim.shape[k];
             let radius = claim.lateral_m[k].max(1e-6).powi(-2);
@@ -259,7 +275,11 @@ impl Document {
 fn vehicle(value: &Value) -> Result<Vehicle, Wrong> {
     let vehicle = Vehicle::from_json(&value.to_string()).map_err(|e| format!("vehicle: {e}"))?;
     let whole = vehicle.to_json().map_err(|e| format!("vehicle: {e}"))?;
-    if whole == *value { Ok(vehicle) } else { Err("vehicle: not the whole definition, every field written out".to_owned()) }
+    if whole == *value {
+        Ok(vehicle)
+    } else {
+        Err("vehicle: not the whole definition, every field written out".to_owned())
+    }
 }
 
 fn corridor(all: Members<'_>, unknown: &mut Vec<String>) -> Result<(Corridor, Option<Frame>), Wrong> {
@@ -356,5 +376,11 @@ fn tube_claim(value: &Value, i: usize, n: usize, frame: Option<Frame>, c: &Corri
     }
     let centre = metres(frame, all.tuples("centre", n)?, &format!("{path}.centre"))?;
     debug_assert_eq!(centre.len(), c.len());
-    Ok(TubeClaim { unit: i, t: all.numbers("t", n)?, centre, shape: all.tuples("shape", n)?, lateral_m: all.numbers("lateral_m", n)? })
+    Ok(TubeClaim {
+        unit: i,
+        t: all.numbers("t", n)?,
+        centre,
+        shape: all.tuples("shape", n)?,
+        lateral_m: all.numbers("lateral_m", n)?,
+    })
 }

@@ -220,7 +220,10 @@ mod tests {
     }
 
     fn holds(interval: Interval, nearest: f64, error: f64) -> bool {
-        interval.lo <= nearest && nearest <= interval.hi && interval.lo - nearest <= error && error <= interval.hi - nearest
+        interval.lo <= nearest
+            && nearest <= interval.hi
+            && interval.lo - nearest <= error
+            && error <= interval.hi - nearest
     }
 
     proptest! {

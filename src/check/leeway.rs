@@ -98,6 +98,28 @@ impl<'a> Swept<'a> {
         Self { chain, road, motion, tubes, tightened: vec![false; motion.steps()], exact: HashMap::new() }
     }
 
+    /// The same at a lesser tolerance, for claims on some stretches only.
+    pub(crate) fn within(&self, tolerance_m: f64, stretches: std::ops::Range<usize>) -> Self {
+        let steps = self.steps(stretches);
+        let (_, behind) = self.chain.reach_m();
+        let history = (HISTORY_LENGTHS * 2.0 * behind / self.tubes.step_m) as usize;
+        let mut tubes = Tubes::within(&self.tubes, steps.start.saturating_sub(history), tolerance_m);
+        for _ in tubes.first..steps.end {
+            tubes.advance(self.chain, self.motion);
+        }
+        Self { tubes, tightened: vec![false; self.motion.steps()], exact: HashMap::new(), ..*self }
+    }
+
+    /// Steps during which some body point may have its foot on some stretches of the corridor.
+    fn steps(&self, stretches: std::ops::Range<usize>) -> std::ops::Range<usize> {
+        let (ahead, behind) = self.chain.reach_m();
+        let stations = |metres: f64| (metres / self.road.spacing).ceil() as usize;
+        let from = (self.road.lead + stretches.start).saturating_sub(stations(ahead) + 1) * STEPS;
+        // A body that cuts a bend is never farther along than a straight one; a twentieth is for plans on the outside.
+        let to = (self.road.lead + stretches.end + 1 + stations(1.05 * behind)) * STEPS;
+        from..to.min(self.motion.steps())
+    }
+
     /// All places where the claims are not reached, the worst of each stretch and side.
     pub(crate) fn refute(&mut self, targets: &Targets) -> Vec<Shortfall> {
         self.refute_only(targets, None)
@@ -110,14 +132,9 @@ impl<'a> Swept<'a> {
         let (Some(first), Some(last)) = ((0..stretches).find(claimed), (0..stretches).rev().find(claimed)) else {
             return Vec::new();
         };
-        let (ahead, behind) = self.chain.reach_m();
-        let stations = |metres: f64| (metres / self.road.spacing).ceil() as usize;
-        let from = (self.road.lead + first).saturating_sub(stations(ahead) + 1) * STEPS;
-        // A body that cuts a bend is never farther along than a straight one; a twentieth is for plans on the outside.
-        let to = ((self.road.lead + last + 2 + stations(1.05 * behind)) * STEPS).min(self.motion.steps());
         let mut found = Shortfalls::new(stretches);
         let mut feet = vec![f64::NAN; self.chain.links.len() * 4];
-        for step in from..to {
+        for step in self.steps(first..last + 1) {
             for unit in only.map_or(0..self.chain.links.len(), |unit| unit..unit + 1) {
                 for side in 0..2 {
                     let link = &self.chain.links[unit];
@@ -206,11 +223,13 @@ impl<'a> Swept<'a> {
                 (halves[0].t[1], halves[1].t[0]) = (middle, middle);
             }
             for half in &halves {
-                self.cell(half, [f64::NAN; 2], targets, found);
+                let hints = half.a.map(|a| all[0].s + (all[1].s - all[0].s) * (a - a0) / (a1 - a0).max(1e-9));
+                self.cell(half, hints, targets, found);
             }
             return;
         }
-        let least = all.iter().fold(all[0], |least, c| if c.clear - c.dev < least.clear - least.dev { *c } else { least });
+        let least =
+            all.iter().fold(all[0], |least, c| if c.clear - c.dev < least.clear - least.dev { *c } else { least });
         let point_m = if least.s == all[0].s || least.s == all[2].s { cell.a[0] } else { cell.a[1] };
         found.add(cell, least.s - self.road.lead as f64, point_m, -slack, (first, last), targets);
     }
@@ -272,11 +291,13 @@ impl<'a> Swept<'a> {
         let along_road = (v - b * w) * cos - a * w * sin;
         let across = (dv - a * w * w - b * dw) * sin + (v * w + a * dw - b * w * w) * cos;
         let (_, rate) = self.road.sharpest(cell.side, s, s);
-        let feet = (w.abs() * (v + (a * w).abs()) + 2.0 * place.curvature.abs() * (sin.abs() + (a * w).abs())
+        let feet = (w.abs() * (v + (a * w).abs())
+            + 2.0 * place.curvature.abs() * (sin.abs() + (a * w).abs())
             + rate * lateral.abs())
             / (narrow * narrow);
         let bend = (across - place.curvature * along_road * along_road / (1.0 - place.curvature * lateral)).abs()
             + slope.abs() * feet;
+        let dev = dev + self.road.slack(s);
         Some(Corner { s, clear: width - sign * lateral, dev, bend, lateral, sin, slope })
     }
 
@@ -303,7 +324,8 @@ impl<'a> Swept<'a> {
         let slope = all.iter().map(|c| c.slope.abs()).fold(0.0, f64::max);
         let tube = self.tubes.get(cell.step, cell.unit).map_or(0.0, |tube| tube.a);
         let turn = 2.0 * sharp * sharp * (sin + 0.05) + rate;
-        let curve = sharp / inside + slope * (3.0 * sharp * sin + rate * lateral) / (inside * inside)
+        let curve = sharp / inside
+            + slope * (3.0 * sharp * sin + rate * lateral) / (inside * inside)
             + tube * self.chain.links[cell.unit].half_width * turn;
         let length = cell.a[1] - cell.a[0];
         (bend * travel * travel / 8.0, curve * length * length / 8.0 + self.road.dip(cell.side, range[0], range[1]))
@@ -337,7 +359,7 @@ impl<'a> Swept<'a> {
     fn sharpen(&mut self, cell: &Cell) {
         let (_, behind) = self.chain.reach_m();
         let history = (HISTORY_LENGTHS * behind / self.tubes.step_m) as usize;
-        for step in cell.step.saturating_sub(history)..=cell.step {
+        for step in cell.step.saturating_sub(history).max(self.tubes.first)..=cell.step {
             self.tighten(step);
         }
         let link = &self.chain.links[cell.unit];
@@ -354,7 +376,7 @@ impl<'a> Swept<'a> {
         let bow = 1.0 + 0.5 * (self.tubes.step_m / least).powi(2);
         let end = adjoint::bound(self.chain, &self.tubes, unit, step + 1, output)?;
         let start = match step {
-            0 => end,
+            step if step == self.tubes.first => end,
             _ => adjoint::bound(self.chain, &self.tubes, unit, step, output)?,
         };
         Some(start.max(end) * bow)
@@ -422,7 +444,15 @@ impl Shortfalls {
         (most > f64::NEG_INFINITY).then_some(most)
     }
 
-    fn add(&mut self, cell: &Cell, station: f64, point_m: f64, short_m: f64, (first, last): (usize, usize), targets: &Targets) {
+    fn add(
+        &mut self,
+        cell: &Cell,
+        station: f64,
+        point_m: f64,
+        short_m: f64,
+        (first, last): (usize, usize),
+        targets: &Targets,
+    ) {
         let most = (first..=last).map(|k| targets.0[cell.side][k]).fold(f64::NEG_INFINITY, f64::max);
         for k in first..=last {
             let own = short_m - (most - targets.0[cell.side][k]);

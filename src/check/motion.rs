@@ -62,15 +62,12 @@ pub(crate) struct Motion {
 
 impl Motion {
     /// The motion along the plan: `shift(s)` metres left of the centreline at `s` stations. The vehicle begins straight.
-    /// `None` where the plan stands still or turns back.
+    /// `None` where it is no motion (a number that is none).
     pub(crate) fn new(chain: &Chain, road: &Road, shift: impl Fn(f64) -> f64) -> Option<Self> {
         let units = chain.links.len();
         let nodes = (road.len() - 1) * STEPS + 1;
-        let mut motion = Self {
-            units,
-            poses: Vec::with_capacity(nodes * units),
-            swings: Vec::with_capacity((nodes - 1) * units),
-        };
+        let mut motion =
+            Self { units, poses: Vec::with_capacity(nodes * units), swings: Vec::with_capacity((nodes - 1) * units) };
         let plan: Vec<[f64; 2]> = (0..nodes).map(|j| planned(road, &shift, j as f64 / STEPS as f64)).collect();
         let u = road.place(0.0).t;
         let mut coupling = plan[0];
@@ -83,6 +80,10 @@ impl Motion {
             motion.step(chain, plan[j - 1], plan[j])?;
         }
         motion.bulges();
+        // Where the road itself may be off, so may the plan.
+        for (k, swing) in motion.swings.iter_mut().enumerate().step_by(units) {
+            swing.bulge += road.slack((k / units) as f64 / STEPS as f64);
+        }
         Some(motion)
     }
 
@@ -92,11 +93,11 @@ impl Motion {
             let Pose { p, u } = self.poses[first + i];
             let chord = [to[0] - from[0], to[1] - from[1]];
             let len = chord[0].hypot(chord[1]);
-            let c = [chord[0] / len, chord[1] / len];
+            let c = if len > 1e-6 { [chord[0] / len, chord[1] / len] } else { u };
             let (sin, cos) = (u[0] * c[1] - u[1] * c[0], u[0] * c[0] + u[1] * c[1]);
-            let before = sin / (1.0 + cos);
-            // A plan with spikes, or a unit driven backwards by the hitch ahead of it.
-            if !(len > 1e-6 && before.abs() < 1.0) {
+            // Beyond a quarter turn nothing is bounded; the motion goes on, for the road behind it.
+            let before = (sin / (1.0 + cos)).clamp(-9.0, 9.0);
+            if !(len.is_finite() && before.is_finite()) {
                 return None;
             }
             let after = before * (-len / link.l).exp();
@@ -117,7 +118,7 @@ impl Motion {
             let before = k.checked_sub(self.units).map_or(0.0, |b| turn(&self.swings[b], &own));
             let after = self.swings.get(k + self.units).map_or(0.0, |a| turn(&own, a));
             let swing = &mut self.swings[k];
-            swing.curvature = before.max(after) / own.len;
+            swing.curvature = before.max(after) / own.len.max(1e-6);
             swing.bulge = swing.curvature * own.len * own.len / 8.0 + DEFECT_M;
         }
     }

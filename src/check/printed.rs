@@ -16,7 +16,9 @@ pub(super) fn rsc_m(subject: &Subject<'_>, vehicle: &Vehicle, stations: Range<us
     let last = vehicle.units.len() - 1;
     let mut off: f64 = 0.0;
     if let Some(motion) = &subject.motion {
-        for node in (0..=motion.steps()).step_by(STEPS) {
+        let (_, behind) = subject.chain.reach_m();
+        let last_node = (own.end + (1.1 * behind / road.spacing) as usize + 2) * STEPS;
+        for node in (own.start * STEPS..=last_node.min(motion.steps())).step_by(STEPS) {
             let p = motion.pose(node, last).p;
             if let Some((s, _, lateral)) = subject.foot(p, node as f64 / STEPS as f64)
                 && (own.start as f64..=(own.end - 1) as f64).contains(&s)

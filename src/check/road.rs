@@ -6,9 +6,9 @@
 use crate::corridor::Corridor;
 
 /// Most by which a station may be off the curve that leads to it from the one before, metres and radians, per metre of
-/// spacing: what sampling a smooth line at stations leaves (measured on real strokes: 4 mm, 6 mrad in the sharpest).
-const PLACE_TOLERANCE_M: f64 = 0.01;
-const HEADING_TOLERANCE_RAD: f64 = 0.02;
+/// spacing, in a file. On the map's strokes what is beyond it is a stretch on which nothing can be confirmed.
+const PLACE_TOLERANCE_M: f64 = 0.02;
+const HEADING_TOLERANCE_RAD: f64 = 0.04;
 /// Most that a corridor turns from one station to the next, radians: beyond it the proof's second order says little.
 const MOST_TURN_RAD: f64 = 0.5;
 /// Half-widths stay within what tags and users can mean, metres.
@@ -48,6 +48,8 @@ pub(crate) struct Road {
     stations: Vec<Place>,
     /// Curvature at the start and the end of the stretch after each station.
     bends: Vec<[f64; 2]>,
+    /// By how much the curve after each station may be off what leads to the next one, metres: sampling a smooth line leaves that.
+    slack: Vec<f64>,
     /// Half-widths, left and right.
     pub(crate) widths: Vec<[f64; 2]>,
 }
@@ -56,8 +58,8 @@ impl Road {
     /// Checks that the stations fit each other, and extends the corridor by `lead_m` and `tail_m`.
     ///
     /// # Errors
-    /// The first station that does not fit, and by how much.
-    pub(crate) fn new(corridor: &Corridor, lead_m: f64, tail_m: f64) -> Result<Self, RoadError> {
+    /// The first station that does not fit, and by how much; not so if `lenient`: then nothing is known before such a station.
+    pub(crate) fn new(corridor: &Corridor, lead_m: f64, tail_m: f64, lenient: bool) -> Result<Self, RoadError> {
         let n = corridor.len();
         let same = [&corridor.y, &corridor.heading, &corridor.curvature, &corridor.left_m, &corridor.right_m];
         if n < 2 || same.iter().any(|column| column.len() != n) {
@@ -67,8 +69,13 @@ impl Road {
         if !(0.01..=200.0).contains(&spacing) {
             return Err(RoadError { station: 0, problem: format!("a spacing of {spacing} m") });
         }
+        let mut slack = vec![0.0; n];
         for k in 0..n {
-            check_station(corridor, k)?;
+            slack[k.saturating_sub(1)] = match check_station(corridor, k) {
+                Err(wrong) if !lenient || !finite(corridor, k) => return Err(wrong),
+                Err(_) => f64::INFINITY,
+                Ok(off) => off,
+            };
         }
         let origin = [corridor.x[0], corridor.y[0]];
         let own = (0..n).map(|k| Place {
@@ -85,6 +92,7 @@ impl Road {
             stations: Vec::with_capacity(lead + n + tail),
             bends: Vec::with_capacity(lead + n + tail),
             widths: Vec::with_capacity(lead + n + tail),
+            slack: Vec::with_capacity(lead + n + tail),
         };
         for k in 0..lead + n + tail {
             let inner = k.saturating_sub(lead).min(n - 1);
@@ -95,6 +103,7 @@ impl Road {
             let bend = if inside { [stations[inner].curvature, stations[inner + 1].curvature] } else { [0.0; 2] };
             road.stations.push(Place { c, ..place });
             road.bends.push(bend);
+            road.slack.push(if inside { slack[inner] } else { 0.0 });
             road.widths.push([corridor.left_m[inner], corridor.right_m[inner]]);
         }
         Ok(road)
@@ -109,6 +118,11 @@ impl Road {
     fn split(&self, s: f64) -> (usize, f64) {
         let k = (s.max(0.0) as usize).min(self.len() - 1);
         (k, (s - k as f64) * self.spacing)
+    }
+
+    /// By how much the curve at `s` may be off, metres; infinite where the stations do not fit.
+    pub(crate) fn slack(&self, s: f64) -> f64 {
+        self.slack[self.split(s).0]
     }
 
     /// The centreline at `s` (in stations, extensions included).
@@ -177,10 +191,10 @@ fn small_sin_cos(x: f64) -> (f64, f64) {
 }
 
 /// Whether station `k` has usable values and follows from the one before it.
-fn check_station(c: &Corridor, k: usize) -> Result<(), RoadError> {
+fn check_station(c: &Corridor, k: usize) -> Result<f64, RoadError> {
     let wrong = |problem: String| Err(RoadError { station: k, problem });
     let values = [c.x[k], c.y[k], c.heading[k], c.curvature[k], c.left_m[k], c.right_m[k]];
-    if values.iter().any(|v| !v.is_finite() || v.abs() > 1e8) {
+    if !finite(c, k) {
         return wrong(format!("{values:?} are no place, heading, curvature and half-widths"));
     }
     for (name, w, side) in [("left", c.left_m[k], 1.0), ("right", c.right_m[k], -1.0)] {
@@ -191,16 +205,18 @@ fn check_station(c: &Corridor, k: usize) -> Result<(), RoadError> {
             return wrong(format!("the normals cross within the half-width of {w} m on the {name}"));
         }
     }
-    let Some(before) = k.checked_sub(1) else { return Ok(()) };
+    let Some(before) = k.checked_sub(1) else { return Ok(0.0) };
     let turn = 0.5 * c.spacing_m * (c.curvature[before] + c.curvature[k]);
     if turn.abs() > MOST_TURN_RAD || c.spacing_m * c.curvature[k].abs() > MOST_TURN_RAD {
         return wrong(format!("a turn of {turn:.2} rad since the station before is too much for this spacing"));
     }
-    let off = (c.heading[k] - c.heading[before] - turn).abs();
+    let turned = (c.heading[k] - c.heading[before] - turn).abs();
+    let off = turned;
     if off > HEADING_TOLERANCE_RAD * c.spacing_m {
         return wrong(format!("its heading is {off:.4} rad off what the curvatures say"));
     }
-    let place = Place { c: [c.x[before], c.y[before]], t: [c.heading[before].cos(), c.heading[before].sin()], curvature: 0.0 };
+    let place =
+        Place { c: [c.x[before], c.y[before]], t: [c.heading[before].cos(), c.heading[before].sin()], curvature: 0.0 };
     let stretch = Road {
         spacing: c.spacing_m,
         lead: 0,
@@ -208,11 +224,18 @@ fn check_station(c: &Corridor, k: usize) -> Result<(), RoadError> {
         stations: vec![place],
         bends: vec![[c.curvature[before], c.curvature[k]]],
         widths: Vec::new(),
+        slack: vec![0.0],
     };
     let at = stretch.place(1.0).c;
     let off = (at[0] - c.x[k]).hypot(at[1] - c.y[k]);
     if off > PLACE_TOLERANCE_M * c.spacing_m {
         return wrong(format!("it lies {off:.4} m off where the station before and the curvatures lead"));
     }
-    Ok(())
+    // A heading that is off by x leaves the chord's middle off by an eighth of it.
+    Ok(off + 0.125 * c.spacing_m * turned)
+}
+
+fn finite(c: &Corridor, k: usize) -> bool {
+    let values = [c.x[k], c.y[k], c.heading[k], c.curvature[k], c.left_m[k], c.right_m[k]];
+    values.iter().all(|v| v.is_finite() && v.abs() < 1e8)
 }

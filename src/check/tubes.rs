@@ -67,6 +67,8 @@ impl Bend {
 /// All tubes; `None` in steps where nothing is bounded (A3 fails).
 pub(crate) struct Tubes {
     pub(crate) step_m: f64,
+    /// The first step that is there.
+    pub(crate) first: usize,
     pub(crate) tolerance_m: f64,
     units: usize,
     tubes: Vec<Option<Tube>>,
@@ -78,15 +80,33 @@ pub(crate) struct Tubes {
 impl Tubes {
     pub(crate) fn new(chain: &Chain, spacing: f64, tolerance_m: f64) -> Self {
         let units = chain.links.len();
-        Self { step_m: spacing / STEPS as f64, tolerance_m, units, tubes: Vec::new(), coefficients: Vec::new(), ends: vec![0.0; units] }
+        Self {
+            step_m: spacing / STEPS as f64,
+            first: 0,
+            tolerance_m,
+            units,
+            tubes: Vec::new(),
+            coefficients: Vec::new(),
+            ends: vec![0.0; units],
+        }
+    }
+
+    /// From step `first` on, at a tolerance that is no more than `wider`'s: its bounds hold there to begin with.
+    pub(crate) fn within(wider: &Self, first: usize, tolerance_m: f64) -> Self {
+        let before = first.checked_sub(1).and_then(|step| wider.tubes.get(step * wider.units..first * wider.units));
+        let ends = before.map_or(vec![0.0; wider.units], |before| {
+            before.iter().map(|tube| tube.map_or(0.0, |tube| tube.extra)).collect()
+        });
+        Self { first, tolerance_m, tubes: Vec::new(), coefficients: Vec::new(), ends, ..*wider }
     }
 
     /// Adds the next step. Where the recursion does not close, nothing is bounded in it, and the filter begins anew.
     pub(crate) fn advance(&mut self, chain: &Chain, motion: &Motion) {
-        let step = self.tubes.len() / self.units;
+        let step = self.first + self.tubes.len() / self.units;
         let mut passed = Passed::steer_axle(self.tolerance_m, motion.swing(step, 0).bulge);
         let first = self.tubes.len();
-        let bends: Vec<Bend> = (0..self.units).map(|i| Bend::of(&chain.links[i], motion.swing(step, i), self.step_m)).collect();
+        let bends: Vec<Bend> =
+            (0..self.units).map(|i| Bend::of(&chain.links[i], motion.swing(step, i), self.step_m)).collect();
         self.coefficients.extend(chain.links.iter().zip(&bends).map(|(link, bend)| Coefficients::of(link, bend)));
         for (i, link) in chain.links.iter().enumerate() {
             let swing = motion.swing(step, i);
@@ -96,11 +116,16 @@ impl Tubes {
                 link,
                 bend,
                 curvature: swing.curvature,
-                gains: [gains.point(0.0, self.tolerance_m), gains.heading.at(self.tolerance_m), gains.coupling.at(self.tolerance_m)],
+                gains: [
+                    gains.point(0.0, self.tolerance_m),
+                    gains.heading.at(self.tolerance_m),
+                    gains.coupling.at(self.tolerance_m),
+                ],
                 step_m: self.step_m,
                 extra: self.ends[i],
             };
-            let before = step.checked_sub(1).and_then(|s| self.tubes[s * self.units + i]);
+            let before =
+                self.tubes.len().checked_sub(i + self.units).and_then(|k| self.tubes.get(k + i).copied().flatten());
             let Some((tube, end)) = unit.settle(&passed, before) else {
                 self.tubes.truncate(first);
                 self.tubes.extend(std::iter::repeat_n(None, self.units));
@@ -117,11 +142,11 @@ impl Tubes {
     }
 
     pub(crate) fn coefficients(&self, step: usize, unit: usize) -> &Coefficients {
-        &self.coefficients[step * self.units + unit]
+        &self.coefficients[(step - self.first) * self.units + unit]
     }
 
     pub(crate) fn get(&self, step: usize, unit: usize) -> Option<&Tube> {
-        self.tubes.get(step * self.units + unit)?.as_ref()
+        self.tubes.get(step.checked_sub(self.first)? * self.units + unit)?.as_ref()
     }
 
     /// Takes better bounds for a unit in a step that is there: its own second order follows.
@@ -129,7 +154,7 @@ impl Tubes {
         let swing = motion.swing(step, unit);
         let link = &chain.links[unit];
         let bend = Bend::of(link, swing, self.step_m);
-        if let Some(Some(tube)) = self.tubes.get_mut(step * self.units + unit) {
+        if let Some(Some(tube)) = self.tubes.get_mut((step - self.first) * self.units + unit) {
             tube.y = tube.y.min(y);
             tube.a = tube.a.min(a);
             tube.r1 = tube.r1.min(r1(link, &bend, swing.curvature, tube.y, tube.a));
@@ -172,7 +197,8 @@ impl Unit<'_> {
     /// The bounds of the step: guessed, computed, raised until they reproduce themselves; and `extra` at its end.
     fn settle(&self, passed: &Passed, before: Option<Tube>) -> Option<(Tube, f64)> {
         let (link, bend) = (self.link, &self.bend);
-        let eta = (0..2).map(|k| (bend.sec[k] - 1.0).max((passed.cos_chi[k] * bend.sec[k] - 1.0).abs())).fold(0.0, f64::max);
+        let eta =
+            (0..2).map(|k| (bend.sec[k] - 1.0).max((passed.cos_chi[k] * bend.sec[k] - 1.0).abs())).fold(0.0, f64::max);
         // Steps begin with the larger angle; the ends of both ranges are opposite for χ.
         let eta = eta.max((passed.cos_chi[1] * bend.sec[0] - 1.0).abs());
         let extra_coupling = (passed.extra * (1.0 + eta) + eta * passed.straight) * UP;

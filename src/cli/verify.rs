@@ -125,10 +125,8 @@ impl Verify {
         };
         let vehicle = Vehicle::from_json(&record.definition)?;
         let settings = how::recorded(database)?;
-        let query = QueryOptions {
-            area: self.bbox.map(Area::Bounds),
-            ..QueryOptions::new(&set.vehicle_id, set.policy)
-        };
+        let query =
+            QueryOptions { area: self.bbox.map(Area::Bounds), ..QueryOptions::new(&set.vehicle_id, set.policy) };
         let rows: Vec<EdgeRow> = database.query(&query)?.collect::<Result<_, _>>()?;
         let rows: BTreeMap<u32, EdgeRow> = self.sampled(rows).into_iter().map(|row| (row.edge, row)).collect();
         let plans = database.plans(&set.vehicle_id, set.policy)?;
@@ -164,17 +162,22 @@ impl Verify {
         for record in database.vehicles()? {
             let hash = record.blake3();
             for set in sets.iter().filter(|set| set.vehicle_id == record.id && set.vehicle_blake3 != hash) {
-                complaints.push(format!("malformed      vehicle {}: its definition is not the one of its hash ({})", record.id, set.layer));
+                complaints.push(format!(
+                    "malformed      vehicle {}: its definition is not the one of its hash ({})",
+                    record.id, set.layer
+                ));
             }
             match Vehicle::from_json(&record.definition) {
                 Ok(vehicle) if vehicle.id == record.id && vehicle.name == record.name => {}
-                Ok(_) => complaints.push(format!("malformed      vehicle {}: id or name differ from the definition", record.id)),
+                Ok(_) => complaints
+                    .push(format!("malformed      vehicle {}: id or name differ from the definition", record.id)),
                 Err(e) => complaints.push(format!("malformed      vehicle {}: {e}", record.id)),
             }
         }
         let runs = database.runs()?;
         for (k, (run, account)) in runs.iter().enumerate() {
-            complaints.extend(unbalanced(account).into_iter().map(|what| format!("malformed      run {}: {what}", k + 1)));
+            complaints
+                .extend(unbalanced(account).into_iter().map(|what| format!("malformed      run {}: {what}", k + 1)));
             if let (Some(input), Some(said)) = (&self.input, &run.input_blake3) {
                 let mut hasher = blake3::Hasher::new();
                 let file = std::fs::File::open(input).map_err(|e| anyhow!("{}: {e}", input.display()))?;
@@ -190,12 +193,15 @@ impl Verify {
 
 /// Stages whose parts do not add up to what was read.
 fn unbalanced(account: &[AccountRow]) -> Vec<String> {
-    let parts = |total: &AccountRow| -> u64 {
-        let part = |row: &&AccountRow| row.stage == total.stage && row.item == total.item && !["read", "noted"].contains(&row.outcome.as_str());
-        account.iter().filter(part).map(|row| row.count).sum()
+    let parts = |total: &AccountRow| -> Option<u64> {
+        let part = |row: &&AccountRow| {
+            row.stage == total.stage && row.item == total.item && !["read", "noted"].contains(&row.outcome.as_str())
+        };
+        account.iter().filter(part).map(|row| row.count).reduce(|a, b| a + b)
     };
     let total = account.iter().filter(|row| row.outcome == "read");
-    let wrong = |row: &&AccountRow| parts(row) != row.count;
+    // A total of which no part is told (strokes) is just a number.
+    let wrong = |row: &&AccountRow| parts(row).is_some_and(|sum| sum != row.count);
     total.filter(wrong).map(|row| format!("{} {}s of stage {} do not add up", row.count, row.item, row.stage)).collect()
 }
 
@@ -211,7 +217,14 @@ fn count(table: &mut Table, set: &CertifiedSet, report: &SetReport) {
     }
     for (verdict, counts) in counts {
         let [confirmed, not, malformed] = counts.map(grouped);
-        table.row([set.vehicle_id.clone(), set.policy.name().to_owned(), verdict.to_owned(), confirmed, not, malformed]);
+        table.row([
+            set.vehicle_id.clone(),
+            set.policy.name().to_owned(),
+            verdict.to_owned(),
+            confirmed,
+            not,
+            malformed,
+        ]);
     }
 }
 

@@ -96,7 +96,12 @@ fn unpack(packed: &[u8]) -> Option<Vec<i32>> {
 }
 
 /// Inserts the plans of a set, in order of their edges.
-pub(super) async fn insert(c: &mut SqliteConnection, vehicle_no: u32, corridor: u8, plans: &mut [StoredPlan]) -> Sql<()> {
+pub(super) async fn insert(
+    c: &mut SqliteConnection,
+    vehicle_no: u32,
+    corridor: u8,
+    plans: &mut [StoredPlan],
+) -> Sql<()> {
     plans.sort_unstable_by_key(|plan| plan.edge);
     let mut bulk = Bulk::new("plan (vehicle_no, corridor_no, fid, coefficients)", 4);
     for plan in plans.iter() {

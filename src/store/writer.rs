@@ -79,7 +79,15 @@ impl Database {
             add_words(c).await
         })?;
         let spool = Spool::create(with_suffix(&part.path, "-spool"))?;
-        Ok(Writer { session, spool, vehicles: Vec::new(), account: Vec::new(), plans: BTreeMap::new(), network: None, part })
+        Ok(Writer {
+            session,
+            spool,
+            vehicles: Vec::new(),
+            account: Vec::new(),
+            plans: BTreeMap::new(),
+            network: None,
+            part,
+        })
     }
 }
 
