@@ -9,6 +9,7 @@
 //! | corridors | [`corridor`] | a stroke → [`corridor::StrokeCorridor`]: C¹ centreline and width profile, in metres |
 //! | certificates | [`stet`] | a corridor and a [`vehicle`] → [`stet::Certificate`] |
 //! | store | [`store`] | network and certificates → a GeoPackage |
+//! | pictures | [`picture`] | corridors, vehicles and certificates → SVG; nothing else of the library depends on it |
 //!
 //! [`pipeline`] runs them in that order. `stet` is pure: no input or output, no clock, no threads.
 
@@ -16,6 +17,7 @@ pub mod account;
 pub mod corridor;
 pub mod network;
 pub mod osm;
+pub mod picture;
 pub mod pipeline;
 pub mod stet;
 pub mod store;
