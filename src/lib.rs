@@ -9,12 +9,14 @@
 //! | corridors | [`corridor`] | a stroke → [`corridor::StrokeCorridor`]: C¹ centreline and width profile, in metres |
 //! | certificates | [`stet`] | a corridor and a [`vehicle`] → [`stet::Certificate`] |
 //! | store | [`store`] | network and certificates → a GeoPackage |
+//! | reasons | [`explain`] | an edge or corridor and a vehicle → what limits, where, and what would do |
 //! | pictures | [`picture`] | corridors, vehicles and certificates → SVG; nothing else of the library depends on it |
 //!
 //! [`pipeline`] runs them in that order. `stet` is pure: no input or output, no clock, no threads.
 
 pub mod account;
 pub mod corridor;
+pub mod explain;
 pub mod network;
 pub mod osm;
 pub mod picture;

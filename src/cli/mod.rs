@@ -8,6 +8,7 @@ mod certify;
 mod clock;
 mod corridor;
 mod database;
+mod explain;
 mod fleet;
 mod how;
 mod ingest;
@@ -58,6 +59,7 @@ pub(crate) enum Verb {
     Ingest(ingest::Ingest),
     Certify(certify::Certify),
     Query(query::Query),
+    Explain(explain::Explain),
     Corridor(corridor::Corridor),
     Vehicles(vehicles::Vehicles),
     Stats(stats::Stats),

@@ -13,8 +13,12 @@
 //! | `palette` | colours, and scales for numbers |
 //! | `furniture` | dimension lines, arrows, scale bar, legend |
 //! | `chart` | a curve over an axis |
+//! | `bodies` | a vehicle from above |
+//! | `explanation` | what limits a vehicle on a road |
 
+mod bodies;
 mod chart;
+mod explanation;
 mod furniture;
 pub mod palette;
 mod style;
@@ -24,6 +28,7 @@ mod tests;
 mod view;
 
 pub use chart::{Chart, Scale};
+pub use explanation::explanation;
 pub use furniture::{Key, arrow, callout, dimension, legend, scale_bar};
 pub use style::{Anchor, Style, TextStyle};
 pub use svg::{Picture, escaped, number};

@@ -156,11 +156,26 @@ pub fn certify_spans(
 /// `None` when the corridor has no station.
 #[must_use]
 pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<Certificate> {
+    let whole = 0..corridor.len();
+    certify_planned(corridor, model, std::slice::from_ref(&whole), options).map(|(certificate, _)| certificate)
+}
+
+/// The certificate over a whole corridor with the plan that [`certify_spans`] makes for `spans`, and what that gives for
+/// each of them: what stands behind the certificate of an edge.
+///
+/// `None` when the corridor has no station.
+#[must_use]
+pub fn certify_planned(
+    corridor: &Corridor,
+    model: &Model,
+    spans: &[Range<usize>],
+    options: &Options,
+) -> Option<(Certificate, Vec<SpanResult>)> {
     if corridor.is_empty() {
         return None;
     }
     let whole = 0..corridor.len();
-    let swept = Swept::new(corridor, &[model], std::slice::from_ref(&whole), options);
+    let swept = Swept::new(corridor, &[model], spans, options);
     let track = &swept.track;
     let centred = sweep::<true>(track, &swept.group, &vec![V::splat(0.0); track.len()], |_, _| true);
     let own = |column: &[f64]| column[track.lead..track.lead + track.count].to_vec();
@@ -171,7 +186,8 @@ pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<
             [corridor.x[k] - shift_m[k] * sin, corridor.y[k] + shift_m[k] * cos]
         })
         .collect();
-    Some(Certificate {
+    let results = spans.iter().map(|span| swept.result(0, span)).collect();
+    let certificate = Certificate {
         result: swept.result(0, &whole),
         plan,
         shift_m,
@@ -179,7 +195,8 @@ pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<
         right_m: own(&swept.full[0].right),
         left_centred_m: own(&centred[0].left),
         right_centred_m: own(&centred[0].right),
-    })
+    };
+    Some((certificate, results))
 }
 
 /// A group of vehicles after its sweeps.

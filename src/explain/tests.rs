@@ -1,0 +1,1 @@
+//! Corridors drawn by hand, and what is said of them.
