@@ -123,7 +123,8 @@ fn stroke_of(network: &Network, edge: u32) -> Option<&Stroke> {
     })
 }
 
-/// What the edge would be with each of the wider strips; one that changes nothing (a single lane) is left out.
+/// What the edge would be with each of the wider strips; one that changes nothing (a single lane) is
+/// left out.
 fn other_strips(
     network: &Network,
     edge: u32,
@@ -147,7 +148,10 @@ fn other_strips(
         let width_m = stations.map(|k| corridor.left_m[k] + corridor.right_m[k]).fold(f64::INFINITY, f64::min);
         Some(hints::OtherStrip { policy, width_m, safe: result.safe(), rsc_m: result.rsc_m })
     };
-    wider.iter().filter_map(strip).filter(|other| (other.rsc_m - rsc_m).abs() > 5e-4).collect()
+    let mut strips: Vec<hints::OtherStrip> = wider.iter().filter_map(strip).collect();
+    strips.retain(|other| (other.rsc_m - rsc_m).abs() > 5e-4);
+    strips.dedup_by(|b, a| (a.rsc_m - b.rsc_m).abs() < 5e-4);
+    strips
 }
 
 fn road_facts(network: &Network, edge: &Edge, policy: Policy) -> RoadFacts {

@@ -90,41 +90,33 @@ fn hinge(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
     let ratio = frame.width / frame.height;
     let box_of = [(1.0, ratio), (1.0, -ratio), (-1.0, ratio), (-1.0, -ratio)]
         .map(|(y, x)| [pivot[0] + x * reach, pivot[1] + y * reach]);
-    // The unit ahead of the hinge (for the steering: the direction of travel) points to the right.
-    let towing = match h.unit.checked_sub(1) {
-        Some(ahead) => h.poses.get(ahead).map_or([1.0, 0.0], |pose| pose.heading),
-        None => turned(pose.heading, h.angle_rad),
-    };
-    let view = View::turned(&box_of, -towing[1].atan2(towing[0]), frame);
+    // From where the angle is counted, to the right: what the unit ahead says for a hinge, the body itself for the steering.
+    // Positive to the left: a unit behind its hinge then points back to the left.
+    let ahead = h.unit.checked_sub(1).and_then(|ahead| h.poses.get(ahead)).map_or(pose.heading, |pose| pose.heading);
+    let (zero, sign) = if h.unit == 0 { (ahead, 1.0) } else { (ahead.map(|c| -c), -1.0) };
+    let view = View::turned(&box_of, -ahead[1].atan2(ahead[0]), frame);
     let around = 25.0 / g.corridor.spacing_m;
     scene::road(picture, g, &view, (h.station - around, h.station + around));
     bodies::vehicle(picture, &view, &e.vehicle, &h.poses, &|unit| body_colour(e, g, unit));
     let radius = 3.4;
-    let ray = |direction: Point, style: Style, p: &mut Picture| {
-        p.segment(view.at(pivot), view.at(shifted(pivot, direction, radius)), style);
-    };
-    let back = towing.map(|c| -c);
-    // Positive to the left: the unit behind lags to the right of the one ahead, so its axis points back to the left.
+    let towards = |angle: f64, metres: f64| view.at(shifted(pivot, turned(zero, sign * angle), metres));
+    let colour = verdict_colour(e);
     let limit = h.limit_rad * h.angle_rad.signum();
     picture.group("limiting", |p| {
-        ray(back, Style::line(palette::INK, 1.4), p);
-        ray(turned(back, -h.angle_rad), Style::line(verdict_colour(e), 2.2), p);
-        ray(turned(back, -limit), Style::line(palette::INK, 1.4).dashed(6.0, 4.0), p);
-        let arc: Vec<Point> =
-            (0..=40).map(|i| shifted(pivot, turned(back, -h.angle_rad * f64::from(i) / 40.0), 0.8 * radius)).collect();
-        p.polyline(&view.all(&arc), Style::line(verdict_colour(e), 2.0));
+        p.segment(view.at(pivot), towards(0.0, radius), Style::line(palette::INK, 1.4));
+        p.segment(view.at(pivot), towards(h.angle_rad, radius), Style::line(colour, 2.4));
+        p.segment(view.at(pivot), towards(limit, radius), Style::line(palette::INK, 1.4).dashed(6.0, 4.0));
+        let arc: Vec<Point> = (0..=40).map(|i| towards(h.angle_rad * f64::from(i) / 40.0, 0.8 * radius)).collect();
+        p.polyline(&arc, Style::line(colour, 2.0));
         let style = TextStyle::size(15.0).bold().haloed().anchored(Anchor::Middle);
-        let label = |angle: f64| view.at(shifted(pivot, turned(back, -angle), radius + 0.5));
         let degrees = h.angle_rad.abs().to_degrees();
-        p.text(label(h.angle_rad), &format!("{degrees:.1}°"), style.coloured(verdict_colour(e)));
-        p.text(label(limit), &format!("limit {:.0}°", h.limit_rad.to_degrees()), style);
+        p.text(towards(0.5 * h.angle_rad, 0.55 * radius), &format!("{degrees:.1}°"), style.coloured(colour));
+        p.text(towards(limit, radius + 0.5), &format!("limit {:.0}°", h.limit_rad.to_degrees()), style);
     });
+    let what = if h.unit == 0 { "the steering" } else { "the hinge" };
+    let text = format!("close up: {what} at its furthest, error bounds not drawn");
     let small = TextStyle::size(12.5).coloured(palette::GREY).haloed();
-    picture.text(
-        [frame.x + 12.0, frame.y + 22.0],
-        "close up: the hinge at its furthest, error bounds not drawn",
-        small,
-    );
+    picture.text([frame.x + 12.0, frame.y + 22.0], &text, small);
     scale_bar(picture, &view, [frame.x + 14.0, frame.y + frame.height - 12.0], 130.0);
 }
 

@@ -80,10 +80,10 @@ fn body_colour(e: &Explanation, g: &Geometry, unit: usize) -> Colour {
 
 fn keys(e: &Explanation, g: &Geometry) -> Vec<Key> {
     let unit = |i: usize| e.vehicle.units.get(i).map_or("unit", |unit| unit.name.as_str());
-    let limits = if hinge_decides(e) {
-        format!("{} and what tows it, nominally", unit(g.hinge.unit))
-    } else {
-        format!("{}, nominally", unit(g.place.unit))
+    let limits = match (hinge_decides(e), g.hinge.unit) {
+        (true, 0) => format!("{}, nominally", unit(0)),
+        (true, behind) => format!("{} and what tows it, nominally", unit(behind)),
+        (false, _) => format!("{}, nominally", unit(g.place.unit)),
     };
     vec![
         Key::new(Style::area(palette::ORANGE).filled_at(0.45).outlined(palette::INK, 1.2), limits),

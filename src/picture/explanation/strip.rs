@@ -37,6 +37,16 @@ pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: 
         let at = chart.at(s, g.result.rsc_m.clamp(chart.y.low, chart.y.high));
         picture.segment([at[0], frame.y], [at[0], frame.y + frame.height], Style::line(colour, 1.0).dashed(3.0, 3.0));
         picture.circle(at, 5.0, Style::area(colour).outlined(palette::PAPER, 1.2));
+        if g.result.shrink < 1.0 {
+            let beyond = at[0] > frame.x + 0.85 * frame.width;
+            let (x, anchor) = if beyond { (at[0] - 9.0, Anchor::End) } else { (at[0] + 9.0, Anchor::Start) };
+            let text = format!("with γ = {:.3}", g.result.shrink);
+            picture.text(
+                [x, at[1] + 4.0],
+                &text,
+                TextStyle::size(12.5).bold().coloured(colour).anchored(anchor).haloed(),
+            );
+        }
     }
     let small = TextStyle::size(12.5).haloed();
     let top = frame.y - 6.0;
