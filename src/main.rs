@@ -30,7 +30,7 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Verb::Query(verb) => verb.run(&session),
         Verb::Explain(verb) => verb.run(&session),
         Verb::Corridor(verb) => verb.run(&session),
-        Verb::Vehicles(verb) => verb.run(),
+        Verb::Vehicles(verb) => verb.run(&session),
         Verb::Stats(verb) => verb.run(),
     }
 }

@@ -15,6 +15,7 @@
 //! | `chart` | a curve over an axis |
 //! | `bodies` | a vehicle from above |
 //! | `explanation` | what limits a vehicle on a road |
+//! | `vehicle` | a vehicle with its dimensions |
 
 mod bodies;
 mod chart;
@@ -25,6 +26,7 @@ mod style;
 mod svg;
 #[cfg(test)]
 mod tests;
+mod vehicle;
 mod view;
 
 pub use chart::{Chart, Scale};
@@ -32,6 +34,7 @@ pub use explanation::explanation;
 pub use furniture::{Key, arrow, callout, dimension, legend, scale_bar};
 pub use style::{Anchor, Style, TextStyle};
 pub use svg::{Picture, escaped, number};
+pub use vehicle::vehicle;
 pub use view::{Bounds, Frame, View};
 
 /// A place: metres in the world, or page units (right and *down*), as the context says.

@@ -5,6 +5,7 @@
 
 use std::fmt;
 
+use super::collide::{self, Clash};
 use super::definition::{VehicleDefinition, closure_m};
 use super::{Unit, Vehicle};
 
@@ -47,6 +48,8 @@ const MAX_NAME_CHARS: usize = 200;
 const MAX_SOURCE_CHARS: usize = 4000;
 /// The stated length may differ from the units' by the rounding of published dimensions.
 const LENGTH_TOLERANCE_M: f64 = 0.1;
+/// Lead trailers of B-trains have theirs up to 1.5 m behind the middle of their axles (CA-BTRAIN25).
+const FAR_BEHIND_M: f64 = 2.0;
 
 /// Everything wrong with `definitions`, in file order; `line_of` finds the line of a field.
 pub(crate) fn faults(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place) -> Option<usize>) -> Vec<Fault> {
@@ -64,6 +67,23 @@ pub(crate) fn faults(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place) 
             check.bodies(&vehicle.units);
             check.length(&vehicle);
         }
+        // Bodies that stand in each other straight have been named.
+        if check.faults.len() == found {
+            check.turning(&vehicle.units, true);
+        }
+    }
+    check.faults
+}
+
+/// What is odd about vehicles without a fault, as faults are: a real vehicle may be so, but it should be looked at.
+pub(crate) fn warnings(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place) -> Option<usize>) -> Vec<Fault> {
+    let mut check = Check { line_of, vehicle: 0, label: String::new(), faults: Vec::new() };
+    for (index, definition) in definitions.iter().enumerate() {
+        check.vehicle = index;
+        check.label = format!("vehicle {:?}", shown(&definition.id));
+        let vehicle = definition.vehicle();
+        check.turning(&vehicle.units, false);
+        check.fifth_wheels(&vehicle.units);
     }
     check.faults
 }
@@ -172,6 +192,20 @@ impl Check<'_> {
                     self.fault(Some((i, u)), "front_overhang_m", problem);
                 }
             }
+            if let Some((towing, &before)) = i.checked_sub(1).and_then(|t| units.get(t)).zip(rears.last())
+                && !collide::carries(units, i - 1)
+                && !collide::is_dolly(units, i)
+                && front > before + collide::TOUCH_M
+            {
+                let how =
+                    if towing.hitch_offset_m < towing.rear_overhang_m { "under its body" } else { "behind its body" };
+                let problem = format!(
+                    "the body reaches {:.2} m into that of unit {i}, which draws it by a coupling {how}; at most {:.2}",
+                    front - before,
+                    u.front_overhang_m - (front - before)
+                );
+                self.fault(Some((i, u)), "front_overhang_m", problem);
+            }
             if let Some(&before) = i.checked_sub(2).and_then(|b| rears.get(b))
                 && front > before
             {
@@ -180,6 +214,46 @@ impl Check<'_> {
             }
             rears.push(rear);
             coupling -= u.coupling_to_axle_m + u.hitch_offset_m;
+        }
+    }
+
+    /// Hinge limits that the bodies do not let it reach: impossible where even rounded ends meet, else odd.
+    fn turning(&mut self, units: &[Unit], impossible: bool) {
+        for clash in collide::clashes(units).into_iter().filter(|clash| clash.rounded == impossible) {
+            let Clash { hinge, units: (ahead, behind), angle_deg, .. } = clash;
+            let Some(unit) = units.get(hinge) else { continue };
+            let limit_deg = (unit.max_articulation_rad.to_degrees() * 1e9).round() / 1e9;
+            let who = format!("the bodies of units {} and {}", ahead + 1, behind + 1);
+            match (angle_deg > 0.0, impossible) {
+                (false, _) => {
+                    let problem = format!("{who} stand in each other when the vehicle is straight");
+                    self.fault(Some((hinge, unit)), "front_overhang_m", problem);
+                }
+                (true, true) => {
+                    let problem = format!(
+                        "{limit_deg} cannot be reached: {who} meet at {angle_deg}° even if their ends are round"
+                    );
+                    self.fault(Some((hinge, unit)), "max_articulation_deg", problem);
+                }
+                (true, false) => {
+                    let problem = format!(
+                        "{limit_deg} is reached only by bodies with rounded corners: as rectangles, {who} meet at \
+                         {angle_deg}°"
+                    );
+                    self.fault(Some((hinge, unit)), "max_articulation_deg", problem);
+                }
+            }
+        }
+    }
+
+    /// A fifth wheel far behind its axle lifts the front of the unit that carries it.
+    fn fifth_wheels(&mut self, units: &[Unit]) {
+        for (i, u) in
+            units.iter().enumerate().filter(|(i, u)| collide::carries(units, *i) && u.hitch_offset_m > FAR_BEHIND_M)
+        {
+            let problem =
+                format!("a fifth wheel {} m behind the axle: more than {FAR_BEHIND_M} m is odd", u.hitch_offset_m);
+            self.fault(Some((i, u)), "hitch_offset_m", problem);
         }
     }
 

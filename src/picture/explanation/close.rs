@@ -86,7 +86,7 @@ fn hinge(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
     let h = &g.hinge;
     let Some((pose, unit)) = h.poses.get(h.unit).zip(e.vehicle.units.get(h.unit)) else { return };
     let pivot = pose.place(unit.coupling_to_axle_m, 0.0);
-    let reach = 5.5;
+    let reach = if h.unit == 0 { 3.2 } else { 5.5 };
     let ratio = frame.width / frame.height;
     let box_of = [(1.0, ratio), (1.0, -ratio), (-1.0, ratio), (-1.0, -ratio)]
         .map(|(y, x)| [pivot[0] + x * reach, pivot[1] + y * reach]);
@@ -98,7 +98,7 @@ fn hinge(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
     let around = 25.0 / g.corridor.spacing_m;
     scene::road(picture, g, &view, (h.station - around, h.station + around));
     bodies::vehicle(picture, &view, &e.vehicle, &h.poses, &|unit| body_colour(e, g, unit));
-    let radius = 3.4;
+    let radius = 0.62 * reach;
     let towards = |angle: f64, metres: f64| view.at(shifted(pivot, turned(zero, sign * angle), metres));
     let colour = verdict_colour(e);
     let limit = h.limit_rad * h.angle_rad.signum();
@@ -111,7 +111,7 @@ fn hinge(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
         let style = TextStyle::size(15.0).bold().haloed().anchored(Anchor::Middle);
         let degrees = h.angle_rad.abs().to_degrees();
         p.text(towards(0.5 * h.angle_rad, 0.55 * radius), &format!("{degrees:.1}°"), style.coloured(colour));
-        p.text(towards(limit, radius + 0.5), &format!("limit {:.0}°", h.limit_rad.to_degrees()), style);
+        p.text(towards(limit, 1.14 * radius), &format!("limit {:.0}°", h.limit_rad.to_degrees()), style);
     });
     let what = if h.unit == 0 { "the steering" } else { "the hinge" };
     let text = format!("close up: {what} at its furthest, error bounds not drawn");

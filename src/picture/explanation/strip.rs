@@ -21,7 +21,8 @@ pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: 
     let most = left.iter().chain(&right).map(|p| p[1]).fold(0.3, f64::max).min(ENOUGH_M);
     let chart = Chart {
         frame,
-        x: Scale::new(0.0, g.length_m().max(1.0), "metres along the edge, in driving direction").ticks(10),
+        x: Scale::new(0.0, g.length_m().max(1.0), &format!("metres along the {}, in driving direction", whole(e)))
+            .ticks(10),
         y: Scale::new(least.min(0.0) - 0.1, most + 0.1, "leeway, m").ticks(5),
     };
     chart.axes(picture);
@@ -59,6 +60,10 @@ pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: 
         format!("after correction, with the whole tracking tolerance of ±{} m", e.vehicle.tracking_tolerance_m);
     let grey = small.coloured(palette::GREY).anchored(Anchor::End);
     picture.text([frame.x + frame.width, top], &tolerance, grey);
+}
+
+fn whole(e: &Explanation) -> &'static str {
+    if e.road.is_some() { "edge" } else { "corridor" }
 }
 
 /// Metres along and leeway, over the span; what no body point visits is left out.
@@ -108,7 +113,7 @@ pub(super) fn overview(picture: &mut Picture, e: &Explanation, g: &Geometry, fra
         let at = view.at(point((station.max(0.0) as usize).min(g.corridor.len() - 1)));
         p.circle(at, 9.0, Style::line(verdict_colour(e), 2.6));
         scale_bar(p, &view, [frame.x + 14.0, frame.y + frame.height - 10.0], 120.0);
-        let text = format!("the whole edge, north up: red {FULL_M} m missing, blue {FULL_M} m to spare");
+        let text = format!("the whole {}, north up: red {FULL_M} m missing, blue {FULL_M} m to spare", whole(e));
         p.text([frame.x + 12.0, frame.y + 16.0], &text, TextStyle::size(12.0).coloured(palette::GREY).haloed());
     });
     picture.rect(frame, 0.0, Style::line(palette::PALE, 1.0));
