@@ -10,6 +10,7 @@
 //! | certificates | [`stet`] | a corridor and a [`vehicle`] → [`stet::Certificate`] |
 //! | store | [`store`] | network and certificates → a GeoPackage |
 //! | reasons | [`explain`] | an edge or corridor and a vehicle → what limits, where, and what would do |
+//! | turns | [`manoeuvres`] | a vehicle → swept paths of the turns that regulators ask for, beside their limits |
 //! | pictures | [`picture`] | corridors, vehicles and certificates → SVG; nothing else of the library depends on it |
 //!
 //! [`pipeline`] runs them in that order. `stet` is pure: no input or output, no clock, no threads.
@@ -17,6 +18,7 @@
 pub mod account;
 pub mod corridor;
 pub mod explain;
+pub mod manoeuvres;
 pub mod network;
 pub mod osm;
 pub mod picture;

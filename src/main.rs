@@ -31,6 +31,7 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Verb::Explain(verb) => verb.run(&session),
         Verb::Corridor(verb) => verb.run(&session),
         Verb::Vehicles(verb) => verb.run(&session),
+        Verb::Manoeuvres(verb) => verb.run(&session),
         Verb::Stats(verb) => verb.run(),
     }
 }

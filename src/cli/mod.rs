@@ -12,6 +12,7 @@ mod explain;
 mod fleet;
 mod how;
 mod ingest;
+mod manoeuvres;
 pub(crate) mod output;
 mod progress;
 mod query;
@@ -62,6 +63,7 @@ pub(crate) enum Verb {
     Explain(explain::Explain),
     Corridor(corridor::Corridor),
     Vehicles(vehicles::Vehicles),
+    Manoeuvres(manoeuvres::Manoeuvres),
     Stats(stats::Stats),
 }
 

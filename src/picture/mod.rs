@@ -16,11 +16,13 @@
 //! | `bodies` | a vehicle from above |
 //! | `explanation` | what limits a vehicle on a road |
 //! | `vehicle` | a vehicle with its dimensions |
+//! | `manoeuvres` | the turns by which a vehicle is judged |
 
 mod bodies;
 mod chart;
 mod explanation;
 mod furniture;
+mod manoeuvres;
 pub mod palette;
 mod style;
 mod svg;
@@ -32,6 +34,7 @@ mod view;
 pub use chart::{Chart, Scale};
 pub use explanation::explanation;
 pub use furniture::{Key, arrow, callout, dimension, legend, scale_bar};
+pub use manoeuvres::manoeuvres;
 pub use style::{Anchor, Style, TextStyle};
 pub use svg::{Picture, escaped, number};
 pub use vehicle::vehicle;

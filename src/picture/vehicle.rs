@@ -189,7 +189,7 @@ fn above(picture: &mut Picture, v: &Vehicle, layout: &Layout) {
     });
     bodies::vehicle(picture, view, v, &layout.poses, &palette::category);
     picture.group("drawbars", |p| {
-        for (i, (unit, pose)) in v.units.iter().zip(&layout.poses).enumerate().filter(|(i, _)| v.is_dolly(*i)) {
+        for (_, (unit, pose)) in v.units.iter().zip(&layout.poses).enumerate().filter(|(i, _)| v.is_dolly(*i)) {
             let eye = view.at(pose.place(unit.coupling_to_axle_m, 0.0));
             let half = 0.3 * unit.width_m;
             for left in [half, -half] {
@@ -220,7 +220,7 @@ fn dimensions(picture: &mut Picture, v: &Vehicle, layout: &Layout) {
     let below = layout.view.at([0.0, 0.0])[1] + layout.view.length(0.5 * v.width_m()) + 3.0;
     let mut ticks: Vec<f64> = Vec::new();
     let mut lines: Vec<(f64, f64, f64, String)> = Vec::new();
-    let last = v.units.len() - 1;
+    let last = v.units.len().saturating_sub(1);
     for (i, (unit, pose)) in v.units.iter().zip(&layout.poses).enumerate() {
         let (front, rear, coupling) = extent(unit, pose);
         let axle = pose.axle[0];
