@@ -160,18 +160,21 @@ fn one(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
             width(swept),
             format!("{:.2} m", swept.tail_swing_m),
             format!("{:.2} m", swept.frontal_swing_m),
-            format!("{:.2} m", swept.offtracking_m),
+            swept.width_m.map_or("–".to_owned(), |_| format!("{:.2} m", swept.offtracking_m)),
         ]);
     }
     table.write(out, "  ")?;
-    writeln!(
-        out,
-        "\n  circle, {} on 12.5 m: inner radius {:.2} m, ring {:.2} m, swing-out {:.2} m",
-        manoeuvres::circle(v).guide.words(),
-        r.circle.inner_m,
-        r.circle.width_m(),
-        r.circle.swing_out_m
-    )?;
+    let ring = match beyond_limit(v, &r.circle.angles_rad) {
+        Some(0) => "cannot be driven, beyond the steering lock".to_owned(),
+        Some(hinge) => format!("cannot be driven, beyond the limit of hinge {hinge}"),
+        None => format!(
+            "inner radius {:.2} m, ring {:.2} m, swing-out {:.2} m",
+            r.circle.inner_m,
+            r.circle.width_m(),
+            r.circle.swing_out_m
+        ),
+    };
+    writeln!(out, "\n  circle, {} on 12.5 m: {ring}", manoeuvres::circle(v).guide.words())?;
     let steady = STEADY_RADII_M.iter().zip(&r.steady_offtracking_m).map(|(radius, off)| match off {
         Some(metres) => format!("{metres:.2} m at {radius} m"),
         None => format!("none at {radius} m"),

@@ -202,7 +202,10 @@ fn numbers(picture: &mut Picture, at: Point, vehicle: &Vehicle, swept: &Swept, f
     let hinge = swept.angles_rad.iter().skip(1).fold(0.0_f64, |most, &a| most.max(a)).to_degrees();
     let steering = swept.angles_rad.first().map_or(0.0, |a| a.to_degrees());
     let mut lines = vec![
-        format!("swept path {} · last axle cuts in {:.2} m", width(swept), swept.offtracking_m),
+        match swept.width_m {
+            Some(_) => format!("swept path {} · last axle cuts in {:.2} m", width(swept), swept.offtracking_m),
+            None => "comes past the centre: no swept path".to_owned(),
+        },
         format!("tail swing {:.2} m · frontal swing {:.2} m", swept.tail_swing_m, swept.frontal_swing_m),
         format!("greatest steering angle {steering:.1}° · articulation {hinge:.1}°"),
     ];

@@ -48,8 +48,6 @@ const MAX_NAME_CHARS: usize = 200;
 const MAX_SOURCE_CHARS: usize = 4000;
 /// The stated length may differ from the units' by the rounding of published dimensions.
 const LENGTH_TOLERANCE_M: f64 = 0.1;
-/// Lead trailers of B-trains have theirs up to 1.5 m behind the middle of their axles (CA-BTRAIN25).
-const FAR_BEHIND_M: f64 = 2.0;
 
 /// Everything wrong with `definitions`, in file order; `line_of` finds the line of a field.
 pub(crate) fn faults(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place) -> Option<usize>) -> Vec<Fault> {
@@ -83,7 +81,6 @@ pub(crate) fn warnings(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place
         check.label = format!("vehicle {:?}", shown(&definition.id));
         let vehicle = definition.vehicle();
         check.turning(&vehicle.units, false);
-        check.fifth_wheels(&vehicle.units);
     }
     check.faults
 }
@@ -243,17 +240,6 @@ impl Check<'_> {
                     self.fault(Some((hinge, unit)), "max_articulation_deg", problem);
                 }
             }
-        }
-    }
-
-    /// A fifth wheel far behind its axle lifts the front of the unit that carries it.
-    fn fifth_wheels(&mut self, units: &[Unit]) {
-        for (i, u) in
-            units.iter().enumerate().filter(|(i, u)| collide::carries(units, *i) && u.hitch_offset_m > FAR_BEHIND_M)
-        {
-            let problem =
-                format!("a fifth wheel {} m behind the axle: more than {FAR_BEHIND_M} m is odd", u.hitch_offset_m);
-            self.fault(Some((i, u)), "hitch_offset_m", problem);
         }
     }
 

@@ -14,6 +14,10 @@ const STEP_DEG: f64 = 0.25;
 /// Bodies that touch do not overlap; published dimensions are rounded, metres.
 pub(crate) const TOUCH_M: f64 = 0.05;
 
+/// A fifth wheel farther behind the axle than this share of L would lift the front of the unit that carries it. The lead
+/// trailer of a Canadian B-train has it at 0.21 (CA-BTRAIN25); lorries have the eyes of their drawbars from 0.3 on.
+const FIFTH_WHEEL_MOST: f64 = 0.28;
+
 /// Two bodies that meet as a hinge turns.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Clash {
@@ -34,12 +38,13 @@ pub(crate) fn is_dolly(units: &[Unit], unit: usize) -> bool {
     own && unit > 0 && carries(units, unit)
 }
 
-/// Whether `unit` carries the next one's body on a fifth wheel: the coupling is over its own frame, and the body reaches
-/// ahead of it.
+/// Whether `unit` carries the next one's body on a fifth wheel: the body reaches ahead of the coupling, which is over the
+/// unit's own frame and no farther behind its axles than they can bear.
 #[must_use]
 pub(crate) fn carries(units: &[Unit], unit: usize) -> bool {
     units.get(unit).zip(units.get(unit + 1)).is_some_and(|(carrier, carried)| {
-        carried.front_overhang_m > 0.0 && carrier.hitch_offset_m < carrier.rear_overhang_m
+        let most = carrier.rear_overhang_m.min(FIFTH_WHEEL_MOST * carrier.coupling_to_axle_m);
+        carried.front_overhang_m > 0.0 && carrier.hitch_offset_m < most
     })
 }
 
