@@ -197,7 +197,7 @@ fn the_steering_limit_that_would_do_does_and_less_does_not() {
     vehicle.units[0].max_articulation_rad = 20f64.to_radians();
     let bend: Vec<[f64; 2]> = (0..60)
         .map(|i| (f64::from(i) / 14.0).min(1.2))
-        .map(|a| a.sin_cos())
+        .map(f64::sin_cos)
         .map(|(s, c)| [14.0 * s, 14.0 * (1.0 - c)])
         .collect();
     let mut points = vec![[-30.0, 0.0], [-20.0, 0.0], [-10.0, 0.0]];

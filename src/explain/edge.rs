@@ -10,7 +10,7 @@ use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::osm::facts::{Direction, Policy};
 use crate::pipeline::{Settings, verdict};
-use crate::stet::{Model, Options, certify_planned};
+use crate::stet::{Model, Options, SpanResult, certify_planned, certify_spans};
 use crate::store::{EdgeRow, Named as _, verdict_words};
 use crate::verdict::{UnknownReason, Verdict};
 
@@ -93,8 +93,8 @@ impl Case {
     }
 
     /// The edge's result in another corridor of the same stations.
-    fn result(&self, corridor: &Corridor, model: &Model, options: &Options) -> Option<crate::stet::SpanResult> {
-        let rows = crate::stet::certify_spans(corridor, &[model], &self.spans(), options);
+    fn result(&self, corridor: &Corridor, model: &Model, options: &Options) -> Option<SpanResult> {
+        let rows = certify_spans(corridor, &[model], &self.spans(), options);
         rows.into_iter().next()?.into_iter().nth(self.which)
     }
 }
@@ -142,7 +142,7 @@ fn other_strips(
         if case.unknown().is_some() {
             return None;
         }
-        let result = case.result(&case.made.corridor, model, &settings.stet).filter(|result| result.seen())?;
+        let result = case.result(&case.made.corridor, model, &settings.stet).filter(SpanResult::seen)?;
         let corridor = &case.made.corridor;
         let stations = case.made.spans.get(case.which)?.stations.clone();
         let width_m = stations.map(|k| corridor.left_m[k] + corridor.right_m[k]).fold(f64::INFINITY, f64::min);

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::words::words;
 use super::{Explanation, Geometry, Part};
+use crate::osm::facts::WidthSource;
 use crate::store::{Named as _, verdict_words};
 use crate::vehicle::Vehicle;
 
@@ -25,7 +26,7 @@ pub fn json(e: &Explanation) -> Value {
             "name": road.name,
             "ref": road.reference,
             "corridor": road.policy.name(),
-            "width_source": road.width_source.map(|source| source.name()),
+            "width_source": road.width_source.map(WidthSource::name),
         })
     });
     let conflict =

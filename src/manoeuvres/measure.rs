@@ -64,52 +64,59 @@ impl Swept {
     /// Measures a turn.
     #[must_use]
     pub fn of(vehicle: &Vehicle, drive: &Drive) -> Self {
-        let mut extents = Extents::default();
-        let (mut frontal_swing_m, mut offtracking_m) = (0.0_f64, 0.0_f64);
-        let last = vehicle.units.len().saturating_sub(1);
-        let mut past_centre = false;
-        for (k, poses) in drive.poses.iter().enumerate().step_by(EVERY) {
-            let head_m = drive.at_m.get(k).copied().unwrap_or(0.0);
-            let mut behind_m = 0.0;
-            let steer = vehicle
-                .units
-                .first()
-                .zip(poses.first())
-                .and_then(|(unit, pose)| drive.turn.foot(pose.place(unit.coupling_to_axle_m, 0.0), head_m));
-            for (i, (unit, pose)) in vehicle.units.iter().zip(poses).enumerate() {
-                for point in points(unit) {
-                    let guess_m = head_m - behind_m - unit.coupling_to_axle_m + point[0];
-                    match drive.turn.foot(pose.place(point[0], point[1]), guess_m) {
-                        Some(foot) if foot[1] < drive.turn.radius_m => extents.add(foot),
-                        _ => past_centre = true,
-                    }
-                }
-                behind_m += unit.coupling_to_axle_m + unit.hitch_offset_m;
-                if i == 0 {
-                    let corner = pose.place(unit.coupling_to_axle_m + unit.front_overhang_m, -0.5 * unit.width_m);
-                    let foot = drive.turn.foot(corner, head_m);
-                    frontal_swing_m = frontal_swing_m.max(foot.map_or(0.0, |[_, left]| -left));
-                }
-                if i == last {
-                    let guess_m = head_m - behind_m + unit.hitch_offset_m;
-                    let axle = drive.turn.foot(pose.axle, guess_m);
-                    // Both across the same path, whose guide may run beside the steer axle.
-                    let beside = steer.map_or(0.0, |[_, left]| left);
-                    offtracking_m = offtracking_m.max(axle.map_or(0.0, |[_, left]| left - beside));
-                }
-            }
+        let mut gathered = Gathered::default();
+        for (poses, &head_m) in drive.poses.iter().zip(&drive.at_m).step_by(EVERY) {
+            gathered.moment(vehicle, drive, poses, head_m);
         }
-        let (width_at_m, extent_m) = extents.widest();
+        let (width_at_m, extent_m) = gathered.extents.widest();
         let (tail_swing_m, tail_unit) = tail_swing(vehicle, drive);
         Self {
-            width_m: (!past_centre).then_some(extent_m[0] - extent_m[1]),
+            width_m: (!gathered.past_centre).then_some(extent_m[0] - extent_m[1]),
             width_at_m,
             extent_m,
             tail_swing_m,
             tail_unit,
-            frontal_swing_m,
-            offtracking_m,
+            frontal_swing_m: gathered.frontal_swing_m,
+            offtracking_m: gathered.offtracking_m,
             angles_rad: angles(vehicle, drive),
+        }
+    }
+}
+
+/// What is gathered over a turn, moment by moment.
+#[derive(Default)]
+struct Gathered {
+    extents: Extents,
+    /// A body point came past the arc's centre.
+    past_centre: bool,
+    frontal_swing_m: f64,
+    offtracking_m: f64,
+}
+
+impl Gathered {
+    fn moment(&mut self, vehicle: &Vehicle, drive: &Drive, poses: &[Pose], head_m: f64) {
+        let turn = &drive.turn;
+        // Of each unit's axle behind the guide, straight.
+        let mut axle_m = head_m;
+        for (unit, pose) in vehicle.units.iter().zip(poses) {
+            axle_m -= unit.coupling_to_axle_m;
+            for [ahead, left] in points(unit) {
+                match turn.foot(pose.place(ahead, left), axle_m + ahead) {
+                    Some(foot) if foot[1] < turn.radius_m => self.extents.add(foot),
+                    _ => self.past_centre = true,
+                }
+            }
+            axle_m -= unit.hitch_offset_m;
+        }
+        let left_of_path = |point: [f64; 2], guess_m: f64| turn.foot(point, guess_m).map(|[_, left]| left);
+        if let Some((unit, pose)) = vehicle.units.first().zip(poses.first()) {
+            let corner = pose.place(unit.coupling_to_axle_m + unit.front_overhang_m, -0.5 * unit.width_m);
+            self.frontal_swing_m = self.frontal_swing_m.max(left_of_path(corner, head_m).map_or(0.0, |left| -left));
+            // Both across the same path, whose guide may run beside the steer axle.
+            let steer = left_of_path(pose.place(unit.coupling_to_axle_m, 0.0), head_m).unwrap_or(0.0);
+            let hitch_m = vehicle.units.last().map_or(0.0, |unit| unit.hitch_offset_m);
+            let last = poses.last().and_then(|pose| left_of_path(pose.axle, axle_m + hitch_m));
+            self.offtracking_m = self.offtracking_m.max(last.map_or(0.0, |left| left - steer));
         }
     }
 }
