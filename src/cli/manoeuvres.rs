@@ -148,6 +148,16 @@ fn many(out: &mut dyn Write, all: &[(&Vehicle, Report)]) -> std::io::Result<()> 
 
 fn one(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
     writeln!(out, "{} {}\n", v.id, v.name)?;
+    turns(out, v, r)?;
+    angles(out, v, r)?;
+    writeln!(out)?;
+    limits(out, r)?;
+    writeln!(out, "\n– : beyond a hinge's or the steering's limit, or past the centre of the turn.")?;
+    writeln!(out, "Rectangular bodies, one effective axle a unit, no tyre slip: a pass is no approval.")
+}
+
+/// What each turn sweeps, with its guide; the circle; steady off-tracking.
+fn turns(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
     let mut table =
         Table::new(&["turn", "guide", ">swept path", ">tail swing", ">frontal swing", ">last axle cuts in"]);
     for (name, turn, swept) in [
@@ -179,9 +189,11 @@ fn one(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
         Some(metres) => format!("{metres:.2} m at {radius} m"),
         None => format!("none at {radius} m"),
     });
-    writeln!(out, "  steady off-tracking, steer axle to last axle: {}\n", steady.collect::<Vec<_>>().join(", "))?;
-    angles(out, v, r)?;
-    writeln!(out)?;
+    writeln!(out, "  steady off-tracking, steer axle to last axle: {}\n", steady.collect::<Vec<_>>().join(", "))
+}
+
+/// Measures beside published limits, and where those come from.
+fn limits(out: &mut dyn Write, r: &Report) -> std::io::Result<()> {
     let mut table = Table::new(&["limit", "of", ">at", ">measured", "", "sureness"]);
     for f in &r.findings {
         let bound = if f.limit.measure.at_least() { "at least" } else { "at most" };
@@ -203,8 +215,7 @@ fn one(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
             writeln!(out, "  {}", f.limit.source)?;
         }
     }
-    writeln!(out, "\n– : beyond a hinge's or the steering's limit, or past the centre of the turn.")?;
-    writeln!(out, "Rectangular bodies, one effective axle a unit, no tyre slip: a pass is no approval.")
+    Ok(())
 }
 
 /// What the turns ask of steering and hinges, beside what they allow.

@@ -12,6 +12,7 @@
 //! | `place` | the metre of road, the unit, the corner; the hinge |
 //! | `hints` | what would do: certified again, wider, steered more closely, with another strip |
 //! | `legal` | the tagged rule that forbids, beside what the vehicle has |
+//! | `names` | what things are called, amounts that do not flatter |
 //! | `words` | all of it as sentences |
 //! | `json` | all of it as JSON |
 
@@ -20,6 +21,7 @@ mod given;
 mod hints;
 mod json;
 mod legal;
+mod names;
 mod place;
 mod ride;
 #[cfg(test)]
@@ -33,9 +35,10 @@ pub use given::explain_corridor;
 pub use hints::{Hints, OtherStrip, WidthHint};
 pub use json::json;
 pub use legal::Conflict;
+pub use names::cautious_m;
 pub use place::{Bend, Cross, HingePlace, Part, Place};
 pub use ride::Ride;
-pub use words::{Words, cautious_m, words};
+pub use words::{Words, words};
 
 use crate::corridor::Corridor;
 use crate::osm::facts::{Direction, Policy, WidthSource};

@@ -3,9 +3,8 @@
 //! `safe` is never said without its scope.
 
 use super::hints::{MOST_MORE_M, OtherStrip};
+use super::names::{cut, hinge_name, named, needed, source_words, strip_name};
 use super::{Explanation, Geometry, HingePlace, Part, Place};
-use crate::osm::facts::{Policy, WidthSource};
-use crate::store::Named as _;
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
@@ -51,76 +50,13 @@ pub fn words(e: &Explanation) -> Words {
     Words { headline, reasons, hints: hints(e), scope: scope(e) }
 }
 
-/// The amount of a leeway in centimetres without its sign: never more to spare, never less missing than there is.
-#[must_use]
-pub fn cautious_m(leeway_m: f64) -> String {
-    if leeway_m < 0.0 { needed(-leeway_m) } else { cut(leeway_m) }
-}
-
-/// Metres to spare: never more than there are.
-fn cut(metres: f64) -> String {
-    format!("{:.2}", (metres * 100.0 + 1e-6).floor() / 100.0)
-}
-
-/// Metres missing: never fewer than there are.
-fn needed(metres: f64) -> String {
-    format!("{:.2}", (metres * 100.0 - 1e-6).ceil() / 100.0)
-}
-
 fn at(g: &Geometry) -> f64 {
     g.along_m(g.place.station)
-}
-
-impl Explanation {
-    /// What the strip of road is called under the policy that counts.
-    #[must_use]
-    pub fn strip_name(&self) -> &'static str {
-        self.road.as_ref().map_or("corridor", |road| strip_name(road.policy))
-    }
-}
-
-fn strip_name(policy: Policy) -> &'static str {
-    match policy {
-        Policy::Lane => "lane",
-        Policy::Direction => "strip of one's own direction",
-        Policy::Carriageway => "carriageway",
-    }
 }
 
 /// Unit, corner, and where in a bend.
 fn who(e: &Explanation, g: &Geometry) -> String {
     format!("{}, {}", e.corner(&g.place), bend(&g.place))
-}
-
-impl Explanation {
-    /// `rear left corner of trailer 2 (unit 4 of 6)`
-    #[must_use]
-    pub fn corner(&self, place: &Place) -> String {
-        let side = place.side.name();
-        let part = match place.part {
-            Part::FrontCorner => format!("front {side} corner"),
-            Part::RearCorner => format!("rear {side} corner"),
-            Part::Axle => format!("{side} side, at the axle,"),
-            Part::Side(m) if m > 0.0 => format!("{side} side, {m:.1} m ahead of the axle,"),
-            Part::Side(m) => format!("{side} side, {:.1} m behind the axle,", -m),
-        };
-        format!("{part} of {}", unit_name(&self.vehicle, place.unit))
-    }
-}
-
-/// `the tractor`, `trailer 2`: a numbered unit is a name.
-fn named(vehicle: &Vehicle, unit: usize) -> String {
-    let name = vehicle.units.get(unit).map_or("unit", |u| u.name.as_str());
-    let numbered = name.ends_with(|c: char| c.is_ascii_digit()) || name.contains(',');
-    if numbered { name.to_owned() } else { format!("the {name}") }
-}
-
-fn unit_name(vehicle: &Vehicle, unit: usize) -> String {
-    let name = named(vehicle, unit);
-    match vehicle.units.len() {
-        1 => name,
-        count => format!("{name} (unit {} of {count})", unit + 1),
-    }
 }
 
 fn bend(place: &Place) -> String {
@@ -129,15 +65,6 @@ fn bend(place: &Place) -> String {
         Some(bend) => {
             let side = if bend.to == place.side { "inside" } else { "outside" };
             format!("on the {side} of a bend of {:.0} m radius", bend.radius_m)
-        }
-    }
-}
-
-fn hinge_name(vehicle: &Vehicle, unit: usize) -> String {
-    match unit.checked_sub(1) {
-        None => "the steering".to_owned(),
-        Some(towing) => {
-            format!("the hinge between {} and {}", named(vehicle, towing), named(vehicle, unit))
         }
     }
 }
@@ -198,18 +125,6 @@ fn gap(e: &Explanation, place: &Place, strip: &str) -> String {
          errors.",
         place.width_m, place.bounds_m
     )
-}
-
-/// Where a width comes from, in words.
-#[must_use]
-pub(super) fn source_words(source: WidthSource) -> &'static str {
-    match source {
-        WidthSource::Assumed => "assumed from the road's class and country",
-        WidthSource::FromLanes => "from the tagged number of lanes, their width assumed",
-        WidthSource::Estimated => "tagged as estimated",
-        WidthSource::Tagged => "tagged",
-        WidthSource::Surveyed => "tagged as surveyed",
-    }
 }
 
 fn tracking(vehicle: &Vehicle, g: &Geometry) -> String {

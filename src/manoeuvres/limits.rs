@@ -119,7 +119,7 @@ const fn read(measure: Measure, who: &'static str, metres: f64, source: &'static
 }
 
 /// All limits, the stricter levels first.
-const LIMITS: [Limit; 15] = [
+const LIMITS: [Limit; 14] = [
     pbs(Measure::SweptPath, "PBS level 1", 7.4),
     pbs(Measure::SweptPath, "PBS level 2", 8.7),
     pbs(Measure::SweptPath, "PBS level 3", 10.6),
@@ -131,14 +131,6 @@ const LIMITS: [Limit; 15] = [
     Limit { buses: Some(false), ..pbs(Measure::FrontalSwing, "PBS, all levels", 0.70) },
     Limit { buses: Some(true), ..pbs(Measure::FrontalSwing, "PBS, buses", 1.50) },
     read(Measure::InnerRadius, "EU", 5.30, EU, None),
-    Limit {
-        measure: Measure::InnerRadius,
-        who: "SE, FI for 25.25 m",
-        metres: 2.0,
-        source: "national rules for combinations of 25.25 m: outer 12.5 m, inner 2.0 m",
-        sureness: Sureness::NotRead,
-        buses: Some(false),
-    },
     read(Measure::RingWidth, "DE", 7.20, STVZO, None),
     read(Measure::SwingOut, "DE", 0.80, STVZO, Some(false)),
     read(Measure::SwingOut, "DE, buses", 0.60, STVZO, Some(true)),

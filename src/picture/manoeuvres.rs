@@ -49,7 +49,7 @@ pub fn manoeuvres(vehicle: &Vehicle) -> String {
         &report,
         &of(&[Measure::InnerRadius, Measure::RingWidth, Measure::SwingOut]),
     );
-    let notes = "Limits of PBS and of SE, FI: the standard is named, its text was not read. EU: directive 96/53/EC with 97/27/EC; DE: \
+    let notes = "Limits of PBS: the standard is named, its text was not read. EU: directive 96/53/EC with 97/27/EC; DE: \
                  StVZO § 32d; both read. Rounded corners of real bodies swing less.";
     picture.text([MARGIN, 866.0], notes, TextStyle::size(12.0).coloured(palette::GREY));
     picture.finish()
@@ -174,7 +174,10 @@ fn circle(picture: &mut Picture, vehicle: &Vehicle, report: &Report, frame: Fram
         let text = TextStyle::size(15.0).bold().coloured(palette::VERMILLION);
         let at =
             |angle: f64, radius: f64| view.at([middle[0] + radius * angle.cos(), middle[1] + radius * angle.sin()]);
-        dimension(p, view.at(middle), at(0.6, report.circle.inner_m), &format!("{:.2} m", report.circle.inner_m), text);
+        if undrivable(vehicle, &report.circle.angles_rad).is_none() {
+            let inner_m = report.circle.inner_m;
+            dimension(p, view.at(middle), at(0.6, inner_m), &format!("{inner_m:.2} m"), text);
+        }
         let ink = TextStyle::size(13.0).anchored(Anchor::Middle).haloed();
         p.text(at(1.57, 5.55), "5.3 m", ink);
         p.text(at(1.57, 12.75), "12.5 m", ink.coloured(palette::BLUE));
@@ -221,7 +224,9 @@ fn ring_numbers(picture: &mut Picture, at: Point, vehicle: &Vehicle, report: &Re
         format!("swing-out on entering {:.2} m", ring.swing_out_m),
         format!("greatest articulation {hinge:.1}°"),
     ];
-    lines.extend(undrivable(vehicle, &ring.angles_rad));
+    if let Some(why) = undrivable(vehicle, &ring.angles_rad) {
+        lines = vec![why, format!("articulation would come to {hinge:.1}°")];
+    }
     listed(picture, at, &lines, findings);
 }
 

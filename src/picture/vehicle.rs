@@ -154,7 +154,7 @@ fn side(picture: &mut Picture, v: &Vehicle, layout: &Layout) {
             let x = layout.x(pose.axle[0] - unit.hitch_offset_m);
             p.circle([x, ground - scale * (deck - 0.2 * frame)], 4.0, Style::area(palette::VERMILLION));
         }
-        let x = WIDTH - MARGIN + 28.0;
+        let x = layout.x(-v.length_m) + 28.0;
         let (top, style) = (ground - scale * tall, TextStyle::size(13.0).coloured(palette::GREY));
         let said = if v.height_m.is_some() { format!("{tall:.2} m") } else { "height not known".to_owned() };
         dimension(p, [x, ground], [x, top], &said, style);

@@ -37,10 +37,25 @@ fn corner(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
     scene::lines(picture, g, &view, window);
     scene::kerbs(picture, g, &view, window);
 
+    gap(picture, e, g, &view, (along, 0.36 * reach * ratio));
+    let small = TextStyle::size(12.5).coloured(palette::GREY).haloed();
+    let side = if matches!(place.side, crate::stet::Side::Left) { "left" } else { "right" };
+    picture.text(
+        [frame.x + 12.0, frame.y + 22.0],
+        &format!("close up: {side} edge, drawn with the road to the right"),
+        small,
+    );
+    scale_bar(picture, &view, [frame.x + 14.0, frame.y + frame.height - 12.0], 130.0);
+}
+
+/// Corner, the farthest that errors reach, and edge: what lies between them as dimension lines, drawn `step` metres apart
+/// along the road.
+fn gap(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, (along, step): (Point, f64)) {
+    let place = &g.place;
+    let out = place.outward;
     let worst = shifted(place.corner, out, place.bounds_m);
     let edge = shifted(place.corner, out, place.nominal_m);
     let colour = verdict_colour(e);
-    let step = 0.36 * reach * ratio;
     // Beside the body, where there is none.
     let away = if matches!(place.part, crate::explain::Part::FrontCorner) { 1.0 } else { -1.0 };
     let beside = |point: Point, steps: f64| view.at(shifted(point, along, away * steps * step));
@@ -67,14 +82,6 @@ fn corner(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
         let at = [x + 12.0, 0.5 * (low + high) + 5.0];
         p.text(at, &format!("{:.2} m for errors", place.bounds_m), bold);
     });
-    let small = TextStyle::size(12.5).coloured(palette::GREY).haloed();
-    let side = if matches!(place.side, crate::stet::Side::Left) { "left" } else { "right" };
-    picture.text(
-        [frame.x + 12.0, frame.y + 22.0],
-        &format!("close up: {side} edge, drawn with the road to the right"),
-        small,
-    );
-    scale_bar(picture, &view, [frame.x + 14.0, frame.y + frame.height - 12.0], 130.0);
 }
 
 /// A dimension line without text.
@@ -98,7 +105,7 @@ fn hinge(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
     let around = 25.0 / g.corridor.spacing_m;
     scene::road(picture, g, &view, (h.station - around, h.station + around));
     bodies::vehicle(picture, &view, &e.vehicle, &h.poses, &|unit| body_colour(e, g, unit));
-    let radius = 0.62 * reach;
+    let radius = if h.unit == 0 { 0.95 } else { 0.62 } * reach;
     let towards = |angle: f64, metres: f64| view.at(shifted(pivot, turned(zero, sign * angle), metres));
     let colour = verdict_colour(e);
     let limit = h.limit_rad * h.angle_rad.signum();
