@@ -9,7 +9,6 @@ mod leeway;
 mod model;
 pub mod motion;
 mod plan;
-mod published;
 mod spans;
 mod sweep;
 mod track;
