@@ -48,9 +48,8 @@ pub(super) fn table(out: &mut dyn Write, simulated: &[Simulated], timing: Option
 }
 
 fn own_numbers(simulated: &[Simulated]) -> Table {
-    let mut table = Table::new(&[
-        ">Sc", ">units", ">L", ">θ", ">body", ">h_Ω", ">h_Ξ", ">r_N^max", ">w_min", ">𝒞", "verdict",
-    ]);
+    let mut table =
+        Table::new(&[">Sc", ">units", ">L", ">θ", ">body", ">h_Ω", ">h_Ξ", ">r_N^max", ">w_min", ">𝒞", "verdict"]);
     for s in simulated {
         let (sc, rsc) = (&s.scenario, s.scenario.rsc());
         table.row([

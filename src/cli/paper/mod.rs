@@ -71,7 +71,7 @@ impl Paper {
         }
         std::io::Write::flush(&mut out)?;
         if let Some(folder) = &self.out {
-            for (name, svg) in figures::all(&simulated, timing.as_ref()) {
+            for (name, svg) in figures::all(&simulated, &route, timing.as_ref())? {
                 write(folder, name, &svg)?;
                 session.progress.say(&format!("{}", folder.join(name).display()));
             }
