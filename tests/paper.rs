@@ -9,7 +9,7 @@ mod program;
 use program::Place;
 use serde_json::Value;
 
-const FIGURES: [&str; 3] = ["leeway.svg", "rsc.svg", "tubes.svg"];
+const FILES: [&str; 4] = ["leeway.svg", "rsc.svg", "tubes.json", "tubes.svg"];
 
 fn safe(answer: &Value, which: &str) -> Vec<u64> {
     let rows = answer["scenarios"].as_array().unwrap().iter();
@@ -48,16 +48,19 @@ fn figures_are_the_same_bytes_every_time() {
     let place = Place::empty();
     place.netcert("paper --out a/deep/er --format json").succeeds().tells("tubes.svg");
     place.netcert("paper --out b --threads 1 --format json").succeeds();
-    for name in FIGURES {
+    for name in FILES {
         let [a, b] = ["a/deep/er", "b"].map(|folder| place.read(&format!("{folder}/{name}")));
         assert!(a == b, "{name}");
         let text = String::from_utf8(a).unwrap();
+        if name == "tubes.json" {
+            continue;
+        }
         assert!(text.starts_with("<svg ") && text.ends_with("</svg>\n") && text.contains("<title>"));
         assert!(!text.contains("NaN") && !text.contains("inf"));
     }
     let mut names: Vec<_> = std::fs::read_dir(place.path("b")).unwrap().map(|e| e.unwrap().file_name()).collect();
     names.sort();
-    assert_eq!(names, FIGURES, "run time is drawn only when measured");
+    assert_eq!(names, FILES, "run time is drawn only when measured");
 }
 
 #[test]
@@ -72,5 +75,29 @@ fn run_time_is_measured_on_request() {
 #[test]
 fn a_folder_that_cannot_be_made_is_named() {
     let place = Place::empty().file("taken", "a file");
-    place.netcert("paper --out taken").fails().tells("tubes.svg: cannot write the figure").tells("--out");
+    place.netcert("paper --out taken").fails().tells("tubes.svg: cannot write it").tells("--out");
+}
+
+#[test]
+fn tubes_are_functions_of_time() {
+    let place = Place::empty();
+    place.netcert("paper --out .").succeeds();
+    let file: Value = serde_json::from_slice(&place.read("tubes.json")).unwrap();
+    let numbers =
+        |value: &Value| -> Vec<f64> { value.as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect() };
+    let tubes = file["tubes"].as_array().unwrap();
+    assert_eq!((file["scenario"].as_u64(), tubes.len()), (Some(5), 4));
+    for tube in tubes {
+        let t = numbers(&tube["t"]);
+        assert!(t[0] == 0.0 && t.windows(2).all(|w| w[1] > w[0]) && t.len() == 545);
+        // 543.62 m at 80 km/h and less take 24.5 s and more.
+        assert!(t[544] > 24.5 && t[544] < 60.0, "{}", t[544]);
+        for field in ["centre", "shape", "leeway_m"] {
+            assert_eq!(tube[field].as_array().unwrap().len(), t.len());
+        }
+        for shape in tube["shape"].as_array().unwrap() {
+            let [q11, q12, q22] = numbers(shape)[..] else { panic!("three elements") };
+            assert!(q11 > 0.0 && q11 * q22 - q12 * q12 > 0.0, "Q is positive definite");
+        }
+    }
 }

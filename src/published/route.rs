@@ -47,6 +47,19 @@ impl Route {
         self.centre.is_empty()
     }
 
+    /// The instant before t (seconds) and how far on to the next, 0 to 1; `None` outside [0, T].
+    #[must_use]
+    pub fn instant(&self, t_s: f64) -> Option<(usize, f64)> {
+        let (first, last) = (*self.t_s.first()?, *self.t_s.last()?);
+        if !(first..=last).contains(&t_s) {
+            return None;
+        }
+        let i = self.t_s.partition_point(|&t| t <= t_s).saturating_sub(1).min(self.len().saturating_sub(2));
+        let next = self.t_s.get(i + 1).copied().unwrap_or(last);
+        let fraction = if next > self.t_s[i] { (t_s - self.t_s[i]) / (next - self.t_s[i]) } else { 0.0 };
+        Some((i, fraction))
+    }
+
     /// n̂(t) at instant `i`.
     #[must_use]
     pub fn normal(&self, i: usize) -> V2 {

@@ -4,7 +4,7 @@ use super::corrections::{Permissible, corrcen, shrink};
 use super::ellipse::{Shape, Stet};
 use super::kinematics::Chain;
 use super::leeway::{Leeway, boundary_leeway};
-use super::plane::{V2, along, perp};
+use super::plane::{V2, along, minus, perp};
 use super::reading::Reading;
 use super::route::Route;
 use super::rsc::{Rsc, cert};
@@ -49,6 +49,22 @@ pub struct RouteCert {
     pub chain: Chain,
 }
 
+impl RouteCert {
+    /// 𝓔_i(q̃_i(t), Q̃_i(t)) of a unit at any t (seconds): between two instants q and Q are linear. `None` outside [0, T] or for
+    /// no unit. The route must be the one that this was made of.
+    #[must_use]
+    pub fn tube_at(&self, route: &Route, unit: usize, t_s: f64) -> Option<Stet> {
+        let (i, fraction) = route.instant(t_s)?;
+        let tube = self.tubes.get(unit)?;
+        let before = tube.get(i)?;
+        let after = tube.get(i + 1).unwrap_or(before);
+        Some(Stet {
+            centre: along(before.centre, fraction, minus(after.centre, before.centre)),
+            shape: before.shape.combined(1.0 - fraction, &after.shape, fraction),
+        })
+    }
+}
+
 /// ROUTE_CERT(Σ, 𝓡(t), Ω, Ξ). `path` is q_0(t), nominally the route's centre, one point an instant. `None` where the route is
 /// empty or `path` has another length.
 #[must_use]
@@ -67,9 +83,9 @@ pub fn route_cert(
     let mut tubes = vec![Vec::with_capacity(path.len()); system.trailers + 1];
     let mut steps = Vec::with_capacity(path.len());
     // Line 2.
-    for i in 0..path.len() {
+    for (i, &q0) in path.iter().enumerate() {
         let at = Instant { system, route, chain: &chain, reading, i };
-        let (step, prime) = at.corrected(path[i], permissible);
+        let (step, prime) = at.corrected(q0, permissible);
         for (tube, stet) in tubes.iter_mut().zip(at.propagated(&prime)) {
             tube.push(stet);
         }
@@ -171,6 +187,18 @@ mod tests {
         let run = route_cert(&SYSTEM, &route, &route.centre, &NONE, &Reading::SIMULATED).unwrap();
         let expected = 50.0 - (2500.0f64 - 32.0).sqrt();
         assert!((run.rsc.h_omega_m - expected).abs() < 1e-3, "{} not {expected}", run.rsc.h_omega_m);
+    }
+
+    #[test]
+    fn tubes_are_functions_of_time() {
+        let route = straight(6.0);
+        let run = route_cert(&SYSTEM, &route, &route.centre, &NONE, &Reading::SIMULATED).unwrap();
+        let speed = Pace::default().limit_m_s;
+        let halfway = run.tube_at(&route, 2, 30.5 / speed).unwrap();
+        assert!((halfway.centre[0] - 22.5).abs() < 1e-9 && halfway.shape.distance(&run.tubes[2][30].shape) < 1e-12);
+        let end = run.tube_at(&route, 0, *route.t_s.last().unwrap()).unwrap();
+        assert!((end.centre[0] - 60.0).abs() < 1e-9);
+        assert!(run.tube_at(&route, 0, -0.1).is_none() && run.tube_at(&route, 3, 0.0).is_none());
     }
 
     #[test]

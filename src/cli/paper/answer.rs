@@ -15,8 +15,8 @@ pub(super) fn table(out: &mut dyn Write, simulated: &[Simulated], timing: Option
     own_numbers(simulated).write(out, "  ")?;
     writeln!(
         out,
-        "\nAlgorithm 1 on a route of {:.2} m, the table's numbers in brackets. β is the one of least trace; under β° as\n\
-         printed, 𝒞 with it (erratum E1)\n",
+        "\nAlgorithm 1 on a route of {:.2} m, the table's numbers in brackets. β is the one of least trace; the last\n\
+         column is 𝒞 with β° as printed (erratum E1), the tube of the prime mover shrunk where the algorithm asks for it\n",
         length_m(simulated)
     )?;
     by_algorithm(simulated).write(out, "  ")?;
@@ -81,7 +81,7 @@ fn by_algorithm(simulated: &[Simulated]) -> Table {
         ">𝒞",
         ">(table)",
         "verdict",
-        ">β° as printed",
+        ">𝒞, β° as printed",
     ]);
     for s in simulated {
         let (sc, ours, theirs) = (&s.scenario, &s.paper.rsc, s.scenario.rsc());
@@ -118,7 +118,7 @@ fn decided(simulated: &[Simulated]) -> Table {
     ]);
     for s in simulated {
         let (exact, usual) = (&s.exact.result, &s.usual.result);
-        let degrees = |rad: f64| format!("{:.1}°", rad.to_degrees());
+        let degrees = |rad: f64| format!("{:.2}°", rad.to_degrees());
         table.row([
             s.scenario.number.to_string(),
             metres(s.scenario.rsc().rsc_m),

@@ -11,6 +11,9 @@ use netcert::published::{DrawnRoute, Scenario};
 use super::simulate::{self, Simulated};
 use super::timing::Timing;
 
+/// The scenario that the paper draws.
+pub(super) const DRAWN: u32 = 5;
+
 /// Narrowest half widths in which scenario 5's vehicle needs correction: by Algorithm 1, whose tubes are wide, and by netcert.
 const SHORT_OF_ROOM_M: [f64; 2] = [5.0, 1.7];
 
@@ -21,8 +24,7 @@ pub(super) fn all(
     timing: Option<&Timing>,
 ) -> anyhow::Result<Vec<(&'static str, String)>> {
     let mut figures = Vec::new();
-    // Scenario 5 is the one that the paper draws.
-    if let Some(five) = simulated.iter().find(|s| s.scenario.number == 5) {
+    if let Some(five) = simulated.iter().find(|s| s.scenario.number == DRAWN) {
         figures.push(("tubes.svg", tubes::figure(five)));
         let [tight, lane] = SHORT_OF_ROOM_M;
         let narrower = |w_min_m| simulate::run(&Scenario { w_min_m, ..five.scenario }, route);

@@ -44,12 +44,12 @@ fn leeways(s: &Simulated, tube: &[Stet]) -> Vec<Leeway> {
     tube.iter().enumerate().map(|(i, stet)| boundary_leeway(&s.route, stet, i, &Reading::SIMULATED)).collect()
 }
 
-/// Least and greatest leeway of any unit, outwards to halves of a metre.
+/// Least and greatest leeway of any unit, outwards to whole metres.
 fn range(leeway: &[Vec<Leeway>]) -> [f64; 2] {
     let values = || leeway.iter().flatten().flat_map(|l| [l.left_m, l.right_m]);
     let low = values().fold(f64::INFINITY, f64::min);
     let high = values().fold(f64::NEG_INFINITY, f64::max);
-    [(2.0 * low).floor() / 2.0, (2.0 * high).ceil() / 2.0]
+    [low.floor(), high.ceil()]
 }
 
 fn panel(
@@ -110,9 +110,9 @@ fn colour_bar(picture: &mut Picture, [low, high]: [f64; 2]) {
             p.rect(frame, 0.0, Style::area(palette::sequential(share)));
         }
         let style = TextStyle::size(13.0).anchored(Anchor::Middle);
-        for k in 0..=4 {
-            let share = f64::from(k) / 4.0;
-            p.text([x + width * share, y + 33.0], &format!("{:.2}", low + share * (high - low)), style);
+        for metre in low as i32..=high as i32 {
+            let share = (f64::from(metre) - low) / (high - low);
+            p.text([x + width * share, y + 33.0], &metre.to_string(), style);
         }
         p.text([x + 0.5 * width, y - 9.0], "boundary leeway, m", style);
     });
