@@ -30,6 +30,7 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Verb::Query(verb) => verb.run(&session),
         Verb::Corridor(verb) => verb.run(&session),
         Verb::Vehicles(verb) => verb.run(),
+        Verb::Paper(verb) => verb.run(&session),
         Verb::Stats(verb) => verb.run(),
     }
 }

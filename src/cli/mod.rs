@@ -12,6 +12,7 @@ mod fleet;
 mod how;
 mod ingest;
 pub(crate) mod output;
+mod paper;
 mod progress;
 mod query;
 mod rows;
@@ -60,6 +61,7 @@ pub(crate) enum Verb {
     Query(query::Query),
     Corridor(corridor::Corridor),
     Vehicles(vehicles::Vehicles),
+    Paper(paper::Paper),
     Stats(stats::Stats),
 }
 

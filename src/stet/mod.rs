@@ -10,7 +10,6 @@ mod leeway;
 mod model;
 pub mod motion;
 mod plan;
-mod published;
 mod shift;
 mod spans;
 mod sweep;
