@@ -32,6 +32,7 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Verb::Corridor(verb) => verb.run(&session),
         Verb::Vehicles(verb) => verb.run(&session),
         Verb::Manoeuvres(verb) => verb.run(&session),
+        Verb::Paper(verb) => verb.run(&session),
         Verb::Stats(verb) => verb.run(),
     }
 }

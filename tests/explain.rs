@@ -123,7 +123,7 @@ fn certified(network: &Network, edge: u32, vehicle: &Vehicle, width_m: f64) -> S
     let spans: Vec<_> = made.spans.iter().map(|s| s.stations.clone()).collect();
     let which = made.spans.iter().position(|s| s.edge == edge).unwrap();
     let corridor = at_least(&made.corridor, width_m);
-    certify_spans(&corridor, &[&Model::new(vehicle).unwrap()], &spans, &Options::default())[0][which].clone()
+    certify_spans(&corridor, &[&Model::new(vehicle).unwrap()], &spans, &Options::default())[0].spans[which].clone()
 }
 
 #[test]

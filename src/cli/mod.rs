@@ -14,6 +14,7 @@ mod how;
 mod ingest;
 mod manoeuvres;
 pub(crate) mod output;
+mod paper;
 mod progress;
 mod query;
 mod rows;
@@ -64,6 +65,7 @@ pub(crate) enum Verb {
     Corridor(corridor::Corridor),
     Vehicles(vehicles::Vehicles),
     Manoeuvres(manoeuvres::Manoeuvres),
+    Paper(paper::Paper),
     Stats(stats::Stats),
 }
 

@@ -95,7 +95,7 @@ impl Case {
     /// The edge's result in another corridor of the same stations.
     fn result(&self, corridor: &Corridor, model: &Model, options: &Options) -> Option<SpanResult> {
         let rows = certify_spans(corridor, &[model], &self.spans(), options);
-        rows.into_iter().next()?.into_iter().nth(self.which)
+        rows.into_iter().next()?.spans.into_iter().nth(self.which)
     }
 }
 

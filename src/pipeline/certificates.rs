@@ -122,7 +122,7 @@ fn with_corridor(job: &Job<'_>, made: &StrokeCorridor) -> StrokeResult {
     let certificates = rows
         .iter()
         .enumerate()
-        .flat_map(|(vehicle, row)| made.spans.iter().zip(row).map(move |(span, result)| (vehicle, span, result)))
+        .flat_map(|(vehicle, row)| made.spans.iter().zip(&row.spans).map(move |(span, result)| (vehicle, span, result)))
         .filter_map(|(vehicle, span, result)| {
             let edge = job.network.edges.get(span.edge as usize)?;
             let result = result.seen().then_some(result);

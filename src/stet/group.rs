@@ -14,6 +14,8 @@ pub(super) struct Group<'m> {
     /// Most units of any of them.
     pub(super) units: usize,
     pub(super) chain: [UnitLanes; MAX_UNITS],
+    /// γ ε, metres.
+    pub(super) tolerance: V,
     /// Allowance for the prime mover's course, radians.
     pub(super) course: V,
 }
@@ -74,6 +76,7 @@ impl<'m> Group<'m> {
             shrink,
             units: models.iter().map(|m| m.units.len()).max().unwrap_or(0),
             chain: std::array::from_fn(unit),
+            tolerance: per_vehicle(&tolerance),
             course: per_vehicle(&|m| m.vehicle.tracking_heading_rad),
         }
     }

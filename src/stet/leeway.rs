@@ -6,7 +6,7 @@
 use super::group::gamma;
 use super::lanes::{LANES, V, select_negative};
 use super::model::Model;
-use super::sweep::{BLOCK, FIELDS, Minima, row};
+use super::sweep::{BLOCK, FIELDS, Minima, ZERO, row};
 use super::track::{BULGE_MOST, Fields, Track};
 
 /// A foot further along than this (metres) is looked up anew.
@@ -125,12 +125,14 @@ struct Sample {
     bulge: V,
 }
 
-/// Lowers `minima` by all points of one unit over one block.
+/// Lowers `minima` by all points of one unit over one block. `REFINED`: with the bounds of each body point in `refined`
+/// (a block each) instead of gains and what curvature adds to them.
 #[inline(always)]
-pub(super) fn points<const CERTIFY: bool>(
+pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
     track: &Track,
     body: &mut Body,
     block: &[f64],
+    refined: &[f64],
     shift: &[V],
     lane: usize,
     minima: &mut Minima,
@@ -155,8 +157,23 @@ pub(super) fn points<const CERTIFY: bool>(
             remainder: load(row::REMAINDER),
         };
         let mut before: Option<Sample> = None;
+        let bounds = |index: usize| -> V {
+            let start = index * BLOCK + group * LANES;
+            V(std::array::from_fn(|i| refined[start + i]))
+        };
+        let mut knots = Knots { ahead: ZERO, own: ZERO, behind: ZERO, gap_ahead: 0.0, gap_behind: 0.0 };
         for index in 0..body.points.len() {
-            let mut sample = sample::<CERTIFY>(track, body, index, &s, scale);
+            if REFINED {
+                let next = index + 1 < body.points.len();
+                knots = Knots {
+                    ahead: knots.own,
+                    own: if index == 0 { bounds(0) } else { knots.behind },
+                    behind: if next { bounds(index + 1) } else { ZERO },
+                    gap_ahead: body.points[index].gap,
+                    gap_behind: if next { body.points[index + 1].gap } else { 0.0 },
+                };
+            }
+            let mut sample = sample::<CERTIFY, REFINED>(track, body, index, &s, &knots, scale);
             if CERTIFY {
                 match &mut before {
                     Some(before) => between_points(before, &mut sample, &s, body.points[index].gap),
@@ -193,7 +210,14 @@ pub(super) fn skip(track: &Track, body: &mut Body) {
 
 /// One body point at eight head stations; its foot is ready for the next eight.
 #[inline(always)]
-fn sample<const CERTIFY: bool>(track: &Track, body: &mut Body, index: usize, s: &States, scale: f64) -> Sample {
+fn sample<const CERTIFY: bool, const REFINED: bool>(
+    track: &Track,
+    body: &mut Body,
+    index: usize,
+    s: &States,
+    knots: &Knots,
+    scale: f64,
+) -> Sample {
     let (ahead, tag, first) = {
         let point = &body.points[index];
         (point.ahead, point.tag, point.foot)
@@ -203,23 +227,30 @@ fn sample<const CERTIFY: bool>(track: &Track, body: &mut Body, index: usize, s: 
     let seen = place(track.fields.run(first), x, y);
     if near(seen.along) {
         body.points[index].foot = next_foot(track, first + last, seen.along.0[last]);
-        let (left, right) = leeways::<CERTIFY>(&seen, s, body, index, scale);
+        let (left, right) = leeways::<CERTIFY, REFINED>(&seen, s, knots, body, index, scale);
         return Sample::new(&seen, Feet::Run(first), tag, left, right);
     }
-    sample_apart::<CERTIFY>(track, body, index, s, scale)
+    sample_apart::<CERTIFY, REFINED>(track, body, index, s, knots, scale)
 }
 
 /// As [`sample`], each point at its own nearest station. Apart, so that the common case stays in registers.
 #[cold]
 #[inline(never)]
-fn sample_apart<const CERTIFY: bool>(track: &Track, body: &mut Body, index: usize, s: &States, scale: f64) -> Sample {
+fn sample_apart<const CERTIFY: bool, const REFINED: bool>(
+    track: &Track,
+    body: &mut Body,
+    index: usize,
+    s: &States,
+    knots: &Knots,
+    scale: f64,
+) -> Sample {
     let point = &body.points[index];
     let (tag, x, y) = (point.tag, s.x + s.ux * point.ahead, s.y + s.uy * point.ahead);
     let feet = follow(track, point.foot, x, y);
     let seen = place(track.fields.gather(&feet), x, y);
     let last = LANES - 1;
     body.points[index].foot = next_foot(track, feet[last], seen.along.0[last]);
-    let (left, right) = leeways::<CERTIFY>(&seen, s, body, index, scale);
+    let (left, right) = leeways::<CERTIFY, REFINED>(&seen, s, knots, body, index, scale);
     let found = |side: V| {
         let one = |i: usize| if seen.along.0[i].abs() <= 1.5 * NEAR_M { side.0[i] } else { LOST_M };
         V(std::array::from_fn(one))
@@ -319,9 +350,39 @@ fn next_foot(track: &Track, foot: usize, along: f64) -> usize {
     (foot + 1 + off).saturating_sub(64).min(track.len() - LANES)
 }
 
+/// Bounds at a body point and at its neighbours, and how far off these are (0: there is none).
+struct Knots {
+    ahead: V,
+    own: V,
+    behind: V,
+    gap_ahead: f64,
+    gap_behind: f64,
+}
+
+impl Knots {
+    /// How much the bound rises `by`/cos φ metres ahead of the point, times cos φ. It is convex along the body: below its
+    /// chords between points, and nowhere steeper than the heading's bound.
+    #[inline(always)]
+    fn lean(&self, by: V, cos: V, heading: V) -> V {
+        let to = |other: V, gap: f64| {
+            let chord = (other - self.own) * (1.0 / gap.max(1e-9));
+            // Negative beyond the neighbour, if there is one at all.
+            select_negative(cos * gap - by.abs(), heading, chord.min(heading))
+        };
+        select_negative(by, to(self.behind, self.gap_behind), to(self.ahead, self.gap_ahead)) * by.abs()
+    }
+}
+
 /// Leeway to the left and to the right of both side points at one along-offset.
 #[inline(always)]
-fn leeways<const CERTIFY: bool>(seen: &Seen, s: &States, body: &Body, index: usize, scale: f64) -> (V, V) {
+fn leeways<const CERTIFY: bool, const REFINED: bool>(
+    seen: &Seen,
+    s: &States,
+    knots: &Knots,
+    body: &Body,
+    index: usize,
+    scale: f64,
+) -> (V, V) {
     let at = &seen.at;
     let cos = at.tangent_x * s.ux + at.tangent_y * s.uy;
     let sin = at.tangent_x * s.uy - at.tangent_y * s.ux;
@@ -342,12 +403,17 @@ fn leeways<const CERTIFY: bool>(seen: &Seen, s: &States, body: &Body, index: usi
     let a = extras + body.heading;
     let axle = s.extra_axle + body.axle;
     let a2 = a * a;
-    // First order: |cos φ|·(g + extra)(a ∓ (b/2) tan φ); g is convex, extra and g no steeper than their heading bounds.
-    let base = c * (s.extra_axle * point.from_axle + s.extra_coupling * point.from_coupling + point.gain)
-        + t * extras * body.half_width
-        + (t - c).max(V::splat(0.0)) * a * body.half_width;
-    let lean_left = (askew * -point.slope_ahead).max(askew * point.slope_behind);
-    let lean_right = (askew * point.slope_ahead).max(askew * -point.slope_behind);
+    // First order: |cos φ|·(the bound at a ∓ (b/2) tan φ).
+    let (base, lean_left, lean_right) = if REFINED {
+        (c * knots.own, knots.lean(-askew, c, a), knots.lean(askew, c, a))
+    } else {
+        // g is convex; extra and g are no steeper than their heading bounds.
+        let base = c * (s.extra_axle * point.from_axle + s.extra_coupling * point.from_coupling + point.gain)
+            + t * extras * body.half_width
+            + (t - c).max(V::splat(0.0)) * a * body.half_width;
+        let lean_left = (askew * -point.slope_ahead).max(askew * point.slope_behind);
+        (base, lean_left, (askew * point.slope_ahead).max(askew * -point.slope_behind))
+    };
     // Second order: along is how far the point may slide along the corridor.
     let along = c * a * body.half_width + t * (axle + a * reach);
     let bend = at.curvature.abs();

@@ -2,6 +2,7 @@
 //!
 //! Pure: a corridor and a vehicle in, a certificate out; no input or output, no clock, no threads.
 
+mod adjoint;
 mod gains;
 mod group;
 mod lanes;
@@ -9,7 +10,7 @@ mod leeway;
 mod model;
 pub mod motion;
 mod plan;
-mod published;
+mod shift;
 mod spans;
 mod sweep;
 mod track;
@@ -21,11 +22,12 @@ use crate::corridor::Corridor;
 
 pub use model::{MAX_UNITS, Model, ModelError};
 pub use motion::steady_offtracking;
+pub use shift::{KNOT_STATIONS, Plan, STEP_M};
 pub use tube::{Tube, tubes};
 
 use group::Group;
 use lanes::{LANES, V};
-use sweep::{Minima, sweep};
+use sweep::{Minima, Wanted, sweep};
 use track::Track;
 
 /// Which edge of the corridor, seen in driving direction.
@@ -104,6 +106,15 @@ impl SpanResult {
     }
 }
 
+/// One vehicle's results on a corridor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Planned {
+    /// What the steer axle is to follow.
+    pub plan: Plan,
+    /// One a span.
+    pub spans: Vec<SpanResult>,
+}
+
 /// A certificate over a whole corridor, with all that a picture, a file or a second program needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
@@ -111,8 +122,10 @@ pub struct Certificate {
     pub result: SpanResult,
     /// The steer axle's planned path: one point a station, metres in the corridor's frame.
     pub plan: Vec<[f64; 2]>,
-    /// Planned shift of the steer axle off the centreline at each station, metres, positive left.
+    /// Planned shift of the steer axle off the centreline at each station, metres, positive left: `shift` sampled.
     pub shift_m: Vec<f64>,
+    /// The planned shift itself.
+    pub shift: Plan,
     /// Leeway at each station on the left, after correction (at γ = 1), metres.
     pub left_m: Vec<f64>,
     /// On the right.
@@ -126,29 +139,31 @@ pub struct Certificate {
 /// Results over `spans` of stations for vehicles that sweep the whole corridor one after the other: one row a vehicle.
 ///
 /// Every vehicle enters straight, along the first station's heading, and leaves straight, along the last one's. The
-/// result does not depend on which other vehicles are in `models`. An empty corridor gives empty rows.
+/// result does not depend on which other vehicles are in `models`. An empty corridor gives no row at all.
 #[must_use]
 pub fn certify_spans(
     corridor: &Corridor,
     models: &[&Model],
     spans: &[Range<usize>],
     options: &Options,
-) -> Vec<Vec<SpanResult>> {
-    let mut rows = vec![Vec::new(); models.len()];
+) -> Vec<Planned> {
     if corridor.is_empty() {
-        return rows;
+        return Vec::new();
     }
     // Vehicles of about as many units share a group: a lane costs as much as the longest one in it.
     let mut order: Vec<usize> = (0..models.len()).collect();
     order.sort_by_key(|&i| models[i].units.len());
+    let mut rows: Vec<(usize, Planned)> = Vec::with_capacity(models.len());
     for chunk in order.chunks(LANES) {
         let members: Vec<&Model> = chunk.iter().map(|&i| models[i]).collect();
         let swept = Swept::new(corridor, &members, spans, options);
-        for (lane, &i) in chunk.iter().enumerate() {
-            rows[i] = spans.iter().map(|span| swept.result(lane, span)).collect();
+        for (lane, (&i, plan)) in chunk.iter().zip(&swept.plans).enumerate() {
+            let spans = spans.iter().map(|span| swept.result(lane, span)).collect();
+            rows.push((i, Planned { plan: plan.clone(), spans }));
         }
     }
-    rows
+    rows.sort_by_key(|(i, _)| *i);
+    rows.into_iter().map(|(_, row)| row).collect()
 }
 
 /// The certificate of one vehicle over a whole corridor.
@@ -177,9 +192,11 @@ pub fn certify_planned(
     let whole = 0..corridor.len();
     let swept = Swept::new(corridor, &[model], spans, options);
     let track = &swept.track;
-    let centred = sweep::<true>(track, &swept.group, &vec![V::splat(0.0); track.len()], |_, _| true);
+    let centred = thorough(track, &swept.group, &vec![V::splat(0.0); track.len()]);
+    let full = if swept.worth(0, &whole) { swept.refined.as_ref().unwrap_or(&swept.full) } else { &swept.full };
     let own = |column: &[f64]| column[track.lead..track.lead + track.count].to_vec();
-    let shift_m: Vec<f64> = swept.shift[track.lead..track.lead + track.count].iter().map(|q| q.0[0]).collect();
+    let shift = swept.plans[0].clone();
+    let shift_m: Vec<f64> = (0..track.count).map(|k| shift.at_m(k)).collect();
     let plan = (0..track.count)
         .map(|k| {
             let (sin, cos) = corridor.heading[k].sin_cos();
@@ -187,26 +204,48 @@ pub fn certify_planned(
         })
         .collect();
     let results = spans.iter().map(|span| swept.result(0, span)).collect();
+    let (mut left_m, mut right_m) = (own(&full[0].left), own(&full[0].right));
+    for span in spans {
+        // What the span's result rests on: refined for one where it is worth it.
+        let best = swept.best(0, span);
+        left_m[span.clone()].copy_from_slice(&best.left[track.lead + span.start..track.lead + span.end]);
+        right_m[span.clone()].copy_from_slice(&best.right[track.lead + span.start..track.lead + span.end]);
+    }
     let certificate = Certificate {
         result: swept.result(0, &whole),
         plan,
         shift_m,
-        left_m: own(&swept.full[0].left),
-        right_m: own(&swept.full[0].right),
+        shift,
+        left_m,
+        right_m,
         left_centred_m: own(&centred[0].left),
         right_centred_m: own(&centred[0].right),
     };
     Some((certificate, results))
 }
 
+/// All leeways at γ = 1, refined wherever that is worth it.
+fn thorough(track: &Track, group: &Group<'_>, shift: &[V]) -> Vec<Minima> {
+    let full = sweep::<true>(track, group, shift, &Wanted::ALL);
+    if full.iter().all(|m| m.loose.iter().all(|&unit| unit == usize::MAX)) {
+        return full;
+    }
+    let loose = |lane: usize, head: usize| full[lane].loose[head / sweep::BLOCK];
+    sweep::<true>(track, group, shift, &Wanted { blocks: &|_, _| true, refined: Some(&loose) })
+}
+
 /// A group of vehicles after its sweeps.
 struct Swept<'m> {
     track: Track,
     group: Group<'m>,
-    shift: Vec<V>,
-    /// At γ = 1.
+    plans: Vec<Plan>,
+    /// At γ = 1, by the filter.
     full: Vec<Minima>,
-    /// At γ_min; only where something failed.
+    /// Without any disturbance, at a few points; only where the filter is loose at all.
+    nominal: Option<Vec<Minima>>,
+    /// At γ = 1, by the adjoint where the filter is loose; only for spans near such places.
+    refined: Option<Vec<Minima>>,
+    /// At γ_min; only near spans that fail.
     least: Option<Vec<Minima>>,
 }
 
@@ -215,38 +254,79 @@ impl<'m> Swept<'m> {
         let group = Group::new(models, 1.0);
         let (lead_m, tail_m) = sweep::extensions_m(&group, corridor.spacing_m);
         let track = Track::new(corridor, lead_m, tail_m);
-        let shift = plan::best(&track, &group, spans, options);
-        let full = sweep::<true>(&track, &group, &shift, |_, _| true);
-        let mut swept = Self { track, group, shift, full, least: None };
-        let failing: Vec<Vec<bool>> = (0..models.len()).map(|lane| swept.failing_blocks(lane, spans)).collect();
+        let plans = plan::best(&track, &group, spans, options);
+        let shift = shift::lanes(&plans, track.lead, track.len(), track.count);
+        let full = sweep::<true>(&track, &group, &shift, &Wanted::ALL);
+        let mut swept = Self { track, group, plans, full, nominal: None, refined: None, least: None };
+        let loose: Vec<Vec<usize>> = swept.full.iter().map(|m| m.loose.clone()).collect();
+        let is_loose = |lane: usize, head: usize| loose[lane][head / sweep::BLOCK];
+
+        if swept.full.iter().any(|m| m.loose.iter().any(|&unit| unit < usize::MAX)) {
+            swept.nominal = Some(sweep::<false>(&swept.track, &swept.group, &shift, &Wanted::ALL));
+        }
+        let near = swept.blocks(spans, |lane, span| swept.worth(lane, span));
+        if near.iter().flatten().any(|&near| near) {
+            let blocks = |lane: usize, head: usize| near[lane][head / sweep::BLOCK];
+            let wanted = Wanted { blocks: &blocks, refined: Some(&is_loose) };
+            swept.refined = Some(sweep::<true>(&swept.track, &swept.group, &shift, &wanted));
+        }
+        let failing = swept.blocks(spans, |lane, span| swept.at_full(lane, span).rsc_m < 0.0);
         if failing.iter().flatten().any(|&fails| fails) {
             let tight = Group::new(models, 0.0);
-            let wanted = |lane: usize, head: usize| failing[lane][head / sweep::BLOCK];
-            swept.least = Some(sweep::<true>(&swept.track, &tight, &swept.shift, wanted));
+            let blocks = |lane: usize, head: usize| failing[lane][head / sweep::BLOCK];
+            // From the same kind of bound as at γ = 1, block by block: only then is the leeway concave in γ.
+            let refined: Option<&dyn Fn(usize, usize) -> usize> = Some(&is_loose);
+            let wanted = Wanted { blocks: &blocks, refined: refined.filter(|_| swept.refined.is_some()) };
+            swept.least = Some(sweep::<true>(&swept.track, &tight, &shift, &wanted));
         }
         swept
     }
 
-    /// By block of head stations, whether the vehicle may then touch a span that fails at γ = 1.
-    fn failing_blocks(&self, lane: usize, spans: &[Range<usize>]) -> Vec<bool> {
+    /// Head stations, in blocks, in which some unit may touch the span.
+    fn touching(&self, span: &Range<usize>) -> Range<usize> {
         let track = &self.track;
         // As long as the track's extensions allow, so that no other vehicle of the group matters.
         let (behind_m, ahead_m) = sweep::reach_m(&self.group);
         let ahead = (ahead_m / track.spacing).ceil() as usize + sweep::BLOCK;
         let behind = (behind_m / track.spacing).ceil() as usize + sweep::BLOCK;
-        let mut blocks = vec![false; track.len() / sweep::BLOCK + 1];
-        for span in spans.iter().filter(|span| self.at_full(lane, span).rsc_m < 0.0) {
-            let touched = spans::stations(track, span);
-            let first = touched.start().saturating_sub(ahead) / sweep::BLOCK;
-            let last = (touched.end() + behind) / sweep::BLOCK;
-            let end = (last + 1).min(blocks.len());
-            blocks[first..end].iter_mut().for_each(|block| *block = true);
-        }
-        blocks
+        let touched = spans::stations(track, span);
+        let first = touched.start().saturating_sub(ahead) / sweep::BLOCK;
+        let last = (touched.end() + behind) / sweep::BLOCK;
+        first..(last + 1).min(track.len() / sweep::BLOCK + 1)
     }
 
+    /// By vehicle and block of head stations: whether the vehicle may then touch a span that is `meant`.
+    fn blocks(&self, spans: &[Range<usize>], meant: impl Fn(usize, &Range<usize>) -> bool) -> Vec<Vec<bool>> {
+        let of = |lane: usize| {
+            let mut blocks = vec![false; self.track.len() / sweep::BLOCK + 1];
+            for span in spans.iter().filter(|span| meant(lane, span)) {
+                blocks[self.touching(span)].iter_mut().for_each(|block| *block = true);
+            }
+            blocks
+        };
+        (0..self.plans.len()).map(of).collect()
+    }
+
+    /// Whether a better bound than the filter's is worth its time: the filter is loose where some unit may touch the
+    /// span, and the vehicle would fit if it kept to its path exactly. (Decided without ε and σ: raising them must not
+    /// bring a better bound.)
+    fn worth(&self, lane: usize, span: &Range<usize>) -> bool {
+        let Some(nominal) = &self.nominal else { return false };
+        let nominal = &nominal[lane];
+        self.full[lane].loose[self.touching(span)].iter().any(|&unit| unit < usize::MAX)
+            && spans::stations(&self.track, span).all(|k| nominal.left[k] >= 0.0 && nominal.right[k] >= 0.0)
+    }
+
+    /// The best that is known at γ = 1.
     fn at_full(&self, lane: usize, span: &Range<usize>) -> SpanResult {
-        spans::result(&self.track, self.group.models[lane], span, &self.full[lane])
+        spans::result(&self.track, self.group.models[lane], span, self.best(lane, span))
+    }
+
+    fn best(&self, lane: usize, span: &Range<usize>) -> &Minima {
+        match &self.refined {
+            Some(refined) if self.worth(lane, span) => &refined[lane],
+            _ => &self.full[lane],
+        }
     }
 
     fn result(&self, lane: usize, span: &Range<usize>) -> SpanResult {
@@ -254,7 +334,7 @@ impl<'m> Swept<'m> {
         match &self.least {
             Some(least) if at_full.rsc_m < 0.0 => {
                 let model = self.group.models[lane];
-                spans::shrunk(&self.track, model, span, (&self.full[lane], &least[lane]), &at_full)
+                spans::shrunk(&self.track, model, span, (self.best(lane, span), &least[lane]), &at_full)
             }
             _ => at_full,
         }

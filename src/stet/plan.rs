@@ -6,15 +6,16 @@ use std::ops::Range;
 use super::Options;
 use super::group::Group;
 use super::lanes::{LANES, V};
+use super::shift::{KNOT_STATIONS, Plan};
 use super::spans;
-use super::sweep::{Minima, UNVISITED_M, sweep};
+use super::sweep::{Minima, UNVISITED_M, Wanted, sweep};
 use super::track::Track;
 
 /// Of the centred path and its corrections, each vehicle's best by nominal leeway: never the last by default. Planned on
 /// every second station: it decides nothing.
-pub(super) fn best(track: &Track, group: &Group<'_>, spans: &[Range<usize>], options: &Options) -> Vec<V> {
+pub(super) fn best(track: &Track, group: &Group<'_>, spans: &[Range<usize>], options: &Options) -> Vec<Plan> {
     if options.max_shift_m <= 0.0 || options.correction_sweeps == 0 {
-        return vec![V::splat(0.0); track.len()];
+        return vec![Plan::centred(track.count); group.models.len()];
     }
     let coarse = track.coarse();
     let spans: Vec<_> = spans.iter().map(|s| s.start / 2..s.end.div_ceil(2)).collect();
@@ -22,7 +23,7 @@ pub(super) fn best(track: &Track, group: &Group<'_>, spans: &[Range<usize>], opt
     let mut best = shift.clone();
     let mut best_score = [f64::NEG_INFINITY; LANES];
     for round in 0..=options.correction_sweeps {
-        let minima = sweep::<false>(&coarse, group, &shift, |_, _| true);
+        let minima = sweep::<false>(&coarse, group, &shift, &Wanted::ALL);
         for (lane, m) in minima.iter().enumerate() {
             let score = score(&coarse, group, lane, &spans, m);
             if score > best_score[lane] {
@@ -36,20 +37,11 @@ pub(super) fn best(track: &Track, group: &Group<'_>, spans: &[Range<usize>], opt
             shift = correct(&coarse, group, &minima, &shift, options.max_shift_m);
         }
     }
-    refine(track, &best)
-}
-
-/// The shift at every station from that at every second one: halfway in between, then rounded off.
-fn refine(track: &Track, coarse: &[V]) -> Vec<V> {
-    let first = track.lead % 2;
-    let last = coarse.len() - 1;
-    let at = |k: usize| {
-        let (i, odd) = (k.saturating_sub(first) / 2, k >= first && (k - first) % 2 == 1);
-        let next = coarse[(i + 1).min(last)];
-        if odd { (coarse[i.min(last)] + next) * 0.5 } else { coarse[i.min(last)] }
+    let knot = |lane: usize| {
+        let best = &best;
+        move |j: usize| best[coarse.lead + j * KNOT_STATIONS / 2].0[lane]
     };
-    let fine: Vec<V> = (0..track.len()).map(at).collect();
-    boxed(&fine, &[2; LANES])
+    (0..group.models.len()).map(|lane| Plan::through(track.count, knot(lane))).collect()
 }
 
 /// Leeway summed over the spans by length; room beyond half a metre counts for nothing, what is missing counts thrice.
@@ -92,7 +84,7 @@ fn correct(track: &Track, group: &Group<'_>, minima: &[Minima], shift: &[V], max
 fn level_ends(track: &Track, wanted: &[V], halves: &[usize; LANES]) -> Vec<V> {
     let mut out = wanted.to_vec();
     for (lane, half) in halves.iter().enumerate() {
-        // Two passes of the running mean reach 2·half stations, `refine` two more.
+        // Two passes of the running mean reach 2·half stations; a plan is level for a knot and a half (`shift`).
         let hold = (2 * half + 3).min((track.count - 1) / 2);
         let (first, last) = (track.lead + hold, track.lead + track.count - 1 - hold);
         let (entry, exit) = (wanted[first].0[lane], wanted[last].0[lane]);

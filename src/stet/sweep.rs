@@ -4,7 +4,8 @@
 //! Promises: no leeway left here is above what any bounded disturbance leaves, up to the model of the design page. Knows
 //! nothing of edges, corrections or shrinking.
 
-use super::group::Group;
+use super::adjoint::{Refined, Trail, first_loose};
+use super::group::{Group, UnitLanes};
 use super::lanes::{LANES, V, select_negative};
 use super::leeway::{self, Body};
 use super::model::MAX_UNITS;
@@ -17,7 +18,7 @@ pub(super) const NOT_CLOSED_RAD: f64 = -9.0;
 /// What the motion hands to the points: one row a field.
 pub(super) const FIELDS: usize = 10;
 /// Bounds beyond this (metres, radians) bound nothing any more.
-const MOST: f64 = 100.0;
+pub(super) const MOST: f64 = 100.0;
 /// Leeway at a station that no body point visits.
 pub(super) const UNVISITED_M: f64 = 1e9;
 
@@ -31,6 +32,8 @@ pub(super) struct Minima {
     pub(super) hinge: Vec<f64>,
     /// Lateral distance of the last axle from the steer path, metres.
     pub(super) offset: Vec<f64>,
+    /// By block of head stations: the first unit for which the adjoint is worth its time there.
+    pub(super) loose: Vec<usize>,
 }
 
 impl Minima {
@@ -40,6 +43,14 @@ impl Minima {
             right: vec![UNVISITED_M; stations],
             hinge: vec![UNVISITED_M; stations],
             offset: vec![0.0; stations],
+            loose: vec![usize::MAX; stations / BLOCK + 2],
+        }
+    }
+
+    /// A bend counts for the block that follows it, too: the filter has been driven out of its way by then.
+    fn note_loose(&mut self, head: usize, first: usize) {
+        for block in &mut self.loose[head / BLOCK..=head / BLOCK + 1] {
+            *block = first.min(*block);
         }
     }
 }
@@ -61,14 +72,26 @@ pub(super) fn extensions_m(group: &Group<'_>, spacing: f64) -> (f64, f64) {
     (length + slack, length + 2.0 * front + 2.0 * slack + 10.0)
 }
 
+/// Which leeways a sweep is to give, by vehicle and head station: a vehicle's are left out while its head is in a block
+/// that is not wanted, and come from the adjoint in one that is to be refined.
+pub(super) struct Wanted<'w> {
+    pub(super) blocks: &'w dyn Fn(usize, usize) -> bool,
+    /// The first unit to be refined.
+    pub(super) refined: Option<&'w dyn Fn(usize, usize) -> usize>,
+}
+
+impl Wanted<'_> {
+    /// Everything, by the filter alone.
+    pub(super) const ALL: Wanted<'static> = Wanted { blocks: &|_, _| true, refined: None };
+}
+
 /// Sweeps the steer path `shift` (metres left of the centreline at each extended station, vehicles in lanes).
 /// `CERTIFY`: all bounds deducted, hinges checked; otherwise the nominal leeway of a few points, for planning.
-/// Leeways are left out for a vehicle while its head is in a block that `wanted` (vehicle, head station) does not want.
 pub(super) fn sweep<const CERTIFY: bool>(
     track: &Track,
     group: &Group<'_>,
     shift: &[V],
-    wanted: impl Fn(usize, usize) -> bool,
+    wanted: &Wanted<'_>,
 ) -> Vec<Minima> {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {
@@ -80,25 +103,31 @@ pub(super) fn sweep<const CERTIFY: bool>(
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn sweep_avx2<const CERTIFY: bool>(
-    track: &Track,
-    group: &Group<'_>,
-    shift: &[V],
-    wanted: impl Fn(usize, usize) -> bool,
-) -> Vec<Minima> {
+fn sweep_avx2<const CERTIFY: bool>(track: &Track, group: &Group<'_>, shift: &[V], wanted: &Wanted<'_>) -> Vec<Minima> {
     sweep_with::<CERTIFY>(track, group, shift, wanted)
 }
 
 #[inline(always)]
-fn sweep_with<const CERTIFY: bool>(
+fn sweep_with<const CERTIFY: bool>(track: &Track, group: &Group<'_>, shift: &[V], wanted: &Wanted<'_>) -> Vec<Minima> {
+    match wanted.refined {
+        Some(refined) if CERTIFY => sweep_blocks::<CERTIFY, true>(track, group, shift, wanted.blocks, refined),
+        _ => sweep_blocks::<CERTIFY, false>(track, group, shift, wanted.blocks, &|_, _| usize::MAX),
+    }
+}
+
+#[inline(always)]
+fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     track: &Track,
     group: &Group<'_>,
     shift: &[V],
-    wanted: impl Fn(usize, usize) -> bool,
+    wanted: &dyn Fn(usize, usize) -> bool,
+    refined: &dyn Fn(usize, usize) -> usize,
 ) -> Vec<Minima> {
     let mut minima = vec![Minima::new(track.len()); group.models.len()];
     let mut rows = vec![0.0; group.units * LANES * FIELDS * BLOCK];
     let mut motion = Motion::new(track);
+    let mut trail = Trail::new(group, REFINE);
+    let mut tight = Refined::new();
     let mut bodies: Vec<Vec<Body>> =
         group.models.iter().map(|m| leeway::bodies::<CERTIFY>(m, track, group.shrink)).collect();
     // The rear of the longest vehicle has left the corridor when the head is this far beyond.
@@ -106,16 +135,31 @@ fn sweep_with<const CERTIFY: bool>(
     let last = track.len() - ahead - BLOCK;
     let mut head = track.lead;
     while head < last {
-        motion.block::<CERTIFY>(track, group, shift, head, &mut rows);
+        motion.block::<CERTIFY, REFINE>(track, group, shift, head, &mut rows, &mut trail);
         for (lane, (bodies, minima)) in bodies.iter_mut().zip(&mut minima).enumerate() {
-            if !wanted(lane, head) {
+            let wanted = wanted(lane, head);
+            let tight_from = if REFINE && wanted { refined(lane, head) } else { usize::MAX };
+            if tight_from < bodies.len() {
+                trail.refine(group, lane, tight_from, &mut motion, &mut rows, &mut tight);
+            }
+            if REFINE {
+                trail.close(lane, bodies.len());
+            }
+            if !wanted {
                 bodies.iter_mut().for_each(|body| leeway::skip(track, body));
                 continue;
+            }
+            if CERTIFY && !REFINE {
+                minima.note_loose(head, first_loose(group, lane, &rows));
             }
             for (unit, body) in bodies.iter_mut().enumerate() {
                 let start = (unit * LANES + lane) * FIELDS * BLOCK;
                 let block = &rows[start..start + FIELDS * BLOCK];
-                leeway::points::<CERTIFY>(track, body, block, shift, lane, minima);
+                if unit >= tight_from {
+                    leeway::points::<CERTIFY, true>(track, body, block, tight.unit(unit), shift, lane, minima);
+                } else {
+                    leeway::points::<CERTIFY, false>(track, body, block, &[], shift, lane, minima);
+                }
             }
         }
         head += BLOCK;
@@ -134,23 +178,41 @@ pub(super) struct Motion {
     turned: [V; MAX_UNITS],
     turned_change: [V; MAX_UNITS],
     /// What curvature adds to the bound on each axle's deviation.
-    extra: [V; MAX_UNITS],
+    pub(super) extra: [V; MAX_UNITS],
 }
 
 /// One unit's step, as far as its tubes need it.
 #[derive(Clone, Copy)]
-struct Step {
-    moved: V,
-    advance: V,
-    sine: V,
-    cosine: V,
-    tangent: V,
-    secant: V,
-    hitch_cosine: V,
-    path_curvature: V,
+pub(super) struct Step {
+    pub(super) moved: V,
+    /// Arc length of the axle.
+    pub(super) advance: V,
+    /// |sin|, cos, |tan| and 1/cos of the angle from the heading to the chord, before the step.
+    pub(super) sine: V,
+    pub(super) cosine: V,
+    pub(super) tangent: V,
+    pub(super) secant: V,
+    /// tan δ halfway through the step, signed.
+    pub(super) mid_tangent: V,
+    pub(super) hitch_cosine: V,
+    pub(super) path_curvature: V,
 }
 
-const ZERO: V = V([0.0; LANES]);
+impl Step {
+    pub(super) const NONE: Step = Step {
+        moved: ZERO,
+        advance: ZERO,
+        sine: ZERO,
+        cosine: ZERO,
+        tangent: ZERO,
+        secant: ZERO,
+        mid_tangent: ZERO,
+        hitch_cosine: ZERO,
+        path_curvature: ZERO,
+    };
+}
+
+pub(super) const ZERO: V = V([0.0; LANES]);
 
 impl Motion {
     /// All units stand behind the track's first station, along its heading.
@@ -170,25 +232,27 @@ impl Motion {
 
     /// Drives [`BLOCK`] stations from `head` and leaves every unit's rows.
     #[inline(always)]
-    pub(super) fn block<const CERTIFY: bool>(
+    pub(super) fn block<const CERTIFY: bool, const REFINE: bool>(
         &mut self,
         track: &Track,
         group: &Group<'_>,
         shift: &[V],
         head: usize,
         rows: &mut [f64],
+        trail: &mut Trail,
     ) {
         let mut place = steer(track, shift, head);
         for k in 0..BLOCK {
             let next = steer(track, shift, head + k + 1);
-            self.station::<CERTIFY>(group, place, next, track.spacing, k, rows);
+            self.station::<CERTIFY, REFINE>(group, place, next, track.spacing, k, rows, trail);
             place = next;
         }
     }
 
     /// One head station: rows of every unit there, then the step to the next.
     #[inline(always)]
-    fn station<const CERTIFY: bool>(
+    #[allow(clippy::too_many_arguments)] // One call, in the innermost loop: a struct would be taken apart at once.
+    fn station<const CERTIFY: bool, const REFINE: bool>(
         &mut self,
         group: &Group<'_>,
         place: (V, V),
@@ -196,19 +260,11 @@ impl Motion {
         spacing: f64,
         k: usize,
         rows: &mut [f64],
+        trail: &mut Trail,
     ) {
         let (mut x, mut y) = place;
         let (mut vx, mut vy) = (next.0 - place.0, next.1 - place.1);
-        let mut steps = [Step {
-            moved: ZERO,
-            advance: ZERO,
-            sine: ZERO,
-            cosine: ZERO,
-            tangent: ZERO,
-            secant: ZERO,
-            hitch_cosine: ZERO,
-            path_curvature: ZERO,
-        }; MAX_UNITS];
+        let mut steps = [Step::NONE; MAX_UNITS];
         let mut joints = [ZERO; MAX_UNITS];
         let (mut ahead_x, mut ahead_y) = (ZERO, ZERO);
         for unit in 0..group.units {
@@ -253,9 +309,12 @@ impl Motion {
                 let hitch_tangent = tangent * of.ratio;
                 let (ax, ay) = (vx * inverse_moved, vy * inverse_moved);
                 let bend = self.along_x[unit] * ay - self.along_y[unit] * ax;
+                let after = vx * wx + vy * wy;
+                let mid_tangent = if REFINE { (sine + wx * vy - wy * vx) / (cosine + after) } else { ZERO };
                 steps[unit] = Step {
                     moved,
-                    advance: (cosine + vx * wx + vy * wy) * 0.5,
+                    advance: (cosine + after) * 0.5,
+                    mid_tangent,
                     sine: sine.abs() * inverse_moved,
                     cosine: cosine * inverse_moved,
                     tangent: tangent.abs(),
@@ -279,19 +338,20 @@ impl Motion {
             self.heading_y[unit] = wy;
         }
         if CERTIFY {
-            self.tubes(group, &steps, &joints, k, rows);
+            self.tubes::<REFINE>(group, &steps, &joints, k, rows, trail);
         }
     }
 
     /// What curvature adds to the straight gains (design section 4, "Curved part and remainder"), and hinge margins.
     #[inline(always)]
-    fn tubes(
+    fn tubes<const REFINE: bool>(
         &mut self,
         group: &Group<'_>,
         steps: &[Step; MAX_UNITS],
         joints: &[V; MAX_UNITS],
         k: usize,
         rows: &mut [f64],
+        trail: &mut Trail,
     ) {
         let one = V::splat(1.0);
         let (mut least, mut most) = (steps[0].advance, steps[0].advance);
@@ -304,11 +364,15 @@ impl Motion {
         // The reference path runs halfway between the fastest and the slowest axle.
         let per_reference = V::splat(2.0) / (least + most).max(V::splat(1e-12));
         let mut hitch_cosine = one;
-        // The plan is a smooth curve through the vertices: it leaves the chord by κℓ²/8 at most.
-        let mut coupling = steps[0].path_curvature * steps[0].moved * steps[0].moved * 0.125;
+        let bulge = chord_bulge(&steps[0]);
+        let mut coupling = bulge;
+        let mut straying = Straying::of_the_steer_axle(group.tolerance + bulge);
         let (mut heading_ahead, mut shift_ahead) = (group.course, ZERO);
         // Negative from the first unit on whose bounds do not close.
         let mut closed = one;
+        if REFINE {
+            trail.begin(k, steps, joints, group.tolerance + bulge);
+        }
         for unit in 0..group.units {
             let of = &group.chain[unit];
             let step = &steps[unit];
@@ -318,16 +382,7 @@ impl Motion {
             let y = self.extra[unit];
             let a = (of.heading + (extra_coupling + y) * of.inverse_length).min(V::splat(MOST));
             let axle = of.axle + y;
-            let a2 = a * a;
-            // Second-order remainder.
-            let lean = of.length * a;
-            let swing = (axle + lean) * step.sine + lean * a * 0.5;
-            let r1 = step.tangent * of.length * a2 * 0.5
-                + of.length * a2 * a * (1.0 / 6.0)
-                + step.path_curvature * step.secant * swing * swing * 0.5;
-            let slip = a + of.sway;
-            let slip3 = slip_tangent_excess(slip);
-            let z = r1 + step.tangent * axle * (slip + slip3) + of.length * slip3;
+            let (r1, z) = remainder(of, step, a, axle);
             let rho = (step.advance * per_reference - 1.0).abs();
             let input = extra_coupling + z + rho * of.length * (a + of.sway);
             // y' = (input − y)/L: grow by the coupling's arc length, decay by the axle's, which is the shorter.
@@ -335,39 +390,123 @@ impl Motion {
             let gain = one - pn / pd;
             let change = (input - y) * gain;
             let extra = (y + change.max(change * step.cosine.max(ZERO))).min(V::splat(MOST));
-            // Valid while |δ| + A + σ < 90°: cos δ > sin(A + σ), and the series of the tangent needs A + σ ≤ 0.6. Where it is
-            // not, nothing is certified while the vehicle stands here; a vehicle that is certified further on did not come
-            // through here, so that its bounds begin anew.
-            closed = closed.min((step.cosine - slip).min(V::splat(0.6) - slip));
+            // Where it does not close, nothing is certified while the vehicle stands here; a vehicle that is certified further
+            // on did not come through here, so that its bounds begin anew.
+            closed = closed.min(validity(of, step, a));
             self.extra[unit] = select_negative(closed, ZERO, extra);
+            let y = y.max(extra);
 
             let mut store = |field: usize, value: V| store(rows, unit, field, k, value);
-            store(row::EXTRA_AXLE, select_negative(closed, V::splat(MOST), y.max(extra)));
+            store(row::EXTRA_AXLE, select_negative(closed, V::splat(MOST), y));
             store(row::EXTRA_COUPLING, extra_coupling);
             store(row::REMAINDER, r1 * of.inverse_length);
-            // Hinge: articulation, heading errors on both sides of it, and the shift of the feet.
-            let own_shift = (of.coupling + extra_coupling) * step.sine * step.tangent * of.inverse_length;
-            let margin = of.max_articulation
-                - double_atan(joints[unit])
-                - heading_ahead
-                - a
-                - shift_ahead
-                - if unit == 0 { ZERO } else { own_shift };
+            let own_shift = foot_shift(of, step, of.coupling + extra_coupling);
+            let margin = hinge_margin(
+                of,
+                joints[unit],
+                heading_ahead + a + shift_ahead,
+                if unit == 0 { ZERO } else { own_shift },
+            );
             store(row::HINGE, select_negative(closed, V::splat(NOT_CLOSED_RAD), margin));
             (heading_ahead, shift_ahead) = (a, own_shift);
 
             // On to the next coupling.
-            let ratio = of.ratio.abs();
-            let hitch_sine = step.tangent * ratio * step.hitch_cosine;
-            let hitch_swing = (axle + of.hitch * a) * hitch_sine;
-            let zh = ratio * r1
-                + hitch_sine * of.hitch * a2 * 0.5
-                + step.path_curvature.max(step.tangent * of.inverse_length) * hitch_swing * hitch_swing * 0.5;
-            let next = (of.ratio + 1.0).abs() * y.max(extra) + ratio * extra_coupling + zh;
-            coupling = select_negative(closed, ZERO, next);
+            straying = straying.next(of, step, a);
+            let follower = (unit + 1 < group.units).then(|| (&group.chain[unit + 1], &steps[unit + 1]));
+            let zh = hitch_remainder(of, step, follower, a, axle, r1, &straying);
+            if REFINE {
+                trail.record(group, unit, step, z, zh, of.axle + y, closed);
+            }
+            let next = (of.ratio + 1.0).abs() * y + of.ratio.abs() * extra_coupling + zh;
+            coupling = select_negative(closed, ZERO, next.min(V::splat(MOST)));
             hitch_cosine = step.hitch_cosine;
         }
     }
+}
+
+/// The plan is a smooth curve through the vertices: it leaves the chord by κℓ²/8 at most.
+#[inline(always)]
+pub(super) fn chord_bulge(step: &Step) -> V {
+    step.path_curvature * step.moved * step.moved * 0.125
+}
+
+/// Second-order remainders at bounds `a` of the heading and `axle` of the axle's deviation: of the coupling's relation
+/// (R1), and of the axle's motion (z).
+#[inline(always)]
+pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V) -> (V, V) {
+    let a2 = a * a;
+    let lean = of.length * a;
+    let swing = (axle + lean) * step.sine + lean * a * 0.5;
+    let r1 = step.tangent * of.length * a2 * 0.5
+        + of.length * a2 * a * (1.0 / 6.0)
+        + step.path_curvature * step.secant * swing * swing * 0.5;
+    let slip = a + of.sway;
+    let slip3 = slip_tangent_excess(slip);
+    (r1, r1 + step.tangent * axle * (slip + slip3) + of.length * slip3)
+}
+
+/// Second-order remainder of the next coupling, the foot shift against its follower included.
+#[inline(always)]
+pub(super) fn hitch_remainder(
+    of: &UnitLanes,
+    step: &Step,
+    follower: Option<(&UnitLanes, &Step)>,
+    a: V,
+    axle: V,
+    r1: V,
+    straying: &Straying,
+) -> V {
+    let ratio = of.ratio.abs();
+    let hitch_tangent = step.tangent * ratio;
+    let hitch_sine = hitch_tangent * step.hitch_cosine;
+    let reach = axle + of.hitch * a;
+    let swing = reach * hitch_sine;
+    let own = ratio * r1
+        + hitch_sine * of.hitch * a * a * 0.5
+        + step.path_curvature.max(step.tangent * of.inverse_length) * swing * swing * 0.5;
+    let Some((next, behind)) = follower else { return own };
+    own + reach * (behind.tangent + hitch_tangent) * (straying.slope + straying.rough * next.inverse_length * 2.0)
+}
+
+/// How fast a coupling's deviation may change along its path: the slope of what has passed through axles, and how much of
+/// the steer axle's deviation has passed through none.
+#[derive(Clone, Copy)]
+pub(super) struct Straying {
+    slope: V,
+    rough: V,
+}
+
+impl Straying {
+    #[inline(always)]
+    pub(super) fn of_the_steer_axle(rough: V) -> Self {
+        Self { slope: ZERO, rough }
+    }
+
+    #[inline(always)]
+    pub(super) fn next(self, of: &UnitLanes, step: &Step, a: V) -> Self {
+        let through = of.ratio.abs() * step.secant;
+        Self { slope: (of.ratio + 1.0).abs() * (a + of.sway) + through * self.slope, rough: through * self.rough }
+    }
+}
+
+/// Negative where the bounds do not hold: valid while |δ| + A + σ < 90°, so cos δ > sin(A + σ), and the series of the
+/// tangent needs A + σ ≤ 0.6.
+#[inline(always)]
+pub(super) fn validity(of: &UnitLanes, step: &Step, a: V) -> V {
+    let slip = a + of.sway;
+    (step.cosine - slip).min(V::splat(0.6) - slip)
+}
+
+/// By how much the heading of a path may differ between a unit's own foot and its coupling's, `coupling` off.
+#[inline(always)]
+pub(super) fn foot_shift(of: &UnitLanes, step: &Step, coupling: V) -> V {
+    coupling * step.sine * step.tangent * of.inverse_length
+}
+
+/// What is left to the limit of the hinge ahead of a unit: nominal articulation, heading errors, foot shifts.
+#[inline(always)]
+pub(super) fn hinge_margin(of: &UnitLanes, joint: V, ahead: V, own_shift: V) -> V {
+    of.max_articulation - double_atan(joint) - ahead - own_shift
 }
 
 /// Rows of a unit's block.
@@ -407,7 +546,7 @@ fn steer(track: &Track, shift: &[V], k: usize) -> (V, V) {
 
 /// exp(−x) as a fraction, by the square of the Padé form (3,3) at x/2: 3e-8 at x = 0.8, monotone to x = 9.
 #[inline(always)]
-fn decay(x: V) -> (V, V) {
+pub(super) fn decay(x: V) -> (V, V) {
     let x = x * 0.5;
     let x2 = x * x;
     let even = x2 * 12.0 + 120.0;

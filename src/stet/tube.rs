@@ -1,6 +1,7 @@
 //! The tubes themselves, for files and pictures: where each axle is nominally, and how far it may be off.
 
 use super::Certificate;
+use super::adjoint::{Refined, Trail, first_loose};
 use super::group::Group;
 use super::lanes::{LANES, V};
 use super::model::Model;
@@ -34,10 +35,18 @@ pub fn tubes(corridor: &Corridor, model: &Model, certificate: &Certificate) -> V
     let shift: Vec<V> =
         (0..track.len()).map(|k| V::splat(certificate.shift_m[k.saturating_sub(track.lead).min(last)])).collect();
     let mut motion = Motion::new(&track);
+    let mut trail = Trail::new(&group, true);
+    let mut refined = Refined::new();
     let mut rows = vec![0.0; units * LANES * FIELDS * BLOCK];
-    let mut head = 0;
+    let (mut head, mut after) = (0, usize::MAX);
     while head <= last {
-        motion.block::<true>(&track, &group, &shift, track.lead + head, &mut rows);
+        motion.block::<true, true>(&track, &group, &shift, track.lead + head, &mut rows, &mut trail);
+        let loose = first_loose(&group, 0, &rows);
+        if loose.min(after) < units {
+            trail.refine(&group, 0, loose.min(after), &mut motion, &mut rows, &mut refined);
+        }
+        trail.close(0, units);
+        after = loose;
         for tube in &mut tubes {
             let at = |field: usize, k: usize| rows[(tube.unit * LANES * FIELDS + field) * BLOCK + k];
             for k in 0..BLOCK.min(last + 1 - head) {

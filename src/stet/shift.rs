@@ -1,0 +1,126 @@
+//! The planned shift of the steer axle off the centreline: a uniform cubic B-spline over the corridor's stations, with
+//! integer coefficients, so that a file or a database can hold exactly what was certified.
+//!
+//! With c_j the coefficient before knot j (the first is c_{−1}), u = k/4 − ⌊k/4⌋ and j = ⌊k/4⌋, the shift at station k is
+//! `q = ((1−u)³ c_{j−1} + (3u³ − 6u² + 4) c_j + (−3u³ + 3u² + 3u + 1) c_{j+1} + u³ c_{j+2}) / 6`. It is C², never outside the
+//! range of its coefficients, and level at both ends: the vehicle comes and goes along the corridor.
+
+use super::lanes::V;
+
+/// Stations between two knots.
+pub const KNOT_STATIONS: usize = 4;
+/// What one step of a coefficient is, metres: 2⁻¹² (a quarter of a millimetre).
+pub const STEP_M: f64 = 1.0 / 4096.0;
+
+/// A planned shift, positive to the left.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Plan {
+    /// c_{−1}, c_0, …, in steps of [`STEP_M`]: ⌊(stations − 1)/4⌋ + 4 of them.
+    pub coefficients: Vec<i32>,
+}
+
+/// Weights of four coefficients at u = 0, 1/4, 1/2, 3/4.
+const WEIGHTS: [[f64; 4]; KNOT_STATIONS] = {
+    let mut out = [[0.0; 4]; KNOT_STATIONS];
+    let mut i = 0;
+    while i < KNOT_STATIONS {
+        let u = i as f64 / KNOT_STATIONS as f64;
+        let (v, u2, u3) = (1.0 - u, u * u, u * u * u);
+        out[i] =
+            [v * v * v / 6.0, (3.0 * u3 - 6.0 * u2 + 4.0) / 6.0, (3.0 * (u2 - u3) + 3.0 * u + 1.0) / 6.0, u3 / 6.0];
+        i += 1;
+    }
+    out
+};
+
+impl Plan {
+    /// No shift anywhere along `stations` stations.
+    pub(super) fn centred(stations: usize) -> Self {
+        Self { coefficients: vec![0; count(stations)] }
+    }
+
+    /// The plan nearest to `wanted` (metres by knot index), made level at both ends.
+    pub(super) fn through(stations: usize, wanted: impl Fn(usize) -> f64) -> Self {
+        let knots = stations.saturating_sub(1) / KNOT_STATIONS;
+        let step = |knot: usize| (wanted(knot) / STEP_M).round() as i32;
+        let mut coefficients: Vec<i32> = (0..count(stations)).map(|i| step(i.saturating_sub(1).min(knots))).collect();
+        let last = coefficients.len() - 1;
+        let (entry, exit) = (coefficients[1], coefficients[last]);
+        coefficients[..3].fill(entry);
+        coefficients[last - 3..].fill(exit);
+        Self { coefficients }
+    }
+
+    /// The shift at a station, metres; beyond the corridor as at its end.
+    #[must_use]
+    pub fn at_m(&self, station: usize) -> f64 {
+        let Some(last) = self.coefficients.len().checked_sub(4) else { return 0.0 };
+        let (knot, phase) = (station / KNOT_STATIONS, station % KNOT_STATIONS);
+        let (knot, phase) = if knot > last { (last, 0) } else { (knot, phase) };
+        let sum = |w: &[f64; 4]| -> f64 {
+            w.iter().zip(&self.coefficients[knot..]).map(|(w, &c)| w * (f64::from(c) * STEP_M)).sum()
+        };
+        WEIGHTS.get(phase).map_or(0.0, sum)
+    }
+
+    /// Whether the plan is the centreline itself.
+    #[must_use]
+    pub fn is_centred(&self) -> bool {
+        self.coefficients.iter().all(|&c| c == 0)
+    }
+}
+
+fn count(stations: usize) -> usize {
+    stations.saturating_sub(1) / KNOT_STATIONS + 4
+}
+
+/// The shifts of up to eight vehicles at every station of a track, of which `lead` come before the corridor's first.
+pub(super) fn lanes(plans: &[Plan], lead: usize, total: usize, stations: usize) -> Vec<V> {
+    let at = |k: usize| {
+        let station = k.saturating_sub(lead).min(stations - 1);
+        V(std::array::from_fn(|lane| plans[lane.min(plans.len() - 1)].at_m(station)))
+    };
+    let mut out = Vec::with_capacity(total);
+    for k in 0..total {
+        let held = k < lead || k >= lead + stations;
+        let shift = match out.last() {
+            Some(&before) if held => before,
+            _ => at(k),
+        };
+        out.push(shift);
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::lanes::LANES;
+    use super::*;
+
+    #[test]
+    fn a_plan_is_level_at_its_ends_and_within_its_coefficients() {
+        let wanted = |knot: usize| if knot.is_multiple_of(2) { 0.4 } else { -0.3 };
+        for stations in 1..60 {
+            let plan = Plan::through(stations, wanted);
+            assert_eq!(plan.coefficients.len(), count(stations));
+            let q: Vec<f64> = (0..stations).map(|k| plan.at_m(k)).collect();
+            assert!(q.iter().all(|q| (-0.3001..=0.4001).contains(q)), "{q:?}");
+            let slope = |a: f64, b: f64| (a - b).abs();
+            if stations > 16 {
+                // u³/6 of a step of 0.7 m, a quarter of a knot on, and nothing at all at the far end.
+                assert!(slope(q[1], q[0]) < 0.7 / 384.0 + 1e-9, "{q:?}");
+                assert!(slope(q[stations - 1], q[stations - 2]) < 0.7 / 384.0 + 1e-9, "{q:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn lanes_hold_the_ends() {
+        let plan = Plan::through(40, |knot| 0.1 * knot as f64);
+        let q = lanes(std::slice::from_ref(&plan), 10, 70, 40);
+        assert_eq!(q.len(), 70);
+        assert!(q[..10].iter().all(|v| v.0 == [plan.at_m(0); LANES]));
+        assert!(q[50..].iter().all(|v| v.0 == [plan.at_m(39); LANES]));
+        assert_eq!(q[10 + 17].0[3], plan.at_m(17));
+    }
+}
