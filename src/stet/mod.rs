@@ -10,7 +10,6 @@ mod leeway;
 mod model;
 pub mod motion;
 mod plan;
-mod published;
 mod shift;
 mod spans;
 mod sweep;
@@ -172,14 +171,29 @@ pub fn certify_spans(
 /// `None` when the corridor has no station.
 #[must_use]
 pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<Certificate> {
+    let whole = 0..corridor.len();
+    certify_planned(corridor, model, std::slice::from_ref(&whole), options).map(|(certificate, _)| certificate)
+}
+
+/// The certificate over a whole corridor with the plan that [`certify_spans`] makes for `spans`, and what that gives for
+/// each of them: what stands behind the certificate of an edge.
+///
+/// `None` when the corridor has no station.
+#[must_use]
+pub fn certify_planned(
+    corridor: &Corridor,
+    model: &Model,
+    spans: &[Range<usize>],
+    options: &Options,
+) -> Option<(Certificate, Vec<SpanResult>)> {
     if corridor.is_empty() {
         return None;
     }
     let whole = 0..corridor.len();
-    let swept = Swept::new(corridor, &[model], std::slice::from_ref(&whole), options);
+    let swept = Swept::new(corridor, &[model], spans, options);
     let track = &swept.track;
     let centred = thorough(track, &swept.group, &vec![V::splat(0.0); track.len()]);
-    let full = if swept.loose(0, &whole) { swept.refined.as_ref().unwrap_or(&swept.full) } else { &swept.full };
+    let full = if swept.worth(0, &whole) { swept.refined.as_ref().unwrap_or(&swept.full) } else { &swept.full };
     let own = |column: &[f64]| column[track.lead..track.lead + track.count].to_vec();
     let shift = swept.plans[0].clone();
     let shift_m: Vec<f64> = (0..track.count).map(|k| shift.at_m(k)).collect();
@@ -189,16 +203,25 @@ pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<
             [corridor.x[k] - shift_m[k] * sin, corridor.y[k] + shift_m[k] * cos]
         })
         .collect();
-    Some(Certificate {
+    let results = spans.iter().map(|span| swept.result(0, span)).collect();
+    let (mut left_m, mut right_m) = (own(&full[0].left), own(&full[0].right));
+    for span in spans {
+        // What the span's result rests on: refined for one where it is worth it.
+        let best = swept.best(0, span);
+        left_m[span.clone()].copy_from_slice(&best.left[track.lead + span.start..track.lead + span.end]);
+        right_m[span.clone()].copy_from_slice(&best.right[track.lead + span.start..track.lead + span.end]);
+    }
+    let certificate = Certificate {
         result: swept.result(0, &whole),
         plan,
         shift_m,
         shift,
-        left_m: own(&full[0].left),
-        right_m: own(&full[0].right),
+        left_m,
+        right_m,
         left_centred_m: own(&centred[0].left),
         right_centred_m: own(&centred[0].right),
-    })
+    };
+    Some((certificate, results))
 }
 
 /// All leeways at γ = 1, refined wherever that is worth it.
@@ -218,6 +241,8 @@ struct Swept<'m> {
     plans: Vec<Plan>,
     /// At γ = 1, by the filter.
     full: Vec<Minima>,
+    /// Without any disturbance, at a few points; only where the filter is loose at all.
+    nominal: Option<Vec<Minima>>,
     /// At γ = 1, by the adjoint where the filter is loose; only for spans near such places.
     refined: Option<Vec<Minima>>,
     /// At γ_min; only near spans that fail.
@@ -232,11 +257,14 @@ impl<'m> Swept<'m> {
         let plans = plan::best(&track, &group, spans, options);
         let shift = shift::lanes(&plans, track.lead, track.len(), track.count);
         let full = sweep::<true>(&track, &group, &shift, &Wanted::ALL);
-        let mut swept = Self { track, group, plans, full, refined: None, least: None };
+        let mut swept = Self { track, group, plans, full, nominal: None, refined: None, least: None };
         let loose: Vec<Vec<usize>> = swept.full.iter().map(|m| m.loose.clone()).collect();
         let is_loose = |lane: usize, head: usize| loose[lane][head / sweep::BLOCK];
 
-        let near = swept.blocks(spans, |lane, span| swept.loose(lane, span));
+        if swept.full.iter().any(|m| m.loose.iter().any(|&unit| unit < usize::MAX)) {
+            swept.nominal = Some(sweep::<false>(&swept.track, &swept.group, &shift, &Wanted::ALL));
+        }
+        let near = swept.blocks(spans, |lane, span| swept.worth(lane, span));
         if near.iter().flatten().any(|&near| near) {
             let blocks = |lane: usize, head: usize| near[lane][head / sweep::BLOCK];
             let wanted = Wanted { blocks: &blocks, refined: Some(&is_loose) };
@@ -279,9 +307,14 @@ impl<'m> Swept<'m> {
         (0..self.plans.len()).map(of).collect()
     }
 
-    /// Whether the filter is loose where some unit may touch the span.
-    fn loose(&self, lane: usize, span: &Range<usize>) -> bool {
+    /// Whether a better bound than the filter's is worth its time: the filter is loose where some unit may touch the
+    /// span, and the vehicle would fit if it kept to its path exactly. (Decided without ε and σ: raising them must not
+    /// bring a better bound.)
+    fn worth(&self, lane: usize, span: &Range<usize>) -> bool {
+        let Some(nominal) = &self.nominal else { return false };
+        let nominal = &nominal[lane];
         self.full[lane].loose[self.touching(span)].iter().any(|&unit| unit < usize::MAX)
+            && spans::stations(&self.track, span).all(|k| nominal.left[k] >= 0.0 && nominal.right[k] >= 0.0)
     }
 
     /// The best that is known at γ = 1.
@@ -291,7 +324,7 @@ impl<'m> Swept<'m> {
 
     fn best(&self, lane: usize, span: &Range<usize>) -> &Minima {
         match &self.refined {
-            Some(refined) if self.loose(lane, span) => &refined[lane],
+            Some(refined) if self.worth(lane, span) => &refined[lane],
             _ => &self.full[lane],
         }
     }

@@ -137,14 +137,19 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     while head < last {
         motion.block::<CERTIFY, REFINE>(track, group, shift, head, &mut rows, &mut trail);
         for (lane, (bodies, minima)) in bodies.iter_mut().zip(&mut minima).enumerate() {
-            if !wanted(lane, head) {
+            let wanted = wanted(lane, head);
+            let tight_from = if REFINE && wanted { refined(lane, head) } else { usize::MAX };
+            if tight_from < bodies.len() {
+                trail.refine(group, lane, tight_from, &mut motion, &mut rows, &mut tight);
+            }
+            if REFINE {
+                trail.close(lane, bodies.len());
+            }
+            if !wanted {
                 bodies.iter_mut().for_each(|body| leeway::skip(track, body));
                 continue;
             }
-            let tight_from = if REFINE { refined(lane, head) } else { usize::MAX };
-            if tight_from < bodies.len() {
-                trail.refine(group, lane, tight_from, &mut motion, &mut rows, &mut tight);
-            } else if CERTIFY && !REFINE {
+            if CERTIFY && !REFINE {
                 minima.note_loose(head, first_loose(group, lane, &rows));
             }
             for (unit, body) in bodies.iter_mut().enumerate() {
