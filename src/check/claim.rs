@@ -14,6 +14,9 @@ pub const TOLERANCE_M: f64 = 1e-3;
 /// The same for hinge margins, radians (0.02°).
 pub(crate) const TOLERANCE_RAD: f64 = 0.02 * std::f64::consts::PI / 180.0;
 
+/// Columns of leeway are for pictures; what is promised is the RSC. They are held to 3 cm.
+const COLUMN_TOLERANCE_M: f64 = 0.03;
+
 /// A leeway below minus this says that nothing is bounded.
 const NOTHING_M: f64 = 50.0;
 
@@ -21,7 +24,7 @@ const NOTHING_M: f64 = 50.0;
 /// for what lies between their steps.
 pub(crate) const LIMITING_TOLERANCE_M: f64 = 0.06;
 
-/// … and so many stations beyond the end of the span: the prover looks at stations in blocks.
+/// … and so many stations from there: the prover looks at stations in blocks of eight.
 const LIMITING_BEYOND: f64 = 8.0;
 
 /// What came of a claim.
@@ -42,6 +45,8 @@ pub struct Finding {
     pub claim: String,
     /// By how much, and where, in words.
     pub detail: String,
+    /// Nothing at all is bounded there: the claim is not proved, but nothing speaks against it either.
+    pub unbounded: bool,
 }
 
 /// What is claimed of a span of stations.
@@ -114,7 +119,7 @@ impl<'a> Subject<'a> {
                 if let Some(short) =
                     claims[i].hinge_margin_rad.and_then(|margin| self.hinges(&mut swept, &claims[i].stations, margin))
                 {
-                    findings[i].push(finding("hinge_margin_deg", &short));
+                    findings[i].push(Finding { unbounded: short.1, ..finding("hinge_margin_deg", &short.0) });
                 }
                 if let Some(found) = self.limiting(&mut swept, &claims[i]) {
                     findings[i].push(found);
@@ -129,10 +134,11 @@ impl<'a> Subject<'a> {
         let Some(motion) = &self.motion else { return Some("the plan cannot be driven".to_owned()) };
         let none = vec![f64::NEG_INFINITY; self.road.count - 1];
         let mut targets = [none.clone(), none];
-        // It says what is at stations: between them a straight side and a bending road part by up to κ h²/8 each way.
+        // It says what is at stations: between them a straight side and a bending road part by up to κ h²/8, in
+        // time and along the body, and its entries do without what the RSC deducts for that: as much again, and for whose station a foot is.
         let between = |k: usize| {
             let place = |k: usize| self.road.place((self.road.lead + k) as f64).curvature.abs();
-            0.25 * place(k).max(place(k + 1)) * self.road.spacing.powi(2) + TOLERANCE_M
+            1.5 * place(k).max(place(k + 1)) * self.road.spacing.powi(2) + COLUMN_TOLERANCE_M
         };
         targets[side] = column.windows(2).enumerate().map(|(k, pair)| pair[0].min(pair[1]) - between(k)).collect();
         // The column begins with the steer axle on the first station: what is ahead of it then has passed its first feet.
@@ -155,7 +161,7 @@ impl<'a> Subject<'a> {
 
     /// The place that limits must be on the span, and have no more room than the RSC, nearly.
     fn limiting(&self, swept: &mut Swept<'_>, claim: &SpanClaim) -> Option<Finding> {
-        let ((at_m, unit, side), rsc_m) = (claim.limiting?, claim.rsc_m?);
+        let ((at_m, unit, side), rsc_m) = (claim.limiting?, claim.rsc_m.filter(|rsc_m| *rsc_m > -NOTHING_M)?);
         let own = self.stretches(&claim.stations);
         let at = at_m / self.road.spacing;
         if unit >= self.chain.links.len() || at < own.start as f64 - 1.0 || at > own.end as f64 + LIMITING_BEYOND {
@@ -164,8 +170,10 @@ impl<'a> Subject<'a> {
         let stretches = self.road.count - 1;
         let mut targets = [vec![f64::NEG_INFINITY; stretches], vec![f64::NEG_INFINITY; stretches]];
         let at = at.clamp(own.start as f64, own.end as f64 - 1.0);
-        let near = (at as usize).saturating_sub(1)..(at as usize + 2).min(stretches);
-        targets[side][near].fill(rsc_m + LIMITING_TOLERANCE_M);
+        let beyond = LIMITING_BEYOND as usize;
+        let near = (at as usize).saturating_sub(beyond)..(at as usize + beyond).min(stretches);
+        // Far below zero the two part by more: there nothing rests on it.
+        targets[side][near].fill(rsc_m + LIMITING_TOLERANCE_M + 0.25 * (-rsc_m).max(0.0));
         let roomy = swept.refute_only(&Targets(targets), Some(unit)).is_empty();
         roomy.then(|| {
             finding("limiting", &format!("unit {unit} has more room than the RSC at {at_m:.1} m on that side"))
@@ -213,7 +221,8 @@ impl<'a> Subject<'a> {
                 })
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             if let Some((short_m, at)) = worst {
-                findings[i].push(finding("rsc_m", &self.describe(short_m, at)));
+                let unbounded = short_m.is_infinite();
+                findings[i].push(Finding { unbounded, ..finding("rsc_m", &self.describe(short_m, at)) });
             }
         }
     }
@@ -240,7 +249,7 @@ impl<'a> Subject<'a> {
     }
 
     /// Why a hinge margin is not proved while the steer axle is on the span.
-    fn hinges(&self, swept: &mut Swept<'_>, stations: &Range<usize>, margin_rad: f64) -> Option<String> {
+    fn hinges(&self, swept: &mut Swept<'_>, stations: &Range<usize>, margin_rad: f64) -> Option<(String, bool)> {
         let stretches = self.stretches(stations);
         let least = margin_rad - TOLERANCE_RAD;
         let steps = (self.road.lead + stretches.start) * STEPS..(self.road.lead + stretches.end) * STEPS;
@@ -255,10 +264,10 @@ impl<'a> Subject<'a> {
                 }
             }
         }
-        worst.map(|(_, text)| text)
+        worst.map(|(short, text)| (text, short.is_infinite()))
     }
 }
 
 pub(crate) fn finding(claim: &str, detail: &str) -> Finding {
-    Finding { claim: claim.to_owned(), detail: detail.to_owned() }
+    Finding { claim: claim.to_owned(), detail: detail.to_owned(), unbounded: false }
 }

@@ -132,6 +132,10 @@ impl SetClaim<'_> {
                 all.extend(self.road(made, span));
                 all.extend(self.printed(&subject, row, span));
             }
+            // What is called unsafe is not promised; its numbers are checked where there is something to check them by.
+            if row.verdict != Verdict::Safe && row.rsc_m.is_none_or(|rsc_m| rsc_m < 0.0) {
+                all.retain(|finding| !finding.unbounded);
+            }
             if all.is_empty() { Outcome::Confirmed } else { Outcome::NotConfirmed(all) }
         };
         let mut outcome = outcome;
@@ -169,14 +173,18 @@ impl SetClaim<'_> {
         let inner = span.stations.start + 1..span.stations.end.saturating_sub(1);
         inner.into_iter().find_map(|k| {
             let width = made.corridor.left_m.get(k)? + made.corridor.right_m.get(k)?;
-            (width > most)
-                .then(|| finding("corridor", &format!("{width:.2} m wide at station {k}, the strip {most:.2} m")))
+            (width > most).then(|| {
+                finding(
+                    "corridor",
+                    &format!("{width:.2} m wide at station {k} of {:?}, the strip {most:.2} m", span.stations),
+                )
+            })
         })
     }
 
     fn printed(&self, subject: &Subject<'_>, row: &EdgeRow, span: &EdgeSpan) -> Option<Finding> {
         let claimed = row.rsc_published_m?;
-        let printed_m = printed::rsc_m(subject, self.vehicle, span.stations.clone());
+        let printed_m = printed::most_m(subject, self.vehicle, span.stations.clone());
         (claimed > printed_m + TOLERANCE_M)
             .then(|| finding("rsc_published_m", &format!("{claimed} is above {printed_m:.4}")))
     }

@@ -241,6 +241,9 @@ impl Document {
 
     /// A tube: centres, shapes and radii at the head's stations; times that grow.
     fn tube(&self, along: &Subject<'_>, swept: &mut Swept<'_>, claim: &TubeClaim) -> Option<(&'static str, String)> {
+        if claim.t[0] != 0.0 {
+            return Some(("t", "t[0] is not 0".to_owned()));
+        }
         if let Some(k) = (1..claim.t.len()).find(|&k| claim.t[k] <= claim.t[k - 1]) {
             return Some(("t", format!("t[{k}] is not after t[{}]", k - 1)));
         }

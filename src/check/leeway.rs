@@ -20,12 +20,19 @@ use super::tubes::{Tube, Tubes};
 pub(crate) const CLOSE_M: f64 = 1e-6;
 /// What the road's own evaluation may be off, metres: its quadrature (1e-7) and rounding.
 const ROAD_M: f64 = 2e-7;
+/// Widest gap between two stretches that a foot may fall into, metres.
+const GAP_M: f64 = 0.03;
 /// Halvings of a cell at most: 15 m of body to 1 mm.
 const MOST_HALVINGS: u32 = 14;
 /// Second derivatives are taken at the corners of a cell; between them they may be greater by this factor.
 const BETWEEN: f64 = 1.25;
 /// Points of a body at which the adjoint is run, metres apart; linear between, which is never less (convex).
 const KNOT_M: f64 = 0.5;
+/// A cell with a corner that has no foot is halved so often; what is left of it touches every normal that passes within the
+/// second length, and no road farther along than the first.
+const FOOTLESS_HALVINGS: u32 = 5;
+const FOOTLESS_M: f64 = 6.0;
+const NEAR_M: f64 = 0.1;
 /// Steps of history over which second-order terms are taken from the adjoint's bounds, in vehicle lengths.
 const HISTORY_LENGTHS: f64 = 1.5;
 
@@ -152,7 +159,6 @@ impl<'a> Swept<'a> {
     /// Decides a cell; gives the feet of its ends when it is over.
     fn cell(&mut self, cell: &Cell, hints: [f64; 2], targets: &Targets, found: &mut Shortfalls) -> [f64; 2] {
         let poses = cell.t.map(|t| self.pose(cell.step, cell.unit, t));
-        let link = self.chain.links[cell.unit];
         // Rough feet: straight on from the hint, or from where the road's stations are.
         let guess = |k: usize| {
             if hints[k].is_nan() { self.rough_foot(cell.step, cell.unit, cell.a[k]) } else { hints[k] }
@@ -168,10 +174,16 @@ impl<'a> Swept<'a> {
             }
         }
         let [[Some(c00), Some(c01)], [Some(c10), Some(c11)]] = corners else {
-            // No foot, or nothing is bounded here: whatever is claimed near is not proved.
-            let reach = self.rough_foot(cell.step, cell.unit, 0.0);
-            let all = [reach - link.l.max(-link.rear), reach + link.front.max(link.l)];
-            found.unbounded(cell, self.range(all), targets);
+            // No foot, or nothing is bounded here: whatever is claimed where it may be is not proved.
+            if self.tubes.get(cell.step, cell.unit).is_some() && cell.halvings < FOOTLESS_HALVINGS {
+                let middle = f64::midpoint(cell.a[0], cell.a[1]);
+                for a in [[cell.a[0], middle], [middle, cell.a[1]]] {
+                    let half = Cell { a, halvings: cell.halvings + 1, ..*cell };
+                    self.cell(&half, [f64::NAN; 2], targets, found);
+                }
+            } else {
+                found.unbounded(cell, &self.touched(cell, &poses), targets);
+            }
             return [f64::NAN; 2];
         };
         let all = [c00, c01, c10, c11];
@@ -250,6 +262,26 @@ impl<'a> Swept<'a> {
         step as f64 / STEPS as f64 - (behind + self.chain.links[unit].l - a) / self.road.spacing
     }
 
+    /// Stretches of the corridor whose normals may pass through a cell: on their stations it lies ahead of the first and not ahead of
+    /// the second.
+    fn touched(&self, cell: &Cell, poses: &[Pose; 2]) -> Vec<usize> {
+        let sign = if cell.side == 0 { 1.0 } else { -1.0 };
+        let b = sign * self.chain.links[cell.unit].half_width;
+        let points: Vec<[f64; 2]> = poses.iter().flat_map(|pose| cell.a.map(|a| point(*pose, a, b))).collect();
+        let ahead = |k: usize| {
+            let place = self.road.place(k as f64);
+            points.iter().map(move |x| (x[0] - place.c[0]) * place.t[0] + (x[1] - place.c[1]) * place.t[1])
+        };
+        let middle = self.rough_foot(cell.step, cell.unit, f64::midpoint(cell.a[0], cell.a[1]));
+        let reach = (0.5 * (cell.a[1] - cell.a[0]) + FOOTLESS_M) / self.road.spacing;
+        let from = ((middle - reach).max(self.road.lead as f64)) as usize;
+        let to = ((middle + reach).max(0.0) as usize).min(self.road.lead + self.road.count - 1);
+        (from..to)
+            .filter(|&k| ahead(k).any(|x| x > -NEAR_M) && ahead(k + 1).any(|x| x < NEAR_M))
+            .map(|k| k - self.road.lead)
+            .collect()
+    }
+
     /// Stretches of the corridor between two feet (stations of the road).
     fn range(&self, [from, to]: [f64; 2]) -> (usize, usize) {
         let own = |s: f64| s - self.road.lead as f64;
@@ -297,7 +329,7 @@ impl<'a> Swept<'a> {
             / (narrow * narrow);
         let bend = (across - place.curvature * along_road * along_road / (1.0 - place.curvature * lateral)).abs()
             + slope.abs() * feet;
-        let dev = dev + self.road.slack(s);
+        let dev = dev + self.road.slack(s).max(self.road.slack(s - 0.1));
         Some(Corner { s, clear: width - sign * lateral, dev, bend, lateral, sin, slope })
     }
 
@@ -405,11 +437,12 @@ impl<'a> Swept<'a> {
 /// The foot of a point by Newton's method, to 1e-10 m; its place and lateral.
 pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<(f64, Place, f64)> {
     let mut s = guess;
-    for _ in 0..30 {
+    for round in 0..30 {
         let place = road.place(s);
         let r = [x[0] - place.c[0], x[1] - place.c[1]];
         let (off, lateral) = (r[0] * place.t[0] + r[1] * place.t[1], r[1] * place.t[0] - r[0] * place.t[1]);
-        if off.abs() < 1e-10 {
+        // Where one stretch does not quite lead to the next, a foot may fall into the gap.
+        if off.abs() < 1e-10 || round == 29 && off.abs() < GAP_M {
             return Some((s, place, lateral));
         }
         s += off.clamp(-5.0, 5.0) / (1.0 - place.curvature * lateral).max(0.1) / road.spacing;
@@ -463,8 +496,8 @@ impl Shortfalls {
         }
     }
 
-    fn unbounded(&mut self, cell: &Cell, (first, last): (usize, usize), targets: &Targets) {
-        for k in first..=last {
+    fn unbounded(&mut self, cell: &Cell, stretches: &[usize], targets: &Targets) {
+        for &k in stretches {
             if targets.0[cell.side][k] > f64::NEG_INFINITY {
                 let short_m = f64::INFINITY;
                 self.worst[cell.side][k] =

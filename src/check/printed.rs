@@ -9,10 +9,22 @@ use super::claim::Subject;
 use super::motion::STEPS;
 use crate::vehicle::Vehicle;
 
+/// No 𝒞 is above this: h_Ω is not negative. Edges' own values are held to it; where an edge ends in a corner, whose feet are its
+/// own is a matter of rounding, and no decision rests on it.
+pub(super) fn most_m(subject: &Subject<'_>, vehicle: &Vehicle, stations: Range<usize>) -> f64 {
+    narrowest_m(subject, stations) - last_radius_m(vehicle)
+}
+
+fn narrowest_m(subject: &Subject<'_>, stations: Range<usize>) -> f64 {
+    let road = &subject.road;
+    let own = road.lead + stations.start..road.lead + stations.end.min(road.count);
+    road.widths[own].iter().flatten().fold(f64::INFINITY, |least, &w| least.min(w))
+}
+
 pub(super) fn rsc_m(subject: &Subject<'_>, vehicle: &Vehicle, stations: Range<usize>) -> f64 {
     let road = &subject.road;
     let own = road.lead + stations.start..road.lead + stations.end.min(road.count);
-    let narrowest = road.widths[own.clone()].iter().flatten().fold(f64::INFINITY, |least, &w| least.min(w));
+    let narrowest = narrowest_m(subject, stations);
     let last = vehicle.units.len() - 1;
     let mut off: f64 = 0.0;
     if let Some(motion) = &subject.motion {

@@ -154,9 +154,15 @@ impl Tubes {
         let swing = motion.swing(step, unit);
         let link = &chain.links[unit];
         let bend = Bend::of(link, swing, self.step_m);
+        // Its coupling is the hitch of the unit ahead.
+        let hitch = unit.checked_sub(1).and_then(|ahead| {
+            let tube = self.get(step, ahead)?;
+            Some(tube.y + chain.links[ahead].d.abs() * tube.a)
+        });
         if let Some(Some(tube)) = self.tubes.get_mut((step - self.first) * self.units + unit) {
             tube.y = tube.y.min(y);
             tube.a = tube.a.min(a);
+            tube.e = hitch.map_or(tube.e, |hitch| tube.e.min(hitch + tube.zh));
             tube.r1 = tube.r1.min(r1(link, &bend, swing.curvature, tube.y, tube.a));
             tube.z = tube.z.min(z(link, &bend, tube.y, tube.a, tube.r1));
         }
