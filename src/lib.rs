@@ -14,6 +14,8 @@
 //! | turns | [`manoeuvres`] | a vehicle → swept paths of the turns that regulators ask for, beside their limits |
 //! | pictures | [`picture`] | corridors, vehicles and certificates → SVG; nothing else of the library depends on it |
 //!
+//! [`check`] works out again what [`stet`] claims, without it.
+//!
 //! [`pipeline`] runs them in that order; [`pace`] says when a vehicle is where. `stet` is pure: no input or output, no clock,
 //! no threads.
 

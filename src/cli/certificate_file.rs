@@ -2,7 +2,8 @@
 //! answer rests on is in it.
 //!
 //! Positions are in the corridor file's own coordinates; lengths are metres, angles radians unless the name says degrees.
-//! `frame` says how degrees became metres. Beyond the promised members, stations carry heading and curvature: between
+//! `shift` holds the plan's integer coefficients (`stet::Plan`); `sha256`, always the last member, is over all bytes before its
+//! own comma. `frame` says how degrees became metres. Beyond the promised members, stations carry heading and curvature: between
 //! stations the centreline is the curve of linear curvature through them.
 
 use netcert::corridor::{FileCorridor, FrameError};
