@@ -4,6 +4,7 @@
 
 mod adjoint;
 mod gains;
+mod given;
 mod group;
 mod lanes;
 mod leeway;
@@ -21,6 +22,7 @@ use std::ops::Range;
 
 use crate::corridor::Corridor;
 
+pub use given::{PlanError, certify_plan};
 pub use model::{MAX_UNITS, Model, ModelError};
 pub use motion::steady_offtracking;
 pub use shift::{KNOT_STATIONS, Plan, STEP_M};
@@ -177,28 +179,7 @@ pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<
     }
     let whole = 0..corridor.len();
     let swept = Swept::new(corridor, &[model], std::slice::from_ref(&whole), options);
-    let track = &swept.track;
-    let centred = thorough(track, &swept.group, &vec![V::splat(0.0); track.len()]);
-    let full = if swept.loose(0, &whole) { swept.refined.as_ref().unwrap_or(&swept.full) } else { &swept.full };
-    let own = |column: &[f64]| column[track.lead..track.lead + track.count].to_vec();
-    let shift = swept.plans[0].clone();
-    let shift_m: Vec<f64> = (0..track.count).map(|k| shift.at_m(k)).collect();
-    let plan = (0..track.count)
-        .map(|k| {
-            let (sin, cos) = corridor.heading[k].sin_cos();
-            [corridor.x[k] - shift_m[k] * sin, corridor.y[k] + shift_m[k] * cos]
-        })
-        .collect();
-    Some(Certificate {
-        result: swept.result(0, &whole),
-        plan,
-        shift_m,
-        shift,
-        left_m: own(&full[0].left),
-        right_m: own(&full[0].right),
-        left_centred_m: own(&centred[0].left),
-        right_centred_m: own(&centred[0].right),
-    })
+    Some(swept.certificate(corridor))
 }
 
 /// All leeways at γ = 1, refined wherever that is worth it.
@@ -226,10 +207,20 @@ struct Swept<'m> {
 
 impl<'m> Swept<'m> {
     fn new(corridor: &Corridor, models: &[&'m Model], spans: &[Range<usize>], options: &Options) -> Self {
+        Self::along(corridor, models, spans, &|track, group| plan::best(track, group, spans, options))
+    }
+
+    /// `plans` gives each vehicle's, in the group's order.
+    fn along(
+        corridor: &Corridor,
+        models: &[&'m Model],
+        spans: &[Range<usize>],
+        plans: &dyn Fn(&Track, &Group<'m>) -> Vec<Plan>,
+    ) -> Self {
         let group = Group::new(models, 1.0);
         let (lead_m, tail_m) = sweep::extensions_m(&group, corridor.spacing_m);
         let track = Track::new(corridor, lead_m, tail_m);
-        let plans = plan::best(&track, &group, spans, options);
+        let plans = plans(&track, &group);
         let shift = shift::lanes(&plans, track.lead, track.len(), track.count);
         let full = sweep::<true>(&track, &group, &shift, &Wanted::ALL);
         let mut swept = Self { track, group, plans, full, refined: None, least: None };
@@ -252,6 +243,33 @@ impl<'m> Swept<'m> {
             swept.least = Some(sweep::<true>(&swept.track, &tight, &shift, &wanted));
         }
         swept
+    }
+
+    /// What the first vehicle's sweeps say of the whole corridor.
+    fn certificate(&self, corridor: &Corridor) -> Certificate {
+        let whole = 0..corridor.len();
+        let track = &self.track;
+        let centred = thorough(track, &self.group, &vec![V::splat(0.0); track.len()]);
+        let full = if self.loose(0, &whole) { self.refined.as_ref().unwrap_or(&self.full) } else { &self.full };
+        let own = |column: &[f64]| column[track.lead..track.lead + track.count].to_vec();
+        let shift = self.plans[0].clone();
+        let shift_m: Vec<f64> = (0..track.count).map(|k| shift.at_m(k)).collect();
+        let plan = (0..track.count)
+            .map(|k| {
+                let (sin, cos) = corridor.heading[k].sin_cos();
+                [corridor.x[k] - shift_m[k] * sin, corridor.y[k] + shift_m[k] * cos]
+            })
+            .collect();
+        Certificate {
+            result: self.result(0, &whole),
+            plan,
+            shift_m,
+            shift,
+            left_m: own(&full[0].left),
+            right_m: own(&full[0].right),
+            left_centred_m: own(&centred[0].left),
+            right_centred_m: own(&centred[0].right),
+        }
     }
 
     /// Head stations, in blocks, in which some unit may touch the span.

@@ -70,7 +70,8 @@ impl Plan {
     }
 }
 
-fn count(stations: usize) -> usize {
+/// Coefficients of a plan over so many stations.
+pub(super) fn count(stations: usize) -> usize {
     stations.saturating_sub(1) / KNOT_STATIONS + 4
 }
 
