@@ -393,10 +393,13 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let (right_foot, right_lateral) = foot(at, right_along, right_at);
     let left = at.left + at.left_slope * left_foot - left_lateral;
     let right = at.right + at.right_slope * right_foot + right_lateral;
-    if !CERTIFY {
-        return (left, right);
-    }
     let point = &body.points[index];
+    let lean_left = (askew * -point.slope_ahead).max(askew * point.slope_behind);
+    let lean_right = (askew * point.slope_ahead).max(askew * -point.slope_behind);
+    if !CERTIFY {
+        let gain = cos * point.gain;
+        return (left - gain - lean_left, right - gain - lean_right);
+    }
     let reach = point.ahead.abs();
     let (c, t) = (cos.abs(), sin.abs());
     let extras = (s.extra_axle + s.extra_coupling) * body.inverse_length;
@@ -411,8 +414,7 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
         let base = c * (s.extra_axle * point.from_axle + s.extra_coupling * point.from_coupling + point.gain)
             + t * extras * body.half_width
             + (t - c).max(V::splat(0.0)) * a * body.half_width;
-        let lean_left = (askew * -point.slope_ahead).max(askew * point.slope_behind);
-        (base, lean_left, (askew * point.slope_ahead).max(askew * -point.slope_behind))
+        (base, lean_left, lean_right)
     };
     // Second order: along is how far the point may slide along the corridor.
     let along = c * a * body.half_width + t * (axle + a * reach);

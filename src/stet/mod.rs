@@ -3,6 +3,7 @@
 //! Pure: a corridor and a vehicle in, a certificate out; no input or output, no clock, no threads.
 
 mod adjoint;
+mod ascent;
 mod gains;
 mod given;
 mod group;
@@ -12,6 +13,7 @@ mod model;
 pub mod motion;
 mod plan;
 mod published;
+mod response;
 mod shift;
 mod spans;
 mod sweep;
