@@ -58,7 +58,9 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
             coupling = axle - unit.hitch;
             let foot = |ahead: f64| (track.lead as f64 + (axle + ahead) / track.spacing).round() as usize;
             let n = unit.points.len();
-            let chosen = (0..n).filter(|&p| CERTIFY || p == 0 || p == n / 2 || p == n - 1);
+            // Innermost on a steady circle.
+            let middle = (0..n).min_by(|&a, &b| unit.points[a].abs().total_cmp(&unit.points[b].abs()));
+            let chosen = (0..n).filter(|&p| CERTIFY || p == 0 || Some(p) == middle || p == n - 1);
             let points = chosen.map(|p| {
                 let gain = unit.at[p].at(tolerance);
                 Point {
