@@ -387,7 +387,8 @@ impl Motion {
             let extra = (y + change.max(change * step.cosine.max(ZERO))).min(V::splat(MOST));
             // Where it does not close, nothing is certified while the vehicle stands here; a vehicle that is certified further
             // on did not come through here, so that its bounds begin anew.
-            closed = closed.min(validity(of, step, a));
+            // A stand-in closes: it is nobody's.
+            closed = closed.min(select_negative(of.present - V::splat(0.5), one, validity(of, step, a)));
             self.extra[unit] = select_negative(closed, ZERO, extra);
             let y = y.max(extra);
 
