@@ -8,15 +8,25 @@
 //! | network | [`network`] | `Extract` → [`network::Network`]: directed edges, cross sections, strokes |
 //! | corridors | [`corridor`] | a stroke → [`corridor::StrokeCorridor`]: C¹ centreline and width profile, in metres |
 //! | certificates | [`stet`] | a corridor and a [`vehicle`] → [`stet::Certificate`] |
+//! | the paper | [`published`] | a corridor and a vehicle → the paper's own certificate, to the letter; it decides nothing |
 //! | store | [`store`] | network and certificates → a GeoPackage |
+//! | reasons | [`explain`] | an edge or corridor and a vehicle → what limits, where, and what would do |
+//! | turns | [`manoeuvres`] | a vehicle → swept paths of the turns that regulators ask for, beside their limits |
+//! | pictures | [`picture`] | corridors, vehicles and certificates → SVG; nothing else of the library depends on it |
 //!
-//! [`pipeline`] runs them in that order. `stet` is pure: no input or output, no clock, no threads.
+//! [`pipeline`] runs them in that order; [`pace`] says when a vehicle is where. `stet` is pure: no input or output, no clock,
+//! no threads.
 
 pub mod account;
 pub mod corridor;
+pub mod explain;
+pub mod manoeuvres;
 pub mod network;
 pub mod osm;
+pub mod pace;
+pub mod picture;
 pub mod pipeline;
+pub mod published;
 pub mod stet;
 pub mod store;
 pub mod vehicle;

@@ -28,8 +28,11 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Verb::Ingest(verb) => verb.run(&session),
         Verb::Certify(verb) => verb.run(&session),
         Verb::Query(verb) => verb.run(&session),
+        Verb::Explain(verb) => verb.run(&session),
         Verb::Corridor(verb) => verb.run(&session),
-        Verb::Vehicles(verb) => verb.run(),
+        Verb::Vehicles(verb) => verb.run(&session),
+        Verb::Manoeuvres(verb) => verb.run(&session),
+        Verb::Paper(verb) => verb.run(&session),
         Verb::Stats(verb) => verb.run(),
     }
 }

@@ -148,7 +148,9 @@ fn hard_cases() -> Vec<Case> {
                 let seed = (100 * k + 10 * j) as u64;
                 let mut draw = Draw(seed + 17);
                 let bends = turn(radius, degrees, transition, bend_back);
-                let low = 0.5 * vehicle.width_m() + 1.0;
+                // Wide enough to be fit for, off-tracking and all: where a vehicle does not fit even undisturbed, no better bound
+                // than the filter's is sought.
+                let low = 0.5 * vehicle.width_m() + 1.0 + tightest_m(&vehicle).powi(2) / (2.0 * radius);
                 let corridor = draw::corridor(&mut draw, &bends, low, low + 3.0);
                 let shape = if bend_back { "S-bend" } else { "turn" };
                 let name = format!(
@@ -227,5 +229,5 @@ fn no_disturbance_within_the_bounds_comes_closer_than_rsc_in_the_hard_cases() {
     assert_sound(&verdicts);
     // Of the others (half a metre of tolerance with a degree of slip, round the tightest turns) the bounds' recursion does
     // not close: the answer is `unsafe`, reason articulation, and no claim is left to refute.
-    assert!(verdicts.len() * 2 >= cases.len(), "only {} hard cases could be tried", verdicts.len());
+    assert!(verdicts.len() * 5 >= cases.len() * 4, "only {} hard cases could be tried", verdicts.len());
 }

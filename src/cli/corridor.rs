@@ -6,11 +6,13 @@ use std::path::{Path, PathBuf};
 use anyhow::{anyhow, bail};
 use clap::Args;
 use netcert::corridor::{self, FileCorridor, corridor_from_file};
-use netcert::stet::{self, Certificate, Model, Options};
+use netcert::explain::{self, Explanation, explain_corridor};
+use netcert::stet::{Certificate, Model, Options};
 use netcert::store::Named;
 
 use super::Session;
 use super::certificate_file;
+use super::explain::{wrapped, write_picture};
 use super::fleet::Fleet;
 use super::output::results;
 use super::values::metres;
@@ -61,6 +63,9 @@ pub(crate) struct Corridor {
     /// Write the certificate there, as JSON.
     #[arg(long, value_name = "CERTIFICATE.json")]
     out: Option<PathBuf>,
+    /// Draw it there: the place that limits, the vehicle on it, and the leeway all along.
+    #[arg(long, value_name = "OUT.svg")]
+    svg: Option<PathBuf>,
 }
 
 impl Corridor {
@@ -69,7 +74,7 @@ impl Corridor {
         let model = Model::new(fleet.catalogue.get(&self.vehicle)?)?;
         let given = read(&self.file)?;
         let options = Options { max_shift_m: self.max_shift, ..Options::default() };
-        let Some(certificate) = stet::certify(&given.corridor, &model, &options) else {
+        let Some((certificate, why)) = explain_corridor(&given.corridor, &model, &options) else {
             bail!("{}: no station to certify; give two points or more", self.file.display());
         };
         if let Some(path) = &self.out {
@@ -77,12 +82,19 @@ impl Corridor {
             std::fs::write(path, format!("{json}\n"))
                 .map_err(|e| anyhow!("{}: cannot write the certificate: {e}", path.display()))?;
         }
+        if let Some(path) = &self.svg {
+            write_picture(path, &why)?;
+        }
         let mut out = results();
         writeln!(out, "{}", describe(&self.file, &given.corridor))?;
         answer(&mut out, &model, &given.corridor, &certificate)?;
+        because(&mut out, &why)?;
         out.flush()?;
         if let Some(path) = &self.out {
             session.progress.say(&format!("{}: the whole certificate", path.display()));
+        }
+        if let Some(path) = &self.svg {
+            session.progress.say(&format!("{}: the picture", path.display()));
         }
         Ok(())
     }
@@ -154,11 +166,16 @@ fn answer(
         at.side.name(),
         at.point_m.abs(),
     )?;
-    let heading_deg = vehicle.tracking_heading_rad.to_degrees();
-    writeln!(
-        out,
-        "\nThis holds within the model: no tyre slip beyond each unit's sway bound, a course within {heading_deg:.1}° of the\n\
-         plan's, a corridor as wide as the file says, a vehicle as defined (`netcert vehicles show {}`).",
-        vehicle.id
-    )
+    Ok(())
+}
+
+/// What limits, what would do, and what the answer rests on.
+fn because(out: &mut dyn Write, why: &Explanation) -> std::io::Result<()> {
+    let words = explain::words(why);
+    writeln!(out)?;
+    for paragraph in std::iter::once(&words.headline).chain(&words.hints) {
+        writeln!(out, "{}", wrapped(paragraph, "  "))?;
+    }
+    writeln!(out, "\n{}", wrapped(&words.scope, ""))?;
+    writeln!(out, "The vehicle: `netcert vehicles show {}`.", why.vehicle.id)
 }

@@ -8,10 +8,13 @@ mod certify;
 mod clock;
 mod corridor;
 mod database;
+mod explain;
 mod fleet;
 mod how;
 mod ingest;
+mod manoeuvres;
 pub(crate) mod output;
+mod paper;
 mod progress;
 mod query;
 mod rows;
@@ -58,8 +61,11 @@ pub(crate) enum Verb {
     Ingest(ingest::Ingest),
     Certify(certify::Certify),
     Query(query::Query),
+    Explain(explain::Explain),
     Corridor(corridor::Corridor),
     Vehicles(vehicles::Vehicles),
+    Manoeuvres(manoeuvres::Manoeuvres),
+    Paper(paper::Paper),
     Stats(stats::Stats),
 }
 

@@ -4,10 +4,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand, ValueEnum};
+use netcert::picture;
 use netcert::stet::{Model, steady_offtracking};
 use netcert::vehicle::{Catalogue, Vehicle, VehicleDefinition};
 use serde::Serialize;
 
+use super::Session;
 use super::fleet::Fleet;
 use super::output::results;
 use super::table::Table;
@@ -21,6 +23,7 @@ const RADII_M: [f64; 3] = [50.0, 100.0, 200.0];
 Examples:
   netcert vehicles list --region AU
   netcert vehicles show AU-ATRIPLE53 > ours.toml       a pattern for a vehicle of your own: change the id and the rest
+  netcert vehicles show AU-ATRIPLE53 --svg train.svg
   netcert vehicles check ours.toml")]
 pub(crate) struct Vehicles {
     #[command(subcommand)]
@@ -45,8 +48,15 @@ enum What {
         /// TOML as in a vehicle file, or JSON as in a certificate.
         #[arg(long, value_enum, default_value_t = Form::Toml)]
         format: Form,
+        /// Draw it there: from above and from the side, to scale, with its dimensions.
+        #[arg(long, value_name = "OUT.svg")]
+        svg: Option<PathBuf>,
     },
-    /// Check a vehicle file: every fault with its line, or what the file holds.
+    /// Check a vehicle file: every fault with its line, or what the file holds and what is odd about it.
+    ///
+    /// Refused is what cannot be built: bodies that stand in each other, lengths that do not close, a hinge limit at which
+    /// bodies would meet even with rounded ends. Odd is, and only warned of, what some real vehicle may be: bodies of which
+    /// the corners alone would meet.
     Check {
         /// The file.
         file: PathBuf,
@@ -65,11 +75,20 @@ struct VehicleFile {
 }
 
 impl Vehicles {
-    pub(crate) fn run(&self) -> anyhow::Result<()> {
+    pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         match &self.what {
             What::List { region } => list(region.as_deref()),
-            What::Show { id, vehicle_file, format } => show(Fleet::new(vehicle_file)?.catalogue.get(id)?, *format),
-            What::Check { file } => check(file),
+            What::Show { id, vehicle_file, format, svg } => {
+                let fleet = Fleet::new(vehicle_file)?;
+                let vehicle = fleet.catalogue.get(id)?;
+                if let Some(path) = svg {
+                    std::fs::write(path, picture::vehicle(vehicle))
+                        .map_err(|e| anyhow::anyhow!("{}: cannot write the picture: {e}", path.display()))?;
+                    session.progress.say(&format!("{}: the picture", path.display()));
+                }
+                show(vehicle, *format)
+            }
+            What::Check { file } => check(file, session),
         }
     }
 }
@@ -124,12 +143,15 @@ fn offtracking(vehicle: &Vehicle) -> String {
     format!("The last axle cuts in, on a steady circle of the steer axle: {}", RADII_M.map(at).join(", "))
 }
 
-fn check(file: &Path) -> anyhow::Result<()> {
+fn check(file: &Path, session: &Session) -> anyhow::Result<()> {
     let own = Catalogue::from_path(file)?;
     // A clash with a shipped id, and what the certificate's model does not cover, are faults of the file too.
     Catalogue::builtin()?.extended(own.clone(), &file.display().to_string())?;
     for vehicle in own.iter() {
         Model::new(vehicle).map_err(|refused| anyhow::anyhow!("{}: {refused}", file.display()))?;
+    }
+    for odd in own.warnings() {
+        session.progress.say(&format!("{}: warning: {odd}", file.display()));
     }
     let mut out = results();
     let count = own.iter().len();

@@ -174,7 +174,12 @@ fn measured(made: &StrokeCorridor, span: &EdgeSpan, result: &SpanResult) -> Meas
 }
 
 /// What forbids comes first, then what cannot be said; a limit that cannot be read stands only against a `safe`.
-fn verdict(edge: &Edge, model: &Model, unknown: Option<UnknownReason>, result: Option<&SpanResult>) -> Verdict {
+pub(crate) fn verdict(
+    edge: &Edge,
+    model: &Model,
+    unknown: Option<UnknownReason>,
+    result: Option<&SpanResult>,
+) -> Verdict {
     let legal = edge.legal.forbids(&model.vehicle);
     if let Some(forbidden @ Verdict::Forbidden(_)) = legal {
         return forbidden;

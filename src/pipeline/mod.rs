@@ -12,6 +12,7 @@ use std::time::Instant;
 
 use thiserror::Error;
 
+pub(crate) use certificates::verdict;
 pub use certificates::{Job, certify_network};
 pub use select::{Selection, own_countries, selected};
 

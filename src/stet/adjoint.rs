@@ -19,7 +19,7 @@ const WORTH: f64 = 0.01;
 /// Stations that are remembered, a power of two: beyond what any bound of the longest vehicles recalls.
 const MEMORY: usize = 512;
 /// The history is cut where it can add no more than this, metres.
-const REST_M: f64 = 5e-4;
+const REST_M: f64 = 2e-3;
 /// Cutting is thought of every so many stations.
 const CUT_STATIONS: usize = 8;
 /// Allowance for what interpolation and trapezoids leave, a part of the bound.
@@ -27,10 +27,17 @@ const SURE: f64 = 1.002;
 /// Rounds in which a guess of the remainder must come to rest.
 const ROUNDS: usize = 12;
 
+/// Far back, where kernels are smooth, the adjoint takes two and four stations at a step.
+const STRIDES: [usize; 3] = [1, 2, 4];
+/// From so many stations back on.
+const STRIDE_AFTER: [usize; 3] = [0, 12, 36];
+
 /// What the adjoint needs of one unit at one station.
 #[derive(Debug, Clone, Copy, Default)]
 struct Past {
-    /// Over the step to the next station: exp(−ℓ/L), and the weights of a source here, at the next, and of its bend.
+    /// ℓ/L over the step to the next station.
+    turned: f64,
+    /// Over that step: exp(−ℓ/L), and the weights of a source here, at the next station, and of its bend.
     decay: f64,
     early: f64,
     late: f64,
@@ -61,13 +68,19 @@ struct Reach {
     per_remainder: V,
 }
 
-/// The last stations of every vehicle of a group, for the adjoint to run back along.
-pub(super) struct Trail {
+/// What a vehicle's steps of one stride have been, by station.
+struct History {
     past: Vec<[Past; MAX_UNITS]>,
     /// Bound of the steer axle's deviation, chord included.
-    steer: Vec<[f64; LANES]>,
-    /// Negative where the bounds did not close.
-    closed: Vec<V>,
+    steer: Vec<f64>,
+    /// Whether the bounds closed all over the step.
+    closed: Vec<bool>,
+}
+
+/// The last stations of every vehicle of a group, for the adjoint to run back along.
+pub(super) struct Trail {
+    /// By vehicle, then by stride; places by station, again and again.
+    histories: Vec<[History; STRIDES.len()]>,
     /// The last block's steps and joints.
     steps: Vec<[Step; MAX_UNITS]>,
     joints: Vec<[V; MAX_UNITS]>,
@@ -117,10 +130,13 @@ impl Trail {
     pub(super) fn new(group: &Group<'_>, used: bool) -> Self {
         let (memory, block) = if used { (MEMORY, BLOCK) } else { (0, 0) };
         let models: &[&Model] = if used { &group.models } else { &[] };
+        let history = |_| History {
+            past: vec![[Past::default(); MAX_UNITS]; memory],
+            steer: vec![0.0; memory],
+            closed: vec![true; memory],
+        };
         Self {
-            past: vec![[Past::default(); MAX_UNITS]; memory * models.len()],
-            steer: vec![[0.0; LANES]; memory],
-            closed: vec![ZERO; memory],
+            histories: models.iter().map(|_| std::array::from_fn(history)).collect(),
             steps: vec![[Step::NONE; MAX_UNITS]; block],
             joints: vec![[ZERO; MAX_UNITS]; block],
             before: [(ZERO, ZERO); MAX_UNITS],
@@ -129,17 +145,15 @@ impl Trail {
         }
     }
 
-    fn slot(&self, lane: usize, station: usize) -> usize {
-        lane * MEMORY + station % MEMORY
-    }
-
     /// Another station, the `k`-th of its block.
     #[inline(always)]
     pub(super) fn begin(&mut self, k: usize, steps: &[Step; MAX_UNITS], joints: &[V; MAX_UNITS], steer: V) {
         if self.count == 0 {
             self.before = std::array::from_fn(|unit| (steps[unit].advance, steps[unit].mid_tangent));
         }
-        self.steer[self.count % MEMORY] = steer.0;
+        for (history, steer) in self.histories.iter_mut().zip(steer.0) {
+            history[0].steer[self.count % MEMORY] = steer;
+        }
         self.steps[k] = *steps;
         self.joints[k] = *joints;
         self.count += 1;
@@ -159,16 +173,10 @@ impl Trail {
         let (couple, pass) = (cosine * (of.ratio + 1.0), cosine * of.ratio * secant);
         let turned = step.advance * of.inverse_length;
         self.before[unit] = (step.advance, step.mid_tangent);
-        let station = self.count - 1;
-        self.closed[station % MEMORY] = closed;
-        for lane in 0..self.outputs.len() {
-            let slot = self.slot(lane, station);
-            let weights = Weights::over(turned.0[lane]);
-            self.past[slot][unit] = Past {
-                decay: weights.decay,
-                early: weights.early,
-                late: weights.late,
-                bend: weights.bend,
+        let at = (self.count - 1) % MEMORY;
+        for (lane, history) in self.histories.iter_mut().enumerate() {
+            history[0].closed[at] = closed.0[lane] >= 0.0;
+            history[0].past[at][unit] = Past {
                 rate: rate.0[lane],
                 rate_secant: rate.0[lane] * secant.0[lane],
                 secant: secant.0[lane],
@@ -178,7 +186,29 @@ impl Trail {
                 push: rate.0[lane] * (of.length.0[lane] * of.sway.0[lane] + z.0[lane]),
                 hitch: zh.0[lane],
                 axle: axle.0[lane],
+                ..Past::over(turned.0[lane], 1)
             };
+        }
+    }
+
+    /// The block driven last is as it stays, for one vehicle: its longer strides.
+    pub(super) fn close(&mut self, lane: usize, units: usize) {
+        let first = self.count - BLOCK;
+        for stride in 1..STRIDES.len() {
+            let (shorter, longer) = self.histories[lane].split_at_mut(stride);
+            let (from, to) = (&shorter[stride - 1], &mut longer[0]);
+            for station in (first..self.count).step_by(STRIDES[stride]) {
+                let (a, b) = (station % MEMORY, (station + STRIDES[stride - 1]) % MEMORY);
+                to.steer[a] = from.steer[a].max(from.steer[b]);
+                to.closed[a] = from.closed[a] && from.closed[b];
+                for unit in 0..units {
+                    let (p, q) = (&from.past[a][unit], &from.past[b][unit]);
+                    let whole = Past::over(p.turned + q.turned, STRIDES[stride]);
+                    let Past { turned, decay, early, late, bend, .. } = whole;
+                    let (push, hitch) = (p.push.max(q.push), p.hitch.max(q.hitch));
+                    to.past[a][unit] = Past { turned, decay, early, late, bend, push, hitch, ..*p };
+                }
+            }
         }
     }
 
@@ -220,7 +250,7 @@ impl Trail {
     ) {
         let (steps, joints) = (self.steps[k], self.joints[k]);
         let units = group.models[lane].units.len();
-        let steer = self.steer[station % MEMORY][lane];
+        let steer = self.histories[lane][0].steer[station % MEMORY];
         let mut straying = Straying::of_the_steer_axle(V::splat(steer));
         let (mut heading_ahead, mut shift_ahead) = (group.course, ZERO);
         let mut closes = true;
@@ -261,11 +291,11 @@ impl Trail {
             straying = straying.next(of, step, a);
             let follower = (unit + 1 < units).then(|| (&group.chain[unit + 1], &steps[unit + 1]));
             let zh = hitch_remainder(of, step, follower, a, axle, r1, &straying);
-            let slot = self.slot(lane, station);
-            self.past[slot][unit].note(of, lane, z.0[lane], zh.0[lane], axle.0[lane]);
+            let past = &mut self.histories[lane][0].past[station % MEMORY][unit];
+            past.note(of, lane, z.0[lane], zh.0[lane], axle.0[lane]);
             motion.extra[unit].0[lane] = extra.0[lane].max(0.0);
         }
-        self.closed[station % MEMORY].0[lane] = if closes { 1.0 } else { -1.0 };
+        self.histories[lane][0].closed[station % MEMORY] = closes;
     }
 
     /// Bounds of a unit's heading and axle, and of its body points (into every [`BLOCK`]-th of `points`), with a
@@ -281,10 +311,10 @@ impl Trail {
         points: &mut [f64],
     ) -> Option<(f64, f64)> {
         let of = &group.chain[unit];
-        let slot = self.slot(lane, station);
-        let guess = if station > 0 { self.past[self.slot(lane, station - 1)][unit].z } else { 0.0 };
-        let own = self.past[slot][unit];
-        self.past[slot][unit].note(of, lane, guess, own.hitch, own.axle);
+        let past = &mut self.histories[lane][0].past;
+        let guess = if station > 0 { past[(station - 1) % MEMORY][unit].z } else { 0.0 };
+        let own = &mut past[station % MEMORY][unit];
+        own.note(of, lane, guess, own.hitch, own.axle);
         let count = self.outputs[lane][unit].len();
         let first = self.reach(group, lane, station, unit, 0);
         let at = |z: f64, output: usize| {
@@ -324,7 +354,9 @@ impl Trail {
     #[inline(always)]
     fn reach(&self, group: &Group<'_>, lane: usize, station: usize, unit: usize, batch: usize) -> Reach {
         let outputs = &self.outputs[lane][unit][batch];
-        let now = &self.past[self.slot(lane, station)];
+        let histories = &self.histories[lane];
+        let now = &histories[0].past[station % MEMORY];
+        let steer = histories[0].steer[station % MEMORY];
         let mut mu = [ZERO; MAX_UNITS];
         mu[unit] = outputs.axle;
         // Couplings pass on at once.
@@ -335,7 +367,7 @@ impl Trail {
             mu[j] = nu * now[j].couple;
             nu = nu * -now[j].pass;
         }
-        bound = bound + nu.abs() * self.steer[station % MEMORY][lane];
+        bound = bound + nu.abs() * steer;
         let per_remainder = outputs.axle.abs() * (0.6 * now[unit].rate);
 
         let mut sources = [ZERO; MAX_UNITS];
@@ -347,33 +379,46 @@ impl Trail {
             sources[j] = nu * now[j].couple;
             nu = mu[j] * now[j].rate_secant - nu * now[j].pass;
         }
-        last = last + nu.abs() * self.steer[station % MEMORY][lane];
-        let mut before_last: Option<V> = None;
+        last = last + nu.abs() * steer;
+        let mut before_last = last;
 
-        let floor = station.saturating_sub(MEMORY - BLOCK - 1);
-        let mut at = station;
+        let floor = station.saturating_sub(MEMORY - BLOCK - 4);
+        let closed_blocks = self.count - BLOCK;
+        let (mut at, mut taken) = (station, STRIDES.len());
         let straight = |j: usize| group.chain[j].axle.0[lane];
         let rest = loop {
             let sum = |of: &dyn Fn(usize) -> f64| (0..=unit).fold(ZERO, |sum, j| sum + mu[j].abs() * of(j));
-            if at == floor {
-                let past = &self.past[self.slot(lane, at)];
+            let past = &histories[0].past[at % MEMORY];
+            if at <= floor {
                 break sum(&|j| if at == 0 { straight(j) } else { past[j].axle });
             }
-            if self.closed[(at - 1) % MEMORY].0[lane] < 0.0 {
+            let gone = station - at;
+            let mut stride = 0;
+            if at <= closed_blocks {
+                for longer in 1..STRIDES.len() {
+                    let step = STRIDES[longer];
+                    let whole = gone >= STRIDE_AFTER[longer] && at % step == 0 && at >= floor + step;
+                    if whole && histories[longer].closed[(at - step) % MEMORY] {
+                        stride = longer;
+                    }
+                }
+            }
+            if !histories[stride].closed[(at - STRIDES[stride]) % MEMORY] {
                 // Nothing is claimed of a vehicle that came through there: the bounds begin anew.
                 break sum(&straight);
             }
-            if (station - at) % CUT_STATIONS == CUT_STATIONS - 1 {
-                let past = &self.past[self.slot(lane, at)];
+            if gone % CUT_STATIONS == CUT_STATIONS - 1 || stride > 1 {
                 let rest = sum(&|j| past[j].axle);
                 if rest.0.iter().all(|&r| r < REST_M) {
                     break rest;
                 }
             }
-            at -= 1;
-            let past = &self.past[self.slot(lane, at)];
-            let steer = self.steer[at % MEMORY][lane];
-            let bent = at + 1 < station;
+            at -= STRIDES[stride];
+            let history = &histories[stride];
+            let (past, steer) = (&history.past[at % MEMORY], history.steer[at % MEMORY]);
+            // A bend is known from steps of the same stride.
+            let bent = taken == stride;
+            taken = stride;
             let mut rate = ZERO;
             nu = ZERO;
             for j in (0..=unit).rev() {
@@ -390,11 +435,12 @@ impl Trail {
                 nu = m * p.rate_secant - nu * p.pass;
             }
             rate = rate + nu.abs() * steer;
-            bound = bound + (rate + last) * 0.5;
-            if let Some(before) = before_last {
-                bound = bound + (last * 2.0 - rate - before).max(ZERO) * (1.0 / 12.0);
+            let length = STRIDES[stride] as f64;
+            bound = bound + (rate + last) * (0.5 * length);
+            if bent {
+                bound = bound + (last * 2.0 - rate - before_last).max(ZERO) * (length / 12.0);
             }
-            before_last = Some(last);
+            before_last = last;
             last = rate;
         };
         Reach { bound: bound + rest, per_remainder }
@@ -402,6 +448,21 @@ impl Trail {
 }
 
 impl Past {
+    /// A step over `stride` stations in which a unit's axle moves by `a` of its lengths: ∫₀¹ of e^{−aθ} times a source's
+    /// parabola through both ends of the step and the next, in stations.
+    #[inline(always)]
+    fn over(a: f64, stride: usize) -> Self {
+        let (decay, length) = ((-a).exp(), stride as f64);
+        let (early, late) = if a > 0.05 {
+            let a2 = a * a;
+            ((a - 1.0 + decay) / a2, (1.0 - decay * (1.0 + a)) / a2)
+        } else {
+            (0.5 - a * (1.0 / 6.0 - a / 24.0), 0.5 - a * (1.0 / 3.0 - a * (0.125 - a / 30.0)))
+        };
+        let bend = decay.sqrt() / 12.0;
+        Self { turned: a, decay, early: early * length, late: late * length, bend: bend * length, ..Self::default() }
+    }
+
     /// Bounds in place of the filter's.
     #[inline(always)]
     fn note(&mut self, of: &UnitLanes, lane: usize, z: f64, hitch: f64, axle: f64) {
@@ -409,28 +470,6 @@ impl Past {
         self.push = self.rate * (of.length.0[lane] * of.sway.0[lane] + z);
         self.hitch = hitch;
         self.axle = axle;
-    }
-}
-
-/// ∫₀¹ of e^{−aθ} times a source's parabola through both ends of a step and the next.
-struct Weights {
-    decay: f64,
-    early: f64,
-    late: f64,
-    bend: f64,
-}
-
-impl Weights {
-    #[inline(always)]
-    fn over(a: f64) -> Self {
-        let decay = (-a).exp();
-        let (early, late) = if a > 0.05 {
-            let a2 = a * a;
-            ((a - 1.0 + decay) / a2, (1.0 - decay * (1.0 + a)) / a2)
-        } else {
-            (0.5 - a * (1.0 / 6.0 - a / 24.0), 0.5 - a * (1.0 / 3.0 - a * (0.125 - a / 30.0)))
-        };
-        Self { decay, early, late, bend: decay.sqrt() / 12.0 }
     }
 }
 

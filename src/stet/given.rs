@@ -53,8 +53,9 @@ pub enum PlanError {
 pub fn certify_plan(corridor: &Corridor, model: &Model, plan: &Plan) -> Result<Certificate, PlanError> {
     check(corridor.len(), plan)?;
     let whole = 0..corridor.len();
-    let swept = Swept::along(corridor, &[model], std::slice::from_ref(&whole), &|_, _| vec![plan.clone()]);
-    Ok(swept.certificate(corridor))
+    let spans = std::slice::from_ref(&whole);
+    let swept = Swept::along(corridor, &[model], spans, &|_, _| vec![plan.clone()]);
+    Ok(swept.certificate(corridor, spans).0)
 }
 
 fn check(stations: usize, plan: &Plan) -> Result<(), PlanError> {

@@ -43,6 +43,15 @@ struct Point {
     foot: usize,
 }
 
+impl Body {
+    /// Nothing is deducted for the straight.
+    pub(super) fn forget_gains(&mut self) {
+        for point in &mut self.points {
+            (point.gain, point.slope_ahead, point.slope_behind) = (0.0, 0.0, 0.0);
+        }
+    }
+}
+
 /// The bodies of a vehicle that stands straight behind the track's first station, at γ = `shrink`. When planning, three
 /// points a side.
 pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: f64) -> Vec<Body> {

@@ -12,7 +12,6 @@ mod leeway;
 mod model;
 pub mod motion;
 mod plan;
-mod published;
 mod response;
 mod shift;
 mod spans;
@@ -176,12 +175,25 @@ pub fn certify_spans(
 /// `None` when the corridor has no station.
 #[must_use]
 pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<Certificate> {
+    let whole = 0..corridor.len();
+    certify_planned(corridor, model, std::slice::from_ref(&whole), options).map(|(certificate, _)| certificate)
+}
+
+/// The certificate over a whole corridor with the plan that [`certify_spans`] makes for `spans`, and what that gives for
+/// each of them: what stands behind the certificate of an edge.
+///
+/// `None` when the corridor has no station.
+#[must_use]
+pub fn certify_planned(
+    corridor: &Corridor,
+    model: &Model,
+    spans: &[Range<usize>],
+    options: &Options,
+) -> Option<(Certificate, Vec<SpanResult>)> {
     if corridor.is_empty() {
         return None;
     }
-    let whole = 0..corridor.len();
-    let swept = Swept::new(corridor, &[model], std::slice::from_ref(&whole), options);
-    Some(swept.certificate(corridor))
+    Some(Swept::new(corridor, &[model], spans, options).certificate(corridor, spans))
 }
 
 /// All leeways at γ = 1, refined wherever that is worth it.
@@ -191,7 +203,7 @@ fn thorough(track: &Track, group: &Group<'_>, shift: &[V]) -> Vec<Minima> {
         return full;
     }
     let loose = |lane: usize, head: usize| full[lane].loose[head / sweep::BLOCK];
-    sweep::<true>(track, group, shift, &Wanted { blocks: &|_, _| true, refined: Some(&loose) })
+    sweep::<true>(track, group, shift, &Wanted { refined: Some(&loose), ..Wanted::ALL })
 }
 
 /// A group of vehicles after its sweeps.
@@ -201,6 +213,8 @@ struct Swept<'m> {
     plans: Vec<Plan>,
     /// At γ = 1, by the filter.
     full: Vec<Minima>,
+    /// Without any disturbance, at a few points; only where the filter is loose at all.
+    nominal: Option<Vec<Minima>>,
     /// At γ = 1, by the adjoint where the filter is loose; only for spans near such places.
     refined: Option<Vec<Minima>>,
     /// At γ_min; only near spans that fail.
@@ -225,14 +239,17 @@ impl<'m> Swept<'m> {
         let plans = plans(&track, &group);
         let shift = shift::lanes(&plans, track.lead, track.len(), track.count);
         let full = sweep::<true>(&track, &group, &shift, &Wanted::ALL);
-        let mut swept = Self { track, group, plans, full, refined: None, least: None };
+        let mut swept = Self { track, group, plans, full, nominal: None, refined: None, least: None };
         let loose: Vec<Vec<usize>> = swept.full.iter().map(|m| m.loose.clone()).collect();
         let is_loose = |lane: usize, head: usize| loose[lane][head / sweep::BLOCK];
 
-        let near = swept.blocks(spans, |lane, span| swept.loose(lane, span));
+        if swept.full.iter().any(|m| m.loose.iter().any(|&unit| unit < usize::MAX)) {
+            swept.nominal = Some(sweep::<false>(&swept.track, &swept.group, &shift, &Wanted::PLAIN));
+        }
+        let near = swept.blocks(spans, |lane, span| swept.worth(lane, span));
         if near.iter().flatten().any(|&near| near) {
             let blocks = |lane: usize, head: usize| near[lane][head / sweep::BLOCK];
-            let wanted = Wanted { blocks: &blocks, refined: Some(&is_loose) };
+            let wanted = Wanted { blocks: &blocks, refined: Some(&is_loose), plain: false };
             swept.refined = Some(sweep::<true>(&swept.track, &swept.group, &shift, &wanted));
         }
         let failing = swept.blocks(spans, |lane, span| swept.at_full(lane, span).rsc_m < 0.0);
@@ -241,18 +258,18 @@ impl<'m> Swept<'m> {
             let blocks = |lane: usize, head: usize| failing[lane][head / sweep::BLOCK];
             // From the same kind of bound as at γ = 1, block by block: only then is the leeway concave in γ.
             let refined: Option<&dyn Fn(usize, usize) -> usize> = Some(&is_loose);
-            let wanted = Wanted { blocks: &blocks, refined: refined.filter(|_| swept.refined.is_some()) };
+            let wanted = Wanted { blocks: &blocks, refined: refined.filter(|_| swept.refined.is_some()), plain: false };
             swept.least = Some(sweep::<true>(&swept.track, &tight, &shift, &wanted));
         }
         swept
     }
 
-    /// What the first vehicle's sweeps say of the whole corridor.
-    fn certificate(&self, corridor: &Corridor) -> Certificate {
+    /// What the first vehicle's sweeps say of the whole corridor, and of each span.
+    fn certificate(&self, corridor: &Corridor, spans: &[Range<usize>]) -> (Certificate, Vec<SpanResult>) {
         let whole = 0..corridor.len();
         let track = &self.track;
         let centred = thorough(track, &self.group, &vec![V::splat(0.0); track.len()]);
-        let full = if self.loose(0, &whole) { self.refined.as_ref().unwrap_or(&self.full) } else { &self.full };
+        let full = if self.worth(0, &whole) { self.refined.as_ref().unwrap_or(&self.full) } else { &self.full };
         let own = |column: &[f64]| column[track.lead..track.lead + track.count].to_vec();
         let shift = self.plans[0].clone();
         let shift_m: Vec<f64> = (0..track.count).map(|k| shift.at_m(k)).collect();
@@ -262,16 +279,25 @@ impl<'m> Swept<'m> {
                 [corridor.x[k] - shift_m[k] * sin, corridor.y[k] + shift_m[k] * cos]
             })
             .collect();
-        Certificate {
+        let results = spans.iter().map(|span| self.result(0, span)).collect();
+        let (mut left_m, mut right_m) = (own(&full[0].left), own(&full[0].right));
+        for span in spans {
+            // What the span's result rests on: refined for one where it is worth it.
+            let best = self.best(0, span);
+            left_m[span.clone()].copy_from_slice(&best.left[track.lead + span.start..track.lead + span.end]);
+            right_m[span.clone()].copy_from_slice(&best.right[track.lead + span.start..track.lead + span.end]);
+        }
+        let certificate = Certificate {
             result: self.result(0, &whole),
             plan,
             shift_m,
             shift,
-            left_m: own(&full[0].left),
-            right_m: own(&full[0].right),
+            left_m,
+            right_m,
             left_centred_m: own(&centred[0].left),
             right_centred_m: own(&centred[0].right),
-        }
+        };
+        (certificate, results)
     }
 
     /// Head stations, in blocks, in which some unit may touch the span.
@@ -299,9 +325,14 @@ impl<'m> Swept<'m> {
         (0..self.plans.len()).map(of).collect()
     }
 
-    /// Whether the filter is loose where some unit may touch the span.
-    fn loose(&self, lane: usize, span: &Range<usize>) -> bool {
+    /// Whether a better bound than the filter's is worth its time: the filter is loose where some unit may touch the
+    /// span, and the vehicle would fit if it kept to its path exactly. (Decided without ε and σ: raising them must not
+    /// bring a better bound.)
+    fn worth(&self, lane: usize, span: &Range<usize>) -> bool {
+        let Some(nominal) = &self.nominal else { return false };
+        let nominal = &nominal[lane];
         self.full[lane].loose[self.touching(span)].iter().any(|&unit| unit < usize::MAX)
+            && spans::stations(&self.track, span).all(|k| nominal.left[k] >= 0.0 && nominal.right[k] >= 0.0)
     }
 
     /// The best that is known at γ = 1.
@@ -311,7 +342,7 @@ impl<'m> Swept<'m> {
 
     fn best(&self, lane: usize, span: &Range<usize>) -> &Minima {
         match &self.refined {
-            Some(refined) if self.loose(lane, span) => &refined[lane],
+            Some(refined) if self.worth(lane, span) => &refined[lane],
             _ => &self.full[lane],
         }
     }

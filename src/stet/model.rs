@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::gains::{Chain, Gain};
-use super::published;
+use crate::published;
 use crate::vehicle::{Unit, Vehicle};
 
 /// Most units a model takes: what the tags of the sweep's minima can name.

@@ -1,6 +1,6 @@
 //! Nominal motion (design section 3): every axle follows its front coupling without slip, by the exact chord step.
 
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Unit, Vehicle};
 
 /// Where a unit stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -9,6 +9,23 @@ pub struct Pose {
     pub axle: [f64; 2],
     /// Its heading, a unit vector.
     pub heading: [f64; 2],
+}
+
+impl Pose {
+    /// The place so far ahead of the axle and to the left of the unit's axis, metres.
+    #[must_use]
+    pub fn place(&self, ahead_m: f64, left_m: f64) -> [f64; 2] {
+        let [ux, uy] = self.heading;
+        [self.axle[0] + ahead_m * ux - left_m * uy, self.axle[1] + ahead_m * uy + left_m * ux]
+    }
+
+    /// The corners of the unit's body: front left, front right, rear right, rear left.
+    #[must_use]
+    pub fn outline(&self, unit: &Unit) -> [[f64; 2]; 4] {
+        let (front, rear) = (unit.coupling_to_axle_m + unit.front_overhang_m, -unit.rear_overhang_m);
+        let half = 0.5 * unit.width_m;
+        [(front, half), (front, -half), (rear, -half), (rear, half)].map(|(ahead, left)| self.place(ahead, left))
+    }
 }
 
 /// The poses of all units (front to rear) at every vertex of the steer axle's `path` (metres). The vehicle enters

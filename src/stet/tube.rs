@@ -45,6 +45,7 @@ pub fn tubes(corridor: &Corridor, model: &Model, certificate: &Certificate) -> V
         if loose.min(after) < units {
             trail.refine(&group, 0, loose.min(after), &mut motion, &mut rows, &mut refined);
         }
+        trail.close(0, units);
         after = loose;
         for tube in &mut tubes {
             let at = |field: usize, k: usize| rows[(tube.unit * LANES * FIELDS + field) * BLOCK + k];

@@ -68,6 +68,7 @@ fn meant(nearest: &[String]) -> String {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Catalogue {
     vehicles: Vec<Vehicle>,
+    odd: Vec<Fault>,
 }
 
 impl Catalogue {
@@ -101,7 +102,7 @@ impl Catalogue {
     /// [`VehicleError::Refused`] with every fault and its line.
     pub fn from_toml(text: &str, file: &str) -> Result<Self, VehicleError> {
         match file::parse(text) {
-            Ok(vehicles) => Ok(Self { vehicles }),
+            Ok((vehicles, odd)) => Ok(Self { vehicles, odd }),
             Err(faults) => Err(VehicleError::Refused { file: file.to_owned(), faults }),
         }
     }
@@ -115,6 +116,7 @@ impl Catalogue {
             return Err(VehicleError::Clash { file: file.to_owned(), id: twice.id.clone() });
         }
         self.vehicles.extend(other.vehicles);
+        self.odd.extend(other.odd);
         Ok(self)
     }
 
@@ -128,6 +130,12 @@ impl Catalogue {
 
     fn find(&self, id: &str) -> Option<&Vehicle> {
         self.vehicles.iter().find(|v| v.id == id)
+    }
+
+    /// What is odd about vehicles though not impossible, with vehicle, field and line.
+    #[must_use]
+    pub fn warnings(&self) -> &[Fault] {
+        &self.odd
     }
 
     /// All vehicles, in file order.

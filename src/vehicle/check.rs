@@ -5,6 +5,7 @@
 
 use std::fmt;
 
+use super::collide::{self, Clash};
 use super::definition::{VehicleDefinition, closure_m};
 use super::{Unit, Vehicle};
 
@@ -64,6 +65,22 @@ pub(crate) fn faults(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place) 
             check.bodies(&vehicle.units);
             check.length(&vehicle);
         }
+        // Bodies that stand in each other straight have been named.
+        if check.faults.len() == found {
+            check.turning(&vehicle.units, true);
+        }
+    }
+    check.faults
+}
+
+/// What is odd about vehicles without a fault, as faults are: a real vehicle may be so, but it should be looked at.
+pub(crate) fn warnings(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place) -> Option<usize>) -> Vec<Fault> {
+    let mut check = Check { line_of, vehicle: 0, label: String::new(), faults: Vec::new() };
+    for (index, definition) in definitions.iter().enumerate() {
+        check.vehicle = index;
+        check.label = format!("vehicle {:?}", shown(&definition.id));
+        let vehicle = definition.vehicle();
+        check.turning(&vehicle.units, false);
     }
     check.faults
 }
@@ -172,6 +189,20 @@ impl Check<'_> {
                     self.fault(Some((i, u)), "front_overhang_m", problem);
                 }
             }
+            if let Some((towing, &before)) = i.checked_sub(1).and_then(|t| units.get(t)).zip(rears.last())
+                && !collide::carries(units, i - 1)
+                && !collide::is_dolly(units, i)
+                && front > before + collide::TOUCH_M
+            {
+                let how =
+                    if towing.hitch_offset_m < towing.rear_overhang_m { "under its body" } else { "behind its body" };
+                let problem = format!(
+                    "the body reaches {:.2} m into that of unit {i}, which draws it by a coupling {how}; at most {:.2}",
+                    front - before,
+                    u.front_overhang_m - (front - before)
+                );
+                self.fault(Some((i, u)), "front_overhang_m", problem);
+            }
             if let Some(&before) = i.checked_sub(2).and_then(|b| rears.get(b))
                 && front > before
             {
@@ -180,6 +211,35 @@ impl Check<'_> {
             }
             rears.push(rear);
             coupling -= u.coupling_to_axle_m + u.hitch_offset_m;
+        }
+    }
+
+    /// Hinge limits that the bodies do not let it reach: impossible where even rounded ends meet, else odd.
+    fn turning(&mut self, units: &[Unit], impossible: bool) {
+        for clash in collide::clashes(units).into_iter().filter(|clash| clash.rounded == impossible) {
+            let Clash { hinge, units: (ahead, behind), angle_deg, .. } = clash;
+            let Some(unit) = units.get(hinge) else { continue };
+            let limit_deg = (unit.max_articulation_rad.to_degrees() * 1e9).round() / 1e9;
+            let who = format!("the bodies of units {} and {}", ahead + 1, behind + 1);
+            match (angle_deg > 0.0, impossible) {
+                (false, _) => {
+                    let problem = format!("{who} stand in each other when the vehicle is straight");
+                    self.fault(Some((hinge, unit)), "front_overhang_m", problem);
+                }
+                (true, true) => {
+                    let problem = format!(
+                        "{limit_deg} cannot be reached: {who} meet at {angle_deg}° even if their ends are round"
+                    );
+                    self.fault(Some((hinge, unit)), "max_articulation_deg", problem);
+                }
+                (true, false) => {
+                    let problem = format!(
+                        "{limit_deg} is reached only by bodies with rounded corners: as rectangles, {who} meet at \
+                         {angle_deg}°"
+                    );
+                    self.fault(Some((hinge, unit)), "max_articulation_deg", problem);
+                }
+            }
         }
     }
 

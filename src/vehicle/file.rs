@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::Vehicle;
-use super::check::{Fault, Place, faults};
+use super::check::{Fault, Place, faults, warnings};
 use super::definition::VehicleDefinition;
 
 #[derive(Deserialize)]
@@ -16,8 +16,8 @@ struct VehicleFile {
     vehicle: Vec<VehicleDefinition>,
 }
 
-/// The vehicles of a file's text, in file order; at least one.
-pub(crate) fn parse(text: &str) -> Result<Vec<Vehicle>, Vec<Fault>> {
+/// The vehicles of a file's text, in file order, at least one; and what is odd about them.
+pub(crate) fn parse(text: &str) -> Result<(Vec<Vehicle>, Vec<Fault>), Vec<Fault>> {
     let unreadable = |e: &toml::de::Error| {
         let line = e.span().map(|span| line_at(text, span.start));
         vec![Fault { line, place: String::new(), problem: e.message().to_owned() }]
@@ -30,7 +30,11 @@ pub(crate) fn parse(text: &str) -> Result<Vec<Vehicle>, Vec<Fault>> {
     }
     let line_of = |place| Some(line_at(text, offset(&tree, place)?));
     let faults = faults(&file.vehicle, &line_of);
-    if faults.is_empty() { Ok(file.vehicle.iter().map(VehicleDefinition::vehicle).collect()) } else { Err(faults) }
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    let odd = warnings(&file.vehicle, &line_of);
+    Ok((file.vehicle.iter().map(VehicleDefinition::vehicle).collect(), odd))
 }
 
 /// Byte offset of a field's value; of its unit or vehicle where the field is left out.

@@ -5,11 +5,13 @@
 //! | `definition` | a vehicle in the file's units, as TOML and JSON have it, and to and from [`Vehicle`] |
 //! | `defaults` | what a definition that leaves something out gets, and why |
 //! | `check` | the bounds a definition must keep, as faults with a place |
+//! | `collide` | bodies that would stand in each other, straight or turned |
 //! | `file` | TOML text → vehicles, or every fault with its line |
 //! | `catalogue` | the shipped vehicles, which of them belong to a country, and look-up by id |
 
 mod catalogue;
 mod check;
+mod collide;
 mod defaults;
 mod definition;
 mod file;
@@ -75,6 +77,18 @@ pub struct Vehicle {
 }
 
 impl Vehicle {
+    /// Whether a unit is a dolly or turntable axle: drawn by a bar, and the next unit's body lies over it.
+    #[must_use]
+    pub fn is_dolly(&self, unit: usize) -> bool {
+        collide::is_dolly(&self.units, unit)
+    }
+
+    /// Whether a unit carries the next one's body on a fifth wheel.
+    #[must_use]
+    pub fn carries(&self, unit: usize) -> bool {
+        collide::carries(&self.units, unit)
+    }
+
     /// Greatest body width, metres.
     #[must_use]
     pub fn width_m(&self) -> f64 {

@@ -1,0 +1,273 @@
+//! `netcert explain`: why an edge is safe or not for a vehicle, in words and as a picture.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use anyhow::{anyhow, bail};
+use clap::{Args, ValueEnum};
+use netcert::explain::{self, Explanation};
+use netcert::network::Network;
+use netcert::osm::facts::Policy;
+use netcert::picture;
+use netcert::pipeline::Settings;
+use netcert::stet::Model;
+use netcert::store::{Database, EdgeRow, Named, QueryOptions, verdict_words};
+use netcert::vehicle::Vehicle;
+
+use super::Session;
+use super::database::DatabaseArgs;
+use super::fleet::{self, Fleet};
+use super::how;
+use super::output::{printable, results};
+use super::table::Table;
+use super::values::word;
+
+/// So many candidates are listed where the edge is not clear.
+const MOST_LISTED: usize = 30;
+
+/// Why an edge is safe or not: which metre of road, which unit, which side, how much is missing, and what would do.
+///
+/// The corridor and the certificate are made again from the database's network; every hint is a certificate of its
+/// own. Certificates that the database keeps must say the same: if they do not, that is an error.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  netcert explain 7129168334710566423 --vehicle AU-ATRIPLE53
+  netcert explain 'Great Inland Highway' --vehicle AU-ATRIPLE53      lists its edges
+  netcert explain 7129168334710566423 --vehicle AU-ATRIPLE53 --svg why.svg")]
+pub(crate) struct Explain {
+    /// An edge_id, as `netcert query` shows it; or a way's id, a road's name or ref: where that is more than one edge,
+    /// they are listed.
+    #[arg(value_name = "EDGE")]
+    edge: String,
+    #[command(flatten)]
+    db: DatabaseArgs,
+    /// The vehicle; `netcert vehicles list` shows the ids.
+    #[arg(long, value_name = "ID")]
+    vehicle: String,
+    /// Where its definition stands, if not in the catalogue or the database.
+    #[arg(long, value_name = "F.toml")]
+    vehicle_file: Vec<PathBuf>,
+    /// Which width counts: one's own lane, all lanes of one's direction, or the whole carriageway [default: as the
+    /// database was made with, lane unless told otherwise].
+    #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
+    corridor: Option<Policy>,
+    /// Draw it there: the place that limits, the vehicle on it, and the leeway all along the edge.
+    #[arg(long, value_name = "OUT.svg")]
+    svg: Option<PathBuf>,
+    /// Form of the answer.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+}
+
+impl Explain {
+    pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        let path = self.db.path()?;
+        let mut database = Database::open(&path)?;
+        let recorded = how::recorded(&mut database)?;
+        let settings = Settings { policy: self.corridor.unwrap_or(recorded.policy), ..recorded };
+        let network = database.load_network()?;
+        let edge = self.one_edge(&network, &mut database, settings.policy)?;
+        let model = Model::new(&self.vehicle(&mut database)?)?;
+        let Some(explanation) = explain::explain_edge(&network, edge, &model, &settings) else {
+            bail!("{}: no edge {edge}", path.display());
+        };
+        match self.stored(&mut database, &network, edge, settings.policy)? {
+            Some(row) => {
+                if let Some(detail) = explanation.disagreement(&row) {
+                    bail!(
+                        "{}: the certificate of edge {} for {} is not what this program computes: {detail}; it was made by \
+                         another version: run `netcert certify --db {0} --vehicle {2} --corridor {}`",
+                        path.display(),
+                        row.edge_id,
+                        self.vehicle,
+                        settings.policy.name()
+                    );
+                }
+            }
+            None => session.progress.say(&format!(
+                "{} is not certified in {} under the {} policy: explained as computed now",
+                self.vehicle,
+                path.display(),
+                settings.policy.name()
+            )),
+        }
+        if let Some(out) = &self.svg {
+            write_picture(out, &explanation)?;
+            session.progress.say(&format!("{}: the picture", out.display()));
+        }
+        let mut out = results();
+        match self.format {
+            Format::Json => writeln!(out, "{:#}", explain::json(&explanation))?,
+            Format::Text => tell(&mut out, &explanation)?,
+        }
+        Ok(out.flush()?)
+    }
+
+    /// The database's own definition comes first: its certificates were made with it.
+    fn vehicle(&self, database: &mut Database) -> anyhow::Result<Vehicle> {
+        let fleet = Fleet::new(&self.vehicle_file)?;
+        match fleet::kept(database, &self.vehicle)? {
+            Some(vehicle) if !fleet.own.contains(&self.vehicle) => Ok(vehicle),
+            _ => Ok(fleet.catalogue.get(&self.vehicle)?.clone()),
+        }
+    }
+
+    /// The certificate that the database keeps, if it has this vehicle's under this policy, made with this definition.
+    fn stored(
+        &self,
+        database: &mut Database,
+        network: &Network,
+        edge: u32,
+        policy: Policy,
+    ) -> anyhow::Result<Option<EdgeRow>> {
+        let there = database.certified()?.iter().any(|set| set.vehicle_id == self.vehicle && set.policy == policy);
+        let own = Fleet::new(&self.vehicle_file)?.own.contains(&self.vehicle);
+        let Some(facts) = network.edges.get(edge as usize).filter(|_| there && !own) else { return Ok(None) };
+        let options = QueryOptions { edge_id: Some(facts.id), ..QueryOptions::new(&self.vehicle, policy) };
+        Ok(database.query(&options)?.next().transpose()?)
+    }
+
+    fn one_edge(&self, network: &Network, database: &mut Database, policy: Policy) -> anyhow::Result<u32> {
+        let found = candidates(network, &self.edge);
+        match found.as_slice() {
+            [one] => Ok(*one),
+            [] => bail!(
+                "no edge, way or road {:?} in the database; `netcert query --vehicle {}` lists the edges",
+                printable(&self.edge),
+                self.vehicle
+            ),
+            several => {
+                let listed = self.listed(network, database, policy, several)?;
+                bail!("{:?} is {} edges; name one by its edge_id:\n{listed}", printable(&self.edge), several.len())
+            }
+        }
+    }
+
+    fn listed(
+        &self,
+        network: &Network,
+        database: &mut Database,
+        policy: Policy,
+        edges: &[u32],
+    ) -> anyhow::Result<String> {
+        let mut table = Table::new(&[">edge_id", ">way", "dir", "highway", ">length", ">rsc", "verdict", "road"]);
+        let certified = database.certified()?.iter().any(|set| set.vehicle_id == self.vehicle && set.policy == policy);
+        for &edge in edges.iter().take(MOST_LISTED) {
+            let Some(facts) = network.edges.get(edge as usize) else { continue };
+            let road = network.road(facts);
+            let row = if certified {
+                let options = QueryOptions { edge_id: Some(facts.id), ..QueryOptions::new(&self.vehicle, policy) };
+                database.query(&options)?.next().transpose()?
+            } else {
+                None
+            };
+            let texts = [road.reference, road.name].into_iter().flatten().map(|id| network.strings.text(id));
+            let (verdict, reason) = row.as_ref().map_or(("", ""), |row| verdict_words(row.verdict));
+            table.row([
+                facts.id.to_string(),
+                road.way_id.to_string(),
+                facts.direction.name().to_owned(),
+                format!("{}{}", road.class.name(), if road.link { "_link" } else { "" }),
+                row.as_ref().map_or(String::new(), |row| format!("{:.0} m", row.length_m)),
+                row.as_ref().and_then(|row| row.rsc_m).map_or(String::new(), |rsc| format!("{rsc:.2} m")),
+                if reason.is_empty() { verdict.to_owned() } else { format!("{verdict}: {reason}") },
+                printable(&texts.collect::<Vec<_>>().join(" ")),
+            ]);
+        }
+        let mut text = Vec::new();
+        table.write(&mut text, "  ")?;
+        if edges.len() > MOST_LISTED {
+            writeln!(text, "  … and {} more", edges.len() - MOST_LISTED)?;
+        }
+        Ok(String::from_utf8_lossy(&text).trim_end().to_owned())
+    }
+}
+
+/// Edges that `asked` may mean: an edge's id before a way's, before a name or ref, before a part of a name.
+fn candidates(network: &Network, asked: &str) -> Vec<u32> {
+    let matching = |wanted: &dyn Fn(&netcert::network::Edge) -> bool| -> Vec<u32> {
+        (0..).zip(&network.edges).filter(|(_, edge)| wanted(edge)).map(|(i, _)| i).collect()
+    };
+    if let Ok(number) = asked.trim().parse::<i64>() {
+        let found = matching(&|edge| edge.id == number);
+        let found = if found.is_empty() { matching(&|edge| network.road(edge).way_id == number) } else { found };
+        if !found.is_empty() {
+            return found;
+        }
+    }
+    let asked = asked.trim().to_lowercase();
+    if asked.is_empty() {
+        return Vec::new();
+    }
+    let named = |edge: &netcert::network::Edge, fits: &dyn Fn(&str) -> bool| {
+        let road = network.road(edge);
+        [road.name, road.reference].into_iter().flatten().any(|id| fits(&network.strings.text(id).to_lowercase()))
+    };
+    let found = matching(&|edge| named(edge, &|text| text == asked));
+    if found.is_empty() { matching(&|edge| named(edge, &|text| text.contains(&asked))) } else { found }
+}
+
+/// The words, for a terminal.
+pub(super) fn tell(out: &mut dyn Write, explanation: &Explanation) -> std::io::Result<()> {
+    let words = explain::words(explanation);
+    if let Some(road) = &explanation.road {
+        let along = explanation.geometry.as_ref().map_or(String::new(), |g| format!(", {:.0} m", g.length_m()));
+        writeln!(
+            out,
+            "{}, {}{along}, edge {} ({} along way {}, node {} to {})",
+            printable(&road.title()),
+            road.highway,
+            road.edge_id,
+            road.direction.name(),
+            road.way_id,
+            road.from_node,
+            road.to_node
+        )?;
+        writeln!(out, "{} {}, {} policy\n", explanation.vehicle.id, explanation.vehicle.name, road.policy.name())?;
+    }
+    for paragraph in std::iter::once(&words.headline).chain(&words.reasons) {
+        writeln!(out, "{}", wrapped(paragraph, "  "))?;
+    }
+    if !words.hints.is_empty() {
+        writeln!(out)?;
+    }
+    for hint in &words.hints {
+        writeln!(out, "{}", wrapped(hint, "  "))?;
+    }
+    writeln!(out, "\n{}", wrapped(&words.scope, ""))
+}
+
+/// Lines of at most 100 characters, the second and later ones indented by `indent`.
+pub(super) fn wrapped(text: &str, indent: &str) -> String {
+    let (mut out, mut column) = (String::new(), 0);
+    for word in text.split(' ') {
+        let length = word.chars().count();
+        if column > 0 && column + 1 + length > 100 {
+            out.push('\n');
+            out += indent;
+            column = indent.len();
+        } else if column > 0 {
+            out.push(' ');
+            column += 1;
+        }
+        out += word;
+        column += length;
+    }
+    out
+}
+
+/// Draws an explanation into a file.
+pub(super) fn write_picture(path: &std::path::Path, explanation: &Explanation) -> anyhow::Result<()> {
+    let Some(svg) = picture::explanation(explanation) else {
+        let words = explain::words(explanation);
+        bail!("{}: there is nothing to draw: {}", path.display(), words.headline);
+    };
+    std::fs::write(path, svg).map_err(|e| anyhow!("{}: cannot write the picture: {e}", path.display()))
+}

@@ -1,0 +1,55 @@
+//! One scenario as a simulation: Algorithm 1 with each β, and the deciding certificate for the same vehicle and corridor.
+
+use anyhow::anyhow;
+use netcert::corridor::Corridor;
+use netcert::pace::Pace;
+use netcert::published::{Beta, DrawnRoute, Permissible, Reading, Route, RouteCert, Scenario, route_cert};
+use netcert::stet::{self, Certificate, Model, Options};
+use netcert::vehicle::Vehicle;
+
+/// What netcert assumes of a vehicle of which nothing else is known: ε, the heading's tolerance, σ, γ_min.
+const USUAL: (f64, f64, f64, f64) = (0.15, 3.0, 0.2, 0.3);
+
+/// A scenario and all that was made of it.
+pub(super) struct Simulated {
+    pub(super) scenario: Scenario,
+    pub(super) corridor: Corridor,
+    pub(super) route: Route,
+    /// Algorithm 1 in the reading nearest to the paper's results.
+    pub(super) paper: RouteCert,
+    /// The same with β° as printed.
+    pub(super) printed_beta: RouteCert,
+    /// netcert's, with the paper's tolerances, which are none.
+    pub(super) exact: Certificate,
+    /// netcert's, with its usual tolerances.
+    pub(super) usual: Certificate,
+}
+
+pub(super) fn run(scenario: &Scenario, route: &DrawnRoute) -> anyhow::Result<Simulated> {
+    let corridor = route.corridor(scenario.w_min_m);
+    let route = Route::new(&corridor, &Pace::default());
+    let by = |beta| {
+        let reading = Reading { beta, ..Reading::SIMULATED };
+        route_cert(&scenario.system, &route, &route.centre, &Permissible::default(), &reading)
+            .ok_or_else(|| anyhow!("data/paper/route.toml: the route has no station"))
+    };
+    let (paper, printed_beta) = (by(Beta::TraceOptimal)?, by(Beta::Printed)?);
+    let vehicle = scenario.system.vehicle(&format!("PAPER-S{}", scenario.number));
+    let exact = decide(&corridor, &vehicle)?;
+    let usual = decide(&corridor, &with_usual_tolerances(vehicle))?;
+    Ok(Simulated { scenario: *scenario, corridor, route, paper, printed_beta, exact, usual })
+}
+
+fn decide(corridor: &Corridor, vehicle: &Vehicle) -> anyhow::Result<Certificate> {
+    let certificate = stet::certify(corridor, &Model::new(vehicle)?, &Options::default());
+    certificate.ok_or_else(|| anyhow!("data/paper/route.toml: the route has no station"))
+}
+
+fn with_usual_tolerances(mut vehicle: Vehicle) -> Vehicle {
+    let (tolerance_m, heading_deg, sway_deg, min_shrink) = USUAL;
+    vehicle.tracking_tolerance_m = tolerance_m;
+    vehicle.tracking_heading_rad = heading_deg.to_radians();
+    vehicle.min_shrink = min_shrink;
+    vehicle.units.iter_mut().for_each(|unit| unit.sway_rad = sway_deg.to_radians());
+    vehicle
+}

@@ -1,0 +1,103 @@
+//! Run time against the number of trailers: Algorithm 1 with 1 to 10, netcert as far as it goes, the gains that it computes once
+//! a vehicle apart; a line through each by least squares, with R².
+
+use std::time::Instant;
+
+use anyhow::anyhow;
+use netcert::pace::Pace;
+use netcert::published::{DrawnRoute, Permissible, Reading, Route, Scenario, System, route_cert};
+use netcert::stet::{self, MAX_UNITS, Model, Options};
+
+/// Most trailers tried.
+const TRAILERS: usize = 10;
+/// Each time is the least of so many runs: whatever else the machine does only adds to it.
+const RUNS: usize = 7;
+
+/// Seconds by the number of trailers.
+pub(super) struct Timing {
+    /// Algorithm 1.
+    pub(super) paper: Series,
+    /// netcert's certificate of this route.
+    pub(super) netcert: Series,
+    /// netcert's gains of the vehicle, whatever the route.
+    pub(super) gains: Series,
+}
+
+impl Timing {
+    /// Each with its name.
+    pub(super) fn series(&self) -> [(&'static str, &Series); 3] {
+        [("Algorithm 1", &self.paper), ("netcert, certificate", &self.netcert), ("netcert, gains", &self.gains)]
+    }
+}
+
+/// Times and the line through them.
+pub(super) struct Series {
+    /// (trailers, seconds)
+    pub(super) points: Vec<(usize, f64)>,
+    pub(super) slope_s: f64,
+    pub(super) intercept_s: f64,
+    pub(super) r_squared: f64,
+}
+
+impl Series {
+    fn new(points: Vec<(usize, f64)>) -> Self {
+        let n = points.len().max(1) as f64;
+        let mean = |f: &dyn Fn(&(usize, f64)) -> f64| points.iter().map(f).sum::<f64>() / n;
+        let (mx, my) = (mean(&|p| p.0 as f64), mean(&|p| p.1));
+        let covariance = mean(&|p| (p.0 as f64 - mx) * (p.1 - my));
+        let (vx, vy) = (mean(&|p| (p.0 as f64 - mx).powi(2)), mean(&|p| (p.1 - my).powi(2)));
+        let slope_s = if vx > 0.0 { covariance / vx } else { 0.0 };
+        let r_squared = if vx * vy > 0.0 { covariance * covariance / (vx * vy) } else { 1.0 };
+        Self { points, slope_s, intercept_s: my - slope_s * mx, r_squared }
+    }
+}
+
+/// Room added to each side, so that no vehicle needs correction and all do the same work, metres.
+const ROOM_M: f64 = 10.0;
+
+/// Scenario 5's vehicle and route, with other numbers of trailers.
+pub(super) fn measure(table: &[Scenario], route: &DrawnRoute) -> anyhow::Result<Timing> {
+    let scenario = table.get(4).ok_or_else(|| anyhow!("data/paper/scenarios.toml: there is no scenario 5"))?;
+    let corridor = route.corridor(scenario.w_min_m + ROOM_M);
+    let timed = Route::new(&corridor, &Pace::default());
+    let with = |trailers: usize| System { trailers, ..scenario.system };
+    let paper = (1..=TRAILERS).map(|n| {
+        let run = || {
+            let path = timed.centre.as_slice();
+            route_cert(&with(n), &timed, path, &Permissible::default(), &Reading::SIMULATED).map(|r| r.rsc.rsc_m)
+        };
+        (n, least_s(run))
+    });
+    let most = TRAILERS.min(MAX_UNITS - 1);
+    let (mut netcert, mut gains) = (Vec::new(), Vec::new());
+    for n in 1..=most {
+        let vehicle = with(n).vehicle("PAPER");
+        let model = Model::new(&vehicle)?;
+        gains.push((n, least_s(|| Model::new(&vehicle))));
+        netcert.push((n, least_s(|| stet::certify(&corridor, &model, &Options::default()))));
+    }
+    Ok(Timing { paper: Series::new(paper.collect()), netcert: Series::new(netcert), gains: Series::new(gains) })
+}
+
+fn least_s<T>(run: impl Fn() -> T) -> f64 {
+    let time = |_| {
+        let start = Instant::now();
+        std::hint::black_box(run());
+        start.elapsed().as_secs_f64()
+    };
+    (0..RUNS).map(time).fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_found_again() {
+        let line = Series::new((1..=10).map(|n| (n, 0.3 + 0.02 * n as f64)).collect());
+        assert!((line.slope_s - 0.02).abs() < 1e-12 && (line.intercept_s - 0.3).abs() < 1e-12);
+        assert!((line.r_squared - 1.0).abs() < 1e-9);
+        let bent = Series::new((1..=10).map(|n| (n, (n * n) as f64)).collect());
+        assert!(bent.r_squared > 0.9 && bent.r_squared < 0.97, "{}", bent.r_squared);
+    }
+}

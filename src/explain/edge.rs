@@ -1,0 +1,173 @@
+//! An edge of a network: its stroke's corridor and certificate, made again as `pipeline` makes them, and whether the
+//! certificate that a database keeps says the same.
+
+use super::hints::{self, Hints};
+use super::legal::Conflict;
+use super::place::{HingePlace, Place};
+use super::ride::Ride;
+use super::{Explanation, Geometry, RoadFacts};
+use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor};
+use crate::network::{Edge, Network, Stroke};
+use crate::osm::facts::{Direction, Policy};
+use crate::pipeline::{Settings, verdict};
+use crate::stet::{Model, Options, SpanResult, certify_planned, certify_spans};
+use crate::store::{EdgeRow, Named as _, verdict_words};
+use crate::verdict::{UnknownReason, Verdict};
+
+/// Why `model`'s vehicle may use an edge of the network or not; `None` if there is no such edge.
+#[must_use]
+pub fn explain_edge(network: &Network, edge: u32, model: &Model, settings: &Settings) -> Option<Explanation> {
+    let facts = network.edges.get(edge as usize)?;
+    let conflict = Conflict::of(facts, &model.vehicle);
+    let road = road_facts(network, facts, settings.policy);
+    let case = Case::of(network, edge, settings);
+    let (geometry, unknown) = match &case {
+        Ok(case) => (case.geometry(model, &settings.stet), case.unknown()),
+        Err(reason) => (None, Some(*reason)),
+    };
+    let seen = geometry.as_ref().map(|g| &g.result).filter(|result| result.seen());
+    let verdict = verdict(facts, model, unknown, seen);
+    let geometry = geometry.filter(|g| unknown.is_none() && g.result.seen());
+    let mut hints = Hints::default();
+    if let (Ok(case), Some(geometry), Verdict::Unsafe(_)) = (&case, &geometry, verdict) {
+        hints = hints::of(&|corridor, model| case.result(corridor, model, &settings.stet), geometry, model);
+        hints.other_strips = other_strips(network, edge, model, settings, geometry.result.rsc_m);
+    }
+    Some(Explanation { road: Some(road), vehicle: model.vehicle.clone(), verdict, geometry, hints, conflict })
+}
+
+impl Explanation {
+    /// In what the certificate that a database keeps differs from this one; nothing if it says the same, to the rounding
+    /// with which it is kept.
+    #[must_use]
+    pub fn disagreement(&self, stored: &EdgeRow) -> Option<String> {
+        let words = |verdict| {
+            let (verdict, reason) = verdict_words(verdict);
+            if reason.is_empty() { verdict.to_owned() } else { format!("{verdict} ({reason})") }
+        };
+        if stored.verdict != self.verdict {
+            return Some(format!("it says {}, computed now {}", words(stored.verdict), words(self.verdict)));
+        }
+        let (Some(geometry), Some(rsc_m)) = (&self.geometry, stored.rsc_m) else { return None };
+        let result = &geometry.result;
+        // Kept rounded down to the millimetre.
+        let below = |kept: f64, computed: f64, step: f64| (-1e-9..step + 1e-9).contains(&(computed - kept));
+        if !below(rsc_m, result.rsc_m, 1e-3) {
+            return Some(format!("its RSC is {rsc_m:.3} m, computed now {:.4} m", result.rsc_m));
+        }
+        let margin_deg = result.hinge_margin_rad.to_degrees();
+        if let Some(kept) = stored.hinge_margin_deg.filter(|&kept| !below(kept, margin_deg, 1e-2)) {
+            return Some(format!("its hinge margin is {kept:.2}°, computed now {margin_deg:.3}°"));
+        }
+        let shrink = stored.shrink.filter(|kept| (kept - result.shrink).abs() > 1e-9)?;
+        Some(format!("its shrink is {shrink}, computed now {}", result.shrink))
+    }
+}
+
+/// An edge in its stroke's corridor.
+struct Case {
+    made: StrokeCorridor,
+    /// Which of the spans.
+    which: usize,
+}
+
+impl Case {
+    fn of(network: &Network, edge: u32, settings: &Settings) -> Result<Self, UnknownReason> {
+        let stroke = stroke_of(network, edge).ok_or(UnknownReason::Geometry)?;
+        let made = stroke_corridor(network, stroke, settings.policy, &settings.corridor)?;
+        let which = made.spans.iter().position(|span| span.edge == edge).ok_or(UnknownReason::Geometry)?;
+        Ok(Self { made, which })
+    }
+
+    fn unknown(&self) -> Option<UnknownReason> {
+        self.made.spans.get(self.which)?.unknown
+    }
+
+    fn spans(&self) -> Vec<std::ops::Range<usize>> {
+        self.made.spans.iter().map(|span| span.stations.clone()).collect()
+    }
+
+    /// As the pipeline certifies it: planned for all edges of the stroke together.
+    fn geometry(&self, model: &Model, options: &Options) -> Option<Geometry> {
+        geometry(&self.made.corridor, &self.spans(), self.which, model, options)
+    }
+
+    /// The edge's result in another corridor of the same stations.
+    fn result(&self, corridor: &Corridor, model: &Model, options: &Options) -> Option<SpanResult> {
+        let rows = certify_spans(corridor, &[model], &self.spans(), options);
+        rows.into_iter().next()?.spans.into_iter().nth(self.which)
+    }
+}
+
+/// The certificate of a corridor, seen from one of its spans.
+pub(super) fn geometry(
+    corridor: &Corridor,
+    spans: &[std::ops::Range<usize>],
+    which: usize,
+    model: &Model,
+    options: &Options,
+) -> Option<Geometry> {
+    let (mut certificate, results) = certify_planned(corridor, model, spans, options)?;
+    let (span, result) = (spans.get(which)?.clone(), results.into_iter().nth(which)?);
+    certificate.result = result.clone();
+    let ride = Ride::new(corridor, &certificate.plan, &model.vehicle);
+    let place = Place::of(corridor, &ride, &model.vehicle, &result)?;
+    let hinge = HingePlace::of(corridor, &ride, &model.vehicle, &span, &result)?;
+    Some(Geometry { corridor: corridor.clone(), span, result, certificate, ride, place, hinge })
+}
+
+fn stroke_of(network: &Network, edge: u32) -> Option<&Stroke> {
+    network.strokes.iter().find(|stroke| {
+        let edges = network.stroke_edges.get(stroke.edges.start as usize..stroke.edges.end as usize);
+        edges.is_some_and(|edges| edges.contains(&edge))
+    })
+}
+
+/// What the edge would be with each of the wider strips; one that changes nothing (a single lane) is
+/// left out.
+fn other_strips(
+    network: &Network,
+    edge: u32,
+    model: &Model,
+    settings: &Settings,
+    rsc_m: f64,
+) -> Vec<hints::OtherStrip> {
+    let wider = match settings.policy {
+        Policy::Lane => [Policy::Direction, Policy::Carriageway].as_slice(),
+        Policy::Direction => &[Policy::Carriageway],
+        Policy::Carriageway => &[],
+    };
+    let strip = |&policy: &Policy| {
+        let case = Case::of(network, edge, &Settings { policy, ..settings.clone() }).ok()?;
+        if case.unknown().is_some() {
+            return None;
+        }
+        let result = case.result(&case.made.corridor, model, &settings.stet).filter(SpanResult::seen)?;
+        let corridor = &case.made.corridor;
+        let stations = case.made.spans.get(case.which)?.stations.clone();
+        let width_m = stations.map(|k| corridor.left_m[k] + corridor.right_m[k]).fold(f64::INFINITY, f64::min);
+        Some(hints::OtherStrip { policy, width_m, safe: result.safe(), rsc_m: result.rsc_m })
+    };
+    let mut strips: Vec<hints::OtherStrip> = wider.iter().filter_map(strip).collect();
+    strips.retain(|other| (other.rsc_m - rsc_m).abs() > 5e-4);
+    strips.dedup_by(|b, a| (a.rsc_m - b.rsc_m).abs() < 5e-4);
+    strips
+}
+
+fn road_facts(network: &Network, edge: &Edge, policy: Policy) -> RoadFacts {
+    let road = network.road(edge);
+    let text = |id: Option<crate::osm::StringId>| id.map(|id| network.strings.text(id).to_owned());
+    let section = road.sections[usize::from(edge.direction == Direction::Backward)];
+    RoadFacts {
+        edge_id: edge.id,
+        way_id: road.way_id,
+        from_node: edge.from_node,
+        to_node: edge.to_node,
+        direction: edge.direction,
+        highway: format!("{}{}", road.class.name(), if road.link { "_link" } else { "" }),
+        name: text(road.name),
+        reference: text(road.reference),
+        policy,
+        width_source: section.strip(policy).map(|strip| strip.source),
+    }
+}

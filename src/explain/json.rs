@@ -1,0 +1,96 @@
+//! An explanation as JSON, for pages and programs. Metres and degrees, as the names say; positions are in the corridor's
+//! own metric frame.
+
+use serde_json::{Value, json};
+
+use super::words::words;
+use super::{Explanation, Geometry, Part};
+use crate::osm::facts::WidthSource;
+use crate::store::{Named as _, verdict_words};
+use crate::vehicle::Vehicle;
+
+/// The whole explanation but for the corridor's stations.
+#[must_use]
+pub fn json(e: &Explanation) -> Value {
+    let (verdict, reason) = verdict_words(e.verdict);
+    let words = words(e);
+    let road = e.road.as_ref().map(|road| {
+        json!({
+            // As text: 63 bits are more than JavaScript's numbers hold.
+            "edge_id": road.edge_id.to_string(),
+            "way_id": road.way_id,
+            "from_node": road.from_node,
+            "to_node": road.to_node,
+            "direction": road.direction.name(),
+            "highway": road.highway,
+            "name": road.name,
+            "ref": road.reference,
+            "corridor": road.policy.name(),
+            "width_source": road.width_source.map(WidthSource::name),
+        })
+    });
+    let conflict =
+        e.conflict.map(|c| json!({"tag": c.tag, "allowed": c.allowed, "vehicle_has": c.has, "unit": c.unit}));
+    json!({
+        "vehicle": e.vehicle.id,
+        "road": road,
+        "verdict": verdict,
+        "reason": Some(reason).filter(|reason| !reason.is_empty()),
+        "headline": words.headline,
+        "reasons": words.reasons,
+        "hints_in_words": words.hints,
+        "scope": words.scope,
+        "limiting": e.geometry.as_ref().map(|g| limiting(g, &e.vehicle)),
+        "hints": hints(e),
+        "conflict": conflict,
+    })
+}
+
+fn limiting(g: &Geometry, vehicle: &Vehicle) -> Value {
+    let (place, hinge, result) = (&g.place, &g.hinge, &g.result);
+    let (part, ahead_m) = match place.part {
+        Part::FrontCorner => ("front_corner", None),
+        Part::RearCorner => ("rear_corner", None),
+        Part::Axle => ("axle", Some(0.0)),
+        Part::Side(m) => ("side", Some(m)),
+    };
+    json!({
+        "length_m": g.length_m(),
+        "rsc_m": result.rsc_m,
+        "shrink": result.shrink,
+        "tracking_tolerance_m": result.shrink * vehicle.tracking_tolerance_m,
+        "place": {
+            "s_m": g.along_m(place.station),
+            "unit": place.unit,
+            "unit_name": vehicle.units.get(place.unit).map(|u| &u.name),
+            "side": place.side.name(),
+            "part": part,
+            "ahead_of_axle_m": ahead_m,
+            "nominal_gap_m": place.nominal_m,
+            "error_bounds_m": place.bounds_m,
+            "width_m": place.width_m,
+            "bend": place.bend.map(|bend| json!({"radius_m": bend.radius_m, "to": bend.to.name()})),
+            "corner": place.corner,
+            "edge": place.edge,
+            "units": place.poses.iter().map(|pose| json!({"axle": pose.axle, "heading": pose.heading})).collect::<Vec<_>>(),
+        },
+        "hinge": {
+            "s_m": g.along_m(hinge.station),
+            "unit": hinge.unit,
+            "angle_deg": hinge.angle_rad.to_degrees(),
+            "limit_deg": hinge.limit_rad.to_degrees(),
+            "margin_deg": result.closes().then(|| result.hinge_margin_rad.to_degrees()),
+        },
+    })
+}
+
+fn hints(e: &Explanation) -> Value {
+    let strip = |other: &super::OtherStrip| json!({"corridor": other.policy.name(), "width_m": other.width_m, "safe": other.safe, "rsc_m": other.rsc_m});
+    json!({
+        "width_m": e.hints.width.map(|hint| hint.width_m),
+        "width_shrink": e.hints.width.map(|hint| hint.shrink),
+        "tracking_tolerance_m": e.hints.tolerance_m,
+        "hinge_limit_deg": e.hints.hinge_limit_deg,
+        "other_strips": e.hints.other_strips.iter().map(strip).collect::<Vec<_>>(),
+    })
+}

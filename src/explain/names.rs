@@ -1,0 +1,91 @@
+//! What things are called in sentences: strips, units, corners, hinges, sources of widths; and amounts rounded to the
+//! side that does not flatter.
+
+use super::{Explanation, Part, Place};
+use crate::osm::facts::{Policy, WidthSource};
+use crate::store::Named as _;
+use crate::vehicle::Vehicle;
+
+/// The amount of a leeway in centimetres without its sign: never more to spare, never less missing than there is.
+#[must_use]
+pub fn cautious_m(leeway_m: f64) -> String {
+    if leeway_m < 0.0 { needed(-leeway_m) } else { cut(leeway_m) }
+}
+
+/// Metres to spare: never more than there are.
+pub(super) fn cut(metres: f64) -> String {
+    format!("{:.2}", (metres * 100.0 + 1e-6).floor() / 100.0)
+}
+
+/// Metres missing: never fewer than there are.
+pub(super) fn needed(metres: f64) -> String {
+    format!("{:.2}", (metres * 100.0 - 1e-6).ceil() / 100.0)
+}
+
+impl Explanation {
+    /// What the strip of road is called under the policy that counts.
+    #[must_use]
+    pub fn strip_name(&self) -> &'static str {
+        self.road.as_ref().map_or("corridor", |road| strip_name(road.policy))
+    }
+}
+
+pub(super) fn strip_name(policy: Policy) -> &'static str {
+    match policy {
+        Policy::Lane => "lane",
+        Policy::Direction => "strip of one's own direction",
+        Policy::Carriageway => "carriageway",
+    }
+}
+
+impl Explanation {
+    /// `rear left corner of trailer 2 (unit 4 of 6)`
+    #[must_use]
+    pub fn corner(&self, place: &Place) -> String {
+        let side = place.side.name();
+        let part = match place.part {
+            Part::FrontCorner => format!("front {side} corner"),
+            Part::RearCorner => format!("rear {side} corner"),
+            Part::Axle => format!("{side} side, at the axle,"),
+            Part::Side(m) if m > 0.0 => format!("{side} side, {m:.1} m ahead of the axle,"),
+            Part::Side(m) => format!("{side} side, {:.1} m behind the axle,", -m),
+        };
+        format!("{part} of {}", unit_name(&self.vehicle, place.unit))
+    }
+}
+
+/// `the tractor`, `trailer 2`: a numbered unit is a name.
+pub(super) fn named(vehicle: &Vehicle, unit: usize) -> String {
+    let name = vehicle.units.get(unit).map_or("unit", |u| u.name.as_str());
+    let numbered = name.ends_with(|c: char| c.is_ascii_digit()) || name.contains(',');
+    if numbered { name.to_owned() } else { format!("the {name}") }
+}
+
+pub(super) fn unit_name(vehicle: &Vehicle, unit: usize) -> String {
+    let name = named(vehicle, unit);
+    match vehicle.units.len() {
+        1 => name,
+        count => format!("{name} (unit {} of {count})", unit + 1),
+    }
+}
+
+pub(super) fn hinge_name(vehicle: &Vehicle, unit: usize) -> String {
+    match unit.checked_sub(1) {
+        None => "the steering".to_owned(),
+        Some(towing) => {
+            format!("the hinge between {} and {}", named(vehicle, towing), named(vehicle, unit))
+        }
+    }
+}
+
+/// Where a width comes from, in words.
+#[must_use]
+pub(super) fn source_words(source: WidthSource) -> &'static str {
+    match source {
+        WidthSource::Assumed => "assumed from the road's class and country",
+        WidthSource::FromLanes => "from the tagged number of lanes, their width assumed",
+        WidthSource::Estimated => "tagged as estimated",
+        WidthSource::Tagged => "tagged",
+        WidthSource::Surveyed => "tagged as surveyed",
+    }
+}

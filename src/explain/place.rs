@@ -1,0 +1,253 @@
+//! The metre of road, the unit and the corner where a vehicle comes closest to an edge; and the hinge that comes closest to
+//! its limit.
+
+use std::ops::Range;
+
+use super::ride::Ride;
+use crate::corridor::Corridor;
+use crate::stet::motion::Pose;
+use crate::stet::{Side, SpanResult};
+use crate::vehicle::{Unit, Vehicle};
+
+/// Wider bends are called straight, metres.
+const STRAIGHT_M: f64 = 2000.0;
+
+/// Which part of a unit's side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Part {
+    /// Its front corner.
+    FrontCorner,
+    /// Its rear corner.
+    RearCorner,
+    /// Its side at the axle.
+    Axle,
+    /// Its side so many metres ahead of the axle.
+    Side(f64),
+}
+
+/// A bend of the corridor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bend {
+    /// Of the centreline where it is sharpest under the vehicle, metres.
+    pub radius_m: f64,
+    /// To which side it goes.
+    pub to: Side,
+}
+
+/// Where the least leeway stands. The vehicle stands as it nominally does at that moment.
+#[derive(Debug, Clone)]
+pub struct Place {
+    /// Station at whose normal the corner is nearest to the edge.
+    pub station: f64,
+    /// Unit index.
+    pub unit: usize,
+    /// Which edge.
+    pub side: Side,
+    /// Which part of the unit.
+    pub part: Part,
+    /// Station of the steer axle at that moment; beyond the last where the vehicle is leaving.
+    pub head: f64,
+    /// All units, front to rear.
+    pub poses: Vec<Pose>,
+    /// The corner, nominally.
+    pub corner: [f64; 2],
+    /// The nearest point of the edge, along the corridor's normal.
+    pub edge: [f64; 2],
+    /// Unit vector from the middle of the corridor across that edge.
+    pub outward: [f64; 2],
+    /// From the corner to the edge, nominally; negative: beyond it. Metres.
+    pub nominal_m: f64,
+    /// What error bounds and allowances take off that, metres.
+    pub bounds_m: f64,
+    /// Of the corridor there, metres.
+    pub width_m: f64,
+    /// Where the vehicle then is; `None`: on a straight.
+    pub bend: Option<Bend>,
+}
+
+/// Where the least hinge margin stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HingePlace {
+    /// The unit behind the hinge; 0: the steering.
+    pub unit: usize,
+    /// Station of that unit's front coupling at that moment.
+    pub station: f64,
+    /// Station of the steer axle at that moment.
+    pub head: f64,
+    /// All units, front to rear.
+    pub poses: Vec<Pose>,
+    /// Nominal angle, radians, positive to the left.
+    pub angle_rad: f64,
+    /// What the hinge allows, radians.
+    pub limit_rad: f64,
+}
+
+impl Place {
+    pub(super) fn of(corridor: &Corridor, ride: &Ride, vehicle: &Vehicle, result: &SpanResult) -> Option<Self> {
+        let limiting = &result.limiting;
+        let unit = vehicle.units.get(limiting.unit)?;
+        let (behind_m, to_rear_m) = (along_chain(vehicle, limiting.unit), vehicle.length_m);
+        let wanted = limiting.station as f64;
+        let axis = |head: f64| {
+            let pose = ride.at(head).get(limiting.unit).copied()?;
+            let guess = head - (behind_m - limiting.point_m) / corridor.spacing_m;
+            Some(foot(corridor, pose.place(limiting.point_m, 0.0), guess))
+        };
+        let head = head_at(ride, wanted, (behind_m - limiting.point_m) / corridor.spacing_m, &axis)?;
+        let poses = ride.at(head);
+        let across = if limiting.side == Side::Left { 0.5 } else { -0.5 } * unit.width_m;
+        let corner = poses.get(limiting.unit)?.place(limiting.point_m, across);
+        let station = foot(corridor, corner, wanted);
+        let at = Cross::at(corridor, station);
+        let (half_m, outward) = match limiting.side {
+            Side::Left => (at.left_m, at.normal),
+            Side::Right => (at.right_m, at.normal.map(|c| -c)),
+        };
+        let edge = [0, 1].map(|i| at.centre[i] + half_m * outward[i]);
+        let nominal_m = (0..2).map(|i| (edge[i] - corner[i]) * outward[i]).sum::<f64>();
+        let rear = (head - to_rear_m / corridor.spacing_m).max(0.0) as usize;
+        Some(Self {
+            station,
+            unit: limiting.unit,
+            side: limiting.side,
+            part: Part::of(unit, limiting.point_m),
+            head,
+            poses,
+            corner,
+            edge,
+            outward,
+            nominal_m,
+            bounds_m: (nominal_m - result.rsc_m).max(0.0),
+            width_m: at.left_m + at.right_m,
+            bend: Bend::sharpest(corridor, rear..head.ceil().max(station) as usize + 1),
+        })
+    }
+}
+
+/// The head station at which the body point is over the station `wanted`: where its foot passes it.
+fn head_at(ride: &Ride, wanted: f64, behind: f64, foot_of: &dyn Fn(f64) -> Option<f64>) -> Option<f64> {
+    // The plan and the corridor differ in length by a few metres at most; a trailer cuts some more.
+    let last = ride.len().checked_sub(1)? as f64;
+    let (from, to) = ((wanted + behind - 25.0).clamp(0.0, last), (wanted + behind + 25.0).clamp(0.0, last));
+    let (mut best, mut least, mut head) = (from, f64::INFINITY, from);
+    while head <= to {
+        let off = (foot_of(head)? - wanted).abs();
+        if off < least {
+            (best, least) = (head, off);
+        }
+        head += 0.125;
+    }
+    Some(best)
+}
+
+impl HingePlace {
+    /// Where the hinge `result.hinge_unit` turns most while its coupling is over the span; where bounds do not close, where
+    /// the span is sharpest.
+    pub(super) fn of(
+        corridor: &Corridor,
+        ride: &Ride,
+        vehicle: &Vehicle,
+        span: &Range<usize>,
+        result: &SpanResult,
+    ) -> Option<Self> {
+        let unit = result.hinge_unit;
+        let limit_rad = vehicle.units.get(unit)?.max_articulation_rad;
+        let ahead_m = vehicle.units.get(unit)?.coupling_to_axle_m;
+        let behind = (along_chain(vehicle, unit) - ahead_m).max(0.0) / corridor.spacing_m;
+        let first = span.start as f64 + behind;
+        let heads = first as usize..((span.end as f64 + behind) as usize + 1).min(ride.len());
+        let measure = |head: usize| match result.closes() {
+            true => ride.angle(head, unit).abs(),
+            false => corridor.curvature.get((head as f64 - behind) as usize).map_or(0.0, |c| c.abs()),
+        };
+        let head = heads.max_by(|&a, &b| measure(a).total_cmp(&measure(b)))?;
+        let poses = ride.at(head as f64);
+        let angle_rad = ride.angle(head, unit);
+        Some(Self { unit, station: head as f64 - behind, head: head as f64, poses, angle_rad, limit_rad })
+    }
+}
+
+impl Part {
+    fn of(unit: &Unit, point_m: f64) -> Self {
+        let near = |place_m: f64| (point_m - place_m).abs() < 1e-6;
+        match () {
+            () if near(unit.coupling_to_axle_m + unit.front_overhang_m) => Self::FrontCorner,
+            () if near(-unit.rear_overhang_m) => Self::RearCorner,
+            () if near(0.0) => Self::Axle,
+            () => Self::Side(point_m),
+        }
+    }
+}
+
+impl Bend {
+    fn sharpest(corridor: &Corridor, stations: Range<usize>) -> Option<Self> {
+        let stations = stations.start.min(corridor.len())..stations.end.min(corridor.len());
+        let curvature =
+            corridor.curvature[stations].iter().fold(0.0_f64, |k, c| if c.abs() > k.abs() { *c } else { k });
+        let to = if curvature > 0.0 { Side::Left } else { Side::Right };
+        (curvature.abs() * STRAIGHT_M > 1.0).then(|| Self { radius_m: 1.0 / curvature.abs(), to })
+    }
+}
+
+/// A corridor across, anywhere along it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cross {
+    /// On the centreline.
+    pub centre: [f64; 2],
+    /// Unit vector to the left.
+    pub normal: [f64; 2],
+    /// Half-width to the left, metres.
+    pub left_m: f64,
+    /// Half-width to the right, metres.
+    pub right_m: f64,
+}
+
+impl Cross {
+    /// At a station with fraction; beyond an end the corridor goes on straight and as wide. The corridor has stations.
+    #[must_use]
+    pub fn at(corridor: &Corridor, station: f64) -> Self {
+        let last = corridor.len().saturating_sub(1);
+        let low = (station.max(0.0).floor() as usize).min(last.saturating_sub(1));
+        let high = (low + 1).min(last);
+        let share = station - low as f64;
+        let inside = share.clamp(0.0, 1.0);
+        let mix = |v: &[f64]| v[low] + inside * (v[high] - v[low]);
+        let heading = mix(&corridor.heading);
+        let (sin, cos) = heading.sin_cos();
+        let beyond = (share - inside) * corridor.spacing_m;
+        Self {
+            centre: [mix(&corridor.x) + beyond * cos, mix(&corridor.y) + beyond * sin],
+            normal: [-sin, cos],
+            left_m: mix(&corridor.left_m),
+            right_m: mix(&corridor.right_m),
+        }
+    }
+
+    /// The place so far to the left of the centreline, metres.
+    #[must_use]
+    pub fn place(&self, left_m: f64) -> [f64; 2] {
+        [0, 1].map(|i| self.centre[i] + left_m * self.normal[i])
+    }
+}
+
+/// The station (with fraction; beyond the ends, too) on whose normal `point` stands, sought from `guess` on.
+pub(super) fn foot(corridor: &Corridor, point: [f64; 2], guess: f64) -> f64 {
+    let mut station = guess;
+    // Each step is a Newton step but for the curvature: a few of them are within a millimetre.
+    for _ in 0..50 {
+        let at = Cross::at(corridor, station);
+        let off = [point[0] - at.centre[0], point[1] - at.centre[1]];
+        let along = (off[0] * at.normal[1] - off[1] * at.normal[0]) / corridor.spacing_m;
+        station += along.clamp(-5.0, 5.0);
+        if along.abs() < 1e-4 {
+            break;
+        }
+    }
+    station
+}
+
+/// From the steer axle back to the axle of `unit` when the vehicle stands straight, metres.
+fn along_chain(vehicle: &Vehicle, unit: usize) -> f64 {
+    let before = vehicle.units.iter().take(unit).map(|u| u.coupling_to_axle_m + u.hitch_offset_m).sum::<f64>();
+    before + vehicle.units.get(unit).map_or(0.0, |u| u.coupling_to_axle_m)
+}

@@ -1,0 +1,292 @@
+//! An explanation as sentences: first what limits and where, then what would do, last what the answer rests on.
+//!
+//! `safe` is never said without its scope.
+
+use super::hints::{MOST_MORE_M, OtherStrip};
+use super::names::{cut, hinge_name, named, needed, source_words, strip_name};
+use super::{Explanation, Geometry, HingePlace, Part, Place};
+use crate::vehicle::Vehicle;
+use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
+
+/// Less leeway than this is no measure of what is missing: the certificate found nothing that bounds the vehicle.
+const FAR_M: f64 = -100.0;
+
+/// An explanation, as a person reads it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Words {
+    /// One line: the verdict, what decides it, and where.
+    pub headline: String,
+    /// Whole sentences.
+    pub reasons: Vec<String>,
+    /// What would do, whole sentences; empty where nothing is wrong.
+    pub hints: Vec<String>,
+    /// What the answer rests on.
+    pub scope: String,
+}
+
+/// Puts an explanation into words.
+#[must_use]
+pub fn words(e: &Explanation) -> Words {
+    let headline = match (e.verdict, &e.geometry) {
+        (Verdict::Forbidden(reason), _) => forbidden(e, reason),
+        (Verdict::Unknown(reason), _) => unknown(e, reason),
+        (Verdict::Safe, Some(g)) => {
+            format!("safe: {} m to spare at {:.0} m, where it is tightest: {}", cut(g.result.rsc_m), at(g), who(e, g))
+        }
+        (Verdict::Unsafe(UnsafeReason::Width), Some(g)) if g.result.rsc_m <= FAR_M => {
+            format!("unsafe: the swept bodies leave the {} by far at {:.0} m: {}", e.strip_name(), at(g), who(e, g))
+        }
+        (Verdict::Unsafe(UnsafeReason::Width), Some(g)) => {
+            format!("unsafe: {} m too narrow at {:.0} m: {}", needed(-g.result.rsc_m), at(g), who(e, g))
+        }
+        (Verdict::Unsafe(_), Some(g)) => format!("unsafe: {}", hinge_headline(&e.vehicle, g)),
+        (Verdict::Safe | Verdict::Unsafe(_), None) => "nothing was computed".to_owned(),
+    };
+    let reasons = match (e.verdict, &e.geometry) {
+        (Verdict::Safe | Verdict::Unsafe(_), Some(g)) => geometry_reasons(e, g),
+        (_, Some(g)) => vec![beside(e, g)],
+        (_, None) => Vec::new(),
+    };
+    Words { headline, reasons, hints: hints(e), scope: scope(e) }
+}
+
+fn at(g: &Geometry) -> f64 {
+    g.along_m(g.place.station)
+}
+
+/// Unit, corner, and where in a bend.
+fn who(e: &Explanation, g: &Geometry) -> String {
+    format!("{}, {}", e.corner(&g.place), bend(&g.place))
+}
+
+fn bend(place: &Place) -> String {
+    match place.bend {
+        None => "on a straight".to_owned(),
+        Some(bend) => {
+            let side = if bend.to == place.side { "inside" } else { "outside" };
+            format!("on the {side} of a bend of {:.0} m radius", bend.radius_m)
+        }
+    }
+}
+
+fn hinge_headline(vehicle: &Vehicle, g: &Geometry) -> String {
+    let h = &g.hinge;
+    let name = hinge_name(vehicle, h.unit);
+    let place = g.along_m(h.station);
+    if !g.result.closes() {
+        let sharpest = g.corridor.curvature[g.span.clone()].iter().fold(0.0_f64, |k, c| k.max(c.abs()));
+        return format!(
+            "the road turns too sharply at {place:.0} m, to a radius of {:.1} m: no bound holds for {}",
+            1.0 / sharpest.max(1e-6),
+            named(vehicle, h.unit)
+        );
+    }
+    let over_deg = (-g.result.hinge_margin_rad.to_degrees() * 10.0 - 1e-6).ceil() / 10.0;
+    format!("{name} would need {over_deg:.1}° more than its {:.0}° at {place:.0} m", h.limit_rad.to_degrees())
+}
+
+fn degrees(h: &HingePlace) -> f64 {
+    h.angle_rad.abs().to_degrees()
+}
+
+fn geometry_reasons(e: &Explanation, g: &Geometry) -> Vec<String> {
+    let mut reasons = Vec::new();
+    let strip = e.strip_name();
+    if g.result.closes() && g.result.rsc_m > FAR_M {
+        reasons.push(gap(e, &g.place, strip));
+        reasons.push(tracking(&e.vehicle, g));
+        reasons.push(hinge_reason(&e.vehicle, g));
+    }
+    let shift = g.certificate.shift_m.get(g.span.clone()).unwrap_or_default();
+    let most = shift.iter().fold(0.0_f64, |most, q| if q.abs() > most.abs() { *q } else { most });
+    if most.abs() >= 0.05 {
+        let side = if most > 0.0 { "left" } else { "right" };
+        reasons.push(format!(
+            "The steer axle is planned up to {:.2} m to the {side} of the {strip}'s middle, to leave the rest room.",
+            most.abs()
+        ));
+    }
+    reasons
+}
+
+fn gap(e: &Explanation, place: &Place, strip: &str) -> String {
+    let source = match e.road.as_ref().and_then(|road| road.width_source) {
+        Some(source) => format!(" ({})", source_words(source)),
+        None => String::new(),
+    };
+    let nominally = if place.nominal_m >= 0.0 {
+        format!("stays {:.2} m inside its edge", place.nominal_m)
+    } else {
+        format!("stands {:.2} m beyond its edge", -place.nominal_m)
+    };
+    let part = if matches!(place.part, Part::FrontCorner | Part::RearCorner) { "corner" } else { "side" };
+    format!(
+        "The {strip} is {:.2} m wide there{source}; steered exactly, that {part} {nominally}, and {:.2} m are kept for \
+         errors.",
+        place.width_m, place.bounds_m
+    )
+}
+
+fn tracking(vehicle: &Vehicle, g: &Geometry) -> String {
+    let shrink = g.result.shrink;
+    let tolerance_m = shrink * vehicle.tracking_tolerance_m;
+    if shrink >= 1.0 {
+        return format!("That is with the vehicle's whole tracking tolerance of ±{tolerance_m:.2} m.");
+    }
+    let least = shrink <= vehicle.min_shrink + 1e-3 && g.result.rsc_m < 0.0;
+    let why = if least { "the closest that it can be asked for" } else { "the widest with which it fits" };
+    format!(
+        "That is with the steer axle within ±{tolerance_m:.3} m of the plan, γ = {shrink:.3} of its ±{} m: {why}.",
+        vehicle.tracking_tolerance_m
+    )
+}
+
+fn hinge_reason(vehicle: &Vehicle, g: &Geometry) -> String {
+    let (h, margin) = (&g.hinge, g.result.hinge_margin_rad.to_degrees());
+    let name = hinge_name(vehicle, h.unit);
+    let limit = h.limit_rad.to_degrees();
+    let kept = limit - degrees(h) - margin;
+    if margin >= 0.0 {
+        return format!(
+            "Of all hinges {name} comes closest to its limit: {:.1}° are left of {limit:.0}°.",
+            (margin * 10.0).floor() / 10.0
+        );
+    }
+    format!(
+        "At its furthest {name} turns to {:.1}° at {:.0} m, {:.1}° are kept for errors, and it allows {limit:.0}°.",
+        degrees(h),
+        g.along_m(h.station),
+        kept.max(0.0)
+    )
+}
+
+fn forbidden(e: &Explanation, reason: ForbiddenReason) -> String {
+    let Some(c) = &e.conflict else { return "forbidden".to_owned() };
+    match (reason, c.allowed, c.has) {
+        (ForbiddenReason::Hgv, ..) => "forbidden: no heavy goods vehicles (hgv=no or its kind)".to_owned(),
+        (ForbiddenReason::Access, ..) => {
+            "forbidden: no through traffic of motor vehicles (access, vehicle or motor_vehicle = no or private)"
+                .to_owned()
+        }
+        (ForbiddenReason::Barrier, ..) => "forbidden: a barrier on it stops heavy vehicles".to_owned(),
+        (_, Some(allowed), Some(has)) => {
+            let what = match reason {
+                ForbiddenReason::Height => "height",
+                ForbiddenReason::Weight => "gross mass",
+                ForbiddenReason::AxleLoad => "heaviest axle load",
+                ForbiddenReason::Length => "length",
+                _ => "width",
+            };
+            format!("forbidden: {} is {allowed} {unit}, the vehicle's {what} {has:.2} {unit}", c.tag, unit = c.unit)
+        }
+        _ => format!("forbidden: {}", c.tag),
+    }
+}
+
+fn unknown(e: &Explanation, reason: UnknownReason) -> String {
+    match (reason, &e.conflict) {
+        (UnknownReason::Width, _) => format!("unknown: no width of the {} can be derived", e.strip_name()),
+        (UnknownReason::Geometry, _) => {
+            "unknown: the line on the map gives no corridor: too short, folded back on itself, \
+                                         or too crooked for a smooth line within the tolerance"
+                .to_owned()
+        }
+        (UnknownReason::Cut, _) => {
+            "unknown: the extract ends on this edge: what comes before or after is not known".to_owned()
+        }
+        (UnknownReason::Limit, Some(c)) => {
+            format!("unknown: {} is tagged with a value that cannot be read", c.tag)
+        }
+        (UnknownReason::Limit, None) => "unknown: a limit is tagged with a value that cannot be read".to_owned(),
+    }
+}
+
+/// What geometry says where something else has decided.
+fn beside(e: &Explanation, g: &Geometry) -> String {
+    let strip = e.strip_name();
+    match () {
+        () if !g.result.closes() => "Besides, a hinge would turn too far.".to_owned(),
+        () if g.result.rsc_m < 0.0 => {
+            format!(
+                "Besides, the {strip} is {} m too narrow at {:.0} m: {}.",
+                needed(-g.result.rsc_m),
+                at(g),
+                who(e, g)
+            )
+        }
+        () if g.result.hinge_margin_rad < 0.0 => format!("Besides, {}.", hinge_headline(&e.vehicle, g)),
+        () => format!(
+            "Its width alone would do, as far as it is known: {} m to spare at {:.0} m, {}.",
+            cut(g.result.rsc_m),
+            at(g),
+            who(e, g)
+        ),
+    }
+}
+
+fn hints(e: &Explanation) -> Vec<String> {
+    let Some(g) = e.geometry.as_ref().filter(|_| matches!(e.verdict, Verdict::Unsafe(_))) else { return Vec::new() };
+    let (h, strip) = (&e.hints, e.strip_name());
+    let mut out = Vec::new();
+    if g.result.closes() && g.result.rsc_m < 0.0 {
+        out.push(match h.width {
+            Some(hint) => {
+                let how = if hint.shrink < 1.0 {
+                    format!(", tracked as closely as γ = {:.3}", hint.shrink)
+                } else {
+                    String::new()
+                };
+                format!("A {strip} of at least {:.2} m would do{how}.", hint.width_m)
+            }
+            None => format!("No {strip} up to {MOST_MORE_M:.0} m wider along the same line would do."),
+        });
+        out.push(match h.tolerance_m {
+            Some(tolerance_m) => {
+                format!("As wide as it is, it would do with a tracking tolerance of ±{tolerance_m:.3} m.")
+            }
+            None => "No tracking tolerance would do, not even ±0 m.".to_owned(),
+        });
+    }
+    if let Some(limit) = h.hinge_limit_deg {
+        out.push(format!("With a limit of {limit:.1}° it would do."));
+    }
+    out.extend(h.other_strips.iter().map(other_strip));
+    out
+}
+
+fn other_strip(other: &OtherStrip) -> String {
+    let strip = strip_name(other.policy);
+    match (other.safe, other.rsc_m) {
+        (true, rsc_m) => {
+            format!(
+                "Using the whole {strip} ({:.2} m at the least) it is safe, {} m to spare.",
+                other.width_m,
+                cut(rsc_m)
+            )
+        }
+        (false, rsc_m) if rsc_m < 0.0 && rsc_m > FAR_M => {
+            format!("Even the whole {strip} ({:.2} m at the least) is {} m too narrow.", other.width_m, needed(-rsc_m))
+        }
+        (false, _) => {
+            format!("Even the whole {strip} ({:.2} m at the least) does not do: a hinge turns too far.", other.width_m)
+        }
+    }
+}
+
+fn scope(e: &Explanation) -> String {
+    let v = &e.vehicle;
+    let width = match e.road.as_ref() {
+        None => "a corridor as wide as the file says".to_owned(),
+        Some(road) => match road.width_source {
+            Some(source) => format!("a width that is {}", source_words(source)),
+            None => "no known width".to_owned(),
+        },
+    };
+    let tolerance_m = e.geometry.as_ref().map_or(1.0, |g| g.result.shrink) * v.tracking_tolerance_m;
+    format!(
+        "This holds within the model: {width}, the vehicle as defined, driven forward with its steer axle within \
+         ±{tolerance_m:.3} m of the plan and its course within {:.1}°, every axle slipping no more than its sway bound; it \
+         is no permit and says nothing of bridges, turns off the road or traffic.",
+        v.tracking_heading_rad.to_degrees()
+    )
+}

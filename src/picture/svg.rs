@@ -1,0 +1,185 @@
+//! The SVG document: shapes in page units (right and down from the top left corner), written as text.
+//!
+//! Coordinates have two decimals, whatever they are; places that are no numbers are left out. Text is escaped here
+//! and nowhere else.
+
+use std::fmt::Write as _;
+
+use super::palette;
+use super::style::{Anchor, Style, TextStyle};
+use super::{Frame, Point};
+
+/// Sans-serif faces that look alike, for programs that know none of the first ones.
+const FONTS: &str = "Inter, 'Helvetica Neue', Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
+
+/// A picture in the making.
+#[derive(Debug, Clone)]
+pub struct Picture {
+    width: f64,
+    height: f64,
+    title: String,
+    description: String,
+    body: String,
+    clips: usize,
+}
+
+impl Picture {
+    /// An empty page of so many units. Title and description are what screen readers and tooltips say.
+    #[must_use]
+    pub fn new(width: f64, height: f64, title: &str, description: &str) -> Self {
+        let (title, description) = (escaped(title), escaped(description));
+        Self { width, height, title, description, body: String::new(), clips: 0 }
+    }
+
+    /// The whole page.
+    #[must_use]
+    pub fn page(&self) -> Frame {
+        Frame { x: 0.0, y: 0.0, width: self.width, height: self.height }
+    }
+
+    /// What `draw` draws, as a group of that class: the class says what it is, for tests and for style sheets.
+    pub fn group(&mut self, class: &str, draw: impl FnOnce(&mut Self)) {
+        self.line(format_args!(r#"<g class="{}">"#, escaped(class)));
+        draw(self);
+        self.line(format_args!("</g>"));
+    }
+
+    /// What `draw` draws, cut off at the frame.
+    pub fn clipped(&mut self, frame: Frame, class: &str, draw: impl FnOnce(&mut Self)) {
+        self.clips += 1;
+        let id = format!("clip{}", self.clips);
+        let [x, y, w, h] = [frame.x, frame.y, frame.width, frame.height].map(number);
+        self.line(format_args!(r#"<clipPath id="{id}"><rect x="{x}" y="{y}" width="{w}" height="{h}"/></clipPath>"#));
+        self.line(format_args!(r#"<g class="{}" clip-path="url(#{id})">"#, escaped(class)));
+        draw(self);
+        self.line(format_args!("</g>"));
+    }
+
+    /// An open line through the points.
+    pub fn polyline(&mut self, points: &[Point], style: Style) {
+        self.through("polyline", points, style);
+    }
+
+    /// A closed area.
+    pub fn polygon(&mut self, points: &[Point], style: Style) {
+        self.through("polygon", points, style);
+    }
+
+    fn through(&mut self, element: &str, points: &[Point], style: Style) {
+        let finite = points.iter().filter(|p| p.iter().all(|c| c.is_finite()));
+        let places: Vec<String> = finite.map(|&[x, y]| format!("{},{}", number(x), number(y))).collect();
+        if places.len() > 1 {
+            self.line(format_args!(r#"<{element} points="{}"{}/>"#, places.join(" "), look(&style)));
+        }
+    }
+
+    /// A straight line.
+    pub fn segment(&mut self, from: Point, to: Point, style: Style) {
+        self.polyline(&[from, to], style);
+    }
+
+    /// A circle.
+    pub fn circle(&mut self, centre: Point, radius: f64, style: Style) {
+        let [x, y, r] = [centre[0], centre[1], radius].map(number);
+        self.line(format_args!(r#"<circle cx="{x}" cy="{y}" r="{r}"{}/>"#, look(&style)));
+    }
+
+    /// A rectangle with corners rounded by `radius`.
+    pub fn rect(&mut self, frame: Frame, radius: f64, style: Style) {
+        let [x, y, w, h, r] = [frame.x, frame.y, frame.width, frame.height, radius].map(number);
+        self.line(format_args!(r#"<rect x="{x}" y="{y}" width="{w}" height="{h}" rx="{r}"{}/>"#, look(&style)));
+    }
+
+    /// A line of text; `at` is on its base line.
+    pub fn text(&mut self, at: Point, text: &str, style: TextStyle) {
+        let [x, y, size] = [at[0], at[1], style.size].map(number);
+        let mut more = String::new();
+        more += match style.anchor {
+            Anchor::Start => "",
+            Anchor::Middle => r#" text-anchor="middle""#,
+            Anchor::End => r#" text-anchor="end""#,
+        };
+        if style.bold {
+            more += r#" font-weight="600""#;
+        }
+        if style.turned_deg != 0.0 {
+            more += &format!(r#" transform="rotate({} {x} {y})""#, number(-style.turned_deg));
+        }
+        if style.halo {
+            let (paper, width) = (palette::PAPER, number(0.28 * style.size));
+            more +=
+                &format!(r#" paint-order="stroke" stroke="{paper}" stroke-width="{width}" stroke-linejoin="round""#);
+        }
+        let (fill, text) = (style.colour, escaped(text));
+        self.line(format_args!(r#"<text x="{x}" y="{y}" font-size="{size}" fill="{fill}"{more}>{text}</text>"#));
+    }
+
+    /// The document.
+    #[must_use]
+    pub fn finish(self) -> String {
+        let (w, h) = (number(self.width), number(self.height));
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {w} {h}\" width=\"{w}\" height=\"{h}\" \
+             role=\"img\" font-family=\"{FONTS}\">\n<title>{}</title>\n<desc>{}</desc>\n\
+             <rect width=\"{w}\" height=\"{h}\" fill=\"{}\"/>\n{}</svg>\n",
+            self.title,
+            self.description,
+            palette::PAPER,
+            self.body
+        )
+    }
+
+    fn line(&mut self, text: std::fmt::Arguments<'_>) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.body, "{text}");
+    }
+}
+
+fn look(style: &Style) -> String {
+    let mut text = match style.fill {
+        Some(fill) => format!(r#" fill="{fill}""#),
+        None => r#" fill="none""#.to_owned(),
+    };
+    if style.fill.is_some() && style.fill_opacity < 1.0 {
+        text += &format!(r#" fill-opacity="{}""#, number(style.fill_opacity));
+    }
+    let Some(stroke) = style.stroke else { return text };
+    text += &format!(r#" stroke="{stroke}" stroke-width="{}" stroke-linejoin="round""#, number(style.stroke_width));
+    if style.stroke_opacity < 1.0 {
+        text += &format!(r#" stroke-opacity="{}""#, number(style.stroke_opacity));
+    }
+    if let Some([drawn, left_out]) = style.dash {
+        text += &format!(r#" stroke-dasharray="{} {}""#, number(drawn), number(left_out));
+    }
+    text
+}
+
+/// Two decimals, always; never `-0.00`, never a word for what is no number.
+#[must_use]
+pub fn number(value: f64) -> String {
+    let text = format!("{value:.2}");
+    match text.as_str() {
+        "-0.00" => "0.00".to_owned(),
+        _ if !value.is_finite() => "0.00".to_owned(),
+        _ => text,
+    }
+}
+
+/// Text for XML: markup escaped, characters that XML 1.0 does not allow replaced.
+#[must_use]
+pub fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out += "&amp;",
+            '<' => out += "&lt;",
+            '>' => out += "&gt;",
+            '"' => out += "&quot;",
+            '\'' => out += "&#39;",
+            '\t' | '\n' | '\r' => out.push(' '),
+            '\u{0}'..='\u{1f}' | '\u{7f}'..='\u{9f}' | '\u{fffe}' | '\u{ffff}' => out.push('\u{fffd}'),
+            _ => out.push(c),
+        }
+    }
+    out
+}

@@ -1,0 +1,152 @@
+//! From metres to the page: y up becomes y down, one scale for both axes, turned if that makes better use of the page.
+
+use super::Point;
+
+/// A rectangle on the page, page units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// Left edge.
+    pub x: f64,
+    /// Upper edge.
+    pub y: f64,
+    /// To the right.
+    pub width: f64,
+    /// Down.
+    pub height: f64,
+}
+
+impl Frame {
+    /// Its middle.
+    #[must_use]
+    pub fn centre(&self) -> Point {
+        [self.x + 0.5 * self.width, self.y + 0.5 * self.height]
+    }
+
+    /// Smaller by `by` on every side.
+    #[must_use]
+    pub fn inset(&self, by: f64) -> Self {
+        let (width, height) = ((self.width - 2.0 * by).max(0.0), (self.height - 2.0 * by).max(0.0));
+        Self { x: self.x + by, y: self.y + by, width, height }
+    }
+
+    /// Whether the place is inside.
+    #[must_use]
+    pub fn holds(&self, [x, y]: Point) -> bool {
+        x >= self.x && x <= self.x + self.width && y >= self.y && y <= self.y + self.height
+    }
+}
+
+/// The least box, axes as the points have them, that holds all points. Empty until it got one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Least x and y.
+    pub low: Point,
+    /// Greatest x and y.
+    pub high: Point,
+}
+
+impl Bounds {
+    /// Of these points.
+    #[must_use]
+    pub fn of<'p>(points: impl IntoIterator<Item = &'p Point>) -> Self {
+        let mut bounds = Self { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
+        for p in points {
+            bounds.add(*p);
+        }
+        bounds
+    }
+
+    /// Holds this point, too.
+    pub fn add(&mut self, point: Point) {
+        for (axis, &c) in point.iter().enumerate().filter(|(_, c)| c.is_finite()) {
+            self.low[axis] = self.low[axis].min(c);
+            self.high[axis] = self.high[axis].max(c);
+        }
+    }
+
+    /// Larger by `by` on every side.
+    #[must_use]
+    pub fn grown(&self, by: f64) -> Self {
+        Self { low: self.low.map(|c| c - by), high: self.high.map(|c| c + by) }
+    }
+
+    /// Width and height.
+    #[must_use]
+    pub fn size(&self) -> [f64; 2] {
+        [0, 1].map(|i| (self.high[i] - self.low[i]).max(0.0))
+    }
+
+    fn centre(&self) -> Point {
+        [0, 1].map(|i| if self.low[i] <= self.high[i] { 0.5 * (self.low[i] + self.high[i]) } else { 0.0 })
+    }
+}
+
+/// Maps metres to the page.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    /// Page units a metre.
+    pub scale: f64,
+    /// Cosine and sine by which the world is turned, counter-clockwise, before it is drawn.
+    turn: [f64; 2],
+    /// World point, turned, that comes to `on_page`.
+    from: Point,
+    on_page: Point,
+}
+
+impl View {
+    /// All of `bounds` as large as it goes in the middle of `frame`, north up.
+    #[must_use]
+    pub fn fit(bounds: &Bounds, frame: Frame) -> Self {
+        Self::filled(bounds, frame, [1.0, 0.0])
+    }
+
+    /// All of `points` as large as it goes in the middle of `frame`, the world turned counter-clockwise by `turn_rad` first.
+    #[must_use]
+    pub fn turned(points: &[Point], turn_rad: f64, frame: Frame) -> Self {
+        let turn = [turn_rad.cos(), turn_rad.sin()];
+        let rotated: Vec<Point> = points.iter().map(|&p| rotate(p, turn)).collect();
+        Self::filled(&Bounds::of(&rotated), frame, turn)
+    }
+
+    fn filled(bounds: &Bounds, frame: Frame, turn: [f64; 2]) -> Self {
+        let [w, h] = bounds.size();
+        let scale = (frame.width / w.max(1e-6)).min(frame.height / h.max(1e-6));
+        Self { scale, turn, from: bounds.centre(), on_page: frame.centre() }
+    }
+
+    /// The same, at most so many page units a metre.
+    #[must_use]
+    pub fn at_most(self, scale: f64) -> Self {
+        Self { scale: self.scale.min(scale), ..self }
+    }
+
+    /// A place in the world on the page.
+    #[must_use]
+    pub fn at(&self, point: Point) -> Point {
+        let p = rotate(point, self.turn);
+        [self.on_page[0] + self.scale * (p[0] - self.from[0]), self.on_page[1] - self.scale * (p[1] - self.from[1])]
+    }
+
+    /// Many of them.
+    #[must_use]
+    pub fn all(&self, points: &[Point]) -> Vec<Point> {
+        points.iter().map(|&p| self.at(p)).collect()
+    }
+
+    /// Metres in page units.
+    #[must_use]
+    pub fn length(&self, metres: f64) -> f64 {
+        metres * self.scale
+    }
+
+    /// A world direction (unit vector) on the page.
+    #[must_use]
+    pub fn direction(&self, direction: Point) -> Point {
+        let d = rotate(direction, self.turn);
+        [d[0], -d[1]]
+    }
+}
+
+fn rotate(p: Point, [cos, sin]: [f64; 2]) -> Point {
+    [p[0] * cos - p[1] * sin, p[0] * sin + p[1] * cos]
+}

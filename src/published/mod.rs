@@ -1,0 +1,66 @@
+//! The paper to the letter: Faruqui, Das, Kumar L, Jagtap, *Spatiotemporal Tube-Based Safety-Certificate for Autonomous
+//! Navigation of Articulated Vehicles*. Definition by definition, one file a subject; nothing here decides anything.
+//!
+//! Promises the printed formulas, each public item with its number (equations counted through the paper's source). Where the
+//! print cannot be right, [`Reading`] switches to the repaired form, fault by fault; `docs/errata.md` shows each one in
+//! numbers. Independent of [`crate::stet`], which decides.
+//!
+//! | file | in the paper |
+//! | --- | --- |
+//! | `ellipse` | Def. 1, Eq. 1-2: 𝓔(q, Q), support radius |
+//! | `route` | Def. 2, Eq. 3-4: 𝓡(t), 𝒫_l, 𝒫_r |
+//! | `kinematics` | Def. 4, Eq. 5-8: κ_i, ι_i, Ω, Ξ over sway tuples |
+//! | `lipschitz` | Assumption 1, Eq. 9, and the constants of Def. 6 |
+//! | `reach` | Eq. 10-15: 𝓜_i, 𝓗_i, D, a_i, b_i, Q^lim |
+//! | `sum` | Eq. 16-18: the Kurzhanski-Varaiya bound, β |
+//! | `leeway` | Def. 5, Eq. 19-20 |
+//! | `corrections` | Def. 6: CORRCEN, SHRINK |
+//! | `route_cert` | Algorithm 1 |
+//! | `theorem` | the Theorem, Eq. 21-23 |
+//! | `rsc` | the Corollary, Eq. 24-25: CERT, 𝒞, h_Ω, h_Ξ, w_min |
+//! | `table`, `drawn` | Table I, and a route of our own as long as the paper's |
+//! | `radius` | r_N^max of a vehicle of the catalogue, for the column `rsc_published_m` |
+//!
+//! What the paper leaves open, and how it is read here:
+//!
+//! - ê_i(t) is the velocity's direction at q_i(t). With δ = 0 throughout, as Eq. 16 has it, trailers swing *out* of every
+//!   bend; a δ̂(t) of rolling wheels makes Eq. 6-8 the real motion. [`Sway`] is the choice.
+//! - r_0 comes from half the dimensions 𝒟: "prime mover dimensions with margins", margins unnamed.
+//! - How far CORRCEN shifts and SHRINK shrinks is not said: half the difference of the leeways, and what is missing
+//!   (`corrections`). Δq_0^max and γ_0^min have no values in the paper.
+//! - Σ has one L, θ and 𝒟 for all units, couplings over axles.
+
+mod corrections;
+mod drawn;
+mod ellipse;
+mod kinematics;
+mod leeway;
+mod lipschitz;
+mod plane;
+mod radius;
+mod reach;
+mod reading;
+mod route;
+mod route_cert;
+mod rsc;
+mod sum;
+mod system;
+mod table;
+mod theorem;
+
+pub use corrections::{Permissible, corrcen, shrink};
+pub use drawn::{DrawnError, DrawnRoute, drawn_route};
+pub use ellipse::{Shape, Stet};
+pub use kinematics::{Chain, Link, follower_centre, follower_shape, link_direction, no_slip_sway};
+pub use leeway::{Leeway, boundary_leeway};
+pub use lipschitz::{centre_constant, shape_constant};
+pub use radius::last_radius_m;
+pub use reach::{in_reachable_set, peak_sways_m, reach_displacement, sway_displacement, sway_ellipse, sway_shape};
+pub use reading::{As, Beta, Offset, Reading, Sway};
+pub use route::Route;
+pub use route_cert::{Correction, RouteCert, Step, route_cert};
+pub use rsc::{Rsc, cert};
+pub use sum::{kurzhanski_varaiya, optimal_beta};
+pub use system::System;
+pub use table::{Scenario, TableError, scenarios};
+pub use theorem::{bound_m, worst_side};

@@ -1,0 +1,65 @@
+//! Vehicles and roads that the tests share.
+
+use netcert::corridor::Corridor;
+use netcert::pace::Pace;
+use netcert::published::{
+    Permissible, Reading, Route, RouteCert, Scenario, Stet, System, drawn_route, route_cert, scenarios,
+};
+
+pub(crate) type V2 = [f64; 2];
+
+pub(crate) const NOTHING: Permissible = Permissible { max_shift_m: 0.0, min_shrink: 1.0 };
+
+pub(crate) fn scenario(number: u32) -> Scenario {
+    scenarios().unwrap().into_iter().find(|s| s.number == number).unwrap()
+}
+
+pub(crate) fn route(corridor: &Corridor) -> Route {
+    Route::new(corridor, &Pace::default())
+}
+
+/// The drawn route of 543.62 m.
+pub(crate) fn drawn(w_min_m: f64) -> Corridor {
+    drawn_route().unwrap().corridor(w_min_m)
+}
+
+/// An arc to the left of so many metres, half a metre from station to station.
+pub(crate) fn arc(radius: f64, length_m: f64, half_m: f64) -> Corridor {
+    let stations = (2.0 * length_m) as usize + 1;
+    Corridor::from_curvature(0.5, [0.0; 2], 0.0, &vec![1.0 / radius; stations], half_m, half_m)
+}
+
+/// The centreline shifted to the left.
+pub(crate) fn shifted(route: &Route, by_m: f64) -> Vec<V2> {
+    (0..route.len()).map(|i| along(route.centre[i], by_m, route.normal(i))).collect()
+}
+
+pub(crate) fn run(
+    system: &System,
+    route: &Route,
+    path: &[V2],
+    permissible: &Permissible,
+    reading: &Reading,
+) -> RouteCert {
+    route_cert(system, route, path, permissible, reading).unwrap()
+}
+
+/// Whether every point of the ellipse lies between the edges, each point at its own foot: no formula of the paper in it.
+pub(crate) fn is_on_the_road(route: &Route, stet: &Stet, near: usize) -> bool {
+    stet.outline(720).into_iter().all(|p| {
+        let foot = route.foot(p, near);
+        foot.lateral_m.abs() <= route.half_width_at_m(&foot)
+    })
+}
+
+pub(crate) fn along(a: V2, t: f64, b: V2) -> V2 {
+    [a[0] + t * b[0], a[1] + t * b[1]]
+}
+
+pub(crate) fn dot(a: V2, b: V2) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+pub(crate) fn perp(a: V2) -> V2 {
+    [-a[1], a[0]]
+}
