@@ -115,17 +115,19 @@ fn as_needed(corridor: &Corridor, model: &Model, options: &Options) -> Option<Co
 
 fn compare(case: &Case) -> Option<Compared> {
     let model = Model::new(&case.vehicle).unwrap();
-    let options = Options::default();
+    let options =
+        Options { correction_sweeps: std::env::var("SWEEPS").map_or(2, |s| s.parse().unwrap()), ..Options::default() };
     let corridor = &as_needed(&case.corridor, &model, &options)?;
     let certificate = stet::certify(corridor, &model, &options).unwrap();
     let own: Vec<f64> = certificate.shift.coefficients.iter().map(|&c| f64::from(c) * STEP_M).collect();
     let problem = Problem::new(corridor, &case.vehicle);
     let centred = vec![0.0; problem.coefficients()];
-    let (best_nominal, nominal_optimum_m) = optimum(&problem, &mut Nominal(&problem), &centred, options.max_shift_m);
+    let most = options.max_shift_m;
+    let (nominal, nominal_optimum_m) = optimum(&problem, &mut Nominal(&problem), &centred, most, 3e-5);
     let mut certified = Certified::new(&problem, &model);
-    let (best, _) = optimum(&problem, &mut certified, &best_nominal, options.max_shift_m);
+    let (smooth, _) = optimum(&problem, &mut certified, &nominal, most, 1e-3);
     // Once more with a wide trust region: what the bounds take off has changed by then.
-    let (_, optimum_m) = optimum(&problem, &mut certified, &best, options.max_shift_m);
+    let (_, optimum_m) = optimum(&problem, &mut certified, &smooth, most, 1e-4);
     let compared = Compared {
         name: case.name.clone(),
         centred_m: certified.certificate(&centred).result.rsc_m,

@@ -16,7 +16,7 @@ use super::sweep::{Minima, UNVISITED_M, ZERO, reach_m};
 use super::track::Track;
 
 /// Steps of one ascent.
-const STEPS: usize = 10;
+const STEPS: usize = 12;
 /// τ at the first step and at the last one, metres.
 const TAU_FIRST_M: f64 = 0.2;
 const TAU_LAST_M: f64 = 0.02;
@@ -28,7 +28,7 @@ const LEAST_STIFFNESS: f64 = 0.1;
 const STIFF_STEPS: usize = 2;
 /// How fast the least leeway nearby may rise with the distance: what is this much better is left alone. Steeper, and a bend
 /// uses less of the room before and after it: 0.003 costs 0.4 cm at the median of `tests/corrcen.rs`.
-const RISE: f64 = 0.001;
+const RISE: f64 = 0.0005;
 /// Rows with so much more leeway than those that count are not looked at, metres. At 0.2 one corridor in twenty lost 30 cm.
 const FAR_M: f64 = 0.4;
 

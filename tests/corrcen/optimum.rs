@@ -16,9 +16,6 @@ const PROBE_M: f64 = 0.004;
 const WIDEST_M: f64 = 0.5;
 const NARROWEST_M: f64 = 0.004;
 const MOST_STEPS: usize = 12;
-/// Weight of the squared second differences of the coefficients: of plans equally good to a fraction of a millimetre, the
-/// smooth one.
-const SMOOTHNESS: f64 = 3e-5;
 
 /// What a plan is worth, and what of each place's leeway does not count.
 pub trait Merit {
@@ -42,13 +39,22 @@ impl Merit for Nominal<'_> {
 }
 
 /// The plan of the greatest merit found from `start`, and its worth.
-pub fn optimum(problem: &Problem<'_>, merit: &mut dyn Merit, start: &[f64], max_shift_m: f64) -> (Vec<f64>, f64) {
+///
+/// `smoothness` weighs the squared second differences of the coefficients: of plans that are about equally good the smooth
+/// one, which the bounds like better.
+pub fn optimum(
+    problem: &Problem<'_>,
+    merit: &mut dyn Merit,
+    start: &[f64],
+    max_shift_m: f64,
+    smoothness: f64,
+) -> (Vec<f64>, f64) {
     let mut best = start.to_vec();
     let mut worth = merit.worth_m(&best);
     let mut trust = WIDEST_M;
     let mut programme = Programme::about(problem, merit, &best, trust);
     for _ in 0..MOST_STEPS {
-        let Some((step, promised)) = programme.solve(trust, max_shift_m) else { break };
+        let Some((step, promised)) = programme.solve(trust, max_shift_m, smoothness) else { break };
         let tried = merit.worth_m(&step);
         if tried > worth {
             let short = tried - worth < 0.5 * (promised - programme.level_m);
@@ -111,7 +117,7 @@ impl Programme {
     }
 
     /// The plan that the model likes best within the trust region, and what the model promises of it.
-    fn solve(&self, trust: f64, max_shift_m: f64) -> Option<(Vec<f64>, f64)> {
+    fn solve(&self, trust: f64, max_shift_m: f64, smoothness: f64) -> Option<(Vec<f64>, f64)> {
         let free = free_count(self.about.len());
         let level = free;
         let now: Vec<f64> = (0..free).map(|j| self.about[spread(j, self.about.len()).start]).collect();
@@ -135,7 +141,7 @@ impl Programme {
             push(&[(j, -1.0)], trust.min(max_shift_m + now));
         }
         let a = CscMatrix::new_from_triplets(bounds.len(), free + 1, row_of, column_of, values);
-        let (p, mut q) = smoothness(&now);
+        let (p, mut q) = roughness(&now, smoothness);
         q.push(-1.0);
         let cones: [SupportedConeT<f64>; 1] = [NonnegativeConeT(bounds.len())];
         let settings = DefaultSettingsBuilder::default()
@@ -175,7 +181,7 @@ fn spread(free: usize, coefficients: usize) -> std::ops::Range<usize> {
 }
 
 /// ½xᵀPx + qᵀx of the squared second differences of `now + x`; a column is left for the level.
-fn smoothness(now: &[f64]) -> (CscMatrix<f64>, Vec<f64>) {
+fn roughness(now: &[f64], weight: f64) -> (CscMatrix<f64>, Vec<f64>) {
     let n = now.len();
     let (mut rows, mut columns, mut values) = (vec![], vec![], vec![]);
     let mut q = vec![0.0; n];
@@ -183,11 +189,11 @@ fn smoothness(now: &[f64]) -> (CscMatrix<f64>, Vec<f64>) {
         let stencil = [(i - 1, 1.0), (i, -2.0), (i + 1, 1.0)];
         let second: f64 = stencil.iter().map(|&(j, w)| w * now[j]).sum();
         for (j, w) in stencil {
-            q[j] += SMOOTHNESS * w * second;
+            q[j] += weight * w * second;
             for (k, v) in stencil.iter().filter(|(k, _)| *k >= j) {
                 rows.push(j);
                 columns.push(*k);
-                values.push(SMOOTHNESS * w * v);
+                values.push(weight * w * v);
             }
         }
     }
