@@ -43,6 +43,15 @@ struct Point {
     foot: usize,
 }
 
+impl Body {
+    /// Nothing is deducted for the straight.
+    pub(super) fn forget_gains(&mut self) {
+        for point in &mut self.points {
+            (point.gain, point.slope_ahead, point.slope_behind) = (0.0, 0.0, 0.0);
+        }
+    }
+}
+
 /// The bodies of a vehicle that stands straight behind the track's first station, at γ = `shrink`. When planning, three
 /// points a side.
 pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: f64) -> Vec<Body> {
@@ -58,7 +67,9 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
             coupling = axle - unit.hitch;
             let foot = |ahead: f64| (track.lead as f64 + (axle + ahead) / track.spacing).round() as usize;
             let n = unit.points.len();
-            let chosen = (0..n).filter(|&p| CERTIFY || p == 0 || p == n / 2 || p == n - 1);
+            // Innermost on a steady circle.
+            let middle = (0..n).min_by(|&a, &b| unit.points[a].abs().total_cmp(&unit.points[b].abs()));
+            let chosen = (0..n).filter(|&p| CERTIFY || p == 0 || Some(p) == middle || p == n - 1);
             let points = chosen.map(|p| {
                 let gain = unit.at[p].at(tolerance);
                 Point {
@@ -393,10 +404,13 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let (right_foot, right_lateral) = foot(at, right_along, right_at);
     let left = at.left + at.left_slope * left_foot - left_lateral;
     let right = at.right + at.right_slope * right_foot + right_lateral;
-    if !CERTIFY {
-        return (left, right);
-    }
     let point = &body.points[index];
+    let lean_left = (askew * -point.slope_ahead).max(askew * point.slope_behind);
+    let lean_right = (askew * point.slope_ahead).max(askew * -point.slope_behind);
+    if !CERTIFY {
+        let gain = cos * point.gain;
+        return (left - gain - lean_left, right - gain - lean_right);
+    }
     let reach = point.ahead.abs();
     let (c, t) = (cos.abs(), sin.abs());
     let extras = (s.extra_axle + s.extra_coupling) * body.inverse_length;
@@ -411,8 +425,7 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
         let base = c * (s.extra_axle * point.from_axle + s.extra_coupling * point.from_coupling + point.gain)
             + t * extras * body.half_width
             + (t - c).max(V::splat(0.0)) * a * body.half_width;
-        let lean_left = (askew * -point.slope_ahead).max(askew * point.slope_behind);
-        (base, lean_left, (askew * point.slope_ahead).max(askew * -point.slope_behind))
+        (base, lean_left, lean_right)
     };
     // Second order: along is how far the point may slide along the corridor.
     let along = c * a * body.half_width + t * (axle + a * reach);

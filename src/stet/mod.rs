@@ -3,13 +3,16 @@
 //! Pure: a corridor and a vehicle in, a certificate out; no input or output, no clock, no threads.
 
 mod adjoint;
+mod ascent;
 mod gains;
+mod given;
 mod group;
 mod lanes;
 mod leeway;
 mod model;
 pub mod motion;
 mod plan;
+mod response;
 mod shift;
 mod spans;
 mod sweep;
@@ -20,6 +23,7 @@ use std::ops::Range;
 
 use crate::corridor::Corridor;
 
+pub use given::{PlanError, certify_plan};
 pub use model::{MAX_UNITS, Model, ModelError};
 pub use motion::steady_offtracking;
 pub use shift::{KNOT_STATIONS, Plan, STEP_M};
@@ -189,39 +193,7 @@ pub fn certify_planned(
     if corridor.is_empty() {
         return None;
     }
-    let whole = 0..corridor.len();
-    let swept = Swept::new(corridor, &[model], spans, options);
-    let track = &swept.track;
-    let centred = thorough(track, &swept.group, &vec![V::splat(0.0); track.len()]);
-    let full = if swept.worth(0, &whole) { swept.refined.as_ref().unwrap_or(&swept.full) } else { &swept.full };
-    let own = |column: &[f64]| column[track.lead..track.lead + track.count].to_vec();
-    let shift = swept.plans[0].clone();
-    let shift_m: Vec<f64> = (0..track.count).map(|k| shift.at_m(k)).collect();
-    let plan = (0..track.count)
-        .map(|k| {
-            let (sin, cos) = corridor.heading[k].sin_cos();
-            [corridor.x[k] - shift_m[k] * sin, corridor.y[k] + shift_m[k] * cos]
-        })
-        .collect();
-    let results = spans.iter().map(|span| swept.result(0, span)).collect();
-    let (mut left_m, mut right_m) = (own(&full[0].left), own(&full[0].right));
-    for span in spans {
-        // What the span's result rests on: refined for one where it is worth it.
-        let best = swept.best(0, span);
-        left_m[span.clone()].copy_from_slice(&best.left[track.lead + span.start..track.lead + span.end]);
-        right_m[span.clone()].copy_from_slice(&best.right[track.lead + span.start..track.lead + span.end]);
-    }
-    let certificate = Certificate {
-        result: swept.result(0, &whole),
-        plan,
-        shift_m,
-        shift,
-        left_m,
-        right_m,
-        left_centred_m: own(&centred[0].left),
-        right_centred_m: own(&centred[0].right),
-    };
-    Some((certificate, results))
+    Some(Swept::new(corridor, &[model], spans, options).certificate(corridor, spans))
 }
 
 /// All leeways at γ = 1, refined wherever that is worth it.
@@ -231,7 +203,7 @@ fn thorough(track: &Track, group: &Group<'_>, shift: &[V]) -> Vec<Minima> {
         return full;
     }
     let loose = |lane: usize, head: usize| full[lane].loose[head / sweep::BLOCK];
-    sweep::<true>(track, group, shift, &Wanted { blocks: &|_, _| true, refined: Some(&loose) })
+    sweep::<true>(track, group, shift, &Wanted { refined: Some(&loose), ..Wanted::ALL })
 }
 
 /// A group of vehicles after its sweeps.
@@ -251,10 +223,20 @@ struct Swept<'m> {
 
 impl<'m> Swept<'m> {
     fn new(corridor: &Corridor, models: &[&'m Model], spans: &[Range<usize>], options: &Options) -> Self {
+        Self::along(corridor, models, spans, &|track, group| plan::best(track, group, spans, options))
+    }
+
+    /// `plans` gives each vehicle's, in the group's order.
+    fn along(
+        corridor: &Corridor,
+        models: &[&'m Model],
+        spans: &[Range<usize>],
+        plans: &dyn Fn(&Track, &Group<'m>) -> Vec<Plan>,
+    ) -> Self {
         let group = Group::new(models, 1.0);
         let (lead_m, tail_m) = sweep::extensions_m(&group, corridor.spacing_m);
         let track = Track::new(corridor, lead_m, tail_m);
-        let plans = plan::best(&track, &group, spans, options);
+        let plans = plans(&track, &group);
         let shift = shift::lanes(&plans, track.lead, track.len(), track.count);
         let full = sweep::<true>(&track, &group, &shift, &Wanted::ALL);
         let mut swept = Self { track, group, plans, full, nominal: None, refined: None, least: None };
@@ -262,12 +244,12 @@ impl<'m> Swept<'m> {
         let is_loose = |lane: usize, head: usize| loose[lane][head / sweep::BLOCK];
 
         if swept.full.iter().any(|m| m.loose.iter().any(|&unit| unit < usize::MAX)) {
-            swept.nominal = Some(sweep::<false>(&swept.track, &swept.group, &shift, &Wanted::ALL));
+            swept.nominal = Some(sweep::<false>(&swept.track, &swept.group, &shift, &Wanted::PLAIN));
         }
         let near = swept.blocks(spans, |lane, span| swept.worth(lane, span));
         if near.iter().flatten().any(|&near| near) {
             let blocks = |lane: usize, head: usize| near[lane][head / sweep::BLOCK];
-            let wanted = Wanted { blocks: &blocks, refined: Some(&is_loose) };
+            let wanted = Wanted { blocks: &blocks, refined: Some(&is_loose), plain: false };
             swept.refined = Some(sweep::<true>(&swept.track, &swept.group, &shift, &wanted));
         }
         let failing = swept.blocks(spans, |lane, span| swept.at_full(lane, span).rsc_m < 0.0);
@@ -276,10 +258,46 @@ impl<'m> Swept<'m> {
             let blocks = |lane: usize, head: usize| failing[lane][head / sweep::BLOCK];
             // From the same kind of bound as at γ = 1, block by block: only then is the leeway concave in γ.
             let refined: Option<&dyn Fn(usize, usize) -> usize> = Some(&is_loose);
-            let wanted = Wanted { blocks: &blocks, refined: refined.filter(|_| swept.refined.is_some()) };
+            let wanted = Wanted { blocks: &blocks, refined: refined.filter(|_| swept.refined.is_some()), plain: false };
             swept.least = Some(sweep::<true>(&swept.track, &tight, &shift, &wanted));
         }
         swept
+    }
+
+    /// What the first vehicle's sweeps say of the whole corridor, and of each span.
+    fn certificate(&self, corridor: &Corridor, spans: &[Range<usize>]) -> (Certificate, Vec<SpanResult>) {
+        let whole = 0..corridor.len();
+        let track = &self.track;
+        let centred = thorough(track, &self.group, &vec![V::splat(0.0); track.len()]);
+        let full = if self.worth(0, &whole) { self.refined.as_ref().unwrap_or(&self.full) } else { &self.full };
+        let own = |column: &[f64]| column[track.lead..track.lead + track.count].to_vec();
+        let shift = self.plans[0].clone();
+        let shift_m: Vec<f64> = (0..track.count).map(|k| shift.at_m(k)).collect();
+        let plan = (0..track.count)
+            .map(|k| {
+                let (sin, cos) = corridor.heading[k].sin_cos();
+                [corridor.x[k] - shift_m[k] * sin, corridor.y[k] + shift_m[k] * cos]
+            })
+            .collect();
+        let results = spans.iter().map(|span| self.result(0, span)).collect();
+        let (mut left_m, mut right_m) = (own(&full[0].left), own(&full[0].right));
+        for span in spans {
+            // What the span's result rests on: refined for one where it is worth it.
+            let best = self.best(0, span);
+            left_m[span.clone()].copy_from_slice(&best.left[track.lead + span.start..track.lead + span.end]);
+            right_m[span.clone()].copy_from_slice(&best.right[track.lead + span.start..track.lead + span.end]);
+        }
+        let certificate = Certificate {
+            result: self.result(0, &whole),
+            plan,
+            shift_m,
+            shift,
+            left_m,
+            right_m,
+            left_centred_m: own(&centred[0].left),
+            right_centred_m: own(&centred[0].right),
+        };
+        (certificate, results)
     }
 
     /// Head stations, in blocks, in which some unit may touch the span.

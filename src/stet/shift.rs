@@ -46,8 +46,7 @@ impl Plan {
         let mut coefficients: Vec<i32> = (0..count(stations)).map(|i| step(i.saturating_sub(1).min(knots))).collect();
         let last = coefficients.len() - 1;
         let (entry, exit) = (coefficients[1], coefficients[last]);
-        coefficients[..3].fill(entry);
-        coefficients[last - 3..].fill(exit);
+        level(&mut coefficients, entry, exit);
         Self { coefficients }
     }
 
@@ -70,8 +69,31 @@ impl Plan {
     }
 }
 
-fn count(stations: usize) -> usize {
+/// Coefficients of a plan over so many stations.
+pub(super) fn count(stations: usize) -> usize {
     stations.saturating_sub(1) / KNOT_STATIONS + 4
+}
+
+/// The shift at a station by coefficients in metres, vehicles in lanes.
+pub(super) fn lanes_at(coefficients: &[V], station: usize) -> V {
+    let (knot, [a, b, c, d]) = (station / KNOT_STATIONS, WEIGHTS[station % KNOT_STATIONS]);
+    coefficients[knot] * a + coefficients[knot + 1] * b + coefficients[knot + 2] * c + coefficients[knot + 3] * d
+}
+
+/// Makes the first three coefficients equal and the last four; all of them where these overlap.
+pub(super) fn level<T: Copy>(coefficients: &mut [T], entry: T, exit: T) {
+    let last = coefficients.len() - 1;
+    coefficients[..3].fill(if last < 6 { exit } else { entry });
+    coefficients[last - 3..].fill(exit);
+}
+
+/// What is asked of coefficients that must be equal is asked of each of them.
+pub(super) fn tie(asked: &mut [V]) {
+    let last = asked.len() - 1;
+    let sum = |part: &[V]| part.iter().fold(V::splat(0.0), |sum, v| sum + *v);
+    let (entry, exit) = (sum(&asked[..3]), sum(&asked[last - 3..]));
+    asked[..3].fill(entry);
+    asked[last - 3..].fill(exit);
 }
 
 /// The shifts of up to eight vehicles at every station of a track, of which `lead` come before the corridor's first.

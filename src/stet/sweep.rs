@@ -78,15 +78,20 @@ pub(super) struct Wanted<'w> {
     pub(super) blocks: &'w dyn Fn(usize, usize) -> bool,
     /// The first unit to be refined.
     pub(super) refined: Option<&'w dyn Fn(usize, usize) -> usize>,
+    /// Without `CERTIFY`: not even the straight gains deducted.
+    pub(super) plain: bool,
 }
 
 impl Wanted<'_> {
     /// Everything, by the filter alone.
-    pub(super) const ALL: Wanted<'static> = Wanted { blocks: &|_, _| true, refined: None };
+    pub(super) const ALL: Wanted<'static> = Wanted { blocks: &|_, _| true, refined: None, plain: false };
+    /// What is left of everything when nothing disturbs.
+    pub(super) const PLAIN: Wanted<'static> = Wanted { plain: true, ..Self::ALL };
 }
 
 /// Sweeps the steer path `shift` (metres left of the centreline at each extended station, vehicles in lanes).
-/// `CERTIFY`: all bounds deducted, hinges checked; otherwise the nominal leeway of a few points, for planning.
+/// `CERTIFY`: all bounds deducted, hinges checked; otherwise the nominal leeway of a few points less their
+/// straight gains, for planning.
 pub(super) fn sweep<const CERTIFY: bool>(
     track: &Track,
     group: &Group<'_>,
@@ -110,8 +115,8 @@ fn sweep_avx2<const CERTIFY: bool>(track: &Track, group: &Group<'_>, shift: &[V]
 #[inline(always)]
 fn sweep_with<const CERTIFY: bool>(track: &Track, group: &Group<'_>, shift: &[V], wanted: &Wanted<'_>) -> Vec<Minima> {
     match wanted.refined {
-        Some(refined) if CERTIFY => sweep_blocks::<CERTIFY, true>(track, group, shift, wanted.blocks, refined),
-        _ => sweep_blocks::<CERTIFY, false>(track, group, shift, wanted.blocks, &|_, _| usize::MAX),
+        Some(refined) if CERTIFY => sweep_blocks::<CERTIFY, true>(track, group, shift, wanted, refined),
+        _ => sweep_blocks::<CERTIFY, false>(track, group, shift, wanted, &|_, _| usize::MAX),
     }
 }
 
@@ -120,7 +125,7 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     track: &Track,
     group: &Group<'_>,
     shift: &[V],
-    wanted: &dyn Fn(usize, usize) -> bool,
+    wanted: &Wanted<'_>,
     refined: &dyn Fn(usize, usize) -> usize,
 ) -> Vec<Minima> {
     let mut minima = vec![Minima::new(track.len()); group.models.len()];
@@ -130,6 +135,9 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     let mut tight = Refined::new();
     let mut bodies: Vec<Vec<Body>> =
         group.models.iter().map(|m| leeway::bodies::<CERTIFY>(m, track, group.shrink)).collect();
+    if wanted.plain && !CERTIFY {
+        bodies.iter_mut().flatten().for_each(Body::forget_gains);
+    }
     // The rear of the longest vehicle has left the corridor when the head is this far beyond.
     let ahead = ((group.front() + 4.0) / track.spacing).ceil() as usize + LANES;
     let last = track.len() - ahead - BLOCK;
@@ -137,7 +145,7 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     while head < last {
         motion.block::<CERTIFY, REFINE>(track, group, shift, head, &mut rows, &mut trail);
         for (lane, (bodies, minima)) in bodies.iter_mut().zip(&mut minima).enumerate() {
-            let wanted = wanted(lane, head);
+            let wanted = (wanted.blocks)(lane, head);
             let tight_from = if REFINE && wanted { refined(lane, head) } else { usize::MAX };
             if tight_from < bodies.len() {
                 trail.refine(group, lane, tight_from, &mut motion, &mut rows, &mut tight);
@@ -391,8 +399,8 @@ impl Motion {
             let change = (input - y) * gain;
             let extra = (y + change.max(change * step.cosine.max(ZERO))).min(V::splat(MOST));
             // Where it does not close, nothing is certified while the vehicle stands here; a vehicle that is certified further
-            // on did not come through here, so that its bounds begin anew.
-            closed = closed.min(validity(of, step, a));
+            // on did not come through here, so that its bounds begin anew. A stand-in closes: it is nobody's.
+            closed = closed.min(select_negative(of.present - V::splat(0.5), one, validity(of, step, a)));
             self.extra[unit] = select_negative(closed, ZERO, extra);
             let y = y.max(extra);
 

@@ -1,0 +1,353 @@
+//! The ascent of CORRCEN: spline coefficients that raise the least leeway, by the linear response of the bodies alone.
+//!
+//! Each sweep leaves, at every knot and on each side, the body point with the least leeway: a row. Rows of earlier sweeps stay
+//! while no newer one is of the same point, so that what a correction brings forward is not forgotten. On these rows
+//! preconditioned gradient steps with momentum lower Σ (τ + least leeway nearby − leeway)₊³; τ sinks from step to step, so that
+//! in the end only what limits counts. Why not half the difference of the leeways again and again: that balances every station,
+//! where the best plan gives away room before and after a bend to be less short of it in the bend (`tests/corrcen.rs`).
+//! Each vehicle for itself, in its lane. Decides nothing: the next sweep says what came of it.
+
+use super::group::{Group, gamma};
+use super::lanes::{TAG_MASK, V};
+use super::model::Model;
+use super::response::Response;
+use super::shift::{self, KNOT_STATIONS};
+use super::sweep::{Minima, UNVISITED_M, ZERO, reach_m};
+use super::track::Track;
+
+/// Steps of one ascent.
+const STEPS: usize = 12;
+/// τ at the first step and at the last one, metres.
+const TAU_FIRST_M: f64 = 0.2;
+const TAU_LAST_M: f64 = 0.02;
+/// How much of the last step the next one begins with.
+const MOMENTUM: f64 = 0.85;
+/// What is added to the stiffness, as a part of one row's: where few rows count steps stay small.
+const LEAST_STIFFNESS: f64 = 0.1;
+/// Steps after which the stiffness is looked at anew.
+const STIFF_STEPS: usize = 2;
+/// How fast the least leeway nearby may rise with the distance: what is this much better is left alone. Steeper, and a bend
+/// uses less of the room before and after it: 0.003 costs 0.4 cm at the median of `tests/corrcen.rs`.
+const RISE: f64 = 0.0005;
+/// Rows with so much more leeway than those that count are not looked at, metres. At 0.2 one corridor in twenty lost 30 cm.
+const FAR_M: f64 = 0.4;
+
+/// What is left to one edge at one body point, as the response knows it.
+#[derive(Clone, Copy)]
+struct Row {
+    /// Unit and point, as in [`super::lanes::V::tagged`]; what it was the last time it was seen.
+    tag: u64,
+    /// Knot of its foot.
+    foot: u32,
+    /// The knot before the steer axle's place then.
+    head: u32,
+    unit: u32,
+    left: bool,
+    /// Change of the leeway with the axle's deviation there and a knot further, and with the coupling's.
+    weights: [f32; 4],
+    /// If the plan were the centreline, metres.
+    leeway: f64,
+    /// What γ_min adds to it.
+    relief: f64,
+}
+
+/// A row as the ascent needs it, small: there are four a knot and vehicle.
+#[derive(Clone, Copy)]
+struct Pull {
+    foot: u32,
+    head: u32,
+    unit: u32,
+    weights: [f32; 4],
+    leeway: f64,
+}
+
+/// What the sweeps have found so far, and how the bodies answer.
+pub(super) struct Ascent {
+    response: Response,
+    /// By vehicle, in the order of their feet.
+    rows: Vec<Vec<Row>>,
+    spacing: f64,
+    knots: usize,
+    count: usize,
+    max_shift_m: f64,
+}
+
+impl Ascent {
+    pub(super) fn new(track: &Track, group: &Group<'_>, max_shift_m: f64) -> Self {
+        let spacing = track.spacing * KNOT_STATIONS as f64;
+        let count = shift::count(track.count);
+        // Until the rear of the longest has left.
+        let (length, front) = reach_m(group);
+        let grid = count + ((length + front) / spacing).ceil() as usize + 2;
+        Self {
+            response: Response::new(group, spacing, grid),
+            rows: vec![Vec::new(); group.models.len()],
+            spacing,
+            knots: count - 3,
+            count,
+            max_shift_m,
+        }
+    }
+
+    /// Takes up what a sweep of the plan with these coefficients has found.
+    pub(super) fn note(&mut self, coarse: &Track, group: &Group<'_>, minima: &[Minima], coefficients: &[V]) {
+        self.response.follow(&steer(coefficients, self.response.knots()));
+        for (lane, (minima, model)) in minima.iter().zip(&group.models).enumerate() {
+            let mut old = std::mem::take(&mut self.rows[lane]).into_iter().peekable();
+            let mut rows = Vec::with_capacity(3 * self.knots);
+            for foot in 0..self.knots {
+                let begin = rows.len();
+                for left in [true, false] {
+                    let least = least_at(coarse, minima, foot, left);
+                    if least < UNVISITED_M {
+                        let row = self.row(model, least.to_bits() & TAG_MASK, foot, left);
+                        rows.push(Row { leeway: least - self.response.change(&row.pull(0.0), lane), ..row });
+                    }
+                }
+                let end = rows.len();
+                while let Some(row) = old.next_if(|row| row.foot as usize == foot) {
+                    if !rows[begin..end].iter().any(|new: &Row| (new.tag, new.left) == (row.tag, row.left)) {
+                        rows.push(row);
+                    }
+                }
+            }
+            self.rows[lane] = rows;
+        }
+    }
+
+    fn row(&self, model: &Model, tag: u64, foot: usize, left: bool) -> Row {
+        let (unit, point) = ((tag >> 4) as usize, (tag & 15) as usize);
+        let of = &model.units[unit];
+        let ahead = of.points[point];
+        let behind: f64 = model.units[..unit].iter().map(|u| u.length + u.hitch).sum();
+        let place = (foot as f64 + (behind + of.length - ahead) / self.spacing).max(0.0);
+        let head = (place as usize).min(self.response.knots() - 2);
+        let part = (place - head as f64).min(1.0);
+        let sign = if left { -1.0 } else { 1.0 };
+        let (axle, coupling) = (sign * (1.0 - ahead / of.length), sign * ahead / of.length);
+        let weights = [axle * (1.0 - part), axle * part, coupling * (1.0 - part), coupling * part];
+        Row {
+            tag,
+            foot: foot as u32,
+            head: head as u32,
+            unit: unit as u32,
+            left,
+            weights: weights.map(|weight| weight as f32),
+            leeway: 0.0,
+            relief: relief(model, tag),
+        }
+    }
+
+    /// Better coefficients, from `start`.
+    pub(super) fn climb(&mut self, start: Vec<V>) -> Vec<V> {
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the processor has AVX2, just asked.
+            return unsafe { self.climb_avx2(start) };
+        }
+        self.climb_with(start)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn climb_avx2(&mut self, start: Vec<V>) -> Vec<V> {
+        self.climb_with(start)
+    }
+
+    #[inline(always)]
+    fn climb_with(&mut self, start: Vec<V>) -> Vec<V> {
+        let mut limits = Limits::new(self.knots, RISE * self.spacing);
+        let pulls = self.chosen(&start, &mut limits);
+        let empty = || pulls.iter().map(|pulls| vec![0.0; pulls.len()]).collect::<Vec<_>>();
+        let (mut slopes, mut bends) = (empty(), empty());
+        let mut stiffness = Vec::new();
+        let mut now = start.clone();
+        let mut before = start;
+        for step in 0..STEPS {
+            let tau = TAU_FIRST_M * (TAU_LAST_M / TAU_FIRST_M).powf(step as f64 / (STEPS - 1) as f64);
+            let ahead: Vec<V> = now.iter().zip(&before).map(|(c, b)| *c + (*c - *b) * MOMENTUM).collect();
+            self.response.follow(&steer(&ahead, self.response.knots()));
+            for (lane, pulls) in pulls.iter().enumerate() {
+                self.weigh(lane, pulls, tau, &mut limits, &mut slopes[lane], &mut bends[lane]);
+            }
+            let gradient = self.asked(&pulls, &slopes, |weight| weight);
+            if step % STIFF_STEPS == 0 {
+                stiffness = self.asked(&pulls, &bends, f32::abs);
+            }
+            before = now;
+            now = self.stepped(&ahead, &gradient, &stiffness, 2.0 * LEAST_STIFFNESS / tau);
+        }
+        now
+    }
+
+    /// First and second derivative of what each row adds to the sum, with the deviations at hand.
+    #[inline(always)]
+    fn weigh(&self, lane: usize, pulls: &[Pull], tau: f64, limits: &mut Limits, slopes: &mut [f64], bends: &mut [f64]) {
+        for (leeway, pull) in slopes.iter_mut().zip(pulls) {
+            *leeway = pull.leeway + self.response.change(pull, lane);
+        }
+        limits.set(pulls.iter().map(|pull| pull.foot).zip(slopes.iter().copied()), tau);
+        for ((slope, bend), pull) in slopes.iter_mut().zip(bends).zip(pulls) {
+            let (most, per) = limits.at[pull.foot as usize];
+            let part = (most - *slope) * per;
+            let part = if part > 0.0 { part } else { 0.0 };
+            *slope = part * part;
+            *bend = 2.0 * part * per;
+        }
+    }
+
+    /// One step from `ahead`. Responses are averages, all but: the rows of Rᵀ W R sum to Rᵀ W 1, which as a diagonal is
+    /// stiffer than the matrix, so that the step does not overshoot.
+    #[inline(always)]
+    fn stepped(&self, ahead: &[V], gradient: &[V], stiffness: &[V], least: f64) -> Vec<V> {
+        let by: Vec<V> = gradient.iter().zip(stiffness).map(|(g, h)| *g / (*h + least)).collect();
+        let by = smoothed(&smoothed(&by));
+        let (low, high) = (V::splat(-self.max_shift_m), V::splat(self.max_shift_m));
+        let mut out: Vec<V> = ahead.iter().zip(&by).map(|(c, by)| (*c + *by).max(low).min(high)).collect();
+        let (entry, exit) = (out[2], out[self.count - 4]);
+        shift::level(&mut out, entry, exit);
+        out
+    }
+
+    /// The rows of each vehicle that may come to matter, with the leeway that the least γ leaves which makes the
+    /// vehicle fit there: a plan is to pass with γ = 1, and if it cannot, with as little shrinking as will do.
+    fn chosen(&mut self, start: &[V], limits: &mut Limits) -> Vec<Vec<Pull>> {
+        self.response.follow(&steer(start, self.response.knots()));
+        let mut chosen = Vec::with_capacity(self.rows.len());
+        for (lane, rows) in self.rows.iter().enumerate() {
+            let leeway = |row: &Row| row.leeway + self.response.change(&row.pull(0.0), lane);
+            limits.set(rows.iter().map(|row| (row.foot, leeway(row) + row.relief)), TAU_FIRST_M);
+            let shrunk = limits.near.clone();
+            limits.set(rows.iter().map(|row| (row.foot, leeway(row))), TAU_FIRST_M);
+            let parts: Vec<f64> = limits.near.iter().zip(shrunk).map(|(full, least)| part(*full, least)).collect();
+            let eased = |row: &Row| parts[row.foot as usize] * row.relief;
+            limits.set(rows.iter().map(|row| (row.foot, leeway(row) + eased(row))), TAU_FIRST_M);
+            let pulls = rows.iter().filter_map(|row| {
+                let least = limits.at[row.foot as usize].0 + FAR_M;
+                (leeway(row) + eased(row) < least).then(|| row.pull(eased(row)))
+            });
+            chosen.push(pulls.collect());
+        }
+        chosen
+    }
+
+    /// What the rows ask of the coefficients.
+    #[inline(always)]
+    fn asked(&mut self, pulls: &[Vec<Pull>], shares: &[Vec<f64>], of: impl Fn(f32) -> f32) -> Vec<V> {
+        self.response.clear();
+        for (lane, (pulls, shares)) in pulls.iter().zip(shares).enumerate() {
+            for (pull, &share) in pulls.iter().zip(shares).filter(|(_, share)| **share > 0.0) {
+                self.response.ask(pull, pull.weights.map(|weight| f64::from(of(weight)) * share), lane);
+            }
+        }
+        let mut out = vec![ZERO; self.count];
+        for (knot, v) in self.response.trace_back().iter().enumerate() {
+            let j = knot.min(self.count - 3);
+            out[j] = out[j] + *v * (1.0 / 6.0);
+            out[j + 1] = out[j + 1] + *v * (4.0 / 6.0);
+            out[j + 2] = out[j + 2] + *v * (1.0 / 6.0);
+        }
+        shift::tie(&mut out);
+        out
+    }
+}
+
+impl Row {
+    /// Eased by so much leeway.
+    #[inline(always)]
+    fn pull(&self, eased: f64) -> Pull {
+        Pull { foot: self.foot, head: self.head, unit: self.unit, weights: self.weights, leeway: self.leeway + eased }
+    }
+}
+
+/// What SHRINK can add to the leeway at a tagged body point.
+pub(super) fn relief(model: &Model, tag: u64) -> f64 {
+    let gain = model.units[(tag >> 4) as usize].at[(tag & 15) as usize];
+    gain.tracking * model.vehicle.tracking_tolerance_m * (1.0 - gamma(model, 0.0))
+}
+
+/// How much of the way from γ = 1 to γ_min it takes until the least leeway is no longer negative.
+fn part(full: f64, shrunk: f64) -> f64 {
+    if full >= 0.0 || shrunk <= full { 0.0 } else { (full / (full - shrunk)).min(1.0) }
+}
+
+impl Response {
+    /// Change of a row's leeway with the deviations at hand.
+    #[inline(always)]
+    fn change(&self, row: &Pull, lane: usize) -> f64 {
+        let (y, e) = (&self.axle[row.unit as usize], &self.coupling[row.unit as usize]);
+        let [a, b, c, d] = row.weights.map(f64::from);
+        let (head, next) = (row.head as usize, row.head as usize + 1);
+        a * y[head].0[lane] + b * y[next].0[lane] + c * e[head].0[lane] + d * e[next].0[lane]
+    }
+
+    #[inline(always)]
+    fn ask(&mut self, row: &Pull, [a, b, c, d]: [f64; 4], lane: usize) {
+        let (y, e) = (&mut self.axle[row.unit as usize], &mut self.coupling[row.unit as usize]);
+        let (head, next) = (row.head as usize, row.head as usize + 1);
+        y[head].0[lane] += a;
+        y[next].0[lane] += b;
+        e[head].0[lane] += c;
+        e[next].0[lane] += d;
+    }
+}
+
+/// The least on one side over the coarse stations about a knot.
+fn least_at(coarse: &Track, minima: &Minima, foot: usize, left: bool) -> f64 {
+    let column = if left { &minima.left } else { &minima.right };
+    let k = coarse.lead + 2 * foot;
+    let about = k - usize::from(foot > 0)..=(k + 1).min(coarse.lead + coarse.count - 1);
+    about.map(|k| column[k]).fold(UNVISITED_M, |least, value| if value < least { value } else { least })
+}
+
+/// Up to which leeway rows count, by the knot of their foot.
+struct Limits {
+    rise: f64,
+    /// The least leeway nearby.
+    near: Vec<f64>,
+    /// The most that counts, and one over how far that is above the least.
+    at: Vec<(f64, f64)>,
+}
+
+impl Limits {
+    fn new(knots: usize, rise: f64) -> Self {
+        Self { rise, near: vec![0.0; knots], at: vec![(0.0, 0.0); knots] }
+    }
+
+    /// From feet and leeways. What counts is up to `tau` above the least nearby, but never below zero: what does not fit is not
+    /// forgotten because something nearby fits even less.
+    #[inline(always)]
+    fn set(&mut self, leeways: impl Iterator<Item = (u32, f64)>, tau: f64) {
+        self.near.fill(UNVISITED_M);
+        for (foot, leeway) in leeways {
+            let here = &mut self.near[foot as usize];
+            *here = if leeway < *here { leeway } else { *here };
+        }
+        let mut least = UNVISITED_M;
+        for here in &mut self.near {
+            least = if *here < least + self.rise { *here } else { least + self.rise };
+            *here = least;
+        }
+        for (here, at) in self.near.iter_mut().zip(&mut self.at).rev() {
+            least = if *here < least + self.rise { *here } else { least + self.rise };
+            let above = if least + tau < 0.0 { -least } else { tau };
+            *here = least;
+            *at = (least + above, 1.0 / above);
+        }
+    }
+}
+
+/// The steer axle's shift at the knots of the plan and beyond.
+#[inline(always)]
+fn steer(coefficients: &[V], knots: usize) -> Vec<V> {
+    let last = coefficients.len() - 3;
+    let at = |j: usize| (coefficients[j] + coefficients[j + 1] * 4.0 + coefficients[j + 2]) * (1.0 / 6.0);
+    (0..knots).map(|knot| at(knot.min(last))).collect()
+}
+
+/// (1, 2, 1)/4; the ends are continued.
+#[inline(always)]
+fn smoothed(values: &[V]) -> Vec<V> {
+    let last = values.len() - 1;
+    (0..=last).map(|k| (values[k.saturating_sub(1)] + values[k] * 2.0 + values[(k + 1).min(last)]) * 0.25).collect()
+}
