@@ -10,6 +10,7 @@
 //! | certificates | [`stet`] | a corridor and a [`vehicle`] → [`stet::Certificate`] |
 //! | the paper | [`published`] | a corridor and a vehicle → the paper's own certificate, to the letter; it decides nothing |
 //! | store | [`store`] | network and certificates → a GeoPackage |
+//! | routes | [`route`] | a network with permits, two places → the shortest way that certifies as a whole |
 //! | reasons | [`explain`] | an edge or corridor and a vehicle → what limits, where, and what would do |
 //! | turns | [`manoeuvres`] | a vehicle → swept paths of the turns that regulators ask for, beside their limits |
 //! | pictures | [`picture`] | corridors, vehicles and certificates → SVG; nothing else of the library depends on it |
@@ -30,6 +31,7 @@ pub mod pace;
 pub mod picture;
 pub mod pipeline;
 pub mod published;
+pub mod route;
 pub mod stet;
 pub mod store;
 pub mod vehicle;

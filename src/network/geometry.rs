@@ -42,6 +42,14 @@ impl Geometry {
     }
 }
 
+impl Network {
+    /// Length of an edge, metres, right to 0.6 %: for choosing among roads, not for certificates.
+    #[must_use]
+    pub fn length_m(&self, edge: &Edge) -> f64 {
+        length_m(self.positions(edge))
+    }
+}
+
 /// The same over the segments next to the node only.
 pub(super) fn segment_deflection_deg(network: &Network, a: &Edge, b: &Edge) -> f64 {
     deflection_deg(chord_deg(network.positions(a).rev(), 0.0), chord_deg(network.positions(b), 0.0))

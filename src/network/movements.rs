@@ -54,6 +54,12 @@ impl Movements {
         &self.all[range.start as usize..range.end as usize]
     }
 
+    /// Where in [`Movements::all`] those of [`Movements::after`] begin.
+    #[must_use]
+    pub fn first(&self, edge: u32) -> usize {
+        self.after.get(edge as usize).map_or(0, |range| range.start as usize)
+    }
+
     /// The movement from one edge into another, if there is one.
     #[must_use]
     pub fn between(&self, from: u32, to: u32) -> Option<&Movement> {

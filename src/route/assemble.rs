@@ -1,0 +1,347 @@
+//! One corridor for a whole route: stations of strokes and of turns strung together in one metric frame.
+//!
+//! Promises a centreline that is that of its pieces (the cubic spline through their stations), and nowhere more width than
+//! the piece there has. The vehicle enters straight where the route begins; where that is within a turn's reach, the route
+//! begins with the turn. Two turns that share a short stretch of road are blended there, within the width of both. What
+//! cannot be strung together is an error that names the place, never a guess.
+
+use std::ops::Range;
+
+use super::blend;
+use super::pieces::{Joint, Strokes, TurnPiece, Turns};
+use crate::corridor::{CentrelineError, Corridor, Frame, FrameError};
+use crate::network::{MovementKind, Movements, Network};
+use crate::osm::LonLat;
+use crate::verdict::UnknownReason;
+
+/// Distance of the route's stations, metres.
+const SPACING_M: f64 = 1.0;
+/// Points nearer to each other than this are one, metres.
+const LEAST_STEP_M: f64 = 0.3;
+/// A route is at least so many stations long: begun earlier or ended later on its edge if need be.
+const LEAST_STATIONS: usize = 12;
+
+/// What a part of a route is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum PartKind {
+    /// Along an edge.
+    Edge(u32),
+    /// From an edge into another.
+    Turn {
+        /// The edge one comes from.
+        from: u32,
+        /// The edge one goes into.
+        to: u32,
+    },
+}
+
+/// A stretch of a route.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// What it is.
+    pub kind: PartKind,
+    /// Its stations in the route's corridor; both ends are its neighbours' too.
+    pub stations: Range<usize>,
+}
+
+/// A route as one corridor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RoutePath {
+    /// In metres.
+    pub corridor: Corridor,
+    /// Where those are.
+    pub frame: Frame,
+    /// In driving order.
+    pub parts: Vec<Part>,
+}
+
+/// Why a route's pieces are no corridor.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AssemblyError {
+    /// Of a piece nothing is known.
+    #[error("a piece of the route has no corridor")]
+    Unknown {
+        /// Which.
+        at: PartKind,
+        /// Why.
+        reason: UnknownReason,
+    },
+    /// Two turns that cannot be driven one after the other on the road between them.
+    #[error("two turns follow each other so closely that no path leads from one into the other")]
+    Overlap {
+        /// The later one.
+        at: PartKind,
+    },
+    /// Wider than a metric frame.
+    #[error("the route spans more than one metric frame: {0}; cut it into shorter ones with --via and certify each")]
+    Frame(#[from] FrameError),
+    /// No centreline leads through the stations.
+    #[error("the route's pieces make no smooth line: {0}")]
+    Centreline(#[from] CentrelineError),
+}
+
+/// Which way, and where on its first and last edge it begins and ends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Way<'w> {
+    /// In driving order.
+    pub edges: &'w [u32],
+    /// Of the first edge, behind: 0..=1.
+    pub start: f64,
+    /// Of the last edge, driven: 0..=1.
+    pub end: f64,
+}
+
+/// A point of the centreline, on its way into the corridor.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sample {
+    pub(super) at: [f64; 2],
+    pub(super) left_m: f64,
+    pub(super) right_m: f64,
+}
+
+/// Strings the pieces of a way together.
+///
+/// # Errors
+/// A piece without a corridor, turns that overlap too far, more than a metric frame.
+pub fn assemble(
+    network: &Network,
+    movements: &Movements,
+    strokes: &mut Strokes<'_>,
+    turns: &dyn Turns,
+    way: &Way<'_>,
+) -> Result<RoutePath, AssemblyError> {
+    let positions: Vec<LonLat> =
+        way.edges.iter().flat_map(|&edge| network.positions(&network.edges[edge as usize])).collect();
+    let frame = Frame::around(&positions)?;
+    frame.forward(&positions)?;
+    let mut between = Vec::new();
+    let mut legs = Vec::new();
+    let mut from = 0;
+    for i in 1..=way.edges.len() {
+        let turn = way.edges.get(i).map(|&to| (way.edges[i - 1], to));
+        let straight = turn.is_some_and(|(a, b)| {
+            movements.between(a, b).is_some_and(|movement| movement.kind == MovementKind::StraightOn)
+        });
+        if straight {
+            continue;
+        }
+        legs.push(from..i);
+        from = i;
+        if let Some((a, b)) = turn {
+            let at = PartKind::Turn { from: a, to: b };
+            let pieces = turns.pieces(a, b).map_err(|reason| AssemblyError::Unknown { at, reason })?;
+            let piece = pieces.into_iter().next();
+            let piece = piece.ok_or(AssemblyError::Unknown { at, reason: UnknownReason::Geometry })?;
+            between.push(Between {
+                at,
+                samples: in_frame(&piece, frame)?,
+                approach: piece.approach,
+                departure: piece.departure,
+            });
+        }
+    }
+    let mut string = Strung::default();
+    for (i, leg) in legs.iter().enumerate() {
+        let before = i.checked_sub(1).and_then(|i| between.get(i));
+        let after = between.get(i);
+        let leg = Leg::new(strokes, way, leg.clone(), frame, before, after)?;
+        leg.add(&mut string, before, after)?;
+    }
+    string.finish(frame)
+}
+
+/// A turn of the route, in the route's frame.
+struct Between {
+    at: PartKind,
+    samples: Vec<Sample>,
+    approach: Joint,
+    departure: Joint,
+}
+
+fn in_frame(piece: &TurnPiece, frame: Frame) -> Result<Vec<Sample>, FrameError> {
+    samples(&piece.corridor, piece.turn.clone(), piece.frame, frame)
+}
+
+/// Stations of a corridor, from its frame into the route's.
+fn samples(c: &Corridor, stations: Range<usize>, own: Frame, frame: Frame) -> Result<Vec<Sample>, FrameError> {
+    let stations = stations.start.min(c.len())..stations.end.min(c.len());
+    let mut at: Vec<[f64; 2]> = stations.clone().map(|k| [c.x[k], c.y[k]]).collect();
+    if own != frame {
+        let degrees = own.inverse(&at)?;
+        at = frame.forward_degrees(degrees.into_iter().map(|[lon, lat]| (lon, lat)).collect())?;
+    }
+    Ok(stations.zip(at).map(|(k, at)| Sample { at, left_m: c.left_m[k], right_m: c.right_m[k] }).collect())
+}
+
+/// A run of edges straight on along one stroke: stations `from..=to` of an unrolled corridor.
+struct Leg {
+    /// All that may be needed, in the route's frame, from station `first` on.
+    samples: Vec<Sample>,
+    first: usize,
+    from: usize,
+    to: usize,
+    /// Where each edge ends.
+    edges: Vec<(u32, usize)>,
+}
+
+impl Leg {
+    fn new(
+        strokes: &mut Strokes<'_>,
+        way: &Way<'_>,
+        range: Range<usize>,
+        frame: Frame,
+        before: Option<&Between>,
+        after: Option<&Between>,
+    ) -> Result<Self, AssemblyError> {
+        let edges = &way.edges[range.clone()];
+        let unknown = |edge: u32, reason| AssemblyError::Unknown { at: PartKind::Edge(edge), reason };
+        let first_edge = edges.first().copied().unwrap_or_default();
+        let (stroke, _) = strokes.of(first_edge).ok_or_else(|| unknown(first_edge, UnknownReason::Geometry))?;
+        let places: Vec<u32> = edges.iter().filter_map(|&edge| strokes.of(edge)).map(|place| place.1).collect();
+        let line = strokes.line(stroke).map_err(|reason| unknown(first_edge, reason))?;
+        let (corridor, spans) = (&line.made.corridor, &line.made.spans);
+        let last_station = corridor.len() - 1;
+        // A loop is unrolled: what is driven before it closes is a turn earlier, in its lead-in.
+        let round = spans.last().map_or(0, |s| s.stations.end - 1) - spans.first().map_or(0, |s| s.stations.start);
+        let closes = (1..places.len()).rev().find(|&i| places[i] <= places[i - 1]);
+        let earlier = |i: usize| if line.closed && closes.is_some_and(|close| i < close) { round } else { 0 };
+        let span = |i: usize| {
+            let stations = spans.get(places[i] as usize).map(|span| span.stations.clone());
+            let stations = stations.ok_or_else(|| unknown(edges[i], UnknownReason::Geometry))?;
+            let back = earlier(i);
+            // A loop longer than its lead-in cannot be driven past its own beginning in one piece.
+            if stations.start < back {
+                return Err(unknown(edges[i], UnknownReason::Geometry));
+            }
+            Ok(stations.start - back..stations.end - back)
+        };
+        for (i, &edge) in edges.iter().enumerate() {
+            if let Some(reason) = spans.get(places[i] as usize).and_then(|span| span.unknown) {
+                return Err(unknown(edge, reason));
+            }
+        }
+        let within = |i: usize, share: f64| -> Result<usize, AssemblyError> {
+            let span = span(i)?;
+            Ok(span.start + ((span.len() - 1) as f64 * share).round() as usize)
+        };
+        let joined = |joint: &Joint, i: usize| joint.station.checked_sub(earlier(i));
+        let last = edges.len() - 1;
+        let mut from = match before {
+            Some(turn) => joined(&turn.departure, 0).ok_or(AssemblyError::Overlap { at: turn.at })?,
+            None => within(0, way.start)?,
+        };
+        let mut to = match after {
+            Some(turn) => joined(&turn.approach, last).ok_or(AssemblyError::Overlap { at: turn.at })?,
+            None => within(last, way.end)?,
+        };
+        if before.is_none() {
+            from = from.min(to.saturating_sub(if after.is_none() { LEAST_STATIONS } else { 0 }));
+        }
+        if after.is_none() {
+            to = to.max((from + if before.is_none() { LEAST_STATIONS } else { 0 }).min(last_station));
+        }
+        let (low, high) = (from.min(to), from.max(to).min(last_station));
+        let samples = samples(corridor, low..high + 1, line.frame, frame)?;
+        let ends = (0..edges.len()).map(|i| Ok((edges[i], span(i)?.end - 1))).collect::<Result<_, AssemblyError>>()?;
+        Ok(Self { samples, first: low, from, to: to.min(last_station), edges: ends })
+    }
+
+    /// Appends the leg's stations and the turn after it. The turn before it is there already, but for what the two share.
+    fn add(&self, string: &mut Strung, before: Option<&Between>, after: Option<&Between>) -> Result<(), AssemblyError> {
+        if self.from <= self.to {
+            // Where a turn joins, its own last station stands for the stroke's.
+            let from = self.from + usize::from(before.is_some());
+            let to = (self.to + 1).saturating_sub(usize::from(after.is_some()));
+            for station in from..to {
+                string.push(PartKind::Edge(self.edge_at(station)), self.samples[station - self.first]);
+            }
+            if let Some(turn) = after {
+                turn.samples.iter().for_each(|&sample| string.push(turn.at, sample));
+            }
+            return Ok(());
+        }
+        let (Some(before), Some(after)) = (before, after) else { return Ok(()) };
+        let overlap = AssemblyError::Overlap { at: after.at };
+        let blended = blend::blend(&before.samples, &after.samples, &self.samples).ok_or(overlap.clone())?;
+        if !string.drop_last(before.at, blended.dropped_before) {
+            return Err(overlap);
+        }
+        for (i, &sample) in blended.samples.iter().enumerate() {
+            string.push(PartKind::Edge(self.edge_at(self.first + i)), sample);
+        }
+        after.samples.iter().skip(blended.dropped_after).for_each(|&sample| string.push(after.at, sample));
+        Ok(())
+    }
+
+    fn edge_at(&self, station: usize) -> u32 {
+        let at = self.edges.iter().find(|(_, end)| station <= *end).or(self.edges.last());
+        at.map_or(0, |edge| edge.0)
+    }
+}
+
+/// The points so far.
+#[derive(Default)]
+struct Strung {
+    samples: Vec<Sample>,
+    kinds: Vec<PartKind>,
+}
+
+impl Strung {
+    /// Two points at one place are one, as narrow as the narrower.
+    fn push(&mut self, kind: PartKind, sample: Sample) {
+        if let Some(last) = self.samples.last_mut()
+            && (sample.at[0] - last.at[0]).hypot(sample.at[1] - last.at[1]) < LEAST_STEP_M
+        {
+            last.left_m = last.left_m.min(sample.left_m);
+            last.right_m = last.right_m.min(sample.right_m);
+            return;
+        }
+        self.samples.push(sample);
+        self.kinds.push(kind);
+    }
+
+    /// Takes back the last `count` points of a turn, all of which must be its own, and some of which must stay.
+    fn drop_last(&mut self, kind: PartKind, count: usize) -> bool {
+        let own = self.kinds.iter().rev().take_while(|&&k| k == kind).count();
+        if count >= own {
+            return false;
+        }
+        let left = self.samples.len() - count;
+        self.samples.truncate(left);
+        self.kinds.truncate(left);
+        true
+    }
+
+    fn finish(self, frame: Frame) -> Result<RoutePath, AssemblyError> {
+        let column = |of: fn(&Sample) -> f64| self.samples.iter().map(of).collect::<Vec<f64>>();
+        let points: Vec<[f64; 2]> = self.samples.iter().map(|sample| sample.at).collect();
+        let corridor =
+            Corridor::from_centreline(&points, &column(|s| s.left_m), &column(|s| s.right_m), 0.0, SPACING_M)?;
+        // Chords are shorter than arcs by parts in a thousand in the sharpest bends: near enough to say which part it is.
+        let mut along = Vec::with_capacity(points.len());
+        let mut sum = 0.0;
+        for (i, point) in points.iter().enumerate() {
+            let before = points[i.saturating_sub(1)];
+            sum += (point[0] - before[0]).hypot(point[1] - before[1]);
+            along.push(sum);
+        }
+        let last = corridor.len() - 1;
+        let station = |i: usize| (along[i] / sum * last as f64).round() as usize;
+        let mut parts: Vec<Part> = Vec::new();
+        for (i, &kind) in self.kinds.iter().enumerate() {
+            match parts.last_mut() {
+                Some(part) if part.kind == kind => part.stations.end = station(i) + 1,
+                Some(part) => {
+                    let start = station(i);
+                    part.stations.end = start + 1;
+                    parts.push(Part { kind, stations: start..start + 1 });
+                }
+                None => parts.push(Part { kind, stations: 0..1 }),
+            }
+        }
+        if let Some(part) = parts.last_mut() {
+            part.stations.end = last + 1;
+        }
+        Ok(RoutePath { corridor, frame, parts })
+    }
+}

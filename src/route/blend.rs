@@ -1,0 +1,104 @@
+//! Two turns that share a stretch of road: from the path of the first into that of the second, within the width of both.
+//!
+//! Everything is measured across the stroke between the two. Along a path that runs at an angle to it, half-widths are
+//! taken as if it did not, and then shortened by the angle: narrower than they are, never wider.
+
+use super::assemble::Sample;
+
+/// Paths farther from the stroke than this, metres, or at a greater angle than this, are not measured across it.
+const FARTHEST_M: f64 = 6.0;
+const LEAST_COSINE: f64 = 0.82;
+/// Less room than this to a side is no road, metres.
+const LEAST_HALF_WIDTH_M: f64 = 0.2;
+
+/// The blended stretch, and what of the turns it stands for.
+pub(super) struct Blended {
+    pub(super) samples: Vec<Sample>,
+    /// Points off the end of the turn before.
+    pub(super) dropped_before: usize,
+    /// Points off the beginning of the turn after.
+    pub(super) dropped_after: usize,
+}
+
+/// A path where it crosses the normal of a station.
+#[derive(Clone, Copy)]
+struct Crossing {
+    /// To the left of the stroke's centreline, metres.
+    offset_m: f64,
+    left_m: f64,
+    right_m: f64,
+    /// Between path and stroke.
+    cosine: f64,
+    /// The path's point before it.
+    index: usize,
+}
+
+/// `before` ends on the last of the stroke's points, `after` begins on the first one. `None` if they cannot be blended.
+pub(super) fn blend(before: &[Sample], after: &[Sample], stroke: &[Sample]) -> Option<Blended> {
+    let last = stroke.len().checked_sub(1).filter(|&last| last > 0)?;
+    let mut samples = Vec::with_capacity(stroke.len());
+    let (mut kept_before, mut dropped_after) = (0, 0);
+    for k in 0..=last {
+        let tangent = direction(stroke, k)?;
+        let a = crossing(before, stroke[k].at, tangent)?;
+        let b = crossing(after, stroke[k].at, tangent)?;
+        if k == 0 {
+            kept_before = a.index + 1;
+        }
+        dropped_after = b.index + 1;
+        let weight = smooth(k as f64 / last as f64);
+        let offset_m = a.offset_m + weight * (b.offset_m - a.offset_m);
+        let high = (a.offset_m + a.left_m).min(b.offset_m + b.left_m);
+        let low = (a.offset_m - a.right_m).max(b.offset_m - b.right_m);
+        let cosine = a.cosine.min(b.cosine);
+        let (left_m, right_m) = ((high - offset_m) * cosine, (offset_m - low) * cosine);
+        if !(left_m > LEAST_HALF_WIDTH_M && right_m > LEAST_HALF_WIDTH_M) {
+            return None;
+        }
+        let [x, y] = stroke[k].at;
+        samples.push(Sample { at: [x - offset_m * tangent[1], y + offset_m * tangent[0]], left_m, right_m });
+    }
+    Some(Blended { samples, dropped_before: before.len() - kept_before, dropped_after })
+}
+
+fn direction(points: &[Sample], k: usize) -> Option<[f64; 2]> {
+    let (a, b) = (points[k.saturating_sub(1)].at, points[(k + 1).min(points.len() - 1)].at);
+    let u = [b[0] - a[0], b[1] - a[1]];
+    let length = u[0].hypot(u[1]);
+    (length > 0.0).then(|| [u[0] / length, u[1] / length])
+}
+
+/// Where a path crosses the normal at `at`, nearest to it.
+fn crossing(path: &[Sample], at: [f64; 2], tangent: [f64; 2]) -> Option<Crossing> {
+    let local = |p: &Sample| {
+        let d = [p.at[0] - at[0], p.at[1] - at[1]];
+        [d[0] * tangent[0] + d[1] * tangent[1], d[1] * tangent[0] - d[0] * tangent[1]]
+    };
+    // A hair of slack, so that a path that begins or ends on this very normal crosses it.
+    const SLACK_M: f64 = 1e-3;
+    let mut best: Option<Crossing> = None;
+    for (index, pair) in path.windows(2).enumerate() {
+        let [p, q] = [local(&pair[0]), local(&pair[1])];
+        if !(p[0] <= SLACK_M && q[0] >= -SLACK_M && q[0] > p[0]) {
+            continue;
+        }
+        let share = (-p[0] / (q[0] - p[0])).clamp(0.0, 1.0);
+        let offset_m = p[1] + share * (q[1] - p[1]);
+        let cosine = (q[0] - p[0]) / (q[0] - p[0]).hypot(q[1] - p[1]);
+        if offset_m.abs() > FARTHEST_M
+            || cosine < LEAST_COSINE
+            || best.is_some_and(|b| b.offset_m.abs() <= offset_m.abs())
+        {
+            continue;
+        }
+        let left_m = pair[0].left_m.min(pair[1].left_m);
+        let right_m = pair[0].right_m.min(pair[1].right_m);
+        best = Some(Crossing { offset_m, left_m, right_m, cosine, index });
+    }
+    best
+}
+
+/// From 0 to 1, level at both ends up to the second derivative.
+fn smooth(t: f64) -> f64 {
+    t * t * t * (10.0 + t * (6.0 * t - 15.0))
+}

@@ -1,0 +1,117 @@
+//! The edge-based graph: states are edges driven to their end (and places in forbidden sequences), steps are movements.
+//!
+//! What a vehicle may use comes from outside as [`Access`], so that the same search answers what blocks as well.
+
+use super::bans::{Bans, Within};
+use super::speeds::{Measure, Speeds};
+use crate::network::{MovementKind, Movements, Network};
+
+/// Not to be used at any cost.
+pub const BARRED: u64 = u64::MAX;
+
+/// What using an edge or movement costs beside its own cost; [`BARRED`] where it may not be used.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Access {
+    /// One an edge.
+    pub edges: Vec<u64>,
+    /// One a movement, in the order of [`Movements::all`].
+    pub movements: Vec<u64>,
+}
+
+/// Everything that a search needs besides access.
+#[derive(Debug, Clone)]
+pub struct Graph<'n> {
+    /// The route graph.
+    pub network: &'n Network,
+    /// All movements of it.
+    pub movements: &'n Movements,
+    costs: Vec<u64>,
+    turn_cost: u64,
+    bans: Bans,
+}
+
+/// An edge driven to its end: the index of the edge, or beyond all edges a node of the forbidden sequences.
+pub(super) type State = u32;
+
+impl<'n> Graph<'n> {
+    /// With costs by `measure`.
+    #[must_use]
+    pub fn new(network: &'n Network, movements: &'n Movements, speeds: &Speeds, measure: Measure) -> Self {
+        let costs = network.edges.iter().map(|edge| speeds.cost(network, edge, measure)).collect();
+        Self { network, movements, costs, turn_cost: speeds.turn_cost(measure), bans: Bans::of(network) }
+    }
+
+    /// Milliseconds or millimetres of an edge.
+    #[must_use]
+    pub fn cost(&self, edge: u32) -> u64 {
+        self.costs.get(edge as usize).copied().unwrap_or(BARRED)
+    }
+
+    /// Of a part of an edge, rounded up.
+    #[must_use]
+    pub fn part_cost(&self, edge: u32, share: f64) -> u64 {
+        (self.cost(edge) as f64 * share.clamp(0.0, 1.0)).ceil() as u64
+    }
+
+    /// Everything may be used but what restrictions and the ban on turning back forbid.
+    #[must_use]
+    pub fn open_access(&self) -> Access {
+        let movement = |m: &crate::network::Movement| {
+            if m.forbidden.is_some() || m.kind == MovementKind::UTurn { BARRED } else { 0 }
+        };
+        Access {
+            edges: vec![0; self.network.edges.len()],
+            movements: self.movements.all().iter().map(movement).collect(),
+        }
+    }
+
+    /// What a movement costs beside its edges.
+    pub(super) fn movement_cost(&self, kind: MovementKind) -> u64 {
+        if kind == MovementKind::StraightOn { 0 } else { self.turn_cost }
+    }
+
+    pub(super) fn states(&self) -> usize {
+        self.network.edges.len() + self.bans.len()
+    }
+
+    /// The state of an edge that one begins on.
+    pub(super) fn first(&self, edge: u32) -> Option<State> {
+        self.bans.after(0, edge).map(|within| self.state(edge, within))
+    }
+
+    pub(super) fn edge_of(&self, state: State) -> u32 {
+        let within = (state as usize).checked_sub(self.network.edges.len());
+        within.and_then(|within| self.bans.edge(within as Within)).unwrap_or(state)
+    }
+
+    fn within(&self, state: State) -> Within {
+        state.saturating_sub(self.network.edges.len() as u32)
+    }
+
+    fn state(&self, edge: u32, within: Within) -> State {
+        if within == 0 { edge } else { self.network.edges.len() as u32 + within }
+    }
+
+    /// Where one can go on to from the end of a state's edge: the movement's place, the next state, and the cost of the
+    /// movement with all penalties (not that of the edge itself).
+    pub(super) fn steps<'g>(
+        &'g self,
+        access: &'g Access,
+        state: State,
+    ) -> impl Iterator<Item = (usize, State, u64)> + 'g {
+        let edge = self.edge_of(state);
+        let within = self.within(state);
+        let first = self.movements.first(edge);
+        self.movements.after(edge).iter().enumerate().filter_map(move |(i, movement)| {
+            let place = first + i;
+            let by_movement = *access.movements.get(place)?;
+            let by_edge = *access.edges.get(movement.to as usize)?;
+            if by_movement == BARRED || by_edge == BARRED {
+                return None;
+            }
+            let next = self.bans.after(within, movement.to)?;
+            let cost = self.movement_cost(movement.kind).saturating_add(by_movement).saturating_add(by_edge);
+            Some((place, self.state(movement.to, next), cost))
+        })
+    }
+}

@@ -1,0 +1,41 @@
+//! Routes: the shortest way over edges and turns that a vehicle may use, with one certificate over the whole of it.
+//!
+//! Promises that no route is returned without a `safe` certificate over its concatenated corridor, made by the same call
+//! as any other; that no restriction is broken; and that where there is no route, what blocks is named. Leaves out:
+//! turning back on the road, and traffic.
+//!
+//! | file | for |
+//! | --- | --- |
+//! | `speeds` | what an edge costs |
+//! | `bans` | restrictions over ways, as an automaton |
+//! | `permits` | what a vehicle may use |
+//! | `graph` | edges and movements as a graph |
+//! | `search` | the shortest way |
+//! | `snap` | from a place to the road |
+//! | `pieces` | strokes and turns that a corridor is made of |
+//! | `assemble`, `blend` | from pieces to one corridor |
+//! | `plan` | search, certify, leave out, search on; alternatives; what blocks |
+//! | `reach` | where one can get to, and back |
+
+mod assemble;
+mod bans;
+mod blend;
+mod graph;
+mod permits;
+mod pieces;
+mod plan;
+mod reach;
+mod search;
+mod snap;
+mod speeds;
+
+pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble};
+pub use bans::{Bans, Within};
+pub use graph::{Access, BARRED, Graph};
+pub use permits::{Permit, Permits};
+pub use pieces::{Joint, NoTurns, Strokes, TurnPiece, Turns};
+pub use plan::{Answer, Obstacle, Planner, Question, Refutation, Route};
+pub use reach::{Components, Reach, components, reach, with_edge};
+pub use search::{Found, Goal, Start, search, search_over};
+pub use snap::{Position, SnapError, Snapped, Snapper};
+pub use speeds::{Measure, Speeds, SpeedsError};

@@ -1,0 +1,71 @@
+//! Which edges and movements a vehicle may use, with verdict and RSC: what a search starts from.
+
+use super::graph::{Access, BARRED};
+use crate::network::{MovementKind, Movements};
+use crate::verdict::{UnknownReason, Verdict};
+
+/// What is said of an edge or a movement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Permit {
+    /// With its reason.
+    pub verdict: Verdict,
+    /// Metres, where it was computed.
+    pub rsc_m: Option<f64>,
+}
+
+impl Permit {
+    /// Nothing is known of it.
+    pub const UNKNOWN: Self = Self { verdict: Verdict::Unknown(UnknownReason::Geometry), rsc_m: None };
+    /// Covered by other certificates.
+    pub const COVERED: Self = Self { verdict: Verdict::Safe, rsc_m: None };
+
+    fn safe(&self) -> bool {
+        self.verdict == Verdict::Safe
+    }
+}
+
+/// All permits of one vehicle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Permits {
+    /// One an edge.
+    pub edges: Vec<Permit>,
+    /// One a movement, in the order of [`Movements::all`]; of those straight on nothing is asked.
+    pub movements: Vec<Permit>,
+}
+
+impl Permits {
+    /// With `turn` for every movement that is a turn; straight on is covered by the edges.
+    pub fn new(edges: Vec<Permit>, movements: &Movements, turn: impl Fn(u32, u32) -> Permit) -> Self {
+        let permit = |m: &crate::network::Movement| match m.kind {
+            MovementKind::StraightOn => Permit::COVERED,
+            MovementKind::Turn => turn(m.from, m.to),
+            MovementKind::UTurn => Permit::UNKNOWN,
+        };
+        Self { edges, movements: movements.all().iter().map(permit).collect() }
+    }
+
+    /// What is safe may be used, and no restriction may be broken; nobody turns back on the road.
+    #[must_use]
+    pub fn access(&self, movements: &Movements) -> Access {
+        self.access_at(movements, BARRED)
+    }
+
+    /// The same, but what is not safe may be used at a price.
+    #[must_use]
+    pub fn access_at(&self, movements: &Movements, price: u64) -> Access {
+        let cost = |permit: &Permit| if permit.safe() { 0 } else { price };
+        let movement = |(m, permit): (&crate::network::Movement, &Permit)| {
+            if m.forbidden.is_some() || m.kind == MovementKind::UTurn { BARRED } else { cost(permit) }
+        };
+        Access {
+            edges: self.edges.iter().map(cost).collect(),
+            movements: movements.all().iter().zip(&self.movements).map(movement).collect(),
+        }
+    }
+
+    /// Whether an edge may be used.
+    #[must_use]
+    pub fn edge(&self, edge: u32) -> bool {
+        self.edges.get(edge as usize).is_some_and(Permit::safe)
+    }
+}

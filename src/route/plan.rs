@@ -1,0 +1,360 @@
+//! From two places to certified routes, or to what blocks.
+//!
+//! Promises: a route is returned only with a `safe` certificate over the whole of it. Where that fails though the parts
+//! passed, the movement nearest to the place that limits is left out and the search goes on, so many times as asked; how
+//! often, and where, is part of the answer. What blocks is the cheapest set of failing places: as few as possible, then
+//! the shortest way over them.
+
+use super::assemble::{AssemblyError, PartKind, RoutePath, Way, assemble};
+use super::graph::{Access, BARRED, Graph};
+use super::permits::{Permit, Permits};
+use super::pieces::{Strokes, Turns};
+use super::search::{Found, Goal, Start, search_over};
+use super::snap::{Position, SnapError, Snapped, Snapper};
+use super::speeds::{Measure, Speeds};
+use crate::corridor::Corridor;
+use crate::network::Network;
+use crate::stet::{self, Certificate, Model};
+
+/// The price of a failing place where none may be used: more than any way on earth, less than what sums of it overflow.
+const PRICE: u64 = 1 << 44;
+/// A failure of the whole is put down to a turn at most this far from it, metres; else to the edge it is on.
+const TURN_REACH_M: f64 = 120.0;
+/// How much an alternative may share with the routes before it, by length.
+const MOST_SHARED: f64 = 0.75;
+/// How much longer an alternative may be than the first.
+const MOST_LONGER: f64 = 2.0;
+/// How often the ways of the routes before are made dearer to find an alternative, each time by half.
+const DEARER: u32 = 6;
+
+/// What is asked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Question {
+    /// The beginning, the places between, and the end: at least two.
+    pub places: Vec<Position>,
+    /// How far the road may be from each, metres.
+    pub snap_m: f64,
+    /// How many more routes than the best one.
+    pub alternatives: usize,
+    /// How many whole routes may be certified in vain.
+    pub tries: usize,
+}
+
+/// A certified route.
+#[derive(Debug, Clone)]
+pub struct Route {
+    /// In driving order.
+    pub edges: Vec<u32>,
+    /// Of the first edge, behind.
+    pub start: f64,
+    /// Of the last edge, driven.
+    pub end: f64,
+    /// In the measure asked for: milliseconds or millimetres.
+    pub cost: u64,
+    /// By the table of speeds, seconds.
+    pub time_s: f64,
+    /// Along the corridor, metres.
+    pub length_m: f64,
+    /// The whole corridor.
+    pub path: RoutePath,
+    /// Over the whole of it; safe.
+    pub certificate: Certificate,
+}
+
+/// A whole route that did not certify though its parts did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refutation {
+    /// What was left out for it.
+    pub at: PartKind,
+    /// RSC and hinge margin (radians) of the whole; `None`: its pieces could not be strung together.
+    pub result: Option<(f64, f64)>,
+    /// Why, where there was nothing to certify.
+    pub assembly: Option<AssemblyError>,
+}
+
+/// A place that would have to become safe.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Obstacle {
+    /// Edge or turn.
+    pub at: PartKind,
+    /// What is said of it by itself.
+    pub permit: Permit,
+    /// It passed by itself; the whole route failed there.
+    pub refuted: bool,
+}
+
+/// The answer.
+#[derive(Debug, Clone, Default)]
+pub struct Answer {
+    /// Certified, the best first.
+    pub routes: Vec<Route>,
+    /// Whole routes that failed, in order.
+    pub refuted: Vec<Refutation>,
+    /// The tries were used up before the search was.
+    pub gave_up: bool,
+    /// Where there is no route: the cheapest set of failing places; `None`: not even roads lead there.
+    pub obstacles: Option<Vec<Obstacle>>,
+    /// Where the places are on the road.
+    pub snapped: Vec<Snapped>,
+}
+
+/// Everything needed to answer questions about one vehicle.
+pub struct Planner<'n> {
+    graph: Graph<'n>,
+    snapper: Snapper<'n>,
+    permits: &'n Permits,
+    model: &'n Model,
+    turns: &'n dyn Turns,
+    strokes: Strokes<'n>,
+    options: stet::Options,
+    speeds: Speeds,
+    access: Access,
+}
+
+impl<'n> Planner<'n> {
+    /// For a vehicle with these permits.
+    #[must_use]
+    pub fn new(
+        graph: Graph<'n>,
+        permits: &'n Permits,
+        model: &'n Model,
+        turns: &'n dyn Turns,
+        strokes: Strokes<'n>,
+        options: stet::Options,
+        speeds: Speeds,
+    ) -> Self {
+        let snapper = Snapper::new(graph.network);
+        let access = permits.access(graph.movements);
+        Self { graph, snapper, permits, model, turns, strokes, options, speeds, access }
+    }
+
+    fn network(&self) -> &'n Network {
+        self.graph.network
+    }
+
+    /// Routes, or what blocks.
+    ///
+    /// # Errors
+    /// A place that is on no road that the vehicle may use.
+    pub fn answer(&mut self, question: &Question) -> Result<Answer, SnapError> {
+        let usable = |edge| self.permits.edge(edge);
+        let snap = |place: &Position| self.snapper.snap(*place, question.snap_m, usable);
+        let snapped = question.places.iter().map(snap).collect::<Result<Vec<_>, _>>()?;
+        let mut answer = Answer { snapped, ..Answer::default() };
+        let mut access = self.access.clone();
+        self.next_route(&mut access, question, &mut answer, &|_| true);
+        if answer.routes.is_empty() {
+            answer.obstacles = self.obstacles(&answer);
+        } else {
+            self.alternatives(&access, question, &mut answer);
+        }
+        Ok(answer)
+    }
+
+    fn way(&self, access: &Access, snapped: &[Snapped]) -> Option<(Found, f64, f64)> {
+        let (from, places) = snapped.split_first()?;
+        let starts: Vec<Start> = from.on.iter().map(|on| Start::new(on.edge, on.share)).collect();
+        let goals: Vec<Vec<Goal>> = places.iter().map(|place| place.on.clone()).collect();
+        let found = search_over(&self.graph, access, &starts, &goals)?;
+        let start = starts.get(found.start)?.share;
+        let last = found.edges.last()?;
+        let end = places.last()?.on.iter().find(|goal| goal.edge == *last)?.share;
+        Some((found, start, end))
+    }
+
+    /// Searches and certifies until a whole route passes, leaving out of `access` what fails. Whether it found one.
+    fn next_route(
+        &mut self,
+        access: &mut Access,
+        question: &Question,
+        answer: &mut Answer,
+        wanted: &dyn Fn(&[u32]) -> bool,
+    ) -> bool {
+        loop {
+            let Some((found, start, end)) = self.way(access, &answer.snapped) else { return false };
+            if !wanted(&found.edges) {
+                return false;
+            }
+            if answer.refuted.len() > question.tries {
+                answer.gave_up = true;
+                return false;
+            }
+            match self.certify(found, start, end) {
+                Ok(route) => {
+                    answer.routes.push(route);
+                    return true;
+                }
+                Err(refutation) => {
+                    // Nothing to leave out: the search would find the same way again.
+                    if !self.leave_out(access, refutation.at) {
+                        answer.gave_up = true;
+                        return false;
+                    }
+                    answer.refuted.push(refutation);
+                }
+            }
+        }
+    }
+
+    fn certify(&mut self, found: Found, start: f64, end: f64) -> Result<Route, Refutation> {
+        let way = Way { edges: &found.edges, start, end };
+        let network = self.graph.network;
+        let path = assemble(network, self.graph.movements, &mut self.strokes, self.turns, &way);
+        let path = path.map_err(|error| Refutation {
+            at: match &error {
+                AssemblyError::Unknown { at, .. } | AssemblyError::Overlap { at } => *at,
+                AssemblyError::Frame(_) | AssemblyError::Centreline(_) => first_turn(&found.edges),
+            },
+            result: None,
+            assembly: Some(error),
+        })?;
+        let certificate = stet::certify(&path.corridor, self.model, &self.options);
+        let refuted = |certificate: Option<&Certificate>| Refutation {
+            at: culprit(&path, certificate),
+            result: certificate.map(|c| (c.result.rsc_m, c.result.hinge_margin_rad)),
+            assembly: None,
+        };
+        let Some(certificate) = certificate else { return Err(refuted(None)) };
+        if !certificate.result.safe() {
+            return Err(refuted(Some(&certificate)));
+        }
+        let share = |i: usize| {
+            let from = if i == 0 { start } else { 0.0 };
+            let to = if i + 1 == found.edges.len() { end } else { 1.0 };
+            to - from
+        };
+        let time = |(i, &edge): (usize, &u32)| {
+            share(i) * self.speeds.cost(network, &network.edges[edge as usize], Measure::Time) as f64
+        };
+        let turns = path.parts.iter().filter(|part| matches!(part.kind, PartKind::Turn { .. })).count() as u64;
+        let driven: f64 = found.edges.iter().enumerate().map(time).sum();
+        let time_s = 1e-3 * (driven + (turns * self.speeds.turn_cost(Measure::Time)) as f64);
+        let length_m = (path.corridor.len() - 1) as f64 * path.corridor.spacing_m;
+        Ok(Route { edges: found.edges, start, end, cost: found.cost, time_s, length_m, path, certificate })
+    }
+
+    /// Whether there was something to leave out.
+    fn leave_out(&self, access: &mut Access, at: PartKind) -> bool {
+        let slot = match at {
+            PartKind::Edge(edge) => access.edges.get_mut(edge as usize),
+            PartKind::Turn { from, to } => {
+                self.graph.movements.index(from, to).and_then(|place| access.movements.get_mut(place))
+            }
+        };
+        slot.is_some_and(|slot| std::mem::replace(slot, BARRED) != BARRED)
+    }
+
+    /// The cheapest set of failing places between the places asked for.
+    fn obstacles(&self, answer: &Answer) -> Option<Vec<Obstacle>> {
+        let mut access = self.permits.access_at(self.graph.movements, PRICE);
+        for refutation in &answer.refuted {
+            self.price(&mut access, refutation.at);
+        }
+        let (found, ..) = self.way(&access, &answer.snapped)?;
+        let mut obstacles = Vec::new();
+        for (i, &edge) in found.edges.iter().enumerate() {
+            let turn = i.checked_sub(1).map(|i| found.edges[i]).and_then(|from| {
+                let place = self.graph.movements.index(from, edge)?;
+                (access.movements[place] > 0)
+                    .then(|| (PartKind::Turn { from, to: edge }, self.permits.movements[place]))
+            });
+            let edge =
+                (access.edges[edge as usize] > 0).then(|| (PartKind::Edge(edge), self.permits.edges[edge as usize]));
+            for (at, permit) in turn.into_iter().chain(edge) {
+                let refuted = answer.refuted.iter().any(|refutation| refutation.at == at);
+                obstacles.push(Obstacle { at, permit, refuted });
+            }
+        }
+        Some(obstacles)
+    }
+
+    fn price(&self, access: &mut Access, at: PartKind) {
+        match at {
+            PartKind::Edge(edge) => access.edges[edge as usize] = PRICE,
+            PartKind::Turn { from, to } => {
+                if let Some(place) = self.graph.movements.index(from, to).filter(|&p| access.movements[p] != BARRED) {
+                    access.movements[place] = PRICE;
+                }
+            }
+        }
+    }
+
+    /// Adds routes that differ: what the ones before use is made dearer until something else is shorter.
+    fn alternatives(&mut self, access: &Access, question: &Question, answer: &mut Answer) {
+        let Some(first_cost) = answer.routes.first().map(|route| route.cost) else { return };
+        let mut access = access.clone();
+        let mut rounds = DEARER * question.alternatives as u32;
+        while answer.routes.len() <= question.alternatives && rounds > 0 && !answer.gave_up {
+            rounds -= 1;
+            for route in &answer.routes {
+                for &edge in &route.edges {
+                    let slot = &mut access.edges[edge as usize];
+                    if *slot != BARRED {
+                        *slot += self.graph.cost(edge) / 2;
+                    }
+                }
+            }
+            let known: Vec<Vec<u32>> = answer.routes.iter().map(|route| route.edges.clone()).collect();
+            let network = self.network();
+            let longest = (first_cost as f64 * MOST_LONGER) as u64;
+            let costs: Vec<u64> = (0..network.edges.len() as u32).map(|edge| self.graph.cost(edge)).collect();
+            let wanted = |edges: &[u32]| {
+                let cost: u64 = edges.iter().map(|&edge| costs[edge as usize]).sum();
+                let own = |on: &dyn Fn(&u32) -> bool| -> f64 {
+                    edges.iter().filter(|e| on(e)).map(|&e| network.length_m(&network.edges[e as usize])).sum()
+                };
+                let all = own(&|_| true);
+                cost <= longest + costs[edges[0] as usize]
+                    && known.iter().all(|other| own(&|edge| other.contains(edge)) <= MOST_SHARED * all)
+            };
+            if self.next_route(&mut access, question, answer, &wanted)
+                && let Some(route) = answer.routes.last_mut()
+            {
+                route.cost = costs_of(&self.graph, route);
+            }
+        }
+    }
+}
+
+/// What a route costs without what was put on it to find others.
+fn costs_of(graph: &Graph<'_>, route: &Route) -> u64 {
+    let last = route.edges.len() - 1;
+    let edges = route.edges.iter().enumerate().map(|(i, &edge)| {
+        let from = if i == 0 { route.start } else { 0.0 };
+        let to = if i == last { route.end } else { 1.0 };
+        graph.part_cost(edge, to - from)
+    });
+    let turn = |pair: &[u32]| graph.movements.between(pair[0], pair[1]).map_or(0, |m| graph.movement_cost(m.kind));
+    edges.sum::<u64>() + route.edges.windows(2).map(turn).sum::<u64>()
+}
+
+fn first_turn(edges: &[u32]) -> PartKind {
+    match edges {
+        [from, to, ..] => PartKind::Turn { from: *from, to: *to },
+        [edge] => PartKind::Edge(*edge),
+        [] => PartKind::Edge(0),
+    }
+}
+
+/// What to leave out where a whole route fails: the turn nearest to the place, or the edge it is on.
+fn culprit(path: &RoutePath, certificate: Option<&Certificate>) -> PartKind {
+    let corridor = &path.corridor;
+    let at = match certificate {
+        Some(c) if c.result.rsc_m < 0.0 && c.result.closes() => c.result.limiting.station,
+        // No place is known for a hinge: the sharpest bend.
+        _ => sharpest(corridor),
+    };
+    let distance = |stations: &std::ops::Range<usize>| {
+        if stations.contains(&at) { 0 } else { stations.start.abs_diff(at).min(stations.end.abs_diff(at)) }
+    };
+    let turns = path.parts.iter().filter(|part| matches!(part.kind, PartKind::Turn { .. }));
+    let nearest = turns.min_by_key(|part| distance(&part.stations));
+    let near = nearest.filter(|part| distance(&part.stations) as f64 * corridor.spacing_m <= TURN_REACH_M);
+    let on = || path.parts.iter().find(|part| part.stations.contains(&at)).or(path.parts.first());
+    near.or_else(on).map_or(PartKind::Edge(0), |part| part.kind)
+}
+
+fn sharpest(corridor: &Corridor) -> usize {
+    let bend = |k: &usize| corridor.curvature.get(*k).map_or(0.0, |c| c.abs());
+    (0..corridor.len()).max_by(|a, b| bend(a).total_cmp(&bend(b))).unwrap_or(0)
+}

@@ -1,0 +1,162 @@
+//! Where a vehicle can get to from a place over roads and turns that are certified for it, and from where it can come back.
+//!
+//! Over the same graph as routes, restrictions included; the parts are certified, whole routes are not. What a place of
+//! the road would open if it were safe is the same question with that place added.
+
+use super::graph::{Access, BARRED, Graph, State};
+use crate::network::MovementKind;
+
+/// What can be reached.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Reach {
+    /// By edge: some way leads there.
+    pub there: Vec<bool>,
+    /// By edge: and from there back to the beginning.
+    pub and_back: Vec<bool>,
+}
+
+/// The parts of the network between any two places of which a vehicle can drive both ways.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Components {
+    /// By edge: its component, numbered by size (0 is the largest by number of edges); `None`: it may not be used.
+    pub of: Vec<Option<u32>>,
+    /// How many.
+    pub count: usize,
+}
+
+/// Everything that can be reached from any of these edges.
+#[must_use]
+pub fn reach(graph: &Graph<'_>, access: &Access, starts: &[u32]) -> Reach {
+    let usable = |edge: &&u32| access.edges.get(**edge as usize).is_some_and(|&cost| cost != BARRED);
+    let first: Vec<State> = starts.iter().filter(usable).filter_map(|&edge| graph.first(edge)).collect();
+    let mut steps: Vec<(State, State)> = Vec::new();
+    let seen = flood(graph.states(), &first, |state, visit| {
+        for (_, next, _) in graph.steps(access, state) {
+            steps.push((next, state));
+            visit(next);
+        }
+    });
+    steps.sort_unstable();
+    let returning = flood(graph.states(), &first, |state, visit| {
+        let from = steps.partition_point(|step| step.0 < state);
+        steps[from..].iter().take_while(|step| step.0 == state).for_each(|step| visit(step.1));
+    });
+    let edges = |states: &[bool]| {
+        let mut edges = vec![false; graph.network.edges.len()];
+        for (state, _) in states.iter().enumerate().filter(|(_, on)| **on) {
+            if let Some(edge) = edges.get_mut(graph.edge_of(state as State) as usize) {
+                *edge = true;
+            }
+        }
+        edges
+    };
+    Reach { there: edges(&seen), and_back: edges(&returning) }
+}
+
+fn flood(states: usize, first: &[State], mut step: impl FnMut(State, &mut dyn FnMut(State))) -> Vec<bool> {
+    let mut seen = vec![false; states];
+    let mut open: Vec<State> = Vec::new();
+    for &state in first {
+        if !std::mem::replace(&mut seen[state as usize], true) {
+            open.push(state);
+        }
+    }
+    while let Some(state) = open.pop() {
+        step(state, &mut |next| {
+            if !std::mem::replace(&mut seen[next as usize], true) {
+                open.push(next);
+            }
+        });
+    }
+    seen
+}
+
+/// The access that a vehicle would have if an edge, and every lawful turn into and out of it, were safe.
+#[must_use]
+pub fn with_edge(graph: &Graph<'_>, access: &Access, edge: u32) -> Access {
+    let mut opened = access.clone();
+    if let Some(slot) = opened.edges.get_mut(edge as usize) {
+        *slot = 0;
+    }
+    for (slot, movement) in opened.movements.iter_mut().zip(graph.movements.all()) {
+        let touches = movement.from == edge || movement.to == edge;
+        if touches && movement.kind != MovementKind::UTurn && movement.forbidden.is_none() {
+            *slot = 0;
+        }
+    }
+    opened
+}
+
+/// Strongly connected components (Tarjan 1972, without recursion), of the edges that may be used. Sequences that are
+/// forbidden over ways are not minded here: a component may then be a little too large.
+#[must_use]
+pub fn components(graph: &Graph<'_>, access: &Access) -> Components {
+    let edges = graph.network.edges.len();
+    let usable = |edge: u32| access.edges[edge as usize] != BARRED;
+    let next = |edge: u32| {
+        let first = graph.movements.first(edge);
+        graph.movements.after(edge).iter().enumerate().filter_map(move |(i, movement)| {
+            (access.movements[first + i] != BARRED && usable(movement.to)).then_some(movement.to)
+        })
+    };
+    const NEW: u32 = u32::MAX;
+    let (mut number, mut low, mut on_stack) = (vec![NEW; edges], vec![0_u32; edges], vec![false; edges]);
+    let (mut stack, mut found, mut count) = (Vec::new(), vec![NEW; edges], 0_u32);
+    let mut counter = 0;
+    for root in (0..edges as u32).filter(|&edge| usable(edge)) {
+        if number[root as usize] != NEW {
+            continue;
+        }
+        let mut open = vec![(root, 0_usize)];
+        while let Some((edge, child)) = open.last_mut() {
+            let e = *edge as usize;
+            if *child == 0 && number[e] == NEW {
+                (number[e], low[e]) = (counter, counter);
+                counter += 1;
+                stack.push(*edge);
+                on_stack[e] = true;
+            }
+            if let Some(to) = next(*edge).nth(*child) {
+                *child += 1;
+                if number[to as usize] == NEW {
+                    open.push((to, 0));
+                } else if on_stack[to as usize] {
+                    low[e] = low[e].min(number[to as usize]);
+                }
+                continue;
+            }
+            if low[e] == number[e] {
+                while let Some(top) = stack.pop() {
+                    on_stack[top as usize] = false;
+                    found[top as usize] = count;
+                    if top as usize == e {
+                        break;
+                    }
+                }
+                count += 1;
+            }
+            open.pop();
+            if let Some((parent, _)) = open.last() {
+                low[*parent as usize] = low[*parent as usize].min(low[e]);
+            }
+        }
+    }
+    by_size(&found, count as usize, NEW)
+}
+
+fn by_size(found: &[u32], count: usize, new: u32) -> Components {
+    let mut sizes = vec![0_usize; count];
+    let mut least = vec![usize::MAX; count];
+    for (edge, &component) in found.iter().enumerate().filter(|(_, component)| **component != new) {
+        sizes[component as usize] += 1;
+        least[component as usize] = least[component as usize].min(edge);
+    }
+    let mut order: Vec<usize> = (0..count).collect();
+    order.sort_by_key(|&i| (std::cmp::Reverse(sizes[i]), least[i]));
+    let mut rank = vec![0_u32; count];
+    for (place, &component) in order.iter().enumerate() {
+        rank[component] = place as u32;
+    }
+    let of = found.iter().map(|&component| (component != new).then(|| rank[component as usize])).collect();
+    Components { of, count }
+}

@@ -1,0 +1,189 @@
+//! From a place to the edges that pass it: the nearest ones that may be used, within a stated distance.
+//!
+//! Distances are on a local plane, right to 1 % within some kilometres; a place on the far side of the antimeridian from its
+//! road is not found.
+
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+
+use super::search::Goal;
+use crate::network::Network;
+use crate::osm::LonLat;
+use crate::osm::facts::Direction;
+
+/// Metres a degree of latitude (mean).
+const DEGREE_M: f64 = 111_195.0;
+/// So far a road is looked for, to say how far the nearest one is, metres.
+const FARTHEST_M: f64 = 200_000.0;
+
+/// A place on the earth, degrees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Position {
+    /// −180..=180.
+    pub lon: f64,
+    /// −90..=90.
+    pub lat: f64,
+}
+
+/// A place on edges: the same point of the road in every direction that may be used.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Snapped {
+    /// Edges with the share of each that is behind; sorted by edge.
+    pub on: Vec<Goal>,
+    /// The point of the road.
+    pub position: Position,
+    /// From the place asked for, metres.
+    pub distance_m: f64,
+}
+
+/// Why a place is on no road.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SnapError {
+    /// Too far away.
+    #[error(
+        "{lon:.5},{lat:.5}: the nearest road that may be used is {distance_m:.0} m away, at {at_lon:.5},{at_lat:.5}; \
+         the most allowed is {most_m:.0} m",
+        lon = place.lon, lat = place.lat, at_lon = nearest.lon, at_lat = nearest.lat
+    )]
+    TooFar {
+        /// Asked for.
+        place: Position,
+        /// Where the road is.
+        nearest: Position,
+        /// Metres.
+        distance_m: f64,
+        /// Allowed, metres.
+        most_m: f64,
+    },
+    /// Nothing at all.
+    #[error("{lon:.5},{lat:.5}: no road that may be used within 200 km", lon = place.lon, lat = place.lat)]
+    Nothing {
+        /// Asked for.
+        place: Position,
+    },
+}
+
+type Segment = GeomWithData<Rectangle<[f64; 2]>, (u32, u32)>;
+
+/// An index of all pieces of road, by their segments.
+pub struct Snapper<'n> {
+    network: &'n Network,
+    tree: RTree<Segment>,
+    /// The edges of each piece, by the first edge of it; sorted.
+    twins: Vec<(u32, u32)>,
+}
+
+impl<'n> Snapper<'n> {
+    /// Indexes every piece of road once, whichever directions it has.
+    #[must_use]
+    pub fn new(network: &'n Network) -> Self {
+        let mut segments = Vec::new();
+        let mut twins = Vec::new();
+        let mut before: Option<u32> = None;
+        for (index, edge) in (0_u32..).zip(&network.edges) {
+            let same = |&b: &u32| {
+                let b = &network.edges[b as usize];
+                b.road == edge.road && b.shape == edge.shape
+            };
+            if let Some(first) = before.filter(same) {
+                twins.push((first, index));
+                continue;
+            }
+            before = Some(index);
+            let shape = &network.shapes[edge.shape.start as usize..edge.shape.end as usize];
+            for (vertex, pair) in (0_u32..).zip(shape.windows(2)) {
+                let corner = |p: LonLat| [p.degrees().0, p.degrees().1];
+                let bounds = Rectangle::from_corners(corner(pair[0]), corner(pair[1]));
+                segments.push(GeomWithData::new(bounds, (index, vertex)));
+            }
+        }
+        Self { network, tree: RTree::bulk_load(segments), twins }
+    }
+
+    /// The nearest piece of road of which some direction is `usable`.
+    ///
+    /// # Errors
+    /// There is none within `most_m` metres.
+    pub fn snap(&self, place: Position, most_m: f64, usable: impl Fn(u32) -> bool) -> Result<Snapped, SnapError> {
+        let mut reach_m = most_m.max(50.0);
+        loop {
+            if let Some(snapped) = self.nearest_within(place, reach_m, &usable) {
+                if snapped.distance_m <= most_m {
+                    return Ok(snapped);
+                }
+                let (nearest, distance_m) = (snapped.position, snapped.distance_m);
+                return Err(SnapError::TooFar { place, nearest, distance_m, most_m });
+            }
+            if reach_m >= FARTHEST_M {
+                return Err(SnapError::Nothing { place });
+            }
+            reach_m *= 4.0;
+        }
+    }
+
+    fn nearest_within(&self, place: Position, reach_m: f64, usable: &impl Fn(u32) -> bool) -> Option<Snapped> {
+        let cos = place.lat.to_radians().cos().max(0.01);
+        let (dx, dy) = (reach_m / (DEGREE_M * cos), reach_m / DEGREE_M);
+        let around = AABB::from_corners([place.lon - dx, place.lat - dy], [place.lon + dx, place.lat + dy]);
+        let mut best: Option<(f64, u32, u32, f64)> = None;
+        for segment in self.tree.locate_in_envelope_intersecting(&around) {
+            let (edge, vertex) = segment.data;
+            let shape = &self.network.shapes[self.network.edges[edge as usize].shape.start as usize..];
+            let ends = [0, 1].map(|i| plane(place, shape[vertex as usize + i], cos));
+            let (distance_m, along) = foot(ends);
+            let better = best.is_none_or(|(d, e, v, _)| (distance_m, edge, vertex) < (d, e, v));
+            if distance_m <= reach_m && better && self.directions(edge).iter().any(|&e| usable(e)) {
+                best = Some((distance_m, edge, vertex, along));
+            }
+        }
+        let (distance_m, edge, vertex, along) = best?;
+        Some(self.snapped(edge, vertex, along, distance_m, usable))
+    }
+
+    fn snapped(&self, edge: u32, vertex: u32, along: f64, distance_m: f64, usable: &impl Fn(u32) -> bool) -> Snapped {
+        let facts = &self.network.edges[edge as usize];
+        let shape = &self.network.shapes[facts.shape.start as usize..facts.shape.end as usize];
+        let origin = shape[vertex as usize].degrees();
+        let origin = Position { lon: origin.0, lat: origin.1 };
+        let cos = origin.lat.to_radians().cos().max(0.01);
+        let lengths: Vec<f64> = shape
+            .windows(2)
+            .map(|pair| {
+                let [a, b] = [plane(origin, pair[0], cos), plane(origin, pair[1], cos)];
+                (b[0] - a[0]).hypot(b[1] - a[1])
+            })
+            .collect();
+        let before: f64 = lengths[..vertex as usize].iter().sum::<f64>() + along * lengths[vertex as usize];
+        let share = (before / lengths.iter().sum::<f64>().max(1e-9)).clamp(0.0, 1.0);
+        let on = |&edge: &u32| {
+            let backward = self.network.edges[edge as usize].direction == Direction::Backward;
+            Goal { edge, share: if backward { 1.0 - share } else { share } }
+        };
+        let end = shape[vertex as usize + 1].degrees();
+        let position =
+            Position { lon: origin.lon + along * (end.0 - origin.lon), lat: origin.lat + along * (end.1 - origin.lat) };
+        let on = self.directions(edge).iter().filter(|&&edge| usable(edge)).map(on).collect();
+        Snapped { on, position, distance_m }
+    }
+
+    /// The edges of a piece of road, given the first of them.
+    fn directions(&self, first: u32) -> Vec<u32> {
+        let start = self.twins.partition_point(|twin| twin.0 < first);
+        let twins = self.twins[start..].iter().take_while(|twin| twin.0 == first);
+        std::iter::once(first).chain(twins.map(|twin| twin.1)).collect()
+    }
+}
+
+/// Metres east and north of `origin`.
+fn plane(origin: Position, place: LonLat, cos: f64) -> [f64; 2] {
+    let (lon, lat) = place.degrees();
+    [(lon - origin.lon) * DEGREE_M * cos, (lat - origin.lat) * DEGREE_M]
+}
+
+/// The distance of the origin from a segment, and the foot's share of it.
+fn foot([a, b]: [[f64; 2]; 2]) -> (f64, f64) {
+    let u = [b[0] - a[0], b[1] - a[1]];
+    let squared = u[0] * u[0] + u[1] * u[1];
+    let along = if squared > 0.0 { (-(a[0] * u[0] + a[1] * u[1]) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    ((a[0] + along * u[0]).hypot(a[1] + along * u[1]), along)
+}
