@@ -32,5 +32,6 @@ pub mod pipeline;
 pub mod published;
 pub mod stet;
 pub mod store;
+pub mod turns;
 pub mod vehicle;
 pub mod verdict;
