@@ -6,6 +6,7 @@
 //! *directions* have in common, a turn across the oncoming traffic what the carriageways have in common. Left out: mapped
 //! junction areas (`area:highway`), which the reader does not read, and third roads of the junction.
 
+use geo::orient::{Direction, Orient};
 use geo::{BooleanOps, LineString, MultiPolygon, Polygon, unary_union};
 
 use super::arm::{Across, Arm};
@@ -224,6 +225,7 @@ fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] + b[0], a[1] + b[1]]
 }
 
+/// A ring as a polygon that runs counter-clockwise: a union takes rings of the other sense for holes.
 fn polygon(ring: &[[f64; 2]]) -> Polygon {
-    Polygon::new(ring.iter().map(|p| (p[0], p[1])).collect::<LineString>(), Vec::new())
+    Polygon::new(ring.iter().map(|p| (p[0], p[1])).collect::<LineString>(), Vec::new()).orient(Direction::Default)
 }
