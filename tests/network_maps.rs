@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 #[path = "support/ascii_map.rs"]
+#[allow(dead_code)]
 mod ascii_map;
 
 use ascii_map::{AsciiMap, edges, id_of, no_sections, somewhere, strokes};

@@ -4,6 +4,7 @@
 // The drawing half of it is for `network_maps.rs`.
 #[allow(dead_code)]
 #[path = "support/ascii_map.rs"]
+#[allow(dead_code)]
 mod ascii_map;
 
 use std::collections::{BTreeMap, BTreeSet};

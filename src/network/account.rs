@@ -48,6 +48,20 @@ pub struct NetworkAccount {
     pub strokes_with_approach: u64,
     /// Nodes at which too many edges meet for any to be called straight on.
     pub crowded_nodes: u64,
+    /// Turn restrictions that came in: `= restrictions_kept + off_network + without_effect`.
+    pub restrictions_read: u64,
+    /// Restrictions that forbid something here.
+    pub restrictions_kept: u64,
+    /// Left out: no vehicle can drive its members one after the other.
+    pub restrictions_off_network: u64,
+    /// Left out: forbids nothing that could be driven.
+    pub restrictions_without_effect: u64,
+    /// Sequences of edges that restrictions forbid.
+    pub forbidden_sequences: u64,
+    /// Of these, under a condition that was not decided.
+    pub conditional_sequences: u64,
+    /// Of these, of more than two edges.
+    pub long_sequences: u64,
 }
 
 impl NetworkAccount {
@@ -66,6 +80,15 @@ impl NetworkAccount {
         self.barred_edges += u64::from(edge.barred);
         self.narrowed_edges += u64::from(!edge.narrowings.is_empty());
         self.node_limited_edges += u64::from(limited);
+    }
+
+    /// Counts a restriction.
+    pub(super) fn count_restriction(&mut self, on_network: bool, forbids: bool) {
+        match (on_network, forbids) {
+            (_, true) => self.restrictions_kept += 1,
+            (true, false) => self.restrictions_without_effect += 1,
+            (false, false) => self.restrictions_off_network += 1,
+        }
     }
 
     /// Adds what a part of the ways counted.
@@ -108,6 +131,13 @@ impl NetworkAccount {
             ("stroke", "noted", "closed", self.closed_strokes),
             ("stroke", "noted", "split_by_length", self.strokes_split),
             ("stroke", "noted", "with_approach", self.strokes_with_approach),
+            ("restriction", "read", "", self.restrictions_read),
+            ("restriction", "kept", "", self.restrictions_kept),
+            ("restriction", "left_out", "off_network", self.restrictions_off_network),
+            ("restriction", "left_out", "without_effect", self.restrictions_without_effect),
+            ("restriction", "noted", "forbidden_sequence", self.forbidden_sequences),
+            ("restriction", "noted", "conditional_sequence", self.conditional_sequences),
+            ("restriction", "noted", "sequence_over_ways", self.long_sequences),
         ]
         .into_iter()
         .map(|(item, outcome, reason, count)| AccountRow::new("network", item, outcome, reason, count))

@@ -9,7 +9,9 @@ mod cut;
 mod edge_id;
 mod edges;
 mod geometry;
+mod movements;
 mod pairing;
+mod restrictions;
 mod stroke;
 mod vertices;
 
@@ -17,9 +19,10 @@ use std::ops::Range;
 
 pub use account::NetworkAccount;
 pub use build::{build, build_with};
+pub use movements::{Movement, MovementKind, Movements};
 pub use stroke::StrokeOptions;
 
-use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, RoadClass};
+use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, RestrictionKind, RoadClass};
 use crate::osm::{LonLat, StringId, StringPool};
 
 /// Per way: what is the same for all its edges.
@@ -97,6 +100,19 @@ pub struct Stroke {
     pub closed: bool,
 }
 
+/// A sequence of edges that no heavy goods vehicle may drive one right after the other.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Restriction {
+    /// OSM relation id.
+    pub relation_id: i64,
+    /// What the sign says; of `only_…`, one of the movements that it leaves over.
+    pub kind: RestrictionKind,
+    /// It holds at times, or under a condition that was not decided.
+    pub conditional: bool,
+    /// Range in [`Network::restriction_edges`]; at least two.
+    pub edges: Range<u32>,
+}
+
 /// The route graph.
 #[derive(Debug, Clone, Default)]
 pub struct Network {
@@ -112,8 +128,18 @@ pub struct Network {
     pub strokes: Vec<Stroke>,
     /// Indices into `edges`.
     pub stroke_edges: Vec<u32>,
+    /// Turn restrictions, by relation.
+    pub restrictions: Vec<Restriction>,
+    /// Indices into `edges`.
+    pub restriction_edges: Vec<u32>,
     /// Names and refs.
     pub strings: StringPool,
+}
+
+/// Whether two edges are the two directions of one piece of road.
+fn reverse(network: &Network, a: u32, b: u32) -> bool {
+    let (a, b) = (&network.edges[a as usize], &network.edges[b as usize]);
+    a.road == b.road && a.shape == b.shape && a.direction != b.direction
 }
 
 impl Network {

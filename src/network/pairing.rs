@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use rayon::prelude::*;
 
 use super::geometry::{Geometry, segment_deflection_deg};
-use super::{Edge, Network, Road, StrokeOptions};
+use super::{Edge, Network, Road, StrokeOptions, reverse};
 use crate::osm::LonLat;
 use crate::osm::facts::Direction;
 
@@ -15,7 +15,7 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// Edges at one node beyond which none of them is called straight on: no real junction has them, and a made-up file
 /// could make the work quadratic.
-const CROWD: usize = 256;
+pub(super) const CROWD: usize = 256;
 
 /// Which edge follows and precedes which.
 pub(super) struct Pairing {
@@ -191,12 +191,6 @@ impl<'n> Junction<'n> {
     fn road(&self, edge: u32) -> &'n Road {
         self.network.road(self.edge(edge))
     }
-}
-
-/// Whether two edges are the two directions of one piece of road.
-fn reverse(network: &Network, a: u32, b: u32) -> bool {
-    let (a, b) = (&network.edges[a as usize], &network.edges[b as usize]);
-    a.road == b.road && a.shape == b.shape && a.direction != b.direction
 }
 
 /// What a change of road counts for beside the angle, degrees: enough to tell the road from the ramp beside it, not

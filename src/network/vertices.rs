@@ -20,6 +20,8 @@ pub(super) struct Vertices {
     marks: Vec<u8>,
     /// Facts of tagged vertices; never iterated.
     points: FxHashMap<u32, PointFacts>,
+    /// Nodes made one with another; never iterated.
+    same: FxHashMap<u32, u32>,
     /// References without a position.
     pub(super) missing: u64,
     /// Nodes made one with an earlier one at the same place.
@@ -45,12 +47,18 @@ impl Vertices {
         let mut marks = vec![0; nodes.ids.len()];
         mark_uses(ways, &of_refs, &mut marks);
         let points = point_facts(points, nodes, &same, &mut marks);
-        Self { of_refs, marks, points, missing, merged: same.len() as u64 }
+        Self { of_refs, marks, points, missing, merged: same.len() as u64, same }
     }
 
     /// Whether more than one stretch of road meets here: the node is used by several ways, or by one several times.
     pub(super) fn is_junction(&self, vertex: u32) -> bool {
         self.marks[vertex as usize] & USED_AGAIN != 0
+    }
+
+    /// The node that stands for this one in the network, if the file has it.
+    pub(super) fn node(&self, nodes: &NodeTable, id: i64) -> Option<i64> {
+        let v = located(nodes, id);
+        (v != MISSING).then(|| nodes.ids[*self.same.get(&v).unwrap_or(&v) as usize])
     }
 
     /// What the tags of the vertex' nodes say, if any has tags that matter.

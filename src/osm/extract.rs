@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::osm::facts::{PointFacts, WayFacts};
+use crate::osm::facts::{PointFacts, TurnRule, WayFacts};
 
 /// A position in units of 1e-7 degree (the file's own resolution), WGS 84.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -30,6 +30,30 @@ pub struct Way {
     pub refs: Range<u32>,
     /// What its tags say.
     pub facts: WayFacts,
+}
+
+/// A turn restriction that holds for heavy goods vehicles, as the relation has it; its members need not be in the file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Restriction {
+    /// OSM relation id.
+    pub id: i64,
+    /// What it says; at least one.
+    pub rules: Vec<TurnRule>,
+    /// Ways that one comes from (several only with `no_entry`).
+    pub from: Vec<i64>,
+    /// Where.
+    pub via: Via,
+    /// Ways that one goes to (several only with `no_exit`).
+    pub to: Vec<i64>,
+}
+
+/// What lies between the ways of a restriction.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Via {
+    /// A node (of several, each).
+    Nodes(Vec<i64>),
+    /// Ways, one after the other.
+    Ways(Vec<i64>),
 }
 
 /// Node positions: sorted by id, every node named by a kept way; a node that the file lacks has no position.
@@ -101,6 +125,8 @@ pub struct Extract {
     pub nodes: NodeTable,
     /// Tagged nodes on kept ways that narrow or bar the road: sorted by node id.
     pub points: Vec<(i64, PointFacts)>,
+    /// Turn restrictions for heavy goods vehicles, sorted by relation id.
+    pub restrictions: Vec<Restriction>,
     /// Names and refs of the ways.
     pub strings: StringPool,
     /// The account of everything read: by reason, how many ways were left out and why.

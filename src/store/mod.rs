@@ -17,6 +17,7 @@ mod part;
 mod plans;
 mod query;
 mod records;
+mod restrictions;
 mod session;
 mod sets;
 mod spool;

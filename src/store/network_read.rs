@@ -14,6 +14,7 @@ use crate::osm::{LonLat, StringPool};
 use super::blob;
 use super::error::content;
 use super::names::{Named, class_and_link};
+use super::restrictions::{self, Restrictions};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -45,12 +46,14 @@ pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
     .await?;
     let stroke_edges =
         rows(c, "SELECT fid FROM stroke_edge ORDER BY position", |row| index(row, 0, edges.len())).await?;
-    let network = Network { roads, edges, shapes, narrowings, strokes, stroke_edges, strings };
+    let Restrictions { all: restrictions, edges: restriction_edges } = restrictions::read(c, edges.len()).await?;
+    let network =
+        Network { roads, edges, shapes, narrowings, strokes, stroke_edges, restrictions, restriction_edges, strings };
     check_ranges(&network)?;
     Ok(network)
 }
 
-async fn rows<T>(
+pub(super) async fn rows<T>(
     c: &mut SqliteConnection,
     sql: &'static str,
     mut read: impl FnMut(&SqliteRow) -> Sql<T>,
@@ -72,12 +75,12 @@ fn check_ranges(network: &Network) -> Sql<()> {
     if edges && strokes { Ok(()) } else { Err(content("a narrow place or stroke points outside its table")) }
 }
 
-fn range(row: &SqliteRow, column: usize) -> Sql<Range<u32>> {
+pub(super) fn range(row: &SqliteRow, column: usize) -> Sql<Range<u32>> {
     Ok(row.try_get(column)?..row.try_get(column + 1)?)
 }
 
 /// A number that counts from 1 in the database, as an index below `length`.
-fn index(row: &SqliteRow, column: usize, length: usize) -> Sql<u32> {
+pub(super) fn index(row: &SqliteRow, column: usize, length: usize) -> Sql<u32> {
     let number: i64 = row.try_get(column)?;
     let index = number.checked_sub(1).and_then(|index| u32::try_from(index).ok());
     index

@@ -21,6 +21,7 @@ use super::packed::EdgeCertificate;
 use super::part::{Part, with_suffix};
 use super::plans::{self, StoredPlan};
 use super::records::{self, Run, VehicleRecord};
+use super::restrictions::{self, Restrictions};
 use super::session::{BEFORE_DATA, MIGRATIONS, Session};
 use super::sets::{self, Set};
 use super::spool::Spool;
@@ -43,6 +44,8 @@ pub struct Writer {
     account: Vec<AccountRow>,
     plans: BTreeMap<(u32, u8), Vec<StoredPlan>>,
     network: Option<(u32, Option<Bounds>)>,
+    /// Written last: their table comes with a later migration.
+    restrictions: Restrictions,
     part: Part,
 }
 
@@ -86,6 +89,7 @@ impl Database {
             account: Vec::new(),
             plans: BTreeMap::new(),
             network: None,
+            restrictions: Restrictions::default(),
             part,
         })
     }
@@ -103,6 +107,8 @@ impl Writer {
     pub fn network(&mut self, network: &Network, measures: &[EdgeMeasure]) -> Result<(), StoreError> {
         let bounds = self.session.run(async |c| network_write::write(c, network, measures).await)?;
         self.network = Some((network.edges.len() as u32, bounds));
+        self.restrictions =
+            Restrictions { all: network.restrictions.clone(), edges: network.restriction_edges.clone() };
         Ok(())
     }
 
@@ -160,11 +166,12 @@ impl Writer {
             let set = Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished };
             self.session.run(async |c| set.insert(c, &rows).await)?;
         }
-        let all_plans = &mut self.plans;
+        let (all_plans, all_restrictions) = (&mut self.plans, &self.restrictions);
         self.session.run(async |c| {
             sqlx::query("COMMIT").execute(&mut *c).await?;
             migrate(c, None).await?;
             sqlx::query("BEGIN").execute(&mut *c).await?;
+            restrictions::insert(c, all_restrictions).await?;
             for (&(vehicle_no, corridor), plans) in all_plans {
                 plans::insert(c, vehicle_no, corridor, plans).await?;
             }

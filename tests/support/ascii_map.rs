@@ -5,7 +5,7 @@
 
 use netcert::network::{Edge, Network};
 use netcert::osm::facts::{self, CrossSection, Place, PointFacts, WayFacts};
-use netcert::osm::{Extract, LonLat, NodeTable, StringPool, Way};
+use netcert::osm::{Extract, LonLat, NodeTable, Restriction, StringPool, Via, Way};
 
 /// Where the upper left corner of a drawing lies.
 const ORIGIN: LonLat = LonLat { lon_e7: 80_000_000, lat_e7: 490_000_000 };
@@ -17,6 +17,7 @@ pub(crate) struct AsciiMap {
     missing: Vec<char>,
     ways: Vec<(i64, String, String)>,
     points: Vec<(char, PointFacts)>,
+    restrictions: Vec<Restriction>,
 }
 
 impl AsciiMap {
@@ -64,6 +65,18 @@ impl AsciiMap {
         self
     }
 
+    /// Adds a turn restriction with these tags (`type=restriction` unless they say otherwise); ids count from 1.
+    pub(crate) fn restriction(mut self, from: &[i64], via: Via, to: &[i64], tags: &str) -> Self {
+        let mut pairs: Vec<_> = tags.split_whitespace().filter_map(|tag| tag.split_once('=')).collect();
+        if pairs.iter().all(|tag| tag.0 != "type") {
+            pairs.push(("type", "restriction"));
+        }
+        let rules = facts::turn_rules(&pairs).expect("a restriction").expect("for heavy goods vehicles");
+        let id = self.restrictions.len() as i64 + 1;
+        self.restrictions.push(Restriction { id, rules, from: from.to_vec(), via, to: to.to_vec() });
+        self
+    }
+
     /// What reading a file of this map leaves.
     pub(crate) fn extract(&self) -> Extract {
         let mut extract = Extract::default();
@@ -83,6 +96,7 @@ impl AsciiMap {
         extract.nodes = NodeTable { ids, places };
         extract.points = self.points.iter().map(|&(node, facts)| (id_of(node), facts)).collect();
         extract.points.sort_by_key(|point| point.0);
+        extract.restrictions.clone_from(&self.restrictions);
         extract
     }
 

@@ -1,9 +1,11 @@
 //! A made-up network with every kind of value that the store must give back: all limits, permissions, sources and
 //! directions, shared shapes, narrow places, strokes with approach. Size to order.
 
-use netcert::network::{Edge, Narrowing, Network, Road, Stroke};
+use netcert::network::{Edge, Narrowing, Network, Restriction, Road, Stroke};
 use netcert::osm::LonLat;
-use netcert::osm::facts::{CrossSection, Direction, Legal, Limit, Oneway, Permission, RoadClass, Strip, WidthSource};
+use netcert::osm::facts::{
+    CrossSection, Direction, Legal, Limit, Oneway, Permission, RestrictionKind, RoadClass, Strip, WidthSource,
+};
 use netcert::stet::Side;
 use netcert::store::{EdgeCertificate, Measured};
 use netcert::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
@@ -20,6 +22,7 @@ pub(crate) fn network(ways: u32) -> Network {
         add_way(&mut network, way);
     }
     add_strokes(&mut network);
+    add_restrictions(&mut network);
     network
 }
 
@@ -85,6 +88,22 @@ fn add_strokes(network: &mut Network) {
         network.stroke_edges.extend(chain.iter().rev());
         let end = network.stroke_edges.len() as u32;
         network.strokes.push(Stroke { approach: start..first, edges: first..end, closed: no % 8 == 7 });
+    }
+}
+
+/// Of two, three and four edges in turn, of both kinds and every turn.
+fn add_restrictions(network: &mut Network) {
+    let turns = ["left_turn", "right_turn", "straight_on", "u_turn", "entry", "exit"];
+    for no in 0..network.edges.len() as u32 / 7 {
+        let start = network.restriction_edges.len() as u32;
+        network.restriction_edges.extend((no * 7..).take(2 + no as usize % 3));
+        let kind = format!("{}_{}", if no.is_multiple_of(4) { "only" } else { "no" }, turns[no as usize % 6]);
+        network.restrictions.push(Restriction {
+            relation_id: 3_000_000_000 + i64::from(no / 2),
+            kind: RestrictionKind::named(&kind).unwrap(),
+            conditional: no.is_multiple_of(5),
+            edges: start..network.restriction_edges.len() as u32,
+        });
     }
 }
 

@@ -224,7 +224,7 @@ impl LegalTags {
 }
 
 /// `value @ condition` pairs; semicolons inside parentheses belong to the condition, which is empty without an `@`.
-fn clauses(text: &str) -> impl Iterator<Item = (&str, &str)> {
+pub(super) fn clauses(text: &str) -> impl Iterator<Item = (&str, &str)> {
     let mut depth = 0_u32;
     text.split(move |c| {
         match c {

@@ -106,11 +106,15 @@ impl ReadAccount {
         row("node", "noted", "named_by_ways", nodes.named);
         row("node", "noted", "placed_by_ways", nodes.placed_by_ways);
         row("relation", "read", "", self.relations.read);
-        row("relation", "kept", "", 0);
-        row("relation", "left_out", "not_used", self.relations.read);
-        row("relation", "noted", "restriction", self.relations.restrictions);
-        row("relation", "noted", "restriction_broken", self.relations.broken_restrictions);
-        row("relation", "noted", "restriction_off_road", self.relations.restrictions_off_road);
+        let relations = &self.relations;
+        row("relation", "kept", "", relations.kept());
+        row("relation", "left_out", "duplicate_id", relations.superseded);
+        row("relation", "left_out", "exempt", relations.exempt);
+        row("relation", "left_out", "not_a_restriction", relations.read - relations.restrictions);
+        row("relation", "left_out", "other_vehicles", relations.other_vehicles);
+        row("relation", "left_out", "restriction_broken", relations.broken_restrictions);
+        row("relation", "noted", "restriction", relations.restrictions);
+        row("relation", "noted", "restriction_off_road", relations.restrictions_off_road);
         for (compression, &count) in &self.blobs {
             row("blob", "noted", compression, count);
         }

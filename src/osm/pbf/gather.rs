@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 
 use crate::osm::{LonLat, NodeTable, StringPool, Way, facts::PointFacts};
 
-use super::{account::NodeTally, error::Problem, nodes::NodeBatch, relations::RelationTally, ways::WayBatch};
+use super::{account::NodeTally, error::Problem, nodes::NodeBatch, relations::RelationBatch, ways::WayBatch};
 
 /// Left out: another way with the same id follows in the file.
 const DUPLICATE_ID: &str = "duplicate_id";
@@ -25,8 +25,7 @@ pub(super) struct WayGatherer {
     pub(super) read: u64,
     pub(super) left_out: BTreeMap<&'static str, u64>,
     pub(super) notes: BTreeMap<&'static str, u64>,
-    pub(super) relations: RelationTally,
-    pub(super) vias: Vec<i64>,
+    pub(super) relations: RelationBatch,
     /// Largest id so far.
     largest: Option<i64>,
     /// Some way did not have a larger id than all before it.
@@ -44,8 +43,9 @@ impl WayGatherer {
         for (note, count) in &batch.notes {
             *self.notes.entry(note).or_default() += count;
         }
-        self.relations.add(batch.relations);
-        self.vias.extend(batch.vias);
+        self.relations.tally.add(batch.relations.tally);
+        self.relations.restrictions.extend(batch.relations.restrictions);
+        self.relations.vias.extend(batch.relations.vias);
         let Some((first, last)) = batch.ends else { return Ok(()) };
         let in_order = batch.ascending && self.largest.is_none_or(|largest| largest < first);
         self.disordered |= !in_order;
@@ -79,6 +79,7 @@ impl WayGatherer {
 
     /// Sorts the ways by id and drops those that a later one of the same id supersedes.
     pub(super) fn finish(&mut self) {
+        self.finish_restrictions();
         if !self.disordered {
             return;
         }
@@ -103,6 +104,21 @@ impl WayGatherer {
             *self.left_out.entry(DUPLICATE_ID).or_default() += superseded;
         }
         self.renumber();
+    }
+
+    /// Sorts the restrictions by id; of several of the same id the last of the file stays.
+    fn finish_restrictions(&mut self) {
+        let restrictions = &mut self.relations.restrictions;
+        let before = restrictions.len();
+        restrictions.sort_by_key(|restriction| restriction.id);
+        restrictions.dedup_by(|later, earlier| {
+            let same = later.id == earlier.id;
+            if same {
+                std::mem::swap(later, earlier);
+            }
+            same
+        });
+        self.relations.tally.superseded += (before - restrictions.len()) as u64;
     }
 
     /// Lays references and strings out in the order of the ways, as a sorted file would have had them.

@@ -224,10 +224,18 @@ where
         account.ways_left_out = ways.left_out;
         account.tag_notes = ways.notes;
         account.nodes = tally;
-        account.relations = ways.relations;
+        account.relations = ways.relations.tally;
         account.relations.restrictions_off_road =
-            ways.vias.iter().filter(|&&id| nodes.place(id).is_none()).count() as u64;
-        Ok(Some(Extract { ways: ways.ways, refs: ways.refs, nodes, points, strings: ways.strings, account }))
+            ways.relations.vias.iter().filter(|&&id| nodes.place(id).is_none()).count() as u64;
+        Ok(Some(Extract {
+            ways: ways.ways,
+            refs: ways.refs,
+            nodes,
+            points,
+            restrictions: ways.relations.restrictions,
+            strings: ways.strings,
+            account,
+        }))
     }
 }
 

@@ -1,9 +1,13 @@
-//! Relations: counted, not yet used. Turn restrictions are told apart, and the broken ones among them.
+//! Relations: those that restrict turns of heavy goods vehicles are kept, all others counted.
 //!
-//! Promises: whatever a relation refers to, itself included, is never followed.
+//! Promises: every relation is kept or counted under one reason; whatever a relation refers to, itself included, is never
+//! followed.
 
 use osmpbfreader::osmformat::{Relation, relation::MemberType};
 use protobuf::Message;
+
+use crate::osm::facts::{NoRule, TurnRule, turn_rules};
+use crate::osm::{Restriction, Via};
 
 use super::{
     block::Strings,
@@ -11,16 +15,23 @@ use super::{
     wire::{self, Shape},
 };
 
-/// How many relations there were.
+/// What became of the relations: `read = kept + (read − restrictions) + broken_restrictions + other_vehicles + exempt +
+/// superseded`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct RelationTally {
-    /// All, used for nothing so far.
+    /// All.
     pub read: u64,
-    /// Of these, turn restrictions.
+    /// Of these, turn restrictions; nothing else is used.
     pub restrictions: u64,
     /// Of these, without a way `from` and `to` and something `via`, of a kind nobody knows, or members of themselves.
     pub broken_restrictions: u64,
-    /// Of the others, with a `via` node that is on no kept way, or not in the file.
+    /// Of the others, those that speak of other vehicles than heavy goods vehicles.
+    pub other_vehicles: u64,
+    /// Of the others, those that heavy goods vehicles are exempt from.
+    pub exempt: u64,
+    /// Of the others, followed by another one of the same id: the last of the file counts.
+    pub superseded: u64,
+    /// Of the whole ones, with a `via` node that is on no kept way, or not in the file.
     pub restrictions_off_road: u64,
 }
 
@@ -29,17 +40,30 @@ impl RelationTally {
         self.read += other.read;
         self.restrictions += other.restrictions;
         self.broken_restrictions += other.broken_restrictions;
+        self.other_vehicles += other.other_vehicles;
+        self.exempt += other.exempt;
+        self.superseded += other.superseded;
         self.restrictions_off_road += other.restrictions_off_road;
+    }
+
+    /// Restrictions that the extract has.
+    #[must_use]
+    pub fn kept(&self) -> u64 {
+        self.restrictions - self.broken_restrictions - self.other_vehicles - self.exempt - self.superseded
     }
 }
 
-/// Checks and counts one relation; of a whole restriction the `via` nodes are noted.
-pub(super) fn read(
-    message: &[u8],
-    strings: &Strings<'_>,
-    tally: &mut RelationTally,
-    vias: &mut Vec<i64>,
-) -> Result<(), Problem> {
+/// What is taken from a block's relations.
+#[derive(Debug, Default)]
+pub(super) struct RelationBatch {
+    pub(super) tally: RelationTally,
+    pub(super) restrictions: Vec<Restriction>,
+    /// `via` nodes of whole restrictions, whomever they concern.
+    pub(super) vias: Vec<i64>,
+}
+
+/// Checks and counts one relation, and keeps it if it restricts turns of heavy goods vehicles.
+pub(super) fn read(message: &[u8], strings: &Strings<'_>, batch: &mut RelationBatch) -> Result<(), Problem> {
     use Shape::{Bytes, Number, Numbers};
     wire::check(
         message,
@@ -54,45 +78,34 @@ pub(super) fn read(
     if relation.memids.len() != relation.roles_sid.len() || relation.memids.len() != relation.types.len() {
         return Err(Problem::Lengths { object, what: "members, roles and types" });
     }
-    let mut kind = "";
-    let mut restriction = None;
+    let mut tags = Vec::with_capacity(relation.keys.len());
     for (&key, &value) in relation.keys.iter().zip(&relation.vals) {
-        let (key, value) = (strings.text(key.into(), object)?, strings.text(value.into(), object)?);
-        if key == "type" {
-            kind = value;
-        } else if key == "restriction" || key.starts_with("restriction:") {
-            restriction = Some(value);
-        }
+        tags.push((strings.text(key.into(), object)?, strings.text(value.into(), object)?));
     }
     let members = Members::of(&relation, strings, object)?;
-    tally.read += 1;
-    if kind == "restriction" || kind.starts_with("restriction:") {
-        tally.restrictions += 1;
-        if members.complete() && restriction.is_some_and(is_known) {
-            vias.extend(members.via_node);
-        } else {
-            tally.broken_restrictions += 1;
-        }
+    batch.tally.read += 1;
+    let Some(rules) = turn_rules(&tags) else { return Ok(()) };
+    batch.tally.restrictions += 1;
+    if !members.complete() || rules == Err(NoRule::Unknown) {
+        batch.tally.broken_restrictions += 1;
+        return Ok(());
+    }
+    batch.vias.extend(members.via_nodes.last());
+    match rules {
+        Ok(rules) => batch.restrictions.push(members.restriction(relation.id(), rules)),
+        Err(NoRule::Exempt) => batch.tally.exempt += 1,
+        Err(NoRule::OtherVehicles | NoRule::Unknown) => batch.tally.other_vehicles += 1,
     }
     Ok(())
 }
 
-/// <https://wiki.openstreetmap.org/wiki/Relation:restriction>
-fn is_known(restriction: &str) -> bool {
-    // Conditional ones read "no_left_turn @ (Mo-Fr 07:00-09:00)".
-    let kind = restriction.split('@').next().unwrap_or_default().trim();
-    let turns = ["left_turn", "right_turn", "straight_on", "u_turn", "entry", "exit"];
-    kind.strip_prefix("no_").or(kind.strip_prefix("only_")).is_some_and(|turn| turns.contains(&turn))
-}
-
-/// Which members of a restriction are there.
+/// The members of a restriction.
 #[derive(Debug, Default)]
 struct Members {
-    from: bool,
-    via: bool,
-    /// The last one, if it is a node.
-    via_node: Option<i64>,
-    to: bool,
+    from: Vec<i64>,
+    via_nodes: Vec<i64>,
+    via_ways: Vec<i64>,
+    to: Vec<i64>,
     itself: bool,
 }
 
@@ -107,12 +120,10 @@ impl Members {
                 .map_err(|kind| Problem::Message { what: "relation", detail: format!("member of type {kind}") })?;
             // A negative index is out of range of any table.
             match strings.text(role as u64, object)? {
-                "from" => found.from |= kind == MemberType::WAY,
-                "to" => found.to |= kind == MemberType::WAY,
-                "via" => {
-                    found.via |= kind != MemberType::RELATION;
-                    found.via_node = (kind == MemberType::NODE).then_some(member);
-                }
+                "from" if kind == MemberType::WAY => found.from.push(member),
+                "to" if kind == MemberType::WAY => found.to.push(member),
+                "via" if kind == MemberType::NODE => found.via_nodes.push(member),
+                "via" if kind == MemberType::WAY => found.via_ways.push(member),
                 _ => {}
             }
             found.itself |= kind == MemberType::RELATION && member == relation.id();
@@ -121,6 +132,12 @@ impl Members {
     }
 
     fn complete(&self) -> bool {
-        self.from && self.via && self.to && !self.itself
+        let via = !self.via_nodes.is_empty() || !self.via_ways.is_empty();
+        via && !self.from.is_empty() && !self.to.is_empty() && !self.itself
+    }
+
+    fn restriction(self, id: i64, rules: Vec<TurnRule>) -> Restriction {
+        let via = if self.via_ways.is_empty() { Via::Nodes(self.via_nodes) } else { Via::Ways(self.via_ways) };
+        Restriction { id, rules, from: self.from, via, to: self.to }
     }
 }

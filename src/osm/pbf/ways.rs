@@ -1,4 +1,4 @@
-//! The first pass over a block: ways become facts and node references, relations are counted.
+//! The first pass over a block: ways become facts and node references, relations become turn restrictions.
 //!
 //! Promises: every way is kept or counted under one reason. References keep their order, repeats next to each other
 //! are one. Ways are read in place: the generated message allocates four arrays a way, and half the ways are left
@@ -14,7 +14,7 @@ use crate::osm::{
 use super::{
     block::{self, Block},
     error::{ObjectId, Problem},
-    relations::{self, RelationTally},
+    relations::{self, RelationBatch},
     wire::{Cursor, Packed},
 };
 
@@ -51,9 +51,7 @@ pub(super) struct WayBatch {
     /// Whether the ids of all ways ascend strictly.
     pub(super) ascending: bool,
     pub(super) has_nodes: bool,
-    pub(super) relations: RelationTally,
-    /// `via` nodes of turn restrictions.
-    pub(super) vias: Vec<i64>,
+    pub(super) relations: RelationBatch,
 }
 
 /// Reads the ways and relations of a block.
@@ -74,8 +72,7 @@ where
                 }
                 4 => {
                     reader.count()?;
-                    let WayBatch { relations, vias, .. } = &mut reader.batch;
-                    relations::read(field.bytes()?, &block.strings, relations, vias)?;
+                    relations::read(field.bytes()?, &block.strings, &mut reader.batch.relations)?;
                 }
                 _ => {}
             }

@@ -1,0 +1,141 @@
+//! Every way to go on at every node: straight on along a stroke, by a turn, or back.
+//!
+//! Promises a fixed order (by node, then by edge), and that no movement is left out but at nodes with more edges than
+//! any real junction has. Restrictions over one node are marked here; those over ways are sequences that only a search can
+//! obey. Whether a vehicle fits is not asked.
+
+use std::ops::Range;
+
+use super::{Network, pairing, reverse};
+
+/// How one goes on at a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum MovementKind {
+    /// Along a stroke: the certificates of its edges hold for it.
+    StraightOn,
+    /// From one stroke to another: a turn, needing a certificate of its own.
+    Turn,
+    /// Back along the same piece of road.
+    UTurn,
+}
+
+/// From one edge into the next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Movement {
+    /// The edge one comes from.
+    pub from: u32,
+    /// The edge one goes into; starts at the node where `from` ends.
+    pub to: u32,
+    /// How.
+    pub kind: MovementKind,
+    /// The restriction that forbids it (index into [`Network::restrictions`]), the first of several.
+    pub forbidden: Option<u32>,
+}
+
+/// All movements of a network.
+#[derive(Debug, Clone, Default)]
+pub struct Movements {
+    all: Vec<Movement>,
+    /// By edge: where the movements out of it stand.
+    after: Vec<Range<u32>>,
+}
+
+impl Movements {
+    /// All, by node id, then `from`, then `to`.
+    #[must_use]
+    pub fn all(&self) -> &[Movement] {
+        &self.all
+    }
+
+    /// The movements out of an edge, by `to`.
+    #[must_use]
+    pub fn after(&self, edge: u32) -> &[Movement] {
+        let range = self.after.get(edge as usize).cloned().unwrap_or_default();
+        &self.all[range.start as usize..range.end as usize]
+    }
+
+    /// The movement from one edge into another, if there is one.
+    #[must_use]
+    pub fn between(&self, from: u32, to: u32) -> Option<&Movement> {
+        self.after(from).iter().find(|movement| movement.to == to)
+    }
+
+    /// The same with its place in [`Movements::all`].
+    #[must_use]
+    pub fn index(&self, from: u32, to: u32) -> Option<usize> {
+        let range = self.after.get(from as usize).cloned()?;
+        let within = self.after(from).iter().position(|movement| movement.to == to)?;
+        Some(range.start as usize + within)
+    }
+}
+
+impl Network {
+    /// All movements: takes time and memory in proportion to them (some 3 an edge).
+    #[must_use]
+    pub fn movements(&self) -> Movements {
+        let mut ends: Vec<(i64, bool, u32)> = Vec::with_capacity(self.edges.len() * 2);
+        for (edge, e) in (0_u32..).zip(&self.edges) {
+            ends.push((e.to_node, false, edge));
+            ends.push((e.from_node, true, edge));
+        }
+        ends.sort_unstable();
+        let next = self.straight_on();
+        let forbidden = self.forbidden_pairs();
+        let mut movements = Movements { all: Vec::new(), after: vec![0..0; self.edges.len()] };
+        for node in ends.chunk_by(|a, b| a.0 == b.0).filter(|node| node.len() <= pairing::CROWD) {
+            let (arriving, leaving) = node.split_at(node.partition_point(|end| !end.1));
+            for &(_, _, from) in arriving {
+                let start = movements.all.len() as u32;
+                for &(_, _, to) in leaving {
+                    let kind = if next[from as usize] == to {
+                        MovementKind::StraightOn
+                    } else if reverse(self, from, to) {
+                        MovementKind::UTurn
+                    } else {
+                        MovementKind::Turn
+                    };
+                    movements.all.push(Movement { from, to, kind, forbidden: first(&forbidden, from, to) });
+                }
+                movements.after[from as usize] = start..movements.all.len() as u32;
+            }
+        }
+        movements
+    }
+
+    /// By edge: the one that continues it along its stroke, or [`u32::MAX`].
+    fn straight_on(&self) -> Vec<u32> {
+        let mut next = vec![pairing::NONE; self.edges.len()];
+        for stroke in &self.strokes {
+            let edges = &self.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize];
+            for pair in edges.windows(2) {
+                next[pair[0] as usize] = pair[1];
+            }
+            if let (true, Some(&first), Some(&last)) = (stroke.closed, edges.first(), edges.last()) {
+                next[last as usize] = first;
+            }
+        }
+        next
+    }
+
+    /// Restrictions of two edges: from, to, and which; sorted.
+    fn forbidden_pairs(&self) -> Vec<(u32, u32, u32)> {
+        let pair = |(no, restriction): (u32, &super::Restriction)| match *self.sequence(restriction) {
+            [from, to] => Some((from, to, no)),
+            _ => None,
+        };
+        let mut pairs: Vec<_> = (0_u32..).zip(&self.restrictions).filter_map(pair).collect();
+        pairs.sort_unstable();
+        pairs
+    }
+
+    /// The edges of a restriction, in driving order.
+    #[must_use]
+    pub fn sequence(&self, restriction: &super::Restriction) -> &[u32] {
+        &self.restriction_edges[restriction.edges.start as usize..restriction.edges.end as usize]
+    }
+}
+
+fn first(forbidden: &[(u32, u32, u32)], from: u32, to: u32) -> Option<u32> {
+    let at = forbidden.partition_point(|&(f, t, _)| (f, t) < (from, to));
+    forbidden.get(at).filter(|&&(f, t, _)| (f, t) == (from, to)).map(|row| row.2)
+}

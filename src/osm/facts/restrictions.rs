@@ -1,0 +1,229 @@
+//! Turn restrictions: what the tags of a relation forbid to a heavy goods vehicle.
+//!
+//! <https://wiki.openstreetmap.org/wiki/Relation:restriction>. Conditions (times, weights) are not decided: a turn that is
+//! forbidden at times counts as forbidden, and as such is noted. `except=goods` exempts nobody here: the access key
+//! `goods` means vehicles up to 3.5 t.
+
+use serde::{Deserialize, Serialize};
+
+use super::Tags;
+use super::limits::clauses;
+
+/// Which movement a sign names. Which edges it means follows from the relation's members.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RestrictedTurn {
+    /// `left_turn`
+    LeftTurn,
+    /// `right_turn`
+    RightTurn,
+    /// `straight_on`
+    StraightOn,
+    /// `u_turn`
+    UTurn,
+    /// `entry`
+    Entry,
+    /// `exit`
+    Exit,
+}
+
+/// `no_…` forbids the movement, `only_…` all others.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct RestrictionKind {
+    /// `only_…`
+    pub only: bool,
+    /// What is named.
+    pub turn: RestrictedTurn,
+}
+
+/// What a restriction says to heavy goods vehicles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct TurnRule {
+    /// What it forbids.
+    pub kind: RestrictionKind,
+    /// It holds at times, or under a condition that was not decided.
+    pub conditional: bool,
+}
+
+/// Why a relation that says it is a restriction restricts no heavy goods vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoRule {
+    /// None of its values is known.
+    Unknown,
+    /// It speaks of other vehicles only.
+    OtherVehicles,
+    /// `except=hgv` and its kind.
+    Exempt,
+}
+
+/// Of the keys `restriction:…`, those that speak of heavy goods vehicles too. Trailers: any vehicle here may pull one.
+const VEHICLES: [&str; 6] = ["vehicle", "motor_vehicle", "hgv", "hgv_articulated", "goods", "trailer"];
+/// Exempt by `except`.
+const EXEMPTING: [&str; 3] = ["vehicle", "motor_vehicle", "hgv"];
+/// Older tags that limit a restriction to times.
+const TIMES: [&str; 4] = ["day_on", "day_off", "hour_on", "hour_off"];
+
+/// The rules that a relation's tags make for heavy goods vehicles, each once, in order; `None` if the relation is no
+/// restriction at all.
+#[must_use]
+pub fn turn_rules(tags: &Tags<'_>) -> Option<Result<Vec<TurnRule>, NoRule>> {
+    let of = |key: &str| tags.iter().find(|tag| tag.0 == key).map(|tag| tag.1);
+    let kind = of("type")?;
+    // The older `type=restriction:hgv` says for whom in the type.
+    let scope = if kind == "restriction" { "" } else { kind.strip_prefix("restriction:")? };
+    let timed = tags.iter().any(|tag| TIMES.contains(&tag.0));
+    let exempt = of("except").is_some_and(|list| list.split(';').any(|who| EXEMPTING.contains(&who.trim())));
+    let mut rules = Vec::new();
+    let (mut known, mut exempted) = (false, false);
+    for &(key, value) in tags {
+        let Some(key) = Key::parse(key, scope) else { continue };
+        for (kind, undecided) in kinds(value, key.conditional) {
+            known = true;
+            match key.whom {
+                Whom::Others => {}
+                Whom::All if exempt => exempted = true,
+                Whom::All | Whom::HeavyGoods => {
+                    rules.push(TurnRule { kind, conditional: timed || undecided });
+                }
+            }
+        }
+    }
+    rules.sort_unstable();
+    // What holds always holds under a condition, too.
+    rules.dedup_by_key(|rule| rule.kind);
+    Some(match (rules.is_empty(), known, exempted) {
+        (false, ..) => Ok(rules),
+        (true, false, _) => Err(NoRule::Unknown),
+        (true, true, true) => Err(NoRule::Exempt),
+        (true, true, false) => Err(NoRule::OtherVehicles),
+    })
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Whom {
+    All,
+    HeavyGoods,
+    Others,
+}
+
+/// `restriction[:vehicle][:conditional]`
+struct Key {
+    whom: Whom,
+    conditional: bool,
+}
+
+impl Key {
+    fn parse(key: &str, scope: &str) -> Option<Self> {
+        let rest = key.strip_prefix("restriction")?;
+        let (rest, conditional) = rest.strip_suffix(":conditional").map_or((rest, false), |rest| (rest, true));
+        let vehicle = match rest {
+            "" => scope,
+            rest => rest.strip_prefix(':')?,
+        };
+        let whom = match vehicle {
+            "" => Whom::All,
+            vehicle if VEHICLES.contains(&vehicle) => Whom::HeavyGoods,
+            _ => Whom::Others,
+        };
+        Some(Self { whom, conditional })
+    }
+}
+
+/// The known kinds of a value, with whether a condition is left open. Dangerous goods are not modelled.
+fn kinds(value: &str, conditional: bool) -> impl Iterator<Item = (RestrictionKind, bool)> + '_ {
+    clauses(value)
+        .filter(|(_, condition)| !condition.contains("hazmat"))
+        .filter_map(move |(kind, condition)| Some((parse_kind(kind)?, conditional || !condition.is_empty())))
+}
+
+fn parse_kind(text: &str) -> Option<RestrictionKind> {
+    let (only, turn) = match (text.strip_prefix("no_"), text.strip_prefix("only_")) {
+        (Some(turn), _) => (false, turn),
+        (_, Some(turn)) => (true, turn),
+        (None, None) => return None,
+    };
+    let turn = match turn {
+        "left_turn" => RestrictedTurn::LeftTurn,
+        "right_turn" => RestrictedTurn::RightTurn,
+        "straight_on" => RestrictedTurn::StraightOn,
+        "u_turn" => RestrictedTurn::UTurn,
+        "entry" => RestrictedTurn::Entry,
+        "exit" => RestrictedTurn::Exit,
+        _ => return None,
+    };
+    Some(RestrictionKind { only, turn })
+}
+
+impl RestrictionKind {
+    /// As tagged: `no_left_turn`.
+    #[must_use]
+    pub fn name(self) -> String {
+        let turn = match self.turn {
+            RestrictedTurn::LeftTurn => "left_turn",
+            RestrictedTurn::RightTurn => "right_turn",
+            RestrictedTurn::StraightOn => "straight_on",
+            RestrictedTurn::UTurn => "u_turn",
+            RestrictedTurn::Entry => "entry",
+            RestrictedTurn::Exit => "exit",
+        };
+        format!("{}_{turn}", if self.only { "only" } else { "no" })
+    }
+
+    /// The reverse of [`RestrictionKind::name`].
+    #[must_use]
+    pub fn named(text: &str) -> Option<Self> {
+        parse_kind(text)
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    /// `no_left_turn?` for a conditional one.
+    fn rules(tags: &[(&str, &str)]) -> Result<Vec<String>, NoRule> {
+        let show = |r: &TurnRule| r.kind.name() + if r.conditional { "?" } else { "" };
+        turn_rules(tags).unwrap().map(|rules| rules.iter().map(show).collect())
+    }
+
+    const IS: (&str, &str) = ("type", "restriction");
+
+    #[test]
+    fn a_sign_for_all_holds_for_heavy_goods_vehicles() {
+        assert_eq!(rules(&[IS, ("restriction", "no_left_turn")]).unwrap(), ["no_left_turn"]);
+        assert_eq!(rules(&[IS, ("restriction", "only_straight_on")]).unwrap(), ["only_straight_on"]);
+        assert_eq!(rules(&[IS, ("restriction:hgv", "no_entry")]).unwrap(), ["no_entry"]);
+        assert_eq!(rules(&[("type", "restriction:hgv"), ("restriction", "no_u_turn")]).unwrap(), ["no_u_turn"]);
+        assert_eq!(turn_rules(&[("type", "route"), ("restriction", "no_left_turn")]), None);
+    }
+
+    #[test]
+    fn what_is_not_decided_holds() {
+        let times = "no_left_turn @ (Mo-Fr 07:00-09:00; 16:00-18:00)";
+        assert_eq!(rules(&[IS, ("restriction:conditional", times)]).unwrap(), ["no_left_turn?"]);
+        assert_eq!(rules(&[IS, ("restriction:hgv:conditional", times)]).unwrap(), ["no_left_turn?"]);
+        assert_eq!(rules(&[IS, ("restriction", "no_exit"), ("hour_on", "7:00")]).unwrap(), ["no_exit?"]);
+        let both = [IS, ("restriction:conditional", times), ("restriction", "no_left_turn")];
+        assert_eq!(rules(&both).unwrap(), ["no_left_turn"]);
+        let lifted = [IS, ("restriction", "no_left_turn"), ("restriction:conditional", "none @ (22:00-06:00)")];
+        assert_eq!(rules(&lifted).unwrap(), ["no_left_turn"]);
+    }
+
+    #[test]
+    fn signs_for_others_and_exemptions_do_not_concern_heavy_goods_vehicles() {
+        assert_eq!(rules(&[IS, ("restriction:bus", "no_left_turn")]), Err(NoRule::OtherVehicles));
+        assert_eq!(rules(&[("type", "restriction:bicycle"), ("restriction", "no_exit")]), Err(NoRule::OtherVehicles));
+        assert_eq!(rules(&[IS, ("restriction", "no_left_turn"), ("except", "psv; hgv")]), Err(NoRule::Exempt));
+        assert_eq!(rules(&[IS, ("restriction", "no_left_turn"), ("except", "bus;goods")]).unwrap(), ["no_left_turn"]);
+        let of_its_own = [IS, ("restriction", "no_exit"), ("except", "hgv"), ("restriction:hgv", "no_u_turn")];
+        assert_eq!(rules(&of_its_own).unwrap(), ["no_u_turn"]);
+    }
+
+    #[test]
+    fn a_value_nobody_knows_is_no_rule() {
+        assert_eq!(rules(&[IS, ("restriction", "no_parking")]), Err(NoRule::Unknown));
+        assert_eq!(rules(&[IS]), Err(NoRule::Unknown));
+        assert_eq!(rules(&[IS, ("restriction:conditional", "no_exit @ (hazmat)")]), Err(NoRule::Unknown));
+    }
+}

@@ -1,0 +1,60 @@
+//! Turn restrictions in and out of their tables.
+
+use sqlx::Row as _;
+use sqlx::sqlite::SqliteConnection;
+
+use crate::network::Restriction;
+use crate::osm::facts::RestrictionKind;
+
+use super::bulk::Bulk;
+use super::error::content;
+use super::network_read::{index, range, rows};
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// A network's restrictions: [`crate::network::Network::restrictions`] and the edges that they refer to.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Restrictions {
+    pub(super) all: Vec<Restriction>,
+    pub(super) edges: Vec<u32>,
+}
+
+/// Inserts them; the edges must be there.
+pub(super) async fn insert(c: &mut SqliteConnection, restrictions: &Restrictions) -> Sql<()> {
+    let mut bulk = Bulk::new("restriction", 6);
+    for (no, restriction) in (1_i64..).zip(&restrictions.all) {
+        bulk.add(no)?;
+        bulk.add(restriction.relation_id)?;
+        bulk.add(restriction.kind.name())?;
+        bulk.add(restriction.conditional)?;
+        bulk.add(restriction.edges.start)?;
+        bulk.add(restriction.edges.end)?;
+        bulk.end_row(c).await?;
+    }
+    bulk.finish(c).await?;
+    let mut bulk = Bulk::new("restriction_edge", 2);
+    for (position, &edge) in (1_i64..).zip(&restrictions.edges) {
+        bulk.add(position)?;
+        bulk.add(i64::from(edge) + 1)?;
+        bulk.end_row(c).await?;
+    }
+    bulk.finish(c).await
+}
+
+/// Reads them; `edges`: how many edges the network has.
+pub(super) async fn read(c: &mut SqliteConnection, edges: usize) -> Sql<Restrictions> {
+    let sql = "SELECT fid FROM restriction_edge ORDER BY position";
+    let sequence = rows(c, sql, |row| index(row, 0, edges)).await?;
+    let sql = "SELECT relation_id, kind, conditional, edge_start, edge_end FROM restriction ORDER BY restriction_no";
+    let all = rows(c, sql, |row| {
+        let kind: &str = row.try_get(1)?;
+        let kind = RestrictionKind::named(kind).ok_or_else(|| content(format!("`{kind}` is no turn restriction")))?;
+        let edges = range(row, 3)?;
+        if edges.start.saturating_add(2) > edges.end || edges.end as usize > sequence.len() {
+            return Err(content("a turn restriction points outside its table"));
+        }
+        Ok(Restriction { relation_id: row.try_get(0)?, kind, conditional: row.try_get(2)?, edges })
+    })
+    .await?;
+    Ok(Restrictions { all, edges: sequence })
+}
