@@ -34,5 +34,6 @@ pub mod published;
 pub mod route;
 pub mod stet;
 pub mod store;
+pub mod turns;
 pub mod vehicle;
 pub mod verdict;

@@ -1,0 +1,231 @@
+//! The drivable area of a turn: approach and departure strips, what the roads have in common at the junction, and the kerb
+//! return between them, as one set of polygons.
+//!
+//! Promises that no part is made up: beyond the node a road counts only where it is really driven on (its stroke goes on), or
+//! where the other road crosses it. A turn to the near side (right, where traffic keeps right) gets what the lanes of the two
+//! *directions* have in common, a turn across the oncoming traffic what the carriageways have in common. Left out: mapped
+//! junction areas (`area:highway`), which the reader does not read, and third roads of the junction.
+
+use geo::orient::{Direction, Orient};
+use geo::{BooleanOps, LineString, MultiPolygon, Polygon, unary_union};
+
+use super::arm::{Across, Arm};
+use crate::osm::facts::Policy;
+
+/// What two roads have in common is looked for so far from the node, metres.
+const CROSSING_M: f64 = 30.0;
+/// Vertices of a strip that lie this near to the line between their neighbours are left out, metres; rays are shortened by more.
+const COLLINEAR_M: f64 = 5e-4;
+/// The kerb return overlaps the roads by so much, so that rounding leaves no gap between them, metres.
+const OVERLAP_M: f64 = 0.3;
+/// Sharpest and widest corner that gets a kerb return, radians.
+const CORNERS_RAD: std::ops::RangeInclusive<f64> = 0.17..=2.62;
+/// A kerb return reaches no farther along its roads than this, metres.
+const MOST_RETURN_M: f64 = 15.0;
+/// Chord of a kerb return's arc, radians of arc: the arc is cut off outside, on the side of less room.
+const ARC_STEP_RAD: f64 = 0.1;
+
+/// What the area is made from.
+pub(super) struct Ground<'a> {
+    pub(super) from: &'a Arm,
+    pub(super) to: &'a Arm,
+    pub(super) policy: Policy,
+    pub(super) left_hand_traffic: bool,
+    /// By how much the vehicle turns, radians, positive left.
+    pub(super) turn_rad: f64,
+    pub(super) kerb_radius_m: f64,
+}
+
+impl Ground<'_> {
+    /// The drivable area, and whether it has a kerb return.
+    pub(super) fn area(&self) -> (MultiPolygon, bool) {
+        let own = |arm: &Arm, k: usize| [arm.line.left_m[k], -arm.line.right_m[k]];
+        let strip = |arm: &Arm| outline(arm, 0..arm.len(), &|k| own(arm, k), [0.0; 2]);
+        let mut parts: Vec<Polygon> = [strip(self.from), strip(self.to)].into_iter().flatten().collect();
+        parts.extend(self.common());
+        let corner = self.kerb_return();
+        let rounded = corner.is_some();
+        parts.extend(corner);
+        (unary_union(&parts), rounded)
+    }
+
+    /// Edges of the road as far as this turn may use it inside the junction.
+    fn edges<'a>(&self, arm: &'a Arm) -> &'a [Across] {
+        let near_side = (self.turn_rad < 0.0) != self.left_hand_traffic;
+        if near_side && self.policy != Policy::Carriageway { &arm.direction } else { &arm.carriageway }
+    }
+
+    /// What both roads cover near the node. A road that ends (begins) there is prolonged straight across the other one, never
+    /// both at once: where neither is real, nothing is.
+    fn common(&self) -> Vec<Polygon> {
+        let piece = |arm: &Arm, prolonged: [f64; 2]| {
+            let near = (CROSSING_M / arm.line.spacing_m) as usize;
+            let first = arm.node.saturating_sub(near).max(arm.own.start);
+            let end = (arm.node + near + 1).min(arm.own.end);
+            let edges = self.edges(arm);
+            outline(arm, first..end, &|k| edges[k], prolonged)
+        };
+        let ends = if self.from.node + 2 >= self.from.own.end { CROSSING_M } else { 0.0 };
+        let begins = if self.to.node <= self.to.own.start + 1 { CROSSING_M } else { 0.0 };
+        let (from, to) = (piece(self.from, [0.0; 2]), piece(self.to, [0.0; 2]));
+        let (from_on, to_back) = (piece(self.from, [0.0, ends]), piece(self.to, [begins, 0.0]));
+        let both = |a: &Option<Polygon>, b: &Option<Polygon>| match (a, b) {
+            (Some(a), Some(b)) => a.intersection(b).0,
+            _ => Vec::new(),
+        };
+        let mut common = both(&from, &to_back);
+        if ends > 0.0 || begins > 0.0 {
+            common.extend(both(&from_on, &to));
+        }
+        common
+    }
+
+    /// The corner between the roads' edges on the inside of the turn, rounded with the kerb radius.
+    fn kerb_return(&self) -> Option<Polygon> {
+        let angle = self.turn_rad.abs();
+        if self.kerb_radius_m <= 0.0 || !CORNERS_RAD.contains(&angle) {
+            return None;
+        }
+        let side = usize::from(self.turn_rad < 0.0);
+        let edge = |arm: &Arm, back_m: f64, on_m: f64| {
+            let near = (CROSSING_M / arm.line.spacing_m) as usize;
+            let first = arm.node.saturating_sub(near).max(arm.own.start);
+            let end = (arm.node + near + 1).min(arm.own.end);
+            let mut line: Vec<[f64; 2]> = (first..end).map(|k| arm.aside(k, arm.carriageway[k][side])).collect();
+            if let (Some(&a), Some(&b)) = (line.first(), line.last()) {
+                line.insert(0, along(a, arm.forward(first), -back_m));
+                line.push(along(b, arm.forward(end - 1), on_m));
+            }
+            line
+        };
+        let from_edge = edge(self.from, 0.0, CROSSING_M);
+        let to_edge = edge(self.to, CROSSING_M, 0.0);
+        let (corner, a, b) = crossing(&from_edge, &to_edge, self.turn_rad)?;
+        let turned = (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]);
+        if !CORNERS_RAD.contains(&turned.abs()) || (turned > 0.0) != (self.turn_rad > 0.0) {
+            return None;
+        }
+        let half = (0.5 * turned.abs()).tan();
+        let radius = self.kerb_radius_m.min(MOST_RETURN_M / half);
+        let tangent = radius * half;
+        // Towards the middle of the approach: away from the corner's inside.
+        let sign = turned.signum();
+        let inward = |d: [f64; 2]| [sign * d[1] * OVERLAP_M, -sign * d[0] * OVERLAP_M];
+        let (start, end) = (along(corner, a, -tangent), along(corner, b, tangent));
+        let centre = along(start, [-sign * a[1], sign * a[0]], radius);
+        let mut ring = arc(centre, start, turned);
+        ring.push(end);
+        ring.push(add(end, inward(b)));
+        ring.push(add(add(corner, inward(a)), inward(b)));
+        ring.push(add(start, inward(a)));
+        Some(polygon(&ring))
+    }
+}
+
+/// Points on the inner side of the arc's tangents: its own chord points, which leave the sliver outside each chord unused. (The
+/// kerb bulges towards the vehicle: chords would cut it off, so each is moved outside it, onto the tangents.)
+fn arc(centre: [f64; 2], start: [f64; 2], turned: f64) -> Vec<[f64; 2]> {
+    let steps = (turned.abs() / ARC_STEP_RAD).ceil().max(1.0);
+    let step = turned / steps;
+    let out = 1.0 / (0.5 * step).cos();
+    let from = [start[0] - centre[0], start[1] - centre[1]];
+    let at = |angle: f64, by: f64| {
+        let (sin, cos) = angle.sin_cos();
+        add(centre, [by * (from[0] * cos - from[1] * sin), by * (from[0] * sin + from[1] * cos)])
+    };
+    let mut points = vec![start];
+    points.extend((0..steps as usize).map(|i| at((i as f64 + 0.5) * step, out)));
+    points
+}
+
+/// The polygon between the edges of an arm's stations, prolonged straight by so many metres before and after.
+fn outline(arm: &Arm, range: std::ops::Range<usize>, edges: &dyn Fn(usize) -> Across, prolonged: [f64; 2]) -> Option<Polygon> {
+    let last = range.end.checked_sub(1).filter(|last| *last > range.start)?;
+    let first = range.start;
+    let side = |which: usize| {
+        let mut line = Vec::with_capacity(range.len() + 2);
+        if prolonged[0] > 0.0 {
+            line.push(along(arm.aside(first, edges(first)[which]), arm.forward(first), -prolonged[0]));
+        }
+        line.extend(range.clone().map(|k| arm.aside(k, edges(k)[which])));
+        if prolonged[1] > 0.0 {
+            line.push(along(arm.aside(last, edges(last)[which]), arm.forward(last), prolonged[1]));
+        }
+        thinned(&line)
+    };
+    let mut ring = side(0);
+    ring.extend(side(1).into_iter().rev());
+    Some(polygon(&ring))
+}
+
+/// Without vertices that say nothing: each left out is within [`COLLINEAR_M`] of what stands for it.
+fn thinned(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut out: Vec<[f64; 2]> = Vec::with_capacity(line.len());
+    let mut from = 0;
+    out.extend(line.first());
+    for i in 2..line.len() {
+        if (from + 1..i).any(|k| distance_from_chord(line[k], line[from], line[i]) > COLLINEAR_M) {
+            from = i - 1;
+            out.push(line[from]);
+        }
+    }
+    if line.len() > 1 {
+        out.extend(line.last());
+    }
+    out
+}
+
+fn distance_from_chord(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let d = [b[0] - a[0], b[1] - a[1]];
+    let length = d[0].hypot(d[1]);
+    if length < 1e-9 { f64::INFINITY } else { (d[0] * (p[1] - a[1]) - d[1] * (p[0] - a[0])).abs() / length }
+}
+
+/// Where two lines of edges cross in the turn's own sense, and their directions there; the crossing nearest to the end of the first.
+fn crossing(a: &[[f64; 2]], b: &[[f64; 2]], turn_rad: f64) -> Option<([f64; 2], [f64; 2], [f64; 2])> {
+    let mut best: Option<(usize, [f64; 2], [f64; 2], [f64; 2])> = None;
+    for (i, p) in a.windows(2).enumerate() {
+        for q in b.windows(2) {
+            let Some((at, ..)) = segments_cross(p[0], p[1], q[0], q[1]) else { continue };
+            let (u, v) = (unit(p[0], p[1]), unit(q[0], q[1]));
+            let sense = u[0] * v[1] - u[1] * v[0];
+            if sense * turn_rad > 0.0 && best.as_ref().is_none_or(|(known, ..)| i > *known) {
+                best = Some((i, at, u, v));
+            }
+        }
+    }
+    best.map(|(_, at, u, v)| (at, u, v))
+}
+
+/// Where two segments cross: the place, and the share of each that lies before it.
+pub(super) fn segments_cross(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> Option<([f64; 2], f64, f64)> {
+    let (r, s) = ([b[0] - a[0], b[1] - a[1]], [d[0] - c[0], d[1] - c[1]]);
+    let across = r[0] * s[1] - r[1] * s[0];
+    if across.abs() < 1e-12 {
+        return None;
+    }
+    let from = [c[0] - a[0], c[1] - a[1]];
+    let t = (from[0] * s[1] - from[1] * s[0]) / across;
+    let u = (from[0] * r[1] - from[1] * r[0]) / across;
+    let inside = (0.0..=1.0).contains(&t) && (0.0..=1.0).contains(&u);
+    inside.then(|| ([a[0] + t * r[0], a[1] + t * r[1]], t, u))
+}
+
+fn unit(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    let d = [b[0] - a[0], b[1] - a[1]];
+    let length = d[0].hypot(d[1]).max(1e-12);
+    [d[0] / length, d[1] / length]
+}
+
+pub(super) fn along(p: [f64; 2], direction: [f64; 2], m: f64) -> [f64; 2] {
+    [p[0] + m * direction[0], p[1] + m * direction[1]]
+}
+
+fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+/// A ring as a polygon that runs counter-clockwise: a union takes rings of the other sense for holes.
+fn polygon(ring: &[[f64; 2]]) -> Polygon {
+    Polygon::new(ring.iter().map(|p| (p[0], p[1])).collect::<LineString>(), Vec::new()).orient(Direction::Default)
+}

@@ -1,0 +1,191 @@
+//! A stroke near a junction: its corridor, and how far the road reaches beyond it to both sides.
+//!
+//! A turn's approach and departure are windows of the very corridors by which their edges are certified, so that a route
+//! passes from one into the other without a seam. Edges across are measured from the corridor's own, so that a corridor that was
+//! narrowed (a taper, a narrow place) narrows the junction with it.
+
+use crate::corridor::{Corridor, Frame, Params, StrokeCorridor, stroke_corridor};
+use crate::network::{Network, Stroke};
+use crate::osm::LonLat;
+use crate::osm::facts::{CrossSection, Direction, Policy, Strip};
+use crate::verdict::UnknownReason;
+
+/// Edges of road across a corridor's centreline, metres, positive left: `[left, right]`.
+pub(super) type Across = [f64; 2];
+
+/// A stroke's corridor with its frame and the edges of the road.
+#[derive(Debug, Clone)]
+pub struct StrokeLine {
+    /// Index into `Network::strokes`.
+    pub stroke: u32,
+    /// In which the corridor's positions are.
+    pub frame: Frame,
+    /// The corridor, as it certifies its edges.
+    pub made: StrokeCorridor,
+    closed: bool,
+    /// One a station: all lanes of the direction, and all between the kerbs.
+    direction: Vec<Across>,
+    carriageway: Vec<Across>,
+}
+
+impl StrokeLine {
+    /// Makes the corridor of a stroke.
+    ///
+    /// # Errors
+    /// Nothing can be said of any of its edges.
+    pub fn new(network: &Network, stroke: u32, policy: Policy, params: &Params) -> Result<Self, UnknownReason> {
+        let facts = network.strokes.get(stroke as usize).ok_or(UnknownReason::Geometry)?;
+        let made = stroke_corridor(network, facts, policy, params)?;
+        let frame = frame(network, facts).ok_or(UnknownReason::Geometry)?;
+        let c = &made.corridor;
+        let own: Vec<Across> = c.left_m.iter().zip(&c.right_m).map(|(l, r)| [*l, -*r]).collect();
+        let (mut direction, mut carriageway) = (own.clone(), own.clone());
+        for span in &made.spans {
+            let Some(edge) = network.edges.get(span.edge as usize) else { continue };
+            let section = network.road(edge).sections[usize::from(edge.direction == Direction::Backward)];
+            for k in span.stations.clone() {
+                direction[k] = wider(own[k], &section, policy, section.direction);
+                carriageway[k] = wider(direction[k], &section, policy, section.carriageway.or(section.direction));
+            }
+        }
+        Ok(Self { stroke, frame, made, closed: facts.closed, direction, carriageway })
+    }
+
+    /// How many stations it has.
+    #[must_use]
+    pub fn stations(&self) -> usize {
+        self.made.corridor.len()
+    }
+}
+
+/// The edges of `strip`, where the policy's own strip has its edges at `own`; never inside `own`. (From the strip's edges as a
+/// narrowed corridor has them: both are narrowed alike.)
+fn wider(own: Across, section: &CrossSection, policy: Policy, strip: Option<Strip>) -> Across {
+    let (Some(base), Some(strip)) = (section.strip(policy), strip) else { return own };
+    let left = f64::from(strip.left_m - base.left_m).max(0.0);
+    let right = f64::from(strip.right_m - base.right_m).min(0.0);
+    [own[0] + left, own[1] + right]
+}
+
+/// The frame that `stroke_corridor` lays around a stroke.
+fn frame(network: &Network, stroke: &Stroke) -> Option<Frame> {
+    let range = |r: &std::ops::Range<u32>| network.stroke_edges.get(r.start as usize..r.end as usize);
+    let (approach, edges) = (range(&stroke.approach)?, range(&stroke.edges)?);
+    let mut positions: Vec<LonLat> = Vec::new();
+    for &edge in approach.iter().chain(edges) {
+        positions.extend(network.positions(network.edges.get(edge as usize)?));
+    }
+    Frame::around(&positions).ok()
+}
+
+/// Stations of a stroke around a node, in the frame of the turn.
+#[derive(Debug, Clone)]
+pub(super) struct Arm {
+    /// Stations, with the corridor's own half-widths.
+    pub(super) line: Corridor,
+    pub(super) direction: Vec<Across>,
+    pub(super) carriageway: Vec<Across>,
+    /// The node's station in here.
+    pub(super) node: usize,
+    /// The stroke's station that is the first in here.
+    pub(super) first: usize,
+    /// Stations that belong to edges of the stroke (those before are driven up to it).
+    pub(super) own: std::ops::Range<usize>,
+}
+
+impl Arm {
+    /// The end of edge `edge` on `line`, with up to `before_m` and `after_m` of road.
+    pub(super) fn arriving(line: &StrokeLine, edge: u32, frame: Frame, reach_m: [f64; 2]) -> Result<Self, UnknownReason> {
+        let span = line.made.spans.iter().find(|s| s.edge == edge).ok_or(UnknownReason::Geometry)?;
+        match span.unknown {
+            Some(reason) => Err(reason),
+            None => Self::window(line, span.stations.end - 1, frame, reach_m, true),
+        }
+    }
+
+    /// The beginning of edge `edge` on `line`.
+    pub(super) fn leaving(line: &StrokeLine, edge: u32, frame: Frame, reach_m: [f64; 2]) -> Result<Self, UnknownReason> {
+        let span = line.made.spans.iter().find(|s| s.edge == edge).ok_or(UnknownReason::Geometry)?;
+        match span.unknown {
+            Some(reason) => Err(reason),
+            None => Self::window(line, span.stations.start, frame, reach_m, false),
+        }
+    }
+
+    /// `lead`: what is driven before the stroke's own edges counts as road to arrive on, too.
+    fn window(
+        line: &StrokeLine,
+        node: usize,
+        frame: Frame,
+        [before_m, after_m]: [f64; 2],
+        lead: bool,
+    ) -> Result<Self, UnknownReason> {
+        let c = &line.made.corridor;
+        let stations = |m: f64| (m / c.spacing_m).ceil() as usize;
+        let begins = if line.closed { 0 } else { line.made.spans.first().map_or(0, |s| s.stations.start) };
+        let first = node.saturating_sub(stations(before_m)).max(if lead { 0 } else { begins });
+        let end = (node + stations(after_m) + 1).min(c.len());
+        if end < first + 2 {
+            return Err(UnknownReason::Geometry);
+        }
+        let cut = |v: &[f64]| v[first..end].to_vec();
+        let mut window = Corridor {
+            spacing_m: c.spacing_m,
+            x: cut(&c.x),
+            y: cut(&c.y),
+            heading: cut(&c.heading),
+            curvature: cut(&c.curvature),
+            left_m: cut(&c.left_m),
+            right_m: cut(&c.right_m),
+        };
+        if line.frame != frame {
+            carry_over(&mut window, line.frame, frame).ok_or(UnknownReason::Geometry)?;
+        }
+        let own = begins.max(first) - first..end - first;
+        Ok(Self {
+            line: window,
+            direction: line.direction[first..end].to_vec(),
+            carriageway: line.carriageway[first..end].to_vec(),
+            node: node - first,
+            first,
+            own,
+        })
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.line.len()
+    }
+
+    pub(super) fn point(&self, k: usize) -> [f64; 2] {
+        [self.line.x[k], self.line.y[k]]
+    }
+
+    /// Unit vector of travel.
+    pub(super) fn forward(&self, k: usize) -> [f64; 2] {
+        let (sin, cos) = self.line.heading[k].sin_cos();
+        [cos, sin]
+    }
+
+    /// The place so far to the left of a station.
+    pub(super) fn aside(&self, k: usize, left_m: f64) -> [f64; 2] {
+        let [x, y] = self.point(k);
+        let [cos, sin] = self.forward(k);
+        [x - left_m * sin, y + left_m * cos]
+    }
+}
+
+/// From one frame into another: they differ where strokes of one junction lie around different degrees. The meridians'
+/// convergence turns headings by the same angle all over a junction (to 1e-6).
+fn carry_over(c: &mut Corridor, from: Frame, to: Frame) -> Option<()> {
+    let points: Vec<[f64; 2]> = c.x.iter().zip(&c.y).map(|(x, y)| [*x, *y]).collect();
+    let degrees = from.inverse(&points).ok()?;
+    let moved = to.forward_degrees(degrees.into_iter().map(|[lon, lat]| (lon, lat)).collect()).ok()?;
+    let last = points.len() - 1;
+    let course = |p: &[[f64; 2]]| (p[last][1] - p[0][1]).atan2(p[last][0] - p[0][0]);
+    let turned = course(&moved) - course(&points);
+    c.heading.iter_mut().for_each(|h| *h += turned);
+    for (k, [x, y]) in moved.into_iter().enumerate() {
+        (c.x[k], c.y[k]) = (x, y);
+    }
+    Some(())
+}

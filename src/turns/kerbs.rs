@@ -1,0 +1,125 @@
+//! Kerb radii by class and country, for corners of which nothing is known: `data/kerbs.toml`, each number with its source.
+//!
+//! Every radius from here is assumed; a corner gets the smaller one of its two roads.
+
+use serde::Deserialize;
+
+use crate::network::Road;
+use crate::osm::facts::RoadClass;
+
+const TABLE: &str = include_str!("../../data/kerbs.toml");
+
+/// Assumed kerb radii.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Kerbs {
+    countries: Vec<Country>,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    country: Vec<Country>,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Country {
+    codes: Vec<String>,
+    motorway: f64,
+    trunk: f64,
+    primary: f64,
+    secondary: f64,
+    tertiary: f64,
+    unclassified: f64,
+    residential: f64,
+    living_street: f64,
+    service: f64,
+    track: f64,
+    busway: f64,
+}
+
+impl Country {
+    fn radius_m(&self, class: RoadClass) -> f64 {
+        match class {
+            RoadClass::Motorway => self.motorway,
+            RoadClass::Trunk => self.trunk,
+            RoadClass::Primary => self.primary,
+            RoadClass::Secondary => self.secondary,
+            RoadClass::Tertiary => self.tertiary,
+            RoadClass::Unclassified => self.unclassified,
+            RoadClass::Residential => self.residential,
+            RoadClass::LivingStreet => self.living_street,
+            RoadClass::Service => self.service,
+            RoadClass::Track => self.track,
+            RoadClass::Busway => self.busway,
+        }
+    }
+}
+
+impl Default for Kerbs {
+    /// The table that is built in. (A test reads it: were it damaged, corners would be sharp.)
+    fn default() -> Self {
+        Self::from_toml(TABLE).unwrap_or(Self { countries: Vec::new() })
+    }
+}
+
+impl Kerbs {
+    /// Reads a table in the form of `data/kerbs.toml`.
+    ///
+    /// # Errors
+    /// What is wrong with the text, and where.
+    pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
+        let File { country } = toml::from_str(text)?;
+        Ok(Self { countries: country })
+    }
+
+    /// The same radius everywhere: what a test or a survey says.
+    #[must_use]
+    pub fn everywhere(radius_m: f64) -> Self {
+        let all = Country {
+            codes: Vec::new(),
+            motorway: radius_m,
+            trunk: radius_m,
+            primary: radius_m,
+            secondary: radius_m,
+            tertiary: radius_m,
+            unclassified: radius_m,
+            residential: radius_m,
+            living_street: radius_m,
+            service: radius_m,
+            track: radius_m,
+            busway: radius_m,
+        };
+        Self { countries: vec![all] }
+    }
+
+    /// The radius assumed at a corner of two roads, metres.
+    #[must_use]
+    pub fn radius_m(&self, a: &Road, b: &Road) -> f64 {
+        self.of(a).min(self.of(b))
+    }
+
+    fn of(&self, road: &Road) -> f64 {
+        let code = std::str::from_utf8(&road.country).unwrap_or_default();
+        let named = self.countries.iter().find(|c| c.codes.iter().any(|known| known == code));
+        let country = named.or_else(|| self.countries.iter().find(|c| c.codes.is_empty()));
+        country.map_or(0.0, |country| country.radius_m(road.class)).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn the_built_in_table_is_whole_and_small() {
+        let table = Kerbs::from_toml(TABLE).unwrap();
+        assert_eq!(table.countries.iter().filter(|c| c.codes.is_empty()).count(), 1);
+        for country in &table.countries {
+            for class in [RoadClass::Motorway, RoadClass::Primary, RoadClass::Residential, RoadClass::Service] {
+                assert!((0.5..=8.0).contains(&country.radius_m(class)), "{class:?}");
+            }
+        }
+    }
+}

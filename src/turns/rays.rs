@@ -1,0 +1,147 @@
+//! Width profile of a path: from every point along the normal to both sides until the drivable area ends.
+//!
+//! Never beyond it: what stands out between two rays (a kerb's corner) narrows both of them, the reach is shortened by what the
+//! polygons are coarse, and it stays clear of the path's centre of curvature, where normals cross.
+
+use geo::{LineString, MultiPolygon};
+
+use super::path::bend;
+
+/// Off every ray: twice what strips are thinned by, and the sagitta between rays of half a metre at 12 m, metres.
+const MARGIN_M: f64 = 0.004;
+/// |κ|·half-width at most: where normals cross, a place has no one distance from the path. `corridor` allows 0.98, `stet` asks for
+/// stations that are visited; curvature between points is a little more than at them.
+const MOST_CROSSING: f64 = 0.9;
+/// Nothing is wider to one side, metres.
+const FARTHEST_M: f64 = 25.0;
+/// A path that is nearer to the area's end has left it, metres.
+const LEAST_M: f64 = 0.15;
+/// A corner of the area counts for the segments whose normals may meet it: it lies between their ends, with so much of their
+/// length added at both, and more where normals fan out on the outside of a bend.
+const FAN: f64 = 0.1;
+
+/// The area's boundary, ready for rays.
+pub(super) struct Boundary {
+    segments: Vec<[[f64; 2]; 2]>,
+}
+
+/// Half-widths of a path, one a point.
+pub(super) struct Widths {
+    pub(super) left_m: Vec<f64>,
+    pub(super) right_m: Vec<f64>,
+}
+
+impl Boundary {
+    pub(super) fn new(area: &MultiPolygon) -> Self {
+        let rings = area.iter().flat_map(|p| std::iter::once(p.exterior()).chain(p.interiors()));
+        let segments = |ring: &LineString| -> Vec<[[f64; 2]; 2]> {
+            ring.lines().map(|l| [[l.start.x, l.start.y], [l.end.x, l.end.y]]).collect()
+        };
+        Self { segments: rings.flat_map(segments).collect() }
+    }
+
+    /// Whether a place is inside (even-odd).
+    fn holds(&self, p: [f64; 2]) -> bool {
+        let above = |[a, b]: &[[f64; 2]; 2]| {
+            (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+        };
+        self.segments.iter().filter(|s| above(s)).count() % 2 == 1
+    }
+
+    /// Half-widths along `path`; `None` if it leaves the area.
+    pub(super) fn widths(&self, path: &[[f64; 2]]) -> Option<Widths> {
+        let near = self.near(path);
+        let n = path.len();
+        if n < 3 || !path.iter().step_by(4).chain(path.last()).all(|&p| self.holds(p)) {
+            return None;
+        }
+        let mut widths = Widths { left_m: vec![FARTHEST_M; n], right_m: vec![FARTHEST_M; n] };
+        for k in 0..n {
+            let (a, b) = (path[k.saturating_sub(1)], path[(k + 1).min(n - 1)]);
+            let d = [b[0] - a[0], b[1] - a[1]];
+            let length = d[0].hypot(d[1]).max(1e-9);
+            let normal = [-d[1] / length, d[0] / length];
+            near.cast(path[k], normal, &mut widths.left_m[k], &mut widths.right_m[k]);
+        }
+        near.corners(path, &mut widths);
+        clear_of_centre(path, &mut widths);
+        for w in widths.left_m.iter_mut().chain(&mut widths.right_m) {
+            *w -= MARGIN_M;
+            if !(*w >= LEAST_M) {
+                return None;
+            }
+        }
+        Some(widths)
+    }
+
+    /// The segments within reach of a path.
+    fn near(&self, path: &[[f64; 2]]) -> Self {
+        let mut low = [f64::INFINITY; 2];
+        let mut high = [f64::NEG_INFINITY; 2];
+        for p in path {
+            for k in 0..2 {
+                low[k] = low[k].min(p[k] - FARTHEST_M);
+                high[k] = high[k].max(p[k] + FARTHEST_M);
+            }
+        }
+        let meets = |[a, b]: &&[[f64; 2]; 2]| (0..2).all(|k| a[k].max(b[k]) >= low[k] && a[k].min(b[k]) <= high[k]);
+        Self { segments: self.segments.iter().filter(meets).copied().collect() }
+    }
+
+    /// Shortens `left` and `right` to the boundary's nearest crossing with the normal through `p`.
+    fn cast(&self, p: [f64; 2], normal: [f64; 2], left: &mut f64, right: &mut f64) {
+        for [a, b] in &self.segments {
+            let along = |q: &[f64; 2]| (q[0] - p[0]) * normal[1] - (q[1] - p[1]) * normal[0];
+            let (ua, ub) = (along(a), along(b));
+            if (ua > 1e-9 && ub > 1e-9) || (ua < -1e-9 && ub < -1e-9) {
+                continue;
+            }
+            let across = |q: &[f64; 2]| (q[0] - p[0]) * normal[0] + (q[1] - p[1]) * normal[1];
+            let (va, vb) = (across(a), across(b));
+            let share = if (ub - ua).abs() < 1e-12 { 0.0 } else { (-ua / (ub - ua)).clamp(0.0, 1.0) };
+            let at = va + share * (vb - va);
+            if at >= 0.0 {
+                *left = left.min(at);
+            }
+            if at <= 0.0 {
+                *right = right.min(-at);
+            }
+        }
+    }
+
+    /// Narrows the points on both sides of every corner of the area.
+    fn corners(&self, path: &[[f64; 2]], widths: &mut Widths) {
+        for (k, w) in path.windows(2).enumerate() {
+            let around = &path[k.saturating_sub(1)..(k + 3).min(path.len())];
+            let turns = around.windows(3).map(|w| bend(w).abs()).fold(0.0, f64::max);
+            let d = [w[1][0] - w[0][0], w[1][1] - w[0][1]];
+            let length = d[0].hypot(d[1]).max(1e-9);
+            let u = [d[0] / length, d[1] / length];
+            for [corner, _] in &self.segments {
+                let from = [corner[0] - w[0][0], corner[1] - w[0][1]];
+                let along = (from[0] * u[0] + from[1] * u[1]) / length;
+                let across = u[0] * from[1] - u[1] * from[0];
+                let fan = FAN + 0.6 * turns * across.abs();
+                if across.abs() > FARTHEST_M || !(-fan..=1.0 + fan).contains(&along) {
+                    continue;
+                }
+                let side = if across >= 0.0 { &mut widths.left_m } else { &mut widths.right_m };
+                for width in &mut side[k..=k + 1] {
+                    *width = width.min(across.abs());
+                }
+            }
+        }
+    }
+}
+
+/// Half-widths towards the centre of curvature stay clear of it.
+fn clear_of_centre(path: &[[f64; 2]], widths: &mut Widths) {
+    let bends: Vec<f64> = path.windows(3).map(bend).collect();
+    for k in 0..path.len() {
+        let (first, last) = (k.saturating_sub(3).min(bends.len() - 1), (k + 1).min(bends.len() - 1));
+        for &kappa in &bends[first..=last] {
+            let side = if kappa > 0.0 { &mut widths.left_m } else { &mut widths.right_m };
+            side[k] = side[k].min(MOST_CROSSING / kappa.abs().max(1e-9));
+        }
+    }
+}
