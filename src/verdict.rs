@@ -48,6 +48,8 @@ pub enum ForbiddenReason {
     Access,
     /// A barrier node that a vehicle of this kind cannot pass.
     Barrier,
+    /// A turn restriction; of turns only.
+    Restriction,
 }
 
 /// Why nothing can be said.

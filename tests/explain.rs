@@ -28,7 +28,7 @@ fn vehicle(id: &str) -> Vehicle {
 }
 
 fn settings() -> Settings {
-    Settings { policy: Policy::Lane, corridor: Params::default(), stet: Options::default() }
+    Settings { policy: Policy::Lane, corridor: Params::default(), stet: Options::default(), turns: true }
 }
 
 /// The demo region's network and what its database keeps for a vehicle, by edge.

@@ -28,6 +28,9 @@ pub(crate) struct How {
     /// How far the steer axle may be planned off the centreline to leave the trailers room, metres [default: 1.5].
     #[arg(long, value_name = "METRES", value_parser = metres)]
     max_shift: Option<f64>,
+    /// Certify edges only, no turns.
+    #[arg(long)]
+    no_turns: bool,
 }
 
 impl How {
@@ -46,12 +49,13 @@ impl How {
                 ..base.corridor
             },
             stet: Options { max_shift_m: self.max_shift.unwrap_or(base.stet.max_shift_m), ..base.stet },
+            turns: base.turns && !self.no_turns,
         }
     }
 }
 
 fn default_settings() -> Settings {
-    Settings { policy: Policy::Lane, corridor: Params::default(), stet: Options::default() }
+    Settings { policy: Policy::Lane, corridor: Params::default(), stet: Options::default(), turns: true }
 }
 
 /// What the database's ingest was given.
@@ -60,7 +64,7 @@ pub(crate) fn recorded(database: &mut Database) -> Result<Settings, StoreError> 
     let ingest = runs.iter().rev().find(|(run, _)| run.command == "ingest");
     let parameters: Value = ingest.and_then(|(run, _)| serde_json::from_str(&run.parameters).ok()).unwrap_or_default();
     let number = |name: &str, default: f64| parameters[name].as_f64().unwrap_or(default);
-    let Settings { policy, corridor, stet } = default_settings();
+    let Settings { policy, corridor, stet, turns } = default_settings();
     Ok(Settings {
         policy: parameters["corridor"].as_str().and_then(Policy::named).unwrap_or(policy),
         corridor: Params {
@@ -69,12 +73,13 @@ pub(crate) fn recorded(database: &mut Database) -> Result<Settings, StoreError> 
             ..corridor
         },
         stet: Options { max_shift_m: number("max_shift_m", stet.max_shift_m), ..stet },
+        turns: parameters["turns"].as_bool().unwrap_or(turns),
     })
 }
 
 /// All of it, for the `run` record; [`recorded`] reads it again.
 pub(crate) fn parameters(settings: &Settings) -> serde_json::Map<String, Value> {
-    let Settings { policy, corridor, stet } = settings;
+    let Settings { policy, corridor, stet, turns } = settings;
     let pairs = [
         ("corridor", json!(policy.name())),
         ("smoothing_tolerance_m", json!(corridor.tolerance_m)),
@@ -84,6 +89,7 @@ pub(crate) fn parameters(settings: &Settings) -> serde_json::Map<String, Value> 
         ("lead_in_m", json!(corridor.lead_in_m)),
         ("max_shift_m", json!(stet.max_shift_m)),
         ("correction_sweeps", json!(stet.correction_sweeps)),
+        ("turns", json!(turns)),
     ];
     pairs.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }

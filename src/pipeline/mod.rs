@@ -6,6 +6,7 @@
 
 mod certificates;
 mod select;
+mod turns;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -15,6 +16,7 @@ use thiserror::Error;
 pub(crate) use certificates::verdict;
 pub use certificates::{Job, certify_network};
 pub use select::{Selection, own_countries, selected};
+pub use turns::{TurnJob, TurnOutcome, best_of, certify_turns, turn_verdict};
 
 use crate::account::AccountRow;
 use crate::corridor::Params;
@@ -23,7 +25,9 @@ use crate::osm::facts::{Countries, CountriesError, Policy, RulesError, cross_sec
 use crate::osm::pbf::{HeaderInfo, ReadError};
 use crate::osm::{self};
 use crate::stet::{Model, ModelError, Options};
-use crate::store::{Database, Run, StoreError, VehicleRecord, Writer};
+use crate::turns::{Kerbs, TurnFacts, TurnParams, turn_facts};
+use crate::verdict::{UnknownReason, Verdict};
+use crate::store::{Database, EdgeCertificate, Run, StoreError, VehicleRecord, Writer};
 use crate::vehicle::{Catalogue, Vehicle, VehicleError};
 
 /// What can end a run.
@@ -86,6 +90,16 @@ pub struct Settings {
     pub corridor: Params,
     /// How corrections are made.
     pub stet: Options,
+    /// Whether turns are certified, too.
+    pub turns: bool,
+}
+
+impl Settings {
+    /// How turns are made.
+    #[must_use]
+    pub fn turn_params(&self) -> TurnParams {
+        TurnParams { corridor: self.corridor, kerbs: Kerbs::default() }
+    }
 }
 
 /// What `ingest` is asked to do.
@@ -234,7 +248,9 @@ fn certify_into(
     let numbers =
         models.iter().map(|m| Ok(writer.vehicle(record(&m.vehicle)?))).collect::<Result<Vec<_>, RunError>>()?;
     let job = Job { network, models, settings };
+    let mut verdicts = EdgeVerdicts::new(network, models, settings);
     let outcome = certify_network(&job, reporter, |vehicle, certificate| {
+        verdicts.note(vehicle, certificate);
         writer.certificate(numbers[vehicle], settings.policy, certificate)
     })?;
     summary.account.extend(outcome.rows());
@@ -243,7 +259,37 @@ fn certify_into(
         writer.plans(numbers[vehicle], settings.policy, vec![plan]);
     }
     writer.network(network, &outcome.measures)?;
+    if !settings.turns {
+        return Ok(());
+    }
+    let clock = Instant::now();
+    let params = settings.turn_params();
+    let turns = turn_facts(network, &params.kerbs);
+    writer.turns(network, turns.clone())?;
+    let job = TurnJob { network, turns: &turns, models, edges: &verdicts.0, settings, params: &params };
+    let outcome = certify_turns(&job, reporter, |vehicle, certificate| {
+        writer.turn_certificate(numbers[vehicle], settings.policy, certificate)
+    })?;
+    summary.account.extend(outcome.rows());
+    summary.stage("turns", clock, outcome.certificates(), "turn certificates");
     Ok(())
+}
+
+/// By vehicle and edge: the verdict; empty where nobody asks.
+struct EdgeVerdicts(Vec<Vec<Verdict>>);
+
+impl EdgeVerdicts {
+    fn new(network: &Network, models: &[Model], settings: &Settings) -> Self {
+        let edges = if settings.turns { network.edges.len() } else { 0 };
+        Self(vec![vec![Verdict::Unknown(UnknownReason::Geometry); edges]; models.len()])
+    }
+
+    fn note(&mut self, vehicle: usize, certificate: &EdgeCertificate) {
+        let slot = self.0.get_mut(vehicle).and_then(|edges| edges.get_mut(certificate.edge as usize));
+        if let Some(slot) = slot {
+            *slot = certificate.verdict;
+        }
+    }
 }
 
 /// What `certify` is asked to do.
@@ -280,12 +326,31 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
     let models = ask.vehicles.iter().map(|v| Model::new(v)).collect::<Result<Vec<_>, _>>()?;
     let mut certificates = vec![Vec::new(); models.len()];
     let job = Job { network: &network, models: &models, settings: ask.settings };
+    let mut verdicts = EdgeVerdicts::new(&network, &models, ask.settings);
     let mut outcome = certify_network(&job, reporter, |vehicle, certificate| {
+        verdicts.note(vehicle, certificate);
         certificates[vehicle].push(certificate.clone());
         Ok::<(), StoreError>(())
     })?;
     summary.account.extend(outcome.rows());
     summary.stage("certificates", clock, outcome.certificates(), "certificates");
+
+    let mut turn_certificates = vec![Vec::new(); models.len()];
+    let mut turns: Option<Vec<TurnFacts>> = None;
+    if ask.settings.turns {
+        let clock = Instant::now();
+        let params = ask.settings.turn_params();
+        let facts = turn_facts(&network, &params.kerbs);
+        let (edges, settings) = (&verdicts.0[..], ask.settings);
+        let job = TurnJob { network: &network, turns: &facts, models: &models, edges, settings, params: &params };
+        let outcome = certify_turns(&job, reporter, |vehicle, certificate| {
+            turn_certificates[vehicle].push(certificate.clone());
+            Ok::<(), StoreError>(())
+        })?;
+        summary.account.extend(outcome.rows());
+        summary.stage("turns", clock, outcome.certificates(), "turn certificates");
+        turns = Some(facts);
+    }
 
     let clock = Instant::now();
     reporter.begin("store", 0);
@@ -293,7 +358,7 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
     for (vehicle, plan) in std::mem::take(&mut outcome.plans) {
         plans[vehicle].push(plan);
     }
-    for ((model, certificates), plans) in models.iter().zip(certificates).zip(plans) {
+    for (((model, certificates), plans), turned) in models.iter().zip(certificates).zip(plans).zip(turn_certificates) {
         let run = Run {
             command: ask.command.to_owned(),
             input_name: ask.db.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -305,7 +370,11 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
             parameters: ask.parameters.to_string(),
         };
         let vehicle = record(&model.vehicle)?;
-        db.replace_certificates(&vehicle, ask.settings.policy, certificates, plans, &run, &summary.account)?;
+        let policy = ask.settings.policy;
+        db.replace_certificates(&vehicle, policy, certificates, plans, &run, &summary.account)?;
+        if let Some(turns) = &turns {
+            db.replace_turns((&vehicle.id, policy), &network, turns, turned, &run.finished)?;
+        }
         summary.vehicles.push(model.vehicle.id.clone());
     }
     db.close()?;

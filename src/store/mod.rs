@@ -2,8 +2,6 @@
 //!
 //! [`Database::create`] makes a new file beside the old one and puts it in place when it is whole; [`Database::open`]
 //! reads one. Certificates are kept as small integers that never promise more than what was computed.
-//!
-//! Left out: turns, which have no tables yet.
 
 mod blob;
 mod bulk;
@@ -22,6 +20,7 @@ mod session;
 mod sets;
 mod spool;
 mod stats;
+mod turns;
 mod writer;
 
 pub use blob::Bounds;
@@ -34,4 +33,5 @@ pub use plans::StoredPlan;
 pub use query::{Area, EdgeRow, QueryOptions, Rows, VerdictKind};
 pub use records::{Run, VehicleRecord};
 pub use stats::{Stats, StatsRow};
+pub use turns::{TurnCertificate, TurnCount, TurnQuery, TurnRow};
 pub use writer::{VehicleNo, Writer};

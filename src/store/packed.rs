@@ -47,6 +47,8 @@ pub(super) struct Packed {
     pub(super) shrink_milli: Option<u16>,
     pub(super) limiting_s_dm: Option<u32>,
     pub(super) limiting_at: Option<u16>,
+    /// Of turns only: which path.
+    pub(super) path_no: Option<u8>,
 }
 
 impl EdgeCertificate {
@@ -63,6 +65,7 @@ impl EdgeCertificate {
             shrink_milli: None,
             limiting_s_dm: None,
             limiting_at: None,
+            path_no: None,
         };
         if let Some(m) = &self.measured {
             packed.rsc_mm = floor_to(m.rsc_m, 1000.0);
@@ -108,7 +111,7 @@ fn shrink_milli(shrink: f64) -> Result<u16, String> {
 
 impl Packed {
     /// Bytes of [`Packed::to_bytes`].
-    pub(super) const BYTES: usize = 25;
+    pub(super) const BYTES: usize = 26;
 
     /// For the spool.
     pub(super) fn to_bytes(self) -> [u8; Self::BYTES] {
@@ -121,6 +124,7 @@ impl Packed {
         bytes[17..19].copy_from_slice(&self.shrink_milli.unwrap_or(u16::MAX).to_le_bytes());
         bytes[19..23].copy_from_slice(&self.limiting_s_dm.unwrap_or(u32::MAX).to_le_bytes());
         bytes[23..25].copy_from_slice(&self.limiting_at.unwrap_or(u16::MAX).to_le_bytes());
+        bytes[25] = self.path_no.unwrap_or(u8::MAX);
         bytes
     }
 
@@ -141,6 +145,7 @@ impl Packed {
             shrink_milli: short(17),
             limiting_s_dm: Some(unsigned(19)).filter(|&value| value != u32::MAX),
             limiting_at: short(23),
+            path_no: Some(b[25]).filter(|&value| value != u8::MAX),
         }
     }
 }

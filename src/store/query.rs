@@ -181,7 +181,7 @@ impl Database {
     }
 }
 
-fn polygons(area: &Area) -> geo::MultiPolygon {
+pub(super) fn polygons(area: &Area) -> geo::MultiPolygon {
     let rect = |west, south, east, north| geo::Rect::new((west, south), (east, north)).to_polygon();
     match area {
         Area::Polygons(polygons) => polygons.clone(),

@@ -148,6 +148,8 @@ pub(super) async fn add_layer(
 
 /// Takes a set away, with its layer.
 pub(super) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_no: u8) -> Sql<()> {
+    // They rest on the edges' verdicts.
+    super::turns::remove(c, vehicle_no, corridor_no).await?;
     let layer: Option<String> =
         sqlx::query_scalar("SELECT layer FROM certified_set WHERE vehicle_no = ? AND corridor_no = ?")
             .bind(vehicle_no)

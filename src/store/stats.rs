@@ -9,6 +9,7 @@ use super::database::Database;
 use super::error::{StoreError, content};
 use super::names::{Named, verdict_of};
 use super::network_read::{word, word_or_none};
+use super::turns::{self, TurnCount};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -40,6 +41,8 @@ pub struct Stats {
     pub widths: Vec<(Policy, Option<WidthSource>, u64, f64)>,
     /// By vehicle, policy, class and verdict; those with no edge are left out.
     pub certificates: Vec<StatsRow>,
+    /// Turns by vehicle, policy and verdict.
+    pub turns: Vec<TurnCount>,
 }
 
 impl Database {
@@ -75,10 +78,11 @@ impl Database {
                         JOIN vehicle USING (vehicle_no) JOIN corridor USING (corridor_no) \
                         ORDER BY vehicle_no, corridor_no, highway, verdict_no";
             let rows = sqlx::query(rows).fetch_all(&mut *c).await?;
-            sqlx::raw_sql("DROP TABLE temp.brief").execute(c).await?;
+            sqlx::raw_sql("DROP TABLE temp.brief").execute(&mut *c).await?;
+            let turns = turns::counts(c).await?;
             let network = network.into_iter().map(|(class, edges, m)| (class, edges.unsigned_abs(), m)).collect();
             let certificates = rows.iter().map(stats_row).collect::<Sql<_>>()?;
-            Ok(Stats { roads: roads.unsigned_abs(), network, widths, certificates })
+            Ok(Stats { roads: roads.unsigned_abs(), network, widths, certificates, turns })
         })
     }
 }

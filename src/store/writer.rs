@@ -11,6 +11,7 @@ use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, Sq
 use crate::account::AccountRow;
 use crate::network::Network;
 use crate::osm::facts::Policy;
+use crate::turns::TurnFacts;
 
 use super::blob::Bounds;
 use super::database::Database;
@@ -25,6 +26,7 @@ use super::restrictions::{self, Restrictions};
 use super::session::{BEFORE_DATA, MIGRATIONS, Session};
 use super::sets::{self, Set};
 use super::spool::Spool;
+use super::turns::{self, TurnCertificate};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -46,6 +48,8 @@ pub struct Writer {
     network: Option<(u32, Option<Bounds>)>,
     /// Written last: their table comes with a later migration.
     restrictions: Restrictions,
+    /// The same; rows, and where their certificates wait.
+    turns: Option<(Vec<turns::Record>, Spool)>,
     part: Part,
 }
 
@@ -90,6 +94,7 @@ impl Database {
             plans: BTreeMap::new(),
             network: None,
             restrictions: Restrictions::default(),
+            turns: None,
             part,
         })
     }
@@ -136,6 +141,28 @@ impl Writer {
         self.plans.entry((vehicle.0, corridor_no(policy))).or_default().extend(plans);
     }
 
+    /// Adds the turns of the network, once, before their certificates.
+    pub fn turns(&mut self, network: &Network, facts: Vec<TurnFacts>) -> Result<(), StoreError> {
+        let spool = Spool::create(with_suffix(&self.part.path, "-turns"))?;
+        self.turns = Some((turns::records(network, facts), spool));
+        Ok(())
+    }
+
+    /// Adds the certificate of one turn, in any order: of each vehicle and policy that gets any, every turn must get exactly one.
+    pub fn turn_certificate(
+        &mut self,
+        vehicle: VehicleNo,
+        policy: Policy,
+        certificate: &TurnCertificate,
+    ) -> Result<(), StoreError> {
+        let packed =
+            certificate.pack().map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.turn, detail))?;
+        match &mut self.turns {
+            Some((_, spool)) => spool.push((vehicle.0, corridor_no(policy)), packed, &self.session.path),
+            None => Ok(()),
+        }
+    }
+
     /// Adds to the account of the run.
     pub fn account(&mut self, rows: &[AccountRow]) {
         self.account.extend_from_slice(rows);
@@ -175,12 +202,32 @@ impl Writer {
             for (&(vehicle_no, corridor), plans) in all_plans {
                 plans::insert(c, vehicle_no, corridor, plans).await?;
             }
-            sqlx::query("COMMIT").execute(&mut *c).await?;
-            check(c).await
+            sqlx::query("COMMIT").execute(c).await
         })?;
+        self.finish_turns(run, run_id)?;
+        self.session.run(async |c| check(c).await)?;
         self.session.close()?;
         settle(&self.part.target)?;
         self.part.place()
+    }
+}
+
+impl Writer {
+    /// Turns, their layer and their certificates.
+    fn finish_turns(&mut self, run: &Run, run_id: i64) -> Result<(), StoreError> {
+        let Some((records, mut spool)) = self.turns.take() else { return Ok(()) };
+        self.session.run(async |c| {
+            sqlx::query("BEGIN").execute(&mut *c).await?;
+            turns::add(c, &records, &run.finished).await
+        })?;
+        while let Some(((vehicle_no, corridor), rows)) = spool.take_first(&self.session.path)? {
+            sets::check_complete(&rows, records.len() as u32)
+                .map_err(|(turn, detail)| unsound(&self.vehicles, vehicle_no, turn, detail.to_owned()))?;
+            let policy = Policy::ALL[usize::from(corridor)];
+            self.session.run(async |c| turns::insert(c, (vehicle_no, policy, run_id), &rows).await)?;
+        }
+        self.session.run(async |c| sqlx::query("COMMIT").execute(c).await)?;
+        Ok(())
     }
 }
 

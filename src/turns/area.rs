@@ -19,7 +19,7 @@ const COLLINEAR_M: f64 = 5e-4;
 /// The kerb return overlaps the roads by so much, so that rounding leaves no gap between them, metres.
 const OVERLAP_M: f64 = 0.3;
 /// Sharpest and widest corner that gets a kerb return, radians.
-const CORNERS_RAD: std::ops::RangeInclusive<f64> = 0.17..=2.62;
+pub(super) const CORNERS_RAD: std::ops::RangeInclusive<f64> = 0.17..=2.62;
 /// A kerb return reaches no farther along its roads than this, metres.
 const MOST_RETURN_M: f64 = 15.0;
 /// Chord of a kerb return's arc, radians of arc: the arc is cut off outside, on the side of less room.

@@ -8,9 +8,9 @@ use super::area::{Ground, along, segments_cross};
 use super::arm::{Arm, StrokeLine};
 use super::path::{self, Pose, STEP_M, wrapped};
 use super::rays::{Boundary, Widths};
-use super::{Between, Joint, Reach, TurnCorridors, TurnParams, TurnPath};
+use super::{Joint, Reach, TurnCorridors, TurnParams, TurnPath};
 use crate::corridor::{Corridor, Frame};
-use crate::network::Network;
+use crate::network::{Movement, Network};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
 
@@ -46,20 +46,20 @@ pub(super) struct Junction<'a> {
 impl<'a> Junction<'a> {
     pub(super) fn new(
         network: &Network,
-        between: Between,
+        movement: Movement,
         lines: [&'a StrokeLine; 2],
         policy: Policy,
         params: &TurnParams,
         reach: Reach,
     ) -> Result<Self, UnknownReason> {
         let edge = |index: u32| network.edges.get(index as usize).ok_or(UnknownReason::Geometry);
-        let (from, to) = (network.road(edge(between.from)?), network.road(edge(between.to)?));
+        let (from, to) = (network.road(edge(movement.from)?), network.road(edge(movement.to)?));
         let frame = lines[0].frame;
         let before_m = reach.run_in_m() + reach.counted_before_m() + FROM_CORNER_M[FROM_CORNER_M.len() - 1] + PROLONGED_M;
         let after_m = reach.counted_after_m() + MEET_M + 1.0;
         Ok(Self {
-            from: Arm::arriving(lines[0], between.from, frame, [before_m, MEET_M])?,
-            to: Arm::leaving(lines[1], between.to, frame, [MEET_M, after_m])?,
+            from: Arm::arriving(lines[0], movement.from, frame, [before_m, MEET_M])?,
+            to: Arm::leaving(lines[1], movement.to, frame, [MEET_M, after_m])?,
             lines,
             frame,
             policy,

@@ -13,15 +13,19 @@
 //! | `path` | transition, arc, transition; lane shifts |
 //! | `rays` | how wide the area is along a path |
 //! | `family` | which paths there are, and the corridors they give |
+//! | `rank` | which of them a vehicle's certificate is worth trying on |
+//! | `facts` | what the map says of a turn: id, angle, line |
 //!
 //! Left out: mapped junction areas and lane markings inside the junction; lanes for turning (`turn:lanes`): the vehicle arrives
 //! and leaves in the lanes that its edges are certified for.
 
 mod area;
 mod arm;
+mod facts;
 mod family;
 mod kerbs;
 mod path;
+mod rank;
 mod rays;
 
 use std::ops::Range;
@@ -29,21 +33,14 @@ use std::ops::Range;
 use geo::MultiPolygon;
 
 pub use arm::StrokeLine;
+pub use facts::{KerbSource, TurnFacts, turn_facts};
 pub use kerbs::Kerbs;
+pub use rank::nominal_leeway_m;
 
 use crate::corridor::{Corridor, Frame, Params};
-use crate::network::Network;
+use crate::network::{Movement, Network};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
-
-/// From one edge into another at the node where the first ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Between {
-    /// Index into `Network::edges`.
-    pub from: u32,
-    /// Index into `Network::edges`.
-    pub to: u32,
-}
 
 /// How turns are made into corridors.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -151,7 +148,7 @@ pub struct TurnCorridors {
 /// One of its edges has no corridor.
 pub fn turn_corridors(
     network: &Network,
-    between: Between,
+    movement: Movement,
     policy: Policy,
     params: &TurnParams,
     reach: Reach,
@@ -160,7 +157,7 @@ pub fn turn_corridors(
         let stroke = stroke_of(network, edge).ok_or(UnknownReason::Geometry)?;
         StrokeLine::new(network, stroke, policy, &params.corridor)
     };
-    turn_on(network, between, [&line(between.from)?, &line(between.to)?], policy, params, reach)
+    turn_on(network, movement, [&line(movement.from)?, &line(movement.to)?], policy, params, reach)
 }
 
 /// As [`turn_corridors`], on the lines of the two edges' strokes.
@@ -169,13 +166,13 @@ pub fn turn_corridors(
 /// One of the edges has no corridor.
 pub fn turn_on(
     network: &Network,
-    between: Between,
+    movement: Movement,
     lines: [&StrokeLine; 2],
     policy: Policy,
     params: &TurnParams,
     reach: Reach,
 ) -> Result<TurnCorridors, UnknownReason> {
-    family::Junction::new(network, between, lines, policy, params, reach)?.corridors()
+    family::Junction::new(network, movement, lines, policy, params, reach)?.corridors()
 }
 
 /// The stroke that an edge belongs to.

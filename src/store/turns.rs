@@ -1,0 +1,389 @@
+//! Turns and their certificates in the database: written beside the edges', read for `query`, `explain` and `stats`.
+//!
+//! A set of turn certificates is complete or not there at all, like a set of edges'.
+
+use sqlx::sqlite::{SqliteConnection, SqliteRow};
+use sqlx::{AssertSqlSafe, Row as _};
+
+use crate::network::Network;
+use crate::osm::LonLat;
+use crate::osm::facts::Policy;
+use crate::stet::Side;
+use crate::turns::{KerbSource, TurnFacts};
+use crate::verdict::Verdict;
+
+use super::blob::{self, Bounds};
+use super::bulk::Bulk;
+use super::database::Database;
+use super::error::{StoreError, content};
+use super::names::{Named, corridor_no, verdict_of};
+use super::packed::{EdgeCertificate, Measured, Packed};
+use super::sets;
+use super::query::{Area, VerdictKind, polygons};
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+const COLUMNS: &str = "turn_certificate_compact (vehicle_no, corridor_no, fid, verdict_no, rsc_mm, rsc_published_mm, \
+                       hinge_margin_cdeg, shrink_milli, limiting_s_dm, limiting_at, path_no)";
+
+/// The certificate of one turn, for a vehicle and policy named beside it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TurnCertificate {
+    /// Index into the network's turns ([`crate::turns::turn_facts`]).
+    pub turn: u32,
+    /// With its reason.
+    pub verdict: Verdict,
+    /// What was computed; `None` where nothing was.
+    pub measured: Option<Measured>,
+    /// The path it rests on.
+    pub path: Option<u8>,
+}
+
+impl TurnCertificate {
+    pub(super) fn pack(&self) -> Result<Packed, String> {
+        let Self { turn, verdict, measured, path } = self;
+        let packed = EdgeCertificate { edge: *turn, verdict: *verdict, measured: *measured }.pack()?;
+        Ok(Packed { path_no: *path, ..packed })
+    }
+}
+
+/// A turn, ready to be written without the network.
+pub(super) struct Record {
+    facts: TurnFacts,
+    via_node: i64,
+    /// The tagged words of the restriction that forbids it.
+    restriction: Option<String>,
+}
+
+/// Turns as they are written.
+pub(super) fn records(network: &Network, turns: Vec<TurnFacts>) -> Vec<Record> {
+    let record = |facts: TurnFacts| {
+        let via_node = network.edges.get(facts.movement.from as usize).map_or(0, |edge| edge.to_node);
+        let forbids = facts.movement.forbidden.and_then(|no| network.restrictions.get(no as usize));
+        Record { via_node, restriction: forbids.map(|restriction| restriction.kind.name()), facts }
+    };
+    turns.into_iter().map(record).collect()
+}
+
+/// `left`, `right`, or which way the road forks.
+fn kind(angle_deg: f64) -> &'static str {
+    match angle_deg {
+        a if a > 150.0 => "sharp_left",
+        a if a > 35.0 => "left",
+        a if a > 0.0 => "slight_left",
+        a if a > -35.0 => "slight_right",
+        a if a > -150.0 => "right",
+        _ => "sharp_right",
+    }
+}
+
+/// Writes the table `turn`; gives the box around it. Turns keep their order: `fid` is the index + 1.
+pub(super) async fn write(c: &mut SqliteConnection, turns: &[Record]) -> Sql<Option<Bounds>> {
+    let mut bulk = Bulk::new("turn", 11);
+    let mut bounds: Option<Bounds> = None;
+    for (fid, Record { facts, via_node, restriction }) in (1_i64..).zip(turns) {
+        let (geom, around) =
+            blob::encode(facts.line.iter().copied()).ok_or_else(|| content("a turn has no line"))?;
+        bounds = Some(bounds.map_or(around, |b| b.union(around)));
+        bulk.add(fid)?;
+        bulk.add(facts.id)?;
+        bulk.add(i64::from(facts.movement.from) + 1)?;
+        bulk.add(i64::from(facts.movement.to) + 1)?;
+        bulk.add(*via_node)?;
+        bulk.add(geom)?;
+        bulk.add((facts.angle_deg * 10.0).round() / 10.0)?;
+        bulk.add(kind(facts.angle_deg))?;
+        bulk.add(facts.kerb_radius_m)?;
+        bulk.add(facts.kerb_radius_m.map(|_| match facts.kerb_source {
+            KerbSource::Assumed => "assumed",
+        }))?;
+        bulk.add(restriction.as_deref())?;
+        bulk.end_row(c).await?;
+    }
+    bulk.finish(c).await?;
+    Ok(bounds)
+}
+
+/// Writes the turns and enters them as a layer; those of an older run go.
+pub(super) async fn add(c: &mut SqliteConnection, records: &[Record], time: &str) -> Sql<()> {
+    for sql in [
+        "DELETE FROM turn",
+        "DELETE FROM gpkg_geometry_columns WHERE table_name = 'turn'",
+        "DELETE FROM gpkg_contents WHERE table_name = 'turn'",
+    ] {
+        sqlx::query(sql).execute(&mut *c).await?;
+    }
+    let bounds = write(c, records).await?;
+    sets::add_layer(c, "turn", "Turns at junctions", time, bounds).await
+}
+
+/// Inserts a complete set; it must not be there.
+pub(super) async fn insert(
+    c: &mut SqliteConnection,
+    (vehicle_no, policy, run_id): (u32, Policy, i64),
+    rows: &[Packed],
+) -> Sql<()> {
+    let corridor = corridor_no(policy);
+    let mut bulk = Bulk::new(COLUMNS, 11);
+    for row in rows {
+        bulk.add(vehicle_no)?;
+        bulk.add(corridor)?;
+        bulk.add(row.fid)?;
+        bulk.add(row.verdict_no)?;
+        bulk.add(row.rsc_mm)?;
+        bulk.add(row.rsc_published_mm)?;
+        bulk.add(row.hinge_margin_cdeg)?;
+        bulk.add(row.shrink_milli)?;
+        bulk.add(row.limiting_s_dm)?;
+        bulk.add(row.limiting_at)?;
+        bulk.add(row.path_no)?;
+        bulk.end_row(c).await?;
+    }
+    bulk.finish(c).await?;
+    let set = sqlx::query("INSERT INTO certified_turns VALUES (?, ?, ?, ?)").bind(vehicle_no).bind(corridor);
+    set.bind(run_id).bind(rows.len() as i64).execute(c).await?;
+    Ok(())
+}
+
+/// Takes a set away, if it is there.
+pub(super) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_no: u8) -> Sql<()> {
+    for table in ["certified_turns", "turn_certificate_compact"] {
+        let sql = format!("DELETE FROM {table} WHERE vehicle_no = ? AND corridor_no = ?");
+        sqlx::query(AssertSqlSafe(sql)).bind(vehicle_no).bind(corridor_no).execute(&mut *c).await?;
+    }
+    Ok(())
+}
+
+/// What is asked of turns. All conditions must hold.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TurnQuery {
+    /// Vehicle id.
+    pub vehicle: String,
+    /// Which width counts.
+    pub policy: Policy,
+    /// Only turns whose line touches it.
+    pub area: Option<Area>,
+    /// Only this turn (`turn_id`).
+    pub turn_id: Option<i64>,
+    /// Only this verdict.
+    pub verdict: Option<VerdictKind>,
+    /// Only with an RSC of at least so many metres.
+    pub min_rsc_m: Option<f64>,
+}
+
+impl TurnQuery {
+    /// Every turn of a vehicle.
+    #[must_use]
+    pub fn new(vehicle: &str, policy: Policy) -> Self {
+        let vehicle = vehicle.to_owned();
+        Self { vehicle, policy, area: None, turn_id: None, verdict: None, min_rsc_m: None }
+    }
+}
+
+/// One turn with its certificate, in the units of the view `turn_certificate`.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)] // the columns of `turn` and `turn_certificate`
+pub struct TurnRow {
+    /// Index into the network's turns.
+    pub turn: u32,
+    pub turn_id: i64,
+    pub from_edge: i64,
+    pub to_edge: i64,
+    pub via_node: i64,
+    /// Positive left.
+    pub angle_deg: f64,
+    pub kind: String,
+    pub kerb_radius_m: Option<f64>,
+    pub kerb_source: Option<String>,
+    pub restriction: Option<String>,
+    /// Names of the roads, or their refs.
+    pub from_name: Option<String>,
+    pub to_name: Option<String>,
+    pub verdict: Verdict,
+    pub rsc_m: Option<f64>,
+    pub hinge_margin_deg: Option<f64>,
+    pub shrink: Option<f64>,
+    pub limiting_s_m: Option<f64>,
+    pub limiting_unit: Option<u16>,
+    pub limiting_side: Option<Side>,
+    pub path_no: Option<u8>,
+    /// In driving order.
+    pub line: Vec<LonLat>,
+}
+
+impl Database {
+    /// Whether the database has this vehicle's turns.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn has_turns(&mut self, vehicle: &str, policy: Policy) -> Result<bool, StoreError> {
+        let count: i64 = self.session.run(async |c| {
+            let sql = "SELECT count(*) FROM certified_turns JOIN vehicle USING (vehicle_no) \
+                       WHERE vehicle_id = ? AND corridor_no = ?";
+            sqlx::query_scalar(sql).bind(vehicle).bind(corridor_no(policy)).fetch_one(c).await
+        })?;
+        Ok(count > 0)
+    }
+
+    /// Turns with their certificates, in order of the network.
+    ///
+    /// # Errors
+    /// The vehicle's turns are not certified here ([`StoreError::NotThere`]); the file cannot be read.
+    pub fn query_turns(&mut self, options: &TurnQuery) -> Result<Vec<TurnRow>, StoreError> {
+        if !self.has_turns(&options.vehicle, options.policy)? {
+            let (vehicle, policy) = (&options.vehicle, options.policy.name());
+            return Err(StoreError::NotThere {
+                path: self.session.path.clone(),
+                detail: format!(
+                    "the turns of {vehicle} are not certified here under the {policy} policy; run `netcert certify \
+                     --vehicle {vehicle} --corridor {policy}`"
+                ),
+            });
+        }
+        let area = options.area.as_ref().map(polygons);
+        let mut rows = self.session.run(async |c| fetch(c, options).await)?;
+        if let Some(area) = area {
+            use geo::Intersects as _;
+            rows.retain(|row| {
+                area.intersects(&row.line.iter().map(|place| place.degrees()).collect::<geo::LineString>())
+            });
+        }
+        Ok(rows)
+    }
+}
+
+impl Database {
+    /// Puts a complete set of turn certificates in place of the old one, in one step; writes the turns themselves if the database
+    /// has none yet. The vehicle's edges must be certified.
+    ///
+    /// # Errors
+    /// A certificate is missing or claims more than its numbers say; the file cannot be written.
+    pub fn replace_turns(
+        &mut self,
+        (vehicle, policy): (&str, Policy),
+        network: &Network,
+        turns: &[TurnFacts],
+        certificates: impl IntoIterator<Item = TurnCertificate>,
+        time: &str,
+    ) -> Result<(), StoreError> {
+        let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.to_owned(), detail };
+        let pack = |turn: TurnCertificate| turn.pack().map_err(|why| unsound(turn.turn, why));
+        let mut rows = certificates.into_iter().map(pack).collect::<Result<Vec<Packed>, _>>()?;
+        rows.sort_unstable_by_key(|row| row.fid);
+        sets::check_complete(&rows, turns.len() as u32).map_err(|(turn, why)| unsound(turn, why.to_owned()))?;
+        self.session.run(async |c| {
+            sqlx::query("BEGIN IMMEDIATE").execute(&mut *c).await?;
+            let done = replace(c, (vehicle, policy), (network, turns), &rows, time).await;
+            let end = if done.is_ok() { "COMMIT" } else { "ROLLBACK" };
+            let ended = sqlx::query(end).execute(&mut *c).await;
+            done.and(ended.map(|_| ()))
+        })
+    }
+}
+
+async fn replace(
+    c: &mut SqliteConnection,
+    (vehicle, policy): (&str, Policy),
+    (network, turns): (&Network, &[TurnFacts]),
+    rows: &[Packed],
+    time: &str,
+) -> Sql<()> {
+    let (kept, layers): (i64, i64) = sqlx::query_as(
+        "SELECT (SELECT count(*) FROM turn), (SELECT count(*) FROM gpkg_contents WHERE table_name = 'turn')",
+    )
+    .fetch_one(&mut *c)
+    .await?;
+    if layers == 0 {
+        add(c, &records(network, turns.to_vec()), time).await?;
+    } else if kept != turns.len() as i64 {
+        return Err(content(format!("{kept} turns are stored, the network has {}", turns.len())));
+    }
+    let set = "SELECT vehicle_no, run_id FROM certified_set JOIN vehicle USING (vehicle_no) \
+               WHERE vehicle_id = ? AND corridor_no = ?";
+    let (vehicle_no, run_id): (u32, i64) =
+        sqlx::query_as(set).bind(vehicle).bind(corridor_no(policy)).fetch_one(&mut *c).await?;
+    remove(c, vehicle_no, corridor_no(policy)).await?;
+    insert(c, (vehicle_no, policy, run_id), rows).await
+}
+
+async fn fetch(c: &mut SqliteConnection, options: &TurnQuery) -> Sql<Vec<TurnRow>> {
+    let mut sql = "SELECT c.fid, t.turn_id, a.edge_id, b.edge_id, t.via_node, t.angle_deg, t.kind, t.kerb_radius_m, \
+                   t.kerb_source, t.restriction, coalesce(a.name, a.ref), coalesce(b.name, b.ref), c.verdict_no, \
+                   c.rsc_mm, c.hinge_margin_cdeg, c.shrink_milli, c.limiting_s_dm, c.limiting_at, c.path_no, t.geom \
+                   FROM turn_certificate_compact AS c CROSS JOIN turn AS t ON t.fid = c.fid \
+                   CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid \
+                   WHERE c.corridor_no = ? AND c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?)"
+        .to_owned();
+    if let Some(kind) = options.verdict {
+        let first = 10 * kind as u8; // numbers go by tens: see `names::VERDICTS`
+        sql += &format!(" AND c.verdict_no BETWEEN {first} AND {}", first + 9);
+    }
+    if let Some(rsc_m) = options.min_rsc_m {
+        sql += &format!(" AND c.rsc_mm >= {}", rsc_m * 1000.0);
+    }
+    if let Some(id) = options.turn_id {
+        sql += &format!(" AND c.fid = (SELECT fid FROM turn WHERE turn_id = {id})");
+    }
+    sql += " ORDER BY c.fid";
+    let rows = sqlx::query(AssertSqlSafe(sql)).bind(corridor_no(options.policy)).bind(&options.vehicle);
+    rows.fetch_all(c).await?.iter().map(turn_row).collect()
+}
+
+fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
+    let fid: u32 = row.try_get(0)?;
+    let verdict_no: i64 = row.try_get(12)?;
+    let at: Option<u16> = row.try_get(17)?;
+    let parts = |column, parts: f64| -> Sql<Option<f64>> {
+        Ok(row.try_get::<Option<i64>, _>(column)?.map(|whole| whole as f64 / parts))
+    };
+    Ok(TurnRow {
+        turn: fid.saturating_sub(1),
+        turn_id: row.try_get(1)?,
+        from_edge: row.try_get(2)?,
+        to_edge: row.try_get(3)?,
+        via_node: row.try_get(4)?,
+        angle_deg: row.try_get(5)?,
+        kind: row.try_get(6)?,
+        kerb_radius_m: row.try_get(7)?,
+        kerb_source: row.try_get(8)?,
+        restriction: row.try_get(9)?,
+        from_name: row.try_get(10)?,
+        to_name: row.try_get(11)?,
+        verdict: verdict_of(verdict_no).ok_or_else(|| content(format!("verdict {verdict_no} of turn {fid}")))?,
+        rsc_m: parts(13, 1000.0)?,
+        hinge_margin_deg: parts(14, 100.0)?,
+        shrink: if at.is_some() { Some(parts(15, 1000.0)?.unwrap_or(1.0)) } else { None },
+        limiting_s_m: parts(16, 10.0)?,
+        limiting_unit: at.map(|at| at >> 1),
+        limiting_side: at.map(|at| if at & 1 == 0 { Side::Left } else { Side::Right }),
+        path_no: row.try_get(18)?,
+        line: blob::decode(row.try_get(19)?).ok_or_else(|| content(format!("the geometry of turn {fid}")))?,
+    })
+}
+
+/// Turns by vehicle, policy and verdict.
+pub(super) async fn counts(c: &mut SqliteConnection) -> Sql<Vec<TurnCount>> {
+    let sql = "SELECT vehicle_id, corridor, verdict_no, n FROM (SELECT vehicle_no, corridor_no, verdict_no, count(*) AS n \
+               FROM turn_certificate_compact GROUP BY vehicle_no, corridor_no, verdict_no) JOIN vehicle USING (vehicle_no) \
+               JOIN corridor USING (corridor_no) ORDER BY vehicle_no, corridor_no, verdict_no";
+    let count = |row: &SqliteRow| -> Sql<TurnCount> {
+        let verdict_no: i64 = row.try_get(2)?;
+        Ok(TurnCount {
+            vehicle_id: row.try_get(0)?,
+            policy: super::network_read::word(row, 1)?,
+            verdict: verdict_of(verdict_no).ok_or_else(|| content(format!("verdict {verdict_no}")))?,
+            turns: row.try_get::<i64, _>(3)?.unsigned_abs(),
+        })
+    };
+    sqlx::query(sql).fetch_all(c).await?.iter().map(count).collect()
+}
+
+/// How many turns have a verdict.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)]
+pub struct TurnCount {
+    pub vehicle_id: String,
+    pub policy: Policy,
+    pub verdict: Verdict,
+    pub turns: u64,
+}

@@ -1,0 +1,124 @@
+//! What the map alone says of a turn: its id, by how much it turns, its kerb, a line to draw.
+//!
+//! Independent of vehicles and policies: the same network gives the same facts.
+
+use rustc_hash::FxHashSet;
+
+use super::area::CORNERS_RAD;
+use super::{Kerbs, path};
+use crate::network::{Movement, MovementKind, Network};
+use crate::osm::LonLat;
+
+/// A turn's line reaches so far along both edges, metres; its angle is measured over the same.
+const LINE_M: f64 = 12.0;
+/// Metres a degree of latitude; only directions and a line for people depend on it.
+const DEGREE_M: f64 = 111_195.0;
+
+/// Where a kerb radius comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum KerbSource {
+    /// By class and country.
+    Assumed,
+}
+
+/// A turn as the map has it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TurnFacts {
+    /// Stable: the same edges give the same id in the next extract. Positive.
+    pub id: i64,
+    /// From which edge into which.
+    pub movement: Movement,
+    /// By how much one turns, degrees, positive left.
+    pub angle_deg: f64,
+    /// Radius of the kerb on the inside, metres; `None`: too flat or too acute for one.
+    pub kerb_radius_m: Option<f64>,
+    /// Where that comes from.
+    pub kerb_source: KerbSource,
+    /// The last and first metres of its edges, in driving order.
+    pub line: Vec<LonLat>,
+}
+
+/// All turns of a network, in the order of its movements; straight on and back are none.
+#[must_use]
+pub fn turn_facts(network: &Network, kerbs: &Kerbs) -> Vec<TurnFacts> {
+    let mut taken = FxHashSet::default();
+    let movements = network.movements();
+    let turns = movements.all().iter().filter(|movement| movement.kind == MovementKind::Turn);
+    turns
+        .filter_map(|&movement| {
+            let (from, to) = (network.edges.get(movement.from as usize)?, network.edges.get(movement.to as usize)?);
+            let mut id = turn_id(from.id, to.id);
+            while !taken.insert(id) {
+                id = (id + 1) & i64::MAX;
+            }
+            let line = line(network, movement)?;
+            let angle = angle_rad(&line);
+            let radius_m = kerbs.radius_m(network.road(from), network.road(to));
+            let kerb_radius_m = (radius_m > 0.0 && CORNERS_RAD.contains(&angle.abs())).then_some(radius_m);
+            let (angle_deg, kerb_source) = (angle.to_degrees(), KerbSource::Assumed);
+            Some(TurnFacts { id, movement, angle_deg, kerb_radius_m, kerb_source, line })
+        })
+        .collect()
+}
+
+/// A hash of the two edges' ids.
+fn turn_id(from: i64, to: i64) -> i64 {
+    let mut hash = blake3::Hasher::new();
+    hash.update(&from.to_le_bytes()).update(&to.to_le_bytes());
+    let bytes = hash.finalize();
+    let word = bytes.as_bytes().first_chunk::<8>().map_or(0, |bytes| i64::from_le_bytes(*bytes));
+    (word & i64::MAX).max(1)
+}
+
+fn line(network: &Network, movement: Movement) -> Option<Vec<LonLat>> {
+    let (from, to) = (network.edges.get(movement.from as usize)?, network.edges.get(movement.to as usize)?);
+    let mut line = first_metres(network.positions(from).rev());
+    line.reverse();
+    line.extend(first_metres(network.positions(to)).into_iter().skip(1));
+    Some(line)
+}
+
+/// The first [`LINE_M`] of a line.
+fn first_metres(positions: impl Iterator<Item = LonLat>) -> Vec<LonLat> {
+    let mut out: Vec<LonLat> = Vec::new();
+    let mut left_m = LINE_M;
+    for next in positions {
+        let Some(&last) = out.last() else {
+            out.push(next);
+            continue;
+        };
+        let [east, north] = offset_m(last, next);
+        let length_m = east.hypot(north);
+        let share = (left_m / length_m.max(1e-9)).min(1.0);
+        let part = |a: i32, b: i32| a.saturating_add((f64::from(b.wrapping_sub(a)) * share).round() as i32);
+        out.push(if share < 1.0 {
+            LonLat { lon_e7: part(last.lon_e7, next.lon_e7), lat_e7: part(last.lat_e7, next.lat_e7) }
+        } else {
+            next
+        });
+        left_m -= length_m;
+        if left_m <= 0.0 {
+            break;
+        }
+    }
+    out
+}
+
+fn offset_m(a: LonLat, b: LonLat) -> [f64; 2] {
+    let ((lon_a, lat_a), (lon_b, lat_b)) = (a.degrees(), b.degrees());
+    let east = (lon_b - lon_a + 540.0).rem_euclid(360.0) - 180.0;
+    [east * DEGREE_M * lat_a.to_radians().cos(), (lat_b - lat_a) * DEGREE_M]
+}
+
+/// From the first segment's direction to the last one's by way of all between, as turned.
+fn angle_rad(line: &[LonLat]) -> f64 {
+    let course = |w: &[LonLat]| {
+        let [east, north] = offset_m(w[0], w[1]);
+        north.atan2(east)
+    };
+    let courses: Vec<f64> = line.windows(2).map(course).collect();
+    match (courses.first(), courses.last()) {
+        (Some(first), Some(last)) => path::wrapped(last - first),
+        _ => 0.0,
+    }
+}
