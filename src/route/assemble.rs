@@ -8,10 +8,11 @@
 use std::ops::Range;
 
 use super::blend;
-use super::pieces::{Joint, Strokes, TurnPiece, Turns};
+use super::pieces::{Strokes, TurnPiece, Turns};
 use crate::corridor::{CentrelineError, Corridor, Frame, FrameError};
 use crate::network::{MovementKind, Movements, Network};
 use crate::osm::LonLat;
+use crate::turns::Joint;
 use crate::verdict::UnknownReason;
 
 /// Distance of the route's stations, metres.
@@ -129,7 +130,8 @@ pub fn assemble(
         from = i;
         if let Some((a, b)) = turn {
             let at = PartKind::Turn { from: a, to: b };
-            let pieces = turns.pieces(a, b).map_err(|reason| AssemblyError::Unknown { at, reason })?;
+            let movement = movements.between(a, b).ok_or(AssemblyError::Unknown { at, reason: UnknownReason::Geometry })?;
+            let pieces = turns.pieces(strokes, movement).map_err(|reason| AssemblyError::Unknown { at, reason })?;
             let piece = pieces.into_iter().next();
             let piece = piece.ok_or(AssemblyError::Unknown { at, reason: UnknownReason::Geometry })?;
             between.push(Between {
@@ -199,12 +201,13 @@ impl Leg {
         let (stroke, _) = strokes.of(first_edge).ok_or_else(|| unknown(first_edge, UnknownReason::Geometry))?;
         let places: Vec<u32> = edges.iter().filter_map(|&edge| strokes.of(edge)).map(|place| place.1).collect();
         let line = strokes.line(stroke).map_err(|reason| unknown(first_edge, reason))?;
+        let closed = strokes.closed(stroke);
         let (corridor, spans) = (&line.made.corridor, &line.made.spans);
         let last_station = corridor.len() - 1;
         // A loop is unrolled: what is driven before it closes is a turn earlier, in its lead-in.
         let round = spans.last().map_or(0, |s| s.stations.end - 1) - spans.first().map_or(0, |s| s.stations.start);
         let closes = (1..places.len()).rev().find(|&i| places[i] <= places[i - 1]);
-        let earlier = |i: usize| if line.closed && closes.is_some_and(|close| i < close) { round } else { 0 };
+        let earlier = |i: usize| if closed && closes.is_some_and(|close| i < close) { round } else { 0 };
         let span = |i: usize| {
             let stations = spans.get(places[i] as usize).map(|span| span.stations.clone());
             let stations = stations.ok_or_else(|| unknown(edges[i], UnknownReason::Geometry))?;

@@ -8,11 +8,12 @@
 //! | --- | --- |
 //! | `speeds` | what an edge costs |
 //! | `bans` | restrictions over ways, as an automaton |
-//! | `permits` | what a vehicle may use |
+//! | `permits`, `stored` | what a vehicle may use |
 //! | `graph` | edges and movements as a graph |
 //! | `search` | the shortest way |
 //! | `snap` | from a place to the road |
 //! | `pieces` | strokes and turns that a corridor is made of |
+//! | `turning` | turns made as a route asks for them |
 //! | `assemble`, `blend` | from pieces to one corridor |
 //! | `plan` | search, certify, leave out, search on; alternatives; what blocks |
 //! | `reach` | where one can get to, and back |
@@ -28,14 +29,17 @@ mod reach;
 mod search;
 mod snap;
 mod speeds;
+mod stored;
+mod turning;
 
 pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble};
 pub use bans::{Bans, Within};
 pub use graph::{Access, BARRED, Graph};
 pub use permits::{Permit, Permits};
-pub use pieces::{Joint, NoTurns, Strokes, TurnPiece, Turns};
+pub use pieces::{NoTurns, Strokes, TurnPiece, Turns};
 pub use plan::{Answer, Obstacle, Planner, Question, Refutation, Route};
 pub use reach::{Components, Reach, components, reach, with_edge};
 pub use search::{Found, Goal, Start, search, search_over};
 pub use snap::{Position, SnapError, Snapped, Snapper};
 pub use speeds::{Measure, Speeds, SpeedsError};
+pub use turning::MadeTurns;

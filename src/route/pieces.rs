@@ -1,22 +1,15 @@
 //! What a route's corridor is made of: strokes and turns, each in a frame of its own.
 
 use std::ops::Range;
+use std::rc::Rc;
 
 use rustc_hash::FxHashMap;
 
-use crate::corridor::{Corridor, Frame, Params, StrokeCorridor, stroke_corridor};
-use crate::network::Network;
+use crate::corridor::{Corridor, Frame, Params};
+use crate::network::{Movement, Network};
 use crate::osm::facts::Policy;
+use crate::turns::{Joint, StrokeLine};
 use crate::verdict::UnknownReason;
-
-/// Where a turn's path leaves or joins a stroke's centreline.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Joint {
-    /// Index into `Network::strokes`.
-    pub stroke: u32,
-    /// Station of the stroke's corridor.
-    pub station: usize,
-}
 
 /// One certified way to drive a turn.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,7 +32,7 @@ pub trait Turns {
     ///
     /// # Errors
     /// There is none, and why.
-    fn pieces(&self, from: u32, to: u32) -> Result<Vec<TurnPiece>, UnknownReason>;
+    fn pieces(&self, strokes: &mut Strokes<'_>, movement: &Movement) -> Result<Vec<TurnPiece>, UnknownReason>;
 }
 
 /// No turn at all: routes then only go straight on.
@@ -47,17 +40,9 @@ pub trait Turns {
 pub struct NoTurns;
 
 impl Turns for NoTurns {
-    fn pieces(&self, _: u32, _: u32) -> Result<Vec<TurnPiece>, UnknownReason> {
+    fn pieces(&self, _: &mut Strokes<'_>, _: &Movement) -> Result<Vec<TurnPiece>, UnknownReason> {
         Err(UnknownReason::Geometry)
     }
-}
-
-/// A stroke's corridor with its frame.
-#[derive(Debug)]
-pub(super) struct Line {
-    pub(super) frame: Frame,
-    pub(super) made: StrokeCorridor,
-    pub(super) closed: bool,
 }
 
 /// Strokes of a network, made into corridors as they are asked for and kept.
@@ -67,7 +52,7 @@ pub struct Strokes<'n> {
     params: Params,
     /// By edge: its stroke, and its place in it.
     place: Vec<(u32, u32)>,
-    made: FxHashMap<u32, Result<Line, UnknownReason>>,
+    made: FxHashMap<u32, Result<Rc<StrokeLine>, UnknownReason>>,
 }
 
 impl<'n> Strokes<'n> {
@@ -84,24 +69,35 @@ impl<'n> Strokes<'n> {
         Self { network, policy, params, place, made: FxHashMap::default() }
     }
 
+    pub(super) fn network(&self) -> &'n Network {
+        self.network
+    }
+
     /// Stroke of an edge, and the edge's place in it.
     pub(super) fn of(&self, edge: u32) -> Option<(u32, u32)> {
         self.place.get(edge as usize).copied().filter(|place| place.0 != u32::MAX)
     }
 
-    pub(super) fn line(&mut self, stroke: u32) -> Result<&Line, UnknownReason> {
+    /// The line of a stroke.
+    ///
+    /// # Errors
+    /// Nothing can be said of any of its edges.
+    pub fn line(&mut self, stroke: u32) -> Result<Rc<StrokeLine>, UnknownReason> {
         let (network, policy, params) = (self.network, self.policy, &self.params);
-        let line = self.made.entry(stroke).or_insert_with(|| make(network, stroke, policy, params));
-        line.as_ref().map_err(|reason| *reason)
+        let make = || StrokeLine::new(network, stroke, policy, params).map(Rc::new);
+        self.made.entry(stroke).or_insert_with(make).clone()
     }
-}
 
-fn make(network: &Network, stroke: u32, policy: Policy, params: &Params) -> Result<Line, UnknownReason> {
-    let facts = network.strokes.get(stroke as usize).ok_or(UnknownReason::Geometry)?;
-    let made = stroke_corridor(network, facts, policy, params)?;
-    let chain = facts.approach.start as usize..facts.edges.end as usize;
-    let positions: Vec<_> =
-        network.stroke_edges[chain].iter().flat_map(|&edge| network.positions(&network.edges[edge as usize])).collect();
-    let frame = Frame::around(&positions).map_err(|_| UnknownReason::Geometry)?;
-    Ok(Line { frame, made, closed: facts.closed })
+    /// The line of the stroke that an edge belongs to.
+    ///
+    /// # Errors
+    /// Nothing can be said of any of its edges.
+    pub fn line_of(&mut self, edge: u32) -> Result<Rc<StrokeLine>, UnknownReason> {
+        let (stroke, _) = self.of(edge).ok_or(UnknownReason::Geometry)?;
+        self.line(stroke)
+    }
+
+    pub(super) fn closed(&self, stroke: u32) -> bool {
+        self.network.strokes.get(stroke as usize).is_some_and(|stroke| stroke.closed)
+    }
 }

@@ -1,0 +1,112 @@
+//! A region with everything that routes need, made in memory: network, movements, permits of one vehicle for edges and turns.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use netcert::corridor::Params;
+use netcert::network::{Movement, Movements, Network, build};
+use netcert::osm::facts::{Countries, Policy, cross_sections};
+use netcert::osm::pbf::read_extract;
+use netcert::pipeline::{Job, Reporter, Settings, TurnJob, certify_network, certify_turns};
+use netcert::route::{Graph, MadeTurns, Measure, Permit, Permits, Planner, Speeds, Strokes};
+use netcert::stet::{Model, Options};
+use netcert::turns::{TurnParams, turn_facts};
+use netcert::vehicle::Catalogue;
+
+/// A network.
+pub(crate) struct Region {
+    pub(crate) network: Network,
+    pub(crate) movements: Movements,
+    pub(crate) settings: Settings,
+}
+
+/// A vehicle on it.
+pub(crate) struct Driver {
+    pub(crate) model: Model,
+    pub(crate) permits: Permits,
+}
+
+struct Silent;
+
+impl Reporter for Silent {
+    fn begin(&self, _: &'static str, _: u64) {}
+    fn advance(&self, _: u64) {}
+    fn end(&self) {}
+    fn note(&self, _: &str) {}
+}
+
+pub(crate) fn demo() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("data/demo.osm.pbf")
+}
+
+/// An extract of the shared folder, if it is there.
+pub(crate) fn extract(name: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os("NETCERT_EXTRACTS")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/extracts"), PathBuf::from);
+    Some(folder.join(name)).filter(|path| path.exists())
+}
+
+impl Region {
+    pub(crate) fn read(path: &Path, policy: Policy) -> Self {
+        let countries = Countries::load().unwrap();
+        let extract = read_extract(path, &|_| ()).unwrap();
+        let rules = countries.rules();
+        let (network, _) =
+            build(extract, &|position| countries.place(position), &|way, place| cross_sections(way, place, rules));
+        let movements = network.movements();
+        let settings = Settings { policy, corridor: Params::default(), stet: Options::default(), turns: true };
+        Self { network, movements, settings }
+    }
+
+    pub(crate) fn driver(&self, id: &str) -> Driver {
+        let model = Model::new(Catalogue::builtin().unwrap().get(id).unwrap()).unwrap();
+        let models = std::slice::from_ref(&model);
+        let job = Job { network: &self.network, models, settings: &self.settings };
+        let mut edges = vec![Permit::UNKNOWN; self.network.edges.len()];
+        certify_network(&job, &Silent, |_, certificate| {
+            let rsc_m = certificate.measured.map(|measured| measured.rsc_m);
+            edges[certificate.edge as usize] = Permit { verdict: certificate.verdict, rsc_m };
+            Ok::<(), ()>(())
+        })
+        .unwrap();
+        let permits = self.with_turns(&model, edges);
+        Driver { model, permits }
+    }
+
+    /// As the pipeline certifies them.
+    fn with_turns(&self, model: &Model, edges: Vec<Permit>) -> Permits {
+        let params = self.params();
+        let turns = turn_facts(&self.network, &params.kerbs);
+        let verdicts = vec![edges.iter().map(|permit| permit.verdict).collect()];
+        let models = std::slice::from_ref(model);
+        let (network, settings) = (&self.network, &self.settings);
+        let job = TurnJob { network, turns: &turns, models, edges: &verdicts, settings, params: &params };
+        let mut found = HashMap::new();
+        certify_turns(&job, &Silent, |_, certificate| {
+            let Movement { from, to, .. } = turns[certificate.turn as usize].movement;
+            let rsc_m = certificate.measured.map(|measured| measured.rsc_m);
+            found.insert((from, to), Permit { verdict: certificate.verdict, rsc_m });
+            Ok::<(), ()>(())
+        })
+        .unwrap();
+        Permits::new(edges, &self.movements, |from, to| found.get(&(from, to)).copied().unwrap_or(Permit::UNKNOWN))
+    }
+
+    fn params(&self) -> TurnParams {
+        TurnParams { corridor: self.settings.corridor, ..TurnParams::default() }
+    }
+
+    pub(crate) fn strokes(&self) -> Strokes<'_> {
+        Strokes::new(&self.network, self.settings.policy, self.settings.corridor)
+    }
+
+    pub(crate) fn turns<'m>(&self, model: &'m Model) -> MadeTurns<'m> {
+        MadeTurns { model, policy: self.settings.policy, params: self.params(), options: self.settings.stet }
+    }
+
+    pub(crate) fn planner<'r>(&'r self, driver: &'r Driver, turns: &'r MadeTurns<'r>, measure: Measure) -> Planner<'r> {
+        let speeds = Speeds::builtin().unwrap();
+        let graph = Graph::new(&self.network, &self.movements, &speeds, measure);
+        Planner::new(graph, &driver.permits, &driver.model, turns, self.strokes(), self.settings.stet, speeds)
+    }
+}
