@@ -10,8 +10,8 @@ mod routing;
 
 use std::time::Instant;
 
-use netcert::route::{Answer, Measure, Position, Question};
 use netcert::osm::facts::Policy;
+use netcert::route::{Answer, Measure, Position, Question};
 use netcert::store::Named;
 use netcert::verdict::Verdict;
 use rayon::prelude::*;
@@ -44,7 +44,12 @@ fn main() {
     let turns = region.movements.all().iter().zip(&driver.permits.movements);
     let turns = turns.filter(|(m, _)| m.kind == netcert::network::MovementKind::Turn);
     let (all, good) = turns.fold((0, 0), |(n, good), (_, p)| (n + 1, good + u32::from(p.verdict == Verdict::Safe)));
-    println!("{vehicle}: {} of {} edges and {good} of {all} turns safe, {:.1} s", safe.len(), region.network.edges.len(), start.elapsed().as_secs_f64());
+    println!(
+        "{vehicle}: {} of {} edges and {good} of {all} turns safe, {:.1} s",
+        safe.len(),
+        region.network.edges.len(),
+        start.elapsed().as_secs_f64()
+    );
     let mut kinds = std::collections::BTreeMap::<String, u32>::new();
     for (m, p) in region.movements.all().iter().zip(&driver.permits.movements) {
         if m.kind == netcert::network::MovementKind::Turn && driver.permits.edge(m.from) && driver.permits.edge(m.to) {
@@ -80,8 +85,15 @@ fn main() {
     let strung = answers.iter().flat_map(|a| &a.refuted).filter(|r| r.result.is_none()).count();
     let uncertified = answers.iter().flat_map(|a| &a.routes).filter(|r| !r.certificate.result.safe()).count();
     let gave_up = answers.iter().filter(|a| a.gave_up).count();
-    println!("{pairs} pairs: {found} routed; of {any} with a way over certified parts, {refuted} were refuted as a whole at least once ({whole} refutations, {strung} of them because pieces could not be strung together); {gave_up} given up; {uncertified} returned uncertified; {:.1} s", start.elapsed().as_secs_f64());
-    let turns: usize = answers.iter().flat_map(|a| &a.routes).map(|r| r.path.parts.iter().filter(|p| matches!(p.kind, netcert::route::PartKind::Turn { .. })).count()).sum();
+    println!(
+        "{pairs} pairs: {found} routed; of {any} with a way over certified parts, {refuted} were refuted as a whole at least once ({whole} refutations, {strung} of them because pieces could not be strung together); {gave_up} given up; {uncertified} returned uncertified; {:.1} s",
+        start.elapsed().as_secs_f64()
+    );
+    let turns: usize = answers
+        .iter()
+        .flat_map(|a| &a.routes)
+        .map(|r| r.path.parts.iter().filter(|p| matches!(p.kind, netcert::route::PartKind::Turn { .. })).count())
+        .sum();
     let km: f64 = answers.iter().flat_map(|a| &a.routes).map(|r| r.length_m / 1000.0).sum();
     println!("{km:.0} km, {turns} turns in the routes found");
     for r in answers.iter().flat_map(|a| &a.refuted).take(25) {

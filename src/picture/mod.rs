@@ -16,6 +16,7 @@
 //! | `bodies` | a vehicle from above |
 //! | `explanation` | what limits a vehicle on a road |
 //! | `vehicle` | a vehicle with its dimensions |
+//! | `route` | a route's leeway all along, and its shape |
 //! | `manoeuvres` | the turns by which a vehicle is judged |
 
 mod bodies;
@@ -24,6 +25,7 @@ mod explanation;
 mod furniture;
 mod manoeuvres;
 pub mod palette;
+mod route;
 mod style;
 mod svg;
 #[cfg(test)]
@@ -35,6 +37,7 @@ pub use chart::{Chart, Scale};
 pub use explanation::explanation;
 pub use furniture::{Key, arrow, callout, dimension, legend, scale_bar};
 pub use manoeuvres::manoeuvres;
+pub use route::route;
 pub use style::{Anchor, Style, TextStyle};
 pub use svg::{Picture, escaped, number};
 pub use vehicle::vehicle;

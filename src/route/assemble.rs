@@ -8,15 +8,17 @@
 use std::ops::Range;
 
 use super::blend;
-use super::pieces::{Strokes, TurnPiece, Turns};
+use super::pieces::{Menu, Strokes, TurnPiece};
 use crate::corridor::{CentrelineError, Corridor, Frame, FrameError};
 use crate::network::{MovementKind, Movements, Network};
 use crate::osm::LonLat;
 use crate::turns::Joint;
 use crate::verdict::UnknownReason;
 
-/// Distance of the route's stations, metres.
+/// Distance of the route's stations, metres, at most: as on strokes. Sharp turns have closer ones, and so has then the whole.
 const SPACING_M: f64 = 1.0;
+/// And at least.
+const LEAST_SPACING_M: f64 = 0.25;
 /// Points nearer to each other than this are one, metres.
 const LEAST_STEP_M: f64 = 0.3;
 /// A route is at least so many stations long: begun earlier or ended later on its edge if need be.
@@ -108,7 +110,7 @@ pub fn assemble(
     network: &Network,
     movements: &Movements,
     strokes: &mut Strokes<'_>,
-    turns: &dyn Turns,
+    menu: &mut Menu<'_>,
     way: &Way<'_>,
 ) -> Result<RoutePath, AssemblyError> {
     let positions: Vec<LonLat> =
@@ -130,12 +132,12 @@ pub fn assemble(
         from = i;
         if let Some((a, b)) = turn {
             let at = PartKind::Turn { from: a, to: b };
-            let movement = movements.between(a, b).ok_or(AssemblyError::Unknown { at, reason: UnknownReason::Geometry })?;
-            let pieces = turns.pieces(strokes, movement).map_err(|reason| AssemblyError::Unknown { at, reason })?;
-            let piece = pieces.into_iter().next();
-            let piece = piece.ok_or(AssemblyError::Unknown { at, reason: UnknownReason::Geometry })?;
+            let movement =
+                movements.between(a, b).ok_or(AssemblyError::Unknown { at, reason: UnknownReason::Geometry })?;
+            let piece = menu.chosen(strokes, movement).map_err(|reason| AssemblyError::Unknown { at, reason })?;
             between.push(Between {
                 at,
+                spacing_m: piece.corridor.spacing_m,
                 samples: in_frame(&piece, frame)?,
                 approach: piece.approach,
                 departure: piece.departure,
@@ -149,12 +151,14 @@ pub fn assemble(
         let leg = Leg::new(strokes, way, leg.clone(), frame, before, after)?;
         leg.add(&mut string, before, after)?;
     }
-    string.finish(frame)
+    let finest_m = between.iter().map(|turn| turn.spacing_m).fold(SPACING_M, f64::min);
+    string.finish(frame, finest_m.max(LEAST_SPACING_M))
 }
 
 /// A turn of the route, in the route's frame.
 struct Between {
     at: PartKind,
+    spacing_m: f64,
     samples: Vec<Sample>,
     approach: Joint,
     departure: Joint,
@@ -315,11 +319,11 @@ impl Strung {
         true
     }
 
-    fn finish(self, frame: Frame) -> Result<RoutePath, AssemblyError> {
+    fn finish(self, frame: Frame, spacing_m: f64) -> Result<RoutePath, AssemblyError> {
         let column = |of: fn(&Sample) -> f64| self.samples.iter().map(of).collect::<Vec<f64>>();
         let points: Vec<[f64; 2]> = self.samples.iter().map(|sample| sample.at).collect();
         let corridor =
-            Corridor::from_centreline(&points, &column(|s| s.left_m), &column(|s| s.right_m), 0.0, SPACING_M)?;
+            Corridor::from_centreline(&points, &column(|s| s.left_m), &column(|s| s.right_m), 0.0, spacing_m)?;
         // Chords are shorter than arcs by parts in a thousand in the sharpest bends: near enough to say which part it is.
         let mut along = Vec::with_capacity(points.len());
         let mut sum = 0.0;

@@ -16,6 +16,7 @@
 //! | `turning` | turns made as a route asks for them |
 //! | `assemble`, `blend` | from pieces to one corridor |
 //! | `plan` | search, certify, leave out, search on; alternatives; what blocks |
+//! | `report` | an answer as JSON and GeoJSON |
 //! | `reach` | where one can get to, and back |
 
 mod assemble;
@@ -26,6 +27,7 @@ mod permits;
 mod pieces;
 mod plan;
 mod reach;
+mod report;
 mod search;
 mod snap;
 mod speeds;
@@ -36,9 +38,10 @@ pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble};
 pub use bans::{Bans, Within};
 pub use graph::{Access, BARRED, Graph};
 pub use permits::{Permit, Permits};
-pub use pieces::{NoTurns, Strokes, TurnPiece, Turns};
+pub use pieces::{Menu, NoTurns, Strokes, TurnPiece, Turns};
 pub use plan::{Answer, Obstacle, Planner, Question, Refutation, Route};
 pub use reach::{Components, Reach, components, reach, with_edge};
+pub use report::{PartResult, geojson, json, obstacle_members, place, title};
 pub use search::{Found, Goal, Start, search, search_over};
 pub use snap::{Position, SnapError, Snapped, Snapper};
 pub use speeds::{Measure, Speeds, SpeedsError};

@@ -35,6 +35,47 @@ pub trait Turns {
     fn pieces(&self, strokes: &mut Strokes<'_>, movement: &Movement) -> Result<Vec<TurnPiece>, UnknownReason>;
 }
 
+/// Which of its paths each turn is to be driven on: the best one, until another is asked for.
+pub struct Menu<'t> {
+    turns: &'t dyn Turns,
+    made: FxHashMap<(u32, u32), Result<Vec<Rc<TurnPiece>>, UnknownReason>>,
+    choice: FxHashMap<(u32, u32), usize>,
+}
+
+impl<'t> Menu<'t> {
+    /// Nothing is made yet.
+    #[must_use]
+    pub fn new(turns: &'t dyn Turns) -> Self {
+        Self { turns, made: FxHashMap::default(), choice: FxHashMap::default() }
+    }
+
+    /// Every turn on its best path again.
+    pub fn begin(&mut self) {
+        self.choice.clear();
+    }
+
+    /// The path of a turn.
+    ///
+    /// # Errors
+    /// There is none, and why.
+    pub fn chosen(&mut self, strokes: &mut Strokes<'_>, movement: &Movement) -> Result<Rc<TurnPiece>, UnknownReason> {
+        let key = (movement.from, movement.to);
+        let turns = self.turns;
+        let make = || Ok(turns.pieces(strokes, movement)?.into_iter().map(Rc::new).collect());
+        let made = self.made.entry(key).or_insert_with(make).as_ref().map_err(|reason| *reason)?;
+        let choice = self.choice.get(&key).copied().unwrap_or(0);
+        made.get(choice).cloned().ok_or(UnknownReason::Geometry)
+    }
+
+    /// Takes the next path of a turn; whether there is one.
+    pub fn another(&mut self, from: u32, to: u32) -> bool {
+        let choice = self.choice.entry((from, to)).or_insert(0);
+        let there = matches!(self.made.get(&(from, to)), Some(Ok(made)) if *choice + 1 < made.len());
+        *choice += usize::from(there);
+        there
+    }
+}
+
 /// No turn at all: routes then only go straight on.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoTurns;

@@ -1,14 +1,15 @@
 //! From two places to certified routes, or to what blocks.
 //!
 //! Promises: a route is returned only with a `safe` certificate over the whole of it. Where that fails though the parts
-//! passed, the movement nearest to the place that limits is left out and the search goes on, so many times as asked; how
+//! passed, the turn nearest to the place that limits is driven on another of its paths, and when there is none left it is
+//! left out and the search goes on, so many times as asked; how
 //! often, and where, is part of the answer. What blocks is the cheapest set of failing places: as few as possible, then
 //! the shortest way over them.
 
 use super::assemble::{AssemblyError, PartKind, RoutePath, Way, assemble};
 use super::graph::{Access, BARRED, Graph};
 use super::permits::{Permit, Permits};
-use super::pieces::{Strokes, Turns};
+use super::pieces::{Menu, Strokes, Turns};
 use super::search::{Found, Goal, Start, search_over};
 use super::snap::{Position, SnapError, Snapped, Snapper};
 use super::speeds::{Measure, Speeds};
@@ -64,7 +65,7 @@ pub struct Route {
 /// A whole route that did not certify though its parts did.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refutation {
-    /// What was left out for it.
+    /// The turn that is then driven another way or left out; an edge, where no turn is near.
     pub at: PartKind,
     /// RSC and hinge margin (radians) of the whole; `None`: its pieces could not be strung together.
     pub result: Option<(f64, f64)>,
@@ -104,7 +105,7 @@ pub struct Planner<'n> {
     snapper: Snapper<'n>,
     permits: &'n Permits,
     model: &'n Model,
-    turns: &'n dyn Turns,
+    menu: Menu<'n>,
     strokes: Strokes<'n>,
     options: stet::Options,
     speeds: Speeds,
@@ -125,7 +126,7 @@ impl<'n> Planner<'n> {
     ) -> Self {
         let snapper = Snapper::new(graph.network);
         let access = permits.access(graph.movements);
-        Self { graph, snapper, permits, model, turns, strokes, options, speeds, access }
+        Self { graph, snapper, permits, model, menu: Menu::new(turns), strokes, options, speeds, access }
     }
 
     fn network(&self) -> &'n Network {
@@ -142,6 +143,7 @@ impl<'n> Planner<'n> {
         let snapped = question.places.iter().map(snap).collect::<Result<Vec<_>, _>>()?;
         let mut answer = Answer { snapped, ..Answer::default() };
         let mut access = self.access.clone();
+        self.menu.begin();
         self.next_route(&mut access, question, &mut answer, &|_| true);
         if answer.routes.is_empty() {
             answer.obstacles = self.obstacles(&answer);
@@ -185,8 +187,9 @@ impl<'n> Planner<'n> {
                     return true;
                 }
                 Err(refutation) => {
+                    let another = matches!(refutation.at, PartKind::Turn { from, to } if self.menu.another(from, to));
                     // Nothing to leave out: the search would find the same way again.
-                    if !self.leave_out(access, refutation.at) {
+                    if !another && !self.leave_out(access, refutation.at) {
                         answer.gave_up = true;
                         return false;
                     }
@@ -199,7 +202,7 @@ impl<'n> Planner<'n> {
     fn certify(&mut self, found: Found, start: f64, end: f64) -> Result<Route, Refutation> {
         let way = Way { edges: &found.edges, start, end };
         let network = self.graph.network;
-        let path = assemble(network, self.graph.movements, &mut self.strokes, self.turns, &way);
+        let path = assemble(network, self.graph.movements, &mut self.strokes, &mut self.menu, &way);
         let path = path.map_err(|error| Refutation {
             at: match &error {
                 AssemblyError::Unknown { at, .. } | AssemblyError::Overlap { at } => *at,

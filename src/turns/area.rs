@@ -139,7 +139,12 @@ fn arc(centre: [f64; 2], start: [f64; 2], turned: f64) -> Vec<[f64; 2]> {
 }
 
 /// The polygon between the edges of an arm's stations, prolonged straight by so many metres before and after.
-fn outline(arm: &Arm, range: std::ops::Range<usize>, edges: &dyn Fn(usize) -> Across, prolonged: [f64; 2]) -> Option<Polygon> {
+fn outline(
+    arm: &Arm,
+    range: std::ops::Range<usize>,
+    edges: &dyn Fn(usize) -> Across,
+    prolonged: [f64; 2],
+) -> Option<Polygon> {
     let last = range.end.checked_sub(1).filter(|last| *last > range.start)?;
     let first = range.start;
     let side = |which: usize| {

@@ -55,7 +55,8 @@ impl<'a> Junction<'a> {
         let edge = |index: u32| network.edges.get(index as usize).ok_or(UnknownReason::Geometry);
         let (from, to) = (network.road(edge(movement.from)?), network.road(edge(movement.to)?));
         let frame = lines[0].frame;
-        let before_m = reach.run_in_m() + reach.counted_before_m() + FROM_CORNER_M[FROM_CORNER_M.len() - 1] + PROLONGED_M;
+        let before_m =
+            reach.run_in_m() + reach.counted_before_m() + FROM_CORNER_M[FROM_CORNER_M.len() - 1] + PROLONGED_M;
         let after_m = reach.counted_after_m() + MEET_M + 1.0;
         Ok(Self {
             from: Arm::arriving(lines[0], movement.from, frame, [before_m, MEET_M])?,
@@ -103,7 +104,8 @@ impl<'a> Junction<'a> {
         let spacing = [from.line.spacing_m, to.line.spacing_m];
         let [meet_a, meet_b] = self.meeting().unwrap_or([from.node as f64, to.node as f64]);
         let leave = |m: f64| ((meet_a - m / spacing[0]).round().min((from.own.end - 1) as f64)).max(0.0) as usize;
-        let join = |m: f64| ((meet_b + m / spacing[1]).round().max(to.own.start as f64)).min((to.len() - 1) as f64) as usize;
+        let join =
+            |m: f64| ((meet_b + m / spacing[1]).round().max(to.own.start as f64)).min((to.len() - 1) as f64) as usize;
         let mut pairs: Vec<(u8, [usize; 2], Option<f64>)> = Vec::new();
         let mut number = 0;
         let mut add = |pair: [usize; 2], share: Option<f64>| {

@@ -93,11 +93,7 @@ impl UnitTurn {
         let mut unit = Self { transition: 2.0 * share * turned, arc: (1.0 - 2.0 * share) * turned, tangent: 0.0 };
         let end = unit.integrate(256).last().copied().unwrap_or_default();
         // The end lies where the second tangent, of length `tangent`, ends: y = tangent · sin(turned).
-        unit.tangent = if turned.sin().abs() > 0.05 {
-            end[1] / turned.sin()
-        } else {
-            end[0] / (1.0 + turned.cos())
-        };
+        unit.tangent = if turned.sin().abs() > 0.05 { end[1] / turned.sin() } else { end[0] / (1.0 + turned.cos()) };
         unit
     }
 
@@ -155,9 +151,7 @@ pub(super) fn shift(a: Pose, b: Pose) -> Option<Vec<[f64; 2]>> {
         let to = 10.0 * t3 - 15.0 * t4 + 6.0 * t5;
         let leaves = t - 6.0 * t3 + 8.0 * t4 - 3.0 * t5;
         let arrives = -4.0 * t3 + 7.0 * t4 - 3.0 * t5;
-        [0, 1].map(|k| {
-            a.at[k] + to * (b.at[k] - a.at[k]) + chord * (leaves * u[k] + arrives * v[k])
-        })
+        [0, 1].map(|k| a.at[k] + to * (b.at[k] - a.at[k]) + chord * (leaves * u[k] + arrives * v[k]))
     };
     let points: Vec<[f64; 2]> = (0..=steps).map(|i| blend(i as f64 / steps as f64)).collect();
     (sharpest(&points) <= MOST_SHIFT_CURVATURE).then_some(points)

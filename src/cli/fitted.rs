@@ -1,0 +1,82 @@
+//! A database, a vehicle that it certifies, and all that routing over them needs.
+
+use std::path::PathBuf;
+
+use anyhow::anyhow;
+use clap::Args;
+use netcert::network::{Movements, Network};
+use netcert::osm::facts::Policy;
+use netcert::pipeline::Settings;
+use netcert::route::{Graph, MadeTurns, Measure, Permits, Speeds, Strokes};
+use netcert::stet::Model;
+use netcert::store::Database;
+
+use super::database::DatabaseArgs;
+use super::fleet;
+use super::how;
+use super::values::word;
+
+#[derive(Args)]
+pub(crate) struct FittedArgs {
+    #[command(flatten)]
+    db: DatabaseArgs,
+    /// A vehicle that the database certifies; `netcert stats` shows which.
+    #[arg(long, value_name = "ID")]
+    vehicle: String,
+    /// Which width counts: one's own lane, all lanes of one's direction, or the whole carriageway [default: as the
+    /// database was made with, lane unless told otherwise].
+    #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
+    corridor: Option<Policy>,
+}
+
+/// What was loaded.
+pub(crate) struct Fitted {
+    pub(crate) path: PathBuf,
+    pub(crate) network: Network,
+    pub(crate) movements: Movements,
+    pub(crate) permits: Permits,
+    pub(crate) model: Model,
+    pub(crate) settings: Settings,
+    pub(crate) speeds: Speeds,
+}
+
+impl FittedArgs {
+    pub(crate) fn load(&self) -> anyhow::Result<Fitted> {
+        let path = self.db.path()?;
+        let mut database = Database::open(&path)?;
+        let recorded = how::recorded(&mut database)?;
+        let settings = Settings { policy: self.corridor.unwrap_or(recorded.policy), ..recorded };
+        let vehicle = fleet::kept(&mut database, &self.vehicle)?.ok_or_else(|| {
+            anyhow!(
+                "{}: {} is not certified here; run `netcert certify --db {0} --vehicle {1}`",
+                path.display(),
+                self.vehicle
+            )
+        })?;
+        let network = database.load_network()?;
+        let movements = network.movements();
+        let permits = Permits::stored(&mut database, &network, &movements, &self.vehicle, settings.policy)?;
+        database.close()?;
+        let model = Model::new(&vehicle)?;
+        Ok(Fitted { path, network, movements, permits, model, settings, speeds: Speeds::builtin()? })
+    }
+}
+
+impl Fitted {
+    pub(crate) fn graph(&self, measure: Measure) -> Graph<'_> {
+        Graph::new(&self.network, &self.movements, &self.speeds, measure)
+    }
+
+    pub(crate) fn strokes(&self) -> Strokes<'_> {
+        Strokes::new(&self.network, self.settings.policy, self.settings.corridor)
+    }
+
+    pub(crate) fn turns(&self) -> MadeTurns<'_> {
+        MadeTurns {
+            model: &self.model,
+            policy: self.settings.policy,
+            params: self.settings.turn_params(),
+            options: self.settings.stet,
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! A route for people and programs: its parts with their RSC, as GeoJSON, as JSON.
+
+use serde_json::{Value, json};
+
+use super::assemble::PartKind;
+use super::plan::{Answer, Obstacle, Refutation, Route};
+use crate::corridor::FrameError;
+use crate::network::{Edge, Network};
+use crate::stet::Model;
+use crate::store::{Named, verdict_words};
+
+/// A stretch of a route with what is left there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartResult {
+    /// What it is.
+    pub kind: PartKind,
+    /// From the route's beginning, metres.
+    pub from_m: f64,
+    /// From the route's beginning, metres.
+    pub to_m: f64,
+    /// The least leeway of any body on it, all bounds deducted, with the tracking tolerance that the whole rests on at most: never
+    /// less than the whole route's RSC. Metres.
+    pub rsc_m: f64,
+}
+
+impl Route {
+    /// In driving order.
+    #[must_use]
+    pub fn parts(&self) -> Vec<PartResult> {
+        let spacing_m = self.path.corridor.spacing_m;
+        let certificate = &self.certificate;
+        let part = |part: &super::assemble::Part| {
+            let leeway = |column: &[f64]| {
+                let own = column.get(part.stations.clone()).unwrap_or_default();
+                own.iter().copied().fold(f64::INFINITY, f64::min)
+            };
+            let least = leeway(&certificate.left_m).min(leeway(&certificate.right_m));
+            PartResult {
+                kind: part.kind,
+                from_m: part.stations.start as f64 * spacing_m,
+                to_m: part.stations.end.saturating_sub(1) as f64 * spacing_m,
+                rsc_m: least.max(certificate.result.rsc_m),
+            }
+        };
+        self.path.parts.iter().map(part).collect()
+    }
+
+    /// The part where the whole route has least room.
+    #[must_use]
+    pub fn limiting(&self) -> Option<PartKind> {
+        let station = self.certificate.result.limiting.station;
+        self.path.parts.iter().find(|part| part.stations.contains(&station)).map(|part| part.kind)
+    }
+
+    /// Where the route has least room, metres from its beginning.
+    #[must_use]
+    pub fn limiting_m(&self) -> f64 {
+        self.certificate.result.limiting.station as f64 * self.path.corridor.spacing_m
+    }
+}
+
+/// What an edge or turn is called: `A87 Great Inland Highway`, `Main Street into High Street`.
+#[must_use]
+pub fn title(network: &Network, at: PartKind) -> String {
+    let of = |edge: u32| network.edges.get(edge as usize).map_or_else(String::new, |edge| road_title(network, edge));
+    match at {
+        PartKind::Edge(edge) => of(edge),
+        PartKind::Turn { from, to } => format!("{} into {}", of(from), of(to)),
+    }
+}
+
+fn road_title(network: &Network, edge: &Edge) -> String {
+    let road = network.road(edge);
+    let texts: Vec<&str> =
+        [road.reference, road.name].into_iter().flatten().map(|id| network.strings.text(id)).collect();
+    if texts.is_empty() { format!("way {}", road.way_id) } else { texts.join(" ") }
+}
+
+/// Longitude and latitude of an edge's middle vertex or of a turn's node, degrees.
+#[must_use]
+pub fn place(network: &Network, at: PartKind) -> Option<[f64; 2]> {
+    let (edge, last) = match at {
+        PartKind::Edge(edge) => (edge, false),
+        PartKind::Turn { from, .. } => (from, true),
+    };
+    let line: Vec<_> = network.positions(network.edges.get(edge as usize)?).collect();
+    let position = if last { line.last()? } else { line.get(line.len() / 2)? };
+    let (lon, lat) = position.degrees();
+    Some([lon, lat])
+}
+
+fn ids(network: &Network, at: PartKind) -> Value {
+    let id = |edge: u32| network.edges.get(edge as usize).map(|edge| edge.id);
+    match at {
+        PartKind::Edge(edge) => json!({"kind": "edge", "edge_id": id(edge), "title": title(network, at)}),
+        PartKind::Turn { from, to } => {
+            json!({"kind": "turn", "from_edge": id(from), "to_edge": id(to), "title": title(network, at)})
+        }
+    }
+}
+
+fn with(mut object: Value, more: Value) -> Value {
+    if let (Value::Object(object), Value::Object(more)) = (&mut object, more) {
+        object.extend(more);
+    }
+    object
+}
+
+fn route_members(network: &Network, model: &Model, route: &Route) -> Value {
+    let result = &route.certificate.result;
+    json!({
+        "length_m": route.length_m,
+        "time_s": route.time_s,
+        "rsc_m": result.rsc_m,
+        "hinge_margin_deg": result.hinge_margin_rad.to_degrees(),
+        "shrink": result.shrink,
+        "safe": result.safe(),
+        "limiting_s_m": route.limiting_m(),
+        "limiting_unit": result.limiting.unit,
+        "limiting_unit_name": model.vehicle.units.get(result.limiting.unit).map(|unit| unit.name.as_str()),
+        "limiting_side": result.limiting.side.name(),
+        "limiting_at": route.limiting().map(|at| title(network, at)),
+    })
+}
+
+fn part_members(network: &Network, part: &PartResult) -> Value {
+    let own = json!({"from_m": part.from_m, "to_m": part.to_m, "rsc_m": part.rsc_m});
+    with(ids(network, part.kind), own)
+}
+
+/// A place that blocks.
+#[must_use]
+pub fn obstacle_members(network: &Network, obstacle: &Obstacle) -> Value {
+    let (verdict, reason) = verdict_words(obstacle.permit.verdict);
+    let own = json!({
+        "verdict": if obstacle.refuted { "refuted" } else { verdict },
+        "reason": (!reason.is_empty()).then_some(reason),
+        "rsc_m": obstacle.permit.rsc_m,
+        "place": place(network, obstacle.at),
+    });
+    with(ids(network, obstacle.at), own)
+}
+
+fn refutation_members(network: &Network, refutation: &Refutation) -> Value {
+    let own = json!({
+        "rsc_m": refutation.result.map(|result| result.0),
+        "assembly": refutation.assembly.as_ref().map(ToString::to_string),
+        "place": place(network, refutation.at),
+    });
+    with(ids(network, refutation.at), own)
+}
+
+/// All of the answer but geometry.
+#[must_use]
+pub fn json(network: &Network, model: &Model, answer: &Answer) -> Value {
+    let route = |route: &Route| {
+        let parts: Vec<Value> = route.parts().iter().map(|part| part_members(network, part)).collect();
+        with(route_members(network, model, route), json!({"parts": parts}))
+    };
+    let snapped = answer.snapped.iter().map(|s| json!({"position": [s.position.lon, s.position.lat], "distance_m": s.distance_m}));
+    json!({
+        "vehicle_id": model.vehicle.id,
+        "routes": answer.routes.iter().map(route).collect::<Vec<_>>(),
+        "places": snapped.collect::<Vec<_>>(),
+        "refuted": answer.refuted.iter().map(|r| refutation_members(network, r)).collect::<Vec<_>>(),
+        "gave_up": answer.gave_up,
+        "obstacles": answer.obstacles.as_ref().map(|all| all.iter().map(|o| obstacle_members(network, o)).collect::<Vec<_>>()),
+    })
+}
+
+/// Each route as one line, then each of its parts; what blocks, as points.
+///
+/// # Errors
+/// The frame cannot be left.
+pub fn geojson(network: &Network, model: &Model, answer: &Answer) -> Result<Value, FrameError> {
+    let mut features = Vec::new();
+    for (number, route) in answer.routes.iter().enumerate() {
+        let c = &route.path.corridor;
+        let metres: Vec<[f64; 2]> = c.x.iter().zip(&c.y).map(|(&x, &y)| [x, y]).collect();
+        let line: Vec<[f64; 2]> = route.path.frame.inverse(&metres)?.into_iter().map(rounded).collect();
+        let feature = |stations: std::ops::Range<usize>, properties: Value| {
+            let own = line.get(stations).unwrap_or_default();
+            json!({
+                "type": "Feature",
+                "geometry": {"type": "LineString", "coordinates": own},
+                "properties": with(json!({"route": number + 1, "vehicle_id": model.vehicle.id}), properties),
+            })
+        };
+        let whole = with(json!({"kind": "route"}), route_members(network, model, route));
+        features.push(feature(0..line.len(), whole));
+        for (part, result) in route.path.parts.iter().zip(route.parts()) {
+            // A line has two positions at least.
+            let end = part.stations.end.max(part.stations.start + 2).min(line.len());
+            let start = part.stations.start.min(end.saturating_sub(2));
+            features.push(feature(start..end, part_members(network, &result)));
+        }
+    }
+    for obstacle in answer.obstacles.iter().flatten() {
+        features.push(json!({
+            "type": "Feature",
+            "geometry": {"type": "Point", "coordinates": place(network, obstacle.at)},
+            "properties": with(json!({"vehicle_id": model.vehicle.id}), obstacle_members(network, obstacle)),
+        }));
+    }
+    Ok(json!({"type": "FeatureCollection", "features": features}))
+}
+
+/// To 1e-7 degree, a centimetre, as maps have it.
+fn rounded([lon, lat]: [f64; 2]) -> [f64; 2] {
+    [lon, lat].map(|degrees| (degrees * 1e7).round() / 1e7)
+}
