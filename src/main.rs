@@ -29,6 +29,8 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Verb::Certify(verb) => verb.run(&session),
         Verb::Query(verb) => verb.run(&session),
         Verb::Explain(verb) => verb.run(&session),
+        Verb::Route(verb) => verb.run(&session),
+        Verb::Reach(verb) => verb.run(&session),
         Verb::Corridor(verb) => verb.run(&session),
         Verb::Vehicles(verb) => verb.run(&session),
         Verb::Manoeuvres(verb) => verb.run(&session),

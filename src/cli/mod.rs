@@ -9,14 +9,18 @@ mod clock;
 mod corridor;
 mod database;
 mod explain;
+mod fitted;
 mod fleet;
 mod how;
 mod ingest;
 mod manoeuvres;
 pub(crate) mod output;
 mod paper;
+mod place;
 mod progress;
 mod query;
+mod reach;
+mod route;
 mod rows;
 mod stats;
 mod table;
@@ -63,6 +67,8 @@ pub(crate) enum Verb {
     Certify(certify::Certify),
     Query(query::Query),
     Explain(explain::Explain),
+    Route(route::Route),
+    Reach(reach::Reach),
     Corridor(corridor::Corridor),
     Vehicles(vehicles::Vehicles),
     Manoeuvres(manoeuvres::Manoeuvres),

@@ -132,7 +132,8 @@ fn map(picture: &mut Picture, route: &Route, frame: Frame) {
         let station = route.certificate.result.limiting.station.min(points.len() - 1);
         p.circle(view.at(points[station]), 9.0, Style::line(palette::VERMILLION, 2.6));
         scale_bar(p, &view, [frame.x + 14.0, frame.y + frame.height - 10.0], 140.0);
-        let text = format!("north up: red {FULL_M} m missing, blue {FULL_M} m to spare; the ring is where it is tightest");
+        let text =
+            format!("north up: red {FULL_M} m missing, blue {FULL_M} m to spare; the ring is where it is tightest");
         p.text([frame.x + 12.0, frame.y + 16.0], &text, TextStyle::size(12.0).coloured(palette::GREY).haloed());
     });
     picture.rect(frame, 0.0, Style::line(palette::PALE, 1.0));

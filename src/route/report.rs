@@ -157,7 +157,10 @@ pub fn json(network: &Network, model: &Model, answer: &Answer) -> Value {
         let parts: Vec<Value> = route.parts().iter().map(|part| part_members(network, part)).collect();
         with(route_members(network, model, route), json!({"parts": parts}))
     };
-    let snapped = answer.snapped.iter().map(|s| json!({"position": [s.position.lon, s.position.lat], "distance_m": s.distance_m}));
+    let snapped = answer
+        .snapped
+        .iter()
+        .map(|s| json!({"position": [s.position.lon, s.position.lat], "distance_m": s.distance_m}));
     json!({
         "vehicle_id": model.vehicle.id,
         "routes": answer.routes.iter().map(route).collect::<Vec<_>>(),

@@ -1,0 +1,164 @@
+//! `netcert reach`: where a vehicle can get to over certified roads and turns, and from where it can come back.
+
+use std::io::Write;
+
+use anyhow::bail;
+use clap::{Args, ValueEnum};
+use netcert::network::Network;
+use netcert::route::{self, Measure, PartKind, Position, Reach as Found, Snapper};
+use serde_json::{Value, json};
+
+use super::Session;
+use super::explain::wrapped;
+use super::fitted::{Fitted, FittedArgs};
+use super::output::{printable, results};
+use super::place::place;
+
+/// Which certified roads a vehicle can reach from a place, and from which it can come back.
+///
+/// Over roads and turns that are certified by themselves, restrictions obeyed; what a single place would open if it were safe
+/// is shown by --what-if.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  netcert reach --vehicle AU-ATRIPLE53 --from 144.29,-36.74
+  netcert reach --vehicle EU-SEMI16.5 --from 8.67,49.40 --format geojson > reach.geojson
+  netcert reach --vehicle EU-SEMI16.5 --from 8.67,49.40 --what-if 7129168334710566423
+
+GeoJSON has one line for each certified edge: `reach` is `return` (there and back), `there` (there
+only), `opened` (with --what-if: reached only then) or `no`; `component` numbers the parts of the network
+within which the vehicle can drive from anywhere to anywhere, the largest being 0.")]
+pub(crate) struct Reach {
+    #[command(flatten)]
+    fitted: FittedArgs,
+    /// Where it begins, degrees.
+    #[arg(long, value_name = "LON,LAT", value_parser = place, allow_hyphen_values = true)]
+    from: Position,
+    /// How far a certified road may be from there, metres.
+    #[arg(long, value_name = "METRES", default_value_t = 100.0)]
+    snap: f64,
+    /// As if this edge (an edge_id) were safe, and every lawful turn into and out of it.
+    #[arg(long, value_name = "EDGE")]
+    what_if: Option<i64>,
+    /// Form of the answer.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Text,
+    Geojson,
+}
+
+impl Reach {
+    pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        let fitted = self.fitted.load()?;
+        let graph = fitted.graph(Measure::Distance);
+        let access = fitted.permits.access(&fitted.movements);
+        let snapped = Snapper::new(&fitted.network).snap(self.from, self.snap, |edge| fitted.permits.edge(edge))?;
+        let starts: Vec<u32> = snapped.on.iter().map(|on| on.edge).collect();
+        session.progress.say(&format!("the road is {:.0} m from there", snapped.distance_m));
+        let now = route::reach(&graph, &access, &starts);
+        let components = route::components(&graph, &access);
+        let opened = match self.what_if {
+            None => None,
+            Some(id) => {
+                let found = (0_u32..).zip(&fitted.network.edges).find(|(_, edge)| edge.id == id);
+                let Some((edge, _)) = found else {
+                    bail!("{}: no edge {id}; `netcert query` lists their ids", fitted.path.display());
+                };
+                let then = route::reach(&graph, &route::with_edge(&graph, &access, edge), &starts);
+                Some((edge, then))
+            }
+        };
+        let mut out = results();
+        match self.format {
+            Format::Geojson => {
+                let opened = opened.as_ref().map(|(_, then)| then);
+                writeln!(out, "{}", geojson(&fitted, &now, opened, &components))?;
+            }
+            Format::Text => tell(&mut out, &fitted, &now, opened.as_ref(), &components)?,
+        }
+        Ok(out.flush()?)
+    }
+}
+
+fn km(network: &Network, on: impl Fn(usize) -> bool) -> f64 {
+    let edges = network.edges.iter().enumerate().filter(|(i, _)| on(*i));
+    // From zero up: an empty sum of floats is -0.
+    edges.map(|(_, edge)| network.length_m(edge) / 1000.0).fold(0.0, |sum, km| sum + km)
+}
+
+fn tell(
+    out: &mut dyn Write,
+    fitted: &Fitted,
+    now: &Found,
+    opened: Option<&(u32, Found)>,
+    components: &route::Components,
+) -> std::io::Result<()> {
+    let (network, vehicle) = (&fitted.network, &fitted.model.vehicle);
+    let certified = km(network, |i| fitted.permits.edge(i as u32));
+    let there = km(network, |i| now.there[i]);
+    let back = km(network, |i| now.and_back[i]);
+    let share = |part: f64| if certified > 0.0 { 100.0 * part / certified } else { 0.0 };
+    writeln!(out, "{} {}, over roads and turns certified for it\n", vehicle.id, vehicle.name)?;
+    writeln!(out, "  certified      {certified:>9.1} km  each direction of a road counted by itself")?;
+    writeln!(out, "  reached        {there:>9.1} km  {:.1} %", share(there))?;
+    writeln!(out, "  there and back {back:>9.1} km  {:.1} %", share(back))?;
+    let largest = km(network, |i| components.of[i] == Some(0));
+    let fall_apart = "parts that the network falls into; within each one can drive from anywhere to anywhere";
+    writeln!(out, "  parts          {:>9}     {fall_apart}", components.count)?;
+    writeln!(out, "  the largest    {largest:>9.1} km  {:.1} %", share(largest))?;
+    if let Some((edge, then)) = opened {
+        let more = |a: &[bool], b: &[bool]| km(network, |i| a[i] && !b[i] && i != *edge as usize);
+        let (more_there, more_back) = (more(&then.there, &now.there), more(&then.and_back, &now.and_back));
+        let name = printable(&route::title(network, PartKind::Edge(*edge)));
+        let text = format!(
+            "If edge {} ({name}) and the turns at it were safe, {more_there:.1} km more could be reached, and {more_back:.1} km \
+             more with the way back.",
+            network.edges[*edge as usize].id
+        );
+        writeln!(out, "\n{}", wrapped(&text, "  "))?;
+    }
+    let scope = "Edges and turns are certified by themselves, whole routes are not: `netcert route` does that.";
+    writeln!(out, "\n{}", wrapped(scope, ""))
+}
+
+fn geojson(fitted: &Fitted, now: &Found, opened: Option<&Found>, components: &route::Components) -> Value {
+    let network = &fitted.network;
+    let mut features = Vec::new();
+    for (i, edge) in network.edges.iter().enumerate() {
+        let opens = opened.is_some_and(|then| then.there[i] && !now.there[i]);
+        if !fitted.permits.edge(i as u32) && !opens {
+            continue;
+        }
+        let reach = match (now.and_back[i], now.there[i], opens) {
+            (true, ..) => "return",
+            (false, true, _) => "there",
+            (false, false, true) => "opened",
+            (false, false, false) => "no",
+        };
+        let line: Vec<[f64; 2]> = network.positions(edge).map(|place| place.degrees().into()).map(rounded).collect();
+        features.push(json!({
+            "type": "Feature",
+            "id": edge.id.to_string(),
+            "geometry": {"type": "LineString", "coordinates": line},
+            "properties": {
+                "edge_id": edge.id,
+                "vehicle_id": fitted.model.vehicle.id,
+                "reach": reach,
+                "component": components.of[i],
+                "length_m": network.length_m(edge),
+                "rsc_m": fitted.permits.edges[i].rsc_m,
+                "title": route::title(network, PartKind::Edge(i as u32)),
+            },
+        }));
+    }
+    json!({"type": "FeatureCollection", "features": features})
+}
+
+/// To 1e-7 degree, as the map has it.
+fn rounded([lon, lat]: [f64; 2]) -> [f64; 2] {
+    [lon, lat].map(|degrees| (degrees * 1e7).round() / 1e7)
+}

@@ -1,0 +1,259 @@
+//! `netcert route`: the shortest way over certified roads and turns, with a certificate over the whole of it.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{anyhow, bail};
+use clap::{Args, ValueEnum};
+use netcert::corridor::FileCorridor;
+use netcert::network::Network;
+use netcert::picture;
+use netcert::route::{self, Answer, Measure, PartKind, PartResult, Planner, Position, Question, Route as Found};
+use netcert::store::{Named, verdict_words};
+
+use super::Session;
+use super::certificate_file;
+use super::explain::wrapped;
+use super::fitted::{Fitted, FittedArgs};
+use super::output::{printable, results};
+use super::place::place;
+use super::table::Table;
+
+/// The shortest certified route of a vehicle, with one certificate over the whole of it; or what blocks.
+///
+/// Searched over the roads and turns that the database certifies for the vehicle, restrictions obeyed. The route's corridor is
+/// then certified from end to end; where that fails though its parts passed, the search goes on without the place that
+/// failed.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  netcert route --vehicle AU-ATRIPLE53 --from 144.29,-36.74 --to 144.33,-36.80
+  netcert route --vehicle EU-SEMI16.5 --from 8.67,49.40 --to 8.70,49.42 --svg way.svg --out certificate.json
+  netcert verify certificate.json
+
+The vehicle begins straight where the route begins. Turning back on the road is not considered, nor is
+traffic; times are from speeds by class of road (data/speeds.toml). Exit status 0 also when there is no
+certified route: read `routes` in JSON.")]
+pub(crate) struct Route {
+    #[command(flatten)]
+    fitted: FittedArgs,
+    /// Where it begins, degrees.
+    #[arg(long, value_name = "LON,LAT", value_parser = place, allow_hyphen_values = true)]
+    from: Position,
+    /// Where it ends.
+    #[arg(long, value_name = "LON,LAT", value_parser = place, allow_hyphen_values = true)]
+    to: Position,
+    /// A place to pass, in driving direction; may be given several times.
+    #[arg(long, value_name = "LON,LAT", value_parser = place, allow_hyphen_values = true)]
+    via: Vec<Position>,
+    /// How far a certified road may be from each place, metres.
+    #[arg(long, value_name = "METRES", default_value_t = 100.0, value_parser = snap_metres)]
+    snap: f64,
+    /// What is to be least.
+    #[arg(long, value_enum, default_value_t = Least::Time)]
+    least: Least,
+    /// So many more routes that differ.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=9))]
+    alternatives: u8,
+    /// How many whole routes may fail before the search is given up.
+    #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u16).range(0..=1000))]
+    tries: u16,
+    /// Form of the answer.
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+    /// Draw the best route there: leeway all along, and its shape.
+    #[arg(long, value_name = "OUT.svg")]
+    svg: Option<PathBuf>,
+    /// Write the best route's certificate there, as JSON; `netcert verify` checks it.
+    #[arg(long, value_name = "CERTIFICATE.json")]
+    out: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Least {
+    Time,
+    Distance,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Table,
+    Json,
+    Geojson,
+}
+
+fn snap_metres(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|value| (0.0..=10_000.0).contains(value));
+    value.ok_or_else(|| "give a number of metres from 0 to 10000".to_owned())
+}
+
+impl Route {
+    pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        let fitted = self.fitted.load()?;
+        let measure = if self.least == Least::Time { Measure::Time } else { Measure::Distance };
+        let turns = fitted.turns();
+        let (graph, speeds) = (fitted.graph(measure), fitted.speeds.clone());
+        let stet = fitted.settings.stet;
+        let mut planner = Planner::new(graph, &fitted.permits, &fitted.model, &turns, fitted.strokes(), stet, speeds);
+        let places = [self.from].into_iter().chain(self.via.iter().copied()).chain([self.to]).collect();
+        let (alternatives, tries) = (usize::from(self.alternatives), usize::from(self.tries));
+        let answer = planner.answer(&Question { places, snap_m: self.snap, alternatives, tries })?;
+        self.write_files(&fitted, &answer, session)?;
+        let mut out = results();
+        match self.format {
+            Format::Json => writeln!(out, "{:#}", route::json(&fitted.network, &fitted.model, &answer))?,
+            Format::Geojson => writeln!(out, "{}", route::geojson(&fitted.network, &fitted.model, &answer)?)?,
+            Format::Table => tell(&mut out, &fitted, &answer)?,
+        }
+        Ok(out.flush()?)
+    }
+
+    fn write_files(&self, fitted: &Fitted, answer: &Answer, session: &Session) -> anyhow::Result<()> {
+        let best = answer.routes.first();
+        if let Some(path) = &self.out {
+            let best = best.ok_or_else(|| nothing(path))?;
+            let given = FileCorridor { corridor: best.path.corridor.clone(), frame: Some(best.path.frame) };
+            let options = &fitted.settings.stet;
+            let json = certificate_file::json(&given, &fitted.model, &best.certificate, options)?;
+            write(path, netcert::check::sealed(&json))?;
+            session.progress.say(&format!("{}: the whole certificate", path.display()));
+        }
+        if let Some(path) = &self.svg {
+            let best = best.ok_or_else(|| nothing(path))?;
+            write(path, picture::route(&fitted.network, &fitted.model.vehicle, best))?;
+            session.progress.say(&format!("{}: the picture", path.display()));
+        }
+        Ok(())
+    }
+}
+
+fn nothing(path: &Path) -> anyhow::Error {
+    anyhow!("{}: there is no certified route to write; ask without it to see what blocks", path.display())
+}
+
+fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
+    match std::fs::write(path, bytes) {
+        Ok(()) => Ok(()),
+        Err(error) => bail!("{}: cannot write: {error}", path.display()),
+    }
+}
+
+fn tell(out: &mut dyn Write, fitted: &Fitted, answer: &Answer) -> std::io::Result<()> {
+    let (network, vehicle) = (&fitted.network, &fitted.model.vehicle);
+    for (number, found) in answer.routes.iter().enumerate() {
+        let which = if number == 0 { "a certified route" } else { "another one" };
+        writeln!(
+            out,
+            "{} {}: {which}, {:.1} km, about {:.0} min\n",
+            vehicle.id,
+            vehicle.name,
+            found.length_m / 1000.0,
+            (found.time_s / 60.0).ceil()
+        )?;
+        numbers(out, fitted, found)?;
+        writeln!(out)?;
+        parts(out, network, found)?;
+        writeln!(out)?;
+    }
+    if answer.routes.is_empty() {
+        writeln!(out, "{} {}: no certified route\n", vehicle.id, vehicle.name)?;
+        blocked(out, network, answer)?;
+    }
+    for refutation in &answer.refuted {
+        let why = match (&refutation.result, &refutation.assembly) {
+            (Some((rsc_m, _)), _) if *rsc_m < 0.0 && *rsc_m > -100.0 => format!("{:.2} m missing", -rsc_m),
+            (Some(_), _) => "a hinge or the steering lock would not do".to_owned(),
+            (None, Some(error)) => error.to_string(),
+            (None, None) => "nothing to certify".to_owned(),
+        };
+        let at = printable(&route::title(network, refutation.at));
+        writeln!(out, "{}", wrapped(&format!("Tried and refuted as a whole, at {at}: {why}."), "  "))?;
+    }
+    let policy = fitted.settings.policy.name();
+    let scope = format!(
+        "Within the stated model, widths and error bounds ({policy} policy, every turn's kerbs as the map or assumptions have \
+         them); no permit. Times are by class of road."
+    );
+    writeln!(out, "{}", wrapped(&scope, ""))
+}
+
+fn numbers(out: &mut dyn Write, fitted: &Fitted, found: &Found) -> std::io::Result<()> {
+    let result = &found.certificate.result;
+    let unit = fitted.model.vehicle.units.get(result.limiting.unit).map_or("", |unit| &unit.name);
+    let at = found.limiting().map_or_else(String::new, |at| route::title(&fitted.network, at));
+    writeln!(out, "  RSC          {:>8.3} m  to spare where it is tightest, all error bounds deducted", result.rsc_m)?;
+    writeln!(
+        out,
+        "  tightest at  {:>8.2} km {} ({}, {} side)",
+        found.limiting_m() / 1000.0,
+        printable(&at),
+        unit,
+        result.limiting.side.name()
+    )?;
+    writeln!(out, "  hinge margin {:>8.1} °", result.hinge_margin_rad.to_degrees())?;
+    let tolerance_m = result.shrink * fitted.model.vehicle.tracking_tolerance_m;
+    writeln!(
+        out,
+        "  shrink       {:>8.3}    the steer axle must stay within {tolerance_m:.3} m of the plan",
+        result.shrink
+    )
+}
+
+/// Edges of the same road one after the other are one row.
+fn parts(out: &mut dyn Write, network: &Network, found: &Found) -> std::io::Result<()> {
+    let mut table = Table::new(&[">from", ">length", ">rsc", "", "road"]);
+    let mut rows: Vec<(PartResult, String)> = Vec::new();
+    for part in found.parts() {
+        let title = route::title(network, part.kind);
+        match rows.last_mut() {
+            Some((last, known))
+                if matches!((last.kind, part.kind), (PartKind::Edge(_), PartKind::Edge(_))) && *known == title =>
+            {
+                last.to_m = part.to_m;
+                last.rsc_m = last.rsc_m.min(part.rsc_m);
+            }
+            _ => rows.push((part, title)),
+        }
+    }
+    for (part, title) in rows {
+        let turn = matches!(part.kind, PartKind::Turn { .. });
+        let rsc = if part.rsc_m > 100.0 { String::new() } else { format!("{:.2} m", part.rsc_m) };
+        table.row([
+            format!("{:.2} km", part.from_m / 1000.0),
+            format!("{:.0} m", part.to_m - part.from_m),
+            rsc,
+            if turn { "turn" } else { "along" }.to_owned(),
+            printable(&title),
+        ]);
+    }
+    table.write(out, "  ")
+}
+
+fn blocked(out: &mut dyn Write, network: &Network, answer: &Answer) -> std::io::Result<()> {
+    let Some(obstacles) = &answer.obstacles else {
+        return writeln!(out, "  No roads lead there at all, lawful turns and one-way roads considered.\n");
+    };
+    if answer.gave_up {
+        writeln!(out, "  Given up after {} whole routes that failed; --tries allows more.", answer.refuted.len())?;
+    }
+    writeln!(out, "  The fewest places that would have to become safe: {}\n", obstacles.len())?;
+    let mut table = Table::new(&["at", "", "verdict", ">missing", "road"]);
+    for obstacle in obstacles {
+        let (verdict, reason) = verdict_words(obstacle.permit.verdict);
+        let verdict = match (obstacle.refuted, reason) {
+            (true, _) => "refuted as part of the whole".to_owned(),
+            (false, "") => verdict.to_owned(),
+            (false, reason) => format!("{verdict}: {reason}"),
+        };
+        let missing = obstacle.permit.rsc_m.filter(|rsc_m| *rsc_m < 0.0);
+        table.row([
+            route::place(network, obstacle.at).map_or_else(String::new, |[lon, lat]| format!("{lon:.5},{lat:.5}")),
+            if matches!(obstacle.at, PartKind::Turn { .. }) { "turn" } else { "along" }.to_owned(),
+            verdict,
+            missing.map_or_else(String::new, |rsc_m| format!("{:.2} m", -rsc_m)),
+            printable(&route::title(network, obstacle.at)),
+        ]);
+    }
+    table.write(out, "  ")?;
+    writeln!(out)
+}
