@@ -1,5 +1,5 @@
-//! Which paths a turn has: every pair of a place to leave one centreline and a place to join the other, early and late, each as
-//! far from where the two would meet as one of a few distances.
+//! Which paths a turn has: from a place before to a place after where the two centrelines would meet, near and far, early and late;
+//! on the centrelines, or swinging out to the far side before the turn and after it, as drivers of long vehicles do.
 //!
 //! The family is the same for the same turn, whatever else is computed; paths that leave the drivable area drop out, the others
 //! keep their numbers.
@@ -14,10 +14,18 @@ use crate::network::{Movement, Network};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
 
-/// Distances from where the centrelines meet, metres. A turn of 90° that takes 12 m of each centreline has a radius of about 10 m.
+/// Distances from where the two lines meet, metres. A turn of 90° that takes 12 m of each has a radius of about 10 m.
 const FROM_CORNER_M: [f64; 9] = [4.0, 6.0, 8.5, 11.5, 15.0, 19.0, 24.0, 31.0, 40.0];
-/// Approach and departure differ by so many places in that list at most.
-const MOST_UNLIKE: usize = 2;
+/// Swings to the outside before and after the turn, as shares of the room there; with how unlike approach and departure may be
+/// (places in the list above).
+const SWINGS: [([f64; 2], usize); 5] =
+    [([0.0, 0.0], 1), ([1.0, 1.0], 1), ([0.5, 0.5], 0), ([1.0, 0.0], 0), ([0.0, 1.0], 0)];
+/// Left beside the path on the outside of a swing: half a vehicle's width and what its front swings out, metres.
+const OUTSIDE_M: f64 = 1.9;
+/// A smaller swing is none, metres.
+const LEAST_SWING_M: f64 = 0.15;
+/// Over which a path swings out before the turn, and back after it, metres.
+const SWING_M: [f64; 2] = [16.0, 22.0];
 /// Distances before and after the node over which lanes shift, metres.
 const SHIFTS_M: [f64; 4] = [10.0, 20.0, 35.0, 55.0];
 /// Share of the angle that each transition takes.
@@ -55,9 +63,10 @@ impl<'a> Junction<'a> {
         let edge = |index: u32| network.edges.get(index as usize).ok_or(UnknownReason::Geometry);
         let (from, to) = (network.road(edge(movement.from)?), network.road(edge(movement.to)?));
         let frame = lines[0].frame;
-        let before_m =
-            reach.run_in_m() + reach.counted_before_m() + FROM_CORNER_M[FROM_CORNER_M.len() - 1] + PROLONGED_M;
-        let after_m = reach.counted_after_m() + MEET_M + 1.0;
+        let before_m = reach.run_in_m() + reach.counted_before_m() + FROM_CORNER_M[FROM_CORNER_M.len() - 1]
+            + SWING_M[0]
+            + PROLONGED_M;
+        let after_m = reach.counted_after_m() + MEET_M + SWING_M[1] + 1.0;
         Ok(Self {
             from: Arm::arriving(lines[0], movement.from, frame, [before_m, MEET_M])?,
             to: Arm::leaving(lines[1], movement.to, frame, [MEET_M, after_m])?,
@@ -84,43 +93,36 @@ impl<'a> Junction<'a> {
         let (area, rounded) = ground.area();
         let boundary = Boundary::new(&area);
         let mut paths = Vec::new();
-        for (number, [leave, join], share) in self.pairs() {
-            let pose = |arm: &Arm, k: usize| Pose { at: arm.point(k), heading: arm.line.heading[k] };
-            let (a, b) = (pose(from, leave), pose(to, join));
-            let points = match share {
-                Some(share) => path::corner(a, b, share),
-                None => path::shift(a, b),
-            };
-            let made = points.and_then(|points| self.path(number, [leave, join], &points, &boundary.widths(&points)?));
+        for candidate in self.candidates(turn_rad) {
+            let Some(points) = self.points(&candidate) else { continue };
+            let made = boundary.widths(&points).and_then(|widths| self.path(&candidate, &points, &widths));
             paths.extend(made);
         }
         let kerb_radius_m = rounded.then_some(self.kerb_radius_m);
         Ok(TurnCorridors { frame: self.frame, turn_rad, area, kerb_radius_m, paths })
     }
 
-    /// Number, stations of both arms, and the share of the transitions (`None`: a lane shift). No pair comes twice.
-    fn pairs(&self) -> Vec<(u8, [usize; 2], Option<f64>)> {
+    /// The whole family, without repetitions.
+    fn candidates(&self, turn_rad: f64) -> Vec<Candidate> {
         let (from, to) = (&self.from, &self.to);
         let spacing = [from.line.spacing_m, to.line.spacing_m];
         let [meet_a, meet_b] = self.meeting().unwrap_or([from.node as f64, to.node as f64]);
-        let leave = |m: f64| ((meet_a - m / spacing[0]).round().min((from.own.end - 1) as f64)).max(0.0) as usize;
-        let join =
-            |m: f64| ((meet_b + m / spacing[1]).round().max(to.own.start as f64)).min((to.len() - 1) as f64) as usize;
-        let mut pairs: Vec<(u8, [usize; 2], Option<f64>)> = Vec::new();
-        let mut number = 0;
-        let mut add = |pair: [usize; 2], share: Option<f64>| {
-            if !pairs.iter().any(|(_, known, with)| *known == pair && *with == share) {
-                pairs.push((number, pair, share));
-            }
-            number += 1;
+        let leave = |m: f64| (meet_a - m / spacing[0]).round().clamp(0.0, (from.own.end - 1) as f64) as usize;
+        let join = |m: f64| (meet_b + m / spacing[1]).round().clamp(to.own.start as f64, (to.len() - 1) as f64) as usize;
+        // To the left of travel is outside where one turns right.
+        let room = |arm: &Arm, k: usize| {
+            let outside = if turn_rad < 0.0 { arm.line.left_m[k] } else { arm.line.right_m[k] };
+            -turn_rad.signum() * (outside - OUTSIDE_M).max(0.0)
         };
-        for (i, before_m) in FROM_CORNER_M.into_iter().enumerate() {
-            for (j, after_m) in FROM_CORNER_M.into_iter().enumerate() {
-                if i.abs_diff(j) <= MOST_UNLIKE {
-                    let share = SHARES[usize::from(i == j)];
-                    add([leave(before_m), join(after_m)], Some(SHARES[0]));
-                    if i == j {
-                        add([leave(before_m), join(after_m)], Some(share));
+        let mut family = Family::default();
+        for (swing, unlike) in SWINGS {
+            for (i, before_m) in FROM_CORNER_M.into_iter().enumerate() {
+                for (j, after_m) in FROM_CORNER_M.into_iter().enumerate().filter(|(j, _)| i.abs_diff(*j) <= unlike) {
+                    let corner = [leave(before_m), join(after_m)];
+                    let aside_m = [swing[0] * room(from, corner[0]), swing[1] * room(to, corner[1])];
+                    family.add(corner, aside_m, Some(SHARES[0]));
+                    if i == j && swing == [0.0, 0.0] {
+                        family.add(corner, aside_m, Some(SHARES[1]));
                     }
                 }
             }
@@ -129,10 +131,30 @@ impl<'a> Junction<'a> {
         let on = |m: f64| ((to.node as f64 + m / spacing[1]).round() as usize).min(to.len() - 1);
         for before_m in SHIFTS_M {
             for after_m in SHIFTS_M {
-                add([back(before_m), on(after_m)], None);
+                family.add([back(before_m), on(after_m)], [0.0; 2], None);
             }
         }
-        pairs
+        family.of(spacing, to.len())
+    }
+
+    /// A candidate's points: out to the side, round the corner, back to the middle.
+    fn points(&self, candidate: &Candidate) -> Option<Vec<[f64; 2]>> {
+        let pose = |arm: &Arm, k: usize, aside_m: f64| Pose { at: arm.aside(k, aside_m), heading: arm.line.heading[k] };
+        let ends = [pose(&self.from, candidate.leave, 0.0), pose(&self.to, candidate.join, 0.0)];
+        let corner = [0, 1].map(|i| pose([&self.from, &self.to][i], candidate.corner[i], candidate.aside_m[i]));
+        let mut points = match candidate.share {
+            None => return path::shift(ends[0], ends[1]),
+            Some(share) => path::corner(corner[0], corner[1], share)?,
+        };
+        if candidate.leave != candidate.corner[0] {
+            let mut out = path::shift(ends[0], corner[0])?;
+            out.extend(points.into_iter().skip(1));
+            points = out;
+        }
+        if candidate.join != candidate.corner[1] {
+            points.extend(path::shift(corner[1], ends[1])?.into_iter().skip(1));
+        }
+        Some(points)
     }
 
     /// Stations (of each arm, with fractions, possibly beyond its end) at which the centrelines cross, nearest to the node.
@@ -165,8 +187,9 @@ impl<'a> Junction<'a> {
     }
 
     /// The corridor along one path, with what is driven before and after it.
-    fn path(&self, number: u8, [leave, join]: [usize; 2], points: &[[f64; 2]], widths: &Widths) -> Option<TurnPath> {
+    fn path(&self, candidate: &Candidate, points: &[[f64; 2]], widths: &Widths) -> Option<TurnPath> {
         let (from, to) = (&self.from, &self.to);
+        let &Candidate { number, leave, join, .. } = candidate;
         let before = ((self.reach.run_in_m() + self.reach.counted_before_m()) / from.line.spacing_m) as usize;
         let after = (self.reach.counted_after_m() / to.line.spacing_m) as usize;
         let lead = leave.saturating_sub(before)..leave;
@@ -202,6 +225,48 @@ impl<'a> Junction<'a> {
             min_radius_m,
             corridor,
         })
+    }
+}
+
+/// A path to be: which stations of both arms it leaves and joins, and where it turns in between.
+struct Candidate {
+    number: u8,
+    leave: usize,
+    join: usize,
+    /// Stations of both arms at which the corner begins and ends, and how far to their left.
+    corner: [usize; 2],
+    aside_m: [f64; 2],
+    /// Of the transitions; `None`: a lane shift.
+    share: Option<f64>,
+}
+
+type Key = ([usize; 2], [f64; 2], Option<f64>);
+
+/// Candidates by number; what comes again is left out, but keeps its number.
+#[derive(Default)]
+struct Family {
+    known: Vec<(u8, Key)>,
+    number: u8,
+}
+
+impl Family {
+    fn add(&mut self, corner: [usize; 2], aside_m: [f64; 2], share: Option<f64>) {
+        let key = (corner, aside_m.map(|m| if m.abs() < LEAST_SWING_M { 0.0 } else { m }), share);
+        if !self.known.iter().any(|(_, known)| *known == key) {
+            self.known.push((self.number, key));
+        }
+        self.number += 1;
+    }
+
+    /// With room to swing out and back where they do; those that have none drop out.
+    fn of(self, spacing: [f64; 2], stations: usize) -> Vec<Candidate> {
+        let candidate = |(number, (corner, aside_m, share)): (u8, Key)| {
+            let over = |i: usize| if aside_m[i] == 0.0 { 0 } else { (SWING_M[i] / spacing[i]).round() as usize };
+            let leave = corner[0].checked_sub(over(0))?;
+            let join = Some(corner[1] + over(1)).filter(|&join| join < stations)?;
+            Some(Candidate { number, leave, join, corner, aside_m, share })
+        };
+        self.known.into_iter().filter_map(candidate).collect()
     }
 }
 

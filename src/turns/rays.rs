@@ -12,8 +12,12 @@ const MARGIN_M: f64 = 0.004;
 /// |κ|·half-width at most: where normals cross, a place has no one distance from the path. `corridor` allows 0.98, `stet` asks for
 /// stations that are visited; curvature between points is a little more than at them.
 const MOST_CROSSING: f64 = 0.9;
-/// Nothing is wider to one side, metres.
-const FARTHEST_M: f64 = 25.0;
+/// Nothing is wider to one side, metres: the longest combinations cut a corner by as much.
+const FARTHEST_M: f64 = 12.0;
+/// Half-widths change by so much at most, metres a metre: where another road opens beside the path a ray sees far into it, and a
+/// certificate deducts what a width may change along a body. (Without it a semitrailer lost 6 m where its path passes the mouth of
+/// a side road.)
+const STEEPEST: f64 = 0.4;
 /// A path that is nearer to the area's end has left it, metres.
 const LEAST_M: f64 = 0.15;
 /// A corner of the area counts for the segments whose normals may meet it: it lies between their ends, with so much of their
@@ -65,6 +69,8 @@ impl Boundary {
         }
         near.corners(path, &mut widths);
         clear_of_centre(path, &mut widths);
+        gentle(path, &mut widths.left_m);
+        gentle(path, &mut widths.right_m);
         for w in widths.left_m.iter_mut().chain(&mut widths.right_m) {
             *w -= MARGIN_M;
             if !(*w >= LEAST_M) {
@@ -131,6 +137,17 @@ impl Boundary {
                 }
             }
         }
+    }
+}
+
+/// The largest half-widths below the given ones that change by [`STEEPEST`] at most.
+fn gentle(path: &[[f64; 2]], widths: &mut [f64]) {
+    let rise = |k: usize| STEEPEST * (path[k][0] - path[k - 1][0]).hypot(path[k][1] - path[k - 1][1]);
+    for k in 1..widths.len() {
+        widths[k] = widths[k].min(widths[k - 1] + rise(k));
+    }
+    for k in (1..widths.len()).rev() {
+        widths[k - 1] = widths[k - 1].min(widths[k] + rise(k));
     }
 }
 
