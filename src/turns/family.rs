@@ -214,7 +214,7 @@ impl<'a> Junction<'a> {
         let corridor = Corridor::from_centreline(&line.points, &line.left_m, &line.right_m, 0.0, spacing_m).ok()?;
         let last = corridor.len() - 1;
         let station = |m: f64| (m / corridor.spacing_m).round().clamp(0.0, last as f64) as usize;
-        let turn = station(begins.0)..station(ends.0) + 1;
+        let turn = nearest(&corridor, from.point(leave), station(begins.0))..nearest(&corridor, to.point(join), station(ends.0)) + 1;
         let counted = station(begins.0 - self.reach.counted_before_m())..last + 1;
         Some(TurnPath {
             number,
@@ -226,6 +226,13 @@ impl<'a> Junction<'a> {
             corridor,
         })
     }
+}
+
+/// The station nearest to a point, from a guess near it (chords are shorter than the corridor).
+fn nearest(corridor: &Corridor, p: [f64; 2], guess: usize) -> usize {
+    let far = |k: usize| (corridor.x[k] - p[0]).hypot(corridor.y[k] - p[1]);
+    let around = guess.saturating_sub(8)..(guess + 9).min(corridor.len());
+    around.min_by(|&a, &b| far(a).total_cmp(&far(b))).unwrap_or(guess)
 }
 
 /// A path to be: which stations of both arms it leaves and joins, and where it turns in between.
