@@ -3,9 +3,10 @@
 //! Roads cross at right angles unless drawn otherwise; widths are tagged, kerb radii are the test's own.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
-mod oracle;
 #[path = "support/ascii_map.rs"]
+#[allow(dead_code)]
 mod ascii_map;
+mod oracle;
 
 use ascii_map::{AsciiMap, id_of};
 use geo::{Distance as _, Euclidean};
@@ -139,14 +140,19 @@ fn back_and_straight_on_are_no_turns() {
 
 #[test]
 fn a_corridor_never_leaves_the_drivable_area() {
-    for (kerb_m, policy) in [(0.0, Policy::Lane), (6.0, Policy::Lane), (9.0, Policy::Direction), (4.0, Policy::Carriageway)] {
-        let map = AsciiMap::drawn(30.0, "
+    for (kerb_m, policy) in
+        [(0.0, Policy::Lane), (6.0, Policy::Lane), (9.0, Policy::Direction), (4.0, Policy::Carriageway)]
+    {
+        let map = AsciiMap::drawn(
+            30.0,
+            "
             D       F
              |     /
         A----B----C
              |    |
              E    G
-        ")
+        ",
+        )
         .way("ABC", "highway=secondary width=8 lanes=2")
         .way("DBE", "highway=tertiary width=6.5")
         .way("FCG", "highway=residential width=5.5");
@@ -185,7 +191,8 @@ fn a_path_leaves_and_joins_the_strokes_own_centrelines() {
         assert!(made.paths.len() > 20, "{}", made.paths.len());
         for path in &made.paths {
             for (joint, k) in [(path.approach, path.turn.start), (path.departure, path.turn.end - 1)] {
-                let line = StrokeLine::new(&drawn.network, joint.stroke, Policy::Carriageway, &params.corridor).unwrap();
+                let line =
+                    StrokeLine::new(&drawn.network, joint.stroke, Policy::Carriageway, &params.corridor).unwrap();
                 let (c, stroke) = (&path.corridor, &line.made.corridor);
                 let off = (c.x[k] - stroke.x[joint.station]).hypot(c.y[k] - stroke.y[joint.station]);
                 // Stations of the turn lie half a metre apart.
@@ -205,23 +212,42 @@ fn a_path_leaves_and_joins_the_strokes_own_centrelines() {
 
 #[test]
 fn a_roundabout_is_entered_and_left_by_turns() {
-    let map = AsciiMap::drawn(6.0, "
-                N
-                |
-                |
-                |
-               .1.
-             8     5
-            .       .
-        W--4         2--E
-            .       .
-             7     6
-               .3.
-                |
-                |
-                |
-                S
-        ")
+    let map = AsciiMap::drawn(
+        2.0,
+        "
+                              N
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              1
+                          8       5
+
+
+
+        W---------------4           2---------------E
+
+
+
+                          7       6
+                              3
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              S
+        ",
+    )
     .way("184736251", "highway=tertiary junction=roundabout width=7")
     .way("N1", "highway=tertiary width=7")
     .way("S3", "highway=tertiary width=7")
@@ -243,7 +269,12 @@ impl Reporter for Silent {
     fn note(&self, _: &str) {}
 }
 
-fn certified(drawn: &Drawn, ids: &[&str], policy: Policy, threads: usize) -> (Vec<(usize, TurnCertificate)>, Vec<AccountRow>) {
+fn certified(
+    drawn: &Drawn,
+    ids: &[&str],
+    policy: Policy,
+    threads: usize,
+) -> (Vec<(usize, TurnCertificate)>, Vec<AccountRow>) {
     let models: Vec<Model> = ids.iter().map(|id| Model::new(&catalogued(id)).unwrap()).collect();
     let edges = vec![vec![Verdict::Safe; drawn.network.edges.len()]; models.len()];
     let settings = Settings { policy, corridor: Params::default(), stet: Options::default(), turns: true };
@@ -309,7 +340,13 @@ fn no_claim_of_a_turn_is_refuted() {
     let (mut fought, mut draw) = (0, Draw(0x7u64));
     for (width, kerb_m) in [("7", 6.0), ("8", 12.0), ("9", 15.0)] {
         let drawn = Drawn::cross(&format!("highway=secondary width={width}"), false, kerb_m);
-        for (nodes, id) in [("EBC", "EU-SEMI16.5"), ("EBA", "EU-SEMI16.5"), ("EBC", "US-WB67"), ("EBA", "US-WB40"), ("DBC", "AU-BDOUBLE26")] {
+        for (nodes, id) in [
+            ("EBC", "EU-SEMI16.5"),
+            ("EBA", "EU-SEMI16.5"),
+            ("EBC", "US-WB67"),
+            ("EBA", "US-WB40"),
+            ("DBC", "AU-BDOUBLE26"),
+        ] {
             let vehicle: Vehicle = fleet::vehicle(id);
             let made = drawn.corridors(nodes, Policy::Carriageway, Reach::of(&vehicle).unwrap());
             let model = Model::new(&vehicle).unwrap();

@@ -7,9 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::pipeline::{self, Settings};
-use netcert::store::{
-    Area, Bounds, Database, EdgeRow, Named, QueryOptions, TurnQuery, VerdictKind, verdict_words,
-};
+use netcert::store::{Area, Bounds, Database, EdgeRow, Named, QueryOptions, TurnQuery, VerdictKind, verdict_words};
 use netcert::vehicle::Vehicle;
 use serde_json::json;
 
@@ -143,7 +141,8 @@ impl Query {
         area: Option<Area>,
     ) -> anyhow::Result<()> {
         let (verdict, min_rsc_m) = (self.verdict, self.min_rsc);
-        let rows = database.query_turns(&TurnQuery { area, verdict, min_rsc_m, ..TurnQuery::new(&self.vehicle, policy) })?;
+        let rows =
+            database.query_turns(&TurnQuery { area, verdict, min_rsc_m, ..TurnQuery::new(&self.vehicle, policy) })?;
         let scope = format!("{} Kerb radii of corners are assumed.", scope(vehicle));
         let head = Head { vehicle: self.vehicle.clone(), policy, scope };
         let mut out = results();

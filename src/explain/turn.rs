@@ -30,9 +30,7 @@ pub fn explain_turn(network: &Network, facts: &TurnFacts, model: &Model, setting
     let roads = [facts.movement.from, facts.movement.to]
         .map(|edge| network.edges.get(edge as usize).map_or(String::new(), |edge| title(network, edge)));
     let made = match Reach::of(&model.vehicle) {
-        Some(reach) => {
-            turn_corridors(network, facts.movement, settings.policy, &settings.turn_params(), reach)
-        }
+        Some(reach) => turn_corridors(network, facts.movement, settings.policy, &settings.turn_params(), reach),
         None => Err(UnknownReason::Geometry),
     };
     let best = made.as_ref().ok().and_then(|made| best_of(&made.paths, &[model], &settings.stet).pop().flatten());
@@ -52,7 +50,8 @@ pub fn explain_turn(network: &Network, facts: &TurnFacts, model: &Model, setting
         // Without corrections where that is how the stage certified it.
         let plain = Options { max_shift_m: 0.0, correction_sweeps: 0 };
         let same = |options: &Options| {
-            certify_planned(&path.corridor, model, spans, options).is_some_and(|(_, results)| results.first() == Some(result))
+            certify_planned(&path.corridor, model, spans, options)
+                .is_some_and(|(_, results)| results.first() == Some(result))
         };
         let options = if same(&settings.stet) { settings.stet } else { plain };
         geometry(&path.corridor, spans, 0, model, &options).filter(|g| g.result.seen())

@@ -25,7 +25,8 @@ pub fn turn(t: &TurnExplanation) -> Option<String> {
     let g = e.geometry.as_ref()?;
     let words = words(e);
     let mut picture = Picture::new(WIDTH, HEIGHT, &format!("{}: {}", e.vehicle.id, words.headline), &t.title());
-    picture.text([MARGIN, 40.0], &words.headline, TextStyle::size(22.0));
+    let size = if words.headline.chars().count() > 110 { 17.0 } else { 21.0 };
+    picture.text([MARGIN, 40.0], &words.headline, TextStyle::size(size));
     let vehicle = format!("{} {}, turn {}", e.vehicle.id, e.vehicle.name, t.facts.id);
     picture.text([MARGIN, 64.0], &t.title(), TextStyle::size(14.0).coloured(palette::GREY));
     picture.text([MARGIN, 84.0], &vehicle, TextStyle::size(14.0).coloured(palette::GREY));
@@ -55,7 +56,10 @@ fn keys() -> Vec<Key> {
         Key::new(Style::area(palette::ROAD).outlined(palette::INK, 1.2), "what this turn may use of the road"),
         Key::new(Style::line(palette::VERMILLION, 1.6), "edges of the corridor that was certified"),
         Key::new(Style::line(palette::BLUE, 2.4), "planned path of the steer axle"),
-        Key::new(Style::area(palette::SKY).filled_at(0.2), "the vehicle, every 3 m, nominally; where it is tightest in full"),
+        Key::new(
+            Style::area(palette::SKY).filled_at(0.2),
+            "the vehicle, every 3 m, nominally; where it is tightest in full",
+        ),
     ]
 }
 
@@ -72,7 +76,10 @@ fn swept(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View) {
     picture.group("swept", |p| {
         for k in (0..g.ride.len()).step_by(every) {
             for (unit, pose) in e.vehicle.units.iter().zip(g.ride.at(k as f64)) {
-                p.polygon(&view.all(&pose.outline(unit)), Style::area(palette::SKY).filled_at(0.12).outlined(palette::GREY, 0.4));
+                p.polygon(
+                    &view.all(&pose.outline(unit)),
+                    Style::area(palette::SKY).filled_at(0.12).outlined(palette::GREY, 0.4),
+                );
             }
         }
         bodies::vehicle(p, view, &e.vehicle, &g.place.poses, &|unit| {

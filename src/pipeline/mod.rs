@@ -25,10 +25,10 @@ use crate::osm::facts::{Countries, CountriesError, Policy, RulesError, cross_sec
 use crate::osm::pbf::{HeaderInfo, ReadError};
 use crate::osm::{self};
 use crate::stet::{Model, ModelError, Options};
-use crate::turns::{Kerbs, TurnFacts, TurnParams, turn_facts};
-use crate::verdict::{UnknownReason, Verdict};
 use crate::store::{Database, EdgeCertificate, Run, StoreError, VehicleRecord, Writer};
+use crate::turns::{Kerbs, TurnFacts, TurnParams, turn_facts};
 use crate::vehicle::{Catalogue, Vehicle, VehicleError};
+use crate::verdict::{UnknownReason, Verdict};
 
 /// What can end a run.
 #[derive(Debug, Error)]

@@ -128,7 +128,8 @@ fn strokes_of_edges(network: &Network) -> Vec<u32> {
 
 /// Indices of the turns, near ones near each other: so that few strokes are made twice.
 fn neighbours(turns: &[TurnFacts]) -> Vec<u32> {
-    let place = |turn: &TurnFacts| turn.line.get(turn.line.len() / 2).copied().unwrap_or(LonLat { lon_e7: 0, lat_e7: 0 });
+    let place =
+        |turn: &TurnFacts| turn.line.get(turn.line.len() / 2).copied().unwrap_or(LonLat { lon_e7: 0, lat_e7: 0 });
     let spread = |e7: i32| {
         let mut x = u64::from(((i64::from(e7) + 1_800_000_000) >> 10) as u32);
         for (shift, mask) in [(16, 0x0000_ffff_0000_ffff), (8, 0x00ff_00ff_00ff_00ff), (4, 0x0f0f_0f0f_0f0f_0f0f)] {
@@ -137,10 +138,8 @@ fn neighbours(turns: &[TurnFacts]) -> Vec<u32> {
         x = (x | x << 2) & 0x3333_3333_3333_3333;
         (x | x << 1) & 0x5555_5555_5555_5555
     };
-    let mut order: Vec<(u64, u32)> = (0..)
-        .zip(turns)
-        .map(|(i, turn)| (spread(place(turn).lon_e7) | spread(place(turn).lat_e7) << 1, i))
-        .collect();
+    let mut order: Vec<(u64, u32)> =
+        (0..).zip(turns).map(|(i, turn)| (spread(place(turn).lon_e7) | spread(place(turn).lat_e7) << 1, i)).collect();
     order.sort_unstable();
     order.into_iter().map(|(_, i)| i).collect()
 }
@@ -205,9 +204,10 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
         if live.is_empty() {
             continue;
         }
-        let made = line(turn.movement.from).and_then(|from| Ok([from, line(turn.movement.to)?])).and_then(|[from, to]| {
-            turn_on(job.network, turn.movement, [from, to], job.settings.policy, job.params, reach)
-        });
+        let made =
+            line(turn.movement.from).and_then(|from| Ok([from, line(turn.movement.to)?])).and_then(|[from, to]| {
+                turn_on(job.network, turn.movement, [from, to], job.settings.policy, job.params, reach)
+            });
         match made {
             Err(reason) => live.iter().for_each(|&v| out[v] = bare(Verdict::Unknown(reason))),
             Ok(made) => {
@@ -248,7 +248,9 @@ pub fn best_of(paths: &[TurnPath], models: &[&Model], options: &Options) -> Vec<
         let options = if thoroughly { *options } else { Options { max_shift_m: 0.0, correction_sweeps: 0 } };
         let trying: Vec<&Model> = vehicles.iter().map(|&v| models[v]).collect();
         let tried = &paths[path];
-        for (&v, row) in vehicles.iter().zip(certify_spans(&tried.corridor, &trying, std::slice::from_ref(&tried.counted), &options)) {
+        for (&v, row) in
+            vehicles.iter().zip(certify_spans(&tried.corridor, &trying, std::slice::from_ref(&tried.counted), &options))
+        {
             let Some(result) = row.spans.into_iter().next() else { continue };
             if best[v].as_ref().is_none_or(|(_, known)| better(&result, known)) {
                 best[v] = Some((path, result));

@@ -18,8 +18,8 @@ use super::database::Database;
 use super::error::{StoreError, content};
 use super::names::{Named, corridor_no, verdict_of};
 use super::packed::{EdgeCertificate, Measured, Packed};
-use super::sets;
 use super::query::{Area, VerdictKind, polygons};
+use super::sets;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -82,8 +82,7 @@ pub(super) async fn write(c: &mut SqliteConnection, turns: &[Record]) -> Sql<Opt
     let mut bulk = Bulk::new("turn", 11);
     let mut bounds: Option<Bounds> = None;
     for (fid, Record { facts, via_node, restriction }) in (1_i64..).zip(turns) {
-        let (geom, around) =
-            blob::encode(facts.line.iter().copied()).ok_or_else(|| content("a turn has no line"))?;
+        let (geom, around) = blob::encode(facts.line.iter().copied()).ok_or_else(|| content("a turn has no line"))?;
         bounds = Some(bounds.map_or(around, |b| b.union(around)));
         bulk.add(fid)?;
         bulk.add(facts.id)?;

@@ -95,7 +95,12 @@ pub(super) struct Arm {
 
 impl Arm {
     /// The end of edge `edge` on `line`, with up to `before_m` and `after_m` of road.
-    pub(super) fn arriving(line: &StrokeLine, edge: u32, frame: Frame, reach_m: [f64; 2]) -> Result<Self, UnknownReason> {
+    pub(super) fn arriving(
+        line: &StrokeLine,
+        edge: u32,
+        frame: Frame,
+        reach_m: [f64; 2],
+    ) -> Result<Self, UnknownReason> {
         let span = line.made.spans.iter().find(|s| s.edge == edge).ok_or(UnknownReason::Geometry)?;
         match span.unknown {
             Some(reason) => Err(reason),
@@ -104,7 +109,12 @@ impl Arm {
     }
 
     /// The beginning of edge `edge` on `line`.
-    pub(super) fn leaving(line: &StrokeLine, edge: u32, frame: Frame, reach_m: [f64; 2]) -> Result<Self, UnknownReason> {
+    pub(super) fn leaving(
+        line: &StrokeLine,
+        edge: u32,
+        frame: Frame,
+        reach_m: [f64; 2],
+    ) -> Result<Self, UnknownReason> {
         let span = line.made.spans.iter().find(|s| s.edge == edge).ok_or(UnknownReason::Geometry)?;
         match span.unknown {
             Some(reason) => Err(reason),

@@ -65,11 +65,7 @@ impl Reach {
     #[must_use]
     pub fn of(vehicle: &crate::vehicle::Vehicle) -> Option<Self> {
         let length_m = vehicle.length_m;
-        if length_m <= 20.0 {
-            Some(Self::Short)
-        } else {
-            (length_m <= 60.0).then_some(Self::Long)
-        }
+        if length_m <= 20.0 { Some(Self::Short) } else { (length_m <= 60.0).then_some(Self::Long) }
     }
 
     /// Before the path begins, that counts: the vehicle's tail is still there when its head turns. Metres.

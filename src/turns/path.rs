@@ -49,12 +49,12 @@ pub(super) fn corner(a: Pose, b: Pose, share: f64) -> Option<Vec<[f64; 2]>> {
     let before = (gap[0] * v[1] - gap[1] * v[0]) / sine;
     let after = (u[0] * gap[1] - u[1] * gap[0]) / sine;
     let tangent = before.min(after);
-    if !(tangent > 1.0) {
+    if tangent.is_nan() || tangent <= 1.0 {
         return None;
     }
     let unit = UnitTurn::new(turned.abs(), share);
     let radius = tangent / unit.tangent;
-    if !(radius >= LEAST_RADIUS_M) {
+    if radius.is_nan() || radius < LEAST_RADIUS_M {
         return None;
     }
     let mut points = straight(a.at, u, before - tangent);
@@ -93,11 +93,7 @@ impl UnitTurn {
         let mut unit = Self { transition: 2.0 * share * turned, arc: (1.0 - 2.0 * share) * turned, tangent: 0.0 };
         let end = unit.integrate(256).last().copied().unwrap_or_default();
         // The end lies where the second tangent, of length `tangent`, ends: y = tangent · sin(turned).
-        unit.tangent = if turned.sin().abs() > 0.05 {
-            end[1] / turned.sin()
-        } else {
-            end[0] / (1.0 + turned.cos())
-        };
+        unit.tangent = if turned.sin().abs() > 0.05 { end[1] / turned.sin() } else { end[0] / (1.0 + turned.cos()) };
         unit
     }
 
@@ -155,9 +151,7 @@ pub(super) fn shift(a: Pose, b: Pose) -> Option<Vec<[f64; 2]>> {
         let to = 10.0 * t3 - 15.0 * t4 + 6.0 * t5;
         let leaves = t - 6.0 * t3 + 8.0 * t4 - 3.0 * t5;
         let arrives = -4.0 * t3 + 7.0 * t4 - 3.0 * t5;
-        [0, 1].map(|k| {
-            a.at[k] + to * (b.at[k] - a.at[k]) + chord * (leaves * u[k] + arrives * v[k])
-        })
+        [0, 1].map(|k| a.at[k] + to * (b.at[k] - a.at[k]) + chord * (leaves * u[k] + arrives * v[k]))
     };
     let points: Vec<[f64; 2]> = (0..=steps).map(|i| blend(i as f64 / steps as f64)).collect();
     (sharpest(&points) <= MOST_SHIFT_CURVATURE).then_some(points)
