@@ -9,10 +9,11 @@
 //! | corridors | [`corridor`] | a stroke → [`corridor::StrokeCorridor`]: C¹ centreline and width profile, in metres |
 //! | certificates | [`stet`] | a corridor and a [`vehicle`] → [`stet::Certificate`] |
 //! | the paper | [`published`] | a corridor and a vehicle → the paper's own certificate, to the letter; it decides nothing |
-//! | store | [`store`] | network and certificates → a GeoPackage |
+//! | turns | [`turns`] | two strokes that meet → the corridors in which one turns from one into the other |
+//! | store | [`store`] | network, turns and certificates → a GeoPackage |
 //! | routes | [`route`] | a network with permits, two places → the shortest way that certifies as a whole |
 //! | reasons | [`explain`] | an edge or corridor and a vehicle → what limits, where, and what would do |
-//! | turns | [`manoeuvres`] | a vehicle → swept paths of the turns that regulators ask for, beside their limits |
+//! | manoeuvres | [`manoeuvres`] | a vehicle → swept paths of the turns that regulators ask for, beside their limits |
 //! | pictures | [`picture`] | corridors, vehicles and certificates → SVG; nothing else of the library depends on it |
 //!
 //! [`check`] works out again what [`stet`] claims, without it.

@@ -5,13 +5,14 @@ use std::path::PathBuf;
 
 use anyhow::{anyhow, bail};
 use clap::{Args, ValueEnum};
-use netcert::explain::{self, Explanation};
+use netcert::explain::{self, Explanation, TurnExplanation};
 use netcert::network::Network;
 use netcert::osm::facts::Policy;
 use netcert::picture;
 use netcert::pipeline::Settings;
 use netcert::stet::Model;
 use netcert::store::{Database, EdgeRow, Named, QueryOptions, verdict_words};
+use netcert::turns::{TurnFacts, turn_facts};
 use netcert::vehicle::Vehicle;
 
 use super::Session;
@@ -36,7 +37,7 @@ Examples:
   netcert explain 'Great Inland Highway' --vehicle AU-ATRIPLE53      lists its edges
   netcert explain 7129168334710566423 --vehicle AU-ATRIPLE53 --svg why.svg")]
 pub(crate) struct Explain {
-    /// An edge_id, as `netcert query` shows it; or a way's id, a road's name or ref: where that is more than one edge,
+    /// A turn_id, as `netcert query --turns` shows it; an edge_id, as `netcert query` shows it; or a way's id, a road's name or ref: where that is more than one edge,
     /// they are listed.
     #[arg(value_name = "EDGE")]
     edge: String,
@@ -73,6 +74,10 @@ impl Explain {
         let recorded = how::recorded(&mut database)?;
         let settings = Settings { policy: self.corridor.unwrap_or(recorded.policy), ..recorded };
         let network = database.load_network()?;
+        if let Some(turn) = self.turn(&network, &settings) {
+            let model = Model::new(&self.vehicle(&mut database)?)?;
+            return self.tell_turn(session, &explain::explain_turn(&network, &turn, &model, &settings));
+        }
         let edge = self.one_edge(&network, &mut database, settings.policy)?;
         let model = Model::new(&self.vehicle(&mut database)?)?;
         let Some(explanation) = explain::explain_edge(&network, edge, &model, &settings) else {
@@ -106,6 +111,37 @@ impl Explain {
         match self.format {
             Format::Json => writeln!(out, "{:#}", explain::json(&explanation))?,
             Format::Text => tell(&mut out, &explanation)?,
+        }
+        Ok(out.flush()?)
+    }
+
+    /// The turn of that id.
+    fn turn(&self, network: &Network, settings: &Settings) -> Option<TurnFacts> {
+        let id: i64 = self.edge.trim().parse().ok()?;
+        turn_facts(network, &settings.turn_params().kerbs).into_iter().find(|turn| turn.id == id)
+    }
+
+    fn tell_turn(&self, session: &Session, turn: &TurnExplanation) -> anyhow::Result<()> {
+        if let Some(out) = &self.svg {
+            let words = explain::words(&turn.explanation);
+            let Some(svg) = picture::turn(turn) else {
+                bail!("{}: there is nothing to draw: {}", out.display(), words.headline);
+            };
+            std::fs::write(out, svg).map_err(|e| anyhow!("{}: cannot write the picture: {e}", out.display()))?;
+            session.progress.say(&format!("{}: the picture", out.display()));
+        }
+        let mut out = results();
+        match self.format {
+            Format::Json => {
+                let mut json = explain::json(&turn.explanation);
+                json["turn_id"] = turn.facts.id.into();
+                json["turn"] = turn.title().into();
+                writeln!(out, "{json:#}")?;
+            }
+            Format::Text => {
+                writeln!(out, "{}", printable(&turn.title()))?;
+                tell(&mut out, &turn.explanation)?;
+            }
         }
         Ok(out.flush()?)
     }

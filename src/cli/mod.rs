@@ -25,6 +25,7 @@ mod rows;
 mod stats;
 mod table;
 mod tubes;
+mod turn_rows;
 mod values;
 mod vehicles;
 mod verify;

@@ -1,12 +1,13 @@
 //! `netcert query`: the roads and what a vehicle may do there.
 
 use std::collections::BTreeMap;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::pipeline::{self, Settings};
-use netcert::store::{Area, Bounds, Database, EdgeRow, Named, QueryOptions, VerdictKind, verdict_words};
+use netcert::store::{Area, Bounds, Database, EdgeRow, Named, QueryOptions, TurnQuery, VerdictKind, verdict_words};
 use netcert::vehicle::Vehicle;
 use serde_json::json;
 
@@ -17,6 +18,7 @@ use super::fleet::{self, Fleet};
 use super::how;
 use super::output::{km, results};
 use super::rows::{Head, Sink};
+use super::turn_rows;
 use super::values::{signed_metres, word};
 
 /// Which roads a vehicle may use, and why not the others.
@@ -66,6 +68,9 @@ pub(crate) struct Query {
     /// Only where the width comes from this source or a better one, worst to best as listed.
     #[arg(long, value_name = "SOURCE", value_parser = word::<WidthSource>())]
     width_source: Option<WidthSource>,
+    /// Turns at junctions instead of edges: from one road into another where that is not straight on.
+    #[arg(long, conflicts_with = "width_source")]
+    turns: bool,
     /// Form of the answer.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
@@ -95,13 +100,17 @@ impl Query {
         settings.policy = self.corridor.unwrap_or(settings.policy);
         let sets = database.certified()?;
         let there = sets.iter().any(|set| set.vehicle_id == self.vehicle && set.policy == settings.policy);
-        if !there {
+        settings.turns |= self.turns;
+        if !there || self.turns && !database.has_turns(&self.vehicle, settings.policy)? {
             let vehicle = self.vehicle_to_certify(&mut database)?;
             database.close()?;
             self.certify(session, &path, &settings, &vehicle)?;
             database = Database::open(&path)?;
         }
         let vehicle = fleet::kept(&mut database, &self.vehicle)?;
+        if self.turns {
+            return self.tell_turns(session, &mut database, vehicle.as_ref(), settings.policy, area);
+        }
         let options = QueryOptions {
             area,
             verdict: self.verdict,
@@ -119,6 +128,27 @@ impl Query {
         }
         sink.end()?;
         session.progress.say(&totals.to_string());
+        session.progress.say(&head.scope);
+        Ok(())
+    }
+
+    fn tell_turns(
+        &self,
+        session: &Session,
+        database: &mut Database,
+        vehicle: Option<&Vehicle>,
+        policy: Policy,
+        area: Option<Area>,
+    ) -> anyhow::Result<()> {
+        let (verdict, min_rsc_m) = (self.verdict, self.min_rsc);
+        let rows =
+            database.query_turns(&TurnQuery { area, verdict, min_rsc_m, ..TurnQuery::new(&self.vehicle, policy) })?;
+        let scope = format!("{} Kerb radii of corners are assumed.", scope(vehicle));
+        let head = Head { vehicle: self.vehicle.clone(), policy, scope };
+        let mut out = results();
+        turn_rows::write(self.format, &head, &rows, &mut out)?;
+        out.flush()?;
+        session.progress.say(&turn_rows::totals(&rows));
         session.progress.say(&head.scope);
         Ok(())
     }
@@ -158,7 +188,7 @@ fn scope(vehicle: Option<&Vehicle>) -> String {
     });
     format!(
         "`safe` holds within the model: the vehicle as defined{tracking}, on a road as wide as its width_source says; it \
-         is no permit and says nothing of bridges, turns at junctions or traffic."
+         is no permit and says nothing of bridges or traffic."
     )
 }
 

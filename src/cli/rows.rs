@@ -177,7 +177,7 @@ impl<'h> Sink<'h> {
 }
 
 /// A cell as RFC 4180 has it; nothing for null.
-fn csv(value: &Value) -> String {
+pub(super) fn csv(value: &Value) -> String {
     let text = match value {
         Value::Null => String::new(),
         Value::String(text) => text.clone(),

@@ -75,6 +75,7 @@ impl Stats {
                     let name = names.get(set.vehicle).map_or("", String::as_str);
                     certificates(&mut out, set, name)?;
                 }
+                turns(&mut out, &stats)?;
                 record(&mut out, &runs)?;
             }
         }
@@ -129,6 +130,26 @@ fn shares<'a>(rows: &'a [&'a StatsRow]) -> impl Iterator<Item = String> + 'a {
         let of = rows.iter().filter(|row| verdict_words(row.verdict).0 == kind.name());
         percent(of.map(|row| row.length_m).sum(), all)
     })
+}
+
+/// Turns by verdict, a line a set.
+fn turns(out: &mut dyn Write, stats: &store::Stats) -> anyhow::Result<()> {
+    let mut table = Table::new(&["vehicle", "policy", ">turns", ">safe", ">unsafe", ">forbidden", ">unknown"]);
+    let mut keys: Vec<(&str, Policy)> = stats.turns.iter().map(|t| (t.vehicle_id.as_str(), t.policy)).collect();
+    keys.dedup();
+    if keys.is_empty() {
+        return Ok(());
+    }
+    for (vehicle, policy) in keys {
+        let count = |kind: Option<&VerdictKind>| -> u64 {
+            let of = stats.turns.iter().filter(|t| t.vehicle_id == vehicle && t.policy == policy);
+            of.filter(|t| kind.is_none_or(|kind| verdict_words(t.verdict).0 == kind.name())).map(|t| t.turns).sum()
+        };
+        let start = [vehicle.to_owned(), policy.name().to_owned(), grouped(count(None))];
+        table.row(start.into_iter().chain(VerdictKind::ALL.iter().map(|kind| grouped(count(Some(kind))))));
+    }
+    writeln!(out, "\nTurns at junctions")?;
+    Ok(table.write(out, "  ")?)
 }
 
 fn certificates(out: &mut dyn Write, set: &Set<'_>, name: &str) -> anyhow::Result<()> {

@@ -8,6 +8,7 @@
 //! | --- | --- |
 //! | `edge` | an edge of a network → [`Explanation`] |
 //! | `given` | a corridor of the user's own → [`Explanation`] |
+//! | `turn` | a turn of a network → [`TurnExplanation`] |
 //! | `ride` | where every unit stands as the steer axle goes along the plan |
 //! | `place` | the metre of road, the unit, the corner; the hinge |
 //! | `hints` | what would do: certified again, wider, steered more closely, with another strip |
@@ -26,6 +27,7 @@ mod place;
 mod ride;
 #[cfg(test)]
 mod tests;
+mod turn;
 mod words;
 
 use std::ops::Range;
@@ -38,6 +40,7 @@ pub use legal::Conflict;
 pub use names::cautious_m;
 pub use place::{Bend, Cross, HingePlace, Part, Place};
 pub use ride::Ride;
+pub use turn::{TurnExplanation, explain_turn};
 pub use words::{Words, words};
 
 use crate::corridor::Corridor;

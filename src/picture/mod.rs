@@ -14,6 +14,7 @@
 //! | `furniture` | dimension lines, arrows, scale bar, legend |
 //! | `chart` | a curve over an axis |
 //! | `bodies` | a vehicle from above |
+//! | `turn` | a turn at a junction, with the vehicle all the way round |
 //! | `explanation` | what limits a vehicle on a road |
 //! | `vehicle` | a vehicle with its dimensions |
 //! | `route` | a route's leeway all along, and its shape |
@@ -30,6 +31,7 @@ mod style;
 mod svg;
 #[cfg(test)]
 mod tests;
+mod turn;
 mod vehicle;
 mod view;
 
@@ -40,6 +42,7 @@ pub use manoeuvres::manoeuvres;
 pub use route::route;
 pub use style::{Anchor, Style, TextStyle};
 pub use svg::{Picture, escaped, number};
+pub use turn::turn;
 pub use vehicle::vehicle;
 pub use view::{Bounds, Frame, View};
 

@@ -27,6 +27,8 @@ const TRIED: usize = 3;
 /// What no correction brings back, metres: the shift allowed and half a metre of lining up. Below it the best path alone is
 /// certified, for the record, without corrections.
 const HOPELESS_M: f64 = 0.5;
+/// Nominal leeways that differ by less are the same, metres.
+const RANK_STEP_M: f64 = 0.05;
 
 /// What is to be certified.
 #[derive(Clone, Copy)]
@@ -229,7 +231,13 @@ pub fn best_of(paths: &[TurnPath], models: &[&Model], options: &Options) -> Vec<
     for (vehicle, model) in models.iter().enumerate() {
         let mut ranked: Vec<(f64, usize)> =
             paths.iter().enumerate().map(|(i, path)| (nominal_leeway_m(path, &model.vehicle), i)).collect();
-        ranked.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        // Of paths that leave about as much room, the gentler one first: its tubes are narrower.
+        let steps = |leeway_m: f64| (leeway_m / RANK_STEP_M).floor();
+        let gentle = |path: usize| paths[path].min_radius_m;
+        ranked.sort_by(|a, b| {
+            let more_room = steps(b.0).total_cmp(&steps(a.0));
+            more_room.then(gentle(b.1).total_cmp(&gentle(a.1))).then(a.1.cmp(&b.1))
+        });
         let hope = ranked.iter().take_while(|(leeway_m, _)| *leeway_m >= hopeless_m).count();
         for &(_, path) in ranked.iter().take(hope.clamp(1, TRIED)) {
             tries.entry((path, hope > 0)).or_default().push(vehicle);

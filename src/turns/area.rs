@@ -100,7 +100,7 @@ impl Ground<'_> {
         };
         let from_edge = edge(self.from, 0.0, CROSSING_M);
         let to_edge = edge(self.to, CROSSING_M, 0.0);
-        let (corner, a, b) = crossing(&from_edge, &to_edge, self.turn_rad)?;
+        let Corner { at: corner, from: a, to: b } = crossing(&from_edge, &to_edge, self.turn_rad)?;
         let turned = (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]);
         if !CORNERS_RAD.contains(&turned.abs()) || (turned > 0.0) != (self.turn_rad > 0.0) {
             return None;
@@ -186,20 +186,29 @@ fn distance_from_chord(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     if length < 1e-9 { f64::INFINITY } else { (d[0] * (p[1] - a[1]) - d[1] * (p[0] - a[0])).abs() / length }
 }
 
-/// Where two lines of edges cross in the turn's own sense, and their directions there; the crossing nearest to the end of the first.
-fn crossing(a: &[[f64; 2]], b: &[[f64; 2]], turn_rad: f64) -> Option<([f64; 2], [f64; 2], [f64; 2])> {
-    let mut best: Option<(usize, [f64; 2], [f64; 2], [f64; 2])> = None;
-    for (i, p) in a.windows(2).enumerate() {
+/// Where two lines of edges meet, and their directions there.
+struct Corner {
+    at: [f64; 2],
+    from: [f64; 2],
+    to: [f64; 2],
+}
+
+/// Where two lines of edges cross in the turn's own sense: the crossing nearest to the end of the first.
+fn crossing(a: &[[f64; 2]], b: &[[f64; 2]], turn_rad: f64) -> Option<Corner> {
+    let mut last = None;
+    for p in a.windows(2) {
+        let mut here = None;
         for q in b.windows(2) {
             let Some((at, ..)) = segments_cross(p[0], p[1], q[0], q[1]) else { continue };
-            let (u, v) = (unit(p[0], p[1]), unit(q[0], q[1]));
-            let sense = u[0] * v[1] - u[1] * v[0];
-            if sense * turn_rad > 0.0 && best.as_ref().is_none_or(|(known, ..)| i > *known) {
-                best = Some((i, at, u, v));
+            let (from, to) = (unit(p[0], p[1]), unit(q[0], q[1]));
+            let sense = from[0] * to[1] - from[1] * to[0];
+            if sense * turn_rad > 0.0 && here.is_none() {
+                here = Some(Corner { at, from, to });
             }
         }
+        last = here.or(last);
     }
-    best.map(|(_, at, u, v)| (at, u, v))
+    last
 }
 
 /// Where two segments cross: the place, and the share of each that lies before it.

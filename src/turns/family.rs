@@ -63,7 +63,9 @@ impl<'a> Junction<'a> {
         let edge = |index: u32| network.edges.get(index as usize).ok_or(UnknownReason::Geometry);
         let (from, to) = (network.road(edge(movement.from)?), network.road(edge(movement.to)?));
         let frame = lines[0].frame;
-        let before_m = reach.run_in_m() + reach.counted_before_m() + FROM_CORNER_M[FROM_CORNER_M.len() - 1]
+        let before_m = reach.run_in_m()
+            + reach.counted_before_m()
+            + FROM_CORNER_M[FROM_CORNER_M.len() - 1]
             + SWING_M[0]
             + PROLONGED_M;
         let after_m = reach.counted_after_m() + MEET_M + SWING_M[1] + 1.0;
@@ -108,7 +110,8 @@ impl<'a> Junction<'a> {
         let spacing = [from.line.spacing_m, to.line.spacing_m];
         let [meet_a, meet_b] = self.meeting().unwrap_or([from.node as f64, to.node as f64]);
         let leave = |m: f64| (meet_a - m / spacing[0]).round().clamp(0.0, (from.own.end - 1) as f64) as usize;
-        let join = |m: f64| (meet_b + m / spacing[1]).round().clamp(to.own.start as f64, (to.len() - 1) as f64) as usize;
+        let join =
+            |m: f64| (meet_b + m / spacing[1]).round().clamp(to.own.start as f64, (to.len() - 1) as f64) as usize;
         // To the left of travel is outside where one turns right.
         let room = |arm: &Arm, k: usize| {
             let outside = if turn_rad < 0.0 { arm.line.left_m[k] } else { arm.line.right_m[k] };
@@ -214,7 +217,8 @@ impl<'a> Junction<'a> {
         let corridor = Corridor::from_centreline(&line.points, &line.left_m, &line.right_m, 0.0, spacing_m).ok()?;
         let last = corridor.len() - 1;
         let station = |m: f64| (m / corridor.spacing_m).round().clamp(0.0, last as f64) as usize;
-        let turn = station(begins.0)..station(ends.0) + 1;
+        let turn = nearest(&corridor, from.point(leave), station(begins.0))
+            ..nearest(&corridor, to.point(join), station(ends.0)) + 1;
         let counted = station(begins.0 - self.reach.counted_before_m())..last + 1;
         Some(TurnPath {
             number,
@@ -226,6 +230,13 @@ impl<'a> Junction<'a> {
             corridor,
         })
     }
+}
+
+/// The station nearest to a point, from a guess near it (chords are shorter than the corridor).
+fn nearest(corridor: &Corridor, p: [f64; 2], guess: usize) -> usize {
+    let far = |k: usize| (corridor.x[k] - p[0]).hypot(corridor.y[k] - p[1]);
+    let around = guess.saturating_sub(8)..(guess + 9).min(corridor.len());
+    around.min_by(|&a, &b| far(a).total_cmp(&far(b))).unwrap_or(guess)
 }
 
 /// A path to be: which stations of both arms it leaves and joins, and where it turns in between.

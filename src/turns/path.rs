@@ -49,12 +49,12 @@ pub(super) fn corner(a: Pose, b: Pose, share: f64) -> Option<Vec<[f64; 2]>> {
     let before = (gap[0] * v[1] - gap[1] * v[0]) / sine;
     let after = (u[0] * gap[1] - u[1] * gap[0]) / sine;
     let tangent = before.min(after);
-    if !(tangent > 1.0) {
+    if tangent.is_nan() || tangent <= 1.0 {
         return None;
     }
     let unit = UnitTurn::new(turned.abs(), share);
     let radius = tangent / unit.tangent;
-    if !(radius >= LEAST_RADIUS_M) {
+    if radius.is_nan() || radius < LEAST_RADIUS_M {
         return None;
     }
     let mut points = straight(a.at, u, before - tangent);

@@ -52,11 +52,23 @@ impl Boundary {
         self.segments.iter().filter(|s| above(s)).count() % 2 == 1
     }
 
+    /// Whether a path leaves the area anywhere, between its points too.
+    fn crosses(&self, path: &[[f64; 2]]) -> bool {
+        let side = |a: [f64; 2], b: [f64; 2], p: [f64; 2]| {
+            (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) >= 0.0
+        };
+        path.windows(2).any(|w| {
+            self.segments
+                .iter()
+                .any(|&[a, b]| side(a, b, w[0]) != side(a, b, w[1]) && side(w[0], w[1], a) != side(w[0], w[1], b))
+        })
+    }
+
     /// Half-widths along `path`; `None` if it leaves the area.
     pub(super) fn widths(&self, path: &[[f64; 2]]) -> Option<Widths> {
         let near = self.near(path);
         let n = path.len();
-        if n < 3 || !path.iter().step_by(4).chain(path.last()).all(|&p| self.holds(p)) {
+        if n < 3 || !self.holds(path[0]) || near.crosses(path) {
             return None;
         }
         let mut widths = Widths { left_m: vec![FARTHEST_M; n], right_m: vec![FARTHEST_M; n] };
@@ -73,7 +85,7 @@ impl Boundary {
         gentle(path, &mut widths.right_m);
         for w in widths.left_m.iter_mut().chain(&mut widths.right_m) {
             *w -= MARGIN_M;
-            if !(*w >= LEAST_M) {
+            if w.is_nan() || *w < LEAST_M {
                 return None;
             }
         }

@@ -1,0 +1,154 @@
+//! Turns with their certificates as a table, CSV, JSON or GeoJSON.
+//!
+//! Names are those of the database's tables `turn` and `turn_certificate`, in their units.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use netcert::stet::Side;
+use netcert::store::{Named, TurnRow, VerdictKind, verdict_words};
+use serde_json::{Map, Value, json};
+
+use super::output::{grouped, printable};
+use super::query::Format;
+use super::rows::{Head, csv};
+
+const COLUMNS: [&str; 21] = [
+    "turn_id",
+    "from_edge",
+    "to_edge",
+    "via_node",
+    "kind",
+    "angle_deg",
+    "kerb_radius_m",
+    "kerb_source",
+    "restriction",
+    "from_name",
+    "to_name",
+    "vehicle_id",
+    "corridor",
+    "verdict",
+    "reason",
+    "rsc_m",
+    "hinge_margin_deg",
+    "shrink",
+    "limiting_s_m",
+    "limiting_unit",
+    "limiting_side",
+];
+
+/// Writes all rows.
+pub(super) fn write(format: Format, head: &Head, rows: &[TurnRow], out: &mut dyn Write) -> io::Result<()> {
+    match format {
+        Format::Table => table(rows, out),
+        Format::Csv => {
+            writeln!(out, "{}", COLUMNS.join(","))?;
+            for row in rows {
+                let cells: Vec<String> = members(head, row).iter().map(|(_, value)| csv(value)).collect();
+                writeln!(out, "{}", cells.join(","))?;
+            }
+            Ok(())
+        }
+        Format::Json => {
+            let (vehicle, scope) = (json!(head.vehicle), json!(head.scope));
+            let (version, policy) = (env!("CARGO_PKG_VERSION"), head.policy.name());
+            write!(
+                out,
+                "{{\"netcert\":\"{version}\",\"vehicle_id\":{vehicle},\"corridor\":\"{policy}\",\"scope\":{scope},\"turns\":["
+            )?;
+            items(out, rows.iter().map(|row| Value::Object(members(head, row))))
+        }
+        Format::Geojson => {
+            write!(out, "{{\"type\":\"FeatureCollection\",\"scope\":{},\"features\":[", json!(head.scope))?;
+            let feature = |row: &TurnRow| {
+                let coordinates: Vec<Value> = row.line.iter().map(|place| json!(place.degrees())).collect();
+                json!({
+                    "type": "Feature",
+                    "id": row.turn_id.to_string(),
+                    "geometry": {"type": "LineString", "coordinates": coordinates},
+                    "properties": members(head, row),
+                })
+            };
+            items(out, rows.iter().map(feature))
+        }
+    }
+}
+
+fn items(out: &mut dyn Write, values: impl Iterator<Item = Value>) -> io::Result<()> {
+    for (i, value) in values.enumerate() {
+        write!(out, "{}{value}", if i == 0 { "\n" } else { ",\n" })?;
+    }
+    writeln!(out, "\n]}}")
+}
+
+fn table(rows: &[TurnRow], out: &mut dyn Write) -> io::Result<()> {
+    writeln!(
+        out,
+        "{:>19}  {:>11} {:<12} {:>6}  {:>5}  {:>7}  {:>7}  {:<22} from → to",
+        "turn_id", "node", "kind", "angle", "kerb", "rsc", "hinge", "verdict"
+    )?;
+    for row in rows {
+        let (verdict, reason) = verdict_words(row.verdict);
+        let verdict = if reason.is_empty() { verdict.to_owned() } else { format!("{verdict}: {reason}") };
+        let name = |name: &Option<String>| printable(name.as_deref().unwrap_or("–"));
+        writeln!(
+            out,
+            "{:>19}  {:>11} {:<12} {:>5.0}°  {:>5}  {:>7}  {:>7}  {:<22} {} → {}",
+            row.turn_id,
+            row.via_node,
+            row.kind,
+            row.angle_deg,
+            row.kerb_radius_m.map_or(String::new(), |m| format!("{m:.1} m")),
+            row.rsc_m.map_or(String::new(), |m| format!("{m:.2} m")),
+            row.hinge_margin_deg.filter(|&d| d > -180.0).map_or(String::new(), |d| format!("{d:.1}°")),
+            verdict,
+            name(&row.from_name),
+            name(&row.to_name),
+        )?;
+    }
+    Ok(())
+}
+
+/// In the order of [`COLUMNS`].
+fn members(head: &Head, row: &TurnRow) -> Map<String, Value> {
+    let (verdict, reason) = verdict_words(row.verdict);
+    let values: [Value; COLUMNS.len()] = [
+        json!(row.turn_id),
+        json!(row.from_edge),
+        json!(row.to_edge),
+        json!(row.via_node),
+        json!(row.kind),
+        json!(row.angle_deg),
+        json!(row.kerb_radius_m),
+        json!(row.kerb_source),
+        json!(row.restriction),
+        json!(row.from_name),
+        json!(row.to_name),
+        json!(head.vehicle),
+        json!(head.policy.name()),
+        json!(verdict),
+        json!((!reason.is_empty()).then_some(reason)),
+        json!(row.rsc_m),
+        json!(row.hinge_margin_deg),
+        json!(row.shrink),
+        json!(row.limiting_s_m),
+        json!(row.limiting_unit),
+        json!(row.limiting_side.map(Side::name)),
+    ];
+    COLUMNS.iter().map(|&name| name.to_owned()).zip(values).collect()
+}
+
+/// Turns by verdict, in one line.
+pub(super) fn totals(rows: &[TurnRow]) -> String {
+    let mut by_verdict: BTreeMap<&str, u64> = BTreeMap::new();
+    for row in rows {
+        *by_verdict.entry(verdict_words(row.verdict).0).or_default() += 1;
+    }
+    let mut text = format!("{} turns", grouped(rows.len() as u64));
+    for kind in VerdictKind::ALL {
+        if let Some(&count) = by_verdict.get(kind.name()) {
+            text += &format!("; {} {}", kind.name(), grouped(count));
+        }
+    }
+    text
+}

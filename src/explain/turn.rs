@@ -1,0 +1,93 @@
+//! A turn of the network: its corridors made again, the one on which the certificate rests, and why it is safe or not.
+
+use super::Explanation;
+use super::edge::geometry;
+use super::hints::Hints;
+use crate::network::{Edge, Network};
+use crate::pipeline::{Settings, best_of, turn_verdict};
+use crate::stet::{Model, Options, certify_planned};
+use crate::turns::{Reach, TurnCorridors, TurnFacts, turn_corridors};
+use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
+
+/// What limits a vehicle in a turn.
+#[derive(Debug, Clone)]
+pub struct TurnExplanation {
+    /// The turn, as the map has it.
+    pub facts: TurnFacts,
+    /// The roads it leads from and to.
+    pub roads: [String; 2],
+    /// What may be driven on, and all paths; `None`: one of its edges has no corridor.
+    pub corridors: Option<TurnCorridors>,
+    /// Which of the paths is best.
+    pub path: Option<usize>,
+    /// The certificate on it, and the turn's own verdict (whatever its edges' are).
+    pub explanation: Explanation,
+}
+
+/// Why `model`'s vehicle may take a turn or not.
+#[must_use]
+pub fn explain_turn(network: &Network, facts: &TurnFacts, model: &Model, settings: &Settings) -> TurnExplanation {
+    let roads = [facts.movement.from, facts.movement.to]
+        .map(|edge| network.edges.get(edge as usize).map_or(String::new(), |edge| title(network, edge)));
+    let made = match Reach::of(&model.vehicle) {
+        Some(reach) => turn_corridors(network, facts.movement, settings.policy, &settings.turn_params(), reach),
+        None => Err(UnknownReason::Geometry),
+    };
+    let best = made.as_ref().ok().and_then(|made| best_of(&made.paths, &[model], &settings.stet).pop().flatten());
+    let legal = [facts.movement.from, facts.movement.to]
+        .into_iter()
+        .filter_map(|edge| network.edges.get(edge as usize))
+        .find_map(|edge| forbids(edge, model));
+    let verdict = match (&made, &best) {
+        _ if facts.movement.forbidden.is_some() => Verdict::Forbidden(ForbiddenReason::Restriction),
+        _ if legal.is_some() => legal.unwrap_or(Verdict::Safe),
+        (Err(reason), _) => Verdict::Unknown(*reason),
+        (Ok(_), best) => turn_verdict(best.as_ref().map(|(_, result)| result)),
+    };
+    let geometry = made.as_ref().ok().zip(best.as_ref()).and_then(|(made, (path, result))| {
+        let path = made.paths.get(*path)?;
+        let spans = std::slice::from_ref(&path.counted);
+        // Without corrections where that is how the stage certified it.
+        let plain = Options { max_shift_m: 0.0, correction_sweeps: 0 };
+        let same = |options: &Options| {
+            certify_planned(&path.corridor, model, spans, options)
+                .is_some_and(|(_, results)| results.first() == Some(result))
+        };
+        let options = if same(&settings.stet) { settings.stet } else { plain };
+        geometry(&path.corridor, spans, 0, model, &options).filter(|g| g.result.seen())
+    });
+    let explanation = Explanation {
+        road: None,
+        vehicle: model.vehicle.clone(),
+        verdict,
+        geometry,
+        hints: Hints::default(),
+        conflict: None,
+    };
+    TurnExplanation { facts: facts.clone(), roads, corridors: made.ok(), path: best.map(|(path, _)| path), explanation }
+}
+
+fn forbids(edge: &Edge, model: &Model) -> Option<Verdict> {
+    match edge.legal.forbids(&model.vehicle) {
+        Some(forbidden @ Verdict::Forbidden(_)) => Some(forbidden),
+        _ => edge.barred.then_some(Verdict::Forbidden(ForbiddenReason::Barrier)),
+    }
+}
+
+fn title(network: &Network, edge: &Edge) -> String {
+    let road = network.road(edge);
+    let named: Vec<&str> =
+        [road.reference, road.name].into_iter().flatten().map(|id| network.strings.text(id)).collect();
+    if named.is_empty() { format!("way {}", road.way_id) } else { named.join(" ") }
+}
+
+impl TurnExplanation {
+    /// One line: from where to where, by how much, round which kerb.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let angle = self.facts.angle_deg;
+        let side = if angle > 0.0 { "left" } else { "right" };
+        let kerb = self.facts.kerb_radius_m.map_or(String::new(), |m| format!(", kerb radius {m:.1} m (assumed)"));
+        format!("{} → {}: {:.0}° to the {side}{kerb}", self.roads[0], self.roads[1], angle.abs())
+    }
+}
