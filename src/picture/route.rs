@@ -44,10 +44,12 @@ fn strip(picture: &mut Picture, network: &Network, route: &Route, frame: Frame) 
     let spacing_m = route.path.corridor.spacing_m;
     let (left, right) = (series(&certificate.left_m, spacing_m), series(&certificate.right_m, spacing_m));
     let least = left.iter().chain(&right).map(|p| p[1]).fold(certificate.result.rsc_m, f64::min).max(-3.0);
+    let most = left.iter().chain(&right).map(|p| p[1]).fold(0.3, f64::max);
+    let most = most.min(ENOUGH_M.max(certificate.result.rsc_m + 1.0));
     let chart = Chart {
         frame,
         x: Scale::new(0.0, route.length_m / 1000.0, "km along the route").ticks(10),
-        y: Scale::new(least.min(0.0) - 0.1, ENOUGH_M + 0.1, "leeway, m").ticks(5),
+        y: Scale::new(least.min(0.0) - 0.1, most + 0.1, "leeway, m").ticks(5),
     };
     for part in route.parts().iter().filter(|part| matches!(part.kind, PartKind::Turn { .. })) {
         let [from, _] = chart.at(part.from_m / 1000.0, 0.0);
@@ -82,7 +84,10 @@ fn names(picture: &mut Picture, network: &Network, route: &Route, chart: &Chart)
         }
         last = x;
         let name: String = title(network, PartKind::Edge(to)).chars().take(22).collect();
-        let style = TextStyle::size(12.0).coloured(palette::GREY).anchored(Anchor::Start).turned(48.0);
+        // Near the right margin a name leans the other way.
+        let (anchor, turned_deg) =
+            if x > chart.frame.x + 0.9 * chart.frame.width { (Anchor::End, -48.0) } else { (Anchor::Start, 48.0) };
+        let style = TextStyle::size(12.0).coloured(palette::GREY).anchored(anchor).turned(turned_deg);
         picture.text([x, chart.frame.y - 8.0], &name, style);
     }
 }
@@ -120,7 +125,8 @@ fn map(picture: &mut Picture, route: &Route, frame: Frame) {
         if let [first, .., last] = points[..] {
             let [first, last] = [view.at(first), view.at(last)];
             p.circle(first, 6.0, Style::area(palette::INK));
-            p.text([first[0] + 9.0, first[1] - 7.0], "from", TextStyle::size(13.0).bold().haloed());
+            let from = TextStyle::size(13.0).bold().haloed().anchored(Anchor::End);
+            p.text([first[0] - 10.0, first[1] - 7.0], "from", from);
             p.circle(last, 6.0, Style::area(palette::PAPER).outlined(palette::INK, 2.0));
             p.text([last[0] + 9.0, last[1] - 7.0], "to", TextStyle::size(13.0).bold().haloed());
             let next = view.at(points[(points.len() / 12).max(1).min(points.len() - 1)]);
