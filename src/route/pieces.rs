@@ -35,10 +35,13 @@ pub trait Turns {
     fn pieces(&self, strokes: &mut Strokes<'_>, movement: &Movement) -> Result<Vec<TurnPiece>, UnknownReason>;
 }
 
+/// The paths of a turn, the best first.
+type Made = Result<Vec<Rc<TurnPiece>>, UnknownReason>;
+
 /// Which of its paths each turn is to be driven on: the best one, until another is asked for.
 pub struct Menu<'t> {
     turns: &'t dyn Turns,
-    made: FxHashMap<(u32, u32), Result<Vec<Rc<TurnPiece>>, UnknownReason>>,
+    made: FxHashMap<(u32, u32), Made>,
     choice: FxHashMap<(u32, u32), usize>,
 }
 
