@@ -62,6 +62,30 @@ fn moving_and_turning_the_world_changes_nothing() {
     }
 }
 
+/// To the last bit, and narrow enough that corrections, the adjoint and SHRINK are all called for by some and not by others.
+#[test]
+fn who_is_certified_beside_it_changes_nothing() {
+    let fleet = fleet::all();
+    for index in 0..24 {
+        let (mut draw, _, bends, _) = draw_case(1000 + index);
+        let corridor = draw::corridor(&mut draw, &bends, 1.7, 3.0);
+        let models: Vec<Model> = (0..8).map(|_| Model::new(&fleet[draw.below(fleet.len())]).unwrap()).collect();
+        let spans: Vec<_> = (0..corridor.len() / 40).map(|k| k * 40..k * 40 + 41).collect();
+        let spans: Vec<_> = spans.into_iter().filter(|span| span.end <= corridor.len()).collect();
+        let certified = |models: &[&Model]| stet::certify_spans(&corridor, models, &spans, &Options::default());
+        let together = certified(&models.iter().collect::<Vec<_>>());
+        for (model, beside) in models.iter().zip(together) {
+            let alone = certified(&[model]).remove(0);
+            assert!(alone.plan == beside.plan, "corridor {index}: the plan of {} is another one", model.vehicle.id);
+            assert!(
+                alone.spans == beside.spans,
+                "corridor {index}: {}: {alone:?} beside others {beside:?}",
+                model.vehicle.id
+            );
+        }
+    }
+}
+
 #[test]
 fn a_mirror_changes_nothing() {
     for index in 0..CASES {
