@@ -75,6 +75,35 @@ fn what_the_prover_claims_is_confirmed_and_hardly_ever_a_decimetre_more() {
     assert!(refuted * 20 >= made * 19, "only {refuted} of {made}");
 }
 
+/// Half-widths with kinks at every other station, as drawn by hand or cut from areas: what is read between stations is never more
+/// than there is.
+#[test]
+fn kinked_widths_are_read_on_the_careful_side() {
+    let tried: usize = (0..16_u64)
+        .into_par_iter()
+        .map(|index| {
+            let (vehicle, mut corridor) = random(300 + index, [25.0, 60.0, 400.0][index as usize % 3]);
+            let mut draw = Draw(index);
+            let slope = draw.between(0.1, 0.5);
+            let period = 2 + draw.below(9);
+            for k in 0..corridor.len() {
+                let tent = k % (2 * period);
+                let more = slope * corridor.spacing_m * tent.min(2 * period - tent) as f64;
+                corridor.left_m[k] = 0.5 * vehicle.width_m() + 1.0 + more;
+                corridor.right_m[k] = 0.5 * vehicle.width_m() + 0.8 + if index % 2 == 0 { more } else { 0.0 };
+            }
+            let (row, claims) = claims(&corridor, &vehicle);
+            let chain = Chain::new(&vehicle);
+            let subject = Subject::new(&chain, &corridor, shift(&row.plan.coefficients), false).unwrap();
+            for (claim, found) in claims.iter().zip(subject.check(&claims)) {
+                assert!(found.is_empty(), "{index}: {}: {claim:?}: {found:?}", vehicle.id);
+            }
+            claims.len()
+        })
+        .sum();
+    assert!(tried > 60, "only {tried} claims");
+}
+
 /// The checker's own soundness: what an adversary has shown to be false is never confirmed.
 #[test]
 fn no_claim_above_what_an_adversary_reached_is_confirmed() {

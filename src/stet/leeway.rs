@@ -517,7 +517,7 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let far = seen.along.abs() + askew.abs();
     let far2 = far * far;
     let series = bend * bend * bend * far2 * far2 * 0.2;
-    let common = base + second + between + series;
+    let common = base + second + between + series + at.peak * far;
     let slide = stretch * along;
     (
         left - common - lean_left - at.left_slope.abs() * slide,
