@@ -38,6 +38,8 @@ pub(super) struct Fields<T> {
     pub(super) right_slope: T,
     /// Greatest convexity of either half-width within a body gap, 1/m.
     pub(super) bulge: T,
+    /// By how much a width read by slope a metre from the station may be too great where the half-width peaks, 1.
+    pub(super) peak: T,
 }
 
 impl Track {
@@ -78,6 +80,7 @@ impl Track {
             left_slope: slope(&|p| p.left),
             right_slope: slope(&|p| p.right),
             bulge: bulge(&left_dips, &right_dips, h),
+            peak: peaks(&places, h),
         };
         Self { spacing: h, lead, count, fields }
     }
@@ -99,6 +102,7 @@ impl Track {
             left_slope: of(&f.left_slope),
             right_slope: of(&f.right_slope),
             bulge: of(&f.bulge),
+            peak: of(&f.peak),
         };
         Self { spacing: 2.0 * self.spacing, lead: self.lead / 2, count: self.count.div_ceil(2), fields }
     }
@@ -120,6 +124,22 @@ fn dips(places: &[Place], width: impl Fn(&Place) -> f64) -> Vec<f64> {
             (width(a) - 2.0 * width(&places[k]) + width(b)).max(0.0)
         })
         .collect()
+}
+
+/// How fast a half-width read by the mean slope of a station leaves the true one, which is linear between stations: half the
+/// change of slope up to a station away, the neighbour's change beyond it; in all no more than the greatest of them times the
+/// way, up to two stations.
+fn peaks(places: &[Place], spacing: f64) -> Vec<f64> {
+    let concave: Vec<f64> = (0..places.len())
+        .map(|k| {
+            let (a, b) = (&places[k.saturating_sub(1)], &places[(k + 1).min(places.len() - 1)]);
+            let off = |width: &dyn Fn(&Place) -> f64| 2.0 * width(&places[k]) - width(a) - width(b);
+            let worst = off(&|p| p.left).max(off(&|p| p.right));
+            if a.open || places[k].open || b.open { 0.0 } else { worst.max(0.0) / spacing }
+        })
+        .collect();
+    let last = concave.len() - 1;
+    (0..=last).map(|k| concave[k.saturating_sub(1)].max(concave[k]).max(concave[(k + 1).min(last)])).collect()
 }
 
 /// A half-width that may be read anywhere within one station of where it stands: where the width dips between the
@@ -224,6 +244,7 @@ impl Fields<Vec<f64>> {
             left_slope: of(&self.left_slope),
             right_slope: of(&self.right_slope),
             bulge: of(&self.bulge),
+            peak: of(&self.peak),
         }
     }
 }
