@@ -186,8 +186,7 @@ fn corrcen_is_within_2_cm_of_the_best_plan_at_the_median() {
     cases.extend(cases::mapped(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/demo.osm.pbf")), 6));
     cases.extend(cases::mapped(&cases::extracts().join("heidelberg_de.osm.pbf"), 12));
     let compared: Vec<Compared> = cases.par_iter().filter_map(compare).collect();
-    let nominal =
-        report("nominal leeway, optimum less CORRCEN", compared.iter().map(Compared::nominal_short_m).collect());
+    report("nominal leeway, optimum less CORRCEN", compared.iter().map(Compared::nominal_short_m).collect());
     let certified = report("RSC, optimum less CORRCEN", compared.iter().map(Compared::short_m).collect());
     report("RSC, optimum less the centreline", compared.iter().map(|c| c.optimum_m - c.centred_m).collect());
     let wrong: Vec<String> =

@@ -1,6 +1,6 @@
 //! A database is confirmed as it was made, and every column of its certificates, changed in the unsafe direction with plain SQL, is
 //! refuted.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
 
 #[path = "support/program.rs"]
 #[allow(dead_code)]

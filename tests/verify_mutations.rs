@@ -164,7 +164,8 @@ fn mutations(document: &Value) -> Vec<Mutation> {
         }),
     );
     with("heading tolerance", Box::new(|v| add(&mut v["vehicle"]["tracking_heading_deg"], 5.0)));
-    for member in document.as_object().unwrap().keys().filter(|name| *name != "sha256").cloned() {
+    for member in document.as_object().unwrap().keys().filter(|name| *name != "sha256") {
+        let member = member.clone();
         with(
             &format!("without {member}"),
             Box::new(move |v| {

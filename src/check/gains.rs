@@ -207,7 +207,8 @@ impl Response {
             response.note(links, &y);
             let rest = response.rest.iter().map(|r| r[0].max(r[1])).fold(0.0, f64::max);
             // The integrals of a pulse are of the order of its height times a length.
-            if !(rest > REST * first) || response.nodes[0].len() > 400_000 {
+            let goes_on = rest > REST * first;
+            if !goes_on || response.nodes[0].len() > 400_000 {
                 return response;
             }
             let row = |row: &Vec<Interval>| row.iter().zip(&y).fold(Interval::ZERO, |s, (&a, &y)| s + a * y);

@@ -107,8 +107,9 @@ impl Interval {
     /// Tangent, of angles below a quarter turn.
     #[must_use]
     pub fn tan(self) -> Self {
-        // Just below π/2: beyond it the tangent starts again from below.
-        if self.lo <= -1.570_796 || self.hi >= 1.570_796 {
+        // Beyond π/2 the tangent starts again from below.
+        let most = std::f64::consts::FRAC_PI_2 - 1e-7;
+        if self.lo <= -most || self.hi >= most {
             return Self::ALL;
         }
         Self { lo: down(core_math::tan(self.lo)), hi: up(core_math::tan(self.hi)) }

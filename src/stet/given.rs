@@ -81,6 +81,7 @@ fn level(coefficients: &[i32], end: usize, all: std::ops::Range<usize>) -> Resul
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
 

@@ -157,6 +157,7 @@ struct Sample {
 /// Lowers `minima` by all points of one unit over one block. `REFINED`: with the bounds of each body point in `refined`
 /// (a block each) instead of gains and what curvature adds to them.
 #[inline(always)]
+#[allow(clippy::too_many_arguments)] // One call a unit and block, in the innermost loop but one.
 pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
     track: &Track,
     body: &mut Body,

@@ -159,8 +159,8 @@ impl Programme {
         }
         let x = &solver.solution.x;
         let mut plan = self.about.clone();
-        for j in 0..free {
-            spread(j, plan.len()).for_each(|i| plan[i] = (plan[i] + x[j]).clamp(-max_shift_m, max_shift_m));
+        for (j, &more) in x.iter().enumerate().take(free) {
+            spread(j, plan.len()).for_each(|i| plan[i] = (plan[i] + more).clamp(-max_shift_m, max_shift_m));
         }
         Some((plan, x[level]))
     }
