@@ -4,7 +4,6 @@
 // The drawing half of it is for `network_maps.rs`.
 #[allow(dead_code)]
 #[path = "support/ascii_map.rs"]
-#[allow(dead_code)]
 mod ascii_map;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -5,7 +5,6 @@
 #[path = "support/ascii_map.rs"]
 #[allow(dead_code)]
 mod ascii_map;
-#[allow(dead_code)]
 mod oracle;
 #[path = "support/routing.rs"]
 #[allow(dead_code)]

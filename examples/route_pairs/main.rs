@@ -53,7 +53,7 @@ fn main() {
     let mut kinds = std::collections::BTreeMap::<String, u32>::new();
     for (m, p) in region.movements.all().iter().zip(&driver.permits.movements) {
         if m.kind == netcert::network::MovementKind::Turn && driver.permits.edge(m.from) && driver.permits.edge(m.to) {
-            let rsc = p.rsc_m.map_or("-".to_owned(), |r| format!("{:.0}", r));
+            let rsc = p.rsc_m.map_or("-".to_owned(), |r| format!("{r:.0}"));
             *kinds.entry(format!("{:?} {rsc}", p.verdict)).or_default() += 1;
         }
     }
