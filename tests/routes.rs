@@ -339,3 +339,30 @@ fn routes_of_the_drawn_region_hold_as_a_whole() {
         assert!(answer.gave_up || !obstacles.is_empty() && obstacles.iter().all(bad), "{obstacles:?}");
     }
 }
+
+/// The middle of three towns, each with a combination of its own roads.
+#[test]
+fn routes_of_real_extracts_hold_as_a_whole() {
+    let towns = [
+        ("heidelberg_de.osm.pbf", "EU-SEMI16.5", [0.015, 0.01]),
+        ("columbus_oh_us.osm.pbf", "US-WB67", [0.015, 0.01]),
+        ("victoria_au.osm.pbf", "AU-BDOUBLE26", [0.1, 0.07]),
+    ];
+    for (name, id, about_deg) in towns {
+        let Some(path) = routing::extract(name) else {
+            println!("skipped: no {name}");
+            continue;
+        };
+        let region = Region::read_middle(&path, Policy::Carriageway, about_deg);
+        let driver = region.driver(id);
+        let answers = answers(&region, &driver, 150);
+        let found = answers.iter().filter(|answer| !answer.routes.is_empty()).count();
+        let refuted = answers.iter().filter(|answer| !answer.refuted.is_empty()).count();
+        let turns = held(&region, &driver, &answers, 3_000.0, 3);
+        let edges = region.network.edges.len();
+        println!(
+            "{name}, {id}: {edges} edges, {found} of 150 pairs routed, {refuted} refuted as a whole at first, {turns} turns held"
+        );
+        assert!(found > 0, "{name}");
+    }
+}

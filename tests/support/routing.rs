@@ -7,6 +7,7 @@ use netcert::corridor::Params;
 use netcert::network::{Movement, Movements, Network, build};
 use netcert::osm::facts::{Countries, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
+use netcert::osm::{Extract, LonLat, Way};
 use netcert::pipeline::{Job, Reporter, Settings, TurnJob, certify_network, certify_turns};
 use netcert::route::{Graph, MadeTurns, Measure, Permit, Permits, Planner, Speeds, Strokes};
 use netcert::stet::{Model, Options};
@@ -48,8 +49,28 @@ pub(crate) fn extract(name: &str) -> Option<PathBuf> {
 
 impl Region {
     pub(crate) fn read(path: &Path, policy: Policy) -> Self {
+        Self::of(read_extract(path, &|_| ()).unwrap(), policy)
+    }
+
+    /// The roads within so many degrees of the middle of an extract's nodes.
+    pub(crate) fn read_middle(path: &Path, policy: Policy, about_deg: [f64; 2]) -> Self {
+        let mut extract = read_extract(path, &|_| ()).unwrap();
+        let degrees = |id: &i64| extract.nodes.place(*id).map(LonLat::degrees);
+        let refs = |way: &Way| extract.refs[way.refs.start as usize..way.refs.end as usize].iter();
+        let middle = |k: fn((f64, f64)) -> f64| {
+            let mut all: Vec<f64> = extract.refs.iter().filter_map(degrees).map(k).collect();
+            all.sort_by(f64::total_cmp);
+            all[all.len() / 2]
+        };
+        let (lon, lat) = (middle(|p| p.0), middle(|p| p.1));
+        let near = |p: (f64, f64)| (p.0 - lon).abs() < about_deg[0] && (p.1 - lat).abs() < about_deg[1];
+        let ways = extract.ways.iter().filter(|way| refs(way).filter_map(degrees).any(near)).cloned().collect();
+        extract.ways = ways;
+        Self::of(extract, policy)
+    }
+
+    fn of(extract: Extract, policy: Policy) -> Self {
         let countries = Countries::load().unwrap();
-        let extract = read_extract(path, &|_| ()).unwrap();
         let rules = countries.rules();
         let (network, _) =
             build(extract, &|position| countries.place(position), &|way, place| cross_sections(way, place, rules));
