@@ -6,7 +6,7 @@
 
 mod oracle;
 
-use netcert::corridor::Corridor;
+use netcert::corridor::{Corridor, CurvatureProfile};
 use netcert::stet::{self, Certificate, Model, Options};
 use netcert::vehicle::Vehicle;
 use oracle::draw::{self, Bends, Draw};
@@ -59,6 +59,71 @@ fn moving_and_turning_the_world_changes_nothing() {
             (moved.x[k], moved.y[k], moved.heading[k]) = (at[0], at[1], corridor.heading[k] + angle);
         }
         same(index, &vehicle, &corridor, &moved);
+    }
+}
+
+/// In a bend that it cannot take a vehicle must not get lost: what is certified on the straight beyond is what the straight is
+/// worth by itself.
+#[test]
+fn a_place_that_does_not_fit_spoils_nothing_beyond_and_hides_nothing() {
+    let fleet = fleet::all();
+    let mut draw = Draw(0xbe4d);
+    for index in 0..60 {
+        let vehicle = &fleet[draw.below(fleet.len())];
+        let (radius, degrees) = (draw.between(1.8, 9.0), draw.between(40.0, 380.0));
+        let half = 0.5 * vehicle.width_m() + draw.between(0.12, 0.3);
+        let corridor = |profile: CurvatureProfile| {
+            Corridor::from_curvature(1.0, [0.0, 0.0], 0.3, &profile.curvature, half, half.min(radius - 0.3))
+        };
+        let bend = radius * degrees.to_radians();
+        let bent = corridor(CurvatureProfile::new(1.0).straight(60.0).arc(1.0 / radius, bend).straight(700.0));
+        let straight = corridor(CurvatureProfile::new(1.0).straight(200.0));
+        if straight.right_m[0] < half {
+            continue;
+        }
+        let model = Model::new(vehicle).unwrap();
+        let all = |c: &Corridor| {
+            (0..c.len() / 50).map(|k| k * 50..k * 50 + 51).filter(|s| s.end <= c.len()).collect::<Vec<_>>()
+        };
+        let alone =
+            stet::certify_spans(&straight, &[&model], &all(&straight), &Options::default()).remove(0).spans.remove(1);
+        let spans = all(&bent);
+        let row = stet::certify_spans(&bent, &[&model], &spans, &Options::default()).remove(0);
+        for (span, result) in spans.iter().zip(&row.spans).skip(4 + (bend / 50.0) as usize) {
+            let what = || format!("{index}: {} after {degrees:.0}° at {radius:.1} m, {span:?}", vehicle.id);
+            let more = (result.rsc_m - alone.rsc_m).max(0.15 * (result.shrink - alone.shrink));
+            assert!(more < 2e-3, "{}: {result:?}, on a straight {alone:?}", what());
+        }
+        let last = row.spans.last().unwrap();
+        assert!(
+            last.rsc_m > alone.rsc_m - 0.05 || last.shrink >= alone.shrink,
+            "{index}: {}: {last:?}, {alone:?}",
+            vehicle.id
+        );
+    }
+}
+
+/// To the last bit, and narrow enough that corrections, the adjoint and SHRINK are all called for by some and not by others.
+#[test]
+fn who_is_certified_beside_it_changes_nothing() {
+    let fleet = fleet::all();
+    for index in 0..24 {
+        let (mut draw, _, bends, _) = draw_case(1000 + index);
+        let corridor = draw::corridor(&mut draw, &bends, 1.7, 3.0);
+        let models: Vec<Model> = (0..8).map(|_| Model::new(&fleet[draw.below(fleet.len())]).unwrap()).collect();
+        let spans: Vec<_> = (0..corridor.len() / 40).map(|k| k * 40..k * 40 + 41).collect();
+        let spans: Vec<_> = spans.into_iter().filter(|span| span.end <= corridor.len()).collect();
+        let certified = |models: &[&Model]| stet::certify_spans(&corridor, models, &spans, &Options::default());
+        let together = certified(&models.iter().collect::<Vec<_>>());
+        for (model, beside) in models.iter().zip(together) {
+            let alone = certified(&[model]).remove(0);
+            assert!(alone.plan == beside.plan, "corridor {index}: the plan of {} is another one", model.vehicle.id);
+            assert!(
+                alone.spans == beside.spans,
+                "corridor {index}: {}: {alone:?} beside others {beside:?}",
+                model.vehicle.id
+            );
+        }
     }
 }
 

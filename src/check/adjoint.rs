@@ -43,44 +43,25 @@ impl Coefficients {
     }
 }
 
-/// A kernel over one step: at its beginning and its end, and a bound on its second derivative between.
-#[derive(Debug, Clone, Copy, Default)]
-struct Kernel {
-    from: f64,
-    to: f64,
-    bow: f64,
+/// Kernels of `W` outputs over one step: at its beginning and its end, and a bound on their second derivatives between.
+#[derive(Debug, Clone, Copy)]
+struct Kernel<const W: usize> {
+    from: [f64; W],
+    to: [f64; W],
+    bow: [f64; W],
 }
 
-impl Kernel {
+impl<const W: usize> Kernel<W> {
+    const NONE: Self = Self { from: [0.0; W], to: [0.0; W], bow: [0.0; W] };
+
     /// ∫|kernel| over a step of `h`.
-    fn sum(self, h: f64) -> f64 {
-        0.5 * h * (self.from.abs() + self.to.abs()) + h * h * h / 12.0 * self.bow
+    fn sum(&self, w: usize, h: f64) -> f64 {
+        0.5 * h * (self.from[w].abs() + self.to[w].abs()) + h * h * h / 12.0 * self.bow[w]
     }
 
-    fn most(self, h: f64) -> f64 {
-        self.from.abs().max(self.to.abs()) + h * h / 8.0 * self.bow
+    fn most(&self, w: usize, h: f64) -> f64 {
+        self.from[w].abs().max(self.to[w].abs()) + h * h / 8.0 * self.bow[w]
     }
-}
-
-/// Bounds |m y + n α-part| of `unit` at a node, the end of step `node − 1`: of the body point `a` metres ahead of the axle
-/// (weight `turn` 0) or of its heading (weight 1). `None` where a step of the history is unbounded.
-pub(crate) fn bound(chain: &Chain, tubes: &Tubes, unit: usize, node: usize, output: Output) -> Option<f64> {
-    let Some(last) = node.checked_sub(1) else { return None };
-    let h = tubes.step_m;
-    let mut mu = vec![0.0; unit + 1];
-    let mut total = fold(chain, tubes, unit, last, output, &mut mu)?;
-    for step in (tubes.first..=last).rev() {
-        total += back_one_step(chain, tubes, step, &mut mu, h)?;
-        // Now μ stands at the beginning of `step`.
-        let rest = |(j, mu): (usize, &f64)| Some(mu.abs() * tubes.get(step, j)?.y);
-        if step % 4 == 0 || step == tubes.first {
-            let rest: f64 = mu.iter().enumerate().map(rest).sum::<Option<f64>>()?;
-            if rest < CUT || step == tubes.first {
-                return Some((total + rest) * (1.0 + 1e-10));
-            }
-        }
-    }
-    None
 }
 
 /// What is bounded.
@@ -92,34 +73,81 @@ pub(crate) enum Output {
     Heading,
 }
 
-/// Folds the output's direct part from the back to the front: what acts at once.
-fn fold(chain: &Chain, tubes: &Tubes, unit: usize, step: usize, output: Output, mu: &mut [f64]) -> Option<f64> {
-    let l = chain.links[unit].l;
-    let sec = tubes.coefficients(step, unit).ends[0];
-    let (own, mut n) = match output {
-        Output::Point(a) => (1.0 - a / l, a / l * sec),
-        Output::Heading => (-1.0 / l, sec / l),
-    };
-    mu[unit] = own;
-    let mut total = 0.0;
-    for j in (1..=unit).rev() {
-        total += n.abs() * tubes.get(step, j)?.zh;
-        let [_, through, back] = tubes.coefficients(step, j - 1).ends;
-        mu[j - 1] = n * through;
-        n *= -back;
+/// Bounds on outputs of `unit` at a node, the end of step `node − 1`, several side by side. `None` where a step of the
+/// history is unbounded.
+pub(crate) fn bounds<const W: usize>(
+    chain: &Chain,
+    tubes: &Tubes,
+    unit: usize,
+    node: usize,
+    outputs: [Output; W],
+) -> Option<[f64; W]> {
+    let last = node.checked_sub(1)?;
+    let h = tubes.step_m;
+    let mut mu = vec![[0.0; W]; unit + 1];
+    let mut total = fold(chain, tubes, unit, last, outputs, &mut mu)?;
+    for step in (tubes.first..=last).rev() {
+        back_one_step(chain, tubes, step, &mut mu, h, &mut total)?;
+        // Now μ stands at the beginning of `step`.
+        if step % 4 == 0 || step == tubes.first {
+            let mut rest = [0.0; W];
+            for (j, mu) in mu.iter().enumerate() {
+                let y = tubes.get(step, j)?.y;
+                rest.iter_mut().zip(mu).for_each(|(rest, mu)| *rest += mu.abs() * y);
+            }
+            if step == tubes.first || rest.iter().all(|rest| *rest < CUT) {
+                return Some(std::array::from_fn(|w| (total[w] + rest[w]) * (1.0 + 1e-10)));
+            }
+        }
     }
-    Some(total + n.abs() * (tubes.tolerance_m + tubes.get(step, 0)?.zh))
+    None
 }
 
-/// Carries μ from the end of a step to its beginning; gives what the step's inputs can do.
-fn back_one_step(chain: &Chain, tubes: &Tubes, step: usize, mu: &mut [f64], h: f64) -> Option<f64> {
-    let mut behind = Kernel::default(); // ν of the unit behind
-    let mut total = 0.0;
+/// Folds the outputs' direct part from the back to the front: what acts at once.
+fn fold<const W: usize>(
+    chain: &Chain,
+    tubes: &Tubes,
+    unit: usize,
+    step: usize,
+    outputs: [Output; W],
+    mu: &mut [[f64; W]],
+) -> Option<[f64; W]> {
+    let l = chain.links[unit].l;
+    let sec = tubes.coefficients(step, unit).ends[0];
+    let weights = outputs.map(|output| match output {
+        Output::Point(a) => (1.0 - a / l, a / l * sec),
+        Output::Heading => (-1.0 / l, sec / l),
+    });
+    mu[unit] = weights.map(|(own, _)| own);
+    let mut n = weights.map(|(_, n)| n);
+    let mut total = [0.0; W];
+    for j in (1..=unit).rev() {
+        let zh = tubes.get(step, j)?.zh;
+        let [_, through, back] = tubes.coefficients(step, j - 1).ends;
+        for w in 0..W {
+            total[w] += n[w].abs() * zh;
+            mu[j - 1][w] = n[w] * through;
+            n[w] *= -back;
+        }
+    }
+    let input = tubes.tolerance_m + tubes.get(step, 0)?.zh;
+    Some(std::array::from_fn(|w| total[w] + n[w].abs() * input))
+}
+
+/// Carries μ from the end of a step to its beginning; adds what the step's inputs can do.
+fn back_one_step<const W: usize>(
+    chain: &Chain,
+    tubes: &Tubes,
+    step: usize,
+    mu: &mut [[f64; W]],
+    h: f64,
+    total: &mut [f64; W],
+) -> Option<()> {
+    let mut behind = Kernel::<W>::NONE; // ν of the unit behind
     for i in (0..mu.len()).rev() {
         let c = tubes.coefficients(step, i);
         let tube = tubes.get(step, i)?;
         let [rate, rate_off] = c.rate;
-        let (s1, s0) = (c.through[0] * behind.to, c.through[0] * behind.from);
         let x = rate * h;
         let decay = (-x).exp();
         let mean = if x > 1e-4 { (1.0 - decay) / x } else { 1.0 - x / 2.0 + x * x / 6.0 };
@@ -128,27 +156,30 @@ fn back_one_step(chain: &Chain, tubes: &Tubes, step: usize, mu: &mut [f64], h: f
         } else {
             (h * (0.5 - x / 6.0), h * (0.5 - x / 3.0))
         };
-        let to = mu[i];
-        let from = to * decay + s0 * w0 + s1 * w1;
-        let source = s0.abs().max(s1.abs());
-        let bow = rate * rate * to.abs().max(from.abs()) + rate * source + (s0 - s1).abs() / h;
-        let kernel = Kernel { from, to, bow };
-        mu[i] = from;
-        // Slips and second order; then what varies within the step, on the axle and on the coupling.
-        total += kernel.sum(h) * c.most_rho * (chain.links[i].sway + tube.z / chain.links[i].l);
-        let on_axle =
-            kernel.most(h) * rate_off + behind.most(h) * c.through[1] + c.through[0].abs() * behind.bow * h * h / 8.0;
-        total += h * on_axle * tube.y;
-        let nu = Kernel {
-            from: c.pace * from - c.back[0] * behind.from,
-            to: c.pace * to - c.back[0] * behind.to,
-            bow: c.pace * bow + c.back[0].abs() * behind.bow,
-        };
-        let off_coupling = behind.most(h) * c.back[1];
-        total += h * off_coupling * tube.e;
+        let slips = c.most_rho * (chain.links[i].sway + tube.z / chain.links[i].l);
         let input = if i == 0 { tubes.tolerance_m + tube.zh } else { tube.zh };
-        total += nu.sum(h) * input;
+        let mut nu = Kernel::<W>::NONE;
+        for w in 0..W {
+            let (s1, s0) = (c.through[0] * behind.to[w], c.through[0] * behind.from[w]);
+            let to = mu[i][w];
+            let from = to * decay + s0 * w0 + s1 * w1;
+            let source = s0.abs().max(s1.abs());
+            let bow = rate * rate * to.abs().max(from.abs()) + rate * source + (s0 - s1).abs() / h;
+            let kernel = Kernel::<1> { from: [from], to: [to], bow: [bow] };
+            mu[i][w] = from;
+            nu.from[w] = c.pace * from - c.back[0] * behind.from[w];
+            nu.to[w] = c.pace * to - c.back[0] * behind.to[w];
+            nu.bow[w] = c.pace * bow + c.back[0].abs() * behind.bow[w];
+            // What varies within the step, on the axle and on the coupling.
+            let on_axle = kernel.most(0, h) * rate_off
+                + behind.most(w, h) * c.through[1]
+                + c.through[0].abs() * behind.bow[w] * h * h / 8.0;
+            let off_coupling = behind.most(w, h) * c.back[1];
+            // Slips and second order first.
+            let inputs = kernel.sum(0, h) * slips + nu.sum(w, h) * input;
+            total[w] += (inputs + h * (on_axle * tube.y + off_coupling * tube.e)) * UP;
+        }
         behind = nu;
     }
-    Some(total * UP)
+    Some(())
 }

@@ -12,13 +12,16 @@ use super::claim::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, finding};
 use super::{plan, printed};
 use crate::corridor::{EdgeSpan, Params, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
-use crate::osm::facts::Policy;
+use crate::osm::facts::{Policy, Strip};
 use crate::store::{EdgeRow, Named as _};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
 /// Strips are measured across the way's line, widths across the corridor's: they differ by the angle between.
 const WIDTH_TOLERANCE_M: f64 = 0.01;
+/// A corridor moves over from strip to strip within so many metres of where they change.
+const TAPER_M: f64 = 66.0;
+
 /// A vehicle's certificates under one policy.
 pub struct SetClaim<'a> {
     /// The roads.
@@ -168,11 +171,17 @@ impl SetClaim<'_> {
         if span.centreline_deviation_m > self.params.tolerance_m {
             return Some(finding("corridor", &format!("{:.2} m off the map's line", span.centreline_deviation_m)));
         }
-        let most = f64::from(strip.width_m()) - 2.0 * self.params.map_tolerance_m + WIDTH_TOLERANCE_M;
+        let room = |strip: Strip| f64::from(strip.width_m()) - 2.0 * self.params.map_tolerance_m + WIDTH_TOLERANCE_M;
+        let most = room(strip);
+        // Where the lane moves over, a taper uses the room of its direction.
+        let tapered = if self.policy == Policy::Lane { section.direction.map_or(most, room).max(most) } else { most };
         // The first and the last station are the neighbours' as well.
         let inner = span.stations.start + 1..span.stations.end.saturating_sub(1);
-        inner.into_iter().find_map(|k| {
+        let taper = (TAPER_M / made.corridor.spacing_m).ceil() as usize;
+        inner.clone().find_map(|k| {
             let width = made.corridor.left_m.get(k)? + made.corridor.right_m.get(k)?;
+            let near = k < inner.start + taper || k + taper >= inner.end;
+            let most = if near { tapered } else { most };
             (width > most).then(|| {
                 finding(
                     "corridor",

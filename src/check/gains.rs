@@ -8,8 +8,9 @@ use super::UP;
 use super::chain::Link;
 use super::interval::Interval;
 
-/// Most between the points of a body at which gains are kept, metres; linear between, which is never less (convex).
-const KNOT_M: f64 = 0.25;
+/// Most between the points of a body at which gains are kept, metres; linear between, which is never less (convex). At 0.25 a
+/// kink between two of them cost a millimetre.
+const KNOT_M: f64 = 0.0625;
 /// What may be left of a response when it is no longer followed, of its gain.
 const REST: f64 = 1e-6;
 
@@ -68,6 +69,14 @@ impl Knots {
     /// Metres ahead of the axle.
     pub(crate) fn places(self) -> impl ExactSizeIterator<Item = f64> {
         (0..self.count).map(move |k| (k as f64 - self.behind as f64) * self.step)
+    }
+
+    /// The knots that chords over an interval rest on.
+    pub(crate) fn about(self, [from, to]: [f64; 2]) -> std::ops::Range<usize> {
+        let at = |a: f64| {
+            ((a / self.step + self.behind as f64).clamp(0.0, (self.count - 1) as f64) as usize).min(self.count - 2)
+        };
+        at(from)..at(to) + 2
     }
 
     /// The chord of a convex function's values at the knots; beyond them with the most it can grow per metre.

@@ -6,6 +6,7 @@
 //! bound not below the claim, or by a place where the bound is below it.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 use super::UP;
 use super::adjoint::{self, Output};
@@ -23,16 +24,23 @@ const ROAD_M: f64 = 2e-7;
 /// Widest gap between two stretches that a foot may fall into, metres.
 const GAP_M: f64 = 0.03;
 /// Halvings of a cell at most: 15 m of body to 1 mm.
-const MOST_HALVINGS: u32 = 14;
+const MOST_HALVINGS: u32 = 16;
 /// Second derivatives are taken at the corners of a cell; between them they may be greater by this factor.
 const BETWEEN: f64 = 1.25;
 /// Points of a body at which the adjoint is run, metres apart; linear between, which is never less (convex).
-const KNOT_M: f64 = 0.5;
+const KNOT_M: f64 = 0.25;
+/// The adjoint is asked about pieces of a body no longer than this, metres: a run costs as much as some hundred halvings.
+const SHARP_M: f64 = 1.0;
+/// Outputs that go through the adjoint side by side.
+const ABREAST: usize = 4;
 /// A cell with a corner that has no foot is halved so often; what is left of it touches every normal that passes within the
 /// second length, and no road farther along than the first.
 const FOOTLESS_HALVINGS: u32 = 5;
 const FOOTLESS_M: f64 = 6.0;
 const NEAR_M: f64 = 0.1;
+/// A foot is not further from where it would be on a straight than this part of the vehicle's length, and these metres.
+const ASTRAY_PART: f64 = 0.5;
+const ASTRAY_M: f64 = 10.0;
 /// Steps of history over which second-order terms are taken from the adjoint's bounds, in vehicle lengths.
 const HISTORY_LENGTHS: f64 = 1.5;
 
@@ -64,8 +72,13 @@ pub(crate) struct Swept<'a> {
     pub(crate) tubes: Tubes,
     /// Steps whose tubes the adjoint has been through.
     tightened: Vec<bool>,
-    /// Adjoint bounds by unit and node, at knots from the rear end of the unit on.
-    exact: HashMap<(usize, usize), Vec<Option<f64>>>,
+    /// The adjoint's bounds throughout a step, by unit and step, at knots from the rear end of the unit on; NaN where it was not
+    /// asked, ∞ where it bounds nothing.
+    exact: HashMap<(usize, usize), Vec<f64>>,
+    /// The same at nodes.
+    at_nodes: HashMap<(usize, usize), Vec<f64>>,
+    /// Bounds of axle and heading at nodes.
+    poses: HashMap<(usize, usize), Option<[f64; 2]>>,
 }
 
 /// A corner of a cell.
@@ -102,7 +115,16 @@ impl<'a> Swept<'a> {
         for _ in 0..motion.steps() {
             tubes.advance(chain, motion);
         }
-        Self { chain, road, motion, tubes, tightened: vec![false; motion.steps()], exact: HashMap::new() }
+        Self {
+            chain,
+            road,
+            motion,
+            tubes,
+            tightened: vec![false; motion.steps()],
+            exact: HashMap::new(),
+            at_nodes: HashMap::new(),
+            poses: HashMap::new(),
+        }
     }
 
     /// The same at a lesser tolerance, for claims on some stretches only.
@@ -114,7 +136,14 @@ impl<'a> Swept<'a> {
         for _ in tubes.first..steps.end {
             tubes.advance(self.chain, self.motion);
         }
-        Self { tubes, tightened: vec![false; self.motion.steps()], exact: HashMap::new(), ..*self }
+        Self {
+            tubes,
+            tightened: vec![false; self.motion.steps()],
+            exact: HashMap::new(),
+            at_nodes: HashMap::new(),
+            poses: HashMap::new(),
+            ..*self
+        }
     }
 
     /// Steps during which some body point may have its foot on some stretches of the corridor.
@@ -214,20 +243,22 @@ impl<'a> Swept<'a> {
     ) {
         // Allowances shrink fourfold: as long as they are what is missing, halve.
         let halving_helps = slack + 0.75 * (time + body) >= 0.0 && time + body > 0.0;
-        let exact = self.exact.contains_key(&(cell.unit, cell.step));
-        if !exact && (!halving_helps || cell.halvings > 5) && self.worth(cell) {
-            self.sharpen(cell);
+        let knots = self.knots(cell, all);
+        let dull = (!halving_helps || cell.halvings > 5) && self.worth(cell) && !self.sharp(cell, &knots);
+        let short = (cell.a[1] - cell.a[0]).abs() <= SHARP_M;
+        if dull && short {
+            self.sharpen(cell, knots);
             let hints = [all[0].s, all[1].s];
             self.cell(cell, hints, targets, found);
             return;
         }
         // A cell over several stretches may just be asked for what is claimed of another.
         let spread = last > first;
-        if cell.halvings < MOST_HALVINGS && (halving_helps || spread || cell.halvings < 4) {
+        if cell.halvings < MOST_HALVINGS && (halving_helps || spread || dull || cell.halvings < 4) {
             let mut halves = [Cell { halvings: cell.halvings + 1, ..*cell }; 2];
             let [[a0, a1], [t0, t1]] = [cell.a, cell.t];
             let long = (a1 - a0).abs() > 4.0 * self.tubes.step_m * (t1 - t0);
-            if body > time || long {
+            if body > time || long || dull {
                 let middle = f64::midpoint(a0, a1);
                 (halves[0].a[1], halves[1].a[0]) = (middle, middle);
             } else {
@@ -299,6 +330,11 @@ impl<'a> Swept<'a> {
         let b = sign * link.half_width;
         let x = point(pose, a, b);
         let (s, place, lateral) = foot(self.road, x, guess)?;
+        // Newton may have gone to another leg of the road, on which the vehicle is not.
+        let away = (s - self.rough_foot(cell.step, cell.unit, a)).abs() * self.road.spacing;
+        if away > ASTRAY_PART * self.chain.reach_m().1 + ASTRAY_M {
+            return None;
+        }
         let n = [-place.t[1], place.t[0]];
         let cos = pose.u[0] * place.t[0] + pose.u[1] * place.t[1];
         let sin = pose.u[0] * n[0] + pose.u[1] * n[1];
@@ -340,8 +376,8 @@ impl<'a> Swept<'a> {
             + (1.0 - a / link.l).abs() * tube.extra
             + (a / link.l).abs() * tube.extra_coupling;
         self.exact.get(&(unit, step)).map_or(filter, |exact| {
-            let value = |k: usize| exact[k].unwrap_or(f64::INFINITY);
-            filter.min(Knots::new(link, KNOT_M).between(a, value, tube.a))
+            // NaN where the adjoint was not asked is not the lesser.
+            filter.min(Knots::new(link, KNOT_M).between(a, |k| exact[k], tube.a))
         })
     }
 
@@ -387,31 +423,73 @@ impl<'a> Swept<'a> {
         self.tubes.get(cell.step, cell.unit).is_some_and(|tube| tube.extra + tube.extra_coupling > 2e-4)
     }
 
+    /// Knots that the bounds of a cell rest on.
+    fn knots(&self, cell: &Cell, all: &[Corner; 4]) -> Range<usize> {
+        let link = &self.chain.links[cell.unit];
+        let slide = all.iter().map(|c| link.half_width * c.sin.abs() / (1.0 - c.sin * c.sin).max(0.01).sqrt());
+        let slide = slide.fold(0.0, f64::max);
+        Knots::new(link, KNOT_M).about([cell.a[0] - slide, cell.a[1] + slide])
+    }
+
+    /// Whether the adjoint has been asked at all of them.
+    fn sharp(&self, cell: &Cell, knots: &Range<usize>) -> bool {
+        let known = self.exact.get(&(cell.unit, cell.step));
+        known.is_some_and(|known| known[knots.clone()].iter().all(|bound| !bound.is_nan()))
+    }
+
     /// Bounds of the adjoint for a unit throughout a step, and for the second order of the history before it.
-    fn sharpen(&mut self, cell: &Cell) {
+    fn sharpen(&mut self, cell: &Cell, knots: Range<usize>) {
         let (_, behind) = self.chain.reach_m();
         let history = (HISTORY_LENGTHS * behind / self.tubes.step_m) as usize;
         for step in cell.step.saturating_sub(history).max(self.tubes.first)..=cell.step {
             self.tighten(step);
         }
-        let link = &self.chain.links[cell.unit];
-        let knots = Knots::new(link, KNOT_M)
-            .places()
-            .map(|a| self.exact_over(cell.step, cell.unit, Output::Point(a)))
-            .collect();
-        self.exact.insert((cell.unit, cell.step), knots);
+        self.run(cell.unit, cell.step + 1, knots.clone());
+        let first = cell.step == self.tubes.first;
+        if !first {
+            self.run(cell.unit, cell.step, knots.clone());
+        }
+        let bow = self.bow(cell.unit);
+        let count = Knots::new(&self.chain.links[cell.unit], KNOT_M).places().len();
+        let at = |node: usize, knot: usize| self.at_nodes.get(&(cell.unit, node)).map_or(f64::INFINITY, |at| at[knot]);
+        let exact = self.exact.entry((cell.unit, cell.step)).or_insert_with(|| vec![f64::NAN; count]);
+        for knot in knots {
+            let end = at(cell.step + 1, knot);
+            exact[knot] = if first { end } else { end.max(at(cell.step, knot)) } * bow;
+        }
     }
 
-    /// The adjoint's bound throughout a step: the greater of its ends', and what it may bow up between them.
-    fn exact_over(&self, step: usize, unit: usize, output: Output) -> Option<f64> {
+    /// Runs the adjoint for body points at knots that have not been through it, at a node.
+    fn run(&mut self, unit: usize, node: usize, knots: Range<usize>) {
+        let places: Vec<f64> = Knots::new(&self.chain.links[unit], KNOT_M).places().collect();
+        let known = self.at_nodes.entry((unit, node)).or_insert_with(|| vec![f64::NAN; places.len()]);
+        let missing: Vec<usize> = knots.filter(|&knot| known[knot].is_nan()).collect();
+        for some in missing.chunks(ABREAST) {
+            let outputs = std::array::from_fn(|w| Output::Point(places[some[w.min(some.len() - 1)]]));
+            let bounds = adjoint::bounds::<ABREAST>(self.chain, &self.tubes, unit, node, outputs);
+            for (w, &knot) in some.iter().enumerate() {
+                known[knot] = bounds.map_or(f64::INFINITY, |bounds| bounds[w]);
+            }
+        }
+    }
+
+    /// What a bound may bow up between the nodes of a step.
+    fn bow(&self, unit: usize) -> f64 {
         let least = self.chain.links[..=unit].iter().map(|link| link.l).fold(f64::INFINITY, f64::min);
-        let bow = 1.0 + 0.5 * (self.tubes.step_m / least).powi(2);
-        let end = adjoint::bound(self.chain, &self.tubes, unit, step + 1, output)?;
-        let start = match step {
-            step if step == self.tubes.first => end,
-            _ => adjoint::bound(self.chain, &self.tubes, unit, step, output)?,
+        1.0 + 0.5 * (self.tubes.step_m / least).powi(2)
+    }
+
+    /// The adjoint's bounds on axle and heading throughout a step: the greater of its ends', and what it may bow up between them.
+    fn exact_pose(&mut self, step: usize, unit: usize) -> Option<[f64; 2]> {
+        let bow = self.bow(unit);
+        let mut at = |node: usize| {
+            let (chain, tubes) = (self.chain, &self.tubes);
+            let outputs = [Output::Point(0.0), Output::Heading];
+            *self.poses.entry((unit, node)).or_insert_with(|| adjoint::bounds::<2>(chain, tubes, unit, node, outputs))
         };
-        Some(start.max(end) * bow)
+        let end = at(step + 1)?;
+        let start = if step == self.tubes.first { end } else { at(step)? };
+        Some([0, 1].map(|k| start[k].max(end[k]) * bow))
     }
 
     /// Lets the adjoint bound axle and heading of all units in a step, so that its second order is that of what is so.
@@ -424,9 +502,7 @@ impl<'a> Swept<'a> {
             if tube.extra + tube.extra_coupling < 5e-3 {
                 continue;
             }
-            let y = self.exact_over(step, unit, Output::Point(0.0));
-            let a = self.exact_over(step, unit, Output::Heading);
-            if let (Some(y), Some(a)) = (y, a) {
+            if let Some([y, a]) = self.exact_pose(step, unit) {
                 let a = a + tube.r1 / self.chain.links[unit].l;
                 self.tubes.tighten(self.chain, self.motion, step, unit, y, a);
             }
@@ -525,7 +601,7 @@ impl Swept<'_> {
         if y <= enough {
             return Some(y);
         }
-        Some(y.min(self.exact_over(step, unit, Output::Point(0.0))?))
+        Some(y.min(self.exact_pose(step, unit)?[0]))
     }
 
     /// The leeway proved of a body point when its foot is at `s` (stations of the road).
@@ -545,7 +621,8 @@ impl Swept<'_> {
         let step = (0..self.motion.steps()).find(|step| near(step) && off(*step) < 0.0 && off(step + 1) >= 0.0)?;
         let share = off(step) / (off(step) - off(step + 1));
         let cell = Cell { unit, side, step, t: [share; 2], a: [a; 2], halvings: 0 };
-        self.sharpen(&cell);
+        let rough = self.corner(&cell, self.pose(step, unit, share), a, s)?;
+        self.sharpen(&cell, self.knots(&cell, &[rough; 4]));
         let corner = self.corner(&cell, self.pose(step, unit, share), a, s)?;
         Some(corner.clear - corner.dev)
     }

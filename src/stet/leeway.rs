@@ -13,6 +13,14 @@ use super::track::{BULGE_MOST, Fields, Track};
 const NEAR_M: f64 = 1.0;
 /// Stations walked at most to find a foot.
 const MOST_STEPS: usize = 128;
+/// So many stations in a row may lie between two feet of a point; of more, nothing is certified: it jumped over them.
+const JUMPED: usize = 4;
+/// A foot is not further from where it would be on a straight than this part of the way to the steer axle, and these metres: else
+/// it was lost in a bend, on a leg that the vehicle has left or has yet to come to.
+const ASTRAY_PART: f64 = 0.5;
+const ASTRAY_M: f64 = 10.0;
+/// Added to a head's station wherever a point ahead of it is counted from.
+const AHEAD: usize = 1 << 20;
 /// Leeway of a point that has no foot: nothing is certified there.
 const LOST_M: f64 = -1e3;
 
@@ -41,6 +49,11 @@ struct Point {
     /// Distance to the point before, metres; 0 for the first.
     gap: f64,
     foot: usize,
+    /// Where its foot is on a straight, in stations behind the head, and how far from there it may be.
+    behind: usize,
+    astray: usize,
+    /// Up to this station all have been under it, or are lost.
+    covered: usize,
 }
 
 impl Body {
@@ -72,6 +85,8 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
             let chosen = (0..n).filter(|&p| CERTIFY || p == 0 || Some(p) == middle || p == n - 1);
             let points = chosen.map(|p| {
                 let gain = unit.at[p].at(tolerance);
+                let start = foot(unit.points[p]);
+                let astray = ASTRAY_PART * (axle + unit.points[p]).abs() + ASTRAY_M;
                 Point {
                     ahead: unit.points[p],
                     tag: (index * 16 + p) as u64,
@@ -81,7 +96,10 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
                     from_axle: (1.0 - unit.points[p] / unit.length).abs(),
                     from_coupling: (unit.points[p] / unit.length).abs(),
                     gap: if p == 0 { 0.0 } else { unit.points[p - 1] - unit.points[p] },
-                    foot: foot(unit.points[p]),
+                    foot: start,
+                    behind: track.lead + AHEAD - start,
+                    astray: (astray / track.spacing).ceil() as usize,
+                    covered: start.saturating_sub(1),
                 }
             });
             Body {
@@ -146,6 +164,7 @@ pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
     refined: &[f64],
     shift: &[V],
     lane: usize,
+    head: usize,
     minima: &mut Minima,
 ) {
     let scale = track.spacing * track.spacing / 8.0;
@@ -185,6 +204,7 @@ pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
                 };
             }
             let mut sample = sample::<CERTIFY, REFINED>(track, body, index, &s, &knots, scale);
+            body.points[index].cover(sample.feet, minima);
             if CERTIFY {
                 match &mut before {
                     Some(before) => between_points(before, &mut sample, &s, body.points[index].gap),
@@ -208,15 +228,74 @@ pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
             body.offset_foot = Some(next_foot(track, feet[LANES - 1], seen.along.0[LANES - 1]));
         }
     }
+    for point in &mut body.points {
+        point.keep_on_the_way(track, head + BLOCK, minima);
+    }
 }
 
 /// Passes over a block that needs no leeways.
-pub(super) fn skip(track: &Track, body: &mut Body) {
-    let on = |foot: usize| (foot + BLOCK).min(track.len() - LANES);
+pub(super) fn skip(track: &Track, body: &mut Body, head: usize) {
     for point in &mut body.points {
-        point.foot = on(point.foot);
+        point.foot = point.expected(track, head + BLOCK);
+        point.covered = point.foot.saturating_sub(1);
     }
-    body.offset_foot = body.offset_foot.map(on);
+    body.offset_foot = body.offset_foot.map(|foot| (foot + BLOCK).min(track.len() - LANES));
+}
+
+/// After the last block: every point must have been over the whole corridor.
+pub(super) fn finish(track: &Track, body: &Body, minima: &mut Minima) {
+    for point in &body.points {
+        point.lose(track.lead + track.count, minima);
+    }
+}
+
+impl Point {
+    /// Its foot on a straight when the head is at a station.
+    fn expected(&self, track: &Track, head: usize) -> usize {
+        (head + AHEAD).saturating_sub(self.behind).min(track.len() - LANES)
+    }
+
+    /// Takes note of the stations that have been under it.
+    #[inline(always)]
+    fn cover(&mut self, feet: Feet, minima: &mut Minima) {
+        match feet {
+            Feet::Run(first) if first <= self.covered + JUMPED => self.covered = self.covered.max(first + LANES - 1),
+            Feet::Run(first) => {
+                self.lose(first, minima);
+                self.covered = first + LANES - 1;
+            }
+            Feet::Each(feet) => {
+                for foot in feet {
+                    if foot > self.covered + JUMPED {
+                        self.lose(foot, minima);
+                    }
+                    self.covered = self.covered.max(foot);
+                }
+            }
+        }
+    }
+
+    /// After a block: a foot that is not where it can be is taken back to where it would be on a straight. What was missed
+    /// is lost.
+    #[inline(always)]
+    fn keep_on_the_way(&mut self, track: &Track, head: usize, minima: &mut Minima) {
+        let expected = self.expected(track, head);
+        if self.covered + self.astray < expected || self.foot.abs_diff(expected) > self.astray {
+            self.lose(expected, minima);
+            self.foot = expected;
+            self.covered = expected.saturating_sub(1);
+        }
+    }
+
+    /// Nothing is certified of the stations after those covered, up to `end`.
+    #[cold]
+    fn lose(&self, end: usize, minima: &mut Minima) {
+        let lost = V::splat(LOST_M).tagged(self.tag).0[0];
+        for k in self.covered + 1..end.min(minima.left.len()) {
+            minima.left[k] = least(minima.left[k], lost);
+            minima.right[k] = least(minima.right[k], lost);
+        }
+    }
 }
 
 /// One body point at eight head stations; its foot is ready for the next eight.

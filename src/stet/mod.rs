@@ -256,8 +256,11 @@ impl<'m> Swept<'m> {
         if failing.iter().flatten().any(|&fails| fails) {
             let tight = Group::new(models, 0.0);
             let blocks = |lane: usize, head: usize| failing[lane][head / sweep::BLOCK];
-            // From the same kind of bound as at γ = 1, block by block: only then is the leeway concave in γ.
-            let refined: Option<&dyn Fn(usize, usize) -> usize> = Some(&is_loose);
+            // From the same kind of bound as at γ = 1, block by block: only then is the leeway concave in γ. Each vehicle for
+            // itself: whether another one of the group is refined must not matter.
+            let any: Vec<bool> = near.iter().map(|blocks| blocks.contains(&true)).collect();
+            let own = |lane: usize, head: usize| if any[lane] { is_loose(lane, head) } else { usize::MAX };
+            let refined: Option<&dyn Fn(usize, usize) -> usize> = Some(&own);
             let wanted = Wanted { blocks: &blocks, refined: refined.filter(|_| swept.refined.is_some()), plain: false };
             swept.least = Some(sweep::<true>(&swept.track, &tight, &shift, &wanted));
         }

@@ -154,7 +154,7 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
                 trail.close(lane, bodies.len());
             }
             if !wanted {
-                bodies.iter_mut().for_each(|body| leeway::skip(track, body));
+                bodies.iter_mut().for_each(|body| leeway::skip(track, body, head));
                 continue;
             }
             if CERTIFY && !REFINE {
@@ -164,13 +164,16 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
                 let start = (unit * LANES + lane) * FIELDS * BLOCK;
                 let block = &rows[start..start + FIELDS * BLOCK];
                 if unit >= tight_from {
-                    leeway::points::<CERTIFY, true>(track, body, block, tight.unit(unit), shift, lane, minima);
+                    leeway::points::<CERTIFY, true>(track, body, block, tight.unit(unit), shift, lane, head, minima);
                 } else {
-                    leeway::points::<CERTIFY, false>(track, body, block, &[], shift, lane, minima);
+                    leeway::points::<CERTIFY, false>(track, body, block, &[], shift, lane, head, minima);
                 }
             }
         }
         head += BLOCK;
+    }
+    for (bodies, minima) in bodies.iter().zip(&mut minima) {
+        bodies.iter().for_each(|body| leeway::finish(track, body, minima));
     }
     minima
 }
