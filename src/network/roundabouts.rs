@@ -8,8 +8,9 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::{Network, Stroke};
 use crate::osm::LonLat;
 
-/// Vehicles are no longer than this, metres: where every arc is longer, entering and leaving are two turns.
-const LONGEST_M: f64 = 60.0;
+/// Where every arc is longer, entering and leaving are two turns, metres: vehicles have 60 m at most, and entering and leaving take
+/// about 20 m of an arc each.
+const LONGEST_M: f64 = 100.0;
 /// More entries or exits than this are no roundabout, but a ring road.
 const MOST_ARMS: usize = 24;
 /// Metres a degree of latitude; only which rings are left alone depends on it.
@@ -63,7 +64,7 @@ impl Network {
         rings.iter().filter(|ring| ring.bounded()).flat_map(|ring| self.passages_of(ring, &bans)).collect()
     }
 
-    /// A stroke that is a roundabout with an arc shorter than a vehicle, and its nodes.
+    /// A stroke that is a roundabout with an arc short for a vehicle, and its nodes.
     fn ring(&self, stroke: &Stroke) -> Option<(Ring, Vec<i64>)> {
         let arcs = self.stroke_edges.get(stroke.edges.start as usize..stroke.edges.end as usize)?;
         let edges = || arcs.iter().filter_map(|&arc| self.edges.get(arc as usize));
@@ -76,7 +77,7 @@ impl Network {
         }
         // A ring that meets itself is none.
         let apart = nodes.iter().collect::<FxHashSet<_>>().len() == nodes.len();
-        let short = edges().any(|edge| length_m(self.positions(edge)) < LONGEST_M);
+        let short = edges().any(|edge| length_m(self.positions(edge)) <= LONGEST_M);
         let none = || vec![Vec::new(); nodes.len()];
         let ring = Ring { arcs: arcs.to_vec(), closed: stroke.closed, entries: none(), exits: none() };
         (apart && short).then_some((ring, nodes))
