@@ -4,6 +4,8 @@
 -- `angle_deg`: positive to the left. `kerb_radius_m`: of the kerb on the inside of the turn; `kerb_source`: where it comes from
 -- (`assumed`: by class and country). `restriction`: the turn restriction that forbids it, as tagged. `turn_id` is stable from
 -- extract to extract, `fid` is not. `geom`: the last metres before the node and the first after it.
+-- A passage of a roundabout (`kind` 'roundabout') enters, circulates and leaves in one: `from_fid` ends on the ring at `via_node`,
+-- `to_fid` starts on it elsewhere, and between them lie its arcs from `first_arc_fid` to `last_arc_fid` in driving order.
 CREATE TABLE turn (
     fid INTEGER PRIMARY KEY NOT NULL,
     turn_id INTEGER NOT NULL,
@@ -15,7 +17,9 @@ CREATE TABLE turn (
     kind TEXT NOT NULL,
     kerb_radius_m DOUBLE,
     kerb_source TEXT,
-    restriction TEXT
+    restriction TEXT,
+    first_arc_fid INTEGER REFERENCES edge (fid),
+    last_arc_fid INTEGER REFERENCES edge (fid)
 );
 
 CREATE UNIQUE INDEX turn_by_id ON turn (turn_id);

@@ -141,6 +141,9 @@ impl Explain {
             Format::Text => {
                 writeln!(out, "{}", printable(&turn.title()))?;
                 tell(&mut out, &turn.explanation)?;
+                let note = "This is the turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii \
+                            are assumed.";
+                writeln!(out, "{}", wrapped(note, ""))?;
             }
         }
         Ok(out.flush()?)

@@ -13,7 +13,7 @@ use super::output::{grouped, printable};
 use super::query::Format;
 use super::rows::{Head, csv};
 
-const COLUMNS: [&str; 21] = [
+const COLUMNS: [&str; 23] = [
     "turn_id",
     "from_edge",
     "to_edge",
@@ -23,6 +23,8 @@ const COLUMNS: [&str; 21] = [
     "kerb_radius_m",
     "kerb_source",
     "restriction",
+    "first_arc",
+    "last_arc",
     "from_name",
     "to_name",
     "vehicle_id",
@@ -122,6 +124,8 @@ fn members(head: &Head, row: &TurnRow) -> Map<String, Value> {
         json!(row.kerb_radius_m),
         json!(row.kerb_source),
         json!(row.restriction),
+        json!(row.arcs.map(|arcs| arcs[0])),
+        json!(row.arcs.map(|arcs| arcs[1])),
         json!(row.from_name),
         json!(row.to_name),
         json!(head.vehicle),

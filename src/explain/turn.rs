@@ -6,7 +6,7 @@ use super::hints::Hints;
 use crate::network::{Edge, Network};
 use crate::pipeline::{Settings, best_of, turn_verdict};
 use crate::stet::{Model, Options, certify_planned};
-use crate::turns::{Reach, TurnCorridors, TurnFacts, turn_corridors};
+use crate::turns::{Reach, TurnCorridors, TurnFacts, corridors_of};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
 /// What limits a vehicle in a turn.
@@ -30,12 +30,13 @@ pub fn explain_turn(network: &Network, facts: &TurnFacts, model: &Model, setting
     let roads = [facts.movement.from, facts.movement.to]
         .map(|edge| network.edges.get(edge as usize).map_or(String::new(), |edge| title(network, edge)));
     let made = match Reach::of(&model.vehicle) {
-        Some(reach) => turn_corridors(network, facts.movement, settings.policy, &settings.turn_params(), reach),
+        Some(reach) => corridors_of(network, facts, settings.policy, &settings.turn_params(), reach),
         None => Err(UnknownReason::Geometry),
     };
     let best = made.as_ref().ok().and_then(|made| best_of(&made.paths, &[model], &settings.stet).pop().flatten());
     let legal = [facts.movement.from, facts.movement.to]
         .into_iter()
+        .chain(facts.through.iter().copied())
         .filter_map(|edge| network.edges.get(edge as usize))
         .find_map(|edge| forbids(edge, model));
     let verdict = match (&made, &best) {

@@ -12,6 +12,7 @@ mod geometry;
 mod movements;
 mod pairing;
 mod restrictions;
+mod roundabouts;
 mod stroke;
 mod vertices;
 
@@ -20,6 +21,7 @@ use std::ops::Range;
 pub use account::NetworkAccount;
 pub use build::{build, build_with};
 pub use movements::{Movement, MovementKind, Movements};
+pub use roundabouts::Passage;
 pub use stroke::StrokeOptions;
 
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, RestrictionKind, RoadClass};

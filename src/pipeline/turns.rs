@@ -15,7 +15,7 @@ use crate::network::Network;
 use crate::osm::LonLat;
 use crate::stet::{Model, Options, SpanResult, certify_spans};
 use crate::store::{Measured, Named, TurnCertificate, VerdictKind, verdict_words};
-use crate::turns::{Reach, StrokeLine, TurnFacts, TurnParams, TurnPath, nominal_leeway_m, turn_on};
+use crate::turns::{Reach, StrokeLine, TurnFacts, TurnParams, TurnPath, nominal_leeway_m, passage_on, turn_on};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
 /// Turns handed to the threads at a time.
@@ -150,7 +150,8 @@ fn lay_lines(job: &TurnJob<'_>, batch: &[u32], strokes: &[u32], lines: &mut Line
         .iter()
         .map(|&turn| &job.turns[turn as usize])
         .filter(|turn| (0..job.models.len()).any(|vehicle| given(job, turn, vehicle).is_none()))
-        .flat_map(|turn| [turn.movement.from, turn.movement.to].map(|edge| strokes[edge as usize]))
+        .flat_map(|turn| [turn.movement.from, turn.movement.to].into_iter().chain(turn.through.first().copied()))
+        .map(|edge| strokes[edge as usize])
         .collect::<FxHashSet<u32>>()
         .into_iter()
         .collect();
@@ -170,7 +171,8 @@ fn lay_lines(job: &TurnJob<'_>, batch: &[u32], strokes: &[u32], lines: &mut Line
     lines.extend(made);
 }
 
-/// The verdict that a turn has without a certificate: it is forbidden, or one of its edges cannot be used.
+/// The verdict that a turn has without a certificate: it is forbidden, or one of its edges cannot be used. The arcs of a roundabout
+/// need no certificate of their own, only leave to be driven on: nobody goes round for ever.
 fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict> {
     if turn.movement.forbidden.is_some() {
         return Some(Verdict::Forbidden(ForbiddenReason::Restriction));
@@ -179,9 +181,12 @@ fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict>
     let of = |edge: u32| verdicts.get(edge as usize).copied().unwrap_or(Verdict::Unknown(UnknownReason::Geometry));
     let both = [of(turn.movement.from), of(turn.movement.to)];
     let first = |wanted: fn(&Verdict) -> bool| both.into_iter().find(wanted);
+    let barred = |v: &Verdict| matches!(v, Verdict::Forbidden(_) | Verdict::Unknown(UnknownReason::Limit));
+    let arcs = || turn.through.iter().map(|&arc| of(arc)).find(barred);
     first(|v| matches!(v, Verdict::Forbidden(_)))
         .or_else(|| first(|v| matches!(v, Verdict::Unsafe(_))))
         .or_else(|| first(|v| matches!(v, Verdict::Unknown(_))))
+        .or_else(arcs)
 }
 
 /// One certificate a vehicle, and whether any needed a corridor.
@@ -204,11 +209,15 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
         if live.is_empty() {
             continue;
         }
-        let made =
-            line(turn.movement.from).and_then(|from| Ok([from, line(turn.movement.to)?])).and_then(|[from, to]| {
-                turn_on(job.network, turn.movement, [from, to], job.settings.policy, job.params, reach)
-            });
-        match made {
+        let made = || {
+            let (network, policy) = (job.network, job.settings.policy);
+            let (from, to) = (line(turn.movement.from)?, line(turn.movement.to)?);
+            match turn.through.first() {
+                Some(&arc) => passage_on(network, turn, [from, line(arc)?, to], policy, job.params, reach),
+                None => turn_on(network, turn.movement, [from, to], policy, job.params, reach),
+            }
+        };
+        match made() {
             Err(reason) => live.iter().for_each(|&v| out[v] = bare(Verdict::Unknown(reason))),
             Ok(made) => {
                 laid_out = true;

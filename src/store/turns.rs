@@ -65,9 +65,10 @@ pub(super) fn records(network: &Network, turns: Vec<TurnFacts>) -> Vec<Record> {
     turns.into_iter().map(record).collect()
 }
 
-/// `left`, `right`, or which way the road forks.
-fn kind(angle_deg: f64) -> &'static str {
-    match angle_deg {
+/// `left`, `right`, or which way the road forks; `roundabout` for a passage of one.
+fn kind(facts: &TurnFacts) -> &'static str {
+    match facts.angle_deg {
+        _ if !facts.through.is_empty() => "roundabout",
         a if a > 150.0 => "sharp_left",
         a if a > 35.0 => "left",
         a if a > 0.0 => "slight_left",
@@ -79,7 +80,7 @@ fn kind(angle_deg: f64) -> &'static str {
 
 /// Writes the table `turn`; gives the box around it. Turns keep their order: `fid` is the index + 1.
 pub(super) async fn write(c: &mut SqliteConnection, turns: &[Record]) -> Sql<Option<Bounds>> {
-    let mut bulk = Bulk::new("turn", 11);
+    let mut bulk = Bulk::new("turn", 13);
     let mut bounds: Option<Bounds> = None;
     for (fid, Record { facts, via_node, restriction }) in (1_i64..).zip(turns) {
         let (geom, around) = blob::encode(facts.line.iter().copied()).ok_or_else(|| content("a turn has no line"))?;
@@ -91,12 +92,15 @@ pub(super) async fn write(c: &mut SqliteConnection, turns: &[Record]) -> Sql<Opt
         bulk.add(*via_node)?;
         bulk.add(geom)?;
         bulk.add((facts.angle_deg * 10.0).round() / 10.0)?;
-        bulk.add(kind(facts.angle_deg))?;
+        bulk.add(kind(facts))?;
         bulk.add(facts.kerb_radius_m)?;
         bulk.add(facts.kerb_radius_m.map(|_| match facts.kerb_source {
             KerbSource::Assumed => "assumed",
         }))?;
         bulk.add(restriction.as_deref())?;
+        for arc in [facts.through.first(), facts.through.last()] {
+            bulk.add(arc.map(|&arc| i64::from(arc) + 1))?;
+        }
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await?;
@@ -188,6 +192,8 @@ pub struct TurnRow {
     pub turn_id: i64,
     pub from_edge: i64,
     pub to_edge: i64,
+    /// The first and the last arc, where it is a passage of a roundabout.
+    pub arcs: Option<[i64; 2]>,
     pub via_node: i64,
     /// Positive left.
     pub angle_deg: f64,
@@ -308,7 +314,9 @@ async fn replace(
 async fn fetch(c: &mut SqliteConnection, options: &TurnQuery) -> Sql<Vec<TurnRow>> {
     let mut sql = "SELECT c.fid, t.turn_id, a.edge_id, b.edge_id, t.via_node, t.angle_deg, t.kind, t.kerb_radius_m, \
                    t.kerb_source, t.restriction, coalesce(a.name, a.ref), coalesce(b.name, b.ref), c.verdict_no, \
-                   c.rsc_mm, c.hinge_margin_cdeg, c.shrink_milli, c.limiting_s_dm, c.limiting_at, c.path_no, t.geom \
+                   c.rsc_mm, c.hinge_margin_cdeg, c.shrink_milli, c.limiting_s_dm, c.limiting_at, c.path_no, t.geom, \
+                   (SELECT edge_id FROM edge WHERE fid = t.first_arc_fid), \
+                   (SELECT edge_id FROM edge WHERE fid = t.last_arc_fid) \
                    FROM turn_certificate_compact AS c CROSS JOIN turn AS t ON t.fid = c.fid \
                    CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid \
                    WHERE c.corridor_no = ? AND c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?)"
@@ -340,6 +348,7 @@ fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
         turn_id: row.try_get(1)?,
         from_edge: row.try_get(2)?,
         to_edge: row.try_get(3)?,
+        arcs: row.try_get::<Option<i64>, _>(20)?.zip(row.try_get(21)?).map(|(first, last)| [first, last]),
         via_node: row.try_get(4)?,
         angle_deg: row.try_get(5)?,
         kind: row.try_get(6)?,

@@ -138,6 +138,12 @@ fn arc(centre: [f64; 2], start: [f64; 2], turned: f64) -> Vec<[f64; 2]> {
     points
 }
 
+/// A stretch of road as wide as its corridor.
+pub(super) fn stretch(arm: &Arm, range: std::ops::Range<usize>) -> MultiPolygon {
+    let own = |k: usize| [arm.line.left_m[k], -arm.line.right_m[k]];
+    unary_union(&outline(arm, range, &own, [0.0; 2]).into_iter().collect::<Vec<Polygon>>())
+}
+
 /// The polygon between the edges of an arm's stations, prolonged straight by so many metres before and after.
 fn outline(
     arm: &Arm,

@@ -22,7 +22,7 @@ pub struct StrokeLine {
     pub frame: Frame,
     /// The corridor, as it certifies its edges.
     pub made: StrokeCorridor,
-    closed: bool,
+    pub(super) closed: bool,
     /// One a station: all lanes of the direction, and all between the kerbs.
     direction: Vec<Across>,
     carriageway: Vec<Across>,
@@ -120,6 +120,12 @@ impl Arm {
             Some(reason) => Err(reason),
             None => Self::window(line, span.stations.start, frame, reach_m, false),
         }
+    }
+
+    /// All stations of `line`.
+    pub(super) fn whole(line: &StrokeLine, frame: Frame) -> Result<Self, UnknownReason> {
+        let length_m = line.stations() as f64 * line.made.corridor.spacing_m;
+        Self::window(line, 0, frame, [0.0, length_m], true)
     }
 
     /// `lead`: what is driven before the stroke's own edges counts as road to arrive on, too.

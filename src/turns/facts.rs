@@ -6,7 +6,7 @@ use rustc_hash::FxHashSet;
 
 use super::area::CORNERS_RAD;
 use super::{Kerbs, path};
-use crate::network::{Movement, MovementKind, Network};
+use crate::network::{Edge, Movement, MovementKind, Network, Passage};
 use crate::osm::LonLat;
 
 /// A turn's line reaches so far along both edges, metres; its angle is measured over the same.
@@ -26,8 +26,10 @@ pub enum KerbSource {
 pub struct TurnFacts {
     /// Stable: the same edges give the same id in the next extract. Positive.
     pub id: i64,
-    /// From which edge into which.
+    /// From which edge into which. A passage of a roundabout goes into an edge that starts at another node.
     pub movement: Movement,
+    /// The arcs between, in driving order, where it is a passage of a roundabout; else none.
+    pub through: Vec<u32>,
     /// By how much one turns, degrees, positive left.
     pub angle_deg: f64,
     /// Radius of the kerb on the inside, metres; `None`: too flat or too acute for one.
@@ -38,25 +40,34 @@ pub struct TurnFacts {
     pub line: Vec<LonLat>,
 }
 
-/// All turns of a network, in the order of its movements; straight on and back are none.
+/// All turns of a network, in the order of its movements, then the passages of roundabouts; straight on and back are none.
 #[must_use]
 pub fn turn_facts(network: &Network, kerbs: &Kerbs) -> Vec<TurnFacts> {
     let mut taken = FxHashSet::default();
     let movements = network.movements();
     let turns = movements.all().iter().filter(|movement| movement.kind == MovementKind::Turn);
+    let passage = |Passage { from, to, through, forbidden }| {
+        (Movement { from, to, kind: MovementKind::Turn, forbidden }, through)
+    };
     turns
-        .filter_map(|&movement| {
+        .map(|&movement| (movement, Vec::new()))
+        .chain(network.passages().into_iter().map(passage))
+        .filter_map(|(movement, through)| {
             let (from, to) = (network.edges.get(movement.from as usize)?, network.edges.get(movement.to as usize)?);
             let mut id = turn_id(from.id, to.id);
             while !taken.insert(id) {
                 id = (id + 1) & i64::MAX;
             }
-            let line = line(network, movement)?;
+            let line = line(network, movement, &through)?;
             let angle = angle_rad(&line);
-            let radius_m = kerbs.radius_m(network.road(from), network.road(to));
-            let kerb_radius_m = (radius_m > 0.0 && CORNERS_RAD.contains(&angle.abs())).then_some(radius_m);
+            let ring = through.first().and_then(|&arc| network.edges.get(arc as usize));
+            // Of two corners, the sharper one.
+            let corner = |a: &Edge, b: &Edge| kerbs.radius_m(network.road(a), network.road(b));
+            let radius_m = ring.map_or(corner(from, to), |ring| corner(from, ring).min(corner(ring, to)));
+            let cornered = ring.is_some() || CORNERS_RAD.contains(&angle.abs());
+            let kerb_radius_m = (radius_m > 0.0 && cornered).then_some(radius_m);
             let (angle_deg, kerb_source) = (angle.to_degrees(), KerbSource::Assumed);
-            Some(TurnFacts { id, movement, angle_deg, kerb_radius_m, kerb_source, line })
+            Some(TurnFacts { id, movement, through, angle_deg, kerb_radius_m, kerb_source, line })
         })
         .collect()
 }
@@ -70,10 +81,13 @@ fn turn_id(from: i64, to: i64) -> i64 {
     (word & i64::MAX).max(1)
 }
 
-fn line(network: &Network, movement: Movement) -> Option<Vec<LonLat>> {
+fn line(network: &Network, movement: Movement, through: &[u32]) -> Option<Vec<LonLat>> {
     let (from, to) = (network.edges.get(movement.from as usize)?, network.edges.get(movement.to as usize)?);
     let mut line = first_metres(network.positions(from).rev());
     line.reverse();
+    for &arc in through {
+        line.extend(network.positions(network.edges.get(arc as usize)?).skip(1));
+    }
     line.extend(first_metres(network.positions(to)).into_iter().skip(1));
     Some(line)
 }

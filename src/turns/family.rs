@@ -4,6 +4,8 @@
 //! The family is the same for the same turn, whatever else is computed; paths that leave the drivable area drop out, the others
 //! keep their numbers.
 
+use geo::MultiPolygon;
+
 use super::area::{Ground, along, segments_cross};
 use super::arm::{Arm, StrokeLine};
 use super::path::{self, Pose, STEP_M, wrapped};
@@ -20,6 +22,10 @@ const FROM_CORNER_M: [f64; 9] = [4.0, 6.0, 8.5, 11.5, 15.0, 19.0, 24.0, 31.0, 40
 /// (places in the list above).
 const SWINGS: [([f64; 2], usize); 5] =
     [([0.0, 0.0], 1), ([1.0, 1.0], 1), ([0.5, 0.5], 0), ([1.0, 0.0], 0), ([0.0, 1.0], 0)];
+/// On and off a roundabout: share of the room on the road's side, and which of the distances.
+const FEW: [(f64, std::ops::Range<usize>); 2] = [(0.0, 1..8), (1.0, 2..6)];
+/// More than the candidates from that.
+pub(super) const FEW_NUMBERS: u8 = 15;
 /// Left beside the path on the outside of a swing: half a vehicle's width and what its front swings out, metres.
 const OUTSIDE_M: f64 = 1.9;
 /// A smaller swing is none, metres.
@@ -40,10 +46,10 @@ const TIGHT_SPACING_M: f64 = 0.5;
 const TIGHT_M: f64 = 25.0;
 
 /// A junction's turn, ready for its family.
-pub(super) struct Junction<'a> {
-    from: Arm,
-    to: Arm,
-    lines: [&'a StrokeLine; 2],
+pub(super) struct Junction {
+    pub(super) from: Arm,
+    pub(super) to: Arm,
+    strokes: [u32; 2],
     frame: Frame,
     policy: Policy,
     left_hand_traffic: bool,
@@ -51,18 +57,19 @@ pub(super) struct Junction<'a> {
     reach: Reach,
 }
 
-impl<'a> Junction<'a> {
+impl Junction {
+    /// In the metric frame `frame`.
     pub(super) fn new(
         network: &Network,
         movement: Movement,
-        lines: [&'a StrokeLine; 2],
+        lines: [&StrokeLine; 2],
+        frame: Frame,
         policy: Policy,
         params: &TurnParams,
         reach: Reach,
     ) -> Result<Self, UnknownReason> {
         let edge = |index: u32| network.edges.get(index as usize).ok_or(UnknownReason::Geometry);
         let (from, to) = (network.road(edge(movement.from)?), network.road(edge(movement.to)?));
-        let frame = lines[0].frame;
         let before_m = reach.run_in_m()
             + reach.counted_before_m()
             + FROM_CORNER_M[FROM_CORNER_M.len() - 1]
@@ -72,7 +79,7 @@ impl<'a> Junction<'a> {
         Ok(Self {
             from: Arm::arriving(lines[0], movement.from, frame, [before_m, MEET_M])?,
             to: Arm::leaving(lines[1], movement.to, frame, [MEET_M, after_m])?,
-            lines,
+            strokes: lines.map(|line| line.stroke),
             frame,
             policy,
             left_hand_traffic: from.left_hand_traffic,
@@ -81,48 +88,54 @@ impl<'a> Junction<'a> {
         })
     }
 
-    pub(super) fn corridors(&self) -> Result<TurnCorridors, UnknownReason> {
+    /// Between the strokes' directions at the node, radians, positive left.
+    fn turn_rad(&self) -> f64 {
         let (from, to) = (&self.from, &self.to);
-        let turn_rad = wrapped(to.line.heading[to.node] - from.line.heading[from.node]);
+        wrapped(to.line.heading[to.node] - from.line.heading[from.node])
+    }
+
+    /// The drivable area, and the radius of its kerb return if it has one.
+    pub(super) fn area(&self) -> (MultiPolygon, Option<f64>) {
         let ground = Ground {
-            from,
-            to,
+            from: &self.from,
+            to: &self.to,
             policy: self.policy,
             left_hand_traffic: self.left_hand_traffic,
-            turn_rad,
+            turn_rad: self.turn_rad(),
             kerb_radius_m: self.kerb_radius_m,
         };
         let (area, rounded) = ground.area();
+        (area, rounded.then_some(self.kerb_radius_m))
+    }
+
+    pub(super) fn corridors(&self) -> Result<TurnCorridors, UnknownReason> {
+        let turn_rad = self.turn_rad();
+        let (area, kerb_radius_m) = self.area();
         let boundary = Boundary::new(&area);
         let mut paths = Vec::new();
         for candidate in self.candidates(turn_rad) {
             let Some(points) = self.points(&candidate) else { continue };
-            let made = boundary.widths(&points).and_then(|widths| self.path(&candidate, &points, &widths));
-            paths.extend(made);
+            let Candidate { number, leave, join, .. } = candidate;
+            let ends = Ends {
+                arms: [&self.from, &self.to],
+                strokes: self.strokes,
+                stations: [leave, join],
+                reach: self.reach,
+            };
+            paths.extend(boundary.widths(&points).and_then(|widths| ends.path(number, &points, &widths)));
         }
-        let kerb_radius_m = rounded.then_some(self.kerb_radius_m);
         Ok(TurnCorridors { frame: self.frame, turn_rad, area, kerb_radius_m, paths })
     }
 
     /// The whole family, without repetitions.
     fn candidates(&self, turn_rad: f64) -> Vec<Candidate> {
-        let (from, to) = (&self.from, &self.to);
-        let spacing = [from.line.spacing_m, to.line.spacing_m];
-        let [meet_a, meet_b] = self.meeting().unwrap_or([from.node as f64, to.node as f64]);
-        let leave = |m: f64| (meet_a - m / spacing[0]).round().clamp(0.0, (from.own.end - 1) as f64) as usize;
-        let join =
-            |m: f64| (meet_b + m / spacing[1]).round().clamp(to.own.start as f64, (to.len() - 1) as f64) as usize;
-        // To the left of travel is outside where one turns right.
-        let room = |arm: &Arm, k: usize| {
-            let outside = if turn_rad < 0.0 { arm.line.left_m[k] } else { arm.line.right_m[k] };
-            -turn_rad.signum() * (outside - OUTSIDE_M).max(0.0)
-        };
+        let meeting = self.meeting();
         let mut family = Family::default();
         for (swing, unlike) in SWINGS {
             for (i, before_m) in FROM_CORNER_M.into_iter().enumerate() {
                 for (j, after_m) in FROM_CORNER_M.into_iter().enumerate().filter(|(j, _)| i.abs_diff(*j) <= unlike) {
-                    let corner = [leave(before_m), join(after_m)];
-                    let aside_m = [swing[0] * room(from, corner[0]), swing[1] * room(to, corner[1])];
+                    let corner = self.corner(meeting, [before_m, after_m]);
+                    let aside_m = self.aside_m(turn_rad, corner, swing);
                     family.add(corner, aside_m, Some(SHARES[0]));
                     if i == j && swing == [0.0, 0.0] {
                         family.add(corner, aside_m, Some(SHARES[1]));
@@ -130,18 +143,67 @@ impl<'a> Junction<'a> {
                 }
             }
         }
-        let back = |m: f64| (from.node as f64 - m / spacing[0]).round().max(0.0) as usize;
-        let on = |m: f64| ((to.node as f64 + m / spacing[1]).round() as usize).min(to.len() - 1);
         for before_m in SHIFTS_M {
             for after_m in SHIFTS_M {
-                family.add([back(before_m), on(after_m)], [0.0; 2], None);
+                family.add(self.around_node([before_m, after_m]), [0.0; 2], None);
             }
         }
-        family.of(spacing, to.len())
+        family.of(self.spacing(), self.to.len())
+    }
+
+    /// The few that one end of a roundabout's passage has: onto the ring, or off it. The ring bends away from the turn, so that its
+    /// tangent meets the road farther from the node than the path touches the ring: one place more in the list on the road's side.
+    pub(super) fn few(&self, onto: bool) -> Vec<Candidate> {
+        let turn_rad = self.turn_rad();
+        let meeting = self.meeting();
+        let sides = |road_m: f64, ring_m: f64| if onto { [road_m, ring_m] } else { [ring_m, road_m] };
+        let mut family = Family::default();
+        for (swing, places) in FEW {
+            for w in FROM_CORNER_M[places].windows(2) {
+                let corner = self.corner(meeting, sides(w[1], w[0]));
+                family.add(corner, self.aside_m(turn_rad, corner, sides(swing, 0.0)), Some(SHARES[0]));
+            }
+        }
+        for m in &SHIFTS_M[..2] {
+            family.add(self.around_node([*m; 2]), [0.0; 2], None);
+        }
+        family.of(self.spacing(), self.to.len())
+    }
+
+    fn spacing(&self) -> [f64; 2] {
+        [self.from.line.spacing_m, self.to.line.spacing_m]
+    }
+
+    /// Stations so far before and after where the lines meet.
+    fn corner(&self, meeting: Option<[f64; 2]>, [before_m, after_m]: [f64; 2]) -> [usize; 2] {
+        let (from, to) = (&self.from, &self.to);
+        let [meet_a, meet_b] = meeting.unwrap_or([from.node as f64, to.node as f64]);
+        let leave = (meet_a - before_m / from.line.spacing_m).round().clamp(0.0, (from.own.end - 1) as f64);
+        let join = (meet_b + after_m / to.line.spacing_m).round().clamp(to.own.start as f64, (to.len() - 1) as f64);
+        [leave as usize, join as usize]
+    }
+
+    /// Stations so far before and after the node.
+    fn around_node(&self, [before_m, after_m]: [f64; 2]) -> [usize; 2] {
+        let (from, to) = (&self.from, &self.to);
+        let back = (from.node as f64 - before_m / from.line.spacing_m).round().max(0.0) as usize;
+        let on = (to.node as f64 + after_m / to.line.spacing_m).round() as usize;
+        [back, on.min(to.len() - 1)]
+    }
+
+    /// How far to the left a path swings out that takes such shares of the room on the outside.
+    fn aside_m(&self, turn_rad: f64, corner: [usize; 2], swing: [f64; 2]) -> [f64; 2] {
+        let arms = [&self.from, &self.to];
+        [0, 1].map(|i| {
+            let (line, k) = (&arms[i].line, corner[i]);
+            // To the left of travel is outside where one turns right.
+            let outside = if turn_rad < 0.0 { line.left_m[k] } else { line.right_m[k] };
+            -turn_rad.signum() * (outside - OUTSIDE_M).max(0.0) * swing[i]
+        })
     }
 
     /// A candidate's points: out to the side, round the corner, back to the middle.
-    fn points(&self, candidate: &Candidate) -> Option<Vec<[f64; 2]>> {
+    pub(super) fn points(&self, candidate: &Candidate) -> Option<Vec<[f64; 2]>> {
         let pose = |arm: &Arm, k: usize, aside_m: f64| Pose { at: arm.aside(k, aside_m), heading: arm.line.heading[k] };
         let ends = [pose(&self.from, candidate.leave, 0.0), pose(&self.to, candidate.join, 0.0)];
         let corner = [0, 1].map(|i| pose([&self.from, &self.to][i], candidate.corner[i], candidate.aside_m[i]));
@@ -188,11 +250,22 @@ impl<'a> Junction<'a> {
         }
         best.map(|(_, at)| at)
     }
+}
 
+/// Where a path leaves one road and joins another.
+pub(super) struct Ends<'a> {
+    pub(super) arms: [&'a Arm; 2],
+    pub(super) strokes: [u32; 2],
+    /// Of each arm.
+    pub(super) stations: [usize; 2],
+    pub(super) reach: Reach,
+}
+
+impl Ends<'_> {
     /// The corridor along one path, with what is driven before and after it.
-    fn path(&self, candidate: &Candidate, points: &[[f64; 2]], widths: &Widths) -> Option<TurnPath> {
-        let (from, to) = (&self.from, &self.to);
-        let &Candidate { number, leave, join, .. } = candidate;
+    pub(super) fn path(&self, number: u8, points: &[[f64; 2]], widths: &Widths) -> Option<TurnPath> {
+        let [from, to] = self.arms;
+        let [leave, join] = self.stations;
         let before = ((self.reach.run_in_m() + self.reach.counted_before_m()) / from.line.spacing_m) as usize;
         let after = (self.reach.counted_after_m() / to.line.spacing_m) as usize;
         let lead = leave.saturating_sub(before)..leave;
@@ -213,7 +286,7 @@ impl<'a> Junction<'a> {
             line.push(to.point(k), to.line.left_m[k], to.line.right_m[k]);
         }
         let min_radius_m = 1.0 / path::sharpest(points).max(1e-9);
-        let spacing_m = if min_radius_m < TIGHT_M { TIGHT_SPACING_M } else { self.from.line.spacing_m };
+        let spacing_m = if min_radius_m < TIGHT_M { TIGHT_SPACING_M } else { from.line.spacing_m };
         let corridor = Corridor::from_centreline(&line.points, &line.left_m, &line.right_m, 0.0, spacing_m).ok()?;
         let last = corridor.len() - 1;
         let station = |m: f64| (m / corridor.spacing_m).round().clamp(0.0, last as f64) as usize;
@@ -224,8 +297,8 @@ impl<'a> Junction<'a> {
             number,
             turn,
             counted,
-            approach: Joint { stroke: self.lines[0].stroke, station: from.first + leave },
-            departure: Joint { stroke: self.lines[1].stroke, station: to.first + join },
+            approach: Joint { stroke: self.strokes[0], station: from.first + leave },
+            departure: Joint { stroke: self.strokes[1], station: to.first + join },
             min_radius_m,
             corridor,
         })
@@ -240,10 +313,10 @@ fn nearest(corridor: &Corridor, p: [f64; 2], guess: usize) -> usize {
 }
 
 /// A path to be: which stations of both arms it leaves and joins, and where it turns in between.
-struct Candidate {
-    number: u8,
-    leave: usize,
-    join: usize,
+pub(super) struct Candidate {
+    pub(super) number: u8,
+    pub(super) leave: usize,
+    pub(super) join: usize,
     /// Stations of both arms at which the corner begins and ends, and how far to their left.
     corner: [usize; 2],
     aside_m: [f64; 2],

@@ -13,6 +13,7 @@
 //! | `path` | transition, arc, transition; lane shifts |
 //! | `rays` | how wide the area is along a path |
 //! | `family` | which paths there are, and the corridors they give |
+//! | `roundabout` | onto a ring, round and off it as one movement |
 //! | `rank` | which of them a vehicle's certificate is worth trying on |
 //! | `facts` | what the map says of a turn: id, angle, line |
 //!
@@ -27,6 +28,7 @@ mod kerbs;
 mod path;
 mod rank;
 mod rays;
+mod roundabout;
 
 use std::ops::Range;
 
@@ -168,7 +170,46 @@ pub fn turn_on(
     params: &TurnParams,
     reach: Reach,
 ) -> Result<TurnCorridors, UnknownReason> {
-    family::Junction::new(network, movement, lines, policy, params, reach)?.corridors()
+    family::Junction::new(network, movement, lines, lines[0].frame, policy, params, reach)?.corridors()
+}
+
+/// The corridors of a turn, or of a roundabout's passage: as [`turn_corridors`] and [`passage_on`].
+///
+/// # Errors
+/// One of its edges or arcs has no corridor; the ring is too small to have any.
+pub fn corridors_of(
+    network: &Network,
+    turn: &TurnFacts,
+    policy: Policy,
+    params: &TurnParams,
+    reach: Reach,
+) -> Result<TurnCorridors, UnknownReason> {
+    let Some(&arc) = turn.through.first() else {
+        return turn_corridors(network, turn.movement, policy, params, reach);
+    };
+    let line = |edge: u32| {
+        let stroke = stroke_of(network, edge).ok_or(UnknownReason::Geometry)?;
+        StrokeLine::new(network, stroke, policy, &params.corridor)
+    };
+    let lines = [line(turn.movement.from)?, line(arc)?, line(turn.movement.to)?];
+    passage_on(network, turn, lines.each_ref(), policy, params, reach)
+}
+
+/// A roundabout entered, circulated and left as one movement: `lines` are those of the strokes of `from`, the ring and `to`.
+///
+/// Joints, frame and stations are as those of a turn, so that a route strings it in the same way.
+///
+/// # Errors
+/// One of its edges or arcs has no corridor; the ring is too small to have any.
+pub fn passage_on(
+    network: &Network,
+    turn: &TurnFacts,
+    lines: [&StrokeLine; 3],
+    policy: Policy,
+    params: &TurnParams,
+    reach: Reach,
+) -> Result<TurnCorridors, UnknownReason> {
+    roundabout::Passage::new(network, turn, lines, policy, params, reach)?.corridors()
 }
 
 /// The stroke that an edge belongs to.

@@ -181,7 +181,7 @@ mod tests {
         for turned in [0.2, 0.8, FRAC_PI_2, 2.0, 2.8] {
             for sign in [1.0, -1.0] {
                 let a = Pose { at: [3.0, -2.0], heading: 0.4 };
-                let (before, after) = (14.0, 19.0);
+                let (before, after) = (32.0, 41.0);
                 let v = super::super::area::along(a.at, a.forward(), before);
                 let mut b = Pose { at: v, heading: a.heading + sign * turned };
                 b.at = super::super::area::along(v, b.forward(), after);

@@ -33,6 +33,12 @@ impl AsciiMap {
         Self { nodes, ..Self::default() }
     }
 
+    /// Nodes at places so far east and north, metres, that no grid of characters has.
+    pub(crate) fn placed(nodes: &[(char, [f64; 2])]) -> Self {
+        let node = |&(c, [east_m, north_m]): &(char, [f64; 2])| (c, offset(ORIGIN, east_m, north_m));
+        Self { nodes: nodes.iter().map(node).collect(), ..Self::default() }
+    }
+
     /// Adds a way through these nodes; ids count from 1.
     pub(crate) fn way(self, nodes: &str, tags: &str) -> Self {
         let id = self.ways.len() as i64 + 1;
@@ -42,6 +48,12 @@ impl AsciiMap {
     /// Adds a way of this id.
     pub(crate) fn way_of_id(mut self, id: i64, nodes: &str, tags: &str) -> Self {
         self.ways.push((id, nodes.to_owned(), tags.to_owned()));
+        self
+    }
+
+    /// Takes a way back.
+    pub(crate) fn without_way(mut self, id: i64) -> Self {
+        self.ways.retain(|way| way.0 != id);
         self
     }
 

@@ -1,0 +1,147 @@
+//! Passages of roundabouts: from an edge that enters the ring, over its arcs, into an edge that leaves it.
+//!
+//! A long vehicle stands on two arcs at once: it enters, circulates and leaves in one movement. Promises a fixed order and at most
+//! entries times exits a ring; whole circles are left out, and rings whose arcs are all longer than any vehicle.
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::{Network, Stroke};
+use crate::osm::LonLat;
+
+/// Where every arc is longer, entering and leaving are two turns, metres: vehicles have 60 m at most, and entering and leaving take
+/// about 20 m of an arc each.
+const LONGEST_M: f64 = 100.0;
+/// More entries or exits than this are no roundabout, but a ring road.
+const MOST_ARMS: usize = 24;
+/// Metres a degree of latitude; only which rings are left alone depends on it.
+const DEGREE_M: f64 = 111_195.0;
+
+/// One way over a roundabout.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Passage {
+    /// The edge one comes from; ends on the ring.
+    pub from: u32,
+    /// The edge one goes into; starts on the ring.
+    pub to: u32,
+    /// The arcs between, in driving order; at least one, less than the whole ring.
+    pub through: Vec<u32>,
+    /// A restriction that forbids any of its steps (index into [`Network::restrictions`]).
+    pub forbidden: Option<u32>,
+}
+
+/// A roundabout: its arcs in driving order, and who comes and goes at the nodes where they start.
+struct Ring {
+    arcs: Vec<u32>,
+    closed: bool,
+    /// One a node: the start of every arc, and the end of the last one if it is not closed.
+    entries: Vec<Vec<u32>>,
+    exits: Vec<Vec<u32>>,
+}
+
+impl Network {
+    /// All passages of roundabouts, by ring, entry and exit.
+    #[must_use]
+    pub fn passages(&self) -> Vec<Passage> {
+        let mut nodes = FxHashMap::default();
+        let mut rings = Vec::new();
+        for stroke in &self.strokes {
+            if let Some((ring, ends)) = self.ring(stroke) {
+                for (place, node) in ends.into_iter().enumerate() {
+                    nodes.insert(node, (rings.len(), place));
+                }
+                rings.push(ring);
+            }
+        }
+        for (index, edge) in (0_u32..).zip(&self.edges).filter(|(_, edge)| !self.road(edge).roundabout) {
+            if let Some(&(ring, place)) = nodes.get(&edge.to_node) {
+                rings[ring].entries[place].push(index);
+            }
+            if let Some(&(ring, place)) = nodes.get(&edge.from_node) {
+                rings[ring].exits[place].push(index);
+            }
+        }
+        let bans = self.bans_by_first();
+        rings.iter().filter(|ring| ring.bounded()).flat_map(|ring| self.passages_of(ring, &bans)).collect()
+    }
+
+    /// A stroke that is a roundabout with an arc short for a vehicle, and its nodes.
+    fn ring(&self, stroke: &Stroke) -> Option<(Ring, Vec<i64>)> {
+        let arcs = self.stroke_edges.get(stroke.edges.start as usize..stroke.edges.end as usize)?;
+        let edges = || arcs.iter().filter_map(|&arc| self.edges.get(arc as usize));
+        if !edges().all(|edge| self.road(edge).roundabout) {
+            return None;
+        }
+        let mut nodes: Vec<i64> = edges().map(|edge| edge.from_node).collect();
+        if !stroke.closed {
+            nodes.extend(edges().last().map(|edge| edge.to_node));
+        }
+        // A ring that meets itself is none.
+        let apart = nodes.iter().collect::<FxHashSet<_>>().len() == nodes.len();
+        let short = edges().any(|edge| length_m(self.positions(edge)) <= LONGEST_M);
+        let none = || vec![Vec::new(); nodes.len()];
+        let ring = Ring { arcs: arcs.to_vec(), closed: stroke.closed, entries: none(), exits: none() };
+        (apart && short).then_some((ring, nodes))
+    }
+
+    fn passages_of(&self, ring: &Ring, bans: &FxHashMap<u32, Vec<u32>>) -> Vec<Passage> {
+        let mut out = Vec::new();
+        for (place, entries) in ring.entries.iter().enumerate() {
+            for &from in entries {
+                for (through, exits) in ring.ways_on(place) {
+                    for &to in exits {
+                        let forbidden = self.banned(bans, from, &through, to);
+                        out.push(Passage { from, to, through: through.clone(), forbidden });
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// By first edge: the restrictions.
+    fn bans_by_first(&self) -> FxHashMap<u32, Vec<u32>> {
+        let mut bans: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
+        for (no, restriction) in (0_u32..).zip(&self.restrictions) {
+            if let Some(&first) = self.sequence(restriction).first() {
+                bans.entry(first).or_default().push(no);
+            }
+        }
+        bans
+    }
+
+    /// The first restriction on a passage's way.
+    fn banned(&self, bans: &FxHashMap<u32, Vec<u32>>, from: u32, through: &[u32], to: u32) -> Option<u32> {
+        let way: Vec<u32> = std::iter::once(from).chain(through.iter().copied()).chain([to]).collect();
+        let holds = |at: usize, no: u32| {
+            self.restrictions.get(no as usize).is_some_and(|ban| way[at..].starts_with(self.sequence(ban)))
+        };
+        (0..way.len()).find_map(|at| bans.get(&way[at])?.iter().copied().find(|&no| holds(at, no)))
+    }
+}
+
+impl Ring {
+    fn bounded(&self) -> bool {
+        let count = |ends: &[Vec<u32>]| ends.iter().map(Vec::len).sum::<usize>();
+        count(&self.entries) <= MOST_ARMS && count(&self.exits) <= MOST_ARMS
+    }
+
+    /// From the node at `place`: the arcs to every other node that one comes to, and who leaves there.
+    fn ways_on(&self, place: usize) -> impl Iterator<Item = (Vec<u32>, &[u32])> {
+        let n = self.arcs.len();
+        let last = if self.closed { place + n - 1 } else { n };
+        (place + 1..=last).filter_map(move |end| {
+            let exits = self.exits.get(if self.closed { end % n } else { end })?;
+            let arcs = (place..end).map(|k| self.arcs[k % n]).collect();
+            (!exits.is_empty()).then_some((arcs, exits.as_slice()))
+        })
+    }
+}
+
+fn length_m(positions: impl Iterator<Item = LonLat>) -> f64 {
+    let places: Vec<(f64, f64)> = positions.map(LonLat::degrees).collect();
+    let step = |w: &[(f64, f64)]| {
+        let east = ((w[1].0 - w[0].0 + 540.0).rem_euclid(360.0) - 180.0) * w[0].1.to_radians().cos();
+        east.hypot(w[1].1 - w[0].1) * DEGREE_M
+    };
+    places.windows(2).map(step).sum()
+}

@@ -1,0 +1,197 @@
+//! Roundabouts as one movement: onto the ring by one of a few paths, round along its centreline, off it by one of a few.
+//!
+//! The area is that of both turns with the whole ring, as wide as its own corridor; mouths of other arms, aprons and islands that
+//! can be driven over do not count. Joints and stations are those of any turn. Left out: paths that cut across the ring's lanes,
+//! but for the corrections that a certificate makes.
+
+use geo::BooleanOps;
+
+use super::area::stretch;
+use super::arm::{Arm, StrokeLine};
+use super::family::{Candidate, Ends, FEW_NUMBERS, Junction};
+use super::path::STEP_M;
+use super::rays::Boundary;
+use super::{Reach, TurnCorridors, TurnFacts, TurnParams};
+use crate::corridor::Frame;
+use crate::network::{Movement, MovementKind, Network};
+use crate::osm::facts::Policy;
+use crate::verdict::UnknownReason;
+
+/// Of a smaller ring a map says too little, metres round.
+const LEAST_ROUND_M: f64 = 38.0;
+/// A point that is less ahead of the last one is left out, metres.
+const LEAST_AHEAD_M: f64 = 0.5 * STEP_M;
+
+/// A passage, ready for its family.
+pub(super) struct Passage {
+    entry: Junction,
+    exit: Junction,
+    ring: Ring,
+    /// The exit lies beyond the seam of the ring.
+    beyond: bool,
+    strokes: [u32; 2],
+    frame: Frame,
+    reach: Reach,
+}
+
+impl Passage {
+    pub(super) fn new(
+        network: &Network,
+        turn: &TurnFacts,
+        [from, ring, to]: [&StrokeLine; 3],
+        policy: Policy,
+        params: &TurnParams,
+        reach: Reach,
+    ) -> Result<Self, UnknownReason> {
+        let (Some(&first), Some(&last)) = (turn.through.first(), turn.through.last()) else {
+            return Err(UnknownReason::Geometry);
+        };
+        let place = |arc: u32| ring.made.spans.iter().position(|s| s.edge == arc).ok_or(UnknownReason::Geometry);
+        for &arc in &turn.through {
+            if let Some(reason) = ring.made.spans[place(arc)?].unknown {
+                return Err(reason);
+            }
+        }
+        let frame = from.frame;
+        let junction = |from: u32, to: u32, lines: [&StrokeLine; 2]| {
+            let movement = Movement { from, to, kind: MovementKind::Turn, forbidden: None };
+            Junction::new(network, movement, lines, frame, policy, params, reach)
+        };
+        Ok(Self {
+            entry: junction(turn.movement.from, first, [from, ring])?,
+            exit: junction(last, turn.movement.to, [ring, to])?,
+            beyond: place(last)? < place(first)?,
+            ring: Ring::new(ring, frame)?,
+            strokes: [from.stroke, to.stroke],
+            frame,
+            reach,
+        })
+    }
+
+    pub(super) fn corridors(&self) -> Result<TurnCorridors, UnknownReason> {
+        let ((onto, kerb), (off, other_kerb)) = (self.entry.area(), self.exit.area());
+        let ring = stretch(&self.ring.arm, self.ring.once());
+        let area = onto.union(&off).union(&ring);
+        let boundary = Boundary::new(&area);
+        let on_road = |junction: &Junction, onto: bool| -> Vec<(Candidate, Vec<[f64; 2]>)> {
+            let with_points = |candidate| junction.points(&candidate).map(|points| (candidate, points));
+            let stays = |(_, points): &(Candidate, Vec<[f64; 2]>)| boundary.widths(points).is_some();
+            junction.few(onto).into_iter().filter_map(with_points).filter(stays).collect()
+        };
+        let (entries, exits) = (on_road(&self.entry, true), on_road(&self.exit, false));
+        let mut paths = Vec::new();
+        for (entry, onto) in &entries {
+            for (exit, off) in &exits {
+                let Some(round) = self.round(entry, exit) else { continue };
+                let points = strung(onto, &round, off);
+                let ends = Ends {
+                    arms: [&self.entry.from, &self.exit.to],
+                    strokes: self.strokes,
+                    stations: [entry.leave, exit.join],
+                    reach: self.reach,
+                };
+                let number = entry.number * FEW_NUMBERS + exit.number;
+                paths.extend(boundary.widths(&points).and_then(|widths| ends.path(number, &points, &widths)));
+            }
+        }
+        let (from, to) = (&self.entry.from, &self.exit.to);
+        let turn_rad = super::path::wrapped(to.line.heading[to.node] - from.line.heading[from.node]);
+        let kerb_radius_m = kerb.into_iter().chain(other_kerb).reduce(f64::min);
+        Ok(TurnCorridors { frame: self.frame, turn_rad, area, kerb_radius_m, paths })
+    }
+
+    /// The ring's centreline from where an entry joins it to where an exit leaves it; `None`: the exit begins before.
+    fn round(&self, entry: &Candidate, exit: &Candidate) -> Option<Vec<[f64; 2]>> {
+        let joins = self.entry.to.first + entry.join;
+        let leaves = self.exit.from.first + exit.leave + if self.beyond { self.ring.period? } else { 0 };
+        (joins <= leaves).then(|| self.ring.centreline(joins, leaves))
+    }
+}
+
+/// A roundabout's stations.
+struct Ring {
+    arm: Arm,
+    /// The first station that counts, and how many make a whole circle (to half a station); `None`: it is not closed.
+    first: usize,
+    period: Option<usize>,
+}
+
+impl Ring {
+    fn new(line: &StrokeLine, frame: Frame) -> Result<Self, UnknownReason> {
+        let arm = Arm::whole(line, frame)?;
+        let spans = &line.made.spans;
+        let (Some(first), Some(last)) = (spans.first(), spans.last()) else { return Err(UnknownReason::Geometry) };
+        let (first, end) = (first.stations.start, last.stations.end - 1);
+        let [x, y] = arm.point(first);
+        let off = |k: &usize| (arm.line.x[*k] - x).hypot(arm.line.y[*k] - y);
+        let again = (end.saturating_sub(3)..(end + 4).min(arm.len())).min_by(|a, b| off(a).total_cmp(&off(b)));
+        let period = again.map(|again| again - first).filter(|_| line.closed);
+        if period.is_some_and(|n| (n as f64) * arm.line.spacing_m < LEAST_ROUND_M) {
+            return Err(UnknownReason::Geometry);
+        }
+        Ok(Self { arm, first, period })
+    }
+
+    /// Stations of the whole ring, the seam twice.
+    fn once(&self) -> std::ops::Range<usize> {
+        match self.period {
+            Some(n) => self.first..(self.first + n + 2).min(self.arm.len()),
+            None => self.arm.own.clone(),
+        }
+    }
+
+    /// Points along the centreline between two stations, as close as a path's.
+    fn centreline(&self, from: usize, to: usize) -> Vec<[f64; 2]> {
+        let once = |k: usize| match self.period {
+            Some(n) if k >= self.first => self.first + (k - self.first) % n,
+            _ => k,
+        };
+        let mut line = Vec::new();
+        for k in from..to {
+            let (a, b) = (once(k), once(k + 1));
+            let (p, q, u, v) = (self.arm.point(a), self.arm.point(b), self.arm.forward(a), self.arm.forward(b));
+            let chord = (q[0] - p[0]).hypot(q[1] - p[1]);
+            let parts = (chord / STEP_M).round().max(1.0);
+            line.extend((0..parts as usize).map(|i| hermite([p, q], [u, v], chord, i as f64 / parts)));
+        }
+        line.push(self.arm.point(once(to)));
+        line
+    }
+}
+
+/// The cubic between two places with directions.
+fn hermite([p, q]: [[f64; 2]; 2], [u, v]: [[f64; 2]; 2], chord: f64, t: f64) -> [f64; 2] {
+    let (t2, t3) = (t * t, t * t * t);
+    let to = 3.0 * t2 - 2.0 * t3;
+    [0, 1].map(|i| p[i] + to * (q[i] - p[i]) + chord * ((t - 2.0 * t2 + t3) * u[i] + (t3 - t2) * v[i]))
+}
+
+/// Three lines as one. The ring's seam and its ends are a whole circle apart to half a station: what would lie behind goes.
+fn strung(onto: &[[f64; 2]], round: &[[f64; 2]], off: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let mut line = onto.to_vec();
+    let ahead = |line: &[[f64; 2]], p: [f64; 2]| match *line {
+        [.., a, b] => {
+            let d = [b[0] - a[0], b[1] - a[1]];
+            ((p[0] - b[0]) * d[0] + (p[1] - b[1]) * d[1]) / d[0].hypot(d[1]).max(1e-9)
+        }
+        _ => f64::INFINITY,
+    };
+    for &p in round {
+        if ahead(&line, p) >= LEAST_AHEAD_M {
+            line.push(p);
+        }
+    }
+    let begins = onto.len();
+    while let (true, Some(&next)) = (line.len() > begins, off.first()) {
+        if ahead(&line, next) >= LEAST_AHEAD_M {
+            break;
+        }
+        line.pop();
+    }
+    for &p in off {
+        if ahead(&line, p) >= LEAST_AHEAD_M {
+            line.push(p);
+        }
+    }
+    line
+}
