@@ -86,6 +86,11 @@ impl TurnExplanation {
     /// One line: from where to where, by how much, round which kerb.
     #[must_use]
     pub fn title(&self) -> String {
+        let arcs = self.facts.through.len();
+        if arcs > 0 {
+            let [from, to] = &self.roads;
+            return format!("{from} → {to}: over a roundabout, {arcs} {}", if arcs == 1 { "arc" } else { "arcs" });
+        }
         let angle = self.facts.angle_deg;
         let side = if angle > 0.0 { "left" } else { "right" };
         let kerb = self.facts.kerb_radius_m.map_or(String::new(), |m| format!(", kerb radius {m:.1} m (assumed)"));

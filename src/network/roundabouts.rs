@@ -73,7 +73,7 @@ impl Network {
         }
         let mut nodes: Vec<i64> = edges().map(|edge| edge.from_node).collect();
         if !stroke.closed {
-            nodes.extend(edges().last().map(|edge| edge.to_node));
+            nodes.extend(edges().next_back().map(|edge| edge.to_node));
         }
         // A ring that meets itself is none.
         let apart = nodes.iter().collect::<FxHashSet<_>>().len() == nodes.len();
