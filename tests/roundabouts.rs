@@ -6,7 +6,6 @@
 #[path = "support/ascii_map.rs"]
 #[allow(dead_code)]
 mod ascii_map;
-#[allow(dead_code)]
 mod oracle;
 
 use ascii_map::{AsciiMap, id_of};
