@@ -365,3 +365,30 @@ fn no_claim_of_a_passage_is_refuted() {
     println!("{fought} passages held");
     assert!(fought >= 20, "{fought}");
 }
+
+#[test]
+fn kerbs_round_the_corner_between_arm_and_ring_and_no_more() {
+    let (radius_m, ring_m, arm_m, kerb_m) = (20.0, 8.0, 8.0, 8.0);
+    let drawn = Drawn::ring(radius_m, ring_m, arm_m, kerb_m);
+    let made = drawn.corridors("WE", Policy::Carriageway, Reach::Short).unwrap();
+    assert!(made.kerb_radius_m.is_some());
+    let nodes: Vec<_> = RING.chars().map(id_of).collect();
+    let at_ring: Vec<_> = drawn
+        .network
+        .edges
+        .iter()
+        .filter(|edge| nodes.contains(&edge.from_node) && nodes.contains(&edge.to_node))
+        .flat_map(|edge| drawn.network.positions(edge).skip(1))
+        .collect();
+    let metric = made.frame.forward(&at_ring).unwrap();
+    let mean = |i: usize| metric.iter().map(|p| p[i]).sum::<f64>() / metric.len() as f64;
+    // Circles that touch the arm's right edge and the ring's outer edge from outside: where one drives in, and out.
+    let across_m = 0.5 * arm_m + kerb_m;
+    let along_m = (radius_m + 0.5 * ring_m + kerb_m).powi(2) - across_m.powi(2);
+    for x in [-along_m.sqrt(), along_m.sqrt()] {
+        let kerb = geo::Point::new(mean(0) + x, mean(1) - across_m);
+        let gap_m = Euclidean.distance(&kerb, &made.area) - kerb_m;
+        // The smoothed ring is 0.16 m off its points. (A fillet along the tangent at the corner would cut 0.89 m into the kerb.)
+        assert!((-0.2..0.4).contains(&gap_m), "{gap_m}");
+    }
+}

@@ -22,6 +22,12 @@ fn turns_are_listed_explained_and_renewed_from_the_database_alone() {
     };
     let turns: Vec<_> = json["features"].as_array().unwrap().iter().map(of).collect();
     assert!(turns.iter().all(|(verdict, rsc_m, _)| verdict != "safe" || rsc_m.unwrap() >= 0.0));
+    let features = json["features"].as_array().unwrap();
+    let over: Vec<_> = features.iter().map(|f| &f["properties"]).filter(|p| p["kind"] == "roundabout").collect();
+    // Four roundabouts; every other turn has no arcs.
+    assert!(over.len() >= 4 * 6, "{}", over.len());
+    assert!(over.iter().all(|p| p["first_arc"].is_i64() && p["last_arc"].is_i64()));
+    assert_eq!(features.iter().filter(|f| f["properties"]["first_arc"].is_null()).count(), features.len() - over.len());
     let (verdict, rsc_m, id) = turns.iter().find(|(v, rsc_m, _)| v == "safe" && rsc_m.is_some()).unwrap();
     let told =
         place.netcert(&format!("explain {id} --vehicle AU-SEMI19 --format json --svg turn.svg")).succeeds().json();

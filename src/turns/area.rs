@@ -22,6 +22,8 @@ const OVERLAP_M: f64 = 0.3;
 pub(super) const CORNERS_RAD: std::ops::RangeInclusive<f64> = 0.17..=2.62;
 /// A kerb return reaches no farther along its roads than this, metres.
 const MOST_RETURN_M: f64 = 15.0;
+/// A kerb return's circle touches both edges to so much, metres: those are drawn in chords of a metre.
+const TOUCHING_M: f64 = 0.03;
 /// Chord of a kerb return's arc, radians of arc: the arc is cut off outside, on the side of less room.
 const ARC_STEP_RAD: f64 = 0.1;
 
@@ -86,40 +88,63 @@ impl Ground<'_> {
         if self.kerb_radius_m <= 0.0 || !CORNERS_RAD.contains(&angle) {
             return None;
         }
-        let side = usize::from(self.turn_rad < 0.0);
-        let edge = |arm: &Arm, back_m: f64, on_m: f64| {
-            let near = (CROSSING_M / arm.line.spacing_m) as usize;
-            let first = arm.node.saturating_sub(near).max(arm.own.start);
-            let end = (arm.node + near + 1).min(arm.own.end);
-            let mut line: Vec<[f64; 2]> = (first..end).map(|k| arm.aside(k, arm.carriageway[k][side])).collect();
-            if let (Some(&a), Some(&b)) = (line.first(), line.last()) {
-                line.insert(0, along(a, arm.forward(first), -back_m));
-                line.push(along(b, arm.forward(end - 1), on_m));
-            }
-            line
-        };
-        let from_edge = edge(self.from, 0.0, CROSSING_M);
-        let to_edge = edge(self.to, CROSSING_M, 0.0);
+        let (from_edge, to_edge) = (self.kerb(self.from, 0.0), self.kerb(self.to, 0.0));
         let Corner { at: corner, from: a, to: b } = crossing(&from_edge, &to_edge, self.turn_rad)?;
         let turned = (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]);
         if !CORNERS_RAD.contains(&turned.abs()) || (turned > 0.0) != (self.turn_rad > 0.0) {
             return None;
         }
-        let half = (0.5 * turned.abs()).tan();
-        let radius = self.kerb_radius_m.min(MOST_RETURN_M / half);
-        let tangent = radius * half;
-        // Towards the middle of the approach: away from the corner's inside.
+        let radius = self.kerb_radius_m.min(MOST_RETURN_M / (0.5 * turned.abs()).tan());
+        // Its circle touches both edges, however they bend: a ring's edge bends away from the tangent at the corner.
+        let centre = crossing(&self.kerb(self.from, radius), &self.kerb(self.to, radius), self.turn_rad)?.at;
+        let touching = |edge: &[[f64; 2]]| {
+            let (at, m) = nearest(edge, centre)?;
+            ((m - radius).abs() < TOUCHING_M).then_some(at)
+        };
+        let (start, end) = (touching(&from_edge)?, touching(&to_edge)?);
+        let (u, v) = (unit(centre, start), unit(centre, end));
+        let rounds = (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]);
+        if (rounds > 0.0) != (turned > 0.0) || rounds.abs() > *CORNERS_RAD.end() {
+            return None;
+        }
         let sign = turned.signum();
         let inward = |d: [f64; 2]| [sign * d[1] * OVERLAP_M, -sign * d[0] * OVERLAP_M];
-        let (start, end) = (along(corner, a, -tangent), along(corner, b, tangent));
-        let centre = along(start, [-sign * a[1], sign * a[0]], radius);
-        let mut ring = arc(centre, start, turned);
+        let mut ring = arc(centre, start, rounds);
         ring.push(end);
-        ring.push(add(end, inward(b)));
+        ring.push(along(end, v, OVERLAP_M));
         ring.push(add(add(corner, inward(a)), inward(b)));
-        ring.push(add(start, inward(a)));
+        ring.push(along(start, u, OVERLAP_M));
         Some(polygon(&ring))
     }
+
+    /// The edge of a road near the node on the inside of the turn, or so far beyond it; prolonged where the turn's other road is.
+    fn kerb(&self, arm: &Arm, beyond_m: f64) -> Vec<[f64; 2]> {
+        let right = self.turn_rad < 0.0;
+        let beyond_m = if right { -beyond_m } else { beyond_m };
+        let [back_m, on_m] = if std::ptr::eq(arm, self.from) { [0.0, CROSSING_M] } else { [CROSSING_M, 0.0] };
+        let near = (CROSSING_M / arm.line.spacing_m) as usize;
+        let first = arm.node.saturating_sub(near).max(arm.own.start);
+        let end = (arm.node + near + 1).min(arm.own.end);
+        let place = |k: usize| arm.aside(k, arm.carriageway[k][usize::from(right)] + beyond_m);
+        let mut line: Vec<[f64; 2]> = (first..end).map(place).collect();
+        if let (Some(&a), Some(&b)) = (line.first(), line.last()) {
+            line.insert(0, along(a, arm.forward(first), -back_m));
+            line.push(along(b, arm.forward(end - 1), on_m));
+        }
+        line
+    }
+}
+
+/// The place on a line that is nearest to `p`, and how far it is.
+fn nearest(line: &[[f64; 2]], p: [f64; 2]) -> Option<([f64; 2], f64)> {
+    let on_segment = |w: &[[f64; 2]]| {
+        let d = [w[1][0] - w[0][0], w[1][1] - w[0][1]];
+        let along = (p[0] - w[0][0]) * d[0] + (p[1] - w[0][1]) * d[1];
+        let t = (along / (d[0] * d[0] + d[1] * d[1]).max(1e-12)).clamp(0.0, 1.0);
+        let at = [w[0][0] + t * d[0], w[0][1] + t * d[1]];
+        (at, (p[0] - at[0]).hypot(p[1] - at[1]))
+    };
+    line.windows(2).map(on_segment).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Points on the inner side of the arc's tangents: its own chord points, which leave the sliver outside each chord unused. (The
