@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use super::group::{SHRINK_STEPS, gamma};
 use super::lanes::TAG_MASK;
 use super::model::Model;
-use super::sweep::{Minima, UNVISITED_M};
+use super::sweep::{Minima, NOT_CLOSED_RAD, UNVISITED_M};
 use super::track::Track;
 use super::{Limiting, Side, SpanResult};
 
@@ -54,6 +54,14 @@ pub(super) fn result(track: &Track, model: &Model, span: &std::ops::Range<usize>
         unseen = if visited || unseen >= JUMPED { unseen * usize::from(unseen >= JUMPED) } else { unseen + 1 };
         offset = offset.max(full.offset[k]);
         half_width = half_width.min(0.5 * (track.fields.left[k] + track.fields.right[k]));
+    }
+    // Its rear leaves the span when its front is a length beyond: if the bounds do not close there, nothing is known of the rear.
+    let end = *stations(track, span).end();
+    let behind = (model.length / track.spacing).ceil() as usize;
+    let beyond = (end + 1..=end + behind).filter_map(|k| full.hinge.get(k));
+    if let Some(&lost) = beyond.min_by(|a, b| a.total_cmp(b)).filter(|margin| **margin < 0.5 * NOT_CLOSED_RAD) {
+        (least, hinge) = (NOTHING_M, hinge.min(lost));
+        hinge_unit = ((lost.to_bits() & TAG_MASK) >> 4) as usize;
     }
     SpanResult {
         rsc_m: if unseen >= JUMPED && least >= 0.0 { UNVISITED_M } else { least },
