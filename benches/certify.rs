@@ -6,32 +6,18 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
+mod road;
+
 use std::time::Instant;
 
-use netcert::corridor::{Corridor, CurvatureProfile};
 use netcert::stet::{Model, Options, certify_spans};
 use netcert::vehicle::Catalogue;
 
 const LANES: usize = 8;
 
-fn road(stations: usize) -> Corridor {
-    let radii: [f64; 10] = [600.0, -250.0, 150.0, -900.0, 60.0, -400.0, 2000.0, -100.0, 300.0, 25.0];
-    let mut profile = CurvatureProfile::new(1.0).straight(200.0);
-    for radius in radii.iter().cycle() {
-        if profile.curvature.len() >= stations {
-            break;
-        }
-        let curvature = 1.0 / radius;
-        let transition = (40.0_f64).min(0.5 * radius.abs());
-        let arc = (radius.abs() * 0.5).clamp(20.0, 150.0);
-        profile = profile.clothoid(curvature, transition).arc(curvature, arc).clothoid(0.0, transition).straight(150.0);
-    }
-    Corridor::from_curvature(1.0, [5000.0, -3000.0], 0.3, &profile.curvature, 1.75, 1.75)
-}
-
 fn main() {
     let catalogue = Catalogue::builtin().unwrap();
-    let corridor = road(20_000);
+    let corridor = road::road(20_000);
     let spans: Vec<_> = (0..corridor.len() / 200).map(|i| i * 200..(i + 1) * 200).collect();
     println!("{:<34} {:>8} {:>14} {:>12}", "vehicles", "units", "km·vehicle/s", "failed spans");
     for (ids, copies) in [

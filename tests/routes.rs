@@ -20,7 +20,7 @@ use netcert::stet::Side;
 use netcert::verdict::Verdict;
 use oracle::claim::{Claim, Place};
 use oracle::draw::Draw;
-use oracle::duel::{self, Duel};
+use oracle::duel;
 use proptest::prelude::*;
 use routing::Region;
 
@@ -301,9 +301,7 @@ fn hold_against_the_adversary(driver: &routing::Driver, route: &Route, seed: u64
     let (rsc_m, shrink, hinge_margin_rad) = (result.rsc_m, result.shrink, result.hinge_margin_rad);
     let claim = Claim { rsc_m, shrink, hinge_margin_rad, limiting, plan };
     let vehicle = &driver.model.vehicle;
-    let path = duel::path(corridor, vehicle, &claim);
-    let outcome = Duel::new(corridor, vehicle, &path, claim.shrink).fight(&claim, &mut Draw(seed), 2);
-    let gap_m = outcome.least.clearance_m - claim.rsc_m;
+    let (gap_m, outcome) = duel::margin_m(corridor, vehicle, &claim, &mut Draw(seed), 2);
     println!("{:.0} m, RSC {:.3} m, {}", route.length_m, claim.rsc_m, duel::describe(&outcome));
     assert!(gap_m >= -ALLOWANCE_M, "RSC {:.4} m refuted: {}", claim.rsc_m, duel::describe(&outcome));
     assert!(outcome.hinge.0 >= claim.hinge_margin_rad - 1e-6);

@@ -22,7 +22,7 @@ use netcert::turns::{Kerbs, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnPar
 use netcert::vehicle::{Catalogue, Vehicle};
 use netcert::verdict::{ForbiddenReason, Verdict};
 use oracle::draw::Draw;
-use oracle::duel::{self, Duel};
+use oracle::duel;
 use oracle::{claim, fleet};
 
 const CROSS: &str = "
@@ -359,9 +359,7 @@ fn no_claim_of_a_turn_is_refuted() {
                 if claim.rsc_m < -3.0 {
                     continue;
                 }
-                let ride = duel::path(corridor, &vehicle, &claim);
-                let outcome = Duel::new(corridor, &vehicle, &ride, claim.shrink).fight(&claim, &mut draw, 1);
-                let gap_m = outcome.least.clearance_m - claim.rsc_m;
+                let (gap_m, outcome) = duel::margin_m(corridor, &vehicle, &claim, &mut draw, 1);
                 assert!(gap_m > -2e-5, "{width} {nodes} {id}: {gap_m} {}", duel::describe(&outcome));
                 fought += 1;
             }

@@ -238,8 +238,6 @@ fn expected(edge: &Edge, vehicle: &Vehicle, unknown: Option<UnknownReason>, row:
         // Which of its joints fails is the row's word; that one does, its number says.
         _ => match row.verdict {
             Verdict::Unsafe(UnsafeReason::SteeringLock) => row.verdict,
-            // Without any number the sweep never passed there.
-            Verdict::Unknown(UnknownReason::Geometry) if row.rsc_m.is_none() => row.verdict,
             _ => Verdict::Unsafe(UnsafeReason::Articulation),
         },
     }

@@ -25,9 +25,8 @@ pub fn explain_edge(network: &Network, edge: u32, model: &Model, settings: &Sett
         Ok(case) => (case.geometry(model, &settings.stet), case.unknown()),
         Err(reason) => (None, Some(*reason)),
     };
-    let seen = geometry.as_ref().map(|g| &g.result).filter(|result| result.seen());
-    let verdict = verdict(facts, model, unknown, seen);
-    let geometry = geometry.filter(|g| unknown.is_none() && g.result.seen());
+    let verdict = verdict(facts, model, unknown, geometry.as_ref().map(|g| &g.result));
+    let geometry = geometry.filter(|_| unknown.is_none());
     let mut hints = Hints::default();
     if let (Ok(case), Some(geometry), Verdict::Unsafe(_)) = (&case, &geometry, verdict) {
         hints = hints::of(&|corridor, model| case.result(corridor, model, &settings.stet), geometry, model);
@@ -142,7 +141,7 @@ fn other_strips(
         if case.unknown().is_some() {
             return None;
         }
-        let result = case.result(&case.made.corridor, model, &settings.stet).filter(SpanResult::seen)?;
+        let result = case.result(&case.made.corridor, model, &settings.stet)?;
         let corridor = &case.made.corridor;
         let stations = case.made.spans.get(case.which)?.stations.clone();
         let width_m = stations.map(|k| corridor.left_m[k] + corridor.right_m[k]).fold(f64::INFINITY, f64::min);

@@ -55,7 +55,7 @@ pub fn explain_turn(network: &Network, facts: &TurnFacts, model: &Model, setting
                 .is_some_and(|(_, results)| results.first() == Some(result))
         };
         let options = if same(&settings.stet) { settings.stet } else { plain };
-        geometry(&path.corridor, spans, 0, model, &options).filter(|g| g.result.seen())
+        geometry(&path.corridor, spans, 0, model, &options)
     });
     let explanation = Explanation {
         road: None,

@@ -94,7 +94,7 @@ fn chord_deg(mut positions: impl Iterator<Item = LonLat>, reach_m: f64) -> f64 {
 }
 
 /// East and north from `a` to `b`, metres; across the date line the short way.
-fn offset_m(a: LonLat, b: LonLat) -> [f64; 2] {
+pub(crate) fn offset_m(a: LonLat, b: LonLat) -> [f64; 2] {
     const TURN_E7: i64 = 3_600_000_000;
     let mut lon_e7 = i64::from(b.lon_e7) - i64::from(a.lon_e7);
     if lon_e7.abs() > TURN_E7 / 2 {

@@ -6,15 +6,12 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{Network, Stroke};
-use crate::osm::LonLat;
 
 /// Where every arc is longer, entering and leaving are two turns, metres: vehicles have 60 m at most, and entering and leaving take
 /// about 20 m of an arc each.
 const LONGEST_M: f64 = 100.0;
 /// More entries or exits than this are no roundabout, but a ring road.
 const MOST_ARMS: usize = 24;
-/// Metres a degree of latitude; only which rings are left alone depends on it.
-const DEGREE_M: f64 = 111_195.0;
 
 /// One way over a roundabout.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -77,7 +74,7 @@ impl Network {
         }
         // A ring that meets itself is none.
         let apart = nodes.iter().collect::<FxHashSet<_>>().len() == nodes.len();
-        let short = edges().any(|edge| length_m(self.positions(edge)) <= LONGEST_M);
+        let short = edges().any(|edge| self.length_m(edge) <= LONGEST_M);
         let none = || vec![Vec::new(); nodes.len()];
         let ring = Ring { arcs: arcs.to_vec(), closed: stroke.closed, entries: none(), exits: none() };
         (apart && short).then_some((ring, nodes))
@@ -135,13 +132,4 @@ impl Ring {
             (!exits.is_empty()).then_some((arcs, exits.as_slice()))
         })
     }
-}
-
-fn length_m(positions: impl Iterator<Item = LonLat>) -> f64 {
-    let places: Vec<(f64, f64)> = positions.map(LonLat::degrees).collect();
-    let step = |w: &[(f64, f64)]| {
-        let east = ((w[1].0 - w[0].0 + 540.0).rem_euclid(360.0) - 180.0) * w[0].1.to_radians().cos();
-        east.hypot(w[1].1 - w[0].1) * DEGREE_M
-    };
-    places.windows(2).map(step).sum()
 }

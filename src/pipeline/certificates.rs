@@ -12,7 +12,7 @@ use crate::corridor::{EdgeSpan, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::stet::{Model, Planned, SpanResult, certify_spans};
 use crate::store::{EdgeCertificate, EdgeMeasure, Measured, Named, StoredPlan, VerdictKind, verdict_words};
-use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
+use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
 /// Strokes handed to the threads at a time: enough to keep them busy, few enough to hold.
 const BATCH: usize = 512;
@@ -129,10 +129,9 @@ fn with_corridor(job: &Job<'_>, made: &StrokeCorridor) -> StrokeResult {
         .flat_map(|(vehicle, row)| made.spans.iter().zip(&row.spans).map(move |(span, result)| (vehicle, span, result)))
         .filter_map(|(vehicle, span, result)| {
             let edge = job.network.edges.get(span.edge as usize)?;
-            let result = result.seen().then_some(result);
-            let verdict = verdict(edge, &job.models[vehicle], span.unknown, result);
-            let bounded = result.filter(|result| span.unknown.is_none() && result.closes());
-            let measured = bounded.map(|result| measured(made, span, result));
+            let verdict = verdict(edge, &job.models[vehicle], span.unknown, Some(result));
+            let bounded = span.unknown.is_none() && result.closes();
+            let measured = bounded.then(|| measured(made, span, result));
             Some((vehicle, EdgeCertificate { edge: span.edge, verdict, measured }))
         })
         .collect();
@@ -197,10 +196,9 @@ pub(crate) fn verdict(
     match (unknown, result) {
         (Some(reason), _) => Verdict::Unknown(reason),
         (None, None) => Verdict::Unknown(UnknownReason::Geometry),
-        (None, Some(result)) if !result.closes() => Verdict::Unsafe(UnsafeReason::Articulation),
-        (None, Some(result)) if result.rsc_m.is_nan() || result.rsc_m < 0.0 => Verdict::Unsafe(UnsafeReason::Width),
-        (None, Some(result)) if result.safe() => legal.unwrap_or(Verdict::Safe),
-        (None, Some(result)) if result.hinge_unit == 0 => Verdict::Unsafe(UnsafeReason::SteeringLock),
-        (None, Some(_)) => Verdict::Unsafe(UnsafeReason::Articulation),
+        (None, Some(result)) => match result.verdict() {
+            Verdict::Safe => legal.unwrap_or(Verdict::Safe),
+            other => other,
+        },
     }
 }

@@ -269,9 +269,9 @@ pub fn best_of(paths: &[TurnPath], models: &[&Model], options: &Options) -> Vec<
     best
 }
 
-/// Safe before not, seen before not, then the greater RSC. Ties keep the first.
+/// Safe before not, bounded before not, then the greater RSC. Ties keep the first.
 fn better(a: &SpanResult, b: &SpanResult) -> bool {
-    let key = |r: &SpanResult| (r.safe(), r.seen() && r.closes());
+    let key = |r: &SpanResult| (r.safe(), r.closes());
     match key(a).cmp(&key(b)) {
         std::cmp::Ordering::Equal => a.rsc_m > b.rsc_m,
         order => order.is_gt(),
@@ -281,21 +281,13 @@ fn better(a: &SpanResult, b: &SpanResult) -> bool {
 /// The verdict of a turn's best result.
 #[must_use]
 pub fn turn_verdict(result: Option<&SpanResult>) -> Verdict {
-    match result {
-        // No path of the family stays on the road.
-        None => Verdict::Unsafe(UnsafeReason::Width),
-        Some(result) if !result.seen() => Verdict::Unknown(UnknownReason::Geometry),
-        Some(result) if !result.closes() => Verdict::Unsafe(UnsafeReason::Articulation),
-        Some(result) if result.safe() => Verdict::Safe,
-        Some(result) if result.rsc_m.is_nan() || result.rsc_m < 0.0 => Verdict::Unsafe(UnsafeReason::Width),
-        Some(result) if result.hinge_unit == 0 => Verdict::Unsafe(UnsafeReason::SteeringLock),
-        Some(_) => Verdict::Unsafe(UnsafeReason::Articulation),
-    }
+    // Without a result: no path of the family stays on the road.
+    result.map_or(Verdict::Unsafe(UnsafeReason::Width), SpanResult::verdict)
 }
 
 fn certificate(turn: u32, paths: &[TurnPath], best: Option<(usize, SpanResult)>) -> TurnCertificate {
     let verdict = turn_verdict(best.as_ref().map(|(_, result)| result));
-    let (measured, path) = match best.filter(|(_, result)| result.seen() && result.closes()) {
+    let (measured, path) = match best.filter(|(_, result)| result.closes()) {
         Some((path, result)) => {
             let path = &paths[path];
             let along = result.limiting.station.saturating_sub(path.counted.start) as f64 * path.corridor.spacing_m;

@@ -22,6 +22,7 @@ mod tube;
 use std::ops::Range;
 
 use crate::corridor::Corridor;
+use crate::verdict::{UnsafeReason, Verdict};
 
 pub use given::{PlanError, certify_plan};
 pub use model::{MAX_UNITS, Model, ModelError};
@@ -89,24 +90,29 @@ pub struct SpanResult {
 }
 
 impl SpanResult {
-    /// Whether the bounds' recursion closes all over the span. Where it does not, a unit stands so far across its path
-    /// that the numbers bound nothing: the verdict is `unsafe`, reason articulation.
+    /// Whether the bounds' recursion closes all over the span, and every body point could be followed over it. Where not, a unit
+    /// stands so far across its path that the numbers bound nothing.
     #[must_use]
     pub fn closes(&self) -> bool {
-        self.hinge_margin_rad > sweep::NOT_CLOSED_RAD + 1.0
+        self.hinge_margin_rad > sweep::NOT_CLOSED_RAD + 1.0 && self.rsc_m > 0.5 * spans::NOTHING_M
     }
 
-    /// RSC ≥ 0 and hinge margin ≥ 0, and every station was looked at.
+    /// RSC ≥ 0 and hinge margin ≥ 0.
     #[must_use]
     pub fn safe(&self) -> bool {
-        self.seen() && self.rsc_m >= 0.0 && self.hinge_margin_rad >= 0.0
+        self.rsc_m >= 0.0 && self.hinge_margin_rad >= 0.0
     }
 
-    /// Whether body points passed all stations of the span. They do not where a corridor turns so sharply that feet jump: of
-    /// such a span nothing is known.
+    /// What the numbers say by themselves, law and map aside.
     #[must_use]
-    pub fn seen(&self) -> bool {
-        self.rsc_m < sweep::UNVISITED_M / 2.0 && self.hinge_margin_rad < sweep::UNVISITED_M / 2.0
+    pub fn verdict(&self) -> Verdict {
+        match () {
+            () if !self.closes() => Verdict::Unsafe(UnsafeReason::Articulation),
+            () if self.safe() => Verdict::Safe,
+            () if self.rsc_m < 0.0 => Verdict::Unsafe(UnsafeReason::Width),
+            () if self.hinge_unit == 0 => Verdict::Unsafe(UnsafeReason::SteeringLock),
+            () => Verdict::Unsafe(UnsafeReason::Articulation),
+        }
     }
 }
 

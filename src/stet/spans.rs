@@ -13,11 +13,8 @@ use super::{Limiting, Side, SpanResult};
 /// each side, the first station of the straight extension included.
 const SLACK: usize = 3;
 
-/// So many stations in a row that no body point visits were jumped.
-const JUMPED: usize = 4;
-
 /// RSC where nothing bounds the vehicle.
-const NOTHING_M: f64 = -1000.0;
+pub(super) const NOTHING_M: f64 = -1000.0;
 
 /// Extended stations of a span of corridor stations.
 pub(super) fn stations(track: &Track, span: &std::ops::Range<usize>) -> RangeInclusive<usize> {
@@ -32,7 +29,6 @@ pub(super) fn result(track: &Track, model: &Model, span: &std::ops::Range<usize>
     let mut limiting = Limiting { station: span.start, unit: 0, side: Side::Left, point_m: 0.0 };
     let (mut hinge, mut hinge_unit) = (f64::INFINITY, 0);
     let (mut offset, mut half_width) = (0.0_f64, f64::INFINITY);
-    let mut unseen = 0;
     for k in stations(track, span) {
         for (value, side) in [(full.left[k], Side::Left), (full.right[k], Side::Right)] {
             // A NaN, which no input should give, is the least of all.
@@ -49,9 +45,6 @@ pub(super) fn result(track: &Track, model: &Model, span: &std::ops::Range<usize>
             hinge = full.hinge[k];
             hinge_unit = ((hinge.to_bits() & TAG_MASK) >> 4) as usize;
         }
-        // One or two stations may lie between two steps on the inside of a curve; a run of them was jumped.
-        let visited = full.left[k] < UNVISITED_M || k < track.lead || k >= track.lead + track.count;
-        unseen = if visited || unseen >= JUMPED { unseen * usize::from(unseen >= JUMPED) } else { unseen + 1 };
         offset = offset.max(full.offset[k]);
         half_width = half_width.min(0.5 * (track.fields.left[k] + track.fields.right[k]));
     }
@@ -63,8 +56,12 @@ pub(super) fn result(track: &Track, model: &Model, span: &std::ops::Range<usize>
         (least, hinge) = (NOTHING_M, hinge.min(lost));
         hinge_unit = ((lost.to_bits() & TAG_MASK) >> 4) as usize;
     }
+    // A span is longer than what feet may pass over unseen (`leeway::JUMPED`); if nobody came for all that, nothing is known.
+    if least >= UNVISITED_M || hinge >= UNVISITED_M {
+        (least, hinge) = (NOTHING_M, NOT_CLOSED_RAD);
+    }
     SpanResult {
-        rsc_m: if unseen >= JUMPED && least >= 0.0 { UNVISITED_M } else { least },
+        rsc_m: least,
         rsc_published_m: half_width - (offset + model.published_radius),
         hinge_margin_rad: hinge,
         hinge_unit,

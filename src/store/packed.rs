@@ -4,6 +4,7 @@
 use crate::stet::Side;
 use crate::verdict::Verdict;
 
+use super::bulk::Bulk;
 use super::names::verdict_no;
 
 /// The certificate of one edge, for a vehicle and policy named beside it.
@@ -49,6 +50,20 @@ pub(super) struct Packed {
     pub(super) limiting_at: Option<u16>,
     /// Of turns only: which path.
     pub(super) path_no: Option<u8>,
+}
+
+impl Packed {
+    /// The columns that certificates of edges and of turns have in common, from `fid` on.
+    pub(super) fn add_to(&self, bulk: &mut Bulk) -> Result<(), sqlx::Error> {
+        bulk.add(self.fid)?;
+        bulk.add(self.verdict_no)?;
+        bulk.add(self.rsc_mm)?;
+        bulk.add(self.rsc_published_mm)?;
+        bulk.add(self.hinge_margin_cdeg)?;
+        bulk.add(self.shrink_milli)?;
+        bulk.add(self.limiting_s_dm)?;
+        bulk.add(self.limiting_at)
+    }
 }
 
 impl EdgeCertificate {

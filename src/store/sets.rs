@@ -51,14 +51,7 @@ impl Set<'_> {
         for row in rows {
             bulk.add(self.vehicle_no)?;
             bulk.add(corridor)?;
-            bulk.add(row.fid)?;
-            bulk.add(row.verdict_no)?;
-            bulk.add(row.rsc_mm)?;
-            bulk.add(row.rsc_published_mm)?;
-            bulk.add(row.hinge_margin_cdeg)?;
-            bulk.add(row.shrink_milli)?;
-            bulk.add(row.limiting_s_dm)?;
-            bulk.add(row.limiting_at)?;
+            row.add_to(&mut bulk)?;
             bulk.end_row(c).await?;
         }
         bulk.finish(c).await?;

@@ -131,14 +131,7 @@ pub(super) async fn insert(
     for row in rows {
         bulk.add(vehicle_no)?;
         bulk.add(corridor)?;
-        bulk.add(row.fid)?;
-        bulk.add(row.verdict_no)?;
-        bulk.add(row.rsc_mm)?;
-        bulk.add(row.rsc_published_mm)?;
-        bulk.add(row.hinge_margin_cdeg)?;
-        bulk.add(row.shrink_milli)?;
-        bulk.add(row.limiting_s_dm)?;
-        bulk.add(row.limiting_at)?;
+        row.add_to(&mut bulk)?;
         bulk.add(row.path_no)?;
         bulk.end_row(c).await?;
     }

@@ -6,13 +6,11 @@ use rustc_hash::FxHashSet;
 
 use super::area::CORNERS_RAD;
 use super::{Kerbs, path};
-use crate::network::{Edge, Movement, MovementKind, Network, Passage};
+use crate::network::{Edge, Movement, MovementKind, Network, Passage, offset_m};
 use crate::osm::LonLat;
 
 /// A turn's line reaches so far along both edges, metres; its angle is measured over the same.
 const LINE_M: f64 = 12.0;
-/// Metres a degree of latitude; only directions and a line for people depend on it.
-const DEGREE_M: f64 = 111_195.0;
 
 /// Where a kerb radius comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -116,12 +114,6 @@ fn first_metres(positions: impl Iterator<Item = LonLat>) -> Vec<LonLat> {
         }
     }
     out
-}
-
-fn offset_m(a: LonLat, b: LonLat) -> [f64; 2] {
-    let ((lon_a, lat_a), (lon_b, lat_b)) = (a.degrees(), b.degrees());
-    let east = (lon_b - lon_a + 540.0).rem_euclid(360.0) - 180.0;
-    [east * DEGREE_M * lat_a.to_radians().cos(), (lat_b - lat_a) * DEGREE_M]
 }
 
 /// From the first segment's direction to the last one's by way of all between, as turned.

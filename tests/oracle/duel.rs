@@ -249,3 +249,16 @@ pub fn describe(o: &Outcome) -> String {
         n.clearance_m, n.foot_m, n.unit, n.ahead_m, o.by
     )
 }
+
+/// The whole fight for one claim: how far the least clearance that any attack reached is above it, metres, and how that came about.
+pub fn margin_m(
+    corridor: &Corridor,
+    vehicle: &Vehicle,
+    claim: &Claim,
+    draw: &mut Draw,
+    others: usize,
+) -> (f64, Outcome) {
+    let ride = path(corridor, vehicle, claim);
+    let outcome = Duel::new(corridor, vehicle, &ride, claim.shrink).fight(claim, draw, others);
+    (outcome.least.clearance_m - claim.rsc_m, outcome)
+}
