@@ -9,7 +9,7 @@
 mod ascii_map;
 
 use ascii_map::{AsciiMap, edges, id_of, no_sections, somewhere, strokes};
-use netcert::network::{Network, NetworkAccount, StrokeOptions, build, build_with};
+use netcert::network::{MovementKind, Network, NetworkAccount, StrokeOptions, build, build_with};
 use netcert::osm::facts::{Legal, Limit, PointFacts};
 
 const ROAD: &str = "highway=residential";
@@ -123,8 +123,10 @@ fn a_one_way_road_against_its_nodes_has_only_that_edge() {
     check(&map, "BA CB", "CBA");
 }
 
+/// An arm has no approach over the ring, though it leaves it at less than the angle of one: a vehicle comes onto it by a turn or a
+/// passage, which are certified with the arm's first metres.
 #[test]
-fn a_roundabout_is_a_ring_and_its_arms_are_left_from_it() {
+fn a_roundabout_is_a_ring_and_its_arms_begin_at_it() {
     let map = AsciiMap::drawn(
         5.0,
         "
@@ -145,7 +147,23 @@ fn a_roundabout_is_a_ring_and_its_arms_are_left_from_it() {
     .way("3S", "highway=primary ref=B3")
     .way("W4", ROAD)
     .way("2E", ROAD);
-    check(&map, "14 43 32 21 N1 1N 3S S3 W4 4W 2E E2", "14321@ N1 1432>1N 3214>3S S3 W4 4321>4W 2143>2E E2");
+    check(&map, "14 43 32 21 N1 1N 3S S3 W4 4W 2E E2", "14321@ N1 1N 3S S3 W4 4W 2E E2");
+}
+
+#[test]
+fn a_road_that_becomes_a_roundabout_turns_onto_it_even_where_nothing_else_meets() {
+    let map = AsciiMap::drawn(
+        20.0,
+        "
+        A----B----C----D
+        ",
+    )
+    .way("AB", ONE_WAY)
+    .way("BC", "highway=primary junction=roundabout")
+    .way("CD", ONE_WAY);
+    let (network, _) = check(&map, "AB BC CD", "AB BC CD");
+    let kinds: Vec<_> = network.movements().all().iter().map(|movement| movement.kind).collect();
+    assert_eq!(kinds, [MovementKind::Turn; 2]);
 }
 
 #[test]

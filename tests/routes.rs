@@ -30,12 +30,22 @@ const ALLOWANCE_M: f64 = 2e-5;
 const NAMES: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghi";
 const COLUMNS: usize = 5;
 
-/// Some streets of a grid, each between two neighbours, some of them one-way.
-fn grid(streets: &[(usize, bool, u8)]) -> Network {
+/// Some streets of a grid, each between two neighbours, some of them one-way, and blocks that are roundabouts.
+fn grid(streets: &[(usize, bool, u8)], rings: &[usize]) -> Network {
     let names: Vec<char> = NAMES.chars().collect();
     let rows: Vec<String> = names.chunks(COLUMNS).map(|row| row.iter().flat_map(|c| [*c, ' ']).collect()).collect();
     let mut map = AsciiMap::drawn(30.0, &rows.join("\n\n"));
     let mut drawn = BTreeSet::new();
+    for corner in rings.iter().map(|ring| ring % names.len()) {
+        let corners = [corner, corner + COLUMNS, corner + COLUMNS + 1, corner + 1, corner];
+        let sides = [0, 1, 2, 3].map(|i| (corners[i].min(corners[i + 1]), corners[i].max(corners[i + 1])));
+        if (corner + 1) % COLUMNS == 0 || corner + COLUMNS + 1 >= names.len() || sides.iter().any(|s| drawn.contains(s))
+        {
+            continue;
+        }
+        drawn.extend(sides);
+        map = map.way(&corners.map(|i| names[i]).iter().collect::<String>(), "highway=residential junction=roundabout");
+    }
     for &(from, across, one_way) in streets {
         let from = from % names.len();
         let to = if across { from + 1 } else { from + COLUMNS };
@@ -68,15 +78,22 @@ fn by_nodes(network: &Network, graph: &Graph<'_>, from: u32, to: u32) -> Option<
     reached.get(&edge(to).from_node).map(|cost| cost + graph.cost(to))
 }
 
-/// Dijkstra over whole histories of the last four edges: slow, and too simple to be wrong.
-fn by_histories(
-    network: &Network,
-    graph: &Graph<'_>,
-    barred: &BTreeSet<(u32, u32)>,
-    sequences: &[Vec<u32>],
-    from: u32,
-    to: u32,
-) -> Option<u64> {
+/// What nobody may use: edges by themselves, from one edge into another, sequences, passages.
+#[derive(Default)]
+struct Barred {
+    edges: BTreeSet<u32>,
+    pairs: BTreeSet<(u32, u32)>,
+    sequences: Vec<Vec<u32>>,
+    passages: BTreeSet<(u32, u32)>,
+}
+
+/// Dijkstra over whole histories of the last four edges: slow, and too simple to be wrong. Over a passage it goes edge by edge,
+/// on arcs that need not be open.
+fn by_histories(network: &Network, graph: &Graph<'_>, barred: &Barred, from: u32, to: u32) -> Option<u64> {
+    if barred.edges.contains(&from) {
+        return None;
+    }
+    let stopped = |history: &[u32]| barred.sequences.iter().any(|sequence| history.ends_with(sequence));
     let mut done = BTreeSet::new();
     let mut open = BTreeSet::from([(graph.cost(from), vec![from])]);
     while let Some((cost, history)) = open.pop_first() {
@@ -87,18 +104,27 @@ fn by_histories(
         if last == to {
             return Some(cost);
         }
-        for (i, e) in (0..).zip(&network.edges) {
-            let joins = e.from_node == network.edges[last as usize].to_node;
-            if !joins || barred.contains(&(last, i)) {
-                continue;
+        let last_node = network.edges[last as usize].to_node;
+        let mut ways: Vec<Vec<u32>> = (0..)
+            .zip(&network.edges)
+            .filter(|(i, e)| e.from_node == last_node && !barred.pairs.contains(&(last, *i)))
+            .map(|(i, _)| vec![i])
+            .collect();
+        for passage in network.passages() {
+            if passage.from == last && !barred.passages.contains(&(last, passage.to)) {
+                ways.push([passage.through.as_slice(), &[passage.to]].concat());
             }
+        }
+        for way in ways {
             let mut next = history.clone();
-            next.push(i);
-            if sequences.iter().any(|sequence| next.ends_with(sequence)) {
-                continue;
+            let lawful = way.iter().all(|&edge| {
+                next.push(edge);
+                !stopped(&next)
+            });
+            if lawful && !barred.edges.contains(&next[next.len() - 1]) {
+                let more: u64 = way.iter().map(|&edge| graph.cost(edge)).sum();
+                open.insert((cost + more, next[next.len().saturating_sub(4)..].to_vec()));
             }
-            let next = next[next.len().saturating_sub(4)..].to_vec();
-            open.insert((cost + graph.cost(i), next));
         }
     }
     None
@@ -115,15 +141,22 @@ fn forbid(network: &mut Network, sequence: &[u32]) {
 /// Everything is open, turning back included.
 fn wide_open(graph: &Graph<'_>) -> Access {
     let access = graph.open_access();
-    Access { edges: access.edges, movements: vec![0; access.movements.len()] }
+    Access { movements: vec![0; access.movements.len()], passages: vec![0; access.passages.len()], ..access }
 }
 
 fn shortest(graph: &Graph<'_>, access: &Access, from: u32, to: u32) -> Option<u64> {
     let goal = [Goal { edge: to, share: 1.0 }];
     let found = search(graph, access, &[Start::new(from, 0.0)], &goal, true).remove(0)?;
-    let sum: u64 = found.edges.iter().map(|&edge| graph.cost(edge)).sum();
+    let edges = &found.drive.edges;
+    let sum: u64 = edges.iter().map(|&edge| graph.cost(edge)).sum();
     assert_eq!(sum, found.cost, "the way costs what it says");
-    assert_eq!((found.edges.first(), found.edges.last()), (Some(&from), Some(&to)));
+    assert_eq!((edges.first(), edges.last()), (Some(&from), Some(&to)));
+    let place = |e: u32| &graph.network.edges[e as usize];
+    assert!(edges.windows(2).all(|pair| place(pair[0]).to_node == place(pair[1]).from_node), "without a gap");
+    for join in found.drive.joins().filter(|join| !join.arcs.is_empty()) {
+        let passage = graph.movements.passage(join.from, join.to).map(|place| &graph.movements.passages()[place]);
+        assert_eq!(passage.unwrap().through, join.arcs);
+    }
     Some(found.cost)
 }
 
@@ -136,9 +169,11 @@ proptest! {
 
     #[test]
     fn where_all_is_permitted_the_way_is_dijkstras_on_the_plain_graph(
-        streets in streets(), ends in prop::collection::vec((any::<u32>(), any::<u32>()), 1..6),
+        streets in streets(),
+        rings in prop::collection::vec(0..35_usize, 0..4),
+        ends in prop::collection::vec((any::<u32>(), any::<u32>()), 1..6),
     ) {
-        let network = grid(&streets);
+        let network = grid(&streets, &rings);
         let count = network.edges.len() as u32;
         prop_assume!(count > 1);
         let movements = network.movements();
@@ -153,16 +188,17 @@ proptest! {
     #[test]
     fn forbidden_movements_and_sequences_are_obeyed_at_no_more_cost_than_needed(
         streets in streets(),
+        rings in prop::collection::vec(0..35_usize, 0..5),
         seed in any::<u64>(),
         ends in prop::collection::vec((any::<u32>(), any::<u32>()), 1..5),
     ) {
-        let mut network = grid(&streets);
+        let mut network = grid(&streets, &rings);
         let count = network.edges.len() as u32;
         prop_assume!(count > 1);
         let movements = network.movements();
         let mut draw = Draw(seed);
-        let mut sequences = Vec::new();
-        for _ in 0..count {
+        let mut barred = Barred::default();
+        for _ in 0..count / 2 {
             // A random walk of three or four edges becomes a forbidden sequence.
             let mut walk = vec![draw.below(count as usize) as u32];
             for _ in 0..2 + draw.below(2) {
@@ -173,21 +209,33 @@ proptest! {
             }
             if walk.len() > 2 {
                 forbid(&mut network, &walk);
-                sequences.push(walk);
+                barred.sequences.push(walk);
             }
         }
         let graph = Graph::new(&network, &movements, &Speeds::builtin().unwrap(), Measure::Distance);
         let mut access = wide_open(&graph);
-        let mut barred = BTreeSet::new();
         for (slot, movement) in access.movements.iter_mut().zip(movements.all()) {
             if draw.one_in(4) {
                 *slot = BARRED;
-                barred.insert((movement.from, movement.to));
+                barred.pairs.insert((movement.from, movement.to));
+            }
+        }
+        for (slot, passage) in access.passages.iter_mut().zip(movements.passages()) {
+            if draw.one_in(4) {
+                *slot = BARRED;
+                barred.passages.insert((passage.from, passage.to));
+            }
+        }
+        for (slot, (edge, facts)) in access.edges.iter_mut().zip((0..).zip(&network.edges)) {
+            // Most roundabouts are gone over by passages only.
+            if draw.one_in(if network.road(facts).roundabout { 2 } else { 10 }) {
+                *slot = BARRED;
+                barred.edges.insert(edge);
             }
         }
         for (from, to) in ends {
             let (from, to) = (from % count, to % count);
-            let expected = by_histories(&network, &graph, &barred, &sequences, from, to);
+            let expected = by_histories(&network, &graph, &barred, from, to);
             prop_assert_eq!(shortest(&graph, &access, from, to), expected);
         }
     }
@@ -211,7 +259,7 @@ fn a_way_over_several_places_goes_on_as_it_came() {
     // From the middle of BD there is no way to E but by turning back, which nobody does.
     assert_eq!(search_over(&graph, &graph.open_access(), &start, &places), None);
     let found = search_over(&graph, &wide_open(&graph), &start, &places).unwrap();
-    assert_eq!(found.edges, [edge('A', 'B'), edge('B', 'D'), edge('D', 'B'), edge('B', 'E')]);
+    assert_eq!(found.drive.edges, [edge('A', 'B'), edge('B', 'D'), edge('D', 'B'), edge('B', 'E')]);
 }
 
 #[test]
@@ -269,16 +317,25 @@ fn answers(region: &Region, driver: &routing::Driver, pairs: u64) -> Vec<Answer>
 /// No edge, turn or restriction is broken, and the whole is safe.
 fn assert_lawful(region: &Region, driver: &routing::Driver, route: &Route) {
     assert!(route.certificate.result.safe());
-    assert!(route.edges.iter().all(|&edge| driver.permits.edge(edge)));
-    for pair in route.edges.windows(2) {
-        let place = region.movements.index(pair[0], pair[1]).unwrap();
+    let in_passage = |at: &usize| route.drive.over.iter().any(|arcs| arcs.contains(at));
+    let edges = || route.drive.edges.iter().enumerate();
+    assert!(edges().all(|(at, &edge)| in_passage(&at) || driver.permits.edge(edge)));
+    for join in route.drive.joins() {
+        if !join.arcs.is_empty() {
+            let place = region.movements.passage(join.from, join.to).unwrap();
+            let passage = &region.movements.passages()[place];
+            assert!(passage.forbidden.is_none() && passage.through == join.arcs);
+            assert_eq!(driver.permits.passages[place].verdict, Verdict::Safe);
+            continue;
+        }
+        let place = region.movements.index(join.from, join.to).unwrap();
         let movement = region.movements.all()[place];
         assert!(movement.forbidden.is_none() && movement.kind != MovementKind::UTurn);
         assert_eq!(driver.permits.movements[place].verdict, Verdict::Safe);
     }
     for restriction in &region.network.restrictions {
         let sequence = region.network.sequence(restriction);
-        assert!(!route.edges.windows(sequence.len()).any(|driven| driven == sequence), "{restriction:?}");
+        assert!(!route.drive.edges.windows(sequence.len()).any(|driven| driven == sequence), "{restriction:?}");
     }
     let parts = &route.path.parts;
     assert!(parts.windows(2).all(|pair| pair[0].stations.end == pair[1].stations.start + 1), "{parts:?}");

@@ -1,4 +1,4 @@
-//! A database, a vehicle that it certifies, and all that routing over them needs.
+//! A database, a vehicle that it certifies or now does, and all that routing over them needs.
 
 use std::path::PathBuf;
 
@@ -11,18 +11,23 @@ use netcert::route::{Graph, MadeTurns, Measure, Permits, Speeds, Strokes};
 use netcert::stet::Model;
 use netcert::store::Database;
 
+use super::Session;
 use super::database::DatabaseArgs;
 use super::fleet;
 use super::how;
+use super::on_demand::{self, Wanted};
 use super::values::word;
 
 #[derive(Args)]
 pub(crate) struct FittedArgs {
     #[command(flatten)]
     db: DatabaseArgs,
-    /// A vehicle that the database certifies; `netcert stats` shows which.
+    /// The vehicle; one that is not certified in this database yet is certified then and there, and the result is kept.
     #[arg(long, value_name = "ID")]
     vehicle: String,
+    /// Where its definition stands, if not in the catalogue or the database.
+    #[arg(long, value_name = "F.toml")]
+    vehicle_file: Vec<PathBuf>,
     /// Which width counts: one's own lane, all lanes of one's direction, or the whole carriageway [default: as the
     /// database was made with, lane unless told otherwise].
     #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
@@ -41,11 +46,13 @@ pub(crate) struct Fitted {
 }
 
 impl FittedArgs {
-    pub(crate) fn load(&self) -> anyhow::Result<Fitted> {
+    pub(crate) fn load(&self, session: &Session, command: &'static str) -> anyhow::Result<Fitted> {
         let path = self.db.path()?;
         let mut database = Database::open(&path)?;
         let recorded = how::recorded(&mut database)?;
         let settings = Settings { policy: self.corridor.unwrap_or(recorded.policy), ..recorded };
+        let wanted = Wanted { vehicle: &self.vehicle, files: &self.vehicle_file, turns: true, command };
+        let mut database = on_demand::certified(session, (&path, database), &wanted, &settings)?;
         let vehicle = fleet::kept(&mut database, &self.vehicle)?.ok_or_else(|| {
             anyhow!(
                 "{}: {} is not certified here; run `netcert certify --db {0} --vehicle {1}`",

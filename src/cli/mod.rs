@@ -14,6 +14,7 @@ mod fleet;
 mod how;
 mod ingest;
 mod manoeuvres;
+mod on_demand;
 pub(crate) mod output;
 mod paper;
 mod place;

@@ -53,7 +53,7 @@ enum Format {
 
 impl Reach {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
-        let fitted = self.fitted.load()?;
+        let fitted = self.fitted.load(session, "reach")?;
         let graph = fitted.graph(Measure::Distance);
         let access = fitted.permits.access(&fitted.movements);
         let snapped = Snapper::new(&fitted.network).snap(self.from, self.snap, |edge| fitted.permits.edge(edge))?;

@@ -89,7 +89,7 @@ fn snap_metres(text: &str) -> Result<f64, String> {
 
 impl Route {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
-        let fitted = self.fitted.load()?;
+        let fitted = self.fitted.load(session, "route")?;
         let measure = if self.least == Least::Time { Measure::Time } else { Measure::Distance };
         let turns = fitted.turns();
         let (graph, speeds) = (fitted.graph(measure), fitted.speeds.clone());
@@ -216,17 +216,25 @@ fn parts(out: &mut dyn Write, network: &Network, found: &Found) -> std::io::Resu
         }
     }
     for (part, title) in rows {
-        let turn = matches!(part.kind, PartKind::Turn { .. });
         let rsc = if part.rsc_m > 100.0 { String::new() } else { format!("{:.2} m", part.rsc_m) };
         table.row([
             format!("{:.2} km", part.from_m / 1000.0),
             format!("{:.0} m", part.to_m - part.from_m),
             rsc,
-            if turn { "turn" } else { "along" }.to_owned(),
+            how(network, part.kind).to_owned(),
             printable(&title),
         ]);
     }
     table.write(out, "  ")
+}
+
+/// How a part is driven.
+fn how(network: &Network, at: PartKind) -> &'static str {
+    match at {
+        PartKind::Edge(_) => "along",
+        PartKind::Turn { .. } if route::passes_over(network, at) => "round",
+        PartKind::Turn { .. } => "turn",
+    }
 }
 
 fn blocked(out: &mut dyn Write, network: &Network, answer: &Answer) -> std::io::Result<()> {
@@ -236,7 +244,8 @@ fn blocked(out: &mut dyn Write, network: &Network, answer: &Answer) -> std::io::
     if answer.gave_up {
         writeln!(out, "  Given up after {} whole routes that failed; --tries allows more.", answer.refuted.len())?;
     }
-    writeln!(out, "  The fewest places that would have to become safe: {}\n", obstacles.len())?;
+    let count = obstacles.len();
+    writeln!(out, "  What would have to become safe: {count} {}\n", if count == 1 { "place" } else { "places" })?;
     let mut table = Table::new(&["at", "", "verdict", ">missing", "road"]);
     for obstacle in obstacles {
         let (verdict, reason) = verdict_words(obstacle.permit.verdict);
@@ -245,15 +254,16 @@ fn blocked(out: &mut dyn Write, network: &Network, answer: &Answer) -> std::io::
             (false, "") => verdict.to_owned(),
             (false, reason) => format!("{verdict}: {reason}"),
         };
-        let missing = obstacle.permit.rsc_m.filter(|rsc_m| *rsc_m < 0.0);
         table.row([
             route::place(network, obstacle.at).map_or_else(String::new, |[lon, lat]| format!("{lon:.5},{lat:.5}")),
-            if matches!(obstacle.at, PartKind::Turn { .. }) { "turn" } else { "along" }.to_owned(),
+            how(network, obstacle.at).to_owned(),
             verdict,
-            missing.map_or_else(String::new, |rsc_m| format!("{:.2} m", -rsc_m)),
+            obstacle.missing_m.filter(|m| *m < 100.0).map_or_else(String::new, |m| format!("{m:.2} m")),
             printable(&route::title(network, obstacle.at)),
         ]);
     }
     table.write(out, "  ")?;
-    writeln!(out)
+    let cheapest =
+        "The cheapest set: each place counts as a metre, and the metres that are missing there (5 where nobody knows).";
+    writeln!(out, "\n{}\n", wrapped(cheapest, "  "))
 }

@@ -7,7 +7,7 @@ use super::{Edge, Network};
 use crate::osm::LonLat;
 
 /// Mean radius of the earth (IUGG), metres: lengths are right to 0.6 %.
-const EARTH_RADIUS_M: f64 = 6_371_008.8;
+pub(crate) const EARTH_RADIUS_M: f64 = 6_371_008.8;
 
 /// What choosing needs to know of every edge.
 pub(super) struct Geometry {

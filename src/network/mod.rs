@@ -20,7 +20,7 @@ use std::ops::Range;
 
 pub use account::NetworkAccount;
 pub use build::{build, build_with};
-pub(crate) use geometry::offset_m;
+pub(crate) use geometry::{EARTH_RADIUS_M, offset_m};
 pub use movements::{Movement, MovementKind, Movements};
 pub use roundabouts::Passage;
 pub use stroke::StrokeOptions;

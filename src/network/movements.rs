@@ -1,4 +1,4 @@
-//! Every way to go on at every node: straight on along a stroke, by a turn, or back.
+//! Every way to go on at every node: straight on along a stroke, by a turn, or back; and over roundabouts in one movement.
 //!
 //! Promises a fixed order (by node, then by edge), and that no movement is left out but at nodes with more edges than
 //! any real junction has. Restrictions over one node are marked here; those over ways are sequences that only a search can
@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use super::{Network, pairing, reverse};
+use super::{Network, Passage, pairing, reverse};
 
 /// How one goes on at a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -38,6 +38,8 @@ pub struct Movements {
     all: Vec<Movement>,
     /// By edge: where the movements out of it stand.
     after: Vec<Range<u32>>,
+    /// By `from`, then as the network has them.
+    passages: Vec<Passage>,
 }
 
 impl Movements {
@@ -73,6 +75,25 @@ impl Movements {
         let within = self.after(from).iter().position(|movement| movement.to == to)?;
         Some(range.start as usize + within)
     }
+
+    /// All passages of roundabouts, by the edge that one comes from.
+    #[must_use]
+    pub fn passages(&self) -> &[Passage] {
+        &self.passages
+    }
+
+    /// The passages that begin with an edge, each with its place in [`Movements::passages`].
+    pub fn over(&self, from: u32) -> impl Iterator<Item = (usize, &Passage)> {
+        let first = self.passages.partition_point(|passage| passage.from < from);
+        self.passages.iter().enumerate().skip(first).take_while(move |(_, passage)| passage.from == from)
+    }
+
+    /// The place in [`Movements::passages`] of the one from an edge to another: there is one at most, and no movement between the
+    /// same two edges, for they do not meet.
+    #[must_use]
+    pub fn passage(&self, from: u32, to: u32) -> Option<usize> {
+        self.over(from).find(|(_, passage)| passage.to == to).map(|(place, _)| place)
+    }
 }
 
 impl Network {
@@ -87,7 +108,9 @@ impl Network {
         ends.sort_unstable();
         let next = self.straight_on();
         let forbidden = self.forbidden_pairs();
-        let mut movements = Movements { all: Vec::new(), after: vec![0..0; self.edges.len()] };
+        let mut movements =
+            Movements { all: Vec::new(), after: vec![0..0; self.edges.len()], passages: self.passages() };
+        movements.passages.sort_by_key(|passage| passage.from);
         for node in ends.chunk_by(|a, b| a.0 == b.0).filter(|node| node.len() <= pairing::CROWD) {
             let (arriving, leaving) = node.split_at(node.partition_point(|end| !end.1));
             for &(_, _, from) in arriving {

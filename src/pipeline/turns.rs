@@ -213,7 +213,10 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
             let (network, policy) = (job.network, job.settings.policy);
             let (from, to) = (line(turn.movement.from)?, line(turn.movement.to)?);
             match turn.through.first() {
-                Some(&arc) => passage_on(network, turn, [from, line(arc)?, to], policy, job.params, reach),
+                Some(&arc) => {
+                    let over = (turn.movement, turn.through.as_slice());
+                    passage_on(network, over, [from, line(arc)?, to], policy, job.params, reach)
+                }
                 None => turn_on(network, turn.movement, [from, to], policy, job.params, reach),
             }
         };

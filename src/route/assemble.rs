@@ -8,9 +8,10 @@
 use std::ops::Range;
 
 use super::blend;
+use super::drive::{Drive, Join};
 use super::pieces::{Menu, Strokes, TurnPiece};
 use crate::corridor::{CentrelineError, Corridor, Frame, FrameError};
-use crate::network::{MovementKind, Movements, Network};
+use crate::network::{Movement, MovementKind, Movements, Network};
 use crate::osm::LonLat;
 use crate::turns::Joint;
 use crate::verdict::UnknownReason;
@@ -29,7 +30,7 @@ const LEAST_STATIONS: usize = 12;
 pub enum PartKind {
     /// Along an edge.
     Edge(u32),
-    /// From an edge into another.
+    /// From an edge into another: at a junction, or over a roundabout ([`passes_over`]).
     Turn {
         /// The edge one comes from.
         from: u32,
@@ -83,11 +84,19 @@ pub enum AssemblyError {
     Centreline(#[from] CentrelineError),
 }
 
+/// Whether it is a passage of a roundabout: the edge that one goes into does not start where the other one ends.
+#[must_use]
+pub fn passes_over(network: &Network, at: PartKind) -> bool {
+    let PartKind::Turn { from, to } = at else { return false };
+    let edge = |edge: u32| network.edges.get(edge as usize);
+    edge(from).zip(edge(to)).is_some_and(|(from, to)| from.to_node != to.from_node)
+}
+
 /// Which way, and where on its first and last edge it begins and ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Way<'w> {
-    /// In driving order.
-    pub edges: &'w [u32],
+    /// Its edges.
+    pub drive: &'w Drive,
     /// Of the first edge, behind: 0..=1.
     pub start: f64,
     /// Of the last edge, driven: 0..=1.
@@ -113,37 +122,33 @@ pub fn assemble(
     menu: &mut Menu<'_>,
     way: &Way<'_>,
 ) -> Result<RoutePath, AssemblyError> {
+    let edges = &way.drive.edges;
     let positions: Vec<LonLat> =
-        way.edges.iter().flat_map(|&edge| network.positions(&network.edges[edge as usize])).collect();
+        edges.iter().flat_map(|&edge| network.positions(&network.edges[edge as usize])).collect();
     let frame = Frame::around(&positions)?;
     frame.forward(&positions)?;
     let mut between = Vec::new();
     let mut legs = Vec::new();
-    let mut from = 0;
-    for i in 1..=way.edges.len() {
-        let turn = way.edges.get(i).map(|&to| (way.edges[i - 1], to));
-        let straight = turn.is_some_and(|(a, b)| {
-            movements.between(a, b).is_some_and(|movement| movement.kind == MovementKind::StraightOn)
-        });
-        if straight {
+    let mut first = 0;
+    for Join { from, arcs, to, at: next } in way.drive.joins() {
+        let at = PartKind::Turn { from, to };
+        let movement = movement(movements, from, arcs, to)
+            .ok_or(AssemblyError::Unknown { at, reason: UnknownReason::Geometry })?;
+        if movement.kind == MovementKind::StraightOn {
             continue;
         }
-        legs.push(from..i);
-        from = i;
-        if let Some((a, b)) = turn {
-            let at = PartKind::Turn { from: a, to: b };
-            let movement =
-                movements.between(a, b).ok_or(AssemblyError::Unknown { at, reason: UnknownReason::Geometry })?;
-            let piece = menu.chosen(strokes, movement).map_err(|reason| AssemblyError::Unknown { at, reason })?;
-            between.push(Between {
-                at,
-                spacing_m: piece.corridor.spacing_m,
-                samples: in_frame(&piece, frame)?,
-                approach: piece.approach,
-                departure: piece.departure,
-            });
-        }
+        legs.push(first..next - arcs.len());
+        first = next;
+        let piece = menu.chosen(strokes, &movement, arcs).map_err(|reason| AssemblyError::Unknown { at, reason })?;
+        between.push(Between {
+            at,
+            spacing_m: piece.corridor.spacing_m,
+            samples: in_frame(&piece, frame)?,
+            approach: piece.approach,
+            departure: piece.departure,
+        });
     }
+    legs.push(first..edges.len());
     let mut string = Strung::default();
     for (i, leg) in legs.iter().enumerate() {
         let before = i.checked_sub(1).and_then(|i| between.get(i));
@@ -153,6 +158,15 @@ pub fn assemble(
     }
     let finest_m = between.iter().map(|turn| turn.spacing_m).fold(SPACING_M, f64::min);
     string.finish(frame, finest_m.max(LEAST_SPACING_M))
+}
+
+/// From one edge into the next, or over the arcs between.
+fn movement(movements: &Movements, from: u32, arcs: &[u32], to: u32) -> Option<Movement> {
+    if arcs.is_empty() {
+        return movements.between(from, to).copied();
+    }
+    let passage = movements.passages().get(movements.passage(from, to)?)?;
+    Some(Movement { from, to, kind: MovementKind::Turn, forbidden: passage.forbidden })
 }
 
 /// A turn of the route, in the route's frame.
@@ -199,7 +213,7 @@ impl Leg {
         before: Option<&Between>,
         after: Option<&Between>,
     ) -> Result<Self, AssemblyError> {
-        let edges = &way.edges[range.clone()];
+        let edges = &way.drive.edges[range.clone()];
         let unknown = |edge: u32, reason| AssemblyError::Unknown { at: PartKind::Edge(edge), reason };
         let first_edge = edges.first().copied().unwrap_or_default();
         let (stroke, _) = strokes.of(first_edge).ok_or_else(|| unknown(first_edge, UnknownReason::Geometry))?;

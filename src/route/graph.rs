@@ -1,21 +1,25 @@
-//! The edge-based graph: states are edges driven to their end (and places in forbidden sequences), steps are movements.
+//! The edge-based graph: states are edges driven to their end (and places in forbidden sequences), steps are movements and
+//! passages of roundabouts.
 //!
 //! What a vehicle may use comes from outside as [`Access`], so that the same search answers what blocks as well.
 
 use super::bans::{Bans, Within};
 use super::speeds::{Measure, Speeds};
-use crate::network::{MovementKind, Movements, Network};
+use crate::network::{MovementKind, Movements, Network, Passage};
 
 /// Not to be used at any cost.
 pub const BARRED: u64 = u64::MAX;
 
-/// What using an edge or movement costs beside its own cost; [`BARRED`] where it may not be used.
+/// What using an edge, movement or passage costs beside its own cost; [`BARRED`] where it may not be used. A passage has a price of
+/// its own and asks for none of its arcs'.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Access {
     /// One an edge.
     pub edges: Vec<u64>,
     /// One a movement, in the order of [`Movements::all`].
     pub movements: Vec<u64>,
+    /// One a passage, in the order of [`Movements::passages`].
+    pub passages: Vec<u64>,
 }
 
 /// Everything that a search needs besides access.
@@ -32,6 +36,18 @@ pub struct Graph<'n> {
 
 /// An edge driven to its end: the index of the edge, or beyond all edges a node of the forbidden sequences.
 pub(super) type State = u32;
+
+/// No passage.
+pub(super) const NO_PASSAGE: u32 = u32::MAX;
+
+/// From the end of a state's edge to the beginning of the next one's.
+pub(super) struct Step {
+    pub(super) next: State,
+    /// Of movement or passage with all penalties, the next edge's among them, not that of the next edge itself.
+    pub(super) cost: u64,
+    /// Place in [`Movements::passages`], or [`NO_PASSAGE`].
+    pub(super) passage: u32,
+}
 
 impl<'n> Graph<'n> {
     /// With costs by `measure`.
@@ -62,7 +78,18 @@ impl<'n> Graph<'n> {
         Access {
             edges: vec![0; self.network.edges.len()],
             movements: self.movements.all().iter().map(movement).collect(),
+            passages: self
+                .movements
+                .passages()
+                .iter()
+                .map(|p| if p.forbidden.is_some() { BARRED } else { 0 })
+                .collect(),
         }
+    }
+
+    /// What a turn costs beside its edges.
+    pub(super) fn turn_cost(&self) -> u64 {
+        self.turn_cost
     }
 
     /// What a movement costs beside its edges.
@@ -92,26 +119,40 @@ impl<'n> Graph<'n> {
         if within == 0 { edge } else { self.network.edges.len() as u32 + within }
     }
 
-    /// Where one can go on to from the end of a state's edge: the movement's place, the next state, and the cost of the
-    /// movement with all penalties (not that of the edge itself).
-    pub(super) fn steps<'g>(
-        &'g self,
-        access: &'g Access,
-        state: State,
-    ) -> impl Iterator<Item = (usize, State, u64)> + 'g {
+    /// What a passage costs beside the edges before and after: its arcs, and onto the ring and off it a turn each.
+    pub(super) fn passage_cost(&self, passage: &Passage) -> u64 {
+        passage.through.iter().fold(2 * self.turn_cost, |sum, &arc| sum.saturating_add(self.cost(arc)))
+    }
+
+    /// The arcs of a passage; none of [`NO_PASSAGE`].
+    pub(super) fn arcs(&self, passage: u32) -> &'n [u32] {
+        self.movements.passages().get(passage as usize).map_or(&[], |passage| &passage.through)
+    }
+
+    /// Where one can go on to from the end of a state's edge.
+    pub(super) fn steps<'g>(&'g self, access: &'g Access, state: State) -> impl Iterator<Item = Step> + 'g {
         let edge = self.edge_of(state);
         let within = self.within(state);
         let first = self.movements.first(edge);
-        self.movements.after(edge).iter().enumerate().filter_map(move |(i, movement)| {
-            let place = first + i;
-            let by_movement = *access.movements.get(place)?;
-            let by_edge = *access.edges.get(movement.to as usize)?;
-            if by_movement == BARRED || by_edge == BARRED {
-                return None;
-            }
+        let movements = self.movements.after(edge).iter().enumerate().filter_map(move |(i, movement)| {
+            let price = price(access, access.movements.get(first + i), movement.to)?;
             let next = self.bans.after(within, movement.to)?;
-            let cost = self.movement_cost(movement.kind).saturating_add(by_movement).saturating_add(by_edge);
-            Some((place, self.state(movement.to, next), cost))
-        })
+            let cost = self.movement_cost(movement.kind).saturating_add(price);
+            Some(Step { next: self.state(movement.to, next), cost, passage: NO_PASSAGE })
+        });
+        let passages = self.movements.over(edge).filter_map(move |(place, passage)| {
+            let price = price(access, access.passages.get(place), passage.to)?;
+            let mut driven = passage.through.iter().chain([&passage.to]);
+            let next = driven.try_fold(within, |within, &edge| self.bans.after(within, edge))?;
+            let cost = self.passage_cost(passage).saturating_add(price);
+            Some(Step { next: self.state(passage.to, next), cost, passage: place as u32 })
+        });
+        movements.chain(passages)
     }
+}
+
+/// Of a step and of the edge that it leads to, `None` where either may not be used.
+fn price(access: &Access, step: Option<&u64>, to: u32) -> Option<u64> {
+    let (by_step, by_edge) = (*step?, *access.edges.get(to as usize)?);
+    (by_step != BARRED && by_edge != BARRED).then(|| by_step.saturating_add(by_edge))
 }

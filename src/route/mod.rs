@@ -9,20 +9,24 @@
 //! | `speeds` | what an edge costs |
 //! | `bans` | restrictions over ways, as an automaton |
 //! | `permits`, `stored` | what a vehicle may use |
-//! | `graph` | edges and movements as a graph |
+//! | `graph` | edges, movements and passages of roundabouts as a graph |
+//! | `drive` | the edges of a way, and which are driven as part of a passage |
 //! | `search` | the shortest way |
 //! | `snap` | from a place to the road |
 //! | `pieces` | strokes and turns that a corridor is made of |
 //! | `turning` | turns made as a route asks for them |
 //! | `assemble`, `blend` | from pieces to one corridor |
-//! | `plan` | search, certify, leave out, search on; alternatives; what blocks |
+//! | `plan` | search, certify, leave out, search on; alternatives |
+//! | `obstacles` | what blocks |
 //! | `report` | an answer as JSON and GeoJSON |
 //! | `reach` | where one can get to, and back |
 
 mod assemble;
 mod bans;
 mod blend;
+mod drive;
 mod graph;
+mod obstacles;
 mod permits;
 mod pieces;
 mod plan;
@@ -34,12 +38,14 @@ mod speeds;
 mod stored;
 mod turning;
 
-pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble};
+pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble, passes_over};
 pub use bans::{Bans, Within};
+pub use drive::{Drive, Join};
 pub use graph::{Access, BARRED, Graph};
+pub use obstacles::Obstacle;
 pub use permits::{Permit, Permits};
 pub use pieces::{Menu, NoTurns, Strokes, TurnPiece, Turns};
-pub use plan::{Answer, Obstacle, Planner, Question, Refutation, Route};
+pub use plan::{Answer, Planner, Question, Refutation, Route};
 pub use reach::{Components, Reach, components, reach, with_edge};
 pub use report::{PartResult, geojson, json, obstacle_members, place, title};
 pub use search::{Found, Goal, Start, search, search_over};

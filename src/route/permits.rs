@@ -31,35 +31,42 @@ pub struct Permits {
     pub edges: Vec<Permit>,
     /// One a movement, in the order of [`Movements::all`]; of those straight on nothing is asked.
     pub movements: Vec<Permit>,
+    /// One a passage of a roundabout, in the order of [`Movements::passages`].
+    pub passages: Vec<Permit>,
 }
 
 impl Permits {
-    /// With `turn` for every movement that is a turn; straight on is covered by the edges.
+    /// With `turn` for every movement that is a turn and for every passage; straight on is covered by the edges.
     pub fn new(edges: Vec<Permit>, movements: &Movements, turn: impl Fn(u32, u32) -> Permit) -> Self {
         let permit = |m: &crate::network::Movement| match m.kind {
             MovementKind::StraightOn => Permit::COVERED,
             MovementKind::Turn => turn(m.from, m.to),
             MovementKind::UTurn => Permit::UNKNOWN,
         };
-        Self { edges, movements: movements.all().iter().map(permit).collect() }
+        let passages = movements.passages().iter().map(|passage| turn(passage.from, passage.to)).collect();
+        Self { edges, movements: movements.all().iter().map(permit).collect(), passages }
     }
 
     /// What is safe may be used, and no restriction may be broken; nobody turns back on the road.
     #[must_use]
     pub fn access(&self, movements: &Movements) -> Access {
-        self.access_at(movements, BARRED)
+        self.access_at(movements, |_| BARRED)
     }
 
     /// The same, but what is not safe may be used at a price.
     #[must_use]
-    pub fn access_at(&self, movements: &Movements, price: u64) -> Access {
-        let cost = |permit: &Permit| if permit.safe() { 0 } else { price };
+    pub fn access_at(&self, movements: &Movements, price: impl Fn(&Permit) -> u64) -> Access {
+        let cost = |permit: &Permit| if permit.safe() { 0 } else { price(permit) };
         let movement = |(m, permit): (&crate::network::Movement, &Permit)| {
             if m.forbidden.is_some() || m.kind == MovementKind::UTurn { BARRED } else { cost(permit) }
+        };
+        let passage = |(p, permit): (&crate::network::Passage, &Permit)| {
+            if p.forbidden.is_some() { BARRED } else { cost(permit) }
         };
         Access {
             edges: self.edges.iter().map(cost).collect(),
             movements: movements.all().iter().zip(&self.movements).map(movement).collect(),
+            passages: movements.passages().iter().zip(&self.passages).map(passage).collect(),
         }
     }
 

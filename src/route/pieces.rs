@@ -28,11 +28,17 @@ pub struct TurnPiece {
 
 /// Where turns come from.
 pub trait Turns {
-    /// Ways to drive from one edge into another that are certified for the vehicle, the best first.
+    /// Ways to drive from one edge into another that are certified for the vehicle, the best first; over these arcs, where it is
+    /// a passage of a roundabout.
     ///
     /// # Errors
     /// There is none, and why.
-    fn pieces(&self, strokes: &mut Strokes<'_>, movement: &Movement) -> Result<Vec<TurnPiece>, UnknownReason>;
+    fn pieces(
+        &self,
+        strokes: &mut Strokes<'_>,
+        movement: &Movement,
+        arcs: &[u32],
+    ) -> Result<Vec<TurnPiece>, UnknownReason>;
 }
 
 /// The paths of a turn, the best first.
@@ -57,14 +63,19 @@ impl<'t> Menu<'t> {
         self.choice.clear();
     }
 
-    /// The path of a turn.
+    /// The path of a turn, or of a passage over these arcs.
     ///
     /// # Errors
     /// There is none, and why.
-    pub fn chosen(&mut self, strokes: &mut Strokes<'_>, movement: &Movement) -> Result<Rc<TurnPiece>, UnknownReason> {
+    pub fn chosen(
+        &mut self,
+        strokes: &mut Strokes<'_>,
+        movement: &Movement,
+        arcs: &[u32],
+    ) -> Result<Rc<TurnPiece>, UnknownReason> {
         let key = (movement.from, movement.to);
         let turns = self.turns;
-        let make = || Ok(turns.pieces(strokes, movement)?.into_iter().map(Rc::new).collect());
+        let make = || Ok(turns.pieces(strokes, movement, arcs)?.into_iter().map(Rc::new).collect());
         let made = self.made.entry(key).or_insert_with(make).as_ref().map_err(|reason| *reason)?;
         let choice = self.choice.get(&key).copied().unwrap_or(0);
         made.get(choice).cloned().ok_or(UnknownReason::Geometry)
@@ -84,7 +95,7 @@ impl<'t> Menu<'t> {
 pub struct NoTurns;
 
 impl Turns for NoTurns {
-    fn pieces(&self, _: &mut Strokes<'_>, _: &Movement) -> Result<Vec<TurnPiece>, UnknownReason> {
+    fn pieces(&self, _: &mut Strokes<'_>, _: &Movement, _: &[u32]) -> Result<Vec<TurnPiece>, UnknownReason> {
         Err(UnknownReason::Geometry)
     }
 }

@@ -3,22 +3,21 @@
 //! Promises: a route is returned only with a `safe` certificate over the whole of it. Where that fails though the parts
 //! passed, the turn nearest to the place that limits is driven on another of its paths, and when there is none left it is
 //! left out and the search goes on, so many times as asked; how
-//! often, and where, is part of the answer. What blocks is the cheapest set of failing places: as few as possible, then
-//! the shortest way over them.
+//! often, and where, is part of the answer. Where there is none left, what blocks is said (`obstacles`).
 
 use super::assemble::{AssemblyError, PartKind, RoutePath, Way, assemble};
+use super::drive::{Drive, Join};
 use super::graph::{Access, BARRED, Graph};
-use super::permits::{Permit, Permits};
+use super::obstacles::{self, Obstacle};
+use super::permits::Permits;
 use super::pieces::{Menu, Strokes, Turns};
 use super::search::{Found, Goal, Start, search_over};
 use super::snap::{Position, SnapError, Snapped, Snapper};
 use super::speeds::{Measure, Speeds};
 use crate::corridor::Corridor;
-use crate::network::Network;
+use crate::network::{MovementKind, Network};
 use crate::stet::{self, Certificate, Model};
 
-/// The price of a failing place where none may be used: more than any way on earth, less than what sums of it overflow.
-const PRICE: u64 = 1 << 44;
 /// A failure of the whole is put down to a turn at most this far from it, metres; else to the edge it is on.
 const TURN_REACH_M: f64 = 120.0;
 /// How much an alternative may share with the routes before it, by length.
@@ -44,8 +43,8 @@ pub struct Question {
 /// A certified route.
 #[derive(Debug, Clone)]
 pub struct Route {
-    /// In driving order.
-    pub edges: Vec<u32>,
+    /// Its edges.
+    pub drive: Drive,
     /// Of the first edge, behind.
     pub start: f64,
     /// Of the last edge, driven.
@@ -71,17 +70,6 @@ pub struct Refutation {
     pub result: Option<(f64, f64)>,
     /// Why, where there was nothing to certify.
     pub assembly: Option<AssemblyError>,
-}
-
-/// A place that would have to become safe.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Obstacle {
-    /// Edge or turn.
-    pub at: PartKind,
-    /// What is said of it by itself.
-    pub permit: Permit,
-    /// It passed by itself; the whole route failed there.
-    pub refuted: bool,
 }
 
 /// The answer.
@@ -159,7 +147,7 @@ impl<'n> Planner<'n> {
         let goals: Vec<Vec<Goal>> = places.iter().map(|place| place.on.clone()).collect();
         let found = search_over(&self.graph, access, &starts, &goals)?;
         let start = starts.get(found.start)?.share;
-        let last = found.edges.last()?;
+        let last = found.drive.edges.last()?;
         let end = places.last()?.on.iter().find(|goal| goal.edge == *last)?.share;
         Some((found, start, end))
     }
@@ -174,7 +162,7 @@ impl<'n> Planner<'n> {
     ) -> bool {
         loop {
             let Some((found, start, end)) = self.way(access, &answer.snapped) else { return false };
-            if !wanted(&found.edges) {
+            if !wanted(&found.drive.edges) {
                 return false;
             }
             if answer.refuted.len() > question.tries {
@@ -200,13 +188,13 @@ impl<'n> Planner<'n> {
     }
 
     fn certify(&mut self, found: Found, start: f64, end: f64) -> Result<Route, Refutation> {
-        let way = Way { edges: &found.edges, start, end };
+        let way = Way { drive: &found.drive, start, end };
         let network = self.graph.network;
         let path = assemble(network, self.graph.movements, &mut self.strokes, &mut self.menu, &way);
         let path = path.map_err(|error| Refutation {
             at: match &error {
                 AssemblyError::Unknown { at, .. } | AssemblyError::Overlap { at } => *at,
-                AssemblyError::Frame(_) | AssemblyError::Centreline(_) => first_turn(&found.edges),
+                AssemblyError::Frame(_) | AssemblyError::Centreline(_) => first_turn(&found.drive),
             },
             result: None,
             assembly: Some(error),
@@ -221,65 +209,28 @@ impl<'n> Planner<'n> {
         if !certificate.result.safe() {
             return Err(refuted(Some(&certificate)));
         }
-        let share = |i: usize| {
-            let from = if i == 0 { start } else { 0.0 };
-            let to = if i + 1 == found.edges.len() { end } else { 1.0 };
-            to - from
+        let time = |(share, edge): (f64, u32)| {
+            share * self.speeds.cost(network, &network.edges[edge as usize], Measure::Time) as f64
         };
-        let time = |(i, &edge): (usize, &u32)| {
-            share(i) * self.speeds.cost(network, &network.edges[edge as usize], Measure::Time) as f64
-        };
-        let turns = path.parts.iter().filter(|part| matches!(part.kind, PartKind::Turn { .. })).count() as u64;
-        let driven: f64 = found.edges.iter().enumerate().map(time).sum();
-        let time_s = 1e-3 * (driven + (turns * self.speeds.turn_cost(Measure::Time)) as f64);
+        let driven: f64 = shares(&found.drive, start, end).map(time).sum();
+        let turns = turns(&self.graph, &found.drive) * self.speeds.turn_cost(Measure::Time);
+        let time_s = 1e-3 * (driven + turns as f64);
         let length_m = (path.corridor.len() - 1) as f64 * path.corridor.spacing_m;
-        Ok(Route { edges: found.edges, start, end, cost: found.cost, time_s, length_m, path, certificate })
+        Ok(Route { drive: found.drive, start, end, cost: found.cost, time_s, length_m, path, certificate })
     }
 
     /// Whether there was something to leave out.
     fn leave_out(&self, access: &mut Access, at: PartKind) -> bool {
-        let slot = match at {
-            PartKind::Edge(edge) => access.edges.get_mut(edge as usize),
-            PartKind::Turn { from, to } => {
-                self.graph.movements.index(from, to).and_then(|place| access.movements.get_mut(place))
-            }
-        };
+        let slot = obstacles::slot(access, self.graph.movements, at);
         slot.is_some_and(|slot| std::mem::replace(slot, BARRED) != BARRED)
     }
 
     /// The cheapest set of failing places between the places asked for.
     fn obstacles(&self, answer: &Answer) -> Option<Vec<Obstacle>> {
-        let mut access = self.permits.access_at(self.graph.movements, PRICE);
-        for refutation in &answer.refuted {
-            self.price(&mut access, refutation.at);
-        }
+        let (permits, movements) = (self.permits, self.graph.movements);
+        let mut access = obstacles::priced(permits, movements, &answer.refuted);
         let (found, ..) = self.way(&access, &answer.snapped)?;
-        let mut obstacles = Vec::new();
-        for (i, &edge) in found.edges.iter().enumerate() {
-            let turn = i.checked_sub(1).map(|i| found.edges[i]).and_then(|from| {
-                let place = self.graph.movements.index(from, edge)?;
-                (access.movements[place] > 0)
-                    .then(|| (PartKind::Turn { from, to: edge }, self.permits.movements[place]))
-            });
-            let edge =
-                (access.edges[edge as usize] > 0).then(|| (PartKind::Edge(edge), self.permits.edges[edge as usize]));
-            for (at, permit) in turn.into_iter().chain(edge) {
-                let refuted = answer.refuted.iter().any(|refutation| refutation.at == at);
-                obstacles.push(Obstacle { at, permit, refuted });
-            }
-        }
-        Some(obstacles)
-    }
-
-    fn price(&self, access: &mut Access, at: PartKind) {
-        match at {
-            PartKind::Edge(edge) => access.edges[edge as usize] = PRICE,
-            PartKind::Turn { from, to } => {
-                if let Some(place) = self.graph.movements.index(from, to).filter(|&p| access.movements[p] != BARRED) {
-                    access.movements[place] = PRICE;
-                }
-            }
-        }
+        Some(obstacles::on(&found.drive, permits, movements, &mut access, &answer.refuted))
     }
 
     /// Adds routes that differ: what the ones before use is made dearer until something else is shorter.
@@ -290,14 +241,14 @@ impl<'n> Planner<'n> {
         while answer.routes.len() <= question.alternatives && rounds > 0 && !answer.gave_up {
             rounds -= 1;
             for route in &answer.routes {
-                for &edge in &route.edges {
+                for &edge in &route.drive.edges {
                     let slot = &mut access.edges[edge as usize];
                     if *slot != BARRED {
                         *slot += self.graph.cost(edge) / 2;
                     }
                 }
             }
-            let known: Vec<Vec<u32>> = answer.routes.iter().map(|route| route.edges.clone()).collect();
+            let known: Vec<Vec<u32>> = answer.routes.iter().map(|route| route.drive.edges.clone()).collect();
             let network = self.network();
             let longest = (first_cost as f64 * MOST_LONGER) as u64;
             let costs: Vec<u64> = (0..network.edges.len() as u32).map(|edge| self.graph.cost(edge)).collect();
@@ -321,22 +272,32 @@ impl<'n> Planner<'n> {
 
 /// What a route costs without what was put on it to find others.
 fn costs_of(graph: &Graph<'_>, route: &Route) -> u64 {
-    let last = route.edges.len() - 1;
-    let edges = route.edges.iter().enumerate().map(|(i, &edge)| {
-        let from = if i == 0 { route.start } else { 0.0 };
-        let to = if i == last { route.end } else { 1.0 };
-        graph.part_cost(edge, to - from)
-    });
-    let turn = |pair: &[u32]| graph.movements.between(pair[0], pair[1]).map_or(0, |m| graph.movement_cost(m.kind));
-    edges.sum::<u64>() + route.edges.windows(2).map(turn).sum::<u64>()
+    let edges = shares(&route.drive, route.start, route.end).map(|(share, edge)| graph.part_cost(edge, share));
+    edges.sum::<u64>() + turns(graph, &route.drive) * graph.turn_cost()
 }
 
-fn first_turn(edges: &[u32]) -> PartKind {
-    match edges {
-        [from, to, ..] => PartKind::Turn { from: *from, to: *to },
-        [edge] => PartKind::Edge(*edge),
-        [] => PartKind::Edge(0),
-    }
+/// How much of each edge is driven, of a way that begins and ends so far along its first and last one.
+fn shares(drive: &Drive, start: f64, end: f64) -> impl Iterator<Item = (f64, u32)> {
+    let last = drive.edges.len() - 1;
+    drive.edges.iter().enumerate().map(move |(i, &edge)| {
+        let from = if i == 0 { start } else { 0.0 };
+        let to = if i == last { end } else { 1.0 };
+        (to - from, edge)
+    })
+}
+
+/// Turns of a way; a passage is two.
+fn turns(graph: &Graph<'_>, drive: &Drive) -> u64 {
+    let count = |join: Join<'_>| match graph.movements.between(join.from, join.to) {
+        Some(movement) => u64::from(movement.kind != MovementKind::StraightOn),
+        None => 2,
+    };
+    drive.joins().map(count).sum()
+}
+
+fn first_turn(drive: &Drive) -> PartKind {
+    let first = drive.joins().next().map(|join| PartKind::Turn { from: join.from, to: join.to });
+    first.unwrap_or(PartKind::Edge(drive.edges.first().copied().unwrap_or_default()))
 }
 
 /// What to leave out where a whole route fails: the turn nearest to the place, or the edge it is on.

@@ -9,7 +9,7 @@ use crate::network::MovementKind;
 /// What can be reached.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reach {
-    /// By edge: some way leads there.
+    /// By edge: some way leads there. Arcs that are driven as part of a passage only are not reached by themselves.
     pub there: Vec<bool>,
     /// By edge: and from there back to the beginning.
     pub and_back: Vec<bool>,
@@ -31,9 +31,9 @@ pub fn reach(graph: &Graph<'_>, access: &Access, starts: &[u32]) -> Reach {
     let first: Vec<State> = starts.iter().filter(usable).filter_map(|&edge| graph.first(edge)).collect();
     let mut steps: Vec<(State, State)> = Vec::new();
     let seen = flood(graph.states(), &first, |state, visit| {
-        for (_, next, _) in graph.steps(access, state) {
-            steps.push((next, state));
-            visit(next);
+        for step in graph.steps(access, state) {
+            steps.push((step.next, state));
+            visit(step.next);
         }
     });
     steps.sort_unstable();
@@ -71,7 +71,7 @@ fn flood(states: usize, first: &[State], mut step: impl FnMut(State, &mut dyn Fn
     seen
 }
 
-/// The access that a vehicle would have if an edge, and every lawful turn into and out of it, were safe.
+/// The access that a vehicle would have if an edge, and every lawful turn and passage into and out of it, were safe.
 #[must_use]
 pub fn with_edge(graph: &Graph<'_>, access: &Access, edge: u32) -> Access {
     let mut opened = access.clone();
@@ -81,6 +81,11 @@ pub fn with_edge(graph: &Graph<'_>, access: &Access, edge: u32) -> Access {
     for (slot, movement) in opened.movements.iter_mut().zip(graph.movements.all()) {
         let touches = movement.from == edge || movement.to == edge;
         if touches && movement.kind != MovementKind::UTurn && movement.forbidden.is_none() {
+            *slot = 0;
+        }
+    }
+    for (slot, passage) in opened.passages.iter_mut().zip(graph.movements.passages()) {
+        if (passage.from == edge || passage.to == edge) && passage.forbidden.is_none() {
             *slot = 0;
         }
     }
@@ -95,9 +100,11 @@ pub fn components(graph: &Graph<'_>, access: &Access) -> Components {
     let usable = |edge: u32| access.edges[edge as usize] != BARRED;
     let next = |edge: u32| {
         let first = graph.movements.first(edge);
-        graph.movements.after(edge).iter().enumerate().filter_map(move |(i, movement)| {
+        let movements = graph.movements.after(edge).iter().enumerate().filter_map(move |(i, movement)| {
             (access.movements[first + i] != BARRED && usable(movement.to)).then_some(movement.to)
-        })
+        });
+        let open = move |place: usize, to: u32| access.passages[place] != BARRED && usable(to);
+        movements.chain(graph.movements.over(edge).filter_map(move |(place, p)| open(place, p.to).then_some(p.to)))
     };
     const NEW: u32 = u32::MAX;
     let (mut number, mut low, mut on_stack) = (vec![NEW; edges], vec![0_u32; edges], vec![false; edges]);

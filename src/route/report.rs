@@ -2,8 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::assemble::PartKind;
-use super::plan::{Answer, Obstacle, Refutation, Route};
+use super::assemble::{PartKind, passes_over};
+use super::obstacles::Obstacle;
+use super::plan::{Answer, Refutation, Route};
 use crate::corridor::FrameError;
 use crate::network::{Edge, Network};
 use crate::stet::Model;
@@ -59,12 +60,16 @@ impl Route {
     }
 }
 
-/// What an edge or turn is called: `A87 Great Inland Highway`, `Main Street into High Street`.
+/// What an edge, turn or passage is called: `A87 Great Inland Highway`, `Main Street into High Street`, `Main Street over the
+/// roundabout into High Street`.
 #[must_use]
 pub fn title(network: &Network, at: PartKind) -> String {
     let of = |edge: u32| network.edges.get(edge as usize).map_or_else(String::new, |edge| road_title(network, edge));
     match at {
         PartKind::Edge(edge) => of(edge),
+        PartKind::Turn { from, to } if passes_over(network, at) => {
+            format!("{} over the roundabout into {}", of(from), of(to))
+        }
         PartKind::Turn { from, to } => format!("{} into {}", of(from), of(to)),
     }
 }
@@ -76,7 +81,7 @@ fn road_title(network: &Network, edge: &Edge) -> String {
     if texts.is_empty() { format!("way {}", road.way_id) } else { texts.join(" ") }
 }
 
-/// Longitude and latitude of an edge's middle vertex or of a turn's node, degrees.
+/// Longitude and latitude of an edge's middle vertex, or of the node where a turn or passage begins, degrees.
 #[must_use]
 pub fn place(network: &Network, at: PartKind) -> Option<[f64; 2]> {
     let (edge, last) = match at {
@@ -94,7 +99,8 @@ fn ids(network: &Network, at: PartKind) -> Value {
     match at {
         PartKind::Edge(edge) => json!({"kind": "edge", "edge_id": id(edge), "title": title(network, at)}),
         PartKind::Turn { from, to } => {
-            json!({"kind": "turn", "from_edge": id(from), "to_edge": id(to), "title": title(network, at)})
+            let kind = if passes_over(network, at) { "roundabout" } else { "turn" };
+            json!({"kind": kind, "from_edge": id(from), "to_edge": id(to), "title": title(network, at)})
         }
     }
 }
@@ -136,6 +142,7 @@ pub fn obstacle_members(network: &Network, obstacle: &Obstacle) -> Value {
         "verdict": if obstacle.refuted { "refuted" } else { verdict },
         "reason": (!reason.is_empty()).then_some(reason),
         "rsc_m": obstacle.permit.rsc_m,
+        "missing_m": obstacle.missing_m,
         "place": place(network, obstacle.at),
     });
     with(ids(network, obstacle.at), own)

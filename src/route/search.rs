@@ -5,7 +5,8 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::graph::{Access, BARRED, Graph, State};
+use super::drive::Drive;
+use super::graph::{Access, BARRED, Graph, NO_PASSAGE, State};
 
 /// Where a way may begin.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,8 +45,8 @@ pub struct Found {
     pub start: usize,
     /// Cost to the goal.
     pub cost: u64,
-    /// In driving order, the start's and the goal's among them.
-    pub edges: Vec<u32>,
+    /// The start's and the goal's edge among them.
+    pub drive: Drive,
     /// At the goal.
     pub(super) state: State,
 }
@@ -72,6 +73,17 @@ struct End {
     before: State,
     at: State,
     start: usize,
+    /// How it came onto the goal's edge.
+    passage: u32,
+}
+
+/// The best way to the end of a state's edge.
+#[derive(Debug, Clone, Copy)]
+struct Reached {
+    cost: u64,
+    before: State,
+    start: u32,
+    passage: u32,
 }
 
 struct Search<'g> {
@@ -79,14 +91,14 @@ struct Search<'g> {
     access: &'g Access,
     goals: &'g [Goal],
     best: Vec<Option<End>>,
-    /// By state: cost to its end, the state before, and the start.
-    reached: Vec<(u64, State, u32)>,
+    /// By state.
+    reached: Vec<Reached>,
     queue: BinaryHeap<Reverse<(u64, State)>>,
 }
 
 impl<'g> Search<'g> {
     fn new(graph: &'g Graph<'_>, access: &'g Access, goals: &'g [Goal]) -> Self {
-        let reached = vec![(BARRED, NONE, NONE); graph.states()];
+        let reached = vec![Reached { cost: BARRED, before: NONE, start: NONE, passage: NO_PASSAGE }; graph.states()];
         Self { graph, access, goals, best: vec![None; goals.len()], reached, queue: BinaryHeap::new() }
     }
 
@@ -100,16 +112,17 @@ impl<'g> Search<'g> {
         for (goal, best) in self.goals.iter().zip(&mut self.best) {
             if goal.edge == start.edge && goal.share >= start.share {
                 let on = self.graph.part_cost(goal.edge, goal.share - start.share);
-                take(best, End { cost: cost + on, before: NONE, at: state, start: number });
+                take(best, End { cost: cost + on, before: NONE, at: state, start: number, passage: NO_PASSAGE });
             }
         }
         let rest = self.graph.part_cost(start.edge, 1.0 - start.share);
-        self.reach(state, cost.saturating_add(rest), NONE, number as u32);
+        let cost = cost.saturating_add(rest);
+        self.reach(state, Reached { cost, before: NONE, start: number as u32, passage: NO_PASSAGE });
     }
 
     fn run(&mut self, any: bool) {
         while let Some(Reverse((cost, state))) = self.queue.pop() {
-            let (known, _, start) = self.reached[state as usize];
+            let Reached { cost: known, start, .. } = self.reached[state as usize];
             if cost > known {
                 continue;
             }
@@ -118,38 +131,48 @@ impl<'g> Search<'g> {
             if limit.is_some_and(|limit| cost > limit) {
                 return;
             }
-            for (_, next, step) in self.graph.steps(self.access, state) {
-                let edge = self.graph.edge_of(next);
-                let at = cost.saturating_add(step);
+            let (graph, access) = (self.graph, self.access);
+            for step in graph.steps(access, state) {
+                let (edge, passage) = (graph.edge_of(step.next), step.passage);
+                let at = cost.saturating_add(step.cost);
                 for (goal, best) in self.goals.iter().zip(&mut self.best).filter(|(goal, _)| goal.edge == edge) {
-                    let on = self.graph.part_cost(edge, goal.share);
-                    take(best, End { cost: at.saturating_add(on), before: state, at: next, start: start as usize });
+                    let cost = at.saturating_add(graph.part_cost(edge, goal.share));
+                    take(best, End { cost, before: state, at: step.next, start: start as usize, passage });
                 }
-                let cost = at.saturating_add(self.graph.cost(edge));
-                if cost < self.reached[next as usize].0 {
-                    self.reached[next as usize] = (cost, state, start);
-                    self.queue.push(Reverse((cost, next)));
-                }
+                let cost = at.saturating_add(graph.cost(edge));
+                self.reach(step.next, Reached { cost, before: state, start, passage });
             }
         }
     }
 
-    fn reach(&mut self, state: State, cost: u64, before: State, start: u32) {
-        if cost < self.reached[state as usize].0 {
-            self.reached[state as usize] = (cost, before, start);
-            self.queue.push(Reverse((cost, state)));
+    /// Of ways that cost the same the one found first: over a roundabout, its passage.
+    fn reach(&mut self, state: State, by: Reached) {
+        if by.cost < self.reached[state as usize].cost {
+            self.reached[state as usize] = by;
+            self.queue.push(Reverse((by.cost, state)));
         }
     }
 
     fn found(&self, end: &End) -> Found {
-        let mut edges = vec![self.graph.edge_of(end.at)];
-        let mut state = end.before;
-        while state != NONE {
-            edges.push(self.graph.edge_of(state));
-            state = self.reached[state as usize].1;
+        let mut drive = Drive::default();
+        let (mut state, mut before, mut passage) = (end.at, end.before, end.passage);
+        loop {
+            drive.edges.push(self.graph.edge_of(state));
+            if before == NONE {
+                break;
+            }
+            let arcs = self.graph.arcs(passage);
+            if !arcs.is_empty() {
+                drive.over.push(drive.edges.len()..drive.edges.len() + arcs.len());
+                drive.edges.extend(arcs.iter().rev());
+            }
+            state = before;
+            Reached { before, passage, .. } = self.reached[state as usize];
         }
-        edges.reverse();
-        Found { start: end.start, cost: end.cost, edges, state: end.at }
+        let count = drive.edges.len();
+        drive.edges.reverse();
+        drive.over = drive.over.into_iter().rev().map(|arcs| count - arcs.end..count - arcs.start).collect();
+        Found { start: end.start, cost: end.cost, drive, state: end.at }
     }
 }
 
@@ -164,7 +187,7 @@ fn take(best: &mut Option<End>, end: End) {
 #[must_use]
 pub fn search_over(graph: &Graph<'_>, access: &Access, starts: &[Start], places: &[Vec<Goal>]) -> Option<Found> {
     let mut starts = starts.to_vec();
-    let mut ways: Vec<Vec<u32>> = vec![Vec::new(); starts.len()];
+    let mut ways: Vec<Drive> = vec![Drive::default(); starts.len()];
     let mut first: Vec<usize> = (0..starts.len()).collect();
     for (leg, goals) in places.iter().enumerate() {
         let last = leg + 1 == places.len();
@@ -172,8 +195,8 @@ pub fn search_over(graph: &Graph<'_>, access: &Access, starts: &[Start], places:
         let mut next = Vec::new();
         for (goal, found) in goals.iter().zip(found) {
             let Some(found) = found else { continue };
-            let mut edges = ways[found.start].clone();
-            edges.extend(&found.edges[usize::from(!edges.is_empty())..]);
+            let mut drive = ways[found.start].clone();
+            drive.go_on(&found.drive);
             // The penalty of the edge itself was counted on the way to the place.
             let paid = access.edges[goal.edge as usize];
             let start = Start {
@@ -182,15 +205,15 @@ pub fn search_over(graph: &Graph<'_>, access: &Access, starts: &[Start], places:
                 cost: found.cost.saturating_sub(paid),
                 state: Some(found.state),
             };
-            next.push((start, edges, first[found.start], found));
+            next.push((start, drive, first[found.start], found));
         }
         if last {
-            let (_, edges, start, found) = next.into_iter().min_by_key(|(.., found)| found.cost)?;
-            return Some(Found { start, edges, ..found });
+            let (_, drive, start, found) = next.into_iter().min_by_key(|(.., found)| found.cost)?;
+            return Some(Found { start, drive, ..found });
         }
         starts = next.iter().map(|(start, ..)| *start).collect();
         first = next.iter().map(|(_, _, first, _)| *first).collect();
-        ways = next.into_iter().map(|(_, edges, ..)| edges).collect();
+        ways = next.into_iter().map(|(_, drive, ..)| drive).collect();
     }
     None
 }

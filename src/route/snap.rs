@@ -1,18 +1,16 @@
 //! From a place to the edges that pass it: the nearest ones that may be used, within a stated distance.
 //!
-//! Distances are on a local plane, right to 1 % within some kilometres; a place on the far side of the antimeridian from its
-//! road is not found.
+//! Distances are the network's, on a sphere that is locally flat; a place on the far side of the antimeridian from its road is not
+//! found.
 
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
 use super::search::Goal;
-use crate::network::Network;
+use crate::network::{EARTH_RADIUS_M, Network, offset_m};
 use crate::osm::LonLat;
 use crate::osm::facts::Direction;
 
-/// Metres a degree of latitude (mean).
-const DEGREE_M: f64 = 111_195.0;
 /// So far a road is looked for, to say how far the nearest one is, metres.
 const FARTHEST_M: f64 = 200_000.0;
 
@@ -23,6 +21,14 @@ pub struct Position {
     pub lon: f64,
     /// −90..=90.
     pub lat: f64,
+}
+
+impl From<Position> for LonLat {
+    /// To 1e-7 degree.
+    fn from(place: Position) -> Self {
+        let e7 = |degrees: f64| (degrees * 1e7).round() as i32;
+        Self { lon_e7: e7(place.lon), lat_e7: e7(place.lat) }
+    }
 }
 
 /// A place on edges: the same point of the road in every direction that may be used.
@@ -123,13 +129,15 @@ impl<'n> Snapper<'n> {
 
     fn nearest_within(&self, place: Position, reach_m: f64, usable: &impl Fn(u32) -> bool) -> Option<Snapped> {
         let cos = place.lat.to_radians().cos().max(0.01);
-        let (dx, dy) = (reach_m / (DEGREE_M * cos), reach_m / DEGREE_M);
+        let dy = (reach_m / EARTH_RADIUS_M).to_degrees();
+        let dx = dy / cos;
+        let here = LonLat::from(place);
         let around = AABB::from_corners([place.lon - dx, place.lat - dy], [place.lon + dx, place.lat + dy]);
         let mut best: Option<(f64, u32, u32, f64)> = None;
         for segment in self.tree.locate_in_envelope_intersecting(&around) {
             let (edge, vertex) = segment.data;
             let shape = &self.network.shapes[self.network.edges[edge as usize].shape.start as usize..];
-            let ends = [0, 1].map(|i| plane(place, shape[vertex as usize + i], cos));
+            let ends = [0, 1].map(|i| offset_m(here, shape[vertex as usize + i]));
             let (distance_m, along) = foot(ends);
             let better = best.is_none_or(|(d, e, v, _)| (distance_m, edge, vertex) < (d, e, v));
             if distance_m <= reach_m && better && self.directions(edge).iter().any(|&e| usable(e)) {
@@ -145,14 +153,11 @@ impl<'n> Snapper<'n> {
         let shape = &self.network.shapes[facts.shape.start as usize..facts.shape.end as usize];
         let origin = shape[vertex as usize].degrees();
         let origin = Position { lon: origin.0, lat: origin.1 };
-        let cos = origin.lat.to_radians().cos().max(0.01);
-        let lengths: Vec<f64> = shape
-            .windows(2)
-            .map(|pair| {
-                let [a, b] = [plane(origin, pair[0], cos), plane(origin, pair[1], cos)];
-                (b[0] - a[0]).hypot(b[1] - a[1])
-            })
-            .collect();
+        let length_m = |pair: &[LonLat]| {
+            let [east, north] = offset_m(pair[0], pair[1]);
+            east.hypot(north)
+        };
+        let lengths: Vec<f64> = shape.windows(2).map(length_m).collect();
         let before: f64 = lengths[..vertex as usize].iter().sum::<f64>() + along * lengths[vertex as usize];
         let share = (before / lengths.iter().sum::<f64>().max(1e-9)).clamp(0.0, 1.0);
         let on = |&edge: &u32| {
@@ -172,12 +177,6 @@ impl<'n> Snapper<'n> {
         let twins = self.twins[start..].iter().take_while(|twin| twin.0 == first);
         std::iter::once(first).chain(twins.map(|twin| twin.1)).collect()
     }
-}
-
-/// Metres east and north of `origin`.
-fn plane(origin: Position, place: LonLat, cos: f64) -> [f64; 2] {
-    let (lon, lat) = place.degrees();
-    [(lon - origin.lon) * DEGREE_M * cos, (lat - origin.lat) * DEGREE_M]
 }
 
 /// The distance of the origin from a segment, and the foot's share of it.

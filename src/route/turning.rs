@@ -3,13 +3,13 @@
 use super::pieces::{Strokes, TurnPiece, Turns};
 use crate::network::Movement;
 use crate::osm::facts::Policy;
-use crate::stet::{Model, Options, certify_spans};
-use crate::turns::{Reach, TurnParams, nominal_leeway_m, turn_on};
+use crate::pipeline::best_of;
+use crate::stet::{Model, Options, SpanResult, certify_spans};
+use crate::turns::{Reach, TurnCorridors, TurnParams, TurnPath, nominal_leeway_m, passage_on, turn_on};
 use crate::verdict::UnknownReason;
 
-/// Paths of a turn that get a certificate, at most: those with most room by themselves. The pipeline tries fewer; what it
-/// found safe is among them.
-const TRIED: usize = 6;
+/// Paths of a turn that are tried beside the one that its permit rests on: those with most room by themselves.
+const MORE: usize = 5;
 
 /// Turns made as a route asks for them.
 #[derive(Debug, Clone)]
@@ -25,25 +25,54 @@ pub struct MadeTurns<'m> {
 }
 
 impl Turns for MadeTurns<'_> {
-    fn pieces(&self, strokes: &mut Strokes<'_>, movement: &Movement) -> Result<Vec<TurnPiece>, UnknownReason> {
-        let vehicle = &self.model.vehicle;
-        let reach = Reach::of(vehicle).ok_or(UnknownReason::Geometry)?;
-        let lines = [strokes.line_of(movement.from)?, strokes.line_of(movement.to)?];
-        let network = strokes.network();
-        let made = turn_on(network, *movement, [&lines[0], &lines[1]], self.policy, &self.params, reach)?;
-        let mut ranked: Vec<_> = made.paths.into_iter().map(|path| (nominal_leeway_m(&path, vehicle), path)).collect();
+    fn pieces(
+        &self,
+        strokes: &mut Strokes<'_>,
+        movement: &Movement,
+        arcs: &[u32],
+    ) -> Result<Vec<TurnPiece>, UnknownReason> {
+        let made = self.made(strokes, movement, arcs)?;
+        let known = best_of(&made.paths, &[self.model], &self.options).pop().flatten();
+        let known = known.filter(|(_, result)| result.safe());
+        let mut ranked: Vec<(f64, usize)> = (0..made.paths.len())
+            .filter(|&path| known.as_ref().is_none_or(|(known, _)| *known != path))
+            .map(|path| (nominal_leeway_m(&made.paths[path], &self.model.vehicle), path))
+            .collect();
         // Paths come in the order of their numbers; the sort keeps it among equals.
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut safe = Vec::new();
-        for (_, path) in ranked.into_iter().take(TRIED) {
-            let rows = certify_spans(&path.corridor, &[self.model], std::slice::from_ref(&path.counted), &self.options);
-            let result = rows.into_iter().next().and_then(|row| row.spans.into_iter().next());
-            let Some(result) = result.filter(crate::stet::SpanResult::safe) else { continue };
-            let (approach, departure) = (path.approach, path.departure);
-            let piece = TurnPiece { frame: made.frame, corridor: path.corridor, turn: path.turn, approach, departure };
-            safe.push((result.rsc_m, piece));
+        let others = ranked.into_iter().take(MORE).filter_map(|(_, path)| Some((path, self.safe(&made.paths[path])?)));
+        let mut safe: Vec<(usize, SpanResult)> = known.into_iter().chain(others).collect();
+        safe.sort_by(|a, b| b.1.rsc_m.total_cmp(&a.1.rsc_m));
+        let frame = made.frame;
+        let piece = |path: &TurnPath| {
+            let TurnPath { corridor, turn, approach, departure, .. } = path.clone();
+            TurnPiece { frame, corridor, turn, approach, departure }
+        };
+        Ok(safe.into_iter().map(|(path, _)| piece(&made.paths[path])).collect())
+    }
+}
+
+impl MadeTurns<'_> {
+    fn made(
+        &self,
+        strokes: &mut Strokes<'_>,
+        movement: &Movement,
+        arcs: &[u32],
+    ) -> Result<TurnCorridors, UnknownReason> {
+        let reach = Reach::of(&self.model.vehicle).ok_or(UnknownReason::Geometry)?;
+        let (from, to) = (strokes.line_of(movement.from)?, strokes.line_of(movement.to)?);
+        let network = strokes.network();
+        match arcs.first() {
+            Some(&arc) => {
+                let ring = strokes.line_of(arc)?;
+                passage_on(network, (*movement, arcs), [&from, &ring, &to], self.policy, &self.params, reach)
+            }
+            None => turn_on(network, *movement, [&from, &to], self.policy, &self.params, reach),
         }
-        safe.sort_by(|a, b| b.0.total_cmp(&a.0));
-        Ok(safe.into_iter().map(|(_, piece)| piece).collect())
+    }
+
+    fn safe(&self, path: &TurnPath) -> Option<SpanResult> {
+        let rows = certify_spans(&path.corridor, &[self.model], std::slice::from_ref(&path.counted), &self.options);
+        rows.into_iter().next()?.spans.into_iter().next().filter(SpanResult::safe)
     }
 }

@@ -184,7 +184,8 @@ pub fn corridors_of(
     params: &TurnParams,
     reach: Reach,
 ) -> Result<TurnCorridors, UnknownReason> {
-    let Some(&arc) = turn.through.first() else {
+    let TurnFacts { movement, through, .. } = turn;
+    let Some(&arc) = through.first() else {
         return turn_corridors(network, turn.movement, policy, params, reach);
     };
     let line = |edge: u32| {
@@ -192,10 +193,11 @@ pub fn corridors_of(
         StrokeLine::new(network, stroke, policy, &params.corridor)
     };
     let lines = [line(turn.movement.from)?, line(arc)?, line(turn.movement.to)?];
-    passage_on(network, turn, lines.each_ref(), policy, params, reach)
+    passage_on(network, (*movement, through), lines.each_ref(), policy, params, reach)
 }
 
-/// A roundabout entered, circulated and left as one movement: `lines` are those of the strokes of `from`, the ring and `to`.
+/// A roundabout entered, circulated over some arcs and left as one movement: `lines` are those of the strokes of `from`, the ring and
+/// `to`.
 ///
 /// Joints, frame and stations are as those of a turn, so that a route strings it in the same way.
 ///
@@ -203,13 +205,13 @@ pub fn corridors_of(
 /// One of its edges or arcs has no corridor; the ring is too small to have any.
 pub fn passage_on(
     network: &Network,
-    turn: &TurnFacts,
+    over: (Movement, &[u32]),
     lines: [&StrokeLine; 3],
     policy: Policy,
     params: &TurnParams,
     reach: Reach,
 ) -> Result<TurnCorridors, UnknownReason> {
-    roundabout::Passage::new(network, turn, lines, policy, params, reach)?.corridors()
+    roundabout::Passage::new(network, over, lines, policy, params, reach)?.corridors()
 }
 
 /// The stroke that an edge belongs to.

@@ -11,7 +11,7 @@ use super::arm::{Arm, StrokeLine};
 use super::family::{Candidate, Ends, FEW_NUMBERS, Junction};
 use super::path::STEP_M;
 use super::rays::Boundary;
-use super::{Reach, TurnCorridors, TurnFacts, TurnParams};
+use super::{Reach, TurnCorridors, TurnParams};
 use crate::corridor::Frame;
 use crate::network::{Movement, MovementKind, Network};
 use crate::osm::facts::Policy;
@@ -37,17 +37,17 @@ pub(super) struct Passage {
 impl Passage {
     pub(super) fn new(
         network: &Network,
-        turn: &TurnFacts,
+        (movement, through): (Movement, &[u32]),
         [from, ring, to]: [&StrokeLine; 3],
         policy: Policy,
         params: &TurnParams,
         reach: Reach,
     ) -> Result<Self, UnknownReason> {
-        let (Some(&first), Some(&last)) = (turn.through.first(), turn.through.last()) else {
+        let (Some(&first), Some(&last)) = (through.first(), through.last()) else {
             return Err(UnknownReason::Geometry);
         };
         let place = |arc: u32| ring.made.spans.iter().position(|s| s.edge == arc).ok_or(UnknownReason::Geometry);
-        for &arc in &turn.through {
+        for &arc in through {
             if let Some(reason) = ring.made.spans[place(arc)?].unknown {
                 return Err(reason);
             }
@@ -58,8 +58,8 @@ impl Passage {
             Junction::new(network, movement, lines, frame, policy, params, reach)
         };
         Ok(Self {
-            entry: junction(turn.movement.from, first, [from, ring])?,
-            exit: junction(last, turn.movement.to, [ring, to])?,
+            entry: junction(movement.from, first, [from, ring])?,
+            exit: junction(last, movement.to, [ring, to])?,
             beyond: place(last)? < place(first)?,
             ring: Ring::new(ring, frame)?,
             strokes: [from.stroke, to.stroke],

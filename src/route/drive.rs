@@ -1,0 +1,68 @@
+//! The edges of a way, and which of them are driven as part of a roundabout's passage.
+//!
+//! All edges that the wheels touch are in it, arcs too, so that lengths, times and restrictions need not know of passages.
+
+use std::ops::Range;
+
+/// Edges in driving order.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Drive {
+    /// All of them, the arcs of passages among them.
+    pub edges: Vec<u32>,
+    /// Which of `edges` are arcs of a passage, a range each, in order; an edge that is none stands before and after each.
+    pub over: Vec<Range<usize>>,
+}
+
+/// From an edge to the next that is driven by itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Join<'d> {
+    /// The edge one comes from.
+    pub from: u32,
+    /// The arcs between, where it is a passage.
+    pub arcs: &'d [u32],
+    /// The edge one goes into.
+    pub to: u32,
+    /// The place of `to` in [`Drive::edges`].
+    pub at: usize,
+}
+
+impl Drive {
+    /// In driving order.
+    pub fn joins(&self) -> impl Iterator<Item = Join<'_>> {
+        let mut over = self.over.iter().peekable();
+        let mut last = 0;
+        std::iter::from_fn(move || {
+            let from = *self.edges.get(last)?;
+            let arcs = over.next_if(|arcs| arcs.start == last + 1).cloned().unwrap_or(last + 1..last + 1);
+            let to = *self.edges.get(arcs.end)?;
+            last = arcs.end;
+            Some(Join { from, arcs: self.edges.get(arcs).unwrap_or_default(), to, at: last })
+        })
+    }
+
+    /// Goes on with `next`, which begins on the edge where this one ends.
+    pub(super) fn go_on(&mut self, next: &Self) {
+        let shift = self.edges.len().saturating_sub(1);
+        self.over.extend(next.over.iter().map(|arcs| arcs.start + shift..arcs.end + shift));
+        self.edges.extend(next.edges.iter().skip(usize::from(!self.edges.is_empty())));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn joins_step_over_arcs_and_ways_go_on_where_they_end() {
+        let first = Drive { edges: vec![1, 2, 90, 91, 3], over: vec![2..4] };
+        let mut whole = Drive::default();
+        whole.go_on(&first);
+        assert_eq!(whole, first);
+        whole.go_on(&Drive { edges: vec![3, 92, 4, 5], over: vec![1..2] });
+        assert_eq!(whole.edges, [1, 2, 90, 91, 3, 92, 4, 5]);
+        assert_eq!(whole.over, [2..4, 5..6]);
+        let joins: Vec<_> = whole.joins().map(|j| (j.from, j.arcs.to_vec(), j.to, j.at)).collect();
+        assert_eq!(joins, [(1, vec![], 2, 1), (2, vec![90, 91], 3, 4), (3, vec![92], 4, 6), (4, vec![], 5, 7)]);
+        assert_eq!(Drive { edges: vec![7], over: Vec::new() }.joins().count(), 0);
+    }
+}

@@ -1,0 +1,122 @@
+//! What blocks where there is no route: the cheapest set of places that would have to become safe.
+//!
+//! Number and measure count both: a place costs one metre, and what is missing there besides. Two places where a hand's breadth is
+//! missing are thus cheaper than one where three metres are; among sets that cost the same the shortest way over them is taken.
+
+use super::assemble::PartKind;
+use super::drive::Drive;
+use super::graph::{Access, BARRED};
+use super::permits::{Permit, Permits};
+use super::plan::Refutation;
+use crate::network::Movements;
+
+/// Of a centimetre: more than any way on earth (40,000 km are 2³⁶ millimetres; the slowest of them two years), and 100,000 of the
+/// dearest places can still be added.
+const CENTIMETRE: u64 = 1 << 36;
+/// Of a place by itself, centimetres.
+const PLACE: f64 = 100.0;
+/// What counts as missing where there is no number, centimetres: no width or line is known, or no width would help.
+const NO_NUMBER: f64 = 500.0;
+/// And what counts at most.
+const MOST_MISSING: f64 = 2000.0;
+
+/// A place that would have to become safe.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Obstacle {
+    /// Edge or turn.
+    pub at: PartKind,
+    /// What is said of it by itself.
+    pub permit: Permit,
+    /// It passed by itself; the whole route failed there.
+    pub refuted: bool,
+    /// So much width is missing, metres, where that is known: on the place's own certificate, or on the whole route's that came
+    /// nearest.
+    pub missing_m: Option<f64>,
+}
+
+/// What is missing where an RSC is negative.
+fn missing_m(rsc_m: Option<f64>) -> Option<f64> {
+    rsc_m.filter(|rsc_m| rsc_m.is_finite() && *rsc_m < 0.0).map(|rsc_m| -rsc_m)
+}
+
+/// Of the refutations of a place the one that came nearest.
+fn refuted_missing_m(refuted: &[Refutation], at: PartKind) -> Option<f64> {
+    let there = refuted.iter().filter(|refutation| refutation.at == at);
+    there.filter_map(|refutation| missing_m(refutation.result.map(|result| result.0))).min_by(f64::total_cmp)
+}
+
+fn price(missing_m: Option<f64>) -> u64 {
+    let missing = missing_m.map_or(NO_NUMBER, |missing_m| (100.0 * missing_m).ceil().min(MOST_MISSING));
+    CENTIMETRE * (PLACE + missing) as u64
+}
+
+/// Everything lawful may be used, what is not safe at its price, and so what was refuted.
+pub(super) fn priced(permits: &Permits, movements: &Movements, refuted: &[Refutation]) -> Access {
+    let mut access = permits.access_at(movements, |permit| price(missing_m(permit.rsc_m)));
+    for refutation in refuted {
+        if let Some(slot) = slot(&mut access, movements, refutation.at).filter(|slot| **slot != BARRED) {
+            *slot = price(refuted_missing_m(refuted, refutation.at));
+        }
+    }
+    access
+}
+
+/// The places on a way that have a price.
+pub(super) fn on(
+    drive: &Drive,
+    permits: &Permits,
+    movements: &Movements,
+    access: &mut Access,
+    refuted: &[Refutation],
+) -> Vec<Obstacle> {
+    let first = drive.edges.first().map(|&edge| PartKind::Edge(edge));
+    let rest = drive.joins().flat_map(|join| {
+        let turn = PartKind::Turn { from: join.from, to: join.to };
+        [turn, PartKind::Edge(join.to)]
+    });
+    let places = first.into_iter().chain(rest).filter_map(|at| {
+        slot(access, movements, at).filter(|price| **price > 0)?;
+        let permit = permit(permits, movements, at)?;
+        let refuted_here = refuted.iter().any(|refutation| refutation.at == at);
+        let missing_m = if refuted_here { refuted_missing_m(refuted, at) } else { missing_m(permit.rsc_m) };
+        Some(Obstacle { at, permit, refuted: refuted_here, missing_m })
+    });
+    places.collect()
+}
+
+/// Where the price of a place stands.
+pub(super) fn slot<'a>(access: &'a mut Access, movements: &Movements, at: PartKind) -> Option<&'a mut u64> {
+    match at {
+        PartKind::Edge(edge) => access.edges.get_mut(edge as usize),
+        PartKind::Turn { from, to } => match movements.index(from, to) {
+            Some(place) => access.movements.get_mut(place),
+            None => access.passages.get_mut(movements.passage(from, to)?),
+        },
+    }
+}
+
+fn permit(permits: &Permits, movements: &Movements, at: PartKind) -> Option<Permit> {
+    match at {
+        PartKind::Edge(edge) => permits.edges.get(edge as usize).copied(),
+        PartKind::Turn { from, to } => match movements.index(from, to) {
+            Some(place) => permits.movements.get(place).copied(),
+            None => permits.passages.get(movements.passage(from, to)?).copied(),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn number_and_metres_count_both() {
+        let cost = |missing: &[Option<f64>]| missing.iter().map(|&m| price(m)).sum::<u64>();
+        assert!(cost(&[Some(0.1), Some(0.1)]) < cost(&[Some(3.0)]));
+        assert!(cost(&[Some(0.5)]) < cost(&[Some(0.01), Some(0.01)]));
+        assert!(cost(&[Some(0.5)]) < cost(&[Some(0.6)]));
+        assert!(cost(&[Some(3.0)]) < cost(&[None]));
+        assert_eq!(cost(&[Some(50.0)]), cost(&[Some(1e9)]), "a road that is not there is not dearer still");
+        assert!(price(Some(1e9)).checked_mul(100_000).is_some());
+    }
+}
