@@ -1,21 +1,29 @@
 //! Random pairs of places on a vehicle's certified roads: how many have a route, how often the certificate over the whole route
 //! refuted its parts, and that none is returned without one.
 //!
-//! `cargo run --example route_pairs -- REGION.osm.pbf VEHICLE POLICY PAIRS`
+//! `cargo run --release --example route_pairs -- REGION.gpkg VEHICLE POLICY PAIRS`, of a database that certifies the vehicle's edges
+//! and turns. Pairs are drawn twice: among all safe edges, most of which no route joins, and among those of the largest part
+//! of the network within which the vehicle can drive from anywhere to anywhere.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
-
-#[path = "../../tests/support/routing.rs"]
-#[allow(dead_code)]
-mod routing;
 
 use std::time::Instant;
 
+use netcert::corridor::Params;
+use netcert::network::{Movements, Network};
 use netcert::osm::facts::Policy;
-use netcert::route::{Answer, Measure, Position, Question};
-use netcert::store::Named;
+use netcert::route::{
+    Answer, Graph, MadeTurns, Measure, PartKind, Permit, Permits, Planner, Position, Question, Route, Speeds, Strokes,
+    components, passes_over,
+};
+use netcert::stet::{Model, Options};
+use netcert::store::{Database, Named};
+use netcert::turns::{Kerbs, TurnParams};
+use netcert::vehicle::Vehicle;
 use netcert::verdict::Verdict;
 use rayon::prelude::*;
-use routing::Region;
+
+/// Pairs that share a planner, and with it the corridors that it has made.
+const SHARED: u64 = 50;
 
 /// SplitMix64 (Steele, Lea, Flood 2014).
 struct Draw(u64);
@@ -28,75 +36,122 @@ impl Draw {
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)
     }
+
+    fn of(&mut self, count: usize) -> usize {
+        (self.next() % count as u64) as usize
+    }
+}
+
+struct Region {
+    network: Network,
+    movements: Movements,
+    permits: Permits,
+    model: Model,
+    policy: Policy,
+}
+
+impl Region {
+    fn open(path: &str, vehicle: &str, policy: Policy) -> Self {
+        let mut database = Database::open(path.as_ref()).unwrap();
+        let record = database.vehicles().unwrap().into_iter().find(|record| record.id == vehicle).expect("certified");
+        let model = Model::new(&Vehicle::from_json(&record.definition).unwrap()).unwrap();
+        let network = database.load_network().unwrap();
+        let movements = network.movements();
+        let permits = Permits::stored(&mut database, &network, &movements, vehicle, policy).unwrap();
+        Self { network, movements, permits, model, policy }
+    }
+
+    fn graph(&self) -> Graph<'_> {
+        Graph::new(&self.network, &self.movements, &Speeds::builtin().unwrap(), Measure::Time)
+    }
+
+    fn answers(&self, from: &[u32], pairs: u64) -> Vec<Answer> {
+        let made = MadeTurns {
+            model: &self.model,
+            policy: self.policy,
+            params: TurnParams { corridor: Params::default(), kerbs: Kerbs::default() },
+            options: Options::default(),
+        };
+        let place = |draw: &mut Draw| {
+            let line: Vec<_> = self.network.positions(&self.network.edges[from[draw.of(from.len())] as usize]).collect();
+            let (lon, lat) = line[draw.of(line.len())].degrees();
+            Position { lon, lat }
+        };
+        let shared = |first: u64| {
+            let strokes = Strokes::new(&self.network, self.policy, Params::default());
+            let (options, speeds) = (Options::default(), Speeds::builtin().unwrap());
+            let mut planner =
+                Planner::new(self.graph(), &self.permits, &self.model, &made, strokes, options, speeds);
+            let ask = |pair: u64| {
+                let mut draw = Draw(pair);
+                let places = vec![place(&mut draw), place(&mut draw)];
+                planner.answer(&Question { places, snap_m: 50.0, alternatives: 0, tries: 30 }).expect("on safe roads")
+            };
+            (first..(first + SHARED).min(pairs)).map(ask).collect::<Vec<_>>()
+        };
+        let firsts: Vec<u64> = (0..pairs).step_by(SHARED as usize).collect();
+        firsts.into_par_iter().flat_map_iter(shared).collect()
+    }
+
+    fn tell(&self, from: &[u32], pairs: u64) {
+        let start = Instant::now();
+        let answers = self.answers(from, pairs);
+        let seconds = start.elapsed().as_secs_f64();
+        let count = |wanted: fn(&Answer) -> bool| answers.iter().filter(|answer| wanted(answer)).count();
+        let routes = || answers.iter().flat_map(|answer| &answer.routes);
+        let parts = |wanted: &dyn Fn(PartKind) -> bool| {
+            routes().flat_map(|route| &route.path.parts).filter(|part| wanted(part.kind)).count()
+        };
+        let over = |at| passes_over(&self.network, at);
+        println!(
+            "  {pairs} pairs: {} routed, {} with a way over certified parts, {} refuted as a whole at least once \
+             ({} refutations, {} where pieces could not be strung together), {} given up, {} returned uncertified; {seconds:.1} s",
+            count(|a| !a.routes.is_empty()),
+            count(|a| !a.routes.is_empty() || !a.refuted.is_empty()),
+            count(|a| !a.refuted.is_empty()),
+            answers.iter().map(|a| a.refuted.len()).sum::<usize>(),
+            answers.iter().flat_map(|a| &a.refuted).filter(|r| r.result.is_none()).count(),
+            count(|a| a.gave_up),
+            routes().filter(|route| !route.certificate.result.safe()).count(),
+        );
+        println!(
+            "  {:.0} km of routes over {} turns and {} roundabouts; where there is none, {:.1} places block on average",
+            routes().map(|route: &Route| route.length_m / 1000.0).sum::<f64>(),
+            parts(&|at| matches!(at, PartKind::Turn { .. }) && !over(at)),
+            parts(&over),
+            mean(answers.iter().filter_map(|a| a.obstacles.as_ref().map(Vec::len))),
+        );
+    }
+}
+
+fn mean(counts: impl Iterator<Item = usize>) -> f64 {
+    let (n, sum) = counts.fold((0, 0), |(n, sum), count| (n + 1, sum + count));
+    sum as f64 / f64::from(n.max(1))
 }
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [file, vehicle, policy, pairs] = arguments.as_slice() else {
-        panic!("usage: route_pairs REGION.osm.pbf VEHICLE POLICY PAIRS");
+        panic!("usage: route_pairs REGION.gpkg VEHICLE POLICY PAIRS");
     };
-    let policy = Policy::named(policy).expect("lane, direction or carriageway");
     let pairs: u64 = pairs.parse().unwrap();
-    let start = Instant::now();
-    let region = Region::read(file.as_ref(), policy);
-    let driver = region.driver(vehicle);
-    let safe: Vec<u32> = (0..region.network.edges.len() as u32).filter(|&edge| driver.permits.edge(edge)).collect();
-    let turns = region.movements.all().iter().zip(&driver.permits.movements);
-    let turns = turns.filter(|(m, _)| m.kind == netcert::network::MovementKind::Turn);
-    let (all, good) = turns.fold((0, 0), |(n, good), (_, p)| (n + 1, good + u32::from(p.verdict == Verdict::Safe)));
+    let region = Region::open(file, vehicle, Policy::named(policy).expect("lane, direction or carriageway"));
+    let permits = &region.permits;
+    let safe: Vec<u32> = (0..region.network.edges.len() as u32).filter(|&edge| permits.edge(edge)).collect();
+    let good = |permits: &[Permit]| permits.iter().filter(|p| p.verdict == Verdict::Safe && p.rsc_m.is_some()).count();
+    let (edges, ways) = (region.network.edges.len(), (permits.movements.len(), permits.passages.len()));
     println!(
-        "{vehicle}: {} of {} edges and {good} of {all} turns safe, {:.1} s",
+        "{file} {vehicle} {policy}: {} of {edges} edges, {} turns (of {} movements) and {} of {} passages safe",
         safe.len(),
-        region.network.edges.len(),
-        start.elapsed().as_secs_f64()
+        good(&permits.movements),
+        ways.0,
+        good(&permits.passages),
+        ways.1
     );
-    let mut kinds = std::collections::BTreeMap::<String, u32>::new();
-    for (m, p) in region.movements.all().iter().zip(&driver.permits.movements) {
-        if m.kind == netcert::network::MovementKind::Turn && driver.permits.edge(m.from) && driver.permits.edge(m.to) {
-            let rsc = p.rsc_m.map_or("-".to_owned(), |r| format!("{r:.0}"));
-            *kinds.entry(format!("{:?} {rsc}", p.verdict)).or_default() += 1;
-        }
-    }
-    println!("{kinds:?}");
-    let start = Instant::now();
-    let place = |draw: &mut Draw| {
-        let edge = &region.network.edges[safe[(draw.next() % safe.len() as u64) as usize] as usize];
-        let line: Vec<_> = region.network.positions(edge).collect();
-        let (lon, lat) = line[(draw.next() % line.len() as u64) as usize].degrees();
-        Position { lon, lat }
-    };
-    let answers: Vec<Answer> = (0..pairs)
-        .into_par_iter()
-        .map_init(
-            || (),
-            |(), i| {
-                let mut draw = Draw(i);
-                let places = vec![place(&mut draw), place(&mut draw)];
-                let made = region.turns(&driver.model);
-                let mut planner = region.planner(&driver, &made, Measure::Time);
-                planner.answer(&Question { places, snap_m: 50.0, alternatives: 0, tries: 30 }).expect("on safe roads")
-            },
-        )
-        .collect();
-    let found = answers.iter().filter(|a| !a.routes.is_empty()).count();
-    let any = answers.iter().filter(|a| !a.routes.is_empty() || !a.refuted.is_empty()).count();
-    let refuted = answers.iter().filter(|a| !a.refuted.is_empty()).count();
-    let whole: usize = answers.iter().map(|a| a.refuted.len()).sum();
-    let strung = answers.iter().flat_map(|a| &a.refuted).filter(|r| r.result.is_none()).count();
-    let uncertified = answers.iter().flat_map(|a| &a.routes).filter(|r| !r.certificate.result.safe()).count();
-    let gave_up = answers.iter().filter(|a| a.gave_up).count();
-    println!(
-        "{pairs} pairs: {found} routed; of {any} with a way over certified parts, {refuted} were refuted as a whole at least once ({whole} refutations, {strung} of them because pieces could not be strung together); {gave_up} given up; {uncertified} returned uncertified; {:.1} s",
-        start.elapsed().as_secs_f64()
-    );
-    let turns: usize = answers
-        .iter()
-        .flat_map(|a| &a.routes)
-        .map(|r| r.path.parts.iter().filter(|p| matches!(p.kind, netcert::route::PartKind::Turn { .. })).count())
-        .sum();
-    let km: f64 = answers.iter().flat_map(|a| &a.routes).map(|r| r.length_m / 1000.0).sum();
-    println!("{km:.0} km, {turns} turns in the routes found");
-    for r in answers.iter().flat_map(|a| &a.refuted).take(25) {
-        println!("  {r:?}");
-    }
+    println!(" among all safe edges:");
+    region.tell(&safe, pairs);
+    let parts = components(&region.graph(), &permits.access(&region.movements));
+    let largest: Vec<u32> = safe.iter().copied().filter(|&edge| parts.of[edge as usize] == Some(0)).collect();
+    println!(" among the {} edges of the largest of {} parts:", largest.len(), parts.count);
+    region.tell(&largest, pairs);
 }

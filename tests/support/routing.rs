@@ -11,7 +11,7 @@ use netcert::osm::{Extract, LonLat, Way};
 use netcert::pipeline::{Job, Reporter, Settings, TurnJob, certify_network, certify_turns};
 use netcert::route::{Graph, MadeTurns, Measure, Permit, Permits, Planner, Speeds, Strokes};
 use netcert::stet::{Model, Options};
-use netcert::turns::{TurnParams, turn_facts};
+use netcert::turns::{Kerbs, TurnParams, turn_facts};
 use netcert::vehicle::Catalogue;
 
 /// A network.
@@ -19,6 +19,7 @@ pub(crate) struct Region {
     pub(crate) network: Network,
     pub(crate) movements: Movements,
     pub(crate) settings: Settings,
+    pub(crate) kerbs: Kerbs,
 }
 
 /// A vehicle on it.
@@ -69,14 +70,14 @@ impl Region {
         Self::of(extract, policy)
     }
 
-    fn of(extract: Extract, policy: Policy) -> Self {
+    pub(crate) fn of(extract: Extract, policy: Policy) -> Self {
         let countries = Countries::load().unwrap();
         let rules = countries.rules();
         let (network, _) =
             build(extract, &|position| countries.place(position), &|way, place| cross_sections(way, place, rules));
         let movements = network.movements();
         let settings = Settings { policy, corridor: Params::default(), stet: Options::default(), turns: true };
-        Self { network, movements, settings }
+        Self { network, movements, settings, kerbs: Kerbs::default() }
     }
 
     pub(crate) fn driver(&self, id: &str) -> Driver {
@@ -114,7 +115,7 @@ impl Region {
     }
 
     fn params(&self) -> TurnParams {
-        TurnParams { corridor: self.settings.corridor, ..TurnParams::default() }
+        TurnParams { corridor: self.settings.corridor, kerbs: self.kerbs.clone() }
     }
 
     pub(crate) fn strokes(&self) -> Strokes<'_> {

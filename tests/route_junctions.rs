@@ -1,0 +1,167 @@
+//! Routes over drawn junctions: roundabouts as one movement and leg by leg, turns that share a stretch of road, whole routes that are
+//! refuted though their parts passed, alternatives, and what blocks.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
+
+#[path = "support/ascii_map.rs"]
+#[allow(dead_code)]
+mod ascii_map;
+mod oracle;
+#[path = "support/routing.rs"]
+#[allow(dead_code)]
+mod routing;
+
+use ascii_map::{AsciiMap, id_of};
+use netcert::network::Movement;
+use netcert::osm::facts::Policy;
+use netcert::route::*;
+use netcert::turns::Kerbs;
+use netcert::verdict::{UnsafeReason, Verdict};
+use routing::{Driver, Region};
+
+/// Counter-clockwise from the west; the way begins and ends at `a`.
+const RING: &str = "abcdefghijklmnopqrstuvwx";
+
+fn region(map: &AsciiMap, kerb_m: f64) -> Region {
+    let mut region = Region::of(map.extract(), Policy::Carriageway);
+    region.kerbs = Kerbs::everywhere(kerb_m);
+    region
+}
+
+/// A ring of 20 m radius, four arms at right angles.
+fn roundabout() -> AsciiMap {
+    let at = |turn: f64, m: f64| {
+        let (sin, cos) = (std::f64::consts::PI + turn * std::f64::consts::TAU).sin_cos();
+        [m * cos, m * sin]
+    };
+    let mut nodes: Vec<_> = RING.chars().zip(0..).map(|(c, i)| (c, at(f64::from(i) / 24.0, 20.0))).collect();
+    nodes.extend("WSEN".chars().zip(0..).map(|(c, i)| (c, at(f64::from(i) / 4.0, 170.0))));
+    let mut map = AsciiMap::placed(&nodes).way(&format!("{RING}a"), "highway=secondary junction=roundabout width=8");
+    for arm in ["Wa", "Sg", "Em", "Ns"] {
+        map = map.way(arm, "highway=secondary width=8");
+    }
+    map
+}
+
+fn edge(region: &Region, ends: &str) -> u32 {
+    let ends: Vec<i64> = ends.chars().map(id_of).collect();
+    let found = (0..).zip(&region.network.edges).find(|(_, e)| [e.from_node, e.to_node] == ends[..]);
+    found.unwrap_or_else(|| panic!("no edge {ends:?}")).0
+}
+
+/// The middle of the first piece of an edge.
+fn on(region: &Region, ends: &str) -> Position {
+    let line: Vec<_> = region.network.positions(&region.network.edges[edge(region, ends) as usize]).collect();
+    let (a, b) = (line[0].degrees(), line[1].degrees());
+    Position { lon: f64::midpoint(a.0, b.0), lat: f64::midpoint(a.1, b.1) }
+}
+
+fn ask(region: &Region, driver: &Driver, [from, to]: [&str; 2], alternatives: usize) -> Answer {
+    let made = region.turns(&driver.model);
+    let mut planner = region.planner(driver, &made, Measure::Distance);
+    let places = vec![on(region, from), on(region, to)];
+    planner.answer(&Question { places, snap_m: 5.0, alternatives, tries: 20 }).unwrap()
+}
+
+fn turn(region: &Region, from: &str, to: &str) -> PartKind {
+    PartKind::Turn { from: edge(region, from), to: edge(region, to) }
+}
+
+/// One line without a jump or a kink: steps of a station, headings as the curvature says.
+fn assert_smooth(route: &Route) {
+    let c = &route.path.corridor;
+    for k in 1..c.len() {
+        let step_m = (c.x[k] - c.x[k - 1]).hypot(c.y[k] - c.y[k - 1]);
+        assert!((step_m - c.spacing_m).abs() < 0.05 * c.spacing_m, "{step_m} at {k}");
+        let bend = c.spacing_m * 0.5 * (c.curvature[k] + c.curvature[k - 1]);
+        let turned = (c.heading[k] - c.heading[k - 1]).rem_euclid(std::f64::consts::TAU);
+        let off = (turned - bend).rem_euclid(std::f64::consts::TAU);
+        assert!(off.min(std::f64::consts::TAU - off) < 0.02, "{off} at {k}");
+    }
+}
+
+#[test]
+fn a_long_vehicle_gets_over_a_roundabout_in_one_movement() {
+    let region = region(&roundabout(), 12.0);
+    let driver = region.driver("EU-SEMI16.5");
+    let answer = ask(&region, &driver, ["Wa", "mE"], 0);
+    let [route] = answer.routes.as_slice() else { panic!("{answer:?}") };
+    let arcs = [edge(&region, "ag"), edge(&region, "gm")];
+    assert_eq!(route.drive.edges, [edge(&region, "Wa"), arcs[0], arcs[1], edge(&region, "mE")]);
+    assert_eq!(route.drive.over, [1..3]);
+    let parts: Vec<PartKind> = route.path.parts.iter().map(|part| part.kind).collect();
+    let over = turn(&region, "Wa", "mE");
+    assert_eq!(parts, [PartKind::Edge(edge(&region, "Wa")), over, PartKind::Edge(edge(&region, "mE"))]);
+    assert!(passes_over(&region.network, over) && title(&region.network, over).contains("over the roundabout"));
+    assert!(route.certificate.result.safe());
+    assert_smooth(route);
+    // Half the ring and what is left of the arms.
+    assert!((route.length_m - (2.0 * 75.0 + 63.0)).abs() < 8.0, "{}", route.length_m);
+}
+
+#[test]
+fn a_short_vehicle_that_may_not_pass_in_one_goes_round_by_its_arcs_past_the_seam() {
+    let region = region(&roundabout(), 12.0);
+    let mut driver = region.driver("AGV-TUG4");
+    driver.permits.passages.fill(Permit::UNKNOWN);
+    for (from, to) in [("Sg", "aW"), ("Em", "gS"), ("Ns", "mE")] {
+        let answer = ask(&region, &driver, [from, to], 0);
+        let [route] = answer.routes.as_slice() else { panic!("{from} {to}: {answer:?}") };
+        assert!(route.drive.over.is_empty());
+        assert_eq!(route.drive.edges.len(), 5, "three arcs");
+        let turns = route.path.parts.iter().filter(|part| matches!(part.kind, PartKind::Turn { .. })).count();
+        assert_eq!(turns, 2);
+        assert_smooth(route);
+        // Three quarters of the ring, half of both arms.
+        assert!((route.length_m - (2.0 * 75.0 + 94.0)).abs() < 15.0, "{from} {to}: {}", route.length_m);
+    }
+}
+
+#[test]
+fn a_restriction_over_the_ring_is_obeyed_by_the_passage() {
+    let map = roundabout().restriction(&[2], netcert::osm::Via::Ways(vec![1]), &[4], "restriction=no_straight_on");
+    let region = region(&map, 12.0);
+    assert!(!region.network.restrictions.is_empty());
+    let driver = region.driver("AGV-TUG4");
+    let answer = ask(&region, &driver, ["Wa", "mE"], 0);
+    assert!(answer.routes.is_empty(), "nobody goes round twice: {:?}", answer.routes[0].drive);
+    assert_eq!(ask(&region, &driver, ["Wa", "gS"], 0).routes.len(), 1);
+}
+
+/// Left into a street and right out of it after so many metres.
+fn s_bend(width_m: f64, between_m: f64, way_round: bool) -> AsciiMap {
+    let tags = format!("highway=secondary width={width_m}");
+    let map = AsciiMap::placed(&[
+        ('W', [-300.0, 0.0]),
+        ('J', [0.0, 0.0]),
+        ('K', [0.0, between_m]),
+        ('E', [300.0, between_m]),
+        ('S', [0.0, -150.0]),
+        ('N', [0.0, between_m + 150.0]),
+        ('A', [-420.0, 0.0]),
+        ('B', [-450.0, 400.0]),
+        ('C', [450.0, 400.0]),
+        ('D', [420.0, between_m]),
+    ]);
+    let map = map.way("SJKN", &tags).way("WJ", &tags).way("KE", &tags).way("AW", &tags).way("ED", &tags);
+    if way_round { map.way("WBCE", "highway=secondary width=30") } else { map }
+}
+
+#[test]
+fn turns_that_share_a_stretch_of_road_are_blended() {
+    let region = region(&s_bend(9.0, 9.0, false), 8.0);
+    let driver = region.driver("AGV-TUG4");
+    let made = region.turns(&driver.model);
+    let (mut strokes, mut menu) = (region.strokes(), Menu::new(&made));
+    let mut piece = |from: &str, to: &str| {
+        let movement: Movement = *region.movements.between(edge(&region, from), edge(&region, to)).unwrap();
+        menu.chosen(&mut strokes, &movement, &[]).unwrap()
+    };
+    let (first, second) = (piece("WJ", "JK"), piece("JK", "KE"));
+    assert!(first.departure.station > second.approach.station, "the first ends after the second begins");
+    let answer = ask(&region, &driver, ["WJ", "KE"], 0);
+    let [route] = answer.routes.as_slice() else { panic!("{answer:?}") };
+    assert_smooth(route);
+    let parts: Vec<PartKind> = route.path.parts.iter().map(|part| part.kind).collect();
+    assert!(parts.windows(3).any(|three| three
+        == [turn(&region, "WJ", "JK"), PartKind::Edge(edge(&region, "JK")), turn(&region, "JK", "KE")]));
+}
