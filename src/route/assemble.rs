@@ -13,7 +13,7 @@ use super::pieces::{Menu, Strokes, TurnPiece};
 use crate::corridor::{CentrelineError, Corridor, Frame, FrameError};
 use crate::network::{Movement, MovementKind, Movements, Network};
 use crate::osm::LonLat;
-use crate::turns::Joint;
+use crate::turns::{Joint, StrokeLine};
 use crate::verdict::UnknownReason;
 
 /// Distance of the route's stations, metres, at most: as on strokes. Sharp turns have closer ones, and so has then the whole.
@@ -73,6 +73,8 @@ pub enum AssemblyError {
     /// Two turns that cannot be driven one after the other on the road between them.
     #[error("two turns follow each other so closely that no path leads from one into the other")]
     Overlap {
+        /// The earlier one.
+        before: PartKind,
         /// The later one.
         at: PartKind,
     },
@@ -80,8 +82,13 @@ pub enum AssemblyError {
     #[error("the route spans more than one metric frame: {0}; cut it into shorter ones with --via and certify each")]
     Frame(#[from] FrameError),
     /// No centreline leads through the stations.
-    #[error("the route's pieces make no smooth line: {0}")]
-    Centreline(#[from] CentrelineError),
+    #[error("the route's pieces make no smooth line: {error}")]
+    Centreline {
+        /// The turn nearest to where the line bends most.
+        at: PartKind,
+        /// What is wrong with it.
+        error: CentrelineError,
+    },
 }
 
 /// Whether it is a passage of a roundabout: the edge that one goes into does not start where the other one ends.
@@ -193,6 +200,17 @@ fn samples(c: &Corridor, stations: Range<usize>, own: Frame, frame: Frame) -> Re
     Ok(stations.zip(at).map(|(k, at)| Sample { at, left_m: c.left_m[k], right_m: c.right_m[k] }).collect())
 }
 
+/// Stations of a loop from its first edge's beginning until it is there again: its last edge ends there to a station, and the stations
+/// of one round stand beside those of the next by half a one at most.
+fn round(line: &StrokeLine) -> usize {
+    let (c, spans) = (&line.made.corridor, &line.made.spans);
+    let first = spans.first().map_or(0, |span| span.stations.start);
+    let end = spans.last().map_or(0, |span| span.stations.end.saturating_sub(1));
+    let off = |k: &usize| (c.x[*k] - c.x[first]).hypot(c.y[*k] - c.y[first]);
+    let again = (end.saturating_sub(3)..(end + 4).min(c.len())).min_by(|a, b| off(a).total_cmp(&off(b)));
+    again.map_or(0, |again| again.saturating_sub(first))
+}
+
 /// A run of edges straight on along one stroke: stations `from..=to` of an unrolled corridor.
 struct Leg {
     /// All that may be needed, in the route's frame, from station `first` on.
@@ -222,10 +240,10 @@ impl Leg {
         let closed = strokes.closed(stroke);
         let (corridor, spans) = (&line.made.corridor, &line.made.spans);
         let last_station = corridor.len() - 1;
-        // A loop is unrolled: what is driven before it closes is a turn earlier, in its lead-in.
-        let round = spans.last().map_or(0, |s| s.stations.end - 1) - spans.first().map_or(0, |s| s.stations.start);
-        let closes = (1..places.len()).rev().find(|&i| places[i] <= places[i - 1]);
-        let earlier = |i: usize| if closed && closes.is_some_and(|close| i < close) { round } else { 0 };
+        // A loop is unrolled: what is driven before it closes is a round earlier, in its lead-in.
+        let round = if closed { round(line.as_ref()) } else { 0 };
+        let closes = |i: usize| places[i..].windows(2).filter(|pair| pair[1] <= pair[0]).count();
+        let earlier = |i: usize| round * closes(i);
         let span = |i: usize| {
             let stations = spans.get(places[i] as usize).map(|span| span.stations.clone());
             let stations = stations.ok_or_else(|| unknown(edges[i], UnknownReason::Geometry))?;
@@ -248,11 +266,11 @@ impl Leg {
         let joined = |joint: &Joint, i: usize| joint.station.checked_sub(earlier(i));
         let last = edges.len() - 1;
         let mut from = match before {
-            Some(turn) => joined(&turn.departure, 0).ok_or(AssemblyError::Overlap { at: turn.at })?,
+            Some(turn) => joined(&turn.departure, 0).ok_or(AssemblyError::Overlap { before: turn.at, at: turn.at })?,
             None => within(0, way.start)?,
         };
         let mut to = match after {
-            Some(turn) => joined(&turn.approach, last).ok_or(AssemblyError::Overlap { at: turn.at })?,
+            Some(turn) => joined(&turn.approach, last).ok_or(AssemblyError::Overlap { before: turn.at, at: turn.at })?,
             None => within(last, way.end)?,
         };
         if before.is_none() {
@@ -282,7 +300,7 @@ impl Leg {
             return Ok(());
         }
         let (Some(before), Some(after)) = (before, after) else { return Ok(()) };
-        let overlap = AssemblyError::Overlap { at: after.at };
+        let overlap = AssemblyError::Overlap { before: before.at, at: after.at };
         let blended = blend::blend(&before.samples, &after.samples, &self.samples).ok_or(overlap.clone())?;
         if !string.drop_last(before.at, blended.dropped_before) {
             return Err(overlap);
@@ -333,11 +351,19 @@ impl Strung {
         true
     }
 
+    /// The turn nearest to a point; without turns, the point's own edge.
+    fn turn_at(&self, point: usize) -> PartKind {
+        let turns = self.kinds.iter().enumerate().filter(|(_, kind)| matches!(kind, PartKind::Turn { .. }));
+        let nearest = turns.min_by_key(|(i, _)| i.abs_diff(point)).map(|(_, kind)| *kind);
+        nearest.or_else(|| self.kinds.get(point).copied()).unwrap_or(PartKind::Edge(0))
+    }
+
     fn finish(self, frame: Frame, spacing_m: f64) -> Result<RoutePath, AssemblyError> {
         let column = |of: fn(&Sample) -> f64| self.samples.iter().map(of).collect::<Vec<f64>>();
         let points: Vec<[f64; 2]> = self.samples.iter().map(|sample| sample.at).collect();
-        let corridor =
-            Corridor::from_centreline(&points, &column(|s| s.left_m), &column(|s| s.right_m), 0.0, spacing_m)?;
+        let (left_m, right_m) = (column(|s| s.left_m), column(|s| s.right_m));
+        let corridor = Corridor::from_centreline(&points, &left_m, &right_m, 0.0, spacing_m)
+            .map_err(|error| AssemblyError::Centreline { at: self.turn_at(sharpest(&points)), error })?;
         // Chords are shorter than arcs by parts in a thousand in the sharpest bends: near enough to say which part it is.
         let mut along = Vec::with_capacity(points.len());
         let mut sum = 0.0;
@@ -365,4 +391,14 @@ impl Strung {
         }
         Ok(RoutePath { corridor, frame, parts })
     }
+}
+
+/// Where a line turns most.
+fn sharpest(points: &[[f64; 2]]) -> usize {
+    let turn = |w: &[[f64; 2]]| {
+        let [u, v] = [[w[1][0] - w[0][0], w[1][1] - w[0][1]], [w[2][0] - w[1][0], w[2][1] - w[1][1]]];
+        (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]).abs()
+    };
+    let turns = points.windows(3).map(turn).enumerate();
+    turns.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(before, _)| before + 1)
 }

@@ -102,3 +102,42 @@ fn crossing(path: &[Sample], at: [f64; 2], tangent: [f64; 2]) -> Option<Crossing
 fn smooth(t: f64) -> f64 {
     t * t * t * (10.0 + t * (6.0 * t - 15.0))
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    /// Along x, so far to the left at each metre.
+    fn path(offset_m: impl Fn(f64) -> f64, [left_m, right_m]: [f64; 2]) -> Vec<Sample> {
+        let metres = (0..=20).map(f64::from);
+        metres.map(|x| Sample { at: [x, offset_m(x)], left_m, right_m }).collect()
+    }
+
+    #[test]
+    fn a_blend_begins_on_the_one_path_ends_on_the_other_and_is_nowhere_wider_than_either() {
+        let before = path(|x| 1.0 - x / 20.0, [2.0, 2.5]);
+        let after = path(|x| -x / 20.0, [2.2, 1.8]);
+        let stroke = path(|_| 0.0, [3.0, 3.0]);
+        let blended = blend(&before, &after, &stroke).unwrap();
+        let samples = &blended.samples;
+        assert_eq!((samples.len(), blended.dropped_before, blended.dropped_after), (21, 20, 20));
+        assert!((samples[0].at[1] - 1.0).abs() < 1e-9 && (samples[20].at[1] + 1.0).abs() < 1e-9);
+        for (k, sample) in samples.iter().enumerate() {
+            let (a, b) = (&before[k], &after[k]);
+            let (high, low) = (sample.at[1] + sample.left_m, sample.at[1] - sample.right_m);
+            assert!(high <= (a.at[1] + a.left_m).min(b.at[1] + b.left_m) + 1e-9, "{k}");
+            assert!(low >= (a.at[1] - a.right_m).max(b.at[1] - b.right_m) - 1e-9, "{k}");
+        }
+    }
+
+    #[test]
+    fn paths_with_no_road_in_common_or_at_a_great_angle_are_not_blended() {
+        let stroke = path(|_| 0.0, [3.0, 3.0]);
+        let [left, right] = [path(|_| 2.5, [2.0, 2.0]), path(|_| -2.5, [2.0, 2.0])];
+        assert!(blend(&left, &right, &stroke).is_none(), "5 m apart with 2 m each");
+        let steep = path(|x| 0.8 * (x - 10.0), [9.0, 9.0]);
+        assert!(blend(&steep, &path(|_| 0.0, [9.0, 9.0]), &stroke).is_none());
+        assert!(blend(&left, &right, &stroke[..1]).is_none());
+    }
+}

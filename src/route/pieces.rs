@@ -81,6 +81,18 @@ impl<'t> Menu<'t> {
         made.get(choice).cloned().ok_or(UnknownReason::Geometry)
     }
 
+    /// Takes the next pair of paths of two turns that follow each other; whether there is one.
+    pub fn another_pair(&mut self, before: (u32, u32), after: (u32, u32)) -> bool {
+        if self.another(after.0, after.1) {
+            return true;
+        }
+        let there = before != after && self.another(before.0, before.1);
+        if there {
+            self.choice.remove(&after);
+        }
+        there
+    }
+
     /// Takes the next path of a turn; whether there is one.
     pub fn another(&mut self, from: u32, to: u32) -> bool {
         let choice = self.choice.entry((from, to)).or_insert(0);

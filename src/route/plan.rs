@@ -20,6 +20,8 @@ use crate::stet::{self, Certificate, Model};
 
 /// A failure of the whole is put down to a turn at most this far from it, metres; else to the edge it is on.
 const TURN_REACH_M: f64 = 120.0;
+/// So many combinations of its turns' paths are strung together for one way, at most.
+const MOST_STRUNG: usize = 100;
 /// How much an alternative may share with the routes before it, by length.
 const MOST_SHARED: f64 = 0.75;
 /// How much longer an alternative may be than the first.
@@ -169,32 +171,68 @@ impl<'n> Planner<'n> {
                 answer.gave_up = true;
                 return false;
             }
-            match self.certify(found, start, end) {
+            match self.on_other_paths(&found, start, end, question, answer) {
                 Ok(route) => {
                     answer.routes.push(route);
                     return true;
                 }
                 Err(refutation) => {
-                    let another = matches!(refutation.at, PartKind::Turn { from, to } if self.menu.another(from, to));
-                    // Nothing to leave out: the search would find the same way again.
-                    if !another && !self.leave_out(access, refutation.at) {
-                        answer.gave_up = true;
+                    // Any other way is as far; or there is nothing to leave out, and the search would find the same way again.
+                    let hopeless = matches!(refutation.assembly, Some(AssemblyError::Frame(_)));
+                    answer.gave_up = hopeless || !self.leave_out(access, refutation.at);
+                    answer.refuted.push(refutation);
+                    if answer.gave_up {
                         return false;
                     }
-                    answer.refuted.push(refutation);
                 }
             }
         }
     }
 
-    fn certify(&mut self, found: Found, start: f64, end: f64) -> Result<Route, Refutation> {
+    /// Certifies a way, each turn on the best of its paths first. What failed and was driven on another path is in the answer, but for
+    /// pairs of paths that could not be strung together; what fails on all of them is the error.
+    fn on_other_paths(
+        &mut self,
+        found: &Found,
+        start: f64,
+        end: f64,
+        question: &Question,
+        answer: &mut Answer,
+    ) -> Result<Route, Refutation> {
+        let mut strung = 0;
+        loop {
+            let refutation = match self.certify(found, start, end) {
+                Ok(route) => return Ok(route),
+                Err(refutation) => refutation,
+            };
+            strung += 1;
+            let turn = |at| if let PartKind::Turn { from, to } = at { Some((from, to)) } else { None };
+            let another = match (&refutation.assembly, turn(refutation.at)) {
+                (Some(AssemblyError::Overlap { before, at }), _) => {
+                    turn(*before).zip(turn(*at)).is_some_and(|(before, at)| self.menu.another_pair(before, at))
+                }
+                (_, Some((from, to))) => self.menu.another(from, to),
+                (_, None) => false,
+            };
+            if !another || strung >= MOST_STRUNG || answer.refuted.len() >= question.tries {
+                return Err(refutation);
+            }
+            if refutation.assembly.is_none() {
+                answer.refuted.push(refutation);
+            }
+        }
+    }
+
+    fn certify(&mut self, found: &Found, start: f64, end: f64) -> Result<Route, Refutation> {
         let way = Way { drive: &found.drive, start, end };
         let network = self.graph.network;
         let path = assemble(network, self.graph.movements, &mut self.strokes, &mut self.menu, &way);
         let path = path.map_err(|error| Refutation {
             at: match &error {
-                AssemblyError::Unknown { at, .. } | AssemblyError::Overlap { at } => *at,
-                AssemblyError::Frame(_) | AssemblyError::Centreline(_) => first_turn(&found.drive),
+                AssemblyError::Unknown { at, .. }
+                | AssemblyError::Overlap { at, .. }
+                | AssemblyError::Centreline { at, .. } => *at,
+                AssemblyError::Frame(_) => first_turn(&found.drive),
             },
             result: None,
             assembly: Some(error),
@@ -216,7 +254,7 @@ impl<'n> Planner<'n> {
         let turns = turns(&self.graph, &found.drive) * self.speeds.turn_cost(Measure::Time);
         let time_s = 1e-3 * (driven + turns as f64);
         let length_m = (path.corridor.len() - 1) as f64 * path.corridor.spacing_m;
-        Ok(Route { drive: found.drive, start, end, cost: found.cost, time_s, length_m, path, certificate })
+        Ok(Route { drive: found.drive.clone(), start, end, cost: found.cost, time_s, length_m, path, certificate })
     }
 
     /// Whether there was something to leave out.

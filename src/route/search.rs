@@ -1,6 +1,6 @@
 //! The shortest way over the edge-based graph (Dijkstra), from several beginnings to several ends at once.
 //!
-//! Costs are whole numbers and ties go to the lower state, so that the same question has the same answer.
+//! Costs are whole numbers and states of equal cost are left in their order, so that the same question has the same answer.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -66,7 +66,7 @@ pub fn search(graph: &Graph<'_>, access: &Access, starts: &[Start], goals: &[Goa
 }
 
 /// The end of a way: before the goal's edge, and on it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy)]
 struct End {
     cost: u64,
     /// The state before the goal's edge; [`NONE`]: it is the start's own edge.
@@ -176,8 +176,9 @@ impl<'g> Search<'g> {
     }
 }
 
+/// Of ends that cost the same the one found first.
 fn take(best: &mut Option<End>, end: End) {
-    if end.cost != BARRED && best.is_none_or(|best| end < best) {
+    if end.cost != BARRED && best.is_none_or(|best| end.cost < best.cost) {
         *best = Some(end);
     }
 }
