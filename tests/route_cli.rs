@@ -32,13 +32,19 @@ fn routes_are_told_written_verified_or_explained() {
         .netcert(&format!("route --vehicle AU-ATRIPLE53 {OVER_CORNERS}"))
         .succeeds()
         .shows("no certified route")
-        .shows("The fewest places that would have to become safe")
+        .shows("What would have to become safe: ")
+        .shows("The cheapest set")
         .shows("B42 Stock Route Road into A87 Great Inland Highway");
     place
         .netcert("route --vehicle AU-ATRIPLE53 --from 126.3,-30.9 --to 126.05,-30.21")
         .fails()
         .tells("the nearest road that may be used is");
-    place.netcert("route --vehicle AU-SEMI19 --from 126,-30 --to 126,-30").fails().tells("is not certified here");
+    place
+        .netcert(&format!("route --vehicle AU-SEMI19 {ALONG}"))
+        .succeeds()
+        .tells("AU-SEMI19 is not certified in demo.gpkg under the carriageway policy yet: doing it now")
+        .shows("AU-SEMI19 Semi-trailer, 19 m: a certified route");
+    place.netcert(&format!("reach --vehicle NOBODY {}", ALONG.split(" --to").next().unwrap())).fails().tells("NOBODY");
     place.netcert("route --vehicle AU-ATRIPLE53 --from 126 --to 126,-30").ends_as_misuse();
 
     let reach = format!("reach --vehicle AU-ATRIPLE53 {}", ALONG.split(" --to").next().unwrap());

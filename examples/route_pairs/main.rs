@@ -73,15 +73,15 @@ impl Region {
             options: Options::default(),
         };
         let place = |draw: &mut Draw| {
-            let line: Vec<_> = self.network.positions(&self.network.edges[from[draw.of(from.len())] as usize]).collect();
+            let line: Vec<_> =
+                self.network.positions(&self.network.edges[from[draw.of(from.len())] as usize]).collect();
             let (lon, lat) = line[draw.of(line.len())].degrees();
             Position { lon, lat }
         };
         let shared = |first: u64| {
             let strokes = Strokes::new(&self.network, self.policy, Params::default());
             let (options, speeds) = (Options::default(), Speeds::builtin().unwrap());
-            let mut planner =
-                Planner::new(self.graph(), &self.permits, &self.model, &made, strokes, options, speeds);
+            let mut planner = Planner::new(self.graph(), &self.permits, &self.model, &made, strokes, options, speeds);
             let ask = |pair: u64| {
                 let mut draw = Draw(pair);
                 let places = vec![place(&mut draw), place(&mut draw)];

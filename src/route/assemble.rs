@@ -270,7 +270,9 @@ impl Leg {
             None => within(0, way.start)?,
         };
         let mut to = match after {
-            Some(turn) => joined(&turn.approach, last).ok_or(AssemblyError::Overlap { before: turn.at, at: turn.at })?,
+            Some(turn) => {
+                joined(&turn.approach, last).ok_or(AssemblyError::Overlap { before: turn.at, at: turn.at })?
+            }
             None => within(last, way.end)?,
         };
         if before.is_none() {

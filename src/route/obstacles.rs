@@ -53,7 +53,7 @@ fn price(missing_m: Option<f64>) -> u64 {
 /// Everything lawful may be used, what is not safe at its price, and so what was refuted.
 pub(super) fn priced(permits: &Permits, movements: &Movements, refuted: &[Refutation]) -> Access {
     let mut access = permits.access_at(movements, |permit| price(missing_m(permit.rsc_m)));
-    for refutation in refuted {
+    for refutation in refuted.iter().filter(|refutation| refutation.left_out) {
         if let Some(slot) = slot(&mut access, movements, refutation.at).filter(|slot| **slot != BARRED) {
             *slot = price(refuted_missing_m(refuted, refutation.at));
         }
@@ -77,7 +77,7 @@ pub(super) fn on(
     let places = first.into_iter().chain(rest).filter_map(|at| {
         slot(access, movements, at).filter(|price| **price > 0)?;
         let permit = permit(permits, movements, at)?;
-        let refuted_here = refuted.iter().any(|refutation| refutation.at == at);
+        let refuted_here = refuted.iter().any(|refutation| refutation.left_out && refutation.at == at);
         let missing_m = if refuted_here { refuted_missing_m(refuted, at) } else { missing_m(permit.rsc_m) };
         Some(Obstacle { at, permit, refuted: refuted_here, missing_m })
     });

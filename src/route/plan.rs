@@ -72,6 +72,8 @@ pub struct Refutation {
     pub result: Option<(f64, f64)>,
     /// Why, where there was nothing to certify.
     pub assembly: Option<AssemblyError>,
+    /// The search then went on without the place; else the turn was driven on another path.
+    pub left_out: bool,
 }
 
 /// The answer.
@@ -167,45 +169,41 @@ impl<'n> Planner<'n> {
             if !wanted(&found.drive.edges) {
                 return false;
             }
-            if answer.refuted.len() > question.tries {
+            if answer.refuted.len() >= question.tries.max(1) {
                 answer.gave_up = true;
                 return false;
             }
-            match self.on_other_paths(&found, start, end, question, answer) {
-                Ok(route) => {
-                    answer.routes.push(route);
-                    return true;
-                }
-                Err(refutation) => {
-                    // Any other way is as far; or there is nothing to leave out, and the search would find the same way again.
-                    let hopeless = matches!(refutation.assembly, Some(AssemblyError::Frame(_)));
-                    answer.gave_up = hopeless || !self.leave_out(access, refutation.at);
-                    answer.refuted.push(refutation);
-                    if answer.gave_up {
-                        return false;
-                    }
-                }
+            let tries = question.tries.saturating_sub(answer.refuted.len());
+            let (route, mut failed) = self.on_any_paths(&found, start, end, tries);
+            if let Some(route) = route {
+                answer.refuted.append(&mut failed);
+                answer.routes.push(route);
+                return true;
+            }
+            // Any other way is as far.
+            let too_far = failed.iter().any(|failed| matches!(failed.assembly, Some(AssemblyError::Frame(_))));
+            if let Some(nearest) = nearest(&mut failed).filter(|_| !too_far) {
+                nearest.left_out = self.leave_out(access, nearest.at);
+            }
+            // With nothing left out the search would find the same way again.
+            answer.gave_up = !failed.iter().any(|failed| failed.left_out);
+            answer.refuted.append(&mut failed);
+            if answer.gave_up {
+                return false;
             }
         }
     }
 
-    /// Certifies a way, each turn on the best of its paths first. What failed and was driven on another path is in the answer, but for
-    /// pairs of paths that could not be strung together; what fails on all of them is the error.
-    fn on_other_paths(
-        &mut self,
-        found: &Found,
-        start: f64,
-        end: f64,
-        question: &Question,
-        answer: &mut Answer,
-    ) -> Result<Route, Refutation> {
-        let mut strung = 0;
-        loop {
+    /// Certifies a way, each turn on the best of its paths first. Beside the route what failed before: certificates, and at the end of
+    /// all paths the last pieces that could not be strung together.
+    fn on_any_paths(&mut self, found: &Found, start: f64, end: f64, tries: usize) -> (Option<Route>, Vec<Refutation>) {
+        self.menu.begin();
+        let mut failed: Vec<Refutation> = Vec::new();
+        for strung in 1.. {
             let refutation = match self.certify(found, start, end) {
-                Ok(route) => return Ok(route),
+                Ok(route) => return (Some(route), failed),
                 Err(refutation) => refutation,
             };
-            strung += 1;
             let turn = |at| if let PartKind::Turn { from, to } = at { Some((from, to)) } else { None };
             let another = match (&refutation.assembly, turn(refutation.at)) {
                 (Some(AssemblyError::Overlap { before, at }), _) => {
@@ -214,13 +212,15 @@ impl<'n> Planner<'n> {
                 (_, Some((from, to))) => self.menu.another(from, to),
                 (_, None) => false,
             };
-            if !another || strung >= MOST_STRUNG || answer.refuted.len() >= question.tries {
-                return Err(refutation);
+            let goes_on = another && strung < MOST_STRUNG && failed.len() < tries;
+            if refutation.assembly.is_none() || !goes_on {
+                failed.push(refutation);
             }
-            if refutation.assembly.is_none() {
-                answer.refuted.push(refutation);
+            if !goes_on {
+                break;
             }
         }
+        (None, failed)
     }
 
     fn certify(&mut self, found: &Found, start: f64, end: f64) -> Result<Route, Refutation> {
@@ -236,12 +236,14 @@ impl<'n> Planner<'n> {
             },
             result: None,
             assembly: Some(error),
+            left_out: false,
         })?;
         let certificate = stet::certify(&path.corridor, self.model, &self.options);
         let refuted = |certificate: Option<&Certificate>| Refutation {
             at: culprit(&path, certificate),
             result: certificate.map(|c| (c.result.rsc_m, c.result.hinge_margin_rad)),
             assembly: None,
+            left_out: false,
         };
         let Some(certificate) = certificate else { return Err(refuted(None)) };
         if !certificate.result.safe() {
@@ -331,6 +333,12 @@ fn turns(graph: &Graph<'_>, drive: &Drive) -> u64 {
         None => 2,
     };
     drive.joins().map(count).sum()
+}
+
+/// Of all that failed on one way what came nearest to passing; else the last.
+fn nearest(failed: &mut [Refutation]) -> Option<&mut Refutation> {
+    let rsc_m = |refutation: &Refutation| refutation.result.map_or(f64::NEG_INFINITY, |result| result.0);
+    failed.iter_mut().max_by(|a, b| rsc_m(a).total_cmp(&rsc_m(b)))
 }
 
 fn first_turn(drive: &Drive) -> PartKind {
