@@ -152,6 +152,7 @@ fn refutation_members(network: &Network, refutation: &Refutation) -> Value {
     let own = json!({
         "rsc_m": refutation.result.map(|result| result.0),
         "assembly": refutation.assembly.as_ref().map(ToString::to_string),
+        "left_out": refutation.left_out,
         "place": place(network, refutation.at),
     });
     with(ids(network, refutation.at), own)
