@@ -1,6 +1,7 @@
 //! Routes over drawn junctions: roundabouts as one movement and leg by leg, turns that share a stretch of road, whole routes that are
 //! refuted though their parts passed, alternatives, and what blocks.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
+#![allow(clippy::single_range_in_vec_init)]
 
 #[path = "support/ascii_map.rs"]
 #[allow(dead_code)]

@@ -49,6 +49,7 @@ impl Drive {
 }
 
 #[cfg(test)]
+#[allow(clippy::single_range_in_vec_init)] // one passage
 mod tests {
     use super::*;
 
