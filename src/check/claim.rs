@@ -69,6 +69,8 @@ pub struct Subject<'a> {
     pub(crate) chain: &'a Chain,
     pub(crate) road: Road,
     pub(crate) motion: Option<Motion>,
+    /// Of the steer axle's path at the corridor's stations, metres.
+    shifts: Vec<f64>,
 }
 
 impl<'a> Subject<'a> {
@@ -88,7 +90,16 @@ impl<'a> Subject<'a> {
             Road::new(corridor, ahead + 3.0 * corridor.spacing_m, 1.1 * behind + 3.0 * corridor.spacing_m, lenient)?;
         let (lead, last) = (road.lead as f64, road.count as f64 - 1.0);
         let motion = Motion::new(chain, &road, |s| shift((s - lead).clamp(0.0, last)));
-        Ok(Self { chain, road, motion })
+        let shifts = (0..road.count).map(|k| shift(k as f64)).collect();
+        Ok(Self { chain, road, motion, shifts })
+    }
+
+    /// The shift of the steer axle's path `s` stations from the corridor's first, metres.
+    pub(crate) fn planned(&self, s: f64) -> f64 {
+        let last = self.shifts.len() - 1;
+        let s = s.clamp(0.0, last as f64);
+        let k = (s as usize).min(last.saturating_sub(1));
+        self.shifts[k] + (self.shifts[(k + 1).min(last)] - self.shifts[k]) * (s - k as f64)
     }
 
     /// What comes of each claim, and how many kilometres of corridor were swept.

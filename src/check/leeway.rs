@@ -349,7 +349,7 @@ impl<'a> Swept<'a> {
         let second = cos * a.abs() * tube.r1 / link.l
             + 0.5 * sin.abs() * a.abs() * tube.a * tube.a
             + 0.5 * place.curvature.abs() / narrow * slide * slide
-            + slope.abs() * slide;
+            + self.road.steepest(cell.side, s, slide / narrow) * slide / narrow;
         let dev = (cos * self.off(cell.step, cell.unit, at, tube) + second) * UP;
         // Second derivative of the lateral place, per metre of the coupling's path.
         let swing = self.motion.swing(cell.step, cell.unit);
@@ -439,17 +439,13 @@ impl<'a> Swept<'a> {
 
     /// Bounds of the adjoint for a unit throughout a step, and for the second order of the history before it.
     fn sharpen(&mut self, cell: &Cell, knots: Range<usize>) {
-        let (_, behind) = self.chain.reach_m();
-        let history = (HISTORY_LENGTHS * behind / self.tubes.step_m) as usize;
-        for step in cell.step.saturating_sub(history).max(self.tubes.first)..=cell.step {
-            self.tighten(step);
-        }
+        self.tighten_up_to(cell.step);
         self.run(cell.unit, cell.step + 1, knots.clone());
         let first = cell.step == self.tubes.first;
         if !first {
             self.run(cell.unit, cell.step, knots.clone());
         }
-        let bow = self.bow(cell.unit);
+        let bow = adjoint::bow(self.chain, cell.unit, self.tubes.step_m);
         let count = Knots::new(&self.chain.links[cell.unit], KNOT_M).places().len();
         let at = |node: usize, knot: usize| self.at_nodes.get(&(cell.unit, node)).map_or(f64::INFINITY, |at| at[knot]);
         let exact = self.exact.entry((cell.unit, cell.step)).or_insert_with(|| vec![f64::NAN; count]);
@@ -473,15 +469,9 @@ impl<'a> Swept<'a> {
         }
     }
 
-    /// What a bound may bow up between the nodes of a step.
-    fn bow(&self, unit: usize) -> f64 {
-        let least = self.chain.links[..=unit].iter().map(|link| link.l).fold(f64::INFINITY, f64::min);
-        1.0 + 0.5 * (self.tubes.step_m / least).powi(2)
-    }
-
     /// The adjoint's bounds on axle and heading throughout a step: the greater of its ends', and what it may bow up between them.
     fn exact_pose(&mut self, step: usize, unit: usize) -> Option<[f64; 2]> {
-        let bow = self.bow(unit);
+        let bow = adjoint::bow(self.chain, unit, self.tubes.step_m);
         let mut at = |node: usize| {
             let (chain, tubes) = (self.chain, &self.tubes);
             let outputs = [Output::Point(0.0), Output::Heading];
@@ -490,6 +480,15 @@ impl<'a> Swept<'a> {
         let end = at(step + 1)?;
         let start = if step == self.tubes.first { end } else { at(step)? };
         Some([0, 1].map(|k| start[k].max(end[k]) * bow))
+    }
+
+    /// Lets the adjoint bound what a step's bounds rest on.
+    fn tighten_up_to(&mut self, last: usize) {
+        let (_, behind) = self.chain.reach_m();
+        let history = (HISTORY_LENGTHS * behind / self.tubes.step_m) as usize;
+        for step in last.saturating_sub(history).max(self.tubes.first)..=last {
+            self.tighten(step);
+        }
     }
 
     /// Lets the adjoint bound axle and heading of all units in a step, so that its second order is that of what is so.
@@ -601,6 +600,8 @@ impl Swept<'_> {
         if y <= enough {
             return Some(y);
         }
+        self.tighten_up_to(step);
+        let y = self.tubes.get(step, unit)?.y;
         Some(y.min(self.exact_pose(step, unit)?[0]))
     }
 

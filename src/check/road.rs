@@ -157,6 +157,14 @@ impl Road {
         (w0 + slope * x, slope)
     }
 
+    /// The steepest that a half-width is within `reach_m` of `s`.
+    pub(crate) fn steepest(&self, side: usize, s: f64, reach_m: f64) -> f64 {
+        let reach = reach_m / self.spacing;
+        let (first, last) = ((s - reach).max(0.0) as usize, ((s + reach).max(0.0) as usize).min(self.len() - 2));
+        let slope = |k: usize| (self.widths[k + 1][side] - self.widths[k][side]).abs();
+        (first.min(last)..=last).map(slope).fold(0.0, f64::max) / self.spacing
+    }
+
     /// By how much, at most, a half-width between `from` and `to` (stations) lies below the straight line between any two of
     /// its values there: where the slope grows, a quarter of the growth times the length.
     pub(crate) fn dip(&self, side: usize, from: f64, to: f64) -> f64 {

@@ -7,7 +7,7 @@ use super::group::gamma;
 use super::lanes::{LANES, V, select_negative};
 use super::model::Model;
 use super::sweep::{BLOCK, FIELDS, Minima, ZERO, row};
-use super::track::{BULGE_MOST, Fields, Track};
+use super::track::{BULGE_MOST, Fields, NEAR, READ_M, Track};
 
 /// A foot further along than this (metres) is looked up anew.
 const NEAR_M: f64 = 1.0;
@@ -32,8 +32,19 @@ pub(super) struct Body {
     heading: f64,
     axle: f64,
     points: Vec<Point>,
-    /// The last unit's axle, whose offset the published form needs.
-    offset_foot: Option<usize>,
+    /// The last unit's axle, whose offset the published form needs: its foot, and where that is on a straight (see [`Point`]).
+    last_axle: Option<LastAxle>,
+}
+
+struct LastAxle {
+    foot: usize,
+    way: Way,
+}
+
+/// Where a foot is on a straight, in stations behind the head, and how far from there it may be.
+struct Way {
+    behind: usize,
+    astray: usize,
 }
 
 struct Point {
@@ -49,9 +60,7 @@ struct Point {
     /// Distance to the point before, metres; 0 for the first.
     gap: f64,
     foot: usize,
-    /// Where its foot is on a straight, in stations behind the head, and how far from there it may be.
-    behind: usize,
-    astray: usize,
+    way: Way,
     /// Up to this station all have been under it, or are lost.
     covered: usize,
 }
@@ -80,13 +89,16 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
             coupling = axle - unit.hitch;
             let foot = |ahead: f64| (track.lead as f64 + (axle + ahead) / track.spacing).round() as usize;
             let n = unit.points.len();
+            let way = |ahead: f64| Way {
+                behind: track.lead + AHEAD - foot(ahead),
+                astray: ((ASTRAY_PART * (axle + ahead).abs() + ASTRAY_M) / track.spacing).ceil() as usize,
+            };
             // Innermost on a steady circle.
             let middle = (0..n).min_by(|&a, &b| unit.points[a].abs().total_cmp(&unit.points[b].abs()));
             let chosen = (0..n).filter(|&p| CERTIFY || p == 0 || Some(p) == middle || p == n - 1);
             let points = chosen.map(|p| {
                 let gain = unit.at[p].at(tolerance);
                 let start = foot(unit.points[p]);
-                let astray = ASTRAY_PART * (axle + unit.points[p]).abs() + ASTRAY_M;
                 Point {
                     ahead: unit.points[p],
                     tag: (index * 16 + p) as u64,
@@ -97,8 +109,7 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
                     from_coupling: (unit.points[p] / unit.length).abs(),
                     gap: if p == 0 { 0.0 } else { unit.points[p - 1] - unit.points[p] },
                     foot: start,
-                    behind: track.lead + AHEAD - start,
-                    astray: (astray / track.spacing).ceil() as usize,
+                    way: way(unit.points[p]),
                     covered: start.saturating_sub(1),
                 }
             });
@@ -108,7 +119,7 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
                 heading: unit.heading.at(tolerance),
                 axle: unit.axle.at(tolerance),
                 points: points.collect(),
-                offset_foot: (CERTIFY && index == last).then(|| foot(0.0)),
+                last_axle: (CERTIFY && index == last).then(|| LastAxle { foot: foot(0.0), way: way(0.0) }),
             }
         })
         .collect()
@@ -132,6 +143,13 @@ struct Seen {
     at: Fields<V>,
     along: V,
     lateral: V,
+}
+
+/// What the distance of stations h means for a leeway: h²/8, and how far the nearer excess of a width holds.
+#[derive(Clone, Copy)]
+struct Grid {
+    eighth: f64,
+    near_m: f64,
 }
 
 /// Eight stations: consecutive ones, or any.
@@ -168,7 +186,7 @@ pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
     head: usize,
     minima: &mut Minima,
 ) {
-    let scale = track.spacing * track.spacing / 8.0;
+    let grid = Grid { eighth: track.spacing * track.spacing / 8.0, near_m: NEAR as f64 * track.spacing };
     for group in 0..BLOCK / LANES {
         let load = |field: usize| -> V {
             let start = field * BLOCK + group * LANES;
@@ -204,7 +222,7 @@ pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
                     gap_behind: if next { body.points[index + 1].gap } else { 0.0 },
                 };
             }
-            let mut sample = sample::<CERTIFY, REFINED>(track, body, index, &s, &knots, scale);
+            let mut sample = sample::<CERTIFY, REFINED>(track, body, index, &s, &knots, grid);
             body.points[index].cover(sample.feet, minima);
             if CERTIFY {
                 match &mut before {
@@ -219,15 +237,12 @@ pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
         if let Some(last) = before {
             last.lower(minima);
         }
-        if CERTIFY && let Some(first) = body.offset_foot {
-            let feet = follow(track, first, s.x, s.y);
-            let seen = place(track.fields.gather(&feet), s.x, s.y);
-            for (i, &foot) in feet.iter().enumerate() {
-                let off = (seen.lateral.0[i] - shift[foot].0[lane]).abs();
-                minima.offset[foot] = minima.offset[foot].max(off);
-            }
-            body.offset_foot = Some(next_foot(track, feet[LANES - 1], seen.along.0[LANES - 1]));
+        if CERTIFY && let Some(axle) = &mut body.last_axle {
+            axle.follow(track, &s, shift, lane, minima);
         }
+    }
+    if let Some(axle) = &mut body.last_axle {
+        axle.foot = axle.way.kept(track, head + BLOCK, axle.foot);
     }
     for point in &mut body.points {
         point.keep_on_the_way(track, head + BLOCK, minima);
@@ -237,10 +252,12 @@ pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
 /// Passes over a block that needs no leeways.
 pub(super) fn skip(track: &Track, body: &mut Body, head: usize) {
     for point in &mut body.points {
-        point.foot = point.expected(track, head + BLOCK);
+        point.foot = point.way.expected(track, head + BLOCK);
         point.covered = point.foot.saturating_sub(1);
     }
-    body.offset_foot = body.offset_foot.map(|foot| (foot + BLOCK).min(track.len() - LANES));
+    if let Some(axle) = &mut body.last_axle {
+        axle.foot = axle.way.expected(track, head + BLOCK);
+    }
 }
 
 /// After the last block: every point must have been over the whole corridor.
@@ -250,11 +267,37 @@ pub(super) fn finish(track: &Track, body: &Body, minima: &mut Minima) {
     }
 }
 
-impl Point {
-    /// Its foot on a straight when the head is at a station.
+impl Way {
+    /// The foot on a straight when the head is at a station.
     fn expected(&self, track: &Track, head: usize) -> usize {
         (head + AHEAD).saturating_sub(self.behind).min(track.len() - LANES)
     }
+
+    /// A foot, or, if that is not where it can be, the one on a straight.
+    fn kept(&self, track: &Track, head: usize, foot: usize) -> usize {
+        let expected = self.expected(track, head);
+        if foot.abs_diff(expected) > self.astray { expected } else { foot }
+    }
+}
+
+impl LastAxle {
+    /// Raises the offsets by how far the axle is from the planned path, at its own feet.
+    #[inline(always)]
+    fn follow(&mut self, track: &Track, s: &States, shift: &[V], lane: usize, minima: &mut Minima) {
+        let feet = follow(track, self.foot, s.x, s.y);
+        let seen = place(track.fields.gather(&feet), s.x, s.y);
+        let (on, lateral) = foot(&seen.at, seen.along, seen.lateral);
+        for (i, &k) in feet.iter().enumerate() {
+            let other = if on.0[i] < 0.0 { k.saturating_sub(1) } else { (k + 1).min(track.len() - 1) };
+            let [own, next] = [k, other].map(|k| shift[k].0[lane]);
+            let planned = own + (next - own) * (on.0[i].abs() / track.spacing).min(1.0);
+            minima.offset[k] = minima.offset[k].max((lateral.0[i] - planned).abs());
+        }
+        self.foot = next_foot(track, feet[LANES - 1], seen.along.0[LANES - 1]);
+    }
+}
+
+impl Point {
 
     /// Takes note of the stations that have been under it.
     #[inline(always)]
@@ -280,8 +323,8 @@ impl Point {
     /// is lost.
     #[inline(always)]
     fn keep_on_the_way(&mut self, track: &Track, head: usize, minima: &mut Minima) {
-        let expected = self.expected(track, head);
-        if self.covered + self.astray < expected || self.foot.abs_diff(expected) > self.astray {
+        let expected = self.way.expected(track, head);
+        if self.covered + self.way.astray < expected || self.foot.abs_diff(expected) > self.way.astray {
             self.lose(expected, minima);
             self.foot = expected;
             self.covered = expected.saturating_sub(1);
@@ -307,7 +350,7 @@ fn sample<const CERTIFY: bool, const REFINED: bool>(
     index: usize,
     s: &States,
     knots: &Knots,
-    scale: f64,
+    grid: Grid,
 ) -> Sample {
     let (ahead, tag, first) = {
         let point = &body.points[index];
@@ -318,10 +361,10 @@ fn sample<const CERTIFY: bool, const REFINED: bool>(
     let seen = place(track.fields.run(first), x, y);
     if near(seen.along) {
         body.points[index].foot = next_foot(track, first + last, seen.along.0[last]);
-        let (left, right) = leeways::<CERTIFY, REFINED>(&seen, s, knots, body, index, scale);
+        let (left, right) = leeways::<CERTIFY, REFINED>(&seen, s, knots, body, index, grid);
         return Sample::new(&seen, Feet::Run(first), tag, left, right);
     }
-    sample_apart::<CERTIFY, REFINED>(track, body, index, s, knots, scale)
+    sample_apart::<CERTIFY, REFINED>(track, body, index, s, knots, grid)
 }
 
 /// As [`sample`], each point at its own nearest station. Apart, so that the common case stays in registers.
@@ -333,7 +376,7 @@ fn sample_apart<const CERTIFY: bool, const REFINED: bool>(
     index: usize,
     s: &States,
     knots: &Knots,
-    scale: f64,
+    grid: Grid,
 ) -> Sample {
     let point = &body.points[index];
     let (tag, x, y) = (point.tag, s.x + s.ux * point.ahead, s.y + s.uy * point.ahead);
@@ -341,7 +384,7 @@ fn sample_apart<const CERTIFY: bool, const REFINED: bool>(
     let seen = place(track.fields.gather(&feet), x, y);
     let last = LANES - 1;
     body.points[index].foot = next_foot(track, feet[last], seen.along.0[last]);
-    let (left, right) = leeways::<CERTIFY, REFINED>(&seen, s, knots, body, index, scale);
+    let (left, right) = leeways::<CERTIFY, REFINED>(&seen, s, knots, body, index, grid);
     let found = |side: V| {
         let one = |i: usize| if seen.along.0[i].abs() <= 1.5 * NEAR_M { side.0[i] } else { LOST_M };
         V(std::array::from_fn(one))
@@ -472,7 +515,7 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     knots: &Knots,
     body: &Body,
     index: usize,
-    scale: f64,
+    grid: Grid,
 ) -> (V, V) {
     let at = &seen.at;
     let cos = at.tangent_x * s.ux + at.tangent_y * s.uy;
@@ -514,15 +557,21 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let stretch = (outside + 1.0) * (outside * outside + 1.0);
     let second = (c * s.remainder + t * a2 * 0.5) * reach + bend * stretch * along * along * 0.5;
     // Between head stations, and the foot's own series beyond its third order.
-    let between = ((s.curvature - at.curvature).abs() + s.jerk * reach) * scale;
+    let between = ((s.curvature - at.curvature).abs() + s.jerk * reach) * grid.eighth;
     let far = seen.along.abs() + askew.abs();
     let far2 = far * far;
     let series = bend * bend * bend * far2 * far2 * 0.2;
-    let common = base + second + between + series + at.peak * far;
+    let common = base + second + between + series;
     let slide = stretch * along;
+    let read = |foot: V, slope: V, excess: V| {
+        let way = foot.abs() + slide;
+        let excess = select_negative(V::splat(grid.near_m) - way, at.excess, excess);
+        let lost = select_negative(V::splat(READ_M) - way, V::splat(-LOST_M), ZERO);
+        slope.abs() * slide + excess * way + lost
+    };
     (
-        left - common - lean_left - at.left_slope.abs() * slide,
-        right - common - lean_right - at.right_slope.abs() * slide,
+        left - common - lean_left - read(left_foot, at.left_slope, at.left_excess),
+        right - common - lean_right - read(right_foot, at.right_slope, at.right_excess),
     )
 }
 

@@ -11,6 +11,11 @@ const OPEN_M: f64 = 1e6;
 /// Convexity of a half-width, 1/m, above which each of its places counts for itself (`leeway`).
 pub(super) const BULGE_MOST: f64 = 0.005;
 
+/// Widths are read by the slope of a station up to so far from it, metres; farther, nothing is certified.
+pub(super) const READ_M: f64 = 6.0;
+/// Nearer than so many stations, the excess is each side's own.
+pub(super) const NEAR: usize = 2;
+
 /// Points are trusted to lie at their foot station while |κ·lateral| stays below this.
 const REACH: f64 = 0.9;
 
@@ -38,8 +43,11 @@ pub(super) struct Fields<T> {
     pub(super) right_slope: T,
     /// Greatest convexity of either half-width within a body gap, 1/m.
     pub(super) bulge: T,
-    /// By how much a width read by slope a metre from the station may be too great where the half-width peaks, 1.
-    pub(super) peak: T,
+    /// By how much a half-width read by its slope is too great at most, a metre's way from the station: within two stations, by side;
+    /// within [`READ_M`], on either.
+    pub(super) left_excess: T,
+    pub(super) right_excess: T,
+    pub(super) excess: T,
 }
 
 impl Track {
@@ -80,7 +88,19 @@ impl Track {
             left_slope: slope(&|p| p.left),
             right_slope: slope(&|p| p.right),
             bulge: bulge(&left_dips, &right_dips, h),
-            peak: peaks(&places, h),
+            left_excess: Vec::new(),
+            right_excess: Vec::new(),
+            excess: Vec::new(),
+        };
+        let read = |near: usize, width: fn(&Place) -> f64, slope: &[f64]| excess(&places, h, near, width, slope);
+        let far = ((READ_M / h).ceil() as usize).max(NEAR);
+        let (left, right) = (&fields.left_slope, &fields.right_slope);
+        let sides = [read(far, |p| p.left, left), read(far, |p| p.right, right)];
+        let fields = Fields {
+            left_excess: read(NEAR, |p| p.left, left),
+            right_excess: read(NEAR, |p| p.right, right),
+            excess: sides[0].iter().zip(&sides[1]).map(|(l, r)| l.max(*r)).collect(),
+            ..fields
         };
         Self { spacing: h, lead, count, fields }
     }
@@ -102,7 +122,9 @@ impl Track {
             left_slope: of(&f.left_slope),
             right_slope: of(&f.right_slope),
             bulge: of(&f.bulge),
-            peak: of(&f.peak),
+            left_excess: of(&f.left_excess),
+            right_excess: of(&f.right_excess),
+            excess: of(&f.excess),
         };
         Self { spacing: 2.0 * self.spacing, lead: self.lead / 2, count: self.count.div_ceil(2), fields }
     }
@@ -126,20 +148,24 @@ fn dips(places: &[Place], width: impl Fn(&Place) -> f64) -> Vec<f64> {
         .collect()
 }
 
-/// How fast a half-width read by the mean slope of a station leaves the true one, which is linear between stations: half the
-/// change of slope up to a station away, the neighbour's change beyond it; in all no more than the greatest of them times the
-/// way, up to two stations.
-fn peaks(places: &[Place], spacing: f64) -> Vec<f64> {
-    let concave: Vec<f64> = (0..places.len())
-        .map(|k| {
-            let (a, b) = (&places[k.saturating_sub(1)], &places[(k + 1).min(places.len() - 1)]);
-            let off = |width: &dyn Fn(&Place) -> f64| 2.0 * width(&places[k]) - width(a) - width(b);
-            let worst = off(&|p| p.left).max(off(&|p| p.right));
-            if a.open || places[k].open || b.open { 0.0 } else { worst.max(0.0) / spacing }
-        })
-        .collect();
-    let last = concave.len() - 1;
-    (0..=last).map(|k| concave[k.saturating_sub(1)].max(concave[k]).max(concave[(k + 1).min(last)])).collect()
+/// How fast a half-width read by the slope of a station leaves the true one at most, which is linear between stations, on the way to
+/// the `near`-th station on either side: on a linear piece what the reading is over, divided by the way, is greatest at its ends.
+fn excess(places: &[Place], spacing: f64, near: usize, width: fn(&Place) -> f64, slope: &[f64]) -> Vec<f64> {
+    let last = places.len() - 1;
+    let mut out = vec![0.0; places.len()];
+    for (k, own) in places.iter().enumerate().filter(|(_, own)| !own.open) {
+        let mut most = 0.0_f64;
+        for j in 1..=near {
+            let way = j as f64 * spacing;
+            for (other, slope) in [(k.checked_sub(j), -slope[k]), (Some(k + j).filter(|&o| o <= last), slope[k])] {
+                let Some(other) = other.map(|o| &places[o]).filter(|other| !other.open) else { continue };
+                most = most.max((width(own) - width(other)) / way + slope);
+            }
+        }
+        // A billionth is rounding.
+        out[k] = if most > 1e-9 { most } else { 0.0 };
+    }
+    out
 }
 
 /// A half-width that may be read anywhere within one station of where it stands: where the width dips between the
@@ -244,7 +270,9 @@ impl Fields<Vec<f64>> {
             left_slope: of(&self.left_slope),
             right_slope: of(&self.right_slope),
             bulge: of(&self.bulge),
-            peak: of(&self.peak),
+            left_excess: of(&self.left_excess),
+            right_excess: of(&self.right_excess),
+            excess: of(&self.excess),
         }
     }
 }
