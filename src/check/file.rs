@@ -235,7 +235,8 @@ impl Document {
         let tolerance_m = self.shrink * self.vehicle.tracking_tolerance_m;
         let found = along.leeway_at(at.s, at.unit, at.side, at.point_m, tolerance_m);
         match found {
-            Some(m) if (m - self.rsc_m).abs() <= LIMITING_TOLERANCE_M => None,
+            // Where much is to spare, or missing, the two programs part by more, as on spans.
+            Some(m) if (m - self.rsc_m).abs() <= LIMITING_TOLERANCE_M + 0.25 * self.rsc_m.abs() => None,
             Some(m) => Some(finding("limiting", &format!("the leeway there is {m:.3} m, the RSC {:.3} m", self.rsc_m))),
             None => Some(finding("limiting", "that point does not pass there, or nothing is bounded")),
         }

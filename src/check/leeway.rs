@@ -501,6 +501,7 @@ impl<'a> Swept<'a> {
             if tube.extra + tube.extra_coupling < 5e-3 {
                 continue;
             }
+            self.tubes.tighten_coupling(self.chain, self.motion, step, unit);
             if let Some([y, a]) = self.exact_pose(step, unit) {
                 let a = a + tube.r1 / self.chain.links[unit].l;
                 self.tubes.tighten(self.chain, self.motion, step, unit, y, a);

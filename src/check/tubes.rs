@@ -227,6 +227,28 @@ impl Tubes {
             tube.z = tube.z.min(z(link, &bend, tube.y, tube.a, tube.r1));
         }
     }
+
+    /// The second order of a step's couplings once more, from what is known of the units by now, front to rear: of the coupling of
+    /// `unit` itself.
+    pub(crate) fn tighten_coupling(&mut self, chain: &Chain, motion: &Motion, step: usize, unit: usize) {
+        let mut passed = Passed::steer_axle(self.tolerance_m, motion.swing(step, 0).bulge);
+        for i in 0..unit {
+            let Some(tube) = self.get(step, i).copied() else { return };
+            let bend = |i: usize| Bend::of(&chain.links[i], motion.swing(step, i), self.step_m);
+            let own = Unit {
+                link: &chain.links[i],
+                bend: bend(i),
+                curvature: motion.swing(step, i).curvature,
+                gains: [0.0; 3],
+                step_m: self.step_m,
+                extra: 0.0,
+            };
+            passed = own.pass_on(&passed, &tube, &chain.links[i + 1], &bend(i + 1), motion.swing(step, i + 1));
+        }
+        if let Some(Some(tube)) = self.tubes.get_mut((step - self.first) * self.units + unit) {
+            tube.zh = tube.zh.min(passed.zh);
+        }
+    }
 }
 
 /// Bounds that hold in a step whatever the filter says: of the axle, the heading and the front coupling.

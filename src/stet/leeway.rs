@@ -21,6 +21,8 @@ const ASTRAY_PART: f64 = 0.5;
 const ASTRAY_M: f64 = 10.0;
 /// Added to a head's station wherever a point ahead of it is counted from.
 const AHEAD: usize = 1 << 20;
+/// Half-widths that leave their own slope by less, a metre's way, are read at the axis's station.
+const ROUGH: f64 = 0.01;
 /// Leeway of a point that has no foot: nothing is certified there.
 const LOST_M: f64 = -1e3;
 
@@ -145,13 +147,6 @@ struct Seen {
     lateral: V,
 }
 
-/// What the distance of stations h means for a leeway: h²/8, and how far the nearer excess of a width holds.
-#[derive(Clone, Copy)]
-struct Grid {
-    eighth: f64,
-    near_m: f64,
-}
-
 /// Eight stations: consecutive ones, or any.
 #[derive(Clone, Copy)]
 enum Feet {
@@ -186,7 +181,6 @@ pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
     head: usize,
     minima: &mut Minima,
 ) {
-    let grid = Grid { eighth: track.spacing * track.spacing / 8.0, near_m: NEAR as f64 * track.spacing };
     for group in 0..BLOCK / LANES {
         let load = |field: usize| -> V {
             let start = field * BLOCK + group * LANES;
@@ -222,7 +216,7 @@ pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
                     gap_behind: if next { body.points[index + 1].gap } else { 0.0 },
                 };
             }
-            let mut sample = sample::<CERTIFY, REFINED>(track, body, index, &s, &knots, grid);
+            let mut sample = sample::<CERTIFY, REFINED>(track, body, index, &s, &knots);
             body.points[index].cover(sample.feet, minima);
             if CERTIFY {
                 match &mut before {
@@ -350,7 +344,6 @@ fn sample<const CERTIFY: bool, const REFINED: bool>(
     index: usize,
     s: &States,
     knots: &Knots,
-    grid: Grid,
 ) -> Sample {
     let (ahead, tag, first) = {
         let point = &body.points[index];
@@ -361,10 +354,11 @@ fn sample<const CERTIFY: bool, const REFINED: bool>(
     let seen = place(track.fields.run(first), x, y);
     if near(seen.along) {
         body.points[index].foot = next_foot(track, first + last, seen.along.0[last]);
-        let (left, right) = leeways::<CERTIFY, REFINED>(&seen, s, knots, body, index, grid);
-        return Sample::new(&seen, Feet::Run(first), tag, left, right);
+        let feet = Feet::Run(first);
+        let (left, right) = leeways::<CERTIFY, REFINED>(track, feet, &seen, s, knots, body, index);
+        return Sample::new(&seen, feet, tag, left, right);
     }
-    sample_apart::<CERTIFY, REFINED>(track, body, index, s, knots, grid)
+    sample_apart::<CERTIFY, REFINED>(track, body, index, s, knots)
 }
 
 /// As [`sample`], each point at its own nearest station. Apart, so that the common case stays in registers.
@@ -376,7 +370,6 @@ fn sample_apart<const CERTIFY: bool, const REFINED: bool>(
     index: usize,
     s: &States,
     knots: &Knots,
-    grid: Grid,
 ) -> Sample {
     let point = &body.points[index];
     let (tag, x, y) = (point.tag, s.x + s.ux * point.ahead, s.y + s.uy * point.ahead);
@@ -384,7 +377,7 @@ fn sample_apart<const CERTIFY: bool, const REFINED: bool>(
     let seen = place(track.fields.gather(&feet), x, y);
     let last = LANES - 1;
     body.points[index].foot = next_foot(track, feet[last], seen.along.0[last]);
-    let (left, right) = leeways::<CERTIFY, REFINED>(&seen, s, knots, body, index, grid);
+    let (left, right) = leeways::<CERTIFY, REFINED>(track, Feet::Each(feet), &seen, s, knots, body, index);
     let found = |side: V| {
         let one = |i: usize| if seen.along.0[i].abs() <= 1.5 * NEAR_M { side.0[i] } else { LOST_M };
         V(std::array::from_fn(one))
@@ -510,12 +503,13 @@ impl Knots {
 /// Leeway to the left and to the right of both side points at one along-offset.
 #[inline(always)]
 fn leeways<const CERTIFY: bool, const REFINED: bool>(
+    track: &Track,
+    feet: Feet,
     seen: &Seen,
     s: &States,
     knots: &Knots,
     body: &Body,
     index: usize,
-    grid: Grid,
 ) -> (V, V) {
     let at = &seen.at;
     let cos = at.tangent_x * s.ux + at.tangent_y * s.uy;
@@ -523,11 +517,12 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let (across, askew) = (cos * body.half_width, sin * body.half_width);
     let (left_along, left_at) = (seen.along - askew, seen.lateral + across);
     let (right_along, right_at) = (seen.along + askew, seen.lateral - across);
-    let (left_foot, left_lateral) = foot(at, left_along, left_at);
-    let (right_foot, right_lateral) = foot(at, right_along, right_at);
-    let left = at.left + at.left_slope * left_foot - left_lateral;
-    let right = at.right + at.right_slope * right_foot + right_lateral;
+    let mut edges = [Edge::left(at, left_along, left_at), Edge::right(at, right_along, right_at)];
     let point = &body.points[index];
+    if CERTIFY && rough(at.excess) {
+        edges = apart(track, feet, s, point.ahead, body.half_width, &edges);
+    }
+    let [left, right] = [edges[0].room, edges[1].room];
     let lean_left = (askew * -point.slope_ahead).max(askew * point.slope_behind);
     let lean_right = (askew * point.slope_ahead).max(askew * -point.slope_behind);
     if !CERTIFY {
@@ -557,22 +552,81 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let stretch = (outside + 1.0) * (outside * outside + 1.0);
     let second = (c * s.remainder + t * a2 * 0.5) * reach + bend * stretch * along * along * 0.5;
     // Between head stations, and the foot's own series beyond its third order.
-    let between = ((s.curvature - at.curvature).abs() + s.jerk * reach) * grid.eighth;
+    let between = ((s.curvature - at.curvature).abs() + s.jerk * reach) * (track.spacing * track.spacing / 8.0);
     let far = seen.along.abs() + askew.abs();
     let far2 = far * far;
     let series = bend * bend * bend * far2 * far2 * 0.2;
     let common = base + second + between + series;
     let slide = stretch * along;
-    let read = |foot: V, slope: V, excess: V| {
-        let way = foot.abs() + slide;
-        let excess = select_negative(V::splat(grid.near_m) - way, at.excess, excess);
-        let lost = select_negative(V::splat(READ_M) - way, V::splat(-LOST_M), ZERO);
-        slope.abs() * slide + excess * way + lost
-    };
+    let near_m = NEAR as f64 * track.spacing;
     (
-        left - common - lean_left - read(left_foot, at.left_slope, at.left_excess),
-        right - common - lean_right - read(right_foot, at.right_slope, at.right_excess),
+        left - common - lean_left - edges[0].excess(slide, near_m),
+        right - common - lean_right - edges[1].excess(slide, near_m),
     )
+}
+
+/// One side's point against the edge beside it, read at a station.
+#[derive(Clone, Copy)]
+struct Edge {
+    /// Half-width at the foot less lateral place.
+    room: V,
+    /// From the station to the foot.
+    on: V,
+    slope: V,
+    /// What the reading may be over, a metre's way: near, and farther.
+    near: V,
+    far: V,
+}
+
+impl Edge {
+    #[inline(always)]
+    fn left(at: &Fields<V>, along: V, lateral: V) -> Self {
+        let (on, lateral) = foot(at, along, lateral);
+        let room = at.left + at.left_slope * on - lateral;
+        Self { room, on, slope: at.left_slope, near: at.left_excess, far: at.excess }
+    }
+
+    #[inline(always)]
+    fn right(at: &Fields<V>, along: V, lateral: V) -> Self {
+        let (on, lateral) = foot(at, along, lateral);
+        let room = at.right + at.right_slope * on + lateral;
+        Self { room, on, slope: at.right_slope, near: at.right_excess, far: at.excess }
+    }
+
+    /// What the half-width may be less where the point is, up to `slide` from its nominal foot.
+    #[inline(always)]
+    fn excess(&self, slide: V, near_m: f64) -> V {
+        let way = self.on.abs() + slide;
+        let excess = select_negative(V::splat(near_m) - way, self.far, self.near);
+        let lost = select_negative(V::splat(READ_M) - way, V::splat(-LOST_M), ZERO);
+        self.slope.abs() * slide + excess * way + lost
+    }
+}
+
+/// Whether half-widths change so much that each side is worth a station of its own.
+#[inline(always)]
+fn rough(excess: V) -> bool {
+    excess.0.iter().any(|&excess| excess > ROUGH)
+}
+
+/// Both sides' points, each at the station of its own foot: on the inside of a bend, or askew, that is metres from the axis's.
+#[cold]
+#[inline(never)]
+fn apart(track: &Track, feet: Feet, s: &States, ahead: f64, half_width: f64, edges: &[Edge; 2]) -> [Edge; 2] {
+    let seen = |edge: &Edge, aside: f64| {
+        let own: [usize; LANES] = std::array::from_fn(|i| {
+            let k = match feet {
+                Feet::Run(first) => first + i,
+                Feet::Each(feet) => feet[i],
+            };
+            let by = (edge.on.0[i] / track.spacing + 64.5).clamp(0.0, 128.0) as usize;
+            (k + by).saturating_sub(64).min(track.len() - 1)
+        });
+        let (x, y) = (s.x + s.ux * ahead - s.uy * aside, s.y + s.uy * ahead + s.ux * aside);
+        place(track.fields.gather(&own), x, y)
+    };
+    let (left, right) = (seen(&edges[0], half_width), seen(&edges[1], -half_width));
+    [Edge::left(&left.at, left.along, left.lateral), Edge::right(&right.at, right.along, right.lateral)]
 }
 
 /// Arc length from the station to the foot of a point `along`, `lateral` of it, and the lateral at that foot:

@@ -17,10 +17,12 @@ const FARTHEST_M: f64 = 12.0;
 /// Half-widths change by so much at most, metres a metre: where another road opens beside the path a ray sees far into it, and a
 /// certificate deducts what a width may change along a body. (Without it a semitrailer lost 6 m where its path passes the mouth of
 /// a side road.)
-const STEEPEST: f64 = 0.4;
+#[allow(non_snake_case)]
+fn STEEPEST() -> f64 { static S: std::sync::LazyLock<f64> = std::sync::LazyLock::new(|| std::env::var("STEEPEST").ok().and_then(|s| s.parse().ok()).unwrap_or(0.4)); *S }
 /// And their slope falls by so much at most, 1/m: a certificate reads a width beside a station by the slope there, and deducts what the
 /// slope may change on the way.
-const ROUNDEST: f64 = 0.1;
+#[allow(non_snake_case)]
+fn ROUNDEST() -> f64 { static S: std::sync::LazyLock<f64> = std::sync::LazyLock::new(|| std::env::var("ROUNDEST").ok().and_then(|s| s.parse().ok()).unwrap_or(0.1)); *S }
 /// A path that is nearer to the area's end has left it, metres.
 const LEAST_M: f64 = 0.15;
 /// A corner of the area counts for the segments whose normals may meet it: it lies between their ends, with so much of their
@@ -173,7 +175,7 @@ impl Widths {
 
 /// Lowers half-widths until they change by [`STEEPEST`] at most.
 fn no_steeper(along_m: &[f64], widths: &mut [f64]) {
-    let rise = |k: usize| STEEPEST * (along_m[k] - along_m[k - 1]);
+    let rise = |k: usize| STEEPEST() * (along_m[k] - along_m[k - 1]);
     for k in 1..widths.len() {
         widths[k] = widths[k].min(widths[k - 1] + rise(k));
     }
@@ -186,7 +188,7 @@ fn no_steeper(along_m: &[f64], widths: &mut [f64]) {
 /// they were with it. Minima stay, and nothing becomes steeper than it was.
 fn rounded(along_m: &[f64], widths: &mut [f64]) {
     let lifted: Vec<[f64; 2]> =
-        along_m.iter().zip(widths.iter()).map(|(&s, &w)| [s, w + 0.5 * ROUNDEST * s * s]).collect();
+        along_m.iter().zip(widths.iter()).map(|(&s, &w)| [s, w + 0.5 * ROUNDEST() * s * s]).collect();
     let mut hull: Vec<usize> = Vec::new();
     for (k, c) in lifted.iter().enumerate() {
         while let [.., a, b] = hull[..] {
@@ -203,7 +205,7 @@ fn rounded(along_m: &[f64], widths: &mut [f64]) {
         for k in pair[0] + 1..pair[1] {
             let s = along_m[k];
             let on_hull = a[1] + (b[1] - a[1]) * (s - a[0]) / (b[0] - a[0]).max(1e-9);
-            widths[k] = widths[k].min(on_hull - 0.5 * ROUNDEST * s * s);
+            widths[k] = widths[k].min(on_hull - 0.5 * ROUNDEST() * s * s);
         }
     }
 }
