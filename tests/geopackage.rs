@@ -9,9 +9,10 @@ use netcert::account::AccountRow;
 use netcert::network::{Edge, Network};
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::store::{
-    Area, Bounds, Database, EdgeCertificate, EdgeMeasure, EdgeRow, QueryOptions, Run, StoreError, VehicleRecord,
-    VerdictKind, verdict_words,
+    Area, Bounds, Database, EdgeCertificate, EdgeMeasure, EdgeRow, QueryOptions, Run, StoreError, TurnCertificate, TurnSet,
+    VehicleRecord, VerdictKind, verdict_words,
 };
+use netcert::turns::{Kerbs, turn_facts};
 use netcert::verdict::{UnknownReason, Verdict};
 
 #[path = "support/store_network.rs"]
@@ -394,11 +395,18 @@ fn child_that_is_killed() {
     let Some(path) = std::env::var_os(CHILD).map(PathBuf::from) else { return };
     if path.with_extension("replace").exists() {
         let mut database = Database::open_to_change(&path).unwrap();
-        let edges = database.load_network().unwrap().edges.len() as u32;
+        let network = database.load_network().unwrap();
+        let facts = turn_facts(&network, &Kerbs::default());
+        let unknown = |turn| {
+            let verdict = Verdict::Unknown(UnknownReason::Cut);
+            TurnCertificate { turn, verdict, measured: None, path: None, plan: None }
+        };
         loop {
-            let rows = (0..edges).map(|edge| certificate(edge, 9));
+            let rows = (0..network.edges.len() as u32).map(|edge| certificate(edge, 9));
+            let certificates = (0..facts.len() as u32).map(unknown).collect();
+            let turns = Some(TurnSet { network: &network, facts: &facts, certificates });
             database
-                .replace_certificates(&vehicle("EU-SEMI16.5"), Policy::Lane, rows, Vec::new(), None, &run(), &[])
+                .replace_certificates(&vehicle("EU-SEMI16.5"), Policy::Lane, rows, Vec::new(), turns, &run(), &[])
                 .unwrap();
         }
     }
@@ -434,6 +442,8 @@ fn killed_at_any_moment_the_file_is_whole() {
             9
         };
         assert!((0..).zip(&rows).all(|(i, row)| row.verdict == certificate(i, seed).verdict), "half old, half new");
+        let turned = Database::open(&path).unwrap().has_turns("EU-SEMI16.5", Policy::Lane).unwrap();
+        assert_eq!(turned, seed == 9, "new edges come with their turns");
         whole(&path);
     }
     // What a killed run left is no obstacle to the next.

@@ -95,6 +95,8 @@ struct Corner {
     lateral: f64,
     sin: f64,
     slope: f64,
+    /// Stations by which the foot may be off.
+    reach: f64,
 }
 
 /// A cell: one side of one unit in one step.
@@ -346,10 +348,12 @@ impl<'a> Swept<'a> {
         }
         let at = a - b * sin / cos;
         let slide = cos * link.half_width * tube.a + sin.abs() * (tube.y + a.abs() * tube.a);
+        // How far, in stations, its foot may be from the nominal one: what the half-width falls on that way is deducted.
+        let reach = slide / narrow / self.road.spacing * UP;
         let second = cos * a.abs() * tube.r1 / link.l
             + 0.5 * sin.abs() * a.abs() * tube.a * tube.a
             + 0.5 * place.curvature.abs() / narrow * slide * slide
-            + self.road.steepest(cell.side, s, slide / narrow) * slide / narrow;
+            + (width - self.road.narrowest(cell.side, s - reach, s + reach));
         let dev = (cos * self.off(cell.step, cell.unit, at, tube) + second) * UP;
         // Second derivative of the lateral place, per metre of the coupling's path.
         let swing = self.motion.swing(cell.step, cell.unit);
@@ -366,7 +370,7 @@ impl<'a> Swept<'a> {
         let bend = (across - place.curvature * along_road * along_road / (1.0 - place.curvature * lateral)).abs()
             + slope.abs() * feet;
         let dev = dev + self.road.slack(s).max(self.road.slack(s - 0.1));
-        Some(Corner { s, clear: width - sign * lateral, dev, bend, lateral, sin, slope })
+        Some(Corner { s, clear: width - sign * lateral, dev, bend, lateral, sin, slope, reach })
     }
 
     /// The first-order bound at `a` throughout a step.
@@ -396,7 +400,9 @@ impl<'a> Swept<'a> {
             + slope * (3.0 * sharp * sin + rate * lateral) / (inside * inside)
             + tube * self.chain.links[cell.unit].half_width * turn;
         let length = cell.a[1] - cell.a[0];
-        (bend * travel * travel / 8.0, curve * length * length / 8.0 + self.road.dip(cell.side, range[0], range[1]))
+        let reach = all.iter().map(|c| c.reach).fold(0.0, f64::max);
+        let dip = self.road.dip(cell.side, range[0], range[1], reach);
+        (bend * travel * travel / 8.0, curve * length * length / 8.0 + dip)
     }
 
     /// The decision once more, in intervals: the corners' nominal leeway from poses, road and widths as they are.
