@@ -7,7 +7,7 @@ use super::group::gamma;
 use super::lanes::{LANES, V, select_negative};
 use super::model::Model;
 use super::sweep::{BLOCK, FIELDS, Minima, ZERO, row};
-use super::track::{BULGE_MOST, Fields, NEAR, READ_M, Track};
+use super::track::{BULGE_MOST, Fields, READ_M, Track};
 
 /// A foot further along than this (metres) is looked up anew.
 const NEAR_M: f64 = 1.0;
@@ -21,7 +21,7 @@ const ASTRAY_PART: f64 = 0.5;
 const ASTRAY_M: f64 = 10.0;
 /// Added to a head's station wherever a point ahead of it is counted from.
 const AHEAD: usize = 1 << 20;
-/// Half-widths that leave their own slope by less, a metre's way, are read at the axis's station.
+/// Half-widths that leave their own slope by less, a metre's way or its square, are read at the axis's station.
 const ROUGH: f64 = 0.01;
 /// Leeway of a point that has no foot: nothing is certified there.
 const LOST_M: f64 = -1e3;
@@ -519,7 +519,7 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let (right_along, right_at) = (seen.along + askew, seen.lateral - across);
     let mut edges = [Edge::left(at, left_along, left_at), Edge::right(at, right_along, right_at)];
     let point = &body.points[index];
-    if CERTIFY && rough(at.excess) {
+    if CERTIFY && rough(at) {
         edges = apart(track, feet, s, point.ahead, body.half_width, &edges);
     }
     let [left, right] = [edges[0].room, edges[1].room];
@@ -558,11 +558,7 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let series = bend * bend * bend * far2 * far2 * 0.2;
     let common = base + second + between + series;
     let slide = stretch * along;
-    let near_m = NEAR as f64 * track.spacing;
-    (
-        left - common - lean_left - edges[0].excess(slide, near_m),
-        right - common - lean_right - edges[1].excess(slide, near_m),
-    )
+    (left - common - lean_left - edges[0].excess(slide), right - common - lean_right - edges[1].excess(slide))
 }
 
 /// One side's point against the edge beside it, read at a station.
@@ -573,9 +569,9 @@ struct Edge {
     /// From the station to the foot.
     on: V,
     slope: V,
-    /// What the reading may be over, a metre's way: near, and farther.
-    near: V,
-    far: V,
+    /// What the reading may be over, a metre's way, and its square.
+    excess: V,
+    rounding: V,
 }
 
 impl Edge {
@@ -583,29 +579,29 @@ impl Edge {
     fn left(at: &Fields<V>, along: V, lateral: V) -> Self {
         let (on, lateral) = foot(at, along, lateral);
         let room = at.left + at.left_slope * on - lateral;
-        Self { room, on, slope: at.left_slope, near: at.left_excess, far: at.excess }
+        Self { room, on, slope: at.left_slope, excess: at.left_excess, rounding: at.rounding }
     }
 
     #[inline(always)]
     fn right(at: &Fields<V>, along: V, lateral: V) -> Self {
         let (on, lateral) = foot(at, along, lateral);
         let room = at.right + at.right_slope * on + lateral;
-        Self { room, on, slope: at.right_slope, near: at.right_excess, far: at.excess }
+        Self { room, on, slope: at.right_slope, excess: at.right_excess, rounding: at.rounding }
     }
 
     /// What the half-width may be less where the point is, up to `slide` from its nominal foot.
     #[inline(always)]
-    fn excess(&self, slide: V, near_m: f64) -> V {
+    fn excess(&self, slide: V) -> V {
         let way = self.on.abs() + slide;
-        let excess = select_negative(V::splat(near_m) - way, self.far, self.near);
         let lost = select_negative(V::splat(READ_M) - way, V::splat(-LOST_M), ZERO);
-        self.slope.abs() * slide + excess * way + lost
+        self.slope.abs() * slide + (self.excess + self.rounding * way) * way + lost
     }
 }
 
 /// Whether half-widths change so much that each side is worth a station of its own.
 #[inline(always)]
-fn rough(excess: V) -> bool {
+fn rough(at: &Fields<V>) -> bool {
+    let excess = at.left_excess.max(at.right_excess).max(at.rounding);
     excess.0.iter().any(|&excess| excess > ROUGH)
 }
 

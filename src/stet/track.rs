@@ -13,8 +13,6 @@ pub(super) const BULGE_MOST: f64 = 0.005;
 
 /// Widths are read by the slope of a station up to so far from it, metres; farther, nothing is certified.
 pub(super) const READ_M: f64 = 6.0;
-/// Nearer than so many stations, the excess is each side's own.
-pub(super) const NEAR: usize = 2;
 
 /// Points are trusted to lie at their foot station while |κ·lateral| stays below this.
 const REACH: f64 = 0.9;
@@ -43,11 +41,11 @@ pub(super) struct Fields<T> {
     pub(super) right_slope: T,
     /// Greatest convexity of either half-width within a body gap, 1/m.
     pub(super) bulge: T,
-    /// By how much a half-width read by its slope is too great at most, a metre's way from the station: within two stations, by side;
-    /// within [`READ_M`], on either.
+    /// By how much a half-width read by its slope is too great at most, σ from the station: by `excess`·σ + `rounding`·σ², up to
+    /// [`READ_M`]; `rounding` serves both sides.
     pub(super) left_excess: T,
     pub(super) right_excess: T,
-    pub(super) excess: T,
+    pub(super) rounding: T,
 }
 
 impl Track {
@@ -90,16 +88,14 @@ impl Track {
             bulge: bulge(&left_dips, &right_dips, h),
             left_excess: Vec::new(),
             right_excess: Vec::new(),
-            excess: Vec::new(),
+            rounding: Vec::new(),
         };
-        let read = |near: usize, width: fn(&Place) -> f64, slope: &[f64]| excess(&places, h, near, width, slope);
-        let far = ((READ_M / h).ceil() as usize).max(NEAR);
-        let (left, right) = (&fields.left_slope, &fields.right_slope);
-        let sides = [read(far, |p| p.left, left), read(far, |p| p.right, right)];
+        let left = excess(&places, h, |p| p.left, &fields.left_slope);
+        let right = excess(&places, h, |p| p.right, &fields.right_slope);
         let fields = Fields {
-            left_excess: read(NEAR, |p| p.left, left),
-            right_excess: read(NEAR, |p| p.right, right),
-            excess: sides[0].iter().zip(&sides[1]).map(|(l, r)| l.max(*r)).collect(),
+            rounding: left.iter().zip(&right).map(|(l, r)| l[1].max(r[1])).collect(),
+            left_excess: left.into_iter().map(|[excess, _]| excess).collect(),
+            right_excess: right.into_iter().map(|[excess, _]| excess).collect(),
             ..fields
         };
         Self { spacing: h, lead, count, fields }
@@ -124,7 +120,7 @@ impl Track {
             bulge: of(&f.bulge),
             left_excess: of(&f.left_excess),
             right_excess: of(&f.right_excess),
-            excess: of(&f.excess),
+            rounding: of(&f.rounding),
         };
         Self { spacing: 2.0 * self.spacing, lead: self.lead / 2, count: self.count.div_ceil(2), fields }
     }
@@ -148,24 +144,30 @@ fn dips(places: &[Place], width: impl Fn(&Place) -> f64) -> Vec<f64> {
         .collect()
 }
 
-/// How fast a half-width read by the slope of a station leaves the true one at most, which is linear between stations, on the way to
-/// the `near`-th station on either side: on a linear piece what the reading is over, divided by the way, is greatest at its ends.
-fn excess(places: &[Place], spacing: f64, near: usize, width: fn(&Place) -> f64, slope: &[f64]) -> Vec<f64> {
+/// How fast a half-width read by the slope of a station leaves the true one at most, which is linear between stations: what the reading
+/// is over, divided by the way σ, is greatest at a station. Up to the first on either side it is e at most, up to the j-th
+/// no more than e + q(j − 1)h, so e + qσ before: `[e, q]`.
+fn excess(places: &[Place], spacing: f64, width: fn(&Place) -> f64, slope: &[f64]) -> Vec<[f64; 2]> {
     let last = places.len() - 1;
-    let mut out = vec![0.0; places.len()];
-    for (k, own) in places.iter().enumerate().filter(|(_, own)| !own.open) {
-        let mut most = 0.0_f64;
-        for j in 1..=near {
+    let most = (READ_M / spacing).ceil() as usize;
+    let of = |(k, own): (usize, &Place)| {
+        let mut at = [0.0_f64; 2];
+        for j in (1..=most).filter(|_| !own.open) {
             let way = j as f64 * spacing;
             for (other, slope) in [(k.checked_sub(j), -slope[k]), (Some(k + j).filter(|&o| o <= last), slope[k])] {
                 let Some(other) = other.map(|o| &places[o]).filter(|other| !other.open) else { continue };
-                most = most.max((width(own) - width(other)) / way + slope);
+                let over = (width(own) - width(other)) / way + slope;
+                if j == 1 {
+                    at[0] = at[0].max(over);
+                } else {
+                    at[1] = at[1].max((over - at[0]) / (way - spacing));
+                }
             }
         }
         // A billionth is rounding.
-        out[k] = if most > 1e-9 { most } else { 0.0 };
-    }
-    out
+        at.map(|x| if x > 1e-9 { x } else { 0.0 })
+    };
+    places.iter().enumerate().map(of).collect()
 }
 
 /// A half-width that may be read anywhere within one station of where it stands: where the width dips between the
@@ -272,7 +274,7 @@ impl Fields<Vec<f64>> {
             bulge: of(&self.bulge),
             left_excess: of(&self.left_excess),
             right_excess: of(&self.right_excess),
-            excess: of(&self.excess),
+            rounding: of(&self.rounding),
         }
     }
 }
