@@ -9,9 +9,10 @@ use netcert::account::AccountRow;
 use netcert::network::{Edge, Network};
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::store::{
-    Area, Bounds, Database, EdgeCertificate, EdgeMeasure, EdgeRow, QueryOptions, Run, StoreError, VehicleRecord,
-    VerdictKind, verdict_words,
+    Area, Bounds, Database, EdgeCertificate, EdgeMeasure, EdgeRow, QueryOptions, Run, StoreError, TurnCertificate, TurnSet,
+    VehicleRecord, VerdictKind, verdict_words,
 };
+use netcert::turns::{Kerbs, turn_facts};
 use netcert::verdict::{UnknownReason, Verdict};
 
 #[path = "support/store_network.rs"]
@@ -253,6 +254,7 @@ fn a_set_is_replaced_whole_and_a_changed_vehicle_loses_its_old_ones() {
             Policy::Lane,
             (0..edges).rev().map(unknown),
             Vec::new(),
+            None,
             &run(),
             &[],
         )
@@ -264,7 +266,7 @@ fn a_set_is_replaced_whole_and_a_changed_vehicle_loses_its_old_ones() {
     let mut longer = vehicle("EU-SEMI16.5");
     longer.definition = r#"{"id":"EU-SEMI16.5","units":[1]}"#.into();
     database
-        .replace_certificates(&longer, Policy::Carriageway, (0..edges).map(unknown), Vec::new(), &run(), &account())
+        .replace_certificates(&longer, Policy::Carriageway, (0..edges).map(unknown), Vec::new(), None, &run(), &account())
         .unwrap();
     assert_eq!(sets(&mut database), ["permit_eu_semi16_5_carriageway", "permit_eu_semi16_5_2"]);
     assert_eq!(database.runs().unwrap().len(), 3);
@@ -282,7 +284,7 @@ fn a_set_with_a_gap_or_a_double_or_a_false_safe_is_refused_and_the_old_one_stand
     let mut refused = |edges: Vec<u32>, says: &str| {
         let rows = edges.into_iter().map(|edge| certificate(edge, 5));
         let error =
-            database.replace_certificates(&vehicle("x"), Policy::Lane, rows, Vec::new(), &run(), &[]).unwrap_err();
+            database.replace_certificates(&vehicle("x"), Policy::Lane, rows, Vec::new(), None, &run(), &[]).unwrap_err();
         assert!(error.to_string().contains(says), "{error}");
     };
     refused((0..edges).filter(|&edge| edge != 17).collect(), "edge 17, vehicle x: it has no certificate");
@@ -292,7 +294,7 @@ fn a_set_with_a_gap_or_a_double_or_a_false_safe_is_refused_and_the_old_one_stand
     false_safe.verdict = Verdict::Safe;
     false_safe.measured.as_mut().unwrap().rsc_m = -0.0001;
     let error =
-        database.replace_certificates(&vehicle("x"), Policy::Lane, [false_safe], Vec::new(), &run(), &[]).unwrap_err();
+        database.replace_certificates(&vehicle("x"), Policy::Lane, [false_safe], Vec::new(), None, &run(), &[]).unwrap_err();
     assert!(matches!(error, StoreError::Unsound { edge: 0, .. }), "{error}");
     database.close().unwrap();
     assert!(std::fs::read(&path).unwrap() == before);
@@ -393,11 +395,18 @@ fn child_that_is_killed() {
     let Some(path) = std::env::var_os(CHILD).map(PathBuf::from) else { return };
     if path.with_extension("replace").exists() {
         let mut database = Database::open_to_change(&path).unwrap();
-        let edges = database.load_network().unwrap().edges.len() as u32;
+        let network = database.load_network().unwrap();
+        let facts = turn_facts(&network, &Kerbs::default());
+        let unknown = |turn| {
+            let verdict = Verdict::Unknown(UnknownReason::Cut);
+            TurnCertificate { turn, verdict, measured: None, path: None, plan: None }
+        };
         loop {
-            let rows = (0..edges).map(|edge| certificate(edge, 9));
+            let rows = (0..network.edges.len() as u32).map(|edge| certificate(edge, 9));
+            let certificates = (0..facts.len() as u32).map(unknown).collect();
+            let turns = Some(TurnSet { network: &network, facts: &facts, certificates });
             database
-                .replace_certificates(&vehicle("EU-SEMI16.5"), Policy::Lane, rows, Vec::new(), &run(), &[])
+                .replace_certificates(&vehicle("EU-SEMI16.5"), Policy::Lane, rows, Vec::new(), turns, &run(), &[])
                 .unwrap();
         }
     }
@@ -433,6 +442,8 @@ fn killed_at_any_moment_the_file_is_whole() {
             9
         };
         assert!((0..).zip(&rows).all(|(i, row)| row.verdict == certificate(i, seed).verdict), "half old, half new");
+        let turned = Database::open(&path).unwrap().has_turns("EU-SEMI16.5", Policy::Lane).unwrap();
+        assert_eq!(turned, seed == 9, "new edges come with their turns");
         whole(&path);
     }
     // What a killed run left is no obstacle to the next.

@@ -21,8 +21,7 @@ use netcert::turns::{Kerbs, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnPar
 use netcert::vehicle::{Catalogue, Vehicle};
 use netcert::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use oracle::draw::Draw;
-use oracle::duel;
-use oracle::{claim, fleet};
+use oracle::fight;
 
 const RING: &str = "abcdefghijklmnopqrstuvwx";
 const ARMS: [(char, char); 4] = [('W', 'a'), ('S', 'g'), ('E', 'm'), ('N', 's')];
@@ -343,21 +342,10 @@ fn no_claim_of_a_passage_is_refuted() {
         for (ends, id) in
             [("WS", "EU-SEMI16.5"), ("WE", "EU-SEMI16.5"), ("NW", "US-WB40"), ("WE", "AU-BDOUBLE26"), ("EN", "US-WB67")]
         {
-            let vehicle: Vehicle = fleet::vehicle(id);
-            let made = drawn.corridors(ends, Policy::Carriageway, Reach::of(&vehicle).unwrap()).unwrap();
-            let model = Model::new(&vehicle).unwrap();
-            let best = best_of(&made.paths, &[&model], &Options::default()).pop().unwrap();
-            let paths = best.map(|(path, _)| path).into_iter().chain([made.paths.len() / 2]);
-            for path in paths {
-                let corridor = &made.paths[path].corridor;
-                let Some(claim) = claim::certify(corridor, &vehicle) else { continue };
-                if claim.rsc_m < -3.0 {
-                    continue;
-                }
-                let (gap_m, outcome) = duel::margin_m(corridor, &vehicle, &claim, &mut draw, 1);
-                assert!(gap_m > -2e-5, "R {radius_m} {ends} {id}: {gap_m} {}", duel::describe(&outcome));
-                fought += 1;
-            }
+            let reach = Reach::of(&catalogued(id)).unwrap();
+            let made = drawn.corridors(ends, Policy::Carriageway, reach).unwrap();
+            let other = made.paths.len() / 2;
+            fought += fight::none_is_refuted(&made.paths, id, other, &format!("R {radius_m} {ends}"), &mut draw);
         }
     }
     println!("{fought} passages held");

@@ -22,8 +22,7 @@ use netcert::turns::{Kerbs, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnPar
 use netcert::vehicle::{Catalogue, Vehicle};
 use netcert::verdict::{ForbiddenReason, Verdict};
 use oracle::draw::Draw;
-use oracle::duel;
-use oracle::{claim, fleet};
+use oracle::fight;
 
 const CROSS: &str = "
             D
@@ -348,21 +347,9 @@ fn no_claim_of_a_turn_is_refuted() {
             ("EBA", "US-WB40"),
             ("DBC", "AU-BDOUBLE26"),
         ] {
-            let vehicle: Vehicle = fleet::vehicle(id);
-            let made = drawn.corridors(nodes, Policy::Carriageway, Reach::of(&vehicle).unwrap());
-            let model = Model::new(&vehicle).unwrap();
-            let best = best_of(&made.paths, &[&model], &Options::default()).pop().unwrap();
-            let paths = best.map(|(path, _)| path).into_iter().chain([made.paths.len() / 3]);
-            for path in paths {
-                let corridor = &made.paths[path].corridor;
-                let Some(claim) = claim::certify(corridor, &vehicle) else { continue };
-                if claim.rsc_m < -3.0 {
-                    continue;
-                }
-                let (gap_m, outcome) = duel::margin_m(corridor, &vehicle, &claim, &mut draw, 1);
-                assert!(gap_m > -2e-5, "{width} {nodes} {id}: {gap_m} {}", duel::describe(&outcome));
-                fought += 1;
-            }
+            let made = drawn.corridors(nodes, Policy::Carriageway, Reach::of(&catalogued(id)).unwrap());
+            let other = made.paths.len() / 3;
+            fought += fight::none_is_refuted(&made.paths, id, other, &format!("{width} {nodes}"), &mut draw);
         }
     }
     println!("{fought} turn corridors held");

@@ -53,6 +53,20 @@ fn checker_and_prover_do_not_know_each_other() {
     assert!(names("use crate::stet::Model;", "stet") && !names("// like stet::Model", "stet"));
 }
 
+/// What the checker is told of roads is made without the prover: the choice between a turn's paths alone looks at a vehicle's motion,
+/// and the checker takes the path that the database names.
+#[test]
+fn roads_and_turns_are_made_without_the_prover() {
+    for folder in ["corridor", "network", "turns"] {
+        for (path, text) in sources(folder).into_iter().filter(|(path, _)| !path.ends_with("turns/rank.rs")) {
+            for module in ["stet", "pipeline"] {
+                assert!(!names(&text, module), "{} uses {module}", path.display());
+            }
+        }
+    }
+    assert!(sources("check").iter().all(|(_, text)| !text.contains("nominal_leeway_m")));
+}
+
 #[test]
 fn the_checker_of_one_corridor_is_smaller_than_the_prover() {
     let lines = |folder: &str, without: &[&str]| -> usize {
@@ -60,7 +74,7 @@ fn the_checker_of_one_corridor_is_smaller_than_the_prover() {
         counted.map(|(_, text)| text.lines().count()).sum()
     };
     // Files and databases are read by other code on the prover's side, too.
-    let checker = lines("check", &["file.rs", "members.rs", "database.rs"]);
+    let checker = lines("check", &["file.rs", "members.rs", "database.rs", "turns.rs", "said.rs"]);
     let prover = lines("stet", &[]);
     println!("check {checker} lines, stet {prover}");
     assert!(checker < prover);

@@ -103,6 +103,12 @@ pub(crate) fn bounds<const W: usize>(
     None
 }
 
+/// What a bound may bow up between the nodes of a step.
+pub(crate) fn bow(chain: &Chain, unit: usize, step_m: f64) -> f64 {
+    let least = chain.links[..=unit].iter().map(|link| link.l).fold(f64::INFINITY, f64::min);
+    1.0 + 0.5 * (step_m / least).powi(2)
+}
+
 /// Folds the outputs' direct part from the back to the front: what acts at once.
 fn fold<const W: usize>(
     chain: &Chain,

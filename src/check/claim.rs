@@ -17,6 +17,9 @@ pub(crate) const TOLERANCE_RAD: f64 = 0.02 * std::f64::consts::PI / 180.0;
 /// Columns of leeway are for pictures; what is promised is the RSC. They are held to 3 cm.
 const COLUMN_TOLERANCE_M: f64 = 0.03;
 
+/// So far from a column's station, metres, may be what its entry is the leeway of: the prover counts a whole body's width at one.
+const BESIDE_M: f64 = 1.5;
+
 /// A leeway below minus this says that nothing is bounded.
 const NOTHING_M: f64 = 50.0;
 
@@ -69,6 +72,8 @@ pub struct Subject<'a> {
     pub(crate) chain: &'a Chain,
     pub(crate) road: Road,
     pub(crate) motion: Option<Motion>,
+    /// Of the steer axle's path at the corridor's stations, metres.
+    shifts: Vec<f64>,
 }
 
 impl<'a> Subject<'a> {
@@ -88,7 +93,16 @@ impl<'a> Subject<'a> {
             Road::new(corridor, ahead + 3.0 * corridor.spacing_m, 1.1 * behind + 3.0 * corridor.spacing_m, lenient)?;
         let (lead, last) = (road.lead as f64, road.count as f64 - 1.0);
         let motion = Motion::new(chain, &road, |s| shift((s - lead).clamp(0.0, last)));
-        Ok(Self { chain, road, motion })
+        let shifts = (0..road.count).map(|k| shift(k as f64)).collect();
+        Ok(Self { chain, road, motion, shifts })
+    }
+
+    /// The shift of the steer axle's path `s` stations from the corridor's first, metres.
+    pub(crate) fn planned(&self, s: f64) -> f64 {
+        let last = self.shifts.len() - 1;
+        let s = s.clamp(0.0, last as f64);
+        let k = (s as usize).min(last.saturating_sub(1));
+        self.shifts[k] + (self.shifts[(k + 1).min(last)] - self.shifts[k]) * (s - k as f64)
     }
 
     /// What comes of each claim, and how many kilometres of corridor were swept.
@@ -140,7 +154,13 @@ impl<'a> Subject<'a> {
             let place = |k: usize| self.road.place((self.road.lead + k) as f64).curvature.abs();
             1.5 * place(k).max(place(k + 1)) * self.road.spacing.powi(2) + COLUMN_TOLERANCE_M
         };
-        targets[side] = column.windows(2).enumerate().map(|(k, pair)| pair[0].min(pair[1]) - between(k)).collect();
+        // An entry is that of bodies whose axis passes the station, to a station; their sides' feet are elsewhere when they stand askew.
+        let beside = (BESIDE_M / self.road.spacing).ceil() as usize;
+        let least = |k: usize| {
+            let near = &column[k.saturating_sub(beside)..(k + beside + 2).min(column.len())];
+            near.iter().fold(f64::INFINITY, |least, &m| least.min(m))
+        };
+        targets[side] = (0..column.len().saturating_sub(1)).map(|k| least(k) - between(k)).collect();
         // The column begins with the steer axle on the first station: what is ahead of it then has passed its first feet.
         let (ahead, _) = self.chain.reach_m();
         let begun = ((ahead / self.road.spacing).ceil() as usize).min(targets[side].len());

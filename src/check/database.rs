@@ -8,14 +8,15 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::chain::Chain;
-use super::claim::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, finding};
+use super::claim::{Finding, Outcome, Subject, TOLERANCE_M, finding};
+use super::said::Said;
 use super::{plan, printed};
 use crate::corridor::{EdgeSpan, Params, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::osm::facts::{Policy, Strip};
-use crate::store::{EdgeRow, Named as _};
+use crate::store::EdgeRow;
 use crate::vehicle::Vehicle;
-use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
+use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
 /// Strips are measured across the way's line, widths across the corridor's: they differ by the angle between.
 const WIDTH_TOLERANCE_M: f64 = 0.01;
@@ -41,10 +42,10 @@ pub struct SetClaim<'a> {
 /// What came of one row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowOutcome {
-    /// Index of the edge.
-    pub edge: u32,
-    /// `edge_id`.
-    pub edge_id: i64,
+    /// Index of the edge or turn.
+    pub index: u32,
+    /// `edge_id` or `turn_id`.
+    pub id: i64,
     /// As claimed.
     pub verdict: Verdict,
     /// What came of it.
@@ -117,7 +118,7 @@ impl SetClaim<'_> {
         let (mut claims, mut claimed) = (Vec::new(), Vec::new());
         for row in rows {
             if let (Some(span), Some(claim)) =
-                (span_of(row), span_of(row).and_then(|span| claim(row, span, made.corridor.spacing_m)))
+                (span_of(row), span_of(row).and_then(|span| Said::of_edge(row).claim(&span.stations, made.corridor.spacing_m)))
             {
                 claimed.push((row.edge, span));
                 claims.push(claim);
@@ -135,11 +136,7 @@ impl SetClaim<'_> {
                 all.extend(self.road(made, span));
                 all.extend(self.printed(&subject, row, span));
             }
-            // What is called unsafe is not promised; its numbers are checked where there is something to check them by.
-            if row.verdict != Verdict::Safe && row.rsc_m.is_none_or(|rsc_m| rsc_m < 0.0) {
-                all.retain(|finding| !finding.unbounded);
-            }
-            if all.is_empty() { Outcome::Confirmed } else { Outcome::NotConfirmed(all) }
+            Said::of_edge(row).outcome(all)
         };
         let mut outcome = outcome;
         rows.iter().map(|row| said(row, outcome(row))).collect()
@@ -200,7 +197,7 @@ impl SetClaim<'_> {
 }
 
 fn said(row: &EdgeRow, outcome: Outcome) -> RowOutcome {
-    RowOutcome { edge: row.edge, edge_id: row.edge_id, verdict: row.verdict, outcome }
+    RowOutcome { index: row.edge, id: row.edge_id, verdict: row.verdict, outcome }
 }
 
 fn unfit(row: &EdgeRow, why: &str) -> Outcome {
@@ -208,19 +205,6 @@ fn unfit(row: &EdgeRow, why: &str) -> Outcome {
         Verdict::Unknown(_) | Verdict::Forbidden(_) => Outcome::Confirmed,
         _ => Outcome::NotConfirmed(vec![finding("corridor", why)]),
     }
-}
-
-/// What a row's numbers claim.
-fn claim(row: &EdgeRow, span: &EdgeSpan, spacing_m: f64) -> Option<SpanClaim> {
-    (row.rsc_m.is_some() || row.hinge_margin_deg.is_some()).then(|| SpanClaim {
-        stations: span.stations.clone(),
-        rsc_m: row.rsc_m,
-        hinge_margin_rad: row.hinge_margin_deg.map(f64::to_radians),
-        shrink: row.shrink.unwrap_or(1.0),
-        limiting: row.limiting_s_m.zip(row.limiting_unit).zip(row.limiting_side).map(|((s, unit), side)| {
-            (span.stations.start as f64 * spacing_m + s, usize::from(unit), usize::from(side.name() == "right"))
-        }),
-    })
 }
 
 /// The verdict that follows from the law, from whether there is a corridor, and from the row's own numbers.
@@ -232,13 +216,5 @@ fn expected(edge: &Edge, vehicle: &Vehicle, unknown: Option<UnknownReason>, row:
         (.., Some(reason)) => return Verdict::Unknown(reason),
         _ => {}
     }
-    match (row.rsc_m, row.hinge_margin_deg) {
-        (Some(rsc), Some(hinge)) if rsc >= 0.0 && hinge >= 0.0 => legal.unwrap_or(Verdict::Safe),
-        (Some(rsc), _) if rsc < 0.0 => Verdict::Unsafe(UnsafeReason::Width),
-        // Which of its joints fails is the row's word; that one does, its number says.
-        _ => match row.verdict {
-            Verdict::Unsafe(UnsafeReason::SteeringLock) => row.verdict,
-            _ => Verdict::Unsafe(UnsafeReason::Articulation),
-        },
-    }
+    Said::of_edge(row).follows(legal.unwrap_or(Verdict::Safe))
 }

@@ -95,6 +95,8 @@ struct Corner {
     lateral: f64,
     sin: f64,
     slope: f64,
+    /// Stations by which the foot may be off.
+    reach: f64,
 }
 
 /// A cell: one side of one unit in one step.
@@ -346,10 +348,12 @@ impl<'a> Swept<'a> {
         }
         let at = a - b * sin / cos;
         let slide = cos * link.half_width * tube.a + sin.abs() * (tube.y + a.abs() * tube.a);
+        // How far, in stations, its foot may be from the nominal one: what the half-width falls on that way is deducted.
+        let reach = slide / narrow / self.road.spacing * UP;
         let second = cos * a.abs() * tube.r1 / link.l
             + 0.5 * sin.abs() * a.abs() * tube.a * tube.a
             + 0.5 * place.curvature.abs() / narrow * slide * slide
-            + slope.abs() * slide;
+            + (width - self.road.narrowest(cell.side, s - reach, s + reach));
         let dev = (cos * self.off(cell.step, cell.unit, at, tube) + second) * UP;
         // Second derivative of the lateral place, per metre of the coupling's path.
         let swing = self.motion.swing(cell.step, cell.unit);
@@ -366,7 +370,7 @@ impl<'a> Swept<'a> {
         let bend = (across - place.curvature * along_road * along_road / (1.0 - place.curvature * lateral)).abs()
             + slope.abs() * feet;
         let dev = dev + self.road.slack(s).max(self.road.slack(s - 0.1));
-        Some(Corner { s, clear: width - sign * lateral, dev, bend, lateral, sin, slope })
+        Some(Corner { s, clear: width - sign * lateral, dev, bend, lateral, sin, slope, reach })
     }
 
     /// The first-order bound at `a` throughout a step.
@@ -396,7 +400,9 @@ impl<'a> Swept<'a> {
             + slope * (3.0 * sharp * sin + rate * lateral) / (inside * inside)
             + tube * self.chain.links[cell.unit].half_width * turn;
         let length = cell.a[1] - cell.a[0];
-        (bend * travel * travel / 8.0, curve * length * length / 8.0 + self.road.dip(cell.side, range[0], range[1]))
+        let reach = all.iter().map(|c| c.reach).fold(0.0, f64::max);
+        let dip = self.road.dip(cell.side, range[0], range[1], reach);
+        (bend * travel * travel / 8.0, curve * length * length / 8.0 + dip)
     }
 
     /// The decision once more, in intervals: the corners' nominal leeway from poses, road and widths as they are.
@@ -439,17 +445,13 @@ impl<'a> Swept<'a> {
 
     /// Bounds of the adjoint for a unit throughout a step, and for the second order of the history before it.
     fn sharpen(&mut self, cell: &Cell, knots: Range<usize>) {
-        let (_, behind) = self.chain.reach_m();
-        let history = (HISTORY_LENGTHS * behind / self.tubes.step_m) as usize;
-        for step in cell.step.saturating_sub(history).max(self.tubes.first)..=cell.step {
-            self.tighten(step);
-        }
+        self.tighten_up_to(cell.step);
         self.run(cell.unit, cell.step + 1, knots.clone());
         let first = cell.step == self.tubes.first;
         if !first {
             self.run(cell.unit, cell.step, knots.clone());
         }
-        let bow = self.bow(cell.unit);
+        let bow = adjoint::bow(self.chain, cell.unit, self.tubes.step_m);
         let count = Knots::new(&self.chain.links[cell.unit], KNOT_M).places().len();
         let at = |node: usize, knot: usize| self.at_nodes.get(&(cell.unit, node)).map_or(f64::INFINITY, |at| at[knot]);
         let exact = self.exact.entry((cell.unit, cell.step)).or_insert_with(|| vec![f64::NAN; count]);
@@ -473,15 +475,9 @@ impl<'a> Swept<'a> {
         }
     }
 
-    /// What a bound may bow up between the nodes of a step.
-    fn bow(&self, unit: usize) -> f64 {
-        let least = self.chain.links[..=unit].iter().map(|link| link.l).fold(f64::INFINITY, f64::min);
-        1.0 + 0.5 * (self.tubes.step_m / least).powi(2)
-    }
-
     /// The adjoint's bounds on axle and heading throughout a step: the greater of its ends', and what it may bow up between them.
     fn exact_pose(&mut self, step: usize, unit: usize) -> Option<[f64; 2]> {
-        let bow = self.bow(unit);
+        let bow = adjoint::bow(self.chain, unit, self.tubes.step_m);
         let mut at = |node: usize| {
             let (chain, tubes) = (self.chain, &self.tubes);
             let outputs = [Output::Point(0.0), Output::Heading];
@@ -490,6 +486,15 @@ impl<'a> Swept<'a> {
         let end = at(step + 1)?;
         let start = if step == self.tubes.first { end } else { at(step)? };
         Some([0, 1].map(|k| start[k].max(end[k]) * bow))
+    }
+
+    /// Lets the adjoint bound what a step's bounds rest on.
+    fn tighten_up_to(&mut self, last: usize) {
+        let (_, behind) = self.chain.reach_m();
+        let history = (HISTORY_LENGTHS * behind / self.tubes.step_m) as usize;
+        for step in last.saturating_sub(history).max(self.tubes.first)..=last {
+            self.tighten(step);
+        }
     }
 
     /// Lets the adjoint bound axle and heading of all units in a step, so that its second order is that of what is so.
@@ -502,6 +507,7 @@ impl<'a> Swept<'a> {
             if tube.extra + tube.extra_coupling < 5e-3 {
                 continue;
             }
+            self.tubes.tighten_coupling(self.chain, self.motion, step, unit);
             if let Some([y, a]) = self.exact_pose(step, unit) {
                 let a = a + tube.r1 / self.chain.links[unit].l;
                 self.tubes.tighten(self.chain, self.motion, step, unit, y, a);
@@ -601,6 +607,8 @@ impl Swept<'_> {
         if y <= enough {
             return Some(y);
         }
+        self.tighten_up_to(step);
+        let y = self.tubes.get(step, unit)?.y;
         Some(y.min(self.exact_pose(step, unit)?[0]))
     }
 

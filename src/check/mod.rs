@@ -2,7 +2,7 @@
 //!
 //! Written from `docs/proof.md` and the file formats. Nothing of `stet` or `pipeline` is used here, and nothing there
 //! uses this (`tests/verify_independence.rs`). What the statement is about comes from those who make it: `vehicle`, `corridor`
-//! (the road's shape and widths) and `network`; what is claimed of it is worked out again.
+//! (the road's shape and widths), `turns` (a turn's area, paths and widths) and `network`; what is claimed of it is worked out again.
 //!
 //! | file | for |
 //! | --- | --- |
@@ -18,7 +18,7 @@
 //! | `claim` | what is said of one vehicle on one corridor, and what comes of it |
 //! | `printed` | the paper's 𝒞, which decides nothing |
 //! | `file`, `members` | certificate files |
-//! | `database` | databases |
+//! | `database`, `turns`, `said` | databases: their edges, their turns, what a row of either says |
 //!
 //! How numbers are trusted. What is *chosen* – the nominal motion, feet, kernels – is plain `f64`: another choice would
 //! give another bound, not a wrong one, and what rounding does to it is counted (`motion::DEFECT_RAD`). What *bounds* is rounded
@@ -38,7 +38,9 @@ mod motion;
 mod plan;
 mod printed;
 mod road;
+mod said;
 mod tubes;
+mod turns;
 
 pub use chain::Chain;
 pub use claim::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M};
@@ -47,6 +49,7 @@ pub use file::{Report, certificate, sealed};
 pub use interval::Interval;
 pub use plan::shift;
 pub use road::RoadError;
+pub use turns::TurnsClaim;
 
 /// Rounds up a sum of at most some thousand products of non-negative numbers, each of a few factors.
 pub(crate) const UP: f64 = 1.0 + 1e-12;

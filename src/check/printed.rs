@@ -1,6 +1,6 @@
 //! The paper's certificate as printed, 𝒞 = w_min − (h_Ω + r_N), from its own formulas: no decision rests on it, but what a
 //! file says of it must be so. r_N: the largest radius of the last unit's ellipse (Eq. 15 to 19, β as printed); h_Ω: the most that
-//! the last axle is nominally off the centreline at its foot; w_min: the least half-width.
+//! the last axle is nominally off the steer axle's path, both taken across the centreline at the axle's foot; w_min: the least half-width.
 
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
@@ -35,7 +35,7 @@ pub(super) fn rsc_m(subject: &Subject<'_>, vehicle: &Vehicle, stations: Range<us
             if let Some((s, _, lateral)) = subject.foot(p, node as f64 / STEPS as f64)
                 && (own.start as f64..=(own.end - 1) as f64).contains(&s)
             {
-                off = off.max(lateral.abs());
+                off = off.max((lateral - subject.planned(s - road.lead as f64)).abs());
             }
         }
     }

@@ -157,11 +157,20 @@ impl Road {
         (w0 + slope * x, slope)
     }
 
-    /// By how much, at most, a half-width between `from` and `to` (stations) lies below the straight line between any two of
-    /// its values there: where the slope grows, a quarter of the growth times the length.
-    pub(crate) fn dip(&self, side: usize, from: f64, to: f64) -> f64 {
+    /// The least half-width on a side between `from` and `to`.
+    pub(crate) fn narrowest(&self, side: usize, from: f64, to: f64) -> f64 {
         let first = (from.max(0.0).floor() as usize + 1).min(self.len());
-        let end = (to.max(0.0).ceil() as usize).min(self.len() - 1);
+        let end = (to.max(0.0).ceil() as usize).clamp(first, self.len().max(first));
+        let ends = self.width(side, from).0.min(self.width(side, to).0);
+        self.widths[first..end].iter().fold(ends, |least, widths| least.min(widths[side]))
+    }
+
+    /// By how much, at most, the least half-width within `reach` of a place between `from` and `to` (all in stations) lies below the
+    /// straight line between any two of its values there: where the slope grows, a quarter of the growth times the length. (Taking
+    /// the least around a place moves what the slope grows by, and parts it, but adds nothing.)
+    pub(crate) fn dip(&self, side: usize, from: f64, to: f64, reach: f64) -> f64 {
+        let first = ((from - reach).max(0.0).floor() as usize + 1).min(self.len());
+        let end = ((to + reach).max(0.0).ceil() as usize).min(self.len() - 1);
         let mut growth = 0.0;
         for k in first.max(1)..end {
             let [a, b, c] = [k - 1, k, k + 1].map(|k| self.widths[k][side]);

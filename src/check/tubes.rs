@@ -4,13 +4,15 @@
 //! In each step the coefficients are taken at their worst, so that the bounds hold between nodes as well.
 
 use super::UP;
-use super::adjoint::Coefficients;
+use super::adjoint::{self, Coefficients, Output};
 use super::chain::{Chain, Link};
 use super::motion::{Motion, STEPS, Swing};
 
 /// Assumption A3.
 const MOST_HEADING_RAD: f64 = 0.6;
 const QUARTER_TURN_RAD: f64 = std::f64::consts::FRAC_PI_2 - 1e-9;
+/// Where the filter lets a heading be off by more, the adjoint is asked: hinge by hinge a long chain loses its way in tight turns.
+const LOOSE_RAD: f64 = 0.3;
 /// Rounds of guessing until a bound reproduces itself.
 const ROUNDS: usize = 60;
 
@@ -75,6 +77,8 @@ pub(crate) struct Tubes {
     coefficients: Vec<Coefficients>,
     /// `extra` at the end of the last step, a unit.
     ends: Vec<f64>,
+    /// Axle and heading at the end of the last step as the adjoint has them, where it was asked.
+    exact: Vec<Option<[f64; 2]>>,
 }
 
 impl Tubes {
@@ -88,6 +92,7 @@ impl Tubes {
             tubes: Vec::new(),
             coefficients: Vec::new(),
             ends: vec![0.0; units],
+            exact: vec![None; units],
         }
     }
 
@@ -97,10 +102,11 @@ impl Tubes {
         let ends = before.map_or(vec![0.0; wider.units], |before| {
             before.iter().map(|tube| tube.map_or(0.0, |tube| tube.extra)).collect()
         });
-        Self { first, tolerance_m, tubes: Vec::new(), coefficients: Vec::new(), ends, ..*wider }
+        let exact = vec![None; wider.units];
+        Self { first, tolerance_m, tubes: Vec::new(), coefficients: Vec::new(), ends, exact, ..*wider }
     }
 
-    /// Adds the next step. Where the recursion does not close, nothing is bounded in it, and the filter begins anew.
+    /// Adds the next step. Where neither the recursion nor the adjoint closes, nothing is bounded in it, and the filter begins anew.
     pub(crate) fn advance(&mut self, chain: &Chain, motion: &Motion) {
         let step = self.first + self.tubes.len() / self.units;
         let mut passed = Passed::steer_axle(self.tolerance_m, motion.swing(step, 0).bulge);
@@ -126,10 +132,24 @@ impl Tubes {
             };
             let before =
                 self.tubes.len().checked_sub(i + self.units).and_then(|k| self.tubes.get(k + i).copied().flatten());
-            let Some((tube, end)) = unit.settle(&passed, before) else {
+            let coupling = match i.checked_sub(1).and_then(|ahead| Some((ahead, self.tubes.last()?.as_ref()?))) {
+                Some((ahead, tube)) => tube.y + chain.links[ahead].d.abs() * tube.a + passed.zh,
+                None => self.tolerance_m + passed.zh,
+            };
+            let plain = unit.settle(&passed, before, Lid { coupling, ..Lid::NONE });
+            let found = if plain.as_ref().is_some_and(|(tube, _)| tube.a <= LOOSE_RAD) {
+                self.exact[i] = None;
+                plain
+            } else {
+                self.lid(chain, &unit, (step, i), &passed, coupling)
+                    .and_then(|lid| unit.settle(&passed, before, lid))
+                    .or(plain)
+            };
+            let Some((tube, end)) = found else {
                 self.tubes.truncate(first);
                 self.tubes.extend(std::iter::repeat_n(None, self.units));
                 self.ends.fill(0.0);
+                self.exact.fill(None);
                 return;
             };
             self.ends[i] = end;
@@ -139,6 +159,46 @@ impl Tubes {
                 passed = unit.pass_on(&passed, &tube, next, &bends[i + 1], swing);
             }
         }
+    }
+
+    /// What the adjoint says of a unit throughout a step that is not there yet: its own second order is guessed, and the guess raised
+    /// until the bounds bear it out.
+    fn lid(
+        &mut self,
+        chain: &Chain,
+        unit: &Unit<'_>,
+        (step, index): (usize, usize),
+        passed: &Passed,
+        coupling: f64,
+    ) -> Option<Lid> {
+        let outputs = [Output::Point(0.0), Output::Heading];
+        let start = match self.exact[index] {
+            None if step > self.first => adjoint::bounds::<2>(chain, self, index, step, outputs)?,
+            known => known.unwrap_or_default(),
+        };
+        let bow = adjoint::bow(chain, index, self.step_m);
+        let mut guess = start.map(|bound| bound * 1.02 + 1e-6);
+        self.exact[index] = None;
+        for _ in 0..ROUNDS {
+            let [y, a] = guess;
+            if !unit.bounded(a) {
+                return None;
+            }
+            let r1 = r1(unit.link, &unit.bend, unit.curvature, y, a);
+            let z = z(unit.link, &unit.bend, y, a, r1);
+            self.tubes.push(Some(Tube { y, e: coupling, a, r1, z, zh: passed.zh, ..Tube::default() }));
+            let end = adjoint::bounds::<2>(chain, self, index, step + 1, outputs);
+            self.tubes.pop();
+            let end = end?;
+            let most = [0, 1].map(|k| start[k].max(end[k]) * bow);
+            let most = [most[0], (most[1] + r1 / unit.link.l) * UP];
+            if most[0] <= y && most[1] <= a {
+                self.exact[index] = Some(end);
+                return Some(Lid { axle: y, heading: a, coupling });
+            }
+            guess = [0, 1].map(|k| if most[k] > guess[k] { most[k] * 1.02 + 1e-9 } else { guess[k] });
+        }
+        None
     }
 
     pub(crate) fn coefficients(&self, step: usize, unit: usize) -> &Coefficients {
@@ -167,6 +227,40 @@ impl Tubes {
             tube.z = tube.z.min(z(link, &bend, tube.y, tube.a, tube.r1));
         }
     }
+
+    /// The second order of a step's couplings once more, from what is known of the units by now, front to rear: of the coupling of
+    /// `unit` itself.
+    pub(crate) fn tighten_coupling(&mut self, chain: &Chain, motion: &Motion, step: usize, unit: usize) {
+        let mut passed = Passed::steer_axle(self.tolerance_m, motion.swing(step, 0).bulge);
+        for i in 0..unit {
+            let Some(tube) = self.get(step, i).copied() else { return };
+            let bend = |i: usize| Bend::of(&chain.links[i], motion.swing(step, i), self.step_m);
+            let own = Unit {
+                link: &chain.links[i],
+                bend: bend(i),
+                curvature: motion.swing(step, i).curvature,
+                gains: [0.0; 3],
+                step_m: self.step_m,
+                extra: 0.0,
+            };
+            passed = own.pass_on(&passed, &tube, &chain.links[i + 1], &bend(i + 1), motion.swing(step, i + 1));
+        }
+        if let Some(Some(tube)) = self.tubes.get_mut((step - self.first) * self.units + unit) {
+            tube.zh = tube.zh.min(passed.zh);
+        }
+    }
+}
+
+/// Bounds that hold in a step whatever the filter says: of the axle, the heading and the front coupling.
+#[derive(Debug, Clone, Copy)]
+struct Lid {
+    axle: f64,
+    heading: f64,
+    coupling: f64,
+}
+
+impl Lid {
+    const NONE: Self = Self { axle: f64::INFINITY, heading: f64::INFINITY, coupling: f64::INFINITY };
 }
 
 /// What one unit hands to the next in a step.
@@ -201,7 +295,7 @@ struct Unit<'a> {
 
 impl Unit<'_> {
     /// The bounds of the step: guessed, computed, raised until they reproduce themselves; and `extra` at its end.
-    fn settle(&self, passed: &Passed, before: Option<Tube>) -> Option<(Tube, f64)> {
+    fn settle(&self, passed: &Passed, before: Option<Tube>, lid: Lid) -> Option<(Tube, f64)> {
         let (link, bend) = (self.link, &self.bend);
         let eta =
             (0..2).map(|k| (bend.sec[k] - 1.0).max((passed.cos_chi[k] * bend.sec[k] - 1.0).abs())).fold(0.0, f64::max);
@@ -211,29 +305,35 @@ impl Unit<'_> {
         let rho = bend.rho();
         let off_pace = (rho[0] - 1.0).abs().max((rho[1] - 1.0).abs());
         let decay = (-self.step_m / link.l).exp();
-        let e = self.gains[2] + passed.extra;
+        let e = (self.gains[2] + passed.extra).min(lid.coupling);
         let mut guess = before.map_or([self.extra + 1e-6, self.gains[1] * 1.01], |tube| [tube.extra, tube.a]);
         for _ in 0..ROUNDS {
-            let [extra, a] = guess;
-            if !(a + link.sway <= MOST_HEADING_RAD && bend.angle + a + link.sway < QUARTER_TURN_RAD) {
+            let [extra, a] = [guess[0], guess[1].min(lid.heading)];
+            if !self.bounded(a) {
                 return None;
             }
-            let y = self.gains[0] + extra;
+            let y = (self.gains[0] + extra).min(lid.axle);
             let r1 = r1(link, bend, self.curvature, y, a);
             let z = z(link, bend, y, a, r1);
             let source = extra_coupling + rho[1].max(rho[0]) * z + off_pace * link.l * (a + link.sway);
             let end = (self.extra * decay + source * (1.0 - decay)) * UP + 1e-12;
             let most = end.max(self.extra);
-            let heading = (self.gains[1] + (most + extra_coupling + r1) / link.l) * UP;
+            let heading = ((self.gains[1] + (most + extra_coupling + r1) / link.l) * UP).min(lid.heading);
             if most <= extra && heading <= a {
-                let tube =
-                    Tube { extra: most, extra_coupling, y: self.gains[0] + most, e, a: heading, r1, z, zh: passed.zh };
+                let y = (self.gains[0] + most).min(lid.axle);
+                let tube = Tube { extra: most, extra_coupling, y, e, a: heading, r1, z, zh: passed.zh };
                 return Some((tube, end));
             }
             let raised = |new: f64, old: f64| if new > old { new * 1.02 + 1e-9 } else { old };
             guess = [raised(most, extra), raised(heading, a)];
         }
         None
+    }
+
+    /// Whether the bounds hold for a heading that is off by `a` (A3).
+    fn bounded(&self, a: f64) -> bool {
+        let most = a + self.link.sway;
+        most <= MOST_HEADING_RAD && self.bend.angle + most < QUARTER_TURN_RAD
     }
 
     /// From this unit's tube to the coupling of the next.

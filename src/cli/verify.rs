@@ -8,11 +8,15 @@ use std::time::Instant;
 use anyhow::{anyhow, bail};
 use clap::Args;
 use netcert::account::AccountRow;
-use netcert::check::{self, Outcome, Report, RowOutcome, SetClaim, SetReport};
+use netcert::check::{self, Outcome, Report, RowOutcome, SetClaim, SetReport, TurnsClaim};
 use netcert::network::Network;
 use netcert::osm::facts::Policy;
-use netcert::store::{Area, Bounds, CertifiedSet, Database, EdgeRow, Named, QueryOptions, verdict_words};
+use netcert::store::{
+    Area, Bounds, CertifiedSet, Database, EdgeRow, Named, QueryOptions, TurnQuery, TurnRow, verdict_words,
+};
+use netcert::turns::{TurnFacts, turn_facts};
 use netcert::vehicle::Vehicle;
+use netcert::verdict::Verdict;
 
 use super::Session;
 use super::area::bounds;
@@ -53,10 +57,10 @@ pub(crate) struct Verify {
     /// Only certificates under this policy.
     #[arg(long, value_name = "POLICY", value_parser = word::<Policy>(), requires = "db")]
     corridor: Option<Policy>,
-    /// Only edges that touch this box, degrees.
+    /// Only edges and turns that touch this box, degrees.
     #[arg(long, value_name = "W,S,E,N", value_parser = bounds, allow_hyphen_values = true, requires = "db")]
     bbox: Option<Bounds>,
-    /// Only so many certificates of each vehicle, drawn with a fixed seed.
+    /// Only so many certificates of each vehicle, of edges and again of turns, drawn with a fixed seed.
     #[arg(long, value_name = "N", requires = "db")]
     sample: Option<usize>,
     /// The extract that the database was made from: its hash is compared.
@@ -79,21 +83,21 @@ impl Verify {
         let network = database.load_network()?;
         let sets = self.sets(&mut database)?;
         let mut out = results();
-        let mut table = Table::new(&["vehicle", "corridor", "verdict", ">confirmed", ">not", ">malformed"]);
+        let mut table = Table::new(&["vehicle", "corridor", "of", "verdict", ">confirmed", ">not", ">malformed"]);
+        let facts = turn_facts(&network, &how::recorded(&mut database)?.turn_params().kerbs);
         for set in &sets {
             let begun = Instant::now();
             let report = self.set(&mut database, &network, set)?;
-            let seconds = begun.elapsed().as_secs_f64();
-            session.progress.say(&format!(
-                "{} ({} policy): {} certificates on {:.0} km in {seconds:.1} s: {:.1} km × vehicle/s",
-                set.vehicle_id,
-                set.policy.name(),
-                grouped(report.rows.len() as u64),
-                report.swept_km,
-                report.swept_km / seconds.max(1e-9),
-            ));
-            count(&mut table, set, &report);
-            complaints.extend(report.rows.iter().filter_map(|row| complaint(set, row)));
+            tell(session, set, "edges", &report, begun);
+            count(&mut table, (set, "edges"), &report);
+            complaints.extend(report.rows.iter().filter_map(|row| complaint((set, "edge"), row)));
+            if database.has_turns(&set.vehicle_id, set.policy)? {
+                let begun = Instant::now();
+                let report = self.turns(&mut database, (&network, &facts), set)?;
+                tell(session, set, "turns", &report, begun);
+                count(&mut table, (set, "turns"), &report);
+                complaints.extend(report.rows.iter().filter_map(|row| complaint((set, "turn"), row)));
+            }
         }
         table.write(&mut out, "")?;
         for line in complaints.iter().take(MOST_LISTED) {
@@ -119,16 +123,13 @@ impl Verify {
     }
 
     fn set(&self, database: &mut Database, network: &Network, set: &CertifiedSet) -> anyhow::Result<SetReport> {
-        let records = database.vehicles()?;
-        let Some(record) = records.into_iter().find(|record| record.id == set.vehicle_id) else {
-            bail!("{}: its definition is missing", set.vehicle_id);
-        };
-        let vehicle = Vehicle::from_json(&record.definition)?;
+        let vehicle = defined(database, set)?;
         let settings = how::recorded(database)?;
         let query =
             QueryOptions { area: self.bbox.map(Area::Bounds), ..QueryOptions::new(&set.vehicle_id, set.policy) };
         let rows: Vec<EdgeRow> = database.query(&query)?.collect::<Result<_, _>>()?;
-        let rows: BTreeMap<u32, EdgeRow> = self.sampled(rows).into_iter().map(|row| (row.edge, row)).collect();
+        let rows = self.sampled(rows, |row| row.edge_id);
+        let rows: BTreeMap<u32, EdgeRow> = rows.into_iter().map(|row| (row.edge, row)).collect();
         let plans = database.plans(&set.vehicle_id, set.policy)?;
         let claim = SetClaim {
             network,
@@ -141,12 +142,42 @@ impl Verify {
         Ok(claim.check())
     }
 
-    /// Rows with the least hashes of seed and edge id.
-    fn sampled(&self, mut rows: Vec<EdgeRow>) -> Vec<EdgeRow> {
+    fn turns(
+        &self,
+        database: &mut Database,
+        (network, facts): (&Network, &[TurnFacts]),
+        set: &CertifiedSet,
+    ) -> anyhow::Result<SetReport> {
+        let vehicle = defined(database, set)?;
+        let params = how::recorded(database)?.turn_params();
+        let every = QueryOptions::new(&set.vehicle_id, set.policy);
+        let edges: BTreeMap<u32, Verdict> = database
+            .query(&every)?
+            .map(|row| row.map(|row| (row.edge, row.verdict)))
+            .collect::<Result<_, _>>()?;
+        let query = TurnQuery { area: self.bbox.map(Area::Bounds), ..TurnQuery::new(&set.vehicle_id, set.policy) };
+        let rows = self.sampled(database.query_turns(&query)?, |row| row.turn_id);
+        let rows: BTreeMap<u32, TurnRow> = rows.into_iter().map(|row| (row.turn, row)).collect();
+        let plans = database.turn_plans(&set.vehicle_id, set.policy)?;
+        let claim = TurnsClaim {
+            network,
+            vehicle: &vehicle,
+            policy: set.policy,
+            params: &params,
+            facts,
+            edges: &edges,
+            rows: &rows,
+            plans: &plans,
+        };
+        Ok(claim.check())
+    }
+
+    /// Rows with the least hashes of seed and id.
+    fn sampled<R>(&self, mut rows: Vec<R>, id: impl Fn(&R) -> i64) -> Vec<R> {
         if let Some(n) = self.sample {
-            let key = |row: &EdgeRow| {
+            let key = |row: &R| {
                 let mut bytes = SEED.to_le_bytes().to_vec();
-                bytes.extend(row.edge_id.to_le_bytes());
+                bytes.extend(id(row).to_le_bytes());
                 *blake3::hash(&bytes).as_bytes()
             };
             rows.sort_by_cached_key(key);
@@ -191,6 +222,27 @@ impl Verify {
     }
 }
 
+/// The vehicle of a set, as the database defines it.
+fn defined(database: &mut Database, set: &CertifiedSet) -> anyhow::Result<Vehicle> {
+    let records = database.vehicles()?;
+    let Some(record) = records.into_iter().find(|record| record.id == set.vehicle_id) else {
+        bail!("{}: its definition is missing", set.vehicle_id);
+    };
+    Ok(Vehicle::from_json(&record.definition)?)
+}
+
+fn tell(session: &Session, set: &CertifiedSet, what: &str, report: &SetReport, begun: Instant) {
+    let seconds = begun.elapsed().as_secs_f64();
+    session.progress.say(&format!(
+        "{} ({} policy): {} certificates of {what} on {:.0} km in {seconds:.1} s: {:.1} km × vehicle/s",
+        set.vehicle_id,
+        set.policy.name(),
+        grouped(report.rows.len() as u64),
+        report.swept_km,
+        report.swept_km / seconds.max(1e-9),
+    ));
+}
+
 /// Stages whose parts do not add up to what was read.
 fn unbalanced(account: &[AccountRow]) -> Vec<String> {
     let parts = |total: &AccountRow| -> Option<u64> {
@@ -205,7 +257,7 @@ fn unbalanced(account: &[AccountRow]) -> Vec<String> {
     total.filter(wrong).map(|row| format!("{} {}s of stage {} do not add up", row.count, row.item, row.stage)).collect()
 }
 
-fn count(table: &mut Table, set: &CertifiedSet, report: &SetReport) {
+fn count(table: &mut Table, (set, what): (&CertifiedSet, &str), report: &SetReport) {
     let mut counts: BTreeMap<&str, [u64; 3]> = BTreeMap::new();
     for row in &report.rows {
         let slot = match row.outcome {
@@ -220,6 +272,7 @@ fn count(table: &mut Table, set: &CertifiedSet, report: &SetReport) {
         table.row([
             set.vehicle_id.clone(),
             set.policy.name().to_owned(),
+            what.to_owned(),
             verdict.to_owned(),
             confirmed,
             not,
@@ -228,7 +281,7 @@ fn count(table: &mut Table, set: &CertifiedSet, report: &SetReport) {
     }
 }
 
-fn complaint(set: &CertifiedSet, row: &RowOutcome) -> Option<String> {
+fn complaint((set, what): (&CertifiedSet, &str), row: &RowOutcome) -> Option<String> {
     let (word, why) = match &row.outcome {
         Outcome::Confirmed => return None,
         Outcome::NotConfirmed(found) => {
@@ -237,7 +290,7 @@ fn complaint(set: &CertifiedSet, row: &RowOutcome) -> Option<String> {
         }
         Outcome::Malformed(why) => ("malformed", why.clone()),
     };
-    Some(format!("{word:<13}  {} edge {}: {why}", set.vehicle_id, row.edge_id))
+    Some(format!("{word:<13}  {} {what} {}: {why}", set.vehicle_id, row.id))
 }
 
 fn verify_file(path: &Path) -> anyhow::Result<()> {

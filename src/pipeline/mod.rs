@@ -25,7 +25,7 @@ use crate::osm::facts::{Countries, CountriesError, Policy, RulesError, cross_sec
 use crate::osm::pbf::{HeaderInfo, ReadError};
 use crate::osm::{self};
 use crate::stet::{Model, ModelError, Options};
-use crate::store::{Database, EdgeCertificate, Run, StoreError, VehicleRecord, Writer};
+use crate::store::{Database, EdgeCertificate, Run, StoreError, TurnSet, VehicleRecord, Writer};
 use crate::turns::{Kerbs, TurnFacts, TurnParams, turn_facts};
 use crate::vehicle::{Catalogue, Vehicle, VehicleError};
 use crate::verdict::{UnknownReason, Verdict};
@@ -371,10 +371,8 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
         };
         let vehicle = record(&model.vehicle)?;
         let policy = ask.settings.policy;
-        db.replace_certificates(&vehicle, policy, certificates, plans, &run, &summary.account)?;
-        if let Some(turns) = &turns {
-            db.replace_turns((&vehicle.id, policy), &network, turns, turned, &run.finished)?;
-        }
+        let turns = turns.as_deref().map(|facts| TurnSet { network: &network, facts, certificates: turned });
+        db.replace_certificates(&vehicle, policy, certificates, plans, turns, &run, &summary.account)?;
         summary.vehicles.push(model.vehicle.id.clone());
     }
     db.close()?;

@@ -13,8 +13,8 @@ use super::{Reporter, Settings};
 use crate::account::AccountRow;
 use crate::network::Network;
 use crate::osm::LonLat;
-use crate::stet::{Model, Options, SpanResult, certify_spans};
-use crate::store::{Measured, Named, TurnCertificate, VerdictKind, verdict_words};
+use crate::stet::{Model, Options, Plan, SpanResult, certify_spans};
+use crate::store::{Measured, Named, StoredPlan, TurnCertificate, VerdictKind, verdict_words};
 use crate::turns::{Reach, StrokeLine, TurnFacts, TurnParams, TurnPath, nominal_leeway_m, passage_on, turn_on};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
@@ -192,7 +192,7 @@ fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict>
 /// One certificate a vehicle, and whether any needed a corridor.
 fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -> (bool, Vec<TurnCertificate>) {
     let turn = &job.turns[index as usize];
-    let bare = |verdict: Verdict| TurnCertificate { turn: index, verdict, measured: None, path: None };
+    let bare = |verdict: Verdict| TurnCertificate { turn: index, verdict, measured: None, path: None, plan: None };
     let mut out: Vec<TurnCertificate> = (0..job.models.len())
         .map(|vehicle| bare(given(job, turn, vehicle).unwrap_or(Verdict::Unknown(UnknownReason::Geometry))))
         .collect();
@@ -225,7 +225,7 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
             Ok(made) => {
                 laid_out = true;
                 let models: Vec<&Model> = live.iter().map(|&v| &job.models[v]).collect();
-                for (&v, best) in live.iter().zip(best_of(&made.paths, &models, &job.settings.stet)) {
+                for (&v, best) in live.iter().zip(best_planned(&made.paths, &models, &job.settings.stet)) {
                     out[v] = certificate(index, &made.paths, best);
                 }
             }
@@ -237,6 +237,19 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
 /// For each vehicle the path with the best certificate, and its result.
 #[must_use]
 pub fn best_of(paths: &[TurnPath], models: &[&Model], options: &Options) -> Vec<Option<(usize, SpanResult)>> {
+    let best = best_planned(paths, models, options).into_iter();
+    best.map(|best| best.map(|Best { path, result, .. }| (path, result))).collect()
+}
+
+/// The best certificate of a turn.
+struct Best {
+    /// Which of its paths.
+    path: usize,
+    result: SpanResult,
+    plan: Plan,
+}
+
+fn best_planned(paths: &[TurnPath], models: &[&Model], options: &Options) -> Vec<Option<Best>> {
     let hopeless_m = -(options.max_shift_m + HOPELESS_M);
     // By path: which vehicles try it, thoroughly or for the record.
     let mut tries: BTreeMap<(usize, bool), Vec<usize>> = BTreeMap::new();
@@ -255,7 +268,7 @@ pub fn best_of(paths: &[TurnPath], models: &[&Model], options: &Options) -> Vec<
             tries.entry((path, hope > 0)).or_default().push(vehicle);
         }
     }
-    let mut best: Vec<Option<(usize, SpanResult)>> = vec![None; models.len()];
+    let mut best: Vec<Option<Best>> = models.iter().map(|_| None).collect();
     for ((path, thoroughly), vehicles) in tries {
         let options = if thoroughly { *options } else { Options { max_shift_m: 0.0, correction_sweeps: 0 } };
         let trying: Vec<&Model> = vehicles.iter().map(|&v| models[v]).collect();
@@ -264,8 +277,8 @@ pub fn best_of(paths: &[TurnPath], models: &[&Model], options: &Options) -> Vec<
             vehicles.iter().zip(certify_spans(&tried.corridor, &trying, std::slice::from_ref(&tried.counted), &options))
         {
             let Some(result) = row.spans.into_iter().next() else { continue };
-            if best[v].as_ref().is_none_or(|(_, known)| better(&result, known)) {
-                best[v] = Some((path, result));
+            if best[v].as_ref().is_none_or(|known| better(&result, &known.result)) {
+                best[v] = Some(Best { path, result, plan: row.plan });
             }
         }
     }
@@ -288,10 +301,10 @@ pub fn turn_verdict(result: Option<&SpanResult>) -> Verdict {
     result.map_or(Verdict::Unsafe(UnsafeReason::Width), SpanResult::verdict)
 }
 
-fn certificate(turn: u32, paths: &[TurnPath], best: Option<(usize, SpanResult)>) -> TurnCertificate {
-    let verdict = turn_verdict(best.as_ref().map(|(_, result)| result));
-    let (measured, path) = match best.filter(|(_, result)| result.closes()) {
-        Some((path, result)) => {
+fn certificate(turn: u32, paths: &[TurnPath], best: Option<Best>) -> TurnCertificate {
+    let verdict = turn_verdict(best.as_ref().map(|best| &best.result));
+    match best.filter(|best| best.result.closes()) {
+        Some(Best { path, result, plan }) => {
             let path = &paths[path];
             let along = result.limiting.station.saturating_sub(path.counted.start) as f64 * path.corridor.spacing_m;
             let measured = Measured {
@@ -303,9 +316,9 @@ fn certificate(turn: u32, paths: &[TurnPath], best: Option<(usize, SpanResult)>)
                 limiting_unit: result.limiting.unit,
                 limiting_side: result.limiting.side,
             };
-            (Some(measured), Some(path.number))
+            let plan = StoredPlan::new(turn, &plan.coefficients);
+            TurnCertificate { turn, verdict, measured: Some(measured), path: Some(path.number), plan }
         }
-        None => (None, None),
-    };
-    TurnCertificate { turn, verdict, measured, path }
+        None => TurnCertificate { turn, verdict, measured: None, path: None, plan: None },
+    }
 }

@@ -7,7 +7,7 @@ use super::group::gamma;
 use super::lanes::{LANES, V, select_negative};
 use super::model::Model;
 use super::sweep::{BLOCK, FIELDS, Minima, ZERO, row};
-use super::track::{BULGE_MOST, Fields, Track};
+use super::track::{BULGE_MOST, Fields, READ_M, Track};
 
 /// A foot further along than this (metres) is looked up anew.
 const NEAR_M: f64 = 1.0;
@@ -21,6 +21,8 @@ const ASTRAY_PART: f64 = 0.5;
 const ASTRAY_M: f64 = 10.0;
 /// Added to a head's station wherever a point ahead of it is counted from.
 const AHEAD: usize = 1 << 20;
+/// Half-widths that leave their own slope by less, a metre's way or its square, are read at the axis's station.
+const ROUGH: f64 = 0.01;
 /// Leeway of a point that has no foot: nothing is certified there.
 const LOST_M: f64 = -1e3;
 
@@ -32,8 +34,19 @@ pub(super) struct Body {
     heading: f64,
     axle: f64,
     points: Vec<Point>,
-    /// The last unit's axle, whose offset the published form needs.
-    offset_foot: Option<usize>,
+    /// The last unit's axle, whose offset the published form needs: its foot, and where that is on a straight (see [`Point`]).
+    last_axle: Option<LastAxle>,
+}
+
+struct LastAxle {
+    foot: usize,
+    way: Way,
+}
+
+/// Where a foot is on a straight, in stations behind the head, and how far from there it may be.
+struct Way {
+    behind: usize,
+    astray: usize,
 }
 
 struct Point {
@@ -49,9 +62,7 @@ struct Point {
     /// Distance to the point before, metres; 0 for the first.
     gap: f64,
     foot: usize,
-    /// Where its foot is on a straight, in stations behind the head, and how far from there it may be.
-    behind: usize,
-    astray: usize,
+    way: Way,
     /// Up to this station all have been under it, or are lost.
     covered: usize,
 }
@@ -80,13 +91,16 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
             coupling = axle - unit.hitch;
             let foot = |ahead: f64| (track.lead as f64 + (axle + ahead) / track.spacing).round() as usize;
             let n = unit.points.len();
+            let way = |ahead: f64| Way {
+                behind: track.lead + AHEAD - foot(ahead),
+                astray: ((ASTRAY_PART * (axle + ahead).abs() + ASTRAY_M) / track.spacing).ceil() as usize,
+            };
             // Innermost on a steady circle.
             let middle = (0..n).min_by(|&a, &b| unit.points[a].abs().total_cmp(&unit.points[b].abs()));
             let chosen = (0..n).filter(|&p| CERTIFY || p == 0 || Some(p) == middle || p == n - 1);
             let points = chosen.map(|p| {
                 let gain = unit.at[p].at(tolerance);
                 let start = foot(unit.points[p]);
-                let astray = ASTRAY_PART * (axle + unit.points[p]).abs() + ASTRAY_M;
                 Point {
                     ahead: unit.points[p],
                     tag: (index * 16 + p) as u64,
@@ -97,8 +111,7 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
                     from_coupling: (unit.points[p] / unit.length).abs(),
                     gap: if p == 0 { 0.0 } else { unit.points[p - 1] - unit.points[p] },
                     foot: start,
-                    behind: track.lead + AHEAD - start,
-                    astray: (astray / track.spacing).ceil() as usize,
+                    way: way(unit.points[p]),
                     covered: start.saturating_sub(1),
                 }
             });
@@ -108,7 +121,7 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
                 heading: unit.heading.at(tolerance),
                 axle: unit.axle.at(tolerance),
                 points: points.collect(),
-                offset_foot: (CERTIFY && index == last).then(|| foot(0.0)),
+                last_axle: (CERTIFY && index == last).then(|| LastAxle { foot: foot(0.0), way: way(0.0) }),
             }
         })
         .collect()
@@ -168,7 +181,6 @@ pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
     head: usize,
     minima: &mut Minima,
 ) {
-    let scale = track.spacing * track.spacing / 8.0;
     for group in 0..BLOCK / LANES {
         let load = |field: usize| -> V {
             let start = field * BLOCK + group * LANES;
@@ -204,7 +216,7 @@ pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
                     gap_behind: if next { body.points[index + 1].gap } else { 0.0 },
                 };
             }
-            let mut sample = sample::<CERTIFY, REFINED>(track, body, index, &s, &knots, scale);
+            let mut sample = sample::<CERTIFY, REFINED>(track, body, index, &s, &knots);
             body.points[index].cover(sample.feet, minima);
             if CERTIFY {
                 match &mut before {
@@ -219,15 +231,12 @@ pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
         if let Some(last) = before {
             last.lower(minima);
         }
-        if CERTIFY && let Some(first) = body.offset_foot {
-            let feet = follow(track, first, s.x, s.y);
-            let seen = place(track.fields.gather(&feet), s.x, s.y);
-            for (i, &foot) in feet.iter().enumerate() {
-                let off = (seen.lateral.0[i] - shift[foot].0[lane]).abs();
-                minima.offset[foot] = minima.offset[foot].max(off);
-            }
-            body.offset_foot = Some(next_foot(track, feet[LANES - 1], seen.along.0[LANES - 1]));
+        if CERTIFY && let Some(axle) = &mut body.last_axle {
+            axle.follow(track, &s, shift, lane, minima);
         }
+    }
+    if let Some(axle) = &mut body.last_axle {
+        axle.foot = axle.way.kept(track, head + BLOCK, axle.foot);
     }
     for point in &mut body.points {
         point.keep_on_the_way(track, head + BLOCK, minima);
@@ -237,10 +246,12 @@ pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
 /// Passes over a block that needs no leeways.
 pub(super) fn skip(track: &Track, body: &mut Body, head: usize) {
     for point in &mut body.points {
-        point.foot = point.expected(track, head + BLOCK);
+        point.foot = point.way.expected(track, head + BLOCK);
         point.covered = point.foot.saturating_sub(1);
     }
-    body.offset_foot = body.offset_foot.map(|foot| (foot + BLOCK).min(track.len() - LANES));
+    if let Some(axle) = &mut body.last_axle {
+        axle.foot = axle.way.expected(track, head + BLOCK);
+    }
 }
 
 /// After the last block: every point must have been over the whole corridor.
@@ -250,11 +261,37 @@ pub(super) fn finish(track: &Track, body: &Body, minima: &mut Minima) {
     }
 }
 
-impl Point {
-    /// Its foot on a straight when the head is at a station.
+impl Way {
+    /// The foot on a straight when the head is at a station.
     fn expected(&self, track: &Track, head: usize) -> usize {
         (head + AHEAD).saturating_sub(self.behind).min(track.len() - LANES)
     }
+
+    /// A foot, or, if that is not where it can be, the one on a straight.
+    fn kept(&self, track: &Track, head: usize, foot: usize) -> usize {
+        let expected = self.expected(track, head);
+        if foot.abs_diff(expected) > self.astray { expected } else { foot }
+    }
+}
+
+impl LastAxle {
+    /// Raises the offsets by how far the axle is from the planned path, at its own feet.
+    #[inline(always)]
+    fn follow(&mut self, track: &Track, s: &States, shift: &[V], lane: usize, minima: &mut Minima) {
+        let feet = follow(track, self.foot, s.x, s.y);
+        let seen = place(track.fields.gather(&feet), s.x, s.y);
+        let (on, lateral) = foot(&seen.at, seen.along, seen.lateral);
+        for (i, &k) in feet.iter().enumerate() {
+            let other = if on.0[i] < 0.0 { k.saturating_sub(1) } else { (k + 1).min(track.len() - 1) };
+            let [own, next] = [k, other].map(|k| shift[k].0[lane]);
+            let planned = own + (next - own) * (on.0[i].abs() / track.spacing).min(1.0);
+            minima.offset[k] = minima.offset[k].max((lateral.0[i] - planned).abs());
+        }
+        self.foot = next_foot(track, feet[LANES - 1], seen.along.0[LANES - 1]);
+    }
+}
+
+impl Point {
 
     /// Takes note of the stations that have been under it.
     #[inline(always)]
@@ -280,8 +317,8 @@ impl Point {
     /// is lost.
     #[inline(always)]
     fn keep_on_the_way(&mut self, track: &Track, head: usize, minima: &mut Minima) {
-        let expected = self.expected(track, head);
-        if self.covered + self.astray < expected || self.foot.abs_diff(expected) > self.astray {
+        let expected = self.way.expected(track, head);
+        if self.covered + self.way.astray < expected || self.foot.abs_diff(expected) > self.way.astray {
             self.lose(expected, minima);
             self.foot = expected;
             self.covered = expected.saturating_sub(1);
@@ -307,7 +344,6 @@ fn sample<const CERTIFY: bool, const REFINED: bool>(
     index: usize,
     s: &States,
     knots: &Knots,
-    scale: f64,
 ) -> Sample {
     let (ahead, tag, first) = {
         let point = &body.points[index];
@@ -318,10 +354,11 @@ fn sample<const CERTIFY: bool, const REFINED: bool>(
     let seen = place(track.fields.run(first), x, y);
     if near(seen.along) {
         body.points[index].foot = next_foot(track, first + last, seen.along.0[last]);
-        let (left, right) = leeways::<CERTIFY, REFINED>(&seen, s, knots, body, index, scale);
-        return Sample::new(&seen, Feet::Run(first), tag, left, right);
+        let feet = Feet::Run(first);
+        let (left, right) = leeways::<CERTIFY, REFINED>(track, feet, &seen, s, knots, body, index);
+        return Sample::new(&seen, feet, tag, left, right);
     }
-    sample_apart::<CERTIFY, REFINED>(track, body, index, s, knots, scale)
+    sample_apart::<CERTIFY, REFINED>(track, body, index, s, knots)
 }
 
 /// As [`sample`], each point at its own nearest station. Apart, so that the common case stays in registers.
@@ -333,7 +370,6 @@ fn sample_apart<const CERTIFY: bool, const REFINED: bool>(
     index: usize,
     s: &States,
     knots: &Knots,
-    scale: f64,
 ) -> Sample {
     let point = &body.points[index];
     let (tag, x, y) = (point.tag, s.x + s.ux * point.ahead, s.y + s.uy * point.ahead);
@@ -341,7 +377,7 @@ fn sample_apart<const CERTIFY: bool, const REFINED: bool>(
     let seen = place(track.fields.gather(&feet), x, y);
     let last = LANES - 1;
     body.points[index].foot = next_foot(track, feet[last], seen.along.0[last]);
-    let (left, right) = leeways::<CERTIFY, REFINED>(&seen, s, knots, body, index, scale);
+    let (left, right) = leeways::<CERTIFY, REFINED>(track, Feet::Each(feet), &seen, s, knots, body, index);
     let found = |side: V| {
         let one = |i: usize| if seen.along.0[i].abs() <= 1.5 * NEAR_M { side.0[i] } else { LOST_M };
         V(std::array::from_fn(one))
@@ -467,12 +503,13 @@ impl Knots {
 /// Leeway to the left and to the right of both side points at one along-offset.
 #[inline(always)]
 fn leeways<const CERTIFY: bool, const REFINED: bool>(
+    track: &Track,
+    feet: Feet,
     seen: &Seen,
     s: &States,
     knots: &Knots,
     body: &Body,
     index: usize,
-    scale: f64,
 ) -> (V, V) {
     let at = &seen.at;
     let cos = at.tangent_x * s.ux + at.tangent_y * s.uy;
@@ -480,11 +517,12 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let (across, askew) = (cos * body.half_width, sin * body.half_width);
     let (left_along, left_at) = (seen.along - askew, seen.lateral + across);
     let (right_along, right_at) = (seen.along + askew, seen.lateral - across);
-    let (left_foot, left_lateral) = foot(at, left_along, left_at);
-    let (right_foot, right_lateral) = foot(at, right_along, right_at);
-    let left = at.left + at.left_slope * left_foot - left_lateral;
-    let right = at.right + at.right_slope * right_foot + right_lateral;
+    let mut edges = [Edge::left(at, left_along, left_at), Edge::right(at, right_along, right_at)];
     let point = &body.points[index];
+    if CERTIFY && rough(at) {
+        edges = apart(track, feet, s, point.ahead, body.half_width, &edges);
+    }
+    let [left, right] = [edges[0].room, edges[1].room];
     let lean_left = (askew * -point.slope_ahead).max(askew * point.slope_behind);
     let lean_right = (askew * point.slope_ahead).max(askew * -point.slope_behind);
     if !CERTIFY {
@@ -514,16 +552,77 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let stretch = (outside + 1.0) * (outside * outside + 1.0);
     let second = (c * s.remainder + t * a2 * 0.5) * reach + bend * stretch * along * along * 0.5;
     // Between head stations, and the foot's own series beyond its third order.
-    let between = ((s.curvature - at.curvature).abs() + s.jerk * reach) * scale;
+    let between = ((s.curvature - at.curvature).abs() + s.jerk * reach) * (track.spacing * track.spacing / 8.0);
     let far = seen.along.abs() + askew.abs();
     let far2 = far * far;
     let series = bend * bend * bend * far2 * far2 * 0.2;
-    let common = base + second + between + series + at.peak * far;
+    let common = base + second + between + series;
     let slide = stretch * along;
-    (
-        left - common - lean_left - at.left_slope.abs() * slide,
-        right - common - lean_right - at.right_slope.abs() * slide,
-    )
+    (left - common - lean_left - edges[0].excess(slide), right - common - lean_right - edges[1].excess(slide))
+}
+
+/// One side's point against the edge beside it, read at a station.
+#[derive(Clone, Copy)]
+struct Edge {
+    /// Half-width at the foot less lateral place.
+    room: V,
+    /// From the station to the foot.
+    on: V,
+    slope: V,
+    /// What the reading may be over, a metre's way, and its square.
+    excess: V,
+    rounding: V,
+}
+
+impl Edge {
+    #[inline(always)]
+    fn left(at: &Fields<V>, along: V, lateral: V) -> Self {
+        let (on, lateral) = foot(at, along, lateral);
+        let room = at.left + at.left_slope * on - lateral;
+        Self { room, on, slope: at.left_slope, excess: at.left_excess, rounding: at.rounding }
+    }
+
+    #[inline(always)]
+    fn right(at: &Fields<V>, along: V, lateral: V) -> Self {
+        let (on, lateral) = foot(at, along, lateral);
+        let room = at.right + at.right_slope * on + lateral;
+        Self { room, on, slope: at.right_slope, excess: at.right_excess, rounding: at.rounding }
+    }
+
+    /// What the half-width may be less where the point is, up to `slide` from its nominal foot.
+    #[inline(always)]
+    fn excess(&self, slide: V) -> V {
+        let way = self.on.abs() + slide;
+        let lost = select_negative(V::splat(READ_M) - way, V::splat(-LOST_M), ZERO);
+        self.slope.abs() * slide + (self.excess + self.rounding * way) * way + lost
+    }
+}
+
+/// Whether half-widths change so much that each side is worth a station of its own.
+#[inline(always)]
+fn rough(at: &Fields<V>) -> bool {
+    let excess = at.left_excess.max(at.right_excess).max(at.rounding);
+    excess.0.iter().any(|&excess| excess > ROUGH)
+}
+
+/// Both sides' points, each at the station of its own foot: on the inside of a bend, or askew, that is metres from the axis's.
+#[cold]
+#[inline(never)]
+fn apart(track: &Track, feet: Feet, s: &States, ahead: f64, half_width: f64, edges: &[Edge; 2]) -> [Edge; 2] {
+    let seen = |edge: &Edge, aside: f64| {
+        let own: [usize; LANES] = std::array::from_fn(|i| {
+            let k = match feet {
+                Feet::Run(first) => first + i,
+                Feet::Each(feet) => feet[i],
+            };
+            let by = (edge.on.0[i] / track.spacing + 64.5).clamp(0.0, 128.0) as usize;
+            (k + by).saturating_sub(64).min(track.len() - 1)
+        });
+        let (x, y) = (s.x + s.ux * ahead - s.uy * aside, s.y + s.uy * ahead + s.ux * aside);
+        place(track.fields.gather(&own), x, y)
+    };
+    let (left, right) = (seen(&edges[0], half_width), seen(&edges[1], -half_width));
+    [Edge::left(&left.at, left.along, left.lateral), Edge::right(&right.at, right.along, right.lateral)]
 }
 
 /// Arc length from the station to the foot of a point `along`, `lateral` of it, and the lateral at that foot:

@@ -46,7 +46,7 @@ pub(super) fn result(track: &Track, model: &Model, span: &std::ops::Range<usize>
             hinge_unit = ((hinge.to_bits() & TAG_MASK) >> 4) as usize;
         }
         offset = offset.max(full.offset[k]);
-        half_width = half_width.min(0.5 * (track.fields.left[k] + track.fields.right[k]));
+        half_width = half_width.min(track.fields.left[k].min(track.fields.right[k]));
     }
     // Its rear leaves the span when its front is a length beyond: if the bounds do not close there, nothing is known of the rear.
     let end = *stations(track, span).end();

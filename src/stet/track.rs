@@ -11,6 +11,9 @@ const OPEN_M: f64 = 1e6;
 /// Convexity of a half-width, 1/m, above which each of its places counts for itself (`leeway`).
 pub(super) const BULGE_MOST: f64 = 0.005;
 
+/// Widths are read by the slope of a station up to so far from it, metres; farther, nothing is certified.
+pub(super) const READ_M: f64 = 6.0;
+
 /// Points are trusted to lie at their foot station while |κ·lateral| stays below this.
 const REACH: f64 = 0.9;
 
@@ -38,8 +41,11 @@ pub(super) struct Fields<T> {
     pub(super) right_slope: T,
     /// Greatest convexity of either half-width within a body gap, 1/m.
     pub(super) bulge: T,
-    /// By how much a width read by slope a metre from the station may be too great where the half-width peaks, 1.
-    pub(super) peak: T,
+    /// By how much a half-width read by its slope is too great at most, σ from the station: by `excess`·σ + `rounding`·σ², up to
+    /// [`READ_M`]; `rounding` serves both sides.
+    pub(super) left_excess: T,
+    pub(super) right_excess: T,
+    pub(super) rounding: T,
 }
 
 impl Track {
@@ -80,7 +86,17 @@ impl Track {
             left_slope: slope(&|p| p.left),
             right_slope: slope(&|p| p.right),
             bulge: bulge(&left_dips, &right_dips, h),
-            peak: peaks(&places, h),
+            left_excess: Vec::new(),
+            right_excess: Vec::new(),
+            rounding: Vec::new(),
+        };
+        let left = excess(&places, h, |p| p.left, &fields.left_slope);
+        let right = excess(&places, h, |p| p.right, &fields.right_slope);
+        let fields = Fields {
+            rounding: left.iter().zip(&right).map(|(l, r)| l[1].max(r[1])).collect(),
+            left_excess: left.into_iter().map(|[excess, _]| excess).collect(),
+            right_excess: right.into_iter().map(|[excess, _]| excess).collect(),
+            ..fields
         };
         Self { spacing: h, lead, count, fields }
     }
@@ -102,7 +118,9 @@ impl Track {
             left_slope: of(&f.left_slope),
             right_slope: of(&f.right_slope),
             bulge: of(&f.bulge),
-            peak: of(&f.peak),
+            left_excess: of(&f.left_excess),
+            right_excess: of(&f.right_excess),
+            rounding: of(&f.rounding),
         };
         Self { spacing: 2.0 * self.spacing, lead: self.lead / 2, count: self.count.div_ceil(2), fields }
     }
@@ -126,20 +144,30 @@ fn dips(places: &[Place], width: impl Fn(&Place) -> f64) -> Vec<f64> {
         .collect()
 }
 
-/// How fast a half-width read by the mean slope of a station leaves the true one, which is linear between stations: half the
-/// change of slope up to a station away, the neighbour's change beyond it; in all no more than the greatest of them times the
-/// way, up to two stations.
-fn peaks(places: &[Place], spacing: f64) -> Vec<f64> {
-    let concave: Vec<f64> = (0..places.len())
-        .map(|k| {
-            let (a, b) = (&places[k.saturating_sub(1)], &places[(k + 1).min(places.len() - 1)]);
-            let off = |width: &dyn Fn(&Place) -> f64| 2.0 * width(&places[k]) - width(a) - width(b);
-            let worst = off(&|p| p.left).max(off(&|p| p.right));
-            if a.open || places[k].open || b.open { 0.0 } else { worst.max(0.0) / spacing }
-        })
-        .collect();
-    let last = concave.len() - 1;
-    (0..=last).map(|k| concave[k.saturating_sub(1)].max(concave[k]).max(concave[(k + 1).min(last)])).collect()
+/// How fast a half-width read by the slope of a station leaves the true one at most, which is linear between stations: what the reading
+/// is over, divided by the way σ, is greatest at a station. Up to the first on either side it is e at most, up to the j-th
+/// no more than e + q(j − 1)h, so e + qσ before: `[e, q]`.
+fn excess(places: &[Place], spacing: f64, width: fn(&Place) -> f64, slope: &[f64]) -> Vec<[f64; 2]> {
+    let last = places.len() - 1;
+    let most = (READ_M / spacing).ceil() as usize;
+    let of = |(k, own): (usize, &Place)| {
+        let mut at = [0.0_f64; 2];
+        for j in (1..=most).filter(|_| !own.open) {
+            let way = j as f64 * spacing;
+            for (other, slope) in [(k.checked_sub(j), -slope[k]), (Some(k + j).filter(|&o| o <= last), slope[k])] {
+                let Some(other) = other.map(|o| &places[o]).filter(|other| !other.open) else { continue };
+                let over = (width(own) - width(other)) / way + slope;
+                if j == 1 {
+                    at[0] = at[0].max(over);
+                } else {
+                    at[1] = at[1].max((over - at[0]) / (way - spacing));
+                }
+            }
+        }
+        // A billionth is rounding.
+        at.map(|x| if x > 1e-9 { x } else { 0.0 })
+    };
+    places.iter().enumerate().map(of).collect()
 }
 
 /// A half-width that may be read anywhere within one station of where it stands: where the width dips between the
@@ -244,7 +272,9 @@ impl Fields<Vec<f64>> {
             left_slope: of(&self.left_slope),
             right_slope: of(&self.right_slope),
             bulge: of(&self.bulge),
-            peak: of(&self.peak),
+            left_excess: of(&self.left_excess),
+            right_excess: of(&self.right_excess),
+            rounding: of(&self.rounding),
         }
     }
 }

@@ -21,6 +21,7 @@ use super::plans::{self, StoredPlan};
 use super::records::{self, Run, VehicleRecord};
 use super::session::{MIGRATIONS, Session};
 use super::sets::{self, Set};
+use super::turns::{self, PackedSet, TurnSet};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -156,14 +157,16 @@ impl Database {
         })
     }
 
-    /// Puts a complete set of certificates, and the plans they rest on, in place of the old one, in one step: killed, the old one stands. If the
-    /// vehicle's definition changed, its sets under other policies go as well. `certificates` may come in any order.
+    /// Puts a complete set of certificates, the plans they rest on, and the vehicle's turns in place of the old ones, in one step:
+    /// killed, the old ones stand. Without `turns` it has none afterwards. If the vehicle's definition changed, its sets under
+    /// other policies go as well. `certificates` may come in any order.
     pub fn replace_certificates(
         &mut self,
         vehicle: &VehicleRecord,
         policy: Policy,
         certificates: impl IntoIterator<Item = EdgeCertificate>,
-        mut plans: Vec<StoredPlan>,
+        plans: Vec<StoredPlan>,
+        mut turns: Option<TurnSet<'_>>,
         run: &Run,
         account: &[AccountRow],
     ) -> Result<(), StoreError> {
@@ -174,9 +177,14 @@ impl Database {
         let edges: u32 =
             self.session.run(async |c| sqlx::query_scalar("SELECT count(*) FROM edge").fetch_one(c).await)?;
         sets::check_complete(&rows, edges).map_err(|(edge, detail)| unsound(edge, detail.to_owned()))?;
+        let packed = match &mut turns {
+            Some(turns) => Some(turns.pack().map_err(|(turn, why)| unsound(turn, why))?),
+            None => None,
+        };
+        let mut renewed = Renewed { rows, plans, turns: turns.zip(packed) };
         self.session.run(async |c| {
             sqlx::query("BEGIN IMMEDIATE").execute(&mut *c).await?;
-            let done = replace(c, vehicle, policy, &rows, &mut plans, run, account).await;
+            let done = replace(c, vehicle, policy, &mut renewed, run, account).await;
             let end = if done.is_ok() { "COMMIT" } else { "ROLLBACK" };
             let ended = sqlx::query(end).execute(&mut *c).await;
             done.and(ended.map(|_| ()))
@@ -184,12 +192,18 @@ impl Database {
     }
 }
 
+/// A vehicle's new certificates, packed.
+struct Renewed<'a> {
+    rows: Vec<Packed>,
+    plans: Vec<StoredPlan>,
+    turns: Option<(TurnSet<'a>, PackedSet)>,
+}
+
 async fn replace(
     c: &mut SqliteConnection,
     vehicle: &VehicleRecord,
     policy: Policy,
-    rows: &[Packed],
-    plans: &mut [StoredPlan],
+    renewed: &mut Renewed<'_>,
     run: &Run,
     account: &[AccountRow],
 ) -> Sql<()> {
@@ -219,8 +233,15 @@ async fn replace(
     };
     let run_id = records::add_run(c, run, account).await?;
     let (vehicle_id, vehicle_name) = (&vehicle.id, &vehicle.name);
-    plans::insert(c, vehicle_no, corridor_no(policy), plans).await?;
-    Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished }.insert(c, rows).await
+    plans::insert(c, plans::STROKES, (vehicle_no, corridor_no(policy)), &mut renewed.plans).await?;
+    let set = Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished };
+    set.insert(c, &renewed.rows).await?;
+    match &mut renewed.turns {
+        Some((turns, packed)) => {
+            turns::insert_set(c, (vehicle_no, policy, run_id), turns, packed, &run.finished).await
+        }
+        None => Ok(()),
+    }
 }
 
 async fn account_of(c: &mut SqliteConnection, run_id: i64) -> Sql<Vec<AccountRow>> {

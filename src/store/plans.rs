@@ -9,6 +9,7 @@ use std::io::{Read as _, Write as _};
 use flate2::Compression;
 use flate2::read::DeflateDecoder;
 use flate2::write::DeflateEncoder;
+use sqlx::AssertSqlSafe;
 use sqlx::sqlite::SqliteConnection;
 
 use crate::osm::facts::Policy;
@@ -26,19 +27,19 @@ const MOST_COEFFICIENTS: usize = 1 << 22;
 /// A plan on its way to the database.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StoredPlan {
-    /// Index of the stroke's first edge in `Network::edges`.
-    pub edge: u32,
+    /// Index of the stroke's first edge in `Network::edges`, or of the turn.
+    pub at: u32,
     packed: Vec<u8>,
 }
 
 impl StoredPlan {
     /// Packs a plan; `None` if it is the centreline.
     #[must_use]
-    pub fn new(edge: u32, coefficients: &[i32]) -> Option<Self> {
+    pub fn new(at: u32, coefficients: &[i32]) -> Option<Self> {
         if coefficients.iter().all(|&c| c == 0) {
             return None;
         }
-        Some(Self { edge, packed: pack(coefficients) })
+        Some(Self { at, packed: pack(coefficients) })
     }
 }
 
@@ -95,19 +96,23 @@ fn unpack(packed: &[u8]) -> Option<Vec<i32>> {
     Some(coefficients)
 }
 
-/// Inserts the plans of a set, in order of their edges.
+/// Where plans of strokes stand, and those of turns.
+pub(super) const STROKES: &str = "plan (vehicle_no, corridor_no, fid, coefficients)";
+pub(super) const TURNS: &str = "turn_plan (vehicle_no, corridor_no, fid, coefficients)";
+
+/// Inserts the plans of a set, in order of their edges or turns.
 pub(super) async fn insert(
     c: &mut SqliteConnection,
-    vehicle_no: u32,
-    corridor: u8,
+    into: &'static str,
+    (vehicle_no, corridor): (u32, u8),
     plans: &mut [StoredPlan],
 ) -> Sql<()> {
-    plans.sort_unstable_by_key(|plan| plan.edge);
-    let mut bulk = Bulk::new("plan (vehicle_no, corridor_no, fid, coefficients)", 4);
+    plans.sort_unstable_by_key(|plan| plan.at);
+    let mut bulk = Bulk::new(into, 4);
     for plan in plans.iter() {
         bulk.add(vehicle_no)?;
         bulk.add(corridor)?;
-        bulk.add(plan.edge + 1)?;
+        bulk.add(plan.at + 1)?;
         bulk.add(plan.packed.clone())?;
         bulk.end_row(c).await?;
     }
@@ -117,13 +122,29 @@ pub(super) async fn insert(
 impl Database {
     /// The plans of a vehicle under a policy, by the stroke's first edge (index). What is not there is the centreline.
     pub fn plans(&mut self, vehicle: &str, policy: Policy) -> Result<BTreeMap<u32, Vec<i32>>, StoreError> {
+        self.plans_in("plan", vehicle, policy)
+    }
+
+    /// The plans of a vehicle's turns, by turn (index). What is not there is the centreline of the turn's path.
+    pub fn turn_plans(&mut self, vehicle: &str, policy: Policy) -> Result<BTreeMap<u32, Vec<i32>>, StoreError> {
+        self.plans_in("turn_plan", vehicle, policy)
+    }
+
+    fn plans_in(
+        &mut self,
+        table: &'static str,
+        vehicle: &str,
+        policy: Policy,
+    ) -> Result<BTreeMap<u32, Vec<i32>>, StoreError> {
         self.session.run(async |c| {
-            let sql = "SELECT fid, coefficients FROM plan JOIN vehicle USING (vehicle_no) \
-                       WHERE vehicle_id = ? AND corridor_no = ? ORDER BY fid";
+            let sql = format!(
+                "SELECT fid, coefficients FROM {table} JOIN vehicle USING (vehicle_no) \
+                 WHERE vehicle_id = ? AND corridor_no = ? ORDER BY fid"
+            );
             let rows: Vec<(u32, Vec<u8>)> =
-                sqlx::query_as(sql).bind(vehicle).bind(corridor_no(policy)).fetch_all(c).await?;
+                sqlx::query_as(AssertSqlSafe(sql)).bind(vehicle).bind(corridor_no(policy)).fetch_all(c).await?;
             let plan = |(fid, packed): (u32, Vec<u8>)| {
-                let coefficients = unpack(&packed).ok_or_else(|| content(format!("the plan from edge {fid} on")))?;
+                let coefficients = unpack(&packed).ok_or_else(|| content(format!("row {fid} of {table}")))?;
                 Ok((fid.saturating_sub(1), coefficients))
             };
             rows.into_iter().map(plan).collect()

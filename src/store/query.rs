@@ -17,8 +17,9 @@ use crate::verdict::Verdict;
 use super::blob::{self, Bounds};
 use super::database::Database;
 use super::error::{StoreError, content};
-use super::names::{Named, corridor_no, verdict_of};
+use super::names::{Named, corridor_no};
 use super::network_read::{word, word_or_none};
+use super::numbers::{self, Numbers};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -206,10 +207,10 @@ fn statement(
     };
     let mut sql = format!(
         "SELECT c.fid, e.edge_id, e.way_id, e.from_node, e.to_node, e.direction, e.highway, e.name, e.ref, e.length_m, \
-         e.{width}, e.{source}, e.min_radius_m, c.verdict_no, c.rsc_mm, c.rsc_published_mm, c.hinge_margin_cdeg, \
-         c.shrink_milli, c.limiting_s_dm, c.limiting_at, e.geom \
+         e.{width}, e.{source}, e.min_radius_m, e.geom, {columns} \
          FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
-         WHERE c.vehicle_no = ? AND c.corridor_no = ?"
+         WHERE c.vehicle_no = ? AND c.corridor_no = ?",
+        columns = numbers::COLUMNS
     );
     let mut values = SqliteArguments::default();
     let mut bind = |value: f64| values.add(value).map_err(sqlx::Error::Encode);
@@ -251,11 +252,7 @@ fn statement(
 
 fn edge_row(row: &SqliteRow) -> Sql<EdgeRow> {
     let fid: u32 = row.try_get(0)?;
-    let verdict_no: i64 = row.try_get(13)?;
-    let at: Option<u16> = row.try_get(19)?;
-    let parts = |column, parts: f64| -> Sql<Option<f64>> {
-        Ok(row.try_get::<Option<i64>, _>(column)?.map(|whole| whole as f64 / parts))
-    };
+    let numbers = Numbers::read(row, 14, || format!("edge {fid}"))?;
     Ok(EdgeRow {
         edge: fid.saturating_sub(1),
         edge_id: row.try_get(1)?,
@@ -270,14 +267,14 @@ fn edge_row(row: &SqliteRow) -> Sql<EdgeRow> {
         width_m: row.try_get(10)?,
         width_source: word_or_none(row, 11)?,
         min_radius_m: row.try_get(12)?,
-        verdict: verdict_of(verdict_no).ok_or_else(|| content(format!("verdict {verdict_no} of edge {fid}")))?,
-        rsc_m: parts(14, 1000.0)?,
-        rsc_published_m: parts(15, 1000.0)?,
-        hinge_margin_deg: parts(16, 100.0)?,
-        shrink: if at.is_some() { Some(parts(17, 1000.0)?.unwrap_or(1.0)) } else { None },
-        limiting_s_m: parts(18, 10.0)?,
-        limiting_unit: at.map(|at| at >> 1),
-        limiting_side: at.map(|at| if at & 1 == 0 { Side::Left } else { Side::Right }),
-        line: blob::decode(row.try_get(20)?).ok_or_else(|| content(format!("the geometry of edge {fid}")))?,
+        verdict: numbers.verdict,
+        rsc_m: numbers.rsc_m,
+        rsc_published_m: numbers.rsc_published_m,
+        hinge_margin_deg: numbers.hinge_margin_deg,
+        shrink: numbers.shrink,
+        limiting_s_m: numbers.limiting_s_m,
+        limiting_unit: numbers.limiting_unit,
+        limiting_side: numbers.limiting_side,
+        line: blob::decode(row.try_get(13)?).ok_or_else(|| content(format!("the geometry of edge {fid}")))?,
     })
 }

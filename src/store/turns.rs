@@ -17,7 +17,9 @@ use super::bulk::Bulk;
 use super::database::Database;
 use super::error::{StoreError, content};
 use super::names::{Named, corridor_no, verdict_of};
+use super::numbers::{self, Numbers};
 use super::packed::{EdgeCertificate, Measured, Packed};
+use super::plans::{self, StoredPlan};
 use super::query::{Area, VerdictKind, polygons};
 use super::sets;
 
@@ -37,13 +39,43 @@ pub struct TurnCertificate {
     pub measured: Option<Measured>,
     /// The path it rests on.
     pub path: Option<u8>,
+    /// And the plan, where that is not the path's centreline.
+    pub plan: Option<StoredPlan>,
 }
 
 impl TurnCertificate {
     pub(super) fn pack(&self) -> Result<Packed, String> {
-        let Self { turn, verdict, measured, path } = self;
+        let Self { turn, verdict, measured, path, plan: _ } = self;
         let packed = EdgeCertificate { edge: *turn, verdict: *verdict, measured: *measured }.pack()?;
         Ok(Packed { path_no: *path, ..packed })
+    }
+}
+
+/// All turns of a network, and one vehicle's certificates of them.
+pub struct TurnSet<'a> {
+    /// Whose turns they are.
+    pub network: &'a Network,
+    /// All of them, in order.
+    pub facts: &'a [TurnFacts],
+    /// One a turn, in any order.
+    pub certificates: Vec<TurnCertificate>,
+}
+
+/// A set, packed: rows in order, and the plans that they rest on.
+pub(super) struct PackedSet {
+    pub(super) rows: Vec<Packed>,
+    pub(super) plans: Vec<StoredPlan>,
+}
+
+impl TurnSet<'_> {
+    /// The error says of which turn a certificate is missing, or claims more than its numbers say.
+    pub(super) fn pack(&mut self) -> Result<PackedSet, (u32, String)> {
+        let pack = |turn: &TurnCertificate| turn.pack().map_err(|why| (turn.turn, why));
+        let mut rows = self.certificates.iter().map(pack).collect::<Result<Vec<Packed>, _>>()?;
+        rows.sort_unstable_by_key(|row| row.fid);
+        sets::check_complete(&rows, self.facts.len() as u32).map_err(|(turn, why)| (turn, why.to_owned()))?;
+        let plans = self.certificates.iter_mut().filter_map(|turn| turn.plan.take()).collect();
+        Ok(PackedSet { rows, plans })
     }
 }
 
@@ -125,6 +157,7 @@ pub(super) async fn insert(
     c: &mut SqliteConnection,
     (vehicle_no, policy, run_id): (u32, Policy, i64),
     rows: &[Packed],
+    plans: &mut [StoredPlan],
 ) -> Sql<()> {
     let corridor = corridor_no(policy);
     let mut bulk = Bulk::new(COLUMNS, 11);
@@ -136,6 +169,7 @@ pub(super) async fn insert(
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await?;
+    plans::insert(c, plans::TURNS, (vehicle_no, corridor), plans).await?;
     let set = sqlx::query("INSERT INTO certified_turns VALUES (?, ?, ?, ?)").bind(vehicle_no).bind(corridor);
     set.bind(run_id).bind(rows.len() as i64).execute(c).await?;
     Ok(())
@@ -143,7 +177,7 @@ pub(super) async fn insert(
 
 /// Takes a set away, if it is there.
 pub(super) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_no: u8) -> Sql<()> {
-    for table in ["certified_turns", "turn_certificate_compact"] {
+    for table in ["certified_turns", "turn_plan", "turn_certificate_compact"] {
         let sql = format!("DELETE FROM {table} WHERE vehicle_no = ? AND corridor_no = ?");
         sqlx::query(AssertSqlSafe(sql)).bind(vehicle_no).bind(corridor_no).execute(&mut *c).await?;
     }
@@ -199,6 +233,7 @@ pub struct TurnRow {
     pub to_name: Option<String>,
     pub verdict: Verdict,
     pub rsc_m: Option<f64>,
+    pub rsc_published_m: Option<f64>,
     pub hinge_margin_deg: Option<f64>,
     pub shrink: Option<f64>,
     pub limiting_s_m: Option<f64>,
@@ -250,40 +285,12 @@ impl Database {
     }
 }
 
-impl Database {
-    /// Puts a complete set of turn certificates in place of the old one, in one step; writes the turns themselves if the database
-    /// has none yet. The vehicle's edges must be certified.
-    ///
-    /// # Errors
-    /// A certificate is missing or claims more than its numbers say; the file cannot be written.
-    pub fn replace_turns(
-        &mut self,
-        (vehicle, policy): (&str, Policy),
-        network: &Network,
-        turns: &[TurnFacts],
-        certificates: impl IntoIterator<Item = TurnCertificate>,
-        time: &str,
-    ) -> Result<(), StoreError> {
-        let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.to_owned(), detail };
-        let pack = |turn: TurnCertificate| turn.pack().map_err(|why| unsound(turn.turn, why));
-        let mut rows = certificates.into_iter().map(pack).collect::<Result<Vec<Packed>, _>>()?;
-        rows.sort_unstable_by_key(|row| row.fid);
-        sets::check_complete(&rows, turns.len() as u32).map_err(|(turn, why)| unsound(turn, why.to_owned()))?;
-        self.session.run(async |c| {
-            sqlx::query("BEGIN IMMEDIATE").execute(&mut *c).await?;
-            let done = replace(c, (vehicle, policy), (network, turns), &rows, time).await;
-            let end = if done.is_ok() { "COMMIT" } else { "ROLLBACK" };
-            let ended = sqlx::query(end).execute(&mut *c).await;
-            done.and(ended.map(|_| ()))
-        })
-    }
-}
-
-async fn replace(
+/// Inserts a vehicle's turns, and the turns themselves if the database has none yet; the vehicle must have none.
+pub(super) async fn insert_set(
     c: &mut SqliteConnection,
-    (vehicle, policy): (&str, Policy),
-    (network, turns): (&Network, &[TurnFacts]),
-    rows: &[Packed],
+    (vehicle_no, policy, run_id): (u32, Policy, i64),
+    set: &TurnSet<'_>,
+    packed: &mut PackedSet,
     time: &str,
 ) -> Sql<()> {
     let (kept, layers): (i64, i64) = sqlx::query_as(
@@ -292,28 +299,23 @@ async fn replace(
     .fetch_one(&mut *c)
     .await?;
     if layers == 0 {
-        add(c, &records(network, turns.to_vec()), time).await?;
-    } else if kept != turns.len() as i64 {
-        return Err(content(format!("{kept} turns are stored, the network has {}", turns.len())));
+        add(c, &records(set.network, set.facts.to_vec()), time).await?;
+    } else if kept != set.facts.len() as i64 {
+        return Err(content(format!("{kept} turns are stored, the network has {}", set.facts.len())));
     }
-    let set = "SELECT vehicle_no, run_id FROM certified_set JOIN vehicle USING (vehicle_no) \
-               WHERE vehicle_id = ? AND corridor_no = ?";
-    let (vehicle_no, run_id): (u32, i64) =
-        sqlx::query_as(set).bind(vehicle).bind(corridor_no(policy)).fetch_one(&mut *c).await?;
-    remove(c, vehicle_no, corridor_no(policy)).await?;
-    insert(c, (vehicle_no, policy, run_id), rows).await
+    insert(c, (vehicle_no, policy, run_id), &packed.rows, &mut packed.plans).await
 }
 
 async fn fetch(c: &mut SqliteConnection, options: &TurnQuery) -> Sql<Vec<TurnRow>> {
     let mut sql = "SELECT c.fid, t.turn_id, a.edge_id, b.edge_id, t.via_node, t.angle_deg, t.kind, t.kerb_radius_m, \
-                   t.kerb_source, t.restriction, coalesce(a.name, a.ref), coalesce(b.name, b.ref), c.verdict_no, \
-                   c.rsc_mm, c.hinge_margin_cdeg, c.shrink_milli, c.limiting_s_dm, c.limiting_at, c.path_no, t.geom, \
+                   t.kerb_source, t.restriction, coalesce(a.name, a.ref), coalesce(b.name, b.ref), c.path_no, t.geom, \
                    (SELECT edge_id FROM edge WHERE fid = t.first_arc_fid), \
-                   (SELECT edge_id FROM edge WHERE fid = t.last_arc_fid) \
-                   FROM turn_certificate_compact AS c CROSS JOIN turn AS t ON t.fid = c.fid \
-                   CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid \
-                   WHERE c.corridor_no = ? AND c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?)"
+                   (SELECT edge_id FROM edge WHERE fid = t.last_arc_fid), "
         .to_owned();
+    sql += numbers::COLUMNS;
+    sql += " FROM turn_certificate_compact AS c CROSS JOIN turn AS t ON t.fid = c.fid \
+            CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid \
+            WHERE c.corridor_no = ? AND c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?)";
     if let Some(kind) = options.verdict {
         let first = 10 * kind as u8; // numbers go by tens: see `names::VERDICTS`
         sql += &format!(" AND c.verdict_no BETWEEN {first} AND {}", first + 9);
@@ -331,17 +333,13 @@ async fn fetch(c: &mut SqliteConnection, options: &TurnQuery) -> Sql<Vec<TurnRow
 
 fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
     let fid: u32 = row.try_get(0)?;
-    let verdict_no: i64 = row.try_get(12)?;
-    let at: Option<u16> = row.try_get(17)?;
-    let parts = |column, parts: f64| -> Sql<Option<f64>> {
-        Ok(row.try_get::<Option<i64>, _>(column)?.map(|whole| whole as f64 / parts))
-    };
+    let numbers = Numbers::read(row, 16, || format!("turn {fid}"))?;
     Ok(TurnRow {
         turn: fid.saturating_sub(1),
         turn_id: row.try_get(1)?,
         from_edge: row.try_get(2)?,
         to_edge: row.try_get(3)?,
-        arcs: row.try_get::<Option<i64>, _>(20)?.zip(row.try_get(21)?).map(|(first, last)| [first, last]),
+        arcs: row.try_get::<Option<i64>, _>(14)?.zip(row.try_get(15)?).map(|(first, last)| [first, last]),
         via_node: row.try_get(4)?,
         angle_deg: row.try_get(5)?,
         kind: row.try_get(6)?,
@@ -350,15 +348,16 @@ fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
         restriction: row.try_get(9)?,
         from_name: row.try_get(10)?,
         to_name: row.try_get(11)?,
-        verdict: verdict_of(verdict_no).ok_or_else(|| content(format!("verdict {verdict_no} of turn {fid}")))?,
-        rsc_m: parts(13, 1000.0)?,
-        hinge_margin_deg: parts(14, 100.0)?,
-        shrink: if at.is_some() { Some(parts(15, 1000.0)?.unwrap_or(1.0)) } else { None },
-        limiting_s_m: parts(16, 10.0)?,
-        limiting_unit: at.map(|at| at >> 1),
-        limiting_side: at.map(|at| if at & 1 == 0 { Side::Left } else { Side::Right }),
-        path_no: row.try_get(18)?,
-        line: blob::decode(row.try_get(19)?).ok_or_else(|| content(format!("the geometry of turn {fid}")))?,
+        verdict: numbers.verdict,
+        rsc_m: numbers.rsc_m,
+        rsc_published_m: numbers.rsc_published_m,
+        hinge_margin_deg: numbers.hinge_margin_deg,
+        shrink: numbers.shrink,
+        limiting_s_m: numbers.limiting_s_m,
+        limiting_unit: numbers.limiting_unit,
+        limiting_side: numbers.limiting_side,
+        path_no: row.try_get(12)?,
+        line: blob::decode(row.try_get(13)?).ok_or_else(|| content(format!("the geometry of turn {fid}")))?,
     })
 }
 

@@ -50,6 +50,7 @@ pub struct Writer {
     restrictions: Restrictions,
     /// The same; rows, and where their certificates wait.
     turns: Option<(Vec<turns::Record>, Spool)>,
+    turn_plans: BTreeMap<(u32, u8), Vec<StoredPlan>>,
     part: Part,
 }
 
@@ -95,6 +96,7 @@ impl Database {
             network: None,
             restrictions: Restrictions::default(),
             turns: None,
+            turn_plans: BTreeMap::new(),
             part,
         })
     }
@@ -157,10 +159,12 @@ impl Writer {
     ) -> Result<(), StoreError> {
         let packed =
             certificate.pack().map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.turn, detail))?;
-        match &mut self.turns {
-            Some((_, spool)) => spool.push((vehicle.0, corridor_no(policy)), packed, &self.session.path),
-            None => Ok(()),
+        let Some((_, spool)) = &mut self.turns else { return Ok(()) };
+        let set = (vehicle.0, corridor_no(policy));
+        if let Some(plan) = &certificate.plan {
+            self.turn_plans.entry(set).or_default().push(plan.clone());
         }
+        spool.push(set, packed, &self.session.path)
     }
 
     /// Adds to the account of the run.
@@ -200,7 +204,7 @@ impl Writer {
             sqlx::query("BEGIN").execute(&mut *c).await?;
             restrictions::insert(c, all_restrictions).await?;
             for (&(vehicle_no, corridor), plans) in all_plans {
-                plans::insert(c, vehicle_no, corridor, plans).await?;
+                plans::insert(c, plans::STROKES, (vehicle_no, corridor), plans).await?;
             }
             sqlx::query("COMMIT").execute(c).await
         })?;
@@ -224,7 +228,8 @@ impl Writer {
             sets::check_complete(&rows, records.len() as u32)
                 .map_err(|(turn, detail)| unsound(&self.vehicles, vehicle_no, turn, detail.to_owned()))?;
             let policy = Policy::ALL[usize::from(corridor)];
-            self.session.run(async |c| turns::insert(c, (vehicle_no, policy, run_id), &rows).await)?;
+            let mut plans = self.turn_plans.remove(&(vehicle_no, corridor)).unwrap_or_default();
+            self.session.run(async |c| turns::insert(c, (vehicle_no, policy, run_id), &rows, &mut plans).await)?;
         }
         self.session.run(async |c| sqlx::query("COMMIT").execute(c).await)?;
         Ok(())

@@ -122,7 +122,7 @@ impl Junction {
                 stations: [leave, join],
                 reach: self.reach,
             };
-            paths.extend(boundary.widths(&points).and_then(|widths| ends.path(number, &points, &widths)));
+            paths.extend(boundary.widths(&points).and_then(|widths| ends.path(number, &points, widths)));
         }
         Ok(TurnCorridors { frame: self.frame, turn_rad, area, kerb_radius_m, paths })
     }
@@ -263,9 +263,12 @@ pub(super) struct Ends<'a> {
 
 impl Ends<'_> {
     /// The corridor along one path, with what is driven before and after it.
-    pub(super) fn path(&self, number: u8, points: &[[f64; 2]], widths: &Widths) -> Option<TurnPath> {
+    pub(super) fn path(&self, number: u8, points: &[[f64; 2]], mut widths: Widths) -> Option<TurnPath> {
         let [from, to] = self.arms;
         let [leave, join] = self.stations;
+        // At the joints the corridor is the stroke's.
+        let stroke = |arm: &Arm, k: usize| [arm.line.left_m[k], arm.line.right_m[k]];
+        widths.gentle(points, [stroke(from, leave), stroke(to, join)]);
         let before = ((self.reach.run_in_m() + self.reach.counted_before_m()) / from.line.spacing_m) as usize;
         let after = (self.reach.counted_after_m() / to.line.spacing_m) as usize;
         let lead = leave.saturating_sub(before)..leave;
@@ -278,10 +281,7 @@ impl Ends<'_> {
         for (k, &p) in points.iter().enumerate() {
             line.push(p, widths.left_m[k], widths.right_m[k]);
         }
-        // At the joints the corridor is the stroke's.
-        line.narrow(begins.1, from.line.left_m[leave], from.line.right_m[leave]);
         let ends = line.at_m();
-        line.narrow(ends.1 - 1, to.line.left_m[join], to.line.right_m[join]);
         for k in tail {
             line.push(to.point(k), to.line.left_m[k], to.line.right_m[k]);
         }

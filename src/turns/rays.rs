@@ -18,6 +18,9 @@ const FARTHEST_M: f64 = 12.0;
 /// certificate deducts what a width may change along a body. (Without it a semitrailer lost 6 m where its path passes the mouth of
 /// a side road.)
 const STEEPEST: f64 = 0.4;
+/// And their slope falls by so much at most, 1/m: a certificate reads a width beside a station by the slope there, and deducts what the
+/// slope may change on the way.
+const ROUNDEST: f64 = 0.1;
 /// A path that is nearer to the area's end has left it, metres.
 const LEAST_M: f64 = 0.15;
 /// A corner of the area counts for the segments whose normals may meet it: it lies between their ends, with so much of their
@@ -81,8 +84,6 @@ impl Boundary {
         }
         near.corners(path, &mut widths);
         clear_of_centre(path, &mut widths);
-        gentle(path, &mut widths.left_m);
-        gentle(path, &mut widths.right_m);
         for w in widths.left_m.iter_mut().chain(&mut widths.right_m) {
             *w -= MARGIN_M;
             if w.is_nan() || *w < LEAST_M {
@@ -152,14 +153,58 @@ impl Boundary {
     }
 }
 
-/// The largest half-widths below the given ones that change by [`STEEPEST`] at most.
-fn gentle(path: &[[f64; 2]], widths: &mut [f64]) {
-    let rise = |k: usize| STEEPEST * (path[k][0] - path[k - 1][0]).hypot(path[k][1] - path[k - 1][1]);
+impl Widths {
+    /// The largest half-widths below these that change by [`STEEPEST`] at most, and whose slope falls by [`ROUNDEST`] at most; at the
+    /// path's ends no more than `ends`.
+    pub(super) fn gentle(&mut self, path: &[[f64; 2]], ends: [[f64; 2]; 2]) {
+        let mut along_m = vec![0.0; path.len()];
+        for k in 1..path.len() {
+            along_m[k] = along_m[k - 1] + (path[k][0] - path[k - 1][0]).hypot(path[k][1] - path[k - 1][1]);
+        }
+        for (side, widths) in [&mut self.left_m, &mut self.right_m].into_iter().enumerate() {
+            if let [first, .., last] = widths.as_mut_slice() {
+                (*first, *last) = (first.min(ends[0][side]), last.min(ends[1][side]));
+            }
+            no_steeper(&along_m, widths);
+            rounded(&along_m, widths);
+        }
+    }
+}
+
+/// Lowers half-widths until they change by [`STEEPEST`] at most.
+fn no_steeper(along_m: &[f64], widths: &mut [f64]) {
+    let rise = |k: usize| STEEPEST * (along_m[k] - along_m[k - 1]);
     for k in 1..widths.len() {
         widths[k] = widths[k].min(widths[k - 1] + rise(k));
     }
     for k in (1..widths.len()).rev() {
         widths[k - 1] = widths[k - 1].min(widths[k] + rise(k));
+    }
+}
+
+/// Lowers half-widths until no second derivative is below −[`ROUNDEST`]: they are, with a parabola added, the lower convex hull of what
+/// they were with it. Minima stay, and nothing becomes steeper than it was.
+fn rounded(along_m: &[f64], widths: &mut [f64]) {
+    let lifted: Vec<[f64; 2]> =
+        along_m.iter().zip(widths.iter()).map(|(&s, &w)| [s, w + 0.5 * ROUNDEST * s * s]).collect();
+    let mut hull: Vec<usize> = Vec::new();
+    for (k, c) in lifted.iter().enumerate() {
+        while let [.., a, b] = hull[..] {
+            let (a, b) = (lifted[a], lifted[b]);
+            if (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]) > 0.0 {
+                break;
+            }
+            hull.pop();
+        }
+        hull.push(k);
+    }
+    for pair in hull.windows(2) {
+        let (a, b) = (lifted[pair[0]], lifted[pair[1]]);
+        for k in pair[0] + 1..pair[1] {
+            let s = along_m[k];
+            let on_hull = a[1] + (b[1] - a[1]) * (s - a[0]) / (b[0] - a[0]).max(1e-9);
+            widths[k] = widths[k].min(on_hull - 0.5 * ROUNDEST * s * s);
+        }
     }
 }
 
@@ -171,6 +216,33 @@ fn clear_of_centre(path: &[[f64; 2]], widths: &mut Widths) {
         for &kappa in &bends[first..=last] {
             let side = if kappa > 0.0 { &mut widths.left_m } else { &mut widths.right_m };
             side[k] = side[k].min(MOST_CROSSING / kappa.abs().max(1e-9));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn gentle_widths_are_below_and_bend_slowly(
+            raw in prop::collection::vec(0.2..FARTHEST_M, 3..200),
+            ends in prop::array::uniform2(0.2..4.0),
+        ) {
+            let path: Vec<[f64; 2]> = (0..raw.len()).map(|k| [0.5 * k as f64, 0.0]).collect();
+            let mut widths = Widths { left_m: raw.clone(), right_m: raw.clone() };
+            widths.gentle(&path, [[ends[0]; 2], [ends[1]; 2]]);
+            let (w, last) = (&widths.left_m, raw.len() - 1);
+            prop_assert_eq!(w, &widths.right_m);
+            prop_assert!(w.iter().zip(&raw).all(|(w, raw)| w <= raw));
+            prop_assert!(w[0] <= ends[0] && w[last] <= ends[1]);
+            let least = raw.iter().copied().chain(ends).fold(f64::INFINITY, f64::min);
+            prop_assert_eq!(w.iter().copied().fold(f64::INFINITY, f64::min), least);
+            prop_assert!(w.windows(2).all(|w| (w[1] - w[0]).abs() <= 0.5 * STEEPEST + 1e-9));
+            prop_assert!(w.windows(3).all(|w| 2.0 * w[1] - w[0] - w[2] <= 0.25 * ROUNDEST + 1e-9));
         }
     }
 }

@@ -91,7 +91,7 @@ impl Passage {
                     reach: self.reach,
                 };
                 let number = entry.number * FEW_NUMBERS + exit.number;
-                paths.extend(boundary.widths(&points).and_then(|widths| ends.path(number, &points, &widths)));
+                paths.extend(boundary.widths(&points).and_then(|widths| ends.path(number, &points, widths)));
             }
         }
         let (from, to) = (&self.entry.from, &self.exit.to);

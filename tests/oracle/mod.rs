@@ -8,6 +8,7 @@ pub mod adversary;
 pub mod claim;
 pub mod draw;
 pub mod duel;
+pub mod fight;
 pub mod fleet;
 pub mod path;
 pub mod road;

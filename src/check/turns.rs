@@ -1,0 +1,224 @@
+//! The certificates of turns in a database: every row against the network and the edges' verdicts that are in the same file.
+//!
+//! Area, paths and widths are the network's own statement, made by `turns`; that a path's corridor stays within its area is looked at
+//! here. The plan is the database's; everything else is worked out again. Of a turn called unsafe without numbers nothing is
+//! promised, so nothing is asked but that there is a corridor to call so.
+
+use std::collections::BTreeMap;
+
+use geo::{Distance as _, Euclidean, Point};
+use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::chain::Chain;
+use super::claim::{Finding, Outcome, Subject, TOLERANCE_M, finding};
+use super::database::{RowOutcome, SetReport};
+use super::said::Said;
+use super::{plan, printed};
+use crate::network::Network;
+use crate::osm::facts::Policy;
+use crate::store::TurnRow;
+use crate::turns::{Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, TurnPath, passage_on, turn_on};
+use crate::vehicle::Vehicle;
+use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
+
+/// The edges of a path's corridor lie this near to the area at least: stations cut off a chord of what rays saw, metres.
+const WITHIN_M: f64 = 0.02;
+/// Rows looked at together: the strokes that they need are made once.
+const BATCH: usize = 512;
+
+/// A vehicle's certificates of turns under one policy.
+pub struct TurnsClaim<'a> {
+    /// The roads.
+    pub network: &'a Network,
+    /// The vehicle as the database defines it.
+    pub vehicle: &'a Vehicle,
+    /// Which width counts.
+    pub policy: Policy,
+    /// How turns are made into corridors.
+    pub params: &'a TurnParams,
+    /// All turns of the network, in order.
+    pub facts: &'a [TurnFacts],
+    /// By edge: the database's verdict for the vehicle.
+    pub edges: &'a BTreeMap<u32, Verdict>,
+    /// Rows that are to be checked, by turn.
+    pub rows: &'a BTreeMap<u32, TurnRow>,
+    /// Plans that are not the centreline, by turn.
+    pub plans: &'a BTreeMap<u32, Vec<i32>>,
+}
+
+type Lines = FxHashMap<u32, Result<StrokeLine, UnknownReason>>;
+
+impl TurnsClaim<'_> {
+    /// Checks all rows, over threads; results in order.
+    #[must_use]
+    pub fn check(&self) -> SetReport {
+        let chain = Chain::new(self.vehicle);
+        let mut stroke_of = FxHashMap::default();
+        for (stroke, facts) in (0_u32..).zip(&self.network.strokes) {
+            let edges = self.network.stroke_edges.get(facts.edges.start as usize..facts.edges.end as usize);
+            stroke_of.extend(edges.unwrap_or_default().iter().map(|&edge| (edge, stroke)));
+        }
+        let rows: Vec<&TurnRow> = self.rows.values().collect();
+        let mut report = SetReport::default();
+        for batch in rows.chunks(BATCH) {
+            let lines = self.lines(batch, &stroke_of);
+            let checked: Vec<(Outcome, f64)> =
+                batch.par_iter().map(|row| self.row(&chain, row, &stroke_of, &lines)).collect();
+            for (row, (outcome, km)) in batch.iter().zip(checked) {
+                report.swept_km += km;
+                report.rows.push(RowOutcome { index: row.turn, id: row.turn_id, verdict: row.verdict, outcome });
+            }
+        }
+        report
+    }
+
+    fn lines(&self, batch: &[&TurnRow], stroke_of: &FxHashMap<u32, u32>) -> Lines {
+        let open = batch.iter().filter_map(|row| self.facts.get(row.turn as usize)).filter(|t| self.barred(t).is_none());
+        let edges = open.flat_map(|t| [t.movement.from, t.movement.to].into_iter().chain(t.through.first().copied()));
+        let strokes: FxHashSet<u32> = edges.filter_map(|edge| stroke_of.get(&edge).copied()).collect();
+        let line = |stroke| (stroke, StrokeLine::new(self.network, stroke, self.policy, &self.params.corridor));
+        strokes.into_par_iter().map(line).collect::<Vec<_>>().into_iter().collect()
+    }
+
+    /// The verdict of a turn that needs no corridor: a restriction forbids it, or one of its edges may not be used. Arcs of a
+    /// roundabout need only leave to be driven on.
+    fn barred(&self, turn: &TurnFacts) -> Option<Verdict> {
+        if turn.movement.forbidden.is_some() {
+            return Some(Verdict::Forbidden(ForbiddenReason::Restriction));
+        }
+        let of = |edge: u32| self.edges.get(&edge).copied().unwrap_or(Verdict::Unknown(UnknownReason::Geometry));
+        let ends = [of(turn.movement.from), of(turn.movement.to)];
+        let rank = |verdict: &Verdict| match verdict {
+            Verdict::Forbidden(_) => 0,
+            Verdict::Unsafe(_) => 1,
+            Verdict::Unknown(_) => 2,
+            Verdict::Safe => 3,
+        };
+        let worse = if rank(&ends[1]) < rank(&ends[0]) { ends[1] } else { ends[0] };
+        if worse != Verdict::Safe {
+            return Some(worse);
+        }
+        let stops = |verdict: &Verdict| matches!(verdict, Verdict::Forbidden(_) | Verdict::Unknown(UnknownReason::Limit));
+        turn.through.iter().map(|&arc| of(arc)).find(stops)
+    }
+
+    /// What comes of a row, and how many kilometres were swept for it.
+    fn row(&self, chain: &Chain, row: &TurnRow, stroke_of: &FxHashMap<u32, u32>, lines: &Lines) -> (Outcome, f64) {
+        let said = Said::of_turn(row);
+        let Some(turn) = self.facts.get(row.turn as usize) else {
+            return (Outcome::Malformed("there is no such turn".to_owned()), 0.0);
+        };
+        if let Some(wrong) = self.misdescribed(turn, row) {
+            return (Outcome::Malformed(wrong), 0.0);
+        }
+        let made = match self.barred(turn) {
+            Some(verdict) => Err(verdict),
+            None => self.made(turn, stroke_of, lines).map_err(Verdict::Unknown),
+        };
+        match made {
+            Err(expected) => (without_corridor(&said, expected), 0.0),
+            Ok(made) => self.with_corridors(chain, row, &said, &made),
+        }
+    }
+
+    /// What the row says of the turn itself must be so.
+    fn misdescribed(&self, turn: &TurnFacts, row: &TurnRow) -> Option<String> {
+        let id = |edge: u32| self.network.edges.get(edge as usize).map_or(0, |edge| edge.id);
+        let arcs = turn.through.first().zip(turn.through.last()).map(|(&first, &last)| [id(first), id(last)]);
+        let same = [
+            ("turn_id", row.turn_id == turn.id),
+            ("from_fid", row.from_edge == id(turn.movement.from)),
+            ("to_fid", row.to_edge == id(turn.movement.to)),
+            ("first_arc_fid, last_arc_fid", row.arcs == arcs),
+            ("kerb_radius_m", row.kerb_radius_m == turn.kerb_radius_m),
+            ("restriction", row.restriction.is_some() == turn.movement.forbidden.is_some()),
+        ];
+        same.iter().find(|(_, same)| !same).map(|(column, _)| format!("{column}: not what the network says"))
+    }
+
+    fn made(
+        &self,
+        turn: &TurnFacts,
+        stroke_of: &FxHashMap<u32, u32>,
+        lines: &Lines,
+    ) -> Result<TurnCorridors, UnknownReason> {
+        let reach = Reach::of(self.vehicle).ok_or(UnknownReason::Geometry)?;
+        let line = |edge: u32| match stroke_of.get(&edge).and_then(|stroke| lines.get(stroke)) {
+            Some(Ok(line)) => Ok(line),
+            Some(Err(reason)) => Err(*reason),
+            None => Err(UnknownReason::Geometry),
+        };
+        let (from, to) = (line(turn.movement.from)?, line(turn.movement.to)?);
+        match turn.through.first() {
+            Some(&arc) => passage_on(self.network, turn, [from, line(arc)?, to], self.policy, self.params, reach),
+            None => turn_on(self.network, turn.movement, [from, to], self.policy, self.params, reach),
+        }
+    }
+
+    fn with_corridors(&self, chain: &Chain, row: &TurnRow, said: &Said, made: &TurnCorridors) -> (Outcome, f64) {
+        let Some(number) = row.path_no else {
+            let told = if said.has_numbers() {
+                Outcome::Malformed("it has numbers, but no path".to_owned())
+            } else if matches!(said.verdict, Verdict::Unsafe(_)) {
+                Outcome::Confirmed
+            } else {
+                Outcome::NotConfirmed(vec![finding("verdict", "it has no numbers that bear it out")])
+            };
+            return (told, 0.0);
+        };
+        let Some(path) = made.paths.iter().find(|path| path.number == number) else {
+            return (Outcome::Malformed(format!("the turn has no path {number}")), 0.0);
+        };
+        let none = vec![0; plan::count(path.corridor.len())];
+        let coefficients = self.plans.get(&row.turn).unwrap_or(&none);
+        if coefficients.len() != none.len() {
+            return (Outcome::Malformed(format!("the plan has {} coefficients", coefficients.len())), 0.0);
+        }
+        if let Err(why) = plan::level(coefficients) {
+            return (Outcome::Malformed(format!("the plan is {why}")), 0.0);
+        }
+        let subject = match Subject::new(chain, &path.corridor, plan::shift(coefficients), true) {
+            Ok(subject) => subject,
+            Err(e) => return (Outcome::Malformed(format!("its corridor: {e}")), 0.0),
+        };
+        let claims: Vec<_> = said.claim(&path.counted, path.corridor.spacing_m).into_iter().collect();
+        let mut found: Vec<Finding> = subject.check(&claims).into_iter().flatten().collect();
+        let follows = said.follows(Verdict::Safe);
+        if follows != said.verdict {
+            found.push(finding("verdict", &format!("{:?}, but {follows:?} is what follows", said.verdict)));
+        }
+        found.extend(strays(path, made));
+        let printed_m = printed::most_m(&subject, self.vehicle, path.counted.clone());
+        if let Some(claimed) = said.rsc_published_m.filter(|claimed| *claimed > printed_m + TOLERANCE_M) {
+            found.push(finding("rsc_published_m", &format!("{claimed} is above {printed_m:.4}")));
+        }
+        (said.outcome(found), path.corridor.spacing_m * path.corridor.len() as f64 * 1e-3)
+    }
+}
+
+/// Verdict, reason and the lack of numbers, where there is nothing to work out.
+fn without_corridor(said: &Said, expected: Verdict) -> Outcome {
+    let wrong = |detail: String| Outcome::NotConfirmed(vec![finding("verdict", &detail)]);
+    if said.has_numbers() {
+        return wrong("it has numbers where nothing can be said".to_owned());
+    }
+    if said.verdict == expected {
+        Outcome::Confirmed
+    } else {
+        wrong(format!("{:?}, but {expected:?} is what follows", said.verdict))
+    }
+}
+
+/// Between its joints a path's corridor stays within the turn's area.
+fn strays(path: &TurnPath, made: &TurnCorridors) -> Option<Finding> {
+    let c = &path.corridor;
+    path.turn.clone().filter(|&k| k < c.len()).find_map(|k| {
+        let (sin, cos) = c.heading[k].sin_cos();
+        let off_m = |left_m: f64| {
+            Euclidean.distance(&Point::new(c.x[k] - left_m * sin, c.y[k] + left_m * cos), &made.area)
+        };
+        let most_m = off_m(c.left_m[k]).max(off_m(-c.right_m[k]));
+        (most_m > WITHIN_M).then(|| finding("corridor", &format!("{most_m:.3} m beyond the area at station {k}")))
+    })
+}

@@ -1,0 +1,30 @@
+//! Certificates of turns and passages against the adversary: the best path and one that is not.
+
+use netcert::pipeline::best_of;
+use netcert::stet::{Model, Options};
+use netcert::turns::TurnPath;
+
+use super::draw::Draw;
+use super::{claim, duel, fleet};
+
+/// Paths with less room are not worth a fight, metres.
+const HOPELESS_M: f64 = -3.0;
+
+/// Drives the vehicle along the best of the paths and along `other`, as disturbed as it may be; how many claims held.
+///
+/// # Panics
+/// One did not: the message begins with `what`.
+pub fn none_is_refuted(paths: &[TurnPath], id: &str, other: usize, what: &str, draw: &mut Draw) -> usize {
+    let vehicle = fleet::vehicle(id);
+    let model = Model::new(&vehicle).expect("the oracle's vehicles are possible ones");
+    let best = best_of(paths, &[&model], &Options::default()).pop().flatten();
+    let mut held = 0;
+    for path in best.map(|(path, _)| path).into_iter().chain([other]) {
+        let Some(corridor) = paths.get(path).map(|path| &path.corridor) else { continue };
+        let Some(claim) = claim::certify(corridor, &vehicle).filter(|claim| claim.rsc_m >= HOPELESS_M) else { continue };
+        let (gap_m, outcome) = duel::margin_m(corridor, &vehicle, &claim, draw, 1);
+        assert!(gap_m > -2e-5, "{what} {id}: {gap_m} {}", duel::describe(&outcome));
+        held += 1;
+    }
+    held
+}

@@ -1,0 +1,36 @@
+//! A route's certificate file, turns and all, is confirmed in every column by the checker, which shares no code with what made it.
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stdout)]
+
+#[path = "support/program.rs"]
+#[allow(dead_code)]
+mod program;
+
+use program::Place;
+
+/// Round corners of the drawn region, with all of the carriageway: vehicle, from, to.
+const ROUTES: [(&str, &str, &str); 6] = [
+    ("AU-SEMI19", "125.958439,-30.229613", "125.959893,-30.229613"),
+    ("EU-SEMI16.5", "125.956984,-30.231959", "125.952620,-30.233131"),
+    ("EU-SEMI16.5", "125.952620,-30.230786", "125.958439,-30.229343"),
+    ("AGV-TUG4", "125.956984,-30.234304", "125.959997,-30.226711"),
+    ("AGV-TUG4", "125.960530,-30.252860", "126.051952,-30.240847"),
+    ("AGV-TUG4", "125.963825,-30.217144", "125.960530,-30.252860"),
+];
+
+#[test]
+fn routes_round_corners_are_confirmed_in_every_column() {
+    let place = Place::empty();
+    place
+        .netcert("ingest {demo} --db demo.gpkg --vehicle AU-SEMI19 EU-SEMI16.5 AGV-TUG4 --corridor carriageway")
+        .succeeds();
+    for (number, (id, from, to)) in ROUTES.into_iter().enumerate() {
+        let file = format!("{number}.json");
+        let line = format!("route --vehicle {id} --from {from} --to {to} --out {file} --format json");
+        let answer = place.netcert(&line).succeeds().json();
+        let parts = answer["routes"][0]["parts"].as_array().unwrap();
+        assert!(parts.iter().any(|part| part["kind"] == "turn"), "{line}: no turn");
+        let told = place.netcert(&format!("verify {file}")).succeeds().out();
+        println!("{id}: {} parts, RSC {}: {} claims", parts.len(), answer["routes"][0]["rsc_m"], told.lines().count());
+        assert!(told.lines().all(|line| line.starts_with("confirmed")), "{line}: {told}");
+    }
+}
