@@ -1,0 +1,242 @@
+// The map's style: background, roads and labels all come from the database's own tiles, nothing from elsewhere.
+//
+// Every road is a directed edge: the two directions of a road are drawn side by side, each on the side on which it is
+// driven. One layer a verdict, because each has a line of its own: certified is broad and solid, not certified thin,
+// forbidden dashed, unknown dotted.
+
+import type {
+  DataDrivenPropertyValueSpecification,
+  ExpressionSpecification,
+  LayerSpecification,
+  StyleSpecification,
+} from "maplibre-gl";
+import type { Region, VerdictName } from "../api/types.ts";
+import type { State } from "../state.ts";
+import { CLASSES, EVIDENCE } from "../words.ts";
+import { evidenceColours, missingSteps, palettes, reasonColours, roomSteps, type Palette, type Theme } from "./palette.ts";
+
+export const LABEL_FONT = "Inter Variable";
+/** Drawn in this order: what may be used lies on top. */
+export const verdictLayers: readonly VerdictName[] = ["unknown", "forbidden", "unsafe", "safe"];
+export const edgeLayers = verdictLayers.map((verdict) => `edge-${verdict}`);
+export const turnLayers = verdictLayers.map((verdict) => `turn-${verdict}`);
+
+type Colour = DataDrivenPropertyValueSpecification<string>;
+type Numeric = ExpressionSpecification;
+
+const major = ["motorway", "trunk"];
+const middle = ["primary", "secondary"];
+
+/** Width of one direction in pixels, by zoom and class. */
+function width(factor: number): Numeric {
+  const classed = (big: number, mid: number, small: number): Numeric => [
+    "match",
+    ["get", "highway"],
+    [...major, ...major.map((name) => `${name}_link`)],
+    big * factor,
+    [...middle, ...middle.map((name) => `${name}_link`)],
+    mid * factor,
+    small * factor,
+  ];
+  return [
+    "interpolate",
+    ["exponential", 1.5],
+    ["zoom"],
+    8,
+    classed(1.1, 0.8, 0.4),
+    12,
+    classed(2.2, 1.8, 1.1),
+    15,
+    classed(4.2, 3.8, 2.8),
+    18,
+    classed(12, 11, 9),
+    21,
+    classed(46, 42, 36),
+  ];
+}
+
+/** Half of the width to the side on which one drives; one-way roads stay where the map has them. */
+function offset(): Numeric {
+  const sided = (pixels: number): Numeric => [
+    "case",
+    ["==", ["get", "oneway"], "no"],
+    ["case", ["to-boolean", ["get", "left"]], -pixels, pixels],
+    0,
+  ];
+  return ["interpolate", ["exponential", 1.5], ["zoom"], 8, sided(0.5), 12, sided(1.1), 15, sided(2.3), 18, sided(6.2), 21, sided(24)];
+}
+
+function stepped(colours: readonly string[], steps: readonly { from_m: number }[]): Numeric {
+  const rest = steps.slice(1).flatMap((step, index) => [step.from_m, colours[index + 1] ?? ""]);
+  return ["step", ["coalesce", ["get", "rsc_m"], -1000], colours[0] ?? "", ...rest] as unknown as Numeric;
+}
+
+function colour(verdict: VerdictName, state: State, palette: Palette, theme: Theme): Colour {
+  if (state.colourBy === "evidence") {
+    const colours = evidenceColours[theme];
+    const pairs = EVIDENCE.flatMap((source) => [source, colours[source]]);
+    return ["match", ["coalesce", ["get", "width_source"], "none"], ...pairs, colours.none] as unknown as Colour;
+  }
+  if (verdict === "safe") return stepped(palette.room, roomSteps);
+  if (state.colourBy === "reason" && verdict === "unsafe") {
+    const named = Object.entries(reasonColours).filter(([name]) => name.startsWith("unsafe/"));
+    const pairs = named.flatMap(([name, value]) => [name.slice("unsafe/".length), value]);
+    return ["match", ["coalesce", ["get", "reason"], ""], ...pairs, palette.unknown] as unknown as Colour;
+  }
+  if (verdict === "unsafe") return stepped(palette.missing, missingSteps);
+  return verdict === "forbidden" ? palette.forbidden : palette.unknown;
+}
+
+const dashes: Partial<Record<VerdictName, number[]>> = { forbidden: [2.2, 1.4], unknown: [0.1, 2] };
+const breadth: Record<VerdictName, number> = { safe: 1.25, unsafe: 0.72, forbidden: 0.6, unknown: 0.75 };
+
+/** What the filters leave, of one verdict. */
+export function filter(verdict: VerdictName, state: State): ExpressionSpecification {
+  const all: unknown[] = ["all", ["==", ["get", "verdict"], verdict]];
+  if (state.hiddenClasses.size > 0) {
+    const gone = CLASSES.filter((name) => state.hiddenClasses.has(name)).flatMap((name) => [name, `${name}_link`]);
+    all.push(["!", ["in", ["get", "highway"], ["literal", gone]]]);
+  }
+  if (state.evidence !== "assumed") {
+    const enough = EVIDENCE.slice(EVIDENCE.indexOf(state.evidence));
+    all.push(["in", ["coalesce", ["get", "width_source"], "none"], ["literal", [...enough]]]);
+  }
+  if (state.hidden.has(verdict)) all.push(false);
+  return all as ExpressionSpecification;
+}
+
+function edge(verdict: VerdictName, state: State, palette: Palette, theme: Theme): LayerSpecification {
+  const dash = dashes[verdict];
+  return {
+    id: `edge-${verdict}`,
+    type: "line",
+    source: "roads",
+    "source-layer": "edge",
+    filter: filter(verdict, state),
+    layout: { "line-cap": verdict === "forbidden" ? "butt" : "round", "line-join": "round" },
+    paint: {
+      "line-color": colour(verdict, state, palette, theme),
+      "line-width": width(breadth[verdict]),
+      "line-offset": offset(),
+      ...(dash ? { "line-dasharray": dash } : {}),
+    },
+  };
+}
+
+function turn(verdict: VerdictName, state: State, palette: Palette, theme: Theme): LayerSpecification {
+  const dash = dashes[verdict];
+  const filtered = ["all", ["==", ["get", "verdict"], verdict], !state.hidden.has(verdict)];
+  return {
+    id: `turn-${verdict}`,
+    type: "line",
+    source: "roads",
+    "source-layer": "turn",
+    minzoom: 15.5,
+    filter: filtered as ExpressionSpecification,
+    layout: { "line-cap": "round", "line-join": "round" },
+    paint: {
+      "line-color": colour(verdict, { ...state, colourBy: "margin" }, palette, theme),
+      "line-width": ["interpolate", ["exponential", 1.5], ["zoom"], 15.5, verdict === "safe" ? 1.4 : 0.7, 20, verdict === "safe" ? 5 : 2.5],
+      "line-opacity": verdict === "safe" ? 0.95 : 0.6,
+      ...(dash ? { "line-dasharray": dash } : {}),
+    },
+  };
+}
+
+/** A broad line of the paper's colour under all roads keeps crossings and neighbours apart. */
+function casing(palette: Palette): LayerSpecification {
+  return {
+    id: "casing",
+    type: "line",
+    source: "roads",
+    "source-layer": "edge",
+    minzoom: 12,
+    layout: { "line-cap": "round", "line-join": "round" },
+    paint: { "line-color": palette.casing, "line-width": width(1.9), "line-offset": offset(), "line-opacity": 0.9 },
+  };
+}
+
+function highlight(id: string, layer: "edge" | "turn", palette: Palette): LayerSpecification {
+  const key = layer === "edge" ? "edge_id" : "turn_id";
+  return {
+    id,
+    type: "line",
+    source: "roads",
+    "source-layer": layer,
+    filter: ["==", ["get", key], ""],
+    layout: { "line-cap": "round", "line-join": "round" },
+    paint: {
+      "line-color": palette.selected,
+      "line-width": layer === "edge" ? width(2.3) : 6,
+      ...(layer === "edge" ? { "line-offset": offset() } : {}),
+      "line-opacity": id.startsWith("hover") ? 0.35 : 0.9,
+    },
+  };
+}
+
+function labels(palette: Palette): LayerSpecification {
+  return {
+    id: "names",
+    type: "symbol",
+    source: "roads",
+    "source-layer": "label",
+    minzoom: 11,
+    layout: {
+      "symbol-placement": "line",
+      "symbol-spacing": 320,
+      "text-font": [LABEL_FONT],
+      "text-field": ["coalesce", ["case", ["<", ["zoom"], 13], ["coalesce", ["get", "ref"], ["get", "name"]], ["coalesce", ["get", "name"], ["get", "ref"]]], ""],
+      "text-size": ["interpolate", ["linear"], ["zoom"], 11, 10, 16, 12.5, 19, 15],
+      "text-letter-spacing": 0.01,
+      "text-max-angle": 35,
+      "text-padding": 6,
+      "symbol-sort-key": ["match", ["get", "highway"], major, 0, middle, 1, ["tertiary"], 2, 3],
+    },
+    paint: { "text-color": palette.ink, "text-halo-color": palette.halo, "text-halo-width": 1.6 },
+  };
+}
+
+const world: [number, number][] = [[-180, -85], [180, -85], [180, 85], [-180, 85], [-180, -85]];
+
+/** The region's box; outside of it nothing is known, which the paper shows. */
+function extent([west, south, east, north]: Region["bbox"]): GeoJSON.Feature {
+  const [x, y] = [0.01 * (east - west), 0.01 * (north - south)];
+  const [w, s, e, n] = [west - x, south - y, east + x, north + y];
+  const box = [[w, s], [w, n], [e, n], [e, s], [w, s]];
+  return { type: "Feature", properties: {}, geometry: { type: "Polygon", coordinates: [world, box] } };
+}
+
+export interface Ground {
+  region: Region;
+  tilesUrl: string;
+  theme: Theme;
+}
+
+export function style(state: State, { region, tilesUrl, theme }: Ground): StyleSpecification {
+  const palette = palettes[theme];
+  const base = state.baseMap && region.base_map ? region.base_map : null;
+  const each = (make: typeof edge): LayerSpecification[] =>
+    verdictLayers.map((verdict) => make(verdict, state, palette, theme));
+  return {
+    version: 8,
+    // No `glyphs`: MapLibre then draws letters with the fonts of the page.
+    sources: {
+      roads: { type: "vector", tiles: [tilesUrl], maxzoom: region.max_zoom, bounds: region.bbox, attribution: region.attribution },
+      outside: { type: "geojson", data: extent(region.bbox) },
+      ...(base ? { base: { type: "raster", tiles: [base.url], tileSize: 256, attribution: base.attribution ?? "" } } : {}),
+    },
+    layers: [
+      { id: "paper", type: "background", paint: { "background-color": palette.paper } },
+      ...(base ? [{ id: "base", type: "raster", source: "base", paint: { "raster-opacity": 0.45, "raster-saturation": -0.7 } } as LayerSpecification] : []),
+      { id: "outside", type: "fill", source: "outside", paint: { "fill-color": palette.outside, "fill-opacity": base ? 0.4 : 1 } },
+      casing(palette),
+      highlight("hover-edge", "edge", palette),
+      highlight("selected-edge", "edge", palette),
+      ...each(edge),
+      highlight("hover-turn", "turn", palette),
+      highlight("selected-turn", "turn", palette),
+      ...each(turn),
+      labels(palette),
+    ],
+  };
+}
