@@ -26,7 +26,7 @@ export function write(state: State, first: State): string {
   put("without", [...state.hiddenClasses].join(","));
   if (state.evidence !== "assumed") parts.set("width", state.evidence);
   put("id", state.selected);
-  put("route", state.route?.map(position).join(";") ?? null);
+  if (state.route) parts.set("route", state.route.map(position).join(";"));
   if (state.stats) parts.set("stats", "1");
   if (state.camera) parts.set("at", camera(state.camera));
   // Commas and semicolons need no escape behind `#`, and a link is to be read.
@@ -67,8 +67,9 @@ function camera({ lon, lat, zoom }: Camera): string {
 }
 
 function numbers(text: string, count: number): number[] | null {
-  const all = text.split(",").map(Number);
-  return text !== "" && all.length === count && all.every(Number.isFinite) ? all : null;
+  // An empty text would be the number 0.
+  const all = text.split(",").map((part) => (part.trim() === "" ? Number.NaN : Number(part)));
+  return all.length === count && all.every(Number.isFinite) ? all : null;
 }
 
 function onEarth(lon: number, lat: number): boolean {
@@ -77,6 +78,7 @@ function onEarth(lon: number, lat: number): boolean {
 
 function places(text: string | null): Position[] | null {
   if (text === null) return null;
+  if (text === "") return [];
   const all = text.split(";").slice(0, 2).map((one) => numbers(one, 2));
   const good = all.filter((one): one is [number, number] => one !== null && onEarth(one[0]!, one[1]!));
   return good.length === all.length ? good : null;

@@ -28,10 +28,13 @@ async function start(): Promise<void> {
   new Page(context, first, possible);
 }
 
-/** What is shown where the link says nothing: the first vehicle that is certified, its whole region. */
+/** What is shown where the link says nothing: the first of the vehicles that most of them are like, its whole region. */
 function beginning(region: Region, vehicles: Vehicle[]): State {
   const certified = vehicles.filter((vehicle) => vehicle.certified.length > 0);
-  const usual = certified.find((vehicle) => vehicle.certified.includes(region.default_policy)) ?? certified[0];
+  const alike = (vehicle: Vehicle): number => certified.filter((other) => other.region === vehicle.region).length;
+  const most = Math.max(...certified.map(alike));
+  const own = certified.filter((vehicle) => alike(vehicle) === most);
+  const usual = own.find((vehicle) => vehicle.certified.includes(region.default_policy)) ?? own[0];
   if (!usual) throw new Error("The database has no certificates yet: run `netcert certify`, then reload this page.");
   return {
     vehicle: usual.id,

@@ -129,3 +129,10 @@ export function duration(seconds: number): string {
     ? `${Math.floor(minutes / 60)} h ${String(minutes % 60).padStart(2, "0")} min`
     : `${minutes}:${String(rest).padStart(2, "0")} min`;
 }
+
+/** The name of an extract's file as a title: `columbus_oh_us` → `Columbus OH US`. */
+export function regionName(name: string): string {
+  const words = name.split(/[_\s]+/).filter(Boolean);
+  const short = (word: string): boolean => word.length === 2;
+  return words.map((word) => (short(word) ? word.toUpperCase() : word.charAt(0).toUpperCase() + word.slice(1))).join(" ");
+}

@@ -10,6 +10,8 @@ export type Position = [lon: number, lat: number];
 export interface Region {
   name: string;
   bbox: [west: number, south: number, east: number, north: number];
+  /** Where nearly all roads are: a few stick out of most extracts. */
+  view?: [west: number, south: number, east: number, north: number];
   timestamp: string | null;
   netcert: string;
   database_hash: string;

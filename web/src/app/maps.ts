@@ -1,5 +1,7 @@
 // The map, or two of them beside each other that move as one.
 
+import { Marker } from "maplibre-gl";
+import type { Position } from "../api/types.ts";
 import { question, vehicleOf, type Context } from "../context.ts";
 import { HoverCard } from "../map/hovercard.ts";
 import { sync } from "../map/sync.ts";
@@ -24,6 +26,7 @@ export class Maps {
   readonly #root = byId("maps");
   readonly #hover: HoverCard;
   readonly #card: VehicleCard;
+  #limit: Marker | undefined;
   #second: { view: View; stop: () => void; pane: HTMLElement } | undefined;
 
   constructor(private readonly context: Context, private readonly actions: MapActions) {
@@ -45,7 +48,7 @@ export class Maps {
   }
 
   home(): void {
-    this.first.map.fitBounds(this.context.region.bbox, { ...this.#room(), pitch: 0, bearing: 0 });
+    this.first.map.fitBounds(this.context.region.view ?? this.context.region.bbox, { ...this.#room(), pitch: 0, bearing: 0 });
   }
 
   zoom(by: number): void {
@@ -54,6 +57,27 @@ export class Maps {
 
   fit([west, south, east, north]: [number, number, number, number], maxZoom = FIT_ZOOM): void {
     this.first.map.fitBounds([west, south, east, north], { ...this.#room(), maxZoom });
+  }
+
+  /** Moves the map if the place lies under the drawer or at the very edge. */
+  reveal(lon: number, lat: number): void {
+    const { map } = this.first;
+    const drawer = byId("drawer");
+    const { x, y } = map.project([lon, lat]);
+    const narrow = innerWidth < 760;
+    const right = drawer.hidden || narrow ? innerWidth : innerWidth - drawer.offsetWidth - 40;
+    const bottom = narrow && !drawer.hidden ? innerHeight - drawer.offsetHeight - 40 : innerHeight;
+    if (x > right) map.panBy([x - right + 120, 0]);
+    else if (y > bottom) map.panBy([0, y - bottom + 60]);
+  }
+
+  /** A ring where the answer was decided. */
+  mark(place: Position | null): void {
+    this.#limit?.remove();
+    this.#limit = undefined;
+    if (!place) return;
+    const element = h("div", { class: "limit", role: "img", "aria-label": "The place that decides" });
+    this.#limit = new Marker({ element }).setLngLat(place).addTo(this.first.map);
   }
 
   jump({ lon, lat, zoom }: Camera): void {

@@ -44,7 +44,7 @@ export class Page {
       endComparing: () => store.set({ other: null }),
     });
     this.#explain = new ExplainPanel({
-      goTo: (explanation) => this.#goTo(explanation),
+      place: (explanation, goTo) => this.#place(explanation, goTo),
       other: () => (store.state.other ? { ...question(context), vehicle: store.state.other } : null),
     });
     this.#routing = new Routing(context, this.#maps.first, this.#drawer);
@@ -136,7 +136,10 @@ export class Page {
     const { store } = this.context;
     const { route } = store.state;
     if (route && route.length < 2) store.set({ route: [...route, [lon, lat]] });
-    else if (!this.#routing.driving && (id || !route)) store.set({ selected: id, ...(id ? { route: null } : {}) });
+    else if (!this.#routing.driving && (id || !route)) {
+      store.set({ selected: id, ...(id ? { route: null } : {}) });
+      if (id) this.#maps.reveal(lon, lat);
+    }
   }
 
   #search(hit: SearchHit): void {
@@ -146,7 +149,10 @@ export class Page {
     if (!one) toast(`${title(hit)}: click on the road for its explanation.`);
   }
 
-  #goTo({ geometry, at }: Explanation): void {
+  #place(explanation: Explanation | null, goTo: boolean): void {
+    this.#maps.mark(explanation && explanation.verdict !== "forbidden" ? explanation.at : null);
+    if (!goTo || !explanation) return;
+    const { geometry, at } = explanation;
     const line = geometry?.coordinates;
     if (line && line.length > 0) {
       const [lons, lats] = [line.map(([lon]) => lon), line.map(([, lat]) => lat)];
@@ -177,8 +183,9 @@ export class Page {
     if (state.selected) {
       this.#drawer.show(this.#explain.element);
       void this.#explain.show(state.selected, question(this.context), goTo);
-    } else if (!state.route) {
-      this.#drawer.hide();
+    } else {
+      this.#maps.mark(null);
+      if (!state.route) this.#drawer.hide();
     }
   }
 

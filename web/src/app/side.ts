@@ -7,10 +7,10 @@ import { Filters } from "../panel/filters.ts";
 import { Legend } from "../panel/legend.ts";
 import { Search } from "../panel/search.ts";
 import { VehicleCard } from "../panel/vehicle.ts";
-import { byId, h } from "../ui/dom.ts";
+import { byId, h, prose } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
 import { Segmented } from "../ui/segmented.ts";
-import { mainClass, policyWords } from "../words.ts";
+import { mainClass, policyWords, regionName } from "../words.ts";
 
 export interface SideActions {
   chooseVehicle(): void;
@@ -42,7 +42,7 @@ export class Side {
       { class: "plain fold", type: "button", "aria-expanded": "false", "aria-label": "Legend and filters", onclick: () => this.#fold(fold) },
       icon("chevron"),
     );
-    const brand = h("header", { class: "brand" }, h("h1", {}, "netcert", h("span", {}, region.name)), this.#theme, help, fold);
+    const brand = h("header", { class: "brand" }, h("h1", {}, "netcert", h("span", {}, regionName(region.name))), this.#theme, help, fold);
     const more = h(
       "div",
       { class: "side-more" },
@@ -50,7 +50,7 @@ export class Side {
       this.#legend.element,
       this.#filterPlace,
       this.#base(),
-      h("footer", {}, h("p", { class: "scope" }, region.scope), h("p", { class: "scope" }, attribution(region.attribution, region.timestamp))),
+      h("footer", {}, h("p", { class: "scope" }, prose(region.scope)), h("p", { class: "scope" }, attribution(region.attribution, region.timestamp))),
     );
     byId("side").append(brand, this.search.element, this.#card.element, more);
   }
@@ -73,7 +73,10 @@ export class Side {
       this.#policies = this.#makePolicies();
     }
     this.#policies.value = store.state.policy;
-    this.#policyNote.textContent = policyWords[store.state.policy].meaning;
+    const { name, meaning } = policyWords[store.state.policy];
+    const one = this.context.region.policies.length < 2;
+    this.#policyPlace.hidden = one;
+    this.#policyNote.replaceChildren(one ? h("strong", {}, `${name}. `) : "", meaning);
     this.#legend.draw();
     this.#filters?.draw();
   }

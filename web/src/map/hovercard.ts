@@ -17,7 +17,8 @@ export class HoverCard {
     if (!under) return;
     this.#card.replaceChildren(...content(under));
     const { offsetWidth: wide, offsetHeight: tall } = this.#card;
-    const left = x + 18 + wide > innerWidth ? x - wide - 14 : x + 18;
+    const right = document.body.classList.contains("has-drawer") ? innerWidth - 402 : innerWidth;
+    const left = x + 18 + wide > right ? x - wide - 14 : x + 18;
     const top = y + 18 + tall > innerHeight ? y - tall - 14 : y + 18;
     styled(this.#card, { transform: `translate(${Math.max(left, 4)}px, ${Math.max(top, 4)}px)` });
   }

@@ -27,43 +27,40 @@ type Numeric = ExpressionSpecification;
 const major = ["motorway", "trunk"];
 const middle = ["primary", "secondary"];
 
-/** Width of one direction in pixels, by zoom and class. */
-function width(factor: number): Numeric {
-  const classed = (big: number, mid: number, small: number): Numeric => [
-    "match",
-    ["get", "highway"],
-    [...major, ...major.map((name) => `${name}_link`)],
-    big * factor,
-    [...middle, ...middle.map((name) => `${name}_link`)],
-    mid * factor,
-    small * factor,
-  ];
-  return [
-    "interpolate",
-    ["exponential", 1.5],
-    ["zoom"],
-    8,
-    classed(1.1, 0.8, 0.4),
-    12,
-    classed(2.2, 1.8, 1.1),
-    15,
-    classed(4.2, 3.8, 2.8),
-    18,
-    classed(12, 11, 9),
-    21,
-    classed(46, 42, 36),
-  ];
+/** Pixels of one direction of a road by zoom: of motorways and trunk roads, of main roads, of all others. */
+const widths: readonly (readonly [zoom: number, big: number, main: number, other: number])[] = [
+  [8, 1.1, 0.8, 0.4],
+  [12, 2.2, 1.8, 1.1],
+  [15, 4.2, 3.8, 2.8],
+  [18, 12, 11, 9],
+  [21, 46, 42, 36],
+];
+
+/** Something for each zoom, made from the width of a direction there. */
+function byWidth(make: (pixels: Numeric) => Numeric): Numeric {
+  const links = (names: string[]): string[] => [...names, ...names.map((name) => `${name}_link`)];
+  const stops = widths.flatMap(([zoom, big, main, other]) => {
+    const pixels: Numeric = ["match", ["get", "highway"], links(major), big, links(middle), main, other];
+    return [zoom, make(pixels)];
+  });
+  return ["interpolate", ["exponential", 1.5], ["zoom"], ...stops] as unknown as Numeric;
 }
 
-/** Half of the width to the side on which one drives; one-way roads stay where the map has them. */
-function offset(): Numeric {
-  const sided = (pixels: number): Numeric => [
+function width(factor: number): Numeric {
+  return byWidth((pixels) => ["*", factor, pixels]);
+}
+
+/**
+ * To the side on which one drives, so that the two directions of a road touch; one-way roads stay where the map has them.
+ * `factor` is that of the line's own width.
+ */
+function offset(factor: number): Numeric {
+  return byWidth((pixels) => [
     "case",
     ["==", ["get", "oneway"], "no"],
-    ["case", ["to-boolean", ["get", "left"]], -pixels, pixels],
+    ["*", ["case", ["to-boolean", ["get", "left"]], -0.53 * factor, 0.53 * factor], pixels],
     0,
-  ];
-  return ["interpolate", ["exponential", 1.5], ["zoom"], 8, sided(0.5), 12, sided(1.1), 15, sided(2.3), 18, sided(6.2), 21, sided(24)];
+  ]);
 }
 
 function stepped(colours: readonly string[], steps: readonly { from_m: number }[]): Numeric {
@@ -117,7 +114,7 @@ function edge(verdict: VerdictName, state: State, palette: Palette, theme: Theme
     paint: {
       "line-color": colour(verdict, state, palette, theme),
       "line-width": width(breadth[verdict]),
-      "line-offset": offset(),
+      "line-offset": offset(breadth[verdict]),
       ...(dash ? { "line-dasharray": dash } : {}),
     },
   };
@@ -152,7 +149,7 @@ function casing(palette: Palette): LayerSpecification {
     "source-layer": "edge",
     minzoom: 12,
     layout: { "line-cap": "round", "line-join": "round" },
-    paint: { "line-color": palette.casing, "line-width": width(1.9), "line-offset": offset(), "line-opacity": 0.9 },
+    paint: { "line-color": palette.casing, "line-width": width(1.7), "line-offset": offset(1), "line-opacity": 0.9 },
   };
 }
 
@@ -168,7 +165,7 @@ function highlight(id: string, layer: "edge" | "turn", palette: Palette): LayerS
     paint: {
       "line-color": palette.selected,
       "line-width": layer === "edge" ? width(2.3) : 6,
-      ...(layer === "edge" ? { "line-offset": offset() } : {}),
+      ...(layer === "edge" ? { "line-offset": offset(1) } : {}),
       "line-opacity": id.startsWith("hover") ? 0.35 : 0.9,
     },
   };
@@ -185,7 +182,7 @@ function labels(palette: Palette): LayerSpecification {
       "symbol-placement": "line",
       "symbol-spacing": 320,
       "text-font": [LABEL_FONT],
-      "text-field": ["coalesce", ["case", ["<", ["zoom"], 13], ["coalesce", ["get", "ref"], ["get", "name"]], ["coalesce", ["get", "name"], ["get", "ref"]]], ""],
+      "text-field": ["step", ["zoom"], ["coalesce", ["get", "ref"], ["get", "name"], ""], 13, ["coalesce", ["get", "name"], ["get", "ref"], ""]],
       "text-size": ["interpolate", ["linear"], ["zoom"], 11, 10, 16, 12.5, 19, 15],
       "text-letter-spacing": 0.01,
       "text-max-angle": 35,

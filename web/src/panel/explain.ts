@@ -2,21 +2,21 @@
 
 import { api, type Question } from "../api/client.ts";
 import type { Explanation, VerdictName } from "../api/types.ts";
-import { Dialog } from "../ui/dialog.ts";
-import { h } from "../ui/dom.ts";
+import { h, prose } from "../ui/dom.ts";
 import { className, evidenceWords, margin, policyWords, reasonWords, title, verdictWords } from "../words.ts";
+import { Picture } from "./picture.ts";
 
 /** What the panel needs of the page around it. */
 export interface Around {
-  /** Shows the place on the map. */
-  goTo(explanation: Explanation): void;
+  /** Marks the place that decides, and goes there if asked to. */
+  place(explanation: Explanation | null, goTo: boolean): void;
   /** The same road for the vehicle on the other map, if there is one. */
   other(): Question | null;
 }
 
 export class ExplainPanel {
   readonly element = h("div", { class: "explain" });
-  readonly #zoom = new Dialog("picture", "Swept path at the place that decides");
+  readonly #picture = new Picture();
   #running: AbortController | undefined;
 
   constructor(private readonly around: Around) {}
@@ -25,7 +25,8 @@ export class ExplainPanel {
   async show(id: string, question: Question, goTo: boolean): Promise<void> {
     this.#running?.abort();
     const running = (this.#running = new AbortController());
-    this.element.replaceChildren(h("p", { class: "waiting" }, "Certifying again, to explain …"));
+    this.around.place(null, false);
+    this.element.replaceChildren(h("p", { class: "waiting" }, "Certifying again, to explain why …"));
     try {
       const other = this.around.other();
       const [own, beside] = await Promise.all([
@@ -33,7 +34,7 @@ export class ExplainPanel {
         other ? api.explain(id, other, running.signal).catch(() => null) : null,
       ]);
       this.element.replaceChildren(...this.#content(id, question, own, other && beside ? { other, beside } : null));
-      if (goTo) this.around.goTo(own);
+      this.around.place(own, goTo);
     } catch (error) {
       if (running.signal.aborted) return;
       this.element.replaceChildren(h("h2", {}, "Nothing to explain"), h("p", { class: "problem", role: "alert" }, (error as Error).message));
@@ -51,24 +52,14 @@ export class ExplainPanel {
       ...verdict(own),
     ];
     if (compared) nodes.push(h("h3", {}, compared.other.vehicle), ...verdict(compared.beside));
-    if (own.picture) nodes.push(this.#picture(id, question, own));
+    if (own.picture) {
+      const alt = `The swept path where it is tightest: ${own.headline}`;
+      nodes.push(this.#picture.show(api.pictureUrl(id, question), alt, this.#running!.signal));
+    }
     nodes.push(list("What decides", own.reasons), list("What would do", own.hints_in_words));
     if (road) nodes.push(width(own), h("p", { class: "ids" }, "Edge ", h("code", {}, road.edge_id)));
-    nodes.push(h("p", { class: "scope" }, [own.note, own.scope].filter(Boolean).join(" ")));
+    nodes.push(h("p", { class: "scope" }, prose([own.note, own.scope].filter(Boolean).join(" "))));
     return nodes;
-  }
-
-  #picture(id: string, question: Question, own: Explanation): HTMLElement {
-    const source = api.pictureUrl(id, question);
-    const alt = `The swept path where it is tightest: ${own.headline}`;
-    const image = h("img", { src: source, alt, loading: "lazy" });
-    const open = () => {
-      this.#zoom.body.replaceChildren(h("img", { src: source, alt }));
-      this.#zoom.open();
-    };
-    const button = h("button", { class: "picture-button", type: "button", "aria-label": "Enlarge the picture", onclick: open }, image);
-    image.addEventListener("error", () => button.remove());
-    return button;
   }
 }
 

@@ -6,14 +6,14 @@ import { vehicleOf, type Context } from "../context.ts";
 import { sideView } from "../draw/vehicle.ts";
 import { marginColour, palettes } from "../map/palette.ts";
 import { Dialog } from "../ui/dialog.ts";
-import { h, styled } from "../ui/dom.ts";
-import { CLASSES, VERDICTS, className, kilometres, mainClass, percent, policyWords, reasonWords, verdictWords } from "../words.ts";
+import { h, prose, styled } from "../ui/dom.ts";
+import { CLASSES, VERDICTS, className, kilometres, mainClass, percent, policyWords, reasonWords, regionName, verdictWords } from "../words.ts";
 
 export class StatsDialog {
   readonly #dialog: Dialog;
 
   constructor(private readonly context: Context) {
-    this.#dialog = new Dialog("stats", `${context.region.name} in numbers`, () => context.store.set({ stats: false }));
+    this.#dialog = new Dialog("stats", `${regionName(context.region.name)} in numbers`, () => context.store.set({ stats: false }));
   }
 
   async open(): Promise<void> {
@@ -42,7 +42,7 @@ export class StatsDialog {
         h("div", { class: "stats-columns" }, classes(own), h("div", {}, limits(own), this.#histogram(own))),
       );
     }
-    nodes.push(h("p", { class: "scope" }, stats.scope));
+    nodes.push(h("p", { class: "scope" }, prose(stats.scope)));
     return nodes;
   }
 

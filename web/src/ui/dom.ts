@@ -44,3 +44,10 @@ export function byId(id: string): HTMLElement {
   if (!element) throw new Error(`index.html lacks #${id}`);
   return element;
 }
+
+/** Text in which `words between backticks` are identifiers. */
+export function prose(text: string): DocumentFragment {
+  const fragment = document.createDocumentFragment();
+  text.split("`").forEach((part, index) => fragment.append(index % 2 === 1 ? h("code", {}, part) : part));
+  return fragment;
+}
