@@ -104,6 +104,12 @@ export function signed(rsc_m: number): string {
   return `${rsc_m < 0 ? "−" : "+"}${careful(rsc_m)} m`;
 }
 
+/** `547 km certified, 23 %` */
+export function certifiedWords(lengths: Record<VerdictName, number>): string {
+  const all = VERDICTS.reduce((sum, name) => sum + lengths[name], 0);
+  return `${kilometres(lengths.safe)} certified, ${percent(lengths.safe, all)}`;
+}
+
 const whole = new Intl.NumberFormat("en", { maximumFractionDigits: 0 });
 
 export function kilometres(metres: number): string {

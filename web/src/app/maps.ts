@@ -1,6 +1,7 @@
 // The map, or two of them beside each other that move as one.
 
 import { Marker } from "maplibre-gl";
+import type { VehicleStats } from "../api/stats.ts";
 import type { Position } from "../api/types.ts";
 import { question, vehicleOf, type Context } from "../context.ts";
 import { HoverCard } from "../map/hovercard.ts";
@@ -10,6 +11,7 @@ import { VehicleCard } from "../panel/vehicle.ts";
 import type { Camera, State } from "../state.ts";
 import { byId, h } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
+import { certifiedWords } from "../words.ts";
 
 export interface MapActions {
   click(under: Under | null, lon: number, lat: number): void;
@@ -43,8 +45,14 @@ export class Maps {
     if (changed.has("other")) this.#compare(state.other);
     if (this.#second && state.other) {
       this.#second.view.update(state, { ...question(this.context), vehicle: state.other }, theme.theme);
-      this.#card.show(vehicleOf(this.context, state.other));
+      if (changed.has("other")) this.#card.show(vehicleOf(this.context, state.other), null);
     }
+  }
+
+  /** Of the vehicle on the second map. */
+  number(stats: VehicleStats | null): void {
+    const { other } = this.context.store.state;
+    if (other) this.#card.show(vehicleOf(this.context, other), stats ? certifiedWords(stats.verdicts) : null);
   }
 
   home(): void {
@@ -65,7 +73,7 @@ export class Maps {
     const drawer = byId("drawer");
     const { x, y } = map.project([lon, lat]);
     const narrow = innerWidth < 760;
-    const right = drawer.hidden || narrow ? innerWidth : innerWidth - drawer.offsetWidth - 40;
+    const right = drawer.hidden || narrow ? innerWidth : innerWidth - drawer.offsetWidth - 110;
     const bottom = narrow && !drawer.hidden ? innerHeight - drawer.offsetHeight - 40 : innerHeight;
     if (x > right) map.panBy([x - right + 120, 0]);
     else if (y > bottom) map.panBy([0, y - bottom + 60]);

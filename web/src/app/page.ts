@@ -165,7 +165,7 @@ export class Page {
   #changed(changed: ReadonlySet<keyof State>, first = false): void {
     const { state } = this.context.store;
     const certificates = changed.has("vehicle") || changed.has("policy");
-    if (certificates) this.#number(changed.has("policy"));
+    if (certificates || changed.has("other")) this.#number(changed.has("policy"));
     this.#side.draw(certificates);
     this.#maps.update(changed);
     this.#tools.draw();
@@ -194,7 +194,11 @@ export class Page {
     if (policyChanged || !this.#numbers) this.#numbers = api.stats(policy);
     this.#numbers
       .then((stats) => {
-        if (this.context.store.state.vehicle === vehicle) this.#side.number(stats.vehicles.find(({ id }) => id === vehicle) ?? null);
+        const { state } = this.context.store;
+        const of = (wanted: string | null) => stats.vehicles.find(({ id }) => id === wanted) ?? null;
+        if (state.vehicle !== vehicle || state.policy !== stats.policy) return;
+        this.#side.number(of(vehicle));
+        this.#maps.number(of(state.other));
       })
       .catch((error: Error) => {
         this.#numbers = null;

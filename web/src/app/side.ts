@@ -10,7 +10,7 @@ import { VehicleCard } from "../panel/vehicle.ts";
 import { byId, h, prose } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
 import { Segmented } from "../ui/segmented.ts";
-import { mainClass, policyWords, regionName } from "../words.ts";
+import { certifiedWords, mainClass, policyWords, regionName } from "../words.ts";
 
 export interface SideActions {
   chooseVehicle(): void;
@@ -57,6 +57,8 @@ export class Side {
 
   number(stats: VehicleStats | null): void {
     this.#legend.show(stats);
+    const vehicle = vehicleOf(this.context, this.context.store.state.vehicle);
+    this.#card.show(vehicle, stats ? certifiedWords(stats.verdicts) : null);
     if (!this.#filters && stats) {
       this.#filters = new Filters(this.context, new Set(stats.classes.map(({ highway }) => mainClass(highway))));
       this.#filterPlace.append(this.#filters.element);
@@ -69,7 +71,7 @@ export class Side {
     this.#theme.replaceChildren(icon(dark ? "sun" : "moon"));
     this.#theme.setAttribute("aria-label", dark ? "Light colours" : "Dark colours");
     if (certificates) {
-      this.#card.show(vehicleOf(this.context, store.state.vehicle));
+      this.#card.show(vehicleOf(this.context, store.state.vehicle), null);
       this.#policies = this.#makePolicies();
     }
     this.#policies.value = store.state.policy;

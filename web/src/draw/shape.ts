@@ -5,7 +5,7 @@
 
 import type { Unit, Vehicle } from "../api/types.ts";
 
-export type BlockKind = "cab" | "load" | "frame" | "bar" | "saloon";
+export type BlockKind = "cab" | "load" | "frame" | "drawbar" | "saloon";
 
 /** A box, metres: along the unit ahead of its axle, across it, and above the ground. */
 export interface Block {
@@ -80,12 +80,12 @@ function goods(unit: Unit, index: number, height: number, next: Unit | undefined
   const beam: Block = { kind: "frame", front, rear, low: frame, high: deck, width: 0.55 * width };
   if (index === 0) return motor(unit, height, carrying ? ahead : null);
   const bar: Block | null =
-    front < unit.coupling_to_axle_m - 0.3 ? { kind: "bar", front: unit.coupling_to_axle_m, rear: front, low: frame, high: frame + 0.12, width: 0.12 * width } : null;
+    front < unit.coupling_to_axle_m - 0.3 ? { kind: "drawbar", front: unit.coupling_to_axle_m, rear: front, low: frame, high: frame + 0.12, width: 0.12 * width } : null;
   if (carrying && unit.front_overhang_m <= 0 && unit.rear_overhang_m < 0.8) {
     // A dolly: a short frame over its axle and a drawbar.
     const body = Math.min(1.3, 0.5 * unit.coupling_to_axle_m);
     return [
-      { kind: "bar", front: unit.coupling_to_axle_m, rear: body, low: frame, high: frame + 0.12, width: 0.12 * width },
+      { kind: "drawbar", front: unit.coupling_to_axle_m, rear: body, low: frame, high: frame + 0.12, width: 0.12 * width },
       { ...beam, front: body, rear, width: 0.8 * width },
     ];
   }

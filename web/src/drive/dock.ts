@@ -22,6 +22,7 @@ export class Dock {
   readonly #player: Player;
   readonly #samples: Samples;
   readonly #play = h("button", { class: "round", type: "button", onclick: () => this.#player.toggle() });
+  readonly #road = h("strong", { class: "dock-road" });
   readonly #time = h("span", { class: "dock-time" });
   readonly #look: Segmented<Look>;
   readonly #speed: Segmented<string>;
@@ -50,7 +51,8 @@ export class Dock {
     this.#speed = new Segmented<string>("speed", "Speed", speeds, (value) => (this.#player.speed = Number(value)));
     const tightest = h("button", { class: "small", type: "button", onclick: () => this.tightest() }, "Tightest place");
     const shut = h("button", { class: "plain", type: "button", "aria-label": "End the drive", onclick: close }, icon("close"));
-    const controls = h("div", { class: "dock-controls" }, this.#play, this.#time, this.#speed.element, this.#look.element, tightest, shut);
+    const words = h("div", { class: "dock-words" }, this.#road, this.#time);
+    const controls = h("div", { class: "dock-controls" }, this.#play, words, this.#speed.element, this.#look.element, tightest, shut);
     this.element = h("section", { class: "dock", "aria-label": "Drive along the route" }, controls, this.#strip.element);
     this.view.map.addLayer(this.#scene, this.view.map.getLayer("names") ? "names" : undefined);
     this.#player = new Player(view.map, this.#scene, this.#samples, vehicle.length_m, () => this.#draw());
@@ -97,6 +99,7 @@ export class Dock {
     this.#play.replaceChildren(icon(playing ? "pause" : "play"));
     this.#play.setAttribute("aria-label", playing ? "Pause" : "Play");
     this.#time.textContent = `${distance(s)} of ${distance(this.#samples.length)} · ${duration(this.#samples.timeAt(s))}`;
+    this.#road.textContent = this.route.parts.find((part) => s <= part.to_m)?.title ?? "";
     this.#look.value = look;
     this.#speed.value = String(speed);
     this.#strip.move(s);

@@ -39,9 +39,14 @@ export class Mesh {
     this.#used = 0;
   }
 
-  /** Two triangles; corners in turn. */
-  quad(a: Point, b: Point, c: Point, d: Point, normal: Point, colour: Rgba): void {
-    for (const corner of [a, b, c, a, c, d]) this.#vertex(corner, normal, colour);
+  /** Two triangles; corners in turn, the last two in a colour of their own if there is one. */
+  quad(a: Point, b: Point, c: Point, d: Point, normal: Point, colour: Rgba, second: Rgba = colour): void {
+    this.#vertex(a, normal, colour);
+    this.#vertex(b, normal, colour);
+    this.#vertex(c, normal, second);
+    this.#vertex(a, normal, colour);
+    this.#vertex(c, normal, second);
+    this.#vertex(d, normal, second);
   }
 
   triangle(a: Point, b: Point, c: Point, normal: Point, colour: Rgba): void {
@@ -71,6 +76,12 @@ export class Placed {
     return [x - this.originX + ahead * dx + left * dy, y - this.originY + ahead * dy - left * dx, up];
   }
 
+  /** The pose beside this one, in the mesh's frame. */
+  shifted(left: number): Pose {
+    const [x, y] = this.at(0, left, 0);
+    return { ...this.pose, x, y };
+  }
+
   direction(ahead: number, left: number): Point {
     const { dx, dy } = this.pose;
     return [ahead * dx + left * dy, ahead * dy - left * dx, 0];
@@ -88,8 +99,10 @@ export function box(mesh: Mesh, placed: Placed, block: Block, colour: Rgba): voi
   const half = block.width / 2;
   const corner = (ahead: number, left: number, up: number): Point => placed.at(ahead, left, up);
   mesh.quad(corner(front, half, high), corner(front, -half, high), corner(rear, -half, high), corner(rear, half, high), UP, colour);
+  // Less light comes from below.
+  const dim = mix(colour, [0, 0, 0, 1], 0.2);
   const side = (a: [number, number], b: [number, number], normal: Point): void =>
-    mesh.quad(corner(...a, low), corner(...b, low), corner(...b, high), corner(...a, high), normal, colour);
+    mesh.quad(corner(...a, low), corner(...b, low), corner(...b, high), corner(...a, high), normal, dim, colour);
   side([front, half], [front, -half], placed.direction(1, 0));
   side([rear, -half], [rear, half], placed.direction(-1, 0));
   side([rear, half], [front, half], placed.direction(0, 1));
@@ -128,7 +141,38 @@ export function ellipse(mesh: Mesh, placed: Placed, across: number, along: numbe
   }
 }
 
+/** Soft and flat, under a unit: what ties a body to the ground. */
+export function shadow(mesh: Mesh, placed: Placed, shape: Shape): void {
+  for (const [beyond, alpha] of [[0.55, 0.05], [0.35, 0.07], [0.15, 0.1]] as const) {
+    rectangle(mesh, placed, shape.front + beyond, shape.rear - beyond, shape.width / 2 + beyond, 0, [0, 0, 0, alpha]);
+  }
+}
+
+const GLASS: Rgba = [0.09, 0.13, 0.17, 1];
+const WHITE: Rgba = [1, 0.97, 0.85, 1];
+const RED: Rgba = [0.85, 0.1, 0.1, 1];
+
+/** Windows of the cab, and lights: what shows which way it goes. */
+function fittings(mesh: Mesh, placed: Placed, block: Block): void {
+  const tall = block.high - block.low;
+  const at = (share: number): number => block.low + share * tall;
+  if (block.kind === "cab" && tall > 1.6) {
+    box(mesh, placed, { ...block, front: block.front + 0.03, rear: block.front - 0.02, low: at(0.5), high: at(0.86), width: 0.9 * block.width }, GLASS);
+    box(mesh, placed, { ...block, front: block.front - 0.2, rear: block.front - 1.1, low: at(0.5), high: at(0.84), width: block.width + 0.04 }, GLASS);
+  }
+  if (block.kind === "saloon") box(mesh, placed, { ...block, front: block.front - 0.3, rear: block.rear + 0.3, low: at(0.42), high: at(0.82), width: block.width + 0.03 }, GLASS);
+  const pair = (front: number, rear: number, low: number, colour: Rgba): void => {
+    for (const side of [0.36, -0.36]) {
+      const own = new Placed(placed.shifted(side * block.width), 0, 0);
+      box(mesh, own, { ...block, front, rear, low, high: low + 0.16, width: 0.34 }, colour);
+    }
+  };
+  if (block.kind === "cab" && tall > 1) pair(block.front + 0.03, block.front, at(0.12), WHITE);
+  if (block.kind === "load" || block.kind === "saloon") pair(block.rear, block.rear - 0.03, block.low + 0.05, RED);
+}
+
 export function unit(mesh: Mesh, placed: Placed, shape: Shape, colour: Rgba, ink: Rgba): void {
+  for (const block of shape.blocks) fittings(mesh, placed, block);
   for (const block of shape.blocks) {
     const tone =
       block.kind === "load" || block.kind === "saloon" ? colour

@@ -5,7 +5,7 @@ import type { CustomLayerInterface, CustomRenderMethodInput, Map as Base } from 
 import type { Route, Vehicle } from "../api/types.ts";
 import { shapes, type Shape } from "../draw/shape.ts";
 import { marginColour, type Palette } from "../map/palette.ts";
-import { Mesh, Placed, STRIDE, ellipse, mix, rectangle, rgba, unit as body } from "./mesh.ts";
+import { Mesh, Placed, STRIDE, ellipse, mix, rectangle, rgba, shadow, unit as body } from "./mesh.ts";
 import { leewayAt, type Samples } from "./samples.ts";
 
 const VERTEX = `#version 300 es
@@ -31,6 +31,9 @@ const EDGE_M = 0.14;
 /** Bodies are metres long: rectangles so far apart overlap. */
 const SWEPT_M = 1;
 const MOST_SWEPT = 5000;
+/** Of the tubes' bands so much is shown before and behind the vehicle, and none narrower than can be seen. */
+const BANDS_M = 90;
+const LEAST_BAND_M = 0.05;
 
 interface Drawn {
   buffer: WebGLBuffer;
@@ -50,12 +53,16 @@ export class Scene implements CustomLayerInterface {
   #matrix: WebGLUniformLocation | null = null;
   #ground: Drawn | undefined;
   #swept: Drawn | undefined;
+  #tubes: Drawn | undefined;
   #moving: Drawn | undefined;
   readonly #mesh = new Mesh(16384);
   readonly #shapes: Shape[];
   /** Metres between two places at which the swept path is drawn, and vertices at each. */
   readonly #step: number;
   #each = 0;
+  get #count(): number {
+    return Math.floor(this.samples.length / this.#step) + 1;
+  }
 
   constructor(
     private readonly route: Route,
@@ -83,7 +90,7 @@ export class Scene implements CustomLayerInterface {
   }
 
   onRemove(_map: Base, gl: WebGL2RenderingContext): void {
-    for (const drawn of [this.#ground, this.#swept, this.#moving]) {
+    for (const drawn of [this.#ground, this.#swept, this.#tubes, this.#moving]) {
       if (drawn) {
         gl.deleteBuffer(drawn.buffer);
         gl.deleteVertexArray(drawn.array);
@@ -94,7 +101,7 @@ export class Scene implements CustomLayerInterface {
   }
 
   render(gl: WebGL2RenderingContext, input: CustomRenderMethodInput): void {
-    if (!this.#program || !this.#ground || !this.#swept || !this.#moving) return;
+    if (!this.#program || !this.#ground || !this.#swept || !this.#tubes || !this.#moving) return;
     gl.useProgram(this.#program);
     gl.enable(gl.BLEND);
     gl.blendFunc(gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
@@ -104,16 +111,42 @@ export class Scene implements CustomLayerInterface {
     gl.uniformMatrix4fv(this.#matrix, false, this.#local(main, 0, 0));
     // What lies on the ground covers in the order in which it is drawn.
     gl.disable(gl.DEPTH_TEST);
-    draw(gl, this.#ground, this.#ground.vertices);
-    draw(gl, this.#swept, this.#each * (Math.floor(this.s / this.#step) + 1));
+    draw(gl, this.#ground, 0, this.#ground.vertices);
+    const now = Math.floor(this.s / this.#step);
+    draw(gl, this.#swept, 0, this.#each * (now + 1));
+    const [from, to] = [now - BANDS_M / this.#step, now + BANDS_M / this.#step].map((at) => Math.min(Math.max(Math.floor(at), 0), this.#count - 1));
+    draw(gl, this.#tubes, this.#each * (from ?? 0), this.#each * ((to ?? 0) - (from ?? 0)));
     this.#bodies(gl, main);
     gl.bindVertexArray(null);
+  }
+
+  /** The tubes of all axles, as bands on the ground: where each may be, with every error within its bound. */
+  #bands(): Mesh {
+    const count = this.#count;
+    const mesh = new Mesh(count * this.#shapes.length * 6);
+    const up = [0, 0, 1] as const;
+    for (let index = 0; index + 1 < count; index++) {
+      const [s, t] = [index * this.#step, (index + 1) * this.#step];
+      const [here, there] = [this.samples.at(s), this.samples.at(t)];
+      here.forEach((pose, at) => {
+        const next = there[at];
+        if (!next) return;
+        const [a, b] = [new Placed(pose), new Placed(next)];
+        const [wide, then] = [this.#half(at, s), this.#half(at, t)];
+        mesh.quad(a.at(0, wide, 0), a.at(0, -wide, 0), b.at(0, -then, 0), b.at(0, then, 0), up, this.#unitColour(at, 0.6));
+      });
+    }
+    return mesh;
+  }
+
+  #half(unit: number, s: number): number {
+    return Math.max(this.samples.tube(unit, s), LEAST_BAND_M);
   }
 
   /** The corridor with its edges, and all that will have been swept. */
   #still(gl: WebGL2RenderingContext): void {
     this.#ground = this.#upload(gl, this.#corridor(), gl.STATIC_DRAW);
-    const count = Math.floor(this.samples.length / this.#step) + 1;
+    const count = this.#count;
     const swept = new Mesh(count * this.#shapes.length * 6);
     const colour = rgba(this.palette.swept);
     for (let index = 0; index < count; index++) {
@@ -123,6 +156,7 @@ export class Scene implements CustomLayerInterface {
       });
     }
     this.#each = swept.vertices / count;
+    this.#tubes = this.#upload(gl, this.#bands(), gl.STATIC_DRAW);
     this.#swept = this.#upload(gl, swept, gl.STATIC_DRAW);
   }
 
@@ -162,6 +196,10 @@ export class Scene implements CustomLayerInterface {
     };
     // The bodies with all errors at their bounds, under them.
     flat(() => {
+      for (const [index, at] of placed.entries()) {
+        const shape = this.#shapes[index];
+        if (shape) shadow(this.#mesh, at, shape);
+      }
       placed.forEach((at, index) => {
         const shape = this.#shapes[index];
         if (!shape) return;
@@ -214,7 +252,7 @@ export class Scene implements CustomLayerInterface {
     if (!this.#moving) return;
     gl.bindBuffer(gl.ARRAY_BUFFER, this.#moving.buffer);
     gl.bufferData(gl.ARRAY_BUFFER, this.#mesh.data, gl.DYNAMIC_DRAW);
-    draw(gl, this.#moving, this.#mesh.vertices);
+    draw(gl, this.#moving, 0, this.#mesh.vertices);
   }
 
   /** From metres around a place of the drive's frame to the screen, in doubles until the last step. */
@@ -233,9 +271,9 @@ export class Scene implements CustomLayerInterface {
   }
 }
 
-function draw(gl: WebGL2RenderingContext, drawn: Drawn, vertices: number): void {
+function draw(gl: WebGL2RenderingContext, drawn: Drawn, first: number, vertices: number): void {
   gl.bindVertexArray(drawn.array);
-  gl.drawArrays(gl.TRIANGLES, 0, vertices);
+  gl.drawArrays(gl.TRIANGLES, first, vertices);
 }
 
 function program(gl: WebGL2RenderingContext): WebGLProgram {

@@ -45,6 +45,8 @@ export interface Palette {
   route: string;
   routeCasing: string;
   units: readonly string[];
+  /** Of roads as wide as they are. */
+  surface: string;
   corridor: string;
   swept: string;
 }
@@ -65,7 +67,8 @@ export const palettes: Record<Theme, Palette> = {
     route: "#111417",
     routeCasing: "#ffffff",
     units: ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442"],
-    corridor: "#dcd9d1",
+    surface: "#e6e3dc",
+    corridor: "#d6d3cb",
     swept: "#b9d3e8",
   },
   dark: {
@@ -77,13 +80,14 @@ export const palettes: Record<Theme, Palette> = {
     soft: "#949ba5",
     room: ["#2b78b8", "#4ba0e2", "#8bc6f6", "#dcefff"],
     missing: ["#62503f", "#8a6340", "#bd7437", "#f58a32"],
-    forbidden: "#b9bec6",
-    unknown: "#6f7781",
+    forbidden: "#8f96a0",
+    unknown: "#69717b",
     selected: "#ffffff",
     route: "#ffffff",
     routeCasing: "#15181c",
     units: ["#3d9bd8", "#e69f00", "#1fb489", "#d48fb6", "#7cc6f0", "#e0702a", "#f0e442"],
-    corridor: "#2a2e34",
+    surface: "#22262b",
+    corridor: "#2c3138",
     swept: "#28445c",
   },
 };

@@ -32,16 +32,20 @@ const widths: readonly (readonly [zoom: number, big: number, main: number, other
   [8, 1.1, 0.8, 0.4],
   [12, 2.2, 1.8, 1.1],
   [15, 4.2, 3.8, 2.8],
-  [18, 12, 11, 9],
-  [21, 46, 42, 36],
+  [17, 7, 6.5, 5.5],
+  [18, 9, 8.5, 7.5],
+  [19, 10, 9.5, 8.5],
+  [20, 11, 10.5, 9.5],
+  [21, 12, 11.5, 10.5],
+  [22, 13, 12.5, 11.5],
 ];
 
 /** Something for each zoom, made from the width of a direction there. */
-function byWidth(make: (pixels: Numeric) => Numeric): Numeric {
+function byWidth(make: (pixels: Numeric, zoom: number) => Numeric): Numeric {
   const links = (names: string[]): string[] => [...names, ...names.map((name) => `${name}_link`)];
   const stops = widths.flatMap(([zoom, big, main, other]) => {
     const pixels: Numeric = ["match", ["get", "highway"], links(major), big, links(middle), main, other];
-    return [zoom, make(pixels)];
+    return [zoom, make(pixels, zoom)];
   });
   return ["interpolate", ["exponential", 1.5], ["zoom"], ...stops] as unknown as Numeric;
 }
@@ -50,17 +54,35 @@ function width(factor: number): Numeric {
   return byWidth((pixels) => ["*", factor, pixels]);
 }
 
+/** From this zoom on roads are drawn as wide as they are, under the lines that say what is certified. */
+const REAL_ZOOM = 17;
+
+/** Pixels a metre of ground at a zoom; tiles are 512 pixels wide. */
+function pixelsPerMetre(zoom: number, latitude: number): number {
+  return (512 * 2 ** zoom) / (40_075_016.7 * Math.cos((latitude * Math.PI) / 180));
+}
+
 /**
- * To the side on which one drives, so that the two directions of a road touch; one-way roads stay where the map has them.
- * `factor` is that of the line's own width.
+ * To the side on which one drives, so that the two directions of a road touch, and near by lie in their strips; one-way roads
+ * stay where the map has them. `factor` is that of the line's own width.
  */
-function offset(factor: number): Numeric {
-  return byWidth((pixels) => [
+function offset(factor: number, ground: Ground): Numeric {
+  const sided = (pixels: Numeric): Numeric => [
     "case",
     ["==", ["get", "oneway"], "no"],
-    ["*", ["case", ["to-boolean", ["get", "left"]], -0.53 * factor, 0.53 * factor], pixels],
+    ["*", ["case", drivesLeft(ground.region), -1, 1], pixels],
     0,
-  ]);
+  ];
+  return byWidth((pixels, zoom) => {
+    const touching: Numeric = ["*", 0.53 * factor, pixels];
+    if (zoom < REAL_ZOOM || ground.shared) return sided(touching);
+    return sided(["max", touching, ["*", pixelsPerMetre(zoom, ground.latitude) / 2, ["coalesce", ["get", "width_m"], 0]]]);
+  });
+}
+
+/** A tile may say it for each road; else the region does. */
+function drivesLeft(region: Region): ExpressionSpecification {
+  return ["to-boolean", ["coalesce", ["get", "left"], region.left_hand_traffic ?? false]];
 }
 
 function stepped(colours: readonly string[], steps: readonly { from_m: number }[]): Numeric {
@@ -102,7 +124,7 @@ export function filter(verdict: VerdictName, state: State): ExpressionSpecificat
   return all as ExpressionSpecification;
 }
 
-function edge(verdict: VerdictName, state: State, palette: Palette, theme: Theme): LayerSpecification {
+function edge(verdict: VerdictName, state: State, palette: Palette, ground: Ground): LayerSpecification {
   const dash = dashes[verdict];
   return {
     id: `edge-${verdict}`,
@@ -112,15 +134,15 @@ function edge(verdict: VerdictName, state: State, palette: Palette, theme: Theme
     filter: filter(verdict, state),
     layout: { "line-cap": verdict === "forbidden" ? "butt" : "round", "line-join": "round" },
     paint: {
-      "line-color": colour(verdict, state, palette, theme),
+      "line-color": colour(verdict, state, palette, ground.theme),
       "line-width": width(breadth[verdict]),
-      "line-offset": offset(breadth[verdict]),
+      "line-offset": offset(breadth[verdict], ground),
       ...(dash ? { "line-dasharray": dash } : {}),
     },
   };
 }
 
-function turn(verdict: VerdictName, state: State, palette: Palette, theme: Theme): LayerSpecification {
+function turn(verdict: VerdictName, state: State, palette: Palette, ground: Ground): LayerSpecification {
   const dash = dashes[verdict];
   const filtered = ["all", ["==", ["get", "verdict"], verdict], !state.hidden.has(verdict)];
   return {
@@ -128,32 +150,54 @@ function turn(verdict: VerdictName, state: State, palette: Palette, theme: Theme
     type: "line",
     source: "roads",
     "source-layer": "turn",
-    minzoom: 15.5,
+    // Most turns that are forbidden or unknown lead into roads that are.
+    minzoom: verdict === "safe" || verdict === "unsafe" ? 15.5 : 17.5,
     filter: filtered as ExpressionSpecification,
     layout: { "line-cap": "round", "line-join": "round" },
     paint: {
-      "line-color": colour(verdict, { ...state, colourBy: "margin" }, palette, theme),
+      "line-color": colour(verdict, { ...state, colourBy: "margin" }, palette, ground.theme),
       "line-width": ["interpolate", ["exponential", 1.5], ["zoom"], 15.5, verdict === "safe" ? 1.4 : 0.7, 20, verdict === "safe" ? 5 : 2.5],
-      "line-opacity": verdict === "safe" ? 0.95 : 0.6,
+      "line-opacity": verdict === "safe" ? 0.95 : verdict === "unsafe" ? 0.6 : 0.35,
       ...(dash ? { "line-dasharray": dash } : {}),
     },
   };
 }
 
 /** A broad line of the paper's colour under all roads keeps crossings and neighbours apart. */
-function casing(palette: Palette): LayerSpecification {
+function casing(palette: Palette, ground: Ground): LayerSpecification {
   return {
     id: "casing",
     type: "line",
     source: "roads",
     "source-layer": "edge",
     minzoom: 12,
+    maxzoom: REAL_ZOOM,
     layout: { "line-cap": "round", "line-join": "round" },
-    paint: { "line-color": palette.casing, "line-width": width(1.7), "line-offset": offset(1), "line-opacity": 0.9 },
+    paint: { "line-color": palette.casing, "line-width": width(1.7), "line-offset": offset(1, ground), "line-opacity": 0.9 },
   };
 }
 
-function highlight(id: string, layer: "edge" | "turn", palette: Palette): LayerSpecification {
+/** The strip that a direction has, as wide as it is. */
+function surface(palette: Palette, ground: Ground): LayerSpecification {
+  const zooms = [REAL_ZOOM, 18, 19, 20, 21, 22];
+  const metres = ["coalesce", ["get", "width_m"], 0];
+  const stops = zooms.flatMap((zoom) => [zoom, ["*", pixelsPerMetre(zoom, ground.latitude), metres]]);
+  return {
+    id: "surface",
+    type: "line",
+    source: "roads",
+    "source-layer": "edge",
+    minzoom: REAL_ZOOM,
+    layout: { "line-cap": "round", "line-join": "round" },
+    paint: {
+      "line-color": palette.surface,
+      "line-width": ["interpolate", ["exponential", 1.8], ["zoom"], ...stops] as unknown as Numeric,
+      "line-offset": offset(1, ground),
+    },
+  };
+}
+
+function highlight(id: string, layer: "edge" | "turn", palette: Palette, ground: Ground): LayerSpecification {
   const key = layer === "edge" ? "edge_id" : "turn_id";
   return {
     id,
@@ -165,7 +209,7 @@ function highlight(id: string, layer: "edge" | "turn", palette: Palette): LayerS
     paint: {
       "line-color": palette.selected,
       "line-width": layer === "edge" ? width(2.3) : 6,
-      ...(layer === "edge" ? { "line-offset": offset(1) } : {}),
+      ...(layer === "edge" ? { "line-offset": offset(1, ground) } : {}),
       "line-opacity": id.startsWith("hover") ? 0.35 : 0.9,
     },
   };
@@ -207,13 +251,18 @@ export interface Ground {
   region: Region;
   tilesUrl: string;
   theme: Theme;
+  /** Both directions use the same strip: the whole road. */
+  shared: boolean;
+  /** Of the region's middle, degrees. */
+  latitude: number;
 }
 
-export function style(state: State, { region, tilesUrl, theme }: Ground): StyleSpecification {
+export function style(state: State, ground: Ground): StyleSpecification {
+  const { region, tilesUrl, theme } = ground;
   const palette = palettes[theme];
   const base = state.baseMap && region.base_map ? region.base_map : null;
   const each = (make: typeof edge): LayerSpecification[] =>
-    verdictLayers.map((verdict) => make(verdict, state, palette, theme));
+    verdictLayers.map((verdict) => make(verdict, state, palette, ground));
   return {
     version: 8,
     // No `glyphs`: MapLibre then draws letters with the fonts of the page.
@@ -226,12 +275,13 @@ export function style(state: State, { region, tilesUrl, theme }: Ground): StyleS
       { id: "paper", type: "background", paint: { "background-color": palette.paper } },
       ...(base ? [{ id: "base", type: "raster", source: "base", paint: { "raster-opacity": 0.45, "raster-saturation": -0.7 } } as LayerSpecification] : []),
       { id: "outside", type: "fill", source: "outside", paint: { "fill-color": palette.outside, "fill-opacity": base ? 0.4 : 1 } },
-      casing(palette),
-      highlight("hover-edge", "edge", palette),
-      highlight("selected-edge", "edge", palette),
+      surface(palette, ground),
+      casing(palette, ground),
+      highlight("hover-edge", "edge", palette, ground),
+      highlight("selected-edge", "edge", palette, ground),
       ...each(edge),
-      highlight("hover-turn", "turn", palette),
-      highlight("selected-turn", "turn", palette),
+      highlight("hover-turn", "turn", palette, ground),
+      highlight("selected-turn", "turn", palette, ground),
       ...each(turn),
       labels(palette),
     ],

@@ -1,6 +1,6 @@
 // One map: made for a vehicle and a policy, restyled as the state changes, reporting what is under the pointer.
 
-import { Map as Base, ScaleControl, type GeoJSONSource, type MapGeoJSONFeature, type MapMouseEvent } from "maplibre-gl";
+import { AttributionControl, Map as Base, ScaleControl, type GeoJSONSource, type MapGeoJSONFeature, type MapMouseEvent } from "maplibre-gl";
 import type { Region } from "../api/types.ts";
 import { api, type Question } from "../api/client.ts";
 import type { State } from "../state.ts";
@@ -52,6 +52,7 @@ export class View {
       fadeDuration: 150,
       canvasContextAttributes: { antialias: true },
     });
+    this.map.addControl(new AttributionControl({ compact: false }), "bottom-right");
     this.map.addControl(new ScaleControl({ maxWidth: 90 }), "bottom-right");
     this.map.getCanvas().setAttribute("aria-label", "Map of roads");
     this.#ready = new Promise((done) => this.map.once("load", () => done()));
@@ -99,7 +100,14 @@ export class View {
   }
 
   #ground() {
-    return { region: this.region, tilesUrl: api.tilesUrl(this.region, this.question), theme: this.theme };
+    const [, south, , north] = this.region.bbox;
+    return {
+      region: this.region,
+      tilesUrl: api.tilesUrl(this.region, this.question),
+      theme: this.theme,
+      shared: this.question.policy === "carriageway",
+      latitude: (south + north) / 2,
+    };
   }
 
   #styleKey(): string {

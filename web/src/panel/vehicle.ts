@@ -32,13 +32,15 @@ export class VehicleCard {
 
   constructor(private readonly onOpen: () => void) {}
 
-  show(vehicle: Vehicle | undefined): void {
+  /** `certified`: what of the roads it may use, if that is known yet. */
+  show(vehicle: Vehicle | undefined, certified: string | null): void {
     if (!vehicle) return;
     this.element.setAttribute("aria-label", `Vehicle: ${vehicle.name}. Choose another`);
     this.element.replaceChildren(
       sideView(vehicle),
       h("span", { class: "vehicle-name" }, vehicle.name, icon("chevron")),
       h("span", { class: "vehicle-facts" }, facts(vehicle)),
+      certified ? h("span", { class: "vehicle-certified" }, h("i", { class: "line line-safe" }), certified) : "",
     );
   }
 }
