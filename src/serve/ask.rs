@@ -136,11 +136,6 @@ impl Ask {
         key
     }
 
-    /// One of an enumeration's words.
-    pub(super) fn word<T: Named>(&self, name: &str) -> Result<Option<T>, Problem> {
-        self.parameter(name).map(|word| one_of(name, word)).transpose()
-    }
-
     /// A whole number within bounds.
     pub(super) fn whole(&self, name: &str, bounds: std::ops::RangeInclusive<u32>) -> Result<Option<u32>, Problem> {
         let Some(text) = self.parameter(name) else { return Ok(None) };

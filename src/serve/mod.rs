@@ -15,6 +15,8 @@
 //! | `problem` | what went wrong, as problem+json |
 //! | `app`, `work` | what requests share; lanes for work that blocks |
 //! | `region`, `roads` | one state of the file; the network in memory |
+//! | `planning`, `drive` | routes, and how a vehicle drives along one |
+//! | `recent` | the last results of long work |
 //! | `names` | names as people type them |
 //! | `tiles` | vector tiles |
 //! | `api` | everything else, one file an endpoint |
@@ -26,10 +28,13 @@ mod app;
 mod ask;
 mod assets;
 mod cache;
+mod drive;
 mod gate;
 mod names;
 mod options;
+mod planning;
 mod problem;
+mod recent;
 mod region;
 mod roads;
 mod routes;

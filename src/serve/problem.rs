@@ -46,6 +46,16 @@ impl Problem {
         Self::new(StatusCode::GATEWAY_TIMEOUT, "too-slow", "It takes too long", detail)
     }
 
+    /// A place that is on no road.
+    pub(super) fn no_road(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::UNPROCESSABLE_ENTITY, "no-road", "There is no road that may be used", detail)
+    }
+
+    /// Certificates of another version of the program.
+    pub(super) fn stale(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::CONFLICT, "stale", "The certificates are of another version", detail)
+    }
+
     /// A fault of the program.
     pub(super) fn fault(detail: impl Into<String>) -> Self {
         let title = "A fault of netcert; please report it";

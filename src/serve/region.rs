@@ -9,9 +9,12 @@ use std::time::SystemTime;
 
 use serde_json::json;
 
+use super::api::explain::Explained;
 use super::ask::shortened;
 use super::names::NamedRoad;
+use super::planning::Router;
 use super::problem::Problem;
+use super::recent::Recent;
 use super::roads::Roads;
 use crate::osm::facts::Policy;
 use crate::pipeline::Settings;
@@ -20,6 +23,10 @@ use crate::vehicle::Vehicle;
 
 /// Idle connections that are kept.
 const MOST_IDLE: usize = 8;
+/// Explanations kept; each is a picture of some 100 kB.
+const MOST_EXPLAINED: usize = 16;
+/// Planners kept; each holds an index of all roads and what it has made of them.
+const MOST_ROUTERS: usize = 4;
 
 /// How the certificates of a database were made; see [`super::Options::recorded`].
 pub(super) type Recorded = fn(&mut Database) -> Result<Settings, StoreError>;
@@ -87,6 +94,10 @@ pub(super) struct Region {
     idle: Mutex<Vec<Database>>,
     roads: Late<Arc<Roads>>,
     names: Late<Arc<[NamedRoad]>>,
+    /// The last explanations, by id, vehicle and policy.
+    pub(super) explained: Recent<Explained>,
+    /// The last planners, by vehicle, policy and measure.
+    pub(super) routers: Recent<Router>,
 }
 
 impl Region {
@@ -123,6 +134,8 @@ impl Region {
             idle: Mutex::new(vec![database]),
             roads: Late::default(),
             names: Late::default(),
+            explained: Recent::new(MOST_EXPLAINED),
+            routers: Recent::new(MOST_ROUTERS),
         };
         Ok(region)
     }

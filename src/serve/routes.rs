@@ -24,6 +24,9 @@ const ENDPOINTS: &[(&str, Pace, Work)] = &[
     ("/api/vehicles", Pace::Quick, api::vehicles::list),
     ("/api/vehicles/{id}/drawing.svg", Pace::Quick, api::vehicles::drawing),
     ("/api/edges/{id}", Pace::Quick, api::edges::edge),
+    ("/api/explain/{id}", Pace::Slow, api::explain::explain),
+    ("/api/explain/{id}/picture.svg", Pace::Slow, api::explain::drawn),
+    ("/api/route", Pace::Slow, api::route::route),
     ("/api/search", Pace::Quick, api::search::search),
     ("/api/stats", Pace::Slow, api::stats::stats),
     ("/tiles/{policy}/{vehicle}/{z}/{x}/{y}", Pace::Quick, tiles::tile),
@@ -58,4 +61,24 @@ async fn health(State(app): State<Arc<App>>, ask: Ask) -> Response {
 pub(super) fn nothing(request: &Request) -> Response {
     let path = super::ask::shortened(request.uri().path());
     Problem::not_found(format!("{path}: no such address; /api/openapi.json describes all")).into_response()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn every_address_is_described_and_every_description_has_an_address() {
+        let document: serde_json::Value = serde_json::from_str(api::OPENAPI).unwrap();
+        let mut described: Vec<&str> = document["paths"].as_object().unwrap().keys().map(String::as_str).collect();
+        let mut answered: Vec<&str> = ENDPOINTS.iter().map(|endpoint| endpoint.0).collect();
+        answered.extend(["/healthz", "/api/region", "/api/openapi.json"]);
+        // A tile's last part ends in `.mvt`, which the router cannot say.
+        let tiles = answered.iter().position(|path| path.starts_with("/tiles/")).unwrap();
+        answered[tiles] = "/tiles/{policy}/{vehicle}/{z}/{x}/{y}.mvt";
+        described.sort_unstable();
+        answered.sort_unstable();
+        assert_eq!(described, answered);
+    }
 }

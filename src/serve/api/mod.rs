@@ -2,7 +2,9 @@
 //! JavaScript's numbers hold 53 bits only.
 
 pub(super) mod edges;
+pub(super) mod explain;
 pub(super) mod region;
+pub(super) mod route;
 pub(super) mod search;
 pub(super) mod stats;
 pub(super) mod vehicles;
@@ -22,7 +24,7 @@ const JSON: &str = "application/json";
 const SVG: &str = "image/svg+xml";
 
 /// The description of all this (OpenAPI 3.1); a test holds it against the answers.
-const OPENAPI: &str = include_str!("../openapi.json");
+pub(super) const OPENAPI: &str = include_str!("../openapi.json");
 
 /// `/api/openapi.json`
 pub(super) async fn openapi(State(app): State<Arc<App>>, ask: Ask) -> Response {
