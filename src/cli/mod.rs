@@ -22,6 +22,7 @@ mod query;
 mod reach;
 mod route;
 mod rows;
+mod serve;
 mod stats;
 mod table;
 mod tubes;
@@ -75,6 +76,7 @@ pub(crate) enum Verb {
     Manoeuvres(manoeuvres::Manoeuvres),
     Paper(paper::Paper),
     Stats(stats::Stats),
+    Serve(serve::Serve),
     Verify(verify::Verify),
 }
 

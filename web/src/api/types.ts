@@ -11,7 +11,7 @@ export interface Region {
   name: string;
   bbox: [west: number, south: number, east: number, north: number];
   /** Where nearly all roads are: a few stick out of most extracts. */
-  view?: [west: number, south: number, east: number, north: number];
+  focus?: [west: number, south: number, east: number, north: number] | null;
   timestamp: string | null;
   netcert: string;
   database_hash: string;

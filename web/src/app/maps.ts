@@ -56,7 +56,7 @@ export class Maps {
   }
 
   home(): void {
-    this.first.map.fitBounds(this.context.region.view ?? this.context.region.bbox, { ...this.#room(), pitch: 0, bearing: 0 });
+    this.first.map.fitBounds(this.context.region.focus ?? this.context.region.bbox, { ...this.#room(), pitch: 0, bearing: 0 });
   }
 
   zoom(by: number): void {

@@ -43,7 +43,7 @@ export class View {
     this.map = new Base({
       container,
       style: style(state, this.#ground()),
-      ...(camera ? { center: [camera.lon, camera.lat] as [number, number], zoom: camera.zoom } : { bounds: region.view ?? region.bbox }),
+      ...(camera ? { center: [camera.lon, camera.lat] as [number, number], zoom: camera.zoom } : { bounds: region.focus ?? region.bbox }),
       fitBoundsOptions: { padding: 24 },
       maxZoom: 22,
       minZoom: 3,
