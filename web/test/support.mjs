@@ -10,6 +10,7 @@ import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 import { chromium } from "playwright-core";
+import { proxy } from "../tools/proxy.mjs";
 
 export const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
 
@@ -42,7 +43,10 @@ export function demoDatabase(folder) {
   return db;
 }
 
-/** Starts `netcert serve` on a free port. */
+/**
+ * Starts `netcert serve` on a free port, and before it the page of `dist`: what is tested is what would be committed, whatever
+ * page the program was built with.
+ */
 export async function serve(db, ...more) {
   const child = spawn(program, ["serve", "--db", db, "--addr", "127.0.0.1:0", ...more], { stdio: ["ignore", "pipe", "pipe"] });
   let said = "";
@@ -56,12 +60,15 @@ export async function serve(db, ...more) {
     });
     child.on("exit", (code) => failed(new Error(`netcert serve ended with ${code}: ${said}`)));
   });
+  const page = await proxy(address, 0);
   const stop = () =>
     new Promise((done) => {
+      page.close();
+      page.closeAllConnections();
       child.on("exit", done);
       child.kill("SIGINT");
     });
-  return { address, stop };
+  return { address: `http://127.0.0.1:${page.address().port}`, direct: address, stop };
 }
 
 export function launch() {
@@ -92,7 +99,7 @@ export async function everything() {
     await server.stop();
     rmSync(folder, { recursive: true, force: true });
   };
-  return { address: server.address, browser, close };
+  return { address: server.address, direct: server.direct, browser, close };
 }
 
 /** Opens the page and waits until the map is drawn. `errors` and `strangers` fill as it is used. */
