@@ -114,7 +114,9 @@ mod tests {
     use super::*;
 
     fn ask(gzip: bool, if_none_match: Option<&str>) -> Ask {
-        Ask { gzip, if_none_match: if_none_match.map(str::to_owned), ..Ask::default() }
+        let mut ask = Ask::default();
+        (ask.gzip, ask.if_none_match) = (gzip, if_none_match.map(str::to_owned));
+        ask
     }
 
     #[test]

@@ -62,6 +62,13 @@ impl App {
             .await
     }
 
+    /// Loads what the first explanation, route and search would have to wait for.
+    pub(super) async fn warm_up(self: Arc<Self>) {
+        let Ok(region) = self.region().await else { return };
+        // If it fails, whoever asks is told.
+        let _ = self.slow.run(move || region.names().and_then(|_| region.roads()).map(|_| ())).await;
+    }
+
     /// Answers from what was answered before, or by doing the work.
     pub(super) async fn answer(
         self: &Arc<Self>,

@@ -90,7 +90,9 @@ mod tests {
     use super::*;
 
     fn stored(bytes: usize) -> Arc<Stored> {
-        Arc::new(Stored::new("text/plain", vec![7; bytes]))
+        // Noise, which does not compress.
+        let noise = |i: usize| (i as u32).wrapping_add(1).wrapping_mul(2_654_435_761).rotate_left(13) as u8;
+        Arc::new(Stored::new("text/plain", (0..bytes).map(noise).collect()))
     }
 
     #[test]

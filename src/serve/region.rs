@@ -21,8 +21,8 @@ use crate::pipeline::Settings;
 use crate::store::{Bounds, CertifiedSet, Database, Named, Run, StoreError};
 use crate::vehicle::Vehicle;
 
-/// Idle connections that are kept.
-const MOST_IDLE: usize = 8;
+/// Idle connections that are kept; each may hold 64 MB of the file's pages.
+const MOST_IDLE: usize = 4;
 /// Explanations kept; each is a picture of some 100 kB.
 const MOST_EXPLAINED: usize = 16;
 /// Planners kept; each holds an index of all roads and what it has made of them.

@@ -27,6 +27,8 @@ use crate::store::StoreError;
 const MOST_HEAD_BYTES: usize = 16 << 10;
 /// After an error of `accept` (no file handle left): let some connections end.
 const PAUSE: Duration = Duration::from_millis(100);
+/// The network is loaded for explanations and routes once the first map is likely to be there.
+const WARM_UP_AFTER: Duration = Duration::from_secs(3);
 
 /// Why it cannot serve.
 #[derive(Debug, thiserror::Error)]
@@ -59,6 +61,7 @@ pub struct Server {
     address: SocketAddr,
     router: Router,
     limits: Limits,
+    app: Arc<App>,
 }
 
 impl Server {
@@ -77,8 +80,9 @@ impl Server {
         let address = listener.local_addr()?;
         options.addr = address;
         let limits = options.limits;
-        let router = routes::router(Arc::new(App::new(options, region)));
-        Ok(Self { runtime, listener, address, router, limits })
+        let app = Arc::new(App::new(options, region));
+        let router = routes::router(Arc::clone(&app));
+        Ok(Self { runtime, listener, address, router, limits, app })
     }
 
     /// Where it listens.
@@ -89,7 +93,11 @@ impl Server {
 
     /// Serves until `stop` is done; then ends as promised above.
     pub fn run(self, stop: impl Future<Output = ()>) {
-        let Self { runtime, listener, router, limits, .. } = self;
+        let Self { runtime, listener, router, limits, app, .. } = self;
+        runtime.spawn(async move {
+            tokio::time::sleep(WARM_UP_AFTER).await;
+            app.warm_up().await;
+        });
         runtime.block_on(accept(listener, router, limits, stop));
         // Work that goes on without anybody waiting for it is cut.
         runtime.shutdown_timeout(Duration::from_millis(200));

@@ -98,11 +98,26 @@ impl Database {
     /// The file cannot be read.
     pub fn extent(&mut self) -> Result<Option<Bounds>, StoreError> {
         let sql = "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'edge'";
-        let sides: Option<(Option<f64>, Option<f64>, Option<f64>, Option<f64>)> =
-            self.session.run(async |c| sqlx::query_as(sql).fetch_optional(c).await)?;
-        Ok(sides.and_then(|(west, south, east, north)| {
-            Some(Bounds { west: west?, south: south?, east: east?, north: north? })
-        }))
+        let row =
+            self.session.run(async |c| sqlx::query(sql).fetch_optional(c).await?.as_ref().map(sides).transpose())?;
+        Ok(row.flatten())
+    }
+
+    /// A box that leaves out the outermost fiftieth of the edges on each side: where a map may begin, since an extract often has some
+    /// roads that lead far out of it. `None` if there are no edges.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn focus(&mut self) -> Result<Option<Bounds>, StoreError> {
+        let side = |column: &str, order: &str| {
+            format!(
+                "(SELECT {column} FROM rtree_edge_geom ORDER BY {column} {order} LIMIT 1 OFFSET (SELECT count(*) / 50 FROM edge))"
+            )
+        };
+        let all = [side("minx", ""), side("miny", ""), side("maxx", "DESC"), side("maxy", "DESC")];
+        let sql = format!("SELECT {}", all.join(", "));
+        let row = self.session.run(async |c| sides(&sqlx::query(AssertSqlSafe(sql)).fetch_one(c).await?))?;
+        Ok(row.filter(|b| b.west < b.east && b.south < b.north))
     }
 
     /// Edges near a box, of these classes (with their links), under a vehicle's certificates.
@@ -174,6 +189,15 @@ impl Database {
             rows.iter().map(bin).collect()
         })
     }
+}
+
+/// West, south, east, north; `None` where one is missing.
+fn sides(row: &SqliteRow) -> Sql<Option<Bounds>> {
+    let side = |column: usize| row.try_get::<Option<f64>, _>(column);
+    let (Some(west), Some(south), Some(east), Some(north)) = (side(0)?, side(1)?, side(2)?, side(3)?) else {
+        return Ok(None);
+    };
+    Ok(Some(Bounds { west, south, east, north }))
 }
 
 /// The columns of `edge` that belong to a policy: width, and where it comes from.

@@ -39,7 +39,8 @@ fn faults(document: &Value, schema: &Value, value: &Value, at: &str, found: &mut
         Value::Array(_) => "array",
         Value::Object(_) => "object",
     };
-    if !types.contains(&own) && !(own == "integer" && types.contains(&"number")) {
+    let whole_for_number = own == "integer" && types.contains(&"number");
+    if !types.contains(&own) && !whole_for_number {
         return found.push(format!("{at}: {own} instead of {types:?}"));
     }
     if schema["enum"].as_array().is_some_and(|values| !values.contains(value)) {

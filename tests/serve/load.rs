@@ -72,16 +72,15 @@ fn many_at_a_time_are_all_answered() {
 fn more_than_it_can_do_is_refused_and_the_quick_lane_stays_quick() {
     let server = Server::demo();
     let edges =
-        server.place.netcert("query --db demo.gpkg --vehicle AU-ATRIPLE53 --verdict unsafe --format json").succeeds();
-    let ids: Vec<String> =
-        edges.json()["edges"].as_array().unwrap().iter().map(|edge| edge["edge_id"].to_string()).collect();
+        server.place.netcert("query --db demo.gpkg --vehicle AU-SEMI19 --verdict unsafe --format json").succeeds();
+    let id = &edges.json()["edges"][0]["edge_id"].to_string();
     let counts = Mutex::new(BTreeMap::<u16, usize>::new());
     let health = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
-        for client in 0..48 {
-            let (server, counts, id) = (&server, &counts, &ids[client % ids.len()]);
+        for _ in 0..48 {
+            let (server, counts) = (&server, &counts);
             scope.spawn(move || {
-                let reply = server.get(&format!("/api/explain/{id}?vehicle=AU-ATRIPLE53"));
+                let reply = server.get(&format!("/api/explain/{id}?vehicle=AU-SEMI19"));
                 if reply.status == 503 {
                     reply.is_problem("too many", 503);
                     assert!(reply.header("retry-after").is_some());

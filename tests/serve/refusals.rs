@@ -103,8 +103,9 @@ fn what_is_too_large_is_refused() {
     server.problem(&format!("/api/search?q={}", "a".repeat(300)), 400);
     server.problem(&format!("/api/region?{}", "state=1&".repeat(40)), 400);
     let headers: String = (0..400).map(|i| format!("X-{i}: {}\r\n", "b".repeat(100))).collect();
-    let reply = server.with("/api/region", &headers);
-    assert_eq!(reply.status, 431, "{}", reply.text());
+    // Or the connection is cut while the rest of them is still on its way.
+    let status = server.with("/api/region", &headers).status;
+    assert!([431, 0].contains(&status), "{status}");
     assert_eq!(server.get("/healthz").status, 200);
 }
 

@@ -43,7 +43,7 @@ fn numbers(value: &Value) -> Vec<f64> {
 fn a_route_is_that_of_the_verb_and_its_drive_hangs_together() {
     let server = Server::demo();
     let [from, to] = places(&server);
-    let answer = server.json(&format!("/api/route?vehicle={VEHICLE}&from={from}&to={to}"));
+    let answer = server.json(&format!("/api/route?vehicle={VEHICLE}&from={from}&to={to}&tries=30"));
     let line = format!("route --db demo.gpkg --vehicle {VEHICLE} --from={from} --to={to} --format json");
     let said = server.place.netcert(&line).succeeds().json();
     let (route, told) = (&answer["routes"][0], &said["routes"][0]);

@@ -27,10 +27,10 @@ fn it_ends_well_when_told_to() {
 fn what_is_being_answered_is_answered() {
     let server = Server::demo();
     let edges =
-        server.place.netcert("query --db demo.gpkg --vehicle AU-ATRIPLE53 --verdict unsafe --format json").succeeds();
+        server.place.netcert("query --db demo.gpkg --vehicle AU-SEMI19 --verdict unsafe --format json").succeeds();
     let id = edges.json()["edges"][0]["edge_id"].to_string();
     let mut stream = server.connect();
-    let target = format!("/api/explain/{id}?vehicle=AU-ATRIPLE53");
+    let target = format!("/api/explain/{id}?vehicle=AU-SEMI19");
     stream.write_all(format!("GET {target} HTTP/1.1\r\nHost: localhost\r\n\r\n").as_bytes()).unwrap();
     // The hints of an unsafe edge take many certificates; a moment later it is at it.
     std::thread::sleep(std::time::Duration::from_millis(60));

@@ -12,6 +12,7 @@ use super::super::roads::Roads;
 use super::{SVG, answered, id};
 use crate::explain::{self, Explanation};
 use crate::network::Network;
+use crate::osm::LonLat;
 use crate::osm::facts::Policy;
 use crate::picture;
 use crate::pipeline::Settings;
@@ -103,7 +104,7 @@ fn of_turn(roads: &Roads, id: i64, model: &Model, settings: &Settings) -> Result
     members["to_edge"] = json!(edge_id(facts.movement.to));
     let node = roads.network.edges.get(facts.movement.from as usize);
     let node = node.and_then(|edge| roads.network.positions(edge).next_back());
-    members["at"] = json!(node.map(|position| position.degrees()));
+    members["at"] = json!(node.map(LonLat::degrees));
     members["note"] = json!(
         "The turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii are assumed."
     );
@@ -115,8 +116,7 @@ fn of_turn(roads: &Roads, id: i64, model: &Model, settings: &Settings) -> Result
 fn limiting_place(network: &Network, edge: u32, explanation: &Explanation) -> Option<[f64; 2]> {
     let geometry = explanation.geometry.as_ref()?;
     let share = geometry.along_m(geometry.place.station) / geometry.length_m().max(1e-9);
-    let line: Vec<(f64, f64)> =
-        network.positions(network.edges.get(edge as usize)?).map(|position| position.degrees()).collect();
+    let line: Vec<(f64, f64)> = network.positions(network.edges.get(edge as usize)?).map(LonLat::degrees).collect();
     let shrink = line.first()?.1.to_radians().cos();
     let length = |p: &[(f64, f64)]| ((p[1].0 - p[0].0) * shrink).hypot(p[1].1 - p[0].1);
     let mut left = share.clamp(0.0, 1.0) * line.windows(2).map(length).sum::<f64>();

@@ -13,7 +13,7 @@ use super::super::region::Region;
 use super::super::tiles::MOST_ZOOM;
 use super::{SCOPE, answered};
 use crate::osm::facts::Policy;
-use crate::store::Named;
+use crate::store::{Bounds, Database, Named};
 
 /// As the licence of the data asks: <https://www.openstreetmap.org/copyright>.
 const ATTRIBUTION: &str = "© OpenStreetMap contributors, Open Database License";
@@ -23,12 +23,13 @@ pub(in super::super) async fn region(State(app): State<Arc<App>>, ask: Ask) -> R
     let options = app.options.clone();
     app.answer(ask, Pace::Quick, move |region, ask| {
         ask.only(&[])?;
-        Ok(answered(&members(region, &options)))
+        let focus = region.read(Database::focus)?.or(region.extent);
+        Ok(answered(&members(region, focus, &options)))
     })
     .await
 }
 
-fn members(region: &Region, options: &Options) -> Value {
+fn members(region: &Region, focus: Option<Bounds>, options: &Options) -> Value {
     let ingest = region.runs.iter().rev().find(|run| run.command == "ingest");
     let policies: Vec<&str> = Policy::ALL
         .iter()
@@ -41,7 +42,8 @@ fn members(region: &Region, options: &Options) -> Value {
     certified.dedup();
     json!({
         "name": region.name(),
-        "bbox": region.extent.map(|b| [b.west, b.south, b.east, b.north]),
+        "bbox": region.extent.map(sides),
+        "focus": focus.map(sides),
         "timestamp": ingest.and_then(|run| run.replication_timestamp.as_deref()),
         "input_blake3": ingest.and_then(|run| run.input_blake3.as_deref()),
         "netcert": env!("CARGO_PKG_VERSION"),
@@ -58,4 +60,9 @@ fn members(region: &Region, options: &Options) -> Value {
         "base_map": options.base_map.as_ref().map(|map| json!({"url": map.url})),
         "scope": SCOPE,
     })
+}
+
+/// To 1e-7 degree, as the map has it; what comes out of the spatial index is single precision.
+fn sides(b: Bounds) -> [f64; 4] {
+    [b.west, b.south, b.east, b.north].map(|degrees| (degrees * 1e7).round() / 1e7)
 }

@@ -72,7 +72,7 @@ fn named(region: &Region, asked: &str) -> Result<Vec<Value>, Problem> {
         let rank = group.first().map_or(u8::MAX, |first| first.0);
         results.extend(clusters(&rows).iter().map(|cluster| (rank, cluster.len(), result("road", cluster))));
     }
-    results.sort_by(|a, b| (a.0, std::cmp::Reverse(a.1)).cmp(&(b.0, std::cmp::Reverse(b.1))));
+    results.sort_by_key(|(rank, ways, _)| (*rank, std::cmp::Reverse(*ways)));
     Ok(results.into_iter().map(|(_, _, value)| value).collect())
 }
 

@@ -28,7 +28,7 @@ pub(super) fn classes(z: u8) -> &'static [RoadClass] {
         7..=8 => 3,
         9 => 4,
         10 => 5,
-        11 => 7,
+        11 => 6,
         12 => 9,
         _ => BY_RANK.len(),
     };
@@ -38,7 +38,6 @@ pub(super) fn classes(z: u8) -> &'static [RoadClass] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::store::Named;
 
     #[test]
     fn a_zoom_shows_all_that_the_one_before_did_and_at_last_everything() {

@@ -30,6 +30,9 @@ use place::Place;
 /// Registered with IANA: <https://www.iana.org/assignments/media-types/application/vnd.mapbox-vector-tile>
 const KIND: &str = "application/vnd.mapbox-vector-tile";
 
+/// Before this zoom a tile holds thousands of edges, and what is neither drawn nor sorted out by stays behind.
+const FIRST_IN_FULL: u8 = 12;
+
 /// `/tiles/{policy}/{vehicle}/{z}/{x}/{y}.mvt`
 pub(super) fn tile(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
     ask.only(&[])?;
@@ -69,7 +72,6 @@ fn edge(layer: &mut Layer, row: &MapEdge, place: Place) {
     let (verdict, reason) = verdict_words(row.verdict);
     layer.feature(u64::from(row.edge) + 1, &lines, |tags| {
         tags.add("edge_id", Value::Text(&row.edge_id.to_string()));
-        tags.add("way_id", Value::Whole(row.way_id));
         tags.text("name", row.name.as_deref());
         tags.text("ref", row.reference.as_deref());
         tags.add("highway", Value::Text(&row.highway));
@@ -78,9 +80,12 @@ fn edge(layer: &mut Layer, row: &MapEdge, place: Place) {
         tags.add("verdict", Value::Text(verdict));
         tags.text("reason", Some(reason).filter(|reason| !reason.is_empty()));
         tags.number("rsc_m", row.rsc_mm.map(metres));
-        tags.number("width_m", row.width_m.map(centimetre));
         tags.text("width_source", row.width_source.map(WidthSource::name));
-        tags.number("length_m", Some(centimetre(row.length_m)));
+        if place.z >= FIRST_IN_FULL {
+            tags.add("way_id", Value::Whole(row.way_id));
+            tags.number("width_m", row.width_m.map(centimetre));
+            tags.number("length_m", Some(centimetre(row.length_m)));
+        }
     });
 }
 
