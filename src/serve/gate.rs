@@ -41,11 +41,11 @@ const FIXED_HEADERS: [(HeaderName, &str); 5] = [
     (HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
 ];
 
-/// Everything from here; MapLibre's worker may come from a blob, styles may be inline (SVG pictures have them).
+/// Everything from here, nothing inline; MapLibre hands pictures around as blobs.
 fn content_security_policy(options: &Options) -> String {
     let map = options.base_map.as_ref().map_or(String::new(), |map| format!(" {}", map.origin));
     format!(
-        "default-src 'none'; script-src 'self'; worker-src 'self' blob:; style-src 'self' 'unsafe-inline'; \
+        "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; \
          img-src 'self' data: blob:{map}; connect-src 'self'{map}; font-src 'self'; manifest-src 'self'; \
          base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
     )

@@ -120,6 +120,15 @@ impl Database {
         Ok(row.filter(|b| b.west < b.east && b.south < b.north))
     }
 
+    /// Whether most ways are driven on the left.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn left_hand_traffic(&mut self) -> Result<bool, StoreError> {
+        let sql = "SELECT 2 * total(left_hand_traffic) > count(*) FROM road";
+        self.session.run(async |c| sqlx::query(sql).fetch_one(c).await?.try_get(0))
+    }
+
     /// Edges near a box, of these classes (with their links), under a vehicle's certificates.
     ///
     /// # Errors

@@ -17,7 +17,7 @@ use crate::osm::facts::Policy;
 use crate::picture;
 use crate::pipeline::Settings;
 use crate::stet::Model;
-use crate::store::{Named, QueryOptions};
+use crate::store::{Named, QueryOptions, TurnsOf};
 use crate::vehicle::Vehicle;
 
 /// Words and picture of one explanation.
@@ -56,7 +56,7 @@ fn make(region: &Region, id: i64, vehicle: &Vehicle, policy: Policy) -> Result<E
     let model = Model::new(vehicle).map_err(|error| Problem::fault(error.to_string()))?;
     let mut explained = match roads.edge(id) {
         Some(edge) => of_edge(region, &roads, edge, &model, &settings)?,
-        None => of_turn(&roads, id, &model, &settings)?,
+        None => of_turn(region, &roads, id, &model, &settings)?,
     };
     explained.members["policy"] = json!(policy.name());
     explained.members["picture"] = json!(explained.picture.is_some());
@@ -87,10 +87,12 @@ fn of_edge(
     let mut members = explain::json(&explanation);
     members["kind"] = json!("edge");
     members["at"] = json!(limiting_place(network, edge, &explanation));
+    let line = network.edges.get(edge as usize).map(|edge| network.positions(edge).collect::<Vec<_>>());
+    members["geometry"] = geometry(line.as_deref());
     Ok(Explained { members, picture: picture::explanation(&explanation) })
 }
 
-fn of_turn(roads: &Roads, id: i64, model: &Model, settings: &Settings) -> Result<Explained, Problem> {
+fn of_turn(region: &Region, roads: &Roads, id: i64, model: &Model, settings: &Settings) -> Result<Explained, Problem> {
     let facts = roads.turn(id, settings);
     let facts =
         facts.ok_or_else(|| Problem::not_found(format!("{id}: neither an edge nor a turn of this database")))?;
@@ -105,10 +107,20 @@ fn of_turn(roads: &Roads, id: i64, model: &Model, settings: &Settings) -> Result
     let node = roads.network.edges.get(facts.movement.from as usize);
     let node = node.and_then(|edge| roads.network.positions(edge).next_back());
     members["at"] = json!(node.map(LonLat::degrees));
+    let set = (model.vehicle.id.as_str(), settings.policy);
+    let turns = region.read(|database| database.map_turns(set, TurnsOf::Edge(facts.movement.from)))?;
+    members["geometry"] = geometry(turns.iter().find(|row| row.turn_id == id).map(|row| row.line.as_slice()));
     members["note"] = json!(
         "The turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii are assumed."
     );
     Ok(Explained { members, picture: picture::turn(&turn) })
+}
+
+/// As GeoJSON, in direction of travel; null where there is no line.
+fn geometry(line: Option<&[LonLat]>) -> Value {
+    let Some(line) = line else { return Value::Null };
+    let line: Vec<(f64, f64)> = line.iter().map(|position| position.degrees()).collect();
+    json!({"type": "LineString", "coordinates": line})
 }
 
 /// Longitude and latitude on the map's line as far along as the limiting place, by its share of the length: the corridor is

@@ -24,7 +24,9 @@ pub(in super::super) async fn region(State(app): State<Arc<App>>, ask: Ask) -> R
     app.answer(ask, Pace::Quick, move |region, ask| {
         ask.only(&[])?;
         let focus = region.read(Database::focus)?.or(region.extent);
-        Ok(answered(&members(region, focus, &options)))
+        let mut members = members(region, focus, &options);
+        members["left_hand_traffic"] = json!(region.read(Database::left_hand_traffic)?);
+        Ok(answered(&members))
     })
     .await
 }

@@ -8,10 +8,12 @@
 //! | `place` | which part of the earth a tile is; degrees → tile units |
 //! | `classes` | which roads a zoom shows |
 //! | `shape` | clipping, simplifying, rounding |
+//! | `labels` | names along roads |
 //! | `encode` | layers and features as protobuf |
 
 mod classes;
 mod encode;
+mod labels;
 mod place;
 mod shape;
 
@@ -24,6 +26,7 @@ use crate::osm::facts::{Policy, WidthSource};
 use crate::store::{MapEdge, MapTurn, Named, TurnsOf, verdict_words};
 use classes::{FIRST_WITH_TURNS, classes};
 use encode::{Layer, Value};
+use labels::{FIRST_WITH_LABELS, Label, labels};
 pub(super) use place::MOST_ZOOM;
 use place::Place;
 
@@ -51,6 +54,17 @@ fn bytes(region: &Region, set: (&str, Policy), place: Place) -> Result<Vec<u8>, 
     }
     let mut bytes = Vec::new();
     layer.finish(&mut bytes);
+    if place.z >= FIRST_WITH_LABELS {
+        let mut layer = Layer::new("label");
+        for Label { road, line } in labels(&edges, place.z) {
+            layer.feature(u64::from(road.edge) + 1, &drawn(&line, place), |tags| {
+                tags.text("name", road.name.as_deref());
+                tags.text("ref", road.reference.as_deref());
+                tags.add("highway", Value::Text(&road.highway));
+            });
+        }
+        layer.finish(&mut bytes);
+    }
     if place.z >= FIRST_WITH_TURNS {
         let turns = region.read(|database| database.map_turns(set, TurnsOf::Box(bounds)))?;
         let mut layer = Layer::new("turn");
