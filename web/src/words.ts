@@ -114,7 +114,8 @@ const whole = new Intl.NumberFormat("en", { maximumFractionDigits: 0 });
 
 export function kilometres(metres: number): string {
   const km = metres / 1000;
-  if (km > 0 && km < 0.1) return "< 0.1 km";
+  if (km === 0) return "0 km";
+  if (km < 0.1) return "< 0.1 km";
   return km < 10 ? `${km.toFixed(1)} km` : `${whole.format(km)} km`;
 }
 

@@ -8,6 +8,8 @@ export type Look = "chase" | "above" | "free";
 
 /** How quickly the camera turns after the vehicle: the share of the difference that is left after a second. */
 const TURN_LEFT = 0.12;
+/** Of a long vehicle the chasing camera shows so much, metres, from the front: the rest trails behind it. */
+const SHOWN_M = 32;
 
 export class Player {
   #playing = false;
@@ -114,22 +116,24 @@ export class Player {
     const poses = this.samples.at(this.#s);
     const [head, tail] = [poses[0], poses.at(-1)];
     if (!head || !tail) return;
-    const middle = this.samples.frame.from((head.x + tail.x) / 2, (head.y + tail.y) / 2);
+    const back = Math.min(0.5, SHOWN_M / 2 / Math.max(this.vehicleLength, 1));
+    const middle = this.samples.frame.from(head.x + back * (tail.x - head.x), head.y + back * (tail.y - head.y));
     const along = (Math.atan2(head.x - tail.x || head.dx, -(head.y - tail.y) || -head.dy) * 180) / Math.PI;
     const heading = poses.length > 1 ? along : (Math.atan2(head.dx, -head.dy) * 180) / Math.PI;
     const difference = this.#bearing === null ? 0 : ((heading - this.#bearing + 540) % 360) - 180;
     this.#bearing = this.#bearing === null ? heading : this.#bearing + difference * (1 - TURN_LEFT ** seconds);
     const chase = this.#look === "chase";
-    const camera = { center: middle, bearing: chase ? this.#bearing + 24 : 0, pitch: chase ? 58 : 0, zoom: this.#zoom(chase) };
+    const camera = { center: middle, bearing: chase ? this.#bearing + 24 : 0, pitch: chase ? 62 : 0, zoom: this.#zoom(chase) };
     if (moved) this.map.easeTo({ ...camera, duration: 700, essential: true });
     else this.map.jumpTo(camera);
   }
 
-  /** So that the whole vehicle has room on the screen. */
+  /** So that the vehicle has room on the screen. */
   #zoom(chase: boolean): number {
     const { clientWidth: wide, clientHeight: tall } = this.map.getContainer();
     const pixels = Math.min(wide * 0.5, tall) * (chase ? 0.62 : 0.55);
-    const metre = (pixels / Math.max(this.vehicleLength, 12)) * 78271.517 * Math.cos((this.map.getCenter().lat * Math.PI) / 180);
+    const length = chase ? Math.min(this.vehicleLength, SHOWN_M) : this.vehicleLength;
+    const metre = (pixels / Math.max(length, 12)) * 78271.517 * Math.cos((this.map.getCenter().lat * Math.PI) / 180);
     return Math.min(Math.log2(metre), 21.5);
   }
 }

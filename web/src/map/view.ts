@@ -44,7 +44,7 @@ export class View {
       container,
       style: style(state, this.#ground()),
       ...(camera ? { center: [camera.lon, camera.lat] as [number, number], zoom: camera.zoom } : { bounds: region.focus ?? region.bbox }),
-      fitBoundsOptions: { padding: 24 },
+      fitBoundsOptions: { padding: innerWidth < 760 ? 16 : { left: 380, right: 90, top: 30, bottom: 40 } },
       maxZoom: 22,
       minZoom: 3,
       maxPitch: 70,

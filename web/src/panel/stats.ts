@@ -34,7 +34,7 @@ export class StatsDialog {
 
   #content(stats: Stats, own: VehicleStats | undefined): Node[] {
     const { region } = this.context;
-    const intro = `${kilometres(stats.total_m)} of road, each direction counted; ${policyWords[stats.policy].name.toLowerCase()}. Data of ${region.timestamp?.slice(0, 10) ?? "an unknown day"}.`;
+    const intro = `${kilometres(stats.total_m)} of road, each direction counted; ${policyWords[stats.policy].name.toLowerCase()}.${region.timestamp ? ` Data of ${region.timestamp.slice(0, 10)}.` : ""}`;
     const nodes: Node[] = [h("p", { class: "sub" }, intro), legend(), this.#vehicles(stats)];
     if (own) {
       nodes.push(
@@ -75,7 +75,7 @@ export class StatsDialog {
     const columns = lengths_m.map((length, index) => {
       const low = from_m + index * step_m;
       const words = `${low.toFixed(2)} to ${(low + step_m).toFixed(2)} m: ${kilometres(length)}`;
-      const column = styled(h("i", { title: words }), { height: `${(100 * length) / most}%`, background: marginColour(palette, low) });
+      const column = styled(h("i", { title: words }), { height: length > 0 ? `max(1px, ${(100 * length) / most}%)` : "0", background: marginColour(palette, low) });
       return h("span", { class: Math.abs(low) < step_m / 2 ? "is-zero" : null }, column);
     });
     const to = from_m + lengths_m.length * step_m;
