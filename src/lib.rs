@@ -14,7 +14,8 @@
 //! | routes | [`route`] | a network with permits, two places → the shortest way that certifies as a whole |
 //! | reasons | [`explain`] | an edge or corridor and a vehicle → what limits, where, and what would do |
 //! | manoeuvres | [`manoeuvres`] | a vehicle → swept paths of the turns that regulators ask for, beside their limits |
-//! | pictures | [`picture`] | corridors, vehicles and certificates → SVG; nothing else of the library depends on it |
+//! | pictures | [`picture`] | corridors, vehicles and certificates → SVG; of the library only `serve` depends on it |
+//! | the map | [`serve`] | a database → a web server: vector tiles, a JSON interface, a page |
 //!
 //! [`check`] works out again what [`stet`] claims, without it.
 //!
@@ -33,6 +34,7 @@ pub mod picture;
 pub mod pipeline;
 pub mod published;
 pub mod route;
+pub mod serve;
 pub mod stet;
 pub mod store;
 pub mod turns;

@@ -36,6 +36,7 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Verb::Manoeuvres(verb) => verb.run(&session),
         Verb::Paper(verb) => verb.run(&session),
         Verb::Stats(verb) => verb.run(),
+        Verb::Serve(verb) => verb.run(&session),
         Verb::Verify(verb) => verb.run(&session),
     }
 }

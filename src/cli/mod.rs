@@ -23,6 +23,7 @@ mod query;
 mod reach;
 mod route;
 mod rows;
+mod serve;
 mod stats;
 mod table;
 mod tubes;
@@ -76,6 +77,7 @@ pub(crate) enum Verb {
     Manoeuvres(manoeuvres::Manoeuvres),
     Paper(paper::Paper),
     Stats(stats::Stats),
+    Serve(serve::Serve),
     Verify(verify::Verify),
 }
 

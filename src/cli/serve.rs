@@ -1,0 +1,80 @@
+//! `netcert serve`: the certified network on a map, in a browser.
+
+use std::io::Write as _;
+use std::net::SocketAddr;
+
+use clap::Args;
+use netcert::serve::{BaseMap, Limits, Options, Server};
+
+use super::Session;
+use super::database::DatabaseArgs;
+use super::how;
+use super::output::{results, tell};
+
+/// Show the database on a map: a page in the browser, vector tiles and a JSON interface behind it.
+///
+/// Prints its address when it is ready; Ctrl-C ends it. It only reads, and listens on this machine alone unless told otherwise;
+/// the page asks nobody else for anything.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  netcert serve
+  netcert serve --db region.gpkg --addr 127.0.0.1:0         any free port
+  netcert serve --base-map 'https://tile.example.org/{z}/{x}/{y}.png'
+
+The interface is described at /api/openapi.json. When the database is made anew, the next request sees it.")]
+pub(crate) struct Serve {
+    #[command(flatten)]
+    db: DatabaseArgs,
+    /// Where to listen; port 0 picks a free one.
+    #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
+    addr: SocketAddr,
+    /// Listen where other machines can reach it: there is no log-in and no encryption.
+    #[arg(long)]
+    allow_remote: bool,
+    /// Tiles of an online map that the page may show beneath the roads, if the reader wants [default: none; nothing leaves
+    /// this machine].
+    #[arg(long, value_name = "URL", value_parser = BaseMap::parse)]
+    base_map: Option<BaseMap>,
+}
+
+impl Serve {
+    pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        let server = Server::bind(Options {
+            db: self.db.path()?,
+            addr: self.addr,
+            allow_remote: self.allow_remote,
+            base_map: self.base_map.clone(),
+            recorded: how::recorded,
+            log: tell,
+            limits: Limits::default(),
+        })?;
+        let mut out = results();
+        writeln!(out, "http://{}/", server.address())?;
+        out.flush()?;
+        session.progress.say("Ctrl-C ends it");
+        server.run(stop());
+        Ok(())
+    }
+}
+
+/// Ctrl-C, or a polite kill. Where signals cannot be heard, it runs until it is killed.
+async fn stop() {
+    let interrupted = async {
+        if tokio::signal::ctrl_c().await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    };
+    #[cfg(unix)]
+    {
+        use tokio::signal::unix::{SignalKind, signal};
+        if let Ok(mut terminated) = signal(SignalKind::terminate()) {
+            tokio::select! {
+                () = interrupted => {}
+                _ = terminated.recv() => {}
+            }
+            return;
+        }
+    }
+    interrupted.await;
+}

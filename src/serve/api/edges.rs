@@ -1,0 +1,122 @@
+//! One edge: what the map says, what was certified for whom, and the turns that lead out of it and into it.
+
+use serde_json::{Map, Value, json};
+
+use super::super::answer::Stored;
+use super::super::ask::{Ask, policy};
+use super::super::problem::Problem;
+use super::super::region::Region;
+use super::{SCOPE, answered, id};
+use crate::osm::facts::WidthSource;
+use crate::stet::Side;
+use crate::store::{EdgeFacts, EdgeRow, MapTurn, Named, QueryOptions, TurnsOf, verdict_words};
+
+/// `/api/edges/{id}`
+pub(in super::super) fn edge(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    ask.only(&["vehicle", "policy"])?;
+    let edge_id = id(ask.name("id")?)?;
+    let policy = ask.parameter("policy").map_or(Ok(region.settings.policy), policy)?;
+    let vehicle = ask.parameter("vehicle").map(|vehicle| region.certified(vehicle, policy)).transpose()?;
+    let facts = region.read(|database| database.edge_facts(edge_id))?;
+    let facts = facts.ok_or_else(|| Problem::not_found(format!("edge {edge_id}: there is none in this database")))?;
+    let mut certificates = Vec::new();
+    for set in &region.sets {
+        let options = QueryOptions { edge_id: Some(edge_id), ..QueryOptions::new(&set.vehicle_id, set.policy) };
+        let row = region.read(|database| database.query(&options)?.next().transpose())?;
+        certificates.extend(row.map(|row| certificate(&set.vehicle_id, set.policy.name(), &row)));
+    }
+    let turns = match vehicle {
+        Some(vehicle) => region.read(|db| db.map_turns((&vehicle.id, policy), TurnsOf::Edge(facts.edge)))?,
+        None => Vec::new(),
+    };
+    let wanted = |c: &&Value| vehicle.is_some_and(|v| c["vehicle"] == json!(v.id)) && c["policy"] == policy.name();
+    let own = certificates.iter().find(wanted).cloned();
+    let mut members = members(&facts);
+    members.insert("certificate".to_owned(), json!(own));
+    members.insert("certificates".to_owned(), json!(certificates));
+    members.insert("turns".to_owned(), turns.iter().map(|row| turn(row, edge_id)).collect());
+    members.insert("scope".to_owned(), json!(SCOPE));
+    Ok(answered(&Value::Object(members)))
+}
+
+fn members(e: &EdgeFacts) -> Map<String, Value> {
+    let line: Vec<_> = e.line.iter().map(|position| position.degrees()).collect();
+    let widths = e.widths.iter().map(|(policy, width_m, source)| {
+        let source = source.map(WidthSource::name);
+        (policy.name().to_owned(), json!({"width_m": width_m, "width_source": source}))
+    });
+    let widths: Map<String, Value> = widths.collect();
+    let limits = e.limits.iter().map(|(name, unit, value)| {
+        let unreadable = e.unreadable_limits.iter().any(|other| other.strip_prefix("max_") == Some(*name));
+        (format!("max_{name}_{unit}"), if unreadable { json!("unreadable") } else { json!(value) })
+    });
+    let mut legal: Map<String, Value> = limits.collect();
+    legal.insert("hgv".to_owned(), json!(e.hgv.name()));
+    legal.insert("motor_vehicle".to_owned(), json!(e.motor_vehicle.name()));
+    legal.insert("barred".to_owned(), json!(e.barred));
+    let members = json!({
+        "edge_id": e.edge_id.to_string(),
+        "feature_id": e.edge + 1,
+        "way_id": e.way_id.to_string(),
+        "from_node": e.from_node.to_string(),
+        "to_node": e.to_node.to_string(),
+        "direction": e.direction.name(),
+        "oneway": e.oneway.name(),
+        "highway": e.highway,
+        "name": e.name,
+        "ref": e.reference,
+        "lanes": e.lanes,
+        "length_m": e.length_m,
+        "widths": widths,
+        "min_radius_m": e.min_radius_m,
+        "centreline_deviation_m": e.centreline_deviation_m,
+        "legal": legal,
+        "cut": e.cut,
+        "geometry": {"type": "LineString", "coordinates": line},
+    });
+    match members {
+        Value::Object(members) => members,
+        _ => Map::new(),
+    }
+}
+
+fn certificate(vehicle: &str, policy: &str, row: &EdgeRow) -> Value {
+    let (verdict, reason) = verdict_words(row.verdict);
+    json!({
+        "vehicle": vehicle,
+        "policy": policy,
+        "verdict": verdict,
+        "reason": (!reason.is_empty()).then_some(reason),
+        "rsc_m": row.rsc_m,
+        "rsc_published_m": row.rsc_published_m,
+        // Less is no angle, but a bound that does not hold.
+        "hinge_margin_deg": row.hinge_margin_deg.filter(|&degrees| degrees > -180.0),
+        "shrink": row.shrink,
+        "limiting_s_m": row.limiting_s_m,
+        "limiting_unit": row.limiting_unit,
+        "limiting_side": row.limiting_side.map(Side::name),
+        "width_m": row.width_m,
+        "width_source": row.width_source.map(WidthSource::name),
+    })
+}
+
+fn turn(row: &MapTurn, edge_id: i64) -> Value {
+    let (verdict, reason) = verdict_words(row.verdict);
+    let line: Vec<_> = row.line.iter().map(|position| position.degrees()).collect();
+    json!({
+        "turn_id": row.turn_id.to_string(),
+        "leads": if row.from_edge == edge_id { "out" } else { "in" },
+        "from_edge": row.from_edge.to_string(),
+        "to_edge": row.to_edge.to_string(),
+        "from_name": row.from_name,
+        "to_name": row.to_name,
+        "kind": row.kind,
+        "angle_deg": row.angle_deg,
+        "kerb_radius_m": row.kerb_radius_m,
+        "restriction": row.restriction,
+        "verdict": verdict,
+        "reason": (!reason.is_empty()).then_some(reason),
+        "rsc_m": row.rsc_mm.map(|mm| mm as f64 / 1000.0),
+        "geometry": {"type": "LineString", "coordinates": line},
+    })
+}

@@ -1,0 +1,145 @@
+//! Why an edge or a turn is safe or not: certified again on the spot, every hint by a certificate of its own; and drawn.
+
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use super::super::answer::Stored;
+use super::super::ask::{Ask, policy};
+use super::super::problem::Problem;
+use super::super::region::Region;
+use super::super::roads::Roads;
+use super::{SVG, answered, id};
+use crate::explain::{self, Explanation};
+use crate::network::Network;
+use crate::osm::LonLat;
+use crate::osm::facts::Policy;
+use crate::picture;
+use crate::pipeline::Settings;
+use crate::stet::Model;
+use crate::store::{Named, QueryOptions, TurnsOf};
+use crate::vehicle::Vehicle;
+
+/// Words and picture of one explanation.
+pub(in super::super) struct Explained {
+    members: Value,
+    picture: Option<String>,
+}
+
+/// `/api/explain/{id}`
+pub(in super::super) fn explain(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    explained(region, ask).map(|explained| answered(&explained.members))
+}
+
+/// `/api/explain/{id}/picture.svg`
+pub(in super::super) fn drawn(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    let explained = explained(region, ask)?;
+    let Some(svg) = &explained.picture else {
+        let headline = explained.members["headline"].as_str().unwrap_or_default();
+        return Err(Problem::not_found(format!("there is nothing to draw: {headline}")));
+    };
+    Ok(Stored::new(SVG, svg.clone().into_bytes()))
+}
+
+fn explained(region: &Region, ask: &Ask) -> Result<Arc<Explained>, Problem> {
+    ask.only(&["vehicle", "policy"])?;
+    let id = id(ask.name("id")?)?;
+    let policy = ask.parameter("policy").map_or(Ok(region.settings.policy), policy)?;
+    let vehicle = region.certified(ask.required("vehicle")?, policy)?;
+    let key = format!("{id} {} {}", vehicle.id, policy.name());
+    region.explained.get(&key, || make(region, id, vehicle, policy))
+}
+
+fn make(region: &Region, id: i64, vehicle: &Vehicle, policy: Policy) -> Result<Explained, Problem> {
+    let settings = Settings { policy, ..region.settings.clone() };
+    let roads = region.roads()?;
+    let model = Model::new(vehicle).map_err(|error| Problem::fault(error.to_string()))?;
+    let mut explained = match roads.edge(id) {
+        Some(edge) => of_edge(region, &roads, edge, &model, &settings)?,
+        None => of_turn(region, &roads, id, &model, &settings)?,
+    };
+    explained.members["policy"] = json!(policy.name());
+    explained.members["picture"] = json!(explained.picture.is_some());
+    Ok(explained)
+}
+
+fn of_edge(
+    region: &Region,
+    roads: &Roads,
+    edge: u32,
+    model: &Model,
+    settings: &Settings,
+) -> Result<Explained, Problem> {
+    let network = &roads.network;
+    let explanation = explain::explain_edge(network, edge, model, settings);
+    let explanation = explanation.ok_or_else(|| Problem::fault(format!("edge {edge} is not in the network")))?;
+    let edge_id = network.edges.get(edge as usize).map(|edge| edge.id);
+    let options = QueryOptions { edge_id, ..QueryOptions::new(&model.vehicle.id, settings.policy) };
+    let row = region.read(|database| database.query(&options)?.next().transpose())?;
+    if let Some(detail) = row.and_then(|row| explanation.disagreement(&row)) {
+        return Err(Problem::stale(format!(
+            "the certificate in the database is not what this program computes: {detail}; run `netcert certify --vehicle {} \
+             --corridor {}`",
+            model.vehicle.id,
+            settings.policy.name()
+        )));
+    }
+    let mut members = explain::json(&explanation);
+    members["kind"] = json!("edge");
+    members["at"] = json!(limiting_place(network, edge, &explanation));
+    let line = network.edges.get(edge as usize).map(|edge| network.positions(edge).collect::<Vec<_>>());
+    members["geometry"] = geometry(line.as_deref());
+    Ok(Explained { members, picture: picture::explanation(&explanation) })
+}
+
+fn of_turn(region: &Region, roads: &Roads, id: i64, model: &Model, settings: &Settings) -> Result<Explained, Problem> {
+    let facts = roads.turn(id, settings);
+    let facts =
+        facts.ok_or_else(|| Problem::not_found(format!("{id}: neither an edge nor a turn of this database")))?;
+    let turn = explain::explain_turn(&roads.network, facts, model, settings);
+    let mut members = explain::json(&turn.explanation);
+    members["kind"] = json!("turn");
+    members["turn_id"] = json!(id.to_string());
+    members["turn"] = json!(turn.title());
+    let edge_id = |edge: u32| roads.network.edges.get(edge as usize).map(|edge| edge.id.to_string());
+    members["from_edge"] = json!(edge_id(facts.movement.from));
+    members["to_edge"] = json!(edge_id(facts.movement.to));
+    let node = roads.network.edges.get(facts.movement.from as usize);
+    let node = node.and_then(|edge| roads.network.positions(edge).next_back());
+    members["at"] = json!(node.map(LonLat::degrees));
+    let set = (model.vehicle.id.as_str(), settings.policy);
+    let turns = region.read(|database| database.map_turns(set, TurnsOf::Edge(facts.movement.from)))?;
+    members["geometry"] = geometry(turns.iter().find(|row| row.turn_id == id).map(|row| row.line.as_slice()));
+    members["note"] = json!(
+        "The turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii are assumed."
+    );
+    Ok(Explained { members, picture: picture::turn(&turn) })
+}
+
+/// As GeoJSON, in direction of travel; null where there is no line.
+fn geometry(line: Option<&[LonLat]>) -> Value {
+    let Some(line) = line else { return Value::Null };
+    let line: Vec<(f64, f64)> = line.iter().map(|position| position.degrees()).collect();
+    json!({"type": "LineString", "coordinates": line})
+}
+
+/// Longitude and latitude on the map's line as far along as the limiting place, by its share of the length: the corridor is
+/// another line, some decimetres beside.
+fn limiting_place(network: &Network, edge: u32, explanation: &Explanation) -> Option<[f64; 2]> {
+    let geometry = explanation.geometry.as_ref()?;
+    let share = geometry.along_m(geometry.place.station) / geometry.length_m().max(1e-9);
+    let line: Vec<(f64, f64)> = network.positions(network.edges.get(edge as usize)?).map(LonLat::degrees).collect();
+    let shrink = line.first()?.1.to_radians().cos();
+    let length = |p: &[(f64, f64)]| ((p[1].0 - p[0].0) * shrink).hypot(p[1].1 - p[0].1);
+    let mut left = share.clamp(0.0, 1.0) * line.windows(2).map(length).sum::<f64>();
+    for pair in line.windows(2) {
+        let own = length(pair);
+        if left <= own {
+            let along = left / own.max(1e-12);
+            let ((a, b), (c, d)) = (pair[0], pair[1]);
+            return Some([a + along * (c - a), b + along * (d - b)].map(|degrees| (degrees * 1e7).round() / 1e7));
+        }
+        left -= own;
+    }
+    line.last().map(|&(lon, lat)| [lon, lat])
+}

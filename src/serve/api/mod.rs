@@ -1,0 +1,51 @@
+//! The JSON interface, one file an endpoint. Metres, degrees, seconds, as the names say; ids of edges, turns and ways as text, since
+//! JavaScript's numbers hold 53 bits only.
+
+pub(super) mod edges;
+pub(super) mod explain;
+pub(super) mod region;
+pub(super) mod route;
+pub(super) mod search;
+pub(super) mod stats;
+pub(super) mod vehicles;
+
+use std::sync::Arc;
+
+use axum::extract::State;
+use axum::response::Response;
+use serde_json::Value;
+
+use super::answer::Stored;
+use super::app::{App, Pace};
+use super::ask::{Ask, shortened};
+use super::problem::Problem;
+
+const JSON: &str = "application/json";
+const SVG: &str = "image/svg+xml";
+
+/// The description of all this (OpenAPI 3.1); a test holds it against the answers.
+pub(super) const OPENAPI: &str = include_str!("../openapi.json");
+
+/// `/api/openapi.json`
+pub(super) async fn openapi(State(app): State<Arc<App>>, ask: Ask) -> Response {
+    app.answer(ask, Pace::Quick, |_, ask| {
+        ask.only(&[])?;
+        Ok(Stored::new(JSON, OPENAPI.as_bytes().to_vec()))
+    })
+    .await
+}
+
+fn answered(value: &Value) -> Stored {
+    Stored::new(JSON, value.to_string().into_bytes())
+}
+
+/// An edge's or turn's id.
+fn id(text: &str) -> Result<i64, Problem> {
+    let plain = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let id = text.parse().ok().filter(|_| plain);
+    id.ok_or_else(|| Problem::not_found(format!("{:?} is no id: ids are whole numbers", shortened(text))))
+}
+
+/// What `safe` means; never said without it.
+const SCOPE: &str = "`safe` holds within the model: the vehicle as defined, steered within its tracking tolerance of the planned \
+                     path, on a road as wide as its width_source says; it is no permit and says nothing of bridges or traffic.";

@@ -1,0 +1,70 @@
+//! What is served: where, from what, for whom, and what it means.
+
+use std::sync::Arc;
+
+use axum::extract::State;
+use axum::response::Response;
+use serde_json::{Value, json};
+
+use super::super::app::{App, Pace};
+use super::super::ask::Ask;
+use super::super::options::Options;
+use super::super::region::Region;
+use super::super::tiles::MOST_ZOOM;
+use super::{SCOPE, answered};
+use crate::osm::facts::Policy;
+use crate::store::{Bounds, Database, Named};
+
+/// As the licence of the data asks: <https://www.openstreetmap.org/copyright>.
+const ATTRIBUTION: &str = "© OpenStreetMap contributors, Open Database License";
+
+/// `/api/region`
+pub(in super::super) async fn region(State(app): State<Arc<App>>, ask: Ask) -> Response {
+    let options = app.options.clone();
+    app.answer(ask, Pace::Quick, move |region, ask| {
+        ask.only(&[])?;
+        let focus = region.read(Database::focus)?.or(region.extent);
+        let mut members = members(region, focus, &options);
+        members["left_hand_traffic"] = json!(region.read(Database::left_hand_traffic)?);
+        Ok(answered(&members))
+    })
+    .await
+}
+
+fn members(region: &Region, focus: Option<Bounds>, options: &Options) -> Value {
+    let ingest = region.runs.iter().rev().find(|run| run.command == "ingest");
+    let policies: Vec<&str> = Policy::ALL
+        .iter()
+        .filter(|policy| region.sets.iter().any(|set| set.policy == **policy))
+        .map(|policy| policy.name())
+        .collect();
+    let default = region.settings.policy.name();
+    let default = policies.iter().find(|policy| **policy == default).or(policies.first());
+    let mut certified: Vec<&str> = region.sets.iter().map(|set| set.vehicle_id.as_str()).collect();
+    certified.dedup();
+    json!({
+        "name": region.name(),
+        "bbox": region.extent.map(sides),
+        "focus": focus.map(sides),
+        "timestamp": ingest.and_then(|run| run.replication_timestamp.as_deref()),
+        "input_blake3": ingest.and_then(|run| run.input_blake3.as_deref()),
+        "netcert": env!("CARGO_PKG_VERSION"),
+        "made_by": ingest.map(|run| run.netcert_version.as_str()),
+        "made": ingest.map(|run| run.finished.as_str()),
+        "database_hash": region.content,
+        "state": region.state,
+        "attribution": ATTRIBUTION,
+        "policies": policies,
+        "default_policy": default,
+        "vehicles_certified": certified,
+        "tiles": format!("/tiles/{{policy}}/{{vehicle}}/{{z}}/{{x}}/{{y}}.mvt?state={}", region.state),
+        "max_zoom": MOST_ZOOM,
+        "base_map": options.base_map.as_ref().map(|map| json!({"url": map.url})),
+        "scope": SCOPE,
+    })
+}
+
+/// To 1e-7 degree, as the map has it; what comes out of the spatial index is single precision.
+fn sides(b: Bounds) -> [f64; 4] {
+    [b.west, b.south, b.east, b.north].map(|degrees| (degrees * 1e7).round() / 1e7)
+}

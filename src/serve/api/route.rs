@@ -1,0 +1,70 @@
+//! A certified route between places, or what blocks.
+
+use serde_json::json;
+
+use super::super::answer::Stored;
+use super::super::ask::{Ask, policy};
+use super::super::planning::{Ride, Router};
+use super::super::problem::Problem;
+use super::super::region::Region;
+use super::{SCOPE, answered};
+use crate::route::{Measure, Question};
+use crate::store::Named;
+
+/// Places between beginning and end, at most.
+const MOST_VIA: usize = 8;
+/// How far a road may be from a place unless told otherwise, metres: as `netcert route`.
+const SNAP_M: f64 = 100.0;
+/// Whole routes that may fail, unless told otherwise: each costs a certificate over all of it.
+const TRIES: u32 = 12;
+
+/// `/api/route`
+pub(in super::super) fn route(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    ask.only(&["vehicle", "policy", "from", "to", "via*", "alternatives", "snap", "tries", "least", "drive"])?;
+    let policy = ask.parameter("policy").map_or(Ok(region.settings.policy), policy)?;
+    let vehicle = region.certified(ask.required("vehicle")?, policy)?;
+    let ride = ride(ask)?;
+    let measure = match ask.parameter("least").unwrap_or("time") {
+        "time" => Measure::Time,
+        "distance" => Measure::Distance,
+        _ => return Err(Problem::parameter("least", "give time or distance")),
+    };
+    if !region.policies(&vehicle.id).contains(&(policy, true)) {
+        let (id, policy) = (&vehicle.id, policy.name());
+        return Err(Problem::not_found(format!(
+            "the turns of {id} are not certified under the {policy} policy; `netcert certify --vehicle {id} --corridor \
+             {policy}` does that"
+        )));
+    }
+    let key = format!("{} {} {measure:?}", vehicle.id, policy.name());
+    let router = region.routers.get(&key, || Router::start(region, &vehicle.id, policy, measure))?;
+    let Some(answer) = router.ask(ride) else {
+        region.routers.forget(&key);
+        return Err(Problem::fault("the search for routes broke off"));
+    };
+    let mut members = answer?;
+    members["scope"] = json!(format!("{SCOPE} Kerb radii of corners are assumed; times are by class of road."));
+    Ok(answered(&members))
+}
+
+fn ride(ask: &Ask) -> Result<Ride, Problem> {
+    let one = |name: &str| -> Result<_, Problem> {
+        ask.required(name)?;
+        ask.places(name)?.into_iter().next().ok_or_else(|| Problem::parameter(name, "is missing"))
+    };
+    let via = ask.places("via")?;
+    if via.len() > MOST_VIA {
+        return Err(Problem::parameter("via", format!("{} places; {MOST_VIA} are allowed", via.len())));
+    }
+    let places = std::iter::once(one("from")?).chain(via).chain([one("to")?]).collect();
+    let alternatives = ask.whole("alternatives", 0..=3)?.unwrap_or(0) as usize;
+    let drives = match ask.parameter("drive").unwrap_or("best") {
+        "best" => 1,
+        "all" => alternatives + 1,
+        "none" => 0,
+        _ => return Err(Problem::parameter("drive", "give best, all or none")),
+    };
+    let snap_m = ask.number("snap", 0.0, 5000.0)?.unwrap_or(SNAP_M);
+    let tries = ask.whole("tries", 0..=30)?.unwrap_or(TRIES) as usize;
+    Ok(Ride { question: Question { places, snap_m, alternatives, tries }, drives })
+}

@@ -1,0 +1,87 @@
+//! A region's numbers: kilometres by class and verdict for each vehicle, what limits, and how much there is to spare.
+
+use serde_json::{Value, json};
+
+use super::super::answer::Stored;
+use super::super::ask::{Ask, policy};
+use super::super::problem::Problem;
+use super::super::region::Region;
+use super::{SCOPE, answered};
+use crate::osm::facts::{Policy, WidthSource};
+use crate::store::{Named, RscBin, Stats, verdict_words};
+
+/// Width of the histogram's bins, millimetres.
+const BIN_MM: u32 = 100;
+
+/// `/api/stats`
+pub(in super::super) fn stats(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    ask.only(&["policy"])?;
+    let policy = ask.parameter("policy").map_or(Ok(region.settings.policy), policy)?;
+    let stats = region.read(crate::store::Database::stats)?;
+    let bins = region.read(|database| database.rsc_bins(policy, BIN_MM))?;
+    Ok(answered(&members(&stats, &bins, policy)))
+}
+
+fn members(stats: &Stats, bins: &[RscBin], policy: Policy) -> Value {
+    let network: Vec<Value> = stats
+        .network
+        .iter()
+        .map(|(highway, edges, length_m)| json!({"highway": highway, "edges": edges, "km": km(*length_m)}))
+        .collect();
+    let widths: Vec<Value> = stats
+        .widths
+        .iter()
+        .filter(|width| width.0 == policy)
+        .map(|(_, source, edges, length_m)| {
+            json!({"width_source": source.map(WidthSource::name), "edges": edges, "km": km(*length_m)})
+        })
+        .collect();
+    let certificates: Vec<Value> = stats
+        .certificates
+        .iter()
+        .filter(|row| row.policy == policy)
+        .map(|row| {
+            let (verdict, reason) = verdict_words(row.verdict);
+            json!({
+                "vehicle": row.vehicle_id, "highway": row.highway, "verdict": verdict,
+                "reason": (!reason.is_empty()).then_some(reason), "edges": row.edges, "km": km(row.length_m),
+            })
+        })
+        .collect();
+    let turns: Vec<Value> = stats
+        .turns
+        .iter()
+        .filter(|row| row.policy == policy)
+        .map(|row| {
+            let (verdict, reason) = verdict_words(row.verdict);
+            let reason = (!reason.is_empty()).then_some(reason);
+            json!({"vehicle": row.vehicle_id, "verdict": verdict, "reason": reason, "turns": row.turns})
+        })
+        .collect();
+    let histogram: Vec<Value> = bins
+        .iter()
+        .map(|bin| {
+            json!({
+                "vehicle": bin.vehicle_id, "rsc_from_m": bin.from_mm as f64 / 1000.0,
+                "verdict": verdict_words(bin.verdict).0, "edges": bin.edges, "km": km(bin.length_m),
+            })
+        })
+        .collect();
+    json!({
+        "policy": policy.name(),
+        "roads": stats.roads,
+        "network": network,
+        "widths": widths,
+        "certificates": certificates,
+        "turns": turns,
+        "rsc_bin_m": f64::from(BIN_MM) / 1000.0,
+        "rsc_histogram": histogram,
+        "note": "A length is counted once for each direction.",
+        "scope": SCOPE,
+    })
+}
+
+/// To a metre.
+fn km(length_m: f64) -> f64 {
+    length_m.round() / 1000.0
+}

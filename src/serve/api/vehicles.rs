@@ -1,0 +1,72 @@
+//! The vehicles of the database, with their dimensions, and drawn to scale.
+
+use serde_json::{Value, json};
+
+use super::super::answer::Stored;
+use super::super::ask::Ask;
+use super::super::problem::Problem;
+use super::super::region::Region;
+use super::{SVG, answered};
+use crate::picture;
+use crate::store::Named;
+use crate::vehicle::{Unit, Vehicle};
+
+/// `/api/vehicles`
+pub(in super::super) fn list(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    ask.only(&[])?;
+    let vehicles: Vec<Value> = region.vehicles.iter().map(|vehicle| members(region, vehicle)).collect();
+    Ok(answered(&json!(vehicles)))
+}
+
+/// `/api/vehicles/{id}/drawing.svg`
+pub(in super::super) fn drawing(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    ask.only(&[])?;
+    let vehicle = region.vehicle(ask.name("id")?)?;
+    Ok(Stored::new(SVG, picture::vehicle(vehicle).into_bytes()))
+}
+
+fn members(region: &Region, vehicle: &Vehicle) -> Value {
+    let policies = region.policies(&vehicle.id);
+    let certified: Vec<&str> = policies.iter().map(|(policy, _)| policy.name()).collect();
+    let turns: Vec<&str> = policies.iter().filter(|(_, turns)| *turns).map(|(policy, _)| policy.name()).collect();
+    let units: Vec<Value> = vehicle.units.iter().enumerate().map(|(i, u)| unit(vehicle, i, u)).collect();
+    json!({
+        "id": vehicle.id,
+        "name": vehicle.name,
+        "region": vehicle.region,
+        "length_m": vehicle.length_m,
+        "width_m": vehicle.width_m(),
+        "height_m": vehicle.height_m,
+        "gross_mass_t": vehicle.gross_mass_t,
+        "axle_load_t": vehicle.axle_load_t,
+        "tracking_tolerance_m": vehicle.tracking_tolerance_m,
+        "tracking_heading_deg": degrees(vehicle.tracking_heading_rad),
+        "min_shrink": vehicle.min_shrink,
+        "source": vehicle.source,
+        "certified": certified,
+        "turns_certified": turns,
+        "units": units,
+    })
+}
+
+/// Lengths along the unit count from its axle, so that a body can be drawn at a pose: it reaches `coupling_to_axle_m` +
+/// `front_overhang_m` ahead of the axle and `rear_overhang_m` behind.
+fn unit(vehicle: &Vehicle, index: usize, unit: &Unit) -> Value {
+    json!({
+        "name": unit.name,
+        "coupling_to_axle_m": unit.coupling_to_axle_m,
+        "hitch_offset_m": unit.hitch_offset_m,
+        "front_overhang_m": unit.front_overhang_m,
+        "rear_overhang_m": unit.rear_overhang_m,
+        "width_m": unit.width_m,
+        "max_articulation_deg": degrees(unit.max_articulation_rad),
+        "sway_deg": degrees(unit.sway_rad),
+        "dolly": vehicle.is_dolly(index),
+        "carries_next": vehicle.carries(index),
+    })
+}
+
+/// To a millionth of a degree: radians do not come back to the digits that were typed.
+fn degrees(rad: f64) -> f64 {
+    (rad.to_degrees() * 1e6).round() / 1e6
+}

@@ -1,0 +1,120 @@
+//! What all requests share: the region as it is now, finished answers, and the lanes for work.
+
+use std::sync::{Arc, PoisonError, RwLock};
+
+use axum::response::{IntoResponse as _, Response};
+
+use super::answer::{Keep, Stored};
+use super::ask::{Ask, STATE};
+use super::cache::Cache;
+use super::options::Options;
+use super::problem::Problem;
+use super::region::{Identity, Region};
+use super::work::Lane;
+
+/// The application.
+pub(super) struct App {
+    pub(super) options: Options,
+    region: RwLock<Arc<Region>>,
+    cache: Cache,
+    quick: Lane,
+    slow: Lane,
+}
+
+/// Which lane.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Pace {
+    /// Reads some rows.
+    Quick,
+    /// Certifies, or reads everything.
+    Slow,
+}
+
+impl App {
+    pub(super) fn new(options: Options, region: Region) -> Self {
+        let limits = options.limits;
+        let (quick, slow) = (limits.quick, limits.slow);
+        Self {
+            region: RwLock::new(Arc::new(region)),
+            cache: Cache::new(limits.cache_bytes),
+            quick: Lane::new(quick.at_a_time, quick.waiting, quick.time),
+            slow: Lane::new(slow.at_a_time, slow.waiting, slow.time),
+            options,
+        }
+    }
+
+    /// The region as the file is now.
+    async fn region(self: &Arc<Self>) -> Result<Arc<Region>, Problem> {
+        let known = Arc::clone(&self.region.read().unwrap_or_else(PoisonError::into_inner));
+        if Identity::of(&self.options.db)? == known.identity {
+            return Ok(known);
+        }
+        let app = Arc::clone(self);
+        self.quick
+            .run(move || {
+                let mut region = app.region.write().unwrap_or_else(PoisonError::into_inner);
+                if Identity::of(&app.options.db)? != region.identity {
+                    *region = Arc::new(Region::open(&app.options.db, app.options.recorded)?);
+                    app.options.log(&format!("{}: it has changed; read anew", app.options.db.display()));
+                }
+                Ok(Arc::clone(&region))
+            })
+            .await
+    }
+
+    /// Loads what the first explanation, route and search would have to wait for.
+    pub(super) async fn warm_up(self: Arc<Self>) {
+        let Ok(region) = self.region().await else { return };
+        // If it fails, whoever asks is told.
+        let _ = self.slow.run(move || region.names().and_then(|_| region.roads()).map(|_| ())).await;
+    }
+
+    /// Answers from what was answered before, or by doing the work.
+    pub(super) async fn answer(
+        self: &Arc<Self>,
+        ask: Ask,
+        pace: Pace,
+        work: impl FnOnce(&Region, &Ask) -> Result<Stored, Problem> + Send + 'static,
+    ) -> Response {
+        match self.try_answer(&ask, pace, work).await {
+            Ok((stored, keep)) => stored.respond(&ask, keep),
+            Err(problem) => {
+                if problem.status.is_server_error() {
+                    self.options.log(&format!("{}: {problem:?}", ask.key()));
+                }
+                problem.into_response()
+            }
+        }
+    }
+
+    async fn try_answer(
+        self: &Arc<Self>,
+        ask: &Ask,
+        pace: Pace,
+        work: impl FnOnce(&Region, &Ask) -> Result<Stored, Problem> + Send + 'static,
+    ) -> Result<(Arc<Stored>, Keep), Problem> {
+        let region = self.region().await?;
+        let keep = if ask.parameter(STATE) == Some(&region.state) { Keep::ForEver } else { Keep::Ask };
+        let key = format!("{} {}", region.state, ask.key());
+        if let Some(stored) = self.cache.get(&key) {
+            return Ok((stored, keep));
+        }
+        let (app, asked) = (Arc::clone(self), ask.clone());
+        let lane = match pace {
+            Pace::Quick => &self.quick,
+            Pace::Slow => &self.slow,
+        };
+        let stored = lane
+            .run(move || {
+                // Somebody may have done it while this one waited.
+                if let Some(stored) = app.cache.get(&key) {
+                    return Ok(stored);
+                }
+                let stored = Arc::new(work(&region, &asked)?);
+                app.cache.put(&key, Arc::clone(&stored));
+                Ok(stored)
+            })
+            .await?;
+        Ok((stored, keep))
+    }
+}

@@ -1,0 +1,225 @@
+//! A request as the endpoints see it: names from the path, parameters of the query, and what the client can take.
+//!
+//! Promises that every value has been decoded and that a name nobody knows is refused: a misspelt parameter must not pass for
+//! the default.
+
+use axum::extract::{FromRequestParts, RawPathParams};
+use axum::http::header::{self, HeaderMap};
+use axum::http::request::Parts;
+
+use super::problem::Problem;
+use crate::osm::facts::Policy;
+use crate::route::Position;
+use crate::store::Named;
+
+/// More parameters than any endpoint has.
+const MOST_PARAMETERS: usize = 24;
+/// Longest value of one parameter, bytes.
+const LONGEST_VALUE: usize = 200;
+/// May be given with every request: the state of the database that the client has seen; see `answer`.
+pub(super) const STATE: &str = "state";
+
+/// What was asked.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Ask {
+    path: String,
+    names: Vec<(String, String)>,
+    parameters: Vec<(String, String)>,
+    pub(super) if_none_match: Option<String>,
+    pub(super) gzip: bool,
+}
+
+impl<S: Send + Sync> FromRequestParts<S> for Ask {
+    type Rejection = Problem;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
+        let names = RawPathParams::from_request_parts(parts, state).await;
+        let names = names.map_err(|_| Problem::not_found("the path is not UTF-8"))?;
+        let names = names.iter().map(|(name, value)| (name.to_owned(), value.to_owned())).collect();
+        let parameters = read_query(parts.uri.query().unwrap_or_default())?;
+        let if_none_match = text(&parts.headers, header::IF_NONE_MATCH);
+        let gzip = text(&parts.headers, header::ACCEPT_ENCODING).is_some_and(|accepts| takes_gzip(&accepts));
+        Ok(Self { path: parts.uri.path().to_owned(), names, parameters, if_none_match, gzip })
+    }
+}
+
+fn text(headers: &HeaderMap, name: header::HeaderName) -> Option<String> {
+    let values: Vec<&str> = headers.get_all(name).iter().filter_map(|value| value.to_str().ok()).collect();
+    (!values.is_empty()).then(|| values.join(", "))
+}
+
+/// Whether `Accept-Encoding` allows gzip: named, or `*`, and not with weight 0 (RFC 9110, section 12.5.3).
+fn takes_gzip(accepts: &str) -> bool {
+    let weight = |wanted: &str| {
+        accepts.split(',').find_map(|item| {
+            let mut parts = item.split(';').map(str::trim);
+            let name = parts.next()?;
+            let weight = parts.find_map(|part| part.strip_prefix("q=")).map_or(Some(1.0), |q| q.parse::<f64>().ok());
+            name.eq_ignore_ascii_case(wanted).then_some(weight?)
+        })
+    };
+    weight("gzip").or_else(|| weight("*")).is_some_and(|weight| weight > 0.0)
+}
+
+fn read_query(query: &str) -> Result<Vec<(String, String)>, Problem> {
+    let mut parameters = Vec::new();
+    for (name, value) in form_urlencoded::parse(query.as_bytes()) {
+        if parameters.len() == MOST_PARAMETERS {
+            return Err(Problem::parameter("query", format!("more than {MOST_PARAMETERS} parameters")));
+        }
+        if value.len() > LONGEST_VALUE || name.len() > LONGEST_VALUE {
+            return Err(Problem::parameter(&shortened(&name), format!("longer than {LONGEST_VALUE} bytes")));
+        }
+        parameters.push((name.into_owned(), value.into_owned()));
+    }
+    Ok(parameters)
+}
+
+/// For messages.
+pub(super) fn shortened(text: &str) -> String {
+    let mut short: String = text.chars().filter(|c| !c.is_control()).take(60).collect();
+    if short.chars().count() < text.chars().count() {
+        short.push('…');
+    }
+    short
+}
+
+impl Ask {
+    /// Refuses parameters that the endpoint does not know, and any that is given twice unless its name ends in `*`.
+    pub(super) fn only(&self, known: &[&str]) -> Result<(), Problem> {
+        for (i, (name, _)) in self.parameters.iter().enumerate() {
+            let entry = known.iter().find(|entry| entry.trim_end_matches('*') == name);
+            let entry = entry.copied().or_else(|| (name == STATE).then_some(STATE));
+            let Some(entry) = entry else {
+                let known: Vec<&str> = known.iter().map(|entry| entry.trim_end_matches('*')).collect();
+                let known = if known.is_empty() { "there are none here".to_owned() } else { known.join(", ") };
+                let name = shortened(name);
+                return Err(Problem::parameter(&name, format!("no such parameter; known: {known}")));
+            };
+            if !entry.ends_with('*') && self.parameters.iter().skip(i + 1).any(|(other, _)| other == name) {
+                return Err(Problem::parameter(name, "given more than once"));
+            }
+        }
+        Ok(())
+    }
+
+    /// A name out of the path.
+    pub(super) fn name(&self, name: &str) -> Result<&str, Problem> {
+        let found = self.names.iter().find(|pair| pair.0 == name).map(|pair| pair.1.as_str());
+        found.ok_or_else(|| Problem::fault(format!("the path has no {name}")))
+    }
+
+    pub(super) fn parameter(&self, name: &str) -> Option<&str> {
+        self.parameters.iter().find(|pair| pair.0 == name).map(|pair| pair.1.as_str())
+    }
+
+    pub(super) fn all<'a>(&'a self, name: &'a str) -> impl Iterator<Item = &'a str> {
+        self.parameters.iter().filter(move |pair| pair.0 == name).map(|pair| pair.1.as_str())
+    }
+
+    pub(super) fn required(&self, name: &str) -> Result<&str, Problem> {
+        self.parameter(name).ok_or_else(|| Problem::parameter(name, "is missing"))
+    }
+
+    /// Path and parameters in one order: the same question has the same key. Without `state`.
+    pub(super) fn key(&self) -> String {
+        let mut parameters: Vec<_> = self.parameters.iter().filter(|pair| pair.0 != STATE).collect();
+        parameters.sort_by(|a, b| a.0.cmp(&b.0)); // stable: the order among several of a name stays
+        let mut key = self.path.clone();
+        for (name, value) in parameters {
+            // No value holds a control character unescaped: `\n` separates.
+            key.push('\n');
+            key.push_str(&name.escape_default().to_string());
+            key.push('\n');
+            key.push_str(&value.escape_default().to_string());
+        }
+        key
+    }
+
+    /// A whole number within bounds.
+    pub(super) fn whole(&self, name: &str, bounds: std::ops::RangeInclusive<u32>) -> Result<Option<u32>, Problem> {
+        let Some(text) = self.parameter(name) else { return Ok(None) };
+        let value = text.parse::<u32>().ok().filter(|value| bounds.contains(value));
+        let (low, high) = (bounds.start(), bounds.end());
+        value.map(Some).ok_or_else(|| Problem::parameter(name, format!("give a whole number from {low} to {high}")))
+    }
+
+    /// A finite number within bounds.
+    pub(super) fn number(&self, name: &str, low: f64, high: f64) -> Result<Option<f64>, Problem> {
+        let Some(text) = self.parameter(name) else { return Ok(None) };
+        let value = text.parse::<f64>().ok().filter(|value| (low..=high).contains(value));
+        value.map(Some).ok_or_else(|| Problem::parameter(name, format!("give a number from {low} to {high}")))
+    }
+
+    /// Degrees: `lon,lat`.
+    pub(super) fn places(&self, name: &str) -> Result<Vec<Position>, Problem> {
+        self.all(name)
+            .map(|text| {
+                let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+                match numbers.as_deref() {
+                    Some(&[lon, lat]) if lon.abs() <= 180.0 && lat.abs() <= 90.0 => Ok(Position { lon, lat }),
+                    _ => Err(Problem::parameter(name, "give degrees: longitude,latitude, such as 8.694,49.411")),
+                }
+            })
+            .collect()
+    }
+}
+
+/// The value of a word, or which words there are.
+pub(super) fn one_of<T: Named>(name: &str, word: &str) -> Result<T, Problem> {
+    T::named(word).ok_or_else(|| {
+        let words: Vec<&str> = T::ALL.iter().map(|value| value.name()).collect();
+        Problem::parameter(name, format!("no {:?} here; give one of {}", shortened(word), words.join(", ")))
+    })
+}
+
+/// A policy out of the path or a parameter.
+pub(super) fn policy(word: &str) -> Result<Policy, Problem> {
+    one_of("policy", word)
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn ask(path: &str, query: &str) -> Ask {
+        Ask { path: path.to_owned(), parameters: read_query(query).unwrap(), ..Ask::default() }
+    }
+
+    #[test]
+    fn gzip_is_taken_where_the_client_says_so() {
+        for accepts in ["gzip", "br, GZIP", "deflate, gzip;q=0.5", "*", "gzip ; q=1.0"] {
+            assert!(takes_gzip(accepts), "{accepts}");
+        }
+        for accepts in ["", "br", "identity", "gzip;q=0", "*;q=0", "gzip;q=0, *", "gzip;q=x"] {
+            assert!(!takes_gzip(accepts), "{accepts}");
+        }
+    }
+
+    #[test]
+    fn a_parameter_nobody_knows_is_refused() {
+        let known = ["vehicle", "via*"];
+        assert!(ask("/", "vehicle=A&via=1,2&via=3,4&state=x").only(&known).is_ok());
+        assert!(ask("/", "vehicel=A").only(&known).is_err());
+        assert!(ask("/", "vehicle=A&vehicle=B").only(&known).is_err());
+    }
+
+    #[test]
+    fn the_order_of_parameters_does_not_matter_to_the_key() {
+        assert_eq!(ask("/a", "b=1&a=2&state=9").key(), ask("/a", "a=2&b=1").key());
+        assert_ne!(ask("/a", "via=1&via=2").key(), ask("/a", "via=2&via=1").key());
+        assert_ne!(ask("/a", "q=x%0Ay%0Az").key(), ask("/a", "q=x&y=z").key());
+    }
+
+    #[test]
+    fn places_and_numbers_out_of_range_are_refused() {
+        assert_eq!(ask("/", "from=8.5,%2049").places("from").unwrap(), [Position { lon: 8.5, lat: 49.0 }]);
+        for wrong in ["1", "1,2,3", "181,0", "0,91", "NaN,1", "inf,1", "a,b", "1,,2", ""] {
+            assert!(ask("/", &format!("from={wrong}")).places("from").is_err(), "{wrong}");
+        }
+        assert!(ask("/", "n=NaN").number("n", 0.0, 1.0).is_err());
+        assert!(ask("/", "n=-1").whole("n", 0..=9).is_err());
+        assert_eq!(ask("/", "n=3").whole("n", 0..=9).unwrap(), Some(3));
+    }
+}

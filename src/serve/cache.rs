@@ -1,0 +1,129 @@
+//! Finished answers, by key, as long as there is room: the least recently used go first.
+//!
+//! Promises that all kept bodies and keys together stay within the bound, whatever is put in.
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::answer::Stored;
+
+/// What an entry takes beside body and key, bytes: three map nodes and their strings' heads.
+const OVERHEAD: usize = 300;
+
+/// A bounded map; shared by all threads.
+#[derive(Debug)]
+pub(super) struct Cache {
+    most_bytes: usize,
+    inner: Mutex<Inner>,
+}
+
+#[derive(Debug, Default)]
+struct Inner {
+    entries: HashMap<Arc<str>, (u64, Arc<Stored>)>,
+    /// Keys by when they were last used.
+    order: BTreeMap<u64, Arc<str>>,
+    clock: u64,
+    bytes: usize,
+}
+
+impl Cache {
+    pub(super) fn new(most_bytes: usize) -> Self {
+        Self { most_bytes, inner: Mutex::default() }
+    }
+
+    pub(super) fn get(&self, key: &str) -> Option<Arc<Stored>> {
+        let mut inner = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
+        inner.clock += 1;
+        let now = inner.clock;
+        let (used, stored) = inner.entries.get_mut(key)?;
+        let before = std::mem::replace(used, now);
+        let stored = Arc::clone(stored);
+        if let Some(key) = inner.order.remove(&before) {
+            inner.order.insert(now, key);
+        }
+        Some(stored)
+    }
+
+    /// An answer that alone would take more than an eighth of the room is not kept.
+    pub(super) fn put(&self, key: &str, stored: Arc<Stored>) {
+        let size = size(key, &stored);
+        if size > self.most_bytes / 8 {
+            return;
+        }
+        let mut inner = self.inner.lock().unwrap_or_else(PoisonError::into_inner);
+        inner.remove(key);
+        inner.clock += 1;
+        let (now, key) = (inner.clock, Arc::<str>::from(key));
+        inner.bytes += size;
+        inner.order.insert(now, Arc::clone(&key));
+        inner.entries.insert(key, (now, stored));
+        while inner.bytes > self.most_bytes {
+            let Some((_, oldest)) = inner.order.first_key_value().map(|(when, key)| (*when, Arc::clone(key))) else {
+                break;
+            };
+            inner.remove(&oldest);
+        }
+    }
+
+    #[cfg(test)]
+    fn bytes(&self) -> usize {
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner).bytes
+    }
+}
+
+impl Inner {
+    fn remove(&mut self, key: &str) {
+        if let Some((key, (used, stored))) = self.entries.remove_entry(key) {
+            self.order.remove(&used);
+            self.bytes -= size(&key, &stored);
+        }
+    }
+}
+
+fn size(key: &str, stored: &Stored) -> usize {
+    stored.len() + key.len() + OVERHEAD
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn stored(bytes: usize) -> Arc<Stored> {
+        // Noise, which does not compress.
+        let noise = |i: usize| (i as u32).wrapping_add(1).wrapping_mul(2_654_435_761).rotate_left(13) as u8;
+        Arc::new(Stored::new("text/plain", (0..bytes).map(noise).collect()))
+    }
+
+    #[test]
+    fn the_least_recently_used_goes_first() {
+        let cache = Cache::new(10 * (OVERHEAD + 101));
+        for i in 0..10 {
+            cache.put(&i.to_string(), stored(100));
+        }
+        assert!(cache.get("0").is_some());
+        cache.put("x", stored(100));
+        assert!(cache.get("1").is_none(), "1 was used longest ago");
+        assert!(cache.get("0").is_some() && cache.get("2").is_some() && cache.get("x").is_some());
+    }
+
+    #[test]
+    fn the_bound_holds_whatever_is_put_in() {
+        let cache = Cache::new(20_000);
+        for i in 0..2000_usize {
+            cache.put(&(i * 7919 % 90).to_string(), stored(i * 31 % 4000));
+            assert!(cache.bytes() <= 20_000);
+        }
+        cache.put("great", stored(30_000));
+        assert!(cache.get("great").is_none());
+    }
+
+    #[test]
+    fn the_same_key_counts_once() {
+        let cache = Cache::new(100_000);
+        for _ in 0..50 {
+            cache.put("a", stored(1000));
+        }
+        assert_eq!(cache.bytes(), size("a", &stored(1000)));
+    }
+}

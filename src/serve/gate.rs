@@ -1,0 +1,129 @@
+//! What every request passes, and every response: methods, host, sizes; security headers.
+//!
+//! Promises: nothing but `GET` and `HEAD`; no request with a body; no request line beyond the bound; on loopback, no `Host` that
+//! is not this machine's own name (a page elsewhere whose name suddenly means 127.0.0.1 must not read: DNS rebinding).
+
+use std::sync::Arc;
+
+use axum::extract::{Request, State};
+use axum::http::{HeaderName, HeaderValue, Method, StatusCode, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse as _, Response};
+
+use super::app::App;
+use super::options::Options;
+use super::problem::Problem;
+
+/// Longest path and query, bytes.
+const LONGEST_TARGET: usize = 4096;
+
+/// The middleware.
+pub(super) async fn gate(State(app): State<Arc<App>>, request: Request, next: Next) -> Response {
+    let mut response = match refusal(&request, &app.options) {
+        Some(problem) => problem.into_response(),
+        None => next.run(request).await,
+    };
+    let headers = response.headers_mut();
+    for (name, value) in FIXED_HEADERS {
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    if let Ok(policy) = HeaderValue::from_str(&content_security_policy(&app.options)) {
+        headers.insert(header::CONTENT_SECURITY_POLICY, policy);
+    }
+    response
+}
+
+const FIXED_HEADERS: [(HeaderName, &str); 5] = [
+    (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+    (header::REFERRER_POLICY, "no-referrer"),
+    (header::X_FRAME_OPTIONS, "DENY"),
+    (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
+    (HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
+];
+
+/// Everything from here, nothing inline; MapLibre hands pictures around as blobs.
+fn content_security_policy(options: &Options) -> String {
+    let map = options.base_map.as_ref().map_or(String::new(), |map| format!(" {}", map.origin));
+    format!(
+        "default-src 'none'; script-src 'self'; worker-src 'self'; style-src 'self'; \
+         img-src 'self' data: blob:{map}; connect-src 'self'{map}; font-src 'self'; manifest-src 'self'; \
+         base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    )
+}
+
+fn refusal(request: &Request, options: &Options) -> Option<Problem> {
+    if ![Method::GET, Method::HEAD].contains(request.method()) {
+        let detail = "this server only reads: GET and HEAD";
+        return Some(Problem::new(StatusCode::METHOD_NOT_ALLOWED, "method", "The method is not allowed", detail));
+    }
+    let target = request.uri().path_and_query().map_or(0, |target| target.as_str().len());
+    if target > LONGEST_TARGET {
+        let detail = format!("path and query have {target} bytes; {LONGEST_TARGET} are allowed");
+        return Some(Problem::new(StatusCode::URI_TOO_LONG, "too-long", "The address is too long", detail));
+    }
+    let headers = request.headers();
+    let length = headers.get(header::CONTENT_LENGTH).is_some_and(|length| length.as_bytes() != b"0");
+    if length || headers.contains_key(header::TRANSFER_ENCODING) {
+        let detail = "requests have no body here";
+        return Some(Problem::new(StatusCode::PAYLOAD_TOO_LARGE, "body", "A body is not wanted", detail));
+    }
+    let hosts: Vec<_> = headers.get_all(header::HOST).iter().collect();
+    let host = match (hosts.as_slice(), request.uri().authority()) {
+        // A target in absolute form counts before the header (RFC 9112, section 3.2.2).
+        (_, Some(authority)) => authority.as_str(),
+        ([host], None) => host.to_str().unwrap_or_default(),
+        _ => "",
+    };
+    if !options.allow_remote && !is_own(host, options) {
+        let detail = "this server answers to localhost and its own address; use the address it printed";
+        return Some(Problem::new(StatusCode::MISDIRECTED_REQUEST, "host", "Not for this server", detail));
+    }
+    None
+}
+
+/// Whether a `Host` is this machine's own loopback name, whatever the port.
+fn is_own(host: &str, options: &Options) -> bool {
+    let (name, port) = match host.rsplit_once(':') {
+        Some((name, port)) if !port.ends_with(']') => (name, port),
+        _ => (host, ""),
+    };
+    let name = name.trim_start_matches('[').trim_end_matches(']');
+    let own = name.parse().is_ok_and(|ip: std::net::IpAddr| ip.is_loopback() || ip == options.addr.ip());
+    port.bytes().all(|b| b.is_ascii_digit()) && (own || name.eq_ignore_ascii_case("localhost"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pipeline::Settings;
+    use crate::store::{Database, StoreError};
+    use std::path::PathBuf;
+
+    #[test]
+    fn only_loopback_names_are_ones_own() {
+        let recorded = |_: &mut Database| -> Result<Settings, StoreError> { Err(StoreError::Missing(PathBuf::new())) };
+        let options = Options {
+            db: PathBuf::new(),
+            addr: std::net::SocketAddr::from(([127, 0, 0, 1], 8080)),
+            allow_remote: false,
+            base_map: None,
+            recorded,
+            log: |_| {},
+            limits: super::super::Limits::default(),
+        };
+        for own in ["localhost", "LOCALHOST:8080", "127.0.0.1", "127.0.0.1:1", "[::1]:8080", "[::1]", "127.8.9.1"] {
+            assert!(is_own(own, &options), "{own}");
+        }
+        for other in [
+            "",
+            "example.org",
+            "localhost.example.org",
+            "127.0.0.1.example.org",
+            "10.0.0.1",
+            "localhost:a",
+            "a@localhost",
+        ] {
+            assert!(!is_own(other, &options), "{other}");
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! Routes: one thread for each vehicle, policy and measure that was asked for lately, with the planner and all it has made.
+//!
+//! A planner borrows the network and keeps corridors it has made, so it stays where it is and questions come to it, one at a time.
+//! The thread ends when nobody can ask it any more.
+
+use std::sync::{Arc, mpsc};
+
+use super::drive;
+use super::problem::Problem;
+use super::region::Region;
+use super::roads::Roads;
+use crate::osm::facts::Policy;
+use crate::pipeline::Settings;
+use crate::route::{self, Graph, MadeTurns, Measure, Permits, Planner, Question, Speeds, Strokes};
+use crate::stet::Model;
+use serde_json::{Value, json};
+
+/// After so many answers a planner begins afresh: what it keeps of turns and strokes grows with what it has seen.
+const ANSWERS: usize = 100;
+/// Questions that may wait for one planner; the lane lets no more through anyway.
+const MOST_WAITING: usize = 64;
+
+/// A question, and how much of the answer is wanted.
+#[derive(Debug, Clone)]
+pub(super) struct Ride {
+    pub(super) question: Question,
+    /// Of so many routes, from the best on, the drive is wanted.
+    pub(super) drives: usize,
+}
+
+type Reply = mpsc::Sender<Result<Value, Problem>>;
+
+/// Where questions go.
+pub(super) struct Router {
+    questions: mpsc::SyncSender<(Ride, Reply)>,
+}
+
+/// What one planner is for.
+struct Wanted {
+    roads: Arc<Roads>,
+    permits: Permits,
+    model: Model,
+    settings: Settings,
+    measure: Measure,
+    speeds: Speeds,
+}
+
+impl Router {
+    /// Reads the permits and starts the thread.
+    pub(super) fn start(region: &Region, vehicle: &str, policy: Policy, measure: Measure) -> Result<Self, Problem> {
+        let known = region.certified(vehicle, policy)?;
+        let roads = region.roads()?;
+        let permits =
+            region.read(|database| Permits::stored(database, &roads.network, &roads.movements, &known.id, policy))?;
+        let model = Model::new(known).map_err(|error| Problem::fault(error.to_string()))?;
+        let settings = Settings { policy, ..region.settings.clone() };
+        let speeds = Speeds::builtin().map_err(|error| Problem::fault(error.to_string()))?;
+        let wanted = Wanted { roads, permits, model, settings, measure, speeds };
+        let (questions, asked) = mpsc::sync_channel(MOST_WAITING);
+        let thread = std::thread::Builder::new().name("routes".to_owned()).spawn(move || wanted.serve(&asked));
+        thread.map_err(|error| Problem::busy(format!("no thread for routes: {error}")))?;
+        Ok(Self { questions })
+    }
+
+    /// Asks and waits. `None`: the thread has ended, which is a fault.
+    pub(super) fn ask(&self, ride: Ride) -> Option<Result<Value, Problem>> {
+        let (reply, answer) = mpsc::channel();
+        self.questions.send((ride, reply)).ok()?;
+        answer.recv().ok()
+    }
+}
+
+impl Wanted {
+    fn serve(&self, asked: &mpsc::Receiver<(Ride, Reply)>) {
+        let turns = MadeTurns {
+            model: &self.model,
+            policy: self.settings.policy,
+            params: self.settings.turn_params(),
+            options: self.settings.stet,
+        };
+        loop {
+            let network = &self.roads.network;
+            let graph = Graph::new(network, &self.roads.movements, &self.speeds, self.measure);
+            let strokes = Strokes::new(network, self.settings.policy, self.settings.corridor);
+            let (stet, speeds) = (self.settings.stet, self.speeds.clone());
+            let mut planner = Planner::new(graph, &self.permits, &self.model, &turns, strokes, stet, speeds);
+            for _ in 0..ANSWERS {
+                let Ok((ride, reply)) = asked.recv() else { return };
+                // Who asked may have gone.
+                let _ = reply.send(self.answer(&mut planner, &ride));
+            }
+        }
+    }
+
+    fn answer(&self, planner: &mut Planner<'_>, ride: &Ride) -> Result<Value, Problem> {
+        let answer = planner.answer(&ride.question).map_err(|error| Problem::no_road(error.to_string()))?;
+        let mut members = route::json(&self.roads.network, &self.model, &answer);
+        for (i, found) in answer.routes.iter().enumerate() {
+            let more = drive::members(&self.model, found, i < ride.drives);
+            let more = more.map_err(|error| Problem::fault(error.to_string()))?;
+            if let (Some(Value::Object(route)), Value::Object(more)) = (members["routes"].get_mut(i), more) {
+                route.extend(more);
+            }
+        }
+        members["policy"] = json!(crate::store::Named::name(self.settings.policy));
+        ids_as_text(&mut members);
+        Ok(members)
+    }
+}
+
+/// 63 bits are more than JavaScript's numbers hold.
+fn ids_as_text(value: &mut Value) {
+    match value {
+        Value::Array(all) => all.iter_mut().for_each(ids_as_text),
+        Value::Object(members) => {
+            for (name, member) in members {
+                match member {
+                    Value::Number(id) if matches!(name.as_str(), "edge_id" | "from_edge" | "to_edge") => {
+                        *member = json!(id.to_string());
+                    }
+                    other => ids_as_text(other),
+                }
+            }
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,123 @@
+//! What went wrong, as `application/problem+json` (RFC 9457): a stable type, and a sentence with the way out.
+
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde_json::json;
+
+use crate::store::StoreError;
+
+/// A refusal or failure.
+#[derive(Debug, Clone)]
+pub(super) struct Problem {
+    pub(super) status: StatusCode,
+    /// Stable, lower case: the last part of `type`.
+    kind: &'static str,
+    title: &'static str,
+    detail: String,
+    /// Which parameter is at fault.
+    parameter: Option<String>,
+    retry_after_s: Option<u32>,
+}
+
+impl Problem {
+    pub(super) fn new(status: StatusCode, kind: &'static str, title: &'static str, detail: impl Into<String>) -> Self {
+        Self { status, kind, title, detail: detail.into(), parameter: None, retry_after_s: None }
+    }
+
+    /// A parameter that is missing, out of range or no number.
+    pub(super) fn parameter(name: &str, detail: impl std::fmt::Display) -> Self {
+        let detail = format!("{name}: {detail}");
+        let problem = Self::new(StatusCode::BAD_REQUEST, "bad-parameter", "A parameter is wrong", detail);
+        Self { parameter: Some(name.to_owned()), ..problem }
+    }
+
+    pub(super) fn not_found(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::NOT_FOUND, "not-found", "There is no such thing", detail)
+    }
+
+    /// Too much to do just now.
+    pub(super) fn busy(detail: impl Into<String>) -> Self {
+        let problem = Self::new(StatusCode::SERVICE_UNAVAILABLE, "busy", "Busy just now", detail);
+        Self { retry_after_s: Some(1), ..problem }
+    }
+
+    pub(super) fn too_slow(limit_s: f64) -> Self {
+        let detail = format!("not done within {limit_s} s; ask for less, or again when there is less to do");
+        Self::new(StatusCode::GATEWAY_TIMEOUT, "too-slow", "It takes too long", detail)
+    }
+
+    /// A place that is on no road.
+    pub(super) fn no_road(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::UNPROCESSABLE_ENTITY, "no-road", "There is no road that may be used", detail)
+    }
+
+    /// Certificates of another version of the program.
+    pub(super) fn stale(detail: impl Into<String>) -> Self {
+        Self::new(StatusCode::CONFLICT, "stale", "The certificates are of another version", detail)
+    }
+
+    /// A fault of the program.
+    pub(super) fn fault(detail: impl Into<String>) -> Self {
+        let title = "A fault of netcert; please report it";
+        Self::new(StatusCode::INTERNAL_SERVER_ERROR, "fault", title, detail)
+    }
+}
+
+impl From<StoreError> for Problem {
+    /// Without the file's path, which is nobody's business on the other side.
+    fn from(error: StoreError) -> Self {
+        let unavailable = |kind, title, detail: String| Self {
+            retry_after_s: Some(2),
+            ..Self::new(StatusCode::SERVICE_UNAVAILABLE, kind, title, detail)
+        };
+        match error {
+            StoreError::NotThere { detail, .. } => Self::not_found(detail),
+            StoreError::Busy(_) => Self::busy("the database is being written; ask again when that is done"),
+            StoreError::Missing(_) => unavailable(
+                "no-database",
+                "The database is gone",
+                "its file is not there any more; run `netcert ingest` again".to_owned(),
+            ),
+            StoreError::Io { source, .. } => {
+                unavailable("no-database", "The database cannot be read", source.to_string())
+            }
+            other => {
+                let detail = match &other {
+                    StoreError::Damaged { detail, .. } => detail.clone(),
+                    StoreError::Sql { source, .. } => source.to_string(),
+                    _ => "it is not a database that this program can read".to_owned(),
+                };
+                unavailable(
+                    "no-database",
+                    "The database cannot be read",
+                    format!("{detail}; run `netcert ingest` again"),
+                )
+            }
+        }
+    }
+}
+
+impl IntoResponse for Problem {
+    fn into_response(self) -> Response {
+        let mut body = json!({
+            "type": format!("urn:netcert:problem:{}", self.kind),
+            "title": self.title,
+            "status": self.status.as_u16(),
+            "detail": self.detail,
+        });
+        if let Some(parameter) = &self.parameter {
+            body["parameter"] = json!(parameter);
+        }
+        let mut response = (self.status, body.to_string()).into_response();
+        let headers = response.headers_mut();
+        headers.insert(header::CONTENT_TYPE, HeaderValue::from_static("application/problem+json"));
+        headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
+        if let Some(seconds) = self.retry_after_s {
+            headers.insert(header::RETRY_AFTER, HeaderValue::from(seconds));
+        }
+        if self.status == StatusCode::METHOD_NOT_ALLOWED {
+            headers.insert(header::ALLOW, HeaderValue::from_static("GET, HEAD"));
+        }
+        response
+    }
+}

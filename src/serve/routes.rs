@@ -1,0 +1,84 @@
+//! Which address is answered by what.
+
+use std::sync::Arc;
+
+use axum::extract::{Request, State};
+use axum::response::{IntoResponse as _, Response};
+use axum::routing::get;
+use axum::{Router, middleware};
+
+use super::answer::Stored;
+use super::api;
+use super::app::{App, Pace};
+use super::ask::Ask;
+use super::assets;
+use super::gate::gate;
+use super::problem::Problem;
+use super::region::Region;
+use super::tiles;
+
+type Work = fn(&Region, &Ask) -> Result<Stored, Problem>;
+
+/// Addresses that are answered from the database: with how much work, and by what.
+const ENDPOINTS: &[(&str, Pace, Work)] = &[
+    ("/api/vehicles", Pace::Quick, api::vehicles::list),
+    ("/api/vehicles/{id}/drawing.svg", Pace::Quick, api::vehicles::drawing),
+    ("/api/edges/{id}", Pace::Quick, api::edges::edge),
+    ("/api/explain/{id}", Pace::Slow, api::explain::explain),
+    ("/api/explain/{id}/picture.svg", Pace::Slow, api::explain::drawn),
+    ("/api/route", Pace::Slow, api::route::route),
+    ("/api/search", Pace::Quick, api::search::search),
+    ("/api/stats", Pace::Slow, api::stats::stats),
+    ("/tiles/{policy}/{vehicle}/{z}/{x}/{y}", Pace::Quick, tiles::tile),
+];
+
+/// The whole server but for listening.
+pub(super) fn router(app: Arc<App>) -> Router {
+    let mut router = Router::new();
+    for &(path, pace, work) in ENDPOINTS {
+        let answer = move |State(app): State<Arc<App>>, ask: Ask| async move { app.answer(ask, pace, work).await };
+        router = router.route(path, get(answer));
+    }
+    router
+        .route("/healthz", get(health))
+        .route("/api/region", get(api::region::region))
+        .route("/api/openapi.json", get(api::openapi))
+        .fallback(get(assets::asset))
+        .layer(middleware::from_fn_with_state(Arc::clone(&app), gate))
+        .with_state(app)
+}
+
+/// Whether it runs and the database can be read.
+async fn health(State(app): State<Arc<App>>, ask: Ask) -> Response {
+    app.answer(ask, Pace::Quick, |region, ask| {
+        ask.only(&[])?;
+        Ok(Stored::new("text/plain; charset=utf-8", format!("ok {}\n", region.state).into_bytes()))
+    })
+    .await
+}
+
+/// What no address stands for.
+pub(super) fn nothing(request: &Request) -> Response {
+    let path = super::ask::shortened(request.uri().path());
+    Problem::not_found(format!("{path}: no such address; /api/openapi.json describes all")).into_response()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn every_address_is_described_and_every_description_has_an_address() {
+        let document: serde_json::Value = serde_json::from_str(api::OPENAPI).unwrap();
+        let mut described: Vec<&str> = document["paths"].as_object().unwrap().keys().map(String::as_str).collect();
+        let mut answered: Vec<&str> = ENDPOINTS.iter().map(|endpoint| endpoint.0).collect();
+        answered.extend(["/healthz", "/api/region", "/api/openapi.json"]);
+        // A tile's last part ends in `.mvt`, which the router cannot say.
+        let tiles = answered.iter().position(|path| path.starts_with("/tiles/")).unwrap();
+        answered[tiles] = "/tiles/{policy}/{vehicle}/{z}/{x}/{y}.mvt";
+        described.sort_unstable();
+        answered.sort_unstable();
+        assert_eq!(described, answered);
+    }
+}

@@ -1,0 +1,157 @@
+//! Listening: connections in, bounded in number, time and size of their heads; and stopping.
+//!
+//! Promises that stopping is clean: no connection is accepted any more, requests that are being answered get their answer as
+//! far as the bound on time allows, then the rest is cut.
+
+use std::net::SocketAddr;
+use std::pin::pin;
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::Router;
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::runtime::Runtime;
+use tokio::sync::{Semaphore, watch};
+use tokio::task::JoinSet;
+
+use super::app::App;
+use super::options::{Limits, Options};
+use super::region::Region;
+use super::routes;
+use crate::store::StoreError;
+
+/// Largest request line and headers, bytes; more is answered with 431.
+const MOST_HEAD_BYTES: usize = 16 << 10;
+/// After an error of `accept` (no file handle left): let some connections end.
+const PAUSE: Duration = Duration::from_millis(100);
+/// The network is loaded for explanations and routes once the first map is likely to be there.
+const WARM_UP_AFTER: Duration = Duration::from_secs(3);
+
+/// Why it cannot serve.
+#[derive(Debug, thiserror::Error)]
+pub enum ServeError {
+    /// The database.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// Other machines would reach it.
+    #[error(
+        "{0}: other machines could reach this address; there is no log-in and no encryption: add --allow-remote if that is meant"
+    )]
+    Remote(SocketAddr),
+    /// The port is taken, or not ours to take.
+    #[error("{addr}: cannot listen: {source}; --addr 127.0.0.1:0 picks a free port")]
+    Listen {
+        /// Asked for.
+        addr: SocketAddr,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The system refused something else.
+    #[error("cannot serve: {0}")]
+    System(#[from] std::io::Error),
+}
+
+/// A server that listens already.
+pub struct Server {
+    runtime: Runtime,
+    listener: TcpListener,
+    address: SocketAddr,
+    router: Router,
+    limits: Limits,
+    app: Arc<App>,
+}
+
+impl Server {
+    /// Opens the database and the port.
+    ///
+    /// # Errors
+    /// One of them cannot be opened; the address is not loopback and that was not asked for.
+    pub fn bind(mut options: Options) -> Result<Self, ServeError> {
+        if !options.addr.ip().is_loopback() && !options.allow_remote {
+            return Err(ServeError::Remote(options.addr));
+        }
+        let region = Region::open(&options.db, options.recorded)?;
+        let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().thread_name("serve").build()?;
+        let listen = |source| ServeError::Listen { addr: options.addr, source };
+        let listener = runtime.block_on(TcpListener::bind(options.addr)).map_err(listen)?;
+        let address = listener.local_addr()?;
+        options.addr = address;
+        let limits = options.limits;
+        let app = Arc::new(App::new(options, region));
+        let router = routes::router(Arc::clone(&app));
+        Ok(Self { runtime, listener, address, router, limits, app })
+    }
+
+    /// Where it listens.
+    #[must_use]
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Serves until `stop` is done; then ends as promised above.
+    pub fn run(self, stop: impl Future<Output = ()>) {
+        let Self { runtime, listener, router, limits, app, .. } = self;
+        runtime.spawn(async move {
+            tokio::time::sleep(WARM_UP_AFTER).await;
+            app.warm_up().await;
+        });
+        runtime.block_on(accept(listener, router, limits, stop));
+        // Work that goes on without anybody waiting for it is cut.
+        runtime.shutdown_timeout(Duration::from_millis(200));
+    }
+}
+
+async fn accept(listener: TcpListener, router: Router, limits: Limits, stop: impl Future<Output = ()>) {
+    let mut stop = pin!(stop);
+    let places = Arc::new(Semaphore::new(limits.connections.max(1)));
+    let (stopping, stopped) = watch::channel(false);
+    let mut all = JoinSet::new();
+    loop {
+        let next = async {
+            let place = Arc::clone(&places).acquire_owned().await;
+            (place, listener.accept().await)
+        };
+        let (place, accepted) = tokio::select! {
+            () = &mut stop => break,
+            Some(_) = all.join_next(), if !all.is_empty() => continue,
+            next = next => next,
+        };
+        let (Ok(place), Ok((stream, _))) = (place, accepted) else {
+            tokio::time::sleep(PAUSE).await;
+            continue;
+        };
+        let (router, stopped) = (router.clone(), stopped.clone());
+        all.spawn(async move {
+            connection(stream, router, limits, stopped).await;
+            drop(place);
+        });
+    }
+    drop(listener);
+    // Whoever does not listen any more has ended.
+    let _ = stopping.send(true);
+    let ended = async { while all.join_next().await.is_some() {} };
+    let _ = tokio::time::timeout(limits.stop_time, ended).await;
+}
+
+async fn connection(stream: TcpStream, router: Router, limits: Limits, mut stopped: watch::Receiver<bool>) {
+    let _ = stream.set_nodelay(true); // slower without, not wrong
+    let mut http = http1::Builder::new();
+    http.timer(TokioTimer::new()).header_read_timeout(limits.header_time).max_buf_size(MOST_HEAD_BYTES);
+    let service = TowerToHyperService::new(router);
+    let mut connection = pin!(http.serve_connection(TokioIo::new(stream), service));
+    let over = async {
+        tokio::select! {
+            _ = stopped.wait_for(|stopped| *stopped) => {}
+            () = tokio::time::sleep(limits.connection_time) => {}
+        }
+    };
+    // How a connection ends is the client's affair: an error here is that it went away or sent no HTTP.
+    tokio::select! {
+        _ = connection.as_mut() => return,
+        () = over => connection.as_mut().graceful_shutdown(),
+    }
+    let _ = tokio::time::timeout(limits.connection_time.min(Duration::from_secs(60)), connection).await;
+}

@@ -1,0 +1,50 @@
+//! Which roads a zoom shows: all of them once they are few enough, the greater ones before.
+
+use crate::osm::facts::RoadClass;
+
+/// Turns are drawn from this zoom on: before it they lie on top of each other.
+pub(super) const FIRST_WITH_TURNS: u8 = 15;
+
+/// The classes at a zoom, each with its links. As on general maps: a class appears when its roads are some pixels apart.
+pub(super) fn classes(z: u8) -> &'static [RoadClass] {
+    use RoadClass::{
+        Busway, LivingStreet, Motorway, Primary, Residential, Secondary, Service, Tertiary, Track, Trunk, Unclassified,
+    };
+    const BY_RANK: &[RoadClass] = &[
+        Motorway,
+        Trunk,
+        Primary,
+        Secondary,
+        Tertiary,
+        Unclassified,
+        Residential,
+        LivingStreet,
+        Busway,
+        Service,
+        Track,
+    ];
+    let shown = match z {
+        0..=6 => 2,
+        7..=8 => 3,
+        9 => 4,
+        10 => 5,
+        11 => 6,
+        12 => 9,
+        _ => BY_RANK.len(),
+    };
+    BY_RANK.get(..shown).unwrap_or(BY_RANK)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_zoom_shows_all_that_the_one_before_did_and_at_last_everything() {
+        for z in 1..=super::super::MOST_ZOOM {
+            assert!(classes(z).starts_with(classes(z - 1)));
+        }
+        let all = classes(13);
+        assert!(RoadClass::ALL.iter().all(|class| all.contains(class)) && all.len() == RoadClass::ALL.len());
+    }
+}

@@ -1,0 +1,169 @@
+//! Names along roads: edges of one name, joined into lines on which a name has room. Between two junctions there is seldom any.
+//!
+//! Promises lines without direction, each road once, in an order that depends on the rows alone. Leaves out what no label
+//! would follow: sharp bends and branches end a line.
+
+use std::collections::BTreeMap;
+
+use crate::osm::LonLat;
+use crate::store::MapEdge;
+
+/// Names are shown from this zoom on.
+pub(super) const FIRST_WITH_LABELS: u8 = 11;
+/// The cosine of the sharpest bend between two edges of a line, 60°: MapLibre bends text by 45° at most.
+const LEAST_COSINE: f64 = 0.5;
+
+/// A road's name and where it runs.
+pub(super) struct Label<'r> {
+    /// The first edge of it, for its name.
+    pub(super) road: &'r MapEdge,
+    pub(super) line: Vec<LonLat>,
+}
+
+type Name<'r> = (&'r str, Option<&'r str>, Option<&'r str>);
+type Ends = BTreeMap<(i32, i32), Vec<usize>>;
+
+/// Joins rows of one class, name and ref.
+pub(super) fn labels(rows: &[MapEdge], z: u8) -> Vec<Label<'_>> {
+    let mut roads: BTreeMap<Name<'_>, Vec<&MapEdge>> = BTreeMap::new();
+    for row in rows.iter().filter(|row| row.line.len() > 1 && is_named(row, z)) {
+        roads.entry((&row.highway, row.name.as_deref(), row.reference.as_deref())).or_default().push(row);
+    }
+    roads.into_values().flat_map(|mut edges| joined(&mut edges)).collect()
+}
+
+/// As names come up on general maps: main roads first.
+fn is_named(row: &MapEdge, z: u8) -> bool {
+    let first = match row.highway.trim_end_matches("_link") {
+        "motorway" | "trunk" | "primary" => FIRST_WITH_LABELS,
+        "secondary" => 12,
+        "tertiary" => 13,
+        _ => 14,
+    };
+    z >= first && (row.name.is_some() || row.reference.is_some())
+}
+
+fn joined<'r>(edges: &mut Vec<&'r MapEdge>) -> Vec<Label<'r>> {
+    // The other direction of a road is the same line.
+    let mut seen = std::collections::BTreeSet::new();
+    edges.retain(|edge| {
+        let (a, b) = (key(edge.line.first()), key(edge.line.last()));
+        seen.insert((edge.way_id, a.min(b), a.max(b), edge.line.len()))
+    });
+    let mut ends: Ends = BTreeMap::new();
+    for (i, edge) in edges.iter().enumerate() {
+        ends.entry(key(edge.line.first())).or_default().push(i);
+        ends.entry(key(edge.line.last())).or_default().push(i);
+    }
+    let mut used = vec![false; edges.len()];
+    let mut labels = Vec::new();
+    for (i, &road) in edges.iter().enumerate() {
+        if std::mem::replace(&mut used[i], true) {
+            continue;
+        }
+        let mut line = road.line.clone();
+        for _ in 0..2 {
+            while let Some((next, more)) = onward(&line, edges, &ends, &used) {
+                used[next] = true;
+                line.extend(more.into_iter().skip(1));
+            }
+            line.reverse();
+        }
+        labels.push(Label { road, line });
+    }
+    labels
+}
+
+/// The unused edge that goes on most nearly straight from the line's end, in that direction.
+fn onward(line: &[LonLat], edges: &[&MapEdge], ends: &Ends, used: &[bool]) -> Option<(usize, Vec<LonLat>)> {
+    let [.., before, end] = line else { return None };
+    let mut best: Option<(f64, usize, Vec<LonLat>)> = None;
+    for &i in ends.get(&key(Some(end)))?.iter().filter(|&&i| !used[i]) {
+        let mut more = edges[i].line.clone();
+        if more.first() != Some(end) {
+            more.reverse();
+        }
+        let [start, then, ..] = more.as_slice() else { continue };
+        let cosine = cosine(direction(before, end), direction(start, then));
+        if cosine >= best.as_ref().map_or(LEAST_COSINE, |best| best.0) {
+            best = Some((cosine, i, more));
+        }
+    }
+    best.map(|(_, i, more)| (i, more))
+}
+
+fn key(position: Option<&LonLat>) -> (i32, i32) {
+    position.map_or((0, 0), |p| (p.lon_e7, p.lat_e7))
+}
+
+/// East and north, of equal scale.
+fn direction(from: &LonLat, to: &LonLat) -> [f64; 2] {
+    let ((lon, lat), (lon_to, lat_to)) = (from.degrees(), to.degrees());
+    [(lon_to - lon) * lat.to_radians().cos(), lat_to - lat]
+}
+
+fn cosine([ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {
+    let size = ax.hypot(ay) * bx.hypot(by);
+    if size > 0.0 { (ax * bx + ay * by) / size } else { -1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::osm::facts::{Direction, Oneway};
+    use crate::verdict::{UnknownReason, Verdict};
+
+    fn edge(number: u32, name: &str, points: &[(i32, i32)]) -> MapEdge {
+        MapEdge {
+            edge: number,
+            edge_id: i64::from(number),
+            way_id: 1,
+            direction: Direction::Forward,
+            oneway: Oneway::No,
+            highway: "primary".to_owned(),
+            name: Some(name.to_owned()),
+            reference: None,
+            length_m: 1.0,
+            width_m: None,
+            width_source: None,
+            verdict: Verdict::Unknown(UnknownReason::Width),
+            rsc_mm: None,
+            line: points.iter().map(|&(lon_e7, lat_e7)| LonLat { lon_e7, lat_e7 }).collect(),
+        }
+    }
+
+    fn lines(rows: &[MapEdge]) -> Vec<Vec<i32>> {
+        labels(rows, 14).into_iter().map(|label| label.line.iter().map(|p| p.lon_e7).collect()).collect()
+    }
+
+    #[test]
+    fn both_directions_of_a_road_in_pieces_are_one_line() {
+        let a = edge(0, "High Street", &[(0, 0), (100, 0)]);
+        let b = edge(1, "High Street", &[(100, 0), (0, 0)]);
+        let c = edge(2, "High Street", &[(200, 0), (100, 0)]);
+        let d = edge(3, "High Street", &[(200, 0), (300, 10)]);
+        assert_eq!(
+            lines(&[a, b, c, d]),
+            [vec![300, 200, 100, 0]].map(|mut line| {
+                line.reverse();
+                line
+            })
+        );
+    }
+
+    #[test]
+    fn a_corner_or_another_name_ends_a_line() {
+        let a = edge(0, "High Street", &[(0, 0), (100, 0)]);
+        let corner = edge(1, "High Street", &[(100, 0), (100, 100)]);
+        let other = edge(2, "Low Street", &[(100, 0), (200, 0)]);
+        assert_eq!(lines(&[a, corner, other]), [vec![0, 100], vec![100, 100], vec![100, 200]]);
+    }
+
+    #[test]
+    fn a_ring_ends() {
+        let points = [(0, 0), (100, 0), (150, 50), (100, 100), (0, 100), (-50, 50), (0, 0)];
+        let ring: Vec<MapEdge> = (0..6_u32).map(|i| edge(i, "Ring", &points[i as usize..i as usize + 2])).collect();
+        assert_eq!(lines(&ring).len(), 1);
+        assert!(labels(&ring, 10).is_empty());
+    }
+}

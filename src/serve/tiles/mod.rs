@@ -1,0 +1,129 @@
+//! Vector tiles (Mapbox Vector Tile 2.1) of a vehicle's certificates, made from the database on request.
+//!
+//! Promises that every edge of the zoom's classes is in every tile that its line crosses, with the numbers as the database
+//! keeps them; that the same state gives the same bytes. Leaves out what would be smaller than a sixteenth of a pixel.
+//!
+//! | file | for |
+//! | --- | --- |
+//! | `place` | which part of the earth a tile is; degrees → tile units |
+//! | `classes` | which roads a zoom shows |
+//! | `shape` | clipping, simplifying, rounding |
+//! | `labels` | names along roads |
+//! | `encode` | layers and features as protobuf |
+
+mod classes;
+mod encode;
+mod labels;
+mod place;
+mod shape;
+
+use super::answer::Stored;
+use super::ask::{self, Ask};
+use super::problem::Problem;
+use super::region::Region;
+use crate::osm::LonLat;
+use crate::osm::facts::{Policy, WidthSource};
+use crate::store::{MapEdge, MapTurn, Named, TurnsOf, verdict_words};
+use classes::{FIRST_WITH_TURNS, classes};
+use encode::{Layer, Value};
+use labels::{FIRST_WITH_LABELS, Label, labels};
+pub(super) use place::MOST_ZOOM;
+use place::Place;
+
+/// Registered with IANA: <https://www.iana.org/assignments/media-types/application/vnd.mapbox-vector-tile>
+const KIND: &str = "application/vnd.mapbox-vector-tile";
+
+/// Before this zoom a tile holds thousands of edges, and what is neither drawn nor sorted out by stays behind.
+const FIRST_IN_FULL: u8 = 12;
+
+/// `/tiles/{policy}/{vehicle}/{z}/{x}/{y}.mvt`
+pub(super) fn tile(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    ask.only(&[])?;
+    let policy = ask::policy(ask.name("policy")?)?;
+    let vehicle = region.certified(ask.name("vehicle")?, policy)?;
+    let place = Place::read(ask.name("z")?, ask.name("x")?, ask.name("y")?)?;
+    Ok(Stored::new(KIND, bytes(region, (&vehicle.id, policy), place)?))
+}
+
+fn bytes(region: &Region, set: (&str, Policy), place: Place) -> Result<Vec<u8>, Problem> {
+    let bounds = place.bounds();
+    let edges = region.read(|database| database.map_edges(set, bounds, classes(place.z)))?;
+    let mut layer = Layer::new("edge");
+    for row in &edges {
+        edge(&mut layer, row, place);
+    }
+    let mut bytes = Vec::new();
+    layer.finish(&mut bytes);
+    if place.z >= FIRST_WITH_LABELS {
+        let mut layer = Layer::new("label");
+        for Label { road, line } in labels(&edges, place.z) {
+            layer.feature(u64::from(road.edge) + 1, &drawn(&line, place), |tags| {
+                tags.text("name", road.name.as_deref());
+                tags.text("ref", road.reference.as_deref());
+                tags.add("highway", Value::Text(&road.highway));
+            });
+        }
+        layer.finish(&mut bytes);
+    }
+    if place.z >= FIRST_WITH_TURNS {
+        let turns = region.read(|database| database.map_turns(set, TurnsOf::Box(bounds)))?;
+        let mut layer = Layer::new("turn");
+        for row in &turns {
+            turn(&mut layer, row, place);
+        }
+        layer.finish(&mut bytes);
+    }
+    Ok(bytes)
+}
+
+fn drawn(line: &[LonLat], place: Place) -> Vec<Vec<[i32; 2]>> {
+    let line: Vec<[f64; 2]> = line.iter().map(|&position| place.units(position)).collect();
+    shape::drawn(&line, place.z == MOST_ZOOM)
+}
+
+fn edge(layer: &mut Layer, row: &MapEdge, place: Place) {
+    let lines = drawn(&row.line, place);
+    let (verdict, reason) = verdict_words(row.verdict);
+    layer.feature(u64::from(row.edge) + 1, &lines, |tags| {
+        tags.add("edge_id", Value::Text(&row.edge_id.to_string()));
+        tags.text("name", row.name.as_deref());
+        tags.text("ref", row.reference.as_deref());
+        tags.add("highway", Value::Text(&row.highway));
+        tags.add("direction", Value::Text(row.direction.name()));
+        tags.add("oneway", Value::Text(row.oneway.name()));
+        tags.add("verdict", Value::Text(verdict));
+        tags.text("reason", Some(reason).filter(|reason| !reason.is_empty()));
+        tags.number("rsc_m", row.rsc_mm.map(metres));
+        tags.text("width_source", row.width_source.map(WidthSource::name));
+        if place.z >= FIRST_IN_FULL {
+            tags.add("way_id", Value::Whole(row.way_id));
+            tags.number("width_m", row.width_m.map(centimetre));
+            tags.number("length_m", Some(centimetre(row.length_m)));
+        }
+    });
+}
+
+fn turn(layer: &mut Layer, row: &MapTurn, place: Place) {
+    let lines = drawn(&row.line, place);
+    let (verdict, reason) = verdict_words(row.verdict);
+    layer.feature(u64::from(row.turn) + 1, &lines, |tags| {
+        tags.add("turn_id", Value::Text(&row.turn_id.to_string()));
+        tags.add("from_edge", Value::Text(&row.from_edge.to_string()));
+        tags.add("to_edge", Value::Text(&row.to_edge.to_string()));
+        tags.add("kind", Value::Text(&row.kind));
+        tags.number("angle_deg", Some(row.angle_deg));
+        tags.add("verdict", Value::Text(verdict));
+        tags.text("reason", Some(reason).filter(|reason| !reason.is_empty()));
+        tags.number("rsc_m", row.rsc_mm.map(metres));
+    });
+}
+
+/// As the view `certificate` has it: whole millimetres, rounded down when they were written.
+fn metres(mm: i64) -> f64 {
+    mm as f64 / 1000.0
+}
+
+/// Rounded down: a width never looks wider than it is.
+fn centimetre(m: f64) -> f64 {
+    (m * 100.0).floor() / 100.0
+}

@@ -1,0 +1,103 @@
+//! Which part of the earth a tile is: `z/x/y` of the web Mercator grid, y southward (XYZ), 4096 units a side.
+
+use std::f64::consts::PI;
+
+use super::super::ask::shortened;
+use super::super::problem::Problem;
+use crate::osm::LonLat;
+use crate::store::Bounds;
+
+/// The deepest zoom: a unit is 15 cm at the equator. Beyond it clients enlarge.
+pub(in super::super) const MOST_ZOOM: u8 = 16;
+/// Units a side, as most clients expect.
+pub(super) const EXTENT: f64 = 4096.0;
+/// Units around the tile that belong to it as well, so that wide lines end outside: 8 pixels of a 512-pixel tile.
+pub(super) const BUFFER: f64 = 64.0;
+
+/// A tile's address.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Place {
+    pub(super) z: u8,
+    x: u32,
+    y: u32,
+}
+
+impl Place {
+    /// From the path; the last part ends in `.mvt`.
+    pub(super) fn read(z: &str, x: &str, y: &str) -> Result<Self, Problem> {
+        let y = y.strip_suffix(".mvt").ok_or_else(|| Problem::not_found("a tile's address ends in .mvt"))?;
+        // No sign, no leading zero, no space: every tile has one address.
+        let number = |name: &str, text: &str| -> Result<u32, Problem> {
+            let plain = text.bytes().all(|b| b.is_ascii_digit()) && (text == "0" || !text.starts_with('0'));
+            let value = text.parse().ok().filter(|_| plain);
+            value.ok_or_else(|| Problem::not_found(format!("{name}: {:?} is no tile's number", shortened(text))))
+        };
+        let (z, x, y) = (number("z", z)?, number("x", x)?, number("y", y)?);
+        let z = u8::try_from(z).ok().filter(|&z| z <= MOST_ZOOM);
+        let z = z.ok_or_else(|| Problem::not_found(format!("there are tiles of zoom 0 to {MOST_ZOOM}")))?;
+        let side = 1_u32 << z;
+        if x >= side || y >= side {
+            return Err(Problem::not_found(format!("at zoom {z}, x and y are less than {side}")));
+        }
+        Ok(Self { z, x, y })
+    }
+
+    fn side(self) -> f64 {
+        f64::from(1_u32 << self.z)
+    }
+
+    /// In tile units, x east, y south; not rounded.
+    pub(super) fn units(self, position: LonLat) -> [f64; 2] {
+        let (lon, lat) = position.degrees();
+        let x = (lon + 180.0) / 360.0;
+        let y = 0.5 - lat.to_radians().tan().asinh() / (2.0 * PI);
+        [(x * self.side() - f64::from(self.x)) * EXTENT, (y * self.side() - f64::from(self.y)) * EXTENT]
+    }
+
+    /// The tile and its buffer. Beyond the 180th meridian there is nothing to look for: no edge crosses it.
+    pub(super) fn bounds(self) -> Bounds {
+        let buffer = BUFFER / EXTENT;
+        let lon = |x: f64| ((x / self.side()) * 360.0 - 180.0).clamp(-180.0, 180.0);
+        let lat = |y: f64| (PI * (1.0 - 2.0 * y / self.side())).sinh().atan().to_degrees();
+        let (x, y) = (f64::from(self.x), f64::from(self.y));
+        let (north, south) = (lat(y - buffer), lat(y + 1.0 + buffer));
+        Bounds { west: lon(x - buffer), south, east: lon(x + 1.0 + buffer), north }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn the_corners_of_a_tile_are_where_they_should_be() {
+        let place = Place::read("14", "8588", "5597.mvt").unwrap();
+        let Bounds { west, south, east, north } = place.bounds();
+        let at = |lon: f64, lat: f64| place.units(LonLat { lon_e7: (lon * 1e7) as i32, lat_e7: (lat * 1e7) as i32 });
+        let close = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() < 0.1 && (a[1] - b[1]).abs() < 0.1;
+        assert!(close(at(west, north), [-BUFFER, -BUFFER]));
+        assert!(close(at(east, south), [EXTENT + BUFFER, EXTENT + BUFFER]));
+        // Heidelberg's old bridge, by the formulas of the OpenStreetMap wiki, "Slippy map tilenames".
+        assert!(west < 8.7096 && 8.7096 < east && south < 49.4144 && 49.4144 < north, "{:?}", place.bounds());
+    }
+
+    #[test]
+    fn what_is_no_tile_is_refused() {
+        for (z, x, y) in [
+            ("17", "0", "0.mvt"),
+            ("0", "1", "0.mvt"),
+            ("1", "0", "2.mvt"),
+            ("1", "-1", "0.mvt"),
+            ("1", "+1", "0.mvt"),
+            ("01", "0", "0.mvt"),
+            ("1", "0", "0"),
+            ("1", "0", "0.png"),
+            ("", "", ".mvt"),
+            ("99999999999", "0", "0.mvt"),
+        ] {
+            assert!(Place::read(z, x, y).is_err(), "{z}/{x}/{y}");
+        }
+        assert!(Place::read("0", "0", "0.mvt").is_ok() && Place::read("16", "65535", "65535.mvt").is_ok());
+    }
+}

@@ -1,0 +1,143 @@
+//! A line in tile units, made fit to be drawn: clipped to the tile and its buffer, without vertices that nobody would see,
+//! rounded to whole units.
+
+use super::place::{BUFFER, EXTENT};
+
+type Point = [f64; 2];
+
+/// How far the drawn line may be from the true one, units: a quarter of a pixel, where a tile is 512 pixels wide. At the deepest
+/// zoom, which is enlarged, half a unit, which is what rounding takes anyway.
+const TOLERANCE: f64 = 2.0;
+const FINE_TOLERANCE: f64 = 0.5;
+
+/// The parts of a line within the tile; each has two different points at least.
+pub(super) fn drawn(line: &[Point], fine: bool) -> Vec<Vec<[i32; 2]>> {
+    let tolerance = if fine { FINE_TOLERANCE } else { TOLERANCE };
+    clipped(line).into_iter().map(|part| rounded(&simplified(&part, tolerance))).filter(|part| part.len() > 1).collect()
+}
+
+fn clipped(line: &[Point]) -> Vec<Vec<Point>> {
+    let mut parts: Vec<Vec<Point>> = Vec::new();
+    let mut open = false;
+    for pair in line.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let Some((from, to)) = inside(a, b) else {
+            open = false;
+            continue;
+        };
+        let start = between(a, b, from);
+        match parts.last_mut().filter(|_| open && from == 0.0) {
+            Some(part) => part.push(between(a, b, to)),
+            None => parts.push(vec![start, between(a, b, to)]),
+        }
+        open = to == 1.0;
+    }
+    parts
+}
+
+fn between(a: Point, b: Point, share: f64) -> Point {
+    if share == 1.0 { b } else { [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])] }
+}
+
+/// From which share of a segment to which it is within tile and buffer (Liang and Barsky, 1984).
+fn inside(a: Point, b: Point) -> Option<(f64, f64)> {
+    let (low, high) = (-BUFFER, EXTENT + BUFFER);
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    for axis in 0..2 {
+        let d = b[axis] - a[axis];
+        for (p, q) in [(-d, a[axis] - low), (d, high - a[axis])] {
+            if p == 0.0 && q < 0.0 {
+                return None;
+            }
+            if p < 0.0 {
+                from = from.max(q / p);
+            } else if p > 0.0 {
+                to = to.min(q / p);
+            }
+        }
+    }
+    (from <= to).then_some((from, to))
+}
+
+/// Douglas and Peucker's way, with the distance to the segment; the ends stay.
+fn simplified(line: &[Point], tolerance: f64) -> Vec<Point> {
+    let Some(last) = line.len().checked_sub(1) else { return Vec::new() };
+    let mut keep = vec![false; line.len()];
+    keep[0] = true;
+    keep[last] = true;
+    let mut spans = vec![(0, last)];
+    while let Some((from, to)) = spans.pop() {
+        let far = (from + 1..to)
+            .map(|i| (i, distance(line[i], line[from], line[to])))
+            .max_by(|a, b| a.1.total_cmp(&b.1))
+            .filter(|far| far.1 > tolerance);
+        if let Some((middle, _)) = far {
+            keep[middle] = true;
+            spans.extend([(from, middle), (middle, to)]);
+        }
+    }
+    line.iter().zip(keep).filter(|(_, keep)| *keep).map(|(&point, _)| point).collect()
+}
+
+fn distance(p: Point, a: Point, b: Point) -> f64 {
+    let (u, v) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+    let squared = u[0] * u[0] + u[1] * u[1];
+    let along = if squared > 0.0 { ((u[0] * v[0] + u[1] * v[1]) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    (v[0] - along * u[0]).hypot(v[1] - along * u[1])
+}
+
+fn rounded(line: &[Point]) -> Vec<[i32; 2]> {
+    // Clipped: within 16 bits.
+    let mut points: Vec<[i32; 2]> = line.iter().map(|p| p.map(|c| c.round() as i32)).collect();
+    points.dedup();
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn a_line_that_leaves_and_comes_back_is_two() {
+        let (inner, outer) = (100.0, 9000.0);
+        let parts = drawn(&[[inner, inner], [outer, inner], [outer, 2000.0], [inner, 2000.0]], false);
+        let edge = (EXTENT + BUFFER) as i32;
+        assert_eq!(parts, [vec![[100, 100], [edge, 100]], vec![[edge, 2000], [100, 2000]]]);
+        assert!(drawn(&[[-500.0, 0.0], [-500.0, 4000.0]], false).is_empty());
+        let across = drawn(&[[-5000.0, 50.0], [9000.0, 50.0]], false);
+        assert_eq!(across, [vec![[-64, 50], [edge, 50]]]);
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_drawn_is_inside_and_near_the_line(
+            line in prop::collection::vec((-6000.0..10_000.0_f64, -6000.0..10_000.0_f64), 2..30), fine: bool
+        ) {
+            let line: Vec<Point> = line.into_iter().map(|(x, y)| [x, y]).collect();
+            let most = if fine { FINE_TOLERANCE } else { TOLERANCE } + 0.71;
+            for part in drawn(&line, fine) {
+                prop_assert!(part.len() > 1);
+                for p in part {
+                    prop_assert!(p.iter().all(|&c| (-64..=4160).contains(&c)));
+                    let p = p.map(f64::from);
+                    let near = line.windows(2).map(|s| distance(p, s[0], s[1])).fold(f64::INFINITY, f64::min);
+                    prop_assert!(near <= most, "{near}");
+                }
+            }
+        }
+
+        #[test]
+        fn no_vertex_within_the_tile_is_further_from_what_is_drawn_than_the_tolerance(
+            line in prop::collection::vec((0.0..4000.0_f64, 0.0..4000.0_f64), 2..30)
+        ) {
+            let line: Vec<Point> = line.into_iter().map(|(x, y)| [x, y]).collect();
+            let parts = drawn(&line, false);
+            for &vertex in &line {
+                let near = parts.iter().flat_map(|part| part.windows(2))
+                    .map(|s| distance(vertex, s[0].map(f64::from), s[1].map(f64::from))).fold(f64::INFINITY, f64::min);
+                prop_assert!(near <= TOLERANCE + 0.71 || parts.is_empty(), "{near}");
+            }
+        }
+    }
+}

@@ -1,0 +1,154 @@
+//! Work that blocks (the database, certificates, pictures), in lanes: so many at a time, so many more may wait, so long.
+//!
+//! Promises that a lane never has more in hand than it was made for, also when those who asked have gone: a place is free
+//! again only when the work itself has ended. Slow work has a lane of its own, so that a map stays fluent beside it.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+use tokio::sync::Semaphore;
+use tokio::time::timeout;
+
+use super::problem::Problem;
+
+/// A lane.
+#[derive(Debug)]
+pub(super) struct Lane {
+    places: Arc<Semaphore>,
+    waiting: AtomicUsize,
+    most_waiting: usize,
+    limit: Duration,
+}
+
+/// Counts one who waits, as long as it lives.
+struct Waiting<'l>(&'l AtomicUsize);
+
+impl Drop for Waiting<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+impl Lane {
+    /// `at_a_time` of them, `most_waiting` more, each answered within `limit`.
+    pub(super) fn new(at_a_time: usize, most_waiting: usize, limit: Duration) -> Self {
+        let places = Arc::new(Semaphore::new(at_a_time.max(1)));
+        Self { places, waiting: AtomicUsize::new(0), most_waiting, limit }
+    }
+
+    /// Does it on a thread that may block.
+    pub(super) async fn run<T: Send + 'static>(
+        &self,
+        work: impl FnOnce() -> Result<T, Problem> + Send + 'static,
+    ) -> Result<T, Problem> {
+        let begin = Instant::now();
+        let place = {
+            let waiting = Waiting(&self.waiting);
+            if self.waiting.fetch_add(1, Ordering::Relaxed) >= self.most_waiting + self.places.available_permits() {
+                return Err(Problem::busy(format!(
+                    "{} requests wait already; ask again in a moment",
+                    self.most_waiting
+                )));
+            }
+            let place = timeout(self.limit, Arc::clone(&self.places).acquire_owned()).await;
+            drop(waiting);
+            match place {
+                Ok(Ok(place)) => place,
+                Ok(Err(_)) => return Err(Problem::busy("the server is stopping")),
+                Err(_) => return Err(Problem::busy("no place became free in time; ask again in a moment")),
+            }
+        };
+        let done = tokio::task::spawn_blocking(move || {
+            let _place = place;
+            work()
+        });
+        match timeout(self.limit.saturating_sub(begin.elapsed()), done).await {
+            Ok(Ok(result)) => result,
+            Ok(Err(panicked)) => Err(Problem::fault(format!("the work was cut short: {panicked}"))),
+            Err(_) => Err(Problem::too_slow(self.limit.as_secs_f64())),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use axum::http::StatusCode;
+
+    fn runtime() -> tokio::runtime::Runtime {
+        tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_time().build().unwrap()
+    }
+
+    #[test]
+    fn never_more_at_a_time_than_there_are_places_and_none_is_lost() {
+        let (now, most, done) = <(Arc<AtomicUsize>, Arc<AtomicUsize>, Arc<AtomicUsize>)>::default();
+        let lane = Arc::new(Lane::new(3, 100, Duration::from_secs(20)));
+        runtime().block_on(async {
+            let mut all = tokio::task::JoinSet::new();
+            for _ in 0..60 {
+                let (lane, now, most, done) = (lane.clone(), now.clone(), most.clone(), done.clone());
+                all.spawn(async move {
+                    lane.run(move || {
+                        most.fetch_max(now.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
+                        std::thread::sleep(Duration::from_millis(3));
+                        now.fetch_sub(1, Ordering::SeqCst);
+                        done.fetch_add(1, Ordering::SeqCst);
+                        Ok(())
+                    })
+                    .await
+                });
+            }
+            assert!(all.join_all().await.into_iter().all(|result| result.is_ok()));
+        });
+        assert_eq!((most.load(Ordering::SeqCst), done.load(Ordering::SeqCst)), (3, 60));
+    }
+
+    #[test]
+    fn who_finds_the_queue_full_is_told_so_at_once() {
+        let lane = Arc::new(Lane::new(1, 2, Duration::from_secs(20)));
+        let refused = runtime().block_on(async {
+            let mut all = tokio::task::JoinSet::new();
+            for _ in 0..20 {
+                let lane = lane.clone();
+                all.spawn(async move {
+                    lane.run(|| {
+                        std::thread::sleep(Duration::from_millis(100));
+                        Ok(())
+                    })
+                    .await
+                });
+            }
+            let results = all.join_all().await;
+            results.into_iter().filter_map(Result::err).map(|problem| problem.status).collect::<Vec<_>>()
+        });
+        assert!(refused.len() >= 15, "{}", refused.len());
+        assert!(refused.iter().all(|&status| status == StatusCode::SERVICE_UNAVAILABLE));
+    }
+
+    #[test]
+    fn what_takes_too_long_keeps_its_place_until_it_has_ended() {
+        let lane = Lane::new(1, 4, Duration::from_millis(60));
+        runtime().block_on(async {
+            let slow = || {
+                std::thread::sleep(Duration::from_millis(200));
+                Ok(())
+            };
+            assert_eq!(lane.run(slow).await.unwrap_err().status, StatusCode::GATEWAY_TIMEOUT);
+            assert_eq!(lane.run(|| Ok(())).await.unwrap_err().status, StatusCode::SERVICE_UNAVAILABLE);
+            tokio::time::sleep(Duration::from_millis(250)).await;
+            assert!(lane.run(|| Ok(())).await.is_ok());
+        });
+    }
+
+    #[test]
+    fn a_panic_is_a_fault_of_one_request_only() {
+        let lane = Lane::new(1, 1, Duration::from_secs(5));
+        runtime().block_on(async {
+            let broken: Result<(), Problem> = lane.run(|| std::panic::panic_any("broken")).await;
+            assert_eq!(broken.unwrap_err().status, StatusCode::INTERNAL_SERVER_ERROR);
+            assert!(lane.run(|| Ok(())).await.is_ok());
+        });
+    }
+}

@@ -1,0 +1,102 @@
+//! One edge with every column that a person may ask about.
+
+use sqlx::Row as _;
+use sqlx::sqlite::SqliteRow;
+
+use crate::osm::LonLat;
+use crate::osm::facts::{Direction, Oneway, Permission, Policy, WidthSource};
+
+use super::blob;
+use super::database::Database;
+use super::error::{StoreError, content};
+use super::network_read::{word, word_or_none};
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// A row of `edge`.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)] // the columns of `edge`
+pub struct EdgeFacts {
+    /// Index into `Network::edges`.
+    pub edge: u32,
+    pub edge_id: i64,
+    pub way_id: i64,
+    pub from_node: i64,
+    pub to_node: i64,
+    pub direction: Direction,
+    pub oneway: Oneway,
+    pub highway: String,
+    pub name: Option<String>,
+    pub reference: Option<String>,
+    pub lanes: Option<u8>,
+    pub length_m: f64,
+    /// By policy: how wide, and where that comes from.
+    pub widths: [(Policy, Option<f64>, Option<WidthSource>); 3],
+    pub min_radius_m: Option<f64>,
+    pub centreline_deviation_m: Option<f64>,
+    /// Height, weight, axle load, length, width: the tag's word, the unit, the limit.
+    pub limits: [(&'static str, &'static str, Option<f64>); 5],
+    /// Names of limits that are tagged with a value that could not be read.
+    pub unreadable_limits: Vec<String>,
+    pub hgv: Permission,
+    pub motor_vehicle: Permission,
+    pub barred: bool,
+    pub cut: bool,
+    /// In direction of travel.
+    pub line: Vec<LonLat>,
+}
+
+impl Database {
+    /// The edge of an `edge_id`; `None` if there is none.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn edge_facts(&mut self, edge_id: i64) -> Result<Option<EdgeFacts>, StoreError> {
+        let sql = "SELECT fid, edge_id, way_id, from_node, to_node, direction, oneway, highway, name, ref, lanes, \
+                   length_m, lane_width_m, width_source, direction_width_m, direction_width_source, \
+                   carriageway_width_m, carriageway_width_source, min_radius_m, centreline_deviation_m, max_height_m, \
+                   max_weight_t, max_axle_load_t, max_length_m, max_width_m, unreadable_limits, hgv, motor_vehicle, \
+                   barred, cut, geom FROM edge WHERE edge_id = ?";
+        self.session.run(async |c| {
+            let row = sqlx::query(sql).bind(edge_id).fetch_optional(c).await?;
+            row.as_ref().map(facts).transpose()
+        })
+    }
+}
+
+fn facts(row: &SqliteRow) -> Sql<EdgeFacts> {
+    let fid: u32 = row.try_get(0)?;
+    let width = |policy, column| -> Sql<_> { Ok((policy, row.try_get(column)?, word_or_none(row, column + 1)?)) };
+    let limit = |name, unit, column: usize| -> Sql<_> { Ok((name, unit, row.try_get(column)?)) };
+    let unreadable: Option<&str> = row.try_get(25)?;
+    Ok(EdgeFacts {
+        edge: fid.saturating_sub(1),
+        edge_id: row.try_get(1)?,
+        way_id: row.try_get(2)?,
+        from_node: row.try_get(3)?,
+        to_node: row.try_get(4)?,
+        direction: word(row, 5)?,
+        oneway: word(row, 6)?,
+        highway: row.try_get(7)?,
+        name: row.try_get(8)?,
+        reference: row.try_get(9)?,
+        lanes: row.try_get(10)?,
+        length_m: row.try_get(11)?,
+        widths: [width(Policy::Lane, 12)?, width(Policy::Direction, 14)?, width(Policy::Carriageway, 16)?],
+        min_radius_m: row.try_get(18)?,
+        centreline_deviation_m: row.try_get(19)?,
+        limits: [
+            limit("height", "m", 20)?,
+            limit("weight", "t", 21)?,
+            limit("axle_load", "t", 22)?,
+            limit("length", "m", 23)?,
+            limit("width", "m", 24)?,
+        ],
+        unreadable_limits: unreadable.into_iter().flat_map(|names| names.split(',')).map(str::to_owned).collect(),
+        hgv: word(row, 26)?,
+        motor_vehicle: word(row, 27)?,
+        barred: row.try_get(28)?,
+        cut: row.try_get(29)?,
+        line: blob::decode(row.try_get(30)?).ok_or_else(|| content(format!("the geometry of edge {fid}")))?,
+    })
+}

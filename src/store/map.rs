@@ -1,0 +1,287 @@
+//! What a map shows: edges and turns within a box, with just the columns that are drawn, through the spatial index.
+//!
+//! Promises rows in order of the network, every one that touches the box (and some that only come near it: the index knows
+//! boxes in single precision). Leaves out what nobody draws: `query` has the whole row.
+
+use sqlx::sqlite::{SqliteConnection, SqliteRow};
+use sqlx::{AssertSqlSafe, Row as _};
+
+use crate::osm::LonLat;
+use crate::osm::facts::{Direction, Oneway, Policy, RoadClass, WidthSource};
+use crate::verdict::Verdict;
+
+use super::blob::{self, Bounds};
+use super::database::Database;
+use super::error::{StoreError, content};
+use super::names::{Named, corridor_no, verdict_of};
+use super::network_read::{word, word_or_none};
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// An edge as a map draws it.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)] // the columns of `edge` and `certificate`
+pub struct MapEdge {
+    /// Index into `Network::edges`.
+    pub edge: u32,
+    pub edge_id: i64,
+    pub way_id: i64,
+    pub direction: Direction,
+    pub oneway: Oneway,
+    pub highway: String,
+    pub name: Option<String>,
+    pub reference: Option<String>,
+    pub length_m: f64,
+    /// Of the policy asked for.
+    pub width_m: Option<f64>,
+    pub width_source: Option<WidthSource>,
+    pub verdict: Verdict,
+    /// Millimetres, as kept: rounded down.
+    pub rsc_mm: Option<i64>,
+    /// In direction of travel.
+    pub line: Vec<LonLat>,
+}
+
+/// A turn as a map draws it.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)] // the columns of `turn` and `turn_certificate`
+pub struct MapTurn {
+    /// Index into the network's turns.
+    pub turn: u32,
+    pub turn_id: i64,
+    pub from_edge: i64,
+    pub to_edge: i64,
+    /// Names of the roads, or their refs.
+    pub from_name: Option<String>,
+    pub to_name: Option<String>,
+    pub kind: String,
+    pub angle_deg: f64,
+    pub kerb_radius_m: Option<f64>,
+    pub restriction: Option<String>,
+    pub verdict: Verdict,
+    /// Millimetres, as kept: rounded down.
+    pub rsc_mm: Option<i64>,
+    /// The last metres before the node and the first after it.
+    pub line: Vec<LonLat>,
+}
+
+/// Which turns are asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TurnsOf {
+    /// Out of edges that touch the box.
+    Box(Bounds),
+    /// Out of this edge or into it (index into `Network::edges`).
+    Edge(u32),
+}
+
+/// How many edges have how much to spare.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RscBin {
+    /// Vehicle id.
+    pub vehicle_id: String,
+    /// Which width counts.
+    pub policy: Policy,
+    /// The bin's lower end, millimetres; its width is the one asked for.
+    pub from_mm: i64,
+    /// With its reason.
+    pub verdict: Verdict,
+    /// Directed edges.
+    pub edges: u64,
+    /// Their length, metres.
+    pub length_m: f64,
+}
+
+impl Database {
+    /// The box around all edges; `None` if there are none.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn extent(&mut self) -> Result<Option<Bounds>, StoreError> {
+        let sql = "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'edge'";
+        let row =
+            self.session.run(async |c| sqlx::query(sql).fetch_optional(c).await?.as_ref().map(sides).transpose())?;
+        Ok(row.flatten())
+    }
+
+    /// A box that leaves out the outermost fiftieth of the edges on each side: where a map may begin, since an extract often has some
+    /// roads that lead far out of it. `None` if there are no edges.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn focus(&mut self) -> Result<Option<Bounds>, StoreError> {
+        let side = |column: &str, order: &str| {
+            format!(
+                "(SELECT {column} FROM rtree_edge_geom ORDER BY {column} {order} LIMIT 1 OFFSET (SELECT count(*) / 50 FROM edge))"
+            )
+        };
+        let all = [side("minx", ""), side("miny", ""), side("maxx", "DESC"), side("maxy", "DESC")];
+        let sql = format!("SELECT {}", all.join(", "));
+        let row = self.session.run(async |c| sides(&sqlx::query(AssertSqlSafe(sql)).fetch_one(c).await?))?;
+        Ok(row.filter(|b| b.west < b.east && b.south < b.north))
+    }
+
+    /// Whether most ways are driven on the left.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn left_hand_traffic(&mut self) -> Result<bool, StoreError> {
+        let sql = "SELECT 2 * total(left_hand_traffic) > count(*) FROM road";
+        self.session.run(async |c| sqlx::query(sql).fetch_one(c).await?.try_get(0))
+    }
+
+    /// Edges near a box, of these classes (with their links), under a vehicle's certificates.
+    ///
+    /// # Errors
+    /// The file cannot be read. A vehicle that is not certified under this policy has no rows.
+    pub fn map_edges(
+        &mut self,
+        (vehicle, policy): (&str, Policy),
+        bounds: Bounds,
+        classes: &[RoadClass],
+    ) -> Result<Vec<MapEdge>, StoreError> {
+        let (width, source) = columns(policy);
+        let mut sql = format!(
+            "SELECT e.fid, e.edge_id, e.way_id, e.direction, e.oneway, e.highway, e.name, e.ref, e.length_m, e.{width}, \
+             e.{source}, c.verdict_no, c.rsc_mm, e.geom FROM rtree_edge_geom AS t \
+             CROSS JOIN edge AS e ON e.fid = t.id \
+             CROSS JOIN certificate_compact AS c ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
+             AND c.corridor_no = ? AND c.fid = t.id \
+             WHERE t.maxx >= ? AND t.minx <= ? AND t.maxy >= ? AND t.miny <= ?"
+        );
+        if classes.len() < RoadClass::ALL.len() {
+            let words: Vec<String> = classes.iter().map(|class| format!("'{0}','{0}_link'", class.name())).collect();
+            sql += &format!(" AND e.highway IN ({})", words.join(","));
+        }
+        let Bounds { west, south, east, north } = bounds;
+        let mut rows: Vec<MapEdge> = self.session.run(async |c| {
+            let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle).bind(corridor_no(policy));
+            query.bind(west).bind(east).bind(south).bind(north).fetch_all(c).await?.iter().map(map_edge).collect()
+        })?;
+        rows.sort_unstable_by_key(|row| row.edge);
+        Ok(rows)
+    }
+
+    /// Turns under a vehicle's certificates.
+    ///
+    /// # Errors
+    /// The file cannot be read. A vehicle whose turns are not certified under this policy has no rows.
+    pub fn map_turns(&mut self, (vehicle, policy): (&str, Policy), of: TurnsOf) -> Result<Vec<MapTurn>, StoreError> {
+        self.session.run(async |c| turns(c, vehicle, policy, of).await)
+    }
+
+    /// How much road has how much to spare, in bins of `width_mm`, for every vehicle under a policy. Edges without a number
+    /// are left out.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn rsc_bins(&mut self, policy: Policy, width_mm: u32) -> Result<Vec<RscBin>, StoreError> {
+        // Whole-number division rounds towards zero: below zero a bin further down, so that no bin flatters.
+        let sql = "SELECT vehicle_id, bin, verdict_no, edges, length_m FROM ( \
+                   SELECT c.vehicle_no, c.verdict_no, count(*) AS edges, total(e.length_m) AS length_m, \
+                   CASE WHEN c.rsc_mm >= 0 THEN c.rsc_mm / ?1 ELSE -((?1 - 1 - c.rsc_mm) / ?1) END AS bin \
+                   FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
+                   WHERE c.corridor_no = ?2 AND c.rsc_mm NOT NULL GROUP BY c.vehicle_no, bin, c.verdict_no) \
+                   JOIN vehicle USING (vehicle_no) ORDER BY vehicle_no, bin, verdict_no";
+        let width = i64::from(width_mm.max(1));
+        let bin = |row: &SqliteRow| -> Sql<RscBin> {
+            Ok(RscBin {
+                vehicle_id: row.try_get(0)?,
+                policy,
+                from_mm: row.try_get::<i64, _>(1)?.saturating_mul(width),
+                verdict: verdict(row, 2)?,
+                edges: row.try_get::<i64, _>(3)?.unsigned_abs(),
+                length_m: row.try_get(4)?,
+            })
+        };
+        self.session.run(async |c| {
+            let rows = sqlx::query(sql).bind(width).bind(corridor_no(policy)).fetch_all(c).await?;
+            rows.iter().map(bin).collect()
+        })
+    }
+}
+
+/// West, south, east, north; `None` where one is missing.
+fn sides(row: &SqliteRow) -> Sql<Option<Bounds>> {
+    let side = |column: usize| row.try_get::<Option<f64>, _>(column);
+    let (Some(west), Some(south), Some(east), Some(north)) = (side(0)?, side(1)?, side(2)?, side(3)?) else {
+        return Ok(None);
+    };
+    Ok(Some(Bounds { west, south, east, north }))
+}
+
+/// The columns of `edge` that belong to a policy: width, and where it comes from.
+fn columns(policy: Policy) -> (&'static str, &'static str) {
+    match policy {
+        Policy::Lane => ("lane_width_m", "width_source"),
+        Policy::Direction => ("direction_width_m", "direction_width_source"),
+        Policy::Carriageway => ("carriageway_width_m", "carriageway_width_source"),
+    }
+}
+
+fn verdict(row: &SqliteRow, column: usize) -> Sql<Verdict> {
+    let number: i64 = row.try_get(column)?;
+    verdict_of(number).ok_or_else(|| content(format!("verdict {number}")))
+}
+
+fn map_edge(row: &SqliteRow) -> Sql<MapEdge> {
+    let fid: u32 = row.try_get(0)?;
+    Ok(MapEdge {
+        edge: fid.saturating_sub(1),
+        edge_id: row.try_get(1)?,
+        way_id: row.try_get(2)?,
+        direction: word(row, 3)?,
+        oneway: word(row, 4)?,
+        highway: row.try_get(5)?,
+        name: row.try_get(6)?,
+        reference: row.try_get(7)?,
+        length_m: row.try_get(8)?,
+        width_m: row.try_get(9)?,
+        width_source: word_or_none(row, 10)?,
+        verdict: verdict(row, 11)?,
+        rsc_mm: row.try_get(12)?,
+        line: blob::decode(row.try_get(13)?).ok_or_else(|| content(format!("the geometry of edge {fid}")))?,
+    })
+}
+
+async fn turns(c: &mut SqliteConnection, vehicle: &str, policy: Policy, of: TurnsOf) -> Sql<Vec<MapTurn>> {
+    let which = match of {
+        TurnsOf::Box(_) => {
+            "t.from_fid IN (SELECT id FROM rtree_edge_geom WHERE maxx >= ? AND minx <= ? AND maxy >= ? AND miny <= ?)"
+        }
+        TurnsOf::Edge(_) => "(t.from_fid = ? OR t.to_fid = ?)",
+    };
+    let sql = format!(
+        "SELECT t.fid, t.turn_id, a.edge_id, b.edge_id, coalesce(a.name, a.ref), coalesce(b.name, b.ref), t.kind, \
+         t.angle_deg, t.kerb_radius_m, t.restriction, c.verdict_no, c.rsc_mm, t.geom FROM turn AS t \
+         CROSS JOIN turn_certificate_compact AS c \
+         ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? AND c.fid = t.fid \
+         CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid WHERE {which}"
+    );
+    let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle).bind(corridor_no(policy));
+    let query = match of {
+        TurnsOf::Box(Bounds { west, south, east, north }) => query.bind(west).bind(east).bind(south).bind(north),
+        TurnsOf::Edge(edge) => query.bind(i64::from(edge) + 1).bind(i64::from(edge) + 1),
+    };
+    let mut rows = query.fetch_all(c).await?.iter().map(map_turn).collect::<Sql<Vec<_>>>()?;
+    rows.sort_unstable_by_key(|row| row.turn);
+    Ok(rows)
+}
+
+fn map_turn(row: &SqliteRow) -> Sql<MapTurn> {
+    let fid: u32 = row.try_get(0)?;
+    Ok(MapTurn {
+        turn: fid.saturating_sub(1),
+        turn_id: row.try_get(1)?,
+        from_edge: row.try_get(2)?,
+        to_edge: row.try_get(3)?,
+        from_name: row.try_get(4)?,
+        to_name: row.try_get(5)?,
+        kind: row.try_get(6)?,
+        angle_deg: row.try_get(7)?,
+        kerb_radius_m: row.try_get(8)?,
+        restriction: row.try_get(9)?,
+        verdict: verdict(row, 10)?,
+        rsc_mm: row.try_get(11)?,
+        line: blob::decode(row.try_get(12)?).ok_or_else(|| content(format!("the geometry of turn {fid}")))?,
+    })
+}

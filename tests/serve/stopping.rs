@@ -1,0 +1,49 @@
+//! Ctrl-C and kill: what is being answered is answered, then it is over.
+
+use std::io::{BufReader, Write as _};
+use std::net::TcpStream;
+
+use crate::http::{Reply, Server};
+
+#[test]
+fn it_ends_well_when_told_to() {
+    for signal in ["-INT", "-TERM"] {
+        let server = Server::demo();
+        assert_eq!(server.get("/healthz").status, 200);
+        let address = server.address;
+        // One that keeps its connection open holds nothing up.
+        let mut idle = server.connect();
+        idle.write_all(b"GET /healthz HTTP/1.1\r\nHost: localhost\r\n\r\n").unwrap();
+        assert_eq!(Reply::read(&mut BufReader::new(&idle)).status, 200);
+        server.signal(signal);
+        let (status, said) = server.end();
+        assert!(status.success(), "{signal}: {status}\n{said}");
+        assert!(!said.contains("panic"), "{said}");
+        assert!(TcpStream::connect(address).is_err(), "{signal}: the port is free");
+    }
+}
+
+#[test]
+fn what_is_being_answered_is_answered() {
+    let server = Server::demo();
+    let edges =
+        server.place.netcert("query --db demo.gpkg --vehicle AU-SEMI19 --verdict unsafe --format json").succeeds();
+    let id = edges.json()["edges"][0]["edge_id"].to_string();
+    let mut stream = server.connect();
+    let target = format!("/api/explain/{id}?vehicle=AU-SEMI19");
+    stream.write_all(format!("GET {target} HTTP/1.1\r\nHost: localhost\r\n\r\n").as_bytes()).unwrap();
+    // The hints of an unsafe edge take many certificates; a moment later it is at it.
+    std::thread::sleep(std::time::Duration::from_millis(60));
+    server.signal("-INT");
+    let reply = Reply::read(&mut BufReader::new(stream));
+    assert_eq!(reply.status, 200, "{}", reply.text());
+    assert_eq!(reply.json()["verdict"], "unsafe");
+    assert!(server.end().0.success());
+}
+
+#[test]
+fn a_port_that_is_taken_is_an_error_with_a_way_out() {
+    let server = Server::demo();
+    let line = format!("serve --db demo.gpkg --addr {}", server.address);
+    server.place.netcert(&line).fails().tells("--addr 127.0.0.1:0");
+}

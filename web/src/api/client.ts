@@ -1,0 +1,61 @@
+// The server's API with types. Every call can be given up; a refusal becomes a `ServerProblem` whose message is fit to be shown.
+
+import type {
+  Explanation,
+  Policy,
+  Position,
+  Problem,
+  Region,
+  RouteAnswer,
+  SearchHit,
+  StatsRows,
+  Vehicle,
+} from "./types.ts";
+import { digest, type Stats } from "./stats.ts";
+
+export class ServerProblem extends Error {
+  constructor(readonly problem: Problem) {
+    super(problem.detail ?? problem.title);
+  }
+}
+
+async function get<T>(path: string, query: Record<string, string>, signal?: AbortSignal): Promise<T> {
+  const parameters = new URLSearchParams(query).toString();
+  const url = parameters ? `${path}?${parameters}` : path;
+  let answer: Response;
+  try {
+    answer = await fetch(url, { headers: { accept: "application/json" }, ...(signal ? { signal } : {}) });
+  } catch (error) {
+    if (signal?.aborted) throw error;
+    throw new ServerProblem({ title: "The server does not answer. Is `netcert serve` still running?", status: 0 });
+  }
+  if (answer.ok) return (await answer.json()) as T;
+  const said = (await answer.json().catch(() => null)) as Problem | null;
+  throw new ServerProblem(said ?? { title: `The server answered ${answer.status}`, status: answer.status });
+}
+
+/** Which certificates are meant. */
+export interface Question {
+  vehicle: string;
+  policy: Policy;
+}
+
+const place = ([lon, lat]: Position): string => `${lon.toFixed(6)},${lat.toFixed(6)}`;
+const asked = ({ vehicle, policy }: Question): Record<string, string> => ({ vehicle, policy });
+
+export const api = {
+  region: () => get<Region>("/api/region", {}),
+  vehicles: () => get<Vehicle[]>("/api/vehicles", {}),
+  search: (q: string, signal?: AbortSignal) => get<SearchHit[]>("/api/search", { q }, signal),
+  explain: (id: string, question: Question, signal?: AbortSignal) =>
+    get<Explanation>(`/api/explain/${encodeURIComponent(id)}`, asked(question), signal),
+  pictureUrl: (id: string, question: Question) =>
+    `/api/explain/${encodeURIComponent(id)}/picture.svg?${new URLSearchParams(asked(question))}`,
+  route: (from: Position, to: Position, question: Question, signal?: AbortSignal) =>
+    get<RouteAnswer>("/api/route", { ...asked(question), from: place(from), to: place(to) }, signal),
+  stats: async (policy: Policy, signal?: AbortSignal): Promise<Stats> =>
+    digest(await get<StatsRows>("/api/stats", { policy }, signal)),
+  /** MapLibre fetches tiles in a worker, which knows no page to be relative to. */
+  tilesUrl: ({ tiles }: Region, { vehicle, policy }: Question) =>
+    location.origin + tiles.replace("{policy}", policy).replace("{vehicle}", encodeURIComponent(vehicle)),
+};

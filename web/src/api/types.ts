@@ -1,0 +1,189 @@
+// What the server answers, as far as the page reads it; `/api/openapi.json` describes all of it.
+//
+// Lengths are metres, positions [longitude, latitude] in degrees. Ids of edges and turns are text: they have 63 bits.
+
+export type Policy = "lane" | "direction" | "carriageway";
+export type VerdictName = "safe" | "unsafe" | "forbidden" | "unknown";
+export type Evidence = "assumed" | "from_lanes" | "estimated" | "tagged" | "surveyed";
+export type Position = [lon: number, lat: number];
+
+export interface Region {
+  name: string;
+  bbox: [west: number, south: number, east: number, north: number];
+  /** Where nearly all roads are: a few stick out of most extracts. */
+  focus?: [west: number, south: number, east: number, north: number] | null;
+  timestamp: string | null;
+  netcert: string;
+  database_hash: string;
+  attribution: string;
+  policies: Policy[];
+  default_policy: Policy;
+  vehicles_certified: string[];
+  scope: string;
+  /** Template of the tiles' address, with `{policy}` and `{vehicle}`; it changes when the database does. */
+  tiles: string;
+  max_zoom: number;
+  left_hand_traffic?: boolean;
+  base_map: { url: string; attribution?: string } | null;
+}
+
+export interface Unit {
+  name: string;
+  coupling_to_axle_m: number;
+  hitch_offset_m: number;
+  front_overhang_m: number;
+  rear_overhang_m: number;
+  width_m: number;
+}
+
+export interface Vehicle {
+  id: string;
+  name: string;
+  region: string;
+  length_m: number;
+  height_m: number | null;
+  gross_mass_t: number | null;
+  certified: Policy[];
+  units: Unit[];
+}
+
+export interface SearchHit {
+  kind: "edge" | "way" | "road" | "turn";
+  id: string;
+  name: string | null;
+  ref: string | null;
+  highway: string | null;
+  bbox: [number, number, number, number];
+  lon: number;
+  lat: number;
+}
+
+/** `netcert explain --format json`, with where on the map it is. */
+export interface Explanation {
+  vehicle: string;
+  road: {
+    edge_id: string;
+    way_id: number;
+    direction: string;
+    highway: string;
+    name: string | null;
+    ref: string | null;
+    corridor: Policy;
+    width_source: Evidence | null;
+  } | null;
+  verdict: VerdictName;
+  reason: string | null;
+  headline: string;
+  reasons: string[];
+  hints_in_words: string[];
+  scope: string;
+  limiting: { length_m: number; rsc_m: number; place: { s_m: number; unit: number; side: string; width_m: number } } | null;
+  kind: "edge" | "turn";
+  /** Of a turn: from where into where. */
+  turn?: string;
+  note?: string;
+  /** Whether there is a picture. */
+  picture: boolean;
+  geometry?: { type: "LineString"; coordinates: Position[] } | null;
+  /** The place that decides, or the turn's node. */
+  at: Position | null;
+}
+
+export interface RoutePart {
+  kind: "edge" | "turn";
+  title: string;
+  edge_id?: string;
+  from_edge?: string;
+  to_edge?: string;
+  from_m: number;
+  to_m: number;
+  rsc_m: number;
+}
+
+export interface Drive {
+  /** Stations of the moments, metres from the beginning. */
+  s_m: number[];
+  /** When the prime mover's axle is there, seconds. */
+  t: number[];
+  units: DriveUnit[];
+  /** The corridor's edges at the same stations. */
+  left_edge: Position[];
+  right_edge: Position[];
+}
+
+export interface DriveUnit {
+  name: string;
+  width_m: number;
+  coupling_to_axle_m: number;
+  front_overhang_m: number;
+  rear_overhang_m: number;
+  /** Of the axle: longitude, latitude, heading in degrees clockwise from true north. */
+  poses: [number, number, number][];
+  /** How far the axle may be from there to either side, with every error within its bound. */
+  tube_m: number[];
+}
+
+/** Of each stretch the least; `null` where no body point came by. */
+export interface Leeway {
+  step_m: number;
+  s_m: number[];
+  left_m: (number | null)[];
+  right_m: (number | null)[];
+}
+
+export interface Route {
+  length_m: number;
+  time_s: number;
+  rsc_m: number;
+  hinge_margin_deg: number;
+  shrink: number;
+  safe: boolean;
+  limiting_s_m: number;
+  limiting_unit_name: string | null;
+  limiting_side: string;
+  limiting_at: string | null;
+  parts: RoutePart[];
+  geometry: { type: "LineString"; coordinates: Position[] };
+  leeway: Leeway;
+  drive: Drive;
+}
+
+export interface Obstacle {
+  kind: "edge" | "turn";
+  title: string;
+  edge_id?: string;
+  from_edge?: string;
+  to_edge?: string;
+  verdict: string;
+  reason: string | null;
+  rsc_m: number | null;
+  place: Position | null;
+}
+
+export interface RouteAnswer {
+  vehicle_id: string;
+  routes: Route[];
+  places: { position: Position; distance_m: number }[];
+  gave_up: boolean;
+  obstacles: Obstacle[] | null;
+}
+
+/** Rows of `/api/stats`; lengths count once for each direction. */
+export interface StatsRows {
+  policy: Policy;
+  roads: number;
+  network: { highway: string; edges: number; km: number }[];
+  widths: { width_source: Evidence | null; km: number }[];
+  certificates: { vehicle: string; highway: string; verdict: VerdictName; reason: string | null; km: number }[];
+  rsc_bin_m: number;
+  rsc_histogram: { vehicle: string; rsc_from_m: number; verdict: VerdictName; km: number }[];
+  scope: string;
+}
+
+/** `application/problem+json`, RFC 9457. */
+export interface Problem {
+  title: string;
+  status: number;
+  detail?: string;
+  parameter?: string;
+}

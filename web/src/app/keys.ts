@@ -1,0 +1,58 @@
+// One key a thing. Keys typed into a field, or together with Ctrl and its kind, are left alone.
+
+export interface Commands {
+  escape(): void;
+  find(): void;
+  chooseVehicle(): void;
+  compare(): void;
+  route(): void;
+  showStats(): void;
+  copyLink(): void;
+  help(): void;
+  toggleTheme(): void;
+  /** Returns whether there was a drive. */
+  toggleDrive(): boolean;
+}
+
+export const keys: readonly [key: string, does: string][] = [
+  ["/", "find a road by name, number or id"],
+  ["V", "choose a vehicle"],
+  ["C", "compare two vehicles side by side"],
+  ["R", "route: click where it begins and where it goes"],
+  ["Space", "start and stop the drive"],
+  ["N", "the region in numbers"],
+  ["L", "copy a link to what you see"],
+  ["D", "dark or light"],
+  ["← ↑ ↓ → + −", "move and zoom the map, when it has the focus"],
+  ["Esc", "close what lies on top"],
+  ["?", "this help"],
+];
+
+export function listenToKeys(commands: Commands): void {
+  const actions: Record<string, () => void> = {
+    "/": () => commands.find(),
+    v: () => commands.chooseVehicle(),
+    c: () => commands.compare(),
+    r: () => commands.route(),
+    n: () => commands.showStats(),
+    l: () => commands.copyLink(),
+    d: () => commands.toggleTheme(),
+    "?": () => commands.help(),
+    Escape: () => commands.escape(),
+  };
+  addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.defaultPrevented) return;
+    const target = event.target as HTMLElement;
+    if (target.closest("dialog")) return;
+    const typing = target.matches("input:not([type=checkbox], [type=radio], [type=range]), select, textarea");
+    if (typing) return;
+    if (event.key === " " && !target.matches("button, input, summary, a")) {
+      if (commands.toggleDrive()) event.preventDefault();
+      return;
+    }
+    const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  });
+}

@@ -1,0 +1,137 @@
+// The map, or two of them beside each other that move as one.
+
+import { Marker } from "maplibre-gl";
+import type { VehicleStats } from "../api/stats.ts";
+import type { Position } from "../api/types.ts";
+import { question, vehicleOf, type Context } from "../context.ts";
+import { HoverCard } from "../map/hovercard.ts";
+import { sync } from "../map/sync.ts";
+import { View, type Under } from "../map/view.ts";
+import { VehicleCard } from "../panel/vehicle.ts";
+import type { Camera, State } from "../state.ts";
+import { byId, h } from "../ui/dom.ts";
+import { icon } from "../ui/icons.ts";
+import { certifiedWords } from "../words.ts";
+
+export interface MapActions {
+  click(under: Under | null, lon: number, lat: number): void;
+  moved(camera: Camera): void;
+  chooseOther(): void;
+  endComparing(): void;
+}
+
+/** Nearer than this a single road is not shown without being asked for. */
+const FIT_ZOOM = 18;
+
+export class Maps {
+  readonly first: View;
+  readonly #root = byId("maps");
+  readonly #hover: HoverCard;
+  readonly #card: VehicleCard;
+  #limit: Marker | undefined;
+  #second: { view: View; stop: () => void; pane: HTMLElement } | undefined;
+
+  constructor(private readonly context: Context, private readonly actions: MapActions) {
+    this.#hover = new HoverCard(document.body);
+    this.#card = new VehicleCard(actions.chooseOther);
+    const pane = this.#root.appendChild(h("div", { class: "pane" }));
+    this.first = this.#view(pane, context.store.state.vehicle);
+  }
+
+  update(changed: ReadonlySet<keyof State>): void {
+    const { store, theme } = this.context;
+    const { state } = store;
+    this.first.update(state, question(this.context), theme.theme);
+    if (changed.has("other")) this.#compare(state.other);
+    if (this.#second && state.other) {
+      this.#second.view.update(state, { ...question(this.context), vehicle: state.other }, theme.theme);
+      if (changed.has("other")) this.#card.show(vehicleOf(this.context, state.other), null);
+    }
+  }
+
+  /** Of the vehicle on the second map. */
+  number(stats: VehicleStats | null): void {
+    const { other } = this.context.store.state;
+    if (other) this.#card.show(vehicleOf(this.context, other), stats ? certifiedWords(stats.verdicts) : null);
+  }
+
+  home(): void {
+    this.first.map.fitBounds(this.context.region.focus ?? this.context.region.bbox, { ...this.#room(), pitch: 0, bearing: 0 });
+  }
+
+  zoom(by: number): void {
+    this.first.map.easeTo({ zoom: this.first.map.getZoom() + by, duration: 250 });
+  }
+
+  fit([west, south, east, north]: [number, number, number, number], maxZoom = FIT_ZOOM): void {
+    this.first.map.fitBounds([west, south, east, north], { ...this.#room(), maxZoom });
+  }
+
+  /** Moves the map if the place lies under the drawer or at the very edge. */
+  reveal(lon: number, lat: number): void {
+    const { map } = this.first;
+    const drawer = byId("drawer");
+    const { x, y } = map.project([lon, lat]);
+    const narrow = innerWidth < 760;
+    const right = drawer.hidden || narrow ? innerWidth : innerWidth - drawer.offsetWidth - 110;
+    const bottom = narrow && !drawer.hidden ? innerHeight - drawer.offsetHeight - 40 : innerHeight;
+    if (x > right) map.panBy([x - right + 120, 0]);
+    else if (y > bottom) map.panBy([0, y - bottom + 60]);
+  }
+
+  /** A ring where the answer was decided. */
+  mark(place: Position | null): void {
+    this.#limit?.remove();
+    this.#limit = undefined;
+    if (!place) return;
+    const element = h("div", { class: "limit", role: "img", "aria-label": "The place that decides" });
+    this.#limit = new Marker({ element }).setLngLat(place).addTo(this.first.map);
+  }
+
+  jump({ lon, lat, zoom }: Camera): void {
+    this.first.map.jumpTo({ center: [lon, lat], zoom });
+  }
+
+  /** What panels cover is no room for what is to be seen. */
+  #room() {
+    const narrow = innerWidth < 760;
+    const side = narrow || this.#second ? 40 : byId("side").offsetWidth + 40;
+    const drawer = byId("drawer");
+    const right = narrow || drawer.hidden ? 60 : drawer.offsetWidth + 60;
+    return { padding: { left: side, right, top: narrow ? 140 : 40, bottom: narrow ? 160 : 40 }, duration: 600 };
+  }
+
+  #view(pane: HTMLElement, vehicle: string): View {
+    const { region, store, theme } = this.context;
+    const own = { ...question(this.context), vehicle };
+    return new View(pane, region, store.state, own, theme.theme, {
+      hover: (under, x, y) => this.#hover.show(under, x, y),
+      click: (under, lon, lat) => this.actions.click(under, lon, lat),
+      moved: () => this.#moved(),
+    });
+  }
+
+  #moved(): void {
+    const { lng, lat } = this.first.map.getCenter();
+    const round = (value: number, digits: number) => Number(value.toFixed(digits));
+    this.actions.moved({ lon: round(lng, 5), lat: round(lat, 5), zoom: round(this.first.map.getZoom(), 2) });
+  }
+
+  #compare(other: string | null): void {
+    document.body.classList.toggle("is-comparing", other !== null);
+    if (other === null && this.#second) {
+      this.#second.stop();
+      this.#second.view.map.remove();
+      this.#second.pane.remove();
+      this.#second = undefined;
+    } else if (other !== null && !this.#second) {
+      const close = h("button", { class: "plain", type: "button", "aria-label": "End comparing", onclick: () => this.actions.endComparing() }, icon("close"));
+      const place = h("div", { class: "map" });
+      const pane = h("div", { class: "pane is-second" }, place, h("div", { class: "pane-head" }, this.#card.element, close));
+      this.#root.append(pane);
+      const view = this.#view(place, other);
+      this.#second = { view, pane, stop: sync(this.first.map, view.map) };
+    }
+    this.first.map.resize();
+  }
+}

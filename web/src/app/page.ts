@@ -1,0 +1,233 @@
+// The page as a whole: makes its parts and passes each change of the state to those whom it concerns.
+
+import { api } from "../api/client.ts";
+import type { Stats } from "../api/stats.ts";
+import type { Explanation, SearchHit } from "../api/types.ts";
+import { question, vehicleOf, type Context } from "../context.ts";
+import { write, read, type Possible } from "../link.ts";
+import { ExplainPanel } from "../panel/explain.ts";
+import { StatsDialog } from "../panel/stats.ts";
+import { VehicleDialog, fittingPolicy } from "../panel/vehicle.ts";
+import type { State } from "../state.ts";
+import { toast } from "../ui/toast.ts";
+import { title } from "../words.ts";
+import { Drawer } from "./drawer.ts";
+import { HelpDialog } from "./help.ts";
+import { listenToKeys } from "./keys.ts";
+import { Maps } from "./maps.ts";
+import { Routing } from "./routing.ts";
+import { Side } from "./side.ts";
+import { Tools } from "./tools.ts";
+
+export class Page {
+  readonly #maps: Maps;
+  readonly #side: Side;
+  readonly #drawer: Drawer;
+  readonly #explain: ExplainPanel;
+  readonly #routing: Routing;
+  readonly #vehicles: VehicleDialog;
+  readonly #stats: StatsDialog;
+  readonly #help = new HelpDialog();
+  readonly #tools: Tools;
+  #numbers: Promise<Stats> | null = null;
+  #written = "";
+
+  constructor(private readonly context: Context, private readonly first: State, private readonly possible: Possible) {
+    const { store, theme } = context;
+    this.#vehicles = new VehicleDialog(context);
+    this.#stats = new StatsDialog(context);
+    this.#drawer = new Drawer(() => store.set({ selected: null, route: null }));
+    this.#maps = new Maps(context, {
+      click: (under, lon, lat) => this.#click(under?.id ?? null, lon, lat),
+      moved: (camera) => store.set({ camera }),
+      chooseOther: () => this.chooseOther(),
+      endComparing: () => store.set({ other: null }),
+    });
+    this.#explain = new ExplainPanel({
+      place: (explanation, goTo) => this.#place(explanation, goTo),
+      other: () => (store.state.other ? { ...question(context), vehicle: store.state.other } : null),
+    });
+    this.#routing = new Routing(context, this.#maps.first, this.#drawer);
+    this.#side = new Side(context, { chooseVehicle: () => this.chooseVehicle(), go: (hit) => this.#search(hit), help: () => this.#help.open() });
+    this.#tools = new Tools(context, {
+      route: () => this.route(),
+      compare: () => this.compare(),
+      stats: () => store.set({ stats: !store.state.stats }),
+      link: () => void this.copyLink(),
+      home: () => this.#maps.home(),
+      zoom: (by) => this.#maps.zoom(by),
+    });
+    store.listen((_, changed) => this.#changed(changed));
+    theme.listen(() => this.#recolour());
+    addEventListener("hashchange", () => this.#link());
+    listenToKeys(this);
+    this.#changed(new Set(Object.keys(store.state) as (keyof State)[]), true);
+    // A test, or whoever reads the console, may look at the map.
+    Object.assign(globalThis, { netcert: { map: this.#maps.first.map, store } });
+  }
+
+  /** One step back: what lies on top is closed first. */
+  escape(): void {
+    const { store } = this.context;
+    if (this.#routing.driving) this.#routing.endDrive();
+    else if (store.state.selected || store.state.route) store.set({ selected: null, route: null });
+    else if (store.state.other) store.set({ other: null });
+  }
+
+  find(): void {
+    this.#side.search.focus();
+  }
+
+  chooseVehicle(): void {
+    const { store } = this.context;
+    this.#vehicles.open("Choose a vehicle", store.state.vehicle, (vehicle) =>
+      store.set({ vehicle, policy: fittingPolicy(this.context, vehicle) }),
+    );
+  }
+
+  chooseOther(): void {
+    const { store } = this.context;
+    this.#vehicles.open("Compare with …", store.state.other ?? "", (other) => {
+      if (!vehicleOf(this.context, other)?.certified.includes(store.state.policy)) {
+        toast(`${other} is not certified under this policy.`);
+      } else {
+        store.set({ other });
+      }
+    });
+  }
+
+  compare(): void {
+    const { store } = this.context;
+    if (store.state.other) store.set({ other: null });
+    else this.chooseOther();
+  }
+
+  route(): void {
+    const { store } = this.context;
+    store.set({ selected: null, route: store.state.route ? null : [] });
+  }
+
+  showStats(): void {
+    this.context.store.set({ stats: true });
+  }
+
+  help(): void {
+    this.#help.open();
+  }
+
+  toggleTheme(): void {
+    this.context.theme.toggle();
+  }
+
+  toggleDrive(): boolean {
+    return this.#routing.toggleDrive();
+  }
+
+  async copyLink(): Promise<void> {
+    try {
+      await navigator.clipboard.writeText(location.href);
+      toast("Link copied: it holds vehicle, filters, place and route.");
+    } catch {
+      toast("The address bar holds the link to what you see.");
+    }
+  }
+
+  #click(id: string | null, lon: number, lat: number): void {
+    const { store } = this.context;
+    const { route } = store.state;
+    if (route && route.length < 2) store.set({ route: [...route, [lon, lat]] });
+    else if (!this.#routing.driving && (id || !route)) {
+      store.set({ selected: id, ...(id ? { route: null } : {}) });
+      if (id) this.#maps.reveal(lon, lat);
+    }
+  }
+
+  #search(hit: SearchHit): void {
+    this.#maps.fit(hit.bbox);
+    const one = hit.kind === "edge" || hit.kind === "turn";
+    this.context.store.set({ selected: one ? hit.id : null, route: null });
+    if (!one) toast(`${title(hit)}: click on the road for its explanation.`);
+  }
+
+  #place(explanation: Explanation | null, goTo: boolean): void {
+    this.#maps.mark(explanation && explanation.verdict !== "forbidden" ? explanation.at : null);
+    if (!goTo || !explanation) return;
+    const { geometry, at } = explanation;
+    const line = geometry?.coordinates;
+    if (line && line.length > 0) {
+      const [lons, lats] = [line.map(([lon]) => lon), line.map(([, lat]) => lat)];
+      this.#maps.fit([Math.min(...lons), Math.min(...lats), Math.max(...lons), Math.max(...lats)], 17);
+    } else if (at) {
+      this.#maps.fit([...at, ...at], 17);
+    }
+  }
+
+  #changed(changed: ReadonlySet<keyof State>, first = false): void {
+    const { state } = this.context.store;
+    const certificates = changed.has("vehicle") || changed.has("policy");
+    if (certificates || changed.has("other")) this.#number(changed.has("policy"));
+    this.#side.draw(certificates);
+    this.#maps.update(changed);
+    this.#tools.draw();
+    if (changed.has("route") || (certificates && state.route)) this.#routing.update();
+    if (changed.has("selected") || ((certificates || changed.has("other")) && state.selected)) this.#select(first && !state.camera);
+    if (changed.has("stats")) {
+      if (state.stats) void this.#stats.open();
+      else this.#stats.close();
+    }
+    this.#rewrite(changed);
+  }
+
+  #select(goTo: boolean): void {
+    const { state } = this.context.store;
+    if (state.selected) {
+      this.#drawer.show(this.#explain.element);
+      void this.#explain.show(state.selected, question(this.context), goTo);
+    } else {
+      this.#maps.mark(null);
+      if (!state.route) this.#drawer.hide();
+    }
+  }
+
+  #number(policyChanged: boolean): void {
+    const { policy, vehicle } = this.context.store.state;
+    if (policyChanged || !this.#numbers) this.#numbers = api.stats(policy);
+    this.#numbers
+      .then((stats) => {
+        const { state } = this.context.store;
+        const of = (wanted: string | null) => stats.vehicles.find(({ id }) => id === wanted) ?? null;
+        if (state.vehicle !== vehicle || state.policy !== stats.policy) return;
+        this.#side.number(of(vehicle));
+        this.#maps.number(of(state.other));
+      })
+      .catch((error: Error) => {
+        this.#numbers = null;
+        toast(error.message);
+      });
+  }
+
+  #recolour(): void {
+    this.#side.draw(false);
+    this.#maps.update(new Set());
+    this.#routing.recolour();
+    this.#tools.draw();
+  }
+
+  /** Moving the map replaces the link; anything else is a step one can go back from. */
+  #rewrite(changed: ReadonlySet<keyof State>): void {
+    const link = write(this.context.store.state, this.first);
+    if (link === this.#written) return;
+    const step = [...changed].some((key) => key !== "camera") && this.#written !== "";
+    this.#written = link;
+    if (step) history.pushState(null, "", link);
+    else history.replaceState(null, "", link);
+  }
+
+  #link(): void {
+    if (location.hash === this.#written) return;
+    const next = read(location.hash, this.first, this.possible);
+    this.#written = location.hash;
+    this.context.store.set(next);
+    if (next.camera) this.#maps.jump(next.camera);
+  }
+}

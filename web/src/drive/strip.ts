@@ -1,0 +1,119 @@
+// What is left on either side, along the route: all of it in a narrow band, and around the vehicle in a wide one that moves in
+// step with it. Upwards is left of travel, downwards right; a stroke across marks where it is tightest.
+
+import type { Route } from "../api/types.ts";
+import { marginColour, type Palette } from "../map/palette.ts";
+import { h } from "../ui/dom.ts";
+import { careful, distance } from "../words.ts";
+import { OPEN_M, leewayAt } from "./samples.ts";
+
+/** Metres of leeway that fill half of the band: more is cut off. */
+const FULL_M = 1.5;
+/** Metres of road behind and ahead of the vehicle. */
+const WINDOW_M = 160;
+
+export class Strip {
+  readonly element: HTMLElement;
+  readonly #near = h("canvas", { class: "strip-near", "aria-hidden": "true" });
+  readonly #whole = h("canvas", { class: "strip-whole", "aria-hidden": "true" });
+  readonly #slider: HTMLInputElement;
+  readonly #numbers = h("div", { class: "strip-numbers", "aria-hidden": "true" });
+  #s = 0;
+
+  constructor(
+    private readonly route: Route,
+    private readonly vehicleLength: number,
+    private palette: Palette,
+    seek: (s: number) => void,
+  ) {
+    this.#slider = h("input", {
+      type: "range",
+      min: 0,
+      max: Math.round(route.length_m),
+      step: 1,
+      value: 0,
+      "aria-label": "Place along the route, metres",
+      oninput: () => seek(Number(this.#slider.value)),
+    });
+    const whole = h("div", { class: "strip-track" }, this.#whole, this.#slider);
+    const near = h("div", { class: "strip-window" }, this.#near, this.#numbers);
+    this.element = h("div", { class: "strip" }, near, whole);
+    new ResizeObserver(() => this.#redraw()).observe(this.element);
+  }
+
+  recolour(palette: Palette): void {
+    this.palette = palette;
+    this.#redraw();
+  }
+
+  move(s: number): void {
+    this.#s = s;
+    this.#slider.value = String(Math.round(s));
+    const { left, right } = leewayAt(this.route.leeway, s);
+    const words = (leeway: number) => (leeway >= OPEN_M ? "open" : `${careful(leeway)} m`);
+    this.#slider.setAttribute("aria-valuetext", `${distance(s)}: ${words(left)} to spare left, ${words(right)} right`);
+    this.#numbers.replaceChildren(h("span", {}, `left ${words(left)}`), h("span", {}, `right ${words(right)}`));
+    this.#redraw();
+  }
+
+  #redraw(): void {
+    this.#draw(this.#near, this.#s - WINDOW_M, this.#s + WINDOW_M, true);
+    this.#draw(this.#whole, 0, this.route.length_m, false);
+  }
+
+  #draw(canvas: HTMLCanvasElement, from: number, to: number, near: boolean): void {
+    const { clientWidth: wide, clientHeight: tall } = canvas;
+    const context = canvas.getContext("2d");
+    if (!context || wide === 0 || tall === 0) return;
+    const ratio = devicePixelRatio || 1;
+    if (canvas.width !== Math.round(wide * ratio) || canvas.height !== Math.round(tall * ratio)) {
+      canvas.width = Math.round(wide * ratio);
+      canvas.height = Math.round(tall * ratio);
+    }
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, wide, tall);
+    const x = (s: number): number => (wide * (s - from)) / (to - from);
+    this.#columns(context, x, wide, tall);
+    this.#marks(context, x, tall, near);
+  }
+
+  #columns(context: CanvasRenderingContext2D, x: (s: number) => number, wide: number, tall: number): void {
+    const middle = tall / 2;
+    const { leeway, length_m } = this.route;
+    const size = (value: number): number => Math.min(Math.max(value, 0.02) / FULL_M, 1) * (middle - 1);
+    leeway.s_m.forEach((s, index) => {
+      const [a, b] = [x(s), x(leeway.s_m[index + 1] ?? length_m)];
+      if (b < 0 || a > wide) return;
+      const breadth = Math.max(b - a, 0.5) + 0.5;
+      const [left, right] = [leeway.left_m[index] ?? OPEN_M, leeway.right_m[index] ?? OPEN_M];
+      context.fillStyle = marginColour(this.palette, left);
+      context.fillRect(a, middle - size(left), breadth, size(left));
+      context.fillStyle = marginColour(this.palette, right);
+      context.fillRect(a, middle, breadth, size(right));
+    });
+    context.fillStyle = this.palette.paper;
+    context.fillRect(0, middle - 0.5, wide, 1);
+  }
+
+  #marks(context: CanvasRenderingContext2D, x: (s: number) => number, tall: number, near: boolean): void {
+    const tightest = x(this.route.limiting_s_m);
+    context.strokeStyle = this.palette.missing[3];
+    context.lineWidth = 2;
+    context.beginPath();
+    context.moveTo(tightest, 0);
+    context.lineTo(tightest, tall);
+    context.stroke();
+    const head = x(this.#s);
+    if (near) {
+      // The vehicle's length, to the strip's scale.
+      const rear = x(this.#s - this.vehicleLength);
+      context.fillStyle = this.palette.ink;
+      context.beginPath();
+      context.roundRect(rear, tall / 2 - 4, head - rear, 8, 3);
+      context.fill();
+    } else {
+      context.fillStyle = this.palette.ink;
+      context.fillRect(head - 1, 0, 2, tall);
+    }
+  }
+}

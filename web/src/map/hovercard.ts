@@ -1,0 +1,44 @@
+// The number under the pointer.
+
+import { h, styled } from "../ui/dom.ts";
+import { className, evidenceWords, margin, reasonWords, title, verdictWords } from "../words.ts";
+import type { Evidence, VerdictName } from "../api/types.ts";
+import type { Under } from "./view.ts";
+
+export class HoverCard {
+  readonly #card = h("div", { class: "hovercard", role: "status", "aria-live": "off", hidden: true });
+
+  constructor(root: HTMLElement) {
+    root.append(this.#card);
+  }
+
+  show(under: Under | null, x: number, y: number): void {
+    this.#card.hidden = under === null;
+    if (!under) return;
+    this.#card.replaceChildren(...content(under));
+    const { offsetWidth: wide, offsetHeight: tall } = this.#card;
+    const right = document.body.classList.contains("has-drawer") ? innerWidth - 402 : innerWidth;
+    const left = x + 18 + wide > right ? x - wide - 14 : x + 18;
+    const top = y + 18 + tall > innerHeight ? y - tall - 14 : y + 18;
+    styled(this.#card, { transform: `translate(${Math.max(left, 4)}px, ${Math.max(top, 4)}px)` });
+  }
+}
+
+function content({ kind, properties }: Under): Node[] {
+  const text = (key: string): string | null => (typeof properties[key] === "string" ? properties[key] : null);
+  const verdict = (text("verdict") ?? "unknown") as VerdictName;
+  const rsc = properties["rsc_m"];
+  const decided = (verdict === "safe" || verdict === "unsafe") && typeof rsc === "number";
+  const number = decided ? margin(rsc) : reasonWords(verdict, text("reason"));
+  const name = kind === "turn" ? "Turn" : title({ ref: text("ref"), name: text("name"), highway: text("highway") });
+  const source = text("width_source") as Evidence | null;
+  const parts = [
+    kind === "edge" && text("highway") ? className(text("highway") ?? "") : null,
+    kind === "edge" ? `width: ${evidenceWords[source ?? "none"].toLowerCase()}` : null,
+  ].filter(Boolean);
+  return [
+    h("div", { class: `hover-number is-${verdict}` }, h("i", { class: `line line-${verdict}` }), number),
+    h("div", { class: "hover-name" }, name),
+    h("div", { class: "hover-more" }, [verdictWords[verdict].name, ...parts].join(" · ")),
+  ];
+}

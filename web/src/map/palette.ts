@@ -1,0 +1,132 @@
+// Colours of the map, for light and dark.
+//
+// Room to spare is blue, the more the further from the paper's lightness; what is missing is orange, and fades the further
+// a road is from fitting: what nearly fits is what people ask about. Blue and orange stay apart under deuteranopia and
+// protanopia (`test/palette.test.mjs` simulates both); verdicts differ in line width and dashes, too, so that nothing hangs on
+// colour alone. Categories are Okabe and Ito's (Color Universal Design, 2008).
+
+import type { Evidence } from "../api/types.ts";
+
+export type Theme = "light" | "dark";
+
+/** One class of the scale: margins from `from_m` up. */
+export interface Step {
+  from_m: number;
+  label: string;
+}
+
+export const roomSteps: readonly Step[] = [
+  { from_m: 0, label: "0" },
+  { from_m: 0.25, label: "0.25" },
+  { from_m: 0.5, label: "0.5" },
+  { from_m: 1, label: "1 m" },
+];
+
+/** From hopeless to nearly. */
+export const missingSteps: readonly Step[] = [
+  { from_m: -Infinity, label: "" },
+  { from_m: -1, label: "1 m" },
+  { from_m: -0.5, label: "0.5" },
+  { from_m: -0.25, label: "0.25" },
+];
+
+export interface Palette {
+  outside: string;
+  paper: string;
+  casing: string;
+  ink: string;
+  halo: string;
+  soft: string;
+  room: readonly [string, string, string, string];
+  missing: readonly [string, string, string, string];
+  forbidden: string;
+  unknown: string;
+  selected: string;
+  route: string;
+  routeCasing: string;
+  units: readonly string[];
+  /** Of roads as wide as they are. */
+  surface: string;
+  corridor: string;
+  swept: string;
+}
+
+export const palettes: Record<Theme, Palette> = {
+  light: {
+    outside: "#e9e7e1",
+    paper: "#f7f5f0",
+    casing: "#f7f5f0",
+    ink: "#1b1f24",
+    halo: "#fbfaf7",
+    soft: "#6a717a",
+    room: ["#2f93d8", "#1a6fb8", "#0d4c90", "#07285a"],
+    missing: ["#bfa894", "#cd9d72", "#dd843f", "#d95f0e"],
+    forbidden: "#3b4048",
+    unknown: "#8d949c",
+    selected: "#111417",
+    route: "#111417",
+    routeCasing: "#ffffff",
+    units: ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442"],
+    surface: "#e6e3dc",
+    corridor: "#d6d3cb",
+    swept: "#b9d3e8",
+  },
+  dark: {
+    outside: "#0e1013",
+    paper: "#15181c",
+    casing: "#15181c",
+    ink: "#e8eaed",
+    halo: "#15181c",
+    soft: "#949ba5",
+    room: ["#2b78b8", "#4ba0e2", "#8bc6f6", "#dcefff"],
+    missing: ["#62503f", "#8a6340", "#bd7437", "#f58a32"],
+    forbidden: "#8f96a0",
+    unknown: "#69717b",
+    selected: "#ffffff",
+    route: "#ffffff",
+    routeCasing: "#15181c",
+    units: ["#3d9bd8", "#e69f00", "#1fb489", "#d48fb6", "#7cc6f0", "#e0702a", "#f0e442"],
+    surface: "#22262b",
+    corridor: "#2c3138",
+    swept: "#28445c",
+  },
+};
+
+/** Why a road is barred, by `verdict/reason`. */
+export const reasonColours: Record<string, string> = {
+  "unsafe/width": "#e69f00",
+  "unsafe/articulation": "#d55e00",
+  "unsafe/steering_lock": "#cc79a7",
+  forbidden: "#56626f",
+  unknown: "#98a0a8",
+};
+
+/** How good a width is: the better, the further from the paper. */
+export const evidenceColours: Record<Theme, Record<Evidence | "none", string>> = {
+  light: {
+    none: "#a5abb2",
+    assumed: "#d8b365",
+    from_lanes: "#7fbfb0",
+    estimated: "#3f9d94",
+    tagged: "#01665e",
+    surveyed: "#003c30",
+  },
+  dark: {
+    none: "#6f7781",
+    assumed: "#9a7433",
+    from_lanes: "#3d8f80",
+    estimated: "#5dbfae",
+    tagged: "#a6e3d6",
+    surveyed: "#e4fbf5",
+  },
+};
+
+export function marginColour(palette: Palette, rsc_m: number): string {
+  const steps = rsc_m < 0 ? missingSteps : roomSteps;
+  const colours = rsc_m < 0 ? palette.missing : palette.room;
+  let at = 0;
+  steps.forEach((step, index) => {
+    if (rsc_m >= step.from_m) at = index;
+  });
+  return colours[at] ?? colours[0];
+}

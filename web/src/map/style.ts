@@ -1,0 +1,289 @@
+// The map's style: background, roads and labels all come from the database's own tiles, nothing from elsewhere.
+//
+// Every road is a directed edge: the two directions of a road are drawn side by side, each on the side on which it is
+// driven. One layer a verdict, because each has a line of its own: certified is broad and solid, not certified thin,
+// forbidden dashed, unknown dotted.
+
+import type {
+  DataDrivenPropertyValueSpecification,
+  ExpressionSpecification,
+  LayerSpecification,
+  StyleSpecification,
+} from "maplibre-gl";
+import type { Region, VerdictName } from "../api/types.ts";
+import type { State } from "../state.ts";
+import { CLASSES, EVIDENCE } from "../words.ts";
+import { evidenceColours, missingSteps, palettes, reasonColours, roomSteps, type Palette, type Theme } from "./palette.ts";
+
+export const LABEL_FONT = "Inter Variable";
+/** Drawn in this order: what may be used lies on top. */
+export const verdictLayers: readonly VerdictName[] = ["unknown", "forbidden", "unsafe", "safe"];
+export const edgeLayers = verdictLayers.map((verdict) => `edge-${verdict}`);
+export const turnLayers = verdictLayers.map((verdict) => `turn-${verdict}`);
+
+type Colour = DataDrivenPropertyValueSpecification<string>;
+type Numeric = ExpressionSpecification;
+
+const major = ["motorway", "trunk"];
+const middle = ["primary", "secondary"];
+
+/** Pixels of one direction of a road by zoom: of motorways and trunk roads, of main roads, of all others. */
+const widths: readonly (readonly [zoom: number, big: number, main: number, other: number])[] = [
+  [8, 1.1, 0.8, 0.4],
+  [12, 2.2, 1.8, 1.1],
+  [15, 4.2, 3.8, 2.8],
+  [17, 7, 6.5, 5.5],
+  [18, 9, 8.5, 7.5],
+  [19, 10, 9.5, 8.5],
+  [20, 11, 10.5, 9.5],
+  [21, 12, 11.5, 10.5],
+  [22, 13, 12.5, 11.5],
+];
+
+/** Something for each zoom, made from the width of a direction there. */
+function byWidth(make: (pixels: Numeric, zoom: number) => Numeric): Numeric {
+  const links = (names: string[]): string[] => [...names, ...names.map((name) => `${name}_link`)];
+  const stops = widths.flatMap(([zoom, big, main, other]) => {
+    const pixels: Numeric = ["match", ["get", "highway"], links(major), big, links(middle), main, other];
+    return [zoom, make(pixels, zoom)];
+  });
+  return ["interpolate", ["exponential", 1.5], ["zoom"], ...stops] as unknown as Numeric;
+}
+
+function width(factor: number): Numeric {
+  return byWidth((pixels) => ["*", factor, pixels]);
+}
+
+/** From this zoom on roads are drawn as wide as they are, under the lines that say what is certified. */
+const REAL_ZOOM = 17;
+
+/** Pixels a metre of ground at a zoom; tiles are 512 pixels wide. */
+function pixelsPerMetre(zoom: number, latitude: number): number {
+  return (512 * 2 ** zoom) / (40_075_016.7 * Math.cos((latitude * Math.PI) / 180));
+}
+
+/**
+ * To the side on which one drives, so that the two directions of a road touch, and near by lie in their strips; one-way roads
+ * stay where the map has them. `factor` is that of the line's own width.
+ */
+function offset(factor: number, ground: Ground): Numeric {
+  const sided = (pixels: Numeric): Numeric => [
+    "case",
+    ["==", ["get", "oneway"], "no"],
+    ["*", ["case", drivesLeft(ground.region), -1, 1], pixels],
+    0,
+  ];
+  return byWidth((pixels, zoom) => {
+    const touching: Numeric = ["*", 0.53 * factor, pixels];
+    if (zoom < REAL_ZOOM || ground.shared) return sided(touching);
+    return sided(["max", touching, ["*", pixelsPerMetre(zoom, ground.latitude) / 2, ["coalesce", ["get", "width_m"], 0]]]);
+  });
+}
+
+/** A tile may say it for each road; else the region does. */
+function drivesLeft(region: Region): ExpressionSpecification {
+  return ["to-boolean", ["coalesce", ["get", "left"], region.left_hand_traffic ?? false]];
+}
+
+function stepped(colours: readonly string[], steps: readonly { from_m: number }[]): Numeric {
+  const rest = steps.slice(1).flatMap((step, index) => [step.from_m, colours[index + 1] ?? ""]);
+  return ["step", ["coalesce", ["get", "rsc_m"], -1000], colours[0] ?? "", ...rest] as unknown as Numeric;
+}
+
+function colour(verdict: VerdictName, state: State, palette: Palette, theme: Theme): Colour {
+  if (state.colourBy === "evidence") {
+    const colours = evidenceColours[theme];
+    const pairs = EVIDENCE.flatMap((source) => [source, colours[source]]);
+    return ["match", ["coalesce", ["get", "width_source"], "none"], ...pairs, colours.none] as unknown as Colour;
+  }
+  if (verdict === "safe") return stepped(palette.room, roomSteps);
+  if (state.colourBy === "reason" && verdict === "unsafe") {
+    const named = Object.entries(reasonColours).filter(([name]) => name.startsWith("unsafe/"));
+    const pairs = named.flatMap(([name, value]) => [name.slice("unsafe/".length), value]);
+    return ["match", ["coalesce", ["get", "reason"], ""], ...pairs, palette.unknown] as unknown as Colour;
+  }
+  if (verdict === "unsafe") return stepped(palette.missing, missingSteps);
+  return verdict === "forbidden" ? palette.forbidden : palette.unknown;
+}
+
+const dashes: Partial<Record<VerdictName, number[]>> = { forbidden: [2.2, 1.4], unknown: [0.1, 2] };
+const breadth: Record<VerdictName, number> = { safe: 1.25, unsafe: 0.72, forbidden: 0.6, unknown: 0.75 };
+
+/** What the filters leave, of one verdict. */
+export function filter(verdict: VerdictName, state: State): ExpressionSpecification {
+  const all: unknown[] = ["all", ["==", ["get", "verdict"], verdict]];
+  if (state.hiddenClasses.size > 0) {
+    const gone = CLASSES.filter((name) => state.hiddenClasses.has(name)).flatMap((name) => [name, `${name}_link`]);
+    all.push(["!", ["in", ["get", "highway"], ["literal", gone]]]);
+  }
+  if (state.evidence !== "assumed") {
+    const enough = EVIDENCE.slice(EVIDENCE.indexOf(state.evidence));
+    all.push(["in", ["coalesce", ["get", "width_source"], "none"], ["literal", [...enough]]]);
+  }
+  if (state.hidden.has(verdict)) all.push(false);
+  return all as ExpressionSpecification;
+}
+
+function edge(verdict: VerdictName, state: State, palette: Palette, ground: Ground): LayerSpecification {
+  const dash = dashes[verdict];
+  return {
+    id: `edge-${verdict}`,
+    type: "line",
+    source: "roads",
+    "source-layer": "edge",
+    filter: filter(verdict, state),
+    layout: { "line-cap": verdict === "forbidden" ? "butt" : "round", "line-join": "round" },
+    paint: {
+      "line-color": colour(verdict, state, palette, ground.theme),
+      "line-width": width(breadth[verdict]),
+      "line-offset": offset(breadth[verdict], ground),
+      ...(dash ? { "line-dasharray": dash } : {}),
+    },
+  };
+}
+
+function turn(verdict: VerdictName, state: State, palette: Palette, ground: Ground): LayerSpecification {
+  const dash = dashes[verdict];
+  const filtered = ["all", ["==", ["get", "verdict"], verdict], !state.hidden.has(verdict)];
+  return {
+    id: `turn-${verdict}`,
+    type: "line",
+    source: "roads",
+    "source-layer": "turn",
+    // Most turns that are forbidden or unknown lead into roads that are.
+    minzoom: verdict === "safe" || verdict === "unsafe" ? 15.5 : 17.5,
+    filter: filtered as ExpressionSpecification,
+    layout: { "line-cap": "round", "line-join": "round" },
+    paint: {
+      "line-color": colour(verdict, { ...state, colourBy: "margin" }, palette, ground.theme),
+      "line-width": ["interpolate", ["exponential", 1.5], ["zoom"], 15.5, verdict === "safe" ? 1.4 : 0.7, 20, verdict === "safe" ? 5 : 2.5],
+      "line-opacity": verdict === "safe" ? 0.95 : verdict === "unsafe" ? 0.6 : 0.35,
+      ...(dash ? { "line-dasharray": dash } : {}),
+    },
+  };
+}
+
+/** A broad line of the paper's colour under all roads keeps crossings and neighbours apart. */
+function casing(palette: Palette, ground: Ground): LayerSpecification {
+  return {
+    id: "casing",
+    type: "line",
+    source: "roads",
+    "source-layer": "edge",
+    minzoom: 12,
+    maxzoom: REAL_ZOOM,
+    layout: { "line-cap": "round", "line-join": "round" },
+    paint: { "line-color": palette.casing, "line-width": width(1.7), "line-offset": offset(1, ground), "line-opacity": 0.9 },
+  };
+}
+
+/** The strip that a direction has, as wide as it is. */
+function surface(palette: Palette, ground: Ground): LayerSpecification {
+  const zooms = [REAL_ZOOM, 18, 19, 20, 21, 22];
+  const metres = ["coalesce", ["get", "width_m"], 0];
+  const stops = zooms.flatMap((zoom) => [zoom, ["*", pixelsPerMetre(zoom, ground.latitude), metres]]);
+  return {
+    id: "surface",
+    type: "line",
+    source: "roads",
+    "source-layer": "edge",
+    minzoom: REAL_ZOOM,
+    layout: { "line-cap": "round", "line-join": "round" },
+    paint: {
+      "line-color": palette.surface,
+      "line-width": ["interpolate", ["exponential", 1.8], ["zoom"], ...stops] as unknown as Numeric,
+      "line-offset": offset(1, ground),
+    },
+  };
+}
+
+function highlight(id: string, layer: "edge" | "turn", palette: Palette, ground: Ground): LayerSpecification {
+  const key = layer === "edge" ? "edge_id" : "turn_id";
+  return {
+    id,
+    type: "line",
+    source: "roads",
+    "source-layer": layer,
+    filter: ["==", ["get", key], ""],
+    layout: { "line-cap": "round", "line-join": "round" },
+    paint: {
+      "line-color": palette.selected,
+      "line-width": layer === "edge" ? width(2.3) : 6,
+      ...(layer === "edge" ? { "line-offset": offset(1, ground) } : {}),
+      "line-opacity": id.startsWith("hover") ? 0.35 : 0.9,
+    },
+  };
+}
+
+function labels(palette: Palette): LayerSpecification {
+  return {
+    id: "names",
+    type: "symbol",
+    source: "roads",
+    "source-layer": "label",
+    minzoom: 11,
+    layout: {
+      "symbol-placement": "line",
+      "symbol-spacing": 320,
+      "text-font": [LABEL_FONT],
+      "text-field": ["step", ["zoom"], ["coalesce", ["get", "ref"], ["get", "name"], ""], 13, ["coalesce", ["get", "name"], ["get", "ref"], ""]],
+      "text-size": ["interpolate", ["linear"], ["zoom"], 11, 10, 16, 12.5, 19, 15],
+      "text-letter-spacing": 0.01,
+      "text-max-angle": 35,
+      "text-padding": 6,
+      "symbol-sort-key": ["match", ["get", "highway"], major, 0, middle, 1, ["tertiary"], 2, 3],
+    },
+    paint: { "text-color": palette.ink, "text-halo-color": palette.halo, "text-halo-width": 1.6 },
+  };
+}
+
+const world: [number, number][] = [[-180, -85], [180, -85], [180, 85], [-180, 85], [-180, -85]];
+
+/** The region's box; outside of it nothing is known, which the paper shows. */
+function extent([west, south, east, north]: Region["bbox"]): GeoJSON.Feature {
+  const [x, y] = [0.01 * (east - west), 0.01 * (north - south)];
+  const [w, s, e, n] = [west - x, south - y, east + x, north + y];
+  const box = [[w, s], [w, n], [e, n], [e, s], [w, s]];
+  return { type: "Feature", properties: {}, geometry: { type: "Polygon", coordinates: [world, box] } };
+}
+
+export interface Ground {
+  region: Region;
+  tilesUrl: string;
+  theme: Theme;
+  /** Both directions use the same strip: the whole road. */
+  shared: boolean;
+  /** Of the region's middle, degrees. */
+  latitude: number;
+}
+
+export function style(state: State, ground: Ground): StyleSpecification {
+  const { region, tilesUrl, theme } = ground;
+  const palette = palettes[theme];
+  const base = state.baseMap && region.base_map ? region.base_map : null;
+  const each = (make: typeof edge): LayerSpecification[] =>
+    verdictLayers.map((verdict) => make(verdict, state, palette, ground));
+  return {
+    version: 8,
+    // No `glyphs`: MapLibre then draws letters with the fonts of the page.
+    sources: {
+      roads: { type: "vector", tiles: [tilesUrl], maxzoom: region.max_zoom, bounds: region.bbox, attribution: region.attribution },
+      outside: { type: "geojson", data: extent(region.bbox) },
+      ...(base ? { base: { type: "raster", tiles: [base.url], tileSize: 256, attribution: base.attribution ?? "" } } : {}),
+    },
+    layers: [
+      { id: "paper", type: "background", paint: { "background-color": palette.paper } },
+      ...(base ? [{ id: "base", type: "raster", source: "base", paint: { "raster-opacity": 0.45, "raster-saturation": -0.7 } } as LayerSpecification] : []),
+      { id: "outside", type: "fill", source: "outside", paint: { "fill-color": palette.outside, "fill-opacity": base ? 0.4 : 1 } },
+      surface(palette, ground),
+      casing(palette, ground),
+      highlight("hover-edge", "edge", palette, ground),
+      highlight("selected-edge", "edge", palette, ground),
+      ...each(edge),
+      highlight("hover-turn", "turn", palette, ground),
+      highlight("selected-turn", "turn", palette, ground),
+      ...each(turn),
+      labels(palette),
+    ],
+  };
+}

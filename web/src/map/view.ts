@@ -1,0 +1,164 @@
+// One map: made for a vehicle and a policy, restyled as the state changes, reporting what is under the pointer.
+
+import { AttributionControl, Map as Base, ScaleControl, type GeoJSONSource, type MapGeoJSONFeature, type MapMouseEvent } from "maplibre-gl";
+import type { Region } from "../api/types.ts";
+import { api, type Question } from "../api/client.ts";
+import type { State } from "../state.ts";
+import type { Theme } from "./palette.ts";
+import { edgeLayers, style, turnLayers } from "./style.ts";
+
+/** What a tile says of an edge or a turn. */
+export interface Under {
+  kind: "edge" | "turn";
+  id: string;
+  properties: Record<string, string | number | boolean | undefined>;
+}
+
+export interface Events {
+  hover(under: Under | null, x: number, y: number): void;
+  click(under: Under | null, lon: number, lat: number): void;
+  moved(): void;
+}
+
+/** How near to a line counts as on it, pixels: a finger is broader than a pointer. */
+const NEAR_MOUSE = 5;
+const NEAR_TOUCH = 14;
+
+export class View {
+  readonly map: Base;
+  #key: string;
+  #hovered = "";
+  #ready: Promise<void>;
+
+  constructor(
+    container: HTMLElement,
+    readonly region: Region,
+    private state: State,
+    private question: Question,
+    private theme: Theme,
+    private readonly events: Events,
+  ) {
+    this.#key = this.#styleKey();
+    const camera = state.camera;
+    this.map = new Base({
+      container,
+      style: style(state, this.#ground()),
+      ...(camera ? { center: [camera.lon, camera.lat] as [number, number], zoom: camera.zoom } : { bounds: region.focus ?? region.bbox }),
+      fitBoundsOptions: { padding: innerWidth < 760 ? 16 : { left: 380, right: 90, top: 30, bottom: 40 } },
+      maxZoom: 22,
+      minZoom: 3,
+      maxPitch: 70,
+      attributionControl: false,
+      fadeDuration: 150,
+      canvasContextAttributes: { antialias: true },
+    });
+    this.map.addControl(new AttributionControl({ compact: false }), "bottom-right");
+    this.map.addControl(new ScaleControl({ maxWidth: 90 }), "bottom-right");
+    this.map.getCanvas().setAttribute("aria-label", "Map of roads");
+    this.#ready = new Promise((done) => this.map.once("load", () => done()));
+    this.#listen();
+  }
+
+  /** When the style is in place, so that sources and layers may be added. */
+  get ready(): Promise<void> {
+    return this.#ready;
+  }
+
+  update(state: State, question: Question, theme: Theme): void {
+    this.state = state;
+    this.question = question;
+    this.theme = theme;
+    const key = this.#styleKey();
+    if (key !== this.#key) {
+      this.#key = key;
+      const kept = this.#own();
+      this.map.setStyle(style(state, this.#ground()), {
+        diff: true,
+        transformStyle: (_, next) => ({
+          ...next,
+          sources: { ...next.sources, ...kept.sources },
+          layers: [...next.layers, ...kept.layers],
+        }),
+      });
+    }
+    void this.#ready.then(() => this.#select(state.selected));
+  }
+
+  /** Draws GeoJSON under a name, above the roads; empty at first. */
+  overlay(name: string, data: GeoJSON.GeoJSON): void {
+    const source = this.map.getSource(name) as GeoJSONSource | undefined;
+    if (source) source.setData(data);
+    else this.map.addSource(name, { type: "geojson", data });
+  }
+
+  /** Sources and layers that are not the style's: they outlive a change of it. */
+  #own(): { sources: Record<string, never>; layers: never[] } {
+    const now = this.map.getStyle();
+    const sources = Object.entries(now?.sources ?? {}).filter(([name]) => name.startsWith("own-"));
+    const layers = (now?.layers ?? []).filter((layer) => layer.id.startsWith("own-"));
+    return { sources: Object.fromEntries(sources) as Record<string, never>, layers: layers as never[] };
+  }
+
+  #ground() {
+    const [, south, , north] = this.region.bbox;
+    return {
+      region: this.region,
+      tilesUrl: api.tilesUrl(this.region, this.question),
+      theme: this.theme,
+      shared: this.question.policy === "carriageway",
+      latitude: (south + north) / 2,
+    };
+  }
+
+  #styleKey(): string {
+    const { colourBy, hidden, hiddenClasses, evidence, baseMap } = this.state;
+    return JSON.stringify([this.question, this.theme, colourBy, [...hidden], [...hiddenClasses], evidence, baseMap]);
+  }
+
+  #select(id: string | null): void {
+    this.map.setFilter("selected-edge", ["==", ["get", "edge_id"], id ?? ""]);
+    this.map.setFilter("selected-turn", ["==", ["get", "turn_id"], id ?? ""]);
+  }
+
+  #hover(under: Under | null): void {
+    const key = under ? under.kind + under.id : "";
+    if (key === this.#hovered) return;
+    this.#hovered = key;
+    this.map.setFilter("hover-edge", ["==", ["get", "edge_id"], under?.kind === "edge" ? under.id : ""]);
+    this.map.setFilter("hover-turn", ["==", ["get", "turn_id"], under?.kind === "turn" ? under.id : ""]);
+  }
+
+  #at(event: MapMouseEvent, near: number): Under | null {
+    const { x, y } = event.point;
+    const layers = [...turnLayers, ...edgeLayers].filter((id) => this.map.getLayer(id));
+    const box: [[number, number], [number, number]] = [[x - near, y - near], [x + near, y + near]];
+    const exact = this.map.queryRenderedFeatures(event.point, { layers });
+    return under(exact[0] ?? this.map.queryRenderedFeatures(box, { layers })[0]);
+  }
+
+  #listen(): void {
+    const { map, events } = this;
+    map.on("mousemove", (event) => {
+      const found = this.#at(event, NEAR_MOUSE);
+      this.#hover(found);
+      map.getCanvas().style.cursor = found ? "pointer" : "";
+      events.hover(found, event.originalEvent.clientX, event.originalEvent.clientY);
+    });
+    map.on("mouseout", () => {
+      this.#hover(null);
+      events.hover(null, 0, 0);
+    });
+    map.on("click", (event) => {
+      const touch = matchMedia("(pointer: coarse)").matches;
+      events.click(this.#at(event, touch ? NEAR_TOUCH : NEAR_MOUSE), event.lngLat.lng, event.lngLat.lat);
+    });
+    map.on("moveend", () => events.moved());
+  }
+}
+
+function under(feature: MapGeoJSONFeature | undefined): Under | null {
+  if (!feature) return null;
+  const kind = feature.sourceLayer === "turn" ? "turn" : "edge";
+  const properties = feature.properties as Under["properties"];
+  return { kind, id: String(properties[`${kind}_id`]), properties };
+}

@@ -1,0 +1,104 @@
+// Why a road or a turn is what it is: the server's own sentences, its scope, and the picture of the swept path.
+
+import { api, type Question } from "../api/client.ts";
+import type { Explanation, VerdictName } from "../api/types.ts";
+import { h, prose } from "../ui/dom.ts";
+import { className, evidenceWords, margin, policyWords, reasonWords, title, verdictWords } from "../words.ts";
+import { Picture } from "./picture.ts";
+
+/** What the panel needs of the page around it. */
+export interface Around {
+  /** Marks the place that decides, and goes there if asked to. */
+  place(explanation: Explanation | null, goTo: boolean): void;
+  /** The same road for the vehicle on the other map, if there is one. */
+  other(): Question | null;
+}
+
+export class ExplainPanel {
+  readonly element = h("div", { class: "explain" });
+  readonly #picture = new Picture();
+  #running: AbortController | undefined;
+
+  constructor(private readonly around: Around) {}
+
+  /** Asks and shows; `goTo` moves the map there. Returns whether there is such a road. */
+  async show(id: string, question: Question, goTo: boolean): Promise<void> {
+    this.#running?.abort();
+    const running = (this.#running = new AbortController());
+    this.around.place(null, false);
+    this.element.replaceChildren(h("p", { class: "waiting" }, "Certifying again, to explain why …"));
+    try {
+      const other = this.around.other();
+      const [own, beside] = await Promise.all([
+        api.explain(id, question, running.signal),
+        other ? api.explain(id, other, running.signal).catch(() => null) : null,
+      ]);
+      this.element.replaceChildren(...this.#content(id, question, own, other && beside ? { other, beside } : null));
+      this.around.place(own, goTo);
+    } catch (error) {
+      if (running.signal.aborted) return;
+      this.element.replaceChildren(h("h2", {}, "Nothing to explain"), h("p", { class: "problem", role: "alert" }, (error as Error).message));
+    }
+  }
+
+  #content(id: string, question: Question, own: Explanation, compared: { other: Question; beside: Explanation } | null): Node[] {
+    const { road } = own;
+    const more = road
+      ? [className(road.highway), `way ${road.way_id}`, road.direction === "backward" ? "against the way’s direction" : "along the way’s direction"]
+      : [];
+    const nodes: Node[] = [
+      h("h2", {}, own.turn ?? (road ? title(road) : "Turn at a junction")),
+      h("p", { class: "sub" }, more.join(" · ")),
+      ...verdict(own),
+    ];
+    if (compared) nodes.push(h("h3", {}, compared.other.vehicle), ...verdict(compared.beside));
+    if (own.picture) {
+      const alt = `The swept path where it is tightest: ${own.headline}`;
+      nodes.push(this.#picture.show(api.pictureUrl(id, question), alt, this.#running!.signal));
+    }
+    nodes.push(list("What decides", own.reasons), list("What would do", own.hints_in_words));
+    if (road) nodes.push(width(own), h("p", { class: "ids" }, "Edge ", h("code", {}, road.edge_id)));
+    nodes.push(h("p", { class: "scope" }, prose([own.note, own.scope].filter(Boolean).join(" "))));
+    return nodes;
+  }
+}
+
+/** The verdict as a label, the number, and the server's sentence. */
+function verdict(e: Explanation): Node[] {
+  const decided = (e.verdict === "safe" || e.verdict === "unsafe") && e.limiting !== null && e.reason !== "articulation" && e.reason !== "steering_lock";
+  const number = decided && e.limiting ? margin(e.limiting.rsc_m) : reasonWords(e.verdict, e.reason);
+  return [
+    h(
+      "div",
+      { class: `verdict is-${e.verdict}` },
+      h("span", { class: "badge" }, h("i", { class: `line line-${e.verdict}` }), verdictWords[e.verdict as VerdictName].name),
+      h("strong", {}, number),
+    ),
+    h("p", { class: "headline-words" }, sentence(e.headline)),
+  ];
+}
+
+/** The badge has said the verdict: what follows it stands alone. */
+function sentence(headline: string): string {
+  const rest = headline.replace(/^(safe|unsafe|forbidden|unknown): /, "");
+  return `${rest.charAt(0).toUpperCase()}${rest.slice(1)}.`;
+}
+
+function list(heading: string, items: string[]): Node {
+  if (items.length === 0) return document.createTextNode("");
+  return h("section", {}, h("h3", {}, heading), h("ul", {}, ...items.map((item) => h("li", {}, item))));
+}
+
+function width(e: Explanation): Node {
+  if (!e.road) return document.createTextNode("");
+  const source = evidenceWords[e.road.width_source ?? "none"].toLowerCase();
+  const metres = e.limiting ? `${e.limiting.place.width_m.toFixed(2)} m where it is tightest, ` : "";
+  const row = (name: string, value: string) => h("div", {}, h("dt", {}, name), h("dd", {}, value));
+  return h(
+    "dl",
+    { class: "facts" },
+    row("May use", policyWords[e.road.corridor].meaning),
+    row("Width", `${metres}${source}`),
+    e.limiting ? row("Length", `${e.limiting.length_m.toFixed(0)} m`) : null,
+  );
+}

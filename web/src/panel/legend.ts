@@ -1,0 +1,107 @@
+// Kilometres by verdict, with the lines of the map beside them: legend, summary and filter in one.
+
+import type { VehicleStats } from "../api/stats.ts";
+import type { VerdictName } from "../api/types.ts";
+import type { Context } from "../context.ts";
+import { evidenceColours, missingSteps, palettes, reasonColours, roomSteps, type Step } from "../map/palette.ts";
+import type { ColourBy } from "../state.ts";
+import { h, styled } from "../ui/dom.ts";
+import { Segmented } from "../ui/segmented.ts";
+import { EVIDENCE, VERDICTS, evidenceWords, kilometres, percent, reasonWords, verdictWords } from "../words.ts";
+
+export class Legend {
+  readonly element = h("section", { class: "legend", "aria-label": "Roads by verdict" });
+  readonly #headline = h("p", { class: "headline", "aria-live": "polite" });
+  readonly #bar = h("div", { class: "bar", "aria-hidden": "true" });
+  readonly #rows = h("div", { class: "legend-rows" });
+  readonly #scale = h("div", { class: "scales" });
+  readonly #by: Segmented<ColourBy>;
+  #stats: VehicleStats | null = null;
+
+  constructor(private readonly context: Context) {
+    this.#by = new Segmented<ColourBy>(
+      "colour-by",
+      "Colour roads by",
+      [
+        { value: "margin", name: "Margin", title: "Metres to spare or missing" },
+        { value: "reason", name: "Reason", title: "What keeps the vehicle out" },
+        { value: "evidence", name: "Evidence", title: "Where the road’s width comes from" },
+      ],
+      (colourBy) => context.store.set({ colourBy }),
+    );
+    const by = h("div", { class: "labelled" }, h("span", { class: "label", "aria-hidden": "true" }, "Colour by"), this.#by.element);
+    this.element.append(this.#headline, this.#bar, this.#rows, by, this.#scale);
+    this.draw();
+  }
+
+  show(stats: VehicleStats | null): void {
+    this.#stats = stats;
+    this.draw();
+  }
+
+  draw(): void {
+    const { state } = this.context.store;
+    const all = this.#stats ? VERDICTS.reduce((sum, name) => sum + this.#stats!.verdicts[name], 0) : 0;
+    this.#by.value = state.colourBy;
+    if (this.#stats) {
+      const { safe } = this.#stats.verdicts;
+      this.#headline.replaceChildren(
+        h("strong", {}, kilometres(safe)),
+        h("span", {}, ` certified, ${percent(safe, all)} of ${kilometres(all)} (each direction counted)`),
+      );
+    }
+    this.#bar.replaceChildren(
+      ...VERDICTS.map((name) => styled(h("i", { class: `fill-${name}` }), { "flex-grow": this.#stats?.verdicts[name] ?? 0 })),
+    );
+    this.#rows.replaceChildren(...VERDICTS.map((name) => this.#row(name)));
+    this.#scale.replaceChildren(...this.#scales());
+  }
+
+  #row(name: VerdictName): HTMLElement {
+    const { store } = this.context;
+    const shown = !store.state.hidden.has(name);
+    const toggle = () => {
+      const hidden = new Set(store.state.hidden);
+      if (!hidden.delete(name)) hidden.add(name);
+      store.set({ hidden });
+    };
+    const length = this.#stats ? kilometres(this.#stats.verdicts[name]) : "";
+    return h(
+      "label",
+      { class: "legend-row", title: verdictWords[name].meaning },
+      h("input", { type: "checkbox", checked: shown, onchange: toggle, "data-verdict": name }),
+      h("i", { class: `line line-${name}` }),
+      h("span", { class: "legend-name" }, verdictWords[name].name),
+      h("span", { class: "legend-km" }, length),
+    );
+  }
+
+  #scales(): HTMLElement[] {
+    const { colourBy } = this.context.store.state;
+    const { theme } = this.context.theme;
+    const palette = palettes[theme];
+    if (colourBy === "evidence") {
+      const colours = evidenceColours[theme];
+      return [key([...EVIDENCE].map((source) => [evidenceWords[source], colours[source]] as const))];
+    }
+    const room = scale("Metres to spare", roomSteps, palette.room);
+    if (colourBy === "margin") return [scale("Metres missing", missingSteps, palette.missing), room];
+    const reasons = Object.entries(reasonColours).filter(([name]) => name.includes("/"));
+    return [
+      key(reasons.map(([name, colour]) => [reasonWords(...(name.split("/") as [string, string])), colour] as const)),
+      room,
+    ];
+  }
+}
+
+function scale(name: string, steps: readonly Step[], colours: readonly string[]): HTMLElement {
+  const cells = steps.map((step, index) =>
+    h("span", { class: "scale-cell" }, styled(h("i", {}), { background: colours[index] ?? "" }), h("span", {}, step.label)),
+  );
+  return h("div", { class: "scale" }, h("span", { class: "scale-name" }, name), h("div", { class: "scale-cells" }, ...cells));
+}
+
+function key(entries: readonly (readonly [string, string])[]): HTMLElement {
+  const items = entries.map(([name, colour]) => h("span", { class: "key-item" }, styled(h("i", {}), { background: colour }), name));
+  return h("div", { class: "key" }, ...items);
+}

@@ -1,0 +1,133 @@
+// Go to a road by its name, number or id. A combobox: arrows choose, Enter goes, Escape leaves.
+
+import { api } from "../api/client.ts";
+import type { SearchHit } from "../api/types.ts";
+import { h } from "../ui/dom.ts";
+import { icon } from "../ui/icons.ts";
+import { className, title } from "../words.ts";
+
+const PAUSE_MS = 160;
+
+export class Search {
+  readonly element: HTMLElement;
+  readonly #input: HTMLInputElement;
+  readonly #list = h("ul", { class: "hits", id: "hits", role: "listbox", "aria-label": "Roads found", hidden: true });
+  #hits: SearchHit[] = [];
+  #active = -1;
+  #timer: ReturnType<typeof setTimeout> | undefined;
+  #running: AbortController | undefined;
+
+  constructor(private readonly go: (hit: SearchHit) => void) {
+    this.#input = h("input", {
+      type: "search",
+      placeholder: "Road, number or id",
+      "aria-label": "Find a road by name, number or id",
+      role: "combobox",
+      "aria-expanded": "false",
+      "aria-controls": "hits",
+      "aria-autocomplete": "list",
+      autocomplete: "off",
+      spellcheck: "false",
+      maxlength: 100,
+      oninput: () => this.#later(),
+      onkeydown: (event: KeyboardEvent) => this.#key(event),
+      onfocus: () => this.#draw(),
+      onblur: () => setTimeout(() => this.#close(), 150),
+    });
+    this.element = h("div", { class: "search", role: "search" }, icon("search"), this.#input, h("kbd", {}, "/"), this.#list);
+  }
+
+  focus(): void {
+    this.#input.focus();
+    this.#input.select();
+  }
+
+  #later(): void {
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => void this.#ask(), PAUSE_MS);
+  }
+
+  async #ask(): Promise<void> {
+    this.#running?.abort();
+    const text = this.#input.value.trim();
+    if (text === "") {
+      this.#hits = [];
+      this.#close();
+      return;
+    }
+    const running = (this.#running = new AbortController());
+    try {
+      this.#hits = await api.search(text, running.signal);
+      this.#active = this.#hits.length > 0 ? 0 : -1;
+      this.#draw();
+    } catch (error) {
+      if (!running.signal.aborted) this.#say((error as Error).message);
+    }
+  }
+
+  #draw(): void {
+    if (this.#input.value.trim() === "") return;
+    if (this.#hits.length === 0) return this.#say("Nothing found");
+    const rows = this.#hits.map((hit, index) => this.#row(hit, index));
+    this.#list.replaceChildren(...rows);
+    this.#open();
+  }
+
+  #row(hit: SearchHit, index: number): HTMLElement {
+    const chosen = index === this.#active;
+    const more = [hit.highway ? className(hit.highway) : null, hit.kind === "road" ? null : `${hit.kind} ${hit.id}`];
+    return h(
+      "li",
+      {
+        id: `hit-${index}`,
+        role: "option",
+        "aria-selected": String(chosen),
+        onmousedown: (event: MouseEvent) => {
+          event.preventDefault();
+          this.#choose(index);
+        },
+      },
+      h("span", {}, title(hit)),
+      h("small", {}, more.filter(Boolean).join(" · ")),
+    );
+  }
+
+  #say(text: string): void {
+    this.#list.replaceChildren(h("li", { class: "nothing" }, text));
+    this.#open();
+  }
+
+  #open(): void {
+    this.#list.hidden = false;
+    this.#input.setAttribute("aria-expanded", "true");
+    this.#input.setAttribute("aria-activedescendant", this.#active >= 0 ? `hit-${this.#active}` : "");
+  }
+
+  #close(): void {
+    this.#list.hidden = true;
+    this.#input.setAttribute("aria-expanded", "false");
+  }
+
+  #choose(index: number): void {
+    const hit = this.#hits[index];
+    if (!hit) return;
+    this.#close();
+    this.#input.blur();
+    this.go(hit);
+  }
+
+  #key(event: KeyboardEvent): void {
+    const step = event.key === "ArrowDown" ? 1 : event.key === "ArrowUp" ? -1 : 0;
+    if (step !== 0 && this.#hits.length > 0) {
+      event.preventDefault();
+      this.#active = (this.#active + step + this.#hits.length) % this.#hits.length;
+      this.#draw();
+    } else if (event.key === "Enter") {
+      this.#choose(Math.max(this.#active, 0));
+    } else if (event.key === "Escape") {
+      event.stopPropagation();
+      this.#close();
+      this.#input.blur();
+    }
+  }
+}

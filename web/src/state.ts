@@ -1,0 +1,66 @@
+// What the page shows, in one place: every part reads it, changes it through `set`, and hears of changes.
+
+import type { Evidence, Policy, Position, VerdictName } from "./api/types.ts";
+
+export type ColourBy = "margin" | "reason" | "evidence";
+
+export interface Camera {
+  lon: number;
+  lat: number;
+  zoom: number;
+}
+
+export interface State {
+  vehicle: string;
+  policy: Policy;
+  /** The vehicle on the second map, beside the first. */
+  other: string | null;
+  colourBy: ColourBy;
+  hidden: ReadonlySet<VerdictName>;
+  hiddenClasses: ReadonlySet<string>;
+  /** Roads whose width rests on less are not drawn. */
+  evidence: Evidence;
+  camera: Camera | null;
+  /** An edge or a turn. */
+  selected: string | null;
+  /** While one chooses: begins empty, has one place, then two. */
+  route: Position[] | null;
+  stats: boolean;
+  baseMap: boolean;
+}
+
+export type Listener = (state: State, changed: ReadonlySet<keyof State>) => void;
+
+export class Store {
+  readonly #listeners: Listener[] = [];
+  #state: State;
+
+  constructor(state: State) {
+    this.#state = state;
+  }
+
+  get state(): State {
+    return this.#state;
+  }
+
+  /** Takes over what differs and tells everyone which fields those were. */
+  set(next: Partial<State>): void {
+    const changed = new Set<keyof State>();
+    for (const key of Object.keys(next) as (keyof State)[]) {
+      if (!same(this.#state[key], next[key])) changed.add(key);
+    }
+    if (changed.size === 0) return;
+    this.#state = { ...this.#state, ...next };
+    for (const listener of this.#listeners) listener(this.#state, changed);
+  }
+
+  listen(listener: Listener): void {
+    this.#listeners.push(listener);
+  }
+}
+
+function same(a: unknown, b: unknown): boolean {
+  if (a instanceof Set && b instanceof Set) return a.size === b.size && [...a].every((item) => b.has(item));
+  if (typeof a === "object" && typeof b === "object") return JSON.stringify(a) === JSON.stringify(b);
+  return a === b;
+}

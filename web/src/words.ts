@@ -1,0 +1,145 @@
+// The vocabulary of the page: what identifiers are called, numbers as people read them, always to the careful side.
+//
+// `safe` is an identifier of the database. On the page it is "certified", with the scope in sight, or stands in a sentence
+// of the server's that carries its scope.
+
+import type { Evidence, Policy, VerdictName } from "./api/types.ts";
+
+export const VERDICTS: readonly VerdictName[] = ["safe", "unsafe", "forbidden", "unknown"];
+export const EVIDENCE: readonly Evidence[] = ["assumed", "from_lanes", "estimated", "tagged", "surveyed"];
+export const CLASSES: readonly string[] = [
+  "motorway",
+  "trunk",
+  "primary",
+  "secondary",
+  "tertiary",
+  "unclassified",
+  "residential",
+  "living_street",
+  "service",
+  "track",
+  "busway",
+];
+
+export const verdictWords: Record<VerdictName, { name: string; meaning: string }> = {
+  safe: { name: "Certified", meaning: "proved to fit, within the stated model, widths and error bounds" },
+  unsafe: { name: "Not certified", meaning: "not proved: too narrow, or a hinge or the steering beyond its limit" },
+  forbidden: { name: "Forbidden", meaning: "a tagged limit, access rule or barrier excludes it" },
+  unknown: { name: "Unknown", meaning: "nothing can be said: no width, broken geometry, an unreadable limit" },
+};
+
+export const policyWords: Record<Policy, { name: string; meaning: string }> = {
+  lane: { name: "Own lane", meaning: "Every part of the vehicle stays in its own lane." },
+  direction: { name: "Own direction", meaning: "It may use all lanes of its own direction." },
+  carriageway: { name: "Whole road", meaning: "It may use all that is paved: oncoming traffic has to wait." },
+};
+
+export const evidenceWords: Record<Evidence | "none", string> = {
+  none: "No width",
+  assumed: "Assumed from class",
+  from_lanes: "From number of lanes",
+  estimated: "Tagged as estimated",
+  tagged: "Tagged",
+  surveyed: "Surveyed",
+};
+
+const reasons: Record<string, string> = {
+  "unsafe/width": "Too narrow",
+  "unsafe/articulation": "Hinge beyond its limit",
+  "unsafe/steering_lock": "Steering lock",
+  "forbidden/height": "Height limit",
+  "forbidden/weight": "Weight limit",
+  "forbidden/axle_load": "Axle load limit",
+  "forbidden/length": "Length limit",
+  "forbidden/width": "Width limit",
+  "forbidden/hgv": "No heavy vehicles",
+  "forbidden/access": "No access",
+  "forbidden/barrier": "Barrier",
+  "forbidden/restriction": "Turn restriction",
+  "unknown/width": "No usable width",
+  "unknown/geometry": "Broken geometry",
+  "unknown/cut": "Edge of the extract",
+  "unknown/limit": "Unreadable limit",
+};
+
+export function reasonWords(verdict: string, reason: string | null | undefined): string {
+  if (!reason) return verdictWords[verdict as VerdictName]?.name ?? verdict;
+  return reasons[`${verdict}/${reason}`] ?? reason.replaceAll("_", " ");
+}
+
+/** `living_street` → `Living street`. */
+export function className(highway: string): string {
+  const text = highway.replaceAll("_", " ");
+  return text.charAt(0).toUpperCase() + text.slice(1);
+}
+
+/** `motorway_link` belongs with `motorway`. */
+export function mainClass(highway: string): string {
+  return highway.replace(/_link$/, "");
+}
+
+export function title(road: { ref?: string | null; name?: string | null; highway?: string | null; way_id?: unknown }): string {
+  const texts = [road.ref, road.name].filter(Boolean);
+  if (texts.length > 0) return texts.join(" · ");
+  return road.highway ? `Unnamed ${className(road.highway).toLowerCase()}` : "Unnamed road";
+}
+
+/** Nothing bounds the vehicle below this: the size is no measure of what is missing. */
+const FAR_M = -100;
+
+/** Centimetres to spare or missing, never flattering: `0.31 m to spare`, `0.42 m missing`. */
+export function margin(rsc_m: number): string {
+  if (rsc_m <= FAR_M) return "far too narrow";
+  return rsc_m < 0 ? `${careful(rsc_m)} m missing` : `${careful(rsc_m)} m to spare`;
+}
+
+/** The amount alone: rounded down where there is room, up where it is missing. */
+export function careful(rsc_m: number): string {
+  const hundredths = rsc_m * 100;
+  const whole = rsc_m < 0 ? Math.ceil(-hundredths - 1e-6) : Math.floor(hundredths + 1e-6);
+  return (whole / 100).toFixed(2);
+}
+
+export function signed(rsc_m: number): string {
+  return `${rsc_m < 0 ? "−" : "+"}${careful(rsc_m)} m`;
+}
+
+/** `547 km certified, 23 %` */
+export function certifiedWords(lengths: Record<VerdictName, number>): string {
+  const all = VERDICTS.reduce((sum, name) => sum + lengths[name], 0);
+  return `${kilometres(lengths.safe)} certified, ${percent(lengths.safe, all)}`;
+}
+
+const whole = new Intl.NumberFormat("en", { maximumFractionDigits: 0 });
+
+export function kilometres(metres: number): string {
+  const km = metres / 1000;
+  if (km === 0) return "0 km";
+  if (km < 0.1) return "< 0.1 km";
+  return km < 10 ? `${km.toFixed(1)} km` : `${whole.format(km)} km`;
+}
+
+export function distance(metres: number): string {
+  return metres < 1000 ? `${whole.format(metres)} m` : `${(metres / 1000).toFixed(metres < 10000 ? 2 : 1)} km`;
+}
+
+export function percent(part: number, all: number): string {
+  if (all <= 0 || part <= 0) return "0 %";
+  const share = (100 * part) / all;
+  return share < 0.1 ? "< 0.1 %" : `${share.toFixed(share < 10 ? 1 : 0)} %`;
+}
+
+export function duration(seconds: number): string {
+  const minutes = Math.floor(seconds / 60);
+  const rest = Math.floor(seconds % 60);
+  return minutes >= 60
+    ? `${Math.floor(minutes / 60)} h ${String(minutes % 60).padStart(2, "0")} min`
+    : `${minutes}:${String(rest).padStart(2, "0")} min`;
+}
+
+/** The name of an extract's file as a title: `columbus_oh_us` → `Columbus OH US`. */
+export function regionName(name: string): string {
+  const words = name.split(/[_\s]+/).filter(Boolean);
+  const short = (word: string): boolean => word.length === 2;
+  return words.map((word) => (short(word) ? word.toUpperCase() : word.charAt(0).toUpperCase() + word.slice(1))).join(" ");
+}

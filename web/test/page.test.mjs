@@ -1,0 +1,246 @@
+// The page in a real browser, on the drawn region: what people do, and what may go wrong.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { edgePixel, everything, idle, missing, open } from "./support.mjs";
+
+let all;
+before(async () => {
+  if (!missing) all = await everything();
+});
+after(() => all?.close());
+
+/** A test with a page of its own, after which no error may have been seen and nothing asked of strangers. */
+function inPage(name, hash, run, options) {
+  test(name, { skip: missing }, async () => {
+    const opened = await open(all.browser, all.address, hash, options);
+    try {
+      await idle(opened.page);
+      await run(opened.page, opened);
+      assert.deepEqual(opened.errors, []);
+      assert.deepEqual(opened.strangers, []);
+    } finally {
+      await opened.close();
+    }
+  });
+}
+
+const text = (page, selector) => page.locator(selector).innerText();
+const ask = (path) => fetch(all.address + path).then((answer) => answer.json());
+
+inPage("shows roads, a vehicle and how much of the roads it may use", "", async (page) => {
+  const drawn = await page.evaluate(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-safe", "edge-unsafe"] }).length);
+  assert.ok(drawn > 20, `${drawn} edges`);
+  assert.match(await text(page, ".vehicle-name"), /\S/);
+  await page.waitForSelector(".headline strong");
+  assert.match(await text(page, ".headline"), /km\s+certified/);
+  assert.match(await text(page, ".maplibregl-ctrl-attrib"), /OpenStreetMap/);
+});
+
+inPage("kilometres are those of the API", "#v=AU-ATRIPLE53", async (page) => {
+  const { certificates } = await ask("/api/stats?policy=lane");
+  const km = certificates.filter((row) => row.vehicle === "AU-ATRIPLE53" && row.verdict === "safe").reduce((sum, row) => sum + row.km, 0);
+  await page.waitForSelector(".headline strong");
+  const shown = Number((await text(page, ".headline strong")).replace(/[^0-9.]/g, ""));
+  assert.ok(Math.abs(shown - km) <= 0.5, `${shown} for ${km}`);
+});
+
+inPage("a vehicle is chosen with the keyboard; the map, the link and the numbers follow", "#v=AU-SEMI19", async (page) => {
+  await page.keyboard.press("v");
+  const row = page.locator(".vehicle-row", { hasText: "AU-ATRIPLE53" });
+  await row.focus();
+  const tile = page.waitForResponse((response) => /\/tiles\/lane\/AU-ATRIPLE53\//.test(response.url()));
+  await page.keyboard.press("Enter");
+  assert.equal((await tile).status(), 200);
+  assert.match(page.url(), /v=AU-ATRIPLE53/);
+  assert.match(await text(page, ".vehicle-name"), /road train/i);
+  await page.goBack();
+  await page.waitForFunction(() => globalThis.netcert.store.state.vehicle === "AU-SEMI19");
+});
+
+inPage("hovering tells the number, clicking tells why", "", async (page) => {
+  const at = await edgePixel(page, "unsafe");
+  await page.mouse.move(at.x, at.y);
+  await page.waitForSelector(".hovercard:not([hidden])");
+  assert.match(await text(page, ".hover-number"), /missing|narrow|Hinge|Steering/);
+  await page.mouse.click(at.x, at.y);
+  await page.waitForSelector(".explain .verdict");
+  const id = new URL(page.url()).hash.match(/id=(\d+)/)[1];
+  const { vehicle, policy } = await page.evaluate(() => globalThis.netcert.store.state);
+  const said = await ask(`/api/explain/${id}?vehicle=${vehicle}&policy=${policy}`);
+  assert.equal(said.verdict, "unsafe");
+  const shown = await text(page, ".explain");
+  for (const sentence of said.reasons) assert.ok(shown.includes(sentence.replaceAll("`", "")), sentence);
+  assert.ok(shown.includes(said.scope.replaceAll("`", "")), "the scope is said");
+  if (said.picture) await page.waitForSelector(".scene img");
+  await page.keyboard.press("Escape");
+  await page.waitForSelector("#drawer", { state: "hidden" });
+});
+
+inPage("verdicts can be hidden, and the filter is part of the link", "", async (page) => {
+  await page.locator("[data-verdict=unsafe]").uncheck();
+  await page.waitForFunction(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-unsafe"] }).length === 0);
+  assert.match(page.url(), /hide=unsafe/);
+  await page.locator("[data-verdict=unsafe]").check();
+  await page.waitForFunction(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-unsafe"] }).length > 0);
+});
+
+inPage("a road is found by name and by id", "", async (page) => {
+  const at = await edgePixel(page, "safe");
+  await page.keyboard.press("/");
+  await page.keyboard.type(at.id);
+  await page.waitForSelector(".hits [role=option]");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector(".explain .verdict");
+  assert.match(page.url(), new RegExp(`id=${at.id}`));
+  const name = await page.evaluate(() => {
+    const named = globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-safe", "edge-unsafe"] });
+    return named.map((feature) => feature.properties.name).find(Boolean);
+  });
+  await page.keyboard.press("/");
+  await page.keyboard.type(name);
+  await page.waitForFunction((wanted) => document.querySelector(".hits")?.innerText.includes(wanted), name);
+});
+
+inPage("a search without result says so", "", async (page) => {
+  await page.keyboard.press("/");
+  await page.keyboard.type("no such road anywhere");
+  await page.waitForSelector(".hits .nothing");
+});
+
+inPage("a link to an edge that does not exist is answered in words", "#id=1234567890123", async (page, opened) => {
+  await page.waitForSelector(".explain .problem");
+  assert.match(await text(page, ".explain .problem"), /1234567890123/);
+  // The browser itself reports the refusal.
+  assert.ok(opened.errors.every((error) => /404/.test(error)), opened.errors.join("\n"));
+  opened.errors.length = 0;
+  const at = await edgePixel(page, "safe");
+  await page.mouse.click(at.x, at.y);
+  await page.waitForSelector(".explain .verdict");
+});
+
+inPage("a spoilt link shows the page as it is at first", "#v=nobody&policy=x&at=1,2&id=%27%3B--&route=a;b&hide=<b>", async (page) => {
+  assert.equal(await page.evaluate(() => globalThis.netcert.store.state.selected), null);
+  await page.waitForSelector(".headline strong");
+});
+
+/** Two places with a certified route between them: the ends of a certified edge that is long enough. */
+async function routed(page) {
+  return page.evaluate(() => {
+    const edges = globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-safe"] });
+    const longest = edges.sort((a, b) => b.properties.length_m - a.properties.length_m)[0];
+    const { geometry } = longest;
+    const line = geometry.type === "LineString" ? geometry.coordinates : geometry.coordinates[0];
+    const along = (share) => {
+      const at = share * (line.length - 1);
+      const [a, b] = [line[Math.floor(at)], line[Math.ceil(at)]];
+      return a.map((degrees, axis) => degrees + (at % 1) * (b[axis] - degrees));
+    };
+    return [along(0.3), along(0.7)];
+  });
+}
+
+inPage("two clicks give a certified route, and the drive runs in step with the strip", "#v=AU-SEMI19&policy=carriageway", async (page) => {
+  await page.keyboard.press("r");
+  await page.waitForSelector(".route .prompt");
+  const ends = await routed(page);
+  const pixels = await page.evaluate(([a, b]) => {
+    const { map } = globalThis.netcert;
+    const box = [Math.min(a[0], b[0]), Math.min(a[1], b[1]), Math.max(a[0], b[0]), Math.max(a[1], b[1])];
+    map.fitBounds(box, { padding: { left: 420, right: 480, top: 150, bottom: 150 }, maxZoom: 16, animate: false });
+    return [map.project(a), map.project(b)].map(({ x, y }) => ({ x, y }));
+  }, ends);
+  for (const { x, y } of pixels) await page.mouse.click(x, y);
+  await page.waitForSelector(".route .verdict", { timeout: 60_000 });
+  assert.match(await text(page, ".route"), /Certified as a whole/);
+  assert.match(await text(page, ".route .scope"), /no permit/);
+  assert.match(page.url(), /route=[-\d.,;]+/);
+  await page.click("text=Drive it");
+  await page.waitForSelector(".dock");
+  const place = () => page.evaluate(() => Number(document.querySelector(".strip input").value));
+  const from = await place();
+  await page.waitForFunction((start) => Number(document.querySelector(".strip input").value) > start + 5, from, { timeout: 30_000 });
+  assert.ok(await page.evaluate(() => Boolean(globalThis.netcert.map.getLayer("own-drive"))));
+  // Another theme in between leaves the drive where it is.
+  await page.keyboard.press("d");
+  await page.waitForFunction(() => document.documentElement.dataset.theme === "dark" && globalThis.netcert.map.getLayer("own-drive"));
+  await page.keyboard.press("Space");
+  const stopped = await place();
+  await page.waitForTimeout(300);
+  assert.equal(await place(), stopped);
+  await page.keyboard.press("Escape");
+  await page.waitForSelector(".dock", { state: "detached" });
+  assert.ok(await page.evaluate(() => !globalThis.netcert.map.getLayer("own-drive")));
+});
+
+inPage("two vehicles side by side move as one", "#v=AU-SEMI19&with=AU-ATRIPLE53", async (page) => {
+  await page.waitForFunction(() => document.querySelectorAll(".maplibregl-canvas").length === 2);
+  await page.waitForSelector(".pane-head .vehicle-certified");
+  const seen = await page.evaluate(async () => {
+    const { map } = globalThis.netcert;
+    map.jumpTo({ zoom: map.getZoom() + 1 });
+    return document.querySelectorAll(".maplibregl-ctrl-scale").length === 2 && [...document.querySelectorAll(".maplibregl-ctrl-scale")].map((scale) => scale.textContent);
+  });
+  assert.equal(seen[0], seen[1]);
+  await page.keyboard.press("Escape");
+  await page.waitForFunction(() => document.querySelectorAll(".maplibregl-canvas").length === 1);
+});
+
+inPage("the region in numbers, for every vehicle", "", async (page) => {
+  await page.keyboard.press("n");
+  await page.waitForSelector(".stats table");
+  const rows = await page.locator(".stats table >> nth=0 >> tbody >> tr").count();
+  assert.equal(rows, 2);
+  assert.match(await text(page, ".stats"), /What limits most/);
+  assert.match(page.url(), /stats=1/);
+  await page.keyboard.press("Escape");
+  await page.waitForFunction(() => !location.hash.includes("stats"));
+});
+
+inPage("`safe` is never said without its scope", "", async (page) => {
+  await page.keyboard.press("?");
+  await page.waitForSelector(".help[open]");
+  await page.keyboard.press("Escape");
+  const at = await edgePixel(page, "safe");
+  await page.mouse.click(at.x, at.y);
+  await page.waitForSelector(".explain .verdict");
+  const bare = await page.evaluate(() => {
+    const found = [];
+    const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    while (walker.nextNode()) {
+      const { parentElement: parent, data } = walker.currentNode;
+      if (/\bsafe\b/i.test(data) && !parent.closest(".scope, script, noscript")) found.push(data);
+    }
+    return found;
+  });
+  // In a sentence of the server's about another strip of road; the scope stands below in the same panel.
+  const scope = await page.locator(".explain .scope").count();
+  assert.ok(bare.length === 0 || scope === 1, bare.join("\n"));
+  assert.ok(!(await text(page, "#side .legend")).match(/\bsafe\b/i));
+});
+
+inPage("narrow screens: nothing beside the screen, the legend unfolds", "", async (page) => {
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+  assert.ok(wide <= 390, `${wide} px`);
+  assert.ok(await page.locator(".legend").isHidden());
+  await page.click(".fold");
+  assert.ok(await page.locator(".legend").isVisible());
+}, { viewport: { width: 390, height: 780 } });
+
+inPage("every control has a name, and dark follows the system", "", async (page) => {
+  assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "dark");
+  const nameless = await page.evaluate(() => {
+    const all = [...document.querySelectorAll("button, input, select, [role=img]")];
+    const name = (element) => element.getAttribute("aria-label") || element.textContent.trim() || element.labels?.[0]?.textContent.trim() || element.title;
+    return all.filter((element) => !name(element)).map((element) => element.outerHTML.slice(0, 120));
+  });
+  assert.deepEqual(nameless, []);
+}, { colorScheme: "dark" });
+
+test("the page may run nothing but its own scripts", { skip: missing }, async () => {
+  const answer = await fetch(`${all.address}/`);
+  const policy = answer.headers.get("content-security-policy") ?? "";
+  assert.match(policy, /default-src 'none'/);
+  assert.match(policy, /script-src 'self'(;|$)/);
+  assert.doesNotMatch(policy, /script-src[^;]*unsafe/);
+});

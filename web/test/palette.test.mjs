@@ -1,0 +1,70 @@
+// Nobody has to tell two verdicts apart by a hue that they cannot see. Deuteranopia and protanopia are simulated with the
+// matrices of Viénot, Brettel and Mollon (1999) in linear sRGB; differences are ΔE of CIELAB (1976).
+
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { test } from "node:test";
+import { join } from "node:path";
+import { load, root } from "./support.mjs";
+
+const { palettes } = await load("map/palette.ts");
+
+const simulations = {
+  normal: [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+  protanopia: [[0.11238, 0.88762, 0], [0.11238, 0.88762, 0], [0.00401, -0.00401, 1]],
+  deuteranopia: [[0.29275, 0.70725, 0], [0.29275, 0.70725, 0], [-0.02234, 0.02234, 1]],
+};
+
+const linear = (hex) => [1, 3, 5].map((at) => {
+  const c = Number.parseInt(hex.slice(at, at + 2), 16) / 255;
+  return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
+});
+
+function lab(rgb) {
+  const [r, g, b] = rgb.map((c) => Math.min(Math.max(c, 0), 1));
+  const xyz = [(0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.9505, 0.2126 * r + 0.7152 * g + 0.0722 * b, (0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.089];
+  const [x, y, z] = xyz.map((t) => (t > 0.008856 ? Math.cbrt(t) : 7.787 * t + 16 / 116));
+  return [116 * y - 16, 500 * (x - y), 200 * (y - z)];
+}
+
+const seen = (hex, matrix) => lab(matrix.map((row) => row.reduce((sum, part, i) => sum + part * linear(hex)[i], 0)));
+const difference = (a, b, matrix) => Math.hypot(...seen(a, matrix).map((value, i) => value - seen(b, matrix)[i]));
+
+for (const [theme, palette] of Object.entries(palettes)) {
+  for (const [name, matrix] of Object.entries(simulations)) {
+    test(`${theme}: room and missing stay apart under ${name}`, () => {
+      for (const room of palette.room) {
+        for (const missing of palette.missing) {
+          const apart = difference(room, missing, matrix);
+          assert.ok(apart > 20, `${room} and ${missing}: ΔE ${apart.toFixed(1)}`);
+        }
+      }
+    });
+    test(`${theme}: steps of one scale can be told apart under ${name}`, () => {
+      for (const scale of [palette.room, palette.missing]) {
+        for (let i = 0; i + 1 < scale.length; i++) {
+          const apart = difference(scale[i], scale[i + 1], matrix);
+          assert.ok(apart > 8, `${scale[i]} and ${scale[i + 1]}: ΔE ${apart.toFixed(1)}`);
+        }
+      }
+    });
+  }
+  test(`${theme}: every line stands out from the paper`, () => {
+    for (const colour of [...palette.room, ...palette.missing, palette.forbidden, palette.unknown]) {
+      const apart = difference(colour, palette.paper, simulations.normal);
+      assert.ok(apart > 25, `${colour} on ${palette.paper}: ΔE ${apart.toFixed(1)}`);
+    }
+  });
+}
+
+test("the style sheet's verdicts are colours of the map", async () => {
+  const css = await readFile(join(root, "web/src/styles/tokens.css"), "utf8");
+  const [light, dark] = css.split('[data-theme="dark"]');
+  for (const [text, palette] of [[light, palettes.light], [dark, palettes.dark]]) {
+    const token = (name) => text.match(new RegExp(`--${name}: (#[0-9a-f]{6})`))?.[1];
+    assert.ok(palette.room.includes(token("safe")));
+    assert.ok(palette.missing.includes(token("unsafe")));
+    assert.equal(token("forbidden"), palette.forbidden);
+    assert.equal(token("unknown"), palette.unknown);
+  }
+});

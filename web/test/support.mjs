@@ -1,0 +1,150 @@
+// What the browser tests stand on: a database of the drawn region, a running `netcert serve`, a browser, and a page that
+// remembers every error and every request that leaves the machine.
+//
+// Environment: NETCERT the program, CHROMIUM the browser, NETCERT_TEST_DB a database instead of the drawn region's.
+
+import { execFileSync, spawn } from "node:child_process";
+import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+import { build } from "esbuild";
+import { chromium } from "playwright-core";
+import { proxy } from "../tools/proxy.mjs";
+
+export const root = join(dirname(fileURLToPath(import.meta.url)), "../..");
+
+const first = (paths) => paths.find((path) => path && existsSync(path));
+export const program = first([process.env.NETCERT, join(root, "target/release/netcert"), join(root, "target/debug/netcert")]);
+export const browserPath = first([process.env.CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"]);
+
+/** Why browser tests cannot run here, or false. */
+export const missing = !program
+  ? "no netcert program: cargo build --release"
+  : !browserPath
+    ? "no Chromium: apt install chromium, or set CHROMIUM"
+    : false;
+
+/** A TypeScript module of the page, loaded as it is built. */
+export async function load(path) {
+  const entry = join(root, "web/src", path);
+  const made = await build({ entryPoints: [entry], bundle: true, format: "esm", write: false, platform: "neutral", mainFields: ["module"] });
+  return import(`data:text/javascript;base64,${Buffer.from(made.outputFiles[0].contents).toString("base64")}`);
+}
+
+/** The drawn region, certified for two vehicles under two policies. */
+export function demoDatabase(folder) {
+  if (process.env.NETCERT_TEST_DB) return process.env.NETCERT_TEST_DB;
+  const db = join(folder, "demo.gpkg");
+  const run = (...args) => execFileSync(program, ["--quiet", ...args], { stdio: ["ignore", "ignore", "inherit"] });
+  const vehicles = ["--vehicle", "AU-SEMI19", "--vehicle", "AU-ATRIPLE53"];
+  run("ingest", join(root, "data/demo.osm.pbf"), "--db", db, ...vehicles);
+  run("certify", "--db", db, ...vehicles, "--corridor", "carriageway");
+  return db;
+}
+
+/**
+ * Starts `netcert serve` on a free port, and before it the page of `dist`: what is tested is what would be committed, whatever
+ * page the program was built with.
+ */
+export async function serve(db, ...more) {
+  const child = spawn(program, ["serve", "--db", db, "--addr", "127.0.0.1:0", ...more], { stdio: ["ignore", "pipe", "pipe"] });
+  let said = "";
+  child.stderr.on("data", (chunk) => (said += chunk));
+  const address = await new Promise((done, failed) => {
+    let out = "";
+    child.stdout.on("data", (chunk) => {
+      out += chunk;
+      const found = out.match(/http:\/\/[^\s]+/);
+      if (found) done(found[0].replace(/\/$/, ""));
+    });
+    child.on("exit", (code) => failed(new Error(`netcert serve ended with ${code}: ${said}`)));
+  });
+  const page = await proxy(address, 0);
+  const stop = () =>
+    new Promise((done) => {
+      page.close();
+      page.closeAllConnections();
+      child.on("exit", done);
+      child.kill("SIGINT");
+    });
+  return { address: `http://127.0.0.1:${page.address().port}`, direct: address, stop };
+}
+
+export function launch() {
+  return chromium.launch({
+    executablePath: browserPath,
+    args: [
+      "--no-sandbox",
+      "--disable-quic",
+      "--no-first-run",
+      "--disable-background-networking",
+      "--disable-component-update",
+      "--disable-sync",
+      // WebGL without a graphics card.
+      "--use-angle=swiftshader",
+      "--enable-unsafe-swiftshader",
+      "--ignore-gpu-blocklist",
+    ],
+  });
+}
+
+/** Database, server and browser together; `close` ends all three. */
+export async function everything() {
+  const folder = mkdtempSync(join(tmpdir(), "netcert-page-"));
+  const server = await serve(demoDatabase(folder));
+  const browser = await launch();
+  const close = async () => {
+    await browser.close();
+    await server.stop();
+    rmSync(folder, { recursive: true, force: true });
+  };
+  return { address: server.address, direct: server.direct, browser, close };
+}
+
+/** Opens the page and waits until the map is drawn. `errors` and `strangers` fill as it is used. */
+export async function open(browser, address, hash = "", options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, reducedMotion: "no-preference", ...options });
+  const page = await context.newPage();
+  const errors = [];
+  const strangers = [];
+  page.on("console", (message) => {
+    if (["error", "warning"].includes(message.type()) && !harmless(message.text())) errors.push(message.text());
+  });
+  page.on("pageerror", (error) => errors.push(String(error)));
+  page.on("request", (request) => {
+    if (!request.url().startsWith(address) && !/^(data|blob):/.test(request.url())) strangers.push(request.url());
+  });
+  await page.goto(`${address}/${hash}`);
+  await page.waitForFunction(() => globalThis.netcert?.map.loaded(), null, { timeout: 60_000 });
+  return { page, errors, strangers, close: () => context.close() };
+}
+
+/** Of software rendering, not of the page. */
+function harmless(text) {
+  return /GPU stall|GL Driver Message|swiftshader|WebGL: CONTEXT_LOST|Automatic fallback to software/i.test(text);
+}
+
+/** Waits until tiles have come and nothing moves. */
+export function idle(page) {
+  return page.waitForFunction(() => {
+    const { map } = globalThis.netcert;
+    return map.loaded() && map.areTilesLoaded() && !map.isMoving();
+  });
+}
+
+/** A pixel on an edge with this verdict, away from the panels; `null` if there is none in sight. */
+export function edgePixel(page, verdict) {
+  return page.evaluate((wanted) => {
+    const { map } = globalThis.netcert;
+    const layer = `edge-${wanted}`;
+    const canvas = map.getCanvas().getBoundingClientRect();
+    for (let y = canvas.height * 0.2; y < canvas.height * 0.8; y += 3) {
+      for (let x = canvas.width * 0.35; x < canvas.width * 0.65; x += 3) {
+        const found = map.queryRenderedFeatures([x, y], { layers: [layer] });
+        if (found.length > 0) return { x: canvas.left + x, y: canvas.top + y, id: String(found[0].properties.edge_id) };
+      }
+    }
+    return null;
+  }, verdict);
+}
