@@ -9,11 +9,13 @@ mod clock;
 mod corridor;
 mod database;
 mod explain;
+mod export;
 mod fitted;
 mod fleet;
 mod how;
 mod ingest;
 mod manoeuvres;
+mod ondemand;
 pub(crate) mod output;
 mod paper;
 mod place;
@@ -71,6 +73,7 @@ pub(crate) enum Verb {
     Route(route::Route),
     Reach(reach::Reach),
     Corridor(corridor::Corridor),
+    Export(export::Export),
     Vehicles(vehicles::Vehicles),
     Manoeuvres(manoeuvres::Manoeuvres),
     Paper(paper::Paper),

@@ -2,20 +2,19 @@
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use netcert::osm::facts::{Policy, WidthSource};
-use netcert::pipeline::{self, Settings};
 use netcert::store::{Area, Bounds, Database, EdgeRow, Named, QueryOptions, TurnQuery, VerdictKind, verdict_words};
 use netcert::vehicle::Vehicle;
-use serde_json::json;
 
 use super::Session;
 use super::area;
 use super::database::DatabaseArgs;
-use super::fleet::{self, Fleet};
+use super::fleet;
 use super::how;
+use super::ondemand::Wanted;
 use super::output::{km, results};
 use super::rows::{Head, Sink};
 use super::turn_rows;
@@ -95,18 +94,12 @@ impl Query {
             (None, bbox) => bbox.map(Area::Bounds),
         };
         let path = self.db.path()?;
-        let mut database = Database::open(&path)?;
-        let mut settings = how::recorded(&mut database)?;
+        let mut settings = how::recorded(&mut Database::open(&path)?)?;
         settings.policy = self.corridor.unwrap_or(settings.policy);
-        let sets = database.certified()?;
-        let there = sets.iter().any(|set| set.vehicle_id == self.vehicle && set.policy == settings.policy);
         settings.turns |= self.turns;
-        if !there || self.turns && !database.has_turns(&self.vehicle, settings.policy)? {
-            let vehicle = self.vehicle_to_certify(&mut database)?;
-            database.close()?;
-            self.certify(session, &path, &settings, &vehicle)?;
-            database = Database::open(&path)?;
-        }
+        let (vehicle, vehicle_files) = (self.vehicle.as_str(), self.vehicle_file.as_slice());
+        let wanted = Wanted { vehicle, vehicle_files, settings: &settings, with_turns: self.turns, command: "query" };
+        let mut database = wanted.open(session, &path)?;
         let vehicle = fleet::kept(&mut database, &self.vehicle)?;
         if self.turns {
             return self.tell_turns(session, &mut database, vehicle.as_ref(), settings.policy, area);
@@ -150,33 +143,6 @@ impl Query {
         out.flush()?;
         session.progress.say(&turn_rows::totals(&rows));
         session.progress.say(&head.scope);
-        Ok(())
-    }
-
-    /// The database's own definition comes first: its other certificates were made with it.
-    fn vehicle_to_certify(&self, database: &mut Database) -> anyhow::Result<Vehicle> {
-        let fleet = Fleet::new(&self.vehicle_file)?;
-        match fleet::kept(database, &self.vehicle)? {
-            Some(vehicle) if !fleet.own.contains(&self.vehicle) => Ok(vehicle),
-            _ => Ok(fleet.catalogue.get(&self.vehicle)?.clone()),
-        }
-    }
-
-    fn certify(&self, session: &Session, path: &Path, settings: &Settings, vehicle: &Vehicle) -> anyhow::Result<()> {
-        let (id, db, policy) = (&vehicle.id, path.display(), settings.policy.name());
-        session.progress.say(&format!("{id} is not certified in {db} under the {policy} policy yet: doing it now"));
-        let mut parameters = how::parameters(settings);
-        parameters.insert("vehicles".into(), json!([id]));
-        let ask = pipeline::Certify {
-            db: path,
-            vehicles: &[vehicle],
-            settings,
-            command: "query",
-            parameters: parameters.into(),
-            now: &|| session.clock.now(),
-        };
-        let summary = pipeline::certify(&ask, &session.progress)?;
-        session.progress.summary(&summary);
         Ok(())
     }
 }

@@ -20,6 +20,7 @@ mod session;
 mod sets;
 mod spool;
 mod stats;
+mod stream;
 mod turns;
 mod writer;
 
@@ -33,5 +34,6 @@ pub use plans::StoredPlan;
 pub use query::{Area, EdgeRow, QueryOptions, Rows, VerdictKind};
 pub use records::{Run, VehicleRecord};
 pub use stats::{Stats, StatsRow};
+pub use stream::{EdgeFacts, Streamed, TurnStep};
 pub use turns::{TurnCertificate, TurnCount, TurnQuery, TurnRow};
 pub use writer::{VehicleNo, Writer};
