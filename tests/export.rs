@@ -11,7 +11,6 @@ use netcert::network::MovementKind;
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::pipeline::Reporter;
 use netcert::route::{BARRED, Permits};
-use netcert::store::Database;
 use program::{Place, demo};
 
 struct Silent;

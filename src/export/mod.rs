@@ -21,6 +21,7 @@ mod permit;
 mod place;
 mod source;
 pub mod target;
+mod ways;
 
 pub use error::ExportError;
 pub use header::{Header, Provenance};

@@ -6,6 +6,7 @@
 
 mod columns;
 mod csv;
+mod osrm;
 
 use super::{ExportError, Layout, Place, Source};
 
@@ -51,7 +52,7 @@ pub trait Target: Sync {
 }
 
 /// All targets, as help lists them.
-pub const TARGETS: &[&dyn Target] = &[&csv::Csv];
+pub const TARGETS: &[&dyn Target] = &[&osrm::Osrm, &csv::Csv];
 
 /// The target of this name.
 #[must_use]
