@@ -95,6 +95,19 @@ impl Bits {
         self.len += 1;
     }
 
+    /// So many, none set.
+    #[must_use]
+    pub fn unset(len: usize) -> Self {
+        Self { words: vec![0; len.div_ceil(64)], len }
+    }
+
+    /// Sets one; beyond the end nothing happens.
+    pub fn set(&mut self, index: u32) {
+        if let Some(word) = self.words.get_mut(index as usize / 64).filter(|_| (index as usize) < self.len) {
+            *word |= 1 << (index % 64);
+        }
+    }
+
     /// Whether it is set; beyond the end none is.
     #[must_use]
     pub fn get(&self, index: u32) -> bool {

@@ -14,7 +14,7 @@ use crate::store::{EdgeFacts, StoreError, Streamed};
 use super::Source;
 
 /// A stretch of a way between two junctions.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Piece {
     /// Places of its first and last node in the way's references.
     pub(super) first: usize,
@@ -22,10 +22,12 @@ pub(super) struct Piece {
     pub(super) last: usize,
     /// Indices of its edges along the way and against it, where they exist.
     pub(super) edges: [Option<u32>; 2],
+    /// Their RSC, metres.
+    pub(super) rsc_m: [Option<f64>; 2],
 }
 
 /// What the network has of a way.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum OnWay {
     /// Nothing: it is no road of the network.
     Nothing,
@@ -101,10 +103,11 @@ fn on_way(rows: &[EdgeFacts], refs: &[i64]) -> OnWay {
             return OnWay::Unclear(rows.iter().map(|row| row.edge).collect());
         };
         at = place + both[0].positions as usize - 1;
-        let edge = |direction| both.iter().find(|row| row.direction == direction).map(|row| row.edge);
-        // The last of the repeats of a node belongs to what comes after it.
-        let edges = [edge(Direction::Forward), edge(Direction::Backward)];
-        pieces.push(Piece { first: line[place].0, last: line[at].0, edges });
+        let of = |direction| both.iter().find(|row| row.direction == direction);
+        let [along, against] = [of(Direction::Forward), of(Direction::Backward)];
+        let (edges, rsc_m) =
+            ([along, against].map(|row| row.map(|row| row.edge)), [along, against].map(|row| row?.rsc_m));
+        pieces.push(Piece { first: line[place].0, last: line[at].0, edges, rsc_m });
     }
     OnWay::Pieces(pieces)
 }

@@ -6,7 +6,9 @@
 
 mod columns;
 mod csv;
+mod osm_pbf;
 mod osrm;
+mod valhalla;
 
 use super::{ExportError, Layout, Place, Source};
 
@@ -52,7 +54,7 @@ pub trait Target: Sync {
 }
 
 /// All targets, as help lists them.
-pub const TARGETS: &[&dyn Target] = &[&osrm::Osrm, &csv::Csv];
+pub const TARGETS: &[&dyn Target] = &[&osrm::Osrm, &valhalla::Valhalla, &osm_pbf::OsmPbf, &csv::Csv];
 
 /// The target of this name.
 #[must_use]

@@ -120,7 +120,7 @@ impl Tables<'_, '_> {
     fn pieces(&mut self, refs: &[i64], pieces: &[Piece]) -> Result<(), ExportError> {
         let mut done = 0;
         for piece in pieces {
-            let &Piece { first, last, edges } = piece;
+            let &Piece { first, last, edges, .. } = piece;
             self.close(refs, done, first, [true; 2])?;
             done = last;
             let permitted = edges.map(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge)));
