@@ -9,6 +9,8 @@
 //! | `permit` | the rule, and which edges and turns it lets through |
 //! | `header` | what every output says of itself |
 //! | `source` | rows from the database, each with its permit |
+//! | `rings` | the arcs of a passage |
+//! | `ways` | the extract's ways beside the network's edges |
 //! | `place` | where an output is written: a file, a folder, a stream |
 //! | `target` | one file or folder a target |
 //!
@@ -19,6 +21,7 @@ mod error;
 mod header;
 mod permit;
 mod place;
+mod rings;
 mod source;
 pub mod target;
 mod ways;

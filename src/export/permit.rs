@@ -54,10 +54,13 @@ impl PermitPolicy {
     /// Why an edge is refused; `None`: it is permitted.
     #[must_use]
     pub fn edge(&self, permit: Permit, width: Option<WidthSource>) -> Option<Refusal> {
-        self.certificate(permit).or_else(|| {
-            let enough = self.min_width_source.is_none_or(|least| width.is_some_and(|source| source >= least));
-            (!enough).then_some(Refusal::WidthSource)
-        })
+        self.certificate(permit).or_else(|| (!self.width(width)).then_some(Refusal::WidthSource))
+    }
+
+    /// Whether a width is known as well as asked for.
+    #[must_use]
+    pub fn width(&self, source: Option<WidthSource>) -> bool {
+        self.min_width_source.is_none_or(|least| source.is_some_and(|source| source >= least))
     }
 
     /// Why a turn is refused whose edges are `permitted` or not; `None`: it is permitted.

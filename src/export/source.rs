@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 
 use super::ExportError;
 use super::header::{Header, Provenance};
-use super::permit::{PermitPolicy, Permitted, Refusal};
+use super::permit::{Bits, PermitPolicy, Permitted, Refusal};
+use super::rings::Rings;
 use crate::osm::facts::Policy;
 use crate::pipeline::Reporter;
 use crate::route::Permit;
@@ -158,16 +159,21 @@ fn check_certified(database: &mut Database, ask: &Ask) -> Result<(), ExportError
 
 fn permitted(database: &mut Database, ask: &Ask, reporter: &dyn Reporter) -> Result<Permitted, ExportError> {
     let mut out = Permitted::default();
+    // By edge: its width is known well enough. A passage needs that of its arcs, which need no permit of their own.
+    let mut known = Bits::default();
+    let rings = Rings::new(database.rings()?);
     reporter.begin("permits", 0);
     for facts in told(reporter, database.edge_facts(&ask.vehicle, ask.policy)?) {
         let facts = facts?;
         let refusal = ask.rule.edge(Permit { verdict: facts.verdict, rsc_m: facts.rsc_m }, facts.width_source);
         out.edges.push(refusal.is_none());
+        known.push(ask.rule.width(facts.width_source));
         out.edge_tally.count(refusal);
     }
     for step in told(reporter, database.turn_steps(&ask.vehicle, ask.policy)?) {
         let step = step?;
-        let both = out.edges.get(step.from) && out.edges.get(step.to);
+        let arcs = |arcs| rings.through(arcs).is_some_and(|arcs| arcs.iter().all(|&arc| known.get(arc)));
+        let both = out.edges.get(step.from) && out.edges.get(step.to) && step.arcs.is_none_or(arcs);
         let refusal = ask.rule.turn(Permit { verdict: step.verdict, rsc_m: step.rsc_m }, both);
         out.turns.push(refusal.is_none());
         out.turn_tally.count(refusal);

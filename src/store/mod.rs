@@ -34,6 +34,6 @@ pub use plans::StoredPlan;
 pub use query::{Area, EdgeRow, QueryOptions, Rows, VerdictKind};
 pub use records::{Run, VehicleRecord};
 pub use stats::{Stats, StatsRow};
-pub use stream::{EdgeFacts, Streamed, TurnStep};
+pub use stream::{EdgeFacts, StraightOn, Streamed, TurnStep};
 pub use turns::{TurnCertificate, TurnCount, TurnQuery, TurnRow};
 pub use writer::{VehicleNo, Writer};

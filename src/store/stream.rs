@@ -76,6 +76,9 @@ pub struct TurnStep {
     pub rsc_m: Option<f64>,
 }
 
+/// Straight on along a stroke; `None`: the stroke ends.
+pub type StraightOn = (u32, Option<u32>);
+
 impl Database {
     /// Every edge's facts for a vehicle. It must be certified under this policy: see [`Database::query`].
     ///
@@ -132,6 +135,36 @@ impl Database {
         })
     }
 
+    /// Every edge that goes on straight into another, and that one, by stroke.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn straight_on(&mut self) -> Result<Streamed<'_, StraightOn>, StoreError> {
+        let sql = "SELECT a.fid, coalesce(b.fid, CASE WHEN s.closed THEN \
+                   (SELECT fid FROM stroke_edge WHERE position = s.edge_start + 1) END) \
+                   FROM stroke AS s JOIN stroke_edge AS a ON a.position > s.edge_start AND a.position <= s.edge_end \
+                   LEFT JOIN stroke_edge AS b ON b.position = a.position + 1 AND b.position <= s.edge_end \
+                   ORDER BY s.stroke_no, a.position";
+        let stream = sqlx::query(sql).fetch(&mut self.session.connection);
+        Ok(Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read: straight_on })
+    }
+
+    /// The arcs of roundabouts (indices into `Network::edges`), each ring in driving order, all at once: there are few.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn rings(&mut self) -> Result<Vec<Vec<u32>>, StoreError> {
+        self.session.run(async |c| {
+            let sql = "SELECT s.stroke_no, a.fid \
+                       FROM stroke AS s JOIN stroke_edge AS a ON a.position > s.edge_start AND a.position <= s.edge_end \
+                       JOIN edge AS e ON e.fid = a.fid JOIN road AS r ON r.road_no = e.road_no \
+                       WHERE r.roundabout ORDER BY s.stroke_no, a.position";
+            let rows: Vec<(i64, u32)> = sqlx::query_as(sql).fetch_all(c).await?;
+            let arcs = |rows: &[(i64, u32)]| rows.iter().map(|row| row.1.saturating_sub(1)).collect();
+            Ok(rows.chunk_by(|a, b| a.0 == b.0).map(arcs).collect())
+        })
+    }
+
     fn streamed<T>(
         &mut self,
         sql: String,
@@ -143,6 +176,11 @@ impl Database {
         let stream = query.fetch(&mut self.session.connection);
         Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read }
     }
+}
+
+fn straight_on(row: &SqliteRow) -> Sql<StraightOn> {
+    let next: Option<u32> = row.try_get(1)?;
+    Ok((row.try_get::<u32, _>(0)?.saturating_sub(1), next.map(|fid| fid.saturating_sub(1))))
 }
 
 /// A geometry's bytes before its positions, and those of one position: see `blob`.

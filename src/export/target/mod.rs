@@ -8,6 +8,7 @@ mod columns;
 mod csv;
 mod osm_pbf;
 mod osrm;
+mod pgrouting;
 mod valhalla;
 
 use super::{ExportError, Layout, Place, Source};
@@ -54,7 +55,8 @@ pub trait Target: Sync {
 }
 
 /// All targets, as help lists them.
-pub const TARGETS: &[&dyn Target] = &[&osrm::Osrm, &valhalla::Valhalla, &osm_pbf::OsmPbf, &csv::Csv];
+pub const TARGETS: &[&dyn Target] =
+    &[&osrm::Osrm, &valhalla::Valhalla, &osm_pbf::OsmPbf, &pgrouting::PgRouting, &csv::Csv];
 
 /// The target of this name.
 #[must_use]

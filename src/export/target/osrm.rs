@@ -160,7 +160,7 @@ impl Tables<'_, '_> {
         Ok(writeln!(self.turns, "{from},{via},{to},{PENALTY_S}")?)
     }
 
-    /// Turns between permitted edges that are refused, and restrictions over ways by their first step.
+    /// Turns between permitted edges that are refused, and restrictions, those over ways by their first step.
     fn turns(&mut self) -> Result<(), ExportError> {
         let source = self.source;
         let permitted = &source.permitted;
@@ -172,7 +172,7 @@ impl Tables<'_, '_> {
                 self.refuse(step.from, step.to)?;
             }
         }
-        for sequence in database.forbidden_sequences()?.iter().filter(|edges| edges.len() > 2) {
+        for sequence in database.forbidden_sequences()? {
             if let (true, [from, to, ..]) =
                 (sequence.iter().all(|&edge| permitted.edges.get(edge)), sequence.as_slice())
             {

@@ -50,6 +50,13 @@ pub(in crate::export::target) fn rewrite(
     rewriter.out.close()
 }
 
+/// A way and the node at which it ends.
+#[derive(Debug, Clone, Copy)]
+struct End {
+    way: i64,
+    node: i64,
+}
+
 /// Kinds of objects, in the order of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Stage {
@@ -63,8 +70,8 @@ struct Rewriter<'s, 'r> {
     flavour: Flavour,
     cuts: Cuts,
     splits: Splits,
-    /// By edge of which a relation will speak: the ways at its first and at its last node, in direction of travel.
-    ends: FxHashMap<u32, [i64; 2]>,
+    /// By edge of which a relation will speak: way and node at its first and at its last node, in direction of travel.
+    ends: FxHashMap<u32, [End; 2]>,
     new_ways: Spool,
     new_relations: Spool,
     /// Ids of the next new way and relation.
@@ -209,20 +216,17 @@ impl Rewriter<'_, '_> {
             let way = |within: &dyn Fn(&Part) -> bool| {
                 parts.iter().zip(ids).find(|(part, _)| within(part)).map_or(0, |(_, &id)| id)
             };
-            let first = way(&|part| (part.first..part.last).contains(&piece.first));
-            let last = way(&|part| part.first < piece.last && piece.last <= part.last);
+            let end = |way, place: usize| End { way, node: refs.get(place).copied().unwrap_or_default() };
+            let first = end(way(&|part| (part.first..part.last).contains(&piece.first)), piece.first);
+            let last = end(way(&|part| part.first < piece.last && piece.last <= part.last), piece.last);
             for (edge, ends) in piece.edges.into_iter().zip([[first, last], [last, first]]) {
                 if let Some(edge) = edge.filter(|&edge| self.cuts.speaks_of(edge)) {
                     self.ends.insert(edge, ends);
                 }
             }
             if piece.edges.iter().all(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge))) {
-                for (id, place) in [(first, piece.first), (last, piece.last)] {
-                    let node = refs.get(place).copied().unwrap_or_default();
-                    self.refuse(
-                        &[(Kind::WAY, id, "from"), (Kind::NODE, node, "via"), (Kind::WAY, id, "to")],
-                        "no_u_turn",
-                    )?;
+                for end in [first, last] {
+                    self.refuse_at(end, end.way, "no_u_turn")?;
                 }
             }
         }
@@ -256,6 +260,11 @@ impl Rewriter<'_, '_> {
         Ok(())
     }
 
+    /// From the end of a way over its node into another way.
+    fn refuse_at(&mut self, from: End, to: i64, word: &str) -> Result<(), ExportError> {
+        self.refuse(&[(Kind::WAY, from.way, "from"), (Kind::NODE, from.node, "via"), (Kind::WAY, to, "to")], word)
+    }
+
     fn refuse(&mut self, members: &[(Kind, i64, &str)], word: &str) -> Result<(), ExportError> {
         let key = match self.flavour {
             Flavour::Hgv => "restriction:hgv",
@@ -276,8 +285,7 @@ impl Rewriter<'_, '_> {
                 continue;
             }
             if let (Some(&[_, from]), Some(&[to, _])) = (self.ends.get(&step.from), self.ends.get(&step.to)) {
-                let members = [(Kind::WAY, from, "from"), (Kind::NODE, step.via_node, "via"), (Kind::WAY, to, "to")];
-                self.refuse(&members, refusal_word(step.angle_deg))?;
+                self.refuse_at(from, to.way, refusal_word(step.angle_deg))?;
             }
         }
         for sequence in sequences(source)? {
@@ -290,16 +298,19 @@ impl Rewriter<'_, '_> {
         let Some(ways) = edges.iter().map(|edge| self.ends.get(edge).copied()).collect::<Option<Vec<_>>>() else {
             return Ok(());
         };
-        let ([[_, from], between @ .., [to, _]], true) = (ways.as_slice(), edges.len() > 2) else { return Ok(()) };
-        let mut members = vec![(Kind::WAY, *from, "from")];
-        for way in between {
+        let [[_, from], between @ .., [to, _]] = ways.as_slice() else { return Ok(()) };
+        if between.is_empty() {
+            return self.refuse_at(*from, to.way, "no_straight_on");
+        }
+        let mut members = vec![(Kind::WAY, from.way, "from")];
+        for [first, last] in between {
+            members.push((Kind::WAY, first.way, "via"));
             // Two where it is a loop.
-            members.push((Kind::WAY, way[0], "via"));
-            if way[1] != way[0] {
-                members.push((Kind::WAY, way[1], "via"));
+            if last.way != first.way {
+                members.push((Kind::WAY, last.way, "via"));
             }
         }
-        members.push((Kind::WAY, *to, "to"));
+        members.push((Kind::WAY, to.way, "to"));
         self.refuse(&members, "no_straight_on")
     }
 }
@@ -326,10 +337,10 @@ fn refused(source: &Source<'_>, step: &crate::store::TurnStep) -> bool {
     step.arcs.is_none() && open && !permitted.turns.get(step.turn)
 }
 
-/// Restrictions over ways whose edges are all open.
+/// Restrictions whose edges are all open: those of turns are refused twice, those of going straight on here alone.
 fn sequences(source: &Source<'_>) -> Result<Vec<Vec<u32>>, ExportError> {
     let mut sequences = source.database()?.forbidden_sequences()?;
-    sequences.retain(|edges| edges.len() > 2 && edges.iter().all(|&edge| source.permitted.edges.get(edge)));
+    sequences.retain(|edges| edges.len() > 1 && edges.iter().all(|&edge| source.permitted.edges.get(edge)));
     Ok(sequences)
 }
 
