@@ -65,6 +65,10 @@ class Permits:
         for pair in zip(nodes, nodes[1:]):
             if pair[0] == pair[1]:
                 continue
+            if None in pair:
+                wrong.append("a place that is no node of the network")
+                now = []
+                continue
             on = [(edge, i) for edge, i in self.over.get(pair, []) if self.edges[edge]["permitted"]]
             if not on:
                 edges = [edge for edge, _ in self.over.get(pair, [])]
@@ -88,14 +92,14 @@ class Permits:
         return self.turns.get((a, b), not back)
 
     def nodes_of(self, line):
-        """The nodes of a line as an engine draws it; points between nodes (its two ends) are passed over."""
-        near = [self._near(point) for point in line]
+        """The nodes of a line as an engine draws it, None where there is none; its two ends lie between nodes and may have none."""
         out = []
-        for here in near:
-            if not here:
+        for i, point in enumerate(line):
+            here = self._near(point)
+            if not here and i in (0, len(line) - 1):
                 continue
             known = [node for node in here if not out or (out[-1], node) in self.over or out[-1] == node]
-            out.append((known or here)[0])
+            out.append((known or here or [None])[0])
         return out
 
     def _near(self, point):
@@ -110,8 +114,12 @@ class Permits:
         return ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2)
 
     def pairs(self, count, seed):
-        """Permitted edges drawn at random, the second one of those that permits lead to from the first."""
-        draw = random.Random(seed)
+        """Permitted edges drawn at random; of every other pair the second one is one that permits lead to from the first.
+
+        `200+START:GOAL` are 200 and then this pair of edges.
+        """
+        count, *given = count.split("+")
+        count, draw = int(count), random.Random(seed)
         edges = sorted(edge for edge, row in self.edges.items() if row["permitted"])
         leaving = defaultdict(list)
         for edge in edges:
@@ -127,9 +135,11 @@ class Permits:
                     if to not in known and self._step((edge, len(nodes) - 2), (to, 0)):
                         known.add(to)
                         front.append(to)
-            if len(known) > 5:
+            if len(out) % 2:
+                out.append((start, draw.choice(edges)))
+            elif len(known) > 5:
                 out.append((start, draw.choice(sorted(known - {start}))))
-        return out
+        return out + [tuple(int(edge) for edge in pair.split(":")) for pair in given]
 
 
 def _key(place):

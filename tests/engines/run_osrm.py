@@ -82,7 +82,7 @@ def survey(permits, engine, pairs, plain=False):
 
 def main(extract, tables, tuned, rewritten, work, count):
     permits = Permits(extract, tables)
-    pairs = permits.pairs(int(count), 5)
+    pairs = permits.pairs(count, 5)
     files = ["--segment-speed-file", f"{tuned}/segment-speeds.csv", "--turn-penalty-file", f"{tuned}/turn-penalties.csv"]
     out, ways = {"edges_lost": permits.lost}, {}
     for name, from_file, customize in [("plain", extract, []), ("csv", extract, files), ("pbf", rewritten, [])]:

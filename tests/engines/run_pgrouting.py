@@ -63,7 +63,7 @@ def main(extract, tables, export, work, count):
     postgres = Postgres(work)
     try:
         postgres.psql("-f", "load.sql", folder=export)
-        print(json.dumps(survey(postgres, permits, permits.pairs(int(count), 5), work)))
+        print(json.dumps(survey(postgres, permits, permits.pairs(count, 5), work)))
     finally:
         postgres.stop()
 

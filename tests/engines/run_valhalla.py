@@ -35,7 +35,9 @@ def engine(extract, work, name):
 
 def route(actor, request, pair):
     """The line; None where there is no way."""
-    request = dict(request, locations=[{"lon": lon, "lat": lat, "radius": 0} for lon, lat in pair])
+    # The edge asked for and no other one, however few roads it is connected with.
+    exactly = {"radius": 0, "minimum_reachability": 0, "search_cutoff": 30}
+    request = dict(request, locations=[{"lon": lon, "lat": lat, **exactly} for lon, lat in pair])
     try:
         answer = json.loads(actor.route(json.dumps(request)))
     except RuntimeError as error:
@@ -84,7 +86,7 @@ def survey(permits, actor, request, pairs):
 
 def main(extract, tables, export, work, count):
     permits = Permits(extract, tables)
-    pairs = permits.pairs(int(count), 5)
+    pairs = permits.pairs(count, 5)
     request = json.load(open(f"{export}/request.json"))
     out, ways = {"edges_lost": permits.lost}, {}
     for name, file in [("plain", extract), ("permits", f"{export}/extract.osm.pbf")]:
