@@ -32,6 +32,7 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Verb::Route(verb) => verb.run(&session),
         Verb::Reach(verb) => verb.run(&session),
         Verb::Corridor(verb) => verb.run(&session),
+        Verb::Export(verb) => verb.run(&session),
         Verb::Vehicles(verb) => verb.run(&session),
         Verb::Manoeuvres(verb) => verb.run(&session),
         Verb::Paper(verb) => verb.run(&session),

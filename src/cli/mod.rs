@@ -9,6 +9,7 @@ mod clock;
 mod corridor;
 mod database;
 mod explain;
+mod export;
 mod fitted;
 mod fleet;
 mod how;
@@ -73,6 +74,7 @@ pub(crate) enum Verb {
     Route(route::Route),
     Reach(reach::Reach),
     Corridor(corridor::Corridor),
+    Export(export::Export),
     Vehicles(vehicles::Vehicles),
     Manoeuvres(manoeuvres::Manoeuvres),
     Paper(paper::Paper),

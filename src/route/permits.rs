@@ -19,7 +19,9 @@ impl Permit {
     /// Covered by other certificates.
     pub const COVERED: Self = Self { verdict: Verdict::Safe, rsc_m: None };
 
-    fn safe(&self) -> bool {
+    /// Whether a search may use it: one meaning for routes and exports.
+    #[must_use]
+    pub fn usable(&self) -> bool {
         self.verdict == Verdict::Safe
     }
 }
@@ -56,7 +58,7 @@ impl Permits {
     /// The same, but what is not safe may be used at a price.
     #[must_use]
     pub fn access_at(&self, movements: &Movements, price: impl Fn(&Permit) -> u64) -> Access {
-        let cost = |permit: &Permit| if permit.safe() { 0 } else { price(permit) };
+        let cost = |permit: &Permit| if permit.usable() { 0 } else { price(permit) };
         let movement = |(m, permit): (&crate::network::Movement, &Permit)| {
             if m.forbidden.is_some() || m.kind == MovementKind::UTurn { BARRED } else { cost(permit) }
         };
@@ -73,6 +75,6 @@ impl Permits {
     /// Whether an edge may be used.
     #[must_use]
     pub fn edge(&self, edge: u32) -> bool {
-        self.edges.get(edge as usize).is_some_and(Permit::safe)
+        self.edges.get(edge as usize).is_some_and(Permit::usable)
     }
 }

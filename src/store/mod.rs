@@ -24,6 +24,7 @@ mod session;
 mod sets;
 mod spool;
 mod stats;
+mod stream;
 mod turns;
 mod writer;
 
@@ -40,5 +41,6 @@ pub use query::{Area, EdgeRow, QueryOptions, Rows, VerdictKind};
 pub use records::{Run, VehicleRecord};
 pub use roads::RoadRow;
 pub use stats::{Stats, StatsRow};
+pub use stream::{EdgeStep, StraightOn, Streamed, TurnStep};
 pub use turns::{TurnCertificate, TurnCount, TurnQuery, TurnRow, TurnSet};
 pub use writer::{VehicleNo, Writer};

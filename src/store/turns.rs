@@ -307,6 +307,12 @@ pub(super) async fn insert_set(
 }
 
 async fn fetch(c: &mut SqliteConnection, options: &TurnQuery) -> Sql<Vec<TurnRow>> {
+    let rows = sqlx::query(AssertSqlSafe(statement(options))).bind(corridor_no(options.policy)).bind(&options.vehicle);
+    rows.fetch_all(c).await?.iter().map(turn_row).collect()
+}
+
+/// To be bound: the corridor's number and the vehicle's id. Its rows are for [`turn_row`].
+pub(super) fn statement(options: &TurnQuery) -> String {
     let mut sql = "SELECT c.fid, t.turn_id, a.edge_id, b.edge_id, t.via_node, t.angle_deg, t.kind, t.kerb_radius_m, \
                    t.kerb_source, t.restriction, coalesce(a.name, a.ref), coalesce(b.name, b.ref), c.path_no, t.geom, \
                    (SELECT edge_id FROM edge WHERE fid = t.first_arc_fid), \
@@ -326,12 +332,10 @@ async fn fetch(c: &mut SqliteConnection, options: &TurnQuery) -> Sql<Vec<TurnRow
     if let Some(id) = options.turn_id {
         sql += &format!(" AND c.fid = (SELECT fid FROM turn WHERE turn_id = {id})");
     }
-    sql += " ORDER BY c.fid";
-    let rows = sqlx::query(AssertSqlSafe(sql)).bind(corridor_no(options.policy)).bind(&options.vehicle);
-    rows.fetch_all(c).await?.iter().map(turn_row).collect()
+    sql + " ORDER BY c.fid"
 }
 
-fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
+pub(super) fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
     let fid: u32 = row.try_get(0)?;
     let numbers = Numbers::read(row, 16, || format!("turn {fid}"))?;
     Ok(TurnRow {

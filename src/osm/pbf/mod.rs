@@ -10,6 +10,7 @@
 
 mod account;
 mod block;
+pub mod copy;
 mod error;
 mod frame;
 mod gather;

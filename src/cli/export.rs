@@ -1,0 +1,130 @@
+//! `netcert export`: what a vehicle may use, for routing engines and map programs.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use netcert::export::target::{self, Layer, Options, TARGETS};
+use netcert::export::{self, ExportError, Out, PermitPolicy, Source, Tally, Target};
+use netcert::osm::facts::{Policy, WidthSource};
+use netcert::pipeline::Settings;
+use netcert::store::Database;
+
+use super::Session;
+use super::database::DatabaseArgs;
+use super::how;
+use super::on_demand::{self, Wanted};
+use super::output::{grouped, results};
+use super::values::{metres, word};
+
+/// Writes what a vehicle may use in the form that a routing engine or map program reads.
+///
+/// A permit is lawful access and a safe certificate, edge by edge and turn by turn; what is not certified is refused. Every
+/// output says in its header or beside it what it rests on: the vehicle, the options, the database's hash. A vehicle that is
+/// not certified in this database yet is certified then and there.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  netcert export osrm --vehicle EU-SEMI16.5 --extract heidelberg.osm.pbf --out permits/
+  netcert export osm-pbf --vehicle US-WB67 --extract columbus.osm.pbf --out columbus-wb67.osm.pbf
+  netcert export csv --vehicle AU-ATRIPLE53 --layer edges --out - | head
+
+docs/export/ has a page for each target: from zero to a routed truck, and what the engine cannot
+express. An output is whole or not there; a folder of an earlier export is replaced.")]
+pub(crate) struct Export {
+    /// In which form.
+    #[arg(value_name = "TARGET", value_parser = target_names(), hide_possible_values = false)]
+    target: &'static str,
+    #[command(flatten)]
+    db: DatabaseArgs,
+    /// The vehicle; `netcert vehicles list` shows the ids.
+    #[arg(long, value_name = "ID")]
+    vehicle: String,
+    /// Where its definition stands, if not in the catalogue or the database.
+    #[arg(long, value_name = "F.toml")]
+    vehicle_file: Vec<PathBuf>,
+    /// Where to: a file or folder, as the target has it; `-` is standard output.
+    #[arg(long, value_name = "PATH")]
+    out: PathBuf,
+    /// The extract that the database was made from; targets that rewrite it or need its node ids ask for it.
+    #[arg(long, value_name = "REGION.osm.pbf")]
+    extract: Option<PathBuf>,
+    /// One layer as one file, where a target writes both.
+    #[arg(long, value_name = "LAYER", value_parser = layer())]
+    layer: Option<Layer>,
+    /// Permit only with at least so many metres to spare.
+    #[arg(long, value_name = "METRES", default_value_t = 0.0, value_parser = metres)]
+    min_rsc: f64,
+    /// Permit only where an edge's width comes from this source or a better one, worst to best as listed.
+    #[arg(long, value_name = "SOURCE", value_parser = word::<WidthSource>())]
+    width_source: Option<WidthSource>,
+    /// Which width counts: one's own lane, all lanes of one's direction, or the whole carriageway [default: as the
+    /// database was made with, lane unless told otherwise].
+    #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
+    corridor: Option<Policy>,
+}
+
+fn target_names() -> impl TypedValueParser<Value = &'static str> {
+    let value = |target: &&dyn Target| PossibleValue::new(target.name()).help(target.about());
+    PossibleValuesParser::new(TARGETS.iter().map(value))
+        .try_map(|name| target::named(&name).map(Target::name).ok_or("no such target"))
+}
+
+fn layer() -> impl TypedValueParser<Value = Layer> {
+    PossibleValuesParser::new(["edges", "turns"]).map(|name| if name == "turns" { Layer::Turns } else { Layer::Edges })
+}
+
+impl Export {
+    pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        let target = target::named(self.target).ok_or_else(|| anyhow::anyhow!("{}: no such target", self.target))?;
+        let path = self.db.path()?;
+        for input in [Some(&path), self.extract.as_ref()].into_iter().flatten() {
+            if same(input, &self.out) {
+                return Err(ExportError::OwnInput(self.out.clone()).into());
+            }
+        }
+        let source = self.source(session, &path)?;
+        let to_stream = self.out.as_os_str() == "-";
+        let out = if to_stream { Out::Stream(Box::new(results())) } else { Out::Path(self.out.clone()) };
+        match export::export(&source, target, &Options { layer: self.layer }, out) {
+            // So that a reader who has enough is no failure.
+            Err(ExportError::Write(error)) => return Err(error.into()),
+            done => done?,
+        }
+        session.progress.say(&counts("edges", &source.permitted.edge_tally));
+        session.progress.say(&counts("turns", &source.permitted.turn_tally));
+        if !to_stream {
+            session.progress.say(&format!("{}: written", self.out.display()));
+        }
+        session.progress.say(&source.header.scope());
+        Ok(())
+    }
+
+    fn source<'s>(&self, session: &'s Session, path: &Path) -> anyhow::Result<Source<'s>> {
+        let mut database = Database::open(path)?;
+        let recorded = how::recorded(&mut database)?;
+        let settings = Settings { policy: self.corridor.unwrap_or(recorded.policy), ..recorded };
+        let wanted = Wanted { vehicle: &self.vehicle, files: &self.vehicle_file, turns: true, command: "export" };
+        on_demand::certified(session, (path, database), &wanted, &settings)?.close()?;
+        let ask = export::Ask {
+            db: path.to_owned(),
+            vehicle: self.vehicle.clone(),
+            policy: settings.policy,
+            rule: PermitPolicy { min_rsc_m: self.min_rsc, min_width_source: self.width_source },
+            extract: self.extract.clone(),
+        };
+        Ok(Source::open(ask, &session.progress)?)
+    }
+}
+
+fn same(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+fn counts(what: &str, tally: &Tally) -> String {
+    let mut refused: Vec<(&String, &u64)> = tally.refused.iter().collect();
+    refused.sort_by(|a, b| b.1.cmp(a.1).then(a.0.cmp(b.0)));
+    let refused: Vec<String> = refused.iter().map(|(words, n)| format!("{words} {}", grouped(**n))).collect();
+    let (permitted, total) = (grouped(tally.permitted), grouped(tally.total()));
+    format!("{permitted} of {total} {what} permitted; refused: {}", refused.join(", "))
+}

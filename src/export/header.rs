@@ -1,0 +1,151 @@
+//! What every output says of itself, so that who gets a permit file can tell what it rests on.
+//!
+//! Promises: nothing in it depends on the clock or on where the files lie; the same database and options give the same header.
+
+use serde_json::{Map, Value, json};
+
+use super::ExportError;
+use super::permit::{Permitted, Tally};
+use super::source::{Ask, hash_of};
+use crate::osm::facts::WidthSource;
+use crate::store::{Database, Named, StoreError};
+use crate::vehicle::Vehicle;
+
+/// Where the data are from, and on which terms: https://opendatacommons.org/licenses/odbl/1-0/
+const LICENCE: &str = "© OpenStreetMap contributors, ODbL 1.0";
+
+/// What the database was made from.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Provenance {
+    /// Name of the database's file.
+    pub database: String,
+    /// blake3 of it.
+    pub database_blake3: String,
+    /// Name of the extract when it was read.
+    pub input: String,
+    /// blake3 of it.
+    pub input_blake3: Option<String>,
+    /// Up to when its data are complete, as it says.
+    pub input_timestamp: Option<String>,
+    /// Version of the program that read the extract.
+    pub made_by: String,
+    /// Every parameter of that run, as JSON.
+    pub parameters: Value,
+    /// The vehicle's name.
+    pub vehicle_name: String,
+    /// The whole vehicle.
+    pub vehicle: Value,
+    /// blake3 of its definition.
+    pub vehicle_blake3: String,
+    /// How far from the planned path it may be steered, metres.
+    pub tracking_tolerance_m: f64,
+}
+
+impl Provenance {
+    /// As the database has it.
+    pub(super) fn of(database: &mut Database, ask: &Ask) -> Result<Self, ExportError> {
+        let id = &ask.vehicle;
+        let record = database.vehicles()?.into_iter().find(|record| record.id == *id).ok_or_else(|| {
+            StoreError::NotThere { path: ask.db.clone(), detail: format!("{id} is not certified here") }
+        })?;
+        let damaged = |detail: String| StoreError::Damaged { path: ask.db.clone(), detail };
+        let vehicle = Vehicle::from_json(&record.definition).map_err(|e| damaged(e.to_string()))?;
+        let runs = database.runs()?;
+        let (ingest, _) = runs
+            .into_iter()
+            .rev()
+            .find(|(run, _)| run.command == "ingest")
+            .ok_or_else(|| damaged("no run of `ingest` is recorded".to_owned()))?;
+        Ok(Self {
+            database: ask.db.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
+            database_blake3: hash_of(&ask.db)?,
+            input: ingest.input_name,
+            input_blake3: ingest.input_blake3,
+            input_timestamp: ingest.replication_timestamp,
+            made_by: ingest.netcert_version,
+            parameters: serde_json::from_str(&ingest.parameters).unwrap_or_default(),
+            vehicle_name: record.name.clone(),
+            vehicle: serde_json::from_str(&record.definition).unwrap_or_default(),
+            vehicle_blake3: record.blake3(),
+            tracking_tolerance_m: vehicle.tracking_tolerance_m,
+        })
+    }
+}
+
+/// The header of an export.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Header {
+    /// What it rests on.
+    pub provenance: Provenance,
+    ask: Ask,
+    edges: Tally,
+    turns: Tally,
+}
+
+impl Header {
+    pub(super) fn new(provenance: Provenance, ask: &Ask, permitted: &Permitted) -> Self {
+        let (edges, turns) = (permitted.edge_tally.clone(), permitted.turn_tally.clone());
+        Self { provenance, ask: ask.clone(), edges, turns }
+    }
+
+    /// What a permit in this file means; never shown without it.
+    #[must_use]
+    pub fn scope(&self) -> String {
+        let p = &self.provenance;
+        format!(
+            "A permit holds within the stated model, widths and error bounds, for {} steered within {} m of the planned path \
+             (times shrink), edge by edge and turn by turn: `netcert route` certifies a whole route. Kerbs of turns are assumed. It \
+             is no legal permit and says nothing of bridges or traffic. What is not listed as permitted is refused.",
+            self.ask.vehicle, p.tracking_tolerance_m
+        )
+    }
+
+    /// All of it.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        let (p, ask) = (&self.provenance, &self.ask);
+        json!({
+            "netcert": env!("CARGO_PKG_VERSION"),
+            "scope": self.scope(),
+            "licence": LICENCE,
+            "vehicle": {"id": ask.vehicle, "name": p.vehicle_name, "blake3": p.vehicle_blake3, "definition": p.vehicle},
+            "permit": {
+                "corridor": ask.policy.name(),
+                "min_rsc_m": ask.rule.min_rsc_m,
+                "min_width_source": ask.rule.min_width_source.map(WidthSource::name),
+                "edges": tally(&self.edges),
+                "turns": tally(&self.turns),
+            },
+            "database": {"name": p.database, "blake3": p.database_blake3},
+            "input": {"name": p.input, "blake3": p.input_blake3, "timestamp": p.input_timestamp},
+            "made_by": {"netcert": p.made_by, "parameters": p.parameters},
+        })
+    }
+
+    /// The same in one level, for formats whose metadata are names and texts: `permit.edges.permitted`, …
+    #[must_use]
+    pub fn pairs(&self) -> Vec<(String, String)> {
+        let mut out = Vec::new();
+        if let Value::Object(members) = self.json() {
+            // The definition stays one text: its hash is over it.
+            flatten("", &members, &mut out);
+        }
+        out
+    }
+}
+
+fn tally(tally: &Tally) -> Value {
+    json!({"permitted": tally.permitted, "refused": tally.refused})
+}
+
+fn flatten(prefix: &str, members: &Map<String, Value>, out: &mut Vec<(String, String)>) {
+    for (name, value) in members {
+        let name = format!("{prefix}{name}");
+        match value {
+            Value::Object(inner) if name != "vehicle.definition" => flatten(&format!("{name}."), inner, out),
+            Value::String(text) => out.push((name, text.clone())),
+            Value::Null => {}
+            other => out.push((name, other.to_string())),
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! Where an export is written: whole or not at all.
+//!
+//! A file is written beside its name as `NAME.part`, a folder as `NAME.part/`, and renamed when everything is on the disk. A
+//! folder of an earlier export (it holds `netcert.json`) is replaced; anything else that stands there is left alone.
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use super::ExportError;
+
+/// The file by which a folder is known as an export.
+const MARK: &str = "netcert.json";
+
+/// What a target writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layout {
+    /// One file, or a stream.
+    File,
+    /// Several files in a folder.
+    Folder {
+        /// The target, for messages.
+        target: &'static str,
+        /// What to do for a stream instead; may be empty.
+        instead: &'static str,
+    },
+}
+
+/// Where the user wants it.
+pub enum Out {
+    /// A file or folder.
+    Path(PathBuf),
+    /// Standard output, or any other stream.
+    Stream(Box<dyn Write>),
+}
+
+/// An output being written.
+pub struct Place {
+    kind: Kind,
+}
+
+enum Kind {
+    Stream(Option<Box<dyn Write>>),
+    File { target: PathBuf, part: PathBuf },
+    Folder { target: PathBuf, part: PathBuf },
+}
+
+impl Place {
+    /// Makes room for an output.
+    ///
+    /// # Errors
+    /// Something else stands there; several files are to go to one stream.
+    pub fn begin(out: Out, layout: Layout) -> Result<Self, ExportError> {
+        let kind = match (out, layout) {
+            (Out::Stream(stream), Layout::File) => Kind::Stream(Some(stream)),
+            (Out::Stream(_), Layout::Folder { target, instead }) => return Err(ExportError::NoStream(target, instead)),
+            (Out::Path(target), Layout::File) => Kind::File { part: beside(&target, ".part"), target },
+            (Out::Path(target), Layout::Folder { .. }) => {
+                if occupied(&target) {
+                    return Err(ExportError::InTheWay(target));
+                }
+                let part = beside(&target, ".part");
+                remove(&part)?;
+                fs::create_dir_all(&part).map_err(|e| at(&part, e))?;
+                Kind::Folder { part, target }
+            }
+        };
+        Ok(Self { kind })
+    }
+
+    /// Whether several files are written.
+    #[must_use]
+    pub fn is_folder(&self) -> bool {
+        matches!(self.kind, Kind::Folder { .. })
+    }
+
+    /// A file of the output; the name counts in folders only. Call [`Sink::close`] when it is written.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub fn create(&mut self, name: &str) -> Result<Sink, ExportError> {
+        let path = match &mut self.kind {
+            Kind::Stream(stream) => {
+                let stream = stream.take().ok_or_else(|| io::Error::other("a stream takes one file only"))?;
+                return Ok(Sink { stream, file: None });
+            }
+            Kind::File { part, .. } => part.clone(),
+            Kind::Folder { part, .. } => part.join(name),
+        };
+        let file = File::create(&path).map_err(|e| at(&path, e))?;
+        let twin = file.try_clone().map_err(|e| at(&path, e))?;
+        Ok(Sink { stream: Box::new(BufWriter::with_capacity(1 << 16, file)), file: Some(twin) })
+    }
+
+    /// A whole file at once.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write_whole(&mut self, name: &str, bytes: &[u8]) -> Result<(), ExportError> {
+        let mut sink = self.create(name)?;
+        sink.write_all(bytes)?;
+        sink.close()
+    }
+
+    /// A name beside the output for what is needed only while it is written; the caller removes it.
+    #[must_use]
+    pub fn scratch(&self, suffix: &str) -> PathBuf {
+        match &self.kind {
+            Kind::Stream(_) => std::env::temp_dir().join(format!("netcert-{}{suffix}", std::process::id())),
+            Kind::File { part, .. } | Kind::Folder { part, .. } => beside(part, suffix),
+        }
+    }
+
+    /// Puts the output in its place.
+    ///
+    /// # Errors
+    /// It cannot be renamed.
+    pub fn finish(mut self) -> Result<(), ExportError> {
+        let kind = std::mem::replace(&mut self.kind, Kind::Stream(None));
+        let done = match &kind {
+            Kind::Stream(_) => return Ok(()),
+            Kind::File { target, part } => fs::rename(part, target).map_err(|e| at(target, e)),
+            Kind::Folder { target, part } => replace_folder(target, part),
+        };
+        if done.is_err() {
+            self.kind = kind; // dropped with its part
+        }
+        done
+    }
+
+    /// An error of writing with the name of what was written.
+    #[must_use]
+    pub fn name(&self, error: ExportError) -> ExportError {
+        match (error, &self.kind) {
+            (ExportError::Write(source), Kind::File { target, .. } | Kind::Folder { target, .. }) => {
+                ExportError::Io { path: target.clone(), source }
+            }
+            (error, _) => error,
+        }
+    }
+}
+
+impl Drop for Place {
+    fn drop(&mut self) {
+        // The next run would clear it anyway.
+        let _ = match &self.kind {
+            Kind::Stream(_) => Ok(()),
+            Kind::File { part, .. } | Kind::Folder { part, .. } => remove(part),
+        };
+    }
+}
+
+/// One file of an output.
+pub struct Sink {
+    stream: Box<dyn Write>,
+    file: Option<File>,
+}
+
+impl Sink {
+    /// Everything to the disk.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn close(mut self) -> Result<(), ExportError> {
+        self.stream.flush()?;
+        if let Some(file) = self.file {
+            file.sync_all()?;
+        }
+        Ok(())
+    }
+}
+
+impl Write for Sink {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.stream.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
+    }
+}
+
+fn at(path: &Path, source: io::Error) -> ExportError {
+    ExportError::Io { path: path.to_owned(), source }
+}
+
+fn beside(path: &Path, suffix: &str) -> PathBuf {
+    let mut name: OsString = path.components().as_path().as_os_str().to_owned();
+    name.push(suffix);
+    name.into()
+}
+
+/// Something stands there that no earlier export wrote; an empty folder is nothing.
+fn occupied(target: &Path) -> bool {
+    match fs::read_dir(target) {
+        Ok(mut entries) => entries.next().is_some() && !target.join(MARK).is_file(),
+        Err(_) => target.exists(),
+    }
+}
+
+fn remove(path: &Path) -> Result<(), ExportError> {
+    let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+    match removed {
+        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(at(path, e)),
+        _ => Ok(()),
+    }
+}
+
+/// The old folder stands aside until the new one is in its place.
+fn replace_folder(target: &Path, part: &Path) -> Result<(), ExportError> {
+    let old = beside(target, ".old");
+    remove(&old)?;
+    if target.exists() {
+        fs::rename(target, &old).map_err(|e| at(target, e))?;
+    }
+    if let Err(error) = fs::rename(part, target) {
+        let _ = fs::rename(&old, target);
+        return Err(at(target, error));
+    }
+    remove(&old)
+}

@@ -1,0 +1,45 @@
+//! The arcs between a passage's first and last, which the database names alone.
+
+use rustc_hash::FxHashMap;
+
+/// All roundabouts.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Rings {
+    rings: Vec<Vec<u32>>,
+    /// By arc: its ring, and where on it.
+    at: FxHashMap<u32, (usize, usize)>,
+}
+
+impl Rings {
+    /// Of [`crate::store::Database::rings`].
+    pub(super) fn new(rings: Vec<Vec<u32>>) -> Self {
+        let places = rings
+            .iter()
+            .enumerate()
+            .flat_map(|(ring, arcs)| arcs.iter().enumerate().map(move |(place, &arc)| (arc, (ring, place))));
+        Self { at: places.collect(), rings }
+    }
+
+    /// From the first arc to the last one in driving order; `None` if they are on no ring together.
+    pub(super) fn through(&self, [first, last]: [u32; 2]) -> Option<Vec<u32>> {
+        let (&(ring, from), &(same, to)) = (self.at.get(&first)?, self.at.get(&last)?);
+        let arcs = self.rings.get(ring).filter(|_| ring == same)?;
+        let count = if to >= from { to - from + 1 } else { arcs.len() - from + to + 1 };
+        Some(arcs.iter().cycle().skip(from).take(count).copied().collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arcs_go_round_and_past_where_the_ring_begins() {
+        let rings = Rings::new(vec![vec![7, 8, 9], vec![3]]);
+        assert_eq!(rings.through([7, 8]), Some(vec![7, 8]));
+        assert_eq!(rings.through([9, 7]), Some(vec![9, 7]));
+        assert_eq!(rings.through([3, 3]), Some(vec![3]));
+        assert_eq!(rings.through([7, 3]), None);
+        assert_eq!(rings.through([7, 4]), None);
+    }
+}

@@ -1,0 +1,192 @@
+//! Rows from the database, each with its permit, as they come.
+//!
+//! Before the first row every edge and turn is looked at once: what may be used is kept as one bit each, and counted for the
+//! header. Nothing else of the network is kept.
+
+use std::path::{Path, PathBuf};
+
+use super::ExportError;
+use super::header::{Header, Provenance};
+use super::permit::{Bits, PermitPolicy, Permitted, Refusal};
+use super::rings::Rings;
+use crate::osm::facts::Policy;
+use crate::pipeline::Reporter;
+use crate::route::Permit;
+use crate::store::{Database, EdgeRow, QueryOptions, StoreError, TurnRow};
+
+/// What is to be exported. The vehicle must be certified under the policy, its turns too.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ask {
+    /// The database.
+    pub db: PathBuf,
+    /// Vehicle id.
+    pub vehicle: String,
+    /// Which width counts.
+    pub policy: Policy,
+    /// What is asked beyond a safe certificate.
+    pub rule: PermitPolicy,
+    /// The extract that the database was made from, for targets that need it.
+    pub extract: Option<PathBuf>,
+}
+
+/// An edge with all its columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExportEdge {
+    /// As in `query`.
+    pub row: EdgeRow,
+    /// Why it may not be used; `None`: it may.
+    pub refusal: Option<Refusal>,
+}
+
+/// A turn with all its columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExportTurn {
+    /// As in `query --turns`.
+    pub row: TurnRow,
+    /// Why it may not be used; `None`: it may.
+    pub refusal: Option<Refusal>,
+}
+
+/// What an export is made from.
+pub struct Source<'r> {
+    /// What was asked.
+    pub ask: Ask,
+    /// What every output says of itself.
+    pub header: Header,
+    /// What the rule lets through.
+    pub permitted: Permitted,
+    /// Who is told of progress.
+    pub reporter: &'r dyn Reporter,
+}
+
+/// Rows between two reports of progress.
+const REPORT_ROWS: u64 = 4096;
+
+impl<'r> Source<'r> {
+    /// Reads every permit.
+    ///
+    /// # Errors
+    /// The database cannot be read, or the vehicle is not certified there.
+    pub fn open(ask: Ask, reporter: &'r dyn Reporter) -> Result<Self, ExportError> {
+        let mut database = Database::open(&ask.db)?;
+        check_certified(&mut database, &ask)?;
+        let provenance = Provenance::of(&mut database, &ask)?;
+        let permitted = permitted(&mut database, &ask, reporter)?;
+        let header = Header::new(provenance, &ask, &permitted);
+        Ok(Self { ask, header, permitted, reporter })
+    }
+
+    /// A connection for one stream of rows; several may be open at once.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub fn database(&self) -> Result<Database, ExportError> {
+        Ok(Database::open(&self.ask.db)?)
+    }
+
+    /// Every edge, permitted or not, in order of the network.
+    ///
+    /// # Errors
+    /// The database cannot be read; also with each row.
+    pub fn edges<'d>(
+        &'d self,
+        database: &'d mut Database,
+    ) -> Result<impl Iterator<Item = Result<ExportEdge, ExportError>> + 'd, ExportError> {
+        let rows = database.query(&QueryOptions::new(&self.ask.vehicle, self.ask.policy))?;
+        let rule = self.ask.rule;
+        let with_permit = move |row: EdgeRow| {
+            let refusal = rule.edge(Permit { verdict: row.verdict, rsc_m: row.rsc_m }, row.width_source);
+            ExportEdge { row, refusal }
+        };
+        self.reporter.begin("edges", self.permitted.edges.len() as u64);
+        Ok(self.told(rows).map(move |row| Ok(with_permit(row?))))
+    }
+
+    /// Every turn and passage of a roundabout, permitted or not, in order of the network.
+    ///
+    /// # Errors
+    /// The database cannot be read; also with each row.
+    pub fn turns<'d>(
+        &'d self,
+        database: &'d mut Database,
+    ) -> Result<impl Iterator<Item = Result<ExportTurn, ExportError>> + 'd, ExportError> {
+        let rows = database.turn_rows(&self.ask.vehicle, self.ask.policy)?;
+        let with_permit = |row: TurnRow| {
+            let permit = Permit { verdict: row.verdict, rsc_m: row.rsc_m };
+            // A turn is permitted only if its edges are: then the bit says so, and else the reason is the turn's own or theirs.
+            let refusal = self.ask.rule.turn(permit, self.permitted.turns.get(row.turn));
+            ExportTurn { row, refusal }
+        };
+        self.reporter.begin("turns", self.permitted.turns.len() as u64);
+        Ok(self.told(rows).map(move |row| Ok(with_permit(row?))))
+    }
+
+    /// Rows that tell how far they are.
+    pub(super) fn told<'i, T: 'i>(
+        &'i self,
+        rows: impl Iterator<Item = Result<T, StoreError>> + 'i,
+    ) -> impl Iterator<Item = Result<T, StoreError>> + 'i {
+        told(self.reporter, rows)
+    }
+}
+
+fn told<'i, T: 'i>(
+    reporter: &'i dyn Reporter,
+    rows: impl Iterator<Item = Result<T, StoreError>> + 'i,
+) -> impl Iterator<Item = Result<T, StoreError>> + 'i {
+    (1_u64..).zip(rows).map(|(done, row)| {
+        if done.is_multiple_of(REPORT_ROWS) {
+            reporter.advance(done);
+        }
+        row
+    })
+}
+
+fn check_certified(database: &mut Database, ask: &Ask) -> Result<(), ExportError> {
+    let Ask { vehicle, policy, .. } = ask;
+    // The errors of these name the command that makes what is missing.
+    drop(database.query(&QueryOptions { edge_id: Some(0), ..QueryOptions::new(vehicle, *policy) })?);
+    if !database.has_turns(vehicle, *policy)? {
+        let policy = crate::store::Named::name(*policy);
+        let detail = format!(
+            "the turns of {vehicle} are not certified here under the {policy} policy; run `netcert certify --vehicle {vehicle} \
+             --corridor {policy}`"
+        );
+        return Err(StoreError::NotThere { path: ask.db.clone(), detail }.into());
+    }
+    Ok(())
+}
+
+fn permitted(database: &mut Database, ask: &Ask, reporter: &dyn Reporter) -> Result<Permitted, ExportError> {
+    let mut out = Permitted::default();
+    // By edge: its width is known well enough. A passage needs that of its arcs, which need no permit of their own.
+    let mut known = Bits::default();
+    let rings = Rings::new(database.rings()?);
+    reporter.begin("permits", 0);
+    for facts in told(reporter, database.edge_facts(&ask.vehicle, ask.policy)?) {
+        let facts = facts?;
+        let refusal = ask.rule.edge(Permit { verdict: facts.verdict, rsc_m: facts.rsc_m }, facts.width_source);
+        out.edges.push(refusal.is_none());
+        known.push(ask.rule.width(facts.width_source));
+        out.edge_tally.count(refusal);
+    }
+    for step in told(reporter, database.turn_steps(&ask.vehicle, ask.policy)?) {
+        let step = step?;
+        let arcs = |arcs| rings.through(arcs).is_some_and(|arcs| arcs.iter().all(|&arc| known.get(arc)));
+        let both = out.edges.get(step.from) && out.edges.get(step.to) && step.arcs.is_none_or(arcs);
+        let refusal = ask.rule.turn(Permit { verdict: step.verdict, rsc_m: step.rsc_m }, both);
+        out.turns.push(refusal.is_none());
+        out.turn_tally.count(refusal);
+    }
+    reporter.end();
+    Ok(out)
+}
+
+/// blake3 of a file, in hexadecimal.
+pub(super) fn hash_of(path: &Path) -> Result<String, ExportError> {
+    let at = |source| ExportError::Io { path: path.to_owned(), source };
+    let mut hasher = blake3::Hasher::new();
+    let mut file = std::fs::File::open(path).map_err(at)?;
+    std::io::copy(&mut file, &mut hasher).map_err(at)?;
+    Ok(hasher.finalize().to_hex().to_string())
+}

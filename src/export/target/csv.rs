@@ -1,0 +1,80 @@
+//! Tables as RFC 4180 has them, without geometry: `edges.csv`, `turns.csv`, and the header beside them.
+
+use std::io::{self, Write};
+
+use super::columns::{Cell, EDGE_COLUMNS, Kind, TURN_COLUMNS, edge_cells, turn_cells};
+use super::{Layer, Options, Target, one_file_a_layer};
+use crate::export::{ExportError, Layout, Place, Refusal, Sink, Source};
+
+/// `csv`
+pub(super) struct Csv;
+
+impl Target for Csv {
+    fn name(&self) -> &'static str {
+        "csv"
+    }
+
+    fn about(&self) -> &'static str {
+        "edges and turns with all certificate columns, as tables"
+    }
+
+    fn layout(&self, options: &Options) -> Layout {
+        one_file_a_layer(self.name(), options)
+    }
+
+    fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
+        if options.layer != Some(Layer::Turns) {
+            edges(source, place.create("edges.csv")?)?;
+        }
+        if options.layer != Some(Layer::Edges) {
+            turns(source, place.create("turns.csv")?)?;
+        }
+        Ok(())
+    }
+}
+
+fn edges(source: &Source<'_>, mut sink: Sink) -> Result<(), ExportError> {
+    head(&mut sink, &EDGE_COLUMNS)?;
+    let mut database = source.database()?;
+    for edge in source.edges(&mut database)? {
+        let edge = edge?;
+        let refusal = edge.refusal.map_or_else(String::new, Refusal::words);
+        line(&mut sink, &edge_cells(source, &edge, &refusal))?;
+    }
+    sink.close()
+}
+
+fn turns(source: &Source<'_>, mut sink: Sink) -> Result<(), ExportError> {
+    head(&mut sink, &TURN_COLUMNS)?;
+    let mut database = source.database()?;
+    for turn in source.turns(&mut database)? {
+        let turn = turn?;
+        let refusal = turn.refusal.map_or_else(String::new, Refusal::words);
+        line(&mut sink, &turn_cells(source, &turn, &refusal))?;
+    }
+    sink.close()
+}
+
+fn head(out: &mut dyn Write, columns: &[(&str, Kind)]) -> io::Result<()> {
+    let names: Vec<&str> = columns.iter().map(|column| column.0).collect();
+    write!(out, "{}\r\n", names.join(","))
+}
+
+fn line(out: &mut dyn Write, cells: &[Cell<'_>]) -> io::Result<()> {
+    for (i, cell) in cells.iter().enumerate() {
+        if i > 0 {
+            out.write_all(b",")?;
+        }
+        match cell {
+            Cell::Integer(None) | Cell::Real(None) | Cell::Text(None) => {}
+            Cell::Integer(Some(number)) => write!(out, "{number}")?,
+            Cell::Real(Some(number)) => write!(out, "{number}")?,
+            Cell::Flag(yes) => write!(out, "{yes}")?,
+            Cell::Text(Some(text)) if text.contains(['"', ',', '\n', '\r']) => {
+                write!(out, "\"{}\"", text.replace('"', "\"\""))?;
+            }
+            Cell::Text(Some(text)) => out.write_all(text.as_bytes())?,
+        }
+    }
+    out.write_all(b"\r\n")
+}

@@ -1,0 +1,160 @@
+//! Blocks of new objects, gathered in a file until their turn comes; and texts put into blocks that exist.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Read as _, Seek as _, Write};
+use std::path::PathBuf;
+
+use osmpbfreader::osmformat::{Info, PrimitiveBlock, PrimitiveGroup, Relation, Way};
+use protobuf::Message;
+use rustc_hash::FxHashMap;
+
+use crate::export::ExportError;
+use crate::osm::pbf::write::{frame, zlib_blob};
+
+/// Objects a block holds at most, as other writers have it.
+const BLOCK_OBJECTS: usize = 8000;
+
+/// Writes a block as one framed blob.
+pub(super) fn write_block(out: &mut dyn Write, block: &PrimitiveBlock) -> Result<(), ExportError> {
+    let bytes = block.write_to_bytes().map_err(io::Error::other)?;
+    write_blob(out, "OSMData", &zlib_blob(&bytes))
+}
+
+/// Writes a `Blob` message with its frame.
+pub(super) fn write_blob(out: &mut dyn Write, kind: &str, blob: &[u8]) -> Result<(), ExportError> {
+    let mut framed = Vec::with_capacity(blob.len() + 32);
+    frame(&mut framed, kind, blob);
+    Ok(out.write_all(&framed)?)
+}
+
+/// A block's strings with what is added to them.
+pub(super) struct Texts {
+    table: Vec<Vec<u8>>,
+    numbers: FxHashMap<Vec<u8>, u32>,
+}
+
+impl Texts {
+    /// Over the strings of a block.
+    pub(super) fn over(table: Vec<Vec<u8>>) -> Self {
+        let numbers = (0_u32..).zip(&table).skip(1).map(|(number, text)| (text.clone(), number)).collect();
+        Self { table, numbers }
+    }
+
+    /// None but the delimiter.
+    fn none() -> Self {
+        Self { table: vec![Vec::new()], numbers: FxHashMap::default() }
+    }
+
+    /// What a number stands for; nothing for a wrong one.
+    pub(super) fn text(&self, number: u32) -> &[u8] {
+        self.table.get(number as usize).map_or(&[], Vec::as_slice)
+    }
+
+    /// The number of a text.
+    pub(super) fn number(&mut self, text: &[u8]) -> u32 {
+        if let Some(&number) = self.numbers.get(text) {
+            return number;
+        }
+        let number = self.table.len() as u32;
+        self.table.push(text.to_owned());
+        self.numbers.insert(text.to_owned(), number);
+        number
+    }
+
+    pub(super) fn into_table(self) -> Vec<Vec<u8>> {
+        self.table
+    }
+}
+
+/// New objects on their way: in a file, in blocks, in the order in which they were added.
+pub(super) struct Spool {
+    path: PathBuf,
+    file: BufWriter<File>,
+    texts: Texts,
+    ways: Vec<Way>,
+    relations: Vec<Relation>,
+}
+
+impl Spool {
+    pub(super) fn create(path: PathBuf) -> Result<Self, ExportError> {
+        let file = File::options().read(true).write(true).create(true).truncate(true).open(&path);
+        let file = BufWriter::new(file.map_err(|source| ExportError::Io { path: path.clone(), source })?);
+        Ok(Self { path, file, texts: Texts::none(), ways: Vec::new(), relations: Vec::new() })
+    }
+
+    /// A way with these tags; what else is known of it is as in `like`, whose texts are `texts`.
+    pub(super) fn way(&mut self, mut way: Way, tags: &[(Vec<u8>, Vec<u8>)], texts: &Texts) -> Result<(), ExportError> {
+        way.keys = tags.iter().map(|(key, _)| self.texts.number(key)).collect();
+        way.vals = tags.iter().map(|(_, value)| self.texts.number(value)).collect();
+        if let Some(info) = way.info.as_mut().filter(|info| info.has_user_sid()) {
+            let user = self.texts.number(texts.text(info.user_sid()));
+            Info::set_user_sid(info, user);
+        }
+        self.ways.push(way);
+        self.flush_full()
+    }
+
+    /// A relation of members by kind, id and role.
+    pub(super) fn relation(
+        &mut self,
+        id: i64,
+        members: &[(super::relations::Kind, i64, &str)],
+        tags: &[(&str, &str)],
+    ) -> Result<(), ExportError> {
+        let mut relation = Relation::new();
+        relation.set_id(id);
+        let mut last = 0;
+        for &(kind, member, role) in members {
+            relation.types.push(kind.into());
+            relation.memids.push(member.wrapping_sub(last));
+            relation.roles_sid.push(self.texts.number(role.as_bytes()) as i32);
+            last = member;
+        }
+        for (key, value) in tags {
+            relation.keys.push(self.texts.number(key.as_bytes()));
+            relation.vals.push(self.texts.number(value.as_bytes()));
+        }
+        self.relations.push(relation);
+        self.flush_full()
+    }
+
+    fn flush_full(&mut self) -> Result<(), ExportError> {
+        if self.ways.len() + self.relations.len() >= BLOCK_OBJECTS { self.flush() } else { Ok(()) }
+    }
+
+    fn flush(&mut self) -> Result<(), ExportError> {
+        let mut group = PrimitiveGroup::new();
+        group.ways = std::mem::take(&mut self.ways);
+        group.relations = std::mem::take(&mut self.relations);
+        if group.ways.is_empty() && group.relations.is_empty() {
+            return Ok(());
+        }
+        let mut block = PrimitiveBlock::new();
+        block.stringtable.mut_or_insert_default().s = std::mem::replace(&mut self.texts, Texts::none()).into_table();
+        block.primitivegroup.push(group);
+        write_block(&mut self.file, &block)
+    }
+
+    /// Appends all to the output; the file is emptied by dropping it.
+    pub(super) fn pour(&mut self, out: &mut dyn Write) -> Result<(), ExportError> {
+        self.flush()?;
+        self.file.flush()?;
+        let file = self.file.get_mut();
+        file.rewind()?;
+        let mut buffer = vec![0; 1 << 16];
+        loop {
+            let n = file.read(&mut buffer)?;
+            if n == 0 {
+                return Ok(());
+            }
+            out.write_all(buffer.get(..n).unwrap_or_default())?;
+        }
+    }
+}
+
+impl Drop for Spool {
+    fn drop(&mut self) {
+        // It holds nothing that anyone needs.
+        let _ = std::fs::remove_file(&self.path);
+    }
+}

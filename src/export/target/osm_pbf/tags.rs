@@ -1,0 +1,114 @@
+//! Which tags a road gets, by what is permitted on it.
+//!
+//! A permit never opens what a tag closes: nothing is said in favour of the vehicle but in keys of netcert's own. What a refusal
+//! would contradict is kept under `netcert:was:…`.
+
+use super::Flavour;
+
+/// A key and its value.
+pub(super) type Tag = (Vec<u8>, Vec<u8>);
+
+/// What is said of a stretch of road: permitted or not, and the least RSC, along the way and against it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Said {
+    pub(super) permitted: [bool; 2],
+    pub(super) rsc_m: [Option<f64>; 2],
+}
+
+const DIRECTIONS: [&str; 2] = ["forward", "backward"];
+
+/// The tags of a stretch: `tags` with what is said of it.
+pub(super) fn with_permits(tags: &[Tag], said: Said, flavour: Flavour) -> Vec<Tag> {
+    let mut out: Vec<Tag> = Vec::with_capacity(tags.len() + 6);
+    for (key, value) in tags {
+        if key.starts_with(b"netcert") {
+            continue; // of an earlier export
+        }
+        let key = if contradicts(key, said.permitted, flavour) {
+            [b"netcert:was:", key.as_slice()].concat()
+        } else {
+            key.clone()
+        };
+        out.push((key, value.clone()));
+    }
+    let mut add = |key: String, value: &str| out.push((key.into_bytes(), value.as_bytes().to_vec()));
+    if said.permitted == [false; 2] {
+        add("hgv".to_owned(), "no");
+        add("netcert".to_owned(), "no");
+        return out;
+    }
+    for ((direction, permitted), rsc_m) in DIRECTIONS.into_iter().zip(said.permitted).zip(said.rsc_m) {
+        add(format!("netcert:{direction}"), if permitted { "yes" } else { "no" });
+        if let Some(rsc_m) = rsc_m.filter(|_| permitted) {
+            add(format!("netcert:rsc:{direction}"), &rsc_m.to_string());
+        }
+        if !permitted {
+            add(format!("hgv:{direction}"), "no");
+            if flavour == Flavour::Valhalla {
+                add(format!("motor_vehicle:{direction}"), "no");
+            }
+        }
+    }
+    out
+}
+
+/// Whether a key speaks of what is refused: then it gives way.
+fn contradicts(key: &[u8], permitted: [bool; 2], flavour: Flavour) -> bool {
+    let Ok(key) = std::str::from_utf8(key) else { return false };
+    let mut parts = key.split(':');
+    let subject = parts.next();
+    let direction = parts.next().and_then(|part| DIRECTIONS.iter().position(|direction| *direction == part));
+    let ours = subject == Some("hgv") || flavour == Flavour::Valhalla && subject == Some("motor_vehicle");
+    let refused = match direction {
+        Some(direction) => permitted.get(direction) == Some(&false),
+        // Without a direction it speaks of both, and gives way to the more special key; but not under a condition.
+        None => {
+            subject == Some("hgv")
+                && (permitted == [false; 2] || permitted != [true; 2] && key.ends_with(":conditional"))
+        }
+    };
+    ours && refused
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tags(text: &str) -> Vec<Tag> {
+        text.split_whitespace()
+            .filter_map(|tag| tag.split_once('='))
+            .map(|(key, value)| (key.as_bytes().to_vec(), value.as_bytes().to_vec()))
+            .collect()
+    }
+
+    fn said(before: &str, permitted: [bool; 2], flavour: Flavour) -> String {
+        let said = Said { permitted, rsc_m: permitted.map(|yes| yes.then_some(0.25)) };
+        let after = with_permits(&tags(before), said, flavour);
+        let text = |text: &Vec<u8>| String::from_utf8_lossy(text).into_owned();
+        after.iter().map(|(key, value)| format!("{}={}", text(key), text(value))).collect::<Vec<_>>().join(" ")
+    }
+
+    #[test]
+    fn what_is_refused_is_closed_and_what_said_otherwise_is_kept_aside() {
+        assert_eq!(
+            said("highway=x", [true; 2], Flavour::Hgv),
+            "highway=x netcert:forward=yes netcert:rsc:forward=0.25 \
+            netcert:backward=yes netcert:rsc:backward=0.25"
+        );
+        assert_eq!(
+            said("hgv=designated hgv:backward=yes", [false; 2], Flavour::Hgv),
+            "netcert:was:hgv=designated netcert:was:hgv:backward=yes hgv=no netcert=no"
+        );
+        assert_eq!(
+            said("hgv=yes hgv:backward=yes hgv:conditional=no@x", [true, false], Flavour::Hgv),
+            "hgv=yes netcert:was:hgv:backward=yes netcert:was:hgv:conditional=no@x netcert:forward=yes \
+             netcert:rsc:forward=0.25 netcert:backward=no hgv:backward=no"
+        );
+        assert_eq!(
+            said("motor_vehicle=yes motor_vehicle:forward=yes", [false, true], Flavour::Valhalla),
+            "motor_vehicle=yes netcert:was:motor_vehicle:forward=yes netcert:forward=no hgv:forward=no \
+             motor_vehicle:forward=no netcert:backward=yes netcert:rsc:backward=0.25"
+        );
+        assert_eq!(said("netcert=no hgv=no", [true; 2], Flavour::Hgv).matches("netcert=no").count(), 0);
+    }
+}

@@ -1,0 +1,238 @@
+//! For `osrm-customize` and `osrm-contract`: which segments are closed and which turns cost.
+//!
+//! `segment-speeds.csv` has a line `from,to,0` for every pair of neighbouring nodes, in every direction, that is not permitted, on
+//! any way that OSRM's profiles might take. `turn-penalties.csv` has a line `from,via,to,3276.7` for every turn between
+//! permitted edges that is refused, and for turning back. OSRM keeps penalties in 16 bits: it cannot close a turn, only make
+//! it cost 55 minutes. Segments it closes.
+//!
+//! What it cannot express is refused: of a restriction over ways the first step; roundabouts are open only where their arcs are
+//! permitted each by itself.
+
+use std::fs::File;
+use std::io::{BufWriter, Read as _, Seek as _, SeekFrom, Write};
+use std::path::PathBuf;
+
+use osmpbfreader::osmformat::PrimitiveBlock;
+
+use super::{Options, Target};
+use crate::export::ways::{OnWay, Piece, WayEdges};
+use crate::export::{ExportError, Layout, Place, Sink, Source};
+use crate::osm::pbf::copy::Contents;
+
+/// What a refused turn costs, seconds: the most that OSRM can keep (2^15 − 1 tenths).
+const PENALTY_S: f64 = 3276.7;
+
+/// Ways with one of these keys are looked at by OSRM's car profile (`process_way` in `profiles/car.lua` of 26.10); ways without
+/// are no roads to it.
+const KEYS: [&[u8]; 3] = [b"highway", b"route", b"bridge"];
+
+/// `osrm`
+pub(super) struct Osrm;
+
+impl Target for Osrm {
+    fn name(&self) -> &'static str {
+        "osrm"
+    }
+
+    fn about(&self) -> &'static str {
+        "OSRM: segment speeds and turn penalties for osrm-customize or osrm-contract"
+    }
+
+    fn layout(&self, _: &Options) -> Layout {
+        Layout::Folder { target: self.name(), instead: "" }
+    }
+
+    fn needs_extract(&self) -> bool {
+        true
+    }
+
+    fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
+        let ends = place.scratch(".ends");
+        let speeds = place.create("segment-speeds.csv")?;
+        let turns = place.create("turn-penalties.csv")?;
+        let mut tables = Tables { source, speeds, turns, ends: Ends::create(ends)?, unclear: 0 };
+        tables.ways()?;
+        tables.turns()?;
+        if tables.unclear > 0 {
+            let note = format!("{} ways are closed whole: nodes at one place make their edges unclear", tables.unclear);
+            source.reporter.note(&note);
+        }
+        tables.speeds.close()?;
+        tables.turns.close()
+    }
+}
+
+struct Tables<'s, 'r> {
+    source: &'s Source<'r>,
+    speeds: Sink,
+    turns: Sink,
+    ends: Ends,
+    unclear: u64,
+}
+
+impl Tables<'_, '_> {
+    fn ways(&mut self) -> Result<(), ExportError> {
+        let source = self.source;
+        let mut blobs = source.blobs("osrm")?;
+        let mut database = source.database()?;
+        let mut edges = WayEdges::new(database.edge_facts(&source.ask.vehicle, source.ask.policy)?);
+        source.reporter.begin("ways", blobs.file_bytes());
+        while let Some(blob) = blobs.next_blob()? {
+            if let Contents::Block(block) = blobs.contents(&blob)? {
+                self.block(&block, &mut edges)?;
+            }
+            source.reporter.advance(blob.end);
+        }
+        source.reporter.end();
+        edges.finish().map_err(|detail| source.extract_error(detail))?;
+        Ok(self.ends.file.flush()?)
+    }
+
+    fn block(&mut self, block: &PrimitiveBlock, edges: &mut WayEdges<'_>) -> Result<(), ExportError> {
+        let texts = &block.stringtable.s;
+        for way in block.primitivegroup.iter().flat_map(|group| &group.ways) {
+            let mut id = 0_i64;
+            let refs: Vec<i64> = way
+                .refs
+                .iter()
+                .map(|step| {
+                    id = id.wrapping_add(*step);
+                    id
+                })
+                .collect();
+            let on = edges.of(way.id(), &refs).map_err(|detail| self.source.extract_error(detail))?;
+            let road =
+                way.keys.iter().any(|&key| texts.get(key as usize).is_some_and(|key| KEYS.contains(&key.as_slice())));
+            match on {
+                OnWay::Pieces(pieces) => self.pieces(&refs, &pieces)?,
+                OnWay::Unclear(edges) => {
+                    self.unclear += 1;
+                    edges.iter().try_for_each(|&edge| self.ends.push(edge, [0; 3]))?;
+                    self.close(&refs, 0, refs.len().saturating_sub(1), [true; 2])?;
+                }
+                OnWay::Nothing if road => self.close(&refs, 0, refs.len().saturating_sub(1), [true; 2])?,
+                OnWay::Nothing => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn pieces(&mut self, refs: &[i64], pieces: &[Piece]) -> Result<(), ExportError> {
+        let mut done = 0;
+        for piece in pieces {
+            let &Piece { first, last, edges, .. } = piece;
+            self.close(refs, done, first, [true; 2])?;
+            done = last;
+            let permitted = edges.map(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge)));
+            self.close(refs, first, last, permitted.map(|yes| !yes))?;
+            let node = |place: usize| refs.get(place).copied().unwrap_or_default();
+            // The neighbour of each end that is another node: repeats next to each other are one.
+            let after = (first..last).map(|i| node(i + 1)).find(|&id| id != node(first)).unwrap_or_default();
+            let before = (first..last).rev().map(node).find(|&id| id != node(last)).unwrap_or_default();
+            for (direction, edge) in edges.into_iter().enumerate() {
+                if let Some(edge) = edge {
+                    let [second, last_but_one, end] =
+                        if direction == 0 { [after, before, node(last)] } else { [before, after, node(first)] };
+                    self.ends.push(edge, [second, last_but_one, end])?;
+                }
+            }
+            if permitted == [true; 2] {
+                self.penalise(before, node(last), before)?;
+                self.penalise(after, node(first), after)?;
+            }
+        }
+        self.close(refs, done, refs.len().saturating_sub(1), [true; 2])
+    }
+
+    /// Closes the segments from one place to another, along the way and against it where asked.
+    fn close(&mut self, refs: &[i64], from: usize, to: usize, closed: [bool; 2]) -> Result<(), ExportError> {
+        for pair in refs.get(from..=to).unwrap_or_default().windows(2).filter(|pair| pair[0] != pair[1]) {
+            for ([a, b], closed) in [[pair[0], pair[1]], [pair[1], pair[0]]].into_iter().zip(closed) {
+                if closed {
+                    writeln!(self.speeds, "{a},{b},0")?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn penalise(&mut self, from: i64, via: i64, to: i64) -> Result<(), ExportError> {
+        Ok(writeln!(self.turns, "{from},{via},{to},{PENALTY_S}")?)
+    }
+
+    /// Turns between permitted edges that are refused, and restrictions, those over ways by their first step.
+    fn turns(&mut self) -> Result<(), ExportError> {
+        let source = self.source;
+        let permitted = &source.permitted;
+        let mut database = source.database()?;
+        for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
+            let step = step?;
+            let between = permitted.edges.get(step.from) && permitted.edges.get(step.to);
+            if step.arcs.is_none() && between && !permitted.turns.get(step.turn) {
+                self.refuse(step.from, step.to)?;
+            }
+        }
+        for sequence in database.forbidden_sequences()? {
+            if let (true, [from, to, ..]) =
+                (sequence.iter().all(|&edge| permitted.edges.get(edge)), sequence.as_slice())
+            {
+                self.refuse(*from, *to)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn refuse(&mut self, from: u32, to: u32) -> Result<(), ExportError> {
+        let ([_, before, via], [after, ..]) = (self.ends.get(from)?, self.ends.get(to)?);
+        if before == 0 || after == 0 { Ok(()) } else { self.penalise(before, via, after) }
+    }
+}
+
+/// By edge: its second, its last but one and its last node; zeros where nobody can say. In a file, so that memory does not grow
+/// with the network.
+struct Ends {
+    path: PathBuf,
+    file: BufWriter<File>,
+    edges: u32,
+}
+
+const ENDS_BYTES: usize = 3 * 8;
+
+impl Ends {
+    fn create(path: PathBuf) -> Result<Self, ExportError> {
+        let file = File::options().read(true).write(true).create(true).truncate(true).open(&path);
+        let file = file.map_err(|source| ExportError::Io { path: path.clone(), source })?;
+        Ok(Self { path, file: BufWriter::with_capacity(1 << 16, file), edges: 0 })
+    }
+
+    /// Edges come in order.
+    fn push(&mut self, edge: u32, nodes: [i64; 3]) -> Result<(), ExportError> {
+        for _ in self.edges..edge {
+            self.file.write_all(&[0; ENDS_BYTES])?;
+        }
+        self.edges = edge.saturating_add(1);
+        nodes.iter().try_for_each(|node| self.file.write_all(&node.to_le_bytes()))?;
+        Ok(())
+    }
+
+    fn get(&mut self, edge: u32) -> Result<[i64; 3], ExportError> {
+        if edge >= self.edges {
+            return Ok([0; 3]);
+        }
+        let mut bytes = [0; ENDS_BYTES];
+        let file = self.file.get_mut();
+        file.seek(SeekFrom::Start(u64::from(edge) * ENDS_BYTES as u64))?;
+        file.read_exact(&mut bytes)?;
+        let (words, _) = bytes.as_chunks::<8>();
+        let mut nodes = [0; 3];
+        nodes.iter_mut().zip(words).for_each(|(node, word)| *node = i64::from_le_bytes(*word));
+        Ok(nodes)
+    }
+}
+
+impl Drop for Ends {
+    fn drop(&mut self) {
+        // It holds nothing that anyone needs.
+        let _ = std::fs::remove_file(&self.path);
+    }
+}

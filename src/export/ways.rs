@@ -1,0 +1,226 @@
+//! The extract's ways and the database's edges side by side: which of a way's nodes each edge goes over.
+//!
+//! Both come in order of way ids, so a merge is enough and nothing of the network is kept. A way whose nodes cannot be told
+//! apart by the edges' ends and lengths (nodes at one place are one in the network) is left whole and said to be unclear; whoever
+//! asks has to refuse all of it.
+
+use std::iter::Peekable;
+
+use super::ExportError;
+use crate::osm::facts::Direction;
+use crate::osm::pbf::copy::Blobs;
+use crate::store::{EdgeStep, StoreError, Streamed};
+
+use super::Source;
+
+/// A stretch of a way between two junctions.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Piece {
+    /// Places of its first and last node in the way's references.
+    pub(super) first: usize,
+    /// See `first`.
+    pub(super) last: usize,
+    /// Indices of its edges along the way and against it, where they exist.
+    pub(super) edges: [Option<u32>; 2],
+    /// Their RSC, metres.
+    pub(super) rsc_m: [Option<f64>; 2],
+}
+
+/// What the network has of a way.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum OnWay {
+    /// Nothing: it is no road of the network.
+    Nothing,
+    /// In way order, not overlapping but at their ends.
+    Pieces(Vec<Piece>),
+    /// These edges, nobody can say where.
+    Unclear(Vec<u32>),
+}
+
+/// A stream of edges that follows a stream of ways.
+pub(super) struct WayEdges<'d> {
+    rows: Peekable<Streamed<'d, EdgeStep>>,
+    last_way: i64,
+}
+
+impl<'d> WayEdges<'d> {
+    /// Over [`crate::store::Database::edge_facts`].
+    #[must_use]
+    pub(super) fn new(rows: Streamed<'d, EdgeStep>) -> Self {
+        Self { rows: rows.peekable(), last_way: i64::MIN }
+    }
+
+    /// The edges of the next way; ids must ascend.
+    ///
+    /// # Errors
+    /// They do not (the text says what to do), the extract lacks a way of the network, or the database cannot be read.
+    pub(super) fn of(&mut self, way_id: i64, refs: &[i64]) -> Result<OnWay, String> {
+        if way_id <= self.last_way {
+            return Err(format!(
+                "way {way_id} comes after way {}: sort it with `osmium sort`, then ingest again",
+                self.last_way
+            ));
+        }
+        self.last_way = way_id;
+        let mut rows = Vec::new();
+        while let Some(row) = self.rows.next_if(|row| row.as_ref().map_or(true, |row| row.way_id <= way_id)) {
+            let row = row.map_err(|e: StoreError| e.to_string())?;
+            if row.way_id < way_id {
+                return Err(format!("way {} of the network is not in it", row.way_id));
+            }
+            rows.push(row);
+        }
+        Ok(on_way(&rows, refs))
+    }
+
+    /// Whether every edge had its way.
+    ///
+    /// # Errors
+    /// The extract lacks one.
+    pub(super) fn finish(mut self) -> Result<(), String> {
+        match self.rows.next() {
+            None => Ok(()),
+            Some(Ok(row)) => Err(format!("way {} of the network is not in it", row.way_id)),
+            Some(Err(error)) => Err(error.to_string()),
+        }
+    }
+}
+
+fn on_way(rows: &[EdgeStep], refs: &[i64]) -> OnWay {
+    if rows.is_empty() {
+        return OnWay::Nothing;
+    }
+    // Repeats next to each other are one node.
+    let line: Vec<(usize, i64)> = {
+        let mut line: Vec<(usize, i64)> = refs.iter().copied().enumerate().collect();
+        line.dedup_by_key(|node| node.1);
+        line
+    };
+    let mut pieces = Vec::new();
+    let mut at = 0;
+    for both in rows.chunk_by(|a, b| a.shape_start == b.shape_start) {
+        let Some(place) = place_of(both, &line, at) else {
+            return OnWay::Unclear(rows.iter().map(|row| row.edge).collect());
+        };
+        at = place + both[0].positions as usize - 1;
+        let of = |direction| both.iter().find(|row| row.direction == direction);
+        let [along, against] = [of(Direction::Forward), of(Direction::Backward)];
+        let (edges, rsc_m) =
+            ([along, against].map(|row| row.map(|row| row.edge)), [along, against].map(|row| row?.rsc_m));
+        pieces.push(Piece { first: line[place].0, last: line[at].0, edges, rsc_m });
+    }
+    OnWay::Pieces(pieces)
+}
+
+/// Where on the line a piece starts: right where the last one ended, or after nodes that the file does not have, if there is only
+/// one such place.
+fn place_of(both: &[EdgeStep], line: &[(usize, i64)], at: usize) -> Option<usize> {
+    let row = both.first()?;
+    let ends = match row.direction {
+        Direction::Forward => [row.from_node, row.to_node],
+        Direction::Backward => [row.to_node, row.from_node],
+    };
+    let steps = (row.positions as usize).checked_sub(1).filter(|&steps| steps > 0)?;
+    let fits = |&place: &usize| {
+        line.get(place).is_some_and(|node| node.1 == ends[0])
+            && line.get(place + steps).is_some_and(|node| node.1 == ends[1])
+    };
+    if fits(&at) {
+        return Some(at);
+    }
+    let mut places = (at..line.len()).filter(fits);
+    let place = places.next()?;
+    places.next().is_none().then_some(place)
+}
+
+impl Source<'_> {
+    /// The extract, if it is the one that the database was made from.
+    ///
+    /// # Errors
+    /// None is given, it cannot be read, or it is another one.
+    pub fn blobs(&self, target: &'static str) -> Result<Blobs, ExportError> {
+        let provenance = &self.header.provenance;
+        let Some(path) = &self.ask.extract else {
+            return Err(ExportError::NoExtract { target, input: provenance.input.clone() });
+        };
+        self.reporter.begin("check", std::fs::metadata(path).map_or(0, |data| data.len()));
+        let blobs = Blobs::open(path, &|done, _| self.reporter.advance(done))?;
+        self.reporter.end();
+        let wanted = provenance.input_blake3.clone().unwrap_or_default();
+        if blobs.blake3() != wanted {
+            return Err(ExportError::OtherExtract {
+                path: path.clone(),
+                database: self.ask.db.clone(),
+                found: blobs.blake3().to_owned(),
+                wanted,
+                input: provenance.input.clone(),
+            });
+        }
+        Ok(blobs)
+    }
+
+    /// An error of the extract's content.
+    #[must_use]
+    pub fn extract_error(&self, detail: String) -> ExportError {
+        ExportError::Content { path: self.ask.extract.clone().unwrap_or_default(), detail }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::verdict::Verdict;
+
+    fn row(
+        edge: u32,
+        shape_start: u32,
+        positions: u32,
+        [from_node, to_node]: [i64; 2],
+        direction: Direction,
+    ) -> EdgeStep {
+        let (way_id, verdict, rsc_m, width_source) = (1, Verdict::Safe, None, None);
+        EdgeStep { edge, way_id, from_node, to_node, direction, shape_start, positions, verdict, rsc_m, width_source }
+    }
+
+    use Direction::{Backward, Forward};
+
+    fn pieces(rows: &[EdgeStep], refs: &[i64]) -> Vec<(usize, usize)> {
+        match on_way(rows, refs) {
+            OnWay::Pieces(pieces) => pieces.iter().map(|piece| (piece.first, piece.last)).collect(),
+            _ => Vec::new(),
+        }
+    }
+
+    #[test]
+    fn edges_lie_one_after_the_other_along_their_way() {
+        let rows = [row(0, 0, 3, [1, 3], Forward), row(1, 0, 3, [3, 1], Backward), row(2, 2, 2, [3, 4], Forward)];
+        assert_eq!(pieces(&rows, &[1, 2, 3, 4]), [(0, 2), (2, 3)]);
+        assert_eq!(pieces(&rows, &[1, 2, 2, 3, 4]), [(0, 3), (3, 4)]);
+        let OnWay::Pieces(found) = on_way(&rows, &[1, 2, 3, 4]) else { panic!() };
+        assert_eq!([found[0].edges, found[1].edges], [[Some(0), Some(1)], [Some(2), None]]);
+    }
+
+    #[test]
+    fn nodes_that_the_file_lacks_are_passed_over_where_that_is_clear() {
+        // 9 is missing: the network has 1-2 and 3-4.
+        assert_eq!(
+            pieces(&[row(0, 0, 2, [1, 2], Forward), row(1, 2, 2, [3, 4], Forward)], &[1, 2, 9, 3, 4]),
+            [(0, 1), (3, 4)]
+        );
+        // A loop driven twice behind a missing node: which time is not clear.
+        let again = [row(0, 0, 2, [1, 2], Forward)];
+        assert_eq!(on_way(&again, &[9, 1, 2, 1, 2]), OnWay::Unclear(vec![0]));
+    }
+
+    #[test]
+    fn a_way_that_meets_itself_keeps_its_order() {
+        let rows = [row(0, 0, 3, [1, 1], Forward), row(1, 2, 2, [1, 4], Forward)];
+        assert_eq!(pieces(&rows, &[1, 2, 1, 4]), [(0, 2), (2, 3)]);
+    }
+
+    #[test]
+    fn a_node_made_one_with_another_makes_a_way_unclear_and_no_edges_mean_no_road() {
+        assert_eq!(on_way(&[row(7, 0, 2, [1, 3], Forward)], &[1, 2, 3]), OnWay::Unclear(vec![7]));
+        assert_eq!(on_way(&[], &[1, 2, 3]), OnWay::Nothing);
+    }
+}

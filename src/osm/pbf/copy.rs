@@ -1,0 +1,114 @@
+//! An extract read through blob by blob, for programs that write it again with changes.
+//!
+//! Promises: the whole file is checked and hashed before the first blob comes; a blob of nodes alone is known without decoding
+//! it, so that it can be copied as it is; one blob in memory at a time.
+
+use std::path::Path;
+
+use osmpbfreader::osmformat::{HeaderBlock, PrimitiveBlock};
+use protobuf::Message;
+
+use super::error::{Problem, ReadError};
+use super::frame::{Frame, Kind, Source};
+use super::inflate::Inflater;
+use super::{header, nodes};
+
+/// An open extract.
+pub struct Blobs {
+    source: Source,
+    frames: std::vec::IntoIter<Frame>,
+    blake3: String,
+    inflater: Inflater,
+}
+
+/// One blob: a `Blob` message as it stands in the file.
+pub struct Blob {
+    /// The message.
+    pub bytes: Vec<u8>,
+    /// How far in the file it ends.
+    pub end: u64,
+    frame: Frame,
+}
+
+/// What a blob holds.
+#[derive(Debug)]
+pub enum Contents {
+    /// What the file says of itself.
+    Header(Box<HeaderBlock>),
+    /// Nodes and nothing else.
+    Nodes,
+    /// Ways or relations, perhaps nodes as well.
+    Block(Box<PrimitiveBlock>),
+    /// Nothing of the map: to be copied.
+    Other,
+}
+
+impl Blobs {
+    /// Checks and hashes the file; `progress` is told bytes done and bytes in all.
+    ///
+    /// # Errors
+    /// It cannot be read, or is no such file.
+    pub fn open(path: &Path, progress: &dyn Fn(u64, u64)) -> Result<Self, ReadError> {
+        let mut source = Source::open(path)?;
+        let total = source.len;
+        let (frames, hash) = source.frames(|done| progress(done, total))?;
+        Ok(Self {
+            source,
+            frames: frames.into_iter(),
+            blake3: hash.to_hex().to_string(),
+            inflater: Inflater::default(),
+        })
+    }
+
+    /// Of the whole file, in hexadecimal.
+    #[must_use]
+    pub fn blake3(&self) -> &str {
+        &self.blake3
+    }
+
+    /// Bytes of the whole file.
+    #[must_use]
+    pub fn file_bytes(&self) -> u64 {
+        self.source.len
+    }
+
+    /// The next blob, in order of the file.
+    ///
+    /// # Errors
+    /// The file changed, or cannot be read.
+    pub fn next_blob(&mut self) -> Result<Option<Blob>, ReadError> {
+        let Some(frame) = self.frames.next() else {
+            self.source.check_unchanged()?;
+            return Ok(None);
+        };
+        let mut bytes = vec![0; frame.size];
+        self.source.read_at(frame.body, &mut bytes)?;
+        Ok(Some(Blob { bytes, end: frame.body + frame.size as u64, frame }))
+    }
+
+    /// What it holds.
+    ///
+    /// # Errors
+    /// It is damaged.
+    pub fn contents(&mut self, blob: &Blob) -> Result<Contents, ReadError> {
+        let mut read = || {
+            if blob.frame.kind == Kind::Other {
+                return Ok(Contents::Other);
+            }
+            let (bytes, _) = self.inflater.inflate(&blob.bytes)?;
+            if blob.frame.kind == Kind::Header {
+                header::parse(bytes)?;
+                return Ok(Contents::Header(Box::new(message(bytes, "OSMHeader")?)));
+            }
+            if nodes::only_nodes(bytes)? {
+                return Ok(Contents::Nodes);
+            }
+            Ok(Contents::Block(Box::new(message(bytes, "OSMData")?)))
+        };
+        read().map_err(|problem| self.source.error(Some(blob.frame.offset), problem))
+    }
+}
+
+fn message<M: Message>(bytes: &[u8], what: &'static str) -> Result<M, Problem> {
+    M::parse_from_bytes(bytes).map_err(|error| Problem::Message { what, detail: error.to_string() })
+}

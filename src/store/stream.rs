@@ -1,0 +1,231 @@
+//! Rows that an export reads, one at a time: what permits depend on, without geometry, and turns with all their columns.
+//!
+//! Promises: in order of the network, whatever its size only some rows in memory at once.
+
+use std::path::Path;
+use std::pin::Pin;
+
+use futures_util::{Stream, TryStreamExt as _};
+use sqlx::sqlite::SqliteRow;
+use sqlx::{AssertSqlSafe, Row as _};
+use tokio::runtime::Runtime;
+
+use crate::osm::facts::{Direction, Policy, WidthSource};
+use crate::verdict::Verdict;
+
+use super::database::Database;
+use super::error::{StoreError, content};
+use super::names::{corridor_no, verdict_of};
+use super::network_read::{word, word_or_none};
+use super::turns::{self, TurnQuery, TurnRow};
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// Rows as they come from the file.
+pub struct Streamed<'d, T> {
+    stream: Pin<Box<dyn Stream<Item = Sql<SqliteRow>> + Send + 'd>>,
+    runtime: &'d Runtime,
+    path: &'d Path,
+    read: fn(&SqliteRow) -> Sql<T>,
+}
+
+impl<T> Iterator for Streamed<'_, T> {
+    type Item = Result<T, StoreError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let row = self.runtime.block_on(self.stream.try_next());
+        let row = row.and_then(|row| row.as_ref().map(self.read).transpose());
+        row.map_err(|e| StoreError::sql(self.path, e)).transpose()
+    }
+}
+
+/// What a permit of an edge depends on, and where the edge lies on its way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)] // the columns of `edge` and `certificate`
+pub struct EdgeStep {
+    /// Index into `Network::edges`.
+    pub edge: u32,
+    pub way_id: i64,
+    pub from_node: i64,
+    pub to_node: i64,
+    pub direction: Direction,
+    /// Where its shape starts in `Network::shapes`; both directions share it.
+    pub shape_start: u32,
+    /// How many positions its shape has.
+    pub positions: u32,
+    pub verdict: Verdict,
+    pub rsc_m: Option<f64>,
+    /// Of the policy asked for.
+    pub width_source: Option<WidthSource>,
+}
+
+/// What a permit of a turn depends on, and between which edges it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)] // the columns of `turn` and `turn_certificate`
+pub struct TurnStep {
+    /// Index into the network's turns.
+    pub turn: u32,
+    /// Index into `Network::edges`.
+    pub from: u32,
+    pub to: u32,
+    /// The first and the last arc (indices into `Network::edges`), where it is a passage of a roundabout.
+    pub arcs: Option<[u32; 2]>,
+    pub via_node: i64,
+    pub angle_deg: f64,
+    pub verdict: Verdict,
+    pub rsc_m: Option<f64>,
+}
+
+/// Straight on along a stroke; `None`: the stroke ends.
+pub type StraightOn = (u32, Option<u32>);
+
+impl Database {
+    /// Every edge's facts for a vehicle. It must be certified under this policy: see [`Database::query`].
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn edge_facts(&mut self, vehicle: &str, policy: Policy) -> Result<Streamed<'_, EdgeStep>, StoreError> {
+        let source = match policy {
+            Policy::Lane => "width_source",
+            Policy::Direction => "direction_width_source",
+            Policy::Carriageway => "carriageway_width_source",
+        };
+        let sql = format!(
+            "SELECT c.fid, e.way_id, e.from_node, e.to_node, e.direction, e.shape_start, length(e.geom), c.verdict_no, \
+             c.rsc_mm, e.{source} FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
+             WHERE c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? ORDER BY c.fid"
+        );
+        Ok(self.streamed(sql, vehicle, policy, edge_facts))
+    }
+
+    /// Every turn's facts for a vehicle; none where its turns are not certified: see [`Database::has_turns`].
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn turn_steps(&mut self, vehicle: &str, policy: Policy) -> Result<Streamed<'_, TurnStep>, StoreError> {
+        let sql = "SELECT c.fid, t.from_fid, t.to_fid, t.first_arc_fid, t.last_arc_fid, t.via_node, t.angle_deg, \
+                   c.verdict_no, c.rsc_mm FROM turn_certificate_compact AS c CROSS JOIN turn AS t ON t.fid = c.fid \
+                   WHERE c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? \
+                   ORDER BY c.fid";
+        Ok(self.streamed(sql.to_owned(), vehicle, policy, turn_step))
+    }
+
+    /// Every turn of a vehicle with all columns; none where its turns are not certified.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn turn_rows(&mut self, vehicle: &str, policy: Policy) -> Result<Streamed<'_, TurnRow>, StoreError> {
+        let sql = turns::statement(&TurnQuery::new(vehicle, policy));
+        let query = sqlx::query(AssertSqlSafe(sql)).bind(corridor_no(policy)).bind(vehicle.to_owned());
+        let stream = query.fetch(&mut self.session.connection);
+        Ok(Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read: turns::turn_row })
+    }
+
+    /// The sequences of edges (indices into `Network::edges`) that turn restrictions forbid, all at once: there are few.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn forbidden_sequences(&mut self) -> Result<Vec<Vec<u32>>, StoreError> {
+        self.session.run(async |c| {
+            let sql = "SELECT r.restriction_no, e.fid FROM restriction AS r JOIN restriction_edge AS e \
+                       ON e.position > r.edge_start AND e.position <= r.edge_end ORDER BY r.restriction_no, e.position";
+            let rows: Vec<(i64, u32)> = sqlx::query_as(sql).fetch_all(c).await?;
+            let edges = |rows: &[(i64, u32)]| rows.iter().map(|row| row.1.saturating_sub(1)).collect();
+            Ok(rows.chunk_by(|a, b| a.0 == b.0).map(edges).collect())
+        })
+    }
+
+    /// Every edge that goes on straight into another, and that one, by stroke.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn straight_on(&mut self) -> Result<Streamed<'_, StraightOn>, StoreError> {
+        let sql = "SELECT a.fid, coalesce(b.fid, CASE WHEN s.closed THEN \
+                   (SELECT fid FROM stroke_edge WHERE position = s.edge_start + 1) END) \
+                   FROM stroke AS s JOIN stroke_edge AS a ON a.position > s.edge_start AND a.position <= s.edge_end \
+                   LEFT JOIN stroke_edge AS b ON b.position = a.position + 1 AND b.position <= s.edge_end \
+                   ORDER BY s.stroke_no, a.position";
+        let stream = sqlx::query(sql).fetch(&mut self.session.connection);
+        Ok(Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read: straight_on })
+    }
+
+    /// The arcs of roundabouts (indices into `Network::edges`), each ring in driving order, all at once: there are few.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn rings(&mut self) -> Result<Vec<Vec<u32>>, StoreError> {
+        self.session.run(async |c| {
+            let sql = "SELECT s.stroke_no, a.fid \
+                       FROM stroke AS s JOIN stroke_edge AS a ON a.position > s.edge_start AND a.position <= s.edge_end \
+                       JOIN edge AS e ON e.fid = a.fid JOIN road AS r ON r.road_no = e.road_no \
+                       WHERE r.roundabout ORDER BY s.stroke_no, a.position";
+            let rows: Vec<(i64, u32)> = sqlx::query_as(sql).fetch_all(c).await?;
+            let arcs = |rows: &[(i64, u32)]| rows.iter().map(|row| row.1.saturating_sub(1)).collect();
+            Ok(rows.chunk_by(|a, b| a.0 == b.0).map(arcs).collect())
+        })
+    }
+
+    fn streamed<T>(
+        &mut self,
+        sql: String,
+        vehicle: &str,
+        policy: Policy,
+        read: fn(&SqliteRow) -> Sql<T>,
+    ) -> Streamed<'_, T> {
+        let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle.to_owned()).bind(corridor_no(policy));
+        let stream = query.fetch(&mut self.session.connection);
+        Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read }
+    }
+}
+
+fn straight_on(row: &SqliteRow) -> Sql<StraightOn> {
+    let next: Option<u32> = row.try_get(1)?;
+    Ok((row.try_get::<u32, _>(0)?.saturating_sub(1), next.map(|fid| fid.saturating_sub(1))))
+}
+
+/// A geometry's bytes before its positions, and those of one position: see `blob`.
+const GEOMETRY_HEAD: u32 = 49;
+const POSITION_BYTES: u32 = 16;
+
+fn edge_facts(row: &SqliteRow) -> Sql<EdgeStep> {
+    let fid: u32 = row.try_get(0)?;
+    let bytes: u32 = row.try_get(6)?;
+    Ok(EdgeStep {
+        edge: fid.saturating_sub(1),
+        way_id: row.try_get(1)?,
+        from_node: row.try_get(2)?,
+        to_node: row.try_get(3)?,
+        direction: word(row, 4)?,
+        shape_start: row.try_get(5)?,
+        positions: bytes.saturating_sub(GEOMETRY_HEAD) / POSITION_BYTES,
+        verdict: verdict(row, 7, fid)?,
+        rsc_m: metres(row, 8)?,
+        width_source: word_or_none(row, 9)?,
+    })
+}
+
+fn turn_step(row: &SqliteRow) -> Sql<TurnStep> {
+    let fid: u32 = row.try_get(0)?;
+    let index = |column| -> Sql<u32> { Ok(row.try_get::<u32, _>(column)?.saturating_sub(1)) };
+    let arc =
+        |column| -> Sql<Option<u32>> { Ok(row.try_get::<Option<u32>, _>(column)?.map(|fid| fid.saturating_sub(1))) };
+    Ok(TurnStep {
+        turn: fid.saturating_sub(1),
+        from: index(1)?,
+        to: index(2)?,
+        arcs: arc(3)?.zip(arc(4)?).map(|(first, last)| [first, last]),
+        via_node: row.try_get(5)?,
+        angle_deg: row.try_get(6)?,
+        verdict: verdict(row, 7, fid)?,
+        rsc_m: metres(row, 8)?,
+    })
+}
+
+fn verdict(row: &SqliteRow, column: usize, fid: u32) -> Sql<Verdict> {
+    let number: i64 = row.try_get(column)?;
+    verdict_of(number).ok_or_else(|| content(format!("verdict {number} of row {fid}")))
+}
+
+fn metres(row: &SqliteRow, column: usize) -> Sql<Option<f64>> {
+    Ok(row.try_get::<Option<i64>, _>(column)?.map(|mm| mm as f64 / 1000.0))
+}

@@ -1,0 +1,156 @@
+"""What netcert permits, read from `export csv` and the extract alone, and whether a way that an engine drives keeps to it.
+
+Knows nothing of how the exports for engines are made: edges are found on their ways by their end nodes, steps from one edge into
+another in turns.csv; a step that is not there and not back is straight on.
+"""
+
+import csv
+import random
+from collections import defaultdict
+
+import osmium
+
+
+class Permits:
+    def __init__(self, extract, tables):
+        rows = list(csv.DictReader(open(f"{tables}/edges.csv", newline="", encoding="utf-8")))
+        by_way = defaultdict(list)
+        for row in rows:
+            by_way[int(row["way_id"])].append(row)
+        refs, self.place = {}, {}
+        for way in osmium.FileProcessor(extract, osmium.osm.WAY):
+            if way.id in by_way:
+                refs[way.id] = [node.ref for node in way.nodes]
+        wanted = {node for nodes in refs.values() for node in nodes}
+        for node in osmium.FileProcessor(extract, osmium.osm.NODE):
+            if node.id in wanted:
+                self.place[node.id] = (node.location.lon, node.location.lat)
+        self.edges, self.over, self.lost = {}, defaultdict(list), 0
+        for way, edges in by_way.items():
+            self._lay(refs[way], edges)
+        self.at = defaultdict(list)
+        for node, place in self.place.items():
+            self.at[_key(place)].append(node)
+        self.turns = {}
+        for row in csv.DictReader(open(f"{tables}/turns.csv", newline="", encoding="utf-8")):
+            if not row["first_arc"]:
+                self.turns[int(row["from_edge"]), int(row["to_edge"])] = row["permitted"] == "true"
+
+    def _lay(self, refs, edges):
+        """Both directions of a stretch lie on the same nodes; stretches follow one another."""
+        spans, start = {}, 0
+        for row in edges:
+            ends = (int(row["from_node"]), int(row["to_node"]))
+            ends = ends if row["direction"] == "forward" else ends[::-1]
+            nodes = spans.get((ends, row["direction"] == "forward"))
+            if nodes is None:
+                try:
+                    first = refs.index(ends[0], start)
+                    last = refs.index(ends[1], first + 1)
+                except ValueError:
+                    self.lost += 1
+                    continue
+                nodes, start = refs[first : last + 1], last
+                spans[ends, row["direction"] != "forward"] = nodes
+            if row["direction"] == "backward":
+                nodes = nodes[::-1]
+            edge = int(row["edge_id"])
+            self.edges[edge] = dict(row, nodes=nodes, permitted=row["permitted"] == "true")
+            for i, pair in enumerate(zip(nodes, nodes[1:])):
+                self.over[pair].append((edge, i))
+
+    def judge(self, nodes):
+        """What a way over these nodes uses that is refused: a list of texts, empty if nothing."""
+        wrong, now = [], []
+        for pair in zip(nodes, nodes[1:]):
+            if pair[0] == pair[1]:
+                continue
+            if None in pair:
+                wrong.append("a place that is no node of the network")
+                now = []
+                continue
+            on = [(edge, i) for edge, i in self.over.get(pair, []) if self.edges[edge]["permitted"]]
+            if not on:
+                edges = [edge for edge, _ in self.over.get(pair, [])]
+                wrong.append(f"{pair[0]}-{pair[1]}: edge {edges or 'not in the network'} is refused")
+                now = []
+                continue
+            steps = [(edge, i) for edge, i in on if not now or any(self._step(before, (edge, i)) for before in now)]
+            if now and not steps:
+                wrong.append(f"turn at {pair[0]} from edge {now[0][0]} into {on[0][0]} is refused")
+            now = steps or on
+        return wrong
+
+    def _step(self, before, after):
+        (a, i), (b, k) = before, after
+        if a == b and k == i + 1:
+            return True
+        first, second = self.edges[a], self.edges[b]
+        if i + 2 != len(first["nodes"]) or k != 0:
+            return False
+        back = first["way_id"] == second["way_id"] and first["nodes"] == second["nodes"][::-1]
+        return self.turns.get((a, b), not back)
+
+    def nodes_of(self, line):
+        """The nodes of a line as an engine draws it, None where there is none; its two ends lie between nodes and may have none."""
+        out = []
+        for i, point in enumerate(line):
+            here = self._near(point)
+            if not here and i in (0, len(line) - 1):
+                continue
+            known = [node for node in here if not out or (out[-1], node) in self.over or out[-1] == node]
+            out.append((known or here or [None])[0])
+        return out
+
+    def _near(self, point):
+        """Engines round to a millionth of a degree, one way or the other."""
+        x, y = _key(point)
+        keys = [(x + dx, y + dy) for dx in (0, -1, 1) for dy in (0, -1, 1)]
+        return next((self.at[key] for key in keys if key in self.at), [])
+
+    def middle(self, edge):
+        nodes = self.edges[edge]["nodes"]
+        a, b = (self.place[node] for node in nodes[(len(nodes) - 1) // 2 :][:2])
+        return ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2)
+
+    def pairs(self, count, seed):
+        """Permitted edges drawn at random; of every other pair the second one is one that permits lead to from the first.
+
+        `200+START:GOAL` are 200 and then this pair of edges.
+        """
+        count, *given = count.split("+")
+        count, draw = int(count), random.Random(seed)
+        edges = sorted(edge for edge, row in self.edges.items() if row["permitted"])
+        leaving = defaultdict(list)
+        for edge in edges:
+            leaving[self.edges[edge]["nodes"][0]].append(edge)
+        out = []
+        while len(out) < count:
+            start = draw.choice(edges)
+            known, front = {start}, [start]
+            while front:
+                edge = front.pop()
+                nodes = self.edges[edge]["nodes"]
+                for to in leaving[nodes[-1]]:
+                    if to not in known and self._step((edge, len(nodes) - 2), (to, 0)):
+                        known.add(to)
+                        front.append(to)
+            if len(out) % 2:
+                out.append((start, draw.choice(edges)))
+            elif len(known) > 5:
+                out.append((start, draw.choice(sorted(known - {start}))))
+        return out + [tuple(int(edge) for edge in pair.split(":")) for pair in given]
+
+
+def _key(place):
+    return (round(place[0] * 1e6), round(place[1] * 1e6))
+
+
+def length_m(permits, nodes):
+    from math import cos, hypot, radians
+
+    total = 0.0
+    for a, b in zip(nodes, nodes[1:]):
+        (x, y), (u, v) = permits.place[a], permits.place[b]
+        total += 111_320 * hypot((u - x) * cos(radians(y)), v - y)
+    return total
