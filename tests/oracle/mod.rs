@@ -13,3 +13,4 @@ pub mod path;
 pub mod road;
 pub mod simulator;
 pub mod turns;
+pub mod whole;
