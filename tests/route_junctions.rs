@@ -17,6 +17,7 @@ use netcert::osm::facts::Policy;
 use netcert::route::*;
 use netcert::turns::Kerbs;
 use netcert::verdict::{UnsafeReason, Verdict};
+use oracle::whole;
 use routing::{Driver, Region};
 
 /// Counter-clockwise from the west; the way begins and ends at `a`.
@@ -95,6 +96,7 @@ fn a_long_vehicle_gets_over_a_roundabout_in_one_movement() {
     assert!(passes_over(&region.network, over) && title(&region.network, over).contains("over the roundabout"));
     assert!(route.certificate.result.safe());
     assert_smooth(route);
+    whole::hold(&driver.model.vehicle, &route.path.corridor, &route.certificate, 1);
     // Half the ring and what is left of the arms.
     assert!((route.length_m - (2.0 * 75.0 + 63.0)).abs() < 8.0, "{}", route.length_m);
 }

@@ -16,16 +16,11 @@ use ascii_map::{AsciiMap, no_sections, somewhere};
 use netcert::network::{MovementKind, Network, Restriction, build};
 use netcert::osm::facts::{Policy, RestrictedTurn, RestrictionKind};
 use netcert::route::*;
-use netcert::stet::Side;
 use netcert::verdict::Verdict;
-use oracle::claim::{Claim, Place};
 use oracle::draw::Draw;
-use oracle::duel;
+use oracle::whole;
 use proptest::prelude::*;
 use routing::Region;
-
-/// RK4 at 0.1 m and the plan's cubic, as in `tests/soundness.rs`.
-const ALLOWANCE_M: f64 = 2e-5;
 
 const NAMES: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghi";
 const COLUMNS: usize = 5;
@@ -344,26 +339,6 @@ fn assert_lawful(region: &Region, driver: &routing::Driver, route: &Route) {
     assert!(least >= route.certificate.result.rsc_m);
 }
 
-/// The adversary finds nothing below the route's RSC.
-fn hold_against_the_adversary(driver: &routing::Driver, route: &Route, seed: u64) {
-    let (corridor, result) = (&route.path.corridor, &route.certificate.result);
-    let at = &result.limiting;
-    let limiting = Place {
-        foot_m: at.station as f64 * corridor.spacing_m,
-        unit: at.unit,
-        side: if at.side == Side::Left { 1.0 } else { -1.0 },
-        ahead_m: at.point_m,
-    };
-    let plan = route.certificate.plan.clone();
-    let (rsc_m, shrink, hinge_margin_rad) = (result.rsc_m, result.shrink, result.hinge_margin_rad);
-    let claim = Claim { rsc_m, shrink, hinge_margin_rad, limiting, plan };
-    let vehicle = &driver.model.vehicle;
-    let (gap_m, outcome) = duel::margin_m(corridor, vehicle, &claim, &mut Draw(seed), 2);
-    println!("{:.0} m, RSC {:.3} m, {}", route.length_m, claim.rsc_m, duel::describe(&outcome));
-    assert!(gap_m >= -ALLOWANCE_M, "RSC {:.4} m refuted: {}", claim.rsc_m, duel::describe(&outcome));
-    assert!(outcome.hinge.0 >= claim.hinge_margin_rad - 1e-6);
-}
-
 /// Certified routes of at most so many metres, over turns first.
 fn held(region: &Region, driver: &routing::Driver, answers: &[Answer], most_m: f64, count: usize) -> usize {
     let turns =
@@ -373,7 +348,7 @@ fn held(region: &Region, driver: &routing::Driver, answers: &[Answer], most_m: f
     routes.retain(|route| route.length_m < most_m);
     routes.sort_by_key(|route| std::cmp::Reverse(turns(route)));
     for (seed, route) in (0..).zip(routes.iter().take(count)) {
-        hold_against_the_adversary(driver, route, seed);
+        whole::hold(&driver.model.vehicle, &route.path.corridor, &route.certificate, seed);
     }
     routes.iter().take(count).map(|route| turns(route)).sum()
 }

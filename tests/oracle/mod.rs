@@ -14,3 +14,4 @@ pub mod path;
 pub mod road;
 pub mod simulator;
 pub mod turns;
+pub mod whole;

@@ -1,0 +1,33 @@
+//! A certificate over a whole corridor against the adversary.
+#![allow(clippy::print_stdout)]
+
+use netcert::corridor::Corridor;
+use netcert::stet::{Certificate, Side};
+use netcert::vehicle::Vehicle;
+
+use super::claim::{Claim, Place};
+use super::draw::Draw;
+use super::duel;
+
+/// RK4 at 0.1 m and the plan's cubic, as in `tests/soundness.rs`.
+const ALLOWANCE_M: f64 = 2e-5;
+
+/// The adversary finds nothing below the RSC, and no hinge beyond its margin.
+pub fn hold(vehicle: &Vehicle, corridor: &Corridor, certificate: &Certificate, seed: u64) {
+    let result = &certificate.result;
+    let at = &result.limiting;
+    let limiting = Place {
+        foot_m: at.station as f64 * corridor.spacing_m,
+        unit: at.unit,
+        side: if at.side == Side::Left { 1.0 } else { -1.0 },
+        ahead_m: at.point_m,
+    };
+    let plan = certificate.plan.clone();
+    let (rsc_m, shrink, hinge_margin_rad) = (result.rsc_m, result.shrink, result.hinge_margin_rad);
+    let claim = Claim { rsc_m, shrink, hinge_margin_rad, limiting, plan };
+    let (gap_m, outcome) = duel::margin_m(corridor, vehicle, &claim, &mut Draw(seed), 2);
+    let length_m = corridor.len() as f64 * corridor.spacing_m;
+    println!("{length_m:.0} m, RSC {:.3} m, {}", claim.rsc_m, duel::describe(&outcome));
+    assert!(gap_m >= -ALLOWANCE_M, "RSC {:.4} m refuted: {}", claim.rsc_m, duel::describe(&outcome));
+    assert!(outcome.hinge.0 >= claim.hinge_margin_rad - 1e-6);
+}
