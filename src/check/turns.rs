@@ -153,7 +153,10 @@ impl TurnsClaim<'_> {
         };
         let (from, to) = (line(turn.movement.from)?, line(turn.movement.to)?);
         match turn.through.first() {
-            Some(&arc) => passage_on(self.network, turn, [from, line(arc)?, to], self.policy, self.params, reach),
+            Some(&arc) => {
+                let over = (turn.movement, turn.through.as_slice());
+                passage_on(self.network, over, [from, line(arc)?, to], self.policy, self.params, reach)
+            }
             None => turn_on(self.network, turn.movement, [from, to], self.policy, self.params, reach),
         }
     }

@@ -163,7 +163,7 @@ fn permitted(database: &mut Database, ask: &Ask, reporter: &dyn Reporter) -> Res
     let mut known = Bits::default();
     let rings = Rings::new(database.rings()?);
     reporter.begin("permits", 0);
-    for facts in told(reporter, database.edge_facts(&ask.vehicle, ask.policy)?) {
+    for facts in told(reporter, database.edge_steps(&ask.vehicle, ask.policy)?) {
         let facts = facts?;
         let refusal = ask.rule.edge(Permit { verdict: facts.verdict, rsc_m: facts.rsc_m }, facts.width_source);
         out.edges.push(refusal.is_none());

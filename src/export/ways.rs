@@ -44,7 +44,7 @@ pub(super) struct WayEdges<'d> {
 }
 
 impl<'d> WayEdges<'d> {
-    /// Over [`crate::store::Database::edge_facts`].
+    /// Over [`crate::store::Database::edge_steps`].
     #[must_use]
     pub(super) fn new(rows: Streamed<'d, EdgeStep>) -> Self {
         Self { rows: rows.peekable(), last_way: i64::MIN }

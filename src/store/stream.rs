@@ -84,7 +84,7 @@ impl Database {
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn edge_facts(&mut self, vehicle: &str, policy: Policy) -> Result<Streamed<'_, EdgeStep>, StoreError> {
+    pub fn edge_steps(&mut self, vehicle: &str, policy: Policy) -> Result<Streamed<'_, EdgeStep>, StoreError> {
         let source = match policy {
             Policy::Lane => "width_source",
             Policy::Direction => "direction_width_source",
@@ -95,7 +95,7 @@ impl Database {
              c.rsc_mm, e.{source} FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
              WHERE c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? ORDER BY c.fid"
         );
-        Ok(self.streamed(sql, vehicle, policy, edge_facts))
+        Ok(self.streamed(sql, vehicle, policy, edge_step))
     }
 
     /// Every turn's facts for a vehicle; none where its turns are not certified: see [`Database::has_turns`].
@@ -187,7 +187,7 @@ fn straight_on(row: &SqliteRow) -> Sql<StraightOn> {
 const GEOMETRY_HEAD: u32 = 49;
 const POSITION_BYTES: u32 = 16;
 
-fn edge_facts(row: &SqliteRow) -> Sql<EdgeStep> {
+fn edge_step(row: &SqliteRow) -> Sql<EdgeStep> {
     let fid: u32 = row.try_get(0)?;
     let bytes: u32 = row.try_get(6)?;
     Ok(EdgeStep {

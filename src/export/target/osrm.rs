@@ -75,7 +75,7 @@ impl Tables<'_, '_> {
         let source = self.source;
         let mut blobs = source.blobs("osrm")?;
         let mut database = source.database()?;
-        let mut edges = WayEdges::new(database.edge_facts(&source.ask.vehicle, source.ask.policy)?);
+        let mut edges = WayEdges::new(database.edge_steps(&source.ask.vehicle, source.ask.policy)?);
         source.reporter.begin("ways", blobs.file_bytes());
         while let Some(blob) = blobs.next_blob()? {
             if let Contents::Block(block) = blobs.contents(&blob)? {

@@ -86,7 +86,7 @@ impl Rewriter<'_, '_> {
         let source = self.source;
         let mut blobs = source.blobs(target)?;
         let mut database = source.database()?;
-        let mut edges = WayEdges::new(database.edge_facts(&source.ask.vehicle, source.ask.policy)?);
+        let mut edges = WayEdges::new(database.edge_steps(&source.ask.vehicle, source.ask.policy)?);
         source.reporter.begin("rewrite", blobs.file_bytes());
         while let Some(blob) = blobs.next_blob()? {
             match blobs.contents(&blob)? {
