@@ -9,8 +9,8 @@ use netcert::account::AccountRow;
 use netcert::network::{Edge, Network};
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::store::{
-    Area, Bounds, Database, EdgeCertificate, EdgeMeasure, EdgeRow, QueryOptions, Run, StoreError, TurnCertificate, TurnSet,
-    VehicleRecord, VerdictKind, verdict_words,
+    Area, Bounds, Database, EdgeCertificate, EdgeMeasure, EdgeRow, QueryOptions, Run, StoreError, TurnCertificate,
+    TurnSet, VehicleRecord, VerdictKind, verdict_words,
 };
 use netcert::turns::{Kerbs, turn_facts};
 use netcert::verdict::{UnknownReason, Verdict};
@@ -266,7 +266,15 @@ fn a_set_is_replaced_whole_and_a_changed_vehicle_loses_its_old_ones() {
     let mut longer = vehicle("EU-SEMI16.5");
     longer.definition = r#"{"id":"EU-SEMI16.5","units":[1]}"#.into();
     database
-        .replace_certificates(&longer, Policy::Carriageway, (0..edges).map(unknown), Vec::new(), None, &run(), &account())
+        .replace_certificates(
+            &longer,
+            Policy::Carriageway,
+            (0..edges).map(unknown),
+            Vec::new(),
+            None,
+            &run(),
+            &account(),
+        )
         .unwrap();
     assert_eq!(sets(&mut database), ["permit_eu_semi16_5_carriageway", "permit_eu_semi16_5_2"]);
     assert_eq!(database.runs().unwrap().len(), 3);
@@ -283,8 +291,9 @@ fn a_set_with_a_gap_or_a_double_or_a_false_safe_is_refused_and_the_old_one_stand
     let mut database = Database::open_to_change(&path).unwrap();
     let mut refused = |edges: Vec<u32>, says: &str| {
         let rows = edges.into_iter().map(|edge| certificate(edge, 5));
-        let error =
-            database.replace_certificates(&vehicle("x"), Policy::Lane, rows, Vec::new(), None, &run(), &[]).unwrap_err();
+        let error = database
+            .replace_certificates(&vehicle("x"), Policy::Lane, rows, Vec::new(), None, &run(), &[])
+            .unwrap_err();
         assert!(error.to_string().contains(says), "{error}");
     };
     refused((0..edges).filter(|&edge| edge != 17).collect(), "edge 17, vehicle x: it has no certificate");
@@ -293,8 +302,9 @@ fn a_set_with_a_gap_or_a_double_or_a_false_safe_is_refused_and_the_old_one_stand
     let mut false_safe = certificate(0, 5);
     false_safe.verdict = Verdict::Safe;
     false_safe.measured.as_mut().unwrap().rsc_m = -0.0001;
-    let error =
-        database.replace_certificates(&vehicle("x"), Policy::Lane, [false_safe], Vec::new(), None, &run(), &[]).unwrap_err();
+    let error = database
+        .replace_certificates(&vehicle("x"), Policy::Lane, [false_safe], Vec::new(), None, &run(), &[])
+        .unwrap_err();
     assert!(matches!(error, StoreError::Unsound { edge: 0, .. }), "{error}");
     database.close().unwrap();
     assert!(std::fs::read(&path).unwrap() == before);

@@ -117,9 +117,10 @@ impl SetClaim<'_> {
         let span_of = |row: &EdgeRow| made.spans.iter().find(|span| span.edge == row.edge);
         let (mut claims, mut claimed) = (Vec::new(), Vec::new());
         for row in rows {
-            if let (Some(span), Some(claim)) =
-                (span_of(row), span_of(row).and_then(|span| Said::of_edge(row).claim(&span.stations, made.corridor.spacing_m)))
-            {
+            if let (Some(span), Some(claim)) = (
+                span_of(row),
+                span_of(row).and_then(|span| Said::of_edge(row).claim(&span.stations, made.corridor.spacing_m)),
+            ) {
                 claimed.push((row.edge, span));
                 claims.push(claim);
             }

@@ -74,7 +74,8 @@ impl TurnsClaim<'_> {
     }
 
     fn lines(&self, batch: &[&TurnRow], stroke_of: &FxHashMap<u32, u32>) -> Lines {
-        let open = batch.iter().filter_map(|row| self.facts.get(row.turn as usize)).filter(|t| self.barred(t).is_none());
+        let open =
+            batch.iter().filter_map(|row| self.facts.get(row.turn as usize)).filter(|t| self.barred(t).is_none());
         let edges = open.flat_map(|t| [t.movement.from, t.movement.to].into_iter().chain(t.through.first().copied()));
         let strokes: FxHashSet<u32> = edges.filter_map(|edge| stroke_of.get(&edge).copied()).collect();
         let line = |stroke| (stroke, StrokeLine::new(self.network, stroke, self.policy, &self.params.corridor));
@@ -99,7 +100,8 @@ impl TurnsClaim<'_> {
         if worse != Verdict::Safe {
             return Some(worse);
         }
-        let stops = |verdict: &Verdict| matches!(verdict, Verdict::Forbidden(_) | Verdict::Unknown(UnknownReason::Limit));
+        let stops =
+            |verdict: &Verdict| matches!(verdict, Verdict::Forbidden(_) | Verdict::Unknown(UnknownReason::Limit));
         turn.through.iter().map(|&arc| of(arc)).find(stops)
     }
 
@@ -215,9 +217,8 @@ fn strays(path: &TurnPath, made: &TurnCorridors) -> Option<Finding> {
     let c = &path.corridor;
     path.turn.clone().filter(|&k| k < c.len()).find_map(|k| {
         let (sin, cos) = c.heading[k].sin_cos();
-        let off_m = |left_m: f64| {
-            Euclidean.distance(&Point::new(c.x[k] - left_m * sin, c.y[k] + left_m * cos), &made.area)
-        };
+        let off_m =
+            |left_m: f64| Euclidean.distance(&Point::new(c.x[k] - left_m * sin, c.y[k] + left_m * cos), &made.area);
         let most_m = off_m(c.left_m[k]).max(off_m(-c.right_m[k]));
         (most_m > WITHIN_M).then(|| finding("corridor", &format!("{most_m:.3} m beyond the area at station {k}")))
     })

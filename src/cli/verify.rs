@@ -151,10 +151,8 @@ impl Verify {
         let vehicle = defined(database, set)?;
         let params = how::recorded(database)?.turn_params();
         let every = QueryOptions::new(&set.vehicle_id, set.policy);
-        let edges: BTreeMap<u32, Verdict> = database
-            .query(&every)?
-            .map(|row| row.map(|row| (row.edge, row.verdict)))
-            .collect::<Result<_, _>>()?;
+        let edges: BTreeMap<u32, Verdict> =
+            database.query(&every)?.map(|row| row.map(|row| (row.edge, row.verdict))).collect::<Result<_, _>>()?;
         let query = TurnQuery { area: self.bbox.map(Area::Bounds), ..TurnQuery::new(&set.vehicle_id, set.policy) };
         let rows = self.sampled(database.query_turns(&query)?, |row| row.turn_id);
         let rows: BTreeMap<u32, TurnRow> = rows.into_iter().map(|row| (row.turn, row)).collect();

@@ -292,7 +292,6 @@ impl LastAxle {
 }
 
 impl Point {
-
     /// Takes note of the stations that have been under it.
     #[inline(always)]
     fn cover(&mut self, feet: Feet, minima: &mut Minima) {

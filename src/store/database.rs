@@ -237,9 +237,7 @@ async fn replace(
     let set = Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished };
     set.insert(c, &renewed.rows).await?;
     match &mut renewed.turns {
-        Some((turns, packed)) => {
-            turns::insert_set(c, (vehicle_no, policy, run_id), turns, packed, &run.finished).await
-        }
+        Some((turns, packed)) => turns::insert_set(c, (vehicle_no, policy, run_id), turns, packed, &run.finished).await,
         None => Ok(()),
     }
 }

@@ -21,7 +21,9 @@ pub fn none_is_refuted(paths: &[TurnPath], id: &str, other: usize, what: &str, d
     let mut held = 0;
     for path in best.map(|(path, _)| path).into_iter().chain([other]) {
         let Some(corridor) = paths.get(path).map(|path| &path.corridor) else { continue };
-        let Some(claim) = claim::certify(corridor, &vehicle).filter(|claim| claim.rsc_m >= HOPELESS_M) else { continue };
+        let Some(claim) = claim::certify(corridor, &vehicle).filter(|claim| claim.rsc_m >= HOPELESS_M) else {
+            continue;
+        };
         let (gap_m, outcome) = duel::margin_m(corridor, &vehicle, &claim, draw, 1);
         assert!(gap_m > -2e-5, "{what} {id}: {gap_m} {}", duel::describe(&outcome));
         held += 1;
