@@ -10,6 +10,7 @@
 //! | `header` | what every output says of itself |
 //! | `source` | rows from the database, each with its permit |
 //! | `place` | where an output is written: a file, a folder, a stream |
+//! | `sorter` | order without holding everything in memory |
 //! | `target` | one file or folder a target |
 //!
 //! Left out: the certificate over a whole route. An engine strings together edges and turns that are safe each by itself; only
@@ -19,6 +20,7 @@ mod error;
 mod header;
 mod permit;
 mod place;
+mod sorter;
 mod source;
 pub mod target;
 

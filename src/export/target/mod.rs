@@ -6,6 +6,9 @@
 
 mod columns;
 mod csv;
+mod geojson;
+mod geoparquet;
+mod layers;
 
 use super::{ExportError, Layout, Place, Source};
 
@@ -51,7 +54,7 @@ pub trait Target: Sync {
 }
 
 /// All targets, as help lists them.
-pub const TARGETS: &[&dyn Target] = &[&csv::Csv];
+pub const TARGETS: &[&dyn Target] = &[&csv::Csv, &geojson::GeoJson, &geojson::GeoJsonSeq, &geoparquet::GeoParquet];
 
 /// The target of this name.
 #[must_use]
