@@ -164,7 +164,7 @@ impl Column {
                 values.extend(value.map(ByteArray::from));
             }
             (Self::Flag(values), Cell::Flag(value)) => values.push(*value),
-            // Another kind than the column's: there is none, see the test of `columns`.
+            // Cells are of their columns' kinds: else there is no value rather than a wrong one.
             (Self::Integer(_, levels) | Self::Real(_, levels) | Self::Text(_, levels), _) => levels.push(0),
             (Self::Flag(values), _) => values.push(false),
         }

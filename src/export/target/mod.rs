@@ -6,6 +6,7 @@
 
 mod columns;
 mod csv;
+mod flatgeobuf;
 mod geojson;
 mod geoparquet;
 mod layers;
@@ -54,7 +55,7 @@ pub trait Target: Sync {
 }
 
 /// All targets, as help lists them.
-pub const TARGETS: &[&dyn Target] = &[&csv::Csv, &geojson::GeoJson, &geojson::GeoJsonSeq, &geoparquet::GeoParquet];
+pub const TARGETS: &[&dyn Target] = &[&csv::Csv, &geojson::GeoJson, &geojson::GeoJsonSeq, &geoparquet::GeoParquet, &flatgeobuf::FlatGeobuf];
 
 /// The target of this name.
 #[must_use]
