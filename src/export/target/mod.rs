@@ -10,6 +10,7 @@ mod flatgeobuf;
 mod geojson;
 mod geoparquet;
 mod layers;
+mod overture;
 
 use super::{ExportError, Layout, Place, Source};
 
@@ -55,7 +56,7 @@ pub trait Target: Sync {
 }
 
 /// All targets, as help lists them.
-pub const TARGETS: &[&dyn Target] = &[&csv::Csv, &geojson::GeoJson, &geojson::GeoJsonSeq, &geoparquet::GeoParquet, &flatgeobuf::FlatGeobuf];
+pub const TARGETS: &[&dyn Target] = &[&csv::Csv, &geojson::GeoJson, &geojson::GeoJsonSeq, &geoparquet::GeoParquet, &flatgeobuf::FlatGeobuf, &overture::Overture];
 
 /// The target of this name.
 #[must_use]
