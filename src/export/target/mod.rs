@@ -4,12 +4,15 @@
 //! from [`Source::edges`] and [`Source::turns`], files from [`Place::create`]; the header goes where the format has room for
 //! it ([`super::Header::json`] or [`super::Header::pairs`]); a folder gets it as `netcert.json` without asking.
 
+mod closures;
 mod columns;
 mod csv;
 mod flatgeobuf;
 mod geojson;
 mod geoparquet;
+mod graphhopper;
 mod layers;
+mod ors;
 mod overture;
 
 use super::{ExportError, Layout, Place, Source};
@@ -56,7 +59,16 @@ pub trait Target: Sync {
 }
 
 /// All targets, as help lists them.
-pub const TARGETS: &[&dyn Target] = &[&csv::Csv, &geojson::GeoJson, &geojson::GeoJsonSeq, &geoparquet::GeoParquet, &flatgeobuf::FlatGeobuf, &overture::Overture];
+pub const TARGETS: &[&dyn Target] = &[
+    &csv::Csv,
+    &geojson::GeoJson,
+    &geojson::GeoJsonSeq,
+    &geoparquet::GeoParquet,
+    &flatgeobuf::FlatGeobuf,
+    &overture::Overture,
+    &graphhopper::GraphHopper,
+    &ors::Ors,
+];
 
 /// The target of this name.
 #[must_use]

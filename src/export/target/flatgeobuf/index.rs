@@ -170,7 +170,11 @@ fn records<const N: usize>(file: &mut Scratch, count: u64) -> impl Iterator<Item
             file.read_at(number * N as u64, &mut buffer)?;
         }
         let at = (number % AT_ONCE) as usize * N;
-        buffer.get(at..).and_then(|rest| rest.first_chunk::<N>()).copied().ok_or_else(|| io::ErrorKind::UnexpectedEof.into())
+        buffer
+            .get(at..)
+            .and_then(|rest| rest.first_chunk::<N>())
+            .copied()
+            .ok_or_else(|| io::ErrorKind::UnexpectedEof.into())
     })
 }
 

@@ -77,11 +77,7 @@ fn end(mut sink: Sink) -> Result<(), ExportError> {
     sink.close()
 }
 
-fn write_connectors(
-    source: &Source<'_>,
-    nodes: Sorted<NODE_BYTES>,
-    place: &mut Place,
-) -> Result<(), ExportError> {
+fn write_connectors(source: &Source<'_>, nodes: Sorted<NODE_BYTES>, place: &mut Place) -> Result<(), ExportError> {
     let mut sink = begin(source, place.create("connector.geojson")?)?;
     let mut last = None;
     for record in nodes {
@@ -127,7 +123,7 @@ fn node_of(record: &[u8; NODE_BYTES]) -> (i64, LonLat) {
 struct Transitions {
     /// From, to; both permitted, the turn not.
     turns: std::iter::Peekable<Sorted<8>>,
-    /// What restrictions over ways forbid, as indices of edges; there are few.
+    /// What turn restrictions forbid, as indices of edges; there are few. Straight on is no turn, so two edges may stand here.
     sequences: BTreeMap<u32, Vec<Vec<u32>>>,
 }
 
@@ -145,7 +141,7 @@ impl Transitions {
         }
         let mut sequences: BTreeMap<u32, Vec<Vec<u32>>> = BTreeMap::new();
         for mut sequence in database.forbidden_sequences()? {
-            if sequence.len() > 2 && sequence.iter().all(|&edge| permitted.edges.get(edge)) {
+            if sequence.len() > 1 && sequence.iter().all(|&edge| permitted.edges.get(edge)) {
                 let first = sequence.remove(0);
                 sequences.entry(first).or_default().push(sequence);
             }
@@ -166,7 +162,11 @@ impl Transitions {
                 out.push(vec![to]);
             }
         }
-        out.extend(self.sequences.remove(&edge).unwrap_or_default());
+        for sequence in self.sequences.remove(&edge).unwrap_or_default() {
+            if !out.contains(&sequence) {
+                out.push(sequence);
+            }
+        }
         Ok(out)
     }
 }

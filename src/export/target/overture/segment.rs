@@ -104,9 +104,10 @@ impl Segment {
             if let Some(name) = self.name.as_deref().map(str::trim).filter(|name| !name.is_empty()) {
                 members.insert("names".to_owned(), json!({"primary": name}));
             }
-            for (member, rules) in
-                [("access_restrictions", self.denials(&at, scope)), ("prohibited_transitions", self.transitions(&at, scope))]
-            {
+            for (member, rules) in [
+                ("access_restrictions", self.denials(&at, scope)),
+                ("prohibited_transitions", self.transitions(&at, scope)),
+            ] {
                 if !rules.is_empty() {
                     members.insert(member.to_owned(), Value::Array(rules));
                 }
@@ -187,9 +188,7 @@ impl Segment {
                 let Some(forbidden) = &piece.permitted[ahead] else { continue };
                 let mut rule = |steps: &[(i64, String, Direction)]| {
                     let Some(last) = steps.last() else { return };
-                    let entry = |(node, segment, _): &(i64, String, Direction)| {
-                        json!({"connector_id": connector_id(*node), "segment_id": segment})
-                    };
+                    let entry = |(node, segment, _): &(i64, String, Direction)| json!({"connector_id": connector_id(*node), "segment_id": segment});
                     let mut rule = Map::new();
                     rule.insert("sequence".to_owned(), steps.iter().map(entry).collect());
                     rule.insert("final_heading".to_owned(), json!(last.2.name()));
