@@ -12,6 +12,7 @@
 //! | `rings` | the arcs of a passage |
 //! | `ways` | the extract's ways beside the network's edges |
 //! | `place` | where an output is written: a file, a folder, a stream |
+//! | `sorter` | order without holding everything in memory |
 //! | `target` | one file or folder a target |
 //!
 //! Left out: the certificate over a whole route. An engine strings together edges and turns that are safe each by itself; only
@@ -22,6 +23,7 @@ mod header;
 mod permit;
 mod place;
 mod rings;
+mod sorter;
 mod source;
 pub mod target;
 mod ways;

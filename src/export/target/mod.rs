@@ -4,10 +4,18 @@
 //! from [`Source::edges`] and [`Source::turns`], files from [`Place::create`]; the header goes where the format has room for
 //! it ([`super::Header::json`] or [`super::Header::pairs`]); a folder gets it as `netcert.json` without asking.
 
+mod closures;
 mod columns;
 mod csv;
+mod flatgeobuf;
+mod geojson;
+mod geoparquet;
+mod graphhopper;
+mod layers;
+mod ors;
 mod osm_pbf;
 mod osrm;
+mod overture;
 mod pgrouting;
 mod valhalla;
 
@@ -55,8 +63,20 @@ pub trait Target: Sync {
 }
 
 /// All targets, as help lists them.
-pub const TARGETS: &[&dyn Target] =
-    &[&osrm::Osrm, &valhalla::Valhalla, &osm_pbf::OsmPbf, &pgrouting::PgRouting, &csv::Csv];
+pub const TARGETS: &[&dyn Target] = &[
+    &osrm::Osrm,
+    &valhalla::Valhalla,
+    &osm_pbf::OsmPbf,
+    &pgrouting::PgRouting,
+    &graphhopper::GraphHopper,
+    &ors::Ors,
+    &overture::Overture,
+    &geojson::GeoJson,
+    &geojson::GeoJsonSeq,
+    &geoparquet::GeoParquet,
+    &flatgeobuf::FlatGeobuf,
+    &csv::Csv,
+];
 
 /// The target of this name.
 #[must_use]

@@ -1,0 +1,183 @@
+//! Sorting more records than memory should hold: sorted runs in a file, merged as they are read.
+//!
+//! Records are byte strings of one length and sort as bytes do: whoever wants an order of numbers writes them big-endian first.
+//! Memory is that of one run and of one buffer a run, whatever the number of records.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::fs::File;
+use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
+use std::path::PathBuf;
+
+use super::ExportError;
+
+/// A file that is needed only while an output is written; it goes when this does.
+pub(super) struct Scratch {
+    path: PathBuf,
+    file: BufWriter<File>,
+}
+
+impl Scratch {
+    /// An empty one; the path is [`super::Place::scratch`].
+    pub(super) fn create(path: PathBuf) -> Result<Self, ExportError> {
+        let file = File::options().read(true).write(true).create(true).truncate(true).open(&path);
+        let file = file.map_err(|source| ExportError::Io { path: path.clone(), source })?;
+        Ok(Self { path, file: BufWriter::with_capacity(1 << 16, file) })
+    }
+
+    /// Reads from a place; everything written is there.
+    pub(super) fn read_at(&mut self, place: u64, bytes: &mut [u8]) -> io::Result<()> {
+        self.file.flush()?;
+        let file = self.file.get_mut();
+        file.seek(SeekFrom::Start(place))?;
+        file.read_exact(bytes)
+    }
+
+    /// Reads all of it from the beginning.
+    pub(super) fn copy_to(&mut self, out: &mut dyn Write) -> io::Result<u64> {
+        self.file.flush()?;
+        let file = self.file.get_mut();
+        file.seek(SeekFrom::Start(0))?;
+        io::copy(file, out)
+    }
+}
+
+impl Write for Scratch {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        // It holds nothing that anyone needs.
+        let _ = std::fs::remove_file(&self.path);
+    }
+}
+
+/// What a run takes in memory.
+const RUN_BYTES: usize = 4 << 20;
+/// What is read of a run at once.
+const BUFFER_BYTES: usize = 1 << 13;
+
+/// Takes records in any order and gives them back sorted.
+pub(super) struct Sorter<const N: usize> {
+    scratch: Scratch,
+    run: Vec<[u8; N]>,
+    most: usize,
+    /// How many records each run in the file has.
+    runs: Vec<u64>,
+}
+
+impl<const N: usize> Sorter<N> {
+    /// One without records; the path is [`super::Place::scratch`].
+    pub(super) fn create(path: PathBuf) -> Result<Self, ExportError> {
+        Ok(Self { scratch: Scratch::create(path)?, run: Vec::new(), most: (RUN_BYTES / N).max(1), runs: Vec::new() })
+    }
+
+    /// One more.
+    pub(super) fn push(&mut self, record: [u8; N]) -> io::Result<()> {
+        self.run.push(record);
+        if self.run.len() >= self.most { self.spill() } else { Ok(()) }
+    }
+
+    fn spill(&mut self) -> io::Result<()> {
+        self.run.sort_unstable();
+        self.run.iter().try_for_each(|record| self.scratch.write_all(record))?;
+        self.runs.push(self.run.len() as u64);
+        self.run.clear();
+        Ok(())
+    }
+
+    /// All of them, sorted.
+    pub(super) fn sorted(mut self) -> io::Result<Sorted<N>> {
+        if !self.run.is_empty() {
+            self.spill()?;
+        }
+        let mut start = 0;
+        let mut runs = Vec::with_capacity(self.runs.len());
+        for &records in &self.runs {
+            let end = start + records * N as u64;
+            runs.push(Run { place: start, end, buffer: Vec::new(), at: 0 });
+            start = end;
+        }
+        let mut sorted = Sorted { scratch: self.scratch, runs, heads: BinaryHeap::new() };
+        for run in 0..sorted.runs.len() {
+            sorted.refill(run)?;
+        }
+        Ok(sorted)
+    }
+}
+
+struct Run {
+    place: u64,
+    end: u64,
+    buffer: Vec<u8>,
+    at: usize,
+}
+
+/// Records in order.
+pub(super) struct Sorted<const N: usize> {
+    scratch: Scratch,
+    runs: Vec<Run>,
+    heads: BinaryHeap<Reverse<([u8; N], usize)>>,
+}
+
+impl<const N: usize> Sorted<N> {
+    /// The next of a run goes among the heads.
+    fn refill(&mut self, number: usize) -> io::Result<()> {
+        let Some(run) = self.runs.get_mut(number) else { return Ok(()) };
+        if run.at == run.buffer.len() {
+            let left = usize::try_from(run.end - run.place).unwrap_or(usize::MAX);
+            run.buffer.resize(left.min((BUFFER_BYTES / N).max(1) * N), 0);
+            self.scratch.read_at(run.place, &mut run.buffer)?;
+            run.place += run.buffer.len() as u64;
+            run.at = 0;
+        }
+        if let Some(record) = run.buffer[run.at..].first_chunk::<N>() {
+            self.heads.push(Reverse((*record, number)));
+            run.at += N;
+        }
+        Ok(())
+    }
+}
+
+impl<const N: usize> Iterator for Sorted<N> {
+    type Item = io::Result<[u8; N]>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let Reverse((record, run)) = self.heads.pop()?;
+        Some(self.refill(run).map(|()| record))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_number_of_records_comes_back_sorted_and_the_file_goes() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scratch");
+        for most in [1, 7, 1000, 100_000] {
+            let mut sorter = Sorter::<8>::create(path.clone()).unwrap();
+            sorter.most = most;
+            let mut wanted = Vec::new();
+            for i in 0..5000_u64 {
+                let record = i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
+                wanted.push(record);
+                sorter.push(record.to_be_bytes()).unwrap();
+            }
+            wanted.sort_unstable();
+            let sorted: Vec<u64> = sorter.sorted().unwrap().map(|record| u64::from_be_bytes(record.unwrap())).collect();
+            assert_eq!(sorted, wanted);
+            assert!(!path.exists());
+        }
+        assert_eq!(Sorter::<8>::create(path).unwrap().sorted().unwrap().count(), 0);
+    }
+}

@@ -1,0 +1,142 @@
+//! Small rectangles across the roads that a vehicle may not use, for engines that are told by areas what to avoid.
+//!
+//! One stands on the longest straight of every stretch between two junctions that is refused, so that it meets no other road. An
+//! area has no direction: a stretch refused one way is closed both ways. Nobody can say a turn by an area.
+
+use std::io::{self, Write};
+
+use super::geojson::position;
+use crate::export::{ExportError, Source};
+use crate::osm::LonLat;
+
+/// Half its size across the road. Engines move lines by half a metre when they thin them out (GraphHopper:
+/// `DEFAULT_WAY_POINT_MAX_DISTANCE`, 0.5 m).
+const ACROSS_M: f64 = 0.75;
+/// Half its size along the road.
+const ALONG_M: f64 = 0.25;
+/// On a sphere of the earth's mean radius; a part in 300 matters to nobody here.
+const M_PER_DEGREE: f64 = 111_195.0;
+
+/// A closed ring, counterclockwise.
+pub(super) type Ring = [LonLat; 5];
+
+/// What was closed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Closed {
+    /// Stretches.
+    pub(super) stretches: u64,
+    /// Of them, with one direction that is permitted.
+    pub(super) too_much: u64,
+}
+
+impl Closed {
+    /// What a user should know of it.
+    pub(super) fn note(self) -> String {
+        let Self { stretches, too_much } = self;
+        format!(
+            "{stretches} stretches are closed, {too_much} of them permitted in one direction (an area has none); refused turns \
+             cannot be said"
+        )
+    }
+}
+
+/// Hands over a rectangle for every refused stretch, in order of the network.
+pub(super) fn each(
+    source: &Source<'_>,
+    mut put: impl FnMut(&Ring) -> Result<(), ExportError>,
+) -> Result<Closed, ExportError> {
+    let mut closed = Closed::default();
+    let mut last: Option<Stretch> = None;
+    let mut end = |stretch: Stretch| -> Result<(), ExportError> {
+        if let (true, Some(ring)) = (stretch.refused, across(&stretch.line)) {
+            closed.stretches += 1;
+            closed.too_much += u64::from(stretch.permitted);
+            put(&ring)?;
+        }
+        Ok(())
+    };
+    let mut database = source.database()?;
+    for edge in source.edges(&mut database)? {
+        let edge = edge?;
+        let refused = edge.refusal.is_some();
+        // Both directions of a stretch come one after the other.
+        if let Some(stretch) = &mut last
+            && stretch.way_id == edge.row.way_id
+            && stretch.line.iter().rev().eq(&edge.row.line)
+        {
+            stretch.refused |= refused;
+            stretch.permitted |= !refused;
+            continue;
+        }
+        let stretch = Stretch { way_id: edge.row.way_id, line: edge.row.line, refused, permitted: !refused };
+        if let Some(done) = last.replace(stretch) {
+            end(done)?;
+        }
+    }
+    last.map_or(Ok(()), end)?;
+    Ok(closed)
+}
+
+struct Stretch {
+    way_id: i64,
+    line: Vec<LonLat>,
+    refused: bool,
+    permitted: bool,
+}
+
+/// The coordinates of a `Polygon`.
+pub(super) fn polygon(out: &mut dyn Write, ring: &Ring) -> io::Result<()> {
+    for (i, place) in ring.iter().enumerate() {
+        out.write_all(if i == 0 { b"[[" } else { b"," })?;
+        position(out, *place)?;
+    }
+    out.write_all(b"]]")
+}
+
+/// A rectangle over the middle of a line's longest straight.
+fn across(line: &[LonLat]) -> Option<Ring> {
+    let step = |pair: &[LonLat]| {
+        let ((lon, lat), (to_lon, to_lat)) = (pair[0].degrees(), pair[1].degrees());
+        let shrink = (0.5 * (lat + to_lat)).to_radians().cos();
+        [(to_lon - lon) * shrink * M_PER_DEGREE, (to_lat - lat) * M_PER_DEGREE]
+    };
+    let length_m = |pair: &[LonLat]| step(pair).into_iter().map(|m| m * m).sum::<f64>().sqrt();
+    let longest = line.windows(2).max_by(|a, b| length_m(a).total_cmp(&length_m(b)))?;
+    let ([east_m, north_m], length_m) = (step(longest), length_m(longest));
+    if length_m <= 0.0 {
+        return None;
+    }
+    let along = [east_m / length_m, north_m / length_m];
+    let ((lon, lat), (to_lon, to_lat)) = (longest[0].degrees(), longest[1].degrees());
+    let middle = [0.5 * (lon + to_lon), 0.5 * (lat + to_lat)];
+    let corner = |forward: f64, left: f64| {
+        let east_m = forward * along[0] - left * along[1];
+        let north_m = forward * along[1] + left * along[0];
+        let lon = middle[0] + east_m / (M_PER_DEGREE * middle[1].to_radians().cos());
+        let e7 = |degrees: f64| (degrees * 1e7).round() as i32;
+        LonLat { lon_e7: e7(lon), lat_e7: e7(middle[1] + north_m / M_PER_DEGREE) }
+    };
+    let first = corner(-ALONG_M, -ACROSS_M);
+    Some([first, corner(ALONG_M, -ACROSS_M), corner(ALONG_M, ACROSS_M), corner(-ALONG_M, ACROSS_M), first])
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use geo::{Area as _, Intersects as _};
+
+    #[test]
+    fn a_rectangle_stands_across_the_longest_straight() {
+        let place = |lon_e7, lat_e7| LonLat { lon_e7, lat_e7 };
+        let line = [place(86_900_000, 494_000_000), place(86_901_000, 494_000_500), place(86_901_000, 493_995_000)];
+        let ring = across(&line).unwrap();
+        let degrees = |line: &[LonLat]| line.iter().map(|place| place.degrees()).collect::<geo::LineString>();
+        let polygon = geo::Polygon::new(degrees(&ring), vec![]);
+        assert!(polygon.intersects(&degrees(&line)) && !polygon.intersects(&degrees(&line[..2])));
+        // 1.5 m by 0.5 m, to the 1.1 cm that positions are rounded to.
+        let area_m2 = polygon.signed_area() * M_PER_DEGREE.powi(2) * 49.4_f64.to_radians().cos();
+        assert!((0.70..0.80).contains(&area_m2), "{area_m2}");
+        assert!(across(&line[..1]).is_none());
+    }
+}

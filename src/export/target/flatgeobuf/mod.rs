@@ -1,0 +1,180 @@
+//! FlatGeobuf 3 (<https://flatgeobuf.org>), one file a layer, with the spatial index that lets readers fetch a part of it.
+//!
+//! Features stand in the index's order, so they wait in a file beside the output, and what orders them is sorted outside memory
+//! (the crate's own writer keeps some 140 bytes a feature). The header is JSON in the format's `metadata`.
+
+mod index;
+
+use std::io::Write;
+
+use flatbuffers::FlatBufferBuilder;
+use flatgeobuf::{
+    Column, ColumnArgs, ColumnType, Crs, CrsArgs, Feature, FeatureArgs, Geometry, GeometryArgs, GeometryType, Header,
+    HeaderArgs,
+};
+
+use super::layers::{Row, asked};
+use super::{Cell, Kind, Layer, Options, Target, one_file_a_layer};
+use crate::export::sorter::Scratch;
+use crate::export::{ExportError, Layout, Place, Sink, Source};
+use crate::store::Bounds;
+use index::{Index, Located};
+
+/// `flatgeobuf`
+pub(super) struct FlatGeobuf;
+
+/// `fgb`, version 3, `fgb`, patch 0: what a file starts with.
+const MAGIC: [u8; 8] = *b"fgb\x03fgb\x00";
+
+impl Target for FlatGeobuf {
+    fn name(&self) -> &'static str {
+        "flatgeobuf"
+    }
+
+    fn about(&self) -> &'static str {
+        "edges and turns with all certificate columns, as FlatGeobuf with its index"
+    }
+
+    fn layout(&self, options: &Options) -> Layout {
+        one_file_a_layer(self.name(), options)
+    }
+
+    fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
+        for layer in asked(options) {
+            let mut parts = Parts::create(place)?;
+            layer.each(source, |row| parts.push(row))?;
+            parts.write(source, layer, place.create(&format!("{}.fgb", layer.name()))?, place)?;
+        }
+        Ok(())
+    }
+}
+
+/// What a file is put together from.
+struct Parts {
+    /// Feature after feature, in order of the network.
+    features: Scratch,
+    /// Where each is, in the same order.
+    located: Scratch,
+    count: u64,
+    end: u64,
+    bounds: Option<Bounds>,
+    builder: FlatBufferBuilder<'static>,
+}
+
+impl Parts {
+    fn create(place: &Place) -> Result<Self, ExportError> {
+        let features = Scratch::create(place.scratch(".features"))?;
+        let located = Scratch::create(place.scratch(".located"))?;
+        Ok(Self { features, located, count: 0, end: 0, bounds: None, builder: FlatBufferBuilder::new() })
+    }
+
+    fn push(&mut self, row: &Row<'_>) -> Result<(), ExportError> {
+        let Some(around) = Bounds::around(row.line.iter().copied()) else { return Ok(()) };
+        let bytes = feature(&mut self.builder, row);
+        self.features.write_all(bytes)?;
+        let located = Located { around, place: self.end, bytes: bytes.len() as u64 };
+        self.located.write_all(&located.to_bytes())?;
+        self.count += 1;
+        self.end += located.bytes;
+        self.bounds = Some(self.bounds.map_or(around, |bounds| bounds.union(around)));
+        Ok(())
+    }
+
+    fn write(mut self, source: &Source<'_>, layer: Layer, mut sink: Sink, place: &Place) -> Result<(), ExportError> {
+        sink.write_all(&MAGIC)?;
+        sink.write_all(&header(source, layer, self.count, self.bounds))?;
+        if let Some(bounds) = self.bounds {
+            let mut index = Index::build(&mut self.located, self.count, bounds, place)?;
+            index.write(&mut sink)?;
+            let mut bytes = Vec::new();
+            for found in index.in_order()? {
+                let found = found?;
+                bytes.resize(found.bytes as usize, 0);
+                self.features.read_at(found.place, &mut bytes)?;
+                sink.write_all(&bytes)?;
+            }
+        }
+        sink.close()
+    }
+}
+
+fn column_type(kind: Kind) -> ColumnType {
+    match kind {
+        Kind::Integer => ColumnType::Long,
+        Kind::Real => ColumnType::Double,
+        Kind::Text => ColumnType::String,
+        Kind::Flag => ColumnType::Bool,
+    }
+}
+
+/// The header with its length before it.
+fn header(source: &Source<'_>, layer: Layer, features: u64, bounds: Option<Bounds>) -> Vec<u8> {
+    let mut builder = FlatBufferBuilder::new();
+    let mut columns = Vec::new();
+    for &(name, kind) in layer.columns() {
+        let name = builder.create_string(name);
+        let nullable = kind != Kind::Flag;
+        let column = ColumnArgs { name: Some(name), type_: column_type(kind), nullable, ..ColumnArgs::default() };
+        columns.push(Column::create(&mut builder, &column));
+    }
+    let columns = builder.create_vector(&columns);
+    let org = builder.create_string("EPSG");
+    let crs = Crs::create(&mut builder, &CrsArgs { org: Some(org), code: 4326, ..CrsArgs::default() });
+    let envelope = bounds.map(|b| builder.create_vector(&[b.west, b.south, b.east, b.north]));
+    let name = builder.create_string(layer.name());
+    let title = builder.create_string(&format!("{} of {}", layer.name(), source.ask.vehicle));
+    let description = builder.create_string(&source.header.scope());
+    let metadata = builder.create_string(&source.header.json().to_string());
+    let header = HeaderArgs {
+        name: Some(name),
+        envelope,
+        geometry_type: GeometryType::LineString,
+        columns: Some(columns),
+        features_count: features,
+        // 0 says that there is no index.
+        index_node_size: if bounds.is_some() { index::FANOUT as u16 } else { 0 },
+        crs: Some(crs),
+        title: Some(title),
+        description: Some(description),
+        metadata: Some(metadata),
+        ..HeaderArgs::default()
+    };
+    let header = Header::create(&mut builder, &header);
+    builder.finish_size_prefixed(header, None);
+    builder.finished_data().to_vec()
+}
+
+/// A feature with its length before it.
+fn feature<'b>(builder: &'b mut FlatBufferBuilder<'static>, row: &Row<'_>) -> &'b [u8] {
+    builder.reset();
+    let mut xy = Vec::with_capacity(2 * row.line.len());
+    for (lon, lat) in row.line.iter().map(|place| place.degrees()) {
+        xy.extend([lon, lat]);
+    }
+    let xy = builder.create_vector(&xy);
+    let geometry = Geometry::create(builder, &GeometryArgs { xy: Some(xy), ..GeometryArgs::default() });
+    let properties = builder.create_vector(&properties(row.cells));
+    let feature = FeatureArgs { geometry: Some(geometry), properties: Some(properties), ..FeatureArgs::default() };
+    let feature = Feature::create(builder, &feature);
+    builder.finish_size_prefixed(feature, None);
+    builder.finished_data()
+}
+
+/// Number of the column and value, for each that there is; little endian, texts with their length.
+fn properties(cells: &[Cell<'_>]) -> Vec<u8> {
+    let mut out = Vec::with_capacity(256);
+    for (column, cell) in (0_u16..).zip(cells) {
+        let number = column.to_le_bytes();
+        match cell {
+            Cell::Integer(Some(value)) => out.extend(number.iter().chain(&value.to_le_bytes())),
+            Cell::Real(Some(value)) => out.extend(number.iter().chain(&value.to_le_bytes())),
+            Cell::Flag(value) => out.extend(number.iter().chain(&[u8::from(*value)])),
+            Cell::Text(Some(text)) => {
+                out.extend(number.iter().chain(&(text.len() as u32).to_le_bytes()));
+                out.extend_from_slice(text.as_bytes());
+            }
+            Cell::Integer(None) | Cell::Real(None) | Cell::Text(None) => {}
+        }
+    }
+    out
+}

@@ -1,0 +1,250 @@
+//! GeoParquet 1.1 (<https://geoparquet.org/releases/v1.1.0/>), one file a layer: lines as WKB, a box column for readers that skip
+//! by it, the header as JSON under the key `netcert` of the file's metadata.
+//!
+//! A group of rows is held in memory until it is written, nothing else of the network.
+
+use std::io::Write as _;
+use std::sync::Arc;
+
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
+use parquet::schema::types::Type;
+use serde_json::json;
+
+use super::layers::{Row, asked};
+use super::{Cell, Kind, Layer, Options, Target, one_file_a_layer};
+use crate::export::{ExportError, Layout, Place, Sink, Source};
+use crate::osm::LonLat;
+use crate::store::Bounds;
+
+/// `geoparquet`
+pub(super) struct GeoParquet;
+
+/// Rows a group: some 8 MB of edges.
+const GROUP_ROWS: usize = 1 << 14;
+
+/// The sides of the box, in the order of its columns.
+const SIDES: [&str; 4] = ["xmin", "ymin", "xmax", "ymax"];
+
+impl Target for GeoParquet {
+    fn name(&self) -> &'static str {
+        "geoparquet"
+    }
+
+    fn about(&self) -> &'static str {
+        "edges and turns with all certificate columns, as GeoParquet 1.1"
+    }
+
+    fn layout(&self, options: &Options) -> Layout {
+        one_file_a_layer(self.name(), options)
+    }
+
+    fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
+        for layer in asked(options) {
+            let mut file = Table::create(layer, place.create(&format!("{}.parquet", layer.name()))?)?;
+            layer.each(source, |row| file.push(row))?;
+            file.close(&source.header.json().to_string())?;
+        }
+        Ok(())
+    }
+}
+
+/// A file being written.
+struct Table {
+    writer: SerializedFileWriter<Vec<u8>>,
+    sink: Sink,
+    group: Vec<Column>,
+    lines: Vec<ByteArray>,
+    boxes: [Vec<f64>; SIDES.len()],
+    bounds: Option<Bounds>,
+}
+
+impl Table {
+    fn create(layer: Layer, sink: Sink) -> Result<Self, ExportError> {
+        let properties = WriterProperties::builder()
+            .set_compression(Compression::SNAPPY)
+            .set_created_by(concat!("netcert ", env!("CARGO_PKG_VERSION")).to_owned())
+            .build();
+        let writer =
+            SerializedFileWriter::new(Vec::new(), Arc::new(schema(layer).map_err(failed)?), Arc::new(properties));
+        let group = layer.columns().iter().map(|column| Column::of(column.1)).collect();
+        let (lines, boxes) = (Vec::new(), Default::default());
+        Ok(Self { writer: writer.map_err(failed)?, sink, group, lines, boxes, bounds: None })
+    }
+
+    fn push(&mut self, row: &Row<'_>) -> Result<(), ExportError> {
+        self.group.iter_mut().zip(row.cells).for_each(|(column, cell)| column.push(cell));
+        self.lines.push(wkb(row.line).into());
+        if let Some(around) = Bounds::around(row.line.iter().copied()) {
+            let sides = [around.west, around.south, around.east, around.north];
+            self.boxes.iter_mut().zip(sides).for_each(|(column, side)| column.push(side));
+            self.bounds = Some(self.bounds.map_or(around, |bounds| bounds.union(around)));
+        }
+        if self.lines.len() >= GROUP_ROWS { self.end_group() } else { Ok(()) }
+    }
+
+    fn end_group(&mut self) -> Result<(), ExportError> {
+        self.write_group().map_err(failed)?;
+        self.writer.flush()?;
+        // The writer counts what it has written by itself: what is in its hands may go to the file.
+        self.sink.write_all(self.writer.inner())?;
+        self.writer.inner_mut().clear();
+        Ok(())
+    }
+
+    fn write_group(&mut self) -> Result<(), ParquetError> {
+        let mut group = self.writer.next_row_group()?;
+        for column in &mut self.group {
+            let Some(mut writer) = group.next_column()? else { continue };
+            column.write(&mut writer)?;
+            writer.close()?;
+        }
+        if let Some(mut writer) = group.next_column()? {
+            writer.typed::<ByteArrayType>().write_batch(&self.lines, None, None)?;
+            writer.close()?;
+            self.lines.clear();
+        }
+        for side in &mut self.boxes {
+            let Some(mut writer) = group.next_column()? else { continue };
+            writer.typed::<DoubleType>().write_batch(side, None, None)?;
+            writer.close()?;
+            side.clear();
+        }
+        group.close()?;
+        Ok(())
+    }
+
+    fn close(mut self, header: &str) -> Result<(), ExportError> {
+        if !self.lines.is_empty() {
+            self.end_group()?;
+        }
+        for (key, value) in [("geo", geo(self.bounds)), ("netcert", header.to_owned())] {
+            self.writer.append_key_value_metadata(KeyValue { key: key.to_owned(), value: Some(value) });
+        }
+        self.sink.write_all(&self.writer.into_inner().map_err(failed)?)?;
+        self.sink.close()
+    }
+}
+
+/// Values of one column of a group.
+enum Column {
+    Integer(Vec<i64>, Vec<i16>),
+    Real(Vec<f64>, Vec<i16>),
+    Text(Vec<ByteArray>, Vec<i16>),
+    Flag(Vec<bool>),
+}
+
+impl Column {
+    fn of(kind: Kind) -> Self {
+        match kind {
+            Kind::Integer => Self::Integer(Vec::new(), Vec::new()),
+            Kind::Real => Self::Real(Vec::new(), Vec::new()),
+            Kind::Text => Self::Text(Vec::new(), Vec::new()),
+            Kind::Flag => Self::Flag(Vec::new()),
+        }
+    }
+
+    fn push(&mut self, cell: &Cell<'_>) {
+        // A level of 0 says that there is none.
+        match (self, cell) {
+            (Self::Integer(values, levels), Cell::Integer(value)) => {
+                levels.push(i16::from(value.is_some()));
+                values.extend(value);
+            }
+            (Self::Real(values, levels), Cell::Real(value)) => {
+                levels.push(i16::from(value.is_some()));
+                values.extend(value);
+            }
+            (Self::Text(values, levels), Cell::Text(value)) => {
+                levels.push(i16::from(value.is_some()));
+                values.extend(value.map(ByteArray::from));
+            }
+            (Self::Flag(values), Cell::Flag(value)) => values.push(*value),
+            // Cells are of their columns' kinds: else there is no value rather than a wrong one.
+            (Self::Integer(_, levels) | Self::Real(_, levels) | Self::Text(_, levels), _) => levels.push(0),
+            (Self::Flag(values), _) => values.push(false),
+        }
+    }
+
+    fn write(&mut self, writer: &mut SerializedColumnWriter<'_>) -> Result<(), ParquetError> {
+        match self {
+            Self::Integer(values, levels) => {
+                writer.typed::<Int64Type>().write_batch(values, Some(levels), None)?;
+                (values.clear(), levels.clear());
+            }
+            Self::Real(values, levels) => {
+                writer.typed::<DoubleType>().write_batch(values, Some(levels), None)?;
+                (values.clear(), levels.clear());
+            }
+            Self::Text(values, levels) => {
+                writer.typed::<ByteArrayType>().write_batch(values, Some(levels), None)?;
+                (values.clear(), levels.clear());
+            }
+            Self::Flag(values) => {
+                writer.typed::<BoolType>().write_batch(values, None, None)?;
+                values.clear();
+            }
+        }
+        Ok(())
+    }
+}
+
+fn schema(layer: Layer) -> Result<Type, ParquetError> {
+    let column = |name: &str, physical, repetition, logical| {
+        let column = Type::primitive_type_builder(name, physical).with_repetition(repetition);
+        Ok::<_, ParquetError>(Arc::new(column.with_logical_type(logical).build()?))
+    };
+    let mut fields = Vec::new();
+    for &(name, kind) in layer.columns() {
+        let (physical, repetition, logical) = match kind {
+            Kind::Integer => (Physical::INT64, Repetition::OPTIONAL, None),
+            Kind::Real => (Physical::DOUBLE, Repetition::OPTIONAL, None),
+            Kind::Text => (Physical::BYTE_ARRAY, Repetition::OPTIONAL, Some(LogicalType::String)),
+            Kind::Flag => (Physical::BOOLEAN, Repetition::REQUIRED, None),
+        };
+        fields.push(column(name, physical, repetition, logical)?);
+    }
+    fields.push(column("geometry", Physical::BYTE_ARRAY, Repetition::REQUIRED, None)?);
+    let sides = SIDES.map(|side| column(side, Physical::DOUBLE, Repetition::REQUIRED, None));
+    let sides = sides.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let around = Type::group_type_builder("bbox").with_repetition(Repetition::REQUIRED).with_fields(sides).build()?;
+    fields.push(Arc::new(around));
+    Type::group_type_builder(layer.name()).with_fields(fields).build()
+}
+
+/// The metadata that make a Parquet file GeoParquet 1.1. Without `crs` it is OGC:CRS84, longitude first.
+fn geo(bounds: Option<Bounds>) -> String {
+    let covering: serde_json::Map<_, _> = SIDES.iter().map(|&side| (side.to_owned(), json!(["bbox", side]))).collect();
+    let mut column = json!({
+        "encoding": "WKB",
+        "geometry_types": ["LineString"],
+        "edges": "planar",
+        "covering": {"bbox": covering},
+    });
+    if let (Some(b), Some(members)) = (bounds, column.as_object_mut()) {
+        members.insert("bbox".to_owned(), json!([b.west, b.south, b.east, b.north]));
+    }
+    json!({"version": "1.1.0", "primary_column": "geometry", "columns": {"geometry": column}}).to_string()
+}
+
+/// A line string as ISO 19125 well-known binary, little endian.
+fn wkb(line: &[LonLat]) -> Vec<u8> {
+    const LINE_STRING: u32 = 2;
+    let mut out = Vec::with_capacity(9 + 16 * line.len());
+    out.push(1);
+    out.extend(LINE_STRING.to_le_bytes());
+    out.extend((line.len() as u32).to_le_bytes());
+    for (lon, lat) in line.iter().map(|place| place.degrees()) {
+        out.extend(lon.to_le_bytes());
+        out.extend(lat.to_le_bytes());
+    }
+    out
+}
+
+fn failed(error: ParquetError) -> ExportError {
+    std::io::Error::other(error).into()
+}

@@ -1,0 +1,79 @@
+//! The two layers that map formats share: directed edges and turns, each row with its cells and its line.
+
+use super::{Cell, EDGE_COLUMNS, Kind, Layer, Options, TURN_COLUMNS, edge_cells, turn_cells};
+use crate::export::{ExportError, Refusal, Source};
+use crate::osm::LonLat;
+
+/// One row of a layer.
+pub(super) struct Row<'r> {
+    /// Stable from extract to extract: `edge_id` or `turn_id`.
+    pub(super) id: i64,
+    /// In the order of [`Layer::columns`].
+    pub(super) cells: &'r [Cell<'r>],
+    /// In direction of travel; at least two positions.
+    pub(super) line: &'r [LonLat],
+}
+
+impl Layer {
+    /// Its name, as in files and layers.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Edges => "edges",
+            Self::Turns => "turns",
+        }
+    }
+
+    /// Its columns.
+    #[must_use]
+    pub fn columns(self) -> &'static [(&'static str, Kind)] {
+        match self {
+            Self::Edges => &EDGE_COLUMNS,
+            Self::Turns => &TURN_COLUMNS,
+        }
+    }
+
+    /// How many rows it has.
+    #[must_use]
+    pub fn rows(self, source: &Source<'_>) -> u64 {
+        let bits = match self {
+            Self::Edges => &source.permitted.edges,
+            Self::Turns => &source.permitted.turns,
+        };
+        bits.len() as u64
+    }
+
+    /// Hands over every row, in order of the network.
+    pub(super) fn each(
+        self,
+        source: &Source<'_>,
+        mut put: impl FnMut(&Row<'_>) -> Result<(), ExportError>,
+    ) -> Result<(), ExportError> {
+        let mut database = source.database()?;
+        match self {
+            Self::Edges => {
+                for edge in source.edges(&mut database)? {
+                    let edge = edge?;
+                    let refusal = edge.refusal.map_or_else(String::new, Refusal::words);
+                    let cells = edge_cells(source, &edge, &refusal);
+                    put(&Row { id: edge.row.edge_id, cells: &cells, line: &edge.row.line })?;
+                }
+            }
+            Self::Turns => {
+                for turn in source.turns(&mut database)? {
+                    let turn = turn?;
+                    let refusal = turn.refusal.map_or_else(String::new, Refusal::words);
+                    let cells = turn_cells(source, &turn, &refusal);
+                    put(&Row { id: turn.row.turn_id, cells: &cells, line: &turn.row.line })?;
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The layers that are asked for.
+pub(super) fn asked(options: &Options) -> impl Iterator<Item = Layer> {
+    let only = options.layer;
+    [Layer::Edges, Layer::Turns].into_iter().filter(move |&layer| only.is_none_or(|only| only == layer))
+}

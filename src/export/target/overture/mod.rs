@@ -1,0 +1,251 @@
+//! Overture's transportation schema (<https://docs.overturemaps.org/schema/reference/transportation/segment/>): a segment for each
+//! way, with connectors at its junctions, `access_restrictions` on the stretches that the vehicle may not use and
+//! `prohibited_transitions` for the turns that it may not make.
+//!
+//! Every rule is scoped to lorries at least as long as the vehicle; who is shorter is not spoken of. Ids are those of
+//! OpenStreetMap (`w` or `n` and the number), not of GERS. Memory holds one way; what is needed of other ways waits in a file.
+//!
+//! What the schema cannot express is refused: an arc of a roundabout that is not permitted by itself stays denied to passages that are.
+
+mod segment;
+mod spots;
+
+use std::collections::BTreeMap;
+use std::io::Write as _;
+
+use serde_json::json;
+
+use super::{Options, Target};
+use crate::export::sorter::{Sorted, Sorter};
+use crate::export::{ExportError, Layout, Place, Sink, Source};
+use crate::osm::LonLat;
+use crate::vehicle::Vehicle;
+use segment::{Piece, Segment};
+use spots::{Spot, Spots};
+
+/// `overture`
+pub(super) struct Overture;
+
+impl Target for Overture {
+    fn name(&self) -> &'static str {
+        "overture"
+    }
+
+    fn about(&self) -> &'static str {
+        "Overture's transportation schema: segments with access restrictions, connectors"
+    }
+
+    fn layout(&self, _: &Options) -> Layout {
+        Layout::Folder { target: self.name(), instead: "" }
+    }
+
+    fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
+        let mut spots = Spots::create(source, place.scratch(".spots"))?;
+        let mut transitions = Transitions::collect(source, place)?;
+        let mut connectors = Sorter::create(place.scratch(".connectors"))?;
+        let mut sink = begin(source, place.create("segment.geojson")?)?;
+        let mut writer = Writer {
+            scope: segment::Scope { length_m: length_m(source)? },
+            spots: &mut spots,
+            transitions: &mut transitions,
+            connectors: &mut connectors,
+            source,
+            sink: &mut sink,
+            written: 0,
+        };
+        writer.segments()?;
+        end(sink)?;
+        write_connectors(source, connectors.sorted()?, place)
+    }
+}
+
+/// The vehicle's length, to which all rules are scoped.
+fn length_m(source: &Source<'_>) -> Result<f64, ExportError> {
+    let definition = source.header.provenance.vehicle.to_string();
+    let vehicle = Vehicle::from_json(&definition)
+        .map_err(|e| ExportError::Content { path: source.ask.db.clone(), detail: e.to_string() })?;
+    Ok(vehicle.length_m)
+}
+
+fn begin(source: &Source<'_>, mut sink: Sink) -> Result<Sink, ExportError> {
+    write!(sink, "{{\"type\":\"FeatureCollection\",\"netcert\":{},\"features\":[", source.header.json())?;
+    Ok(sink)
+}
+
+fn end(mut sink: Sink) -> Result<(), ExportError> {
+    sink.write_all(b"\n]}\n")?;
+    sink.close()
+}
+
+fn write_connectors(source: &Source<'_>, nodes: Sorted<NODE_BYTES>, place: &mut Place) -> Result<(), ExportError> {
+    let mut sink = begin(source, place.create("connector.geojson")?)?;
+    let mut last = None;
+    for record in nodes {
+        let (node, at) = node_of(&record?);
+        if last == Some(node) {
+            continue;
+        }
+        let between = if last.is_none() { "\n" } else { ",\n" };
+        last = Some(node);
+        let (lon, lat) = at.degrees();
+        let feature = json!({
+            "type": "Feature",
+            "id": segment::connector_id(node),
+            "geometry": {"type": "Point", "coordinates": [lon, lat]},
+            "properties": {"theme": "transportation", "type": "connector", "version": 0},
+        });
+        write!(sink, "{between}{feature}")?;
+    }
+    end(sink)
+}
+
+/// Id and position.
+const NODE_BYTES: usize = 16;
+
+/// Sorts by id.
+fn node_record(node: i64, at: LonLat) -> [u8; NODE_BYTES] {
+    let mut record = [0; NODE_BYTES];
+    // With its highest bit turned, a signed number sorts as bytes do.
+    record[..8].copy_from_slice(&(node.cast_unsigned() ^ 1 << 63).to_be_bytes());
+    record[8..12].copy_from_slice(&at.lon_e7.to_be_bytes());
+    record[12..].copy_from_slice(&at.lat_e7.to_be_bytes());
+    record
+}
+
+fn node_of(record: &[u8; NODE_BYTES]) -> (i64, LonLat) {
+    let half = u64::from_be_bytes(*record.first_chunk::<8>().unwrap_or(&[0; 8]));
+    let at = u64::from_be_bytes(*record.last_chunk::<8>().unwrap_or(&[0; 8]));
+    let lon_e7 = ((at >> 32) as u32).cast_signed();
+    ((half ^ 1 << 63).cast_signed(), LonLat { lon_e7, lat_e7: (at as u32).cast_signed() })
+}
+
+/// What may not follow what, by the first edge.
+struct Transitions {
+    /// From, to; both permitted, the turn not.
+    turns: std::iter::Peekable<Sorted<8>>,
+    /// What turn restrictions forbid, as indices of edges; there are few. Straight on is no turn, so two edges may stand here.
+    sequences: BTreeMap<u32, Vec<Vec<u32>>>,
+}
+
+impl Transitions {
+    fn collect(source: &Source<'_>, place: &Place) -> Result<Self, ExportError> {
+        let permitted = &source.permitted;
+        let mut database = source.database()?;
+        let mut turns = Sorter::create(place.scratch(".turns"))?;
+        for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
+            let step = step?;
+            let between = permitted.edges.get(step.from) && permitted.edges.get(step.to);
+            if step.arcs.is_none() && between && !permitted.turns.get(step.turn) {
+                turns.push((u64::from(step.from) << 32 | u64::from(step.to)).to_be_bytes())?;
+            }
+        }
+        let mut sequences: BTreeMap<u32, Vec<Vec<u32>>> = BTreeMap::new();
+        for mut sequence in database.forbidden_sequences()? {
+            if sequence.len() > 1 && sequence.iter().all(|&edge| permitted.edges.get(edge)) {
+                let first = sequence.remove(0);
+                sequences.entry(first).or_default().push(sequence);
+            }
+        }
+        Ok(Self { turns: turns.sorted()?.peekable(), sequences })
+    }
+
+    /// What may not follow an edge, each as the edges after it. Edges come in order.
+    fn of(&mut self, edge: u32) -> Result<Vec<Vec<u32>>, ExportError> {
+        let mut out = Vec::new();
+        let halves = |record: &[u8; 8]| {
+            let both = u64::from_be_bytes(*record);
+            ((both >> 32) as u32, both as u32)
+        };
+        while let Some(record) = self.turns.next_if(|next| next.as_ref().map_or(true, |next| halves(next).0 <= edge)) {
+            let (from, to) = halves(&record?);
+            if from == edge {
+                out.push(vec![to]);
+            }
+        }
+        for sequence in self.sequences.remove(&edge).unwrap_or_default() {
+            if !out.contains(&sequence) {
+                out.push(sequence);
+            }
+        }
+        Ok(out)
+    }
+}
+
+struct Writer<'w, 'r> {
+    scope: segment::Scope,
+    spots: &'w mut Spots,
+    transitions: &'w mut Transitions,
+    connectors: &'w mut Sorter<NODE_BYTES>,
+    source: &'w Source<'r>,
+    sink: &'w mut Sink,
+    written: u64,
+}
+
+impl Writer<'_, '_> {
+    fn segments(&mut self) -> Result<(), ExportError> {
+        let source = self.source;
+        let mut database = source.database()?;
+        let mut open: Option<Segment> = None;
+        for edge in source.edges(&mut database)? {
+            let edge = edge?;
+            let spot = self.spots.get(edge.row.edge)?;
+            let same = open.as_ref().is_some_and(|open| (open.way_id, open.chain) == (spot.way_id, spot.chain));
+            if !same && let Some(done) = open.take() {
+                self.write(&done)?;
+            }
+            let segment = open.get_or_insert_with(|| Segment::new(&edge.row, &spot));
+            if segment.pieces.last().is_none_or(|piece| piece.shape_start != spot.shape_start) {
+                segment.pieces.push(Piece::new(&edge.row, &spot));
+            }
+            if edge.refusal.is_none() {
+                let forbidden = self.forbidden(edge.row.edge, edge.row.to_node)?;
+                if let Some(piece) = segment.pieces.last_mut() {
+                    piece.permitted[spot.heading as usize] = Some(forbidden);
+                }
+            }
+        }
+        open.map_or(Ok(()), |done| self.write(&done))
+    }
+
+    /// What may not follow a permitted edge that ends at a node.
+    fn forbidden(&mut self, edge: u32, end: i64) -> Result<Vec<segment::Forbidden>, ExportError> {
+        let mut out = Vec::new();
+        for sequence in self.transitions.of(edge)? {
+            let mut via = end;
+            let mut steps = Vec::with_capacity(sequence.len());
+            for to in sequence {
+                let Spot { way_id, chain, heading, end, .. } = self.spots.get(to)?;
+                steps.push((via, segment::id(way_id, chain), heading));
+                via = end;
+            }
+            out.push(segment::Forbidden { steps });
+        }
+        Ok(out)
+    }
+
+    fn write(&mut self, segment: &Segment) -> Result<(), ExportError> {
+        for (node, at) in segment.nodes() {
+            self.connectors.push(node_record(node, at))?;
+        }
+        let between = if self.written == 0 { "\n" } else { ",\n" };
+        self.written += 1;
+        write!(self.sink, "{between}{}", segment.feature(&self.scope))?;
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_sort_by_their_ids_and_come_back() {
+        let nodes = [(-7, -5, 900_000_000), (-1, 4, 2), (0, 0, 0), (1, -1_800_000_000, -1), (i64::MAX, 7, 7)];
+        let records: Vec<_> =
+            nodes.iter().map(|&(id, lon_e7, lat_e7)| node_record(id, LonLat { lon_e7, lat_e7 })).collect();
+        assert!(records.is_sorted());
+        for (record, (id, lon_e7, lat_e7)) in records.iter().zip(nodes) {
+            assert_eq!(node_of(record), (id, LonLat { lon_e7, lat_e7 }));
+        }
+    }
+}

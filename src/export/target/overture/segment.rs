@@ -1,0 +1,286 @@
+//! One segment as the schema has it: a way or an unbroken chain of it, its stretches between junctions as linear references.
+//!
+//! Linear references are shares of the geodesic length on the WGS 84 ellipsoid
+//! (<https://docs.overturemaps.org/guides/transportation/linear-referencing>).
+
+use geo::{Distance as _, Geodesic, Point};
+use serde_json::{Map, Value, json};
+
+use super::spots::Spot;
+use crate::osm::LonLat;
+use crate::osm::facts::Direction;
+use crate::store::{EdgeRow, Named as _};
+
+/// For whom the rules are.
+pub(super) struct Scope {
+    pub(super) length_m: f64,
+}
+
+/// A sequence that may not follow: node, segment, heading on it.
+pub(super) struct Forbidden {
+    pub(super) steps: Vec<(i64, String, Direction)>,
+}
+
+/// A stretch between two junctions.
+pub(super) struct Piece {
+    pub(super) shape_start: u32,
+    /// Its ends along the way.
+    nodes: [i64; 2],
+    /// Along the way.
+    line: Vec<LonLat>,
+    /// By heading: what may not follow it; `None`: it may not be used that way itself, or not by anyone.
+    pub(super) permitted: [Option<Vec<Forbidden>>; 2],
+}
+
+impl Piece {
+    /// From the first of its edges; nothing is permitted yet.
+    pub(super) fn new(row: &EdgeRow, spot: &Spot) -> Self {
+        let mut line = row.line.clone();
+        let mut nodes = [row.from_node, row.to_node];
+        if spot.heading == Direction::Backward {
+            line.reverse();
+            nodes.reverse();
+        }
+        Self { shape_start: spot.shape_start, nodes, line, permitted: [None, None] }
+    }
+}
+
+/// A way, or what the extract has of it without a gap.
+pub(super) struct Segment {
+    pub(super) way_id: i64,
+    pub(super) chain: u32,
+    highway: String,
+    name: Option<String>,
+    pub(super) pieces: Vec<Piece>,
+}
+
+/// `w123`; `w123.1` for what comes after a gap.
+pub(super) fn id(way_id: i64, chain: u32) -> String {
+    if chain == 0 { format!("w{way_id}") } else { format!("w{way_id}.{chain}") }
+}
+
+/// `n123`.
+pub(super) fn connector_id(node: i64) -> String {
+    format!("n{node}")
+}
+
+impl Segment {
+    /// Without stretches.
+    pub(super) fn new(row: &EdgeRow, spot: &Spot) -> Self {
+        let Spot { way_id, chain, .. } = *spot;
+        Self { way_id, chain, highway: row.highway.clone(), name: row.name.clone(), pieces: Vec::new() }
+    }
+
+    /// Where it meets others.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = (i64, LonLat)> + '_ {
+        self.pieces.iter().flat_map(|piece| {
+            let ends = [piece.line.first(), piece.line.last()];
+            piece.nodes.into_iter().zip(ends).filter_map(|(node, at)| Some((node, *at?)))
+        })
+    }
+
+    /// A GeoJSON feature.
+    pub(super) fn feature(&self, scope: &Scope) -> Value {
+        let at = self.at();
+        let (class, link) = class(&self.highway);
+        let mut properties = json!({
+            "theme": "transportation",
+            "type": "segment",
+            "version": 0,
+            "subtype": "road",
+            "class": class,
+            "sources": [{
+                "property": "",
+                "dataset": "OpenStreetMap",
+                "license": "ODbL-1.0",
+                "record_id": format!("w{}", self.way_id),
+            }],
+            "connectors": self.connectors(&at),
+        });
+        if let Some(members) = properties.as_object_mut() {
+            if link {
+                members.insert("subclass".to_owned(), json!("link"));
+            }
+            if let Some(name) = self.name.as_deref().map(str::trim).filter(|name| !name.is_empty()) {
+                members.insert("names".to_owned(), json!({"primary": name}));
+            }
+            for (member, rules) in [
+                ("access_restrictions", self.denials(&at, scope)),
+                ("prohibited_transitions", self.transitions(&at, scope)),
+            ] {
+                if !rules.is_empty() {
+                    members.insert(member.to_owned(), Value::Array(rules));
+                }
+            }
+        }
+        let coordinates: Vec<[f64; 2]> = self.line().map(|place| place.degrees().into()).collect();
+        json!({
+            "type": "Feature",
+            "id": id(self.way_id, self.chain),
+            "geometry": {"type": "LineString", "coordinates": coordinates},
+            "properties": properties,
+        })
+    }
+
+    /// All positions; where two stretches meet, once.
+    fn line(&self) -> impl Iterator<Item = LonLat> + '_ {
+        let begin = self.pieces.first().and_then(|piece| piece.line.first()).copied();
+        begin.into_iter().chain(self.pieces.iter().flat_map(|piece| piece.line.iter().skip(1).copied()))
+    }
+
+    /// Linear references of the stretches' ends, from 0 to 1: one more than there are stretches.
+    fn at(&self) -> Vec<f64> {
+        let mut along_m = vec![0.0];
+        let mut so_far_m = 0.0;
+        for piece in &self.pieces {
+            so_far_m += length_m(&piece.line);
+            along_m.push(so_far_m);
+        }
+        // A tenth of a millimetre on a way of 100 km; so that the text does not depend on the last bits.
+        let share = |m: f64| if so_far_m > 0.0 { (m / so_far_m * 1e9).round() / 1e9 } else { 0.0 };
+        let mut at: Vec<f64> = along_m.into_iter().map(share).collect();
+        if let Some(last) = at.last_mut() {
+            *last = 1.0;
+        }
+        at
+    }
+
+    fn connectors(&self, at: &[f64]) -> Vec<Value> {
+        let begin = self.pieces.first().map(|piece| piece.nodes[0]);
+        let ends = self.pieces.iter().map(|piece| piece.nodes[1]);
+        let connector = |(node, at): (i64, &f64)| json!({"connector_id": connector_id(node), "at": at});
+        begin.into_iter().chain(ends).zip(at).map(connector).collect()
+    }
+
+    /// Stretches that may not be used, neighbours as one rule; without a heading where it is the same for both.
+    fn denials(&self, at: &[f64], scope: &Scope) -> Vec<Value> {
+        let denied = |heading: usize| -> Vec<[usize; 2]> {
+            let mut ranges: Vec<[usize; 2]> = Vec::new();
+            for (i, _) in self.pieces.iter().enumerate().filter(|(_, piece)| piece.permitted[heading].is_none()) {
+                match ranges.last_mut() {
+                    Some(range) if range[1] == i => range[1] = i + 1,
+                    _ => ranges.push([i, i + 1]),
+                }
+            }
+            ranges
+        };
+        let rule = |range: [usize; 2], heading: Option<Direction>| {
+            let mut rule = Map::new();
+            rule.insert("access_type".to_owned(), json!("denied"));
+            between(&mut rule, at, range);
+            rule.insert("when".to_owned(), scope.when(heading));
+            Value::Object(rule)
+        };
+        let [forward, backward] = [denied(0), denied(1)];
+        if forward == backward {
+            return forward.into_iter().map(|range| rule(range, None)).collect();
+        }
+        let forward = forward.into_iter().map(|range| rule(range, Some(Direction::Forward)));
+        forward.chain(backward.into_iter().map(|range| rule(range, Some(Direction::Backward)))).collect()
+    }
+
+    /// What may not follow which stretch; turning back on the road never may.
+    fn transitions(&self, at: &[f64], scope: &Scope) -> Vec<Value> {
+        let mut rules = Vec::new();
+        for (i, piece) in self.pieces.iter().enumerate() {
+            for heading in [Direction::Forward, Direction::Backward] {
+                let (ahead, back) = (heading as usize, 1 - heading as usize);
+                let Some(forbidden) = &piece.permitted[ahead] else { continue };
+                let mut rule = |steps: &[(i64, String, Direction)]| {
+                    let Some(last) = steps.last() else { return };
+                    let entry = |(node, segment, _): &(i64, String, Direction)| json!({"connector_id": connector_id(*node), "segment_id": segment});
+                    let mut rule = Map::new();
+                    rule.insert("sequence".to_owned(), steps.iter().map(entry).collect());
+                    rule.insert("final_heading".to_owned(), json!(last.2.name()));
+                    between(&mut rule, at, [i, i + 1]);
+                    rule.insert("when".to_owned(), scope.when(Some(heading)));
+                    rules.push(Value::Object(rule));
+                };
+                forbidden.iter().for_each(|forbidden| rule(&forbidden.steps));
+                if piece.permitted[back].is_some() {
+                    let opposite = if heading == Direction::Forward { Direction::Backward } else { Direction::Forward };
+                    rule(&[(piece.nodes[back], id(self.way_id, self.chain), opposite)]);
+                }
+            }
+        }
+        rules
+    }
+}
+
+impl Scope {
+    /// Whom a rule concerns: lorries at least as long.
+    fn when(&self, heading: Option<Direction>) -> Value {
+        let mut when = Map::new();
+        if let Some(heading) = heading {
+            when.insert("heading".to_owned(), json!(heading.name()));
+        }
+        when.insert("mode".to_owned(), json!(["truck", "hgv"]));
+        let longer =
+            json!({"dimension": "length", "comparison": "greater_than_equal", "value": self.length_m, "unit": "m"});
+        when.insert("vehicle".to_owned(), json!([longer]));
+        Value::Object(when)
+    }
+}
+
+/// Left out where it is all of the segment, or where rounding leaves nothing between: then the rule holds for more than it must.
+fn between(rule: &mut Map<String, Value>, at: &[f64], [from, to]: [usize; 2]) {
+    if let (Some(&from), Some(&to)) = (at.get(from), at.get(to))
+        && from < to
+        && (from > 0.0 || to < 1.0)
+    {
+        rule.insert("between".to_owned(), json!([from, to]));
+    }
+}
+
+fn length_m(line: &[LonLat]) -> f64 {
+    let point = |place: &LonLat| Point::from(place.degrees());
+    line.windows(2).map(|pair| Geodesic.distance(point(&pair[0]), point(&pair[1]))).sum()
+}
+
+/// The schema's class, and whether it is a slip road. Busways have no class of their own there.
+fn class(highway: &str) -> (&str, bool) {
+    let (class, link) = highway.strip_suffix("_link").map_or((highway, false), |class| (class, true));
+    (if class == "busway" { "unknown" } else { class }, link)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn piece(from: i32, to: i32, permitted: [bool; 2]) -> Piece {
+        let line = [from, to].map(|lon_e7| LonLat { lon_e7: lon_e7 * 1000, lat_e7: 0 }).to_vec();
+        let permitted = permitted.map(|yes| yes.then(Vec::new));
+        Piece { shape_start: 0, nodes: [i64::from(from), i64::from(to)], line, permitted }
+    }
+
+    fn segment(pieces: Vec<Piece>) -> Value {
+        let segment = Segment { way_id: 7, chain: 0, highway: "primary_link".to_owned(), name: None, pieces };
+        segment.feature(&Scope { length_m: 16.5 })["properties"].clone()
+    }
+
+    #[test]
+    fn refused_stretches_next_to_each_other_are_one_rule() {
+        let made = segment(vec![piece(0, 1, [true, false]), piece(1, 2, [false; 2]), piece(2, 4, [false, true])]);
+        let rules: Vec<(Value, Value)> = made["access_restrictions"]
+            .as_array()
+            .map(|rules| rules.iter().map(|r| (r["between"].clone(), r["when"]["heading"].clone())).collect())
+            .unwrap_or_default();
+        assert_eq!(rules, [(json!([0.25, 1.0]), json!("forward")), (json!([0.0, 0.5]), json!("backward"))]);
+        assert_eq!((&made["class"], &made["subclass"]), (&json!("primary"), &json!("link")));
+        assert_eq!(made["connectors"][1], json!({"connector_id": "n1", "at": 0.25}));
+        assert!(made.get("prohibited_transitions").is_none());
+    }
+
+    #[test]
+    fn what_is_refused_as_a_whole_has_one_rule_and_nobody_turns_back() {
+        let made = segment(vec![piece(0, 1, [false; 2]), piece(1, 2, [false; 2])]);
+        let rules = made["access_restrictions"].as_array().map_or(0, Vec::len);
+        assert_eq!((rules, made["access_restrictions"][0].get("between")), (1, None));
+        let made = segment(vec![piece(0, 1, [true; 2]), piece(1, 2, [false, true])]);
+        let turns = made["prohibited_transitions"].as_array().cloned().unwrap_or_default();
+        assert_eq!(turns.len(), 2);
+        assert_eq!(turns[0]["sequence"], json!([{"connector_id": "n1", "segment_id": "w7"}]));
+        assert_eq!((&turns[0]["final_heading"], &turns[0]["when"]["heading"]), (&json!("backward"), &json!("forward")));
+        assert_eq!(turns[1]["sequence"][0]["connector_id"], json!("n0"));
+    }
+}
