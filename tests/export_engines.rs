@@ -1,5 +1,5 @@
 //! What the exports for engines hold, read with this program's own reader: nothing lost, nothing opened that is refused.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 #[path = "support/program.rs"]
 #[allow(dead_code)]
