@@ -2,7 +2,7 @@
 //! theirs uses what is refused. Judged by tests/engines/permits.py, which knows nothing of how the exports are made.
 //!
 //! Each test skips with a message where its engine cannot be installed.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 #[path = "support/program.rs"]
 #[allow(dead_code)]

@@ -1,5 +1,5 @@
 //! What the exports for engines hold, read with this program's own reader: nothing lost, nothing opened that is refused.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 #[path = "support/program.rs"]
 #[allow(dead_code)]
@@ -10,8 +10,10 @@ use std::path::Path;
 use std::process::Command;
 
 use netcert::network::{Network, build};
+use netcert::osm::LonLat;
 use netcert::osm::facts::{Countries, Direction, Permission, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
+use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 use netcert::store::{Database, QueryOptions, VerdictKind};
 use program::{Place, demo};
 
@@ -132,7 +134,7 @@ fn osmium_finds_the_rewritten_extract_sorted_and_whole() {
 
 #[test]
 fn an_extract_is_asked_for_and_must_be_the_right_one() {
-    let place = Place::with_demo().file("other.osm.pbf", netcert::osm::pbf::write::write_extract(&[], &[]));
+    let place = Place::with_demo().file("other.osm.pbf", write_extract(&[], &[]));
     place.netcert("export osrm --vehicle AU-SEMI19 --out osrm").fails().tells("--extract");
     place
         .netcert("export osm-pbf --vehicle AU-SEMI19 --out x.osm.pbf --extract other.osm.pbf")
@@ -140,6 +142,23 @@ fn an_extract_is_asked_for_and_must_be_the_right_one() {
         .tells("not the extract that demo.gpkg was made from")
         .tells("demo.osm.pbf");
     assert_eq!(place.files(), ["demo.gpkg", "other.osm.pbf"]);
+}
+
+#[test]
+fn an_extract_that_is_not_sorted_is_refused_with_the_way_out() {
+    let node = |id, lon_e7| NodeRecord { id, place: LonLat { lon_e7, lat_e7: 0 }, tags: Vec::new() };
+    let tags = vec![("highway".to_owned(), "primary".to_owned()), ("lanes".to_owned(), "2".to_owned())];
+    let way = |id, refs: [i64; 2]| WayRecord { id, refs: refs.to_vec(), tags: tags.clone() };
+    let extract = write_extract(&[node(1, 0), node(2, 10_000), node(3, 20_000)], &[way(8, [2, 3]), way(7, [1, 2])]);
+    let place = Place::empty().file("unsorted.osm.pbf", extract);
+    place.netcert("ingest unsorted.osm.pbf --vehicle AU-SEMI19").succeeds();
+    for target in ["osrm", "osm-pbf"] {
+        place
+            .netcert(&format!("export {target} --vehicle AU-SEMI19 --extract unsorted.osm.pbf --out out"))
+            .fails()
+            .tells("osmium sort");
+    }
+    assert_eq!(place.files(), ["unsorted.gpkg", "unsorted.osm.pbf"]);
 }
 
 #[test]

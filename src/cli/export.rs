@@ -33,7 +33,7 @@ docs/export/ has a page for each target: from zero to a routed truck, and what t
 express. An output is whole or not there; a folder of an earlier export is replaced.")]
 pub(crate) struct Export {
     /// In which form.
-    #[arg(value_name = "TARGET", value_parser = target_names(), hide_possible_values = false)]
+    #[arg(value_name = "TARGET", value_parser = target_names())]
     target: &'static str,
     #[command(flatten)]
     db: DatabaseArgs,

@@ -13,6 +13,9 @@ use crate::store::{EdgeStep, StoreError, Streamed};
 
 use super::Source;
 
+/// A merge needs order; `ingest` does not.
+const SORT: &str = "this export needs objects sorted by id; sort them with `osmium sort`, then ingest that file";
+
 /// A stretch of a way between two junctions.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Piece {
@@ -66,7 +69,7 @@ impl<'d> WayEdges<'d> {
         while let Some(row) = self.rows.next_if(|row| row.as_ref().map_or(true, |row| row.way_id <= way_id)) {
             let row = row.map_err(|e: StoreError| e.to_string())?;
             if row.way_id < way_id {
-                return Err(format!("way {} of the network is not in it", row.way_id));
+                return Err(format!("way {} of the network is not where its id belongs: {SORT}", row.way_id));
             }
             rows.push(row);
         }
@@ -80,7 +83,7 @@ impl<'d> WayEdges<'d> {
     pub(super) fn finish(mut self) -> Result<(), String> {
         match self.rows.next() {
             None => Ok(()),
-            Some(Ok(row)) => Err(format!("way {} of the network is not in it", row.way_id)),
+            Some(Ok(row)) => Err(format!("way {} of the network is not where its id belongs: {SORT}", row.way_id)),
             Some(Err(error)) => Err(error.to_string()),
         }
     }

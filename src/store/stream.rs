@@ -80,6 +80,17 @@ pub struct TurnStep {
 pub type StraightOn = (u32, Option<u32>);
 
 impl Database {
+    /// Keeps so much of the file in memory at most: enough for who reads it once in order.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn limit_cache(&mut self, mebibytes: u16) -> Result<(), StoreError> {
+        self.session.run(async |c| {
+            let sql = format!("PRAGMA cache_size = -{}", u32::from(mebibytes) * 1024);
+            sqlx::query(AssertSqlSafe(sql)).execute(c).await.map(|_| ())
+        })
+    }
+
     /// Every edge's facts for a vehicle. It must be certified under this policy: see [`Database::query`].
     ///
     /// # Errors

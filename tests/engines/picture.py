@@ -62,8 +62,10 @@ def draw(permits, a, b, title, refused):
         )
 
     roads = {True: [], False: []}
+    along = {tuple(edge["nodes"]) for edge in permits.edges.values() if edge["direction"] == "forward" and edge["permitted"]}
     for edge in permits.edges.values():
-        if edge["direction"] == "backward" and not edge["permitted"] or not inside(edge["nodes"]):
+        twice = edge["direction"] == "backward" and (not edge["permitted"] or tuple(edge["nodes"][::-1]) in along)
+        if twice or not inside(edge["nodes"]):
             continue
         minor = edge["highway"] in ("service", "track", "residential", "living_street", "unclassified")
         if edge["permitted"] or not minor or scale > 4e3:

@@ -54,7 +54,7 @@ impl Target for Osrm {
         tables.ways()?;
         tables.turns()?;
         if tables.unclear > 0 {
-            let note = format!("{} ways are closed whole: nodes at one place make their edges unclear", tables.unclear);
+            let note = format!("ways closed whole, as nodes at one place make their edges unclear: {}", tables.unclear);
             source.reporter.note(&note);
         }
         tables.speeds.close()?;

@@ -2,6 +2,7 @@
 
 use osmpbfreader::osmformat::Relation;
 pub(super) use osmpbfreader::osmformat::relation::MemberType as Kind;
+use protobuf::EnumOrUnknown;
 use rustc_hash::FxHashMap;
 
 use super::block::Texts;
@@ -27,7 +28,7 @@ pub(super) fn name_parts(relation: &mut Relation, splits: &Splits, texts: &mut T
             id
         })
         .collect();
-    let kinds: Vec<Kind> = relation.types.iter().map(|kind| kind.enum_value_or_default()).collect();
+    let kinds: Vec<Kind> = relation.types.iter().map(EnumOrUnknown::enum_value_or_default).collect();
     if !ids.iter().zip(&kinds).any(|(id, kind)| *kind == Kind::WAY && splits.contains_key(id)) {
         return false;
     }

@@ -44,7 +44,7 @@ pub(in crate::export::target) fn rewrite(
     rewriter.refuse_turns()?;
     rewriter.new_relations.pour(&mut rewriter.out)?;
     if rewriter.unclear > 0 {
-        let note = format!("{} ways are closed whole: nodes at one place make their edges unclear", rewriter.unclear);
+        let note = format!("ways closed whole, as nodes at one place make their edges unclear: {}", rewriter.unclear);
         source.reporter.note(&note);
     }
     rewriter.out.close()
