@@ -67,7 +67,7 @@ impl<'r> Source<'r> {
     /// # Errors
     /// The database cannot be read, or the vehicle is not certified there.
     pub fn open(ask: Ask, reporter: &'r dyn Reporter) -> Result<Self, ExportError> {
-        let mut database = Database::open(&ask.db)?;
+        let mut database = Database::open_to_stream(&ask.db)?;
         check_certified(&mut database, &ask)?;
         let provenance = Provenance::of(&mut database, &ask)?;
         let permitted = permitted(&mut database, &ask, reporter)?;
@@ -80,7 +80,7 @@ impl<'r> Source<'r> {
     /// # Errors
     /// The database cannot be read.
     pub fn database(&self) -> Result<Database, ExportError> {
-        Ok(Database::open(&self.ask.db)?)
+        Ok(Database::open_to_stream(&self.ask.db)?)
     }
 
     /// Every edge, permitted or not, in order of the network.
