@@ -1,5 +1,5 @@
 //! Exports to map formats: each read back by a program of others, and compared with what the CSV files say.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
 
 #[path = "support/program.rs"]
 #[allow(dead_code)]
