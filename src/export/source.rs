@@ -59,8 +59,6 @@ pub struct Source<'r> {
     pub reporter: &'r dyn Reporter,
 }
 
-/// Each row is read once: what a connection keeps of the file serves the few jumps between neighbours.
-const CACHE_MIB: u16 = 4;
 /// Rows between two reports of progress.
 const REPORT_ROWS: u64 = 4096;
 
@@ -70,7 +68,7 @@ impl<'r> Source<'r> {
     /// # Errors
     /// The database cannot be read, or the vehicle is not certified there.
     pub fn open(ask: Ask, reporter: &'r dyn Reporter) -> Result<Self, ExportError> {
-        let mut database = open(&ask.db)?;
+        let mut database = Database::open_to_stream(&ask.db)?;
         check_certified(&mut database, &ask)?;
         let provenance = Provenance::of(&mut database, &ask)?;
         let permitted = permitted(&mut database, &ask, reporter)?;
@@ -83,7 +81,7 @@ impl<'r> Source<'r> {
     /// # Errors
     /// The database cannot be read.
     pub fn database(&self) -> Result<Database, ExportError> {
-        open(&self.ask.db)
+        Ok(Database::open_to_stream(&self.ask.db)?)
     }
 
     /// Every edge, permitted or not, in order of the network.
@@ -130,12 +128,6 @@ impl<'r> Source<'r> {
     ) -> impl Iterator<Item = Result<T, StoreError>> + 'i {
         told(self.reporter, rows)
     }
-}
-
-fn open(path: &Path) -> Result<Database, ExportError> {
-    let mut database = Database::open(path)?;
-    database.limit_cache(CACHE_MIB)?;
-    Ok(database)
 }
 
 fn told<'i, T: 'i>(

@@ -43,14 +43,31 @@ pub struct CertifiedSet {
     pub layer: String,
 }
 
+/// Pages kept in memory, KiB.
+const CACHE_KIB: u32 = 65_536;
+/// The same for a stream of rows, which comes by each page once: no slower on 98,000 edges and 100,000 turns.
+const STREAM_CACHE_KIB: u32 = 2048;
+
 impl Database {
     /// Opens for reading only.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
+        Self::open_to_read(path, CACHE_KIB)
+    }
+
+    /// Opens for reading all rows once: memory stays the same however large the file is.
+    ///
+    /// # Errors
+    /// As [`Self::open`].
+    pub fn open_to_stream(path: &Path) -> Result<Self, StoreError> {
+        Self::open_to_read(path, STREAM_CACHE_KIB)
+    }
+
+    fn open_to_read(path: &Path, cache_kib: u32) -> Result<Self, StoreError> {
         if with_suffix(path, "-journal").exists() {
             // A killed `certify`: only one who may write can roll back to the old state.
             Self::open_to_change(path)?.close()?;
         }
-        Self::open_with(path, SqliteConnectOptions::new().read_only(true))
+        Self::open_with(path, SqliteConnectOptions::new().read_only(true), cache_kib)
     }
 
     /// Opens for changes as well.
@@ -59,16 +76,16 @@ impl Database {
             .journal_mode(SqliteJournalMode::Delete)
             .synchronous(SqliteSynchronous::Full)
             .foreign_keys(true);
-        Self::open_with(path, options)
+        Self::open_with(path, options, CACHE_KIB)
     }
 
-    fn open_with(path: &Path, options: SqliteConnectOptions) -> Result<Self, StoreError> {
+    fn open_with(path: &Path, options: SqliteConnectOptions, cache_kib: u32) -> Result<Self, StoreError> {
         check_header(path)?;
         let options = options
             .filename(path)
             .create_if_missing(false)
             .busy_timeout(Duration::from_secs(5))
-            .pragma("cache_size", "-65536")
+            .pragma("cache_size", format!("-{cache_kib}"))
             .pragma("temp_store", "MEMORY");
         let mut database = Self { session: Session::open(path, &options)? };
         database.check_schema()?;

@@ -174,15 +174,18 @@ impl Column {
         match self {
             Self::Integer(values, levels) => {
                 writer.typed::<Int64Type>().write_batch(values, Some(levels), None)?;
-                (values.clear(), levels.clear());
+                values.clear();
+                levels.clear();
             }
             Self::Real(values, levels) => {
                 writer.typed::<DoubleType>().write_batch(values, Some(levels), None)?;
-                (values.clear(), levels.clear());
+                values.clear();
+                levels.clear();
             }
             Self::Text(values, levels) => {
                 writer.typed::<ByteArrayType>().write_batch(values, Some(levels), None)?;
-                (values.clear(), levels.clear());
+                values.clear();
+                levels.clear();
             }
             Self::Flag(values) => {
                 writer.typed::<BoolType>().write_batch(values, None, None)?;

@@ -192,7 +192,7 @@ fn along_curve(around: Bounds, bounds: Bounds) -> u32 {
     for bit in (0..16).rev() {
         let (right, up) = (x >> bit & 1, y >> bit & 1);
         // The quarters come in the order (0, 0), (0, 1), (1, 1), (1, 0), the first and last turned.
-        along = along << 2 | (3 * right ^ up);
+        along = along << 2 | ((3 * right) ^ up);
         if up == 0 {
             if right == 1 {
                 (x, y) = (!x, !y);

@@ -87,8 +87,12 @@ impl Parts {
             let mut index = Index::build(&mut self.located, self.count, bounds, place)?;
             index.write(&mut sink)?;
             let mut bytes = Vec::new();
-            for found in index.in_order()? {
+            source.reporter.begin("features", self.count);
+            for (done, found) in (0_u64..).zip(index.in_order()?) {
                 let found = found?;
+                if done.is_multiple_of(4096) {
+                    source.reporter.advance(done);
+                }
                 bytes.resize(found.bytes as usize, 0);
                 self.features.read_at(found.place, &mut bytes)?;
                 sink.write_all(&bytes)?;

@@ -1,0 +1,84 @@
+"""Whether edges.parquet, turns.parquet and the FlatGeobuf and GeoJSON files of an export say what its CSV files say.
+
+    check_tables.py PARQUET_FOLDER CSV_FOLDER
+
+Reads the Parquet files by DuckDB and by pyarrow, each by its own code. Prints one line a layer; stops at the first difference.
+"""
+
+import csv
+import json
+import struct
+import sys
+
+import duckdb
+import pyarrow.parquet as parquet
+
+# https://geoparquet.org/releases/v1.1.0/schema.json, what concerns these files.
+GEO_REQUIRED = {"version", "primary_column", "columns"}
+
+
+def check(condition, *what):
+    if not condition:
+        sys.exit("refused: " + " ".join(map(str, what)))
+
+
+def as_csv(value):
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return value
+
+
+def same(cell, text):
+    if isinstance(cell, float):
+        return text != "" and float(text) == cell
+    return str(as_csv(cell)) == text
+
+
+def line_of(wkb):
+    order, kind, count = struct.unpack_from("<BII", wkb)
+    check(order == 1 and kind == 2 and len(wkb) == 9 + 16 * count and count > 1, "no line string:", wkb[:9])
+    flat = struct.unpack_from(f"<{2 * count}d", wkb, 9)
+    return list(zip(flat[::2], flat[1::2]))
+
+
+def metadata(path):
+    file = parquet.ParquetFile(path)
+    pairs = file.metadata.metadata
+    geo, header = json.loads(pairs[b"geo"]), json.loads(pairs[b"netcert"])
+    check(GEO_REQUIRED <= geo.keys() and geo["version"] == "1.1.0", "geo:", geo)
+    column = geo["columns"][geo["primary_column"]]
+    check(column["encoding"] == "WKB" and column["geometry_types"] == ["LineString"], "geo:", column)
+    covering = column["covering"]["bbox"]
+    check(covering == {side: ["bbox", side] for side in ("xmin", "ymin", "xmax", "ymax")}, "covering:", covering)
+    check(len(header["database"]["blake3"]) == 64 and "no legal permit" in header["scope"], header)
+    return file, column["bbox"]
+
+
+def layer(name, tables, plain):
+    path = f"{tables}/{name}.parquet"
+    file, around = metadata(path)
+    duck = duckdb.connect().execute(f"select * exclude (geometry, bbox) from read_parquet('{path}')")
+    columns = [column[0] for column in duck.description]
+    with open(f"{plain}/{name}.csv", newline="", encoding="utf-8") as text:
+        rows = csv.reader(text)
+        check(next(rows) == columns, "columns:", columns)
+        count = 0
+        for cells, texts in zip(iter(duck.fetchone, None), rows, strict=True):
+            for cell, text, column in zip(cells, texts, columns, strict=True):
+                check(same(cell, text), f"{name} row {count} {column}: {cell!r}, csv {text!r}")
+            count += 1
+    wide = [180.0, 90.0, -180.0, -90.0]
+    arrow = file.read(["geometry", "bbox"]).to_pylist()
+    for row in arrow:
+        lons, lats = zip(*line_of(row["geometry"]))
+        sides = [min(lons), min(lats), max(lons), max(lats)]
+        check(list(row["bbox"].values()) == sides, "bbox:", row["bbox"], sides)
+        wide = [min(wide[0], sides[0]), min(wide[1], sides[1]), max(wide[2], sides[2]), max(wide[3], sides[3])]
+    check(len(arrow) == count == file.metadata.num_rows and wide == around, "bbox of all:", around, wide)
+    print(f"{name}: {count} rows, {len(columns)} columns, {file.metadata.num_row_groups} groups of rows")
+
+
+for each in ("edges", "turns"):
+    layer(each, sys.argv[1], sys.argv[2])
