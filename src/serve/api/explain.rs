@@ -1,4 +1,5 @@
-//! Why an edge or a turn is safe or not: certified again on the spot, every hint by a certificate of its own; and drawn.
+//! Why an edge or a turn is safe or not: certified again on the spot, every hint by a certificate of its own; and
+//! drawn.
 
 use std::sync::Arc;
 
@@ -78,8 +79,8 @@ fn of_edge(
     let row = region.read(|database| database.query(&options)?.next().transpose())?;
     if let Some(detail) = row.and_then(|row| explanation.disagreement(&row)) {
         return Err(Problem::stale(format!(
-            "the certificate in the database is not what this program computes: {detail}; run `netcert certify --vehicle {} \
-             --corridor {}`",
+            "the certificate in the database is not what this program computes: {detail}; run `netcert certify \
+             --vehicle {} --corridor {}`",
             model.vehicle.id,
             settings.policy.name()
         )));
@@ -106,13 +107,14 @@ fn of_turn(roads: &Roads, id: i64, model: &Model, settings: &Settings) -> Result
     let node = node.and_then(|edge| roads.network.positions(edge).next_back());
     members["at"] = json!(node.map(LonLat::degrees));
     members["note"] = json!(
-        "The turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii are assumed."
+        "The turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii are \
+         assumed."
     );
     Ok(Explained { members, picture: picture::turn(&turn) })
 }
 
-/// Longitude and latitude on the map's line as far along as the limiting place, by its share of the length: the corridor is
-/// another line, some decimetres beside.
+/// Longitude and latitude on the map's line as far along as the limiting place, by its share of the length: the
+/// corridor is another line, some decimetres beside.
 fn limiting_place(network: &Network, edge: u32, explanation: &Explanation) -> Option<[f64; 2]> {
     let geometry = explanation.geometry.as_ref()?;
     let share = geometry.along_m(geometry.place.station) / geometry.length_m().max(1e-9);
