@@ -108,6 +108,13 @@ fn main() {
     client.get(&target(10, whole[0]));
     println!("start: ready after {ready:.0?}, first tile (zoom 10) after {:.0?}\n", begin.elapsed());
 
+    table(&mut client, child.id(), &lines, &target);
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
+/// A row a zoom.
+fn table(client: &mut Client, process: u32, lines: &[Vec<(f64, f64)>], target: &dyn Fn(u32, (u32, u32)) -> String) {
     println!(
         "| zoom | tiles | first asked, ms (p50 / p99 / most) | of it CPU, mean | asked again, ms | kB, median / most |"
     );
