@@ -80,11 +80,14 @@ export class Strip {
   #columns(context: CanvasRenderingContext2D, x: (s: number) => number, wide: number, tall: number): void {
     const middle = tall / 2;
     const { leeway, length_m } = this.route;
+    const ratio = devicePixelRatio || 1;
     const size = (value: number): number => Math.min(Math.max(value, 0.02) / FULL_M, 1) * (middle - 1);
     leeway.s_m.forEach((s, index) => {
-      const [a, b] = [x(s), x(leeway.s_m[index + 1] ?? length_m)];
+      // On whole pixels, or seams show between neighbours.
+      const a = Math.floor(x(s) * ratio) / ratio;
+      const b = Math.ceil(x(leeway.s_m[index + 1] ?? length_m) * ratio) / ratio;
       if (b < 0 || a > wide) return;
-      const breadth = Math.max(b - a, 0.5) + 0.5;
+      const breadth = b - a;
       const [left, right] = [leeway.left_m[index] ?? OPEN_M, leeway.right_m[index] ?? OPEN_M];
       context.fillStyle = marginColour(this.palette, left);
       context.fillRect(a, middle - size(left), breadth, size(left));

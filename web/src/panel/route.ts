@@ -39,7 +39,7 @@ export class RoutePanel {
   }
 
   #tools(both: boolean): HTMLElement {
-    const swap = h("button", { class: "small", type: "button", onclick: () => this.actions.swap() }, icon("swap"), "There and back");
+    const swap = h("button", { class: "small", type: "button", onclick: () => this.actions.swap() }, icon("swap"), "Reverse");
     const clear = h("button", { class: "small", type: "button", onclick: () => this.actions.clear() }, "New route");
     return h("div", { class: "tools" }, both ? swap : null, clear);
   }
