@@ -133,18 +133,18 @@ export function idle(page) {
   });
 }
 
-/** A pixel on an edge with this verdict, away from the panels; `null` if there is none in sight. */
-export function edgePixel(page, verdict) {
-  return page.evaluate((wanted) => {
+/** A pixel on an edge with this verdict and at least so much margin, away from the panels; `null` if there is none in sight. */
+export function edgePixel(page, verdict, least_m = -1e9) {
+  return page.evaluate(([wanted, least]) => {
     const { map } = globalThis.netcert;
     const layer = `edge-${wanted}`;
     const canvas = map.getCanvas().getBoundingClientRect();
     for (let y = canvas.height * 0.2; y < canvas.height * 0.8; y += 3) {
       for (let x = canvas.width * 0.35; x < canvas.width * 0.65; x += 3) {
         const found = map.queryRenderedFeatures([x, y], { layers: [layer] });
-        if (found.length > 0) return { x: canvas.left + x, y: canvas.top + y, id: String(found[0].properties.edge_id) };
+        if (found.length > 0 && (found[0].properties.rsc_m ?? least) >= least) return { x: canvas.left + x, y: canvas.top + y, id: String(found[0].properties.edge_id) };
       }
     }
     return null;
-  }, verdict);
+  }, [verdict, least_m]);
 }
