@@ -7,8 +7,9 @@ import { h } from "../ui/dom.ts";
 import { careful, distance } from "../words.ts";
 import { OPEN_M, leewayAt } from "./samples.ts";
 
-/** Metres of leeway that fill half of the band: more is cut off. */
-const FULL_M = 1.5;
+/** Metres of leeway that fill half of the band, at least and at most: more is cut off. */
+const LEAST_FULL_M = 0.3;
+const MOST_FULL_M = 1.5;
 /** Metres of road behind and ahead of the vehicle. */
 const WINDOW_M = 160;
 
@@ -18,6 +19,8 @@ export class Strip {
   readonly #whole = h("canvas", { class: "strip-whole", "aria-hidden": "true" });
   readonly #slider: HTMLInputElement;
   readonly #numbers = h("div", { class: "strip-numbers", "aria-hidden": "true" });
+  /** Metres that fill half of the band: what nine tenths of the route stay below. */
+  readonly #full: number;
   #s = 0;
 
   constructor(
@@ -35,8 +38,11 @@ export class Strip {
       "aria-label": "Place along the route, metres",
       oninput: () => seek(Number(this.#slider.value)),
     });
+    const all = [...route.leeway.left_m, ...route.leeway.right_m].map((leeway) => leeway ?? OPEN_M).sort((a, b) => a - b);
+    this.#full = Math.min(Math.max(all[Math.floor(0.9 * all.length)] ?? 0, LEAST_FULL_M), MOST_FULL_M);
     const whole = h("div", { class: "strip-track" }, this.#whole, this.#slider);
-    const near = h("div", { class: "strip-window" }, this.#near, this.#numbers);
+    const scale = h("span", { class: "strip-scale", "aria-hidden": "true" }, `full height ${this.#full.toFixed(1)} m`);
+    const near = h("div", { class: "strip-window" }, this.#near, this.#numbers, scale);
     this.element = h("div", { class: "strip" }, near, whole);
     new ResizeObserver(() => this.#redraw()).observe(this.element);
   }
@@ -81,7 +87,7 @@ export class Strip {
     const middle = tall / 2;
     const { leeway, length_m } = this.route;
     const ratio = devicePixelRatio || 1;
-    const size = (value: number): number => Math.min(Math.max(value, 0.02) / FULL_M, 1) * (middle - 1);
+    const size = (value: number): number => Math.min(Math.max(value, 0.02) / this.#full, 1) * (middle - 1);
     leeway.s_m.forEach((s, index) => {
       // On whole pixels, or seams show between neighbours.
       const a = Math.floor(x(s) * ratio) / ratio;
