@@ -9,28 +9,31 @@ fn main() {
     println!("cargo:rerun-if-changed=migrations");
     println!("cargo:rerun-if-changed=web/dist");
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default()).join("web/dist");
-    let mut files = Vec::new();
-    collect(&root, "", &mut files);
-    files.sort();
+    let mut addresses = Vec::new();
+    collect(&root, "", &mut addresses);
+    addresses.sort();
     let mut table = String::from("/// Addresses and contents.\nconst PAGE: &[(&str, &[u8])] = &[\n");
-    for (address, file) in &files {
-        let _ = writeln!(table, "    ({address:?}, include_bytes!({:?})),", file.display().to_string());
+    for address in &addresses {
+        let file = format!("/web/dist{address}");
+        let _ = writeln!(table, "    ({address:?}, include_bytes!(concat!(env!(\"CARGO_MANIFEST_DIR\"), {file:?}))),");
     }
     table.push_str("];\n");
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default()).join("page.rs");
+    // Anew, not over what is there: a copied target folder may share its files with the original.
+    let _ = fs::remove_file(&out);
     if let Err(error) = fs::write(&out, table) {
         println!("cargo:error={}: cannot write: {error}", out.display());
     }
 }
 
-fn collect(folder: &Path, address: &str, files: &mut Vec<(String, PathBuf)>) {
+fn collect(folder: &Path, address: &str, addresses: &mut Vec<String>) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     for entry in entries.flatten() {
         let address = format!("{address}/{}", entry.file_name().to_string_lossy());
         if entry.path().is_dir() {
-            collect(&entry.path(), &address, files);
+            collect(&entry.path(), &address, addresses);
         } else {
-            files.push((address, entry.path()));
+            addresses.push(address);
         }
     }
 }

@@ -3,7 +3,8 @@
 //!
 //!     cargo bench --bench serve -- REGION.gpkg [VEHICLE] [POLICY]
 //!
-//! One client on loopback, gzip, one connection; tiles are spread evenly over those that hold a vertex of a road.
+//! One client on loopback, gzip, one connection; tiles are spread evenly over those that hold a vertex of a road. On Linux also the
+//! server's processor time for a tile that was asked for first: on a busy machine the only figure that comes again.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout)]
 
@@ -59,6 +60,15 @@ fn tiles(lines: &[Vec<(f64, f64)>], z: u32) -> Vec<(u32, u32)> {
     all.into_iter().step_by(step).collect()
 }
 
+/// User and system time of a process, milliseconds; `None` where there is no such file. Ticks are hundredths of a second to every
+/// program (proc(5)).
+fn cpu_ms(process: u32) -> Option<f64> {
+    let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
+    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks = |field: usize| fields.get(field)?.parse::<f64>().ok();
+    Some((ticks(11)? + ticks(12)?) * 10.0)
+}
+
 fn figures(mut times: Vec<Duration>) -> String {
     times.sort();
     let at = |share: f64| times[((times.len() - 1) as f64 * share).round() as usize].as_secs_f64() * 1000.0;
@@ -97,18 +107,23 @@ fn main() {
     client.get(&target(10, whole[0]));
     println!("start: ready after {ready:.0?}, first tile (zoom 10) after {:.0?}\n", begin.elapsed());
 
-    println!("| zoom | tiles | first asked, ms (p50 / p99 / most) | asked again, ms | median kB | most kB |");
+    println!(
+        "| zoom | tiles | first asked, ms (p50 / p99 / most) | of it CPU, mean | asked again, ms | kB, median / most |"
+    );
     println!("| --- | --- | --- | --- | --- | --- |");
     for z in 6..=16 {
         let all = tiles(&lines, z);
+        let before = cpu_ms(child.id());
         let cold: Vec<(usize, Duration)> = all.iter().map(|&tile| client.get(&target(z, tile))).collect();
+        let cpu = cpu_ms(child.id()).zip(before).map(|(after, before)| (after - before) / all.len() as f64);
+        let cpu = cpu.map_or("–".to_owned(), |ms| format!("{ms:.1}"));
         let warm: Vec<Duration> = all.iter().map(|&tile| client.get(&target(z, tile)).1).collect();
         let mut bytes: Vec<usize> = cold.iter().map(|answer| answer.0).collect();
         bytes.sort_unstable();
         let kb = |bytes: usize| bytes as f64 / 1000.0;
         let cold = figures(cold.into_iter().map(|answer| answer.1).collect());
         let (median, most) = (kb(bytes[bytes.len() / 2]), kb(bytes[bytes.len() - 1]));
-        println!("| {z} | {} | {cold} | {} | {median:.1} | {most:.1} |", all.len(), figures(warm));
+        println!("| {z} | {} | {cold} | {cpu} | {} | {median:.1} / {most:.1} |", all.len(), figures(warm));
     }
     child.kill().unwrap();
     child.wait().unwrap();

@@ -1,6 +1,6 @@
 //! What all requests share: the region as it is now, finished answers, and the lanes for work.
 
-use std::sync::{Arc, PoisonError, RwLock};
+use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
 use axum::response::{IntoResponse as _, Response};
 
@@ -16,6 +16,8 @@ use super::work::Lane;
 pub(super) struct App {
     pub(super) options: Options,
     region: RwLock<Arc<Region>>,
+    /// Held by whoever reads a changed file, so that one does and the others wait.
+    reading: Mutex<()>,
     cache: Cache,
     quick: Lane,
     slow: Lane,
@@ -36,6 +38,7 @@ impl App {
         let (quick, slow) = (limits.quick, limits.slow);
         Self {
             region: RwLock::new(Arc::new(region)),
+            reading: Mutex::new(()),
             cache: Cache::new(limits.cache_bytes),
             quick: Lane::new(quick.at_a_time, quick.waiting, quick.time),
             slow: Lane::new(slow.at_a_time, slow.waiting, slow.time),
@@ -45,21 +48,27 @@ impl App {
 
     /// The region as the file is now.
     async fn region(self: &Arc<Self>) -> Result<Arc<Region>, Problem> {
-        let known = Arc::clone(&self.region.read().unwrap_or_else(PoisonError::into_inner));
-        if Identity::of(&self.options.db)? == known.identity {
+        if let Some(known) = self.unchanged()? {
             return Ok(known);
         }
         let app = Arc::clone(self);
-        self.quick
-            .run(move || {
-                let mut region = app.region.write().unwrap_or_else(PoisonError::into_inner);
-                if Identity::of(&app.options.db)? != region.identity {
-                    *region = Arc::new(Region::open(&app.options.db, app.options.recorded)?);
-                    app.options.log(&format!("{}: it has changed; read anew", app.options.db.display()));
-                }
-                Ok(Arc::clone(&region))
-            })
-            .await
+        let read = move || {
+            let _reading = app.reading.lock().unwrap_or_else(PoisonError::into_inner);
+            if let Some(read) = app.unchanged()? {
+                return Ok(read);
+            }
+            let region = Arc::new(Region::open(&app.options.db, app.options.recorded)?);
+            *app.region.write().unwrap_or_else(PoisonError::into_inner) = Arc::clone(&region);
+            app.options.log(&format!("{}: it has changed; read anew", app.options.db.display()));
+            Ok(region)
+        };
+        self.quick.run(read).await
+    }
+
+    /// The region that is known, if the file is still the same.
+    fn unchanged(&self) -> Result<Option<Arc<Region>>, Problem> {
+        let known = Arc::clone(&self.region.read().unwrap_or_else(PoisonError::into_inner));
+        Ok((Identity::of(&self.options.db)? == known.identity).then_some(known))
     }
 
     /// Loads what the first explanation, route and search would have to wait for.

@@ -212,6 +212,16 @@ impl Region {
     }
 }
 
+/// A database brings a small runtime of its own, which must not end on a thread that drives another one, as those of requests do.
+impl Drop for Region {
+    fn drop(&mut self) {
+        let idle = std::mem::take(&mut *self.idle.lock().unwrap_or_else(PoisonError::into_inner));
+        if !idle.is_empty() {
+            std::thread::spawn(move || drop(idle));
+        }
+    }
+}
+
 /// Of the runs and sets; not of the file's bytes, which would take a second a gigabyte at every start.
 fn content(runs: &[Run], sets: &[CertifiedSet]) -> String {
     let runs: Vec<_> = runs
