@@ -1,10 +1,11 @@
-//! Tiles over real HTTP: the time from the start of the program to the first tile, then each zoom's latency, first asked for
-//! and asked again.
+//! Tiles over real HTTP: the time from the start of the program to the first tile, then each zoom's latency, first
+//! asked for and asked again.
 //!
 //!     cargo bench --bench serve -- REGION.gpkg [VEHICLE] [POLICY]
 //!
-//! One client on loopback, gzip, one connection; tiles are spread evenly over those that hold a vertex of a road. On Linux also the
-//! server's processor time for a tile that was asked for first: on a busy machine the only figure that comes again.
+//! One client on loopback, gzip, one connection; tiles are spread evenly over those that hold a vertex of a road. On
+//! Linux also the server's processor time for a tile that was asked for first: on a busy machine the only figure that
+//! comes again.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout)]
 
@@ -60,8 +61,8 @@ fn tiles(lines: &[Vec<(f64, f64)>], z: u32) -> Vec<(u32, u32)> {
     all.into_iter().step_by(step).collect()
 }
 
-/// User and system time of a process, milliseconds; `None` where there is no such file. Ticks are hundredths of a second to every
-/// program (proc(5)).
+/// User and system time of a process, milliseconds; `None` where there is no such file. Ticks are hundredths of a
+/// second to every program (proc(5)).
 fn cpu_ms(process: u32) -> Option<f64> {
     let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
@@ -112,10 +113,10 @@ fn main() {
     );
     println!("| --- | --- | --- | --- | --- | --- |");
     for z in 6..=16 {
-        let all = tiles(&lines, z);
-        let before = cpu_ms(child.id());
+        let all = tiles(lines, z);
+        let before = cpu_ms(process);
         let cold: Vec<(usize, Duration)> = all.iter().map(|&tile| client.get(&target(z, tile))).collect();
-        let cpu = cpu_ms(child.id()).zip(before).map(|(after, before)| (after - before) / all.len() as f64);
+        let cpu = cpu_ms(process).zip(before).map(|(after, before)| (after - before) / all.len() as f64);
         let cpu = cpu.map_or("–".to_owned(), |ms| format!("{ms:.1}"));
         let warm: Vec<Duration> = all.iter().map(|&tile| client.get(&target(z, tile)).1).collect();
         let mut bytes: Vec<usize> = cold.iter().map(|answer| answer.0).collect();
@@ -125,6 +126,4 @@ fn main() {
         let (median, most) = (kb(bytes[bytes.len() / 2]), kb(bytes[bytes.len() - 1]));
         println!("| {z} | {} | {cold} | {cpu} | {} | {median:.1} / {most:.1} |", all.len(), figures(warm));
     }
-    child.kill().unwrap();
-    child.wait().unwrap();
 }

@@ -13,8 +13,8 @@ use super::output::{results, tell};
 
 /// Show the database on a map: a page in the browser, vector tiles and a JSON interface behind it.
 ///
-/// Prints its address when it is ready; Ctrl-C ends it. It only reads, and listens on this machine alone unless told otherwise;
-/// the page asks nobody else for anything.
+/// Prints its address when it is ready; Ctrl-C ends it. It only reads, and listens on this machine alone unless told
+/// otherwise; the page asks nobody else for anything.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -32,8 +32,8 @@ pub(crate) struct Serve {
     /// Listen where other machines can reach it: there is no log-in and no encryption.
     #[arg(long)]
     allow_remote: bool,
-    /// Tiles of an online map that the page may show beneath the roads, if the reader wants [default: none; nothing leaves
-    /// this machine].
+    /// Tiles of an online map that the page may show beneath the roads, if the reader wants [default: none; nothing
+    /// leaves this machine].
     #[arg(long, value_name = "URL", value_parser = BaseMap::parse)]
     base_map: Option<BaseMap>,
 }

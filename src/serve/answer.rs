@@ -1,7 +1,8 @@
 //! From a finished body to a response: entity tag, compression, conditional requests, how long it may be kept.
 //!
-//! Tags are hashes of the content, so they change when and only when it does. A client that names the database's `state` in
-//! its request may keep the answer for ever: another state is another address. Without it, it must ask again each time.
+//! Tags are hashes of the content, so they change when and only when it does. A client that names the database's
+//! `state` in its request may keep the answer for ever: another state is another address. Without it, it must ask again
+//! each time.
 
 use std::io::{Read as _, Write as _};
 

@@ -1,7 +1,7 @@
 //! A request as the endpoints see it: names from the path, parameters of the query, and what the client can take.
 //!
-//! Promises that every value has been decoded and that a name nobody knows is refused: a misspelt parameter must not pass for
-//! the default.
+//! Promises that every value has been decoded and that a name nobody knows is refused: a misspelt parameter must not
+//! pass for the default.
 
 use axum::extract::{FromRequestParts, RawPathParams};
 use axum::http::header::{self, HeaderMap};

@@ -1,6 +1,7 @@
 //! The page: files of `web/dist`, built into the program by `build.rs`.
 //!
-//! Only the addresses of its own table are answered, so there is no path to walk. Names with a hash in them may be kept for ever.
+//! Only the addresses of its own table are answered, so there is no path to walk. Names with a hash in them may be kept
+//! for ever.
 
 use std::sync::{Arc, OnceLock};
 

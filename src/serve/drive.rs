@@ -1,8 +1,8 @@
-//! A certified route to look at: its line, the leeway all along, and the drive: where every unit stands at what time, in which tube,
-//! between which edges of the corridor.
+//! A certified route to look at: its line, the leeway all along, and the drive: where every unit stands at what time,
+//! in which tube, between which edges of the corridor.
 //!
-//! Promises that nothing flatters: leeway is rounded down and the least of its stretch, tubes are rounded up; poses are the
-//! certificate's own nominal motion. Leaves out stations between which a straight line will do.
+//! Promises that nothing flatters: leeway is rounded down and the least of its stretch, tubes are rounded up; poses are
+//! the certificate's own nominal motion. Leaves out stations between which a straight line will do.
 
 use serde_json::{Value, json};
 
@@ -19,7 +19,8 @@ const MOST_STRETCHES: usize = 1500;
 const MOST_MOMENTS: usize = 6000;
 /// A moment at least so often, metres,
 const LONGEST_M: f64 = 15.0;
-/// and whenever a unit has turned by so much, radians: a body 14 m long turned by 2° about its axle is off by 4 mm between two.
+/// and whenever a unit has turned by so much, radians: a body 14 m long turned by 2° about its axle is off by 4 mm
+/// between two.
 const MOST_TURN_RAD: f64 = 0.035;
 /// Leeway beyond this means that no body point came by.
 const NOTHING_M: f64 = 1e6;
@@ -42,8 +43,8 @@ pub(super) fn members(model: &Model, route: &Route, drive: bool) -> Result<Value
     Ok(members)
 }
 
-/// Of each stretch the least, left and right; never less than the route's RSC, since the certificate's γ gives every station at
-/// least that.
+/// Of each stretch the least, left and right; never less than the route's RSC, since the certificate's γ gives every
+/// station at least that.
 fn leeway(route: &Route) -> Value {
     let (certificate, corridor) = (&route.certificate, &route.path.corridor);
     let rsc_m = certificate.result.rsc_m;

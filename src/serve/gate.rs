@@ -1,7 +1,8 @@
 //! What every request passes, and every response: methods, host, sizes; security headers.
 //!
-//! Promises: nothing but `GET` and `HEAD`; no request with a body; no request line beyond the bound; on loopback, no `Host` that
-//! is not this machine's own name (a page elsewhere whose name suddenly means 127.0.0.1 must not read: DNS rebinding).
+//! Promises: nothing but `GET` and `HEAD`; no request with a body; no request line beyond the bound; on loopback, no
+//! `Host` that is not this machine's own name (a page elsewhere whose name suddenly means 127.0.0.1 must not read: DNS
+//! rebinding).
 
 use std::sync::Arc;
 

@@ -1,8 +1,9 @@
 //! The certified network on a map: a web server over one database, read-only.
 //!
-//! Promises: every answer comes from the database as it is now; every piece of work is bounded in size, time and number; no
-//! request is answered that is not for this server; no address but its own table is ever looked up. `safe` is never said
-//! without its scope. Leaves out: log-in and encryption, which is why it stays on loopback unless told otherwise.
+//! Promises: every answer comes from the database as it is now; every piece of work is bounded in size, time and
+//! number; no request is answered that is not for this server; no address but its own table is ever looked up. `safe`
+//! is never said without its scope. Leaves out: log-in and encryption, which is why it stays on loopback unless told
+//! otherwise.
 //!
 //! | file | for |
 //! | --- | --- |

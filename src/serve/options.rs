@@ -15,7 +15,8 @@ pub struct Options {
     pub addr: SocketAddr,
     /// Listen on an address that other machines reach, and answer to any host name.
     pub allow_remote: bool,
-    /// Tiles of an online map that the page may show beneath, as `https://…/{z}/{x}/{y}.png`; `None`: no request leaves the machine.
+    /// Tiles of an online map that the page may show beneath, as `https://…/{z}/{x}/{y}.png`; `None`: no request leaves
+    /// the machine.
     pub base_map: Option<BaseMap>,
     /// How a database's certificates were made.
     pub recorded: Recorded,

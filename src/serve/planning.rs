@@ -1,7 +1,8 @@
-//! Routes: one thread for each vehicle, policy and measure that was asked for lately, with the planner and all it has made.
+//! Routes: one thread for each vehicle, policy and measure that was asked for lately, with the planner and all it has
+//! made.
 //!
-//! A planner borrows the network and keeps corridors it has made, so it stays where it is and questions come to it, one at a time.
-//! The thread ends when nobody can ask it any more.
+//! A planner borrows the network and keeps corridors it has made, so it stays where it is and questions come to it, one
+//! at a time. The thread ends when nobody can ask it any more.
 
 use std::sync::{Arc, mpsc};
 

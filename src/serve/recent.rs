@@ -1,4 +1,5 @@
-//! The last few results of long work of one kind, so that two questions about one thing (its words, its picture) cost one.
+//! The last few results of long work of one kind, so that two questions about one thing (its words, its picture) cost
+//! one.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -14,7 +15,8 @@ impl<T> Recent<T> {
         Self { most, kept: Mutex::default() }
     }
 
-    /// The one of this key, else it is made. Made outside the lock: two may make the same at a time, both the same thing.
+    /// The one of this key, else it is made. Made outside the lock: two may make the same at a time, both the same
+    /// thing.
     pub(super) fn get<E>(&self, key: &str, make: impl FnOnce() -> Result<T, E>) -> Result<Arc<T>, E> {
         let known =
             |kept: &VecDeque<(String, Arc<T>)>| kept.iter().find(|one| one.0 == key).map(|one| Arc::clone(&one.1));

@@ -1,7 +1,7 @@
 //! One state of the database file: what holds for all of it, and connections to read more.
 //!
-//! Promises that nothing of an older state is used once the file has changed, in place or by another file in its stead: the
-//! application asks for the file's [`Identity`] with every request and begins a new region when it differs.
+//! Promises that nothing of an older state is used once the file has changed, in place or by another file in its stead:
+//! the application asks for the file's [`Identity`] with every request and begins a new region when it differs.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -199,8 +199,8 @@ impl Region {
         let names: Vec<&str> = policies.iter().map(|(policy, _)| policy.name()).collect();
         let wanted = policy.name();
         Err(Problem::not_found(format!(
-            "{id} is not certified under the {wanted} policy, but under: {}; `netcert certify --vehicle {id} --corridor \
-             {wanted}` does that",
+            "{id} is not certified under the {wanted} policy, but under: {}; `netcert certify --vehicle {id} \
+             --corridor {wanted}` does that",
             names.join(", ")
         )))
     }
@@ -212,7 +212,8 @@ impl Region {
     }
 }
 
-/// A database brings a small runtime of its own, which must not end on a thread that drives another one, as those of requests do.
+/// A database brings a small runtime of its own, which must not end on a thread that drives another one, as those of
+/// requests do.
 impl Drop for Region {
     fn drop(&mut self) {
         let idle = std::mem::take(&mut *self.idle.lock().unwrap_or_else(PoisonError::into_inner));

@@ -1,7 +1,7 @@
 //! Listening: connections in, bounded in number, time and size of their heads; and stopping.
 //!
-//! Promises that stopping is clean: no connection is accepted any more, requests that are being answered get their answer as
-//! far as the bound on time allows, then the rest is cut.
+//! Promises that stopping is clean: no connection is accepted any more, requests that are being answered get their
+//! answer as far as the bound on time allows, then the rest is cut.
 
 use std::net::SocketAddr;
 use std::pin::pin;
@@ -38,7 +38,8 @@ pub enum ServeError {
     Store(#[from] StoreError),
     /// Other machines would reach it.
     #[error(
-        "{0}: other machines could reach this address; there is no log-in and no encryption: add --allow-remote if that is meant"
+        "{0}: other machines could reach this address; there is no log-in and no encryption: add --allow-remote if \
+         that is meant"
     )]
     Remote(SocketAddr),
     /// The port is taken, or not ours to take.

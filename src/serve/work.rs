@@ -1,7 +1,9 @@
-//! Work that blocks (the database, certificates, pictures), in lanes: so many at a time, so many more may wait, so long.
+//! Work that blocks (the database, certificates, pictures), in lanes: so many at a time, so many more may wait, so
+//! long.
 //!
-//! Promises that a lane never has more in hand than it was made for, also when those who asked have gone: a place is free
-//! again only when the work itself has ended. Slow work has a lane of its own, so that a map stays fluent beside it.
+//! Promises that a lane never has more in hand than it was made for, also when those who asked have gone: a place is
+//! free again only when the work itself has ended. Slow work has a lane of its own, so that a map stays fluent beside
+//! it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -1,7 +1,7 @@
 //! What a map shows: edges and turns within a box, with just the columns that are drawn, through the spatial index.
 //!
-//! Promises rows in order of the network, every one that touches the box (and some that only come near it: the index knows
-//! boxes in single precision). Leaves out what nobody draws: `query` has the whole row.
+//! Promises rows in order of the network, every one that touches the box (and some that only come near it: the index
+//! knows boxes in single precision). Leaves out what nobody draws: `query` has the whole row.
 
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Row as _};
@@ -103,15 +103,16 @@ impl Database {
         Ok(row.flatten())
     }
 
-    /// A box that leaves out the outermost fiftieth of the edges on each side: where a map may begin, since an extract often has some
-    /// roads that lead far out of it. `None` if there are no edges.
+    /// A box that leaves out the outermost fiftieth of the edges on each side: where a map may begin, since an extract
+    /// often has some roads that lead far out of it. `None` if there are no edges.
     ///
     /// # Errors
     /// The file cannot be read.
     pub fn focus(&mut self) -> Result<Option<Bounds>, StoreError> {
         let side = |column: &str, order: &str| {
             format!(
-                "(SELECT {column} FROM rtree_edge_geom ORDER BY {column} {order} LIMIT 1 OFFSET (SELECT count(*) / 50 FROM edge))"
+                "(SELECT {column} FROM rtree_edge_geom ORDER BY {column} {order} LIMIT 1 \
+                 OFFSET (SELECT count(*) / 50 FROM edge))"
             )
         };
         let all = [side("minx", ""), side("miny", ""), side("maxx", "DESC"), side("maxy", "DESC")];
@@ -141,10 +142,11 @@ impl Database {
     ) -> Result<Vec<MapEdge>, StoreError> {
         let (width, source) = columns(policy);
         let mut sql = format!(
-            "SELECT e.fid, e.edge_id, e.way_id, e.direction, e.oneway, e.highway, e.name, e.ref, e.length_m, e.{width}, \
-             e.{source}, c.verdict_no, c.rsc_mm, e.geom FROM rtree_edge_geom AS t \
+            "SELECT e.fid, e.edge_id, e.way_id, e.direction, e.oneway, e.highway, e.name, e.ref, e.length_m, \
+             e.{width}, e.{source}, c.verdict_no, c.rsc_mm, e.geom FROM rtree_edge_geom AS t \
              CROSS JOIN edge AS e ON e.fid = t.id \
-             CROSS JOIN certificate_compact AS c ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
+             CROSS JOIN certificate_compact AS c \
+             ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
              AND c.corridor_no = ? AND c.fid = t.id \
              WHERE t.maxx >= ? AND t.minx <= ? AND t.maxy >= ? AND t.miny <= ?"
         );
@@ -169,8 +171,8 @@ impl Database {
         self.session.run(async |c| turns(c, vehicle, policy, of).await)
     }
 
-    /// How much road has how much to spare, in bins of `width_mm`, for every vehicle under a policy. Edges without a number
-    /// are left out.
+    /// How much road has how much to spare, in bins of `width_mm`, for every vehicle under a policy. Edges without a
+    /// number are left out.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -254,7 +256,8 @@ async fn turns(c: &mut SqliteConnection, vehicle: &str, policy: Policy, of: Turn
         "SELECT t.fid, t.turn_id, a.edge_id, b.edge_id, coalesce(a.name, a.ref), coalesce(b.name, b.ref), t.kind, \
          t.angle_deg, t.kerb_radius_m, t.restriction, c.verdict_no, c.rsc_mm, t.geom FROM turn AS t \
          CROSS JOIN turn_certificate_compact AS c \
-         ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? AND c.fid = t.fid \
+         ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
+         AND c.corridor_no = ? AND c.fid = t.fid \
          CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid WHERE {which}"
     );
     let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle).bind(corridor_no(policy));

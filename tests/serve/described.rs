@@ -1,7 +1,7 @@
 //! The OpenAPI document: every answer has the form that it describes, and nothing that it does not.
 
 use netcert::store::verdict_words;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use crate::http::Server;
 
@@ -49,29 +49,36 @@ fn faults(document: &Value, schema: &Value, value: &Value, at: &str, found: &mut
     if schema["pattern"] == "^[0-9]+$" && !value.as_str().unwrap_or("1").bytes().all(|b| b.is_ascii_digit()) {
         found.push(format!("{at}: {value} is no id"));
     }
-    if let Value::Object(members) = value {
-        let known = schema["properties"].as_object();
-        for (name, member) in members {
-            match known.and_then(|known| known.get(name)) {
-                Some(schema) => faults(document, schema, member, &format!("{at}.{name}"), found),
-                None if known.is_some() => found.push(format!("{at}.{name} is not described")),
-                None => {}
-            }
-        }
-        for name in schema["required"].as_array().into_iter().flatten() {
-            if !members.contains_key(name.as_str().unwrap()) {
-                found.push(format!("{at}.{name} is missing"));
-            }
+    match value {
+        Value::Object(members) => member_faults(document, schema, members, at, found),
+        Value::Array(items) => item_faults(document, schema, items, at, found),
+        _ => {}
+    }
+}
+
+fn member_faults(document: &Value, schema: &Value, members: &Map<String, Value>, at: &str, found: &mut Vec<String>) {
+    let known = schema["properties"].as_object();
+    for (name, member) in members {
+        match known.and_then(|known| known.get(name)) {
+            Some(schema) => faults(document, schema, member, &format!("{at}.{name}"), found),
+            None if known.is_some() => found.push(format!("{at}.{name} is not described")),
+            None => {}
         }
     }
-    if let Value::Array(all) = value {
-        let bound = |name: &str| schema[name].as_u64().map(|n| n as usize);
-        if bound("minItems").is_some_and(|n| all.len() < n) || bound("maxItems").is_some_and(|n| all.len() > n) {
-            found.push(format!("{at}: {} items", all.len()));
+    for name in schema["required"].as_array().into_iter().flatten() {
+        if !members.contains_key(name.as_str().unwrap()) {
+            found.push(format!("{at}.{name} is missing"));
         }
-        for (i, item) in all.iter().enumerate() {
-            faults(document, &schema["items"], item, &format!("{at}[{i}]"), found);
-        }
+    }
+}
+
+fn item_faults(document: &Value, schema: &Value, items: &[Value], at: &str, found: &mut Vec<String>) {
+    let bound = |name: &str| schema[name].as_u64().map(|n| n as usize);
+    if bound("minItems").is_some_and(|n| items.len() < n) || bound("maxItems").is_some_and(|n| items.len() > n) {
+        found.push(format!("{at}: {} items", items.len()));
+    }
+    for (i, item) in items.iter().enumerate() {
+        faults(document, &schema["items"], item, &format!("{at}[{i}]"), found);
     }
 }
 

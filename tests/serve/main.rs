@@ -1,6 +1,7 @@
 //! `netcert serve` over real HTTP on loopback: the built program, plain sockets, the demo region.
 //!
-//! What it answers is what the other verbs say; what it should refuse it refuses; what it promises of load and stopping it keeps.
+//! What it answers is what the other verbs say; what it should refuse it refuses; what it promises of load and stopping
+//! it keeps.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 

@@ -1,4 +1,5 @@
-//! What must not get through: other methods, bodies, other hosts, paths that climb, statements smuggled in, things too large.
+//! What must not get through: other methods, bodies, other hosts, paths that climb, statements smuggled in, things too
+//! large.
 
 use std::io::Write as _;
 

@@ -89,8 +89,8 @@ fn leeway_does_not_flatter(route: &Value) {
     assert!(leeway["rsc_m"].as_f64().unwrap() <= rsc_m);
 }
 
-/// Every unit's front coupling is where the unit ahead has its rear one, at every moment; nobody jumps; the first axle is
-/// within the corridor.
+/// Every unit's front coupling is where the unit ahead has its rear one, at every moment; nobody jumps; the first axle
+/// is within the corridor.
 fn units_follow_each_other(server: &Server, route: &Value) {
     let drive = &route["drive"];
     let t = numbers(&drive["t"]);

@@ -8,7 +8,7 @@ import { mkdir, writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { edgePixel, idle, launch, open, root, serve } from "../test/support.mjs";
 
-const size = { width: 1440, height: 900 };
+const size = { width: 1280, height: 800 };
 const wait = (page, ms) => page.waitForTimeout(ms);
 
 const scenes = {
@@ -26,7 +26,7 @@ const scenes = {
   victoria: {
     db: "victoria",
     hash: "#v=AU-ATRIPLE53&at=11,-37.69,145.44&route=145.46054,-37.68349;145.41485,-37.70221",
-    play: (page) => drive(page, 0.365),
+    play: (page) => drive(page, 0.52),
   },
   numbers: { db: "columbus", hash: "#v=US-WB67&stats=1", play: (page) => page.waitForSelector(".stats table") },
   drive: {
@@ -60,7 +60,7 @@ async function webp(page, png) {
     const canvas = document.createElement("canvas");
     [canvas.width, canvas.height] = [image.width, image.height];
     canvas.getContext("2d").drawImage(image, 0, 0);
-    return canvas.toDataURL("image/webp", 0.82).split(",")[1];
+    return canvas.toDataURL("image/webp", 0.72).split(",")[1];
   }, png.toString("base64"));
   return Buffer.from(text, "base64");
 }

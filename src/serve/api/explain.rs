@@ -1,4 +1,5 @@
-//! Why an edge or a turn is safe or not: certified again on the spot, every hint by a certificate of its own; and drawn.
+//! Why an edge or a turn is safe or not: certified again on the spot, every hint by a certificate of its own; and
+//! drawn.
 
 use std::sync::Arc;
 
@@ -78,8 +79,8 @@ fn of_edge(
     let row = region.read(|database| database.query(&options)?.next().transpose())?;
     if let Some(detail) = row.and_then(|row| explanation.disagreement(&row)) {
         return Err(Problem::stale(format!(
-            "the certificate in the database is not what this program computes: {detail}; run `netcert certify --vehicle {} \
-             --corridor {}`",
+            "the certificate in the database is not what this program computes: {detail}; run `netcert certify \
+             --vehicle {} --corridor {}`",
             model.vehicle.id,
             settings.policy.name()
         )));
@@ -111,7 +112,8 @@ fn of_turn(region: &Region, roads: &Roads, id: i64, model: &Model, settings: &Se
     let turns = region.read(|database| database.map_turns(set, TurnsOf::Edge(facts.movement.from)))?;
     members["geometry"] = geometry(turns.iter().find(|row| row.turn_id == id).map(|row| row.line.as_slice()));
     members["note"] = json!(
-        "The turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii are assumed."
+        "The turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii are \
+         assumed."
     );
     Ok(Explained { members, picture: picture::turn(&turn) })
 }
@@ -123,8 +125,8 @@ fn geometry(line: Option<&[LonLat]>) -> Value {
     json!({"type": "LineString", "coordinates": line})
 }
 
-/// Longitude and latitude on the map's line as far along as the limiting place, by its share of the length: the corridor is
-/// another line, some decimetres beside.
+/// Longitude and latitude on the map's line as far along as the limiting place, by its share of the length: the
+/// corridor is another line, some decimetres beside.
 fn limiting_place(network: &Network, edge: u32, explanation: &Explanation) -> Option<[f64; 2]> {
     let geometry = explanation.geometry.as_ref()?;
     let share = geometry.along_m(geometry.place.station) / geometry.length_m().max(1e-9);

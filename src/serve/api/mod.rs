@@ -1,5 +1,5 @@
-//! The JSON interface, one file an endpoint. Metres, degrees, seconds, as the names say; ids of edges, turns and ways as text, since
-//! JavaScript's numbers hold 53 bits only.
+//! The JSON interface, one file an endpoint. Metres, degrees, seconds, as the names say; ids of edges, turns and ways
+//! as text, since JavaScript's numbers hold 53 bits only.
 
 pub(super) mod edges;
 pub(super) mod explain;
@@ -47,5 +47,6 @@ fn id(text: &str) -> Result<i64, Problem> {
 }
 
 /// What `safe` means; never said without it.
-const SCOPE: &str = "`safe` holds within the model: the vehicle as defined, steered within its tracking tolerance of the planned \
-                     path, on a road as wide as its width_source says; it is no permit and says nothing of bridges or traffic.";
+const SCOPE: &str = "`safe` holds within the model: the vehicle as defined, steered within its tracking tolerance of \
+                     the planned path, on a road as wide as its width_source says; it is no permit and says nothing of \
+                     bridges or traffic.";

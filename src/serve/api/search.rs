@@ -1,7 +1,7 @@
 //! Where something is: an edge or way by its id, a road by its name or ref.
 //!
-//! Ways of one name that lie near each other are one road: the `Hauptstraße` of each village is an answer of its own. The best
-//! matches come first, then the roads of most ways; the order depends on nothing else.
+//! Ways of one name that lie near each other are one road: the `Hauptstraße` of each village is an answer of its own.
+//! The best matches come first, then the roads of most ways; the order depends on nothing else.
 
 use serde_json::{Value, json};
 

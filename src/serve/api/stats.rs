@@ -8,7 +8,7 @@ use super::super::problem::Problem;
 use super::super::region::Region;
 use super::{SCOPE, answered};
 use crate::osm::facts::{Policy, WidthSource};
-use crate::store::{Named, RscBin, Stats, verdict_words};
+use crate::store::{Named, RscBin, Stats, StatsRow, TurnCount, verdict_words};
 
 /// Width of the histogram's bins, millimetres.
 const BIN_MM: u32 = 100;
@@ -36,48 +36,40 @@ fn members(stats: &Stats, bins: &[RscBin], policy: Policy) -> Value {
             json!({"width_source": source.map(WidthSource::name), "edges": edges, "km": km(*length_m)})
         })
         .collect();
-    let certificates: Vec<Value> = stats
-        .certificates
-        .iter()
-        .filter(|row| row.policy == policy)
-        .map(|row| {
-            let (verdict, reason) = verdict_words(row.verdict);
-            json!({
-                "vehicle": row.vehicle_id, "highway": row.highway, "verdict": verdict,
-                "reason": (!reason.is_empty()).then_some(reason), "edges": row.edges, "km": km(row.length_m),
-            })
-        })
-        .collect();
-    let turns: Vec<Value> = stats
-        .turns
-        .iter()
-        .filter(|row| row.policy == policy)
-        .map(|row| {
-            let (verdict, reason) = verdict_words(row.verdict);
-            let reason = (!reason.is_empty()).then_some(reason);
-            json!({"vehicle": row.vehicle_id, "verdict": verdict, "reason": reason, "turns": row.turns})
-        })
-        .collect();
-    let histogram: Vec<Value> = bins
-        .iter()
-        .map(|bin| {
-            json!({
-                "vehicle": bin.vehicle_id, "rsc_from_m": bin.from_mm as f64 / 1000.0,
-                "verdict": verdict_words(bin.verdict).0, "edges": bin.edges, "km": km(bin.length_m),
-            })
-        })
-        .collect();
+    let certificates = stats.certificates.iter().filter(|row| row.policy == policy);
+    let turns = stats.turns.iter().filter(|row| row.policy == policy);
     json!({
         "policy": policy.name(),
         "roads": stats.roads,
         "network": network,
         "widths": widths,
-        "certificates": certificates,
-        "turns": turns,
+        "certificates": certificates.map(certificate).collect::<Vec<_>>(),
+        "turns": turns.map(turn).collect::<Vec<_>>(),
         "rsc_bin_m": f64::from(BIN_MM) / 1000.0,
-        "rsc_histogram": histogram,
+        "rsc_histogram": bins.iter().map(bin).collect::<Vec<_>>(),
         "note": "A length is counted once for each direction.",
         "scope": SCOPE,
+    })
+}
+
+fn certificate(row: &StatsRow) -> Value {
+    let (verdict, reason) = verdict_words(row.verdict);
+    json!({
+        "vehicle": row.vehicle_id, "highway": row.highway, "verdict": verdict,
+        "reason": (!reason.is_empty()).then_some(reason), "edges": row.edges, "km": km(row.length_m),
+    })
+}
+
+fn turn(row: &TurnCount) -> Value {
+    let (verdict, reason) = verdict_words(row.verdict);
+    let reason = (!reason.is_empty()).then_some(reason);
+    json!({"vehicle": row.vehicle_id, "verdict": verdict, "reason": reason, "turns": row.turns})
+}
+
+fn bin(bin: &RscBin) -> Value {
+    json!({
+        "vehicle": bin.vehicle_id, "rsc_from_m": bin.from_mm as f64 / 1000.0,
+        "verdict": verdict_words(bin.verdict).0, "edges": bin.edges, "km": km(bin.length_m),
     })
 }
 

@@ -5,7 +5,8 @@ use crate::osm::facts::RoadClass;
 /// Turns are drawn from this zoom on: before it they lie on top of each other.
 pub(super) const FIRST_WITH_TURNS: u8 = 15;
 
-/// The classes at a zoom, each with its links. As on general maps: a class appears when its roads are some pixels apart.
+/// The classes at a zoom, each with its links. As on general maps: a class appears when its roads are some pixels
+/// apart.
 pub(super) fn classes(z: u8) -> &'static [RoadClass] {
     use RoadClass::{
         Busway, LivingStreet, Motorway, Primary, Residential, Secondary, Service, Tertiary, Track, Trunk, Unclassified,

@@ -1,5 +1,5 @@
-//! Layers and features as protobuf, by hand: <https://github.com/mapbox/vector-tile-spec/tree/master/2.1>, whose field numbers
-//! stand here beside what is written.
+//! Layers and features as protobuf, by hand: <https://github.com/mapbox/vector-tile-spec/tree/master/2.1>, whose field
+//! numbers stand here beside what is written.
 //!
 //! Promises the same bytes for the same features in the same order. Keys and values are written once a layer.
 

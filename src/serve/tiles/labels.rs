@@ -1,4 +1,5 @@
-//! Names along roads: edges of one name, joined into lines on which a name has room. Between two junctions there is seldom any.
+//! Names along roads: edges of one name, joined into lines on which a name has room. Between two junctions there is
+//! seldom any.
 //!
 //! Promises lines without direction, each road once, in an order that depends on the rows alone. Leaves out what no label
 //! would follow: sharp bends and branches end a line.

@@ -1,7 +1,8 @@
 //! Vector tiles (Mapbox Vector Tile 2.1) of a vehicle's certificates, made from the database on request.
 //!
-//! Promises that every edge of the zoom's classes is in every tile that its line crosses, with the numbers as the database
-//! keeps them; that the same state gives the same bytes. Leaves out what would be smaller than a sixteenth of a pixel.
+//! Promises that every edge of the zoom's classes is in every tile that its line crosses, with the numbers as the
+//! database keeps them; that the same state gives the same bytes. Leaves out what would be smaller than a sixteenth of
+//! a pixel.
 //!
 //! | file | for |
 //! | --- | --- |

@@ -1,12 +1,12 @@
-//! A line in tile units, made fit to be drawn: clipped to the tile and its buffer, without vertices that nobody would see,
-//! rounded to whole units.
+//! A line in tile units, made fit to be drawn: clipped to the tile and its buffer, without vertices that nobody would
+//! see, rounded to whole units.
 
 use super::place::{BUFFER, EXTENT};
 
 type Point = [f64; 2];
 
-/// How far the drawn line may be from the true one, units: a quarter of a pixel, where a tile is 512 pixels wide. At the deepest
-/// zoom, which is enlarged, half a unit, which is what rounding takes anyway.
+/// How far the drawn line may be from the true one, units: a quarter of a pixel, where a tile is 512 pixels wide. At
+/// the deepest zoom, which is enlarged, half a unit, which is what rounding takes anyway.
 const TOLERANCE: f64 = 2.0;
 const FINE_TOLERANCE: f64 = 0.5;
 

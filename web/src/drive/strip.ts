@@ -120,6 +120,8 @@ export class Strip {
       context.beginPath();
       context.roundRect(rear, tall / 2 - 4, head - rear, 8, 3);
       context.fill();
+      context.strokeStyle = this.palette.paper;
+      context.stroke();
     } else {
       context.fillStyle = this.palette.ink;
       context.fillRect(head - 1, 0, 2, tall);
