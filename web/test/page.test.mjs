@@ -159,7 +159,7 @@ inPage("two clicks give a certified route, and the drive runs in step with the s
   await page.waitForSelector(".dock");
   const place = () => page.evaluate(() => Number(document.querySelector(".strip input").value));
   const from = await place();
-  await page.waitForFunction((start) => Number(document.querySelector(".strip input").value) > start + 5, from, { timeout: 30_000 });
+  await page.waitForFunction((start) => Number(document.querySelector(".strip input").value) > start + 1, from, { timeout: 90_000 });
   assert.ok(await page.evaluate(() => Boolean(globalThis.netcert.map.getLayer("own-drive"))));
   // Another theme in between leaves the drive where it is.
   await page.keyboard.press("d");
