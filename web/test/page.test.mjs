@@ -128,9 +128,9 @@ inPage("a spoilt link shows the page as it is at first", "#v=nobody&policy=x&at=
 async function routed(page) {
   return page.evaluate(() => {
     const edges = globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-safe"] });
-    const longest = edges.sort((a, b) => b.properties.length_m - a.properties.length_m)[0];
-    const { geometry } = longest;
-    const line = geometry.type === "LineString" ? geometry.coordinates : geometry.coordinates[0];
+    const lines = edges.flatMap(({ geometry }) => (geometry.type === "LineString" ? [geometry.coordinates] : geometry.coordinates));
+    const span = (line) => Math.hypot(line.at(-1)[0] - line[0][0], line.at(-1)[1] - line[0][1]);
+    const line = lines.sort((a, b) => span(b) - span(a))[0];
     const along = (share) => {
       const at = share * (line.length - 1);
       const [a, b] = [line[Math.floor(at)], line[Math.ceil(at)]];
