@@ -128,9 +128,9 @@ inPage("a spoilt link shows the page as it is at first", "#v=nobody&policy=x&at=
 async function routed(page) {
   return page.evaluate(() => {
     const edges = globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-safe"] });
-    const longest = edges.sort((a, b) => b.properties.length_m - a.properties.length_m)[0];
-    const { geometry } = longest;
-    const line = geometry.type === "LineString" ? geometry.coordinates : geometry.coordinates[0];
+    const lines = edges.flatMap(({ geometry }) => (geometry.type === "LineString" ? [geometry.coordinates] : geometry.coordinates));
+    const span = (line) => Math.hypot(line.at(-1)[0] - line[0][0], line.at(-1)[1] - line[0][1]);
+    const line = lines.sort((a, b) => span(b) - span(a))[0];
     const along = (share) => {
       const at = share * (line.length - 1);
       const [a, b] = [line[Math.floor(at)], line[Math.ceil(at)]];
@@ -159,7 +159,7 @@ inPage("two clicks give a certified route, and the drive runs in step with the s
   await page.waitForSelector(".dock");
   const place = () => page.evaluate(() => Number(document.querySelector(".strip input").value));
   const from = await place();
-  await page.waitForFunction((start) => Number(document.querySelector(".strip input").value) > start + 5, from, { timeout: 30_000 });
+  await page.waitForFunction((start) => Number(document.querySelector(".strip input").value) > start + 1, from, { timeout: 90_000 });
   assert.ok(await page.evaluate(() => Boolean(globalThis.netcert.map.getLayer("own-drive"))));
   // Another theme in between leaves the drive where it is.
   await page.keyboard.press("d");

@@ -32,14 +32,14 @@ export async function load(path) {
   return import(`data:text/javascript;base64,${Buffer.from(made.outputFiles[0].contents).toString("base64")}`);
 }
 
-/** The drawn region, certified for two vehicles under two policies. */
+/** The drawn region, certified for two vehicles, one of them under two policies. */
 export function demoDatabase(folder) {
   if (process.env.NETCERT_TEST_DB) return process.env.NETCERT_TEST_DB;
   const db = join(folder, "demo.gpkg");
   const run = (...args) => execFileSync(program, ["--quiet", ...args], { stdio: ["ignore", "ignore", "inherit"] });
   const vehicles = ["--vehicle", "AU-SEMI19", "--vehicle", "AU-ATRIPLE53"];
   run("ingest", join(root, "data/demo.osm.pbf"), "--db", db, ...vehicles);
-  run("certify", "--db", db, ...vehicles, "--corridor", "carriageway");
+  run("certify", "--db", db, "--vehicle", "AU-SEMI19", "--corridor", "carriageway");
   return db;
 }
 
@@ -133,18 +133,18 @@ export function idle(page) {
   });
 }
 
-/** A pixel on an edge with this verdict, away from the panels; `null` if there is none in sight. */
-export function edgePixel(page, verdict) {
-  return page.evaluate((wanted) => {
+/** A pixel on an edge with this verdict and at least so much margin, away from the panels; `null` if there is none in sight. */
+export function edgePixel(page, verdict, least_m = -1e9) {
+  return page.evaluate(([wanted, least]) => {
     const { map } = globalThis.netcert;
     const layer = `edge-${wanted}`;
     const canvas = map.getCanvas().getBoundingClientRect();
     for (let y = canvas.height * 0.2; y < canvas.height * 0.8; y += 3) {
       for (let x = canvas.width * 0.35; x < canvas.width * 0.65; x += 3) {
         const found = map.queryRenderedFeatures([x, y], { layers: [layer] });
-        if (found.length > 0) return { x: canvas.left + x, y: canvas.top + y, id: String(found[0].properties.edge_id) };
+        if (found.length > 0 && (found[0].properties.rsc_m ?? least) >= least) return { x: canvas.left + x, y: canvas.top + y, id: String(found[0].properties.edge_id) };
       }
     }
     return null;
-  }, verdict);
+  }, [verdict, least_m]);
 }

@@ -1,4 +1,5 @@
-//! Names along roads: edges of one name, joined into lines on which a name has room. Between two junctions there is seldom any.
+//! Names along roads: edges of one name, joined into lines on which a name has room. Between two junctions there is
+//! seldom any.
 //!
 //! Promises lines without direction, each road once, in an order that depends on the rows alone. Leaves out what no label
 //! would follow: sharp bends and branches end a line.
@@ -161,8 +162,8 @@ mod tests {
 
     #[test]
     fn a_ring_ends() {
-        let points = [(0, 0), (100, 0), (150, 50), (100, 100), (0, 100), (-50, 50), (0, 0)];
-        let ring: Vec<MapEdge> = (0..6_u32).map(|i| edge(i, "Ring", &points[i as usize..i as usize + 2])).collect();
+        let points = [(0, 0), (100, 0), (170, 70), (170, 170), (100, 240), (0, 240), (-70, 170), (-70, 70), (0, 0)];
+        let ring: Vec<MapEdge> = (0..8_u32).map(|i| edge(i, "Ring", &points[i as usize..i as usize + 2])).collect();
         assert_eq!(lines(&ring).len(), 1);
         assert!(labels(&ring, 10).is_empty());
     }

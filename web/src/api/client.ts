@@ -40,6 +40,9 @@ export interface Question {
   policy: Policy;
 }
 
+/** How far the nearest road that may be used can be from a place on the map: a click is no survey. */
+export const SNAP_M = 500;
+
 const place = ([lon, lat]: Position): string => `${lon.toFixed(6)},${lat.toFixed(6)}`;
 const asked = ({ vehicle, policy }: Question): Record<string, string> => ({ vehicle, policy });
 
@@ -52,7 +55,7 @@ export const api = {
   pictureUrl: (id: string, question: Question) =>
     `/api/explain/${encodeURIComponent(id)}/picture.svg?${new URLSearchParams(asked(question))}`,
   route: (from: Position, to: Position, question: Question, signal?: AbortSignal) =>
-    get<RouteAnswer>("/api/route", { ...asked(question), from: place(from), to: place(to) }, signal),
+    get<RouteAnswer>("/api/route", { ...asked(question), from: place(from), to: place(to), snap: String(SNAP_M) }, signal),
   stats: async (policy: Policy, signal?: AbortSignal): Promise<Stats> =>
     digest(await get<StatsRows>("/api/stats", { policy }, signal)),
   /** MapLibre fetches tiles in a worker, which knows no page to be relative to. */

@@ -1,7 +1,7 @@
 // From two clicks to a route on the map, its panel, and the drive along it.
 
 import { Marker } from "maplibre-gl";
-import { api } from "../api/client.ts";
+import { SNAP_M, api } from "../api/client.ts";
 import type { Position, Route } from "../api/types.ts";
 import { question, vehicleOf, type Context } from "../context.ts";
 import { Dock } from "../drive/dock.ts";
@@ -63,7 +63,7 @@ export class Routing {
       const answer = await api.route(from, to, own, running.signal);
       this.#route = answer.routes[0] ?? null;
       const place = (p: Position) => p.map((degrees) => degrees.toFixed(6)).join(",");
-      const command = `netcert route --vehicle ${own.vehicle} --corridor ${own.policy} --from ${place(from)} --to ${place(to)}`;
+      const command = `netcert route --vehicle ${own.vehicle} --corridor ${own.policy} --from ${place(from)} --to ${place(to)} --snap ${SNAP_M}`;
       this.#panel.show(answer, palettes[this.context.theme.theme], command);
       this.#line(this.#route);
       if (this.#route) this.#fit(this.#route);

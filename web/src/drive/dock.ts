@@ -54,7 +54,8 @@ export class Dock {
     const words = h("div", { class: "dock-words" }, this.#road, this.#time);
     const controls = h("div", { class: "dock-controls" }, this.#play, words, this.#speed.element, this.#look.element, tightest, shut);
     this.element = h("section", { class: "dock", "aria-label": "Drive along the route" }, controls, this.#strip.element);
-    this.view.map.addLayer(this.#scene, this.view.map.getLayer("names") ? "names" : undefined);
+    // On top of all, or names would lie on the bodies.
+    this.view.map.addLayer(this.#scene);
     this.#player = new Player(view.map, this.#scene, this.#samples, vehicle.length_m, () => this.#draw());
     this.#draw();
   }

@@ -8,6 +8,8 @@ export type Look = "chase" | "above" | "free";
 
 /** How quickly the camera turns after the vehicle: the share of the difference that is left after a second. */
 const TURN_LEFT = 0.12;
+/** A slow machine drives slower rather than in leaps. */
+const LONGEST_FRAME_S = 0.25;
 /** Of a long vehicle the chasing camera shows so much, metres, from the front: the rest trails behind it. */
 const SHOWN_M = 32;
 
@@ -96,7 +98,7 @@ export class Player {
 
   readonly #tick = (now: number): void => {
     if (!this.#playing) return;
-    const seconds = Math.min((now - this.#last) / 1000, 0.1);
+    const seconds = Math.min((now - this.#last) / 1000, LONGEST_FRAME_S);
     this.#last = now;
     this.#s = this.samples.stationAt(this.samples.timeAt(this.#s) + seconds * this.#speed);
     this.#show(seconds, false);

@@ -5,26 +5,9 @@ import type { CustomLayerInterface, CustomRenderMethodInput, Map as Base } from 
 import type { Route, Vehicle } from "../api/types.ts";
 import { shapes, type Shape } from "../draw/shape.ts";
 import { marginColour, type Palette } from "../map/palette.ts";
-import { Mesh, Placed, STRIDE, ellipse, mix, rectangle, rgba, shadow, unit as body } from "./mesh.ts";
+import { draw, program, refill, remove, upload, type Drawn } from "./gl.ts";
+import { Mesh, Placed, ellipse, mix, rectangle, rgba, shadow, unit as body } from "./mesh.ts";
 import { leewayAt, type Samples } from "./samples.ts";
-
-const VERTEX = `#version 300 es
-uniform mat4 matrix;
-in vec3 position;
-in vec3 normal;
-in vec4 colour;
-out vec4 shade;
-void main() {
-  float light = 0.74 + 0.26 * max(dot(normalize(normal), normalize(vec3(-0.35, 0.55, 0.76))), 0.0);
-  shade = vec4(colour.rgb * light, colour.a);
-  gl_Position = matrix * vec4(position, 1.0);
-}`;
-
-const FRAGMENT = `#version 300 es
-precision mediump float;
-in vec4 shade;
-out vec4 fragment;
-void main() { fragment = vec4(shade.rgb * shade.a, shade.a); }`;
 
 /** How wide the line along the corridor's edge is drawn, metres. */
 const EDGE_M = 0.14;
@@ -34,12 +17,6 @@ const MOST_SWEPT = 5000;
 /** Of the tubes' bands so much is shown before and behind the vehicle, and none narrower than can be seen. */
 const BANDS_M = 90;
 const LEAST_BAND_M = 0.05;
-
-interface Drawn {
-  buffer: WebGLBuffer;
-  array: WebGLVertexArrayObject;
-  vertices: number;
-}
 
 export class Scene implements CustomLayerInterface {
   readonly id = "own-drive";
@@ -86,15 +63,12 @@ export class Scene implements CustomLayerInterface {
     this.#program = program(gl);
     this.#matrix = gl.getUniformLocation(this.#program, "matrix");
     this.#still(gl);
-    this.#moving = this.#upload(gl, new Mesh(1), gl.DYNAMIC_DRAW);
+    this.#moving = upload(gl, this.#program!, new Mesh(1));
   }
 
   onRemove(_map: Base, gl: WebGL2RenderingContext): void {
     for (const drawn of [this.#ground, this.#swept, this.#tubes, this.#moving]) {
-      if (drawn) {
-        gl.deleteBuffer(drawn.buffer);
-        gl.deleteVertexArray(drawn.array);
-      }
+      if (drawn) remove(gl, drawn);
     }
     if (this.#program) gl.deleteProgram(this.#program);
     this.#gl = undefined;
@@ -145,7 +119,8 @@ export class Scene implements CustomLayerInterface {
 
   /** The corridor with its edges, and all that will have been swept. */
   #still(gl: WebGL2RenderingContext): void {
-    this.#ground = this.#upload(gl, this.#corridor(), gl.STATIC_DRAW);
+    for (const old of [this.#ground, this.#swept, this.#tubes]) if (old) remove(gl, old);
+    this.#ground = upload(gl, this.#program!, this.#corridor());
     const count = this.#count;
     const swept = new Mesh(count * this.#shapes.length * 6);
     const colour = rgba(this.palette.swept);
@@ -156,8 +131,8 @@ export class Scene implements CustomLayerInterface {
       });
     }
     this.#each = swept.vertices / count;
-    this.#tubes = this.#upload(gl, this.#bands(), gl.STATIC_DRAW);
-    this.#swept = this.#upload(gl, swept, gl.STATIC_DRAW);
+    this.#tubes = upload(gl, this.#program!, this.#bands());
+    this.#swept = upload(gl, this.#program!, swept);
   }
 
   #corridor(): Mesh {
@@ -232,26 +207,9 @@ export class Scene implements CustomLayerInterface {
     return mix(rgba(hex, alpha), [1, 1, 1, alpha], 0.08);
   }
 
-  #upload(gl: WebGL2RenderingContext, mesh: Mesh, usage: number): Drawn {
-    const buffer = gl.createBuffer();
-    const array = gl.createVertexArray();
-    gl.bindVertexArray(array);
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, mesh.data, usage);
-    const parts: [string, number, number][] = [["position", 3, 0], ["normal", 3, 3], ["colour", 4, 6]];
-    for (const [name, size, from] of parts) {
-      const at = gl.getAttribLocation(this.#program!, name);
-      gl.enableVertexAttribArray(at);
-      gl.vertexAttribPointer(at, size, gl.FLOAT, false, STRIDE * 4, from * 4);
-    }
-    gl.bindVertexArray(null);
-    return { buffer, array, vertices: mesh.vertices };
-  }
-
   #refill(gl: WebGL2RenderingContext): void {
     if (!this.#moving) return;
-    gl.bindBuffer(gl.ARRAY_BUFFER, this.#moving.buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, this.#mesh.data, gl.DYNAMIC_DRAW);
+    refill(gl, this.#moving, this.#mesh);
     draw(gl, this.#moving, 0, this.#mesh.vertices);
   }
 
@@ -269,23 +227,4 @@ export class Scene implements CustomLayerInterface {
     }
     return out;
   }
-}
-
-function draw(gl: WebGL2RenderingContext, drawn: Drawn, first: number, vertices: number): void {
-  gl.bindVertexArray(drawn.array);
-  gl.drawArrays(gl.TRIANGLES, first, vertices);
-}
-
-function program(gl: WebGL2RenderingContext): WebGLProgram {
-  const made = gl.createProgram();
-  for (const [kind, source] of [[gl.VERTEX_SHADER, VERTEX], [gl.FRAGMENT_SHADER, FRAGMENT]] as const) {
-    const shader = gl.createShader(kind);
-    if (!shader) throw new Error("WebGL gives no shader");
-    gl.shaderSource(shader, source);
-    gl.compileShader(shader);
-    if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS)) throw new Error(gl.getShaderInfoLog(shader) ?? "shader");
-    gl.attachShader(made, shader);
-  }
-  gl.linkProgram(made);
-  return made;
 }

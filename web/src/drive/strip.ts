@@ -7,8 +7,9 @@ import { h } from "../ui/dom.ts";
 import { careful, distance } from "../words.ts";
 import { OPEN_M, leewayAt } from "./samples.ts";
 
-/** Metres of leeway that fill half of the band: more is cut off. */
-const FULL_M = 1.5;
+/** Metres of leeway that fill half of the band, at least and at most: more is cut off. */
+const LEAST_FULL_M = 0.3;
+const MOST_FULL_M = 1.5;
 /** Metres of road behind and ahead of the vehicle. */
 const WINDOW_M = 160;
 
@@ -18,6 +19,8 @@ export class Strip {
   readonly #whole = h("canvas", { class: "strip-whole", "aria-hidden": "true" });
   readonly #slider: HTMLInputElement;
   readonly #numbers = h("div", { class: "strip-numbers", "aria-hidden": "true" });
+  /** Metres that fill half of the band: what nine tenths of the route stay below. */
+  readonly #full: number;
   #s = 0;
 
   constructor(
@@ -35,8 +38,11 @@ export class Strip {
       "aria-label": "Place along the route, metres",
       oninput: () => seek(Number(this.#slider.value)),
     });
+    const all = [...route.leeway.left_m, ...route.leeway.right_m].map((leeway) => leeway ?? OPEN_M).sort((a, b) => a - b);
+    this.#full = Math.min(Math.max(all[Math.floor(0.9 * all.length)] ?? 0, LEAST_FULL_M), MOST_FULL_M);
     const whole = h("div", { class: "strip-track" }, this.#whole, this.#slider);
-    const near = h("div", { class: "strip-window" }, this.#near, this.#numbers);
+    const scale = h("span", { class: "strip-scale", "aria-hidden": "true" }, `full height ${this.#full.toFixed(1)} m`);
+    const near = h("div", { class: "strip-window" }, this.#near, this.#numbers, scale);
     this.element = h("div", { class: "strip" }, near, whole);
     new ResizeObserver(() => this.#redraw()).observe(this.element);
   }
@@ -80,11 +86,14 @@ export class Strip {
   #columns(context: CanvasRenderingContext2D, x: (s: number) => number, wide: number, tall: number): void {
     const middle = tall / 2;
     const { leeway, length_m } = this.route;
-    const size = (value: number): number => Math.min(Math.max(value, 0.02) / FULL_M, 1) * (middle - 1);
+    const ratio = devicePixelRatio || 1;
+    const size = (value: number): number => Math.min(Math.max(value, 0.02) / this.#full, 1) * (middle - 1);
     leeway.s_m.forEach((s, index) => {
-      const [a, b] = [x(s), x(leeway.s_m[index + 1] ?? length_m)];
+      // On whole pixels, or seams show between neighbours.
+      const a = Math.floor(x(s) * ratio) / ratio;
+      const b = Math.ceil(x(leeway.s_m[index + 1] ?? length_m) * ratio) / ratio;
       if (b < 0 || a > wide) return;
-      const breadth = Math.max(b - a, 0.5) + 0.5;
+      const breadth = b - a;
       const [left, right] = [leeway.left_m[index] ?? OPEN_M, leeway.right_m[index] ?? OPEN_M];
       context.fillStyle = marginColour(this.palette, left);
       context.fillRect(a, middle - size(left), breadth, size(left));
@@ -111,6 +120,8 @@ export class Strip {
       context.beginPath();
       context.roundRect(rear, tall / 2 - 4, head - rear, 8, 3);
       context.fill();
+      context.strokeStyle = this.palette.paper;
+      context.stroke();
     } else {
       context.fillStyle = this.palette.ink;
       context.fillRect(head - 1, 0, 2, tall);

@@ -35,11 +35,11 @@ export class RoutePanel {
     const best = answer.routes[0];
     const content = best ? this.#found(best, palette) : this.#blocked(answer);
     const same = h("details", { class: "command" }, h("summary", {}, "The same on the command line"), h("code", {}, command));
-    this.element.replaceChildren(...content, same, this.#tools(true));
+    this.element.replaceChildren(...content, ...away(answer), same, this.#tools(true));
   }
 
   #tools(both: boolean): HTMLElement {
-    const swap = h("button", { class: "small", type: "button", onclick: () => this.actions.swap() }, icon("swap"), "There and back");
+    const swap = h("button", { class: "small", type: "button", onclick: () => this.actions.swap() }, icon("swap"), "Reverse");
     const clear = h("button", { class: "small", type: "button", onclick: () => this.actions.clear() }, "New route");
     return h("div", { class: "tools" }, both ? swap : null, clear);
   }
@@ -117,6 +117,18 @@ export class RoutePanel {
       ),
     );
   }
+}
+
+/** Nearer than this to where one clicked is there. */
+const THERE_M = 60;
+
+/** Where the way does not begin or end where one clicked. */
+function away({ places }: RouteAnswer): Node[] {
+  const ends: [string, number | undefined][] = [["begins", places[0]?.distance_m], ["ends", places.at(-1)?.distance_m]];
+  const far = ends.filter(([, metres]) => metres !== undefined && metres > THERE_M);
+  if (far.length === 0) return [];
+  const words = far.map(([what, metres]) => `${what} ${distance(metres ?? 0)} from where you clicked`).join(" and ");
+  return [h("p", { class: "note" }, `The way ${words}: nearer there is no road that may be used.`)];
 }
 
 /** Edges of one road, one after the other, are one row. */

@@ -1,0 +1,86 @@
+// Takes the pictures of docs/serve.md, with databases of three real extracts:
+//
+//     node tools/screenshots.mjs FOLDER [NAME…]      FOLDER holds heidelberg.gpkg, columbus.gpkg, victoria.gpkg
+//
+// The extracts are not part of the repository; each picture says in its scene what it shows of them.
+
+import { mkdir, writeFile } from "node:fs/promises";
+import { join } from "node:path";
+import { edgePixel, idle, launch, open, root, serve } from "../test/support.mjs";
+
+const size = { width: 1280, height: 800 };
+const wait = (page, ms) => page.waitForTimeout(ms);
+
+const scenes = {
+  heidelberg: {
+    db: "heidelberg",
+    hash: "#v=EU-SEMI16.5&at=13.6,49.4035,8.6815",
+    async play(page) {
+      const at = await edgePixel(page, "unsafe", -0.6);
+      await page.mouse.click(at.x, at.y);
+      await page.waitForSelector(".scene img");
+      await page.mouse.move(700, 20);
+    },
+  },
+  columbus: { db: "columbus", hash: "#v=US-WB40&with=US-WB67&at=12.2,39.968,-82.99", dark: true, play: (page) => wait(page, 2500) },
+  victoria: {
+    db: "victoria",
+    hash: "#v=AU-ATRIPLE53&at=11,-37.69,145.44&route=145.46054,-37.68349;145.41485,-37.70221",
+    play: (page) => drive(page, 0.52),
+  },
+  numbers: { db: "columbus", hash: "#v=US-WB67&stats=1", play: (page) => page.waitForSelector(".stats table") },
+  drive: {
+    db: "heidelberg-whole",
+    hash: "#v=EU-SEMI16.5&policy=carriageway&route=8.6585,49.4065;8.675,49.41",
+    dark: true,
+    play: (page) => drive(page, 0.815),
+  },
+};
+
+/** Opens the drive and stops at a share of the way. */
+async function drive(page, share) {
+  await page.click("text=Drive it", { timeout: 120_000 });
+  await page.waitForSelector(".dock");
+  await wait(page, 1000);
+  await page.keyboard.press("Space");
+  await page.evaluate((part) => {
+    const slider = document.querySelector(".strip input");
+    slider.value = String(part * Number(slider.max));
+    slider.dispatchEvent(new Event("input"));
+  }, share);
+  await wait(page, 1500);
+}
+
+/** As WebP, by the browser's own encoder. */
+async function webp(page, png) {
+  const text = await page.evaluate(async (data) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${data}`;
+    await image.decode();
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [image.width, image.height];
+    canvas.getContext("2d").drawImage(image, 0, 0);
+    return canvas.toDataURL("image/webp", 0.72).split(",")[1];
+  }, png.toString("base64"));
+  return Buffer.from(text, "base64");
+}
+
+const [folder, ...names] = process.argv.slice(2);
+const out = join(root, "docs/serve");
+await mkdir(out, { recursive: true });
+const browser = await launch();
+for (const name of names.length > 0 ? names : Object.keys(scenes)) {
+  const { db, hash, dark, play } = scenes[name];
+  const server = await serve(join(folder, `${db}.gpkg`));
+  const { page, close } = await open(browser, server.address, hash, { viewport: size, colorScheme: dark ? "dark" : "light" });
+  await idle(page);
+  await play(page);
+  await idle(page);
+  await wait(page, 600);
+  const bytes = await webp(page, await page.screenshot());
+  await writeFile(join(out, `${name}.webp`), bytes);
+  console.log(`${name}.webp ${bytes.length} bytes`);
+  await close();
+  await server.stop();
+}
+await browser.close();
