@@ -8,8 +8,8 @@ use super::group::{Group, UnitLanes};
 use super::lanes::{LANES, V};
 use super::model::{MAX_UNITS, Model, UnitModel};
 use super::sweep::{
-    BLOCK, FIELDS, MOST, Motion, NOT_CLOSED_RAD, Step, Straying, ZERO, foot_shift, hinge_margin, hitch_remainder,
-    remainder, row, validity,
+    BLOCK, FIELDS, Filter, MOST, Motion, NOT_CLOSED_RAD, Step, Straying, ZERO, foot_shift, hinge_margin,
+    hitch_remainder, remainder, row, validity,
 };
 
 /// Σ tan² δ_j/2 over the units up to one, from which on the adjoint is worth its time for it. Bends alone decide that, so that
@@ -90,6 +90,8 @@ pub(super) struct Trail {
     count: usize,
     /// By vehicle and unit: its heading, its axle, then its body points.
     outputs: Vec<Vec<Vec<Outputs>>>,
+    /// What the filter had when the block began.
+    extra: [V; MAX_UNITS],
 }
 
 /// Bounds at the body points of a vehicle over a block: by unit, point and station.
@@ -142,7 +144,14 @@ impl Trail {
             before: [(ZERO, ZERO); MAX_UNITS],
             count: 0,
             outputs: models.iter().map(|model| model.units.iter().map(outputs).collect()).collect(),
+            extra: [ZERO; MAX_UNITS],
         }
+    }
+
+    /// A block begins.
+    #[inline(always)]
+    pub(super) fn enter(&mut self, motion: &Motion) {
+        self.extra = motion.extra;
     }
 
     /// Another station, the `k`-th of its block.
@@ -212,8 +221,8 @@ impl Trail {
         }
     }
 
-    /// The block driven last, for one vehicle's units from `first_unit` on: bounds at their body points into `out`; their
-    /// rows, and what the filter goes on from, as the adjoint has them.
+    /// The block driven last, for one vehicle's units from `first_unit` on: bounds at their body points into `out`, their rows as
+    /// the adjoint has them. The filter goes over the block again beside it, its second order from the adjoint's bounds.
     #[inline(always)]
     pub(super) fn refine(
         &mut self,
@@ -228,6 +237,9 @@ impl Trail {
         for (points, unit) in out.points.iter_mut().zip(&group.models[lane].units) {
             points.clear();
             points.resize(unit.points.len() * BLOCK, MOST);
+        }
+        for unit in 0..MAX_UNITS {
+            motion.extra[unit].0[lane] = self.extra[unit].0[lane];
         }
         for k in 0..BLOCK {
             self.station(group, lane, first_unit, first + k, k, motion, rows, out);
@@ -254,9 +266,11 @@ impl Trail {
         let mut straying = Straying::of_the_steer_axle(V::splat(steer));
         let (mut heading_ahead, mut shift_ahead) = (group.course, ZERO);
         let mut closes = true;
+        let mut beside = Filter::begin(group, &steps);
         for unit in 0..units {
             let (of, step) = (&group.chain[unit], &steps[unit]);
             let start = (unit * LANES + lane) * FIELDS * BLOCK;
+            let filtered = beside.coupled(of, step, motion.extra[unit]);
             if unit < first_unit {
                 // The filter's bounds stand; only what they mean for the units behind is needed.
                 let at = |field: usize| V::splat(rows[start + field * BLOCK + k]);
@@ -265,6 +279,9 @@ impl Trail {
                 let a = of.heading + (axle + coupling) * of.inverse_length;
                 (heading_ahead, shift_ahead) = (a, foot_shift(of, step, of.coupling + coupling));
                 straying = straying.next(of, step, a);
+                let past = &self.histories[lane][0].past[station % MEMORY][unit];
+                motion.extra[unit].0[lane] =
+                    beside.step(of, step, filtered, a, V::splat(past.z), V::splat(past.hitch)).0[lane];
                 continue;
             }
             let mut store = |field: usize, value: f64| rows[start + field * BLOCK + k] = value;
@@ -275,6 +292,7 @@ impl Trail {
                 store(row::EXTRA_AXLE, MOST);
                 store(row::HINGE, NOT_CLOSED_RAD);
                 motion.extra[unit].0[lane] = 0.0;
+                beside.coupling = ZERO;
                 continue;
             };
             let (a, axle) = (V::splat(a), V::splat(axle));
@@ -293,7 +311,7 @@ impl Trail {
             let zh = hitch_remainder(of, step, follower, a, axle, r1, &straying);
             let past = &mut self.histories[lane][0].past[station % MEMORY][unit];
             past.note(of, lane, z.0[lane], zh.0[lane], axle.0[lane]);
-            motion.extra[unit].0[lane] = extra.0[lane].max(0.0);
+            motion.extra[unit].0[lane] = beside.step(of, step, filtered, a, z, zh).0[lane];
         }
         self.histories[lane][0].closed[station % MEMORY] = closes;
     }

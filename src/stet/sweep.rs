@@ -13,6 +13,8 @@ use super::track::Track;
 
 /// Head stations a block.
 pub(super) const BLOCK: usize = 32;
+/// Blocks behind a bend in which the filter still has of it.
+const FADING_BLOCKS: usize = 3;
 /// Hinge margin where the bounds' recursion does not close.
 pub(super) const NOT_CLOSED_RAD: f64 = -9.0;
 /// What the motion hands to the points: one row a field.
@@ -47,9 +49,9 @@ impl Minima {
         }
     }
 
-    /// A bend counts for the block that follows it, too: the filter has been driven out of its way by then.
+    /// A bend counts for some blocks that follow it, too: what the filter has gathered in it takes as long to fade.
     fn note_loose(&mut self, head: usize, first: usize) {
-        for block in &mut self.loose[head / BLOCK..=head / BLOCK + 1] {
+        for block in self.loose.iter_mut().skip(head / BLOCK).take(1 + FADING_BLOCKS) {
             *block = first.min(*block);
         }
     }
@@ -143,6 +145,7 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     let last = track.len() - ahead - BLOCK;
     let mut head = track.lead;
     while head < last {
+        trail.enter(&motion);
         motion.block::<CERTIFY, REFINE>(track, group, shift, head, &mut rows, &mut trail);
         for (lane, (bodies, minima)) in bodies.iter_mut().zip(&mut minima).enumerate() {
             let wanted = (wanted.blocks)(lane, head);
@@ -365,18 +368,8 @@ impl Motion {
         trail: &mut Trail,
     ) {
         let one = V::splat(1.0);
-        let (mut least, mut most) = (steps[0].advance, steps[0].advance);
-        for (step, of) in steps.iter().zip(&group.chain).take(group.units).skip(1) {
-            // A stand-in must not count: a certificate depends on no other vehicle of the group.
-            let advance = steps[0].advance + of.present * (step.advance - steps[0].advance);
-            least = least.min(advance);
-            most = most.max(advance);
-        }
-        // The reference path runs halfway between the fastest and the slowest axle.
-        let per_reference = V::splat(2.0) / (least + most).max(V::splat(1e-12));
-        let mut hitch_cosine = one;
         let bulge = chord_bulge(&steps[0]);
-        let mut coupling = bulge;
+        let mut filter = Filter::begin(group, steps);
         let mut straying = Straying::of_the_steer_axle(group.tolerance + bulge);
         let (mut heading_ahead, mut shift_ahead) = (group.course, ZERO);
         // Negative from the first unit on whose bounds do not close.
@@ -387,20 +380,12 @@ impl Motion {
         for unit in 0..group.units {
             let of = &group.chain[unit];
             let step = &steps[unit];
-            // η: how much more than on the straight the coupling's deviation counts.
-            let eta = (step.secant - 1.0).max((hitch_cosine * step.secant - 1.0).abs());
-            let extra_coupling = (coupling + eta * (of.coupling + coupling)).min(V::splat(MOST));
             let y = self.extra[unit];
-            let a = (of.heading + (extra_coupling + y) * of.inverse_length).min(V::splat(MOST));
+            let coupled = filter.coupled(of, step, y);
+            let (extra_coupling, a) = (coupled.extra, coupled.heading);
             let axle = of.axle + y;
             let (r1, z) = remainder(of, step, a, axle);
-            let rho = (step.advance * per_reference - 1.0).abs();
-            let input = extra_coupling + z + rho * of.length * (a + of.sway);
-            // y' = (input − y)/L: grow by the coupling's arc length, decay by the axle's, which is the shorter.
-            let (pn, pd) = decay(step.moved * of.inverse_length);
-            let gain = one - pn / pd;
-            let change = (input - y) * gain;
-            let extra = (y + change.max(change * step.cosine.max(ZERO))).min(V::splat(MOST));
+            let extra = filter.grown(of, step, &coupled, z);
             // Where it does not close, nothing is certified while the vehicle stands here; a vehicle that is certified further
             // on did not come through here, so that its bounds begin anew. A stand-in closes: it is nobody's.
             closed = closed.min(select_negative(of.present - V::splat(0.5), one, validity(of, step, a)));
@@ -428,10 +413,85 @@ impl Motion {
             if REFINE {
                 trail.record(group, unit, step, z, zh, of.axle + y, closed);
             }
-            let next = (of.ratio + 1.0).abs() * y + of.ratio.abs() * extra_coupling + zh;
-            coupling = select_negative(closed, ZERO, next.min(V::splat(MOST)));
-            hitch_cosine = step.hitch_cosine;
+            filter.pass_on(of, step, &coupled, y, zh);
+            filter.coupling = select_negative(closed, ZERO, filter.coupling);
         }
+    }
+}
+
+/// The recursion of what curvature adds (docs/proof.md, section 5) over one step, front to rear.
+pub(super) struct Filter {
+    /// Beyond the straight bound, of the next coupling.
+    pub(super) coupling: V,
+    hitch_cosine: V,
+    /// 1 over the arc length halfway between the fastest axle's and the slowest's: paces are counted against that.
+    per_reference: V,
+}
+
+/// A unit's coupling in a step.
+pub(super) struct Coupled {
+    /// Y − Y⁰ when the step begins.
+    y: V,
+    /// Ẽ − E⁰
+    extra: V,
+    /// A
+    heading: V,
+}
+
+impl Filter {
+    #[inline(always)]
+    pub(super) fn begin(group: &Group<'_>, steps: &[Step; MAX_UNITS]) -> Self {
+        let (mut least, mut most) = (steps[0].advance, steps[0].advance);
+        for (step, of) in steps.iter().zip(&group.chain).take(group.units).skip(1) {
+            // A stand-in must not count: a certificate depends on no other vehicle of the group.
+            let advance = steps[0].advance + of.present * (step.advance - steps[0].advance);
+            least = least.min(advance);
+            most = most.max(advance);
+        }
+        Self {
+            coupling: chord_bulge(&steps[0]),
+            hitch_cosine: V::splat(1.0),
+            per_reference: V::splat(2.0) / (least + most).max(V::splat(1e-12)),
+        }
+    }
+
+    /// `y`: Y − Y⁰ of the unit when the step begins.
+    #[inline(always)]
+    pub(super) fn coupled(&self, of: &UnitLanes, step: &Step, y: V) -> Coupled {
+        // η: how much more than on the straight the coupling's deviation counts.
+        let eta = (step.secant - 1.0).max((self.hitch_cosine * step.secant - 1.0).abs());
+        let extra = (self.coupling + eta * (of.coupling + self.coupling)).min(V::splat(MOST));
+        let heading = (of.heading + (extra + y) * of.inverse_length).min(V::splat(MOST));
+        Coupled { y, extra, heading }
+    }
+
+    /// Y − Y⁰ at the step's end, with z.
+    #[inline(always)]
+    fn grown(&self, of: &UnitLanes, step: &Step, coupled: &Coupled, z: V) -> V {
+        let rho = (step.advance * self.per_reference - 1.0).abs();
+        let input = coupled.extra + z + rho * of.length * (coupled.heading + of.sway);
+        // y' = (input − y)/L: grow by the coupling's arc length, decay by the axle's, which is the shorter.
+        let (pn, pd) = decay(step.moved * of.inverse_length);
+        let change = (input - coupled.y) * (V::splat(1.0) - pn / pd);
+        (coupled.y + change.max(change * step.cosine.max(ZERO))).min(V::splat(MOST))
+    }
+
+    /// On to the next coupling.
+    #[inline(always)]
+    fn pass_on(&mut self, of: &UnitLanes, step: &Step, coupled: &Coupled, y: V, zh: V) {
+        let next = (of.ratio + 1.0).abs() * y + of.ratio.abs() * coupled.extra + zh;
+        self.coupling = next.min(V::splat(MOST));
+        self.hitch_cosine = step.hitch_cosine;
+    }
+
+    /// A unit's whole step, its second order known and its heading bounded: Y − Y⁰ at its end.
+    #[inline(always)]
+    pub(super) fn step(&mut self, of: &UnitLanes, step: &Step, mut coupled: Coupled, a: V, z: V, zh: V) -> V {
+        coupled.heading = coupled.heading.min(a);
+        let coupled = &coupled;
+        let extra = self.grown(of, step, coupled, z);
+        self.pass_on(of, step, coupled, coupled.y.max(extra), zh);
+        extra
     }
 }
 
