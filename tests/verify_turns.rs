@@ -9,8 +9,8 @@ mod program;
 use program::Place;
 use sqlx::{Connection as _, SqliteConnection};
 
-/// A vehicle that takes most turns of the drawn region in its lane, but not all.
-const VERIFY: &str = "verify --db demo.gpkg --vehicle AGV-TUG4 --sample 60";
+/// Beside turns that are safe, these are too narrow for it.
+const VERIFY: &str = "verify --db demo.gpkg --vehicle AU-SEMI19 --sample 60";
 
 fn update(place: &Place, sql: &str) -> u64 {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
@@ -25,12 +25,13 @@ fn update(place: &Place, sql: &str) -> u64 {
 #[test]
 fn every_column_of_turns_changed_in_the_unsafe_direction_is_refuted() {
     let made = Place::empty();
-    made.netcert("ingest {demo} --db demo.gpkg --vehicle AGV-TUG4").succeeds();
+    made.netcert("ingest {demo} --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway").succeeds();
     let told = made.netcert(VERIFY).succeeds().out();
     println!("{told}");
     let safe = "verdict_no = 0";
     let changes = [
-        format!("UPDATE turn_certificate_compact SET rsc_mm = rsc_mm + 60 WHERE {safe}"),
+        // The prover deducts up to some 25 cm more than is proved by the checker in tight bends: what is below that is true.
+        format!("UPDATE turn_certificate_compact SET rsc_mm = rsc_mm + 600 WHERE {safe}"),
         format!("UPDATE turn_certificate_compact SET hinge_margin_cdeg = hinge_margin_cdeg + 500 WHERE {safe}"),
         "UPDATE turn_certificate_compact SET rsc_published_mm = rsc_published_mm + 90000".to_owned(),
         "UPDATE turn_certificate_compact SET verdict_no = 0 WHERE verdict_no BETWEEN 10 AND 39".to_owned(),

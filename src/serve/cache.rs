@@ -90,8 +90,12 @@ mod tests {
     use super::*;
 
     fn stored(bytes: usize) -> Arc<Stored> {
-        // Noise, which does not compress.
-        let noise = |i: usize| (i as u32).wrapping_add(1).wrapping_mul(2_654_435_761).rotate_left(13) as u8;
+        // Noise (splitmix64), which does not compress.
+        let noise = |i: usize| {
+            let x = (i as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            let x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            ((x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb) >> 56) as u8
+        };
         Arc::new(Stored::new("text/plain", (0..bytes).map(noise).collect()))
     }
 

@@ -150,8 +150,8 @@ impl Trail {
 
     /// A block begins.
     #[inline(always)]
-    pub(super) fn enter(&mut self, motion: &Motion) {
-        self.extra = motion.extra;
+    pub(super) fn enter(&mut self, extra: &[V; MAX_UNITS]) {
+        self.extra = *extra;
     }
 
     /// Another station, the `k`-th of its block.

@@ -13,7 +13,7 @@ use super::track::Track;
 
 /// Head stations a block.
 pub(super) const BLOCK: usize = 32;
-/// Blocks behind a bend in which the filter still has of it.
+/// Blocks behind a bend in which the filter still has much of it.
 const FADING_BLOCKS: usize = 3;
 /// Hinge margin where the bounds' recursion does not close.
 pub(super) const NOT_CLOSED_RAD: f64 = -9.0;
@@ -145,7 +145,6 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     let last = track.len() - ahead - BLOCK;
     let mut head = track.lead;
     while head < last {
-        trail.enter(&motion);
         motion.block::<CERTIFY, REFINE>(track, group, shift, head, &mut rows, &mut trail);
         for (lane, (bodies, minima)) in bodies.iter_mut().zip(&mut minima).enumerate() {
             let wanted = (wanted.blocks)(lane, head);
@@ -255,6 +254,9 @@ impl Motion {
         rows: &mut [f64],
         trail: &mut Trail,
     ) {
+        if REFINE {
+            trail.enter(&self.extra);
+        }
         let mut place = steer(track, shift, head);
         for k in 0..BLOCK {
             let next = steer(track, shift, head + k + 1);
