@@ -171,6 +171,7 @@ impl Source<'_> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::panic)]
     use super::*;
     use crate::verdict::Verdict;
 

@@ -177,6 +177,7 @@ impl Database {
     /// Puts a complete set of certificates, the plans they rest on, and the vehicle's turns in place of the old ones, in one step:
     /// killed, the old ones stand. Without `turns` it has none afterwards. If the vehicle's definition changed, its sets under
     /// other policies go as well. `certificates` may come in any order.
+    #[allow(clippy::too_many_arguments)] // All that is replaced in one transaction, each under its own name.
     pub fn replace_certificates(
         &mut self,
         vehicle: &VehicleRecord,
