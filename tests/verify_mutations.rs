@@ -118,7 +118,7 @@ fn mutations(document: &Value) -> Vec<Mutation> {
             with(
                 "leeway up",
                 Box::new(move |v| {
-                    v["leeway"][&column].as_array_mut().unwrap().iter_mut().for_each(|x| add(x, 0.25));
+                    v["leeway"][&column].as_array_mut().unwrap().iter_mut().for_each(|x| add(x, 0.1));
                 }),
             );
         }

@@ -14,12 +14,6 @@ pub const TOLERANCE_M: f64 = 1e-3;
 /// The same for hinge margins, radians (0.02°).
 pub(crate) const TOLERANCE_RAD: f64 = 0.02 * std::f64::consts::PI / 180.0;
 
-/// Columns of leeway are for pictures; what is promised is the RSC. They are held to 3 cm.
-const COLUMN_TOLERANCE_M: f64 = 0.03;
-
-/// So far from a column's station, metres, may be what its entry is the leeway of: the prover counts a whole body's width at one.
-const BESIDE_M: f64 = 1.5;
-
 /// A leeway below minus this says that nothing is bounded.
 const NOTHING_M: f64 = 50.0;
 
@@ -151,19 +145,7 @@ impl<'a> Subject<'a> {
         let Some(motion) = &self.motion else { return Some("the plan cannot be driven".to_owned()) };
         let none = vec![f64::NEG_INFINITY; self.road.count - 1];
         let mut targets = [none.clone(), none];
-        // It says what is at stations: between them a straight side and a bending road part by up to κ h²/8, in
-        // time and along the body, and its entries do without what the RSC deducts for that: as much again, and for whose station a foot is.
-        let between = |k: usize| {
-            let place = |k: usize| self.road.place((self.road.lead + k) as f64).curvature.abs();
-            1.5 * place(k).max(place(k + 1)) * self.road.spacing.powi(2) + COLUMN_TOLERANCE_M
-        };
-        // An entry is that of bodies whose axis passes the station, to a station; their sides' feet are elsewhere when they stand askew.
-        let beside = (BESIDE_M / self.road.spacing).ceil() as usize;
-        let least = |k: usize| {
-            let near = &column[k.saturating_sub(beside)..(k + beside + 2).min(column.len())];
-            near.iter().fold(f64::INFINITY, |least, &m| least.min(m))
-        };
-        targets[side] = (0..column.len().saturating_sub(1)).map(|k| least(k) - between(k)).collect();
+        targets[side] = column.windows(2).map(|pair| asked(pair[0].min(pair[1]))).collect();
         // The column begins with the steer axle on the first station: what is ahead of it then has passed its first feet.
         let (ahead, _) = self.chain.reach_m();
         let begun = ((ahead / self.road.spacing).ceil() as usize).min(targets[side].len());

@@ -136,7 +136,7 @@ pub struct Certificate {
     pub shift_m: Vec<f64>,
     /// The planned shift itself.
     pub shift: Plan,
-    /// Leeway at each station on the left, after correction (at γ = 1), metres.
+    /// Leeway at each station on the left, after correction (at γ = 1), metres: of a span of that station alone.
     pub left_m: Vec<f64>,
     /// On the right.
     pub right_m: Vec<f64>,
@@ -279,7 +279,7 @@ impl<'m> Swept<'m> {
         let track = &self.track;
         let centred = thorough(track, &self.group, &vec![V::splat(0.0); track.len()]);
         let full = if self.worth(0, &whole) { self.refined.as_ref().unwrap_or(&self.full) } else { &self.full };
-        let own = |column: &[f64]| column[track.lead..track.lead + track.count].to_vec();
+        let own = |column: &[f64]| spans::alone(track, &whole, column);
         let shift = self.plans[0].clone();
         let shift_m: Vec<f64> = (0..track.count).map(|k| shift.at_m(k)).collect();
         let plan = (0..track.count)
@@ -293,8 +293,8 @@ impl<'m> Swept<'m> {
         for span in spans {
             // What the span's result rests on: refined for one where it is worth it.
             let best = self.best(0, span);
-            left_m[span.clone()].copy_from_slice(&best.left[track.lead + span.start..track.lead + span.end]);
-            right_m[span.clone()].copy_from_slice(&best.right[track.lead + span.start..track.lead + span.end]);
+            left_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.left));
+            right_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.right));
         }
         let certificate = Certificate {
             result: self.result(0, &whole),

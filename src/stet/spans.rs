@@ -23,6 +23,12 @@ pub(super) fn stations(track: &Track, span: &std::ops::Range<usize>) -> RangeInc
     first..=last
 }
 
+/// What each station of a span would have, were it a span of its own.
+pub(super) fn alone(track: &Track, span: &std::ops::Range<usize>, column: &[f64]) -> Vec<f64> {
+    let least = |k: usize| column[stations(track, &(k..k + 1))].iter().copied().fold(f64::INFINITY, f64::min);
+    span.clone().map(least).collect()
+}
+
 /// The result over a span at γ = 1.
 pub(super) fn result(track: &Track, model: &Model, span: &std::ops::Range<usize>, full: &Minima) -> SpanResult {
     let mut least = f64::INFINITY;
