@@ -21,6 +21,9 @@ const ASTRAY_PART: f64 = 0.5;
 const ASTRAY_M: f64 = 10.0;
 /// Added to a head's station wherever a point ahead of it is counted from.
 const AHEAD: usize = 1 << 20;
+/// Where half-widths bulge, what lies between two body points is looked at in parts no longer than this, metres: at a radius of
+/// 16 m a part's sagitta is 2 cm.
+const PART_M: f64 = 1.4;
 /// Half-widths that leave their own slope by less, a metre's way or its square, are read at the axis's station.
 const ROUGH: f64 = 0.01;
 /// Leeway of a point that has no foot: nothing is certified there.
@@ -50,15 +53,8 @@ struct Way {
 }
 
 struct Point {
-    ahead: f64,
+    spot: Spot,
     tag: u64,
-    /// g at the point, and its slope towards half a width ahead and behind.
-    gain: f64,
-    slope_ahead: f64,
-    slope_behind: f64,
-    /// |1 − a/L| and |a/L|
-    from_axle: f64,
-    from_coupling: f64,
     /// Distance to the point before, metres; 0 for the first.
     gap: f64,
     foot: usize,
@@ -67,11 +63,41 @@ struct Point {
     covered: usize,
 }
 
+/// A place on a body's axis, metres ahead of its axle, and what bounds it on the straight.
+#[derive(Clone, Copy)]
+struct Spot {
+    ahead: f64,
+    /// g there, and its slope towards half a width ahead and behind.
+    gain: f64,
+    slope_ahead: f64,
+    slope_behind: f64,
+    /// |1 − a/L| and |a/L|
+    from_axle: f64,
+    from_coupling: f64,
+}
+
+impl Spot {
+    /// `part` of the way from one point of a body to the next behind it: g is convex, so that it is below its chord, and beyond both ends
+    /// no steeper towards them than there.
+    fn between(self, behind: Self, part: f64) -> Self {
+        let mix = |a: f64, b: f64| a + (b - a) * part;
+        // The bounds of axle and coupling are both linear in the place, but for where they change sign: convex, too.
+        Self {
+            ahead: mix(self.ahead, behind.ahead),
+            gain: mix(self.gain, behind.gain),
+            slope_ahead: self.slope_ahead,
+            slope_behind: behind.slope_behind,
+            from_axle: mix(self.from_axle, behind.from_axle),
+            from_coupling: mix(self.from_coupling, behind.from_coupling),
+        }
+    }
+}
+
 impl Body {
     /// Nothing is deducted for the straight.
     pub(super) fn forget_gains(&mut self) {
         for point in &mut self.points {
-            (point.gain, point.slope_ahead, point.slope_behind) = (0.0, 0.0, 0.0);
+            point.spot = Spot { gain: 0.0, slope_ahead: 0.0, slope_behind: 0.0, ..point.spot };
         }
     }
 }
@@ -101,14 +127,17 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
             let points = chosen.map(|p| {
                 let gain = unit.at[p].at(tolerance);
                 let start = foot(unit.points[p]);
-                Point {
+                let spot = Spot {
                     ahead: unit.points[p],
-                    tag: (index * 16 + p) as u64,
                     gain,
                     slope_ahead: (unit.ahead[p].at(tolerance) - gain) / unit.half_width,
                     slope_behind: (unit.behind[p].at(tolerance) - gain) / unit.half_width,
                     from_axle: (1.0 - unit.points[p] / unit.length).abs(),
                     from_coupling: (unit.points[p] / unit.length).abs(),
+                };
+                Point {
+                    spot,
+                    tag: (index * 16 + p) as u64,
                     gap: if p == 0 { 0.0 } else { unit.points[p - 1] - unit.points[p] },
                     foot: start,
                     way: way(unit.points[p]),
@@ -152,6 +181,16 @@ struct Seen {
 enum Feet {
     Run(usize),
     Each([usize; LANES]),
+}
+
+impl Feet {
+    #[inline(always)]
+    fn station(self, lane: usize) -> usize {
+        match self {
+            Self::Run(first) => first + lane,
+            Self::Each(feet) => feet[lane],
+        }
+    }
 }
 
 /// A body point at eight head stations, before it lowers the minima.
@@ -220,7 +259,14 @@ pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
             body.points[index].cover(sample.feet, minima);
             if CERTIFY {
                 match &mut before {
-                    Some(before) => between_points(before, &mut sample, &s, body.points[index].gap),
+                    Some(before) => {
+                        let gap = body.points[index].gap;
+                        let parts = if bulges(before, &sample) { (gap / PART_M).ceil().max(1.0) } else { 1.0 };
+                        if parts > 1.0 {
+                            inside::<REFINED>(track, body, index, &s, &knots, (before, &sample), parts, minima);
+                        }
+                        between_points(before, &mut sample, &s, gap, parts);
+                    }
                     None => lower(&mut minima.hinge, sample.feet, load(row::HINGE).tagged(sample.tag)),
                 }
             }
@@ -346,7 +392,7 @@ fn sample<const CERTIFY: bool, const REFINED: bool>(
 ) -> Sample {
     let (ahead, tag, first) = {
         let point = &body.points[index];
-        (point.ahead, point.tag, point.foot)
+        (point.spot.ahead, point.tag, point.foot)
     };
     let (x, y) = (s.x + s.ux * ahead, s.y + s.uy * ahead);
     let last = LANES - 1;
@@ -354,7 +400,8 @@ fn sample<const CERTIFY: bool, const REFINED: bool>(
     if near(seen.along) {
         body.points[index].foot = next_foot(track, first + last, seen.along.0[last]);
         let feet = Feet::Run(first);
-        let (left, right) = leeways::<CERTIFY, REFINED>(track, feet, &seen, s, knots, body, index);
+        let spot = &body.points[index].spot;
+        let (left, right) = leeways::<CERTIFY, REFINED>(track, feet, &seen, s, knots, body, spot);
         return Sample::new(&seen, feet, tag, left, right);
     }
     sample_apart::<CERTIFY, REFINED>(track, body, index, s, knots)
@@ -371,17 +418,73 @@ fn sample_apart<const CERTIFY: bool, const REFINED: bool>(
     knots: &Knots,
 ) -> Sample {
     let point = &body.points[index];
-    let (tag, x, y) = (point.tag, s.x + s.ux * point.ahead, s.y + s.uy * point.ahead);
+    let (tag, spot) = (point.tag, point.spot);
+    let (x, y) = (s.x + s.ux * spot.ahead, s.y + s.uy * spot.ahead);
     let feet = follow(track, point.foot, x, y);
-    let seen = place(track.fields.gather(&feet), x, y);
+    let (sample, seen) = sample_at::<CERTIFY, REFINED>(track, body, &spot, s, knots, feet, tag);
     let last = LANES - 1;
     body.points[index].foot = next_foot(track, feet[last], seen.along.0[last]);
-    let (left, right) = leeways::<CERTIFY, REFINED>(track, Feet::Each(feet), &seen, s, knots, body, index);
+    sample
+}
+
+/// A place of a body at eight head stations, its feet given.
+#[inline(always)]
+fn sample_at<const CERTIFY: bool, const REFINED: bool>(
+    track: &Track,
+    body: &Body,
+    spot: &Spot,
+    s: &States,
+    knots: &Knots,
+    feet: [usize; LANES],
+    tag: u64,
+) -> (Sample, Seen) {
+    let (x, y) = (s.x + s.ux * spot.ahead, s.y + s.uy * spot.ahead);
+    let seen = place(track.fields.gather(&feet), x, y);
+    let (left, right) = leeways::<CERTIFY, REFINED>(track, Feet::Each(feet), &seen, s, knots, body, spot);
     let found = |side: V| {
         let one = |i: usize| if seen.along.0[i].abs() <= 1.5 * NEAR_M { side.0[i] } else { LOST_M };
         V(std::array::from_fn(one))
     };
-    Sample::new(&seen, Feet::Each(feet), tag, found(left), found(right))
+    (Sample::new(&seen, Feet::Each(feet), tag, found(left), found(right)), seen)
+}
+
+/// What lies between a body point and the one before it, in so many parts, where half-widths bulge.
+#[cold]
+#[inline(never)]
+#[allow(clippy::too_many_arguments)] // As above.
+fn inside<const REFINED: bool>(
+    track: &Track,
+    body: &Body,
+    index: usize,
+    s: &States,
+    knots: &Knots,
+    (before, after): (&Sample, &Sample),
+    parts: f64,
+    minima: &mut Minima,
+) {
+    let (ahead, point) = (&body.points[index - 1], &body.points[index]);
+    let part_m = point.gap / parts;
+    for number in 1..parts as usize {
+        let part = number as f64 / parts;
+        let spot = ahead.spot.between(point.spot, part);
+        let inner = Knots {
+            ahead: knots.ahead,
+            own: knots.ahead + (knots.own - knots.ahead) * part,
+            behind: knots.own,
+            gap_ahead: part * point.gap,
+            gap_behind: (1.0 - part) * point.gap,
+        };
+        let (x, y) = (s.x + s.ux * spot.ahead, s.y + s.uy * spot.ahead);
+        let from = before.feet.station(0) as f64;
+        let guess = (from + (after.feet.station(0) as f64 - from) * part).round() as usize;
+        let feet = follow(track, guess, x, y);
+        let tag = if part < 0.5 { before.tag } else { after.tag };
+        let (mut sample, _) = sample_at::<true, REFINED>(track, body, &spot, s, &inner, feet, tag);
+        let [most, least] = bends(&[before, &sample, after], s, point.gap);
+        sample.lowered_left = sample.left - whole_sagitta(most, part_m);
+        sample.lowered_right = sample.right - whole_sagitta(-least, part_m);
+        sample.lower(minima);
+    }
 }
 
 impl Sample {
@@ -398,22 +501,40 @@ impl Sample {
     }
 }
 
+/// Whether half-widths bulge so much somewhere near two body points that a parabola between them says nothing.
+#[inline(always)]
+fn bulges(before: &Sample, sample: &Sample) -> bool {
+    before.bulge.max(sample.bulge).0.iter().any(|&bulge| bulge > BULGE_MOST)
+}
+
+/// Greatest and least curvature by which the corridor may bend away from a straight side under some points of it, `gap` apart at most.
+#[inline(always)]
+fn bends(samples: &[&Sample], s: &States, gap: f64) -> [V; 2] {
+    let sway = s.jerk * gap;
+    let most = samples.iter().fold(s.curvature, |most, sample| most.max(sample.curvature)) + sway;
+    let least = samples.iter().fold(s.curvature, |least, sample| least.min(sample.curvature)) - sway;
+    [most, least]
+}
+
+/// By how much a straight side of length `gap` may lie below both its ends over a corridor that bends.
+#[inline(always)]
+fn whole_sagitta(bend: V, gap: f64) -> V {
+    bend.max(ZERO) * (1.1 * gap * gap / 8.0)
+}
+
 /// Between two body points the side is straight while the corridor bends: along the side, leeway is above the parabola
 /// through both ends whose second derivative is the bend (and what the width bulges). Its least value counts at both
-/// ends. Where the width bulges more than [`BULGE_MOST`] its places count one by one: a station sees both ends
-/// pass, and what passes between them is at most the whole sagitta lower.
+/// ends. Where the width bulges more than [`BULGE_MOST`] its places count one by one: a station sees both ends of each of
+/// the `parts` pass, and what passes between them is at most that part's whole sagitta lower.
 #[inline(always)]
-fn between_points(before: &mut Sample, sample: &mut Sample, s: &States, gap: f64) {
+fn between_points(before: &mut Sample, sample: &mut Sample, s: &States, gap: f64, parts: f64) {
     let bulge = before.bulge.max(sample.bulge);
-    let sway = s.jerk * gap;
-    let most = s.curvature.max(before.curvature).max(sample.curvature) + sway;
-    let least = s.curvature.min(before.curvature).min(sample.curvature) - sway;
+    let [most, least] = bends(&[before, sample], s, gap);
     let sag = |bend: V, f: V, g: V| {
-        let bend = bend.max(V::splat(0.0)) * 1.1;
-        let whole = (bend + bulge) * (0.5 * gap * gap) + 1e-9;
-        let short = (whole - (f - g).abs()).max(V::splat(0.0));
+        let whole = (bend.max(ZERO) * 1.1 + bulge) * (0.5 * gap * gap) + 1e-9;
+        let short = (whole - (f - g).abs()).max(ZERO);
         let parabola = short * short / (whole * 4.0);
-        select_negative(V::splat(BULGE_MOST) - bulge, bend * (gap * gap / 8.0), parabola)
+        select_negative(V::splat(BULGE_MOST) - bulge, whole_sagitta(bend, gap / parts), parabola)
     };
     let left = sag(most, before.left, sample.left);
     let right = sag(-least, before.right, sample.right);
@@ -508,7 +629,7 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     s: &States,
     knots: &Knots,
     body: &Body,
-    index: usize,
+    spot: &Spot,
 ) -> (V, V) {
     let at = &seen.at;
     let cos = at.tangent_x * s.ux + at.tangent_y * s.uy;
@@ -517,18 +638,17 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let (left_along, left_at) = (seen.along - askew, seen.lateral + across);
     let (right_along, right_at) = (seen.along + askew, seen.lateral - across);
     let mut edges = [Edge::left(at, left_along, left_at), Edge::right(at, right_along, right_at)];
-    let point = &body.points[index];
     if CERTIFY && rough(at) {
-        edges = apart(track, feet, s, point.ahead, body.half_width, &edges);
+        edges = apart(track, feet, s, spot.ahead, body.half_width, &edges);
     }
     let [left, right] = [edges[0].room, edges[1].room];
-    let lean_left = (askew * -point.slope_ahead).max(askew * point.slope_behind);
-    let lean_right = (askew * point.slope_ahead).max(askew * -point.slope_behind);
+    let lean_left = (askew * -spot.slope_ahead).max(askew * spot.slope_behind);
+    let lean_right = (askew * spot.slope_ahead).max(askew * -spot.slope_behind);
     if !CERTIFY {
-        let gain = cos * point.gain;
+        let gain = cos * spot.gain;
         return (left - gain - lean_left, right - gain - lean_right);
     }
-    let reach = point.ahead.abs();
+    let reach = spot.ahead.abs();
     let (c, t) = (cos.abs(), sin.abs());
     let extras = (s.extra_axle + s.extra_coupling) * body.inverse_length;
     let a = extras + body.heading;
@@ -539,7 +659,7 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
         (c * knots.own, knots.lean(-askew, c, a), knots.lean(askew, c, a))
     } else {
         // g is convex; extra and g are no steeper than their heading bounds.
-        let base = c * (s.extra_axle * point.from_axle + s.extra_coupling * point.from_coupling + point.gain)
+        let base = c * (s.extra_axle * spot.from_axle + s.extra_coupling * spot.from_coupling + spot.gain)
             + t * extras * body.half_width
             + (t - c).max(V::splat(0.0)) * a * body.half_width;
         (base, lean_left, lean_right)
@@ -610,10 +730,7 @@ fn rough(at: &Fields<V>) -> bool {
 fn apart(track: &Track, feet: Feet, s: &States, ahead: f64, half_width: f64, edges: &[Edge; 2]) -> [Edge; 2] {
     let seen = |edge: &Edge, aside: f64| {
         let own: [usize; LANES] = std::array::from_fn(|i| {
-            let k = match feet {
-                Feet::Run(first) => first + i,
-                Feet::Each(feet) => feet[i],
-            };
+            let k = feet.station(i);
             let by = (edge.on.0[i] / track.spacing + 64.5).clamp(0.0, 128.0) as usize;
             (k + by).saturating_sub(64).min(track.len() - 1)
         });
