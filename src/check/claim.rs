@@ -44,9 +44,6 @@ pub struct Finding {
     pub detail: String,
     /// Nothing at all is bounded there: the claim is not proved, but nothing speaks against it either.
     pub unbounded: bool,
-    /// More room is proved there than is claimed. Of turns that is not held against a claim: in tight bends the prover deducts
-    /// decimetres more than is proved here, and not the same everywhere.
-    pub roomier: bool,
 }
 
 /// What is claimed of a span of stations.
@@ -181,8 +178,7 @@ impl<'a> Subject<'a> {
         targets[side][near].fill(rsc_m + LIMITING_TOLERANCE_M + 0.25 * rsc_m.abs());
         let roomy = swept.refute_only(&Targets(targets), Some(unit)).is_empty();
         roomy.then(|| {
-            let told = format!("unit {unit} has more room than the RSC at {at_m:.1} m on that side");
-            Finding { roomier: true, ..finding("limiting", &told) }
+            finding("limiting", &format!("unit {unit} has more room than the RSC at {at_m:.1} m on that side"))
         })
     }
 
@@ -281,5 +277,5 @@ fn asked(rsc_m: f64) -> f64 {
 }
 
 pub(crate) fn finding(claim: &str, detail: &str) -> Finding {
-    Finding { claim: claim.to_owned(), detail: detail.to_owned(), unbounded: false, roomier: false }
+    Finding { claim: claim.to_owned(), detail: detail.to_owned(), unbounded: false }
 }
