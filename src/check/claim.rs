@@ -174,8 +174,10 @@ impl<'a> Subject<'a> {
         let at = at.clamp(own.start as f64, own.end as f64 - 1.0);
         let beyond = LIMITING_BEYOND as usize;
         let near = (at as usize).saturating_sub(beyond)..(at as usize + beyond).min(stretches);
+        // Where half-widths kink the prover deducts half the kink, which it may have stepped over; it is looked at as it is here.
+        let kink_m = 0.5 * self.road.kink(side, self.road.lead + near.start..self.road.lead + near.end);
         // Where much is to spare, or missing, the two part by more: there nothing rests on it.
-        targets[side][near].fill(rsc_m + LIMITING_TOLERANCE_M + 0.25 * rsc_m.abs());
+        targets[side][near].fill(rsc_m + LIMITING_TOLERANCE_M + kink_m + 0.25 * rsc_m.abs());
         let roomy = swept.refute_only(&Targets(targets), Some(unit)).is_empty();
         roomy.then(|| {
             finding("limiting", &format!("unit {unit} has more room than the RSC at {at_m:.1} m on that side"))

@@ -179,6 +179,15 @@ impl Road {
         0.25 * growth * (to - from)
     }
 
+    /// By how much half-widths at some stations lie below the straight line between their neighbours at most.
+    pub(crate) fn kink(&self, side: usize, stations: std::ops::Range<usize>) -> f64 {
+        let below = |k: usize| {
+            let [a, b, c] = [k - 1, k, k + 1].map(|k| self.widths[k][side]);
+            0.5 * (a + c) - b
+        };
+        (stations.start.max(1)..stations.end.min(self.len() - 1)).map(below).fold(0.0, f64::max)
+    }
+
     /// On stretches between `from` and `to` (stations): the most that the road bends towards a side (0 left, 1 right), and the
     /// most by which the curvature changes per metre.
     pub(crate) fn sharpest(&self, side: usize, from: f64, to: f64) -> (f64, f64) {

@@ -480,7 +480,7 @@ fn inside<const REFINED: bool>(
         let feet = follow(track, guess, x, y);
         let tag = if part < 0.5 { before.tag } else { after.tag };
         let (mut sample, _) = sample_at::<true, REFINED>(track, body, &spot, s, &inner, feet, tag);
-        let [most, least] = bends(&[before, &sample, after], s, point.gap);
+        let [most, least] = bends(&[before, &sample, after], s, part_m);
         sample.lowered_left = sample.left - whole_sagitta(most, part_m);
         sample.lowered_right = sample.right - whole_sagitta(-least, part_m);
         sample.lower(minima);
@@ -507,7 +507,8 @@ fn bulges(before: &Sample, sample: &Sample) -> bool {
     before.bulge.max(sample.bulge).0.iter().any(|&bulge| bulge > BULGE_MOST)
 }
 
-/// Greatest and least curvature by which the corridor may bend away from a straight side under some points of it, `gap` apart at most.
+/// Greatest and least curvature by which the corridor may bend away from a straight side under some points of it while
+/// these pass a station one after the other, `gap` apart at most.
 #[inline(always)]
 fn bends(samples: &[&Sample], s: &States, gap: f64) -> [V; 2] {
     let sway = s.jerk * gap;
@@ -529,15 +530,17 @@ fn whole_sagitta(bend: V, gap: f64) -> V {
 #[inline(always)]
 fn between_points(before: &mut Sample, sample: &mut Sample, s: &States, gap: f64, parts: f64) {
     let bulge = before.bulge.max(sample.bulge);
-    let [most, least] = bends(&[before, sample], s, gap);
-    let sag = |bend: V, f: V, g: V| {
+    let ends = [&*before, &*sample];
+    let [most, least] = bends(&ends, s, gap);
+    let [part_most, part_least] = bends(&ends, s, gap / parts);
+    let sag = |bend: V, part_bend: V, f: V, g: V| {
         let whole = (bend.max(ZERO) * 1.1 + bulge) * (0.5 * gap * gap) + 1e-9;
         let short = (whole - (f - g).abs()).max(ZERO);
         let parabola = short * short / (whole * 4.0);
-        select_negative(V::splat(BULGE_MOST) - bulge, whole_sagitta(bend, gap / parts), parabola)
+        select_negative(V::splat(BULGE_MOST) - bulge, whole_sagitta(part_bend, gap / parts), parabola)
     };
-    let left = sag(most, before.left, sample.left);
-    let right = sag(-least, before.right, sample.right);
+    let left = sag(most, part_most, before.left, sample.left);
+    let right = sag(-least, -part_least, before.right, sample.right);
     before.lowered_left = before.lowered_left.min(before.left - left);
     before.lowered_right = before.lowered_right.min(before.right - right);
     sample.lowered_left = sample.left - left;

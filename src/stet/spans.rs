@@ -40,11 +40,7 @@ pub(super) fn result(track: &Track, model: &Model, span: &std::ops::Range<usize>
             // A NaN, which no input should give, is the least of all.
             if value < least || value.is_nan() {
                 least = if value.is_nan() { NOTHING_M } else { value.max(NOTHING_M) };
-                let tag = value.to_bits() & TAG_MASK;
-                let (unit, point) = ((tag >> 4) as usize, (tag & 15) as usize);
-                let point_m = model.units.get(unit).and_then(|u| u.points.get(point)).copied().unwrap_or(0.0);
-                let station = k.saturating_sub(track.lead).min(track.count - 1);
-                limiting = Limiting { station, unit, side, point_m };
+                limiting = place(track, model, k, side, value);
             }
         }
         if full.hinge[k] < hinge {
@@ -76,9 +72,17 @@ pub(super) fn result(track: &Track, model: &Model, span: &std::ops::Range<usize>
     }
 }
 
+/// Where a tagged leeway at an extended station stands.
+fn place(track: &Track, model: &Model, k: usize, side: Side, leeway: f64) -> Limiting {
+    let tag = leeway.to_bits() & TAG_MASK;
+    let (unit, point) = ((tag >> 4) as usize, (tag & 15) as usize);
+    let point_m = model.units.get(unit).and_then(|u| u.points.get(point)).copied().unwrap_or(0.0);
+    Limiting { station: k.saturating_sub(track.lead).min(track.count - 1), unit, side, point_m }
+}
+
 /// SHRINK: the largest γ (in thousandths) for which no station of the span has negative leeway, from the leeways at
 /// γ = 1 and at γ_min. Every bound grows with γ as a sum of convex terms, so that the chord between the two is never
-/// above the leeway. Where γ_min does not suffice, its negative RSC is the result.
+/// above the leeway. What limits is where the chord is least: what gains most by shrinking need not. Where γ_min does not suffice, its negative RSC is the result.
 pub(super) fn shrunk(
     track: &Track,
     model: &Model,
@@ -93,14 +97,21 @@ pub(super) fn shrunk(
     if lowest.rsc_m < 0.0 || floor >= 1.0 {
         return lowest;
     }
-    let sides = |k: usize| [(full.left[k], least.left[k]), (full.right[k], least.right[k])];
-    let pairs = || stations(track, span).flat_map(sides);
-    let part = pairs().filter(|(f, _)| *f < 0.0).fold(1.0_f64, |part, (f, l)| part.min(l / (l - f)));
+    let sides = |k: usize| [(full.left[k], least.left[k], Side::Left), (full.right[k], least.right[k], Side::Right)];
+    let all = || stations(track, span).flat_map(|k| sides(k).map(|side| (k, side)));
+    let fails = all().filter(|(_, (f, _, _))| *f < 0.0);
+    let part = fails.fold(1.0_f64, |part, (_, (f, l, _))| part.min(l / (l - f)));
     let shrink = ((floor + (1.0 - floor) * part) * SHRINK_STEPS).floor() / SHRINK_STEPS;
     if shrink <= floor {
         return lowest;
     }
     let part = (shrink - floor) / (1.0 - floor);
-    let rsc = pairs().fold(f64::INFINITY, |rsc, (f, l)| rsc.min(l + (f - l) * part));
-    SpanResult { rsc_m: rsc, shrink, limiting: at_full.limiting, ..lowest }
+    let (mut rsc_m, mut limiting) = (f64::INFINITY, at_full.limiting);
+    for (k, (f, l, side)) in all() {
+        let chord = l + (f - l) * part;
+        if chord < rsc_m {
+            (rsc_m, limiting) = (chord, place(track, model, k, side, f));
+        }
+    }
+    SpanResult { rsc_m, shrink, limiting, ..lowest }
 }
