@@ -94,7 +94,7 @@ export class RoutePanel {
     const what = count === 1 ? "one place is not certified for this vehicle" : `${count} places are not certified for this vehicle`;
     return [
       h("h2", {}, "No certified route"),
-      h("p", { class: "headline-words" }, `Even on the way with the least in it ${what}: ${reasons(answer.obstacles)}. They are marked on the map.`),
+      h("p", { class: "headline-words" }, `Even on the easiest way ${what}: ${reasons(answer.obstacles)}. See the map.`),
       h("ol", { class: "parts" }, ...grouped(answer.obstacles).map((group) => this.#obstacle(group))),
       h("p", { class: "scope" }, `Each of them would have to be certified first. ${answer.gave_up ? "The search was given up before all ways were tried. " : ""}${ways}`),
     ];
@@ -128,12 +128,12 @@ function whyNot({ verdict, reason }: Obstacle): string {
   return verdict === "refuted" ? "Fails as part of the whole" : reasonWords(verdict, reason);
 }
 
-/** `31 too narrow, 2 no access`, the most frequent first. */
+/** `too narrow (31), no access (2)`, the most frequent first. */
 function reasons(obstacles: Obstacle[]): string {
   const counts = new Map<string, number>();
   for (const obstacle of obstacles) counts.set(whyNot(obstacle), (counts.get(whyNot(obstacle)) ?? 0) + 1);
   const sorted = [...counts].sort((a, b) => b[1] - a[1]);
-  return sorted.map(([why, count]) => `${count} ${why.charAt(0).toLowerCase()}${why.slice(1)}`).join(", ");
+  return sorted.map(([why, count]) => `${why.charAt(0).toLowerCase()}${why.slice(1)} (${count})`).join(", ");
 }
 
 /** Runs of edges of one road that fail for one reason. */
