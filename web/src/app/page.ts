@@ -147,6 +147,8 @@ export class Page {
 
   #search(hit: SearchHit): void {
     this.#maps.fit(hit.bbox);
+    // From here arrows and + and − go on.
+    this.#maps.first.map.getCanvas().focus({ preventScroll: true });
     const one = hit.kind === "edge" || hit.kind === "turn";
     this.context.store.set({ selected: one ? hit.id : null, route: null });
     if (!one) toast(`${title(hit)}: click on the road for its explanation.`);
