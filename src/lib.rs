@@ -20,7 +20,8 @@
 //!
 //! [`check`] works out again what [`stet`] claims, without it.
 //!
-//! [`pipeline`] runs them in that order; [`pace`] says when a vehicle is where. `stet` is pure: no input or output, no clock,
+//! [`pipeline`] runs them in that order; [`pace`] says when a vehicle is where; [`stop`]
+//! lets long work be cut off. `stet` is pure: no input or output, no clock,
 //! no threads.
 
 pub mod account;
@@ -38,6 +39,7 @@ pub mod published;
 pub mod route;
 pub mod serve;
 pub mod stet;
+pub mod stop;
 pub mod store;
 pub mod turns;
 pub mod vehicle;

@@ -20,7 +20,7 @@ use super::output::{results, tell};
 Examples:
   netcert serve
   netcert serve --db region.gpkg --addr 127.0.0.1:0         any free port
-  netcert serve --base-map 'https://tile.example.org/{z}/{x}/{y}.png'
+  netcert serve --base-map 'https://tile.example.org/{z}/{x}/{y}.png' --base-map-attribution '© Example'
 
 The interface is described at /api/openapi.json. When the database is made anew, the next request sees it.")]
 pub(crate) struct Serve {
@@ -36,15 +36,22 @@ pub(crate) struct Serve {
     /// leaves this machine].
     #[arg(long, value_name = "URL", value_parser = BaseMap::parse)]
     base_map: Option<BaseMap>,
+    /// Whom to name in the corner of the map while the base map is shown, as its terms ask [default: its host].
+    #[arg(long, value_name = "TEXT", requires = "base_map")]
+    base_map_attribution: Option<String>,
 }
 
 impl Serve {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        let base_map = match (self.base_map.clone(), &self.base_map_attribution) {
+            (Some(map), Some(text)) => Some(map.named(text)),
+            (map, _) => map,
+        };
         let server = Server::bind(Options {
             db: self.db.path()?,
             addr: self.addr,
             allow_remote: self.allow_remote,
-            base_map: self.base_map.clone(),
+            base_map,
             recorded: how::recorded,
             log: tell,
             limits: Limits::default(),

@@ -11,13 +11,29 @@ use crate::network::{Edge, Network, Stroke};
 use crate::osm::facts::{Direction, Policy};
 use crate::pipeline::{Settings, verdict};
 use crate::stet::{Model, Options, SpanResult, certify_planned, certify_spans};
+use crate::stop::{Stop, Stopped};
 use crate::store::{EdgeRow, Named as _, verdict_words};
 use crate::verdict::{UnknownReason, Verdict};
 
 /// Why `model`'s vehicle may use an edge of the network or not; `None` if there is no such edge.
 #[must_use]
 pub fn explain_edge(network: &Network, edge: u32, model: &Model, settings: &Settings) -> Option<Explanation> {
-    let facts = network.edges.get(edge as usize)?;
+    explain_edge_until(network, edge, model, settings, &Stop::default()).ok().flatten()
+}
+
+/// The same; before each certificate it asks whether to stop.
+///
+/// # Errors
+/// It was told to.
+pub fn explain_edge_until(
+    network: &Network,
+    edge: u32,
+    model: &Model,
+    settings: &Settings,
+    stop: &Stop,
+) -> Result<Option<Explanation>, Stopped> {
+    stop.check()?;
+    let Some(facts) = network.edges.get(edge as usize) else { return Ok(None) };
     let conflict = Conflict::of(facts, &model.vehicle);
     let road = road_facts(network, facts, settings.policy);
     let case = Case::of(network, edge, settings);
@@ -29,10 +45,11 @@ pub fn explain_edge(network: &Network, edge: u32, model: &Model, settings: &Sett
     let geometry = geometry.filter(|_| unknown.is_none());
     let mut hints = Hints::default();
     if let (Ok(case), Some(geometry), Verdict::Unsafe(_)) = (&case, &geometry, verdict) {
-        hints = hints::of(&|corridor, model| case.result(corridor, model, &settings.stet), geometry, model);
-        hints.other_strips = other_strips(network, edge, model, settings, geometry.result.rsc_m);
+        hints = hints::of(&|corridor, model| case.result(corridor, model, &settings.stet, stop), geometry, model);
+        hints.other_strips = other_strips(network, edge, (model, geometry.result.rsc_m), settings, stop);
     }
-    Some(Explanation { road: Some(road), vehicle: model.vehicle.clone(), verdict, geometry, hints, conflict })
+    stop.check()?;
+    Ok(Some(Explanation { road: Some(road), vehicle: model.vehicle.clone(), verdict, geometry, hints, conflict }))
 }
 
 impl Explanation {
@@ -91,8 +108,9 @@ impl Case {
         geometry(&self.made.corridor, &self.spans(), self.which, model, options)
     }
 
-    /// The edge's result in another corridor of the same stations.
-    fn result(&self, corridor: &Corridor, model: &Model, options: &Options) -> Option<SpanResult> {
+    /// The edge's result in another corridor of the same stations; none once it is told to stop.
+    fn result(&self, corridor: &Corridor, model: &Model, options: &Options, stop: &Stop) -> Option<SpanResult> {
+        stop.check().ok()?;
         let rows = certify_spans(corridor, &[model], &self.spans(), options);
         rows.into_iter().next()?.spans.into_iter().nth(self.which)
     }
@@ -127,9 +145,9 @@ fn stroke_of(network: &Network, edge: u32) -> Option<&Stroke> {
 fn other_strips(
     network: &Network,
     edge: u32,
-    model: &Model,
+    (model, rsc_m): (&Model, f64),
     settings: &Settings,
-    rsc_m: f64,
+    stop: &Stop,
 ) -> Vec<hints::OtherStrip> {
     let wider = match settings.policy {
         Policy::Lane => [Policy::Direction, Policy::Carriageway].as_slice(),
@@ -141,7 +159,7 @@ fn other_strips(
         if case.unknown().is_some() {
             return None;
         }
-        let result = case.result(&case.made.corridor, model, &settings.stet)?;
+        let result = case.result(&case.made.corridor, model, &settings.stet, stop)?;
         let corridor = &case.made.corridor;
         let stations = case.made.spans.get(case.which)?.stations.clone();
         let width_m = stations.map(|k| corridor.left_m[k] + corridor.right_m[k]).fold(f64::INFINITY, f64::min);

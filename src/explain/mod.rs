@@ -32,7 +32,7 @@ mod words;
 
 use std::ops::Range;
 
-pub use edge::explain_edge;
+pub use edge::{explain_edge, explain_edge_until};
 pub use given::explain_corridor;
 pub use hints::{Hints, OtherStrip, WidthHint};
 pub use json::json;

@@ -13,6 +13,7 @@ use super::pieces::{Menu, Strokes, TurnPiece};
 use crate::corridor::{CentrelineError, Corridor, Frame, FrameError};
 use crate::network::{Movement, MovementKind, Movements, Network};
 use crate::osm::LonLat;
+use crate::stop::{Stop, Stopped};
 use crate::turns::{Joint, StrokeLine};
 use crate::verdict::UnknownReason;
 
@@ -81,6 +82,9 @@ pub enum AssemblyError {
     /// Wider than a metric frame.
     #[error("the route spans more than one metric frame: {0}; cut it into shorter ones with --via and certify each")]
     Frame(#[from] FrameError),
+    /// Nobody waits for it any more.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
     /// No centreline leads through the stations.
     #[error("the route's pieces make no smooth line: {error}")]
     Centreline {
@@ -118,16 +122,17 @@ pub(super) struct Sample {
     pub(super) right_m: f64,
 }
 
-/// Strings the pieces of a way together.
+/// Strings the pieces of a way together. Between two turns it asks whether to stop.
 ///
 /// # Errors
-/// A piece without a corridor, turns that overlap too far, more than a metric frame.
+/// A piece without a corridor, turns that overlap too far, more than a metric frame; told to stop.
 pub fn assemble(
     network: &Network,
     movements: &Movements,
     strokes: &mut Strokes<'_>,
     menu: &mut Menu<'_>,
     way: &Way<'_>,
+    stop: &Stop,
 ) -> Result<RoutePath, AssemblyError> {
     let edges = &way.drive.edges;
     let positions: Vec<LonLat> =
@@ -144,6 +149,7 @@ pub fn assemble(
         if movement.kind == MovementKind::StraightOn {
             continue;
         }
+        stop.check()?;
         legs.push(first..next - arcs.len());
         first = next;
         let piece = menu.chosen(strokes, &movement, arcs).map_err(|reason| AssemblyError::Unknown { at, reason })?;

@@ -17,6 +17,7 @@ use super::speeds::{Measure, Speeds};
 use crate::corridor::Corridor;
 use crate::network::{MovementKind, Network};
 use crate::stet::{self, Certificate, Model};
+use crate::stop::Stop;
 
 /// A failure of the whole is put down to a turn at most this far from it, metres; else to the edge it is on.
 const TURN_REACH_M: f64 = 120.0;
@@ -102,6 +103,7 @@ pub struct Planner<'n> {
     options: stet::Options,
     speeds: Speeds,
     access: Access,
+    stop: Stop,
 }
 
 impl<'n> Planner<'n> {
@@ -118,7 +120,18 @@ impl<'n> Planner<'n> {
     ) -> Self {
         let snapper = Snapper::new(graph.network);
         let access = permits.access(graph.movements);
-        Self { graph, snapper, permits, model, menu: Menu::new(turns), strokes, options, speeds, access }
+        Self {
+            graph,
+            snapper,
+            permits,
+            model,
+            menu: Menu::new(turns),
+            strokes,
+            options,
+            speeds,
+            access,
+            stop: Stop::default(),
+        }
     }
 
     fn network(&self) -> &'n Network {
@@ -130,6 +143,15 @@ impl<'n> Planner<'n> {
     /// # Errors
     /// A place that is on no road that the vehicle may use.
     pub fn answer(&mut self, question: &Question) -> Result<Answer, SnapError> {
+        self.answer_until(question, &Stop::default()).map(Option::unwrap_or_default)
+    }
+
+    /// The same; `None` if it was told to stop. It asks before each search, each turn and each certificate.
+    ///
+    /// # Errors
+    /// A place that is on no road that the vehicle may use.
+    pub fn answer_until(&mut self, question: &Question, stop: &Stop) -> Result<Option<Answer>, SnapError> {
+        self.stop = stop.clone();
         let usable = |edge| self.permits.edge(edge);
         let snap = |place: &Position| self.snapper.snap(*place, question.snap_m, usable);
         let snapped = question.places.iter().map(snap).collect::<Result<Vec<_>, _>>()?;
@@ -142,7 +164,7 @@ impl<'n> Planner<'n> {
         } else {
             self.alternatives(&access, question, &mut answer);
         }
-        Ok(answer)
+        Ok((!stop.told()).then_some(answer))
     }
 
     fn way(&self, access: &Access, snapped: &[Snapped]) -> Option<(Found, f64, f64)> {
@@ -164,7 +186,7 @@ impl<'n> Planner<'n> {
         answer: &mut Answer,
         wanted: &dyn Fn(&[u32]) -> bool,
     ) -> bool {
-        loop {
+        while !self.stop.told() {
             let Some((found, start, end)) = self.way(access, &answer.snapped) else { return false };
             if !wanted(&found.drive.edges) {
                 return false;
@@ -192,6 +214,7 @@ impl<'n> Planner<'n> {
                 return false;
             }
         }
+        false
     }
 
     /// Certifies a way, each turn on the best of its paths first. Beside the route what failed before: certificates, and at the end of
@@ -212,7 +235,7 @@ impl<'n> Planner<'n> {
                 (_, Some((from, to))) => self.menu.another(from, to),
                 (_, None) => false,
             };
-            let goes_on = another && strung < MOST_STRUNG && failed.len() < tries;
+            let goes_on = another && !self.stop.told() && strung < MOST_STRUNG && failed.len() < tries;
             if refutation.assembly.is_none() || !goes_on {
                 failed.push(refutation);
             }
@@ -226,13 +249,13 @@ impl<'n> Planner<'n> {
     fn certify(&mut self, found: &Found, start: f64, end: f64) -> Result<Route, Refutation> {
         let way = Way { drive: &found.drive, start, end };
         let network = self.graph.network;
-        let path = assemble(network, self.graph.movements, &mut self.strokes, &mut self.menu, &way);
+        let path = assemble(network, self.graph.movements, &mut self.strokes, &mut self.menu, &way, &self.stop);
         let path = path.map_err(|error| Refutation {
             at: match &error {
                 AssemblyError::Unknown { at, .. }
                 | AssemblyError::Overlap { at, .. }
                 | AssemblyError::Centreline { at, .. } => *at,
-                AssemblyError::Frame(_) => first_turn(&found.drive),
+                AssemblyError::Frame(_) | AssemblyError::Stopped(_) => first_turn(&found.drive),
             },
             result: None,
             assembly: Some(error),
@@ -278,7 +301,7 @@ impl<'n> Planner<'n> {
         let Some(first_cost) = answer.routes.first().map(|route| route.cost) else { return };
         let mut access = access.clone();
         let mut rounds = DEARER * question.alternatives as u32;
-        while answer.routes.len() <= question.alternatives && rounds > 0 && !answer.gave_up {
+        while answer.routes.len() <= question.alternatives && rounds > 0 && !answer.gave_up && !self.stop.told() {
             rounds -= 1;
             for route in &answer.routes {
                 for &edge in &route.drive.edges {

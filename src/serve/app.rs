@@ -10,6 +10,7 @@ use super::cache::Cache;
 use super::options::Options;
 use super::problem::Problem;
 use super::region::{Identity, Region};
+use super::tiles;
 use super::work::Lane;
 
 /// The application.
@@ -52,7 +53,7 @@ impl App {
             return Ok(known);
         }
         let app = Arc::clone(self);
-        let read = move || {
+        let read = move |_| {
             let _reading = app.reading.lock().unwrap_or_else(PoisonError::into_inner);
             if let Some(read) = app.unchanged()? {
                 return Ok(read);
@@ -71,11 +72,18 @@ impl App {
         Ok((Identity::of(&self.options.db)? == known.identity).then_some(known))
     }
 
+    /// Makes what the first map of each vehicle would have to wait for.
+    pub(super) async fn prepare(self: &Arc<Self>) {
+        let Ok(region) = self.region().await else { return };
+        // If it fails, whoever asks is told.
+        let _ = self.slow.run(move |stop| tiles::prepare(&region, &stop)).await;
+    }
+
     /// Loads what the first explanation, route and search would have to wait for.
     pub(super) async fn warm_up(self: Arc<Self>) {
         let Ok(region) = self.region().await else { return };
         // If it fails, whoever asks is told.
-        let _ = self.slow.run(move || region.names().and_then(|_| region.roads()).map(|_| ())).await;
+        let _ = self.slow.run(move |_| region.names().and_then(|_| region.roads()).map(|_| ())).await;
     }
 
     /// Answers from what was answered before, or by doing the work.
@@ -108,13 +116,14 @@ impl App {
         if let Some(stored) = self.cache.get(&key) {
             return Ok((stored, keep));
         }
-        let (app, asked) = (Arc::clone(self), ask.clone());
+        let (app, mut asked) = (Arc::clone(self), ask.clone());
         let lane = match pace {
             Pace::Quick => &self.quick,
             Pace::Slow => &self.slow,
         };
         let stored = lane
-            .run(move || {
+            .run(move |stop| {
+                asked.stop = stop;
                 // Somebody may have done it while this one waited.
                 if let Some(stored) = app.cache.get(&key) {
                     return Ok(stored);

@@ -10,6 +10,7 @@ use axum::http::request::Parts;
 use super::problem::Problem;
 use crate::osm::facts::Policy;
 use crate::route::Position;
+use crate::stop::Stop;
 use crate::store::Named;
 
 /// More parameters than any endpoint has.
@@ -27,6 +28,8 @@ pub(super) struct Ask {
     parameters: Vec<(String, String)>,
     pub(super) if_none_match: Option<String>,
     pub(super) gzip: bool,
+    /// Told when nobody waits for the answer any more.
+    pub(super) stop: Stop,
 }
 
 impl<S: Send + Sync> FromRequestParts<S> for Ask {
@@ -39,7 +42,7 @@ impl<S: Send + Sync> FromRequestParts<S> for Ask {
         let parameters = read_query(parts.uri.query().unwrap_or_default())?;
         let if_none_match = text(&parts.headers, header::IF_NONE_MATCH);
         let gzip = text(&parts.headers, header::ACCEPT_ENCODING).is_some_and(|accepts| takes_gzip(&accepts));
-        Ok(Self { path: parts.uri.path().to_owned(), names, parameters, if_none_match, gzip })
+        Ok(Self { path: parts.uri.path().to_owned(), names, parameters, if_none_match, gzip, stop: Stop::default() })
     }
 }
 

@@ -17,7 +17,7 @@
 //! | `app`, `work` | what requests share; lanes for work that blocks |
 //! | `region`, `roads` | one state of the file; the network in memory |
 //! | `planning`, `drive` | routes, and how a vehicle drives along one |
-//! | `recent` | the last results of long work |
+//! | `recent` | what is made when first asked for; the last results of long work |
 //! | `names` | names as people type them |
 //! | `tiles` | vector tiles |
 //! | `api` | everything else, one file an endpoint |

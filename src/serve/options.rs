@@ -39,6 +39,8 @@ pub struct BaseMap {
     pub url: String,
     /// Scheme, host and port of it: what the page's content security policy lets through.
     pub origin: String,
+    /// Who is to be named beside it, as plain text; at first its host.
+    pub attribution: String,
 }
 
 impl BaseMap {
@@ -59,7 +61,14 @@ impl BaseMap {
         if !["{z}", "{x}", "{y}"].iter().all(|part| url.contains(part)) || url.chars().any(char::is_control) {
             return Err("give a template with {z}, {x} and {y}".into());
         }
-        Ok(Self { url: url.to_owned(), origin: format!("{scheme}{host}") })
+        let attribution = format!("Base map: {host}");
+        Ok(Self { url: url.to_owned(), origin: format!("{scheme}{host}"), attribution })
+    }
+
+    /// With what those who made the map want to be named as.
+    #[must_use]
+    pub fn named(self, attribution: &str) -> Self {
+        Self { attribution: attribution.to_owned(), ..self }
     }
 }
 
@@ -117,6 +126,8 @@ mod tests {
     fn a_base_map_is_a_template_of_a_plain_host() {
         let map = BaseMap::parse("https://tiles.example.org:8443/a/{z}/{x}/{y}.png").unwrap();
         assert_eq!(map.origin, "https://tiles.example.org:8443");
+        assert!(map.attribution.contains("tiles.example.org"));
+        assert_eq!(map.named("© the mappers").attribution, "© the mappers");
         for wrong in [
             "tiles/{z}/{x}/{y}",
             "https:///{z}/{x}/{y}",

@@ -14,6 +14,7 @@ use crate::osm::facts::Policy;
 use crate::pipeline::Settings;
 use crate::route::{self, Graph, MadeTurns, Measure, Permits, Planner, Question, Speeds, Strokes};
 use crate::stet::Model;
+use crate::stop::{Stop, Stopped};
 use serde_json::{Value, json};
 
 /// After so many answers a planner begins afresh: what it keeps of turns and strokes grows with what it has seen.
@@ -27,6 +28,8 @@ pub(super) struct Ride {
     pub(super) question: Question,
     /// Of so many routes, from the best on, the drive is wanted.
     pub(super) drives: usize,
+    /// Told when nobody waits for it any more.
+    pub(super) stop: Stop,
 }
 
 type Reply = mpsc::Sender<Result<Value, Problem>>;
@@ -94,9 +97,11 @@ impl Wanted {
     }
 
     fn answer(&self, planner: &mut Planner<'_>, ride: &Ride) -> Result<Value, Problem> {
-        let answer = planner.answer(&ride.question).map_err(|error| Problem::no_road(error.to_string()))?;
+        let answer = planner.answer_until(&ride.question, &ride.stop);
+        let answer = answer.map_err(|error| Problem::no_road(error.to_string()))?.ok_or(Stopped)?;
         let mut members = route::json(&self.roads.network, &self.model, &answer);
         for (i, found) in answer.routes.iter().enumerate() {
+            ride.stop.check()?;
             let more = drive::members(&self.model, found, i < ride.drives);
             let more = more.map_err(|error| Problem::fault(error.to_string()))?;
             if let (Some(Value::Object(route)), Value::Object(more)) = (members["routes"].get_mut(i), more) {

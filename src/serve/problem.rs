@@ -4,6 +4,7 @@ use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
 
+use crate::stop::Stopped;
 use crate::store::StoreError;
 
 /// A refusal or failure.
@@ -94,6 +95,13 @@ impl From<StoreError> for Problem {
                 )
             }
         }
+    }
+}
+
+impl From<Stopped> for Problem {
+    /// Who had asked has been answered or has gone.
+    fn from(stopped: Stopped) -> Self {
+        Self::busy(stopped.to_string())
     }
 }
 

@@ -1,13 +1,37 @@
-//! The last few results of long work of one kind, so that two questions about one thing (its words, its picture) cost
-//! one.
+//! What is made when it is first asked for: one thing, or the last few of one kind, so that two questions about one
+//! thing (its words, its picture; a map's tiles) cost one.
+//!
+//! Promises that each is made once at a time, whoever asks meanwhile waits for it; a failure is not kept.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
+/// One thing.
+pub(super) struct Late<T>(Mutex<Option<T>>);
+
+impl<T> Default for Late<T> {
+    fn default() -> Self {
+        Self(Mutex::new(None))
+    }
+}
+
+impl<T: Clone> Late<T> {
+    pub(super) fn get<E>(&self, make: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+        let mut slot = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*slot {
+            Some(made) => Ok(made.clone()),
+            None => Ok(slot.insert(make()?).clone()),
+        }
+    }
+}
+
+/// A thing with its key.
+type Kept<T> = (String, Arc<Late<Arc<T>>>);
+
 /// Keeps the `most` last ones.
 pub(super) struct Recent<T> {
     most: usize,
-    kept: Mutex<VecDeque<(String, Arc<T>)>>,
+    kept: Mutex<VecDeque<Kept<T>>>,
 }
 
 impl<T> Recent<T> {
@@ -15,21 +39,25 @@ impl<T> Recent<T> {
         Self { most, kept: Mutex::default() }
     }
 
-    /// The one of this key, else it is made. Made outside the lock: two may make the same at a time, both the same
-    /// thing.
+    /// The one of this key, else it is made; others are not held up by that.
     pub(super) fn get<E>(&self, key: &str, make: impl FnOnce() -> Result<T, E>) -> Result<Arc<T>, E> {
-        let known =
-            |kept: &VecDeque<(String, Arc<T>)>| kept.iter().find(|one| one.0 == key).map(|one| Arc::clone(&one.1));
-        if let Some(found) = known(&self.kept.lock().unwrap_or_else(PoisonError::into_inner)) {
-            return Ok(found);
+        let slot = {
+            let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+            match kept.iter().find(|one| one.0 == key) {
+                Some(known) => Arc::clone(&known.1),
+                None => {
+                    let slot = Arc::<Late<Arc<T>>>::default();
+                    kept.truncate(self.most.saturating_sub(1));
+                    kept.push_front((key.to_owned(), Arc::clone(&slot)));
+                    slot
+                }
+            }
+        };
+        let made = slot.get(|| make().map(Arc::new));
+        if made.is_err() {
+            self.forget(key);
         }
-        let made = Arc::new(make()?);
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if known(&kept).is_none() {
-            kept.truncate(self.most.saturating_sub(1));
-            kept.push_front((key.to_owned(), Arc::clone(&made)));
-        }
-        Ok(made)
+        made
     }
 
     /// Takes it out.
@@ -42,6 +70,7 @@ impl<T> Recent<T> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     #[test]
     fn the_last_few_are_kept_and_a_failure_is_not() {
@@ -52,5 +81,22 @@ mod tests {
         assert_eq!(made("d", 6), 6);
         recent.forget("d");
         assert_eq!(made("d", 7), 7);
+    }
+
+    #[test]
+    fn who_asks_while_it_is_made_waits_for_it() {
+        let (recent, made) = (Recent::<()>::new(2), AtomicUsize::new(0));
+        std::thread::scope(|scope| {
+            for _ in 0..6 {
+                scope.spawn(|| {
+                    recent.get("a", || {
+                        std::thread::sleep(std::time::Duration::from_millis(30));
+                        made.fetch_add(1, Ordering::SeqCst);
+                        Ok::<_, ()>(())
+                    })
+                });
+            }
+        });
+        assert_eq!(made.load(Ordering::SeqCst), 1);
     }
 }

@@ -14,17 +14,21 @@ use super::ask::shortened;
 use super::names::NamedRoad;
 use super::planning::Router;
 use super::problem::Problem;
-use super::recent::Recent;
+use super::recent::{Late, Recent};
 use super::roads::Roads;
+use super::tiles::Overview;
 use crate::osm::facts::Policy;
 use crate::pipeline::Settings;
-use crate::store::{Bounds, CertifiedSet, Database, Named, Run, StoreError};
+use crate::stop::Stop;
+use crate::store::{Bounds, CertifiedSet, Database, DrivingSides, Named, Run, StoreError};
 use crate::vehicle::Vehicle;
 
 /// Idle connections that are kept; each may hold 64 MB of the file's pages.
 const MOST_IDLE: usize = 4;
 /// Explanations kept; each is a picture of some 100 kB.
 const MOST_EXPLAINED: usize = 16;
+/// Main roads from afar kept, by vehicle and policy: about 60 bytes a vertex.
+pub(super) const MOST_OVERVIEWS: usize = 6;
 /// Planners kept; each holds an index of all roads and what it has made of them.
 const MOST_ROUTERS: usize = 4;
 
@@ -57,25 +61,6 @@ impl Identity {
     }
 }
 
-/// Made when it is first asked for, once; a failure is not kept.
-struct Late<T>(Mutex<Option<T>>);
-
-impl<T> Default for Late<T> {
-    fn default() -> Self {
-        Self(Mutex::new(None))
-    }
-}
-
-impl<T: Clone> Late<T> {
-    fn get(&self, make: impl FnOnce() -> Result<T, Problem>) -> Result<T, Problem> {
-        let mut slot = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        match &*slot {
-            Some(made) => Ok(made.clone()),
-            None => Ok(slot.insert(make()?).clone()),
-        }
-    }
-}
-
 /// A state of the database.
 pub(super) struct Region {
     path: PathBuf,
@@ -94,6 +79,9 @@ pub(super) struct Region {
     idle: Mutex<Vec<Database>>,
     roads: Late<Arc<Roads>>,
     names: Late<Arc<[NamedRoad]>>,
+    sides: Late<Arc<DrivingSides>>,
+    /// The main roads from afar, by vehicle and policy.
+    pub(super) overviews: Recent<Overview>,
     /// The last explanations, by id, vehicle and policy.
     pub(super) explained: Recent<Explained>,
     /// The last planners, by vehicle, policy and measure.
@@ -134,6 +122,8 @@ impl Region {
             idle: Mutex::new(vec![database]),
             roads: Late::default(),
             names: Late::default(),
+            sides: Late::default(),
+            overviews: Recent::new(MOST_OVERVIEWS),
             explained: Recent::new(MOST_EXPLAINED),
             routers: Recent::new(MOST_ROUTERS),
         };
@@ -167,6 +157,22 @@ impl Region {
         Ok(read)
     }
 
+    /// The same, cut off when `stop` is told.
+    pub(super) fn read_until<T>(
+        &self,
+        stop: &Stop,
+        work: impl FnOnce(&mut Database) -> Result<T, StoreError>,
+    ) -> Result<T, Problem> {
+        let read = self.read(|database| {
+            database.stop_when_told(stop)?;
+            let read = work(database)?;
+            database.never_stop()?;
+            Ok(read)
+        });
+        stop.check()?;
+        read
+    }
+
     /// The network in memory; the first call loads it.
     pub(super) fn roads(&self) -> Result<Arc<Roads>, Problem> {
         self.roads.get(|| self.read(Database::load_network).map(|network| Arc::new(Roads::new(network))))
@@ -176,6 +182,11 @@ impl Region {
     pub(super) fn names(&self) -> Result<Arc<[NamedRoad]>, Problem> {
         let read = || Ok(self.read(Database::roads)?.into_iter().map(NamedRoad::new).collect());
         self.names.get(read)
+    }
+
+    /// On which side one drives; the first call reads it.
+    pub(super) fn sides(&self) -> Result<Arc<DrivingSides>, Problem> {
+        self.sides.get(|| self.read(Database::driving_sides).map(Arc::new))
     }
 
     pub(super) fn vehicle(&self, id: &str) -> Result<&Vehicle, Problem> {

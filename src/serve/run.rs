@@ -96,6 +96,7 @@ impl Server {
     pub fn run(self, stop: impl Future<Output = ()>) {
         let Self { runtime, listener, router, limits, app, .. } = self;
         runtime.spawn(async move {
+            app.prepare().await;
             tokio::time::sleep(WARM_UP_AFTER).await;
             app.warm_up().await;
         });

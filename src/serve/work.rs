@@ -2,7 +2,8 @@
 //! long.
 //!
 //! Promises that a lane never has more in hand than it was made for, also when those who asked have gone: a place is
-//! free again only when the work itself has ended. Slow work has a lane of its own, so that a map stays fluent beside
+//! free again only when the work itself has ended. Work whose time is up, or for which nobody waits any more, is told to
+//! stop; how soon it does is its own affair. Slow work has a lane of its own, so that a map stays fluent beside
 //! it.
 
 use std::sync::Arc;
@@ -13,6 +14,7 @@ use tokio::sync::Semaphore;
 use tokio::time::timeout;
 
 use super::problem::Problem;
+use crate::stop::Stop;
 
 /// A lane.
 #[derive(Debug)]
@@ -32,6 +34,15 @@ impl Drop for Waiting<'_> {
     }
 }
 
+/// Tells work to stop when nobody waits for it any more.
+struct Wanted(Stop);
+
+impl Drop for Wanted {
+    fn drop(&mut self) {
+        self.0.tell();
+    }
+}
+
 impl Lane {
     /// `at_a_time` of them, `most_waiting` more, each answered within `limit`.
     pub(super) fn new(at_a_time: usize, most_waiting: usize, limit: Duration) -> Self {
@@ -39,10 +50,10 @@ impl Lane {
         Self { places, waiting: AtomicUsize::new(0), most_waiting, limit }
     }
 
-    /// Does it on a thread that may block.
+    /// Does it on a thread that may block; the work is given what tells it that nobody waits any more.
     pub(super) async fn run<T: Send + 'static>(
         &self,
-        work: impl FnOnce() -> Result<T, Problem> + Send + 'static,
+        work: impl FnOnce(Stop) -> Result<T, Problem> + Send + 'static,
     ) -> Result<T, Problem> {
         let begin = Instant::now();
         let place = {
@@ -61,9 +72,11 @@ impl Lane {
                 Err(_) => return Err(Problem::busy("no place became free in time; ask again in a moment")),
             }
         };
+        let wanted = Wanted(Stop::default());
+        let stop = wanted.0.clone();
         let done = tokio::task::spawn_blocking(move || {
             let _place = place;
-            work()
+            work(stop)
         });
         match timeout(self.limit.saturating_sub(begin.elapsed()), done).await {
             Ok(Ok(result)) => result,
@@ -92,7 +105,7 @@ mod tests {
             for _ in 0..60 {
                 let (lane, now, most, done) = (lane.clone(), now.clone(), most.clone(), done.clone());
                 all.spawn(async move {
-                    lane.run(move || {
+                    lane.run(move |_| {
                         most.fetch_max(now.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
                         std::thread::sleep(Duration::from_millis(3));
                         now.fetch_sub(1, Ordering::SeqCst);
@@ -115,7 +128,7 @@ mod tests {
             for _ in 0..20 {
                 let lane = lane.clone();
                 all.spawn(async move {
-                    lane.run(|| {
+                    lane.run(|_| {
                         std::thread::sleep(Duration::from_millis(100));
                         Ok(())
                     })
@@ -133,14 +146,40 @@ mod tests {
     fn what_takes_too_long_keeps_its_place_until_it_has_ended() {
         let lane = Lane::new(1, 4, Duration::from_millis(60));
         runtime().block_on(async {
-            let slow = || {
+            let slow = |_| {
                 std::thread::sleep(Duration::from_millis(200));
                 Ok(())
             };
             assert_eq!(lane.run(slow).await.unwrap_err().status, StatusCode::GATEWAY_TIMEOUT);
-            assert_eq!(lane.run(|| Ok(())).await.unwrap_err().status, StatusCode::SERVICE_UNAVAILABLE);
+            assert_eq!(lane.run(|_| Ok(())).await.unwrap_err().status, StatusCode::SERVICE_UNAVAILABLE);
             tokio::time::sleep(Duration::from_millis(250)).await;
-            assert!(lane.run(|| Ok(())).await.is_ok());
+            assert!(lane.run(|_| Ok(())).await.is_ok());
+        });
+    }
+
+    /// Work without an end of its own: unless it is told to stop, its place never becomes free.
+    #[test]
+    fn who_is_cut_off_or_goes_away_frees_the_place() {
+        let lane = Arc::new(Lane::new(1, 4, Duration::from_secs(20)));
+        let hasty = Lane::new(1, 4, Duration::from_millis(60));
+        let endless = |stop: Stop| -> Result<(), Problem> {
+            while !stop.told() {
+                std::thread::sleep(Duration::from_millis(1));
+            }
+            Ok(())
+        };
+        runtime().block_on(async {
+            assert_eq!(hasty.run(endless).await.unwrap_err().status, StatusCode::GATEWAY_TIMEOUT);
+            timeout(Duration::from_secs(20), async { while hasty.run(|_| Ok(())).await.is_err() {} }).await.unwrap();
+            let gone = tokio::spawn({
+                let lane = lane.clone();
+                async move { lane.run(endless).await }
+            });
+            while lane.places.available_permits() > 0 {
+                tokio::time::sleep(Duration::from_millis(1)).await;
+            }
+            gone.abort();
+            assert!(lane.run(|_| Ok(())).await.is_ok());
         });
     }
 
@@ -148,9 +187,9 @@ mod tests {
     fn a_panic_is_a_fault_of_one_request_only() {
         let lane = Lane::new(1, 1, Duration::from_secs(5));
         runtime().block_on(async {
-            let broken: Result<(), Problem> = lane.run(|| std::panic::panic_any("broken")).await;
+            let broken: Result<(), Problem> = lane.run(|_| std::panic::panic_any("broken")).await;
             assert_eq!(broken.unwrap_err().status, StatusCode::INTERNAL_SERVER_ERROR);
-            assert!(lane.run(|| Ok(())).await.is_ok());
+            assert!(lane.run(|_| Ok(())).await.is_ok());
         });
     }
 }

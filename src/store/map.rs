@@ -212,7 +212,7 @@ fn sides(row: &SqliteRow) -> Sql<Option<Bounds>> {
 }
 
 /// The columns of `edge` that belong to a policy: width, and where it comes from.
-fn columns(policy: Policy) -> (&'static str, &'static str) {
+pub(super) fn columns(policy: Policy) -> (&'static str, &'static str) {
     match policy {
         Policy::Lane => ("lane_width_m", "width_source"),
         Policy::Direction => ("direction_width_m", "direction_width_source"),
@@ -220,7 +220,7 @@ fn columns(policy: Policy) -> (&'static str, &'static str) {
     }
 }
 
-fn verdict(row: &SqliteRow, column: usize) -> Sql<Verdict> {
+pub(super) fn verdict(row: &SqliteRow, column: usize) -> Sql<Verdict> {
     let number: i64 = row.try_get(column)?;
     verdict_of(number).ok_or_else(|| content(format!("verdict {number}")))
 }

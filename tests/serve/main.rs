@@ -13,6 +13,7 @@ mod xml;
 
 mod answers;
 mod caching;
+mod cut_off;
 mod described;
 mod http;
 mod load;

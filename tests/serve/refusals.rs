@@ -205,14 +205,19 @@ fn other_machines_are_let_in_only_when_asked() {
     let place = crate::program::Place::with_demo();
     place.netcert("serve --db demo.gpkg --addr 0.0.0.0:0").fails().tells("--allow-remote");
     place.netcert("serve --db nothing.gpkg --addr 127.0.0.1:0").fails().tells("no such database");
+    place.netcert("serve --db demo.gpkg --base-map-attribution me").ends_as_misuse();
     place.netcert("serve --db demo.gpkg --addr nowhere").ends_as_misuse();
     let server = Server::over(
         place,
-        "serve --db demo.gpkg --addr 127.0.0.1:0 --allow-remote --base-map https://tiles.example.org/{z}/{x}/{y}.png",
+        "serve --db demo.gpkg --addr 127.0.0.1:0 --allow-remote --base-map https://tiles.example.org/{z}/{x}/{y}.png \
+         --base-map-attribution <b>©Example</b>",
     );
     let request = b"GET /api/region HTTP/1.1\r\nHost: map.example.org\r\nConnection: close\r\n\r\n";
     let reply = server.raw(request);
     assert_eq!(reply.status, 200);
     assert!(reply.header("content-security-policy").unwrap().contains("connect-src 'self' https://tiles.example.org;"));
-    assert_eq!(reply.json()["base_map"]["url"], "https://tiles.example.org/{z}/{x}/{y}.png");
+    let said = serde_json::json!({
+        "url": "https://tiles.example.org/{z}/{x}/{y}.png", "attribution": "<b>©Example</b>",
+    });
+    assert_eq!(reply.json()["base_map"], said);
 }

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use fast_mvt::{MvtReaderRef, MvtValueRef};
 use netcert::osm::facts::Policy;
 use netcert::store::{Database, EdgeRow, Named, QueryOptions, TurnQuery, verdict_words};
+use sqlx::Connection as _;
 
 use crate::http::Server;
 
@@ -12,47 +13,62 @@ const VEHICLE: &str = "AU-SEMI19";
 
 /// A decoded feature of lines.
 struct Feature {
+    /// None from afar.
     id: u64,
     tags: BTreeMap<String, String>,
     /// Tile units.
-    points: Vec<[f64; 2]>,
+    lines: Vec<Vec<[f64; 2]>>,
 }
 
 fn features(tile: &[u8], wanted: &str) -> Vec<Feature> {
     let reader = MvtReaderRef::new(tile).unwrap();
     let mut all = Vec::new();
     for layer in reader.layers().filter(|layer| layer.name() == wanted) {
-        assert_eq!((layer.version(), layer.extent()), (2, 4096));
+        let extent = if wanted == "overview" { 1024 } else { 4096 };
+        assert_eq!((layer.version(), layer.extent()), (2, extent));
         for feature in layer.features() {
             let text = |value| match value {
                 MvtValueRef::String(text) => text.to_owned(),
                 MvtValueRef::Double(number) => number.to_string(),
                 MvtValueRef::SInt(whole) => whole.to_string(),
+                MvtValueRef::Bool(truth) => truth.to_string(),
                 other => panic!("{other:?}"),
             };
             let tags = feature.properties().map(|pair| pair.map(|(key, value)| (key.to_owned(), text(value))).unwrap());
             let tags = tags.collect();
-            let points = points(feature.geometry_commands());
-            all.push(Feature { id: feature.id().unwrap(), tags, points });
+            let lines = lines(feature.geometry_commands());
+            all.push(Feature { id: feature.id().unwrap_or(0), tags, lines });
         }
     }
     all
 }
 
+impl Feature {
+    /// From a place to the nearest of its lines.
+    fn away(&self, from: [f64; 2]) -> f64 {
+        let pairs = self.lines.iter().flat_map(|line| line.windows(2));
+        pairs.map(|pair| distance(from, pair[0], pair[1])).fold(f64::MAX, f64::min)
+    }
+}
+
 /// By the specification's section 4.3; everything is `MoveTo` 1 and `LineTo` n.
-fn points(commands: &[u32]) -> Vec<[f64; 2]> {
-    let (mut at, mut cursor, mut all) = (0, [0_i64; 2], Vec::new());
+fn lines(commands: &[u32]) -> Vec<Vec<[f64; 2]>> {
+    let (mut at, mut cursor) = (0, [0_i64; 2]);
+    let mut all: Vec<Vec<[f64; 2]>> = Vec::new();
     while at < commands.len() {
         let (command, count) = (commands[at] & 7, commands[at] >> 3);
         assert!(matches!((command, count), (1, 1) | (2, 1..)), "{command} {count}");
         at += 1;
+        if command == 1 {
+            all.push(Vec::new());
+        }
         for _ in 0..count {
             for axis in &mut cursor {
                 let value = i64::from(commands[at]);
                 *axis += (value >> 1) ^ -(value & 1);
                 at += 1;
             }
-            all.push(cursor.map(|c| c as f64));
+            all.last_mut().unwrap().push(cursor.map(|c| c as f64));
         }
     }
     all
@@ -104,8 +120,7 @@ fn every_edge_is_in_the_tiles_of_its_vertices_with_the_numbers_of_query() {
                 matches_row(feature, row);
                 // The vertex is on the drawn line, to the tolerance of two units and rounding.
                 let unit = [(x - x.floor()) * 4096.0, (y - y.floor()) * 4096.0];
-                let near =
-                    feature.points.windows(2).map(|pair| distance(unit, pair[0], pair[1])).fold(f64::MAX, f64::min);
+                let near = feature.away(unit);
                 assert!(near < 3.0, "zoom {z}, edge {}: {near} units off", row.edge_id);
             }
         }
@@ -163,12 +178,79 @@ fn small_zooms_show_the_greater_roads_only_and_far_away_there_is_nothing() {
     let server = Server::demo();
     let rows = rows(&server);
     let tile = *tiles(&rows, 7).iter().next().unwrap();
+    assert!(fetch(&server, 7, tile, "edge").is_empty(), "from afar there are no edges");
     let classes: BTreeSet<String> =
-        fetch(&server, 7, tile, "edge").into_iter().map(|feature| feature.tags["highway"].clone()).collect();
+        fetch(&server, 7, tile, "overview").into_iter().map(|feature| feature.tags["highway"].clone()).collect();
     assert!(
-        !classes.is_empty()
-            && classes.iter().all(|class| ["motorway", "trunk", "primary"].contains(&class.trim_end_matches("_link")))
+        !classes.is_empty() && classes.iter().all(|class| ["motorway", "trunk", "primary"].contains(&class.as_str()))
     );
     let far = server.get(&format!("/tiles/lane/{VEHICLE}/14/0/0.mvt"));
     assert_eq!((far.status, far.body.len()), (200, 0));
+}
+
+/// Every vertex of a main road lies on a line, and where its edge is not certified on one that is not either, within a
+/// pixel (two units) of where it is.
+#[test]
+fn from_afar_nothing_is_drawn_as_certified_that_is_not() {
+    let server = Server::demo();
+    let rows = rows(&server);
+    let classes = ["motorway", "trunk", "primary", "secondary", "tertiary"];
+    for (z, shown) in [(6, 2), (8, 3), (9, 4), (10, 5)] {
+        let by_tile: BTreeMap<(u32, u32), Vec<Feature>> =
+            tiles(&rows, z).into_iter().map(|tile| (tile, fetch(&server, z, tile, "overview"))).collect();
+        let mut barred = 0;
+        for row in rows.iter().filter(|row| classes[..shown].contains(&row.highway.as_str())) {
+            let (verdict, _) = verdict_words(row.verdict);
+            barred += usize::from(verdict != "safe");
+            for position in &row.line {
+                let [x, y] = at(z, position.degrees());
+                let unit = [(x - x.floor()) * 1024.0, (y - y.floor()) * 1024.0];
+                let fits = |feature: &&Feature| {
+                    feature.tags["highway"] == row.highway && (verdict == "safe" || feature.tags["verdict"] != "safe")
+                };
+                let of_class = by_tile[&(x as u32, y as u32)].iter().filter(fits);
+                let near = of_class.map(|feature| feature.away(unit)).fold(f64::MAX, f64::min);
+                let short = verdict == "safe" && row.length_m < 1000.0;
+                assert!(near < 2.0 || short, "zoom {z}, edge {}, {verdict}: {near} units off", row.edge_id);
+            }
+        }
+        assert!(barred > 0, "zoom {z}: all is certified");
+        for feature in by_tile.values().flatten() {
+            let rsc_m: Option<f64> = feature.tags.get("rsc_m").map(|text| text.parse().unwrap());
+            assert!(feature.tags["verdict"] != "safe" || rsc_m.is_some_and(|m| m >= 0.0), "{:?}", feature.tags);
+        }
+    }
+}
+
+#[test]
+fn where_a_region_has_both_sides_every_edge_says_on_which_it_is_driven() {
+    let server = Server::demo();
+    let rows = rows(&server);
+    let tile = *tiles(&rows, 13).iter().next().unwrap();
+    assert!(fetch(&server, 13, tile, "edge").iter().all(|feature| !feature.tags.contains_key("left")));
+    let way = rows.iter().find(|row| !row.line.is_empty()).unwrap().way_id;
+    sql(&server, &format!("UPDATE road SET left_hand_traffic = NOT left_hand_traffic WHERE way_id = {way}"));
+    let most = server.json("/api/region")["left_hand_traffic"].as_bool().unwrap();
+    let mut seen = BTreeSet::new();
+    for tile in tiles(&rows, 13) {
+        for feature in fetch(&server, 13, tile, "edge") {
+            let other = feature.tags["way_id"] == way.to_string();
+            assert_eq!(feature.tags["left"], (most != other).to_string());
+            seen.insert(other);
+        }
+    }
+    assert_eq!(seen.len(), 2);
+}
+
+/// Changes the database under the server.
+fn sql(server: &Server, statement: &str) {
+    let path = server.place.path("demo.gpkg");
+    let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
+    runtime.block_on(async {
+        let options = sqlx::sqlite::SqliteConnectOptions::new().filename(path);
+        let mut c = sqlx::SqliteConnection::connect_with(&options).await.unwrap();
+        let done = sqlx::query(sqlx::AssertSqlSafe(statement.to_owned())).execute(&mut c).await.unwrap();
+        assert!(done.rows_affected() > 0, "{statement}");
+        c.close().await.unwrap();
+    });
 }

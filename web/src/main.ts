@@ -5,7 +5,7 @@ import { api } from "./api/client.ts";
 import { Page } from "./app/page.ts";
 import type { Context } from "./context.ts";
 import { read } from "./link.ts";
-import { Store, type State } from "./state.ts";
+import { Store, beginning, type State } from "./state.ts";
 import { byId, h } from "./ui/dom.ts";
 import { ThemeSwitch } from "./ui/theme.ts";
 import type { Region, Vehicle } from "./api/types.ts";
@@ -17,7 +17,7 @@ async function start(): Promise<void> {
   setWorkerUrl(WORKER_URL);
   const theme = new ThemeSwitch();
   const [region, vehicles] = await Promise.all([api.region(), api.vehicles()]);
-  const first = beginning(region, vehicles);
+  const first = usual(region, vehicles);
   const possible = {
     vehicles: vehicles.filter((vehicle) => vehicle.certified.length > 0).map((vehicle) => vehicle.id),
     policies: region.policies,
@@ -28,28 +28,16 @@ async function start(): Promise<void> {
   new Page(context, first, possible);
 }
 
-/** What is shown where the link says nothing: the first of the vehicles that most of them are like, its whole region. */
-function beginning(region: Region, vehicles: Vehicle[]): State {
+/** What is shown where the link says nothing: of the vehicles that most of them are like the shortest, and the whole region. */
+function usual(region: Region, vehicles: Vehicle[]): State {
   const certified = vehicles.filter((vehicle) => vehicle.certified.length > 0);
   const alike = (vehicle: Vehicle): number => certified.filter((other) => other.region === vehicle.region).length;
   const most = Math.max(...certified.map(alike));
-  const own = certified.filter((vehicle) => alike(vehicle) === most);
-  const usual = own.find((vehicle) => vehicle.certified.includes(region.default_policy)) ?? own[0];
-  if (!usual) throw new Error("The database has no certificates yet: run `netcert certify`, then reload this page.");
-  return {
-    vehicle: usual.id,
-    policy: usual.certified.includes(region.default_policy) ? region.default_policy : usual.certified[0]!,
-    other: null,
-    colourBy: "margin",
-    hidden: new Set(),
-    hiddenClasses: new Set(),
-    evidence: "assumed",
-    camera: null,
-    selected: null,
-    route: null,
-    stats: false,
-    baseMap: false,
-  };
+  const among = certified.filter((vehicle) => alike(vehicle) === most).sort((a, b) => a.length_m - b.length_m);
+  const one = among.find((vehicle) => vehicle.certified.includes(region.default_policy)) ?? among[0];
+  if (!one) throw new Error("The database has no certificates yet: run `netcert certify`, then reload this page.");
+  const { id, certified: own } = one;
+  return beginning(id, own.includes(region.default_policy) ? region.default_policy : own[0]!);
 }
 
 start().catch((error: unknown) => {

@@ -29,6 +29,24 @@ export interface State {
   baseMap: boolean;
 }
 
+/** What is shown where nothing else is asked for. */
+export function beginning(vehicle: string, policy: Policy): State {
+  return {
+    vehicle,
+    policy,
+    other: null,
+    colourBy: "margin",
+    hidden: new Set(),
+    hiddenClasses: new Set(),
+    evidence: "assumed",
+    camera: null,
+    selected: null,
+    route: null,
+    stats: false,
+    baseMap: false,
+  };
+}
+
 export type Listener = (state: State, changed: ReadonlySet<keyof State>) => void;
 
 export class Store {

@@ -93,6 +93,12 @@ export function margin(rsc_m: number): string {
   return rsc_m < 0 ? `${careful(rsc_m)} m missing` : `${careful(rsc_m)} m to spare`;
 }
 
+/** Of roads from afar the tiles tell quarters of a metre, rounded down, from −1.25 m to 1 m. */
+export function leastMargin(rsc_m: number): string {
+  if (rsc_m < -1) return "more than 1 m missing";
+  return rsc_m < 0 ? `up to ${careful(rsc_m)} m missing` : `${careful(rsc_m)} m or more to spare`;
+}
+
 /** The amount alone: rounded down where there is room, up where it is missing. */
 export function careful(rsc_m: number): string {
   const hundredths = rsc_m * 100;

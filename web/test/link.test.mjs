@@ -5,21 +5,9 @@ import { test } from "node:test";
 import { load } from "./support.mjs";
 
 const { read, write } = await load("link.ts");
+const { beginning } = await load("state.ts");
 
-const first = {
-  vehicle: "AU-SEMI19",
-  policy: "lane",
-  other: null,
-  colourBy: "margin",
-  hidden: new Set(),
-  hiddenClasses: new Set(),
-  evidence: "assumed",
-  camera: null,
-  selected: null,
-  route: null,
-  stats: false,
-  baseMap: false,
-};
+const first = beginning("AU-SEMI19", "lane");
 const possible = { vehicles: ["AU-SEMI19", "AU-ATRIPLE53"], policies: ["lane", "carriageway"] };
 
 test("everything in a link comes back", () => {

@@ -2,7 +2,9 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { edgePixel, everything, idle, missing, open } from "./support.mjs";
+import { edgePixel, everything, idle, load, missing, open } from "./support.mjs";
+
+const { palettes } = await load("map/palette.ts");
 
 let all;
 before(async () => {
@@ -229,6 +231,10 @@ inPage("narrow screens: nothing beside the screen, the legend unfolds", "", asyn
 
 inPage("every control has a name, and dark follows the system", "", async (page) => {
   assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "dark");
+  const token = (name) => page.evaluate((property) => getComputedStyle(document.documentElement).getPropertyValue(property), name);
+  assert.ok(palettes.dark.room.includes(await token("--safe")), "the panel's colours are the map's");
+  await page.keyboard.press("d");
+  assert.ok(palettes.light.missing.includes(await token("--unsafe")));
   const nameless = await page.evaluate(() => {
     const all = [...document.querySelectorAll("button, input, select, [role=img]")];
     const name = (element) => element.getAttribute("aria-label") || element.textContent.trim() || element.labels?.[0]?.textContent.trim() || element.title;

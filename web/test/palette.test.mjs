@@ -2,10 +2,8 @@
 // matrices of Viénot, Brettel and Mollon (1999) in linear sRGB; differences are ΔE of CIELAB (1976).
 
 import assert from "node:assert/strict";
-import { readFile } from "node:fs/promises";
 import { test } from "node:test";
-import { join } from "node:path";
-import { load, root } from "./support.mjs";
+import { load } from "./support.mjs";
 
 const { palettes } = await load("map/palette.ts");
 
@@ -56,15 +54,3 @@ for (const [theme, palette] of Object.entries(palettes)) {
     }
   });
 }
-
-test("the style sheet's verdicts are colours of the map", async () => {
-  const css = await readFile(join(root, "web/src/styles/tokens.css"), "utf8");
-  const [light, dark] = css.split('[data-theme="dark"]');
-  for (const [text, palette] of [[light, palettes.light], [dark, palettes.dark]]) {
-    const token = (name) => text.match(new RegExp(`--${name}: (#[0-9a-f]{6})`))?.[1];
-    assert.ok(palette.room.includes(token("safe")));
-    assert.ok(palette.missing.includes(token("unsafe")));
-    assert.equal(token("forbidden"), palette.forbidden);
-    assert.equal(token("unknown"), palette.unknown);
-  }
-});

@@ -19,7 +19,7 @@ const scenes = {
       const at = await edgePixel(page, "unsafe", -0.6);
       await page.mouse.click(at.x, at.y);
       await page.waitForSelector(".scene img");
-      await page.mouse.move(700, 20);
+      await page.mouse.move(180, 30); // where nothing is to hover over
     },
   },
   columbus: { db: "columbus", hash: "#v=US-WB40&with=US-WB67&at=12.2,39.968,-82.99", dark: true, play: (page) => wait(page, 2500) },

@@ -18,6 +18,7 @@ use crate::osm::facts::Policy;
 use crate::picture;
 use crate::pipeline::Settings;
 use crate::stet::Model;
+use crate::stop::Stop;
 use crate::store::{Named, QueryOptions, TurnsOf};
 use crate::vehicle::Vehicle;
 
@@ -48,15 +49,15 @@ fn explained(region: &Region, ask: &Ask) -> Result<Arc<Explained>, Problem> {
     let policy = ask.parameter("policy").map_or(Ok(region.settings.policy), policy)?;
     let vehicle = region.certified(ask.required("vehicle")?, policy)?;
     let key = format!("{id} {} {}", vehicle.id, policy.name());
-    region.explained.get(&key, || make(region, id, vehicle, policy))
+    region.explained.get(&key, || make(region, id, (vehicle, policy), &ask.stop))
 }
 
-fn make(region: &Region, id: i64, vehicle: &Vehicle, policy: Policy) -> Result<Explained, Problem> {
+fn make(region: &Region, id: i64, (vehicle, policy): (&Vehicle, Policy), stop: &Stop) -> Result<Explained, Problem> {
     let settings = Settings { policy, ..region.settings.clone() };
     let roads = region.roads()?;
     let model = Model::new(vehicle).map_err(|error| Problem::fault(error.to_string()))?;
     let mut explained = match roads.edge(id) {
-        Some(edge) => of_edge(region, &roads, edge, &model, &settings)?,
+        Some(edge) => of_edge(region, (&roads, edge), &model, &settings, stop)?,
         None => of_turn(region, &roads, id, &model, &settings)?,
     };
     explained.members["policy"] = json!(policy.name());
@@ -66,13 +67,13 @@ fn make(region: &Region, id: i64, vehicle: &Vehicle, policy: Policy) -> Result<E
 
 fn of_edge(
     region: &Region,
-    roads: &Roads,
-    edge: u32,
+    (roads, edge): (&Roads, u32),
     model: &Model,
     settings: &Settings,
+    stop: &Stop,
 ) -> Result<Explained, Problem> {
     let network = &roads.network;
-    let explanation = explain::explain_edge(network, edge, model, settings);
+    let explanation = explain::explain_edge_until(network, edge, model, settings, stop)?;
     let explanation = explanation.ok_or_else(|| Problem::fault(format!("edge {edge} is not in the network")))?;
     let edge_id = network.edges.get(edge as usize).map(|edge| edge.id);
     let options = QueryOptions { edge_id, ..QueryOptions::new(&model.vehicle.id, settings.policy) };

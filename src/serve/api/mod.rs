@@ -47,6 +47,6 @@ fn id(text: &str) -> Result<i64, Problem> {
 }
 
 /// What `safe` means; never said without it.
-const SCOPE: &str = "`safe` holds within the model: the vehicle as defined, steered within its tracking tolerance of \
-                     the planned path, on a road as wide as its width_source says; it is no permit and says nothing of \
-                     bridges or traffic.";
+const SCOPE: &str = "`safe` (certified) holds within the model: the vehicle as defined, steered within its tracking \
+                     tolerance of the planned path, on a road as wide as mapped or else assumed; it is no permit and \
+                     says nothing of bridges or traffic.";

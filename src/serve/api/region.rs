@@ -59,7 +59,7 @@ fn members(region: &Region, focus: Option<Bounds>, options: &Options) -> Value {
         "vehicles_certified": certified,
         "tiles": format!("/tiles/{{policy}}/{{vehicle}}/{{z}}/{{x}}/{{y}}.mvt?state={}", region.state),
         "max_zoom": MOST_ZOOM,
-        "base_map": options.base_map.as_ref().map(|map| json!({"url": map.url})),
+        "base_map": options.base_map.as_ref().map(|map| json!({"url": map.url, "attribution": map.attribution})),
         "scope": SCOPE,
     })
 }

@@ -66,5 +66,6 @@ fn ride(ask: &Ask) -> Result<Ride, Problem> {
     };
     let snap_m = ask.number("snap", 0.0, 5000.0)?.unwrap_or(SNAP_M);
     let tries = ask.whole("tries", 0..=30)?.unwrap_or(TRIES) as usize;
-    Ok(Ride { question: Question { places, snap_m, alternatives, tries }, drives })
+    let question = Question { places, snap_m, alternatives, tries };
+    Ok(Ride { question, drives, stop: ask.stop.clone() })
 }

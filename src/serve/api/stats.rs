@@ -8,7 +8,7 @@ use super::super::problem::Problem;
 use super::super::region::Region;
 use super::{SCOPE, answered};
 use crate::osm::facts::{Policy, WidthSource};
-use crate::store::{Named, RscBin, Stats, StatsRow, TurnCount, verdict_words};
+use crate::store::{Database, Named, RscBin, Stats, StatsRow, TurnCount, verdict_words};
 
 /// Width of the histogram's bins, millimetres.
 const BIN_MM: u32 = 100;
@@ -17,8 +17,8 @@ const BIN_MM: u32 = 100;
 pub(in super::super) fn stats(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
     ask.only(&["policy"])?;
     let policy = ask.parameter("policy").map_or(Ok(region.settings.policy), policy)?;
-    let stats = region.read(crate::store::Database::stats)?;
-    let bins = region.read(|database| database.rsc_bins(policy, BIN_MM))?;
+    let stats = region.read_until(&ask.stop, Database::stats)?;
+    let bins = region.read_until(&ask.stop, |database| database.rsc_bins(policy, BIN_MM))?;
     Ok(answered(&members(&stats, &bins, policy)))
 }
 

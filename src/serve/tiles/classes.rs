@@ -5,25 +5,17 @@ use crate::osm::facts::RoadClass;
 /// Turns are drawn from this zoom on: before it they lie on top of each other.
 pub(super) const FIRST_WITH_TURNS: u8 = 15;
 
-/// The classes at a zoom, each with its links. As on general maps: a class appears when its roads are some pixels
-/// apart.
-pub(super) fn classes(z: u8) -> &'static [RoadClass] {
+/// All classes, the greater first.
+pub(super) const BY_RANK: &[RoadClass] = {
     use RoadClass::{
         Busway, LivingStreet, Motorway, Primary, Residential, Secondary, Service, Tertiary, Track, Trunk, Unclassified,
     };
-    const BY_RANK: &[RoadClass] = &[
-        Motorway,
-        Trunk,
-        Primary,
-        Secondary,
-        Tertiary,
-        Unclassified,
-        Residential,
-        LivingStreet,
-        Busway,
-        Service,
-        Track,
-    ];
+    &[Motorway, Trunk, Primary, Secondary, Tertiary, Unclassified, Residential, LivingStreet, Busway, Service, Track]
+};
+
+/// The classes at a zoom, each with its links. As on general maps: a class appears when its roads are some pixels
+/// apart.
+pub(super) fn classes(z: u8) -> &'static [RoadClass] {
     let shown = match z {
         0..=6 => 2,
         7..=8 => 3,

@@ -5,19 +5,20 @@
 
 use rustc_hash::FxHashMap;
 
-use super::place::EXTENT;
-
 /// A value of a feature's tag.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Value<'v> {
     Text(&'v str),
     Whole(i64),
     Number(f64),
+    Truth(bool),
 }
 
 /// A layer as it grows.
 pub(super) struct Layer {
     name: &'static str,
+    /// Units a side of the tile.
+    extent: u16,
     keys: Vec<&'static str>,
     /// Encoded values, in the order in which they came up.
     values: Vec<u8>,
@@ -46,6 +47,13 @@ impl Tags<'_> {
         }
     }
 
+    /// Nothing where it need not be said.
+    pub(super) fn truth(&mut self, key: &'static str, value: Option<bool>) {
+        if let Some(truth) = value {
+            self.add(key, Value::Truth(truth));
+        }
+    }
+
     /// Nothing where there is no number.
     pub(super) fn number(&mut self, key: &'static str, value: Option<f64>) {
         if let Some(number) = value {
@@ -55,12 +63,12 @@ impl Tags<'_> {
 }
 
 impl Layer {
-    pub(super) fn new(name: &'static str) -> Self {
-        Self { name, keys: Vec::new(), values: Vec::new(), places: FxHashMap::default(), features: Vec::new() }
+    pub(super) fn new(name: &'static str, extent: u16) -> Self {
+        Self { name, extent, keys: Vec::new(), values: Vec::new(), places: FxHashMap::default(), features: Vec::new() }
     }
 
     /// Adds a feature of lines, unless there is nothing of it in the tile.
-    pub(super) fn feature(&mut self, id: u64, lines: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut Tags<'_>)) {
+    pub(super) fn feature(&mut self, id: Option<u64>, lines: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut Tags<'_>)) {
         if lines.is_empty() {
             return;
         }
@@ -68,8 +76,10 @@ impl Layer {
         tag(&mut tags);
         let pairs = tags.pairs;
         let mut feature = Vec::with_capacity(pairs.len() + 40);
-        varint(&mut feature, field(1, VARINT)); // id
-        varint(&mut feature, id);
+        if let Some(id) = id {
+            varint(&mut feature, field(1, VARINT)); // id
+            varint(&mut feature, id);
+        }
         bytes(&mut feature, 2, &pairs); // tags
         varint(&mut feature, field(3, VARINT)); // type: LINESTRING
         varint(&mut feature, 2);
@@ -92,7 +102,7 @@ impl Layer {
         }
         layer.extend(self.values);
         varint(&mut layer, field(5, VARINT)); // extent
-        varint(&mut layer, EXTENT as u64);
+        varint(&mut layer, self.extent.into());
         bytes(tile, 3, &layer);
     }
 
@@ -115,6 +125,10 @@ impl Layer {
             Value::Whole(whole) => {
                 varint(&mut message, field(6, VARINT)); // sint_value
                 varint(&mut message, zigzag(whole));
+            }
+            Value::Truth(truth) => {
+                varint(&mut message, field(7, VARINT)); // bool_value
+                varint(&mut message, truth.into());
             }
         }
         let next = self.places.len() as u32;
@@ -188,16 +202,16 @@ mod tests {
 
     #[test]
     fn a_reader_of_others_reads_what_was_written() {
-        let mut layer = Layer::new("edge");
+        let mut layer = Layer::new("edge", 4096);
         for id in [7_u64, 1 << 40] {
-            layer.feature(id, &[vec![[-64, 0], [4160, 4096]]], |tags| {
+            layer.feature(Some(id), &[vec![[-64, 0], [4160, 4096]]], |tags| {
                 tags.add("name", Value::Text("Großer Weg"));
                 tags.number("rsc_m", Some(-0.125));
                 tags.add("way", Value::Whole(-5_000_000_000));
                 tags.number("nothing", None);
             });
         }
-        layer.feature(9, &[], |_| {});
+        layer.feature(None, &[], |_| {});
         let mut tile = Vec::new();
         layer.finish(&mut tile);
         let reader = MvtReaderRef::new(&tile).unwrap();

@@ -1,35 +1,43 @@
 //! Vector tiles (Mapbox Vector Tile 2.1) of a vehicle's certificates, made from the database on request.
 //!
-//! Promises that every edge of the zoom's classes is in every tile that its line crosses, with the numbers as the
-//! database keeps them; that the same state gives the same bytes. Leaves out what would be smaller than a sixteenth of
-//! a pixel.
+//! Promises, from zoom 11 on, that every edge of the zoom's classes is in every tile that its line crosses, with the
+//! numbers as the database keeps them, but for what would be smaller than a sixteenth of a pixel; before, that nothing is
+//! drawn as certified that is not (`overview`); that the same state gives the same bytes.
 //!
 //! | file | for |
 //! | --- | --- |
 //! | `place` | which part of the earth a tile is; degrees → tile units |
 //! | `classes` | which roads a zoom shows |
 //! | `shape` | clipping, simplifying, rounding |
+//! | `overview` | main roads from afar: many edges as one line |
+//! | `raster` | what falls on one place says the worst; lines joined |
 //! | `labels` | names along roads |
 //! | `encode` | layers and features as protobuf |
 
 mod classes;
 mod encode;
 mod labels;
+mod overview;
 mod place;
+mod raster;
 mod shape;
+
+use std::sync::Arc;
 
 use super::answer::Stored;
 use super::ask::{self, Ask};
 use super::problem::Problem;
-use super::region::Region;
+use super::region::{MOST_OVERVIEWS, Region};
 use crate::osm::LonLat;
 use crate::osm::facts::{Policy, WidthSource};
+use crate::stop::Stop;
 use crate::store::{MapEdge, MapTurn, Named, TurnsOf, verdict_words};
 use classes::{FIRST_WITH_TURNS, classes};
 use encode::{Layer, Value};
 use labels::{FIRST_WITH_LABELS, Label, labels};
+pub(super) use overview::Overview;
 pub(super) use place::MOST_ZOOM;
-use place::Place;
+use place::{EXTENT, Place};
 
 /// Registered with IANA: <https://www.iana.org/assignments/media-types/application/vnd.mapbox-vector-tile>
 const KIND: &str = "application/vnd.mapbox-vector-tile";
@@ -47,18 +55,24 @@ pub(super) fn tile(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
 }
 
 fn bytes(region: &Region, set: (&str, Policy), place: Place) -> Result<Vec<u8>, Problem> {
+    if place.z <= overview::LAST_ZOOM {
+        let mut bytes = Vec::new();
+        overview_of(region, set)?.layer(place).finish(&mut bytes);
+        return Ok(bytes);
+    }
     let bounds = place.bounds();
     let edges = region.read(|database| database.map_edges(set, bounds, classes(place.z)))?;
-    let mut layer = Layer::new("edge");
+    let mut layer = Layer::new("edge", EXTENT as u16);
+    let sides = region.sides()?;
     for row in &edges {
-        edge(&mut layer, row, place);
+        edge(&mut layer, row, sides.left(row.edge), place);
     }
     let mut bytes = Vec::new();
     layer.finish(&mut bytes);
     if place.z >= FIRST_WITH_LABELS {
-        let mut layer = Layer::new("label");
+        let mut layer = Layer::new("label", EXTENT as u16);
         for Label { road, line } in labels(&edges, place.z) {
-            layer.feature(u64::from(road.edge) + 1, &drawn(&line, place), |tags| {
+            layer.feature(Some(u64::from(road.edge) + 1), &drawn(&line, place), |tags| {
                 tags.text("name", road.name.as_deref());
                 tags.text("ref", road.reference.as_deref());
                 tags.add("highway", Value::Text(&road.highway));
@@ -68,7 +82,7 @@ fn bytes(region: &Region, set: (&str, Policy), place: Place) -> Result<Vec<u8>, 
     }
     if place.z >= FIRST_WITH_TURNS {
         let turns = region.read(|database| database.map_turns(set, TurnsOf::Box(bounds)))?;
-        let mut layer = Layer::new("turn");
+        let mut layer = Layer::new("turn", EXTENT as u16);
         for row in &turns {
             turn(&mut layer, row, place);
         }
@@ -77,15 +91,33 @@ fn bytes(region: &Region, set: (&str, Policy), place: Place) -> Result<Vec<u8>, 
     Ok(bytes)
 }
 
+/// Makes what tiles from afar are made of, of as many vehicles as are kept.
+pub(super) fn prepare(region: &Region, stop: &Stop) -> Result<(), Problem> {
+    for set in region.sets.iter().take(MOST_OVERVIEWS) {
+        stop.check()?;
+        overview_of(region, (&set.vehicle_id, set.policy))?;
+    }
+    Ok(())
+}
+
+/// What tiles from afar are made of; whoever comes first reads it.
+fn overview_of(region: &Region, set: (&str, Policy)) -> Result<Arc<Overview>, Problem> {
+    let key = format!("{} {}", set.0, set.1.name());
+    region.overviews.get(&key, || {
+        let rows = region.read(|database| database.main_roads(set, classes(overview::LAST_ZOOM)))?;
+        Ok(Overview::new(&rows))
+    })
+}
+
 fn drawn(line: &[LonLat], place: Place) -> Vec<Vec<[i32; 2]>> {
     let line: Vec<[f64; 2]> = line.iter().map(|&position| place.units(position)).collect();
     shape::drawn(&line, place.z == MOST_ZOOM)
 }
 
-fn edge(layer: &mut Layer, row: &MapEdge, place: Place) {
+fn edge(layer: &mut Layer, row: &MapEdge, left: Option<bool>, place: Place) {
     let lines = drawn(&row.line, place);
     let (verdict, reason) = verdict_words(row.verdict);
-    layer.feature(u64::from(row.edge) + 1, &lines, |tags| {
+    layer.feature(Some(u64::from(row.edge) + 1), &lines, |tags| {
         tags.add("edge_id", Value::Text(&row.edge_id.to_string()));
         tags.text("name", row.name.as_deref());
         tags.text("ref", row.reference.as_deref());
@@ -95,6 +127,7 @@ fn edge(layer: &mut Layer, row: &MapEdge, place: Place) {
         tags.add("verdict", Value::Text(verdict));
         tags.text("reason", Some(reason).filter(|reason| !reason.is_empty()));
         tags.number("rsc_m", row.rsc_mm.map(metres));
+        tags.truth("left", left);
         tags.text("width_source", row.width_source.map(WidthSource::name));
         if place.z >= FIRST_IN_FULL {
             tags.add("way_id", Value::Whole(row.way_id));
@@ -107,7 +140,7 @@ fn edge(layer: &mut Layer, row: &MapEdge, place: Place) {
 fn turn(layer: &mut Layer, row: &MapTurn, place: Place) {
     let lines = drawn(&row.line, place);
     let (verdict, reason) = verdict_words(row.verdict);
-    layer.feature(u64::from(row.turn) + 1, &lines, |tags| {
+    layer.feature(Some(u64::from(row.turn) + 1), &lines, |tags| {
         tags.add("turn_id", Value::Text(&row.turn_id.to_string()));
         tags.add("from_edge", Value::Text(&row.from_edge.to_string()));
         tags.add("to_edge", Value::Text(&row.to_edge.to_string()));

@@ -48,21 +48,37 @@ impl Place {
 
     /// In tile units, x east, y south; not rounded.
     pub(super) fn units(self, position: LonLat) -> [f64; 2] {
-        let (lon, lat) = position.degrees();
-        let x = (lon + 180.0) / 360.0;
-        let y = 0.5 - lat.to_radians().tan().asinh() / (2.0 * PI);
+        self.units_of(world(position))
+    }
+
+    /// In tile units, x east, y south; not rounded.
+    pub(super) fn units_of(self, [x, y]: World) -> [f64; 2] {
         [(x * self.side() - f64::from(self.x)) * EXTENT, (y * self.side() - f64::from(self.y)) * EXTENT]
+    }
+
+    /// Its north-western and its south-eastern corner, each moved out by so many units.
+    pub(super) fn world(self, beyond: f64) -> [World; 2] {
+        let corner = |x: f64, y: f64| [x / self.side(), y / self.side()];
+        let (x, y, beyond) = (f64::from(self.x), f64::from(self.y), beyond / EXTENT);
+        [corner(x - beyond, y - beyond), corner(x + 1.0 + beyond, y + 1.0 + beyond)]
     }
 
     /// The tile and its buffer. Beyond the 180th meridian there is nothing to look for: no edge crosses it.
     pub(super) fn bounds(self) -> Bounds {
-        let buffer = BUFFER / EXTENT;
-        let lon = |x: f64| ((x / self.side()) * 360.0 - 180.0).clamp(-180.0, 180.0);
-        let lat = |y: f64| (PI * (1.0 - 2.0 * y / self.side())).sinh().atan().to_degrees();
-        let (x, y) = (f64::from(self.x), f64::from(self.y));
-        let (north, south) = (lat(y - buffer), lat(y + 1.0 + buffer));
-        Bounds { west: lon(x - buffer), south, east: lon(x + 1.0 + buffer), north }
+        let lon = |x: f64| (x * 360.0 - 180.0).clamp(-180.0, 180.0);
+        let lat = |y: f64| (PI * (1.0 - 2.0 * y)).sinh().atan().to_degrees();
+        let [[west, north], [east, south]] = self.world(BUFFER);
+        Bounds { west: lon(west), south: lat(south), east: lon(east), north: lat(north) }
     }
+}
+
+/// A place on the web Mercator square: x east, y south, 0 to 1.
+pub(super) type World = [f64; 2];
+
+/// Where a position is on it.
+pub(super) fn world(position: LonLat) -> World {
+    let (lon, lat) = position.degrees();
+    [(lon + 180.0) / 360.0, 0.5 - lat.to_radians().tan().asinh() / (2.0 * PI)]
 }
 
 #[cfg(test)]

@@ -16,7 +16,8 @@ pub(super) fn drawn(line: &[Point], fine: bool) -> Vec<Vec<[i32; 2]>> {
     clipped(line).into_iter().map(|part| rounded(&simplified(&part, tolerance))).filter(|part| part.len() > 1).collect()
 }
 
-fn clipped(line: &[Point]) -> Vec<Vec<Point>> {
+/// The parts of a line within the tile and its buffer.
+pub(super) fn clipped(line: &[Point]) -> Vec<Vec<Point>> {
     let mut parts: Vec<Vec<Point>> = Vec::new();
     let mut open = false;
     for pair in line.windows(2) {
@@ -60,7 +61,7 @@ fn inside(a: Point, b: Point) -> Option<(f64, f64)> {
 }
 
 /// Douglas and Peucker's way, with the distance to the segment; the ends stay.
-fn simplified(line: &[Point], tolerance: f64) -> Vec<Point> {
+pub(super) fn simplified(line: &[Point], tolerance: f64) -> Vec<Point> {
     let Some(last) = line.len().checked_sub(1) else { return Vec::new() };
     let mut keep = vec![false; line.len()];
     keep[0] = true;

@@ -24,7 +24,7 @@ export interface Region {
   tiles: string;
   max_zoom: number;
   left_hand_traffic?: boolean;
-  base_map: { url: string; attribution?: string } | null;
+  base_map: { url: string; attribution: string } | null;
 }
 
 export interface Unit {

@@ -23,6 +23,9 @@ export interface MapActions {
 /** Nearer than this a single road is not shown without being asked for. */
 const FIT_ZOOM = 18;
 
+/** From here on tiles have each road by itself; a little more, so that lines lie apart. */
+const SINGLE_ZOOM = 12;
+
 export class Maps {
   readonly first: View;
   readonly #root = byId("maps");
@@ -61,6 +64,11 @@ export class Maps {
 
   zoom(by: number): void {
     this.first.map.easeTo({ zoom: this.first.map.getZoom() + by, duration: 250 });
+  }
+
+  /** So near that each road is a line of its own. */
+  approach(lon: number, lat: number): void {
+    this.first.map.easeTo({ center: [lon, lat], zoom: Math.max(this.first.map.getZoom() + 2, SINGLE_ZOOM), duration: 600 });
   }
 
   fit([west, south, east, north]: [number, number, number, number], maxZoom = FIT_ZOOM): void {
@@ -106,7 +114,10 @@ export class Maps {
     const own = { ...question(this.context), vehicle };
     return new View(pane, region, store.state, own, theme.theme, {
       hover: (under, x, y) => this.#hover.show(under, x, y),
-      click: (under, lon, lat) => this.actions.click(under, lon, lat),
+      click: (under, lon, lat) => {
+        this.#hover.show(null, 0, 0);
+        this.actions.click(under, lon, lat);
+      },
       moved: () => this.#moved(),
     });
   }

@@ -5,6 +5,7 @@ import type { Stats } from "../api/stats.ts";
 import type { Explanation, SearchHit } from "../api/types.ts";
 import { question, vehicleOf, type Context } from "../context.ts";
 import { write, read, type Possible } from "../link.ts";
+import type { Under } from "../map/view.ts";
 import { ExplainPanel } from "../panel/explain.ts";
 import { StatsDialog } from "../panel/stats.ts";
 import { VehicleDialog, fittingPolicy } from "../panel/vehicle.ts";
@@ -38,7 +39,7 @@ export class Page {
     this.#stats = new StatsDialog(context);
     this.#drawer = new Drawer(() => store.set({ selected: null, route: null }));
     this.#maps = new Maps(context, {
-      click: (under, lon, lat) => this.#click(under?.id ?? null, lon, lat),
+      click: (under, lon, lat) => this.#click(under, lon, lat),
       moved: (camera) => store.set({ camera }),
       chooseOther: () => this.chooseOther(),
       endComparing: () => store.set({ other: null }),
@@ -132,10 +133,12 @@ export class Page {
     }
   }
 
-  #click(id: string | null, lon: number, lat: number): void {
+  #click(under: Under | null, lon: number, lat: number): void {
     const { store } = this.context;
     const { route } = store.state;
+    const id = under?.id ?? null;
     if (route && route.length < 2) store.set({ route: [...route, [lon, lat]] });
+    else if (under?.kind === "overview") this.#maps.approach(lon, lat);
     else if (!this.#routing.driving && (id || !route)) {
       store.set({ selected: id, ...(id ? { route: null } : {}) });
       if (id) this.#maps.reveal(lon, lat);
@@ -144,6 +147,8 @@ export class Page {
 
   #search(hit: SearchHit): void {
     this.#maps.fit(hit.bbox);
+    // From here arrows and + and − go on.
+    this.#maps.first.map.getCanvas().focus({ preventScroll: true });
     const one = hit.kind === "edge" || hit.kind === "turn";
     this.context.store.set({ selected: one ? hit.id : null, route: null });
     if (!one) toast(`${title(hit)}: click on the road for its explanation.`);

@@ -12,6 +12,7 @@ import { byId, h } from "../ui/dom.ts";
 import type { Drawer } from "./drawer.ts";
 
 const LINE = "own-route";
+const BLOCKED = "own-blocked";
 
 export class Routing {
   readonly #panel: RoutePanel;
@@ -45,6 +46,7 @@ export class Routing {
     this.endDrive();
     this.#mark(route ?? []);
     this.#line(null);
+    this.#blocked([]);
     document.body.classList.toggle("is-routing", route !== null && route.length < 2);
     if (route === null) {
       if (!selected) this.drawer.hide();
@@ -66,9 +68,16 @@ export class Routing {
       const command = `netcert route --vehicle ${own.vehicle} --corridor ${own.policy} --from ${place(from)} --to ${place(to)} --snap ${SNAP_M}`;
       this.#panel.show(answer, palettes[this.context.theme.theme], command);
       this.#line(this.#route);
-      if (this.#route) this.#fit(this.#route);
+      if (this.#route) this.#fit(this.#route.geometry.coordinates);
+      else {
+        const places = (answer.obstacles ?? []).flatMap(({ place }) => (place ? [place] : []));
+        this.#blocked(places);
+        this.#fit([from, to, ...places]);
+      }
     } catch (error) {
-      if (!running.signal.aborted) this.#panel.failed((error as Error).message);
+      if (running.signal.aborted) return;
+      this.#panel.failed(named((error as Error).message, [from, to]));
+      this.#fit([from, to]);
     }
   }
 
@@ -113,8 +122,8 @@ export class Routing {
     this.#dock.seek(s);
   }
 
-  #fit(route: Route): void {
-    const [lons, lats] = [route.geometry.coordinates.map(([lon]) => lon), route.geometry.coordinates.map(([, lat]) => lat)];
+  #fit(line: Position[]): void {
+    const [lons, lats] = [line.map(([lon]) => lon), line.map(([, lat]) => lat)];
     const [w, s, e, n] = [Math.min(...lons), Math.min(...lats), Math.max(...lons), Math.max(...lats)];
     const wide = innerWidth >= 760;
     const padding = wide ? { left: byId("side").offsetWidth + 60, right: byId("drawer").offsetWidth + 80, top: 60, bottom: 60 } : { left: 30, right: 30, top: 120, bottom: innerHeight * 0.5 };
@@ -150,6 +159,19 @@ export class Routing {
     });
   }
 
+  /** What would have to be certified first. */
+  #blocked(places: Position[]): void {
+    void this.view.ready.then(() => {
+      const { map } = this.view;
+      const point = (place: Position): GeoJSON.Feature => ({ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: place } });
+      this.view.overlay(BLOCKED, { type: "FeatureCollection", features: places.map(point) });
+      const palette = palettes[this.context.theme.theme];
+      if (!map.getLayer(BLOCKED)) map.addLayer({ id: BLOCKED, type: "circle", source: BLOCKED, paint: { "circle-radius": 5, "circle-stroke-width": 2.5 } });
+      map.setPaintProperty(BLOCKED, "circle-color", palette.missing[3]);
+      map.setPaintProperty(BLOCKED, "circle-stroke-color", palette.routeCasing);
+    });
+  }
+
   /** Pins that may be dragged to another place. */
   #mark(places: Position[]): void {
     while (this.#markers.length > 0) this.#markers.pop()?.remove();
@@ -166,4 +188,12 @@ export class Routing {
       this.#markers.push(marker);
     });
   }
+}
+
+/** The server names a place by its degrees; on the page it has a pin. */
+function named(message: string, places: Position[]): string {
+  const at = places.findIndex((place) => message.startsWith(`${place.map((degrees) => degrees.toFixed(5)).join(",")}: `));
+  if (at < 0) return message;
+  const rest = message.replace(/^[^:]*: /, "").replace(/, at [-\d.]+,[-\d.]+/, "");
+  return `At ${"AB"[at]} ${rest}. Drag the pin to a road that is drawn as certified.`;
 }

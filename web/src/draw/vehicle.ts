@@ -1,7 +1,7 @@
 // A combination from the side, to scale, front to the left.
 
 import type { Vehicle } from "../api/types.ts";
-import { svg } from "../ui/dom.ts";
+import { styled, svg } from "../ui/dom.ts";
 import { heightOf, shapes, straight, type Block } from "./shape.ts";
 
 /** Room above and at the ends, metres. */
@@ -18,7 +18,7 @@ export function sideView(vehicle: Vehicle, metres = vehicle.length_m): SVGSVGEle
   const tall = height + 2 * ROOM;
   const units = shapes(vehicle).map((shape, index) => {
     const at = axles[index] ?? 0;
-    const group = svg("g", { class: `unit unit-${index % 7}` });
+    const group = styled(svg("g", { class: "unit" }), { "--unit": `var(--unit-${index % 7})` });
     for (const block of shape.blocks) group.append(rectangle(block, at, height));
     for (const wheel of shape.wheels) {
       const centre = { cx: at - wheel, cy: height - shape.wheelRadius };

@@ -1,7 +1,7 @@
 // The number under the pointer.
 
 import { h, styled } from "../ui/dom.ts";
-import { className, evidenceWords, margin, reasonWords, title, verdictWords } from "../words.ts";
+import { className, evidenceWords, leastMargin, margin, reasonWords, title, verdictWords } from "../words.ts";
 import type { Evidence, VerdictName } from "../api/types.ts";
 import type { Under } from "./view.ts";
 
@@ -29,16 +29,19 @@ function content({ kind, properties }: Under): Node[] {
   const verdict = (text("verdict") ?? "unknown") as VerdictName;
   const rsc = properties["rsc_m"];
   const decided = (verdict === "safe" || verdict === "unsafe") && typeof rsc === "number";
-  const number = decided ? margin(rsc) : reasonWords(verdict, text("reason"));
-  const name = kind === "turn" ? "Turn" : title({ ref: text("ref"), name: text("name"), highway: text("highway") });
+  const told = kind === "overview" ? leastMargin : margin;
+  const number = decided ? told(rsc) : reasonWords(verdict, text("reason"));
+  const road = { ref: text("ref"), name: text("name"), highway: text("highway") };
+  const name = { turn: "Turn", overview: "The worst of what lies here", edge: title(road) }[kind];
   const source = text("width_source") as Evidence | null;
   const parts = [
-    kind === "edge" && text("highway") ? className(text("highway") ?? "") : null,
-    kind === "edge" ? `width: ${evidenceWords[source ?? "none"].toLowerCase()}` : null,
+    road.highway ? className(road.highway) : null,
+    kind !== "turn" ? `width: ${evidenceWords[source ?? "none"].toLowerCase()}` : null,
   ].filter(Boolean);
   return [
     h("div", { class: `hover-number is-${verdict}` }, h("i", { class: `line line-${verdict}` }), number),
     h("div", { class: "hover-name" }, name),
     h("div", { class: "hover-more" }, [verdictWords[verdict].name, ...parts].join(" · ")),
-  ];
+    kind === "overview" ? h("div", { class: "hover-more" }, "Click to go nearer.") : null,
+  ].filter((node) => node !== null);
 }

@@ -74,7 +74,7 @@ export function offset(factor: number, ground: Ground): Numeric {
   });
 }
 
-/** A tile may say it for each road; else the region does. */
+/** Where a region has both sides, its tiles say it for each road. */
 function drivesLeft(region: Region): ExpressionSpecification {
   return ["to-boolean", ["coalesce", ["get", "left"], region.left_hand_traffic ?? false]];
 }

@@ -66,7 +66,7 @@ export const palettes: Record<Theme, Palette> = {
     selected: "#111417",
     route: "#111417",
     routeCasing: "#ffffff",
-    units: ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442"],
+    units: ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#c9bb1c"],
     surface: "#e6e3dc",
     corridor: "#d6d3cb",
     swept: "#b9d3e8",
@@ -91,6 +91,12 @@ export const palettes: Record<Theme, Palette> = {
     swept: "#28445c",
   },
 };
+
+/** What of it the style sheet names, as custom properties. */
+export function properties({ room, missing, forbidden, unknown, units }: Palette): Record<string, string> {
+  const numbered = units.map((colour, index) => [`--unit-${index}`, colour]);
+  return { "--safe": room[2], "--unsafe": missing[2], "--forbidden": forbidden, "--unknown": unknown, ...Object.fromEntries(numbered) };
+}
 
 /** Why a road is barred, by `verdict/reason`. */
 export const reasonColours: Record<string, string> = {

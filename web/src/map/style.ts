@@ -8,10 +8,12 @@ import type {
   DataDrivenPropertyValueSpecification,
   ExpressionSpecification,
   LayerSpecification,
+  LineLayerSpecification,
   StyleSpecification,
 } from "maplibre-gl";
 import type { Region, VerdictName } from "../api/types.ts";
 import type { State } from "../state.ts";
+import { h } from "../ui/dom.ts";
 import { CLASSES, EVIDENCE } from "../words.ts";
 import { REAL_ZOOM, major, middle, offset, pixelsPerMetre, width, type Ground, type Numeric } from "./lines.ts";
 import { evidenceColours, missingSteps, palettes, reasonColours, roomSteps, type Palette, type Theme } from "./palette.ts";
@@ -20,6 +22,9 @@ export const LABEL_FONT = "Inter Variable";
 /** Drawn in this order: what may be used lies on top. */
 export const verdictLayers: readonly VerdictName[] = ["unknown", "forbidden", "unsafe", "safe"];
 export const edgeLayers = verdictLayers.map((verdict) => `edge-${verdict}`);
+/** From afar one line stands for many roads, and on top lies what may not be used: nothing certified may cover it. */
+const fromBest: readonly VerdictName[] = ["safe", "unknown", "unsafe", "forbidden"];
+export const overviewLayers = fromBest.map((verdict) => `overview-${verdict}`);
 export const turnLayers = verdictLayers.map((verdict) => `turn-${verdict}`);
 
 type Colour = DataDrivenPropertyValueSpecification<string>;
@@ -80,6 +85,26 @@ function edge(verdict: VerdictName, state: State, palette: Palette, ground: Grou
   };
 }
 
+/** Roads from afar: both directions in one line, so without an offset. */
+function overview(verdict: VerdictName, state: State, palette: Palette, ground: Ground): LayerSpecification {
+  const { paint, ...own } = edge(verdict, state, palette, ground) as LineLayerSpecification;
+  const { "line-offset": _, ...rest } = paint ?? {};
+  return { ...own, id: `overview-${verdict}`, "source-layer": "overview", paint: { ...rest, "line-width": width(1.5 * breadth[verdict]) } };
+}
+
+/** Under what is not certified the paper, so that of a certified line beside it nothing shines through its gaps. */
+function overviewCasing(verdict: VerdictName, state: State, palette: Palette): LayerSpecification {
+  return {
+    id: `overview-casing-${verdict}`,
+    type: "line",
+    source: "roads",
+    "source-layer": "overview",
+    filter: filter(verdict, state),
+    layout: { "line-cap": "round", "line-join": "round" },
+    paint: { "line-color": palette.casing, "line-width": width(2) },
+  };
+}
+
 function turn(verdict: VerdictName, state: State, palette: Palette, ground: Ground): LayerSpecification {
   const dash = dashes[verdict];
   const filtered = ["all", ["==", ["get", "verdict"], verdict], !state.hidden.has(verdict)];
@@ -130,7 +155,7 @@ function surface(palette: Palette, ground: Ground): LayerSpecification {
     paint: {
       "line-color": palette.surface,
       "line-width": ["interpolate", ["exponential", 1.8], ["zoom"], ...stops] as unknown as Numeric,
-      "line-offset": offset(1, ground),
+      ...(ground.shared ? {} : { "line-offset": offset(1, ground) }),
     },
   };
 }
@@ -175,6 +200,11 @@ function labels(palette: Palette): LayerSpecification {
   };
 }
 
+/** MapLibre takes attributions for HTML. */
+function plain(text: string): string {
+  return h("span", {}, text).innerHTML;
+}
+
 const world: [number, number][] = [[-180, -85], [180, -85], [180, 85], [-180, 85], [-180, -85]];
 
 /** The region's box; outside of it nothing is known, which the paper shows. */
@@ -197,13 +227,17 @@ export function style(state: State, ground: Ground): StyleSpecification {
     sources: {
       roads: { type: "vector", tiles: [tilesUrl], maxzoom: region.max_zoom, bounds: region.bbox, attribution: region.attribution },
       outside: { type: "geojson", data: extent(region.bbox) },
-      ...(base ? { base: { type: "raster", tiles: [base.url], tileSize: 256, attribution: base.attribution ?? "" } } : {}),
+      ...(base ? { base: { type: "raster", tiles: [base.url], tileSize: 256, attribution: plain(base.attribution) } } : {}),
     },
     layers: [
       { id: "paper", type: "background", paint: { "background-color": palette.paper } },
       ...(base ? [{ id: "base", type: "raster", source: "base", paint: { "raster-opacity": 0.45, "raster-saturation": -0.7 } } as LayerSpecification] : []),
       { id: "outside", type: "fill", source: "outside", paint: { "fill-color": palette.outside, "fill-opacity": base ? 0.4 : 1 } },
       surface(palette, ground),
+      ...fromBest.flatMap((verdict) => {
+        const line = overview(verdict, state, palette, ground);
+        return verdict === "safe" ? [line] : [overviewCasing(verdict, state, palette), line];
+      }),
       casing(palette, ground),
       highlight("hover-edge", "edge", palette, ground),
       highlight("selected-edge", "edge", palette, ground),

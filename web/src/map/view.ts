@@ -1,16 +1,16 @@
 // One map: made for a vehicle and a policy, restyled as the state changes, reporting what is under the pointer.
 
-import { AttributionControl, Map as Base, ScaleControl, type GeoJSONSource, type MapGeoJSONFeature, type MapMouseEvent } from "maplibre-gl";
+import { AttributionControl, Map as Base, ScaleControl, type GeoJSONSource, type MapGeoJSONFeature, type MapMouseEvent, type Source } from "maplibre-gl";
 import type { Region } from "../api/types.ts";
 import { api, type Question } from "../api/client.ts";
 import type { State } from "../state.ts";
 import type { Theme } from "./palette.ts";
-import { edgeLayers, style, turnLayers } from "./style.ts";
+import { edgeLayers, overviewLayers, style, turnLayers } from "./style.ts";
 
-/** What a tile says of an edge or a turn. */
+/** What a tile says of an edge or a turn; from afar, of all roads that fall on one line: those have no id. */
 export interface Under {
-  kind: "edge" | "turn";
-  id: string;
+  kind: "edge" | "turn" | "overview";
+  id: string | null;
   properties: Record<string, string | number | boolean | undefined>;
 }
 
@@ -121,7 +121,7 @@ export class View {
   }
 
   #hover(under: Under | null): void {
-    const key = under ? under.kind + under.id : "";
+    const key = under?.id ? under.kind + under.id : "";
     if (key === this.#hovered) return;
     this.#hovered = key;
     this.map.setFilter("hover-edge", ["==", ["get", "edge_id"], under?.kind === "edge" ? under.id : ""]);
@@ -130,7 +130,7 @@ export class View {
 
   #at(event: MapMouseEvent, near: number): Under | null {
     const { x, y } = event.point;
-    const layers = [...turnLayers, ...edgeLayers].filter((id) => this.map.getLayer(id));
+    const layers = [...turnLayers, ...edgeLayers, ...overviewLayers].filter((id) => this.map.getLayer(id));
     const box: [[number, number], [number, number]] = [[x - near, y - near], [x + near, y + near]];
     const exact = this.map.queryRenderedFeatures(event.point, { layers });
     return under(exact[0] ?? this.map.queryRenderedFeatures(box, { layers })[0]);
@@ -138,6 +138,11 @@ export class View {
 
   #listen(): void {
     const { map, events } = this;
+    // Widths in metres are right only in tiles of the map's own zoom; tilted, MapLibre takes finer ones near the camera.
+    map.on("styledata", () => {
+      const roads = map.getSource("roads") as Source | undefined;
+      if (roads) roads.calculateTileZoom = (zoom) => zoom;
+    });
     map.on("mousemove", (event) => {
       const found = this.#at(event, NEAR_MOUSE);
       this.#hover(found);
@@ -158,7 +163,7 @@ export class View {
 
 function under(feature: MapGeoJSONFeature | undefined): Under | null {
   if (!feature) return null;
-  const kind = feature.sourceLayer === "turn" ? "turn" : "edge";
   const properties = feature.properties as Under["properties"];
-  return { kind, id: String(properties[`${kind}_id`]), properties };
+  const kind = feature.sourceLayer as Under["kind"];
+  return { kind, id: kind === "overview" ? null : String(properties[`${kind}_id`]), properties };
 }

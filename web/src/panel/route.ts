@@ -91,18 +91,23 @@ export class RoutePanel {
       return [h("h2", {}, "No route"), h("p", { class: "headline-words" }, `No roads lead there at all. ${ways}`)];
     }
     const count = answer.obstacles.length;
-    const words = `At least ${count} ${count === 1 ? "place" : "places"} would have to be certified first:`;
+    const what = count === 1 ? "one place is not certified for this vehicle" : `${count} places are not certified for this vehicle`;
     return [
       h("h2", {}, "No certified route"),
-      h("p", { class: "headline-words" }, words),
-      h("ol", { class: "parts" }, ...answer.obstacles.map((obstacle) => this.#obstacle(obstacle))),
-      h("p", { class: "scope" }, `The fewest places on any way there. ${answer.gave_up ? "The search was given up before all ways were tried. " : ""}${ways}`),
+      h("p", { class: "headline-words" }, `Even on the easiest way ${what}: ${reasons(answer.obstacles)}. See the map.`),
+      h("ol", { class: "parts" }, ...grouped(answer.obstacles).map((group) => this.#obstacle(group))),
+      h("p", { class: "scope" }, `Each of them would have to be certified first. ${answer.gave_up ? "The search was given up before all ways were tried. " : ""}${ways}`),
     ];
   }
 
-  #obstacle(obstacle: Obstacle): HTMLElement {
-    const missing = obstacle.rsc_m !== null && obstacle.rsc_m < 0 && obstacle.rsc_m > -100 ? `${careful(obstacle.rsc_m)} m missing` : "";
-    const why = obstacle.verdict === "refuted" ? "fails as part of the whole" : reasonWords(obstacle.verdict, obstacle.reason);
+  /** Places of one road, one after the other, told by the worst. */
+  #obstacle(group: Obstacle[]): HTMLElement {
+    const short = ({ rsc_m }: Obstacle): number => (rsc_m !== null && rsc_m > -100 ? Math.min(rsc_m, 0) : 0);
+    const obstacle = group.reduce((worst, one) => (short(one) < short(worst) ? one : worst));
+    const most = group.length > 1 ? "up to " : "";
+    const missing = short(obstacle) < 0 ? `${most}${careful(short(obstacle))} m missing` : "";
+    const places = group.length > 1 ? `${group.length} places · ` : "";
+    const why = places + whyNot(obstacle);
     const select = () => this.actions.select(obstacle.edge_id ?? null, obstacle.place);
     return h(
       "li",
@@ -111,12 +116,36 @@ export class RoutePanel {
         "button",
         { type: "button", onclick: select },
         h("i", { class: `line line-${obstacle.verdict === "refuted" ? "unsafe" : obstacle.verdict}` }),
-        h("span", { class: obstacle.kind === "turn" ? "part is-turn" : "part" }, obstacle.title),
+        h("span", { class: obstacle.kind === "turn" ? "part is-turn" : "part" }, obstacle.title.replace(/^(.+) into \1$/, "Turn on $1")),
         h("span", { class: "part-length" }, why),
         h("span", { class: "part-rsc" }, missing),
       ),
     );
   }
+}
+
+function whyNot({ verdict, reason }: Obstacle): string {
+  return verdict === "refuted" ? "Fails as part of the whole" : reasonWords(verdict, reason);
+}
+
+/** `too narrow (31), no access (2)`, the most frequent first. */
+function reasons(obstacles: Obstacle[]): string {
+  const counts = new Map<string, number>();
+  for (const obstacle of obstacles) counts.set(whyNot(obstacle), (counts.get(whyNot(obstacle)) ?? 0) + 1);
+  const sorted = [...counts].sort((a, b) => b[1] - a[1]);
+  return sorted.map(([why, count]) => `${why.charAt(0).toLowerCase()}${why.slice(1)} (${count})`).join(", ");
+}
+
+/** Runs of edges of one road that fail for one reason. */
+function grouped(obstacles: Obstacle[]): Obstacle[][] {
+  const groups: Obstacle[][] = [];
+  for (const obstacle of obstacles) {
+    const last = groups.at(-1)?.[0];
+    const same = last && last.kind === "edge" && obstacle.kind === "edge" && last.title === obstacle.title && whyNot(last) === whyNot(obstacle);
+    if (same) groups.at(-1)!.push(obstacle);
+    else groups.push([obstacle]);
+  }
+  return groups;
 }
 
 /** Nearer than this to where one clicked is there. */

@@ -1,6 +1,7 @@
 // Light or dark: as the system has it, until someone chooses; the choice is kept on this machine.
 
-import type { Theme } from "../map/palette.ts";
+import { palettes, properties, type Theme } from "../map/palette.ts";
+import { styled } from "./dom.ts";
 
 const KEY = "netcert.theme";
 
@@ -34,6 +35,7 @@ export class ThemeSwitch {
 
   #apply(): void {
     document.documentElement.dataset["theme"] = this.theme;
+    styled(document.documentElement, properties(palettes[this.theme]));
     for (const listener of this.#listeners) listener(this.theme);
   }
 }

@@ -1,0 +1,222 @@
+//! Lines on a raster of half pixels: what falls on the same piece of it is one piece, which says the worst that is said
+//! of any; pieces that say the same are joined into long lines.
+//!
+//! Promises that wherever a line that is not certified was put in, there is one that is not certified, to a raster step
+//! and the tolerance of joining, however short it was; and the same lines for the same input in any order. Leaves out
+//! certified lines shorter than a step.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::shape::simplified;
+
+/// A crossing of the raster.
+pub(super) type Cell = [i32; 2];
+
+/// How far a joined line may be from its pieces, steps: a quarter of a pixel.
+const TOLERANCE: f64 = 0.5;
+/// What is shorter than a step is drawn so long, steps: one pixel.
+const LEAST_LENGTH: i32 = 2;
+
+/// What a line says. Derived order: the later the worse, within a class.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Said {
+    /// Classes stay apart: each can be hidden.
+    pub(super) class: u8,
+    /// 0 is certified, everything else is not.
+    pub(super) severity: u8,
+    /// Steps of margin below the most that is told.
+    pub(super) short: u8,
+    /// Number of the verdict with its reason.
+    pub(super) verdict: u8,
+    /// Steps of evidence for the width below the best.
+    pub(super) doubt: u8,
+}
+
+impl Said {
+    /// Both of one class: the worse verdict with its margin, on the lesser evidence of the two.
+    fn with(self, other: Self) -> Self {
+        Self { doubt: self.doubt.max(other.doubt), ..self.max(other) }
+    }
+}
+
+/// A piece between two crossings, the lesser first; between a crossing and itself: less than a step of something.
+type Piece = (Cell, Cell);
+
+/// Lines as they come.
+#[derive(Default)]
+pub(super) struct Raster {
+    pieces: Vec<(u8, Piece, Said)>,
+}
+
+impl Raster {
+    /// Adds a line by its crossings.
+    pub(super) fn add(&mut self, line: impl Iterator<Item = Cell>, said: Said) {
+        let mut last: Option<(Cell, bool)> = None;
+        for cell in line {
+            match last {
+                Some((before, _)) if before == cell => {}
+                Some((before, _)) => {
+                    self.pieces.push((said.class, (before.min(cell), before.max(cell)), said));
+                    last = Some((cell, true));
+                }
+                None => last = Some((cell, false)),
+            }
+        }
+        if let Some((only, false)) = last {
+            self.pieces.push((said.class, (only, only), said));
+        }
+    }
+
+    /// Of each kind its lines, the worse the later.
+    pub(super) fn lines(mut self) -> BTreeMap<Said, Vec<Vec<Cell>>> {
+        self.pieces.sort_unstable();
+        let same = |a: &(u8, Piece, Said), b: &(u8, Piece, Said)| (a.0, a.1) == (b.0, b.1);
+        let worst = |group: &[(u8, Piece, Said)]| {
+            let (first, others) = group.split_first()?;
+            Some((first.1, others.iter().fold(first.2, |said, other| said.with(other.2))))
+        };
+        let pieces: Vec<(Piece, Said)> = self.pieces.chunk_by(same).filter_map(worst).collect();
+        let barred = pieces.iter().filter(|(piece, said)| said.severity > 0 && piece.0 != piece.1);
+        let told: BTreeSet<(u8, Cell)> =
+            barred.flat_map(|(piece, said)| [(said.class, piece.0), (said.class, piece.1)]).collect();
+        let mut kinds: BTreeMap<Said, Vec<Piece>> = BTreeMap::new();
+        for (piece, said) in pieces {
+            let (a, b) = piece;
+            if a != b {
+                kinds.entry(said).or_default().push(piece);
+            } else if said.severity > 0 && !told.contains(&(said.class, a)) {
+                kinds.entry(said).or_default().push((a, [a[0] + LEAST_LENGTH, a[1]]));
+            }
+        }
+        kinds.into_iter().map(|(said, pieces)| (said, joined(&pieces))).collect()
+    }
+}
+
+/// Pieces one after the other, straight on where there is a choice, without crossings that nobody would miss.
+fn joined(pieces: &[Piece]) -> Vec<Vec<Cell>> {
+    let mut at: BTreeMap<Cell, Vec<usize>> = BTreeMap::new();
+    for (i, &(a, b)) in pieces.iter().enumerate() {
+        at.entry(a).or_default().push(i);
+        at.entry(b).or_default().push(i);
+    }
+    let mut used = vec![false; pieces.len()];
+    let mut lines = Vec::new();
+    for (i, &(a, b)) in pieces.iter().enumerate() {
+        if std::mem::replace(&mut used[i], true) {
+            continue;
+        }
+        let mut line = vec![a, b];
+        for _ in 0..2 {
+            while let Some(next) = onward(&line, pieces, &at, &mut used) {
+                line.push(next);
+            }
+            line.reverse();
+        }
+        let line: Vec<[f64; 2]> = line.into_iter().map(|cell| cell.map(f64::from)).collect();
+        lines.push(simplified(&line, TOLERANCE).into_iter().map(|point| point.map(|c| c as i32)).collect());
+    }
+    lines
+}
+
+/// The other end of the unused piece that goes on most nearly straight.
+fn onward(line: &[Cell], pieces: &[Piece], at: &BTreeMap<Cell, Vec<usize>>, used: &mut [bool]) -> Option<Cell> {
+    let [.., before, end] = line else { return None };
+    let other = |&i: &usize| if pieces[i].0 == *end { pieces[i].1 } else { pieces[i].0 };
+    let straight = |i: &usize| {
+        let (u, v) = (step(*before, *end), step(*end, other(i)));
+        (u[0] * v[0] + u[1] * v[1]) / (v[0].hypot(v[1]) * u[0].hypot(u[1])).max(1e-9)
+    };
+    let free = at.get(end)?.iter().filter(|&&i| !used[i]);
+    let next = *free.max_by(|a, b| straight(a).total_cmp(&straight(b)))?;
+    used[next] = true;
+    Some(other(&next))
+}
+
+fn step(from: Cell, to: Cell) -> [f64; 2] {
+    [f64::from(to[0] - from[0]), f64::from(to[1] - from[1])]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn said(severity: u8, short: u8, doubt: u8) -> Said {
+        Said { class: 0, severity, short, verdict: severity, doubt }
+    }
+
+    fn lines(all: &[(&[Cell], Said)]) -> BTreeMap<Said, Vec<Vec<Cell>>> {
+        let mut raster = Raster::default();
+        all.iter().for_each(|(line, said)| raster.add(line.iter().copied(), *said));
+        raster.lines()
+    }
+
+    #[test]
+    fn of_two_directions_the_worse_counts_on_the_lesser_evidence() {
+        let there: &[Cell] = &[[0, 0], [10, 0], [10, 9]];
+        let back: &[Cell] = &[[10, 9], [10, 0], [0, 0]];
+        let drawn = lines(&[(there, said(0, 3, 4)), (back, said(2, 1, 0))]);
+        assert_eq!(drawn, BTreeMap::from([(said(2, 1, 4), vec![there.to_vec()])]));
+        let drawn = lines(&[(there, said(0, 3, 0)), (back, said(0, 1, 2))]);
+        assert_eq!(drawn.into_keys().collect::<Vec<_>>(), [said(0, 3, 2)]);
+    }
+
+    #[test]
+    fn what_says_the_same_is_one_line_and_what_is_not_certified_has_a_pixel_at_least() {
+        let drawn = lines(&[
+            (&[[0, 0], [5, 0]], said(0, 0, 0)),
+            (&[[5, 0], [5, 0]], said(2, 0, 0)),
+            (&[[5, 0], [9, 0], [20, 0]], said(0, 0, 0)),
+            (&[[7, 7]], said(0, 0, 0)),
+        ]);
+        assert_eq!(drawn[&said(0, 0, 0)], [vec![[0, 0], [20, 0]]]);
+        assert_eq!(drawn[&said(2, 0, 0)], [vec![[5, 0], [7, 0]]]);
+        assert_eq!(drawn.len(), 2);
+        let beside = lines(&[(&[[5, 0], [9, 0]], said(1, 0, 0)), (&[[5, 0]], said(2, 0, 0))]);
+        assert_eq!(beside.into_keys().collect::<Vec<_>>(), [said(1, 0, 0)], "the place is told already");
+    }
+
+    fn distance(p: Cell, line: &[Cell]) -> f64 {
+        let p = p.map(f64::from);
+        let to = |pair: &[Cell]| {
+            let (a, b) = (pair[0].map(f64::from), pair[1].map(f64::from));
+            let (u, v) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+            let squared = u[0] * u[0] + u[1] * u[1];
+            let along = if squared > 0.0 { ((u[0] * v[0] + u[1] * v[1]) / squared).clamp(0.0, 1.0) } else { 0.0 };
+            (v[0] - along * u[0]).hypot(v[1] - along * u[1])
+        };
+        line.windows(2).map(to).fold(f64::INFINITY, f64::min)
+    }
+
+    proptest! {
+        /// Short steps on a small raster, so that lines meet, cover and collapse.
+        #[test]
+        fn nothing_that_is_not_certified_gets_lost(
+            all in prop::collection::vec((prop::collection::vec((0..12_i32, 0..12_i32), 1..6), 0..3_u8, 0..3_u8), 1..20),
+            turned in any::<bool>()
+        ) {
+            let mut raster = Raster::default();
+            let mut other = Raster::default();
+            for (line, severity, short) in &all {
+                raster.add(line.iter().map(|&(x, y)| [x, y]), said(*severity, *short, 0));
+            }
+            for (line, severity, short) in all.iter().rev() {
+                let mut line = line.clone();
+                if turned {
+                    line.reverse();
+                }
+                other.add(line.into_iter().map(|(x, y)| [x, y]), said(*severity, *short, 0));
+            }
+            let drawn = raster.lines();
+            prop_assert_eq!(&drawn, &other.lines());
+            let barred: Vec<&Vec<Cell>> =
+                drawn.iter().filter(|(said, _)| said.severity > 0).flat_map(|(_, lines)| lines).collect();
+            for (line, ..) in all.iter().filter(|(_, severity, _)| *severity > 0) {
+                for &(x, y) in line {
+                    let near = barred.iter().map(|line| distance([x, y], line)).fold(f64::INFINITY, f64::min);
+                    prop_assert!(near <= TOLERANCE, "{x} {y}: {near}");
+                }
+            }
+        }
+    }
+}

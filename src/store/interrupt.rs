@@ -1,0 +1,33 @@
+//! A statement that reads much may be told to stop.
+
+use super::database::Database;
+use super::error::StoreError;
+use crate::stop::Stop;
+
+/// So many instructions of SQLite's machine between two questions: some ten microseconds.
+const INSTRUCTIONS: i32 = 1000;
+
+impl Database {
+    /// From now on a statement fails soon after `stop` has been told; such a connection is of no more use.
+    ///
+    /// # Errors
+    /// The connection is broken.
+    pub fn stop_when_told(&mut self, stop: &Stop) -> Result<(), StoreError> {
+        let stop = stop.clone();
+        self.session.run(async |c| {
+            c.lock_handle().await?.set_progress_handler(INSTRUCTIONS, move || !stop.told());
+            Ok(())
+        })
+    }
+
+    /// Statements run to their ends again.
+    ///
+    /// # Errors
+    /// The connection is broken.
+    pub fn never_stop(&mut self) -> Result<(), StoreError> {
+        self.session.run(async |c| {
+            c.lock_handle().await?.remove_progress_handler();
+            Ok(())
+        })
+    }
+}

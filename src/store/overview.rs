@@ -1,0 +1,78 @@
+//! The main roads of a region from afar: their lines with what a map of small scale says of them, in one pass over the
+//! table.
+//!
+//! Promises every edge of the classes asked for, in order of the network. Leaves out names and ids: from afar nobody
+//! reads them.
+
+use sqlx::sqlite::SqliteRow;
+use sqlx::{AssertSqlSafe, Row as _};
+
+use crate::osm::LonLat;
+use crate::osm::facts::{Policy, RoadClass, WidthSource};
+use crate::verdict::Verdict;
+
+use super::blob;
+use super::database::Database;
+use super::error::{StoreError, content};
+use super::map::{columns, verdict};
+use super::names::{Named as _, class_and_link, corridor_no};
+use super::network_read::word_or_none;
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// An edge as a map of small scale draws it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MainRoad {
+    /// `highway`.
+    pub class: RoadClass,
+    /// Whether it is a `_link`.
+    pub link: bool,
+    /// Of the policy asked for.
+    pub width_source: Option<WidthSource>,
+    /// With its reason.
+    pub verdict: Verdict,
+    /// Millimetres, as kept: rounded down.
+    pub rsc_mm: Option<i64>,
+    /// In direction of travel.
+    pub line: Vec<LonLat>,
+}
+
+impl Database {
+    /// All edges of these classes (with their links), under a vehicle's certificates.
+    ///
+    /// # Errors
+    /// The file cannot be read. A vehicle that is not certified under this policy has no rows.
+    pub fn main_roads(
+        &mut self,
+        (vehicle, policy): (&str, Policy),
+        classes: &[RoadClass],
+    ) -> Result<Vec<MainRoad>, StoreError> {
+        let (_, source) = columns(policy);
+        let words: Vec<String> = classes.iter().map(|class| format!("'{0}','{0}_link'", class.name())).collect();
+        let sql = format!(
+            "SELECT e.highway, e.{source}, c.verdict_no, c.rsc_mm, e.geom FROM edge AS e \
+             CROSS JOIN certificate_compact AS c \
+             ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
+             AND c.corridor_no = ? AND c.fid = e.fid \
+             WHERE e.highway IN ({}) ORDER BY e.fid",
+            words.join(",")
+        );
+        self.session.run(async |c| {
+            let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle).bind(corridor_no(policy));
+            query.fetch_all(c).await?.iter().map(main_road).collect()
+        })
+    }
+}
+
+fn main_road(row: &SqliteRow) -> Sql<MainRoad> {
+    let highway: &str = row.try_get(0)?;
+    let (class, link) = class_and_link(highway).ok_or_else(|| content(format!("highway {highway}")))?;
+    Ok(MainRoad {
+        class,
+        link,
+        width_source: word_or_none(row, 1)?,
+        verdict: verdict(row, 2)?,
+        rsc_mm: row.try_get(3)?,
+        line: blob::decode(row.try_get(4)?).ok_or_else(|| content("the geometry of an edge".to_owned()))?,
+    })
+}

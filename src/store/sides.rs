@@ -1,0 +1,46 @@
+//! On which side of the road one drives: most regions know one side only, one at Hong Kong's border or Thailand's both.
+
+use sqlx::Row as _;
+
+use super::database::Database;
+use super::error::StoreError;
+
+/// The sides of a region.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DrivingSides {
+    /// Whether most ways are driven on the left.
+    mostly_left: bool,
+    /// Edges that are driven on the other side, sorted.
+    others: Vec<u32>,
+}
+
+impl DrivingSides {
+    /// Whether an edge (index into `Network::edges`) is driven on the left; `None` where all are driven as most are.
+    #[must_use]
+    pub fn left(&self, edge: u32) -> Option<bool> {
+        let mixed = !self.others.is_empty();
+        mixed.then(|| self.mostly_left != self.others.binary_search(&edge).is_ok())
+    }
+}
+
+impl Database {
+    /// On which side each edge is driven.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn driving_sides(&mut self) -> Result<DrivingSides, StoreError> {
+        let mostly_left = self.left_hand_traffic()?;
+        let mixed = "SELECT min(left_hand_traffic) <> max(left_hand_traffic) FROM road";
+        let others = "SELECT fid FROM edge WHERE road_no IN \
+                      (SELECT road_no FROM road WHERE left_hand_traffic <> ?) ORDER BY fid";
+        let others = self.session.run(async |c| {
+            // Edges have no index by road: whoever has one side only is spared the search.
+            if sqlx::query(mixed).fetch_one(&mut *c).await?.try_get::<Option<bool>, _>(0)? != Some(true) {
+                return Ok(Vec::new());
+            }
+            let rows = sqlx::query(others).bind(mostly_left).fetch_all(c).await?;
+            rows.iter().map(|row| Ok(row.try_get::<u32, _>(0)?.saturating_sub(1))).collect()
+        })?;
+        Ok(DrivingSides { mostly_left, others })
+    }
+}
