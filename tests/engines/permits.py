@@ -135,9 +135,23 @@ class Permits:
         keys = [(x + dx, y + dy) for dx in (0, -1, 1) for dy in (0, -1, 1)]
         return next((self.at[key] for key in keys if key in self.at), [])
 
-    def middle(self, edge):
+    def whole(self, nodes, pair):
+        """Nodes from the middle of one edge to that of another, with the node behind the start and the one ahead of the goal."""
+        for edge, first in zip(pair, (True, False)):
+            a, b = self._beside_middle(edge)
+            end, before = (nodes[:1], nodes[:2]) if first else (nodes[-1:], nodes[-2:])
+            # Between nodes that lie close together the end of the line may be taken for a node.
+            if end in ([a], [b]) and sorted(before, key=str) != sorted([a, b], key=str):
+                other = [b] if end == [a] else [a]
+                nodes = other + nodes if first else nodes + other
+        return nodes
+
+    def _beside_middle(self, edge):
         nodes = self.edges[edge]["nodes"]
-        a, b = (self.place[node] for node in nodes[(len(nodes) - 1) // 2 :][:2])
+        return nodes[(len(nodes) - 1) // 2 :][:2]
+
+    def middle(self, edge):
+        a, b = (self.place[node] for node in self._beside_middle(edge))
         return ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2)
 
     def pairs(self, count, seed):

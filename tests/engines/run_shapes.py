@@ -160,7 +160,7 @@ def survey(permits, drawn, route):
             shapes.setdefault(drawn.shape_of[int(row["way_id"])], []).append(edge)
     for edges in shapes.values():
         for pair in [(a, b) for a in edges for b in edges if a != b]:
-            nodes = route([permits.middle(edge) for edge in pair])
+            nodes = route(pair, [permits.middle(edge) for edge in pair])
             if nodes is None:
                 out["none"] += 1
                 continue
@@ -183,7 +183,7 @@ def run(extract, tables, tuned, rewritten, valhalla, work):
     for name, file, customize in [("plain", extract, []), ("csv", extract, files), ("pbf", rewritten, [])]:
         engine = run_osrm.engine(file, work, name, customize)
 
-        def route(places):
+        def route(_, places):
             found = run_osrm.route(engine, places)
             penalty = found and name == "csv" and found[1] >= run_osrm.PENALTY_S
             return None if found is None or penalty else found[0]
@@ -192,9 +192,9 @@ def run(extract, tables, tuned, rewritten, valhalla, work):
     request = json.load(open(f"{valhalla}/request.json"))
     actor = run_valhalla.engine(f"{valhalla}/extract.osm.pbf", work, "valhalla")
 
-    def line(places):
+    def line(pair, places):
         found = run_valhalla.route(actor, request, places)
-        return found and permits.nodes_of(found)
+        return found and permits.whole(permits.nodes_of(found), pair)
 
     out["valhalla"] = survey(permits, drawn, line)
     out["lost"], out["repeated"] = repeated(extract, rewritten)
