@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io;
+use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -18,13 +19,12 @@ impl Unfinished {
 
     /// Removes all of them, and keeps the export from naming another one. The program must end now.
     pub fn remove(self) {
-        let paths = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        // Never unlocked again.
+        let paths = ManuallyDrop::new(self.0.lock().unwrap_or_else(PoisonError::into_inner));
         for path in paths.iter() {
             // What cannot be removed the next export of this name removes.
             let _ = remove(path);
         }
-        // Never unlocked again.
-        std::mem::forget(paths);
     }
 }
 
