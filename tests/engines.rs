@@ -32,15 +32,20 @@ fn python() -> Option<&'static Path> {
     PYTHON.get_or_init(find).as_deref()
 }
 
-/// Runs a script of tests/engines; what it prints.
-fn run(python: &Path, script: &str, place: &Place, arguments: &[&str]) -> Value {
+/// Runs a script of tests/engines; its last line.
+fn said(python: &Path, script: &str, arguments: impl Iterator<Item = PathBuf>) -> String {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/engines").join(script);
-    let arguments = arguments.iter().map(|name| if *name == PAIRS { PathBuf::from(name) } else { place.path(name) });
-    let done = Command::new(python).arg(script).arg(demo()).args(arguments).output().unwrap();
+    let done = Command::new(python).arg(script).args(arguments).output().unwrap();
     let (out, err) = (String::from_utf8_lossy(&done.stdout), String::from_utf8_lossy(&done.stderr));
     assert!(done.status.success(), "{out}\n{err}");
-    let line = out.lines().last().unwrap_or_default();
-    serde_json::from_str(line).unwrap_or_else(|e| panic!("{e}: {out}\n{err}"))
+    out.lines().last().unwrap_or_default().to_owned()
+}
+
+/// The same with the drawn region and files of the place; the JSON that it prints.
+fn run(python: &Path, script: &str, place: &Place, arguments: &[&str]) -> Value {
+    let argument = |name: &&str| if *name == PAIRS { PathBuf::from(name) } else { place.path(name) };
+    let line = said(python, script, std::iter::once(demo()).chain(arguments.iter().map(argument)));
+    serde_json::from_str(&line).unwrap_or_else(|e| panic!("{e}: {line}"))
 }
 
 fn export(place: &Place, target: &str, out: &str) {
@@ -69,6 +74,34 @@ fn osrm_keeps_to_permits_by_tables_and_by_the_rewritten_extract() {
     let answer = run(python, "run_osrm.py", &place, &["tables", "osrm", "permits.osm.pbf", "work", PAIRS]);
     keeps_to_permits(&answer, "plain", &["csv", "pbf"]);
     assert_eq!(answer["csv"]["examples"], Value::Array(Vec::new()), "{answer}");
+}
+
+#[test]
+fn refusals_of_every_shape_are_obeyed_and_said_once() {
+    let Some(python) = python() else { return };
+    let place = Place::empty();
+    let files = |names: &'static [&'static str]| names.iter().map(|name| place.path(name));
+    said(python, "run_shapes.py", std::iter::once("make".into()).chain(files(&["shapes.osm.pbf"])));
+    let vehicle = "--vehicle AGV-TUG4 --corridor carriageway --quiet";
+    place.netcert(&format!("ingest shapes.osm.pbf {vehicle}")).succeeds();
+    place.netcert(&format!("export csv {vehicle} --out csv")).succeeds();
+    for (target, out) in [("osrm", "osrm"), ("osm-pbf", "permits.osm.pbf"), ("valhalla", "valhalla")] {
+        place.netcert(&format!("export {target} {vehicle} --extract shapes.osm.pbf --out {out}")).succeeds();
+    }
+    std::fs::create_dir(place.path("work")).unwrap();
+    let arguments = files(&["shapes.osm.pbf", "csv", "osrm", "permits.osm.pbf", "valhalla", "work"]);
+    let line = said(python, "run_shapes.py", std::iter::once("run".into()).chain(arguments));
+    let answer: Value = serde_json::from_str(&line).unwrap();
+    assert_eq!(answer["edges_lost"], 0, "{answer}");
+    assert!(answer["refused_passages"].as_u64().unwrap() > 0, "{answer}");
+    assert!(answer["plain"]["refused_used"].as_u64().unwrap() > 0, "{answer}");
+    for name in ["csv", "pbf", "valhalla"] {
+        assert_eq!(answer[name]["refused_used"], 0, "{answer}");
+    }
+    // Engines that have the same refusals in full go the same number of ways, but where Valhalla's are shortened.
+    let routed = |name: &str| answer[name]["routed"].as_u64().unwrap();
+    assert!(routed("pbf") > 500 && routed("valhalla") > routed("pbf") - 20, "{answer}");
+    assert_eq!((&answer["lost"], &answer["repeated"]), (&0.into(), &0.into()), "{answer}");
 }
 
 #[test]

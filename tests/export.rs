@@ -99,6 +99,7 @@ fn an_output_replaces_only_what_an_export_wrote() {
     place.netcert("export csv --vehicle AU-SEMI19 --out notes.txt").fails().tells("move it away");
     place.netcert("export csv --vehicle AU-SEMI19 --out demo.gpkg --layer edges").fails().tells("made from that file");
     place.netcert("export csv --vehicle AU-SEMI19 --out -").fails().tells("--layer edges");
+    place.netcert("export csv --vehicle AU-SEMI19 --out full --layer edges").fails().tells("full: is a folder");
     place.netcert("export csv --vehicle AU-SEMI19 --out csv").succeeds();
     place.netcert("export csv --vehicle AU-ATRIPLE53 --out csv").succeeds();
     assert_eq!(place.files(), ["csv", "demo.gpkg", "full", "notes.txt"]);
@@ -106,6 +107,30 @@ fn an_output_replaces_only_what_an_export_wrote() {
     let out =
         place.netcert("export csv --vehicle AU-SEMI19 --out - --layer turns --quiet").succeeds().tells_nothing().out();
     assert!(out.starts_with("turn_id,from_edge,"));
+}
+
+/// Ctrl-C at some moment while files are written; a run that was faster is made again.
+#[cfg(unix)]
+#[test]
+fn a_stopped_export_leaves_nothing_behind() {
+    use std::process::{Command, Stdio};
+    let place = Place::with_demo();
+    let stopped = (0..20).any(|_| {
+        let line = "export valhalla --vehicle AU-SEMI19 --extract {demo} --out valhalla --quiet";
+        let mut run = place.command(line).stderr(Stdio::null()).spawn().unwrap();
+        while !place.path("valhalla.part").exists() && run.try_wait().unwrap().is_none() {
+            std::thread::yield_now();
+        }
+        let sent = Command::new("kill").args(["-INT", &run.id().to_string()]).stderr(Stdio::null()).status().unwrap();
+        let code = run.wait().unwrap().code();
+        let whole = place.path("valhalla").exists();
+        assert_eq!(place.files().len(), if whole { 2 } else { 1 }, "{:?}", place.files());
+        if whole {
+            std::fs::remove_dir_all(place.path("valhalla")).unwrap();
+        }
+        sent.success() && code == Some(130) && !whole
+    });
+    assert!(stopped, "every run had ended before it could be stopped");
 }
 
 #[test]

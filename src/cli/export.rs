@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use netcert::export::target::{self, Layer, Options, TARGETS};
-use netcert::export::{self, ExportError, Out, PermitPolicy, Source, Tally, Target};
+use netcert::export::{self, ExportError, Out, PermitPolicy, Source, Tally, Target, Unfinished};
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::pipeline::Settings;
 use netcert::store::Database;
@@ -15,6 +15,7 @@ use super::database::DatabaseArgs;
 use super::how;
 use super::on_demand::{self, Wanted};
 use super::output::{grouped, results};
+use super::stop::when_stopped;
 use super::values::{metres, word};
 
 /// Writes what a vehicle may use in the form that a routing engine or map program reads.
@@ -86,7 +87,10 @@ impl Export {
         let source = self.source(session, &path)?;
         let to_stream = self.out.as_os_str() == "-";
         let out = if to_stream { Out::Stream(Box::new(results())) } else { Out::Path(self.out.clone()) };
-        match export::export(&source, target, &Options { layer: self.layer }, out) {
+        let unfinished = Unfinished::default();
+        let on_disk = unfinished.clone();
+        when_stopped(|| on_disk.remove());
+        match export::export(&source, target, &Options { layer: self.layer }, (out, unfinished)) {
             // So that a reader who has enough is no failure.
             Err(ExportError::Write(error)) => return Err(error.into()),
             done => done?,

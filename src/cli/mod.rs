@@ -26,6 +26,7 @@ mod route;
 mod rows;
 mod serve;
 mod stats;
+mod stop;
 mod table;
 mod tubes;
 mod turn_rows;

@@ -10,6 +10,7 @@ use super::Session;
 use super::database::DatabaseArgs;
 use super::how;
 use super::output::{results, tell};
+use super::stop::stop;
 
 /// Show the database on a map: a page in the browser, vector tiles and a JSON interface behind it.
 ///
@@ -63,25 +64,4 @@ impl Serve {
         server.run(stop());
         Ok(())
     }
-}
-
-/// Ctrl-C, or a polite kill. Where signals cannot be heard, it runs until it is killed.
-async fn stop() {
-    let interrupted = async {
-        if tokio::signal::ctrl_c().await.is_err() {
-            std::future::pending::<()>().await;
-        }
-    };
-    #[cfg(unix)]
-    {
-        use tokio::signal::unix::{SignalKind, signal};
-        if let Ok(mut terminated) = signal(SignalKind::terminate()) {
-            tokio::select! {
-                () = interrupted => {}
-                _ = terminated.recv() => {}
-            }
-            return;
-        }
-    }
-    interrupted.await;
 }

@@ -30,6 +30,9 @@ pub enum ExportError {
         "{0}: exists and is no folder of an earlier export; it is left as it is: name another with --out, or move it away"
     )]
     InTheWay(PathBuf),
+    /// A folder stands where a file would be written.
+    #[error("{0}: is a folder, and this export is one file; name it with --out")]
+    Folder(PathBuf),
     /// The output would replace what it is made from.
     #[error("{0}: this export is made from that file; name another with --out")]
     OwnInput(PathBuf),

@@ -10,8 +10,10 @@
 //! | `header` | what every output says of itself |
 //! | `source` | rows from the database, each with its permit |
 //! | `rings` | the arcs of a passage |
+//! | `sequences` | what may not follow what, of edges that may be used |
 //! | `ways` | the extract's ways beside the network's edges |
 //! | `place` | where an output is written: a file, a folder, a stream |
+//! | `unfinished` | what goes if the program is stopped |
 //! | `sorter` | order without holding everything in memory |
 //! | `target` | one file or folder a target |
 //!
@@ -23,9 +25,11 @@ mod header;
 mod permit;
 mod place;
 mod rings;
+mod sequences;
 mod sorter;
 mod source;
 pub mod target;
+mod unfinished;
 mod ways;
 
 pub use error::ExportError;
@@ -34,6 +38,7 @@ pub use permit::{Bits, PermitPolicy, Permitted, Refusal, Tally};
 pub use place::{Layout, Out, Place, Sink};
 pub use source::{Ask, ExportEdge, ExportTurn, Source};
 pub use target::Target;
+pub use unfinished::Unfinished;
 
 /// Writes one export from beginning to end.
 ///
@@ -43,9 +48,9 @@ pub fn export(
     source: &Source<'_>,
     target: &dyn Target,
     options: &target::Options,
-    out: Out,
+    (out, unfinished): (Out, Unfinished),
 ) -> Result<(), ExportError> {
-    let mut place = Place::begin(out, target.layout(options))?;
+    let mut place = Place::begin(out, target.layout(options), unfinished)?;
     let written = target.write(source, options, &mut place).and_then(|()| {
         if place.is_folder() {
             place.write_whole("netcert.json", format!("{:#}\n", source.header.json()).as_bytes())?;

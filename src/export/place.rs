@@ -1,7 +1,8 @@
 //! Where an export is written: whole or not at all.
 //!
 //! A file is written beside its name as `NAME.part`, a folder as `NAME.part/`, and renamed when everything is on the disk. A
-//! folder of an earlier export (it holds `netcert.json`) is replaced; anything else that stands there is left alone.
+//! folder of an earlier export (it holds `netcert.json`) is replaced; anything else that stands there is left alone. What is not
+//! finished is told to [`Unfinished`], so that a program that is stopped can clear it away.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -9,6 +10,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::ExportError;
+use super::unfinished::{self, Unfinished};
 
 /// The file by which a folder is known as an export.
 const MARK: &str = "netcert.json";
@@ -38,6 +40,7 @@ pub enum Out {
 /// An output being written.
 pub struct Place {
     kind: Kind,
+    unfinished: Unfinished,
 }
 
 enum Kind {
@@ -51,22 +54,23 @@ impl Place {
     ///
     /// # Errors
     /// Something else stands there; several files are to go to one stream.
-    pub fn begin(out: Out, layout: Layout) -> Result<Self, ExportError> {
+    pub fn begin(out: Out, layout: Layout, unfinished: Unfinished) -> Result<Self, ExportError> {
         let kind = match (out, layout) {
             (Out::Stream(stream), Layout::File) => Kind::Stream(Some(stream)),
             (Out::Stream(_), Layout::Folder { target, instead }) => return Err(ExportError::NoStream(target, instead)),
-            (Out::Path(target), Layout::File) => Kind::File { part: beside(&target, ".part"), target },
+            (Out::Path(target), Layout::File) if target.is_dir() => return Err(ExportError::Folder(target)),
+            (Out::Path(target), Layout::File) => Kind::File { part: unfinished.add(beside(&target, ".part")), target },
             (Out::Path(target), Layout::Folder { .. }) => {
                 if occupied(&target) {
                     return Err(ExportError::InTheWay(target));
                 }
-                let part = beside(&target, ".part");
+                let part = unfinished.add(beside(&target, ".part"));
                 remove(&part)?;
                 fs::create_dir_all(&part).map_err(|e| at(&part, e))?;
                 Kind::Folder { part, target }
             }
         };
-        Ok(Self { kind })
+        Ok(Self { kind, unfinished })
     }
 
     /// Whether several files are written.
@@ -88,6 +92,7 @@ impl Place {
             Kind::File { part, .. } => part.clone(),
             Kind::Folder { part, .. } => part.join(name),
         };
+        let path = self.unfinished.add(path);
         let file = File::create(&path).map_err(|e| at(&path, e))?;
         let twin = file.try_clone().map_err(|e| at(&path, e))?;
         Ok(Sink { stream: Box::new(BufWriter::with_capacity(1 << 16, file)), file: Some(twin) })
@@ -106,10 +111,10 @@ impl Place {
     /// A name beside the output for what is needed only while it is written; the caller removes it.
     #[must_use]
     pub fn scratch(&self, suffix: &str) -> PathBuf {
-        match &self.kind {
+        self.unfinished.add(match &self.kind {
             Kind::Stream(_) => std::env::temp_dir().join(format!("netcert-{}{suffix}", std::process::id())),
             Kind::File { part, .. } | Kind::Folder { part, .. } => beside(part, suffix),
-        }
+        })
     }
 
     /// Puts the output in its place.
@@ -200,11 +205,7 @@ fn occupied(target: &Path) -> bool {
 }
 
 fn remove(path: &Path) -> Result<(), ExportError> {
-    let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
-    match removed {
-        Err(e) if e.kind() != io::ErrorKind::NotFound => Err(at(path, e)),
-        _ => Ok(()),
-    }
+    unfinished::remove(path).map_err(|e| at(path, e))
 }
 
 /// The old folder stands aside until the new one is in its place.

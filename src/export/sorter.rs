@@ -15,6 +15,7 @@ use super::ExportError;
 pub(super) struct Scratch {
     path: PathBuf,
     file: BufWriter<File>,
+    written: u64,
 }
 
 impl Scratch {
@@ -22,7 +23,12 @@ impl Scratch {
     pub(super) fn create(path: PathBuf) -> Result<Self, ExportError> {
         let file = File::options().read(true).write(true).create(true).truncate(true).open(&path);
         let file = file.map_err(|source| ExportError::Io { path: path.clone(), source })?;
-        Ok(Self { path, file: BufWriter::with_capacity(1 << 16, file) })
+        Ok(Self { path, file: BufWriter::with_capacity(1 << 16, file), written: 0 })
+    }
+
+    /// How many bytes it has.
+    pub(super) fn written(&self) -> u64 {
+        self.written
     }
 
     /// Reads from a place; everything written is there.
@@ -44,7 +50,9 @@ impl Scratch {
 
 impl Write for Scratch {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.file.write(bytes)
+        let n = self.file.write(bytes)?;
+        self.written += n as u64;
+        Ok(n)
     }
 
     fn flush(&mut self) -> io::Result<()> {

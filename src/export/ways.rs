@@ -16,6 +16,15 @@ use super::Source;
 /// A merge needs order; `ingest` does not.
 const SORT: &str = "this export needs objects sorted by id; sort them with `osmium sort`, then ingest that file";
 
+/// Ids of which the format keeps the steps from one to the next.
+pub(super) fn ids(steps: &[i64]) -> Vec<i64> {
+    let next = |id: &mut i64, step: &i64| {
+        *id = id.wrapping_add(*step);
+        Some(*id)
+    };
+    steps.iter().scan(0, next).collect()
+}
+
 /// A stretch of a way between two junctions.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Piece {

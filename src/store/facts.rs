@@ -6,10 +6,9 @@ use sqlx::sqlite::SqliteRow;
 use crate::osm::LonLat;
 use crate::osm::facts::{Direction, Oneway, Permission, Policy, WidthSource};
 
-use super::blob;
 use super::database::Database;
-use super::error::{StoreError, content};
-use super::network_read::{word, word_or_none};
+use super::error::StoreError;
+use super::network_read::{line, word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -97,6 +96,6 @@ fn facts(row: &SqliteRow) -> Sql<EdgeFacts> {
         motor_vehicle: word(row, 27)?,
         barred: row.try_get(28)?,
         cut: row.try_get(29)?,
-        line: blob::decode(row.try_get(30)?).ok_or_else(|| content(format!("the geometry of edge {fid}")))?,
+        line: line(row, 30, || format!("edge {fid}"))?,
     })
 }

@@ -10,11 +10,11 @@ use crate::osm::LonLat;
 use crate::osm::facts::{Direction, Oneway, Policy, RoadClass, WidthSource};
 use crate::verdict::Verdict;
 
-use super::blob::{self, Bounds};
+use super::blob::Bounds;
 use super::database::Database;
-use super::error::{StoreError, content};
-use super::names::{Named, corridor_no, verdict_of};
-use super::network_read::{word, word_or_none};
+use super::error::StoreError;
+use super::names::{Named, corridor_no, width_columns};
+use super::network_read::{line, verdict, word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -140,7 +140,7 @@ impl Database {
         bounds: Bounds,
         classes: &[RoadClass],
     ) -> Result<Vec<MapEdge>, StoreError> {
-        let (width, source) = columns(policy);
+        let [width, source] = width_columns(policy);
         let mut sql = format!(
             "SELECT e.fid, e.edge_id, e.way_id, e.direction, e.oneway, e.highway, e.name, e.ref, e.length_m, \
              e.{width}, e.{source}, c.verdict_no, c.rsc_mm, e.geom FROM rtree_edge_geom AS t \
@@ -190,7 +190,7 @@ impl Database {
                 vehicle_id: row.try_get(0)?,
                 policy,
                 from_mm: row.try_get::<i64, _>(1)?.saturating_mul(width),
-                verdict: verdict(row, 2)?,
+                verdict: verdict(row, 2, || "a bin".to_owned())?,
                 edges: row.try_get::<i64, _>(3)?.unsigned_abs(),
                 length_m: row.try_get(4)?,
             })
@@ -211,20 +211,6 @@ fn sides(row: &SqliteRow) -> Sql<Option<Bounds>> {
     Ok(Some(Bounds { west, south, east, north }))
 }
 
-/// The columns of `edge` that belong to a policy: width, and where it comes from.
-pub(super) fn columns(policy: Policy) -> (&'static str, &'static str) {
-    match policy {
-        Policy::Lane => ("lane_width_m", "width_source"),
-        Policy::Direction => ("direction_width_m", "direction_width_source"),
-        Policy::Carriageway => ("carriageway_width_m", "carriageway_width_source"),
-    }
-}
-
-pub(super) fn verdict(row: &SqliteRow, column: usize) -> Sql<Verdict> {
-    let number: i64 = row.try_get(column)?;
-    verdict_of(number).ok_or_else(|| content(format!("verdict {number}")))
-}
-
 fn map_edge(row: &SqliteRow) -> Sql<MapEdge> {
     let fid: u32 = row.try_get(0)?;
     Ok(MapEdge {
@@ -239,9 +225,9 @@ fn map_edge(row: &SqliteRow) -> Sql<MapEdge> {
         length_m: row.try_get(8)?,
         width_m: row.try_get(9)?,
         width_source: word_or_none(row, 10)?,
-        verdict: verdict(row, 11)?,
+        verdict: verdict(row, 11, || format!("edge {fid}"))?,
         rsc_mm: row.try_get(12)?,
-        line: blob::decode(row.try_get(13)?).ok_or_else(|| content(format!("the geometry of edge {fid}")))?,
+        line: line(row, 13, || format!("edge {fid}"))?,
     })
 }
 
@@ -283,8 +269,8 @@ fn map_turn(row: &SqliteRow) -> Sql<MapTurn> {
         angle_deg: row.try_get(7)?,
         kerb_radius_m: row.try_get(8)?,
         restriction: row.try_get(9)?,
-        verdict: verdict(row, 10)?,
+        verdict: verdict(row, 10, || format!("turn {fid}"))?,
         rsc_mm: row.try_get(11)?,
-        line: blob::decode(row.try_get(12)?).ok_or_else(|| content(format!("the geometry of turn {fid}")))?,
+        line: line(row, 12, || format!("turn {fid}"))?,
     })
 }

@@ -108,6 +108,15 @@ pub fn verdict_words(verdict: Verdict) -> (&'static str, &'static str) {
     VERDICTS.iter().find(|row| row.1 == verdict).map_or(("unknown", ""), |row| (row.2, row.3.unwrap_or("")))
 }
 
+/// The columns of `edge` that belong to a policy: width, and where it comes from.
+pub(super) const fn width_columns(policy: Policy) -> [&'static str; 2] {
+    match policy {
+        Policy::Lane => ["lane_width_m", "width_source"],
+        Policy::Direction => ["direction_width_m", "direction_width_source"],
+        Policy::Carriageway => ["carriageway_width_m", "carriageway_width_source"],
+    }
+}
+
 /// A policy's number in the database: its place in [`Policy::ALL`].
 pub(super) fn corridor_no(policy: Policy) -> u8 {
     policy as u8

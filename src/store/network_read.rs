@@ -10,10 +10,11 @@ use sqlx::{Row as _, Sqlite};
 use crate::network::{Edge, Narrowing, Network, Road, Stroke};
 use crate::osm::facts::{CrossSection, Legal, Limit, Strip};
 use crate::osm::{LonLat, StringPool};
+use crate::verdict::Verdict;
 
 use super::blob;
 use super::error::content;
-use super::names::{Named, class_and_link};
+use super::names::{Named, class_and_link, verdict_of};
 use super::restrictions::{self, Restrictions};
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -97,6 +98,17 @@ pub(super) fn word<T: Named>(row: &SqliteRow, column: usize) -> Sql<T> {
 /// The same where there may be none.
 pub(super) fn word_or_none<T: Named>(row: &SqliteRow, column: usize) -> Sql<Option<T>> {
     if row.try_get::<Option<&str>, _>(column)?.is_none() { Ok(None) } else { word(row, column).map(Some) }
+}
+
+/// A verdict's number as a verdict; `of` names the row in errors.
+pub(super) fn verdict(row: &SqliteRow, column: usize, of: impl FnOnce() -> String) -> Sql<Verdict> {
+    let number: i64 = row.try_get(column)?;
+    verdict_of(number).ok_or_else(|| content(format!("verdict {number} of {}", of())))
+}
+
+/// A geometry's positions; `of` names the row in errors.
+pub(super) fn line(row: &SqliteRow, column: usize, of: impl FnOnce() -> String) -> Sql<Vec<LonLat>> {
+    blob::decode(row.try_get(column)?).ok_or_else(|| content(format!("the geometry of {}", of())))
 }
 
 fn strip(row: &SqliteRow, column: usize) -> Sql<Option<Strip>> {

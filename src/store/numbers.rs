@@ -6,8 +6,7 @@ use sqlx::sqlite::SqliteRow;
 use crate::stet::Side;
 use crate::verdict::Verdict;
 
-use super::error::content;
-use super::names::verdict_of;
+use super::network_read::verdict;
 
 /// Of a table called `c`, in the order in which [`Numbers::read`] wants them one after the other.
 pub(super) const COLUMNS: &str = "c.verdict_no, c.rsc_mm, c.rsc_published_mm, c.hinge_margin_cdeg, c.shrink_milli, \
@@ -27,14 +26,13 @@ pub(super) struct Numbers {
 
 impl Numbers {
     /// From the columns `first` to `first + 6`; `what` names the row in errors.
-    pub(super) fn read(row: &SqliteRow, first: usize, what: impl Fn() -> String) -> Result<Self, sqlx::Error> {
-        let verdict_no: i64 = row.try_get(first)?;
+    pub(super) fn read(row: &SqliteRow, first: usize, what: impl FnOnce() -> String) -> Result<Self, sqlx::Error> {
         let at: Option<u16> = row.try_get(first + 6)?;
         let parts = |column: usize, parts: f64| -> Result<Option<f64>, sqlx::Error> {
             Ok(row.try_get::<Option<i64>, _>(first + column)?.map(|whole| whole as f64 / parts))
         };
         Ok(Self {
-            verdict: verdict_of(verdict_no).ok_or_else(|| content(format!("verdict {verdict_no} of {}", what())))?,
+            verdict: verdict(row, first, what)?,
             rsc_m: parts(1, 1000.0)?,
             rsc_published_m: parts(2, 1000.0)?,
             hinge_margin_deg: parts(3, 100.0)?,

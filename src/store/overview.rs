@@ -11,12 +11,10 @@ use crate::osm::LonLat;
 use crate::osm::facts::{Policy, RoadClass, WidthSource};
 use crate::verdict::Verdict;
 
-use super::blob;
 use super::database::Database;
 use super::error::{StoreError, content};
-use super::map::{columns, verdict};
-use super::names::{Named as _, class_and_link, corridor_no};
-use super::network_read::word_or_none;
+use super::names::{Named as _, class_and_link, corridor_no, width_columns};
+use super::network_read::{line, verdict, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -47,7 +45,7 @@ impl Database {
         (vehicle, policy): (&str, Policy),
         classes: &[RoadClass],
     ) -> Result<Vec<MainRoad>, StoreError> {
-        let (_, source) = columns(policy);
+        let [_, source] = width_columns(policy);
         let words: Vec<String> = classes.iter().map(|class| format!("'{0}','{0}_link'", class.name())).collect();
         let sql = format!(
             "SELECT e.highway, e.{source}, c.verdict_no, c.rsc_mm, e.geom FROM edge AS e \
@@ -71,8 +69,8 @@ fn main_road(row: &SqliteRow) -> Sql<MainRoad> {
         class,
         link,
         width_source: word_or_none(row, 1)?,
-        verdict: verdict(row, 2)?,
+        verdict: verdict(row, 2, || "a main road".to_owned())?,
         rsc_mm: row.try_get(3)?,
-        line: blob::decode(row.try_get(4)?).ok_or_else(|| content("the geometry of an edge".to_owned()))?,
+        line: line(row, 4, || "a main road".to_owned())?,
     })
 }

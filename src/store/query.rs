@@ -14,11 +14,11 @@ use crate::osm::facts::{Direction, Policy, WidthSource};
 use crate::stet::Side;
 use crate::verdict::Verdict;
 
-use super::blob::{self, Bounds};
+use super::blob::Bounds;
 use super::database::Database;
-use super::error::{StoreError, content};
-use super::names::{Named, corridor_no};
-use super::network_read::{word, word_or_none};
+use super::error::StoreError;
+use super::names::{Named, corridor_no, width_columns};
+use super::network_read::{line, word, word_or_none};
 use super::numbers::{self, Numbers};
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -200,11 +200,7 @@ fn statement(
     vehicle_no: u32,
     area: Option<&geo::MultiPolygon>,
 ) -> Sql<(String, SqliteArguments)> {
-    let (width, source) = match options.policy {
-        Policy::Lane => ("lane_width_m", "width_source"),
-        Policy::Direction => ("direction_width_m", "direction_width_source"),
-        Policy::Carriageway => ("carriageway_width_m", "carriageway_width_source"),
-    };
+    let [width, source] = width_columns(options.policy);
     let mut sql = format!(
         "SELECT c.fid, e.edge_id, e.way_id, e.from_node, e.to_node, e.direction, e.highway, e.name, e.ref, e.length_m, \
          e.{width}, e.{source}, e.min_radius_m, e.geom, {columns} \
@@ -275,6 +271,6 @@ fn edge_row(row: &SqliteRow) -> Sql<EdgeRow> {
         limiting_s_m: numbers.limiting_s_m,
         limiting_unit: numbers.limiting_unit,
         limiting_side: numbers.limiting_side,
-        line: blob::decode(row.try_get(13)?).ok_or_else(|| content(format!("the geometry of edge {fid}")))?,
+        line: line(row, 13, || format!("edge {fid}"))?,
     })
 }

@@ -7,7 +7,7 @@ use crate::osm::facts::Policy;
 
 use super::blob::Bounds;
 use super::bulk::Bulk;
-use super::names::{Named, SAFE, corridor_no};
+use super::names::{Named, SAFE, corridor_no, width_columns};
 use super::packed::Packed;
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -88,11 +88,10 @@ impl Set<'_> {
     /// Makes the view and enters it as a layer. Its first column is named OGC_FID: by that GDAL knows a view's key.
     async fn register(&self, c: &mut SqliteConnection, layer: &str) -> Sql<()> {
         let (vehicle, corridor) = (self.vehicle_no, corridor_no(self.policy));
-        let width = self.policy.name();
-        let source = if self.policy == Policy::Lane { "width_source".into() } else { format!("{width}_width_source") };
+        let [width, source] = width_columns(self.policy);
         let view = format!(
             "CREATE VIEW {layer} AS SELECT e.fid AS OGC_FID, e.geom AS geom, e.edge_id, e.way_id, e.from_node, e.to_node, \
-             e.direction, e.length_m, e.highway, e.name, e.ref, e.oneway, e.{width}_width_m AS width_m, \
+             e.direction, e.length_m, e.highway, e.name, e.ref, e.oneway, e.{width} AS width_m, \
              e.{source} AS width_source, c.rsc_m, c.hinge_margin_deg, c.shrink \
              FROM certificate_compact AS c JOIN edge AS e ON e.fid = c.fid \
              WHERE c.vehicle_no = {vehicle} AND c.corridor_no = {corridor} AND c.verdict_no = {SAFE}"

@@ -6,9 +6,9 @@ use crate::osm::facts::{Policy, WidthSource};
 use crate::verdict::Verdict;
 
 use super::database::Database;
-use super::error::{StoreError, content};
-use super::names::{Named, verdict_of};
-use super::network_read::{word, word_or_none};
+use super::error::StoreError;
+use super::names::Named;
+use super::network_read::{verdict, word, word_or_none};
 use super::turns::{self, TurnCount};
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -88,12 +88,11 @@ impl Database {
 }
 
 fn stats_row(row: &sqlx::sqlite::SqliteRow) -> Sql<StatsRow> {
-    let verdict_no: i64 = row.try_get(3)?;
     Ok(StatsRow {
         vehicle_id: row.try_get(0)?,
         policy: word(row, 1)?,
         highway: row.try_get(2)?,
-        verdict: verdict_of(verdict_no).ok_or_else(|| content(format!("verdict {verdict_no}")))?,
+        verdict: verdict(row, 3, || "a count".to_owned())?,
         edges: row.try_get::<i64, _>(4)?.unsigned_abs(),
         length_m: row.try_get(5)?,
     })

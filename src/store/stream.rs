@@ -14,9 +14,9 @@ use crate::osm::facts::{Direction, Policy, WidthSource};
 use crate::verdict::Verdict;
 
 use super::database::Database;
-use super::error::{StoreError, content};
-use super::names::{corridor_no, verdict_of};
-use super::network_read::{word, word_or_none};
+use super::error::StoreError;
+use super::names::{corridor_no, width_columns};
+use super::network_read::{verdict, word, word_or_none};
 use super::turns::{self, TurnQuery, TurnRow};
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -85,11 +85,7 @@ impl Database {
     /// # Errors
     /// The file cannot be read.
     pub fn edge_steps(&mut self, vehicle: &str, policy: Policy) -> Result<Streamed<'_, EdgeStep>, StoreError> {
-        let source = match policy {
-            Policy::Lane => "width_source",
-            Policy::Direction => "direction_width_source",
-            Policy::Carriageway => "carriageway_width_source",
-        };
+        let [_, source] = width_columns(policy);
         let sql = format!(
             "SELECT c.fid, e.way_id, e.from_node, e.to_node, e.direction, e.shape_start, length(e.geom), c.verdict_no, \
              c.rsc_mm, e.{source} FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
@@ -198,7 +194,7 @@ fn edge_step(row: &SqliteRow) -> Sql<EdgeStep> {
         direction: word(row, 4)?,
         shape_start: row.try_get(5)?,
         positions: bytes.saturating_sub(GEOMETRY_HEAD) / POSITION_BYTES,
-        verdict: verdict(row, 7, fid)?,
+        verdict: verdict(row, 7, || format!("edge {fid}"))?,
         rsc_m: metres(row, 8)?,
         width_source: word_or_none(row, 9)?,
     })
@@ -216,14 +212,9 @@ fn turn_step(row: &SqliteRow) -> Sql<TurnStep> {
         arcs: arc(3)?.zip(arc(4)?).map(|(first, last)| [first, last]),
         via_node: row.try_get(5)?,
         angle_deg: row.try_get(6)?,
-        verdict: verdict(row, 7, fid)?,
+        verdict: verdict(row, 7, || format!("turn {fid}"))?,
         rsc_m: metres(row, 8)?,
     })
-}
-
-fn verdict(row: &SqliteRow, column: usize, fid: u32) -> Sql<Verdict> {
-    let number: i64 = row.try_get(column)?;
-    verdict_of(number).ok_or_else(|| content(format!("verdict {number} of row {fid}")))
 }
 
 fn metres(row: &SqliteRow, column: usize) -> Sql<Option<f64>> {

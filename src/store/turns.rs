@@ -16,7 +16,8 @@ use super::blob::{self, Bounds};
 use super::bulk::Bulk;
 use super::database::Database;
 use super::error::{StoreError, content};
-use super::names::{Named, corridor_no, verdict_of};
+use super::names::{Named, corridor_no};
+use super::network_read::{line, verdict, word};
 use super::numbers::{self, Numbers};
 use super::packed::{EdgeCertificate, Measured, Packed};
 use super::plans::{self, StoredPlan};
@@ -361,7 +362,7 @@ pub(super) fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
         limiting_unit: numbers.limiting_unit,
         limiting_side: numbers.limiting_side,
         path_no: row.try_get(12)?,
-        line: blob::decode(row.try_get(13)?).ok_or_else(|| content(format!("the geometry of turn {fid}")))?,
+        line: line(row, 13, || format!("turn {fid}"))?,
     })
 }
 
@@ -371,11 +372,10 @@ pub(super) async fn counts(c: &mut SqliteConnection) -> Sql<Vec<TurnCount>> {
                FROM turn_certificate_compact GROUP BY vehicle_no, corridor_no, verdict_no) JOIN vehicle USING (vehicle_no) \
                JOIN corridor USING (corridor_no) ORDER BY vehicle_no, corridor_no, verdict_no";
     let count = |row: &SqliteRow| -> Sql<TurnCount> {
-        let verdict_no: i64 = row.try_get(2)?;
         Ok(TurnCount {
             vehicle_id: row.try_get(0)?,
-            policy: super::network_read::word(row, 1)?,
-            verdict: verdict_of(verdict_no).ok_or_else(|| content(format!("verdict {verdict_no}")))?,
+            policy: word(row, 1)?,
+            verdict: verdict(row, 2, || "a count".to_owned())?,
             turns: row.try_get::<i64, _>(3)?.unsigned_abs(),
         })
     };

@@ -31,10 +31,17 @@ class Permits:
         self.at = defaultdict(list)
         for node, place in self.place.items():
             self.at[_key(place)].append(node)
-        self.turns = {}
+        self.leaving = defaultdict(list)
+        for edge, row in self.edges.items():
+            self.leaving[row["nodes"][0]].append(edge)
+        self.turns, passages = {}, []
         for row in csv.DictReader(open(f"{tables}/turns.csv", newline="", encoding="utf-8")):
             if not row["first_arc"]:
                 self.turns[int(row["from_edge"]), int(row["to_edge"])] = row["permitted"] == "true"
+            elif row["permitted"] != "true":
+                passages.append([int(row[name]) for name in ("from_edge", "first_arc", "last_arc", "to_edge")])
+        # Nodes that may not be driven one after the other, though each step may: refused passages.
+        self.sequences = [nodes for passage in passages if (nodes := self._over(*passage))]
 
     def _lay(self, refs, edges):
         """Both directions of a stretch lie on the same nodes; stretches follow one another."""
@@ -59,9 +66,29 @@ class Permits:
             for i, pair in enumerate(zip(nodes, nodes[1:])):
                 self.over[pair].append((edge, i))
 
+    def _over(self, start, first, last, goal):
+        """The nodes of a passage, from the last one before the ring to the first one after it; its arcs go straight on."""
+        if any(edge not in self.edges for edge in (start, first, last, goal)):
+            return None
+        nodes, arc = [self.edges[start]["nodes"][-2]], first
+        while True:
+            nodes += self.edges[arc]["nodes"][:-1]
+            if arc == last:
+                return [*nodes, *self.edges[goal]["nodes"][:2]]
+            here = self.edges[arc]["nodes"]
+            straight = (edge for edge in self.leaving[here[-1]] if (arc, edge) not in self.turns)
+            on = [edge for edge in straight if self._step((arc, len(here) - 2), (edge, 0))]
+            if len(on) != 1 or len(nodes) > 10_000:
+                return None
+            arc = on[0]
+
     def judge(self, nodes):
         """What a way over these nodes uses that is refused: a list of texts, empty if nothing."""
         wrong, now = [], []
+        driven = [node for node, before in zip(nodes, [None, *nodes]) if node != before]
+        for banned in self.sequences:
+            if any(driven[i : i + len(banned)] == banned for i, node in enumerate(driven) if node == banned[0]):
+                wrong.append(f"turn over {banned}: each step may be driven, all of them may not")
         for pair in zip(nodes, nodes[1:]):
             if pair[0] == pair[1]:
                 continue
@@ -108,9 +135,23 @@ class Permits:
         keys = [(x + dx, y + dy) for dx in (0, -1, 1) for dy in (0, -1, 1)]
         return next((self.at[key] for key in keys if key in self.at), [])
 
-    def middle(self, edge):
+    def whole(self, nodes, pair):
+        """Nodes from the middle of one edge to that of another, with the node behind the start and the one ahead of the goal."""
+        for edge, first in zip(pair, (True, False)):
+            a, b = self._beside_middle(edge)
+            end, before = (nodes[:1], nodes[:2]) if first else (nodes[-1:], nodes[-2:])
+            # Between nodes that lie close together the end of the line may be taken for a node.
+            if end in ([a], [b]) and sorted(before, key=str) != sorted([a, b], key=str):
+                other = [b] if end == [a] else [a]
+                nodes = other + nodes if first else nodes + other
+        return nodes
+
+    def _beside_middle(self, edge):
         nodes = self.edges[edge]["nodes"]
-        a, b = (self.place[node] for node in nodes[(len(nodes) - 1) // 2 :][:2])
+        return nodes[(len(nodes) - 1) // 2 :][:2]
+
+    def middle(self, edge):
+        a, b = (self.place[node] for node in self._beside_middle(edge))
         return ((a[0] + b[0]) / 2, (a[1] + b[1]) / 2)
 
     def pairs(self, count, seed):

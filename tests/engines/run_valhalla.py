@@ -74,7 +74,7 @@ def survey(permits, actor, request, pairs):
             ways.append(None)
             out["none"] += 1
             continue
-        nodes = permits.nodes_of(line)
+        nodes = permits.whole(permits.nodes_of(line), pair)
         ways.append(nodes)
         wrong = permits.judge(nodes)
         out["routed"] += 1

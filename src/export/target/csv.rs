@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::columns::{Cell, EDGE_COLUMNS, Kind, TURN_COLUMNS, edge_cells, turn_cells};
-use super::{Layer, Options, Target, one_file_a_layer};
-use crate::export::{ExportError, Layout, Place, Refusal, Sink, Source};
+use super::layers::asked;
+use super::{Cell, Kind, Options, Target, one_file_a_layer};
+use crate::export::{ExportError, Layout, Place, Source};
 
 /// `csv`
 pub(super) struct Csv;
@@ -23,36 +23,14 @@ impl Target for Csv {
     }
 
     fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
-        if options.layer != Some(Layer::Turns) {
-            edges(source, place.create("edges.csv")?)?;
-        }
-        if options.layer != Some(Layer::Edges) {
-            turns(source, place.create("turns.csv")?)?;
+        for layer in asked(options) {
+            let mut sink = place.create(&format!("{}.csv", layer.name()))?;
+            head(&mut sink, layer.columns())?;
+            layer.each(source, |row| Ok(line(&mut sink, row.cells)?))?;
+            sink.close()?;
         }
         Ok(())
     }
-}
-
-fn edges(source: &Source<'_>, mut sink: Sink) -> Result<(), ExportError> {
-    head(&mut sink, &EDGE_COLUMNS)?;
-    let mut database = source.database()?;
-    for edge in source.edges(&mut database)? {
-        let edge = edge?;
-        let refusal = edge.refusal.map_or_else(String::new, Refusal::words);
-        line(&mut sink, &edge_cells(source, &edge, &refusal))?;
-    }
-    sink.close()
-}
-
-fn turns(source: &Source<'_>, mut sink: Sink) -> Result<(), ExportError> {
-    head(&mut sink, &TURN_COLUMNS)?;
-    let mut database = source.database()?;
-    for turn in source.turns(&mut database)? {
-        let turn = turn?;
-        let refusal = turn.refusal.map_or_else(String::new, Refusal::words);
-        line(&mut sink, &turn_cells(source, &turn, &refusal))?;
-    }
-    sink.close()
 }
 
 fn head(out: &mut dyn Write, columns: &[(&str, Kind)]) -> io::Result<()> {

@@ -5,17 +5,17 @@
 //! permitted edges that is refused, and for turning back. OSRM keeps penalties in 16 bits: it cannot close a turn, only make
 //! it cost 55 minutes. Segments it closes.
 //!
-//! What it cannot express is refused: of a restriction over ways the first step; roundabouts are open only where their arcs are
-//! permitted each by itself.
+//! What it cannot express is refused: of a restriction over ways and of a refused passage of a roundabout the first step;
+//! roundabouts are open only where their arcs are permitted each by itself.
 
-use std::fs::File;
-use std::io::{BufWriter, Read as _, Seek as _, SeekFrom, Write};
+use std::io::Write as _;
 use std::path::PathBuf;
 
 use osmpbfreader::osmformat::PrimitiveBlock;
 
 use super::{Options, Target};
-use crate::export::ways::{OnWay, Piece, WayEdges};
+use crate::export::sorter::Scratch;
+use crate::export::ways::{OnWay, Piece, WayEdges, ids};
 use crate::export::{ExportError, Layout, Place, Sink, Source};
 use crate::osm::pbf::copy::Contents;
 
@@ -84,22 +84,13 @@ impl Tables<'_, '_> {
             source.reporter.advance(blob.end);
         }
         source.reporter.end();
-        edges.finish().map_err(|detail| source.extract_error(detail))?;
-        Ok(self.ends.file.flush()?)
+        edges.finish().map_err(|detail| source.extract_error(detail))
     }
 
     fn block(&mut self, block: &PrimitiveBlock, edges: &mut WayEdges<'_>) -> Result<(), ExportError> {
         let texts = &block.stringtable.s;
         for way in block.primitivegroup.iter().flat_map(|group| &group.ways) {
-            let mut id = 0_i64;
-            let refs: Vec<i64> = way
-                .refs
-                .iter()
-                .map(|step| {
-                    id = id.wrapping_add(*step);
-                    id
-                })
-                .collect();
+            let refs = ids(&way.refs);
             let on = edges.of(way.id(), &refs).map_err(|detail| self.source.extract_error(detail))?;
             let road =
                 way.keys.iter().any(|&key| texts.get(key as usize).is_some_and(|key| KEYS.contains(&key.as_slice())));
@@ -160,22 +151,18 @@ impl Tables<'_, '_> {
         Ok(writeln!(self.turns, "{from},{via},{to},{PENALTY_S}")?)
     }
 
-    /// Turns between permitted edges that are refused, and restrictions, those over ways by their first step.
+    /// Refused turns, and the first steps of sequences.
     fn turns(&mut self) -> Result<(), ExportError> {
         let source = self.source;
-        let permitted = &source.permitted;
         let mut database = source.database()?;
         for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
             let step = step?;
-            let between = permitted.edges.get(step.from) && permitted.edges.get(step.to);
-            if step.arcs.is_none() && between && !permitted.turns.get(step.turn) {
+            if source.refuses_turn(&step) {
                 self.refuse(step.from, step.to)?;
             }
         }
-        for sequence in database.forbidden_sequences()? {
-            if let (true, [from, to, ..]) =
-                (sequence.iter().all(|&edge| permitted.edges.get(edge)), sequence.as_slice())
-            {
+        for sequence in source.sequences()? {
+            if let [from, to, ..] = sequence.as_slice() {
                 self.refuse(*from, *to)?;
             }
         }
@@ -191,8 +178,7 @@ impl Tables<'_, '_> {
 /// By edge: its second, its last but one and its last node; zeros where nobody can say. In a file, so that memory does not grow
 /// with the network.
 struct Ends {
-    path: PathBuf,
-    file: BufWriter<File>,
+    file: Scratch,
     edges: u32,
 }
 
@@ -200,9 +186,7 @@ const ENDS_BYTES: usize = 3 * 8;
 
 impl Ends {
     fn create(path: PathBuf) -> Result<Self, ExportError> {
-        let file = File::options().read(true).write(true).create(true).truncate(true).open(&path);
-        let file = file.map_err(|source| ExportError::Io { path: path.clone(), source })?;
-        Ok(Self { path, file: BufWriter::with_capacity(1 << 16, file), edges: 0 })
+        Ok(Self { file: Scratch::create(path)?, edges: 0 })
     }
 
     /// Edges come in order.
@@ -216,23 +200,11 @@ impl Ends {
     }
 
     fn get(&mut self, edge: u32) -> Result<[i64; 3], ExportError> {
-        if edge >= self.edges {
-            return Ok([0; 3]);
+        let (mut bytes, mut nodes) = ([0; ENDS_BYTES], [0; 3]);
+        if edge < self.edges {
+            self.file.read_at(u64::from(edge) * ENDS_BYTES as u64, &mut bytes)?;
         }
-        let mut bytes = [0; ENDS_BYTES];
-        let file = self.file.get_mut();
-        file.seek(SeekFrom::Start(u64::from(edge) * ENDS_BYTES as u64))?;
-        file.read_exact(&mut bytes)?;
-        let (words, _) = bytes.as_chunks::<8>();
-        let mut nodes = [0; 3];
-        nodes.iter_mut().zip(words).for_each(|(node, word)| *node = i64::from_le_bytes(*word));
+        nodes.iter_mut().zip(bytes.as_chunks().0).for_each(|(node, word)| *node = i64::from_le_bytes(*word));
         Ok(nodes)
-    }
-}
-
-impl Drop for Ends {
-    fn drop(&mut self) {
-        // It holds nothing that anyone needs.
-        let _ = std::fs::remove_file(&self.path);
     }
 }

@@ -3,14 +3,16 @@
 //! | table | for |
 //! | --- | --- |
 //! | `netcert.edge` | `pgr_dijkstra` and all others: directed edges, `cost` in metres, −1 where refused; `reverse_cost` is always −1 |
-//! | `netcert.restriction` | `pgr_trsp`: refused turns, turning back, restrictions over ways |
+//! | `netcert.restriction` | `pgr_trsp`: refused turns and passages, turning back, restrictions over ways |
 //! | `netcert.step` | `pgr_dijkstra` over edges as vertices: every permitted step from one edge into the next |
 //! | `netcert.header` | what it rests on |
 //!
 //! Steps say all of it with the plainest algorithm, and are the only one to have passages of roundabouts; of restrictions over ways
-//! they lack the first step, as no state remembers the way. `netcert.edge` alone knows no turns.
+//! and of refused passages they lack the first step, as no state remembers the way. `netcert.edge` alone knows no turns.
 
 use std::io::{self, Write};
+
+use rustc_hash::FxHashSet;
 
 use super::{Options, Target};
 use crate::export::rings::Rings;
@@ -86,21 +88,17 @@ fn edge_line(out: &mut dyn Write, edge: &ExportEdge) -> io::Result<()> {
     out.write_all(b"\n")
 }
 
-/// Refused turns between permitted edges, and restrictions. Turning back is found by the script, from the edges themselves.
+/// Refused turns between permitted edges, and sequences that are. Turning back is found by the script, from the edges themselves.
 fn restrictions(source: &Source<'_>, mut out: Sink) -> Result<(), ExportError> {
-    let permitted = &source.permitted;
     let mut database = source.database()?;
     for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
         let step = step?;
-        let open = permitted.edges.get(step.from) && permitted.edges.get(step.to);
-        if step.arcs.is_none() && open && !permitted.turns.get(step.turn) {
+        if source.refuses_turn(&step) {
             path(&mut out, &[step.from, step.to])?;
         }
     }
-    for sequence in database.forbidden_sequences()? {
-        if sequence.iter().all(|&edge| permitted.edges.get(edge)) {
-            path(&mut out, &sequence)?;
-        }
+    for sequence in source.sequences()? {
+        path(&mut out, &sequence)?;
     }
     out.close()
 }
@@ -110,8 +108,12 @@ fn steps(source: &Source<'_>, mut out: Sink) -> Result<(), ExportError> {
     let permitted = &source.permitted;
     let mut database = source.database()?;
     let rings = Rings::new(database.rings()?);
-    let banned: rustc_hash::FxHashSet<[u32; 2]> =
-        database.forbidden_sequences()?.iter().filter_map(|edges| edges.first_chunk().copied()).collect();
+    let first_steps = |sequences: Vec<Vec<u32>>| -> FxHashSet<[u32; 2]> {
+        sequences.iter().filter_map(|edges| edges.first_chunk().copied()).collect()
+    };
+    // A restriction may lead over a passage's arcs, which need not be permitted; a refused passage leaves the others open.
+    let (by_law, mut banned) = (first_steps(database.forbidden_sequences()?), first_steps(source.sequences()?));
+    banned.extend(&by_law);
     for pair in source.told(database.straight_on()?) {
         if let (from, Some(to)) = pair?
             && permitted.edges.get(from)
@@ -128,7 +130,7 @@ fn steps(source: &Source<'_>, mut out: Sink) -> Result<(), ExportError> {
         }
         match step.arcs.map(|arcs| rings.through(arcs)) {
             None => step_line(&mut out, [step.from, step.to], &[])?,
-            Some(Some(arcs)) if step.arcs.is_some_and(|[first, _]| !banned.contains(&[step.from, first])) => {
+            Some(Some(arcs)) if step.arcs.is_some_and(|[first, _]| !by_law.contains(&[step.from, first])) => {
                 step_line(&mut out, [step.from, step.to], &arcs)?;
             }
             Some(_) => {}

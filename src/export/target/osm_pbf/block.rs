@@ -1,7 +1,6 @@
 //! Blocks of new objects, gathered in a file until their turn comes; and texts put into blocks that exist.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Read as _, Seek as _, Write};
+use std::io::{self, Write};
 use std::path::PathBuf;
 
 use osmpbfreader::osmformat::{Info, PrimitiveBlock, PrimitiveGroup, Relation, Way};
@@ -9,6 +8,7 @@ use protobuf::Message;
 use rustc_hash::FxHashMap;
 
 use crate::export::ExportError;
+use crate::export::sorter::Scratch;
 use crate::osm::pbf::write::{frame, zlib_blob};
 
 /// Objects a block holds at most, as other writers have it.
@@ -68,8 +68,7 @@ impl Texts {
 
 /// New objects on their way: in a file, in blocks, in the order in which they were added.
 pub(super) struct Spool {
-    path: PathBuf,
-    file: BufWriter<File>,
+    file: Scratch,
     texts: Texts,
     ways: Vec<Way>,
     relations: Vec<Relation>,
@@ -77,9 +76,7 @@ pub(super) struct Spool {
 
 impl Spool {
     pub(super) fn create(path: PathBuf) -> Result<Self, ExportError> {
-        let file = File::options().read(true).write(true).create(true).truncate(true).open(&path);
-        let file = BufWriter::new(file.map_err(|source| ExportError::Io { path: path.clone(), source })?);
-        Ok(Self { path, file, texts: Texts::none(), ways: Vec::new(), relations: Vec::new() })
+        Ok(Self { file: Scratch::create(path)?, texts: Texts::none(), ways: Vec::new(), relations: Vec::new() })
     }
 
     /// A way with these tags; what else is known of it is as in `like`, whose texts are `texts`.
@@ -135,26 +132,10 @@ impl Spool {
         write_block(&mut self.file, &block)
     }
 
-    /// Appends all to the output; the file is emptied by dropping it.
+    /// Appends all to the output.
     pub(super) fn pour(&mut self, out: &mut dyn Write) -> Result<(), ExportError> {
         self.flush()?;
-        self.file.flush()?;
-        let file = self.file.get_mut();
-        file.rewind()?;
-        let mut buffer = vec![0; 1 << 16];
-        loop {
-            let n = file.read(&mut buffer)?;
-            if n == 0 {
-                return Ok(());
-            }
-            out.write_all(buffer.get(..n).unwrap_or_default())?;
-        }
-    }
-}
-
-impl Drop for Spool {
-    fn drop(&mut self) {
-        // It holds nothing that anyone needs.
-        let _ = std::fs::remove_file(&self.path);
+        self.file.copy_to(out)?;
+        Ok(())
     }
 }

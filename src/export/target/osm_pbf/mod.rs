@@ -5,13 +5,14 @@
 //! | a direction that is refused | `hgv:forward=no`, `hgv:backward=no`, both: `hgv=no`; for Valhalla `motor_vehicle:forward=no`, … as well |
 //! | a road that is not in the network | `hgv=no` |
 //! | what is certified | `netcert:forward=yes`, `netcert:rsc:forward=0.31` (metres), … |
-//! | a turn that is refused, turning back, a restriction over ways | a relation `type=restriction`, `restriction:hgv=no_…` |
+//! | a turn or passage that is refused, turning back, a restriction over ways | a relation `type=restriction`, `restriction:hgv=no_…`; for Valhalla `restriction=no_…`, of turns both |
 //!
 //! The first part of a split way keeps its id, the others get ids from [`FIRST_NEW_ID`] on; relations name the parts. Blobs of nodes
 //! and blocks without a change are copied as they are. In memory: some bytes for each way that is split and each edge of a refused
 //! turn, besides the bit for each edge and turn that every export has.
 
 mod block;
+mod refusals;
 mod relations;
 mod rewrite;
 mod split;
@@ -31,8 +32,8 @@ const FIRST_NEW_ID: i64 = 100_000_000_000;
 pub(super) enum Flavour {
     /// Tags as OpenStreetMap has them, that speak of heavy goods vehicles alone.
     Hgv,
-    /// Valhalla does not read `hgv:forward`, and obeys `restriction:hgv` not where it turns back at a dead end: tags of all motor
-    /// vehicles, in a file for this vehicle alone.
+    /// Valhalla does not read `hgv:forward`, and obeys `restriction:hgv` not everywhere: tags of all motor vehicles, in a file for
+    /// this vehicle alone.
     Valhalla,
 }
 

@@ -6,6 +6,7 @@ use protobuf::EnumOrUnknown;
 use rustc_hash::FxHashMap;
 
 use super::block::Texts;
+use crate::export::ways::ids;
 
 /// A part of a split way: its id, and its first and last node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,22 +20,13 @@ pub(super) type Splits = FxHashMap<i64, Vec<PartEnds>>;
 
 /// Puts parts in the place of split ways; whether there were any.
 pub(super) fn name_parts(relation: &mut Relation, splits: &Splits, texts: &mut Texts) -> bool {
-    let mut id = 0_i64;
-    let ids: Vec<i64> = relation
-        .memids
-        .iter()
-        .map(|step| {
-            id = id.wrapping_add(*step);
-            id
-        })
-        .collect();
+    let ids = ids(&relation.memids);
     let kinds: Vec<Kind> = relation.types.iter().map(EnumOrUnknown::enum_value_or_default).collect();
     if !ids.iter().zip(&kinds).any(|(id, kind)| *kind == Kind::WAY && splits.contains_key(id)) {
         return false;
     }
-    let restriction = is_restriction(relation, texts);
-    let roles: Vec<String> =
-        relation.roles_sid.iter().map(|&role| String::from_utf8_lossy(texts.text(role as u32)).into_owned()).collect();
+    let restriction = value(relation, texts, "type").is_some_and(|kind| kind.starts_with(b"restriction"));
+    let roles = roles(relation, texts);
     let via: Vec<i64> = (0..ids.len())
         .filter(|&i| restriction && roles.get(i).is_some_and(|role| role == "via"))
         .flat_map(|i| via_nodes(ids[i], kinds.get(i).copied(), splits))
@@ -59,9 +51,56 @@ pub(super) fn name_parts(relation: &mut Relation, splits: &Splits, texts: &mut T
     true
 }
 
-fn is_restriction(relation: &Relation, texts: &Texts) -> bool {
-    let value = |(key, value): (&u32, &u32)| (texts.text(*key) == b"type").then(|| texts.text(*value));
-    relation.keys.iter().zip(&relation.vals).find_map(value).is_some_and(|kind| kind.starts_with(b"restriction"))
+fn value<'t>(relation: &Relation, texts: &'t Texts, key: &str) -> Option<&'t [u8]> {
+    let at = relation.keys.iter().position(|&number| texts.text(number) == key.as_bytes())?;
+    Some(texts.text(*relation.vals.get(at)?))
+}
+
+fn roles(relation: &Relation, texts: &Texts) -> Vec<String> {
+    relation.roles_sid.iter().map(|&role| String::from_utf8_lossy(texts.text(role as u32)).into_owned()).collect()
+}
+
+/// What a relation refuses: from a way over a node or over ways into a way.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) struct Refused {
+    over_ways: bool,
+    /// In driving order.
+    ids: Vec<i64>,
+}
+
+impl Refused {
+    /// By members with their roles; `None` if they are no restriction of one `from` and one `to`.
+    pub(super) fn by<'m>(members: impl Iterator<Item = (Kind, i64, &'m str)>) -> Option<Self> {
+        let (mut from, mut via, mut to, mut over_ways) = (Vec::new(), Vec::new(), Vec::new(), false);
+        for (kind, id, role) in members {
+            match (role, kind) {
+                ("from", Kind::WAY) => from.push(id),
+                ("to", Kind::WAY) => to.push(id),
+                ("via", Kind::NODE | Kind::WAY) => {
+                    over_ways |= kind == Kind::WAY;
+                    via.push(id);
+                }
+                _ => return None,
+            }
+        }
+        let plain = from.len() == 1 && to.len() == 1 && (via.len() == 1 || over_ways && via.len() > 1);
+        plain.then(|| Self { over_ways, ids: [from, via, to].concat() })
+    }
+}
+
+/// Keys that take something away from a restriction.
+const BUT: [&str; 5] = ["except", "day_on", "day_off", "hour_on", "hour_off"];
+
+/// What a relation refuses always and without exception under this key, if it is so plain.
+pub(super) fn refused(relation: &Relation, texts: &Texts, key: &str) -> Option<Refused> {
+    let restriction = value(relation, texts, "type") == Some(b"restriction");
+    let refuses = value(relation, texts, key).is_some_and(|word| word.starts_with(b"no_"));
+    if !restriction || !refuses || BUT.iter().any(|key| value(relation, texts, key).is_some()) {
+        return None;
+    }
+    let (ids, roles) = (ids(&relation.memids), roles(relation, texts));
+    let kinds = relation.types.iter().map(EnumOrUnknown::enum_value_or_default);
+    Refused::by(kinds.zip(ids).zip(&roles).map(|((kind, id), role)| (kind, id, role.as_str())))
 }
 
 /// Where one passes through a `via`: itself if it is a node, else the ends of the way, which are known if it was split.
@@ -108,17 +147,6 @@ mod tests {
         relation
     }
 
-    fn ids(relation: &Relation) -> Vec<i64> {
-        relation
-            .memids
-            .iter()
-            .scan(0, |id, step| {
-                *id += step;
-                Some(*id)
-            })
-            .collect()
-    }
-
     #[test]
     fn a_restriction_names_the_part_at_its_node_and_a_route_all_parts() {
         let mut texts = Texts::over(vec![Vec::new()]);
@@ -128,11 +156,37 @@ mod tests {
         ban.keys.push(texts.number(b"type"));
         ban.vals.push(texts.number(b"restriction"));
         assert!(name_parts(&mut ban, &splits, &mut texts));
-        assert_eq!(ids(&ban), [106, 4, 9]);
+        assert_eq!(ids(&ban.memids), [106, 4, 9]);
         let mut route = relation(&[(Kind::WAY, 7, ""), (Kind::WAY, 5, ""), (Kind::WAY, 5, "backward")], &mut texts);
         assert!(name_parts(&mut route, &splits, &mut texts));
-        assert_eq!(ids(&route), [7, 5, 105, 106, 106, 105, 5]);
+        assert_eq!(ids(&route.memids), [7, 5, 105, 106, 106, 105, 5]);
         let mut other = relation(&[(Kind::NODE, 5, ""), (Kind::WAY, 8, "")], &mut texts);
         assert!(!name_parts(&mut other, &splits, &mut texts));
+    }
+
+    #[test]
+    fn only_a_plain_refusal_makes_another_one_needless() {
+        let mut texts = Texts::over(vec![Vec::new()]);
+        let members = [(Kind::WAY, 5, "from"), (Kind::NODE, 4, "via"), (Kind::WAY, 9, "to")];
+        let mut read = |members: &[(Kind, i64, &str)], tags: &[(&str, &str)], key: &str| {
+            let mut relation = relation(members, &mut texts);
+            for (key, value) in tags {
+                relation.keys.push(texts.number(key.as_bytes()));
+                relation.vals.push(texts.number(value.as_bytes()));
+            }
+            refused(&relation, &texts, key)
+        };
+        let plain = [("type", "restriction"), ("restriction", "no_left_turn")];
+        let ours = |members: &[(Kind, i64, &'static str)]| Refused::by(members.iter().copied());
+        assert_eq!(read(&members, &plain, "restriction"), ours(&members));
+        assert_eq!(read(&members, &plain, "restriction:hgv"), None);
+        assert_eq!(read(&members, &[plain[0], plain[1], ("except", "hgv")], "restriction"), None);
+        assert_eq!(read(&members, &[plain[0], ("restriction", "only_left_turn")], "restriction"), None);
+        assert_eq!(read(&members[..2], &plain, "restriction"), None);
+        let two = [members[0], (Kind::WAY, 6, "from"), members[1], members[2]];
+        assert_eq!(read(&two, &plain, "restriction"), None);
+        let over = [members[0], (Kind::WAY, 4, "via"), members[2]];
+        assert_eq!(read(&over, &plain, "restriction"), ours(&over));
+        assert_ne!(ours(&over), ours(&members));
     }
 }

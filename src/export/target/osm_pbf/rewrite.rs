@@ -3,14 +3,14 @@
 
 use osmpbfreader::osmformat::{HeaderBlock, PrimitiveBlock, PrimitiveGroup, Way};
 use protobuf::Message as _;
-use rustc_hash::FxHashMap;
 
 use super::block::{Spool, Texts, write_blob, write_block};
-use super::relations::{Kind, PartEnds, Splits, name_parts, refusal_word};
-use super::split::{Cuts, Part, parts};
+use super::refusals::{End, Refusals};
+use super::relations::{PartEnds, Splits, name_parts};
+use super::split::{Part, parts};
 use super::tags::{Said, Tag, with_permits};
 use super::{FIRST_NEW_ID, Flavour};
-use crate::export::ways::{OnWay, Piece, WayEdges};
+use crate::export::ways::{OnWay, Piece, WayEdges, ids};
 use crate::export::{ExportError, Place, Sink, Source};
 use crate::osm::pbf::copy::Contents;
 use crate::osm::pbf::write::zlib_blob;
@@ -29,32 +29,22 @@ pub(in crate::export::target) fn rewrite(
     let mut rewriter = Rewriter {
         source,
         flavour,
-        cuts: cuts(source)?,
+        refusals: Refusals::create(source, flavour, place)?,
         splits: Splits::default(),
-        ends: FxHashMap::default(),
         new_ways: Spool::create(place.scratch(".ways"))?,
-        new_relations: Spool::create(place.scratch(".relations"))?,
-        next: [FIRST_NEW_ID; 2],
+        next_id: FIRST_NEW_ID,
         unclear: 0,
         stage: Stage::Nodes,
         out: place.create(name)?,
     };
     rewriter.blobs(target)?;
     rewriter.reach(Stage::Relations)?;
-    rewriter.refuse_turns()?;
-    rewriter.new_relations.pour(&mut rewriter.out)?;
-    if rewriter.unclear > 0 {
-        let note = format!("ways closed whole, as nodes at one place make their edges unclear: {}", rewriter.unclear);
-        source.reporter.note(&note);
+    let Rewriter { refusals, mut out, unclear, .. } = rewriter;
+    refusals.write(&mut out)?;
+    if unclear > 0 {
+        source.reporter.note(&format!("ways closed whole, as nodes at one place make their edges unclear: {unclear}"));
     }
-    rewriter.out.close()
-}
-
-/// A way and the node at which it ends.
-#[derive(Debug, Clone, Copy)]
-struct End {
-    way: i64,
-    node: i64,
+    out.close()
 }
 
 /// Kinds of objects, in the order of the file.
@@ -68,14 +58,11 @@ enum Stage {
 struct Rewriter<'s, 'r> {
     source: &'s Source<'r>,
     flavour: Flavour,
-    cuts: Cuts,
+    refusals: Refusals<'s, 'r>,
     splits: Splits,
-    /// By edge of which a relation will speak: way and node at its first and at its last node, in direction of travel.
-    ends: FxHashMap<u32, [End; 2]>,
     new_ways: Spool,
-    new_relations: Spool,
-    /// Ids of the next new way and relation.
-    next: [i64; 2],
+    /// Of the next new way.
+    next_id: i64,
     unclear: u64,
     stage: Stage,
     out: Sink,
@@ -142,6 +129,7 @@ impl Rewriter<'_, '_> {
             }
             for relation in &mut group.relations {
                 changed |= name_parts(relation, &self.splits, &mut texts);
+                self.refusals.hear(relation, &texts);
             }
         }
         let groups = std::mem::take(&mut block.primitivegroup);
@@ -166,15 +154,7 @@ impl Rewriter<'_, '_> {
             let detail = format!("way {} has an id that new ways have: was it made by an export?", way.id());
             return Err(self.source.extract_error(detail));
         }
-        let mut id = 0_i64;
-        let refs: Vec<i64> = way
-            .refs
-            .iter()
-            .map(|step| {
-                id = id.wrapping_add(*step);
-                id
-            })
-            .collect();
+        let refs = ids(&way.refs);
         let whole = || vec![Part { first: 0, last: refs.len().saturating_sub(1), said: Said::default() }];
         let (pieces, parts) = match edges.of(way.id(), &refs).map_err(|detail| self.source.extract_error(detail))? {
             OnWay::Nothing if !way.keys.iter().any(|&key| KEYS.contains(&texts.text(key))) => return Ok(false),
@@ -184,13 +164,13 @@ impl Rewriter<'_, '_> {
                 (Vec::new(), whole())
             }
             OnWay::Pieces(pieces) => {
-                let parts = parts(&pieces, &refs, &self.source.permitted, &self.cuts);
+                let parts = parts(&pieces, &refs, &self.source.permitted, self.refusals.cuts());
                 (pieces, parts)
             }
         };
-        let ids = self.number(way.id(), &parts, &refs);
-        self.speak_of(&pieces, &parts, &ids, &refs)?;
-        self.write_parts(way, &parts, &ids, &refs, texts)?;
+        let part_ids = self.number(way.id(), &parts, &refs);
+        self.lay(&pieces, &parts, &part_ids, &refs)?;
+        self.write_parts(way, &parts, &part_ids, &refs, texts)?;
         Ok(true)
     }
 
@@ -198,8 +178,8 @@ impl Rewriter<'_, '_> {
     fn number(&mut self, way_id: i64, parts: &[Part], refs: &[i64]) -> Vec<i64> {
         let mut ids = vec![way_id];
         for _ in parts.iter().skip(1) {
-            ids.push(self.next[0]);
-            self.next[0] += 1;
+            ids.push(self.next_id);
+            self.next_id += 1;
         }
         if parts.len() > 1 {
             let node = |place: usize| refs.get(place).copied().unwrap_or_default();
@@ -210,8 +190,8 @@ impl Rewriter<'_, '_> {
         ids
     }
 
-    /// Notes the ways of edges of which relations will speak, and refuses turning back.
-    fn speak_of(&mut self, pieces: &[Piece], parts: &[Part], ids: &[i64], refs: &[i64]) -> Result<(), ExportError> {
+    /// Tells on which ways edges lie of which relations will speak, and where nobody may turn back.
+    fn lay(&mut self, pieces: &[Piece], parts: &[Part], ids: &[i64], refs: &[i64]) -> Result<(), ExportError> {
         for piece in pieces {
             let way = |within: &dyn Fn(&Part) -> bool| {
                 parts.iter().zip(ids).find(|(part, _)| within(part)).map_or(0, |(_, &id)| id)
@@ -220,14 +200,13 @@ impl Rewriter<'_, '_> {
             let first = end(way(&|part| (part.first..part.last).contains(&piece.first)), piece.first);
             let last = end(way(&|part| part.first < piece.last && piece.last <= part.last), piece.last);
             for (edge, ends) in piece.edges.into_iter().zip([[first, last], [last, first]]) {
-                if let Some(edge) = edge.filter(|&edge| self.cuts.speaks_of(edge)) {
-                    self.ends.insert(edge, ends);
+                if let Some(edge) = edge {
+                    self.refusals.lies(edge, ends, refs.get(piece.first..=piece.last).unwrap_or_default());
                 }
             }
             if piece.edges.iter().all(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge))) {
-                for end in [first, last] {
-                    self.refuse_at(end, end.way, "no_u_turn")?;
-                }
+                self.refusals.dead_end(first)?;
+                self.refusals.dead_end(last)?;
             }
         }
         Ok(())
@@ -259,60 +238,6 @@ impl Rewriter<'_, '_> {
         }
         Ok(())
     }
-
-    /// From the end of a way over its node into another way.
-    fn refuse_at(&mut self, from: End, to: i64, word: &str) -> Result<(), ExportError> {
-        self.refuse(&[(Kind::WAY, from.way, "from"), (Kind::NODE, from.node, "via"), (Kind::WAY, to, "to")], word)
-    }
-
-    fn refuse(&mut self, members: &[(Kind, i64, &str)], word: &str) -> Result<(), ExportError> {
-        let key = match self.flavour {
-            Flavour::Hgv => "restriction:hgv",
-            Flavour::Valhalla => "restriction",
-        };
-        let id = self.next[1];
-        self.next[1] += 1;
-        self.new_relations.relation(id, members, &[("type", "restriction"), (key, word), ("netcert", "no")])
-    }
-
-    /// Turns between permitted edges that are refused, and restrictions over ways.
-    fn refuse_turns(&mut self) -> Result<(), ExportError> {
-        let source = self.source;
-        let mut database = source.database()?;
-        for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
-            let step = step?;
-            if !refused(source, &step) {
-                continue;
-            }
-            if let (Some(&[_, from]), Some(&[to, _])) = (self.ends.get(&step.from), self.ends.get(&step.to)) {
-                self.refuse_at(from, to.way, refusal_word(step.angle_deg))?;
-            }
-        }
-        for sequence in sequences(source)? {
-            self.refuse_sequence(&sequence)?;
-        }
-        Ok(())
-    }
-
-    fn refuse_sequence(&mut self, edges: &[u32]) -> Result<(), ExportError> {
-        let Some(ways) = edges.iter().map(|edge| self.ends.get(edge).copied()).collect::<Option<Vec<_>>>() else {
-            return Ok(());
-        };
-        let [[_, from], between @ .., [to, _]] = ways.as_slice() else { return Ok(()) };
-        if between.is_empty() {
-            return self.refuse_at(*from, to.way, "no_straight_on");
-        }
-        let mut members = vec![(Kind::WAY, from.way, "from")];
-        for [first, last] in between {
-            members.push((Kind::WAY, first.way, "via"));
-            // Two where it is a loop.
-            if last.way != first.way {
-                members.push((Kind::WAY, last.way, "via"));
-            }
-        }
-        members.push((Kind::WAY, to.way, "to"));
-        self.refuse(&members, "no_straight_on")
-    }
 }
 
 fn stage_of(group: &PrimitiveGroup) -> Stage {
@@ -328,43 +253,4 @@ fn steps(refs: &[i64], part: &Part) -> Vec<i64> {
     let mut last = 0;
     let step = |&node: &i64| node.wrapping_sub(std::mem::replace(&mut last, node));
     refs.get(part.first..=part.last).unwrap_or_default().iter().map(step).collect()
-}
-
-/// A turn to be refused by a relation: its edges are open.
-fn refused(source: &Source<'_>, step: &crate::store::TurnStep) -> bool {
-    let permitted = &source.permitted;
-    let open = permitted.edges.get(step.from) && permitted.edges.get(step.to);
-    step.arcs.is_none() && open && !permitted.turns.get(step.turn)
-}
-
-/// Restrictions whose edges are all open: those of turns are refused twice, those of going straight on here alone.
-fn sequences(source: &Source<'_>) -> Result<Vec<Vec<u32>>, ExportError> {
-    let mut sequences = source.database()?.forbidden_sequences()?;
-    sequences.retain(|edges| edges.len() > 1 && edges.iter().all(|&edge| source.permitted.edges.get(edge)));
-    Ok(sequences)
-}
-
-/// Where ways must end so that relations can speak of them.
-fn cuts(source: &Source<'_>) -> Result<Cuts, ExportError> {
-    let mut cuts = Cuts::none(source.permitted.edges.len());
-    let mut database = source.database()?;
-    let [first, last] = &mut cuts.at;
-    for step in database.turn_steps(&source.ask.vehicle, source.ask.policy)? {
-        let step = step?;
-        if refused(source, &step) {
-            last.set(step.from);
-            first.set(step.to);
-        }
-    }
-    for sequence in sequences(source)? {
-        for (i, &edge) in sequence.iter().enumerate() {
-            if i > 0 {
-                first.set(edge);
-            }
-            if i + 1 < sequence.len() {
-                last.set(edge);
-            }
-        }
-    }
-    Ok(cuts)
 }

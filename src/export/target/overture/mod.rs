@@ -123,28 +123,24 @@ fn node_of(record: &[u8; NODE_BYTES]) -> (i64, LonLat) {
 struct Transitions {
     /// From, to; both permitted, the turn not.
     turns: std::iter::Peekable<Sorted<8>>,
-    /// What turn restrictions forbid, as indices of edges; there are few. Straight on is no turn, so two edges may stand here.
+    /// The others of [`Source::sequences`], by their first edge; there are few.
     sequences: BTreeMap<u32, Vec<Vec<u32>>>,
 }
 
 impl Transitions {
     fn collect(source: &Source<'_>, place: &Place) -> Result<Self, ExportError> {
-        let permitted = &source.permitted;
         let mut database = source.database()?;
         let mut turns = Sorter::create(place.scratch(".turns"))?;
         for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
             let step = step?;
-            let between = permitted.edges.get(step.from) && permitted.edges.get(step.to);
-            if step.arcs.is_none() && between && !permitted.turns.get(step.turn) {
+            if source.refuses_turn(&step) {
                 turns.push((u64::from(step.from) << 32 | u64::from(step.to)).to_be_bytes())?;
             }
         }
         let mut sequences: BTreeMap<u32, Vec<Vec<u32>>> = BTreeMap::new();
-        for mut sequence in database.forbidden_sequences()? {
-            if sequence.len() > 1 && sequence.iter().all(|&edge| permitted.edges.get(edge)) {
-                let first = sequence.remove(0);
-                sequences.entry(first).or_default().push(sequence);
-            }
+        for mut sequence in source.sequences()? {
+            let first = sequence.remove(0);
+            sequences.entry(first).or_default().push(sequence);
         }
         Ok(Self { turns: turns.sorted()?.peekable(), sequences })
     }
@@ -162,11 +158,7 @@ impl Transitions {
                 out.push(vec![to]);
             }
         }
-        for sequence in self.sequences.remove(&edge).unwrap_or_default() {
-            if !out.contains(&sequence) {
-                out.push(sequence);
-            }
-        }
+        out.extend(self.sequences.remove(&edge).unwrap_or_default());
         Ok(out)
     }
 }

@@ -1,0 +1,55 @@
+//! What may not follow what though each edge may be used: refused turns, turn restrictions, refused passages of roundabouts.
+//!
+//! A passage is refused by its own certificate, whatever its arcs and the turns onto and off them have. `netcert route` may still try
+//! the parts, as it certifies the whole afterwards; an export has nobody to do so, and closes the sequence. Formats without
+//! sequences refuse the first step of one.
+
+use rustc_hash::FxHashSet;
+
+use super::rings::Rings;
+use super::{ExportError, Source};
+use crate::store::TurnStep;
+
+impl Source<'_> {
+    /// Whether it is a turn, and refused though both its edges may be used.
+    pub(super) fn refuses_turn(&self, step: &TurnStep) -> bool {
+        let open = self.permitted.edges.get(step.from) && self.permitted.edges.get(step.to);
+        step.arcs.is_none() && open && !self.permitted.turns.get(step.turn)
+    }
+
+    /// Sequences of permitted edges (two or more) that may not be driven one right after the other, sorted. Those with a
+    /// refused turn among their steps say nothing new and are left out, so that two edges stand here only for straight on.
+    ///
+    /// # Errors
+    /// The database cannot be read.
+    pub(super) fn sequences(&self) -> Result<Vec<Vec<u32>>, ExportError> {
+        let (vehicle, policy) = (&self.ask.vehicle, self.ask.policy);
+        let mut database = self.database()?;
+        let rings = Rings::new(database.rings()?);
+        let mut sequences = database.forbidden_sequences()?;
+        for step in self.told(database.turn_steps(vehicle, policy)?) {
+            let step = step?;
+            let refused = step.arcs.filter(|_| !self.permitted.turns.get(step.turn));
+            if let Some(arcs) = refused.and_then(|arcs| rings.through(arcs)) {
+                sequences.push([&[step.from], &arcs[..], &[step.to]].concat());
+            }
+        }
+        sequences.retain(|edges| edges.len() > 1 && edges.iter().all(|&edge| self.permitted.edges.get(edge)));
+        let steps: FxHashSet<[u32; 2]> = sequences.iter().flat_map(|edges| pairs(edges)).collect();
+        let mut refused = FxHashSet::default();
+        for step in self.told(database.turn_steps(vehicle, policy)?) {
+            let step = step?;
+            if self.refuses_turn(&step) && steps.contains(&[step.from, step.to]) {
+                refused.insert([step.from, step.to]);
+            }
+        }
+        sequences.retain(|edges| !pairs(edges).any(|pair| refused.contains(&pair)));
+        sequences.sort_unstable();
+        sequences.dedup();
+        Ok(sequences)
+    }
+}
+
+fn pairs(edges: &[u32]) -> impl Iterator<Item = [u32; 2]> {
+    edges.array_windows().copied()
+}
