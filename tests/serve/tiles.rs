@@ -5,7 +5,6 @@ use std::collections::{BTreeMap, BTreeSet};
 use fast_mvt::{MvtReaderRef, MvtValueRef};
 use netcert::osm::facts::Policy;
 use netcert::store::{Database, EdgeRow, Named, QueryOptions, TurnQuery, verdict_words};
-use sqlx::Connection as _;
 
 use crate::http::Server;
 
@@ -229,7 +228,8 @@ fn where_a_region_has_both_sides_every_edge_says_on_which_it_is_driven() {
     let tile = *tiles(&rows, 13).iter().next().unwrap();
     assert!(fetch(&server, 13, tile, "edge").iter().all(|feature| !feature.tags.contains_key("left")));
     let way = rows.iter().find(|row| !row.line.is_empty()).unwrap().way_id;
-    sql(&server, &format!("UPDATE road SET left_hand_traffic = NOT left_hand_traffic WHERE way_id = {way}"));
+    let other_side = format!("UPDATE road SET left_hand_traffic = NOT left_hand_traffic WHERE way_id = {way}");
+    assert!(server.place.sql(&other_side) > 0);
     let most = server.json("/api/region")["left_hand_traffic"].as_bool().unwrap();
     let mut seen = BTreeSet::new();
     for tile in tiles(&rows, 13) {
@@ -240,17 +240,4 @@ fn where_a_region_has_both_sides_every_edge_says_on_which_it_is_driven() {
         }
     }
     assert_eq!(seen.len(), 2);
-}
-
-/// Changes the database under the server.
-fn sql(server: &Server, statement: &str) {
-    let path = server.place.path("demo.gpkg");
-    let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
-    runtime.block_on(async {
-        let options = sqlx::sqlite::SqliteConnectOptions::new().filename(path);
-        let mut c = sqlx::SqliteConnection::connect_with(&options).await.unwrap();
-        let done = sqlx::query(sqlx::AssertSqlSafe(statement.to_owned())).execute(&mut c).await.unwrap();
-        assert!(done.rows_affected() > 0, "{statement}");
-        c.close().await.unwrap();
-    });
 }

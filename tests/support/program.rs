@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
+use sqlx::{Connection as _, SqliteConnection};
 use tempfile::TempDir;
 
 /// A folder to work in, removed afterwards.
@@ -46,6 +47,17 @@ impl Place {
 
     pub(crate) fn read(&self, name: &str) -> Vec<u8> {
         std::fs::read(self.path(name)).unwrap()
+    }
+
+    /// Changes `demo.gpkg` behind netcert's back: how many rows were changed.
+    pub(crate) fn sql(&self, statement: &str) -> u64 {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+        runtime.block_on(async {
+            let mut c = SqliteConnection::connect(self.path("demo.gpkg").to_str().unwrap()).await.unwrap();
+            let done = sqlx::query(sqlx::AssertSqlSafe(statement.to_owned())).execute(&mut c).await.unwrap();
+            c.close().await.unwrap();
+            done.rows_affected()
+        })
     }
 
     /// Names of the files here, sorted.
