@@ -9,7 +9,7 @@ use super::claim::{Claim, Place};
 use super::draw::Draw;
 use super::duel;
 
-/// RK4 at 0.1 m and the plan's cubic, as in `tests/soundness.rs`.
+/// RK4 at 0.1 m and the plan's cubic, as in `tests/certificate/soundness.rs`.
 const ALLOWANCE_M: f64 = 2e-5;
 
 /// The adversary finds nothing below the RSC, and no hinge beyond its margin.

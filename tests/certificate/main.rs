@@ -1,0 +1,13 @@
+//! What the certificate says, judged by an independent simulator, an adversary, closed forms, published values and the paper.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, unreachable_pub)]
+
+mod corrcen;
+mod errata;
+#[path = "../oracle/mod.rs"]
+mod oracle;
+mod properties;
+mod published_values;
+mod simulator;
+mod soundness;
+mod tubes;
+mod verify_agreement;

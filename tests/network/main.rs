@@ -1,0 +1,18 @@
+//! From a file to a network, over it, and round its corners: the reader's rules, drawn maps, turns, roundabouts, routes.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
+
+mod corridor_extracts;
+mod demo_region;
+mod graph_properties;
+mod malformed;
+mod maps;
+#[path = "../oracle/mod.rs"]
+mod oracle;
+mod reader_rules;
+mod restrictions;
+mod roundabouts;
+mod route_junctions;
+mod routes;
+#[path = "../support/mod.rs"]
+mod support;
+mod turns;

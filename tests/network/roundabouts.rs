@@ -1,0 +1,378 @@
+//! Roundabouts as one movement: which passages there are, who gets over, and that no claim of one is refuted.
+//!
+//! A ring of 24 points with four arms at right angles; widths are tagged, kerb radii are the test's own.
+
+use crate::oracle;
+use crate::support::ascii_map;
+
+use ascii_map::{AsciiMap, id_of};
+use geo::{Distance as _, Euclidean};
+use netcert::corridor::Params;
+use netcert::network::{Network, build};
+use netcert::osm::Via;
+use netcert::osm::facts::{Countries, Place, Policy, cross_sections};
+use netcert::pipeline::{Reporter, Settings, TurnJob, best_of, certify_turns};
+use netcert::stet::{Model, Options, SpanResult};
+use netcert::store::TurnCertificate;
+use netcert::turns::{Kerbs, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, corridors_of, turn_facts};
+use netcert::vehicle::{Catalogue, Vehicle};
+use netcert::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
+use oracle::draw::Draw;
+use oracle::fight;
+
+const RING: &str = "abcdefghijklmnopqrstuvwx";
+const ARMS: [(char, char); 4] = [('W', 'a'), ('S', 'g'), ('E', 'm'), ('N', 's')];
+
+struct Drawn {
+    network: Network,
+    params: TurnParams,
+}
+
+/// Counter-clockwise from the west, or clockwise where traffic keeps left: there N is in the south.
+fn map(radius_m: f64, ring: &str, arm: &str, left_hand_traffic: bool) -> AsciiMap {
+    let mirror = if left_hand_traffic { -1.0 } else { 1.0 };
+    let at = |turn: f64, m: f64| {
+        let (sin, cos) = (std::f64::consts::PI + turn * std::f64::consts::TAU).sin_cos();
+        [m * cos, m * sin * mirror]
+    };
+    let mut nodes: Vec<_> = RING.chars().zip(0..).map(|(c, i)| (c, at(f64::from(i) / 24.0, radius_m))).collect();
+    nodes.extend(ARMS.into_iter().zip(0..).map(|((c, _), i)| (c, at(f64::from(i) / 4.0, radius_m + 150.0))));
+    let mut map = AsciiMap::placed(&nodes).way(&format!("{RING}a"), &format!("junction=roundabout {ring}"));
+    for (end, node) in ARMS {
+        map = map.way(&format!("{end}{node}"), arm);
+    }
+    map
+}
+
+impl Drawn {
+    fn new(map: &AsciiMap, left_hand_traffic: bool, kerb_m: f64) -> Self {
+        let countries = Countries::load().unwrap();
+        let rules = countries.rules();
+        let place = |_| Place { country: *b"DE", left_hand_traffic };
+        let (network, _) = build(map.extract(), &place, &|facts, place| cross_sections(facts, place, rules));
+        Self { network, params: TurnParams { corridor: Params::default(), kerbs: Kerbs::everywhere(kerb_m) } }
+    }
+
+    fn ring(radius_m: f64, ring_m: f64, arm_m: f64, kerb_m: f64) -> Self {
+        let tags = |width: f64| format!("highway=secondary width={width}");
+        Self::new(&map(radius_m, &tags(ring_m), &tags(arm_m), false), false, kerb_m)
+    }
+
+    fn facts(&self) -> Vec<TurnFacts> {
+        turn_facts(&self.network, &self.params.kerbs)
+    }
+
+    fn passages(&self) -> Vec<TurnFacts> {
+        self.facts().into_iter().filter(|turn| !turn.through.is_empty()).collect()
+    }
+
+    /// From the end of one arm to that of another.
+    fn passage(&self, ends: &str) -> TurnFacts {
+        let ids: Vec<i64> = ends.chars().map(id_of).collect();
+        let edge = |edge: u32| &self.network.edges[edge as usize];
+        let fits = |t: &TurnFacts| edge(t.movement.from).from_node == ids[0] && edge(t.movement.to).to_node == ids[1];
+        self.passages().into_iter().find(fits).unwrap_or_else(|| panic!("{ends} is no passage"))
+    }
+
+    fn corridors(&self, ends: &str, policy: Policy, reach: Reach) -> Result<TurnCorridors, UnknownReason> {
+        corridors_of(&self.network, &self.passage(ends), policy, &self.params, reach)
+    }
+
+    fn best(&self, ends: &str, policy: Policy, id: &str) -> Option<SpanResult> {
+        let vehicle = catalogued(id);
+        let made = self.corridors(ends, policy, Reach::of(&vehicle).unwrap()).unwrap();
+        let model = Model::new(&vehicle).unwrap();
+        best_of(&made.paths, &[&model], &Options::default()).pop().unwrap().map(|(_, result)| result)
+    }
+
+    fn safe(&self, ends: &str, policy: Policy, id: &str) -> bool {
+        self.best(ends, policy, id).is_some_and(|result| result.safe())
+    }
+}
+
+fn catalogued(id: &str) -> Vehicle {
+    Catalogue::builtin().unwrap().get(id).unwrap().clone()
+}
+
+#[test]
+fn every_arm_leads_to_every_other_one() {
+    let drawn = Drawn::ring(20.0, 8.0, 8.0, 12.0);
+    let passages = drawn.passages();
+    assert_eq!(passages.len(), 12);
+    // Entering and leaving by themselves stay.
+    assert_eq!(drawn.facts().len(), 12 + 8);
+    let ids: std::collections::BTreeSet<i64> = drawn.facts().iter().map(|t| t.id).collect();
+    assert_eq!(ids.len(), 20);
+    for (ends, arcs, angle_deg) in
+        [("WS", 1, -90.0), ("WE", 2, 0.0), ("WN", 3, 90.0), ("EN", 1, -90.0), ("SW", 3, 90.0)]
+    {
+        let passage = drawn.passage(ends);
+        assert_eq!(passage.through.len(), arcs, "{ends}");
+        assert!((passage.angle_deg - angle_deg).abs() < 2.0, "{ends} {}", passage.angle_deg);
+        let edge = |edge: u32| &drawn.network.edges[edge as usize];
+        let way: Vec<u32> = [passage.movement.from]
+            .into_iter()
+            .chain(passage.through.iter().copied())
+            .chain([passage.movement.to])
+            .collect();
+        assert!(way.windows(2).all(|w| edge(w[0]).to_node == edge(w[1]).from_node), "{ends}");
+    }
+}
+
+#[test]
+fn who_gets_straight_over_depends_on_the_ring() {
+    let semi =
+        |radius_m, ring_m, arm_m, policy| Drawn::ring(radius_m, ring_m, arm_m, 12.0).safe("WE", policy, "EU-SEMI16.5");
+    assert!(semi(40.0, 8.0, 8.0, Policy::Carriageway), "a large ring with room");
+    assert!(semi(40.0, 9.0, 14.0, Policy::Direction), "the same in the lanes of its direction");
+    assert!(semi(20.0, 8.0, 8.0, Policy::Carriageway));
+    // On a steady circle with its outer front corner at 22.5 m it sweeps 4.7 m: 5 m are just enough, as the adversary finds below.
+    assert!(!semi(20.0, 4.5, 7.0, Policy::Carriageway), "a small and narrow ring");
+    let small = Drawn::ring(20.0, 4.5, 7.0, 12.0);
+    assert!(small.safe("WE", Policy::Carriageway, "AGV-TUG4"), "but a tug does");
+    let rsc =
+        |ring_m| Drawn::ring(20.0, ring_m, 8.0, 12.0).best("WE", Policy::Carriageway, "EU-SEMI16.5").unwrap().rsc_m;
+    let (narrow, wide) = (rsc(5.5), rsc(8.0));
+    assert!(wide > narrow + 0.3, "{narrow} {wide}");
+}
+
+#[test]
+fn driving_on_the_left_mirrors_every_passage() {
+    let tags = "highway=secondary width=8";
+    let right = Drawn::new(&map(22.0, tags, tags, false), false, 12.0);
+    let left = Drawn::new(&map(22.0, tags, tags, true), true, 12.0);
+    for ends in ["WS", "WE", "WN"] {
+        let rsc = |drawn: &Drawn| drawn.best(ends, Policy::Carriageway, "EU-SEMI16.5").unwrap();
+        let (a, b) = (rsc(&right), rsc(&left));
+        assert_eq!(a.safe(), b.safe(), "{ends}");
+        assert!((a.rsc_m - b.rsc_m).abs() < 0.25, "{ends}: {} {}", a.rsc_m, b.rsc_m);
+    }
+}
+
+#[test]
+fn a_ring_may_be_mapped_in_pieces_and_begin_anywhere() {
+    let tags = "highway=secondary width=8";
+    let whole = Drawn::ring(20.0, 8.0, 8.0, 12.0);
+    let mut map = map(20.0, tags, tags, false);
+    map = map.without_way(1);
+    for (id, nodes) in [(11, "defghijklmno"), (12, "opqrstuvwxabcd")] {
+        map = map.way_of_id(id, nodes, &format!("junction=roundabout {tags}"));
+    }
+    let pieces = Drawn::new(&map, false, 12.0);
+    assert_eq!(pieces.passages().len(), 12);
+    for ends in ["WE", "NS", "EN", "SW"] {
+        let made = |drawn: &Drawn| drawn.corridors(ends, Policy::Carriageway, Reach::Short).unwrap().paths;
+        let (a, b) = (made(&whole), made(&pieces));
+        let same: Vec<_> = a.iter().filter_map(|a| Some((a, b.iter().find(|b| b.number == a.number)?))).collect();
+        assert!(same.len() > 30, "{ends} {} {} {}", a.len(), b.len(), same.len());
+        for (a, b) in same {
+            let length_m = |c: &netcert::corridor::Corridor| c.len() as f64 * c.spacing_m;
+            // Stations of the ring lie elsewhere, so that paths may begin and end a metre later.
+            assert!((length_m(&a.corridor) - length_m(&b.corridor)).abs() < 3.0, "{ends} {}", a.number);
+            assert!(a.min_radius_m > 0.5 * b.min_radius_m && b.min_radius_m > 0.5 * a.min_radius_m);
+        }
+        assert!(pieces.safe(ends, Policy::Carriageway, "EU-SEMI16.5"), "{ends}");
+    }
+}
+
+#[test]
+fn one_way_arms_only_enter_or_leave() {
+    let tags = "highway=secondary width=8";
+    let map = map(20.0, tags, tags, false).without_way(2).way_of_id(2, "Wa", &format!("{tags} oneway=yes"));
+    let drawn = Drawn::new(&map, false, 12.0);
+    // Four ways in, three out, not out where one came in.
+    assert_eq!(drawn.passages().len(), 3 + 3 * 2);
+    let ends = |t: &TurnFacts| drawn.network.edges[t.movement.to as usize].to_node != id_of('W');
+    assert!(drawn.passages().iter().all(ends));
+}
+
+#[test]
+fn long_arcs_leave_it_at_turns_and_tiny_rings_at_unknown() {
+    assert!(Drawn::ring(90.0, 8.0, 8.0, 12.0).passages().is_empty());
+    let tiny = Drawn::ring(5.0, 4.0, 6.0, 4.0);
+    assert_eq!(tiny.passages().len(), 12);
+    let made = tiny.corridors("WE", Policy::Carriageway, Reach::Short);
+    assert_eq!(made.map(|made| made.paths.len()), Err(UnknownReason::Geometry));
+}
+
+#[test]
+fn a_corridor_never_leaves_the_drivable_area() {
+    for (radius_m, policy) in [(16.0, Policy::Carriageway), (20.0, Policy::Direction), (25.0, Policy::Lane)] {
+        let drawn = Drawn::ring(radius_m, 9.0, 9.0, 12.0);
+        let mut looked_at = 0;
+        for passage in drawn.passages() {
+            let made = corridors_of(&drawn.network, &passage, policy, &drawn.params, Reach::Short).unwrap();
+            for path in &made.paths {
+                let c = &path.corridor;
+                for k in path.turn.start..path.turn.end {
+                    let (sin, cos) = c.heading[k].sin_cos();
+                    for across in [c.left_m[k], 0.0, -c.right_m[k]] {
+                        let (x, y) = (c.x[k] - across * sin, c.y[k] + across * cos);
+                        let out = Euclidean.distance(&geo::Point::new(x, y), &made.area);
+                        assert!(out < 0.02, "{radius_m} {policy:?}: path {} is {out:.3} m out at {k}", path.number);
+                        looked_at += 1;
+                    }
+                }
+            }
+        }
+        println!("R {radius_m} {policy:?}: {looked_at} places");
+        assert!(looked_at > 1000, "{looked_at}");
+    }
+}
+
+#[test]
+fn a_path_leaves_and_joins_the_arms_own_centrelines_and_keeps_to_the_ring_between() {
+    let drawn = Drawn::ring(20.0, 9.0, 8.0, 12.0);
+    for ends in ["WS", "WE", "WN", "SW", "EN"] {
+        let passage = drawn.passage(ends);
+        let made = drawn.corridors(ends, Policy::Carriageway, Reach::Long).unwrap();
+        assert!(made.paths.len() > 20, "{ends} {}", made.paths.len());
+        for path in &made.paths {
+            let c = &path.corridor;
+            for (joint, edge, k) in [
+                (path.approach, passage.movement.from, path.turn.start),
+                (path.departure, passage.movement.to, path.turn.end - 1),
+            ] {
+                let line =
+                    StrokeLine::new(&drawn.network, joint.stroke, Policy::Carriageway, &drawn.params.corridor).unwrap();
+                assert!(line.made.spans.iter().any(|span| span.edge == edge));
+                let s = &line.made.corridor;
+                let (x, y) = (c.x[k] - s.x[joint.station], c.y[k] - s.y[joint.station]);
+                assert!(x.hypot(y) < 0.6, "{ends} {}: {x} {y}", path.number);
+                let (sin, cos) = s.heading[joint.station].sin_cos();
+                assert!((y * cos - x * sin).abs() < 0.01);
+                assert!((c.heading[k] - s.heading[joint.station]).sin().abs() < 0.02);
+            }
+            // No jump, no kink: headings change by what the radius says.
+            let kinks = c.heading[path.turn.clone()].windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max);
+            assert!(kinks < 1.3 * c.spacing_m / path.min_radius_m + 1e-3, "{ends} {}: {kinks}", path.number);
+            assert!(path.min_radius_m > 4.0, "{ends} {}: {}", path.number, path.min_radius_m);
+        }
+    }
+}
+
+struct Silent;
+impl Reporter for Silent {
+    fn begin(&self, _: &'static str, _: u64) {}
+    fn advance(&self, _: u64) {}
+    fn end(&self) {}
+    fn note(&self, _: &str) {}
+}
+
+fn certified(drawn: &Drawn, id: &str, edges: &[Verdict], threads: usize) -> Vec<TurnCertificate> {
+    let models = [Model::new(&catalogued(id)).unwrap()];
+    let edges = [edges.to_vec()];
+    let (policy, turns) = (Policy::Carriageway, drawn.facts());
+    let settings = Settings { policy, corridor: Params::default(), stet: Options::default(), turns: true };
+    let (network, params) = (&drawn.network, &drawn.params);
+    let job = TurnJob { network, turns: &turns, models: &models, edges: &edges, settings: &settings, params };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| {
+        let mut out = Vec::new();
+        let sink = |_, certificate: &TurnCertificate| {
+            out.push(certificate.clone());
+            Ok::<(), ()>(())
+        };
+        certify_turns(&job, &Silent, sink).unwrap();
+        out.sort_by_key(|certificate| certificate.turn);
+        out
+    })
+}
+
+#[test]
+fn a_passage_has_one_certificate_whatever_the_threads() {
+    let drawn = Drawn::ring(20.0, 8.0, 8.0, 12.0);
+    let safe = vec![Verdict::Safe; drawn.network.edges.len()];
+    let one = certified(&drawn, "EU-SEMI16.5", &safe, 1);
+    assert_eq!(one, certified(&drawn, "EU-SEMI16.5", &safe, 3));
+    let turns = drawn.facts();
+    let id = drawn.passage("WE").id;
+    let over: Vec<_> = one.iter().filter(|c| turns[c.turn as usize].id == id).collect();
+    assert_eq!(over.len(), 1);
+    assert_eq!(over[0].verdict, Verdict::Safe);
+    assert!(over[0].measured.is_some() && over[0].path.is_some());
+}
+
+#[test]
+fn arcs_need_leave_but_no_certificate_of_their_own() {
+    let drawn = Drawn::ring(20.0, 8.0, 8.0, 12.0);
+    let turns = drawn.facts();
+    let (over, past) = (drawn.passage("WE"), drawn.passage("EN"));
+    let of = |verdict: Verdict| {
+        let mut edges = vec![Verdict::Safe; drawn.network.edges.len()];
+        edges[over.through[1] as usize] = verdict;
+        let all = certified(&drawn, "AGV-TUG4", &edges, 2);
+        [&over, &past].map(|t| all.iter().find(|c| turns[c.turn as usize].id == t.id).unwrap().verdict)
+    };
+    assert_eq!(of(Verdict::Unsafe(UnsafeReason::Width)), [Verdict::Safe; 2], "nobody goes round for ever");
+    let barred = Verdict::Forbidden(ForbiddenReason::Hgv);
+    assert_eq!(of(barred), [barred, Verdict::Safe]);
+}
+
+#[test]
+fn a_restriction_within_the_ring_forbids_the_passage() {
+    let tags = "highway=secondary width=8";
+    let ring = 1;
+    let east = 4;
+    let map = map(20.0, tags, tags, false).restriction(
+        &[ring],
+        Via::Nodes(vec![id_of('m')]),
+        &[east],
+        "restriction=no_right_turn",
+    );
+    let drawn = Drawn::new(&map, false, 12.0);
+    assert!(drawn.passage("WE").movement.forbidden.is_some());
+    assert!(drawn.passage("WN").movement.forbidden.is_none());
+    let safe = vec![Verdict::Safe; drawn.network.edges.len()];
+    let turns = drawn.facts();
+    let all = certified(&drawn, "AGV-TUG4", &safe, 1);
+    let id = drawn.passage("SE").id;
+    let verdict = all.iter().find(|c| turns[c.turn as usize].id == id).unwrap().verdict;
+    assert_eq!(verdict, Verdict::Forbidden(ForbiddenReason::Restriction));
+}
+
+/// The simulator with its adversary, on the corridors of passages: right, left, right again, of changing width.
+#[test]
+fn no_claim_of_a_passage_is_refuted() {
+    let (mut fought, mut draw) = (0, Draw(0x9u64));
+    for (radius_m, ring_m, arm_m) in [(20.0, 8.0, 8.0), (16.0, 9.0, 9.0), (40.0, 8.0, 7.0), (20.0, 5.0, 7.0)] {
+        let drawn = Drawn::ring(radius_m, ring_m, arm_m, 12.0);
+        for (ends, id) in
+            [("WS", "EU-SEMI16.5"), ("WE", "EU-SEMI16.5"), ("NW", "US-WB40"), ("WE", "AU-BDOUBLE26"), ("EN", "US-WB67")]
+        {
+            let reach = Reach::of(&catalogued(id)).unwrap();
+            let made = drawn.corridors(ends, Policy::Carriageway, reach).unwrap();
+            let other = made.paths.len() / 2;
+            fought += fight::none_is_refuted(&made.paths, id, other, &format!("R {radius_m} {ends}"), &mut draw);
+        }
+    }
+    println!("{fought} passages held");
+    assert!(fought >= 20, "{fought}");
+}
+
+#[test]
+fn kerbs_round_the_corner_between_arm_and_ring_and_no_more() {
+    let (radius_m, ring_m, arm_m, kerb_m) = (20.0, 8.0, 8.0, 8.0);
+    let drawn = Drawn::ring(radius_m, ring_m, arm_m, kerb_m);
+    let made = drawn.corridors("WE", Policy::Carriageway, Reach::Short).unwrap();
+    assert!(made.kerb_radius_m.is_some());
+    let nodes: Vec<_> = RING.chars().map(id_of).collect();
+    let at_ring: Vec<_> = drawn
+        .network
+        .edges
+        .iter()
+        .filter(|edge| nodes.contains(&edge.from_node) && nodes.contains(&edge.to_node))
+        .flat_map(|edge| drawn.network.positions(edge).skip(1))
+        .collect();
+    let metric = made.frame.forward(&at_ring).unwrap();
+    let mean = |i: usize| metric.iter().map(|p| p[i]).sum::<f64>() / metric.len() as f64;
+    // Circles that touch the arm's right edge and the ring's outer edge from outside: where one drives in, and out.
+    let across_m = 0.5 * arm_m + kerb_m;
+    let along_m = (radius_m + 0.5 * ring_m + kerb_m).powi(2) - across_m.powi(2);
+    for x in [-along_m.sqrt(), along_m.sqrt()] {
+        let kerb = geo::Point::new(mean(0) + x, mean(1) - across_m);
+        let gap_m = Euclidean.distance(&kerb, &made.area) - kerb_m;
+        // The smoothed ring is 0.16 m off its points. (A fillet along the tangent at the corner would cut 0.89 m into the kerb.)
+        assert!((-0.2..0.4).contains(&gap_m), "{gap_m}");
+    }
+}

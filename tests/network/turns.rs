@@ -1,0 +1,354 @@
+//! Turns of drawn junctions: which vehicles take them, what their corridors promise, and that no claim is refuted.
+//!
+//! Roads cross at right angles unless drawn otherwise; widths are tagged, kerb radii are the test's own.
+
+use crate::oracle;
+use crate::support::ascii_map;
+
+use ascii_map::{AsciiMap, id_of};
+use geo::{Distance as _, Euclidean};
+use netcert::account::AccountRow;
+use netcert::corridor::Params;
+use netcert::network::{Network, build};
+use netcert::osm::Via;
+use netcert::osm::facts::{Countries, Place, Policy, cross_sections};
+use netcert::pipeline::{Reporter, Settings, TurnJob, best_of, certify_turns};
+use netcert::stet::{Model, Options, SpanResult};
+use netcert::store::TurnCertificate;
+use netcert::turns::{Kerbs, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, turn_corridors, turn_facts};
+use netcert::vehicle::{Catalogue, Vehicle};
+use netcert::verdict::{ForbiddenReason, Verdict};
+use oracle::draw::Draw;
+use oracle::fight;
+
+const CROSS: &str = "
+            D
+            |
+        A---B---C
+            |
+            E
+        ";
+
+struct Drawn {
+    network: Network,
+    kerb_m: f64,
+}
+
+impl Drawn {
+    fn new(map: &AsciiMap, left_hand_traffic: bool, kerb_m: f64) -> Self {
+        let countries = Countries::load().unwrap();
+        let rules = countries.rules();
+        let place = |_| Place { country: *b"DE", left_hand_traffic };
+        let (network, _) = build(map.extract(), &place, &|facts, place| cross_sections(facts, place, rules));
+        Self { network, kerb_m }
+    }
+
+    fn cross(tags: &str, left_hand_traffic: bool, kerb_m: f64) -> Self {
+        let map = AsciiMap::drawn(60.0, CROSS).way("ABC", tags).way("DBE", tags);
+        Self::new(&map, left_hand_traffic, kerb_m)
+    }
+
+    fn params(&self) -> TurnParams {
+        TurnParams { corridor: Params::default(), kerbs: Kerbs::everywhere(self.kerb_m) }
+    }
+
+    fn facts(&self) -> Vec<TurnFacts> {
+        turn_facts(&self.network, &self.params().kerbs)
+    }
+
+    /// The turn by the nodes it passes: `EBC` from E over B to C.
+    fn turn(&self, nodes: &str) -> TurnFacts {
+        let ids: Vec<i64> = nodes.chars().map(id_of).collect();
+        let is = |edge: u32, from: i64, to: i64| {
+            let edge = &self.network.edges[edge as usize];
+            (edge.from_node, edge.to_node) == (from, to)
+        };
+        let fits = |t: &TurnFacts| is(t.movement.from, ids[0], ids[1]) && is(t.movement.to, ids[1], ids[2]);
+        self.facts().into_iter().find(fits).unwrap_or_else(|| panic!("{nodes} is no turn"))
+    }
+
+    fn corridors(&self, nodes: &str, policy: Policy, reach: Reach) -> TurnCorridors {
+        turn_corridors(&self.network, self.turn(nodes).movement, policy, &self.params(), reach).unwrap()
+    }
+
+    fn best(&self, nodes: &str, policy: Policy, id: &str) -> Option<SpanResult> {
+        let vehicle = catalogued(id);
+        let made = self.corridors(nodes, policy, Reach::of(&vehicle).unwrap());
+        let model = Model::new(&vehicle).unwrap();
+        best_of(&made.paths, &[&model], &Options::default()).pop().unwrap().map(|(_, result)| result)
+    }
+
+    fn safe(&self, nodes: &str, policy: Policy, id: &str) -> bool {
+        self.best(nodes, policy, id).is_some_and(|result| result.safe())
+    }
+}
+
+fn catalogued(id: &str) -> Vehicle {
+    Catalogue::builtin().unwrap().get(id).unwrap().clone()
+}
+
+#[test]
+fn a_tug_takes_the_corner_that_a_b_double_does_not() {
+    let drawn = Drawn::cross("highway=residential width=6", false, 3.0);
+    for nodes in ["EBC", "EBA"] {
+        assert!(drawn.safe(nodes, Policy::Lane, "AGV-TUG4"), "{nodes}");
+        for id in ["EU-SEMI16.5", "AU-BDOUBLE26", "AU-ATRIPLE53"] {
+            assert!(!drawn.safe(nodes, Policy::Lane, id), "{nodes} {id}");
+            assert!(!drawn.safe(nodes, Policy::Carriageway, id), "{nodes} {id}");
+        }
+    }
+}
+
+#[test]
+fn a_wide_kerb_lets_a_semitrailer_round() {
+    let rsc = |kerb_m| {
+        let drawn = Drawn::cross("highway=secondary width=7.5", false, kerb_m);
+        drawn.best("EBC", Policy::Carriageway, "EU-SEMI16.5").unwrap()
+    };
+    let (sharp, round) = (rsc(0.0), rsc(15.0));
+    assert!(!sharp.safe() && round.safe(), "{sharp:?} {round:?}");
+    assert!(round.rsc_m > sharp.rsc_m);
+}
+
+#[test]
+fn driving_on_the_left_mirrors_every_turn() {
+    let tags = "highway=secondary width=8";
+    let (right, left) = (Drawn::cross(tags, false, 8.0), Drawn::cross(tags, true, 8.0));
+    for (id, policy) in [("AGV-TUG4", Policy::Lane), ("EU-SEMI16.5", Policy::Carriageway)] {
+        for (nodes, mirrored) in [("EBC", "EBA"), ("EBA", "EBC"), ("ABE", "CBE")] {
+            let (a, b) = (right.best(nodes, policy, id).unwrap(), left.best(mirrored, policy, id).unwrap());
+            assert_eq!(a.safe(), b.safe(), "{nodes} {id}");
+            // Paths that are as good as each other may be tried in another order.
+            assert!((a.rsc_m - b.rsc_m).abs() < 0.25, "{nodes} {id}: {} {}", a.rsc_m, b.rsc_m);
+        }
+    }
+}
+
+#[test]
+fn back_and_straight_on_are_no_turns() {
+    let drawn = Drawn::cross("highway=residential", false, 3.0);
+    let facts = drawn.facts();
+    // Four arms, from each one to the left and one to the right.
+    assert_eq!(facts.len(), 8);
+    assert_eq!(facts.iter().filter(|t| (t.angle_deg - 90.0).abs() < 1.0).count(), 4);
+    assert_eq!(facts.iter().filter(|t| (t.angle_deg + 90.0).abs() < 1.0).count(), 4);
+}
+
+#[test]
+fn a_corridor_never_leaves_the_drivable_area() {
+    for (kerb_m, policy) in
+        [(0.0, Policy::Lane), (6.0, Policy::Lane), (9.0, Policy::Direction), (4.0, Policy::Carriageway)]
+    {
+        let map = AsciiMap::drawn(
+            30.0,
+            "
+            D       F
+             |     /
+        A----B----C
+             |    |
+             E    G
+        ",
+        )
+        .way("ABC", "highway=secondary width=8 lanes=2")
+        .way("DBE", "highway=tertiary width=6.5")
+        .way("FCG", "highway=residential width=5.5");
+        let drawn = Drawn::new(&map, false, kerb_m);
+        let mut looked_at = 0;
+        for turn in drawn.facts() {
+            let params = drawn.params();
+            let made = turn_corridors(&drawn.network, turn.movement, policy, &params, Reach::Short).unwrap();
+            for path in &made.paths {
+                let c = &path.corridor;
+                for k in 4 * path.turn.start..4 * path.turn.end.saturating_sub(1) {
+                    // Between stations too: half-widths are linear there.
+                    let (k, t) = (k / 4, (k % 4) as f64 / 4.0);
+                    let mix = |v: &[f64]| v[k] + t * (v[k + 1] - v[k]);
+                    let (sin, cos) = mix(&c.heading).sin_cos();
+                    for across in [mix(&c.left_m), -mix(&c.right_m)] {
+                        let (x, y) = (mix(&c.x) - across * sin, mix(&c.y) + across * cos);
+                        let out = Euclidean.distance(&geo::Point::new(x, y), &made.area);
+                        // The chord between stations half a metre apart cuts off millimetres.
+                        assert!(out < 0.02, "{policy:?} kerb {kerb_m}: path {} is {out:.3} m out at {k}", path.number);
+                        looked_at += 1;
+                    }
+                }
+            }
+        }
+        assert!(looked_at > 1000, "{looked_at}");
+    }
+}
+
+#[test]
+fn a_path_leaves_and_joins_the_strokes_own_centrelines() {
+    let drawn = Drawn::cross("highway=secondary width=9", false, 8.0);
+    let params = drawn.params();
+    for nodes in ["EBC", "EBA", "ABD"] {
+        let made = drawn.corridors(nodes, Policy::Carriageway, Reach::Long);
+        assert!(made.paths.len() > 20, "{}", made.paths.len());
+        for path in &made.paths {
+            for (joint, k) in [(path.approach, path.turn.start), (path.departure, path.turn.end - 1)] {
+                let line =
+                    StrokeLine::new(&drawn.network, joint.stroke, Policy::Carriageway, &params.corridor).unwrap();
+                let (c, stroke) = (&path.corridor, &line.made.corridor);
+                let off = (c.x[k] - stroke.x[joint.station]).hypot(c.y[k] - stroke.y[joint.station]);
+                // Stations of the turn lie half a metre apart.
+                assert!(off < 0.6, "{nodes} {}: {off}", path.number);
+                let across = (c.x[k] - stroke.x[joint.station]) * -stroke.heading[joint.station].sin()
+                    + (c.y[k] - stroke.y[joint.station]) * stroke.heading[joint.station].cos();
+                assert!(across.abs() < 0.01, "{across}");
+                let turned = (c.heading[k] - stroke.heading[joint.station]).sin().abs();
+                assert!(turned < 0.02, "{nodes} {}: {turned}", path.number);
+                // The station may lie half a metre inside the turn, and widths change by 0.4 m a metre.
+                assert!(c.left_m[k] <= stroke.left_m[joint.station] + 0.21);
+                assert!(c.right_m[k] <= stroke.right_m[joint.station] + 0.21);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_roundabout_is_entered_and_left_by_turns() {
+    let map = AsciiMap::drawn(
+        2.0,
+        "
+                              N
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              1
+                          8       5
+
+
+
+        W---------------4           2---------------E
+
+
+
+                          7       6
+                              3
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              |
+                              S
+        ",
+    )
+    .way("184736251", "highway=tertiary junction=roundabout width=7")
+    .way("N1", "highway=tertiary width=7")
+    .way("S3", "highway=tertiary width=7")
+    .way("W4", "highway=tertiary width=7")
+    .way("E2", "highway=tertiary width=7");
+    let drawn = Drawn::new(&map, false, 8.0);
+    let facts = drawn.facts();
+    let (entry, exit) = (drawn.turn("W43"), drawn.turn("43S"));
+    assert!(entry.angle_deg < 0.0 && exit.angle_deg < 0.0, "{} {}", entry.angle_deg, exit.angle_deg);
+    let turns = facts.iter().filter(|t| t.through.is_empty()).count();
+    assert_eq!((turns, facts.len()), (8, 8 + 12), "four ways in, four out, and over it from each to each other");
+    assert!(drawn.safe("W43", Policy::Carriageway, "AGV-TUG4"));
+}
+
+struct Silent;
+impl Reporter for Silent {
+    fn begin(&self, _: &'static str, _: u64) {}
+    fn advance(&self, _: u64) {}
+    fn end(&self) {}
+    fn note(&self, _: &str) {}
+}
+
+fn certified(
+    drawn: &Drawn,
+    ids: &[&str],
+    policy: Policy,
+    threads: usize,
+) -> (Vec<(usize, TurnCertificate)>, Vec<AccountRow>) {
+    let models: Vec<Model> = ids.iter().map(|id| Model::new(&catalogued(id)).unwrap()).collect();
+    let edges = vec![vec![Verdict::Safe; drawn.network.edges.len()]; models.len()];
+    let settings = Settings { policy, corridor: Params::default(), stet: Options::default(), turns: true };
+    let (params, turns) = (drawn.params(), drawn.facts());
+    let job = TurnJob {
+        network: &drawn.network,
+        turns: &turns,
+        models: &models,
+        edges: &edges,
+        settings: &settings,
+        params: &params,
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| {
+        let mut out = Vec::new();
+        let outcome = certify_turns(&job, &Silent, |vehicle, certificate| {
+            out.push((vehicle, certificate.clone()));
+            Ok::<(), ()>(())
+        });
+        (out, outcome.unwrap().rows())
+    })
+}
+
+#[test]
+fn a_restriction_forbids_whatever_fits() {
+    let tags = "highway=residential width=6";
+    let map = AsciiMap::drawn(60.0, CROSS).way("AB", tags).way("BC", tags).way("DB", tags).way("BE", tags).restriction(
+        &[4],
+        Via::Nodes(vec![id_of('B')]),
+        &[2],
+        "restriction=no_right_turn",
+    );
+    let drawn = Drawn::new(&map, false, 3.0);
+    let (certificates, _) = certified(&drawn, &["AGV-TUG4"], Policy::Lane, 1);
+    let turns = drawn.facts();
+    let of = |nodes: &str| {
+        let id = drawn.turn(nodes).id;
+        certificates.iter().find(|(_, c)| turns[c.turn as usize].id == id).unwrap().1.verdict
+    };
+    assert_eq!(of("EBC"), Verdict::Forbidden(ForbiddenReason::Restriction));
+    assert_eq!(of("EBA"), Verdict::Safe);
+}
+
+#[test]
+fn results_depend_neither_on_threads_nor_on_other_vehicles() {
+    let drawn = Drawn::cross("highway=secondary width=7.5", false, 10.0);
+    let ids = ["AGV-TUG4", "EU-SEMI16.5", "AU-BDOUBLE26"];
+    let (one, rows) = certified(&drawn, &ids, Policy::Carriageway, 1);
+    assert_eq!(one.len(), 8 * ids.len());
+    assert_eq!((one.clone(), rows.clone()), certified(&drawn, &ids, Policy::Carriageway, 3));
+    let (alone, _) = certified(&drawn, &ids[1..2], Policy::Carriageway, 2);
+    let among: Vec<TurnCertificate> = one.into_iter().filter(|(v, _)| *v == 1).map(|(_, c)| c).collect();
+    assert_eq!(alone.into_iter().map(|(_, c)| c).collect::<Vec<_>>(), among);
+    let count = |outcome: &str| -> u64 {
+        rows.iter().filter(|r| r.item == "turn_certificate" && r.outcome == outcome).map(|r| r.count).sum()
+    };
+    assert_eq!(count("read"), ["safe", "unsafe", "unknown", "forbidden"].into_iter().map(count).sum::<u64>());
+}
+
+/// The simulator with its adversary, on the corridors that turns make: tight, of changing width, swinging out.
+#[test]
+fn no_claim_of_a_turn_is_refuted() {
+    let (mut fought, mut draw) = (0, Draw(0x7u64));
+    for (width, kerb_m) in [("7", 6.0), ("8", 12.0), ("9", 15.0)] {
+        let drawn = Drawn::cross(&format!("highway=secondary width={width}"), false, kerb_m);
+        for (nodes, id) in [
+            ("EBC", "EU-SEMI16.5"),
+            ("EBA", "EU-SEMI16.5"),
+            ("EBC", "US-WB67"),
+            ("EBA", "US-WB40"),
+            ("DBC", "AU-BDOUBLE26"),
+        ] {
+            let made = drawn.corridors(nodes, Policy::Carriageway, Reach::of(&catalogued(id)).unwrap());
+            let other = made.paths.len() / 3;
+            fought += fight::none_is_refuted(&made.paths, id, other, &format!("{width} {nodes}"), &mut draw);
+        }
+    }
+    println!("{fought} turn corridors held");
+    assert!(fought >= 20, "{fought}");
+}

@@ -1,0 +1,148 @@
+//! The engines themselves, fed with exports of the drawn region: the same pairs of places without and with permits, and no way of
+//! theirs uses what is refused. Judged by tests/engines/permits.py, which knows nothing of how the exports are made.
+//!
+//! Each test skips with a message where its engine cannot be installed.
+
+use crate::support::program;
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+use program::{Place, demo};
+use serde_json::Value;
+
+const PAIRS: &str = "40";
+
+/// A python with the engines.
+fn python() -> Option<&'static Path> {
+    static PYTHON: OnceLock<Option<PathBuf>> = OnceLock::new();
+    let find = || {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let made = Command::new(root.join("tests/engines/venv.sh")).output().ok()?;
+        if !made.status.success() {
+            println!("skipped: {}", String::from_utf8_lossy(&made.stderr).trim());
+            return None;
+        }
+        Some(root.join(String::from_utf8(made.stdout).ok()?.trim()))
+    };
+    PYTHON.get_or_init(find).as_deref()
+}
+
+/// Runs a script of tests/engines; its last line.
+fn said(python: &Path, script: &str, arguments: impl Iterator<Item = PathBuf>) -> String {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/engines").join(script);
+    let done = Command::new(python).arg(script).args(arguments).output().unwrap();
+    let (out, err) = (String::from_utf8_lossy(&done.stdout), String::from_utf8_lossy(&done.stderr));
+    assert!(done.status.success(), "{out}\n{err}");
+    out.lines().last().unwrap_or_default().to_owned()
+}
+
+/// The same with the drawn region and files of the place; the JSON that it prints.
+fn run(python: &Path, script: &str, place: &Place, arguments: &[&str]) -> Value {
+    let argument = |name: &&str| if *name == PAIRS { PathBuf::from(name) } else { place.path(name) };
+    let line = said(python, script, std::iter::once(demo()).chain(arguments.iter().map(argument)));
+    serde_json::from_str(&line).unwrap_or_else(|e| panic!("{e}: {line}"))
+}
+
+fn export(place: &Place, target: &str, out: &str) {
+    let extract = if matches!(target, "csv" | "pgrouting") { "" } else { "--extract {demo}" };
+    place.netcert(&format!("export {target} --vehicle AU-SEMI19 --out {out} {extract} --quiet")).succeeds();
+}
+
+/// Plain it goes where it may not, with permits never; and it still gets somewhere.
+fn keeps_to_permits(answer: &Value, plain: &str, permits: &[&str]) {
+    assert_eq!(answer["edges_lost"], 0, "{answer}");
+    assert!(answer[plain]["refused_used"].as_u64().unwrap() > 0, "{answer}");
+    for name in permits {
+        assert_eq!(answer[name]["refused_used"], 0, "{answer}");
+        assert!(answer[name]["routed"].as_u64().unwrap() >= 10, "{answer}");
+    }
+}
+
+#[test]
+fn osrm_keeps_to_permits_by_tables_and_by_the_rewritten_extract() {
+    let Some(python) = python() else { return };
+    let place = Place::with_demo();
+    export(&place, "csv", "tables");
+    export(&place, "osrm", "osrm");
+    export(&place, "osm-pbf", "permits.osm.pbf");
+    std::fs::create_dir(place.path("work")).unwrap();
+    let answer = run(python, "run_osrm.py", &place, &["tables", "osrm", "permits.osm.pbf", "work", PAIRS]);
+    keeps_to_permits(&answer, "plain", &["csv", "pbf"]);
+    assert_eq!(answer["csv"]["examples"], Value::Array(Vec::new()), "{answer}");
+}
+
+#[test]
+fn refusals_of_every_shape_are_obeyed_and_said_once() {
+    let Some(python) = python() else { return };
+    let place = Place::empty();
+    let files = |names: &'static [&'static str]| names.iter().map(|name| place.path(name));
+    said(python, "run_shapes.py", std::iter::once("make".into()).chain(files(&["shapes.osm.pbf"])));
+    let vehicle = "--vehicle AGV-TUG4 --corridor carriageway --quiet";
+    place.netcert(&format!("ingest shapes.osm.pbf {vehicle}")).succeeds();
+    place.netcert(&format!("export csv {vehicle} --out csv")).succeeds();
+    for (target, out) in [("osrm", "osrm"), ("osm-pbf", "permits.osm.pbf"), ("valhalla", "valhalla")] {
+        place.netcert(&format!("export {target} {vehicle} --extract shapes.osm.pbf --out {out}")).succeeds();
+    }
+    std::fs::create_dir(place.path("work")).unwrap();
+    let arguments = files(&["shapes.osm.pbf", "csv", "osrm", "permits.osm.pbf", "valhalla", "work"]);
+    let line = said(python, "run_shapes.py", std::iter::once("run".into()).chain(arguments));
+    let answer: Value = serde_json::from_str(&line).unwrap();
+    assert_eq!(answer["edges_lost"], 0, "{answer}");
+    assert!(answer["refused_passages"].as_u64().unwrap() > 0, "{answer}");
+    assert!(answer["plain"]["refused_used"].as_u64().unwrap() > 0, "{answer}");
+    for name in ["csv", "pbf", "valhalla"] {
+        assert_eq!(answer[name]["refused_used"], 0, "{answer}");
+    }
+    // Engines that have the same refusals in full go the same number of ways, but where Valhalla's are shortened.
+    let routed = |name: &str| answer[name]["routed"].as_u64().unwrap();
+    assert!(routed("pbf") > 500 && routed("valhalla") > routed("pbf") - 20, "{answer}");
+    assert_eq!((&answer["lost"], &answer["repeated"]), (&0.into(), &0.into()), "{answer}");
+}
+
+#[test]
+fn valhalla_keeps_to_permits() {
+    let Some(python) = python() else { return };
+    let place = Place::with_demo();
+    export(&place, "csv", "tables");
+    export(&place, "valhalla", "valhalla");
+    std::fs::create_dir(place.path("work")).unwrap();
+    let answer = run(python, "run_valhalla.py", &place, &["tables", "valhalla", "work", PAIRS]);
+    keeps_to_permits(&answer, "plain", &["permits"]);
+}
+
+#[test]
+fn pgrouting_keeps_to_permits() {
+    let Some(python) = python() else { return };
+    let there = |path: &str| {
+        std::fs::read_dir("/usr/share/postgresql")
+            .into_iter()
+            .flatten()
+            .flatten()
+            .any(|version| version.path().join(path).exists())
+    };
+    if !there("extension/pgrouting.control") {
+        println!("skipped: no PostgreSQL with pgRouting (Debian: postgresql-15-pgrouting)");
+        return;
+    }
+    let place = Place::with_demo();
+    export(&place, "csv", "tables");
+    export(&place, "pgrouting", "pgrouting");
+    open_to_all(&place);
+    let answer = run(python, "run_pgrouting.py", &place, &["tables", "pgrouting", "work", PAIRS]);
+    keeps_to_permits(&answer, "plain", &["edges", "trsp", "steps"]);
+    for name in ["trsp", "steps"] {
+        assert_eq!(answer[name]["turns_refused_used"], 0, "{answer}");
+    }
+}
+
+/// PostgreSQL does not run as root, but as a user of its own.
+#[cfg(unix)]
+fn open_to_all(place: &Place) {
+    use std::os::unix::fs::PermissionsExt as _;
+    std::fs::set_permissions(place.path("."), std::fs::Permissions::from_mode(0o755)).unwrap();
+}
+
+#[cfg(not(unix))]
+fn open_to_all(_: &Place) {}

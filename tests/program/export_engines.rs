@@ -1,0 +1,178 @@
+//! What the exports for engines hold, read with this program's own reader: nothing lost, nothing opened that is refused.
+
+use crate::support::program;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::process::Command;
+
+use netcert::network::{Network, build};
+use netcert::osm::LonLat;
+use netcert::osm::facts::{Countries, Direction, Permission, Policy, cross_sections};
+use netcert::osm::pbf::read_extract;
+use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
+use netcert::store::{Database, QueryOptions, VerdictKind};
+use program::{Place, demo};
+
+/// Node pairs in driving order: of how many roads of the extract.
+fn segments(path: &Path) -> BTreeMap<(i64, i64), u32> {
+    let extract = read_extract(path, &|_| ()).unwrap();
+    let mut pairs = BTreeMap::new();
+    for way in &extract.ways {
+        for pair in extract.refs[way.refs.start as usize..way.refs.end as usize].windows(2) {
+            *pairs.entry((pair[0], pair[1])).or_default() += 1;
+        }
+    }
+    pairs
+}
+
+/// Every permitted edge by its places, in driving order.
+fn permitted(place: &Place) -> (Network, BTreeSet<u32>) {
+    let mut database = Database::open(&place.path("demo.gpkg")).unwrap();
+    let options = QueryOptions { verdict: Some(VerdictKind::Safe), ..QueryOptions::new("AU-SEMI19", Policy::Lane) };
+    let safe = database.query(&options).unwrap().map(|row| row.unwrap().edge).collect();
+    (database.load_network().unwrap(), safe)
+}
+
+#[test]
+fn osrm_tables_close_every_segment_but_those_of_permitted_edges() {
+    let place = Place::with_demo();
+    place.netcert("export osrm --vehicle AU-SEMI19 --extract {demo} --out osrm").succeeds();
+    let closed: BTreeSet<(i64, i64)> = String::from_utf8(place.read("osrm/segment-speeds.csv"))
+        .unwrap()
+        .lines()
+        .map(|line| {
+            let fields: Vec<&str> = line.split(',').collect();
+            assert_eq!((fields.len(), fields[2]), (3, "0"), "{line}");
+            (fields[0].parse().unwrap(), fields[1].parse().unwrap())
+        })
+        .collect();
+    let (network, safe) = permitted(&place);
+    let extract = read_extract(&demo(), &|_| ()).unwrap();
+    let place_of = |node: i64| extract.nodes.place(node).unwrap();
+    let mut open = BTreeSet::new();
+    for &edge in &safe {
+        let line: Vec<_> = network.positions(&network.edges[edge as usize]).collect();
+        open.extend(line.windows(2).map(|pair| (pair[0], pair[1])));
+    }
+    let mut found_open = 0;
+    for &(a, b) in segments(&demo()).keys() {
+        for (from, to) in [(a, b), (b, a)] {
+            let is_open = open.contains(&(place_of(from), place_of(to)));
+            assert_eq!(closed.contains(&(from, to)), !is_open, "segment {from} to {to}");
+            found_open += u32::from(is_open);
+        }
+    }
+    assert!(found_open > 500);
+    for line in String::from_utf8(place.read("osrm/turn-penalties.csv")).unwrap().lines() {
+        let fields: Vec<&str> = line.split(',').collect();
+        assert_eq!((fields.len(), fields[3]), (4, "3276.7"));
+        let node = |i: usize| fields[i].parse::<i64>().unwrap();
+        // A turn of which a part is closed needs no penalty, and would hide a fault.
+        assert!(!closed.contains(&(node(0), node(1))) && !closed.contains(&(node(1), node(2))), "{line}");
+    }
+}
+
+#[test]
+fn the_rewritten_extract_has_every_road_and_nothing_new_is_open() {
+    let place = Place::with_demo();
+    for out in ["one.osm.pbf", "two.osm.pbf"] {
+        place.netcert(&format!("export osm-pbf --vehicle AU-SEMI19 --extract {{demo}} --out {out}")).succeeds();
+    }
+    assert!(place.read("one.osm.pbf") == place.read("two.osm.pbf"), "the same input gives the same bytes");
+    let (before, after) = (segments(&demo()), segments(&place.path("one.osm.pbf")));
+    assert_eq!(before, after);
+
+    // netcert itself, reading it as any extract: what was refused is forbidden now by the tag.
+    let extract = read_extract(&place.path("one.osm.pbf"), &|_| ()).unwrap();
+    let restrictions = extract.restrictions.len();
+    let countries = Countries::load().unwrap();
+    let rules = countries.rules();
+    let (network, _) = build(extract, &|place| countries.place(place), &|way, place| cross_sections(way, place, rules));
+    let (old, safe) = permitted(&place);
+    let line = |network: &Network, edge: u32| network.positions(&network.edges[edge as usize]).collect::<Vec<_>>();
+    let mut open = BTreeSet::new();
+    for &edge in &safe {
+        open.extend(line(&old, edge).windows(2).map(|pair| (pair[0], pair[1])));
+    }
+    let mut tagged_open = 0;
+    for (edge, facts) in (0_u32..).zip(&network.edges) {
+        let hgv = facts.legal.hgv;
+        for pair in line(&network, edge).windows(2) {
+            let permitted = open.contains(&(pair[0], pair[1]));
+            let closed = hgv == Permission::No;
+            assert!(permitted || closed, "way {} {:?}", network.road(facts).way_id, facts.direction);
+            tagged_open += u32::from(permitted && !closed && facts.direction == Direction::Forward);
+        }
+    }
+    assert!(tagged_open > 300);
+    assert!(restrictions > 0);
+}
+
+#[test]
+fn osmium_finds_the_rewritten_extract_sorted_and_whole() {
+    if Command::new("osmium").arg("--version").output().is_err() {
+        println!("skipped: no osmium (Debian: osmium-tool)");
+        return;
+    }
+    let place = Place::with_demo();
+    place.netcert("export osm-pbf --vehicle AU-SEMI19 --extract {demo} --out out.osm.pbf").succeeds();
+    let osmium = |arguments: &[&str]| {
+        let out = Command::new("osmium").args(arguments).arg(place.path("out.osm.pbf")).output().unwrap();
+        assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+        format!("{}{}", String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr))
+    };
+    let info = osmium(&["fileinfo", "-e"]);
+    assert!(info.contains("Objects ordered (by type and id): yes"), "{info}");
+    assert!(info.contains("Multiple versions of same object: no"), "{info}");
+    assert!(info.contains("generator=netcert"), "{info}");
+    osmium(&["check-refs", "-r"]);
+}
+
+#[test]
+fn an_extract_is_asked_for_and_must_be_the_right_one() {
+    let place = Place::with_demo().file("other.osm.pbf", write_extract(&[], &[]));
+    place.netcert("export osrm --vehicle AU-SEMI19 --out osrm").fails().tells("--extract");
+    place
+        .netcert("export osm-pbf --vehicle AU-SEMI19 --out x.osm.pbf --extract other.osm.pbf")
+        .fails()
+        .tells("not the extract that demo.gpkg was made from")
+        .tells("demo.osm.pbf");
+    assert_eq!(place.files(), ["demo.gpkg", "other.osm.pbf"]);
+}
+
+#[test]
+fn an_extract_that_is_not_sorted_is_refused_with_the_way_out() {
+    let node = |id, lon_e7| NodeRecord { id, place: LonLat { lon_e7, lat_e7: 0 }, tags: Vec::new() };
+    let tags = vec![("highway".to_owned(), "primary".to_owned()), ("lanes".to_owned(), "2".to_owned())];
+    let way = |id, refs: [i64; 2]| WayRecord { id, refs: refs.to_vec(), tags: tags.clone() };
+    let extract = write_extract(&[node(1, 0), node(2, 10_000), node(3, 20_000)], &[way(8, [2, 3]), way(7, [1, 2])]);
+    let place = Place::empty().file("unsorted.osm.pbf", extract);
+    place.netcert("ingest unsorted.osm.pbf --vehicle AU-SEMI19").succeeds();
+    for target in ["osrm", "osm-pbf"] {
+        place
+            .netcert(&format!("export {target} --vehicle AU-SEMI19 --extract unsorted.osm.pbf --out out"))
+            .fails()
+            .tells("osmium sort");
+    }
+    assert_eq!(place.files(), ["unsorted.gpkg", "unsorted.osm.pbf"]);
+}
+
+#[test]
+fn pgrouting_tables_name_every_edge_and_the_script_beside_them() {
+    let place = Place::with_demo();
+    place.netcert("export pgrouting --vehicle AU-SEMI19 --out pg").succeeds();
+    let edges = String::from_utf8(place.read("pg/edge.copy")).unwrap();
+    let (network, safe) = permitted(&place);
+    assert_eq!(edges.lines().count(), network.edges.len());
+    for (i, line) in edges.lines().enumerate() {
+        let fields: Vec<&str> = line.split('\t').collect();
+        assert_eq!((fields.len(), fields[0]), (16, (i + 1).to_string().as_str()), "{line}");
+        assert_eq!(fields[5] == "-1", !safe.contains(&(i as u32)), "{line}");
+        assert_eq!(fields[5] == "-1", fields[10] != "\\N", "{line}");
+    }
+    let script = String::from_utf8(place.read("pg/load.sql")).unwrap();
+    for file in ["header.copy", "edge.copy", "restriction.copy", "step.copy"] {
+        assert!(script.contains(file) && place.path(&format!("pg/{file}")).exists());
+    }
+}

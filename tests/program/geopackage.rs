@@ -1,0 +1,583 @@
+//! The database end to end: what goes in comes out, other programs read it, killed runs leave the old file whole.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use netcert::account::AccountRow;
+use netcert::network::{Edge, Network};
+use netcert::osm::facts::{Policy, WidthSource};
+use netcert::store::{
+    Area, Bounds, Database, EdgeCertificate, EdgeMeasure, EdgeRow, QueryOptions, Run, StoreError, TurnCertificate,
+    TurnSet, VehicleRecord, VerdictKind, verdict_words,
+};
+use netcert::turns::{Kerbs, turn_facts};
+use netcert::verdict::{UnknownReason, Verdict};
+
+use crate::support::store_network;
+use store_network::{certificate, network};
+
+fn run() -> Run {
+    Run {
+        command: "ingest".into(),
+        input_name: "drawn.osm.pbf".into(),
+        input_blake3: Some("ab".repeat(32)),
+        replication_timestamp: None,
+        netcert_version: "0.1.0".into(),
+        started: "2026-11-21T08:00:00.000Z".into(),
+        finished: "2026-11-21T08:00:09.000Z".into(),
+        parameters: r#"{"corridor":"lane"}"#.into(),
+    }
+}
+
+fn vehicle(id: &str) -> VehicleRecord {
+    VehicleRecord { id: id.into(), name: format!("The {id}"), definition: format!(r#"{{"id":"{id}","units":[]}}"#) }
+}
+
+fn account() -> Vec<AccountRow> {
+    vec![AccountRow::new("read", "way", "read", "", 12), AccountRow::new("read", "way", "left_out", "no_width", 2)]
+}
+
+/// A database of `ways` roads and three sets; `order` turns the edges' numbers into another order of arrival.
+fn build(path: &Path, ways: u32, order: impl Fn(u32, u32) -> u32) -> Network {
+    let network = network(ways);
+    let edges = network.edges.len() as u32;
+    let mut writer = Database::create(path).unwrap();
+    let semi = writer.vehicle(vehicle("EU-SEMI16.5"));
+    let train = writer.vehicle(vehicle("eu_semi16_5")); // its layer's name is taken
+    for i in 0..edges {
+        for (vehicle, policy, seed) in [(train, Policy::Lane, 2), (semi, Policy::Lane, 1), (semi, Policy::Direction, 3)]
+        {
+            writer.certificate(vehicle, policy, &certificate(order(i, edges), seed)).unwrap();
+        }
+    }
+    writer.network(&network, &[]).unwrap();
+    writer.account(&account());
+    writer.finish(&run()).unwrap();
+    network
+}
+
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+/// All but the numbering of texts and positions, which are resolved.
+fn plain(network: &Network) -> String {
+    let text = |id: Option<_>| id.map(|id| network.strings.text(id));
+    let mut all = String::new();
+    for road in &network.roads {
+        let mut bare = road.clone();
+        (bare.name, bare.reference) = (None, None);
+        all += &format!("{bare:?} {:?} {:?}\n", text(road.name), text(road.reference));
+    }
+    for edge in &network.edges {
+        let bare = Edge { shape: 0..0, ..edge.clone() };
+        all += &format!("{bare:?} {:?}\n", network.positions(edge).collect::<Vec<_>>());
+    }
+    let Network { narrowings, strokes, stroke_edges, restrictions, restriction_edges, .. } = network;
+    all += &format!("{narrowings:?}\n{strokes:?}\n{stroke_edges:?}\n{restrictions:?}\n{restriction_edges:?}");
+    all
+}
+
+#[test]
+fn the_network_comes_back_as_it_was_written_and_makes_the_same_file_again() {
+    let folder = folder();
+    let (a, b) = (folder.path().join("a.gpkg"), folder.path().join("b.gpkg"));
+    let written = network(400);
+    let write = |path: &Path, network: &Network| {
+        let mut writer = Database::create(path).unwrap();
+        writer.network(network, &[]).unwrap();
+        writer.finish(&run()).unwrap();
+    };
+    write(&a, &written);
+    let read = Database::open(&a).unwrap().load_network().unwrap();
+    assert_eq!(plain(&read), plain(&written));
+    assert!(read.shapes.len() < written.shapes.len(), "the made-up network has positions that no edge uses");
+    write(&b, &read);
+    assert!(std::fs::read(&a).unwrap() == std::fs::read(&b).unwrap());
+}
+
+#[test]
+fn the_same_content_makes_the_same_file_whatever_the_order_of_certificates() {
+    let folder = folder();
+    let (a, b) = (folder.path().join("a.gpkg"), folder.path().join("b.gpkg"));
+    build(&a, 300, |i, _| i);
+    build(&b, 300, |i, edges| edges - 1 - i);
+    assert!(std::fs::read(&a).unwrap() == std::fs::read(&b).unwrap());
+}
+
+fn all(path: &Path, options: &QueryOptions) -> Vec<EdgeRow> {
+    Database::open(path).unwrap().query(options).unwrap().collect::<Result<_, _>>().unwrap()
+}
+
+#[test]
+fn a_query_gives_every_certificate_back_on_the_safe_side() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    let network = build(&path, 200, |i, _| i);
+    let rows = all(&path, &QueryOptions::new("EU-SEMI16.5", Policy::Lane));
+    assert_eq!(rows.len(), network.edges.len());
+    for (index, row) in (0..).zip(&rows) {
+        let (edge, wrote) = (&network.edges[index as usize], certificate(index, 1));
+        let road = network.road(edge);
+        assert_eq!((row.edge, row.edge_id, row.way_id, row.verdict), (index, edge.id, road.way_id, wrote.verdict));
+        assert_eq!((row.from_node, row.to_node, row.direction), (edge.from_node, edge.to_node, edge.direction));
+        assert!(row.line.iter().copied().eq(network.positions(edge)));
+        let lane = road.sections[edge.direction as usize].lane;
+        assert_eq!(row.width_source, lane.map(|strip| strip.source));
+        assert_eq!(row.rsc_m.is_some(), wrote.measured.is_some());
+        if let Some(m) = wrote.measured {
+            let down =
+                |stored: Option<f64>, value: f64, step| stored.unwrap() <= value && value - stored.unwrap() < step;
+            assert!(down(row.rsc_m, m.rsc_m, 1.001e-3) && down(row.rsc_published_m, m.rsc_published_m, 1.001e-3));
+            assert!(down(row.hinge_margin_deg, m.hinge_margin_rad.to_degrees(), 1.001e-2));
+            assert_eq!(row.shrink, Some(m.shrink));
+            assert_eq!((row.limiting_unit, row.limiting_side), (Some(m.limiting_unit as u16), Some(m.limiting_side)));
+        }
+    }
+}
+
+#[test]
+fn every_filter_gives_what_a_plain_search_through_all_rows_gives() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    build(&path, 400, |i, _| i);
+    let every = all(&path, &QueryOptions::new("EU-SEMI16.5", Policy::Lane));
+    let check = |change: &dyn Fn(&mut QueryOptions), keep: &dyn Fn(&EdgeRow) -> bool| {
+        let mut options = QueryOptions::new("EU-SEMI16.5", Policy::Lane);
+        change(&mut options);
+        let expected: Vec<&EdgeRow> = every.iter().filter(|row| keep(row)).collect();
+        assert!(!expected.is_empty() && expected.len() < every.len());
+        assert_eq!(all(&path, &options).iter().collect::<Vec<_>>(), expected, "{options:?}");
+    };
+    for kind in [VerdictKind::Safe, VerdictKind::Unsafe, VerdictKind::Forbidden, VerdictKind::Unknown] {
+        let word = netcert::store::Named::name(kind);
+        check(&|o| o.verdict = Some(kind), &|row| verdict_words(row.verdict).0 == word);
+    }
+    check(&|o| o.min_rsc_m = Some(0.3), &|row| row.rsc_m.is_some_and(|rsc| rsc >= 0.3));
+    check(&|o| o.min_width_source = Some(WidthSource::Tagged), &|row| row.width_source >= Some(WidthSource::Tagged));
+    check(&|o| o.edge_id = Some(every[7].edge_id), &|row| row.edge_id == every[7].edge_id);
+    // A corner cut off the box: the index alone would give too many.
+    let triangle = geo::Triangle::new((8.6, 49.4).into(), (8.75, 49.4).into(), (8.6, 49.55).into()).to_polygon();
+    let area = geo::MultiPolygon(vec![triangle]);
+    let touches = |row: &EdgeRow| {
+        use geo::Intersects;
+        area.intersects(&row.line.iter().map(|place| place.degrees()).collect::<geo::LineString>())
+    };
+    check(&|o| o.area = Some(Area::Polygons(area.clone())), &touches);
+    let bounds = Bounds { west: 8.62, south: 49.41, east: 8.7, north: 49.46 };
+    let inside = |row: &EdgeRow| {
+        row.line
+            .iter()
+            .map(|p| p.degrees())
+            .any(|(x, y)| (bounds.west..=bounds.east).contains(&x) && (bounds.south..=bounds.north).contains(&y))
+    };
+    check(&|o| o.area = Some(Area::Bounds(bounds)), &inside);
+}
+
+#[test]
+fn a_vehicle_that_is_not_certified_is_an_error_not_an_empty_answer() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    build(&path, 10, |i, _| i);
+    let mut database = Database::open(&path).unwrap();
+    let error = database.query(&QueryOptions::new("US-WB67", Policy::Lane)).err().unwrap().to_string();
+    assert!(error.contains("netcert certify --vehicle US-WB67 --corridor lane"), "{error}");
+}
+
+#[test]
+fn stats_add_up_to_the_network() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    let network = build(&path, 100, |i, _| i);
+    let stats = Database::open(&path).unwrap().stats().unwrap();
+    assert_eq!(stats.roads, 100);
+    let length: f64 = stats.network.iter().map(|row| row.2).sum();
+    assert_eq!(stats.network.iter().map(|row| row.1).sum::<u64>(), network.edges.len() as u64);
+    for policy in [Policy::Lane, Policy::Direction] {
+        let of = |row: &&netcert::store::StatsRow| row.vehicle_id == "EU-SEMI16.5" && row.policy == policy;
+        let rows: Vec<_> = stats.certificates.iter().filter(of).collect();
+        assert_eq!(rows.iter().map(|row| row.edges).sum::<u64>(), network.edges.len() as u64);
+        assert!((rows.iter().map(|row| row.length_m).sum::<f64>() - length).abs() < 1e-6 * length);
+    }
+}
+
+#[test]
+fn lengths_and_radii_are_the_corridors_where_there_is_one() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    let network = network(2);
+    let mut measures = vec![EdgeMeasure::default(); network.edges.len()];
+    measures[0] =
+        EdgeMeasure { length_m: Some(123.25), min_radius_m: Some(f64::INFINITY), centreline_deviation_m: Some(0.25) };
+    measures[1].min_radius_m = Some(80.5);
+    let mut writer = Database::create(&path).unwrap();
+    let semi = writer.vehicle(vehicle("semi"));
+    for edge in 0..network.edges.len() as u32 {
+        writer.certificate(semi, Policy::Lane, &certificate(edge, 0)).unwrap();
+    }
+    writer.network(&network, &measures).unwrap();
+    writer.finish(&run()).unwrap();
+    let rows = all(&path, &QueryOptions::new("semi", Policy::Lane));
+    assert_eq!((rows[0].length_m, rows[0].min_radius_m, rows[1].min_radius_m), (123.25, None, Some(80.5)));
+    // Three steps of 108.9 m east, of 24.2, 31.1 and 38.0 m north: 340.1 m.
+    assert!((340.0..340.3).contains(&rows[1].length_m), "{}", rows[1].length_m);
+}
+
+#[test]
+fn the_run_and_its_account_are_kept() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    build(&path, 10, |i, _| i);
+    assert_eq!(Database::open(&path).unwrap().runs().unwrap(), [(run(), account())]);
+}
+
+// --- sets of certificates -------------------------------------------------------------------------------------------
+
+#[test]
+fn a_set_is_replaced_whole_and_a_changed_vehicle_loses_its_old_ones() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    let edges = build(&path, 50, |i, _| i).edges.len() as u32;
+    let unknown = |edge| EdgeCertificate { edge, verdict: Verdict::Unknown(UnknownReason::Cut), measured: None };
+    let mut database = Database::open_to_change(&path).unwrap();
+    let sets = |database: &mut Database| -> Vec<String> {
+        database.certified().unwrap().into_iter().map(|set| set.layer).collect()
+    };
+    assert_eq!(sets(&mut database), ["permit_eu_semi16_5", "permit_eu_semi16_5_direction", "permit_eu_semi16_5_2"]);
+
+    database
+        .replace_certificates(
+            &vehicle("EU-SEMI16.5"),
+            Policy::Lane,
+            (0..edges).rev().map(unknown),
+            Vec::new(),
+            None,
+            &run(),
+            &[],
+        )
+        .unwrap();
+    assert_eq!(sets(&mut database).len(), 3);
+    let rows = all(&path, &QueryOptions::new("EU-SEMI16.5", Policy::Lane));
+    assert!(rows.len() == edges as usize && rows.iter().all(|row| row.verdict == Verdict::Unknown(UnknownReason::Cut)));
+
+    let mut longer = vehicle("EU-SEMI16.5");
+    longer.definition = r#"{"id":"EU-SEMI16.5","units":[1]}"#.into();
+    database
+        .replace_certificates(
+            &longer,
+            Policy::Carriageway,
+            (0..edges).map(unknown),
+            Vec::new(),
+            None,
+            &run(),
+            &account(),
+        )
+        .unwrap();
+    assert_eq!(sets(&mut database), ["permit_eu_semi16_5_carriageway", "permit_eu_semi16_5_2"]);
+    assert_eq!(database.runs().unwrap().len(), 3);
+    database.close().unwrap();
+    whole(&path);
+}
+
+#[test]
+fn a_set_with_a_gap_or_a_double_or_a_false_safe_is_refused_and_the_old_one_stands() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    let edges = build(&path, 50, |i, _| i).edges.len() as u32;
+    let before = std::fs::read(&path).unwrap();
+    let mut database = Database::open_to_change(&path).unwrap();
+    let mut refused = |edges: Vec<u32>, says: &str| {
+        let rows = edges.into_iter().map(|edge| certificate(edge, 5));
+        let error = database
+            .replace_certificates(&vehicle("x"), Policy::Lane, rows, Vec::new(), None, &run(), &[])
+            .unwrap_err();
+        assert!(error.to_string().contains(says), "{error}");
+    };
+    refused((0..edges).filter(|&edge| edge != 17).collect(), "edge 17, vehicle x: it has no certificate");
+    refused((0..edges).chain([9]).collect(), "edge 9, vehicle x: it has two certificates");
+    refused((0..=edges).collect(), "the network has no such edge");
+    let mut false_safe = certificate(0, 5);
+    false_safe.verdict = Verdict::Safe;
+    false_safe.measured.as_mut().unwrap().rsc_m = -0.0001;
+    let error = database
+        .replace_certificates(&vehicle("x"), Policy::Lane, [false_safe], Vec::new(), None, &run(), &[])
+        .unwrap_err();
+    assert!(matches!(error, StoreError::Unsound { edge: 0, .. }), "{error}");
+    database.close().unwrap();
+    assert!(std::fs::read(&path).unwrap() == before);
+}
+
+// --- wrong files ----------------------------------------------------------------------------------------------------
+
+#[test]
+fn wrong_files_are_told_apart_and_left_alone() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    assert!(matches!(Database::open(&at("none.gpkg")), Err(StoreError::Missing(_))));
+    std::fs::write(at("text.gpkg"), "not a database, though longer than the header of one ".repeat(9)).unwrap();
+    std::fs::write(at("empty.gpkg"), "").unwrap();
+    sqlite(&at("other.gpkg"), "CREATE TABLE t (a)");
+    sqlite(&at("foreign.gpkg"), "PRAGMA application_id = 1196444487; CREATE TABLE t (a)");
+    for (name, message) in [
+        ("text.gpkg", "not a GeoPackage"),
+        ("empty.gpkg", "not a GeoPackage"),
+        ("other.gpkg", "not one that netcert made"),
+        ("foreign.gpkg", "not one that netcert made"),
+    ] {
+        let before = std::fs::read(at(name)).unwrap();
+        let error = Database::open(&at(name)).err().unwrap().to_string();
+        assert!(error.contains(message) && error.contains(name), "{error}");
+        assert!(matches!(Database::create(&at(name)), Err(StoreError::InTheWay(_))), "{name}");
+        assert!(std::fs::read(at(name)).unwrap() == before);
+    }
+    build(&at("newer.gpkg"), 2, |i, _| i);
+    sqlite(&at("newer.gpkg"), "INSERT INTO _sqlx_migrations VALUES (99, 'later', '2030-01-01', 1, x'00', 0)");
+    assert!(matches!(Database::open(&at("newer.gpkg")), Err(StoreError::Newer { found: 99, .. })));
+    sqlite(&at("newer.gpkg"), "DELETE FROM _sqlx_migrations WHERE version > 3");
+    assert!(matches!(Database::open(&at("newer.gpkg")), Err(StoreError::Older { .. })));
+}
+
+#[test]
+fn a_damaged_database_is_an_error_never_a_panic() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    build(&path, 60, |i, _| i);
+    let good = std::fs::read(&path).unwrap();
+    let bad = folder.path().join("bad.gpkg");
+    let mut noticed = 0;
+    let cuts = (0..good.len()).step_by(good.len() / 40).map(|at| good[..at].to_vec());
+    let flips = (0..400).map(|i| {
+        let mut bytes = good.clone();
+        let at = (i * 2_654_435_761_usize) % good.len();
+        bytes[at] ^= 1 << (i % 8);
+        bytes
+    });
+    for bytes in cuts.chain(flips) {
+        std::fs::write(&bad, bytes).unwrap();
+        let read = || -> Result<(), StoreError> {
+            let mut database = Database::open(&bad)?;
+            database.load_network()?;
+            database.query(&QueryOptions::new("EU-SEMI16.5", Policy::Lane))?.collect::<Result<Vec<_>, _>>()?;
+            database.stats().map(|_| ())
+        };
+        noticed += usize::from(read().is_err());
+    }
+    assert!(noticed >= 40, "{noticed}");
+}
+
+// --- killed, crowded and full ---------------------------------------------------------------------------------------
+
+#[test]
+fn an_unfinished_writer_leaves_the_old_file_and_nothing_else() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    build(&path, 20, |i, _| i);
+    let before = std::fs::read(&path).unwrap();
+    let mut writer = Database::create(&path).unwrap();
+    writer.network(&network(500), &[]).unwrap();
+    assert!(matches!(Database::create(&path), Err(StoreError::Busy(_))), "a second run at the same time");
+    drop(writer);
+    assert!(std::fs::read(&path).unwrap() == before);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+}
+
+#[test]
+fn a_vehicle_with_missing_certificates_does_not_become_a_database() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    let mut writer = Database::create(&path).unwrap();
+    let semi = writer.vehicle(vehicle("semi"));
+    writer.network(&network(4), &[]).unwrap();
+    writer.certificate(semi, Policy::Lane, &certificate(0, 0)).unwrap();
+    let error = writer.finish(&run()).unwrap_err().to_string();
+    assert!(error.contains("edge 1, vehicle semi: it has no certificate"), "{error}");
+    assert!(!path.exists());
+}
+
+const CHILD: &str = "NETCERT_STORE_TEST_CHILD";
+
+/// Not a test of its own: the process that `killed_at_any_moment…` kills.
+#[test]
+fn child_that_is_killed() {
+    let Some(path) = std::env::var_os(CHILD).map(PathBuf::from) else { return };
+    if path.with_extension("replace").exists() {
+        let mut database = Database::open_to_change(&path).unwrap();
+        let network = database.load_network().unwrap();
+        let facts = turn_facts(&network, &Kerbs::default());
+        let unknown = |turn| {
+            let verdict = Verdict::Unknown(UnknownReason::Cut);
+            TurnCertificate { turn, verdict, measured: None, path: None, plan: None }
+        };
+        loop {
+            let rows = (0..network.edges.len() as u32).map(|edge| certificate(edge, 9));
+            let certificates = (0..facts.len() as u32).map(unknown).collect();
+            let turns = Some(TurnSet { network: &network, facts: &facts, certificates });
+            database
+                .replace_certificates(&vehicle("EU-SEMI16.5"), Policy::Lane, rows, Vec::new(), turns, &run(), &[])
+                .unwrap();
+        }
+    }
+    loop {
+        build(&path, 3000, |i, _| i);
+    }
+}
+
+#[test]
+fn killed_at_any_moment_the_file_is_whole() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    build(&path, 3000, |i, _| i);
+    for (round, millis) in [20, 60, 110, 170, 230, 310, 400, 700].into_iter().enumerate() {
+        if round % 2 == 1 {
+            std::fs::write(path.with_extension("replace"), "").unwrap();
+        } else {
+            let _ = std::fs::remove_file(path.with_extension("replace"));
+        }
+        let mut child = Command::new(std::env::current_exe().unwrap())
+            .args(["--exact", "child_that_is_killed"])
+            .env(CHILD, &path)
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(millis));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let rows = all(&path, &QueryOptions::new("EU-SEMI16.5", Policy::Lane));
+        let seed = if rows.iter().map(|row| row.verdict).eq((0..).map(|i| certificate(i, 1).verdict).take(rows.len())) {
+            1
+        } else {
+            9
+        };
+        assert!((0..).zip(&rows).all(|(i, row)| row.verdict == certificate(i, seed).verdict), "half old, half new");
+        let turned = Database::open(&path).unwrap().has_turns("EU-SEMI16.5", Policy::Lane).unwrap();
+        assert_eq!(turned, seed == 9, "new edges come with their turns");
+        whole(&path);
+    }
+    // What a killed run left is no obstacle to the next.
+    let _ = Database::create(&path).unwrap();
+    build(&path, 10, |i, _| i);
+    whole(&path);
+}
+
+#[test]
+fn a_full_disk_is_a_clear_error_and_the_old_file_stands() {
+    let folder = folder();
+    let mount = Command::new("mount").args(["-t", "tmpfs", "-o", "size=3m", "tmpfs"]).arg(folder.path()).output();
+    if !mount.is_ok_and(|out| out.status.success()) {
+        eprintln!("skipped: may not mount a small file system here");
+        return;
+    }
+    let path = folder.path().join("a.gpkg");
+    let result = std::panic::catch_unwind(|| {
+        build(&path, 200, |i, _| i);
+        let before = std::fs::read(&path).unwrap();
+        let error = (|| {
+            let mut writer = Database::create(&path)?;
+            writer.network(&network(20_000), &[])?;
+            writer.finish(&run())
+        })()
+        .unwrap_err();
+        assert!(matches!(error, StoreError::Full(_)), "{error}");
+        assert!(error.to_string().contains("a.gpkg") && error.to_string().contains("free some space"), "{error}");
+        assert!(std::fs::read(&path).unwrap() == before);
+        assert_eq!(std::fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    });
+    // The dropped connection's thread may take a moment to let go of its file.
+    let unmounted = (0..100).any(|_| {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+        Command::new("umount").arg(folder.path()).output().unwrap().status.success()
+    });
+    assert!(unmounted);
+    result.unwrap();
+}
+
+// --- other programs -------------------------------------------------------------------------------------------------
+
+fn sqlite(path: &Path, sql: &str) -> String {
+    let out = Command::new("sqlite3")
+        .arg(path)
+        .arg(sql)
+        .output()
+        .expect("the sqlite3 program, which building PROJ needs too");
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    String::from_utf8(out.stdout).unwrap()
+}
+
+/// SQLite's own checks.
+fn whole(path: &Path) {
+    assert_eq!(sqlite(path, "PRAGMA integrity_check; PRAGMA foreign_key_check;"), "ok\n");
+    assert_eq!(sqlite(path, "SELECT rtreecheck('rtree_edge_geom')"), "ok\n");
+}
+
+#[test]
+fn sqlite_finds_it_whole_and_reads_the_views() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    build(&path, 300, |i, _| i);
+    whole(&path);
+    assert_eq!(sqlite(&path, "PRAGMA application_id; PRAGMA user_version"), "1196444487\n10300\n");
+    let columns = "SELECT group_concat(name, ' ') FROM pragma_table_info('certificate')";
+    assert!(sqlite(&path, columns).starts_with(
+        "edge_id vehicle_id corridor rsc_m rsc_published_m hinge_margin_deg shrink limiting_s_m limiting_unit \
+         limiting_side verdict reason"
+    ));
+    let safe = "SELECT count(*) FROM certificate WHERE verdict = 'safe'";
+    assert_eq!(sqlite(&path, safe), sqlite(&path, "SELECT count(*) FROM permit"));
+    assert_eq!(sqlite(&path, "SELECT count(*) FROM certificate WHERE rsc_m < 0 AND verdict = 'safe'"), "0\n");
+}
+
+#[test]
+fn a_certificate_takes_at_most_32_bytes() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    build(&path, 15_000, |i, _| i);
+    let sql =
+        "SELECT sum(pgsize) FROM dbstat WHERE name = 'certificate_compact'; SELECT count(*) FROM certificate_compact";
+    let numbers: Vec<f64> = sqlite(&path, sql).lines().map(|line| line.parse().unwrap()).collect();
+    let bytes = numbers[0] / numbers[1];
+    println!("{bytes:.1} bytes a certificate ({} certificates)", numbers[1]);
+    assert!(bytes <= 32.0, "{bytes}");
+}
+
+#[test]
+fn gdal_shows_the_layers() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    let network = build(&path, 300, |i, _| i);
+    let ogrinfo = |arguments: &[&str]| {
+        let out = Command::new("ogrinfo").args(["-ro"]).arg(&path).args(arguments).output().unwrap();
+        assert!(out.status.success() && out.stderr.is_empty(), "{}", String::from_utf8_lossy(&out.stderr));
+        String::from_utf8(out.stdout).unwrap()
+    };
+    if Command::new("ogrinfo").arg("--version").output().is_err() {
+        eprintln!("skipped: ogrinfo is not installed");
+        return;
+    }
+    let count = |text: &str| -> usize {
+        let line = text.lines().find(|line| line.starts_with("Feature Count")).unwrap();
+        line.rsplit(' ').next().unwrap().parse().unwrap()
+    };
+    let edge = ogrinfo(&["-so", "edge"]);
+    assert_eq!(count(&edge), network.edges.len());
+    assert!(
+        edge.contains("Geometry: Line String") && edge.contains("WGS 84") && edge.contains("FID Column = fid"),
+        "{edge}"
+    );
+    let permit = ogrinfo(&["-so", "permit_eu_semi16_5"]);
+    let safe = all(
+        &path,
+        &QueryOptions { verdict: Some(VerdictKind::Safe), ..QueryOptions::new("EU-SEMI16.5", Policy::Lane) },
+    );
+    assert_eq!(count(&permit), safe.len());
+    for column in ["rsc_m: Real", "shrink: Real", "length_m: Real", "width_source: String", "edge_id: Integer64"] {
+        assert!(permit.contains(column), "{column} in {permit}");
+    }
+    let spat = ["-so", "-spat", "8.62", "49.41", "8.7", "49.46"];
+    for (layer, verdict) in [("edge", None), ("permit_eu_semi16_5", Some(VerdictKind::Safe))] {
+        let area = Some(Area::Bounds(Bounds { west: 8.62, south: 49.41, east: 8.7, north: 49.46 }));
+        let ours = all(&path, &QueryOptions { area, verdict, ..QueryOptions::new("EU-SEMI16.5", Policy::Lane) });
+        assert_eq!(count(&ogrinfo(&[&spat[..], &[layer]].concat())), ours.len(), "{layer}");
+    }
+    let indexed = ogrinfo(&["-sql", "SELECT HasSpatialIndex('edge', 'geom')"]);
+    assert!(indexed.contains("= 1"), "{indexed}");
+}

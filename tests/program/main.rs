@@ -1,0 +1,26 @@
+//! The built program and what it leaves behind: verbs as a user meets them, the database, exports and the engines that read
+//! them, the server, and what `verify` refutes.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
+
+mod cli;
+mod engines;
+mod explain;
+mod export;
+mod export_engines;
+mod export_formats;
+mod geopackage;
+mod manoeuvres;
+#[path = "../oracle/mod.rs"]
+mod oracle;
+mod paper;
+mod route_cli;
+mod serve;
+#[path = "../support/mod.rs"]
+mod support;
+mod turns_program;
+mod vehicle_pictures;
+mod verify_database;
+mod verify_independence;
+mod verify_mutations;
+mod verify_routes;
+mod verify_turns;

@@ -1,0 +1,52 @@
+//! `netcert route` and `netcert reach` as a user meets them: on the drawn region, with the certificate file that `verify`
+//! accepts, and what is said where there is no way.
+
+use crate::support::program;
+
+use program::Place;
+
+/// Along the Great Inland Highway, straight on.
+const ALONG: &str = "--from 126.050430,-30.217983 --to 126.049200,-30.213800";
+/// From one road over two corners into another.
+const OVER_CORNERS: &str = "--from 126.005973,-30.208248 --to 126.046205,-30.176383";
+
+#[test]
+fn routes_are_told_written_verified_or_explained() {
+    let place = Place::empty();
+    place.netcert("ingest {demo} --db demo.gpkg --vehicle AU-ATRIPLE53 --corridor carriageway").succeeds();
+
+    let line = format!("route --vehicle AU-ATRIPLE53 {ALONG} --out way.json --svg way.svg");
+    place.netcert(&line).succeeds().shows("a certified route, 0.5 km").shows("to spare where it is tightest");
+    place.netcert("verify way.json").succeeds();
+    assert!(String::from_utf8(place.read("way.svg")).unwrap().contains("a certified route of 0.5 km"));
+
+    let geojson = place.netcert(&format!("route --vehicle AU-ATRIPLE53 {ALONG} --format geojson")).succeeds().json();
+    let features = geojson["features"].as_array().unwrap();
+    assert_eq!(features[0]["properties"]["kind"], "route");
+    assert!(features.len() > 1 && features[1..].iter().all(|f| f["properties"]["rsc_m"].is_number()));
+
+    place
+        .netcert(&format!("route --vehicle AU-ATRIPLE53 {OVER_CORNERS}"))
+        .succeeds()
+        .shows("no certified route")
+        .shows("What would have to become safe: ")
+        .shows("The cheapest set")
+        .shows("B42 Stock Route Road into A87 Great Inland Highway");
+    place
+        .netcert("route --vehicle AU-ATRIPLE53 --from 126.3,-30.9 --to 126.05,-30.21")
+        .fails()
+        .tells("the nearest road that may be used is");
+    place
+        .netcert(&format!("route --vehicle AU-SEMI19 {ALONG}"))
+        .succeeds()
+        .tells("AU-SEMI19 is not certified in demo.gpkg under the carriageway policy yet: doing it now")
+        .shows("AU-SEMI19 Semi-trailer, 19 m: a certified route");
+    place.netcert(&format!("reach --vehicle NOBODY {}", ALONG.split(" --to").next().unwrap())).fails().tells("NOBODY");
+    place.netcert("route --vehicle AU-ATRIPLE53 --from 126 --to 126,-30").ends_as_misuse();
+
+    let reach = format!("reach --vehicle AU-ATRIPLE53 {}", ALONG.split(" --to").next().unwrap());
+    place.netcert(&reach).succeeds().shows("there and back");
+    let geojson = place.netcert(&format!("{reach} --format geojson")).succeeds().json();
+    assert!(geojson["features"].as_array().unwrap().iter().any(|f| f["properties"]["reach"] == "there"));
+    place.netcert(&format!("{reach} --what-if 1")).fails().tells("no edge 1");
+}

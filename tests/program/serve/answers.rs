@@ -1,0 +1,173 @@
+//! What the server says is what the other verbs say of the same database.
+
+use netcert::osm::facts::Policy;
+use netcert::store::{Database, EdgeRow, QueryOptions, Stats, verdict_words};
+use netcert::verdict::Verdict;
+use serde_json::{Value, json};
+
+use super::http::Server;
+use crate::support::xml;
+
+const VEHICLE: &str = "AU-SEMI19";
+
+fn database(server: &Server) -> Database {
+    Database::open(&server.place.path("demo.gpkg")).unwrap()
+}
+
+fn rows(server: &Server) -> Vec<EdgeRow> {
+    let mut database = database(server);
+    database.query(&QueryOptions::new(VEHICLE, Policy::Lane)).unwrap().map(Result::unwrap).collect()
+}
+
+#[test]
+fn the_region_is_the_one_that_was_ingested() {
+    let server = Server::demo();
+    let region = server.json("/api/region");
+    assert_eq!(region["name"], "demo");
+    assert_eq!(region["policies"], json!(["lane"]));
+    assert_eq!(region["default_policy"], "lane");
+    let mut vehicles: Vec<String> = serde_json::from_value(region["vehicles_certified"].clone()).unwrap();
+    vehicles.sort();
+    assert_eq!(vehicles, ["AU-ATRIPLE53", "AU-SEMI19"]);
+    assert!(region["scope"].as_str().unwrap().contains("no permit"));
+    assert!(region["attribution"].as_str().unwrap().contains("OpenStreetMap"));
+    assert_eq!(region["base_map"], Value::Null);
+    let bbox: Vec<f64> = serde_json::from_value(region["bbox"].clone()).unwrap();
+    for row in rows(&server) {
+        for (lon, lat) in row.line.iter().map(|position| position.degrees()) {
+            assert!(bbox[0] <= lon && lon <= bbox[2] && bbox[1] <= lat && lat <= bbox[3]);
+        }
+    }
+    assert_eq!(server.get("/healthz").status, 200);
+    let page = server.get("/");
+    assert_eq!((page.status, page.header("content-type")), (200, Some("text/html; charset=utf-8")));
+}
+
+#[test]
+fn vehicles_are_the_databases_and_drawn() {
+    let server = Server::demo();
+    let vehicles = server.json("/api/vehicles");
+    for vehicle in vehicles.as_array().unwrap() {
+        let id = vehicle["id"].as_str().unwrap();
+        let shown = server.place.netcert(&format!("vehicles show {id} --format json")).succeeds().json();
+        assert_eq!(vehicle["length_m"], shown["length_m"]);
+        assert_eq!(vehicle["certified"], json!(["lane"]));
+        let units = vehicle["units"].as_array().unwrap();
+        for (unit, shown) in units.iter().zip(shown["unit"].as_array().unwrap()) {
+            for name in ["name", "coupling_to_axle_m", "hitch_offset_m", "width_m", "max_articulation_deg"] {
+                assert_eq!(unit[name], shown[name], "{id} {name}");
+            }
+        }
+        let drawing = server.get(&format!("/api/vehicles/{id}/drawing.svg"));
+        assert_eq!((drawing.status, drawing.header("content-type")), (200, Some("image/svg+xml")));
+        xml::well_formed(&drawing.text());
+    }
+}
+
+#[test]
+fn an_edge_is_its_row() {
+    let server = Server::demo();
+    for row in rows(&server).iter().step_by(17) {
+        let edge = server.json(&format!("/api/edges/{}?vehicle={VEHICLE}&policy=lane", row.edge_id));
+        assert_eq!(edge["edge_id"], row.edge_id.to_string());
+        assert_eq!(edge["way_id"], row.way_id.to_string());
+        assert_eq!(edge["highway"], json!(row.highway));
+        assert_eq!(edge["length_m"], json!(row.length_m));
+        assert_eq!(edge["widths"]["lane"]["width_m"], json!(row.width_m));
+        let (verdict, reason) = verdict_words(row.verdict);
+        let certificate = &edge["certificate"];
+        assert_eq!(certificate["verdict"], verdict);
+        assert_eq!(certificate["reason"].as_str().unwrap_or(""), reason);
+        assert_eq!(certificate["rsc_m"], json!(row.rsc_m));
+        assert_eq!(edge["certificates"].as_array().unwrap().len(), 2, "one a vehicle");
+        assert_eq!(edge["geometry"]["coordinates"].as_array().unwrap().len(), row.line.len());
+        for turn in edge["turns"].as_array().unwrap() {
+            let own = if turn["leads"] == "out" { "from_edge" } else { "to_edge" };
+            assert_eq!(turn[own], edge["edge_id"]);
+        }
+    }
+}
+
+#[test]
+fn an_explanation_is_that_of_the_verb() {
+    let server = Server::demo();
+    let rows = rows(&server);
+    let wanted = [
+        rows.iter().find(|row| row.verdict == Verdict::Safe).unwrap(),
+        rows.iter().find(|row| verdict_words(row.verdict).0 == "unsafe").unwrap(),
+        rows.iter().find(|row| verdict_words(row.verdict).0 == "forbidden").unwrap(),
+    ];
+    for row in wanted {
+        let id = row.edge_id;
+        let line = format!("explain {id} --db demo.gpkg --vehicle {VEHICLE} --format json");
+        let said = server.place.netcert(&line).succeeds().json();
+        let answer = server.json(&format!("/api/explain/{id}?vehicle={VEHICLE}"));
+        for (name, value) in said.as_object().unwrap() {
+            assert_eq!(&answer[name], value, "{id} {name}");
+        }
+        assert_eq!((answer["kind"].as_str(), answer["policy"].as_str()), (Some("edge"), Some("lane")));
+        let target = format!("/api/explain/{id}/picture.svg?vehicle={VEHICLE}");
+        if answer["picture"] == json!(true) {
+            xml::well_formed(&server.get(&target).text());
+            assert_eq!(answer["at"].as_array().unwrap().len(), 2);
+        } else {
+            server.problem(&target, 404);
+        }
+    }
+    let turns = |row: &EdgeRow| server.json(&format!("/api/edges/{}?vehicle={VEHICLE}", row.edge_id))["turns"].clone();
+    let turn = rows.iter().map(turns).find_map(|turns| turns.get(0).cloned()).unwrap();
+    let id = turn["turn_id"].as_str().unwrap();
+    let answer = server.json(&format!("/api/explain/{id}?vehicle={VEHICLE}"));
+    assert_eq!((answer["kind"].as_str(), answer["turn_id"].as_str()), (Some("turn"), Some(id)));
+    assert_eq!(answer["from_edge"], turn["from_edge"]);
+}
+
+#[test]
+fn statistics_are_those_of_the_verb() {
+    let server = Server::demo();
+    let stats = server.json("/api/stats?policy=lane");
+    let Stats { network, certificates, turns, .. } = database(&server).stats().unwrap();
+    let sum =
+        |list: &Value, name: &str| list.as_array().unwrap().iter().map(|row| row[name].as_f64().unwrap()).sum::<f64>();
+    let km: f64 = network.iter().map(|class| class.2).sum::<f64>() / 1000.0;
+    assert!((sum(&stats["network"], "km") - km).abs() < 0.02);
+    assert_eq!(stats["certificates"].as_array().unwrap().len(), certificates.len());
+    assert!((sum(&stats["certificates"], "km") - 2.0 * km).abs() < 0.1, "two vehicles");
+    assert_eq!(sum(&stats["turns"], "turns") as u64, turns.iter().map(|row| row.turns).sum::<u64>());
+    // The histogram counts every edge that has a number, in the bin that does not flatter.
+    let rows = rows(&server);
+    let numbered = rows.iter().filter(|row| row.rsc_m.is_some()).count() as u64;
+    let bins: Vec<&Value> =
+        stats["rsc_histogram"].as_array().unwrap().iter().filter(|bin| bin["vehicle"] == VEHICLE).collect();
+    assert_eq!(bins.iter().map(|bin| bin["edges"].as_u64().unwrap()).sum::<u64>(), numbered);
+    for row in &rows {
+        let Some(rsc_m) = row.rsc_m else { continue };
+        let mm = (rsc_m * 1000.0).round() as i64;
+        let from = mm.div_euclid(100) * 100;
+        let there = bins.iter().any(|bin| {
+            (bin["rsc_from_m"].as_f64().unwrap() * 1000.0).round() as i64 == from
+                && bin["verdict"] == verdict_words(row.verdict).0
+        });
+        assert!(there, "{rsc_m}");
+    }
+}
+
+#[test]
+fn a_search_finds_edges_ways_and_names() {
+    let server = Server::demo();
+    let rows = rows(&server);
+    let row = rows.iter().find(|row| row.name.is_some()).unwrap();
+    let edge = &server.json(&format!("/api/search?q={}", row.edge_id))[0];
+    assert_eq!((edge["kind"].as_str(), edge["id"].as_str()), (Some("edge"), Some(row.edge_id.to_string().as_str())));
+    let way = &server.json(&format!("/api/search?q={}", row.way_id))[0];
+    assert_eq!((way["kind"].as_str(), way["id"].as_str()), (Some("way"), Some(row.way_id.to_string().as_str())));
+    let name = row.name.clone().unwrap();
+    let asked = name.to_uppercase().replace(' ', "%20");
+    let found = server.json(&format!("/api/search?q={asked}"));
+    assert_eq!(found[0]["name"], json!(name), "{found}");
+    let bbox: Vec<f64> = serde_json::from_value(found[0]["bbox"].clone()).unwrap();
+    let (lon, lat) = (found[0]["lon"].as_f64().unwrap(), found[0]["lat"].as_f64().unwrap());
+    assert!(bbox[0] <= lon && lon <= bbox[2] && bbox[1] <= lat && lat <= bbox[3]);
+    assert_eq!(server.json("/api/search?q=a&limit=2").as_array().unwrap().len(), 2);
+    assert_eq!(server.json("/api/search?q=no%20such%20road").as_array().unwrap().len(), 0);
+}

@@ -1,0 +1,50 @@
+//! A database is confirmed as it was made, and every column of its certificates, changed in the unsafe direction with plain SQL, is
+//! refuted.
+
+use crate::support::program;
+
+use program::Place;
+
+const BOX: &str = "--vehicle AU-SEMI19 --sample 60";
+
+#[test]
+fn every_column_changed_in_the_unsafe_direction_is_refuted() {
+    let honest = Place::with_demo().netcert(&format!("verify --db demo.gpkg {BOX} --input {{demo}}")).succeeds();
+    println!("{}", honest.out());
+    let safe = "verdict_no = 0";
+    let changes = [
+        format!("UPDATE certificate_compact SET rsc_mm = rsc_mm + 60 WHERE {safe}"),
+        format!("UPDATE certificate_compact SET hinge_margin_cdeg = hinge_margin_cdeg + 500 WHERE {safe}"),
+        "UPDATE certificate_compact SET rsc_published_mm = rsc_published_mm + 9000".to_owned(),
+        "UPDATE certificate_compact SET verdict_no = 0 WHERE verdict_no BETWEEN 10 AND 19".to_owned(),
+        "UPDATE certificate_compact SET verdict_no = 0 WHERE verdict_no BETWEEN 20 AND 29".to_owned(),
+        "UPDATE certificate_compact SET verdict_no = 0, rsc_mm = 100, hinge_margin_cdeg = 100, limiting_at = 0 \
+         WHERE verdict_no BETWEEN 30 AND 39"
+            .to_owned(),
+        "UPDATE certificate_compact SET shrink_milli = NULL WHERE shrink_milli < 700".to_owned(),
+        format!("UPDATE certificate_compact SET limiting_at = 40 WHERE {safe}"),
+        format!("UPDATE certificate_compact SET limiting_s_dm = limiting_s_dm + 200000 WHERE {safe}"),
+        "DELETE FROM plan".to_owned(),
+        "UPDATE plan SET coefficients = x'0000'".to_owned(),
+        "UPDATE section SET lane_left_m = lane_left_m - 0.3".to_owned(),
+        "UPDATE edge SET max_width_m = 2.0".to_owned(),
+        "UPDATE vehicle SET definition = replace(definition, '\"width_m\":2.5', '\"width_m\":2.4')".to_owned(),
+        "UPDATE account SET count = count + 1 WHERE account_no = (SELECT min(account_no) FROM account)".to_owned(),
+        "UPDATE run SET input_blake3 = '0'".to_owned(),
+    ];
+    let mut survivors = Vec::new();
+    for sql in &changes {
+        let place = Place::with_demo();
+        // The spatial triggers call functions that plain SQLite lacks; certificates do not rest on them.
+        for trigger in ["insert", "update1", "update2", "update3", "update4", "delete"] {
+            place.sql(&format!("DROP TRIGGER rtree_edge_geom_{trigger}"));
+        }
+        assert!(place.sql(sql) > 0, "{sql}: nothing to change");
+        let answer = place.command(&format!("verify --db demo.gpkg {BOX} --input {{demo}}")).output().unwrap();
+        if answer.status.success() {
+            survivors.push(sql);
+        }
+    }
+    println!("database mutation score: {} of {}", changes.len() - survivors.len(), changes.len());
+    assert!(survivors.is_empty(), "{survivors:#?}");
+}

@@ -1,0 +1,58 @@
+//! The turns of a database are confirmed as they were made, and every column of theirs, changed in the unsafe direction with plain SQL,
+//! is refuted.
+
+use crate::support::program;
+
+use program::Place;
+
+/// Beside turns that are safe, these are too narrow for it.
+const VERIFY: &str = "verify --db demo.gpkg --vehicle AU-SEMI19 --sample 60";
+
+#[test]
+fn every_column_of_turns_changed_in_the_unsafe_direction_is_refuted() {
+    let made = Place::empty();
+    made.netcert("ingest {demo} --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway").succeeds();
+    let told = made.netcert(VERIFY).succeeds().out();
+    println!("{told}");
+    let safe = "verdict_no = 0";
+    let changes = [
+        format!("UPDATE turn_certificate_compact SET rsc_mm = rsc_mm + 60 WHERE {safe}"),
+        format!("UPDATE turn_certificate_compact SET hinge_margin_cdeg = hinge_margin_cdeg + 500 WHERE {safe}"),
+        "UPDATE turn_certificate_compact SET rsc_published_mm = rsc_published_mm + 90000".to_owned(),
+        "UPDATE turn_certificate_compact SET verdict_no = 0 WHERE verdict_no BETWEEN 10 AND 39".to_owned(),
+        "UPDATE turn_certificate_compact SET verdict_no = 0, rsc_mm = 100, hinge_margin_cdeg = 100, limiting_at = 0 \
+         WHERE verdict_no BETWEEN 10 AND 39"
+            .to_owned(),
+        format!("UPDATE turn_certificate_compact SET verdict_no = 10 WHERE {safe}"),
+        format!("UPDATE turn_certificate_compact SET limiting_at = 40 WHERE {safe}"),
+        format!("UPDATE turn_certificate_compact SET limiting_s_dm = limiting_s_dm + 200000 WHERE {safe}"),
+        format!("UPDATE turn_certificate_compact SET path_no = 250 WHERE {safe}"),
+        "UPDATE turn SET kerb_radius_m = kerb_radius_m + 4.0".to_owned(),
+        "UPDATE turn SET restriction = 'no_left_turn'".to_owned(),
+        "DELETE FROM turn_plan".to_owned(),
+        "UPDATE turn_plan SET coefficients = x'0000'".to_owned(),
+    ];
+    let bytes = made.read("demo.gpkg");
+    let mut survivors = Vec::new();
+    for sql in &changes {
+        let place = Place::empty().file("demo.gpkg", &bytes);
+        assert!(place.sql(sql) > 0, "{sql}: nothing to change");
+        if place.command(VERIFY).output().unwrap().status.success() {
+            survivors.push(sql);
+        }
+    }
+    println!("mutation score of turns: {} of {}", changes.len() - survivors.len(), changes.len());
+    assert!(survivors.is_empty(), "{survivors:#?}");
+}
+
+/// Where radii are a few metres, stations must lie close to follow from each other, and the checker must ask its adjoint early.
+#[test]
+fn turns_of_a_cart_train_in_its_lane_are_confirmed() {
+    let made = Place::empty();
+    made.netcert("ingest {demo} --db demo.gpkg --vehicle AGV-TUG4 --corridor lane").succeeds();
+    let told = made.netcert("verify --db demo.gpkg --vehicle AGV-TUG4 --sample 100").out();
+    let turns = told.lines().find(|line| line.contains("turns") && line.contains("safe")).unwrap();
+    let counts: Vec<&str> = turns.split_whitespace().rev().take(3).collect();
+    assert_eq!((counts[0], counts[1]), ("0", "0"), "{told}");
+    assert!(counts[2].parse::<u32>().unwrap() > 50, "{told}");
+}
