@@ -1,12 +1,10 @@
-//! The migrations are embedded in the program: a new or changed file must rebuild it. So is the page: every file of
-//! `web/dist` goes into a table that `src/serve/assets.rs` includes.
+//! The page is embedded in the program: every file of `web/dist` goes into a table that `src/serve/assets.rs` includes.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 fn main() {
-    println!("cargo:rerun-if-changed=migrations");
     println!("cargo:rerun-if-changed=web/dist");
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default()).join("web/dist");
     let mut addresses = Vec::new();

@@ -19,7 +19,8 @@ use super::packed::{EdgeCertificate, Packed};
 use super::part::with_suffix;
 use super::plans::{self, StoredPlan};
 use super::records::{self, Run, VehicleRecord};
-use super::session::{MIGRATIONS, Session};
+use super::schema::MIGRATIONS;
+use super::session::Session;
 use super::sets::{self, Set};
 use super::turns::{self, PackedSet, TurnSet};
 

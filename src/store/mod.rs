@@ -22,6 +22,7 @@ mod query;
 mod records;
 mod restrictions;
 mod roads;
+mod schema;
 mod session;
 mod sets;
 mod sides;

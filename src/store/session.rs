@@ -4,19 +4,11 @@
 
 use std::path::{Path, PathBuf};
 
-use sqlx::migrate::Migrator;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
 use sqlx::{ConnectOptions, Connection};
 use tokio::runtime::Runtime;
 
 use super::error::StoreError;
-
-/// The schema, embedded. The last one makes the triggers of the spatial index: they call functions that only spatial
-/// programs have (`ST_IsEmpty`), so nothing can be inserted into `edge` after it.
-pub(super) static MIGRATIONS: Migrator = sqlx::migrate!("./migrations");
-
-/// The last migration before the bulk of the data.
-pub(super) const BEFORE_DATA: i64 = 3;
 
 /// A connection, its runtime, and the name of the file for messages.
 pub(super) struct Session {

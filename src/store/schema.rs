@@ -1,0 +1,47 @@
+//! The schema, embedded: the files of `migrations/`, in order.
+
+use std::sync::LazyLock;
+
+use sqlx::SqlSafeStr as _;
+use sqlx::migrate::{Migration, MigrationType, Migrator};
+
+/// Version, description and statements of each. `after data` makes the triggers of the spatial index: they call functions that
+/// only spatial programs have (`ST_IsEmpty`), so nothing can be inserted into `edge` after it.
+const FILES: &[(i64, &str, &str)] = &[
+    (1, "geopackage", include_str!("../../migrations/0001_geopackage.sql")),
+    (2, "network", include_str!("../../migrations/0002_network.sql")),
+    (3, "certificates", include_str!("../../migrations/0003_certificates.sql")),
+    (4, "after data", include_str!("../../migrations/0004_after_data.sql")),
+    (5, "plans", include_str!("../../migrations/0005_plans.sql")),
+    (6, "restrictions", include_str!("../../migrations/0006_restrictions.sql")),
+    (7, "turns", include_str!("../../migrations/0007_turns.sql")),
+    (8, "turn plans", include_str!("../../migrations/0008_turn_plans.sql")),
+];
+
+/// The last migration before the bulk of the data.
+pub(super) const BEFORE_DATA: i64 = 3;
+
+/// What a database of this program has been through.
+pub(super) static MIGRATIONS: LazyLock<Migrator> = LazyLock::new(|| {
+    let migration = |&(version, description, statements): &(i64, &'static str, &'static str)| {
+        Migration::new(version, description.into(), MigrationType::Simple, statements.into_sql_str(), false)
+    };
+    Migrator::with_migrations(FILES.iter().map(migration).collect())
+});
+
+#[cfg(test)]
+mod tests {
+    use super::FILES;
+
+    #[test]
+    fn every_file_of_the_folder_is_embedded() {
+        let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/migrations");
+        let mut files: Vec<_> =
+            std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        files.sort();
+        let named = |(version, description, _): &(i64, &str, &str)| {
+            format!("{version:04}_{}.sql", description.replace(' ', "_"))
+        };
+        assert_eq!(files, FILES.iter().map(named).collect::<Vec<_>>());
+    }
+}
