@@ -100,7 +100,7 @@ impl Reading {
     };
 
     /// E4, E5, E6 and E9 repaired on top of that: what a certificate needs to bound anything at all. Never more
-    /// than the deciding RSC at equal tolerances (`tests/errata.rs`).
+    /// than the deciding RSC at equal tolerances (`tests/certificate/errata/`).
     pub const SOUND: Self = Self {
         offset: Offset::FromRoute,
         units: As::Repaired,

@@ -5,7 +5,7 @@
 //! filter: whoever calls says where it is worth it. One vehicle at a time, its body points in lanes.
 
 use super::group::{Group, UnitLanes};
-use super::lanes::{LANES, V};
+use super::lanes::{LANES, V, by_instruction_set};
 use super::model::{MAX_UNITS, Model, UnitModel};
 use super::sweep::{
     BLOCK, FIELDS, Filter, MOST, Motion, NOT_CLOSED_RAD, Step, Straying, ZERO, foot_shift, hinge_margin,
@@ -127,6 +127,32 @@ fn outputs(unit: &UnitModel) -> Vec<Outputs> {
     all.chunks(LANES).map(batch).collect()
 }
 
+by_instruction_set! {
+    /// The block driven last, for one vehicle's units from `first_unit` on: bounds at their body points into `out`, their rows as
+    /// the adjoint has them. The filter goes over the block again beside it, its second order from the adjoint's bounds.
+    pub(super) fn refine(
+        trail: &mut Trail,
+        group: &Group<'_>,
+        lane: usize,
+        first_unit: usize,
+        motion: &mut Motion,
+        rows: &mut [f64],
+        out: &mut Refined,
+    ) {
+        let first = trail.count - BLOCK;
+        for (points, unit) in out.points.iter_mut().zip(&group.models[lane].units) {
+            points.clear();
+            points.resize(unit.points.len() * BLOCK, MOST);
+        }
+        for unit in 0..MAX_UNITS {
+            motion.extra[unit].0[lane] = trail.extra[unit].0[lane];
+        }
+        for k in 0..BLOCK {
+            trail.station(group, lane, first_unit, first + k, k, motion, rows, out);
+        }
+    }
+}
+
 impl Trail {
     /// `used`: whether it will be asked anything.
     pub(super) fn new(group: &Group<'_>, used: bool) -> Self {
@@ -218,31 +244,6 @@ impl Trail {
                     to.past[a][unit] = Past { turned, decay, early, late, bend, push, hitch, ..*p };
                 }
             }
-        }
-    }
-
-    /// The block driven last, for one vehicle's units from `first_unit` on: bounds at their body points into `out`, their rows as
-    /// the adjoint has them. The filter goes over the block again beside it, its second order from the adjoint's bounds.
-    #[inline(always)]
-    pub(super) fn refine(
-        &mut self,
-        group: &Group<'_>,
-        lane: usize,
-        first_unit: usize,
-        motion: &mut Motion,
-        rows: &mut [f64],
-        out: &mut Refined,
-    ) {
-        let first = self.count - BLOCK;
-        for (points, unit) in out.points.iter_mut().zip(&group.models[lane].units) {
-            points.clear();
-            points.resize(unit.points.len() * BLOCK, MOST);
-        }
-        for unit in 0..MAX_UNITS {
-            motion.extra[unit].0[lane] = self.extra[unit].0[lane];
-        }
-        for k in 0..BLOCK {
-            self.station(group, lane, first_unit, first + k, k, motion, rows, out);
         }
     }
 

@@ -4,11 +4,11 @@
 //! while no newer one is of the same point, so that what a correction brings forward is not forgotten. On these rows
 //! preconditioned gradient steps with momentum lower Σ (τ + least leeway nearby − leeway)₊³; τ sinks from step to step, so that
 //! in the end only what limits counts. Why not half the difference of the leeways again and again: that balances every station,
-//! where the best plan gives away room before and after a bend to be less short of it in the bend (`tests/corrcen.rs`).
+//! where the best plan gives away room before and after a bend to be less short of it in the bend (`tests/certificate/corrcen.rs`).
 //! Each vehicle for itself, in its lane. Decides nothing: the next sweep says what came of it.
 
 use super::group::{Group, gamma};
-use super::lanes::{TAG_MASK, V};
+use super::lanes::{TAG_MASK, V, by_instruction_set};
 use super::model::Model;
 use super::response::Response;
 use super::shift::{self, KNOT_STATIONS};
@@ -27,7 +27,7 @@ const LEAST_STIFFNESS: f64 = 0.1;
 /// Steps after which the stiffness is looked at anew.
 const STIFF_STEPS: usize = 2;
 /// How fast the least leeway nearby may rise with the distance: what is this much better is left alone. Steeper, and a bend
-/// uses less of the room before and after it: 0.003 costs 0.4 cm at the median of `tests/corrcen.rs`.
+/// uses less of the room before and after it: 0.003 costs 0.4 cm at the median of `tests/certificate/corrcen.rs`.
 const RISE: f64 = 0.0005;
 /// Rows with so much more leeway than those that count are not looked at, metres. At 0.2 one corridor in twenty lost 30 cm.
 const FAR_M: f64 = 0.4;
@@ -70,6 +70,13 @@ pub(super) struct Ascent {
     knots: usize,
     count: usize,
     max_shift_m: f64,
+}
+
+by_instruction_set! {
+    /// Better coefficients, from `start`.
+    pub(super) fn climb(ascent: &mut Ascent, start: Vec<V>) -> Vec<V> {
+        ascent.climb(start)
+    }
 }
 
 impl Ascent {
@@ -138,24 +145,8 @@ impl Ascent {
         }
     }
 
-    /// Better coefficients, from `start`.
-    pub(super) fn climb(&mut self, start: Vec<V>) -> Vec<V> {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has AVX2, just asked.
-            return unsafe { self.climb_avx2(start) };
-        }
-        self.climb_with(start)
-    }
-
-    #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx2")]
-    fn climb_avx2(&mut self, start: Vec<V>) -> Vec<V> {
-        self.climb_with(start)
-    }
-
     #[inline(always)]
-    fn climb_with(&mut self, start: Vec<V>) -> Vec<V> {
+    fn climb(&mut self, start: Vec<V>) -> Vec<V> {
         let mut limits = Limits::new(self.knots, RISE * self.spacing);
         let pulls = self.chosen(&start, &mut limits);
         let empty = || pulls.iter().map(|pulls| vec![0.0; pulls.len()]).collect::<Vec<_>>();

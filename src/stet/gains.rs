@@ -211,7 +211,7 @@ mod tests {
 
     #[test]
     fn a_type_2_road_train_swings_its_last_rear_by_a_third_of_a_metre() {
-        // 0.33 m by the design page; an independent adversary attains 0.3362 m (tests/simulator.rs).
+        // 0.33 m by the design page; an independent adversary attains 0.3362 m (tests/certificate/simulator.rs).
         let units = [unit(5.3, -0.2), unit(9.5, 2.6), unit(5.0, 0.0), unit(9.5, 2.6), unit(5.0, 0.0), unit(9.5, 0.0)];
         let at: Vec<Vec<f64>> = units.iter().map(|_| vec![-2.8]).collect();
         let (points, _) = Chain::new(&units).gains(&at);

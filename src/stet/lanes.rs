@@ -1,5 +1,5 @@
 //! Eight numbers side by side. Plain arrays, so that one source serves every instruction set; no fused
-//! multiply-add, so that every machine gives the same bytes.
+//! multiply-add, so that every machine gives the same bytes. And functions made for more than one instruction set.
 
 // Index loops over fixed arrays: the form that the compiler turns into vector instructions.
 #![allow(clippy::needless_range_loop)]
@@ -118,3 +118,42 @@ pub(crate) fn select_negative(sign: V, yes: V, no: V) -> V {
 
 /// The bits of a [`V::tagged`] number that hold the tag.
 pub(crate) const TAG_MASK: u64 = 0x7f;
+
+/// Functions whose code is made twice, for machines with AVX2 and for any; which is taken is asked at each call. What they call
+/// must be `#[inline(always)]` to have its share of AVX2. Each is a piece of the sweep: a whole one, inlined into one function,
+/// takes the compiler minutes.
+macro_rules! by_instruction_set {
+    ($(
+        $(#[$about:meta])*
+        $vis:vis fn $name:ident$(<$(const $flag:ident: bool),+>)?($($argument:ident: $type:ty),* $(,)?) $(-> $out:ty)? $body:block
+    )+) => {$(
+        $(#[$about])*
+        $vis fn $name$(<$(const $flag: bool),+>)?($($argument: $type),*) $(-> $out)? {
+            #[inline(always)]
+            #[allow(clippy::too_many_arguments)]
+            fn either$(<$(const $flag: bool),+>)?($($argument: $type),*) $(-> $out)? $body
+
+            #[inline(never)]
+            #[allow(clippy::too_many_arguments)]
+            fn any$(<$(const $flag: bool),+>)?($($argument: $type),*) $(-> $out)? {
+                either$(::<$($flag),+>)?($($argument),*)
+            }
+
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx2")]
+            #[inline(never)]
+            #[allow(clippy::too_many_arguments)]
+            fn avx2$(<$(const $flag: bool),+>)?($($argument: $type),*) $(-> $out)? {
+                either$(::<$($flag),+>)?($($argument),*)
+            }
+
+            #[cfg(target_arch = "x86_64")]
+            if std::arch::is_x86_feature_detected!("avx2") {
+                // SAFETY: the processor has AVX2, just asked.
+                return unsafe { avx2$(::<$($flag),+>)?($($argument),*) };
+            }
+            any$(::<$($flag),+>)?($($argument),*)
+        }
+    )+};
+}
+pub(super) use by_instruction_set;

@@ -3,158 +3,16 @@
 //! Deducted from the plain distance: the tube of the point, its second-order terms, what may happen between two body
 //! points (inside of a curve) and between two head stations.
 
-use super::group::gamma;
-use super::lanes::{LANES, V, select_negative};
-use super::model::Model;
+use super::body::{Body, Feet, LOST_M, NEAR_M, Seen, Spot, follow, foot, least, near, next_foot, place};
+use super::lanes::{LANES, V, by_instruction_set, select_negative};
 use super::sweep::{BLOCK, FIELDS, Minima, ZERO, row};
 use super::track::{BULGE_MOST, Fields, READ_M, Track};
 
-/// A foot further along than this (metres) is looked up anew.
-const NEAR_M: f64 = 1.0;
-/// Stations walked at most to find a foot.
-const MOST_STEPS: usize = 128;
-/// So many stations in a row may lie between two feet of a point; of more, nothing is certified: it jumped over them.
-const JUMPED: usize = 4;
-/// A foot is not further from where it would be on a straight than this part of the way to the steer axle, and these metres: else
-/// it was lost in a bend, on a leg that the vehicle has left or has yet to come to.
-const ASTRAY_PART: f64 = 0.5;
-const ASTRAY_M: f64 = 10.0;
-/// Added to a head's station wherever a point ahead of it is counted from.
-const AHEAD: usize = 1 << 20;
 /// Where half-widths bulge, what lies between two body points is looked at in parts no longer than this, metres: at a radius of
 /// 16 m a part's sagitta is 2 cm.
 const PART_M: f64 = 1.4;
 /// Half-widths that leave their own slope by less, a metre's way or its square, are read at the axis's station.
 const ROUGH: f64 = 0.01;
-/// Leeway of a point that has no foot: nothing is certified there.
-const LOST_M: f64 = -1e3;
-
-/// One unit of one vehicle at its body points.
-pub(super) struct Body {
-    half_width: f64,
-    inverse_length: f64,
-    /// A and g at the axle, at the sweep's γ.
-    heading: f64,
-    axle: f64,
-    points: Vec<Point>,
-    /// The last unit's axle, whose offset the published form needs: its foot, and where that is on a straight (see [`Point`]).
-    last_axle: Option<LastAxle>,
-}
-
-struct LastAxle {
-    foot: usize,
-    way: Way,
-}
-
-/// Where a foot is on a straight, in stations behind the head, and how far from there it may be.
-struct Way {
-    behind: usize,
-    astray: usize,
-}
-
-struct Point {
-    spot: Spot,
-    tag: u64,
-    /// Distance to the point before, metres; 0 for the first.
-    gap: f64,
-    foot: usize,
-    way: Way,
-    /// Up to this station all have been under it, or are lost.
-    covered: usize,
-}
-
-/// A place on a body's axis, metres ahead of its axle, and what bounds it on the straight.
-#[derive(Clone, Copy)]
-struct Spot {
-    ahead: f64,
-    /// g there, and its slope towards half a width ahead and behind.
-    gain: f64,
-    slope_ahead: f64,
-    slope_behind: f64,
-    /// |1 − a/L| and |a/L|
-    from_axle: f64,
-    from_coupling: f64,
-}
-
-impl Spot {
-    /// `part` of the way from one point of a body to the next behind it: g is convex, so that it is below its chord, and beyond both ends
-    /// no steeper towards them than there.
-    fn between(self, behind: Self, part: f64) -> Self {
-        let mix = |a: f64, b: f64| a + (b - a) * part;
-        // The bounds of axle and coupling are both linear in the place, but for where they change sign: convex, too.
-        Self {
-            ahead: mix(self.ahead, behind.ahead),
-            gain: mix(self.gain, behind.gain),
-            slope_ahead: self.slope_ahead,
-            slope_behind: behind.slope_behind,
-            from_axle: mix(self.from_axle, behind.from_axle),
-            from_coupling: mix(self.from_coupling, behind.from_coupling),
-        }
-    }
-}
-
-impl Body {
-    /// Nothing is deducted for the straight.
-    pub(super) fn forget_gains(&mut self) {
-        for point in &mut self.points {
-            point.spot = Spot { gain: 0.0, slope_ahead: 0.0, slope_behind: 0.0, ..point.spot };
-        }
-    }
-}
-
-/// The bodies of a vehicle that stands straight behind the track's first station, at γ = `shrink`. When planning, three
-/// points a side.
-pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: f64) -> Vec<Body> {
-    let tolerance = model.vehicle.tracking_tolerance_m * gamma(model, shrink);
-    let last = model.units.len() - 1;
-    let mut coupling = 0.0;
-    model
-        .units
-        .iter()
-        .enumerate()
-        .map(|(index, unit)| {
-            let axle = coupling - unit.length;
-            coupling = axle - unit.hitch;
-            let foot = |ahead: f64| (track.lead as f64 + (axle + ahead) / track.spacing).round() as usize;
-            let n = unit.points.len();
-            let way = |ahead: f64| Way {
-                behind: track.lead + AHEAD - foot(ahead),
-                astray: ((ASTRAY_PART * (axle + ahead).abs() + ASTRAY_M) / track.spacing).ceil() as usize,
-            };
-            // Innermost on a steady circle.
-            let middle = (0..n).min_by(|&a, &b| unit.points[a].abs().total_cmp(&unit.points[b].abs()));
-            let chosen = (0..n).filter(|&p| CERTIFY || p == 0 || Some(p) == middle || p == n - 1);
-            let points = chosen.map(|p| {
-                let gain = unit.at[p].at(tolerance);
-                let start = foot(unit.points[p]);
-                let spot = Spot {
-                    ahead: unit.points[p],
-                    gain,
-                    slope_ahead: (unit.ahead[p].at(tolerance) - gain) / unit.half_width,
-                    slope_behind: (unit.behind[p].at(tolerance) - gain) / unit.half_width,
-                    from_axle: (1.0 - unit.points[p] / unit.length).abs(),
-                    from_coupling: (unit.points[p] / unit.length).abs(),
-                };
-                Point {
-                    spot,
-                    tag: (index * 16 + p) as u64,
-                    gap: if p == 0 { 0.0 } else { unit.points[p - 1] - unit.points[p] },
-                    foot: start,
-                    way: way(unit.points[p]),
-                    covered: start.saturating_sub(1),
-                }
-            });
-            Body {
-                half_width: unit.half_width,
-                inverse_length: 1.0 / unit.length,
-                heading: unit.heading.at(tolerance),
-                axle: unit.axle.at(tolerance),
-                points: points.collect(),
-                last_axle: (CERTIFY && index == last).then(|| LastAxle { foot: foot(0.0), way: way(0.0) }),
-            }
-        })
-        .collect()
-}
 
 /// The eight states of a unit that a group of stations needs.
 struct States {
@@ -167,30 +25,6 @@ struct States {
     extra_axle: V,
     extra_coupling: V,
     remainder: V,
-}
-
-/// Where eight points lie relative to their foot stations.
-struct Seen {
-    at: Fields<V>,
-    along: V,
-    lateral: V,
-}
-
-/// Eight stations: consecutive ones, or any.
-#[derive(Clone, Copy)]
-enum Feet {
-    Run(usize),
-    Each([usize; LANES]),
-}
-
-impl Feet {
-    #[inline(always)]
-    fn station(self, lane: usize) -> usize {
-        match self {
-            Self::Run(first) => first + lane,
-            Self::Each(feet) => feet[lane],
-        }
-    }
 }
 
 /// A body point at eight head stations, before it lowers the minima.
@@ -206,177 +40,86 @@ struct Sample {
     bulge: V,
 }
 
-/// Lowers `minima` by all points of one unit over one block. `REFINED`: with the bounds of each body point in `refined`
-/// (a block each) instead of gains and what curvature adds to them.
-#[inline(always)]
-#[allow(clippy::too_many_arguments)] // One call a unit and block, in the innermost loop but one.
-pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
-    track: &Track,
-    body: &mut Body,
-    block: &[f64],
-    refined: &[f64],
-    shift: &[V],
-    lane: usize,
-    head: usize,
-    minima: &mut Minima,
-) {
-    for group in 0..BLOCK / LANES {
-        let load = |field: usize| -> V {
-            let start = field * BLOCK + group * LANES;
-            let mut out = [0.0; LANES];
-            out.copy_from_slice(&block[start..start + LANES]);
-            V(out)
-        };
-        let s = States {
-            x: load(row::X),
-            y: load(row::Y),
-            ux: load(row::UX),
-            uy: load(row::UY),
-            curvature: load(row::CURVATURE),
-            jerk: load(row::JERK),
-            extra_axle: load(row::EXTRA_AXLE),
-            extra_coupling: load(row::EXTRA_COUPLING),
-            remainder: load(row::REMAINDER),
-        };
-        let mut before: Option<Sample> = None;
-        let bounds = |index: usize| -> V {
-            let start = index * BLOCK + group * LANES;
-            V(std::array::from_fn(|i| refined[start + i]))
-        };
-        let mut knots = Knots { ahead: ZERO, own: ZERO, behind: ZERO, gap_ahead: 0.0, gap_behind: 0.0 };
-        for index in 0..body.points.len() {
-            if REFINED {
-                let next = index + 1 < body.points.len();
-                knots = Knots {
-                    ahead: knots.own,
-                    own: if index == 0 { bounds(0) } else { knots.behind },
-                    behind: if next { bounds(index + 1) } else { ZERO },
-                    gap_ahead: body.points[index].gap,
-                    gap_behind: if next { body.points[index + 1].gap } else { 0.0 },
-                };
-            }
-            let mut sample = sample::<CERTIFY, REFINED>(track, body, index, &s, &knots);
-            body.points[index].cover(sample.feet, minima);
-            if CERTIFY {
-                match &mut before {
-                    Some(before) => {
-                        let gap = body.points[index].gap;
-                        let parts = if bulges(before, &sample) { (gap / PART_M).ceil().max(1.0) } else { 1.0 };
-                        if parts > 1.0 {
-                            inside::<REFINED>(track, body, index, &s, &knots, (before, &sample), parts, minima);
+by_instruction_set! {
+    /// Lowers `minima` by all points of one unit over one block. `REFINED`: with the bounds of each body point in `refined`
+    /// (a block each) instead of gains and what curvature adds to them.
+    #[allow(clippy::too_many_arguments)] // One call a unit and block, in the innermost loop but one.
+    pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
+        track: &Track,
+        body: &mut Body,
+        block: &[f64],
+        refined: &[f64],
+        shift: &[V],
+        lane: usize,
+        head: usize,
+        minima: &mut Minima,
+    ) {
+        for group in 0..BLOCK / LANES {
+            let load = |field: usize| -> V {
+                let start = field * BLOCK + group * LANES;
+                let mut out = [0.0; LANES];
+                out.copy_from_slice(&block[start..start + LANES]);
+                V(out)
+            };
+            let s = States {
+                x: load(row::X),
+                y: load(row::Y),
+                ux: load(row::UX),
+                uy: load(row::UY),
+                curvature: load(row::CURVATURE),
+                jerk: load(row::JERK),
+                extra_axle: load(row::EXTRA_AXLE),
+                extra_coupling: load(row::EXTRA_COUPLING),
+                remainder: load(row::REMAINDER),
+            };
+            let mut before: Option<Sample> = None;
+            let bounds = |index: usize| -> V {
+                let start = index * BLOCK + group * LANES;
+                V(std::array::from_fn(|i| refined[start + i]))
+            };
+            let mut knots = Knots { ahead: ZERO, own: ZERO, behind: ZERO, gap_ahead: 0.0, gap_behind: 0.0 };
+            for index in 0..body.points.len() {
+                if REFINED {
+                    let next = index + 1 < body.points.len();
+                    knots = Knots {
+                        ahead: knots.own,
+                        own: if index == 0 { bounds(0) } else { knots.behind },
+                        behind: if next { bounds(index + 1) } else { ZERO },
+                        gap_ahead: body.points[index].gap,
+                        gap_behind: if next { body.points[index + 1].gap } else { 0.0 },
+                    };
+                }
+                let mut sample = sample::<CERTIFY, REFINED>(track, body, index, &s, &knots);
+                body.points[index].cover(sample.feet, minima);
+                if CERTIFY {
+                    match &mut before {
+                        Some(before) => {
+                            let gap = body.points[index].gap;
+                            let parts = if bulges(before, &sample) { (gap / PART_M).ceil().max(1.0) } else { 1.0 };
+                            if parts > 1.0 {
+                                inside::<REFINED>(track, body, index, &s, &knots, (before, &sample), parts, minima);
+                            }
+                            between_points(before, &mut sample, &s, gap, parts);
                         }
-                        between_points(before, &mut sample, &s, gap, parts);
+                        None => lower(&mut minima.hinge, sample.feet, load(row::HINGE).tagged(sample.tag)),
                     }
-                    None => lower(&mut minima.hinge, sample.feet, load(row::HINGE).tagged(sample.tag)),
+                }
+                if let Some(before) = before.replace(sample) {
+                    before.lower(minima);
                 }
             }
-            if let Some(before) = before.replace(sample) {
-                before.lower(minima);
+            if let Some(last) = before {
+                last.lower(minima);
+            }
+            if CERTIFY && let Some(axle) = &mut body.last_axle {
+                axle.follow(track, [s.x, s.y], shift, lane, minima);
             }
         }
-        if let Some(last) = before {
-            last.lower(minima);
+        if let Some(axle) = &mut body.last_axle {
+            axle.foot = axle.way.kept(track, head + BLOCK, axle.foot);
         }
-        if CERTIFY && let Some(axle) = &mut body.last_axle {
-            axle.follow(track, &s, shift, lane, minima);
-        }
-    }
-    if let Some(axle) = &mut body.last_axle {
-        axle.foot = axle.way.kept(track, head + BLOCK, axle.foot);
-    }
-    for point in &mut body.points {
-        point.keep_on_the_way(track, head + BLOCK, minima);
-    }
-}
-
-/// Passes over a block that needs no leeways.
-pub(super) fn skip(track: &Track, body: &mut Body, head: usize) {
-    for point in &mut body.points {
-        point.foot = point.way.expected(track, head + BLOCK);
-        point.covered = point.foot.saturating_sub(1);
-    }
-    if let Some(axle) = &mut body.last_axle {
-        axle.foot = axle.way.expected(track, head + BLOCK);
-    }
-}
-
-/// After the last block: every point must have been over the whole corridor.
-pub(super) fn finish(track: &Track, body: &Body, minima: &mut Minima) {
-    for point in &body.points {
-        point.lose(track.lead + track.count, minima);
-    }
-}
-
-impl Way {
-    /// The foot on a straight when the head is at a station.
-    fn expected(&self, track: &Track, head: usize) -> usize {
-        (head + AHEAD).saturating_sub(self.behind).min(track.len() - LANES)
-    }
-
-    /// A foot, or, if that is not where it can be, the one on a straight.
-    fn kept(&self, track: &Track, head: usize, foot: usize) -> usize {
-        let expected = self.expected(track, head);
-        if foot.abs_diff(expected) > self.astray { expected } else { foot }
-    }
-}
-
-impl LastAxle {
-    /// Raises the offsets by how far the axle is from the planned path, at its own feet.
-    #[inline(always)]
-    fn follow(&mut self, track: &Track, s: &States, shift: &[V], lane: usize, minima: &mut Minima) {
-        let feet = follow(track, self.foot, s.x, s.y);
-        let seen = place(track.fields.gather(&feet), s.x, s.y);
-        let (on, lateral) = foot(&seen.at, seen.along, seen.lateral);
-        for (i, &k) in feet.iter().enumerate() {
-            let other = if on.0[i] < 0.0 { k.saturating_sub(1) } else { (k + 1).min(track.len() - 1) };
-            let [own, next] = [k, other].map(|k| shift[k].0[lane]);
-            let planned = own + (next - own) * (on.0[i].abs() / track.spacing).min(1.0);
-            minima.offset[k] = minima.offset[k].max((lateral.0[i] - planned).abs());
-        }
-        self.foot = next_foot(track, feet[LANES - 1], seen.along.0[LANES - 1]);
-    }
-}
-
-impl Point {
-    /// Takes note of the stations that have been under it.
-    #[inline(always)]
-    fn cover(&mut self, feet: Feet, minima: &mut Minima) {
-        match feet {
-            Feet::Run(first) if first <= self.covered + JUMPED => self.covered = self.covered.max(first + LANES - 1),
-            Feet::Run(first) => {
-                self.lose(first, minima);
-                self.covered = first + LANES - 1;
-            }
-            Feet::Each(feet) => {
-                for foot in feet {
-                    if foot > self.covered + JUMPED {
-                        self.lose(foot, minima);
-                    }
-                    self.covered = self.covered.max(foot);
-                }
-            }
-        }
-    }
-
-    /// After a block: a foot that is not where it can be is taken back to where it would be on a straight. What was missed
-    /// is lost.
-    #[inline(always)]
-    fn keep_on_the_way(&mut self, track: &Track, head: usize, minima: &mut Minima) {
-        let expected = self.way.expected(track, head);
-        if self.covered + self.way.astray < expected || self.foot.abs_diff(expected) > self.way.astray {
-            self.lose(expected, minima);
-            self.foot = expected;
-            self.covered = expected.saturating_sub(1);
-        }
-    }
-
-    /// Nothing is certified of the stations after those covered, up to `end`.
-    #[cold]
-    fn lose(&self, end: usize, minima: &mut Minima) {
-        let lost = V::splat(LOST_M).tagged(self.tag).0[0];
-        for k in self.covered + 1..end.min(minima.left.len()) {
-            minima.left[k] = least(minima.left[k], lost);
-            minima.right[k] = least(minima.right[k], lost);
+        for point in &mut body.points {
+            point.keep_on_the_way(track, head + BLOCK, minima);
         }
     }
 }
@@ -547,59 +290,6 @@ fn between_points(before: &mut Sample, sample: &mut Sample, s: &States, gap: f64
     sample.lowered_right = sample.right - right;
 }
 
-#[inline(always)]
-fn place(at: Fields<V>, x: V, y: V) -> Seen {
-    let (dx, dy) = (x - at.x, y - at.y);
-    let along = dx * at.tangent_x + dy * at.tangent_y;
-    let lateral = dy * at.tangent_x - dx * at.tangent_y;
-    Seen { at, along, lateral }
-}
-
-#[inline(always)]
-fn near(along: V) -> bool {
-    // A NaN is far: it compares to nothing.
-    let mut all = true;
-    for a in along.0 {
-        all &= a.abs() <= NEAR_M;
-    }
-    all
-}
-
-/// Each point's own nearest station, walked to from `first`: a step at a time, since one point's foot is next to the
-/// other's.
-fn follow(track: &Track, first: usize, x: V, y: V) -> [usize; LANES] {
-    let f = &track.fields;
-    let last = track.len() - 1;
-    let mut feet = [first; LANES];
-    let mut k = first.min(last);
-    for (i, foot) in feet.iter_mut().enumerate() {
-        for _ in 0..MOST_STEPS {
-            let (dx, dy) = (x.0[i] - f.x[k], y.0[i] - f.y[k]);
-            let along = dx * f.tangent_x[k] + dy * f.tangent_y[k];
-            let lateral = dy * f.tangent_x[k] - dx * f.tangent_y[k];
-            // On the outside of a curve stations are further apart than on the line, seen from the point.
-            let half = 0.5 * track.spacing * (1.0 - f.curvature[k] * lateral).max(0.1);
-            if along > 1.04 * half && k < last {
-                k += 1;
-            } else if along < -1.04 * half && k > 0 {
-                k -= 1;
-            } else {
-                break;
-            }
-        }
-        *foot = k;
-    }
-    feet
-}
-
-/// The station to start the next eight from: one further than the last of these, corrected by what it is off.
-#[inline(always)]
-fn next_foot(track: &Track, foot: usize, along: f64) -> usize {
-    // Towards zero of a positive number is rounding, without a call where there is no instruction for it; NaN gives 0.
-    let off = (along / track.spacing + 64.5).clamp(0.0, 128.0) as usize;
-    (foot + 1 + off).saturating_sub(64).min(track.len() - LANES)
-}
-
 /// Bounds at a body point and at its neighbours, and how far off these are (0: there is none).
 struct Knots {
     ahead: V,
@@ -744,15 +434,6 @@ fn apart(track: &Track, feet: Feet, s: &States, ahead: f64, half_width: f64, edg
     [Edge::left(&left.at, left.along, left.lateral), Edge::right(&right.at, right.along, right.lateral)]
 }
 
-/// Arc length from the station to the foot of a point `along`, `lateral` of it, and the lateral at that foot:
-/// σ = a/(1 − κb), lat = b − (κ/2 + κ'σ/6)·a·σ.
-#[inline(always)]
-fn foot(at: &Fields<V>, along: V, lateral: V) -> (V, V) {
-    let x = at.curvature * lateral;
-    let sigma = along * ((x + 1.0) * (x * x + 1.0));
-    (sigma, lateral - (at.curvature * 0.5 + at.curvature_slope * sigma * (1.0 / 6.0)) * along * sigma)
-}
-
 #[inline(always)]
 fn lower(minima: &mut [f64], feet: Feet, by: V) {
     match feet {
@@ -767,12 +448,6 @@ fn lower(minima: &mut [f64], feet: Feet, by: V) {
             }
         }
     }
-}
-
-/// The lesser of two numbers of which neither is NaN: positions are finite, and a point without a foot is [`LOST_M`].
-#[inline(always)]
-fn least(minimum: f64, value: f64) -> f64 {
-    if minimum < value { minimum } else { value }
 }
 
 const _: () = assert!(FIELDS == row::HINGE + 1);

@@ -4,6 +4,7 @@
 
 mod adjoint;
 mod ascent;
+mod body;
 mod gains;
 mod given;
 mod group;

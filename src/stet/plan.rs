@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use super::Options;
-use super::ascent::{Ascent, relief};
+use super::ascent::{Ascent, climb, relief};
 use super::group::Group;
 use super::lanes::{LANES, TAG_MASK, V};
 use super::model::Model;
@@ -54,7 +54,7 @@ pub(super) fn best(track: &Track, group: &Group<'_>, spans: &[Range<usize>], opt
         if round == 0 {
             now = centred_between(&coarse, group, &minima, &now, options.max_shift_m);
         }
-        now = ascent.climb(now);
+        now = climb(&mut ascent, now);
     }
     let coefficient = |lane: usize| {
         let best = &best;

@@ -58,7 +58,7 @@ pub(super) fn result(track: &Track, model: &Model, span: &std::ops::Range<usize>
         (least, hinge) = (NOTHING_M, hinge.min(lost));
         hinge_unit = ((lost.to_bits() & TAG_MASK) >> 4) as usize;
     }
-    // A span is longer than what feet may pass over unseen (`leeway::JUMPED`); if nobody came for all that, nothing is known.
+    // A span is longer than what feet may pass over unseen (`body::JUMPED`); if nobody came for all that, nothing is known.
     if least >= UNVISITED_M || hinge >= UNVISITED_M {
         (least, hinge) = (NOTHING_M, NOT_CLOSED_RAD);
     }

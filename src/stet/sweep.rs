@@ -4,10 +4,11 @@
 //! Promises: no leeway left here is above what any bounded disturbance leaves, up to the model of the design page. Knows
 //! nothing of edges, corrections or shrinking.
 
-use super::adjoint::{Refined, Trail, first_loose};
+use super::adjoint::{self, Refined, Trail, first_loose};
+use super::body::{self, Body};
 use super::group::{Group, UnitLanes};
-use super::lanes::{LANES, V, select_negative};
-use super::leeway::{self, Body};
+use super::lanes::{LANES, V, by_instruction_set, select_negative};
+use super::leeway;
 use super::model::MAX_UNITS;
 use super::track::Track;
 
@@ -100,29 +101,12 @@ pub(super) fn sweep<const CERTIFY: bool>(
     shift: &[V],
     wanted: &Wanted<'_>,
 ) -> Vec<Minima> {
-    #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
-        // SAFETY: the processor has AVX2, just asked.
-        return unsafe { sweep_avx2::<CERTIFY>(track, group, shift, wanted) };
-    }
-    sweep_with::<CERTIFY>(track, group, shift, wanted)
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn sweep_avx2<const CERTIFY: bool>(track: &Track, group: &Group<'_>, shift: &[V], wanted: &Wanted<'_>) -> Vec<Minima> {
-    sweep_with::<CERTIFY>(track, group, shift, wanted)
-}
-
-#[inline(always)]
-fn sweep_with<const CERTIFY: bool>(track: &Track, group: &Group<'_>, shift: &[V], wanted: &Wanted<'_>) -> Vec<Minima> {
     match wanted.refined {
         Some(refined) if CERTIFY => sweep_blocks::<CERTIFY, true>(track, group, shift, wanted, refined),
         _ => sweep_blocks::<CERTIFY, false>(track, group, shift, wanted, &|_, _| usize::MAX),
     }
 }
 
-#[inline(always)]
 fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     track: &Track,
     group: &Group<'_>,
@@ -136,7 +120,7 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     let mut trail = Trail::new(group, REFINE);
     let mut tight = Refined::new();
     let mut bodies: Vec<Vec<Body>> =
-        group.models.iter().map(|m| leeway::bodies::<CERTIFY>(m, track, group.shrink)).collect();
+        group.models.iter().map(|m| body::bodies::<CERTIFY>(m, track, group.shrink)).collect();
     if wanted.plain && !CERTIFY {
         bodies.iter_mut().flatten().for_each(Body::forget_gains);
     }
@@ -145,18 +129,18 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     let last = track.len() - ahead - BLOCK;
     let mut head = track.lead;
     while head < last {
-        motion.block::<CERTIFY, REFINE>(track, group, shift, head, &mut rows, &mut trail);
+        drive::<CERTIFY, REFINE>(&mut motion, track, group, shift, head, &mut rows, &mut trail);
         for (lane, (bodies, minima)) in bodies.iter_mut().zip(&mut minima).enumerate() {
             let wanted = (wanted.blocks)(lane, head);
             let tight_from = if REFINE && wanted { refined(lane, head) } else { usize::MAX };
             if tight_from < bodies.len() {
-                trail.refine(group, lane, tight_from, &mut motion, &mut rows, &mut tight);
+                adjoint::refine(&mut trail, group, lane, tight_from, &mut motion, &mut rows, &mut tight);
             }
             if REFINE {
                 trail.close(lane, bodies.len());
             }
             if !wanted {
-                bodies.iter_mut().for_each(|body| leeway::skip(track, body, head));
+                bodies.iter_mut().for_each(|body| body::skip(track, body, head));
                 continue;
             }
             if CERTIFY && !REFINE {
@@ -175,7 +159,7 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
         head += BLOCK;
     }
     for (bodies, minima) in bodies.iter().zip(&mut minima) {
-        bodies.iter().for_each(|body| leeway::finish(track, body, minima));
+        bodies.iter().for_each(|body| body::finish(track, body, minima));
     }
     minima
 }
@@ -227,6 +211,29 @@ impl Step {
 
 pub(super) const ZERO: V = V([0.0; LANES]);
 
+by_instruction_set! {
+    /// Drives [`BLOCK`] stations from `head` and leaves every unit's rows.
+    pub(super) fn drive<const CERTIFY: bool, const REFINE: bool>(
+        motion: &mut Motion,
+        track: &Track,
+        group: &Group<'_>,
+        shift: &[V],
+        head: usize,
+        rows: &mut [f64],
+        trail: &mut Trail,
+    ) {
+        if REFINE {
+            trail.enter(&motion.extra);
+        }
+        let mut place = steer(track, shift, head);
+        for k in 0..BLOCK {
+            let next = steer(track, shift, head + k + 1);
+            motion.station::<CERTIFY, REFINE>(group, place, next, track.spacing, k, rows, trail);
+            place = next;
+        }
+    }
+}
+
 impl Motion {
     /// All units stand behind the track's first station, along its heading.
     #[inline(always)]
@@ -240,28 +247,6 @@ impl Motion {
             turned: [ZERO; MAX_UNITS],
             turned_change: [ZERO; MAX_UNITS],
             extra: [ZERO; MAX_UNITS],
-        }
-    }
-
-    /// Drives [`BLOCK`] stations from `head` and leaves every unit's rows.
-    #[inline(always)]
-    pub(super) fn block<const CERTIFY: bool, const REFINE: bool>(
-        &mut self,
-        track: &Track,
-        group: &Group<'_>,
-        shift: &[V],
-        head: usize,
-        rows: &mut [f64],
-        trail: &mut Trail,
-    ) {
-        if REFINE {
-            trail.enter(&self.extra);
-        }
-        let mut place = steer(track, shift, head);
-        for k in 0..BLOCK {
-            let next = steer(track, shift, head + k + 1);
-            self.station::<CERTIFY, REFINE>(group, place, next, track.spacing, k, rows, trail);
-            place = next;
         }
     }
 

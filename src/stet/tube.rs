@@ -1,11 +1,11 @@
 //! The tubes themselves, for files and pictures: where each axle is nominally, and how far it may be off.
 
 use super::Certificate;
-use super::adjoint::{Refined, Trail, first_loose};
+use super::adjoint::{Refined, Trail, first_loose, refine};
 use super::group::Group;
 use super::lanes::{LANES, V};
 use super::model::Model;
-use super::sweep::{self, BLOCK, FIELDS, Motion, row};
+use super::sweep::{self, BLOCK, FIELDS, Motion, drive, row};
 use super::track::Track;
 use crate::corridor::Corridor;
 
@@ -40,10 +40,10 @@ pub fn tubes(corridor: &Corridor, model: &Model, certificate: &Certificate) -> V
     let mut rows = vec![0.0; units * LANES * FIELDS * BLOCK];
     let (mut head, mut after) = (0, usize::MAX);
     while head <= last {
-        motion.block::<true, true>(&track, &group, &shift, track.lead + head, &mut rows, &mut trail);
+        drive::<true, true>(&mut motion, &track, &group, &shift, track.lead + head, &mut rows, &mut trail);
         let loose = first_loose(&group, 0, &rows);
         if loose.min(after) < units {
-            trail.refine(&group, 0, loose.min(after), &mut motion, &mut rows, &mut refined);
+            refine(&mut trail, &group, 0, loose.min(after), &mut motion, &mut rows, &mut refined);
         }
         trail.close(0, units);
         after = loose;

@@ -1,0 +1,334 @@
+//! Bodies, their points, and the stations under them: each point's feet are followed from station to station, and each keeps
+//! account of those it has been over (proof, section 7, Feet).
+
+use super::group::gamma;
+use super::lanes::{LANES, V};
+use super::model::Model;
+use super::sweep::{BLOCK, Minima};
+use super::track::{Fields, Track};
+
+/// A foot further along than this (metres) is looked up anew.
+pub(super) const NEAR_M: f64 = 1.0;
+/// Stations walked at most to find a foot.
+const MOST_STEPS: usize = 128;
+/// So many stations in a row may lie between two feet of a point; of more, nothing is certified: it jumped over them.
+const JUMPED: usize = 4;
+/// A foot is not further from where it would be on a straight than this part of the way to the steer axle, and these metres: else
+/// it was lost in a bend, on a leg that the vehicle has left or has yet to come to.
+const ASTRAY_PART: f64 = 0.5;
+const ASTRAY_M: f64 = 10.0;
+/// Added to a head's station wherever a point ahead of it is counted from.
+const AHEAD: usize = 1 << 20;
+/// Leeway of a point that has no foot: nothing is certified there.
+pub(super) const LOST_M: f64 = -1e3;
+
+/// One unit of one vehicle at its body points.
+pub(super) struct Body {
+    pub(super) half_width: f64,
+    pub(super) inverse_length: f64,
+    /// A and g at the axle, at the sweep's γ.
+    pub(super) heading: f64,
+    pub(super) axle: f64,
+    pub(super) points: Vec<Point>,
+    /// The last unit's axle, whose offset the published form needs: its foot, and where that is on a straight (see [`Point`]).
+    pub(super) last_axle: Option<LastAxle>,
+}
+
+pub(super) struct LastAxle {
+    pub(super) foot: usize,
+    pub(super) way: Way,
+}
+
+/// Where a foot is on a straight, in stations behind the head, and how far from there it may be.
+pub(super) struct Way {
+    pub(super) behind: usize,
+    pub(super) astray: usize,
+}
+
+pub(super) struct Point {
+    pub(super) spot: Spot,
+    pub(super) tag: u64,
+    /// Distance to the point before, metres; 0 for the first.
+    pub(super) gap: f64,
+    pub(super) foot: usize,
+    pub(super) way: Way,
+    /// Up to this station all have been under it, or are lost.
+    pub(super) covered: usize,
+}
+
+/// A place on a body's axis, metres ahead of its axle, and what bounds it on the straight.
+#[derive(Clone, Copy)]
+pub(super) struct Spot {
+    pub(super) ahead: f64,
+    /// g there, and its slope towards half a width ahead and behind.
+    pub(super) gain: f64,
+    pub(super) slope_ahead: f64,
+    pub(super) slope_behind: f64,
+    /// |1 − a/L| and |a/L|
+    pub(super) from_axle: f64,
+    pub(super) from_coupling: f64,
+}
+
+impl Spot {
+    /// `part` of the way from one point of a body to the next behind it: g is convex, so that it is below its chord, and beyond both ends
+    /// no steeper towards them than there.
+    pub(super) fn between(self, behind: Self, part: f64) -> Self {
+        let mix = |a: f64, b: f64| a + (b - a) * part;
+        // The bounds of axle and coupling are both linear in the place, but for where they change sign: convex, too.
+        Self {
+            ahead: mix(self.ahead, behind.ahead),
+            gain: mix(self.gain, behind.gain),
+            slope_ahead: self.slope_ahead,
+            slope_behind: behind.slope_behind,
+            from_axle: mix(self.from_axle, behind.from_axle),
+            from_coupling: mix(self.from_coupling, behind.from_coupling),
+        }
+    }
+}
+
+impl Body {
+    /// Nothing is deducted for the straight.
+    pub(super) fn forget_gains(&mut self) {
+        for point in &mut self.points {
+            point.spot = Spot { gain: 0.0, slope_ahead: 0.0, slope_behind: 0.0, ..point.spot };
+        }
+    }
+}
+
+/// The bodies of a vehicle that stands straight behind the track's first station, at γ = `shrink`. When planning, three
+/// points a side.
+pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: f64) -> Vec<Body> {
+    let tolerance = model.vehicle.tracking_tolerance_m * gamma(model, shrink);
+    let last = model.units.len() - 1;
+    let mut coupling = 0.0;
+    model
+        .units
+        .iter()
+        .enumerate()
+        .map(|(index, unit)| {
+            let axle = coupling - unit.length;
+            coupling = axle - unit.hitch;
+            let foot = |ahead: f64| (track.lead as f64 + (axle + ahead) / track.spacing).round() as usize;
+            let n = unit.points.len();
+            let way = |ahead: f64| Way {
+                behind: track.lead + AHEAD - foot(ahead),
+                astray: ((ASTRAY_PART * (axle + ahead).abs() + ASTRAY_M) / track.spacing).ceil() as usize,
+            };
+            // Innermost on a steady circle.
+            let middle = (0..n).min_by(|&a, &b| unit.points[a].abs().total_cmp(&unit.points[b].abs()));
+            let chosen = (0..n).filter(|&p| CERTIFY || p == 0 || Some(p) == middle || p == n - 1);
+            let points = chosen.map(|p| {
+                let gain = unit.at[p].at(tolerance);
+                let start = foot(unit.points[p]);
+                let spot = Spot {
+                    ahead: unit.points[p],
+                    gain,
+                    slope_ahead: (unit.ahead[p].at(tolerance) - gain) / unit.half_width,
+                    slope_behind: (unit.behind[p].at(tolerance) - gain) / unit.half_width,
+                    from_axle: (1.0 - unit.points[p] / unit.length).abs(),
+                    from_coupling: (unit.points[p] / unit.length).abs(),
+                };
+                Point {
+                    spot,
+                    tag: (index * 16 + p) as u64,
+                    gap: if p == 0 { 0.0 } else { unit.points[p - 1] - unit.points[p] },
+                    foot: start,
+                    way: way(unit.points[p]),
+                    covered: start.saturating_sub(1),
+                }
+            });
+            Body {
+                half_width: unit.half_width,
+                inverse_length: 1.0 / unit.length,
+                heading: unit.heading.at(tolerance),
+                axle: unit.axle.at(tolerance),
+                points: points.collect(),
+                last_axle: (CERTIFY && index == last).then(|| LastAxle { foot: foot(0.0), way: way(0.0) }),
+            }
+        })
+        .collect()
+}
+
+/// Where eight points lie relative to their foot stations.
+pub(super) struct Seen {
+    pub(super) at: Fields<V>,
+    pub(super) along: V,
+    pub(super) lateral: V,
+}
+
+/// Eight stations: consecutive ones, or any.
+#[derive(Clone, Copy)]
+pub(super) enum Feet {
+    Run(usize),
+    Each([usize; LANES]),
+}
+
+impl Feet {
+    #[inline(always)]
+    pub(super) fn station(self, lane: usize) -> usize {
+        match self {
+            Self::Run(first) => first + lane,
+            Self::Each(feet) => feet[lane],
+        }
+    }
+}
+
+/// Passes over a block that needs no leeways.
+pub(super) fn skip(track: &Track, body: &mut Body, head: usize) {
+    for point in &mut body.points {
+        point.foot = point.way.expected(track, head + BLOCK);
+        point.covered = point.foot.saturating_sub(1);
+    }
+    if let Some(axle) = &mut body.last_axle {
+        axle.foot = axle.way.expected(track, head + BLOCK);
+    }
+}
+
+/// After the last block: every point must have been over the whole corridor.
+pub(super) fn finish(track: &Track, body: &Body, minima: &mut Minima) {
+    for point in &body.points {
+        point.lose(track.lead + track.count, minima);
+    }
+}
+
+impl Way {
+    /// The foot on a straight when the head is at a station.
+    pub(super) fn expected(&self, track: &Track, head: usize) -> usize {
+        (head + AHEAD).saturating_sub(self.behind).min(track.len() - LANES)
+    }
+
+    /// A foot, or, if that is not where it can be, the one on a straight.
+    pub(super) fn kept(&self, track: &Track, head: usize, foot: usize) -> usize {
+        let expected = self.expected(track, head);
+        if foot.abs_diff(expected) > self.astray { expected } else { foot }
+    }
+}
+
+impl LastAxle {
+    /// Raises the offsets by how far the axle is from the planned path, at its own feet.
+    #[inline(always)]
+    pub(super) fn follow(&mut self, track: &Track, [x, y]: [V; 2], shift: &[V], lane: usize, minima: &mut Minima) {
+        let feet = follow(track, self.foot, x, y);
+        let seen = place(track.fields.gather(&feet), x, y);
+        let (on, lateral) = foot(&seen.at, seen.along, seen.lateral);
+        for (i, &k) in feet.iter().enumerate() {
+            let other = if on.0[i] < 0.0 { k.saturating_sub(1) } else { (k + 1).min(track.len() - 1) };
+            let [own, next] = [k, other].map(|k| shift[k].0[lane]);
+            let planned = own + (next - own) * (on.0[i].abs() / track.spacing).min(1.0);
+            minima.offset[k] = minima.offset[k].max((lateral.0[i] - planned).abs());
+        }
+        self.foot = next_foot(track, feet[LANES - 1], seen.along.0[LANES - 1]);
+    }
+}
+
+impl Point {
+    /// Takes note of the stations that have been under it.
+    #[inline(always)]
+    pub(super) fn cover(&mut self, feet: Feet, minima: &mut Minima) {
+        match feet {
+            Feet::Run(first) if first <= self.covered + JUMPED => self.covered = self.covered.max(first + LANES - 1),
+            Feet::Run(first) => {
+                self.lose(first, minima);
+                self.covered = first + LANES - 1;
+            }
+            Feet::Each(feet) => {
+                for foot in feet {
+                    if foot > self.covered + JUMPED {
+                        self.lose(foot, minima);
+                    }
+                    self.covered = self.covered.max(foot);
+                }
+            }
+        }
+    }
+
+    /// After a block: a foot that is not where it can be is taken back to where it would be on a straight. What was missed
+    /// is lost.
+    #[inline(always)]
+    pub(super) fn keep_on_the_way(&mut self, track: &Track, head: usize, minima: &mut Minima) {
+        let expected = self.way.expected(track, head);
+        if self.covered + self.way.astray < expected || self.foot.abs_diff(expected) > self.way.astray {
+            self.lose(expected, minima);
+            self.foot = expected;
+            self.covered = expected.saturating_sub(1);
+        }
+    }
+
+    /// Nothing is certified of the stations after those covered, up to `end`.
+    #[cold]
+    fn lose(&self, end: usize, minima: &mut Minima) {
+        let lost = V::splat(LOST_M).tagged(self.tag).0[0];
+        for k in self.covered + 1..end.min(minima.left.len()) {
+            minima.left[k] = least(minima.left[k], lost);
+            minima.right[k] = least(minima.right[k], lost);
+        }
+    }
+}
+
+#[inline(always)]
+pub(super) fn place(at: Fields<V>, x: V, y: V) -> Seen {
+    let (dx, dy) = (x - at.x, y - at.y);
+    let along = dx * at.tangent_x + dy * at.tangent_y;
+    let lateral = dy * at.tangent_x - dx * at.tangent_y;
+    Seen { at, along, lateral }
+}
+
+#[inline(always)]
+pub(super) fn near(along: V) -> bool {
+    // A NaN is far: it compares to nothing.
+    let mut all = true;
+    for a in along.0 {
+        all &= a.abs() <= NEAR_M;
+    }
+    all
+}
+
+/// Each point's own nearest station, walked to from `first`: a step at a time, since one point's foot is next to the
+/// other's.
+pub(super) fn follow(track: &Track, first: usize, x: V, y: V) -> [usize; LANES] {
+    let f = &track.fields;
+    let last = track.len() - 1;
+    let mut feet = [first; LANES];
+    let mut k = first.min(last);
+    for (i, foot) in feet.iter_mut().enumerate() {
+        for _ in 0..MOST_STEPS {
+            let (dx, dy) = (x.0[i] - f.x[k], y.0[i] - f.y[k]);
+            let along = dx * f.tangent_x[k] + dy * f.tangent_y[k];
+            let lateral = dy * f.tangent_x[k] - dx * f.tangent_y[k];
+            // On the outside of a curve stations are further apart than on the line, seen from the point.
+            let half = 0.5 * track.spacing * (1.0 - f.curvature[k] * lateral).max(0.1);
+            if along > 1.04 * half && k < last {
+                k += 1;
+            } else if along < -1.04 * half && k > 0 {
+                k -= 1;
+            } else {
+                break;
+            }
+        }
+        *foot = k;
+    }
+    feet
+}
+
+/// The station to start the next eight from: one further than the last of these, corrected by what it is off.
+#[inline(always)]
+pub(super) fn next_foot(track: &Track, foot: usize, along: f64) -> usize {
+    // Towards zero of a positive number is rounding, without a call where there is no instruction for it; NaN gives 0.
+    let off = (along / track.spacing + 64.5).clamp(0.0, 128.0) as usize;
+    (foot + 1 + off).saturating_sub(64).min(track.len() - LANES)
+}
+
+/// Arc length from the station to the foot of a point `along`, `lateral` of it, and the lateral at that foot:
+/// σ = a/(1 − κb), lat = b − (κ/2 + κ'σ/6)·a·σ.
+#[inline(always)]
+pub(super) fn foot(at: &Fields<V>, along: V, lateral: V) -> (V, V) {
+    let x = at.curvature * lateral;
+    let sigma = along * ((x + 1.0) * (x * x + 1.0));
+    (sigma, lateral - (at.curvature * 0.5 + at.curvature_slope * sigma * (1.0 / 6.0)) * along * sigma)
+}
+
+/// The lesser of two numbers of which neither is NaN: positions are finite, and a point without a foot is [`LOST_M`].
+#[inline(always)]
+pub(super) fn least(minimum: f64, value: f64) -> f64 {
+    if minimum < value { minimum } else { value }
+}
