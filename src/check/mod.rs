@@ -1,7 +1,7 @@
 //! The second opinion: confirms or refutes certificates, in files and databases, without the code that made them.
 //!
 //! Written from `docs/proof.md` and the file formats. Nothing of `stet` or `pipeline` is used here, and nothing there
-//! uses this (`tests/verify_independence.rs`). What the statement is about comes from those who make it: `vehicle`, `corridor`
+//! uses this (`tests/program/verify_independence.rs`). What the statement is about comes from those who make it: `vehicle`, `corridor`
 //! (the road's shape and widths), `turns` (a turn's area, paths and widths) and `network`; what is claimed of it is worked out again.
 //!
 //! | file | for |

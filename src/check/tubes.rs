@@ -12,7 +12,7 @@ use super::motion::{Motion, STEPS, Swing};
 const MOST_HEADING_RAD: f64 = 0.6;
 const QUARTER_TURN_RAD: f64 = std::f64::consts::FRAC_PI_2 - 1e-9;
 /// Where the filter lets a heading be off by more, the adjoint is asked: hinge by hinge a long chain loses its way in tight turns.
-const LOOSE_RAD: f64 = 0.3;
+const LOOSE_RAD: f64 = 0.12;
 /// Rounds of guessing until a bound reproduces itself.
 const ROUNDS: usize = 60;
 

@@ -62,7 +62,7 @@ impl Corridor {
 
 /// Displacement over one step of length `h` whose curvature runs linearly from `k0` to `k1`: Fresnel integrals, by
 /// Gauss-Legendre. The error is below 1e-15·h for a turn of up to 0.3 rad a step, 1e-11·h up to 1 rad.
-fn clothoid_step(h: f64, theta: f64, k0: f64, k1: f64) -> (f64, f64) {
+pub(crate) fn clothoid_step(h: f64, theta: f64, k0: f64, k1: f64) -> (f64, f64) {
     GAUSS.iter().fold((0.0, 0.0), |(dx, dy), &(t, weight)| {
         let (sin, cos) = (theta + h * t * (k0 + 0.5 * (k1 - k0) * t)).sin_cos();
         (dx + h * weight * cos, dy + h * weight * sin)

@@ -20,6 +20,7 @@ mod tests;
 use std::ops::Range;
 
 pub use closed::CurvatureProfile;
+pub(crate) use closed::clothoid_step;
 pub use file::{FileCorridor, FileError, corridor_from_file};
 pub use frame::{Frame, FrameError, HALF_WIDTH_M};
 pub use given::CentrelineError;

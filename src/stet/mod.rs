@@ -5,6 +5,7 @@
 mod adjoint;
 mod ascent;
 mod body;
+mod fit;
 mod gains;
 mod given;
 mod group;

@@ -160,6 +160,9 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     }
     for (bodies, minima) in bodies.iter().zip(&mut minima) {
         bodies.iter().for_each(|body| body::finish(track, body, minima));
+        for &k in &track.torn {
+            minima.hinge[k] = V::splat(NOT_CLOSED_RAD).tagged(0).0[0];
+        }
     }
     minima
 }

@@ -1,6 +1,7 @@
 //! A corridor made ready for the sweep: extended straight at both ends, with derivatives, and with the widths that
 //! the sampling may rely on.
 
+use super::fit::torn;
 use super::lanes::{LANES, V};
 use super::model::POINT_SPACING_M as MOST_GAP_M;
 use crate::corridor::Corridor;
@@ -25,6 +26,8 @@ pub(super) struct Track {
     /// Stations of the corridor itself.
     pub(super) count: usize,
     pub(super) fields: Fields<Vec<f64>>,
+    /// Stations that do not fit their neighbours: nothing is certified there.
+    pub(super) torn: Vec<usize>,
 }
 
 /// What the foot of a body point needs of the corridor.
@@ -98,10 +101,11 @@ impl Track {
             right_excess: right.into_iter().map(|[excess, _]| excess).collect(),
             ..fields
         };
-        Self { spacing: h, lead, count, fields }
+        let torn = torn(corridor).into_iter().map(|k| lead + k).collect();
+        Self { spacing: h, lead, count, fields, torn }
     }
 
-    /// Every second station, for planning; the corridor's first is among them.
+    /// Every second station, for planning, which does not ask whether they fit; the corridor's first is among them.
     pub(super) fn coarse(&self) -> Self {
         let first = self.lead % 2;
         let of = |column: &Vec<f64>| column.iter().skip(first).step_by(2).copied().collect::<Vec<f64>>();
@@ -122,7 +126,13 @@ impl Track {
             right_excess: of(&f.right_excess),
             rounding: of(&f.rounding),
         };
-        Self { spacing: 2.0 * self.spacing, lead: self.lead / 2, count: self.count.div_ceil(2), fields }
+        Self {
+            spacing: 2.0 * self.spacing,
+            lead: self.lead / 2,
+            count: self.count.div_ceil(2),
+            fields,
+            torn: Vec::new(),
+        }
     }
 
     /// Number of extended stations.

@@ -40,10 +40,9 @@ const SHARES: [f64; 2] = [0.2, 0.42];
 const MEET_M: f64 = 90.0;
 /// A centreline that ends is prolonged straight by so much, metres.
 const PROLONGED_M: f64 = 30.0;
-/// Stations of tight turns lie this close, metres.
-const TIGHT_SPACING_M: f64 = 0.5;
-/// Tighter than this is tight, metres.
-const TIGHT_M: f64 = 25.0;
+/// Stations of turns tighter than the first lie as close as the second, metres: a carter's corner has transitions of half a metre,
+/// and stations that step over one do not follow from each other.
+const TIGHT_M: [(f64, f64); 2] = [(6.0, 0.25), (25.0, 0.5)];
 
 /// A junction's turn, ready for its family.
 pub(super) struct Junction {
@@ -286,7 +285,8 @@ impl Ends<'_> {
             line.push(to.point(k), to.line.left_m[k], to.line.right_m[k]);
         }
         let min_radius_m = 1.0 / path::sharpest(points).max(1e-9);
-        let spacing_m = if min_radius_m < TIGHT_M { TIGHT_SPACING_M } else { from.line.spacing_m };
+        let tight = TIGHT_M.into_iter().find(|(radius_m, _)| min_radius_m < *radius_m);
+        let spacing_m = tight.map_or(from.line.spacing_m, |(_, spacing_m)| spacing_m);
         let corridor = Corridor::from_centreline(&line.points, &line.left_m, &line.right_m, 0.0, spacing_m).ok()?;
         let last = corridor.len() - 1;
         let station = |m: f64| (m / corridor.spacing_m).round().clamp(0.0, last as f64) as usize;

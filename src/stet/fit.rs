@@ -1,0 +1,84 @@
+//! Whether stations are the curve that they are taken for (proof, A1): from each, curvature that is linear in between leads to the next.
+
+use crate::corridor::{Corridor, clothoid_step};
+
+/// Most by which a station may be off where the one before it leads, metres and radians, per metre between them: as much as sampling
+/// a smooth line leaves.
+const PLACE: f64 = 0.02;
+const HEADING: f64 = 0.04;
+/// Most that a corridor turns from one station to the next, radians.
+const MOST_TURN_RAD: f64 = 0.5;
+
+/// Stations about which nothing can be said, since they do not fit their neighbours.
+pub(super) fn torn(corridor: &Corridor) -> Vec<usize> {
+    let mut torn = Vec::new();
+    for k in 0..corridor.len() {
+        if crosses(corridor, k) {
+            torn.push(k);
+        }
+        if k > 0 && !follows(corridor, k) {
+            torn.extend([k - 1, k]);
+        }
+    }
+    torn.dedup();
+    torn
+}
+
+/// Whether the normals of neighbouring stations cross before they reach an edge.
+fn crosses(c: &Corridor, k: usize) -> bool {
+    !(c.curvature[k] * c.left_m[k] < 1.0 && -c.curvature[k] * c.right_m[k] < 1.0)
+}
+
+/// Whether station `k` is where the one before it leads.
+fn follows(c: &Corridor, k: usize) -> bool {
+    let (h, before) = (c.spacing_m, k - 1);
+    let [from, to] = [c.curvature[before], c.curvature[k]];
+    let turn = 0.5 * h * (from + to);
+    let turned = c.heading[k] - c.heading[before] - turn;
+    let turned = turned - std::f64::consts::TAU * (turned / std::f64::consts::TAU).round();
+    let (dx, dy) = clothoid_step(h, c.heading[before], from, to);
+    let off = (c.x[before] + dx - c.x[k]).hypot(c.y[before] + dy - c.y[k]);
+    let sharpest = turn.abs().max(h * to.abs()).max(h * from.abs());
+    sharpest <= MOST_TURN_RAD && turned.abs() <= HEADING * h && off <= PLACE * h
+}
+
+#[cfg(test)]
+mod tests {
+    use super::torn;
+    use crate::corridor::{Corridor, CurvatureProfile};
+    use crate::stet::{Model, Options, certify};
+    use crate::vehicle::Catalogue;
+
+    fn bend() -> Corridor {
+        let profile =
+            CurvatureProfile::new(0.5).straight(60.0).clothoid(0.02, 10.0).arc(0.02, 20.0).clothoid(0.0, 10.0);
+        let profile = profile.straight(60.0);
+        Corridor::from_curvature(0.5, [3.0, 4.0], 6.0, &profile.curvature, 5.0, 5.0)
+    }
+
+    fn safe(corridor: &Corridor) -> bool {
+        let vehicle = Catalogue::builtin().unwrap().get("EU-SEMI16.5").unwrap().clone();
+        certify(corridor, &Model::new(&vehicle).unwrap(), &Options::default()).unwrap().result.safe()
+    }
+
+    #[test]
+    fn stations_that_follow_from_each_other_are_whole() {
+        let corridor = bend();
+        assert!(torn(&corridor).is_empty());
+        assert!(safe(&corridor));
+    }
+
+    #[test]
+    fn where_one_is_aside_or_turned_nothing_is_certified() {
+        let (mut aside, mut turned, mut crossed) = (bend(), bend(), bend());
+        aside.x[150] += 0.02;
+        turned.heading[150..].iter_mut().for_each(|heading| *heading += 0.03);
+        crossed.curvature[150] = 0.21;
+        assert_eq!(torn(&aside), [149, 150, 151]);
+        assert_eq!(torn(&turned)[..2], [149, 150]);
+        assert!(torn(&crossed).contains(&150));
+        for corridor in [aside, turned, crossed] {
+            assert!(!safe(&corridor));
+        }
+    }
+}
