@@ -24,6 +24,7 @@ if [ -z "$python" ]; then
     exit 1
 fi
 rm -rf "$venv"
+mkdir -p "${venv%/*}"
 if ! { "$python" -m venv "$venv" && "$venv/bin/pip" install --quiet --only-binary :all: $packages; } >/dev/null 2>"$venv.log"; then
     echo "no engines from PyPI: $(tail -n 1 "$venv.log")" >&2
     rm -rf "$venv"
