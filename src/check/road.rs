@@ -228,7 +228,8 @@ fn check_station(c: &Corridor, k: usize) -> Result<f64, RoadError> {
     if turn.abs() > MOST_TURN_RAD || c.spacing_m * c.curvature[k].abs() > MOST_TURN_RAD {
         return wrong(format!("a turn of {turn:.2} rad since the station before is too much for this spacing"));
     }
-    let turned = (c.heading[k] - c.heading[before] - turn).abs();
+    let turned = c.heading[k] - c.heading[before] - turn;
+    let turned = (turned - std::f64::consts::TAU * (turned / std::f64::consts::TAU).round()).abs();
     let off = turned;
     if off > HEADING_TOLERANCE_RAD * c.spacing_m {
         return wrong(format!("its heading is {off:.4} rad off what the curvatures say"));

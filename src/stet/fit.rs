@@ -10,7 +10,7 @@ const HEADING: f64 = 0.04;
 const MOST_TURN_RAD: f64 = 0.5;
 
 /// Stations about which nothing can be said, since they do not fit their neighbours.
-pub(super) fn torn(corridor: &Corridor) -> Vec<usize> {
+pub(crate) fn torn(corridor: &Corridor) -> Vec<usize> {
     let mut torn = Vec::new();
     for k in 0..corridor.len() {
         if crosses(corridor, k) {
@@ -46,7 +46,7 @@ fn follows(c: &Corridor, k: usize) -> bool {
 mod tests {
     use super::torn;
     use crate::corridor::{Corridor, CurvatureProfile};
-    use crate::stet::{Model, Options, certify};
+    use crate::stet::{Model, Options, certify, certify_planned};
     use crate::vehicle::Catalogue;
 
     fn bend() -> Corridor {
@@ -80,5 +80,16 @@ mod tests {
         for corridor in [aside, turned, crossed] {
             assert!(!safe(&corridor));
         }
+    }
+
+    #[test]
+    fn nor_while_the_vehicle_stands_there_or_has_just_been_there() {
+        let vehicle = Catalogue::builtin().unwrap().get("EU-SEMI16.5").unwrap().clone();
+        let mut corridor = bend();
+        corridor.x[150] += 0.02;
+        let spans = [0..60, 60..130, 140..160, 160..200, 240..300];
+        let model = Model::new(&vehicle).unwrap();
+        let (_, results) = certify_planned(&corridor, &model, &spans, &Options::default()).unwrap();
+        assert_eq!(results.iter().map(|result| result.safe()).collect::<Vec<_>>(), [true, false, false, false, true]);
     }
 }

@@ -26,6 +26,7 @@ use std::ops::Range;
 use crate::corridor::Corridor;
 use crate::verdict::{UnsafeReason, Verdict};
 
+pub(crate) use fit::torn;
 pub use given::{PlanError, certify_plan};
 pub use model::{MAX_UNITS, Model, ModelError};
 pub use motion::steady_offtracking;

@@ -13,6 +13,9 @@ use super::{Limiting, Side, SpanResult};
 /// each side, the first station of the straight extension included.
 const SLACK: usize = 3;
 
+/// Vehicle lengths within which what was driven before has faded to a few hundredths: no unit is longer than half of it.
+const FADING_LENGTHS: usize = 2;
+
 /// RSC where nothing bounds the vehicle.
 pub(super) const NOTHING_M: f64 = -1000.0;
 
@@ -57,6 +60,11 @@ pub(super) fn result(track: &Track, model: &Model, span: &std::ops::Range<usize>
     if let Some(&lost) = beyond.min_by(|a, b| a.total_cmp(b)).filter(|margin| **margin < 0.5 * NOT_CLOSED_RAD) {
         (least, hinge) = (NOTHING_M, hinge.min(lost));
         hinge_unit = ((lost.to_bits() & TAG_MASK) >> 4) as usize;
+    }
+    // Trailers that were pulled over stations that are no curve are not where they are taken to be for a while.
+    let start = *stations(track, span).start();
+    if track.torn.iter().any(|k| (start.saturating_sub(FADING_LENGTHS * behind)..start).contains(k)) {
+        (least, hinge) = (NOTHING_M, hinge.min(NOT_CLOSED_RAD));
     }
     // A span is longer than what feet may pass over unseen (`body::JUMPED`); if nobody came for all that, nothing is known.
     if least >= UNVISITED_M || hinge >= UNVISITED_M {

@@ -162,6 +162,7 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
         bodies.iter().for_each(|body| body::finish(track, body, minima));
         for &k in &track.torn {
             minima.hinge[k] = V::splat(NOT_CLOSED_RAD).tagged(0).0[0];
+            [minima.left[k], minima.right[k]] = [V::splat(body::LOST_M).tagged(0).0[0]; 2];
         }
     }
     minima

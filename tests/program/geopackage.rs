@@ -434,12 +434,13 @@ fn killed_at_any_moment_the_file_is_whole() {
             let _ = std::fs::remove_file(path.with_extension("replace"));
         }
         let mut child = Command::new(std::env::current_exe().unwrap())
-            .args(["--exact", "child_that_is_killed"])
+            .args(["--exact", "geopackage::child_that_is_killed"])
             .env(CHILD, &path)
             .stdout(std::process::Stdio::null())
             .spawn()
             .unwrap();
         std::thread::sleep(std::time::Duration::from_millis(millis));
+        assert!(child.try_wait().unwrap().is_none(), "it writes until it is killed");
         child.kill().unwrap();
         child.wait().unwrap();
         let rows = all(&path, &QueryOptions::new("EU-SEMI16.5", Policy::Lane));

@@ -1,6 +1,5 @@
 //! `netcert paper` as a user meets it.
 
-// Shared with other tests, which use all of it.
 use crate::support::program;
 
 use program::Place;
