@@ -43,10 +43,11 @@ fn follows(c: &Corridor, k: usize) -> bool {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::torn;
     use crate::corridor::{Corridor, CurvatureProfile};
-    use crate::stet::{Model, Options, certify, certify_planned};
+    use crate::stet::{Model, Options, SpanResult, certify, certify_planned};
     use crate::vehicle::Catalogue;
 
     fn bend() -> Corridor {
@@ -90,6 +91,6 @@ mod tests {
         let spans = [0..60, 60..130, 140..160, 160..200, 240..300];
         let model = Model::new(&vehicle).unwrap();
         let (_, results) = certify_planned(&corridor, &model, &spans, &Options::default()).unwrap();
-        assert_eq!(results.iter().map(|result| result.safe()).collect::<Vec<_>>(), [true, false, false, false, true]);
+        assert_eq!(results.iter().map(SpanResult::safe).collect::<Vec<_>>(), [true, false, false, false, true]);
     }
 }

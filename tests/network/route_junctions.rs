@@ -1,6 +1,8 @@
 //! Routes over drawn junctions: roundabouts as one movement and leg by leg, turns that share a stretch of road, whole routes that are
 //! refuted though their parts passed, alternatives, and what blocks.
 
+#![allow(clippy::single_range_in_vec_init)]
+
 use crate::oracle;
 use crate::support::ascii_map;
 use crate::support::routing;
