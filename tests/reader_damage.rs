@@ -3,13 +3,20 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
 
+#[path = "support/accounts.rs"]
+mod accounts;
+#[path = "support/extracts.rs"]
+mod extracts;
+
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     fs::{self, OpenOptions},
-    path::{Path, PathBuf},
+    path::Path,
     sync::atomic::{AtomicUsize, Ordering},
 };
 
+use accounts::assert_adds_up;
+use extracts::extract;
 use netcert::osm::{
     Extract, LonLat,
     pbf::{
@@ -75,8 +82,8 @@ fn a_file_cut_at_any_byte_is_refused_and_between_blobs_it_is_visibly_shorter() {
 
 #[test]
 fn a_real_file_cut_in_any_frame_is_refused() {
-    let Some(folder) = extracts() else { return };
-    let bytes = fs::read(folder.join("sydney_au.osm.pbf")).unwrap();
+    let Some(real) = extract("sydney_au.osm.pbf") else { return };
+    let bytes = fs::read(real).unwrap();
     let boundaries = boundaries(&bytes);
     let temporary = tempfile::tempdir().unwrap();
     let path = temporary.path().join("cut.osm.pbf");
@@ -174,11 +181,8 @@ fn assert_memory_bounded() {
 
 fn check_soundness(extract: &Extract) {
     let account = &extract.account;
-    assert_eq!(account.ways_read, account.ways_kept + account.ways_left_out.values().sum::<u64>());
+    assert_adds_up(account);
     assert_eq!(account.ways_kept, extract.ways.len() as u64);
-    let n = account.nodes;
-    assert_eq!(n.read, n.placed + n.unnamed + n.deleted + n.invalid + n.superseded);
-    assert_eq!(n.named, n.placed + n.invalid + n.missing);
     assert!(extract.ways.is_sorted_by(|a, b| a.id < b.id));
     for way in &extract.ways {
         let refs = &extract.refs[way.refs.start as usize..way.refs.end as usize];
@@ -192,16 +196,6 @@ fn check_soundness(extract: &Extract) {
 
 fn read(path: &Path) -> Result<Extract, ReadError> {
     read_extract(path, &|_| ())
-}
-
-fn extracts() -> Option<PathBuf> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/extracts");
-    let folder = std::env::var_os("NETCERT_EXTRACTS").map_or_else(beside, PathBuf::from);
-    if folder.join("sydney_au.osm.pbf").is_file() {
-        return Some(folder);
-    }
-    eprintln!("skipped: no extracts at {} (set NETCERT_EXTRACTS)", folder.display());
-    None
 }
 
 /// Where the blobs of a good file end.

@@ -6,8 +6,6 @@ mod cases;
 mod optimum;
 mod problem;
 
-use std::path::Path;
-
 use cases::Case;
 use netcert::corridor::Corridor;
 use netcert::stet::{self, Certificate, Model, Options, Plan, STEP_M};
@@ -15,6 +13,9 @@ use netcert::vehicle::Vehicle;
 use optimum::{Merit, Nominal, optimum};
 use problem::{Place, Problem};
 use rayon::prelude::*;
+
+use crate::support::demo::demo;
+use crate::support::extracts::extract;
 
 /// RSC itself: all bounds deducted.
 struct Certified<'a> {
@@ -178,8 +179,8 @@ fn report(what: &str, mut short_m: Vec<f64>) -> f64 {
 #[test]
 fn corrcen_is_within_2_cm_of_the_best_plan_at_the_median() {
     let mut cases: Vec<Case> = (0..36).map(cases::drawn).collect();
-    cases.extend(cases::mapped(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/demo.osm.pbf")), 6));
-    cases.extend(cases::mapped(&cases::extracts().join("heidelberg_de.osm.pbf"), 12));
+    cases.extend(cases::mapped(&demo(), 6));
+    cases.extend(extract("heidelberg_de.osm.pbf").iter().flat_map(|file| cases::mapped(file, 12)));
     let compared: Vec<Compared> = cases.par_iter().filter_map(compare).collect();
     report("nominal leeway, optimum less CORRCEN", compared.iter().map(Compared::nominal_short_m).collect());
     let certified = report("RSC, optimum less CORRCEN", compared.iter().map(Compared::short_m).collect());

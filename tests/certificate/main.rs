@@ -1,5 +1,6 @@
 //! What the certificate says, judged by an independent simulator, an adversary, closed forms, published values and the paper.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, unreachable_pub)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, unreachable_pub)]
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod corrcen;
 mod errata;
@@ -9,5 +10,6 @@ mod properties;
 mod published_values;
 mod simulator;
 mod soundness;
+mod support;
 mod tubes;
 mod verify_agreement;

@@ -1,10 +1,9 @@
 //! Every road of a real extract, one stroke a way: finite corridors, all within tolerance, and few that cannot be driven at
 //! all. Those few are mountain hairpins whose inner lane has less than 2 m of radius.
-//!
-//! Needs `NETCERT_EXTRACTS` (or `../shared/extracts`); without it says so and passes.
+
+use crate::support::extracts::extract;
 
 use std::collections::HashMap;
-use std::path::PathBuf;
 
 use netcert::corridor::{Params, stroke_corridor};
 use netcert::network::{Edge, Network, Road, Stroke};
@@ -16,18 +15,9 @@ use osmpbfreader::{OsmObj, OsmPbfReader};
 const CLASSES: [&str; 8] =
     ["motorway", "trunk", "primary", "secondary", "tertiary", "unclassified", "residential", "motorway_link"];
 
-fn extracts() -> PathBuf {
-    std::env::var_os("NETCERT_EXTRACTS")
-        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/extracts")), PathBuf::from)
-}
-
 /// One road, edge and stroke a way, lane of 3.5 m to the right of the line.
 fn network(file: &str) -> Option<Network> {
-    let path = extracts().join(file);
-    let Ok(opened) = std::fs::File::open(&path) else {
-        eprintln!("skipped: no {}", path.display());
-        return None;
-    };
+    let opened = std::fs::File::open(extract(file)?).unwrap();
     let (mut places, mut ways) = (HashMap::new(), Vec::new());
     for object in OsmPbfReader::new(opened).par_iter() {
         match object.unwrap() {

@@ -13,6 +13,5 @@ mod restrictions;
 mod roundabouts;
 mod route_junctions;
 mod routes;
-#[path = "../support/mod.rs"]
 mod support;
 mod turns;

@@ -3,6 +3,9 @@
 //! The index says for each file whether it may be read (OK), read with losses that are counted (SKIP) or must be
 //! refused (ERR); the table below says exactly how.
 
+use crate::support::accounts::assert_adds_up;
+use crate::support::extracts::folder_with;
+
 use std::{
     collections::BTreeMap,
     fmt::Write as _,
@@ -13,6 +16,8 @@ use netcert::osm::{
     Extract,
     pbf::{NodeTally, ReadError, read_extract},
 };
+
+const INDEX: &str = "malformed/INDEX.tsv";
 
 /// What a way through four nodes gives.
 const PLAIN: &str = "10: 1 2 3 4 | 4 nodes, 4 placed | 9.5,47.1 9.5,47.101 9.501,47.102 9.503,47.103";
@@ -120,7 +125,7 @@ const EXPECTED: [(&str, &str); 94] = [
 #[test]
 fn every_file_of_the_index_is_read_or_refused_as_stated() {
     let Some(folder) = extracts() else { return };
-    let index = std::fs::read_to_string(folder.join("malformed/INDEX.tsv")).unwrap();
+    let index = std::fs::read_to_string(folder.join(INDEX)).unwrap();
     let classes: BTreeMap<&str, &str> = index.lines().skip(1).map(|line| file_and_class(line).unwrap()).collect();
     let expected: BTreeMap<&str, &str> = EXPECTED.into_iter().collect();
     assert_eq!(classes.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>(), "files without an expectation");
@@ -164,13 +169,7 @@ fn the_number_of_threads_changes_nothing() {
 }
 
 fn extracts() -> Option<PathBuf> {
-    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/extracts");
-    let folder = std::env::var_os("NETCERT_EXTRACTS").map_or_else(beside, PathBuf::from);
-    if folder.join("malformed/INDEX.tsv").is_file() {
-        return Some(folder);
-    }
-    eprintln!("skipped: no extracts at {} (set NETCERT_EXTRACTS)", folder.display());
-    None
+    folder_with(INDEX)
 }
 
 fn file_and_class(line: &str) -> Option<(&str, &str)> {
@@ -185,12 +184,7 @@ fn read(path: &Path) -> Result<Extract, ReadError> {
 /// What an account must add up to, what an error must name.
 fn check_account_or_message(path: &Path, outcome: Result<Extract, ReadError>) {
     match outcome {
-        Ok(Extract { account, .. }) => {
-            assert_eq!(account.ways_read, account.ways_kept + account.ways_left_out.values().sum::<u64>());
-            let n = account.nodes;
-            assert_eq!(n.read, n.placed + n.unnamed + n.deleted + n.invalid + n.superseded);
-            assert_eq!(n.named, n.placed + n.invalid + n.missing);
-        }
+        Ok(Extract { account, .. }) => assert_adds_up(&account),
         Err(error) => {
             let message = error.to_string();
             assert!(message.starts_with(&path.display().to_string()), "{message}");

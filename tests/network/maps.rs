@@ -5,16 +5,12 @@
 
 use crate::support::ascii_map;
 
-use ascii_map::{AsciiMap, edges, id_of, no_sections, somewhere, strokes};
-use netcert::network::{MovementKind, Network, NetworkAccount, StrokeOptions, build, build_with};
+use ascii_map::{AsciiMap, built, edges, id_of, no_sections, somewhere, strokes};
+use netcert::network::{MovementKind, Network, NetworkAccount, StrokeOptions, build_with};
 use netcert::osm::facts::{Legal, Limit, PointFacts};
 
 const ROAD: &str = "highway=residential";
 const ONE_WAY: &str = "highway=residential oneway=yes";
-
-fn built(map: &AsciiMap) -> (Network, NetworkAccount) {
-    build(map.extract(), &somewhere, &no_sections)
-}
 
 #[track_caller]
 fn check(map: &AsciiMap, expected_edges: &str, expected_strokes: &str) -> (Network, NetworkAccount) {

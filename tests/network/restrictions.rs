@@ -4,18 +4,15 @@
 //! on `-`, back `*`.
 
 use crate::support::ascii_map;
+use crate::support::extracts::extract;
 
-use ascii_map::{AsciiMap, id_of, no_sections, node_of, somewhere};
-use netcert::network::{MovementKind, Network, NetworkAccount, build};
+use ascii_map::{AsciiMap, built, id_of, no_sections, node_of, somewhere};
+use netcert::network::{MovementKind, Network, build};
 use netcert::osm::Via;
 use netcert::osm::pbf::read_extract;
 
 const ROAD: &str = "highway=residential";
 const ONE_WAY: &str = "highway=residential oneway=yes";
-
-fn built(map: &AsciiMap) -> (Network, NetworkAccount) {
-    build(map.extract(), &somewhere, &no_sections)
-}
 
 fn nodes(network: &Network, edges: &[u32]) -> String {
     let edge = |e: &u32| &network.edges[*e as usize];
@@ -221,14 +218,7 @@ fn two_nodes_at_one_place_are_one_to_a_restriction() {
 
 #[test]
 fn real_restrictions_are_all_accounted_for() {
-    let folder = std::env::var("NETCERT_EXTRACTS").map_or_else(
-        |_| std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/extracts"),
-        std::path::PathBuf::from,
-    );
-    let path = folder.join("heidelberg_de.osm.pbf");
-    if !path.exists() {
-        return println!("skipped: {} is missing", path.display());
-    }
+    let Some(path) = extract("heidelberg_de.osm.pbf") else { return };
     let extract = read_extract(&path, &|_| ()).unwrap();
     let relations = extract.account.relations;
     assert_eq!(relations.kept(), extract.restrictions.len() as u64);

@@ -1,97 +1,27 @@
 //! Roundabouts as one movement: which passages there are, who gets over, and that no claim of one is refuted.
 //!
-//! A ring of 24 points with four arms at right angles; widths are tagged, kerb radii are the test's own.
+//! Widths are tagged, kerb radii are the test's own.
 
 use crate::oracle;
-use crate::support::ascii_map;
+use crate::support::ascii_map::id_of;
+use crate::support::catalogue::catalogued;
+use crate::support::junctions::Drawn;
+use crate::support::roundabout::{RING, map};
 
-use ascii_map::{AsciiMap, id_of};
 use geo::{Distance as _, Euclidean};
-use netcert::corridor::Params;
-use netcert::network::{Network, build};
 use netcert::osm::Via;
-use netcert::osm::facts::{Countries, Place, Policy, cross_sections};
-use netcert::pipeline::{Reporter, Settings, TurnJob, best_of, certify_turns};
-use netcert::stet::{Model, Options, SpanResult};
+use netcert::osm::facts::Policy;
 use netcert::store::TurnCertificate;
-use netcert::turns::{Kerbs, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, corridors_of, turn_facts};
-use netcert::vehicle::{Catalogue, Vehicle};
+use netcert::turns::{Reach, StrokeLine, TurnFacts, corridors_of};
 use netcert::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use oracle::draw::Draw;
 use oracle::fight;
 
-const RING: &str = "abcdefghijklmnopqrstuvwx";
-const ARMS: [(char, char); 4] = [('W', 'a'), ('S', 'g'), ('E', 'm'), ('N', 's')];
-
-struct Drawn {
-    network: Network,
-    params: TurnParams,
-}
-
-/// Counter-clockwise from the west, or clockwise where traffic keeps left: there N is in the south.
-fn map(radius_m: f64, ring: &str, arm: &str, left_hand_traffic: bool) -> AsciiMap {
-    let mirror = if left_hand_traffic { -1.0 } else { 1.0 };
-    let at = |turn: f64, m: f64| {
-        let (sin, cos) = (std::f64::consts::PI + turn * std::f64::consts::TAU).sin_cos();
-        [m * cos, m * sin * mirror]
-    };
-    let mut nodes: Vec<_> = RING.chars().zip(0..).map(|(c, i)| (c, at(f64::from(i) / 24.0, radius_m))).collect();
-    nodes.extend(ARMS.into_iter().zip(0..).map(|((c, _), i)| (c, at(f64::from(i) / 4.0, radius_m + 150.0))));
-    let mut map = AsciiMap::placed(&nodes).way(&format!("{RING}a"), &format!("junction=roundabout {ring}"));
-    for (end, node) in ARMS {
-        map = map.way(&format!("{end}{node}"), arm);
-    }
-    map
-}
-
 impl Drawn {
-    fn new(map: &AsciiMap, left_hand_traffic: bool, kerb_m: f64) -> Self {
-        let countries = Countries::load().unwrap();
-        let rules = countries.rules();
-        let place = |_| Place { country: *b"DE", left_hand_traffic };
-        let (network, _) = build(map.extract(), &place, &|facts, place| cross_sections(facts, place, rules));
-        Self { network, params: TurnParams { corridor: Params::default(), kerbs: Kerbs::everywhere(kerb_m) } }
-    }
-
     fn ring(radius_m: f64, ring_m: f64, arm_m: f64, kerb_m: f64) -> Self {
         let tags = |width: f64| format!("highway=secondary width={width}");
         Self::new(&map(radius_m, &tags(ring_m), &tags(arm_m), false), false, kerb_m)
     }
-
-    fn facts(&self) -> Vec<TurnFacts> {
-        turn_facts(&self.network, &self.params.kerbs)
-    }
-
-    fn passages(&self) -> Vec<TurnFacts> {
-        self.facts().into_iter().filter(|turn| !turn.through.is_empty()).collect()
-    }
-
-    /// From the end of one arm to that of another.
-    fn passage(&self, ends: &str) -> TurnFacts {
-        let ids: Vec<i64> = ends.chars().map(id_of).collect();
-        let edge = |edge: u32| &self.network.edges[edge as usize];
-        let fits = |t: &TurnFacts| edge(t.movement.from).from_node == ids[0] && edge(t.movement.to).to_node == ids[1];
-        self.passages().into_iter().find(fits).unwrap_or_else(|| panic!("{ends} is no passage"))
-    }
-
-    fn corridors(&self, ends: &str, policy: Policy, reach: Reach) -> Result<TurnCorridors, UnknownReason> {
-        corridors_of(&self.network, &self.passage(ends), policy, &self.params, reach)
-    }
-
-    fn best(&self, ends: &str, policy: Policy, id: &str) -> Option<SpanResult> {
-        let vehicle = catalogued(id);
-        let made = self.corridors(ends, policy, Reach::of(&vehicle).unwrap()).unwrap();
-        let model = Model::new(&vehicle).unwrap();
-        best_of(&made.paths, &[&model], &Options::default()).pop().unwrap().map(|(_, result)| result)
-    }
-
-    fn safe(&self, ends: &str, policy: Policy, id: &str) -> bool {
-        self.best(ends, policy, id).is_some_and(|result| result.safe())
-    }
-}
-
-fn catalogued(id: &str) -> Vehicle {
-    Catalogue::builtin().unwrap().get(id).unwrap().clone()
 }
 
 #[test]
@@ -253,32 +183,11 @@ fn a_path_leaves_and_joins_the_arms_own_centrelines_and_keeps_to_the_ring_betwee
     }
 }
 
-struct Silent;
-impl Reporter for Silent {
-    fn begin(&self, _: &'static str, _: u64) {}
-    fn advance(&self, _: u64) {}
-    fn end(&self) {}
-    fn note(&self, _: &str) {}
-}
-
 fn certified(drawn: &Drawn, id: &str, edges: &[Verdict], threads: usize) -> Vec<TurnCertificate> {
-    let models = [Model::new(&catalogued(id)).unwrap()];
-    let edges = [edges.to_vec()];
-    let (policy, turns) = (Policy::Carriageway, drawn.facts());
-    let settings = Settings { policy, corridor: Params::default(), stet: Options::default(), turns: true };
-    let (network, params) = (&drawn.network, &drawn.params);
-    let job = TurnJob { network, turns: &turns, models: &models, edges: &edges, settings: &settings, params };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| {
-        let mut out = Vec::new();
-        let sink = |_, certificate: &TurnCertificate| {
-            out.push(certificate.clone());
-            Ok::<(), ()>(())
-        };
-        certify_turns(&job, &Silent, sink).unwrap();
-        out.sort_by_key(|certificate| certificate.turn);
-        out
-    })
+    let (made, _) = drawn.certified(&[id], edges, Policy::Carriageway, threads);
+    let mut out: Vec<_> = made.into_iter().map(|(_, certificate)| certificate).collect();
+    out.sort_by_key(|certificate| certificate.turn);
+    out
 }
 
 #[test]

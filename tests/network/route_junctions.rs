@@ -5,9 +5,10 @@
 
 use crate::oracle;
 use crate::support::ascii_map;
+use crate::support::roundabout;
 use crate::support::routing;
 
-use ascii_map::{AsciiMap, id_of};
+use ascii_map::AsciiMap;
 use netcert::network::Movement;
 use netcert::osm::facts::Policy;
 use netcert::route::*;
@@ -15,9 +16,6 @@ use netcert::turns::Kerbs;
 use netcert::verdict::{UnsafeReason, Verdict};
 use oracle::whole;
 use routing::{Driver, Region};
-
-/// Counter-clockwise from the west; the way begins and ends at `a`.
-const RING: &str = "abcdefghijklmnopqrstuvwx";
 
 fn region(map: &AsciiMap, kerb_m: f64) -> Region {
     let mut region = Region::of(map.extract(), Policy::Carriageway);
@@ -27,23 +25,12 @@ fn region(map: &AsciiMap, kerb_m: f64) -> Region {
 
 /// A ring of 20 m radius, four arms at right angles.
 fn roundabout() -> AsciiMap {
-    let at = |turn: f64, m: f64| {
-        let (sin, cos) = (std::f64::consts::PI + turn * std::f64::consts::TAU).sin_cos();
-        [m * cos, m * sin]
-    };
-    let mut nodes: Vec<_> = RING.chars().zip(0..).map(|(c, i)| (c, at(f64::from(i) / 24.0, 20.0))).collect();
-    nodes.extend("WSEN".chars().zip(0..).map(|(c, i)| (c, at(f64::from(i) / 4.0, 170.0))));
-    let mut map = AsciiMap::placed(&nodes).way(&format!("{RING}a"), "highway=secondary junction=roundabout width=8");
-    for arm in ["Wa", "Sg", "Em", "Ns"] {
-        map = map.way(arm, "highway=secondary width=8");
-    }
-    map
+    let tags = "highway=secondary width=8";
+    roundabout::map(20.0, tags, tags, false)
 }
 
 fn edge(region: &Region, ends: &str) -> u32 {
-    let ends: Vec<i64> = ends.chars().map(id_of).collect();
-    let found = (0..).zip(&region.network.edges).find(|(_, e)| [e.from_node, e.to_node] == ends[..]);
-    found.unwrap_or_else(|| panic!("no edge {ends:?}")).0
+    ascii_map::edge(&region.network, ends)
 }
 
 /// The middle of the first piece of an edge.

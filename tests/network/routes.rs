@@ -3,12 +3,14 @@
 
 use crate::oracle;
 use crate::support::ascii_map;
+use crate::support::demo::demo;
+use crate::support::extracts::extract;
 use crate::support::routing;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use ascii_map::{AsciiMap, no_sections, somewhere};
-use netcert::network::{MovementKind, Network, Restriction, build};
+use ascii_map::{AsciiMap, built};
+use netcert::network::{MovementKind, Network, Restriction};
 use netcert::osm::facts::{Policy, RestrictedTurn, RestrictionKind};
 use netcert::route::*;
 use netcert::verdict::Verdict;
@@ -45,7 +47,7 @@ fn grid(streets: &[(usize, bool, u8)], rings: &[usize]) -> Network {
         let tags = ["highway=residential", "highway=residential oneway=yes", "highway=residential oneway=-1"];
         map = map.way(&format!("{}{}", names[from], names[to]), tags[usize::from(one_way % 5).min(2)]);
     }
-    build(map.extract(), &somewhere, &no_sections).0
+    built(&map).0
 }
 
 /// Dijkstra over nodes, with nothing of the library but the edges' costs: from the end of `from` to the beginning of `to`.
@@ -235,21 +237,17 @@ proptest! {
 fn a_way_over_several_places_goes_on_as_it_came() {
     let map =
         AsciiMap::drawn(50.0, "A B C D\n\n  E").way("ABCD", "highway=residential").way("BE", "highway=residential");
-    let (network, _) = build(map.extract(), &somewhere, &no_sections);
+    let (network, _) = built(&map);
     let movements = network.movements();
     let graph = Graph::new(&network, &movements, &Speeds::builtin().unwrap(), Measure::Distance);
-    let edge = |from: char, to: char| {
-        let ends = (ascii_map::id_of(from), ascii_map::id_of(to));
-        (0..).zip(&network.edges).find(|(_, e)| (e.from_node, e.to_node) == ends).unwrap().0
-    };
-    let goals =
-        |pairs: &[(char, char)]| pairs.iter().map(|&(a, b)| Goal { edge: edge(a, b), share: 0.5 }).collect::<Vec<_>>();
-    let start = [Start::new(edge('A', 'B'), 0.0)];
-    let places = [goals(&[('B', 'D'), ('D', 'B')]), goals(&[('B', 'E'), ('E', 'B')])];
+    let edge = |ends: &str| ascii_map::edge(&network, ends);
+    let goals = |all: [&str; 2]| all.map(|ends| Goal { edge: edge(ends), share: 0.5 }).to_vec();
+    let start = [Start::new(edge("AB"), 0.0)];
+    let places = [goals(["BD", "DB"]), goals(["BE", "EB"])];
     // From the middle of BD there is no way to E but by turning back, which nobody does.
     assert_eq!(search_over(&graph, &graph.open_access(), &start, &places), None);
     let found = search_over(&graph, &wide_open(&graph), &start, &places).unwrap();
-    assert_eq!(found.drive.edges, [edge('A', 'B'), edge('B', 'D'), edge('D', 'B'), edge('B', 'E')]);
+    assert_eq!(found.drive.edges, ["AB", "BD", "DB", "BE"].map(edge));
 }
 
 #[test]
@@ -261,18 +259,15 @@ fn reach_tells_there_from_there_and_back_and_what_an_edge_would_open() {
         .way("CF", "highway=residential oneway=yes")
         .way("FE", "highway=residential oneway=yes")
         .way("EB", "highway=residential oneway=yes");
-    let (network, _) = build(map.extract(), &somewhere, &no_sections);
+    let (network, _) = built(&map);
     let movements = network.movements();
     let graph = Graph::new(&network, &movements, &Speeds::builtin().unwrap(), Measure::Distance);
-    let edge = |from: char, to: char| {
-        let ends = (ascii_map::id_of(from), ascii_map::id_of(to));
-        (0..).zip(&network.edges).find(|(_, e)| (e.from_node, e.to_node) == ends).unwrap().0
-    };
+    let edge = |ends: &str| ascii_map::edge(&network, ends);
     let mut access = graph.open_access();
-    let ring = [('B', 'C'), ('C', 'F'), ('F', 'E'), ('E', 'B')].map(|(a, b)| edge(a, b));
+    let ring = ["BC", "CF", "FE", "EB"].map(edge);
     let there = reach(&graph, &access, &[ring[0]]);
     assert!(ring.iter().all(|&e| there.and_back[e as usize]));
-    let spur = edge('C', 'D') as usize;
+    let spur = edge("CD") as usize;
     assert!(there.there[spur] && !there.and_back[spur], "nobody turns back at D");
     let parts = components(&graph, &access);
     assert!(ring.iter().all(|&e| parts.of[e as usize] == Some(0)));
@@ -350,7 +345,7 @@ fn held(region: &Region, driver: &routing::Driver, answers: &[Answer], most_m: f
 
 #[test]
 fn routes_of_the_drawn_region_hold_as_a_whole() {
-    let region = Region::read(&routing::demo(), Policy::Carriageway);
+    let region = Region::read(&demo(), Policy::Carriageway);
     let driver = region.driver("AGV-TUG4");
     let answers = answers(&region, &driver, 24);
     let found = answers.iter().filter(|answer| !answer.routes.is_empty()).count();
@@ -374,10 +369,7 @@ fn routes_of_real_extracts_hold_as_a_whole() {
         ("victoria_au.osm.pbf", "AU-BDOUBLE26", [0.1, 0.07]),
     ];
     for (name, id, about_deg) in towns {
-        let Some(path) = routing::extract(name) else {
-            println!("skipped: no {name}");
-            continue;
-        };
+        let Some(path) = extract(name) else { continue };
         let region = Region::read_middle(&path, Policy::Carriageway, about_deg);
         let driver = region.driver(id);
         let answers = answers(&region, &driver, 150);

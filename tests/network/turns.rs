@@ -4,19 +4,15 @@
 
 use crate::oracle;
 use crate::support::ascii_map;
+use crate::support::catalogue::catalogued;
+use crate::support::junctions::{Certified, Drawn};
 
 use ascii_map::{AsciiMap, id_of};
 use geo::{Distance as _, Euclidean};
-use netcert::account::AccountRow;
-use netcert::corridor::Params;
-use netcert::network::{Network, build};
 use netcert::osm::Via;
-use netcert::osm::facts::{Countries, Place, Policy, cross_sections};
-use netcert::pipeline::{Reporter, Settings, TurnJob, best_of, certify_turns};
-use netcert::stet::{Model, Options, SpanResult};
+use netcert::osm::facts::Policy;
 use netcert::store::TurnCertificate;
-use netcert::turns::{Kerbs, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, turn_corridors, turn_facts};
-use netcert::vehicle::{Catalogue, Vehicle};
+use netcert::turns::{Reach, StrokeLine, turn_corridors};
 use netcert::verdict::{ForbiddenReason, Verdict};
 use oracle::draw::Draw;
 use oracle::fight;
@@ -29,62 +25,11 @@ const CROSS: &str = "
             E
         ";
 
-struct Drawn {
-    network: Network,
-    kerb_m: f64,
-}
-
 impl Drawn {
-    fn new(map: &AsciiMap, left_hand_traffic: bool, kerb_m: f64) -> Self {
-        let countries = Countries::load().unwrap();
-        let rules = countries.rules();
-        let place = |_| Place { country: *b"DE", left_hand_traffic };
-        let (network, _) = build(map.extract(), &place, &|facts, place| cross_sections(facts, place, rules));
-        Self { network, kerb_m }
-    }
-
     fn cross(tags: &str, left_hand_traffic: bool, kerb_m: f64) -> Self {
         let map = AsciiMap::drawn(60.0, CROSS).way("ABC", tags).way("DBE", tags);
         Self::new(&map, left_hand_traffic, kerb_m)
     }
-
-    fn params(&self) -> TurnParams {
-        TurnParams { corridor: Params::default(), kerbs: Kerbs::everywhere(self.kerb_m) }
-    }
-
-    fn facts(&self) -> Vec<TurnFacts> {
-        turn_facts(&self.network, &self.params().kerbs)
-    }
-
-    /// The turn by the nodes it passes: `EBC` from E over B to C.
-    fn turn(&self, nodes: &str) -> TurnFacts {
-        let ids: Vec<i64> = nodes.chars().map(id_of).collect();
-        let is = |edge: u32, from: i64, to: i64| {
-            let edge = &self.network.edges[edge as usize];
-            (edge.from_node, edge.to_node) == (from, to)
-        };
-        let fits = |t: &TurnFacts| is(t.movement.from, ids[0], ids[1]) && is(t.movement.to, ids[1], ids[2]);
-        self.facts().into_iter().find(fits).unwrap_or_else(|| panic!("{nodes} is no turn"))
-    }
-
-    fn corridors(&self, nodes: &str, policy: Policy, reach: Reach) -> TurnCorridors {
-        turn_corridors(&self.network, self.turn(nodes).movement, policy, &self.params(), reach).unwrap()
-    }
-
-    fn best(&self, nodes: &str, policy: Policy, id: &str) -> Option<SpanResult> {
-        let vehicle = catalogued(id);
-        let made = self.corridors(nodes, policy, Reach::of(&vehicle).unwrap());
-        let model = Model::new(&vehicle).unwrap();
-        best_of(&made.paths, &[&model], &Options::default()).pop().unwrap().map(|(_, result)| result)
-    }
-
-    fn safe(&self, nodes: &str, policy: Policy, id: &str) -> bool {
-        self.best(nodes, policy, id).is_some_and(|result| result.safe())
-    }
-}
-
-fn catalogued(id: &str) -> Vehicle {
-    Catalogue::builtin().unwrap().get(id).unwrap().clone()
 }
 
 #[test]
@@ -155,8 +100,7 @@ fn a_corridor_never_leaves_the_drivable_area() {
         let drawn = Drawn::new(&map, false, kerb_m);
         let mut looked_at = 0;
         for turn in drawn.facts() {
-            let params = drawn.params();
-            let made = turn_corridors(&drawn.network, turn.movement, policy, &params, Reach::Short).unwrap();
+            let made = turn_corridors(&drawn.network, turn.movement, policy, &drawn.params, Reach::Short).unwrap();
             for path in &made.paths {
                 let c = &path.corridor;
                 for k in 4 * path.turn.start..4 * path.turn.end.saturating_sub(1) {
@@ -181,14 +125,13 @@ fn a_corridor_never_leaves_the_drivable_area() {
 #[test]
 fn a_path_leaves_and_joins_the_strokes_own_centrelines() {
     let drawn = Drawn::cross("highway=secondary width=9", false, 8.0);
-    let params = drawn.params();
     for nodes in ["EBC", "EBA", "ABD"] {
-        let made = drawn.corridors(nodes, Policy::Carriageway, Reach::Long);
+        let made = drawn.corridors(nodes, Policy::Carriageway, Reach::Long).unwrap();
         assert!(made.paths.len() > 20, "{}", made.paths.len());
         for path in &made.paths {
             for (joint, k) in [(path.approach, path.turn.start), (path.departure, path.turn.end - 1)] {
                 let line =
-                    StrokeLine::new(&drawn.network, joint.stroke, Policy::Carriageway, &params.corridor).unwrap();
+                    StrokeLine::new(&drawn.network, joint.stroke, Policy::Carriageway, &drawn.params.corridor).unwrap();
                 let (c, stroke) = (&path.corridor, &line.made.corridor);
                 let off = (c.x[k] - stroke.x[joint.station]).hypot(c.y[k] - stroke.y[joint.station]);
                 // Stations of the turn lie half a metre apart.
@@ -258,41 +201,9 @@ fn a_roundabout_is_entered_and_left_by_turns() {
     assert!(drawn.safe("W43", Policy::Carriageway, "AGV-TUG4"));
 }
 
-struct Silent;
-impl Reporter for Silent {
-    fn begin(&self, _: &'static str, _: u64) {}
-    fn advance(&self, _: u64) {}
-    fn end(&self) {}
-    fn note(&self, _: &str) {}
-}
-
-fn certified(
-    drawn: &Drawn,
-    ids: &[&str],
-    policy: Policy,
-    threads: usize,
-) -> (Vec<(usize, TurnCertificate)>, Vec<AccountRow>) {
-    let models: Vec<Model> = ids.iter().map(|id| Model::new(&catalogued(id)).unwrap()).collect();
-    let edges = vec![vec![Verdict::Safe; drawn.network.edges.len()]; models.len()];
-    let settings = Settings { policy, corridor: Params::default(), stet: Options::default(), turns: true };
-    let (params, turns) = (drawn.params(), drawn.facts());
-    let job = TurnJob {
-        network: &drawn.network,
-        turns: &turns,
-        models: &models,
-        edges: &edges,
-        settings: &settings,
-        params: &params,
-    };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| {
-        let mut out = Vec::new();
-        let outcome = certify_turns(&job, &Silent, |vehicle, certificate| {
-            out.push((vehicle, certificate.clone()));
-            Ok::<(), ()>(())
-        });
-        (out, outcome.unwrap().rows())
-    })
+/// Where all edges are safe.
+fn certified(drawn: &Drawn, ids: &[&str], policy: Policy, threads: usize) -> Certified {
+    drawn.certified(ids, &vec![Verdict::Safe; drawn.network.edges.len()], policy, threads)
 }
 
 #[test]
@@ -344,7 +255,7 @@ fn no_claim_of_a_turn_is_refuted() {
             ("EBA", "US-WB40"),
             ("DBC", "AU-BDOUBLE26"),
         ] {
-            let made = drawn.corridors(nodes, Policy::Carriageway, Reach::of(&catalogued(id)).unwrap());
+            let made = drawn.corridors(nodes, Policy::Carriageway, Reach::of(&catalogued(id)).unwrap()).unwrap();
             let other = made.paths.len() / 3;
             fought += fight::none_is_refuted(&made.paths, id, other, &format!("{width} {nodes}"), &mut draw);
         }

@@ -1,5 +1,6 @@
 //! The built program, as a user meets it: what it answers, what it leaves behind, and how it fails.
 
+use crate::support::demo::demo;
 use crate::support::program;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -7,7 +8,7 @@ use std::io::Read as _;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-use program::{Answer, Place, demo};
+use program::{Answer, Place};
 use serde_json::Value;
 
 /// Rows of CSV without quoted line breaks, by the header's names.

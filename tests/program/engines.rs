@@ -3,13 +3,14 @@
 //!
 //! Each test skips with a message where its engine cannot be installed.
 
+use crate::support::demo::demo;
 use crate::support::program;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::OnceLock;
 
-use program::{Place, demo};
+use program::Place;
 use serde_json::Value;
 
 const PAIRS: &str = "40";

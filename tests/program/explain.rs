@@ -1,6 +1,7 @@
 //! What `explain` says is what the database says, its places are where geometry has them, and its hints hold: what is named
 //! passes when certified by itself, one step less does not.
 
+use crate::support::catalogue::catalogued;
 use crate::support::program;
 use crate::support::xml;
 
@@ -13,14 +14,10 @@ use netcert::osm::facts::Policy;
 use netcert::picture;
 use netcert::pipeline::Settings;
 use netcert::stet::{Model, Options, SpanResult, certify, certify_spans};
-use netcert::store::{Database, EdgeRow, QueryOptions, verdict_words};
-use netcert::vehicle::{Catalogue, Vehicle};
+use netcert::store::{EdgeRow, verdict_words};
+use netcert::vehicle::Vehicle;
 use netcert::verdict::{UnsafeReason, Verdict};
 use program::Place;
-
-fn vehicle(id: &str) -> Vehicle {
-    Catalogue::builtin().unwrap().get(id).unwrap().clone()
-}
 
 fn settings() -> Settings {
     Settings { policy: Policy::Lane, corridor: Params::default(), stet: Options::default(), turns: true }
@@ -28,17 +25,14 @@ fn settings() -> Settings {
 
 /// The demo region's network and what its database keeps for a vehicle, by edge.
 fn demo(place: &Place, id: &str) -> (Network, Vec<EdgeRow>) {
-    let mut database = Database::open(&place.path("demo.gpkg")).unwrap();
-    let network = database.load_network().unwrap();
-    let rows = database.query(&QueryOptions::new(id, Policy::Lane)).unwrap().map(Result::unwrap).collect();
-    (network, rows)
+    (place.database().load_network().unwrap(), place.rows(id))
 }
 
 #[test]
 fn every_edge_of_the_demo_is_explained_as_it_was_certified() {
     let place = Place::with_demo();
     let (network, rows) = demo(&place, "AU-SEMI19");
-    let model = Model::new(&vehicle("AU-SEMI19")).unwrap();
+    let model = Model::new(&catalogued("AU-SEMI19")).unwrap();
     let mut kinds: BTreeMap<(&str, &str), usize> = BTreeMap::new();
     for (i, row) in rows.iter().enumerate() {
         // Hints take dozens of certificates each: of the unsafe edges every sixth.
@@ -79,7 +73,7 @@ fn every_edge_of_the_demo_is_explained_as_it_was_certified() {
 fn a_certificate_of_another_version_is_noticed() {
     let place = Place::with_demo();
     let (network, rows) = demo(&place, "AU-SEMI19");
-    let model = Model::new(&vehicle("AU-SEMI19")).unwrap();
+    let model = Model::new(&catalogued("AU-SEMI19")).unwrap();
     let row = rows.iter().find(|row| row.verdict == Verdict::Safe).unwrap();
     let e = explain::explain_edge(&network, row.edge, &model, &settings()).unwrap();
     let other = |change: &dyn Fn(&mut EdgeRow)| {
@@ -127,7 +121,7 @@ fn the_width_that_would_do_does_and_a_centimetre_less_does_not() {
     let mut checked = 0;
     for id in ["AU-SEMI19", "AU-ATRIPLE53"] {
         let (network, rows) = demo(&place, id);
-        let (vehicle, model) = (vehicle(id), Model::new(&vehicle(id)).unwrap());
+        let (vehicle, model) = (catalogued(id), Model::new(&catalogued(id)).unwrap());
         let unsafe_ones = rows.iter().filter(|row| row.verdict == Verdict::Unsafe(UnsafeReason::Width));
         for row in unsafe_ones.step_by(17) {
             let e = explain::explain_edge(&network, row.edge, &model, &settings()).unwrap();
@@ -159,7 +153,7 @@ fn explained(corridor: &Corridor, vehicle: &Vehicle) -> Explanation {
 fn the_tolerance_that_would_do_does_and_a_millimetre_more_does_not() {
     // On a straight, what tolerance and slip take off is linear in the tolerance: between γ_min and none lies the answer.
     for id in ["EU-SEMI16.5", "AU-BDOUBLE26", "US-WB40"] {
-        let (vehicle, model) = (vehicle(id), Model::new(&vehicle(id)).unwrap());
+        let (vehicle, model) = (catalogued(id), Model::new(&catalogued(id)).unwrap());
         // The widest that is a little too narrow.
         let safe =
             |cm: &u32| certify(&straight(f64::from(*cm) / 100.0), &model, &Options::default()).unwrap().result.safe();
@@ -181,14 +175,14 @@ fn the_tolerance_that_would_do_does_and_a_millimetre_more_does_not() {
         assert!(explain::words(&e).headline.contains("on a straight"));
     }
     // A body wider than its corridor: no tolerance helps.
-    let e = explained(&straight(2.5), &vehicle("EU-SEMI16.5"));
+    let e = explained(&straight(2.5), &catalogued("EU-SEMI16.5"));
     assert_eq!(e.hints.tolerance_m, None);
     assert!(explain::words(&e).hints.join(" ").contains("No tracking tolerance would do"));
 }
 
 #[test]
 fn the_steering_limit_that_would_do_does_and_less_does_not() {
-    let mut vehicle = vehicle("EU-SEMI16.5");
+    let mut vehicle = catalogued("EU-SEMI16.5");
     vehicle.units[0].max_articulation_rad = 20f64.to_radians();
     let bend: Vec<[f64; 2]> = (0..60)
         .map(|i| (f64::from(i) / 14.0).min(1.2))
@@ -243,7 +237,7 @@ fn the_corner_stands_where_geometry_has_it() {
         .collect();
     for (id, width) in [("EU-SEMI16.5", 4.4), ("AU-BDOUBLE26", 5.0), ("BUS-ART18-EU", 4.2), ("AU-ADOUBLE36", 4.0)] {
         let corridor = Corridor::from_centreline(&arc, &[0.5 * width], &[0.5 * width], 0.0, 1.0).unwrap();
-        let e = explained(&corridor, &vehicle(id));
+        let e = explained(&corridor, &catalogued(id));
         let g = e.geometry.as_ref().unwrap();
         let place = &g.place;
         let left = place.side == netcert::stet::Side::Left;
@@ -265,7 +259,7 @@ fn the_corner_stands_where_geometry_has_it() {
 fn forbidden_edges_name_the_tag_and_what_the_vehicle_has() {
     let place = Place::with_demo();
     let (network, rows) = demo(&place, "AU-ATRIPLE53");
-    let model = Model::new(&vehicle("AU-ATRIPLE53")).unwrap();
+    let model = Model::new(&catalogued("AU-ATRIPLE53")).unwrap();
     let expected = [
         ("height", "maxheight is", "height 4.30 m"),
         ("weight", "maxweight is", "gross mass 115.50 t"),

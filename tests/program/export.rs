@@ -1,23 +1,15 @@
 //! What every export has in common: the same permits as `netcert route`, a header that says what it rests on, outputs that are
 //! whole or not there.
 
+use crate::support::demo::demo;
 use crate::support::program;
+use crate::support::silent::Silent;
 
 use netcert::export::{Ask, PermitPolicy, Source};
 use netcert::network::MovementKind;
 use netcert::osm::facts::{Policy, WidthSource};
-use netcert::pipeline::Reporter;
 use netcert::route::{BARRED, Permits};
-use program::{Place, demo};
-
-struct Silent;
-
-impl Reporter for Silent {
-    fn begin(&self, _: &'static str, _: u64) {}
-    fn advance(&self, _: u64) {}
-    fn end(&self) {}
-    fn note(&self, _: &str) {}
-}
+use program::Place;
 
 fn ask(place: &Place, rule: PermitPolicy) -> Ask {
     let (db, vehicle) = (place.path("demo.gpkg"), "AU-SEMI19".to_owned());

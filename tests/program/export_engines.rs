@@ -1,5 +1,6 @@
 //! What the exports for engines hold, read with this program's own reader: nothing lost, nothing opened that is refused.
 
+use crate::support::demo::demo;
 use crate::support::program;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,8 +12,8 @@ use netcert::osm::LonLat;
 use netcert::osm::facts::{Countries, Direction, Permission, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
-use netcert::store::{Database, QueryOptions, VerdictKind};
-use program::{Place, demo};
+use netcert::store::{QueryOptions, VerdictKind};
+use program::Place;
 
 /// Node pairs in driving order: of how many roads of the extract.
 fn segments(path: &Path) -> BTreeMap<(i64, i64), u32> {
@@ -28,7 +29,7 @@ fn segments(path: &Path) -> BTreeMap<(i64, i64), u32> {
 
 /// Every permitted edge by its places, in driving order.
 fn permitted(place: &Place) -> (Network, BTreeSet<u32>) {
-    let mut database = Database::open(&place.path("demo.gpkg")).unwrap();
+    let mut database = place.database();
     let options = QueryOptions { verdict: Some(VerdictKind::Safe), ..QueryOptions::new("AU-SEMI19", Policy::Lane) };
     let safe = database.query(&options).unwrap().map(|row| row.unwrap().edge).collect();
     (database.load_network().unwrap(), safe)

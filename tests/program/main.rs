@@ -15,7 +15,6 @@ mod oracle;
 mod paper;
 mod route_cli;
 mod serve;
-#[path = "../support/mod.rs"]
 mod support;
 mod turns_program;
 mod vehicle_pictures;

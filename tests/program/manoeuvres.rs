@@ -1,6 +1,7 @@
 //! Low-speed turns against closed forms, an independent simulator, and tables made by a third one.
 
 use crate::oracle;
+use crate::support::catalogue::catalogued;
 use crate::support::program;
 use crate::support::xml;
 
@@ -12,13 +13,9 @@ use netcert::vehicle::{Catalogue, Vehicle};
 use oracle::turns;
 use program::Place;
 
-fn vehicle(id: &str) -> Vehicle {
-    Catalogue::builtin().unwrap().get(id).unwrap().clone()
-}
-
 /// A rigid lorry: L, front overhang, rear overhang, width.
 fn rigid([length, front, rear, width]: [f64; 4]) -> Vehicle {
-    let mut vehicle = vehicle("EU-SEMI16.5");
+    let mut vehicle = catalogued("EU-SEMI16.5");
     vehicle.units.truncate(1);
     let unit = &mut vehicle.units[0];
     (unit.coupling_to_axle_m, unit.front_overhang_m) = (length, front);
@@ -53,7 +50,7 @@ fn a_rigid_lorry_settles_on_the_closed_form_of_a_circle() {
 #[test]
 fn steer_axle_guides_reach_the_steady_circle() {
     // Steady off-tracking R − √(R² − K) at the end of many turns, the middle of the steer axle on the path.
-    let semi = vehicle("EU-SEMI16.5");
+    let semi = catalogued("EU-SEMI16.5");
     let turn = Turn { radius_m: 25.0, angle_rad: 2.0 * PI - 1e-3, guide: Guide::SteerAxle, exit_m: 0.0 };
     let drive = turn.drive(&semi);
     let k: f64 = 3.7f64.powi(2) - 0.6f64.powi(2) + 7.7f64.powi(2);
@@ -84,7 +81,7 @@ fn swept_paths_and_tail_swings_of_the_pbs_turn() {
         ("BUS-BIART24", 6.92, 0.08, 30.0),
     ];
     for (id, width, tail, hinge_deg) in table {
-        let vehicle = vehicle(id);
+        let vehicle = catalogued(id);
         let swept = Swept::of(&vehicle, &manoeuvres::right_angle(&vehicle).drive(&vehicle));
         assert!((swept.width_m.unwrap() - width).abs() < 0.015, "{id}: {:?}, table {width}", swept.width_m);
         assert!((swept.tail_swing_m - tail).abs() < 0.01, "{id}: {}, table {tail}", swept.tail_swing_m);
@@ -114,7 +111,7 @@ fn european_circles() {
         ("EU-EMS25-D", 2.70, 9.80, false),
         ("BUS-ART18-EU", 5.06, 7.44, false),
     ] {
-        let vehicle = vehicle(id);
+        let vehicle = catalogued(id);
         let report = manoeuvres::report(&vehicle);
         assert!((report.circle.inner_m - inner).abs() < 0.02, "{id}: {}", report.circle.inner_m);
         assert!((report.circle.width_m() - ring).abs() < 0.02, "{id}: {}", report.circle.width_m());
@@ -123,7 +120,7 @@ fn european_circles() {
         assert_eq!(verdict(Measure::RingWidth).passes, passes, "{id}");
         assert!(verdict(Measure::SwingOut).passes, "{id}");
     }
-    let semi = vehicle("EU-SEMI16.5");
+    let semi = catalogued("EU-SEMI16.5");
     assert!((manoeuvres::report(&semi).circle.swing_out_m - 0.26).abs() < 0.01);
 }
 
@@ -143,7 +140,7 @@ fn a_wheelbase_a_centimetre_too_long_does_not_pass() {
 #[test]
 fn levels_are_those_of_legal_combinations() {
     let level = |id: &str| {
-        let report = manoeuvres::report(&vehicle(id));
+        let report = manoeuvres::report(&catalogued(id));
         let keeps = |f: &&Finding| f.limit.measure == Measure::SweptPath && f.passes;
         report.findings.iter().find(keeps).map(|f| f.limit.who)
     };
@@ -155,7 +152,7 @@ fn levels_are_those_of_legal_combinations() {
 
 #[test]
 fn what_cannot_be_driven_passes_no_limit_and_gets_no_number() {
-    let train = vehicle("AU-ATRIPLE53");
+    let train = catalogued("AU-ATRIPLE53");
     let report = manoeuvres::report(&train);
     assert!(beyond_limit(&train, &report.circle.angles_rad).is_some());
     let circle = [Measure::InnerRadius, Measure::RingWidth, Measure::SwingOut];
@@ -164,7 +161,7 @@ fn what_cannot_be_driven_passes_no_limit_and_gets_no_number() {
     );
     assert_eq!(report.steady_offtracking_m[0], None);
     // Moving a hitch rearward lowers the swept path.
-    let mut longer = vehicle("AU-ADOUBLE36");
+    let mut longer = catalogued("AU-ADOUBLE36");
     let before = manoeuvres::report(&longer).right_angle.width_m.unwrap();
     longer.units[1].hitch_offset_m += 0.5;
     longer.units[2].coupling_to_axle_m -= 0.5;
@@ -174,7 +171,7 @@ fn what_cannot_be_driven_passes_no_limit_and_gets_no_number() {
 #[test]
 fn every_limit_has_a_source_and_buses_have_their_own() {
     for id in ["AU-BDOUBLE26", "BUS-ART18-EU"] {
-        for f in manoeuvres::report(&vehicle(id)).findings {
+        for f in manoeuvres::report(&catalogued(id)).findings {
             assert!(f.limit.source.len() > 10 && f.limit.metres > 0.0);
             assert_eq!(
                 f.limit.sureness == Sureness::Read,
@@ -189,7 +186,7 @@ fn every_limit_has_a_source_and_buses_have_their_own() {
 #[test]
 fn pictures_show_path_sweep_and_numbers() {
     for id in ["EU-SEMI16.5", "AU-ATRIPLE53", "AGV-TUG4"] {
-        let vehicle = vehicle(id);
+        let vehicle = catalogued(id);
         let svg = picture::manoeuvres(&vehicle);
         xml::well_formed(&svg);
         assert_eq!(svg, picture::manoeuvres(&vehicle));
@@ -197,7 +194,7 @@ fn pictures_show_path_sweep_and_numbers() {
             assert!(svg.contains(&format!("class=\"{class}\"")), "{id}: {class}");
         }
     }
-    assert!(picture::manoeuvres(&vehicle("EU-SEMI16.5")).contains("swept path 5.82 m"));
+    assert!(picture::manoeuvres(&catalogued("EU-SEMI16.5")).contains("swept path 5.82 m"));
 }
 
 #[test]

@@ -12,8 +12,7 @@ const OVER_CORNERS: &str = "--from 126.005973,-30.208248 --to 126.046205,-30.176
 
 #[test]
 fn routes_are_told_written_verified_or_explained() {
-    let place = Place::empty();
-    place.netcert("ingest {demo} --db demo.gpkg --vehicle AU-ATRIPLE53 --corridor carriageway").succeeds();
+    let place = Place::with_wide_demo("AU-ATRIPLE53");
 
     let line = format!("route --vehicle AU-ATRIPLE53 {ALONG} --out way.json --svg way.svg");
     place.netcert(&line).succeeds().shows("a certified route, 0.5 km").shows("to spare where it is tightest");

@@ -1,5 +1,6 @@
 //! Vehicles as pictures, and vehicles that cannot be built.
 
+use crate::support::catalogue::catalogued;
 use crate::support::program;
 use crate::support::xml;
 
@@ -60,7 +61,7 @@ fn bodies_are_to_one_scale_in_length_and_width() {
 
 #[test]
 fn names_cannot_break_a_picture() {
-    let mut vehicle = Catalogue::builtin().unwrap().get("EU-SEMI16.5").unwrap().clone();
+    let mut vehicle = catalogued("EU-SEMI16.5");
     vehicle.name = "<script>alert('&')</script>".to_owned();
     vehicle.units[0].name = "\"><g>".to_owned();
     xml::well_formed(&picture::vehicle(&vehicle));

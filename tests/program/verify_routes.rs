@@ -16,10 +16,7 @@ const ROUTES: [(&str, &str, &str, &str); 6] = [
 
 #[test]
 fn routes_round_corners_are_confirmed() {
-    let place = Place::empty();
-    place
-        .netcert("ingest {demo} --db demo.gpkg --vehicle AU-SEMI19 EU-SEMI16.5 AGV-TUG4 --corridor carriageway")
-        .succeeds();
+    let place = Place::with_wide_demo("AU-SEMI19 EU-SEMI16.5 AGV-TUG4");
     for (number, (id, from, to, kind)) in ROUTES.into_iter().enumerate() {
         let file = format!("{number}.json");
         let line = format!("route --vehicle {id} --from {from} --to {to} --out {file} --format json");

@@ -10,8 +10,7 @@ const VERIFY: &str = "verify --db demo.gpkg --vehicle AU-SEMI19 --sample 60";
 
 #[test]
 fn every_column_of_turns_changed_in_the_unsafe_direction_is_refuted() {
-    let made = Place::empty();
-    made.netcert("ingest {demo} --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway").succeeds();
+    let made = Place::with_wide_demo("AU-SEMI19");
     let told = made.netcert(VERIFY).succeeds().out();
     println!("{told}");
     let safe = "verdict_no = 0";

@@ -3,7 +3,7 @@
 //! Every letter or digit is a node whose id is its character code; everything else is decoration. A column is
 //! `metres` wide and a row as high; north is up. Ways are named by their nodes in order, tagged as in OpenStreetMap.
 
-use netcert::network::{Edge, Network};
+use netcert::network::{Edge, Network, NetworkAccount, build};
 use netcert::osm::facts::{self, CrossSection, Place, PointFacts, WayFacts};
 use netcert::osm::{Extract, LonLat, NodeTable, Restriction, StringPool, Via, Way};
 
@@ -158,6 +158,18 @@ pub(crate) fn somewhere(_: LonLat) -> Place {
 /// No road has a width.
 pub(crate) fn no_sections(_: &WayFacts, _: &Place) -> [CrossSection; 2] {
     [CrossSection { lane: None, direction: None, carriageway: None }; 2]
+}
+
+/// The network of a map, of one country and without widths.
+pub(crate) fn built(map: &AsciiMap) -> (Network, NetworkAccount) {
+    build(map.extract(), &somewhere, &no_sections)
+}
+
+/// The edge from one drawn node to another, `AB`.
+pub(crate) fn edge(network: &Network, ends: &str) -> u32 {
+    let ends: Vec<i64> = ends.chars().map(id_of).collect();
+    let found = (0..).zip(&network.edges).find(|(_, e)| [e.from_node, e.to_node] == ends[..]);
+    found.unwrap_or_else(|| panic!("no edge {ends:?}")).0
 }
 
 /// All edges in order: `AB` from A to B, `!` behind a barred one, `~` behind one that is cut.

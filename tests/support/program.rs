@@ -1,11 +1,15 @@
 //! The built program in a folder of its own: `place.netcert("query --vehicle X").succeeds().tells("…")`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
+use netcert::osm::facts::Policy;
+use netcert::store::{Database, EdgeRow, QueryOptions};
 use sqlx::{Connection as _, SqliteConnection};
 use tempfile::TempDir;
+
+use super::demo::demo;
 
 /// A folder to work in, removed afterwards.
 pub(crate) struct Place(TempDir);
@@ -14,10 +18,6 @@ pub(crate) struct Place(TempDir);
 pub(crate) struct Answer {
     line: String,
     output: Output,
-}
-
-pub(crate) fn demo() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("data/demo.osm.pbf")
 }
 
 impl Place {
@@ -36,6 +36,14 @@ impl Place {
         Self::empty().file("demo.gpkg", made)
     }
 
+    /// With `demo.gpkg`: these certified where the whole carriageway counts, so that some get round corners.
+    pub(crate) fn with_wide_demo(vehicles: &str) -> Self {
+        let place = Self::empty();
+        let line = format!("ingest {{demo}} --db demo.gpkg --vehicle {vehicles} --corridor carriageway");
+        place.netcert(&line).succeeds();
+        place
+    }
+
     pub(crate) fn file(self, name: &str, bytes: impl AsRef<[u8]>) -> Self {
         std::fs::write(self.path(name), bytes).unwrap();
         self
@@ -47,6 +55,16 @@ impl Place {
 
     pub(crate) fn read(&self, name: &str) -> Vec<u8> {
         std::fs::read(self.path(name)).unwrap()
+    }
+
+    /// `demo.gpkg`
+    pub(crate) fn database(&self) -> Database {
+        Database::open(&self.path("demo.gpkg")).unwrap()
+    }
+
+    /// What `demo.gpkg` holds of a vehicle's lanes, by edge.
+    pub(crate) fn rows(&self, vehicle: &str) -> Vec<EdgeRow> {
+        self.database().query(&QueryOptions::new(vehicle, Policy::Lane)).unwrap().map(Result::unwrap).collect()
     }
 
     /// Changes `demo.gpkg` behind netcert's back: how many rows were changed.

@@ -1,18 +1,20 @@
 //! A region with everything that routes need, made in memory: network, movements, permits of one vehicle for edges and turns.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use netcert::corridor::Params;
 use netcert::network::{Movement, Movements, Network, build};
 use netcert::osm::facts::{Countries, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::{Extract, LonLat, Way};
-use netcert::pipeline::{Job, Reporter, Settings, TurnJob, certify_network, certify_turns};
+use netcert::pipeline::{Job, Settings, TurnJob, certify_network, certify_turns};
 use netcert::route::{Graph, MadeTurns, Measure, Permit, Permits, Planner, Speeds, Strokes};
 use netcert::stet::{Model, Options};
 use netcert::turns::{Kerbs, TurnParams, turn_facts};
-use netcert::vehicle::Catalogue;
+
+use super::catalogue::catalogued;
+use super::silent::Silent;
 
 /// A network.
 pub(crate) struct Region {
@@ -26,26 +28,6 @@ pub(crate) struct Region {
 pub(crate) struct Driver {
     pub(crate) model: Model,
     pub(crate) permits: Permits,
-}
-
-struct Silent;
-
-impl Reporter for Silent {
-    fn begin(&self, _: &'static str, _: u64) {}
-    fn advance(&self, _: u64) {}
-    fn end(&self) {}
-    fn note(&self, _: &str) {}
-}
-
-pub(crate) fn demo() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("data/demo.osm.pbf")
-}
-
-/// An extract of the shared folder, if it is there.
-pub(crate) fn extract(name: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("NETCERT_EXTRACTS")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/extracts"), PathBuf::from);
-    Some(folder.join(name)).filter(|path| path.exists())
 }
 
 impl Region {
@@ -81,7 +63,7 @@ impl Region {
     }
 
     pub(crate) fn driver(&self, id: &str) -> Driver {
-        let model = Model::new(Catalogue::builtin().unwrap().get(id).unwrap()).unwrap();
+        let model = Model::new(&catalogued(id)).unwrap();
         let models = std::slice::from_ref(&model);
         let job = Job { network: &self.network, models, settings: &self.settings };
         let mut edges = vec![Permit::UNKNOWN; self.network.edges.len()];

@@ -1,15 +1,16 @@
 //! Corridors just about as wide as their vehicles need, so that it matters where one steers.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use netcert::corridor::{Corridor, Params, stroke_corridor};
 use netcert::network::Network;
 use netcert::osm::facts::{Countries, Policy};
-use netcert::pipeline::{Reporter, Summary, read_network};
+use netcert::pipeline::{Summary, read_network};
 use netcert::vehicle::Vehicle;
 
 use crate::oracle::draw::{self, Bends, Draw};
 use crate::oracle::fleet;
+use crate::support::silent::Silent;
 
 /// Stations of a real road that are looked at.
 const WINDOW: usize = 320;
@@ -64,14 +65,10 @@ fn s_bend_of(draw: &mut Draw, radius: f64) -> Bends {
     ]
 }
 
-/// Windows about the sharpest bends of a file's roads, with a vehicle each; none where there is no such file.
+/// Windows about the sharpest bends of a file's roads, with a vehicle each.
 pub fn mapped(file: &Path, count: usize) -> Vec<Case> {
-    if !file.exists() {
-        println!("skipped: no {}", file.display());
-        return Vec::new();
-    }
     let countries = Countries::load().unwrap();
-    let (network, ..) = read_network(file, &countries, &Nobody, &mut Summary::default()).unwrap();
+    let (network, ..) = read_network(file, &countries, &Silent, &mut Summary::default()).unwrap();
     let stem = file.file_name().unwrap().to_string_lossy().into_owned();
     let wheels = ["EU-SEMI16.5", "US-WB67", "AU-BDOUBLE26", "EU-EMS25-D", "AU-ATRIPLE53", "BUS-ART18-EU"];
     windows(&network)
@@ -117,19 +114,4 @@ fn slice(c: &Corridor, range: std::ops::Range<usize>) -> Corridor {
         left_m: of(&c.left_m),
         right_m: of(&c.right_m),
     }
-}
-
-/// The folder of real extracts.
-pub fn extracts() -> PathBuf {
-    std::env::var_os("NETCERT_EXTRACTS")
-        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/extracts")), PathBuf::from)
-}
-
-struct Nobody;
-
-impl Reporter for Nobody {
-    fn begin(&self, _: &'static str, _: u64) {}
-    fn advance(&self, _: u64) {}
-    fn end(&self) {}
-    fn note(&self, _: &str) {}
 }

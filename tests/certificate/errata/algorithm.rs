@@ -6,7 +6,8 @@ use netcert::published::{
 };
 use netcert::stet::{self, Model, Options};
 
-use super::scene::{V2, drawn, route, run, scenario};
+use super::scene::{drawn, route, run, scenario};
+use crate::oracle::path::V2;
 
 const TANGENT: Reading = Reading { beta: Beta::Tangent, ..Reading::SIMULATED };
 

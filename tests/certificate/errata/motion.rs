@@ -3,7 +3,8 @@
 use netcert::published::{As, Reading, Stet, Sway, System, follower_shape};
 use netcert::stet::steady_offtracking;
 
-use super::scene::{NOTHING, V2, along, arc, dot, perp, route, run};
+use super::scene::{NOTHING, arc, route, run};
+use crate::oracle::path::{V2, along, dot, left_of};
 
 const SYSTEM: System = System { trailers: 3, link_m: 5.0, sway_rad: 0.2, length_m: 9.0, width_m: 2.5 };
 
@@ -59,7 +60,7 @@ fn e21_a_trailers_tube_points_where_the_prime_mover_does() {
     let stet = run.tubes[2][i];
     let own = run.chain.link[2][i].direction;
     let corners = |of: V2| -> Vec<V2> {
-        let at = |x: f64, y: f64| along(along(stet.centre, x, of), y, perp(of));
+        let at = |x: f64, y: f64| along(along(stet.centre, x, of), y, left_of(of));
         vec![at(6.0, 1.25), at(6.0, -1.25), at(-6.0, 1.25), at(-6.0, -1.25)]
     };
     let apart = dot(run.chain.link[0][i].direction, own).acos().to_degrees();

@@ -6,7 +6,7 @@ use netcert::published::{
     Permissible, Reading, Route, RouteCert, Scenario, Stet, System, drawn_route, route_cert, scenarios,
 };
 
-pub(crate) type V2 = [f64; 2];
+use crate::oracle::path::{V2, along};
 
 pub(crate) const NOTHING: Permissible = Permissible { max_shift_m: 0.0, min_shrink: 1.0 };
 
@@ -50,16 +50,4 @@ pub(crate) fn is_on_the_road(route: &Route, stet: &Stet, near: usize) -> bool {
         let foot = route.foot(p, near);
         foot.lateral_m.abs() <= route.half_width_at_m(&foot)
     })
-}
-
-pub(crate) fn along(a: V2, t: f64, b: V2) -> V2 {
-    [a[0] + t * b[0], a[1] + t * b[1]]
-}
-
-pub(crate) fn dot(a: V2, b: V2) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-pub(crate) fn perp(a: V2) -> V2 {
-    [-a[1], a[0]]
 }

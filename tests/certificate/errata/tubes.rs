@@ -5,7 +5,8 @@ use netcert::published::{
     reach_displacement, scenarios, sway_ellipse, sway_shape,
 };
 
-use super::scene::{V2, along, dot, drawn, perp, route, run, scenario};
+use super::scene::{drawn, route, run, scenario};
+use crate::oracle::path::{V2, along, dot, left_of};
 
 const EAST: V2 = [1.0, 0.0];
 const TILTED: V2 = [0.8, 0.6];
@@ -130,7 +131,7 @@ fn e06_the_ellipse_of_half_the_dimensions_leaves_the_corners_out() {
             along(
                 [0.5 * x * s.system.length_m * TILTED[0], 0.5 * x * s.system.length_m * TILTED[1]],
                 0.5 * y * s.system.width_m,
-                perp(TILTED),
+                left_of(TILTED),
             )
         });
         for corner in corners {

@@ -1,7 +1,6 @@
 //! What the server says is what the other verbs say of the same database.
 
-use netcert::osm::facts::Policy;
-use netcert::store::{Database, EdgeRow, QueryOptions, Stats, verdict_words};
+use netcert::store::{EdgeRow, Stats, verdict_words};
 use netcert::verdict::Verdict;
 use serde_json::{Value, json};
 
@@ -9,15 +8,6 @@ use super::http::Server;
 use crate::support::xml;
 
 const VEHICLE: &str = "AU-SEMI19";
-
-fn database(server: &Server) -> Database {
-    Database::open(&server.place.path("demo.gpkg")).unwrap()
-}
-
-fn rows(server: &Server) -> Vec<EdgeRow> {
-    let mut database = database(server);
-    database.query(&QueryOptions::new(VEHICLE, Policy::Lane)).unwrap().map(Result::unwrap).collect()
-}
 
 #[test]
 fn the_region_is_the_one_that_was_ingested() {
@@ -33,7 +23,7 @@ fn the_region_is_the_one_that_was_ingested() {
     assert!(region["attribution"].as_str().unwrap().contains("OpenStreetMap"));
     assert_eq!(region["base_map"], Value::Null);
     let bbox: Vec<f64> = serde_json::from_value(region["bbox"].clone()).unwrap();
-    for row in rows(&server) {
+    for row in server.place.rows(VEHICLE) {
         for (lon, lat) in row.line.iter().map(|position| position.degrees()) {
             assert!(bbox[0] <= lon && lon <= bbox[2] && bbox[1] <= lat && lat <= bbox[3]);
         }
@@ -67,7 +57,7 @@ fn vehicles_are_the_databases_and_drawn() {
 #[test]
 fn an_edge_is_its_row() {
     let server = Server::demo();
-    for row in rows(&server).iter().step_by(17) {
+    for row in server.place.rows(VEHICLE).iter().step_by(17) {
         let edge = server.json(&format!("/api/edges/{}?vehicle={VEHICLE}&policy=lane", row.edge_id));
         assert_eq!(edge["edge_id"], row.edge_id.to_string());
         assert_eq!(edge["way_id"], row.way_id.to_string());
@@ -91,7 +81,7 @@ fn an_edge_is_its_row() {
 #[test]
 fn an_explanation_is_that_of_the_verb() {
     let server = Server::demo();
-    let rows = rows(&server);
+    let rows = server.place.rows(VEHICLE);
     let wanted = [
         rows.iter().find(|row| row.verdict == Verdict::Safe).unwrap(),
         rows.iter().find(|row| verdict_words(row.verdict).0 == "unsafe").unwrap(),
@@ -126,7 +116,7 @@ fn an_explanation_is_that_of_the_verb() {
 fn statistics_are_those_of_the_verb() {
     let server = Server::demo();
     let stats = server.json("/api/stats?policy=lane");
-    let Stats { network, certificates, turns, .. } = database(&server).stats().unwrap();
+    let Stats { network, certificates, turns, .. } = server.place.database().stats().unwrap();
     let sum =
         |list: &Value, name: &str| list.as_array().unwrap().iter().map(|row| row[name].as_f64().unwrap()).sum::<f64>();
     let km: f64 = network.iter().map(|class| class.2).sum::<f64>() / 1000.0;
@@ -135,7 +125,7 @@ fn statistics_are_those_of_the_verb() {
     assert!((sum(&stats["certificates"], "km") - 2.0 * km).abs() < 0.1, "two vehicles");
     assert_eq!(sum(&stats["turns"], "turns") as u64, turns.iter().map(|row| row.turns).sum::<u64>());
     // The histogram counts every edge that has a number, in the bin that does not flatter.
-    let rows = rows(&server);
+    let rows = server.place.rows(VEHICLE);
     let numbered = rows.iter().filter(|row| row.rsc_m.is_some()).count() as u64;
     let bins: Vec<&Value> =
         stats["rsc_histogram"].as_array().unwrap().iter().filter(|bin| bin["vehicle"] == VEHICLE).collect();
@@ -155,7 +145,7 @@ fn statistics_are_those_of_the_verb() {
 #[test]
 fn a_search_finds_edges_ways_and_names() {
     let server = Server::demo();
-    let rows = rows(&server);
+    let rows = server.place.rows(VEHICLE);
     let row = rows.iter().find(|row| row.name.is_some()).unwrap();
     let edge = &server.json(&format!("/api/search?q={}", row.edge_id))[0];
     assert_eq!((edge["kind"].as_str(), edge["id"].as_str()), (Some("edge"), Some(row.edge_id.to_string().as_str())));

@@ -3,15 +3,15 @@
 use std::io::Read as _;
 
 use super::http::Server;
+use super::tiles;
 
 /// The tile of zoom 12 in the middle of the region.
 fn tile(server: &Server) -> String {
     let region = server.json("/api/region");
     let side = |i: usize| region["focus"][i].as_f64().unwrap();
     let (lon, lat) = (f64::midpoint(side(0), side(2)), f64::midpoint(side(1), side(3)));
-    let x = (lon + 180.0) / 360.0 * 4096.0;
-    let y = (0.5 - lat.to_radians().tan().asinh() / std::f64::consts::TAU) * 4096.0;
-    format!("/tiles/lane/AU-SEMI19/12/{}/{}.mvt", x as u32, y as u32)
+    let [x, y] = tiles::at(12, (lon, lat)).map(|c| c as u32);
+    format!("/tiles/lane/AU-SEMI19/12/{x}/{y}.mvt")
 }
 
 #[test]

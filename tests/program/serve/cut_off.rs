@@ -43,9 +43,8 @@ impl Turns for Telling<'_> {
 
 /// The demo under the carriageway policy, where some corners pass.
 fn wide() -> (Place, Database, Network, Model, Settings) {
-    let place = Place::empty();
-    place.netcert("ingest {demo} --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway").succeeds();
-    let mut database = Database::open(&place.path("demo.gpkg")).unwrap();
+    let place = Place::with_wide_demo("AU-SEMI19");
+    let mut database = place.database();
     let network = database.load_network().unwrap();
     let (corridor, stet) = (Params::default(), Options::default());
     let settings = Settings { policy: Policy::Carriageway, corridor, stet, turns: true };

@@ -112,9 +112,7 @@ fn every_answer_has_the_described_form() {
 
 /// Every path of the document with questions that bring out as many members as may be.
 fn asked(server: &Server) -> Vec<(String, String)> {
-    let mut database = netcert::store::Database::open(&server.place.path("demo.gpkg")).unwrap();
-    let options = netcert::store::QueryOptions::new(VEHICLE, netcert::osm::facts::Policy::Lane);
-    let rows: Vec<_> = database.query(&options).unwrap().map(Result::unwrap).collect();
+    let rows = server.place.rows(VEHICLE);
     let mut seen = Vec::new();
     let mut asked: Vec<(String, String)> = Vec::new();
     let mut add = |path: &str, target: String| asked.push((path.to_owned(), target));

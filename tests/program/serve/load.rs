@@ -6,6 +6,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 use super::http::{Reply, Server};
+use super::tiles;
 
 const CLIENTS: usize = 8;
 const EACH: usize = 50;
@@ -40,9 +41,7 @@ fn many_at_a_time_are_all_answered() {
     let region = server.json("/api/region");
     let tile = |z: u32, x: usize, y: usize| format!("/tiles/lane/AU-SEMI19/{z}/{x}/{y}.mvt");
     let bbox: Vec<f64> = serde_json::from_value(region["bbox"].clone()).unwrap();
-    let side = f64::from(1 << 14);
-    let column = ((bbox[0] + 180.0) / 360.0 * side) as usize;
-    let row = ((0.5 - bbox[3].to_radians().tan().asinh() / std::f64::consts::TAU) * side) as usize;
+    let [column, row] = tiles::at(14, (bbox[0], bbox[3])).map(|c| c as usize);
     let all = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
         for client in 0..CLIENTS {

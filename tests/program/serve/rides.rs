@@ -9,8 +9,7 @@ const VEHICLE: &str = "AU-SEMI19";
 
 /// Over the demo region, where the whole carriageway counts: there a semi-trailer gets round some corners.
 fn wide() -> Server {
-    let place = Place::empty();
-    place.netcert("ingest {demo} --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway").succeeds();
+    let place = Place::with_wide_demo("AU-SEMI19");
     Server::over(place, "serve --db demo.gpkg --addr 127.0.0.1:0")
 }
 

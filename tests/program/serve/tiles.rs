@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fast_mvt::{MvtReaderRef, MvtValueRef};
 use netcert::osm::facts::Policy;
-use netcert::store::{Database, EdgeRow, Named, QueryOptions, TurnQuery, verdict_words};
+use netcert::store::{EdgeRow, Named, TurnQuery, verdict_words};
 
 use super::http::Server;
 
@@ -74,14 +74,9 @@ fn lines(commands: &[u32]) -> Vec<Vec<[f64; 2]>> {
 }
 
 /// Column and row of a place at a zoom, with fractions.
-fn at(z: u32, (lon, lat): (f64, f64)) -> [f64; 2] {
+pub(super) fn at(z: u32, (lon, lat): (f64, f64)) -> [f64; 2] {
     let side = f64::from(1_u32 << z);
     [(lon + 180.0) / 360.0 * side, (0.5 - lat.to_radians().tan().asinh() / std::f64::consts::TAU) * side]
-}
-
-fn rows(server: &Server) -> Vec<EdgeRow> {
-    let mut database = Database::open(&server.place.path("demo.gpkg")).unwrap();
-    database.query(&QueryOptions::new(VEHICLE, Policy::Lane)).unwrap().map(Result::unwrap).collect()
 }
 
 /// The tiles that the vertices of all rows lie in.
@@ -103,7 +98,7 @@ fn fetch(server: &Server, z: u32, (x, y): (u32, u32), layer: &str) -> Vec<Featur
 #[test]
 fn every_edge_is_in_the_tiles_of_its_vertices_with_the_numbers_of_query() {
     let server = Server::demo();
-    let rows = rows(&server);
+    let rows = server.place.rows(VEHICLE);
     for z in [13, 15, 16] {
         let by_tile: BTreeMap<(u32, u32), Vec<Feature>> =
             tiles(&rows, z).into_iter().map(|tile| (tile, fetch(&server, z, tile, "edge"))).collect();
@@ -153,9 +148,8 @@ fn distance(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
 #[test]
 fn turns_are_in_the_tiles_from_zoom_15_on() {
     let server = Server::demo();
-    let rows = rows(&server);
-    let mut database = Database::open(&server.place.path("demo.gpkg")).unwrap();
-    let turns = database.query_turns(&TurnQuery::new(VEHICLE, Policy::Lane)).unwrap();
+    let rows = server.place.rows(VEHICLE);
+    let turns = server.place.database().query_turns(&TurnQuery::new(VEHICLE, Policy::Lane)).unwrap();
     assert!(tiles(&rows, 14).into_iter().all(|tile| fetch(&server, 14, tile, "turn").is_empty()));
     let mut seen: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
     for tile in tiles(&rows, 15) {
@@ -175,7 +169,7 @@ fn turns_are_in_the_tiles_from_zoom_15_on() {
 #[test]
 fn small_zooms_show_the_greater_roads_only_and_far_away_there_is_nothing() {
     let server = Server::demo();
-    let rows = rows(&server);
+    let rows = server.place.rows(VEHICLE);
     let tile = *tiles(&rows, 7).iter().next().unwrap();
     assert!(fetch(&server, 7, tile, "edge").is_empty(), "from afar there are no edges");
     let classes: BTreeSet<String> =
@@ -192,7 +186,7 @@ fn small_zooms_show_the_greater_roads_only_and_far_away_there_is_nothing() {
 #[test]
 fn from_afar_nothing_is_drawn_as_certified_that_is_not() {
     let server = Server::demo();
-    let rows = rows(&server);
+    let rows = server.place.rows(VEHICLE);
     let classes = ["motorway", "trunk", "primary", "secondary", "tertiary"];
     for (z, shown) in [(6, 2), (8, 3), (9, 4), (10, 5)] {
         let by_tile: BTreeMap<(u32, u32), Vec<Feature>> =
@@ -224,7 +218,7 @@ fn from_afar_nothing_is_drawn_as_certified_that_is_not() {
 #[test]
 fn where_a_region_has_both_sides_every_edge_says_on_which_it_is_driven() {
     let server = Server::demo();
-    let rows = rows(&server);
+    let rows = server.place.rows(VEHICLE);
     let tile = *tiles(&rows, 13).iter().next().unwrap();
     assert!(fetch(&server, 13, tile, "edge").iter().all(|feature| !feature.tags.contains_key("left")));
     let way = rows.iter().find(|row| !row.line.is_empty()).unwrap().way_id;

@@ -1,0 +1,8 @@
+//! What these tests take from `tests/support/`.
+
+#[path = "../support/demo.rs"]
+pub(crate) mod demo;
+#[path = "../support/extracts.rs"]
+pub(crate) mod extracts;
+#[path = "../support/silent.rs"]
+pub(crate) mod silent;

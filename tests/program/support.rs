@@ -1,0 +1,16 @@
+//! What these tests take from `tests/support/`.
+
+#[path = "../support/catalogue.rs"]
+pub(crate) mod catalogue;
+#[path = "../support/demo.rs"]
+pub(crate) mod demo;
+#[path = "../support/program.rs"]
+pub(crate) mod program;
+#[path = "../support/python.rs"]
+pub(crate) mod python;
+#[path = "../support/silent.rs"]
+pub(crate) mod silent;
+#[path = "../support/store_network.rs"]
+pub(crate) mod store_network;
+#[path = "../support/xml.rs"]
+pub(crate) mod xml;

@@ -1,0 +1,20 @@
+//! Real extracts, which do not ship: those of the folder `NETCERT_EXTRACTS`, or else of `../shared/extracts`.
+//! A test without its extract says so and passes.
+
+use std::path::{Path, PathBuf};
+
+/// An extract, if it is there.
+pub(crate) fn extract(name: &str) -> Option<PathBuf> {
+    folder_with(name).map(|folder| folder.join(name))
+}
+
+/// The folder of them all, if it has this file.
+pub(crate) fn folder_with(name: &str) -> Option<PathBuf> {
+    let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/extracts");
+    let folder = std::env::var_os("NETCERT_EXTRACTS").map_or_else(beside, PathBuf::from);
+    if folder.join(name).exists() {
+        return Some(folder);
+    }
+    eprintln!("skipped: no {name} at {} (set NETCERT_EXTRACTS)", folder.display());
+    None
+}

@@ -1,0 +1,96 @@
+//! Drawn junctions with kerbs of the test's own: turns and passages by name, who takes them, what is certified.
+
+use netcert::account::AccountRow;
+use netcert::corridor::Params;
+use netcert::network::{Network, build};
+use netcert::osm::facts::{Countries, Place, Policy, cross_sections};
+use netcert::pipeline::{Settings, TurnJob, best_of, certify_turns};
+use netcert::stet::{Model, Options, SpanResult};
+use netcert::store::TurnCertificate;
+use netcert::turns::{Kerbs, Reach, TurnCorridors, TurnFacts, TurnParams, corridors_of, turn_facts};
+use netcert::verdict::{UnknownReason, Verdict};
+
+use super::ascii_map::{AsciiMap, id_of};
+use super::catalogue::catalogued;
+use super::silent::Silent;
+
+pub(crate) struct Drawn {
+    pub(crate) network: Network,
+    pub(crate) params: TurnParams,
+}
+
+/// Certificates by the number of their vehicle, in the order in which they came, and the account of it.
+pub(crate) type Certified = (Vec<(usize, TurnCertificate)>, Vec<AccountRow>);
+
+impl Drawn {
+    pub(crate) fn new(map: &AsciiMap, left_hand_traffic: bool, kerb_m: f64) -> Self {
+        let countries = Countries::load().unwrap();
+        let rules = countries.rules();
+        let place = |_| Place { country: *b"DE", left_hand_traffic };
+        let (network, _) = build(map.extract(), &place, &|facts, place| cross_sections(facts, place, rules));
+        Self { network, params: TurnParams { corridor: Params::default(), kerbs: Kerbs::everywhere(kerb_m) } }
+    }
+
+    pub(crate) fn facts(&self) -> Vec<TurnFacts> {
+        turn_facts(&self.network, &self.params.kerbs)
+    }
+
+    /// The turn by the nodes it passes: `EBC` from E over B to C.
+    pub(crate) fn turn(&self, nodes: &str) -> TurnFacts {
+        let ids: Vec<i64> = nodes.chars().map(id_of).collect();
+        let is = |edge: u32, from: i64, to: i64| {
+            let edge = &self.network.edges[edge as usize];
+            (edge.from_node, edge.to_node) == (from, to)
+        };
+        let fits = |t: &TurnFacts| is(t.movement.from, ids[0], ids[1]) && is(t.movement.to, ids[1], ids[2]);
+        self.facts().into_iter().find(fits).unwrap_or_else(|| panic!("{nodes} is no turn"))
+    }
+
+    /// Roundabouts as one movement.
+    pub(crate) fn passages(&self) -> Vec<TurnFacts> {
+        self.facts().into_iter().filter(|turn| !turn.through.is_empty()).collect()
+    }
+
+    /// From the end of one arm to that of another: `WE`.
+    pub(crate) fn passage(&self, ends: &str) -> TurnFacts {
+        let ids: Vec<i64> = ends.chars().map(id_of).collect();
+        let edge = |edge: u32| &self.network.edges[edge as usize];
+        let fits = |t: &TurnFacts| edge(t.movement.from).from_node == ids[0] && edge(t.movement.to).to_node == ids[1];
+        self.passages().into_iter().find(fits).unwrap_or_else(|| panic!("{ends} is no passage"))
+    }
+
+    /// Of a turn, by three nodes, or of a passage, by two ends.
+    pub(crate) fn corridors(&self, name: &str, policy: Policy, reach: Reach) -> Result<TurnCorridors, UnknownReason> {
+        let turn = if name.len() == 2 { self.passage(name) } else { self.turn(name) };
+        corridors_of(&self.network, &turn, policy, &self.params, reach)
+    }
+
+    pub(crate) fn best(&self, name: &str, policy: Policy, id: &str) -> Option<SpanResult> {
+        let vehicle = catalogued(id);
+        let made = self.corridors(name, policy, Reach::of(&vehicle).unwrap()).unwrap();
+        let model = Model::new(&vehicle).unwrap();
+        best_of(&made.paths, &[&model], &Options::default()).pop().unwrap().map(|(_, result)| result)
+    }
+
+    pub(crate) fn safe(&self, name: &str, policy: Policy, id: &str) -> bool {
+        self.best(name, policy, id).is_some_and(|result| result.safe())
+    }
+
+    /// Everything that turns, for vehicles to which the edges are `edges`.
+    pub(crate) fn certified(&self, ids: &[&str], edges: &[Verdict], policy: Policy, threads: usize) -> Certified {
+        let models: Vec<Model> = ids.iter().map(|id| Model::new(&catalogued(id)).unwrap()).collect();
+        let edges = vec![edges.to_vec(); models.len()];
+        let settings = Settings { policy, corridor: Params::default(), stet: Options::default(), turns: true };
+        let (network, params, turns) = (&self.network, &self.params, self.facts());
+        let job = TurnJob { network, turns: &turns, models: &models, edges: &edges, settings: &settings, params };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut out = Vec::new();
+            let outcome = certify_turns(&job, &Silent, |vehicle, certificate| {
+                out.push((vehicle, certificate.clone()));
+                Ok::<(), ()>(())
+            });
+            (out, outcome.unwrap().rows())
+        })
+    }
+}
