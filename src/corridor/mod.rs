@@ -5,6 +5,7 @@
 mod band;
 mod closed;
 mod file;
+mod fit;
 mod frame;
 mod given;
 mod observation;

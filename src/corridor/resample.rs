@@ -97,7 +97,8 @@ impl<C: Fn(f64) -> Jet<2>> Track<'_, C> {
     }
 }
 
-/// Arc length as a function of a parameter, tabulated at steps near two metres, and back.
+/// Arc length as a function of a parameter, tabulated at steps near half a metre, and back: round a sharp corner the speed changes
+/// within a metre, and stations that are not where their arc length is would not follow from each other.
 #[derive(Debug, Clone)]
 pub(crate) struct ArcLength {
     from: f64,
@@ -107,7 +108,7 @@ pub(crate) struct ArcLength {
 }
 
 impl ArcLength {
-    const STEP_M: f64 = 2.0;
+    const STEP_M: f64 = 0.5;
 
     fn measure(from: f64, to: f64, speed: impl Fn(f64) -> f64) -> Self {
         let steps = (((to - from) / Self::STEP_M).ceil() as usize).max(1);

@@ -84,7 +84,8 @@ pub fn stroke_corridor(
     if !(arc.total() >= 0.5 * LEAST_LENGTH_M && all_finite(&corridor)) {
         return Err(UnknownReason::Geometry);
     }
-    let cut = Cut { corridor: &corridor, arc: &arc, smoothed: &smoothed, folded: &folded, params };
+    let cut =
+        Cut { corridor: &corridor, arc: &arc, smoothed: &smoothed, folded: &folded, torn: &corridor.torn(), params };
     let spans = course.pieces.iter().filter(|p| p.counted).map(|p| cut.span(p, &links[p.link])).collect();
     Ok(StrokeCorridor { corridor, spans })
 }
@@ -95,6 +96,7 @@ struct Cut<'c> {
     arc: &'c ArcLength,
     smoothed: &'c Smoothed,
     folded: &'c [f64],
+    torn: &'c [usize],
     params: &'c Params,
 }
 
@@ -109,6 +111,7 @@ impl Cut<'_> {
         let broken = piece.to - piece.from < LEAST_EDGE_M
             || centreline_deviation_m > self.params.tolerance_m
             || (first..=end).any(|i| c.curvature[i].abs() * c.left_m[i].max(c.right_m[i]) > MOST_CROSSING)
+            || self.torn.iter().any(|k| (first..=end).contains(k))
             || self.folded.iter().any(|&u| u >= piece.from && u <= piece.to);
         EdgeSpan {
             edge: link.index,

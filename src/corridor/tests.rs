@@ -237,6 +237,19 @@ fn a_line_that_folds_back_is_unknown_where_it_does() {
 }
 
 #[test]
+fn a_corner_too_sharp_for_its_stations_is_unknown_there_alone() {
+    let known = section(strip((1.5, -1.5)), None);
+    let edges =
+        [vec![[0.0, 0.0], [80.0, 0.0]], vec![[80.0, 0.0], [90.0, 0.0], [90.0, 10.0]], vec![[90.0, 10.0], [90.0, 90.0]]];
+    let (n, s) = network(&edges.map(|points| (points, known)), false);
+    let made = stroke_corridor(&n, &s, Policy::Lane, &Params::default()).unwrap();
+    let torn = made.corridor.torn();
+    assert!(!torn.is_empty() && torn.iter().all(|k| made.spans[1].stations.contains(k)), "{torn:?}");
+    let unknown: Vec<_> = made.spans.iter().map(|span| span.unknown).collect();
+    assert_eq!(unknown, [None, Some(UnknownReason::Geometry), None]);
+}
+
+#[test]
 fn an_approach_is_driven_but_has_no_span() {
     let line = |from: i32, to: i32| (from..=to).map(|i| [50.0 * f64::from(i), 0.0]).collect::<Vec<_>>();
     let known = section(strip(LANE), None);

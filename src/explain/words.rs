@@ -5,7 +5,6 @@
 use super::hints::{MOST_MORE_M, OtherStrip};
 use super::names::{cut, hinge_name, named, needed, source_words, strip_name};
 use super::{Explanation, Geometry, HingePlace, Part, Place};
-use crate::stet;
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
@@ -74,14 +73,13 @@ fn hinge_headline(vehicle: &Vehicle, g: &Geometry) -> String {
     let h = &g.hinge;
     let name = hinge_name(vehicle, h.unit);
     let place = g.along_m(h.station);
-    let torn = stet::torn(&g.corridor).into_iter().find(|k| g.span.contains(k));
-    if let Some(station) = torn.filter(|_| !g.result.closes()) {
-        return format!(
-            "the line drawn for the road is no curve at {:.0} m: nothing is certified there",
-            g.along_m(station as f64)
-        );
-    }
     if !g.result.closes() {
+        if let Some(station) = g.corridor.torn().into_iter().find(|k| g.span.contains(k)) {
+            return format!(
+                "the line drawn for the road is no curve at {:.0} m: nothing is certified there",
+                g.along_m(station as f64)
+            );
+        }
         let sharpest = g.corridor.curvature[g.span.clone()].iter().fold(0.0_f64, |k, c| k.max(c.abs()));
         return format!(
             "the road turns too sharply at {place:.0} m, to a radius of {:.1} m: no bound holds for {}",

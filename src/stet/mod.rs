@@ -5,7 +5,6 @@
 mod adjoint;
 mod ascent;
 mod body;
-mod fit;
 mod gains;
 mod given;
 mod group;
@@ -26,7 +25,6 @@ use std::ops::Range;
 use crate::corridor::Corridor;
 use crate::verdict::{UnsafeReason, Verdict};
 
-pub(crate) use fit::torn;
 pub use given::{PlanError, certify_plan};
 pub use model::{MAX_UNITS, Model, ModelError};
 pub use motion::steady_offtracking;

@@ -1,7 +1,6 @@
 //! A corridor made ready for the sweep: extended straight at both ends, with derivatives, and with the widths that
 //! the sampling may rely on.
 
-use super::fit::torn;
 use super::lanes::{LANES, V};
 use super::model::POINT_SPACING_M as MOST_GAP_M;
 use crate::corridor::Corridor;
@@ -101,7 +100,7 @@ impl Track {
             right_excess: right.into_iter().map(|[excess, _]| excess).collect(),
             ..fields
         };
-        let torn = torn(corridor).into_iter().map(|k| lead + k).collect();
+        let torn = corridor.torn().into_iter().map(|k| lead + k).collect();
         Self { spacing: h, lead, count, fields, torn }
     }
 

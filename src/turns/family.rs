@@ -40,9 +40,11 @@ const SHARES: [f64; 2] = [0.2, 0.42];
 const MEET_M: f64 = 90.0;
 /// A centreline that ends is prolonged straight by so much, metres.
 const PROLONGED_M: f64 = 30.0;
-/// Stations of turns tighter than the first lie as close as the second, metres: a carter's corner has transitions of half a metre,
-/// and stations that step over one do not follow from each other.
-const TIGHT_M: [(f64, f64); 2] = [(6.0, 0.25), (25.0, 0.5)];
+/// Stations of turns tighter than the first lie as close as the second, metres.
+const TIGHT_M: [f64; 2] = [25.0, 0.5];
+/// How often stations are laid twice as close where they step over transitions, so that they are no curve: a carter's corner has
+/// transitions of half a metre.
+const HALVINGS: usize = 2;
 
 /// A junction's turn, ready for its family.
 pub(super) struct Junction {
@@ -276,23 +278,28 @@ impl Ends<'_> {
         for k in lead {
             line.push(from.point(k), from.line.left_m[k], from.line.right_m[k]);
         }
-        let begins = line.at_m();
+        let begins = line.length_m;
         for (k, &p) in points.iter().enumerate() {
             line.push(p, widths.left_m[k], widths.right_m[k]);
         }
-        let ends = line.at_m();
+        let ends = line.length_m;
         for k in tail {
             line.push(to.point(k), to.line.left_m[k], to.line.right_m[k]);
         }
         let min_radius_m = 1.0 / path::sharpest(points).max(1e-9);
-        let tight = TIGHT_M.into_iter().find(|(radius_m, _)| min_radius_m < *radius_m);
-        let spacing_m = tight.map_or(from.line.spacing_m, |(_, spacing_m)| spacing_m);
-        let corridor = Corridor::from_centreline(&line.points, &line.left_m, &line.right_m, 0.0, spacing_m).ok()?;
-        let last = corridor.len() - 1;
-        let station = |m: f64| (m / corridor.spacing_m).round().clamp(0.0, last as f64) as usize;
-        let turn = nearest(&corridor, from.point(leave), station(begins.0))
-            ..nearest(&corridor, to.point(join), station(ends.0)) + 1;
-        let counted = station(begins.0 - self.reach.counted_before_m())..last + 1;
+        let spacing_m = if min_radius_m < TIGHT_M[0] { TIGHT_M[1] } else { from.line.spacing_m };
+        let sampled = |halvings: usize| {
+            let spacing_m = spacing_m / (1 << halvings) as f64;
+            let corridor = Corridor::from_centreline(&line.points, &line.left_m, &line.right_m, 0.0, spacing_m).ok()?;
+            let last = corridor.len() - 1;
+            let station = |m: f64| (m / corridor.spacing_m).round().clamp(0.0, last as f64) as usize;
+            let turn = nearest(&corridor, from.point(leave), station(begins))
+                ..nearest(&corridor, to.point(join), station(ends)) + 1;
+            let counted = station(begins - self.reach.counted_before_m())..last + 1;
+            let whole = !corridor.torn().iter().any(|k| turn.contains(k));
+            whole.then_some((corridor, turn, counted))
+        };
+        let (corridor, turn, counted) = (0..=HALVINGS).find_map(sampled)?;
         Some(TurnPath {
             number,
             turn,
@@ -383,10 +390,5 @@ impl Line {
         if let (Some(left), Some(right)) = (self.left_m.get_mut(k), self.right_m.get_mut(k)) {
             (*left, *right) = (left.min(left_m), right.min(right_m));
         }
-    }
-
-    /// Length so far, and how many points.
-    fn at_m(&self) -> (f64, usize) {
-        (self.length_m, self.points.len())
     }
 }

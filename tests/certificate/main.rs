@@ -4,6 +4,7 @@
 
 mod corrcen;
 mod errata;
+mod no_curve;
 #[path = "../oracle/mod.rs"]
 mod oracle;
 mod properties;

@@ -107,7 +107,7 @@ fn every_road_of_a_real_extract_has_a_corridor() {
             metres / 1000.0,
             100.0 * gentle / metres,
         );
-        // 56 and 5 of 1762 in Andorra.
+        // 88 and 5 of 1762 in Andorra.
         assert!(broken * 20 < network.strokes.len() && refused * 200 < network.strokes.len());
     }
 }
