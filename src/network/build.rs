@@ -13,7 +13,7 @@ use crate::osm::{Extract, LonLat};
 pub fn build(
     extract: Extract,
     places: &(impl Fn(LonLat) -> Place + Sync),
-    sections: &(impl Fn(&WayFacts, &Place) -> [CrossSection; 2] + Sync),
+    sections: &(impl Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync),
 ) -> (Network, NetworkAccount) {
     build_with(extract, places, sections, &StrokeOptions::default())
 }
@@ -21,11 +21,11 @@ pub fn build(
 /// Cuts an extract's ways into directed edges and chains them into strokes.
 ///
 /// `places` says which country's rules hold at a position; it is asked once a way, at its first located node.
-/// `sections` gives a way's strips along its node order and against it.
+/// `sections` gives a way's strips along its node order and against it; it is told the radius, metres, of the ring that a roundabout's way is part of.
 pub fn build_with(
     extract: Extract,
     places: &(impl Fn(LonLat) -> Place + Sync),
-    sections: &(impl Fn(&WayFacts, &Place) -> [CrossSection; 2] + Sync),
+    sections: &(impl Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync),
     options: &StrokeOptions,
 ) -> (Network, NetworkAccount) {
     let Extract { ways, refs, nodes, points, restrictions, strings, .. } = extract;

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::cut::{CutWay, Piece};
 use super::edge_id::edge_id;
+use super::geometry::mean_radius_m;
 use super::vertices::{MISSING, Vertices, of_way};
 use super::{Edge, Narrowing, Network, NetworkAccount, Road};
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, Place, WayFacts};
@@ -28,7 +29,7 @@ pub(super) struct Source<'s, P, S> {
 impl<P, S> Source<'_, P, S>
 where
     P: Fn(LonLat) -> Place + Sync,
-    S: Fn(&WayFacts, &Place) -> [CrossSection; 2] + Sync,
+    S: Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync,
 {
     /// Appends the roads and edges of all ways.
     pub(super) fn build(&self, ways: &[Way], network: &mut Network, account: &mut NetworkAccount) {
@@ -61,9 +62,11 @@ where
     fn add_way(&self, way: &Way, vertices: &[u32], cut: &CutWay, part: &mut Part) {
         let first = vertices.iter().copied().find(|&v| v != MISSING).unwrap_or(cut.line[0]);
         let place = (self.places)(self.position(first));
-        let road = road(way, &place, (self.sections)(&way.facts, &place));
+        let positions = || cut.line.iter().map(|&v| self.position(v));
+        let ring_radius_m = if way.facts.roundabout { mean_radius_m(positions()) } else { None };
+        let road = road(way, &place, (self.sections)(&way.facts, &place, ring_radius_m));
         let base = part.network.shapes.len();
-        part.network.shapes.extend(cut.line.iter().map(|&v| self.position(v)));
+        part.network.shapes.extend(positions());
         let edges = part.network.edges.len();
         for piece in &cut.pieces {
             self.add_piece(&road, cut, piece, base, part);

@@ -73,6 +73,22 @@ fn length_m(positions: impl Iterator<Item = LonLat>) -> f64 {
     sum
 }
 
+/// Length of a line by the angle through which it turns, metres: the radius, where it is an arc. `None` where it does not turn.
+pub(super) fn mean_radius_m(positions: impl Iterator<Item = LonLat>) -> Option<f64> {
+    let (mut last, mut chord) = (None::<LonLat>, None::<[f64; 2]>);
+    let (mut turned_rad, mut along_m) = (0.0, 0.0);
+    for position in positions {
+        let Some(before) = last.replace(position) else { continue };
+        let next = offset_m(before, position);
+        if let Some([x, y]) = chord.replace(next) {
+            turned_rad += (x * next[1] - y * next[0]).atan2(x * next[0] + y * next[1]);
+            along_m += 0.5 * (x.hypot(y) + next[0].hypot(next[1]));
+        }
+    }
+    let radius_m = along_m / turned_rad.abs();
+    radius_m.is_finite().then_some(radius_m)
+}
+
 /// Direction of the chord from the first position to the point `reach_m` along the line, or to its end if it is
 /// shorter, but over one segment at least.
 fn chord_deg(mut positions: impl Iterator<Item = LonLat>, reach_m: f64) -> f64 {
@@ -111,6 +127,20 @@ mod tests {
 
     fn at(lon: f64, lat: f64) -> LonLat {
         LonLat { lon_e7: (lon * 1e7).round() as i32, lat_e7: (lat * 1e7).round() as i32 }
+    }
+
+    #[test]
+    fn a_ring_and_a_part_of_it_have_its_radius() {
+        let on_ring = |i: i32| {
+            let (sin, cos) = (f64::from(i) * std::f64::consts::TAU / 24.0).sin_cos();
+            let degree_m = EARTH_RADIUS_M.to_radians();
+            at(8.7 + 15.0 * cos / degree_m / 49.4_f64.to_radians().cos(), 49.4 + 15.0 * sin / degree_m)
+        };
+        for to in [24, 5] {
+            let radius_m = mean_radius_m((0..=to).map(on_ring));
+            assert!(radius_m.is_some_and(|radius_m| (radius_m - 15.0).abs() < 0.1), "{radius_m:?}");
+        }
+        assert_eq!(mean_radius_m((0..2).map(on_ring)), None);
     }
 
     #[test]

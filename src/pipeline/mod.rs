@@ -213,8 +213,9 @@ pub fn read_network(
     let clock = Instant::now();
     reporter.begin("network", 0);
     let rules = countries.rules();
-    let (network, account) =
-        network::build(extract, &|p| countries.place(p), &|facts, place| cross_sections(facts, place, rules));
+    let (network, account) = network::build(extract, &|p| countries.place(p), &|facts, place, ring_radius_m| {
+        cross_sections(facts, place, ring_radius_m, rules)
+    });
     reporter.end();
     summary.account.extend(account.rows());
     summary.stage("network", clock, network.edges.len() as u64, "directed edges");

@@ -89,7 +89,8 @@ fn the_rewritten_extract_has_every_road_and_nothing_new_is_open() {
     let restrictions = extract.restrictions.len();
     let countries = Countries::load().unwrap();
     let rules = countries.rules();
-    let (network, _) = build(extract, &|place| countries.place(place), &|way, place| cross_sections(way, place, rules));
+    let (network, _) =
+        build(extract, &|place| countries.place(place), &|way, place, ring| cross_sections(way, place, ring, rules));
     let (old, safe) = permitted(&place);
     let line = |network: &Network, edge: u32| network.positions(&network.edges[edge as usize]).collect::<Vec<_>>();
     let mut open = BTreeSet::new();

@@ -156,7 +156,7 @@ pub(crate) fn somewhere(_: LonLat) -> Place {
 }
 
 /// No road has a width.
-pub(crate) fn no_sections(_: &WayFacts, _: &Place) -> [CrossSection; 2] {
+pub(crate) fn no_sections(_: &WayFacts, _: &Place, _: Option<f64>) -> [CrossSection; 2] {
     [CrossSection { lane: None, direction: None, carriageway: None }; 2]
 }
 

@@ -27,7 +27,8 @@ impl Drawn {
         let countries = Countries::load().unwrap();
         let rules = countries.rules();
         let place = |_| Place { country: *b"DE", left_hand_traffic };
-        let (network, _) = build(map.extract(), &place, &|facts, place| cross_sections(facts, place, rules));
+        let (network, _) =
+            build(map.extract(), &place, &|facts, place, ring| cross_sections(facts, place, ring, rules));
         Self { network, params: TurnParams { corridor: Params::default(), kerbs: Kerbs::everywhere(kerb_m) } }
     }
 

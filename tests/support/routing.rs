@@ -55,8 +55,9 @@ impl Region {
     pub(crate) fn of(extract: Extract, policy: Policy) -> Self {
         let countries = Countries::load().unwrap();
         let rules = countries.rules();
-        let (network, _) =
-            build(extract, &|position| countries.place(position), &|way, place| cross_sections(way, place, rules));
+        let (network, _) = build(extract, &|position| countries.place(position), &|way, place, ring| {
+            cross_sections(way, place, ring, rules)
+        });
         let movements = network.movements();
         let settings = Settings { policy, corridor: Params::default(), stet: Options::default(), turns: true };
         Self { network, movements, settings, kerbs: Kerbs::default() }

@@ -19,7 +19,8 @@ impl Builder<'_> {
         }
         let known = tagged > 0 || tags.listed > 0;
         let narrow = self.tags.narrow && tagged <= 1 && tags.listed == 0;
-        let assumed_m = narrow.then_some(self.kerb_rule.narrow_m);
+        let single_m = self.single_m.filter(|_| lanes.len() == 1).map(|width_m| width_m.max(self.lane_m));
+        let assumed_m = if narrow { Some(self.kerb_rule.narrow_m) } else { single_m };
         self.lay_out(lanes, known, assumed_m, false)
     }
 

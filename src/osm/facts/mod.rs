@@ -14,6 +14,7 @@ mod notes;
 mod points;
 mod restrictions;
 mod rules;
+mod rules_file;
 mod section;
 mod section_reader;
 #[cfg(test)]

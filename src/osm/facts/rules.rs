@@ -1,17 +1,17 @@
 //! What is assumed of roads whose widths are not tagged: `data/roads.toml`, built in or read from a path.
 //!
-//! Figures and their sources stand in the file; here they are only read and checked.
+//! Figures and their sources stand in the file, which `rules_file` reads and checks.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
 use crate::osm::facts::RoadClass;
+use crate::osm::facts::rules_file::File;
 
 const BUILTIN: &str = include_str!("../../../data/roads.toml");
 const BUILTIN_NAME: &str = "data/roads.toml (built in)";
-const CLASSES: usize = RoadClass::ALL.len();
+pub(super) const CLASSES: usize = RoadClass::ALL.len();
 
 impl RoadClass {
     /// Every class, in the order of their discriminants.
@@ -83,55 +83,27 @@ pub(super) struct KerbRule {
     pub(super) narrow_m: f32,
 }
 
-#[derive(Debug, Deserialize)]
+/// A country's rings from a radius on, of the way's line.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
-    source: BTreeMap<String, String>,
-    class: BTreeMap<RoadClass, ClassEntry>,
-    country: BTreeMap<String, CountryEntry>,
-    kerb: KerbEntry,
-    driving_side: DrivingSide,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ClassEntry {
-    lane_m: f32,
-    lanes: u8,
-    shared_m: Option<f32>,
-    sources: Vec<String>,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct CountryEntry {
-    sources: Vec<String>,
-    lane_m: BTreeMap<RoadClass, f32>,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct KerbEntry {
-    sources: Vec<String>,
-    default: KerbRule,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct DrivingSide {
-    sources: Vec<String>,
-    left: Vec<String>,
+pub(super) struct CountryRing {
+    pub(super) from_radius_m: f32,
+    pub(super) width_m: f32,
 }
 
 /// Assumed widths by class and country, and who drives on the left.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rules {
-    classes: [ClassRule; CLASSES],
+    pub(super) classes: [ClassRule; CLASSES],
     /// Sorted by code.
-    countries: Vec<([u8; 2], [f32; CLASSES])>,
+    pub(super) countries: Vec<([u8; 2], [f32; CLASSES])>,
+    pub(super) ring_m: Option<f32>,
+    /// Sorted by code.
+    pub(super) country_rings: Vec<([u8; 2], CountryRing)>,
+    pub(super) ramps_m: [Option<f32>; CLASSES],
     pub(super) kerb: KerbRule,
     /// Sorted; ISO 3166-1 or 3166-2.
-    left: Vec<String>,
+    pub(super) left: Vec<String>,
 }
 
 impl Rules {
@@ -156,58 +128,7 @@ impl Rules {
     fn parse(text: &str, name: &str) -> Result<Rules, RulesError> {
         let file: File = toml::from_str(text)
             .map_err(|source| RulesError::Parse { name: name.to_owned(), source: Box::new(source) })?;
-        Self::check(file).map_err(|what| RulesError::Value { name: name.to_owned(), what })
-    }
-
-    fn check(file: File) -> Result<Rules, String> {
-        let known = |sources: &[String], of: &str| match sources.iter().find(|id| !file.source.contains_key(*id)) {
-            Some(id) => Err(format!("{of}: source \"{id}\" is not listed under [source]")),
-            None if sources.is_empty() => Err(format!("{of}: sources is empty; every figure needs one")),
-            None => Ok(()),
-        };
-        let within = |value: f32, low: f32, high: f32, of: &str| {
-            if (low..=high).contains(&value) {
-                Ok(value)
-            } else {
-                Err(format!("{of} = {value} is not within {low} to {high}"))
-            }
-        };
-        let mut classes = [ClassRule { lane_m: 0.0, lanes: 1, shared_m: None }; CLASSES];
-        for (class, slot) in RoadClass::ALL.into_iter().zip(&mut classes) {
-            let of = format!("class {class:?}");
-            let entry = file.class.get(&class).ok_or_else(|| format!("{of} is missing"))?;
-            known(&entry.sources, &of)?;
-            within(entry.lane_m, 1.8, 6.0, &format!("{of}: lane_m"))?;
-            within(f32::from(entry.lanes), 1.0, 4.0, &format!("{of}: lanes"))?;
-            if let Some(shared_m) = entry.shared_m {
-                within(shared_m, 1.8, 12.0, &format!("{of}: shared_m"))?;
-            }
-            *slot = ClassRule { lane_m: entry.lane_m, lanes: entry.lanes, shared_m: entry.shared_m };
-        }
-        let mut countries = Vec::with_capacity(file.country.len());
-        for (code, entry) in &file.country {
-            let of = format!("country {code}");
-            known(&entry.sources, &of)?;
-            let id = country_code(code).ok_or_else(|| format!("{of}: not an ISO 3166-1 code of two capitals"))?;
-            let mut lanes_m = classes.map(|rule| rule.lane_m);
-            for (class, lane_m) in &entry.lane_m {
-                lanes_m[*class as usize] = within(*lane_m, 1.8, 6.0, &format!("{of}: lane_m of {class:?}"))?;
-            }
-            countries.push((id, lanes_m));
-        }
-        known(&file.kerb.sources, "kerb")?;
-        let kerb = file.kerb.default;
-        for width_m in
-            [kerb.parallel_parking_m, kerb.diagonal_parking_m, kerb.perpendicular_parking_m, kerb.cycle_lane_m]
-        {
-            within(width_m, 0.5, 8.0, "kerb")?;
-        }
-        within(kerb.shoulder_m, 0.0, 5.0, "kerb: shoulder_m")?;
-        within(kerb.narrow_m, 1.0, 4.0, "kerb: narrow_m")?;
-        known(&file.driving_side.sources, "driving_side")?;
-        let mut left = file.driving_side.left;
-        left.sort_unstable();
-        Ok(Rules { classes, countries, kerb, left })
+        file.check().map_err(|what| RulesError::Value { name: name.to_owned(), what })
     }
 
     pub(super) fn class(&self, class: RoadClass) -> ClassRule {
@@ -221,6 +142,21 @@ impl Rules {
             Ok(at) => self.countries[at].1[class as usize],
             Err(_) => self.classes[class as usize].lane_m,
         }
+    }
+
+    /// Assumed width of a roundabout's one-lane ring, if rings are assumed wider than a lane; its radius is that of the way's line.
+    #[must_use]
+    pub fn ring_m(&self, country: [u8; 2], radius_m: Option<f64>) -> Option<f32> {
+        let at = self.country_rings.binary_search_by_key(&country, |(code, _)| *code).ok();
+        let rule = at.map(|at| self.country_rings[at].1);
+        let own = rule.filter(|rule| radius_m.is_some_and(|radius_m| radius_m >= f64::from(rule.from_radius_m)));
+        own.map(|rule| rule.width_m).or(self.ring_m)
+    }
+
+    /// Assumed width of a one-lane ramp of a class, if such ramps are assumed wider than a lane.
+    #[must_use]
+    pub fn ramp_m(&self, class: RoadClass) -> Option<f32> {
+        self.ramps_m[class as usize]
     }
 
     /// Whether traffic keeps to the left in a country or part of one (ISO 3166-1 or 3166-2).
@@ -248,6 +184,11 @@ mod tests {
         }
         assert_eq!(rules.lane_m(RoadClass::Motorway, *b"US"), 3.66);
         assert_eq!(rules.lane_m(RoadClass::Motorway, *b"ZZ"), rules.class(RoadClass::Motorway).lane_m);
+        assert_eq!(rules.ring_m(*b"DE", Some(15.0)), Some(6.0));
+        for (country, radius_m) in [(*b"DE", Some(8.0)), (*b"DE", None), (*b"FR", Some(15.0))] {
+            assert_eq!(rules.ring_m(country, radius_m), Some(4.3));
+        }
+        assert_eq!((rules.ramp_m(RoadClass::Motorway), rules.ramp_m(RoadClass::Secondary)), (Some(4.2), None));
         assert!(rules.drives_on_the_left("AU") && rules.drives_on_the_left("US-VI") && !rules.drives_on_the_left("DE"));
     }
 
@@ -257,6 +198,9 @@ mod tests {
             ("lane_m = 3.5", "lane_m = 35.0", "is not within 1.8 to 6"),
             ("lane_m = 3.5", "lane_m = nan", "is not within 1.8 to 6"),
             ("[class.motorway]", "[class.motorwayy]", "motorwayy"),
+            ("width_m = 6.0", "width_m = 16.0", "ring.country.DE: width_m = 16 is not within 1.8 to 12"),
+            ("primary = 4.2", "primary = 0.2", "ramp: width_m of Primary = 0.2 is not within 1.8 to 12"),
+            ("[ring.country.DE]", "[ring.country.de]", "ring.country.de: not an ISO 3166-1 code"),
             ("country.US", "country.usa", "country usa: not an ISO 3166-1 code"),
             ("lanes = 2", "lanes = 2\nlane = 2", "unknown field"),
             ("sources = [", "sources = [\"nowhere\", ", "\"nowhere\" is not listed"),
@@ -266,6 +210,9 @@ mod tests {
             let error = Rules::parse(&text, "test.toml").unwrap_err().to_string();
             assert!(error.contains(said) && error.contains("test.toml"), "{error}");
         }
+        let (start, end) = (BUILTIN.find("[ring]").unwrap(), BUILTIN.find("# Deducted").unwrap());
+        let without = Rules::parse(&BUILTIN.replace(&BUILTIN[start..end], ""), "test.toml").unwrap();
+        assert_eq!((without.ring_m(*b"DE", Some(15.0)), without.ramp_m(RoadClass::Motorway)), (None, None));
         let error = Rules::from_path(Path::new("/nowhere/rules.toml")).unwrap_err().to_string();
         assert!(error.contains("/nowhere/rules.toml"), "{error}");
     }

@@ -20,15 +20,21 @@ const WIDEST_UNTAGGED_LANE_M: f32 = 4.25;
 /// Widths by lane may exceed the carriageway's by this much (rounding by mappers) before they are dropped.
 const LISTED_SLACK_M: f32 = 0.3;
 
-/// The cross sections of a way for travel along its node order and against it.
+/// The cross sections of a way for travel along its node order and against it. `ring_radius_m`: of the ring that a roundabout's way is
+/// part of, if it is known.
 #[must_use]
-pub fn cross_sections(facts: &WayFacts, place: &Place, rules: &Rules) -> [CrossSection; 2] {
+pub fn cross_sections(facts: &WayFacts, place: &Place, ring_radius_m: Option<f64>, rules: &Rules) -> [CrossSection; 2] {
     let class = rules.class(facts.class);
     let builder = Builder {
         tags: &facts.section,
         // A ramp has one lane unless tagged otherwise, whatever its class.
         class: if facts.link { ClassRule { lanes: 1, ..class } } else { class },
         lane_m: rules.lane_m(facts.class, place.country),
+        single_m: if facts.roundabout {
+            rules.ring_m(place.country, ring_radius_m)
+        } else {
+            rules.ramp_m(facts.class).filter(|_| facts.link)
+        },
         left_hand_traffic: place.left_hand_traffic,
         kerb_rule: rules.kerb,
     };
@@ -50,6 +56,8 @@ pub(super) struct Builder<'a> {
     pub(super) tags: &'a SectionTags,
     pub(super) class: ClassRule,
     pub(super) lane_m: f32,
+    /// The carriageway of a ring or ramp that has one lane, assumed wider than a lane of its class.
+    pub(super) single_m: Option<f32>,
     pub(super) left_hand_traffic: bool,
     pub(super) kerb_rule: KerbRule,
 }

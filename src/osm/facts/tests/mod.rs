@@ -22,7 +22,7 @@ fn draft(text: &str) -> WayDraft<'_> {
 }
 
 fn sections(text: &str, place: &Place) -> [CrossSection; 2] {
-    cross_sections(&draft(text).facts, place, &Rules::builtin().unwrap())
+    cross_sections(&draft(text).facts, place, None, &Rules::builtin().unwrap())
 }
 
 /// Left and right edge in centimetres, and the evidence.

@@ -133,7 +133,7 @@ proptest! {
     fn strips_are_sound_whatever_the_tags(tags in some_tags(), left_hand_traffic: bool) {
         let place = Place { left_hand_traffic, ..RIGHT };
         let facts = way_facts(&borrowed(&tags)).unwrap().facts;
-        for section in cross_sections(&facts, &place, &Rules::builtin().unwrap()) {
+        for section in cross_sections(&facts, &place, None, &Rules::builtin().unwrap()) {
             let strips = [section.lane, section.direction, section.carriageway];
             for strip in strips.into_iter().flatten() {
                 prop_assert!(strip.left_m.is_finite() && strip.right_m.is_finite());
@@ -163,8 +163,8 @@ proptest! {
         let tags: Vec<_> = tags.into_iter().filter(|(key, _)| !key.starts_with("placement")).collect();
         let mirror = mirrored(&tags);
         let rules = Rules::builtin().unwrap();
-        let right = cross_sections(&way_facts(&borrowed(&tags)).unwrap().facts, &RIGHT, &rules);
-        let left = cross_sections(&way_facts(&borrowed(&mirror)).unwrap().facts, &LEFT, &rules);
+        let right = cross_sections(&way_facts(&borrowed(&tags)).unwrap().facts, &RIGHT, None, &rules);
+        let left = cross_sections(&way_facts(&borrowed(&mirror)).unwrap().facts, &LEFT, None, &rules);
         for (a, b) in right.into_iter().zip(left) {
             for (a, b) in [(a.lane, b.lane), (a.direction, b.direction), (a.carriageway, b.carriageway)] {
                 match (a, b) {

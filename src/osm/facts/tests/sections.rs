@@ -6,8 +6,29 @@ use super::*;
 fn untagged_roads_have_assumed_lanes() {
     check("highway=tertiary", "0..-300 Assumed | 0..-300 Assumed | 0..-300 Assumed | 300..-300 Assumed");
     check("highway=motorway", "0..-350 Assumed | - | 350..-350 Assumed | 350..-350 Assumed");
-    check("highway=motorway_link oneway=yes", "175..-175 Assumed | - | 175..-175 Assumed | 175..-175 Assumed");
+    check("highway=motorway_link oneway=yes", "210..-210 Assumed | - | 210..-210 Assumed | 210..-210 Assumed");
     check("highway=service", "200..-200 Assumed | 200..-200 Assumed | 200..-200 Assumed | 200..-200 Assumed");
+}
+
+#[test]
+fn rings_and_ramps_of_one_lane_are_wider_than_a_lane() {
+    let carriageway = |text: &str, country: &[u8; 2], ring_radius_m| {
+        let place = Place { country: *country, left_hand_traffic: false };
+        let [forward, _] = cross_sections(&draft(text).facts, &place, ring_radius_m, &Rules::builtin().unwrap());
+        show(forward.carriageway)
+    };
+    let ring = "highway=tertiary junction=roundabout";
+    assert_eq!(carriageway(ring, b"FR", Some(15.0)), "215..-215 Assumed");
+    assert_eq!(carriageway(ring, b"DE", Some(8.0)), "215..-215 Assumed");
+    assert_eq!(carriageway(ring, b"DE", Some(15.0)), "300..-300 Assumed");
+    assert_eq!(carriageway(&format!("{ring} lanes=1"), b"DE", Some(15.0)), "300..-300 FromLanes");
+    // Not where anything more is known.
+    assert_eq!(carriageway(&format!("{ring} lanes=2"), b"DE", Some(15.0)), "300..-300 FromLanes");
+    assert_eq!(carriageway(&format!("{ring} width=5"), b"DE", Some(15.0)), "250..-250 Tagged");
+    assert_eq!(carriageway(&format!("{ring} narrow=yes"), b"DE", Some(15.0)), "110..-110 Assumed");
+    check("highway=trunk_link oneway=-1 lanes=1", "- | 210..-210 FromLanes | - | 210..-210 FromLanes");
+    check("highway=trunk_link oneway=yes lanes=2", "0..-350 FromLanes | - | 350..-350 FromLanes | 350..-350 FromLanes");
+    check("highway=trunk oneway=yes lanes=1", "175..-175 FromLanes | - | 175..-175 FromLanes | 175..-175 FromLanes");
 }
 
 #[test]
