@@ -11,6 +11,7 @@ use netcert::osm::facts::Policy;
 use netcert::picture;
 use netcert::pipeline::Settings;
 use netcert::stet::Model;
+use netcert::stop::Stop;
 use netcert::store::{Database, EdgeRow, Named, QueryOptions, verdict_words};
 use netcert::turns::{TurnFacts, turn_facts};
 use netcert::vehicle::Vehicle;
@@ -76,7 +77,8 @@ impl Explain {
         let network = database.load_network()?;
         if let Some(turn) = self.turn(&network, &settings) {
             let model = Model::new(&self.vehicle(&mut database)?)?;
-            return self.tell_turn(session, &explain::explain_turn(&network, &turn, &model, &settings));
+            let turn = explain::explain_turn_until(&network, &turn, &model, &settings, &Stop::default())?;
+            return self.tell_turn(session, &turn);
         }
         let edge = self.one_edge(&network, &mut database, settings.policy)?;
         let model = Model::new(&self.vehicle(&mut database)?)?;

@@ -37,6 +37,7 @@ pub fn explain_edge_until(
     let conflict = Conflict::of(facts, &model.vehicle);
     let road = road_facts(network, facts, settings.policy);
     let case = Case::of(network, edge, settings);
+    stop.check()?;
     let (geometry, unknown) = match &case {
         Ok(case) => (case.geometry(model, &settings.stet), case.unknown()),
         Err(reason) => (None, Some(*reason)),

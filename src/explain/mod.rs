@@ -40,7 +40,7 @@ pub use legal::Conflict;
 pub use names::cautious_m;
 pub use place::{Bend, Cross, HingePlace, Part, Place};
 pub use ride::Ride;
-pub use turn::{TurnExplanation, explain_turn};
+pub use turn::{TurnExplanation, explain_turn_until};
 pub use words::{Words, words};
 
 use crate::corridor::Corridor;

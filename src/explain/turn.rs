@@ -6,6 +6,7 @@ use super::hints::Hints;
 use crate::network::{Edge, Network};
 use crate::pipeline::{Settings, best_of, turn_verdict};
 use crate::stet::{Model, Options, certify_planned};
+use crate::stop::{Stop, Stopped};
 use crate::turns::{Reach, TurnCorridors, TurnFacts, corridors_of};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
@@ -25,14 +26,25 @@ pub struct TurnExplanation {
 }
 
 /// Why `model`'s vehicle may take a turn or not.
-#[must_use]
-pub fn explain_turn(network: &Network, facts: &TurnFacts, model: &Model, settings: &Settings) -> TurnExplanation {
+///
+/// # Errors
+/// It was told to stop: it asks before it makes the turn's corridors, before it certifies them, and before the best one's
+/// certificate is made again.
+pub fn explain_turn_until(
+    network: &Network,
+    facts: &TurnFacts,
+    model: &Model,
+    settings: &Settings,
+    stop: &Stop,
+) -> Result<TurnExplanation, Stopped> {
+    stop.check()?;
     let roads = [facts.movement.from, facts.movement.to]
         .map(|edge| network.edges.get(edge as usize).map_or(String::new(), |edge| title(network, edge)));
     let made = match Reach::of(&model.vehicle) {
         Some(reach) => corridors_of(network, facts, settings.policy, &settings.turn_params(), reach),
         None => Err(UnknownReason::Geometry),
     };
+    stop.check()?;
     let best = made.as_ref().ok().and_then(|made| best_of(&made.paths, &[model], &settings.stet).pop().flatten());
     let legal = [facts.movement.from, facts.movement.to]
         .into_iter()
@@ -45,6 +57,7 @@ pub fn explain_turn(network: &Network, facts: &TurnFacts, model: &Model, setting
         (Err(reason), _) => Verdict::Unknown(*reason),
         (Ok(_), best) => turn_verdict(best.as_ref().map(|(_, result)| result)),
     };
+    stop.check()?;
     let geometry = made.as_ref().ok().zip(best.as_ref()).and_then(|(made, (path, result))| {
         let path = made.paths.get(*path)?;
         let spans = std::slice::from_ref(&path.counted);
@@ -65,7 +78,8 @@ pub fn explain_turn(network: &Network, facts: &TurnFacts, model: &Model, setting
         hints: Hints::default(),
         conflict: None,
     };
-    TurnExplanation { facts: facts.clone(), roads, corridors: made.ok(), path: best.map(|(path, _)| path), explanation }
+    let path = best.map(|(path, _)| path);
+    Ok(TurnExplanation { facts: facts.clone(), roads, corridors: made.ok(), path, explanation })
 }
 
 fn forbids(edge: &Edge, model: &Model) -> Option<Verdict> {

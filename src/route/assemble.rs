@@ -122,7 +122,7 @@ pub(super) struct Sample {
     pub(super) right_m: f64,
 }
 
-/// Strings the pieces of a way together. Between two turns it asks whether to stop.
+/// Strings the pieces of a way together. Before each turn and each leg it asks whether to stop.
 ///
 /// # Errors
 /// A piece without a corridor, turns that overlap too far, more than a metric frame; told to stop.
@@ -166,10 +166,12 @@ pub fn assemble(
     for (i, leg) in legs.iter().enumerate() {
         let before = i.checked_sub(1).and_then(|i| between.get(i));
         let after = between.get(i);
+        stop.check()?;
         let leg = Leg::new(strokes, way, leg.clone(), frame, before, after)?;
         leg.add(&mut string, before, after)?;
     }
     let finest_m = between.iter().map(|turn| turn.spacing_m).fold(SPACING_M, f64::min);
+    stop.check()?;
     string.finish(frame, finest_m.max(LEAST_SPACING_M))
 }
 

@@ -11,13 +11,13 @@ use super::graph::{Access, BARRED, Graph};
 use super::obstacles::{self, Obstacle};
 use super::permits::Permits;
 use super::pieces::{Menu, Strokes, Turns};
-use super::search::{Found, Goal, Start, search_over};
+use super::search::{Found, Goal, Start, search_over_until};
 use super::snap::{Position, SnapError, Snapped, Snapper};
 use super::speeds::{Measure, Speeds};
 use crate::corridor::Corridor;
 use crate::network::{MovementKind, Network};
 use crate::stet::{self, Certificate, Model};
-use crate::stop::Stop;
+use crate::stop::{Stop, Stopped};
 
 /// A failure of the whole is put down to a turn at most this far from it, metres; else to the edge it is on.
 const TURN_REACH_M: f64 = 120.0;
@@ -92,6 +92,17 @@ pub struct Answer {
     pub snapped: Vec<Snapped>,
 }
 
+/// Why there is no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum Unanswered {
+    /// A place that is on no road that the vehicle may use.
+    #[error(transparent)]
+    Place(#[from] SnapError),
+    /// Nobody waits for it any more.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
 /// Everything needed to answer questions about one vehicle.
 pub struct Planner<'n> {
     graph: Graph<'n>,
@@ -143,39 +154,46 @@ impl<'n> Planner<'n> {
     /// # Errors
     /// A place that is on no road that the vehicle may use.
     pub fn answer(&mut self, question: &Question) -> Result<Answer, SnapError> {
-        self.answer_until(question, &Stop::default()).map(Option::unwrap_or_default)
+        match self.answer_until(question, &Stop::default()) {
+            Err(Unanswered::Place(error)) => Err(error),
+            answer => Ok(answer.unwrap_or_default()), // nobody tells it to stop
+        }
     }
 
-    /// The same; `None` if it was told to stop. It asks before each search, each turn and each certificate.
+    /// The same; it asks before each turn, every few thousand states of a search and every few metres of a certificate's
+    /// sweeps whether to stop. What the planner keeps is whole whenever it stops: the next answer is as if nothing had been.
     ///
     /// # Errors
-    /// A place that is on no road that the vehicle may use.
-    pub fn answer_until(&mut self, question: &Question, stop: &Stop) -> Result<Option<Answer>, SnapError> {
+    /// A place that is on no road that the vehicle may use; told to stop.
+    pub fn answer_until(&mut self, question: &Question, stop: &Stop) -> Result<Answer, Unanswered> {
         self.stop = stop.clone();
+        stop.check()?;
         let usable = |edge| self.permits.edge(edge);
         let snap = |place: &Position| self.snapper.snap(*place, question.snap_m, usable);
         let snapped = question.places.iter().map(snap).collect::<Result<Vec<_>, _>>()?;
         let mut answer = Answer { snapped, ..Answer::default() };
         let mut access = self.access.clone();
         self.menu.begin();
-        self.next_route(&mut access, question, &mut answer, &|_| true);
+        self.next_route(&mut access, question, &mut answer, &|_| true)?;
         if answer.routes.is_empty() {
-            answer.obstacles = self.obstacles(&answer);
+            answer.obstacles = self.obstacles(&answer)?;
         } else {
-            self.alternatives(&access, question, &mut answer);
+            self.alternatives(&access, question, &mut answer)?;
         }
-        Ok((!stop.told()).then_some(answer))
+        Ok(answer)
     }
 
-    fn way(&self, access: &Access, snapped: &[Snapped]) -> Option<(Found, f64, f64)> {
-        let (from, places) = snapped.split_first()?;
+    fn way(&self, access: &Access, snapped: &[Snapped]) -> Result<Option<(Found, f64, f64)>, Stopped> {
+        let Some((from, places)) = snapped.split_first() else { return Ok(None) };
         let starts: Vec<Start> = from.on.iter().map(|on| Start::new(on.edge, on.share)).collect();
         let goals: Vec<Vec<Goal>> = places.iter().map(|place| place.on.clone()).collect();
-        let found = search_over(&self.graph, access, &starts, &goals)?;
-        let start = starts.get(found.start)?.share;
-        let last = found.drive.edges.last()?;
-        let end = places.last()?.on.iter().find(|goal| goal.edge == *last)?.share;
-        Some((found, start, end))
+        let found = search_over_until(&self.graph, access, &starts, &goals, &self.stop)?;
+        Ok(found.and_then(|found| {
+            let start = starts.get(found.start)?.share;
+            let last = found.drive.edges.last()?;
+            let end = places.last()?.on.iter().find(|goal| goal.edge == *last)?.share;
+            Some((found, start, end))
+        }))
     }
 
     /// Searches and certifies until a whole route passes, leaving out of `access` what fails. Whether it found one.
@@ -185,22 +203,22 @@ impl<'n> Planner<'n> {
         question: &Question,
         answer: &mut Answer,
         wanted: &dyn Fn(&[u32]) -> bool,
-    ) -> bool {
-        while !self.stop.told() {
-            let Some((found, start, end)) = self.way(access, &answer.snapped) else { return false };
+    ) -> Result<bool, Stopped> {
+        loop {
+            let Some((found, start, end)) = self.way(access, &answer.snapped)? else { return Ok(false) };
             if !wanted(&found.drive.edges) {
-                return false;
+                return Ok(false);
             }
             if answer.refuted.len() >= question.tries.max(1) {
                 answer.gave_up = true;
-                return false;
+                return Ok(false);
             }
             let tries = question.tries.saturating_sub(answer.refuted.len());
-            let (route, mut failed) = self.on_any_paths(&found, start, end, tries);
+            let (route, mut failed) = self.on_any_paths(&found, start, end, tries)?;
             if let Some(route) = route {
                 answer.refuted.append(&mut failed);
                 answer.routes.push(route);
-                return true;
+                return Ok(true);
             }
             // Any other way is as far.
             let too_far = failed.iter().any(|failed| matches!(failed.assembly, Some(AssemblyError::Frame(_))));
@@ -211,20 +229,25 @@ impl<'n> Planner<'n> {
             answer.gave_up = !failed.iter().any(|failed| failed.left_out);
             answer.refuted.append(&mut failed);
             if answer.gave_up {
-                return false;
+                return Ok(false);
             }
         }
-        false
     }
 
     /// Certifies a way, each turn on the best of its paths first. Beside the route what failed before: certificates, and at the end of
     /// all paths the last pieces that could not be strung together.
-    fn on_any_paths(&mut self, found: &Found, start: f64, end: f64, tries: usize) -> (Option<Route>, Vec<Refutation>) {
+    fn on_any_paths(
+        &mut self,
+        found: &Found,
+        start: f64,
+        end: f64,
+        tries: usize,
+    ) -> Result<(Option<Route>, Vec<Refutation>), Stopped> {
         self.menu.begin();
         let mut failed: Vec<Refutation> = Vec::new();
         for strung in 1.. {
-            let refutation = match self.certify(found, start, end) {
-                Ok(route) => return (Some(route), failed),
+            let refutation = match self.certify(found, start, end)? {
+                Ok(route) => return Ok((Some(route), failed)),
                 Err(refutation) => refutation,
             };
             let turn = |at| if let PartKind::Turn { from, to } = at { Some((from, to)) } else { None };
@@ -235,7 +258,7 @@ impl<'n> Planner<'n> {
                 (_, Some((from, to))) => self.menu.another(from, to),
                 (_, None) => false,
             };
-            let goes_on = another && !self.stop.told() && strung < MOST_STRUNG && failed.len() < tries;
+            let goes_on = another && strung < MOST_STRUNG && failed.len() < tries;
             if refutation.assembly.is_none() || !goes_on {
                 failed.push(refutation);
             }
@@ -243,43 +266,46 @@ impl<'n> Planner<'n> {
                 break;
             }
         }
-        (None, failed)
+        Ok((None, failed))
     }
 
-    fn certify(&mut self, found: &Found, start: f64, end: f64) -> Result<Route, Refutation> {
-        let way = Way { drive: &found.drive, start, end };
-        let network = self.graph.network;
-        let path = assemble(network, self.graph.movements, &mut self.strokes, &mut self.menu, &way, &self.stop);
-        let path = path.map_err(|error| Refutation {
-            at: match &error {
-                AssemblyError::Unknown { at, .. }
-                | AssemblyError::Overlap { at, .. }
-                | AssemblyError::Centreline { at, .. } => *at,
-                AssemblyError::Frame(_) | AssemblyError::Stopped(_) => first_turn(&found.drive),
-            },
-            result: None,
-            assembly: Some(error),
-            left_out: false,
-        })?;
-        let certificate = stet::certify(&path.corridor, self.model, &self.options);
+    fn certify(&mut self, found: &Found, start: f64, end: f64) -> Result<Result<Route, Refutation>, Stopped> {
+        let path = match self.assembled(found, start, end) {
+            Ok(path) => path,
+            Err(AssemblyError::Stopped(stopped)) => return Err(stopped),
+            Err(error) => return Ok(Err(unassembled(error, &found.drive))),
+        };
+        let certificate = stet::certify_until(&path.corridor, self.model, &self.options, &self.stop)?;
         let refuted = |certificate: Option<&Certificate>| Refutation {
             at: culprit(&path, certificate),
             result: certificate.map(|c| (c.result.rsc_m, c.result.hinge_margin_rad)),
             assembly: None,
             left_out: false,
         };
-        let Some(certificate) = certificate else { return Err(refuted(None)) };
+        let Some(certificate) = certificate else { return Ok(Err(refuted(None))) };
         if !certificate.result.safe() {
-            return Err(refuted(Some(&certificate)));
+            return Ok(Err(refuted(Some(&certificate))));
         }
+        let time_s = self.time_s(&found.drive, start, end);
+        let length_m = (path.corridor.len() - 1) as f64 * path.corridor.spacing_m;
+        Ok(Ok(Route { drive: found.drive.clone(), start, end, cost: found.cost, time_s, length_m, path, certificate }))
+    }
+
+    fn assembled(&mut self, found: &Found, start: f64, end: f64) -> Result<RoutePath, AssemblyError> {
+        let way = Way { drive: &found.drive, start, end };
+        let network = self.graph.network;
+        assemble(network, self.graph.movements, &mut self.strokes, &mut self.menu, &way, &self.stop)
+    }
+
+    /// By the table of speeds.
+    fn time_s(&self, drive: &Drive, start: f64, end: f64) -> f64 {
+        let network = self.graph.network;
         let time = |(share, edge): (f64, u32)| {
             share * self.speeds.cost(network, &network.edges[edge as usize], Measure::Time) as f64
         };
-        let driven: f64 = shares(&found.drive, start, end).map(time).sum();
-        let turns = turns(&self.graph, &found.drive) * self.speeds.turn_cost(Measure::Time);
-        let time_s = 1e-3 * (driven + turns as f64);
-        let length_m = (path.corridor.len() - 1) as f64 * path.corridor.spacing_m;
-        Ok(Route { drive: found.drive.clone(), start, end, cost: found.cost, time_s, length_m, path, certificate })
+        let driven: f64 = shares(drive, start, end).map(time).sum();
+        let turns = turns(&self.graph, drive) * self.speeds.turn_cost(Measure::Time);
+        1e-3 * (driven + turns as f64)
     }
 
     /// Whether there was something to leave out.
@@ -289,19 +315,19 @@ impl<'n> Planner<'n> {
     }
 
     /// The cheapest set of failing places between the places asked for.
-    fn obstacles(&self, answer: &Answer) -> Option<Vec<Obstacle>> {
+    fn obstacles(&self, answer: &Answer) -> Result<Option<Vec<Obstacle>>, Stopped> {
         let (permits, movements) = (self.permits, self.graph.movements);
         let mut access = obstacles::priced(permits, movements, &answer.refuted);
-        let (found, ..) = self.way(&access, &answer.snapped)?;
-        Some(obstacles::on(&found.drive, permits, movements, &mut access, &answer.refuted))
+        let found = self.way(&access, &answer.snapped)?;
+        Ok(found.map(|(found, ..)| obstacles::on(&found.drive, permits, movements, &mut access, &answer.refuted)))
     }
 
     /// Adds routes that differ: what the ones before use is made dearer until something else is shorter.
-    fn alternatives(&mut self, access: &Access, question: &Question, answer: &mut Answer) {
-        let Some(first_cost) = answer.routes.first().map(|route| route.cost) else { return };
+    fn alternatives(&mut self, access: &Access, question: &Question, answer: &mut Answer) -> Result<(), Stopped> {
+        let Some(first_cost) = answer.routes.first().map(|route| route.cost) else { return Ok(()) };
         let mut access = access.clone();
         let mut rounds = DEARER * question.alternatives as u32;
-        while answer.routes.len() <= question.alternatives && rounds > 0 && !answer.gave_up && !self.stop.told() {
+        while answer.routes.len() <= question.alternatives && rounds > 0 && !answer.gave_up {
             rounds -= 1;
             for route in &answer.routes {
                 for &edge in &route.drive.edges {
@@ -324,12 +350,13 @@ impl<'n> Planner<'n> {
                 cost <= longest + costs[edges[0] as usize]
                     && known.iter().all(|other| own(&|edge| other.contains(edge)) <= MOST_SHARED * all)
             };
-            if self.next_route(&mut access, question, answer, &wanted)
+            if self.next_route(&mut access, question, answer, &wanted)?
                 && let Some(route) = answer.routes.last_mut()
             {
                 route.cost = costs_of(&self.graph, route);
             }
         }
+        Ok(())
     }
 }
 
@@ -362,6 +389,17 @@ fn turns(graph: &Graph<'_>, drive: &Drive) -> u64 {
 fn nearest(failed: &mut [Refutation]) -> Option<&mut Refutation> {
     let rsc_m = |refutation: &Refutation| refutation.result.map_or(f64::NEG_INFINITY, |result| result.0);
     failed.iter_mut().max_by(|a, b| rsc_m(a).total_cmp(&rsc_m(b)))
+}
+
+/// Where the pieces of a way could not be strung together.
+fn unassembled(error: AssemblyError, drive: &Drive) -> Refutation {
+    let at = match &error {
+        AssemblyError::Unknown { at, .. }
+        | AssemblyError::Overlap { at, .. }
+        | AssemblyError::Centreline { at, .. } => *at,
+        AssemblyError::Frame(_) | AssemblyError::Stopped(_) => first_turn(drive),
+    };
+    Refutation { at, result: None, assembly: Some(error), left_out: false }
 }
 
 fn first_turn(drive: &Drive) -> PartKind {

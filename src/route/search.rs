@@ -7,6 +7,7 @@ use std::collections::BinaryHeap;
 
 use super::drive::Drive;
 use super::graph::{Access, BARRED, Graph, NO_PASSAGE, State};
+use crate::stop::{Stop, Stopped};
 
 /// Where a way may begin.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,18 +52,32 @@ pub struct Found {
     pub(super) state: State,
 }
 
+/// So many states between two questions whether to stop: half a millisecond or so.
+const STATES: usize = 4096;
 /// Nothing before.
 const NONE: u32 = u32::MAX;
 
 /// The shortest way to each goal, `None` where there is none. With `any`, only the nearest goal's need be right.
 #[must_use]
 pub fn search(graph: &Graph<'_>, access: &Access, starts: &[Start], goals: &[Goal], any: bool) -> Vec<Option<Found>> {
+    search_until(graph, access, starts, goals, any, &Stop::default()).unwrap_or_default()
+}
+
+/// The same; it asks every few thousand states whether to stop.
+fn search_until(
+    graph: &Graph<'_>,
+    access: &Access,
+    starts: &[Start],
+    goals: &[Goal],
+    any: bool,
+    stop: &Stop,
+) -> Result<Vec<Option<Found>>, Stopped> {
     let mut search = Search::new(graph, access, goals);
     for (i, start) in starts.iter().enumerate() {
         search.begin(i, start);
     }
-    search.run(any);
-    search.best.iter().map(|best| best.as_ref().map(|best| search.found(best))).collect()
+    search.run(any, stop)?;
+    Ok(search.best.iter().map(|best| best.as_ref().map(|best| search.found(best))).collect())
 }
 
 /// The end of a way: before the goal's edge, and on it.
@@ -120,8 +135,13 @@ impl<'g> Search<'g> {
         self.reach(state, Reached { cost, before: NONE, start: number as u32, passage: NO_PASSAGE });
     }
 
-    fn run(&mut self, any: bool) {
+    fn run(&mut self, any: bool, stop: &Stop) -> Result<(), Stopped> {
+        let mut popped = 0_usize;
         while let Some(Reverse((cost, state))) = self.queue.pop() {
+            if popped.is_multiple_of(STATES) {
+                stop.check()?;
+            }
+            popped += 1;
             let Reached { cost: known, start, .. } = self.reached[state as usize];
             if cost > known {
                 continue;
@@ -129,7 +149,7 @@ impl<'g> Search<'g> {
             let bests = self.best.iter().map(|best| best.as_ref().map_or(BARRED, |best| best.cost));
             let limit = if any { bests.min() } else { bests.max() };
             if limit.is_some_and(|limit| cost > limit) {
-                return;
+                break;
             }
             let (graph, access) = (self.graph, self.access);
             for step in graph.steps(access, state) {
@@ -143,6 +163,7 @@ impl<'g> Search<'g> {
                 self.reach(step.next, Reached { cost, before: state, start, passage });
             }
         }
+        Ok(())
     }
 
     /// Of ways that cost the same the one found first: over a roundabout, its passage.
@@ -187,12 +208,26 @@ fn take(best: &mut Option<End>, end: End) {
 /// to it. `None` if there is none.
 #[must_use]
 pub fn search_over(graph: &Graph<'_>, access: &Access, starts: &[Start], places: &[Vec<Goal>]) -> Option<Found> {
+    search_over_until(graph, access, starts, places, &Stop::default()).ok().flatten()
+}
+
+/// The same; it asks every few thousand states whether to stop.
+///
+/// # Errors
+/// It was told to.
+pub fn search_over_until(
+    graph: &Graph<'_>,
+    access: &Access,
+    starts: &[Start],
+    places: &[Vec<Goal>],
+    stop: &Stop,
+) -> Result<Option<Found>, Stopped> {
     let mut starts = starts.to_vec();
     let mut ways: Vec<Drive> = vec![Drive::default(); starts.len()];
     let mut first: Vec<usize> = (0..starts.len()).collect();
     for (leg, goals) in places.iter().enumerate() {
         let last = leg + 1 == places.len();
-        let found = search(graph, access, &starts, goals, last);
+        let found = search_until(graph, access, &starts, goals, last, stop)?;
         let mut next = Vec::new();
         for (goal, found) in goals.iter().zip(found) {
             let Some(found) = found else { continue };
@@ -209,12 +244,12 @@ pub fn search_over(graph: &Graph<'_>, access: &Access, starts: &[Start], places:
             next.push((start, drive, first[found.start], found));
         }
         if last {
-            let (_, drive, start, found) = next.into_iter().min_by_key(|(.., found)| found.cost)?;
-            return Some(Found { start, drive, ..found });
+            let best = next.into_iter().min_by_key(|(.., found)| found.cost);
+            return Ok(best.map(|(_, drive, start, found)| Found { start, drive, ..found }));
         }
         starts = next.iter().map(|(start, ..)| *start).collect();
         first = next.iter().map(|(_, _, first, _)| *first).collect();
         ways = next.into_iter().map(|(_, drive, ..)| drive).collect();
     }
-    None
+    Ok(None)
 }

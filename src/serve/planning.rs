@@ -12,9 +12,9 @@ use super::region::Region;
 use super::roads::Roads;
 use crate::osm::facts::Policy;
 use crate::pipeline::Settings;
-use crate::route::{self, Graph, MadeTurns, Measure, Permits, Planner, Question, Speeds, Strokes};
+use crate::route::{self, Graph, MadeTurns, Measure, Permits, Planner, Question, Speeds, Strokes, Unanswered};
 use crate::stet::Model;
-use crate::stop::{Stop, Stopped};
+use crate::stop::Stop;
 use serde_json::{Value, json};
 
 /// After so many answers a planner begins afresh: what it keeps of turns and strokes grows with what it has seen.
@@ -97,8 +97,10 @@ impl Wanted {
     }
 
     fn answer(&self, planner: &mut Planner<'_>, ride: &Ride) -> Result<Value, Problem> {
-        let answer = planner.answer_until(&ride.question, &ride.stop);
-        let answer = answer.map_err(|error| Problem::no_road(error.to_string()))?.ok_or(Stopped)?;
+        let answer = planner.answer_until(&ride.question, &ride.stop).map_err(|unanswered| match unanswered {
+            Unanswered::Place(error) => Problem::no_road(error.to_string()),
+            Unanswered::Stopped(stopped) => stopped.into(),
+        })?;
         let mut members = route::json(&self.roads.network, &self.model, &answer);
         for (i, found) in answer.routes.iter().enumerate() {
             ride.stop.check()?;

@@ -42,8 +42,12 @@ impl Problem {
         Self { retry_after_s: Some(1), ..problem }
     }
 
+    /// Time is up.
     pub(super) fn too_slow(limit_s: f64) -> Self {
-        let detail = format!("not done within {limit_s} s; ask for less, or again when there is less to do");
+        Self::cut_off(format!("not done within {limit_s} s; ask for less, or again when there is less to do"))
+    }
+
+    fn cut_off(detail: String) -> Self {
         Self::new(StatusCode::GATEWAY_TIMEOUT, "too-slow", "It takes too long", detail)
     }
 
@@ -99,9 +103,9 @@ impl From<StoreError> for Problem {
 }
 
 impl From<Stopped> for Problem {
-    /// Who had asked has been answered or has gone.
+    /// The time of whoever asked is up, or they have gone.
     fn from(stopped: Stopped) -> Self {
-        Self::busy(stopped.to_string())
+        Self::cut_off(format!("{stopped}; ask for less, or again when there is less to do"))
     }
 }
 

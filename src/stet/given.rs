@@ -9,6 +9,7 @@ use super::model::Model;
 use super::shift::{Plan, STEP_M, count};
 use super::{Certificate, Swept};
 use crate::corridor::Corridor;
+use crate::stop::Stop;
 
 /// Coefficients that must agree at either end: then q' = q'' = 0 at the first station and at the last one.
 const LEVEL_ENTRY: usize = 3;
@@ -54,7 +55,8 @@ pub fn certify_plan(corridor: &Corridor, model: &Model, plan: &Plan) -> Result<C
     check(corridor.len(), plan)?;
     let whole = 0..corridor.len();
     let spans = std::slice::from_ref(&whole);
-    let swept = Swept::along(corridor, &[model], spans, &|_, _| vec![plan.clone()]);
+    let never = Stop::default();
+    let swept = Swept::along(corridor, &[model], spans, &never, &|_, _| vec![plan.clone()]);
     Ok(swept.certificate(corridor, spans).0)
 }
 

@@ -23,6 +23,7 @@ mod tube;
 use std::ops::Range;
 
 use crate::corridor::Corridor;
+use crate::stop::{Stop, Stopped};
 use crate::verdict::{UnsafeReason, Verdict};
 
 pub use given::{PlanError, certify_plan};
@@ -161,13 +162,14 @@ pub fn certify_spans(
     if corridor.is_empty() {
         return Vec::new();
     }
+    let never = Stop::default();
     // Vehicles of about as many units share a group: a lane costs as much as the longest one in it.
     let mut order: Vec<usize> = (0..models.len()).collect();
     order.sort_by_key(|&i| models[i].units.len());
     let mut rows: Vec<(usize, Planned)> = Vec::with_capacity(models.len());
     for chunk in order.chunks(LANES) {
         let members: Vec<&Model> = chunk.iter().map(|&i| models[i]).collect();
-        let swept = Swept::new(corridor, &members, spans, options);
+        let swept = Swept::new(corridor, &members, spans, options, &never);
         for (lane, (&i, plan)) in chunk.iter().zip(&swept.plans).enumerate() {
             let spans = spans.iter().map(|span| swept.result(lane, span)).collect();
             rows.push((i, Planned { plan: plan.clone(), spans }));
@@ -186,6 +188,23 @@ pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<
     certify_planned(corridor, model, std::slice::from_ref(&whole), options).map(|(certificate, _)| certificate)
 }
 
+/// The same; it asks every few metres of each sweep whether to stop.
+///
+/// # Errors
+/// It was told to.
+pub fn certify_until(
+    corridor: &Corridor,
+    model: &Model,
+    options: &Options,
+    stop: &Stop,
+) -> Result<Option<Certificate>, Stopped> {
+    let whole = 0..corridor.len();
+    let planned = planned(corridor, model, std::slice::from_ref(&whole), options, stop);
+    // A sweep that stopped before its end was told to, and what was told stays told.
+    stop.check()?;
+    Ok(planned.map(|(certificate, _)| certificate))
+}
+
 /// The certificate over a whole corridor with the plan that [`certify_spans`] makes for `spans`, and what that gives for
 /// each of them: what stands behind the certificate of an edge.
 ///
@@ -197,26 +216,37 @@ pub fn certify_planned(
     spans: &[Range<usize>],
     options: &Options,
 ) -> Option<(Certificate, Vec<SpanResult>)> {
+    planned(corridor, model, spans, options, &Stop::default())
+}
+
+fn planned(
+    corridor: &Corridor,
+    model: &Model,
+    spans: &[Range<usize>],
+    options: &Options,
+    stop: &Stop,
+) -> Option<(Certificate, Vec<SpanResult>)> {
     if corridor.is_empty() {
         return None;
     }
-    Some(Swept::new(corridor, &[model], spans, options).certificate(corridor, spans))
+    Some(Swept::new(corridor, &[model], spans, options, stop).certificate(corridor, spans))
 }
 
 /// All leeways at γ = 1, refined wherever that is worth it.
-fn thorough(track: &Track, group: &Group<'_>, shift: &[V]) -> Vec<Minima> {
-    let full = sweep::<true>(track, group, shift, &Wanted::ALL);
+fn thorough(track: &Track, group: &Group<'_>, shift: &[V], stop: &Stop) -> Vec<Minima> {
+    let full = sweep::<true>(track, group, shift, &Wanted::ALL, stop);
     if full.iter().all(|m| m.loose.iter().all(|&unit| unit == usize::MAX)) {
         return full;
     }
     let loose = |lane: usize, head: usize| full[lane].loose[head / sweep::BLOCK];
-    sweep::<true>(track, group, shift, &Wanted { refined: Some(&loose), ..Wanted::ALL })
+    sweep::<true>(track, group, shift, &Wanted { refined: Some(&loose), ..Wanted::ALL }, stop)
 }
 
 /// A group of vehicles after its sweeps.
 struct Swept<'m> {
     track: Track,
     group: Group<'m>,
+    stop: &'m Stop,
     plans: Vec<Plan>,
     /// At γ = 1, by the filter.
     full: Vec<Minima>,
@@ -229,8 +259,14 @@ struct Swept<'m> {
 }
 
 impl<'m> Swept<'m> {
-    fn new(corridor: &Corridor, models: &[&'m Model], spans: &[Range<usize>], options: &Options) -> Self {
-        Self::along(corridor, models, spans, &|track, group| plan::best(track, group, spans, options))
+    fn new(
+        corridor: &Corridor,
+        models: &[&'m Model],
+        spans: &[Range<usize>],
+        options: &Options,
+        stop: &'m Stop,
+    ) -> Self {
+        Self::along(corridor, models, spans, stop, &|track, group| plan::best(track, group, spans, options, stop))
     }
 
     /// `plans` gives each vehicle's, in the group's order.
@@ -238,6 +274,7 @@ impl<'m> Swept<'m> {
         corridor: &Corridor,
         models: &[&'m Model],
         spans: &[Range<usize>],
+        stop: &'m Stop,
         plans: &dyn Fn(&Track, &Group<'m>) -> Vec<Plan>,
     ) -> Self {
         let group = Group::new(models, 1.0);
@@ -245,19 +282,19 @@ impl<'m> Swept<'m> {
         let track = Track::new(corridor, lead_m, tail_m);
         let plans = plans(&track, &group);
         let shift = shift::lanes(&plans, track.lead, track.len(), track.count);
-        let full = sweep::<true>(&track, &group, &shift, &Wanted::ALL);
-        let mut swept = Self { track, group, plans, full, nominal: None, refined: None, least: None };
+        let full = sweep::<true>(&track, &group, &shift, &Wanted::ALL, stop);
+        let mut swept = Self { track, group, stop, plans, full, nominal: None, refined: None, least: None };
         let loose: Vec<Vec<usize>> = swept.full.iter().map(|m| m.loose.clone()).collect();
         let is_loose = |lane: usize, head: usize| loose[lane][head / sweep::BLOCK];
 
         if swept.full.iter().any(|m| m.loose.iter().any(|&unit| unit < usize::MAX)) {
-            swept.nominal = Some(sweep::<false>(&swept.track, &swept.group, &shift, &Wanted::PLAIN));
+            swept.nominal = Some(sweep::<false>(&swept.track, &swept.group, &shift, &Wanted::PLAIN, stop));
         }
         let near = swept.blocks(spans, |lane, span| swept.worth(lane, span));
         if near.iter().flatten().any(|&near| near) {
             let blocks = |lane: usize, head: usize| near[lane][head / sweep::BLOCK];
             let wanted = Wanted { blocks: &blocks, refined: Some(&is_loose), plain: false };
-            swept.refined = Some(sweep::<true>(&swept.track, &swept.group, &shift, &wanted));
+            swept.refined = Some(sweep::<true>(&swept.track, &swept.group, &shift, &wanted, stop));
         }
         let failing = swept.blocks(spans, |lane, span| swept.at_full(lane, span).rsc_m < 0.0);
         if failing.iter().flatten().any(|&fails| fails) {
@@ -269,7 +306,7 @@ impl<'m> Swept<'m> {
             let own = |lane: usize, head: usize| if any[lane] { is_loose(lane, head) } else { usize::MAX };
             let refined: Option<&dyn Fn(usize, usize) -> usize> = Some(&own);
             let wanted = Wanted { blocks: &blocks, refined: refined.filter(|_| swept.refined.is_some()), plain: false };
-            swept.least = Some(sweep::<true>(&swept.track, &tight, &shift, &wanted));
+            swept.least = Some(sweep::<true>(&swept.track, &tight, &shift, &wanted, stop));
         }
         swept
     }
@@ -278,7 +315,7 @@ impl<'m> Swept<'m> {
     fn certificate(&self, corridor: &Corridor, spans: &[Range<usize>]) -> (Certificate, Vec<SpanResult>) {
         let whole = 0..corridor.len();
         let track = &self.track;
-        let centred = thorough(track, &self.group, &vec![V::splat(0.0); track.len()]);
+        let centred = thorough(track, &self.group, &vec![V::splat(0.0); track.len()], self.stop);
         let full = if self.worth(0, &whole) { self.refined.as_ref().unwrap_or(&self.full) } else { &self.full };
         let own = |column: &[f64]| spans::alone(track, &whole, column);
         let shift = self.plans[0].clone();

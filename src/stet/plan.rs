@@ -16,6 +16,7 @@ use super::shift::{self, KNOT_STATIONS, Plan};
 use super::spans;
 use super::sweep::{Minima, UNVISITED_M, Wanted, ZERO, sweep};
 use super::track::Track;
+use crate::stop::Stop;
 
 /// Room beyond this counts for nothing.
 const ENOUGH_M: f64 = 0.5;
@@ -23,7 +24,13 @@ const ENOUGH_M: f64 = 0.5;
 const KNOT_STEP: usize = KNOT_STATIONS / 2;
 
 /// Of the centred path and its corrections, each vehicle's best: never the last by default.
-pub(super) fn best(track: &Track, group: &Group<'_>, spans: &[Range<usize>], options: &Options) -> Vec<Plan> {
+pub(super) fn best(
+    track: &Track,
+    group: &Group<'_>,
+    spans: &[Range<usize>],
+    options: &Options,
+    stop: &Stop,
+) -> Vec<Plan> {
     let centred = vec![Plan::centred(track.count); group.models.len()];
     if options.max_shift_m <= 0.0 || options.correction_sweeps == 0 {
         return centred;
@@ -36,7 +43,7 @@ pub(super) fn best(track: &Track, group: &Group<'_>, spans: &[Range<usize>], opt
     let mut best = now.clone();
     let mut best_score = [f64::NEG_INFINITY; LANES];
     for round in 0..=options.correction_sweeps {
-        let minima = sweep::<false>(&coarse, group, &sampled(&coarse, &now), &Wanted::ALL);
+        let minima = sweep::<false>(&coarse, group, &sampled(&coarse, &now), &Wanted::ALL, stop);
         for (lane, m) in minima.iter().enumerate() {
             let score = score(&coarse, group.models[lane], &spans, m);
             if score > best_score[lane] {
@@ -47,7 +54,8 @@ pub(super) fn best(track: &Track, group: &Group<'_>, spans: &[Range<usize>], opt
             }
         }
         // Nothing scores higher than room enough everywhere.
-        if round == options.correction_sweeps || best_score.iter().take(minima.len()).all(|&score| score >= most) {
+        let enough = best_score.iter().take(minima.len()).all(|&score| score >= most);
+        if round == options.correction_sweeps || enough || stop.told() {
             break;
         }
         ascent.note(&coarse, group, &minima, &now);

@@ -11,6 +11,7 @@ use super::lanes::{LANES, V, by_instruction_set, select_negative};
 use super::leeway;
 use super::model::MAX_UNITS;
 use super::track::Track;
+use crate::stop::{Stop, Stopped};
 
 /// Head stations a block.
 pub(super) const BLOCK: usize = 32;
@@ -48,6 +49,18 @@ impl Minima {
             offset: vec![0.0; stations],
             loose: vec![usize::MAX; stations / BLOCK + 2],
         }
+    }
+
+    /// Of a sweep that was told to stop: nothing fits anywhere, so that whoever does not ask is not told that something does.
+    fn lost(stations: usize) -> Self {
+        let mut lost = Self::new(stations);
+        (0..stations).for_each(|k| lost.lose(k));
+        lost
+    }
+
+    fn lose(&mut self, k: usize) {
+        self.hinge[k] = V::splat(NOT_CLOSED_RAD).tagged(0).0[0];
+        [self.left[k], self.right[k]] = [V::splat(body::LOST_M).tagged(0).0[0]; 2];
     }
 
     /// A bend counts for some blocks that follow it, too: what the filter has gathered in it takes as long to fade.
@@ -94,17 +107,19 @@ impl Wanted<'_> {
 
 /// Sweeps the steer path `shift` (metres left of the centreline at each extended station, vehicles in lanes).
 /// `CERTIFY`: all bounds deducted, hinges checked; otherwise the nominal leeway of a few points less their
-/// straight gains, for planning.
+/// straight gains, for planning. Asks at each block whether to stop; then everything is lost.
 pub(super) fn sweep<const CERTIFY: bool>(
     track: &Track,
     group: &Group<'_>,
     shift: &[V],
     wanted: &Wanted<'_>,
+    stop: &Stop,
 ) -> Vec<Minima> {
-    match wanted.refined {
-        Some(refined) if CERTIFY => sweep_blocks::<CERTIFY, true>(track, group, shift, wanted, refined),
-        _ => sweep_blocks::<CERTIFY, false>(track, group, shift, wanted, &|_, _| usize::MAX),
-    }
+    let swept = match wanted.refined {
+        Some(refined) if CERTIFY => sweep_blocks::<CERTIFY, true>(track, group, shift, wanted, refined, stop),
+        _ => sweep_blocks::<CERTIFY, false>(track, group, shift, wanted, &|_, _| usize::MAX, stop),
+    };
+    swept.unwrap_or_else(|_| vec![Minima::lost(track.len()); group.models.len()])
 }
 
 fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
@@ -113,7 +128,8 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     shift: &[V],
     wanted: &Wanted<'_>,
     refined: &dyn Fn(usize, usize) -> usize,
-) -> Vec<Minima> {
+    stop: &Stop,
+) -> Result<Vec<Minima>, Stopped> {
     let mut minima = vec![Minima::new(track.len()); group.models.len()];
     let mut rows = vec![0.0; group.units * LANES * FIELDS * BLOCK];
     let mut motion = Motion::new(track);
@@ -129,6 +145,7 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     let last = track.len() - ahead - BLOCK;
     let mut head = track.lead;
     while head < last {
+        stop.check()?;
         drive::<CERTIFY, REFINE>(&mut motion, track, group, shift, head, &mut rows, &mut trail);
         for (lane, (bodies, minima)) in bodies.iter_mut().zip(&mut minima).enumerate() {
             let wanted = (wanted.blocks)(lane, head);
@@ -160,12 +177,9 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     }
     for (bodies, minima) in bodies.iter().zip(&mut minima) {
         bodies.iter().for_each(|body| body::finish(track, body, minima));
-        for &k in &track.torn {
-            minima.hinge[k] = V::splat(NOT_CLOSED_RAD).tagged(0).0[0];
-            [minima.left[k], minima.right[k]] = [V::splat(body::LOST_M).tagged(0).0[0]; 2];
-        }
+        track.torn.iter().for_each(|&k| minima.lose(k));
     }
-    minima
+    Ok(minima)
 }
 
 /// State of the chain between two head stations, vehicles in lanes.

@@ -58,7 +58,7 @@ fn make(region: &Region, id: i64, (vehicle, policy): (&Vehicle, Policy), stop: &
     let model = Model::new(vehicle).map_err(|error| Problem::fault(error.to_string()))?;
     let mut explained = match roads.edge(id) {
         Some(edge) => of_edge(region, (&roads, edge), &model, &settings, stop)?,
-        None => of_turn(region, &roads, id, &model, &settings)?,
+        None => of_turn(region, (&roads, id), &model, &settings, stop)?,
     };
     explained.members["policy"] = json!(policy.name());
     explained.members["picture"] = json!(explained.picture.is_some());
@@ -94,11 +94,17 @@ fn of_edge(
     Ok(Explained { members, picture: picture::explanation(&explanation) })
 }
 
-fn of_turn(region: &Region, roads: &Roads, id: i64, model: &Model, settings: &Settings) -> Result<Explained, Problem> {
+fn of_turn(
+    region: &Region,
+    (roads, id): (&Roads, i64),
+    model: &Model,
+    settings: &Settings,
+    stop: &Stop,
+) -> Result<Explained, Problem> {
     let facts = roads.turn(id, settings);
     let facts =
         facts.ok_or_else(|| Problem::not_found(format!("{id}: neither an edge nor a turn of this database")))?;
-    let turn = explain::explain_turn(&roads.network, facts, model, settings);
+    let turn = explain::explain_turn_until(&roads.network, facts, model, settings, stop)?;
     let mut members = explain::json(&turn.explanation);
     members["kind"] = json!("turn");
     members["turn_id"] = json!(id.to_string());
