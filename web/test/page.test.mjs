@@ -104,6 +104,49 @@ inPage("a road is found by name and by id", "", async (page) => {
   await page.waitForFunction((wanted) => document.querySelector(".hits")?.innerText.includes(wanted), name);
 });
 
+/** Pixels of what the map shows as chosen, by layer. */
+const chosen = (page) =>
+  page.evaluate(() => {
+    const { map } = globalThis.netcert;
+    const layers = ["glow", "selected-edge", "glow-afar"];
+    return Object.fromEntries(layers.map((layer) => [layer, map.queryRenderedFeatures({ layers: [layer] }).length]));
+  });
+
+inPage("a road found by its name is chosen as by a click, seen near by and from afar, and part of the link", "", async (page) => {
+  const [hit] = await ask("/api/search?q=highway");
+  assert.notEqual(hit.kind, "edge");
+  await page.keyboard.press("/");
+  await page.keyboard.type("highway");
+  await page.waitForSelector(".hits [role=option]");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector(".explain .verdict");
+  assert.equal(await page.evaluate(() => globalThis.netcert.store.state.selected), hit.edge_id);
+  assert.match(page.url(), new RegExp(`id=${hit.edge_id}`));
+  const [edge] = await ask(`/api/search?q=${hit.edge_id}`);
+  await page.evaluate(({ lon, lat }) => globalThis.netcert.map.jumpTo({ center: [lon, lat], zoom: 12 }), edge);
+  await idle(page);
+  const near = await chosen(page);
+  assert.ok(near.glow > 0 && near["selected-edge"] > 0 && near["glow-afar"] === 0, JSON.stringify(near));
+  await page.evaluate(() => globalThis.netcert.map.jumpTo({ zoom: 9 }));
+  await idle(page);
+  const far = await chosen(page);
+  assert.ok(far.glow === 0 && far["selected-edge"] === 0 && far["glow-afar"] > 0, JSON.stringify(far));
+  // Another theme changes the whole style.
+  await page.keyboard.press("d");
+  await page.waitForFunction(() => document.documentElement.dataset.theme === "dark");
+  await idle(page);
+  assert.deepEqual(await chosen(page), far);
+  // Who is given the link sees the same.
+  const again = await open(all.browser, all.address, new URL(page.url()).hash);
+  await again.page.waitForSelector(".explain .verdict");
+  await idle(again.page);
+  assert.deepEqual(await chosen(again.page), far);
+  await again.close();
+  await page.keyboard.press("Escape");
+  await idle(page);
+  assert.deepEqual(await chosen(page), { glow: 0, "selected-edge": 0, "glow-afar": 0 });
+});
+
 inPage("a search without result says so", "", async (page) => {
   await page.keyboard.press("/");
   await page.keyboard.type("no such road anywhere");

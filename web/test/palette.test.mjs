@@ -47,6 +47,14 @@ for (const [theme, palette] of Object.entries(palettes)) {
       }
     });
   }
+  test(`${theme}: what is chosen shines from under every line, whoever looks`, () => {
+    for (const [name, matrix] of Object.entries(simulations)) {
+      for (const colour of [palette.paper, ...palette.room, ...palette.missing, palette.forbidden, palette.unknown]) {
+        const apart = difference(colour, palette.glow, matrix);
+        assert.ok(apart > 25, `${colour} on ${palette.glow} under ${name}: ΔE ${apart.toFixed(1)}`);
+      }
+    }
+  });
   test(`${theme}: every line stands out from the paper`, () => {
     for (const colour of [...palette.room, ...palette.missing, palette.forbidden, palette.unknown]) {
       const apart = difference(colour, palette.paper, simulations.normal);

@@ -48,8 +48,10 @@ export interface Vehicle {
 }
 
 export interface SearchHit {
-  kind: "edge" | "way" | "road" | "turn";
+  kind: "edge" | "way" | "road";
   id: string;
+  /** Of a way or a road one of its edges. */
+  edge_id: string;
   name: string | null;
   ref: string | null;
   highway: string | null;

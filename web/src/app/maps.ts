@@ -32,6 +32,7 @@ export class Maps {
   readonly #hover: HoverCard;
   readonly #card: VehicleCard;
   #limit: Marker | undefined;
+  #outline: Position[] = [];
   #second: { view: View; stop: () => void; pane: HTMLElement } | undefined;
 
   constructor(private readonly context: Context, private readonly actions: MapActions) {
@@ -96,6 +97,12 @@ export class Maps {
     this.#limit = new Marker({ element }).setLngLat(place).addTo(this.first.map);
   }
 
+  /** What is chosen, so that it is seen from afar, too. */
+  outline(line: Position[]): void {
+    this.#outline = line;
+    for (const view of [this.first, this.#second?.view]) view?.outline(line);
+  }
+
   jump({ lon, lat, zoom }: Camera): void {
     this.first.map.jumpTo({ center: [lon, lat], zoom });
   }
@@ -142,6 +149,7 @@ export class Maps {
       this.#root.append(pane);
       const view = this.#view(place, other);
       this.#second = { view, pane, stop: sync(this.first.map, view.map) };
+      view.outline(this.#outline);
     }
     this.first.map.resize();
   }

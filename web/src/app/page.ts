@@ -145,17 +145,19 @@ export class Page {
     }
   }
 
+  /** Chosen as by a click; of a road with many edges the one that the answer names. */
   #search(hit: SearchHit): void {
+    // First, so that what the drawer covers is no room for what was found.
+    this.context.store.set({ selected: hit.edge_id, route: null });
     this.#maps.fit(hit.bbox);
     // From here arrows and + and − go on.
     this.#maps.first.map.getCanvas().focus({ preventScroll: true });
-    const one = hit.kind === "edge" || hit.kind === "turn";
-    this.context.store.set({ selected: one ? hit.id : null, route: null });
-    if (!one) toast(`${title(hit)}: click on the road for its explanation.`);
+    if (hit.kind !== "edge") toast(`${title(hit)}: one part of it is chosen; click on the road for another.`);
   }
 
   #place(explanation: Explanation | null, goTo: boolean): void {
     this.#maps.mark(explanation && explanation.verdict !== "forbidden" ? explanation.at : null);
+    this.#maps.outline(explanation?.geometry?.coordinates ?? []);
     if (!goTo || !explanation) return;
     const { geometry, at } = explanation;
     const line = geometry?.coordinates;
@@ -190,6 +192,7 @@ export class Page {
       void this.#explain.show(state.selected, question(this.context), goTo);
     } else {
       this.#maps.mark(null);
+      this.#maps.outline([]);
       if (!state.route) this.#drawer.hide();
     }
   }

@@ -42,6 +42,8 @@ export interface Palette {
   forbidden: string;
   unknown: string;
   selected: string;
+  /** Shines from under what is chosen: of no verdict's hue, lighter than all of them. */
+  glow: string;
   route: string;
   routeCasing: string;
   units: readonly string[];
@@ -64,6 +66,7 @@ export const palettes: Record<Theme, Palette> = {
     forbidden: "#3b4048",
     unknown: "#8d949c",
     selected: "#111417",
+    glow: "#ffd60a",
     route: "#111417",
     routeCasing: "#ffffff",
     units: ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#c9bb1c"],
@@ -83,6 +86,7 @@ export const palettes: Record<Theme, Palette> = {
     forbidden: "#8f96a0",
     unknown: "#69717b",
     selected: "#ffffff",
+    glow: "#ffe033",
     route: "#ffffff",
     routeCasing: "#15181c",
     units: ["#3d9bd8", "#e69f00", "#1fb489", "#d48fb6", "#7cc6f0", "#e0702a", "#f0e442"],

@@ -25,6 +25,10 @@ export const edgeLayers = verdictLayers.map((verdict) => `edge-${verdict}`);
 /** From afar one line stands for many roads, and on top lies what may not be used: nothing certified may cover it. */
 const fromBest: readonly VerdictName[] = ["safe", "unknown", "unsafe", "forbidden"];
 export const overviewLayers = fromBest.map((verdict) => `overview-${verdict}`);
+/** From here on tiles have each road by itself (`src/serve/tiles/mod.rs`). */
+const EDGE_ZOOM = 11;
+/** The source with the line of what is chosen; as all that begin like this it outlives a change of the style. */
+export const OUTLINE = "own-outline";
 export const turnLayers = verdictLayers.map((verdict) => `turn-${verdict}`);
 
 type Colour = DataDrivenPropertyValueSpecification<string>;
@@ -178,13 +182,28 @@ function highlight(id: string, layer: "edge" | "turn", palette: Palette, ground:
   };
 }
 
+/** What is chosen is found at a glance among the lines of a whole region. */
+function shine(palette: Palette): NonNullable<LineLayerSpecification["paint"]> {
+  return { "line-color": palette.glow, "line-width": ["interpolate", ["linear"], ["zoom"], 9, 12, 14, 16, 19, 34], "line-blur": 1.5 };
+}
+
+function glow(palette: Palette, ground: Ground): LayerSpecification {
+  const { id, paint, ...edge } = highlight("glow", "edge", palette, ground) as LineLayerSpecification;
+  return { ...edge, id, paint: { ...paint, ...shine(palette), "line-opacity": 1 } };
+}
+
+/** Tiles from afar do not have it: a line of its own. */
+function glowAfar(palette: Palette): LayerSpecification {
+  return { id: "glow-afar", type: "line", source: OUTLINE, maxzoom: EDGE_ZOOM, layout: { "line-cap": "round", "line-join": "round" }, paint: shine(palette) };
+}
+
 function labels(palette: Palette): LayerSpecification {
   return {
     id: "names",
     type: "symbol",
     source: "roads",
     "source-layer": "label",
-    minzoom: 11,
+    minzoom: EDGE_ZOOM,
     layout: {
       "symbol-placement": "line",
       "symbol-spacing": 320,
@@ -227,6 +246,7 @@ export function style(state: State, ground: Ground): StyleSpecification {
     sources: {
       roads: { type: "vector", tiles: [tilesUrl], maxzoom: region.max_zoom, bounds: region.bbox, attribution: region.attribution },
       outside: { type: "geojson", data: extent(region.bbox) },
+      [OUTLINE]: { type: "geojson", data: { type: "FeatureCollection", features: [] } },
       ...(base ? { base: { type: "raster", tiles: [base.url], tileSize: 256, attribution: plain(base.attribution) } } : {}),
     },
     layers: [
@@ -234,11 +254,13 @@ export function style(state: State, ground: Ground): StyleSpecification {
       ...(base ? [{ id: "base", type: "raster", source: "base", paint: { "raster-opacity": 0.45, "raster-saturation": -0.7 } } as LayerSpecification] : []),
       { id: "outside", type: "fill", source: "outside", paint: { "fill-color": palette.outside, "fill-opacity": base ? 0.4 : 1 } },
       surface(palette, ground),
+      glowAfar(palette),
       ...fromBest.flatMap((verdict) => {
         const line = overview(verdict, state, palette, ground);
         return verdict === "safe" ? [line] : [overviewCasing(verdict, state, palette), line];
       }),
       casing(palette, ground),
+      glow(palette, ground),
       highlight("hover-edge", "edge", palette, ground),
       highlight("selected-edge", "edge", palette, ground),
       ...each(edge),

@@ -1,11 +1,11 @@
 // One map: made for a vehicle and a policy, restyled as the state changes, reporting what is under the pointer.
 
 import { AttributionControl, Map as Base, ScaleControl, type GeoJSONSource, type MapGeoJSONFeature, type MapMouseEvent, type Source } from "maplibre-gl";
-import type { Region } from "../api/types.ts";
+import type { Position, Region } from "../api/types.ts";
 import { api, type Question } from "../api/client.ts";
 import type { State } from "../state.ts";
 import type { Theme } from "./palette.ts";
-import { edgeLayers, overviewLayers, style, turnLayers } from "./style.ts";
+import { OUTLINE, edgeLayers, overviewLayers, style, turnLayers } from "./style.ts";
 
 /** What a tile says of an edge or a turn; from afar, of all roads that fall on one line: those have no id. */
 export interface Under {
@@ -84,6 +84,12 @@ export class View {
     void this.#ready.then(() => this.#select(state.selected));
   }
 
+  /** The line of what is chosen: from afar tiles have no single roads that could be told by their ids. */
+  outline(coordinates: Position[]): void {
+    const line: GeoJSON.Feature = { type: "Feature", properties: {}, geometry: { type: "LineString", coordinates } };
+    void this.#ready.then(() => this.overlay(OUTLINE, { type: "FeatureCollection", features: coordinates.length > 1 ? [line] : [] }));
+  }
+
   /** Draws GeoJSON under a name, above the roads; empty at first. */
   overlay(name: string, data: GeoJSON.GeoJSON): void {
     const source = this.map.getSource(name) as GeoJSONSource | undefined;
@@ -116,6 +122,7 @@ export class View {
   }
 
   #select(id: string | null): void {
+    this.map.setFilter("glow", ["==", ["get", "edge_id"], id ?? ""]);
     this.map.setFilter("selected-edge", ["==", ["get", "edge_id"], id ?? ""]);
     this.map.setFilter("selected-turn", ["==", ["get", "turn_id"], id ?? ""]);
   }
