@@ -3,17 +3,19 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-use netcert::corridor::Params;
-use netcert::explain::explain_edge_until;
+use netcert::corridor::{Params, stroke_corridor};
+use netcert::explain::{explain_edge_until, explain_turn_until};
 use netcert::network::{Movement, Network};
 use netcert::osm::facts::Policy;
 use netcert::pipeline::Settings;
 use netcert::route::{
-    Graph, MadeTurns, Measure, Permits, Planner, Position, Question, Speeds, Strokes, TurnPiece, Turns,
+    self, Graph, MadeTurns, Measure, Permits, Planner, Position, Question, Speeds, Strokes, TurnPiece, Turns,
+    Unanswered,
 };
-use netcert::stet::{Model, Options};
+use netcert::stet::{self, Model, Options};
 use netcert::stop::{Stop, Stopped};
 use netcert::store::{Database, QueryOptions, TurnQuery};
+use netcert::turns::turn_facts;
 use netcert::vehicle::Vehicle;
 use netcert::verdict::{UnknownReason, Verdict};
 
@@ -53,19 +55,24 @@ fn wide() -> (Place, Database, Network, Model, Settings) {
     (place, database, network, model, settings)
 }
 
+/// Before and behind each turn that may be taken: the middles of its two edges.
+fn round_corners(database: &mut Database, policy: Policy) -> Vec<[Position; 2]> {
+    let rows = database.query(&QueryOptions::new(VEHICLE, policy)).unwrap().map(Result::unwrap);
+    let middles: BTreeMap<i64, Position> = rows
+        .map(|row| (row.edge_id, row.line[row.line.len() / 2].degrees()))
+        .map(|(edge, (lon, lat))| (edge, Position { lon, lat }))
+        .collect();
+    let turns = database.query_turns(&TurnQuery::new(VEHICLE, policy)).unwrap().into_iter();
+    let safe = turns.filter(|turn| turn.verdict == Verdict::Safe);
+    safe.map(|turn| [middles[&turn.from_edge], middles[&turn.to_edge]]).collect()
+}
+
 #[test]
 fn a_route_that_is_told_to_stop_asks_for_no_further_turn() {
     let (_place, mut database, network, model, settings) = wide();
     let movements = network.movements();
     let permits = Permits::stored(&mut database, &network, &movements, VEHICLE, settings.policy).unwrap();
-    let rows = database.query(&QueryOptions::new(VEHICLE, settings.policy)).unwrap().map(Result::unwrap);
-    let middles: BTreeMap<i64, Position> = rows
-        .map(|row| (row.edge_id, row.line[row.line.len() / 2].degrees()))
-        .map(|(edge, (lon, lat))| (edge, Position { lon, lat }))
-        .collect();
-    let turns = database.query_turns(&TurnQuery::new(VEHICLE, settings.policy)).unwrap().into_iter();
-    let safe = turns.filter(|turn| turn.verdict == Verdict::Safe);
-    let pairs: Vec<[Position; 2]> = safe.map(|turn| [middles[&turn.from_edge], middles[&turn.to_edge]]).collect();
+    let pairs = round_corners(&mut database, settings.policy);
     let inner =
         MadeTurns { model: &model, policy: settings.policy, params: settings.turn_params(), options: settings.stet };
     let speeds = Speeds::builtin().unwrap();
@@ -76,14 +83,75 @@ fn a_route_that_is_told_to_stop_asks_for_no_further_turn() {
         let strokes = Strokes::new(&network, settings.policy, settings.corridor);
         let mut planner = Planner::new(graph, &permits, &model, &turns, strokes, settings.stet, speeds.clone());
         let question = Question { places: places.to_vec(), snap_m: 100.0, alternatives: 2, tries: 30 };
-        let answer = planner.answer_until(&question, &turns.stop).unwrap();
+        let stopped_at = planner.answer_until(&question, &turns.stop).err();
         // Over a turn it was stopped there; a way without turns went to its end.
-        assert_eq!((answer.is_none(), turns.asked.get()), (turns.stop.told(), usize::from(turns.stop.told())));
+        let told = turns.stop.told().then_some(Unanswered::Stopped(Stopped));
+        assert_eq!((stopped_at, turns.asked.get()), (told, usize::from(turns.stop.told())));
         stopped += turns.asked.get();
         // The same planner then answers as if nothing had been.
-        assert!(planner.answer_until(&question, &Stop::default()).unwrap().is_some());
+        assert!(planner.answer_until(&question, &Stop::default()).is_ok());
     }
     assert!(stopped > 0, "no way leads over a turn");
+}
+
+/// Stopped wherever it asks, a route has no answer; with one question more than it asks it has the answer of one that is
+/// never stopped, on the very planner that was stopped so often.
+#[test]
+fn a_route_is_whole_or_is_not_there() {
+    let (_place, mut database, network, model, settings) = wide();
+    let movements = network.movements();
+    let permits = Permits::stored(&mut database, &network, &movements, VEHICLE, settings.policy).unwrap();
+    let turns =
+        MadeTurns { model: &model, policy: settings.policy, params: settings.turn_params(), options: settings.stet };
+    let speeds = Speeds::builtin().unwrap();
+    let planner = || {
+        let graph = Graph::new(&network, &movements, &speeds, Measure::Time);
+        let strokes = Strokes::new(&network, settings.policy, settings.corridor);
+        Planner::new(graph, &permits, &model, &turns, strokes, settings.stet, speeds.clone())
+    };
+    let question =
+        |places: [Position; 2]| Question { places: places.to_vec(), snap_m: 100.0, alternatives: 1, tries: 30 };
+    let mut never = planner();
+    let pairs = round_corners(&mut database, settings.policy).into_iter();
+    let answers = pairs.map(question).map(|question| (never.answer(&question).unwrap(), question));
+    let (answer, question) = answers.into_iter().find(|(answer, _)| !answer.routes.is_empty()).unwrap();
+    let said = |answer| route::json(&network, &model, answer).to_string();
+
+    let mut often = planner();
+    let (mut asked, mut stops) = (0, 0);
+    let whole = loop {
+        match often.answer_until(&question, &Stop::after(asked)) {
+            Ok(whole) => break whole,
+            Err(unanswered) => assert_eq!(unanswered, Unanswered::Stopped(Stopped)),
+        }
+        stops += 1;
+        asked += 1 + asked / 4;
+    };
+    assert_eq!(said(&whole), said(&answer));
+    assert_eq!(whole.routes[0].certificate, answer.routes[0].certificate);
+    assert!(stops > 15, "it asked fewer than {asked} times");
+}
+
+/// What is left of a certificate once it is told to stop is some metres of one sweep: it asks no more than once in each of
+/// the sweeps that follow.
+#[test]
+fn a_certificate_asks_every_few_metres_and_is_whole_or_is_not_there() {
+    let (_place, _, network, model, settings) = wide();
+    let longest = network.strokes.iter().max_by_key(|stroke| stroke.edges.len()).unwrap();
+    let made = stroke_corridor(&network, longest, settings.policy, &settings.corridor).unwrap();
+    let certified = |stop: &Stop| stet::certify_until(&made.corridor, &model, &settings.stet, stop);
+    let whole = stet::certify(&made.corridor, &model, &settings.stet);
+    assert!(whole.is_some());
+    let mut asks = 1;
+    while certified(&Stop::after(asks)).is_err() {
+        asks += 1 + asks / 4;
+    }
+    assert_eq!(certified(&Stop::after(asks)), Ok(whole));
+    let length_m = made.corridor.len() as f64 * made.corridor.spacing_m;
+    assert!(asks as f64 > length_m / 20.0, "{asks} questions over {length_m} m");
+    for some in [0, 1, asks / 8, asks / 2] {
+        assert_eq!(certified(&Stop::after(some)), Err(Stopped), "{some} of {asks}");
+    }
 }
 
 #[test]
@@ -93,4 +161,9 @@ fn an_explanation_that_is_told_to_stop_has_no_result() {
     told.tell();
     let explained = |stop: &Stop| explain_edge_until(&network, 0, &model, &settings, stop).map(|e| e.is_some());
     assert_eq!((explained(&told), explained(&other)), (Err(Stopped), Ok(true)));
+    let turn = turn_facts(&network, &settings.turn_params().kerbs).remove(0);
+    let explained = |stop: &Stop| explain_turn_until(&network, &turn, &model, &settings, stop).map(|e| e.title());
+    assert_eq!(explained(&told), Err(Stopped));
+    assert_eq!(explained(&Stop::after(2)), Err(Stopped));
+    assert!(explained(&other).is_ok());
 }

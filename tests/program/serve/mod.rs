@@ -13,3 +13,4 @@ mod refusals;
 mod rides;
 mod stopping;
 mod tiles;
+mod time_up;
