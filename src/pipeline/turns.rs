@@ -23,7 +23,7 @@ const BATCH: usize = 512;
 /// A stroke's line is kept for so many batches after its last turn: neighbours come soon.
 const KEPT_BATCHES: usize = 6;
 /// Paths that get a whole certificate, at most.
-const TRIED: usize = 8;
+const TRIED: usize = 3;
 /// What no correction brings back, metres: the shift allowed and half a metre of lining up. Below it the best path alone is
 /// certified, for the record, without corrections.
 const HOPELESS_M: f64 = 0.5;

@@ -40,8 +40,8 @@ const SHARES: [f64; 2] = [0.2, 0.42];
 const MEET_M: f64 = 90.0;
 /// A centreline that ends is prolonged straight by so much, metres.
 const PROLONGED_M: f64 = 30.0;
-/// Stations of turns tighter than the first lie as close as the second, metres.
-const TIGHT_M: [f64; 2] = [25.0, 0.5];
+/// Stations of turns tighter than the first lie as close as the second, metres: bounds are as tight as in wider turns then.
+const TIGHT_M: [(f64, f64); 2] = [(6.0, 0.25), (25.0, 0.5)];
 /// How often stations are laid twice as close where they step over transitions, so that they are no curve: a carter's corner has
 /// transitions of half a metre.
 const HALVINGS: usize = 2;
@@ -287,7 +287,8 @@ impl Ends<'_> {
             line.push(to.point(k), to.line.left_m[k], to.line.right_m[k]);
         }
         let min_radius_m = 1.0 / path::sharpest(points).max(1e-9);
-        let spacing_m = if min_radius_m < TIGHT_M[0] { TIGHT_M[1] } else { from.line.spacing_m };
+        let tight = TIGHT_M.into_iter().find(|(radius_m, _)| min_radius_m < *radius_m);
+        let spacing_m = tight.map_or(from.line.spacing_m, |(_, spacing_m)| spacing_m);
         let sampled = |halvings: usize| {
             let spacing_m = spacing_m / (1 << halvings) as f64;
             let corridor = Corridor::from_centreline(&line.points, &line.left_m, &line.right_m, 0.0, spacing_m).ok()?;
