@@ -83,6 +83,9 @@ pub(super) struct KerbRule {
     pub(super) narrow_m: f32,
 }
 
+/// A country's code, and the width of a lane of each class there, metres.
+pub(super) type CountryLanes = ([u8; 2], [f32; CLASSES]);
+
 /// A country's rings from a radius on, of the way's line.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -96,7 +99,7 @@ pub(super) struct CountryRing {
 pub struct Rules {
     pub(super) classes: [ClassRule; CLASSES],
     /// Sorted by code.
-    pub(super) countries: Vec<([u8; 2], [f32; CLASSES])>,
+    pub(super) countries: Vec<CountryLanes>,
     pub(super) ring_m: Option<f32>,
     /// Sorted by code.
     pub(super) country_rings: Vec<([u8; 2], CountryRing)>,

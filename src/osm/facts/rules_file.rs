@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use crate::osm::facts::RoadClass;
-use crate::osm::facts::rules::{CLASSES, ClassRule, CountryRing, KerbRule, Rules, country_code};
+use crate::osm::facts::rules::{CLASSES, ClassRule, CountryLanes, CountryRing, KerbRule, Rules, country_code};
 
 /// Lanes and carriageways outside these are typing errors, metres.
 const LANE_M: [f32; 2] = [1.8, 6.0];
@@ -111,7 +111,7 @@ impl File {
         Ok(classes)
     }
 
-    fn countries(&self, classes: &[ClassRule; CLASSES]) -> Result<Vec<([u8; 2], [f32; CLASSES])>, String> {
+    fn countries(&self, classes: &[ClassRule; CLASSES]) -> Result<Vec<CountryLanes>, String> {
         let country = |(code, entry): (&String, &CountryEntry)| {
             let of = format!("country {code}");
             self.known(&entry.sources, &of)?;
