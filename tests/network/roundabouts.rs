@@ -173,11 +173,12 @@ fn a_path_leaves_and_joins_the_arms_own_centrelines_and_keeps_to_the_ring_betwee
                 assert!((y * cos - x * sin).abs() < 0.01);
                 assert!((c.heading[k] - s.heading[joint.station]).sin().abs() < 0.02);
             }
-            // No jump, no kink: headings change by what the radius says. That is a mean over half a metre, which stations twice
-            // as close do not average.
-            let most = if c.spacing_m < 0.3 { 1.6 } else { 1.3 };
-            let kinks = c.heading[path.turn.clone()].windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max);
-            assert!(kinks < most * c.spacing_m / path.min_radius_m + 1e-3, "{ends} {}: {kinks}", path.number);
+            // No jump, no kink: within half a metre headings change by what the radius says.
+            let step = (0.5 / c.spacing_m).round().max(1.0);
+            let changes =
+                c.heading[path.turn.clone()].windows(step as usize + 1).map(|w| (w[w.len() - 1] - w[0]).abs());
+            let kinks = changes.fold(0.0, f64::max);
+            assert!(kinks < 1.3 * step * c.spacing_m / path.min_radius_m + 1e-3, "{ends} {}: {kinks}", path.number);
             assert!(path.min_radius_m > 4.0, "{ends} {}: {}", path.number, path.min_radius_m);
         }
     }
