@@ -10,6 +10,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::ExportError;
+use super::sorter::Scratch;
 use super::unfinished::{self, Unfinished};
 
 /// The file by which a folder is known as an export.
@@ -59,14 +60,14 @@ impl Place {
             (Out::Stream(stream), Layout::File) => Kind::Stream(Some(stream)),
             (Out::Stream(_), Layout::Folder { target, instead }) => return Err(ExportError::NoStream(target, instead)),
             (Out::Path(target), Layout::File) if target.is_dir() => return Err(ExportError::Folder(target)),
-            (Out::Path(target), Layout::File) => Kind::File { part: unfinished.add(beside(&target, ".part")), target },
+            (Out::Path(target), Layout::File) => Kind::File { part: beside(&target, ".part"), target },
             (Out::Path(target), Layout::Folder { .. }) => {
                 if occupied(&target) {
                     return Err(ExportError::InTheWay(target));
                 }
-                let part = unfinished.add(beside(&target, ".part"));
-                remove(&part)?;
-                fs::create_dir_all(&part).map_err(|e| at(&part, e))?;
+                let part = beside(&target, ".part");
+                let fresh = |part: &Path| unfinished::remove(part).and_then(|()| fs::create_dir_all(part));
+                unfinished.make(&part, fresh).map_err(|e| at(&part, e))?;
                 Kind::Folder { part, target }
             }
         };
@@ -92,8 +93,7 @@ impl Place {
             Kind::File { part, .. } => part.clone(),
             Kind::Folder { part, .. } => part.join(name),
         };
-        let path = self.unfinished.add(path);
-        let file = File::create(&path).map_err(|e| at(&path, e))?;
+        let file = self.unfinished.make(&path, |path| File::create(path)).map_err(|e| at(&path, e))?;
         let twin = file.try_clone().map_err(|e| at(&path, e))?;
         Ok(Sink { stream: Box::new(BufWriter::with_capacity(1 << 16, file)), file: Some(twin) })
     }
@@ -108,13 +108,16 @@ impl Place {
         sink.close()
     }
 
-    /// A name beside the output for what is needed only while it is written; the caller removes it.
-    #[must_use]
-    pub fn scratch(&self, suffix: &str) -> PathBuf {
-        self.unfinished.add(match &self.kind {
+    /// An empty file beside the output for what is needed only while it is written.
+    ///
+    /// # Errors
+    /// It cannot be made.
+    pub(super) fn scratch(&self, suffix: &str) -> Result<Scratch, ExportError> {
+        let path = match &self.kind {
             Kind::Stream(_) => std::env::temp_dir().join(format!("netcert-{}{suffix}", std::process::id())),
             Kind::File { part, .. } | Kind::Folder { part, .. } => beside(part, suffix),
-        })
+        };
+        self.unfinished.make(&path, |path| Scratch::create(path.to_owned())).map_err(|e| at(&path, e))
     }
 
     /// Puts the output in its place.
@@ -123,11 +126,11 @@ impl Place {
     /// It cannot be renamed.
     pub fn finish(mut self) -> Result<(), ExportError> {
         let kind = std::mem::replace(&mut self.kind, Kind::Stream(None));
-        let done = match &kind {
-            Kind::Stream(_) => return Ok(()),
+        let done = self.unfinished.settle(|| match &kind {
+            Kind::Stream(_) => Ok(()),
             Kind::File { target, part } => fs::rename(part, target).map_err(|e| at(target, e)),
             Kind::Folder { target, part } => replace_folder(target, part),
-        };
+        });
         if done.is_err() {
             self.kind = kind; // dropped with its part
         }

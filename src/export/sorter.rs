@@ -9,8 +9,6 @@ use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::PathBuf;
 
-use super::ExportError;
-
 /// A file that is needed only while an output is written; it goes when this does.
 pub(super) struct Scratch {
     path: PathBuf,
@@ -19,10 +17,9 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
-    /// An empty one; the path is [`super::Place::scratch`].
-    pub(super) fn create(path: PathBuf) -> Result<Self, ExportError> {
-        let file = File::options().read(true).write(true).create(true).truncate(true).open(&path);
-        let file = file.map_err(|source| ExportError::Io { path: path.clone(), source })?;
+    /// An empty one; of an output it is made by [`super::Place::scratch`].
+    pub(super) fn create(path: PathBuf) -> io::Result<Self> {
+        let file = File::options().read(true).write(true).create(true).truncate(true).open(&path)?;
         Ok(Self { path, file: BufWriter::with_capacity(1 << 16, file), written: 0 })
     }
 
@@ -82,9 +79,9 @@ pub(super) struct Sorter<const N: usize> {
 }
 
 impl<const N: usize> Sorter<N> {
-    /// One without records; the path is [`super::Place::scratch`].
-    pub(super) fn create(path: PathBuf) -> Result<Self, ExportError> {
-        Ok(Self { scratch: Scratch::create(path)?, run: Vec::new(), most: (RUN_BYTES / N).max(1), runs: Vec::new() })
+    /// One without records, in an empty file.
+    pub(super) fn new(scratch: Scratch) -> Self {
+        Self { scratch, run: Vec::new(), most: (RUN_BYTES / N).max(1), runs: Vec::new() }
     }
 
     /// One more.
@@ -173,7 +170,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scratch");
         for most in [1, 7, 1000, 100_000] {
-            let mut sorter = Sorter::<8>::create(path.clone()).unwrap();
+            let mut sorter = Sorter::<8>::new(Scratch::create(path.clone()).unwrap());
             sorter.most = most;
             let mut wanted = Vec::new();
             for i in 0..5000_u64 {
@@ -186,6 +183,6 @@ mod tests {
             assert_eq!(sorted, wanted);
             assert!(!path.exists());
         }
-        assert_eq!(Sorter::<8>::create(path).unwrap().sorted().unwrap().count(), 0);
+        assert_eq!(Sorter::<8>::new(Scratch::create(path).unwrap()).sorted().unwrap().count(), 0);
     }
 }

@@ -11,13 +11,22 @@ use std::sync::{Arc, Mutex, PoisonError};
 pub struct Unfinished(Arc<Mutex<Vec<PathBuf>>>);
 
 impl Unfinished {
-    /// One more.
-    pub(super) fn add(&self, path: PathBuf) -> PathBuf {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(path.clone());
-        path
+    /// Makes one more. While this runs nothing is removed, and after a removal nothing is made.
+    pub(super) fn make<T>(&self, path: &Path, make: impl FnOnce(&Path) -> io::Result<T>) -> io::Result<T> {
+        let mut paths = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        paths.push(path.to_owned());
+        make(path)
     }
 
-    /// Removes all of them, and keeps the export from naming another one. The program must end now.
+    /// Puts what was made in its place: none of it goes any more if that succeeds.
+    pub(super) fn settle<E>(&self, settle: impl FnOnce() -> Result<(), E>) -> Result<(), E> {
+        let mut paths = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        settle()?;
+        paths.clear();
+        Ok(())
+    }
+
+    /// Removes all of them, and keeps the export from making or finishing another one. The program must end now.
     pub fn remove(self) {
         // Never unlocked again.
         let paths = ManuallyDrop::new(self.0.lock().unwrap_or_else(PoisonError::into_inner));
@@ -32,4 +41,59 @@ impl Unfinished {
 pub(super) fn remove(path: &Path) -> io::Result<()> {
     let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
     removed.or_else(|e| if e.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(e) })
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::sync::mpsc;
+    use std::time::Duration;
+
+    use super::*;
+
+    #[test]
+    fn nothing_is_made_or_finished_once_it_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let unfinished = Unfinished::default();
+        let part = folder.path().join("part");
+        unfinished.make(&part, fs::create_dir).unwrap();
+        unfinished.make(&part.join("file"), fs::File::create).unwrap();
+        unfinished.clone().remove();
+        assert!(!part.exists());
+        let (tell, told) = mpsc::channel();
+        let late = [folder.path().join("late"), folder.path().join("settled")];
+        let (makes, settles) =
+            ((unfinished.clone(), late[0].clone(), tell.clone()), (unfinished, late[1].clone(), tell));
+        std::thread::spawn(move || makes.2.send(makes.0.make(&makes.1, fs::create_dir).is_ok()));
+        std::thread::spawn(move || settles.2.send(settles.0.settle(|| fs::create_dir(&settles.1)).is_ok()));
+        assert_eq!(told.recv_timeout(Duration::from_millis(200)), Err(mpsc::RecvTimeoutError::Timeout));
+        assert!(late.iter().all(|path| !path.exists()));
+    }
+
+    #[test]
+    fn what_is_being_made_is_whole_before_it_is_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let (unfinished, part) = (Unfinished::default(), folder.path().join("part"));
+        let remover = unfinished.make(&part, |part| {
+            let other = unfinished.clone();
+            let remover = std::thread::spawn(move || other.remove());
+            std::thread::sleep(Duration::from_millis(50));
+            fs::create_dir(part)?;
+            fs::write(part.join("file"), "made while another asks to remove")?;
+            Ok(remover)
+        });
+        remover.unwrap().join().unwrap();
+        assert!(!part.exists());
+    }
+
+    #[test]
+    fn what_has_its_place_is_not_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let (unfinished, part) = (Unfinished::default(), folder.path().join("part"));
+        unfinished.make(&part, fs::File::create).unwrap();
+        assert!(unfinished.settle(|| Err(())).is_err());
+        unfinished.settle(|| Ok::<(), ()>(())).unwrap();
+        unfinished.remove();
+        assert!(part.exists());
+    }
 }

@@ -9,7 +9,6 @@
 //! roundabouts are open only where their arcs are permitted each by itself.
 
 use std::io::Write as _;
-use std::path::PathBuf;
 
 use osmpbfreader::osmformat::PrimitiveBlock;
 
@@ -47,10 +46,10 @@ impl Target for Osrm {
     }
 
     fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
-        let ends = place.scratch(".ends");
+        let ends = Ends::new(place.scratch(".ends")?);
         let speeds = place.create("segment-speeds.csv")?;
         let turns = place.create("turn-penalties.csv")?;
-        let mut tables = Tables { source, speeds, turns, ends: Ends::create(ends)?, unclear: 0 };
+        let mut tables = Tables { source, speeds, turns, ends, unclear: 0 };
         tables.ways()?;
         tables.turns()?;
         if tables.unclear > 0 {
@@ -185,8 +184,8 @@ struct Ends {
 const ENDS_BYTES: usize = 3 * 8;
 
 impl Ends {
-    fn create(path: PathBuf) -> Result<Self, ExportError> {
-        Ok(Self { file: Scratch::create(path)?, edges: 0 })
+    fn new(file: Scratch) -> Self {
+        Self { file, edges: 0 }
     }
 
     /// Edges come in order.

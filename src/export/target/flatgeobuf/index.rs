@@ -75,9 +75,9 @@ impl Index {
         bounds: Bounds,
         place: &Place,
     ) -> Result<Self, ExportError> {
-        let sorted = sort(located, features, bounds, Sorter::create(place.scratch(".order"))?)?;
-        let mut ordered = Scratch::create(place.scratch(".ordered"))?;
-        let mut leaves = Scratch::create(place.scratch(".level0"))?;
+        let sorted = sort(located, features, bounds, Sorter::new(place.scratch(".order")?))?;
+        let mut ordered = place.scratch(".ordered")?;
+        let mut leaves = place.scratch(".level0")?;
         let mut end = 0;
         for record in sorted {
             let record = record?;
@@ -92,7 +92,7 @@ impl Index {
         for (level, pair) in sizes.windows(2).enumerate() {
             // Nodes count from the root on.
             let first_child: u64 = sizes[level + 1..].iter().sum();
-            let mut parents = Scratch::create(place.scratch(&format!(".level{}", level + 1)))?;
+            let mut parents = place.scratch(&format!(".level{}", level + 1))?;
             raise(&mut levels[level], pair[0], first_child, &mut parents)?;
             levels.push(parents);
         }

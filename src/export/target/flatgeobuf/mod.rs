@@ -63,8 +63,8 @@ struct Parts {
 
 impl Parts {
     fn create(place: &Place) -> Result<Self, ExportError> {
-        let features = Scratch::create(place.scratch(".features"))?;
-        let located = Scratch::create(place.scratch(".located"))?;
+        let features = place.scratch(".features")?;
+        let located = place.scratch(".located")?;
         Ok(Self { features, located, count: 0, end: 0, bounds: None, builder: FlatBufferBuilder::new() })
     }
 

@@ -1,7 +1,6 @@
 //! Blocks of new objects, gathered in a file until their turn comes; and texts put into blocks that exist.
 
 use std::io::{self, Write};
-use std::path::PathBuf;
 
 use osmpbfreader::osmformat::{Info, PrimitiveBlock, PrimitiveGroup, Relation, Way};
 use protobuf::Message;
@@ -75,8 +74,8 @@ pub(super) struct Spool {
 }
 
 impl Spool {
-    pub(super) fn create(path: PathBuf) -> Result<Self, ExportError> {
-        Ok(Self { file: Scratch::create(path)?, texts: Texts::none(), ways: Vec::new(), relations: Vec::new() })
+    pub(super) fn new(file: Scratch) -> Self {
+        Self { file, texts: Texts::none(), ways: Vec::new(), relations: Vec::new() }
     }
 
     /// A way with these tags; what else is known of it is as in `like`, whose texts are `texts`.

@@ -64,9 +64,9 @@ impl<'s, 'r> Refusals<'s, 'r> {
             sequences,
             ends: FxHashMap::default(),
             between,
-            dead_ends: Scratch::create(place.scratch(".ends"))?,
+            dead_ends: place.scratch(".ends")?,
             said: FxHashSet::default(),
-            relations: Spool::create(place.scratch(".relations"))?,
+            relations: Spool::new(place.scratch(".relations")?),
             next_id: FIRST_NEW_ID,
         })
     }

@@ -31,7 +31,7 @@ pub(in crate::export::target) fn rewrite(
         flavour,
         refusals: Refusals::create(source, flavour, place)?,
         splits: Splits::default(),
-        new_ways: Spool::create(place.scratch(".ways"))?,
+        new_ways: Spool::new(place.scratch(".ways")?),
         next_id: FIRST_NEW_ID,
         unclear: 0,
         stage: Stage::Nodes,

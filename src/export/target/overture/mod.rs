@@ -40,9 +40,9 @@ impl Target for Overture {
     }
 
     fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
-        let mut spots = Spots::create(source, place.scratch(".spots"))?;
+        let mut spots = Spots::create(source, place.scratch(".spots")?)?;
         let mut transitions = Transitions::collect(source, place)?;
-        let mut connectors = Sorter::create(place.scratch(".connectors"))?;
+        let mut connectors = Sorter::new(place.scratch(".connectors")?);
         let mut sink = begin(source, place.create("segment.geojson")?)?;
         let mut writer = Writer {
             scope: segment::Scope { length_m: length_m(source)? },
@@ -130,7 +130,7 @@ struct Transitions {
 impl Transitions {
     fn collect(source: &Source<'_>, place: &Place) -> Result<Self, ExportError> {
         let mut database = source.database()?;
-        let mut turns = Sorter::create(place.scratch(".turns"))?;
+        let mut turns = Sorter::new(place.scratch(".turns")?);
         for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
             let step = step?;
             if source.refuses_turn(&step) {

@@ -2,7 +2,6 @@
 //! segment can name others without the network in memory.
 
 use std::io::Write as _;
-use std::path::PathBuf;
 
 use crate::export::sorter::Scratch;
 use crate::export::{ExportError, Source};
@@ -30,9 +29,8 @@ pub(super) struct Spots {
 }
 
 impl Spots {
-    /// Reads every edge once; the path is [`crate::export::Place::scratch`].
-    pub(super) fn create(source: &Source<'_>, path: PathBuf) -> Result<Self, ExportError> {
-        let mut file = Scratch::create(path)?;
+    /// Reads every edge once; the file is empty.
+    pub(super) fn create(source: &Source<'_>, mut file: Scratch) -> Result<Self, ExportError> {
         let mut database = source.database()?;
         source.reporter.begin("ways", source.permitted.edges.len() as u64);
         let mut chain = Chain::default();
