@@ -56,15 +56,15 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let unfinished = Unfinished::default();
         let part = folder.path().join("part");
-        unfinished.make(&part, fs::create_dir).unwrap();
-        unfinished.make(&part.join("file"), fs::File::create).unwrap();
+        unfinished.make(&part, |path| fs::create_dir(path)).unwrap();
+        unfinished.make(&part.join("file"), |path| fs::File::create(path)).unwrap();
         unfinished.clone().remove();
         assert!(!part.exists());
         let (tell, told) = mpsc::channel();
         let late = [folder.path().join("late"), folder.path().join("settled")];
         let (makes, settles) =
             ((unfinished.clone(), late[0].clone(), tell.clone()), (unfinished, late[1].clone(), tell));
-        std::thread::spawn(move || makes.2.send(makes.0.make(&makes.1, fs::create_dir).is_ok()));
+        std::thread::spawn(move || makes.2.send(makes.0.make(&makes.1, |path| fs::create_dir(path)).is_ok()));
         std::thread::spawn(move || settles.2.send(settles.0.settle(|| fs::create_dir(&settles.1)).is_ok()));
         assert_eq!(told.recv_timeout(Duration::from_millis(200)), Err(mpsc::RecvTimeoutError::Timeout));
         assert!(late.iter().all(|path| !path.exists()));
@@ -90,7 +90,7 @@ mod tests {
     fn what_has_its_place_is_not_removed() {
         let folder = tempfile::tempdir().unwrap();
         let (unfinished, part) = (Unfinished::default(), folder.path().join("part"));
-        unfinished.make(&part, fs::File::create).unwrap();
+        unfinished.make(&part, |path| fs::File::create(path)).unwrap();
         assert!(unfinished.settle(|| Err(())).is_err());
         unfinished.settle(|| Ok::<(), ()>(())).unwrap();
         unfinished.remove();

@@ -8,3 +8,5 @@ pub(crate) mod demo;
 pub(crate) mod extracts;
 #[path = "../support/silent.rs"]
 pub(crate) mod silent;
+#[path = "../support/thorough.rs"]
+pub(crate) mod thorough;

@@ -158,13 +158,17 @@ fn statistics_add_up() {
 
 #[test]
 fn certify_adds_policies_and_renews_what_is_there() {
-    let place = Place::with_demo();
+    let place = Place::empty();
+    place.netcert("ingest {demo} --vehicle AU-SEMI19 AU-ATRIPLE53 --no-turns").succeeds();
     let by = |policy: &str| ids(&place, &format!("--vehicle AU-SEMI19 --verdict safe --corridor {policy}"));
-    place.netcert("certify --vehicle AU-SEMI19 --corridor direction").succeeds().tells("direction policy: AU-SEMI19");
+    place
+        .netcert("certify --vehicle AU-SEMI19 --corridor direction --no-turns")
+        .succeeds()
+        .tells("direction policy: AU-SEMI19");
     assert!(by("direction").len() > by("lane").len(), "more lanes, more room");
     let before = by("lane");
     place
-        .netcert("certify")
+        .netcert("certify --no-turns")
         .succeeds()
         .tells("lane policy: AU-ATRIPLE53, AU-SEMI19")
         .tells("direction policy: AU-SEMI19");
@@ -343,7 +347,7 @@ fn killed_in_the_middle_the_old_database_is_whole_and_the_next_run_works() {
     run.wait().unwrap();
     assert!(place.read("demo.gpkg") == before);
     place.netcert("stats").succeeds();
-    place.netcert("ingest {demo} --vehicle AGV-TUG4").succeeds().tells("an earlier run was cut short");
+    place.netcert("ingest {demo} --vehicle AGV-TUG4 --no-turns").succeeds().tells("an earlier run was cut short");
     assert_eq!(place.files(), ["demo.gpkg"]);
     place.netcert("stats").succeeds().shows("AGV-TUG4");
 }

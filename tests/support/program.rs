@@ -1,8 +1,9 @@
 //! The built program in a folder of its own: `place.netcert("query --vehicle X").succeeds().tells("…")`.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
-use std::sync::OnceLock;
+use std::sync::{Arc, Mutex, OnceLock};
 
 use netcert::osm::facts::Policy;
 use netcert::store::{Database, EdgeRow, QueryOptions};
@@ -36,12 +37,18 @@ impl Place {
         Self::empty().file("demo.gpkg", made)
     }
 
-    /// With `demo.gpkg`: these certified where the whole carriageway counts, so that some get round corners.
+    /// With `demo.gpkg`: these certified where the whole carriageway counts, so that some get round corners. Made once for the
+    /// same vehicles.
     pub(crate) fn with_wide_demo(vehicles: &str) -> Self {
-        let place = Self::empty();
-        let line = format!("ingest {{demo}} --db demo.gpkg --vehicle {vehicles} --corridor carriageway");
-        place.netcert(&line).succeeds();
-        place
+        static MADE: Mutex<BTreeMap<String, Arc<OnceLock<Vec<u8>>>>> = Mutex::new(BTreeMap::new());
+        let of_these = Arc::clone(MADE.lock().unwrap().entry(vehicles.to_owned()).or_default());
+        let made = of_these.get_or_init(|| {
+            let place = Self::empty();
+            let line = format!("ingest {{demo}} --db demo.gpkg --vehicle {vehicles} --corridor carriageway");
+            place.netcert(&line).succeeds();
+            place.read("demo.gpkg")
+        });
+        Self::empty().file("demo.gpkg", made)
     }
 
     pub(crate) fn file(self, name: &str, bytes: impl AsRef<[u8]>) -> Self {
