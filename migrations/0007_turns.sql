@@ -2,7 +2,7 @@
 -- keeping as for edges: small integers behind a view in metres and words.
 
 -- `angle_deg`: positive to the left. `kerb_radius_m`: of the kerb on the inside of the turn; `kerb_source`: where it comes from
--- (`assumed`: by class and country). `restriction`: the turn restriction that forbids it, as tagged. `turn_id` is stable from
+-- (`assumed`: by class and country; `mapped`: the junction's surface, without a radius). `restriction`: the turn restriction that forbids it, as tagged. `turn_id` is stable from
 -- extract to extract, `fid` is not. `geom`: the last metres before the node and the first after it.
 -- A passage of a roundabout (`kind` 'roundabout') enters, circulates and leaves in one: `from_fid` ends on the ring at `via_node`,
 -- `to_fid` starts on it elsewhere, and between them lie its arcs from `first_arc_fid` to `last_arc_fid` in driving order.

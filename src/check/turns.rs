@@ -18,7 +18,9 @@ use super::{plan, printed};
 use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::store::TurnRow;
-use crate::turns::{Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, TurnPath, passage_on, turn_on};
+use crate::turns::{
+    KerbSource, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, TurnPath, passage_on, turn_on,
+};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
@@ -134,6 +136,7 @@ impl TurnsClaim<'_> {
             ("to_fid", row.to_edge == id(turn.movement.to)),
             ("first_arc_fid, last_arc_fid", row.arcs == arcs),
             ("kerb_radius_m", row.kerb_radius_m == turn.kerb_radius_m),
+            ("kerb_source", row.kerb_source.as_deref() == turn.kerb_source.map(KerbSource::name)),
             ("restriction", row.restriction.is_some() == turn.movement.forbidden.is_some()),
         ];
         same.iter().find(|(_, same)| !same).map(|(column, _)| format!("{column}: not what the network says"))

@@ -144,7 +144,7 @@ impl Explain {
                 writeln!(out, "{}", printable(&turn.title()))?;
                 tell(&mut out, &turn.explanation)?;
                 let note = "This is the turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii \
-                            are assumed.";
+                            are assumed where no surface is mapped.";
                 writeln!(out, "{}", wrapped(note, ""))?;
             }
         }

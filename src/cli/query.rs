@@ -136,7 +136,7 @@ impl Query {
         let (verdict, min_rsc_m) = (self.verdict, self.min_rsc);
         let rows =
             database.query_turns(&TurnQuery { area, verdict, min_rsc_m, ..TurnQuery::new(&self.vehicle, policy) })?;
-        let scope = format!("{} Kerb radii of corners are assumed.", scope(vehicle));
+        let scope = format!("{} Kerb radii of corners are assumed where no surface is mapped.", scope(vehicle));
         let head = Head { vehicle: self.vehicle.clone(), policy, scope };
         let mut out = results();
         turn_rows::write(self.format, &head, &rows, &mut out)?;

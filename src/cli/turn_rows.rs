@@ -7,6 +7,7 @@ use std::io::{self, Write};
 
 use netcert::stet::Side;
 use netcert::store::{Named, TurnRow, VerdictKind, verdict_words};
+use netcert::turns::KerbSource;
 use serde_json::{Map, Value, json};
 
 use super::output::{grouped, printable};
@@ -86,7 +87,7 @@ fn items(out: &mut dyn Write, values: impl Iterator<Item = Value>) -> io::Result
 fn table(rows: &[TurnRow], out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
-        "{:>19}  {:>11} {:<12} {:>6}  {:>5}  {:>7}  {:>7}  {:<22} from → to",
+        "{:>19}  {:>11} {:<12} {:>6}  {:>6}  {:>7}  {:>7}  {:<22} from → to",
         "turn_id", "node", "kind", "angle", "kerb", "rsc", "hinge", "verdict"
     )?;
     for row in rows {
@@ -95,12 +96,12 @@ fn table(rows: &[TurnRow], out: &mut dyn Write) -> io::Result<()> {
         let name = |name: &Option<String>| printable(name.as_deref().unwrap_or("–"));
         writeln!(
             out,
-            "{:>19}  {:>11} {:<12} {:>5.0}°  {:>5}  {:>7}  {:>7}  {:<22} {} → {}",
+            "{:>19}  {:>11} {:<12} {:>5.0}°  {:>6}  {:>7}  {:>7}  {:<22} {} → {}",
             row.turn_id,
             row.via_node,
             row.kind,
             row.angle_deg,
-            row.kerb_radius_m.map_or(String::new(), |m| format!("{m:.1} m")),
+            kerb(row),
             row.rsc_m.map_or(String::new(), |m| format!("{m:.2} m")),
             row.hinge_margin_deg.filter(|&d| d > -180.0).map_or(String::new(), |d| format!("{d:.1}°")),
             verdict,
@@ -109,6 +110,12 @@ fn table(rows: &[TurnRow], out: &mut dyn Write) -> io::Result<()> {
         )?;
     }
     Ok(())
+}
+
+/// The assumed radius, or that the corner is mapped.
+fn kerb(row: &TurnRow) -> String {
+    let mapped = row.kerb_source.as_deref().filter(|source| *source == KerbSource::Mapped.name());
+    row.kerb_radius_m.map_or_else(|| mapped.unwrap_or_default().to_owned(), |m| format!("{m:.1} m"))
 }
 
 /// In the order of [`COLUMNS`].

@@ -7,7 +7,7 @@ use crate::network::{Edge, Network};
 use crate::pipeline::{Settings, best_of, turn_verdict};
 use crate::stet::{Model, Options, certify_planned};
 use crate::stop::{Stop, Stopped};
-use crate::turns::{Reach, TurnCorridors, TurnFacts, corridors_of};
+use crate::turns::{KerbSource, Reach, TurnCorridors, TurnFacts, corridors_of};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
 /// What limits a vehicle in a turn.
@@ -107,7 +107,11 @@ impl TurnExplanation {
         }
         let angle = self.facts.angle_deg;
         let side = if angle > 0.0 { "left" } else { "right" };
-        let kerb = self.facts.kerb_radius_m.map_or(String::new(), |m| format!(", kerb radius {m:.1} m (assumed)"));
+        let kerb = match (self.facts.kerb_radius_m, self.facts.kerb_source) {
+            (Some(m), _) => format!(", kerb radius {m:.1} m (assumed)"),
+            (None, Some(KerbSource::Mapped)) => ", kerb as mapped".to_owned(),
+            _ => String::new(),
+        };
         format!("{} → {}: {:.0}° to the {side}{kerb}", self.roads[0], self.roads[1], angle.abs())
     }
 }

@@ -94,8 +94,8 @@ impl Header {
         let p = &self.provenance;
         format!(
             "A permit holds within the stated model, widths and error bounds, for {} steered within {} m of the planned path \
-             (times shrink), edge by edge and turn by turn: `netcert route` certifies a whole route. Kerbs of turns are assumed. It \
-             is no legal permit and says nothing of bridges or traffic. What is not listed as permitted is refused.",
+             (times shrink), edge by edge and turn by turn: `netcert route` certifies a whole route. Kerbs of turns are assumed \
+             where no surface is mapped. It is no legal permit and says nothing of bridges or traffic. What is not listed as permitted is refused.",
             self.ask.vehicle, p.tracking_tolerance_m
         )
     }

@@ -17,7 +17,7 @@ use crate::verdict::Verdict;
 pub struct PermitPolicy {
     /// The least RSC of edges and turns, metres; 0 asks for no more than safe.
     pub min_rsc_m: f64,
-    /// The least evidence for an edge's width. Kerbs of turns are assumed whatever is asked here.
+    /// The least evidence for an edge's width. Kerbs of turns are assumed or mapped whatever is asked here.
     pub min_width_source: Option<WidthSource>,
 }
 

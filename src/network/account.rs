@@ -5,7 +5,7 @@ use super::Edge;
 use super::cut::Unusable;
 use crate::account::AccountRow;
 
-/// Counts of a run. `ways_read = ways_kept + Σ left out`, `directions = edges + not_driven`.
+/// Counts of a run. `ways_read = ways_kept + Σ left out`, `directions = edges + not_driven`, and so for areas.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct NetworkAccount {
     /// Ways that came in.
@@ -48,6 +48,14 @@ pub struct NetworkAccount {
     pub strokes_with_approach: u64,
     /// Nodes at which too many edges meet for any to be called straight on.
     pub crowded_nodes: u64,
+    /// Mapped surfaces and islands that came in.
+    pub areas_read: u64,
+    /// Those at junctions.
+    pub areas_kept: u64,
+    /// Left out: the file lacks some of its nodes.
+    pub areas_cut: u64,
+    /// Left out: its ring crosses itself, or encloses nothing.
+    pub areas_invalid: u64,
     /// Turn restrictions that came in: `= restrictions_kept + off_network + without_effect`.
     pub restrictions_read: u64,
     /// Restrictions that forbid something here.
@@ -131,6 +139,16 @@ impl NetworkAccount {
             ("stroke", "noted", "closed", self.closed_strokes),
             ("stroke", "noted", "split_by_length", self.strokes_split),
             ("stroke", "noted", "with_approach", self.strokes_with_approach),
+            ("area", "read", "", self.areas_read),
+            ("area", "kept", "", self.areas_kept),
+            ("area", "left_out", "missing_node", self.areas_cut),
+            ("area", "left_out", "invalid", self.areas_invalid),
+            (
+                "area",
+                "left_out",
+                "no_junction",
+                self.areas_read - self.areas_kept - self.areas_cut - self.areas_invalid,
+            ),
             ("restriction", "read", "", self.restrictions_read),
             ("restriction", "kept", "", self.restrictions_kept),
             ("restriction", "left_out", "off_network", self.restrictions_off_network),

@@ -5,7 +5,7 @@
 
 use super::edges::Source;
 use super::vertices::Vertices;
-use super::{Network, NetworkAccount, StrokeOptions, edge_id, restrictions, stroke};
+use super::{Network, NetworkAccount, StrokeOptions, areas, edge_id, restrictions, stroke};
 use crate::osm::facts::{CrossSection, Place, WayFacts};
 use crate::osm::{Extract, LonLat};
 
@@ -28,7 +28,7 @@ pub fn build_with(
     sections: &(impl Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync),
     options: &StrokeOptions,
 ) -> (Network, NetworkAccount) {
-    let Extract { ways, refs, nodes, points, restrictions, strings, .. } = extract;
+    let Extract { ways, refs, nodes, points, restrictions, areas, strings, .. } = extract;
     let vertices = Vertices::resolve(&ways, &refs, &nodes, &points);
     drop((refs, points));
     let mut account = NetworkAccount {
@@ -40,6 +40,7 @@ pub fn build_with(
     Source { nodes: &nodes, vertices: &vertices, places, sections }.build(&ways, &mut network, &mut account);
     drop(ways);
     restrictions::resolve(&mut network, &restrictions, &nodes, &vertices, &mut account);
+    areas::resolve(&mut network, areas, &nodes, &mut account);
     drop((nodes, vertices));
     account.id_collisions = edge_id::resolve_collisions(&mut network.edges);
     stroke::chain(&mut network, options, &mut account);

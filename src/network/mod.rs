@@ -4,6 +4,7 @@
 //! just built from a file.
 
 mod account;
+mod areas;
 mod build;
 mod cut;
 mod edge_id;
@@ -19,6 +20,7 @@ mod vertices;
 use std::ops::Range;
 
 pub use account::NetworkAccount;
+pub use areas::{Area, Areas};
 pub use build::{build, build_with};
 pub(crate) use geometry::{EARTH_RADIUS_M, offset_m};
 pub use movements::{Movement, MovementKind, Movements};
@@ -135,6 +137,8 @@ pub struct Network {
     pub restrictions: Vec<Restriction>,
     /// Indices into `edges`.
     pub restriction_edges: Vec<u32>,
+    /// Mapped surfaces of junctions.
+    pub areas: Areas,
     /// Names and refs.
     pub strings: StringPool,
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::osm::facts::{PointFacts, TurnRule, WayFacts};
+use crate::osm::facts::{AreaKind, PointFacts, TurnRule, WayFacts};
 
 /// A position in units of 1e-7 degree (the file's own resolution), WGS 84.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -47,6 +47,17 @@ pub struct Restriction {
     pub to: Vec<i64>,
 }
 
+/// A closed way that maps the surface of a road or junction, or an island on it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RoadArea {
+    /// OSM way id.
+    pub id: i64,
+    /// What it is of.
+    pub kind: AreaKind,
+    /// Its node references, in order: at least four, the last one the first again.
+    pub refs: Vec<i64>,
+}
+
 /// What lies between the ways of a restriction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Via {
@@ -56,7 +67,7 @@ pub enum Via {
     Ways(Vec<i64>),
 }
 
-/// Node positions: sorted by id, every node named by a kept way; a node that the file lacks has no position.
+/// Node positions: sorted by id, every node named by a kept way or area; a node that the file lacks has no position.
 #[derive(Debug, Clone, Default)]
 pub struct NodeTable {
     /// Sorted, distinct.
@@ -125,6 +136,8 @@ pub struct Extract {
     pub nodes: NodeTable,
     /// Tagged nodes on kept ways that narrow or bar the road: sorted by node id.
     pub points: Vec<(i64, PointFacts)>,
+    /// Mapped surfaces of roads and islands on them, sorted by way id, ids distinct.
+    pub areas: Vec<RoadArea>,
     /// Turn restrictions for heavy goods vehicles, sorted by relation id.
     pub restrictions: Vec<Restriction>,
     /// Names and refs of the ways.

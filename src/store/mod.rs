@@ -3,6 +3,7 @@
 //! [`Database::create`] makes a new file beside the old one and puts it in place when it is whole; [`Database::open`]
 //! reads one. Certificates are kept as small integers that never promise more than what was computed.
 
+mod areas;
 mod blob;
 mod bulk;
 mod database;

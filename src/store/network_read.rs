@@ -7,11 +7,12 @@ use futures_util::TryStreamExt as _;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{Row as _, Sqlite};
 
-use crate::network::{Edge, Narrowing, Network, Road, Stroke};
+use crate::network::{Areas, Edge, Narrowing, Network, Road, Stroke};
 use crate::osm::facts::{CrossSection, Legal, Limit, Strip};
 use crate::osm::{LonLat, StringPool};
 use crate::verdict::Verdict;
 
+use super::areas;
 use super::blob;
 use super::error::content;
 use super::names::{Named, class_and_link, verdict_of};
@@ -48,9 +49,21 @@ pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
     let stroke_edges =
         rows(c, "SELECT fid FROM stroke_edge ORDER BY position", |row| index(row, 0, edges.len())).await?;
     let Restrictions { all: restrictions, edges: restriction_edges } = restrictions::read(c, edges.len()).await?;
-    let network =
-        Network { roads, edges, shapes, narrowings, strokes, stroke_edges, restrictions, restriction_edges, strings };
+    let areas = Areas::default();
+    let mut network = Network {
+        roads,
+        edges,
+        shapes,
+        narrowings,
+        strokes,
+        stroke_edges,
+        restrictions,
+        restriction_edges,
+        areas,
+        strings,
+    };
     check_ranges(&network)?;
+    network.areas = Areas::new(areas::read(c).await?, &network);
     Ok(network)
 }
 

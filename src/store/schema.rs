@@ -16,6 +16,7 @@ const FILES: &[(i64, &str, &str)] = &[
     (6, "restrictions", include_str!("../../migrations/0006_restrictions.sql")),
     (7, "turns", include_str!("../../migrations/0007_turns.sql")),
     (8, "turn plans", include_str!("../../migrations/0008_turn_plans.sql")),
+    (9, "areas", include_str!("../../migrations/0009_areas.sql")),
 ];
 
 /// The last migration before the bulk of the data.

@@ -127,9 +127,7 @@ pub(super) async fn write(c: &mut SqliteConnection, turns: &[Record]) -> Sql<Opt
         bulk.add((facts.angle_deg * 10.0).round() / 10.0)?;
         bulk.add(kind(facts))?;
         bulk.add(facts.kerb_radius_m)?;
-        bulk.add(facts.kerb_radius_m.map(|_| match facts.kerb_source {
-            KerbSource::Assumed => "assumed",
-        }))?;
+        bulk.add(facts.kerb_source.map(KerbSource::name))?;
         bulk.add(restriction.as_deref())?;
         for arc in [facts.through.first(), facts.through.last()] {
             bulk.add(arc.map(|&arc| i64::from(arc) + 1))?;

@@ -9,10 +9,11 @@ use std::time::{Duration, Instant};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqliteLockingMode, SqliteSynchronous};
 
 use crate::account::AccountRow;
-use crate::network::Network;
+use crate::network::{Area, Network};
 use crate::osm::facts::Policy;
 use crate::turns::TurnFacts;
 
+use super::areas;
 use super::blob::Bounds;
 use super::database::Database;
 use super::error::{StoreError, content};
@@ -49,6 +50,7 @@ pub struct Writer {
     network: Option<(u32, Option<Bounds>)>,
     /// Written last: their table comes with a later migration.
     restrictions: Restrictions,
+    areas: Vec<Area>,
     /// The same; rows, and where their certificates wait.
     turns: Option<(Vec<turns::Record>, Spool)>,
     turn_plans: BTreeMap<(u32, u8), Vec<StoredPlan>>,
@@ -96,6 +98,7 @@ impl Database {
             plans: BTreeMap::new(),
             network: None,
             restrictions: Restrictions::default(),
+            areas: Vec::new(),
             turns: None,
             turn_plans: BTreeMap::new(),
             part,
@@ -117,6 +120,7 @@ impl Writer {
         self.network = Some((network.edges.len() as u32, bounds));
         self.restrictions =
             Restrictions { all: network.restrictions.clone(), edges: network.restriction_edges.clone() };
+        self.areas = network.areas.all().to_vec();
         Ok(())
     }
 
@@ -198,12 +202,13 @@ impl Writer {
             let set = Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished };
             self.session.run(async |c| set.insert(c, &rows).await)?;
         }
-        let (all_plans, all_restrictions) = (&mut self.plans, &self.restrictions);
+        let (all_plans, all_restrictions, all_areas) = (&mut self.plans, &self.restrictions, &self.areas);
         self.session.run(async |c| {
             sqlx::query("COMMIT").execute(&mut *c).await?;
             migrate(c, None).await?;
             sqlx::query("BEGIN").execute(&mut *c).await?;
             restrictions::insert(c, all_restrictions).await?;
+            areas::insert(c, all_areas).await?;
             for (&(vehicle_no, corridor), plans) in all_plans {
                 plans::insert(c, plans::STROKES, (vehicle_no, corridor), plans).await?;
             }

@@ -3,8 +3,9 @@
 //!
 //! Promises that no part is made up: beyond the node a road counts only where it is really driven on (its stroke goes on), or
 //! where the other road crosses it. A turn to the near side (right, where traffic keeps right) gets what the lanes of the two
-//! *directions* have in common, a turn across the oncoming traffic what the carriageways have in common. Left out: mapped
-//! junction areas (`area:highway`), which the reader does not read, and third roads of the junction.
+//! *directions* have in common, a turn across the oncoming traffic what the carriageways have in common. Where the junction's
+//! surface is mapped, the corner is what that has outside both roads, and no kerb return is assumed. Left out: third roads of
+//! the junction.
 
 use geo::orient::{Direction, Orient};
 use geo::{BooleanOps, LineString, MultiPolygon, Polygon, unary_union};
@@ -24,6 +25,8 @@ pub(super) const CORNERS_RAD: std::ops::RangeInclusive<f64> = 0.17..=2.62;
 const MOST_RETURN_M: f64 = 15.0;
 /// A kerb return's circle touches both edges to so much, metres: those are drawn in chords of a metre.
 const TOUCHING_M: f64 = 0.03;
+/// A mapped corner reaches no farther along its roads than this, metres.
+const MOST_CORNER_M: f64 = 20.0;
 /// Chord of a kerb return's arc, radians of arc: the arc is cut off outside, on the side of less room.
 const ARC_STEP_RAD: f64 = 0.1;
 
@@ -36,17 +39,22 @@ pub(super) struct Ground<'a> {
     /// By how much the vehicle turns, radians, positive left.
     pub(super) turn_rad: f64,
     pub(super) kerb_radius_m: f64,
+    /// The junction's surface, if it is mapped.
+    pub(super) surface: Option<&'a MultiPolygon>,
 }
 
 impl Ground<'_> {
-    /// The drivable area, and whether it has a kerb return.
+    /// The drivable area, and whether it has a kerb return of the assumed radius.
     pub(super) fn area(&self) -> (MultiPolygon, bool) {
         let own = |arm: &Arm, k: usize| [arm.line.left_m[k], -arm.line.right_m[k]];
         let strip = |arm: &Arm| outline(arm, 0..arm.len(), &|k| own(arm, k), [0.0; 2]);
         let mut parts: Vec<Polygon> = [strip(self.from), strip(self.to)].into_iter().flatten().collect();
         parts.extend(self.common());
-        let corner = self.kerb_return();
-        let rounded = corner.is_some();
+        let corner = match self.surface {
+            Some(surface) => self.mapped_corner(surface),
+            None => self.kerb_return().into_iter().collect(),
+        };
+        let rounded = self.surface.is_none() && !corner.is_empty();
         parts.extend(corner);
         (unary_union(&parts), rounded)
     }
@@ -82,18 +90,35 @@ impl Ground<'_> {
         common
     }
 
+    /// Where the roads' edges on the inside of the turn meet, if that is a corner.
+    fn corner(&self, edges: [&[[f64; 2]]; 2]) -> Option<Corner> {
+        let corner =
+            CORNERS_RAD.contains(&self.turn_rad.abs()).then(|| crossing(edges[0], edges[1], self.turn_rad))??;
+        let turned = corner.turned_rad();
+        (CORNERS_RAD.contains(&turned.abs()) && (turned > 0.0) == (self.turn_rad > 0.0)).then_some(corner)
+    }
+
+    /// What the junction's surface has between the roads' edges on the inside of the turn.
+    fn mapped_corner(&self, surface: &MultiPolygon) -> Vec<Polygon> {
+        let edges = [self.kerb(self.from, 0.0), self.kerb(self.to, 0.0)];
+        let Some(corner) = self.corner(edges.each_ref().map(Vec::as_slice)) else { return Vec::new() };
+        let [a, b] = corner.inward();
+        let between = polygon(&[
+            add(along(corner.at, corner.from, -MOST_CORNER_M), a),
+            add(add(corner.at, a), b),
+            add(along(corner.at, corner.to, MOST_CORNER_M), b),
+        ]);
+        surface.intersection(&between).0
+    }
+
     /// The corner between the roads' edges on the inside of the turn, rounded with the kerb radius.
     fn kerb_return(&self) -> Option<Polygon> {
-        let angle = self.turn_rad.abs();
-        if self.kerb_radius_m <= 0.0 || !CORNERS_RAD.contains(&angle) {
+        if self.kerb_radius_m <= 0.0 {
             return None;
         }
         let (from_edge, to_edge) = (self.kerb(self.from, 0.0), self.kerb(self.to, 0.0));
-        let Corner { at: corner, from: a, to: b } = crossing(&from_edge, &to_edge, self.turn_rad)?;
-        let turned = (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]);
-        if !CORNERS_RAD.contains(&turned.abs()) || (turned > 0.0) != (self.turn_rad > 0.0) {
-            return None;
-        }
+        let corner = self.corner([&from_edge, &to_edge])?;
+        let turned = corner.turned_rad();
         let radius = self.kerb_radius_m.min(MOST_RETURN_M / (0.5 * turned.abs()).tan());
         // Its circle touches both edges, however they bend: a ring's edge bends away from the tangent at the corner.
         let centre = crossing(&self.kerb(self.from, radius), &self.kerb(self.to, radius), self.turn_rad)?.at;
@@ -107,12 +132,11 @@ impl Ground<'_> {
         if (rounds > 0.0) != (turned > 0.0) || rounds.abs() > *CORNERS_RAD.end() {
             return None;
         }
-        let sign = turned.signum();
-        let inward = |d: [f64; 2]| [sign * d[1] * OVERLAP_M, -sign * d[0] * OVERLAP_M];
+        let [a, b] = corner.inward();
         let mut ring = arc(centre, start, rounds);
         ring.push(end);
         ring.push(along(end, v, OVERLAP_M));
-        ring.push(add(add(corner, inward(a)), inward(b)));
+        ring.push(add(add(corner.at, a), b));
         ring.push(along(start, u, OVERLAP_M));
         Some(polygon(&ring))
     }
@@ -224,6 +248,20 @@ struct Corner {
     to: [f64; 2],
 }
 
+impl Corner {
+    /// From the one edge's direction to the other's, radians, positive left.
+    fn turned_rad(&self) -> f64 {
+        let (a, b) = (self.from, self.to);
+        (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1])
+    }
+
+    /// From either edge a little way onto its road.
+    fn inward(&self) -> [[f64; 2]; 2] {
+        let sign = self.turned_rad().signum();
+        [self.from, self.to].map(|d| [sign * d[1] * OVERLAP_M, -sign * d[0] * OVERLAP_M])
+    }
+}
+
 /// Where two lines of edges cross in the turn's own sense: the crossing nearest to the end of the first.
 fn crossing(a: &[[f64; 2]], b: &[[f64; 2]], turn_rad: f64) -> Option<Corner> {
     let mut last = None;
@@ -271,6 +309,6 @@ fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 /// A ring as a polygon that runs counter-clockwise: a union takes rings of the other sense for holes.
-fn polygon(ring: &[[f64; 2]]) -> Polygon {
+pub(super) fn polygon(ring: &[[f64; 2]]) -> Polygon {
     Polygon::new(ring.iter().map(|p| (p[0], p[1])).collect::<LineString>(), Vec::new()).orient(Direction::Default)
 }

@@ -5,18 +5,31 @@
 use rustc_hash::FxHashSet;
 
 use super::area::CORNERS_RAD;
-use super::{Kerbs, path};
+use super::{Kerbs, path, surface};
 use crate::network::{Edge, Movement, MovementKind, Network, Passage, offset_m};
 use crate::osm::LonLat;
 
 /// A turn's line reaches so far along both edges, metres; its angle is measured over the same.
 const LINE_M: f64 = 12.0;
 
-/// Where a kerb radius comes from.
+/// Where a corner's kerb comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KerbSource {
-    /// By class and country.
+    /// A radius by class and country.
     Assumed,
+    /// The junction's surface is mapped.
+    Mapped,
+}
+
+impl KerbSource {
+    /// As the database has it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Assumed => "assumed",
+            Self::Mapped => "mapped",
+        }
+    }
 }
 
 /// A turn as the map has it.
@@ -30,10 +43,10 @@ pub struct TurnFacts {
     pub through: Vec<u32>,
     /// By how much one turns, degrees, positive left.
     pub angle_deg: f64,
-    /// Radius of the kerb on the inside, metres; `None`: too flat or too acute for one.
+    /// Assumed radius of the kerb on the inside, metres; `None`: too flat or too acute for one, or mapped.
     pub kerb_radius_m: Option<f64>,
-    /// Where that comes from.
-    pub kerb_source: KerbSource,
+    /// Where the kerb comes from; `None`: too flat or too acute for one.
+    pub kerb_source: Option<KerbSource>,
     /// The last and first metres of its edges, in driving order.
     pub line: Vec<LonLat>,
 }
@@ -59,12 +72,26 @@ pub fn turn_facts(network: &Network, kerbs: &Kerbs) -> Vec<TurnFacts> {
             let line = line(network, movement, &through)?;
             let angle = angle_rad(&line);
             let ring = through.first().and_then(|&arc| network.edges.get(arc as usize));
-            // Of two corners, the sharper one.
-            let corner = |a: &Edge, b: &Edge| kerbs.radius_m(network.road(a), network.road(b));
-            let radius_m = ring.map_or(corner(from, to), |ring| corner(from, ring).min(corner(ring, to)));
+            // The assumed radius of a corner; none where it is mapped.
+            let corner = |node: i64, a: &Edge, b: &Edge| {
+                let roads = [network.road(a), network.road(b)];
+                let assumed = !surface::is_mapped(network, node, roads);
+                assumed.then(|| kerbs.radius_m(roads[0], roads[1]))
+            };
+            let corners = match ring {
+                Some(ring) => vec![corner(from.to_node, from, ring), corner(to.from_node, ring, to)],
+                None => vec![corner(from.to_node, from, to)],
+            };
             let cornered = ring.is_some() || CORNERS_RAD.contains(&angle.abs());
-            let kerb_radius_m = (radius_m > 0.0 && cornered).then_some(radius_m);
-            let (angle_deg, kerb_source) = (angle.to_degrees(), KerbSource::Assumed);
+            // Of two assumed ones, the sharper one.
+            let radius_m = corners.into_iter().flatten().reduce(f64::min);
+            let (kerb_radius_m, kerb_source) = match radius_m {
+                _ if !cornered => (None, None),
+                None => (None, Some(KerbSource::Mapped)),
+                Some(m) if m > 0.0 => (Some(m), Some(KerbSource::Assumed)),
+                Some(_) => (None, None),
+            };
+            let angle_deg = angle.to_degrees();
             Some(TurnFacts { id, movement, through, angle_deg, kerb_radius_m, kerb_source, line })
         })
         .collect()

@@ -10,7 +10,7 @@ use super::area::{Ground, along, segments_cross};
 use super::arm::{Arm, StrokeLine};
 use super::path::{self, Pose, STEP_M, wrapped};
 use super::rays::{Boundary, Widths};
-use super::{Joint, Reach, TurnCorridors, TurnParams, TurnPath};
+use super::{Joint, Reach, TurnCorridors, TurnParams, TurnPath, surface::surface};
 use crate::corridor::{Corridor, Frame};
 use crate::network::{Movement, Network};
 use crate::osm::facts::Policy;
@@ -55,6 +55,8 @@ pub(super) struct Junction {
     policy: Policy,
     left_hand_traffic: bool,
     kerb_radius_m: f64,
+    /// The junction's surface, if it is mapped.
+    surface: Option<MultiPolygon>,
     reach: Reach,
 }
 
@@ -71,6 +73,7 @@ impl Junction {
     ) -> Result<Self, UnknownReason> {
         let edge = |index: u32| network.edges.get(index as usize).ok_or(UnknownReason::Geometry);
         let (from, to) = (network.road(edge(movement.from)?), network.road(edge(movement.to)?));
+        let node = edge(movement.from)?.to_node;
         let before_m = reach.run_in_m()
             + reach.counted_before_m()
             + FROM_CORNER_M[FROM_CORNER_M.len() - 1]
@@ -85,6 +88,7 @@ impl Junction {
             policy,
             left_hand_traffic: from.left_hand_traffic,
             kerb_radius_m: params.kerbs.radius_m(from, to),
+            surface: surface(network, node, [from, to], frame),
             reach,
         })
     }
@@ -95,7 +99,7 @@ impl Junction {
         wrapped(to.line.heading[to.node] - from.line.heading[from.node])
     }
 
-    /// The drivable area, and the radius of its kerb return if it has one.
+    /// The drivable area, and the assumed radius of its kerb return if it has one.
     pub(super) fn area(&self) -> (MultiPolygon, Option<f64>) {
         let ground = Ground {
             from: &self.from,
@@ -104,6 +108,7 @@ impl Junction {
             left_hand_traffic: self.left_hand_traffic,
             turn_rad: self.turn_rad(),
             kerb_radius_m: self.kerb_radius_m,
+            surface: self.surface.as_ref(),
         };
         let (area, rounded) = ground.area();
         (area, rounded.then_some(self.kerb_radius_m))

@@ -3,12 +3,13 @@
 //! A turn's corridor begins on the centreline of the stroke that it leaves and ends on that of the stroke it joins, with their
 //! half-widths, so that a route strings stroke, turn and stroke together without a seam. In between it runs along one of a
 //! family of reference paths, as wide as the drivable area lets it be. When in doubt it is narrower: nothing that no road covers
-//! counts as road but the kerb return, whose radius is assumed and says so.
+//! counts as road but the kerb return: as its surface is mapped, or of a radius that is assumed and says so.
 //!
 //! | file | for |
 //! | --- | --- |
 //! | `arm` | a stroke near the junction, with the edges of the road |
 //! | `kerbs` | assumed kerb radii, `data/kerbs.toml` |
+//! | `surface` | the junction's surface, where it is mapped |
 //! | `area` | the drivable area as polygons |
 //! | `path` | transition, arc, transition; lane shifts |
 //! | `rays` | how wide the area is along a path |
@@ -17,7 +18,7 @@
 //! | `rank` | which of them a vehicle's certificate is worth trying on |
 //! | `facts` | what the map says of a turn: id, angle, line |
 //!
-//! Left out: mapped junction areas and lane markings inside the junction; lanes for turning (`turn:lanes`): the vehicle arrives
+//! Left out: surfaces mapped as relations (with holes), lane markings inside the junction; lanes for turning (`turn:lanes`): the vehicle arrives
 //! and leaves in the lanes that its edges are certified for.
 
 mod area;
@@ -29,6 +30,7 @@ mod path;
 mod rank;
 mod rays;
 mod roundabout;
+mod surface;
 
 use std::ops::Range;
 
@@ -134,7 +136,7 @@ pub struct TurnCorridors {
     pub turn_rad: f64,
     /// What may be driven on.
     pub area: MultiPolygon,
-    /// Radius of the kerb return, metres; `None`: the corner has none (too acute or too flat). Always assumed.
+    /// Assumed radius of the kerb return, metres; `None`: the corner has none (too acute or too flat), or its surface is mapped.
     pub kerb_radius_m: Option<f64>,
     /// In order of their numbers; may be empty: then no path of the family stays on the road.
     pub paths: Vec<TurnPath>,

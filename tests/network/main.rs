@@ -1,6 +1,7 @@
 //! From a file to a network, over it, and round its corners: the reader's rules, drawn maps, turns, roundabouts, routes.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
 
+mod areas;
 mod corridor_extracts;
 mod demo_region;
 mod graph_properties;

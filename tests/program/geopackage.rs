@@ -73,8 +73,11 @@ fn plain(network: &Network) -> String {
         let bare = Edge { shape: 0..0, ..edge.clone() };
         all += &format!("{bare:?} {:?}\n", network.positions(edge).collect::<Vec<_>>());
     }
-    let Network { narrowings, strokes, stroke_edges, restrictions, restriction_edges, .. } = network;
-    all += &format!("{narrowings:?}\n{strokes:?}\n{stroke_edges:?}\n{restrictions:?}\n{restriction_edges:?}");
+    let Network { narrowings, strokes, stroke_edges, restrictions, restriction_edges, areas, .. } = network;
+    all += &format!(
+        "{narrowings:?}\n{strokes:?}\n{stroke_edges:?}\n{restrictions:?}\n{restriction_edges:?}\n{:?}",
+        areas.all()
+    );
     all
 }
 

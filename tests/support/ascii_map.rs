@@ -5,7 +5,7 @@
 
 use netcert::network::{Edge, Network, NetworkAccount, build};
 use netcert::osm::facts::{self, CrossSection, Place, PointFacts, WayFacts};
-use netcert::osm::{Extract, LonLat, NodeTable, Restriction, StringPool, Via, Way};
+use netcert::osm::{Extract, LonLat, NodeTable, Restriction, RoadArea, StringPool, Via, Way};
 
 /// Where the upper left corner of a drawing lies.
 const ORIGIN: LonLat = LonLat { lon_e7: 80_000_000, lat_e7: 490_000_000 };
@@ -18,7 +18,11 @@ pub(crate) struct AsciiMap {
     ways: Vec<(i64, String, String)>,
     points: Vec<(char, PointFacts)>,
     restrictions: Vec<Restriction>,
+    areas: Vec<(String, Vec<LonLat>)>,
 }
+
+/// Ways and nodes of areas count from here.
+const AREAS: i64 = 1 << 40;
 
 impl AsciiMap {
     /// The nodes of a drawing.
@@ -89,6 +93,14 @@ impl AsciiMap {
         self
     }
 
+    /// Adds a closed way through places so far east and north of a node, metres; the last one is the first again.
+    pub(crate) fn area(mut self, node: char, corners: &[[f64; 2]], tags: &str) -> Self {
+        let at = self.nodes.iter().find(|n| n.0 == node).unwrap_or_else(|| panic!("{node} is not drawn")).1;
+        let ring = corners.iter().map(|&[east_m, north_m]| offset(at, east_m, north_m)).collect();
+        self.areas.push((tags.to_owned(), ring));
+        self
+    }
+
     /// What reading a file of this map leaves.
     pub(crate) fn extract(&self) -> Extract {
         let mut extract = Extract::default();
@@ -106,10 +118,23 @@ impl AsciiMap {
         ids.dedup();
         let places = ids.iter().map(|&id| self.place(id)).collect();
         extract.nodes = NodeTable { ids, places };
+        self.add_areas(&mut extract);
         extract.points = self.points.iter().map(|&(node, facts)| (id_of(node), facts)).collect();
         extract.points.sort_by_key(|point| point.0);
         extract.restrictions.clone_from(&self.restrictions);
         extract
+    }
+
+    fn add_areas(&self, extract: &mut Extract) {
+        for (id, (tags, ring)) in (AREAS..).zip(&self.areas) {
+            let pairs: Vec<_> = tags.split_whitespace().filter_map(|tag| tag.split_once('=')).collect();
+            let kind = facts::area_kind(&pairs).unwrap_or_else(|| panic!("{tags} is no area"));
+            let mut refs: Vec<i64> = (0..).zip(ring).map(|(i, _)| 1000 * id + i).collect();
+            extract.nodes.ids.extend(&refs);
+            extract.nodes.places.extend(ring.iter().copied().map(Some));
+            refs.extend(refs.first().copied());
+            extract.areas.push(RoadArea { id, kind, refs });
+        }
     }
 
     fn place(&self, id: i64) -> Option<LonLat> {

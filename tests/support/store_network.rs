@@ -1,10 +1,10 @@
 //! A made-up network with every kind of value that the store must give back: all limits, permissions, sources and
 //! directions, shared shapes, narrow places, strokes with approach. Size to order.
 
-use netcert::network::{Edge, Narrowing, Network, Restriction, Road, Stroke};
+use netcert::network::{Area, Areas, Edge, Narrowing, Network, Restriction, Road, Stroke};
 use netcert::osm::LonLat;
 use netcert::osm::facts::{
-    CrossSection, Direction, Legal, Limit, Oneway, Permission, RestrictionKind, RoadClass, Strip, WidthSource,
+    AreaKind, CrossSection, Direction, Legal, Limit, Oneway, Permission, RestrictionKind, RoadClass, Strip, WidthSource,
 };
 use netcert::stet::Side;
 use netcert::store::{EdgeCertificate, Measured};
@@ -23,7 +23,17 @@ pub(crate) fn network(ways: u32) -> Network {
     }
     add_strokes(&mut network);
     add_restrictions(&mut network);
+    network.areas = areas(&network);
     network
+}
+
+/// A surface around the first node, and an island.
+fn areas(network: &Network) -> Areas {
+    let Some(&at) = network.shapes.iter().find(|at| at.lon_e7 > 1) else { return Areas::default() };
+    let corner = |x: i32, y: i32| LonLat { lon_e7: at.lon_e7 + x, lat_e7: at.lat_e7 + y };
+    let ring = |m: i32| [(-m, -m), (m, -m), (m, m), (-m, m), (-m, -m)].map(|(x, y)| corner(x, y)).to_vec();
+    let area = |way_id, kind, m| Area { way_id, kind, ring: ring(m) };
+    Areas::new(vec![area(7, AreaKind::Road(RoadClass::Primary), 700), area(9, AreaKind::Island, 50)], network)
 }
 
 fn add_way(network: &mut Network, way: u32) {

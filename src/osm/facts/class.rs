@@ -20,7 +20,7 @@ const AREA: &str = "area";
 const MINOR_SERVICE: &str = "minor_service";
 const TRACK: &str = "track";
 
-fn road_class(highway: &str) -> Result<RoadClass, &'static str> {
+pub(super) fn road_class(highway: &str) -> Result<RoadClass, &'static str> {
     Ok(match highway.strip_suffix("_link").unwrap_or(highway) {
         "motorway" => RoadClass::Motorway,
         "trunk" => RoadClass::Trunk,

@@ -4,6 +4,7 @@
 //! Tags that cannot be used are noted ([`Notes`]), and the result is then narrower or unknown, never wider.
 
 mod access;
+mod areas;
 mod class;
 mod country;
 mod kerb_reader;
@@ -26,6 +27,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::osm::StringId;
 
+pub use areas::{AreaKind, area_kind};
 pub use class::{LEFT_OUT_REASONS, way_facts};
 pub use country::{Countries, CountriesError, Place};
 pub use notes::{Note, Notes};

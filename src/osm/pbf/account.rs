@@ -22,6 +22,8 @@ pub struct ReadAccount {
     pub ways_kept: u64,
     /// Ways left out, by reason.
     pub ways_left_out: BTreeMap<&'static str, u64>,
+    /// Of the ways left out, those kept as the surface of a road or an island on it.
+    pub road_areas: u64,
     /// Remarks on tags of ways that are roads, each at most once a way.
     pub tag_notes: BTreeMap<&'static str, u64>,
     /// Node objects in the file.
@@ -39,9 +41,9 @@ pub struct ReadAccount {
 pub struct NodeTally {
     /// All objects.
     pub read: u64,
-    /// Named by a kept way, and at a place on Earth.
+    /// Named by a kept way or area, and at a place on Earth.
     pub placed: u64,
-    /// Named by no kept way.
+    /// Named by neither.
     pub unnamed: u64,
     /// `visible=false`
     pub deleted: u64,
@@ -49,7 +51,7 @@ pub struct NodeTally {
     pub invalid: u64,
     /// Named, and followed by another object of the same id: the last of the file counts.
     pub superseded: u64,
-    /// Distinct nodes that kept ways name, in the file or not.
+    /// Distinct nodes that kept ways and areas name, in the file or not.
     pub named: u64,
     /// Of these, not in the file.
     pub missing: u64,
@@ -92,6 +94,7 @@ impl ReadAccount {
         for (reason, &count) in &self.ways_left_out {
             row("way", "left_out", reason, count);
         }
+        row("way", "noted", "road_area", self.road_areas);
         for (note, &count) in &self.tag_notes {
             row("tag", "noted", note, count);
         }

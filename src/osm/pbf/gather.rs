@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
-use crate::osm::{LonLat, NodeTable, StringPool, Way, facts::PointFacts};
+use crate::osm::{LonLat, NodeTable, RoadArea, StringPool, Way, facts::PointFacts};
 
 use super::{account::NodeTally, error::Problem, nodes::NodeBatch, relations::RelationBatch, ways::WayBatch};
 
@@ -26,12 +26,22 @@ pub(super) struct WayGatherer {
     pub(super) left_out: BTreeMap<&'static str, u64>,
     pub(super) notes: BTreeMap<&'static str, u64>,
     pub(super) relations: RelationBatch,
+    pub(super) areas: Vec<RoadArea>,
+    /// Parallel to them: whether `overrides` has them.
+    overriding: Vec<bool>,
     /// Largest id so far.
     largest: Option<i64>,
     /// Some way did not have a larger id than all before it.
     disordered: bool,
     /// Ways left out that may supersede a kept one: id, and the references of kept ways before it.
     overrides: Vec<(i64, u32)>,
+}
+
+/// Of one id, ways left out that may supersede a kept one: references of kept ways before the last, and how many there are.
+#[derive(Debug, Clone, Copy, Default)]
+struct Overrides {
+    last: u32,
+    count: u32,
 }
 
 impl WayGatherer {
@@ -49,6 +59,8 @@ impl WayGatherer {
         let Some((first, last)) = batch.ends else { return Ok(()) };
         let in_order = batch.ascending && self.largest.is_none_or(|largest| largest < first);
         self.disordered |= !in_order;
+        self.overriding.extend(batch.areas.iter().map(|_| !in_order));
+        self.areas.extend(batch.areas);
         let texts = batch.strings.texts().map(|text| self.strings.intern(text)).collect::<Vec<_>>();
         let global = |local: crate::osm::StringId| texts.get(local.0 as usize).copied();
         let mut left_out = batch.left_out.iter().peekable();
@@ -93,17 +105,29 @@ impl WayGatherer {
             }
             same
         });
-        let mut overrides: FxHashMap<i64, u32> = FxHashMap::default();
+        let mut overrides: FxHashMap<i64, Overrides> = FxHashMap::default();
         for (id, refs_before) in self.overrides.drain(..) {
-            let last = overrides.entry(id).or_default();
-            *last = refs_before.max(*last);
+            let of_id = overrides.entry(id).or_default();
+            *of_id = Overrides { last: refs_before.max(of_id.last), count: of_id.count + 1 };
         }
-        self.ways.retain(|way| overrides.get(&way.id).is_none_or(|&refs_before| refs_before < way.refs.end));
+        self.ways.retain(|way| overrides.get(&way.id).is_none_or(|of_id| of_id.last < way.refs.end));
+        self.finish_areas(&overrides);
         let superseded = (before - self.ways.len()) as u64;
         if superseded > 0 {
             *self.left_out.entry(DUPLICATE_ID).or_default() += superseded;
         }
         self.renumber();
+    }
+
+    /// Sorts the areas by id. Those that another way of the same id may supersede go.
+    fn finish_areas(&mut self, overrides: &FxHashMap<i64, Overrides>) {
+        let mut overriding = self.overriding.iter();
+        self.areas.retain(|area| {
+            let itself = u32::from(overriding.next() == Some(&true));
+            let others = overrides.get(&area.id).map_or(0, |of_id| of_id.count) - itself;
+            others == 0 && self.ways.binary_search_by_key(&area.id, |way| way.id).is_err()
+        });
+        self.areas.sort_by_key(|area| area.id);
     }
 
     /// Sorts the restrictions by id; of several of the same id the last of the file stays.
@@ -138,6 +162,7 @@ impl WayGatherer {
     /// The distinct nodes that the ways name.
     pub(super) fn node_ids(&self) -> Vec<i64> {
         let mut ids = self.refs.clone();
+        ids.extend(self.areas.iter().flat_map(|area| &area.refs));
         ids.par_sort_unstable();
         ids.dedup();
         ids.shrink_to_fit();

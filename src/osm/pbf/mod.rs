@@ -224,6 +224,7 @@ where
         account.ways_kept = ways.ways.len() as u64;
         account.ways_left_out = ways.left_out;
         account.tag_notes = ways.notes;
+        account.road_areas = ways.areas.len() as u64;
         account.nodes = tally;
         account.relations = ways.relations.tally;
         account.relations.restrictions_off_road =
@@ -233,6 +234,7 @@ where
             refs: ways.refs,
             nodes,
             points,
+            areas: ways.areas,
             restrictions: ways.relations.restrictions,
             strings: ways.strings,
             account,

@@ -7,8 +7,8 @@
 use std::collections::BTreeMap;
 
 use crate::osm::{
-    LonLat, StringPool,
-    facts::{Tags, WayDraft, WayFacts},
+    LonLat, RoadArea, StringPool,
+    facts::{self, Tags, WayDraft, WayFacts},
 };
 
 use super::{
@@ -41,6 +41,8 @@ pub(super) struct WayBatch {
     /// Places that kept ways carry themselves (`LocationsOnWays`).
     pub(super) inline_places: Vec<(i64, LonLat)>,
     pub(super) strings: StringPool,
+    /// Of the ways left out, those that map the surface of a road.
+    pub(super) areas: Vec<RoadArea>,
     /// Ways left out: how many kept ones stand before it, and its id.
     pub(super) left_out: Vec<(u32, i64)>,
     pub(super) reasons: BTreeMap<&'static str, u64>,
@@ -125,10 +127,23 @@ where
                 self.batch.kept.push(KeptWay { id: way.id, refs, facts });
             }
             Err(reason) => {
-                self.batch.refs.truncate(start);
+                let refs = self.batch.refs.split_off(start);
+                if !way.deleted {
+                    self.area(way, refs, object)?;
+                }
                 self.batch.left_out.push((self.batch.kept.len() as u32, way.id));
                 *self.batch.reasons.entry(reason).or_default() += 1;
             }
+        }
+        Ok(())
+    }
+
+    /// Keeps a closed way that is no road as the surface of one, if its tags say so.
+    fn area(&mut self, way: &RawWay<'_>, refs: Vec<i64>, object: ObjectId) -> Result<(), Problem> {
+        let closed = refs.len() >= 4 && refs.first() == refs.last();
+        if let Some(kind) = facts::area_kind(&self.tags).filter(|_| closed) {
+            self.inline_places(way, object)?;
+            self.batch.areas.push(RoadArea { id: way.id, kind, refs });
         }
         Ok(())
     }

@@ -120,7 +120,7 @@ fn of_turn(
     members["geometry"] = geometry(turns.iter().find(|row| row.turn_id == id).map(|row| row.line.as_slice()));
     members["note"] = json!(
         "The turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii are \
-         assumed."
+         assumed where no surface is mapped."
     );
     Ok(Explained { members, picture: picture::turn(&turn) })
 }

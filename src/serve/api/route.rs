@@ -43,7 +43,9 @@ pub(in super::super) fn route(region: &Region, ask: &Ask) -> Result<Stored, Prob
         return Err(Problem::fault("the search for routes broke off"));
     };
     let mut members = answer?;
-    members["scope"] = json!(format!("{SCOPE} Kerb radii of corners are assumed; times are by class of road."));
+    members["scope"] = json!(format!(
+        "{SCOPE} Kerb radii of corners are assumed where no surface is mapped; times are by class of road."
+    ));
     Ok(answered(&members))
 }
 

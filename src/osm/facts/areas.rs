@@ -1,0 +1,81 @@
+//! Closed ways that map a road's surface (`area:highway`), and traffic islands on it.
+//!
+//! Kept: the road classes that a lorry uses, where their tags leave it on them, on the ground. When in doubt an area is left
+//! out: then the corners there are as if nobody had mapped them.
+
+use super::class::road_class;
+use super::limits::LegalTags;
+use super::notes::Notes;
+use super::{Direction, Permission, RoadClass, Tags};
+
+/// What an area is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum AreaKind {
+    /// The surface of roads of this class (`area:highway=primary`, its `_link` too).
+    Road(RoadClass),
+    /// Not to be driven on (`area:highway=traffic_island`).
+    Island,
+}
+
+/// Keys by whose presence an area may lie above or below other roads.
+const OTHER_LEVELS: [&str; 5] = ["bridge", "tunnel", "covered", "level", "layer"];
+
+/// What a closed way's tags say of it as an area; `None`: it is none that counts.
+#[must_use]
+pub fn area_kind(tags: &Tags<'_>) -> Option<AreaKind> {
+    let value = tags.iter().find(|(key, _)| *key == "area:highway")?.1;
+    if value == "traffic_island" {
+        return Some(AreaKind::Island);
+    }
+    let class = road_class(value).ok()?;
+    if matches!(class, RoadClass::Track | RoadClass::Busway) || value == "road" {
+        return None;
+    }
+    let mut legal = LegalTags::default();
+    let mut notes = Notes::default();
+    for &(key, value) in tags {
+        let (head, suffix) = key.split_once(':').unwrap_or((key, ""));
+        if OTHER_LEVELS.contains(&head) && !matches!(value, "no" | "0") {
+            return None;
+        }
+        // A surface kept for buses is none for lorries, whatever else may be on it.
+        if matches!(head, "bus" | "psv") && value == "designated" {
+            return None;
+        }
+        legal.take(head, suffix, value, &mut notes);
+    }
+    let open = |direction| {
+        let legal = legal.resolve(direction);
+        legal.motor_vehicle == Permission::Yes && legal.hgv == Permission::Yes
+    };
+    (open(Direction::Forward) && open(Direction::Backward)).then_some(AreaKind::Road(class))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn surfaces_of_roads_count_and_what_is_in_doubt_does_not() {
+        let road = |class| Some(AreaKind::Road(class));
+        for (tags, kind) in [
+            (&[("area:highway", "primary")][..], road(RoadClass::Primary)),
+            (&[("surface", "asphalt"), ("area:highway", "primary_link")], road(RoadClass::Primary)),
+            (&[("area:highway", "service"), ("layer", "0")], road(RoadClass::Service)),
+            (&[("area:highway", "traffic_island"), ("layer", "1")], Some(AreaKind::Island)),
+            (&[("area:highway", "footway")], None),
+            (&[("area:highway", "yes")], None),
+            (&[("area:highway", "track")], None),
+            (&[("area:highway", "road")], None),
+            (&[("area:highway", "primary"), ("layer", "1")], None),
+            (&[("area:highway", "primary"), ("bridge", "yes")], None),
+            (&[("area:highway", "service"), ("bus", "designated")], None),
+            (&[("area:highway", "service"), ("access", "private")], None),
+            (&[("area:highway", "service"), ("hgv", "no")], None),
+            (&[("area:highway", "service"), ("motor_vehicle:forward", "no")], None),
+            (&[("highway", "primary"), ("area", "yes")], None),
+        ] {
+            assert_eq!(area_kind(tags), kind, "{tags:?}");
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! Mapped surfaces of junctions in and out of their table.
+
+use sqlx::Row as _;
+use sqlx::sqlite::SqliteConnection;
+
+use crate::network::Area;
+use crate::osm::facts::{AreaKind, RoadClass};
+
+use super::blob;
+use super::bulk::Bulk;
+use super::error::content;
+use super::names::Named;
+use super::network_read::{line, rows};
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+const ISLAND: &str = "island";
+
+/// Inserts them.
+pub(super) async fn insert(c: &mut SqliteConnection, areas: &[Area]) -> Sql<()> {
+    let mut bulk = Bulk::new("area", 4);
+    for (no, area) in (1_i64..).zip(areas) {
+        let (geom, _) = blob::encode(area.ring.iter().copied()).ok_or_else(|| content("an area has no shape"))?;
+        bulk.add(no)?;
+        bulk.add(area.way_id)?;
+        bulk.add(match area.kind {
+            AreaKind::Road(class) => class.name(),
+            AreaKind::Island => ISLAND,
+        })?;
+        bulk.add(geom)?;
+        bulk.end_row(c).await?;
+    }
+    bulk.finish(c).await
+}
+
+/// Reads them.
+pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Vec<Area>> {
+    rows(c, "SELECT way_id, kind, geom FROM area ORDER BY area_no", |row| {
+        let way_id: i64 = row.try_get(0)?;
+        let kind = match row.try_get(1)? {
+            ISLAND => AreaKind::Island,
+            word => AreaKind::Road(RoadClass::named(word).ok_or_else(|| content(format!("`{word}` is no area")))?),
+        };
+        Ok(Area { way_id, kind, ring: line(row, 2, || format!("area {way_id}"))? })
+    })
+    .await
+}

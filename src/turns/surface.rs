@@ -1,0 +1,32 @@
+//! The surface of a junction where it is mapped: what of it there is around a node, less the islands on it.
+//!
+//! A surface counts where it has the class of one of the turn's roads: one of another class may lie on another level.
+
+use geo::{BooleanOps, MultiPolygon, Polygon, unary_union};
+
+use crate::corridor::Frame;
+use crate::network::{Area, Network, Road};
+use crate::osm::facts::AreaKind;
+
+/// Whether the corners at a node between two roads are as mapped.
+pub(super) fn is_mapped(network: &Network, node: i64, roads: [&Road; 2]) -> bool {
+    surfaces(network, node, roads).next().is_some()
+}
+
+/// The surface around a node between two roads, in a metric frame; `None`: not mapped there.
+pub(super) fn surface(network: &Network, node: i64, roads: [&Road; 2], frame: Frame) -> Option<MultiPolygon> {
+    let polygon = |area: &Area| {
+        let corners = frame.forward(&area.ring).ok()?;
+        Some(super::area::polygon(&corners))
+    };
+    let areas: Vec<&Area> = surfaces(network, node, roads).collect();
+    let roads: Vec<Polygon> = areas.iter().copied().map(polygon).collect::<Option<_>>()?;
+    let islands = areas.iter().flat_map(|area| network.areas.islands(area));
+    let islands: Vec<Polygon> = islands.map(polygon).collect::<Option<_>>()?;
+    (!roads.is_empty()).then(|| unary_union(&roads).difference(&unary_union(&islands)))
+}
+
+fn surfaces<'a>(network: &'a Network, node: i64, roads: [&'a Road; 2]) -> impl Iterator<Item = &'a Area> {
+    let of_them = move |area: &&Area| roads.iter().any(|road| area.kind == AreaKind::Road(road.class));
+    network.areas.around(node).filter(of_them)
+}
