@@ -127,10 +127,10 @@ where
                 self.batch.kept.push(KeptWay { id: way.id, refs, facts });
             }
             Err(reason) => {
-                let refs = self.batch.refs.split_off(start);
                 if !way.deleted {
-                    self.area(way, refs, object)?;
+                    self.area(way, start, object)?;
                 }
+                self.batch.refs.truncate(start);
                 self.batch.left_out.push((self.batch.kept.len() as u32, way.id));
                 *self.batch.reasons.entry(reason).or_default() += 1;
             }
@@ -138,10 +138,14 @@ where
         Ok(())
     }
 
-    /// Keeps a closed way that is no road as the surface of one, if its tags say so.
-    fn area(&mut self, way: &RawWay<'_>, refs: Vec<i64>, object: ObjectId) -> Result<(), Problem> {
-        let closed = refs.len() >= 4 && refs.first() == refs.last();
-        if let Some(kind) = facts::area_kind(&self.tags).filter(|_| closed) {
+    /// Keeps a closed way that is no road as the surface of one, if its tags say so; its references begin at `start`.
+    fn area(&mut self, way: &RawWay<'_>, start: usize, object: ObjectId) -> Result<(), Problem> {
+        let refs = self.batch.refs.get(start..).unwrap_or_default();
+        if refs.len() < 4 || refs.first() != refs.last() {
+            return Ok(());
+        }
+        if let Some(kind) = facts::area_kind(&self.tags) {
+            let refs = refs.to_vec();
             self.inline_places(way, object)?;
             self.batch.areas.push(RoadArea { id: way.id, kind, refs });
         }
