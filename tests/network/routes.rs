@@ -371,6 +371,7 @@ fn routes_of_real_extracts_hold_as_a_whole() {
     ];
     for (name, id, about_deg) in towns {
         let Some(path) = extract(name) else { continue };
+        let about_deg = about_deg.map(|deg| amount(0.75, 1.0) * deg);
         let region = Region::read_middle(&path, Policy::Carriageway, about_deg);
         let driver = region.driver(id);
         let pairs = amount(60, 150);
