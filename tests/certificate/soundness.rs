@@ -4,7 +4,6 @@
 //! Numerical allowance: RK4 at 0.1 m is within 2e-6 m, the plan's cubic within 1e-5 m of a 12.5 m circle; together 2e-5 m.
 
 use crate::oracle;
-use crate::support::thorough::amount;
 
 use netcert::corridor::Corridor;
 use netcert::vehicle::Vehicle;
@@ -198,7 +197,7 @@ fn assert_sound(verdicts: &[Verdict]) {
 
 #[test]
 fn no_disturbance_within_the_bounds_comes_closer_than_rsc_on_random_corridors() {
-    let cases = amount(400, 1_040);
+    let cases = 1_040;
     let verdicts: Vec<Verdict> = (0..cases).into_par_iter().filter_map(|k| random_case(k).run()).collect();
     println!("{} of {cases} corridors have a finite RSC", verdicts.len());
     let class = |low: f64, high: f64, all: bool| -> Vec<&Verdict> {
@@ -212,14 +211,14 @@ fn no_disturbance_within_the_bounds_comes_closer_than_rsc_on_random_corridors() 
     let middle = report("60 to 150 m, the catalogue's tolerances", &class(60.0, 150.0, false));
     report("under 60 m, the catalogue's tolerances", &class(0.0, 60.0, false));
     assert_sound(&verdicts);
-    assert!(verdicts.len() as u64 * 26 >= cases * 25, "only {} corridors could be tried", verdicts.len());
+    assert!(verdicts.len() >= 1_000, "only {} corridors could be tried", verdicts.len());
     assert!(wide < 0.02, "the median gap at 150 m and more is {wide} m");
     assert!(middle < 0.06, "the median gap at 60 to 150 m is {middle} m");
 }
 
 #[test]
 fn no_disturbance_within_the_bounds_comes_closer_than_rsc_in_the_hard_cases() {
-    let cases: Vec<Case> = hard_cases().into_iter().step_by(amount(2, 1)).collect();
+    let cases = hard_cases();
     let verdicts: Vec<Verdict> = cases.par_iter().filter_map(Case::run).collect();
     println!("{} of {} hard cases have a finite RSC", verdicts.len(), cases.len());
     for verdict in &verdicts {

@@ -8,5 +8,3 @@ pub(crate) mod demo;
 pub(crate) mod extracts;
 #[path = "../support/silent.rs"]
 pub(crate) mod silent;
-#[path = "../support/thorough.rs"]
-pub(crate) mod thorough;

@@ -18,5 +18,3 @@ pub(crate) mod roundabout;
 pub(crate) mod routing;
 #[path = "../support/silent.rs"]
 pub(crate) mod silent;
-#[path = "../support/thorough.rs"]
-pub(crate) mod thorough;

@@ -12,7 +12,5 @@ pub(crate) mod python;
 pub(crate) mod silent;
 #[path = "../support/store_network.rs"]
 pub(crate) mod store_network;
-#[path = "../support/thorough.rs"]
-pub(crate) mod thorough;
 #[path = "../support/xml.rs"]
 pub(crate) mod xml;

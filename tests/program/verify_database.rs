@@ -5,7 +5,7 @@ use crate::support::program;
 
 use program::Place;
 
-const BOX: &str = "--vehicle AU-SEMI19 --sample 30";
+const BOX: &str = "--vehicle AU-SEMI19 --sample 60";
 
 #[test]
 fn every_column_changed_in_the_unsafe_direction_is_refuted() {

@@ -2,12 +2,11 @@
 //! is refuted.
 
 use crate::support::program;
-use crate::support::thorough::amount;
 
 use program::Place;
 
 /// Beside turns that are safe, these are too narrow for it.
-const VERIFY: &str = "verify --db demo.gpkg --vehicle AU-SEMI19 --sample 30";
+const VERIFY: &str = "verify --db demo.gpkg --vehicle AU-SEMI19 --sample 60";
 
 #[test]
 fn every_column_of_turns_changed_in_the_unsafe_direction_is_refuted() {
@@ -28,6 +27,7 @@ fn every_column_of_turns_changed_in_the_unsafe_direction_is_refuted() {
         format!("UPDATE turn_certificate_compact SET limiting_s_dm = limiting_s_dm + 200000 WHERE {safe}"),
         format!("UPDATE turn_certificate_compact SET path_no = 250 WHERE {safe}"),
         "UPDATE turn SET kerb_radius_m = kerb_radius_m + 4.0".to_owned(),
+        "UPDATE turn SET kerb_source = 'mapped'".to_owned(),
         "UPDATE turn SET restriction = 'no_left_turn'".to_owned(),
         "DELETE FROM turn_plan".to_owned(),
         "UPDATE turn_plan SET coefficients = x'0000'".to_owned(),
@@ -48,11 +48,6 @@ fn every_column_of_turns_changed_in_the_unsafe_direction_is_refuted() {
 /// Where radii are a few metres, stations must lie close to follow from each other, and the checker must ask its adjoint early.
 #[test]
 fn turns_of_a_cart_train_in_its_lane_are_confirmed() {
-    // It has by far the most turns.
-    if !amount(false, true) {
-        eprintln!("left out: set NETCERT_THOROUGH");
-        return;
-    }
     let made = Place::empty();
     made.netcert("ingest {demo} --db demo.gpkg --vehicle AGV-TUG4 --corridor lane").succeeds();
     let told = made.netcert("verify --db demo.gpkg --vehicle AGV-TUG4 --sample 100").out();

@@ -144,7 +144,7 @@ fn a_certificate_asks_every_few_metres_and_is_whole_or_is_not_there() {
     assert!(whole.is_some());
     let mut asks = 1;
     while certified(&Stop::after(asks)).is_err() {
-        asks += 1 + asks / 2;
+        asks += 1 + asks / 4;
     }
     assert_eq!(certified(&Stop::after(asks)), Ok(whole));
     let length_m = made.corridor.len() as f64 * made.corridor.spacing_m;
