@@ -134,7 +134,7 @@ impl<'a> Swept<'a> {
         let steps = self.steps(stretches);
         let (_, behind) = self.chain.reach_m();
         let history = (HISTORY_LENGTHS * 2.0 * behind / self.tubes.step_m) as usize;
-        let mut tubes = Tubes::within(&self.tubes, steps.start.saturating_sub(history), tolerance_m);
+        let mut tubes = Tubes::within(&self.tubes, self.chain, steps.start.saturating_sub(history), tolerance_m);
         for _ in tubes.first..steps.end {
             tubes.advance(self.chain, self.motion);
         }
@@ -149,13 +149,27 @@ impl<'a> Swept<'a> {
     }
 
     /// Steps during which some body point may have its foot on some stretches of the corridor.
-    fn steps(&self, stretches: std::ops::Range<usize>) -> std::ops::Range<usize> {
+    pub(crate) fn steps(&self, stretches: std::ops::Range<usize>) -> std::ops::Range<usize> {
         let (ahead, behind) = self.chain.reach_m();
         let stations = |metres: f64| (metres / self.road.spacing).ceil() as usize;
         let from = (self.road.lead + stretches.start).saturating_sub(stations(ahead) + 1) * STEPS;
-        // A body that cuts a bend is never farther along than a straight one; a twentieth is for plans on the outside.
-        let to = (self.road.lead + stretches.end + 1 + stations(1.05 * behind)) * STEPS;
+        let mut to = (self.road.lead + stretches.end + 1 + stations(1.05 * behind)) * STEPS;
+        // In a bend the rear may follow farther behind than on a straight.
+        while to < self.motion.steps() && self.rear(to).is_none_or(|s| s <= (self.road.lead + stretches.end) as f64) {
+            to += STEPS;
+        }
         from..to.min(self.motion.steps())
+    }
+
+    /// The foot that is farthest back, in stations, of any unit's rear end at a node; `None` where one has no foot.
+    fn rear(&self, node: usize) -> Option<f64> {
+        let feet = self.chain.links.iter().enumerate().flat_map(|(unit, link)| {
+            [-link.half_width, link.half_width].map(|b| {
+                let x = point(self.motion.pose(node, unit), link.rear, b);
+                foot(self.road, x, self.rough_foot(node, unit, link.rear)).map(|(s, ..)| s)
+            })
+        });
+        feet.reduce(|least, s| Some(least?.min(s?))).flatten()
     }
 
     /// All places where the claims are not reached, the worst of each stretch and side.
