@@ -171,6 +171,15 @@ impl Feet {
             Self::Each(feet) => feet[lane],
         }
     }
+
+    /// The first and the last of them.
+    #[inline(always)]
+    pub(super) fn range(self) -> (usize, usize) {
+        match self {
+            Self::Run(first) => (first, first + LANES - 1),
+            Self::Each(feet) => feet.iter().fold((usize::MAX, 0), |(first, last), &foot| (first.min(foot), last.max(foot))),
+        }
+    }
 }
 
 /// Passes over a block that needs no leeways.

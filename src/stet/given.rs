@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::model::Model;
 use super::shift::{Plan, STEP_M, count};
-use super::{Certificate, Swept};
+use super::{Certificate, Marks, Swept};
 use crate::corridor::Corridor;
 use crate::stop::Stop;
 
@@ -56,7 +56,7 @@ pub fn certify_plan(corridor: &Corridor, model: &Model, plan: &Plan) -> Result<C
     let whole = 0..corridor.len();
     let spans = std::slice::from_ref(&whole);
     let never = Stop::default();
-    let swept = Swept::along(corridor, &[model], spans, &never, &|_, _| vec![plan.clone()]);
+    let swept = Swept::along(corridor, &[model], spans, Marks::All, &never, &|_, _| vec![plan.clone()]);
     Ok(swept.certificate(corridor, spans).0)
 }
 

@@ -3,7 +3,7 @@
 //! Deducted from the plain distance: the tube of the point, its second-order terms, what may happen between two body
 //! points (inside of a curve) and between two head stations.
 
-use super::body::{Body, Feet, LOST_M, NEAR_M, Seen, Spot, follow, foot, least, near, next_foot, place};
+use super::body::{Body, Feet, LOST_M, NEAR_M, Seen, Spot, follow, foot, least, least as least_of, near, next_foot, place};
 use super::lanes::{LANES, V, by_instruction_set, select_negative};
 use super::sweep::{BLOCK, FIELDS, Minima, ZERO, row};
 use super::track::{BULGE_MOST, Fields, READ_M, Track};
@@ -11,6 +11,9 @@ use super::track::{BULGE_MOST, Fields, READ_M, Track};
 /// Where half-widths bulge, what lies between two body points is looked at in parts no longer than this, metres: at a radius of
 /// 16 m a part's sagitta is 2 cm.
 const PART_M: f64 = 1.4;
+/// Feet of a side's places are not as evenly spaced as the places: in bends, a place may be at another share of the way between two
+/// points than its foot is, by this much.
+const UNEVEN: f64 = 0.1;
 /// Half-widths that leave their own slope by less, a metre's way or its square, are read at the axis's station.
 const ROUGH: f64 = 0.01;
 
@@ -38,6 +41,8 @@ struct Sample {
     lowered_right: V,
     curvature: V,
     bulge: V,
+    /// From its foot's station to the point, along the corridor.
+    along: V,
 }
 
 by_instruction_set! {
@@ -99,6 +104,8 @@ by_instruction_set! {
                             let parts = if bulges(before, &sample) { (gap / PART_M).ceil().max(1.0) } else { 1.0 };
                             if parts > 1.0 {
                                 inside::<REFINED>(track, body, index, &s, &knots, (before, &sample), parts, minima);
+                            } else {
+                                at_marks(track, (before, &sample), &s, gap, minima);
                             }
                             between_points(before, &mut sample, &s, gap, parts);
                         }
@@ -211,6 +218,7 @@ fn inside<const REFINED: bool>(
 ) {
     let (ahead, point) = (&body.points[index - 1], &body.points[index]);
     let part_m = point.gap / parts;
+    let mut last: Option<Sample> = None;
     for number in 1..parts as usize {
         let part = number as f64 / parts;
         let spot = ahead.spot.between(point.spot, part);
@@ -231,6 +239,45 @@ fn inside<const REFINED: bool>(
         sample.lowered_left = sample.left - whole_sagitta(most, part_m);
         sample.lowered_right = sample.right - whole_sagitta(-least, part_m);
         sample.lower(minima);
+        at_marks(track, (last.as_ref().unwrap_or(before), &sample), s, part_m, minima);
+        last = Some(sample);
+    }
+    at_marks(track, (last.as_ref().unwrap_or(before), after), s, part_m, minima);
+}
+
+/// What a side leaves at marked stations between two of its points, `gap` apart: no less than the chord of what these leave, but for
+/// what the corridor bends and its width bulges.
+#[inline(always)]
+fn at_marks(track: &Track, (before, after): (&Sample, &Sample), s: &States, gap: f64, minima: &mut Minima) {
+    let [from, to] = [after.feet.range().0, before.feet.range().1];
+    if track.marks(from, to).next().is_some() {
+        note_marks(track, (before, after), s, gap, minima);
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn note_marks(track: &Track, (before, after): (&Sample, &Sample), s: &States, gap: f64, minima: &mut Minima) {
+    let bulge = before.bulge.max(after.bulge);
+    let [most, least] = bends(&[before, after], s, gap);
+    let low = |bend: V| (bend.max(ZERO) * 1.1 + bulge) * (gap * gap / 8.0);
+    let (low_left, low_right) = (low(most), low(-least));
+    for i in 0..LANES {
+        let foot = |sample: &Sample| sample.feet.station(i) as f64 + sample.along.0[i] / track.spacing;
+        let (rear, front) = (foot(after), foot(before));
+        for mark in track.marks(after.feet.station(i), before.feet.station(i)) {
+            let share = ((mark as f64 - rear) / (front - rear).max(1e-9)).clamp(0.0, 1.0);
+            let tag = if share < 0.5 { after.tag } else { before.tag };
+            let chord = |behind: V, ahead: V| {
+                let at = |share: f64| behind.0[i] + (ahead.0[i] - behind.0[i]) * share.clamp(0.0, 1.0);
+                at(share - UNEVEN).min(at(share + UNEVEN))
+            };
+            let tagged = |x: f64| V::splat(x).tagged(tag).0[0];
+            let left = tagged(chord(after.left, before.left) - low_left.0[i]);
+            let right = tagged(chord(after.right, before.right) - low_right.0[i]);
+            minima.mark_left[mark] = least_of(minima.mark_left[mark], left);
+            minima.mark_right[mark] = least_of(minima.mark_right[mark], right);
+        }
     }
 }
 
@@ -238,7 +285,7 @@ impl Sample {
     #[inline(always)]
     fn new(seen: &Seen, feet: Feet, tag: u64, left: V, right: V) -> Self {
         let (curvature, bulge) = (seen.at.curvature, seen.at.bulge);
-        Self { feet, tag, left, right, lowered_left: left, lowered_right: right, curvature, bulge }
+        Self { feet, tag, left, right, lowered_left: left, lowered_right: right, curvature, bulge, along: seen.along }
     }
 
     #[inline(always)]

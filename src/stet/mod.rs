@@ -170,7 +170,7 @@ pub fn certify_spans(
     let mut rows: Vec<(usize, Planned)> = Vec::with_capacity(models.len());
     for chunk in order.chunks(LANES) {
         let members: Vec<&Model> = chunk.iter().map(|&i| models[i]).collect();
-        let swept = Swept::new(corridor, &members, spans, options, &never);
+        let swept = Swept::new(corridor, &members, spans, Marks::Ends, options, &never);
         for (lane, (&i, plan)) in chunk.iter().zip(&swept.plans).enumerate() {
             let spans = spans.iter().map(|span| swept.result(lane, span)).collect();
             rows.push((i, Planned { plan: plan.clone(), spans }));
@@ -230,7 +230,7 @@ fn planned(
     if corridor.is_empty() {
         return None;
     }
-    Some(Swept::new(corridor, &[model], spans, options, stop).certificate(corridor, spans))
+    Some(Swept::new(corridor, &[model], spans, Marks::All, options, stop).certificate(corridor, spans))
 }
 
 /// All leeways at γ = 1, refined wherever that is worth it.
@@ -241,6 +241,15 @@ fn thorough(track: &Track, group: &Group<'_>, shift: &[V], stop: &Stop) -> Vec<M
     }
     let loose = |lane: usize, head: usize| full[lane].loose[head / sweep::BLOCK];
     sweep::<true>(track, group, shift, &Wanted { refined: Some(&loose), ..Wanted::ALL }, stop)
+}
+
+/// At which stations it is asked what sides leave between two of their points.
+#[derive(Debug, Clone, Copy)]
+enum Marks {
+    /// Where a span begins or ends.
+    Ends,
+    /// At all of them: a certificate says what each station by itself would have.
+    All,
 }
 
 /// A group of vehicles after its sweeps.
@@ -264,10 +273,11 @@ impl<'m> Swept<'m> {
         corridor: &Corridor,
         models: &[&'m Model],
         spans: &[Range<usize>],
+        marks: Marks,
         options: &Options,
         stop: &'m Stop,
     ) -> Self {
-        Self::along(corridor, models, spans, stop, &|track, group| plan::best(track, group, spans, options, stop))
+        Self::along(corridor, models, spans, marks, stop, &|track, group| plan::best(track, group, spans, options, stop))
     }
 
     /// `plans` gives each vehicle's, in the group's order.
@@ -275,11 +285,16 @@ impl<'m> Swept<'m> {
         corridor: &Corridor,
         models: &[&'m Model],
         spans: &[Range<usize>],
+        marks: Marks,
         stop: &'m Stop,
         plans: &dyn Fn(&Track, &Group<'m>) -> Vec<Plan>,
     ) -> Self {
         let group = Group::new(models, 1.0);
-        let track = Track::new(corridor, sweep::extensions(&group, corridor.spacing_m));
+        let mut track = Track::new(corridor, sweep::extensions(&group, corridor.spacing_m));
+        match marks {
+            Marks::Ends => track.mark(spans.iter().flat_map(|span| [span.start, span.end.max(span.start + 1) - 1])),
+            Marks::All => track.mark(0..corridor.len()),
+        }
         let plans = plans(&track, &group);
         let shift = shift::lanes(&plans, track.lead, track.len(), track.count);
         let full = sweep::<true>(&track, &group, &shift, &Wanted::ALL, stop);
@@ -317,8 +332,7 @@ impl<'m> Swept<'m> {
         let track = &self.track;
         let centred = thorough(track, &self.group, &vec![V::splat(0.0); track.len()], self.stop);
         let full = if self.worth(0, &whole) { self.refined.as_ref().unwrap_or(&self.full) } else { &self.full };
-        let model = self.group.models[0];
-        let own = |column: &[f64]| spans::alone(track, model, &whole, column);
+        let own = |points: &[f64], marks: &[f64]| spans::alone(track, &whole, points, marks);
         let shift = self.plans[0].clone();
         let shift_m: Vec<f64> = (0..track.count).map(|k| shift.at_m(k)).collect();
         let plan = (0..track.count)
@@ -328,12 +342,12 @@ impl<'m> Swept<'m> {
             })
             .collect();
         let results = spans.iter().map(|span| self.result(0, span)).collect();
-        let (mut left_m, mut right_m) = (own(&full[0].left), own(&full[0].right));
+        let (mut left_m, mut right_m) = (own(&full[0].left, &full[0].mark_left), own(&full[0].right, &full[0].mark_right));
         for span in spans {
             // What the span's result rests on: refined for one where it is worth it.
             let best = self.best(0, span);
-            left_m[span.clone()].copy_from_slice(&spans::alone(track, model, span, &best.left));
-            right_m[span.clone()].copy_from_slice(&spans::alone(track, model, span, &best.right));
+            left_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.left, &best.mark_left));
+            right_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.right, &best.mark_right));
         }
         let certificate = Certificate {
             result: self.result(0, &whole),
@@ -342,20 +356,20 @@ impl<'m> Swept<'m> {
             shift,
             left_m,
             right_m,
-            left_centred_m: own(&centred[0].left),
-            right_centred_m: own(&centred[0].right),
+            left_centred_m: own(&centred[0].left, &centred[0].mark_left),
+            right_centred_m: own(&centred[0].right, &centred[0].mark_right),
         };
         (certificate, results)
     }
 
     /// Head stations, in blocks, in which some unit may touch the span.
-    fn touching(&self, lane: usize, span: &Range<usize>) -> Range<usize> {
+    fn touching(&self, span: &Range<usize>) -> Range<usize> {
         let track = &self.track;
         // As long as the track's extensions allow, so that no other vehicle of the group matters.
         let (behind_m, ahead_m) = sweep::reach_m(&self.group);
         let ahead = (ahead_m / track.spacing).ceil() as usize + sweep::BLOCK;
         let behind = (behind_m / track.spacing).ceil() as usize + sweep::BLOCK;
-        let touched = spans::stations(track, self.group.models[lane], span);
+        let touched = spans::stations(track, span);
         let first = touched.start().saturating_sub(ahead) / sweep::BLOCK;
         let last = (touched.end() + behind) / sweep::BLOCK;
         first..(last + 1).min(track.len() / sweep::BLOCK + 1)
@@ -366,7 +380,7 @@ impl<'m> Swept<'m> {
         let of = |lane: usize| {
             let mut blocks = vec![false; self.track.len() / sweep::BLOCK + 1];
             for span in spans.iter().filter(|span| meant(lane, span)) {
-                blocks[self.touching(lane, span)].iter_mut().for_each(|block| *block = true);
+                blocks[self.touching(span)].iter_mut().for_each(|block| *block = true);
             }
             blocks
         };
@@ -379,8 +393,8 @@ impl<'m> Swept<'m> {
     fn worth(&self, lane: usize, span: &Range<usize>) -> bool {
         let Some(nominal) = &self.nominal else { return false };
         let nominal = &nominal[lane];
-        self.full[lane].loose[self.touching(lane, span)].iter().any(|&unit| unit < usize::MAX)
-            && spans::stations(&self.track, self.group.models[lane], span).all(|k| nominal.left[k] >= 0.0 && nominal.right[k] >= 0.0)
+        self.full[lane].loose[self.touching(span)].iter().any(|&unit| unit < usize::MAX)
+            && spans::stations(&self.track, span).all(|k| nominal.left[k] >= 0.0 && nominal.right[k] >= 0.0)
     }
 
     /// The best that is known at γ = 1.

@@ -71,8 +71,6 @@ pub struct Model {
     /// Ahead of the steer axle, and from there to the rear, when the vehicle stands straight.
     pub(super) front: f64,
     pub(super) length: f64,
-    /// Most between two body points of a side.
-    pub(super) widest_gap: f64,
 }
 
 impl Model {
@@ -121,15 +119,12 @@ impl Model {
             rear = rear.min(axle - unit.rear_overhang_m).min(axle);
             coupling = axle - unit.hitch_offset_m;
         }
-        let gaps = models.iter().flat_map(|unit| unit.points.windows(2).map(|pair| pair[0] - pair[1]));
-        let widest_gap = gaps.fold(0.0, f64::max);
         Ok(Self {
             vehicle: vehicle.clone(),
             units: models,
             published_radius: published::last_radius_m(units),
             front,
             length: -rear,
-            widest_gap,
         })
     }
 }

@@ -9,7 +9,8 @@ use super::sweep::{Minima, NOT_CLOSED_RAD, UNVISITED_M};
 use super::track::Track;
 use super::{Limiting, Side, SpanResult};
 
-/// Stations by which a foot may be off between two stations of the steer axle, rounding included.
+/// Stations that a foot moves from one station of the steer axle to the next at most, rounding included: a span takes this many more on
+/// each side.
 const STEP_STATIONS: usize = 2;
 
 /// Vehicle lengths within which what was driven before has faded to a few hundredths: no unit is longer than half of it.
@@ -18,12 +19,26 @@ const FADING_LENGTHS: usize = 2;
 /// RSC where nothing bounds the vehicle.
 pub(super) const NOTHING_M: f64 = -1000.0;
 
-/// Extended stations that a span of corridor stations rests on: its own, and on each side as many as lie between two body points. What
-/// a side leaves at an end of the span is bounded by both of its points, and one of them may be beyond the end.
-pub(super) fn stations(track: &Track, model: &Model, span: &Range<usize>) -> RangeInclusive<usize> {
-    let slack = (model.widest_gap / track.spacing).ceil() as usize + 1;
+/// Extended stations whose body points a span of corridor stations rests on.
+pub(super) fn stations(track: &Track, span: &Range<usize>) -> RangeInclusive<usize> {
     let own = own(track, span);
-    own.start() - slack..=own.end() + slack
+    own.start() - STEP_STATIONS..=own.end() + STEP_STATIONS
+}
+
+/// The least leeways of two vehicles' sweeps, or of one at two tolerances, that a span rests on: at the points whose feet are on it, and
+/// at its ends between two points.
+fn leeways<'a>(
+    track: &'a Track,
+    span: &Range<usize>,
+    [one, other]: [&'a Minima; 2],
+) -> impl Iterator<Item = (usize, Side, [f64; 2])> {
+    let points = stations(track, span).map(move |k| (k, [&one.left, &one.right], [&other.left, &other.right]));
+    let own = own(track, span);
+    let marks = [*own.start(), *own.end()];
+    let between = move |k: usize| (k, [&one.mark_left, &one.mark_right], [&other.mark_left, &other.mark_right]);
+    points.chain(marks.into_iter().map(between)).flat_map(|(k, one, other)| {
+        [(Side::Left, 0), (Side::Right, 1)].map(|(side, i)| (k, side, [one[i][k], other[i][k]]))
+    })
 }
 
 /// Extended stations of a span of corridor stations.
@@ -33,8 +48,8 @@ fn own(track: &Track, span: &Range<usize>) -> RangeInclusive<usize> {
 }
 
 /// What each station of a span would have, were it a span of its own.
-pub(super) fn alone(track: &Track, model: &Model, span: &Range<usize>, column: &[f64]) -> Vec<f64> {
-    let least = |k: usize| column[stations(track, model, &(k..k + 1))].iter().copied().fold(f64::INFINITY, f64::min);
+pub(super) fn alone(track: &Track, span: &Range<usize>, points: &[f64], marks: &[f64]) -> Vec<f64> {
+    let least = |k: usize| points[stations(track, &(k..k + 1))].iter().copied().fold(marks[track.lead + k], f64::min);
     span.clone().map(least).collect()
 }
 
@@ -43,13 +58,11 @@ pub(super) fn result(track: &Track, model: &Model, span: &Range<usize>, full: &M
     let mut least = f64::INFINITY;
     let mut limiting = Limiting { station: span.start, unit: 0, side: Side::Left, point_m: 0.0 };
     let (mut offset, mut half_width) = (0.0_f64, f64::INFINITY);
-    for k in stations(track, model, span) {
-        for (value, side) in [(full.left[k], Side::Left), (full.right[k], Side::Right)] {
-            // A NaN, which no input should give, is the least of all.
-            if value < least || value.is_nan() {
-                least = if value.is_nan() { NOTHING_M } else { value.max(NOTHING_M) };
-                limiting = place(track, model, k, side, value);
-            }
+    for (k, side, [value, _]) in leeways(track, span, [full; 2]) {
+        // A NaN, which no input should give, is the least of all.
+        if value < least || value.is_nan() {
+            least = if value.is_nan() { NOTHING_M } else { value.max(NOTHING_M) };
+            limiting = place(track, model, k, side, value);
         }
     }
     for k in own(track, span) {
@@ -68,7 +81,7 @@ pub(super) fn result(track: &Track, model: &Model, span: &Range<usize>, full: &M
     if track.torn.iter().any(|k| (start.saturating_sub(FADING_LENGTHS * behind)..start).contains(k)) {
         (least, hinge) = (NOTHING_M, hinge.min(NOT_CLOSED_RAD));
     }
-    // A span is longer than what feet may pass over unseen (`body::JUMPED`); if nobody came for all that, nothing is known.
+    // If no point came by, nothing is known.
     if least >= UNVISITED_M || hinge >= UNVISITED_M {
         (least, hinge) = (NOTHING_M, NOT_CLOSED_RAD);
     }
@@ -119,17 +132,16 @@ pub(super) fn shrunk(
     if lowest.rsc_m < 0.0 || floor >= 1.0 {
         return lowest;
     }
-    let sides = |k: usize| [(full.left[k], least.left[k], Side::Left), (full.right[k], least.right[k], Side::Right)];
-    let all = || stations(track, model, span).flat_map(|k| sides(k).map(|side| (k, side)));
-    let fails = all().filter(|(_, (f, _, _))| *f < 0.0);
-    let part = fails.fold(1.0_f64, |part, (_, (f, l, _))| part.min(l / (l - f)));
+    let all = || leeways(track, span, [full, least]);
+    let fails = all().filter(|(_, _, [f, _])| *f < 0.0);
+    let part = fails.fold(1.0_f64, |part, (_, _, [f, l])| part.min(l / (l - f)));
     let shrink = ((floor + (1.0 - floor) * part) * SHRINK_STEPS).floor() / SHRINK_STEPS;
     if shrink <= floor {
         return lowest;
     }
     let part = (shrink - floor) / (1.0 - floor);
     let (mut rsc_m, mut limiting) = (f64::INFINITY, at_full.limiting);
-    for (k, (f, l, side)) in all() {
+    for (k, side, [f, l]) in all() {
         let chord = l + (f - l) * part;
         if chord < rsc_m {
             (rsc_m, limiting) = (chord, place(track, model, k, side, f));

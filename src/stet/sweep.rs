@@ -32,6 +32,9 @@ pub(super) struct Minima {
     /// Tagged (see [`super::lanes::V::tagged`]) with `unit · 16 + point`.
     pub(super) left: Vec<f64>,
     pub(super) right: Vec<f64>,
+    /// The same of sides between two of their points, at marked stations only.
+    pub(super) mark_left: Vec<f64>,
+    pub(super) mark_right: Vec<f64>,
     /// Least hinge margin by station of the steer axle, radians, tagged with the unit.
     pub(super) hinge: Vec<f64>,
     /// By station of the steer axle: first and last station under any body point.
@@ -47,6 +50,8 @@ impl Minima {
         Self {
             left: vec![UNVISITED_M; stations],
             right: vec![UNVISITED_M; stations],
+            mark_left: vec![UNVISITED_M; stations],
+            mark_right: vec![UNVISITED_M; stations],
             hinge: vec![UNVISITED_M; stations],
             under: vec![[u32::MAX, 0]; stations],
             offset: vec![0.0; stations],

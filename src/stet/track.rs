@@ -29,6 +29,8 @@ pub(super) struct Track {
     pub(super) fields: Fields<Vec<f64>>,
     /// Stations that do not fit their neighbours: nothing is certified there.
     pub(super) torn: Vec<usize>,
+    /// The next station from each one on at which a span begins or ends; what a side leaves there between two of its points counts.
+    next_mark: Vec<u32>,
 }
 
 /// How far a track goes beyond its corridor, metres.
@@ -113,7 +115,8 @@ impl Track {
             ..fields
         };
         let torn = corridor.torn().into_iter().map(|k| lead + k).collect();
-        Self { spacing: h, lead, first_head, count, fields, torn }
+        let next_mark = vec![u32::MAX; fields.x.len() + 1];
+        Self { spacing: h, lead, first_head, count, fields, torn, next_mark }
     }
 
     /// Every second station, for planning, which does not ask whether they fit; the corridor's first is among them.
@@ -144,7 +147,22 @@ impl Track {
             count: self.count.div_ceil(2),
             fields,
             torn: Vec::new(),
+            next_mark: Vec::new(),
         }
+    }
+
+    /// Marks stations of the corridor.
+    pub(super) fn mark(&mut self, stations: impl Iterator<Item = usize>) {
+        stations.for_each(|k| self.next_mark[self.lead + k] = (self.lead + k) as u32);
+        for k in (1..self.next_mark.len()).rev() {
+            self.next_mark[k - 1] = self.next_mark[k - 1].min(self.next_mark[k]);
+        }
+    }
+
+    /// The marked stations between two, both included.
+    pub(super) fn marks(&self, from: usize, to: usize) -> impl Iterator<Item = usize> {
+        let next = move |k: usize| Some(self.next_mark[k] as usize).filter(|&mark| mark <= to);
+        std::iter::successors(next(from), move |&mark| next(mark + 1))
     }
 
     /// Number of extended stations.
