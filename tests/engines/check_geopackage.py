@@ -12,7 +12,7 @@ import sqlite3
 import sys
 import warnings
 
-# GDAL before 3.11.4, as in DuckDB 1.5, reads GeoPackages of any maker by two threads that get in each other's way.
+# GDAL before 3.11.4, as in DuckDB 1.5, reads views, and tables that GDAL has not counted, by two threads that get in each other's way.
 os.environ["OGR_GPKG_STREAM_BASE_IMPL"] = "YES"
 
 import duckdb
