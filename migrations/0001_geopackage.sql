@@ -1,5 +1,5 @@
 -- What makes this SQLite file an OGC GeoPackage 1.3 (https://www.geopackage.org/spec130/): its identifiers and the
--- three core tables, then the table of extensions, which the spatial index needs.
+-- three core tables, the table of extensions, which the spatial index needs, and QGIS's table of styles.
 
 PRAGMA application_id = 1196444487; -- 'GPKG'
 PRAGMA user_version = 10300;
@@ -28,7 +28,8 @@ CREATE TABLE gpkg_contents (
     data_type TEXT NOT NULL,
     identifier TEXT UNIQUE,
     description TEXT DEFAULT '',
-    last_change DATETIME NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ', 'now')),
+    -- To the letter as the standard has it, without a blank: validators compare texts (requirement 13).
+    last_change DATETIME NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ','now')),
     min_x DOUBLE,
     min_y DOUBLE,
     max_x DOUBLE,
@@ -57,4 +58,22 @@ CREATE TABLE gpkg_extensions (
     definition TEXT NOT NULL,
     scope TEXT NOT NULL,
     CONSTRAINT ge_tce UNIQUE (table_name, column_name, extension_name)
+);
+
+-- Styles of layers, in the form that QGIS makes and looks for by itself. `owner` is `netcert` for those that netcert
+-- wrote; it replaces and removes no others.
+CREATE TABLE layer_styles (
+    id INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL,
+    f_table_catalog TEXT(256),
+    f_table_schema TEXT(256),
+    f_table_name TEXT(256),
+    f_geometry_column TEXT(256),
+    styleName TEXT(30),
+    styleQML TEXT,
+    styleSLD TEXT,
+    useAsDefault BOOLEAN,
+    description TEXT,
+    owner TEXT(30),
+    ui TEXT(30),
+    update_time DATETIME DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ','now'))
 );

@@ -60,6 +60,7 @@ CREATE TABLE edge (
     name TEXT,
     ref TEXT,
     oneway TEXT NOT NULL,
+    left_hand_traffic BOOLEAN NOT NULL,
     lanes INTEGER,
     lane_width_m DOUBLE,
     width_source TEXT,

@@ -58,7 +58,8 @@ CREATE TABLE certified_set (
 -- Millimetres, hundredths of a degree, thousandths and decimetres; every value is rounded to the safe side.
 -- shrink_milli NULL: 1. limiting_at: 2 × unit + (1 on the right). No foreign keys: the check costs more than the row;
 -- the writer numbers the rows from the edges themselves. The generated columns take no room; a view's column has a type
--- only if it is one of a table, and without one GDAL shows numbers as text.
+-- only if it is one of a table, and without one GDAL shows numbers as text. certificate_no names the row in the views: 32
+-- bits of fid, 2 of corridor, then the vehicle; up to 2^19 vehicles a floating-point number holds it exactly.
 CREATE TABLE certificate_compact (
     vehicle_no INTEGER NOT NULL,
     corridor_no INTEGER NOT NULL,
@@ -77,11 +78,14 @@ CREATE TABLE certificate_compact (
     limiting_s_m DOUBLE AS (limiting_s_dm / 10.0),
     limiting_unit INTEGER AS (limiting_at >> 1),
     limiting_side TEXT AS (CASE limiting_at & 1 WHEN 0 THEN 'left' WHEN 1 THEN 'right' END),
+    certificate_no INTEGER AS ((vehicle_no << 34) | (corridor_no << 32) | fid),
     PRIMARY KEY (vehicle_no, corridor_no, fid)
 ) WITHOUT ROWID;
 
+-- A view's first column is its key to other programs (GeoPackage 1.3, requirement 151), so it must be unique.
 CREATE VIEW certificate AS
 SELECT
+    c.certificate_no AS fid,
     e.edge_id,
     v.vehicle_id,
     p.corridor,
@@ -94,7 +98,7 @@ SELECT
     c.limiting_side,
     w.verdict,
     w.reason,
-    c.fid,
+    c.fid AS edge_fid,
     c.vehicle_no,
     c.corridor_no
 FROM certificate_compact AS c
@@ -103,9 +107,11 @@ JOIN vehicle AS v ON v.vehicle_no = c.vehicle_no
 JOIN corridor AS p ON p.corridor_no = c.corridor_no
 JOIN verdict AS w ON w.verdict_no = c.verdict_no;
 
--- One row per edge and vehicle that may use it. Verdict 0 is `safe`.
+-- One row per edge and vehicle that may use it. Verdict 0 is `safe`. One part for each policy, as each has a width source of
+-- its own: of a CASE the column would have no type.
 CREATE VIEW permit AS
 SELECT
+    c.certificate_no AS fid,
     e.edge_id,
     v.vehicle_id,
     p.corridor,
@@ -116,14 +122,50 @@ SELECT
     c.rsc_m,
     c.hinge_margin_deg,
     c.shrink,
-    CASE c.corridor_no
-        WHEN 0 THEN e.width_source
-        WHEN 1 THEN e.direction_width_source
-        ELSE e.carriageway_width_source
-    END AS width_source,
-    c.fid
+    e.width_source AS width_source,
+    c.fid AS edge_fid
 FROM certificate_compact AS c
 JOIN edge AS e ON e.fid = c.fid
 JOIN vehicle AS v ON v.vehicle_no = c.vehicle_no
 JOIN corridor AS p ON p.corridor_no = c.corridor_no
-WHERE c.verdict_no = 0;
+WHERE c.verdict_no = 0 AND c.corridor_no = 0
+UNION ALL
+SELECT
+    c.certificate_no AS fid,
+    e.edge_id,
+    v.vehicle_id,
+    p.corridor,
+    e.way_id,
+    e.from_node,
+    e.to_node,
+    e.length_m,
+    c.rsc_m,
+    c.hinge_margin_deg,
+    c.shrink,
+    e.direction_width_source AS width_source,
+    c.fid AS edge_fid
+FROM certificate_compact AS c
+JOIN edge AS e ON e.fid = c.fid
+JOIN vehicle AS v ON v.vehicle_no = c.vehicle_no
+JOIN corridor AS p ON p.corridor_no = c.corridor_no
+WHERE c.verdict_no = 0 AND c.corridor_no = 1
+UNION ALL
+SELECT
+    c.certificate_no AS fid,
+    e.edge_id,
+    v.vehicle_id,
+    p.corridor,
+    e.way_id,
+    e.from_node,
+    e.to_node,
+    e.length_m,
+    c.rsc_m,
+    c.hinge_margin_deg,
+    c.shrink,
+    e.carriageway_width_source AS width_source,
+    c.fid AS edge_fid
+FROM certificate_compact AS c
+JOIN edge AS e ON e.fid = c.fid
+JOIN vehicle AS v ON v.vehicle_no = c.vehicle_no
+JOIN corridor AS p ON p.corridor_no = c.corridor_no
+WHERE c.verdict_no = 0 AND c.corridor_no = 2;

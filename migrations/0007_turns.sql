@@ -56,11 +56,13 @@ CREATE TABLE turn_certificate_compact (
     limiting_s_m DOUBLE AS (limiting_s_dm / 10.0),
     limiting_unit INTEGER AS (limiting_at >> 1),
     limiting_side TEXT AS (CASE limiting_at & 1 WHEN 0 THEN 'left' WHEN 1 THEN 'right' END),
+    certificate_no INTEGER AS ((vehicle_no << 34) | (corridor_no << 32) | fid),
     PRIMARY KEY (vehicle_no, corridor_no, fid)
 ) WITHOUT ROWID;
 
 CREATE VIEW turn_certificate AS
 SELECT
+    c.certificate_no AS fid,
     t.turn_id,
     v.vehicle_id,
     p.corridor,
@@ -77,7 +79,7 @@ SELECT
     a.edge_id AS from_edge,
     b.edge_id AS to_edge,
     t.via_node,
-    c.fid,
+    c.fid AS turn_fid,
     c.vehicle_no,
     c.corridor_no
 FROM turn_certificate_compact AS c

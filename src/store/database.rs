@@ -12,6 +12,7 @@ use crate::account::AccountRow;
 use crate::network::Network;
 use crate::osm::facts::Policy;
 
+use super::contents;
 use super::error::StoreError;
 use super::names::{Named, corridor_no};
 use super::network_read;
@@ -255,6 +256,7 @@ async fn replace(
     plans::insert(c, plans::STROKES, (vehicle_no, corridor_no(policy)), &mut renewed.plans).await?;
     let set = Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished };
     set.insert(c, &renewed.rows).await?;
+    contents::touch_tables(c, &run.finished).await?;
     match &mut renewed.turns {
         Some((turns, packed)) => turns::insert_set(c, (vehicle_no, policy, run_id), turns, packed, &run.finished).await,
         None => Ok(()),

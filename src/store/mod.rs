@@ -6,6 +6,7 @@
 mod areas;
 mod blob;
 mod bulk;
+mod contents;
 mod database;
 mod error;
 mod facts;
@@ -30,6 +31,7 @@ mod sides;
 mod spool;
 mod stats;
 mod stream;
+mod styles;
 mod turns;
 mod writer;
 

@@ -74,7 +74,7 @@ async fn roads(c: &mut SqliteConnection, network: &Network) -> Sql<()> {
 }
 
 async fn edges(c: &mut SqliteConnection, network: &Network, measures: &[EdgeMeasure]) -> Sql<Vec<Bounds>> {
-    let mut bulk = Bulk::new("edge", 35);
+    let mut bulk = Bulk::new("edge", 36);
     let mut boxes = Vec::with_capacity(network.edges.len());
     let mut line = Vec::new();
     let starts = shape_starts(network)?;
@@ -140,6 +140,7 @@ fn add_road_columns(bulk: &mut Bulk, network: &Network, road: &Road, edge: &Edge
     bulk.add(road.name.map(|id| network.strings.text(id)))?;
     bulk.add(road.reference.map(|id| network.strings.text(id)))?;
     bulk.add(road.oneway.name())?;
+    bulk.add(road.left_hand_traffic)?;
     bulk.add(road.lanes)?;
     let section = &road.sections[edge.direction as usize];
     for strip in [section.lane, section.direction, section.carriageway] {

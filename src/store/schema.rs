@@ -19,6 +19,17 @@ const FILES: &[(i64, &str, &str)] = &[
     (9, "areas", include_str!("../../migrations/0009_areas.sql")),
 ];
 
+/// The table of what was applied. sqlx would make it with types that GDAL does not know (BIGINT, TIMESTAMP), which it says at every
+/// listing; sqlx takes the one that is there.
+pub(super) const APPLIED: &str = "CREATE TABLE IF NOT EXISTS _sqlx_migrations (
+    version INTEGER PRIMARY KEY NOT NULL,
+    description TEXT NOT NULL,
+    installed_on DATETIME NOT NULL DEFAULT '1970-01-01T00:00:00.000Z',
+    success BOOLEAN NOT NULL,
+    checksum BLOB NOT NULL,
+    execution_time INTEGER NOT NULL
+)";
+
 /// The last migration before the bulk of the data.
 pub(super) const BEFORE_DATA: i64 = 3;
 

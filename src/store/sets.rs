@@ -9,6 +9,7 @@ use super::blob::Bounds;
 use super::bulk::Bulk;
 use super::names::{Named, SAFE, corridor_no, width_columns};
 use super::packed::Packed;
+use super::styles::{self, Shows};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -85,13 +86,14 @@ impl Set<'_> {
         Ok(name)
     }
 
-    /// Makes the view and enters it as a layer. Its first column is named OGC_FID: by that GDAL knows a view's key.
+    /// Makes the view and enters it as a layer with a style. Its first column is its key (GeoPackage 1.3, requirement 150). No column
+    /// may be named OGC_FID: readers without a key for views add one of that name, and DuckDB refuses two.
     async fn register(&self, c: &mut SqliteConnection, layer: &str) -> Sql<()> {
         let (vehicle, corridor) = (self.vehicle_no, corridor_no(self.policy));
         let [width, source] = width_columns(self.policy);
         let view = format!(
-            "CREATE VIEW {layer} AS SELECT e.fid AS OGC_FID, e.geom AS geom, e.edge_id, e.way_id, e.from_node, e.to_node, \
-             e.direction, e.length_m, e.highway, e.name, e.ref, e.oneway, e.{width} AS width_m, \
+            "CREATE VIEW {layer} AS SELECT e.fid AS fid, e.geom AS geom, e.edge_id, e.way_id, e.from_node, e.to_node, \
+             e.direction, e.length_m, e.highway, e.name, e.ref, e.oneway, e.left_hand_traffic, e.{width} AS width_m, \
              e.{source} AS width_source, c.rsc_m, c.hinge_margin_deg, c.shrink \
              FROM certificate_compact AS c JOIN edge AS e ON e.fid = c.fid \
              WHERE c.vehicle_no = {vehicle} AND c.corridor_no = {corridor} AND c.verdict_no = {SAFE}"
@@ -100,7 +102,8 @@ impl Set<'_> {
         sqlx::query(AssertSqlSafe(view)).persistent(false).execute(&mut *c).await?;
         let description = format!("Roads that {} may use ({} policy)", self.vehicle_name, self.policy.name());
         let bounds = network_bounds(c).await?;
-        add_layer(c, layer, &description, self.time, bounds).await
+        add_layer(c, layer, &description, self.time, bounds).await?;
+        styles::add(c, layer, Shows::Permits, self.time).await
     }
 }
 
@@ -154,6 +157,7 @@ pub(super) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_n
     {
         sqlx::query(sql).bind(&layer).execute(&mut *c).await?;
     }
+    styles::remove(c, &layer).await?;
     let quoted = layer.replace('"', "\"\"");
     sqlx::query(AssertSqlSafe(format!("DROP VIEW \"{quoted}\""))).persistent(false).execute(&mut *c).await?;
     for sql in [

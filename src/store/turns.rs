@@ -23,6 +23,7 @@ use super::packed::{EdgeCertificate, Measured, Packed};
 use super::plans::{self, StoredPlan};
 use super::query::{Area, VerdictKind, polygons};
 use super::sets;
+use super::styles::{self, Shows};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -148,7 +149,8 @@ pub(super) async fn add(c: &mut SqliteConnection, records: &[Record], time: &str
         sqlx::query(sql).execute(&mut *c).await?;
     }
     let bounds = write(c, records).await?;
-    sets::add_layer(c, "turn", "Turns at junctions", time, bounds).await
+    sets::add_layer(c, "turn", "Turns at junctions", time, bounds).await?;
+    styles::add(c, "turn", Shows::Turns, time).await
 }
 
 /// Inserts a complete set; it must not be there.

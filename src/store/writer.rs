@@ -15,6 +15,7 @@ use crate::turns::TurnFacts;
 
 use super::areas;
 use super::blob::Bounds;
+use super::contents;
 use super::database::Database;
 use super::error::{StoreError, content};
 use super::names::{Named, VERDICTS, corridor_no};
@@ -24,10 +25,11 @@ use super::part::{Part, with_suffix};
 use super::plans::{self, StoredPlan};
 use super::records::{self, Run, VehicleRecord};
 use super::restrictions::{self, Restrictions};
-use super::schema::{BEFORE_DATA, MIGRATIONS};
+use super::schema::{APPLIED, BEFORE_DATA, MIGRATIONS};
 use super::session::Session;
 use super::sets::{self, Set};
 use super::spool::Spool;
+use super::styles::{self, Shows};
 use super::turns::{self, TurnCertificate};
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -188,6 +190,7 @@ impl Writer {
         let (vehicles, account) = (&self.vehicles, &self.account);
         let run_id = self.session.run(async |c| {
             sets::add_layer(c, "edge", "Directed edges of the road network", &run.finished, bounds).await?;
+            styles::add(c, "edge", Shows::Edges, &run.finished).await?;
             for (number, vehicle) in (1..).zip(vehicles) {
                 records::add_vehicle(c, number, vehicle).await?;
             }
@@ -215,6 +218,7 @@ impl Writer {
             sqlx::query("COMMIT").execute(c).await
         })?;
         self.finish_turns(run, run_id)?;
+        self.session.run(async |c| contents::add_tables(c, &run.finished).await)?;
         self.session.run(async |c| check(c).await)?;
         self.session.close()?;
         settle(&self.part.target)?;
@@ -287,6 +291,7 @@ async fn add_words(c: &mut SqliteConnection) -> Sql<()> {
 /// Applies migrations. Their table notes when and how long, which would make every file different: it is written again
 /// without (and without a trace of the first writing).
 async fn migrate(c: &mut SqliteConnection, up_to: Option<i64>) -> Sql<()> {
+    sqlx::query(APPLIED).execute(&mut *c).await?;
     let done = match up_to {
         Some(version) => MIGRATIONS.run_to(version, &mut *c).await,
         None => MIGRATIONS.run(&mut *c).await,
@@ -299,7 +304,7 @@ async fn migrate(c: &mut SqliteConnection, up_to: Option<i64>) -> Sql<()> {
         "PRAGMA secure_delete = ON;
          CREATE TEMP TABLE applied AS SELECT version, description, success, checksum FROM main._sqlx_migrations;
          DELETE FROM _sqlx_migrations;
-         INSERT INTO _sqlx_migrations SELECT version, description, '1970-01-01 00:00:00', success, checksum, 0
+         INSERT INTO _sqlx_migrations SELECT version, description, '1970-01-01T00:00:00.000Z', success, checksum, 0
              FROM temp.applied ORDER BY version;
          DROP TABLE temp.applied;
          PRAGMA secure_delete = OFF;",

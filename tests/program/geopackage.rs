@@ -283,6 +283,35 @@ fn a_set_is_replaced_whole_and_a_changed_vehicle_loses_its_old_ones() {
 }
 
 #[test]
+fn a_layer_s_style_comes_and_goes_with_it_and_what_people_saved_stays() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    let edges = build(&path, 20, |i, _| i).edges.len() as u32;
+    let styles = || sqlite(&path, "SELECT f_table_name, owner, useAsDefault FROM layer_styles ORDER BY 1, 2");
+    let made = "edge|netcert|1\npermit_eu_semi16_5|netcert|1\npermit_eu_semi16_5_2|netcert|1\npermit_eu_semi16_5_direction|netcert|1\n";
+    assert_eq!(styles(), made);
+    let geometry = "SELECT count(*) FROM layer_styles JOIN gpkg_geometry_columns ON f_table_name = table_name \
+                    AND f_geometry_column = column_name WHERE styleQML LIKE '%<qgis %'";
+    assert_eq!(sqlite(&path, geometry), "4\n");
+    // As QGIS saves one.
+    let save = "INSERT INTO layer_styles (f_table_name, styleName, useAsDefault, owner) VALUES ('permit_eu_semi16_5', 'mine', 1, '')";
+    sqlite(&path, save);
+    let mut database = Database::open_to_change(&path).unwrap();
+    let mut certify = |vehicle: &VehicleRecord, policy| {
+        let unknown = |edge| EdgeCertificate { edge, verdict: Verdict::Unknown(UnknownReason::Cut), measured: None };
+        let rows = (0..edges).map(unknown);
+        database.replace_certificates(vehicle, policy, rows, Vec::new(), None, &run(), &[]).unwrap();
+    };
+    certify(&vehicle("EU-SEMI16.5"), Policy::Lane);
+    let kept = "edge|netcert|1\npermit_eu_semi16_5||1\npermit_eu_semi16_5|netcert|0\npermit_eu_semi16_5_2|netcert|1\npermit_eu_semi16_5_direction|netcert|1\n";
+    assert_eq!(styles(), kept, "the layer is made anew, and opens in the person's style");
+    let longer = VehicleRecord { definition: r#"{"units":[1]}"#.into(), ..vehicle("EU-SEMI16.5") };
+    certify(&longer, Policy::Carriageway);
+    let left = "edge|netcert|1\npermit_eu_semi16_5||1\npermit_eu_semi16_5_2|netcert|1\npermit_eu_semi16_5_carriageway|netcert|1\n";
+    assert_eq!(styles(), left);
+}
+
+#[test]
 fn a_set_with_a_gap_or_a_double_or_a_false_safe_is_refused_and_the_old_one_stands() {
     let folder = folder();
     let path = folder.path().join("a.gpkg");
@@ -522,7 +551,7 @@ fn sqlite_finds_it_whole_and_reads_the_views() {
     assert_eq!(sqlite(&path, "PRAGMA application_id; PRAGMA user_version"), "1196444487\n10300\n");
     let columns = "SELECT group_concat(name, ' ') FROM pragma_table_info('certificate')";
     assert!(sqlite(&path, columns).starts_with(
-        "edge_id vehicle_id corridor rsc_m rsc_published_m hinge_margin_deg shrink limiting_s_m limiting_unit \
+        "fid edge_id vehicle_id corridor rsc_m rsc_published_m hinge_margin_deg shrink limiting_s_m limiting_unit \
          limiting_side verdict reason"
     ));
     let safe = "SELECT count(*) FROM certificate WHERE verdict = 'safe'";

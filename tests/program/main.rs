@@ -3,12 +3,14 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
 
 mod cli;
+mod columns;
 mod engines;
 mod explain;
 mod export;
 mod export_engines;
 mod export_formats;
 mod geopackage;
+mod gis;
 mod manoeuvres;
 #[path = "../oracle/mod.rs"]
 mod oracle;

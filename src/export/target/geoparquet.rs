@@ -3,6 +3,8 @@
 //!
 //! A group of rows is held in memory until it is written, nothing else of the network.
 
+mod metadata;
+
 use std::io::Write as _;
 use std::sync::Arc;
 
@@ -13,7 +15,6 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
-use serde_json::json;
 
 use super::layers::{Row, asked};
 use super::{Cell, Kind, Layer, Options, Target, one_file_a_layer};
@@ -47,7 +48,7 @@ impl Target for GeoParquet {
         for layer in asked(options) {
             let mut file = Table::create(layer, place.create(&format!("{}.parquet", layer.name()))?)?;
             layer.each(source, |row| file.push(row))?;
-            file.close(&source.header.json().to_string())?;
+            file.close(layer, &source.header.json().to_string())?;
         }
         Ok(())
     }
@@ -118,11 +119,12 @@ impl Table {
         Ok(())
     }
 
-    fn close(mut self, header: &str) -> Result<(), ExportError> {
+    fn close(mut self, layer: Layer, header: &str) -> Result<(), ExportError> {
         if !self.lines.is_empty() {
             self.end_group()?;
         }
-        for (key, value) in [("geo", geo(self.bounds)), ("netcert", header.to_owned())] {
+        let pandas = metadata::pandas(layer.columns());
+        for (key, value) in [("geo", metadata::geo(self.bounds)), ("netcert", header.to_owned()), ("pandas", pandas)] {
             self.writer.append_key_value_metadata(KeyValue { key: key.to_owned(), value: Some(value) });
         }
         self.sink.write_all(&self.writer.into_inner().map_err(failed)?)?;
@@ -217,21 +219,6 @@ fn schema(layer: Layer) -> Result<Type, ParquetError> {
     let around = Type::group_type_builder("bbox").with_repetition(Repetition::REQUIRED).with_fields(sides).build()?;
     fields.push(Arc::new(around));
     Type::group_type_builder(layer.name()).with_fields(fields).build()
-}
-
-/// The metadata that make a Parquet file GeoParquet 1.1. Without `crs` it is OGC:CRS84, longitude first.
-fn geo(bounds: Option<Bounds>) -> String {
-    let covering: serde_json::Map<_, _> = SIDES.iter().map(|&side| (side.to_owned(), json!(["bbox", side]))).collect();
-    let mut column = json!({
-        "encoding": "WKB",
-        "geometry_types": ["LineString"],
-        "edges": "planar",
-        "covering": {"bbox": covering},
-    });
-    if let (Some(b), Some(members)) = (bounds, column.as_object_mut()) {
-        members.insert("bbox".to_owned(), json!([b.west, b.south, b.east, b.north]));
-    }
-    json!({"version": "1.1.0", "primary_column": "geometry", "columns": {"geometry": column}}).to_string()
 }
 
 /// A line string as ISO 19125 well-known binary, little endian.

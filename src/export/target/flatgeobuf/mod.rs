@@ -122,8 +122,9 @@ fn header(source: &Source<'_>, layer: Layer, features: u64, bounds: Option<Bound
         columns.push(Column::create(&mut builder, &column));
     }
     let columns = builder.create_vector(&columns);
-    let org = builder.create_string("EPSG");
-    let crs = Crs::create(&mut builder, &CrsArgs { org: Some(org), code: 4326, ..CrsArgs::default() });
+    let (org, crs_name) = (builder.create_string("EPSG"), builder.create_string("WGS 84"));
+    let crs = CrsArgs { org: Some(org), code: 4326, name: Some(crs_name), ..CrsArgs::default() };
+    let crs = Crs::create(&mut builder, &crs);
     let envelope = bounds.map(|b| builder.create_vector(&[b.west, b.south, b.east, b.north]));
     let name = builder.create_string(layer.name());
     let title = builder.create_string(&format!("{} of {}", layer.name(), source.ask.vehicle));

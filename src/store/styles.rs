@@ -1,0 +1,58 @@
+//! Styles for QGIS, which it finds in `layer_styles` and applies when a layer is opened. The files are `data/styles/`.
+//!
+//! Styles that people saved stay theirs: a layer with a default of its own keeps it, and a layer that goes leaves theirs behind.
+
+use sqlx::sqlite::SqliteConnection;
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// Who owns a style that this program wrote.
+const OWNER: &str = "netcert";
+
+/// What a layer shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shows {
+    /// The roads, by how well their width is known.
+    Edges,
+    /// What a vehicle may use, by the room it has.
+    Permits,
+    /// Turns, by where their kerb comes from.
+    Turns,
+}
+
+impl Shows {
+    /// Name, description and the style itself.
+    fn style(self) -> [&'static str; 3] {
+        match self {
+            Self::Edges => {
+                ["width source", "How well each road's width is known", include_str!("../../data/styles/edge.qml")]
+            }
+            Self::Permits => {
+                ["room", "Metres to spare beside the vehicle", include_str!("../../data/styles/permit.qml")]
+            }
+            Self::Turns => {
+                ["kerb source", "Where each turn's kerb comes from", include_str!("../../data/styles/turn.qml")]
+            }
+        }
+    }
+}
+
+/// Gives a layer its style, in place of one that this program gave it before.
+pub(super) async fn add(c: &mut SqliteConnection, layer: &str, shows: Shows, time: &str) -> Sql<()> {
+    remove(c, layer).await?;
+    let [name, description, style] = shows.style();
+    let sql = "INSERT INTO layer_styles (f_table_catalog, f_table_schema, f_table_name, f_geometry_column, styleName, \
+               styleQML, styleSLD, useAsDefault, description, owner, ui, update_time) \
+               SELECT '', '', ?1, 'geom', ?2, ?3, '', NOT EXISTS (SELECT 1 FROM layer_styles \
+               WHERE f_table_name = ?1 AND useAsDefault), ?4, ?5, NULL, ?6";
+    let insert = sqlx::query(sql).bind(layer).bind(name).bind(style).bind(description);
+    insert.bind(OWNER).bind(time).execute(c).await?;
+    Ok(())
+}
+
+/// Takes away the style that this program gave a layer.
+pub(super) async fn remove(c: &mut SqliteConnection, layer: &str) -> Sql<()> {
+    let sql = "DELETE FROM layer_styles WHERE f_table_name = ? AND owner = ?";
+    sqlx::query(sql).bind(layer).bind(OWNER).execute(c).await?;
+    Ok(())
+}
