@@ -58,7 +58,7 @@ impl App {
             if let Some(read) = app.unchanged()? {
                 return Ok(read);
             }
-            let region = Arc::new(Region::open(&app.options.db, app.options.recorded)?);
+            let region = Arc::new(Region::open(&app.options.db)?);
             *app.region.write().unwrap_or_else(PoisonError::into_inner) = Arc::clone(&region);
             app.options.log(&format!("{}: it has changed; read anew", app.options.db.display()));
             Ok(region)

@@ -96,19 +96,15 @@ fn is_own(host: &str, options: &Options) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pipeline::Settings;
-    use crate::store::{Database, StoreError};
     use std::path::PathBuf;
 
     #[test]
     fn only_loopback_names_are_ones_own() {
-        let recorded = |_: &mut Database| -> Result<Settings, StoreError> { Err(StoreError::Missing(PathBuf::new())) };
         let options = Options {
             db: PathBuf::new(),
             addr: std::net::SocketAddr::from(([127, 0, 0, 1], 8080)),
             allow_remote: false,
             base_map: None,
-            recorded,
             log: |_| {},
             limits: super::super::Limits::default(),
         };

@@ -4,8 +4,6 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::region::Recorded;
-
 /// What `serve` is asked to do.
 #[derive(Clone)]
 pub struct Options {
@@ -18,8 +16,6 @@ pub struct Options {
     /// Tiles of an online map that the page may show beneath, as `https://…/{z}/{x}/{y}.png`; `None`: no request leaves
     /// the machine.
     pub base_map: Option<BaseMap>,
-    /// How a database's certificates were made.
-    pub recorded: Recorded,
     /// A line for whoever runs the server.
     pub log: fn(&str),
     /// The bounds.

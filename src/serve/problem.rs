@@ -77,6 +77,10 @@ impl From<StoreError> for Problem {
         };
         match error {
             StoreError::NotThere { detail, .. } => Self::not_found(detail),
+            StoreError::SetSettings { vehicle, policy, detail, .. } => Self::stale(format!(
+                "the settings that {vehicle} was certified with under the {policy} policy cannot be read: {detail}; run \
+                 `netcert certify --vehicle {vehicle} --corridor {policy}`"
+            )),
             StoreError::Busy(_) => Self::busy("the database is being written; ask again when that is done"),
             StoreError::Missing(_) => unavailable(
                 "no-database",

@@ -23,7 +23,8 @@ fn an_export_permits_exactly_what_a_route_may_use() {
     let mut database = source.database().unwrap();
     let network = database.load_network().unwrap();
     let movements = network.movements();
-    let permits = Permits::stored(&mut database, &network, &movements, "AU-SEMI19", Policy::Lane).unwrap();
+    let set = database.certified_set("AU-SEMI19", Policy::Lane).unwrap().unwrap();
+    let permits = Permits::stored(&mut database, &network, &movements, &set).unwrap();
     let access = permits.access(&movements);
     for (edge, &cost) in (0_u32..).zip(&access.edges) {
         assert_eq!(source.permitted.edges.get(edge), cost != BARRED, "edge {edge}");
