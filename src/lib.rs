@@ -26,6 +26,7 @@
 
 pub mod account;
 pub mod check;
+mod claim;
 pub mod corridor;
 pub mod explain;
 pub mod export;

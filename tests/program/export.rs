@@ -123,6 +123,41 @@ fn a_stopped_export_leaves_nothing_behind() {
     assert!(stopped, "every run had ended before it could be stopped");
 }
 
+/// A run that is killed cannot clear up: the next one does. One that is only slow is left alone.
+#[cfg(unix)]
+#[test]
+fn what_a_killed_export_left_is_cleared_and_a_living_one_is_not_disturbed() {
+    use std::process::{Command, Stdio};
+    for (target, out) in [("geojson --layer edges", "edges.geojson"), ("valhalla --extract {demo}", "valhalla")] {
+        let place = Place::with_demo();
+        let line = format!("export {target} --vehicle AU-SEMI19 --out {out} --quiet");
+        let part = place.path(&format!("{out}.part"));
+        let signal = |name: &str, id: u32| {
+            Command::new("kill").args([name, &id.to_string()]).stderr(Stdio::null()).status().unwrap();
+        };
+        let met = (0..50).any(|_| {
+            let mut run = place.command(&line).stderr(Stdio::null()).spawn().unwrap();
+            while !part.exists() && run.try_wait().unwrap().is_none() {
+                std::thread::yield_now();
+            }
+            signal("-STOP", run.id());
+            // It may have been through already.
+            let in_the_middle = part.exists() && run.try_wait().unwrap().is_none();
+            if in_the_middle {
+                place.netcert(&line).fails().tells(".part: another netcert is writing it");
+                assert!(part.exists(), "the other one's");
+            }
+            signal("-KILL", run.id());
+            run.wait().unwrap();
+            assert!(!in_the_middle || part.exists(), "a killed run clears nothing");
+            in_the_middle
+        });
+        assert!(met, "{target}: every run had ended before it could be stopped");
+        place.netcert(&line).succeeds();
+        assert_eq!(place.files(), ["demo.gpkg", out]);
+    }
+}
+
 #[test]
 fn a_vehicle_is_certified_where_it_is_not_yet() {
     let place = Place::with_demo();
