@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use netcert::osm::facts::Policy;
+use netcert::settings::Settings;
 use netcert::store::{Database, QueryOptions, Run, VehicleRecord};
 
 #[path = "../tests/support/store_network.rs"]
@@ -35,7 +36,7 @@ fn main() {
         let rate = f64::from(rows) / seconds;
         println!("{what:<34} {rows:>9} rows {seconds:>7.2} s ({cpu:>6.2} s of CPU) {rate:>9.0} rows/s");
     };
-    let mut writer = Database::create(&path).unwrap();
+    let mut writer = Database::create(&path, &Settings::default()).unwrap();
     timed("network and spatial index", edges, &mut || writer.network(&network, &[]).unwrap());
     timed("certificates into the spool", edges * vehicles, &mut || {
         let numbers: Vec<_> = (0..vehicles)

@@ -45,13 +45,22 @@ CREATE TABLE account (
     count INTEGER NOT NULL
 );
 
--- What is complete: this vehicle's certificates under this corridor policy, and the layer that shows them.
+-- How `ingest` was told to certify: one row, as JSON in the form of `certified_set.settings`. The columns `min_radius_m` and
+-- `centreline_deviation_m` of `edge` were measured so, whatever the settings of the sets are; a set that is made later is made so
+-- unless it is told otherwise. Kerbs are the same for all sets: `turn.kerb_radius_m` shows them.
+CREATE TABLE network_settings (
+    settings TEXT NOT NULL
+);
+
+-- What is complete: this vehicle's certificates under this corridor policy, and the layer that shows them. `settings`: everything
+-- that they depend on besides network and vehicle, as JSON. Whoever computes them again reads it.
 CREATE TABLE certified_set (
     vehicle_no INTEGER NOT NULL REFERENCES vehicle (vehicle_no),
     corridor_no INTEGER NOT NULL REFERENCES corridor (corridor_no),
     run_id INTEGER NOT NULL REFERENCES run (run_id),
     edges INTEGER NOT NULL,
     layer TEXT NOT NULL UNIQUE,
+    settings TEXT NOT NULL,
     PRIMARY KEY (vehicle_no, corridor_no)
 ) WITHOUT ROWID;
 

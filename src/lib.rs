@@ -20,12 +20,13 @@
 //!
 //! [`check`] works out again what [`stet`] claims, without it.
 //!
-//! [`pipeline`] runs them in that order; [`pace`] says when a vehicle is where; [`stop`]
+//! [`settings`] are what a certificate depends on besides network and vehicle. [`pipeline`] runs the stages in that order; [`pace`] says when a vehicle is where; [`stop`]
 //! lets long work be cut off. `stet` is pure: no input or output, no clock,
 //! no threads.
 
 pub mod account;
 pub mod check;
+mod claim;
 pub mod corridor;
 pub mod explain;
 pub mod export;
@@ -38,6 +39,7 @@ pub mod pipeline;
 pub mod published;
 pub mod route;
 pub mod serve;
+pub mod settings;
 pub mod stet;
 pub mod stop;
 pub mod store;

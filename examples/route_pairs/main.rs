@@ -8,16 +8,14 @@
 
 use std::time::Instant;
 
-use netcert::corridor::Params;
 use netcert::network::{Movements, Network};
 use netcert::osm::facts::Policy;
 use netcert::route::{
-    Answer, Graph, MadeTurns, Measure, PartKind, Permit, Permits, Planner, Position, Question, Route, Speeds, Strokes,
+    Answer, Graph, MadeTurns, Measure, PartKind, Permit, Permits, Planner, Position, Question, Route, Speeds,
     components, passes_over,
 };
-use netcert::stet::{Model, Options};
+use netcert::stet::Model;
 use netcert::store::{Database, Named};
-use netcert::turns::{Kerbs, TurnParams};
 use netcert::vehicle::Vehicle;
 use netcert::verdict::Verdict;
 use rayon::prelude::*;
@@ -47,7 +45,6 @@ struct Region {
     movements: Movements,
     permits: Permits,
     model: Model,
-    policy: Policy,
 }
 
 impl Region {
@@ -57,8 +54,9 @@ impl Region {
         let model = Model::new(&Vehicle::from_json(&record.definition).unwrap()).unwrap();
         let network = database.load_network().unwrap();
         let movements = network.movements();
-        let permits = Permits::stored(&mut database, &network, &movements, vehicle, policy).unwrap();
-        Self { network, movements, permits, model, policy }
+        let set = database.certified_set(vehicle, policy).unwrap().expect("certified");
+        let permits = Permits::stored(&mut database, &network, &movements, &set).unwrap();
+        Self { network, movements, permits, model }
     }
 
     fn graph(&self) -> Graph<'_> {
@@ -66,12 +64,7 @@ impl Region {
     }
 
     fn answers(&self, from: &[u32], pairs: u64) -> Vec<Answer> {
-        let made = MadeTurns {
-            model: &self.model,
-            policy: self.policy,
-            params: TurnParams { corridor: Params::default(), kerbs: Kerbs::default() },
-            options: Options::default(),
-        };
+        let made = MadeTurns { model: &self.model };
         let place = |draw: &mut Draw| {
             let line: Vec<_> =
                 self.network.positions(&self.network.edges[from[draw.of(from.len())] as usize]).collect();
@@ -79,9 +72,8 @@ impl Region {
             Position { lon, lat }
         };
         let shared = |first: u64| {
-            let strokes = Strokes::new(&self.network, self.policy, Params::default());
-            let (options, speeds) = (Options::default(), Speeds::builtin().unwrap());
-            let mut planner = Planner::new(self.graph(), &self.permits, &self.model, &made, strokes, options, speeds);
+            let speeds = Speeds::builtin().unwrap();
+            let mut planner = Planner::new(self.graph(), &self.permits, &self.model, &made, speeds);
             let ask = |pair: u64| {
                 let mut draw = Draw(pair);
                 let places = vec![place(&mut draw), place(&mut draw)];

@@ -6,7 +6,8 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::Args;
 use netcert::osm::facts::Policy;
-use netcert::pipeline::{self, Settings};
+use netcert::pipeline;
+use netcert::settings::Settings;
 use netcert::store::{Database, Named};
 use netcert::vehicle::Vehicle;
 use serde_json::json;
@@ -20,7 +21,8 @@ use super::how::{self, How};
 ///
 /// With no vehicle named, all that the database has are certified again, each as the catalogue defines it now. The
 /// extract is not needed: the roads are in the database. Each vehicle's certificates are replaced in one step. Options
-/// not given are as they were for `ingest`.
+/// not given are as they were for `ingest`, whatever the vehicle's old certificates were made with. The options stay with
+/// the certificates: `verify`, `explain`, `route` and `serve` compute by them.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -46,7 +48,7 @@ impl Certify {
         let path = self.db.path()?;
         let fleet = Fleet::new(&self.vehicle_file)?;
         let mut database = Database::open(&path)?;
-        let settings = self.how.over(&how::recorded(&mut database)?);
+        let settings = self.how.over(&database.settings_of_new_sets()?);
         let work = self.work(&mut database, &fleet, settings.policy)?;
         database.close()?;
         if work.is_empty() {
@@ -55,7 +57,7 @@ impl Certify {
         for (policy, vehicles) in work {
             let settings = Settings { policy, ..settings.clone() };
             let names: Vec<&str> = vehicles.iter().map(|vehicle| vehicle.id.as_str()).collect();
-            let mut parameters = how::parameters(&settings);
+            let mut parameters = how::parameters(&settings)?;
             parameters.insert("vehicles".into(), json!(names));
             let ask = pipeline::Certify {
                 db: &path,

@@ -9,10 +9,11 @@ use netcert::explain::{self, Explanation, TurnExplanation};
 use netcert::network::Network;
 use netcert::osm::facts::Policy;
 use netcert::picture;
-use netcert::pipeline::Settings;
+use netcert::pipeline;
+use netcert::settings::Settings;
 use netcert::stet::Model;
 use netcert::stop::Stop;
-use netcert::store::{Database, EdgeRow, Named, QueryOptions, verdict_words};
+use netcert::store::{CertifiedSet, Database, EdgeRow, Named, QueryOptions, verdict_words};
 use netcert::turns::{TurnFacts, turn_facts};
 use netcert::vehicle::Vehicle;
 
@@ -72,20 +73,24 @@ impl Explain {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         let path = self.db.path()?;
         let mut database = Database::open(&path)?;
-        let recorded = how::recorded(&mut database)?;
-        let settings = Settings { policy: self.corridor.unwrap_or(recorded.policy), ..recorded };
+        let policy = how::policy_of(&mut database, self.corridor)?;
+        let vehicle = self.vehicle(&mut database)?;
+        let set = self.set(&mut database, &vehicle, policy)?;
+        let settings = match &set {
+            Some(set) => set.settings()?,
+            None => how::of_a_new_set(&mut database, policy)?,
+        };
         let network = database.load_network()?;
+        let model = Model::new(&vehicle)?;
         if let Some(turn) = self.turn(&network, &settings) {
-            let model = Model::new(&self.vehicle(&mut database)?)?;
             let turn = explain::explain_turn_until(&network, &turn, &model, &settings, &Stop::default())?;
             return self.tell_turn(session, &turn);
         }
         let edge = self.one_edge(&network, &mut database, settings.policy)?;
-        let model = Model::new(&self.vehicle(&mut database)?)?;
         let Some(explanation) = explain::explain_edge(&network, edge, &model, &settings) else {
             bail!("{}: no edge {edge}", path.display());
         };
-        match self.stored(&mut database, &network, edge, settings.policy)? {
+        match stored(&mut database, &network, edge, set.as_ref())? {
             Some(row) => {
                 if let Some(detail) = explanation.disagreement(&row) {
                     bail!(
@@ -120,7 +125,7 @@ impl Explain {
     /// The turn of that id.
     fn turn(&self, network: &Network, settings: &Settings) -> Option<TurnFacts> {
         let id: i64 = self.edge.trim().parse().ok()?;
-        turn_facts(network, &settings.turn_params().kerbs).into_iter().find(|turn| turn.id == id)
+        turn_facts(network, &settings.kerbs).into_iter().find(|turn| turn.id == id)
     }
 
     fn tell_turn(&self, session: &Session, turn: &TurnExplanation) -> anyhow::Result<()> {
@@ -160,19 +165,12 @@ impl Explain {
         }
     }
 
-    /// The certificate that the database keeps, if it has this vehicle's under this policy, made with this definition.
-    fn stored(
-        &self,
-        database: &mut Database,
-        network: &Network,
-        edge: u32,
-        policy: Policy,
-    ) -> anyhow::Result<Option<EdgeRow>> {
-        let there = database.certified()?.iter().any(|set| set.vehicle_id == self.vehicle && set.policy == policy);
+    /// The certificates that the database keeps, if it has this vehicle's under this policy, made with this definition.
+    fn set(&self, database: &mut Database, vehicle: &Vehicle, policy: Policy) -> anyhow::Result<Option<CertifiedSet>> {
+        let hash = pipeline::record(vehicle)?.blake3();
         let own = Fleet::new(&self.vehicle_file)?.own.contains(&self.vehicle);
-        let Some(facts) = network.edges.get(edge as usize).filter(|_| there && !own) else { return Ok(None) };
-        let options = QueryOptions { edge_id: Some(facts.id), ..QueryOptions::new(&self.vehicle, policy) };
-        Ok(database.query(&options)?.next().transpose()?)
+        let set = database.certified_set(&self.vehicle, policy)?;
+        Ok(set.filter(|set| !own || set.vehicle_blake3 == hash))
     }
 
     fn one_edge(&self, network: &Network, database: &mut Database, policy: Policy) -> anyhow::Result<u32> {
@@ -229,6 +227,18 @@ impl Explain {
         }
         Ok(String::from_utf8_lossy(&text).trim_end().to_owned())
     }
+}
+
+/// The row that the set keeps of an edge.
+fn stored(
+    database: &mut Database,
+    network: &Network,
+    edge: u32,
+    set: Option<&CertifiedSet>,
+) -> anyhow::Result<Option<EdgeRow>> {
+    let Some((set, facts)) = set.zip(network.edges.get(edge as usize)) else { return Ok(None) };
+    let options = QueryOptions { edge_id: Some(facts.id), ..QueryOptions::new(&set.vehicle_id, set.policy) };
+    Ok(database.query(&options)?.next().transpose()?)
 }
 
 /// Edges that `asked` may mean: an edge's id before a way's, before a name or ref, before a part of a name.

@@ -7,12 +7,10 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use netcert::export::target::{self, Layer, Options, TARGETS};
 use netcert::export::{self, ExportError, Out, PermitPolicy, Source, Tally, Target, Unfinished};
 use netcert::osm::facts::{Policy, WidthSource};
-use netcert::pipeline::Settings;
 use netcert::store::Database;
 
 use super::Session;
 use super::database::DatabaseArgs;
-use super::how;
 use super::on_demand::{self, Wanted};
 use super::output::{grouped, results};
 use super::stop::when_stopped;
@@ -105,15 +103,15 @@ impl Export {
     }
 
     fn source<'s>(&self, session: &'s Session, path: &Path) -> anyhow::Result<Source<'s>> {
-        let mut database = Database::open(path)?;
-        let recorded = how::recorded(&mut database)?;
-        let settings = Settings { policy: self.corridor.unwrap_or(recorded.policy), ..recorded };
-        let wanted = Wanted { vehicle: &self.vehicle, files: &self.vehicle_file, turns: true, command: "export" };
-        on_demand::certified(session, (path, database), &wanted, &settings)?.close()?;
+        let database = Database::open(path)?;
+        let (files, policy) = (&self.vehicle_file[..], self.corridor);
+        let wanted = Wanted { vehicle: &self.vehicle, files, policy, turns: true, command: "export" };
+        let (database, set) = on_demand::certified(session, (path, database), &wanted)?;
+        database.close()?;
         let ask = export::Ask {
             db: path.to_owned(),
             vehicle: self.vehicle.clone(),
-            policy: settings.policy,
+            policy: set.policy,
             rule: PermitPolicy { min_rsc_m: self.min_rsc, min_width_source: self.width_source },
             extract: self.extract.clone(),
         };

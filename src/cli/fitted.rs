@@ -6,15 +6,14 @@ use anyhow::anyhow;
 use clap::Args;
 use netcert::network::{Movements, Network};
 use netcert::osm::facts::Policy;
-use netcert::pipeline::Settings;
-use netcert::route::{Graph, MadeTurns, Measure, Permits, Speeds, Strokes};
+use netcert::route::{Graph, MadeTurns, Measure, Permits, Speeds};
+use netcert::settings::Settings;
 use netcert::stet::Model;
 use netcert::store::Database;
 
 use super::Session;
 use super::database::DatabaseArgs;
 use super::fleet;
-use super::how;
 use super::on_demand::{self, Wanted};
 use super::values::word;
 
@@ -41,18 +40,16 @@ pub(crate) struct Fitted {
     pub(crate) movements: Movements,
     pub(crate) permits: Permits,
     pub(crate) model: Model,
-    pub(crate) settings: Settings,
     pub(crate) speeds: Speeds,
 }
 
 impl FittedArgs {
     pub(crate) fn load(&self, session: &Session, command: &'static str) -> anyhow::Result<Fitted> {
         let path = self.db.path()?;
-        let mut database = Database::open(&path)?;
-        let recorded = how::recorded(&mut database)?;
-        let settings = Settings { policy: self.corridor.unwrap_or(recorded.policy), ..recorded };
-        let wanted = Wanted { vehicle: &self.vehicle, files: &self.vehicle_file, turns: true, command };
-        let mut database = on_demand::certified(session, (&path, database), &wanted, &settings)?;
+        let database = Database::open(&path)?;
+        let (files, policy) = (&self.vehicle_file[..], self.corridor);
+        let wanted = Wanted { vehicle: &self.vehicle, files, policy, turns: true, command };
+        let (mut database, set) = on_demand::certified(session, (&path, database), &wanted)?;
         let vehicle = fleet::kept(&mut database, &self.vehicle)?.ok_or_else(|| {
             anyhow!(
                 "{}: {} is not certified here; run `netcert certify --db {0} --vehicle {1}`",
@@ -62,10 +59,10 @@ impl FittedArgs {
         })?;
         let network = database.load_network()?;
         let movements = network.movements();
-        let permits = Permits::stored(&mut database, &network, &movements, &self.vehicle, settings.policy)?;
+        let permits = Permits::stored(&mut database, &network, &movements, &set)?;
         database.close()?;
         let model = Model::new(&vehicle)?;
-        Ok(Fitted { path, network, movements, permits, model, settings, speeds: Speeds::builtin()? })
+        Ok(Fitted { path, network, movements, permits, model, speeds: Speeds::builtin()? })
     }
 }
 
@@ -74,16 +71,12 @@ impl Fitted {
         Graph::new(&self.network, &self.movements, &self.speeds, measure)
     }
 
-    pub(crate) fn strokes(&self) -> Strokes<'_> {
-        Strokes::new(&self.network, self.settings.policy, self.settings.corridor)
+    /// What the certificates were made with.
+    pub(crate) fn settings(&self) -> &Settings {
+        &self.permits.settings
     }
 
     pub(crate) fn turns(&self) -> MadeTurns<'_> {
-        MadeTurns {
-            model: &self.model,
-            policy: self.settings.policy,
-            params: self.settings.turn_params(),
-            options: self.settings.stet,
-        }
+        MadeTurns { model: &self.model }
     }
 }

@@ -1,15 +1,16 @@
-//! How certificates are made: the options, and what an existing database was made with.
+//! How certificates are made: the options of `ingest` and `certify`.
 //!
-//! What is not given is as in the database's own ingest, so that certificates made later stand beside the first ones on
-//! the same terms.
+//! A set of certificates keeps its settings, and whoever computes it again takes those: `CertifiedSet::settings`. For a set that
+//! is yet to be made, what is not given is as in the database's own ingest.
 
+use anyhow::anyhow;
 use clap::Args;
 use netcert::corridor::Params;
 use netcert::osm::facts::Policy;
-use netcert::pipeline::Settings;
+use netcert::settings::Settings;
 use netcert::stet::Options;
-use netcert::store::{Database, Named, StoreError};
-use serde_json::{Value, json};
+use netcert::store::{Database, StoreError};
+use serde_json::Value;
 
 use super::values::{metres, word};
 
@@ -36,7 +37,7 @@ pub(crate) struct How {
 impl How {
     /// The options over the defaults.
     pub(crate) fn settings(&self) -> Settings {
-        self.over(&default_settings())
+        self.over(&Settings::default())
     }
 
     /// The options over some settings.
@@ -49,47 +50,26 @@ impl How {
                 ..base.corridor
             },
             stet: Options { max_shift_m: self.max_shift.unwrap_or(base.stet.max_shift_m), ..base.stet },
+            kerbs: base.kerbs.clone(),
             turns: base.turns && !self.no_turns,
         }
     }
 }
 
-fn default_settings() -> Settings {
-    Settings { policy: Policy::Lane, corridor: Params::default(), stet: Options::default(), turns: true }
+/// The settings for the `run` record, which is for people: nothing is computed by it.
+pub(crate) fn parameters(settings: &Settings) -> anyhow::Result<serde_json::Map<String, Value>> {
+    settings.options().map_err(|detail| anyhow!("these settings cannot be kept: {detail}"))
 }
 
-/// What the database's ingest was given.
-pub(crate) fn recorded(database: &mut Database) -> Result<Settings, StoreError> {
-    let runs = database.runs()?;
-    let ingest = runs.iter().rev().find(|(run, _)| run.command == "ingest");
-    let parameters: Value = ingest.and_then(|(run, _)| serde_json::from_str(&run.parameters).ok()).unwrap_or_default();
-    let number = |name: &str, default: f64| parameters[name].as_f64().unwrap_or(default);
-    let Settings { policy, corridor, stet, turns } = default_settings();
-    Ok(Settings {
-        policy: parameters["corridor"].as_str().and_then(Policy::named).unwrap_or(policy),
-        corridor: Params {
-            tolerance_m: number("smoothing_tolerance_m", corridor.tolerance_m),
-            map_tolerance_m: number("map_tolerance_m", corridor.map_tolerance_m),
-            ..corridor
-        },
-        stet: Options { max_shift_m: number("max_shift_m", stet.max_shift_m), ..stet },
-        turns: parameters["turns"].as_bool().unwrap_or(turns),
-    })
+/// The policy that is asked for, else that of the database's ingest.
+pub(crate) fn policy_of(database: &mut Database, asked: Option<Policy>) -> Result<Policy, StoreError> {
+    match asked {
+        Some(policy) => Ok(policy),
+        None => Ok(database.settings_of_new_sets()?.policy),
+    }
 }
 
-/// All of it, for the `run` record; [`recorded`] reads it again.
-pub(crate) fn parameters(settings: &Settings) -> serde_json::Map<String, Value> {
-    let Settings { policy, corridor, stet, turns } = settings;
-    let pairs = [
-        ("corridor", json!(policy.name())),
-        ("smoothing_tolerance_m", json!(corridor.tolerance_m)),
-        ("smoothing_cutoff_m", json!(corridor.cutoff_m)),
-        ("map_tolerance_m", json!(corridor.map_tolerance_m)),
-        ("station_spacing_m", json!(corridor.spacing_m)),
-        ("lead_in_m", json!(corridor.lead_in_m)),
-        ("max_shift_m", json!(stet.max_shift_m)),
-        ("correction_sweeps", json!(stet.correction_sweeps)),
-        ("turns", json!(turns)),
-    ];
-    pairs.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+/// What a vehicle that the database does not certify would be certified with.
+pub(crate) fn of_a_new_set(database: &mut Database, policy: Policy) -> Result<Settings, StoreError> {
+    Ok(Settings { policy, ..database.settings_of_new_sets()? })
 }

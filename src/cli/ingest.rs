@@ -87,7 +87,7 @@ impl Ingest {
         let selection = self.which.selection(&fleet);
         let countries = self.roads.countries()?;
         let settings = self.how.settings();
-        let mut parameters = how::parameters(&settings);
+        let mut parameters = how::parameters(&settings)?;
         parameters.insert("vehicles".into(), selection_words(&selection));
         parameters.insert("country".into(), json!(self.roads.country));
         parameters.insert("driving_side".into(), json!(self.roads.driving_side));

@@ -2,8 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use netcert::pipeline::{self, Settings};
-use netcert::store::{Database, Named};
+use anyhow::anyhow;
+use netcert::osm::facts::Policy;
+use netcert::pipeline;
+use netcert::settings::Settings;
+use netcert::store::{CertifiedSet, Database, Named};
 use netcert::vehicle::Vehicle;
 use serde_json::json;
 
@@ -17,25 +20,34 @@ pub(crate) struct Wanted<'a> {
     pub(crate) vehicle: &'a str,
     /// Files that define it, if neither the catalogue nor the database does.
     pub(crate) files: &'a [PathBuf],
+    /// Under this policy; `None`: that of the database's ingest.
+    pub(crate) policy: Option<Policy>,
     /// Turns, too.
     pub(crate) turns: bool,
     /// Who asks, for the `run` record.
     pub(crate) command: &'static str,
 }
 
-/// The database with all that is wanted in it, under the settings' policy.
+/// The database with all that is wanted in it, and the set. One that is there keeps its settings; a new one has those of the
+/// database's ingest.
 pub(crate) fn certified(
     session: &Session,
     (path, mut database): (&Path, Database),
     wanted: &Wanted<'_>,
-    settings: &Settings,
-) -> anyhow::Result<Database> {
-    let policy = settings.policy;
-    let there = |set: &netcert::store::CertifiedSet| set.vehicle_id == wanted.vehicle && set.policy == policy;
-    let there = database.certified()?.iter().any(there);
-    if there && (!wanted.turns || database.has_turns(wanted.vehicle, policy)?) {
-        return Ok(database);
-    }
+) -> anyhow::Result<(Database, CertifiedSet)> {
+    let policy = how::policy_of(&mut database, wanted.policy)?;
+    let kept = database.certified_set(wanted.vehicle, policy)?;
+    let there = kept.is_some();
+    let settings = match kept {
+        Some(set) => {
+            let settings = set.settings()?;
+            if !wanted.turns || database.has_turns(wanted.vehicle, policy)? {
+                return Ok((database, set));
+            }
+            settings
+        }
+        None => how::of_a_new_set(&mut database, policy)?,
+    };
     let vehicle = definition(&mut database, wanted)?;
     database.close()?;
     let (id, db, name) = (&vehicle.id, path.display(), policy.name());
@@ -44,8 +56,8 @@ pub(crate) fn certified(
     session
         .progress
         .say(&format!("{turns}{id} {verb} not certified in {db} under the {name} policy yet: doing it now"));
-    let settings = Settings { turns: settings.turns || wanted.turns, ..*settings };
-    let mut parameters = how::parameters(&settings);
+    let settings = Settings { turns: settings.turns || wanted.turns, ..settings };
+    let mut parameters = how::parameters(&settings)?;
     parameters.insert("vehicles".into(), json!([id]));
     let ask = pipeline::Certify {
         db: path,
@@ -57,7 +69,10 @@ pub(crate) fn certified(
     };
     let summary = pipeline::certify(&ask, &session.progress)?;
     session.progress.summary(&summary);
-    Ok(Database::open(path)?)
+    let mut database = Database::open(path)?;
+    let made = database.certified_set(wanted.vehicle, policy)?;
+    let set = made.ok_or_else(|| anyhow!("{db}: {id} was certified, but its certificates are gone"))?;
+    Ok((database, set))
 }
 
 /// The database's own definition comes first: its other certificates were made with it.

@@ -6,7 +6,6 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use netcert::osm::facts::{Policy, WidthSource};
-use netcert::pipeline::Settings;
 use netcert::store::{Area, Bounds, Database, EdgeRow, Named, QueryOptions, TurnQuery, VerdictKind, verdict_words};
 use netcert::vehicle::Vehicle;
 
@@ -14,7 +13,6 @@ use super::Session;
 use super::area;
 use super::database::DatabaseArgs;
 use super::fleet;
-use super::how;
 use super::on_demand::{self, Wanted};
 use super::output::{km, results};
 use super::rows::{Head, Sink};
@@ -95,23 +93,22 @@ impl Query {
             (None, bbox) => bbox.map(Area::Bounds),
         };
         let path = self.db.path()?;
-        let mut database = Database::open(&path)?;
-        let recorded = how::recorded(&mut database)?;
-        let settings = Settings { policy: self.corridor.unwrap_or(recorded.policy), ..recorded };
-        let wanted = Wanted { vehicle: &self.vehicle, files: &self.vehicle_file, turns: self.turns, command: "query" };
-        let mut database = on_demand::certified(session, (&path, database), &wanted, &settings)?;
+        let database = Database::open(&path)?;
+        let (files, policy) = (&self.vehicle_file[..], self.corridor);
+        let wanted = Wanted { vehicle: &self.vehicle, files, policy, turns: self.turns, command: "query" };
+        let (mut database, set) = on_demand::certified(session, (&path, database), &wanted)?;
         let vehicle = fleet::kept(&mut database, &self.vehicle)?;
         if self.turns {
-            return self.tell_turns(session, &mut database, vehicle.as_ref(), settings.policy, area);
+            return self.tell_turns(session, &mut database, vehicle.as_ref(), set.policy, area);
         }
         let options = QueryOptions {
             area,
             verdict: self.verdict,
             min_rsc_m: self.min_rsc,
             min_width_source: self.width_source,
-            ..QueryOptions::new(&self.vehicle, settings.policy)
+            ..QueryOptions::new(&self.vehicle, set.policy)
         };
-        let head = Head { vehicle: self.vehicle.clone(), policy: settings.policy, scope: scope(vehicle.as_ref()) };
+        let head = Head { vehicle: self.vehicle.clone(), policy: set.policy, scope: scope(vehicle.as_ref()) };
         let mut totals = Totals::default();
         let mut sink = Sink::begin(self.format, &head, results())?;
         for row in database.query(&options)? {

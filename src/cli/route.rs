@@ -93,8 +93,7 @@ impl Route {
         let measure = if self.least == Least::Time { Measure::Time } else { Measure::Distance };
         let turns = fitted.turns();
         let (graph, speeds) = (fitted.graph(measure), fitted.speeds.clone());
-        let stet = fitted.settings.stet;
-        let mut planner = Planner::new(graph, &fitted.permits, &fitted.model, &turns, fitted.strokes(), stet, speeds);
+        let mut planner = Planner::new(graph, &fitted.permits, &fitted.model, &turns, speeds);
         let places = [self.from].into_iter().chain(self.via.iter().copied()).chain([self.to]).collect();
         let (alternatives, tries) = (usize::from(self.alternatives), usize::from(self.tries));
         let answer = planner.answer(&Question { places, snap_m: self.snap, alternatives, tries })?;
@@ -113,7 +112,7 @@ impl Route {
         if let Some(path) = &self.out {
             let best = best.ok_or_else(|| nothing(path))?;
             let given = FileCorridor { corridor: best.path.corridor.clone(), frame: Some(best.path.frame) };
-            let options = &fitted.settings.stet;
+            let options = &fitted.settings().stet;
             let json = certificate_file::json(&given, &fitted.model, &best.certificate, options)?;
             write(path, netcert::check::sealed(&json))?;
             session.progress.say(&format!("{}: the whole certificate", path.display()));
@@ -169,7 +168,7 @@ fn tell(out: &mut dyn Write, fitted: &Fitted, answer: &Answer) -> std::io::Resul
         let at = printable(&route::title(network, refutation.at));
         writeln!(out, "{}", wrapped(&format!("Tried and refuted as a whole, at {at}: {why}."), "  "))?;
     }
-    let policy = fitted.settings.policy.name();
+    let policy = fitted.settings().policy.name();
     let scope = format!(
         "Within the stated model, widths and error bounds ({policy} policy, every turn's kerbs as the map or assumptions have \
          them); no permit. Times are by class of road."

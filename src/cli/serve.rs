@@ -8,7 +8,6 @@ use netcert::serve::{BaseMap, Limits, Options, Server};
 
 use super::Session;
 use super::database::DatabaseArgs;
-use super::how;
 use super::output::{results, tell};
 use super::stop::stop;
 
@@ -53,7 +52,6 @@ impl Serve {
             addr: self.addr,
             allow_remote: self.allow_remote,
             base_map,
-            recorded: how::recorded,
             log: tell,
             limits: Limits::default(),
         })?;

@@ -11,16 +11,16 @@ use netcert::account::AccountRow;
 use netcert::check::{self, Outcome, Report, RowOutcome, SetClaim, SetReport, TurnsClaim};
 use netcert::network::Network;
 use netcert::osm::facts::Policy;
+use netcert::settings::Settings;
 use netcert::store::{
     Area, Bounds, CertifiedSet, Database, EdgeRow, Named, QueryOptions, TurnQuery, TurnRow, verdict_words,
 };
-use netcert::turns::{TurnFacts, turn_facts};
+use netcert::turns::{Kerbs, TurnFacts, turn_facts};
 use netcert::vehicle::Vehicle;
 use netcert::verdict::Verdict;
 
 use super::Session;
 use super::area::bounds;
-use super::how;
 use super::output::{grouped, printable, results};
 use super::table::Table;
 use super::values::word;
@@ -84,16 +84,20 @@ impl Verify {
         let sets = self.sets(&mut database)?;
         let mut out = results();
         let mut table = Table::new(&["vehicle", "corridor", "of", "verdict", ">confirmed", ">not", ">malformed"]);
-        let facts = turn_facts(&network, &how::recorded(&mut database)?.turn_params().kerbs);
+        let mut facts: Option<(Kerbs, Vec<TurnFacts>)> = None;
         for set in &sets {
+            let settings = set.settings()?;
             let begun = Instant::now();
-            let report = self.set(&mut database, &network, set)?;
+            let report = self.set(&mut database, &network, (set, &settings))?;
             tell(session, set, "edges", &report, begun);
             count(&mut table, (set, "edges"), &report);
             complaints.extend(report.rows.iter().filter_map(|row| complaint((set, "edge"), row)));
             if database.has_turns(&set.vehicle_id, set.policy)? {
                 let begun = Instant::now();
-                let report = self.turns(&mut database, (&network, &facts), set)?;
+                let known = facts.take().filter(|(kerbs, _)| *kerbs == settings.kerbs);
+                let made = || (settings.kerbs.clone(), turn_facts(&network, &settings.kerbs));
+                let (_, facts) = facts.insert(known.unwrap_or_else(made));
+                let report = self.turns(&mut database, (&network, facts), (set, &settings))?;
                 tell(session, set, "turns", &report, begun);
                 count(&mut table, (set, "turns"), &report);
                 complaints.extend(report.rows.iter().filter_map(|row| complaint((set, "turn"), row)));
@@ -122,9 +126,13 @@ impl Verify {
         Ok(sets)
     }
 
-    fn set(&self, database: &mut Database, network: &Network, set: &CertifiedSet) -> anyhow::Result<SetReport> {
+    fn set(
+        &self,
+        database: &mut Database,
+        network: &Network,
+        (set, settings): (&CertifiedSet, &Settings),
+    ) -> anyhow::Result<SetReport> {
         let vehicle = defined(database, set)?;
-        let settings = how::recorded(database)?;
         let query =
             QueryOptions { area: self.bbox.map(Area::Bounds), ..QueryOptions::new(&set.vehicle_id, set.policy) };
         let rows: Vec<EdgeRow> = database.query(&query)?.collect::<Result<_, _>>()?;
@@ -146,10 +154,10 @@ impl Verify {
         &self,
         database: &mut Database,
         (network, facts): (&Network, &[TurnFacts]),
-        set: &CertifiedSet,
+        (set, settings): (&CertifiedSet, &Settings),
     ) -> anyhow::Result<SetReport> {
         let vehicle = defined(database, set)?;
-        let params = how::recorded(database)?.turn_params();
+        let params = settings.turn_params();
         let every = QueryOptions::new(&set.vehicle_id, set.policy);
         let edges: BTreeMap<u32, Verdict> =
             database.query(&every)?.map(|row| row.map(|row| (row.edge, row.verdict))).collect::<Result<_, _>>()?;

@@ -30,6 +30,9 @@ pub enum ExportError {
         "{0}: exists and is no folder of an earlier export; it is left as it is: name another with --out, or move it away"
     )]
     InTheWay(PathBuf),
+    /// Another process writes the same output.
+    #[error("{0}: another netcert is writing it; wait until that is done, or stop it, or name another file with --out")]
+    Busy(PathBuf),
     /// A folder stands where a file would be written.
     #[error("{0}: is a folder, and this export is one file; name it with --out")]
     Folder(PathBuf),

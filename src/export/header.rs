@@ -31,6 +31,8 @@ pub struct Provenance {
     pub made_by: String,
     /// Every parameter of that run, as JSON.
     pub parameters: Value,
+    /// What the vehicle's certificates were made with, as JSON.
+    pub certified_with: Value,
     /// The vehicle's name.
     pub vehicle_name: String,
     /// The whole vehicle.
@@ -64,6 +66,7 @@ impl Provenance {
             input_timestamp: ingest.replication_timestamp,
             made_by: ingest.netcert_version,
             parameters: serde_json::from_str(&ingest.parameters).unwrap_or_default(),
+            certified_with: certified_with(database, ask)?,
             vehicle_name: record.name.clone(),
             vehicle: serde_json::from_str(&record.definition).unwrap_or_default(),
             vehicle_blake3: record.blake3(),
@@ -116,6 +119,7 @@ impl Header {
                 "edges": tally(&self.edges),
                 "turns": tally(&self.turns),
             },
+            "certified_with": p.certified_with,
             "database": {"name": p.database, "blake3": p.database_blake3},
             "input": {"name": p.input, "blake3": p.input_blake3, "timestamp": p.input_timestamp},
             "made_by": {"netcert": p.made_by, "parameters": p.parameters},
@@ -132,6 +136,14 @@ impl Header {
         }
         out
     }
+}
+
+/// The set's own settings: they may be others than those of the ingest.
+fn certified_with(database: &mut Database, ask: &Ask) -> Result<Value, StoreError> {
+    let damaged = |detail: &str| StoreError::Damaged { path: ask.db.clone(), detail: detail.to_owned() };
+    let set = database.certified_set(&ask.vehicle, ask.policy)?;
+    let settings = set.ok_or_else(|| damaged("no set of certificates for its rows"))?.settings()?;
+    Ok(Value::Object(settings.options().map_err(|detail| damaged(&detail))?))
 }
 
 fn tally(tally: &Tally) -> Value {

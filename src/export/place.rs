@@ -1,7 +1,8 @@
 //! Where an export is written: whole or not at all.
 //!
-//! A file is written beside its name as `NAME.part`, a folder as `NAME.part/`, and renamed when everything is on the disk. A
-//! folder of an earlier export (it holds `netcert.json`) is replaced; anything else that stands there is left alone. What is not
+//! A file is written beside its name as `NAME.part`, a folder as `NAME.part/`, and renamed when everything is on the disk. While it
+//! is written it is locked: a second export of the same name is refused, and one that was killed leaves nothing that the next one
+//! does not clear. A folder of an earlier export (it holds `netcert.json`) is replaced; anything else that stands there is left alone. What is not
 //! finished is told to [`Unfinished`], so that a program that is stopped can clear it away.
 
 use std::ffi::OsString;
@@ -12,6 +13,7 @@ use std::path::{Path, PathBuf};
 use super::ExportError;
 use super::sorter::Scratch;
 use super::unfinished::{self, Unfinished};
+use crate::claim::{self, Claim};
 
 /// The file by which a folder is known as an export.
 const MARK: &str = "netcert.json";
@@ -41,6 +43,8 @@ pub enum Out {
 /// An output being written.
 pub struct Place {
     kind: Kind,
+    /// Held until the output is in its place.
+    claim: Option<Claim>,
     unfinished: Unfinished,
 }
 
@@ -56,22 +60,28 @@ impl Place {
     /// # Errors
     /// Something else stands there; several files are to go to one stream.
     pub fn begin(out: Out, layout: Layout, unfinished: Unfinished) -> Result<Self, ExportError> {
-        let kind = match (out, layout) {
-            (Out::Stream(stream), Layout::File) => Kind::Stream(Some(stream)),
+        let claim_as = |part: &Path, claim: fn(&Path) -> io::Result<Claim>| {
+            unfinished.make(part, claim).map(Some).map_err(|e| claimed(part, e))
+        };
+        let (kind, claim) = match (out, layout) {
+            (Out::Stream(stream), Layout::File) => (Kind::Stream(Some(stream)), None),
             (Out::Stream(_), Layout::Folder { target, instead }) => return Err(ExportError::NoStream(target, instead)),
             (Out::Path(target), Layout::File) if target.is_dir() => return Err(ExportError::Folder(target)),
-            (Out::Path(target), Layout::File) => Kind::File { part: beside(&target, ".part"), target },
+            (Out::Path(target), Layout::File) => {
+                let part = beside(&target, ".part");
+                let claim = claim_as(&part, claim::file)?;
+                (Kind::File { part, target }, claim)
+            }
             (Out::Path(target), Layout::Folder { .. }) => {
                 if occupied(&target) {
                     return Err(ExportError::InTheWay(target));
                 }
                 let part = beside(&target, ".part");
-                let fresh = |part: &Path| unfinished::remove(part).and_then(|()| fs::create_dir_all(part));
-                unfinished.make(&part, fresh).map_err(|e| at(&part, e))?;
-                Kind::Folder { part, target }
+                let claim = claim_as(&part, claim::folder)?;
+                (Kind::Folder { part, target }, claim)
             }
         };
-        Ok(Self { kind, unfinished })
+        Ok(Self { kind, claim, unfinished })
     }
 
     /// Whether several files are written.
@@ -85,15 +95,22 @@ impl Place {
     /// # Errors
     /// It cannot be made.
     pub fn create(&mut self, name: &str) -> Result<Sink, ExportError> {
-        let path = match &mut self.kind {
-            Kind::Stream(stream) => {
+        let held = self.claim.as_ref().and_then(|claim| claim.file.as_ref());
+        let (path, file) = match (&mut self.kind, held) {
+            (Kind::Stream(stream), _) => {
                 let stream = stream.take().ok_or_else(|| io::Error::other("a stream takes one file only"))?;
                 return Ok(Sink { stream, file: None });
             }
-            Kind::File { part, .. } => part.clone(),
-            Kind::Folder { part, .. } => part.join(name),
+            // The claim's own: some systems let nobody else write to a locked file.
+            (Kind::File { part, .. }, Some(held)) => (part.clone(), held.try_clone()),
+            (Kind::File { part, .. }, None) => (part.clone(), File::create(part)),
+            (Kind::Folder { part, .. }, _) => {
+                let path = part.join(name);
+                let file = self.unfinished.make(&path, |path| File::create(path));
+                (path, file)
+            }
         };
-        let file = self.unfinished.make(&path, |path| File::create(path)).map_err(|e| at(&path, e))?;
+        let file = file.map_err(|e| at(&path, e))?;
         let twin = file.try_clone().map_err(|e| at(&path, e))?;
         Ok(Sink { stream: Box::new(BufWriter::with_capacity(1 << 16, file)), file: Some(twin) })
     }
@@ -191,6 +208,11 @@ impl Write for Sink {
 
 fn at(path: &Path, source: io::Error) -> ExportError {
     ExportError::Io { path: path.to_owned(), source }
+}
+
+/// The same where the output is claimed.
+fn claimed(path: &Path, source: io::Error) -> ExportError {
+    if source.kind() == io::ErrorKind::WouldBlock { ExportError::Busy(path.to_owned()) } else { at(path, source) }
 }
 
 fn beside(path: &Path, suffix: &str) -> PathBuf {

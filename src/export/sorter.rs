@@ -9,7 +9,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::PathBuf;
 
-/// A file that is needed only while an output is written; it goes when this does.
+/// A file that is needed only while an output is written; it goes when this does, or when the program does.
 pub(super) struct Scratch {
     path: PathBuf,
     file: BufWriter<File>,
@@ -19,7 +19,13 @@ pub(super) struct Scratch {
 impl Scratch {
     /// An empty one; of an output it is made by [`super::Place::scratch`].
     pub(super) fn create(path: PathBuf) -> io::Result<Self> {
-        let file = File::options().read(true).write(true).create(true).truncate(true).open(&path)?;
+        // What stands there is a killed program's: of a living one the name holds the process, or its output is claimed.
+        std::fs::remove_file(&path).or_else(|e| if e.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(e) })?;
+        let file = File::options().read(true).write(true).create_new(true).open(&path)?;
+        if cfg!(unix) {
+            // Without a name it goes when the program does, however that ends.
+            std::fs::remove_file(&path)?;
+        }
         Ok(Self { path, file: BufWriter::with_capacity(1 << 16, file), written: 0 })
     }
 
@@ -59,8 +65,10 @@ impl Write for Scratch {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        // It holds nothing that anyone needs.
-        let _ = std::fs::remove_file(&self.path);
+        if !cfg!(unix) {
+            // It holds nothing that anyone needs.
+            let _ = std::fs::remove_file(&self.path);
+        }
     }
 }
 

@@ -14,8 +14,10 @@ impl Unfinished {
     /// Makes one more. While this runs nothing is removed, and after a removal nothing is made.
     pub(super) fn make<T>(&self, path: &Path, make: impl FnOnce(&Path) -> io::Result<T>) -> io::Result<T> {
         let mut paths = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let made = make(path)?;
+        // Only now: what could not be made may be another process's.
         paths.push(path.to_owned());
-        make(path)
+        Ok(made)
     }
 
     /// Puts what was made in its place: none of it goes any more if that succeeds.

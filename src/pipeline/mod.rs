@@ -13,20 +13,20 @@ use std::time::Instant;
 
 use thiserror::Error;
 
+pub use crate::settings::Settings;
 pub(crate) use certificates::verdict;
 pub use certificates::{Job, certify_network};
 pub use select::{Selection, own_countries, selected};
 pub use turns::{TurnJob, TurnOutcome, best_of, certify_turns, turn_verdict};
 
 use crate::account::AccountRow;
-use crate::corridor::Params;
 use crate::network::{self, Network};
-use crate::osm::facts::{Countries, CountriesError, Policy, RulesError, cross_sections};
+use crate::osm::facts::{Countries, CountriesError, RulesError, cross_sections};
 use crate::osm::pbf::{HeaderInfo, ReadError};
 use crate::osm::{self};
-use crate::stet::{Model, ModelError, Options};
+use crate::stet::{Model, ModelError};
 use crate::store::{Database, EdgeCertificate, Run, StoreError, TurnSet, VehicleRecord, Writer};
-use crate::turns::{Kerbs, TurnFacts, TurnParams, turn_facts};
+use crate::turns::{TurnFacts, turn_facts};
 use crate::vehicle::{Catalogue, Vehicle, VehicleError};
 use crate::verdict::{UnknownReason, Verdict};
 
@@ -79,27 +79,6 @@ pub trait Reporter: Sync {
     fn end(&self);
     /// A remark for people.
     fn note(&self, text: &str);
-}
-
-/// How certificates are made; all of it goes into the `run` record.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
-    /// Which width counts.
-    pub policy: Policy,
-    /// How corridors are made.
-    pub corridor: Params,
-    /// How corrections are made.
-    pub stet: Options,
-    /// Whether turns are certified, too.
-    pub turns: bool,
-}
-
-impl Settings {
-    /// How turns are made.
-    #[must_use]
-    pub fn turn_params(&self) -> TurnParams {
-        TurnParams { corridor: self.corridor, kerbs: Kerbs::default() }
-    }
 }
 
 /// What `ingest` is asked to do.
@@ -160,7 +139,7 @@ pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunE
     let started = (ask.now)();
     let mut summary = Summary::default();
     // Before the work: is the place writable, is nothing in the way?
-    let mut writer = Database::create(ask.db)?;
+    let mut writer = Database::create(ask.db, ask.settings)?;
     if writer.replaced_leftover() {
         reporter.note("an earlier run was cut short: beginning afresh");
     }
@@ -264,10 +243,9 @@ fn certify_into(
         return Ok(());
     }
     let clock = Instant::now();
-    let params = settings.turn_params();
-    let turns = turn_facts(network, &params.kerbs);
+    let turns = turn_facts(network, &settings.kerbs);
     writer.turns(network, turns.clone())?;
-    let job = TurnJob { network, turns: &turns, models, edges: &verdicts.0, settings, params: &params };
+    let job = TurnJob { network, turns: &turns, models, edges: &verdicts.0, settings };
     let outcome = certify_turns(&job, reporter, |vehicle, certificate| {
         writer.turn_certificate(numbers[vehicle], settings.policy, certificate)
     })?;
@@ -340,10 +318,9 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
     let mut turns: Option<Vec<TurnFacts>> = None;
     if ask.settings.turns {
         let clock = Instant::now();
-        let params = ask.settings.turn_params();
-        let facts = turn_facts(&network, &params.kerbs);
+        let facts = turn_facts(&network, &ask.settings.kerbs);
         let (edges, settings) = (&verdicts.0[..], ask.settings);
-        let job = TurnJob { network: &network, turns: &facts, models: &models, edges, settings, params: &params };
+        let job = TurnJob { network: &network, turns: &facts, models: &models, edges, settings };
         let outcome = certify_turns(&job, reporter, |vehicle, certificate| {
             turn_certificates[vehicle].push(certificate.clone());
             Ok::<(), StoreError>(())
@@ -371,9 +348,8 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
             parameters: ask.parameters.to_string(),
         };
         let vehicle = record(&model.vehicle)?;
-        let policy = ask.settings.policy;
         let turns = turns.as_deref().map(|facts| TurnSet { network: &network, facts, certificates: turned });
-        db.replace_certificates(&vehicle, policy, certificates, plans, turns, &run, &summary.account)?;
+        db.replace_certificates(&vehicle, ask.settings, certificates, plans, turns, &run, &summary.account)?;
         summary.vehicles.push(model.vehicle.id.clone());
     }
     db.close()?;

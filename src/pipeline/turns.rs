@@ -15,7 +15,7 @@ use crate::network::Network;
 use crate::osm::LonLat;
 use crate::stet::{Model, Options, Plan, SpanResult, certify_spans};
 use crate::store::{Measured, Named, StoredPlan, TurnCertificate, VerdictKind, verdict_words};
-use crate::turns::{Reach, StrokeLine, TurnFacts, TurnParams, TurnPath, nominal_leeway_m, passage_on, turn_on};
+use crate::turns::{Reach, StrokeLine, TurnFacts, TurnPath, nominal_leeway_m, passage_on, turn_on};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
 /// Turns handed to the threads at a time.
@@ -43,8 +43,6 @@ pub struct TurnJob<'a> {
     pub edges: &'a [Vec<Verdict>],
     /// How.
     pub settings: &'a Settings,
-    /// What is assumed of junctions.
-    pub params: &'a TurnParams,
 }
 
 /// What certifying leaves beside the certificates.
@@ -163,7 +161,7 @@ fn lay_lines(job: &TurnJob<'_>, batch: &[u32], strokes: &[u32], lines: &mut Line
     wanted.retain(|stroke| !lines.contains_key(stroke));
     let policy = job.settings.policy;
     let line = |&stroke: &u32| {
-        let line = StrokeLine::new(job.network, stroke, policy, &job.params.corridor).map(Arc::new);
+        let line = StrokeLine::new(job.network, stroke, policy, &job.settings.corridor).map(Arc::new);
         (stroke, (number, line))
     };
     let made: Vec<_> = wanted.par_iter().map(line).collect();
@@ -210,14 +208,14 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
             continue;
         }
         let made = || {
-            let (network, policy) = (job.network, job.settings.policy);
+            let (network, policy, params) = (job.network, job.settings.policy, &job.settings.turn_params());
             let (from, to) = (line(turn.movement.from)?, line(turn.movement.to)?);
             match turn.through.first() {
                 Some(&arc) => {
                     let over = (turn.movement, turn.through.as_slice());
-                    passage_on(network, over, [from, line(arc)?, to], policy, job.params, reach)
+                    passage_on(network, over, [from, line(arc)?, to], policy, params, reach)
                 }
-                None => turn_on(network, turn.movement, [from, to], policy, job.params, reach),
+                None => turn_on(network, turn.movement, [from, to], policy, params, reach),
             }
         };
         match made() {

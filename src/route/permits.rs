@@ -2,6 +2,7 @@
 
 use super::graph::{Access, BARRED};
 use crate::network::{MovementKind, Movements};
+use crate::settings::Settings;
 use crate::verdict::{UnknownReason, Verdict};
 
 /// What is said of an edge or a movement.
@@ -29,6 +30,8 @@ impl Permit {
 /// All permits of one vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Permits {
+    /// How they were made: a route over them is certified in the same way.
+    pub settings: Settings,
     /// One an edge.
     pub edges: Vec<Permit>,
     /// One a movement, in the order of [`Movements::all`]; of those straight on nothing is asked.
@@ -39,14 +42,19 @@ pub struct Permits {
 
 impl Permits {
     /// With `turn` for every movement that is a turn and for every passage; straight on is covered by the edges.
-    pub fn new(edges: Vec<Permit>, movements: &Movements, turn: impl Fn(u32, u32) -> Permit) -> Self {
+    pub fn new(
+        settings: Settings,
+        edges: Vec<Permit>,
+        movements: &Movements,
+        turn: impl Fn(u32, u32) -> Permit,
+    ) -> Self {
         let permit = |m: &crate::network::Movement| match m.kind {
             MovementKind::StraightOn => Permit::COVERED,
             MovementKind::Turn => turn(m.from, m.to),
             MovementKind::UTurn => Permit::UNKNOWN,
         };
         let passages = movements.passages().iter().map(|passage| turn(passage.from, passage.to)).collect();
-        Self { edges, movements: movements.all().iter().map(permit).collect(), passages }
+        Self { settings, edges, movements: movements.all().iter().map(permit).collect(), passages }
     }
 
     /// What is safe may be used, and no restriction may be broken; nobody turns back on the road.

@@ -5,10 +5,10 @@ use std::rc::Rc;
 
 use rustc_hash::FxHashMap;
 
-use crate::corridor::{Corridor, Frame, Params};
+use crate::corridor::{Corridor, Frame};
 use crate::network::{Movement, Network};
-use crate::osm::facts::Policy;
-use crate::turns::{Joint, StrokeLine};
+use crate::settings::Settings;
+use crate::turns::{Joint, StrokeLine, TurnParams};
 use crate::verdict::UnknownReason;
 
 /// One certified way to drive a turn.
@@ -112,11 +112,11 @@ impl Turns for NoTurns {
     }
 }
 
-/// Strokes of a network, made into corridors as they are asked for and kept.
+/// Strokes of a network, made into corridors under one set's settings as they are asked for, and kept.
 pub struct Strokes<'n> {
     network: &'n Network,
-    policy: Policy,
-    params: Params,
+    settings: Settings,
+    params: TurnParams,
     /// By edge: its stroke, and its place in it.
     place: Vec<(u32, u32)>,
     made: FxHashMap<u32, Result<Rc<StrokeLine>, UnknownReason>>,
@@ -125,7 +125,7 @@ pub struct Strokes<'n> {
 impl<'n> Strokes<'n> {
     /// Nothing is made yet.
     #[must_use]
-    pub fn new(network: &'n Network, policy: Policy, params: Params) -> Self {
+    pub fn new(network: &'n Network, settings: Settings) -> Self {
         let mut place = vec![(u32::MAX, 0); network.edges.len()];
         for (stroke, facts) in (0_u32..).zip(&network.strokes) {
             let edges = &network.stroke_edges[facts.edges.start as usize..facts.edges.end as usize];
@@ -133,11 +133,23 @@ impl<'n> Strokes<'n> {
                 place[edge as usize] = (stroke, i);
             }
         }
-        Self { network, policy, params, place, made: FxHashMap::default() }
+        let params = settings.turn_params();
+        Self { network, settings, params, place, made: FxHashMap::default() }
     }
 
     pub(super) fn network(&self) -> &'n Network {
         self.network
+    }
+
+    /// What the strokes are made with, and all that is strung together from them.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The same for turns between them.
+    pub(super) fn turn_params(&self) -> &TurnParams {
+        &self.params
     }
 
     /// Stroke of an edge, and the edge's place in it.
@@ -150,7 +162,7 @@ impl<'n> Strokes<'n> {
     /// # Errors
     /// Nothing can be said of any of its edges.
     pub fn line(&mut self, stroke: u32) -> Result<Rc<StrokeLine>, UnknownReason> {
-        let (network, policy, params) = (self.network, self.policy, &self.params);
+        let (network, policy, params) = (self.network, self.settings.policy, &self.settings.corridor);
         let make = || StrokeLine::new(network, stroke, policy, params).map(Rc::new);
         self.made.entry(stroke).or_insert_with(make).clone()
     }

@@ -111,38 +111,19 @@ pub struct Planner<'n> {
     model: &'n Model,
     menu: Menu<'n>,
     strokes: Strokes<'n>,
-    options: stet::Options,
     speeds: Speeds,
     access: Access,
     stop: Stop,
 }
 
 impl<'n> Planner<'n> {
-    /// For a vehicle with these permits.
+    /// For a vehicle with these permits. Strokes, turns and whole routes are certified under the permits' settings.
     #[must_use]
-    pub fn new(
-        graph: Graph<'n>,
-        permits: &'n Permits,
-        model: &'n Model,
-        turns: &'n dyn Turns,
-        strokes: Strokes<'n>,
-        options: stet::Options,
-        speeds: Speeds,
-    ) -> Self {
+    pub fn new(graph: Graph<'n>, permits: &'n Permits, model: &'n Model, turns: &'n dyn Turns, speeds: Speeds) -> Self {
         let snapper = Snapper::new(graph.network);
         let access = permits.access(graph.movements);
-        Self {
-            graph,
-            snapper,
-            permits,
-            model,
-            menu: Menu::new(turns),
-            strokes,
-            options,
-            speeds,
-            access,
-            stop: Stop::default(),
-        }
+        let strokes = Strokes::new(graph.network, permits.settings.clone());
+        Self { graph, snapper, permits, model, menu: Menu::new(turns), strokes, speeds, access, stop: Stop::default() }
     }
 
     fn network(&self) -> &'n Network {
@@ -275,7 +256,7 @@ impl<'n> Planner<'n> {
             Err(AssemblyError::Stopped(stopped)) => return Err(stopped),
             Err(error) => return Ok(Err(unassembled(error, &found.drive))),
         };
-        let certificate = stet::certify_until(&path.corridor, self.model, &self.options, &self.stop)?;
+        let certificate = stet::certify_until(&path.corridor, self.model, &self.permits.settings.stet, &self.stop)?;
         let refuted = |certificate: Option<&Certificate>| Refutation {
             at: culprit(&path, certificate),
             result: certificate.map(|c| (c.result.rsc_m, c.result.hinge_margin_rad)),

@@ -4,21 +4,21 @@ use rustc_hash::FxHashMap;
 
 use super::permits::{Permit, Permits};
 use crate::network::{Movements, Network};
-use crate::osm::facts::Policy;
-use crate::store::{Database, QueryOptions, StoreError, TurnQuery};
+use crate::store::{CertifiedSet, Database, QueryOptions, StoreError, TurnQuery};
 
 impl Permits {
-    /// A vehicle's permits for the edges and turns of the database that `network` is from.
+    /// The permits of a set, for the edges and turns of the database that `network` is from.
     ///
     /// # Errors
-    /// Its edges or its turns are not certified there under this policy.
+    /// Its turns are not certified, or its settings cannot be read.
     pub fn stored(
         database: &mut Database,
         network: &Network,
         movements: &Movements,
-        vehicle: &str,
-        policy: Policy,
+        set: &CertifiedSet,
     ) -> Result<Self, StoreError> {
+        let settings = set.settings()?;
+        let (vehicle, policy) = (&set.vehicle_id, set.policy);
         let mut edges = vec![Permit::UNKNOWN; network.edges.len()];
         for row in database.query(&QueryOptions::new(vehicle, policy))? {
             let row = row?;
@@ -32,6 +32,7 @@ impl Permits {
             .map(|row| ((row.from_edge, row.to_edge), Permit { verdict: row.verdict, rsc_m: row.rsc_m }))
             .collect();
         let id = |edge: u32| network.edges.get(edge as usize).map_or(0, |edge| edge.id);
-        Ok(Self::new(edges, movements, |from, to| turns.get(&(id(from), id(to))).copied().unwrap_or(Permit::UNKNOWN)))
+        let turn = |from, to| turns.get(&(id(from), id(to))).copied().unwrap_or(Permit::UNKNOWN);
+        Ok(Self::new(settings, edges, movements, turn))
     }
 }

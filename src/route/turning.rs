@@ -2,26 +2,19 @@
 
 use super::pieces::{Strokes, TurnPiece, Turns};
 use crate::network::Movement;
-use crate::osm::facts::Policy;
 use crate::pipeline::best_of;
 use crate::stet::{Model, Options, SpanResult, certify_spans};
-use crate::turns::{Reach, TurnCorridors, TurnParams, TurnPath, nominal_leeway_m, passage_on, turn_on};
+use crate::turns::{Reach, TurnCorridors, TurnPath, nominal_leeway_m, passage_on, turn_on};
 use crate::verdict::UnknownReason;
 
 /// Paths of a turn that are tried beside the one that its permit rests on: those with most room by themselves.
 const MORE: usize = 5;
 
-/// Turns made as a route asks for them.
+/// Turns made as a route asks for them, under the settings of its strokes.
 #[derive(Debug, Clone)]
 pub struct MadeTurns<'m> {
     /// The vehicle.
     pub model: &'m Model,
-    /// Which width counts.
-    pub policy: Policy,
-    /// How turns are made into corridors.
-    pub params: TurnParams,
-    /// How corrections are made.
-    pub options: Options,
 }
 
 impl Turns for MadeTurns<'_> {
@@ -32,7 +25,8 @@ impl Turns for MadeTurns<'_> {
         arcs: &[u32],
     ) -> Result<Vec<TurnPiece>, UnknownReason> {
         let made = self.made(strokes, movement, arcs)?;
-        let known = best_of(&made.paths, &[self.model], &self.options).pop().flatten();
+        let options = &strokes.settings().stet;
+        let known = best_of(&made.paths, &[self.model], options).pop().flatten();
         let known = known.filter(|(_, result)| result.safe());
         let mut ranked: Vec<(f64, usize)> = (0..made.paths.len())
             .filter(|&path| known.as_ref().is_none_or(|(known, _)| *known != path))
@@ -40,7 +34,8 @@ impl Turns for MadeTurns<'_> {
             .collect();
         // Paths come in the order of their numbers; the sort keeps it among equals.
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let others = ranked.into_iter().take(MORE).filter_map(|(_, path)| Some((path, self.safe(&made.paths[path])?)));
+        let others =
+            ranked.into_iter().take(MORE).filter_map(|(_, path)| Some((path, self.safe(&made.paths[path], options)?)));
         let mut safe: Vec<(usize, SpanResult)> = known.into_iter().chain(others).collect();
         safe.sort_by(|a, b| b.1.rsc_m.total_cmp(&a.1.rsc_m));
         let frame = made.frame;
@@ -61,18 +56,16 @@ impl MadeTurns<'_> {
     ) -> Result<TurnCorridors, UnknownReason> {
         let reach = Reach::of(&self.model.vehicle).ok_or(UnknownReason::Geometry)?;
         let (from, to) = (strokes.line_of(movement.from)?, strokes.line_of(movement.to)?);
-        let network = strokes.network();
-        match arcs.first() {
-            Some(&arc) => {
-                let ring = strokes.line_of(arc)?;
-                passage_on(network, (*movement, arcs), [&from, &ring, &to], self.policy, &self.params, reach)
-            }
-            None => turn_on(network, *movement, [&from, &to], self.policy, &self.params, reach),
+        let ring = arcs.first().map(|&arc| strokes.line_of(arc)).transpose()?;
+        let (network, policy, params) = (strokes.network(), strokes.settings().policy, strokes.turn_params());
+        match ring {
+            Some(ring) => passage_on(network, (*movement, arcs), [&from, &ring, &to], policy, params, reach),
+            None => turn_on(network, *movement, [&from, &to], policy, params, reach),
         }
     }
 
-    fn safe(&self, path: &TurnPath) -> Option<SpanResult> {
-        let rows = certify_spans(&path.corridor, &[self.model], std::slice::from_ref(&path.counted), &self.options);
+    fn safe(&self, path: &TurnPath, options: &Options) -> Option<SpanResult> {
+        let rows = certify_spans(&path.corridor, &[self.model], std::slice::from_ref(&path.counted), options);
         rows.into_iter().next()?.spans.into_iter().next().filter(SpanResult::safe)
     }
 }

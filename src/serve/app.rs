@@ -58,7 +58,7 @@ impl App {
             if let Some(read) = app.unchanged()? {
                 return Ok(read);
             }
-            let region = Arc::new(Region::open(&app.options.db, app.options.recorded)?);
+            let region = Arc::new(Region::open(&app.options.db)?);
             *app.region.write().unwrap_or_else(PoisonError::into_inner) = Arc::clone(&region);
             app.options.log(&format!("{}: it has changed; read anew", app.options.db.display()));
             Ok(region)
@@ -95,12 +95,7 @@ impl App {
     ) -> Response {
         match self.try_answer(&ask, pace, work).await {
             Ok((stored, keep)) => stored.respond(&ask, keep),
-            Err(problem) => {
-                if problem.status.is_server_error() {
-                    self.options.log(&format!("{}: {problem:?}", ask.key()));
-                }
-                problem.into_response()
-            }
+            Err(problem) => problem.into_response(),
         }
     }
 

@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::region::Recorded;
+use super::log;
 
 /// What `serve` is asked to do.
 #[derive(Clone)]
@@ -18,9 +18,7 @@ pub struct Options {
     /// Tiles of an online map that the page may show beneath, as `https://…/{z}/{x}/{y}.png`; `None`: no request leaves
     /// the machine.
     pub base_map: Option<BaseMap>,
-    /// How a database's certificates were made.
-    pub recorded: Recorded,
-    /// A line for whoever runs the server.
+    /// A line for whoever runs the server: when the database has changed, and for each request that is refused.
     pub log: fn(&str),
     /// The bounds.
     pub limits: Limits,
@@ -28,7 +26,7 @@ pub struct Options {
 
 impl Options {
     pub(super) fn log(&self, line: &str) {
-        (self.log)(line);
+        (self.log)(&log::line(line));
     }
 }
 

@@ -8,13 +8,12 @@ use std::sync::{Arc, mpsc};
 
 use super::drive;
 use super::problem::Problem;
-use super::region::Region;
+use super::region::{Certified, Region};
 use super::roads::Roads;
-use crate::osm::facts::Policy;
-use crate::pipeline::Settings;
-use crate::route::{self, Graph, MadeTurns, Measure, Permits, Planner, Question, Speeds, Strokes, Unanswered};
+use crate::route::{self, Graph, MadeTurns, Measure, Permits, Planner, Question, Speeds, Unanswered};
 use crate::stet::Model;
 use crate::stop::Stop;
+use crate::store::Named as _;
 use serde_json::{Value, json};
 
 /// After so many answers a planner begins afresh: what it keeps of turns and strokes grows with what it has seen.
@@ -44,22 +43,19 @@ struct Wanted {
     roads: Arc<Roads>,
     permits: Permits,
     model: Model,
-    settings: Settings,
     measure: Measure,
     speeds: Speeds,
 }
 
 impl Router {
     /// Reads the permits and starts the thread.
-    pub(super) fn start(region: &Region, vehicle: &str, policy: Policy, measure: Measure) -> Result<Self, Problem> {
-        let known = region.certified(vehicle, policy)?;
+    pub(super) fn start(region: &Region, certified: &Certified<'_>, measure: Measure) -> Result<Self, Problem> {
         let roads = region.roads()?;
         let permits =
-            region.read(|database| Permits::stored(database, &roads.network, &roads.movements, &known.id, policy))?;
-        let model = Model::new(known).map_err(|error| Problem::fault(error.to_string()))?;
-        let settings = Settings { policy, ..region.settings.clone() };
+            region.read(|database| Permits::stored(database, &roads.network, &roads.movements, certified.set))?;
+        let model = Model::new(certified.vehicle).map_err(|error| Problem::fault(error.to_string()))?;
         let speeds = Speeds::builtin().map_err(|error| Problem::fault(error.to_string()))?;
-        let wanted = Wanted { roads, permits, model, settings, measure, speeds };
+        let wanted = Wanted { roads, permits, model, measure, speeds };
         let (questions, asked) = mpsc::sync_channel(MOST_WAITING);
         let thread = std::thread::Builder::new().name("routes".to_owned()).spawn(move || wanted.serve(&asked));
         thread.map_err(|error| Problem::busy(format!("no thread for routes: {error}")))?;
@@ -76,18 +72,11 @@ impl Router {
 
 impl Wanted {
     fn serve(&self, asked: &mpsc::Receiver<(Ride, Reply)>) {
-        let turns = MadeTurns {
-            model: &self.model,
-            policy: self.settings.policy,
-            params: self.settings.turn_params(),
-            options: self.settings.stet,
-        };
+        let turns = MadeTurns { model: &self.model };
         loop {
             let network = &self.roads.network;
             let graph = Graph::new(network, &self.roads.movements, &self.speeds, self.measure);
-            let strokes = Strokes::new(network, self.settings.policy, self.settings.corridor);
-            let (stet, speeds) = (self.settings.stet, self.speeds.clone());
-            let mut planner = Planner::new(graph, &self.permits, &self.model, &turns, strokes, stet, speeds);
+            let mut planner = Planner::new(graph, &self.permits, &self.model, &turns, self.speeds.clone());
             for _ in 0..ANSWERS {
                 let Ok((ride, reply)) = asked.recv() else { return };
                 // Who asked may have gone.
@@ -110,7 +99,7 @@ impl Wanted {
                 route.extend(more);
             }
         }
-        members["policy"] = json!(crate::store::Named::name(self.settings.policy));
+        members["policy"] = json!(self.permits.settings.policy.name());
         ids_as_text(&mut members);
         Ok(members)
     }

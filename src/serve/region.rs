@@ -18,7 +18,7 @@ use super::recent::{Late, Recent};
 use super::roads::Roads;
 use super::tiles::Overview;
 use crate::osm::facts::Policy;
-use crate::pipeline::Settings;
+use crate::settings::Settings;
 use crate::stop::Stop;
 use crate::store::{Bounds, CertifiedSet, Database, DrivingSides, Named, Run, StoreError};
 use crate::vehicle::Vehicle;
@@ -31,9 +31,6 @@ const MOST_EXPLAINED: usize = 16;
 pub(super) const MOST_OVERVIEWS: usize = 6;
 /// Planners kept; each holds an index of all roads and what it has made of them.
 const MOST_ROUTERS: usize = 4;
-
-/// How the certificates of a database were made; see [`super::Options::recorded`].
-pub(super) type Recorded = fn(&mut Database) -> Result<Settings, StoreError>;
 
 /// What tells one state of a file from another: which file, its length, and when it was written.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -61,6 +58,13 @@ impl Identity {
     }
 }
 
+/// A vehicle with its certificates under a policy, and how they were made.
+pub(super) struct Certified<'r> {
+    pub(super) vehicle: &'r Vehicle,
+    pub(super) set: &'r CertifiedSet,
+    pub(super) settings: Settings,
+}
+
 /// A state of the database.
 pub(super) struct Region {
     path: PathBuf,
@@ -75,7 +79,8 @@ pub(super) struct Region {
     pub(super) sets: Vec<CertifiedSet>,
     /// Those of `sets` that have turns as well.
     turns: Vec<bool>,
-    pub(super) settings: Settings,
+    /// The policy that counts where a request names none.
+    pub(super) policy: Policy,
     idle: Mutex<Vec<Database>>,
     roads: Late<Arc<Roads>>,
     names: Late<Arc<[NamedRoad]>>,
@@ -90,10 +95,10 @@ pub(super) struct Region {
 
 impl Region {
     /// Reads what holds for the whole file.
-    pub(super) fn open(path: &Path, recorded: Recorded) -> Result<Self, StoreError> {
+    pub(super) fn open(path: &Path) -> Result<Self, StoreError> {
         let identity = Identity::of(path)?;
         let mut database = Database::open(path)?;
-        let settings = recorded(&mut database)?;
+        let policy = database.settings_of_new_sets()?.policy;
         let runs: Vec<Run> = database.runs()?.into_iter().map(|(run, _)| run).collect();
         let sets = database.certified()?;
         let mut turns = Vec::new();
@@ -118,7 +123,7 @@ impl Region {
             vehicles,
             sets,
             turns,
-            settings,
+            policy,
             idle: Mutex::new(vec![database]),
             roads: Late::default(),
             names: Late::default(),
@@ -200,13 +205,13 @@ impl Region {
         })
     }
 
-    /// The vehicle, if it is certified under this policy.
-    pub(super) fn certified(&self, id: &str, policy: Policy) -> Result<&Vehicle, Problem> {
+    /// The vehicle's set under this policy, if there is one.
+    pub(super) fn certified(&self, id: &str, policy: Policy) -> Result<Certified<'_>, Problem> {
         let vehicle = self.vehicle(id)?;
-        let policies = self.policies(id);
-        if policies.iter().any(|(other, _)| *other == policy) {
-            return Ok(vehicle);
+        if let Some(set) = self.sets.iter().find(|set| set.vehicle_id == id && set.policy == policy) {
+            return Ok(Certified { vehicle, set, settings: set.settings()? });
         }
+        let policies = self.policies(id);
         let names: Vec<&str> = policies.iter().map(|(policy, _)| policy.name()).collect();
         let wanted = policy.name();
         Err(Problem::not_found(format!(
@@ -240,6 +245,9 @@ fn content(runs: &[Run], sets: &[CertifiedSet]) -> String {
         .iter()
         .map(|run| json!([run.command, run.input_blake3, run.netcert_version, run.parameters, run.finished]))
         .collect();
-    let sets: Vec<_> = sets.iter().map(|set| json!([set.vehicle_id, set.vehicle_blake3, set.policy.name()])).collect();
+    let sets: Vec<_> = sets
+        .iter()
+        .map(|set| json!([set.vehicle_id, set.vehicle_blake3, set.policy.name(), set.kept_settings()]))
+        .collect();
     blake3::hash(json!([runs, sets]).to_string().as_bytes()).to_hex().to_string()
 }

@@ -1,11 +1,13 @@
 //! The network in memory, for explanations and routes: loaded when it is first needed.
 
-use std::sync::OnceLock;
+use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
+use super::problem::Problem;
+use super::recent::Recent;
 use crate::network::{Movements, Network};
-use crate::pipeline::Settings;
+use crate::settings::Settings;
 use crate::turns::{TurnFacts, turn_facts};
 
 /// A network with what is looked up in it.
@@ -13,14 +15,15 @@ pub(super) struct Roads {
     pub(super) network: Network,
     pub(super) movements: Movements,
     by_id: FxHashMap<i64, u32>,
-    turns: OnceLock<Vec<TurnFacts>>,
+    /// By kerbs: all sets of a database have the same.
+    turns: Recent<Vec<TurnFacts>>,
 }
 
 impl Roads {
     pub(super) fn new(network: Network) -> Self {
         let by_id = (0..).zip(&network.edges).map(|(index, edge)| (edge.id, index)).collect();
         let movements = network.movements();
-        Self { network, movements, by_id, turns: OnceLock::new() }
+        Self { network, movements, by_id, turns: Recent::new(1) }
     }
 
     /// The edge of an `edge_id`.
@@ -28,9 +31,11 @@ impl Roads {
         self.by_id.get(&id).copied()
     }
 
-    /// The turn of a `turn_id`.
-    pub(super) fn turn(&self, id: i64, settings: &Settings) -> Option<&TurnFacts> {
-        let turns = self.turns.get_or_init(|| turn_facts(&self.network, &settings.turn_params().kerbs));
-        turns.iter().find(|turn| turn.id == id)
+    /// The turn of a `turn_id`, with its kerbs as the settings have them.
+    pub(super) fn turn(&self, id: i64, settings: &Settings) -> Result<Option<TurnFacts>, Problem> {
+        let key = format!("{:?}", settings.kerbs);
+        let make = || Ok::<_, Problem>(turn_facts(&self.network, &settings.kerbs));
+        let turns: Arc<Vec<TurnFacts>> = self.turns.get(&key, make)?;
+        Ok(turns.iter().find(|turn| turn.id == id).cloned())
     }
 }

@@ -74,7 +74,7 @@ impl Server {
         if !options.addr.ip().is_loopback() && !options.allow_remote {
             return Err(ServeError::Remote(options.addr));
         }
-        let region = Region::open(&options.db, options.recorded)?;
+        let region = Region::open(&options.db)?;
         let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().thread_name("serve").build()?;
         let listen = |source| ServeError::Listen { addr: options.addr, source };
         let listener = runtime.block_on(TcpListener::bind(options.addr)).map_err(listen)?;

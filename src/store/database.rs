@@ -11,6 +11,7 @@ use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, Sq
 use crate::account::AccountRow;
 use crate::network::Network;
 use crate::osm::facts::Policy;
+use crate::settings::Settings;
 
 use super::contents;
 use super::error::StoreError;
@@ -30,19 +31,6 @@ type Sql<T> = Result<T, sqlx::Error>;
 /// An open database. Its calls block: asynchronous code calls them from a blocking task.
 pub struct Database {
     pub(super) session: Session,
-}
-
-/// A complete set of certificates: one for every edge.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct CertifiedSet {
-    /// Of this vehicle.
-    pub vehicle_id: String,
-    /// Hash of the vehicle's definition that they were made with.
-    pub vehicle_blake3: String,
-    /// Under this policy.
-    pub policy: Policy,
-    /// The view that shows the permitted edges.
-    pub layer: String,
 }
 
 /// Pages kept in memory, KiB.
@@ -140,21 +128,6 @@ impl Database {
         })
     }
 
-    /// Which certificates there are.
-    pub fn certified(&mut self) -> Result<Vec<CertifiedSet>, StoreError> {
-        self.session.run(async |c| {
-            let sql = "SELECT vehicle_id, blake3, corridor, layer FROM certified_set JOIN vehicle USING (vehicle_no) \
-                       JOIN corridor USING (corridor_no) ORDER BY vehicle_no, corridor_no";
-            let rows = sqlx::query(sql).fetch_all(c).await?;
-            let set = |row| -> Sql<CertifiedSet> {
-                let policy = network_read::word(row, 2)?;
-                let (vehicle_id, vehicle_blake3) = (row.try_get(0)?, row.try_get(1)?);
-                Ok(CertifiedSet { vehicle_id, vehicle_blake3, policy, layer: row.try_get(3)? })
-            };
-            rows.iter().map(set).collect()
-        })
-    }
-
     /// The runs that made the file, oldest first, each with its account.
     pub fn runs(&mut self) -> Result<Vec<(Run, Vec<AccountRow>)>, StoreError> {
         self.session.run(async |c| {
@@ -177,19 +150,20 @@ impl Database {
     }
 
     /// Puts a complete set of certificates, the plans they rest on, and the vehicle's turns in place of the old ones, in one step:
-    /// killed, the old ones stand. Without `turns` it has none afterwards. If the vehicle's definition changed, its sets under
-    /// other policies go as well. `certificates` may come in any order.
+    /// killed, the old ones stand. `settings` are what they were made with. Without `turns` it has none afterwards. If the
+    /// vehicle's definition changed, its sets under other policies go as well. `certificates` may come in any order.
     #[allow(clippy::too_many_arguments)] // All that is replaced in one transaction, each under its own name.
     pub fn replace_certificates(
         &mut self,
         vehicle: &VehicleRecord,
-        policy: Policy,
+        settings: &Settings,
         certificates: impl IntoIterator<Item = EdgeCertificate>,
         plans: Vec<StoredPlan>,
         mut turns: Option<TurnSet<'_>>,
         run: &Run,
         account: &[AccountRow],
     ) -> Result<(), StoreError> {
+        let written = self.acceptable(settings)?;
         let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.id.clone(), detail };
         let pack = |certificate: EdgeCertificate| certificate.pack().map_err(|why| unsound(certificate.edge, why));
         let mut rows = certificates.into_iter().map(pack).collect::<Result<Vec<Packed>, _>>()?;
@@ -201,7 +175,8 @@ impl Database {
             Some(turns) => Some(turns.pack().map_err(|(turn, why)| unsound(turn, why))?),
             None => None,
         };
-        let mut renewed = Renewed { rows, plans, turns: turns.zip(packed) };
+        let policy = settings.policy;
+        let mut renewed = Renewed { settings: written, rows, plans, turns: turns.zip(packed) };
         self.session.run(async |c| {
             sqlx::query("BEGIN IMMEDIATE").execute(&mut *c).await?;
             let done = replace(c, vehicle, policy, &mut renewed, run, account).await;
@@ -210,10 +185,22 @@ impl Database {
             done.and(ended.map(|_| ()))
         })
     }
+
+    /// The text to keep of a set's settings. All sets have the kerbs of the ingest: there is one table of turns for all of them.
+    fn acceptable(&mut self, settings: &Settings) -> Result<String, StoreError> {
+        let refused = |detail| StoreError::SettingsRefused { path: self.session.path.clone(), detail };
+        let written = settings.written().map_err(refused)?;
+        if self.settings_of_new_sets()?.kerbs == settings.kerbs {
+            return Ok(written);
+        }
+        let detail = "its turns were made with other kerbs; run `netcert ingest` again for these".to_owned();
+        Err(StoreError::SettingsRefused { path: self.session.path.clone(), detail })
+    }
 }
 
 /// A vehicle's new certificates, packed.
 struct Renewed<'a> {
+    settings: String,
     rows: Vec<Packed>,
     plans: Vec<StoredPlan>,
     turns: Option<(TurnSet<'a>, PackedSet)>,
@@ -254,7 +241,8 @@ async fn replace(
     let run_id = records::add_run(c, run, account).await?;
     let (vehicle_id, vehicle_name) = (&vehicle.id, &vehicle.name);
     plans::insert(c, plans::STROKES, (vehicle_no, corridor_no(policy)), &mut renewed.plans).await?;
-    let set = Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished };
+    let set =
+        Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished, settings: &renewed.settings };
     set.insert(c, &renewed.rows).await?;
     contents::touch_tables(c, &run.finished).await?;
     match &mut renewed.turns {

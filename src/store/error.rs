@@ -63,6 +63,37 @@ pub enum StoreError {
         /// What contradicts.
         detail: String,
     },
+    /// What a set of certificates was made with cannot be read.
+    #[error(
+        "{path}: the settings that {vehicle} was certified with under the {policy} policy cannot be read: {detail}; certify it \
+         again: `netcert certify --db {path} --vehicle {vehicle} --corridor {policy}`"
+    )]
+    SetSettings {
+        /// The database.
+        path: PathBuf,
+        /// Vehicle id.
+        vehicle: String,
+        /// Word of the policy.
+        policy: &'static str,
+        /// What is wrong with them.
+        detail: String,
+    },
+    /// What the database's ingest was told cannot be read.
+    #[error("{path}: the settings of its ingest cannot be read: {detail}; run `netcert ingest` again")]
+    IngestSettings {
+        /// The database.
+        path: PathBuf,
+        /// What is wrong with them.
+        detail: String,
+    },
+    /// Certificates cannot be kept under these settings.
+    #[error("{path}: no certificates can be kept here under the given settings: {detail}")]
+    SettingsRefused {
+        /// The database.
+        path: PathBuf,
+        /// What is wrong with them.
+        detail: String,
+    },
     /// The caller asks for what the database does not hold.
     #[error("{path}: {detail}")]
     NotThere {

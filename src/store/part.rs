@@ -2,10 +2,11 @@
 //! it is whole and on the disk. Killed at any moment, the old file is as it was; the next run starts the part afresh.
 
 use std::ffi::OsString;
-use std::fs::{File, OpenOptions, TryLockError};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::error::StoreError;
+use crate::claim::{self, Claim};
 
 /// A locked, empty `.part` file; removed when dropped unless it became the target.
 pub(super) struct Part {
@@ -13,7 +14,7 @@ pub(super) struct Part {
     pub(super) path: PathBuf,
     /// A killed run had left a part behind, which was emptied.
     pub(super) leftover: bool,
-    file: File,
+    claim: Claim,
     placed: bool,
 }
 
@@ -28,37 +29,18 @@ impl Part {
     /// Makes and locks the part of `target`.
     pub(super) fn create(target: &Path) -> Result<Self, StoreError> {
         let path = with_suffix(target, ".part");
-        loop {
-            let file = OpenOptions::new()
-                .read(true)
-                .write(true)
-                .create(true)
-                .truncate(false)
-                .open(&path)
-                .map_err(|e| StoreError::io(&path, e))?;
-            match file.try_lock() {
-                // A file system without locks: two runs at a time are then the user's to avoid.
-                Ok(()) => {}
-                Err(TryLockError::Error(e)) if e.kind() == std::io::ErrorKind::Unsupported => {}
-                Err(TryLockError::WouldBlock) => return Err(StoreError::Busy(path)),
-                Err(TryLockError::Error(e)) => return Err(StoreError::io(&path, e)),
-            }
-            // Between opening and locking, the run that held it may have renamed it: then it is the target by now.
-            if !same_file(&file, &path) {
-                continue;
-            }
-            let leftover = file.metadata().map_err(|e| StoreError::io(&path, e))?.len() > 0;
-            file.set_len(0).map_err(|e| StoreError::io(&path, e))?;
-            remove_companions(&path)?;
-            return Ok(Self { target: target.to_owned(), path, leftover, file, placed: false });
-        }
+        let claim = claim::file(&path).map_err(|e| StoreError::io(&path, e))?;
+        remove_companions(&path)?;
+        Ok(Self { target: target.to_owned(), path, leftover: claim.leftover, claim, placed: false })
     }
 
     /// Everything to the disk, then over the target in one step. The database must be closed, and nobody in the middle of
     /// changing the old one.
     pub(super) fn place(mut self) -> Result<(), StoreError> {
         let at = |e| StoreError::io(&self.target, e);
-        self.file.sync_all().map_err(at)?;
+        if let Some(file) = &self.claim.file {
+            file.sync_all().map_err(at)?;
+        }
         // A journal that stayed beside the old file must not be taken for one of the new.
         remove_companions(&self.target)?;
         std::fs::rename(&self.path, &self.target).map_err(at)?;
@@ -85,20 +67,6 @@ fn remove_companions(path: &Path) -> Result<(), StoreError> {
         }
     }
     Ok(())
-}
-
-#[cfg(unix)]
-fn same_file(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    match (file.metadata(), std::fs::metadata(path)) {
-        (Ok(a), Ok(b)) => (a.dev(), a.ino()) == (b.dev(), b.ino()),
-        _ => false,
-    }
-}
-
-#[cfg(not(unix))]
-fn same_file(_file: &File, _path: &Path) -> bool {
-    true // an open file cannot be renamed there
 }
 
 /// The rename itself must be on the disk too.

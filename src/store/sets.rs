@@ -42,6 +42,8 @@ pub(super) struct Set<'a> {
     pub(super) run_id: i64,
     /// Time stamp of the layer.
     pub(super) time: &'a str,
+    /// As [`crate::settings::Settings::written`] gives them.
+    pub(super) settings: &'a str,
 }
 
 impl Set<'_> {
@@ -57,12 +59,13 @@ impl Set<'_> {
         }
         bulk.finish(c).await?;
         let layer = self.layer_name(c).await?;
-        sqlx::query("INSERT INTO certified_set VALUES (?, ?, ?, ?, ?)")
+        sqlx::query("INSERT INTO certified_set VALUES (?, ?, ?, ?, ?, ?)")
             .bind(self.vehicle_no)
             .bind(corridor)
             .bind(self.run_id)
             .bind(rows.len() as i64)
             .bind(&layer)
+            .bind(self.settings)
             .execute(&mut *c)
             .await?;
         self.register(c, &layer).await

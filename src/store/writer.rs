@@ -11,6 +11,7 @@ use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, Sq
 use crate::account::AccountRow;
 use crate::network::{Area, Network};
 use crate::osm::facts::Policy;
+use crate::settings::Settings;
 use crate::turns::TurnFacts;
 
 use super::areas;
@@ -28,6 +29,7 @@ use super::restrictions::{self, Restrictions};
 use super::schema::{APPLIED, BEFORE_DATA, MIGRATIONS};
 use super::session::Session;
 use super::sets::{self, Set};
+use super::settings;
 use super::spool::Spool;
 use super::styles::{self, Shows};
 use super::turns::{self, TurnCertificate};
@@ -45,6 +47,8 @@ pub struct VehicleNo(u32);
 /// A database that is being made. Dropped unfinished, it leaves what was there as it was.
 pub struct Writer {
     session: Session,
+    /// By policy's number: what its certificates are made with, as it is kept.
+    settings: Vec<String>,
     spool: Spool,
     vehicles: Vec<VehicleRecord>,
     account: Vec<AccountRow>,
@@ -60,8 +64,13 @@ pub struct Writer {
 }
 
 impl Database {
-    /// Begins a new database that will replace what is at `path`, unless that is something netcert did not make.
-    pub fn create(path: &Path) -> Result<Writer, StoreError> {
+    /// Begins a new database that will replace what is at `path`, unless that is something netcert did not make. All its
+    /// certificates are made with `settings`, under whatever policy.
+    pub fn create(path: &Path, settings: &Settings) -> Result<Writer, StoreError> {
+        let refused = |detail| StoreError::SettingsRefused { path: path.to_owned(), detail };
+        let written = settings.written().map_err(refused)?;
+        let under = |&policy: &Policy| Settings { policy, ..settings.clone() }.written();
+        let by_policy: Vec<String> = Policy::ALL.iter().map(under).collect::<Result<_, _>>().map_err(refused)?;
         if path.exists() {
             // Also rolls back what a killed `certify` left half done, so that its journal is no longer needed.
             match Self::open_to_change(path) {
@@ -89,11 +98,13 @@ impl Database {
         session.run(async |c| {
             migrate(c, Some(BEFORE_DATA)).await?;
             sqlx::query("BEGIN").execute(&mut *c).await?;
-            add_words(c).await
+            add_words(c).await?;
+            settings::keep(c, &written).await
         })?;
         let spool = Spool::create(with_suffix(&part.path, "-spool"))?;
         Ok(Writer {
             session,
+            settings: by_policy,
             spool,
             vehicles: Vec::new(),
             account: Vec::new(),
@@ -202,7 +213,8 @@ impl Writer {
             let policy = Policy::ALL[usize::from(corridor)];
             let Some(vehicle) = self.vehicles.get(vehicle_no as usize - 1) else { continue };
             let (vehicle_id, vehicle_name) = (&vehicle.id, &vehicle.name);
-            let set = Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished };
+            let Some(settings) = self.settings.get(usize::from(corridor)) else { continue };
+            let set = Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished, settings };
             self.session.run(async |c| set.insert(c, &rows).await)?;
         }
         let (all_plans, all_restrictions, all_areas) = (&mut self.plans, &self.restrictions, &self.areas);

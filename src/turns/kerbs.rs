@@ -2,7 +2,7 @@
 //!
 //! Every radius from here is assumed; a corner gets the smaller one of its two roads.
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::network::Road;
 use crate::osm::facts::RoadClass;
@@ -10,7 +10,8 @@ use crate::osm::facts::RoadClass;
 const TABLE: &str = include_str!("../../data/kerbs.toml");
 
 /// Assumed kerb radii.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
 pub struct Kerbs {
     countries: Vec<Country>,
 }
@@ -21,7 +22,7 @@ struct File {
     country: Vec<Country>,
 }
 
-#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Country {
     codes: Vec<String>,
@@ -39,6 +40,24 @@ struct Country {
 }
 
 impl Country {
+    fn radii(&self) -> [f64; 11] {
+        let Self { codes: _, motorway, trunk, primary, secondary, tertiary, unclassified, .. } = *self;
+        let Self { residential, living_street, service, track, busway, .. } = *self;
+        [
+            motorway,
+            trunk,
+            primary,
+            secondary,
+            tertiary,
+            unclassified,
+            residential,
+            living_street,
+            service,
+            track,
+            busway,
+        ]
+    }
+
     fn radius_m(&self, class: RoadClass) -> f64 {
         match class {
             RoadClass::Motorway => self.motorway,
@@ -71,6 +90,18 @@ impl Kerbs {
     pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
         let File { country } = toml::from_str(text)?;
         Ok(Self { countries: country })
+    }
+
+    /// Whether every radius is one that a kerb may have.
+    ///
+    /// # Errors
+    /// Which country has another one.
+    pub(crate) fn check(&self) -> Result<(), String> {
+        let wrong = |c: &&Country| c.radii().iter().any(|radius_m| !(0.0..=100.0).contains(radius_m));
+        match self.countries.iter().find(wrong) {
+            Some(country) => Err(format!("a radius of {:?} is not between 0 and 100 m", country.codes)),
+            None => Ok(()),
+        }
     }
 
     /// The same radius everywhere: what a test or a survey says.

@@ -347,7 +347,33 @@ fn killed_in_the_middle_the_old_database_is_whole_and_the_next_run_works() {
     run.wait().unwrap();
     assert!(place.read("demo.gpkg") == before);
     place.netcert("stats").succeeds();
+    assert!(place.path("demo.gpkg.part").exists(), "a killed run clears nothing");
     place.netcert("ingest {demo} --vehicle AGV-TUG4 --no-turns").succeeds().tells("an earlier run was cut short");
+    assert_eq!(place.files(), ["demo.gpkg"]);
+    place.netcert("stats").succeeds().shows("AGV-TUG4");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_living_run_is_not_disturbed_by_a_second_one() {
+    let place = Place::empty();
+    let line = "ingest {demo} --vehicle AGV-TUG4 --no-turns --quiet";
+    let mut first = place.command(line).stderr(Stdio::null()).spawn().unwrap();
+    let signal = |name: &str| {
+        let sent = std::process::Command::new("kill").args([name, &first.id().to_string()]).status();
+        assert!(sent.unwrap().success());
+    };
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while !place.path("demo.gpkg.part").exists() {
+        assert!(Instant::now() < deadline, "it never began");
+        std::thread::yield_now();
+    }
+    // It stands still, but it lives.
+    signal("-STOP");
+    assert!(place.path("demo.gpkg.part").exists(), "it was over too soon");
+    place.netcert(line).fails().tells("demo.gpkg.part: another program is writing it");
+    signal("-CONT");
+    assert!(first.wait().unwrap().success());
     assert_eq!(place.files(), ["demo.gpkg"]);
     place.netcert("stats").succeeds().shows("AGV-TUG4");
 }

@@ -20,7 +20,7 @@ use netcert::verdict::{UnsafeReason, Verdict};
 use program::Place;
 
 fn settings() -> Settings {
-    Settings { policy: Policy::Lane, corridor: Params::default(), stet: Options::default(), turns: true }
+    Settings { policy: Policy::Lane, ..Settings::default() }
 }
 
 /// The demo region's network and what its database keeps for a vehicle, by edge.

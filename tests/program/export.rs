@@ -23,7 +23,8 @@ fn an_export_permits_exactly_what_a_route_may_use() {
     let mut database = source.database().unwrap();
     let network = database.load_network().unwrap();
     let movements = network.movements();
-    let permits = Permits::stored(&mut database, &network, &movements, "AU-SEMI19", Policy::Lane).unwrap();
+    let set = database.certified_set("AU-SEMI19", Policy::Lane).unwrap().unwrap();
+    let permits = Permits::stored(&mut database, &network, &movements, &set).unwrap();
     let access = permits.access(&movements);
     for (edge, &cost) in (0_u32..).zip(&access.edges) {
         assert_eq!(source.permitted.edges.get(edge), cost != BARRED, "edge {edge}");
@@ -120,6 +121,41 @@ fn a_stopped_export_leaves_nothing_behind() {
         sent.success() && code == Some(130) && !whole
     });
     assert!(stopped, "every run had ended before it could be stopped");
+}
+
+/// A run that is killed cannot clear up: the next one does. One that is only slow is left alone.
+#[cfg(unix)]
+#[test]
+fn what_a_killed_export_left_is_cleared_and_a_living_one_is_not_disturbed() {
+    use std::process::{Command, Stdio};
+    for (target, out) in [("geojson --layer edges", "edges.geojson"), ("valhalla --extract {demo}", "valhalla")] {
+        let place = Place::with_demo();
+        let line = format!("export {target} --vehicle AU-SEMI19 --out {out} --quiet");
+        let part = place.path(&format!("{out}.part"));
+        let signal = |name: &str, id: u32| {
+            Command::new("kill").args([name, &id.to_string()]).stderr(Stdio::null()).status().unwrap();
+        };
+        let met = (0..50).any(|_| {
+            let mut run = place.command(&line).stderr(Stdio::null()).spawn().unwrap();
+            while !part.exists() && run.try_wait().unwrap().is_none() {
+                std::thread::yield_now();
+            }
+            signal("-STOP", run.id());
+            // It may have been through already.
+            let in_the_middle = part.exists() && run.try_wait().unwrap().is_none();
+            if in_the_middle {
+                place.netcert(&line).fails().tells(".part: another netcert is writing it");
+                assert!(part.exists(), "the other one's");
+            }
+            signal("-KILL", run.id());
+            run.wait().unwrap();
+            assert!(!in_the_middle || part.exists(), "a killed run clears nothing");
+            in_the_middle
+        });
+        assert!(met, "{target}: every run had ended before it could be stopped");
+        place.netcert(&line).succeeds();
+        assert_eq!(place.files(), ["demo.gpkg", out]);
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ use std::process::Command;
 use netcert::account::AccountRow;
 use netcert::network::{Edge, Network};
 use netcert::osm::facts::{Policy, WidthSource};
+use netcert::settings::Settings;
 use netcert::store::{
     Area, Bounds, Database, EdgeCertificate, EdgeMeasure, EdgeRow, QueryOptions, Run, StoreError, TurnCertificate,
     TurnSet, VehicleRecord, VerdictKind, verdict_words,
@@ -41,7 +42,7 @@ fn account() -> Vec<AccountRow> {
 fn build(path: &Path, ways: u32, order: impl Fn(u32, u32) -> u32) -> Network {
     let network = network(ways);
     let edges = network.edges.len() as u32;
-    let mut writer = Database::create(path).unwrap();
+    let mut writer = Database::create(path, &Settings::default()).unwrap();
     let semi = writer.vehicle(vehicle("EU-SEMI16.5"));
     let train = writer.vehicle(vehicle("eu_semi16_5")); // its layer's name is taken
     for i in 0..edges {
@@ -87,7 +88,7 @@ fn the_network_comes_back_as_it_was_written_and_makes_the_same_file_again() {
     let (a, b) = (folder.path().join("a.gpkg"), folder.path().join("b.gpkg"));
     let written = network(400);
     let write = |path: &Path, network: &Network| {
-        let mut writer = Database::create(path).unwrap();
+        let mut writer = Database::create(path, &Settings::default()).unwrap();
         writer.network(network, &[]).unwrap();
         writer.finish(&run()).unwrap();
     };
@@ -213,7 +214,7 @@ fn lengths_and_radii_are_the_corridors_where_there_is_one() {
     measures[0] =
         EdgeMeasure { length_m: Some(123.25), min_radius_m: Some(f64::INFINITY), centreline_deviation_m: Some(0.25) };
     measures[1].min_radius_m = Some(80.5);
-    let mut writer = Database::create(&path).unwrap();
+    let mut writer = Database::create(&path, &Settings::default()).unwrap();
     let semi = writer.vehicle(vehicle("semi"));
     for edge in 0..network.edges.len() as u32 {
         writer.certificate(semi, Policy::Lane, &certificate(edge, 0)).unwrap();
@@ -251,7 +252,7 @@ fn a_set_is_replaced_whole_and_a_changed_vehicle_loses_its_old_ones() {
     database
         .replace_certificates(
             &vehicle("EU-SEMI16.5"),
-            Policy::Lane,
+            &Settings::default(),
             (0..edges).rev().map(unknown),
             Vec::new(),
             None,
@@ -268,7 +269,7 @@ fn a_set_is_replaced_whole_and_a_changed_vehicle_loses_its_old_ones() {
     database
         .replace_certificates(
             &longer,
-            Policy::Carriageway,
+            &Settings { policy: Policy::Carriageway, ..Settings::default() },
             (0..edges).map(unknown),
             Vec::new(),
             None,
@@ -321,7 +322,7 @@ fn a_set_with_a_gap_or_a_double_or_a_false_safe_is_refused_and_the_old_one_stand
     let mut refused = |edges: Vec<u32>, says: &str| {
         let rows = edges.into_iter().map(|edge| certificate(edge, 5));
         let error = database
-            .replace_certificates(&vehicle("x"), Policy::Lane, rows, Vec::new(), None, &run(), &[])
+            .replace_certificates(&vehicle("x"), &Settings::default(), rows, Vec::new(), None, &run(), &[])
             .unwrap_err();
         assert!(error.to_string().contains(says), "{error}");
     };
@@ -332,7 +333,7 @@ fn a_set_with_a_gap_or_a_double_or_a_false_safe_is_refused_and_the_old_one_stand
     false_safe.verdict = Verdict::Safe;
     false_safe.measured.as_mut().unwrap().rsc_m = -0.0001;
     let error = database
-        .replace_certificates(&vehicle("x"), Policy::Lane, [false_safe], Vec::new(), None, &run(), &[])
+        .replace_certificates(&vehicle("x"), &Settings::default(), [false_safe], Vec::new(), None, &run(), &[])
         .unwrap_err();
     assert!(matches!(error, StoreError::Unsound { edge: 0, .. }), "{error}");
     database.close().unwrap();
@@ -359,7 +360,7 @@ fn wrong_files_are_told_apart_and_left_alone() {
         let before = std::fs::read(at(name)).unwrap();
         let error = Database::open(&at(name)).err().unwrap().to_string();
         assert!(error.contains(message) && error.contains(name), "{error}");
-        assert!(matches!(Database::create(&at(name)), Err(StoreError::InTheWay(_))), "{name}");
+        assert!(matches!(Database::create(&at(name), &Settings::default()), Err(StoreError::InTheWay(_))), "{name}");
         assert!(std::fs::read(at(name)).unwrap() == before);
     }
     build(&at("newer.gpkg"), 2, |i, _| i);
@@ -405,9 +406,12 @@ fn an_unfinished_writer_leaves_the_old_file_and_nothing_else() {
     let path = folder.path().join("a.gpkg");
     build(&path, 20, |i, _| i);
     let before = std::fs::read(&path).unwrap();
-    let mut writer = Database::create(&path).unwrap();
+    let mut writer = Database::create(&path, &Settings::default()).unwrap();
     writer.network(&network(500), &[]).unwrap();
-    assert!(matches!(Database::create(&path), Err(StoreError::Busy(_))), "a second run at the same time");
+    assert!(
+        matches!(Database::create(&path, &Settings::default()), Err(StoreError::Busy(_))),
+        "a second run at the same time"
+    );
     drop(writer);
     assert!(std::fs::read(&path).unwrap() == before);
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
@@ -417,7 +421,7 @@ fn an_unfinished_writer_leaves_the_old_file_and_nothing_else() {
 fn a_vehicle_with_missing_certificates_does_not_become_a_database() {
     let folder = folder();
     let path = folder.path().join("a.gpkg");
-    let mut writer = Database::create(&path).unwrap();
+    let mut writer = Database::create(&path, &Settings::default()).unwrap();
     let semi = writer.vehicle(vehicle("semi"));
     writer.network(&network(4), &[]).unwrap();
     writer.certificate(semi, Policy::Lane, &certificate(0, 0)).unwrap();
@@ -445,7 +449,15 @@ fn child_that_is_killed() {
             let certificates = (0..facts.len() as u32).map(unknown).collect();
             let turns = Some(TurnSet { network: &network, facts: &facts, certificates });
             database
-                .replace_certificates(&vehicle("EU-SEMI16.5"), Policy::Lane, rows, Vec::new(), turns, &run(), &[])
+                .replace_certificates(
+                    &vehicle("EU-SEMI16.5"),
+                    &Settings::default(),
+                    rows,
+                    Vec::new(),
+                    turns,
+                    &run(),
+                    &[],
+                )
                 .unwrap();
         }
     }
@@ -487,7 +499,7 @@ fn killed_at_any_moment_the_file_is_whole() {
         whole(&path);
     }
     // What a killed run left is no obstacle to the next.
-    let _ = Database::create(&path).unwrap();
+    let _ = Database::create(&path, &Settings::default()).unwrap();
     build(&path, 10, |i, _| i);
     whole(&path);
 }
@@ -505,7 +517,7 @@ fn a_full_disk_is_a_clear_error_and_the_old_file_stands() {
         build(&path, 200, |i, _| i);
         let before = std::fs::read(&path).unwrap();
         let error = (|| {
-            let mut writer = Database::create(&path)?;
+            let mut writer = Database::create(&path, &Settings::default())?;
             writer.network(&network(20_000), &[])?;
             writer.finish(&run())
         })()

@@ -17,6 +17,7 @@ mod oracle;
 mod paper;
 mod route_cli;
 mod serve;
+mod settings;
 mod support;
 mod turns_program;
 mod vehicle_pictures;

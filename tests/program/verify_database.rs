@@ -29,6 +29,7 @@ fn every_column_changed_in_the_unsafe_direction_is_refuted() {
         "UPDATE section SET lane_left_m = lane_left_m - 0.3".to_owned(),
         "UPDATE edge SET max_width_m = 2.0".to_owned(),
         "UPDATE vehicle SET definition = replace(definition, '\"width_m\":2.5', '\"width_m\":2.4')".to_owned(),
+        "UPDATE certified_set SET settings = json_set(settings, '$.map_tolerance_m', 0.4)".to_owned(),
         "UPDATE account SET count = count + 1 WHERE account_no = (SELECT min(account_no) FROM account)".to_owned(),
         "UPDATE run SET input_blake3 = '0'".to_owned(),
     ];

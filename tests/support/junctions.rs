@@ -81,9 +81,10 @@ impl Drawn {
     pub(crate) fn certified(&self, ids: &[&str], edges: &[Verdict], policy: Policy, threads: usize) -> Certified {
         let models: Vec<Model> = ids.iter().map(|id| Model::new(&catalogued(id)).unwrap()).collect();
         let edges = vec![edges.to_vec(); models.len()];
-        let settings = Settings { policy, corridor: Params::default(), stet: Options::default(), turns: true };
-        let (network, params, turns) = (&self.network, &self.params, self.facts());
-        let job = TurnJob { network, turns: &turns, models: &models, edges: &edges, settings: &settings, params };
+        let (corridor, kerbs) = (self.params.corridor, self.params.kerbs.clone());
+        let settings = Settings { policy, corridor, kerbs, ..Settings::default() };
+        let (network, turns) = (&self.network, self.facts());
+        let job = TurnJob { network, turns: &turns, models: &models, edges: &edges, settings: &settings };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
             let mut out = Vec::new();

@@ -3,15 +3,14 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use netcert::corridor::Params;
 use netcert::network::{Movement, Movements, Network, build};
 use netcert::osm::facts::{Countries, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::{Extract, LonLat, Way};
 use netcert::pipeline::{Job, Settings, TurnJob, certify_network, certify_turns};
 use netcert::route::{Graph, MadeTurns, Measure, Permit, Permits, Planner, Speeds, Strokes};
-use netcert::stet::{Model, Options};
-use netcert::turns::{Kerbs, TurnParams, turn_facts};
+use netcert::stet::Model;
+use netcert::turns::{Kerbs, turn_facts};
 
 use super::catalogue::catalogued;
 use super::silent::Silent;
@@ -59,14 +58,15 @@ impl Region {
             cross_sections(way, place, ring, rules)
         });
         let movements = network.movements();
-        let settings = Settings { policy, corridor: Params::default(), stet: Options::default(), turns: true };
+        let settings = Settings { policy, ..Settings::default() };
         Self { network, movements, settings, kerbs: Kerbs::default() }
     }
 
     pub(crate) fn driver(&self, id: &str) -> Driver {
         let model = Model::new(&catalogued(id)).unwrap();
         let models = std::slice::from_ref(&model);
-        let job = Job { network: &self.network, models, settings: &self.settings };
+        let settings = self.settings();
+        let job = Job { network: &self.network, models, settings: &settings };
         let mut edges = vec![Permit::UNKNOWN; self.network.edges.len()];
         certify_network(&job, &Silent, |_, certificate| {
             let rsc_m = certificate.measured.map(|measured| measured.rsc_m);
@@ -80,12 +80,12 @@ impl Region {
 
     /// As the pipeline certifies them.
     fn with_turns(&self, model: &Model, edges: Vec<Permit>) -> Permits {
-        let params = self.params();
-        let turns = turn_facts(&self.network, &params.kerbs);
+        let settings = self.settings();
+        let turns = turn_facts(&self.network, &settings.kerbs);
         let verdicts = vec![edges.iter().map(|permit| permit.verdict).collect()];
         let models = std::slice::from_ref(model);
-        let (network, settings) = (&self.network, &self.settings);
-        let job = TurnJob { network, turns: &turns, models, edges: &verdicts, settings, params: &params };
+        let network = &self.network;
+        let job = TurnJob { network, turns: &turns, models, edges: &verdicts, settings: &settings };
         let mut found = HashMap::new();
         certify_turns(&job, &Silent, |_, certificate| {
             let Movement { from, to, .. } = turns[certificate.turn as usize].movement;
@@ -94,24 +94,25 @@ impl Region {
             Ok::<(), ()>(())
         })
         .unwrap();
-        Permits::new(edges, &self.movements, |from, to| found.get(&(from, to)).copied().unwrap_or(Permit::UNKNOWN))
+        let turn = |from, to| found.get(&(from, to)).copied().unwrap_or(Permit::UNKNOWN);
+        Permits::new(settings, edges, &self.movements, turn)
     }
 
-    fn params(&self) -> TurnParams {
-        TurnParams { corridor: self.settings.corridor, kerbs: self.kerbs.clone() }
+    fn settings(&self) -> Settings {
+        Settings { kerbs: self.kerbs.clone(), ..self.settings.clone() }
     }
 
     pub(crate) fn strokes(&self) -> Strokes<'_> {
-        Strokes::new(&self.network, self.settings.policy, self.settings.corridor)
+        Strokes::new(&self.network, self.settings())
     }
 
     pub(crate) fn turns<'m>(&self, model: &'m Model) -> MadeTurns<'m> {
-        MadeTurns { model, policy: self.settings.policy, params: self.params(), options: self.settings.stet }
+        MadeTurns { model }
     }
 
     pub(crate) fn planner<'r>(&'r self, driver: &'r Driver, turns: &'r MadeTurns<'r>, measure: Measure) -> Planner<'r> {
         let speeds = Speeds::builtin().unwrap();
         let graph = Graph::new(&self.network, &self.movements, &speeds, measure);
-        Planner::new(graph, &driver.permits, &driver.model, turns, self.strokes(), self.settings.stet, speeds)
+        Planner::new(graph, &driver.permits, &driver.model, turns, speeds)
     }
 }

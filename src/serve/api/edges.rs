@@ -15,8 +15,9 @@ use crate::store::{EdgeFacts, EdgeRow, MapTurn, Named, QueryOptions, TurnsOf, ve
 pub(in super::super) fn edge(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
     ask.only(&["vehicle", "policy"])?;
     let edge_id = id(ask.name("id")?)?;
-    let policy = ask.parameter("policy").map_or(Ok(region.settings.policy), policy)?;
-    let vehicle = ask.parameter("vehicle").map(|vehicle| region.certified(vehicle, policy)).transpose()?;
+    let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
+    let certified = ask.parameter("vehicle").map(|vehicle| region.certified(vehicle, policy)).transpose()?;
+    let vehicle = certified.map(|certified| certified.vehicle);
     let facts = region.read(|database| database.edge_facts(edge_id))?;
     let facts = facts.ok_or_else(|| Problem::not_found(format!("edge {edge_id}: there is none in this database")))?;
     let mut certificates = Vec::new();

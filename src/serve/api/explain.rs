@@ -8,19 +8,17 @@ use serde_json::{Value, json};
 use super::super::answer::Stored;
 use super::super::ask::{Ask, policy};
 use super::super::problem::Problem;
-use super::super::region::Region;
+use super::super::region::{Certified, Region};
 use super::super::roads::Roads;
 use super::{SVG, answered, id};
 use crate::explain::{self, Explanation};
 use crate::network::Network;
 use crate::osm::LonLat;
-use crate::osm::facts::Policy;
 use crate::picture;
-use crate::pipeline::Settings;
+use crate::settings::Settings;
 use crate::stet::Model;
 use crate::stop::Stop;
 use crate::store::{Named, QueryOptions, TurnsOf};
-use crate::vehicle::Vehicle;
 
 /// Words and picture of one explanation.
 pub(in super::super) struct Explained {
@@ -46,21 +44,21 @@ pub(in super::super) fn drawn(region: &Region, ask: &Ask) -> Result<Stored, Prob
 fn explained(region: &Region, ask: &Ask) -> Result<Arc<Explained>, Problem> {
     ask.only(&["vehicle", "policy"])?;
     let id = id(ask.name("id")?)?;
-    let policy = ask.parameter("policy").map_or(Ok(region.settings.policy), policy)?;
-    let vehicle = region.certified(ask.required("vehicle")?, policy)?;
-    let key = format!("{id} {} {}", vehicle.id, policy.name());
-    region.explained.get(&key, || make(region, id, (vehicle, policy), &ask.stop))
+    let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
+    let certified = region.certified(ask.required("vehicle")?, policy)?;
+    let key = format!("{id} {} {}", certified.vehicle.id, policy.name());
+    region.explained.get(&key, || make(region, id, &certified, &ask.stop))
 }
 
-fn make(region: &Region, id: i64, (vehicle, policy): (&Vehicle, Policy), stop: &Stop) -> Result<Explained, Problem> {
-    let settings = Settings { policy, ..region.settings.clone() };
+fn make(region: &Region, id: i64, certified: &Certified<'_>, stop: &Stop) -> Result<Explained, Problem> {
+    let settings = &certified.settings;
     let roads = region.roads()?;
-    let model = Model::new(vehicle).map_err(|error| Problem::fault(error.to_string()))?;
+    let model = Model::new(certified.vehicle).map_err(|error| Problem::fault(error.to_string()))?;
     let mut explained = match roads.edge(id) {
-        Some(edge) => of_edge(region, (&roads, edge), &model, &settings, stop)?,
-        None => of_turn(region, (&roads, id), &model, &settings, stop)?,
+        Some(edge) => of_edge(region, (&roads, edge), &model, settings, stop)?,
+        None => of_turn(region, (&roads, id), &model, settings, stop)?,
     };
-    explained.members["policy"] = json!(policy.name());
+    explained.members["policy"] = json!(settings.policy.name());
     explained.members["picture"] = json!(explained.picture.is_some());
     Ok(explained)
 }
@@ -101,10 +99,10 @@ fn of_turn(
     settings: &Settings,
     stop: &Stop,
 ) -> Result<Explained, Problem> {
-    let facts = roads.turn(id, settings);
+    let facts = roads.turn(id, settings)?;
     let facts =
         facts.ok_or_else(|| Problem::not_found(format!("{id}: neither an edge nor a turn of this database")))?;
-    let turn = explain::explain_turn_until(&roads.network, facts, model, settings, stop)?;
+    let turn = explain::explain_turn_until(&roads.network, &facts, model, settings, stop)?;
     let mut members = explain::json(&turn.explanation);
     members["kind"] = json!("turn");
     members["turn_id"] = json!(id.to_string());

@@ -38,7 +38,7 @@ fn members(region: &Region, focus: Option<Bounds>, options: &Options) -> Value {
         .filter(|policy| region.sets.iter().any(|set| set.policy == **policy))
         .map(|policy| policy.name())
         .collect();
-    let default = region.settings.policy.name();
+    let default = region.policy.name();
     let default = policies.iter().find(|policy| **policy == default).or(policies.first());
     let mut certified: Vec<&str> = region.sets.iter().map(|set| set.vehicle_id.as_str()).collect();
     certified.dedup();

@@ -21,8 +21,9 @@ const TRIES: u32 = 12;
 /// `/api/route`
 pub(in super::super) fn route(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
     ask.only(&["vehicle", "policy", "from", "to", "via*", "alternatives", "snap", "tries", "least", "drive"])?;
-    let policy = ask.parameter("policy").map_or(Ok(region.settings.policy), policy)?;
-    let vehicle = region.certified(ask.required("vehicle")?, policy)?;
+    let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
+    let certified = region.certified(ask.required("vehicle")?, policy)?;
+    let vehicle = certified.vehicle;
     let ride = ride(ask)?;
     let measure = match ask.parameter("least").unwrap_or("time") {
         "time" => Measure::Time,
@@ -37,7 +38,7 @@ pub(in super::super) fn route(region: &Region, ask: &Ask) -> Result<Stored, Prob
         )));
     }
     let key = format!("{} {} {measure:?}", vehicle.id, policy.name());
-    let router = region.routers.get(&key, || Router::start(region, &vehicle.id, policy, measure))?;
+    let router = region.routers.get(&key, || Router::start(region, &certified, measure))?;
     let Some(answer) = router.ask(ride) else {
         region.routers.forget(&key);
         return Err(Problem::fault("the search for routes broke off"));

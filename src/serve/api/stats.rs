@@ -16,7 +16,7 @@ const BIN_MM: u32 = 100;
 /// `/api/stats`
 pub(in super::super) fn stats(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
     ask.only(&["policy"])?;
-    let policy = ask.parameter("policy").map_or(Ok(region.settings.policy), policy)?;
+    let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
     let stats = region.read_until(&ask.stop, Database::stats)?;
     let bins = region.read_until(&ask.stop, |database| database.rsc_bins(policy, BIN_MM))?;
     Ok(answered(&members(&stats, &bins, policy)))

@@ -49,7 +49,7 @@ const FIRST_IN_FULL: u8 = 12;
 pub(super) fn tile(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
     ask.only(&[])?;
     let policy = ask::policy(ask.name("policy")?)?;
-    let vehicle = region.certified(ask.name("vehicle")?, policy)?;
+    let vehicle = region.certified(ask.name("vehicle")?, policy)?.vehicle;
     let place = Place::read(ask.name("z")?, ask.name("x")?, ask.name("y")?)?;
     Ok(Stored::new(KIND, bytes(region, (&vehicle.id, policy), place)?))
 }

@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-use netcert::corridor::{Params, stroke_corridor};
+use netcert::corridor::stroke_corridor;
 use netcert::explain::{explain_edge_until, explain_turn_until};
 use netcert::network::{Movement, Network};
 use netcert::osm::facts::Policy;
@@ -12,7 +12,7 @@ use netcert::route::{
     self, Graph, MadeTurns, Measure, Permits, Planner, Position, Question, Speeds, Strokes, TurnPiece, Turns,
     Unanswered,
 };
-use netcert::stet::{self, Model, Options};
+use netcert::stet::{self, Model};
 use netcert::stop::{Stop, Stopped};
 use netcert::store::{Database, QueryOptions, TurnQuery};
 use netcert::turns::turn_facts;
@@ -48,8 +48,7 @@ fn wide() -> (Place, Database, Network, Model, Settings) {
     let place = Place::with_wide_demo("AU-SEMI19");
     let mut database = place.database();
     let network = database.load_network().unwrap();
-    let (corridor, stet) = (Params::default(), Options::default());
-    let settings = Settings { policy: Policy::Carriageway, corridor, stet, turns: true };
+    let settings = Settings { policy: Policy::Carriageway, ..Settings::default() };
     let definition = database.vehicles().unwrap().remove(0).definition;
     let model = Model::new(&Vehicle::from_json(&definition).unwrap()).unwrap();
     (place, database, network, model, settings)
@@ -71,17 +70,16 @@ fn round_corners(database: &mut Database, policy: Policy) -> Vec<[Position; 2]> 
 fn a_route_that_is_told_to_stop_asks_for_no_further_turn() {
     let (_place, mut database, network, model, settings) = wide();
     let movements = network.movements();
-    let permits = Permits::stored(&mut database, &network, &movements, VEHICLE, settings.policy).unwrap();
+    let set = database.certified_set(VEHICLE, settings.policy).unwrap().unwrap();
+    let permits = Permits::stored(&mut database, &network, &movements, &set).unwrap();
     let pairs = round_corners(&mut database, settings.policy);
-    let inner =
-        MadeTurns { model: &model, policy: settings.policy, params: settings.turn_params(), options: settings.stet };
+    let inner = MadeTurns { model: &model };
     let speeds = Speeds::builtin().unwrap();
     let mut stopped = 0;
     for places in pairs.into_iter().take(12) {
         let turns = Telling { inner: inner.clone(), stop: Stop::default(), asked: Cell::default() };
         let graph = Graph::new(&network, &movements, &speeds, Measure::Time);
-        let strokes = Strokes::new(&network, settings.policy, settings.corridor);
-        let mut planner = Planner::new(graph, &permits, &model, &turns, strokes, settings.stet, speeds.clone());
+        let mut planner = Planner::new(graph, &permits, &model, &turns, speeds.clone());
         let question = Question { places: places.to_vec(), snap_m: 100.0, alternatives: 2, tries: 30 };
         let stopped_at = planner.answer_until(&question, &turns.stop).err();
         // Over a turn it was stopped there; a way without turns went to its end.
@@ -100,14 +98,13 @@ fn a_route_that_is_told_to_stop_asks_for_no_further_turn() {
 fn a_route_is_whole_or_is_not_there() {
     let (_place, mut database, network, model, settings) = wide();
     let movements = network.movements();
-    let permits = Permits::stored(&mut database, &network, &movements, VEHICLE, settings.policy).unwrap();
-    let turns =
-        MadeTurns { model: &model, policy: settings.policy, params: settings.turn_params(), options: settings.stet };
+    let set = database.certified_set(VEHICLE, settings.policy).unwrap().unwrap();
+    let permits = Permits::stored(&mut database, &network, &movements, &set).unwrap();
+    let turns = MadeTurns { model: &model };
     let speeds = Speeds::builtin().unwrap();
     let planner = || {
         let graph = Graph::new(&network, &movements, &speeds, Measure::Time);
-        let strokes = Strokes::new(&network, settings.policy, settings.corridor);
-        Planner::new(graph, &permits, &model, &turns, strokes, settings.stet, speeds.clone())
+        Planner::new(graph, &permits, &model, &turns, speeds.clone())
     };
     let question =
         |places: [Position; 2]| Question { places: places.to_vec(), snap_m: 100.0, alternatives: 1, tries: 30 };
@@ -161,7 +158,7 @@ fn an_explanation_that_is_told_to_stop_has_no_result() {
     told.tell();
     let explained = |stop: &Stop| explain_edge_until(&network, 0, &model, &settings, stop).map(|e| e.is_some());
     assert_eq!((explained(&told), explained(&other)), (Err(Stopped), Ok(true)));
-    let turn = turn_facts(&network, &settings.turn_params().kerbs).remove(0);
+    let turn = turn_facts(&network, &settings.kerbs).remove(0);
     let explained = |stop: &Stop| explain_turn_until(&network, &turn, &model, &settings, stop).map(|e| e.title());
     assert_eq!(explained(&told), Err(Stopped));
     assert_eq!(explained(&Stop::after(2)), Err(Stopped));

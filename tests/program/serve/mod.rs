@@ -7,7 +7,7 @@ mod answers;
 mod caching;
 mod cut_off;
 mod described;
-mod http;
+pub(crate) mod http;
 mod load;
 mod refusals;
 mod rides;

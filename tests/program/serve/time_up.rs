@@ -5,11 +5,7 @@ use std::io::{BufReader, Write as _};
 use std::net::{SocketAddr, TcpStream};
 use std::time::{Duration, Instant};
 
-use netcert::corridor::Params;
-use netcert::osm::facts::Policy;
-use netcert::pipeline::Settings;
 use netcert::serve::{LaneLimits, Limits, Options, Server};
-use netcert::stet;
 
 use super::http::Reply;
 use crate::support::program::Place;
@@ -32,10 +28,6 @@ impl Narrow {
             addr: "127.0.0.1:0".parse().unwrap(),
             allow_remote: false,
             base_map: None,
-            recorded: |_| {
-                let (corridor, stet) = (Params::default(), stet::Options::default());
-                Ok(Settings { policy: Policy::Carriageway, corridor, stet, turns: true })
-            },
             log: |_| {},
             limits: Limits { slow, ..Limits::default() },
         });

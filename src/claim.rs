@@ -1,0 +1,167 @@
+//! Unfinished files and folders, each written by one process at a time.
+//!
+//! Promises that what a killed process left under the same name is cleared, and that nothing of a living one is touched. A lock of the
+//! system says which of the two it is: it ends with its process, however that ends. Where a file system has no locks, two
+//! runs at a time are the user's to avoid.
+
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io;
+use std::path::Path;
+
+/// The right to write at a path, as long as this lives.
+#[derive(Debug)]
+pub(crate) struct Claim {
+    /// The file itself; of a folder, what holds the lock.
+    pub(crate) file: Option<File>,
+    /// A killed process had left something here, which is gone.
+    pub(crate) leftover: bool,
+}
+
+/// An empty file at `path`, locked.
+///
+/// # Errors
+/// A living process holds it ([`io::ErrorKind::WouldBlock`]); it cannot be made.
+pub(crate) fn file(path: &Path) -> io::Result<Claim> {
+    loop {
+        if path.is_dir() {
+            // An unfinished folder of this name.
+            remove_unclaimed(path)?;
+        }
+        let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
+        lock(&file)?;
+        if !same_file(&file, path) {
+            continue; // whoever held it has just put it in its place, or removed it
+        }
+        let leftover = file.metadata()?.len() > 0;
+        file.set_len(0)?;
+        return Ok(Claim { file: Some(file), leftover });
+    }
+}
+
+/// An empty folder at `path`, locked.
+///
+/// # Errors
+/// As [`file`].
+pub(crate) fn folder(path: &Path) -> io::Result<Claim> {
+    if !cfg!(unix) {
+        // Folders have no locks there.
+        remove_unclaimed(path)?;
+        return fs::create_dir_all(path).map(|()| Claim { file: None, leftover: false });
+    }
+    loop {
+        if path.is_file() {
+            remove_unclaimed(path)?;
+        }
+        fs::create_dir_all(path)?;
+        let file = match File::open(path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
+            opened => opened?,
+        };
+        lock(&file)?;
+        if !same_file(&file, path) {
+            continue;
+        }
+        let mut leftover = false;
+        for entry in fs::read_dir(path)? {
+            let entry = entry?;
+            leftover = true;
+            if entry.file_type()?.is_dir() { fs::remove_dir_all(entry.path()) } else { fs::remove_file(entry.path()) }?;
+        }
+        return Ok(Claim { file: Some(file), leftover });
+    }
+}
+
+/// Removes a file or folder that no living process holds.
+fn remove_unclaimed(path: &Path) -> io::Result<()> {
+    let opened = match File::open(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(_) if !cfg!(unix) => None,
+        opened => Some(opened?),
+    };
+    if let Some(file) = &opened {
+        lock(file)?;
+        if !same_file(file, path) {
+            return Ok(());
+        }
+    }
+    if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) }
+}
+
+fn lock(file: &File) -> io::Result<()> {
+    match file.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::Error(error)) if error.kind() == io::ErrorKind::Unsupported => Ok(()),
+        Err(TryLockError::WouldBlock) => Err(io::ErrorKind::WouldBlock.into()),
+        Err(TryLockError::Error(error)) => Err(error),
+    }
+}
+
+#[cfg(unix)]
+fn same_file(file: &File, path: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    match (file.metadata(), fs::metadata(path)) {
+        (Ok(a), Ok(b)) => (a.dev(), a.ino()) == (b.dev(), b.ino()),
+        _ => false,
+    }
+}
+
+#[cfg(not(unix))]
+fn same_file(_file: &File, _path: &Path) -> bool {
+    true // an open file cannot be renamed there
+}
+
+#[cfg(all(test, unix))]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    fn busy(claimed: io::Result<Claim>) -> bool {
+        claimed.is_err_and(|error| error.kind() == io::ErrorKind::WouldBlock)
+    }
+
+    #[test]
+    fn what_is_held_stays_and_what_nobody_holds_is_cleared() {
+        let place = tempfile::tempdir().unwrap();
+        for make in [file as fn(&Path) -> io::Result<Claim>, folder] {
+            let path = place.path().join("a.part");
+            let first = make(&path).unwrap();
+            assert!(!first.leftover);
+            let inside = if path.is_dir() { path.join("inside") } else { path.clone() };
+            fs::write(&inside, "half").unwrap();
+            // Neither kind of claim touches it.
+            assert!(busy(file(&path)) && busy(folder(&path)));
+            assert_eq!(fs::read(&inside).unwrap(), b"half");
+            drop(first);
+            let next = make(&path).unwrap();
+            assert!(next.leftover && (path.is_file() || !inside.exists()));
+            assert!(path.is_dir() || fs::metadata(&path).unwrap().len() == 0);
+        }
+    }
+
+    #[test]
+    fn a_leftover_of_the_other_kind_makes_way() {
+        let place = tempfile::tempdir().unwrap();
+        let path = place.path().join("a.part");
+        fs::create_dir_all(path.join("deep/deeper")).unwrap();
+        drop(file(&path).unwrap());
+        assert!(path.is_file());
+        drop(folder(&path).unwrap());
+        assert!(path.is_dir());
+    }
+
+    #[test]
+    fn many_at_a_time_one_has_it() {
+        let place = tempfile::tempdir().unwrap();
+        let (path, gate) = (place.path().join("a.part"), std::sync::Barrier::new(8));
+        let claims: Vec<_> = std::thread::scope(|scope| {
+            let one = || {
+                gate.wait();
+                let claim = folder(&path);
+                gate.wait();
+                claim.is_ok()
+            };
+            (0..8).map(|_| scope.spawn(one)).collect::<Vec<_>>().into_iter().map(|t| t.join().unwrap()).collect()
+        });
+        assert_eq!(claims.into_iter().filter(|had| *had).count(), 1);
+    }
+}
