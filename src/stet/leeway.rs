@@ -344,7 +344,7 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let reach = spot.ahead.abs();
     let (c, t) = (cos.abs(), sin.abs());
     let extras = (s.extra_axle + s.extra_coupling) * body.inverse_length;
-    let a = extras + body.heading;
+    let a = extras + body.heading + s.remainder;
     let axle = s.extra_axle + body.axle;
     let a2 = a * a;
     // First order: |cos φ|·(the bound at a ∓ (b/2) tan φ).

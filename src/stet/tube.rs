@@ -18,8 +18,17 @@ pub struct Tube {
     pub centre: Vec<[f64; 2]>,
     /// Nominal heading, a unit vector.
     pub heading: Vec<[f64; 2]>,
-    /// Lateral semi-axis, across the heading, metres: the axle is never further off, at the certificate's γ.
+    /// Lateral semi-axis, across the heading, metres: the axle is never further off, at the certificate's γ. What
+    /// [`Tube::bound_m`] says of it is what is known.
     pub lateral_m: Vec<f64>,
+}
+
+impl Tube {
+    /// How far off the axle may be at a station; `None` where nothing bounds it.
+    #[must_use]
+    pub fn bound_m(&self, station: usize) -> Option<f64> {
+        self.lateral_m.get(station).copied().filter(|lateral_m| *lateral_m < sweep::MOST)
+    }
 }
 
 /// The tubes of a certificate that [`super::certify`] made from this corridor and model.
@@ -38,9 +47,12 @@ pub fn tubes(corridor: &Corridor, model: &Model, certificate: &Certificate) -> V
     let mut trail = Trail::new(&group, true);
     let mut refined = Refined::new();
     let mut rows = vec![0.0; units * LANES * FIELDS * BLOCK];
-    let (mut head, mut after) = (0, usize::MAX);
-    while head <= last {
-        drive::<true, true>(&mut motion, &track, &group, &shift, track.lead + head, &mut rows, &mut trail);
+    // On the straight before the corridor the bounds come to rest.
+    let run_in = track.lead / BLOCK * BLOCK;
+    let (mut begun, mut after) = (0, usize::MAX);
+    while begun <= run_in + last {
+        let head = track.lead - run_in + begun;
+        drive::<true, true>(&mut motion, &track, &group, &shift, head, &mut rows, &mut trail);
         let loose = first_loose(&group, 0, &rows);
         if loose.min(after) < units {
             refine(&mut trail, &group, 0, loose.min(after), &mut motion, &mut rows, &mut refined);
@@ -49,13 +61,13 @@ pub fn tubes(corridor: &Corridor, model: &Model, certificate: &Certificate) -> V
         after = loose;
         for tube in &mut tubes {
             let at = |field: usize, k: usize| rows[(tube.unit * LANES * FIELDS + field) * BLOCK + k];
-            for k in 0..BLOCK.min(last + 1 - head) {
+            for k in 0..BLOCK.min(run_in + last + 1 - begun).min(if begun < run_in { 0 } else { BLOCK }) {
                 tube.centre.push([at(row::X, k), at(row::Y, k)]);
                 tube.heading.push([at(row::UX, k), at(row::UY, k)]);
                 tube.lateral_m.push(group.chain[tube.unit].axle.0[0] + at(row::EXTRA_AXLE, k));
             }
         }
-        head += BLOCK;
+        begun += BLOCK;
     }
     tubes
 }
