@@ -19,6 +19,9 @@ use crate::stet::{Certificate, Model, Options, known_m};
 use crate::store::{Named as _, verdict_words};
 use nominal::Nominal;
 
+/// Entries of the columns of leeway claim so much less than the sweep has, metres.
+const LESS_M: f64 = 5e-3;
+
 /// Why a certificate cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum CertificateError {
@@ -48,9 +51,9 @@ pub fn json(
     };
     let (verdict, reason) = verdict_words(result.verdict());
     let limiting = result.rsc_m.and_then(|_| limiting(&nominal, certificate));
-    let column = |column: &[f64]| column.iter().map(|&leeway_m| known_m(leeway_m)).collect::<Vec<_>>();
     // Where nothing bounds the vehicle on the whole, nothing is claimed of its parts.
-    let corrected = |own: &[f64]| if result.closes() { column(own) } else { vec![None; own.len()] };
+    let closes = result.closes();
+    let column = |column: &[f64]| column.iter().map(|&m| cautious_m(m).filter(|_| closes)).collect::<Vec<_>>();
     Ok(json!({
         "netcert": env!("CARGO_PKG_VERSION"),
         "vehicle": vehicle.to_json()?,
@@ -69,12 +72,12 @@ pub fn json(
         "plan": given.to_input(&certificate.plan)?,
         "shift": certificate.shift.coefficients,
         "leeway": {
-            "left": corrected(&certificate.left_m),
-            "right": corrected(&certificate.right_m),
+            "left": column(&certificate.left_m),
+            "right": column(&certificate.right_m),
             "left_centred": column(&certificate.left_centred_m),
             "right_centred": column(&certificate.right_centred_m),
         },
-        "tubes": if result.closes() { Some(tubes::json(given, model, certificate, &nominal)?) } else { None },
+        "tubes": if closes { Some(tubes::json(given, model, certificate, &nominal)?) } else { None },
     }))
 }
 
@@ -89,6 +92,11 @@ fn limiting(nominal: &Nominal<'_>, certificate: &Certificate) -> Option<Value> {
         "point_m": at.point_m,
         "nominal_m": nominal_m,
     }))
+}
+
+/// What is claimed of a leeway: a little less than the sweep has, for what other programs' steps read differently.
+fn cautious_m(leeway_m: f64) -> Option<f64> {
+    known_m(leeway_m).map(|leeway_m| leeway_m - LESS_M)
 }
 
 fn stations(given: &FileCorridor) -> Result<Vec<Value>, FrameError> {

@@ -14,8 +14,8 @@ use crate::stet::{Certificate, Model, Tube, tubes};
 /// A disc of no radius has no shape matrix; a micrometre more is on the safe side.
 const LEAST_RADIUS_M: f64 = 1e-6;
 /// What is claimed is this much wider than the sweep's bound, metres and a part of it: the checker reads bounds in steps of its own.
-const MORE_M: f64 = 0.0;
-const MORE_PART: f64 = 0.0;
+const MORE_M: f64 = 1e-3;
+const MORE_PART: f64 = 0.02;
 
 /// One tube a unit, front to rear; centres in the coordinates of the corridor's file.
 pub(super) fn json(

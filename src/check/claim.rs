@@ -21,6 +21,9 @@ const NOTHING_M: f64 = 50.0;
 /// for what lies between their steps.
 pub(crate) const LIMITING_TOLERANCE_M: f64 = 0.06;
 
+/// The rear is on the road until the steer axle is so many vehicle lengths on: a quarter turn's arc for its chord (proof, section 7).
+const FARTHEST: f64 = 1.6;
+
 /// … and so many stations from there: the prover looks at stations in blocks of eight.
 const LIMITING_BEYOND: f64 = 8.0;
 
@@ -84,7 +87,7 @@ impl<'a> Subject<'a> {
     ) -> Result<Self, RoadError> {
         let (ahead, behind) = chain.reach_m();
         let road =
-            Road::new(corridor, ahead + 3.0 * corridor.spacing_m, 1.1 * behind + 3.0 * corridor.spacing_m, lenient)?;
+            Road::new(corridor, ahead + 3.0 * corridor.spacing_m, FARTHEST * behind + 3.0 * corridor.spacing_m, lenient)?;
         let (lead, last) = (road.lead as f64, road.count as f64 - 1.0);
         let motion = Motion::new(chain, &road, |s| shift((s - lead).clamp(0.0, last)));
         let shifts = (0..road.count).map(|k| shift(k as f64)).collect();
@@ -152,8 +155,7 @@ impl<'a> Subject<'a> {
             return [wrong(&targets[0]), wrong(&targets[1])];
         };
         let mut swept = Swept::new(self.chain, &self.road, motion, self.chain.tolerance_m);
-        // The columns begin with the steer axle on the first station: what is ahead of it then has passed its first feet.
-        let shortfalls = swept.refute_from(self.road.lead * STEPS, &Targets(targets), None);
+        let shortfalls = swept.refute(&Targets(targets));
         [0, 1].map(|side| {
             let own = shortfalls.iter().filter(|shortfall| shortfall.side == side);
             let worst = own.max_by(|a, b| a.short_m.total_cmp(&b.short_m))?;
@@ -263,11 +265,11 @@ impl<'a> Subject<'a> {
         if to > from { from..to } else { from.saturating_sub(1)..(from + 1).min(last) }
     }
 
-    /// Why a hinge margin is not proved while the steer axle is on the span.
+    /// Why a hinge margin is not proved while any point of the vehicle is on the span.
     fn hinges(&self, swept: &mut Swept<'_>, stations: &Range<usize>, margin_rad: f64) -> Option<(String, bool)> {
         let stretches = self.stretches(stations);
         let least = margin_rad - TOLERANCE_RAD;
-        let steps = (self.road.lead + stretches.start) * STEPS..(self.road.lead + stretches.end) * STEPS;
+        let steps = swept.steps(stretches);
         let mut worst: Option<(f64, String)> = None;
         for step in steps {
             for unit in 0..self.chain.links.len() {

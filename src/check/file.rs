@@ -19,7 +19,7 @@ use super::printed;
 const NOMINAL_M: f64 = 5e-3;
 /// The same for the most of many places.
 const PRINTED_M: f64 = 0.01;
-/// The hinge that is named as the one with the least margin has no more than so much above the least, radians: a metre of chord in the
+/// The hinge that is named as the one with the least margin has no more than so much above that, radians: a metre of chord in the
 /// tightest bends turns that far.
 const HINGE_ABOVE_RAD: f64 = 0.1;
 /// Times come back to this part of them.
@@ -140,11 +140,10 @@ impl Document {
         let mut found: Vec<Finding> = along.check(&[claim]).remove(0);
         match (self.hinge_unit, along.swept(self.vehicle.tracking_tolerance_m)) {
             (Some(unit), Some(swept)) => {
-                let margins: Vec<f64> = (0..self.vehicle.units.len()).map(|i| swept.least_hinge_margin(i)).collect();
-                let least = margins.iter().copied().fold(f64::INFINITY, f64::min);
-                if margins[unit] > least + HINGE_ABOVE_RAD {
-                    let by = (margins[unit] - least).to_degrees();
-                    found.push(finding("hinge_unit", &format!("hinge {unit} has {by:.1}° more than another")));
+                let margin_rad = swept.least_hinge_margin(unit);
+                if margin_rad > hinge_deg.to_radians() + HINGE_ABOVE_RAD {
+                    let detail = format!("hinge {unit} has {:.1}° left at the least", margin_rad.to_degrees());
+                    found.push(finding("hinge_unit", &detail));
                 }
             }
             (None, _) => found.push(finding("hinge_unit", "none is named")),

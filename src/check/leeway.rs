@@ -134,7 +134,7 @@ impl<'a> Swept<'a> {
         let steps = self.steps(stretches);
         let (_, behind) = self.chain.reach_m();
         let history = (HISTORY_LENGTHS * 2.0 * behind / self.tubes.step_m) as usize;
-        let mut tubes = Tubes::within(&self.tubes, steps.start.saturating_sub(history), tolerance_m);
+        let mut tubes = Tubes::within(&self.tubes, self.chain, steps.start.saturating_sub(history), tolerance_m);
         for _ in tubes.first..steps.end {
             tubes.advance(self.chain, self.motion);
         }
@@ -149,27 +149,36 @@ impl<'a> Swept<'a> {
     }
 
     /// Steps during which some body point may have its foot on some stretches of the corridor.
-    fn steps(&self, stretches: std::ops::Range<usize>) -> std::ops::Range<usize> {
+    pub(crate) fn steps(&self, stretches: std::ops::Range<usize>) -> std::ops::Range<usize> {
         let (ahead, behind) = self.chain.reach_m();
         let stations = |metres: f64| (metres / self.road.spacing).ceil() as usize;
         let from = (self.road.lead + stretches.start).saturating_sub(stations(ahead) + 1) * STEPS;
-        // A body that cuts a bend is never farther along than a straight one; a twentieth is for plans on the outside.
-        let to = (self.road.lead + stretches.end + 1 + stations(1.05 * behind)) * STEPS;
+        let mut to = (self.road.lead + stretches.end + 1 + stations(1.05 * behind)) * STEPS;
+        // In a bend the rear may follow farther behind than on a straight.
+        while to < self.motion.steps() && self.rear(to).is_none_or(|s| s <= (self.road.lead + stretches.end) as f64) {
+            to += STEPS;
+        }
         from..to.min(self.motion.steps())
+    }
+
+    /// The foot that is farthest back, in stations, of any unit's rear end at a node; `None` where one has no foot.
+    fn rear(&self, node: usize) -> Option<f64> {
+        let feet = self.chain.links.iter().enumerate().flat_map(|(unit, link)| {
+            [-link.half_width, link.half_width].map(|b| {
+                let x = point(self.motion.pose(node, unit), link.rear, b);
+                foot(self.road, x, self.rough_foot(node, unit, link.rear)).map(|(s, ..)| s)
+            })
+        });
+        feet.reduce(|least, s| Some(least?.min(s?))).flatten()
     }
 
     /// All places where the claims are not reached, the worst of each stretch and side.
     pub(crate) fn refute(&mut self, targets: &Targets) -> Vec<Shortfall> {
-        self.refute_from(0, targets, None)
+        self.refute_only(targets, None)
     }
 
     /// The same, of one unit only.
     pub(crate) fn refute_only(&mut self, targets: &Targets, only: Option<usize>) -> Vec<Shortfall> {
-        self.refute_from(0, targets, only)
-    }
-
-    /// The same, from a step on.
-    pub(crate) fn refute_from(&mut self, begin: usize, targets: &Targets, only: Option<usize>) -> Vec<Shortfall> {
         let claimed = |k: &usize| targets.0.iter().any(|side| side[*k] > f64::NEG_INFINITY);
         let stretches = targets.0[0].len();
         let (Some(first), Some(last)) = ((0..stretches).find(claimed), (0..stretches).rev().find(claimed)) else {
@@ -177,7 +186,7 @@ impl<'a> Swept<'a> {
         };
         let mut found = Shortfalls::new(stretches);
         let mut feet = vec![f64::NAN; self.chain.links.len() * 4];
-        for step in self.steps(first..last + 1).filter(|step| *step >= begin) {
+        for step in self.steps(first..last + 1) {
             for unit in only.map_or(0..self.chain.links.len(), |unit| unit..unit + 1) {
                 for side in 0..2 {
                     let link = &self.chain.links[unit];
@@ -638,16 +647,10 @@ impl Swept<'_> {
         Some(self.road.width(side, s).0 - sign * (before + share * (after - before)))
     }
 
-    /// The least margin of a hinge while it is on the corridor, as far as it would be on a straight; as the filter has it.
+    /// The least margin of a hinge while any point of the vehicle is on the corridor, as the filter has it.
     pub(crate) fn least_hinge_margin(&self, unit: usize) -> f64 {
-        let link = &self.chain.links[unit];
-        let [from, to] = [self.road.lead, self.road.lead + self.road.count - 1].map(|station| {
-            // Where the steer axle is then.
-            let behind = station as f64 - self.rough_foot(station * STEPS, unit, link.l);
-            ((station as f64 + behind.max(0.0)) * STEPS as f64) as usize
-        });
-        let margins = (from..to.min(self.motion.steps())).map(|step| self.plain_hinge_margin(step, unit));
-        margins.fold(f64::INFINITY, f64::min)
+        let steps = self.steps(0..self.road.count - 1);
+        steps.map(|step| self.plain_hinge_margin(step, unit)).fold(f64::INFINITY, f64::min)
     }
 
     /// The margin of a hinge throughout a step as the filter has it, radians; −∞ where nothing is bounded.

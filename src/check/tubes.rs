@@ -13,6 +13,8 @@ const MOST_HEADING_RAD: f64 = 0.6;
 const QUARTER_TURN_RAD: f64 = std::f64::consts::FRAC_PI_2 - 1e-9;
 /// Where the filter lets a heading be off by more, the adjoint is asked: hinge by hinge a long chain loses its way in tight turns.
 const LOOSE_RAD: f64 = 0.12;
+/// Lengths of a unit after which nothing is left of what was before.
+const FADED_LENGTHS: f64 = 40.0;
 /// Rounds of guessing until a bound reproduces itself.
 const ROUNDS: usize = 60;
 
@@ -46,6 +48,9 @@ pub(crate) struct Bend {
 }
 
 impl Bend {
+    /// Of a unit that is drawn straight on.
+    const STRAIGHT: Self = Self { tan: 0.0, sec: [1.0; 2], cos_chi: [1.0; 2], tan_chi: 0.0, pace: 1.0, angle: 0.0 };
+
     pub(crate) fn of(link: &Link, swing: &Swing, step_m: f64) -> Self {
         let (tan, sec) = Swing::tan_sec(swing.before);
         let (tan_after, sec_after) = Swing::tan_sec(swing.after);
@@ -77,6 +82,8 @@ pub(crate) struct Tubes {
     coefficients: Vec<Coefficients>,
     /// `extra` at the end of the last step, a unit.
     ends: Vec<f64>,
+    /// `extra` after a straight of any length.
+    settled: Vec<f64>,
     /// Axle and heading at the end of the last step as the adjoint has them, where it was asked.
     exact: Vec<Option<[f64; 2]>>,
 }
@@ -84,6 +91,7 @@ pub(crate) struct Tubes {
 impl Tubes {
     pub(crate) fn new(chain: &Chain, spacing: f64, tolerance_m: f64) -> Self {
         let units = chain.links.len();
+        let settled = settled(chain, tolerance_m);
         Self {
             step_m: spacing / STEPS as f64,
             first: 0,
@@ -91,19 +99,21 @@ impl Tubes {
             units,
             tubes: Vec::new(),
             coefficients: Vec::new(),
-            ends: vec![0.0; units],
+            ends: settled.clone(),
+            settled,
             exact: vec![None; units],
         }
     }
 
     /// From step `first` on, at a tolerance that is no more than `wider`'s: its bounds hold there to begin with.
-    pub(crate) fn within(wider: &Self, first: usize, tolerance_m: f64) -> Self {
+    pub(crate) fn within(wider: &Self, chain: &Chain, first: usize, tolerance_m: f64) -> Self {
         let before = first.checked_sub(1).and_then(|step| wider.tubes.get(step * wider.units..first * wider.units));
-        let ends = before.map_or(vec![0.0; wider.units], |before| {
-            before.iter().map(|tube| tube.map_or(0.0, |tube| tube.extra)).collect()
+        let settled = settled(chain, tolerance_m);
+        let ends = before.map_or(settled.clone(), |before| {
+            before.iter().zip(&settled).map(|(tube, settled)| tube.map_or(*settled, |tube| tube.extra)).collect()
         });
         let exact = vec![None; wider.units];
-        Self { first, tolerance_m, tubes: Vec::new(), coefficients: Vec::new(), ends, exact, ..*wider }
+        Self { first, tolerance_m, tubes: Vec::new(), coefficients: Vec::new(), ends, settled, exact, ..*wider }
     }
 
     /// Adds the next step. Where neither the recursion nor the adjoint closes, nothing is bounded in it, and the filter begins anew.
@@ -148,7 +158,7 @@ impl Tubes {
             let Some((tube, end)) = found else {
                 self.tubes.truncate(first);
                 self.tubes.extend(std::iter::repeat_n(None, self.units));
-                self.ends.fill(0.0);
+                self.ends.copy_from_slice(&self.settled);
                 self.exact.fill(None);
                 return;
             };
@@ -360,6 +370,24 @@ impl Unit<'_> {
             cos_chi: bend.cos_chi,
         }
     }
+}
+
+/// What the second order adds to the straight bound of each axle on a straight of any length (proof, section 8): a bound from which
+/// the recursion comes back to no more, over a step in which everything before it has faded. Infinite where there is none.
+fn settled(chain: &Chain, tolerance_m: f64) -> Vec<f64> {
+    let mut settled = vec![f64::INFINITY; chain.links.len()];
+    let mut passed = Passed::steer_axle(tolerance_m, 0.0);
+    for (i, link) in chain.links.iter().enumerate() {
+        let gains = &chain.gains.units[i];
+        let gains = [gains.point(0.0, tolerance_m), gains.heading.at(tolerance_m), gains.coupling.at(tolerance_m)];
+        let unit = Unit { link, bend: Bend::STRAIGHT, curvature: 0.0, gains, step_m: FADED_LENGTHS * link.l, extra: 0.0 };
+        let Some((tube, end)) = unit.settle(&passed, None, Lid::NONE) else { break };
+        settled[i] = end;
+        if let Some(next) = chain.links.get(i + 1) {
+            passed = unit.pass_on(&passed, &tube, next, &Bend::STRAIGHT, &Swing::default());
+        }
+    }
+    settled
 }
 
 /// R1 of the proof.

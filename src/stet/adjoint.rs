@@ -292,7 +292,7 @@ impl Trail {
                 closes = false;
                 store(row::EXTRA_AXLE, MOST);
                 store(row::HINGE, NOT_CLOSED_RAD);
-                motion.extra[unit].0[lane] = 0.0;
+                motion.extra[unit].0[lane] = of.settled.0[lane];
                 beside.coupling = ZERO;
                 continue;
             };
@@ -407,7 +407,7 @@ impl Trail {
         let floor = station.saturating_sub(MEMORY - BLOCK - 4);
         let closed_blocks = self.count - BLOCK;
         let (mut at, mut taken) = (station, STRIDES.len());
-        let straight = |j: usize| group.chain[j].axle.0[lane];
+        let straight = |j: usize| group.chain[j].axle.0[lane] + group.chain[j].settled.0[lane];
         let rest = loop {
             let sum = |of: &dyn Fn(usize) -> f64| (0..=unit).fold(ZERO, |sum, j| sum + mu[j].abs() * of(j));
             let past = &histories[0].past[at % MEMORY];

@@ -95,7 +95,7 @@ impl Body {
     }
 }
 
-/// The bodies of a vehicle that stands straight behind the track's first station, at γ = `shrink`. When planning, three
+/// The bodies of a vehicle that stands straight behind the steer axle's first station, at γ = `shrink`. When planning, three
 /// points a side.
 pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: f64) -> Vec<Body> {
     let tolerance = model.vehicle.tracking_tolerance_m * gamma(model, shrink);
@@ -108,10 +108,10 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
         .map(|(index, unit)| {
             let axle = coupling - unit.length;
             coupling = axle - unit.hitch;
-            let foot = |ahead: f64| (track.lead as f64 + (axle + ahead) / track.spacing).round() as usize;
+            let foot = |ahead: f64| (track.first_head as f64 + (axle + ahead) / track.spacing).round() as usize;
             let n = unit.points.len();
             let way = |ahead: f64| Way {
-                behind: track.lead + AHEAD - foot(ahead),
+                behind: track.first_head + AHEAD - foot(ahead),
                 astray: ((ASTRAY_PART * (axle + ahead).abs() + ASTRAY_M) / track.spacing).ceil() as usize,
             };
             // Innermost on a steady circle.

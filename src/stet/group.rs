@@ -2,6 +2,7 @@
 
 use super::lanes::{LANES, V};
 use super::model::{MAX_UNITS, Model, UnitModel};
+use super::run_in;
 
 /// γ is stored in thousandths.
 pub(super) const SHRINK_STEPS: f64 = 1000.0;
@@ -39,6 +40,8 @@ pub(super) struct UnitLanes {
     pub(super) heading: V,
     pub(super) axle: V,
     pub(super) coupling: V,
+    /// What the second order adds to `axle` on a straight.
+    pub(super) settled: V,
 }
 
 impl<'m> Group<'m> {
@@ -69,14 +72,19 @@ impl<'m> Group<'m> {
                 heading: of(&|u, e| u.heading.at(e), 0.0),
                 axle: of(&|u, e| u.axle.at(e), 0.0),
                 coupling: of(&|u, e| u.coupling.at(e), 0.0),
+                settled: V::splat(0.0),
             }
         };
+        let tolerance = per_vehicle(&tolerance);
+        let mut chain: [UnitLanes; MAX_UNITS] = std::array::from_fn(unit);
+        let settled = run_in::settled(&chain, tolerance);
+        chain.iter_mut().zip(settled).for_each(|(unit, settled)| unit.settled = settled);
         Self {
             models: models.to_vec(),
             shrink,
             units: models.iter().map(|m| m.units.len()).max().unwrap_or(0),
-            chain: std::array::from_fn(unit),
-            tolerance: per_vehicle(&tolerance),
+            chain,
+            tolerance,
             course: per_vehicle(&|m| m.vehicle.tracking_heading_rad),
         }
     }

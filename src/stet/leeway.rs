@@ -92,6 +92,7 @@ by_instruction_set! {
                 let mut sample = sample::<CERTIFY, REFINED>(track, body, index, &s, &knots);
                 body.points[index].cover(sample.feet, minima);
                 if CERTIFY {
+                    minima.pass(head + group * LANES, sample.feet);
                     match &mut before {
                         Some(before) => {
                             let gap = body.points[index].gap;
@@ -101,7 +102,10 @@ by_instruction_set! {
                             }
                             between_points(before, &mut sample, &s, gap, parts);
                         }
-                        None => lower(&mut minima.hinge, sample.feet, load(row::HINGE).tagged(sample.tag)),
+                        None => {
+                            let heads = Feet::Run(head + group * LANES);
+                            lower(&mut minima.hinge, heads, load(row::HINGE).tagged(sample.tag));
+                        }
                     }
                 }
                 if let Some(before) = before.replace(sample) {

@@ -14,6 +14,7 @@ mod model;
 pub mod motion;
 mod plan;
 mod response;
+mod run_in;
 mod shift;
 mod spans;
 mod sweep;
@@ -292,8 +293,7 @@ impl<'m> Swept<'m> {
         plans: &dyn Fn(&Track, &Group<'m>) -> Vec<Plan>,
     ) -> Self {
         let group = Group::new(models, 1.0);
-        let (lead_m, tail_m) = sweep::extensions_m(&group, corridor.spacing_m);
-        let track = Track::new(corridor, lead_m, tail_m);
+        let track = Track::new(corridor, sweep::extensions(&group, corridor.spacing_m));
         let plans = plans(&track, &group);
         let shift = shift::lanes(&plans, track.lead, track.len(), track.count);
         let full = sweep::<true>(&track, &group, &shift, &Wanted::ALL, stop);
@@ -331,9 +331,10 @@ impl<'m> Swept<'m> {
         let track = &self.track;
         let centred = thorough(track, &self.group, &vec![V::splat(0.0); track.len()], self.stop);
         let full = if self.worth(0, &whole) { self.refined.as_ref().unwrap_or(&self.full) } else { &self.full };
-        let own = |column: &[f64]| spans::alone(track, &whole, column);
+        let model = self.group.models[0];
+        let own = |column: &[f64]| spans::alone(track, model, &whole, column);
         // Where the bounds do not close somewhere, what they say elsewhere is not claimed either.
-        let centred_closes = spans::least(track, self.group.models[0], &whole, &centred[0]).result().closes();
+        let centred_closes = spans::least(track, model, &whole, &centred[0]).result().closes();
         let own_centred = |column: &[f64]| {
             if centred_closes { own(column) } else { vec![spans::NOTHING_M; whole.len()] }
         };
@@ -350,8 +351,8 @@ impl<'m> Swept<'m> {
         for span in spans {
             // What the span's result rests on: refined for one where it is worth it.
             let best = self.best(0, span);
-            left_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.left));
-            right_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.right));
+            left_m[span.clone()].copy_from_slice(&spans::alone(track, model, span, &best.left));
+            right_m[span.clone()].copy_from_slice(&spans::alone(track, model, span, &best.right));
         }
         let certificate = Certificate {
             result: self.result(0, &whole),
@@ -367,13 +368,13 @@ impl<'m> Swept<'m> {
     }
 
     /// Head stations, in blocks, in which some unit may touch the span.
-    fn touching(&self, span: &Range<usize>) -> Range<usize> {
+    fn touching(&self, lane: usize, span: &Range<usize>) -> Range<usize> {
         let track = &self.track;
         // As long as the track's extensions allow, so that no other vehicle of the group matters.
         let (behind_m, ahead_m) = sweep::reach_m(&self.group);
         let ahead = (ahead_m / track.spacing).ceil() as usize + sweep::BLOCK;
         let behind = (behind_m / track.spacing).ceil() as usize + sweep::BLOCK;
-        let touched = spans::stations(track, span);
+        let touched = spans::stations(track, self.group.models[lane], span);
         let first = touched.start().saturating_sub(ahead) / sweep::BLOCK;
         let last = (touched.end() + behind) / sweep::BLOCK;
         first..(last + 1).min(track.len() / sweep::BLOCK + 1)
@@ -384,7 +385,7 @@ impl<'m> Swept<'m> {
         let of = |lane: usize| {
             let mut blocks = vec![false; self.track.len() / sweep::BLOCK + 1];
             for span in spans.iter().filter(|span| meant(lane, span)) {
-                blocks[self.touching(span)].iter_mut().for_each(|block| *block = true);
+                blocks[self.touching(lane, span)].iter_mut().for_each(|block| *block = true);
             }
             blocks
         };
@@ -397,8 +398,8 @@ impl<'m> Swept<'m> {
     fn worth(&self, lane: usize, span: &Range<usize>) -> bool {
         let Some(nominal) = &self.nominal else { return false };
         let nominal = &nominal[lane];
-        self.full[lane].loose[self.touching(span)].iter().any(|&unit| unit < usize::MAX)
-            && spans::stations(&self.track, span).all(|k| nominal.left[k] >= 0.0 && nominal.right[k] >= 0.0)
+        self.full[lane].loose[self.touching(lane, span)].iter().any(|&unit| unit < usize::MAX)
+            && spans::stations(&self.track, self.group.models[lane], span).all(|k| nominal.left[k] >= 0.0 && nominal.right[k] >= 0.0)
     }
 
     /// The best that is known at γ = 1.

@@ -68,8 +68,11 @@ pub struct Model {
     pub vehicle: Vehicle,
     pub(super) units: Vec<UnitModel>,
     pub(super) published_radius: f64,
+    /// Ahead of the steer axle, and from there to the rear, when the vehicle stands straight.
     pub(super) front: f64,
     pub(super) length: f64,
+    /// Most between two body points of a side.
+    pub(super) widest_gap: f64,
 }
 
 impl Model {
@@ -111,14 +114,22 @@ impl Model {
             });
             coupling = next_coupling(unit, coupling);
         }
-        let chain: f64 = units.iter().map(|u| u.coupling_to_axle_m + u.hitch_offset_m).sum();
-        let rear = units.last().map_or(0.0, |u| u.rear_overhang_m - u.hitch_offset_m);
+        let (mut coupling, mut front, mut rear) = (0.0, 0.0_f64, 0.0_f64);
+        for unit in units {
+            let axle = coupling - unit.coupling_to_axle_m;
+            front = front.max(coupling + unit.front_overhang_m);
+            rear = rear.min(axle - unit.rear_overhang_m).min(axle);
+            coupling = axle - unit.hitch_offset_m;
+        }
+        let gaps = models.iter().flat_map(|unit| unit.points.windows(2).map(|pair| pair[0] - pair[1]));
+        let widest_gap = gaps.fold(0.0, f64::max);
         Ok(Self {
             vehicle: vehicle.clone(),
             units: models,
             published_radius: published::last_radius_m(units),
-            front: units[0].front_overhang_m.max(0.0),
-            length: chain + rear.max(0.0),
+            front,
+            length: -rear,
+            widest_gap,
         })
     }
 }

@@ -85,7 +85,7 @@ fn sampled(coarse: &Track, coefficients: &[V]) -> Vec<V> {
 fn score(track: &Track, model: &Model, spans: &[Range<usize>], minima: &Minima) -> f64 {
     let worth = |span: &Range<usize>| {
         let (mut full, mut shrunk) = (ENOUGH_M, 0.0_f64);
-        for k in spans::stations(track, span) {
+        for k in spans::stations(track, model, span) {
             for least in [minima.left[k], minima.right[k]] {
                 full = full.min(least);
                 if least < 0.0 {

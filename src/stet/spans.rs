@@ -1,6 +1,6 @@
 //! From stations to spans: least leeway, what limits it, and SHRINK.
 
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 
 use super::group::{SHRINK_STEPS, gamma};
 use super::lanes::TAG_MASK;
@@ -9,9 +9,8 @@ use super::sweep::{Minima, NOT_CLOSED_RAD, UNVISITED_M};
 use super::track::Track;
 use super::{Limiting, Side, SpanResult};
 
-/// Minima may stand up to half a gap between body points from the station they belong to: a span takes this many more on
-/// each side, the first station of the straight extension included.
-const SLACK: usize = 3;
+/// Stations by which a foot may be off between two stations of the steer axle, rounding included.
+const STEP_STATIONS: usize = 2;
 
 /// Vehicle lengths within which what was driven before has faded to a few hundredths: no unit is longer than half of it.
 const FADING_LENGTHS: usize = 2;
@@ -50,26 +49,32 @@ pub(super) fn known(leeway_m: f64) -> bool {
     leeway_m > 0.5 * NOTHING_M && leeway_m < 0.5 * UNVISITED_M
 }
 
+/// Extended stations that a span of corridor stations rests on: its own, and on each side as many as lie between two body points. What
+/// a side leaves at an end of the span is bounded by both of its points, and one of them may be beyond the end.
+pub(super) fn stations(track: &Track, model: &Model, span: &Range<usize>) -> RangeInclusive<usize> {
+    let slack = (model.widest_gap / track.spacing).ceil() as usize + 1;
+    let own = own(track, span);
+    own.start() - slack..=own.end() + slack
+}
+
 /// Extended stations of a span of corridor stations.
-pub(super) fn stations(track: &Track, span: &std::ops::Range<usize>) -> RangeInclusive<usize> {
-    let first = track.lead + span.start - SLACK;
-    let last = track.lead + span.end.max(span.start + 1) - 1 + SLACK;
-    first..=last
+fn own(track: &Track, span: &Range<usize>) -> RangeInclusive<usize> {
+    let first = track.lead + span.start;
+    first..=first + span.len().max(1) - 1
 }
 
 /// What each station of a span would have, were it a span of its own.
-pub(super) fn alone(track: &Track, span: &std::ops::Range<usize>, column: &[f64]) -> Vec<f64> {
-    let least = |k: usize| column[stations(track, &(k..k + 1))].iter().copied().fold(f64::INFINITY, f64::min);
+pub(super) fn alone(track: &Track, model: &Model, span: &Range<usize>, column: &[f64]) -> Vec<f64> {
+    let least = |k: usize| column[stations(track, model, &(k..k + 1))].iter().copied().fold(f64::INFINITY, f64::min);
     span.clone().map(least).collect()
 }
 
 /// The numbers over a span at γ = 1.
-pub(super) fn least(track: &Track, model: &Model, span: &std::ops::Range<usize>, full: &Minima) -> Least {
+pub(super) fn least(track: &Track, model: &Model, span: &Range<usize>, full: &Minima) -> Least {
     let mut least = f64::INFINITY;
     let mut limiting = Limiting { station: span.start, unit: 0, side: Side::Left, point_m: 0.0 };
-    let (mut hinge, mut hinge_unit) = (f64::INFINITY, 0);
     let (mut offset, mut half_width) = (0.0_f64, f64::INFINITY);
-    for k in stations(track, span) {
+    for k in stations(track, model, span) {
         for (value, side) in [(full.left[k], Side::Left), (full.right[k], Side::Right)] {
             // A NaN, which no input should give, is the least of all.
             if value < least || value.is_nan() {
@@ -77,23 +82,20 @@ pub(super) fn least(track: &Track, model: &Model, span: &std::ops::Range<usize>,
                 limiting = place(track, model, k, side, value);
             }
         }
-        if full.hinge[k] < hinge {
-            hinge = full.hinge[k];
-            hinge_unit = ((hinge.to_bits() & TAG_MASK) >> 4) as usize;
-        }
+    }
+    for k in own(track, span) {
         offset = offset.max(full.offset[k]);
         half_width = half_width.min(track.fields.left[k].min(track.fields.right[k]));
     }
-    // Its rear leaves the span when its front is a length beyond: if the bounds do not close there, nothing is known of the rear.
-    let end = *stations(track, span).end();
-    let behind = (model.length / track.spacing).ceil() as usize;
-    let beyond = (end + 1..=end + behind).filter_map(|k| full.hinge.get(k));
-    if let Some(&lost) = beyond.min_by(|a, b| a.total_cmp(b)).filter(|margin| **margin < 0.5 * NOT_CLOSED_RAD) {
-        (least, hinge) = (NOTHING_M, hinge.min(lost));
-        hinge_unit = ((lost.to_bits() & TAG_MASK) >> 4) as usize;
+    let mut hinge = hinge(track, model, span, full);
+    let hinge_unit = if hinge < UNVISITED_M { ((hinge.to_bits() & TAG_MASK) >> 4) as usize } else { 0 };
+    // Where the bounds do not close while the vehicle is on the span, nothing is known of what stands on it.
+    if hinge < 0.5 * NOT_CLOSED_RAD {
+        least = NOTHING_M;
     }
     // Trailers that were pulled over stations that are no curve are not where they are taken to be for a while.
-    let start = *stations(track, span).start();
+    let behind = (model.length / track.spacing).ceil() as usize;
+    let start = *own(track, span).start();
     if track.torn.iter().any(|k| (start.saturating_sub(FADING_LENGTHS * behind)..start).contains(k)) {
         (least, hinge) = (NOTHING_M, hinge.min(NOT_CLOSED_RAD));
     }
@@ -111,6 +113,18 @@ pub(super) fn least(track: &Track, model: &Model, span: &std::ops::Range<usize>,
     }
 }
 
+/// The least hinge margin while any body point is on the span: by the points' own feet, and by the vehicle's length when straight,
+/// should feet have been lost.
+fn hinge(track: &Track, model: &Model, span: &Range<usize>, full: &Minima) -> f64 {
+    let (first, last) = (own(track, span).start() - STEP_STATIONS, own(track, span).end() + STEP_STATIONS);
+    let stations = |metres: f64| (metres / track.spacing).ceil() as usize;
+    let straight = first.saturating_sub(stations(model.front))..=last + stations(model.length);
+    // A foot falls behind by no more than a quarter turn's arc for its chord (proof, section 7, Feet).
+    let near = straight.start().saturating_sub(stations(model.front))..full.hinge.len().min(last + 2 * stations(model.length));
+    let on = |k: &usize| straight.contains(k) || full.under[*k][0] as usize <= last && full.under[*k][1] as usize >= first;
+    near.filter(on).map(|k| full.hinge[k]).fold(f64::INFINITY, f64::min)
+}
+
 /// Where a tagged leeway at an extended station stands.
 fn place(track: &Track, model: &Model, k: usize, side: Side, leeway: f64) -> Limiting {
     let tag = leeway.to_bits() & TAG_MASK;
@@ -125,7 +139,7 @@ fn place(track: &Track, model: &Model, k: usize, side: Side, leeway: f64) -> Lim
 pub(super) fn shrunk(
     track: &Track,
     model: &Model,
-    span: &std::ops::Range<usize>,
+    span: &Range<usize>,
     (full, at_least): (&Minima, &Minima),
     at_full: &Least,
 ) -> Least {
@@ -142,7 +156,7 @@ pub(super) fn shrunk(
     }
     let sides =
         |k: usize| [(full.left[k], at_least.left[k], Side::Left), (full.right[k], at_least.right[k], Side::Right)];
-    let all = || stations(track, span).flat_map(|k| sides(k).map(|side| (k, side)));
+    let all = || stations(track, model, span).flat_map(|k| sides(k).map(|side| (k, side)));
     let fails = all().filter(|(_, (f, _, _))| *f < 0.0);
     let part = fails.fold(1.0_f64, |part, (_, (f, l, _))| part.min(l / (l - f)));
     let shrink = ((floor + (1.0 - floor) * part) * SHRINK_STEPS).floor() / SHRINK_STEPS;

@@ -5,12 +5,12 @@
 //! nothing of edges, corrections or shrinking.
 
 use super::adjoint::{self, Refined, Trail, first_loose};
-use super::body::{self, Body};
+use super::body::{self, Body, Feet};
 use super::group::{Group, UnitLanes};
 use super::lanes::{LANES, V, by_instruction_set, select_negative};
 use super::leeway;
 use super::model::MAX_UNITS;
-use super::track::Track;
+use super::track::{Extensions, Track};
 use crate::stop::{Stop, Stopped};
 
 /// Head stations a block.
@@ -32,8 +32,10 @@ pub(super) struct Minima {
     /// Tagged (see [`super::lanes::V::tagged`]) with `unit · 16 + point`.
     pub(super) left: Vec<f64>,
     pub(super) right: Vec<f64>,
-    /// Hinge margin, radians, tagged with the unit.
+    /// Least hinge margin by station of the steer axle, radians, tagged with the unit.
     pub(super) hinge: Vec<f64>,
+    /// By station of the steer axle: first and last station under any body point.
+    pub(super) under: Vec<[u32; 2]>,
     /// Lateral distance of the last axle from the steer path, metres.
     pub(super) offset: Vec<f64>,
     /// By block of head stations: the first unit for which the adjoint is worth its time there.
@@ -46,6 +48,7 @@ impl Minima {
             left: vec![UNVISITED_M; stations],
             right: vec![UNVISITED_M; stations],
             hinge: vec![UNVISITED_M; stations],
+            under: vec![[u32::MAX, 0]; stations],
             offset: vec![0.0; stations],
             loose: vec![usize::MAX; stations / BLOCK + 2],
         }
@@ -61,6 +64,15 @@ impl Minima {
     fn lose(&mut self, k: usize) {
         self.hinge[k] = V::splat(NOT_CLOSED_RAD).tagged(0).0[0];
         [self.left[k], self.right[k]] = [V::splat(body::LOST_M).tagged(0).0[0]; 2];
+    }
+
+    /// The stations under a body point at eight stations of the steer axle, from `head` on.
+    #[inline(always)]
+    pub(super) fn pass(&mut self, head: usize, feet: Feet) {
+        for (lane, [first, last]) in self.under[head..head + LANES].iter_mut().enumerate() {
+            let foot = feet.station(lane) as u32;
+            (*first, *last) = ((*first).min(foot), (*last).max(foot));
+        }
     }
 
     /// A bend counts for some blocks that follow it, too: what the filter has gathered in it takes as long to fade.
@@ -81,11 +93,11 @@ pub(super) fn reach_m(group: &Group<'_>) -> (f64, f64) {
     (group.length().max(LEAST_LENGTH_M), group.front().max(LEAST_FRONT_M))
 }
 
-/// Extension that a track needs before and after the corridor for this group, metres.
-pub(super) fn extensions_m(group: &Group<'_>, spacing: f64) -> (f64, f64) {
+/// Extensions that a track needs before and after the corridor for this group.
+pub(super) fn extensions(group: &Group<'_>, spacing: f64) -> Extensions {
     let slack = (BLOCK + 2 * LANES) as f64 * spacing;
-    let (length, front) = reach_m(group);
-    (length + slack, length + 2.0 * front + 2.0 * slack + 10.0)
+    let (length, front_m) = reach_m(group);
+    Extensions { lead_m: length + front_m + slack, tail_m: length + 2.0 * front_m + 2.0 * slack + 10.0, front_m }
 }
 
 /// Which leeways a sweep is to give, by vehicle and head station: a vehicle's are left out while its head is in a block
@@ -132,7 +144,7 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
 ) -> Result<Vec<Minima>, Stopped> {
     let mut minima = vec![Minima::new(track.len()); group.models.len()];
     let mut rows = vec![0.0; group.units * LANES * FIELDS * BLOCK];
-    let mut motion = Motion::new(track);
+    let mut motion = Motion::new(track, group);
     let mut trail = Trail::new(group, REFINE);
     let mut tight = Refined::new();
     let mut bodies: Vec<Vec<Body>> =
@@ -143,7 +155,7 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     // The rear of the longest vehicle has left the corridor when the head is this far beyond.
     let ahead = ((group.front() + 4.0) / track.spacing).ceil() as usize + LANES;
     let last = track.len() - ahead - BLOCK;
-    let mut head = track.lead;
+    let mut head = track.first_head;
     while head < last {
         stop.check()?;
         drive::<CERTIFY, REFINE>(&mut motion, track, group, shift, head, &mut rows, &mut trail);
@@ -225,9 +237,20 @@ impl Step {
         hitch_cosine: ZERO,
         path_curvature: ZERO,
     };
+
+    /// A metre straight on.
+    pub(super) const STRAIGHT: Step = Step {
+        moved: ONE,
+        advance: ONE,
+        cosine: ONE,
+        secant: ONE,
+        hitch_cosine: ONE,
+        ..Self::NONE
+    };
 }
 
 pub(super) const ZERO: V = V([0.0; LANES]);
+const ONE: V = V([1.0; LANES]);
 
 by_instruction_set! {
     /// Drives [`BLOCK`] stations from `head` and leaves every unit's rows.
@@ -244,18 +267,19 @@ by_instruction_set! {
             trail.enter(&motion.extra);
         }
         let mut place = steer(track, shift, head);
+        let mut next = steer(track, shift, head + 1);
         for k in 0..BLOCK {
-            let next = steer(track, shift, head + k + 1);
-            motion.station::<CERTIFY, REFINE>(group, place, next, track.spacing, k, rows, trail);
-            place = next;
+            let after = steer(track, shift, head + k + 2);
+            motion.station::<CERTIFY, REFINE>(group, [place, next, after], track.spacing, k, rows, trail);
+            (place, next) = (next, after);
         }
     }
 }
 
 impl Motion {
-    /// All units stand behind the track's first station, along its heading.
+    /// All units stand behind the steer axle's first station, along the corridor's first heading; they have come straight.
     #[inline(always)]
-    pub(super) fn new(track: &Track) -> Self {
+    pub(super) fn new(track: &Track, group: &Group<'_>) -> Self {
         let (x, y) = (V::splat(track.fields.tangent_x[track.lead]), V::splat(track.fields.tangent_y[track.lead]));
         Self {
             heading_x: [x; MAX_UNITS],
@@ -264,25 +288,29 @@ impl Motion {
             along_y: [y; MAX_UNITS],
             turned: [ZERO; MAX_UNITS],
             turned_change: [ZERO; MAX_UNITS],
-            extra: [ZERO; MAX_UNITS],
+            extra: std::array::from_fn(|unit| group.chain[unit].settled),
         }
     }
 
-    /// One head station: rows of every unit there, then the step to the next.
+    /// One head station: rows of every unit there, then the step to the next. `plan`: the steer axle's place there, and at the
+    /// next two.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)] // One call, in the innermost loop: a struct would be taken apart at once.
     fn station<const CERTIFY: bool, const REFINE: bool>(
         &mut self,
         group: &Group<'_>,
-        place: (V, V),
-        next: (V, V),
+        plan: [(V, V); 3],
         spacing: f64,
         k: usize,
         rows: &mut [f64],
         trail: &mut Trail,
     ) {
+        let [place, next, after] = plan;
         let (mut x, mut y) = place;
         let (mut vx, mut vy) = (next.0 - place.0, next.1 - place.1);
+        // The plan may bend more after the step than before it, at the corridor's first station most of all.
+        let (later_x, later_y) = (after.0 - next.0, after.1 - next.1);
+        let mut bend_after = (vx * later_y - vy * later_x).abs() / (vx * vx + vy * vy + 1e-30);
         let mut steps = [Step::NONE; MAX_UNITS];
         let mut joints = [ZERO; MAX_UNITS];
         let (mut ahead_x, mut ahead_y) = (ZERO, ZERO);
@@ -339,8 +367,9 @@ impl Motion {
                     tangent: tangent.abs(),
                     secant: moved * inverse_cosine,
                     hitch_cosine: V::splat(1.0) / (hitch_tangent * hitch_tangent + 1.0).sqrt(),
-                    path_curvature: bend.abs() * inverse_moved,
+                    path_curvature: bend.abs().max(bend_after) * inverse_moved,
                 };
+                bend_after = ZERO;
                 self.along_x[unit] = ax;
                 self.along_y[unit] = ay;
                 let turned = ux * wy - uy * wx;
@@ -394,9 +423,9 @@ impl Motion {
             let (r1, z) = remainder(of, step, a, axle);
             let extra = filter.grown(of, step, &coupled, z);
             // Where it does not close, nothing is certified while the vehicle stands here; a vehicle that is certified further
-            // on did not come through here, so that its bounds begin anew. A stand-in closes: it is nobody's.
+            // on did not come through here, so that its bounds begin anew, as after a straight. A stand-in closes: it is nobody's.
             closed = closed.min(select_negative(of.present - V::splat(0.5), one, validity(of, step, a).min(short)));
-            self.extra[unit] = select_negative(closed, ZERO, extra);
+            self.extra[unit] = select_negative(closed, of.settled, extra);
             let y = y.max(extra);
 
             let mut store = |field: usize, value: V| store(rows, unit, field, k, value);
@@ -502,7 +531,7 @@ impl Filter {
     }
 }
 
-/// The plan is a smooth curve through the vertices: it leaves the chord by κℓ²/8 at most.
+/// The plan, and the path of a coupling, is a smooth curve through the vertices: it leaves the chord by κℓ²/8 at most.
 #[inline(always)]
 pub(super) fn chord_bulge(step: &Step) -> V {
     step.path_curvature * step.moved * step.moved * 0.125
@@ -534,7 +563,7 @@ pub(super) fn heading(of: &UnitLanes, step: &Step, first_order: V, axle: V) -> (
     (a, more - borne_out * of.inverse_length)
 }
 
-/// Second-order remainder of the next coupling, the foot shift against its follower included.
+/// Second-order remainder of the next coupling, with the foot shift against its follower and what its path leaves the chord by.
 #[inline(always)]
 pub(super) fn hitch_remainder(
     of: &UnitLanes,
@@ -554,7 +583,9 @@ pub(super) fn hitch_remainder(
         + hitch_sine * of.hitch * a * a * 0.5
         + step.path_curvature.max(step.tangent * of.inverse_length) * swing * swing * 0.5;
     let Some((next, behind)) = follower else { return own };
-    own + reach * (behind.tangent + hitch_tangent) * (straying.slope + straying.rough * next.inverse_length * 2.0)
+    // The follower is drawn along the chord of the coupling's own curve.
+    own + chord_bulge(behind)
+        + reach * (behind.tangent + hitch_tangent) * (straying.slope + straying.rough * next.inverse_length * 2.0)
 }
 
 /// How fast a coupling's deviation may change along its path: the slope of what has passed through axles, and how much of

@@ -5,7 +5,7 @@ use super::lanes::{LANES, V};
 use super::model::POINT_SPACING_M as MOST_GAP_M;
 use crate::corridor::Corridor;
 
-/// Half-width of the straight extensions: they are driven, not certified.
+/// Half-width of the straight extensions, a body gap away from the corridor: they are driven, not certified.
 const OPEN_M: f64 = 1e6;
 
 /// Convexity of a half-width, 1/m, above which each of its places counts for itself (`leeway`).
@@ -22,11 +22,22 @@ pub(super) struct Track {
     pub(super) spacing: f64,
     /// Extended stations before the corridor's first.
     pub(super) lead: usize,
+    /// The steer axle's first station: no body point is on the corridor yet.
+    pub(super) first_head: usize,
     /// Stations of the corridor itself.
     pub(super) count: usize,
     pub(super) fields: Fields<Vec<f64>>,
     /// Stations that do not fit their neighbours: nothing is certified there.
     pub(super) torn: Vec<usize>,
+}
+
+/// How far a track goes beyond its corridor, metres.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Extensions {
+    pub(super) lead_m: f64,
+    pub(super) tail_m: f64,
+    /// How far ahead of its steer axle a vehicle reaches at most.
+    pub(super) front_m: f64,
 }
 
 /// What the foot of a body point needs of the corridor.
@@ -51,11 +62,12 @@ pub(super) struct Fields<T> {
 }
 
 impl Track {
-    /// `lead_m` and `tail_m` are the lengths of the straight extensions.
-    pub(super) fn new(corridor: &Corridor, lead_m: f64, tail_m: f64) -> Self {
+    /// For vehicles that reach `front_m` ahead of their steer axles and need so much road before and behind the corridor.
+    pub(super) fn new(corridor: &Corridor, Extensions { lead_m, tail_m, front_m }: Extensions) -> Self {
         let h = corridor.spacing_m;
         let count = corridor.len();
         let lead = (lead_m / h).ceil() as usize + LANES;
+        let first_head = lead - (front_m / h).ceil() as usize - 2;
         let total = lead + count + (tail_m / h).ceil() as usize + LANES;
         let at = |k: usize| Place::of(corridor, k as isize - lead as isize);
         let places: Vec<Place> = (0..total).map(at).collect();
@@ -101,7 +113,7 @@ impl Track {
             ..fields
         };
         let torn = corridor.torn().into_iter().map(|k| lead + k).collect();
-        Self { spacing: h, lead, count, fields, torn }
+        Self { spacing: h, lead, first_head, count, fields, torn }
     }
 
     /// Every second station, for planning, which does not ask whether they fit; the corridor's first is among them.
@@ -128,6 +140,7 @@ impl Track {
         Self {
             spacing: 2.0 * self.spacing,
             lead: self.lead / 2,
+            first_head: (self.first_head - first).div_euclid(2),
             count: self.count.div_ceil(2),
             fields,
             torn: Vec::new(),
@@ -228,8 +241,8 @@ impl Place {
         let beyond = (k - i) as f64 * corridor.spacing_m;
         let i = i as usize;
         let heading = corridor.heading[i];
-        // The first station beyond an end still has the end's width: points within half a station of it count.
-        let open = beyond.abs() > 1.5 * corridor.spacing_m;
+        // A side that straddles an end is bounded from both its points: the end's width goes on under the one beyond.
+        let open = beyond.abs() > MOST_GAP_M + 1.5 * corridor.spacing_m;
         Self {
             x: corridor.x[i] + beyond * heading.cos(),
             y: corridor.y[i] + beyond * heading.sin(),

@@ -39,19 +39,15 @@ pub fn tubes(corridor: &Corridor, model: &Model, certificate: &Certificate) -> V
         (0..units).map(|unit| Tube { unit, centre: Vec::new(), heading: Vec::new(), lateral_m: Vec::new() }).collect();
     let Some(last) = certificate.shift_m.len().checked_sub(1) else { return tubes };
     let group = Group::new(&[model], certificate.result.shrink);
-    let (lead_m, tail_m) = sweep::extensions_m(&group, corridor.spacing_m);
-    let track = Track::new(corridor, lead_m, tail_m);
+    let track = Track::new(corridor, sweep::extensions(&group, corridor.spacing_m));
     let shift: Vec<V> =
         (0..track.len()).map(|k| V::splat(certificate.shift_m[k.saturating_sub(track.lead).min(last)])).collect();
-    let mut motion = Motion::new(&track);
+    let mut motion = Motion::new(&track, &group);
     let mut trail = Trail::new(&group, true);
     let mut refined = Refined::new();
     let mut rows = vec![0.0; units * LANES * FIELDS * BLOCK];
-    // On the straight before the corridor the bounds come to rest.
-    let run_in = track.lead / BLOCK * BLOCK;
-    let (mut begun, mut after) = (0, usize::MAX);
-    while begun <= run_in + last {
-        let head = track.lead - run_in + begun;
+    let (mut head, mut after) = (track.first_head, usize::MAX);
+    while head <= track.lead + last {
         drive::<true, true>(&mut motion, &track, &group, &shift, head, &mut rows, &mut trail);
         let loose = first_loose(&group, 0, &rows);
         if loose.min(after) < units {
@@ -61,13 +57,13 @@ pub fn tubes(corridor: &Corridor, model: &Model, certificate: &Certificate) -> V
         after = loose;
         for tube in &mut tubes {
             let at = |field: usize, k: usize| rows[(tube.unit * LANES * FIELDS + field) * BLOCK + k];
-            for k in 0..BLOCK.min(run_in + last + 1 - begun).min(if begun < run_in { 0 } else { BLOCK }) {
+            for k in track.lead.saturating_sub(head)..BLOCK.min(track.lead + last + 1 - head) {
                 tube.centre.push([at(row::X, k), at(row::Y, k)]);
                 tube.heading.push([at(row::UX, k), at(row::UY, k)]);
                 tube.lateral_m.push(group.chain[tube.unit].axle.0[0] + at(row::EXTRA_AXLE, k));
             }
         }
-        begun += BLOCK;
+        head += BLOCK;
     }
     tubes
 }

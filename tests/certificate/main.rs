@@ -3,6 +3,7 @@
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod corrcen;
+mod ends;
 mod errata;
 mod no_curve;
 #[path = "../oracle/mod.rs"]

@@ -56,14 +56,43 @@ fn adjoint(
 
 /// The impulse responses of `target` over at most `window` steps, linearised about `run` under `disturbance`.
 pub fn kernel(drive: &Drive<'_>, run: &Run, disturbance: &Disturbance, target: &Target, window: usize) -> Kernel {
+    let lambda = gradient(drive, run.at(target.step).1, target);
+    backwards(drive, run, disturbance, (target.step, window), lambda, target.push)
+}
+
+/// The same of the articulation at `hinge` (0: of the prime mover's heading) after `step`, opened to the left by `sign`.
+pub fn hinge_kernel(
+    drive: &Drive<'_>,
+    run: &Run,
+    disturbance: &Disturbance,
+    (step, window): (usize, usize),
+    hinge: usize,
+    sign: f64,
+) -> Kernel {
+    let mut lambda = [0.0; MAX_UNITS];
+    lambda[hinge] = sign;
+    if let Some(ahead) = hinge.checked_sub(1) {
+        lambda[ahead] = -sign;
+    }
+    backwards(drive, run, disturbance, (step, window), lambda, [0.0; 2])
+}
+
+/// `lambda`: how what is attacked changes with each heading at its step; `push`: with the place of the steer axle there.
+fn backwards(
+    drive: &Drive<'_>,
+    run: &Run,
+    disturbance: &Disturbance,
+    (at, window): (usize, usize),
+    mut lambda: PerUnit,
+    push: V2,
+) -> Kernel {
     assert!(drive.guide_m == 0.0, "the adversary steers by the axle's centre");
-    let first = target.step.saturating_sub(window).max(run.first);
+    let first = at.saturating_sub(window).max(run.first);
     let h = 1.0 / drive.steps_per_span as f64;
-    let mut lambda = gradient(drive, run.at(target.step).1, target);
-    let count = target.step - first;
+    let count = at - first;
     let (mut steer, mut slip) = (vec![0.0; count + 1], vec![[0.0; MAX_UNITS]; count]);
     let normal = |step: usize| drive.path.jet(step / drive.steps_per_span, fraction(drive, step)).normal().0;
-    steer[count] = dot(target.push, normal(target.step));
+    steer[count] = dot(push, normal(at));
     for k in (0..count).rev() {
         let step = first + k;
         let end = drive.guide_velocity(disturbance, step, 1.0);

@@ -6,10 +6,10 @@
 use netcert::corridor::Corridor;
 use netcert::vehicle::Vehicle;
 
-use super::adversary::{Bounds, Target, kernel};
+use super::adversary::{Bounds, Target, hinge_kernel, kernel};
 use super::claim::{Claim, Place};
 use super::draw::Draw;
-use super::path::{Path, along, left_of, wrapped};
+use super::path::{Path, along, direction, dot, left_of, wrapped};
 use super::road::Road;
 use super::simulator::{Disturbance, Drive, Near, PerUnit, Run, places, sweep};
 
@@ -41,6 +41,17 @@ pub struct Duel<'a> {
     nominal: Run,
     bounds: Bounds,
     outcome: Outcome,
+}
+
+/// How far the foremost point is ahead of the steer axle on the straight, metres.
+fn front_m(vehicle: &Vehicle) -> f64 {
+    let mut coupling = 0.0;
+    let ahead = vehicle.units.iter().map(|unit| {
+        let own = coupling + unit.front_overhang_m;
+        coupling -= unit.coupling_to_axle_m + unit.hitch_offset_m;
+        own
+    });
+    ahead.fold(0.0, f64::max)
 }
 
 /// The path that a claim's plan stands for, with room to settle before it and to clear the corridor after it.
@@ -87,6 +98,9 @@ impl<'a> Duel<'a> {
             let place = self.random_place(draw);
             self.attack(place, k % 2 == 0, "random place");
         }
+        for _ in 0..others {
+            self.attack_hinges(draw);
+        }
         let noise = self.noise(draw);
         let run = self.drive.whole(&noise);
         self.measure(&run, self.on_road(), "noise", false);
@@ -103,9 +117,23 @@ impl<'a> Duel<'a> {
         self.drive.some(disturbance, first..end, *self.nominal.at(first).1)
     }
 
-    /// Steps in which some unit is on the corridor.
+    /// Steps in which some unit is on the corridor: from when the first point comes on to it, and a little longer than until the last
+    /// one has left.
     fn on_road(&self) -> std::ops::Range<usize> {
-        self.drive.path.span_of_vertex(0) * self.drive.steps_per_span..self.drive.steps()
+        let first = self.drive.path.span_of_vertex(0) * self.drive.steps_per_span;
+        first - self.steps_of(front_m(self.drive.vehicle)).min(first)..self.drive.steps()
+    }
+
+    /// Steps in which surely some point of the vehicle is on the corridor.
+    fn surely_on_road(&self) -> std::ops::Range<usize> {
+        let vehicle = self.drive.vehicle;
+        let rear_m = vehicle.length_m - front_m(vehicle);
+        let end = self.drive.path.span_of_vertex(0) * self.drive.steps_per_span + self.steps_of(self.road.length_m() + rear_m);
+        self.on_road().start + 1..end.min(self.drive.steps())
+    }
+
+    fn steps_of(&self, metres: f64) -> usize {
+        (metres / self.drive.path.spacing_m * self.drive.steps_per_span as f64) as usize
     }
 
     fn random_place(&self, draw: &mut Draw) -> Place {
@@ -138,6 +166,43 @@ impl<'a> Duel<'a> {
         let run = self.from(first.first, near.end, &again.attack(&bounds, self.drive.steps()));
         self.measure(&run, near, by, !fast);
         clearance_m - first.reach_m(&bounds)
+    }
+
+    /// Folds every hinge, and the steering, as far as it goes within the course tolerance: where it is folded most undisturbed, and at a
+    /// random step.
+    fn attack_hinges(&mut self, draw: &mut Draw) {
+        let range = self.surely_on_road();
+        if range.is_empty() {
+            return;
+        }
+        for hinge in 0..self.drive.vehicle.units.len() {
+            let folded = |step: usize| self.folded(&self.nominal, step, hinge);
+            let most = range.clone().max_by(|&a, &b| folded(a).abs().total_cmp(&folded(b).abs())).unwrap_or(range.start);
+            for step in [most, range.start + draw.below(range.len())] {
+                let sign = if self.folded(&self.nominal, step, hinge) < 0.0 { -1.0 } else { 1.0 };
+                let window = (step, self.memory());
+                let per_step = self.drive.path.spacing_m / self.drive.steps_per_span as f64;
+                let change_m = self.drive.vehicle.tracking_heading_rad.tan() * per_step;
+                let bounds = Bounds { change_m, ..self.bounds };
+                let kernel = hinge_kernel(&self.drive, &self.nominal, &self.calm, window, hinge, sign);
+                let end = (step + STEPS_PER_M).min(self.drive.steps());
+                let run = self.from(kernel.first, end, &kernel.attack(&bounds, self.drive.steps()));
+                self.measure_hinges(&run, kernel.first..end);
+            }
+        }
+    }
+
+    /// How far a hinge is folded at a step, to the left; of 0: how far the prime mover is turned against its course.
+    fn folded(&self, run: &Run, step: usize, hinge: usize) -> f64 {
+        let headings = run.at(step).1;
+        if let Some(ahead) = hinge.checked_sub(1) {
+            return wrapped(headings[hinge] - headings[ahead]);
+        }
+        let places = run.steps();
+        let (before, after) = (step.saturating_sub(1).max(places.start), (step + 1).min(places.end - 1));
+        let moved = along(run.at(after).0, -1.0, run.at(before).0);
+        let u = direction(headings[0]);
+        -dot(moved, left_of(u)).atan2(dot(moved, u))
     }
 
     /// The step at which a body point's foot is nearest to the place's, undisturbed, and its clearance then.
@@ -195,10 +260,10 @@ impl<'a> Duel<'a> {
 
     fn measure_hinges(&mut self, run: &Run, range: std::ops::Range<usize>) {
         let units = &self.drive.vehicle.units;
-        for step in range.step_by(2) {
-            let headings = run.at(step).1;
-            for i in 1..units.len() {
-                let room = units[i].max_articulation_rad - wrapped(headings[i - 1] - headings[i]).abs();
+        let on_road = self.surely_on_road();
+        for step in range.filter(|step| step % 2 == 0 && on_road.contains(step)) {
+            for (i, unit) in units.iter().enumerate() {
+                let room = unit.max_articulation_rad - self.folded(run, step, i).abs();
                 if room < self.outcome.hinge.0 {
                     self.outcome.hinge = (room, i);
                 }
