@@ -35,7 +35,7 @@ fn main() {
             let start = Instant::now();
             let rows = certify_spans(&corridor, &lanes, &spans, &Options::default());
             best = best.min(start.elapsed().as_secs_f64());
-            failed = rows.iter().flat_map(|row| &row.spans).filter(|r| r.rsc_m < 0.0).count();
+            failed = rows.iter().flat_map(|row| &row.spans).filter(|r| r.too_narrow()).count();
         }
         let rate = corridor.len() as f64 * 1e-3 * lanes.len() as f64 / best;
         let name = format!("{} × {copies}", ids.join(" "));

@@ -34,8 +34,8 @@ fn main() {
             .zip(&row.spans)
             .map(|(stations, result)| SpanClaim {
                 stations: stations.clone(),
-                rsc_m: Some(result.rsc_m),
-                hinge_margin_rad: Some(result.hinge_margin_rad),
+                rsc_m: result.rsc_m,
+                hinge_margin_rad: result.hinge_margin_rad,
                 shrink: result.shrink,
                 limiting: None,
             })

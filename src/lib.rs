@@ -12,6 +12,7 @@
 //! | turns | [`turns`] | two strokes that meet → the corridors in which one turns from one into the other |
 //! | store | [`store`] | network, turns and certificates → a GeoPackage |
 //! | routes | [`route`] | a network with permits, two places → the shortest way that certifies as a whole |
+//! | files | [`certificate`] | a certificate → the file that `verify` checks |
 //! | exports | [`export`] | a database and a vehicle → what routing engines and map programs read |
 //! | reasons | [`explain`] | an edge or corridor and a vehicle → what limits, where, and what would do |
 //! | manoeuvres | [`manoeuvres`] | a vehicle → swept paths of the turns that regulators ask for, beside their limits |
@@ -25,6 +26,7 @@
 //! no threads.
 
 pub mod account;
+pub mod certificate;
 pub mod check;
 mod claim;
 pub mod corridor;

@@ -140,24 +140,33 @@ impl<'a> Subject<'a> {
         findings
     }
 
-    /// Why a column of leeway, one entry a station on one side at γ = 1, is not proved: between two stations it claims the lesser.
-    pub(crate) fn leeway_column(&self, side: usize, column: &[f64]) -> Option<String> {
-        let Some(motion) = &self.motion else { return Some("the plan cannot be driven".to_owned()) };
-        let none = vec![f64::NEG_INFINITY; self.road.count - 1];
-        let mut targets = [none.clone(), none];
-        targets[side] = column.windows(2).map(|pair| asked(pair[0].min(pair[1]))).collect();
-        // A column that claims nothing (the bounds do not close) is true.
-        targets[side].iter_mut().filter(|target| **target < -NOTHING_M).for_each(|target| *target = f64::NEG_INFINITY);
+    /// Why two columns of leeway (left, right), one entry a station at γ = 1, are not proved. An entry claims what a span of its station
+    /// alone would: the leeway all over both stretches that meet there.
+    pub(crate) fn leeway_columns(&self, columns: [&[Option<f64>]; 2]) -> [Option<String>; 2] {
+        let stretches = self.road.count - 1;
+        let claimed = |column: &[Option<f64>], k: usize| {
+            let both = [column[k], column[k + 1]];
+            both.into_iter().flatten().map(asked).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let targets = columns.map(|column| (0..stretches).map(|k| claimed(column, k)).collect::<Vec<_>>());
+        let claims_nothing = |side: &[f64]| side.iter().all(|target| *target == f64::NEG_INFINITY);
+        let Some(motion) = &self.motion else {
+            let wrong = |side: &Vec<f64>| (!claims_nothing(side)).then(|| "the plan cannot be driven".to_owned());
+            return [wrong(&targets[0]), wrong(&targets[1])];
+        };
         let mut swept = Swept::new(self.chain, &self.road, motion, self.chain.tolerance_m);
         let shortfalls = swept.refute(&Targets(targets));
-        let worst = shortfalls.iter().max_by(|a, b| a.short_m.total_cmp(&b.short_m))?;
-        Some(self.describe(worst.short_m, worst))
+        [0, 1].map(|side| {
+            let own = shortfalls.iter().filter(|shortfall| shortfall.side == side);
+            let worst = own.max_by(|a, b| a.short_m.total_cmp(&b.short_m))?;
+            Some(self.describe(worst.short_m, worst))
+        })
     }
 
-    /// The leeway proved of a body point whose foot is `s` metres along the corridor.
-    pub(crate) fn leeway_at(&self, s: f64, unit: usize, side: usize, a: f64, tolerance_m: f64) -> Option<f64> {
-        let mut swept = Swept::new(self.chain, &self.road, self.motion.as_ref()?, tolerance_m);
-        swept.leeway_at(s / self.road.spacing + self.road.lead as f64, unit, side, a)
+    /// What is between a body point and the edge beside it as it passes the normal `s` metres along the corridor, steered exactly.
+    pub(crate) fn nominal_at(&self, s: f64, unit: usize, side: usize, a: f64) -> Option<f64> {
+        let swept = self.swept(self.chain.tolerance_m)?;
+        swept.nominal_at(s / self.road.spacing + self.road.lead as f64, unit, side, a)
     }
 
     /// The place that limits must be on the span, and have no more room than the RSC, nearly.
@@ -183,11 +192,16 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// Nominal place of an axle (from the corridor's first station) when the steer axle is at station `k`, and how far off it may be;
-    /// the filter's bound if that is no more than `enough`, else the adjoint's.
-    pub(crate) fn tube_at(&self, swept: &mut Swept<'_>, k: usize, unit: usize, enough: f64) -> Option<([f64; 2], f64)> {
+    /// Nominal place of an axle (from the corridor's first station) when the steer axle is at station `k`.
+    pub(crate) fn axle_at(&self, k: usize, unit: usize) -> Option<[f64; 2]> {
+        Some(self.motion.as_ref()?.pose((self.road.lead + k) * STEPS, unit).p)
+    }
+
+    /// How far off an axle may be when the steer axle is at station `k`: the filter's bound if that is no more than `enough`, else the
+    /// adjoint's.
+    pub(crate) fn tube_at(&self, swept: &mut Swept<'_>, k: usize, unit: usize, enough: f64) -> Option<f64> {
         let step = (self.road.lead + k) * STEPS;
-        Some((swept.motion.pose(step, unit).p, swept.axle_bound(step.checked_sub(1)?, unit, enough)?))
+        swept.axle_bound(step.checked_sub(1)?, unit, enough)
     }
 
     /// The vehicle swept at a tolerance.

@@ -626,29 +626,34 @@ impl Swept<'_> {
         Some(y.min(self.exact_pose(step, unit)?[0]))
     }
 
-    /// The leeway proved of a body point when its foot is at `s` (stations of the road).
-    pub(crate) fn leeway_at(&mut self, s: f64, unit: usize, side: usize, a: f64) -> Option<f64> {
+    /// What is between a body point and the edge beside it as it passes the normal at `s` (stations of the road), steered exactly. Of
+    /// several passages the one nearest to that on a straight road.
+    pub(crate) fn nominal_at(&self, s: f64, unit: usize, side: usize, a: f64) -> Option<f64> {
         let place = self.road.place(s);
         let sign = if side == 0 { 1.0 } else { -1.0 };
         let b = sign * self.chain.links[unit].half_width;
-        let off = |node: usize| {
+        let from = |node: usize| {
             let x = point(self.motion.pose(node, unit), a, b);
-            (x[0] - place.c[0]) * place.t[0] + (x[1] - place.c[1]) * place.t[1]
+            [x[0] - place.c[0], x[1] - place.c[1]]
         };
-        // The first node at which the point is past the place, near it.
-        let near = |node: &usize| {
-            let x = self.motion.pose(*node, unit).p;
-            (x[0] - place.c[0]).hypot(x[1] - place.c[1]) < a.abs() + self.chain.links[unit].l + 20.0
-        };
-        let step = (0..self.motion.steps()).find(|step| near(step) && off(*step) < 0.0 && off(step + 1) >= 0.0)?;
+        let off = |node: usize| from(node)[0] * place.t[0] + from(node)[1] * place.t[1];
+        let strays = |step: usize| (self.rough_foot(step, unit, a) - s).abs() * self.road.spacing;
+        let astray = ASTRAY_PART * self.chain.reach_m().1 + ASTRAY_M;
+        let step = (0..self.motion.steps())
+            .filter(|&step| strays(step) <= astray && off(step) < 0.0 && off(step + 1) >= 0.0)
+            .min_by(|&a, &b| strays(a).total_cmp(&strays(b)))?;
         let share = off(step) / (off(step) - off(step + 1));
-        let cell = Cell { unit, side, step, t: [share; 2], a: [a; 2], halvings: 0 };
-        let rough = self.corner(&cell, self.pose(step, unit, share), a, s)?;
-        self.sharpen(&cell, self.knots(&cell, &[rough; 4]));
-        let corner = self.corner(&cell, self.pose(step, unit, share), a, s)?;
-        Some(corner.clear - corner.dev)
+        let [before, after] = [step, step + 1].map(|node| from(node)[1] * place.t[0] - from(node)[0] * place.t[1]);
+        Some(self.road.width(side, s).0 - sign * (before + share * (after - before)))
     }
 
+    /// The least margin of a hinge while any point of the vehicle is on the corridor, as the filter has it.
+    pub(crate) fn least_hinge_margin(&self, unit: usize) -> f64 {
+        let steps = self.steps(0..self.road.count - 1);
+        steps.map(|step| self.plain_hinge_margin(step, unit)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The margin of a hinge throughout a step as the filter has it, radians; −∞ where nothing is bounded.
     fn plain_hinge_margin(&self, step: usize, unit: usize) -> f64 {
         let swing = |unit: usize| self.motion.swing(step, unit);
         let angles = |unit: usize| [swing(unit).before, swing(unit).after].map(|half| 2.0 * half.atan());

@@ -36,6 +36,11 @@ impl<'v> Members<'v> {
         number.ok_or_else(|| format!("{}: not a number", self.path_of(name)))
     }
 
+    /// A number, or null, which says that there is none.
+    pub(super) fn number_or_null(&self, name: &str) -> Result<Option<f64>, Wrong> {
+        if self.value(name)?.is_null() { Ok(None) } else { self.number(name).map(Some) }
+    }
+
     pub(super) fn index(&self, name: &str) -> Result<usize, Wrong> {
         let index = self.value(name)?.as_u64().and_then(|n| usize::try_from(n).ok());
         index.ok_or_else(|| format!("{}: not a whole number", self.path_of(name)))
@@ -69,14 +74,37 @@ impl<'v> Members<'v> {
         self.list(name, Some(count))?.iter().enumerate().map(one).collect()
     }
 
-    /// A list of tuples of numbers.
-    pub(super) fn tuples<const N: usize>(&self, name: &str, count: usize) -> Result<Vec<[f64; N]>, Wrong> {
+    /// A list of numbers, each of which may be null.
+    pub(super) fn numbers_or_null(&self, name: &str, count: usize) -> Result<Vec<Option<f64>>, Wrong> {
         let one = |(k, value): (usize, &Value)| {
-            let numbers: Option<Vec<f64>> =
-                value.as_array().and_then(|list| list.iter().map(|x| x.as_f64().filter(|x| x.is_finite())).collect());
-            let tuple = numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
-            tuple.ok_or_else(|| format!("{}[{k}]: not {N} numbers", self.path_of(name)))
+            let number = value.as_f64().filter(|x| x.is_finite());
+            let wrong = || format!("{}[{k}]: neither a number nor null", self.path_of(name));
+            if value.is_null() { Ok(None) } else { number.map(Some).ok_or_else(wrong) }
         };
         self.list(name, Some(count))?.iter().enumerate().map(one).collect()
+    }
+
+    /// A list of tuples of numbers.
+    pub(super) fn tuples<const N: usize>(&self, name: &str, count: usize) -> Result<Vec<[f64; N]>, Wrong> {
+        self.list(name, Some(count))?.iter().enumerate().map(|(k, value)| self.tuple(name, k, value)).collect()
+    }
+
+    /// A list of tuples of numbers, each of which may be null.
+    pub(super) fn tuples_or_null<const N: usize>(
+        &self,
+        name: &str,
+        count: usize,
+    ) -> Result<Vec<Option<[f64; N]>>, Wrong> {
+        let one = |(k, value): (usize, &Value)| {
+            if value.is_null() { Ok(None) } else { self.tuple(name, k, value).map(Some) }
+        };
+        self.list(name, Some(count))?.iter().enumerate().map(one).collect()
+    }
+
+    fn tuple<const N: usize>(&self, name: &str, k: usize, value: &Value) -> Result<[f64; N], Wrong> {
+        let numbers: Option<Vec<f64>> =
+            value.as_array().and_then(|list| list.iter().map(|x| x.as_f64().filter(|x| x.is_finite())).collect());
+        let tuple = numbers.and_then(|numbers| <[f64; N]>::try_from(numbers).ok());
+        tuple.ok_or_else(|| format!("{}[{k}]: not {N} numbers", self.path_of(name)))
     }
 }

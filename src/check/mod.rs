@@ -17,7 +17,7 @@
 //! | `leeway` | from tubes to leeway (section 7), by branch and bound against what is claimed |
 //! | `claim` | what is said of one vehicle on one corridor, and what comes of it |
 //! | `printed` | the paper's 𝒞, which decides nothing |
-//! | `file`, `members` | certificate files |
+//! | `file`, `document`, `members` | certificate files |
 //! | `database`, `turns`, `said` | databases: their edges, their turns, what a row of either says |
 //!
 //! How numbers are trusted. What is *chosen* – the nominal motion, feet, kernels – is plain `f64`: another choice would
@@ -29,6 +29,7 @@ mod adjoint;
 mod chain;
 mod claim;
 mod database;
+mod document;
 mod file;
 mod gains;
 mod interval;

@@ -30,11 +30,12 @@ pub(super) fn rsc_m(subject: &Subject<'_>, vehicle: &Vehicle, stations: Range<us
     if let Some(motion) = &subject.motion {
         let (_, behind) = subject.chain.reach_m();
         let last_node = (own.end + (1.1 * behind / road.spacing) as usize + 2) * STEPS;
-        for node in (own.start * STEPS..=last_node.min(motion.steps())).step_by(STEPS) {
+        let mut guess = own.start as f64 - behind / road.spacing;
+        for node in own.start * STEPS..=last_node.min(motion.steps()) {
             let p = motion.pose(node, last).p;
-            if let Some((s, _, lateral)) = subject.foot(p, node as f64 / STEPS as f64)
-                && (own.start as f64..=(own.end - 1) as f64).contains(&s)
-            {
+            let Some((s, _, lateral)) = subject.foot(p, guess) else { continue };
+            guess = s;
+            if (own.start as f64..=(own.end - 1) as f64).contains(&s) {
                 off = off.max((lateral - subject.planned(s - road.lead as f64)).abs());
             }
         }

@@ -11,7 +11,6 @@ use netcert::stet::{Certificate, Model, Options};
 use netcert::store::Named;
 
 use super::Session;
-use super::certificate_file;
 use super::explain::{wrapped, write_picture};
 use super::fleet::Fleet;
 use super::output::results;
@@ -78,7 +77,7 @@ impl Corridor {
             bail!("{}: no station to certify; give two points or more", self.file.display());
         };
         if let Some(path) = &self.out {
-            let json = certificate_file::json(&given, &model, &certificate, &options)?;
+            let json = netcert::certificate::json(&given, &model, &certificate, &options)?;
             std::fs::write(path, netcert::check::sealed(&json))
                 .map_err(|e| anyhow!("{}: cannot write the certificate: {e}", path.display()))?;
         }
@@ -132,8 +131,13 @@ fn answer(
     let unit = |i: usize| vehicle.units.get(i).map_or(String::new(), |unit| format!("{} (unit {i})", unit.name));
     let verdict = if result.safe() { "SAFE" } else { "UNSAFE" };
     writeln!(out, "{} {}: {verdict}\n", vehicle.id, vehicle.name)?;
-    let said = if result.rsc_m >= 0.0 { "to spare where it is tightest" } else { "missing where it is tightest" };
-    writeln!(out, "  RSC           {:>8.3} m  {said}, all error bounds deducted", result.rsc_m)?;
+    match result.rsc_m {
+        Some(rsc_m) => {
+            let said = if rsc_m >= 0.0 { "to spare where it is tightest" } else { "missing where it is tightest" };
+            writeln!(out, "  RSC           {rsc_m:>8.3} m  {said}, all error bounds deducted")?;
+        }
+        None => writeln!(out, "  RSC               none    no bound holds for where the vehicle may be")?,
+    }
     writeln!(
         out,
         "  RSC published {:>8.3} m  the paper's formula to the letter; it decides nothing",
@@ -143,8 +147,10 @@ fn answer(
         0 => "from the steering lock".to_owned(),
         i => format!("from the limit of the hinge ahead of {}", unit(i)),
     };
-    let degrees = result.hinge_margin_rad.to_degrees();
-    writeln!(out, "  hinge margin  {degrees:>8.1} °  {hinge}")?;
+    match result.hinge_margin_rad {
+        Some(margin_rad) => writeln!(out, "  hinge margin  {:>8.1} °  {hinge}", margin_rad.to_degrees())?,
+        None => writeln!(out, "  hinge margin      none    no bound holds for the angles")?,
+    }
     let tolerance_m = result.shrink * vehicle.tracking_tolerance_m;
     writeln!(
         out,
@@ -156,6 +162,9 @@ fn answer(
     let shifted =
         if shift == 0.0 { "the plan is the centreline".to_owned() } else { format!("at most, {side} the centreline") };
     writeln!(out, "  planned shift {:>8.3} m  {shifted}", shift.abs())?;
+    if result.rsc_m.is_none() {
+        return Ok(());
+    }
     let at = &result.limiting;
     let along = if at.point_m >= 0.0 { "ahead of" } else { "behind" };
     writeln!(

@@ -3,7 +3,6 @@
 //! Results go to standard output; progress, counts and warnings to standard error.
 
 mod area;
-mod certificate_file;
 mod certify;
 mod clock;
 mod corridor;
@@ -28,7 +27,6 @@ mod serve;
 mod stats;
 mod stop;
 mod table;
-mod tubes;
 mod turn_rows;
 mod values;
 mod vehicles;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{anyhow, bail};
 use clap::{Args, ValueEnum};
+use netcert::certificate;
 use netcert::corridor::FileCorridor;
 use netcert::network::Network;
 use netcert::picture;
@@ -12,7 +13,6 @@ use netcert::route::{self, Answer, Measure, PartKind, PartResult, Planner, Posit
 use netcert::store::{Named, verdict_words};
 
 use super::Session;
-use super::certificate_file;
 use super::explain::wrapped;
 use super::fitted::{Fitted, FittedArgs};
 use super::output::{printable, results};
@@ -113,7 +113,7 @@ impl Route {
             let best = best.ok_or_else(|| nothing(path))?;
             let given = FileCorridor { corridor: best.path.corridor.clone(), frame: Some(best.path.frame) };
             let options = &fitted.settings().stet;
-            let json = certificate_file::json(&given, &fitted.model, &best.certificate, options)?;
+            let json = certificate::json(&given, &fitted.model, &best.certificate, options)?;
             write(path, netcert::check::sealed(&json))?;
             session.progress.say(&format!("{}: the whole certificate", path.display()));
         }
@@ -160,10 +160,10 @@ fn tell(out: &mut dyn Write, fitted: &Fitted, answer: &Answer) -> std::io::Resul
     }
     for refutation in &answer.refuted {
         let why = match (&refutation.result, &refutation.assembly) {
-            (Some((rsc_m, _)), _) if *rsc_m < 0.0 && *rsc_m > -100.0 => format!("{:.2} m missing", -rsc_m),
+            (Some((rsc_m, _)), _) if *rsc_m < 0.0 => format!("{:.2} m missing", -rsc_m),
             (Some(_), _) => "a hinge or the steering lock would not do".to_owned(),
             (None, Some(error)) => error.to_string(),
-            (None, None) => "nothing to certify".to_owned(),
+            (None, None) => "no bound holds for the vehicle there".to_owned(),
         };
         let at = printable(&route::title(network, refutation.at));
         writeln!(out, "{}", wrapped(&format!("Tried and refuted as a whole, at {at}: {why}."), "  "))?;
@@ -180,7 +180,9 @@ fn numbers(out: &mut dyn Write, fitted: &Fitted, found: &Found) -> std::io::Resu
     let result = &found.certificate.result;
     let unit = fitted.model.vehicle.units.get(result.limiting.unit).map_or("", |unit| &unit.name);
     let at = found.limiting().map_or_else(String::new, |at| route::title(&fitted.network, at));
-    writeln!(out, "  RSC          {:>8.3} m  to spare where it is tightest, all error bounds deducted", result.rsc_m)?;
+    if let Some(rsc_m) = result.rsc_m {
+        writeln!(out, "  RSC          {rsc_m:>8.3} m  to spare where it is tightest, all error bounds deducted")?;
+    }
     writeln!(
         out,
         "  tightest at  {:>8.2} km {} ({}, {} side)",
@@ -189,7 +191,9 @@ fn numbers(out: &mut dyn Write, fitted: &Fitted, found: &Found) -> std::io::Resu
         unit,
         result.limiting.side.name()
     )?;
-    writeln!(out, "  hinge margin {:>8.1} °", result.hinge_margin_rad.to_degrees())?;
+    if let Some(margin_rad) = result.hinge_margin_rad {
+        writeln!(out, "  hinge margin {:>8.1} °", margin_rad.to_degrees())?;
+    }
     let tolerance_m = result.shrink * fitted.model.vehicle.tracking_tolerance_m;
     writeln!(
         out,
@@ -209,13 +213,13 @@ fn parts(out: &mut dyn Write, network: &Network, found: &Found) -> std::io::Resu
                 if matches!((last.kind, part.kind), (PartKind::Edge(_), PartKind::Edge(_))) && *known == title =>
             {
                 last.to_m = part.to_m;
-                last.rsc_m = last.rsc_m.min(part.rsc_m);
+                last.rsc_m = least(last.rsc_m, part.rsc_m);
             }
             _ => rows.push((part, title)),
         }
     }
     for (part, title) in rows {
-        let rsc = if part.rsc_m > 100.0 { String::new() } else { format!("{:.2} m", part.rsc_m) };
+        let rsc = part.rsc_m.map_or(String::new(), |rsc_m| format!("{rsc_m:.2} m"));
         table.row([
             format!("{:.2} km", part.from_m / 1000.0),
             format!("{:.0} m", part.to_m - part.from_m),
@@ -225,6 +229,11 @@ fn parts(out: &mut dyn Write, network: &Network, found: &Found) -> std::io::Resu
         ]);
     }
     table.write(out, "  ")
+}
+
+/// The lesser of two numbers, as far as they are known.
+fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    a.zip(b).map(|(a, b)| a.min(b)).or(a).or(b)
 }
 
 /// How a part is driven.

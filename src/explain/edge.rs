@@ -69,10 +69,13 @@ impl Explanation {
         let result = &geometry.result;
         // Kept rounded down to the millimetre.
         let below = |kept: f64, computed: f64, step: f64| (-1e-9..step + 1e-9).contains(&(computed - kept));
-        if !below(rsc_m, result.rsc_m, 1e-3) {
-            return Some(format!("its RSC is {rsc_m:.3} m, computed now {:.4} m", result.rsc_m));
+        let Some((now_m, margin_rad)) = result.rsc_m.zip(result.hinge_margin_rad) else {
+            return Some(format!("its RSC is {rsc_m:.3} m, computed now none: no bound holds"));
+        };
+        if !below(rsc_m, now_m, 1e-3) {
+            return Some(format!("its RSC is {rsc_m:.3} m, computed now {now_m:.4} m"));
         }
-        let margin_deg = result.hinge_margin_rad.to_degrees();
+        let margin_deg = margin_rad.to_degrees();
         if let Some(kept) = stored.hinge_margin_deg.filter(|&kept| !below(kept, margin_deg, 1e-2)) {
             return Some(format!("its hinge margin is {kept:.2}°, computed now {margin_deg:.3}°"));
         }
@@ -146,7 +149,7 @@ fn stroke_of(network: &Network, edge: u32) -> Option<&Stroke> {
 fn other_strips(
     network: &Network,
     edge: u32,
-    (model, rsc_m): (&Model, f64),
+    (model, rsc_m): (&Model, Option<f64>),
     settings: &Settings,
     stop: &Stop,
 ) -> Vec<hints::OtherStrip> {
@@ -167,8 +170,9 @@ fn other_strips(
         Some(hints::OtherStrip { policy, width_m, safe: result.safe(), rsc_m: result.rsc_m })
     };
     let mut strips: Vec<hints::OtherStrip> = wider.iter().filter_map(strip).collect();
-    strips.retain(|other| (other.rsc_m - rsc_m).abs() > 5e-4);
-    strips.dedup_by(|b, a| (a.rsc_m - b.rsc_m).abs() < 5e-4);
+    let same = |a: Option<f64>, b: Option<f64>| a == b || a.zip(b).is_some_and(|(a, b)| (a - b).abs() <= 5e-4);
+    strips.retain(|other| !same(other.rsc_m, rsc_m));
+    strips.dedup_by(|b, a| same(a.rsc_m, b.rsc_m));
     strips
 }
 

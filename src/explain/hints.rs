@@ -49,8 +49,8 @@ pub struct OtherStrip {
     pub width_m: f64,
     /// Whether the certificate holds there.
     pub safe: bool,
-    /// Metres.
-    pub rsc_m: f64,
+    /// Metres; `None`: nothing bounds the vehicle there.
+    pub rsc_m: Option<f64>,
 }
 
 /// Certifies the same span in another corridor of as many stations, or with another vehicle.
@@ -58,8 +58,8 @@ pub(super) type Again<'a> = dyn Fn(&Corridor, &Model) -> Option<SpanResult> + 'a
 
 pub(super) fn of(again: &Again<'_>, geometry: &Geometry, model: &Model) -> Hints {
     let result = &geometry.result;
-    let too_narrow = result.closes() && result.rsc_m < 0.0;
-    let turns_too_far = result.closes() && result.hinge_margin_rad < 0.0;
+    let too_narrow = result.too_narrow();
+    let turns_too_far = result.hinge_margin_rad.is_some_and(|margin| margin < 0.0);
     Hints {
         width: too_narrow.then(|| width(again, geometry, model)).flatten(),
         tolerance_m: too_narrow.then(|| tolerance(again, geometry, model)).flatten(),
@@ -96,7 +96,7 @@ fn width(again: &Again<'_>, geometry: &Geometry, model: &Model) -> Option<WidthH
     let narrowest = span.clone().map(|k| corridor.left_m[k] + corridor.right_m[k]).fold(f64::INFINITY, f64::min);
     // At this width nothing has changed, so it is not safe.
     let fails = (narrowest / STEP_M).floor() as i64;
-    let first = ((geometry.place.width_m - 2.0 * geometry.result.rsc_m) / STEP_M).ceil() as i64;
+    let first = ((geometry.place.width_m - 2.0 * geometry.result.rsc_m?) / STEP_M).ceil() as i64;
     let most = fails + (MOST_MORE_M / STEP_M) as i64;
     let steps = least_that_does(fails, first, most, |steps| safe_at(steps).is_some())?;
     Some(WidthHint { width_m: steps as f64 * STEP_M, shrink: safe_at(steps)?.shrink })
@@ -111,7 +111,7 @@ fn tolerance(again: &Again<'_>, geometry: &Geometry, model: &Model) -> Option<f6
     };
     // γ_min of the vehicle's own tolerance did not do. Counted down from there: the fewest steps that do.
     let fails = (vehicle.tracking_tolerance_m * vehicle.min_shrink / TOLERANCE_STEP_M).ceil() as i64;
-    let needed = (-geometry.result.rsc_m / TOLERANCE_STEP_M).ceil() as i64;
+    let needed = (-geometry.result.rsc_m? / TOLERANCE_STEP_M).ceil() as i64;
     let fewer = least_that_does(0, needed, fails, |fewer| safe_at(fails - fewer))?;
     Some((fails - fewer) as f64 * TOLERANCE_STEP_M)
 }
@@ -126,7 +126,7 @@ fn hinge_limit(again: &Again<'_>, geometry: &Geometry, model: &Model) -> Option<
     };
     let limit_deg = geometry.hinge.limit_rad.to_degrees();
     let fails = (limit_deg / ANGLE_STEP_DEG + 1e-6).floor() as i64;
-    let first = ((limit_deg - geometry.result.hinge_margin_rad.to_degrees()) / ANGLE_STEP_DEG).ceil() as i64;
+    let first = ((limit_deg - geometry.result.hinge_margin_rad?.to_degrees()) / ANGLE_STEP_DEG).ceil() as i64;
     let most = (if hinge == 0 { 85.0 } else { 170.0 } / ANGLE_STEP_DEG) as i64;
     least_that_does(fails, first, most, safe_at).map(|steps| steps as f64 * ANGLE_STEP_DEG)
 }

@@ -79,7 +79,7 @@ fn limiting(g: &Geometry, vehicle: &Vehicle) -> Value {
             "unit": hinge.unit,
             "angle_deg": hinge.angle_rad.to_degrees(),
             "limit_deg": hinge.limit_rad.to_degrees(),
-            "margin_deg": result.closes().then(|| result.hinge_margin_rad.to_degrees()),
+            "margin_deg": result.hinge_margin_rad.map(f64::to_degrees),
         },
     })
 }

@@ -57,8 +57,8 @@ pub struct Place {
     pub outward: [f64; 2],
     /// From the corner to the edge, nominally; negative: beyond it. Metres.
     pub nominal_m: f64,
-    /// What error bounds and allowances take off that, metres.
-    pub bounds_m: f64,
+    /// What error bounds and allowances take off that, metres; `None`: nothing bounds the vehicle.
+    pub bounds_m: Option<f64>,
     /// Of the corridor there, metres.
     pub width_m: f64,
     /// Where the vehicle then is; `None`: on a straight.
@@ -117,7 +117,7 @@ impl Place {
             edge,
             outward,
             nominal_m,
-            bounds_m: (nominal_m - result.rsc_m).max(0.0),
+            bounds_m: result.rsc_m.map(|rsc_m| (nominal_m - rsc_m).max(0.0)),
             width_m: at.left_m + at.right_m,
             bend: Bend::sharpest(corridor, rear..head.ceil().max(station) as usize + 1),
         })

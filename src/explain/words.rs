@@ -8,7 +8,7 @@ use super::{Explanation, Geometry, HingePlace, Part, Place};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
-/// Less leeway than this is no measure of what is missing: the certificate found nothing that bounds the vehicle.
+/// Less leeway than this is no measure of what is missing: what bounds the vehicle is wider than any road.
 const FAR_M: f64 = -100.0;
 
 /// An explanation, as a person reads it.
@@ -31,13 +31,13 @@ pub fn words(e: &Explanation) -> Words {
         (Verdict::Forbidden(reason), _) => forbidden(e, reason),
         (Verdict::Unknown(reason), _) => unknown(e, reason),
         (Verdict::Safe, Some(g)) => {
-            format!("safe: {} m to spare at {:.0} m, where it is tightest: {}", cut(g.result.rsc_m), at(g), who(e, g))
+            format!("safe: {} m to spare at {:.0} m, where it is tightest: {}", cut(rsc(g)), at(g), who(e, g))
         }
-        (Verdict::Unsafe(UnsafeReason::Width), Some(g)) if g.result.rsc_m <= FAR_M => {
+        (Verdict::Unsafe(UnsafeReason::Width), Some(g)) if rsc(g) <= FAR_M => {
             format!("unsafe: the swept bodies leave the {} by far at {:.0} m: {}", e.strip_name(), at(g), who(e, g))
         }
         (Verdict::Unsafe(UnsafeReason::Width), Some(g)) => {
-            format!("unsafe: {} m too narrow at {:.0} m: {}", needed(-g.result.rsc_m), at(g), who(e, g))
+            format!("unsafe: {} m too narrow at {:.0} m: {}", needed(-rsc(g)), at(g), who(e, g))
         }
         (Verdict::Unsafe(_), Some(g)) => format!("unsafe: {}", hinge_headline(&e.vehicle, g)),
         (Verdict::Safe | Verdict::Unsafe(_), None) => "nothing was computed".to_owned(),
@@ -48,6 +48,11 @@ pub fn words(e: &Explanation) -> Words {
         (_, None) => Vec::new(),
     };
     Words { headline, reasons, hints: hints(e), scope: scope(e) }
+}
+
+/// The RSC where the verdict says that there is one.
+fn rsc(g: &Geometry) -> f64 {
+    g.result.rsc_m.unwrap_or(f64::NEG_INFINITY)
 }
 
 fn at(g: &Geometry) -> f64 {
@@ -73,7 +78,7 @@ fn hinge_headline(vehicle: &Vehicle, g: &Geometry) -> String {
     let h = &g.hinge;
     let name = hinge_name(vehicle, h.unit);
     let place = g.along_m(h.station);
-    if !g.result.closes() {
+    let Some(margin_rad) = g.result.hinge_margin_rad else {
         if let Some(station) = g.corridor.torn().into_iter().find(|k| g.span.contains(k)) {
             return format!(
                 "the line drawn for the road is no curve at {:.0} m: nothing is certified there",
@@ -86,8 +91,8 @@ fn hinge_headline(vehicle: &Vehicle, g: &Geometry) -> String {
             1.0 / sharpest.max(1e-6),
             named(vehicle, h.unit)
         );
-    }
-    let over_deg = (-g.result.hinge_margin_rad.to_degrees() * 10.0 - 1e-6).ceil() / 10.0;
+    };
+    let over_deg = (-margin_rad.to_degrees() * 10.0 - 1e-6).ceil() / 10.0;
     format!("{name} would need {over_deg:.1}° more than its {:.0}° at {place:.0} m", h.limit_rad.to_degrees())
 }
 
@@ -98,10 +103,12 @@ fn degrees(h: &HingePlace) -> f64 {
 fn geometry_reasons(e: &Explanation, g: &Geometry) -> Vec<String> {
     let mut reasons = Vec::new();
     let strip = e.strip_name();
-    if g.result.closes() && g.result.rsc_m > FAR_M {
-        reasons.push(gap(e, &g.place, strip));
+    if let (Some(bounds_m), Some(margin_rad)) = (g.place.bounds_m, g.result.hinge_margin_rad)
+        && rsc(g) > FAR_M
+    {
+        reasons.push(gap(e, (&g.place, bounds_m), strip));
         reasons.push(tracking(&e.vehicle, g));
-        reasons.push(hinge_reason(&e.vehicle, g));
+        reasons.push(hinge_reason(&e.vehicle, g, margin_rad));
     }
     let shift = g.certificate.shift_m.get(g.span.clone()).unwrap_or_default();
     let most = shift.iter().fold(0.0_f64, |most, q| if q.abs() > most.abs() { *q } else { most });
@@ -115,7 +122,7 @@ fn geometry_reasons(e: &Explanation, g: &Geometry) -> Vec<String> {
     reasons
 }
 
-fn gap(e: &Explanation, place: &Place, strip: &str) -> String {
+fn gap(e: &Explanation, (place, bounds_m): (&Place, f64), strip: &str) -> String {
     let source = match e.road.as_ref().and_then(|road| road.width_source) {
         Some(source) => format!(" ({})", source_words(source)),
         None => String::new(),
@@ -127,9 +134,9 @@ fn gap(e: &Explanation, place: &Place, strip: &str) -> String {
     };
     let part = if matches!(place.part, Part::FrontCorner | Part::RearCorner) { "corner" } else { "side" };
     format!(
-        "The {strip} is {:.2} m wide there{source}; steered exactly, that {part} {nominally}, and {:.2} m are kept for \
+        "The {strip} is {:.2} m wide there{source}; steered exactly, that {part} {nominally}, and {bounds_m:.2} m are kept for \
          errors.",
-        place.width_m, place.bounds_m
+        place.width_m
     )
 }
 
@@ -139,7 +146,7 @@ fn tracking(vehicle: &Vehicle, g: &Geometry) -> String {
     if shrink >= 1.0 {
         return format!("That is with the vehicle's whole tracking tolerance of ±{tolerance_m:.2} m.");
     }
-    let least = shrink <= vehicle.min_shrink + 1e-3 && g.result.rsc_m < 0.0;
+    let least = shrink <= vehicle.min_shrink + 1e-3 && g.result.too_narrow();
     let why = if least { "the closest that it can be asked for" } else { "the widest with which it fits" };
     format!(
         "That is with the steer axle within ±{tolerance_m:.3} m of the plan, γ = {shrink:.3} of its ±{} m: {why}.",
@@ -147,8 +154,8 @@ fn tracking(vehicle: &Vehicle, g: &Geometry) -> String {
     )
 }
 
-fn hinge_reason(vehicle: &Vehicle, g: &Geometry) -> String {
-    let (h, margin) = (&g.hinge, g.result.hinge_margin_rad.to_degrees());
+fn hinge_reason(vehicle: &Vehicle, g: &Geometry, margin_rad: f64) -> String {
+    let (h, margin) = (&g.hinge, margin_rad.to_degrees());
     let name = hinge_name(vehicle, h.unit);
     let limit = h.limit_rad.to_degrees();
     let kept = limit - degrees(h) - margin;
@@ -211,19 +218,19 @@ fn unknown(e: &Explanation, reason: UnknownReason) -> String {
 fn beside(e: &Explanation, g: &Geometry) -> String {
     let strip = e.strip_name();
     match () {
-        () if !g.result.closes() => "Besides, a hinge would turn too far.".to_owned(),
-        () if g.result.rsc_m < 0.0 => {
+        () if !g.result.closes() => format!("Besides, {}.", hinge_headline(&e.vehicle, g)),
+        () if g.result.too_narrow() => {
             format!(
                 "Besides, the {strip} is {} m too narrow at {:.0} m: {}.",
-                needed(-g.result.rsc_m),
+                needed(-rsc(g)),
                 at(g),
                 who(e, g)
             )
         }
-        () if g.result.hinge_margin_rad < 0.0 => format!("Besides, {}.", hinge_headline(&e.vehicle, g)),
+        () if !g.result.safe() => format!("Besides, {}.", hinge_headline(&e.vehicle, g)),
         () => format!(
             "Its width alone would do, as far as it is known: {} m to spare at {:.0} m, {}.",
-            cut(g.result.rsc_m),
+            cut(rsc(g)),
             at(g),
             who(e, g)
         ),
@@ -234,7 +241,7 @@ fn hints(e: &Explanation) -> Vec<String> {
     let Some(g) = e.geometry.as_ref().filter(|_| matches!(e.verdict, Verdict::Unsafe(_))) else { return Vec::new() };
     let (h, strip) = (&e.hints, e.strip_name());
     let mut out = Vec::new();
-    if g.result.closes() && g.result.rsc_m < 0.0 {
+    if g.result.too_narrow() {
         out.push(match h.width {
             Some(hint) => {
                 let how = if hint.shrink < 1.0 {
@@ -263,17 +270,20 @@ fn hints(e: &Explanation) -> Vec<String> {
 fn other_strip(other: &OtherStrip) -> String {
     let strip = strip_name(other.policy);
     match (other.safe, other.rsc_m) {
-        (true, rsc_m) => {
+        (true, Some(rsc_m)) => {
             format!(
                 "Using the whole {strip} ({:.2} m at the least) it is safe, {} m to spare.",
                 other.width_m,
                 cut(rsc_m)
             )
         }
-        (false, rsc_m) if rsc_m < 0.0 && rsc_m > FAR_M => {
+        (false, Some(rsc_m)) if rsc_m < 0.0 && rsc_m > FAR_M => {
             format!("Even the whole {strip} ({:.2} m at the least) is {} m too narrow.", other.width_m, needed(-rsc_m))
         }
-        (false, _) => {
+        (_, None) => {
+            format!("Even the whole {strip} ({:.2} m at the least) does not do: no bound holds there.", other.width_m)
+        }
+        (false, Some(_)) => {
             format!("Even the whole {strip} ({:.2} m at the least) does not do: a hinge turns too far.", other.width_m)
         }
     }

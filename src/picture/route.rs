@@ -7,6 +7,7 @@ use super::svg::Picture;
 use super::{Bounds, Chart, Frame, Point, Scale, View};
 use crate::network::Network;
 use crate::route::{PartKind, Route, title};
+use crate::stet::known_m;
 use crate::vehicle::Vehicle;
 
 /// Points of a curve at most: of each bucket of stations the least counts.
@@ -26,8 +27,8 @@ pub fn route(network: &Network, vehicle: &Vehicle, route: &Route) -> String {
     let unit = vehicle.units.get(result.limiting.unit).map_or("", |unit| &unit.name);
     let at = route.limiting().map_or_else(String::new, |at| title(network, at));
     let said = format!(
-        "RSC {:.2} m: what the worst body point has to spare, all error bounds deducted, {:.1} km along, at {at} ({unit}, {} side)",
-        result.rsc_m,
+        "RSC {}: what the worst body point has to spare, all error bounds deducted, {:.1} km along, at {at} ({unit}, {} side)",
+        result.rsc_m.map_or("unknown".to_owned(), |rsc_m| format!("{rsc_m:.2} m")),
         route.limiting_m() / 1000.0,
         if result.limiting.side == crate::stet::Side::Left { "left" } else { "right" },
     );
@@ -43,9 +44,10 @@ fn strip(picture: &mut Picture, network: &Network, route: &Route, frame: Frame) 
     let certificate = &route.certificate;
     let spacing_m = route.path.corridor.spacing_m;
     let (left, right) = (series(&certificate.left_m, spacing_m), series(&certificate.right_m, spacing_m));
-    let least = left.iter().chain(&right).map(|p| p[1]).fold(certificate.result.rsc_m, f64::min).max(-3.0);
+    let rsc_m = certificate.result.rsc_m.unwrap_or(0.0);
+    let least = left.iter().chain(&right).map(|p| p[1]).fold(rsc_m, f64::min).max(-3.0);
     let most = left.iter().chain(&right).map(|p| p[1]).fold(0.3, f64::max);
-    let most = most.min(ENOUGH_M.max(certificate.result.rsc_m + 1.0));
+    let most = most.min(ENOUGH_M.max(rsc_m + 1.0));
     let chart = Chart {
         frame,
         x: Scale::new(0.0, route.length_m / 1000.0, "km along the route").ticks(10),
@@ -61,7 +63,7 @@ fn strip(picture: &mut Picture, network: &Network, route: &Route, frame: Frame) 
     chart.level(picture, 0.0, Style::line(palette::INK, 1.2));
     chart.curve(picture, "left", &left, Style::line(palette::BLUE, 1.6));
     chart.curve(picture, "right", &right, Style::line(palette::GREEN, 1.6).dashed(7.0, 3.0));
-    let at = chart.at(route.limiting_m() / 1000.0, certificate.result.rsc_m.clamp(chart.y.low, chart.y.high));
+    let at = chart.at(route.limiting_m() / 1000.0, rsc_m.clamp(chart.y.low, chart.y.high));
     picture.circle(at, 5.0, Style::area(palette::VERMILLION).outlined(palette::PAPER, 1.2));
     names(picture, network, route, &chart);
     let small = TextStyle::size(12.5).haloed();
@@ -92,16 +94,16 @@ fn names(picture: &mut Picture, network: &Network, route: &Route, chart: &Chart)
     }
 }
 
-/// Kilometres along, and the least leeway nearby; what no body point visits is left out.
+/// Kilometres along, and the least leeway nearby; where none is known nothing is drawn.
 fn series(leeway: &[f64], spacing_m: f64) -> Vec<Point> {
     let bucket = leeway.len().div_ceil(MOST_POINTS).max(1);
     leeway
         .chunks(bucket)
         .enumerate()
         .filter_map(|(i, chunk)| {
-            let least = |best: (usize, f64), (k, &v): (usize, &f64)| if v < best.1 { (k, v) } else { best };
-            let (k, least) = chunk.iter().enumerate().fold((0, f64::INFINITY), least);
-            (least < 1e6).then_some([(i * bucket + k) as f64 * spacing_m / 1000.0, least.clamp(-10.0, 10.0)])
+            let known = chunk.iter().enumerate().filter_map(|(k, &leeway)| Some((k, known_m(leeway)?)));
+            let (k, least) = known.min_by(|a, b| a.1.total_cmp(&b.1))?;
+            Some([(i * bucket + k) as f64 * spacing_m / 1000.0, least.clamp(-10.0, 10.0)])
         })
         .collect()
 }

@@ -130,8 +130,7 @@ fn with_corridor(job: &Job<'_>, made: &StrokeCorridor) -> StrokeResult {
         .filter_map(|(vehicle, span, result)| {
             let edge = job.network.edges.get(span.edge as usize)?;
             let verdict = verdict(edge, &job.models[vehicle], span.unknown, Some(result));
-            let bounded = span.unknown.is_none() && result.closes();
-            let measured = bounded.then(|| measured(made, span, result));
+            let measured = span.unknown.is_none().then(|| measured(made, span, result)).flatten();
             Some((vehicle, EdgeCertificate { edge: span.edge, verdict, measured }))
         })
         .collect();
@@ -166,17 +165,17 @@ fn reason_name(reason: UnknownReason) -> &'static str {
     verdict_words(Verdict::Unknown(reason)).1
 }
 
-fn measured(made: &StrokeCorridor, span: &EdgeSpan, result: &SpanResult) -> Measured {
+fn measured(made: &StrokeCorridor, span: &EdgeSpan, result: &SpanResult) -> Option<Measured> {
     let along = result.limiting.station.saturating_sub(span.stations.start) as f64 * made.corridor.spacing_m;
-    Measured {
-        rsc_m: result.rsc_m,
+    Some(Measured {
+        rsc_m: result.rsc_m?,
         rsc_published_m: result.rsc_published_m,
-        hinge_margin_rad: result.hinge_margin_rad,
+        hinge_margin_rad: result.hinge_margin_rad?,
         shrink: result.shrink,
         limiting_s_m: along,
         limiting_unit: result.limiting.unit,
         limiting_side: result.limiting.side,
-    }
+    })
 }
 
 /// What forbids comes first, then what cannot be said; a limit that cannot be read stands only against a `safe`.

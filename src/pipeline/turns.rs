@@ -301,14 +301,15 @@ pub fn turn_verdict(result: Option<&SpanResult>) -> Verdict {
 
 fn certificate(turn: u32, paths: &[TurnPath], best: Option<Best>) -> TurnCertificate {
     let verdict = turn_verdict(best.as_ref().map(|best| &best.result));
-    match best.filter(|best| best.result.closes()) {
-        Some(Best { path, result, plan }) => {
+    let bounded = best.and_then(|best| Some((best.result.rsc_m?, best.result.hinge_margin_rad?, best)));
+    match bounded {
+        Some((rsc_m, hinge_margin_rad, Best { path, result, plan })) => {
             let path = &paths[path];
             let along = result.limiting.station.saturating_sub(path.counted.start) as f64 * path.corridor.spacing_m;
             let measured = Measured {
-                rsc_m: result.rsc_m,
+                rsc_m,
                 rsc_published_m: result.rsc_published_m,
-                hinge_margin_rad: result.hinge_margin_rad,
+                hinge_margin_rad,
                 shrink: result.shrink,
                 limiting_s_m: along,
                 limiting_unit: result.limiting.unit,

@@ -69,9 +69,9 @@ pub struct Route {
 pub struct Refutation {
     /// The turn that is then driven another way or left out; an edge, where no turn is near.
     pub at: PartKind,
-    /// RSC and hinge margin (radians) of the whole; `None`: its pieces could not be strung together.
+    /// RSC and hinge margin (radians) of the whole; `None`: its pieces could not be strung together, or nothing bounds the vehicle.
     pub result: Option<(f64, f64)>,
-    /// Why, where there was nothing to certify.
+    /// Why its pieces could not be strung together.
     pub assembly: Option<AssemblyError>,
     /// The search then went on without the place; else the turn was driven on another path.
     pub left_out: bool,
@@ -259,7 +259,7 @@ impl<'n> Planner<'n> {
         let certificate = stet::certify_until(&path.corridor, self.model, &self.permits.settings.stet, &self.stop)?;
         let refuted = |certificate: Option<&Certificate>| Refutation {
             at: culprit(&path, certificate),
-            result: certificate.map(|c| (c.result.rsc_m, c.result.hinge_margin_rad)),
+            result: certificate.and_then(|c| c.result.rsc_m.zip(c.result.hinge_margin_rad)),
             assembly: None,
             left_out: false,
         };
@@ -392,7 +392,7 @@ fn first_turn(drive: &Drive) -> PartKind {
 fn culprit(path: &RoutePath, certificate: Option<&Certificate>) -> PartKind {
     let corridor = &path.corridor;
     let at = match certificate {
-        Some(c) if c.result.rsc_m < 0.0 && c.result.closes() => c.result.limiting.station,
+        Some(c) if c.result.too_narrow() => c.result.limiting.station,
         // No place is known for a hinge: the sharpest bend.
         _ => sharpest(corridor),
     };

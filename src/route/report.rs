@@ -7,7 +7,7 @@ use super::obstacles::Obstacle;
 use super::plan::{Answer, Refutation, Route};
 use crate::corridor::FrameError;
 use crate::network::{Edge, Network};
-use crate::stet::Model;
+use crate::stet::{Model, known_m};
 use crate::store::{Named, verdict_words};
 
 /// A stretch of a route with what is left there.
@@ -20,8 +20,8 @@ pub struct PartResult {
     /// From the route's beginning, metres.
     pub to_m: f64,
     /// The least leeway of any body on it, all bounds deducted, with the tracking tolerance that the whole rests on at most: never
-    /// less than the whole route's RSC. Metres.
-    pub rsc_m: f64,
+    /// less than the whole route's RSC. Metres; `None` where no body ever is.
+    pub rsc_m: Option<f64>,
 }
 
 impl Route {
@@ -31,16 +31,14 @@ impl Route {
         let spacing_m = self.path.corridor.spacing_m;
         let certificate = &self.certificate;
         let part = |part: &super::assemble::Part| {
-            let leeway = |column: &[f64]| {
-                let own = column.get(part.stations.clone()).unwrap_or_default();
-                own.iter().copied().fold(f64::INFINITY, f64::min)
-            };
-            let least = leeway(&certificate.left_m).min(leeway(&certificate.right_m));
+            let own = |column: &[f64]| column.get(part.stations.clone()).unwrap_or_default().to_vec();
+            let both = own(&certificate.left_m).into_iter().chain(own(&certificate.right_m));
+            let least = both.filter_map(known_m).min_by(f64::total_cmp);
             PartResult {
                 kind: part.kind,
                 from_m: part.stations.start as f64 * spacing_m,
                 to_m: part.stations.end.saturating_sub(1) as f64 * spacing_m,
-                rsc_m: least.max(certificate.result.rsc_m),
+                rsc_m: least.map(|least| certificate.result.rsc_m.map_or(least, |rsc_m| least.max(rsc_m))),
             }
         };
         self.path.parts.iter().map(part).collect()
@@ -118,7 +116,7 @@ fn route_members(network: &Network, model: &Model, route: &Route) -> Value {
         "length_m": route.length_m,
         "time_s": route.time_s,
         "rsc_m": result.rsc_m,
-        "hinge_margin_deg": result.hinge_margin_rad.to_degrees(),
+        "hinge_margin_deg": result.hinge_margin_rad.map(f64::to_degrees),
         "shrink": result.shrink,
         "safe": result.safe(),
         "limiting_s_m": route.limiting_m(),

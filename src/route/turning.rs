@@ -37,7 +37,7 @@ impl Turns for MadeTurns<'_> {
         let others =
             ranked.into_iter().take(MORE).filter_map(|(_, path)| Some((path, self.safe(&made.paths[path], options)?)));
         let mut safe: Vec<(usize, SpanResult)> = known.into_iter().chain(others).collect();
-        safe.sort_by(|a, b| b.1.rsc_m.total_cmp(&a.1.rsc_m));
+        safe.sort_by(|a, b| b.1.rsc_m.partial_cmp(&a.1.rsc_m).unwrap_or(std::cmp::Ordering::Equal));
         let frame = made.frame;
         let piece = |path: &TurnPath| {
             let TurnPath { corridor, turn, approach, departure, .. } = path.clone();

@@ -11,7 +11,7 @@ use crate::explain::Ride;
 use crate::pace::Pace;
 use crate::route::Route;
 use crate::stet::motion::Pose;
-use crate::stet::{Model, tubes};
+use crate::stet::{Model, known_m, tubes};
 
 /// Stretches of the leeway strip, at most: more than a screen has columns.
 const MOST_STRETCHES: usize = 1500;
@@ -22,8 +22,6 @@ const LONGEST_M: f64 = 15.0;
 /// and whenever a unit has turned by so much, radians: a body 14 m long turned by 2° about its axle is off by 4 mm
 /// between two.
 const MOST_TURN_RAD: f64 = 0.035;
-/// Leeway beyond this means that no body point came by.
-const NOTHING_M: f64 = 1e6;
 
 /// What a page needs beside the route's numbers: `geometry`, `leeway`, and `drive` if it is wanted.
 pub(super) fn members(model: &Model, route: &Route, drive: bool) -> Result<Value, FrameError> {
@@ -51,8 +49,8 @@ fn leeway(route: &Route) -> Value {
     let bucket = corridor.len().div_ceil(MOST_STRETCHES).max(1);
     let least = |column: &[f64]| -> Vec<Option<f64>> {
         let of = |stretch: &[f64]| {
-            let least = stretch.iter().copied().fold(f64::INFINITY, f64::min);
-            (least < NOTHING_M).then(|| down(least.max(rsc_m)))
+            let least = stretch.iter().copied().filter_map(known_m).min_by(f64::total_cmp)?;
+            Some(down(rsc_m.map_or(least, |rsc_m| least.max(rsc_m))))
         };
         column.chunks(bucket).map(of).collect()
     };
@@ -63,7 +61,7 @@ fn leeway(route: &Route) -> Value {
         "s_m": from,
         "left_m": least(&certificate.left_m),
         "right_m": least(&certificate.right_m),
-        "rsc_m": down(rsc_m),
+        "rsc_m": rsc_m.map(down),
     })
 }
 

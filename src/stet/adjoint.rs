@@ -9,7 +9,7 @@ use super::lanes::{LANES, V, by_instruction_set};
 use super::model::{MAX_UNITS, Model, UnitModel};
 use super::sweep::{
     BLOCK, FIELDS, Filter, MOST, Motion, NOT_CLOSED_RAD, Step, Straying, ZERO, foot_shift, hinge_margin,
-    hitch_remainder, remainder, row, validity,
+    heading, hitch_remainder, remainder, row, validity,
 };
 
 /// Σ tan² δ_j/2 over the units up to one, from which on the adjoint is worth its time for it. Bends alone decide that, so that
@@ -277,7 +277,7 @@ impl Trail {
                 let at = |field: usize| V::splat(rows[start + field * BLOCK + k]);
                 let (axle, coupling) = (at(row::EXTRA_AXLE), at(row::EXTRA_COUPLING));
                 closes &= axle.0[lane] < MOST;
-                let a = of.heading + (axle + coupling) * of.inverse_length;
+                let a = of.heading + (axle + coupling) * of.inverse_length + at(row::REMAINDER);
                 (heading_ahead, shift_ahead) = (a, foot_shift(of, step, of.coupling + coupling));
                 straying = straying.next(of, step, a);
                 let past = &self.histories[lane][0].past[station % MEMORY][unit];
@@ -343,11 +343,14 @@ impl Trail {
         let mut z = guess;
         let mut rounds = 0;
         let (a, axle) = loop {
-            let (a, axle) = (at(z, HEADING), at(z, AXLE));
-            if rounds == ROUNDS || validity(of, step, V::splat(a)).0[lane] < 0.0 || !axle.is_finite() {
+            let axle = at(z, AXLE);
+            let (a, short) = heading(of, step, V::splat(at(z, HEADING)), V::splat(axle));
+            let valid = validity(of, step, a).min(short).0[lane] >= 0.0;
+            if rounds == ROUNDS || !valid || !axle.is_finite() {
                 return None;
             }
-            let implied = remainder(of, step, V::splat(a), V::splat(axle)).1.0[lane];
+            let implied = remainder(of, step, a, V::splat(axle)).1.0[lane];
+            let a = a.0[lane];
             if implied <= z {
                 break (a, axle);
             }

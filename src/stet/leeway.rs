@@ -11,9 +11,13 @@ use super::track::{BULGE_MOST, Fields, READ_M, Track};
 /// Where half-widths bulge, what lies between two body points is looked at in parts no longer than this, metres: at a radius of
 /// 16 m a part's sagitta is 2 cm.
 const PART_M: f64 = 1.4;
-/// Feet of a side's places are not as evenly spaced as the places: in bends, a place may be at another share of the way between two
-/// points than its foot is, by this much.
-const UNEVEN: f64 = 0.1;
+/// Feet of a side's places are not as evenly spaced as the places: a place may be at another share of the way between two points than
+/// its foot is. By this much on a straight; in a bend by these parts of how far the point is from the middle and the side is long, times
+/// the curvature. Where a side is much longer than the road under it, or shorter, nothing is said of the share.
+const UNEVEN: f64 = 0.05;
+const UNEVEN_ASIDE: f64 = 0.5;
+const UNEVEN_ALONG: f64 = 0.15;
+const EVEN_ENOUGH: std::ops::Range<f64> = 0.75..1.35;
 /// Half-widths that leave their own slope by less, a metre's way or its square, are read at the axis's station.
 const ROUGH: f64 = 0.01;
 
@@ -41,8 +45,9 @@ struct Sample {
     lowered_right: V,
     curvature: V,
     bulge: V,
-    /// From its foot's station to the point, along the corridor.
+    /// From its foot's station to the place on the axis, along the corridor and across it.
     along: V,
+    lateral: V,
 }
 
 by_instruction_set! {
@@ -265,12 +270,16 @@ fn note_marks(track: &Track, (before, after): (&Sample, &Sample), s: &States, ga
     for i in 0..LANES {
         let foot = |sample: &Sample| sample.feet.station(i) as f64 + sample.along.0[i] / track.spacing;
         let (rear, front) = (foot(after), foot(before));
+        let aside = before.lateral.0[i].abs().max(after.lateral.0[i].abs());
+        let curvature = before.curvature.0[i].abs().max(after.curvature.0[i].abs());
+        let even = EVEN_ENOUGH.contains(&((front - rear) * track.spacing / gap));
+        let uneven = if even { UNEVEN + curvature * (UNEVEN_ASIDE * aside + UNEVEN_ALONG * gap) } else { 1.0 };
         for mark in track.marks(after.feet.station(i), before.feet.station(i)) {
             let share = ((mark as f64 - rear) / (front - rear).max(1e-9)).clamp(0.0, 1.0);
             let tag = if share < 0.5 { after.tag } else { before.tag };
             let chord = |behind: V, ahead: V| {
                 let at = |share: f64| behind.0[i] + (ahead.0[i] - behind.0[i]) * share.clamp(0.0, 1.0);
-                at(share - UNEVEN).min(at(share + UNEVEN))
+                at(share - uneven).min(at(share + uneven))
             };
             let tagged = |x: f64| V::splat(x).tagged(tag).0[0];
             let left = tagged(chord(after.left, before.left) - low_left.0[i]);
@@ -285,7 +294,7 @@ impl Sample {
     #[inline(always)]
     fn new(seen: &Seen, feet: Feet, tag: u64, left: V, right: V) -> Self {
         let (curvature, bulge) = (seen.at.curvature, seen.at.bulge);
-        Self { feet, tag, left, right, lowered_left: left, lowered_right: right, curvature, bulge, along: seen.along }
+        Self { feet, tag, left, right, lowered_left: left, lowered_right: right, curvature, bulge, along: seen.along, lateral: seen.lateral }
     }
 
     #[inline(always)]
@@ -395,7 +404,7 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let reach = spot.ahead.abs();
     let (c, t) = (cos.abs(), sin.abs());
     let extras = (s.extra_axle + s.extra_coupling) * body.inverse_length;
-    let a = extras + body.heading;
+    let a = extras + body.heading + s.remainder;
     let axle = s.extra_axle + body.axle;
     let a2 = a * a;
     // First order: |cos φ|·(the bound at a ∓ (b/2) tan φ).

@@ -78,17 +78,18 @@ impl Default for Options {
 /// The result for one span of stations (an edge, or the whole corridor).
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpanResult {
-    /// RSC at `shrink`, metres: the least leeway of any body point of any unit over the span, all bounds deducted.
-    pub rsc_m: f64,
+    /// RSC at `shrink`, metres: the least leeway of any body point of any unit over the span, all bounds deducted. `None`: nothing
+    /// bounds the vehicle, or a body point could not be followed.
+    pub rsc_m: Option<f64>,
     /// The paper's 𝒞 as printed, metres; never decides.
     pub rsc_published_m: f64,
-    /// Least hinge margin, radians (negative: a hinge or the steering lock is exceeded).
-    pub hinge_margin_rad: f64,
-    /// The hinge that has it (0: the steering lock).
+    /// Least hinge margin, radians (negative: a hinge or the steering lock is exceeded). There whenever `rsc_m` is.
+    pub hinge_margin_rad: Option<f64>,
+    /// The hinge that has it (0: the steering lock); the one whose bounds fail where there is no margin.
     pub hinge_unit: usize,
     /// γ: the tracking tolerance that RSC rests on is γ·ε.
     pub shrink: f64,
-    /// Where the least leeway stands.
+    /// Where the least leeway stands; it says nothing where there is no RSC.
     pub limiting: Limiting,
 }
 
@@ -97,13 +98,19 @@ impl SpanResult {
     /// stands so far across its path that the numbers bound nothing.
     #[must_use]
     pub fn closes(&self) -> bool {
-        self.hinge_margin_rad > sweep::NOT_CLOSED_RAD + 1.0 && self.rsc_m > 0.5 * spans::NOTHING_M
+        self.rsc_m.is_some() && self.hinge_margin_rad.is_some()
     }
 
     /// RSC ≥ 0 and hinge margin ≥ 0.
     #[must_use]
     pub fn safe(&self) -> bool {
-        self.rsc_m >= 0.0 && self.hinge_margin_rad >= 0.0
+        self.rsc_m.is_some_and(|rsc_m| rsc_m >= 0.0) && self.hinge_margin_rad.is_some_and(|margin| margin >= 0.0)
+    }
+
+    /// Whether there is an RSC, and it is negative.
+    #[must_use]
+    pub fn too_narrow(&self) -> bool {
+        self.rsc_m.is_some_and(|rsc_m| rsc_m < 0.0)
     }
 
     /// What the numbers say by themselves, law and map aside.
@@ -112,7 +119,7 @@ impl SpanResult {
         match () {
             () if !self.closes() => Verdict::Unsafe(UnsafeReason::Articulation),
             () if self.safe() => Verdict::Safe,
-            () if self.rsc_m < 0.0 => Verdict::Unsafe(UnsafeReason::Width),
+            () if self.too_narrow() => Verdict::Unsafe(UnsafeReason::Width),
             () if self.hinge_unit == 0 => Verdict::Unsafe(UnsafeReason::SteeringLock),
             () => Verdict::Unsafe(UnsafeReason::Articulation),
         }
@@ -139,7 +146,8 @@ pub struct Certificate {
     pub shift_m: Vec<f64>,
     /// The planned shift itself.
     pub shift: Plan,
-    /// Leeway at each station on the left, after correction (at γ = 1), metres: of a span of that station alone.
+    /// Leeway at each station on the left, after correction (at γ = 1), metres: of a span of that station alone. What
+    /// [`known_m`] says of it is what is known.
     pub left_m: Vec<f64>,
     /// On the right.
     pub right_m: Vec<f64>,
@@ -147,6 +155,12 @@ pub struct Certificate {
     pub left_centred_m: Vec<f64>,
     /// On the right, before correction.
     pub right_centred_m: Vec<f64>,
+}
+
+/// A leeway of a [`Certificate`]'s columns; `None` where nothing bounds the vehicle, or no body point ever is.
+#[must_use]
+pub fn known_m(leeway_m: f64) -> Option<f64> {
+    Some(leeway_m).filter(|leeway_m| spans::known(*leeway_m))
 }
 
 /// Results over `spans` of stations for vehicles that sweep the whole corridor one after the other: one row a vehicle.
@@ -333,6 +347,11 @@ impl<'m> Swept<'m> {
         let centred = thorough(track, &self.group, &vec![V::splat(0.0); track.len()], self.stop);
         let full = if self.worth(0, &whole) { self.refined.as_ref().unwrap_or(&self.full) } else { &self.full };
         let own = |points: &[f64], marks: &[f64]| spans::alone(track, &whole, points, marks);
+        // Where the bounds do not close somewhere, what they say elsewhere is not claimed either.
+        let centred_closes = spans::least(track, self.group.models[0], &whole, &centred[0]).result().closes();
+        let own_centred = |points: &[f64], marks: &[f64]| {
+            if centred_closes { own(points, marks) } else { vec![spans::NOTHING_M; whole.len()] }
+        };
         let shift = self.plans[0].clone();
         let shift_m: Vec<f64> = (0..track.count).map(|k| shift.at_m(k)).collect();
         let plan = (0..track.count)
@@ -356,8 +375,8 @@ impl<'m> Swept<'m> {
             shift,
             left_m,
             right_m,
-            left_centred_m: own(&centred[0].left, &centred[0].mark_left),
-            right_centred_m: own(&centred[0].right, &centred[0].mark_right),
+            left_centred_m: own_centred(&centred[0].left, &centred[0].mark_left),
+            right_centred_m: own_centred(&centred[0].right, &centred[0].mark_right),
         };
         (certificate, results)
     }
@@ -398,8 +417,8 @@ impl<'m> Swept<'m> {
     }
 
     /// The best that is known at γ = 1.
-    fn at_full(&self, lane: usize, span: &Range<usize>) -> SpanResult {
-        spans::result(&self.track, self.group.models[lane], span, self.best(lane, span))
+    fn at_full(&self, lane: usize, span: &Range<usize>) -> spans::Least {
+        spans::least(&self.track, self.group.models[lane], span, self.best(lane, span))
     }
 
     fn best(&self, lane: usize, span: &Range<usize>) -> &Minima {
@@ -414,9 +433,9 @@ impl<'m> Swept<'m> {
         match &self.least {
             Some(least) if at_full.rsc_m < 0.0 => {
                 let model = self.group.models[lane];
-                spans::shrunk(&self.track, model, span, (self.best(lane, span), &least[lane]), &at_full)
+                spans::shrunk(&self.track, model, span, (self.best(lane, span), &least[lane]), &at_full).result()
             }
-            _ => at_full,
+            _ => at_full.result(),
         }
     }
 }

@@ -6,7 +6,7 @@
 use super::group::UnitLanes;
 use super::lanes::{V, select_negative};
 use super::model::MAX_UNITS;
-use super::sweep::{MOST, Step, Straying, ZERO, hitch_remainder, remainder};
+use super::sweep::{self, MOST, Step, Straying, ZERO, hitch_remainder, remainder};
 
 /// Rounds in which a bound must bear itself out; each brings it nearer by a factor of two at least where there is one in range.
 const ROUNDS: usize = 64;
@@ -21,7 +21,11 @@ pub(super) fn settled(chain: &[UnitLanes; MAX_UNITS], tolerance: V) -> [V; MAX_U
     let mut straying = Straying::of_the_steer_axle(tolerance);
     let mut coupling = ZERO;
     for (unit, of) in chain.iter().enumerate() {
-        let heading = |y: V| (of.heading + (coupling + y) * of.inverse_length).min(V::splat(MOST));
+        let heading = |y: V| {
+            let first_order = (of.heading + (coupling + y) * of.inverse_length).min(V::splat(MOST));
+            let (a, short) = sweep::heading(of, &Step::STRAIGHT, first_order, of.axle + y);
+            select_negative(short, V::splat(MOST), a)
+        };
         let implied = |y: V| (coupling + remainder(of, &Step::STRAIGHT, heading(y), of.axle + y).1).min(V::splat(MOST));
         let mut y = ZERO;
         for _ in 0..ROUNDS {

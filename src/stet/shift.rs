@@ -62,6 +62,18 @@ impl Plan {
         WEIGHTS.get(phase).map_or(0.0, sum)
     }
 
+    /// The shift anywhere, `s` stations from the first, metres; beyond the corridor as at its ends.
+    #[must_use]
+    pub fn between_m(&self, s: f64) -> f64 {
+        let Some(last) = self.coefficients.len().checked_sub(4) else { return 0.0 };
+        let x = s.max(0.0) / KNOT_STATIONS as f64;
+        let knot = (x as usize).min(last);
+        let u = (x - knot as f64).min(1.0);
+        let (v, u2, u3) = (1.0 - u, u * u, u * u * u);
+        let weights = [v * v * v, 3.0 * u3 - 6.0 * u2 + 4.0, 3.0 * (u2 - u3) + 3.0 * u + 1.0, u3];
+        weights.iter().zip(&self.coefficients[knot..]).map(|(w, &c)| w * f64::from(c)).sum::<f64>() * STEP_M / 6.0
+    }
+
     /// Whether the plan is the centreline itself.
     #[must_use]
     pub fn is_centred(&self) -> bool {
@@ -144,5 +156,17 @@ mod tests {
         assert!(q[..10].iter().all(|v| v.0 == [plan.at_m(0); LANES]));
         assert!(q[50..].iter().all(|v| v.0 == [plan.at_m(39); LANES]));
         assert_eq!(q[10 + 17].0[3], plan.at_m(17));
+    }
+
+    #[test]
+    fn between_stations_a_plan_is_what_it_is_at_stations() {
+        for stations in [2, 17, 40] {
+            let plan = Plan::through(stations, |knot| (0.7 * knot as f64).sin());
+            for k in 0..stations {
+                assert!((plan.between_m(k as f64) - plan.at_m(k)).abs() < 1e-12, "{k} of {stations}");
+            }
+            assert_eq!(plan.between_m(-3.0), plan.at_m(0));
+            assert!((plan.between_m(stations as f64 + 9.0) - plan.at_m(stations - 1)).abs() < 1e-12);
+        }
     }
 }

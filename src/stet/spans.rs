@@ -16,8 +16,39 @@ const STEP_STATIONS: usize = 2;
 /// Vehicle lengths within which what was driven before has faded to a few hundredths: no unit is longer than half of it.
 const FADING_LENGTHS: usize = 2;
 
-/// RSC where nothing bounds the vehicle.
+/// RSC where nothing bounds the vehicle; a leeway below half of it says as much.
 pub(super) const NOTHING_M: f64 = -1000.0;
+
+/// A span's numbers as the sweep has them: [`NOTHING_M`] and [`NOT_CLOSED_RAD`] stand for none.
+#[derive(Debug, Clone)]
+pub(super) struct Least {
+    pub(super) rsc_m: f64,
+    published_m: f64,
+    hinge_rad: f64,
+    hinge_unit: usize,
+    shrink: f64,
+    limiting: Limiting,
+}
+
+impl Least {
+    /// With words for what there is not: neither number means anything where one of them is none.
+    pub(super) fn result(self) -> SpanResult {
+        let bounded = self.hinge_rad > NOT_CLOSED_RAD + 1.0 && known(self.rsc_m);
+        SpanResult {
+            rsc_m: bounded.then_some(self.rsc_m),
+            rsc_published_m: self.published_m,
+            hinge_margin_rad: bounded.then_some(self.hinge_rad),
+            hinge_unit: self.hinge_unit,
+            shrink: self.shrink,
+            limiting: self.limiting,
+        }
+    }
+}
+
+/// Whether a leeway is one: less than this is the mark of a place that nothing bounds.
+pub(super) fn known(leeway_m: f64) -> bool {
+    leeway_m > 0.5 * NOTHING_M && leeway_m < 0.5 * UNVISITED_M
+}
 
 /// Extended stations whose body points a span of corridor stations rests on.
 pub(super) fn stations(track: &Track, span: &Range<usize>) -> RangeInclusive<usize> {
@@ -53,8 +84,8 @@ pub(super) fn alone(track: &Track, span: &Range<usize>, points: &[f64], marks: &
     span.clone().map(least).collect()
 }
 
-/// The result over a span at γ = 1.
-pub(super) fn result(track: &Track, model: &Model, span: &Range<usize>, full: &Minima) -> SpanResult {
+/// The numbers over a span at γ = 1.
+pub(super) fn least(track: &Track, model: &Model, span: &Range<usize>, full: &Minima) -> Least {
     let mut least = f64::INFINITY;
     let mut limiting = Limiting { station: span.start, unit: 0, side: Side::Left, point_m: 0.0 };
     let (mut offset, mut half_width) = (0.0_f64, f64::INFINITY);
@@ -85,10 +116,10 @@ pub(super) fn result(track: &Track, model: &Model, span: &Range<usize>, full: &M
     if least >= UNVISITED_M || hinge >= UNVISITED_M {
         (least, hinge) = (NOTHING_M, NOT_CLOSED_RAD);
     }
-    SpanResult {
+    Least {
         rsc_m: least,
-        rsc_published_m: half_width - (offset + model.published_radius),
-        hinge_margin_rad: hinge,
+        published_m: half_width - (offset + model.published_radius),
+        hinge_rad: hinge,
         hinge_unit,
         shrink: 1.0,
         limiting,
@@ -122,17 +153,21 @@ pub(super) fn shrunk(
     track: &Track,
     model: &Model,
     span: &Range<usize>,
-    (full, least): (&Minima, &Minima),
-    at_full: &SpanResult,
-) -> SpanResult {
-    let at_least = result(track, model, span, least);
+    (full, at_least): (&Minima, &Minima),
+    at_full: &Least,
+) -> Least {
     let floor = gamma(model, 0.0);
-    let keep = SpanResult { hinge_margin_rad: at_full.hinge_margin_rad, hinge_unit: at_full.hinge_unit, ..at_least };
-    let lowest = SpanResult { shrink: floor, rsc_published_m: at_full.rsc_published_m, ..keep };
+    let lowest = Least {
+        hinge_rad: at_full.hinge_rad,
+        hinge_unit: at_full.hinge_unit,
+        published_m: at_full.published_m,
+        shrink: floor,
+        ..least(track, model, span, at_least)
+    };
     if lowest.rsc_m < 0.0 || floor >= 1.0 {
         return lowest;
     }
-    let all = || leeways(track, span, [full, least]);
+    let all = || leeways(track, span, [full, at_least]);
     let fails = all().filter(|(_, _, [f, _])| *f < 0.0);
     let part = fails.fold(1.0_f64, |part, (_, _, [f, l])| part.min(l / (l - f)));
     let shrink = ((floor + (1.0 - floor) * part) * SHRINK_STEPS).floor() / SHRINK_STEPS;
@@ -147,5 +182,5 @@ pub(super) fn shrunk(
             (rsc_m, limiting) = (chord, place(track, model, k, side, f));
         }
     }
-    SpanResult { rsc_m, shrink, limiting, ..lowest }
+    Least { rsc_m, shrink, limiting, ..lowest }
 }

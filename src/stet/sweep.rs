@@ -420,14 +420,16 @@ impl Motion {
             let of = &group.chain[unit];
             let step = &steps[unit];
             let y = self.extra[unit];
-            let coupled = filter.coupled(of, step, y);
-            let (extra_coupling, a) = (coupled.extra, coupled.heading);
+            let mut coupled = filter.coupled(of, step, y);
             let axle = of.axle + y;
+            let (a, short) = heading(of, step, coupled.heading, axle);
+            coupled.heading = a;
+            let extra_coupling = coupled.extra;
             let (r1, z) = remainder(of, step, a, axle);
             let extra = filter.grown(of, step, &coupled, z);
             // Where it does not close, nothing is certified while the vehicle stands here; a vehicle that is certified further
             // on did not come through here, so that its bounds begin anew, as after a straight. A stand-in closes: it is nobody's.
-            closed = closed.min(select_negative(of.present - V::splat(0.5), one, validity(of, step, a)));
+            closed = closed.min(select_negative(of.present - V::splat(0.5), one, validity(of, step, a).min(short)));
             self.extra[unit] = select_negative(closed, of.settled, extra);
             let y = y.max(extra);
 
@@ -553,6 +555,17 @@ pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V) -> (V, V) {
     let slip = a + of.sway;
     let slip3 = slip_tangent_excess(slip);
     (r1, r1 + step.tangent * axle * (slip + slip3) + of.length * slip3)
+}
+
+/// A bound of the heading, R1 included (`L α = e/cos δ − y + R`), from what it is without; negative in the second place where that
+/// does not bear itself out.
+#[inline(always)]
+pub(super) fn heading(of: &UnitLanes, step: &Step, first_order: V, axle: V) -> (V, V) {
+    let (r1, _) = remainder(of, step, first_order, axle);
+    let more = r1 * of.inverse_length * 1.5;
+    let a = (first_order + more).min(V::splat(MOST));
+    let (borne_out, _) = remainder(of, step, a, axle);
+    (a, more - borne_out * of.inverse_length)
 }
 
 /// Second-order remainder of the next coupling, with the foot shift against its follower and what its path leaves the chord by.

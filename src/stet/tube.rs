@@ -18,8 +18,17 @@ pub struct Tube {
     pub centre: Vec<[f64; 2]>,
     /// Nominal heading, a unit vector.
     pub heading: Vec<[f64; 2]>,
-    /// Lateral semi-axis, across the heading, metres: the axle is never further off, at the certificate's γ.
+    /// Lateral semi-axis, across the heading, metres: the axle is never further off, at the certificate's γ. What
+    /// [`Tube::bound_m`] says of it is what is known.
     pub lateral_m: Vec<f64>,
+}
+
+impl Tube {
+    /// How far off the axle may be at a station; `None` where nothing bounds it.
+    #[must_use]
+    pub fn bound_m(&self, station: usize) -> Option<f64> {
+        self.lateral_m.get(station).copied().filter(|lateral_m| *lateral_m < sweep::MOST)
+    }
 }
 
 /// The tubes of a certificate that [`super::certify`] made from this corridor and model.

@@ -53,7 +53,7 @@ impl Merit for Certified<'_> {
             let off = nominal.iter().zip(certified).map(|(n, c)| if n.is_finite() && *c < 1e6 { n - c } else { 0.0 });
             self.bent_m[side] = off.collect();
         }
-        certificate.result.rsc_m
+        certificate.result.rsc_m.unwrap_or(-1e3)
     }
 
     fn deducted_m(&self, places: &[Place]) -> Vec<f64> {
@@ -78,7 +78,7 @@ fn straight_m(vehicle: &Vehicle, count: usize) -> f64 {
     };
     let fixed = Options { max_shift_m: 0.0, correction_sweeps: 0 };
     let certificate = stet::certify(&corridor, &Model::new(&ahead).unwrap(), &fixed).unwrap();
-    half_m - 0.5 * ahead.width_m() - certificate.result.rsc_m
+    half_m - 0.5 * ahead.width_m() - certificate.result.rsc_m.unwrap()
 }
 
 fn plan(coefficients: &[f64]) -> Plan {
@@ -100,10 +100,7 @@ fn as_needed(corridor: &Corridor, model: &Model, options: &Options) -> Option<Co
     let mut corridor = corridor.clone();
     for _ in 0..3 {
         let result = stet::certify(&corridor, model, options).unwrap().result;
-        if !result.closes() {
-            return None;
-        }
-        let wider = -result.rsc_m;
+        let wider = -result.rsc_m?;
         corridor.left_m.iter_mut().chain(&mut corridor.right_m).for_each(|width| *width = (*width + wider).max(0.5));
     }
     Some(corridor)
@@ -126,8 +123,8 @@ fn compare(case: &Case) -> Option<Compared> {
     let (_, optimum_m) = optimum(&problem, &mut certified, &smooth, most, 1e-4);
     let compared = Compared {
         name: case.name.clone(),
-        centred_m: certified.certificate(&centred).result.rsc_m,
-        corrcen_m: certificate.result.rsc_m,
+        centred_m: certified.certificate(&centred).result.rsc_m.unwrap_or(-1e3),
+        corrcen_m: certificate.result.rsc_m.unwrap_or(-1e3),
         optimum_m,
         nominal_corrcen_m: problem.least_m(&own),
         nominal_optimum_m,

@@ -15,3 +15,4 @@ mod soundness;
 mod support;
 mod tubes;
 mod verify_agreement;
+mod verify_files;

@@ -10,10 +10,12 @@ use oracle::adversary::{Bounds, Kernel, Target, kernel};
 use oracle::draw::{self, Bends, Draw};
 use oracle::fleet;
 use oracle::path::{Path, V2, direction, dot, left_of};
+use oracle::road;
 use oracle::simulator::{Disturbance, Drive, Run};
 use rayon::prelude::*;
 
-const STEPS: usize = 10;
+/// Steps a metre.
+const STEPS_PER_M: f64 = 10.0;
 /// In the adversary's hand the steer axle changes sides within this many metres.
 const SWING_M: f64 = 0.3;
 
@@ -45,7 +47,8 @@ fn bend(radius: f64, degrees: f64, transition: f64) -> Bends {
     ]
 }
 
-fn cases(tolerance_m: f64, sway_deg: f64) -> Vec<Case> {
+/// Stations lie `spacing_m` apart.
+fn cases(tolerance_m: f64, sway_deg: f64, spacing_m: f64) -> Vec<Case> {
     let kinds = [
         ("EU-SEMI16.5", 15.0),
         ("EU-SEMI16.5", 60.0),
@@ -64,7 +67,12 @@ fn cases(tolerance_m: f64, sway_deg: f64) -> Vec<Case> {
         vehicle.tracking_tolerance_m = tolerance_m;
         vehicle.units.iter_mut().for_each(|unit| unit.sway_rad = sway_deg.to_radians());
         let bends = bend(radius, 100.0, 6.0 + radius / 10.0);
-        let corridor = draw::corridor(&mut Draw(k as u64 + 5), &bends, 9.0, 9.5);
+        let mut draw = Draw(k as u64 + 5);
+        let length_m: f64 = bends.iter().map(|bend| bend.0).sum();
+        let stations = (length_m / spacing_m) as usize + 1;
+        let curvature: Vec<f64> = (0..stations).map(|k| draw::curvature_at(&bends, k as f64 * spacing_m)).collect();
+        let widths = [(); 2].map(|()| draw::half_widths(&mut draw, stations, 9.0, 9.5));
+        let corridor = road::corridor(spacing_m, [0.0; 2], draw.between(-3.0, 3.0), &curvature, &widths[0], &widths[1]);
         Case { name: format!("{id} at {radius} m"), vehicle, corridor }
     };
     kinds.iter().enumerate().map(case).collect()
@@ -76,6 +84,8 @@ struct Bench<'a> {
     calm: Disturbance,
     bounds: Bounds,
     tubes: Vec<Tube>,
+    /// Steps a station.
+    steps: usize,
 }
 
 fn bench<'a>(case: &'a Case, path: &'a Path) -> Bench<'a> {
@@ -83,14 +93,15 @@ fn bench<'a>(case: &'a Case, path: &'a Path) -> Bench<'a> {
     let options = Options { max_shift_m: 0.0, ..Options::default() };
     let certificate = certify(&case.corridor, &model, &options).unwrap();
     assert!(certificate.result.shrink == 1.0, "{}: {:?}", case.name, certificate.result);
-    let drive = Drive::new(&case.vehicle, path, STEPS);
+    let steps = (STEPS_PER_M * case.corridor.spacing_m).ceil() as usize;
+    let drive = Drive::new(&case.vehicle, path, steps);
     let calm = Disturbance::none(drive.steps());
     let nominal = drive.whole(&calm);
     let slip = std::array::from_fn(|i| case.vehicle.units.get(i).map_or(0.0, |u| u.sway_rad));
     let steer_m = case.vehicle.tracking_tolerance_m;
-    let change_m = 2.0 * steer_m / SWING_M * case.corridor.spacing_m / STEPS as f64;
+    let change_m = 2.0 * steer_m / SWING_M * case.corridor.spacing_m / steps as f64;
     let tubes = tubes(&case.corridor, &model, &certificate);
-    Bench { drive, nominal, calm, bounds: Bounds { steer_m, change_m, slip }, tubes }
+    Bench { drive, nominal, calm, bounds: Bounds { steer_m, change_m, slip }, tubes, steps }
 }
 
 fn path(case: &Case) -> Path {
@@ -102,7 +113,7 @@ fn path(case: &Case) -> Path {
 
 impl Bench<'_> {
     fn target(&self, station: usize, unit: usize, side: f64) -> Target {
-        let step = self.drive.path.span_of_vertex(station) * STEPS;
+        let step = self.drive.path.span_of_vertex(station) * self.steps;
         // Across the axle's own nominal path: along its heading's normal.
         let normal = left_of(direction(self.nominal.at(step).1[unit]));
         Target { step, unit, ahead_m: 0.0, aside_m: 0.0, push: [side * normal[0], side * normal[1]] }
@@ -112,7 +123,7 @@ impl Bench<'_> {
     /// has it: κ ℓ²/8.
     fn reach_m(&self, response: &Kernel, corridor: &Corridor) -> f64 {
         let chord = |step: usize| {
-            let place = step as f64 / STEPS as f64 - self.drive.path.span_of_vertex(0) as f64;
+            let place = step as f64 / self.steps as f64 - self.drive.path.span_of_vertex(0) as f64;
             let k = (place.max(0.0) as usize).min(corridor.len() - 2);
             let part = (place - k as f64).clamp(0.0, 1.0);
             let bend = corridor.curvature[k] * (1.0 - part) + corridor.curvature[k + 1] * part;
@@ -123,7 +134,7 @@ impl Bench<'_> {
     }
 
     fn memory(&self) -> usize {
-        (5.0 * self.drive.vehicle.length_m) as usize * STEPS
+        (5.0 * self.drive.vehicle.length_m / self.drive.path.spacing_m) as usize * self.steps
     }
 
     fn axle(&self, run: &Run, step: usize, unit: usize) -> V2 {
@@ -137,10 +148,10 @@ impl Bench<'_> {
         let target = self.target(station, unit, side);
         let response = kernel(&self.drive, &self.nominal, &self.calm, &target, self.memory());
         let attack = response.attack(&self.bounds, self.drive.steps());
-        let end = (target.step + 3 * STEPS).min(self.drive.steps());
+        let end = (target.step + 3 * self.steps).min(self.drive.steps());
         let run = self.drive.some(&attack, response.first..end, *self.nominal.at(response.first).1);
         let mut worst = (0.0, f64::INFINITY);
-        for step in target.step.saturating_sub(5 * STEPS)..end {
+        for step in target.step.saturating_sub(5 * self.steps)..end {
             let Some((off, tube)) = self.against(self.axle(&run, step, unit), step, unit) else { continue };
             if off / tube > worst.0 / worst.1 {
                 worst = (off, tube);
@@ -155,11 +166,11 @@ impl Bench<'_> {
             let at = self.axle(&self.nominal, k, unit);
             [point[0] - at[0], point[1] - at[1]]
         };
-        let near = (step.saturating_sub(2 * STEPS)..(step + 2 * STEPS).min(self.drive.steps()))
+        let near = (step.saturating_sub(2 * self.steps)..(step + 2 * self.steps).min(self.drive.steps()))
             .min_by(|&a, &b| dot(off(a), off(a)).total_cmp(&dot(off(b), off(b))))?;
         let lateral = dot(off(near), left_of(direction(self.nominal.at(near).1[unit])));
         let tube = &self.tubes[unit].lateral_m;
-        let station = (near / STEPS).checked_sub(self.drive.path.span_of_vertex(0))?;
+        let station = (near / self.steps).checked_sub(self.drive.path.span_of_vertex(0))?;
         let (a, b) = (tube.get(station)?, tube.get(station + 1)?);
         Some((lateral.abs(), a.max(*b)))
     }
@@ -167,14 +178,15 @@ impl Bench<'_> {
 
 #[test]
 fn at_first_order_a_tube_is_the_exact_reach_of_the_disturbances() {
-    let cases = cases(0.004, 0.004);
+    // What the plan and the couplings' paths leave their chords by counts in a tube as well; at stations this close it is little.
+    let cases = cases(0.004, 0.004, 0.25);
     let met: Vec<Met> = cases
         .par_iter()
         .flat_map_iter(|case| {
             let path = path(case);
             let bench = bench(case, &path);
             let mut met = Vec::new();
-            for station in (0..case.corridor.len() - 1).step_by(9) {
+            for station in (0..case.corridor.len() - 1).step_by(36) {
                 for unit in 0..case.vehicle.units.len() {
                     let target = bench.target(station, unit, 1.0);
                     let response = kernel(&bench.drive, &bench.nominal, &bench.calm, &target, bench.memory());
@@ -212,7 +224,7 @@ fn at_first_order_a_tube_is_the_exact_reach_of_the_disturbances() {
 
 #[test]
 fn no_matched_attack_drives_an_axle_out_of_its_tube() {
-    let cases = cases(0.15, 0.2);
+    let cases = cases(0.15, 0.2, 1.0);
     let met: Vec<Met> = cases
         .par_iter()
         .enumerate()

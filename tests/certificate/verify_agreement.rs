@@ -36,12 +36,12 @@ fn claims(corridor: &Corridor, vehicle: &Vehicle) -> (Planned, Vec<SpanClaim>) {
     let row = planned(corridor, vehicle, &spans);
     let claim = |(stations, result): (std::ops::Range<usize>, &netcert::stet::SpanResult)| SpanClaim {
         stations,
-        rsc_m: Some(result.rsc_m),
-        hinge_margin_rad: Some(result.hinge_margin_rad),
+        rsc_m: result.rsc_m,
+        hinge_margin_rad: result.hinge_margin_rad,
         shrink: result.shrink,
         limiting: None,
     };
-    let made = spans.into_iter().zip(&row.spans).filter(|(_, r)| r.rsc_m > -50.0 && r.closes()).map(claim).collect();
+    let made = spans.into_iter().zip(&row.spans).filter(|(_, r)| r.rsc_m.is_some_and(|rsc_m| rsc_m > -50.0)).map(claim).collect();
     (row, made)
 }
 

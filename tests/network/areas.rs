@@ -42,7 +42,7 @@ fn corner(drawn: &Drawn) -> TurnCorridors {
 }
 
 fn rsc_m(map: &AsciiMap, kerb_m: f64) -> f64 {
-    Drawn::new(map, false, kerb_m).best("EBC", Policy::Carriageway, "EU-SEMI16.5").unwrap().rsc_m
+    Drawn::new(map, false, kerb_m).best("EBC", Policy::Carriageway, "EU-SEMI16.5").unwrap().rsc_m.unwrap()
 }
 
 #[test]

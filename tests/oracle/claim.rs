@@ -42,7 +42,7 @@ pub fn claim(corridor: &Corridor, vehicle: &Vehicle, options: &Options) -> Optio
         side: if result.limiting.side == Side::Left { 1.0 } else { -1.0 },
         ahead_m: result.limiting.point_m,
     };
-    let (rsc_m, shrink, hinge_margin_rad) = (result.rsc_m, result.shrink, result.hinge_margin_rad);
-    // Where the recursion of the bounds does not close, RSC is a huge negative number: nothing to refute.
+    // Where the recursion of the bounds does not close there is no RSC: nothing to refute.
+    let (rsc_m, shrink, hinge_margin_rad) = (result.rsc_m?, result.shrink, result.hinge_margin_rad?);
     (rsc_m > -50.0).then_some(Claim { rsc_m, shrink, hinge_margin_rad, limiting, plan: certificate.plan })
 }

@@ -9,6 +9,7 @@ pub mod claim;
 pub mod draw;
 pub mod duel;
 pub mod fight;
+pub mod files;
 pub mod fleet;
 pub mod path;
 pub mod road;

@@ -23,7 +23,7 @@ pub fn hold(vehicle: &Vehicle, corridor: &Corridor, certificate: &Certificate, s
         ahead_m: at.point_m,
     };
     let plan = certificate.plan.clone();
-    let (rsc_m, shrink, hinge_margin_rad) = (result.rsc_m, result.shrink, result.hinge_margin_rad);
+    let (rsc_m, shrink, hinge_margin_rad) = (result.rsc_m.unwrap(), result.shrink, result.hinge_margin_rad.unwrap());
     let claim = Claim { rsc_m, shrink, hinge_margin_rad, limiting, plan };
     let (gap_m, outcome) = duel::margin_m(corridor, vehicle, &claim, &mut Draw(seed), 2);
     let length_m = corridor.len() as f64 * corridor.spacing_m;

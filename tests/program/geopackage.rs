@@ -299,9 +299,10 @@ fn a_layer_s_style_comes_and_goes_with_it_and_what_people_saved_stays() {
     sqlite(&path, save);
     let mut database = Database::open_to_change(&path).unwrap();
     let mut certify = |vehicle: &VehicleRecord, policy| {
+        let settings = Settings { policy, ..Settings::default() };
         let unknown = |edge| EdgeCertificate { edge, verdict: Verdict::Unknown(UnknownReason::Cut), measured: None };
         let rows = (0..edges).map(unknown);
-        database.replace_certificates(vehicle, policy, rows, Vec::new(), None, &run(), &[]).unwrap();
+        database.replace_certificates(vehicle, &settings, rows, Vec::new(), None, &run(), &[]).unwrap();
     };
     certify(&vehicle("EU-SEMI16.5"), Policy::Lane);
     let kept = "edge|netcert|1\npermit_eu_semi16_5||1\npermit_eu_semi16_5|netcert|0\npermit_eu_semi16_5_2|netcert|1\npermit_eu_semi16_5_direction|netcert|1\n";

@@ -122,15 +122,16 @@ fn decided(simulated: &[Simulated]) -> Table {
     ]);
     for s in simulated {
         let (exact, usual) = (&s.exact.result, &s.usual.result);
-        let degrees = |rad: f64| format!("{:.2}°", rad.to_degrees());
+        let degrees = |rad: Option<f64>| rad.map_or("none".to_owned(), |rad| format!("{:.2}°", rad.to_degrees()));
+        let known = |m: Option<f64>| m.map_or("none".to_owned(), metres);
         table.row([
             s.scenario.number.to_string(),
             metres(s.scenario.rsc().rsc_m),
             verdict(s.scenario.rsc().printed_safe()).to_owned(),
-            metres(exact.rsc_m),
+            known(exact.rsc_m),
             degrees(exact.hinge_margin_rad),
             verdict(exact.safe()).to_owned(),
-            metres(usual.rsc_m),
+            known(usual.rsc_m),
             format!("{:.2}", usual.shrink),
             degrees(usual.hinge_margin_rad),
             verdict(usual.safe()).to_owned(),
@@ -214,7 +215,7 @@ fn certificate(certificate: &Certificate) -> Value {
     let result = &certificate.result;
     json!({
         "rsc_m": result.rsc_m,
-        "hinge_margin_deg": result.hinge_margin_rad.to_degrees(),
+        "hinge_margin_deg": result.hinge_margin_rad.map(f64::to_degrees),
         "shrink": result.shrink,
         "safe": result.safe(),
     })

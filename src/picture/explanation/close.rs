@@ -23,7 +23,7 @@ fn corner(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
     // Forward along the road: the outward normal turned so that the road runs to the right.
     let along = if place.side == crate::stet::Side::Left { [out[1], -out[0]] } else { [-out[1], out[0]] };
     // Corner, edge and the farthest that errors reach: all of them in the picture.
-    let (low, high) = (place.nominal_m.min(0.0), place.nominal_m.max(place.bounds_m));
+    let (low, high) = (place.nominal_m.min(0.0), place.nominal_m.max(place.bounds_m.unwrap_or(0.0)));
     let reach = (0.7 * (high - low) + 0.35).clamp(0.6, 8.0);
     let middle = shifted(place.corner, out, 0.5 * (low + high));
     let ratio = frame.width / frame.height;
@@ -52,8 +52,9 @@ fn corner(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
 /// along the road.
 fn gap(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, (along, step): (Point, f64)) {
     let place = &g.place;
+    let Some((rsc, bounds_m)) = g.result.rsc_m.zip(place.bounds_m) else { return };
     let out = place.outward;
-    let worst = shifted(place.corner, out, place.bounds_m);
+    let worst = shifted(place.corner, out, bounds_m);
     let edge = shifted(place.corner, out, place.nominal_m);
     let colour = verdict_colour(e);
     // Beside the body, where there is none.
@@ -70,17 +71,16 @@ fn gap(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, (along
         bar(p, beside(place.corner, 0.5), beside(worst, 0.5), palette::PURPLE);
         bar(p, beside(worst, 1.5), beside(edge, 1.5), colour);
         // Beyond the outer end of both, where neither road nor body is.
-        let rsc = g.result.rsc_m;
         let said = if rsc < 0.0 { "missing" } else { "to spare" };
         let bold = TextStyle::size(15.0).bold().haloed();
-        let farther = if place.nominal_m > place.bounds_m { edge } else { worst };
+        let farther = if place.nominal_m > bounds_m { edge } else { worst };
         let down = if view.direction(out)[1] > 0.0 { 24.0 } else { -12.0 };
         let [x, y] = beside(farther, 1.5);
         let text = format!("{} m {said}", cautious_m(rsc));
         p.text([x, y + down], &text, bold.coloured(colour).anchored(Anchor::Middle));
         let ([x, low], [_, high]) = (view.at(place.corner), view.at(worst));
         let at = [x + 12.0, 0.5 * (low + high) + 5.0];
-        p.text(at, &format!("{:.2} m for errors", place.bounds_m), bold);
+        p.text(at, &format!("{bounds_m:.2} m for errors"), bold);
     });
 }
 

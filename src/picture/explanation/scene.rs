@@ -187,10 +187,9 @@ fn mark(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, frame
         let turned = h.angle_rad.abs().to_degrees();
         (place, vec![format!("{turned:.1}° of {:.0}°", h.limit_rad.to_degrees()), "errors not counted".to_owned()])
     } else {
-        let rsc = g.result.rsc_m;
-        let missing = if rsc < 0.0 { "missing" } else { "to spare" };
-        let head = format!("{} m {missing}", cautious_m(rsc));
-        (g.place.corner, vec![head, format!("at {:.0} m", g.along_m(g.place.station))])
+        let missing = |rsc: f64| if rsc < 0.0 { "missing" } else { "to spare" };
+        let head = g.result.rsc_m.map(|rsc| format!("{} m {}", cautious_m(rsc), missing(rsc)));
+        (g.place.corner, head.into_iter().chain([format!("at {:.0} m", g.along_m(g.place.station))]).collect())
     };
     let at = view.at(target);
     picture.group("limiting", |p| {

@@ -7,6 +7,7 @@ use super::super::svg::Picture;
 use super::super::{Bounds, Chart, Frame, Point, Scale, View};
 use super::{hinge_decides, verdict_colour};
 use crate::explain::{Explanation, Geometry};
+use crate::stet::known_m;
 
 /// Points of a curve at most: of each bucket of stations the least counts.
 const MOST_POINTS: usize = 600;
@@ -17,7 +18,7 @@ const FULL_M: f64 = 0.6;
 
 pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
     let (left, right) = (series(g, &g.certificate.left_m), series(g, &g.certificate.right_m));
-    let least = left.iter().chain(&right).map(|p| p[1]).fold(g.result.rsc_m, f64::min).max(-3.0);
+    let least = left.iter().chain(&right).map(|p| p[1]).fold(g.result.rsc_m.unwrap_or(0.0), f64::min).max(-3.0);
     let most = left.iter().chain(&right).map(|p| p[1]).fold(0.3, f64::max).min(ENOUGH_M);
     let chart = Chart {
         frame,
@@ -34,8 +35,8 @@ pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: 
     chart.curve(picture, "left", &left, Style::line(palette::BLUE, 1.8));
     chart.curve(picture, "right", &right, Style::line(palette::GREEN, 1.8).dashed(7.0, 3.0));
     let (s, colour) = (g.along_m(g.place.station), verdict_colour(e));
-    if !hinge_decides(e) {
-        let at = chart.at(s, g.result.rsc_m.clamp(chart.y.low, chart.y.high));
+    if let Some(rsc_m) = g.result.rsc_m.filter(|_| !hinge_decides(e)) {
+        let at = chart.at(s, rsc_m.clamp(chart.y.low, chart.y.high));
         picture.segment([at[0], frame.y], [at[0], frame.y + frame.height], Style::line(colour, 1.0).dashed(3.0, 3.0));
         picture.circle(at, 5.0, Style::area(colour).outlined(palette::PAPER, 1.2));
         if g.result.shrink < 1.0 {
@@ -66,16 +67,16 @@ fn whole(e: &Explanation) -> &'static str {
     if e.road.is_some() { "edge" } else { "corridor" }
 }
 
-/// Metres along and leeway, over the span; what no body point visits is left out.
+/// Metres along and leeway, over the span; where none is known nothing is drawn.
 fn series(g: &Geometry, leeway: &[f64]) -> Vec<Point> {
     let own = leeway.get(g.span.clone()).unwrap_or_default();
     let bucket = own.len().div_ceil(MOST_POINTS).max(1);
     own.chunks(bucket)
         .enumerate()
         .filter_map(|(i, chunk)| {
-            let (k, least) =
-                chunk.iter().enumerate().fold((0, f64::INFINITY), |b, (k, &v)| if v < b.1 { (k, v) } else { b });
-            (least < 1e6).then_some([(i * bucket + k) as f64 * g.corridor.spacing_m, least.max(-10.0)])
+            let known = chunk.iter().enumerate().filter_map(|(k, &leeway)| Some((k, known_m(leeway)?)));
+            let (k, least) = known.min_by(|a, b| a.1.total_cmp(&b.1))?;
+            Some([(i * bucket + k) as f64 * g.corridor.spacing_m, least.max(-10.0)])
         })
         .collect()
 }

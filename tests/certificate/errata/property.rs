@@ -45,8 +45,7 @@ fn repaired_certificate_is_never_above_the_deciding_one() {
         let model = Model::new(&system.vehicle("random")).unwrap();
         for options in [Options { max_shift_m: 0.0, correction_sweeps: 0 }, Options::default()] {
             let certificate = stet::certify(&corridor, &model, &options).unwrap();
-            let decided = certificate.result.rsc_m;
-            assert!(certificate.result.closes(), "{index}: nothing is claimed");
+            let decided = certificate.result.rsc_m.unwrap_or_else(|| panic!("{index}: nothing is claimed"));
             let path = &stet::tubes(&corridor, &model, &certificate)[0].centre;
             for beta in [Beta::TraceOptimal, Beta::Tangent, Beta::Printed] {
                 let reading = Reading { beta, ..Reading::SOUND };

@@ -25,10 +25,11 @@ pub(super) fn figure(simulated: &[Simulated]) -> String {
         (Mark::Square, palette::BLUE, "netcert's RSC, same vehicle, same corridor"),
     ];
     marks(&mut picture, [100.0, 118.0], &keys);
-    let values: Vec<[f64; 4]> = simulated
+    // A vehicle that nothing bounds has no RSC to draw.
+    let (simulated, values): (Vec<&Simulated>, Vec<[f64; 4]>) = simulated
         .iter()
-        .map(|s| [s.scenario.w_min_m, s.scenario.rsc().rsc_m, s.paper.rsc.rsc_m, s.exact.result.rsc_m])
-        .collect();
+        .filter_map(|s| Some((s, [s.scenario.w_min_m, s.scenario.rsc().rsc_m, s.paper.rsc.rsc_m, s.exact.result.rsc_m?])))
+        .unzip();
     let chart = chart(&values);
     chart.axes(&mut picture);
     let (below, right) = (chart.at(chart.x.low, 0.0), chart.at(chart.x.high, chart.y.low));

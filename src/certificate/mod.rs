@@ -1,0 +1,117 @@
+//! The certificate file: a promise to users and to checks by other programs (`docs/certificate.md` says what each member claims, and to
+//! what it is checked). Everything that the answer rests on is in it.
+//!
+//! | file | for |
+//! | --- | --- |
+//! | `nominal` | where every unit stands when nothing disturbs it, along the smooth plan |
+//! | `tubes` | the members of one unit's tube |
+//!
+//! The sweep steps from station to station, and its bounds allow for that. What a file says of nominal places is worked out again
+//! here in finer steps, so that another program finds the same places.
+
+mod nominal;
+mod tubes;
+
+use serde_json::{Value, json};
+
+use crate::corridor::{FileCorridor, FrameError};
+use crate::stet::{Certificate, Model, Options, known_m};
+use crate::store::{Named as _, verdict_words};
+use nominal::Nominal;
+
+/// Entries of the columns of leeway claim so much less than the sweep has, metres.
+const LESS_M: f64 = 5e-3;
+
+/// Why a certificate cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum CertificateError {
+    /// The corridor's frame cannot be left.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// The vehicle's definition is no JSON.
+    #[error("the vehicle's definition: {0}")]
+    Vehicle(#[from] serde_json::Error),
+}
+
+/// The whole certificate but for its seal (`check::sealed`).
+///
+/// # Errors
+/// See [`CertificateError`].
+pub fn json(
+    given: &FileCorridor,
+    model: &Model,
+    certificate: &Certificate,
+    options: &Options,
+  ) -> Result<Value, CertificateError> {
+    let (result, corridor, vehicle) = (&certificate.result, &given.corridor, &model.vehicle);
+    let nominal = Nominal::new(corridor, &certificate.shift, vehicle);
+    let frame = match given.frame {
+        None => json!({"input": "metres"}),
+        Some(frame) => json!({"input": "lonlat", "proj": frame.definition()}),
+    };
+    let (verdict, reason) = verdict_words(result.verdict());
+    let limiting = result.rsc_m.and_then(|_| limiting(&nominal, certificate));
+    // Where nothing bounds the vehicle on the whole, nothing is claimed of its parts.
+    let closes = result.closes();
+    let column = |column: &[f64]| column.iter().map(|&m| cautious_m(m).filter(|_| closes)).collect::<Vec<_>>();
+    Ok(json!({
+        "netcert": env!("CARGO_PKG_VERSION"),
+        "vehicle": vehicle.to_json()?,
+        "corridor": {"frame": frame, "spacing_m": corridor.spacing_m, "stations": stations(given)?},
+        "max_shift_m": options.max_shift_m,
+        "verdict": verdict,
+        "reason": (!reason.is_empty()).then_some(reason),
+        "safe": result.safe(),
+        "rsc_m": result.rsc_m,
+        "rsc_published_m": result.rsc_m.map(|_| nominal.published_m()),
+        "hinge_margin_deg": result.hinge_margin_rad.map(f64::to_degrees),
+        "hinge_unit": result.hinge_margin_rad.map(|_| result.hinge_unit),
+        "tracking_tolerance_m": vehicle.tracking_tolerance_m,
+        "shrink": result.shrink,
+        "limiting": limiting,
+        "plan": given.to_input(&certificate.plan)?,
+        "shift": certificate.shift.coefficients,
+        "leeway": {
+            "left": column(&certificate.left_m),
+            "right": column(&certificate.right_m),
+            "left_centred": column(&certificate.left_centred_m),
+            "right_centred": column(&certificate.right_centred_m),
+        },
+        "tubes": if closes { Some(tubes::json(given, model, certificate, &nominal)?) } else { None },
+    }))
+}
+
+/// The body point with the least leeway: where it passes the corridor nominally, and what is then between it and the edge.
+fn limiting(nominal: &Nominal<'_>, certificate: &Certificate) -> Option<Value> {
+    let at = &certificate.result.limiting;
+    let (s, nominal_m) = nominal.passing(at)?;
+    Some(json!({
+        "s": s,
+        "unit": at.unit,
+        "side": at.side.name(),
+        "point_m": at.point_m,
+        "nominal_m": nominal_m,
+    }))
+}
+
+/// What is claimed of a leeway: a little less than the sweep has, for what other programs' steps read differently.
+fn cautious_m(leeway_m: f64) -> Option<f64> {
+    known_m(leeway_m).map(|leeway_m| leeway_m - LESS_M)
+}
+
+fn stations(given: &FileCorridor) -> Result<Vec<Value>, FrameError> {
+    let corridor = &given.corridor;
+    let metres: Vec<[f64; 2]> = corridor.x.iter().zip(&corridor.y).map(|(&x, &y)| [x, y]).collect();
+    let station = |(k, [x, y]): (usize, [f64; 2])| {
+        json!({
+            "s": k as f64 * corridor.spacing_m,
+            "x": x,
+            "y": y,
+            "left": corridor.left_m[k],
+            "right": corridor.right_m[k],
+            "heading": corridor.heading[k],
+            "curvature": corridor.curvature[k],
+        })
+    };
+    Ok(given.to_input(&metres)?.into_iter().enumerate().map(station).collect())
+}

@@ -1,0 +1,183 @@
+//! Nominal motion along the smooth plan, in steps of an eighth of a station: where every unit stands when nothing disturbs it.
+//!
+//! Between stations the centreline is the curve of linear curvature from the station before, as the corridor says; before the first
+//! and after the last station the plan goes straight on.
+
+use crate::corridor::Corridor;
+use crate::published::last_radius_m;
+use crate::stet::motion::{Pose, sweep_path};
+use crate::stet::{Limiting, Plan, Side};
+use crate::vehicle::Vehicle;
+
+/// Vertices a station: the chord step is then right to half a millimetre a hinge in the tightest bends.
+const PARTS: usize = 8;
+/// A point is looked for this far from where it would be on a straight: this part of the vehicle's length, and these metres.
+const ASTRAY_PART: f64 = 0.5;
+const ASTRAY_M: f64 = 10.0;
+/// Three-point Gauss on 0..=1: right to a micrometre between stations a metre apart.
+const GAUSS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+
+/// A vehicle that drives along a plan without any error.
+pub(super) struct Nominal<'c> {
+    corridor: &'c Corridor,
+    plan: &'c Plan,
+    vehicle: &'c Vehicle,
+    /// At each vertex, front to rear.
+    poses: Vec<Vec<Pose>>,
+    /// Vertices before the first station's.
+    lead: usize,
+}
+
+/// A place on the centreline, its tangent and its curvature.
+#[derive(Clone, Copy)]
+struct Place {
+    at: [f64; 2],
+    tangent: [f64; 2],
+    curvature: f64,
+}
+
+impl<'c> Nominal<'c> {
+    pub(super) fn new(corridor: &'c Corridor, plan: &'c Plan, vehicle: &'c Vehicle) -> Self {
+        let step_m = corridor.spacing_m / PARTS as f64;
+        let front_m = vehicle.units.first().map_or(0.0, |unit| unit.front_overhang_m).max(0.0);
+        let lead = (front_m / step_m).ceil() as usize + 2 * PARTS;
+        let tail = (1.1 * vehicle.length_m / step_m).ceil() as usize + 2 * PARTS;
+        let vertices = corridor.len().saturating_sub(1) * PARTS;
+        let mut nominal = Self { corridor, plan, vehicle, poses: Vec::new(), lead };
+        let steer = |vertex: usize| {
+            let s = (vertex as f64 - lead as f64) / PARTS as f64;
+            let place = nominal.place(s);
+            let shift = plan.between_m(s);
+            [place.at[0] - shift * place.tangent[1], place.at[1] + shift * place.tangent[0]]
+        };
+        let path: Vec<[f64; 2]> = (0..=lead + vertices + tail).map(steer).collect();
+        nominal.poses = sweep_path(&path, vehicle);
+        nominal
+    }
+
+    /// Where an axle is when the steer axle is at a station.
+    pub(super) fn axle(&self, station: usize, unit: usize) -> [f64; 2] {
+        self.poses[self.lead + station * PARTS][unit].axle
+    }
+
+    /// Where the side point beside a place of a unit's axis is (metres along the corridor) as that place passes a station's normal,
+    /// and how far from the edge it is as it passes there. `None`: it does not pass.
+    pub(super) fn passing(&self, limiting: &Limiting) -> Option<(f64, f64)> {
+        let half_m = 0.5 * self.vehicle.units.get(limiting.unit)?.width_m;
+        let (left_m, column) = match limiting.side {
+            Side::Left => (half_m, &self.corridor.left_m),
+            Side::Right => (-half_m, &self.corridor.right_m),
+        };
+        let (unit, ahead_m) = (limiting.unit, limiting.point_m);
+        let wanted = limiting.station as f64;
+        let moment = self.crossing(wanted, (unit, ahead_m, 0.0))?;
+        let (s, _) = self.foot(self.point(moment, (unit, ahead_m, left_m)), wanted)?;
+        let s = s.clamp(0.0, (self.corridor.len() - 1) as f64);
+        let moment = self.crossing(s, (unit, ahead_m, left_m))?;
+        let lateral_m = across(self.place(s), self.point(moment, (unit, ahead_m, left_m)));
+        Some((s * self.corridor.spacing_m, linear(column, s) - lateral_m * left_m.signum()))
+    }
+
+    /// When a body point (unit, ahead of its axle, to its left) passes the normal at `s`: the vertex before, and the share of the step.
+    fn crossing(&self, s: f64, (unit, ahead_m, left_m): (usize, f64, f64)) -> Option<(usize, f64)> {
+        let here = self.place(s);
+        let off = |vertex: usize| along(here, self.poses[vertex][unit].place(ahead_m, left_m));
+        let astray = (ASTRAY_PART * self.vehicle.length_m + ASTRAY_M) / self.corridor.spacing_m;
+        let strays = |vertex: usize| (self.straight(vertex, unit, ahead_m) - s).abs();
+        let vertex = (0..self.poses.len() - 1)
+            .filter(|&vertex| strays(vertex) <= astray && off(vertex) < 0.0 && off(vertex + 1) >= 0.0)
+            .min_by(|&a, &b| strays(a).total_cmp(&strays(b)))?;
+        let (a, b) = (off(vertex), off(vertex + 1));
+        Some((vertex, a / (a - b)))
+    }
+
+    /// A body point between two vertices.
+    fn point(&self, (vertex, share): (usize, f64), (unit, ahead_m, left_m): (usize, f64, f64)) -> [f64; 2] {
+        let [p, q] = [vertex, vertex + 1].map(|v| self.poses[v][unit].place(ahead_m, left_m));
+        [0, 1].map(|i| p[i] + share * (q[i] - p[i]))
+    }
+
+    /// The paper's certificate as printed: the least half-width, less the most that the last axle is off the plan while it is on the
+    /// corridor, less the radius of its ellipse. It never decides.
+    pub(super) fn published_m(&self) -> f64 {
+        let last = (self.corridor.len() - 1) as f64;
+        let narrowest = self.corridor.left_m.iter().chain(&self.corridor.right_m).fold(f64::INFINITY, |a, &b| a.min(b));
+        let Some(unit) = self.vehicle.units.len().checked_sub(1) else { return narrowest };
+        let (mut most, mut guess) = (0.0_f64, self.straight(0, unit, 0.0));
+        for poses in &self.poses {
+            let Some((s, lateral_m)) = self.foot(poses[unit].axle, guess) else { continue };
+            guess = s;
+            if (0.0..=last).contains(&s) {
+                most = most.max((lateral_m - self.plan.between_m(s)).abs());
+            }
+        }
+        narrowest - (most + last_radius_m(&self.vehicle.units))
+    }
+
+    /// The station at which a place of a unit's axis would be on a straight road.
+    fn straight(&self, vertex: usize, unit: usize, ahead_m: f64) -> f64 {
+        let units = &self.vehicle.units;
+        let before: f64 = units[..unit].iter().map(|u| u.coupling_to_axle_m + u.hitch_offset_m).sum();
+        let behind_m = before + units[unit].coupling_to_axle_m - ahead_m;
+        (vertex as f64 - self.lead as f64) / PARTS as f64 - behind_m / self.corridor.spacing_m
+    }
+
+    /// The foot of a point (in stations) near a guess, by Newton's method, and its lateral place, metres.
+    fn foot(&self, point: [f64; 2], guess: f64) -> Option<(f64, f64)> {
+        let mut s = guess;
+        for _ in 0..40 {
+            let place = self.place(s);
+            let (along, lateral_m) = (along(place, point), across(place, point));
+            if along.abs() < 1e-9 {
+                return Some((s, lateral_m));
+            }
+            s += along.clamp(-5.0, 5.0) / (1.0 - place.curvature * lateral_m).max(0.1) / self.corridor.spacing_m;
+        }
+        None
+    }
+
+    /// The centreline at `s` (in stations), straight on beyond both ends.
+    fn place(&self, s: f64) -> Place {
+        let c = self.corridor;
+        let last = c.len() - 1;
+        let k = (s.max(0.0) as usize).min(last);
+        let x = (s - k as f64) * c.spacing_m;
+        let (sin, cos) = c.heading[k].sin_cos();
+        let (from, curved) = ([c.x[k], c.y[k]], s > 0.0 && k < last);
+        if !curved {
+            return Place { at: [from[0] + x * cos, from[1] + x * sin], tangent: [cos, sin], curvature: 0.0 };
+        }
+        let rate = (c.curvature[k + 1] - c.curvature[k]) / c.spacing_m;
+        let turn = |x: f64| x * (c.curvature[k] + 0.5 * rate * x);
+        let (mut ahead, mut aside) = (0.0, 0.0);
+        for (node, weight) in GAUSS {
+            let (sin, cos) = turn(node * x).sin_cos();
+            ahead += weight * x * cos;
+            aside += weight * x * sin;
+        }
+        let (turned_sin, turned_cos) = turn(x).sin_cos();
+        Place {
+            at: [from[0] + ahead * cos - aside * sin, from[1] + ahead * sin + aside * cos],
+            tangent: [cos * turned_cos - sin * turned_sin, sin * turned_cos + cos * turned_sin],
+            curvature: c.curvature[k] + rate * x,
+        }
+    }
+}
+
+/// How far ahead of a place's normal a point is, metres.
+fn along(place: Place, point: [f64; 2]) -> f64 {
+    (point[0] - place.at[0]) * place.tangent[0] + (point[1] - place.at[1]) * place.tangent[1]
+}
+
+/// How far to the left of the centreline a point is, metres.
+fn across(place: Place, point: [f64; 2]) -> f64 {
+    (point[1] - place.at[1]) * place.tangent[0] - (point[0] - place.at[0]) * place.tangent[1]
+}
+
+/// A value that is linear between stations, at `s` (in stations, on the corridor).
+fn linear(column: &[f64], s: f64) -> f64 {
+    let k = (s as usize).min(column.len().saturating_sub(2));
+    let next = column[(k + 1).min(column.len() - 1)];
+    column[k] + (next - column[k]) * (s - k as f64)
+}

@@ -1,0 +1,54 @@
+//! Tubes for the certificate file: when the steer axle is where, where each axle then is nominally, and how far it may
+//! be off.
+//!
+//! The certificate itself knows no time, only places along the corridor; `t` is that of a vehicle at the default
+//! [`Pace`]. Nothing is claimed along the heading: `shape` is the disc whose radius is the bound across it, `lateral_m`.
+
+use serde_json::{Value, json};
+
+use super::nominal::Nominal;
+use crate::corridor::{FileCorridor, FrameError};
+use crate::pace::Pace;
+use crate::stet::{Certificate, Model, Tube, tubes};
+
+/// A disc of no radius has no shape matrix; a micrometre more is on the safe side.
+const LEAST_RADIUS_M: f64 = 1e-6;
+/// What is claimed is this much wider than the sweep's bound, metres and a part of it: the checker reads bounds in steps of its own.
+const MORE_M: f64 = 1e-3;
+const MORE_PART: f64 = 0.02;
+
+/// One tube a unit, front to rear; centres in the coordinates of the corridor's file.
+pub(super) fn json(
+    given: &FileCorridor,
+    model: &Model,
+    certificate: &Certificate,
+    nominal: &Nominal<'_>,
+) -> Result<Vec<Value>, FrameError> {
+    let t = Pace::default().times_s(&given.corridor);
+    tubes(&given.corridor, model, certificate).iter().map(|tube| one(given, tube, nominal, &t)).collect()
+}
+
+fn one(given: &FileCorridor, tube: &Tube, nominal: &Nominal<'_>, t: &[f64]) -> Result<Value, FrameError> {
+    let centre: Vec<[f64; 2]> = (0..tube.centre.len()).map(|k| nominal.axle(k, tube.unit)).collect();
+    let lateral = |(k, at): (usize, &[f64; 2])| {
+        let own = tube.centre[k];
+        // The sweep's bound is about its own centre.
+        let off_m = (at[0] - own[0]).hypot(at[1] - own[1]);
+        tube.bound_m(k).map(|bound_m| bound_m * (1.0 + MORE_PART) + off_m + MORE_M)
+    };
+    let lateral_m: Vec<Option<f64>> = centre.iter().enumerate().map(lateral).collect();
+    let shape = |lateral_m: &Option<f64>| {
+        lateral_m.map(|lateral_m| {
+            let q = lateral_m.max(LEAST_RADIUS_M).powi(-2);
+            [q, 0.0, q]
+        })
+    };
+    let shapes: Vec<Option<[f64; 3]>> = lateral_m.iter().map(shape).collect();
+    Ok(json!({
+        "unit": tube.unit,
+        "t": t,
+        "centre": given.to_input(&centre)?,
+        "shape": shapes,
+        "lateral_m": lateral_m,
+    }))
+}

@@ -1,0 +1,154 @@
+//! Certificate files against the checker, on random vehicles and corridors: what is honestly written is confirmed in every member, and
+//! what is changed and sealed anew is refuted.
+
+use crate::oracle::files::{Case, case};
+
+use netcert::check::{Outcome, Report, certificate, sealed};
+use netcert::stet::{Model, certify};
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+/// A quick run, and one with `NETCERT_THOROUGH` set.
+fn cases() -> u64 {
+    if std::env::var_os("NETCERT_THOROUGH").is_some() { 400 } else { 40 }
+}
+
+fn written(case: &Case) -> Value {
+    let model = Model::new(&case.vehicle).unwrap();
+    let made = certify(&case.given.corridor, &model, &case.options).unwrap();
+    netcert::certificate::json(&case.given, &model, &made, &case.options).unwrap()
+}
+
+fn said(report: &Report) -> String {
+    let said = report.claims.iter().filter(|(_, o)| *o != Outcome::Confirmed).map(|(c, o)| format!("{c}: {o:?}"));
+    said.collect::<Vec<_>>().join("; ")
+}
+
+#[test]
+fn honest_files_are_confirmed() {
+    let refused: Vec<String> = (0..cases())
+        .into_par_iter()
+        .filter_map(|index| {
+            let case = case(index);
+            let report = certificate(&sealed(&written(&case)));
+            let well = report.confirmed() && report.unknown.is_empty();
+            (!well).then(|| format!("{index}, {}: {}", case.vehicle.id, said(&report)))
+        })
+        .collect();
+    assert!(refused.is_empty(), "{} of {} are refused: {refused:#?}", refused.len(), cases());
+}
+
+/// A change, and what it is called. It says whether there was anything to change.
+type Mutation = (&'static str, fn(&mut Value) -> bool);
+
+fn add(value: &mut Value, by: f64) -> bool {
+    let Some(number) = value.as_f64() else { return false };
+    *value = json!(number + by);
+    true
+}
+
+fn scale(value: &mut Value, by: f64) -> bool {
+    let Some(number) = value.as_f64() else { return false };
+    *value = json!(number * by);
+    true
+}
+
+const COLUMNS: [&str; 4] = ["left", "right", "left_centred", "right_centred"];
+
+/// Some entries of a column of leeway, 5 m up.
+fn leeway(v: &mut Value, column: usize, which: impl Fn(usize, usize) -> bool) -> bool {
+    let entries = v["leeway"][COLUMNS[column]].as_array_mut().unwrap();
+    let count = entries.len();
+    let chosen = entries.iter_mut().enumerate().filter(|(k, _)| which(*k, count));
+    chosen.map(|(_, entry)| add(entry, 5.0)).fold(false, |any, changed| any | changed)
+}
+
+/// All tubes' entries of a member.
+fn tubes(v: &mut Value, member: &str, change: impl Fn(&mut Value) -> bool) -> bool {
+    let Some(tubes) = v["tubes"].as_array_mut() else { return false };
+    let entries = tubes.iter_mut().flat_map(|tube| tube[member].as_array_mut().unwrap());
+    entries.map(change).fold(false, |any, changed| any | changed)
+}
+
+fn verdict(v: &mut Value) -> bool {
+    let safe = !v["safe"].as_bool().unwrap();
+    (v["safe"], v["verdict"]) = (json!(safe), json!(if safe { "safe" } else { "unsafe" }));
+    v["reason"] = if safe { Value::Null } else { json!("width") };
+    true
+}
+
+fn bounded(v: &mut Value) -> bool {
+    let nothing = v["rsc_m"].is_null();
+    if nothing {
+        (v["rsc_m"], v["hinge_margin_deg"], v["hinge_unit"]) = (json!(0.1), json!(1.0), json!(0));
+        (v["safe"], v["verdict"], v["reason"]) = (json!(true), json!("safe"), Value::Null);
+    }
+    nothing
+}
+
+fn other_side(v: &mut Value) -> bool {
+    if v["limiting"].is_null() {
+        return false;
+    }
+    let other = if v["limiting"]["side"] == "left" { "right" } else { "left" };
+    v["limiting"]["side"] = json!(other);
+    add(&mut v["limiting"]["nominal_m"], 0.05)
+}
+
+/// The least that matters of each member.
+const MUTATIONS: &[Mutation] = &[
+    ("every second entry on the left", |v| leeway(v, 0, |k, _| k % 2 == 1)),
+    ("every second entry on the right", |v| leeway(v, 1, |k, _| k % 2 == 0)),
+    ("every second entry on the left, centred", |v| leeway(v, 2, |k, _| k % 2 == 0)),
+    ("every second entry on the right, centred", |v| leeway(v, 3, |k, _| k % 2 == 1)),
+    ("first entry", |v| leeway(v, 0, |k, _| k == 0)),
+    ("second entry", |v| leeway(v, 1, |k, _| k == 1)),
+    ("last entry", |v| leeway(v, 2, |k, count| k + 1 == count)),
+    ("last entry but one", |v| leeway(v, 3, |k, count| k + 2 == count)),
+    ("one entry", |v| leeway(v, 1, |k, count| k == count / 2)),
+    ("centres 20 mm aside", |v| tubes(v, "centre", |at| add(&mut at[0], 0.014) & add(&mut at[1], 0.0143))),
+    ("times a tenth less", |v| tubes(v, "t", |t| scale(t, 0.9))),
+    ("tubes half as wide", |v| tubes(v, "lateral_m", |m| scale(m, 0.5))),
+    ("published 29 mm up", |v| add(&mut v["rsc_published_m"], 0.029)),
+    ("published 29 mm down", |v| add(&mut v["rsc_published_m"], -0.029)),
+    ("RSC 1 m up", |v| add(&mut v["rsc_m"], 1.0) && v["verdict"] == "safe"),
+    ("hinge margin 20° up", |v| add(&mut v["hinge_margin_deg"], 20.0)),
+    ("another verdict", verdict),
+    ("bounds where there are none", bounded),
+    ("another reason", |v| {
+        let had = !v["reason"].is_null();
+        v["reason"] = json!("steering_lock_or_so");
+        had
+    }),
+    ("more room at the limiting place", |v| !v["limiting"].is_null() && add(&mut v["limiting"]["nominal_m"], 0.02)),
+    ("limiting beyond the vehicle", |v| !v["limiting"].is_null() && add(&mut v["limiting"]["point_m"], 90.0)),
+    ("limiting on the other side", other_side),
+];
+
+#[test]
+fn what_is_changed_and_sealed_anew_is_refuted() {
+    let every = if std::env::var_os("NETCERT_THOROUGH").is_some() { 1 } else { 4 };
+    let all: Vec<(usize, Vec<String>)> = (0..cases())
+        .step_by(every)
+        .collect::<Vec<_>>()
+        .into_par_iter()
+        .map(|index| {
+            let honest = written(&case(index));
+            let (mut tried, mut alive) = (0, Vec::new());
+            for (name, change) in MUTATIONS {
+                let mut mutant = honest.clone();
+                if change(&mut mutant) {
+                    tried += 1;
+                    if certificate(&sealed(&mutant)).confirmed() {
+                        alive.push(format!("{index}: {name}"));
+                    }
+                }
+            }
+            (tried, alive)
+        })
+        .collect();
+    let tried: usize = all.iter().map(|one| one.0).sum();
+    let alive: Vec<&String> = all.iter().flat_map(|one| &one.1).collect();
+    println!("{tried} changes, {} survive", alive.len());
+    assert!(tried > 100 && alive.is_empty(), "{alive:#?}");
+}
