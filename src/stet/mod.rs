@@ -399,7 +399,8 @@ impl<'m> Swept<'m> {
         let Some(nominal) = &self.nominal else { return false };
         let nominal = &nominal[lane];
         self.full[lane].loose[self.touching(lane, span)].iter().any(|&unit| unit < usize::MAX)
-            && spans::stations(&self.track, self.group.models[lane], span).all(|k| nominal.left[k] >= 0.0 && nominal.right[k] >= 0.0)
+            && spans::stations(&self.track, self.group.models[lane], span)
+                .all(|k| nominal.left[k] >= 0.0 && nominal.right[k] >= 0.0)
     }
 
     /// The best that is known at γ = 1.
