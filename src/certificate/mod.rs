@@ -42,7 +42,7 @@ pub fn json(
     model: &Model,
     certificate: &Certificate,
     options: &Options,
-  ) -> Result<Value, CertificateError> {
+) -> Result<Value, CertificateError> {
     let (result, corridor, vehicle) = (&certificate.result, &given.corridor, &model.vehicle);
     let nominal = Nominal::new(corridor, &certificate.shift, vehicle);
     let frame = match given.frame {

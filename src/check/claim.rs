@@ -86,8 +86,12 @@ impl<'a> Subject<'a> {
         lenient: bool,
     ) -> Result<Self, RoadError> {
         let (ahead, behind) = chain.reach_m();
-        let road =
-            Road::new(corridor, ahead + 3.0 * corridor.spacing_m, FARTHEST * behind + 3.0 * corridor.spacing_m, lenient)?;
+        let road = Road::new(
+            corridor,
+            ahead + 3.0 * corridor.spacing_m,
+            FARTHEST * behind + 3.0 * corridor.spacing_m,
+            lenient,
+        )?;
         let (lead, last) = (road.lead as f64, road.count as f64 - 1.0);
         let motion = Motion::new(chain, &road, |s| shift((s - lead).clamp(0.0, last)));
         let shifts = (0..road.count).map(|k| shift(k as f64)).collect();

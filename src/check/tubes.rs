@@ -380,7 +380,8 @@ fn settled(chain: &Chain, tolerance_m: f64) -> Vec<f64> {
     for (i, link) in chain.links.iter().enumerate() {
         let gains = &chain.gains.units[i];
         let gains = [gains.point(0.0, tolerance_m), gains.heading.at(tolerance_m), gains.coupling.at(tolerance_m)];
-        let unit = Unit { link, bend: Bend::STRAIGHT, curvature: 0.0, gains, step_m: FADED_LENGTHS * link.l, extra: 0.0 };
+        let unit =
+            Unit { link, bend: Bend::STRAIGHT, curvature: 0.0, gains, step_m: FADED_LENGTHS * link.l, extra: 0.0 };
         let Some((tube, end)) = unit.settle(&passed, None, Lid::NONE) else { break };
         settled[i] = end;
         if let Some(next) = chain.links.get(i + 1) {

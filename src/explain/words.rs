@@ -220,12 +220,7 @@ fn beside(e: &Explanation, g: &Geometry) -> String {
     match () {
         () if !g.result.closes() => format!("Besides, {}.", hinge_headline(&e.vehicle, g)),
         () if g.result.too_narrow() => {
-            format!(
-                "Besides, the {strip} is {} m too narrow at {:.0} m: {}.",
-                needed(-rsc(g)),
-                at(g),
-                who(e, g)
-            )
+            format!("Besides, the {strip} is {} m too narrow at {:.0} m: {}.", needed(-rsc(g)), at(g), who(e, g))
         }
         () if !g.result.safe() => format!("Besides, {}.", hinge_headline(&e.vehicle, g)),
         () => format!(

@@ -8,8 +8,8 @@ use super::group::{Group, UnitLanes};
 use super::lanes::{LANES, V, by_instruction_set};
 use super::model::{MAX_UNITS, Model, UnitModel};
 use super::sweep::{
-    BLOCK, FIELDS, Filter, MOST, Motion, NOT_CLOSED_RAD, Step, Straying, ZERO, foot_shift, hinge_margin,
-    heading, hitch_remainder, remainder, row, validity,
+    BLOCK, FIELDS, Filter, MOST, Motion, NOT_CLOSED_RAD, Step, Straying, ZERO, foot_shift, heading, hinge_margin,
+    hitch_remainder, remainder, row, validity,
 };
 
 /// Σ tan² δ_j/2 over the units up to one, from which on the adjoint is worth its time for it. Bends alone decide that, so that

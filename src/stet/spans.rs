@@ -133,8 +133,10 @@ fn hinge(track: &Track, model: &Model, span: &Range<usize>, full: &Minima) -> f6
     let stations = |metres: f64| (metres / track.spacing).ceil() as usize;
     let straight = first.saturating_sub(stations(model.front))..=last + stations(model.length);
     // A foot falls behind by no more than a quarter turn's arc for its chord (proof, section 7, Feet).
-    let near = straight.start().saturating_sub(stations(model.front))..full.hinge.len().min(last + 2 * stations(model.length));
-    let on = |k: &usize| straight.contains(k) || full.under[*k][0] as usize <= last && full.under[*k][1] as usize >= first;
+    let near =
+        straight.start().saturating_sub(stations(model.front))..full.hinge.len().min(last + 2 * stations(model.length));
+    let on =
+        |k: &usize| straight.contains(k) || full.under[*k][0] as usize <= last && full.under[*k][1] as usize >= first;
     near.filter(on).map(|k| full.hinge[k]).fold(f64::INFINITY, f64::min)
 }
 

@@ -244,14 +244,8 @@ impl Step {
     };
 
     /// A metre straight on.
-    pub(super) const STRAIGHT: Step = Step {
-        moved: ONE,
-        advance: ONE,
-        cosine: ONE,
-        secant: ONE,
-        hitch_cosine: ONE,
-        ..Self::NONE
-    };
+    pub(super) const STRAIGHT: Step =
+        Step { moved: ONE, advance: ONE, cosine: ONE, secant: ONE, hitch_cosine: ONE, ..Self::NONE };
 }
 
 pub(super) const ZERO: V = V([0.0; LANES]);
@@ -562,7 +556,9 @@ pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V) -> (V, V) {
 #[inline(always)]
 pub(super) fn heading(of: &UnitLanes, step: &Step, first_order: V, axle: V) -> (V, V) {
     let (r1, _) = remainder(of, step, first_order, axle);
-    let more = r1 * of.inverse_length * 1.5;
+    let r = r1 * of.inverse_length;
+    // R1 grows with the cube of the heading at most: a little more than its own growth brings.
+    let more = r * (r * 4.0 / first_order.max(V::splat(1e-12)) + 1.0);
     let a = (first_order + more).min(V::splat(MOST));
     let (borne_out, _) = remainder(of, step, a, axle);
     (a, more - borne_out * of.inverse_length)

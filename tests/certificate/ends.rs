@@ -62,7 +62,11 @@ fn random_vehicle(draw: &mut Draw) -> Vehicle {
     let crane = unit(5.0, 0.0, draw.between(1.0, 5.5), 3.0, 60.0, sway);
     match draw.below(5) {
         0 => vehicle("crane", tolerance_m, vec![crane]),
-        1 => vehicle("bus", tolerance_m, vec![unit(6.0, 0.0, draw.between(1.5, 3.0), draw.between(1.0, 4.0), 60.0, sway)]),
+        1 => vehicle(
+            "bus",
+            tolerance_m,
+            vec![unit(6.0, 0.0, draw.between(1.5, 3.0), draw.between(1.0, 4.0), 60.0, sway)],
+        ),
         2 => {
             let tractor = unit(5.3, draw.between(2.0, 8.0), 1.4, 4.6, 60.0, sway);
             vehicle("far hitch", tolerance_m, vec![tractor, unit(draw.between(5.0, 8.0), 0.0, -1.2, 4.0, 80.0, sway)])
@@ -204,7 +208,8 @@ fn reversed(corridor: &Corridor) -> Corridor {
 #[test]
 fn a_hinge_margin_holds_as_long_as_any_point_is_on_the_corridor() {
     let crane = vehicle("crane", 0.05, vec![unit(5.0, 0.0, 5.5, 3.0, 34.0, 0.0)]);
-    let far = vehicle("far hitch", 0.02, vec![unit(5.3, 5.3, 1.4, 4.6, 80.0, 0.0), unit(6.0, 0.0, -1.2, 4.0, 60.0, 0.0)]);
+    let far =
+        vehicle("far hitch", 0.02, vec![unit(5.3, 5.3, 1.4, 4.6, 80.0, 0.0), unit(6.0, 0.0, -1.2, 4.0, 60.0, 0.0)]);
     for vehicle in [&crane, &far] {
         for corridor in [into_a_bend(30.0, 20.0), reversed(&into_a_bend(12.0, 20.0)), into_a_bend(4.0, 30.0)] {
             let claim = certify(&corridor, vehicle).unwrap();

@@ -6,7 +6,7 @@
 use crate::oracle;
 
 use netcert::corridor::{Corridor, CurvatureProfile};
-use netcert::stet::{self, SpanResult, Certificate, Model, Options};
+use netcert::stet::{self, Certificate, Model, Options, SpanResult};
 use netcert::vehicle::Vehicle;
 use oracle::draw::{self, Bends, Draw};
 use oracle::path::{along, direction, left_of};

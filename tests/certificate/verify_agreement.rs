@@ -41,7 +41,12 @@ fn claims(corridor: &Corridor, vehicle: &Vehicle) -> (Planned, Vec<SpanClaim>) {
         shrink: result.shrink,
         limiting: None,
     };
-    let made = spans.into_iter().zip(&row.spans).filter(|(_, r)| r.rsc_m.is_some_and(|rsc_m| rsc_m > -50.0)).map(claim).collect();
+    let made = spans
+        .into_iter()
+        .zip(&row.spans)
+        .filter(|(_, r)| r.rsc_m.is_some_and(|rsc_m| rsc_m > -50.0))
+        .map(claim)
+        .collect();
     (row, made)
 }
 

@@ -80,7 +80,7 @@ fn verdict(v: &mut Value) -> bool {
 fn bounded(v: &mut Value) -> bool {
     let nothing = v["rsc_m"].is_null();
     if nothing {
-        (v["rsc_m"], v["hinge_margin_deg"], v["hinge_unit"]) = (json!(0.1), json!(1.0), json!(0));
+        (v["rsc_m"], v["hinge_margin_deg"], v["hinge_unit"]) = (json!(90.0), json!(1.0), json!(0));
         (v["safe"], v["verdict"], v["reason"]) = (json!(true), json!("safe"), Value::Null);
     }
     nothing
@@ -95,7 +95,7 @@ fn other_side(v: &mut Value) -> bool {
     add(&mut v["limiting"]["nominal_m"], 0.05)
 }
 
-/// The least that matters of each member.
+/// What matters of each member.
 const MUTATIONS: &[Mutation] = &[
     ("every second entry on the left", |v| leeway(v, 0, |k, _| k % 2 == 1)),
     ("every second entry on the right", |v| leeway(v, 1, |k, _| k % 2 == 0)),

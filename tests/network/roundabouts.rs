@@ -60,8 +60,9 @@ fn who_gets_straight_over_depends_on_the_ring() {
     assert!(!semi(20.0, 4.5, 7.0, Policy::Carriageway), "a small and narrow ring");
     let small = Drawn::ring(20.0, 4.5, 7.0, 12.0);
     assert!(small.safe("WE", Policy::Carriageway, "AGV-TUG4"), "but a tug does");
-    let rsc =
-        |ring_m| Drawn::ring(20.0, ring_m, 8.0, 12.0).best("WE", Policy::Carriageway, "EU-SEMI16.5").unwrap().rsc_m.unwrap();
+    let rsc = |ring_m| {
+        Drawn::ring(20.0, ring_m, 8.0, 12.0).best("WE", Policy::Carriageway, "EU-SEMI16.5").unwrap().rsc_m.unwrap()
+    };
     let (narrow, wide) = (rsc(5.5), rsc(8.0));
     assert!(wide > narrow + 0.3, "{narrow} {wide}");
 }

@@ -128,7 +128,8 @@ impl<'a> Duel<'a> {
     fn surely_on_road(&self) -> std::ops::Range<usize> {
         let vehicle = self.drive.vehicle;
         let rear_m = vehicle.length_m - front_m(vehicle);
-        let end = self.drive.path.span_of_vertex(0) * self.drive.steps_per_span + self.steps_of(self.road.length_m() + rear_m);
+        let end = self.drive.path.span_of_vertex(0) * self.drive.steps_per_span
+            + self.steps_of(self.road.length_m() + rear_m);
         self.on_road().start + 1..end.min(self.drive.steps())
     }
 
@@ -177,7 +178,8 @@ impl<'a> Duel<'a> {
         }
         for hinge in 0..self.drive.vehicle.units.len() {
             let folded = |step: usize| self.folded(&self.nominal, step, hinge);
-            let most = range.clone().max_by(|&a, &b| folded(a).abs().total_cmp(&folded(b).abs())).unwrap_or(range.start);
+            let most =
+                range.clone().max_by(|&a, &b| folded(a).abs().total_cmp(&folded(b).abs())).unwrap_or(range.start);
             for step in [most, range.start + draw.below(range.len())] {
                 let sign = if self.folded(&self.nominal, step, hinge) < 0.0 { -1.0 } else { 1.0 };
                 let window = (step, self.memory());

@@ -114,7 +114,8 @@ fn corridor(draw: &mut Draw, vehicle: &Vehicle) -> Option<FileCorridor> {
 fn points(draw: &mut Draw, bends: &draw::Bends, apart: f64) -> Vec<[f64; 2]> {
     const STEP_M: f64 = 0.05;
     let total: f64 = bends.iter().map(|bend| bend.0).sum();
-    let (mut x, mut y, mut heading) = (draw.between(-900.0, 900.0), draw.between(-900.0, 900.0), draw.between(-3.0, 3.0));
+    let (mut x, mut y, mut heading) =
+        (draw.between(-900.0, 900.0), draw.between(-900.0, 900.0), draw.between(-3.0, 3.0));
     let each = (apart / STEP_M).round().max(1.0) as usize;
     let mut points = Vec::new();
     for k in 0..=(total / STEP_M) as usize {

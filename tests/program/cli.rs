@@ -9,7 +9,7 @@ use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use program::{Answer, Place};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Rows of CSV without quoted line breaks, by the header's names.
 fn csv(text: &str) -> Vec<BTreeMap<String, String>> {
@@ -196,6 +196,28 @@ fn a_vehicle_of_ones_own_is_shown_changed_checked_and_certified() {
     let ours = ids(&place, "--vehicle ours --vehicle-file own.toml --verdict safe");
     assert_eq!(ours, ids(&place, "--vehicle AU-SEMI19 --verdict safe"));
     assert_eq!(ours, ids(&place, "--vehicle ours --verdict safe"), "the database keeps the definition");
+}
+
+/// No number stands for "there is none": words and null do.
+#[test]
+fn what_nothing_bounds_has_no_numbers() {
+    let turn = |k: i32| (f64::from(k) * 10.0).to_radians();
+    let arc: Vec<[f64; 2]> = (1..=18).map(|k| [30.0 + 5.0 * turn(k).sin(), 5.0 - 5.0 * turn(k).cos()]).collect();
+    let points = [vec![[0.0, 0.0], [30.0, 0.0]], arc, vec![[0.0, 10.0]]].concat();
+    let corridor = json!({"frame": "metres", "points": points, "width_m": 7.0, "smoothing_tolerance_m": 0.5});
+    let place = Place::empty().file("turn.json", corridor.to_string());
+    let told = place.netcert("corridor turn.json --vehicle AU-ATRIPLE53 --out c.json").succeeds().out();
+    assert!(told.contains("UNSAFE") && told.contains("none    no bound holds for where the vehicle may be"), "{told}");
+    assert!(!told.contains("000.0") && !told.contains("missing") && !told.contains("tightest at"), "{told}");
+    let text = String::from_utf8(place.read("c.json")).unwrap();
+    assert!(!text.contains("-1000") && !text.contains("-2898"));
+    let certificate: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!((&certificate["verdict"], &certificate["reason"]), (&json!("unsafe"), &json!("articulation")));
+    for member in ["rsc_m", "hinge_margin_deg", "hinge_unit", "rsc_published_m", "limiting", "tubes"] {
+        assert!(certificate[member].is_null(), "{member}: {}", certificate[member]);
+    }
+    assert!(certificate["leeway"]["left"].as_array().unwrap().iter().all(Value::is_null));
+    place.netcert("verify c.json").succeeds();
 }
 
 #[test]

@@ -51,12 +51,10 @@ fn every_edge_of_the_demo_is_explained_as_it_was_certified() {
             let kept = row.limiting_s_m.unwrap_or(found);
             // Kept is the foot of the unit's axis, up to three stations beyond the edge; told is the corner's, on the edge.
             assert!((kept - found).abs() < 4.5, "{}: {kept} and {found}", row.edge_id);
-            assert!(
-                match g.result.rsc_m.zip(g.place.bounds_m) {
-                    Some((rsc_m, bounds_m)) => (g.place.nominal_m - bounds_m - rsc_m).abs() < 1e-9 || bounds_m == 0.0,
-                    None => g.place.bounds_m.is_none(),
-                }
-            );
+            assert!(match g.result.rsc_m.zip(g.place.bounds_m) {
+                Some((rsc_m, bounds_m)) => (g.place.nominal_m - bounds_m - rsc_m).abs() < 1e-9 || bounds_m == 0.0,
+                None => g.place.bounds_m.is_none(),
+            });
         }
         // A few pictures of every kind.
         if *seen <= 3 {

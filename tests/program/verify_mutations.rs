@@ -86,9 +86,46 @@ fn mutations(document: &Value) -> Vec<Mutation> {
         Box::new(|v| {
             let other = if v["limiting"]["side"] == "left" { "right" } else { "left" };
             v["limiting"]["side"] = json!(other);
-            add(&mut v["limiting"]["s"], 30.0);
+            add(&mut v["limiting"]["nominal_m"], 0.05);
         }),
     );
+    with("limiting place", Box::new(|v| add(&mut v["limiting"]["nominal_m"], -0.01)));
+    with("limiting off the corridor", Box::new(|v| add(&mut v["limiting"]["s"], 300.0)));
+    with("published a little up", Box::new(|v| add(&mut v["rsc_published_m"], 0.029)));
+    with("verdict", Box::new(|v| v["verdict"] = json!(if v["verdict"] == "safe" { "unsafe" } else { "safe" })));
+    with("reason", Box::new(|v| v["reason"] = if v["reason"] == "width" { Value::Null } else { json!("width") }));
+    with("no such hinge", Box::new(|v| v["hinge_unit"] = json!(17)));
+    with("half of the bounds", Box::new(|v| v["hinge_margin_deg"] = Value::Null));
+    with("times", Box::new(|v| v["tubes"][0]["t"].as_array_mut().unwrap().iter_mut().for_each(|t| scaled(t, 0.9))));
+    with(
+        "centres",
+        Box::new(|v| v["tubes"][1]["centre"].as_array_mut().unwrap().iter_mut().for_each(|at| add(&mut at[1], 0.02))),
+    );
+    for (column, first) in [("left", 0), ("right", 1), ("left_centred", 1), ("right_centred", 0)] {
+        with(
+            "every second entry",
+            Box::new(move |v| {
+                let entries = v["leeway"][column].as_array_mut().unwrap().iter_mut();
+                entries.skip(first).step_by(2).for_each(|entry| add(entry, 5.0));
+            }),
+        );
+        for place in ["first", "second", "last but one", "last"] {
+            with(
+                &format!("{place} entry"),
+                Box::new(move |v| {
+                    let entries = v["leeway"][column].as_array_mut().unwrap();
+                    let last = entries.len() - 1;
+                    let k = match place {
+                        "first" => 0,
+                        "second" => 1,
+                        "last" => last,
+                        _ => last - 1,
+                    };
+                    add(&mut entries[k], 5.0);
+                }),
+            );
+        }
+    }
     with("limiting unit", Box::new(|v| v["limiting"]["unit"] = json!(9)));
     with("limiting point", Box::new(|v| add(&mut v["limiting"]["point_m"], 30.0)));
     with("spacing", Box::new(|v| scaled(&mut v["corridor"]["spacing_m"], 1.01)));

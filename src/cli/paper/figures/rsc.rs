@@ -28,7 +28,9 @@ pub(super) fn figure(simulated: &[Simulated]) -> String {
     // A vehicle that nothing bounds has no RSC to draw.
     let (simulated, values): (Vec<&Simulated>, Vec<[f64; 4]>) = simulated
         .iter()
-        .filter_map(|s| Some((s, [s.scenario.w_min_m, s.scenario.rsc().rsc_m, s.paper.rsc.rsc_m, s.exact.result.rsc_m?])))
+        .filter_map(|s| {
+            Some((s, [s.scenario.w_min_m, s.scenario.rsc().rsc_m, s.paper.rsc.rsc_m, s.exact.result.rsc_m?]))
+        })
         .unzip();
     let chart = chart(&values);
     chart.axes(&mut picture);
