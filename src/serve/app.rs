@@ -95,12 +95,7 @@ impl App {
     ) -> Response {
         match self.try_answer(&ask, pace, work).await {
             Ok((stored, keep)) => stored.respond(&ask, keep),
-            Err(problem) => {
-                if problem.status.is_server_error() {
-                    self.options.log(&format!("{}: {problem:?}", ask.key()));
-                }
-                problem.into_response()
-            }
+            Err(problem) => problem.into_response(),
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! Promises: nothing but `GET` and `HEAD`; no request with a body; no request line beyond the bound; on loopback, no
 //! `Host` that is not this machine's own name (a page elsewhere whose name suddenly means 127.0.0.1 must not read: DNS
-//! rebinding).
+//! rebinding); one line on standard error for each request that is refused.
 
 use std::sync::Arc;
 
@@ -12,6 +12,7 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Response};
 
 use super::app::App;
+use super::log::{self, Refused};
 use super::options::Options;
 use super::problem::Problem;
 
@@ -20,10 +21,14 @@ const LONGEST_TARGET: usize = 4096;
 
 /// The middleware.
 pub(super) async fn gate(State(app): State<Arc<App>>, request: Request, next: Next) -> Response {
+    let (method, target) = (request.method().clone(), request.uri().clone());
     let mut response = match refusal(&request, &app.options) {
         Some(problem) => problem.into_response(),
         None => next.run(request).await,
     };
+    if let Some(refused) = response.extensions().get::<Refused>() {
+        app.options.log(&log::refusal(&method, &target, refused));
+    }
     let headers = response.headers_mut();
     for (name, value) in FIXED_HEADERS {
         headers.insert(name, HeaderValue::from_static(value));

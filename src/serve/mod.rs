@@ -11,6 +11,7 @@
 //! | `run` | listening, connections, stopping |
 //! | `routes` | which address is answered by what |
 //! | `gate` | what every request and response passes: methods, host, sizes, security headers |
+//! | `log` | lines on standard error |
 //! | `ask` | a request's names and parameters |
 //! | `answer`, `cache` | entity tags, compression, conditional requests; answers kept |
 //! | `problem` | what went wrong, as problem+json |
@@ -31,6 +32,7 @@ mod assets;
 mod cache;
 mod drive;
 mod gate;
+mod log;
 mod names;
 mod options;
 mod planning;

@@ -2,7 +2,9 @@
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{SocketAddr, TcpStream};
-use std::process::{Child, ChildStderr, ExitStatus, Stdio};
+use std::process::{Child, ExitStatus, Stdio};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
@@ -14,6 +16,9 @@ const PATIENCE: Duration = Duration::from_secs(120);
 
 pub(crate) struct Server {
     child: Child,
+    /// What it has said on standard error; read all the time, so that it never waits for a reader.
+    said: Arc<Mutex<String>>,
+    listener: Option<JoinHandle<()>>,
     pub(crate) address: SocketAddr,
     pub(crate) place: Place,
 }
@@ -42,7 +47,14 @@ impl Server {
             child.stderr.take().unwrap().read_to_string(&mut error).unwrap();
             panic!("{line}: {first:?}\n{error}");
         };
-        Self { child, address, place }
+        let said = Arc::<Mutex<String>>::default();
+        let (stderr, heard) = (child.stderr.take().unwrap(), Arc::clone(&said));
+        let listener = std::thread::spawn(move || {
+            for line in BufReader::new(stderr).split(b'\n').map_while(Result::ok) {
+                *heard.lock().unwrap() += &format!("{}\n", String::from_utf8_lossy(&line));
+            }
+        });
+        Self { child, said, listener: Some(listener), address, place }
     }
 
     pub(crate) fn connect(&self) -> TcpStream {
@@ -85,6 +97,11 @@ impl Server {
         assert!(std::process::Command::new("kill").args([name, &id]).status().unwrap().success());
     }
 
+    /// What it has said so far on standard error.
+    pub(crate) fn said(&self) -> String {
+        self.said.lock().unwrap().clone()
+    }
+
     /// Waits for the end; how it ended, and what it said on standard error.
     pub(crate) fn end(mut self) -> (ExitStatus, String) {
         let begin = Instant::now();
@@ -95,9 +112,8 @@ impl Server {
             assert!(begin.elapsed() < PATIENCE, "it does not end");
             std::thread::sleep(Duration::from_millis(5));
         };
-        let mut said = String::new();
-        self.child.stderr.take().map(|mut stderr: ChildStderr| stderr.read_to_string(&mut said));
-        (status, said)
+        self.listener.take().unwrap().join().unwrap();
+        (status, self.said())
     }
 }
 

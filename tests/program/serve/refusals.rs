@@ -221,3 +221,42 @@ fn other_machines_are_let_in_only_when_asked() {
     });
     assert_eq!(reply.json()["base_map"], said);
 }
+
+/// Escapes, line breaks and marks that turn the writing round come in by every way that a request has.
+#[test]
+fn a_refused_request_is_one_plain_line_on_standard_error() {
+    let server = Server::demo();
+    let hostile = "%1b%5B31m%0d%0aforged%20line%c2%9b2J%e2%80%ae";
+    let get = |target: &str| format!("GET {target} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+    let requests = [
+        (get(&format!("/api/search?q=a&{hostile}=1")), 400),
+        (get(&format!("/api/search?{hostile}=1&{hostile}=2")), 400),
+        (get(&format!("/api/edges/{hostile}")), 404),
+        (get(&format!("/api/edges/1?policy={hostile}")), 400),
+        (get(&format!("/api/explain/1?vehicle={hostile}")), 404),
+        (get(&format!("/tiles/lane/{hostile}/1/0/0.mvt")), 404),
+        (get(&format!("/{hostile}")), 404),
+        (get(&format!("/{}", "x".repeat(5000))), 414),
+        (get("/api/region").replace("localhost", "evil.example"), 421),
+        (get("/api/region").replace("GET", "BREW"), 405),
+    ];
+    for (request, status) in &requests {
+        server.raw(request.as_bytes()).is_problem(request, *status);
+    }
+    // Bytes that are no characters of an address: refused before it is looked at, or as any other.
+    let odd = ["/\u{9b}31m", "/\u{202e}"].map(|target| server.raw(get(target).as_bytes()));
+    let odd = odd.iter().filter(|reply| reply.header("content-type") == Some("application/problem+json")).count();
+    server.raw(b"GET /\x1b[31m HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    assert_eq!(server.get("/healthz").status, 200);
+    server.signal("-INT");
+    let (_, said) = server.end();
+    let plain = |c: char| c == '\n' || c == ' ' || c.is_alphanumeric() || c.is_ascii_punctuation() || "…–©".contains(c);
+    assert!(said.chars().all(plain), "{said:?}");
+    let refused: Vec<&str> = said.lines().filter(|line| line.contains(": 4")).collect();
+    assert_eq!(refused.len(), requests.len() + odd, "{said}");
+    for (line, (_, status)) in refused.iter().zip(&requests) {
+        assert!(line.contains(&format!(": {status} ")) && line.len() < 1000, "{line}");
+    }
+    assert!(refused[8].starts_with("GET /api/region: 421 Not for this server: ") && refused[9].starts_with("BREW "));
+    assert_eq!(said.lines().count(), refused.len() + 1, "the requests that were answered say nothing: {said}");
+}
