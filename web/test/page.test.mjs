@@ -264,6 +264,28 @@ inPage("`safe` is never said without its scope", "", async (page) => {
   assert.ok(!(await text(page, "#side .legend")).match(/\bsafe\b/i));
 });
 
+inPage("a server that is busy for a moment is asked again, for tiles and for numbers", "#v=AU-SEMI19", async (page, opened) => {
+  const asked = new Map();
+  await page.route(/\/(api\/stats|api\/vehicles\?|api\/region|tiles\/)/, (route) => {
+    const path = new URL(route.request().url()).pathname;
+    asked.set(path, (asked.get(path) ?? 0) + 1);
+    if (asked.get(path) > 1) return route.continue();
+    const body = JSON.stringify({ title: "Busy just now", status: 503 });
+    return route.fulfill({ status: 503, headers: { "retry-after": "1" }, contentType: "application/problem+json", body });
+  });
+  await page.reload();
+  await page.waitForFunction(() => globalThis.netcert?.map.loaded(), null, { timeout: 60_000 });
+  await idle(page);
+  await page.waitForSelector(".headline strong");
+  const drawn = await page.evaluate(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-safe", "edge-unsafe"] }).length);
+  assert.ok(drawn > 20, `${drawn} edges`);
+  assert.ok(asked.has("/api/region") && asked.has("/api/stats") && [...asked.keys()].some((path) => path.startsWith("/tiles/")));
+  for (const [path, times] of asked) assert.ok(times >= 2, path);
+  // The browser itself tells of each 503.
+  assert.ok(opened.errors.every((error) => error.includes("503")), opened.errors.join("\n"));
+  opened.errors.length = 0;
+});
+
 inPage("narrow screens: nothing beside the screen, the legend unfolds", "", async (page) => {
   const wide = await page.evaluate(() => document.documentElement.scrollWidth);
   assert.ok(wide <= 390, `${wide} px`);

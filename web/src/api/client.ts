@@ -11,6 +11,7 @@ import type {
   StatsRows,
   Vehicle,
 } from "./types.ts";
+import { patient } from "./patient.ts";
 import { digest, type Stats } from "./stats.ts";
 
 export class ServerProblem extends Error {
@@ -24,7 +25,7 @@ async function get<T>(path: string, query: Record<string, string>, signal?: Abor
   const url = parameters ? `${path}?${parameters}` : path;
   let answer: Response;
   try {
-    answer = await fetch(url, { headers: { accept: "application/json" }, ...(signal ? { signal } : {}) });
+    answer = await patient(url, { headers: { accept: "application/json" }, ...(signal ? { signal } : {}) });
   } catch (error) {
     if (signal?.aborted) throw error;
     throw new ServerProblem({ title: "The server does not answer. Is `netcert serve` still running?", status: 0 });
@@ -58,7 +59,6 @@ export const api = {
     get<RouteAnswer>("/api/route", { ...asked(question), from: place(from), to: place(to), snap: String(SNAP_M) }, signal),
   stats: async (policy: Policy, signal?: AbortSignal): Promise<Stats> =>
     digest(await get<StatsRows>("/api/stats", { policy }, signal)),
-  /** MapLibre fetches tiles in a worker, which knows no page to be relative to. */
-  tilesUrl: ({ tiles }: Region, { vehicle, policy }: Question) =>
-    location.origin + tiles.replace("{policy}", policy).replace("{vehicle}", encodeURIComponent(vehicle)),
+  tilesPath: ({ tiles }: Region, { vehicle, policy }: Question) =>
+    tiles.replace("{policy}", policy).replace("{vehicle}", encodeURIComponent(vehicle)),
 };

@@ -5,6 +5,7 @@ import type { Position, Region } from "../api/types.ts";
 import { api, type Question } from "../api/client.ts";
 import type { State } from "../state.ts";
 import type { Theme } from "./palette.ts";
+import { tileAddress } from "./tiles.ts";
 import { OUTLINE, edgeLayers, overviewLayers, style, turnLayers } from "./style.ts";
 
 /** What a tile says of an edge or a turn; from afar, of all roads that fall on one line: those have no id. */
@@ -109,7 +110,7 @@ export class View {
     const [, south, , north] = this.region.bbox;
     return {
       region: this.region,
-      tilesUrl: api.tilesUrl(this.region, this.question),
+      tilesUrl: tileAddress(api.tilesPath(this.region, this.question)),
       theme: this.theme,
       shared: this.question.policy === "carriageway",
       latitude: (south + north) / 2,

@@ -1,5 +1,6 @@
 // The picture of an explanation: in the panel only its scene, the swept path at the place that decides; enlarged, all of it.
 
+import { patient } from "../api/patient.ts";
 import { Dialog } from "../ui/dialog.ts";
 import { h, styled } from "../ui/dom.ts";
 
@@ -21,7 +22,7 @@ export class Picture {
       this.#zoom.open();
     };
     const button = h("button", { class: "picture-button", type: "button", title: "Enlarge", onclick: open }, frame);
-    fetch(url, { signal })
+    patient(url, { signal })
       .then((answer) => (answer.ok ? answer.text() : Promise.reject(new Error(String(answer.status)))))
       .then((text) => fill(frame, text, url, alt))
       .catch(() => button.remove());

@@ -1,0 +1,42 @@
+// A request that the server turns away for a moment (503) is made again when its `Retry-After` says, a few times at most.
+
+/** Tries of one request in all. */
+const MOST_TRIES = 4;
+/** A reader is told at once of anything that takes longer, seconds. */
+const MOST_WAIT_S = 10;
+
+/** As `fetch`. The answer may still be a 503: then the server is busy for long, or names no time. */
+export async function patient(url: string, init: RequestInit = {}): Promise<Response> {
+  for (let tries = 1; ; tries += 1) {
+    const answer = await fetch(url, init);
+    if (answer.status !== 503 || tries === MOST_TRIES) return answer;
+    const wait_s = seconds(answer.headers.get("retry-after"));
+    if (wait_s === null || wait_s > MOST_WAIT_S) return answer;
+    void answer.body?.cancel();
+    await pause(wait_s * 1000, init.signal ?? undefined);
+  }
+}
+
+/** Seconds from now, from either form of `Retry-After` (RFC 9110, section 10.2.3); `null` if it is neither. */
+function seconds(header: string | null): number | null {
+  if (header === null) return null;
+  if (/^\s*\d+\s*$/.test(header)) return Number(header);
+  const date = Date.parse(header);
+  return Number.isNaN(date) ? null : Math.max(0, (date - Date.now()) / 1000);
+}
+
+/** Ends early, with the signal's reason, if the request is given up. */
+function pause(wait_ms: number, signal?: AbortSignal): Promise<void> {
+  return new Promise((done, failed) => {
+    const give = () => {
+      clearTimeout(timer);
+      failed(signal?.reason);
+    };
+    const timer = setTimeout(() => {
+      signal?.removeEventListener("abort", give);
+      done();
+    }, wait_ms);
+    if (signal?.aborted) give();
+    else signal?.addEventListener("abort", give, { once: true });
+  });
+}
