@@ -231,7 +231,7 @@ fn a_refused_request_is_one_plain_line_on_standard_error() {
     let requests = [
         (get(&format!("/api/search?q=a&{hostile}=1")), 400),
         (get(&format!("/api/search?{hostile}=1&{hostile}=2")), 400),
-        (get(&format!("/api/edges/{hostile}")), 400),
+        (get(&format!("/api/edges/{hostile}")), 404),
         (get(&format!("/api/edges/1?policy={hostile}")), 400),
         (get(&format!("/api/explain/1?vehicle={hostile}")), 404),
         (get(&format!("/tiles/lane/{hostile}/1/0/0.mvt")), 404),
