@@ -99,7 +99,8 @@ pub struct EdgeSpan {
     pub stations: Range<usize>,
     /// Smallest radius of the centreline on it, metres (infinite on a straight).
     pub min_radius_m: f64,
-    /// Largest distance of the smoothed way line from the map polyline, metres.
+    /// Largest distance of the smoothed way line from the map polyline, metres; where carriageways meet, from the polyline without
+    /// its jog.
     pub centreline_deviation_m: f64,
     /// Why nothing can be said of this edge, though its stroke has a corridor.
     pub unknown: Option<UnknownReason>,
