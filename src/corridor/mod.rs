@@ -4,10 +4,12 @@
 
 mod band;
 mod closed;
+mod course;
 mod file;
 mod fit;
 mod frame;
 mod given;
+mod merge;
 mod observation;
 mod polyline;
 mod profile;
@@ -15,6 +17,7 @@ mod resample;
 mod smooth;
 mod spline;
 mod stroke;
+mod taper;
 #[cfg(test)]
 mod tests;
 
@@ -96,7 +99,8 @@ pub struct EdgeSpan {
     pub stations: Range<usize>,
     /// Smallest radius of the centreline on it, metres (infinite on a straight).
     pub min_radius_m: f64,
-    /// Largest distance of the smoothed way line from the map polyline, metres.
+    /// Largest distance of the smoothed way line from the map polyline, metres; where carriageways meet, from the polyline without
+    /// its jog.
     pub centreline_deviation_m: f64,
     /// Why nothing can be said of this edge, though its stroke has a corridor.
     pub unknown: Option<UnknownReason>,
@@ -110,4 +114,32 @@ pub struct StrokeCorridor {
     pub corridor: Corridor,
     /// In driving order.
     pub spans: Vec<EdgeSpan>,
+    /// Where the strip changes from one cross section to the next, in driving order.
+    pub tapers: Vec<Taper>,
+}
+
+/// Where a strip changes its width or its place between two cross sections.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Taper {
+    /// Stations along which it changes.
+    pub stations: Range<usize>,
+    /// Along the road, metres.
+    pub length_m: f64,
+    /// Of the strips before and after it, metres.
+    pub widths_m: [f64; 2],
+    /// How far the strip moves to the left across the line along it; at a split, how far the line's jog would have moved it.
+    pub shift_m: f64,
+    /// What changes.
+    pub cause: TaperCause,
+}
+
+/// Why there is a taper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TaperCause {
+    /// Lanes or widths change.
+    Section,
+    /// Two one-way carriageways become one road.
+    Joins,
+    /// A road parts into two one-way carriageways.
+    Parts,
 }

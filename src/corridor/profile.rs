@@ -2,9 +2,11 @@
 //!
 //! Left and right edge are cubic B-splines whose every coefficient is bounded by the narrowest strip in its reach; a
 //! B-spline being a convex mean, the corridor at every station is inside what that station's edge has (its strip; where
-//! the strip shifts sideways, within 60 m also the lanes it shifts across). No width is made up.
+//! the strip moves sideways, along a taper also the surface it moves across). No width is made up: nowhere is the corridor
+//! wider than that edge's strip, but for a lane that changes places within the lanes of its direction.
 
 use super::spline::Spline;
+use super::taper::{Ramp, take_jumps};
 
 /// Positions across the way's line, metres, positive left of travel.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,8 +25,16 @@ impl Across {
         (both.left_m > both.right_m).then_some(both)
     }
 
-    fn hull(self, other: Self) -> Self {
+    pub(crate) fn hull(self, other: Self) -> Self {
         Self { left_m: self.left_m.max(other.left_m), right_m: self.right_m.min(other.right_m) }
+    }
+
+    pub(crate) fn moved(self, by_m: f64) -> Self {
+        Self { left_m: self.left_m + by_m, right_m: self.right_m + by_m }
+    }
+
+    pub(crate) fn width_m(self) -> f64 {
+        self.left_m - self.right_m
     }
 }
 
@@ -36,8 +46,14 @@ pub(crate) struct Stretch {
     pub(crate) to: f64,
     /// What the vehicle may use.
     pub(crate) strip: Across,
-    /// What it may also use while its strip shifts into another; contains `strip`.
+    /// The lanes of its direction, within which its strip may shift into another; contains `strip`.
     pub(crate) shift: Across,
+    /// What is paved: tapers lie within it; contains `shift`.
+    pub(crate) surface: Across,
+    /// Vehicles go both ways here.
+    pub(crate) two_way: bool,
+    /// Metres of taper a metre across.
+    pub(crate) ratio: f64,
 }
 
 /// A narrow place.
@@ -59,20 +75,68 @@ const GAP_HALF_M: f64 = 0.5;
 /// Coefficients to each side over which strips are eroded, and then smoothed by two running means of half the reach: with a
 /// coefficient's own four knots, a change of strip is spread over 24 knots, 60 m, all inside the wider side.
 const REACH: usize = 10;
+/// That length, metres.
+pub(crate) const CHANGE_M: f64 = (2 * REACH + 4) as f64 * KNOT_M;
 
-/// The widest smooth profile inside the stretches, which follow each other from 0 to the last one's end.
-pub(crate) fn profile(stretches: &[Stretch], gaps: &[Gap]) -> Profile {
+/// The widest smooth profile inside the stretches, which follow each other from 0 to the last one's end, about the line that
+/// lies `aside` of the stretches' own; and the tapers along which the strip moves over.
+pub(crate) fn profile(stretches: &[Stretch], aside: &[Ramp], gaps: &[Gap]) -> (Profile, Vec<Ramp>) {
     let length = stretches.last().map_or(0.0, |s| s.to);
     let cells = ((length / KNOT_M).ceil() as usize).max(1);
     let knot_m = length / cells as f64;
-    let limits = cell_limits(&with_shifts(stretches, knot_m), cells, knot_m);
+    let mut in_line = stretches.to_vec();
+    let tapers = take_jumps(&mut in_line);
+    let limits = cell_limits(&with_shifts(&in_line, knot_m), cells, knot_m, |s| s.strip);
     let mut edges = tapered(&limits);
     // The vehicle lines up for a narrow place over a whole taper, though the road narrows only there.
-    let lined_up = if gaps.is_empty() { edges.clone() } else { tapered(&with_gaps(limits, gaps, knot_m)) };
+    let mut lined_up = if gaps.is_empty() {
+        edges.clone()
+    } else {
+        let moved: Vec<Gap> =
+            gaps.iter().map(|g| Gap { room: g.room.moved(-sum(&tapers, g.at) - sum(aside, g.at)), ..*g }).collect();
+        tapered(&with_gaps(limits, &moved, knot_m))
+    };
+    if !tapers.is_empty() {
+        move_by(&mut edges, &tapers, knot_m);
+        move_by(&mut lined_up, &tapers, knot_m);
+        let surface = reach(&cell_limits(stretches, cells, knot_m, |s| s.surface));
+        for (edge, most) in edges.iter_mut().zip(surface) {
+            *edge = [edge[0].min(most[0]), edge[1].max(most[1])];
+        }
+    }
+    if !aside.is_empty() {
+        move_by(&mut edges, aside, knot_m);
+        move_by(&mut lined_up, aside, knot_m);
+    }
     narrow(&mut edges, gaps, knot_m);
     let coefficients =
         edges.iter().zip(&lined_up).map(|(e, [l, r])| apart(e[0], e[1], f64::midpoint(*l, *r))).collect();
-    Spline { knot_m, coefficients }
+    (Spline { knot_m, coefficients }, tapers)
+}
+
+/// Moves coefficients by what the ramps come to at the middle of their reach.
+fn move_by(edges: &mut [[f64; 2]], ramps: &[Ramp], knot_m: f64) {
+    let middle = |k: usize| (k as f64 - 1.0) * knot_m;
+    let index = |u: f64| ((u / knot_m + 1.0).ceil().max(0.0) as usize).min(edges.len());
+    // What every ramp that has ended comes to is carried along: a long stroke has many.
+    let mut moved_m = vec![0.0; edges.len()];
+    let mut ended_m = vec![0.0; edges.len() + 1];
+    for ramp in ramps {
+        let (start, end) = (index(ramp.from), index(ramp.to));
+        for (k, moved_m) in moved_m.iter_mut().enumerate().take(end).skip(start) {
+            *moved_m += ramp.at(middle(k));
+        }
+        ended_m[end] += ramp.by_m;
+    }
+    let mut before_m = 0.0;
+    for ((edge, moved_m), ended_m) in edges.iter_mut().zip(moved_m).zip(ended_m) {
+        before_m += ended_m;
+        *edge = edge.map(|across| across + before_m + moved_m);
+    }
+}
+
+fn sum(ramps: &[Ramp], u: f64) -> f64 {
+    ramps.iter().map(|ramp| ramp.at(u)).sum()
 }
 
 /// Keeps the middle between the edges, and the edges apart.
@@ -85,9 +149,8 @@ fn apart(left: f64, right: f64, middle: f64) -> [f64; 3] {
     [left, right, middle.clamp(right + half, left - half)]
 }
 
-/// Adds, around every place where the strip shifts sideways, the strip it shifts from or to, as far as the lanes there
-/// allow: a lane that is added beside another moves the kerb lane over, and a vehicle follows within its carriageway. Without
-/// it, two strips 1.75 m apart would meet in a corridor of half a lane.
+/// Adds, around every place where the strip shifts sideways and no taper fits, the strip it shifts from or to, as far as the
+/// lanes of its direction allow. Without it, two strips 1.75 m apart would meet in a corridor of half a lane.
 fn with_shifts(stretches: &[Stretch], knot_m: f64) -> Vec<Stretch> {
     let mut out = stretches.to_vec();
     for pair in stretches.windows(2) {
@@ -120,7 +183,7 @@ fn allow(stretches: &mut Vec<Stretch>, from: f64, to: f64, strip: Across) {
         if s.from < inner_from {
             out.push(Stretch { to: inner_from, ..*s });
         }
-        out.push(Stretch { from: inner_from, to: inner_to, strip: s.strip.hull(meet), shift: s.shift });
+        out.push(Stretch { from: inner_from, to: inner_to, strip: s.strip.hull(meet), ..*s });
         if inner_to < s.to {
             out.push(Stretch { from: inner_to, ..*s });
         }
@@ -129,13 +192,14 @@ fn allow(stretches: &mut Vec<Stretch>, from: f64, to: f64, strip: Across) {
 }
 
 /// The narrowest of every cell, `[left, right]`.
-fn cell_limits(stretches: &[Stretch], cells: usize, knot_m: f64) -> Vec<[f64; 2]> {
+fn cell_limits(stretches: &[Stretch], cells: usize, knot_m: f64, of: impl Fn(&Stretch) -> Across) -> Vec<[f64; 2]> {
     let mut limits = vec![[f64::INFINITY, f64::NEG_INFINITY]; cells];
     for s in stretches {
         let first = ((s.from / knot_m).floor() as usize).min(cells - 1);
         let last = ((s.to / knot_m).floor() as usize).min(cells - 1);
+        let most = of(s);
         for limit in &mut limits[first..=last] {
-            *limit = [limit[0].min(s.strip.left_m), limit[1].max(s.strip.right_m)];
+            *limit = [limit[0].min(most.left_m), limit[1].max(most.right_m)];
         }
     }
     limits

@@ -3,56 +3,29 @@
 //! Certified is only what lies between a stroke's first and last edge; approach, lead-in and tail are driven. An edge that the
 //! extract cuts is entered straight, like any first edge. Left out: turns off the stroke, which have corridors of their own.
 
+use super::course::{Course, Link, Piece, Room, closed_course, open_course};
 use super::frame::Frame;
-use super::polyline::Polyline;
-use super::profile::{Across, Gap, Stretch, limit_offset, profile};
+use super::merge::Jog;
+use super::profile::{Across, CHANGE_M, Gap, Stretch, limit_offset, profile};
 use super::resample::{ArcLength, LEAST_OFFSET_FACTOR, Track};
 use super::smooth::{Smoothed, Smoothing, smooth};
-use super::{Corridor, EdgeSpan, Params, StrokeCorridor};
+use super::taper::{Ramp, guideline_ratio};
+use super::{Corridor, EdgeSpan, Params, StrokeCorridor, Taper, TaperCause};
 use crate::network::{Edge, Network, Stroke};
 use crate::osm::LonLat;
-use crate::osm::facts::{Direction, Policy, Strip};
+use crate::osm::facts::{Direction, Oneway, Policy, Strip};
 use crate::verdict::UnknownReason;
 
 /// Nothing shorter has a direction worth the name, metres.
 const LEAST_LENGTH_M: f64 = 2.0;
 /// Shorter edges carry no station of their own, metres.
 const LEAST_EDGE_M: f64 = 0.01;
-/// Driven after the turn that counts: longer than any catalogued vehicle, so that its last unit leaves the turn too, metres.
-const TAIL_M: f64 = 60.0;
-/// Smoothed with a closed stroke beyond its tail, so that the free end is far from what counts, metres.
-const BEYOND_M: f64 = 150.0;
-/// Turns round a closed stroke at most, before and after.
-const MOST_TURNS: usize = 12;
 /// |c′| is 1 but for smoothing; below this the line folds back on itself.
 const LEAST_SPEED: f64 = 0.3;
+/// Widths that differ by less make no taper worth a name, metres.
+const LEAST_TAPER_M: f64 = 0.05;
 /// |κ|·half-width from which normals as good as cross inside the corridor.
 const MOST_CROSSING: f64 = 0.98;
-
-/// An edge of the chain: where it is in the frame, what it offers.
-struct Link<'n> {
-    index: u32,
-    edge: &'n Edge,
-    points: Vec<[f64; 2]>,
-    /// Strip, and what it may shift across.
-    room: Option<(Across, Across)>,
-}
-
-/// A link on the line that is smoothed, at arc lengths `from..to`; the same link may come several times.
-struct Piece {
-    link: usize,
-    counted: bool,
-    from: f64,
-    to: f64,
-}
-
-/// The line of the chain, as driven.
-struct Course {
-    line: Polyline,
-    pieces: Vec<Piece>,
-    /// The corridor ends here; what follows is for smoothing only.
-    end: f64,
-}
 
 /// The corridor of a stroke, in a metric frame of its own.
 ///
@@ -69,14 +42,15 @@ pub fn stroke_corridor(
         // A loop is its own approach.
         links.drain(..approach);
     }
-    let course = if stroke.closed { closed_course(&links, params) } else { open_course(&links, approach) };
+    let mut course = if stroke.closed { closed_course(&links, params) } else { open_course(&links, approach) };
     if course.line.length() < LEAST_LENGTH_M {
         return Err(UnknownReason::Geometry);
     }
+    let (jogs, aside) = course.straighten(&links, &network.splits);
     let asked = Smoothing { tolerance_m: params.tolerance_m, cutoff_m: params.cutoff_m };
     let smoothed = smooth(&course.line, asked);
     let stretches = stretches(&links, &course.pieces).ok_or(UnknownReason::Width)?;
-    let mut profile = profile(&stretches, &gaps(network, &links, &course, &smoothed));
+    let (mut profile, ramps) = profile(&stretches, &aside, &gaps(network, &links, &course, &smoothed));
     let folded = limit_offset(&mut profile, &smoothed.curve, 1.0 - LEAST_OFFSET_FACTOR, LEAST_SPEED);
 
     let track = Track { curve: &|u| smoothed.curve.at(u), profile: &profile };
@@ -87,7 +61,46 @@ pub fn stroke_corridor(
     let cut =
         Cut { corridor: &corridor, arc: &arc, smoothed: &smoothed, folded: &folded, torn: &corridor.torn(), params };
     let spans = course.pieces.iter().filter(|p| p.counted).map(|p| cut.span(p, &links[p.link])).collect();
-    Ok(StrokeCorridor { corridor, spans })
+    let stations = |from: f64, to: f64| {
+        let station = |u: f64| ((arc.at(u) / corridor.spacing_m).round() as usize).min(corridor.len() - 1);
+        station(from)..station(to) + 1
+    };
+    let tapers = tapers(&stretches, &jogs, &ramps, &stations);
+    Ok(StrokeCorridor { corridor, spans, tapers })
+}
+
+/// What tapers there are, in the order of the line.
+fn tapers(
+    stretches: &[Stretch],
+    jogs: &[Jog],
+    ramps: &[Ramp],
+    stations: &dyn Fn(f64, f64) -> std::ops::Range<usize>,
+) -> Vec<Taper> {
+    let mut tapers: Vec<(f64, Taper)> = Vec::new();
+    for (k, pair) in stretches.windows(2).enumerate() {
+        let [a, b] = pair else { continue };
+        let node = b.from;
+        let widths_m = [a.strip.width_m(), b.strip.width_m()];
+        let at_node = |u: f64, reach_m: f64| (u - node).abs() <= reach_m;
+        let jog = jogs.iter().find(|jog| at_node(jog.at, 1e-6));
+        // A ramp lies beside its node or around it; the nearest node of those that change anything is its own.
+        let ramp = ramps.iter().find(|ramp| ramp.node == k);
+        let (from, to, shift_m, cause) = match (jog, ramp) {
+            (Some(jog), _) if jog.ahead => (node, node + jog.reach_m, jog.shift_m, TaperCause::Parts),
+            (Some(jog), _) => (node - jog.reach_m, node, -jog.shift_m, TaperCause::Joins),
+            (None, Some(ramp)) => (ramp.from, ramp.to, ramp.by_m, TaperCause::Section),
+            (None, None) if widths_m[0] < widths_m[1] - LEAST_TAPER_M => {
+                (node, (node + CHANGE_M).min(b.to), 0.0, TaperCause::Section)
+            }
+            (None, None) if widths_m[1] < widths_m[0] - LEAST_TAPER_M => {
+                ((node - CHANGE_M).max(a.from), node, 0.0, TaperCause::Section)
+            }
+            (None, None) => continue,
+        };
+        tapers.push((from, Taper { stations: stations(from, to), length_m: to - from, widths_m, shift_m, cause }));
+    }
+    tapers.sort_by(|a, b| a.0.total_cmp(&b.0));
+    tapers.into_iter().map(|(_, taper)| taper).collect()
 }
 
 /// What a span is cut from.
@@ -159,83 +172,44 @@ fn links<'n>(
         .iter()
         .zip(ends)
         .map(|(&index, end)| {
-            let edge = &network.edges[index as usize];
             let points = metric[start..end].to_vec();
             start = end;
-            Link { index, edge, points, room: room(network, edge, policy, params.map_tolerance_m) }
+            link(network, index, points, policy, params.map_tolerance_m)
         })
         .collect();
     Ok((links, approach.len()))
 }
 
-/// The strip of an edge under a policy, and what it may shift across: a lane, within the lanes of its direction.
-fn room(network: &Network, edge: &Edge, policy: Policy, map_tolerance_m: f64) -> Option<(Across, Across)> {
+fn link(network: &Network, index: u32, points: Vec<[f64; 2]>, policy: Policy, map_tolerance_m: f64) -> Link<'_> {
+    let edge = &network.edges[index as usize];
+    let road = network.road(edge);
+    let section = road.sections[usize::from(edge.direction == Direction::Backward)];
+    Link {
+        index,
+        edge,
+        points,
+        room: room(network, edge, policy, map_tolerance_m),
+        direction: section.direction.and_then(|strip| across(strip, 0.0)),
+        two_way: road.oneway == Oneway::No,
+        ratio: guideline_ratio(road.class),
+    }
+}
+
+fn across(strip: Strip, map_tolerance_m: f64) -> Option<Across> {
+    let (left_m, right_m) = (f64::from(strip.left_m), f64::from(strip.right_m));
+    let usable = (left_m - right_m).is_finite() && left_m > right_m;
+    usable.then_some(Across { left_m: left_m - map_tolerance_m, right_m: right_m + map_tolerance_m })
+}
+
+/// The strip of an edge under a policy; what it may shift across: a lane, within the lanes of its direction; and what is paved.
+fn room(network: &Network, edge: &Edge, policy: Policy, map_tolerance_m: f64) -> Option<Room> {
     let section = network.road(edge).sections[usize::from(edge.direction == Direction::Backward)];
-    let across = |strip: Strip| {
-        let (left_m, right_m) = (f64::from(strip.left_m), f64::from(strip.right_m));
-        let usable = (left_m - right_m).is_finite() && left_m > right_m;
-        usable.then_some(Across { left_m: left_m - map_tolerance_m, right_m: right_m + map_tolerance_m })
-    };
+    let across = |strip: Strip| across(strip, map_tolerance_m);
     let strip = section.strip(policy).and_then(across)?;
     let wider = (policy == Policy::Lane).then_some(section.direction).flatten().and_then(across);
-    Some((strip, wider.filter(|w| strip.within(*w)).unwrap_or(strip)))
-}
-
-fn open_course(links: &[Link<'_>], approach: usize) -> Course {
-    let mut course = Course { line: Polyline::default(), pieces: Vec::with_capacity(links.len()), end: 0.0 };
-    for link in 0..links.len() {
-        course.drive(links, link, link >= approach);
-    }
-    course.end = course.line.length();
-    course
-}
-
-/// Unrolls a loop: enough of its edges before the turn that counts that a vehicle enters it in full articulation, and
-/// enough after it that its last unit leaves it.
-fn closed_course(links: &[Link<'_>], params: &Params) -> Course {
-    let n = links.len();
-    let length = |link: usize| -> f64 {
-        links[link].points.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1])).sum()
-    };
-    let count = |asked_m: f64, nth: &dyn Fn(usize) -> usize| {
-        let mut sum = 0.0;
-        (0..MOST_TURNS * n)
-            .take_while(|&i| {
-                let more = sum < asked_m;
-                sum += length(nth(i));
-                more
-            })
-            .count()
-    };
-    let before = count(params.lead_in_m, &|i| n - 1 - i % n);
-    let tail = count(TAIL_M, &|i| i % n);
-    let beyond = count(TAIL_M + BEYOND_M, &|i| i % n);
-    let mut course = Course { line: Polyline::default(), pieces: Vec::with_capacity(before + n + beyond), end: 0.0 };
-    for i in 0..before {
-        course.drive(links, n - 1 - (before - 1 - i) % n, false);
-    }
-    for link in 0..n {
-        course.drive(links, link, true);
-    }
-    for i in 0..beyond {
-        if i == tail {
-            course.end = course.line.length();
-        }
-        course.drive(links, i % n, false);
-    }
-    if course.end <= 0.0 {
-        course.end = course.line.length();
-    }
-    course
-}
-
-impl Course {
-    fn drive(&mut self, links: &[Link<'_>], link: usize, counted: bool) {
-        let mut points = links[link].points.iter();
-        let from = points.next().map_or(0.0, |&p| self.line.push(p));
-        let to = points.fold(from, |_, &p| self.line.push(p));
-        self.pieces.push(Piece { link, counted, from, to });
-    }
+    let shift = wider.filter(|w| strip.within(*w)).unwrap_or(strip);
+    let paved = section.carriageway.and_then(across);
+    Some(Room { strip, shift, surface: paved.filter(|paved| shift.within(*paved)).unwrap_or(shift) })
 }
 
 /// One stretch a piece; a piece without width goes on with the one before it, else with the next: it is `unknown` itself, but
@@ -244,7 +218,16 @@ fn stretches(links: &[Link<'_>], pieces: &[Piece]) -> Option<Vec<Stretch>> {
     let mut known = pieces.iter().find_map(|p| links[p.link].room)?;
     let stretches = pieces.iter().map(|piece| {
         known = links[piece.link].room.unwrap_or(known);
-        Stretch { from: piece.from, to: piece.to, strip: known.0, shift: known.1 }
+        let link = &links[piece.link];
+        Stretch {
+            from: piece.from,
+            to: piece.to,
+            strip: known.strip.moved(piece.aside_m),
+            shift: known.shift.moved(piece.aside_m),
+            surface: known.surface.moved(piece.aside_m),
+            two_way: link.two_way,
+            ratio: link.ratio,
+        }
     });
     Some(stretches.collect())
 }
@@ -259,9 +242,7 @@ fn gaps(network: &Network, links: &[Link<'_>], course: &Course, smoothed: &Smoot
             let last = link.points.len() - 1;
             let vertex = (narrowing.vertex as usize).min(last);
             let vertex = if link.edge.direction == Direction::Forward { vertex } else { last - vertex };
-            let mut way = Polyline::default();
-            let along = link.points[..=vertex].iter().fold(0.0, |_, &p| way.push(p));
-            let at = piece.from + along;
+            let at = piece.at[vertex];
             let [c, d, ..] = smoothed.curve.at(at);
             let off = [link.points[vertex][0] - c[0], link.points[vertex][1] - c[1]];
             let lateral = (d[0] * off[1] - d[1] * off[0]) / d[0].hypot(d[1]).max(LEAST_SPEED);

@@ -311,7 +311,9 @@ fn stretches() -> impl Strategy<Value = Vec<Stretch>> {
                 .map(|(length, right_m, width, more_left, more_right)| {
                     let strip = Across { left_m: right_m + width, right_m };
                     let shift = Across { left_m: strip.left_m + more_left, right_m: strip.right_m - more_right };
-                    let s = Stretch { from, to: from + length, strip, shift };
+                    let surface = Across { left_m: shift.left_m + more_right, right_m: shift.right_m - more_left };
+                    let two_way = more_left < 2.0;
+                    let s = Stretch { from, to: from + length, strip, shift, surface, two_way, ratio: 20.0 };
                     from += length;
                     s
                 })
@@ -344,8 +346,8 @@ proptest! {
         let gap = Gap { at, room: Across { left_m: 0.5 * passage, right_m: -0.5 * passage } };
         let end = stretches.last().unwrap().to;
         let gaps = if at < end { vec![gap] } else { Vec::new() };
-        let p = profile(&stretches, &gaps);
-        let unnarrowed = profile(&stretches, &[]);
+        let (p, tapers) = profile(&stretches, &[], &gaps);
+        let (unnarrowed, _) = profile(&stretches, &[], &[]);
         for i in 0..=(end * 4.0) as usize {
             let u = i as f64 * 0.25;
             let [left, right, middle] = p.at(u)[0];
@@ -357,8 +359,10 @@ proptest! {
             }
             let inside = |room: Across| Across { left_m: left - 1e-9, right_m: right + 1e-9 }.within(room);
             for s in stretches.iter().filter(|s| s.from <= u && u <= s.to) {
-                prop_assert!(inside(s.shift), "{u}: {left} {right} outside {:?}", s.shift);
-                let near_change = (u - s.from).min(s.to - u) <= 60.0 + 6.0;
+                prop_assert!(inside(s.surface), "{u}: {left} {right} outside {:?}", s.surface);
+                prop_assert!(!tapers.is_empty() || inside(s.shift), "{u}: {left} {right} outside {:?}", s.shift);
+                let in_taper = tapers.iter().any(|t| (t.from - 6.0..=t.to + 6.0).contains(&u));
+                let near_change = (u - s.from).min(s.to - u) <= 60.0 + 6.0 || in_taper;
                 prop_assert!(near_change || inside(s.strip), "{u}: {left} {right} outside {:?}", s.strip);
             }
             prop_assert!((u - at).abs() > 0.5 || gaps.is_empty() || inside(gap.room), "{u}: {left} {right} in {gap:?}");

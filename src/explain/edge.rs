@@ -109,7 +109,8 @@ impl Case {
 
     /// As the pipeline certifies it: planned for all edges of the stroke together.
     fn geometry(&self, model: &Model, options: &Options) -> Option<Geometry> {
-        geometry(&self.made.corridor, &self.spans(), self.which, model, options)
+        let geometry = geometry(&self.made.corridor, &self.spans(), self.which, model, options)?;
+        Some(Geometry { tapers: self.made.tapers.clone(), ..geometry })
     }
 
     /// The edge's result in another corridor of the same stations; none once it is told to stop.
@@ -134,7 +135,7 @@ pub(super) fn geometry(
     let ride = Ride::new(corridor, &certificate.plan, &model.vehicle);
     let place = Place::of(corridor, &ride, &model.vehicle, &result)?;
     let hinge = HingePlace::of(corridor, &ride, &model.vehicle, &span, &result)?;
-    Some(Geometry { corridor: corridor.clone(), span, result, certificate, ride, place, hinge })
+    Some(Geometry { corridor: corridor.clone(), span, result, certificate, ride, place, hinge, tapers: Vec::new() })
 }
 
 fn stroke_of(network: &Network, edge: u32) -> Option<&Stroke> {

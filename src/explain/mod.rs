@@ -43,7 +43,7 @@ pub use ride::Ride;
 pub use turn::{TurnExplanation, explain_turn_until};
 pub use words::{Words, words};
 
-use crate::corridor::Corridor;
+use crate::corridor::{Corridor, Taper};
 use crate::osm::facts::{Direction, Policy, WidthSource};
 use crate::stet::{Certificate, SpanResult};
 use crate::vehicle::Vehicle;
@@ -111,6 +111,8 @@ pub struct Geometry {
     pub place: Place,
     /// Where the least hinge margin stands.
     pub hinge: HingePlace,
+    /// Where the strip changes from one cross section to the next; none in a corridor of the user's own.
+    pub tapers: Vec<Taper>,
 }
 
 impl Geometry {
@@ -118,6 +120,14 @@ impl Geometry {
     #[must_use]
     pub fn along_m(&self, station: f64) -> f64 {
         ((station - self.span.start as f64) * self.corridor.spacing_m).clamp(0.0, self.length_m())
+    }
+
+    /// The taper in which the least leeway stands, if it stands in one.
+    #[must_use]
+    pub fn taper(&self) -> Option<&Taper> {
+        let station = self.place.station.round().max(0.0) as usize;
+        let covers = self.tapers.iter().filter(|taper| taper.stations.contains(&station));
+        covers.min_by_key(|taper| taper.stations.len())
     }
 
     /// Length of the span, metres.

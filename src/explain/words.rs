@@ -5,6 +5,7 @@
 use super::hints::{MOST_MORE_M, OtherStrip};
 use super::names::{cut, hinge_name, named, needed, source_words, strip_name};
 use super::{Explanation, Geometry, HingePlace, Part, Place};
+use crate::corridor::{Taper, TaperCause};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
@@ -107,6 +108,7 @@ fn geometry_reasons(e: &Explanation, g: &Geometry) -> Vec<String> {
         && rsc(g) > FAR_M
     {
         reasons.push(gap(e, (&g.place, bounds_m), strip));
+        reasons.extend(g.taper().map(|taper| tapers(taper, strip)));
         reasons.push(tracking(&e.vehicle, g));
         reasons.push(hinge_reason(&e.vehicle, g, margin_rad));
     }
@@ -138,6 +140,27 @@ fn gap(e: &Explanation, (place, bounds_m): (&Place, f64), strip: &str) -> String
          errors.",
         place.width_m
     )
+}
+
+fn tapers(taper: &Taper, strip: &str) -> String {
+    let [from_m, to_m] = taper.widths_m;
+    let cause = match taper.cause {
+        TaperCause::Section => "where the cross section changes",
+        TaperCause::Joins => "where two carriageways become one road",
+        TaperCause::Parts => "where the road parts into two carriageways",
+    };
+    let moves = if taper.cause == TaperCause::Section && taper.shift_m.abs() >= 0.05 {
+        let side = if taper.shift_m > 0.0 { "left" } else { "right" };
+        format!(", and moves {:.2} m to the {side}", taper.shift_m.abs())
+    } else {
+        String::new()
+    };
+    let how = if (from_m - to_m).abs() < 0.005 {
+        format!("keeps its {from_m:.2} m")
+    } else {
+        format!("tapers from {from_m:.2} m to {to_m:.2} m")
+    };
+    format!("There the {strip} {how} over {:.0} m{moves}, {cause}.", taper.length_m)
 }
 
 fn tracking(vehicle: &Vehicle, g: &Geometry) -> String {

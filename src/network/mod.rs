@@ -14,6 +14,7 @@ mod movements;
 mod pairing;
 mod restrictions;
 mod roundabouts;
+mod splits;
 mod stroke;
 mod vertices;
 
@@ -25,6 +26,7 @@ pub use build::{build, build_with};
 pub(crate) use geometry::{EARTH_RADIUS_M, offset_m};
 pub use movements::{Movement, MovementKind, Movements};
 pub use roundabouts::Passage;
+pub use splits::Splits;
 pub use stroke::StrokeOptions;
 
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, RestrictionKind, RoadClass};
@@ -139,6 +141,8 @@ pub struct Network {
     pub restriction_edges: Vec<u32>,
     /// Mapped surfaces of junctions.
     pub areas: Areas,
+    /// Where two-way roads part into carriageways. It follows from strokes and edges.
+    pub splits: Splits,
     /// Names and refs.
     pub strings: StringPool,
 }

@@ -7,7 +7,7 @@ use futures_util::TryStreamExt as _;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{Row as _, Sqlite};
 
-use crate::network::{Areas, Edge, Narrowing, Network, Road, Stroke};
+use crate::network::{Areas, Edge, Narrowing, Network, Road, Splits, Stroke};
 use crate::osm::facts::{CrossSection, Legal, Limit, Strip};
 use crate::osm::{LonLat, StringPool};
 use crate::verdict::Verdict;
@@ -60,9 +60,11 @@ pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
         restrictions,
         restriction_edges,
         areas,
+        splits: Splits::default(),
         strings,
     };
     check_ranges(&network)?;
+    network.splits = Splits::find(&network);
     network.areas = Areas::new(areas::read(c).await?, &network);
     Ok(network)
 }

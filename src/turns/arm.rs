@@ -4,7 +4,7 @@
 //! passes from one into the other without a seam. Edges across are measured from the corridor's own, so that a corridor that was
 //! narrowed (a taper, a narrow place) narrows the junction with it.
 
-use crate::corridor::{Corridor, Frame, Params, StrokeCorridor, stroke_corridor};
+use crate::corridor::{Corridor, Frame, Params, StrokeCorridor, TaperCause, stroke_corridor};
 use crate::network::{Network, Stroke};
 use crate::osm::LonLat;
 use crate::osm::facts::{CrossSection, Direction, Policy, Strip};
@@ -48,6 +48,7 @@ impl StrokeLine {
                 carriageway[k] = wider(direction[k], &section, policy, section.carriageway.or(section.direction));
             }
         }
+        keep_to_tapers(&made, &mut [&mut direction, &mut carriageway]);
         Ok(Self { stroke, frame, made, closed: facts.closed, direction, carriageway })
     }
 
@@ -65,6 +66,21 @@ fn wider(own: Across, section: &CrossSection, policy: Policy, strip: Option<Stri
     let left = f64::from(strip.left_m - base.left_m).max(0.0);
     let right = f64::from(strip.right_m - base.right_m).min(0.0);
     [own[0] + left, own[1] + right]
+}
+
+/// Along a taper the strip lies up to the taper's move beside where its section has it, and what is measured from the strip lies
+/// no further out than that: so much less road is certain there.
+fn keep_to_tapers(made: &StrokeCorridor, wider: &mut [&mut Vec<Across>; 2]) {
+    let c = &made.corridor;
+    for taper in made.tapers.iter().filter(|taper| taper.cause == TaperCause::Section && taper.shift_m != 0.0) {
+        let less_m = taper.shift_m.abs();
+        for k in taper.stations.clone() {
+            for edges in wider.iter_mut() {
+                let [left, right] = edges[k];
+                edges[k] = [(left - less_m).max(c.left_m[k]), (right + less_m).min(-c.right_m[k])];
+            }
+        }
+    }
 }
 
 /// The frame that `stroke_corridor` lays around a stroke.

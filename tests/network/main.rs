@@ -15,4 +15,5 @@ mod roundabouts;
 mod route_junctions;
 mod routes;
 mod support;
+mod tapers;
 mod turns;

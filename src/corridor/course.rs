@@ -1,0 +1,171 @@
+//! The line of a stroke as it is driven: approach, edges, a loop unrolled; and without the jogs that only the map has.
+
+use super::Params;
+use super::merge::{Jog, Relaid, Split};
+use super::polyline::Polyline;
+use super::profile::Across;
+use super::taper::Ramp;
+use crate::network::{Edge, Splits};
+
+/// Driven after the turn that counts: longer than any catalogued vehicle, so that its last unit leaves the turn too, metres.
+const TAIL_M: f64 = 60.0;
+/// Smoothed with a closed stroke beyond its tail, so that the free end is far from what counts, metres.
+const BEYOND_M: f64 = 150.0;
+/// Turns round a closed stroke at most, before and after.
+const MOST_TURNS: usize = 12;
+
+/// An edge of the chain: where it is in the frame, what it offers.
+pub(super) struct Link<'n> {
+    pub(super) index: u32,
+    pub(super) edge: &'n Edge,
+    pub(super) points: Vec<[f64; 2]>,
+    /// `None`: no width is known.
+    pub(super) room: Option<Room>,
+    /// All lanes of the direction of travel.
+    pub(super) direction: Option<Across>,
+    pub(super) two_way: bool,
+    /// Metres of taper a metre across.
+    pub(super) ratio: f64,
+}
+
+/// What a policy gives on an edge, across the way's line.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Room {
+    pub(super) strip: Across,
+    /// The lanes of the direction, within which a lane may shift.
+    pub(super) shift: Across,
+    /// All that is paved.
+    pub(super) surface: Across,
+}
+
+/// A link on the line that is smoothed, at arc lengths `from..to`; the same link may come several times.
+pub(super) struct Piece {
+    pub(super) link: usize,
+    pub(super) counted: bool,
+    pub(super) from: f64,
+    pub(super) to: f64,
+    /// Of every vertex of the link.
+    pub(super) at: Vec<f64>,
+    /// How far the strip lies beside where the map has it, for the line without its jogs; metres to the left.
+    pub(super) aside_m: f64,
+}
+
+/// The line of the chain, as driven.
+pub(super) struct Course {
+    pub(super) line: Polyline,
+    pub(super) pieces: Vec<Piece>,
+    /// The corridor ends here; what follows is for smoothing only.
+    pub(super) end: f64,
+}
+
+pub(super) fn open_course(links: &[Link<'_>], approach: usize) -> Course {
+    let mut course = Course { line: Polyline::default(), pieces: Vec::with_capacity(links.len()), end: 0.0 };
+    for link in 0..links.len() {
+        course.drive(links, link, link >= approach);
+    }
+    course.end = course.line.length();
+    course
+}
+
+/// Unrolls a loop: enough of its edges before the turn that counts that a vehicle enters it in full articulation, and
+/// enough after it that its last unit leaves it.
+pub(super) fn closed_course(links: &[Link<'_>], params: &Params) -> Course {
+    let n = links.len();
+    let length = |link: usize| -> f64 {
+        links[link].points.windows(2).map(|w| (w[1][0] - w[0][0]).hypot(w[1][1] - w[0][1])).sum()
+    };
+    let count = |asked_m: f64, nth: &dyn Fn(usize) -> usize| {
+        let mut sum = 0.0;
+        (0..MOST_TURNS * n)
+            .take_while(|&i| {
+                let more = sum < asked_m;
+                sum += length(nth(i));
+                more
+            })
+            .count()
+    };
+    let before = count(params.lead_in_m, &|i| n - 1 - i % n);
+    let tail = count(TAIL_M, &|i| i % n);
+    let beyond = count(TAIL_M + BEYOND_M, &|i| i % n);
+    let mut course = Course { line: Polyline::default(), pieces: Vec::with_capacity(before + n + beyond), end: 0.0 };
+    for i in 0..before {
+        course.drive(links, n - 1 - (before - 1 - i) % n, false);
+    }
+    for link in 0..n {
+        course.drive(links, link, true);
+    }
+    for i in 0..beyond {
+        if i == tail {
+            course.end = course.line.length();
+        }
+        course.drive(links, i % n, false);
+    }
+    if course.end <= 0.0 {
+        course.end = course.line.length();
+    }
+    course
+}
+
+impl Course {
+    fn drive(&mut self, links: &[Link<'_>], link: usize, counted: bool) {
+        let at: Vec<f64> = links[link].points.iter().map(|&p| self.line.push(p)).collect();
+        let (from, to) = (at.first().copied().unwrap_or(0.0), at.last().copied().unwrap_or(0.0));
+        self.pieces.push(Piece { link, counted, from, to, at, aside_m: 0.0 });
+    }
+
+    /// Takes out the jogs of the line where two carriageways and a road meet: gives them, where they are on the line without them, and
+    /// where that line lies beside the map's.
+    pub(super) fn straighten(&mut self, links: &[Link<'_>], splits: &Splits) -> (Vec<Jog>, Vec<Ramp>) {
+        let found: Vec<(usize, Jog)> = (1..self.pieces.len())
+            .filter_map(|after| Some((after, self.split(links, splits, after)?.jog(&self.line)?)))
+            .collect();
+        let mut jogs: Vec<Jog> = found.iter().map(|(_, jog)| *jog).collect();
+        if jogs.is_empty() {
+            return (jogs, Vec::new());
+        }
+        let Some(relaid) = Relaid::new(&self.line, &jogs) else { return (Vec::new(), Vec::new()) };
+        let aside = jogs.iter().flat_map(|jog| relaid.back(jog)).collect();
+        for (after, jog) in &found {
+            let (before, behind) = self.pieces.split_at_mut(*after);
+            let carriageway = if jog.ahead { behind } else { before };
+            carriageway.iter_mut().for_each(|piece| piece.aside_m += jog.shift_m);
+        }
+        for piece in &mut self.pieces {
+            (piece.from, piece.to) = (relaid.at(piece.from), relaid.at(piece.to));
+            piece.at.iter_mut().for_each(|u| *u = relaid.at(*u));
+        }
+        self.end = relaid.at(self.end);
+        for jog in &mut jogs {
+            jog.at = relaid.at(jog.at);
+        }
+        self.line = relaid.line;
+        (jogs, aside)
+    }
+
+    /// The split between the piece before and the piece `after`, if the road parts or joins there.
+    fn split(&self, links: &[Link<'_>], splits: &Splits, after: usize) -> Option<Split> {
+        let link = |piece: &Piece| links.get(piece.link);
+        let (a, b) = (link(self.pieces.get(after - 1)?)?, link(self.pieces.get(after)?)?);
+        let (ahead, two_way, one_way) = match (a.two_way, b.two_way) {
+            (true, false) if splits.parts_after(a.index) => (true, a, b),
+            (false, true) if splits.joined_before(b.index) => (false, b, a),
+            _ => return None,
+        };
+        let one_way_m = |pieces: &mut dyn Iterator<Item = &Piece>| -> f64 {
+            let carriageway = pieces.take_while(|piece| link(piece).is_some_and(|link| !link.two_way));
+            carriageway.map(|piece| piece.to - piece.from).sum()
+        };
+        Some(Split {
+            at: self.pieces.get(after)?.from,
+            ahead,
+            two_way: two_way.direction?,
+            one_way: one_way.direction?,
+            one_way_m: if ahead {
+                one_way_m(&mut self.pieces[after..].iter())
+            } else {
+                one_way_m(&mut self.pieces[..after].iter().rev())
+            },
+            ratio: two_way.ratio.max(one_way.ratio),
+        })
+    }
+}

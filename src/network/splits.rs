@@ -1,0 +1,77 @@
+//! Where a road of two directions parts into two one-way carriageways.
+//!
+//! At such a node the map's lines jog: a two-way road's line is the middle of both directions, a carriageway's line is the middle
+//! of one. Both carriageways have to be there: a road that merely becomes one-way is no such place, and its lane may really end.
+
+use super::{Network, reverse};
+use crate::osm::facts::Oneway;
+
+/// Two-way edges at whose end or start the road parts.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Splits {
+    /// Edges that end where the road parts; sorted.
+    ends: Vec<u32>,
+    /// Edges that start where the carriageways have become one road; sorted.
+    starts: Vec<u32>,
+}
+
+impl Splits {
+    /// Finds them along a network's strokes: one direction goes straight on into a one-way edge, and the other direction comes
+    /// straight on from a one-way edge, at the same node.
+    #[must_use]
+    pub fn find(network: &Network) -> Self {
+        let mut found = Self::default();
+        for stroke in &network.strokes {
+            let range = stroke.approach.start as usize..stroke.edges.end as usize;
+            let chain = network.stroke_edges.get(range).unwrap_or_default();
+            for pair in chain.windows(2) {
+                found.look_at(network, pair[0], pair[1]);
+            }
+            let own = stroke.edges.start as usize..stroke.edges.end as usize;
+            if let (true, Some([first, .., last])) = (stroke.closed, network.stroke_edges.get(own)) {
+                found.look_at(network, *last, *first);
+            }
+        }
+        for edges in [&mut found.ends, &mut found.starts] {
+            edges.sort_unstable();
+            edges.dedup();
+        }
+        let other = |edge: u32| other_direction(network, edge);
+        let has = |edges: &[u32], edge: Option<u32>| edge.is_some_and(|edge| edges.binary_search(&edge).is_ok());
+        let ends = found.ends.iter().copied().filter(|&edge| has(&found.starts, other(edge))).collect();
+        let starts = found.starts.iter().copied().filter(|&edge| has(&found.ends, other(edge))).collect();
+        Self { ends, starts }
+    }
+
+    fn look_at(&mut self, network: &Network, from: u32, to: u32) {
+        let road = |edge: u32| network.edges.get(edge as usize).map(|edge| network.road(edge));
+        let (Some(a), Some(b)) = (road(from), road(to)) else { return };
+        if a.roundabout || b.roundabout {
+            return;
+        }
+        match (a.oneway == Oneway::No, b.oneway == Oneway::No) {
+            (true, false) => self.ends.push(from),
+            (false, true) => self.starts.push(to),
+            _ => {}
+        }
+    }
+
+    /// Whether the two-way road of `edge` parts into two carriageways at the edge's end.
+    #[must_use]
+    pub fn parts_after(&self, edge: u32) -> bool {
+        self.ends.binary_search(&edge).is_ok()
+    }
+
+    /// Whether two carriageways have become the two-way road of `edge` at the edge's start.
+    #[must_use]
+    pub fn joined_before(&self, edge: u32) -> bool {
+        self.starts.binary_search(&edge).is_ok()
+    }
+}
+
+/// The edge of the same piece of road in the other direction: the two stand side by side in a network.
+fn other_direction(network: &Network, edge: u32) -> Option<u32> {
+    let beside = [edge.checked_sub(1), edge.checked_add(1)];
+    let exists = |other: &u32| (*other as usize) < network.edges.len();
+    beside.into_iter().flatten().filter(exists).find(|&other| reverse(network, edge, other))
+}
