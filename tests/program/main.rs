@@ -12,6 +12,7 @@ mod geopackage;
 mod manoeuvres;
 #[path = "../oracle/mod.rs"]
 mod oracle;
+mod pages;
 mod paper;
 mod route_cli;
 mod serve;
