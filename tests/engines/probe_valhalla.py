@@ -12,11 +12,11 @@ import valhalla_tiles
 
 def probe(permits, actor, folder, extract, request):
     """`extract` is what the tiles in `folder` were built from."""
-    nodes_of = nodes_by_way(extract)
+    nodes = NodesByPlace(permits, extract)
     out = {"refused": 0, "refused_open": 0, "ways_refused": 0, "ways_open": 0, "unclear": 0, "examples": []}
     refused, driven, by_way = {}, set(), defaultdict(list)
     for edge in valhalla_tiles.edges(f"{folder}/tiles"):
-        steps = steps_over(permits, edge, nodes_of)
+        steps = steps_over(permits, edge, nodes.of(edge))
         if steps is None:
             out["unclear"] += 1
             out["examples"].append(f"way {edge.way}: an edge of the tiles that does not lie on it")
@@ -40,24 +40,35 @@ def probe(permits, actor, folder, extract, request):
     return dict(out, examples=out["examples"][:5])
 
 
-def nodes_by_way(extract):
-    """By way: its nodes by their place in millionths of a degree."""
-    places, ways = {}, {}
-    for node in osmium.FileProcessor(extract, osmium.osm.NODE):
-        places[node.id] = (round(node.location.lon * 1e6), round(node.location.lat * 1e6))
-    for way in osmium.FileProcessor(extract, osmium.osm.WAY):
-        ways[way.id] = [(node.ref, places[node.ref]) for node in way.nodes if node.ref in places]
-    return ways
+class NodesByPlace:
+    """Nodes by their place in millionths of a degree: those of a way, or those of all roads."""
+
+    def __init__(self, permits, extract):
+        places, self.ways, self.lists = {}, {}, {}
+        for node in osmium.FileProcessor(extract, osmium.osm.NODE):
+            places[node.id] = (round(node.location.lon * 1e6), round(node.location.lat * 1e6))
+        for way in osmium.FileProcessor(extract, osmium.osm.WAY):
+            self.lists[way.id] = [(node.ref, places[node.ref]) for node in way.nodes if node.ref in places]
+        self.all = by_place((node, places[node]) for node in permits.any_place)
+
+    def of(self, edge):
+        # A shortcut leads over the edges of several ways.
+        if edge.shortcut:
+            return self.all
+        if edge.way not in self.ways:
+            self.ways[edge.way] = by_place(self.lists.get(edge.way, []))
+        return self.ways[edge.way]
 
 
-def steps_over(permits, edge, nodes_of):
-    """From which nodes to which neighbours an edge leads; `None` if it does not lie on its way."""
-    known = nodes_of.get(edge.way)
-    if edge.shortcut or known is None:
-        known = [(node, (round(x * 1e6), round(y * 1e6))) for node, (x, y) in permits.any_place.items()] if edge.shortcut else []
+def by_place(nodes):
     at = defaultdict(list)
-    for node, place in known:
+    for node, place in nodes:
         at[place].append(node)
+    return at
+
+
+def steps_over(permits, edge, at):
+    """From which nodes to which neighbours an edge leads; `None` if it does not lie on its way."""
     steps, before = [], None
     for x, y in edge.line:
         # Valhalla rounds down where others round to the nearest.

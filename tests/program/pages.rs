@@ -135,9 +135,7 @@ fn folder_of(need: &str) -> Option<PathBuf> {
     let beside = |python: &Path| python.parent().map(Path::to_owned);
     match need {
         "osrm-bindings" | "pyvalhalla" => beside(engines::python()?),
-        "duckdb" | "overture-schema" => {
-            beside(&python::python("formats", &["duckdb", "pyarrow", "overture-schema"])?)
-        }
+        "duckdb" | "overture-schema" => beside(&python::python("formats", &["duckdb", "pyarrow", "overture-schema"])?),
         "pgrouting" => engines::pgrouting().then(|| folder_of("psql"))?,
         program => {
             let path = std::env::var_os("PATH")?;
@@ -226,7 +224,8 @@ fn every_page_has_its_commands_in_blocks_and_writes_to_a_place_of_its_own() {
         assert!(page.blocks.iter().any(|block| block.not_run.is_none()), "{}.md has no commands", page.name);
         let inside = |i: usize| page.blocks.iter().any(|block| (block.first..block.last).contains(&i));
         for (i, line) in page.lines.iter().enumerate() {
-            let command = ["netcert ", "osrm-", "python ", "pip ", "valhalla_"].iter().any(|word| line.trim().starts_with(word));
+            let command =
+                ["netcert ", "osrm-", "python ", "pip ", "valhalla_"].iter().any(|word| line.trim().starts_with(word));
             assert!(inside(i) || !(line.starts_with("    ") && command), "{}.md, line {}: {line}", page.name, i + 1);
             let out = line.split_once(" --out ").and_then(|(_, rest)| rest.split_whitespace().next());
             if let Some(out) = out.filter(|&out| inside(i) && out != "-") {
@@ -244,7 +243,12 @@ fn a_command_that_fails_is_told_by_its_line() {
     let (script, missing) = script(&page(&place.path("x.md")));
     assert_eq!(missing, None);
     std::fs::write(place.path("x.sh"), script).unwrap();
-    let done = Command::new("setsid").args(["--wait", "bash", "x.sh"]).current_dir(place.path(".")).output().unwrap();
+    let mut command = Command::new("setsid");
+    command
+        .args(["--wait", "bash", "x.sh"])
+        .current_dir(place.path("."))
+        .env("NETCERT_PATH", std::env::var("PATH").unwrap());
+    let done = command.output().unwrap();
     let err = String::from_utf8_lossy(&done.stderr);
     assert!(!done.status.success() && err.contains("line 9: cat $EXTRACT") && err.contains("drawn.osm.pbf"), "{err}");
 }

@@ -54,7 +54,11 @@ fn request(vehicle: &Value) -> Value {
     if width_m > 0.0 {
         truck.insert("width".to_owned(), width_m.into());
     }
-    // Without these Valhalla moves a place to another road, kilometres away, where few roads lead on from the road asked for.
-    let place = json!({"lat": 0.0, "lon": 0.0, "minimum_reachability": 0, "radius": 0, "search_cutoff": SEARCH_CUTOFF_M});
+    // Valhalla's own values move a place to another road, kilometres away, where few roads lead on from the road asked for, and to
+    // the next crossing within 5 m.
+    let place = json!({
+        "lat": 0.0, "lon": 0.0,
+        "minimum_reachability": 0, "radius": 0, "search_cutoff": SEARCH_CUTOFF_M, "node_snap_tolerance": 0,
+    });
     json!({"locations": [place, place], "costing": "truck", "costing_options": {"truck": truck}})
 }
