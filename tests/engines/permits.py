@@ -1,4 +1,5 @@
-"""What netcert permits, read from `export csv` and the extract alone, and whether a way that an engine drives keeps to it.
+"""What netcert permits, read from `export csv` and the extract alone, and whether a way that an engine drives keeps to it and lies
+between the places asked for.
 
 Knows nothing of how the exports for engines are made: edges are found on their ways by their end nodes, steps from one edge into
 another in turns.csv; a step that is not there and not back is straight on.
@@ -7,8 +8,15 @@ another in turns.csv; a step that is not there and not back is straight on.
 import csv
 import random
 from collections import defaultdict
+from math import cos, hypot, radians
 
 import osmium
+
+# Ways with one of these keys may be roads to an engine.
+ROAD_KEYS = ("highway", "route", "bridge")
+M_PER_DEGREE = 111_320
+# A route ends where it was asked to, if it ends within this distance. Engines round places to a millionth of a degree.
+END_M = 1.0
 
 
 class Permits:
@@ -17,14 +25,19 @@ class Permits:
         by_way = defaultdict(list)
         for row in rows:
             by_way[int(row["way_id"])].append(row)
-        refs, self.place = {}, {}
+        # All ways that may be roads to an engine; places of their nodes, and of those of the network's roads alone.
+        self.roads, self.any_place, self.place = {}, {}, {}
         for way in osmium.FileProcessor(extract, osmium.osm.WAY):
-            if way.id in by_way:
-                refs[way.id] = [node.ref for node in way.nodes]
-        wanted = {node for nodes in refs.values() for node in nodes}
+            if way.id in by_way or any(key in way.tags for key in ROAD_KEYS):
+                self.roads[way.id] = [node.ref for node in way.nodes]
+        refs = {way: self.roads[way] for way in by_way}
+        network = {node for nodes in refs.values() for node in nodes}
+        wanted = {node for nodes in self.roads.values() for node in nodes}
         for node in osmium.FileProcessor(extract, osmium.osm.NODE):
             if node.id in wanted:
-                self.place[node.id] = (node.location.lon, node.location.lat)
+                self.any_place[node.id] = (node.location.lon, node.location.lat)
+                if node.id in network:
+                    self.place[node.id] = self.any_place[node.id]
         self.edges, self.over, self.lost = {}, defaultdict(list), 0
         for way, edges in by_way.items():
             self._lay(refs[way], edges)
@@ -81,6 +94,29 @@ class Permits:
             if len(on) != 1 or len(nodes) > 10_000:
                 return None
             arc = on[0]
+
+    def permitted(self, a, b):
+        """Whether one may drive from a node to its neighbour."""
+        return any(self.edges[edge]["permitted"] for edge, _ in self.over.get((a, b), []))
+
+    def refused_steps(self):
+        """From which node to which neighbour nobody may drive, on all that may be a road to an engine."""
+        steps = {}
+        for nodes in self.roads.values():
+            known = [node for node in nodes if node in self.any_place]
+            for a, b in zip(known, known[1:]):
+                for step in ((a, b), (b, a)):
+                    if a != b and not self.permitted(*step):
+                        steps[step] = None
+        return list(steps)
+
+    def elsewhere(self, ends, asked):
+        """Which ends of a route do not lie where they were asked for: a list of texts, empty if none."""
+        out = []
+        for name, end, place in zip(("begins", "ends"), ends, asked):
+            if distance_m(end, place) > END_M:
+                out.append(f"{name} {distance_m(end, place):.1f} m from {place}, where it was asked to")
+        return out
 
     def judge(self, nodes):
         """What a way over these nodes uses that is refused: a list of texts, empty if nothing."""
@@ -187,11 +223,10 @@ def _key(place):
     return (round(place[0] * 1e6), round(place[1] * 1e6))
 
 
-def length_m(permits, nodes):
-    from math import cos, hypot, radians
+def distance_m(a, b):
+    (x, y), (u, v) = a, b
+    return M_PER_DEGREE * hypot((u - x) * cos(radians(y)), v - y)
 
-    total = 0.0
-    for a, b in zip(nodes, nodes[1:]):
-        (x, y), (u, v) = permits.place[a], permits.place[b]
-        total += 111_320 * hypot((u - x) * cos(radians(y)), v - y)
-    return total
+
+def length_m(permits, nodes):
+    return sum(distance_m(permits.place[a], permits.place[b]) for a, b in zip(nodes, nodes[1:]))

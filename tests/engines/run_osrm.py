@@ -1,4 +1,5 @@
-"""OSRM, plain and with permits: the same pairs of places, and whether any way uses what is refused.
+"""OSRM, plain and with permits: the same pairs of places, and whether any way uses what is refused or lies elsewhere; then every
+step that is refused, and whether OSRM drives it.
 
     python run_osrm.py EXTRACT TABLES OSRM_EXPORT REWRITTEN WORK PAIRS
 
@@ -10,12 +11,17 @@ import os
 import shutil
 import subprocess
 import sys
+from collections import namedtuple
+from functools import partial
 
 import osrm
-from permits import Permits
+import probe_osrm
+from permits import END_M, Permits
 
 HOME = os.path.dirname(osrm.__file__)
 PENALTY_S = 3276.7
+# Nodes, seconds spent in turns, and where the way begins and ends.
+Way = namedtuple("Way", "nodes turning_s ends")
 
 
 def run(program, *arguments):
@@ -33,16 +39,17 @@ def engine(extract, work, name, customize=()):
     if not os.path.exists(profiles):
         shutil.copytree(f"{HOME}/share/profiles", profiles)
         shutil.copy(f"{os.path.dirname(__file__)}/../../docs/export/hgv.lua", profiles)
-    run("osrm-extract", "-p", f"{profiles}/hgv.lua", f"{folder}/x.osm.pbf")
+    # Otherwise OSRM moves a place on a small component to a large one, kilometres away.
+    run("osrm-extract", "-p", f"{profiles}/hgv.lua", "--small-component-size", "1", f"{folder}/x.osm.pbf")
     run("osrm-partition", f"{folder}/x.osrm")
     run("osrm-customize", f"{folder}/x.osrm", *customize)
     return osrm.OSRM(storage_config=f"{folder}/x.osrm", algorithm="MLD", use_shared_memory=False)
 
 
-def route(engine, pair):
-    """Nodes, and seconds spent in turns; None where there is no way."""
+def route(engine, pair, radius_m=END_M):
+    """None where there is no way."""
     ask = osrm.RouteParameters(
-        coordinates=pair, annotations=["nodes", "duration"], overview="false", continue_straight=True
+        coordinates=pair, annotations=["nodes", "duration"], overview="false", continue_straight=True, radiuses=[radius_m] * 2
     )
     try:
         answer = engine.Route(ask)
@@ -52,31 +59,32 @@ def route(engine, pair):
         raise
     leg = answer["routes"][0]["legs"][0]
     nodes = [int(node) for node in leg["annotation"]["nodes"]]
-    return nodes, leg["duration"] - sum(leg["annotation"]["duration"])
+    ends = [tuple(waypoint["location"]) for waypoint in answer["waypoints"]]
+    return Way(nodes, leg["duration"] - sum(leg["annotation"]["duration"]), ends)
 
 
 def survey(permits, engine, pairs, plain=False):
-    out = {"routed": 0, "none": 0, "refused_used": 0, "recognised": 0}
+    out = {"routed": 0, "none": 0, "refused_used": 0, "recognised": 0, "elsewhere": 0}
     ways, examples = [], []
     for pair in pairs:
-        found = route(engine, [permits.middle(edge) for edge in pair])
-        ways.append(found and found[0])
+        asked = [permits.middle(edge) for edge in pair]
+        found = route(engine, asked)
+        ways.append(found and found.nodes)
         if found is None:
             out["none"] += 1
             continue
-        nodes, turning_s = found
-        wrong = permits.judge(nodes)
-        if not plain and turning_s >= PENALTY_S:
+        wrong, elsewhere = permits.judge(found.nodes), permits.elsewhere(found.ends, asked)
+        if not plain and found.turning_s >= PENALTY_S:
             # The penalty says it: the caller takes it for no way.
             out["recognised"] += 1
             ways[-1] = None
             if not wrong:
-                examples.append(f"a penalty without a refused turn: {nodes}")
+                examples.append(f"a penalty without a refused turn: {found.nodes}")
             continue
         out["routed"] += 1
-        if wrong:
-            out["refused_used"] += 1
-            examples.append(wrong[0])
+        out["refused_used"] += bool(wrong)
+        out["elsewhere"] += bool(elsewhere)
+        examples += (wrong + elsewhere)[:1]
     return dict(out, examples=examples[:5]), ways
 
 
@@ -86,7 +94,9 @@ def main(extract, tables, tuned, rewritten, work, count):
     files = ["--segment-speed-file", f"{tuned}/segment-speeds.csv", "--turn-penalty-file", f"{tuned}/turn-penalties.csv"]
     out, ways = {"edges_lost": permits.lost}, {}
     for name, from_file, customize in [("plain", extract, []), ("csv", extract, files), ("pbf", rewritten, [])]:
-        out[name], ways[name] = survey(permits, engine(from_file, work, name, customize), pairs, name == "plain")
+        made = engine(from_file, work, name, customize)
+        out[name], ways[name] = survey(permits, made, pairs, name == "plain")
+        out[name]["probe"] = probe_osrm.probe(permits, partial(route, made))
     json.dump({"pairs": pairs, **ways}, open(f"{work}/ways.json", "w"))
     print(json.dumps(out))
 

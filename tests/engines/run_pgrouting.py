@@ -1,49 +1,17 @@
-"""pgRouting: the same pairs of edges on the plain and on the permitted network, and whether any way uses what is refused.
+"""pgRouting: the same pairs of edges on the plain and on the permitted network, and whether any way uses what is refused or lies
+elsewhere; then every edge that is refused, and whether it has a cost.
 
     python run_pgrouting.py EXTRACT TABLES PGROUTING_EXPORT WORK PAIRS
 
-TABLES: `export csv`; PGROUTING_EXPORT: `export pgrouting`. A PostgreSQL of its own is started in WORK on a socket there, as the user
-`postgres` where this runs as root. Prints one JSON object.
+TABLES: `export csv`; PGROUTING_EXPORT: `export pgrouting`. A PostgreSQL of its own is started in WORK. Prints one JSON object.
 """
 
-import glob
 import json
-import os
-import shutil
-import subprocess
 import sys
 
+import probe_pgrouting
 from permits import Permits
-
-BIN = max(glob.glob("/usr/lib/postgresql/*/bin"), default="", key=lambda path: int(path.split("/")[4]))
-
-
-class Postgres:
-    def __init__(self, work):
-        self.data, self.work = f"{work}/data", work
-        self.stop()
-        shutil.rmtree(work, ignore_errors=True)
-        os.makedirs(work)
-        if os.geteuid() == 0:
-            shutil.chown(work, "postgres")
-        self.run(f"{BIN}/initdb", "-D", self.data, "-A", "trust", "-E", "UTF8", "--no-sync")
-        options = f"-c listen_addresses='' -k {work} -c fsync=off"
-        self.run(f"{BIN}/pg_ctl", "-D", self.data, "-w", "-l", f"{work}/log", "-o", options, "start")
-
-    def run(self, *command, folder=None):
-        user = ["runuser", "-u", "postgres", "--"] if os.geteuid() == 0 else []
-        done = subprocess.run([*user, *command], capture_output=True, text=True, cwd=folder or "/tmp")
-        if done.returncode:
-            sys.exit(f"{command[0]} failed: {done.stdout[-800:]}{done.stderr[-800:]}")
-        return done.stdout
-
-    def psql(self, *arguments, folder=None):
-        return self.run(f"{BIN}/psql", "-h", self.work, "-d", "postgres", "-qAt", *arguments, folder=folder)
-
-    def stop(self):
-        if os.path.exists(f"{self.data}/postmaster.pid"):
-            self.run(f"{BIN}/pg_ctl", "-D", self.data, "-m", "immediate", "stop")
-
+from postgres import Postgres
 
 # The way from the end of one edge to the beginning of another, as edges in order; `{costs}` is the table of edges.
 DIJKSTRA = """
@@ -58,12 +26,17 @@ SELECT coalesce(json_agg(json_build_array(node, edge) ORDER BY seq), '[]') FROM 
     'SELECT id, source, target, cost FROM netcert.step', {a}, {b})"""
 
 
+# At which node of the first edge asked for a way begins, and at which node of the last one it ends.
+ENDS = {"plain": (-1, 0), "edges": (-1, 0), "trsp": (0, -1), "steps": (0, -1)}
+
+
 def main(extract, tables, export, work, count):
     permits = Permits(extract, tables)
     postgres = Postgres(work)
     try:
         postgres.psql("-f", "load.sql", folder=export)
-        print(json.dumps(survey(postgres, permits, permits.pairs(count, 5), work)))
+        out = survey(postgres, permits, permits.pairs(count, 5), work)
+        print(json.dumps(dict(out, probe=probe_pgrouting.probe(postgres, tables))))
     finally:
         postgres.stop()
 
@@ -82,7 +55,7 @@ def survey(postgres, permits, pairs, work):
         file.write("\n".join(queries))
     answers = [json.loads(line) for line in postgres.psql("-f", f"{work}/queries.sql").splitlines()]
     names = ["plain", "edges", "trsp", "steps"]
-    out = {name: {"routed": 0, "none": 0, "refused_used": 0, "turns_refused_used": 0, "examples": []} for name in names}
+    out = {name: {"routed": 0, "none": 0, "refused_used": 0, "turns_refused_used": 0, "elsewhere": 0, "examples": []} for name in names}
     ways = {name: [] for name in names}
     for i, (start, goal) in enumerate(pairs):
         for name, found in zip(names, answers[4 * i :]):
@@ -102,11 +75,14 @@ def survey(postgres, permits, pairs, work):
             ways[name].append(nodes)
             passages = name == "steps" and any(str(step) in arcs for _, step in found)
             wrong = [] if passages else permits.judge(nodes)
+            asked = [permits.edges[edge]["nodes"][at] for edge, at in zip((start, goal), ENDS[name])]
+            elsewhere = permits.elsewhere(*([permits.place[node] for node in ends] for ends in ((nodes[0], nodes[-1]), asked)))
             tally = out[name]
             tally["routed"] += 1
             tally["refused_used"] += any("edge" in text.split(":")[1] for text in wrong if ":" in text)
             tally["turns_refused_used"] += any(text.startswith("turn") for text in wrong)
-            tally["examples"] = (tally["examples"] + wrong[:1])[:3]
+            tally["elsewhere"] += bool(elsewhere)
+            tally["examples"] = (tally["examples"] + (wrong + elsewhere)[:1])[:3]
     out["edges_lost"] = permits.lost
     json.dump({"pairs": pairs, **ways}, open(f"{work}/../pg_ways.json", "w"))
     return out

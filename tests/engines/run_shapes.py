@@ -152,23 +152,25 @@ def repeated(before, after):
 
 
 def survey(permits, drawn, route):
-    """All pairs of edges of a shape."""
-    out = {"routed": 0, "none": 0, "refused_used": 0, "examples": []}
+    """All pairs of edges of a shape. `route` gives the nodes of a way and its two ends."""
+    out = {"routed": 0, "none": 0, "refused_used": 0, "elsewhere": 0, "examples": []}
     shapes = {}
     for edge, row in sorted(permits.edges.items()):
         if row["permitted"]:
             shapes.setdefault(drawn.shape_of[int(row["way_id"])], []).append(edge)
     for edges in shapes.values():
         for pair in [(a, b) for a in edges for b in edges if a != b]:
-            nodes = route(pair, [permits.middle(edge) for edge in pair])
-            if nodes is None:
+            asked = [permits.middle(edge) for edge in pair]
+            found = route(pair, asked)
+            if found is None:
                 out["none"] += 1
                 continue
+            nodes, ends = found
             out["routed"] += 1
-            wrong = permits.judge(nodes)
-            if wrong:
-                out["refused_used"] += 1
-                out["examples"] = (out["examples"] + [[*pair, wrong[0]]])[:5]
+            wrong, elsewhere = permits.judge(nodes), permits.elsewhere(ends, asked)
+            out["refused_used"] += bool(wrong)
+            out["elsewhere"] += bool(elsewhere)
+            out["examples"] = (out["examples"] + [[*pair, text] for text in (wrong + elsewhere)[:1]])[:5]
     return out
 
 
@@ -185,8 +187,8 @@ def run(extract, tables, tuned, rewritten, valhalla, work):
 
         def route(_, places):
             found = run_osrm.route(engine, places)
-            penalty = found and name == "csv" and found[1] >= run_osrm.PENALTY_S
-            return None if found is None or penalty else found[0]
+            penalty = found and name == "csv" and found.turning_s >= run_osrm.PENALTY_S
+            return None if found is None or penalty else (found.nodes, found.ends)
 
         out[name] = survey(permits, drawn, route)
     request = json.load(open(f"{valhalla}/request.json"))
@@ -194,7 +196,7 @@ def run(extract, tables, tuned, rewritten, valhalla, work):
 
     def line(pair, places):
         found = run_valhalla.route(actor, request, places)
-        return found and permits.whole(permits.nodes_of(found), pair)
+        return found and (permits.whole(permits.nodes_of(found), pair), (found[0], found[-1]))
 
     out["valhalla"] = survey(permits, drawn, line)
     out["lost"], out["repeated"] = repeated(extract, rewritten)

@@ -1,4 +1,5 @@
-"""Valhalla's truck costing, plain and with permits: the same pairs of places, and whether any way uses what is refused.
+"""Valhalla's truck costing, plain and with permits: the same pairs of places, and whether any way uses what is refused or lies
+elsewhere; then every edge of the tiles that is refused, and whether a truck may drive it.
 
     python run_valhalla.py EXTRACT TABLES VALHALLA_EXPORT WORK PAIRS
 
@@ -11,8 +12,9 @@ import shutil
 import subprocess
 import sys
 
+import probe_valhalla
 import valhalla
-from permits import Permits
+from permits import END_M, Permits
 
 HOME = os.path.dirname(valhalla.__file__)
 
@@ -35,9 +37,12 @@ def engine(extract, work, name):
 
 def route(actor, request, pair):
     """The line; None where there is no way."""
-    # The edge asked for and no other one, however few roads it is connected with.
-    exactly = {"radius": 0, "minimum_reachability": 0, "search_cutoff": 30}
-    request = dict(request, locations=[{"lon": lon, "lat": lat, **exactly} for lon, lat in pair])
+    like = dict(request["locations"][0], search_cutoff=END_M)
+    return answered(actor, dict(request, locations=[dict(like, lon=lon, lat=lat) for lon, lat in pair]))
+
+
+def answered(actor, request):
+    """The same for a request."""
     try:
         answer = json.loads(actor.route(json.dumps(request)))
     except RuntimeError as error:
@@ -67,20 +72,21 @@ def decoded(shape):
 
 
 def survey(permits, actor, request, pairs):
-    out, ways, examples = {"routed": 0, "none": 0, "refused_used": 0}, [], []
+    out, ways, examples = {"routed": 0, "none": 0, "refused_used": 0, "elsewhere": 0}, [], []
     for pair in pairs:
-        line = route(actor, request, [permits.middle(edge) for edge in pair])
+        asked = [permits.middle(edge) for edge in pair]
+        line = route(actor, request, asked)
         if line is None:
             ways.append(None)
             out["none"] += 1
             continue
         nodes = permits.whole(permits.nodes_of(line), pair)
         ways.append(nodes)
-        wrong = permits.judge(nodes)
+        wrong, elsewhere = permits.judge(nodes), permits.elsewhere((line[0], line[-1]), asked)
         out["routed"] += 1
-        if wrong:
-            out["refused_used"] += 1
-            examples.append([wrong[0], pair])
+        out["refused_used"] += bool(wrong)
+        out["elsewhere"] += bool(elsewhere)
+        examples += [[text, pair] for text in (wrong + elsewhere)[:1]]
     return dict(out, examples=examples[:5]), ways
 
 
@@ -90,7 +96,9 @@ def main(extract, tables, export, work, count):
     request = json.load(open(f"{export}/request.json"))
     out, ways = {"edges_lost": permits.lost}, {}
     for name, file in [("plain", extract), ("permits", f"{export}/extract.osm.pbf")]:
-        out[name], ways[name] = survey(permits, engine(file, work, name), request, pairs)
+        actor = engine(file, work, name)
+        out[name], ways[name] = survey(permits, actor, request, pairs)
+        out[name]["probe"] = probe_valhalla.probe(permits, actor, f"{work}/{name}", file, request)
     json.dump({"pairs": pairs, **ways}, open(f"{work}/ways.json", "w"))
     print(json.dumps(out))
 

@@ -1,5 +1,6 @@
 //! The engines themselves, fed with exports of the drawn region: the same pairs of places without and with permits, and no way of
-//! theirs uses what is refused. Judged by tests/engines/permits.py, which knows nothing of how the exports are made.
+//! theirs uses what is refused or lies between other places than it was asked for. Then everything that is refused, each by itself,
+//! and the engine has it closed. Judged by tests/engines/permits.py, which knows nothing of how the exports are made.
 //!
 //! Each test skips with a message where its engine cannot be installed.
 
@@ -16,7 +17,7 @@ use serde_json::Value;
 const PAIRS: &str = "40";
 
 /// A python with the engines.
-fn python() -> Option<&'static Path> {
+pub(crate) fn python() -> Option<&'static Path> {
     static PYTHON: OnceLock<Option<PathBuf>> = OnceLock::new();
     let find = || {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -57,7 +58,23 @@ fn keeps_to_permits(answer: &Value, plain: &str, permits: &[&str]) {
     assert!(answer[plain]["refused_used"].as_u64().unwrap() > 0, "{answer}");
     for name in permits {
         assert_eq!(answer[name]["refused_used"], 0, "{answer}");
+        assert_eq!(answer[name]["elsewhere"], 0, "{answer}");
         assert!(answer[name]["routed"].as_u64().unwrap() >= 10, "{answer}");
+    }
+}
+
+/// Of all that is refused nothing is open, and of all that is permitted something.
+fn keeps_closed(probe: &Value) {
+    let number = |name: &str| probe[name].as_u64().unwrap_or_else(|| panic!("no {name}: {probe}"));
+    assert!(number("refused") > 100 && number("permitted") > number("permitted_closed"), "{probe}");
+    assert_eq!(number("refused_open"), 0, "{probe}");
+}
+
+/// What is read from tiles and what Valhalla itself says: both.
+fn keeps_closed_in_tiles(probe: &Value) {
+    keeps_closed(probe);
+    for name in ["located_open", "ways_open", "unclear"] {
+        assert_eq!(probe[name], 0, "{probe}");
     }
 }
 
@@ -72,6 +89,42 @@ fn osrm_keeps_to_permits_by_tables_and_by_the_rewritten_extract() {
     let answer = run(python, "run_osrm.py", &place, &["tables", "osrm", "permits.osm.pbf", "work", PAIRS]);
     keeps_to_permits(&answer, "plain", &["csv", "pbf"]);
     assert_eq!(answer["csv"]["examples"], Value::Array(Vec::new()), "{answer}");
+    for name in ["csv", "pbf"] {
+        keeps_closed(&answer[name]["probe"]);
+    }
+    assert_ne!(answer["plain"]["probe"]["refused_open"], 0, "the probe finds what is open: {answer}");
+}
+
+#[test]
+fn what_is_refused_is_closed_whatever_its_tags_are() {
+    let Some(python) = python() else { return };
+    let place = Place::empty();
+    let files = |names: &'static [&'static str]| names.iter().map(|name| place.path(name));
+    said(python, "run_taggings.py", std::iter::once("make".into()).chain(files(&["roads.osm.pbf"])));
+    place.netcert("ingest roads.osm.pbf --vehicle AU-SEMI19 --quiet").succeeds();
+    place.netcert("export csv --vehicle AU-SEMI19 --out csv").succeeds();
+    for (target, out) in [("osrm", "osrm"), ("osm-pbf", "permits.osm.pbf"), ("valhalla", "valhalla")] {
+        place.netcert(&format!("export {target} --vehicle AU-SEMI19 --extract roads.osm.pbf --out {out}")).succeeds();
+    }
+    std::fs::create_dir(place.path("work")).unwrap();
+    let arguments = files(&["roads.osm.pbf", "csv", "osrm", "permits.osm.pbf", "valhalla", "work"]);
+    let line = said(python, "run_taggings.py", std::iter::once("run".into()).chain(arguments));
+    let answer: Value = serde_json::from_str(&line).unwrap();
+    assert_eq!(answer["edges_lost"], 0, "{answer}");
+    for name in ["csv", "pbf"] {
+        keeps_closed(&answer[name]);
+    }
+    keeps_closed_in_tiles(&answer["valhalla"]);
+    for name in ["plain", "plain_valhalla"] {
+        assert_ne!(answer[name]["refused_open"], 0, "the probe finds what is open: {answer}");
+    }
+    // What is permitted stays open to Valhalla, but where a road's own tags contradict one another.
+    let number = |name: &str| answer["valhalla"][name].as_u64().unwrap();
+    assert!(number("permitted_closed") * 10 < number("permitted"), "{answer}");
+    // Along the short road there is a way, from it onto the ring none: no place was moved from one to the other.
+    for name in ["plain", "csv", "pbf", "plain_valhalla", "valhalla"] {
+        assert_eq!(answer[name]["beside"], serde_json::json!([[], null]), "{answer}");
+    }
 }
 
 #[test]
@@ -95,6 +148,7 @@ fn refusals_of_every_shape_are_obeyed_and_said_once() {
     assert!(answer["plain"]["refused_used"].as_u64().unwrap() > 0, "{answer}");
     for name in ["csv", "pbf", "valhalla"] {
         assert_eq!(answer[name]["refused_used"], 0, "{answer}");
+        assert_eq!(answer[name]["elsewhere"], 0, "{answer}");
     }
     // Engines that have the same refusals in full go the same number of ways, but where Valhalla's are shortened.
     let routed = |name: &str| answer[name]["routed"].as_u64().unwrap();
@@ -111,20 +165,24 @@ fn valhalla_keeps_to_permits() {
     std::fs::create_dir(place.path("work")).unwrap();
     let answer = run(python, "run_valhalla.py", &place, &["tables", "valhalla", "work", PAIRS]);
     keeps_to_permits(&answer, "plain", &["permits"]);
+    keeps_closed_in_tiles(&answer["permits"]["probe"]);
+    assert_ne!(answer["plain"]["probe"]["refused_open"], 0, "the probe finds what is open: {answer}");
+}
+
+/// Whether there is a PostgreSQL with pgRouting; if not it says so.
+pub(crate) fn pgrouting() -> bool {
+    let mut versions = std::fs::read_dir("/usr/share/postgresql").into_iter().flatten().flatten();
+    let there = versions.any(|version| version.path().join("extension/pgrouting.control").exists());
+    if !there {
+        println!("skipped: no PostgreSQL with pgRouting (Debian: postgresql-15-pgrouting)");
+    }
+    there
 }
 
 #[test]
 fn pgrouting_keeps_to_permits() {
     let Some(python) = python() else { return };
-    let there = |path: &str| {
-        std::fs::read_dir("/usr/share/postgresql")
-            .into_iter()
-            .flatten()
-            .flatten()
-            .any(|version| version.path().join(path).exists())
-    };
-    if !there("extension/pgrouting.control") {
-        println!("skipped: no PostgreSQL with pgRouting (Debian: postgresql-15-pgrouting)");
+    if !pgrouting() {
         return;
     }
     let place = Place::with_demo();
@@ -136,14 +194,18 @@ fn pgrouting_keeps_to_permits() {
     for name in ["trsp", "steps"] {
         assert_eq!(answer[name]["turns_refused_used"], 0, "{answer}");
     }
+    keeps_closed(&answer["probe"]);
+    for name in ["unknown", "permitted_closed", "steps_open"] {
+        assert_eq!(answer["probe"][name], 0, "{answer}");
+    }
 }
 
 /// PostgreSQL does not run as root, but as a user of its own.
 #[cfg(unix)]
-fn open_to_all(place: &Place) {
+pub(crate) fn open_to_all(place: &Place) {
     use std::os::unix::fs::PermissionsExt as _;
     std::fs::set_permissions(place.path("."), std::fs::Permissions::from_mode(0o755)).unwrap();
 }
 
 #[cfg(not(unix))]
-fn open_to_all(_: &Place) {}
+pub(crate) fn open_to_all(_: &Place) {}

@@ -112,6 +112,20 @@ fn the_rewritten_extract_has_every_road_and_nothing_new_is_open() {
 }
 
 #[test]
+fn the_request_for_valhalla_lets_no_place_be_moved_to_another_road() {
+    let place = Place::with_demo();
+    place.netcert("export valhalla --vehicle AU-SEMI19 --extract {demo} --out valhalla").succeeds();
+    let request: serde_json::Value = serde_json::from_slice(&place.read("valhalla/request.json")).unwrap();
+    let places = request["locations"].as_array().unwrap();
+    assert_eq!(places.len(), 2);
+    for place in places {
+        assert_eq!(place["minimum_reachability"], 0, "{request}");
+        assert_eq!((&place["radius"], &place["node_snap_tolerance"]), (&0.into(), &0.into()), "{request}");
+        assert!(place["search_cutoff"].as_u64().is_some_and(|metres| (1..=10).contains(&metres)), "{request}");
+    }
+}
+
+#[test]
 fn osmium_finds_the_rewritten_extract_sorted_and_whole() {
     if Command::new("osmium").arg("--version").output().is_err() {
         println!("skipped: no osmium (Debian: osmium-tool)");

@@ -14,6 +14,7 @@ mod gis;
 mod manoeuvres;
 #[path = "../oracle/mod.rs"]
 mod oracle;
+mod pages;
 mod paper;
 mod route_cli;
 mod serve;

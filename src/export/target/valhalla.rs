@@ -41,6 +41,9 @@ impl Target for Valhalla {
 const DIMENSIONS: [(&str, &str); 4] =
     [("height", "height_m"), ("length", "length_m"), ("weight", "gross_mass_t"), ("axle_load", "axle_load_t")];
 
+/// How far Valhalla may move a place onto a road, metres.
+const SEARCH_CUTOFF_M: u32 = 10;
+
 fn request(vehicle: &Value) -> Value {
     let mut truck: Map<String, Value> = DIMENSIONS
         .iter()
@@ -51,6 +54,11 @@ fn request(vehicle: &Value) -> Value {
     if width_m > 0.0 {
         truck.insert("width".to_owned(), width_m.into());
     }
-    let place = json!({"lat": 0.0, "lon": 0.0});
+    // Valhalla's own values move a place to another road, kilometres away, where few roads lead on from the road asked for, and to
+    // the next crossing within 5 m.
+    let place = json!({
+        "lat": 0.0, "lon": 0.0,
+        "minimum_reachability": 0, "radius": 0, "search_cutoff": SEARCH_CUTOFF_M, "node_snap_tolerance": 0,
+    });
     json!({"locations": [place, place], "costing": "truck", "costing_options": {"truck": truck}})
 }

@@ -2,8 +2,8 @@
 //!
 //! | what | how |
 //! | --- | --- |
-//! | a direction that is refused | `hgv:forward=no`, `hgv:backward=no`, both: `hgv=no`; for Valhalla `motor_vehicle:forward=no`, … as well |
-//! | a road that is not in the network | `hgv=no` |
+//! | a direction that is refused | `hgv:forward=no`, `hgv:backward=no`, both: `hgv=no`; for Valhalla `motor_vehicle:forward=no`, … for each of them, too |
+//! | a road that is not in the network | as one of which both directions are refused |
 //! | what is certified | `netcert:forward=yes`, `netcert:rsc:forward=0.31` (metres), … |
 //! | a turn or passage that is refused, turning back, a restriction over ways | a relation `type=restriction`, `restriction:hgv=no_…`; for Valhalla `restriction=no_…`, of turns both |
 //!

@@ -2,6 +2,16 @@
 //!
 //! A permit never opens what a tag closes: nothing is said in favour of the vehicle but in keys of netcert's own. What a refusal
 //! would contradict is kept under `netcert:was:…`.
+//!
+//! What closes a direction to Valhalla 3.9.1 (`lua/graph.lua`, `filter_tags_generic`), in the order of its rules:
+//!
+//! 1. The class of the road, `access`, `vehicle`, `motor_vehicle` and `hgv` open or close both directions.
+//! 2. `service=driveway` without `access` opens both directions, whatever `hgv` says.
+//! 3. `oneway` closes one direction.
+//! 4. `motor_vehicle:forward` sets its direction, or else `vehicle:forward` does; `backward` likewise.
+//! 5. `oneway=-1` exchanges the two directions.
+//!
+//! So a refused direction gets the tag of rule 4, beside `hgv=no` where both are refused, and rule 5 is kept from exchanging them.
 
 use super::Flavour;
 
@@ -24,29 +34,28 @@ pub(super) fn with_permits(tags: &[Tag], said: Said, flavour: Flavour) -> Vec<Ta
         if key.starts_with(b"netcert") {
             continue; // of an earlier export
         }
-        let key = if contradicts(key, said.permitted, flavour) {
-            [b"netcert:was:", key.as_slice()].concat()
-        } else {
-            key.clone()
-        };
+        let gives_way = contradicts(key, said.permitted, flavour) || exchanges(key, value, said.permitted, flavour);
+        let key = if gives_way { [b"netcert:was:", key.as_slice()].concat() } else { key.clone() };
         out.push((key, value.clone()));
     }
     let mut add = |key: String, value: &str| out.push((key.into_bytes(), value.as_bytes().to_vec()));
-    if said.permitted == [false; 2] {
+    let closed = said.permitted == [false; 2];
+    if closed {
         add("hgv".to_owned(), "no");
         add("netcert".to_owned(), "no");
-        return out;
     }
     for ((direction, permitted), rsc_m) in DIRECTIONS.into_iter().zip(said.permitted).zip(said.rsc_m) {
-        add(format!("netcert:{direction}"), if permitted { "yes" } else { "no" });
+        if !closed {
+            add(format!("netcert:{direction}"), if permitted { "yes" } else { "no" });
+        }
         if let Some(rsc_m) = rsc_m.filter(|_| permitted) {
             add(format!("netcert:rsc:{direction}"), &rsc_m.to_string());
         }
-        if !permitted {
+        if !permitted && !closed {
             add(format!("hgv:{direction}"), "no");
-            if flavour == Flavour::Valhalla {
-                add(format!("motor_vehicle:{direction}"), "no");
-            }
+        }
+        if !permitted && flavour == Flavour::Valhalla {
+            add(format!("motor_vehicle:{direction}"), "no");
         }
     }
     out
@@ -68,6 +77,11 @@ fn contradicts(key: &[u8], permitted: [bool; 2], flavour: Flavour) -> bool {
         }
     };
     ours && refused
+}
+
+/// Whether a tag would make Valhalla take what is said of one direction for the other one.
+fn exchanges(key: &[u8], value: &[u8], permitted: [bool; 2], flavour: Flavour) -> bool {
+    flavour == Flavour::Valhalla && permitted[0] != permitted[1] && key == b"oneway" && value == b"-1"
 }
 
 #[cfg(test)]
@@ -110,5 +124,29 @@ mod tests {
              motor_vehicle:forward=no netcert:backward=yes netcert:rsc:backward=0.25"
         );
         assert_eq!(said("netcert=no hgv=no", [true; 2], Flavour::Hgv).matches("netcert=no").count(), 0);
+    }
+
+    #[test]
+    fn both_directions_are_closed_to_valhalla_by_the_tags_that_nothing_overrules() {
+        assert_eq!(
+            said("highway=service service=driveway", [false; 2], Flavour::Valhalla),
+            "highway=service service=driveway hgv=no netcert=no motor_vehicle:forward=no motor_vehicle:backward=no"
+        );
+        assert_eq!(
+            said("vehicle:forward=destination motor_vehicle:forward=yes", [false; 2], Flavour::Valhalla),
+            "vehicle:forward=destination netcert:was:motor_vehicle:forward=yes hgv=no netcert=no \
+             motor_vehicle:forward=no motor_vehicle:backward=no"
+        );
+    }
+
+    #[test]
+    fn a_road_that_is_one_way_against_its_nodes_is_closed_to_valhalla_along_them_alone() {
+        assert_eq!(
+            said("oneway=-1", [false, true], Flavour::Valhalla),
+            "netcert:was:oneway=-1 netcert:forward=no hgv:forward=no motor_vehicle:forward=no netcert:backward=yes \
+             netcert:rsc:backward=0.25"
+        );
+        assert!(said("oneway=-1", [false, true], Flavour::Hgv).starts_with("oneway=-1 "));
+        assert!(said("oneway=-1", [false; 2], Flavour::Valhalla).starts_with("oneway=-1 "));
     }
 }
