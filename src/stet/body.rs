@@ -177,7 +177,9 @@ impl Feet {
     pub(super) fn range(self) -> (usize, usize) {
         match self {
             Self::Run(first) => (first, first + LANES - 1),
-            Self::Each(feet) => feet.iter().fold((usize::MAX, 0), |(first, last), &foot| (first.min(foot), last.max(foot))),
+            Self::Each(feet) => {
+                feet.iter().fold((usize::MAX, 0), |(first, last), &foot| (first.min(foot), last.max(foot)))
+            }
         }
     }
 }

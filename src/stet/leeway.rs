@@ -3,7 +3,9 @@
 //! Deducted from the plain distance: the tube of the point, its second-order terms, what may happen between two body
 //! points (inside of a curve) and between two head stations.
 
-use super::body::{Body, Feet, LOST_M, NEAR_M, Seen, Spot, follow, foot, least, least as least_of, near, next_foot, place};
+use super::body::{
+    Body, Feet, LOST_M, NEAR_M, Seen, Spot, follow, foot, least, least as least_of, near, next_foot, place,
+};
 use super::lanes::{LANES, V, by_instruction_set, select_negative};
 use super::sweep::{BLOCK, FIELDS, Minima, ZERO, row};
 use super::track::{BULGE_MOST, Fields, READ_M, Track};
@@ -294,7 +296,18 @@ impl Sample {
     #[inline(always)]
     fn new(seen: &Seen, feet: Feet, tag: u64, left: V, right: V) -> Self {
         let (curvature, bulge) = (seen.at.curvature, seen.at.bulge);
-        Self { feet, tag, left, right, lowered_left: left, lowered_right: right, curvature, bulge, along: seen.along, lateral: seen.lateral }
+        Self {
+            feet,
+            tag,
+            left,
+            right,
+            lowered_left: left,
+            lowered_right: right,
+            curvature,
+            bulge,
+            along: seen.along,
+            lateral: seen.lateral,
+        }
     }
 
     #[inline(always)]

@@ -291,7 +291,9 @@ impl<'m> Swept<'m> {
         options: &Options,
         stop: &'m Stop,
     ) -> Self {
-        Self::along(corridor, models, spans, marks, stop, &|track, group| plan::best(track, group, spans, options, stop))
+        Self::along(corridor, models, spans, marks, stop, &|track, group| {
+            plan::best(track, group, spans, options, stop)
+        })
     }
 
     /// `plans` gives each vehicle's, in the group's order.
@@ -361,7 +363,8 @@ impl<'m> Swept<'m> {
             })
             .collect();
         let results = spans.iter().map(|span| self.result(0, span)).collect();
-        let (mut left_m, mut right_m) = (own(&full[0].left, &full[0].mark_left), own(&full[0].right, &full[0].mark_right));
+        let (mut left_m, mut right_m) =
+            (own(&full[0].left, &full[0].mark_left), own(&full[0].right, &full[0].mark_right));
         for span in spans {
             // What the span's result rests on: refined for one where it is worth it.
             let best = self.best(0, span);

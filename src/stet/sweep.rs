@@ -530,7 +530,7 @@ impl Filter {
     }
 }
 
-/// The plan, and the path of a coupling, is a smooth curve through the vertices: it leaves the chord by κℓ²/8 at most.
+/// The plan is a smooth curve through the vertices: it leaves the chord by κℓ²/8 at most.
 #[inline(always)]
 pub(super) fn chord_bulge(step: &Step) -> V {
     step.path_curvature * step.moved * step.moved * 0.125
@@ -564,7 +564,7 @@ pub(super) fn heading(of: &UnitLanes, step: &Step, first_order: V, axle: V) -> (
     (a, more - borne_out * of.inverse_length)
 }
 
-/// Second-order remainder of the next coupling, with the foot shift against its follower and what its path leaves the chord by.
+/// Second-order remainder of the next coupling, the foot shift against its follower included.
 #[inline(always)]
 pub(super) fn hitch_remainder(
     of: &UnitLanes,
@@ -584,9 +584,7 @@ pub(super) fn hitch_remainder(
         + hitch_sine * of.hitch * a * a * 0.5
         + step.path_curvature.max(step.tangent * of.inverse_length) * swing * swing * 0.5;
     let Some((next, behind)) = follower else { return own };
-    // The follower is drawn along the chord of the coupling's own curve.
-    own + chord_bulge(behind)
-        + reach * (behind.tangent + hitch_tangent) * (straying.slope + straying.rough * next.inverse_length * 2.0)
+    own + reach * (behind.tangent + hitch_tangent) * (straying.slope + straying.rough * next.inverse_length * 2.0)
 }
 
 /// How fast a coupling's deviation may change along its path: the slope of what has passed through axles, and how much of

@@ -10,12 +10,10 @@ use oracle::adversary::{Bounds, Kernel, Target, kernel};
 use oracle::draw::{self, Bends, Draw};
 use oracle::fleet;
 use oracle::path::{Path, V2, direction, dot, left_of};
-use oracle::road;
 use oracle::simulator::{Disturbance, Drive, Run};
 use rayon::prelude::*;
 
-/// Steps a metre.
-const STEPS_PER_M: f64 = 10.0;
+const STEPS: usize = 10;
 /// In the adversary's hand the steer axle changes sides within this many metres.
 const SWING_M: f64 = 0.3;
 
@@ -47,8 +45,7 @@ fn bend(radius: f64, degrees: f64, transition: f64) -> Bends {
     ]
 }
 
-/// Stations lie `spacing_m` apart.
-fn cases(tolerance_m: f64, sway_deg: f64, spacing_m: f64) -> Vec<Case> {
+fn cases(tolerance_m: f64, sway_deg: f64) -> Vec<Case> {
     let kinds = [
         ("EU-SEMI16.5", 15.0),
         ("EU-SEMI16.5", 60.0),
@@ -67,12 +64,7 @@ fn cases(tolerance_m: f64, sway_deg: f64, spacing_m: f64) -> Vec<Case> {
         vehicle.tracking_tolerance_m = tolerance_m;
         vehicle.units.iter_mut().for_each(|unit| unit.sway_rad = sway_deg.to_radians());
         let bends = bend(radius, 100.0, 6.0 + radius / 10.0);
-        let mut draw = Draw(k as u64 + 5);
-        let length_m: f64 = bends.iter().map(|bend| bend.0).sum();
-        let stations = (length_m / spacing_m) as usize + 1;
-        let curvature: Vec<f64> = (0..stations).map(|k| draw::curvature_at(&bends, k as f64 * spacing_m)).collect();
-        let widths = [(); 2].map(|()| draw::half_widths(&mut draw, stations, 9.0, 9.5));
-        let corridor = road::corridor(spacing_m, [0.0; 2], draw.between(-3.0, 3.0), &curvature, &widths[0], &widths[1]);
+        let corridor = draw::corridor(&mut Draw(k as u64 + 5), &bends, 9.0, 9.5);
         Case { name: format!("{id} at {radius} m"), vehicle, corridor }
     };
     kinds.iter().enumerate().map(case).collect()
@@ -84,8 +76,6 @@ struct Bench<'a> {
     calm: Disturbance,
     bounds: Bounds,
     tubes: Vec<Tube>,
-    /// Steps a station.
-    steps: usize,
 }
 
 fn bench<'a>(case: &'a Case, path: &'a Path) -> Bench<'a> {
@@ -93,15 +83,14 @@ fn bench<'a>(case: &'a Case, path: &'a Path) -> Bench<'a> {
     let options = Options { max_shift_m: 0.0, ..Options::default() };
     let certificate = certify(&case.corridor, &model, &options).unwrap();
     assert!(certificate.result.shrink == 1.0, "{}: {:?}", case.name, certificate.result);
-    let steps = (STEPS_PER_M * case.corridor.spacing_m).ceil() as usize;
-    let drive = Drive::new(&case.vehicle, path, steps);
+    let drive = Drive::new(&case.vehicle, path, STEPS);
     let calm = Disturbance::none(drive.steps());
     let nominal = drive.whole(&calm);
     let slip = std::array::from_fn(|i| case.vehicle.units.get(i).map_or(0.0, |u| u.sway_rad));
     let steer_m = case.vehicle.tracking_tolerance_m;
-    let change_m = 2.0 * steer_m / SWING_M * case.corridor.spacing_m / steps as f64;
+    let change_m = 2.0 * steer_m / SWING_M * case.corridor.spacing_m / STEPS as f64;
     let tubes = tubes(&case.corridor, &model, &certificate);
-    Bench { drive, nominal, calm, bounds: Bounds { steer_m, change_m, slip }, tubes, steps }
+    Bench { drive, nominal, calm, bounds: Bounds { steer_m, change_m, slip }, tubes }
 }
 
 fn path(case: &Case) -> Path {
@@ -113,7 +102,7 @@ fn path(case: &Case) -> Path {
 
 impl Bench<'_> {
     fn target(&self, station: usize, unit: usize, side: f64) -> Target {
-        let step = self.drive.path.span_of_vertex(station) * self.steps;
+        let step = self.drive.path.span_of_vertex(station) * STEPS;
         // Across the axle's own nominal path: along its heading's normal.
         let normal = left_of(direction(self.nominal.at(step).1[unit]));
         Target { step, unit, ahead_m: 0.0, aside_m: 0.0, push: [side * normal[0], side * normal[1]] }
@@ -123,7 +112,7 @@ impl Bench<'_> {
     /// has it: κ ℓ²/8.
     fn reach_m(&self, response: &Kernel, corridor: &Corridor) -> f64 {
         let chord = |step: usize| {
-            let place = step as f64 / self.steps as f64 - self.drive.path.span_of_vertex(0) as f64;
+            let place = step as f64 / STEPS as f64 - self.drive.path.span_of_vertex(0) as f64;
             let k = (place.max(0.0) as usize).min(corridor.len() - 2);
             let part = (place - k as f64).clamp(0.0, 1.0);
             let bend = corridor.curvature[k] * (1.0 - part) + corridor.curvature[k + 1] * part;
@@ -134,7 +123,7 @@ impl Bench<'_> {
     }
 
     fn memory(&self) -> usize {
-        (5.0 * self.drive.vehicle.length_m / self.drive.path.spacing_m) as usize * self.steps
+        (5.0 * self.drive.vehicle.length_m) as usize * STEPS
     }
 
     fn axle(&self, run: &Run, step: usize, unit: usize) -> V2 {
@@ -148,10 +137,10 @@ impl Bench<'_> {
         let target = self.target(station, unit, side);
         let response = kernel(&self.drive, &self.nominal, &self.calm, &target, self.memory());
         let attack = response.attack(&self.bounds, self.drive.steps());
-        let end = (target.step + 3 * self.steps).min(self.drive.steps());
+        let end = (target.step + 3 * STEPS).min(self.drive.steps());
         let run = self.drive.some(&attack, response.first..end, *self.nominal.at(response.first).1);
         let mut worst = (0.0, f64::INFINITY);
-        for step in target.step.saturating_sub(5 * self.steps)..end {
+        for step in target.step.saturating_sub(5 * STEPS)..end {
             let Some((off, tube)) = self.against(self.axle(&run, step, unit), step, unit) else { continue };
             if off / tube > worst.0 / worst.1 {
                 worst = (off, tube);
@@ -166,11 +155,11 @@ impl Bench<'_> {
             let at = self.axle(&self.nominal, k, unit);
             [point[0] - at[0], point[1] - at[1]]
         };
-        let near = (step.saturating_sub(2 * self.steps)..(step + 2 * self.steps).min(self.drive.steps()))
+        let near = (step.saturating_sub(2 * STEPS)..(step + 2 * STEPS).min(self.drive.steps()))
             .min_by(|&a, &b| dot(off(a), off(a)).total_cmp(&dot(off(b), off(b))))?;
         let lateral = dot(off(near), left_of(direction(self.nominal.at(near).1[unit])));
         let tube = &self.tubes[unit].lateral_m;
-        let station = (near / self.steps).checked_sub(self.drive.path.span_of_vertex(0))?;
+        let station = (near / STEPS).checked_sub(self.drive.path.span_of_vertex(0))?;
         let (a, b) = (tube.get(station)?, tube.get(station + 1)?);
         Some((lateral.abs(), a.max(*b)))
     }
@@ -178,15 +167,14 @@ impl Bench<'_> {
 
 #[test]
 fn at_first_order_a_tube_is_the_exact_reach_of_the_disturbances() {
-    // What the plan and the couplings' paths leave their chords by counts in a tube as well; at stations this close it is little.
-    let cases = cases(0.004, 0.004, 0.25);
+    let cases = cases(0.004, 0.004);
     let met: Vec<Met> = cases
         .par_iter()
         .flat_map_iter(|case| {
             let path = path(case);
             let bench = bench(case, &path);
             let mut met = Vec::new();
-            for station in (0..case.corridor.len() - 1).step_by(36) {
+            for station in (0..case.corridor.len() - 1).step_by(9) {
                 for unit in 0..case.vehicle.units.len() {
                     let target = bench.target(station, unit, 1.0);
                     let response = kernel(&bench.drive, &bench.nominal, &bench.calm, &target, bench.memory());
@@ -224,7 +212,7 @@ fn at_first_order_a_tube_is_the_exact_reach_of_the_disturbances() {
 
 #[test]
 fn no_matched_attack_drives_an_axle_out_of_its_tube() {
-    let cases = cases(0.15, 0.2, 1.0);
+    let cases = cases(0.15, 0.2);
     let met: Vec<Met> = cases
         .par_iter()
         .enumerate()

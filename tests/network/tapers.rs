@@ -9,7 +9,7 @@ use netcert::explain::{explain_edge, words};
 use netcert::network::Network;
 use netcert::osm::facts::Policy;
 use netcert::pipeline::Settings;
-use netcert::stet::{Model, Options};
+use netcert::stet::Model;
 use proptest::prelude::*;
 
 use crate::support::catalogue::catalogued;
@@ -154,8 +154,7 @@ fn a_pocket_too_short_for_two_tapers_keeps_what_both_sections_have() {
 fn an_explanation_names_the_taper() {
     let drawn = widened(50.0, 1.0);
     let model = Model::new(&catalogued("AU-SEMI19")).unwrap();
-    let settings =
-        Settings { policy: Policy::Lane, corridor: Params::default(), stet: Options::default(), turns: false };
+    let settings = Settings { turns: false, ..Settings::default() };
     let found = explain_edge(&drawn.network, edge(&drawn.network, "BC"), &model, &settings).unwrap();
     let said = words(&found).reasons.join(" ");
     assert!(said.contains("the lane keeps its 3.25 m over"), "{said}");
