@@ -194,7 +194,7 @@ impl Tubes {
             if !unit.bounded(a) {
                 return None;
             }
-            let r1 = r1(unit.link, &unit.bend, unit.curvature, y, a);
+            let r1 = r1(unit.link, &unit.bend, unit.curvature, y, coupling, a);
             let z = z(unit.link, &unit.bend, y, a, r1);
             self.tubes.push(Some(Tube { y, e: coupling, a, r1, z, zh: passed.zh, ..Tube::default() }));
             let end = adjoint::bounds::<2>(chain, self, index, step + 1, outputs);
@@ -233,7 +233,7 @@ impl Tubes {
             tube.y = tube.y.min(y);
             tube.a = tube.a.min(a);
             tube.e = hitch.map_or(tube.e, |hitch| tube.e.min(hitch + tube.zh));
-            tube.r1 = tube.r1.min(r1(link, &bend, swing.curvature, tube.y, tube.a));
+            tube.r1 = tube.r1.min(r1(link, &bend, swing.curvature, tube.y, tube.e, tube.a));
             tube.z = tube.z.min(z(link, &bend, tube.y, tube.a, tube.r1));
         }
     }
@@ -323,7 +323,7 @@ impl Unit<'_> {
                 return None;
             }
             let y = (self.gains[0] + extra).min(lid.axle);
-            let r1 = r1(link, bend, self.curvature, y, a);
+            let r1 = r1(link, bend, self.curvature, y, e, a);
             let z = z(link, bend, y, a, r1);
             let source = extra_coupling + rho[1].max(rho[0]) * z + off_pace * link.l * (a + link.sway);
             let end = (self.extra * decay + source * (1.0 - decay)) * UP + 1e-12;
@@ -391,11 +391,14 @@ fn settled(chain: &Chain, tolerance_m: f64) -> Vec<f64> {
     settled
 }
 
-/// R1 of the proof.
-fn r1(link: &Link, bend: &Bend, curvature: f64, y: f64, a: f64) -> f64 {
-    let sin = bend.tan / bend.sec[0];
-    let along = (y + link.l * a) * sin + 0.5 * link.l * a * a;
-    (bend.tan * link.l * a * a / 2.0 + link.l * a.powi(3) / 6.0 + 0.5 * curvature * bend.sec[0] * along * along) * UP
+/// R1 of the proof, at bounds of the axle, the coupling and the heading.
+fn r1(link: &Link, bend: &Bend, curvature: f64, y: f64, e: f64, a: f64) -> f64 {
+    let sec = bend.sec[0];
+    let own = bend.tan * link.l * a * a / 2.0 + link.l * a.powi(3) / 6.0;
+    let bent = |across: f64| own + 0.5 * curvature * sec * (across * bend.tan / sec + 0.5 * link.l * a * a).powi(2);
+    // y + Lα is e/cos δ but for R1 itself, which is no more than with the sum of both bounds.
+    let across = y + link.l * a;
+    bent(across.min(e * sec + bent(across))) * UP
 }
 
 /// z of the proof.

@@ -268,26 +268,32 @@ impl Trail {
         let (mut heading_ahead, mut shift_ahead) = (group.course, ZERO);
         let mut closes = true;
         let mut beside = Filter::begin(group, &steps);
+        let mut coupling = V::splat(steer);
         for unit in 0..units {
             let (of, step) = (&group.chain[unit], &steps[unit]);
+            let coupled = coupling * step.secant;
             let start = (unit * LANES + lane) * FIELDS * BLOCK;
             let filtered = beside.coupled(of, step, motion.extra[unit]);
             if unit < first_unit {
                 // The filter's bounds stand; only what they mean for the units behind is needed.
                 let at = |field: usize| V::splat(rows[start + field * BLOCK + k]);
-                let (axle, coupling) = (at(row::EXTRA_AXLE), at(row::EXTRA_COUPLING));
+                let (axle, own) = (at(row::EXTRA_AXLE), at(row::EXTRA_COUPLING));
                 closes &= axle.0[lane] < MOST;
-                let a = of.heading + (axle + coupling) * of.inverse_length + at(row::REMAINDER);
-                (heading_ahead, shift_ahead) = (a, foot_shift(of, step, of.coupling + coupling));
+                let a = of.heading + (axle + own) * of.inverse_length + at(row::REMAINDER);
+                (heading_ahead, shift_ahead) = (a, foot_shift(of, step, of.coupling + own));
                 straying = straying.next(of, step, a);
                 let past = &self.histories[lane][0].past[station % MEMORY][unit];
+                coupling = of.axle + axle + of.hitch * a + past.hitch;
                 motion.extra[unit].0[lane] =
                     beside.step(of, step, filtered, a, V::splat(past.z), V::splat(past.hitch)).0[lane];
                 continue;
             }
             let mut store = |field: usize, value: f64| rows[start + field * BLOCK + k] = value;
-            let found =
-                if closes { self.settle(group, lane, station, unit, step, &mut out.points[unit][k..]) } else { None };
+            let found = if closes {
+                self.settle(group, lane, station, unit, step, coupled, &mut out.points[unit][k..])
+            } else {
+                None
+            };
             let Some((a, axle)) = found else {
                 closes = false;
                 store(row::EXTRA_AXLE, MOST);
@@ -297,7 +303,7 @@ impl Trail {
                 continue;
             };
             let (a, axle) = (V::splat(a), V::splat(axle));
-            let (r1, z) = remainder(of, step, a, axle);
+            let (r1, z) = remainder(of, step, a, axle, coupled);
             let extra = axle - of.axle;
             let own_shift = foot_shift(of, step, axle + of.length * a);
             let ahead = heading_ahead + a + shift_ahead;
@@ -310,6 +316,7 @@ impl Trail {
             straying = straying.next(of, step, a);
             let follower = (unit + 1 < units).then(|| (&group.chain[unit + 1], &steps[unit + 1]));
             let zh = hitch_remainder(of, step, follower, a, axle, r1, &straying);
+            coupling = axle + of.hitch * a + zh;
             let past = &mut self.histories[lane][0].past[station % MEMORY][unit];
             past.note(of, lane, z.0[lane], zh.0[lane], axle.0[lane]);
             motion.extra[unit].0[lane] = beside.step(of, step, filtered, a, z, zh).0[lane];
@@ -327,6 +334,7 @@ impl Trail {
         station: usize,
         unit: usize,
         step: &Step,
+        coupled: V,
         points: &mut [f64],
     ) -> Option<(f64, f64)> {
         let of = &group.chain[unit];
@@ -344,12 +352,12 @@ impl Trail {
         let mut rounds = 0;
         let (a, axle) = loop {
             let axle = at(z, AXLE);
-            let (a, short) = heading(of, step, V::splat(at(z, HEADING)), V::splat(axle));
+            let (a, short) = heading(of, step, V::splat(at(z, HEADING)), V::splat(axle), coupled);
             let valid = validity(of, step, a).min(short).0[lane] >= 0.0;
             if rounds == ROUNDS || !valid || !axle.is_finite() {
                 return None;
             }
-            let implied = remainder(of, step, a, V::splat(axle)).1.0[lane];
+            let implied = remainder(of, step, a, V::splat(axle), coupled).1.0[lane];
             let a = a.0[lane];
             if implied <= z {
                 break (a, axle);

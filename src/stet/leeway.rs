@@ -267,8 +267,10 @@ fn at_marks(track: &Track, (before, after): (&Sample, &Sample), s: &States, gap:
 fn note_marks(track: &Track, (before, after): (&Sample, &Sample), s: &States, gap: f64, minima: &mut Minima) {
     let bulge = before.bulge.max(after.bulge);
     let [most, least] = bends(&[before, after], s, gap);
-    let low = |bend: V| (bend.max(ZERO) * 1.1 + bulge) * (gap * gap / 8.0);
-    let (low_left, low_right) = (low(most), low(-least));
+    let bend = |bend: V| bend.max(ZERO) * 1.1 + bulge;
+    let (bend_left, bend_right) = (bend(most), bend(-least));
+    // Between two marked stations in one gap nothing is asked: what the side may sag from one to the other.
+    let between = track.spacing * track.spacing / 8.0;
     for i in 0..LANES {
         let foot = |sample: &Sample| sample.feet.station(i) as f64 + sample.along.0[i] / track.spacing;
         let (rear, front) = (foot(after), foot(before));
@@ -277,19 +279,24 @@ fn note_marks(track: &Track, (before, after): (&Sample, &Sample), s: &States, ga
         let even = EVEN_ENOUGH.contains(&((front - rear) * track.spacing / gap));
         let uneven = if even { UNEVEN + curvature * (UNEVEN_ASIDE * aside + UNEVEN_ALONG * gap) } else { 1.0 };
         for mark in track.marks(after.feet.station(i), before.feet.station(i)) {
-            let share = ((mark as f64 - rear) / (front - rear).max(1e-9)).clamp(0.0, 1.0);
+            let share = (mark as f64 - rear) / (front - rear).max(1e-9);
+            let shares = [share - uneven, share + uneven].map(|share| share.clamp(0.0, 1.0));
             let tag = if share < 0.5 { after.tag } else { before.tag };
-            let chord = |behind: V, ahead: V| {
-                let at = |share: f64| behind.0[i] + (ahead.0[i] - behind.0[i]) * share.clamp(0.0, 1.0);
-                at(share - uneven).min(at(share + uneven))
+            let leeway = |behind: V, ahead: V, bend: V| {
+                let low = sagging([behind.0[i], ahead.0[i]], 0.5 * bend.0[i] * gap * gap, shares);
+                V::splat(low - bend.0[i] * between).tagged(tag).0[0]
             };
-            let tagged = |x: f64| V::splat(x).tagged(tag).0[0];
-            let left = tagged(chord(after.left, before.left) - low_left.0[i]);
-            let right = tagged(chord(after.right, before.right) - low_right.0[i]);
-            minima.mark_left[mark] = least_of(minima.mark_left[mark], left);
-            minima.mark_right[mark] = least_of(minima.mark_right[mark], right);
+            minima.mark_left[mark] = least_of(minima.mark_left[mark], leeway(after.left, before.left, bend_left));
+            minima.mark_right[mark] = least_of(minima.mark_right[mark], leeway(after.right, before.right, bend_right));
         }
     }
+}
+
+/// The least value between two shares of the parabola from one end to the other that lies below their chord by `whole`·w(1 − w).
+fn sagging([behind, ahead]: [f64; 2], whole: f64, [from, to]: [f64; 2]) -> f64 {
+    let at = |w: f64| behind + (ahead - behind) * w - whole * w * (1.0 - w);
+    let lowest = if whole > 0.0 { 0.5 - 0.5 * (ahead - behind) / whole } else { from };
+    least_of(least_of(at(from), at(to)), at(lowest.clamp(from, to)))
 }
 
 impl Sample {

@@ -308,7 +308,7 @@ impl<'m> Swept<'m> {
         let group = Group::new(models, 1.0);
         let mut track = Track::new(corridor, sweep::extensions(&group, corridor.spacing_m));
         match marks {
-            Marks::Ends => track.mark(spans.iter().flat_map(|span| [span.start, span.end.max(span.start + 1) - 1])),
+            Marks::Ends => track.mark(spans.iter().flat_map(|span| spans::marks(corridor.spacing_m, span))),
             Marks::All => track.mark(0..corridor.len()),
         }
         let plans = plans(&track, &group);

@@ -23,10 +23,13 @@ pub(super) fn settled(chain: &[UnitLanes; MAX_UNITS], tolerance: V) -> [V; MAX_U
     for (unit, of) in chain.iter().enumerate() {
         let heading = |y: V| {
             let first_order = (of.heading + (coupling + y) * of.inverse_length).min(V::splat(MOST));
-            let (a, short) = sweep::heading(of, &Step::STRAIGHT, first_order, of.axle + y);
+            let (a, short) = sweep::heading(of, &Step::STRAIGHT, first_order, of.axle + y, of.coupling + coupling);
             select_negative(short, V::splat(MOST), a)
         };
-        let implied = |y: V| (coupling + remainder(of, &Step::STRAIGHT, heading(y), of.axle + y).1).min(V::splat(MOST));
+        let implied = |y: V| {
+            (coupling + remainder(of, &Step::STRAIGHT, heading(y), of.axle + y, of.coupling + coupling).1)
+                .min(V::splat(MOST))
+        };
         let mut y = ZERO;
         for _ in 0..ROUNDS {
             let next = implied(y);
@@ -35,7 +38,7 @@ pub(super) fn settled(chain: &[UnitLanes; MAX_UNITS], tolerance: V) -> [V; MAX_U
         let y = select_negative(y - implied(y), V::splat(MOST), y).min(V::splat(MOST));
         settled[unit] = y;
         let a = heading(y);
-        let (r1, _) = remainder(of, &Step::STRAIGHT, a, of.axle + y);
+        let (r1, _) = remainder(of, &Step::STRAIGHT, a, of.axle + y, of.coupling + coupling);
         straying = straying.next(of, &Step::STRAIGHT, a);
         let follower = chain.get(unit + 1).map(|next| (next, &Step::STRAIGHT));
         let zh = hitch_remainder(of, &Step::STRAIGHT, follower, a, of.axle + y, r1, &straying);

@@ -4,7 +4,7 @@ use std::ops::{Range, RangeInclusive};
 
 use super::group::{SHRINK_STEPS, gamma};
 use super::lanes::TAG_MASK;
-use super::model::Model;
+use super::model::{Model, POINT_SPACING_M};
 use super::sweep::{Minima, NOT_CLOSED_RAD, UNVISITED_M};
 use super::track::Track;
 use super::{Limiting, Side, SpanResult};
@@ -56,6 +56,14 @@ pub(super) fn stations(track: &Track, span: &Range<usize>) -> RangeInclusive<usi
     own.start() - STEP_STATIONS..=own.end() + STEP_STATIONS
 }
 
+/// Stations of a span at which it counts what sides leave between two of their points: its ends; of a span that may lie inside one gap
+/// between points, all.
+pub(super) fn marks(spacing_m: f64, span: &Range<usize>) -> impl Iterator<Item = usize> {
+    let last = span.end.max(span.start + 1) - 1;
+    let inside = (last - span.start) as f64 * spacing_m <= POINT_SPACING_M;
+    (span.start..=last).filter(move |&k| inside || k == span.start || k == last)
+}
+
 /// The least leeways of two vehicles' sweeps, or of one at two tolerances, that a span rests on: at the points whose feet are on it, and
 /// at its ends between two points.
 fn leeways<'a>(
@@ -64,10 +72,9 @@ fn leeways<'a>(
     [one, other]: [&'a Minima; 2],
 ) -> impl Iterator<Item = (usize, Side, [f64; 2])> {
     let points = stations(track, span).map(move |k| (k, [&one.left, &one.right], [&other.left, &other.right]));
-    let own = own(track, span);
-    let marks = [*own.start(), *own.end()];
+    let marks = marks(track.spacing, span).map(|k| track.lead + k);
     let between = move |k: usize| (k, [&one.mark_left, &one.mark_right], [&other.mark_left, &other.mark_right]);
-    points.chain(marks.into_iter().map(between)).flat_map(|(k, one, other)| {
+    points.chain(marks.map(between)).flat_map(|(k, one, other)| {
         [(Side::Left, 0), (Side::Right, 1)].map(|(side, i)| (k, side, [one[i][k], other[i][k]]))
     })
 }

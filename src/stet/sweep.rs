@@ -416,10 +416,11 @@ impl Motion {
             let y = self.extra[unit];
             let mut coupled = filter.coupled(of, step, y);
             let axle = of.axle + y;
-            let (a, short) = heading(of, step, coupled.heading, axle);
+            let coupling = of.coupling + coupled.extra;
+            let (a, short) = heading(of, step, coupled.heading, axle, coupling);
             coupled.heading = a;
             let extra_coupling = coupled.extra;
-            let (r1, z) = remainder(of, step, a, axle);
+            let (r1, z) = remainder(of, step, a, axle, coupling);
             let extra = filter.grown(of, step, &coupled, z);
             // Where it does not close, nothing is certified while the vehicle stands here; a vehicle that is certified further
             // on did not come through here, so that its bounds begin anew, as after a straight. A stand-in closes: it is nobody's.
@@ -536,16 +537,20 @@ pub(super) fn chord_bulge(step: &Step) -> V {
     step.path_curvature * step.moved * step.moved * 0.125
 }
 
-/// Second-order remainders at bounds `a` of the heading and `axle` of the axle's deviation: of the coupling's relation
-/// (R1), and of the axle's motion (z).
+/// Second-order remainders at bounds `a` of the heading, `axle` of the axle's deviation and `coupled` of the coupling's over cos δ: of the
+/// coupling's relation (R1), and of the axle's motion (z).
 #[inline(always)]
-pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V) -> (V, V) {
+pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) -> (V, V) {
     let a2 = a * a;
     let lean = of.length * a;
-    let swing = (axle + lean) * step.sine + lean * a * 0.5;
-    let r1 = step.tangent * of.length * a2 * 0.5
-        + of.length * a2 * a * (1.0 / 6.0)
-        + step.path_curvature * step.secant * swing * swing * 0.5;
+    let own = step.tangent * of.length * a2 * 0.5 + of.length * a2 * a * (1.0 / 6.0);
+    let bent = |across: V| {
+        let swing = across * step.sine + lean * a * 0.5;
+        own + step.path_curvature * step.secant * swing * swing * 0.5
+    };
+    // y + Lα is what the coupling is off, but for the remainder itself.
+    let across = axle + lean;
+    let r1 = bent(across.min(coupled + bent(across)));
     let slip = a + of.sway;
     let slip3 = slip_tangent_excess(slip);
     (r1, r1 + step.tangent * axle * (slip + slip3) + of.length * slip3)
@@ -554,13 +559,13 @@ pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V) -> (V, V) {
 /// A bound of the heading, R1 included (`L α = e/cos δ − y + R`), from what it is without; negative in the second place where that
 /// does not bear itself out.
 #[inline(always)]
-pub(super) fn heading(of: &UnitLanes, step: &Step, first_order: V, axle: V) -> (V, V) {
-    let (r1, _) = remainder(of, step, first_order, axle);
+pub(super) fn heading(of: &UnitLanes, step: &Step, first_order: V, axle: V, coupled: V) -> (V, V) {
+    let (r1, _) = remainder(of, step, first_order, axle, coupled);
     let r = r1 * of.inverse_length;
     // R1 grows with the cube of the heading at most: a little more than its own growth brings.
     let more = r * (r * 4.0 / first_order.max(V::splat(1e-12)) + 1.0);
     let a = (first_order + more).min(V::splat(MOST));
-    let (borne_out, _) = remainder(of, step, a, axle);
+    let (borne_out, _) = remainder(of, step, a, axle, coupled);
     (a, more - borne_out * of.inverse_length)
 }
 
