@@ -65,7 +65,7 @@ pub fn json(
         "rsc_m": result.rsc_m,
         "rsc_published_m": result.rsc_m.map(|_| nominal.published_m()),
         "hinge_margin_deg": result.hinge_margin_rad.map(f64::to_degrees),
-        "hinge_unit": result.hinge_margin_rad.map(|_| result.hinge_unit),
+        "hinge_unit": (result.closes() && !result.safe() && !result.too_narrow()).then_some(result.hinge_unit),
         "tracking_tolerance_m": vehicle.tracking_tolerance_m,
         "shrink": result.shrink,
         "limiting": limiting,

@@ -19,8 +19,7 @@ use super::printed;
 const NOMINAL_M: f64 = 5e-3;
 /// The same for the most of many places.
 const PRINTED_M: f64 = 0.01;
-/// The hinge that is named as the one with the least margin has no more than so much above that, radians: a metre of chord in the
-/// tightest bends turns that far.
+/// The hinge that is named as the reason has no more left than this, radians: a metre of chord in the tightest bends turns that far.
 const HINGE_ABOVE_RAD: f64 = 0.1;
 /// Times come back to this part of them.
 const TIME_PART: f64 = 1e-9;
@@ -127,7 +126,7 @@ impl Document {
         }
     }
 
-    /// The RSC, the hinge margin, and the hinge that has it.
+    /// The RSC, the hinge margin, and the hinge that is the reason for the verdict.
     fn bounded(&self, along: &Subject<'_>) -> Vec<Finding> {
         let Some((rsc_m, hinge_deg)) = self.bounds else { return Vec::new() };
         let claim = SpanClaim {
@@ -138,18 +137,18 @@ impl Document {
             limiting: None,
         };
         let mut found: Vec<Finding> = along.check(&[claim]).remove(0);
+        let refused = rsc_m >= 0.0 && hinge_deg < 0.0;
         match (self.hinge_unit, along.swept(self.vehicle.tracking_tolerance_m)) {
-            (Some(unit), Some(swept)) => {
-                // Which hinge has the least the two programs may see differently; it has what is claimed, or the least here.
-                let margins: Vec<f64> = (0..self.vehicle.units.len()).map(|i| swept.least_hinge_margin(i)).collect();
-                let least = margins.iter().copied().fold(f64::INFINITY, f64::min);
-                if margins[unit] > least.max(hinge_deg.to_radians()) + HINGE_ABOVE_RAD {
-                    let detail = format!("hinge {unit} has {:.1}° left at the least", margins[unit].to_degrees());
+            (Some(unit), Some(swept)) if refused => {
+                let margin = swept.least_hinge_margin(unit);
+                if margin > HINGE_ABOVE_RAD {
+                    let detail = format!("hinge {unit} has {:.1}° left at the least", margin.to_degrees());
                     found.push(finding("hinge_unit", &detail));
                 }
             }
-            (None, _) => found.push(finding("hinge_unit", "none is named")),
-            (_, None) => {}
+            (None, _) if refused => found.push(finding("hinge_unit", "none is named")),
+            (Some(_), _) if !refused => found.push(finding("hinge_unit", "no hinge is the reason")),
+            _ => {}
         }
         found
     }

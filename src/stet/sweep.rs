@@ -560,13 +560,14 @@ pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) 
 /// does not bear itself out.
 #[inline(always)]
 pub(super) fn heading(of: &UnitLanes, step: &Step, first_order: V, axle: V, coupled: V) -> (V, V) {
-    let (r1, _) = remainder(of, step, first_order, axle, coupled);
-    let r = r1 * of.inverse_length;
-    // R1 grows with the cube of the heading at most: a little more than its own growth brings.
-    let more = r * (r * 4.0 / first_order.max(V::splat(1e-12)) + 1.0);
-    let a = (first_order + more).min(V::splat(MOST));
-    let (borne_out, _) = remainder(of, step, a, axle, coupled);
-    (a, more - borne_out * of.inverse_length)
+    let with = |more: V| (first_order + more).min(V::splat(MOST));
+    let implied = |more: V| remainder(of, step, with(more), axle, coupled).0 * of.inverse_length;
+    let first = implied(ZERO);
+    let second = implied(first);
+    let third = implied(second);
+    // Each growth is less than the one before: the rest of a series that halves, and a little.
+    let more = third + (third - second) * 1.5;
+    (with(more), more - implied(more))
 }
 
 /// Second-order remainder of the next coupling, the foot shift against its follower included.

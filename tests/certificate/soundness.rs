@@ -227,6 +227,7 @@ fn no_disturbance_within_the_bounds_comes_closer_than_rsc_in_the_hard_cases() {
     report("hard cases", &verdicts.iter().collect::<Vec<_>>());
     assert_sound(&verdicts);
     // Of the others (half a metre of tolerance with a degree of slip, round the tightest turns) the bounds' recursion does
-    // not close: the answer is `unsafe`, reason articulation, and no claim is left to refute.
-    assert!(verdicts.len() * 5 >= cases.len() * 4, "only {} hard cases could be tried", verdicts.len());
+    // not close: the answer is `unsafe`, reason articulation, and no claim is left to refute. It was one in five before a heading's bound
+    // included R1.
+    assert!(verdicts.len() * 5 >= cases.len() * 3, "only {} hard cases could be tried", verdicts.len());
 }

@@ -36,7 +36,7 @@ fn road(draw: &mut Draw, system: &System) -> Corridor {
 
 #[test]
 fn repaired_certificate_is_never_above_the_deciding_one() {
-    let (mut closest, mut safe) = (f64::INFINITY, [0; 2]);
+    let (mut closest, mut safe, mut claimed) = (f64::INFINITY, [0; 2], 0);
     for index in 0..CASES {
         let mut draw = Draw(0x5e7 + 7919 * index);
         let system = vehicle(&mut draw);
@@ -45,7 +45,9 @@ fn repaired_certificate_is_never_above_the_deciding_one() {
         let model = Model::new(&system.vehicle("random")).unwrap();
         for options in [Options { max_shift_m: 0.0, correction_sweeps: 0 }, Options::default()] {
             let certificate = stet::certify(&corridor, &model, &options).unwrap();
-            let decided = certificate.result.rsc_m.unwrap_or_else(|| panic!("{index}: nothing is claimed"));
+            // Of a vehicle whose bounds do not close nothing is claimed.
+            let Some(decided) = certificate.result.rsc_m else { continue };
+            claimed += 1;
             let path = &stet::tubes(&corridor, &model, &certificate)[0].centre;
             for beta in [Beta::TraceOptimal, Beta::Tangent, Beta::Printed] {
                 let reading = Reading { beta, ..Reading::SOUND };
@@ -59,6 +61,7 @@ fn repaired_certificate_is_never_above_the_deciding_one() {
     }
     println!("{} pairs: closest {closest:.3} m; 𝒞 ≥ 0 in {} (three β), RSC ≥ 0 in {}", 2 * CASES, safe[0], safe[1]);
     assert!(safe[0] > 0, "a property of certificates that all fail says little");
+    assert!(claimed * 10 >= 2 * CASES * 9, "only of {claimed} anything is claimed");
 }
 
 /// Eq. 22 over all units, looked at point by point: 𝒞 ≥ 0 as printed does not imply it, repaired it does.
