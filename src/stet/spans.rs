@@ -9,9 +9,9 @@ use super::sweep::{Minima, NOT_CLOSED_RAD, UNVISITED_M};
 use super::track::Track;
 use super::{Limiting, Side, SpanResult};
 
-/// Stations that a foot moves from one station of the steer axle to the next at most, rounding included: a span takes this many more on
-/// each side.
-const STEP_STATIONS: usize = 2;
+/// A span takes this many more stations on each side: a foot moves up to two from one station of the steer axle to the next, rounding
+/// included, and a side's least leeway may be a little beside the point that it is noted at.
+const STEP_STATIONS: usize = 3;
 
 /// Vehicle lengths within which what was driven before has faded to a few hundredths: no unit is longer than half of it.
 const FADING_LENGTHS: usize = 2;
