@@ -156,11 +156,10 @@ impl Document {
     /// Verdict and reason say no more and no less than the numbers.
     fn follows(&self) -> Option<Finding> {
         let (verdict, reason) = match (self.bounds, self.hinge_unit) {
-            (None, _) => ("unsafe", Some("articulation")),
             (Some((rsc_m, _)), _) if rsc_m < 0.0 => ("unsafe", Some("width")),
             (Some((_, hinge_deg)), _) if hinge_deg >= 0.0 => ("safe", None),
             (Some(_), Some(0)) => ("unsafe", Some("steering_lock")),
-            (Some(_), _) => ("unsafe", Some("articulation")),
+            _ => ("unsafe", Some("articulation")),
         };
         let same = self.verdict == verdict && self.reason.as_deref() == reason && self.safe == (verdict == "safe");
         let because = reason.map_or(String::new(), |reason| format!(": {reason}"));

@@ -325,8 +325,9 @@ impl Trail {
     }
 
     /// Bounds of a unit's heading and axle, and of its body points (into every [`BLOCK`]-th of `points`), with a
-    /// remainder that the bounds themselves bear out. `None` where there is none.
+    /// remainder that the bounds themselves bear out; `coupled` bounds its coupling over cos δ. `None` where there is none.
     #[inline(always)]
+    #[allow(clippy::too_many_arguments)] // As above.
     fn settle(
         &mut self,
         group: &Group<'_>,

@@ -161,10 +161,11 @@ fn script(page: &Page) -> (String, Option<String>) {
         }
         let folders: Vec<String> = folders.iter().flatten().map(|path| path.to_string_lossy().into_owned()).collect();
         lines[block.first - 1] = format!("PATH='{}':$NETCERT_PATH", folders.join(":"));
-        for i in block.first..block.last {
-            let setting = may_set.then(|| set(&page.lines[i], &settings)).flatten();
+        let own = block.first..block.last;
+        for (line, written) in lines[own.clone()].iter_mut().zip(&page.lines[own]) {
+            let setting = may_set.then(|| set(written, &settings)).flatten();
             may_set &= setting.is_some();
-            lines[i] = setting.unwrap_or_else(|| page.lines[i].clone());
+            *line = setting.unwrap_or_else(|| written.clone());
         }
     }
     (lines.join("\n"), None)
