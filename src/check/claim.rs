@@ -150,7 +150,7 @@ impl<'a> Subject<'a> {
         let stretches = self.road.count - 1;
         let claimed = |column: &[Option<f64>], k: usize| {
             let both = [column[k], column[k + 1]];
-            both.into_iter().flatten().map(asked).fold(f64::NEG_INFINITY, f64::max)
+            both.into_iter().flatten().map(asked_alone).fold(f64::NEG_INFINITY, f64::max)
         };
         let targets = columns.map(|column| (0..stretches).map(|k| claimed(column, k)).collect::<Vec<_>>());
         let claims_nothing = |side: &[f64]| side.iter().all(|target| *target == f64::NEG_INFINITY);
@@ -211,6 +211,11 @@ impl<'a> Subject<'a> {
     /// The vehicle swept at a tolerance.
     pub(crate) fn swept(&self, tolerance_m: f64) -> Option<Swept<'_>> {
         Some(Swept::new(self.chain, &self.road, self.motion.as_ref()?, tolerance_m))
+    }
+
+    /// The same, by the filter alone.
+    pub(crate) fn filtered(&self, tolerance_m: f64) -> Option<Swept<'_>> {
+        Some(Swept::filtered(self.chain, &self.road, self.motion.as_ref()?, tolerance_m))
     }
 
     /// Foot of a point near `s` (stations of the road), and its lateral place.
@@ -293,6 +298,11 @@ impl<'a> Subject<'a> {
 /// orders part where a vehicle stands metres outside: there, to a thousandth of it.
 fn asked(rsc_m: f64) -> f64 {
     rsc_m - TOLERANCE_M + 1e-3 * rsc_m.min(0.0)
+}
+
+/// The same of a single station's entry. Where the vehicle stands outside, on normals that crowd, it is confirmed to a twentieth.
+fn asked_alone(leeway_m: f64) -> f64 {
+    leeway_m - TOLERANCE_M + 0.05 * leeway_m.min(0.0)
 }
 
 pub(crate) fn finding(claim: &str, detail: &str) -> Finding {

@@ -19,7 +19,7 @@ use super::printed;
 const NOMINAL_M: f64 = 5e-3;
 /// The same for the most of many places.
 const PRINTED_M: f64 = 0.01;
-/// The hinge that is named as the reason has no more left than this, radians: a metre of chord in the tightest bends turns that far.
+/// The hinge that is named as the reason has no more left than this by the filter alone, radians, and what a station's chord turns.
 const HINGE_ABOVE_RAD: f64 = 0.1;
 /// Times come back to this part of them.
 const TIME_PART: f64 = 1e-9;
@@ -138,9 +138,9 @@ impl Document {
         };
         let mut found: Vec<Finding> = along.check(&[claim]).remove(0);
         let refused = rsc_m >= 0.0 && hinge_deg < 0.0;
-        match (self.hinge_unit, along.swept(self.vehicle.tracking_tolerance_m)) {
+        match (self.hinge_unit, along.filtered(self.vehicle.tracking_tolerance_m)) {
             (Some(unit), Some(swept)) if refused => {
-                let margin = swept.least_hinge_margin(unit);
+                let margin = swept.coarse_hinge_margin(unit);
                 if margin > HINGE_ABOVE_RAD {
                     let detail = format!("hinge {unit} has {:.1}° left at the least", margin.to_degrees());
                     found.push(finding("hinge_unit", &detail));

@@ -113,7 +113,15 @@ struct Cell {
 
 impl<'a> Swept<'a> {
     pub(crate) fn new(chain: &'a Chain, road: &'a Road, motion: &'a Motion, tolerance_m: f64) -> Self {
-        let mut tubes = Tubes::new(chain, road.spacing, tolerance_m);
+        Self::begin(chain, road, motion, Tubes::new(chain, road.spacing, tolerance_m))
+    }
+
+    /// With the filter's bounds alone, however loose: the adjoint is not asked.
+    pub(crate) fn filtered(chain: &'a Chain, road: &'a Road, motion: &'a Motion, tolerance_m: f64) -> Self {
+        Self::begin(chain, road, motion, Tubes::filtered(chain, road.spacing, tolerance_m))
+    }
+
+    fn begin(chain: &'a Chain, road: &'a Road, motion: &'a Motion, mut tubes: Tubes) -> Self {
         for _ in 0..motion.steps() {
             tubes.advance(chain, motion);
         }
@@ -233,7 +241,8 @@ impl<'a> Swept<'a> {
         };
         let all = [c00, c01, c10, c11];
         let range = all.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], c| [lo.min(c.s), hi.max(c.s)]);
-        let (first, last) = self.range([range[0] - 0.01, range[1] + 0.01]);
+        let reach = all.iter().map(|c| c.reach).fold(0.01, f64::max);
+        let (first, last) = self.range([range[0] - reach, range[1] + reach]);
         let Some(target) = found.target(targets, cell.side, first, last) else { return feet };
         let base = all.iter().map(|c| c.clear - c.dev).fold(f64::INFINITY, f64::min);
         let (time, body) = self.allowances(cell, &all, range);
@@ -356,7 +365,8 @@ impl<'a> Swept<'a> {
         let sin = pose.u[0] * n[0] + pose.u[1] * n[1];
         let (width, slope) = self.road.width(cell.side, s);
         let tube = self.tubes.get(cell.step, cell.unit)?;
-        let narrow = 1.0 - (place.curvature * lateral).abs();
+        // Normals part on the outside of a bend: there a foot moves no more than its point does.
+        let narrow = 1.0 - (place.curvature * lateral).max(0.0);
         if !(cos > 0.2 && narrow > 0.1) {
             return None;
         }
@@ -383,7 +393,7 @@ impl<'a> Swept<'a> {
             / (narrow * narrow);
         let bend = (across - place.curvature * along_road * along_road / (1.0 - place.curvature * lateral)).abs()
             + slope.abs() * feet;
-        let dev = dev + self.road.slack(s).max(self.road.slack(s - 0.1));
+        let dev = dev + self.road.slack(s).max(self.road.slack(s - 0.1)) + beside_m(x, &place);
         Some(Corner { s, clear: width - sign * lateral, dev, bend, lateral, sin, slope, reach })
     }
 
@@ -393,10 +403,13 @@ impl<'a> Swept<'a> {
         let filter = self.chain.gains.units[unit].point(a, self.tubes.tolerance_m)
             + (1.0 - a / link.l).abs() * tube.extra
             + (a / link.l).abs() * tube.extra_coupling;
-        self.exact.get(&(unit, step)).map_or(filter, |exact| {
+        // Between nodes the coupling leaves its chord.
+        let bulge = if unit == 0 { 0.0 } else { (a / link.l).abs() * self.motion.swing(step, unit).bulge };
+        let bound = self.exact.get(&(unit, step)).map_or(filter, |exact| {
             // NaN where the adjoint was not asked is not the lesser.
             filter.min(Knots::new(link, KNOT_M).between(a, |k| exact[k], tube.a))
-        })
+        });
+        bound + bulge
     }
 
     /// What a cell's inside may lie below its corners: in time, and along the body with the road's dips.
@@ -530,6 +543,13 @@ impl<'a> Swept<'a> {
     }
 }
 
+/// How much farther a point may be from the road than from a normal that passes beside it, in a gap between two stretches, metres.
+fn beside_m(x: [f64; 2], place: &Place) -> f64 {
+    let r = [x[0] - place.c[0], x[1] - place.c[1]];
+    let off = r[0] * place.t[0] + r[1] * place.t[1];
+    off * off / (r[0].hypot(r[1]) + 1e-9)
+}
+
 /// The foot of a point by Newton's method, to 1e-10 m; its place and lateral.
 pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<(f64, Place, f64)> {
     let mut s = guess;
@@ -537,8 +557,8 @@ pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<(f64, Place, 
         let place = road.place(s);
         let r = [x[0] - place.c[0], x[1] - place.c[1]];
         let (off, lateral) = (r[0] * place.t[0] + r[1] * place.t[1], r[1] * place.t[0] - r[0] * place.t[1]);
-        // Where one stretch does not quite lead to the next, a foot may fall into the gap.
-        if off.abs() < 1e-10 || round == 29 && off.abs() < GAP_M {
+        // Where one stretch does not quite lead to the next, a foot may fall into the gap: wider with the distance, if headings differ.
+        if off.abs() < 1e-10 || round == 29 && off.abs() < GAP_M + road.jump(s) * lateral.abs() {
             return Some((s, place, lateral));
         }
         s += off.clamp(-5.0, 5.0) / (1.0 - place.curvature * lateral).max(0.1) / road.spacing;
@@ -647,10 +667,12 @@ impl Swept<'_> {
         Some(self.road.width(side, s).0 - sign * (before + share * (after - before)))
     }
 
-    /// The least margin of a hinge while any point of the vehicle is on the corridor, as the filter has it.
-    pub(crate) fn least_hinge_margin(&self, unit: usize) -> f64 {
+    /// The least margin of a hinge while any point of the vehicle is on the corridor, less what the plan's coupling turns there within a
+    /// station: as much may the hinge be taken to fold by who looks at stations only.
+    pub(crate) fn coarse_hinge_margin(&self, unit: usize) -> f64 {
         let steps = self.steps(0..self.road.count - 1);
-        steps.map(|step| self.plain_hinge_margin(step, unit)).fold(f64::INFINITY, f64::min)
+        let turn = |step: usize| self.motion.swing(step, unit).curvature * self.road.spacing;
+        steps.map(|step| self.plain_hinge_margin(step, unit) - turn(step)).fold(f64::INFINITY, f64::min)
     }
 
     /// The margin of a hinge throughout a step as the filter has it, radians; −∞ where nothing is bounded.

@@ -45,6 +45,11 @@ impl Swing {
         if q >= 1.0 { (f64::INFINITY, f64::INFINITY) } else { (2.0 * half / (1.0 - q), (1.0 + q) / (1.0 - q)) }
     }
 
+    /// How much a unit behind another is led astray by its chord, as if its coupling were so far off, metres: `led` leaves that of the bulge.
+    pub(crate) fn rest(&self, link: &Link) -> f64 {
+        self.bulge * (0.03 + 0.2 * self.len / link.l).min(1.0) + DEFECT_M
+    }
+
     /// The pose after `share` of the step.
     pub(crate) fn pose(&self, link: &Link, from: Pose, share: f64) -> Pose {
         let coupling = [from.p[0] + link.l * from.u[0], from.p[1] + link.l * from.u[1]];
@@ -101,7 +106,10 @@ impl Motion {
                 return None;
             }
             let after = before * (-len / link.l).exp();
-            let pose = turned(link, to, c, after);
+            // The unit follows a curve through the vertices; by its chords alone it turns less (proof, section 2).
+            let bend = self.swings.len().checked_sub(self.units).map_or(0.0, |k| cross(self.swings[k].c, c));
+            let x = len / link.l;
+            let pose = led(link, to, turned(link, to, c, after).u, bend * x * x / (12.0 + 6.0 * x));
             from = along(p, -link.d, u);
             to = along(pose.p, -link.d, pose.u);
             self.poses.push(pose);
@@ -112,7 +120,7 @@ impl Motion {
 
     /// A step's curvature is the greater of the turns at its two ends, over its length.
     fn bulges(&mut self) {
-        let turn = |a: &Swing, b: &Swing| (a.c[0] * b.c[1] - a.c[1] * b.c[0]).abs();
+        let turn = |a: &Swing, b: &Swing| cross(a.c, b.c).abs();
         for k in 0..self.swings.len() {
             let own = self.swings[k];
             let before = k.checked_sub(self.units).map_or(0.0, |b| turn(&self.swings[b], &own));
@@ -143,6 +151,18 @@ fn turned(link: &Link, h: [f64; 2], c: [f64; 2], half: f64) -> Pose {
     let (sin, cos) = (2.0 * half / q, (1.0 - half * half) / q);
     let u = [c[0] * cos + c[1] * sin, c[1] * cos - c[0] * sin];
     Pose { p: along(h, -link.l, u), u }
+}
+
+/// A unit whose coupling is at `h`, its heading `u` turned on by a small angle.
+fn led(link: &Link, h: [f64; 2], u: [f64; 2], by: f64) -> Pose {
+    let [x, y] = along(u, by, [-u[1], u[0]]);
+    let length = x.hypot(y);
+    let u = [x / length, y / length];
+    Pose { p: along(h, -link.l, u), u }
+}
+
+fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
 }
 
 pub(crate) fn along(p: [f64; 2], by: f64, u: [f64; 2]) -> [f64; 2] {

@@ -50,6 +50,8 @@ pub(crate) struct Road {
     bends: Vec<[f64; 2]>,
     /// By how much the curve after each station may be off what leads to the next one, metres: sampling a smooth line leaves that.
     slack: Vec<f64>,
+    /// By how much the heading at the end of the stretch after each station differs from the next one's, radians.
+    jumps: Vec<f64>,
     /// Half-widths, left and right.
     pub(crate) widths: Vec<[f64; 2]>,
 }
@@ -69,11 +71,12 @@ impl Road {
         if !(0.01..=200.0).contains(&spacing) {
             return Err(RoadError { station: 0, problem: format!("a spacing of {spacing} m") });
         }
-        let mut slack = vec![0.0; n];
+        let (mut slack, mut jumps) = (vec![0.0; n], vec![0.0; n]);
         for k in 0..n {
-            slack[k.saturating_sub(1)] = match check_station(corridor, k) {
+            let before = k.saturating_sub(1);
+            [slack[before], jumps[before]] = match check_station(corridor, k) {
                 Err(wrong) if !lenient || !finite(corridor, k) => return Err(wrong),
-                Err(_) => f64::INFINITY,
+                Err(_) => [f64::INFINITY, 0.0],
                 Ok(off) => off,
             };
         }
@@ -93,6 +96,7 @@ impl Road {
             bends: Vec::with_capacity(lead + n + tail),
             widths: Vec::with_capacity(lead + n + tail),
             slack: Vec::with_capacity(lead + n + tail),
+            jumps: Vec::with_capacity(lead + n + tail),
         };
         for k in 0..lead + n + tail {
             let inner = k.saturating_sub(lead).min(n - 1);
@@ -104,6 +108,7 @@ impl Road {
             road.stations.push(Place { c, ..place });
             road.bends.push(bend);
             road.slack.push(if inside { slack[inner] } else { 0.0 });
+            road.jumps.push(if inside { jumps[inner] } else { 0.0 });
             road.widths.push([corridor.left_m[inner], corridor.right_m[inner]]);
         }
         Ok(road)
@@ -123,6 +128,12 @@ impl Road {
     /// By how much the curve at `s` may be off, metres; infinite where the stations do not fit.
     pub(crate) fn slack(&self, s: f64) -> f64 {
         self.slack[self.split(s).0]
+    }
+
+    /// By how much headings differ where the stretch of `s` meets its neighbours, radians, at most.
+    pub(crate) fn jump(&self, s: f64) -> f64 {
+        let k = self.split(s).0;
+        self.jumps[k.saturating_sub(1)..=k].iter().copied().fold(0.0, f64::max)
     }
 
     /// The centreline at `s` (in stations, extensions included).
@@ -208,8 +219,9 @@ fn small_sin_cos(x: f64) -> (f64, f64) {
     (sin, cos)
 }
 
-/// Whether station `k` has usable values and follows from the one before it.
-fn check_station(c: &Corridor, k: usize) -> Result<f64, RoadError> {
+/// Whether station `k` has usable values and follows from the one before it: by how much the curve from there may be off (metres), and
+/// by how much it ends in another heading (radians).
+fn check_station(c: &Corridor, k: usize) -> Result<[f64; 2], RoadError> {
     let wrong = |problem: String| Err(RoadError { station: k, problem });
     let values = [c.x[k], c.y[k], c.heading[k], c.curvature[k], c.left_m[k], c.right_m[k]];
     if !finite(c, k) {
@@ -223,7 +235,7 @@ fn check_station(c: &Corridor, k: usize) -> Result<f64, RoadError> {
             return wrong(format!("the normals cross within the half-width of {w} m on the {name}"));
         }
     }
-    let Some(before) = k.checked_sub(1) else { return Ok(0.0) };
+    let Some(before) = k.checked_sub(1) else { return Ok([0.0; 2]) };
     let turn = 0.5 * c.spacing_m * (c.curvature[before] + c.curvature[k]);
     if turn.abs() > MOST_TURN_RAD || c.spacing_m * c.curvature[k].abs() > MOST_TURN_RAD {
         return wrong(format!("a turn of {turn:.2} rad since the station before is too much for this spacing"));
@@ -244,6 +256,7 @@ fn check_station(c: &Corridor, k: usize) -> Result<f64, RoadError> {
         bends: vec![[c.curvature[before], c.curvature[k]]],
         widths: Vec::new(),
         slack: vec![0.0],
+        jumps: vec![0.0],
     };
     let at = stretch.place(1.0).c;
     let off = (at[0] - c.x[k]).hypot(at[1] - c.y[k]);
@@ -251,7 +264,7 @@ fn check_station(c: &Corridor, k: usize) -> Result<f64, RoadError> {
         return wrong(format!("it lies {off:.4} m off where the station before and the curvatures lead"));
     }
     // A heading that is off by x leaves the chord's middle off by an eighth of it.
-    Ok(off + 0.125 * c.spacing_m * turned)
+    Ok([off + 0.125 * c.spacing_m * turned, turned])
 }
 
 fn finite(c: &Corridor, k: usize) -> bool {

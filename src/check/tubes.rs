@@ -86,6 +86,8 @@ pub(crate) struct Tubes {
     settled: Vec<f64>,
     /// Axle and heading at the end of the last step as the adjoint has them, where it was asked.
     exact: Vec<Option<[f64; 2]>>,
+    /// Where a heading may be off by more, radians, the adjoint is asked.
+    loose_rad: f64,
 }
 
 impl Tubes {
@@ -102,7 +104,13 @@ impl Tubes {
             ends: settled.clone(),
             settled,
             exact: vec![None; units],
+            loose_rad: LOOSE_RAD,
         }
+    }
+
+    /// Without the adjoint.
+    pub(crate) fn filtered(chain: &Chain, spacing: f64, tolerance_m: f64) -> Self {
+        Self { loose_rad: f64::INFINITY, ..Self::new(chain, spacing, tolerance_m) }
     }
 
     /// From step `first` on, at a tolerance that is no more than `wider`'s: its bounds hold there to begin with.
@@ -147,7 +155,7 @@ impl Tubes {
                 None => self.tolerance_m + passed.zh,
             };
             let plain = unit.settle(&passed, before, Lid { coupling, ..Lid::NONE });
-            let found = if plain.as_ref().is_some_and(|(tube, _)| tube.a <= LOOSE_RAD) {
+            let found = if plain.as_ref().is_some_and(|(tube, _)| tube.a <= self.loose_rad) {
                 self.exact[i] = None;
                 plain
             } else {
@@ -359,7 +367,7 @@ impl Unit<'_> {
             + 0.5 * sin_chi * link.d.abs() * tube.a * tube.a
             + 0.5 * swing.curvature * (swung * sin_chi).powi(2)
             + foot
-            + swing.bulge;
+            + swing.rest(next);
         let straight_y = passed.straight + link.l * link.sway.tan();
         Passed {
             straight: (through * straight_y + back * passed.straight) * UP,

@@ -221,7 +221,8 @@ impl LastAxle {
     pub(super) fn follow(&mut self, track: &Track, [x, y]: [V; 2], shift: &[V], lane: usize, minima: &mut Minima) {
         let feet = follow(track, self.foot, x, y);
         let seen = place(track.fields.gather(&feet), x, y);
-        let (on, lateral) = foot(&seen.at, seen.along, seen.lateral);
+        let narrow = (V::splat(1.0) - seen.at.curvature * seen.lateral).max(V::splat(0.1));
+        let (on, lateral) = foot(&seen.at, seen.along, seen.lateral, V::splat(1.0) / narrow);
         for (i, &k) in feet.iter().enumerate() {
             let other = if on.0[i] < 0.0 { k.saturating_sub(1) } else { (k + 1).min(track.len() - 1) };
             let [own, next] = [k, other].map(|k| shift[k].0[lane]);
@@ -329,12 +330,11 @@ pub(super) fn next_foot(track: &Track, foot: usize, along: f64) -> usize {
     (foot + 1 + off).saturating_sub(64).min(track.len() - LANES)
 }
 
-/// Arc length from the station to the foot of a point `along`, `lateral` of it, and the lateral at that foot:
+/// Arc length from the station to the foot of a point `along`, `lateral` of it, and the lateral at that foot; `spread` is 1/(1 − κb):
 /// σ = a/(1 − κb), lat = b − (κ/2 + κ'σ/6)·a·σ.
 #[inline(always)]
-pub(super) fn foot(at: &Fields<V>, along: V, lateral: V) -> (V, V) {
-    let x = at.curvature * lateral;
-    let sigma = along * ((x + 1.0) * (x * x + 1.0));
+pub(super) fn foot(at: &Fields<V>, along: V, lateral: V, spread: V) -> (V, V) {
+    let sigma = along * spread;
     (sigma, lateral - (at.curvature * 0.5 + at.curvature_slope * sigma * (1.0 / 6.0)) * along * sigma)
 }
 

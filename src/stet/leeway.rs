@@ -31,6 +31,7 @@ struct States {
     uy: V,
     curvature: V,
     jerk: V,
+    way2: V,
     extra_axle: V,
     extra_coupling: V,
     remainder: V,
@@ -80,6 +81,7 @@ by_instruction_set! {
                 uy: load(row::UY),
                 curvature: load(row::CURVATURE),
                 jerk: load(row::JERK),
+                way2: load(row::WAY2),
                 extra_axle: load(row::EXTRA_AXLE),
                 extra_coupling: load(row::EXTRA_COUPLING),
                 remainder: load(row::REMAINDER),
@@ -410,7 +412,8 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let (across, askew) = (cos * body.half_width, sin * body.half_width);
     let (left_along, left_at) = (seen.along - askew, seen.lateral + across);
     let (right_along, right_at) = (seen.along + askew, seen.lateral - across);
-    let mut edges = [Edge::left(at, left_along, left_at), Edge::right(at, right_along, right_at)];
+    let spread = spread([at, at], [left_at, right_at]);
+    let mut edges = [Edge::left(at, left_along, left_at, spread[0]), Edge::right(at, right_along, right_at, spread[1])];
     if CERTIFY && rough(at) {
         edges = apart(track, feet, s, spot.ahead, body.half_width, &edges);
     }
@@ -437,20 +440,36 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
             + (t - c).max(V::splat(0.0)) * a * body.half_width;
         (base, lean_left, lean_right)
     };
-    // Second order: along is how far the point may slide along the corridor.
+    // Second order: along is how far the point may slide along the corridor; its foot moves as much as normals crowd there.
     let along = c * a * body.half_width + t * (axle + a * reach);
     let bend = at.curvature.abs();
-    let outside = bend * (seen.lateral.abs() + body.half_width);
-    let stretch = (outside + 1.0) * (outside * outside + 1.0);
-    let second = (c * s.remainder + t * a2 * 0.5) * reach + bend * stretch * along * along * 0.5;
+    let second = (c * s.remainder + t * a2 * 0.5) * reach;
     // Between head stations, and the foot's own series beyond its third order.
-    let between = ((s.curvature - at.curvature).abs() + s.jerk * reach) * (track.spacing * track.spacing / 8.0);
+    let step2 = track.spacing * track.spacing;
+    let between = ((s.curvature - at.curvature).abs() * s.way2.max(V::splat(step2)) + s.jerk * reach * step2) * 0.125;
     let far = seen.along.abs() + askew.abs();
     let far2 = far * far;
     let series = bend * bend * bend * far2 * far2 * 0.2;
-    let common = base + second + between + series;
-    let slide = stretch * along;
-    (left - common - lean_left - edges[0].excess(slide), right - common - lean_right - edges[1].excess(slide))
+    let common = base + second + between;
+    let side = |edge: &Edge, lean: V| {
+        // Where the point is pushed towards the centre of the bend they crowd more still.
+        let crowd = edge.spread.max(V::splat(1.0));
+        let crowd = crowd + crowd * crowd * bend * (common + lean);
+        let slide = crowd * along;
+        let bent = bend * slide * along * 0.5 + series * crowd * crowd * crowd;
+        edge.room - common - lean - bent - edge.excess(slide)
+    };
+    (side(&edges[0], lean_left), side(&edges[1], lean_right))
+}
+
+/// How far feet move along the corridor for a metre that a point moves, 1/(1 − κb), on the left and on the right: more than a metre on the
+/// inside of a bend. Tenfold at most; half-widths end before.
+#[inline(always)]
+fn spread(at: [&Fields<V>; 2], lateral: [V; 2]) -> [V; 2] {
+    let narrow = |i: usize| (V::splat(1.0) - at[i].curvature * lateral[i]).max(V::splat(0.1));
+    let (left, right) = (narrow(0), narrow(1));
+    let both = V::splat(1.0) / (left * right);
+    [both * right, both * left]
 }
 
 /// One side's point against the edge beside it, read at a station.
@@ -458,6 +477,8 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
 struct Edge {
     /// Half-width at the foot less lateral place.
     room: V,
+    /// See [`spread`].
+    spread: V,
     /// From the station to the foot.
     on: V,
     slope: V,
@@ -468,17 +489,17 @@ struct Edge {
 
 impl Edge {
     #[inline(always)]
-    fn left(at: &Fields<V>, along: V, lateral: V) -> Self {
-        let (on, lateral) = foot(at, along, lateral);
+    fn left(at: &Fields<V>, along: V, lateral: V, spread: V) -> Self {
+        let (on, lateral) = foot(at, along, lateral, spread);
         let room = at.left + at.left_slope * on - lateral;
-        Self { room, on, slope: at.left_slope, excess: at.left_excess, rounding: at.rounding }
+        Self { room, spread, on, slope: at.left_slope, excess: at.left_excess, rounding: at.rounding }
     }
 
     #[inline(always)]
-    fn right(at: &Fields<V>, along: V, lateral: V) -> Self {
-        let (on, lateral) = foot(at, along, lateral);
+    fn right(at: &Fields<V>, along: V, lateral: V, spread: V) -> Self {
+        let (on, lateral) = foot(at, along, lateral, spread);
         let room = at.right + at.right_slope * on + lateral;
-        Self { room, on, slope: at.right_slope, excess: at.right_excess, rounding: at.rounding }
+        Self { room, spread, on, slope: at.right_slope, excess: at.right_excess, rounding: at.rounding }
     }
 
     /// What the half-width may be less where the point is, up to `slide` from its nominal foot.
@@ -511,7 +532,11 @@ fn apart(track: &Track, feet: Feet, s: &States, ahead: f64, half_width: f64, edg
         place(track.fields.gather(&own), x, y)
     };
     let (left, right) = (seen(&edges[0], half_width), seen(&edges[1], -half_width));
-    [Edge::left(&left.at, left.along, left.lateral), Edge::right(&right.at, right.along, right.lateral)]
+    let [of_left, of_right] = spread([&left.at, &right.at], [left.lateral, right.lateral]);
+    [
+        Edge::left(&left.at, left.along, left.lateral, of_left),
+        Edge::right(&right.at, right.along, right.lateral, of_right),
+    ]
 }
 
 #[inline(always)]
@@ -530,4 +555,4 @@ fn lower(minima: &mut [f64], feet: Feet, by: V) {
     }
 }
 
-const _: () = assert!(FIELDS == row::HINGE + 1);
+const _: () = assert!(FIELDS == row::WAY2 + 1);

@@ -20,7 +20,7 @@ const FADING_BLOCKS: usize = 3;
 /// Hinge margin where the bounds' recursion does not close.
 pub(super) const NOT_CLOSED_RAD: f64 = -9.0;
 /// What the motion hands to the points: one row a field.
-pub(super) const FIELDS: usize = 10;
+pub(super) const FIELDS: usize = 11;
 /// Bounds beyond this (metres, radians) bound nothing any more.
 pub(super) const MOST: f64 = 100.0;
 /// Leeway at a station that no body point visits.
@@ -206,9 +206,14 @@ pub(super) struct Motion {
     /// Last displacement of each front coupling, over its length.
     along_x: [V; MAX_UNITS],
     along_y: [V; MAX_UNITS],
+    /// Last turn of each front coupling's chord, radians.
+    bend: [V; MAX_UNITS],
     /// Last heading change of each unit, radians.
     turned: [V; MAX_UNITS],
     turned_change: [V; MAX_UNITS],
+    /// Last change of each hinge's angle, radians, and how much that differed from the one before.
+    folding: [V; MAX_UNITS],
+    folding_change: [V; MAX_UNITS],
     /// What curvature adds to the bound on each axle's deviation.
     pub(super) extra: [V; MAX_UNITS],
 }
@@ -228,6 +233,8 @@ pub(super) struct Step {
     pub(super) mid_tangent: V,
     pub(super) hitch_cosine: V,
     pub(super) path_curvature: V,
+    /// By how much the coupling is taken to be off, metres, for what [`chord_lag`] leaves.
+    pub(super) chord_rest: V,
 }
 
 impl Step {
@@ -241,6 +248,7 @@ impl Step {
         mid_tangent: ZERO,
         hitch_cosine: ZERO,
         path_curvature: ZERO,
+        chord_rest: ZERO,
     };
 
     /// A metre straight on.
@@ -285,8 +293,11 @@ impl Motion {
             heading_y: [y; MAX_UNITS],
             along_x: [x; MAX_UNITS],
             along_y: [y; MAX_UNITS],
+            bend: [ZERO; MAX_UNITS],
             turned: [ZERO; MAX_UNITS],
             turned_change: [ZERO; MAX_UNITS],
+            folding: [ZERO; MAX_UNITS],
+            folding_change: [ZERO; MAX_UNITS],
             extra: std::array::from_fn(|unit| group.chain[unit].settled),
         }
     }
@@ -313,6 +324,7 @@ impl Motion {
         let mut steps = [Step::NONE; MAX_UNITS];
         let mut joints = [ZERO; MAX_UNITS];
         let (mut ahead_x, mut ahead_y) = (ZERO, ZERO);
+        let mut turned_ahead = ZERO;
         for unit in 0..group.units {
             let of = &group.chain[unit];
             let (ux, uy) = (self.heading_x[unit], self.heading_y[unit]);
@@ -337,17 +349,16 @@ impl Motion {
             let (nn, dd, nd2) = (n * n, d * d, n * d * 2.0);
             let norm = V::splat(1.0) / ((nn + dd) * moved);
             let (c, s) = ((dd - nn) * norm, nd2 * norm);
-            let (wx, wy) = (vx * c + vy * s, vy * c - vx * s);
+            let (mut wx, mut wy) = (vx * c + vy * s, vy * c - vx * s);
             if CERTIFY {
                 let inverse = V::splat(1.0) / (moved * (moved + cosine));
-                if unit == 0 {
-                    // tan(δ_0/2)
-                    joints[0] = sine.abs() * (inverse * moved);
+                let half_tangent = if unit == 0 {
+                    sine.abs() * (inverse * moved)
                 } else {
                     let cross = (ahead_x * uy - ahead_y * ux).abs();
                     let dot = ahead_x * ux + ahead_y * uy;
-                    joints[unit] = cross / (dot + 1.0).max(V::splat(1e-12));
-                }
+                    cross / (dot + 1.0).max(V::splat(1e-12))
+                };
                 let bounded = cosine.max(moved * 0.05);
                 let both = V::splat(1.0) / (moved * bounded);
                 let (inverse_moved, inverse_cosine) = (bounded * both, moved * both);
@@ -355,6 +366,12 @@ impl Motion {
                 let hitch_tangent = tangent * of.ratio;
                 let (ax, ay) = (vx * inverse_moved, vy * inverse_moved);
                 let bend = self.along_x[unit] * ay - self.along_y[unit] * ax;
+                // What a curve turns the unit more than its chords do.
+                let lengths = moved * of.inverse_length;
+                let more = bend * chord_lag(lengths);
+                let swerve = (bend - self.bend[unit]).abs();
+                self.bend[unit] = bend;
+                (wx, wy) = (wx - more * wy, wy + more * wx);
                 let after = vx * wx + vy * wy;
                 let mid_tangent = if REFINE { (sine + wx * vy - wy * vx) / (cosine + after) } else { ZERO };
                 steps[unit] = Step {
@@ -367,13 +384,20 @@ impl Motion {
                     secant: moved * inverse_cosine,
                     hitch_cosine: V::splat(1.0) / (hitch_tangent * hitch_tangent + 1.0).sqrt(),
                     path_curvature: bend.abs().max(bend_after) * inverse_moved,
+                    chord_rest: moved * (bend.abs() * (lengths * 0.025 + 0.004) + swerve * (1.0 / 24.0))
+                        + bend * bend * (sine.abs() * inverse_moved * of.length * (1.0 / 24.0)),
                 };
                 bend_after = ZERO;
                 self.along_x[unit] = ax;
                 self.along_y[unit] = ay;
                 let turned = ux * wy - uy * wx;
+                // The plan's chord has turned at the station, the unit ahead during the step.
+                let folding = if unit == 0 { bend - self.turned[0] } else { turned_ahead - turned };
+                joints[unit] = double_atan(half_tangent) + self.overshoot(unit, folding);
+                turned_ahead = turned;
                 let change = (turned - self.turned[unit]).abs();
                 store(row::CURVATURE, tangent * of.inverse_length);
+                store(row::WAY2, steps[unit].advance * steps[unit].advance);
                 store(row::JERK, change.max(self.turned_change[unit]) * (1.0 / (spacing * spacing)));
                 self.turned[unit] = turned;
                 self.turned_change[unit] = change;
@@ -387,6 +411,17 @@ impl Motion {
         if CERTIFY {
             self.tubes::<REFINE>(group, &steps, &joints, k, rows, trail);
         }
+    }
+
+    /// By how much a hinge may fold farther between two head stations than at either: an eighth of the change's change, and what sines
+    /// of a step's turn are short of its angle.
+    #[inline(always)]
+    fn overshoot(&mut self, unit: usize, folding: V) -> V {
+        let change = (folding - self.folding[unit]).abs();
+        let most = change.max(self.folding_change[unit]);
+        self.folding[unit] = folding;
+        self.folding_change[unit] = change;
+        most * 0.14
     }
 
     /// What curvature adds to the straight gains (design section 4, "Curved part and remainder"), and hinge margins.
@@ -531,6 +566,13 @@ impl Filter {
     }
 }
 
+/// What a unit turns less along chords than along the curve through their ends, a part of the chords' own turn, the chord being `x` of
+/// its lengths: x²/12 and its next order (docs/proof.md, section 2).
+#[inline(always)]
+fn chord_lag(x: V) -> V {
+    x * x / (x * 6.0 + 12.0)
+}
+
 /// The plan is a smooth curve through the vertices: it leaves the chord by κℓ²/8 at most.
 #[inline(always)]
 pub(super) fn chord_bulge(step: &Step) -> V {
@@ -590,7 +632,8 @@ pub(super) fn hitch_remainder(
         + hitch_sine * of.hitch * a * a * 0.5
         + step.path_curvature.max(step.tangent * of.inverse_length) * swing * swing * 0.5;
     let Some((next, behind)) = follower else { return own };
-    own + reach * (behind.tangent + hitch_tangent) * (straying.slope + straying.rough * next.inverse_length * 2.0)
+    own + behind.chord_rest
+        + reach * (behind.tangent + hitch_tangent) * (straying.slope + straying.rough * next.inverse_length * 2.0)
 }
 
 /// How fast a coupling's deviation may change along its path: the slope of what has passed through axles, and how much of
@@ -628,10 +671,10 @@ pub(super) fn foot_shift(of: &UnitLanes, step: &Step, coupling: V) -> V {
     coupling * step.sine * step.tangent * of.inverse_length
 }
 
-/// What is left to the limit of the hinge ahead of a unit: nominal articulation, heading errors, foot shifts.
+/// What is left to the limit of the hinge ahead of a unit: nominal articulation (`joint`), heading errors, foot shifts.
 #[inline(always)]
 pub(super) fn hinge_margin(of: &UnitLanes, joint: V, ahead: V, own_shift: V) -> V {
-    of.max_articulation - double_atan(joint) - ahead - own_shift
+    of.max_articulation - joint - ahead - own_shift
 }
 
 /// Rows of a unit's block.
@@ -651,6 +694,8 @@ pub(super) mod row {
     /// R1/L
     pub(crate) const REMAINDER: usize = 8;
     pub(crate) const HINGE: usize = 9;
+    /// Square of the way of the axle over the step, m²: behind a hitch that swings it is more than the spacing's.
+    pub(crate) const WAY2: usize = 10;
 }
 
 /// Spreads a value of vehicles in lanes to the vehicles' own rows.

@@ -10,6 +10,7 @@ use netcert::vehicle::{Unit, Vehicle};
 use oracle::claim::{Claim, Place, certify};
 use oracle::draw::Draw;
 use oracle::duel::{self, Duel};
+use oracle::path::Path;
 use oracle::road;
 use rayon::prelude::*;
 
@@ -18,7 +19,7 @@ const ALLOWANCE_M: f64 = 1e-4;
 const ALLOWANCE_RAD: f64 = 2e-4;
 
 /// Lengths, hitch behind the axle, front and rear overhang, metres.
-fn unit(l: f64, d: f64, front: f64, rear: f64, limit_deg: f64, sway_deg: f64) -> Unit {
+pub fn unit(l: f64, d: f64, front: f64, rear: f64, limit_deg: f64, sway_deg: f64) -> Unit {
     Unit {
         name: "unit".to_owned(),
         coupling_to_axle_m: l,
@@ -31,7 +32,7 @@ fn unit(l: f64, d: f64, front: f64, rear: f64, limit_deg: f64, sway_deg: f64) ->
     }
 }
 
-fn vehicle(id: &str, tolerance_m: f64, units: Vec<Unit>) -> Vehicle {
+pub fn vehicle(id: &str, tolerance_m: f64, units: Vec<Unit>) -> Vehicle {
     let (mut coupling, mut front, mut rear) = (0.0, 0.0_f64, 0.0_f64);
     for unit in &units {
         front = front.max(coupling + unit.front_overhang_m);
@@ -115,9 +116,26 @@ fn random_corridor(draw: &mut Draw, vehicle: &Vehicle) -> Corridor {
 }
 
 /// Attacks the claims of a corridor; what came below them, in words.
-fn refuted(corridor: &Corridor, vehicle: &Vehicle, claim: &Claim, draw: &mut Draw, others: usize) -> Option<String> {
-    let path = duel::path(corridor, vehicle, claim);
-    let outcome = Duel::new(corridor, vehicle, &path, claim.shrink).fight(claim, draw, others);
+pub fn refuted(
+    corridor: &Corridor,
+    vehicle: &Vehicle,
+    claim: &Claim,
+    draw: &mut Draw,
+    others: usize,
+) -> Option<String> {
+    attacked(corridor, vehicle, &duel::path(corridor, vehicle, claim), claim, draw, others)
+}
+
+/// The same along a path that stands for the claim's plan.
+pub fn attacked(
+    corridor: &Corridor,
+    vehicle: &Vehicle,
+    path: &Path,
+    claim: &Claim,
+    draw: &mut Draw,
+    others: usize,
+) -> Option<String> {
+    let outcome = Duel::new(corridor, vehicle, path, claim.shrink).fight(claim, draw, others);
     let (gap_m, room) = (outcome.least.clearance_m - claim.rsc_m, outcome.hinge.0 - claim.hinge_margin_rad);
     let words = || {
         format!(

@@ -12,6 +12,7 @@ mod properties;
 mod published_values;
 mod simulator;
 mod soundness;
+mod stations;
 mod support;
 mod tubes;
 mod verify_agreement;
