@@ -10,6 +10,7 @@
 //! | certificates | [`stet`] | a corridor and a [`vehicle`] → [`stet::Certificate`] |
 //! | the paper | [`published`] | a corridor and a vehicle → the paper's own certificate, to the letter; it decides nothing |
 //! | turns | [`turns`] | two strokes that meet → the corridors in which one turns from one into the other |
+//! | whole networks | [`certify`] | network and vehicles → certificates of edges and turns, over threads |
 //! | store | [`store`] | network, turns and certificates → a GeoPackage |
 //! | routes | [`route`] | a network with permits, two places → the shortest way that certifies as a whole |
 //! | files | [`certificate`] | a certificate → the file that `verify` checks |
@@ -21,12 +22,17 @@
 //!
 //! [`check`] works out again what [`stet`] claims, without it.
 //!
-//! [`settings`] are what a certificate depends on besides network and vehicle. [`pipeline`] runs the stages in that order; [`pace`] says when a vehicle is where; [`stop`]
-//! lets long work be cut off. `stet` is pure: no input or output, no clock,
-//! no threads.
+//! [`settings`] are what a certificate depends on besides network and vehicle. [`pipeline`] runs the stages in that order.
+//!
+//! Four modules are crates of their own, without PROJ, SQLite or a web server: [`vehicle`], [`verdict`], [`pace`] (when a vehicle is
+//! where) and [`stop`] (work that may be cut off) come from `netcert-base`; [`stet`] and [`published`] from `netcert-kernel`.
+
+pub use netcert_base::{pace, stop, vehicle, verdict};
+pub use netcert_kernel::{published, stet};
 
 pub mod account;
 pub mod certificate;
+pub mod certify;
 pub mod check;
 mod claim;
 pub mod corridor;
@@ -35,16 +41,11 @@ pub mod export;
 pub mod manoeuvres;
 pub mod network;
 pub mod osm;
-pub mod pace;
 pub mod picture;
 pub mod pipeline;
-pub mod published;
+pub mod reporter;
 pub mod route;
 pub mod serve;
 pub mod settings;
-pub mod stet;
-pub mod stop;
 pub mod store;
 pub mod turns;
-pub mod vehicle;
-pub mod verdict;

@@ -7,16 +7,16 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::chain::Chain;
-use super::claim::{Finding, Outcome, Subject, TOLERANCE_M, finding};
-use super::said::Said;
-use super::{plan, printed};
+use super::row_claim::Said;
 use crate::corridor::{EdgeSpan, Params, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::osm::facts::{Policy, Strip};
 use crate::store::EdgeRow;
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
+use netcert_check::Chain;
+use netcert_check::{Finding, Outcome, Subject, TOLERANCE_M, finding};
+use netcert_check::{plan, printed};
 
 /// Strips are measured across the way's line, widths across the corridor's: they differ by the angle between.
 const WIDTH_TOLERANCE_M: f64 = 0.01;

@@ -3,9 +3,9 @@
 use serde_json::Value;
 
 use super::members::{Members, Wrong};
-use super::plan;
 use crate::corridor::{Corridor, Frame};
 use crate::vehicle::Vehicle;
+use netcert_check::plan;
 
 /// Positions that are written in degrees come back to this, metres.
 const PLACE_TOLERANCE_M: f64 = 1e-4;

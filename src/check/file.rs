@@ -7,13 +7,13 @@
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 
-use super::chain::Chain;
-use super::claim::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, finding};
 use super::document::{COLUMNS, Document, TubeClaim};
-use super::leeway::Swept;
 use super::members::Wrong;
-use super::plan;
-use super::printed;
+use netcert_check::Chain;
+use netcert_check::Swept;
+use netcert_check::plan;
+use netcert_check::printed;
+use netcert_check::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, finding};
 
 /// Nominal places are found again to this, metres: what a quarter of a station's chord leaves in the tightest bends.
 const NOMINAL_M: f64 = 5e-3;

@@ -10,11 +10,8 @@ use geo::{Distance as _, Euclidean, Point};
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::chain::Chain;
-use super::claim::{Finding, Outcome, Subject, TOLERANCE_M, finding};
 use super::database::{RowOutcome, SetReport};
-use super::said::Said;
-use super::{plan, printed};
+use super::row_claim::Said;
 use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::store::TurnRow;
@@ -23,6 +20,9 @@ use crate::turns::{
 };
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
+use netcert_check::Chain;
+use netcert_check::{Finding, Outcome, Subject, TOLERANCE_M, finding};
+use netcert_check::{plan, printed};
 
 /// The edges of a path's corridor lie this near to the area at least: stations cut off a chord of what rays saw, metres.
 const WITHIN_M: f64 = 0.02;

@@ -13,9 +13,9 @@ use netcert::vehicle::Vehicle;
 use serde_json::json;
 
 use super::Session;
+use super::certify_options::{self, CertifyOptions};
 use super::database::DatabaseArgs;
 use super::fleet::{self, Fleet};
-use super::how::{self, How};
 
 /// Certify again, or add vehicles, in a database that exists.
 ///
@@ -40,7 +40,7 @@ pub(crate) struct Certify {
     #[arg(long, value_name = "F.toml")]
     vehicle_file: Vec<PathBuf>,
     #[command(flatten)]
-    how: How,
+    how: CertifyOptions,
 }
 
 impl Certify {
@@ -57,7 +57,7 @@ impl Certify {
         for (policy, vehicles) in work {
             let settings = Settings { policy, ..settings.clone() };
             let names: Vec<&str> = vehicles.iter().map(|vehicle| vehicle.id.as_str()).collect();
-            let mut parameters = how::parameters(&settings)?;
+            let mut parameters = certify_options::parameters(&settings)?;
             parameters.insert("vehicles".into(), json!(names));
             let ask = pipeline::Certify {
                 db: &path,

@@ -18,9 +18,9 @@ use netcert::turns::{TurnFacts, turn_facts};
 use netcert::vehicle::Vehicle;
 
 use super::Session;
+use super::certify_options;
 use super::database::DatabaseArgs;
 use super::fleet::{self, Fleet};
-use super::how;
 use super::output::{printable, results};
 use super::table::Table;
 use super::values::word;
@@ -73,12 +73,12 @@ impl Explain {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         let path = self.db.path()?;
         let mut database = Database::open(&path)?;
-        let policy = how::policy_of(&mut database, self.corridor)?;
+        let policy = certify_options::policy_of(&mut database, self.corridor)?;
         let vehicle = self.vehicle(&mut database)?;
         let set = self.set(&mut database, &vehicle, policy)?;
         let settings = match &set {
             Some(set) => set.settings()?,
-            None => how::of_a_new_set(&mut database, policy)?,
+            None => certify_options::of_a_new_set(&mut database, policy)?,
         };
         let network = database.load_network()?;
         let model = Model::new(&vehicle)?;

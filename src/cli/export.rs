@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use netcert::export::target::{self, Layer, Options, TARGETS};
+use netcert::export::formats::{self, Layer, Options, TARGETS};
 use netcert::export::{self, ExportError, Out, PermitPolicy, Source, Tally, Target, Unfinished};
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::store::Database;
@@ -66,7 +66,7 @@ pub(crate) struct Export {
 fn target_names() -> impl TypedValueParser<Value = &'static str> {
     let value = |target: &&dyn Target| PossibleValue::new(target.name()).help(target.about());
     PossibleValuesParser::new(TARGETS.iter().map(value))
-        .try_map(|name| target::named(&name).map(Target::name).ok_or("no such target"))
+        .try_map(|name| formats::named(&name).map(Target::name).ok_or("no such target"))
 }
 
 fn layer() -> impl TypedValueParser<Value = Layer> {
@@ -75,7 +75,7 @@ fn layer() -> impl TypedValueParser<Value = Layer> {
 
 impl Export {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
-        let target = target::named(self.target).ok_or_else(|| anyhow::anyhow!("{}: no such target", self.target))?;
+        let target = formats::named(self.target).ok_or_else(|| anyhow::anyhow!("{}: no such target", self.target))?;
         let path = self.db.path()?;
         for input in [Some(&path), self.extract.as_ref()].into_iter().flatten() {
             if same(input, &self.out) {

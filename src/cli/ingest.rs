@@ -9,8 +9,8 @@ use netcert::pipeline::{self, Selection};
 use serde_json::json;
 
 use super::Session;
+use super::certify_options::{self, CertifyOptions};
 use super::fleet::Fleet;
-use super::how::{self, How};
 use super::progress::human;
 use super::values::country_code;
 
@@ -41,7 +41,7 @@ pub(crate) struct Ingest {
     #[command(flatten)]
     which: Which,
     #[command(flatten)]
-    how: How,
+    how: CertifyOptions,
     #[command(flatten)]
     roads: Roads,
 }
@@ -87,7 +87,7 @@ impl Ingest {
         let selection = self.which.selection(&fleet);
         let countries = self.roads.countries()?;
         let settings = self.how.settings();
-        let mut parameters = how::parameters(&settings)?;
+        let mut parameters = certify_options::parameters(&settings)?;
         parameters.insert("vehicles".into(), selection_words(&selection));
         parameters.insert("country".into(), json!(self.roads.country));
         parameters.insert("driving_side".into(), json!(self.roads.driving_side));

@@ -4,24 +4,24 @@
 
 mod area;
 mod certify;
+mod certify_options;
 mod clock;
 mod corridor;
 mod database;
 mod explain;
 mod export;
-mod fitted;
 mod fleet;
-mod how;
 mod ingest;
 mod manoeuvres;
 mod on_demand;
 pub(crate) mod output;
 mod paper;
-mod place;
+mod position;
 mod progress;
 mod query;
 mod reach;
 mod route;
+mod routing;
 mod rows;
 mod serve;
 mod stats;

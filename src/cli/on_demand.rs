@@ -11,8 +11,8 @@ use netcert::vehicle::Vehicle;
 use serde_json::json;
 
 use super::Session;
+use super::certify_options;
 use super::fleet::{self, Fleet};
-use super::how;
 
 /// What a command needs.
 pub(crate) struct Wanted<'a> {
@@ -35,7 +35,7 @@ pub(crate) fn certified(
     (path, mut database): (&Path, Database),
     wanted: &Wanted<'_>,
 ) -> anyhow::Result<(Database, CertifiedSet)> {
-    let policy = how::policy_of(&mut database, wanted.policy)?;
+    let policy = certify_options::policy_of(&mut database, wanted.policy)?;
     let kept = database.certified_set(wanted.vehicle, policy)?;
     let there = kept.is_some();
     let settings = match kept {
@@ -46,7 +46,7 @@ pub(crate) fn certified(
             }
             settings
         }
-        None => how::of_a_new_set(&mut database, policy)?,
+        None => certify_options::of_a_new_set(&mut database, policy)?,
     };
     let vehicle = definition(&mut database, wanted)?;
     database.close()?;
@@ -57,7 +57,7 @@ pub(crate) fn certified(
         .progress
         .say(&format!("{turns}{id} {verb} not certified in {db} under the {name} policy yet: doing it now"));
     let settings = Settings { turns: settings.turns || wanted.turns, ..settings };
-    let mut parameters = how::parameters(&settings)?;
+    let mut parameters = certify_options::parameters(&settings)?;
     parameters.insert("vehicles".into(), json!([id]));
     let ask = pipeline::Certify {
         db: path,

@@ -7,7 +7,8 @@ use std::time::Duration;
 
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use netcert::account::AccountRow;
-use netcert::pipeline::{Reporter, Summary};
+use netcert::pipeline::Summary;
+use netcert::reporter::Reporter;
 
 use super::output::{grouped, tell};
 use super::table::Table;

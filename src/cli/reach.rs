@@ -10,9 +10,9 @@ use serde_json::{Value, json};
 
 use super::Session;
 use super::explain::wrapped;
-use super::fitted::{Fitted, FittedArgs};
 use super::output::{printable, results};
-use super::place::place;
+use super::position::place;
+use super::routing::{RoutingArgs, RoutingInputs};
 
 /// Which certified roads a vehicle can reach from a place, and from which it can come back.
 ///
@@ -30,7 +30,7 @@ only), `opened` (with --what-if: reached only then) or `no`; `component` numbers
 within which the vehicle can drive from anywhere to anywhere, the largest being 0.")]
 pub(crate) struct Reach {
     #[command(flatten)]
-    fitted: FittedArgs,
+    inputs: RoutingArgs,
     /// Where it begins, degrees.
     #[arg(long, value_name = "LON,LAT", value_parser = place, allow_hyphen_values = true)]
     from: Position,
@@ -53,10 +53,10 @@ enum Format {
 
 impl Reach {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
-        let fitted = self.fitted.load(session, "reach")?;
-        let graph = fitted.graph(Measure::Distance);
-        let access = fitted.permits.access(&fitted.movements);
-        let snapped = Snapper::new(&fitted.network).snap(self.from, self.snap, |edge| fitted.permits.edge(edge))?;
+        let inputs = self.inputs.load(session, "reach")?;
+        let graph = inputs.graph(Measure::Distance);
+        let access = inputs.permits.access(&inputs.movements);
+        let snapped = Snapper::new(&inputs.network).snap(self.from, self.snap, |edge| inputs.permits.edge(edge))?;
         let starts: Vec<u32> = snapped.on.iter().map(|on| on.edge).collect();
         session.progress.say(&format!("the road is {:.0} m from there", snapped.distance_m));
         let now = route::reach(&graph, &access, &starts);
@@ -64,9 +64,9 @@ impl Reach {
         let opened = match self.what_if {
             None => None,
             Some(id) => {
-                let found = (0_u32..).zip(&fitted.network.edges).find(|(_, edge)| edge.id == id);
+                let found = (0_u32..).zip(&inputs.network.edges).find(|(_, edge)| edge.id == id);
                 let Some((edge, _)) = found else {
-                    bail!("{}: no edge {id}; `netcert query` lists their ids", fitted.path.display());
+                    bail!("{}: no edge {id}; `netcert query` lists their ids", inputs.path.display());
                 };
                 let then = route::reach(&graph, &route::with_edge(&graph, &access, edge), &starts);
                 Some((edge, then))
@@ -76,9 +76,9 @@ impl Reach {
         match self.format {
             Format::Geojson => {
                 let opened = opened.as_ref().map(|(_, then)| then);
-                writeln!(out, "{}", geojson(&fitted, &now, opened, &components))?;
+                writeln!(out, "{}", geojson(&inputs, &now, opened, &components))?;
             }
-            Format::Text => tell(&mut out, &fitted, &now, opened.as_ref(), &components)?,
+            Format::Text => tell(&mut out, &inputs, &now, opened.as_ref(), &components)?,
         }
         Ok(out.flush()?)
     }
@@ -92,13 +92,13 @@ fn km(network: &Network, on: impl Fn(usize) -> bool) -> f64 {
 
 fn tell(
     out: &mut dyn Write,
-    fitted: &Fitted,
+    inputs: &RoutingInputs,
     now: &Found,
     opened: Option<&(u32, Found)>,
     components: &route::Components,
 ) -> std::io::Result<()> {
-    let (network, vehicle) = (&fitted.network, &fitted.model.vehicle);
-    let certified = km(network, |i| fitted.permits.edge(i as u32));
+    let (network, vehicle) = (&inputs.network, &inputs.model.vehicle);
+    let certified = km(network, |i| inputs.permits.edge(i as u32));
     let there = km(network, |i| now.there[i]);
     let back = km(network, |i| now.and_back[i]);
     let share = |part: f64| if certified > 0.0 { 100.0 * part / certified } else { 0.0 };
@@ -125,12 +125,12 @@ fn tell(
     writeln!(out, "\n{}", wrapped(scope, ""))
 }
 
-fn geojson(fitted: &Fitted, now: &Found, opened: Option<&Found>, components: &route::Components) -> Value {
-    let network = &fitted.network;
+fn geojson(inputs: &RoutingInputs, now: &Found, opened: Option<&Found>, components: &route::Components) -> Value {
+    let network = &inputs.network;
     let mut features = Vec::new();
     for (i, edge) in network.edges.iter().enumerate() {
         let opens = opened.is_some_and(|then| then.there[i] && !now.there[i]);
-        if !fitted.permits.edge(i as u32) && !opens {
+        if !inputs.permits.edge(i as u32) && !opens {
             continue;
         }
         let reach = match (now.and_back[i], now.there[i], opens) {
@@ -146,11 +146,11 @@ fn geojson(fitted: &Fitted, now: &Found, opened: Option<&Found>, components: &ro
             "geometry": {"type": "LineString", "coordinates": line},
             "properties": {
                 "edge_id": edge.id,
-                "vehicle_id": fitted.model.vehicle.id,
+                "vehicle_id": inputs.model.vehicle.id,
                 "reach": reach,
                 "component": components.of[i],
                 "length_m": network.length_m(edge),
-                "rsc_m": fitted.permits.edges[i].rsc_m,
+                "rsc_m": inputs.permits.edges[i].rsc_m,
                 "title": route::title(network, PartKind::Edge(i as u32)),
             },
         }));

@@ -14,9 +14,9 @@ use netcert::store::{Named, verdict_words};
 
 use super::Session;
 use super::explain::wrapped;
-use super::fitted::{Fitted, FittedArgs};
 use super::output::{printable, results};
-use super::place::place;
+use super::position::place;
+use super::routing::{RoutingArgs, RoutingInputs};
 use super::table::Table;
 
 /// The shortest certified route of a vehicle, with one certificate over the whole of it; or what blocks.
@@ -36,7 +36,7 @@ traffic; times are from speeds by class of road (data/speeds.toml). Exit status 
 certified route: read `routes` in JSON.")]
 pub(crate) struct Route {
     #[command(flatten)]
-    fitted: FittedArgs,
+    inputs: RoutingArgs,
     /// Where it begins, degrees.
     #[arg(long, value_name = "LON,LAT", value_parser = place, allow_hyphen_values = true)]
     from: Position,
@@ -89,37 +89,37 @@ fn snap_metres(text: &str) -> Result<f64, String> {
 
 impl Route {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
-        let fitted = self.fitted.load(session, "route")?;
+        let inputs = self.inputs.load(session, "route")?;
         let measure = if self.least == Least::Time { Measure::Time } else { Measure::Distance };
-        let turns = fitted.turns();
-        let (graph, speeds) = (fitted.graph(measure), fitted.speeds.clone());
-        let mut planner = Planner::new(graph, &fitted.permits, &fitted.model, &turns, speeds);
+        let turns = inputs.turns();
+        let (graph, speeds) = (inputs.graph(measure), inputs.speeds.clone());
+        let mut planner = Planner::new(graph, &inputs.permits, &inputs.model, &turns, speeds);
         let places = [self.from].into_iter().chain(self.via.iter().copied()).chain([self.to]).collect();
         let (alternatives, tries) = (usize::from(self.alternatives), usize::from(self.tries));
         let answer = planner.answer(&Question { places, snap_m: self.snap, alternatives, tries })?;
-        self.write_files(&fitted, &answer, session)?;
+        self.write_files(&inputs, &answer, session)?;
         let mut out = results();
         match self.format {
-            Format::Json => writeln!(out, "{:#}", route::json(&fitted.network, &fitted.model, &answer))?,
-            Format::Geojson => writeln!(out, "{}", route::geojson(&fitted.network, &fitted.model, &answer)?)?,
-            Format::Table => tell(&mut out, &fitted, &answer)?,
+            Format::Json => writeln!(out, "{:#}", route::json(&inputs.network, &inputs.model, &answer))?,
+            Format::Geojson => writeln!(out, "{}", route::geojson(&inputs.network, &inputs.model, &answer)?)?,
+            Format::Table => tell(&mut out, &inputs, &answer)?,
         }
         Ok(out.flush()?)
     }
 
-    fn write_files(&self, fitted: &Fitted, answer: &Answer, session: &Session) -> anyhow::Result<()> {
+    fn write_files(&self, inputs: &RoutingInputs, answer: &Answer, session: &Session) -> anyhow::Result<()> {
         let best = answer.routes.first();
         if let Some(path) = &self.out {
             let best = best.ok_or_else(|| nothing(path))?;
             let given = FileCorridor { corridor: best.path.corridor.clone(), frame: Some(best.path.frame) };
-            let options = &fitted.settings().stet;
-            let json = certificate::json(&given, &fitted.model, &best.certificate, options)?;
+            let options = &inputs.settings().stet;
+            let json = certificate::json(&given, &inputs.model, &best.certificate, options)?;
             write(path, netcert::check::sealed(&json))?;
             session.progress.say(&format!("{}: the whole certificate", path.display()));
         }
         if let Some(path) = &self.svg {
             let best = best.ok_or_else(|| nothing(path))?;
-            write(path, picture::route(&fitted.network, &fitted.model.vehicle, best))?;
+            write(path, picture::route(&inputs.network, &inputs.model.vehicle, best))?;
             session.progress.say(&format!("{}: the picture", path.display()));
         }
         Ok(())
@@ -137,8 +137,8 @@ fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
     }
 }
 
-fn tell(out: &mut dyn Write, fitted: &Fitted, answer: &Answer) -> std::io::Result<()> {
-    let (network, vehicle) = (&fitted.network, &fitted.model.vehicle);
+fn tell(out: &mut dyn Write, inputs: &RoutingInputs, answer: &Answer) -> std::io::Result<()> {
+    let (network, vehicle) = (&inputs.network, &inputs.model.vehicle);
     for (number, found) in answer.routes.iter().enumerate() {
         let which = if number == 0 { "a certified route" } else { "another one" };
         writeln!(
@@ -149,7 +149,7 @@ fn tell(out: &mut dyn Write, fitted: &Fitted, answer: &Answer) -> std::io::Resul
             found.length_m / 1000.0,
             (found.time_s / 60.0).ceil()
         )?;
-        numbers(out, fitted, found)?;
+        numbers(out, inputs, found)?;
         writeln!(out)?;
         parts(out, network, found)?;
         writeln!(out)?;
@@ -168,7 +168,7 @@ fn tell(out: &mut dyn Write, fitted: &Fitted, answer: &Answer) -> std::io::Resul
         let at = printable(&route::title(network, refutation.at));
         writeln!(out, "{}", wrapped(&format!("Tried and refuted as a whole, at {at}: {why}."), "  "))?;
     }
-    let policy = fitted.settings().policy.name();
+    let policy = inputs.settings().policy.name();
     let scope = format!(
         "Within the stated model, widths and error bounds ({policy} policy, every turn's kerbs as the map or assumptions have \
          them); no permit. Times are by class of road."
@@ -176,10 +176,10 @@ fn tell(out: &mut dyn Write, fitted: &Fitted, answer: &Answer) -> std::io::Resul
     writeln!(out, "{}", wrapped(&scope, ""))
 }
 
-fn numbers(out: &mut dyn Write, fitted: &Fitted, found: &Found) -> std::io::Result<()> {
+fn numbers(out: &mut dyn Write, inputs: &RoutingInputs, found: &Found) -> std::io::Result<()> {
     let result = &found.certificate.result;
-    let unit = fitted.model.vehicle.units.get(result.limiting.unit).map_or("", |unit| &unit.name);
-    let at = found.limiting().map_or_else(String::new, |at| route::title(&fitted.network, at));
+    let unit = inputs.model.vehicle.units.get(result.limiting.unit).map_or("", |unit| &unit.name);
+    let at = found.limiting().map_or_else(String::new, |at| route::title(&inputs.network, at));
     if let Some(rsc_m) = result.rsc_m {
         writeln!(out, "  RSC          {rsc_m:>8.3} m  to spare where it is tightest, all error bounds deducted")?;
     }
@@ -194,7 +194,7 @@ fn numbers(out: &mut dyn Write, fitted: &Fitted, found: &Found) -> std::io::Resu
     if let Some(margin_rad) = result.hinge_margin_rad {
         writeln!(out, "  hinge margin {:>8.1} °", margin_rad.to_degrees())?;
     }
-    let tolerance_m = result.shrink * fitted.model.vehicle.tracking_tolerance_m;
+    let tolerance_m = result.shrink * inputs.model.vehicle.tracking_tolerance_m;
     writeln!(
         out,
         "  shrink       {:>8.3}    the steer axle must stay within {tolerance_m:.3} m of the plan",

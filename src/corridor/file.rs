@@ -5,7 +5,7 @@
 
 use serde::Deserialize;
 
-use super::given::CentrelineError;
+use super::centreline::{CentrelineError, from_centreline};
 use super::{Corridor, Frame, FrameError, Params};
 
 /// Why a corridor file cannot be used.
@@ -87,7 +87,7 @@ pub fn corridor_from_file(json: &str) -> Result<FileCorridor, FileError> {
     };
     let params = Params::default();
     let tolerance_m = form.smoothing_tolerance_m.unwrap_or(params.tolerance_m);
-    let corridor = Corridor::from_centreline(&points, &left, &right, tolerance_m, params.spacing_m)?;
+    let corridor = from_centreline(&points, &left, &right, tolerance_m, params.spacing_m)?;
     Ok(FileCorridor { corridor, frame })
 }
 

@@ -3,12 +3,10 @@
 //! A corridor is what `stet` certifies; it knows nothing of maps.
 
 mod band;
-mod closed;
+mod centreline;
 mod course;
 mod file;
-mod fit;
 mod frame;
-mod given;
 mod merge;
 mod observation;
 mod polyline;
@@ -23,11 +21,10 @@ mod tests;
 
 use std::ops::Range;
 
-pub use closed::CurvatureProfile;
-pub(crate) use closed::clothoid_step;
+pub use centreline::{CentrelineError, from_centreline};
 pub use file::{FileCorridor, FileError, corridor_from_file};
 pub use frame::{Frame, FrameError, HALF_WIDTH_M};
-pub use given::CentrelineError;
+pub use netcert_base::corridor::{Corridor, CurvatureProfile};
 pub use stroke::stroke_corridor;
 
 use crate::verdict::UnknownReason;
@@ -51,42 +48,6 @@ pub struct Params {
 impl Default for Params {
     fn default() -> Self {
         Self { tolerance_m: 0.5, map_tolerance_m: 0.0, spacing_m: 1.0, cutoff_m: 200.0, lead_in_m: 250.0 }
-    }
-}
-
-/// A route corridor, sampled at uniform arc length along its C¹ centreline. Metres, radians; `s` grows in driving
-/// direction, lateral is positive to the left. All vectors have one entry a station.
-///
-/// Between stations the centreline is the clothoid-like curve of linear curvature through them, half-widths are linear.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Corridor {
-    /// Distance between stations along the centreline, metres (near 1).
-    pub spacing_m: f64,
-    /// Easting in the frame, metres.
-    pub x: Vec<f64>,
-    /// Northing in the frame, metres.
-    pub y: Vec<f64>,
-    /// Heading of the centreline, radians, continuous along the corridor (unwrapped).
-    pub heading: Vec<f64>,
-    /// Curvature, 1/m, positive to the left.
-    pub curvature: Vec<f64>,
-    /// Half-width to the left, metres, > 0.
-    pub left_m: Vec<f64>,
-    /// Half-width to the right, metres, > 0.
-    pub right_m: Vec<f64>,
-}
-
-impl Corridor {
-    /// Number of stations.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.x.len()
-    }
-
-    /// Whether there is no station.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.x.is_empty()
     }
 }
 

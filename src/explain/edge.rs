@@ -3,13 +3,14 @@
 
 use super::hints::{self, Hints};
 use super::legal::Conflict;
-use super::place::{HingePlace, Place};
 use super::ride::Ride;
+use super::tightest::{HingePlace, Place};
 use super::{Explanation, Geometry, RoadFacts};
+use crate::certify::verdict;
 use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::osm::facts::{Direction, Policy};
-use crate::pipeline::{Settings, verdict};
+use crate::settings::Settings;
 use crate::stet::{Model, Options, SpanResult, certify_planned, certify_spans};
 use crate::stop::{Stop, Stopped};
 use crate::store::{EdgeRow, Named as _, verdict_words};

@@ -18,28 +18,28 @@
 //! | `json` | all of it as JSON |
 
 mod edge;
-mod given;
 mod hints;
 mod json;
 mod legal;
 mod names;
-mod place;
+mod own_corridor;
 mod ride;
 #[cfg(test)]
 mod tests;
+mod tightest;
 mod turn;
 mod words;
 
 use std::ops::Range;
 
 pub use edge::{explain_edge, explain_edge_until};
-pub use given::explain_corridor;
 pub use hints::{Hints, OtherStrip, WidthHint};
 pub use json::json;
 pub use legal::Conflict;
 pub use names::cautious_m;
-pub use place::{Bend, Cross, HingePlace, Part, Place};
+pub use own_corridor::explain_corridor;
 pub use ride::Ride;
+pub use tightest::{Bend, Cross, HingePlace, Part, Place};
 pub use turn::{TurnExplanation, explain_turn_until};
 pub use words::{Words, words};
 

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used)]
 
-use super::place::foot;
+use super::tightest::foot;
 use super::*;
 use crate::vehicle::Catalogue;
 
@@ -11,7 +11,7 @@ fn circle(radius_m: f64) -> Corridor {
         .map(|i| (f64::from(i) / radius_m).sin_cos())
         .map(|(s, c)| [radius_m * s, radius_m * (1.0 - c)])
         .collect();
-    Corridor::from_centreline(&points, &[3.0], &[3.0], 0.0, 1.0).unwrap()
+    crate::corridor::from_centreline(&points, &[3.0], &[3.0], 0.0, 1.0).unwrap()
 }
 
 #[test]

@@ -3,8 +3,9 @@
 use super::Explanation;
 use super::edge::geometry;
 use super::hints::Hints;
+use crate::certify::{best_of, turn_verdict};
 use crate::network::{Edge, Network};
-use crate::pipeline::{Settings, best_of, turn_verdict};
+use crate::settings::Settings;
 use crate::stet::{Model, Options, certify_planned};
 use crate::stop::{Stop, Stopped};
 use crate::turns::{KerbSource, Reach, TurnCorridors, TurnFacts, corridors_of};

@@ -20,24 +20,24 @@
 //! Left out: the certificate over a whole route. An engine strings together edges and turns that are safe each by itself; only
 //! `netcert route` certifies the whole.
 
+mod destination;
 mod error;
+pub mod formats;
 mod header;
 mod permit;
-mod place;
 mod rings;
 mod sequences;
 mod sorter;
 mod source;
-pub mod target;
 mod unfinished;
 mod ways;
 
+pub use destination::{Layout, Out, Place, Sink};
 pub use error::ExportError;
+pub use formats::Target;
 pub use header::{Header, Provenance};
 pub use permit::{Bits, PermitPolicy, Permitted, Refusal, Tally};
-pub use place::{Layout, Out, Place, Sink};
 pub use source::{Ask, ExportEdge, ExportTurn, Source};
-pub use target::Target;
 pub use unfinished::Unfinished;
 
 /// Writes one export from beginning to end.
@@ -47,7 +47,7 @@ pub use unfinished::Unfinished;
 pub fn export(
     source: &Source<'_>,
     target: &dyn Target,
-    options: &target::Options,
+    options: &formats::Options,
     (out, unfinished): (Out, Unfinished),
 ) -> Result<(), ExportError> {
     let mut place = Place::begin(out, target.layout(options), unfinished)?;

@@ -10,7 +10,7 @@ use super::header::{Header, Provenance};
 use super::permit::{Bits, PermitPolicy, Permitted, Refusal};
 use super::rings::Rings;
 use crate::osm::facts::Policy;
-use crate::pipeline::Reporter;
+use crate::reporter::Reporter;
 use crate::route::Permit;
 use crate::store::{Database, EdgeRow, QueryOptions, StoreError, TurnRow};
 

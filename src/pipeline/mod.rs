@@ -1,29 +1,26 @@
 //! The whole run, stage by stage: read, network, corridors and certificates, store.
 //!
 //! [`ingest`] makes a database from an extract; [`certify`] adds or renews certificates in one that exists. Both use
-//! the same stages on the same network, so that the same edge and vehicle get the same bytes either way. Knows nothing
-//! of command lines and terminals: it reports through [`Reporter`].
+//! the same stages on the same network, so that the same edge and vehicle get the same bytes either way. It only conducts: certificates
+//! are made in [`crate::certify`]. It knows nothing of command lines and terminals: it reports through [`Reporter`].
 
-mod certificates;
 mod select;
-mod turns;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use thiserror::Error;
 
-pub use crate::settings::Settings;
-pub(crate) use certificates::verdict;
-pub use certificates::{Job, certify_network};
 pub use select::{Selection, own_countries, selected};
-pub use turns::{TurnJob, TurnOutcome, best_of, certify_turns, turn_verdict};
 
 use crate::account::AccountRow;
+use crate::certify::{Job, TurnJob, certify_network, certify_turns};
 use crate::network::{self, Network};
 use crate::osm::facts::{Countries, CountriesError, RulesError, cross_sections};
 use crate::osm::pbf::{HeaderInfo, ReadError};
 use crate::osm::{self};
+use crate::reporter::Reporter;
+use crate::settings::Settings;
 use crate::stet::{Model, ModelError};
 use crate::store::{Database, EdgeCertificate, Run, StoreError, TurnSet, VehicleRecord, Writer};
 use crate::turns::{TurnFacts, turn_facts};
@@ -67,18 +64,6 @@ pub enum RunError {
         /// Ways left out, by reason.
         account: String,
     },
-}
-
-/// What the caller shows while a run goes on. Called from many threads.
-pub trait Reporter: Sync {
-    /// A stage begins; `total` items are to be done (bytes when reading, edges when certifying).
-    fn begin(&self, stage: &'static str, total: u64);
-    /// So many of them are done.
-    fn advance(&self, done: u64);
-    /// The stage is over.
-    fn end(&self);
-    /// A remark for people.
-    fn note(&self, text: &str);
 }
 
 /// What `ingest` is asked to do.

@@ -372,7 +372,7 @@ impl Strung {
         let column = |of: fn(&Sample) -> f64| self.samples.iter().map(of).collect::<Vec<f64>>();
         let points: Vec<[f64; 2]> = self.samples.iter().map(|sample| sample.at).collect();
         let (left_m, right_m) = (column(|s| s.left_m), column(|s| s.right_m));
-        let corridor = Corridor::from_centreline(&points, &left_m, &right_m, 0.0, spacing_m)
+        let corridor = crate::corridor::from_centreline(&points, &left_m, &right_m, 0.0, spacing_m)
             .map_err(|error| AssemblyError::Centreline { at: self.turn_at(sharpest(&points)), error })?;
         // Chords are shorter than arcs by parts in a thousand in the sharpest bends: near enough to say which part it is.
         let mut along = Vec::with_capacity(points.len());

@@ -1,8 +1,8 @@
 //! Turns of the network as pieces of routes: the corridors of `turns`, of which those that certify for the vehicle count.
 
 use super::pieces::{Strokes, TurnPiece, Turns};
+use crate::certify::best_of;
 use crate::network::Movement;
-use crate::pipeline::best_of;
 use crate::stet::{Model, Options, SpanResult, certify_spans};
 use crate::turns::{Reach, TurnCorridors, TurnPath, nominal_leeway_m, passage_on, turn_on};
 use crate::verdict::UnknownReason;

@@ -11,10 +11,10 @@ use serde_json::json;
 
 use super::api::explain::Explained;
 use super::ask::shortened;
+use super::made_once::{Late, Recent};
 use super::names::NamedRoad;
 use super::planning::Router;
 use super::problem::Problem;
-use super::recent::{Late, Recent};
 use super::roads::Roads;
 use super::tiles::Overview;
 use crate::osm::facts::Policy;

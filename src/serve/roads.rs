@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
+use super::made_once::Recent;
 use super::problem::Problem;
-use super::recent::Recent;
 use crate::network::{Movements, Network};
 use crate::settings::Settings;
 use crate::turns::{TurnFacts, turn_facts};

@@ -296,7 +296,8 @@ impl Ends<'_> {
         let spacing_m = tight.map_or(from.line.spacing_m, |(_, spacing_m)| spacing_m);
         let sampled = |halvings: usize| {
             let spacing_m = spacing_m / (1 << halvings) as f64;
-            let corridor = Corridor::from_centreline(&line.points, &line.left_m, &line.right_m, 0.0, spacing_m).ok()?;
+            let corridor =
+                crate::corridor::from_centreline(&line.points, &line.left_m, &line.right_m, 0.0, spacing_m).ok()?;
             let last = corridor.len() - 1;
             let station = |m: f64| (m / corridor.spacing_m).round().clamp(0.0, last as f64) as usize;
             let turn = nearest(&corridor, from.point(leave), station(begins))

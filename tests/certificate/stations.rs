@@ -54,7 +54,7 @@ fn what_is_nominal_between_stations_is_counted() {
     let (tried, broken) = refute(|draw| {
         // Hardly any disturbance: what is left is the nominal motion itself.
         let hitch = draw.between(-0.6, 8.0);
-        let units = vec![
+        let units = [
             unit(draw.between(3.5, 6.4), hitch, 1.0, hitch.max(0.5), 80.0, 0.0),
             unit(draw.between(3.0, 8.0), draw.between(-0.5, 3.0), -1.0, 3.5, 80.0, 0.0),
             unit(draw.between(3.0, 8.0), 0.0, -1.0, 3.0, 80.0, 0.0),

@@ -8,7 +8,7 @@ use netcert::corridor::{Params, StrokeCorridor, TaperCause, stroke_corridor};
 use netcert::explain::{explain_edge, words};
 use netcert::network::Network;
 use netcert::osm::facts::Policy;
-use netcert::pipeline::Settings;
+use netcert::settings::Settings;
 use netcert::stet::Model;
 use proptest::prelude::*;
 

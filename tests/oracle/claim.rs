@@ -1,30 +1,9 @@
-//! What the certifier claims of a corridor, in the oracle's words.
+//! Asks the certifier, and puts what it claims in the oracle's words.
 
 use netcert::corridor::Corridor;
 use netcert::stet::{self, Model, Options, Side};
 use netcert::vehicle::Vehicle;
-
-use super::path::V2;
-
-/// A certificate's claims that the oracle can try to refute.
-pub struct Claim {
-    pub rsc_m: f64,
-    /// γ: what the steer axle keeps to is γ ε.
-    pub shrink: f64,
-    pub hinge_margin_rad: f64,
-    pub limiting: Place,
-    pub plan: Vec<V2>,
-}
-
-/// A body point whose foot is at a station.
-#[derive(Debug, Clone, Copy)]
-pub struct Place {
-    pub foot_m: f64,
-    pub unit: usize,
-    /// +1 left, −1 right.
-    pub side: f64,
-    pub ahead_m: f64,
-}
+pub use netcert_oracle::claim::{Claim, Place};
 
 /// Asks the certifier, with corrections as they are by default. `None`: it makes no claim worth refuting.
 pub fn certify(corridor: &Corridor, vehicle: &Vehicle) -> Option<Claim> {

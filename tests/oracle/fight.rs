@@ -1,6 +1,6 @@
 //! Certificates of turns and passages against the adversary: the best path and one that is not.
 
-use netcert::pipeline::best_of;
+use netcert::certify::best_of;
 use netcert::stet::{Model, Options};
 use netcert::turns::TurnPath;
 

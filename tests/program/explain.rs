@@ -12,7 +12,7 @@ use netcert::explain::{self, Explanation};
 use netcert::network::Network;
 use netcert::osm::facts::Policy;
 use netcert::picture;
-use netcert::pipeline::Settings;
+use netcert::settings::Settings;
 use netcert::stet::{Model, Options, SpanResult, certify, certify_spans};
 use netcert::store::{EdgeRow, verdict_words};
 use netcert::vehicle::Vehicle;
@@ -141,7 +141,7 @@ fn the_width_that_would_do_does_and_a_centimetre_less_does_not() {
 /// A straight corridor of metres: every place of it is as wide.
 fn straight(width_m: f64) -> Corridor {
     let points = [[0.0, 0.0], [150.0, 0.0]];
-    Corridor::from_centreline(&points, &[0.5 * width_m], &[0.5 * width_m], 0.0, 1.0).unwrap()
+    netcert::corridor::from_centreline(&points, &[0.5 * width_m], &[0.5 * width_m], 0.0, 1.0).unwrap()
 }
 
 fn explained(corridor: &Corridor, vehicle: &Vehicle) -> Explanation {
@@ -190,7 +190,7 @@ fn the_steering_limit_that_would_do_does_and_less_does_not() {
         .collect();
     let mut points = vec![[-30.0, 0.0], [-20.0, 0.0], [-10.0, 0.0]];
     points.extend(bend.iter().take(17));
-    let corridor = Corridor::from_centreline(&points, &[6.0], &[6.0], 0.5, 1.0).unwrap();
+    let corridor = netcert::corridor::from_centreline(&points, &[6.0], &[6.0], 0.5, 1.0).unwrap();
     let e = explained(&corridor, &vehicle);
     assert_eq!(e.verdict, Verdict::Unsafe(UnsafeReason::SteeringLock));
     let limit = e.hints.hinge_limit_deg.unwrap();
@@ -235,7 +235,7 @@ fn the_corner_stands_where_geometry_has_it() {
         .map(|(s, c)| [40.0 * s, 40.0 * (1.0 - c)])
         .collect();
     for (id, width) in [("EU-SEMI16.5", 4.4), ("AU-BDOUBLE26", 5.0), ("BUS-ART18-EU", 4.2), ("AU-ADOUBLE36", 4.0)] {
-        let corridor = Corridor::from_centreline(&arc, &[0.5 * width], &[0.5 * width], 0.0, 1.0).unwrap();
+        let corridor = netcert::corridor::from_centreline(&arc, &[0.5 * width], &[0.5 * width], 0.0, 1.0).unwrap();
         let e = explained(&corridor, &catalogued(id));
         let g = e.geometry.as_ref().unwrap();
         let place = &g.place;

@@ -1,10 +1,11 @@
 //! Drawn junctions with kerbs of the test's own: turns and passages by name, who takes them, what is certified.
 
 use netcert::account::AccountRow;
+use netcert::certify::{TurnJob, best_of, certify_turns};
 use netcert::corridor::Params;
 use netcert::network::{Network, build};
 use netcert::osm::facts::{Countries, Place, Policy, cross_sections};
-use netcert::pipeline::{Settings, TurnJob, best_of, certify_turns};
+use netcert::settings::Settings;
 use netcert::stet::{Model, Options, SpanResult};
 use netcert::store::TurnCertificate;
 use netcert::turns::{Kerbs, Reach, TurnCorridors, TurnFacts, TurnParams, corridors_of, turn_facts};

@@ -3,12 +3,13 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use netcert::certify::{Job, TurnJob, certify_network, certify_turns};
 use netcert::network::{Movement, Movements, Network, build};
 use netcert::osm::facts::{Countries, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::{Extract, LonLat, Way};
-use netcert::pipeline::{Job, Settings, TurnJob, certify_network, certify_turns};
 use netcert::route::{Graph, MadeTurns, Measure, Permit, Permits, Planner, Speeds, Strokes};
+use netcert::settings::Settings;
 use netcert::stet::Model;
 use netcert::turns::{Kerbs, turn_facts};
 

@@ -1,6 +1,6 @@
 //! A reporter of progress that tells nobody.
 
-use netcert::pipeline::Reporter;
+use netcert::reporter::Reporter;
 
 pub(crate) struct Silent;
 

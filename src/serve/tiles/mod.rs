@@ -16,9 +16,9 @@
 
 mod classes;
 mod encode;
+mod grid;
 mod labels;
 mod overview;
-mod place;
 mod raster;
 mod shape;
 
@@ -34,10 +34,10 @@ use crate::stop::Stop;
 use crate::store::{MapEdge, MapTurn, Named, TurnsOf, verdict_words};
 use classes::{FIRST_WITH_TURNS, classes};
 use encode::{Layer, Value};
+pub(super) use grid::MOST_ZOOM;
+use grid::{EXTENT, Place};
 use labels::{FIRST_WITH_LABELS, Label, labels};
 pub(super) use overview::Overview;
-pub(super) use place::MOST_ZOOM;
-use place::{EXTENT, Place};
 
 /// Registered with IANA: <https://www.iana.org/assignments/media-types/application/vnd.mapbox-vector-tile>
 const KIND: &str = "application/vnd.mapbox-vector-tile";

@@ -8,7 +8,7 @@
 
 use super::classes::{BY_RANK, classes};
 use super::encode::{Layer, Value};
-use super::place::{self, BUFFER, Place};
+use super::grid::{self, BUFFER, Place};
 use super::raster::{Raster, Said};
 use super::shape;
 use crate::osm::facts::WidthSource;
@@ -20,7 +20,7 @@ pub(super) const LAST_ZOOM: u8 = 10;
 /// Units a side, half a pixel where a tile is 512 pixels wide: nothing finer is seen, and small numbers are short.
 const EXTENT: f64 = 1024.0;
 /// Units of other layers in one of these.
-const COARSER: f64 = place::EXTENT / EXTENT;
+const COARSER: f64 = grid::EXTENT / EXTENT;
 /// Ramps are shown from this zoom on.
 const FIRST_WITH_RAMPS: u8 = 10;
 
@@ -42,8 +42,8 @@ pub(in super::super) struct Overview {
 struct Road {
     said: Said,
     /// Least and greatest of each coordinate.
-    bounds: [place::World; 2],
-    line: Vec<place::World>,
+    bounds: [grid::World; 2],
+    line: Vec<grid::World>,
 }
 
 impl Overview {
@@ -114,8 +114,8 @@ impl Overview {
     }
 }
 
-fn simplified(row: &MainRoad) -> Vec<place::World> {
-    let line: Vec<place::World> = row.line.iter().map(|&position| place::world(position)).collect();
+fn simplified(row: &MainRoad) -> Vec<grid::World> {
+    let line: Vec<grid::World> = row.line.iter().map(|&position| grid::world(position)).collect();
     // A quarter of a pixel at the last zoom.
     shape::simplified(&line, 1.0 / (512.0 * 4.0 * f64::from(1_u32 << LAST_ZOOM)))
 }

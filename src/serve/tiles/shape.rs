@@ -1,7 +1,7 @@
 //! A line in tile units, made fit to be drawn: clipped to the tile and its buffer, without vertices that nobody would
 //! see, rounded to whole units.
 
-use super::place::{BUFFER, EXTENT};
+use super::grid::{BUFFER, EXTENT};
 
 type Point = [f64; 2];
 

@@ -7,11 +7,11 @@ use netcert::corridor::stroke_corridor;
 use netcert::explain::{explain_edge_until, explain_turn_until};
 use netcert::network::{Movement, Network};
 use netcert::osm::facts::Policy;
-use netcert::pipeline::Settings;
 use netcert::route::{
     self, Graph, MadeTurns, Measure, Permits, Planner, Position, Question, Speeds, Strokes, TurnPiece, Turns,
     Unanswered,
 };
+use netcert::settings::Settings;
 use netcert::stet::{self, Model};
 use netcert::stop::{Stop, Stopped};
 use netcert::store::{Database, QueryOptions, TurnQuery};

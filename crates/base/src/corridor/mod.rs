@@ -1,0 +1,43 @@
+//! A corridor as values: what is certified, whatever it was made from.
+
+mod closed;
+mod fit;
+
+pub use closed::CurvatureProfile;
+pub(crate) use closed::clothoid_step;
+
+/// A route corridor, sampled at uniform arc length along its C¹ centreline. Metres, radians; `s` grows in driving
+/// direction, lateral is positive to the left. All vectors have one entry a station.
+///
+/// Between stations the centreline is the clothoid-like curve of linear curvature through them, half-widths are linear.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Corridor {
+    /// Distance between stations along the centreline, metres (near 1).
+    pub spacing_m: f64,
+    /// Easting in the frame, metres.
+    pub x: Vec<f64>,
+    /// Northing in the frame, metres.
+    pub y: Vec<f64>,
+    /// Heading of the centreline, radians, continuous along the corridor (unwrapped).
+    pub heading: Vec<f64>,
+    /// Curvature, 1/m, positive to the left.
+    pub curvature: Vec<f64>,
+    /// Half-width to the left, metres, > 0.
+    pub left_m: Vec<f64>,
+    /// Half-width to the right, metres, > 0.
+    pub right_m: Vec<f64>,
+}
+
+impl Corridor {
+    /// Number of stations.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// Whether there is no station.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+}

@@ -1,0 +1,202 @@
+//! Vehicles by id: the shipped catalogue (`data/vehicles.toml`, compiled in) and files of the user's own.
+//!
+//! Order is the file's order, everywhere.
+
+use std::path::Path;
+
+use super::regions::Regions;
+use super::{Fault, Vehicle, file};
+
+/// The catalogue that ships.
+const BUILTIN: &str = include_str!("../../../../data/vehicles.toml");
+/// What messages call it.
+const BUILTIN_NAME: &str = "data/vehicles.toml";
+/// A vehicle file is read whole; the shipped one has 43 kB.
+const MAX_FILE_BYTES: u64 = 4 << 20;
+/// Longer texts are compared by their beginning.
+const MAX_COMPARED: usize = 100;
+
+/// Why there is no vehicle.
+#[derive(Debug, thiserror::Error)]
+pub enum VehicleError {
+    /// The file cannot be read.
+    #[error("{file}: cannot read the vehicle file: {cause}")]
+    Unreadable {
+        /// As given.
+        file: String,
+        /// The system's reason.
+        cause: std::io::Error,
+    },
+    /// The file was read and is wrong.
+    #[error("{file}: refused{}", listed(.faults))]
+    Refused {
+        /// As given.
+        file: String,
+        /// All of them, in file order; never empty.
+        faults: Vec<Fault>,
+    },
+    /// No vehicle of that id.
+    #[error("no vehicle {id:?} in the catalogue{}; `netcert vehicles list` shows all", meant(.nearest))]
+    Unknown {
+        /// As asked for.
+        id: String,
+        /// The ids most like it, best first; may be empty.
+        nearest: Vec<String>,
+    },
+    /// Two sources define the same id.
+    #[error("{file}: vehicle {id:?} is already in the catalogue; give yours another id")]
+    Clash {
+        /// The later source.
+        file: String,
+        /// The id.
+        id: String,
+    },
+}
+
+fn listed(faults: &[Fault]) -> String {
+    match faults {
+        [one] => format!(": {one}"),
+        many => many.iter().map(|fault| format!("\n  {fault}")).collect(),
+    }
+}
+
+fn meant(nearest: &[String]) -> String {
+    if nearest.is_empty() { String::new() } else { format!("; did you mean {}?", nearest.join(", ")) }
+}
+
+/// Vehicles in file order, ids distinct.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Catalogue {
+    vehicles: Vec<Vehicle>,
+    odd: Vec<Fault>,
+}
+
+impl Catalogue {
+    /// The shipped combinations.
+    ///
+    /// # Errors
+    /// None in a build whose tests pass: the file is compiled in.
+    pub fn builtin() -> Result<Self, VehicleError> {
+        Self::from_toml(BUILTIN, BUILTIN_NAME)
+    }
+
+    /// The vehicles of a TOML file.
+    ///
+    /// # Errors
+    /// [`VehicleError::Unreadable`], [`VehicleError::Refused`].
+    pub fn from_path(path: &Path) -> Result<Self, VehicleError> {
+        let file = path.display().to_string();
+        let unreadable = |cause| VehicleError::Unreadable { file: file.clone(), cause };
+        let bytes = std::fs::metadata(path).map_err(unreadable)?.len();
+        if bytes > MAX_FILE_BYTES {
+            let cause = std::io::Error::other(format!("it has {bytes} bytes; at most {MAX_FILE_BYTES}"));
+            return Err(unreadable(cause));
+        }
+        let text = std::fs::read_to_string(path).map_err(unreadable)?;
+        Self::from_toml(&text, &file)
+    }
+
+    /// The vehicles of TOML text; `file` is what messages call it.
+    ///
+    /// # Errors
+    /// [`VehicleError::Refused`] with every fault and its line.
+    pub fn from_toml(text: &str, file: &str) -> Result<Self, VehicleError> {
+        match file::parse(text) {
+            Ok((vehicles, odd)) => Ok(Self { vehicles, odd }),
+            Err(faults) => Err(VehicleError::Refused { file: file.to_owned(), faults }),
+        }
+    }
+
+    /// Both catalogues, this one first; `file` is what messages call the other.
+    ///
+    /// # Errors
+    /// [`VehicleError::Clash`] if an id is in both: a shipped id never means something else.
+    pub fn extended(mut self, other: Self, file: &str) -> Result<Self, VehicleError> {
+        if let Some(twice) = other.vehicles.iter().find(|v| self.find(&v.id).is_some()) {
+            return Err(VehicleError::Clash { file: file.to_owned(), id: twice.id.clone() });
+        }
+        self.vehicles.extend(other.vehicles);
+        self.odd.extend(other.odd);
+        Ok(self)
+    }
+
+    /// The vehicle of an id.
+    ///
+    /// # Errors
+    /// [`VehicleError::Unknown`] with the ids most like it.
+    pub fn get(&self, id: &str) -> Result<&Vehicle, VehicleError> {
+        self.find(id).ok_or_else(|| VehicleError::Unknown { id: id.to_owned(), nearest: self.nearest(id) })
+    }
+
+    fn find(&self, id: &str) -> Option<&Vehicle> {
+        self.vehicles.iter().find(|v| v.id == id)
+    }
+
+    /// What is odd about vehicles though not impossible, with vehicle, field and line.
+    #[must_use]
+    pub fn warnings(&self) -> &[Fault] {
+        &self.odd
+    }
+
+    /// All vehicles, in file order.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &Vehicle> {
+        self.vehicles.iter()
+    }
+
+    /// The vehicles of a region code, in file order.
+    pub fn region<'a>(&'a self, code: &'a str) -> impl Iterator<Item = &'a Vehicle> {
+        self.vehicles.iter().filter(move |v| v.region == code)
+    }
+
+    /// What `ingest` certifies unless told otherwise: the combinations of the country's regions, and those that are
+    /// certified everywhere (a 3-trailer road train), in file order. `country`: ISO 3166-1 alpha-2, upper case.
+    #[must_use]
+    pub fn for_country(&self, regions: &Regions, country: [u8; 2]) -> Vec<&Vehicle> {
+        let codes = regions.regions_for(country);
+        let wanted = |v: &&Vehicle| codes.contains(&v.region) || regions.everywhere().contains(&v.id);
+        self.vehicles.iter().filter(wanted).collect()
+    }
+
+    /// At most three ids: those whose id or name holds what was typed, then those that differ from it in at most a
+    /// third of its letters. Case, blanks and punctuation do not count.
+    fn nearest(&self, id: &str) -> Vec<String> {
+        let wanted = letters(id);
+        let typed: Vec<char> = wanted.chars().collect();
+        let mut scored: Vec<(usize, &str)> = self
+            .vehicles
+            .iter()
+            .filter_map(|v| {
+                let other = letters(&v.id);
+                let holds = typed.len() >= 3 && (other.contains(&wanted) || letters(&v.name).contains(&wanted));
+                let distance = if holds { 0 } else { edits(&typed, &other) };
+                (distance <= typed.len() / 3).then_some((distance, v.id.as_str()))
+            })
+            .collect();
+        scored.sort_by_key(|&(distance, _)| distance);
+        scored.into_iter().take(3).map(|(_, id)| id.to_owned()).collect()
+    }
+}
+
+/// What of an id or a name counts in a comparison.
+fn letters(text: &str) -> String {
+    text.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).take(MAX_COMPARED).collect()
+}
+
+/// Levenshtein distance: insertions, deletions and substitutions that turn one into the other.
+fn edits(typed: &[char], other: &str) -> usize {
+    let mut row: Vec<usize> = (0..=typed.len()).collect();
+    for (i, to) in other.chars().enumerate() {
+        let mut diagonal = i;
+        let mut left = i + 1;
+        for (cell, &from) in row.iter_mut().skip(1).zip(typed) {
+            let substituted = diagonal + usize::from(from != to);
+            diagonal = *cell;
+            left = substituted.min(diagonal + 1).min(left + 1);
+            *cell = left;
+        }
+        if let Some(first) = row.first_mut() {
+            *first = i + 1;
+        }
+    }
+    row.last().copied().unwrap_or(0)
+}

@@ -1,0 +1,331 @@
+//! The shipped catalogue keeps its promises; wrong files are refused with line, field and bound; nothing panics.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use proptest::prelude::*;
+
+use super::*;
+
+const SEMI: &str = r#"
+[[vehicle]]
+id = "semi"
+[[vehicle.unit]]
+name = "tractor"
+coupling_to_axle_m = 3.7
+hitch_offset_m = -0.6
+front_overhang_m = 1.4
+rear_overhang_m = 0.9
+[[vehicle.unit]]
+name = "trailer"
+coupling_to_axle_m = 7.7
+front_overhang_m = 1.6
+rear_overhang_m = 4.3
+"#;
+
+/// The faults of a file, one a line.
+fn refused(text: &str) -> String {
+    match Catalogue::from_toml(text, "my.toml") {
+        Ok(_) => panic!("accepted:\n{text}"),
+        Err(e) => e.to_string(),
+    }
+}
+
+/// Changing `from` to `to` in a good file gives a message that holds `message`.
+fn check(from: &str, to: &str, message: &str) {
+    assert!(SEMI.contains(from), "{from}");
+    let said = refused(&SEMI.replacen(from, to, 1));
+    assert!(said.contains(message), "{to}: said {said:?}, expected {message:?}");
+    assert!(said.starts_with("my.toml: refused"), "{said}");
+}
+
+#[test]
+fn the_catalogue_has_the_35_combinations_with_their_sources() {
+    let catalogue = Catalogue::builtin().unwrap();
+    assert_eq!(catalogue.iter().len(), 35);
+    for v in catalogue.iter() {
+        assert!(v.source.contains("Assumed: ") && v.source.contains("Axle load: "), "{}", v.id);
+        assert!(!v.name.is_empty() && v.name != v.id, "{}", v.id);
+        assert!(v.height_m.is_some() && v.gross_mass_t.is_some() && v.axle_load_t.is_some(), "{}", v.id);
+        assert!(["US", "CA", "AU", "EU", "indoor", "airside"].contains(&v.region.as_str()), "{}", v.id);
+    }
+    let count = |code| catalogue.region(code).count();
+    assert_eq!([count("US"), count("CA"), count("AU"), count("EU")], [9, 5, 9, 10]);
+}
+
+#[test]
+fn the_catalogue_relies_on_no_default() {
+    let text = include_str!("../../../../data/vehicles.toml");
+    let vehicles = text.matches("\n[[vehicle]]\n").count();
+    let units = text.matches("\n[[vehicle.unit]]\n").count();
+    for field in ["length_m", "region", "height_m", "axle_load_t", "tracking_tolerance_m", "min_shrink", "source"] {
+        assert_eq!(text.matches(&format!("\n{field} = ")).count(), vehicles, "{field}");
+    }
+    for field in
+        ["hitch_offset_m", "front_overhang_m", "rear_overhang_m", "width_m", "max_articulation_deg", "sway_deg"]
+    {
+        assert_eq!(text.matches(&format!("\n{field} = ")).count(), units, "{field}");
+    }
+}
+
+#[test]
+fn the_type_2_road_train_is_three_trailers_on_two_dollies() {
+    let catalogue = Catalogue::builtin().unwrap();
+    let train = catalogue.get("AU-ATRIPLE53").unwrap();
+    let lengths: Vec<f64> = train.units.iter().map(|u| u.coupling_to_axle_m).collect();
+    assert_eq!(lengths, [5.3, 9.5, 5.0, 9.5, 5.0, 9.5]);
+    assert_eq!(train.length_m, 53.2);
+    assert_eq!(train.gross_mass_t, Some(115.5));
+    assert_eq!(train.units[0].max_articulation_rad, 42.0_f64.to_radians());
+}
+
+/// AASHTO's minimum turns, steer axle on the centreline turning radius (metres): the lock must leave room for what the
+/// certificate keeps in reserve, some 6° (3° of heading, 3° of tracking and slip).
+#[test]
+fn steering_locks_allow_the_published_minimum_turns() {
+    let catalogue = Catalogue::builtin().unwrap();
+    for (id, radius_m) in [("US-WB40", 10.97), ("US-WB62", 12.50), ("US-WB67D", 12.47), ("US-WB109D", 17.04)] {
+        let tractor = &catalogue.get(id).unwrap().units[0];
+        let steering = (tractor.coupling_to_axle_m / radius_m).asin();
+        assert!(steering.to_degrees() + 6.0 < tractor.max_articulation_rad.to_degrees(), "{id}");
+    }
+}
+
+#[test]
+fn every_vehicle_comes_back_bit_for_bit_through_its_json() {
+    for v in Catalogue::builtin().unwrap().iter() {
+        let json = v.to_json().unwrap().to_string();
+        assert_eq!(&Vehicle::from_json(&json).unwrap(), v);
+    }
+}
+
+#[test]
+fn json_is_in_file_units() {
+    let catalogue = Catalogue::builtin().unwrap();
+    let json = catalogue.get("EU-SEMI16.5").unwrap().to_json().unwrap();
+    assert_eq!(json["unit"][0]["max_articulation_deg"], 42.0);
+    assert_eq!(json["unit"][1]["sway_deg"], 0.2);
+    assert_eq!(json["tracking_heading_deg"], 3.0);
+}
+
+#[test]
+fn json_is_checked_like_a_file() {
+    let semi = Catalogue::from_toml(SEMI, "my.toml").unwrap();
+    let json = semi.get("semi").unwrap().to_json().unwrap().to_string();
+    let said = Vehicle::from_json(&json.replace("7.7", "-7.7")).unwrap_err().to_string();
+    assert!(said.contains("unit 2 (trailer), coupling_to_axle_m: -7.7 is out of bounds"), "{said}");
+}
+
+#[test]
+fn what_is_left_out_has_the_documented_default() {
+    let catalogue = Catalogue::from_toml(SEMI, "my.toml").unwrap();
+    let v = catalogue.get("semi").unwrap();
+    assert_eq!((v.name.as_str(), v.region.as_str(), v.height_m, v.axle_load_t), ("semi", "", None, None));
+    assert!((v.length_m - 16.5).abs() < 1e-9);
+    assert_eq!((v.tracking_tolerance_m, v.min_shrink, v.width_m()), (0.15, 0.3, 2.6));
+    assert_eq!(v.tracking_heading_rad, 3.0_f64.to_radians());
+    let [tractor, trailer] = v.units.as_slice() else { panic!() };
+    assert_eq!(tractor.max_articulation_rad, 42.0_f64.to_radians());
+    assert_eq!(trailer.max_articulation_rad, 70.0_f64.to_radians());
+    assert_eq!((trailer.hitch_offset_m, trailer.sway_rad), (0.0, 0.2_f64.to_radians()));
+}
+
+#[test]
+fn wrong_values_are_refused_with_line_field_and_bound() {
+    check(
+        "= 7.7",
+        "= 0",
+        "line 12: vehicle \"semi\", unit 2 (trailer), coupling_to_axle_m: 0 is out of bounds: at least 0.05",
+    );
+    check(
+        "= 7.7",
+        "= nan",
+        "line 12: vehicle \"semi\", unit 2 (trailer), coupling_to_axle_m: NaN is not a finite number",
+    );
+    check("= 7.7", "= -inf", "-inf is not a finite number");
+    check(
+        "= -0.6",
+        "= -3.7",
+        "line 7: vehicle \"semi\", unit 1 (tractor), hitch_offset_m: -3.7 must be more than -3.7",
+    );
+    check("= -0.6", "= 7.5", "hitch_offset_m: 7.5 must be more than -3.7 and at most 7.4");
+    check(
+        "= -0.6",
+        "= -0.6\nwidth_m = 25.5",
+        "line 8: vehicle \"semi\", unit 1 (tractor), width_m: 25.5 is out of bounds: at most 12",
+    );
+    check("= -0.6", "= -0.6\nmax_articulation_deg = 90", "max_articulation_deg: 90 is out of bounds: at most 85");
+    check("= 7.7", "= 7.7\nmax_articulation_deg = 0", "max_articulation_deg: 0 is out of bounds: at least 1");
+    check(
+        "\"semi\"",
+        "\"semi\"\nlength_m = 18.75",
+        "line 4: vehicle \"semi\", length_m: 18.75 differs from the units' 16.50 m",
+    );
+    check("\"semi\"", "\"semi\"\nmin_shrink = 0", "min_shrink: 0 is out of bounds: at least 0.01");
+    check("\"semi\"", "\"semi\"\nheight_m = 430", "height_m: 430 is out of bounds: at most 20");
+    check("\"semi\"", "\"semi\"\ngross_mass_t = 5\naxle_load_t = 11.5", "11.5 t is more than the gross mass of 5 t");
+    check(
+        "= 1.6",
+        "= 5.0",
+        "line 13: vehicle \"semi\", unit 2 (trailer), front_overhang_m: the body reaches 1.90 m past the front coupling",
+    );
+    check("= 4.3", "= -10.0", "line 14: vehicle \"semi\", unit 2 (trailer), rear_overhang_m: the body is -0.70 m long");
+    check("\"semi\"", "\"a/b\"", "line 3: vehicle \"a/b\", id: an id is 1 to 64 of the characters A-Z a-z 0-9 . - _");
+    check("\"trailer\"", "\"a\\u0000b\"", "holds a control character");
+}
+
+#[test]
+fn wrong_files_are_refused_with_the_line() {
+    check("= 7.7", "= \"7.7\"", "line 12: invalid type: string \"7.7\", expected f64");
+    check("front_overhang_m = 1.6", "front_overhand_m = 1.6", "line 13: unknown field `front_overhand_m`");
+    check("coupling_to_axle_m = 7.7", "", "line 10: missing field `coupling_to_axle_m`");
+    check("id = \"semi\"", "", "missing field `id`");
+    check("= 7.7", "= = 7.7", "line 12: ");
+    check("\n[[vehicle]]", "unit = 3\n[[vehicle]]", "unknown field `unit`");
+    assert!(refused("").contains("missing field `vehicle`"));
+    assert!(refused("vehicle = []").contains("no vehicle in the file"));
+    assert!(
+        refused("[[vehicle]]\nid = \"x\"\nunit = []")
+            .contains("line 3: vehicle \"x\", unit: a vehicle has 1 to 16 units")
+    );
+}
+
+#[test]
+fn an_id_used_twice_is_refused_with_both_lines() {
+    let said = refused(&SEMI.repeat(2));
+    assert!(said.contains("line 17: vehicle \"semi\", id: the same id is already used on line 3"), "{said}");
+}
+
+#[test]
+fn a_trailer_that_stands_in_the_body_before_the_dolly_is_refused() {
+    let dolly =
+        "[[vehicle.unit]]\nname = \"dolly\"\ncoupling_to_axle_m = 1.0\nfront_overhang_m = 0\nrear_overhang_m = 0.5\n";
+    let rest =
+        SEMI.replace("[[vehicle.unit]]\nname = \"trailer\"", &format!("{dolly}[[vehicle.unit]]\nname = \"trailer\""));
+    let said = refused(&rest);
+    assert!(
+        said.contains("unit 3 (trailer), front_overhang_m: the body reaches 0.60 m past the front coupling"),
+        "{said}"
+    );
+    assert!(said.contains("unit 3 (trailer), front_overhang_m: the body overlaps that of unit 1 by 2.10 m"), "{said}");
+}
+
+#[test]
+fn all_faults_are_told_at_once() {
+    let said = refused(&SEMI.replace("= 7.7", "= -1").replace("= 1.4", "= 99"));
+    assert_eq!(said.lines().count(), 4, "{said}");
+}
+
+#[test]
+fn an_unknown_id_is_answered_with_the_nearest() {
+    let catalogue = Catalogue::builtin().unwrap();
+    let said = |id| catalogue.get(id).unwrap_err().to_string();
+    assert!(said("AU-ATRIPPLE53").contains("did you mean AU-ATRIPLE53"), "{}", said("AU-ATRIPPLE53"));
+    assert!(said("wb67").contains("did you mean US-WB67, US-WB67D"), "{}", said("wb67"));
+    assert!(said("bdouble").contains("AU-BDOUBLE26"), "{}", said("bdouble"));
+    assert!(said("Rocky Mountain").contains("did you mean US-WB92D, CA-RMD31?"), "{}", said("Rocky Mountain"));
+    assert!(!said("zeppelin").contains("did you mean"), "{}", said("zeppelin"));
+}
+
+#[test]
+fn an_unreadable_file_is_named() {
+    let said = Catalogue::from_path(std::path::Path::new("/nowhere/v.toml")).unwrap_err().to_string();
+    assert!(said.starts_with("/nowhere/v.toml: cannot read the vehicle file: "), "{said}");
+}
+
+#[test]
+fn a_users_vehicle_never_takes_a_shipped_id() {
+    let shipped = Catalogue::builtin().unwrap();
+    let own = |id: &str| Catalogue::from_toml(&SEMI.replace("\"semi\"", &format!("{id:?}")), "my.toml").unwrap();
+    assert_eq!(shipped.clone().extended(own("mine"), "my.toml").unwrap().iter().len(), 36);
+    let said = shipped.extended(own("US-WB67"), "my.toml").unwrap_err().to_string();
+    assert!(said.contains("my.toml: vehicle \"US-WB67\" is already in the catalogue"), "{said}");
+}
+
+#[test]
+fn a_countrys_combinations_are_its_regions_and_the_road_train() {
+    let (catalogue, regions) = (Catalogue::builtin().unwrap(), Regions::builtin().unwrap());
+    let ids = |code: &[u8; 2]| -> Vec<&str> {
+        catalogue.for_country(&regions, *code).into_iter().map(|v| v.id.as_str()).collect()
+    };
+    assert_eq!(ids(b"CA"), ["CA-SEMI23", "CA-BTRAIN25", "CA-RMD31", "CA-TPD41", "CA-TRIPLE35", "AU-ATRIPLE53"]);
+    assert_eq!(ids(b"AU").len(), 9);
+    assert_eq!(ids(b"AD"), ids(b"DE"));
+    assert_eq!(ids(b"DE").len(), 11);
+    assert_eq!(regions.regions_for(*b"BR"), ["EU"]);
+    for id in regions.everywhere() {
+        catalogue.get(id).unwrap();
+    }
+    for region in regions.iter() {
+        assert!(catalogue.region(&region.code).next().is_some(), "{}", region.code);
+        assert!(region.countries.iter().all(|c| c.bytes().all(|b| b.is_ascii_uppercase())));
+    }
+}
+
+#[test]
+fn no_country_is_in_two_regions() {
+    let regions = Regions::builtin().unwrap();
+    let mut all: Vec<&String> = regions.iter().flat_map(|r| &r.countries).collect();
+    let listed = all.len();
+    all.sort();
+    all.dedup();
+    assert_eq!(all.len(), listed);
+}
+
+/// A piece of TOML that may or may not fit where it is put.
+fn scrap() -> impl Strategy<Value = String> {
+    prop_oneof![
+        prop::sample::select(vec![
+            "[[vehicle]]",
+            "[[vehicle.unit]]",
+            "[vehicle]",
+            "unit",
+            "id",
+            "=",
+            "nan",
+            "-inf",
+            "1e308",
+            "-1e-320",
+            "\"",
+            "'''",
+            "{",
+            "[",
+            "]",
+            "\n",
+            "width_m = ",
+            "= {}",
+            "= [[]]",
+            "9999999999999999999999",
+            "1979-05-27",
+            "\u{0}",
+            "\u{feff}",
+            "é",
+        ])
+        .prop_map(str::to_owned),
+        any::<f64>().prop_map(|x| x.to_string()),
+        "\\PC{0,4}",
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(3000))]
+
+    /// Cuts and insertions anywhere: a catalogue or a refusal, and what is accepted keeps the bounds and comes back
+    /// from JSON.
+    #[test]
+    fn a_mutated_file_never_panics(edits in prop::collection::vec((any::<prop::sample::Index>(), 0usize..12, scrap()), 1..5)) {
+        let mut chars: Vec<char> = SEMI.chars().collect();
+        for (at, cut, text) in edits {
+            let start = at.index(chars.len() + 1);
+            let end = (start + cut).min(chars.len());
+            chars.splice(start..end, text.chars());
+        }
+        let text: String = chars.into_iter().collect();
+        match Catalogue::from_toml(&text, "my.toml") {
+            Ok(catalogue) => for v in catalogue.iter() {
+                prop_assert!(v.units.iter().all(|u| u.coupling_to_axle_m >= 0.05 && u.width_m > 0.0));
+                prop_assert_eq!(&Vehicle::from_json(&v.to_json().unwrap().to_string()).unwrap(), v);
+            },
+            Err(e) => prop_assert!(e.to_string().starts_with("my.toml: refused")),
+        }
+    }
+}

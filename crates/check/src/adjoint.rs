@@ -1,0 +1,191 @@
+//! The exact bound on a curve (proof, section 6): the adjoint of the time-varying chain, run backwards from one place.
+//!
+//! Kernels are solved step by step with mean coefficients and linear sources. What that leaves over – coefficients that
+//! vary within a step, the bow of a source, of |kernel| between nodes – is bounded term by term and added, each times a bound on
+//! what it multiplies; so the kernels themselves may be off by whatever they are.
+
+use crate::UP;
+use crate::chain::Chain;
+use crate::tubes::Tubes;
+
+/// History is cut when what came before it cannot matter more than this, metres (or radians).
+const CUT: f64 = 2e-5;
+
+/// Coefficients of one unit over one step, for the adjoint.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Coefficients {
+    /// Mean ρ/L, and most by which it differs from it.
+    rate: [f64; 2],
+    /// ρ / (L cos δ): the same all through the step.
+    pace: f64,
+    /// Mean cos χ (1+k) and cos χ k / cos δ, and most by which they differ.
+    through: [f64; 2],
+    back: [f64; 2],
+    /// 1/cos δ, cos χ (1+k) and cos χ k / cos δ at the end of the step.
+    ends: [f64; 3],
+    most_rho: f64,
+}
+
+impl Coefficients {
+    pub(crate) fn of(link: &super::chain::Link, bend: &super::tubes::Bend) -> Self {
+        let mean = |[a, b]: [f64; 2]| [0.5 * (a + b), 0.5 * (a - b).abs()];
+        let rho = bend.rho();
+        let through = bend.cos_chi.map(|c| c * (1.0 + link.k));
+        let back = [0, 1].map(|k| bend.cos_chi[k] * link.k * bend.sec[k]);
+        Self {
+            rate: mean(rho.map(|rho| rho / link.l)),
+            pace: bend.pace / link.l,
+            through: mean(through),
+            back: mean(back),
+            ends: [bend.sec[1], through[1], back[1]],
+            most_rho: rho[0].max(rho[1]),
+        }
+    }
+}
+
+/// Kernels of `W` outputs over one step: at its beginning and its end, and a bound on their second derivatives between.
+#[derive(Debug, Clone, Copy)]
+struct Kernel<const W: usize> {
+    from: [f64; W],
+    to: [f64; W],
+    bow: [f64; W],
+}
+
+impl<const W: usize> Kernel<W> {
+    const NONE: Self = Self { from: [0.0; W], to: [0.0; W], bow: [0.0; W] };
+
+    /// ∫|kernel| over a step of `h`.
+    fn sum(&self, w: usize, h: f64) -> f64 {
+        0.5 * h * (self.from[w].abs() + self.to[w].abs()) + h * h * h / 12.0 * self.bow[w]
+    }
+
+    fn most(&self, w: usize, h: f64) -> f64 {
+        self.from[w].abs().max(self.to[w].abs()) + h * h / 8.0 * self.bow[w]
+    }
+}
+
+/// What is bounded.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Output {
+    /// A body point so many metres ahead of the axle.
+    Point(f64),
+    /// The heading.
+    Heading,
+}
+
+/// Bounds on outputs of `unit` at a node, the end of step `node − 1`, several side by side. `None` where a step of the
+/// history is unbounded.
+pub(crate) fn bounds<const W: usize>(
+    chain: &Chain,
+    tubes: &Tubes,
+    unit: usize,
+    node: usize,
+    outputs: [Output; W],
+) -> Option<[f64; W]> {
+    let last = node.checked_sub(1)?;
+    let h = tubes.step_m;
+    let mut mu = vec![[0.0; W]; unit + 1];
+    let mut total = fold(chain, tubes, unit, last, outputs, &mut mu)?;
+    for step in (tubes.first..=last).rev() {
+        back_one_step(chain, tubes, step, &mut mu, h, &mut total)?;
+        // Now μ stands at the beginning of `step`.
+        if step % 4 == 0 || step == tubes.first {
+            let mut rest = [0.0; W];
+            for (j, mu) in mu.iter().enumerate() {
+                let y = tubes.get(step, j)?.y;
+                rest.iter_mut().zip(mu).for_each(|(rest, mu)| *rest += mu.abs() * y);
+            }
+            if step == tubes.first || rest.iter().all(|rest| *rest < CUT) {
+                return Some(std::array::from_fn(|w| (total[w] + rest[w]) * (1.0 + 1e-10)));
+            }
+        }
+    }
+    None
+}
+
+/// What a bound may bow up between the nodes of a step.
+pub(crate) fn bow(chain: &Chain, unit: usize, step_m: f64) -> f64 {
+    let least = chain.links[..=unit].iter().map(|link| link.l).fold(f64::INFINITY, f64::min);
+    1.0 + 0.5 * (step_m / least).powi(2)
+}
+
+/// Folds the outputs' direct part from the back to the front: what acts at once.
+fn fold<const W: usize>(
+    chain: &Chain,
+    tubes: &Tubes,
+    unit: usize,
+    step: usize,
+    outputs: [Output; W],
+    mu: &mut [[f64; W]],
+) -> Option<[f64; W]> {
+    let l = chain.links[unit].l;
+    let sec = tubes.coefficients(step, unit).ends[0];
+    let weights = outputs.map(|output| match output {
+        Output::Point(a) => (1.0 - a / l, a / l * sec),
+        Output::Heading => (-1.0 / l, sec / l),
+    });
+    mu[unit] = weights.map(|(own, _)| own);
+    let mut n = weights.map(|(_, n)| n);
+    let mut total = [0.0; W];
+    for j in (1..=unit).rev() {
+        let zh = tubes.get(step, j)?.zh;
+        let [_, through, back] = tubes.coefficients(step, j - 1).ends;
+        for w in 0..W {
+            total[w] += n[w].abs() * zh;
+            mu[j - 1][w] = n[w] * through;
+            n[w] *= -back;
+        }
+    }
+    let input = tubes.tolerance_m + tubes.get(step, 0)?.zh;
+    Some(std::array::from_fn(|w| total[w] + n[w].abs() * input))
+}
+
+/// Carries μ from the end of a step to its beginning; adds what the step's inputs can do.
+fn back_one_step<const W: usize>(
+    chain: &Chain,
+    tubes: &Tubes,
+    step: usize,
+    mu: &mut [[f64; W]],
+    h: f64,
+    total: &mut [f64; W],
+) -> Option<()> {
+    let mut behind = Kernel::<W>::NONE; // ν of the unit behind
+    for i in (0..mu.len()).rev() {
+        let c = tubes.coefficients(step, i);
+        let tube = tubes.get(step, i)?;
+        let [rate, rate_off] = c.rate;
+        let x = rate * h;
+        let decay = (-x).exp();
+        let mean = if x > 1e-4 { (1.0 - decay) / x } else { 1.0 - x / 2.0 + x * x / 6.0 };
+        let (w0, w1) = if x > 1e-3 {
+            (h * (1.0 - mean) / x, h * (mean - decay) / x)
+        } else {
+            (h * (0.5 - x / 6.0), h * (0.5 - x / 3.0))
+        };
+        let slips = c.most_rho * (chain.links[i].sway + tube.z / chain.links[i].l);
+        let input = if i == 0 { tubes.tolerance_m + tube.zh } else { tube.zh };
+        let mut nu = Kernel::<W>::NONE;
+        for w in 0..W {
+            let (s1, s0) = (c.through[0] * behind.to[w], c.through[0] * behind.from[w]);
+            let to = mu[i][w];
+            let from = to * decay + s0 * w0 + s1 * w1;
+            let source = s0.abs().max(s1.abs());
+            let bow = rate * rate * to.abs().max(from.abs()) + rate * source + (s0 - s1).abs() / h;
+            let kernel = Kernel::<1> { from: [from], to: [to], bow: [bow] };
+            mu[i][w] = from;
+            nu.from[w] = c.pace * from - c.back[0] * behind.from[w];
+            nu.to[w] = c.pace * to - c.back[0] * behind.to[w];
+            nu.bow[w] = c.pace * bow + c.back[0].abs() * behind.bow[w];
+            // What varies within the step, on the axle and on the coupling.
+            let on_axle = kernel.most(0, h) * rate_off
+                + behind.most(w, h) * c.through[1]
+                + c.through[0].abs() * behind.bow[w] * h * h / 8.0;
+            let off_coupling = behind.most(w, h) * c.back[1];
+            // Slips and second order first.
+            let inputs = kernel.sum(0, h) * slips + nu.sum(w, h) * input;
+            total[w] += (inputs + h * (on_axle * tube.y + off_coupling * tube.e)) * UP;
+        }
+        behind = nu;
+    }
+    Some(())
+}

@@ -1,0 +1,68 @@
+//! The vehicle as the proof has it: lengths, hitches, slips; and its gains, once for all roads.
+
+use crate::gains::Gains;
+use crate::motion::DEFECT_RAD;
+use netcert_base::vehicle::Vehicle;
+
+/// One unit, front to rear.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Link {
+    /// L, metres.
+    pub(crate) l: f64,
+    /// d, metres.
+    pub(crate) d: f64,
+    /// d / L.
+    pub(crate) k: f64,
+    /// σ, with what the nominal motion's rounding is worth, radians.
+    pub(crate) sway: f64,
+    /// θ, radians.
+    pub(crate) limit: f64,
+    /// b/2, metres.
+    pub(crate) half_width: f64,
+    /// The body's ends, metres ahead of the axle.
+    pub(crate) rear: f64,
+    pub(crate) front: f64,
+}
+
+/// A vehicle with its straight gains.
+#[derive(Debug, Clone)]
+pub struct Chain {
+    pub(crate) links: Vec<Link>,
+    /// ε, metres.
+    pub(crate) tolerance_m: f64,
+    /// m, radians.
+    pub(crate) heading_rad: f64,
+    pub(crate) gains: Gains,
+}
+
+impl Chain {
+    /// Works out the gains: some tens of milliseconds.
+    #[must_use]
+    pub fn new(vehicle: &Vehicle) -> Self {
+        let link = |unit: &netcert_base::vehicle::Unit| Link {
+            l: unit.coupling_to_axle_m,
+            d: unit.hitch_offset_m,
+            k: unit.hitch_offset_m / unit.coupling_to_axle_m,
+            sway: unit.sway_rad + DEFECT_RAD,
+            limit: unit.max_articulation_rad,
+            half_width: 0.5 * unit.width_m,
+            rear: -unit.rear_overhang_m,
+            front: unit.coupling_to_axle_m + unit.front_overhang_m,
+        };
+        let links: Vec<Link> = vehicle.units.iter().map(link).collect();
+        let gains = Gains::of(&links);
+        Self { links, tolerance_m: vehicle.tracking_tolerance_m, heading_rad: vehicle.tracking_heading_rad, gains }
+    }
+
+    /// From the foremost point to the rearmost when straight, and the most that is ahead of the steer axle, metres.
+    pub(crate) fn reach_m(&self) -> (f64, f64) {
+        let (mut coupling, mut ahead, mut behind) = (0.0, 0.0_f64, 0.0_f64);
+        for link in &self.links {
+            let axle = coupling - link.l;
+            ahead = ahead.max(axle + link.front);
+            behind = behind.min(axle + link.rear);
+            coupling = axle - link.d;
+        }
+        (ahead, -behind)
+    }
+}

@@ -1,0 +1,312 @@
+//! What is claimed of one vehicle on one corridor, and what comes of it. Pure: no input or output.
+
+use std::ops::Range;
+
+use crate::chain::Chain;
+use crate::leeway::{Shortfall, Swept, Targets};
+use crate::motion::{Motion, STEPS};
+use crate::road::{Road, RoadError};
+use netcert_base::corridor::Corridor;
+
+/// A claim counts as proved if the bound found here is no more than this below it, metres: the two programs cut the road into
+/// steps differently. It is deducted here and nowhere else.
+pub const TOLERANCE_M: f64 = 1e-3;
+/// The same for hinge margins, radians (0.02°).
+pub(crate) const TOLERANCE_RAD: f64 = 0.02 * std::f64::consts::PI / 180.0;
+
+/// A leeway below minus this says that nothing is bounded.
+const NOTHING_M: f64 = 50.0;
+
+/// Where the least leeway is said to be it may be found this much above the RSC, metres: the two programs deduct different amounts
+/// for what lies between their steps.
+pub const LIMITING_TOLERANCE_M: f64 = 0.06;
+
+/// The rear is on the road until the steer axle is so many vehicle lengths on: a quarter turn's arc for its chord (proof, section 7).
+const FARTHEST: f64 = 1.6;
+
+/// … and so many stations from there: the prover looks at stations in blocks of eight.
+const LIMITING_BEYOND: f64 = 8.0;
+
+/// What came of a claim.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// Proved, to the tolerance.
+    Confirmed,
+    /// Not proved; by how much the bound falls short, and where.
+    NotConfirmed(Vec<Finding>),
+    /// Not a claim that could be true: a value is missing, impossible or contradicts another.
+    Malformed(String),
+}
+
+/// One thing that is not proved.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Finding {
+    /// `rsc_m`, `hinge_margin_deg`, `safe` …
+    pub claim: String,
+    /// By how much, and where, in words.
+    pub detail: String,
+    /// Nothing at all is bounded there: the claim is not proved, but nothing speaks against it either.
+    pub unbounded: bool,
+}
+
+/// What is claimed of a span of stations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpanClaim {
+    /// Stations of the corridor, as `EdgeSpan` has them.
+    pub stations: Range<usize>,
+    /// Least leeway, metres; `None`: nothing is claimed.
+    pub rsc_m: Option<f64>,
+    /// Least hinge margin, radians.
+    pub hinge_margin_rad: Option<f64>,
+    /// γ.
+    pub shrink: f64,
+    /// Where the least leeway is said to be: metres along the corridor, unit, side (0 left, 1 right), as far as that is known.
+    pub limiting: Option<(f64, usize, usize)>,
+}
+
+/// A vehicle on a corridor along a plan.
+pub struct Subject<'a> {
+    pub(crate) chain: &'a Chain,
+    pub(crate) road: Road,
+    pub(crate) motion: Option<Motion>,
+    /// Of the steer axle's path at the corridor's stations, metres.
+    shifts: Vec<f64>,
+}
+
+impl<'a> Subject<'a> {
+    /// `shift(s)`: the plan, metres left of the centreline at `s` stations from the corridor's first; it is held beyond both ends.
+    /// `lenient`: stations that do not fit make their stretch one on which nothing is confirmed, not an error.
+    ///
+    /// # Errors
+    /// Stations that do not fit each other.
+    pub fn new(
+        chain: &'a Chain,
+        corridor: &Corridor,
+        shift: impl Fn(f64) -> f64,
+        lenient: bool,
+    ) -> Result<Self, RoadError> {
+        let (ahead, behind) = chain.reach_m();
+        let road = Road::new(
+            corridor,
+            ahead + 3.0 * corridor.spacing_m,
+            FARTHEST * behind + 3.0 * corridor.spacing_m,
+            lenient,
+        )?;
+        let (lead, last) = (road.lead as f64, road.count as f64 - 1.0);
+        let motion = Motion::new(chain, &road, |s| shift((s - lead).clamp(0.0, last)));
+        let shifts = (0..road.count).map(|k| shift(k as f64)).collect();
+        Ok(Self { chain, road, motion, shifts })
+    }
+
+    /// The shift of the steer axle's path `s` stations from the corridor's first, metres.
+    pub fn planned(&self, s: f64) -> f64 {
+        let last = self.shifts.len() - 1;
+        let s = s.clamp(0.0, last as f64);
+        let k = (s as usize).min(last.saturating_sub(1));
+        self.shifts[k] + (self.shifts[(k + 1).min(last)] - self.shifts[k]) * (s - k as f64)
+    }
+
+    /// What comes of each claim, and how many kilometres of corridor were swept.
+    #[must_use]
+    pub fn check(&self, claims: &[SpanClaim]) -> Vec<Vec<Finding>> {
+        let mut findings = vec![Vec::new(); claims.len()];
+        let Some(motion) = &self.motion else {
+            for (claim, found) in claims.iter().zip(&mut findings) {
+                if claim.rsc_m.is_some() {
+                    found
+                        .push(finding("rsc_m", "the plan cannot be driven: it turns back, or a unit stands across it"));
+                }
+            }
+            return findings;
+        };
+        let mut shrinks: Vec<f64> = claims.iter().map(|claim| claim.shrink).collect();
+        shrinks.sort_by(f64::total_cmp);
+        shrinks.dedup();
+        let whole = Swept::new(self.chain, &self.road, motion, self.chain.tolerance_m);
+        for shrink in shrinks {
+            let spans =
+                claims.iter().filter(|claim| claim.shrink == shrink).map(|claim| self.stretches(&claim.stations));
+            let range = spans.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end)).unwrap_or(0..0);
+            let mut swept = whole.within(shrink.min(1.0) * self.chain.tolerance_m, range);
+            let own: Vec<usize> = (0..claims.len()).filter(|&i| claims[i].shrink == shrink).collect();
+            self.leeway(&mut swept, claims, &own, &mut findings);
+            for i in own {
+                if let Some(short) =
+                    claims[i].hinge_margin_rad.and_then(|margin| self.hinges(&mut swept, &claims[i].stations, margin))
+                {
+                    findings[i].push(Finding { unbounded: short.1, ..finding("hinge_margin_deg", &short.0) });
+                }
+                if let Some(found) = self.limiting(&mut swept, &claims[i]) {
+                    findings[i].push(found);
+                }
+            }
+        }
+        findings
+    }
+
+    /// Why two columns of leeway (left, right), one entry a station at γ = 1, are not proved. An entry claims what a span of its station
+    /// alone would: the leeway all over both stretches that meet there.
+    pub fn leeway_columns(&self, columns: [&[Option<f64>]; 2]) -> [Option<String>; 2] {
+        let stretches = self.road.count - 1;
+        let claimed = |column: &[Option<f64>], k: usize| {
+            let both = [column[k], column[k + 1]];
+            both.into_iter().flatten().map(asked_alone).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let targets = columns.map(|column| (0..stretches).map(|k| claimed(column, k)).collect::<Vec<_>>());
+        let claims_nothing = |side: &[f64]| side.iter().all(|target| *target == f64::NEG_INFINITY);
+        let Some(motion) = &self.motion else {
+            let wrong = |side: &Vec<f64>| (!claims_nothing(side)).then(|| "the plan cannot be driven".to_owned());
+            return [wrong(&targets[0]), wrong(&targets[1])];
+        };
+        let mut swept = Swept::new(self.chain, &self.road, motion, self.chain.tolerance_m);
+        let shortfalls = swept.refute(&Targets(targets));
+        [0, 1].map(|side| {
+            let own = shortfalls.iter().filter(|shortfall| shortfall.side == side);
+            let worst = own.max_by(|a, b| a.short_m.total_cmp(&b.short_m))?;
+            Some(self.describe(worst.short_m, worst))
+        })
+    }
+
+    /// What is between a body point and the edge beside it as it passes the normal `s` metres along the corridor, steered exactly.
+    pub fn nominal_at(&self, s: f64, unit: usize, side: usize, a: f64) -> Option<f64> {
+        let swept = self.swept(self.chain.tolerance_m)?;
+        swept.nominal_at(s / self.road.spacing + self.road.lead as f64, unit, side, a)
+    }
+
+    /// The place that limits must be on the span, and have no more room than the RSC, nearly.
+    fn limiting(&self, swept: &mut Swept<'_>, claim: &SpanClaim) -> Option<Finding> {
+        let ((at_m, unit, side), rsc_m) = (claim.limiting?, claim.rsc_m.filter(|rsc_m| *rsc_m > -NOTHING_M)?);
+        let own = self.stretches(&claim.stations);
+        let at = at_m / self.road.spacing;
+        if unit >= self.chain.links.len() || at < own.start as f64 - 1.0 || at > own.end as f64 + LIMITING_BEYOND {
+            return Some(finding("limiting", &format!("unit {unit} at {at_m:.1} m is not on the span")));
+        }
+        let stretches = self.road.count - 1;
+        let mut targets = [vec![f64::NEG_INFINITY; stretches], vec![f64::NEG_INFINITY; stretches]];
+        let at = at.clamp(own.start as f64, own.end as f64 - 1.0);
+        let beyond = LIMITING_BEYOND as usize;
+        let near = (at as usize).saturating_sub(beyond)..(at as usize + beyond).min(stretches);
+        // Where half-widths kink the prover deducts half the kink, which it may have stepped over; it is looked at as it is here.
+        let kink_m = 0.5 * self.road.kink(side, self.road.lead + near.start..self.road.lead + near.end);
+        // Where much is to spare, or missing, the two part by more: there nothing rests on it.
+        targets[side][near].fill(rsc_m + LIMITING_TOLERANCE_M + kink_m + 0.25 * rsc_m.abs());
+        let roomy = swept.refute_only(&Targets(targets), Some(unit)).is_empty();
+        roomy.then(|| {
+            finding("limiting", &format!("unit {unit} has more room than the RSC at {at_m:.1} m on that side"))
+        })
+    }
+
+    /// Nominal place of an axle (from the corridor's first station) when the steer axle is at station `k`.
+    pub fn axle_at(&self, k: usize, unit: usize) -> Option<[f64; 2]> {
+        Some(self.motion.as_ref()?.pose((self.road.lead + k) * STEPS, unit).p)
+    }
+
+    /// How far off an axle may be when the steer axle is at station `k`: the filter's bound if that is no more than `enough`, else the
+    /// adjoint's.
+    pub fn tube_at(&self, swept: &mut Swept<'_>, k: usize, unit: usize, enough: f64) -> Option<f64> {
+        let step = (self.road.lead + k) * STEPS;
+        swept.axle_bound(step.checked_sub(1)?, unit, enough)
+    }
+
+    /// The vehicle swept at a tolerance.
+    pub fn swept(&self, tolerance_m: f64) -> Option<Swept<'_>> {
+        Some(Swept::new(self.chain, &self.road, self.motion.as_ref()?, tolerance_m))
+    }
+
+    /// The same, by the filter alone.
+    pub fn filtered(&self, tolerance_m: f64) -> Option<Swept<'_>> {
+        Some(Swept::filtered(self.chain, &self.road, self.motion.as_ref()?, tolerance_m))
+    }
+
+    /// Foot of a point near `s` (stations of the road), and its lateral place.
+    pub fn foot(&self, x: [f64; 2], guess: f64) -> Option<(f64, super::road::Place, f64)> {
+        super::leeway::foot(&self.road, x, guess)
+    }
+
+    fn leeway(&self, swept: &mut Swept<'_>, claims: &[SpanClaim], own: &[usize], findings: &mut [Vec<Finding>]) {
+        let stretches = self.road.count - 1;
+        let mut side = vec![f64::NEG_INFINITY; stretches];
+        for &i in own {
+            if let Some(rsc_m) = claims[i].rsc_m {
+                for k in self.stretches(&claims[i].stations) {
+                    side[k] = side[k].max(asked(rsc_m));
+                }
+            }
+        }
+        let shortfalls = swept.refute(&Targets([side.clone(), side.clone()]));
+        for &i in own {
+            let Some(rsc_m) = claims[i].rsc_m else { continue };
+            // A stretch that two spans share was asked for the greater claim.
+            let short = |s: &Shortfall, k: usize| s.short_m - (side[k] - asked(rsc_m));
+            let worst = shortfalls
+                .iter()
+                .filter_map(|s| {
+                    let k = (s.station.max(0.0) as usize).min(stretches - 1);
+                    let near = self.stretches(&claims[i].stations).contains(&k);
+                    (near && short(s, k) > 0.0).then(|| (short(s, k), s))
+                })
+                .max_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((short_m, at)) = worst {
+                let unbounded = short_m.is_infinite();
+                findings[i].push(Finding { unbounded, ..finding("rsc_m", &self.describe(short_m, at)) });
+            }
+        }
+    }
+
+    fn describe(&self, short_m: f64, at: &Shortfall) -> String {
+        if short_m.is_infinite() {
+            return format!("{:.1} m: no bound at all there (unit {})", at.station * self.road.spacing, at.unit);
+        }
+        format!(
+            "off by {:.4} m or more at {:.1} m: unit {}, {} side, {:.1} m ahead of its axle",
+            short_m + TOLERANCE_M,
+            at.station * self.road.spacing,
+            at.unit,
+            ["left", "right"][at.side],
+            at.point_m
+        )
+    }
+
+    /// Stretches between the stations of a span; of a single station, those that meet there.
+    fn stretches(&self, stations: &Range<usize>) -> Range<usize> {
+        let last = self.road.count - 1;
+        let (from, to) = (stations.start.min(last), stations.end.saturating_sub(1).min(last));
+        if to > from { from..to } else { from.saturating_sub(1)..(from + 1).min(last) }
+    }
+
+    /// Why a hinge margin is not proved while any point of the vehicle is on the span.
+    fn hinges(&self, swept: &mut Swept<'_>, stations: &Range<usize>, margin_rad: f64) -> Option<(String, bool)> {
+        let stretches = self.stretches(stations);
+        let least = margin_rad - TOLERANCE_RAD;
+        let steps = swept.steps(stretches);
+        let mut worst: Option<(f64, String)> = None;
+        for step in steps {
+            for unit in 0..self.chain.links.len() {
+                let short = least - swept.hinge_margin(step, unit, least);
+                if short > 0.0 && worst.as_ref().is_none_or(|w| short > w.0) {
+                    let at = (step as f64 / STEPS as f64 - self.road.lead as f64) * self.road.spacing;
+                    let by = (short + TOLERANCE_RAD).to_degrees();
+                    worst = Some((short, format!("off by {by:.3}° at {at:.1} m: hinge {unit}")));
+                }
+            }
+        }
+        worst.map(|(short, text)| (text, short.is_infinite()))
+    }
+}
+
+/// What must be found for an RSC to count as proved. Of one below zero nothing is promised to anybody, and the two programs' second
+/// orders part where a vehicle stands metres outside: there, to a thousandth of it.
+fn asked(rsc_m: f64) -> f64 {
+    rsc_m - TOLERANCE_M + 1e-3 * rsc_m.min(0.0)
+}
+
+/// The same of a single station's entry. Where the vehicle stands outside, on normals that crowd, it is confirmed to a twentieth.
+fn asked_alone(leeway_m: f64) -> f64 {
+    leeway_m - TOLERANCE_M + 0.05 * leeway_m.min(0.0)
+}
+
+/// One thing that is not proved, with what is found.
+#[must_use]
+pub fn finding(claim: &str, detail: &str) -> Finding {
+    Finding { claim: claim.to_owned(), detail: detail.to_owned(), unbounded: false }
+}

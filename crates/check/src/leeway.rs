@@ -1,0 +1,698 @@
+//! From tubes to leeway (proof, section 7), against what is claimed: branch and bound.
+//!
+//! A cell is one side of one body, from `a0` to `a1` ahead of its axle, during part of a step. Its leeway lies above that of
+//! its four corners but for what second derivatives along the body and in time can take away. Where that is not enough the
+//! cell is halved, or its tubes are replaced by the adjoint's. So nothing is sampled: every cell is decided, by a
+//! bound not below the claim, or by a place where the bound is below it.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use crate::UP;
+use crate::adjoint::{self, Output};
+use crate::chain::Chain;
+use crate::gains::Knots;
+use crate::interval::Interval;
+use crate::motion::{Motion, Pose, STEPS, along};
+use crate::road::{Place, Road};
+use crate::tubes::{Tube, Tubes};
+
+/// Decisions closer than this are repeated in intervals, metres.
+pub(crate) const CLOSE_M: f64 = 1e-6;
+/// What the road's own evaluation may be off, metres: its quadrature (1e-7) and rounding.
+const ROAD_M: f64 = 2e-7;
+/// Widest gap between two stretches that a foot may fall into, metres.
+const GAP_M: f64 = 0.03;
+/// Halvings of a cell at most: 15 m of body to 1 mm.
+const MOST_HALVINGS: u32 = 16;
+/// Second derivatives are taken at the corners of a cell; between them they may be greater by this factor.
+const BETWEEN: f64 = 1.25;
+/// Points of a body at which the adjoint is run, metres apart; linear between, which is never less (convex).
+const KNOT_M: f64 = 0.25;
+/// The adjoint is asked about pieces of a body no longer than this, metres: a run costs as much as some hundred halvings.
+const SHARP_M: f64 = 1.0;
+/// Outputs that go through the adjoint side by side.
+const ABREAST: usize = 4;
+/// A cell with a corner that has no foot is halved so often; what is left of it touches every normal that passes within the
+/// second length, and no road farther along than the first.
+const FOOTLESS_HALVINGS: u32 = 5;
+const FOOTLESS_M: f64 = 6.0;
+const NEAR_M: f64 = 0.1;
+/// A foot is not further from where it would be on a straight than this part of the vehicle's length, and these metres.
+const ASTRAY_PART: f64 = 0.5;
+const ASTRAY_M: f64 = 10.0;
+/// Steps of history over which second-order terms are taken from the adjoint's bounds, in vehicle lengths.
+const HISTORY_LENGTHS: f64 = 1.5;
+
+/// What leeway is claimed on each stretch between stations of the corridor, by side (0 left, 1 right), metres;
+/// −∞ where nothing is claimed.
+#[derive(Debug, Clone)]
+pub(crate) struct Targets(pub(crate) [Vec<f64>; 2]);
+
+/// A cell that does not reach what is claimed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Shortfall {
+    /// Station of the corridor, as a real number.
+    pub(crate) station: f64,
+    /// Unit, side (0 left, 1 right) and metres ahead of the axle.
+    pub(crate) unit: usize,
+    /// Side.
+    pub(crate) side: usize,
+    /// Body point.
+    pub(crate) point_m: f64,
+    /// By how much the bound is below the claim, metres.
+    pub(crate) short_m: f64,
+}
+
+/// The vehicle on the road along its plan, with tubes at one tolerance.
+pub struct Swept<'a> {
+    pub(crate) chain: &'a Chain,
+    pub(crate) road: &'a Road,
+    pub(crate) motion: &'a Motion,
+    pub(crate) tubes: Tubes,
+    /// Steps whose tubes the adjoint has been through.
+    tightened: Vec<bool>,
+    /// The adjoint's bounds throughout a step, by unit and step, at knots from the rear end of the unit on; NaN where it was not
+    /// asked, ∞ where it bounds nothing.
+    exact: HashMap<(usize, usize), Vec<f64>>,
+    /// The same at nodes.
+    at_nodes: HashMap<(usize, usize), Vec<f64>>,
+    /// Bounds of axle and heading at nodes.
+    poses: HashMap<(usize, usize), Option<[f64; 2]>>,
+}
+
+/// A corner of a cell.
+#[derive(Debug, Clone, Copy)]
+struct Corner {
+    /// Foot, in stations.
+    s: f64,
+    /// Half-width less lateral place: nominal leeway.
+    clear: f64,
+    /// What the tubes take away at most.
+    dev: f64,
+    /// |second derivative| of the leeway as the point moves, per metre of the coupling's path.
+    bend: f64,
+    lateral: f64,
+    sin: f64,
+    slope: f64,
+    /// Stations by which the foot may be off.
+    reach: f64,
+}
+
+/// A cell: one side of one unit in one step.
+#[derive(Debug, Clone, Copy)]
+struct Cell {
+    unit: usize,
+    side: usize,
+    step: usize,
+    /// Shares of the step.
+    t: [f64; 2],
+    a: [f64; 2],
+    halvings: u32,
+}
+
+impl<'a> Swept<'a> {
+    pub(crate) fn new(chain: &'a Chain, road: &'a Road, motion: &'a Motion, tolerance_m: f64) -> Self {
+        Self::begin(chain, road, motion, Tubes::new(chain, road.spacing, tolerance_m))
+    }
+
+    /// With the filter's bounds alone, however loose: the adjoint is not asked.
+    pub(crate) fn filtered(chain: &'a Chain, road: &'a Road, motion: &'a Motion, tolerance_m: f64) -> Self {
+        Self::begin(chain, road, motion, Tubes::filtered(chain, road.spacing, tolerance_m))
+    }
+
+    fn begin(chain: &'a Chain, road: &'a Road, motion: &'a Motion, mut tubes: Tubes) -> Self {
+        for _ in 0..motion.steps() {
+            tubes.advance(chain, motion);
+        }
+        Self {
+            chain,
+            road,
+            motion,
+            tubes,
+            tightened: vec![false; motion.steps()],
+            exact: HashMap::new(),
+            at_nodes: HashMap::new(),
+            poses: HashMap::new(),
+        }
+    }
+
+    /// The same at a lesser tolerance, for claims on some stretches only.
+    pub(crate) fn within(&self, tolerance_m: f64, stretches: std::ops::Range<usize>) -> Self {
+        let steps = self.steps(stretches);
+        let (_, behind) = self.chain.reach_m();
+        let history = (HISTORY_LENGTHS * 2.0 * behind / self.tubes.step_m) as usize;
+        let mut tubes = Tubes::within(&self.tubes, self.chain, steps.start.saturating_sub(history), tolerance_m);
+        for _ in tubes.first..steps.end {
+            tubes.advance(self.chain, self.motion);
+        }
+        Self {
+            tubes,
+            tightened: vec![false; self.motion.steps()],
+            exact: HashMap::new(),
+            at_nodes: HashMap::new(),
+            poses: HashMap::new(),
+            ..*self
+        }
+    }
+
+    /// Steps during which some body point may have its foot on some stretches of the corridor.
+    pub(crate) fn steps(&self, stretches: std::ops::Range<usize>) -> std::ops::Range<usize> {
+        let (ahead, behind) = self.chain.reach_m();
+        let stations = |metres: f64| (metres / self.road.spacing).ceil() as usize;
+        let from = (self.road.lead + stretches.start).saturating_sub(stations(ahead) + 1) * STEPS;
+        let mut to = (self.road.lead + stretches.end + 1 + stations(1.05 * behind)) * STEPS;
+        // In a bend the rear may follow farther behind than on a straight.
+        while to < self.motion.steps() && self.rear(to).is_none_or(|s| s <= (self.road.lead + stretches.end) as f64) {
+            to += STEPS;
+        }
+        from..to.min(self.motion.steps())
+    }
+
+    /// The foot that is farthest back, in stations, of any unit's rear end at a node; `None` where one has no foot.
+    fn rear(&self, node: usize) -> Option<f64> {
+        let feet = self.chain.links.iter().enumerate().flat_map(|(unit, link)| {
+            [-link.half_width, link.half_width].map(|b| {
+                let x = point(self.motion.pose(node, unit), link.rear, b);
+                foot(self.road, x, self.rough_foot(node, unit, link.rear)).map(|(s, ..)| s)
+            })
+        });
+        feet.reduce(|least, s| Some(least?.min(s?))).flatten()
+    }
+
+    /// All places where the claims are not reached, the worst of each stretch and side.
+    pub(crate) fn refute(&mut self, targets: &Targets) -> Vec<Shortfall> {
+        self.refute_only(targets, None)
+    }
+
+    /// The same, of one unit only.
+    pub(crate) fn refute_only(&mut self, targets: &Targets, only: Option<usize>) -> Vec<Shortfall> {
+        let claimed = |k: &usize| targets.0.iter().any(|side| side[*k] > f64::NEG_INFINITY);
+        let stretches = targets.0[0].len();
+        let (Some(first), Some(last)) = ((0..stretches).find(claimed), (0..stretches).rev().find(claimed)) else {
+            return Vec::new();
+        };
+        let mut found = Shortfalls::new(stretches);
+        let mut feet = vec![f64::NAN; self.chain.links.len() * 4];
+        for step in self.steps(first..last + 1) {
+            for unit in only.map_or(0..self.chain.links.len(), |unit| unit..unit + 1) {
+                for side in 0..2 {
+                    let link = &self.chain.links[unit];
+                    let cell = Cell { unit, side, step, t: [0.0, 1.0], a: [link.rear, link.front], halvings: 0 };
+                    let at = (unit * 2 + side) * 2;
+                    let hints = [feet[at], feet[at + 1]];
+                    let ends = self.cell(&cell, hints, targets, &mut found);
+                    feet[at..at + 2].copy_from_slice(&ends);
+                }
+            }
+        }
+        found.worst.into_iter().flatten().flatten().collect()
+    }
+
+    /// Decides a cell; gives the feet of its ends when it is over.
+    fn cell(&mut self, cell: &Cell, hints: [f64; 2], targets: &Targets, found: &mut Shortfalls) -> [f64; 2] {
+        let poses = cell.t.map(|t| self.pose(cell.step, cell.unit, t));
+        // Rough feet: straight on from the hint, or from where the road's stations are.
+        let guess = |k: usize| {
+            if hints[k].is_nan() { self.rough_foot(cell.step, cell.unit, cell.a[k]) } else { hints[k] }
+        };
+        let mut feet = [guess(0), guess(1)];
+        let mut corners = [[None; 2]; 2];
+        for (t, pose) in poses.iter().enumerate() {
+            for k in 0..2 {
+                corners[t][k] = self.corner(cell, *pose, cell.a[k], feet[k]);
+                if let Some(corner) = corners[t][k] {
+                    feet[k] = corner.s;
+                }
+            }
+        }
+        let [[Some(c00), Some(c01)], [Some(c10), Some(c11)]] = corners else {
+            // No foot, or nothing is bounded here: whatever is claimed where it may be is not proved.
+            if self.tubes.get(cell.step, cell.unit).is_some() && cell.halvings < FOOTLESS_HALVINGS {
+                let middle = f64::midpoint(cell.a[0], cell.a[1]);
+                for a in [[cell.a[0], middle], [middle, cell.a[1]]] {
+                    let half = Cell { a, halvings: cell.halvings + 1, ..*cell };
+                    self.cell(&half, [f64::NAN; 2], targets, found);
+                }
+            } else {
+                found.unbounded(cell, &self.touched(cell, &poses), targets);
+            }
+            return [f64::NAN; 2];
+        };
+        let all = [c00, c01, c10, c11];
+        let range = all.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], c| [lo.min(c.s), hi.max(c.s)]);
+        let reach = all.iter().map(|c| c.reach).fold(0.01, f64::max);
+        let (first, last) = self.range([range[0] - reach, range[1] + reach]);
+        let Some(target) = found.target(targets, cell.side, first, last) else { return feet };
+        let base = all.iter().map(|c| c.clear - c.dev).fold(f64::INFINITY, f64::min);
+        let (time, body) = self.allowances(cell, &all, range);
+        let bound = base - time - body;
+        if bound >= target + CLOSE_M || bound >= target && self.sure(cell, &poses, &all, time + body, target) {
+            return feet;
+        }
+        self.undecided(cell, &all, bound - target, [time, body], targets, found, (first, last));
+        feet
+    }
+
+    /// Halves the cell, sharpens its tubes, or gives it up.
+    #[allow(clippy::too_many_arguments)]
+    fn undecided(
+        &mut self,
+        cell: &Cell,
+        all: &[Corner; 4],
+        slack: f64,
+        [time, body]: [f64; 2],
+        targets: &Targets,
+        found: &mut Shortfalls,
+        (first, last): (usize, usize),
+    ) {
+        // Allowances shrink fourfold: as long as they are what is missing, halve.
+        let halving_helps = slack + 0.75 * (time + body) >= 0.0 && time + body > 0.0;
+        let knots = self.knots(cell, all);
+        let dull = (!halving_helps || cell.halvings > 5) && self.worth(cell) && !self.sharp(cell, &knots);
+        let short = (cell.a[1] - cell.a[0]).abs() <= SHARP_M;
+        if dull && short {
+            self.sharpen(cell, knots);
+            let hints = [all[0].s, all[1].s];
+            self.cell(cell, hints, targets, found);
+            return;
+        }
+        // A cell over several stretches may just be asked for what is claimed of another.
+        let spread = last > first;
+        if cell.halvings < MOST_HALVINGS && (halving_helps || spread || dull || cell.halvings < 4) {
+            let mut halves = [Cell { halvings: cell.halvings + 1, ..*cell }; 2];
+            let [[a0, a1], [t0, t1]] = [cell.a, cell.t];
+            let long = (a1 - a0).abs() > 4.0 * self.tubes.step_m * (t1 - t0);
+            if body > time || long || dull {
+                let middle = f64::midpoint(a0, a1);
+                (halves[0].a[1], halves[1].a[0]) = (middle, middle);
+            } else {
+                let middle = f64::midpoint(t0, t1);
+                (halves[0].t[1], halves[1].t[0]) = (middle, middle);
+            }
+            for half in &halves {
+                let hints = half.a.map(|a| all[0].s + (all[1].s - all[0].s) * (a - a0) / (a1 - a0).max(1e-9));
+                self.cell(half, hints, targets, found);
+            }
+            return;
+        }
+        let least =
+            all.iter().fold(all[0], |least, c| if c.clear - c.dev < least.clear - least.dev { *c } else { least });
+        let point_m = if least.s == all[0].s || least.s == all[2].s { cell.a[0] } else { cell.a[1] };
+        found.add(cell, least.s - self.road.lead as f64, point_m, -slack, (first, last), targets);
+    }
+
+    fn pose(&self, step: usize, unit: usize, t: f64) -> Pose {
+        if t == 0.0 {
+            return self.motion.pose(step, unit);
+        }
+        if t == 1.0 {
+            return self.motion.pose(step + 1, unit);
+        }
+        self.motion.swing(step, unit).pose(&self.chain.links[unit], self.motion.pose(step, unit), t)
+    }
+
+    /// Where the foot would be on a straight road.
+    fn rough_foot(&self, step: usize, unit: usize, a: f64) -> f64 {
+        let behind: f64 = self.chain.links[..unit].iter().map(|link| link.l + link.d).sum();
+        step as f64 / STEPS as f64 - (behind + self.chain.links[unit].l - a) / self.road.spacing
+    }
+
+    /// Stretches of the corridor whose normals may pass through a cell: on their stations it lies ahead of the first and not ahead of
+    /// the second.
+    fn touched(&self, cell: &Cell, poses: &[Pose; 2]) -> Vec<usize> {
+        let sign = if cell.side == 0 { 1.0 } else { -1.0 };
+        let b = sign * self.chain.links[cell.unit].half_width;
+        let points: Vec<[f64; 2]> = poses.iter().flat_map(|pose| cell.a.map(|a| point(*pose, a, b))).collect();
+        let ahead = |k: usize| {
+            let place = self.road.place(k as f64);
+            points.iter().map(move |x| (x[0] - place.c[0]) * place.t[0] + (x[1] - place.c[1]) * place.t[1])
+        };
+        let middle = self.rough_foot(cell.step, cell.unit, f64::midpoint(cell.a[0], cell.a[1]));
+        let reach = (0.5 * (cell.a[1] - cell.a[0]) + FOOTLESS_M) / self.road.spacing;
+        let from = ((middle - reach).max(self.road.lead as f64)) as usize;
+        let to = ((middle + reach).max(0.0) as usize).min(self.road.lead + self.road.count - 1);
+        (from..to)
+            .filter(|&k| ahead(k).any(|x| x > -NEAR_M) && ahead(k + 1).any(|x| x < NEAR_M))
+            .map(|k| k - self.road.lead)
+            .collect()
+    }
+
+    /// Stretches of the corridor between two feet (stations of the road).
+    fn range(&self, [from, to]: [f64; 2]) -> (usize, usize) {
+        let own = |s: f64| s - self.road.lead as f64;
+        let last = self.road.count - 2;
+        if own(to) < 0.0 || own(from) > (last + 1) as f64 {
+            return (1, 0);
+        }
+        ((own(from).max(0.0) as usize).min(last), (own(to).max(0.0) as usize).min(last))
+    }
+
+    /// A body point on the side of a cell; `None` without a foot near the guess, or without a bound.
+    fn corner(&self, cell: &Cell, pose: Pose, a: f64, guess: f64) -> Option<Corner> {
+        let link = &self.chain.links[cell.unit];
+        let sign = if cell.side == 0 { 1.0 } else { -1.0 };
+        let b = sign * link.half_width;
+        let x = point(pose, a, b);
+        let (s, place, lateral) = foot(self.road, x, guess)?;
+        // Newton may have gone to another leg of the road, on which the vehicle is not.
+        let away = (s - self.rough_foot(cell.step, cell.unit, a)).abs() * self.road.spacing;
+        if away > ASTRAY_PART * self.chain.reach_m().1 + ASTRAY_M {
+            return None;
+        }
+        let n = [-place.t[1], place.t[0]];
+        let cos = pose.u[0] * place.t[0] + pose.u[1] * place.t[1];
+        let sin = pose.u[0] * n[0] + pose.u[1] * n[1];
+        let (width, slope) = self.road.width(cell.side, s);
+        let tube = self.tubes.get(cell.step, cell.unit)?;
+        // Normals part on the outside of a bend: there a foot moves no more than its point does.
+        let narrow = 1.0 - (place.curvature * lateral).max(0.0);
+        if !(cos > 0.2 && narrow > 0.1) {
+            return None;
+        }
+        let at = a - b * sin / cos;
+        let slide = cos * link.half_width * tube.a + sin.abs() * (tube.y + a.abs() * tube.a);
+        // How far, in stations, its foot may be from the nominal one: what the half-width falls on that way is deducted.
+        let reach = slide / narrow / self.road.spacing * UP;
+        let second = cos * a.abs() * tube.r1 / link.l
+            + 0.5 * sin.abs() * a.abs() * tube.a * tube.a
+            + 0.5 * place.curvature.abs() / narrow * slide * slide
+            + (width - self.road.narrowest(cell.side, s - reach, s + reach));
+        let dev = (cos * self.off(cell.step, cell.unit, at, tube) + second) * UP;
+        // Second derivative of the lateral place, per metre of the coupling's path.
+        let swing = self.motion.swing(cell.step, cell.unit);
+        let q = 1.0 + swing.before * swing.before;
+        let (sd, cd) = (2.0 * swing.before / q, (2.0 - q) / q);
+        let (v, w, dv, dw) = (cd, sd / link.l, sd * sd / link.l, -sd * cd / (link.l * link.l));
+        let along_road = (v - b * w) * cos - a * w * sin;
+        let across = (dv - a * w * w - b * dw) * sin + (v * w + a * dw - b * w * w) * cos;
+        let (_, rate) = self.road.sharpest(cell.side, s, s);
+        let feet = (w.abs() * (v + (a * w).abs())
+            + 2.0 * place.curvature.abs() * (sin.abs() + (a * w).abs())
+            + rate * lateral.abs())
+            / (narrow * narrow);
+        let bend = (across - place.curvature * along_road * along_road / (1.0 - place.curvature * lateral)).abs()
+            + slope.abs() * feet;
+        let dev = dev + self.road.slack(s).max(self.road.slack(s - 0.1)) + beside_m(x, &place);
+        Some(Corner { s, clear: width - sign * lateral, dev, bend, lateral, sin, slope, reach })
+    }
+
+    /// The first-order bound at `a` throughout a step.
+    fn off(&self, step: usize, unit: usize, a: f64, tube: &Tube) -> f64 {
+        let link = &self.chain.links[unit];
+        let filter = self.chain.gains.units[unit].point(a, self.tubes.tolerance_m)
+            + (1.0 - a / link.l).abs() * tube.extra
+            + (a / link.l).abs() * tube.extra_coupling;
+        // Between nodes the coupling leaves its chord.
+        let bulge = if unit == 0 { 0.0 } else { (a / link.l).abs() * self.motion.swing(step, unit).bulge };
+        let bound = self.exact.get(&(unit, step)).map_or(filter, |exact| {
+            // NaN where the adjoint was not asked is not the lesser.
+            filter.min(Knots::new(link, KNOT_M).between(a, |k| exact[k], tube.a))
+        });
+        bound + bulge
+    }
+
+    /// What a cell's inside may lie below its corners: in time, and along the body with the road's dips.
+    fn allowances(&self, cell: &Cell, all: &[Corner; 4], range: [f64; 2]) -> (f64, f64) {
+        let bend = all.iter().map(|c| c.bend).fold(0.0, f64::max) * BETWEEN + 1e-5;
+        let travel = self.motion.swing(cell.step, cell.unit).len * (cell.t[1] - cell.t[0]);
+        let lateral = all.iter().map(|c| c.lateral.abs()).fold(0.0, f64::max);
+        let (sharp, rate) = self.road.sharpest(cell.side, range[0], range[1]);
+        let inside = (1.0 - sharp * lateral).max(0.1);
+        let sin = all.iter().map(|c| c.sin.abs()).fold(0.0, f64::max);
+        let slope = all.iter().map(|c| c.slope.abs()).fold(0.0, f64::max);
+        let tube = self.tubes.get(cell.step, cell.unit).map_or(0.0, |tube| tube.a);
+        let turn = 2.0 * sharp * sharp * (sin + 0.05) + rate;
+        let curve = sharp / inside
+            + slope * (3.0 * sharp * sin + rate * lateral) / (inside * inside)
+            + tube * self.chain.links[cell.unit].half_width * turn;
+        let length = cell.a[1] - cell.a[0];
+        let reach = all.iter().map(|c| c.reach).fold(0.0, f64::max);
+        let dip = self.road.dip(cell.side, range[0], range[1], reach);
+        (bend * travel * travel / 8.0, curve * length * length / 8.0 + dip)
+    }
+
+    /// The decision once more, in intervals: the corners' nominal leeway from poses, road and widths as they are.
+    fn sure(&self, cell: &Cell, poses: &[Pose; 2], all: &[Corner; 4], allowance: f64, target: f64) -> bool {
+        all.iter().enumerate().all(|(k, corner)| {
+            let (pose, a) = (poses[k / 2], cell.a[k % 2]);
+            let sign = if cell.side == 0 { 1.0 } else { -1.0 };
+            let at = |x: f64| Interval::at(x);
+            let place = self.road.place(corner.s);
+            let half = at(sign * self.chain.links[cell.unit].half_width);
+            let x = at(pose.p[0]) + at(pose.u[0]) * a - half * pose.u[1] - place.c[0];
+            let y = at(pose.p[1]) + at(pose.u[1]) * a + half * pose.u[0] - place.c[1];
+            let lateral = y * place.t[0] - x * place.t[1] + Interval::ball(ROAD_M);
+            // The foot is not exactly there: the half-width changes by its slope times what is missing.
+            let off = (x * place.t[0] + y * place.t[1]).abs() * corner.slope.abs();
+            let (width, _) = self.road.width(cell.side, corner.s);
+            let clear = Interval::at(width) * Interval::between(1.0, 1.0 - 1e-14) - lateral * sign - off;
+            (clear - corner.dev - allowance).lo >= target
+        })
+    }
+
+    /// Whether the adjoint could do better than the filter.
+    fn worth(&self, cell: &Cell) -> bool {
+        self.tubes.get(cell.step, cell.unit).is_some_and(|tube| tube.extra + tube.extra_coupling > 2e-4)
+    }
+
+    /// Knots that the bounds of a cell rest on.
+    fn knots(&self, cell: &Cell, all: &[Corner; 4]) -> Range<usize> {
+        let link = &self.chain.links[cell.unit];
+        let slide = all.iter().map(|c| link.half_width * c.sin.abs() / (1.0 - c.sin * c.sin).max(0.01).sqrt());
+        let slide = slide.fold(0.0, f64::max);
+        Knots::new(link, KNOT_M).about([cell.a[0] - slide, cell.a[1] + slide])
+    }
+
+    /// Whether the adjoint has been asked at all of them.
+    fn sharp(&self, cell: &Cell, knots: &Range<usize>) -> bool {
+        let known = self.exact.get(&(cell.unit, cell.step));
+        known.is_some_and(|known| known[knots.clone()].iter().all(|bound| !bound.is_nan()))
+    }
+
+    /// Bounds of the adjoint for a unit throughout a step, and for the second order of the history before it.
+    fn sharpen(&mut self, cell: &Cell, knots: Range<usize>) {
+        self.tighten_up_to(cell.step);
+        self.run(cell.unit, cell.step + 1, knots.clone());
+        let first = cell.step == self.tubes.first;
+        if !first {
+            self.run(cell.unit, cell.step, knots.clone());
+        }
+        let bow = adjoint::bow(self.chain, cell.unit, self.tubes.step_m);
+        let count = Knots::new(&self.chain.links[cell.unit], KNOT_M).places().len();
+        let at = |node: usize, knot: usize| self.at_nodes.get(&(cell.unit, node)).map_or(f64::INFINITY, |at| at[knot]);
+        let exact = self.exact.entry((cell.unit, cell.step)).or_insert_with(|| vec![f64::NAN; count]);
+        for knot in knots {
+            let end = at(cell.step + 1, knot);
+            exact[knot] = if first { end } else { end.max(at(cell.step, knot)) } * bow;
+        }
+    }
+
+    /// Runs the adjoint for body points at knots that have not been through it, at a node.
+    fn run(&mut self, unit: usize, node: usize, knots: Range<usize>) {
+        let places: Vec<f64> = Knots::new(&self.chain.links[unit], KNOT_M).places().collect();
+        let known = self.at_nodes.entry((unit, node)).or_insert_with(|| vec![f64::NAN; places.len()]);
+        let missing: Vec<usize> = knots.filter(|&knot| known[knot].is_nan()).collect();
+        for some in missing.chunks(ABREAST) {
+            let outputs = std::array::from_fn(|w| Output::Point(places[some[w.min(some.len() - 1)]]));
+            let bounds = adjoint::bounds::<ABREAST>(self.chain, &self.tubes, unit, node, outputs);
+            for (w, &knot) in some.iter().enumerate() {
+                known[knot] = bounds.map_or(f64::INFINITY, |bounds| bounds[w]);
+            }
+        }
+    }
+
+    /// The adjoint's bounds on axle and heading throughout a step: the greater of its ends', and what it may bow up between them.
+    fn exact_pose(&mut self, step: usize, unit: usize) -> Option<[f64; 2]> {
+        let bow = adjoint::bow(self.chain, unit, self.tubes.step_m);
+        let mut at = |node: usize| {
+            let (chain, tubes) = (self.chain, &self.tubes);
+            let outputs = [Output::Point(0.0), Output::Heading];
+            *self.poses.entry((unit, node)).or_insert_with(|| adjoint::bounds::<2>(chain, tubes, unit, node, outputs))
+        };
+        let end = at(step + 1)?;
+        let start = if step == self.tubes.first { end } else { at(step)? };
+        Some([0, 1].map(|k| start[k].max(end[k]) * bow))
+    }
+
+    /// Lets the adjoint bound what a step's bounds rest on.
+    fn tighten_up_to(&mut self, last: usize) {
+        let (_, behind) = self.chain.reach_m();
+        let history = (HISTORY_LENGTHS * behind / self.tubes.step_m) as usize;
+        for step in last.saturating_sub(history).max(self.tubes.first)..=last {
+            self.tighten(step);
+        }
+    }
+
+    /// Lets the adjoint bound axle and heading of all units in a step, so that its second order is that of what is so.
+    fn tighten(&mut self, step: usize) {
+        if std::mem::replace(&mut self.tightened[step], true) {
+            return;
+        }
+        for unit in 0..self.chain.links.len() {
+            let Some(tube) = self.tubes.get(step, unit).copied() else { return };
+            if tube.extra + tube.extra_coupling < 5e-3 {
+                continue;
+            }
+            self.tubes.tighten_coupling(self.chain, self.motion, step, unit);
+            if let Some([y, a]) = self.exact_pose(step, unit) {
+                let a = a + tube.r1 / self.chain.links[unit].l;
+                self.tubes.tighten(self.chain, self.motion, step, unit, y, a);
+            }
+        }
+    }
+}
+
+/// How much farther a point may be from the road than from a normal that passes beside it, in a gap between two stretches, metres.
+fn beside_m(x: [f64; 2], place: &Place) -> f64 {
+    let r = [x[0] - place.c[0], x[1] - place.c[1]];
+    let off = r[0] * place.t[0] + r[1] * place.t[1];
+    off * off / (r[0].hypot(r[1]) + 1e-9)
+}
+
+/// The foot of a point by Newton's method, to 1e-10 m; its place and lateral.
+pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<(f64, Place, f64)> {
+    let mut s = guess;
+    for round in 0..30 {
+        let place = road.place(s);
+        let r = [x[0] - place.c[0], x[1] - place.c[1]];
+        let (off, lateral) = (r[0] * place.t[0] + r[1] * place.t[1], r[1] * place.t[0] - r[0] * place.t[1]);
+        // Where one stretch does not quite lead to the next, a foot may fall into the gap: wider with the distance, if headings differ.
+        if off.abs() < 1e-10 || round == 29 && off.abs() < GAP_M + road.jump(s) * lateral.abs() {
+            return Some((s, place, lateral));
+        }
+        s += off.clamp(-5.0, 5.0) / (1.0 - place.curvature * lateral).max(0.1) / road.spacing;
+    }
+    None
+}
+
+/// A body point, `a` ahead of the axle and `b` to its left.
+fn point(pose: Pose, a: f64, b: f64) -> [f64; 2] {
+    along(along(pose.p, a, pose.u), b, [-pose.u[1], pose.u[0]])
+}
+
+/// The worst of each stretch and side.
+struct Shortfalls {
+    worst: [Vec<Option<Shortfall>>; 2],
+}
+
+impl Shortfalls {
+    fn new(stretches: usize) -> Self {
+        Self { worst: [vec![None; stretches], vec![None; stretches]] }
+    }
+
+    /// The most that is claimed of stretches `first..=last` and not refuted yet.
+    fn target(&self, targets: &Targets, side: usize, first: usize, last: usize) -> Option<f64> {
+        let mut most = f64::NEG_INFINITY;
+        for k in first..=last {
+            // One refutation of a stretch is enough.
+            if self.worst[side][k].is_none() {
+                most = most.max(targets.0[side][k]);
+            }
+        }
+        (most > f64::NEG_INFINITY).then_some(most)
+    }
+
+    fn add(
+        &mut self,
+        cell: &Cell,
+        station: f64,
+        point_m: f64,
+        short_m: f64,
+        (first, last): (usize, usize),
+        targets: &Targets,
+    ) {
+        let most = (first..=last).map(|k| targets.0[cell.side][k]).fold(f64::NEG_INFINITY, f64::max);
+        for k in first..=last {
+            let own = short_m - (most - targets.0[cell.side][k]);
+            let slot = &mut self.worst[cell.side][k];
+            if own > 0.0 && slot.is_none_or(|worst| own > worst.short_m) {
+                *slot = Some(Shortfall { station, unit: cell.unit, side: cell.side, point_m, short_m: own });
+            }
+        }
+    }
+
+    fn unbounded(&mut self, cell: &Cell, stretches: &[usize], targets: &Targets) {
+        for &k in stretches {
+            if targets.0[cell.side][k] > f64::NEG_INFINITY {
+                let short_m = f64::INFINITY;
+                self.worst[cell.side][k] =
+                    Some(Shortfall { station: k as f64, unit: cell.unit, side: cell.side, point_m: 0.0, short_m });
+            }
+        }
+    }
+}
+
+impl Swept<'_> {
+    /// The margin of a hinge (0: the steering lock) throughout a step (proof, section 10), radians; by the adjoint where the
+    /// filter's is below `least`. −∞ where nothing is bounded.
+    pub(crate) fn hinge_margin(&mut self, step: usize, unit: usize, least: f64) -> f64 {
+        let margin = self.plain_hinge_margin(step, unit);
+        if margin >= least {
+            return margin;
+        }
+        self.tighten(step);
+        self.plain_hinge_margin(step, unit)
+    }
+
+    /// |y| of an axle throughout a step; the adjoint's where the filter's is above `enough`.
+    pub(crate) fn axle_bound(&mut self, step: usize, unit: usize, enough: f64) -> Option<f64> {
+        let y = self.tubes.get(step, unit)?.y;
+        if y <= enough {
+            return Some(y);
+        }
+        self.tighten_up_to(step);
+        let y = self.tubes.get(step, unit)?.y;
+        Some(y.min(self.exact_pose(step, unit)?[0]))
+    }
+
+    /// What is between a body point and the edge beside it as it passes the normal at `s` (stations of the road), steered exactly. Of
+    /// several passages the one nearest to that on a straight road.
+    pub(crate) fn nominal_at(&self, s: f64, unit: usize, side: usize, a: f64) -> Option<f64> {
+        let place = self.road.place(s);
+        let sign = if side == 0 { 1.0 } else { -1.0 };
+        let b = sign * self.chain.links[unit].half_width;
+        let from = |node: usize| {
+            let x = point(self.motion.pose(node, unit), a, b);
+            [x[0] - place.c[0], x[1] - place.c[1]]
+        };
+        let off = |node: usize| from(node)[0] * place.t[0] + from(node)[1] * place.t[1];
+        let strays = |step: usize| (self.rough_foot(step, unit, a) - s).abs() * self.road.spacing;
+        let astray = ASTRAY_PART * self.chain.reach_m().1 + ASTRAY_M;
+        let step = (0..self.motion.steps())
+            .filter(|&step| strays(step) <= astray && off(step) < 0.0 && off(step + 1) >= 0.0)
+            .min_by(|&a, &b| strays(a).total_cmp(&strays(b)))?;
+        let share = off(step) / (off(step) - off(step + 1));
+        let [before, after] = [step, step + 1].map(|node| from(node)[1] * place.t[0] - from(node)[0] * place.t[1]);
+        Some(self.road.width(side, s).0 - sign * (before + share * (after - before)))
+    }
+
+    /// The least margin of a hinge while any point of the vehicle is on the corridor, less what the plan's coupling turns there within a
+    /// station: as much may the hinge be taken to fold by who looks at stations only.
+    pub fn coarse_hinge_margin(&self, unit: usize) -> f64 {
+        let steps = self.steps(0..self.road.count - 1);
+        let turn = |step: usize| self.motion.swing(step, unit).curvature * self.road.spacing;
+        steps.map(|step| self.plain_hinge_margin(step, unit) - turn(step)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The margin of a hinge throughout a step as the filter has it, radians; −∞ where nothing is bounded.
+    fn plain_hinge_margin(&self, step: usize, unit: usize) -> f64 {
+        let swing = |unit: usize| self.motion.swing(step, unit);
+        let angles = |unit: usize| [swing(unit).before, swing(unit).after].map(|half| 2.0 * half.atan());
+        let limit = self.chain.links[unit].limit;
+        let Some(tube) = self.tubes.get(step, unit) else { return f64::NEG_INFINITY };
+        let delta = angles(unit);
+        let Some(ahead) = unit.checked_sub(1) else {
+            return limit - (delta[0].abs().max(delta[1].abs()) + tube.a + self.chain.heading_rad);
+        };
+        let Some(before) = self.tubes.get(step, ahead) else { return f64::NEG_INFINITY };
+        let link = &self.chain.links[ahead];
+        let chi = angles(ahead).map(|delta| (-link.k * delta.tan()).atan());
+        let folded = (delta[0] - chi[0]).abs().max((delta[1] - chi[1]).abs());
+        let shift = |unit: usize, tube: &Tube| {
+            let delta = angles(unit)[0].abs();
+            delta.tan() / self.chain.links[unit].l * tube.e * delta.sin()
+        };
+        limit - (folded + before.a + tube.a + shift(ahead, before) + shift(unit, tube))
+    }
+}

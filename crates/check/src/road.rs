@@ -1,0 +1,275 @@
+//! The corridor as a curve, and the plan: what the statement is about, read strictly.
+//!
+//! Between stations curvature and half-widths are linear; before the first and after the last station the road goes
+//! straight on (proof, section 8). A corridor whose stations do not fit each other is refused.
+
+use netcert_base::corridor::Corridor;
+
+/// Most by which a station may be off the curve that leads to it from the one before, metres and radians, per metre of
+/// spacing, in a file. On the map's strokes what is beyond it is a stretch on which nothing can be confirmed.
+const PLACE_TOLERANCE_M: f64 = 0.02;
+const HEADING_TOLERANCE_RAD: f64 = 0.04;
+/// Most that a corridor turns from one station to the next, radians: beyond it the proof's second order says little.
+const MOST_TURN_RAD: f64 = 0.5;
+/// Half-widths stay within what tags and users can mean, metres.
+const MOST_WIDTH_M: f64 = 1e4;
+
+/// Why stations are no corridor.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("station {station}: {problem}")]
+pub struct RoadError {
+    /// From 0.
+    pub station: usize,
+    /// What is wrong, with its size.
+    pub problem: String,
+}
+
+/// Three-point Gauss on 0..=1: exact to 1e-7 m here (turns below half a radian a station).
+const GAUSS: [(f64, f64); 3] =
+    [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
+
+/// A place on the centreline.
+#[derive(Debug, Clone, Copy)]
+pub struct Place {
+    /// Metres from the corridor's first station.
+    pub c: [f64; 2],
+    /// Unit tangent.
+    pub t: [f64; 2],
+    /// 1/m, positive to the left.
+    pub curvature: f64,
+}
+
+/// A corridor, extended straight at both ends, in metres about its first station.
+#[derive(Debug, Clone)]
+pub(crate) struct Road {
+    /// Metres between stations.
+    pub(crate) spacing: f64,
+    /// Stations before the corridor's first, and all.
+    pub(crate) lead: usize,
+    pub(crate) count: usize,
+    stations: Vec<Place>,
+    /// Curvature at the start and the end of the stretch after each station.
+    bends: Vec<[f64; 2]>,
+    /// By how much the curve after each station may be off what leads to the next one, metres: sampling a smooth line leaves that.
+    slack: Vec<f64>,
+    /// By how much the heading at the end of the stretch after each station differs from the next one's, radians.
+    jumps: Vec<f64>,
+    /// Half-widths, left and right.
+    pub(crate) widths: Vec<[f64; 2]>,
+}
+
+impl Road {
+    /// Checks that the stations fit each other, and extends the corridor by `lead_m` and `tail_m`.
+    ///
+    /// # Errors
+    /// The first station that does not fit, and by how much; not so if `lenient`: then nothing is known before such a station.
+    pub(crate) fn new(corridor: &Corridor, lead_m: f64, tail_m: f64, lenient: bool) -> Result<Self, RoadError> {
+        let n = corridor.len();
+        let same = [&corridor.y, &corridor.heading, &corridor.curvature, &corridor.left_m, &corridor.right_m];
+        if n < 2 || same.iter().any(|column| column.len() != n) {
+            return Err(RoadError { station: 0, problem: format!("{n} stations, or columns of unequal length") });
+        }
+        let spacing = corridor.spacing_m;
+        if !(0.01..=200.0).contains(&spacing) {
+            return Err(RoadError { station: 0, problem: format!("a spacing of {spacing} m") });
+        }
+        let (mut slack, mut jumps) = (vec![0.0; n], vec![0.0; n]);
+        for k in 0..n {
+            let before = k.saturating_sub(1);
+            [slack[before], jumps[before]] = match check_station(corridor, k) {
+                Err(wrong) if !lenient || !finite(corridor, k) => return Err(wrong),
+                Err(_) => [f64::INFINITY, 0.0],
+                Ok(off) => off,
+            };
+        }
+        let origin = [corridor.x[0], corridor.y[0]];
+        let own = (0..n).map(|k| Place {
+            c: [corridor.x[k] - origin[0], corridor.y[k] - origin[1]],
+            t: [corridor.heading[k].cos(), corridor.heading[k].sin()],
+            curvature: corridor.curvature[k],
+        });
+        let stations: Vec<Place> = own.collect();
+        let (lead, tail) = ((lead_m / spacing).ceil() as usize, (tail_m / spacing).ceil() as usize);
+        let mut road = Self {
+            spacing,
+            lead,
+            count: n,
+            stations: Vec::with_capacity(lead + n + tail),
+            bends: Vec::with_capacity(lead + n + tail),
+            widths: Vec::with_capacity(lead + n + tail),
+            slack: Vec::with_capacity(lead + n + tail),
+            jumps: Vec::with_capacity(lead + n + tail),
+        };
+        for k in 0..lead + n + tail {
+            let inner = k.saturating_sub(lead).min(n - 1);
+            let place = stations[inner];
+            let beyond = (k as f64 - (lead + inner) as f64) * spacing;
+            let c = [place.c[0] + beyond * place.t[0], place.c[1] + beyond * place.t[1]];
+            let inside = k >= lead && inner + 1 < n;
+            let bend = if inside { [stations[inner].curvature, stations[inner + 1].curvature] } else { [0.0; 2] };
+            road.stations.push(Place { c, ..place });
+            road.bends.push(bend);
+            road.slack.push(if inside { slack[inner] } else { 0.0 });
+            road.jumps.push(if inside { jumps[inner] } else { 0.0 });
+            road.widths.push([corridor.left_m[inner], corridor.right_m[inner]]);
+        }
+        Ok(road)
+    }
+
+    /// Stations, extensions included.
+    pub(crate) fn len(&self) -> usize {
+        self.stations.len()
+    }
+
+    /// The stretch that `s` (in stations) lies on, and how far along it, metres; straight on beyond both ends.
+    fn split(&self, s: f64) -> (usize, f64) {
+        let k = (s.max(0.0) as usize).min(self.len() - 1);
+        (k, (s - k as f64) * self.spacing)
+    }
+
+    /// By how much the curve at `s` may be off, metres; infinite where the stations do not fit.
+    pub(crate) fn slack(&self, s: f64) -> f64 {
+        self.slack[self.split(s).0]
+    }
+
+    /// By how much headings differ where the stretch of `s` meets its neighbours, radians, at most.
+    pub(crate) fn jump(&self, s: f64) -> f64 {
+        let k = self.split(s).0;
+        self.jumps[k.saturating_sub(1)..=k].iter().copied().fold(0.0, f64::max)
+    }
+
+    /// The centreline at `s` (in stations, extensions included).
+    pub(crate) fn place(&self, s: f64) -> Place {
+        let (k, x) = self.split(s);
+        let from = self.stations[k];
+        let [k0, k1] = self.bends[k];
+        if k0 == 0.0 && k1 == 0.0 {
+            return Place { c: [from.c[0] + x * from.t[0], from.c[1] + x * from.t[1]], t: from.t, curvature: 0.0 };
+        }
+        let rate = (k1 - k0) / self.spacing;
+        let (mut ahead, mut aside) = (0.0, 0.0);
+        for (node, weight) in GAUSS {
+            let (sin, cos) = small_sin_cos(x * node * (k0 + 0.5 * rate * x * node));
+            ahead += weight * x * cos;
+            aside += weight * x * sin;
+        }
+        let (sin, cos) = small_sin_cos(x * (k0 + 0.5 * rate * x));
+        let t = from.t;
+        Place {
+            c: [from.c[0] + ahead * t[0] - aside * t[1], from.c[1] + ahead * t[1] + aside * t[0]],
+            t: [cos * t[0] - sin * t[1], cos * t[1] + sin * t[0]],
+            curvature: k0 + rate * x,
+        }
+    }
+
+    /// Half-width on a side (0 left, 1 right) at `s`, and its slope per metre.
+    pub(crate) fn width(&self, side: usize, s: f64) -> (f64, f64) {
+        let (k, x) = self.split(s.max(0.0));
+        let (w0, w1) = (self.widths[k][side], self.widths[(k + 1).min(self.len() - 1)][side]);
+        let slope = (w1 - w0) / self.spacing;
+        (w0 + slope * x, slope)
+    }
+
+    /// The least half-width on a side between `from` and `to`.
+    pub(crate) fn narrowest(&self, side: usize, from: f64, to: f64) -> f64 {
+        let first = (from.max(0.0).floor() as usize + 1).min(self.len());
+        let end = (to.max(0.0).ceil() as usize).clamp(first, self.len().max(first));
+        let ends = self.width(side, from).0.min(self.width(side, to).0);
+        self.widths[first..end].iter().fold(ends, |least, widths| least.min(widths[side]))
+    }
+
+    /// By how much, at most, the least half-width within `reach` of a place between `from` and `to` (all in stations) lies below the
+    /// straight line between any two of its values there: where the slope grows, a quarter of the growth times the length. (Taking
+    /// the least around a place moves what the slope grows by, and parts it, but adds nothing.)
+    pub(crate) fn dip(&self, side: usize, from: f64, to: f64, reach: f64) -> f64 {
+        let first = ((from - reach).max(0.0).floor() as usize + 1).min(self.len());
+        let end = ((to + reach).max(0.0).ceil() as usize).min(self.len() - 1);
+        let mut growth = 0.0;
+        for k in first.max(1)..end {
+            let [a, b, c] = [k - 1, k, k + 1].map(|k| self.widths[k][side]);
+            growth += (a - 2.0 * b + c).max(0.0);
+        }
+        0.25 * growth * (to - from)
+    }
+
+    /// By how much half-widths at some stations lie below the straight line between their neighbours at most.
+    pub(crate) fn kink(&self, side: usize, stations: std::ops::Range<usize>) -> f64 {
+        let below = |k: usize| {
+            let [a, b, c] = [k - 1, k, k + 1].map(|k| self.widths[k][side]);
+            0.5 * (a + c) - b
+        };
+        (stations.start.max(1)..stations.end.min(self.len() - 1)).map(below).fold(0.0, f64::max)
+    }
+
+    /// On stretches between `from` and `to` (stations): the most that the road bends towards a side (0 left, 1 right), and the
+    /// most by which the curvature changes per metre.
+    pub(crate) fn sharpest(&self, side: usize, from: f64, to: f64) -> (f64, f64) {
+        let first = from.max(0.0) as usize;
+        let last = (to.max(0.0) as usize).min(self.len() - 1);
+        let sign = if side == 0 { 1.0 } else { -1.0 };
+        self.bends[first.min(last)..=last].iter().fold((0.0, 0.0), |(most, rate): (f64, f64), [a, b]| {
+            (most.max(sign * a).max(sign * b), rate.max((b - a).abs() / self.spacing))
+        })
+    }
+}
+
+/// Sine and cosine of at most half a radian, to 1e-11.
+fn small_sin_cos(x: f64) -> (f64, f64) {
+    let q = x * x;
+    let sin = x * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0))));
+    let cos = 1.0 - q / 2.0 * (1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0 * (1.0 - q / 90.0))));
+    (sin, cos)
+}
+
+/// Whether station `k` has usable values and follows from the one before it: by how much the curve from there may be off (metres), and
+/// by how much it ends in another heading (radians).
+fn check_station(c: &Corridor, k: usize) -> Result<[f64; 2], RoadError> {
+    let wrong = |problem: String| Err(RoadError { station: k, problem });
+    let values = [c.x[k], c.y[k], c.heading[k], c.curvature[k], c.left_m[k], c.right_m[k]];
+    if !finite(c, k) {
+        return wrong(format!("{values:?} are no place, heading, curvature and half-widths"));
+    }
+    for (name, w, side) in [("left", c.left_m[k], 1.0), ("right", c.right_m[k], -1.0)] {
+        if !(w > 0.0 && w < MOST_WIDTH_M) {
+            return wrong(format!("a half-width of {w} m on the {name}"));
+        }
+        if side * c.curvature[k] * w >= 1.0 {
+            return wrong(format!("the normals cross within the half-width of {w} m on the {name}"));
+        }
+    }
+    let Some(before) = k.checked_sub(1) else { return Ok([0.0; 2]) };
+    let turn = 0.5 * c.spacing_m * (c.curvature[before] + c.curvature[k]);
+    if turn.abs() > MOST_TURN_RAD || c.spacing_m * c.curvature[k].abs() > MOST_TURN_RAD {
+        return wrong(format!("a turn of {turn:.2} rad since the station before is too much for this spacing"));
+    }
+    let turned = c.heading[k] - c.heading[before] - turn;
+    let turned = (turned - std::f64::consts::TAU * (turned / std::f64::consts::TAU).round()).abs();
+    let off = turned;
+    if off > HEADING_TOLERANCE_RAD * c.spacing_m {
+        return wrong(format!("its heading is {off:.4} rad off what the curvatures say"));
+    }
+    let place =
+        Place { c: [c.x[before], c.y[before]], t: [c.heading[before].cos(), c.heading[before].sin()], curvature: 0.0 };
+    let stretch = Road {
+        spacing: c.spacing_m,
+        lead: 0,
+        count: 1,
+        stations: vec![place],
+        bends: vec![[c.curvature[before], c.curvature[k]]],
+        widths: Vec::new(),
+        slack: vec![0.0],
+        jumps: vec![0.0],
+    };
+    let at = stretch.place(1.0).c;
+    let off = (at[0] - c.x[k]).hypot(at[1] - c.y[k]);
+    if off > PLACE_TOLERANCE_M * c.spacing_m {
+        return wrong(format!("it lies {off:.4} m off where the station before and the curvatures lead"));
+    }
+    // A heading that is off by x leaves the chord's middle off by an eighth of it.
+    Ok([off + 0.125 * c.spacing_m * turned, turned])
+}
+
+fn finite(c: &Corridor, k: usize) -> bool {
+    let values = [c.x[k], c.y[k], c.heading[k], c.curvature[k], c.left_m[k], c.right_m[k]];
+    values.iter().all(|v| v.is_finite() && v.abs() < 1e8)
+}

@@ -1,0 +1,110 @@
+//! Certificates of plans that somebody else made: another planner, a stored file, an optimiser in a test.
+//!
+//! Promises what [`super::certify`] promises, of the plan that is given and no other; nothing is corrected here. Whether a
+//! plan is a good one, or within [`super::Options::max_shift_m`], is not asked: too far off shows as a negative RSC.
+
+use thiserror::Error;
+
+use super::model::Model;
+use super::shift::{Plan, STEP_M, count};
+use super::{Certificate, Marks, Swept};
+use netcert_base::corridor::Corridor;
+use netcert_base::stop::Stop;
+
+/// Coefficients that must agree at either end: then q' = q'' = 0 at the first station and at the last one.
+const LEVEL_ENTRY: usize = 3;
+const LEVEL_EXIT: usize = 4;
+
+/// Why a plan does not belong to a corridor.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum PlanError {
+    /// The corridor has no station.
+    #[error("the corridor has no station, so that there is nothing to plan")]
+    NoCorridor,
+    /// Too many coefficients, or too few.
+    #[error("{found} coefficients for {stations} stations, which need {needed}: one every four stations, four more")]
+    Count {
+        /// Coefficients given.
+        found: usize,
+        /// Coefficients needed.
+        needed: usize,
+        /// Stations of the corridor.
+        stations: usize,
+    },
+    /// The vehicle would not come, or not go, along the corridor.
+    #[error(
+        "coefficient {index} differs from coefficient {end} by {} m; the first {LEVEL_ENTRY} must be equal, and the last \
+         {LEVEL_EXIT}, so that the plan is level at its ends",
+        f64::from(*steps) * STEP_M
+    )]
+    NotLevel {
+        /// Which coefficient, counted from 0.
+        index: usize,
+        /// The end's own.
+        end: usize,
+        /// By how many steps, saturated.
+        steps: i32,
+    },
+}
+
+/// The certificate of one vehicle that follows `plan` over a whole corridor.
+///
+/// # Errors
+/// A plan that is not one for this corridor: see [`PlanError`].
+pub fn certify_plan(corridor: &Corridor, model: &Model, plan: &Plan) -> Result<Certificate, PlanError> {
+    check(corridor.len(), plan)?;
+    let whole = 0..corridor.len();
+    let spans = std::slice::from_ref(&whole);
+    let never = Stop::default();
+    let swept = Swept::along(corridor, &[model], spans, Marks::All, &never, &|_, _| vec![plan.clone()]);
+    Ok(swept.certificate(corridor, spans).0)
+}
+
+fn check(stations: usize, plan: &Plan) -> Result<(), PlanError> {
+    if stations == 0 {
+        return Err(PlanError::NoCorridor);
+    }
+    let (found, needed) = (plan.coefficients.len(), count(stations));
+    if found != needed {
+        return Err(PlanError::Count { found, needed, stations });
+    }
+    level(&plan.coefficients, 0, 0..LEVEL_ENTRY)?;
+    level(&plan.coefficients, found - 1, found - LEVEL_EXIT..found)
+}
+
+fn level(coefficients: &[i32], end: usize, all: std::ops::Range<usize>) -> Result<(), PlanError> {
+    for index in all {
+        let steps = coefficients[index].saturating_sub(coefficients[end]);
+        if steps != 0 {
+            return Err(PlanError::NotLevel { index, end, steps });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_plans_of_the_corridor_pass() {
+        let plan = |coefficients: &[i32]| Plan { coefficients: coefficients.to_vec() };
+        assert_eq!(check(0, &plan(&[])), Err(PlanError::NoCorridor));
+        assert_eq!(check(17, &plan(&[5, 5, 5, 9, 1, 1, 1, 1])), Ok(()));
+        let few = check(18, &plan(&[0; 7]));
+        assert_eq!(few, Err(PlanError::Count { found: 7, needed: 8, stations: 18 }));
+        let entry = check(18, &plan(&[5, 5, 6, 9, 1, 1, 1, 1]));
+        assert_eq!(entry, Err(PlanError::NotLevel { index: 2, end: 0, steps: 1 }));
+        let exit = check(18, &plan(&[5, 5, 5, 1, 2, 1, 1, 1])).unwrap_err();
+        assert!(exit.to_string().starts_with("coefficient 4 differs from coefficient 7 by 0.000244140625 m"), "{exit}");
+    }
+
+    #[test]
+    fn short_corridors_have_plans_too() {
+        for stations in 1..40 {
+            assert_eq!(check(stations, &Plan::centred(stations)), Ok(()));
+            assert_eq!(check(stations, &Plan::through(stations, |knot| 0.1 * knot as f64)), Ok(()), "{stations}");
+        }
+    }
+}

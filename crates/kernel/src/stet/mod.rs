@@ -1,0 +1,444 @@
+//! The certificate: nominal motion → tubes → leeway → corrections → RSC (design sections 3 to 5).
+//!
+//! Pure: a corridor and a vehicle in, a certificate out; no input or output, no clock, no threads.
+
+mod adjoint;
+mod ascent;
+mod body;
+mod external_plan;
+mod gains;
+mod group;
+mod lanes;
+mod leeway;
+mod model;
+pub mod motion;
+mod plan;
+mod response;
+mod run_in;
+mod shift;
+mod spans;
+mod sweep;
+mod track;
+mod tube;
+
+use std::ops::Range;
+
+use netcert_base::corridor::Corridor;
+use netcert_base::stop::{Stop, Stopped};
+use netcert_base::verdict::{UnsafeReason, Verdict};
+
+pub use external_plan::{PlanError, certify_plan};
+pub use model::{MAX_UNITS, Model, ModelError};
+pub use motion::steady_offtracking;
+pub use shift::{KNOT_STATIONS, Plan, STEP_M};
+pub use tube::{Tube, tubes};
+
+use group::Group;
+use lanes::{LANES, V};
+use sweep::{Minima, Wanted, sweep};
+use track::Track;
+
+/// Which edge of the corridor, seen in driving direction.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Left of travel.
+    Left,
+    /// Right of travel.
+    Right,
+}
+
+/// Where the least leeway stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limiting {
+    /// Station index in the corridor (the foot of the body point).
+    pub station: usize,
+    /// Unit index.
+    pub unit: usize,
+    /// Side.
+    pub side: Side,
+    /// Along the unit: metres ahead of its axle.
+    pub point_m: f64,
+}
+
+/// What limits the corrections, and how many sweeps are spent on them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Options {
+    /// Δq_max: the most by which the steer path may be shifted off the centreline, metres. 0: none.
+    pub max_shift_m: f64,
+    /// CORRCEN sweeps after the centred one.
+    pub correction_sweeps: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { max_shift_m: 1.5, correction_sweeps: 2 }
+    }
+}
+
+/// The result for one span of stations (an edge, or the whole corridor).
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpanResult {
+    /// RSC at `shrink`, metres: the least leeway of any body point of any unit over the span, all bounds deducted. `None`: nothing
+    /// bounds the vehicle, or a body point could not be followed.
+    pub rsc_m: Option<f64>,
+    /// The paper's 𝒞 as printed, metres; never decides.
+    pub rsc_published_m: f64,
+    /// Least hinge margin, radians (negative: a hinge or the steering lock is exceeded). There whenever `rsc_m` is.
+    pub hinge_margin_rad: Option<f64>,
+    /// The hinge that has it (0: the steering lock); the one whose bounds fail where there is no margin.
+    pub hinge_unit: usize,
+    /// γ: the tracking tolerance that RSC rests on is γ·ε.
+    pub shrink: f64,
+    /// Where the least leeway stands; it says nothing where there is no RSC.
+    pub limiting: Limiting,
+}
+
+impl SpanResult {
+    /// Whether the bounds' recursion closes all over the span, and every body point could be followed over it. Where not, a unit
+    /// stands so far across its path that the numbers bound nothing.
+    #[must_use]
+    pub fn closes(&self) -> bool {
+        self.rsc_m.is_some() && self.hinge_margin_rad.is_some()
+    }
+
+    /// RSC ≥ 0 and hinge margin ≥ 0.
+    #[must_use]
+    pub fn safe(&self) -> bool {
+        self.rsc_m.is_some_and(|rsc_m| rsc_m >= 0.0) && self.hinge_margin_rad.is_some_and(|margin| margin >= 0.0)
+    }
+
+    /// Whether there is an RSC, and it is negative.
+    #[must_use]
+    pub fn too_narrow(&self) -> bool {
+        self.rsc_m.is_some_and(|rsc_m| rsc_m < 0.0)
+    }
+
+    /// What the numbers say by themselves, law and map aside.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        match () {
+            () if !self.closes() => Verdict::Unsafe(UnsafeReason::Articulation),
+            () if self.safe() => Verdict::Safe,
+            () if self.too_narrow() => Verdict::Unsafe(UnsafeReason::Width),
+            () if self.hinge_unit == 0 => Verdict::Unsafe(UnsafeReason::SteeringLock),
+            () => Verdict::Unsafe(UnsafeReason::Articulation),
+        }
+    }
+}
+
+/// One vehicle's results on a corridor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Planned {
+    /// What the steer axle is to follow.
+    pub plan: Plan,
+    /// One a span.
+    pub spans: Vec<SpanResult>,
+}
+
+/// A certificate over a whole corridor, with all that a picture, a file or a second program needs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Certificate {
+    /// Over all stations.
+    pub result: SpanResult,
+    /// The steer axle's planned path: one point a station, metres in the corridor's frame.
+    pub plan: Vec<[f64; 2]>,
+    /// Planned shift of the steer axle off the centreline at each station, metres, positive left: `shift` sampled.
+    pub shift_m: Vec<f64>,
+    /// The planned shift itself.
+    pub shift: Plan,
+    /// Leeway at each station on the left, after correction (at γ = 1), metres: of a span of that station alone. What
+    /// [`known_m`] says of it is what is known.
+    pub left_m: Vec<f64>,
+    /// On the right.
+    pub right_m: Vec<f64>,
+    /// On the left, before correction.
+    pub left_centred_m: Vec<f64>,
+    /// On the right, before correction.
+    pub right_centred_m: Vec<f64>,
+}
+
+/// A leeway of a [`Certificate`]'s columns; `None` where nothing bounds the vehicle, or no body point ever is.
+#[must_use]
+pub fn known_m(leeway_m: f64) -> Option<f64> {
+    Some(leeway_m).filter(|leeway_m| spans::known(*leeway_m))
+}
+
+/// Results over `spans` of stations for vehicles that sweep the whole corridor one after the other: one row a vehicle.
+///
+/// Every vehicle enters straight, along the first station's heading, and leaves straight, along the last one's. The
+/// result does not depend on which other vehicles are in `models`. An empty corridor gives no row at all.
+#[must_use]
+pub fn certify_spans(
+    corridor: &Corridor,
+    models: &[&Model],
+    spans: &[Range<usize>],
+    options: &Options,
+) -> Vec<Planned> {
+    if corridor.is_empty() {
+        return Vec::new();
+    }
+    let never = Stop::default();
+    // Vehicles of about as many units share a group: a lane costs as much as the longest one in it.
+    let mut order: Vec<usize> = (0..models.len()).collect();
+    order.sort_by_key(|&i| models[i].units.len());
+    let mut rows: Vec<(usize, Planned)> = Vec::with_capacity(models.len());
+    for chunk in order.chunks(LANES) {
+        let members: Vec<&Model> = chunk.iter().map(|&i| models[i]).collect();
+        let swept = Swept::new(corridor, &members, spans, Marks::Ends, options, &never);
+        for (lane, (&i, plan)) in chunk.iter().zip(&swept.plans).enumerate() {
+            let spans = spans.iter().map(|span| swept.result(lane, span)).collect();
+            rows.push((i, Planned { plan: plan.clone(), spans }));
+        }
+    }
+    rows.sort_by_key(|(i, _)| *i);
+    rows.into_iter().map(|(_, row)| row).collect()
+}
+
+/// The certificate of one vehicle over a whole corridor.
+///
+/// `None` when the corridor has no station.
+#[must_use]
+pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<Certificate> {
+    let whole = 0..corridor.len();
+    certify_planned(corridor, model, std::slice::from_ref(&whole), options).map(|(certificate, _)| certificate)
+}
+
+/// The same; it asks every few metres of each sweep whether to stop.
+///
+/// # Errors
+/// It was told to.
+pub fn certify_until(
+    corridor: &Corridor,
+    model: &Model,
+    options: &Options,
+    stop: &Stop,
+) -> Result<Option<Certificate>, Stopped> {
+    let whole = 0..corridor.len();
+    let planned = planned(corridor, model, std::slice::from_ref(&whole), options, stop);
+    // A sweep that stopped before its end was told to, and what was told stays told.
+    stop.check()?;
+    Ok(planned.map(|(certificate, _)| certificate))
+}
+
+/// The certificate over a whole corridor with the plan that [`certify_spans`] makes for `spans`, and what that gives for
+/// each of them: what stands behind the certificate of an edge.
+///
+/// `None` when the corridor has no station.
+#[must_use]
+pub fn certify_planned(
+    corridor: &Corridor,
+    model: &Model,
+    spans: &[Range<usize>],
+    options: &Options,
+) -> Option<(Certificate, Vec<SpanResult>)> {
+    planned(corridor, model, spans, options, &Stop::default())
+}
+
+fn planned(
+    corridor: &Corridor,
+    model: &Model,
+    spans: &[Range<usize>],
+    options: &Options,
+    stop: &Stop,
+) -> Option<(Certificate, Vec<SpanResult>)> {
+    if corridor.is_empty() {
+        return None;
+    }
+    Some(Swept::new(corridor, &[model], spans, Marks::All, options, stop).certificate(corridor, spans))
+}
+
+/// All leeways at γ = 1, refined wherever that is worth it.
+fn thorough(track: &Track, group: &Group<'_>, shift: &[V], stop: &Stop) -> Vec<Minima> {
+    let full = sweep::<true>(track, group, shift, &Wanted::ALL, stop);
+    if full.iter().all(|m| m.loose.iter().all(|&unit| unit == usize::MAX)) {
+        return full;
+    }
+    let loose = |lane: usize, head: usize| full[lane].loose[head / sweep::BLOCK];
+    sweep::<true>(track, group, shift, &Wanted { refined: Some(&loose), ..Wanted::ALL }, stop)
+}
+
+/// At which stations it is asked what sides leave between two of their points.
+#[derive(Debug, Clone, Copy)]
+enum Marks {
+    /// Where a span begins or ends.
+    Ends,
+    /// At all of them: a certificate says what each station by itself would have.
+    All,
+}
+
+/// A group of vehicles after its sweeps.
+struct Swept<'m> {
+    track: Track,
+    group: Group<'m>,
+    stop: &'m Stop,
+    plans: Vec<Plan>,
+    /// At γ = 1, by the filter.
+    full: Vec<Minima>,
+    /// Without any disturbance, at a few points; only where the filter is loose at all.
+    nominal: Option<Vec<Minima>>,
+    /// At γ = 1, by the adjoint where the filter is loose; only for spans near such places.
+    refined: Option<Vec<Minima>>,
+    /// At γ_min; only near spans that fail.
+    least: Option<Vec<Minima>>,
+}
+
+impl<'m> Swept<'m> {
+    fn new(
+        corridor: &Corridor,
+        models: &[&'m Model],
+        spans: &[Range<usize>],
+        marks: Marks,
+        options: &Options,
+        stop: &'m Stop,
+    ) -> Self {
+        Self::along(corridor, models, spans, marks, stop, &|track, group| {
+            plan::best(track, group, spans, options, stop)
+        })
+    }
+
+    /// `plans` gives each vehicle's, in the group's order.
+    fn along(
+        corridor: &Corridor,
+        models: &[&'m Model],
+        spans: &[Range<usize>],
+        marks: Marks,
+        stop: &'m Stop,
+        plans: &dyn Fn(&Track, &Group<'m>) -> Vec<Plan>,
+    ) -> Self {
+        let group = Group::new(models, 1.0);
+        let mut track = Track::new(corridor, sweep::extensions(&group, corridor.spacing_m));
+        match marks {
+            Marks::Ends => track.mark(spans.iter().flat_map(|span| spans::marks(corridor.spacing_m, span))),
+            Marks::All => track.mark(0..corridor.len()),
+        }
+        let plans = plans(&track, &group);
+        let shift = shift::lanes(&plans, track.lead, track.len(), track.count);
+        let full = sweep::<true>(&track, &group, &shift, &Wanted::ALL, stop);
+        let mut swept = Self { track, group, stop, plans, full, nominal: None, refined: None, least: None };
+        let loose: Vec<Vec<usize>> = swept.full.iter().map(|m| m.loose.clone()).collect();
+        let is_loose = |lane: usize, head: usize| loose[lane][head / sweep::BLOCK];
+
+        if swept.full.iter().any(|m| m.loose.iter().any(|&unit| unit < usize::MAX)) {
+            swept.nominal = Some(sweep::<false>(&swept.track, &swept.group, &shift, &Wanted::PLAIN, stop));
+        }
+        let near = swept.blocks(spans, |lane, span| swept.worth(lane, span));
+        if near.iter().flatten().any(|&near| near) {
+            let blocks = |lane: usize, head: usize| near[lane][head / sweep::BLOCK];
+            let wanted = Wanted { blocks: &blocks, refined: Some(&is_loose), plain: false };
+            swept.refined = Some(sweep::<true>(&swept.track, &swept.group, &shift, &wanted, stop));
+        }
+        let failing = swept.blocks(spans, |lane, span| swept.at_full(lane, span).rsc_m < 0.0);
+        if failing.iter().flatten().any(|&fails| fails) {
+            let tight = Group::new(models, 0.0);
+            let blocks = |lane: usize, head: usize| failing[lane][head / sweep::BLOCK];
+            // From the same kind of bound as at γ = 1, block by block: only then is the leeway concave in γ. Each vehicle for
+            // itself: whether another one of the group is refined must not matter.
+            let any: Vec<bool> = near.iter().map(|blocks| blocks.contains(&true)).collect();
+            let own = |lane: usize, head: usize| if any[lane] { is_loose(lane, head) } else { usize::MAX };
+            let refined: Option<&dyn Fn(usize, usize) -> usize> = Some(&own);
+            let wanted = Wanted { blocks: &blocks, refined: refined.filter(|_| swept.refined.is_some()), plain: false };
+            swept.least = Some(sweep::<true>(&swept.track, &tight, &shift, &wanted, stop));
+        }
+        swept
+    }
+
+    /// What the first vehicle's sweeps say of the whole corridor, and of each span.
+    fn certificate(&self, corridor: &Corridor, spans: &[Range<usize>]) -> (Certificate, Vec<SpanResult>) {
+        let whole = 0..corridor.len();
+        let track = &self.track;
+        let centred = thorough(track, &self.group, &vec![V::splat(0.0); track.len()], self.stop);
+        let full = if self.worth(0, &whole) { self.refined.as_ref().unwrap_or(&self.full) } else { &self.full };
+        let own = |points: &[f64], marks: &[f64]| spans::alone(track, &whole, points, marks);
+        // Where the bounds do not close somewhere, what they say elsewhere is not claimed either.
+        let centred_closes = spans::least(track, self.group.models[0], &whole, &centred[0]).result().closes();
+        let own_centred = |points: &[f64], marks: &[f64]| {
+            if centred_closes { own(points, marks) } else { vec![spans::NOTHING_M; whole.len()] }
+        };
+        let shift = self.plans[0].clone();
+        let shift_m: Vec<f64> = (0..track.count).map(|k| shift.at_m(k)).collect();
+        let plan = (0..track.count)
+            .map(|k| {
+                let (sin, cos) = corridor.heading[k].sin_cos();
+                [corridor.x[k] - shift_m[k] * sin, corridor.y[k] + shift_m[k] * cos]
+            })
+            .collect();
+        let results = spans.iter().map(|span| self.result(0, span)).collect();
+        let (mut left_m, mut right_m) =
+            (own(&full[0].left, &full[0].mark_left), own(&full[0].right, &full[0].mark_right));
+        for span in spans {
+            // What the span's result rests on: refined for one where it is worth it.
+            let best = self.best(0, span);
+            left_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.left, &best.mark_left));
+            right_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.right, &best.mark_right));
+        }
+        let certificate = Certificate {
+            result: self.result(0, &whole),
+            plan,
+            shift_m,
+            shift,
+            left_m,
+            right_m,
+            left_centred_m: own_centred(&centred[0].left, &centred[0].mark_left),
+            right_centred_m: own_centred(&centred[0].right, &centred[0].mark_right),
+        };
+        (certificate, results)
+    }
+
+    /// Head stations, in blocks, in which some unit may touch the span.
+    fn touching(&self, span: &Range<usize>) -> Range<usize> {
+        let track = &self.track;
+        // As long as the track's extensions allow, so that no other vehicle of the group matters.
+        let (behind_m, ahead_m) = sweep::reach_m(&self.group);
+        let ahead = (ahead_m / track.spacing).ceil() as usize + sweep::BLOCK;
+        let behind = (behind_m / track.spacing).ceil() as usize + sweep::BLOCK;
+        let touched = spans::stations(track, span);
+        let first = touched.start().saturating_sub(ahead) / sweep::BLOCK;
+        let last = (touched.end() + behind) / sweep::BLOCK;
+        first..(last + 1).min(track.len() / sweep::BLOCK + 1)
+    }
+
+    /// By vehicle and block of head stations: whether the vehicle may then touch a span that is `meant`.
+    fn blocks(&self, spans: &[Range<usize>], meant: impl Fn(usize, &Range<usize>) -> bool) -> Vec<Vec<bool>> {
+        let of = |lane: usize| {
+            let mut blocks = vec![false; self.track.len() / sweep::BLOCK + 1];
+            for span in spans.iter().filter(|span| meant(lane, span)) {
+                blocks[self.touching(span)].iter_mut().for_each(|block| *block = true);
+            }
+            blocks
+        };
+        (0..self.plans.len()).map(of).collect()
+    }
+
+    /// Whether a better bound than the filter's is worth its time: the filter is loose where some unit may touch the
+    /// span, and the vehicle would fit if it kept to its path exactly. (Decided without ε and σ: raising them must not
+    /// bring a better bound.)
+    fn worth(&self, lane: usize, span: &Range<usize>) -> bool {
+        let Some(nominal) = &self.nominal else { return false };
+        let nominal = &nominal[lane];
+        self.full[lane].loose[self.touching(span)].iter().any(|&unit| unit < usize::MAX)
+            && spans::stations(&self.track, span).all(|k| nominal.left[k] >= 0.0 && nominal.right[k] >= 0.0)
+    }
+
+    /// The best that is known at γ = 1.
+    fn at_full(&self, lane: usize, span: &Range<usize>) -> spans::Least {
+        spans::least(&self.track, self.group.models[lane], span, self.best(lane, span))
+    }
+
+    fn best(&self, lane: usize, span: &Range<usize>) -> &Minima {
+        match &self.refined {
+            Some(refined) if self.worth(lane, span) => &refined[lane],
+            _ => &self.full[lane],
+        }
+    }
+
+    fn result(&self, lane: usize, span: &Range<usize>) -> SpanResult {
+        let at_full = self.at_full(lane, span);
+        match &self.least {
+            Some(least) if at_full.rsc_m < 0.0 => {
+                let model = self.group.models[lane];
+                spans::shrunk(&self.track, model, span, (self.best(lane, span), &least[lane]), &at_full).result()
+            }
+            _ => at_full.result(),
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! How body points answer to a small change of the steer path, to first order and as on a straight: a chain of first-order
+//! lags (design section 4, δ = 0), at the plan's knots, vehicles in lanes.
+//!
+//! Decides nothing: planning asks which way to steer, the next sweep says what came of it.
+
+use super::group::Group;
+use super::lanes::{LANES, V};
+use super::model::MAX_UNITS;
+use super::sweep::ZERO;
+
+/// The chain from knot to knot: `y' = ρ y + b₀ e + b₁ e'`, exact for a coupling that moves linearly between knots.
+pub(super) struct Response {
+    units: usize,
+    decay: [V; MAX_UNITS],
+    before: [V; MAX_UNITS],
+    after: [V; MAX_UNITS],
+    /// d/L
+    ratio: [V; MAX_UNITS],
+    /// Deviations of couplings and axles by unit and knot, or what is asked of them.
+    pub(super) coupling: Vec<Vec<V>>,
+    pub(super) axle: Vec<Vec<V>>,
+}
+
+impl Response {
+    /// For knots `spacing` metres apart, over `knots` of them.
+    pub(super) fn new(group: &Group<'_>, spacing: f64, knots: usize) -> Self {
+        let mut out = Self {
+            units: group.units,
+            decay: [ZERO; MAX_UNITS],
+            before: [ZERO; MAX_UNITS],
+            after: [ZERO; MAX_UNITS],
+            ratio: [ZERO; MAX_UNITS],
+            coupling: vec![vec![ZERO; knots]; group.units],
+            axle: vec![vec![ZERO; knots]; group.units],
+        };
+        for (unit, of) in group.chain.iter().enumerate().take(group.units) {
+            for lane in 0..LANES {
+                let x = spacing * of.inverse_length.0[lane];
+                let decay = (-x).exp();
+                let mean = (1.0 - decay) / x;
+                out.decay[unit].0[lane] = decay;
+                out.before[unit].0[lane] = mean - decay;
+                out.after[unit].0[lane] = 1.0 - mean;
+            }
+            out.ratio[unit] = of.ratio;
+        }
+        out
+    }
+
+    /// How many knots it covers.
+    pub(super) fn knots(&self) -> usize {
+        self.axle[0].len()
+    }
+
+    /// Deviations of all units when the steer axle's is `steer`, which begins steady.
+    #[inline(always)]
+    pub(super) fn follow(&mut self, steer: &[V]) {
+        self.coupling[0].copy_from_slice(steer);
+        for unit in 0..self.units {
+            let (decay, before, after) = (self.decay[unit], self.before[unit], self.after[unit]);
+            let (ahead, behind) = self.coupling.split_at_mut(unit + 1);
+            let (e, y) = (&ahead[unit], &mut self.axle[unit]);
+            y[0] = e[0];
+            for g in 1..e.len() {
+                y[g] = y[g - 1] * decay + e[g - 1] * before + e[g] * after;
+            }
+            if let Some(next) = behind.first_mut() {
+                let ratio = self.ratio[unit];
+                for ((next, e), y) in next.iter_mut().zip(e).zip(y.iter()) {
+                    *next = *y + (*y - *e) * ratio;
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn clear(&mut self) {
+        self.coupling.iter_mut().chain(&mut self.axle).for_each(|column| column.fill(ZERO));
+    }
+
+    /// The transpose of [`Self::follow`]: from what is asked of couplings and axles to what that asks of the steer axle.
+    #[inline(always)]
+    pub(super) fn trace_back(&mut self) -> &[V] {
+        for unit in (0..self.units).rev() {
+            let (decay, before, after) = (self.decay[unit], self.before[unit], self.after[unit]);
+            let (ahead, behind) = self.coupling.split_at_mut(unit + 1);
+            let (e, y) = (&mut ahead[unit], &mut self.axle[unit]);
+            if let Some(next) = behind.first() {
+                let ratio = self.ratio[unit];
+                for ((next, e), y) in next.iter().zip(e.iter_mut()).zip(y.iter_mut()) {
+                    *y = *y + *next * (ratio + 1.0);
+                    *e = *e - *next * ratio;
+                }
+            }
+            let mut later = ZERO;
+            for g in (1..e.len()).rev() {
+                let here = y[g] + later * decay;
+                e[g] = e[g] + later * before + here * after;
+                later = here;
+            }
+            e[0] = e[0] + y[0] + later * decay + later * before;
+        }
+        &self.coupling[0]
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::super::model::Model;
+    use super::*;
+    use netcert_base::vehicle::Catalogue;
+
+    #[test]
+    fn tracing_back_is_the_transpose_of_following() {
+        let model = Model::new(Catalogue::builtin().unwrap().get("AU-BDOUBLE26").unwrap()).unwrap();
+        let group = Group::new(&[&model], 1.0);
+        let knots = 30;
+        let mut response = Response::new(&group, 4.0, knots);
+        let wave = |k: usize, a: f64| V::splat((a * k as f64).sin());
+        let steer: Vec<V> = (0..knots).map(|k| wave(k, 0.7)).collect();
+        response.follow(&steer);
+        let asked = |unit: usize, k: usize| (wave(k, 0.3 + unit as f64), wave(k, 1.1 - unit as f64));
+        let mut forward = 0.0;
+        for unit in 0..group.units {
+            for k in 0..knots {
+                let (of_axle, of_coupling) = asked(unit, k);
+                let answered = of_axle * response.axle[unit][k] + of_coupling * response.coupling[unit][k];
+                forward += answered.0[0];
+            }
+        }
+        response.clear();
+        for unit in 0..group.units {
+            for k in 0..knots {
+                (response.axle[unit][k], response.coupling[unit][k]) = asked(unit, k);
+            }
+        }
+        let back: f64 = response.trace_back().iter().zip(&steer).map(|(b, s)| (*b * *s).0[0]).sum();
+        assert!((forward - back).abs() < 1e-9, "{forward} and {back}");
+    }
+
+    #[test]
+    fn whoever_follows_a_steady_shift_gets_all_of_it() {
+        let model = Model::new(Catalogue::builtin().unwrap().get("AU-ATRIPLE53").unwrap()).unwrap();
+        let group = Group::new(&[&model], 1.0);
+        let mut response = Response::new(&group, 4.0, 20);
+        response.follow(&[V::splat(0.3); 20]);
+        let last = response.axle[group.units - 1][19].0[0];
+        assert!((last - 0.3).abs() < 1e-12, "{last}");
+    }
+}

@@ -1,0 +1,69 @@
+//! The tubes themselves, for files and pictures: where each axle is nominally, and how far it may be off.
+
+use super::Certificate;
+use super::adjoint::{Refined, Trail, first_loose, refine};
+use super::group::Group;
+use super::lanes::{LANES, V};
+use super::model::Model;
+use super::sweep::{self, BLOCK, FIELDS, Motion, drive, row};
+use super::track::Track;
+use netcert_base::corridor::Corridor;
+
+/// The tube of one unit: one entry for each station that the steer axle passes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tube {
+    /// Unit index, 0 the prime mover.
+    pub unit: usize,
+    /// Nominal position of its axle, metres in the corridor's frame.
+    pub centre: Vec<[f64; 2]>,
+    /// Nominal heading, a unit vector.
+    pub heading: Vec<[f64; 2]>,
+    /// Lateral semi-axis, across the heading, metres: the axle is never further off, at the certificate's γ. What
+    /// [`Tube::bound_m`] says of it is what is known.
+    pub lateral_m: Vec<f64>,
+}
+
+impl Tube {
+    /// How far off the axle may be at a station; `None` where nothing bounds it.
+    #[must_use]
+    pub fn bound_m(&self, station: usize) -> Option<f64> {
+        self.lateral_m.get(station).copied().filter(|lateral_m| *lateral_m < sweep::MOST)
+    }
+}
+
+/// The tubes of a certificate that [`super::certify`] made from this corridor and model.
+#[must_use]
+pub fn tubes(corridor: &Corridor, model: &Model, certificate: &Certificate) -> Vec<Tube> {
+    let units = model.units.len();
+    let mut tubes: Vec<Tube> =
+        (0..units).map(|unit| Tube { unit, centre: Vec::new(), heading: Vec::new(), lateral_m: Vec::new() }).collect();
+    let Some(last) = certificate.shift_m.len().checked_sub(1) else { return tubes };
+    let group = Group::new(&[model], certificate.result.shrink);
+    let track = Track::new(corridor, sweep::extensions(&group, corridor.spacing_m));
+    let shift: Vec<V> =
+        (0..track.len()).map(|k| V::splat(certificate.shift_m[k.saturating_sub(track.lead).min(last)])).collect();
+    let mut motion = Motion::new(&track, &group);
+    let mut trail = Trail::new(&group, true);
+    let mut refined = Refined::new();
+    let mut rows = vec![0.0; units * LANES * FIELDS * BLOCK];
+    let (mut head, mut after) = (track.first_head, usize::MAX);
+    while head <= track.lead + last {
+        drive::<true, true>(&mut motion, &track, &group, &shift, head, &mut rows, &mut trail);
+        let loose = first_loose(&group, 0, &rows);
+        if loose.min(after) < units {
+            refine(&mut trail, &group, 0, loose.min(after), &mut motion, &mut rows, &mut refined);
+        }
+        trail.close(0, units);
+        after = loose;
+        for tube in &mut tubes {
+            let at = |field: usize, k: usize| rows[(tube.unit * LANES * FIELDS + field) * BLOCK + k];
+            for k in track.lead.saturating_sub(head)..BLOCK.min(track.lead + last + 1 - head) {
+                tube.centre.push([at(row::X, k), at(row::Y, k)]);
+                tube.heading.push([at(row::UX, k), at(row::UY, k)]);
+                tube.lateral_m.push(group.chain[tube.unit].axle.0[0] + at(row::EXTRA_AXLE, k));
+            }
+        }
+        head += BLOCK;
+    }
+    tubes
+}

@@ -1,0 +1,331 @@
+//! One corridor, one vehicle, one claim: the adversary does its best, the simulator measures what is left.
+//!
+//! Disturbances keep the scope of the promise (design section 5): |e_0| ≤ γ ε, |slip_i| ≤ σ_i, from long before the first
+//! station on. Some also keep the steer axle's course within m of the path's; only those may test the hinge margin.
+
+use netcert_base::corridor::Corridor;
+use netcert_base::vehicle::Vehicle;
+
+use crate::adversary::{Bounds, Target, hinge_kernel, kernel};
+use crate::claim::{Claim, Place};
+use crate::draw::Draw;
+use crate::path::{Path, along, direction, dot, left_of, wrapped};
+use crate::road::Road;
+use crate::simulator::{Disturbance, Drive, Near, PerUnit, Run, places, sweep};
+
+/// Steps a metre. RK4 is within 2e-6 m of the limit there (`simulator.rs`).
+pub const STEPS_PER_M: usize = 10;
+/// Metres in which the steer axle may swing from one bound to the other in a fast attack.
+const SWING_M: f64 = 0.3;
+
+/// What a duel showed.
+#[derive(Debug, Clone)]
+pub struct Outcome {
+    /// Least clearance found, metres, and where.
+    pub least: Near,
+    /// The attack that found it.
+    pub by: &'static str,
+    /// Least clearance without any disturbance.
+    pub undisturbed_m: f64,
+    /// Clearance at the limiting place less what the linearised adversary could take: first order, exact.
+    pub first_order_m: f64,
+    /// Least of θ_i less the articulation met, over attacks within the course tolerance, radians; and its hinge.
+    pub hinge: (f64, usize),
+}
+
+/// Vehicle, road and plan of one claim.
+pub struct Duel<'a> {
+    pub drive: Drive<'a>,
+    road: Road<'a>,
+    calm: Disturbance,
+    nominal: Run,
+    bounds: Bounds,
+    outcome: Outcome,
+}
+
+/// How far the foremost point is ahead of the steer axle on the straight, metres.
+fn front_m(vehicle: &Vehicle) -> f64 {
+    let mut coupling = 0.0;
+    let ahead = vehicle.units.iter().map(|unit| {
+        let own = coupling + unit.front_overhang_m;
+        coupling -= unit.coupling_to_axle_m + unit.hitch_offset_m;
+        own
+    });
+    ahead.fold(0.0, f64::max)
+}
+
+/// The path that a claim's plan stands for, with room to settle before it and to clear the corridor after it.
+pub fn path(corridor: &Corridor, vehicle: &Vehicle, claim: &Claim) -> Path {
+    let headings = (corridor.heading[0], corridor.heading[corridor.len() - 1]);
+    Path::through(&claim.plan, corridor.spacing_m, headings, 3.0 * vehicle.length_m, vehicle.length_m + 8.0)
+}
+
+impl<'a> Duel<'a> {
+    /// Drives undisturbed.
+    pub fn new(corridor: &'a Corridor, vehicle: &'a Vehicle, path: &'a Path, shrink: f64) -> Self {
+        let drive = Drive::new(vehicle, path, (STEPS_PER_M as f64 * corridor.spacing_m).ceil() as usize);
+        let calm = Disturbance::none(drive.steps());
+        let nominal = drive.whole(&calm);
+        let slip: PerUnit = std::array::from_fn(|i| vehicle.units.get(i).map_or(0.0, |u| u.sway_rad));
+        let steer_m = shrink * vehicle.tracking_tolerance_m;
+        let nowhere =
+            Near { clearance_m: f64::INFINITY, step: 0, unit: 0, ahead_m: 0.0, side: 1.0, edge: 1.0, foot_m: 0.0 };
+        let outcome = Outcome {
+            least: nowhere,
+            by: "nothing",
+            undisturbed_m: f64::INFINITY,
+            first_order_m: f64::INFINITY,
+            hinge: (f64::INFINITY, 0),
+        };
+        let bounds = Bounds { steer_m, change_m: 0.0, slip };
+        let mut duel = Self { drive, road: Road::new(corridor), calm, nominal, bounds, outcome };
+        let range = duel.on_road();
+        let nominal = std::mem::replace(&mut duel.nominal, Run { first: 0, guide: Vec::new(), headings: Vec::new() });
+        duel.measure(&nominal, range, "nothing", true);
+        duel.nominal = nominal;
+        duel.outcome.undisturbed_m = duel.outcome.least.clearance_m;
+        duel
+    }
+
+    /// Every attack: at the limiting place, at the undisturbed worst, at `others` random places, and at random.
+    pub fn fight(mut self, claim: &Claim, draw: &mut Draw, others: usize) -> Outcome {
+        let worst = self.outcome.least;
+        let worst = Place { foot_m: worst.foot_m, unit: worst.unit, side: worst.side, ahead_m: worst.ahead_m };
+        self.outcome.first_order_m = self.attack(claim.limiting, true, "limiting place");
+        self.attack(claim.limiting, false, "limiting place, within the course tolerance");
+        self.attack(worst, true, "undisturbed worst");
+        for k in 0..others {
+            let place = self.random_place(draw);
+            self.attack(place, k % 2 == 0, "random place");
+        }
+        for _ in 0..others {
+            self.attack_hinges(draw);
+        }
+        let noise = self.noise(draw);
+        let run = self.drive.whole(&noise);
+        self.measure(&run, self.on_road(), "noise", false);
+        self.outcome
+    }
+
+    /// Steps after which a disturbance no longer matters: the impulse responses are below 1e-3 of their peak by then.
+    fn memory(&self) -> usize {
+        (3.0 * self.drive.vehicle.length_m) as usize * STEPS_PER_M
+    }
+
+    /// A disturbed run of `first..end`, from where the undisturbed one was.
+    fn from(&self, first: usize, end: usize, disturbance: &Disturbance) -> Run {
+        self.drive.some(disturbance, first..end, *self.nominal.at(first).1)
+    }
+
+    /// Steps in which some unit is on the corridor: from when the first point comes on to it, and a little longer than until the last
+    /// one has left.
+    fn on_road(&self) -> std::ops::Range<usize> {
+        let first = self.drive.path.span_of_vertex(0) * self.drive.steps_per_span;
+        first - self.steps_of(front_m(self.drive.vehicle)).min(first)..self.drive.steps()
+    }
+
+    /// Steps in which surely some point of the vehicle is on the corridor.
+    fn surely_on_road(&self) -> std::ops::Range<usize> {
+        let vehicle = self.drive.vehicle;
+        let rear_m = vehicle.length_m - front_m(vehicle);
+        let end = self.drive.path.span_of_vertex(0) * self.drive.steps_per_span
+            + self.steps_of(self.road.length_m() + rear_m);
+        self.on_road().start + 1..end.min(self.drive.steps())
+    }
+
+    fn steps_of(&self, metres: f64) -> usize {
+        (metres / self.drive.path.spacing_m * self.drive.steps_per_span as f64) as usize
+    }
+
+    fn random_place(&self, draw: &mut Draw) -> Place {
+        let unit = draw.below(self.drive.vehicle.units.len());
+        let ladder = places(self.drive.vehicle, unit, 1.0);
+        let ahead_m =
+            if draw.one_in(2) { ladder[draw.below(ladder.len())] } else { ladder[(ladder.len() - 1) * draw.below(2)] };
+        Place { foot_m: draw.between(0.0, self.road.length_m()), unit, side: draw.sign(), ahead_m }
+    }
+
+    /// Attacks one place, first about the undisturbed run, then about the attacked one. The clearance that the first
+    /// linearisation promises there.
+    fn attack(&mut self, place: Place, fast: bool, by: &'static str) -> f64 {
+        let aside_m = place.side * 0.5 * self.drive.vehicle.units[place.unit].width_m;
+        let (step, clearance_m) = self.step_at(&place, aside_m);
+        let (_, tangent) = self.road.centre(place.foot_m);
+        let push = along([0.0; 2], place.side, left_of(tangent));
+        let target = Target { step, unit: place.unit, ahead_m: place.ahead_m, aside_m, push };
+        let per_step = self.drive.path.spacing_m / self.drive.steps_per_span as f64;
+        let slope =
+            if fast { 2.0 * self.bounds.steer_m / SWING_M } else { self.drive.vehicle.tracking_heading_rad.tan() };
+        let bounds = Bounds { change_m: slope * per_step, ..self.bounds };
+        let first = kernel(&self.drive, &self.nominal, &self.calm, &target, self.memory());
+        let near =
+            step.saturating_sub(15 * STEPS_PER_M).max(first.first)..(step + 3 * STEPS_PER_M).min(self.drive.steps());
+        let first_attack = first.attack(&bounds, self.drive.steps());
+        let run = self.from(first.first, near.end, &first_attack);
+        self.measure(&run, near.clone(), by, !fast);
+        let again = kernel(&self.drive, &run, &first_attack, &target, self.memory());
+        let run = self.from(first.first, near.end, &again.attack(&bounds, self.drive.steps()));
+        self.measure(&run, near, by, !fast);
+        clearance_m - first.reach_m(&bounds)
+    }
+
+    /// Folds every hinge, and the steering, as far as it goes within the course tolerance: where it is folded most undisturbed, and at a
+    /// random step.
+    fn attack_hinges(&mut self, draw: &mut Draw) {
+        let range = self.surely_on_road();
+        if range.is_empty() {
+            return;
+        }
+        for hinge in 0..self.drive.vehicle.units.len() {
+            let folded = |step: usize| self.folded(&self.nominal, step, hinge);
+            let most =
+                range.clone().max_by(|&a, &b| folded(a).abs().total_cmp(&folded(b).abs())).unwrap_or(range.start);
+            for step in [most, range.start + draw.below(range.len())] {
+                let sign = if self.folded(&self.nominal, step, hinge) < 0.0 { -1.0 } else { 1.0 };
+                let window = (step, self.memory());
+                let per_step = self.drive.path.spacing_m / self.drive.steps_per_span as f64;
+                let change_m = self.drive.vehicle.tracking_heading_rad.tan() * per_step;
+                let bounds = Bounds { change_m, ..self.bounds };
+                let kernel = hinge_kernel(&self.drive, &self.nominal, &self.calm, window, hinge, sign);
+                let end = (step + STEPS_PER_M).min(self.drive.steps());
+                let run = self.from(kernel.first, end, &kernel.attack(&bounds, self.drive.steps()));
+                self.measure_hinges(&run, kernel.first..end);
+            }
+        }
+    }
+
+    /// How far a hinge is folded at a step, to the left; of 0: how far the prime mover is turned against its course.
+    fn folded(&self, run: &Run, step: usize, hinge: usize) -> f64 {
+        let headings = run.at(step).1;
+        if let Some(ahead) = hinge.checked_sub(1) {
+            return wrapped(headings[hinge] - headings[ahead]);
+        }
+        let places = run.steps();
+        let (before, after) = (step.saturating_sub(1).max(places.start), (step + 1).min(places.end - 1));
+        let moved = along(run.at(after).0, -1.0, run.at(before).0);
+        let u = direction(headings[0]);
+        -dot(moved, left_of(u)).atan2(dot(moved, u))
+    }
+
+    /// The step at which a body point's foot is nearest to the place's, undisturbed, and its clearance then.
+    fn step_at(&self, place: &Place, aside_m: f64) -> (usize, f64) {
+        let mut guess = place.foot_m;
+        let mut miss = |step: usize| {
+            let (guide, headings) = self.nominal.at(step);
+            let point = self.drive.body_point(guide, headings, place.unit, place.ahead_m, aside_m);
+            let on_path = (step as f64 / self.drive.steps_per_span as f64 + 1.0 - self.drive.path.lead_in as f64)
+                * self.drive.path.spacing_m;
+            // Feet are searched for from where the steer axle is: a corridor may come back to the same spot.
+            guess = on_path - self.behind(place);
+            let at = self.road.locate(point, guess);
+            ((at.foot_m - place.foot_m).abs(), if place.side > 0.0 { at.left_m } else { at.right_m })
+        };
+        let better = |best: (usize, (f64, f64)), step: usize, found: (f64, f64)| {
+            if found.0 < best.1.0 { (step, found) } else { best }
+        };
+        let coarse = (0..self.drive.steps())
+            .step_by(5)
+            .fold((0, (f64::INFINITY, 0.0)), |best, step| better(best, step, miss(step)));
+        let around = coarse.0.saturating_sub(5)..(coarse.0 + 5).min(self.drive.steps());
+        let fine = around.fold(coarse, |best, step| better(best, step, miss(step)));
+        (fine.0, fine.1.1)
+    }
+
+    /// How far behind the steer axle a body point is on the straight.
+    fn behind(&self, place: &Place) -> f64 {
+        let units = &self.drive.vehicle.units;
+        let ahead: f64 = units[..place.unit].iter().map(|u| u.coupling_to_axle_m + u.hitch_offset_m).sum();
+        ahead + units[place.unit].coupling_to_axle_m - place.ahead_m
+    }
+
+    /// Notes the least clearance of a run in `range`, and its articulation if `course` was kept.
+    fn measure(&mut self, run: &Run, range: std::ops::Range<usize>, by: &'static str, course: bool) {
+        let least = |range: std::ops::Range<usize>, grid: (usize, f64)| {
+            let mut least: Option<Near> = None;
+            sweep(&self.drive, run, &self.road, range, grid, |near| {
+                if least.is_none_or(|l| near.clearance_m < l.clearance_m) {
+                    least = Some(near);
+                }
+            });
+            least
+        };
+        let Some(rough) = least(range.clone(), (5, 0.5)) else { return };
+        let close = rough.step.saturating_sub(5).max(range.start)..(rough.step + 6).min(range.end);
+        let least = least(close, (1, 0.1)).unwrap_or(rough);
+        if least.clearance_m < self.outcome.least.clearance_m {
+            (self.outcome.least, self.outcome.by) = (least, by);
+        }
+        if course {
+            self.measure_hinges(run, range);
+        }
+    }
+
+    fn measure_hinges(&mut self, run: &Run, range: std::ops::Range<usize>) {
+        let units = &self.drive.vehicle.units;
+        let on_road = self.surely_on_road();
+        for step in range.filter(|step| step % 2 == 0 && on_road.contains(step)) {
+            for (i, unit) in units.iter().enumerate() {
+                let room = unit.max_articulation_rad - self.folded(run, step, i).abs();
+                if room < self.outcome.hinge.0 {
+                    self.outcome.hinge = (room, i);
+                }
+            }
+        }
+    }
+
+    /// Disturbances that are not matched to anything: constant, waves, or bang-bang at random.
+    fn noise(&self, draw: &mut Draw) -> Disturbance {
+        let mut d = self.calm.clone();
+        let steps = self.drive.steps();
+        let units = self.drive.vehicle.units.len();
+        let mut signal = |swing: f64| -> Vec<f64> {
+            let (kind, wave, phase) = (draw.below(3), draw.log_between(3.0, 200.0), draw.between(0.0, 6.3));
+            let mut goal = draw.sign();
+            let mut now = goal;
+            (0..=steps)
+                .map(|k| match kind {
+                    0 => goal,
+                    1 => (phase + k as f64 / STEPS_PER_M as f64 * std::f64::consts::TAU / wave).sin(),
+                    _ => {
+                        if draw.below((wave * STEPS_PER_M as f64) as usize + 1) == 0 {
+                            goal = -goal;
+                        }
+                        now += (goal - now).clamp(-swing, swing);
+                        now
+                    }
+                })
+                .collect()
+        };
+        d.steer_m = signal(2.0 / (SWING_M * STEPS_PER_M as f64)).iter().map(|x| x * self.bounds.steer_m).collect();
+        for unit in 0..units {
+            let s = signal(2.0);
+            for (k, slip) in d.slip.iter_mut().enumerate() {
+                slip[unit] = s[k] * self.bounds.slip[unit];
+            }
+        }
+        d
+    }
+}
+
+/// The least clearance in one line, for a failure's message.
+pub fn describe(o: &Outcome) -> String {
+    let n = &o.least;
+    let side = if n.side > 0.0 { "left" } else { "right" };
+    format!(
+        "{:.4} m at s {:.1}, unit {}, {side} side, {:.2} m ahead of its axle, by {}",
+        n.clearance_m, n.foot_m, n.unit, n.ahead_m, o.by
+    )
+}
+
+/// The whole fight for one claim: how far the least clearance that any attack reached is above it, metres, and how that came about.
+pub fn margin_m(
+    corridor: &Corridor,
+    vehicle: &Vehicle,
+    claim: &Claim,
+    draw: &mut Draw,
+    others: usize,
+) -> (f64, Outcome) {
+    let ride = path(corridor, vehicle, claim);
+    let outcome = Duel::new(corridor, vehicle, &ride, claim.shrink).fight(claim, draw, others);
+    (outcome.least.clearance_m - claim.rsc_m, outcome)
+}

@@ -1,0 +1,204 @@
+//! Corridors and certificates of a whole network: strokes over threads, results in order.
+//!
+//! A stroke is made into a corridor once and swept by all vehicles. The result does not depend on the number of threads.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use crate::account::AccountRow;
+use crate::corridor::{EdgeSpan, StrokeCorridor, stroke_corridor};
+use crate::network::{Edge, Network, Stroke};
+use crate::reporter::Reporter;
+use crate::settings::Settings;
+use crate::stet::{Model, Planned, SpanResult, certify_spans};
+use crate::store::{EdgeCertificate, EdgeMeasure, Measured, Named, StoredPlan, VerdictKind, verdict_words};
+use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
+
+/// Strokes handed to the threads at a time: enough to keep them busy, few enough to hold.
+const BATCH: usize = 512;
+
+/// What is to be certified.
+#[derive(Clone, Copy)]
+pub struct Job<'a> {
+    /// The route graph.
+    pub network: &'a Network,
+    /// The vehicles.
+    pub models: &'a [Model],
+    /// How.
+    pub settings: &'a Settings,
+}
+
+/// What certifying leaves beside the certificates.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Outcome {
+    /// One an edge.
+    pub measures: Vec<EdgeMeasure>,
+    /// Edges by why they have no corridor; `None`: they have one.
+    corridors: BTreeMap<Option<&'static str>, u64>,
+    /// Certificates by verdict and reason, all vehicles together.
+    verdicts: BTreeMap<(&'static str, &'static str), u64>,
+    /// Plans that are not the centreline, with their vehicle's index.
+    pub plans: Vec<(usize, StoredPlan)>,
+}
+
+impl Outcome {
+    /// How many certificates were made.
+    #[must_use]
+    pub fn certificates(&self) -> u64 {
+        self.verdicts.values().sum()
+    }
+
+    /// The account of both stages.
+    #[must_use]
+    pub fn rows(&self) -> Vec<AccountRow> {
+        let edges = self.corridors.values().sum();
+        let mut rows = vec![AccountRow::new("corridors", "edge", "read", "", edges)];
+        for (why, &count) in &self.corridors {
+            let (outcome, reason) = why.map_or(("kept", ""), |why| ("left_out", why));
+            rows.push(AccountRow::new("corridors", "edge", outcome, reason, count));
+        }
+        rows.push(AccountRow::new("certificates", "certificate", "read", "", self.certificates()));
+        for kind in VerdictKind::ALL {
+            for (&(_, reason), &count) in self.verdicts.iter().filter(|((verdict, _), _)| *verdict == kind.name()) {
+                rows.push(AccountRow::new("certificates", "certificate", kind.name(), reason, count));
+            }
+        }
+        rows
+    }
+}
+
+/// One stroke's results.
+struct StrokeResult {
+    measures: Vec<(u32, EdgeMeasure, Option<&'static str>)>,
+    /// Vehicle index and certificate.
+    certificates: Vec<(usize, EdgeCertificate)>,
+    plans: Vec<(usize, StoredPlan)>,
+}
+
+/// Certifies every edge of the network for every vehicle: `sink` gets each certificate with its vehicle's index, in an
+/// order that is always the same.
+///
+/// # Errors
+/// The first that `sink` gives.
+pub fn certify_network<E>(
+    job: &Job<'_>,
+    reporter: &dyn Reporter,
+    mut sink: impl FnMut(usize, &EdgeCertificate) -> Result<(), E>,
+) -> Result<Outcome, E> {
+    let network = job.network;
+    let mut outcome = Outcome { measures: vec![EdgeMeasure::default(); network.edges.len()], ..Outcome::default() };
+    reporter.begin("certificates", network.edges.len() as u64);
+    let mut done = 0;
+    for batch in network.strokes.chunks(BATCH) {
+        let results: Vec<StrokeResult> = batch.par_iter().map(|stroke| certify_stroke(job, stroke)).collect();
+        for result in results {
+            done += result.measures.len() as u64;
+            for (edge, measure, why) in result.measures {
+                if let Some(slot) = outcome.measures.get_mut(edge as usize) {
+                    *slot = measure;
+                }
+                *outcome.corridors.entry(why).or_default() += 1;
+            }
+            outcome.plans.extend(result.plans);
+            for (vehicle, certificate) in &result.certificates {
+                *outcome.verdicts.entry(verdict_words(certificate.verdict)).or_default() += 1;
+                sink(*vehicle, certificate)?;
+            }
+        }
+        reporter.advance(done);
+    }
+    reporter.end();
+    Ok(outcome)
+}
+
+fn certify_stroke(job: &Job<'_>, stroke: &Stroke) -> StrokeResult {
+    let made = stroke_corridor(job.network, stroke, job.settings.policy, &job.settings.corridor);
+    match made {
+        Ok(made) => with_corridor(job, &made),
+        Err(reason) => without_corridor(job, stroke, reason),
+    }
+}
+
+fn with_corridor(job: &Job<'_>, made: &StrokeCorridor) -> StrokeResult {
+    let spans: Vec<_> = made.spans.iter().map(|s| s.stations.clone()).collect();
+    let models: Vec<&Model> = job.models.iter().collect();
+    let rows = certify_spans(&made.corridor, &models, &spans, &job.settings.stet);
+    let certificates = rows
+        .iter()
+        .enumerate()
+        .flat_map(|(vehicle, row)| made.spans.iter().zip(&row.spans).map(move |(span, result)| (vehicle, span, result)))
+        .filter_map(|(vehicle, span, result)| {
+            let edge = job.network.edges.get(span.edge as usize)?;
+            let verdict = verdict(edge, &job.models[vehicle], span.unknown, Some(result));
+            let measured = span.unknown.is_none().then(|| measured(made, span, result)).flatten();
+            Some((vehicle, EdgeCertificate { edge: span.edge, verdict, measured }))
+        })
+        .collect();
+    let measures = made.spans.iter().map(|span| {
+        let measure = EdgeMeasure {
+            length_m: None,
+            min_radius_m: Some(span.min_radius_m),
+            centreline_deviation_m: Some(span.centreline_deviation_m),
+        };
+        (span.edge, measure, span.unknown.map(reason_name))
+    });
+    let first = made.spans.first().map_or(0, |span| span.edge);
+    let plan = |(vehicle, row): (usize, &Planned)| Some((vehicle, StoredPlan::new(first, &row.plan.coefficients)?));
+    let plans = rows.iter().enumerate().filter_map(plan).collect();
+    StrokeResult { measures: measures.collect(), certificates, plans }
+}
+
+fn without_corridor(job: &Job<'_>, stroke: &Stroke, reason: UnknownReason) -> StrokeResult {
+    let network = job.network;
+    let edges = &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize];
+    let certificates = (0..job.models.len()).flat_map(|vehicle| edges.iter().map(move |&edge| (vehicle, edge))).map(
+        |(vehicle, edge)| {
+            let verdict = verdict(&network.edges[edge as usize], &job.models[vehicle], Some(reason), None);
+            (vehicle, EdgeCertificate { edge, verdict, measured: None })
+        },
+    );
+    let measures = edges.iter().map(|&edge| (edge, EdgeMeasure::default(), Some(reason_name(reason))));
+    StrokeResult { measures: measures.collect(), certificates: certificates.collect(), plans: Vec::new() }
+}
+
+fn reason_name(reason: UnknownReason) -> &'static str {
+    verdict_words(Verdict::Unknown(reason)).1
+}
+
+fn measured(made: &StrokeCorridor, span: &EdgeSpan, result: &SpanResult) -> Option<Measured> {
+    let along = result.limiting.station.saturating_sub(span.stations.start) as f64 * made.corridor.spacing_m;
+    Some(Measured {
+        rsc_m: result.rsc_m?,
+        rsc_published_m: result.rsc_published_m,
+        hinge_margin_rad: result.hinge_margin_rad?,
+        shrink: result.shrink,
+        limiting_s_m: along,
+        limiting_unit: result.limiting.unit,
+        limiting_side: result.limiting.side,
+    })
+}
+
+/// What forbids comes first, then what cannot be said; a limit that cannot be read stands only against a `safe`.
+pub(crate) fn verdict(
+    edge: &Edge,
+    model: &Model,
+    unknown: Option<UnknownReason>,
+    result: Option<&SpanResult>,
+) -> Verdict {
+    let legal = edge.legal.forbids(&model.vehicle);
+    if let Some(forbidden @ Verdict::Forbidden(_)) = legal {
+        return forbidden;
+    }
+    if edge.barred {
+        return Verdict::Forbidden(ForbiddenReason::Barrier);
+    }
+    match (unknown, result) {
+        (Some(reason), _) => Verdict::Unknown(reason),
+        (None, None) => Verdict::Unknown(UnknownReason::Geometry),
+        (None, Some(result)) => match result.verdict() {
+            Verdict::Safe => legal.unwrap_or(Verdict::Safe),
+            other => other,
+        },
+    }
+}

@@ -1,0 +1,324 @@
+//! Turns of a whole network: their corridors and certificates, over threads, in an order that is always the same.
+//!
+//! A turn whose edges a vehicle may not use needs no certificate: it has the edge's verdict. The others are tried on the paths on
+//! which the vehicle, kept to them exactly, has most room; the best certificate counts.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::account::AccountRow;
+use crate::network::Network;
+use crate::osm::LonLat;
+use crate::reporter::Reporter;
+use crate::settings::Settings;
+use crate::stet::{Model, Options, Plan, SpanResult, certify_spans};
+use crate::store::{Measured, Named, StoredPlan, TurnCertificate, VerdictKind, verdict_words};
+use crate::turns::{Reach, StrokeLine, TurnFacts, TurnPath, nominal_leeway_m, passage_on, turn_on};
+use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
+
+/// Turns handed to the threads at a time.
+const BATCH: usize = 512;
+/// A stroke's line is kept for so many batches after its last turn: neighbours come soon.
+const KEPT_BATCHES: usize = 6;
+/// Paths that get a whole certificate, at most.
+const TRIED: usize = 3;
+/// What no correction brings back, metres: the shift allowed and half a metre of lining up. Below it the best path alone is
+/// certified, for the record, without corrections.
+const HOPELESS_M: f64 = 0.5;
+/// Nominal leeways that differ by less are the same, metres.
+const RANK_STEP_M: f64 = 0.05;
+
+/// What is to be certified.
+#[derive(Clone, Copy)]
+pub struct TurnJob<'a> {
+    /// The route graph.
+    pub network: &'a Network,
+    /// Its turns.
+    pub turns: &'a [TurnFacts],
+    /// The vehicles.
+    pub models: &'a [Model],
+    /// By vehicle: the verdict of each edge.
+    pub edges: &'a [Vec<Verdict>],
+    /// How.
+    pub settings: &'a Settings,
+}
+
+/// What certifying leaves beside the certificates.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct TurnOutcome {
+    /// Certificates by verdict and reason, all vehicles together.
+    verdicts: BTreeMap<(&'static str, &'static str), u64>,
+    /// Turns that needed corridors.
+    pub laid_out: u64,
+    turns: u64,
+}
+
+impl TurnOutcome {
+    /// How many certificates were made, those that have an edge's verdict among them.
+    #[must_use]
+    pub fn certificates(&self) -> u64 {
+        self.verdicts.values().sum()
+    }
+
+    /// The account of the stage.
+    #[must_use]
+    pub fn rows(&self) -> Vec<AccountRow> {
+        let mut rows = vec![
+            AccountRow::new("turns", "turn", "read", "", self.turns),
+            AccountRow::new("turns", "turn", "noted", "laid_out", self.laid_out),
+            AccountRow::new("turns", "turn_certificate", "read", "", self.certificates()),
+        ];
+        for kind in VerdictKind::ALL {
+            for (&(_, reason), &count) in self.verdicts.iter().filter(|((verdict, _), _)| *verdict == kind.name()) {
+                rows.push(AccountRow::new("turns", "turn_certificate", kind.name(), reason, count));
+            }
+        }
+        rows
+    }
+}
+
+type Lines = FxHashMap<u32, (usize, Result<Arc<StrokeLine>, UnknownReason>)>;
+
+/// Certifies every turn for every vehicle: `sink` gets each certificate with its vehicle's index.
+///
+/// # Errors
+/// The first that `sink` gives.
+pub fn certify_turns<E>(
+    job: &TurnJob<'_>,
+    reporter: &dyn Reporter,
+    mut sink: impl FnMut(usize, &TurnCertificate) -> Result<(), E>,
+) -> Result<TurnOutcome, E> {
+    let mut outcome = TurnOutcome { turns: job.turns.len() as u64, ..TurnOutcome::default() };
+    reporter.begin("turns", job.turns.len() as u64);
+    let strokes = strokes_of_edges(job.network);
+    let mut lines = Lines::default();
+    let mut done = 0;
+    for (number, batch) in neighbours(job.turns).chunks(BATCH).enumerate() {
+        lay_lines(job, batch, &strokes, &mut lines, number);
+        let results: Vec<(bool, Vec<TurnCertificate>)> =
+            batch.par_iter().map(|&turn| certify_turn(job, turn, &strokes, &lines)).collect();
+        for (laid_out, certificates) in results {
+            outcome.laid_out += u64::from(laid_out);
+            for (vehicle, certificate) in certificates.iter().enumerate() {
+                *outcome.verdicts.entry(verdict_words(certificate.verdict)).or_default() += 1;
+                sink(vehicle, certificate)?;
+            }
+        }
+        done += batch.len() as u64;
+        reporter.advance(done);
+    }
+    reporter.end();
+    Ok(outcome)
+}
+
+/// By edge: its stroke.
+fn strokes_of_edges(network: &Network) -> Vec<u32> {
+    let mut of_edge = vec![u32::MAX; network.edges.len()];
+    for (index, stroke) in (0..).zip(&network.strokes) {
+        for &edge in &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize] {
+            of_edge[edge as usize] = index;
+        }
+    }
+    of_edge
+}
+
+/// Indices of the turns, near ones near each other: so that few strokes are made twice.
+fn neighbours(turns: &[TurnFacts]) -> Vec<u32> {
+    let place =
+        |turn: &TurnFacts| turn.line.get(turn.line.len() / 2).copied().unwrap_or(LonLat { lon_e7: 0, lat_e7: 0 });
+    let spread = |e7: i32| {
+        let mut x = u64::from(((i64::from(e7) + 1_800_000_000) >> 10) as u32);
+        for (shift, mask) in [(16, 0x0000_ffff_0000_ffff), (8, 0x00ff_00ff_00ff_00ff), (4, 0x0f0f_0f0f_0f0f_0f0f)] {
+            x = (x | x << shift) & mask;
+        }
+        x = (x | x << 2) & 0x3333_3333_3333_3333;
+        (x | x << 1) & 0x5555_5555_5555_5555
+    };
+    let mut order: Vec<(u64, u32)> =
+        (0..).zip(turns).map(|(i, turn)| (spread(place(turn).lon_e7) | spread(place(turn).lat_e7) << 1, i)).collect();
+    order.sort_unstable();
+    order.into_iter().map(|(_, i)| i).collect()
+}
+
+/// Makes the lines that a batch needs and drops those that nothing has needed for a while.
+fn lay_lines(job: &TurnJob<'_>, batch: &[u32], strokes: &[u32], lines: &mut Lines, number: usize) {
+    let mut wanted: Vec<u32> = batch
+        .iter()
+        .map(|&turn| &job.turns[turn as usize])
+        .filter(|turn| (0..job.models.len()).any(|vehicle| given(job, turn, vehicle).is_none()))
+        .flat_map(|turn| [turn.movement.from, turn.movement.to].into_iter().chain(turn.through.first().copied()))
+        .map(|edge| strokes[edge as usize])
+        .collect::<FxHashSet<u32>>()
+        .into_iter()
+        .collect();
+    for stroke in &wanted {
+        if let Some((used, _)) = lines.get_mut(stroke) {
+            *used = number;
+        }
+    }
+    wanted.retain(|stroke| !lines.contains_key(stroke));
+    let policy = job.settings.policy;
+    let line = |&stroke: &u32| {
+        let line = StrokeLine::new(job.network, stroke, policy, &job.settings.corridor).map(Arc::new);
+        (stroke, (number, line))
+    };
+    let made: Vec<_> = wanted.par_iter().map(line).collect();
+    lines.retain(|_, (used, _)| *used + KEPT_BATCHES > number);
+    lines.extend(made);
+}
+
+/// The verdict that a turn has without a certificate: it is forbidden, or one of its edges cannot be used. The arcs of a roundabout
+/// need no certificate of their own, only leave to be driven on: nobody goes round for ever.
+fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict> {
+    if turn.movement.forbidden.is_some() {
+        return Some(Verdict::Forbidden(ForbiddenReason::Restriction));
+    }
+    let verdicts = job.edges.get(vehicle)?;
+    let of = |edge: u32| verdicts.get(edge as usize).copied().unwrap_or(Verdict::Unknown(UnknownReason::Geometry));
+    let both = [of(turn.movement.from), of(turn.movement.to)];
+    let first = |wanted: fn(&Verdict) -> bool| both.into_iter().find(wanted);
+    let barred = |v: &Verdict| matches!(v, Verdict::Forbidden(_) | Verdict::Unknown(UnknownReason::Limit));
+    let arcs = || turn.through.iter().map(|&arc| of(arc)).find(barred);
+    first(|v| matches!(v, Verdict::Forbidden(_)))
+        .or_else(|| first(|v| matches!(v, Verdict::Unsafe(_))))
+        .or_else(|| first(|v| matches!(v, Verdict::Unknown(_))))
+        .or_else(arcs)
+}
+
+/// One certificate a vehicle, and whether any needed a corridor.
+fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -> (bool, Vec<TurnCertificate>) {
+    let turn = &job.turns[index as usize];
+    let bare = |verdict: Verdict| TurnCertificate { turn: index, verdict, measured: None, path: None, plan: None };
+    let mut out: Vec<TurnCertificate> = (0..job.models.len())
+        .map(|vehicle| bare(given(job, turn, vehicle).unwrap_or(Verdict::Unknown(UnknownReason::Geometry))))
+        .collect();
+    let line = |edge: u32| match lines.get(&strokes[edge as usize]) {
+        Some((_, Ok(line))) => Ok(line),
+        Some((_, Err(reason))) => Err(*reason),
+        None => Err(UnknownReason::Geometry),
+    };
+    let mut laid_out = false;
+    for reach in [Reach::Short, Reach::Long] {
+        let live: Vec<usize> = (0..job.models.len())
+            .filter(|&v| given(job, turn, v).is_none() && Reach::of(&job.models[v].vehicle) == Some(reach))
+            .collect();
+        if live.is_empty() {
+            continue;
+        }
+        let made = || {
+            let (network, policy, params) = (job.network, job.settings.policy, &job.settings.turn_params());
+            let (from, to) = (line(turn.movement.from)?, line(turn.movement.to)?);
+            match turn.through.first() {
+                Some(&arc) => {
+                    let over = (turn.movement, turn.through.as_slice());
+                    passage_on(network, over, [from, line(arc)?, to], policy, params, reach)
+                }
+                None => turn_on(network, turn.movement, [from, to], policy, params, reach),
+            }
+        };
+        match made() {
+            Err(reason) => live.iter().for_each(|&v| out[v] = bare(Verdict::Unknown(reason))),
+            Ok(made) => {
+                laid_out = true;
+                let models: Vec<&Model> = live.iter().map(|&v| &job.models[v]).collect();
+                for (&v, best) in live.iter().zip(best_planned(&made.paths, &models, &job.settings.stet)) {
+                    out[v] = certificate(index, &made.paths, best);
+                }
+            }
+        }
+    }
+    (laid_out, out)
+}
+
+/// For each vehicle the path with the best certificate, and its result.
+#[must_use]
+pub fn best_of(paths: &[TurnPath], models: &[&Model], options: &Options) -> Vec<Option<(usize, SpanResult)>> {
+    let best = best_planned(paths, models, options).into_iter();
+    best.map(|best| best.map(|Best { path, result, .. }| (path, result))).collect()
+}
+
+/// The best certificate of a turn.
+struct Best {
+    /// Which of its paths.
+    path: usize,
+    result: SpanResult,
+    plan: Plan,
+}
+
+fn best_planned(paths: &[TurnPath], models: &[&Model], options: &Options) -> Vec<Option<Best>> {
+    let hopeless_m = -(options.max_shift_m + HOPELESS_M);
+    // By path: which vehicles try it, thoroughly or for the record.
+    let mut tries: BTreeMap<(usize, bool), Vec<usize>> = BTreeMap::new();
+    for (vehicle, model) in models.iter().enumerate() {
+        let mut ranked: Vec<(f64, usize)> =
+            paths.iter().enumerate().map(|(i, path)| (nominal_leeway_m(path, &model.vehicle), i)).collect();
+        // Of paths that leave about as much room, the gentler one first: its tubes are narrower.
+        let steps = |leeway_m: f64| (leeway_m / RANK_STEP_M).floor();
+        let gentle = |path: usize| paths[path].min_radius_m;
+        ranked.sort_by(|a, b| {
+            let more_room = steps(b.0).total_cmp(&steps(a.0));
+            more_room.then(gentle(b.1).total_cmp(&gentle(a.1))).then(a.1.cmp(&b.1))
+        });
+        let hope = ranked.iter().take_while(|(leeway_m, _)| *leeway_m >= hopeless_m).count();
+        for &(_, path) in ranked.iter().take(hope.clamp(1, TRIED)) {
+            tries.entry((path, hope > 0)).or_default().push(vehicle);
+        }
+    }
+    let mut best: Vec<Option<Best>> = models.iter().map(|_| None).collect();
+    for ((path, thoroughly), vehicles) in tries {
+        let options = if thoroughly { *options } else { Options { max_shift_m: 0.0, correction_sweeps: 0 } };
+        let trying: Vec<&Model> = vehicles.iter().map(|&v| models[v]).collect();
+        let tried = &paths[path];
+        for (&v, row) in
+            vehicles.iter().zip(certify_spans(&tried.corridor, &trying, std::slice::from_ref(&tried.counted), &options))
+        {
+            let Some(result) = row.spans.into_iter().next() else { continue };
+            if best[v].as_ref().is_none_or(|known| better(&result, &known.result)) {
+                best[v] = Some(Best { path, result, plan: row.plan });
+            }
+        }
+    }
+    best
+}
+
+/// Safe before not, bounded before not, then the greater RSC. Ties keep the first.
+fn better(a: &SpanResult, b: &SpanResult) -> bool {
+    let key = |r: &SpanResult| (r.safe(), r.closes());
+    match key(a).cmp(&key(b)) {
+        std::cmp::Ordering::Equal => a.rsc_m > b.rsc_m,
+        order => order.is_gt(),
+    }
+}
+
+/// The verdict of a turn's best result.
+#[must_use]
+pub fn turn_verdict(result: Option<&SpanResult>) -> Verdict {
+    // Without a result: no path of the family stays on the road.
+    result.map_or(Verdict::Unsafe(UnsafeReason::Width), SpanResult::verdict)
+}
+
+fn certificate(turn: u32, paths: &[TurnPath], best: Option<Best>) -> TurnCertificate {
+    let verdict = turn_verdict(best.as_ref().map(|best| &best.result));
+    let bounded = best.and_then(|best| Some((best.result.rsc_m?, best.result.hinge_margin_rad?, best)));
+    match bounded {
+        Some((rsc_m, hinge_margin_rad, Best { path, result, plan })) => {
+            let path = &paths[path];
+            let along = result.limiting.station.saturating_sub(path.counted.start) as f64 * path.corridor.spacing_m;
+            let measured = Measured {
+                rsc_m,
+                rsc_published_m: result.rsc_published_m,
+                hinge_margin_rad,
+                shrink: result.shrink,
+                limiting_s_m: along,
+                limiting_unit: result.limiting.unit,
+                limiting_side: result.limiting.side,
+            };
+            let plan = StoredPlan::new(turn, &plan.coefficients);
+            TurnCertificate { turn, verdict, measured: Some(measured), path: Some(path.number), plan }
+        }
+        None => TurnCertificate { turn, verdict, measured: None, path: None, plan: None },
+    }
+}

@@ -1,0 +1,69 @@
+//! What stands beside the rows of a GeoParquet file: `geo` makes it one, `pandas` keeps its ids whole.
+
+use serde_json::{Map, Value, json};
+
+use super::SIDES;
+use crate::export::formats::Kind;
+use crate::store::Bounds;
+
+/// <https://geoparquet.org/releases/v1.1.0/>, of lines in the column `geometry` with their boxes in `bbox`.
+pub(super) fn geo(bounds: Option<Bounds>) -> String {
+    let covering: Map<_, _> = SIDES.iter().map(|&side| (side.to_owned(), json!(["bbox", side]))).collect();
+    let mut column = json!({
+        "encoding": "WKB",
+        "geometry_types": ["LineString"],
+        "crs": epsg_4326(),
+        "edges": "planar",
+        "covering": {"bbox": covering},
+    });
+    if let (Some(b), Some(members)) = (bounds, column.as_object_mut()) {
+        members.insert("bbox".to_owned(), json!([b.west, b.south, b.east, b.north]));
+    }
+    json!({"version": "1.1.0", "primary_column": "geometry", "columns": {"geometry": column}}).to_string()
+}
+
+/// EPSG:4326 as PROJJSON: the name that every other format of this program has for it, so that tables join. Its axes are latitude
+/// and longitude; coordinates of WKB are x and y, longitude first, whatever the system says (GeoParquet 1.1, "Coordinate axis order").
+fn epsg_4326() -> Value {
+    json!({
+        "$schema": "https://proj.org/schemas/v0.7/projjson.schema.json",
+        "type": "GeographicCRS",
+        "name": "WGS 84",
+        "datum": {
+            "type": "GeodeticReferenceFrame",
+            "name": "World Geodetic System 1984",
+            "ellipsoid": {"name": "WGS 84", "semi_major_axis": 6_378_137, "inverse_flattening": 298.257_223_563},
+        },
+        "coordinate_system": {
+            "subtype": "ellipsoidal",
+            "axis": [
+                {"name": "Geodetic latitude", "abbreviation": "Lat", "direction": "north", "unit": "degree"},
+                {"name": "Geodetic longitude", "abbreviation": "Lon", "direction": "east", "unit": "degree"},
+            ],
+        },
+        "id": {"authority": "EPSG", "code": 4326},
+    })
+}
+
+/// Which type pandas gives each column (<https://pandas.pydata.org/docs/development/developer.html>). Without it a column of whole
+/// numbers with gaps becomes one of doubles, and ids of 63 bits lose their last digits.
+pub(super) fn pandas(columns: &[(&str, Kind)]) -> String {
+    let plain = columns.iter().map(|&(name, kind)| {
+        let (pandas, numpy) = match kind {
+            Kind::Integer => ("int64", "Int64"),
+            Kind::Real => ("float64", "float64"),
+            Kind::Text => ("unicode", "object"),
+            Kind::Flag => ("bool", "bool"),
+        };
+        (name, pandas, numpy)
+    });
+    let columns = plain.chain([("geometry", "bytes", "object"), ("bbox", "object", "object")]);
+    let columns: Vec<Value> = columns
+        .map(|(name, pandas, numpy)| {
+            json!({"name": name, "field_name": name, "pandas_type": pandas, "numpy_type": numpy, "metadata": null})
+        })
+        .collect();
+    let creator = json!({"library": "netcert", "version": env!("CARGO_PKG_VERSION")});
+    json!({"index_columns": [], "column_indexes": [], "columns": columns, "creator": creator, "pandas_version": "2.2.0"})
+        .to_string()
+}
