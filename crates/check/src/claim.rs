@@ -21,6 +21,9 @@ const NOTHING_M: f64 = 50.0;
 /// for what lies between their steps.
 pub const LIMITING_TOLERANCE_M: f64 = 0.06;
 
+/// … and this much more where room is missing.
+const MISSING_APART_M: f64 = 0.25;
+
 /// The rear is on the road until the steer axle is so many vehicle lengths on: a quarter turn's arc for its chord (proof, section 7).
 const FARTHEST: f64 = 1.6;
 
@@ -188,8 +191,10 @@ impl<'a> Subject<'a> {
         let near = (at as usize).saturating_sub(beyond)..(at as usize + beyond).min(stretches);
         // Where half-widths kink the prover deducts half the kink, which it may have stepped over; it is looked at as it is here.
         let kink_m = 0.5 * self.road.kink(side, self.road.lead + near.start..self.road.lead + near.end);
-        // Where much is to spare, or missing, the two part by more: there nothing rests on it.
-        targets[side][near].fill(rsc_m + LIMITING_TOLERANCE_M + kink_m + 0.25 * rsc_m.abs());
+        // Where much is to spare the two part by more. Where room is missing the prover may have kept to its filter, decimetres below the
+        // adjoint. In both nothing rests on the place.
+        let apart_m = 0.25 * rsc_m.abs() + if rsc_m < 0.0 { MISSING_APART_M } else { 0.0 };
+        targets[side][near].fill(rsc_m + LIMITING_TOLERANCE_M + kink_m + apart_m);
         let roomy = swept.refute_only(&Targets(targets), Some(unit)).is_empty();
         roomy.then(|| {
             finding("limiting", &format!("unit {unit} has more room than the RSC at {at_m:.1} m on that side"))

@@ -444,19 +444,16 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let along = c * a * body.half_width + t * (axle + a * reach);
     let bend = at.curvature.abs();
     let second = (c * s.remainder + t * a2 * 0.5) * reach;
-    // Between head stations, and the foot's own series beyond its third order.
+    // Between head stations.
     let step2 = track.spacing * track.spacing;
     let between = ((s.curvature - at.curvature).abs() * s.way2.max(V::splat(step2)) + s.jerk * reach * step2) * 0.125;
-    let far = seen.along.abs() + askew.abs();
-    let far2 = far * far;
-    let series = bend * bend * bend * far2 * far2 * 0.2;
     let common = base + second + between;
     let side = |edge: &Edge, lean: V| {
-        // Where the point is pushed towards the centre of the bend they crowd more still.
         let crowd = edge.spread.max(V::splat(1.0));
-        let crowd = crowd + crowd * crowd * bend * (common + lean);
         let slide = crowd * along;
-        let bent = bend * slide * along * 0.5 + series * crowd * crowd * crowd;
+        // The foot's own series beyond its third order, too: κ³σ⁴/8, times 1 + |κb| on the outside.
+        let on2 = edge.on * edge.on;
+        let bent = bend * slide * along * 0.5 + bend * bend * bend * on2 * on2 * 0.3;
         edge.room - common - lean - bent - edge.excess(slide)
     };
     (side(&edges[0], lean_left), side(&edges[1], lean_right))
