@@ -20,7 +20,7 @@ use crate::store::{Named as _, verdict_words};
 use nominal::Nominal;
 
 /// Entries of the columns of leeway claim so much less than the sweep has, metres.
-const LESS_M: f64 = 1.5e-2;
+const LESS_M: f64 = 1e-2;
 
 /// Why a certificate cannot be written.
 #[derive(Debug, thiserror::Error)]

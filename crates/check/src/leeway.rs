@@ -241,8 +241,7 @@ impl<'a> Swept<'a> {
         };
         let all = [c00, c01, c10, c11];
         let range = all.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], c| [lo.min(c.s), hi.max(c.s)]);
-        let reach = all.iter().map(|c| c.reach).fold(0.01, f64::max);
-        let (first, last) = self.range([range[0] - reach, range[1] + reach]);
+        let (first, last) = self.range([range[0] - 0.01, range[1] + 0.01]);
         let Some(target) = found.target(targets, cell.side, first, last) else { return feet };
         let base = all.iter().map(|c| c.clear - c.dev).fold(f64::INFINITY, f64::min);
         let (time, body) = self.allowances(cell, &all, range);
