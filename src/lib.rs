@@ -24,8 +24,8 @@
 //!
 //! [`settings`] are what a certificate depends on besides network and vehicle. [`pipeline`] runs the stages in that order.
 //!
-//! Four modules are crates of their own, without PROJ, SQLite or a web server: [`vehicle`], [`verdict`], [`pace`] (when a vehicle is
-//! where) and [`stop`] (work that may be cut off) come from `netcert-base`; [`stet`] and [`published`] from `netcert-kernel`.
+//! Some modules come from crates that need neither PROJ nor SQLite nor a web server. `netcert-base` has [`vehicle`], [`verdict`],
+//! [`pace`] (when a vehicle is where) and [`stop`] (work that may be cut off). `netcert-kernel` has [`stet`] and [`published`].
 
 pub use netcert_base::{pace, stop, vehicle, verdict};
 pub use netcert_kernel::{published, stet};

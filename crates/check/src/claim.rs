@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use crate::chain::Chain;
-use crate::leeway::{Shortfall, Swept, Targets};
+use crate::leeway::{Shortfall, Swept, Targets, foot};
 use crate::motion::{Motion, STEPS};
-use crate::road::{Road, RoadError};
+use crate::road::{Place, Road, RoadError};
 use netcert_base::corridor::Corridor;
 
 /// A claim counts as proved if the bound found here is no more than this below it, metres: the two programs cut the road into
@@ -19,10 +19,7 @@ const NOTHING_M: f64 = 50.0;
 
 /// Where the least leeway is said to be it may be found this much above the RSC, metres: the two programs deduct different amounts
 /// for what lies between their steps.
-pub const LIMITING_TOLERANCE_M: f64 = 0.06;
-
-/// … and this much more where room is missing.
-const MISSING_APART_M: f64 = 0.25;
+const LIMITING_TOLERANCE_M: f64 = 0.06;
 
 /// The rear is on the road until the steer axle is so many vehicle lengths on: a quarter turn's arc for its chord (proof, section 7).
 const FARTHEST: f64 = 1.6;
@@ -102,7 +99,7 @@ impl<'a> Subject<'a> {
     }
 
     /// The shift of the steer axle's path `s` stations from the corridor's first, metres.
-    pub fn planned(&self, s: f64) -> f64 {
+    pub(crate) fn planned(&self, s: f64) -> f64 {
         let last = self.shifts.len() - 1;
         let s = s.clamp(0.0, last as f64);
         let k = (s as usize).min(last.saturating_sub(1));
@@ -126,11 +123,14 @@ impl<'a> Subject<'a> {
         shrinks.sort_by(f64::total_cmp);
         shrinks.dedup();
         let whole = Swept::new(self.chain, &self.road, motion, self.chain.tolerance_m);
+        let whole_filtered = Swept::filtered(self.chain, &self.road, motion, self.chain.tolerance_m);
         for shrink in shrinks {
             let spans =
                 claims.iter().filter(|claim| claim.shrink == shrink).map(|claim| self.stretches(&claim.stations));
             let range = spans.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end)).unwrap_or(0..0);
-            let mut swept = whole.within(shrink.min(1.0) * self.chain.tolerance_m, range);
+            let tolerance_m = shrink.min(1.0) * self.chain.tolerance_m;
+            let mut filtered = whole_filtered.within(tolerance_m, range.clone());
+            let mut swept = whole.within(tolerance_m, range);
             let own: Vec<usize> = (0..claims.len()).filter(|&i| claims[i].shrink == shrink).collect();
             self.leeway(&mut swept, claims, &own, &mut findings);
             for i in own {
@@ -139,7 +139,7 @@ impl<'a> Subject<'a> {
                 {
                     findings[i].push(Finding { unbounded: short.1, ..finding("hinge_margin_deg", &short.0) });
                 }
-                if let Some(found) = self.limiting(&mut swept, &claims[i]) {
+                if let Some(found) = self.limiting(&mut filtered, &claims[i]) {
                     findings[i].push(found);
                 }
             }
@@ -176,8 +176,9 @@ impl<'a> Subject<'a> {
         swept.nominal_at(s / self.road.spacing + self.road.lead as f64, unit, side, a)
     }
 
-    /// The place that limits must be on the span, and have no more room than the RSC, nearly.
-    fn limiting(&self, swept: &mut Swept<'_>, claim: &SpanClaim) -> Option<Finding> {
+    /// The place that limits must be on the span, and have no more room than the RSC, nearly: by the filter, to which the prover may have
+    /// kept.
+    fn limiting(&self, filtered: &mut Swept<'_>, claim: &SpanClaim) -> Option<Finding> {
         let ((at_m, unit, side), rsc_m) = (claim.limiting?, claim.rsc_m.filter(|rsc_m| *rsc_m > -NOTHING_M)?);
         let own = self.stretches(&claim.stations);
         let at = at_m / self.road.spacing;
@@ -191,11 +192,9 @@ impl<'a> Subject<'a> {
         let near = (at as usize).saturating_sub(beyond)..(at as usize + beyond).min(stretches);
         // Where half-widths kink the prover deducts half the kink, which it may have stepped over; it is looked at as it is here.
         let kink_m = 0.5 * self.road.kink(side, self.road.lead + near.start..self.road.lead + near.end);
-        // Where much is to spare the two part by more. Where room is missing the prover may have kept to its filter, decimetres below the
-        // adjoint. In both nothing rests on the place.
-        let apart_m = 0.25 * rsc_m.abs() + if rsc_m < 0.0 { MISSING_APART_M } else { 0.0 };
-        targets[side][near].fill(rsc_m + LIMITING_TOLERANCE_M + kink_m + apart_m);
-        let roomy = swept.refute_only(&Targets(targets), Some(unit)).is_empty();
+        // Where much is to spare, or missing, the two part by more: there nothing rests on it.
+        targets[side][near].fill(rsc_m + LIMITING_TOLERANCE_M + kink_m + 0.25 * rsc_m.abs());
+        let roomy = filtered.refute_only(&Targets(targets), Some(unit)).is_empty();
         roomy.then(|| {
             finding("limiting", &format!("unit {unit} has more room than the RSC at {at_m:.1} m on that side"))
         })
@@ -224,8 +223,8 @@ impl<'a> Subject<'a> {
     }
 
     /// Foot of a point near `s` (stations of the road), and its lateral place.
-    pub fn foot(&self, x: [f64; 2], guess: f64) -> Option<(f64, super::road::Place, f64)> {
-        super::leeway::foot(&self.road, x, guess)
+    pub(crate) fn foot(&self, x: [f64; 2], guess: f64) -> Option<(f64, Place, f64)> {
+        foot(&self.road, x, guess)
     }
 
     fn leeway(&self, swept: &mut Swept<'_>, claims: &[SpanClaim], own: &[usize], findings: &mut [Vec<Finding>]) {

@@ -450,9 +450,10 @@ impl<'a> Swept<'a> {
         })
     }
 
-    /// Whether the adjoint could do better than the filter.
+    /// Whether the adjoint could do better than the filter, and is asked at all.
     fn worth(&self, cell: &Cell) -> bool {
-        self.tubes.get(cell.step, cell.unit).is_some_and(|tube| tube.extra + tube.extra_coupling > 2e-4)
+        !self.tubes.by_filter()
+            && self.tubes.get(cell.step, cell.unit).is_some_and(|tube| tube.extra + tube.extra_coupling > 2e-4)
     }
 
     /// Knots that the bounds of a cell rest on.

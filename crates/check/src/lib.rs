@@ -34,10 +34,10 @@ mod road;
 mod tubes;
 
 pub use chain::Chain;
-pub use claim::{Finding, LIMITING_TOLERANCE_M, Outcome, SpanClaim, Subject, TOLERANCE_M, finding};
+pub use claim::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, finding};
 pub use interval::Interval;
 pub use leeway::Swept;
-pub use road::{Place, RoadError};
+pub use road::RoadError;
 
 /// Rounds up a sum of at most some thousand products of non-negative numbers, each of a few factors.
 pub(crate) const UP: f64 = 1.0 + 1e-12;

@@ -30,13 +30,13 @@ const GAUSS: [(f64, f64); 3] =
 
 /// A place on the centreline.
 #[derive(Debug, Clone, Copy)]
-pub struct Place {
+pub(crate) struct Place {
     /// Metres from the corridor's first station.
-    pub c: [f64; 2],
+    pub(crate) c: [f64; 2],
     /// Unit tangent.
-    pub t: [f64; 2],
+    pub(crate) t: [f64; 2],
     /// 1/m, positive to the left.
-    pub curvature: f64,
+    pub(crate) curvature: f64,
 }
 
 /// A corridor, extended straight at both ends, in metres about its first station.

@@ -113,6 +113,11 @@ impl Tubes {
         Self { loose_rad: f64::INFINITY, ..Self::new(chain, spacing, tolerance_m) }
     }
 
+    /// Whether the adjoint is never asked.
+    pub(crate) fn by_filter(&self) -> bool {
+        self.loose_rad == f64::INFINITY
+    }
+
     /// From step `first` on, at a tolerance that is no more than `wider`'s: its bounds hold there to begin with.
     pub(crate) fn within(wider: &Self, chain: &Chain, first: usize, tolerance_m: f64) -> Self {
         let before = first.checked_sub(1).and_then(|step| wider.tubes.get(step * wider.units..first * wider.units));

@@ -13,9 +13,9 @@ use super::sweep::{
 };
 
 /// Σ tan² δ_j/2 over the units up to one, from which on the adjoint is worth its time for it. Bends alone decide that, so that
-/// neither a looser tolerance nor another trailer can bring a tighter bound and raise an RSC. At 0.01 (six units at 110 m, a
-/// semi-trailer at 60 m) the filter costs 1 to 2 cm.
-const WORTH: f64 = 0.01;
+/// neither a looser tolerance nor another trailer can bring a tighter bound and raise an RSC. At 0.008 (six units at 120 m,
+/// a semi-trailer at 67 m) the filter costs a centimetre.
+const WORTH: f64 = 0.008;
 /// Stations that are remembered, a power of two: beyond what any bound of the longest vehicles recalls.
 const MEMORY: usize = 512;
 /// The history is cut where it can add no more than this, metres.

@@ -221,8 +221,8 @@ impl LastAxle {
     pub(super) fn follow(&mut self, track: &Track, [x, y]: [V; 2], shift: &[V], lane: usize, minima: &mut Minima) {
         let feet = follow(track, self.foot, x, y);
         let seen = place(track.fields.gather(&feet), x, y);
-        let narrow = (V::splat(1.0) - seen.at.curvature * seen.lateral).max(V::splat(0.1));
-        let (on, lateral) = foot(&seen.at, seen.along, seen.lateral, V::splat(1.0) / narrow);
+        let spread = V::splat(1.0) / narrow(&seen.at, seen.lateral);
+        let (on, lateral) = foot(&seen.at, seen.along, seen.lateral, spread);
         for (i, &k) in feet.iter().enumerate() {
             let other = if on.0[i] < 0.0 { k.saturating_sub(1) } else { (k + 1).min(track.len() - 1) };
             let [own, next] = [k, other].map(|k| shift[k].0[lane]);
@@ -328,6 +328,13 @@ pub(super) fn next_foot(track: &Track, foot: usize, along: f64) -> usize {
     // Towards zero of a positive number is rounding, without a call where there is no instruction for it; NaN gives 0.
     let off = (along / track.spacing + 64.5).clamp(0.0, 128.0) as usize;
     (foot + 1 + off).saturating_sub(64).min(track.len() - LANES)
+}
+
+/// How far a point moves along the corridor while its foot moves a metre, 1 − κb: less than a metre on the inside of a bend. A tenth at
+/// least; half-widths end before.
+#[inline(always)]
+pub(super) fn narrow(at: &Fields<V>, lateral: V) -> V {
+    (V::splat(1.0) - at.curvature * lateral).max(V::splat(0.1))
 }
 
 /// Arc length from the station to the foot of a point `along`, `lateral` of it, and the lateral at that foot; `spread` is 1/(1 − κb):

@@ -4,7 +4,7 @@
 //! points (inside of a curve) and between two head stations.
 
 use super::body::{
-    Body, Feet, LOST_M, NEAR_M, Seen, Spot, follow, foot, least, least as least_of, near, next_foot, place,
+    Body, Feet, LOST_M, NEAR_M, Seen, Spot, follow, foot, least, least as least_of, narrow, near, next_foot, place,
 };
 use super::lanes::{LANES, V, by_instruction_set, select_negative};
 use super::sweep::{BLOCK, FIELDS, Minima, ZERO, row};
@@ -459,12 +459,10 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     (side(&edges[0], lean_left), side(&edges[1], lean_right))
 }
 
-/// How far feet move along the corridor for a metre that a point moves, 1/(1 − κb), on the left and on the right: more than a metre on the
-/// inside of a bend. Tenfold at most; half-widths end before.
+/// How far feet move along the corridor while their points move a metre, on the left and on the right: 1 over what is [`narrow`].
 #[inline(always)]
 fn spread(at: [&Fields<V>; 2], lateral: [V; 2]) -> [V; 2] {
-    let narrow = |i: usize| (V::splat(1.0) - at[i].curvature * lateral[i]).max(V::splat(0.1));
-    let (left, right) = (narrow(0), narrow(1));
+    let (left, right) = (narrow(at[0], lateral[0]), narrow(at[1], lateral[1]));
     let both = V::splat(1.0) / (left * right);
     [both * right, both * left]
 }

@@ -12,6 +12,8 @@ use super::{Limiting, Side, SpanResult};
 /// A span takes this many more stations on each side: a foot moves up to two from one station of the steer axle to the next, rounding
 /// included, and a side's least leeway may be a little beside the point that it is noted at.
 const STEP_STATIONS: usize = 3;
+/// … and no fewer than these metres, by which a point may be pushed along: stations may be centimetres apart.
+const BESIDE_M: f64 = 0.6;
 
 /// Vehicle lengths within which what was driven before has faded to a few hundredths: no unit is longer than half of it.
 const FADING_LENGTHS: usize = 2;
@@ -50,10 +52,14 @@ pub(super) fn known(leeway_m: f64) -> bool {
     leeway_m > 0.5 * NOTHING_M && leeway_m < 0.5 * UNVISITED_M
 }
 
+fn beside(track: &Track) -> usize {
+    STEP_STATIONS.max((BESIDE_M / track.spacing).ceil() as usize)
+}
+
 /// Extended stations whose body points a span of corridor stations rests on.
 pub(super) fn stations(track: &Track, span: &Range<usize>) -> RangeInclusive<usize> {
     let own = own(track, span);
-    own.start() - STEP_STATIONS..=own.end() + STEP_STATIONS
+    own.start() - beside(track)..=own.end() + beside(track)
 }
 
 /// Stations of a span at which it counts what sides leave between two of their points: its ends; of a span that may lie inside one gap
@@ -136,7 +142,7 @@ pub(super) fn least(track: &Track, model: &Model, span: &Range<usize>, full: &Mi
 /// The least hinge margin while any body point is on the span: by the points' own feet, and by the vehicle's length when straight,
 /// should feet have been lost.
 fn hinge(track: &Track, model: &Model, span: &Range<usize>, full: &Minima) -> f64 {
-    let (first, last) = (own(track, span).start() - STEP_STATIONS, own(track, span).end() + STEP_STATIONS);
+    let (first, last) = (own(track, span).start() - beside(track), own(track, span).end() + beside(track));
     let stations = |metres: f64| (metres / track.spacing).ceil() as usize;
     let straight = first.saturating_sub(stations(model.front))..=last + stations(model.length);
     // A foot falls behind by no more than a quarter turn's arc for its chord (proof, section 7, Feet).
