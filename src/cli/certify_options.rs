@@ -1,4 +1,4 @@
-//! CertifyOptions certificates are made: the options of `ingest` and `certify`.
+//! How certificates are made: the options of `ingest` and `certify`.
 //!
 //! A set of certificates keeps its settings, and whoever computes it again takes those: `CertifiedSet::settings`. For a set that
 //! is yet to be made, what is not given is as in the database's own ingest.
@@ -15,18 +15,18 @@ use serde_json::Value;
 use super::values::{metres, word};
 
 #[derive(Args, Default)]
-#[command(next_help_heading = "CertifyOptions certificates are made")]
+#[command(next_help_heading = "How certificates are made")]
 pub(crate) struct CertifyOptions {
     /// Which width counts: one's own lane, all lanes of one's direction, or the whole carriageway [default: lane].
     #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
     pub(crate) corridor: Option<Policy>,
-    /// CertifyOptions far the smoothed centreline may be from the map's line, metres [default: 0.5].
+    /// How far the smoothed centreline may be from the map's line, metres [default: 0.5].
     #[arg(long, value_name = "METRES", value_parser = metres)]
     smoothing_tolerance: Option<f64>,
     /// Taken off each side for what the map's own position is worth, metres [default: 0].
     #[arg(long, value_name = "METRES", value_parser = metres)]
     map_tolerance: Option<f64>,
-    /// CertifyOptions far the steer axle may be planned off the centreline to leave the trailers room, metres [default: 1.5].
+    /// How far the steer axle may be planned off the centreline to leave the trailers room, metres [default: 1.5].
     #[arg(long, value_name = "METRES", value_parser = metres)]
     max_shift: Option<f64>,
     /// Certify edges only, no turns.
