@@ -6,15 +6,15 @@
 //! of the network within which the vehicle can drive from anywhere to anywhere.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
+use std::sync::Arc;
 use std::time::Instant;
 
-use netcert::network::{Movements, Network};
 use netcert::osm::facts::Policy;
 use netcert::route::{
-    Answer, Graph, MadeTurns, Measure, PartKind, Permit, Permits, Planner, Position, Question, Route, Speeds,
-    components, passes_over,
+    Answer, Driver, Graph, Measure, PartKind, Permit, Planner, Position, Question, Roads, Route, Speeds, components,
+    passes_over,
 };
-use netcert::stet::Model;
+use netcert::stop::Stop;
 use netcert::store::{Database, Named};
 use netcert::vehicle::Vehicle;
 use netcert::verdict::Verdict;
@@ -41,43 +41,41 @@ impl Draw {
 }
 
 struct Region {
-    network: Network,
-    movements: Movements,
-    permits: Permits,
-    model: Model,
+    roads: Arc<Roads>,
+    driver: Arc<Driver>,
 }
 
 impl Region {
     fn open(path: &str, vehicle: &str, policy: Policy) -> Self {
         let mut database = Database::open(path.as_ref()).unwrap();
         let record = database.vehicles().unwrap().into_iter().find(|record| record.id == vehicle).expect("certified");
-        let model = Model::new(&Vehicle::from_json(&record.definition).unwrap()).unwrap();
-        let network = database.load_network().unwrap();
-        let movements = network.movements();
+        let definition = Vehicle::from_json(&record.definition).unwrap();
+        let roads = Roads::new(database.load_network().unwrap());
         let set = database.certified_set(vehicle, policy).unwrap().expect("certified");
-        let permits = Permits::stored(&mut database, &network, &movements, &set).unwrap();
-        Self { network, movements, permits, model }
+        let driver = Driver::stored(&mut database, &roads, &definition, &set).unwrap();
+        Self { roads, driver }
     }
 
-    fn graph(&self) -> Graph<'_> {
-        Graph::new(&self.network, &self.movements, &Speeds::builtin().unwrap(), Measure::Time)
+    fn graph(&self) -> Graph {
+        Graph::new(&self.roads, &Speeds::builtin().unwrap(), Measure::Time)
     }
 
     fn answers(&self, from: &[u32], pairs: u64) -> Vec<Answer> {
-        let made = MadeTurns { model: &self.model };
         let place = |draw: &mut Draw| {
             let line: Vec<_> =
-                self.network.positions(&self.network.edges[from[draw.of(from.len())] as usize]).collect();
+                self.roads.network.positions(&self.roads.network.edges[from[draw.of(from.len())] as usize]).collect();
             let (lon, lat) = line[draw.of(line.len())].degrees();
             Position { lon, lat }
         };
         let shared = |first: u64| {
             let speeds = Speeds::builtin().unwrap();
-            let mut planner = Planner::new(self.graph(), &self.permits, &self.model, &made, speeds);
+            let mut planner = Planner::new(&self.roads, Arc::clone(&self.driver), speeds, Measure::Time);
             let ask = |pair: u64| {
                 let mut draw = Draw(pair);
                 let places = vec![place(&mut draw), place(&mut draw)];
-                planner.answer(&Question { places, snap_m: 50.0, alternatives: 0, tries: 30 }).expect("on safe roads")
+                planner
+                    .answer(&Question { places, snap_m: 50.0, alternatives: 0, tries: 30 }, &Stop::never())
+                    .expect("on safe roads")
             };
             (first..(first + SHARED).min(pairs)).map(ask).collect::<Vec<_>>()
         };
@@ -94,7 +92,7 @@ impl Region {
         let parts = |wanted: &dyn Fn(PartKind) -> bool| {
             routes().flat_map(|route| &route.path.parts).filter(|part| wanted(part.kind)).count()
         };
-        let over = |at| passes_over(&self.network, at);
+        let over = |at| passes_over(&self.roads.network, at);
         println!(
             "  {pairs} pairs: {} routed, {} with a way over certified parts, {} refuted as a whole at least once \
              ({} refutations, {} where pieces could not be strung together), {} given up, {} returned uncertified; {seconds:.1} s",
@@ -128,10 +126,10 @@ fn main() {
     };
     let pairs: u64 = pairs.parse().unwrap();
     let region = Region::open(file, vehicle, Policy::named(policy).expect("lane, direction or carriageway"));
-    let permits = &region.permits;
-    let safe: Vec<u32> = (0..region.network.edges.len() as u32).filter(|&edge| permits.edge(edge)).collect();
+    let permits = &region.driver.permits;
+    let safe: Vec<u32> = (0..region.roads.network.edges.len() as u32).filter(|&edge| permits.edge(edge)).collect();
     let good = |permits: &[Permit]| permits.iter().filter(|p| p.verdict == Verdict::Safe && p.rsc_m.is_some()).count();
-    let (edges, ways) = (region.network.edges.len(), (permits.movements.len(), permits.passages.len()));
+    let (edges, ways) = (region.roads.network.edges.len(), (permits.movements.len(), permits.passages.len()));
     println!(
         "{file} {vehicle} {policy}: {} of {edges} edges, {} turns (of {} movements) and {} of {} passages safe",
         safe.len(),
@@ -142,7 +140,7 @@ fn main() {
     );
     println!(" among all safe edges:");
     region.tell(&safe, pairs);
-    let parts = components(&region.graph(), &permits.access(&region.movements));
+    let parts = components(&region.graph(), &permits.access(&region.roads.movements));
     let largest: Vec<u32> = safe.iter().copied().filter(|&edge| parts.of[edge as usize] == Some(0)).collect();
     println!(" among the {} edges of the largest of {} parts:", largest.len(), parts.count);
     region.tell(&largest, pairs);

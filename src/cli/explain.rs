@@ -83,11 +83,11 @@ impl Explain {
         let network = database.load_network()?;
         let model = Model::new(&vehicle)?;
         if let Some(turn) = self.turn(&network, &settings) {
-            let turn = explain::explain_turn_until(&network, &turn, &model, &settings, &Stop::default())?;
+            let turn = explain::explain_turn(&network, &turn, &model, &settings, &Stop::never())?;
             return self.tell_turn(session, &turn);
         }
         let edge = self.one_edge(&network, &mut database, settings.policy)?;
-        let Some(explanation) = explain::explain_edge(&network, edge, &model, &settings) else {
+        let Some(explanation) = explain::explain_edge(&network, edge, &model, &settings, &Stop::never())? else {
             bail!("{}: no edge {edge}", path.display());
         };
         match stored(&mut database, &network, edge, set.as_ref())? {

@@ -55,8 +55,9 @@ impl Reach {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         let inputs = self.inputs.load(session, "reach")?;
         let graph = inputs.graph(Measure::Distance);
-        let access = inputs.permits.access(&inputs.movements);
-        let snapped = Snapper::new(&inputs.network).snap(self.from, self.snap, |edge| inputs.permits.edge(edge))?;
+        let access = inputs.driver.permits.access(&inputs.roads.movements);
+        let snapped =
+            Snapper::new(&inputs.roads).snap(self.from, self.snap, |edge| inputs.driver.permits.edge(edge))?;
         let starts: Vec<u32> = snapped.on.iter().map(|on| on.edge).collect();
         session.progress.say(&format!("the road is {:.0} m from there", snapped.distance_m));
         let now = route::reach(&graph, &access, &starts);
@@ -64,7 +65,7 @@ impl Reach {
         let opened = match self.what_if {
             None => None,
             Some(id) => {
-                let found = (0_u32..).zip(&inputs.network.edges).find(|(_, edge)| edge.id == id);
+                let found = (0_u32..).zip(&inputs.roads.network.edges).find(|(_, edge)| edge.id == id);
                 let Some((edge, _)) = found else {
                     bail!("{}: no edge {id}; `netcert query` lists their ids", inputs.path.display());
                 };
@@ -97,8 +98,8 @@ fn tell(
     opened: Option<&(u32, Found)>,
     components: &route::Components,
 ) -> std::io::Result<()> {
-    let (network, vehicle) = (&inputs.network, &inputs.model.vehicle);
-    let certified = km(network, |i| inputs.permits.edge(i as u32));
+    let (network, vehicle) = (&inputs.roads.network, &inputs.driver.model.vehicle);
+    let certified = km(network, |i| inputs.driver.permits.edge(i as u32));
     let there = km(network, |i| now.there[i]);
     let back = km(network, |i| now.and_back[i]);
     let share = |part: f64| if certified > 0.0 { 100.0 * part / certified } else { 0.0 };
@@ -126,11 +127,11 @@ fn tell(
 }
 
 fn geojson(inputs: &RoutingInputs, now: &Found, opened: Option<&Found>, components: &route::Components) -> Value {
-    let network = &inputs.network;
+    let network = &inputs.roads.network;
     let mut features = Vec::new();
     for (i, edge) in network.edges.iter().enumerate() {
         let opens = opened.is_some_and(|then| then.there[i] && !now.there[i]);
-        if !inputs.permits.edge(i as u32) && !opens {
+        if !inputs.driver.permits.edge(i as u32) && !opens {
             continue;
         }
         let reach = match (now.and_back[i], now.there[i], opens) {
@@ -146,11 +147,11 @@ fn geojson(inputs: &RoutingInputs, now: &Found, opened: Option<&Found>, componen
             "geometry": {"type": "LineString", "coordinates": line},
             "properties": {
                 "edge_id": edge.id,
-                "vehicle_id": inputs.model.vehicle.id,
+                "vehicle_id": inputs.driver.model.vehicle.id,
                 "reach": reach,
                 "component": components.of[i],
                 "length_m": network.length_m(edge),
-                "rsc_m": inputs.permits.edges[i].rsc_m,
+                "rsc_m": inputs.driver.permits.edges[i].rsc_m,
                 "title": route::title(network, PartKind::Edge(i as u32)),
             },
         }));

@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use anyhow::{anyhow, bail};
 use clap::{Args, ValueEnum};
@@ -10,6 +11,7 @@ use netcert::corridor::FileCorridor;
 use netcert::network::Network;
 use netcert::picture;
 use netcert::route::{self, Answer, Measure, PartKind, PartResult, Planner, Position, Question, Route as Found};
+use netcert::stop::Stop;
 use netcert::store::{Named, verdict_words};
 
 use super::Session;
@@ -91,17 +93,18 @@ impl Route {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         let inputs = self.inputs.load(session, "route")?;
         let measure = if self.least == Least::Time { Measure::Time } else { Measure::Distance };
-        let turns = inputs.turns();
-        let (graph, speeds) = (inputs.graph(measure), inputs.speeds.clone());
-        let mut planner = Planner::new(graph, &inputs.permits, &inputs.model, &turns, speeds);
+        let driver = Arc::clone(&inputs.driver);
+        let mut planner = Planner::new(&inputs.roads, driver, inputs.speeds.clone(), measure);
         let places = [self.from].into_iter().chain(self.via.iter().copied()).chain([self.to]).collect();
         let (alternatives, tries) = (usize::from(self.alternatives), usize::from(self.tries));
-        let answer = planner.answer(&Question { places, snap_m: self.snap, alternatives, tries })?;
+        let answer = planner.answer(&Question { places, snap_m: self.snap, alternatives, tries }, &Stop::never())?;
         self.write_files(&inputs, &answer, session)?;
         let mut out = results();
         match self.format {
-            Format::Json => writeln!(out, "{:#}", route::json(&inputs.network, &inputs.model, &answer))?,
-            Format::Geojson => writeln!(out, "{}", route::geojson(&inputs.network, &inputs.model, &answer)?)?,
+            Format::Json => writeln!(out, "{:#}", route::json(&inputs.roads.network, &inputs.driver.model, &answer))?,
+            Format::Geojson => {
+                writeln!(out, "{}", route::geojson(&inputs.roads.network, &inputs.driver.model, &answer)?)?
+            }
             Format::Table => tell(&mut out, &inputs, &answer)?,
         }
         Ok(out.flush()?)
@@ -113,13 +116,13 @@ impl Route {
             let best = best.ok_or_else(|| nothing(path))?;
             let given = FileCorridor { corridor: best.path.corridor.clone(), frame: Some(best.path.frame) };
             let options = &inputs.settings().stet;
-            let json = certificate::json(&given, &inputs.model, &best.certificate, options)?;
+            let json = certificate::json(&given, &inputs.driver.model, &best.certificate, options)?;
             write(path, netcert::check::sealed(&json))?;
             session.progress.say(&format!("{}: the whole certificate", path.display()));
         }
         if let Some(path) = &self.svg {
             let best = best.ok_or_else(|| nothing(path))?;
-            write(path, picture::route(&inputs.network, &inputs.model.vehicle, best))?;
+            write(path, picture::route(&inputs.roads.network, &inputs.driver.model.vehicle, best))?;
             session.progress.say(&format!("{}: the picture", path.display()));
         }
         Ok(())
@@ -138,7 +141,7 @@ fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
 }
 
 fn tell(out: &mut dyn Write, inputs: &RoutingInputs, answer: &Answer) -> std::io::Result<()> {
-    let (network, vehicle) = (&inputs.network, &inputs.model.vehicle);
+    let (network, vehicle) = (&inputs.roads.network, &inputs.driver.model.vehicle);
     for (number, found) in answer.routes.iter().enumerate() {
         let which = if number == 0 { "a certified route" } else { "another one" };
         writeln!(
@@ -178,8 +181,8 @@ fn tell(out: &mut dyn Write, inputs: &RoutingInputs, answer: &Answer) -> std::io
 
 fn numbers(out: &mut dyn Write, inputs: &RoutingInputs, found: &Found) -> std::io::Result<()> {
     let result = &found.certificate.result;
-    let unit = inputs.model.vehicle.units.get(result.limiting.unit).map_or("", |unit| &unit.name);
-    let at = found.limiting().map_or_else(String::new, |at| route::title(&inputs.network, at));
+    let unit = inputs.driver.model.vehicle.units.get(result.limiting.unit).map_or("", |unit| &unit.name);
+    let at = found.limiting().map_or_else(String::new, |at| route::title(&inputs.roads.network, at));
     if let Some(rsc_m) = result.rsc_m {
         writeln!(out, "  RSC          {rsc_m:>8.3} m  to spare where it is tightest, all error bounds deducted")?;
     }
@@ -194,7 +197,7 @@ fn numbers(out: &mut dyn Write, inputs: &RoutingInputs, found: &Found) -> std::i
     if let Some(margin_rad) = result.hinge_margin_rad {
         writeln!(out, "  hinge margin {:>8.1} °", margin_rad.to_degrees())?;
     }
-    let tolerance_m = result.shrink * inputs.model.vehicle.tracking_tolerance_m;
+    let tolerance_m = result.shrink * inputs.driver.model.vehicle.tracking_tolerance_m;
     writeln!(
         out,
         "  shrink       {:>8.3}    the steer axle must stay within {tolerance_m:.3} m of the plan",

@@ -1,14 +1,13 @@
 //! A database, a vehicle that it certifies or now does, and all that routing over them needs.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use anyhow::anyhow;
 use clap::Args;
-use netcert::network::{Movements, Network};
 use netcert::osm::facts::Policy;
-use netcert::route::{Graph, MadeTurns, Measure, Permits, Speeds};
+use netcert::route::{Driver, Graph, Measure, Roads, Speeds};
 use netcert::settings::Settings;
-use netcert::stet::Model;
 use netcert::store::Database;
 
 use super::Session;
@@ -36,10 +35,8 @@ pub(crate) struct RoutingArgs {
 /// What was loaded.
 pub(crate) struct RoutingInputs {
     pub(crate) path: PathBuf,
-    pub(crate) network: Network,
-    pub(crate) movements: Movements,
-    pub(crate) permits: Permits,
-    pub(crate) model: Model,
+    pub(crate) roads: Arc<Roads>,
+    pub(crate) driver: Arc<Driver>,
     pub(crate) speeds: Speeds,
 }
 
@@ -57,26 +54,20 @@ impl RoutingArgs {
                 self.vehicle
             )
         })?;
-        let network = database.load_network()?;
-        let movements = network.movements();
-        let permits = Permits::stored(&mut database, &network, &movements, &set)?;
+        let roads = Roads::new(database.load_network()?);
+        let driver = Driver::stored(&mut database, &roads, &vehicle, &set)?;
         database.close()?;
-        let model = Model::new(&vehicle)?;
-        Ok(RoutingInputs { path, network, movements, permits, model, speeds: Speeds::builtin()? })
+        Ok(RoutingInputs { path, roads, driver, speeds: Speeds::builtin()? })
     }
 }
 
 impl RoutingInputs {
-    pub(crate) fn graph(&self, measure: Measure) -> Graph<'_> {
-        Graph::new(&self.network, &self.movements, &self.speeds, measure)
+    pub(crate) fn graph(&self, measure: Measure) -> Graph {
+        Graph::new(&self.roads, &self.speeds, measure)
     }
 
     /// What the certificates were made with.
     pub(crate) fn settings(&self) -> &Settings {
-        &self.permits.settings
-    }
-
-    pub(crate) fn turns(&self) -> MadeTurns<'_> {
-        MadeTurns { model: &self.model }
+        &self.driver.permits.settings
     }
 }

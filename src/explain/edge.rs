@@ -11,22 +11,16 @@ use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::osm::facts::{Direction, Policy};
 use crate::settings::Settings;
-use crate::stet::{Model, Options, SpanResult, certify_planned, certify_spans};
+use crate::stet::{Certificate, Model, Options, SpanResult, certify_planned, certify_spans};
 use crate::stop::{Stop, Stopped};
 use crate::store::{EdgeRow, Named as _, verdict_words};
 use crate::verdict::{UnknownReason, Verdict};
 
 /// Why `model`'s vehicle may use an edge of the network or not; `None` if there is no such edge.
-#[must_use]
-pub fn explain_edge(network: &Network, edge: u32, model: &Model, settings: &Settings) -> Option<Explanation> {
-    explain_edge_until(network, edge, model, settings, &Stop::default()).ok().flatten()
-}
-
-/// The same; before each certificate it asks whether to stop.
 ///
 /// # Errors
-/// It was told to.
-pub fn explain_edge_until(
+/// `stop` was told: it is asked before each certificate, and every few metres of the edge's own.
+pub fn explain_edge(
     network: &Network,
     edge: u32,
     model: &Model,
@@ -40,7 +34,7 @@ pub fn explain_edge_until(
     let case = Case::of(network, edge, settings);
     stop.check()?;
     let (geometry, unknown) = match &case {
-        Ok(case) => (case.geometry(model, &settings.stet), case.unknown()),
+        Ok(case) => (case.geometry(model, &settings.stet, stop)?, case.unknown()),
         Err(reason) => (None, Some(*reason)),
     };
     let verdict = verdict(facts, model, unknown, geometry.as_ref().map(|g| &g.result));
@@ -109,9 +103,9 @@ impl Case {
     }
 
     /// As the pipeline certifies it: planned for all edges of the stroke together.
-    fn geometry(&self, model: &Model, options: &Options) -> Option<Geometry> {
-        let geometry = geometry(&self.made.corridor, &self.spans(), self.which, model, options)?;
-        Some(Geometry { tapers: self.made.tapers.clone(), ..geometry })
+    fn geometry(&self, model: &Model, options: &Options, stop: &Stop) -> Result<Option<Geometry>, Stopped> {
+        let geometry = geometry(&self.made.corridor, &self.spans(), self.which, model, options, stop)?;
+        Ok(geometry.map(|geometry| Geometry { tapers: self.made.tapers.clone(), ..geometry }))
     }
 
     /// The edge's result in another corridor of the same stations; none once it is told to stop.
@@ -129,8 +123,19 @@ pub(super) fn geometry(
     which: usize,
     model: &Model,
     options: &Options,
+    stop: &Stop,
+) -> Result<Option<Geometry>, Stopped> {
+    let certified = certify_planned(corridor, model, spans, options, stop)?;
+    Ok(certified.and_then(|certified| seen_from(corridor, spans, which, model, certified)))
+}
+
+fn seen_from(
+    corridor: &Corridor,
+    spans: &[std::ops::Range<usize>],
+    which: usize,
+    model: &Model,
+    (mut certificate, results): (Certificate, Vec<SpanResult>),
 ) -> Option<Geometry> {
-    let (mut certificate, results) = certify_planned(corridor, model, spans, options)?;
     let (span, result) = (spans.get(which)?.clone(), results.into_iter().nth(which)?);
     certificate.result = result.clone();
     let ride = Ride::new(corridor, &certificate.plan, &model.vehicle);

@@ -32,7 +32,7 @@ mod words;
 
 use std::ops::Range;
 
-pub use edge::{explain_edge, explain_edge_until};
+pub use edge::explain_edge;
 pub use hints::{Hints, OtherStrip, WidthHint};
 pub use json::json;
 pub use legal::Conflict;
@@ -40,7 +40,7 @@ pub use names::cautious_m;
 pub use own_corridor::explain_corridor;
 pub use ride::Ride;
 pub use tightest::{Bend, Cross, HingePlace, Part, Place};
-pub use turn::{TurnExplanation, explain_turn_until};
+pub use turn::{TurnExplanation, explain_turn};
 pub use words::{Words, words};
 
 use crate::corridor::{Corridor, Taper};

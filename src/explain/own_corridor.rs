@@ -5,22 +5,35 @@ use super::edge::geometry;
 use super::hints::{self, Hints};
 use crate::corridor::Corridor;
 use crate::stet::{Certificate, Model, Options, certify};
+use crate::stop::{Stop, Stopped};
 use crate::verdict::Verdict;
 
 /// Why `model`'s vehicle may use a corridor or not: the certificate of the whole of it, explained. Hints are certified
 /// with the same options. `None` for a corridor without stations.
-#[must_use]
-pub fn explain_corridor(corridor: &Corridor, model: &Model, options: &Options) -> Option<(Certificate, Explanation)> {
+///
+/// # Errors
+/// `stop` was told: it is asked every few metres of each certificate.
+pub fn explain_corridor(
+    corridor: &Corridor,
+    model: &Model,
+    options: &Options,
+    stop: &Stop,
+) -> Result<Option<(Certificate, Explanation)>, Stopped> {
     let whole = 0..corridor.len();
-    let found = geometry(corridor, std::slice::from_ref(&whole), 0, model, options)?;
+    let Some(found) = geometry(corridor, std::slice::from_ref(&whole), 0, model, options, stop)? else {
+        return Ok(None);
+    };
     let certificate = found.certificate.clone();
     let result = &found.result;
     let verdict = result.verdict();
     let mut hints = Hints::default();
     if let Verdict::Unsafe(_) = verdict {
-        let again = |corridor: &Corridor, model: &Model| certify(corridor, model, options).map(|c| c.result);
+        let again = |corridor: &Corridor, model: &Model| {
+            certify(corridor, model, options, stop).ok().flatten().map(|certificate| certificate.result)
+        };
         hints = hints::of(&again, &found, model);
+        stop.check()?;
     }
     let vehicle = model.vehicle.clone();
-    Some((certificate, Explanation { road: None, vehicle, verdict, geometry: Some(found), hints, conflict: None }))
+    Ok(Some((certificate, Explanation { road: None, vehicle, verdict, geometry: Some(found), hints, conflict: None })))
 }

@@ -1,14 +1,14 @@
 //! A turn of the network: its corridors made again, the one on which the certificate rests, and why it is safe or not.
 
-use super::Explanation;
 use super::edge::geometry;
 use super::hints::Hints;
+use super::{Explanation, Geometry};
 use crate::certify::{best_of, turn_verdict};
 use crate::network::{Edge, Network};
 use crate::settings::Settings;
-use crate::stet::{Model, Options, certify_planned};
+use crate::stet::{Model, Options, SpanResult};
 use crate::stop::{Stop, Stopped};
-use crate::turns::{KerbSource, Reach, TurnCorridors, TurnFacts, corridors_of};
+use crate::turns::{KerbSource, Reach, TurnCorridors, TurnFacts, TurnPath, corridors_of};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
 /// What limits a vehicle in a turn.
@@ -29,9 +29,9 @@ pub struct TurnExplanation {
 /// Why `model`'s vehicle may take a turn or not.
 ///
 /// # Errors
-/// It was told to stop: it asks before it makes the turn's corridors, before it certifies them, and before the best one's
-/// certificate is made again.
-pub fn explain_turn_until(
+/// `stop` was told: it is asked before the turn's corridors are made, before they are certified, and every few metres of the
+/// best one's certificate.
+pub fn explain_turn(
     network: &Network,
     facts: &TurnFacts,
     model: &Model,
@@ -58,19 +58,12 @@ pub fn explain_turn_until(
         (Err(reason), _) => Verdict::Unknown(*reason),
         (Ok(_), best) => turn_verdict(best.as_ref().map(|(_, result)| result)),
     };
-    stop.check()?;
-    let geometry = made.as_ref().ok().zip(best.as_ref()).and_then(|(made, (path, result))| {
-        let path = made.paths.get(*path)?;
-        let spans = std::slice::from_ref(&path.counted);
-        // Without corrections where that is how the stage certified it.
-        let plain = Options { max_shift_m: 0.0, correction_sweeps: 0 };
-        let same = |options: &Options| {
-            certify_planned(&path.corridor, model, spans, options)
-                .is_some_and(|(_, results)| results.first() == Some(result))
-        };
-        let options = if same(&settings.stet) { settings.stet } else { plain };
-        geometry(&path.corridor, spans, 0, model, &options)
-    });
+    let path =
+        made.as_ref().ok().zip(best.as_ref()).and_then(|(made, (path, result))| Some((made.paths.get(*path)?, result)));
+    let geometry = match path {
+        Some((path, result)) => turn_geometry(path, result, model, settings, stop)?,
+        None => None,
+    };
     let explanation = Explanation {
         road: None,
         vehicle: model.vehicle.clone(),
@@ -81,6 +74,23 @@ pub fn explain_turn_until(
     };
     let path = best.map(|(path, _)| path);
     Ok(TurnExplanation { facts: facts.clone(), roads, corridors: made.ok(), path, explanation })
+}
+
+/// The certificate on a path, with the options that gave `result`: some paths are certified without corrections.
+fn turn_geometry(
+    path: &TurnPath,
+    result: &SpanResult,
+    model: &Model,
+    settings: &Settings,
+    stop: &Stop,
+) -> Result<Option<Geometry>, Stopped> {
+    let spans = std::slice::from_ref(&path.counted);
+    let corrected = geometry(&path.corridor, spans, 0, model, &settings.stet, stop)?;
+    if corrected.as_ref().is_some_and(|geometry| geometry.result == *result) {
+        return Ok(corrected);
+    }
+    let plain = Options { max_shift_m: 0.0, correction_sweeps: 0 };
+    geometry(&path.corridor, spans, 0, model, &plain, stop)
 }
 
 fn forbids(edge: &Edge, model: &Model) -> Option<Verdict> {

@@ -129,8 +129,8 @@ pub(super) struct Sample {
 pub fn assemble(
     network: &Network,
     movements: &Movements,
-    strokes: &mut Strokes<'_>,
-    menu: &mut Menu<'_>,
+    strokes: &mut Strokes,
+    menu: &mut Menu,
     way: &Way<'_>,
     stop: &Stop,
 ) -> Result<RoutePath, AssemblyError> {
@@ -232,7 +232,7 @@ struct Leg {
 
 impl Leg {
     fn new(
-        strokes: &mut Strokes<'_>,
+        strokes: &mut Strokes,
         way: &Way<'_>,
         range: Range<usize>,
         frame: Frame,

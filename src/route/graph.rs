@@ -3,7 +3,10 @@
 //!
 //! What a vehicle may use comes from outside as [`Access`], so that the same search answers what blocks as well.
 
+use std::sync::Arc;
+
 use super::bans::{Bans, Within};
+use super::roads::Roads;
 use super::speeds::{Measure, Speeds};
 use crate::network::{MovementKind, Movements, Network, Passage};
 
@@ -24,11 +27,8 @@ pub struct Access {
 
 /// Everything that a search needs besides access.
 #[derive(Debug, Clone)]
-pub struct Graph<'n> {
-    /// The route graph.
-    pub network: &'n Network,
-    /// All movements of it.
-    pub movements: &'n Movements,
+pub struct Graph {
+    roads: Arc<Roads>,
     costs: Vec<u64>,
     turn_cost: u64,
     bans: Bans,
@@ -49,12 +49,30 @@ pub(super) struct Step {
     pub(super) passage: u32,
 }
 
-impl<'n> Graph<'n> {
+impl Graph {
     /// With costs by `measure`.
     #[must_use]
-    pub fn new(network: &'n Network, movements: &'n Movements, speeds: &Speeds, measure: Measure) -> Self {
+    pub fn new(roads: &Arc<Roads>, speeds: &Speeds, measure: Measure) -> Self {
+        let network = &roads.network;
         let costs = network.edges.iter().map(|edge| speeds.cost(network, edge, measure)).collect();
-        Self { network, movements, costs, turn_cost: speeds.turn_cost(measure), bans: Bans::of(network) }
+        Self { costs, turn_cost: speeds.turn_cost(measure), bans: Bans::of(network), roads: Arc::clone(roads) }
+    }
+
+    /// Shared with whoever else drives on them.
+    pub(super) fn roads(&self) -> &Arc<Roads> {
+        &self.roads
+    }
+
+    /// The network that it is over.
+    #[must_use]
+    pub fn network(&self) -> &Network {
+        &self.roads.network
+    }
+
+    /// All movements of it.
+    #[must_use]
+    pub fn movements(&self) -> &Movements {
+        &self.roads.movements
     }
 
     /// Milliseconds or millimetres of an edge.
@@ -76,10 +94,10 @@ impl<'n> Graph<'n> {
             if m.forbidden.is_some() || m.kind == MovementKind::UTurn { BARRED } else { 0 }
         };
         Access {
-            edges: vec![0; self.network.edges.len()],
-            movements: self.movements.all().iter().map(movement).collect(),
+            edges: vec![0; self.network().edges.len()],
+            movements: self.movements().all().iter().map(movement).collect(),
             passages: self
-                .movements
+                .movements()
                 .passages()
                 .iter()
                 .map(|p| if p.forbidden.is_some() { BARRED } else { 0 })
@@ -98,7 +116,7 @@ impl<'n> Graph<'n> {
     }
 
     pub(super) fn states(&self) -> usize {
-        self.network.edges.len() + self.bans.len()
+        self.network().edges.len() + self.bans.len()
     }
 
     /// The state of an edge that one begins on.
@@ -107,16 +125,16 @@ impl<'n> Graph<'n> {
     }
 
     pub(super) fn edge_of(&self, state: State) -> u32 {
-        let within = (state as usize).checked_sub(self.network.edges.len());
+        let within = (state as usize).checked_sub(self.network().edges.len());
         within.and_then(|within| self.bans.edge(within as Within)).unwrap_or(state)
     }
 
     fn within(&self, state: State) -> Within {
-        state.saturating_sub(self.network.edges.len() as u32)
+        state.saturating_sub(self.network().edges.len() as u32)
     }
 
     fn state(&self, edge: u32, within: Within) -> State {
-        if within == 0 { edge } else { self.network.edges.len() as u32 + within }
+        if within == 0 { edge } else { self.network().edges.len() as u32 + within }
     }
 
     /// What a passage costs beside the edges before and after: its arcs, and onto the ring and off it a turn each.
@@ -125,22 +143,22 @@ impl<'n> Graph<'n> {
     }
 
     /// The arcs of a passage; none of [`NO_PASSAGE`].
-    pub(super) fn arcs(&self, passage: u32) -> &'n [u32] {
-        self.movements.passages().get(passage as usize).map_or(&[], |passage| &passage.through)
+    pub(super) fn arcs(&self, passage: u32) -> &[u32] {
+        self.movements().passages().get(passage as usize).map_or(&[], |passage| &passage.through)
     }
 
     /// Where one can go on to from the end of a state's edge.
     pub(super) fn steps<'g>(&'g self, access: &'g Access, state: State) -> impl Iterator<Item = Step> + 'g {
         let edge = self.edge_of(state);
         let within = self.within(state);
-        let first = self.movements.first(edge);
-        let movements = self.movements.after(edge).iter().enumerate().filter_map(move |(i, movement)| {
+        let first = self.movements().first(edge);
+        let movements = self.movements().after(edge).iter().enumerate().filter_map(move |(i, movement)| {
             let price = price(access, access.movements.get(first + i), movement.to)?;
             let next = self.bans.after(within, movement.to)?;
             let cost = self.movement_cost(movement.kind).saturating_add(price);
             Some(Step { next: self.state(movement.to, next), cost, passage: NO_PASSAGE })
         });
-        let passages = self.movements.over(edge).filter_map(move |(place, passage)| {
+        let passages = self.movements().over(edge).filter_map(move |(place, passage)| {
             let price = price(access, access.passages.get(place), passage.to)?;
             let mut driven = passage.through.iter().chain([&passage.to]);
             let next = driven.try_fold(within, |within, &edge| self.bans.after(within, edge))?;

@@ -9,6 +9,7 @@
 //! | `speeds` | what an edge costs |
 //! | `bans` | restrictions over ways, as an automaton |
 //! | `permits`, `stored` | what a vehicle may use |
+//! | `roads` | what planners share: the roads, and a vehicle with its permits |
 //! | `graph` | edges, movements and passages of roundabouts as a graph |
 //! | `drive` | the edges of a way, and which are driven as part of a passage |
 //! | `search` | the shortest way |
@@ -32,6 +33,7 @@ mod pieces;
 mod plan;
 mod reach;
 mod report;
+mod roads;
 mod search;
 mod snap;
 mod speeds;
@@ -48,7 +50,9 @@ pub use pieces::{Menu, NoTurns, Strokes, TurnPiece, Turns};
 pub use plan::{Answer, Planner, Question, Refutation, Route, Unanswered};
 pub use reach::{Components, Reach, components, reach, with_edge};
 pub use report::{PartResult, geojson, json, obstacle_members, place, title};
-pub use search::{Found, Goal, Start, search, search_over, search_over_until};
+pub use roads::{Driver, Roads};
+pub use search::{Found, Goal, Start, search, search_over};
 pub use snap::{Position, SnapError, Snapped, Snapper};
 pub use speeds::{Measure, Speeds, SpeedsError};
+pub use stored::NoDriver;
 pub use turning::MadeTurns;

@@ -1,10 +1,11 @@
 //! What a route's corridor is made of: strokes and turns, each in a frame of its own.
 
 use std::ops::Range;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
+use super::roads::Roads;
 use crate::corridor::{Corridor, Frame};
 use crate::network::{Movement, Network};
 use crate::settings::Settings;
@@ -27,34 +28,30 @@ pub struct TurnPiece {
 }
 
 /// Where turns come from.
-pub trait Turns {
+pub trait Turns: Send {
     /// Ways to drive from one edge into another that are certified for the vehicle, the best first; over these arcs, where it is
     /// a passage of a roundabout.
     ///
     /// # Errors
     /// There is none, and why.
-    fn pieces(
-        &self,
-        strokes: &mut Strokes<'_>,
-        movement: &Movement,
-        arcs: &[u32],
-    ) -> Result<Vec<TurnPiece>, UnknownReason>;
+    fn pieces(&self, strokes: &mut Strokes, movement: &Movement, arcs: &[u32])
+    -> Result<Vec<TurnPiece>, UnknownReason>;
 }
 
 /// The paths of a turn, the best first.
-type Made = Result<Vec<Rc<TurnPiece>>, UnknownReason>;
+type Made = Result<Vec<Arc<TurnPiece>>, UnknownReason>;
 
 /// Which of its paths each turn is to be driven on: the best one, until another is asked for.
-pub struct Menu<'t> {
-    turns: &'t dyn Turns,
+pub struct Menu {
+    turns: Box<dyn Turns>,
     made: FxHashMap<(u32, u32), Made>,
     choice: FxHashMap<(u32, u32), usize>,
 }
 
-impl<'t> Menu<'t> {
+impl Menu {
     /// Nothing is made yet.
     #[must_use]
-    pub fn new(turns: &'t dyn Turns) -> Self {
+    pub fn new(turns: Box<dyn Turns>) -> Self {
         Self { turns, made: FxHashMap::default(), choice: FxHashMap::default() }
     }
 
@@ -69,13 +66,13 @@ impl<'t> Menu<'t> {
     /// There is none, and why.
     pub fn chosen(
         &mut self,
-        strokes: &mut Strokes<'_>,
+        strokes: &mut Strokes,
         movement: &Movement,
         arcs: &[u32],
-    ) -> Result<Rc<TurnPiece>, UnknownReason> {
+    ) -> Result<Arc<TurnPiece>, UnknownReason> {
         let key = (movement.from, movement.to);
-        let turns = self.turns;
-        let make = || Ok(turns.pieces(strokes, movement, arcs)?.into_iter().map(Rc::new).collect());
+        let turns = &self.turns;
+        let make = || Ok(turns.pieces(strokes, movement, arcs)?.into_iter().map(Arc::new).collect());
         let made = self.made.entry(key).or_insert_with(make).as_ref().map_err(|reason| *reason)?;
         let choice = self.choice.get(&key).copied().unwrap_or(0);
         made.get(choice).cloned().ok_or(UnknownReason::Geometry)
@@ -107,25 +104,26 @@ impl<'t> Menu<'t> {
 pub struct NoTurns;
 
 impl Turns for NoTurns {
-    fn pieces(&self, _: &mut Strokes<'_>, _: &Movement, _: &[u32]) -> Result<Vec<TurnPiece>, UnknownReason> {
+    fn pieces(&self, _: &mut Strokes, _: &Movement, _: &[u32]) -> Result<Vec<TurnPiece>, UnknownReason> {
         Err(UnknownReason::Geometry)
     }
 }
 
 /// Strokes of a network, made into corridors under one set's settings as they are asked for, and kept.
-pub struct Strokes<'n> {
-    network: &'n Network,
+pub struct Strokes {
+    roads: Arc<Roads>,
     settings: Settings,
     params: TurnParams,
     /// By edge: its stroke, and its place in it.
     place: Vec<(u32, u32)>,
-    made: FxHashMap<u32, Result<Rc<StrokeLine>, UnknownReason>>,
+    made: FxHashMap<u32, Result<Arc<StrokeLine>, UnknownReason>>,
 }
 
-impl<'n> Strokes<'n> {
+impl Strokes {
     /// Nothing is made yet.
     #[must_use]
-    pub fn new(network: &'n Network, settings: Settings) -> Self {
+    pub fn new(roads: &Arc<Roads>, settings: Settings) -> Self {
+        let network = &roads.network;
         let mut place = vec![(u32::MAX, 0); network.edges.len()];
         for (stroke, facts) in (0_u32..).zip(&network.strokes) {
             let edges = &network.stroke_edges[facts.edges.start as usize..facts.edges.end as usize];
@@ -134,11 +132,11 @@ impl<'n> Strokes<'n> {
             }
         }
         let params = settings.turn_params();
-        Self { network, settings, params, place, made: FxHashMap::default() }
+        Self { roads: Arc::clone(roads), settings, params, place, made: FxHashMap::default() }
     }
 
-    pub(super) fn network(&self) -> &'n Network {
-        self.network
+    pub(super) fn network(&self) -> &Network {
+        &self.roads.network
     }
 
     /// What the strokes are made with, and all that is strung together from them.
@@ -161,9 +159,9 @@ impl<'n> Strokes<'n> {
     ///
     /// # Errors
     /// Nothing can be said of any of its edges.
-    pub fn line(&mut self, stroke: u32) -> Result<Rc<StrokeLine>, UnknownReason> {
-        let (network, policy, params) = (self.network, self.settings.policy, &self.settings.corridor);
-        let make = || StrokeLine::new(network, stroke, policy, params).map(Rc::new);
+    pub fn line(&mut self, stroke: u32) -> Result<Arc<StrokeLine>, UnknownReason> {
+        let (network, policy, params) = (&self.roads.network, self.settings.policy, &self.settings.corridor);
+        let make = || StrokeLine::new(network, stroke, policy, params).map(Arc::new);
         self.made.entry(stroke).or_insert_with(make).clone()
     }
 
@@ -171,12 +169,12 @@ impl<'n> Strokes<'n> {
     ///
     /// # Errors
     /// Nothing can be said of any of its edges.
-    pub fn line_of(&mut self, edge: u32) -> Result<Rc<StrokeLine>, UnknownReason> {
+    pub fn line_of(&mut self, edge: u32) -> Result<Arc<StrokeLine>, UnknownReason> {
         let (stroke, _) = self.of(edge).ok_or(UnknownReason::Geometry)?;
         self.line(stroke)
     }
 
     pub(super) fn closed(&self, stroke: u32) -> bool {
-        self.network.strokes.get(stroke as usize).is_some_and(|stroke| stroke.closed)
+        self.roads.network.strokes.get(stroke as usize).is_some_and(|stroke| stroke.closed)
     }
 }

@@ -5,18 +5,21 @@
 //! left out and the search goes on, so many times as asked; how
 //! often, and where, is part of the answer. Where there is none left, what blocks is said (`obstacles`).
 
+use std::sync::Arc;
+
 use super::assemble::{AssemblyError, PartKind, RoutePath, Way, assemble};
 use super::drive::{Drive, Join};
 use super::graph::{Access, BARRED, Graph};
 use super::obstacles::{self, Obstacle};
-use super::permits::Permits;
 use super::pieces::{Menu, Strokes, Turns};
-use super::search::{Found, Goal, Start, search_over_until};
+use super::roads::{Driver, Roads};
+use super::search::{Found, Goal, Start, search_over};
 use super::snap::{Position, SnapError, Snapped, Snapper};
 use super::speeds::{Measure, Speeds};
+use super::turning::MadeTurns;
 use crate::corridor::Corridor;
 use crate::network::{MovementKind, Network};
-use crate::stet::{self, Certificate, Model};
+use crate::stet::{self, Certificate};
 use crate::stop::{Stop, Stopped};
 
 /// A failure of the whole is put down to a turn at most this far from it, metres; else to the edge it is on.
@@ -103,53 +106,69 @@ pub enum Unanswered {
     Stopped(#[from] Stopped),
 }
 
-/// Everything needed to answer questions about one vehicle.
-pub struct Planner<'n> {
-    graph: Graph<'n>,
-    snapper: Snapper<'n>,
-    permits: &'n Permits,
-    model: &'n Model,
-    menu: Menu<'n>,
-    strokes: Strokes<'n>,
+/// Answers questions about one vehicle. It keeps the corridors that it has made, so later questions are answered faster.
+pub struct Planner {
+    graph: Graph,
+    snapper: Snapper,
+    driver: Arc<Driver>,
+    menu: Menu,
+    strokes: Strokes,
     speeds: Speeds,
     access: Access,
     stop: Stop,
 }
 
-impl<'n> Planner<'n> {
-    /// For a vehicle with these permits. Strokes, turns and whole routes are certified under the permits' settings.
+impl Planner {
+    /// Finds routes that are best by `measure`. Strokes, turns and whole routes are certified under the settings of the
+    /// driver's permits.
     #[must_use]
-    pub fn new(graph: Graph<'n>, permits: &'n Permits, model: &'n Model, turns: &'n dyn Turns, speeds: Speeds) -> Self {
-        let snapper = Snapper::new(graph.network);
-        let access = permits.access(graph.movements);
-        let strokes = Strokes::new(graph.network, permits.settings.clone());
-        Self { graph, snapper, permits, model, menu: Menu::new(turns), strokes, speeds, access, stop: Stop::default() }
+    pub fn new(roads: &Arc<Roads>, driver: Arc<Driver>, speeds: Speeds, measure: Measure) -> Self {
+        let turns = Box::new(MadeTurns { driver: Arc::clone(&driver) });
+        Self::with_turns(roads, driver, speeds, measure, turns)
     }
 
-    fn network(&self) -> &'n Network {
-        self.graph.network
-    }
-
-    /// Routes, or what blocks.
-    ///
-    /// # Errors
-    /// A place that is on no road that the vehicle may use.
-    pub fn answer(&mut self, question: &Question) -> Result<Answer, SnapError> {
-        match self.answer_until(question, &Stop::default()) {
-            Err(Unanswered::Place(error)) => Err(error),
-            answer => Ok(answer.unwrap_or_default()), // nobody tells it to stop
+    /// Takes turns from elsewhere.
+    #[must_use]
+    pub fn with_turns(
+        roads: &Arc<Roads>,
+        driver: Arc<Driver>,
+        speeds: Speeds,
+        measure: Measure,
+        turns: Box<dyn Turns>,
+    ) -> Self {
+        Self {
+            graph: Graph::new(roads, &speeds, measure),
+            snapper: Snapper::new(roads),
+            access: driver.permits.access(&roads.movements),
+            strokes: Strokes::new(roads, driver.permits.settings.clone()),
+            menu: Menu::new(turns),
+            driver,
+            speeds,
+            stop: Stop::default(),
         }
     }
 
-    /// The same; it asks before each turn, every few thousand states of a search and every few metres of a certificate's
-    /// sweeps whether to stop. What the planner keeps is whole whenever it stops: the next answer is as if nothing had been.
+    /// The roads that it plans on.
+    #[must_use]
+    pub fn network(&self) -> &Network {
+        self.graph.network()
+    }
+
+    /// The vehicle that it plans for.
+    #[must_use]
+    pub fn driver(&self) -> &Driver {
+        &self.driver
+    }
+
+    /// Routes, or what blocks. The planner asks `stop` before each turn, every few thousand states of a search and every few
+    /// metres of a certificate's sweeps. A cancelled answer leaves the planner whole: the next answer is the same as without it.
     ///
     /// # Errors
-    /// A place that is on no road that the vehicle may use; told to stop.
-    pub fn answer_until(&mut self, question: &Question, stop: &Stop) -> Result<Answer, Unanswered> {
+    /// A place is on no road that the vehicle may use; `stop` was told.
+    pub fn answer(&mut self, question: &Question, stop: &Stop) -> Result<Answer, Unanswered> {
         self.stop = stop.clone();
         stop.check()?;
-        let usable = |edge| self.permits.edge(edge);
+        let usable = |edge| self.driver.permits.edge(edge);
         let snap = |place: &Position| self.snapper.snap(*place, question.snap_m, usable);
         let snapped = question.places.iter().map(snap).collect::<Result<Vec<_>, _>>()?;
         let mut answer = Answer { snapped, ..Answer::default() };
@@ -168,7 +187,7 @@ impl<'n> Planner<'n> {
         let Some((from, places)) = snapped.split_first() else { return Ok(None) };
         let starts: Vec<Start> = from.on.iter().map(|on| Start::new(on.edge, on.share)).collect();
         let goals: Vec<Vec<Goal>> = places.iter().map(|place| place.on.clone()).collect();
-        let found = search_over_until(&self.graph, access, &starts, &goals, &self.stop)?;
+        let found = search_over(&self.graph, access, &starts, &goals, &self.stop)?;
         Ok(found.and_then(|found| {
             let start = starts.get(found.start)?.share;
             let last = found.drive.edges.last()?;
@@ -256,7 +275,8 @@ impl<'n> Planner<'n> {
             Err(AssemblyError::Stopped(stopped)) => return Err(stopped),
             Err(error) => return Ok(Err(unassembled(error, &found.drive))),
         };
-        let certificate = stet::certify_until(&path.corridor, self.model, &self.permits.settings.stet, &self.stop)?;
+        let certificate =
+            stet::certify(&path.corridor, &self.driver.model, &self.driver.permits.settings.stet, &self.stop)?;
         let refuted = |certificate: Option<&Certificate>| Refutation {
             at: culprit(&path, certificate),
             result: certificate.and_then(|c| c.result.rsc_m.zip(c.result.hinge_margin_rad)),
@@ -274,13 +294,13 @@ impl<'n> Planner<'n> {
 
     fn assembled(&mut self, found: &Found, start: f64, end: f64) -> Result<RoutePath, AssemblyError> {
         let way = Way { drive: &found.drive, start, end };
-        let network = self.graph.network;
-        assemble(network, self.graph.movements, &mut self.strokes, &mut self.menu, &way, &self.stop)
+        let network = self.graph.network();
+        assemble(network, self.graph.movements(), &mut self.strokes, &mut self.menu, &way, &self.stop)
     }
 
     /// By the table of speeds.
     fn time_s(&self, drive: &Drive, start: f64, end: f64) -> f64 {
-        let network = self.graph.network;
+        let network = self.graph.network();
         let time = |(share, edge): (f64, u32)| {
             share * self.speeds.cost(network, &network.edges[edge as usize], Measure::Time) as f64
         };
@@ -291,13 +311,13 @@ impl<'n> Planner<'n> {
 
     /// Whether there was something to leave out.
     fn leave_out(&self, access: &mut Access, at: PartKind) -> bool {
-        let slot = obstacles::slot(access, self.graph.movements, at);
+        let slot = obstacles::slot(access, self.graph.movements(), at);
         slot.is_some_and(|slot| std::mem::replace(slot, BARRED) != BARRED)
     }
 
     /// The cheapest set of failing places between the places asked for.
     fn obstacles(&self, answer: &Answer) -> Result<Option<Vec<Obstacle>>, Stopped> {
-        let (permits, movements) = (self.permits, self.graph.movements);
+        let (permits, movements) = (&self.driver.permits, self.graph.movements());
         let mut access = obstacles::priced(permits, movements, &answer.refuted);
         let found = self.way(&access, &answer.snapped)?;
         Ok(found.map(|(found, ..)| obstacles::on(&found.drive, permits, movements, &mut access, &answer.refuted)))
@@ -319,7 +339,8 @@ impl<'n> Planner<'n> {
                 }
             }
             let known: Vec<Vec<u32>> = answer.routes.iter().map(|route| route.drive.edges.clone()).collect();
-            let network = self.network();
+            let roads = Arc::clone(self.graph.roads());
+            let network = &roads.network;
             let longest = (first_cost as f64 * MOST_LONGER) as u64;
             let costs: Vec<u64> = (0..network.edges.len() as u32).map(|edge| self.graph.cost(edge)).collect();
             let wanted = |edges: &[u32]| {
@@ -342,7 +363,7 @@ impl<'n> Planner<'n> {
 }
 
 /// What a route costs without what was put on it to find others.
-fn costs_of(graph: &Graph<'_>, route: &Route) -> u64 {
+fn costs_of(graph: &Graph, route: &Route) -> u64 {
     let edges = shares(&route.drive, route.start, route.end).map(|(share, edge)| graph.part_cost(edge, share));
     edges.sum::<u64>() + turns(graph, &route.drive) * graph.turn_cost()
 }
@@ -358,8 +379,8 @@ fn shares(drive: &Drive, start: f64, end: f64) -> impl Iterator<Item = (f64, u32
 }
 
 /// Turns of a way; a passage is two.
-fn turns(graph: &Graph<'_>, drive: &Drive) -> u64 {
-    let count = |join: Join<'_>| match graph.movements.between(join.from, join.to) {
+fn turns(graph: &Graph, drive: &Drive) -> u64 {
+    let count = |join: Join<'_>| match graph.movements().between(join.from, join.to) {
         Some(movement) => u64::from(movement.kind != MovementKind::StraightOn),
         None => 2,
     };

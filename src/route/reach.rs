@@ -26,7 +26,7 @@ pub struct Components {
 
 /// Everything that can be reached from any of these edges.
 #[must_use]
-pub fn reach(graph: &Graph<'_>, access: &Access, starts: &[u32]) -> Reach {
+pub fn reach(graph: &Graph, access: &Access, starts: &[u32]) -> Reach {
     let usable = |edge: &&u32| access.edges.get(**edge as usize).is_some_and(|&cost| cost != BARRED);
     let first: Vec<State> = starts.iter().filter(usable).filter_map(|&edge| graph.first(edge)).collect();
     let mut steps: Vec<(State, State)> = Vec::new();
@@ -42,7 +42,7 @@ pub fn reach(graph: &Graph<'_>, access: &Access, starts: &[u32]) -> Reach {
         steps[from..].iter().take_while(|step| step.0 == state).for_each(|step| visit(step.1));
     });
     let edges = |states: &[bool]| {
-        let mut edges = vec![false; graph.network.edges.len()];
+        let mut edges = vec![false; graph.network().edges.len()];
         for (state, _) in states.iter().enumerate().filter(|(_, on)| **on) {
             if let Some(edge) = edges.get_mut(graph.edge_of(state as State) as usize) {
                 *edge = true;
@@ -73,18 +73,18 @@ fn flood(states: usize, first: &[State], mut step: impl FnMut(State, &mut dyn Fn
 
 /// The access that a vehicle would have if an edge, and every lawful turn and passage into and out of it, were safe.
 #[must_use]
-pub fn with_edge(graph: &Graph<'_>, access: &Access, edge: u32) -> Access {
+pub fn with_edge(graph: &Graph, access: &Access, edge: u32) -> Access {
     let mut opened = access.clone();
     if let Some(slot) = opened.edges.get_mut(edge as usize) {
         *slot = 0;
     }
-    for (slot, movement) in opened.movements.iter_mut().zip(graph.movements.all()) {
+    for (slot, movement) in opened.movements.iter_mut().zip(graph.movements().all()) {
         let touches = movement.from == edge || movement.to == edge;
         if touches && movement.kind != MovementKind::UTurn && movement.forbidden.is_none() {
             *slot = 0;
         }
     }
-    for (slot, passage) in opened.passages.iter_mut().zip(graph.movements.passages()) {
+    for (slot, passage) in opened.passages.iter_mut().zip(graph.movements().passages()) {
         if (passage.from == edge || passage.to == edge) && passage.forbidden.is_none() {
             *slot = 0;
         }
@@ -95,16 +95,16 @@ pub fn with_edge(graph: &Graph<'_>, access: &Access, edge: u32) -> Access {
 /// Strongly connected components (Tarjan 1972, without recursion), of the edges that may be used. Sequences that are
 /// forbidden over ways are not minded here: a component may then be a little too large.
 #[must_use]
-pub fn components(graph: &Graph<'_>, access: &Access) -> Components {
-    let edges = graph.network.edges.len();
+pub fn components(graph: &Graph, access: &Access) -> Components {
+    let edges = graph.network().edges.len();
     let usable = |edge: u32| access.edges[edge as usize] != BARRED;
     let next = |edge: u32| {
-        let first = graph.movements.first(edge);
-        let movements = graph.movements.after(edge).iter().enumerate().filter_map(move |(i, movement)| {
+        let first = graph.movements().first(edge);
+        let movements = graph.movements().after(edge).iter().enumerate().filter_map(move |(i, movement)| {
             (access.movements[first + i] != BARRED && usable(movement.to)).then_some(movement.to)
         });
         let open = move |place: usize, to: u32| access.passages[place] != BARRED && usable(to);
-        movements.chain(graph.movements.over(edge).filter_map(move |(place, p)| open(place, p.to).then_some(p.to)))
+        movements.chain(graph.movements().over(edge).filter_map(move |(place, p)| open(place, p.to).then_some(p.to)))
     };
     const NEW: u32 = u32::MAX;
     let (mut number, mut low, mut on_stack) = (vec![NEW; edges], vec![0_u32; edges], vec![false; edges]);

@@ -58,14 +58,11 @@ const STATES: usize = 4096;
 const NONE: u32 = u32::MAX;
 
 /// The shortest way to each goal, `None` where there is none. With `any`, only the nearest goal's need be right.
-#[must_use]
-pub fn search(graph: &Graph<'_>, access: &Access, starts: &[Start], goals: &[Goal], any: bool) -> Vec<Option<Found>> {
-    search_until(graph, access, starts, goals, any, &Stop::default()).unwrap_or_default()
-}
-
-/// The same; it asks every few thousand states whether to stop.
-fn search_until(
-    graph: &Graph<'_>,
+///
+/// # Errors
+/// `stop` was told: it is asked every few thousand states.
+pub fn search(
+    graph: &Graph,
     access: &Access,
     starts: &[Start],
     goals: &[Goal],
@@ -102,7 +99,7 @@ struct Reached {
 }
 
 struct Search<'g> {
-    graph: &'g Graph<'g>,
+    graph: &'g Graph,
     access: &'g Access,
     goals: &'g [Goal],
     best: Vec<Option<End>>,
@@ -112,7 +109,7 @@ struct Search<'g> {
 }
 
 impl<'g> Search<'g> {
-    fn new(graph: &'g Graph<'_>, access: &'g Access, goals: &'g [Goal]) -> Self {
+    fn new(graph: &'g Graph, access: &'g Access, goals: &'g [Goal]) -> Self {
         let reached = vec![Reached { cost: BARRED, before: NONE, start: NONE, passage: NO_PASSAGE }; graph.states()];
         Self { graph, access, goals, best: vec![None; goals.len()], reached, queue: BinaryHeap::new() }
     }
@@ -206,17 +203,11 @@ fn take(best: &mut Option<End>, end: End) {
 
 /// The shortest way over several places, each given by the goals that stand for it; a vehicle goes on from a place as it came
 /// to it. `None` if there is none.
-#[must_use]
-pub fn search_over(graph: &Graph<'_>, access: &Access, starts: &[Start], places: &[Vec<Goal>]) -> Option<Found> {
-    search_over_until(graph, access, starts, places, &Stop::default()).ok().flatten()
-}
-
-/// The same; it asks every few thousand states whether to stop.
 ///
 /// # Errors
-/// It was told to.
-pub fn search_over_until(
-    graph: &Graph<'_>,
+/// `stop` was told: it is asked every few thousand states.
+pub fn search_over(
+    graph: &Graph,
     access: &Access,
     starts: &[Start],
     places: &[Vec<Goal>],
@@ -227,7 +218,7 @@ pub fn search_over_until(
     let mut first: Vec<usize> = (0..starts.len()).collect();
     for (leg, goals) in places.iter().enumerate() {
         let last = leg + 1 == places.len();
-        let found = search_until(graph, access, &starts, goals, last, stop)?;
+        let found = search(graph, access, &starts, goals, last, stop)?;
         let mut next = Vec::new();
         for (goal, found) in goals.iter().zip(found) {
             let Some(found) = found else { continue };

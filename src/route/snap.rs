@@ -3,11 +3,14 @@
 //! Distances are the network's, on a sphere that is locally flat; a place on the far side of the antimeridian from its road is not
 //! found.
 
+use std::sync::Arc;
+
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
+use super::roads::Roads;
 use super::search::Goal;
-use crate::network::{EARTH_RADIUS_M, Network, offset_m};
+use crate::network::{EARTH_RADIUS_M, offset_m};
 use crate::osm::LonLat;
 use crate::osm::facts::Direction;
 
@@ -72,17 +75,18 @@ pub enum SnapError {
 type Segment = GeomWithData<Rectangle<[f64; 2]>, (u32, u32)>;
 
 /// An index of all pieces of road, by their segments.
-pub struct Snapper<'n> {
-    network: &'n Network,
+pub struct Snapper {
+    roads: Arc<Roads>,
     tree: RTree<Segment>,
     /// The edges of each piece, by the first edge of it; sorted.
     twins: Vec<(u32, u32)>,
 }
 
-impl<'n> Snapper<'n> {
+impl Snapper {
     /// Indexes every piece of road once, whichever directions it has.
     #[must_use]
-    pub fn new(network: &'n Network) -> Self {
+    pub fn new(roads: &Arc<Roads>) -> Self {
+        let network = &roads.network;
         let mut segments = Vec::new();
         let mut twins = Vec::new();
         let mut before: Option<u32> = None;
@@ -103,7 +107,7 @@ impl<'n> Snapper<'n> {
                 segments.push(GeomWithData::new(bounds, (index, vertex)));
             }
         }
-        Self { network, tree: RTree::bulk_load(segments), twins }
+        Self { roads: Arc::clone(roads), tree: RTree::bulk_load(segments), twins }
     }
 
     /// The nearest piece of road of which some direction is `usable`.
@@ -136,7 +140,7 @@ impl<'n> Snapper<'n> {
         let mut best: Option<(f64, u32, u32, f64)> = None;
         for segment in self.tree.locate_in_envelope_intersecting(&around) {
             let (edge, vertex) = segment.data;
-            let shape = &self.network.shapes[self.network.edges[edge as usize].shape.start as usize..];
+            let shape = &self.roads.network.shapes[self.roads.network.edges[edge as usize].shape.start as usize..];
             let ends = [0, 1].map(|i| offset_m(here, shape[vertex as usize + i]));
             let (distance_m, along) = foot(ends);
             let better = best.is_none_or(|(d, e, v, _)| (distance_m, edge, vertex) < (d, e, v));
@@ -149,8 +153,8 @@ impl<'n> Snapper<'n> {
     }
 
     fn snapped(&self, edge: u32, vertex: u32, along: f64, distance_m: f64, usable: &impl Fn(u32) -> bool) -> Snapped {
-        let facts = &self.network.edges[edge as usize];
-        let shape = &self.network.shapes[facts.shape.start as usize..facts.shape.end as usize];
+        let facts = &self.roads.network.edges[edge as usize];
+        let shape = &self.roads.network.shapes[facts.shape.start as usize..facts.shape.end as usize];
         let origin = shape[vertex as usize].degrees();
         let origin = Position { lon: origin.0, lat: origin.1 };
         let length_m = |pair: &[LonLat]| {
@@ -161,7 +165,7 @@ impl<'n> Snapper<'n> {
         let before: f64 = lengths[..vertex as usize].iter().sum::<f64>() + along * lengths[vertex as usize];
         let share = (before / lengths.iter().sum::<f64>().max(1e-9)).clamp(0.0, 1.0);
         let on = |&edge: &u32| {
-            let backward = self.network.edges[edge as usize].direction == Direction::Backward;
+            let backward = self.roads.network.edges[edge as usize].direction == Direction::Backward;
             Goal { edge, share: if backward { 1.0 - share } else { share } }
         };
         let end = shape[vertex as usize + 1].degrees();

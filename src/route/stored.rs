@@ -1,10 +1,15 @@
 //! Permits as a database keeps them.
 
+use std::sync::Arc;
+
 use rustc_hash::FxHashMap;
 
 use super::permits::{Permit, Permits};
+use super::roads::{Driver, Roads};
 use crate::network::{Movements, Network};
+use crate::stet::{Model, ModelError};
 use crate::store::{CertifiedSet, Database, QueryOptions, StoreError, TurnQuery};
+use crate::vehicle::Vehicle;
 
 impl Permits {
     /// The permits of a set, for the edges and turns of the database that `network` is from.
@@ -34,5 +39,32 @@ impl Permits {
         let id = |edge: u32| network.edges.get(edge as usize).map_or(0, |edge| edge.id);
         let turn = |from, to| turns.get(&(id(from), id(to))).copied().unwrap_or(Permit::UNKNOWN);
         Ok(Self::new(settings, edges, movements, turn))
+    }
+}
+
+/// Why a database gives no driver.
+#[derive(Debug, thiserror::Error)]
+pub enum NoDriver {
+    /// The file cannot be read, or lacks the permits.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The vehicle's definition has no model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+}
+
+impl Driver {
+    /// A vehicle with the permits of one of its sets in a database. `roads` are that database's.
+    ///
+    /// # Errors
+    /// The set's turns are not certified, its settings cannot be read, or the vehicle has no model.
+    pub fn stored(
+        database: &mut Database,
+        roads: &Roads,
+        vehicle: &Vehicle,
+        set: &CertifiedSet,
+    ) -> Result<Arc<Self>, NoDriver> {
+        let permits = Permits::stored(database, &roads.network, &roads.movements, set)?;
+        Ok(Arc::new(Self { model: Model::new(vehicle)?, permits }))
     }
 }

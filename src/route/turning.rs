@@ -1,9 +1,12 @@
 //! Turns of the network as pieces of routes: the corridors of `turns`, of which those that certify for the vehicle count.
 
+use std::sync::Arc;
+
 use super::pieces::{Strokes, TurnPiece, Turns};
+use super::roads::Driver;
 use crate::certify::best_of;
 use crate::network::Movement;
-use crate::stet::{Model, Options, SpanResult, certify_spans};
+use crate::stet::{Options, SpanResult, certify_spans};
 use crate::turns::{Reach, TurnCorridors, TurnPath, nominal_leeway_m, passage_on, turn_on};
 use crate::verdict::UnknownReason;
 
@@ -12,25 +15,25 @@ const MORE: usize = 5;
 
 /// Turns made as a route asks for them, under the settings of its strokes.
 #[derive(Debug, Clone)]
-pub struct MadeTurns<'m> {
-    /// The vehicle.
-    pub model: &'m Model,
+pub struct MadeTurns {
+    /// Who takes the turns.
+    pub driver: Arc<Driver>,
 }
 
-impl Turns for MadeTurns<'_> {
+impl Turns for MadeTurns {
     fn pieces(
         &self,
-        strokes: &mut Strokes<'_>,
+        strokes: &mut Strokes,
         movement: &Movement,
         arcs: &[u32],
     ) -> Result<Vec<TurnPiece>, UnknownReason> {
         let made = self.made(strokes, movement, arcs)?;
         let options = &strokes.settings().stet;
-        let known = best_of(&made.paths, &[self.model], options).pop().flatten();
+        let known = best_of(&made.paths, &[&self.driver.model], options).pop().flatten();
         let known = known.filter(|(_, result)| result.safe());
         let mut ranked: Vec<(f64, usize)> = (0..made.paths.len())
             .filter(|&path| known.as_ref().is_none_or(|(known, _)| *known != path))
-            .map(|path| (nominal_leeway_m(&made.paths[path], &self.model.vehicle), path))
+            .map(|path| (nominal_leeway_m(&made.paths[path], &self.driver.model.vehicle), path))
             .collect();
         // Paths come in the order of their numbers; the sort keeps it among equals.
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -47,14 +50,9 @@ impl Turns for MadeTurns<'_> {
     }
 }
 
-impl MadeTurns<'_> {
-    fn made(
-        &self,
-        strokes: &mut Strokes<'_>,
-        movement: &Movement,
-        arcs: &[u32],
-    ) -> Result<TurnCorridors, UnknownReason> {
-        let reach = Reach::of(&self.model.vehicle).ok_or(UnknownReason::Geometry)?;
+impl MadeTurns {
+    fn made(&self, strokes: &mut Strokes, movement: &Movement, arcs: &[u32]) -> Result<TurnCorridors, UnknownReason> {
+        let reach = Reach::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
         let (from, to) = (strokes.line_of(movement.from)?, strokes.line_of(movement.to)?);
         let ring = arcs.first().map(|&arc| strokes.line_of(arc)).transpose()?;
         let (network, policy, params) = (strokes.network(), strokes.settings().policy, strokes.turn_params());
@@ -65,7 +63,7 @@ impl MadeTurns<'_> {
     }
 
     fn safe(&self, path: &TurnPath, options: &Options) -> Option<SpanResult> {
-        let rows = certify_spans(&path.corridor, &[self.model], std::slice::from_ref(&path.counted), options);
+        let rows = certify_spans(&path.corridor, &[&self.driver.model], std::slice::from_ref(&path.counted), options);
         rows.into_iter().next()?.spans.into_iter().next().filter(SpanResult::safe)
     }
 }

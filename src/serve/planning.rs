@@ -1,17 +1,15 @@
 //! Routes: one thread for each vehicle, policy and measure that was asked for lately, with the planner and all it has
 //! made.
 //!
-//! A planner borrows the network and keeps corridors it has made, so it stays where it is and questions come to it, one
-//! at a time. The thread ends when nobody can ask it any more.
+//! A planner answers one question at a time and keeps the corridors it has made. The thread ends when nobody can ask it any
+//! more.
 
 use std::sync::{Arc, mpsc};
 
 use super::drive;
 use super::problem::Problem;
 use super::region::{Certified, Region};
-use super::roads::Roads;
-use crate::route::{self, Graph, MadeTurns, Measure, Permits, Planner, Question, Speeds, Unanswered};
-use crate::stet::Model;
+use crate::route::{self, Driver, Measure, NoDriver, Planner, Question, Roads, Speeds, Unanswered};
 use crate::stop::Stop;
 use crate::store::Named as _;
 use serde_json::{Value, json};
@@ -41,8 +39,7 @@ pub(super) struct Router {
 /// What one planner is for.
 struct Wanted {
     roads: Arc<Roads>,
-    permits: Permits,
-    model: Model,
+    driver: Arc<Driver>,
     measure: Measure,
     speeds: Speeds,
 }
@@ -50,12 +47,15 @@ struct Wanted {
 impl Router {
     /// Reads the permits and starts the thread.
     pub(super) fn start(region: &Region, certified: &Certified<'_>, measure: Measure) -> Result<Self, Problem> {
-        let roads = region.roads()?;
-        let permits =
-            region.read(|database| Permits::stored(database, &roads.network, &roads.movements, certified.set))?;
-        let model = Model::new(certified.vehicle).map_err(|error| Problem::fault(error.to_string()))?;
+        let roads = Arc::clone(&region.roads()?.roads);
+        let driver =
+            region.read(|database| match Driver::stored(database, &roads, certified.vehicle, certified.set) {
+                Err(NoDriver::Store(error)) => Err(error),
+                driver => Ok(driver),
+            })?;
+        let driver = driver.map_err(|error| Problem::fault(error.to_string()))?;
         let speeds = Speeds::builtin().map_err(|error| Problem::fault(error.to_string()))?;
-        let wanted = Wanted { roads, permits, model, measure, speeds };
+        let wanted = Wanted { roads, driver, measure, speeds };
         let (questions, asked) = mpsc::sync_channel(MOST_WAITING);
         let thread = std::thread::Builder::new().name("routes".to_owned()).spawn(move || wanted.serve(&asked));
         thread.map_err(|error| Problem::busy(format!("no thread for routes: {error}")))?;
@@ -72,11 +72,8 @@ impl Router {
 
 impl Wanted {
     fn serve(&self, asked: &mpsc::Receiver<(Ride, Reply)>) {
-        let turns = MadeTurns { model: &self.model };
         loop {
-            let network = &self.roads.network;
-            let graph = Graph::new(network, &self.roads.movements, &self.speeds, self.measure);
-            let mut planner = Planner::new(graph, &self.permits, &self.model, &turns, self.speeds.clone());
+            let mut planner = Planner::new(&self.roads, Arc::clone(&self.driver), self.speeds.clone(), self.measure);
             for _ in 0..ANSWERS {
                 let Ok((ride, reply)) = asked.recv() else { return };
                 // Who asked may have gone.
@@ -85,21 +82,21 @@ impl Wanted {
         }
     }
 
-    fn answer(&self, planner: &mut Planner<'_>, ride: &Ride) -> Result<Value, Problem> {
-        let answer = planner.answer_until(&ride.question, &ride.stop).map_err(|unanswered| match unanswered {
+    fn answer(&self, planner: &mut Planner, ride: &Ride) -> Result<Value, Problem> {
+        let answer = planner.answer(&ride.question, &ride.stop).map_err(|unanswered| match unanswered {
             Unanswered::Place(error) => Problem::no_road(error.to_string()),
             Unanswered::Stopped(stopped) => stopped.into(),
         })?;
-        let mut members = route::json(&self.roads.network, &self.model, &answer);
+        let mut members = route::json(&self.roads.network, &self.driver.model, &answer);
         for (i, found) in answer.routes.iter().enumerate() {
             ride.stop.check()?;
-            let more = drive::members(&self.model, found, i < ride.drives);
+            let more = drive::members(&self.driver.model, found, i < ride.drives);
             let more = more.map_err(|error| Problem::fault(error.to_string()))?;
             if let (Some(Value::Object(route)), Value::Object(more)) = (members["routes"].get_mut(i), more) {
                 route.extend(more);
             }
         }
-        members["policy"] = json!(self.permits.settings.policy.name());
+        members["policy"] = json!(self.driver.permits.settings.policy.name());
         ids_as_text(&mut members);
         Ok(members)
     }

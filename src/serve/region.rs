@@ -15,7 +15,7 @@ use super::made_once::{Late, Recent};
 use super::names::NamedRoad;
 use super::planning::Router;
 use super::problem::Problem;
-use super::roads::Roads;
+use super::roads::RoadIndex;
 use super::tiles::Overview;
 use crate::osm::facts::Policy;
 use crate::settings::Settings;
@@ -82,7 +82,7 @@ pub(super) struct Region {
     /// The policy that counts where a request names none.
     pub(super) policy: Policy,
     idle: Mutex<Vec<Database>>,
-    roads: Late<Arc<Roads>>,
+    roads: Late<Arc<RoadIndex>>,
     names: Late<Arc<[NamedRoad]>>,
     sides: Late<Arc<DrivingSides>>,
     /// The main roads from afar, by vehicle and policy.
@@ -141,7 +141,7 @@ impl Region {
         ingest.map_or("region", |run| run.input_name.split('.').next().unwrap_or(&run.input_name))
     }
 
-    /// Reads from the database; blocks.
+    /// Reads from the database; blocks. For short reads: nobody cancels them.
     pub(super) fn read<T>(&self, work: impl FnOnce(&mut Database) -> Result<T, StoreError>) -> Result<T, Problem> {
         let kept = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut database = match kept {
@@ -179,8 +179,8 @@ impl Region {
     }
 
     /// The network in memory; the first call loads it.
-    pub(super) fn roads(&self) -> Result<Arc<Roads>, Problem> {
-        self.roads.get(|| self.read(Database::load_network).map(|network| Arc::new(Roads::new(network))))
+    pub(super) fn roads(&self) -> Result<Arc<RoadIndex>, Problem> {
+        self.roads.get(|| self.read(Database::load_network).map(|network| Arc::new(RoadIndex::new(network))))
     }
 
     /// All ways with their names, sorted by way id; the first call reads them.

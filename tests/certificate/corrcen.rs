@@ -9,6 +9,7 @@ mod problem;
 use cases::Case;
 use netcert::corridor::Corridor;
 use netcert::stet::{self, Certificate, Model, Options, Plan, STEP_M};
+use netcert::stop::Stop;
 use netcert::vehicle::Vehicle;
 use optimum::{Merit, Nominal, optimum};
 use problem::{Place, Problem};
@@ -77,7 +78,7 @@ fn straight_m(vehicle: &Vehicle, count: usize) -> f64 {
         curvature: vec![0.0; stations as usize],
     };
     let fixed = Options { max_shift_m: 0.0, correction_sweeps: 0 };
-    let certificate = stet::certify(&corridor, &Model::new(&ahead).unwrap(), &fixed).unwrap();
+    let certificate = stet::certify(&corridor, &Model::new(&ahead).unwrap(), &fixed, &Stop::never()).unwrap().unwrap();
     half_m - 0.5 * ahead.width_m() - certificate.result.rsc_m.unwrap()
 }
 
@@ -99,7 +100,7 @@ struct Compared {
 fn as_needed(corridor: &Corridor, model: &Model, options: &Options) -> Option<Corridor> {
     let mut corridor = corridor.clone();
     for _ in 0..3 {
-        let result = stet::certify(&corridor, model, options).unwrap().result;
+        let result = stet::certify(&corridor, model, options, &Stop::never()).unwrap().unwrap().result;
         let wider = -result.rsc_m?;
         corridor.left_m.iter_mut().chain(&mut corridor.right_m).for_each(|width| *width = (*width + wider).max(0.5));
     }
@@ -111,7 +112,7 @@ fn compare(case: &Case) -> Option<Compared> {
     let options =
         Options { correction_sweeps: std::env::var("SWEEPS").map_or(2, |s| s.parse().unwrap()), ..Options::default() };
     let corridor = &as_needed(&case.corridor, &model, &options)?;
-    let certificate = stet::certify(corridor, &model, &options).unwrap();
+    let certificate = stet::certify(corridor, &model, &options, &Stop::never()).unwrap().unwrap();
     let own: Vec<f64> = certificate.shift.coefficients.iter().map(|&c| f64::from(c) * STEP_M).collect();
     let problem = Problem::new(corridor, &case.vehicle);
     let centred = vec![0.0; problem.coefficients()];

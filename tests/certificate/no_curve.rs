@@ -2,6 +2,7 @@
 
 use netcert::corridor::{Corridor, CurvatureProfile};
 use netcert::stet::{Model, Options, SpanResult, certify, certify_planned};
+use netcert::stop::Stop;
 
 use crate::support::catalogue::catalogued;
 
@@ -12,7 +13,11 @@ fn bend() -> Corridor {
 }
 
 fn safe(corridor: &Corridor) -> bool {
-    certify(corridor, &Model::new(&catalogued("EU-SEMI16.5")).unwrap(), &Options::default()).unwrap().result.safe()
+    certify(corridor, &Model::new(&catalogued("EU-SEMI16.5")).unwrap(), &Options::default(), &Stop::never())
+        .unwrap()
+        .unwrap()
+        .result
+        .safe()
 }
 
 #[test]
@@ -33,6 +38,7 @@ fn nor_while_the_vehicle_stands_there_or_has_just_been_there() {
     corridor.x[150] += 0.02;
     let spans = [0..60, 60..130, 140..160, 160..200, 240..300];
     let model = Model::new(&catalogued("EU-SEMI16.5")).unwrap();
-    let (_, results) = certify_planned(&corridor, &model, &spans, &Options::default()).unwrap();
+    let (_, results) =
+        certify_planned(&corridor, &model, &spans, &Options::default(), &Stop::never()).unwrap().unwrap();
     assert_eq!(results.iter().map(SpanResult::safe).collect::<Vec<_>>(), [true, false, false, false, true]);
 }

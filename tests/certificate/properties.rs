@@ -7,6 +7,7 @@ use crate::oracle;
 
 use netcert::corridor::{Corridor, CurvatureProfile};
 use netcert::stet::{self, Certificate, Model, Options, SpanResult};
+use netcert::stop::Stop;
 use netcert::vehicle::Vehicle;
 use oracle::draw::{self, Bends, Draw};
 use oracle::path::{along, direction, left_of};
@@ -16,7 +17,7 @@ const CASES: u64 = 150;
 const FIXED: Options = Options { max_shift_m: 0.0, correction_sweeps: 0 };
 
 fn certificate(corridor: &Corridor, vehicle: &Vehicle, options: &Options) -> Certificate {
-    stet::certify(corridor, &Model::new(vehicle).unwrap(), options).unwrap()
+    stet::certify(corridor, &Model::new(vehicle).unwrap(), options, &Stop::never()).unwrap().unwrap()
 }
 
 fn rsc_m(corridor: &Corridor, vehicle: &Vehicle) -> f64 {

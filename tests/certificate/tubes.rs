@@ -5,6 +5,7 @@ use crate::oracle;
 
 use netcert::corridor::Corridor;
 use netcert::stet::{Model, Options, Tube, certify, tubes};
+use netcert::stop::Stop;
 use netcert::vehicle::Vehicle;
 use oracle::adversary::{Bounds, Kernel, Target, kernel};
 use oracle::draw::{self, Bends, Draw};
@@ -81,7 +82,7 @@ struct Bench<'a> {
 fn bench<'a>(case: &'a Case, path: &'a Path) -> Bench<'a> {
     let model = Model::new(&case.vehicle).unwrap();
     let options = Options { max_shift_m: 0.0, ..Options::default() };
-    let certificate = certify(&case.corridor, &model, &options).unwrap();
+    let certificate = certify(&case.corridor, &model, &options, &Stop::never()).unwrap().unwrap();
     assert!(certificate.result.shrink == 1.0, "{}: {:?}", case.name, certificate.result);
     let drive = Drive::new(&case.vehicle, path, STEPS);
     let calm = Disturbance::none(drive.steps());

@@ -5,6 +5,7 @@ use crate::oracle::files::{Case, case};
 
 use netcert::check::{Outcome, Report, certificate, sealed};
 use netcert::stet::{Model, certify};
+use netcert::stop::Stop;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
@@ -15,7 +16,7 @@ fn cases() -> u64 {
 
 fn written(case: &Case) -> Value {
     let model = Model::new(&case.vehicle).unwrap();
-    let made = certify(&case.given.corridor, &model, &case.options).unwrap();
+    let made = certify(&case.given.corridor, &model, &case.options, &Stop::never()).unwrap().unwrap();
     netcert::certificate::json(&case.given, &model, &made, &case.options).unwrap()
 }
 

@@ -12,6 +12,7 @@ use ascii_map::AsciiMap;
 use netcert::network::Movement;
 use netcert::osm::facts::Policy;
 use netcert::route::*;
+use netcert::stop::Stop;
 use netcert::turns::Kerbs;
 use netcert::verdict::{UnsafeReason, Verdict};
 use oracle::whole;
@@ -41,10 +42,9 @@ fn on(region: &Region, ends: &str) -> Position {
 }
 
 fn ask(region: &Region, driver: &Driver, [from, to]: [&str; 2], alternatives: usize) -> Answer {
-    let made = region.turns(&driver.model);
-    let mut planner = region.planner(driver, &made, Measure::Distance);
+    let mut planner = region.planner(driver, Measure::Distance);
     let places = vec![on(region, from), on(region, to)];
-    planner.answer(&Question { places, snap_m: 5.0, alternatives, tries: 20 }).unwrap()
+    planner.answer(&Question { places, snap_m: 5.0, alternatives, tries: 20 }, &Stop::never()).unwrap()
 }
 
 fn turn(region: &Region, from: &str, to: &str) -> PartKind {
@@ -146,8 +146,7 @@ fn turns_that_share_a_stretch_of_road_are_blended_or_refused() {
     for between_m in [10.0, 24.0, 42.0] {
         let region = region(&s_bend(8.0, between_m, false), 12.0);
         let driver = region.driver("AGV-TUG4");
-        let made = region.turns(&driver.model);
-        let (mut strokes, mut menu) = (region.strokes(), Menu::new(&made));
+        let (mut strokes, mut menu) = (region.strokes(), Menu::new(Box::new(Region::turns(&driver))));
         let mut piece = |from: &str, to: &str| {
             let movement: Movement = *region.movements.between(edge(&region, from), edge(&region, to)).unwrap();
             menu.chosen(&mut strokes, &movement, &[]).unwrap()

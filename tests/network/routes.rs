@@ -8,11 +8,13 @@ use crate::support::extracts::extract;
 use crate::support::routing;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 
 use ascii_map::{AsciiMap, built};
 use netcert::network::{MovementKind, Network, Restriction};
 use netcert::osm::facts::{Policy, RestrictedTurn, RestrictionKind};
 use netcert::route::*;
+use netcert::stop::Stop;
 use netcert::verdict::Verdict;
 use oracle::draw::Draw;
 use oracle::whole;
@@ -51,7 +53,7 @@ fn grid(streets: &[(usize, bool, u8)], rings: &[usize]) -> Network {
 }
 
 /// Dijkstra over nodes, with nothing of the library but the edges' costs: from the end of `from` to the beginning of `to`.
-fn by_nodes(network: &Network, graph: &Graph<'_>, from: u32, to: u32) -> Option<u64> {
+fn by_nodes(network: &Network, graph: &Graph, from: u32, to: u32) -> Option<u64> {
     let edge = |e: u32| &network.edges[e as usize];
     if from == to {
         return Some(graph.cost(from));
@@ -81,7 +83,7 @@ struct Barred {
 
 /// Dijkstra over whole histories of the last four edges: slow, and too simple to be wrong. Over a passage it goes edge by edge,
 /// on arcs that need not be open.
-fn by_histories(network: &Network, graph: &Graph<'_>, barred: &Barred, from: u32, to: u32) -> Option<u64> {
+fn by_histories(network: &Network, graph: &Graph, barred: &Barred, from: u32, to: u32) -> Option<u64> {
     if barred.edges.contains(&from) {
         return None;
     }
@@ -131,22 +133,22 @@ fn forbid(network: &mut Network, sequence: &[u32]) {
 }
 
 /// Everything is open, turning back included.
-fn wide_open(graph: &Graph<'_>) -> Access {
+fn wide_open(graph: &Graph) -> Access {
     let access = graph.open_access();
     Access { movements: vec![0; access.movements.len()], passages: vec![0; access.passages.len()], ..access }
 }
 
-fn shortest(graph: &Graph<'_>, access: &Access, from: u32, to: u32) -> Option<u64> {
+fn shortest(graph: &Graph, access: &Access, from: u32, to: u32) -> Option<u64> {
     let goal = [Goal { edge: to, share: 1.0 }];
-    let found = search(graph, access, &[Start::new(from, 0.0)], &goal, true).remove(0)?;
+    let found = search(graph, access, &[Start::new(from, 0.0)], &goal, true, &Stop::never()).unwrap().remove(0)?;
     let edges = &found.drive.edges;
     let sum: u64 = edges.iter().map(|&edge| graph.cost(edge)).sum();
     assert_eq!(sum, found.cost, "the way costs what it says");
     assert_eq!((edges.first(), edges.last()), (Some(&from), Some(&to)));
-    let place = |e: u32| &graph.network.edges[e as usize];
+    let place = |e: u32| &graph.network().edges[e as usize];
     assert!(edges.windows(2).all(|pair| place(pair[0]).to_node == place(pair[1]).from_node), "without a gap");
     for join in found.drive.joins().filter(|join| !join.arcs.is_empty()) {
-        let passage = graph.movements.passage(join.from, join.to).map(|place| &graph.movements.passages()[place]);
+        let passage = graph.movements().passage(join.from, join.to).map(|place| &graph.movements().passages()[place]);
         assert_eq!(passage.unwrap().through, join.arcs);
     }
     Some(found.cost)
@@ -165,15 +167,15 @@ proptest! {
         rings in prop::collection::vec(0..35_usize, 0..4),
         ends in prop::collection::vec((any::<u32>(), any::<u32>()), 1..6),
     ) {
-        let network = grid(&streets, &rings);
+        let roads = Roads::new(grid(&streets, &rings));
+        let network = &roads.network;
         let count = network.edges.len() as u32;
         prop_assume!(count > 1);
-        let movements = network.movements();
-        let graph = Graph::new(&network, &movements, &Speeds::builtin().unwrap(), Measure::Distance);
+        let graph = Graph::new(&roads, &Speeds::builtin().unwrap(), Measure::Distance);
         let access = wide_open(&graph);
         for (from, to) in ends {
             let (from, to) = (from % count, to % count);
-            prop_assert_eq!(shortest(&graph, &access, from, to), by_nodes(&network, &graph, from, to));
+            prop_assert_eq!(shortest(&graph, &access, from, to), by_nodes(network, &graph, from, to));
         }
     }
 
@@ -204,7 +206,9 @@ proptest! {
                 barred.sequences.push(walk);
             }
         }
-        let graph = Graph::new(&network, &movements, &Speeds::builtin().unwrap(), Measure::Distance);
+        let roads = Arc::new(Roads { network, movements });
+        let (network, movements) = (&roads.network, &roads.movements);
+        let graph = Graph::new(&roads, &Speeds::builtin().unwrap(), Measure::Distance);
         let mut access = wide_open(&graph);
         for (slot, movement) in access.movements.iter_mut().zip(movements.all()) {
             if draw.one_in(4) {
@@ -227,7 +231,7 @@ proptest! {
         }
         for (from, to) in ends {
             let (from, to) = (from % count, to % count);
-            let expected = by_histories(&network, &graph, &barred, from, to);
+            let expected = by_histories(network, &graph, &barred, from, to);
             prop_assert_eq!(shortest(&graph, &access, from, to), expected);
         }
     }
@@ -237,16 +241,15 @@ proptest! {
 fn a_way_over_several_places_goes_on_as_it_came() {
     let map =
         AsciiMap::drawn(50.0, "A B C D\n\n  E").way("ABCD", "highway=residential").way("BE", "highway=residential");
-    let (network, _) = built(&map);
-    let movements = network.movements();
-    let graph = Graph::new(&network, &movements, &Speeds::builtin().unwrap(), Measure::Distance);
-    let edge = |ends: &str| ascii_map::edge(&network, ends);
+    let roads = Roads::new(built(&map).0);
+    let graph = Graph::new(&roads, &Speeds::builtin().unwrap(), Measure::Distance);
+    let edge = |ends: &str| ascii_map::edge(&roads.network, ends);
     let goals = |all: [&str; 2]| all.map(|ends| Goal { edge: edge(ends), share: 0.5 }).to_vec();
     let start = [Start::new(edge("AB"), 0.0)];
     let places = [goals(["BD", "DB"]), goals(["BE", "EB"])];
     // From the middle of BD there is no way to E but by turning back, which nobody does.
-    assert_eq!(search_over(&graph, &graph.open_access(), &start, &places), None);
-    let found = search_over(&graph, &wide_open(&graph), &start, &places).unwrap();
+    assert_eq!(search_over(&graph, &graph.open_access(), &start, &places, &Stop::never()), Ok(None));
+    let found = search_over(&graph, &wide_open(&graph), &start, &places, &Stop::never()).unwrap().unwrap();
     assert_eq!(found.drive.edges, ["AB", "BD", "DB", "BE"].map(edge));
 }
 
@@ -259,10 +262,9 @@ fn reach_tells_there_from_there_and_back_and_what_an_edge_would_open() {
         .way("CF", "highway=residential oneway=yes")
         .way("FE", "highway=residential oneway=yes")
         .way("EB", "highway=residential oneway=yes");
-    let (network, _) = built(&map);
-    let movements = network.movements();
-    let graph = Graph::new(&network, &movements, &Speeds::builtin().unwrap(), Measure::Distance);
-    let edge = |ends: &str| ascii_map::edge(&network, ends);
+    let roads = Roads::new(built(&map).0);
+    let graph = Graph::new(&roads, &Speeds::builtin().unwrap(), Measure::Distance);
+    let edge = |ends: &str| ascii_map::edge(&roads.network, ends);
     let mut access = graph.open_access();
     let ring = ["BC", "CF", "FE", "EB"].map(edge);
     let there = reach(&graph, &access, &[ring[0]]);
@@ -282,8 +284,7 @@ fn reach_tells_there_from_there_and_back_and_what_an_edge_would_open() {
 
 /// Answers for random pairs of places on certified roads.
 fn answers(region: &Region, driver: &routing::Driver, pairs: u64) -> Vec<Answer> {
-    let made = region.turns(&driver.model);
-    let mut planner = region.planner(driver, &made, Measure::Time);
+    let mut planner = region.planner(driver, Measure::Time);
     let safe: Vec<u32> = (0..region.network.edges.len() as u32).filter(|&edge| driver.permits.edge(edge)).collect();
     let place = |draw: &mut Draw| {
         let edge = &region.network.edges[safe[draw.below(safe.len())] as usize];
@@ -294,7 +295,7 @@ fn answers(region: &Region, driver: &routing::Driver, pairs: u64) -> Vec<Answer>
     let ask = |pair: u64| {
         let mut draw = Draw(0x0051_eed0 + pair);
         let places = vec![place(&mut draw), place(&mut draw)];
-        planner.answer(&Question { places, snap_m: 30.0, alternatives: 0, tries: 20 }).unwrap()
+        planner.answer(&Question { places, snap_m: 30.0, alternatives: 0, tries: 20 }, &Stop::never()).unwrap()
     };
     (0..pairs).map(ask).collect()
 }

@@ -10,6 +10,7 @@ use netcert::network::Network;
 use netcert::osm::facts::Policy;
 use netcert::settings::Settings;
 use netcert::stet::Model;
+use netcert::stop::Stop;
 use proptest::prelude::*;
 
 use crate::support::catalogue::catalogued;
@@ -155,7 +156,8 @@ fn an_explanation_names_the_taper() {
     let drawn = widened(50.0, 1.0);
     let model = Model::new(&catalogued("AU-SEMI19")).unwrap();
     let settings = Settings { turns: false, ..Settings::default() };
-    let found = explain_edge(&drawn.network, edge(&drawn.network, "BC"), &model, &settings).unwrap();
+    let found =
+        explain_edge(&drawn.network, edge(&drawn.network, "BC"), &model, &settings, &Stop::never()).unwrap().unwrap();
     let said = words(&found).reasons.join(" ");
     assert!(said.contains("the lane keeps its 3.25 m over"), "{said}");
     assert!(said.contains("and moves 1.62 m to the") && said.contains("where the cross section changes."), "{said}");

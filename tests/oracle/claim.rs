@@ -2,6 +2,7 @@
 
 use netcert::corridor::Corridor;
 use netcert::stet::{self, Model, Options, Side};
+use netcert::stop::Stop;
 use netcert::vehicle::Vehicle;
 pub use netcert_oracle::claim::{Claim, Place};
 
@@ -13,7 +14,9 @@ pub fn certify(corridor: &Corridor, vehicle: &Vehicle) -> Option<Claim> {
 /// Asks the certifier. `None`: it makes no claim worth refuting.
 pub fn claim(corridor: &Corridor, vehicle: &Vehicle, options: &Options) -> Option<Claim> {
     let model = Model::new(vehicle).expect("the oracle's vehicles are possible ones");
-    let certificate = stet::certify(corridor, &model, options).expect("the corridor has stations");
+    let certificate = stet::certify(corridor, &model, options, &Stop::never())
+        .expect("nobody cancels")
+        .expect("the corridor has stations");
     let result = certificate.result;
     let limiting = Place {
         foot_m: result.limiting.station as f64 * corridor.spacing_m,

@@ -14,6 +14,7 @@ use netcert::osm::facts::Policy;
 use netcert::picture;
 use netcert::settings::Settings;
 use netcert::stet::{Model, Options, SpanResult, certify, certify_spans};
+use netcert::stop::Stop;
 use netcert::store::{EdgeRow, verdict_words};
 use netcert::vehicle::Vehicle;
 use netcert::verdict::{UnsafeReason, Verdict};
@@ -39,7 +40,7 @@ fn every_edge_of_the_demo_is_explained_as_it_was_certified() {
         if row.verdict == Verdict::Unsafe(UnsafeReason::Width) && i % 6 != 0 {
             continue;
         }
-        let e = explain::explain_edge(&network, row.edge, &model, &settings()).unwrap();
+        let e = explain::explain_edge(&network, row.edge, &model, &settings(), &Stop::never()).unwrap().unwrap();
         assert_eq!(e.disagreement(row), None, "edge {}", row.edge_id);
         let seen = kinds.entry(verdict_words(row.verdict)).or_default();
         *seen += 1;
@@ -74,7 +75,7 @@ fn a_certificate_of_another_version_is_noticed() {
     let (network, rows) = demo(&place, "AU-SEMI19");
     let model = Model::new(&catalogued("AU-SEMI19")).unwrap();
     let row = rows.iter().find(|row| row.verdict == Verdict::Safe).unwrap();
-    let e = explain::explain_edge(&network, row.edge, &model, &settings()).unwrap();
+    let e = explain::explain_edge(&network, row.edge, &model, &settings(), &Stop::never()).unwrap().unwrap();
     let other = |change: &dyn Fn(&mut EdgeRow)| {
         let mut row = row.clone();
         change(&mut row);
@@ -123,7 +124,7 @@ fn the_width_that_would_do_does_and_a_centimetre_less_does_not() {
         let (vehicle, model) = (catalogued(id), Model::new(&catalogued(id)).unwrap());
         let unsafe_ones = rows.iter().filter(|row| row.verdict == Verdict::Unsafe(UnsafeReason::Width));
         for row in unsafe_ones.step_by(17) {
-            let e = explain::explain_edge(&network, row.edge, &model, &settings()).unwrap();
+            let e = explain::explain_edge(&network, row.edge, &model, &settings(), &Stop::never()).unwrap().unwrap();
             let Some(hint) = e.hints.width else { continue };
             let with = certified(&network, row.edge, &vehicle, hint.width_m);
             let less = certified(&network, row.edge, &vehicle, hint.width_m - 0.01);
@@ -145,7 +146,10 @@ fn straight(width_m: f64) -> Corridor {
 }
 
 fn explained(corridor: &Corridor, vehicle: &Vehicle) -> Explanation {
-    explain::explain_corridor(corridor, &Model::new(vehicle).unwrap(), &Options::default()).unwrap().1
+    explain::explain_corridor(corridor, &Model::new(vehicle).unwrap(), &Options::default(), &Stop::never())
+        .unwrap()
+        .unwrap()
+        .1
 }
 
 #[test]
@@ -154,8 +158,13 @@ fn the_tolerance_that_would_do_does_and_a_millimetre_more_does_not() {
     for id in ["EU-SEMI16.5", "AU-BDOUBLE26", "US-WB40"] {
         let (vehicle, model) = (catalogued(id), Model::new(&catalogued(id)).unwrap());
         // The widest that is a little too narrow.
-        let safe =
-            |cm: &u32| certify(&straight(f64::from(*cm) / 100.0), &model, &Options::default()).unwrap().result.safe();
+        let safe = |cm: &u32| {
+            certify(&straight(f64::from(*cm) / 100.0), &model, &Options::default(), &Stop::never())
+                .unwrap()
+                .unwrap()
+                .result
+                .safe()
+        };
         let width_m = f64::from((240..330).rev().find(|cm| !safe(cm)).unwrap()) / 100.0;
         let e = explained(&straight(width_m), &vehicle);
         assert_eq!(e.verdict, Verdict::Unsafe(UnsafeReason::Width), "{id}");
@@ -163,7 +172,11 @@ fn the_tolerance_that_would_do_does_and_a_millimetre_more_does_not() {
         let safe_with = |tolerance_m: f64| {
             let mut other = vehicle.clone();
             (other.tracking_tolerance_m, other.min_shrink) = (tolerance_m, 1.0);
-            certify(&straight(width_m), &Model::new(&other).unwrap(), &Options::default()).unwrap().result.safe()
+            certify(&straight(width_m), &Model::new(&other).unwrap(), &Options::default(), &Stop::never())
+                .unwrap()
+                .unwrap()
+                .result
+                .safe()
         };
         assert!(safe_with(tolerance) && !safe_with(tolerance + 0.001), "{id}: {tolerance}");
         assert!(tolerance < vehicle.min_shrink * vehicle.tracking_tolerance_m);
@@ -197,7 +210,11 @@ fn the_steering_limit_that_would_do_does_and_less_does_not() {
     let safe_with = |degrees: f64| {
         let mut other = vehicle.clone();
         other.units[0].max_articulation_rad = degrees.to_radians();
-        certify(&corridor, &Model::new(&other).unwrap(), &Options::default()).unwrap().result.safe()
+        certify(&corridor, &Model::new(&other).unwrap(), &Options::default(), &Stop::never())
+            .unwrap()
+            .unwrap()
+            .result
+            .safe()
     };
     assert!(safe_with(limit) && !safe_with(limit - 0.1), "{limit}");
     let words = explain::words(&e);
@@ -270,8 +287,10 @@ fn forbidden_edges_name_the_tag_and_what_the_vehicle_has() {
     ];
     for (reason, tag, has) in expected {
         let row = rows.iter().find(|row| verdict_words(row.verdict) == ("forbidden", reason)).unwrap();
-        let headline =
-            explain::words(&explain::explain_edge(&network, row.edge, &model, &settings()).unwrap()).headline;
+        let headline = explain::words(
+            &explain::explain_edge(&network, row.edge, &model, &settings(), &Stop::never()).unwrap().unwrap(),
+        )
+        .headline;
         assert!(headline.starts_with("forbidden: ") && headline.contains(tag) && headline.contains(has), "{headline}");
     }
 }

@@ -1,14 +1,16 @@
 //! A region with everything that routes need, made in memory: network, movements, permits of one vehicle for edges and turns.
 
 use std::collections::HashMap;
+use std::ops::{Deref, DerefMut};
 use std::path::Path;
+use std::sync::Arc;
 
 use netcert::certify::{Job, TurnJob, certify_network, certify_turns};
-use netcert::network::{Movement, Movements, Network, build};
+use netcert::network::{Movement, build};
 use netcert::osm::facts::{Countries, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::{Extract, LonLat, Way};
-use netcert::route::{Graph, MadeTurns, Measure, Permit, Permits, Planner, Speeds, Strokes};
+use netcert::route::{self, MadeTurns, Measure, Permit, Permits, Planner, Roads, Speeds, Strokes};
 use netcert::settings::Settings;
 use netcert::stet::Model;
 use netcert::turns::{Kerbs, turn_facts};
@@ -18,16 +20,34 @@ use super::silent::Silent;
 
 /// A network.
 pub(crate) struct Region {
-    pub(crate) network: Network,
-    pub(crate) movements: Movements,
+    pub(crate) roads: Arc<Roads>,
     pub(crate) settings: Settings,
     pub(crate) kerbs: Kerbs,
 }
 
-/// A vehicle on it.
-pub(crate) struct Driver {
-    pub(crate) model: Model,
-    pub(crate) permits: Permits,
+impl Deref for Region {
+    type Target = Roads;
+
+    fn deref(&self) -> &Roads {
+        &self.roads
+    }
+}
+
+/// A vehicle on it. Tests may change its permits between two planners.
+pub(crate) struct Driver(pub(crate) Arc<route::Driver>);
+
+impl Deref for Driver {
+    type Target = route::Driver;
+
+    fn deref(&self) -> &route::Driver {
+        &self.0
+    }
+}
+
+impl DerefMut for Driver {
+    fn deref_mut(&mut self) -> &mut route::Driver {
+        Arc::get_mut(&mut self.0).expect("no planner has it any more")
+    }
 }
 
 impl Region {
@@ -58,9 +78,8 @@ impl Region {
         let (network, _) = build(extract, &|position| countries.place(position), &|way, place, ring| {
             cross_sections(way, place, ring, rules)
         });
-        let movements = network.movements();
         let settings = Settings { policy, ..Settings::default() };
-        Self { network, movements, settings, kerbs: Kerbs::default() }
+        Self { roads: Roads::new(network), settings, kerbs: Kerbs::default() }
     }
 
     pub(crate) fn driver(&self, id: &str) -> Driver {
@@ -76,7 +95,7 @@ impl Region {
         })
         .unwrap();
         let permits = self.with_turns(&model, edges);
-        Driver { model, permits }
+        Driver(Arc::new(route::Driver { model, permits }))
     }
 
     /// As the pipeline certifies them.
@@ -103,17 +122,15 @@ impl Region {
         Settings { kerbs: self.kerbs.clone(), ..self.settings.clone() }
     }
 
-    pub(crate) fn strokes(&self) -> Strokes<'_> {
-        Strokes::new(&self.network, self.settings())
+    pub(crate) fn strokes(&self) -> Strokes {
+        Strokes::new(&self.roads, self.settings())
     }
 
-    pub(crate) fn turns<'m>(&self, model: &'m Model) -> MadeTurns<'m> {
-        MadeTurns { model }
+    pub(crate) fn turns(driver: &Driver) -> MadeTurns {
+        MadeTurns { driver: Arc::clone(&driver.0) }
     }
 
-    pub(crate) fn planner<'r>(&'r self, driver: &'r Driver, turns: &'r MadeTurns<'r>, measure: Measure) -> Planner<'r> {
-        let speeds = Speeds::builtin().unwrap();
-        let graph = Graph::new(&self.network, &self.movements, &speeds, measure);
-        Planner::new(graph, &driver.permits, &driver.model, turns, speeds)
+    pub(crate) fn planner(&self, driver: &Driver, measure: Measure) -> Planner {
+        Planner::new(&self.roads, Arc::clone(&driver.0), Speeds::builtin().unwrap(), measure)
     }
 }

@@ -24,6 +24,12 @@ struct State {
 pub struct Stopped;
 
 impl Stop {
+    /// For work that nobody cancels.
+    #[must_use]
+    pub fn never() -> Self {
+        Self::default()
+    }
+
     /// Tells itself once it has been asked so often: a bound on work that does not depend on the machine.
     #[must_use]
     pub fn after(questions: usize) -> Self {

@@ -5,6 +5,7 @@ use netcert::corridor::Corridor;
 use netcert::pace::Pace;
 use netcert::published::{Beta, DrawnRoute, Permissible, Reading, Route, RouteCert, Scenario, route_cert};
 use netcert::stet::{self, Certificate, Model, Options};
+use netcert::stop::Stop;
 use netcert::vehicle::Vehicle;
 
 /// What netcert assumes of a vehicle of which nothing else is known: ε, the heading's tolerance, σ, γ_min.
@@ -41,7 +42,7 @@ pub(super) fn run(scenario: &Scenario, route: &DrawnRoute) -> anyhow::Result<Sim
 }
 
 fn decide(corridor: &Corridor, vehicle: &Vehicle) -> anyhow::Result<Certificate> {
-    let certificate = stet::certify(corridor, &Model::new(vehicle)?, &Options::default());
+    let certificate = stet::certify(corridor, &Model::new(vehicle)?, &Options::default(), &Stop::never())?;
     certificate.ok_or_else(|| anyhow!("data/paper/route.toml: the route has no station"))
 }
 

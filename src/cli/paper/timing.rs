@@ -7,6 +7,7 @@ use anyhow::anyhow;
 use netcert::pace::Pace;
 use netcert::published::{DrawnRoute, Permissible, Reading, Route, Scenario, System, route_cert};
 use netcert::stet::{self, MAX_UNITS, Model, Options};
+use netcert::stop::Stop;
 
 /// Most trailers tried.
 const TRAILERS: usize = 10;
@@ -74,7 +75,7 @@ pub(super) fn measure(table: &[Scenario], route: &DrawnRoute) -> anyhow::Result<
         let vehicle = with(n).vehicle("PAPER");
         let model = Model::new(&vehicle)?;
         gains.push((n, least_s(|| Model::new(&vehicle))));
-        netcert.push((n, least_s(|| stet::certify(&corridor, &model, &Options::default()))));
+        netcert.push((n, least_s(|| stet::certify(&corridor, &model, &Options::default(), &Stop::never()))));
     }
     Ok(Timing { paper: Series::new(paper.collect()), netcert: Series::new(netcert), gains: Series::new(gains) })
 }

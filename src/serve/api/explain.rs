@@ -9,7 +9,7 @@ use super::super::answer::Stored;
 use super::super::ask::{Ask, policy};
 use super::super::problem::Problem;
 use super::super::region::{Certified, Region};
-use super::super::roads::Roads;
+use super::super::roads::RoadIndex;
 use super::{SVG, answered, id};
 use crate::explain::{self, Explanation};
 use crate::network::Network;
@@ -65,13 +65,13 @@ fn make(region: &Region, id: i64, certified: &Certified<'_>, stop: &Stop) -> Res
 
 fn of_edge(
     region: &Region,
-    (roads, edge): (&Roads, u32),
+    (roads, edge): (&RoadIndex, u32),
     model: &Model,
     settings: &Settings,
     stop: &Stop,
 ) -> Result<Explained, Problem> {
-    let network = &roads.network;
-    let explanation = explain::explain_edge_until(network, edge, model, settings, stop)?;
+    let network = roads.network();
+    let explanation = explain::explain_edge(network, edge, model, settings, stop)?;
     let explanation = explanation.ok_or_else(|| Problem::fault(format!("edge {edge} is not in the network")))?;
     let edge_id = network.edges.get(edge as usize).map(|edge| edge.id);
     let options = QueryOptions { edge_id, ..QueryOptions::new(&model.vehicle.id, settings.policy) };
@@ -94,7 +94,7 @@ fn of_edge(
 
 fn of_turn(
     region: &Region,
-    (roads, id): (&Roads, i64),
+    (roads, id): (&RoadIndex, i64),
     model: &Model,
     settings: &Settings,
     stop: &Stop,
@@ -102,16 +102,16 @@ fn of_turn(
     let facts = roads.turn(id, settings)?;
     let facts =
         facts.ok_or_else(|| Problem::not_found(format!("{id}: neither an edge nor a turn of this database")))?;
-    let turn = explain::explain_turn_until(&roads.network, &facts, model, settings, stop)?;
+    let turn = explain::explain_turn(roads.network(), &facts, model, settings, stop)?;
     let mut members = explain::json(&turn.explanation);
     members["kind"] = json!("turn");
     members["turn_id"] = json!(id.to_string());
     members["turn"] = json!(turn.title());
-    let edge_id = |edge: u32| roads.network.edges.get(edge as usize).map(|edge| edge.id.to_string());
+    let edge_id = |edge: u32| roads.network().edges.get(edge as usize).map(|edge| edge.id.to_string());
     members["from_edge"] = json!(edge_id(facts.movement.from));
     members["to_edge"] = json!(edge_id(facts.movement.to));
-    let node = roads.network.edges.get(facts.movement.from as usize);
-    let node = node.and_then(|edge| roads.network.positions(edge).next_back());
+    let node = roads.network().edges.get(facts.movement.from as usize);
+    let node = node.and_then(|edge| roads.network().positions(edge).next_back());
     members["at"] = json!(node.map(LonLat::degrees));
     let set = (model.vehicle.id.as_str(), settings.policy);
     let turns = region.read(|database| database.map_turns(set, TurnsOf::Edge(facts.movement.from)))?;

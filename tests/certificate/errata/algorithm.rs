@@ -5,6 +5,7 @@ use netcert::published::{
     As, Beta, Chain, Correction, Offset, Permissible, Reading, Stet, System, bound_m, boundary_leeway, cert, worst_side,
 };
 use netcert::stet::{self, Model, Options};
+use netcert::stop::Stop;
 
 use super::scene::{drawn, route, run, scenario};
 use crate::oracle::path::V2;
@@ -77,7 +78,7 @@ fn e16_shrinking_certifies_a_vehicle_through_a_road_narrower_than_its_body() {
     assert!(run.rsc.rsc_m > -1e-9 && gamma < 0.75);
     assert!(rsc.printed_safe() && rsc.rsc_m > 0.5);
     let model = Model::new(&system.vehicle("wide")).unwrap();
-    let decided = stet::certify(&corridor, &model, &Options::default()).unwrap().result;
+    let decided = stet::certify(&corridor, &model, &Options::default(), &Stop::never()).unwrap().unwrap().result;
     assert!(decided.rsc_m.unwrap() < -0.29 && !decided.safe(), "netcert shrinks a tolerance, never a body");
 }
 
@@ -127,7 +128,7 @@ fn e19_the_corrected_path_jumps() {
     // netcert's plan is smoothed: its steps halve with the spacing.
     let plan = |corridor: &Corridor| {
         let model = Model::new(&s.system.vehicle("S5")).unwrap();
-        let shift = stet::certify(corridor, &model, &Options::default()).unwrap().shift_m;
+        let shift = stet::certify(corridor, &model, &Options::default(), &Stop::never()).unwrap().unwrap().shift_m;
         shift.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max)
     };
     let lane = drawn(1.7);

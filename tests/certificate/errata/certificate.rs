@@ -3,6 +3,7 @@
 use netcert::corridor::Corridor;
 use netcert::published::{As, Beta, Offset, Reading, Route, System, cert};
 use netcert::stet::{self, Model, Options};
+use netcert::stop::Stop;
 
 use super::scene::{NOTHING, arc, is_on_the_road, route, run, scenario, shifted};
 
@@ -60,7 +61,7 @@ fn e07_half_a_body_length_to_either_side_is_asked_for_on_a_straight() {
     let by = |room| run(&system, &route, &route.centre, &NOTHING, &Reading { room, ..TIGHT }).rsc;
     let (printed, across) = (by(As::Printed), by(As::Repaired));
     let model = Model::new(&system.vehicle("S1")).unwrap();
-    let decided = stet::certify(&corridor, &model, &Options::default()).unwrap().result;
+    let decided = stet::certify(&corridor, &model, &Options::default(), &Stop::never()).unwrap().unwrap().result;
     println!(
         "E7: straight, 7 m wide, a vehicle 2.6 m wide: 𝒞 {:.3} m, with room across the road only {:.3} m, RSC {:.3} m",
         printed.rsc_m,
@@ -83,6 +84,9 @@ fn e20_a_bend_that_the_hinges_cannot_follow_is_certified() {
     assert!(run.rsc.printed_safe());
     assert!(!run.chain.sways_are_allowed(&system));
     let model = Model::new(&system.vehicle("S5")).unwrap();
-    let decided = stet::certify(&corridor, &model, &Options { max_shift_m: 0.0, correction_sweeps: 0 }).unwrap().result;
+    let decided = stet::certify(&corridor, &model, &Options { max_shift_m: 0.0, correction_sweeps: 0 }, &Stop::never())
+        .unwrap()
+        .unwrap()
+        .result;
     assert!(decided.hinge_margin_rad.unwrap() < 0.0 && !decided.safe());
 }

@@ -6,6 +6,7 @@
 use netcert::corridor::Corridor;
 use netcert::published::{Beta, Reading, System};
 use netcert::stet::{self, Model, Options};
+use netcert::stop::Stop;
 
 use super::scene::{NOTHING, is_on_the_road, route, run, shifted};
 use crate::oracle::draw::{self, Draw};
@@ -44,7 +45,7 @@ fn repaired_certificate_is_never_above_the_deciding_one() {
         let route = route(&corridor);
         let model = Model::new(&system.vehicle("random")).unwrap();
         for options in [Options { max_shift_m: 0.0, correction_sweeps: 0 }, Options::default()] {
-            let certificate = stet::certify(&corridor, &model, &options).unwrap();
+            let certificate = stet::certify(&corridor, &model, &options, &Stop::never()).unwrap().unwrap();
             // Of a vehicle whose bounds do not close nothing is claimed.
             let Some(decided) = certificate.result.rsc_m else { continue };
             claimed += 1;

@@ -1,15 +1,15 @@
 //! Work that is told to stop does, wherever it is; what has been stopped has no result.
 
-use std::cell::Cell;
 use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use netcert::corridor::stroke_corridor;
-use netcert::explain::{explain_edge_until, explain_turn_until};
+use netcert::explain::{explain_edge, explain_turn};
 use netcert::network::{Movement, Network};
 use netcert::osm::facts::Policy;
 use netcert::route::{
-    self, Graph, MadeTurns, Measure, Permits, Planner, Position, Question, Speeds, Strokes, TurnPiece, Turns,
-    Unanswered,
+    self, Driver, MadeTurns, Measure, Planner, Position, Question, Roads, Speeds, Strokes, TurnPiece, Turns, Unanswered,
 };
 use netcert::settings::Settings;
 use netcert::stet::{self, Model};
@@ -24,20 +24,20 @@ use crate::support::program::Place;
 const VEHICLE: &str = "AU-SEMI19";
 
 /// Turns that tell the work to stop as soon as one is asked for.
-struct Telling<'m> {
-    inner: MadeTurns<'m>,
+struct Telling {
+    inner: MadeTurns,
     stop: Stop,
-    asked: Cell<usize>,
+    asked: Arc<AtomicUsize>,
 }
 
-impl Turns for Telling<'_> {
+impl Turns for Telling {
     fn pieces(
         &self,
-        strokes: &mut Strokes<'_>,
+        strokes: &mut Strokes,
         movement: &Movement,
         arcs: &[u32],
     ) -> Result<Vec<TurnPiece>, UnknownReason> {
-        self.asked.set(self.asked.get() + 1);
+        self.asked.fetch_add(1, Ordering::Relaxed);
         self.stop.tell();
         self.inner.pieces(strokes, movement, arcs)
     }
@@ -66,28 +66,40 @@ fn round_corners(database: &mut Database, policy: Policy) -> Vec<[Position; 2]> 
     safe.map(|turn| [middles[&turn.from_edge], middles[&turn.to_edge]]).collect()
 }
 
+fn on_the_road(
+    database: &mut Database,
+    network: Network,
+    model: &Model,
+    settings: &Settings,
+) -> (Arc<Roads>, Arc<Driver>) {
+    let set = database.certified_set(VEHICLE, settings.policy).unwrap().unwrap();
+    let roads = Roads::new(network);
+    let driver = Driver::stored(database, &roads, &model.vehicle, &set).unwrap();
+    (roads, driver)
+}
+
 #[test]
 fn a_route_that_is_told_to_stop_asks_for_no_further_turn() {
     let (_place, mut database, network, model, settings) = wide();
-    let movements = network.movements();
-    let set = database.certified_set(VEHICLE, settings.policy).unwrap().unwrap();
-    let permits = Permits::stored(&mut database, &network, &movements, &set).unwrap();
+    let (roads, driver) = on_the_road(&mut database, network, &model, &settings);
     let pairs = round_corners(&mut database, settings.policy);
-    let inner = MadeTurns { model: &model };
+    let inner = MadeTurns { driver: Arc::clone(&driver) };
     let speeds = Speeds::builtin().unwrap();
     let mut stopped = 0;
     for places in pairs.into_iter().take(12) {
-        let turns = Telling { inner: inner.clone(), stop: Stop::default(), asked: Cell::default() };
-        let graph = Graph::new(&network, &movements, &speeds, Measure::Time);
-        let mut planner = Planner::new(graph, &permits, &model, &turns, speeds.clone());
+        let (stop, asked) = (Stop::default(), Arc::new(AtomicUsize::new(0)));
+        let turns = Telling { inner: inner.clone(), stop: stop.clone(), asked: Arc::clone(&asked) };
+        let driver = Arc::clone(&driver);
+        let mut planner = Planner::with_turns(&roads, driver, speeds.clone(), Measure::Time, Box::new(turns));
         let question = Question { places: places.to_vec(), snap_m: 100.0, alternatives: 2, tries: 30 };
-        let stopped_at = planner.answer_until(&question, &turns.stop).err();
+        let stopped_at = planner.answer(&question, &stop).err();
         // Over a turn it was stopped there; a way without turns went to its end.
-        let told = turns.stop.told().then_some(Unanswered::Stopped(Stopped));
-        assert_eq!((stopped_at, turns.asked.get()), (told, usize::from(turns.stop.told())));
-        stopped += turns.asked.get();
+        let asked = asked.load(Ordering::Relaxed);
+        let told = stop.told().then_some(Unanswered::Stopped(Stopped));
+        assert_eq!((stopped_at, asked), (told, usize::from(stop.told())));
+        stopped += asked;
         // The same planner then answers as if nothing had been.
-        assert!(planner.answer_until(&question, &Stop::default()).is_ok());
+        assert!(planner.answer(&question, &Stop::never()).is_ok());
     }
     assert!(stopped > 0, "no way leads over a turn");
 }
@@ -97,27 +109,20 @@ fn a_route_that_is_told_to_stop_asks_for_no_further_turn() {
 #[test]
 fn a_route_is_whole_or_is_not_there() {
     let (_place, mut database, network, model, settings) = wide();
-    let movements = network.movements();
-    let set = database.certified_set(VEHICLE, settings.policy).unwrap().unwrap();
-    let permits = Permits::stored(&mut database, &network, &movements, &set).unwrap();
-    let turns = MadeTurns { model: &model };
-    let speeds = Speeds::builtin().unwrap();
-    let planner = || {
-        let graph = Graph::new(&network, &movements, &speeds, Measure::Time);
-        Planner::new(graph, &permits, &model, &turns, speeds.clone())
-    };
+    let (roads, driver) = on_the_road(&mut database, network, &model, &settings);
+    let planner = || Planner::new(&roads, Arc::clone(&driver), Speeds::builtin().unwrap(), Measure::Time);
     let question =
         |places: [Position; 2]| Question { places: places.to_vec(), snap_m: 100.0, alternatives: 1, tries: 30 };
     let mut never = planner();
     let pairs = round_corners(&mut database, settings.policy).into_iter();
-    let answers = pairs.map(question).map(|question| (never.answer(&question).unwrap(), question));
+    let answers = pairs.map(question).map(|question| (never.answer(&question, &Stop::never()).unwrap(), question));
     let (answer, question) = answers.into_iter().find(|(answer, _)| !answer.routes.is_empty()).unwrap();
-    let said = |answer| route::json(&network, &model, answer).to_string();
+    let said = |answer| route::json(&roads.network, &model, answer).to_string();
 
     let mut often = planner();
     let (mut asked, mut stops) = (0, 0);
     let whole = loop {
-        match often.answer_until(&question, &Stop::after(asked)) {
+        match often.answer(&question, &Stop::after(asked)) {
             Ok(whole) => break whole,
             Err(unanswered) => assert_eq!(unanswered, Unanswered::Stopped(Stopped)),
         }
@@ -136,8 +141,8 @@ fn a_certificate_asks_every_few_metres_and_is_whole_or_is_not_there() {
     let (_place, _, network, model, settings) = wide();
     let longest = network.strokes.iter().max_by_key(|stroke| stroke.edges.len()).unwrap();
     let made = stroke_corridor(&network, longest, settings.policy, &settings.corridor).unwrap();
-    let certified = |stop: &Stop| stet::certify_until(&made.corridor, &model, &settings.stet, stop);
-    let whole = stet::certify(&made.corridor, &model, &settings.stet);
+    let certified = |stop: &Stop| stet::certify(&made.corridor, &model, &settings.stet, stop);
+    let whole = stet::certify(&made.corridor, &model, &settings.stet, &Stop::never()).unwrap();
     assert!(whole.is_some());
     let mut asks = 1;
     while certified(&Stop::after(asks)).is_err() {
@@ -156,10 +161,10 @@ fn an_explanation_that_is_told_to_stop_has_no_result() {
     let (_place, _, network, model, settings) = wide();
     let (told, other) = (Stop::default(), Stop::default());
     told.tell();
-    let explained = |stop: &Stop| explain_edge_until(&network, 0, &model, &settings, stop).map(|e| e.is_some());
+    let explained = |stop: &Stop| explain_edge(&network, 0, &model, &settings, stop).map(|e| e.is_some());
     assert_eq!((explained(&told), explained(&other)), (Err(Stopped), Ok(true)));
     let turn = turn_facts(&network, &settings.kerbs).remove(0);
-    let explained = |stop: &Stop| explain_turn_until(&network, &turn, &model, &settings, stop).map(|e| e.title());
+    let explained = |stop: &Stop| explain_turn(&network, &turn, &model, &settings, stop).map(|e| e.title());
     assert_eq!(explained(&told), Err(Stopped));
     assert_eq!(explained(&Stop::after(2)), Err(Stopped));
     assert!(explained(&other).is_ok());

@@ -197,26 +197,17 @@ pub fn certify_spans(
 /// The certificate of one vehicle over a whole corridor.
 ///
 /// `None` when the corridor has no station.
-#[must_use]
-pub fn certify(corridor: &Corridor, model: &Model, options: &Options) -> Option<Certificate> {
-    let whole = 0..corridor.len();
-    certify_planned(corridor, model, std::slice::from_ref(&whole), options).map(|(certificate, _)| certificate)
-}
-
-/// The same; it asks every few metres of each sweep whether to stop.
 ///
 /// # Errors
-/// It was told to.
-pub fn certify_until(
+/// `stop` was told: each sweep asks it every few metres.
+pub fn certify(
     corridor: &Corridor,
     model: &Model,
     options: &Options,
     stop: &Stop,
 ) -> Result<Option<Certificate>, Stopped> {
     let whole = 0..corridor.len();
-    let planned = planned(corridor, model, std::slice::from_ref(&whole), options, stop);
-    // A sweep that stopped before its end was told to, and what was told stays told.
-    stop.check()?;
+    let planned = certify_planned(corridor, model, std::slice::from_ref(&whole), options, stop)?;
     Ok(planned.map(|(certificate, _)| certificate))
 }
 
@@ -224,27 +215,23 @@ pub fn certify_until(
 /// each of them: what stands behind the certificate of an edge.
 ///
 /// `None` when the corridor has no station.
-#[must_use]
+///
+/// # Errors
+/// `stop` was told: each sweep asks it every few metres.
 pub fn certify_planned(
     corridor: &Corridor,
     model: &Model,
     spans: &[Range<usize>],
     options: &Options,
-) -> Option<(Certificate, Vec<SpanResult>)> {
-    planned(corridor, model, spans, options, &Stop::default())
-}
-
-fn planned(
-    corridor: &Corridor,
-    model: &Model,
-    spans: &[Range<usize>],
-    options: &Options,
     stop: &Stop,
-) -> Option<(Certificate, Vec<SpanResult>)> {
+) -> Result<Option<(Certificate, Vec<SpanResult>)>, Stopped> {
     if corridor.is_empty() {
-        return None;
+        return Ok(None);
     }
-    Some(Swept::new(corridor, &[model], spans, Marks::All, options, stop).certificate(corridor, spans))
+    let certified = Swept::new(corridor, &[model], spans, Marks::All, options, stop).certificate(corridor, spans);
+    // A cancelled sweep ends early and its numbers mean nothing. `stop` stays told.
+    stop.check()?;
+    Ok(Some(certified))
 }
 
 /// All leeways at γ = 1, refined wherever that is worth it.
