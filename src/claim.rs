@@ -42,6 +42,7 @@ pub(crate) fn file(path: &Path) -> io::Result<Claim> {
 ///
 /// # Errors
 /// As [`file`].
+#[cfg(feature = "export")]
 pub(crate) fn folder(path: &Path) -> io::Result<Claim> {
     if !cfg!(unix) {
         // Folders have no locks there.

@@ -1,5 +1,56 @@
 //! netcert certifies, edge by edge, on which roads of an OpenStreetMap extract an articulated vehicle fits.
 //!
+//! `safe` always means: within the stated model, widths and error bounds. `docs/proof.md` has the mathematics.
+//!
+//! # Use it as a library
+//!
+//! | to … | take |
+//! | --- | --- |
+//! | make a database from an extract | [`pipeline::ingest`] |
+//! | query roads, plan certified routes, ask why | [`region::Region`] |
+//! | certify one corridor | [`corridor::corridor_from_file`], [`stet::certify`] |
+//! | write a certificate file, and check one | [`certificate::text`], [`check::certificate`] |
+//! | draw any of it | [`picture`] |
+//! | cancel long work | [`stop::Stop`], which every long function takes |
+//!
+//! A corridor of one's own, its certificate, and the second opinion on it:
+//!
+//! ```
+//! use netcert::corridor::corridor_from_file;
+//! use netcert::stet::{Model, Options, certify};
+//! use netcert::stop::Stop;
+//! use netcert::vehicle::Catalogue;
+//! use netcert::{certificate, check};
+//!
+//! let drawn = r#"{"frame": "metres", "points": [[0, 0], [60, 0], [120, 15]], "width_m": 7.0}"#;
+//! let corridor = corridor_from_file(drawn)?;
+//! let catalogue = Catalogue::builtin()?;
+//! let model = Model::new(catalogue.get("EU-SEMI16.5")?)?;
+//! let options = Options::default();
+//! let certified = certify(&corridor.corridor, &model, &options, &Stop::never())?.expect("the corridor has stations");
+//! // Every point of the vehicle keeps at least so far from both edges, whatever the disturbances within their bounds.
+//! assert!(certified.result.safe() && certified.result.rsc_m > Some(0.0));
+//!
+//! let file = certificate::text(&corridor, &model, &certified, &options)?;
+//! assert!(check::certificate(&file).confirmed());
+//! assert!(!check::certificate(&file.replace("\"safe\":true", "\"safe\":false")).confirmed());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Features and crates
+//!
+//! | feature | brings |
+//! | --- | --- |
+//! | `cli` (default) | the program, and all below |
+//! | `export` | [`export`]: what routing engines and map programs read (Parquet, FlatGeobuf) |
+//! | `serve` | [`serve`]: the map's web server (hyper, axum) |
+//!
+//! Some modules come from crates that need neither PROJ nor SQLite nor a web server; take those where they do.
+//! `netcert-base` has [`vehicle`], [`verdict`], [`pace`] (when a vehicle is where) and [`stop`]. `netcert-kernel` has [`stet`] and
+//! [`published`]. `netcert-check` is what [`check`] stands on.
+//!
+//! # The pipeline
+//!
 //! The folders are the pipeline, in the order in which data flows; nothing flows back:
 //!
 //! | stage | folder | from → to |
@@ -23,9 +74,6 @@
 //! [`check`] works out again what [`stet`] claims, without it.
 //!
 //! [`settings`] are what a certificate depends on besides network and vehicle. [`pipeline`] runs the stages in that order.
-//!
-//! Some modules come from crates that need neither PROJ nor SQLite nor a web server. `netcert-base` has [`vehicle`], [`verdict`],
-//! [`pace`] (when a vehicle is where) and [`stop`] (work that may be cut off). `netcert-kernel` has [`stet`] and [`published`].
 
 pub use netcert_base::{pace, stop, vehicle, verdict};
 pub use netcert_kernel::{published, stet};
@@ -37,14 +85,18 @@ pub mod check;
 mod claim;
 pub mod corridor;
 pub mod explain;
+#[cfg(feature = "export")]
 pub mod export;
 pub mod manoeuvres;
 pub mod network;
 pub mod osm;
 pub mod picture;
 pub mod pipeline;
+pub mod region;
 pub mod reporter;
 pub mod route;
+pub mod seal;
+#[cfg(feature = "serve")]
 pub mod serve;
 pub mod settings;
 pub mod store;

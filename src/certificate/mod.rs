@@ -15,6 +15,7 @@ mod tubes;
 use serde_json::{Value, json};
 
 use crate::corridor::{FileCorridor, FrameError};
+use crate::seal::sealed;
 use crate::stet::{Certificate, Model, Options, known_m};
 use crate::store::{Named as _, verdict_words};
 use nominal::Nominal;
@@ -33,7 +34,20 @@ pub enum CertificateError {
     Vehicle(#[from] serde_json::Error),
 }
 
-/// The whole certificate but for its seal (`check::sealed`).
+/// The text of a certificate file, sealed. [`crate::check::certificate`] checks it.
+///
+/// # Errors
+/// See [`CertificateError`].
+pub fn text(
+    given: &FileCorridor,
+    model: &Model,
+    certificate: &Certificate,
+    options: &Options,
+) -> Result<String, CertificateError> {
+    Ok(sealed(&json(given, model, certificate, options)?))
+}
+
+/// The whole certificate without its seal.
 ///
 /// # Errors
 /// See [`CertificateError`].

@@ -5,10 +5,10 @@
 //! reported, missing ones make it malformed.
 
 use serde_json::Value;
-use sha2::{Digest as _, Sha256};
 
 use super::document::{COLUMNS, Document, TubeClaim};
 use super::members::Wrong;
+use crate::seal;
 use netcert_check::Chain;
 use netcert_check::Swept;
 use netcert_check::plan;
@@ -26,8 +26,6 @@ const TIME_PART: f64 = 1e-9;
 /// 80 km/h, and 2 m/s² sideways: the pace that `t` is told for.
 const LIMIT_M_S: f64 = 80.0 / 3.6;
 const LATERAL_M_S2: f64 = 2.0;
-/// Marks the last member.
-const SEAL: &str = ",\"sha256\":\"";
 
 /// What is said of each member.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,18 +42,6 @@ impl Report {
     pub fn confirmed(&self) -> bool {
         self.claims.iter().all(|(_, outcome)| *outcome == Outcome::Confirmed)
     }
-}
-
-/// Adds the member `sha256` to a document: the hash of all bytes before its own comma.
-#[must_use]
-pub fn sealed(document: &Value) -> String {
-    let text = document.to_string();
-    let body = text.strip_suffix('}').unwrap_or(&text);
-    format!("{body}{SEAL}{}\"}}\n", hex(body))
-}
-
-fn hex(body: &str) -> String {
-    Sha256::digest(body.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Checks a certificate file.
@@ -86,9 +72,9 @@ pub fn certificate(text: &str) -> Report {
 }
 
 fn seal(text: &str) -> Result<(), Wrong> {
-    let (body, tail) = text.rsplit_once(SEAL).ok_or("sha256: missing, or not the last member")?;
+    let (body, tail) = text.rsplit_once(seal::MARK).ok_or("sha256: missing, or not the last member")?;
     let said = tail.trim_end().strip_suffix("\"}").ok_or("sha256: not the last member")?;
-    if said == hex(body) { Ok(()) } else { Err("sha256: the file is not as it was written".to_owned()) }
+    if said == seal::hash(body) { Ok(()) } else { Err("sha256: the file is not as it was written".to_owned()) }
 }
 
 /// What is claimed, in the order in which it is told.

@@ -18,7 +18,7 @@ mod row_claim;
 mod turns;
 
 pub use database::{RowOutcome, SetClaim, SetReport};
-pub use file::{Report, certificate, sealed};
+pub use file::{Report, certificate};
 pub use netcert_check::plan::shift;
 pub use netcert_check::{Chain, Finding, Interval, Outcome, RoadError, SpanClaim, Subject, TOLERANCE_M};
 pub use turns::TurnsClaim;

@@ -78,9 +78,8 @@ impl Corridor {
             bail!("{}: no station to certify; give two points or more", self.file.display());
         };
         if let Some(path) = &self.out {
-            let json = netcert::certificate::json(&given, &model, &certificate, &options)?;
-            std::fs::write(path, netcert::check::sealed(&json))
-                .map_err(|e| anyhow!("{}: cannot write the certificate: {e}", path.display()))?;
+            let text = netcert::certificate::text(&given, &model, &certificate, &options)?;
+            std::fs::write(path, text).map_err(|e| anyhow!("{}: cannot write the certificate: {e}", path.display()))?;
         }
         if let Some(path) = &self.svg {
             write_picture(path, &why)?;

@@ -116,8 +116,7 @@ impl Route {
             let best = best.ok_or_else(|| nothing(path))?;
             let given = FileCorridor { corridor: best.path.corridor.clone(), frame: Some(best.path.frame) };
             let options = &inputs.settings().stet;
-            let json = certificate::json(&given, &inputs.driver.model, &best.certificate, options)?;
-            write(path, netcert::check::sealed(&json))?;
+            write(path, certificate::text(&given, &inputs.driver.model, &best.certificate, options)?)?;
             session.progress.say(&format!("{}: the whole certificate", path.display()));
         }
         if let Some(path) = &self.svg {

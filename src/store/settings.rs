@@ -52,6 +52,7 @@ impl CertifiedSet {
     }
 
     /// The settings as they are kept, readable or not: they tell one state of a set from another.
+    #[cfg(feature = "serve")]
     pub(crate) fn kept_settings(&self) -> &str {
         &self.settings
     }

@@ -6,5 +6,3 @@ pub(crate) mod catalogue;
 pub(crate) mod demo;
 #[path = "../support/extracts.rs"]
 pub(crate) mod extracts;
-#[path = "../support/silent.rs"]
-pub(crate) mod silent;

@@ -3,7 +3,8 @@
 
 use crate::oracle::files::{Case, case};
 
-use netcert::check::{Outcome, Report, certificate, sealed};
+use netcert::check::{Outcome, Report, certificate};
+use netcert::seal::sealed;
 use netcert::stet::{Model, certify};
 use netcert::stop::Stop;
 use rayon::prelude::*;

@@ -16,5 +16,3 @@ pub(crate) mod junctions;
 pub(crate) mod roundabout;
 #[path = "../support/routing.rs"]
 pub(crate) mod routing;
-#[path = "../support/silent.rs"]
-pub(crate) mod silent;

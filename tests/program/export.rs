@@ -3,7 +3,7 @@
 
 use crate::support::demo::demo;
 use crate::support::program;
-use crate::support::silent::Silent;
+use netcert::reporter::Silent;
 
 use netcert::export::{Ask, PermitPolicy, Source};
 use netcert::network::MovementKind;

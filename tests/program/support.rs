@@ -8,8 +8,6 @@ pub(crate) mod demo;
 pub(crate) mod program;
 #[path = "../support/python.rs"]
 pub(crate) mod python;
-#[path = "../support/silent.rs"]
-pub(crate) mod silent;
 #[path = "../support/store_network.rs"]
 pub(crate) mod store_network;
 #[path = "../support/xml.rs"]

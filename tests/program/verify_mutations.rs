@@ -3,7 +3,8 @@
 
 use crate::support::program;
 
-use netcert::check::{Outcome, Report, certificate, sealed};
+use netcert::check::{Outcome, Report, certificate};
+use netcert::seal::sealed;
 use program::Place;
 use rayon::prelude::*;
 use serde_json::{Value, json};

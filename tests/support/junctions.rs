@@ -13,7 +13,7 @@ use netcert::verdict::{UnknownReason, Verdict};
 
 use super::ascii_map::{AsciiMap, id_of};
 use super::catalogue::catalogued;
-use super::silent::Silent;
+use netcert::reporter::Silent;
 
 pub(crate) struct Drawn {
     pub(crate) network: Network,

@@ -16,7 +16,7 @@ use netcert::stet::Model;
 use netcert::turns::{Kerbs, turn_facts};
 
 use super::catalogue::catalogued;
-use super::silent::Silent;
+use netcert::reporter::Silent;
 
 /// A network.
 pub(crate) struct Region {

@@ -10,7 +10,7 @@ use netcert::vehicle::Vehicle;
 
 use crate::oracle::draw::{self, Bends, Draw};
 use crate::oracle::fleet;
-use crate::support::silent::Silent;
+use netcert::reporter::Silent;
 
 /// Stations of a real road that are looked at.
 const WINDOW: usize = 320;

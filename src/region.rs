@@ -1,0 +1,261 @@
+//! A region's database for programs that call netcert as a library: query it, plan routes, ask why.
+//!
+//! [`Region`] opens a database that `netcert ingest` or [`crate::pipeline::ingest`] made. It loads the network when a route or an
+//! explanation first needs it. All verdicts hold within the model, the widths and the error bounds of the set's settings.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use crate::explain::{self, Explanation, TurnExplanation};
+use crate::osm::facts::Policy;
+use crate::route::{Driver, Measure, NoDriver, Planner, Roads, Speeds, SpeedsError};
+use crate::stet::{Model, ModelError};
+use crate::stop::{Stop, Stopped};
+use crate::store::{CertifiedSet, Database, Named as _, QueryOptions, Rows, StoreError};
+use crate::turns::turn_facts;
+use crate::vehicle::{Vehicle, VehicleError};
+
+/// A region: its roads and the certificates of its vehicles.
+///
+/// # Query
+///
+/// ```
+/// # mod setup { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/documentation.rs")); }
+/// # let (_folder, path) = setup::demo_region(false);
+/// use netcert::osm::facts::Policy;
+/// use netcert::region::Region;
+/// use netcert::store::{QueryOptions, VerdictKind};
+///
+/// let mut region = Region::open(&path)?;
+/// let safe = QueryOptions {
+///     verdict: Some(VerdictKind::Safe),
+///     ..QueryOptions::new("AGV-TUG4", Policy::Carriageway)
+/// };
+/// let mut kilometres = 0.0;
+/// for edge in region.edges(&safe)? {
+///     kilometres += edge?.length_m / 1000.0;
+/// }
+/// assert!(kilometres > 10.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Route
+///
+/// ```
+/// # mod setup { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/documentation.rs")); }
+/// # let (_folder, path) = setup::demo_region(true);
+/// # let [from, to] = setup::two_places(&path);
+/// use netcert::osm::facts::Policy;
+/// use netcert::region::Region;
+/// use netcert::route::{Measure, Question};
+/// use netcert::stop::Stop;
+///
+/// let mut region = Region::open(&path)?;
+/// let mut planner = region.planner("AGV-TUG4", Policy::Carriageway, Measure::Time)?;
+/// let question = Question { places: vec![from, to], snap_m: 50.0, alternatives: 0, tries: 30 };
+/// let answer = planner.answer(&question, &Stop::never())?;
+/// for route in &answer.routes {
+///     // One certificate over the whole route; it is safe, or the route would not be here.
+///     assert!(route.certificate.result.safe());
+///     println!("{:.1} km, RSC {:?} m", route.length_m / 1000.0, route.certificate.result.rsc_m);
+/// }
+/// for obstacle in answer.obstacles.iter().flatten() {
+///     println!("{:?} blocks: {:?}", obstacle.at, obstacle.permit.verdict);
+/// }
+/// # assert!(!answer.routes.is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Explain
+///
+/// ```
+/// # mod setup { include!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/support/documentation.rs")); }
+/// # let (_folder, path) = setup::demo_region(false);
+/// use netcert::explain::words;
+/// use netcert::osm::facts::Policy;
+/// use netcert::region::Region;
+/// use netcert::stop::Stop;
+/// use netcert::store::QueryOptions;
+///
+/// let mut region = Region::open(&path)?;
+/// let all = QueryOptions::new("AGV-TUG4", Policy::Carriageway);
+/// let edge = region.edges(&all)?.next().expect("the region has roads")?;
+/// let why = region.explain(edge.edge_id, "AGV-TUG4", Policy::Carriageway, &Stop::never())?;
+/// println!("{}", words(&why).headline);
+/// assert!(!words(&why).headline.is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Region {
+    path: PathBuf,
+    database: Database,
+    roads: Option<Arc<Roads>>,
+}
+
+/// Why a region gives no answer.
+#[derive(Debug, thiserror::Error)]
+pub enum RegionError {
+    /// The file cannot be read, or lacks what is asked for.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The vehicle is not certified here.
+    #[error(
+        "{}: {vehicle} is not certified here under the {} policy; run `netcert certify --db {0} --vehicle {vehicle} \
+         --corridor {1}`", path.display(), policy.name()
+    )]
+    NotCertified {
+        /// The database.
+        path: PathBuf,
+        /// Asked for.
+        vehicle: String,
+        /// Asked for.
+        policy: Policy,
+    },
+    /// The vehicle's definition in the database cannot be used.
+    #[error(transparent)]
+    Vehicle(#[from] VehicleError),
+    /// The vehicle has no model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// The table of speeds cannot be used.
+    #[error(transparent)]
+    Speeds(#[from] SpeedsError),
+    /// No such edge or turn.
+    #[error("{}: no edge or turn {id}; `netcert query` lists their ids", path.display())]
+    NoSuchId {
+        /// The database.
+        path: PathBuf,
+        /// Asked for.
+        id: i64,
+    },
+    /// The caller cancelled the work.
+    #[error(transparent)]
+    Stopped(#[from] Stopped),
+}
+
+impl From<NoDriver> for RegionError {
+    fn from(error: NoDriver) -> Self {
+        match error {
+            NoDriver::Store(error) => Self::Store(error),
+            NoDriver::Model(error) => Self::Model(error),
+        }
+    }
+}
+
+impl Region {
+    /// Opens a database for reading.
+    ///
+    /// # Errors
+    /// There is none at `path`, it is another program's, or it is damaged.
+    pub fn open(path: &Path) -> Result<Self, RegionError> {
+        Ok(Self { path: path.to_owned(), database: Database::open(path)?, roads: None })
+    }
+
+    /// The sets of certificates: one for each vehicle and policy.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn sets(&mut self) -> Result<Vec<CertifiedSet>, RegionError> {
+        Ok(self.database.certified()?)
+    }
+
+    /// The set of a vehicle under a policy.
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn set(&mut self, vehicle: &str, policy: Policy) -> Result<CertifiedSet, RegionError> {
+        self.database.certified_set(vehicle, policy)?.ok_or_else(|| RegionError::NotCertified {
+            path: self.path.clone(),
+            vehicle: vehicle.to_owned(),
+            policy,
+        })
+    }
+
+    /// A vehicle as the database keeps it: its certificates were made with this definition.
+    ///
+    /// # Errors
+    /// There is no such vehicle, or its definition cannot be read.
+    pub fn vehicle(&mut self, id: &str) -> Result<Option<Vehicle>, RegionError> {
+        let record = self.database.vehicles()?.into_iter().find(|record| record.id == id);
+        Ok(record.map(|record| Vehicle::from_json(&record.definition)).transpose()?)
+    }
+
+    /// Edges with their certificates, in order of the network.
+    ///
+    /// # Errors
+    /// The vehicle is not certified under this policy; the file cannot be read.
+    pub fn edges(&mut self, options: &QueryOptions) -> Result<Rows<'_>, RegionError> {
+        Ok(self.database.query(options)?)
+    }
+
+    /// The network with its movements. The first call loads it; memory grows with the roads.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn roads(&mut self) -> Result<Arc<Roads>, RegionError> {
+        let roads = match self.roads.take() {
+            Some(roads) => roads,
+            None => Roads::new(self.database.load_network()?),
+        };
+        Ok(Arc::clone(self.roads.insert(roads)))
+    }
+
+    /// A planner of certified routes, with the speeds of `data/speeds.toml`.
+    ///
+    /// # Errors
+    /// The vehicle's edges or turns are not certified under this policy; the file cannot be read.
+    pub fn planner(&mut self, vehicle: &str, policy: Policy, measure: Measure) -> Result<Planner, RegionError> {
+        let set = self.set(vehicle, policy)?;
+        let definition = self.definition(vehicle, policy)?;
+        let roads = self.roads()?;
+        let driver = Driver::stored(&mut self.database, &roads, &definition, &set)?;
+        Ok(Planner::new(&roads, driver, Speeds::builtin()?, measure))
+    }
+
+    /// Why a vehicle may use an edge or not. The certificate is computed again, under the set's settings.
+    ///
+    /// # Errors
+    /// No such edge, the vehicle is not certified under this policy, or `stop` was told.
+    pub fn explain(
+        &mut self,
+        edge_id: i64,
+        vehicle: &str,
+        policy: Policy,
+        stop: &Stop,
+    ) -> Result<Explanation, RegionError> {
+        let settings = self.set(vehicle, policy)?.settings()?;
+        let model = Model::new(&self.definition(vehicle, policy)?)?;
+        let roads = self.roads()?;
+        let unknown = || RegionError::NoSuchId { path: self.path.clone(), id: edge_id };
+        let found = (0_u32..).zip(&roads.network.edges).find(|(_, edge)| edge.id == edge_id);
+        let (edge, _) = found.ok_or_else(unknown)?;
+        explain::explain_edge(&roads.network, edge, &model, &settings, stop)?.ok_or_else(unknown)
+    }
+
+    /// Why a vehicle may take a turn or not. The certificate is computed again, under the set's settings.
+    ///
+    /// # Errors
+    /// No such turn, the vehicle is not certified under this policy, or `stop` was told.
+    pub fn explain_turn(
+        &mut self,
+        turn_id: i64,
+        vehicle: &str,
+        policy: Policy,
+        stop: &Stop,
+    ) -> Result<TurnExplanation, RegionError> {
+        let settings = self.set(vehicle, policy)?.settings()?;
+        let model = Model::new(&self.definition(vehicle, policy)?)?;
+        let roads = self.roads()?;
+        let turns = turn_facts(&roads.network, &settings.kerbs);
+        let turn = turns.into_iter().find(|turn| turn.id == turn_id);
+        let turn = turn.ok_or_else(|| RegionError::NoSuchId { path: self.path.clone(), id: turn_id })?;
+        Ok(explain::explain_turn(&roads.network, &turn, &model, &settings, stop)?)
+    }
+
+    fn definition(&mut self, vehicle: &str, policy: Policy) -> Result<Vehicle, RegionError> {
+        self.vehicle(vehicle)?.ok_or_else(|| RegionError::NotCertified {
+            path: self.path.clone(),
+            vehicle: vehicle.to_owned(),
+            policy,
+        })
+    }
+}
