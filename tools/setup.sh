@@ -34,7 +34,16 @@ done
 if ! command -v cargo >/dev/null 2>&1; then
     [ -x "$HOME/.cargo/bin/cargo" ] && export PATH="$HOME/.cargo/bin:$PATH"
 fi
+needed=$(sed -n 's/^rust-version = "\(.*\)"/\1/p' Cargo.toml)
 if ! command -v cargo >/dev/null 2>&1; then
-    echo "netcert needs Rust 1.94 or newer: https://rustup.rs" >&2
+    echo "netcert needs Rust $needed or newer: https://rustup.rs" >&2
+    exit 1
+fi
+# Such as `rustc 1.95.0 (59807616e 2026-04-14)`. Where rustup has no toolchain, its rustc fails and says what to type.
+found=$(rustc --version) || exit 1
+found=${found#rustc }
+found=${found%%[ -]*}
+if [ "$(printf '%s\n' "$needed" "$found" | sort -V | head -n 1)" != "$needed" ]; then
+    echo "netcert needs Rust $needed or newer, this is $found: rustup update stable && rustup default stable" >&2
     exit 1
 fi

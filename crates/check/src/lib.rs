@@ -19,7 +19,7 @@
 //! How numbers are trusted. What is *chosen* – the nominal motion, feet, kernels – is plain `f64`: another choice would
 //! give another bound, not a wrong one, and what rounding does to it is counted (`motion::DEFECT_RAD`). What *bounds* is rounded
 //! up: sums and products of numbers that are not negative, by a factor above all that rounding can do (`UP`). What
-//! *decides* is repeated in intervals wherever it is within [`leeway::CLOSE_M`] of the claim.
+//! *decides* is repeated in intervals wherever it is within `leeway::CLOSE_M` of the claim.
 
 mod adjoint;
 mod chain;
