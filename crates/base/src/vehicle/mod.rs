@@ -26,7 +26,7 @@ pub use check::Fault;
 pub use definition::{UnitDefinition, VehicleDefinition};
 pub use regions::{Region, Regions};
 
-/// One unit of the chain (design section 1). A dolly is a unit of its own. Metres, radians.
+/// One unit of the chain, in metres and radians. A dolly is a unit of its own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Unit {
     /// Name for people.
