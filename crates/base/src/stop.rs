@@ -21,7 +21,7 @@ struct State {
 
 /// The error of cancelled work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("stopped before it was done")]
+#[error("cancelled before it finished")]
 pub struct Stopped;
 
 impl Stop {

@@ -226,7 +226,7 @@ impl Check<'_> {
             let who = format!("the bodies of units {} and {}", ahead + 1, behind + 1);
             match (angle_deg > 0.0, impossible) {
                 (false, _) => {
-                    let problem = format!("{who} stand in each other when the vehicle is straight");
+                    let problem = format!("{who} overlap when the vehicle is straight");
                     self.fault(Some((hinge, unit)), "front_overhang_m", problem);
                 }
                 (true, true) => {

@@ -20,10 +20,10 @@ const LEVEL_EXIT: usize = 4;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum PlanError {
     /// The corridor has no station.
-    #[error("the corridor has no station, so that there is nothing to plan")]
+    #[error("the corridor has no station")]
     NoCorridor,
     /// Too many or too few coefficients.
-    #[error("{found} coefficients for {stations} stations, which need {needed}: one every four stations, four more")]
+    #[error("{found} coefficients for {stations} stations, not {needed} (one per four stations and four more)")]
     Count {
         /// Coefficients given.
         found: usize,
