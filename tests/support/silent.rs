@@ -1,4 +1,4 @@
-//! A reporter of progress that tells nobody.
+//! A progress reporter that prints nothing.
 
 use netcert::reporter::Reporter;
 
