@@ -171,7 +171,7 @@ fn lay_lines(job: &TurnJob<'_>, batch: &[u32], strokes: &[u32], lines: &mut Line
 }
 
 /// The verdict of a turn without a certificate: the turn is forbidden, or one of its edges cannot be used. The arcs of
-/// a roundabout need no certificate of their own, because no vehicle circles for ever. They must only be open to the
+/// a roundabout need no certificate of their own, because no vehicle circles forever. They must only be open to the
 /// vehicle.
 fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict> {
     if turn.movement.forbidden.is_some() {

@@ -20,11 +20,11 @@ use crate::verdict::UnknownReason;
 const LEAST_LENGTH_M: f64 = 2.0;
 /// Shorter edges get no station of their own, metres.
 const LEAST_EDGE_M: f64 = 0.01;
-/// c′| is about 1. Below this value the line folds back on itself.
+/// |c′| is about 1. Below this value the line folds back on itself.
 const LEAST_SPEED: f64 = 0.3;
 /// Least change of width that is listed as a taper, metres.
 const LEAST_TAPER_M: f64 = 0.05;
-/// κ|·half-width from which normals nearly cross inside the corridor.
+/// |κ|·half-width from which normals nearly cross inside the corridor.
 const MOST_CROSSING: f64 = 0.98;
 
 /// The corridor of a stroke, in a metric frame of its own.

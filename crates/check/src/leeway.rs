@@ -92,7 +92,7 @@ struct Corner {
     clear: f64,
     /// Most that the tubes take away, metres.
     dev: f64,
-    /// second derivative| of the leeway as the point moves, per square metre of the coupling's path.
+    /// |second derivative| of the leeway as the point moves, per square metre of the coupling's path.
     bend: f64,
     lateral: f64,
     sin: f64,

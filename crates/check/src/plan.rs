@@ -29,6 +29,9 @@ pub fn shift(coefficients: &[i32]) -> impl Fn(f64) -> f64 {
 }
 
 /// Tests that a plan is level at both ends, where the vehicle enters and leaves.
+///
+/// # Errors
+/// A message if it is not level.
 pub fn level(coefficients: &[i32]) -> Result<(), String> {
     let n = coefficients.len();
     let same = |part: &[i32]| part.windows(2).all(|pair| pair[0] == pair[1]);

@@ -65,7 +65,7 @@ pub(super) struct Spot {
     pub(super) gain: f64,
     pub(super) slope_ahead: f64,
     pub(super) slope_behind: f64,
-    /// 1 − a/L| and |a/L|
+    /// |1 − a/L| and |a/L|
     pub(super) from_axle: f64,
     pub(super) from_coupling: f64,
 }

@@ -227,7 +227,7 @@ pub(super) struct Step {
     pub(super) moved: V,
     /// Arc length of the axle, metres.
     pub(super) advance: V,
-    /// sin|, cos, |tan| and 1/cos of the angle from the heading to the chord, before the step.
+    /// |sin|, cos, |tan| and 1/cos of the angle from the heading to the chord, before the step.
     pub(super) sine: V,
     pub(super) cosine: V,
     pub(super) tangent: V,
