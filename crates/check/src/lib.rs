@@ -20,7 +20,7 @@
 //! Rounding is handled in three ways. Nominal motion, feet and kernels are *chosen* in plain `f64`: another choice
 //! would give another bound and not a wrong one, and their rounding is counted (`motion::DEFECT_RAD`). *Bounds* are
 //! rounded up: sums and products of non-negative numbers grow by a factor larger than all rounding (`UP`). *Decisions*
-//! within [`leeway::CLOSE_M`] of the claim are repeated in intervals.
+//! within `leeway::CLOSE_M` of the claim are repeated in intervals.
 
 mod adjoint;
 mod chain;
