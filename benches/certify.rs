@@ -1,7 +1,7 @@
-//! How fast whole certificates are made, on one core: kilometres of corridor times vehicles a second, stations a metre
-//! apart, all terms, corrections and shrinking included.
+//! Speed of whole certificates on one core: kilometres of corridor times vehicles per second. Stations are a metre
+//! apart, and all terms, corrections and shrinking are included.
 //!
-//! `cargo bench --bench certify`. The road has straights, clothoids and arcs down to 25 m, as a rural road has; every
+//! `cargo bench --bench certify`. The road has straights, clothoids and arcs down to 25 m, as a rural road has. Every
 //! figure is the best of five runs, because the machine is shared.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]

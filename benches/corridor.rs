@@ -1,4 +1,4 @@
-//! Strokes to corridors: stations a second and core, on winding roads as a mapper draws them.
+//! Speed of making strokes into corridors: stations per second and core, on winding roads as a mapper draws them.
 //!
 //! `cargo bench --bench corridor`
 
@@ -14,8 +14,8 @@ fn main() {
     divan::main();
 }
 
-/// `strokes` roads of about 4 km: bends between 40 and 600 m, vertices 8 to 30 m apart and 0.3 m off the road, an edge every
-/// ten vertices, and on every eighth edge a lane more.
+/// `strokes` roads of about 4 km with bends between 40 and 600 m. Vertices are 8 to 30 m apart and 0.3 m off the road.
+/// There is an edge every ten vertices, and every eighth edge has one more lane.
 fn network(strokes: u32) -> Network {
     let frame = Frame::around_degrees([(9.0, 48.0)]).unwrap();
     let mut n = Network::default();

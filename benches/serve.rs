@@ -1,11 +1,11 @@
-//! Tiles over real HTTP: the time from the start of the program to the first tile, then each zoom's latency, first
-//! asked for and asked again.
+//! Tiles over real HTTP: the time from the start of the program to the first tile, then the latency per zoom for first
+//! and repeated requests.
 //!
 //!     cargo bench --bench serve -- REGION.gpkg [VEHICLE] [POLICY]
 //!
-//! One client on loopback, gzip, one connection; tiles are spread evenly over those that hold a vertex of a road. On
-//! Linux also the server's processor time for a tile that was asked for first: on a busy machine the only figure that
-//! comes again.
+//! One client on loopback uses gzip and one connection. Tiles are spread evenly over those that hold a vertex of a
+//! road. On Linux the server's processor time for first requests is measured too; on a busy machine it is the only
+//! reproducible figure.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout)]
 
@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use netcert::osm::facts::Policy;
 use netcert::store::{Database, Named as _, QueryOptions};
 
-/// Tiles a zoom.
+/// Most tiles per zoom.
 const MOST_TILES: usize = 300;
 
 struct Client {
@@ -26,7 +26,7 @@ struct Client {
 }
 
 impl Client {
-    /// Bytes as sent, and the time until the last of them.
+    /// Bytes as sent, and the time until the last byte.
     fn get(&mut self, target: &str) -> (usize, Duration) {
         let begin = Instant::now();
         let request = format!("GET {target} HTTP/1.1\r\nHost: localhost\r\nAccept-Encoding: gzip\r\n\r\n");
@@ -61,8 +61,8 @@ fn tiles(lines: &[Vec<(f64, f64)>], z: u32) -> Vec<(u32, u32)> {
     all.into_iter().step_by(step).collect()
 }
 
-/// User and system time of a process, milliseconds; `None` where there is no such file. Ticks are hundredths of a
-/// second to every program (proc(5)).
+/// User and system time of a process, milliseconds. `None` without `/proc`. Ticks are hundredths of a second for every
+/// program (proc(5)).
 fn cpu_ms(process: u32) -> Option<f64> {
     let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
@@ -113,7 +113,7 @@ fn main() {
     child.wait().unwrap();
 }
 
-/// A row a zoom.
+/// Prints a row per zoom.
 fn table(client: &mut Client, process: u32, lines: &[Vec<(f64, f64)>], target: &dyn Fn(u32, (u32, u32)) -> String) {
     println!(
         "| zoom | tiles | first asked, ms (p50 / p99 / most) | of it CPU, mean | asked again, ms | kB, median / most |"

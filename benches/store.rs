@@ -1,5 +1,5 @@
-//! Rows a second and bytes a certificate of the store, on a made-up network:
-//! `cargo bench --bench store -- [WAYS] [VEHICLES] [KEEP.gpkg]` (default 30 000 ways, 20 vehicles: 2 M certificates).
+//! Rows per second and bytes per certificate of the store, on a synthetic network: `cargo bench --bench store -- [WAYS]
+//! [VEHICLES] [KEEP.gpkg]` (default 30 000 ways, 20 vehicles: 2 M certificates).
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
@@ -13,11 +13,12 @@ use netcert::store::{Database, QueryOptions, Run, VehicleRecord};
 #[path = "../tests/support/store_network.rs"]
 mod store_network;
 
-/// Of all threads of this process, user and system; 0 where Linux's `/proc` is missing. A busy machine shows here.
+/// User and system time of all threads of this process, seconds; 0 without Linux's `/proc`. It shows whether the
+/// machine is busy.
 fn cpu_seconds() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let after_name = stat.rsplit(')').next().unwrap_or_default();
-    // utime and stime, 14th and 15th of the line, in hundredths of a second
+    // utime and stime, the 14th and 15th fields of the line, in hundredths of a second.
     after_name.split_whitespace().skip(11).take(2).filter_map(|ticks| ticks.parse::<f64>().ok()).sum::<f64>() / 100.0
 }
 

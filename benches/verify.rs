@@ -1,8 +1,8 @@
-//! How fast certificates are checked, on one core, beside how fast they are made: kilometres of corridor times vehicles a second,
-//! on the road and with the spans of `benches/certify.rs`.
+//! Speed of checking certificates on one core, beside the speed of making them: kilometres of corridor times vehicles
+//! per second, on the road and with the spans of `benches/certify.rs`.
 //!
-//! `cargo bench --bench verify`. The checker is scalar, takes four steps a station and decides every point between its samples;
-//! the prover takes one and sweeps eight vehicles abreast.
+//! `cargo bench --bench verify`. The checker is scalar, takes four steps per station and decides every point between
+//! its samples. The prover takes one step per station and sweeps eight vehicles side by side.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 

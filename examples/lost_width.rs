@@ -1,8 +1,8 @@
-//! How many edges are judged by less room than their strip has: the corridor's width where the certificate is limited, and its
-//! least width, beside the width of the strip.
+//! Counts the edges whose corridor is narrower than their strip. Compared are the corridor's width at the certificate's
+//! limiting place, its least width, and the width of the strip.
 //!
-//! `cargo run --release --example lost_width -- REGION.gpkg VEHICLE POLICY [list]`, of a database that certifies the vehicle's
-//! edges. With `list`, every edge that lost more than 0.3 m follows, as comma-separated values.
+//! `cargo run --release --example lost_width -- REGION.gpkg VEHICLE POLICY [list]`, with a database that certifies the
+//! vehicle's edges. With `list`, every edge that lost more than 0.3 m follows as comma-separated values.
 #![allow(clippy::print_stdout)]
 
 use netcert::corridor::{Corridor, EdgeSpan, Params, stroke_corridor};
@@ -14,18 +14,18 @@ use rayon::prelude::*;
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Less is rounding and a mapper's hand, metres.
+/// Least lost width that counts, metres. Less is rounding and a mapper's inaccuracy.
 const LOST_M: f64 = 0.3;
-/// Roads of these classes count as main roads.
+/// Classes that count as main roads.
 const MAIN: [&str; 4] = ["motorway", "trunk", "primary", "secondary"];
 
 /// The width of one edge's corridor.
 struct Width {
     strip_m: f64,
-    /// Where the certificate is limited.
+    /// Width at the certificate's limiting place, metres.
     limiting_m: Option<f64>,
     least_m: f64,
-    /// How far along the edge the corridor is narrowest, metres.
+    /// Place along the edge where the corridor is narrowest, metres.
     least_at_m: f64,
     length_m: f64,
 }
@@ -111,7 +111,7 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// By edge; `None` where nothing can be said of it.
+/// Widths by edge. `None` if the edge is unknown.
 fn widths(network: &Network, rows: &[EdgeRow], policy: Policy) -> Vec<Option<Width>> {
     let of_stroke = |stroke| -> Vec<(u32, Width)> {
         let Ok(made) = stroke_corridor(network, stroke, policy, &Params::default()) else { return Vec::new() };

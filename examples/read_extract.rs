@@ -1,4 +1,4 @@
-//! Reads an extract and says how long each part took: `read_extract FILE.osm.pbf`. For `benches/reading.sh`.
+//! Reads an extract and prints the time of each part: `read_extract FILE.osm.pbf`. For `benches/reading.sh`.
 
 #![allow(clippy::print_stdout)]
 

@@ -1,6 +1,6 @@
-//! Road alignment as surveyors set it out: a polygon of tangents, each corner rounded by clothoid, arc, clothoid.
+//! Road alignment as surveyors set it out: a polygon of tangents, with each corner rounded by clothoid, arc, clothoid.
 //!
-//! Points are set where a careful mapper would set them: ends of straights, and on curves so close that no chord is
+//! Points are set as a careful mapper would set them: at the ends of straights, and on curves so close that no chord is
 //! more than [`SAGITTA_M`] off the curve.
 
 use anyhow::{Result, ensure};
@@ -8,13 +8,13 @@ use anyhow::{Result, ensure};
 /// Metres east and north of the origin.
 pub(crate) type Point = [f64; 2];
 
-/// Greatest distance between a curve and its chords: what tracing an aerial image at a good zoom leaves.
+/// Largest distance between a curve and its chords, metres, as left by tracing an aerial image at a good zoom.
 const SAGITTA_M: f64 = 0.1;
 
 /// A corner of the tangent polygon.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Corner {
-    /// Where the tangents meet.
+    /// The point at which the tangents meet.
     pub(crate) at: Point,
     /// Radius of the arc; 0 leaves the corner sharp.
     pub(crate) radius_m: f64,
@@ -22,7 +22,7 @@ pub(crate) struct Corner {
     pub(crate) clothoid_m: f64,
 }
 
-/// The aligned polyline through `corners` (at least two): starts at the first, ends at the last.
+/// The aligned polyline through at least two `corners`. It starts at the first and ends at the last corner.
 pub(crate) fn align(corners: &[Corner]) -> Result<Vec<Point>> {
     let (Some(first), Some(last)) = (corners.first(), corners.last()) else { return Ok(Vec::new()) };
     let mut points = vec![first.at];
@@ -42,7 +42,7 @@ pub(crate) fn align(corners: &[Corner]) -> Result<Vec<Point>> {
     Ok(points)
 }
 
-/// The points of one rounded corner, and the length of tangent that it takes on each side.
+/// The points of one rounded corner, and the length of tangent used on each side.
 fn round(before: Point, corner: Corner, after: Point) -> Result<(Vec<Point>, f64)> {
     let (u, v) = (direction(before, corner.at), direction(corner.at, after));
     let signed = (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]);
@@ -82,8 +82,8 @@ fn round(before: Point, corner: Corner, after: Point) -> Result<(Vec<Point>, f64
     Ok((points, tangent_m))
 }
 
-/// The point at `fraction` of a clothoid that starts along +x and ends with radius `r`: Simpson's rule on
-/// ∫(cos, sin)(l²/2rL) dl.
+/// The point at `fraction` of a clothoid that starts along +x and ends with radius `r`, by Simpson's rule on ∫(cos,
+/// sin)(l²/2rL) dl.
 fn clothoid(length_m: f64, r: f64, fraction: f64) -> Point {
     if length_m <= 0.0 {
         return [0.0, 0.0];
@@ -101,7 +101,7 @@ fn clothoid(length_m: f64, r: f64, fraction: f64) -> Point {
     [sum[0] * h / 3.0, sum[1] * h / 3.0]
 }
 
-/// A circle of `radius_m` driven clockwise, as traffic on the left has it; the first point is not repeated.
+/// A circle of `radius_m` driven clockwise, as in left-hand traffic. The first point is not repeated.
 pub(crate) fn circle(centre: Point, radius_m: f64) -> Vec<Point> {
     let step = (8.0 * SAGITTA_M / radius_m).sqrt();
     let count = (std::f64::consts::TAU / step).ceil().max(8.0) as usize;

@@ -1,13 +1,13 @@
-//! Where drawn lines meet at the same level: crossings, and ends that come to rest on another line.
+//! Junctions of drawn lines at the same level: crossings, and ends that lie on another line.
 //!
-//! A meeting becomes a vertex that all its lines share. Lines on different layers (a bridge and what it spans) cross
+//! A meeting becomes a vertex that all its lines share. Lines on different layers (a bridge and the road below) cross
 //! without meeting.
 
 use super::alignment::{Point, distance};
 
-/// Ends closer than this to a line are meant to be on it; meetings closer than this are one junction.
+/// Ends closer than this to a line are taken to lie on it. Meetings closer than this are one junction.
 const REACH_M: f64 = 2.5;
-/// A meeting this near to a vertex takes the vertex's place.
+/// A meeting this close to a vertex replaces the vertex.
 const SNAP_M: f64 = 1.0;
 
 /// A vertex of a drawn line.
@@ -15,16 +15,16 @@ const SNAP_M: f64 = 1.0;
 pub(crate) struct Vertex {
     /// Metres along the road's axis.
     pub(crate) station_m: f64,
-    /// Where it is.
+    /// Position.
     pub(crate) at: Point,
-    /// The junction it belongs to.
+    /// The vertex's junction.
     pub(crate) junction: Option<usize>,
 }
 
-/// A drawn line, before it is cut into ways.
+/// A drawn line before it is cut into ways.
 #[derive(Debug, Clone)]
 pub(crate) struct Line {
-    /// At least two; a closed line repeats its first vertex at the end.
+    /// At least two vertices. A closed line repeats its first vertex at the end.
     pub(crate) vertices: Vec<Vertex>,
     /// The layer of each segment (one fewer than vertices).
     pub(crate) layers: Vec<i32>,
@@ -40,14 +40,14 @@ impl Line {
     }
 }
 
-/// Where a line takes part in a meeting: segment index plus fraction.
+/// Place of a meeting on a line: segment index plus fraction.
 #[derive(Clone, Copy)]
 struct Spot {
     line: usize,
     position: f64,
 }
 
-/// Gives every line a shared vertex wherever it meets another; returns how many junctions there are.
+/// Gives every line a shared vertex wherever it meets another line. Returns the number of junctions.
 pub(crate) fn join(lines: &mut [Line]) -> usize {
     let mut meetings: Vec<(Point, Vec<Spot>)> = Vec::new();
     let mut meet = |at: Point, spots: [Spot; 2]| {
@@ -83,7 +83,7 @@ pub(crate) fn join(lines: &mut [Line]) -> usize {
     meetings.len()
 }
 
-/// Ends of `line` that rest on another line (its nearest place within reach, on the end's layer).
+/// Ends of `line` that lie on another line: its nearest place within reach, on the end's layer.
 fn end_meetings(lines: &[Line], line: usize, meet: &mut impl FnMut(Point, [Spot; 2])) {
     let this = &lines[line];
     let last = this.vertices.len() - 1;
@@ -122,7 +122,7 @@ fn crossings(lines: &[Line], a: usize, b: usize, meet: &mut impl FnMut(Point, [S
     }
 }
 
-/// Fractions along p–q and r–s at which they cross.
+/// Fractions along p–q and r–s at which the segments cross.
 fn crossing(p: Point, q: Point, r: Point, s: Point) -> Option<(f64, f64)> {
     let apart = |i: usize| p[i].min(q[i]) > r[i].max(s[i]) || p[i].max(q[i]) < r[i].min(s[i]);
     if apart(0) || apart(1) {
@@ -140,7 +140,7 @@ fn foot(a: Point, b: Point, to: Point) -> f64 {
     ((d[0] * e[0] + d[1] * e[1]) / (d[0] * d[0] + d[1] * d[1])).clamp(0.0, 1.0)
 }
 
-/// Puts a junction's vertex at `position`; inserted back to front, so that earlier positions stay valid.
+/// Puts a junction's vertex at `position`. Vertices are inserted back to front, so earlier positions stay valid.
 fn insert(line: &mut Line, position: f64, junction: usize, at: Point) {
     let segment = (position.floor() as usize).min(line.vertices.len() - 2);
     let fraction = position - segment as f64;

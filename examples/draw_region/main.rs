@@ -2,7 +2,7 @@
 //!
 //!     cargo run --example draw_region [SOURCE.toml [OUT.osm.pbf]]
 //!
-//! The same source gives the same file. The format of the source is described at its head.
+//! The same source gives the same file. The head of the source describes its format.
 
 #![allow(clippy::print_stdout)]
 

@@ -1,4 +1,4 @@
-//! The region's source (TOML, described at the head of `data/demo/region.toml`) → nodes and ways.
+//! Turns the region's source (TOML, described at the head of `data/demo/region.toml`) into nodes and ways.
 
 use std::collections::BTreeMap;
 
@@ -34,9 +34,9 @@ struct Road {
     #[serde(default)]
     tags: Tags,
     line: String,
-    /// Two one-way carriageways this far apart, `ID.out` (left of the line) and `ID.back`.
+    /// Distance of two one-way carriageways, metres: `ID.out` (left of the line) and `ID.back`.
     dual_m: Option<f64>,
-    /// Cut into a way per block.
+    /// Whether the road is cut into one way per block.
     #[serde(default)]
     blocks: bool,
     #[serde(default)]
@@ -69,19 +69,19 @@ struct Spot {
     tags: Tags,
 }
 
-/// What was drawn.
+/// The drawn region.
 pub(crate) struct Map {
     /// The region's name.
     pub(crate) name: String,
-    /// Ids ascend from 1.
+    /// Nodes, with ids ascending from 1.
     pub(crate) nodes: Vec<NodeRecord>,
-    /// Ids ascend from 1.
+    /// Ways, with ids ascending from 1.
     pub(crate) ways: Vec<WayRecord>,
-    /// Of all ways.
+    /// Total length of the ways, metres.
     pub(crate) length_m: f64,
 }
 
-/// A line with what its ways will be tagged.
+/// A line with the tags of its ways.
 struct Drawn<'s> {
     id: String,
     tags: Tags,
@@ -90,7 +90,7 @@ struct Drawn<'s> {
     line: Line,
 }
 
-/// Nodes and ways of a source.
+/// The nodes and ways of a source.
 pub(crate) fn draw(text: &str) -> Result<Map> {
     let source: Source = toml::from_str(text)?;
     let mut drawn: Vec<Drawn<'_>> = Vec::new();
@@ -155,7 +155,8 @@ fn road_lines<'s>(source: &Source, road: &'s Road, drawn: &[Drawn<'_>]) -> Resul
     }
 }
 
-/// `X Y [Rradius] [Cclothoid]`, or `@LINE STATION [LEFT] …`: that far to the left of a line already drawn.
+/// Parses `X Y [Rradius] [Cclothoid]`, or `@LINE STATION [LEFT] …` for a place `LEFT` metres to the left of a line
+/// already drawn.
 fn corner(text: &str, drawn: &[Drawn<'_>]) -> Result<Corner> {
     let mut words = text.split_whitespace().peekable();
     let mut first = words.next().context("empty")?;
@@ -195,7 +196,7 @@ fn holds(pair: &[Vertex], station_m: f64) -> bool {
     a.min(b) <= station_m && station_m <= a.max(b)
 }
 
-/// Makes sure that there is a vertex at a station.
+/// Ensures a vertex at a station.
 fn cut(line: &mut Line, station_m: f64) -> Result<()> {
     if line.vertices.iter().any(|v| (v.station_m - station_m).abs() < 0.05) {
         return Ok(());
@@ -210,7 +211,7 @@ fn cut(line: &mut Line, station_m: f64) -> Result<()> {
     Ok(())
 }
 
-/// Takes off the part of a line's ends that lies inside a roundabout.
+/// Removes the parts at a line's ends that lie inside a roundabout.
 fn trim(line: &mut Line, roundabout: &Roundabout) {
     let inside = |v: &Vertex| distance(v.at, roundabout.at) < roundabout.radius_m - 0.5;
     for _ in 0..2 {
@@ -262,7 +263,7 @@ fn tags_of(source: &Source, style: &str, own: &Tags) -> Result<Tags> {
     Ok(tags)
 }
 
-/// Later tags replace earlier ones; the value `-` removes.
+/// Later tags replace earlier ones. The value `-` removes a tag.
 fn overlay(tags: &mut Tags, own: &Tags) {
     for (key, value) in own {
         if value == "-" {
@@ -285,7 +286,7 @@ fn layer(tags: &Tags) -> i32 {
     tags.get("layer").and_then(|l| l.parse().ok()).unwrap_or(0)
 }
 
-/// Cuts the lines into ways where their tags change, and numbers everything in the order drawn.
+/// Cuts the lines into ways where their tags change, and numbers everything in drawing order.
 fn write(source: &Source, drawn: &[Drawn<'_>]) -> Map {
     let mut map = Map { name: source.name.clone(), nodes: Vec::new(), ways: Vec::new(), length_m: 0.0 };
     let mut shared: BTreeMap<usize, i64> = BTreeMap::new();
@@ -322,7 +323,7 @@ fn write(source: &Source, drawn: &[Drawn<'_>]) -> Map {
     map
 }
 
-/// The node of a vertex, new unless its junction has one.
+/// The node of a vertex: its junction's node if that exists, otherwise a new one.
 fn node(source: &Source, map: &mut Map, shared: &mut BTreeMap<usize, i64>, vertex: &Vertex) -> i64 {
     if let Some(&id) = vertex.junction.and_then(|j| shared.get(&j)) {
         return id;
@@ -335,8 +336,8 @@ fn node(source: &Source, map: &mut Map, shared: &mut BTreeMap<usize, i64>, verte
     id
 }
 
-/// Degrees of a point by the ellipsoid's radii of curvature at the origin: lengths are true there, and 0.1 % off
-/// ten kilometres north or south of it.
+/// Degrees of a point by the ellipsoid's radii of curvature at the origin. Lengths are exact at the origin, and 0.1 %
+/// wrong ten kilometres north or south of it.
 fn place(origin: [f64; 2], at: Point) -> LonLat {
     let (a, e2) = (6_378_137.0, 0.006_694_379_990_14);
     let lat = origin[1].to_radians();

@@ -1,9 +1,9 @@
-//! Random pairs of places on a vehicle's certified roads: how many have a route, how often the certificate over the whole route
-//! refuted its parts, and that none is returned without one.
+//! Random pairs of places on a vehicle's certified roads. It counts how many have a route and how often the certificate
+//! over the whole route refuted its parts, and checks that no route is returned without a certificate.
 //!
-//! `cargo run --release --example route_pairs -- REGION.gpkg VEHICLE POLICY PAIRS`, of a database that certifies the vehicle's edges
-//! and turns. Pairs are drawn twice: among all safe edges, most of which no route joins, and among those of the largest part
-//! of the network within which the vehicle can drive from anywhere to anywhere.
+//! `cargo run --release --example route_pairs -- REGION.gpkg VEHICLE POLICY PAIRS`, with a database that certifies the
+//! vehicle's edges and turns. Pairs are drawn twice: among all safe edges, most of which no route joins, and within the
+//! largest part of the network in which every edge reaches every other one.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use netcert::vehicle::Vehicle;
 use netcert::verdict::Verdict;
 use rayon::prelude::*;
 
-/// Pairs that share a planner, and with it the corridors that it has made.
+/// Pairs that share a planner, and with it the corridors already made.
 const SHARED: u64 = 50;
 
 /// SplitMix64 (Steele, Lea, Flood 2014).

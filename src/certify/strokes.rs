@@ -1,6 +1,7 @@
-//! Corridors and certificates of a whole network: strokes over threads, results in order.
+//! Corridors and certificates of a whole network: strokes spread over threads, results in order.
 //!
-//! A stroke is made into a corridor once and swept by all vehicles. The result does not depend on the number of threads.
+//! A stroke becomes a corridor once, and all vehicles sweep that corridor. The result does not depend on the number of
+//! threads.
 
 use std::collections::BTreeMap;
 
@@ -15,35 +16,35 @@ use crate::stet::{Model, Planned, SpanResult, certify_spans};
 use crate::store::{EdgeCertificate, EdgeMeasure, Measured, Named, StoredPlan, VerdictKind, verdict_words};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
-/// Strokes handed to the threads at a time: enough to keep them busy, few enough to hold.
+/// Strokes per batch: enough to keep the threads busy, few enough to hold in memory.
 const BATCH: usize = 512;
 
-/// What is to be certified.
+/// Inputs of a certification.
 #[derive(Clone, Copy)]
 pub struct Job<'a> {
-    /// The route graph.
+    /// The road network.
     pub network: &'a Network,
     /// The vehicles.
     pub models: &'a [Model],
-    /// How.
+    /// Settings of the certificates.
     pub settings: &'a Settings,
 }
 
-/// What certifying leaves beside the certificates.
+/// Results of a certification other than the certificates.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outcome {
-    /// One an edge.
+    /// One per edge.
     pub measures: Vec<EdgeMeasure>,
-    /// Edges by why they have no corridor; `None`: they have one.
+    /// Edges by the reason why they have no corridor. `None` counts edges with a corridor.
     corridors: BTreeMap<Option<&'static str>, u64>,
-    /// Certificates by verdict and reason, all vehicles together.
+    /// Certificates by verdict and reason, over all vehicles.
     verdicts: BTreeMap<(&'static str, &'static str), u64>,
-    /// Plans that are not the centreline, with their vehicle's index.
+    /// Plans that differ from the centreline, with their vehicle's index.
     pub plans: Vec<(usize, StoredPlan)>,
 }
 
 impl Outcome {
-    /// How many certificates were made.
+    /// Number of certificates made.
     #[must_use]
     pub fn certificates(&self) -> u64 {
         self.verdicts.values().sum()
@@ -68,7 +69,7 @@ impl Outcome {
     }
 }
 
-/// One stroke's results.
+/// The results of one stroke.
 struct StrokeResult {
     measures: Vec<(u32, EdgeMeasure, Option<&'static str>)>,
     /// Vehicle index and certificate.
@@ -76,11 +77,11 @@ struct StrokeResult {
     plans: Vec<(usize, StoredPlan)>,
 }
 
-/// Certifies every edge of the network for every vehicle: `sink` gets each certificate with its vehicle's index, in an
-/// order that is always the same.
+/// Certifies every edge of the network for every vehicle. `sink` gets each certificate with its vehicle's index, in a
+/// fixed order.
 ///
 /// # Errors
-/// The first that `sink` gives.
+/// The first error of `sink`.
 pub fn certify_network<E>(
     job: &Job<'_>,
     reporter: &dyn Reporter,
@@ -179,7 +180,7 @@ fn measured(made: &StrokeCorridor, span: &EdgeSpan, result: &SpanResult) -> Opti
     })
 }
 
-/// What forbids comes first, then what cannot be said; a limit that cannot be read stands only against a `safe`.
+/// Combines the verdicts. A prohibition comes first, then a missing corridor. An unreadable limit only replaces `safe`.
 pub(crate) fn verdict(
     edge: &Edge,
     model: &Model,

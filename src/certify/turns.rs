@@ -1,7 +1,7 @@
-//! Turns of a whole network: their corridors and certificates, over threads, in an order that is always the same.
+//! Turns of a whole network: corridors and certificates, spread over threads, in a fixed order.
 //!
-//! A turn whose edges a vehicle may not use needs no certificate: it has the edge's verdict. The others are tried on the paths on
-//! which the vehicle, kept to them exactly, has most room; the best certificate counts.
+//! A turn needs no certificate if the vehicle may not use one of its edges; it then has that edge's verdict. For the
+//! others, the paths with the greatest nominal leeway are tried, and the best certificate counts.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,22 +19,22 @@ use crate::store::{Measured, Named, StoredPlan, TurnCertificate, VerdictKind, ve
 use crate::turns::{Reach, StrokeLine, TurnFacts, TurnPath, nominal_leeway_m, passage_on, turn_on};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
-/// Turns handed to the threads at a time.
+/// Turns per batch.
 const BATCH: usize = 512;
-/// A stroke's line is kept for so many batches after its last turn: neighbours come soon.
+/// Batches for which a stroke's line is kept after its last turn. Neighbouring turns follow soon.
 const KEPT_BATCHES: usize = 6;
-/// Paths that get a whole certificate, at most.
+/// Most paths that get a full certificate.
 const TRIED: usize = 3;
-/// What no correction brings back, metres: the shift allowed and half a metre of lining up. Below it the best path alone is
-/// certified, for the record, without corrections.
+/// Largest lack of leeway that corrections may make up, metres: the allowed shift and half a metre of lining up. If
+/// more is missing, only the best path is certified, without corrections, for the record.
 const HOPELESS_M: f64 = 0.5;
-/// Nominal leeways that differ by less are the same, metres.
+/// Nominal leeways that differ by less count as equal, metres.
 const RANK_STEP_M: f64 = 0.05;
 
-/// What is to be certified.
+/// Inputs of a certification of turns.
 #[derive(Clone, Copy)]
 pub struct TurnJob<'a> {
-    /// The route graph.
+    /// The road network.
     pub network: &'a Network,
     /// Its turns.
     pub turns: &'a [TurnFacts],
@@ -42,22 +42,22 @@ pub struct TurnJob<'a> {
     pub models: &'a [Model],
     /// By vehicle: the verdict of each edge.
     pub edges: &'a [Vec<Verdict>],
-    /// How.
+    /// Settings of the certificates.
     pub settings: &'a Settings,
 }
 
-/// What certifying leaves beside the certificates.
+/// Results of a certification other than the certificates.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct TurnOutcome {
-    /// Certificates by verdict and reason, all vehicles together.
+    /// Certificates by verdict and reason, over all vehicles.
     verdicts: BTreeMap<(&'static str, &'static str), u64>,
-    /// Turns that needed corridors.
+    /// Turns for which corridors were made.
     pub laid_out: u64,
     turns: u64,
 }
 
 impl TurnOutcome {
-    /// How many certificates were made, those that have an edge's verdict among them.
+    /// Number of certificates made, including those with an edge's verdict.
     #[must_use]
     pub fn certificates(&self) -> u64 {
         self.verdicts.values().sum()
@@ -82,10 +82,10 @@ impl TurnOutcome {
 
 type Lines = FxHashMap<u32, (usize, Result<Arc<StrokeLine>, UnknownReason>)>;
 
-/// Certifies every turn for every vehicle: `sink` gets each certificate with its vehicle's index.
+/// Certifies every turn for every vehicle. `sink` gets each certificate with its vehicle's index.
 ///
 /// # Errors
-/// The first that `sink` gives.
+/// The first error of `sink`.
 pub fn certify_turns<E>(
     job: &TurnJob<'_>,
     reporter: &dyn Reporter,
@@ -125,7 +125,7 @@ fn strokes_of_edges(network: &Network) -> Vec<u32> {
     of_edge
 }
 
-/// Indices of the turns, near ones near each other: so that few strokes are made twice.
+/// Indices of the turns, sorted so that neighbouring turns are close to each other. Few strokes are then made twice.
 fn neighbours(turns: &[TurnFacts]) -> Vec<u32> {
     let place =
         |turn: &TurnFacts| turn.line.get(turn.line.len() / 2).copied().unwrap_or(LonLat { lon_e7: 0, lat_e7: 0 });
@@ -143,7 +143,7 @@ fn neighbours(turns: &[TurnFacts]) -> Vec<u32> {
     order.into_iter().map(|(_, i)| i).collect()
 }
 
-/// Makes the lines that a batch needs and drops those that nothing has needed for a while.
+/// Makes the lines that a batch needs and drops those that no batch has needed for a while.
 fn lay_lines(job: &TurnJob<'_>, batch: &[u32], strokes: &[u32], lines: &mut Lines, number: usize) {
     let mut wanted: Vec<u32> = batch
         .iter()
@@ -170,8 +170,9 @@ fn lay_lines(job: &TurnJob<'_>, batch: &[u32], strokes: &[u32], lines: &mut Line
     lines.extend(made);
 }
 
-/// The verdict that a turn has without a certificate: it is forbidden, or one of its edges cannot be used. The arcs of a roundabout
-/// need no certificate of their own, only leave to be driven on: nobody goes round for ever.
+/// The verdict of a turn without a certificate: the turn is forbidden, or one of its edges cannot be used. The arcs of
+/// a roundabout need no certificate of their own, because no vehicle circles forever. They must only be open to the
+/// vehicle.
 fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict> {
     if turn.movement.forbidden.is_some() {
         return Some(Verdict::Forbidden(ForbiddenReason::Restriction));
@@ -188,7 +189,7 @@ fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict>
         .or_else(arcs)
 }
 
-/// One certificate a vehicle, and whether any needed a corridor.
+/// One certificate per vehicle, and whether any vehicle needed a corridor.
 fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -> (bool, Vec<TurnCertificate>) {
     let turn = &job.turns[index as usize];
     let bare = |verdict: Verdict| TurnCertificate { turn: index, verdict, measured: None, path: None, plan: None };
@@ -242,7 +243,7 @@ pub fn best_of(paths: &[TurnPath], models: &[&Model], options: &Options) -> Vec<
 
 /// The best certificate of a turn.
 struct Best {
-    /// Which of its paths.
+    /// Index of the path.
     path: usize,
     result: SpanResult,
     plan: Plan,
@@ -250,12 +251,12 @@ struct Best {
 
 fn best_planned(paths: &[TurnPath], models: &[&Model], options: &Options) -> Vec<Option<Best>> {
     let hopeless_m = -(options.max_shift_m + HOPELESS_M);
-    // By path: which vehicles try it, thoroughly or for the record.
+    // By path: the vehicles that try it, fully or for the record.
     let mut tries: BTreeMap<(usize, bool), Vec<usize>> = BTreeMap::new();
     for (vehicle, model) in models.iter().enumerate() {
         let mut ranked: Vec<(f64, usize)> =
             paths.iter().enumerate().map(|(i, path)| (nominal_leeway_m(path, &model.vehicle), i)).collect();
-        // Of paths that leave about as much room, the gentler one first: its tubes are narrower.
+        // Of paths with about equal leeway the gentler one comes first: its tubes are narrower.
         let steps = |leeway_m: f64| (leeway_m / RANK_STEP_M).floor();
         let gentle = |path: usize| paths[path].min_radius_m;
         ranked.sort_by(|a, b| {
@@ -284,7 +285,7 @@ fn best_planned(paths: &[TurnPath], models: &[&Model], options: &Options) -> Vec
     best
 }
 
-/// Safe before not, bounded before not, then the greater RSC. Ties keep the first.
+/// Orders results: safe first, then closed bounds, then the greater RSC. Ties keep the first one.
 fn better(a: &SpanResult, b: &SpanResult) -> bool {
     let key = |r: &SpanResult| (r.safe(), r.closes());
     match key(a).cmp(&key(b)) {
@@ -296,7 +297,7 @@ fn better(a: &SpanResult, b: &SpanResult) -> bool {
 /// The verdict of a turn's best result.
 #[must_use]
 pub fn turn_verdict(result: Option<&SpanResult>) -> Verdict {
-    // Without a result: no path of the family stays on the road.
+    // Without a result no path of the family stays on the road.
     result.map_or(Verdict::Unsafe(UnsafeReason::Width), SpanResult::verdict)
 }
 

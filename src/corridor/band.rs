@@ -11,7 +11,7 @@ impl Band {
         Self { rows: vec![[0.0; 4]; n] }
     }
 
-    /// Adds `weight · v vᵀ`, v being `entries` from index `first` on.
+    /// Adds `weight · v vᵀ`. `entries` are the entries of v from index `first` on.
     pub(crate) fn add_outer(&mut self, first: usize, entries: &[f64; 4], weight: f64) {
         for (i, row) in self.rows[first..first + 4].iter_mut().enumerate() {
             for j in 0..=i {
@@ -35,8 +35,8 @@ impl Band {
         }
     }
 
-    /// `rows[i]` becomes [1/d_i, l_(i,i−1), l_(i,i−2), l_(i,i−3)], `b` becomes L⁻¹ b. The three rows before are carried
-    /// in registers: the recursion is latency bound.
+    /// `rows[i]` becomes [1/d_i, l_(i,i−1), l_(i,i−2), l_(i,i−3)] and `b` becomes L⁻¹ b. The previous three rows stay
+    /// in registers, because latency bounds the recursion.
     fn factor_forward(&mut self, b: &mut [[f64; 2]]) {
         let (mut f1, mut f2, mut f3) = ([0.0; 4], [0.0; 4], [0.0; 4]);
         let (mut y1, mut y2, mut y3) = ([0.0; 2], [0.0; 2], [0.0; 2]);

@@ -1,7 +1,7 @@
-//! Corridors from a centreline that is given in metres: drawn, planned, surveyed.
+//! Corridors from a centreline given in metres: drawn, planned or surveyed.
 //!
-//! A tolerance of 0 takes the points as the C¹ centreline itself (the cubic spline through them); else they are smoothed like a
-//! map's line. Half-widths are linear between points, and never more than that between stations.
+//! With a tolerance of 0 the cubic spline through the points is the C¹ centreline. Otherwise the points are smoothed
+//! like a map's line. Half-widths are linear between points, and between stations never more than that.
 
 use super::polyline::Polyline;
 use super::profile::Profile;
@@ -10,15 +10,15 @@ use super::smooth::{Smoothing, smooth};
 use super::spline::{Interpolant, Jet};
 use super::{Corridor, Params};
 
-/// Why a given centreline is none.
+/// Why a given centreline cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CentrelineError {
     /// A value that cannot be used.
     #[error("{field}: {message}")]
     Value {
-        /// Which, with its index: `points[3]`.
+        /// Field, with its index: `points[3]`.
         field: String,
-        /// What it is, and what is expected.
+        /// The value, and what is expected.
         message: String,
     },
     /// No curve stays within the tolerance.
@@ -41,15 +41,16 @@ impl CentrelineError {
 
 /// Points closer than this are the same, metres.
 const LEAST_STEP_M: f64 = 0.01;
-/// Nothing shorter is a corridor, metres.
+/// Shortest corridor, metres.
 const LEAST_LENGTH_M: f64 = 2.0;
-/// More than a C¹ centreline's points turn from one to the next, radians: 6 m radius at 3 m.
+/// Largest turn from one point of a C¹ centreline to the next, radians: a radius of 6 m with points 3 m apart.
 const MOST_TURN_RAD: f64 = 0.6;
 
-/// A corridor along `points` (metres) with half-widths `left` and `right` (metres, > 0, one a point or a single one).
-/// `tolerance_m` 0: the points are the centreline; else it may be that far from them. Stations `spacing_m` apart, nearly.
+/// Builds a corridor along `points` (metres) with half-widths `left` and `right` (metres, > 0, one per point or a
+/// single one). With `tolerance_m` 0 the points are the centreline, otherwise it may be that far from them. Stations
+/// are about `spacing_m` apart.
 ///
-/// Errors name the point that cannot be: not finite, on top of the one before, a kink where there must be none.
+/// Errors name the point that is not finite, coincides with the previous one, or makes a kink.
 pub fn from_centreline(
     points: &[[f64; 2]],
     left: &[f64],
@@ -88,7 +89,7 @@ fn checked_line(points: &[[f64; 2]]) -> Result<Polyline, CentrelineError> {
     for (i, &[x, y]) in points.iter().enumerate() {
         let field = || format!("points[{i}]");
         if !(x.abs() < 1e8 && y.abs() < 1e8) {
-            return Err(CentrelineError::value(field(), format!("[{x}, {y}] is no place in metres")));
+            return Err(CentrelineError::value(field(), format!("[{x}, {y}] is not a place in metres")));
         }
         let before = line.length();
         if line.push([x, y]) - before < LEAST_STEP_M && i > 0 {
@@ -105,14 +106,14 @@ fn checked_line(points: &[[f64; 2]]) -> Result<Polyline, CentrelineError> {
 
 fn checked_widths(field: &str, widths: &[f64], points: usize) -> Result<Vec<f64>, CentrelineError> {
     if widths.len() != 1 && widths.len() != points {
-        let message = format!("{} values for {points} points; expected one number, or one a point", widths.len());
+        let message = format!("{} values for {points} points; expected one number, or one per point", widths.len());
         return Err(CentrelineError::value(field, message));
     }
     if let Some(i) = widths.iter().position(|w| !(*w > 0.0 && *w < 1e4)) {
         let field = if widths.len() == 1 { field.to_owned() } else { format!("{field}[{i}]") };
         return Err(CentrelineError::value(
             field,
-            format!("{} is no width in metres; expected more than 0", widths[i]),
+            format!("{} is not a width in metres; expected more than 0", widths[i]),
         ));
     }
     Ok(if widths.len() == 1 { vec![widths[0]; points] } else { widths.to_vec() })
@@ -141,7 +142,7 @@ fn sampled(
     right: &[f64],
     spacing_m: f64,
 ) -> Result<Corridor, CentrelineError> {
-    // The curve itself is the centreline; its edges come below.
+    // The curve itself is the centreline. Its edges follow below.
     let profile = Profile { knot_m: line.length(), coefficients: vec![[1.0, -1.0, 0.0]; 4] };
     let track = Track { curve: &curve, profile: &profile };
     let (mut corridor, arc) = track.resample(0.0, line.length(), spacing_m);
@@ -162,8 +163,8 @@ fn sampled(
     Ok(corridor)
 }
 
-/// Widths at stations, linear between which they stay below the given ones: where a given point between two stations is
-/// narrower than the line between them, both give way.
+/// Widths at stations whose linear interpolation stays below the given widths. Where a given point between two stations
+/// is narrower than the line between them, both stations are lowered.
 fn below(at: &[f64], widths: &[f64], arc: &ArcLength, corridor: &Corridor) -> Vec<f64> {
     let last = corridor.len() - 1;
     let mut hint = 0;
@@ -219,7 +220,7 @@ mod tests {
         let points = [[0.0, 0.0], [100.0, 0.0], [190.0, 40.0]];
         let c = from_centreline(&points, &[3.0], &[3.0], 1.0, 1.0).unwrap();
         let sharpest = c.curvature.iter().fold(0.0_f64, |m, k| m.max(k.abs()));
-        // The arc of 24° that leaves the corner by 1 m has 45 m; swinging out before the corner makes it wider.
+        // The arc of 24° that cuts the corner by 1 m is 45 m long. Swinging out before the corner makes it wider.
         assert!(sharpest < 1.0 / 45.0, "{sharpest}");
     }
 
@@ -245,7 +246,7 @@ mod tests {
         let corner = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]];
         assert!(refused(&corner, &[2.0], 0.0).starts_with("points[1]: the line turns by 90°"));
         assert!(refused(&corner, &[2.0, 2.0], 0.5).starts_with("left_m: 2 values for 3 points"));
-        assert!(refused(&corner, &[2.0, -1.0, 2.0], 0.5).starts_with("left_m[1]: -1 is no width"));
+        assert!(refused(&corner, &[2.0, -1.0, 2.0], 0.5).starts_with("left_m[1]: -1 is not a width"));
         assert!(refused(&corner, &[2.0], -1.0).starts_with("smoothing_tolerance_m: -1"));
         assert!(refused(&[[0.0, 0.0], [0.0, 0.0], [9.0, 0.0]], &[2.0], 0.5).starts_with("points[1]: the same place"));
         assert!(refused(&[[0.0, 0.0], [f64::NAN, 0.0]], &[2.0], 0.5).starts_with("points[1]: [NaN, 0]"));

@@ -1,4 +1,4 @@
-//! The line of a stroke as it is driven: approach, edges, a loop unrolled; and without the jogs that only the map has.
+//! The line of a stroke as it is driven: approach, edges and unrolled loops, without jogs that only the map has.
 
 use super::Params;
 use super::merge::{Jog, Relaid, Split};
@@ -7,54 +7,55 @@ use super::profile::Across;
 use super::taper::Ramp;
 use crate::network::{Edge, Splits};
 
-/// Driven after the turn that counts: longer than any catalogued vehicle, so that its last unit leaves the turn too, metres.
+/// Length driven after the counted turn, metres. It exceeds any catalogued vehicle, so the last unit leaves the turn
+/// too.
 const TAIL_M: f64 = 60.0;
-/// Smoothed with a closed stroke beyond its tail, so that the free end is far from what counts, metres.
+/// Length smoothed with a closed stroke beyond its tail, metres. It keeps the free end far from the counted part.
 const BEYOND_M: f64 = 150.0;
-/// Turns round a closed stroke at most, before and after.
+/// Most turns round a closed stroke, before and after the counted turn.
 const MOST_TURNS: usize = 12;
 
-/// An edge of the chain: where it is in the frame, what it offers.
+/// An edge of the chain: its place in the frame, and its widths.
 pub(super) struct Link<'n> {
     pub(super) index: u32,
     pub(super) edge: &'n Edge,
     pub(super) points: Vec<[f64; 2]>,
-    /// `None`: no width is known.
+    /// `None` if no width is known.
     pub(super) room: Option<Room>,
     /// All lanes of the direction of travel.
     pub(super) direction: Option<Across>,
     pub(super) two_way: bool,
-    /// Metres of taper a metre across.
+    /// Metres of taper along the road per metre across.
     pub(super) ratio: f64,
 }
 
-/// What a policy gives on an edge, across the way's line.
+/// The strips of an edge under a policy, across the way's line.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Room {
     pub(super) strip: Across,
-    /// The lanes of the direction, within which a lane may shift.
+    /// The lanes of the direction. A lane may shift within them.
     pub(super) shift: Across,
-    /// All that is paved.
+    /// Everything that is paved.
     pub(super) surface: Across,
 }
 
-/// A link on the line that is smoothed, at arc lengths `from..to`; the same link may come several times.
+/// A link on the line to be smoothed, at arc lengths `from..to`. A link may come several times.
 pub(super) struct Piece {
     pub(super) link: usize,
     pub(super) counted: bool,
     pub(super) from: f64,
     pub(super) to: f64,
-    /// Of every vertex of the link.
+    /// Arc length of every vertex of the link.
     pub(super) at: Vec<f64>,
-    /// How far the strip lies beside where the map has it, for the line without its jogs; metres to the left.
+    /// Lateral distance of the line without jogs from the map's line, metres to the left.
     pub(super) aside_m: f64,
 }
 
-/// The line of the chain, as driven.
+/// The line of the chain as driven.
 pub(super) struct Course {
     pub(super) line: Polyline,
     pub(super) pieces: Vec<Piece>,
-    /// The corridor ends here; what follows is for smoothing only.
+    /// Arc length at which the corridor ends. The line beyond it is for smoothing only.
     pub(super) end: f64,
 }
 
@@ -67,8 +68,8 @@ pub(super) fn open_course(links: &[Link<'_>], approach: usize) -> Course {
     course
 }
 
-/// Unrolls a loop: enough of its edges before the turn that counts that a vehicle enters it in full articulation, and
-/// enough after it that its last unit leaves it.
+/// Unrolls a loop. Enough of its edges precede the counted turn that a vehicle enters it fully articulated, and enough
+/// follow that its last unit leaves it.
 pub(super) fn closed_course(links: &[Link<'_>], params: &Params) -> Course {
     let n = links.len();
     let length = |link: usize| -> f64 {
@@ -113,8 +114,8 @@ impl Course {
         self.pieces.push(Piece { link, counted, from, to, at, aside_m: 0.0 });
     }
 
-    /// Takes out the jogs of the line where two carriageways and a road meet: gives them, where they are on the line without them, and
-    /// where that line lies beside the map's.
+    /// Removes the jogs of the line where two carriageways meet a road. Returns the jogs, placed on the new line, and
+    /// the ramps by which the new line lies beside the map's.
     pub(super) fn straighten(&mut self, links: &[Link<'_>], splits: &Splits) -> (Vec<Jog>, Vec<Ramp>) {
         let found: Vec<(usize, Jog)> = (1..self.pieces.len())
             .filter_map(|after| Some((after, self.split(links, splits, after)?.jog(&self.line)?)))
@@ -142,7 +143,7 @@ impl Course {
         (jogs, aside)
     }
 
-    /// The split between the piece before and the piece `after`, if the road parts or joins there.
+    /// The split between the previous piece and the piece `after`, if the road parts or joins there.
     fn split(&self, links: &[Link<'_>], splits: &Splits, after: usize) -> Option<Split> {
         let link = |piece: &Piece| links.get(piece.link);
         let (a, b) = (link(self.pieces.get(after - 1)?)?, link(self.pieces.get(after)?)?);

@@ -1,7 +1,6 @@
 //! The corridor file: a corridor drawn by a user, in metres or in degrees.
 //!
-//! The form is a promise to users. What is wrong is refused by the name of its field and index;
-//! nothing is repaired.
+//! The format is stable for users. An error names the field and index; nothing is repaired.
 
 use serde::Deserialize;
 
@@ -11,7 +10,7 @@ use super::{Corridor, Frame, FrameError, Params};
 /// Why a corridor file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// Not JSON, or not of this form; the message has line and column.
+    /// Not JSON, or not of this form. The message gives line and column.
     #[error("not a corridor file: {0}")]
     Json(#[from] serde_json::Error),
     /// A value that cannot be used.
@@ -22,17 +21,18 @@ pub enum FileError {
     Frame(#[from] FrameError),
 }
 
-/// A corridor from a file, and the way back to the file's coordinates.
+/// A corridor from a file, with the conversion back to the file's coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FileCorridor {
     /// In metres.
     pub corridor: Corridor,
-    /// Where its metres are, if the file has degrees.
+    /// Frame of the corridor's metres, if the file is in degrees.
     pub frame: Option<Frame>,
 }
 
 impl FileCorridor {
-    /// Points of the corridor's frame (metres) in the file's coordinates: as they are, or longitude and latitude.
+    /// Converts points of the corridor's frame (metres) to the file's coordinates: metres unchanged, or longitude and
+    /// latitude.
     pub fn to_input(&self, points: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, FrameError> {
         self.frame.map_or_else(|| Ok(points.to_vec()), |frame| frame.inverse(points))
     }
@@ -57,7 +57,7 @@ enum FormFrame {
 }
 
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "expected a number of metres, or a list with one a point")]
+#[serde(untagged, expecting = "expected a number of metres, or a list with one number per point")]
 enum Widths {
     All(f64),
     Each(Vec<f64>),
@@ -72,8 +72,8 @@ impl Widths {
     }
 }
 
-/// The corridor that a JSON text describes (frame, points, widths, smoothing tolerance), stations a metre
-/// apart. Without `smoothing_tolerance_m`, 0.5 m.
+/// Reads the corridor that a JSON text describes (frame, points, widths, smoothing tolerance), with stations a metre
+/// apart. `smoothing_tolerance_m` defaults to 0.5 m.
 pub fn corridor_from_file(json: &str) -> Result<FileCorridor, FileError> {
     let form: Form = serde_json::from_str(json)?;
     let (left, right) = half_widths(form.width_m, form.left_m, form.right_m)?;
@@ -105,7 +105,7 @@ fn half_widths(
                 let field = if width.len() == 1 { "width_m".to_owned() } else { format!("width_m[{i}]") };
                 return Err(CentrelineError::value(
                     field,
-                    format!("{} is no width in metres; expected more than 0", width[i]),
+                    format!("{} is not a width in metres; expected more than 0", width[i]),
                 ));
             }
             let half: Vec<f64> = width.iter().map(|w| 0.5 * w).collect();
@@ -113,10 +113,10 @@ fn half_widths(
         }
         (None, Some(left), Some(right)) => Ok((left.into_vec(), right.into_vec())),
         (Some(_), ..) => {
-            Err(CentrelineError::value("width_m", "stands beside left_m or right_m; give one or the others"))
+            Err(CentrelineError::value("width_m", "is given with left_m or right_m; give width_m, or both of them"))
         }
-        (None, Some(_), None) => Err(CentrelineError::value("right_m", "missing beside left_m")),
-        (None, None, Some(_)) => Err(CentrelineError::value("left_m", "missing beside right_m")),
+        (None, Some(_), None) => Err(CentrelineError::value("right_m", "is missing, but left_m is given")),
+        (None, None, Some(_)) => Err(CentrelineError::value("left_m", "is missing, but right_m is given")),
         (None, None, None) => Err(CentrelineError::value("width_m", "missing; give width_m, or left_m and right_m")),
     }
 }
@@ -159,8 +159,8 @@ mod tests {
         assert!(with(r#""frame": "metres", "width": 3"#).contains("unknown field `width`"));
         assert!(with(r#""frame": "metres""#).starts_with("width_m: missing"));
         assert!(with(r#""frame": "metres", "left_m": 3"#).starts_with("right_m: missing"));
-        assert!(with(r#""frame": "metres", "left_m": 3, "width_m": 3"#).starts_with("width_m: stands beside"));
-        assert!(with(r#""frame": "metres", "width_m": [3, 0]"#).starts_with("width_m[1]: 0 is no width"));
+        assert!(with(r#""frame": "metres", "left_m": 3, "width_m": 3"#).starts_with("width_m: is given with left_m"));
+        assert!(with(r#""frame": "metres", "width_m": [3, 0]"#).starts_with("width_m[1]: 0 is not a width"));
         assert!(with(r#""frame": "metres", "width_m": [3, 2, 3]"#).contains("3 values for 2 points"));
         let off = r#"{"frame": "lonlat", "points": [[0, 0], [9, 91]], "width_m": 3}"#;
         assert!(

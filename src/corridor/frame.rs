@@ -1,8 +1,8 @@
-//! The metric frame: a transverse Mercator of its own near every stroke, through PROJ.
+//! The metric frame: a separate transverse Mercator projection near every stroke, through PROJ.
 //!
-//! Promises distances right to 1e-4 and the same bits whatever thread asks. The scale error grows as x²/2R², x the
-//! distance from the central meridian: within [`HALF_WIDTH_M`] of it, it stays below 9e-5, so no zone edge matters.
-//! What is wider is refused.
+//! Distances are accurate to 1e-4, and every thread gets the same bits. The scale error grows as x²/2R², with x the
+//! distance from the central meridian. Within [`HALF_WIDTH_M`] of it the error stays below 9e-5, so no zone edge
+//! matters. Wider extents are refused.
 
 use std::cell::RefCell;
 
@@ -11,14 +11,14 @@ use rustc_hash::FxHashMap;
 
 use crate::osm::LonLat;
 
-/// Farthest from the central meridian, metres: 85 km give 85²/(2·6357²) = 8.9e-5.
+/// Largest distance from the central meridian, metres: 85 km give 85²/(2·6357²) = 8.9e-5.
 pub const HALF_WIDTH_M: f64 = 85_000.0;
 
-/// Frames kept a thread; a PROJ object takes some 20 kB and 0.08 ms to make.
+/// Frames cached per thread. A PROJ object takes about 20 kB, and 0.08 ms to make.
 const CACHED: usize = 256;
 
 thread_local! {
-    /// `Proj` may not leave its thread.
+    /// `Proj` must stay on its thread.
     static FRAMES: RefCell<FxHashMap<(i16, i16), Proj>> = RefCell::default();
 }
 
@@ -26,12 +26,12 @@ thread_local! {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FrameError {
     /// No positions at all.
-    #[error("no positions to lay a metric frame around")]
+    #[error("a metric frame needs at least one position")]
     Empty,
     /// Not on the ellipsoid, or not finite.
-    #[error("position {index}: longitude {lon}, latitude {lat} is no place; expected −180..=180, −90..=90 degrees")]
+    #[error("position {index}: longitude {lon}, latitude {lat} is out of range; expected −180..=180, −90..=90 degrees")]
     Place {
-        /// Which position.
+        /// Index of the position.
         index: usize,
         /// Degrees.
         lon: f64,
@@ -43,33 +43,33 @@ pub enum FrameError {
         "position {index} lies {x_m:.0} m from the frame's central meridian, more than {HALF_WIDTH_M} m: cut the line"
     )]
     TooWide {
-        /// Which position.
+        /// Index of the position.
         index: usize,
-        /// Metres.
+        /// Distance from the central meridian, metres.
         x_m: f64,
     },
     /// PROJ failed.
     #[error("PROJ cannot transform with `{definition}`: {message}")]
     Proj {
-        /// The pipeline.
+        /// The PROJ pipeline.
         definition: String,
-        /// What PROJ says.
+        /// PROJ's message.
         message: String,
     },
 }
 
-/// A transverse Mercator frame on WGS 84, centred on a whole degree of longitude and latitude, scale 1 there.
-/// x east, y north, metres.
+/// A transverse Mercator frame on WGS 84, centred on a whole degree of longitude and latitude, with scale 1 there. x is
+/// east and y is north, metres.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Frame {
-    /// Whole degrees, −180..180.
+    /// Central longitude in whole degrees, −180..180.
     lon_0: i16,
-    /// Whole degrees, −90..=90.
+    /// Central latitude in whole degrees, −90..=90.
     lat_0: i16,
 }
 
 impl Frame {
-    /// The frame for positions near each other: centred on the whole degree nearest to the middle of their extent,
+    /// The frame for positions near each other. Its centre is the whole degree nearest to the middle of their extent,
     /// which may cross the antimeridian.
     pub fn around(positions: &[LonLat]) -> Result<Self, FrameError> {
         Self::around_degrees(positions.iter().map(|p| p.degrees()))
@@ -92,7 +92,7 @@ impl Frame {
         Ok(Self { lon_0: lon_0 as i16, lat_0: f64::midpoint(north[0], north[1]).round() as i16 })
     }
 
-    /// Positions in metres, in the frame.
+    /// Converts positions to metres in the frame.
     pub fn forward(&self, positions: &[LonLat]) -> Result<Vec<[f64; 2]>, FrameError> {
         self.forward_degrees(positions.iter().map(|p| p.degrees()).collect())
     }
@@ -106,15 +106,15 @@ impl Frame {
         Ok(positions.into_iter().map(|(x, y)| [x, y]).collect())
     }
 
-    /// Longitude and latitude in degrees of points in the frame.
+    /// Converts points in the frame to longitude and latitude in degrees.
     pub fn inverse(&self, points: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, FrameError> {
         let mut points: Vec<(f64, f64)> = points.iter().map(|p| (p[0], p[1])).collect();
         self.with_proj(|proj| proj.project_array(&mut points, true).map(|_| ()))?;
         Ok(points.into_iter().map(|(lon, lat)| [lon, lat]).collect())
     }
 
-    /// What PROJ is asked for, degrees to metres. A pipeline that needs no `proj.db`: a `PROJ_DATA` that points at
-    /// another PROJ's database cannot break it.
+    /// The PROJ pipeline from degrees to metres. It needs no `proj.db`, so a `PROJ_DATA` that points at another PROJ's
+    /// database cannot break it.
     #[must_use]
     pub fn definition(self) -> String {
         format!(
@@ -124,7 +124,7 @@ impl Frame {
         )
     }
 
-    /// The frame of a [`Frame::definition`]; `None` for any other text.
+    /// The frame of a [`Frame::definition`]. `None` for any other text.
     #[must_use]
     pub fn defined(definition: &str) -> Option<Self> {
         let whole = |key: &str| definition.split(key).nth(1)?.split(' ').next()?.parse().ok();
@@ -149,7 +149,7 @@ impl Frame {
     }
 }
 
-/// Into −180..180.
+/// Wraps a longitude into −180..180.
 fn wrap_degrees(lon: f64) -> f64 {
     (lon + 180.0).rem_euclid(360.0) - 180.0
 }
@@ -192,7 +192,7 @@ mod tests {
     fn distances_are_right_to_1e_4_everywhere() {
         let mut worst = 0.0_f64;
         for lat in [-89.98, -85.0, -60.3, -37.8, -0.5, 0.0, 0.49, 23.5, 45.51, 59.99, 72.0, 84.5, 89.5, 89.985] {
-            // zone edges at multiples of six degrees, half degrees where the frame changes, the antimeridian
+            // Zone edges at multiples of six degrees, half degrees where the frame changes, and the antimeridian.
             for lon in
                 [-180.0, -179.996, -114.0, -6.004, -0.5, 0.0, 5.996, 8.4999, 8.5, 12.0, 144.3, 179.499, 179.995, 180.0]
             {

@@ -1,32 +1,34 @@
-//! Where two one-way carriageways become one road, or one road parts: the map's line jogs, the lane goes straight on.
+//! Places where two one-way carriageways become one road, or one road parts. The map's line jogs there, but the lane
+//! goes straight on.
 //!
-//! A two-way road's line is the middle of both directions, a carriageway's line is the middle of one. At their node the line changes
-//! from the one middle to the other within a few metres, and the cross section jumps by as much the other way. On the road
-//! neither happens: the half of the road that leads one way goes on as the carriageway.
+//! A two-way road's line is the middle of both directions, and a carriageway's line is the middle of one direction. At
+//! their node the line changes from one middle to the other within a few metres, and the cross section jumps as far the
+//! other way. The road does neither: the half of the road in the direction of travel continues as the carriageway.
 //!
-//! The model: at the node the carriageway lies where its half of the road lies, at the end of the jog it lies where the map has it,
-//! and in between its edges are straight. So what a corridor uses there is within the hull of two sections that the map has. Evidence
-//! is asked for it: both carriageways meet at the node (`network::Splits`), and the line is straighter with the jog taken
-//! out than with it. A road that bends the other way, or goes straight on along its middle, keeps its line as it is drawn.
+//! In the model the carriageway lies at the node where its half of the road lies. At the end of the jog it lies where
+//! the map has it. Its edges are straight in between, so a corridor uses only the hull of two mapped sections. Two
+//! conditions must hold: both carriageways meet at the node (`network::Splits`), and the line bends less without the
+//! jog than with it. A road that bends the other way, or continues along its middle, keeps its line as drawn.
 
 use super::polyline::Polyline;
 use super::profile::Across;
 use super::taper::{Ramp, share};
 
-/// A jog begins at the node and is no shorter, metres.
+/// Shortest jog, metres. A jog begins at the node.
 const LEAST_REACH_M: f64 = 5.0;
-/// No jog is longer, metres.
+/// Longest jog, metres.
 const MOST_REACH_M: f64 = 100.0;
-/// No carriageway lies further from where its half of the road lies, and a smaller distance needs no care, metres.
+/// Range of lateral distances between a carriageway and its half of the road, metres. A smaller distance needs no
+/// correction, and a larger one is no jog.
 const SHIFT_M: std::ops::RangeInclusive<f64> = 0.3..=8.0;
-/// Looked at on both sides of a jog to see whether the line bends there, metres.
+/// Length examined on both sides of a jog for bends of the line, metres.
 const AROUND_M: f64 = 40.0;
-/// Beyond a jog the line that is smoothed goes over into the map's within so much, metres: as long as the waves that smoothing
-/// leaves in.
+/// Length beyond a jog over which the smoothed line returns to the map's line, metres. Smoothing keeps waves of this
+/// length.
 const FADE_M: f64 = 200.0;
-/// Vertices added where the line goes over, metres apart: a parabola leaves its chord by 1 cm there.
+/// Distance between vertices added where the line returns, metres. A parabola deviates by 1 cm from its chord there.
 const STEP_M: f64 = 10.0;
-/// A piece of line that shrinks to less than this share of itself has folded.
+/// A piece of line that shrinks below this share of its length has folded.
 const LEAST_SHARE: f64 = 0.3;
 
 /// A node where a two-way road meets one of its carriageways.
@@ -34,42 +36,43 @@ const LEAST_SHARE: f64 = 0.3;
 pub(crate) struct Split {
     /// Arc length along the line.
     pub(crate) at: f64,
-    /// The carriageway comes after the node.
+    /// Whether the carriageway comes after the node.
     pub(crate) ahead: bool,
-    /// All lanes of the direction of travel, across the line of the two-way road and of the carriageway.
+    /// All lanes of the direction of travel, across the line of the two-way road, and across the line of the
+    /// carriageway.
     pub(crate) two_way: Across,
     pub(crate) one_way: Across,
-    /// How far the road stays one-way, metres.
+    /// Length over which the road stays one-way, metres.
     pub(crate) one_way_m: f64,
-    /// Metres of taper a metre across.
+    /// Metres of taper along the road per metre across.
     pub(crate) ratio: f64,
 }
 
-/// A jog of the line that is not the road's.
+/// A jog of the map's line that the road does not have.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Jog {
     /// Arc length of the node.
     pub(crate) at: f64,
-    /// The jog lies after the node.
+    /// Whether the jog lies after the node.
     pub(crate) ahead: bool,
     pub(crate) reach_m: f64,
-    /// Where the carriageway's middle lies at the node, across the line, metres to the left.
+    /// Place of the carriageway's middle at the node, across the line, metres to the left.
     pub(crate) shift_m: f64,
 }
 
 impl Jog {
-    /// How far beyond the node, on the side of the carriageway.
+    /// Distance beyond the node, on the side of the carriageway.
     fn beyond(&self, u: f64) -> f64 {
         if self.ahead { u - self.at } else { self.at - u }
     }
 
-    /// Where the line without the jog lies beside the map's.
+    /// Lateral distance of the line without the jog from the map's line.
     fn aside(&self, u: f64) -> f64 {
         let beyond_m = self.beyond(u);
         -self.shift_m * ((beyond_m / self.reach_m).clamp(0.0, 1.0) - share((beyond_m - self.reach_m) / FADE_M))
     }
 
-    /// Places where the line needs vertices.
+    /// Arc lengths at which the line needs vertices.
     fn cuts(&self) -> impl Iterator<Item = f64> + '_ {
         let sign = if self.ahead { 1.0 } else { -1.0 };
         let steps = (FADE_M / STEP_M) as usize;
@@ -77,12 +80,12 @@ impl Jog {
     }
 }
 
-/// Vertices around a split, from the two-way road outwards: distance beyond the node, place.
+/// Vertices around a split, from the two-way road outwards: distance beyond the node, and position.
 type Outward = Vec<(f64, [f64; 2])>;
 
 impl Split {
-    /// The jog at a split, if the line has one: where the carriageway's place at the node and the end of the jog are such that
-    /// the line bends least.
+    /// The jog at a split, if the line has one. The carriageway's place at the node and the end of the jog are those
+    /// with which the line bends least.
     pub(crate) fn jog(&self, line: &Polyline) -> Option<Jog> {
         let (left_m, right_m) =
             (self.two_way.left_m - self.one_way.left_m, self.two_way.right_m - self.one_way.right_m);
@@ -96,7 +99,7 @@ impl Split {
             for reach_m in self.reaches(&outward, shift_m) {
                 let jog = Jog { at: self.at, ahead: self.ahead, reach_m, shift_m };
                 let bends = bending(&self.without(&jog, &outward));
-                // A little better is no better: the first of those alike counts.
+                // Improvements below 1e-6 are ignored, so the first of similar jogs counts.
                 if bends < drawn - 1e-4 && best.as_ref().is_none_or(|(least, _)| bends < least - 1e-6) {
                     best = Some((bends, jog));
                 }
@@ -105,7 +108,7 @@ impl Split {
         best.map(|(_, jog)| jog)
     }
 
-    /// Ends that the jog may have: a vertex, or once or twice the guideline's taper.
+    /// Candidate ends of the jog: the vertices, and once and twice the guideline's taper.
     fn reaches(&self, outward: &Outward, shift_m: f64) -> Vec<f64> {
         let most_m = MOST_REACH_M.min(self.one_way_m);
         let taper_m = self.ratio * shift_m.abs();
@@ -128,7 +131,7 @@ impl Split {
         outward
     }
 
-    /// The line with the jog taken out.
+    /// The line with the jog removed.
     fn without(&self, jog: &Jog, outward: &Outward) -> Outward {
         let mut points = outward.clone();
         let end = points.partition_point(|(beyond_m, _)| *beyond_m < jog.reach_m - 1e-6);
@@ -138,7 +141,7 @@ impl Split {
             let t = (jog.reach_m - from_m) / (to_m - from_m);
             points.insert(end, (jog.reach_m, [0, 1].map(|k| from[k] + t * (to[k] - from[k]))));
         }
-        // Left of the way outwards is right of travel where the carriageway lies behind.
+        // Outwards from the node, left becomes right of travel if the carriageway lies behind.
         let shift_m = if self.ahead { jog.shift_m } else { -jog.shift_m };
         let places: Vec<[f64; 2]> = points.iter().map(|(_, place)| *place).collect();
         for (i, (beyond_m, place)) in points.iter_mut().enumerate() {
@@ -150,7 +153,7 @@ impl Split {
     }
 }
 
-/// The sum of the squares of the angles at the vertices.
+/// The sum of the squared angles at the vertices.
 fn bending(points: &Outward) -> f64 {
     let direction = |a: [f64; 2], b: [f64; 2]| [b[0] - a[0], b[1] - a[1]];
     let turn = |w: &[(f64, [f64; 2])]| {
@@ -160,7 +163,7 @@ fn bending(points: &Outward) -> f64 {
     points.windows(3).map(|w| turn(w).powi(2)).sum()
 }
 
-/// To the left at vertex `i`, so long that both pieces beside it move by one.
+/// The left normal at vertex `i`, scaled so that both adjacent segments move by one.
 fn normal(points: &[[f64; 2]], i: usize) -> [f64; 2] {
     let of = |a: usize, b: usize| {
         let d = [points[b][0] - points[a][0], points[b][1] - points[a][1]];
@@ -170,7 +173,7 @@ fn normal(points: &[[f64; 2]], i: usize) -> [f64; 2] {
     let last = points.len() - 1;
     let (before, after) = (of(i.max(1) - 1, i.max(1)), of(i.min(last - 1), i.min(last - 1) + 1));
     let sum = [before[0] + after[0], before[1] + after[1]];
-    // Twice the cosine of half the turn, squared; a sharp corner is cut rather than drawn out.
+    // Twice the cosine of half the turn, squared. A sharp corner is cut, not extended.
     let squared = (sum[0] * sum[0] + sum[1] * sum[1]).max(2.0);
     sum.map(|s| 2.0 * s / squared)
 }
@@ -178,12 +181,12 @@ fn normal(points: &[[f64; 2]], i: usize) -> [f64; 2] {
 /// A line without its jogs.
 pub(crate) struct Relaid {
     pub(crate) line: Polyline,
-    /// Arc lengths along the map's line and along this one.
+    /// Arc lengths along the map's line and along this line.
     nodes: Vec<(f64, f64)>,
 }
 
 impl Relaid {
-    /// Lays a line again without the jogs; `None` if it would fold.
+    /// Builds the line without the jogs. `None` if it would fold.
     pub(crate) fn new(line: &Polyline, jogs: &[Jog]) -> Option<Self> {
         let aside = |u: f64| jogs.iter().map(|jog| jog.aside(u)).sum::<f64>();
         let mut cuts: Vec<f64> = jogs.iter().flat_map(Jog::cuts).filter(|u| (0.0..line.length()).contains(u)).collect();
@@ -205,7 +208,7 @@ impl Relaid {
         Some(relaid)
     }
 
-    /// `None` where the piece that ends there has folded. `along`: its direction as the map has it.
+    /// Adds a node. `along` is the direction of the map's line. `None` if the piece that ends there has folded.
     fn push(&mut self, u: f64, place: [f64; 2], along: [f64; 2]) -> Option<()> {
         let before = self.nodes.last().zip(self.line.points.last());
         let folded = before.is_some_and(|(&(from, _), last)| {
@@ -216,7 +219,7 @@ impl Relaid {
         (!folded).then_some(())
     }
 
-    /// Where a place of the map's line is on this one; beyond its ends as far beyond.
+    /// Arc length on this line of a place on the map's line, extended beyond both ends.
     pub(crate) fn at(&self, u: f64) -> f64 {
         let last = self.nodes.len().saturating_sub(2);
         let i = self.nodes.partition_point(|&(from, _)| from <= u).saturating_sub(1).min(last);
@@ -231,7 +234,7 @@ impl Relaid {
         }
     }
 
-    /// The place of the map's line across this one beyond a jog, for a profile about this line.
+    /// Ramps by which the map's line lies beside this line beyond a jog, for a profile about this line.
     pub(crate) fn back(&self, jog: &Jog) -> Vec<Ramp> {
         if jog.ahead {
             let from = self.at(jog.at + jog.reach_m);

@@ -1,6 +1,6 @@
-//! From a stroke to a corridor: metric frame, smoothest centreline within tolerance, width profile.
+//! From a stroke to a corridor: metric frame, smoothest centreline within a tolerance, width profile.
 //!
-//! A corridor is what `stet` certifies; it knows nothing of maps.
+//! `stet` certifies the corridor, which holds nothing of the map.
 
 mod band;
 mod centreline;
@@ -29,19 +29,19 @@ pub use stroke::stroke_corridor;
 
 use crate::verdict::UnknownReason;
 
-/// How corridors are made from map lines.
+/// Parameters of corridors made from map lines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Params {
-    /// How far the smoothed way line may be from the map's, metres.
+    /// Largest distance of the smoothed way line from the map's line, metres.
     pub tolerance_m: f64,
-    /// Subtracted from each side for what the map's own position is worth, metres.
+    /// Deducted from each side for errors of the map's position, metres.
     pub map_tolerance_m: f64,
-    /// Distance between stations, metres; met to within half a station over the whole.
+    /// Distance between stations, metres. The whole length is met to within half a station.
     pub spacing_m: f64,
-    /// Waves of the map's line longer than this are the road's, shorter ones the mapper's, as far as the tolerance
-    /// allows; metres.
+    /// Cut-off wavelength, metres. Longer waves of the map's line belong to the road. Shorter waves are the mapper's
+    /// and are smoothed away as far as the tolerance allows.
     pub cutoff_m: f64,
-    /// Driven round a closed stroke before the turn that counts, metres.
+    /// Length driven round a closed stroke before the counted turn, metres.
     pub lead_in_m: f64,
 }
 
@@ -56,45 +56,46 @@ impl Default for Params {
 pub struct EdgeSpan {
     /// Index into `Network::edges`.
     pub edge: u32,
-    /// Stations of the edge, both ends included in the neighbours too.
+    /// Stations of the edge. Neighbouring edges share the station at their node.
     pub stations: Range<usize>,
-    /// Smallest radius of the centreline on it, metres (infinite on a straight).
+    /// Smallest radius of the centreline on the edge, metres (infinite on a straight).
     pub min_radius_m: f64,
-    /// Largest distance of the smoothed way line from the map polyline, metres; where carriageways meet, from the polyline without
-    /// its jog.
+    /// Largest distance of the smoothed way line from the map's polyline, metres. Where carriageways meet, the polyline
+    /// is taken without its jog.
     pub centreline_deviation_m: f64,
-    /// Why nothing can be said of this edge, though its stroke has a corridor.
+    /// Why this edge is unknown although its stroke has a corridor.
     pub unknown: Option<UnknownReason>,
 }
 
-/// A stroke's corridor, and which stations belong to which edge. Stations before the first span are approach: driven,
-/// not certified.
+/// A stroke's corridor and the stations of each edge. Stations before the first span are approach: they are driven, not
+/// certified.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StrokeCorridor {
     /// The corridor in the stroke's metric frame.
     pub corridor: Corridor,
-    /// In driving order.
+    /// The edges' spans in driving order.
     pub spans: Vec<EdgeSpan>,
-    /// Where the strip changes from one cross section to the next, in driving order.
+    /// Changes from one cross section to the next, in driving order.
     pub tapers: Vec<Taper>,
 }
 
-/// Where a strip changes its width or its place between two cross sections.
+/// A change of a strip's width or lateral place between two cross sections.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Taper {
-    /// Stations along which it changes.
+    /// Stations of the change.
     pub stations: Range<usize>,
-    /// Along the road, metres.
+    /// Length along the road, metres.
     pub length_m: f64,
-    /// Of the strips before and after it, metres.
+    /// Widths of the strips before and after, metres.
     pub widths_m: [f64; 2],
-    /// How far the strip moves to the left across the line along it; at a split, how far the line's jog would have moved it.
+    /// Lateral move of the strip across the line, metres to the left. At a split, the move that the line's jog would
+    /// have caused.
     pub shift_m: f64,
-    /// What changes.
+    /// Cause of the change.
     pub cause: TaperCause,
 }
 
-/// Why there is a taper.
+/// Cause of a taper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TaperCause {
     /// Lanes or widths change.

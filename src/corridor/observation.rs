@@ -1,37 +1,38 @@
-//! What the smoothed curve is held against: the polyline, twice a cell and at every vertex.
+//! Observations: places where the smoothed curve is compared with the polyline, twice per cell and at every vertex.
 //!
-//! Between two observations the polyline is one straight, so the curve's distance from it there can be bounded. Chords of a
-//! bend stand on the inside of the road: the curve is drawn to the arc they are likely to be chords of.
+//! Between two observations the polyline is straight, so the curve's distance from it can be bounded. Chords of a bend
+//! lie inside the road. The curve is therefore drawn to the arc that the chords probably belong to.
 
 use super::band::Band;
 use super::polyline::Polyline;
 use super::spline::{basis, locate};
 
-/// Share of the tolerance by which a chord may be taken for the chord of a bend.
+/// Share of the tolerance up to which a chord may be taken for the chord of a bend.
 const MOST_BULGE: f64 = 0.8;
-/// Base weight of an observation: two a knot.
+/// Base weight of an observation; there are two per knot.
 pub(crate) const BASE: f64 = 0.5;
 
-/// A place where the curve is held against the polyline: twice a cell, and at every vertex.
+/// A place where the curve is compared with the polyline.
 pub(crate) struct Observation {
     pub(crate) u: f64,
     pub(crate) cell: usize,
-    /// Weights of the four active coefficients in the value, and in the derivative.
+    /// Weights of the four active coefficients in the value, then in the derivative.
     pub(crate) value: [f64; 4],
     pub(crate) slope: [f64; 4],
     /// Polyline minus reference curve, metres.
     pub(crate) target: [f64; 2],
-    /// Where the road is likely to be beside the chord: see [`bulge`].
+    /// Probable place of the road beside the chord: see [`bulge`].
     pub(crate) bulge: [f64; 2],
-    /// Slope of polyline minus reference on the piece that begins here; [`Observation::slope_before`] for the one that ends.
+    /// Slope of polyline minus reference on the piece that begins here. [`Observation::slope_before`] is that of the
+    /// piece that ends here.
     pub(crate) slope_after: [f64; 2],
     pub(crate) slope_before: [f64; 2],
-    /// Weight beyond the base weight.
+    /// Weight added to the base weight.
     pub(crate) extra: f64,
 }
 
 impl Observation {
-    /// Curve minus polyline.
+    /// Curve minus polyline, metres.
     pub(crate) fn error(&self, difference: &[[f64; 2]]) -> [f64; 2] {
         combine(&self.value, self.cell, difference, self.target)
     }
@@ -52,7 +53,7 @@ pub(crate) fn squared(v: [f64; 2]) -> f64 {
     v[0] * v[0] + v[1] * v[1]
 }
 
-/// Not `hypot`, which took a third of the whole stage's time; nothing here is near overflow.
+/// `hypot` took a third of the stage's time, and nothing here is near overflow.
 pub(crate) fn norm(v: [f64; 2]) -> f64 {
     squared(v).sqrt()
 }
@@ -79,8 +80,8 @@ pub(crate) fn reference(line: &Polyline, cells: usize, knot: f64) -> Vec<[f64; 2
         .collect()
 }
 
-/// Curvature of the road along each segment, as far as both its ends agree on it, 1/m: vertices stand on the road,
-/// chords inside its bends. Limited so that the bulge stays well inside the tube.
+/// Curvature of the road along each segment (1/m), as far as both ends agree on it. Vertices lie on the road, and
+/// chords lie inside its bends. The curvature is limited so that the bulge stays well inside the tube.
 fn bends(line: &Polyline, tolerance_m: f64) -> Vec<f64> {
     let segments = line.at.len() - 1;
     let length = |i: usize| line.at[i + 1] - line.at[i];
@@ -100,7 +101,7 @@ fn bends(line: &Polyline, tolerance_m: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The arc of segment `i`'s bend beside its chord, metres.
+/// Offset of segment `i`'s arc from its chord at arc length `u`, metres.
 fn bulge(line: &Polyline, i: usize, bend: f64, u: f64) -> [f64; 2] {
     let direction = line.direction(i);
     let out = 0.5 * bend * (u - line.at[i]) * (line.at[i + 1] - u);

@@ -1,9 +1,9 @@
-//! The width profile: from each edge's strip to two C² curves that never leave the strips.
+//! The width profile: two C² curves, made from the edges' strips, that never leave the strips.
 //!
-//! Left and right edge are cubic B-splines whose every coefficient is bounded by the narrowest strip in its reach; a
-//! B-spline being a convex mean, the corridor at every station is inside what that station's edge has (its strip; where
-//! the strip moves sideways, along a taper also the surface it moves across). No width is made up: nowhere is the corridor
-//! wider than that edge's strip, but for a lane that changes places within the lanes of its direction.
+//! Left and right edge are cubic B-splines. The narrowest strip in a coefficient's reach bounds the coefficient. A
+//! B-spline is a convex mean of its coefficients, so at every station the corridor lies inside the edge's strip there.
+//! There are two exceptions: a taper may use the surface that the strip moves across, and a lane may change places
+//! within the lanes of its direction. No width is invented.
 
 use super::spline::Spline;
 use super::taper::{Ramp, take_jumps};
@@ -46,13 +46,13 @@ pub(crate) struct Stretch {
     pub(crate) to: f64,
     /// What the vehicle may use.
     pub(crate) strip: Across,
-    /// The lanes of its direction, within which its strip may shift into another; contains `strip`.
+    /// The lanes of the direction, within which the strip may shift. Contains `strip`.
     pub(crate) shift: Across,
-    /// What is paved: tapers lie within it; contains `shift`.
+    /// The paved surface. Tapers lie within it. Contains `shift`.
     pub(crate) surface: Across,
-    /// Vehicles go both ways here.
+    /// Whether vehicles drive both ways here.
     pub(crate) two_way: bool,
-    /// Metres of taper a metre across.
+    /// Metres of taper along the road per metre across.
     pub(crate) ratio: f64,
 }
 
@@ -63,23 +63,24 @@ pub(crate) struct Gap {
     pub(crate) room: Across,
 }
 
-/// Left and right edge and the corridor's centreline across the way's line: `[left, right, middle]`.
+/// Left edge, right edge and centreline of the corridor across the way's line: `[left, right, middle]`.
 pub(crate) type Profile = Spline<3>;
 
-/// Knots of the profile: a narrow place reaches four of them to each side.
+/// Knot spacing of the profile, metres. A narrow place affects four knots to each side.
 pub(crate) const KNOT_M: f64 = 2.5;
-/// A corridor is never narrower than this: no vehicle fits, but left stays left of right.
+/// Least width of a corridor, metres. No vehicle fits, but left stays left of right.
 pub(crate) const LEAST_WIDTH_M: f64 = 0.2;
 /// Half of a narrow place's own length, metres.
 const GAP_HALF_M: f64 = 0.5;
-/// Coefficients to each side over which strips are eroded, and then smoothed by two running means of half the reach: with a
-/// coefficient's own four knots, a change of strip is spread over 24 knots, 60 m, all inside the wider side.
+/// Coefficients to each side over which strips are eroded. Two running means of half that reach then smooth them. With
+/// a coefficient's own four knots, a change of strip is spread over 24 knots (60 m), all inside the wider side.
 const REACH: usize = 10;
-/// That length, metres.
+/// Length over which a change of strip is spread, metres.
 pub(crate) const CHANGE_M: f64 = (2 * REACH + 4) as f64 * KNOT_M;
 
-/// The widest smooth profile inside the stretches, which follow each other from 0 to the last one's end, about the line that
-/// lies `aside` of the stretches' own; and the tapers along which the strip moves over.
+/// The widest smooth profile inside the stretches, which follow each other from 0 to the last one's end. The profile
+/// refers to the line that lies `aside` of the stretches' own line. Also returns the tapers along which the strip
+/// moves.
 pub(crate) fn profile(stretches: &[Stretch], aside: &[Ramp], gaps: &[Gap]) -> (Profile, Vec<Ramp>) {
     let length = stretches.last().map_or(0.0, |s| s.to);
     let cells = ((length / KNOT_M).ceil() as usize).max(1);
@@ -88,7 +89,7 @@ pub(crate) fn profile(stretches: &[Stretch], aside: &[Ramp], gaps: &[Gap]) -> (P
     let tapers = take_jumps(&mut in_line);
     let limits = cell_limits(&with_shifts(&in_line, knot_m), cells, knot_m, |s| s.strip);
     let mut edges = tapered(&limits);
-    // The vehicle lines up for a narrow place over a whole taper, though the road narrows only there.
+    // The vehicle lines up for a narrow place over a whole taper, although the road narrows only at the place.
     let mut lined_up = if gaps.is_empty() {
         edges.clone()
     } else {
@@ -114,11 +115,11 @@ pub(crate) fn profile(stretches: &[Stretch], aside: &[Ramp], gaps: &[Gap]) -> (P
     (Spline { knot_m, coefficients }, tapers)
 }
 
-/// Moves coefficients by what the ramps come to at the middle of their reach.
+/// Moves each coefficient by the ramps' sum at the middle of its reach.
 fn move_by(edges: &mut [[f64; 2]], ramps: &[Ramp], knot_m: f64) {
     let middle = |k: usize| (k as f64 - 1.0) * knot_m;
     let index = |u: f64| ((u / knot_m + 1.0).ceil().max(0.0) as usize).min(edges.len());
-    // What every ramp that has ended comes to is carried along: a long stroke has many.
+    // The sum of ended ramps is carried along, because a long stroke has many ramps.
     let mut moved_m = vec![0.0; edges.len()];
     let mut ended_m = vec![0.0; edges.len() + 1];
     for ramp in ramps {
@@ -149,8 +150,8 @@ fn apart(left: f64, right: f64, middle: f64) -> [f64; 3] {
     [left, right, middle.clamp(right + half, left - half)]
 }
 
-/// Adds, around every place where the strip shifts sideways and no taper fits, the strip it shifts from or to, as far as the
-/// lanes of its direction allow. Without it, two strips 1.75 m apart would meet in a corridor of half a lane.
+/// Around every place where the strip shifts sideways without a taper, adds the strip before or after the shift, as far
+/// as the lanes of the direction allow. Otherwise two strips 1.75 m apart would meet in a corridor of half a lane.
 fn with_shifts(stretches: &[Stretch], knot_m: f64) -> Vec<Stretch> {
     let mut out = stretches.to_vec();
     for pair in stretches.windows(2) {
@@ -158,7 +159,7 @@ fn with_shifts(stretches: &[Stretch], knot_m: f64) -> Vec<Stretch> {
         if a.strip.within(b.strip) || b.strip.within(a.strip) {
             continue;
         }
-        // As far as a change reaches: then both edges move over side by side, at full width.
+        // As long as a change, so that both edges move side by side at full width.
         let length = (2 * REACH + 4) as f64 * knot_m;
         let after = a.strip.within(b.shift);
         if after || !b.strip.within(a.shift) {
@@ -191,7 +192,7 @@ fn allow(stretches: &mut Vec<Stretch>, from: f64, to: f64, strip: Across) {
     *stretches = out;
 }
 
-/// The narrowest of every cell, `[left, right]`.
+/// The narrowest limits of every cell, `[left, right]`.
 fn cell_limits(stretches: &[Stretch], cells: usize, knot_m: f64, of: impl Fn(&Stretch) -> Across) -> Vec<[f64; 2]> {
     let mut limits = vec![[f64::INFINITY, f64::NEG_INFINITY]; cells];
     for s in stretches {
@@ -215,8 +216,8 @@ fn narrowest(limits: &[[f64; 2]]) -> [f64; 2] {
     limits.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |m, l| [m[0].min(l[0]), m[1].max(l[1])])
 }
 
-/// Erodes over ±REACH, then takes two running means over ±REACH/2 each: every mean is of values that are each within the
-/// limits here, so the result is.
+/// Erodes over ±REACH, then takes two running means over ±REACH/2 each. Every mean is of values within the limits, so
+/// the result is within the limits too.
 fn tapered(limits: &[[f64; 2]]) -> Vec<[f64; 2]> {
     if limits.windows(2).all(|w| w[0] == w[1]) {
         return vec![limits[0]; limits.len() + 3];
@@ -228,7 +229,7 @@ fn tapered(limits: &[[f64; 2]]) -> Vec<[f64; 2]> {
     running_mean(&running_mean(&eroded, REACH / 2), REACH / 2)
 }
 
-/// Mean over ±`half`, the ends repeated beyond themselves.
+/// Mean over ±`half`; the end values are repeated.
 fn running_mean(values: &[[f64; 2]], half: usize) -> Vec<[f64; 2]> {
     let last = values.len() - 1;
     let count = (2 * half + 1) as f64;
@@ -236,7 +237,7 @@ fn running_mean(values: &[[f64; 2]], half: usize) -> Vec<[f64; 2]> {
         .map(|k| {
             let at = |i: usize| values[(k + i).saturating_sub(half).min(last)];
             let first = at(0);
-            // Differences from the first keep a constant constant to the last bit.
+            // Summing differences from the first value keeps a constant exactly constant.
             let sum =
                 (1..=2 * half).map(at).fold([0.0; 2], |s, v| [s[0] + (v[0] - first[0]), s[1] + (v[1] - first[1])]);
             [first[0] + sum[0] / count, first[1] + sum[1] / count]
@@ -260,8 +261,8 @@ fn with_gaps(mut limits: Vec<[f64; 2]>, gaps: &[Gap], knot_m: f64) -> Vec<[f64; 
     limits
 }
 
-/// Pulls the coefficients in so that the profile is inside each gap along its length: on a cell the profile is at most the
-/// largest of its four coefficients, so each gives up by how much that is too large.
+/// Pulls the coefficients in until the profile is inside each gap along its length. On a cell the profile is at most
+/// the largest of its four coefficients, so each coefficient gives up the excess.
 fn narrow(coefficients: &mut [[f64; 2]], gaps: &[Gap], knot_m: f64) {
     let mut give_up = vec![[0.0_f64; 2]; coefficients.len()];
     for gap in gaps {
@@ -280,10 +281,10 @@ fn narrow(coefficients: &mut [[f64; 2]], gaps: &[Gap], knot_m: f64) {
     }
 }
 
-/// Moves the profile onto the line itself where its middle would run round the inside of a bend too tight for it
-/// (κ·o > `most`) or where the line folds; gives the arc lengths where it would.
+/// Moves the profile onto the line where its middle would run round the inside of a bend too tight for it (κ·o >
+/// `most`), or where the line folds. Returns the arc lengths of these places.
 ///
-/// Those places get no certificate; the corridor only has to stay a curve there.
+/// These places get no certificate, but the corridor must stay a curve there.
 pub(crate) fn limit_offset(profile: &mut Profile, line: &Spline<2>, most: f64, least_speed: f64) -> Vec<f64> {
     let bad: Vec<f64> = (0..=2 * line.cells())
         .map(|i| 0.5 * i as f64 * line.knot_m)

@@ -1,20 +1,20 @@
-//! From a centreline and a profile about it to stations a uniform arc length apart.
+//! From a centreline and a profile about it to stations at uniform arc length.
 //!
-//! The corridor's centreline runs across the way's line where the profile says: an offset curve. Heading and curvature
-//! come from derivatives in closed form, not from differences of positions.
+//! The corridor's centreline is an offset curve of the way's line, as the profile says. Heading and curvature come from
+//! derivatives in closed form, not from differences of positions.
 
 use super::Corridor;
 use super::profile::Profile;
 use super::spline::Jet;
 
-/// Below this factor 1 − κ·o the offset curve is about to fold, and nothing is said of the edge.
+/// Below this factor 1 − κ·o the offset curve is about to fold, and the edge is unknown.
 pub(crate) const LEAST_OFFSET_FACTOR: f64 = 0.3;
 
 /// A parametrised curve with edges across it.
 pub(crate) struct Track<'c, C> {
-    /// Position and derivatives.
+    /// Position and derivatives of the curve.
     pub(crate) curve: &'c C,
-    /// Edges and centreline across it, over the same parameter.
+    /// Edges and centreline across the curve, over the same parameter.
     pub(crate) profile: &'c Profile,
 }
 
@@ -30,8 +30,8 @@ struct Point {
 }
 
 impl<C: Fn(f64) -> Jet<2>> Track<'_, C> {
-    /// Offset curve C = c + o·n of c with unit tangent t, unit normal n: with speed v = |c′|, a = v(1 − κo) and b = o′,
-    /// C′ = a·t + b·n and C″ = (a′ − bκv)·t + (aκv + b′)·n.
+    /// The offset curve is C = c + o·n, with t and n the unit tangent and normal of c. Let v = |c′| be the speed, a =
+    /// v(1 − κo) and b = o′. Then C′ = a·t + b·n and C″ = (a′ − bκv)·t + (aκv + b′)·n.
     fn at(&self, u: f64) -> Point {
         let [p, d1, d2, d3] = (self.curve)(u);
         let [[left, right, o], [.., b], [.., b1], _] = self.profile.at(u);
@@ -63,7 +63,7 @@ impl<C: Fn(f64) -> Jet<2>> Track<'_, C> {
         (along * along + b * b).sqrt()
     }
 
-    /// Stations about `spacing_m` apart for parameters `from..=to`; also the arc length at steps of the parameter.
+    /// Stations about `spacing_m` apart for parameters `from..=to`, and the arc length at steps of the parameter.
     pub(crate) fn resample(&self, from: f64, to: f64, spacing_m: f64) -> (Corridor, ArcLength) {
         let arc = ArcLength::measure(from, to, |u| self.speed(u));
         let steps = ((arc.total() / spacing_m).round() as usize).max(1);
@@ -97,13 +97,13 @@ impl<C: Fn(f64) -> Jet<2>> Track<'_, C> {
     }
 }
 
-/// Arc length as a function of a parameter, tabulated at steps near half a metre, and back: round a sharp corner the speed changes
-/// within a metre, and stations that are not where their arc length is would not follow from each other.
+/// Arc length as a function of a parameter, and its inverse, from a table with steps of about half a metre. Round a
+/// sharp corner the speed changes within a metre, and stations at a wrong arc length would not follow from each other.
 #[derive(Debug, Clone)]
 pub(crate) struct ArcLength {
     from: f64,
     step: f64,
-    /// Arc length at the nodes, and the speed there.
+    /// Arc length and speed at the nodes.
     nodes: Vec<(f64, f64)>,
 }
 
@@ -131,7 +131,7 @@ impl ArcLength {
         self.nodes.last().map_or(0.0, |n| n.0)
     }
 
-    /// Arc length at a parameter: the cubic with the table's values and speeds.
+    /// Arc length at a parameter, by the cubic with the table's values and speeds.
     pub(crate) fn at(&self, u: f64) -> f64 {
         let scaled = ((u - self.from) / self.step).clamp(0.0, (self.nodes.len() - 1) as f64);
         let i = (scaled as usize).min(self.nodes.len() - 2);
@@ -139,7 +139,7 @@ impl ArcLength {
         hermite(scaled - i as f64, a.0, b.0, a.1 * self.step, b.1 * self.step)
     }
 
-    /// Parameter at an arc length; `hint` moves forward with it.
+    /// Parameter at an arc length. `hint` moves forward with it.
     pub(crate) fn parameter(&self, s: f64, hint: &mut usize) -> f64 {
         while *hint + 2 < self.nodes.len() && self.nodes[*hint + 1].0 <= s {
             *hint += 1;

@@ -1,9 +1,9 @@
 //! The smoothest C² curve within a tolerance of a polyline.
 //!
-//! A uniform cubic B-spline c(u), u the polyline's arc length, minimises ∫|c − p|² + λ∫|c‴|² + Σ wⱼ|c(uⱼ) − p(uⱼ)|². λ
-//! sets the cut-off wavelength; the weights wⱼ start at nothing and rise only where the curve would leave the tube, until
-//! none does. Promised: the deviation reported for a piece bounds the distance of *every* point of the curve there
-//! from the polyline. Where even the finest knots cannot stay in the tube, that bound is above the tolerance.
+//! A uniform cubic B-spline c(u), with u the polyline's arc length, minimises ∫|c − p|² + λ∫|c‴|² + Σ wⱼ|c(uⱼ) −
+//! p(uⱼ)|². λ sets the cut-off wavelength. The weights wⱼ start at zero and rise only where the curve would leave the
+//! tube, until it leaves it nowhere. The deviation reported for a piece bounds the distance of *every* point of the
+//! curve there from the polyline. If even the finest knots cannot stay in the tube, that bound exceeds the tolerance.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -13,12 +13,12 @@ use super::observation::{BASE, Observation, norm, observations, observe, referen
 use super::polyline::Polyline;
 use super::spline::Spline;
 
-/// What is asked of the curve.
+/// What the curve must satisfy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Smoothing {
-    /// Greatest distance from the polyline, metres.
+    /// Largest distance from the polyline, metres.
     pub(crate) tolerance_m: f64,
-    /// Wavelengths above it survive where the tube does not decide, metres.
+    /// Cut-off wavelength, metres: longer waves survive where the tube does not bind.
     pub(crate) cutoff_m: f64,
 }
 
@@ -27,12 +27,12 @@ pub(crate) struct Smoothing {
 pub(crate) struct Smoothed {
     /// The curve, over the polyline's arc length.
     pub(crate) curve: Spline<2>,
-    /// Where each piece ends (arc length), and how far the curve is from the polyline on it at most, metres.
+    /// End of each piece (arc length), and a bound on the curve's distance from the polyline on the piece, metres.
     pub(crate) pieces: Vec<(f64, f64)>,
 }
 
 impl Smoothed {
-    /// Bound on the distance from the polyline between `from` and `to`.
+    /// Bound on the distance from the polyline between `from` and `to`, metres.
     pub(crate) fn deviation_m(&self, from: f64, to: f64) -> f64 {
         let first = self.pieces.partition_point(|&(end, _)| end <= from);
         let beyond = self.pieces.partition_point(|&(end, _)| end < to);
@@ -44,23 +44,23 @@ impl Smoothed {
     }
 }
 
-/// Knot spacings tried one after the other, metres: the first holds hairpins of 8 m radius within 0.5 m; the others are for
+/// Knot spacings to try in turn, metres. The first one holds hairpins of 8 m radius within 0.5 m. The others are for
 /// corners that the mapper drew sharp.
 const KNOTS_M: [f64; 3] = [4.0, 2.0, 1.0];
-/// A raised weight moves the curve this far to each side; farther, the fit is left as it is. Metres.
+/// Distance up to which a raised weight moves the curve, metres. The fit beyond it stays unchanged.
 const WINDOW_M: f64 = 150.0;
-/// Rounds of raising weights before finer knots are tried; most lines need three to six.
+/// Rounds of raising weights before finer knots are tried. Most lines need three to six.
 const ROUNDS: usize = 40;
-/// Greatest weight, in units of λ: the curve then follows its observations to a fraction of a knot, and the matrix is
+/// Largest weight, in units of λ. The curve then follows its observations to a fraction of a knot, and the matrix is
 /// still far from singular in double precision.
 const HEAVIEST: f64 = 1e7;
-/// After some rounds, each pushes this much harder than the one before: at a sharp corner weights must rise 1e11-fold,
-/// and the last centimetres would take a hundred rounds.
+/// After this many rounds each round pushes harder than the one before by the factor `PUSH`. At a sharp corner weights
+/// must rise 1e11-fold, and the last centimetres would take a hundred rounds.
 const GENTLE_ROUNDS: usize = 10;
 const PUSH: f64 = 1.4;
-/// The data stays this far inside the tube, so that the bound between observations can be inside too.
+/// Share of the tolerance that the observations must keep, so that the bound between observations can keep the whole.
 const MARGIN: f64 = 0.95;
-/// Extra weight of both ends, in units of the base weight a knot: they move a fifth as far.
+/// Extra weight of both ends, in units of a knot's base weight. The ends then move a fifth as far.
 const END_WEIGHT: f64 = 20.0;
 
 /// Smooths a polyline of at least two vertices.
@@ -82,15 +82,15 @@ struct Fit {
     asked: Smoothing,
     knot: f64,
     observations: Vec<Observation>,
-    /// Penalty and base weights, which no round changes.
+    /// Penalty and base weights, which stay the same in all rounds.
     base: Band,
     base_rhs: Vec<[f64; 2]>,
-    /// Coefficients of the reference: the polyline at the knots. Unknown is the difference, so that a straight stays
-    /// straight to the last bit and no digits go to large coordinates.
+    /// Coefficients of the reference: the polyline at the knots. The unknown is the difference, so a straight stays
+    /// straight to the last bit, and large coordinates cost no digits.
     reference: Vec<[f64; 2]>,
-    /// The solution so far: coefficients minus reference.
+    /// The current solution: coefficients minus reference.
     difference: Vec<[f64; 2]>,
-    /// Distance from the polyline at each observation, and a bound on it from each to the next, metres.
+    /// Distance from the polyline at each observation, and a bound on it from each observation to the next, metres.
     errors: Vec<f64>,
     pieces: Vec<f64>,
 }
@@ -117,7 +117,7 @@ impl Fit {
         fit
     }
 
-    /// One over λ's unit: the base weight of a whole knot is 1.
+    /// The weight of the penalty; the base weight of a whole knot is 1.
     fn stiffness(&self) -> f64 {
         (self.asked.cutoff_m / (TAU * self.knot)).powi(6)
     }
@@ -162,7 +162,7 @@ impl Fit {
         Smoothed { curve: Spline { knot_m: self.knot, coefficients }, pieces }
     }
 
-    /// Solves for the coefficients of a window, those around it being what they are.
+    /// Solves for the coefficients of a window and keeps those around it.
     fn solve(&mut self, window: Range<usize>) {
         let Range { start, end } = window;
         let (low, high) = (start.saturating_sub(3), (end + 3).min(self.difference.len()));
@@ -195,11 +195,11 @@ impl Fit {
         before(cells.start)..before(cells.end)
     }
 
-    /// Raises the weights outside the tube by the third power of the excess; gives the windows that this changes.
+    /// Raises the weights outside the tube by the third power of the excess. Returns the windows that this changes.
     ///
-    /// A weight raised w-fold over a stretch shortens the cut-off there by w^(1/6), and what smoothing cuts off a bend goes
-    /// with the cut-off's square: the third power is Newton's step. Measured on a hairpin of 15 m: three rounds, where raising
-    /// only the worst places, by the law of a point load, was not done after forty.
+    /// A weight raised w-fold over a stretch shortens the cut-off there by w^(1/6). What smoothing cuts off a bend is
+    /// proportional to the cut-off's square, so the third power is Newton's step. On a hairpin of 15 m it took three
+    /// rounds. Raising only the worst places, by the law of a point load, did not finish in forty.
     fn raise(&mut self, push: f64) -> Vec<Range<usize>> {
         let reach = (WINDOW_M / self.knot).ceil() as usize;
         let (n, heaviest) = (self.difference.len(), HEAVIEST * self.stiffness().max(1.0));
@@ -221,8 +221,8 @@ impl Fit {
         windows
     }
 
-    /// Deviations of a window's curve. Per piece between observations the error is one cubic, so the norms of its four
-    /// Bézier points bound it.
+    /// Measures the deviations of a window's curve. Between two observations the error is one cubic, so the norms of
+    /// its four Bézier points bound it.
     fn measure(&mut self, window: Range<usize>) {
         let Range { start, end } = self.observed(window.start.saturating_sub(4)..window.end + 1);
         let Some((first, rest)) = self.observations[start..end].split_first() else { return };

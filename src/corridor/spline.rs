@@ -1,4 +1,4 @@
-//! Cubic splines: uniform B-splines for what is smoothed, an interpolant for what is given exactly.
+//! Cubic splines: uniform B-splines for smoothing, and an interpolant for exact points.
 //!
 //! Both are C² with a third derivative that is constant between knots. A B-spline's value is a convex mean of four
 //! coefficients, so a bound on the coefficients over a cell bounds the curve there.
@@ -9,9 +9,9 @@ pub(crate) type Jet<const N: usize> = [[f64; N]; 4];
 /// A uniform cubic B-spline over `0..=knot_m · cells`; `cells + 3` coefficients.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Spline<const N: usize> {
-    /// Distance between knots.
+    /// Distance between knots, metres.
     pub(crate) knot_m: f64,
-    /// At least four.
+    /// At least four coefficients.
     pub(crate) coefficients: Vec<[f64; N]>,
 }
 
@@ -21,7 +21,7 @@ impl<const N: usize> Spline<N> {
         self.coefficients.len().saturating_sub(3)
     }
 
-    /// Value and derivatives at `u`; outside, the first or last cell's cubic goes on.
+    /// Value and derivatives at `u`. Outside the range the first or last cell's cubic continues.
     pub(crate) fn at(&self, u: f64) -> Jet<N> {
         let (cell, t) = locate(u, self.knot_m, self.cells());
         let mut out = [[0.0; N]; 4];
@@ -39,8 +39,8 @@ impl<const N: usize> Spline<N> {
     }
 }
 
-/// `basis(t)[d][k]`: the d-th derivative, in units of the knot spacing, of the basis function that belongs to the k-th
-/// of the four coefficients active in a cell, at fraction `t` of it.
+/// `basis(t)[d][k]` is the d-th derivative (in units of the knot spacing) of the basis function of the k-th of a cell's
+/// four active coefficients, at fraction `t` of the cell.
 pub(crate) fn basis(t: f64) -> [[f64; 4]; 4] {
     let u = 1.0 - t;
     let (t2, u2) = (t * t, u * u);
@@ -52,14 +52,14 @@ pub(crate) fn basis(t: f64) -> [[f64; 4]; 4] {
     ]
 }
 
-/// Where `u` lies on a grid of `cells` cells: the cell, and the fraction of it; the last cell includes its end.
+/// The cell of `u` on a grid of `cells` cells, and the fraction of the cell. The last cell includes its end.
 pub(crate) fn locate(u: f64, knot_m: f64, cells: usize) -> (usize, f64) {
     let scaled = u / knot_m;
     let cell = (scaled.max(0.0) as usize).min(cells.saturating_sub(1));
     (cell, scaled - cell as f64)
 }
 
-/// The cubic spline through given points, parametrised by chord length; not-a-knot ends, so that a circle's ends are
+/// The cubic spline through given points, parametrised by chord length. Its ends are not-a-knot, so a circle's ends are
 /// as round as its middle.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Interpolant {
@@ -70,7 +70,7 @@ pub(crate) struct Interpolant {
 }
 
 impl Interpolant {
-    /// `at` strictly increasing, as long as `points`, at least two.
+    /// `at` must be strictly increasing and as long as `points`, with at least two entries.
     pub(crate) fn through(points: &[[f64; 2]], at: &[f64]) -> Self {
         Self { at: at.to_vec(), points: points.to_vec(), second: second_derivatives(points, at) }
     }
@@ -92,8 +92,8 @@ impl Interpolant {
     }
 }
 
-/// Second derivatives at the knots. Not-a-knot eliminated into the first and last inner equations; two points give a
-/// straight, three the parabola through them.
+/// Second derivatives at the knots. Not-a-knot conditions are eliminated into the first and last inner equations. Two
+/// points give a straight, three points the parabola through them.
 fn second_derivatives(points: &[[f64; 2]], at: &[f64]) -> Vec<[f64; 2]> {
     let n = points.len();
     let mut second = vec![[0.0; 2]; n];
@@ -107,7 +107,7 @@ fn second_derivatives(points: &[[f64; 2]], at: &[f64]) -> Vec<[f64; 2]> {
         return vec![rhs(1).map(|r| r / (3.0 * (h[0] + h[1]))); 3];
     }
     let (first, last) = (h[0] / h[1], h[n - 2] / h[n - 3]);
-    // m_0 = (1 + first)·m_1 − first·m_2, likewise at the end.
+    // m_0 = (1 + first)·m_1 − first·m_2, and likewise at the end.
     let mut upper = vec![0.0; n];
     for i in 1..n - 1 {
         let (mut below, mut diagonal, mut above) = (h[i - 1], 2.0 * (h[i - 1] + h[i]), h[i]);
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn a_b_spline_reproduces_a_cubic_with_its_derivatives() {
-        // Blossom of u³ at (k−1, k, k+1)·h: the coefficients are (k³ − k)·h³, k from −1.
+        // The blossom of u³ at (k−1, k, k+1)·h gives the coefficients (k³ − k)·h³, with k from −1.
         let h = 2.5_f64;
         let coefficients = (-1..=13).map(f64::from).map(|k| [(k * k * k - k) * h * h * h]).collect();
         let spline = Spline { knot_m: h, coefficients };

@@ -1,7 +1,7 @@
-//! A stroke of the network becomes a corridor, and its edges spans of stations.
+//! A stroke of the network becomes a corridor, and its edges become spans of stations.
 //!
-//! Certified is only what lies between a stroke's first and last edge; approach, lead-in and tail are driven. An edge that the
-//! extract cuts is entered straight, like any first edge. Left out: turns off the stroke, which have corridors of their own.
+//! Only the part between a stroke's first and last edge is certified. Approach, lead-in and tail are driven. An edge
+//! that the extract cuts is entered straight, like any first edge. Turns off the stroke have corridors of their own.
 
 use super::course::{Course, Link, Piece, Room, closed_course, open_course};
 use super::frame::Frame;
@@ -16,21 +16,22 @@ use crate::osm::LonLat;
 use crate::osm::facts::{Direction, Oneway, Policy, Strip};
 use crate::verdict::UnknownReason;
 
-/// Nothing shorter has a direction worth the name, metres.
+/// Shortest stroke with a usable direction, metres.
 const LEAST_LENGTH_M: f64 = 2.0;
-/// Shorter edges carry no station of their own, metres.
+/// Shorter edges get no station of their own, metres.
 const LEAST_EDGE_M: f64 = 0.01;
-/// |c′| is 1 but for smoothing; below this the line folds back on itself.
+/// |c′| is about 1. Below this value the line folds back on itself.
 const LEAST_SPEED: f64 = 0.3;
-/// Widths that differ by less make no taper worth a name, metres.
+/// Least change of width that is listed as a taper, metres.
 const LEAST_TAPER_M: f64 = 0.05;
-/// |κ|·half-width from which normals as good as cross inside the corridor.
+/// |κ|·half-width from which normals nearly cross inside the corridor.
 const MOST_CROSSING: f64 = 0.98;
 
 /// The corridor of a stroke, in a metric frame of its own.
 ///
-/// Fails only where nothing can be said of any of its edges: shorter than two metres, folded, wider than a metric frame
-/// (`Geometry`), or without any width (`Width`). One bad edge among good ones is `unknown` in its span.
+/// It fails only if every edge of the stroke is unknown: the stroke is shorter than two metres, folded or wider than a
+/// metric frame (`Geometry`), or has no width at all (`Width`). A single bad edge among good ones is `unknown` in its
+/// span.
 pub fn stroke_corridor(
     network: &Network,
     stroke: &Stroke,
@@ -69,7 +70,7 @@ pub fn stroke_corridor(
     Ok(StrokeCorridor { corridor, spans, tapers })
 }
 
-/// What tapers there are, in the order of the line.
+/// The tapers, in the order of the line.
 fn tapers(
     stretches: &[Stretch],
     jogs: &[Jog],
@@ -83,7 +84,7 @@ fn tapers(
         let widths_m = [a.strip.width_m(), b.strip.width_m()];
         let at_node = |u: f64, reach_m: f64| (u - node).abs() <= reach_m;
         let jog = jogs.iter().find(|jog| at_node(jog.at, 1e-6));
-        // A ramp lies beside its node or around it; the nearest node of those that change anything is its own.
+        // A ramp lies beside its node or around it. It belongs to the nearest node at which something changes.
         let ramp = ramps.iter().find(|ramp| ramp.node == k);
         let (from, to, shift_m, cause) = match (jog, ramp) {
             (Some(jog), _) if jog.ahead => (node, node + jog.reach_m, jog.shift_m, TaperCause::Parts),
@@ -103,7 +104,7 @@ fn tapers(
     tapers.into_iter().map(|(_, taper)| taper).collect()
 }
 
-/// What a span is cut from.
+/// The data from which a span is cut.
 struct Cut<'c> {
     corridor: &'c Corridor,
     arc: &'c ArcLength,
@@ -144,7 +145,7 @@ fn all_finite(c: &Corridor) -> bool {
     [&c.x, &c.y, &c.heading, &c.curvature, &c.left_m, &c.right_m].iter().all(|v| v.iter().all(|x| x.is_finite()))
 }
 
-/// Approach and edges of the stroke in the frame, and how many are approach.
+/// Approach and edges of the stroke in the frame, and the number of approach edges.
 fn links<'n>(
     network: &'n Network,
     stroke: &Stroke,
@@ -201,7 +202,8 @@ fn across(strip: Strip, map_tolerance_m: f64) -> Option<Across> {
     usable.then_some(Across { left_m: left_m - map_tolerance_m, right_m: right_m + map_tolerance_m })
 }
 
-/// The strip of an edge under a policy; what it may shift across: a lane, within the lanes of its direction; and what is paved.
+/// The strips of an edge under a policy: the strip itself, the lanes of its direction in which a lane may shift, and
+/// the paved surface.
 fn room(network: &Network, edge: &Edge, policy: Policy, map_tolerance_m: f64) -> Option<Room> {
     let section = network.road(edge).sections[usize::from(edge.direction == Direction::Backward)];
     let across = |strip: Strip| across(strip, map_tolerance_m);
@@ -212,8 +214,8 @@ fn room(network: &Network, edge: &Edge, policy: Policy, map_tolerance_m: f64) ->
     Some(Room { strip, shift, surface: paved.filter(|paved| shift.within(*paved)).unwrap_or(shift) })
 }
 
-/// One stretch a piece; a piece without width goes on with the one before it, else with the next: it is `unknown` itself, but
-/// its neighbours' vehicles drive over it. `None` without any width.
+/// One stretch per piece. A piece without width continues the previous one, or else the next one: the piece itself is
+/// `unknown`, but its neighbours' vehicles drive over it. `None` if no piece has a width.
 fn stretches(links: &[Link<'_>], pieces: &[Piece]) -> Option<Vec<Stretch>> {
     let mut known = pieces.iter().find_map(|p| links[p.link].room)?;
     let stretches = pieces.iter().map(|piece| {
@@ -232,7 +234,8 @@ fn stretches(links: &[Link<'_>], pieces: &[Piece]) -> Option<Vec<Stretch>> {
     Some(stretches.collect())
 }
 
-/// Narrow places of all pieces: passages centred on the map's vertex, which the smoothed line passes a little to one side.
+/// Narrow places of all pieces. Each passage is centred on the map's vertex, and the smoothed line passes a little
+/// beside it.
 fn gaps(network: &Network, links: &[Link<'_>], course: &Course, smoothed: &Smoothed) -> Vec<Gap> {
     let mut gaps = Vec::new();
     for piece in &course.pieces {

@@ -1,16 +1,16 @@
-//! Tapers: how a strip moves aside where two sections of a road meet.
+//! Tapers: the lateral move of a strip where two sections of a road meet.
 //!
-//! A map changes the cross section at a node, a road does not: its edges and marks go from where one section has them to where
-//! the other has them, over a length that guidelines give. A strip that would lose half a lane at the node, because the lane
-//! on the other side lies half a lane further out, moves over along such a taper instead. Soundness is a matter of the
-//! surface: all along a taper the strip lies on what the map says is paved there, on the side where the taper lies.
+//! A map changes the cross section at a node. A road does not: its edges and marks move from one section's place to the
+//! other's over a length that guidelines give. Suppose that the lane on the other side of a node lies half a lane
+//! farther out. Without a taper the strip would lose half a lane at the node; with a taper it moves over. The move is
+//! sound because the strip stays, all along the taper, on mapped surface on the taper's side of the node.
 
 use super::profile::{Across, KNOT_M, Stretch};
 use crate::osm::facts::RoadClass;
 
-/// Metres along the road a metre across, by the speed S that a class is assumed to have: MUTCD 2009, table 6H-4, L = W·S for 45
-/// mph and more, L = W·S²/60 for 40 mph and less (feet). S is 50 mph on motorways and trunk roads, 40, 34 and 28 mph on primary,
-/// secondary and tertiary roads; elsewhere the ratio is [`LEAST_RATIO`].
+/// Metres along the road per metre across, by the speed S assumed for a class: MUTCD 2009, table 6H-4, with L = W·S for
+/// 45 mph or more and L = W·S²/60 for 40 mph or less (feet). S is 50 mph on motorways and trunk roads, and 40, 34 and
+/// 28 mph on primary, secondary and tertiary roads. Elsewhere the ratio is [`LEAST_RATIO`].
 pub(crate) fn guideline_ratio(class: RoadClass) -> f64 {
     match class {
         RoadClass::Motorway | RoadClass::Trunk => 50.0,
@@ -21,22 +21,22 @@ pub(crate) fn guideline_ratio(class: RoadClass) -> f64 {
     }
 }
 
-/// A shorter taper than one in eight is none: AASHTO's bay tapers in towns are one in 8 to one in 15 (from memory, to be
+/// Least ratio of a taper, one in eight. AASHTO's bay tapers in towns are one in 8 to one in 15 (from memory, to be
 /// checked).
 pub(crate) const LEAST_RATIO: f64 = 8.0;
-/// A taper keeps this far from the node, so that its spline does not reach beyond it: two knots.
+/// Distance of a taper from the node, metres: two knots, so that its spline does not reach beyond the node.
 const CLEAR_M: f64 = 2.0 * KNOT_M;
 /// Surfaces that differ by less count as equally wide, metres.
 const ALIKE_M: f64 = 0.1;
 
-/// A lateral move along the line: nothing before `from`, all of `by_m` after `to`.
+/// A lateral move along the line: zero before `from`, and `by_m` after `to`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Ramp {
     pub(crate) from: f64,
     pub(crate) to: f64,
     /// Metres to the left.
     pub(crate) by_m: f64,
-    /// The stretch before the node to which it belongs.
+    /// Index of the stretch before the ramp's node.
     pub(crate) node: usize,
 }
 
@@ -49,7 +49,7 @@ impl Ramp {
 /// The steepest slope of [`share`] over 0..=1.
 const STEEPEST: f64 = 4.0 / 3.0;
 
-/// From 0 to 1 over 0..=1, C²: straight in the middle, its first and last quarter rounded.
+/// From 0 to 1 over 0..=1, C²: straight in the middle, with the first and last quarter rounded.
 pub(crate) fn share(t: f64) -> f64 {
     let rounded = |t: f64| {
         let q = 4.0 * t;
@@ -64,8 +64,8 @@ pub(crate) fn share(t: f64) -> f64 {
     }
 }
 
-/// Takes the sideways jumps between stretches apart: afterwards the stretches follow each other without the jumps that a taper
-/// can take, and the ramps, added to the strips, put each strip where it was.
+/// Removes from the stretches every sideways jump that a taper can take. Returns the ramps; strips plus ramps are the
+/// strips as given.
 pub(crate) fn take_jumps(stretches: &mut [Stretch]) -> Vec<Ramp> {
     let given = stretches.to_vec();
     let mut ramps = Vec::new();
@@ -81,7 +81,7 @@ pub(crate) fn take_jumps(stretches: &mut [Stretch]) -> Vec<Ramp> {
     ramps
 }
 
-/// The least move that takes `a` into `b` or around it; `None` if one contains the other already.
+/// The least move that takes `a` into `b` or around it. `None` if one contains the other already.
 fn jump(a: Across, b: Across) -> Option<f64> {
     if a.within(b) || b.within(a) {
         return None;
@@ -90,19 +90,19 @@ fn jump(a: Across, b: Across) -> Option<f64> {
     Some(if left_m.abs() < right_m.abs() { left_m } else { right_m })
 }
 
-/// The taper between stretches `k` and `k + 1`, if they need one and there is road for it. It lies where the surface is wider:
-/// what is added to a road or taken from it tapers there, and the lanes of both directions move along.
+/// The taper between stretches `k` and `k + 1`, if one is needed and there is road for it. It lies on the side of the
+/// wider surface: what is added to a road, or taken from it, tapers there. The lanes of both directions move along.
 fn taper(stretches: &[Stretch], k: usize) -> Option<Ramp> {
     let (a, b) = (stretches.get(k)?, stretches.get(k + 1)?);
     let by_m = jump(a.strip, b.strip)?;
     if a.strip.within(b.shift) || b.strip.within(a.shift) {
-        // A lane that changes places within those of its direction has all of them to do it in.
+        // A lane that changes places within the lanes of its direction has all of them for the change.
         return None;
     }
-    // On its way the narrower of both strips lies where the first has it, and then where the second has it.
+    // On its way the narrower strip lies where the first stretch has it, and then where the second one has it.
     let narrower = if a.strip.width_m() < b.strip.width_m() { a.strip } else { b.strip.moved(-by_m) };
     let swept = narrower.hull(narrower.moved(by_m));
-    // Where a road becomes one-way the opposite lanes do not move along: a lane stays within those of its direction.
+    // Where a road becomes one-way, the opposite lanes do not move along: a lane stays within those of its direction.
     let alike = a.two_way == b.two_way;
     let allowed = |s: &Stretch, side: &Stretch| {
         s.two_way == side.two_way && swept.within(if alike { s.surface } else { s.shift })
@@ -122,7 +122,7 @@ fn taper(stretches: &[Stretch], k: usize) -> Option<Ramp> {
     (to - from >= least_m).then_some(Ramp { from, to, by_m, node: k })
 }
 
-/// On which side of a node the surface is wider.
+/// The side of a node with the wider surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Wider {
     Before,
@@ -139,8 +139,8 @@ fn wider(a: &Stretch, b: &Stretch) -> Wider {
     }
 }
 
-/// How far from the node after stretch `k` the stretches allow a taper: to the next jump, but half the way to one that may want the
-/// other half.
+/// Length from the node after stretch `k` on which the stretches allow a taper. It ends at the next jump, or halfway to
+/// a jump that may need the other half.
 fn room_m(stretches: &[Stretch], k: usize, backwards: bool, allowed: &dyn Fn(&Stretch) -> bool) -> f64 {
     let (mut room_m, mut i) = (0.0, if backwards { k } else { k + 1 });
     while let Some(stretch) = stretches.get(i).filter(|stretch| allowed(stretch)) {
@@ -171,12 +171,12 @@ mod tests {
         assert!(at[0] == 0.0 && (at[n as usize] - 1.0).abs() < 1e-12);
         let slope = |i: usize| (at[i + 1] - at[i]) * f64::from(n);
         assert!((0..n as usize).all(|i| slope(i) >= 0.0 && slope(i) <= STEEPEST + 1e-9));
-        // C²: the slope's own slope never jumps; it is at most 8.
+        // C²: the slope of the slope never jumps, and is at most 8.
         assert!((1..n as usize).all(|i| ((slope(i) - slope(i - 1)) * f64::from(n)).abs() <= 8.0 + 1e-3));
         assert!(at.iter().zip(at.iter().rev()).all(|(a, b)| (a + b - 1.0).abs() < 1e-12));
     }
 
-    /// MUTCD 2009, table 6H-4: 12 feet at 40 mph in 320 feet, at 50 mph in 600 feet.
+    /// MUTCD 2009, table 6H-4: 12 feet in 320 feet at 40 mph, and in 600 feet at 50 mph.
     #[test]
     fn tapers_are_as_long_as_the_guideline_says() {
         assert!((12.0 * guideline_ratio(RoadClass::Primary) - 320.0).abs() < 1e-9);

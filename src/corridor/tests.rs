@@ -1,4 +1,4 @@
-//! Closed forms, invariances and bounds of stroke corridors, on networks written down by hand.
+//! Closed forms, invariances and bounds of stroke corridors, on hand-written networks.
 
 #![allow(clippy::unwrap_used)]
 
@@ -23,7 +23,7 @@ fn section(lane: Option<Strip>, direction: Option<Strip>) -> CrossSection {
     CrossSection { lane, direction, carriageway: direction }
 }
 
-/// A chain of edges through positions in metres east and north of 9° E, 48° N: one (points, section) an edge.
+/// A chain of edges through positions in metres east and north of 9° E, 48° N, with one (points, section) per edge.
 fn network(edges: &[(Vec<[f64; 2]>, CrossSection)], closed: bool) -> (Network, Stroke) {
     let frame = Frame::around_degrees([(9.0, 48.0)]).unwrap();
     let mut n = Network::default();
@@ -73,7 +73,7 @@ fn corridor(points: Vec<[f64; 2]>, strip_m: (f32, f32)) -> StrokeCorridor {
     stroke_corridor(&n, &s, Policy::Lane, &Params::default()).unwrap()
 }
 
-/// Vertices on a curve of given curvature profile, `step` apart (metres).
+/// Vertices on a curve with the given curvature profile, `step` stations apart.
 fn vertices(profile: &CurvatureProfile, step: usize) -> Vec<[f64; 2]> {
     let c = Corridor::from_curvature(1.0, [0.0; 2], 0.3, &profile.curvature, 1.0, 1.0);
     (0..c.len()).step_by(step).map(|i| [c.x[i], c.y[i]]).collect()
@@ -84,7 +84,7 @@ fn curvature_in(c: &Corridor, from: f64, to: f64) -> (f64, f64) {
     c.curvature[at(from)..at(to)].iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), &k| (lo.min(k), hi.max(k)))
 }
 
-/// Position and heading at every station are what curvature and heading at the one before make of them.
+/// Position and heading of every station must follow from curvature and heading of the one before.
 fn assert_consistent(c: &Corridor) {
     for i in 1..c.len() {
         let step = Corridor::from_curvature(
@@ -104,7 +104,7 @@ fn assert_consistent(c: &Corridor) {
 #[test]
 fn a_straight_stays_straight() {
     let c = corridor((0..20).map(|i| [37.0 * f64::from(i), 0.0]).collect(), LANE).corridor;
-    // Positions are whole 1e-7 degree: 4 mm across every 37 m, of which the smoothing leaves less.
+    // Positions are whole multiples of 1e-7 degree: 4 mm across every 37 m, and smoothing leaves less.
     assert!(c.curvature.iter().all(|k| k.abs() < 1e-5));
     assert!(c.y.iter().all(|y| (y + 1.75).abs() < 0.01) && c.left_m.iter().all(|w| (w - 1.75).abs() < 1e-9));
     assert!((c.spacing_m - 1.0).abs() < 1e-3 && (c.spacing_m * (c.len() - 1) as f64 - 703.0).abs() < 0.02);
@@ -129,7 +129,7 @@ fn a_circle_of_coarse_vertices_has_its_radius() {
 fn a_lane_runs_beside_the_way_line() {
     let profile = CurvatureProfile { curvature: vec![1.0 / 50.0; 300], ..CurvatureProfile::new(1.0) };
     let (low, high) = curvature_in(&corridor(vertices(&profile, 8), LANE).corridor, 100.0, 200.0);
-    // To the right of a left-hand bend: 1.75 m further out.
+    // To the right of a left-hand bend: 1.75 m farther out.
     assert!((1.0 / low - 51.75).abs() < 0.4 && (1.0 / high - 51.75).abs() < 0.4, "{low} {high}");
 }
 
@@ -154,7 +154,7 @@ fn an_s_bend_turns_both_ways_and_comes_out_straight() {
         .straight(150.0);
     let c = corridor(vertices(&profile, 12), CENTRED).corridor;
     let (low, high) = curvature_in(&c, 0.0, 450.0);
-    // The tolerance lets it be smoother than drawn.
+    // The tolerance lets the line be smoother than drawn.
     assert!((0.008..0.0125).contains(&high) && (0.008..0.0125).contains(&-low), "{low} {high}");
     assert!((c.heading.last().unwrap() - 0.3).abs() < 0.01);
     assert_consistent(&c);
@@ -178,7 +178,7 @@ fn a_roundabout_is_a_circle_without_a_seam() {
         assert!((c.corridor.len() - last) as f64 * c.corridor.spacing_m >= 58.0, "tail");
         let counted = (last - 1 - first) as f64 * c.corridor.spacing_m;
         assert!((counted / (TAU * radius) - 1.0).abs() < 0.05, "one turn: {counted}");
-        // The whole turn and the lead-in just before it: no seam anywhere.
+        // The whole turn and the end of its lead-in have no seam.
         let seen = &c.corridor.curvature[first - 30..last];
         for k in seen {
             assert!((k * radius - 1.0).abs() < 0.04, "radius {radius}: {k}");
@@ -209,7 +209,7 @@ fn a_narrow_place_narrows_a_few_metres_of_road() {
     for direction in [Direction::Forward, Direction::Backward] {
         n.edges[0].direction = direction;
         let c = stroke_corridor(&n, &s, Policy::Lane, &Params::default()).unwrap().corridor;
-        // Room from 2 m left to 2 m right of the line, of which the lane has −3.5..0.
+        // The passage is from 2 m left to 2 m right of the line, and the lane is −3.5..0.
         assert!((c.left_m[100] + c.right_m[100] - 2.0).abs() < 0.01, "{}", c.left_m[100]);
         assert!((c.left_m[85] + c.right_m[85] - 3.5).abs() < 0.01, "{} {}", c.left_m[85], c.right_m[85]);
         assert_consistent(&c);
@@ -257,7 +257,7 @@ fn an_approach_is_driven_but_has_no_span() {
     (s.approach, s.edges) = (0..1, 1..3);
     let c = stroke_corridor(&n, &s, Policy::Lane, &Params::default()).unwrap();
     let spans: Vec<_> = c.spans.iter().map(|s| (s.edge, s.stations.start, s.stations.end)).collect();
-    // The shared node may fall between two stations: both edges then have both.
+    // The shared node may fall between two stations; then both edges have both stations.
     assert_eq!(spans.len(), 2);
     assert!(spans[0].0 == 1 && spans[0].1.abs_diff(200) <= 1 && spans[0].2.abs_diff(401) <= 1, "{spans:?}");
     assert!(spans[1].0 == 2 && spans[1].1 < spans[0].2 && spans[1].2 == c.corridor.len(), "{spans:?}");
@@ -386,15 +386,15 @@ proptest! {
         for i in 0..=here.cells() {
             let u = i as f64 * here.knot_m;
             let (a, b) = (moved(here.at(u)[0]), there.at(u)[0]);
-            // A tenth of the tolerance: where an excess over it is nothing but rounding, weights rise in another round. One line in
-            // 6,000 moves by more than 1 mm, one in 20,000 by more than 1 cm.
+            // A tenth of the tolerance. Where an excess over it is only rounding, weights rise in another round. One
+            // line in 6,000 moves by more than 1 mm, one in 20,000 by more than 1 cm.
             prop_assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 0.05, "{a:?} {b:?}");
         }
     }
 }
 
-/// Stations agree with each other to a share of how much the curvature varies around them: at a sharp corner it is not
-/// linear over a metre.
+/// Stations must agree with each other up to a share of the curvature's variation around them: at a sharp corner
+/// curvature is not linear over a metre.
 fn assert_consistent_away_from_kinks(c: &Corridor) {
     for i in 1..c.len() {
         let near = &c.curvature[i.saturating_sub(3)..(i + 3).min(c.len())];

@@ -1,29 +1,29 @@
-//! Published limits, each with its source and how sure it is, beside what was measured.
+//! Published limits with their sources and sureness, compared with measured values.
 //!
 //! A pass here is no approval: assessments use the real bodies, tyres and axle groups.
 
 use super::measure::{Ring, Swept, beyond_limit};
 use crate::vehicle::Vehicle;
 
-/// What is limited.
+/// The quantity that a limit bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
-    /// Low-speed swept path, 90° at 12.5 m: at most.
+    /// Low-speed swept path, 90° at 12.5 m: upper limit.
     SweptPath,
-    /// Tail swing in the same turn: at most.
+    /// Tail swing in the same turn: upper limit.
     TailSwing,
-    /// Frontal swing in the same turn: at most.
+    /// Frontal swing in the same turn: upper limit.
     FrontalSwing,
-    /// Inner radius of the circle with 12.5 m outer radius: at least.
+    /// Inner radius of the circle with 12.5 m outer radius: lower limit.
     InnerRadius,
-    /// Width of the ring: at most.
+    /// Width of the ring: upper limit.
     RingWidth,
-    /// Swing-out on entering the circle: at most.
+    /// Swing-out on entering the circle: upper limit.
     SwingOut,
 }
 
 impl Measure {
-    /// For people.
+    /// Name for people.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -36,7 +36,7 @@ impl Measure {
         }
     }
 
-    /// For files.
+    /// Name in files.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -49,24 +49,24 @@ impl Measure {
         }
     }
 
-    /// Whether more is better.
+    /// Whether the limit is a lower limit.
     #[must_use]
     pub fn at_least(self) -> bool {
         self == Self::InnerRadius
     }
 }
 
-/// How sure a limit is.
+/// Reliability of a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sureness {
-    /// Read at the source that is named.
+    /// Read in the named source.
     Read,
-    /// The standard is named, its text was not at hand: check before quoting.
+    /// The standard is named, but its text was not available: check before quoting.
     NotRead,
 }
 
 impl Sureness {
-    /// For people.
+    /// Text for people.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -79,29 +79,29 @@ impl Sureness {
 /// A published limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
-    /// What it limits.
+    /// The limited quantity.
     pub measure: Measure,
-    /// Whose it is, with the level: `PBS level 2`.
+    /// The issuer with the level: `PBS level 2`.
     pub who: &'static str,
-    /// Metres.
+    /// Value, metres.
     pub metres: f64,
-    /// Where it comes from.
+    /// Source of the value.
     pub source: &'static str,
-    /// How sure.
+    /// Reliability of the value.
     pub sureness: Sureness,
-    /// For buses only, for others only, or for all.
+    /// Whether it applies to buses only or to others only; `None` for all.
     pub buses: Option<bool>,
 }
 
-/// A measure beside a limit.
+/// A measured value compared with a limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Finding {
     /// The limit.
     pub limit: Limit,
-    /// Measured, metres; `None`: the turn cannot be driven (a hinge or the steering would go beyond its limit), or the
-    /// measure does not exist.
+    /// Measured value, metres. `None` if the turn cannot be driven (a hinge or the steering would exceed its limit) or
+    /// the quantity does not exist.
     pub metres: Option<f64>,
-    /// Whether it keeps the limit.
+    /// Whether the value keeps the limit.
     pub passes: bool,
 }
 
@@ -136,7 +136,7 @@ const LIMITS: [Limit; 14] = [
     read(Measure::SwingOut, "DE, buses", 0.60, STVZO, Some(true)),
 ];
 
-/// Measures beside every limit that is for such a vehicle. A vehicle whose name says bus is one.
+/// Compares the measured values with every limit for such a vehicle. A vehicle whose name contains "bus" is a bus.
 #[must_use]
 pub fn findings(vehicle: &Vehicle, right_angle: &Swept, circle: &Ring) -> Vec<Finding> {
     let bus = vehicle.name.to_lowercase().contains("bus");

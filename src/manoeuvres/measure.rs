@@ -1,54 +1,55 @@
-//! What a driven turn shows: swept width, swings, angles, the ring of a circle.
+//! Measurements of a driven turn: swept width, swings, angles, and the ring of a circle.
 
 use super::turn::Drive;
 use crate::stet::motion::Pose;
 use crate::vehicle::{Unit, Vehicle};
 
-/// Distance of points along a body's sides, metres: what bulges between them into a 5 m circle is under a millimetre.
+/// Distance of points along a body's sides, metres. A side between two points bulges by less than a millimetre into a 5
+/// m circle.
 const POINTS_M: f64 = 0.2;
-/// Of the drive's vertices every so many is measured: bodies move 6 cm between them.
+/// Every how many of the drive's vertices is measured. Bodies move 6 cm between them.
 const EVERY: usize = 3;
-/// Width of the bins along the path in which extents are gathered, metres.
+/// Width of the bins along the path that collect extents, metres.
 const BIN_M: f64 = 0.1;
 
-/// Of a turn of 90° or 180°.
+/// Measurements of a turn of 90° or 180°.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Swept {
-    /// Swept path width: the greatest distance of the innermost from the outermost point of any body, along normals of
-    /// the path. Metres. `None`: a body comes past the arc's centre, where normals cross and there is no such width.
+    /// Swept path width, metres: the greatest distance between the innermost and the outermost point of any body, along
+    /// normals of the path. `None` if a body passes the arc's centre, where normals cross and the width is undefined.
     pub width_m: Option<f64>,
-    /// Where along the path that is, metres after the arc begins.
+    /// Place of that width along the path, metres after the start of the arc.
     pub width_at_m: f64,
     /// Lateral place of the innermost and the outermost point there, metres left of the path.
     pub extent_m: [f64; 2],
-    /// Tail swing: the farthest that the outer rear corner of any unit comes outside the line on which it entered. Metres.
+    /// Tail swing, metres: the largest distance of any unit's outer rear corner outside the line on which it entered.
     pub tail_swing_m: f64,
-    /// The unit that has it.
+    /// Index of the unit with that tail swing.
     pub tail_unit: usize,
-    /// Frontal swing: the farthest that the outer front corner of the prime mover comes outside the path. Metres.
+    /// Frontal swing, metres: the largest distance of the prime mover's outer front corner outside the path.
     pub frontal_swing_m: f64,
-    /// The farthest that the last axle comes inside the steer axle's way, metres across the path.
+    /// Largest offtracking of the last axle inside the steer axle's path, metres across the path.
     pub offtracking_m: f64,
-    /// Greatest steering angle (unit 0) and articulation of each hinge, radians.
+    /// Largest steering angle (unit 0) and articulation angle of each hinge, radians.
     pub angles_rad: Vec<f64>,
 }
 
-/// The first angle of `angles_rad` that is beyond what the vehicle allows: the turn cannot be driven so.
+/// Index of the first angle of `angles_rad` that exceeds the vehicle's limit. The turn then cannot be driven.
 #[must_use]
 pub fn beyond_limit(vehicle: &Vehicle, angles_rad: &[f64]) -> Option<usize> {
     vehicle.units.iter().zip(angles_rad).position(|(unit, &angle)| angle > unit.max_articulation_rad)
 }
 
-/// Of a full circle.
+/// Measurements of a full circle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ring {
-    /// The farthest from the centre that any body point comes while the guide is on the circle, metres.
+    /// Largest distance of any body point from the centre while the guide is on the circle, metres.
     pub outer_m: f64,
-    /// The nearest; 0 where a body passes over the centre.
+    /// Least distance of any body point from the centre, metres; 0 if a body passes over the centre.
     pub inner_m: f64,
-    /// The farthest that any part comes outside the tangent on which it entered, metres.
+    /// Largest distance of any part outside the tangent on which it entered, metres.
     pub swing_out_m: f64,
-    /// Greatest steering angle (unit 0) and articulation of each hinge, radians.
+    /// Largest steering angle (unit 0) and articulation angle of each hinge, radians.
     pub angles_rad: Vec<f64>,
 }
 
@@ -83,11 +84,11 @@ impl Swept {
     }
 }
 
-/// What is gathered over a turn, moment by moment.
+/// Values collected over a turn.
 #[derive(Default)]
 struct Gathered {
     extents: Extents,
-    /// A body point came past the arc's centre.
+    /// Whether a body point passed the arc's centre.
     past_centre: bool,
     frontal_swing_m: f64,
     offtracking_m: f64,
@@ -96,7 +97,7 @@ struct Gathered {
 impl Gathered {
     fn moment(&mut self, vehicle: &Vehicle, drive: &Drive, poses: &[Pose], head_m: f64) {
         let turn = &drive.turn;
-        // Of each unit's axle behind the guide, straight.
+        // Distance of each unit's axle behind the guide when straight.
         let mut axle_m = head_m;
         for (unit, pose) in vehicle.units.iter().zip(poses) {
             axle_m -= unit.coupling_to_axle_m;
@@ -112,7 +113,7 @@ impl Gathered {
         if let Some((unit, pose)) = vehicle.units.first().zip(poses.first()) {
             let corner = pose.place(unit.coupling_to_axle_m + unit.front_overhang_m, -0.5 * unit.width_m);
             self.frontal_swing_m = self.frontal_swing_m.max(left_of_path(corner, head_m).map_or(0.0, |left| -left));
-            // Both across the same path, whose guide may run beside the steer axle.
+            // Both are measured across the same path, whose guide may run beside the steer axle.
             let steer = left_of_path(pose.place(unit.coupling_to_axle_m, 0.0), head_m).unwrap_or(0.0);
             let hitch_m = vehicle.units.last().map_or(0.0, |unit| unit.hitch_offset_m);
             let last = poses.last().and_then(|pose| left_of_path(pose.axle, axle_m + hitch_m));
@@ -134,7 +135,7 @@ impl Ring {
                 lowest = corners.iter().fold(lowest, |low, corner| low.min(corner[1]));
                 if (0.0..=arc).contains(&at_m) {
                     inner_m = inner_m.min(nearest(unit, pose, centre));
-                    // Before the vehicle is on the circle its rear is still on the tangent.
+                    // Until the vehicle is on the circle, its rear is still on the tangent.
                     if at_m > 0.5 * arc {
                         let far = |c: &[f64; 2]| (c[0] - centre[0]).hypot(c[1] - centre[1]);
                         outer_m = corners.iter().map(far).fold(outer_m, f64::max);
@@ -156,7 +157,7 @@ fn nearest(unit: &Unit, pose: &Pose, point: [f64; 2]) -> f64 {
     (ahead - ahead.clamp(rear, front)).hypot(left - left.clamp(-half, half))
 }
 
-/// Places on both sides of a body, corners included: ahead of the axle and to the left.
+/// Places on both sides of a body, corners included: ahead of the axle, and to the left.
 fn points(unit: &Unit) -> impl Iterator<Item = [f64; 2]> + use<> {
     let (front, rear, half) =
         (unit.coupling_to_axle_m + unit.front_overhang_m, -unit.rear_overhang_m, 0.5 * unit.width_m);
@@ -167,7 +168,7 @@ fn points(unit: &Unit) -> impl Iterator<Item = [f64; 2]> + use<> {
     })
 }
 
-/// How far the outer rear corner of a unit leaves the line on which it entered, the most of all units.
+/// The largest tail swing of all units, and the unit's index.
 fn tail_swing(vehicle: &Vehicle, drive: &Drive) -> (f64, usize) {
     let corner_y = |poses: &[Pose], i: usize| {
         let (unit, pose) = vehicle.units.get(i).zip(poses.get(i))?;
@@ -181,7 +182,7 @@ fn tail_swing(vehicle: &Vehicle, drive: &Drive) -> (f64, usize) {
     (0..vehicle.units.len()).map(|i| (swing(i), i)).fold((0.0, 0), |most, one| if one.0 > most.0 { one } else { most })
 }
 
-/// Greatest steering angle and articulations, radians.
+/// Largest steering angle and articulation angles, radians.
 fn angles(vehicle: &Vehicle, drive: &Drive) -> Vec<f64> {
     let between = |a: [f64; 2], b: [f64; 2]| (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]).abs();
     let mut most = vec![0.0_f64; vehicle.units.len()];
@@ -203,10 +204,10 @@ fn angles(vehicle: &Vehicle, drive: &Drive) -> Vec<f64> {
     most
 }
 
-/// Lateral extents by bins along the path.
+/// Lateral extents, in bins along the path.
 #[derive(Default)]
 struct Extents {
-    /// Of the first bin, in bins.
+    /// Number of the first bin.
     first: i64,
     bins: Vec<[f64; 2]>,
 }
@@ -231,7 +232,7 @@ impl Extents {
         }
     }
 
-    /// Where along the path, and the innermost and outermost place.
+    /// Place of the greatest width along the path, and the innermost and outermost place there.
     fn widest(&self) -> (f64, [f64; 2]) {
         let width = |[inner, outer]: [f64; 2]| inner - outer;
         let mut best = (0.0, [0.0, 0.0]);
@@ -244,5 +245,5 @@ impl Extents {
     }
 }
 
-/// Innermost and outermost of nothing.
+/// The extent of an empty bin.
 const EMPTY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];

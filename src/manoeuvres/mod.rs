@@ -1,10 +1,10 @@
-//! Low-speed manoeuvres by which regulators judge combinations: turns of 90° and 180°, the full circle, steady off-tracking;
-//! with published limits beside what is measured.
+//! Low-speed manoeuvres by which regulators judge combinations: turns of 90° and 180°, the full circle, and steady
+//! offtracking. Published limits are compared with the measured values.
 //!
-//! Promises exact no-slip motion at fine steps, and that every limit carries its source and how sure it is. The guide (which
-//! point of the vehicle follows what) is part of each measure, since the same turn with another guide gives other numbers.
-//! Bodies are rectangles: rounded corners of real ones swing less. Left out: everything at speed (tracking ability on a
-//! straight path, rearward amplification, rollover), and driving in reverse.
+//! The motion is exact no-slip motion in fine steps. Every limit carries its source and reliability. The guide (the
+//! vehicle's point that follows the path) is part of each measurement, because another guide gives other numbers.
+//! Bodies are rectangles; rounded corners of real bodies swing less. Behaviour at speed (tracking ability on a straight
+//! path, rearward amplification, rollover) and reversing are left out.
 //!
 //! | file | for |
 //! | --- | --- |
@@ -25,25 +25,26 @@ pub use turn::{Drive, Guide, Turn};
 
 /// Radius of the path that PBS and the European circle prescribe, metres.
 pub const RADIUS_M: f64 = 12.5;
-/// Radii at which steady off-tracking is given, metres at the steer axle.
+/// Radii of the steer axle at which steady offtracking is given, metres.
 pub const STEADY_RADII_M: [f64; 5] = [12.5, 25.0, 50.0, 100.0, 200.0];
 
-/// What the manoeuvres show of a vehicle.
+/// Results of a vehicle's manoeuvres.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// 90° at 12.5 m, the outer end of the steer axle (the outer side of the outer steer tyre) on the path.
+    /// 90° at 12.5 m, with the outer end of the steer axle (the outer side of the outer steer tyre) on the path.
     pub right_angle: Swept,
     /// 180° at 12.5 m with the same guide.
     pub u_turn: Swept,
-    /// A full circle: the front outer corner comes along the tangent and then keeps to 12.5 m.
+    /// A full circle: the outer front corner arrives along the tangent and then keeps to 12.5 m.
     pub circle: Ring,
-    /// The last axle behind the steer axle on a steady circle, metres, at each of [`STEADY_RADII_M`]; `None`: no steady state.
+    /// Steady offtracking of the last axle relative to the steer axle at each of [`STEADY_RADII_M`], metres. `None`
+    /// without a steady state.
     pub steady_offtracking_m: [Option<f64>; 5],
-    /// Measures beside published limits.
+    /// Comparisons with published limits.
     pub findings: Vec<Finding>,
 }
 
-/// Drives all manoeuvres.
+/// Drives all manoeuvres and measures them.
 #[must_use]
 pub fn report(vehicle: &Vehicle) -> Report {
     let right_angle = Swept::of(vehicle, &right_angle(vehicle).drive(vehicle));
@@ -67,7 +68,7 @@ pub fn u_turn(vehicle: &Vehicle) -> Turn {
 }
 
 fn turn(vehicle: &Vehicle, angle_rad: f64) -> Turn {
-    // The exit is long enough for the last trailer to be back on the path but for millimetres of its cut.
+    // After this exit the last trailer is back on the path to within millimetres.
     let exit_m = 2.0 * vehicle.length_m + 10.0;
     Turn { radius_m: RADIUS_M, angle_rad, guide: Guide::OuterSteerTyre, exit_m }
 }

@@ -1,18 +1,17 @@
 //! A turn to the left, entered straight, and the poses of all units along it.
 //!
-//! The path begins at the origin along x; the arc's centre is at (0, radius). Whichever point of the prime mover is the
-//! guide, its motion is exact: a point beside the steer axle and the one as far beside the rear axle are the front and
-//! the end of the same drag curve.
+//! The path starts at the origin along x, and the arc's centre is at (0, radius). The motion is exact for each guide: a
+//! point beside the steer axle and the point equally far beside the rear axle are front and end of the same drag curve.
 
 use crate::stet::motion::{Pose, sweep_path};
 use crate::vehicle::{Unit, Vehicle};
 
-/// Distance of vertices, metres: the chord step is then exact to a tenth of a millimetre.
+/// Distance of vertices, metres. The chord step is then exact to a tenth of a millimetre.
 const STEP_M: f64 = 0.02;
-/// Driven straight before the turn, metres: bodies of all units then stand on the entry.
+/// Straight length driven before the turn, metres. The bodies of all units then stand on the entry.
 const LEAD_IN_M: f64 = 2.0;
 
-/// Which point of the prime mover keeps to the path.
+/// The point of the prime mover that follows the path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Guide {
     /// The middle of the steer axle.
@@ -26,31 +25,31 @@ pub enum Guide {
 /// A turn to the left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {
-    /// Of the path, metres.
+    /// Radius of the path, metres.
     pub radius_m: f64,
-    /// Turned, radians.
+    /// Angle of the turn, radians.
     pub angle_rad: f64,
-    /// What follows the path.
+    /// The point that follows the path.
     pub guide: Guide,
-    /// Driven straight afterwards, metres.
+    /// Straight length driven afterwards, metres.
     pub exit_m: f64,
 }
 
 /// A driven turn.
 #[derive(Debug, Clone)]
 pub struct Drive {
-    /// What was driven.
+    /// The turn.
     pub turn: Turn,
-    /// Of the guide, metres along the path from the beginning of the arc, at each vertex.
+    /// Place of the guide at each vertex, metres along the path after the start of the arc.
     pub at_m: Vec<f64>,
     /// The path at each vertex.
     pub path: Vec<[f64; 2]>,
-    /// All units, front to rear, at each vertex.
+    /// Poses of all units, front to rear, at each vertex.
     pub poses: Vec<Vec<Pose>>,
 }
 
 impl Guide {
-    /// How far ahead of the steer axle and to the left of the prime mover's axis, metres.
+    /// Place of the guide, metres ahead of the steer axle and to the left of the prime mover's axis.
     #[must_use]
     pub fn place(self, prime_mover: &Unit) -> [f64; 2] {
         let right = -0.5 * prime_mover.width_m;
@@ -61,7 +60,7 @@ impl Guide {
         }
     }
 
-    /// For people.
+    /// Text for people.
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -73,7 +72,7 @@ impl Guide {
 }
 
 impl Turn {
-    /// A place on the path, `at_m` metres after the arc begins.
+    /// A place on the path, `at_m` metres after the start of the arc.
     #[must_use]
     pub fn place(&self, at_m: f64) -> [f64; 2] {
         let arc_m = self.radius_m * self.angle_rad;
@@ -86,8 +85,8 @@ impl Turn {
         ]
     }
 
-    /// Metres along the path and to its left of the foot of `point`: of the feet it has, the one nearest to `guess_m`. `None`
-    /// for the centre of the arc and what has no foot.
+    /// Foot of `point` on the path: metres along the path, and metres to its left. Of several feet it is the one
+    /// nearest to `guess_m`. `None` for the centre of the arc and for points without a foot.
     #[must_use]
     pub fn foot(&self, point: [f64; 2], guess_m: f64) -> Option<[f64; 2]> {
         let arc_m = self.radius_m * self.angle_rad;
@@ -107,7 +106,7 @@ impl Turn {
         [entry, round, exit].into_iter().flatten().min_by(nearest)
     }
 
-    /// Drives it.
+    /// Drives the turn.
     #[must_use]
     pub fn drive(&self, vehicle: &Vehicle) -> Drive {
         let Some(prime_mover) = vehicle.units.first() else {
@@ -118,7 +117,7 @@ impl Turn {
         let at_m: Vec<f64> = (0..=steps).map(|k| k as f64 * length_m / steps as f64 - LEAD_IN_M).collect();
         let path: Vec<[f64; 2]> = at_m.iter().map(|&at| self.place(at)).collect();
         let [ahead, left] = self.guide.place(prime_mover);
-        // The guide and the point beside the rear axle that it drags: a unit of its own.
+        // The guide and the point beside the rear axle that it drags form a unit of their own.
         let mut dragged = vehicle.clone();
         dragged.units.truncate(1);
         if let Some(unit) = dragged.units.first_mut() {

@@ -1,34 +1,34 @@
-//! The account of network building: every way read gives edges or is left out for a reason, every direction of every
-//! piece of road is an edge or is not driven; the counts add up.
+//! The account of network building. Every way read either gives edges or is left out for a counted reason. Every
+//! direction of every piece of road is either an edge or not driven. The counts add up.
 
 use super::Edge;
 use super::cut::Unusable;
 use crate::account::AccountRow;
 
-/// Counts of a run. `ways_read = ways_kept + Σ left out`, `directions = edges + not_driven`, and so for areas.
+/// Counts of a run. `ways_read = ways_kept + Σ left out` and `directions = edges + not_driven`; areas add up likewise.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct NetworkAccount {
-    /// Ways that came in.
+    /// Ways read.
     pub ways_read: u64,
-    /// Ways that have edges.
+    /// Ways with edges.
     pub ways_kept: u64,
-    /// Left out: the file has none of its nodes.
+    /// Ways left out: the file has none of their nodes.
     pub no_node_in_file: u64,
-    /// Left out: the file has some of its nodes, no two of them consecutive.
+    /// Ways left out: the file has some of their nodes, but no two consecutive ones.
     pub nodes_apart: u64,
-    /// Left out: all of its nodes stand at one place.
+    /// Ways left out: all nodes are at one place.
     pub one_place: u64,
-    /// Node references that the file has no node for.
+    /// Node references without a node in the file.
     pub missing_references: u64,
-    /// Nodes made one with a neighbour at the same place.
+    /// Nodes merged with a neighbour at the same place.
     pub same_place_nodes: u64,
-    /// Both directions of every piece of road between two cuts.
+    /// Directions of all pieces of road between two cuts, two per piece.
     pub directions: u64,
     /// Directed edges made.
     pub edges: u64,
     /// Directions that the tags do not allow.
     pub not_driven: u64,
-    /// Edges at whose start or end a node is missing.
+    /// Edges with a missing node at their start or end.
     pub cut_edges: u64,
     /// Edges barred by a barrier on them or at their ends.
     pub barred_edges: u64,
@@ -36,39 +36,39 @@ pub struct NetworkAccount {
     pub narrowed_edges: u64,
     /// Edges with limits from a node.
     pub node_limited_edges: u64,
-    /// Edges whose id was taken.
+    /// Edges whose id another edge already had.
     pub id_collisions: u64,
     /// Strokes made.
     pub strokes: u64,
-    /// Strokes that run into themselves.
+    /// Strokes that continue into their own first edge.
     pub closed_strokes: u64,
-    /// Strokes that begin because the one before became too long.
+    /// Strokes that begin because the previous one became too long.
     pub strokes_split: u64,
     /// Open strokes with an approach.
     pub strokes_with_approach: u64,
-    /// Nodes at which too many edges meet for any to be called straight on.
+    /// Nodes with too many edges for any of them to be called straight on.
     pub crowded_nodes: u64,
-    /// Mapped surfaces and islands that came in.
+    /// Mapped surfaces and islands read.
     pub areas_read: u64,
-    /// Those at junctions.
+    /// Areas at junctions.
     pub areas_kept: u64,
-    /// Left out: the file lacks some of its nodes.
+    /// Areas left out: the file lacks some of their nodes.
     pub areas_cut: u64,
-    /// Left out: its ring crosses itself, or encloses nothing.
+    /// Areas left out: the ring crosses itself or encloses nothing.
     pub areas_invalid: u64,
-    /// Turn restrictions that came in: `= restrictions_kept + off_network + without_effect`.
+    /// Turn restrictions read: `= restrictions_kept + off_network + without_effect`.
     pub restrictions_read: u64,
-    /// Restrictions that forbid something here.
+    /// Restrictions that forbid a movement of this network.
     pub restrictions_kept: u64,
-    /// Left out: no vehicle can drive its members one after the other.
+    /// Restrictions left out: no vehicle can drive their members one after the other.
     pub restrictions_off_network: u64,
-    /// Left out: forbids nothing that could be driven.
+    /// Restrictions left out: they forbid nothing that could be driven.
     pub restrictions_without_effect: u64,
     /// Sequences of edges that restrictions forbid.
     pub forbidden_sequences: u64,
-    /// Of these, under a condition that was not decided.
+    /// Forbidden sequences with an undecided condition.
     pub conditional_sequences: u64,
-    /// Of these, of more than two edges.
+    /// Forbidden sequences of more than two edges.
     pub long_sequences: u64,
 }
 
@@ -81,7 +81,7 @@ impl NetworkAccount {
         }
     }
 
-    /// Counts an edge made; `limited`: by the tags of a node.
+    /// Counts a new edge. `limited` says whether a node's tags limit it.
     pub(super) fn count_edge(&mut self, edge: &Edge, limited: bool) {
         self.edges += 1;
         self.cut_edges += u64::from(edge.cut);
@@ -99,7 +99,7 @@ impl NetworkAccount {
         }
     }
 
-    /// Adds what a part of the ways counted.
+    /// Adds the counts of a part of the ways.
     pub(super) fn add_part(&mut self, part: &Self) {
         self.ways_read += part.ways_read;
         self.ways_kept += part.ways_kept;
@@ -115,7 +115,7 @@ impl NetworkAccount {
         self.node_limited_edges += part.node_limited_edges;
     }
 
-    /// The lines of the account, stage `network`. Edges are counted against both directions of every piece.
+    /// The account's rows of stage `network`. Edges are counted against both directions of every piece.
     #[must_use]
     pub fn rows(&self) -> Vec<AccountRow> {
         [

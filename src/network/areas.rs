@@ -1,7 +1,7 @@
-//! Mapped surfaces of junctions: which closed ways lie around which nodes, and which islands lie on them.
+//! Mapped surfaces of junctions: the closed ways around each node, and the islands on them.
 //!
-//! Promises that an area is only kept whole: with every node in the file, and a ring that does not cross itself. What is around
-//! no junction is left out. A node on an area's edge is not in it.
+//! An area is kept only if it is whole: every node is in the file, and the ring does not cross itself. Areas around no
+//! junction are left out. A node on an area's edge is outside the area.
 
 use geo::{LineString, Polygon, Validation};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -15,9 +15,9 @@ use crate::osm::{LonLat, NodeTable, RoadArea};
 pub struct Area {
     /// OSM way id.
     pub way_id: i64,
-    /// What it is of.
+    /// Surface or island.
     pub kind: AreaKind,
-    /// Its corners, the first one again at the end.
+    /// Corners in order; the first one is repeated at the end.
     pub ring: Vec<LonLat>,
 }
 
@@ -26,14 +26,14 @@ pub struct Area {
 pub struct Areas {
     /// Sorted by way id.
     all: Vec<Area>,
-    /// By node of the network: the surfaces around it, indices into `all`.
+    /// By node of the network: indices into `all` of the surfaces around it.
     around: FxHashMap<i64, Vec<u32>>,
-    /// Indices into `all`.
+    /// Islands: indices into `all`.
     islands: Vec<u32>,
 }
 
 impl Areas {
-    /// Finds out which nodes of a network they are around; sorted by way id.
+    /// Finds the nodes of the network that each area surrounds. `all` is sorted by way id.
     #[must_use]
     pub fn new(all: Vec<Area>, network: &Network) -> Self {
         if all.is_empty() {
@@ -60,7 +60,7 @@ impl Areas {
         Self { all, around, islands }
     }
 
-    /// All, sorted by way id.
+    /// All areas, sorted by way id.
     #[must_use]
     pub fn all(&self) -> &[Area] {
         &self.all
@@ -82,7 +82,7 @@ impl Areas {
     }
 }
 
-/// The areas of an extract that lie around the network's nodes.
+/// Keeps the areas of an extract that lie around the network's nodes.
 pub(super) fn resolve(network: &mut Network, areas: Vec<RoadArea>, nodes: &NodeTable, account: &mut NetworkAccount) {
     account.areas_read = areas.len() as u64;
     let mut whole = Vec::new();
@@ -113,7 +113,7 @@ pub(super) fn resolve(network: &mut Network, areas: Vec<RoadArea>, nodes: &NodeT
     network.areas = Areas::new(kept, network);
 }
 
-/// Both ends of every edge.
+/// Node and position of both ends of every edge.
 fn ends(network: &Network) -> impl Iterator<Item = (i64, LonLat)> + '_ {
     network.edges.iter().flat_map(|edge| {
         let mut positions = network.positions(edge);
@@ -122,7 +122,7 @@ fn ends(network: &Network) -> impl Iterator<Item = (i64, LonLat)> + '_ {
     })
 }
 
-/// Whether a ring encloses something and does not touch itself.
+/// Whether a ring encloses an area and does not touch itself.
 fn is_simple(ring: &[LonLat]) -> bool {
     let corners: LineString = ring.iter().map(|at| at.degrees()).collect();
     Polygon::new(corners, Vec::new()).is_valid()
@@ -147,7 +147,7 @@ impl Extent {
     }
 }
 
-/// Whether a place is inside a closed ring, by whole numbers; on it is outside.
+/// Whether a place is inside a closed ring, in integer arithmetic. A place on the ring is outside.
 fn contains(ring: &[LonLat], at: LonLat) -> bool {
     let offset =
         |p: LonLat| (i128::from(p.lon_e7) - i128::from(at.lon_e7), i128::from(p.lat_e7) - i128::from(at.lat_e7));
@@ -159,7 +159,7 @@ fn contains(ring: &[LonLat], at: LonLat) -> bool {
         if cross == 0 && beside {
             return false;
         }
-        // The side crosses the level of the place east of it.
+        // The side crosses the place's latitude east of the place.
         if (ay > 0) != (by > 0) && (cross > 0) == (by > ay) {
             inside = !inside;
         }
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_place_is_inside_outside_or_on_the_edge() {
-        // An L, in both senses.
+        // An L, in both orientations.
         let mut ring = vec![at(0, 0), at(40, 0), at(40, 20), at(20, 20), at(20, 40), at(0, 40), at(0, 0)];
         for _ in 0..2 {
             for (place, inside) in [

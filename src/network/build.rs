@@ -1,7 +1,7 @@
-//! From an extract to a network: the steps, in order.
+//! From an extract to a network: the steps in order.
 //!
-//! The same extract gives the same network whatever the number of threads. Takes the extract by value and frees each
-//! part as soon as nothing needs it any more.
+//! The same extract gives the same network with any number of threads. The builder takes the extract by value and frees
+//! each part as soon as it is no longer needed.
 
 use super::edges::Source;
 use super::vertices::Vertices;
@@ -9,7 +9,7 @@ use super::{Network, NetworkAccount, Splits, StrokeOptions, areas, edge_id, rest
 use crate::osm::facts::{CrossSection, Place, WayFacts};
 use crate::osm::{Extract, LonLat};
 
-/// [`build_with`] the default strokes.
+/// As [`build_with`], with default strokes.
 pub fn build(
     extract: Extract,
     places: &(impl Fn(LonLat) -> Place + Sync),
@@ -20,8 +20,9 @@ pub fn build(
 
 /// Cuts an extract's ways into directed edges and chains them into strokes.
 ///
-/// `places` says which country's rules hold at a position; it is asked once a way, at its first located node.
-/// `sections` gives a way's strips along its node order and against it; it is told the radius, metres, of the ring that a roundabout's way is part of.
+/// `places` returns the country rules at a position. It is called once per way, at the way's first located node.
+/// `sections` returns a way's strips along its node order and against it. It also gets the radius (metres) of the ring
+/// that a roundabout's way is part of.
 pub fn build_with(
     extract: Extract,
     places: &(impl Fn(LonLat) -> Place + Sync),

@@ -1,42 +1,42 @@
-//! A way's vertices, cut into pieces: at junctions, at reversals, and where the file lacks a node.
+//! Cuts a way's vertices into pieces: at junctions, at reversals, and where the file lacks a node.
 //!
-//! A piece has at least two vertices, consecutive ones differ, and no inner vertex is a junction.
+//! A piece has at least two vertices. Consecutive vertices differ, and no inner vertex is a junction.
 
 use std::ops::Range;
 
 use super::vertices::MISSING;
 
-/// A stretch of a way between two cuts: both of its directed edges, before it is known which exist.
+/// A stretch of a way between two cuts. It stands for both directed edges, before it is known which of them exist.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Piece {
-    /// Its vertices, in [`CutWay::line`]; neighbours share their end.
+    /// The piece's vertices in [`CutWay::line`]. Neighbouring pieces share a vertex.
     pub(super) vertices: Range<usize>,
-    /// A node is missing just before its first or just after its last vertex.
+    /// Whether a node is missing just before the first or just after the last vertex.
     pub(super) cut: bool,
 }
 
 /// Why a way gives no piece.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Unusable {
-    /// The file has none of its nodes.
+    /// The file has none of the way's nodes.
     NoNodeInFile,
-    /// The file has some of its nodes, no two of them consecutive.
+    /// The file has some of the way's nodes, but no two consecutive ones.
     NodesApart,
-    /// All that is left of it stands at one place.
+    /// All remaining vertices are at one place.
     OnePlace,
 }
 
-/// The pieces of one way; reused from way to way.
+/// The pieces of one way. The buffers are reused from way to way.
 #[derive(Debug, Default)]
 pub(super) struct CutWay {
-    /// The way's vertices without repetitions and without those that no piece has.
+    /// The way's vertices without repetitions and without those of no piece.
     pub(super) line: Vec<u32>,
-    /// In way order.
+    /// Pieces in way order.
     pub(super) pieces: Vec<Piece>,
 }
 
 impl CutWay {
-    /// Cuts the way with these vertices ([`MISSING`] among them).
+    /// Cuts the way with these vertices, which may include [`MISSING`].
     pub(super) fn cut(&mut self, vertices: &[u32], is_junction: impl Fn(u32) -> bool) -> Result<(), Unusable> {
         self.line.clear();
         self.pieces.clear();
@@ -57,7 +57,7 @@ impl CutWay {
         }
     }
 
-    /// Cuts a run of located vertices; `cut` says whether a node is missing before and after it.
+    /// Cuts a run of located vertices. `cut` says whether a node is missing before it and after it.
     fn cut_run(&mut self, run: &[u32], cut: [bool; 2], is_junction: &impl Fn(u32) -> bool) {
         let start = self.line.len();
         for &v in run {

@@ -1,7 +1,7 @@
-//! Stable ids of directed edges: a hash of what identifies the edge in OpenStreetMap, nothing of the file it is in.
+//! Stable ids of directed edges: a hash of what identifies the edge in OpenStreetMap, independent of the file.
 //!
-//! 63 bits, positive. Among three million edges the chance of any collision is 5e-7; one is resolved in edge order,
-//! so that the same input gives the same ids, and counted.
+//! An id has 63 bits and is positive. Among three million edges the probability of any collision is 5e-7. Collisions
+//! are resolved in edge order, so the same input gives the same ids, and they are counted.
 
 use rayon::prelude::*;
 use rustc_hash::FxHashSet;
@@ -9,8 +9,8 @@ use rustc_hash::FxHashSet;
 use super::Edge;
 use crate::osm::facts::Direction;
 
-/// The id of the edge of this way between these nodes in this direction; `ordinal` counts the earlier ones along the
-/// way of which all that is the same.
+/// The id of the edge of way `way_id` between these nodes in this direction. `ordinal` counts earlier edges along the
+/// way with the same way, nodes and direction.
 pub(super) fn edge_id(way_id: i64, from_node: i64, to_node: i64, direction: Direction, ordinal: u32) -> i64 {
     let direction = match direction {
         Direction::Forward => 0,
@@ -20,8 +20,8 @@ pub(super) fn edge_id(way_id: i64, from_node: i64, to_node: i64, direction: Dire
     positive(words.into_iter().fold(0, |hash, word| scramble(hash ^ word)))
 }
 
-/// The step of the SplitMix64 generator (Steele, Lea, Flood 2014): a bijection of 64 bits that changes half of them
-/// for every bit changed.
+/// The step of the SplitMix64 generator (Steele, Lea, Flood 2014): a bijection on 64 bits that changes half of the bits
+/// for every changed bit.
 fn scramble(word: u64) -> u64 {
     let mut z = word.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -33,8 +33,8 @@ fn positive(hash: u64) -> i64 {
     ((hash >> 1) as i64).max(1)
 }
 
-/// Makes all ids distinct: the first edge of an id keeps it, each later one takes the next free id that hashing it
-/// again gives. Returns how many had to change.
+/// Makes all ids distinct. The first edge with an id keeps it; each later one takes the next free id from repeated
+/// hashing. Returns the number of changed ids.
 pub(super) fn resolve_collisions(edges: &mut [Edge]) -> u64 {
     let mut by_id: Vec<(i64, u32)> = edges.par_iter().enumerate().map(|(i, e)| (e.id, i as u32)).collect();
     by_id.par_sort_unstable();
@@ -78,7 +78,7 @@ mod tests {
         assert_eq!(edge_id(4_242, 17, 23, Direction::Forward, 1), PINNED[2]);
     }
 
-    /// Computed by an implementation of the same formula in Python.
+    /// Computed by a Python implementation of the same formula.
     const PINNED: [i64; 3] = [4_482_753_016_396_416_158, 1_943_109_941_974_684_121, 2_612_646_652_812_098_275];
 
     #[test]

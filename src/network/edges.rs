@@ -1,7 +1,7 @@
-//! Cut ways become roads and directed edges, in parallel, in batches whose results are joined in way order.
+//! Cut ways become roads and directed edges. This runs in parallel, in batches whose results are joined in way order.
 //!
-//! A tagged node counts for every edge that touches it, its ends included: a gate drawn on a junction bars all roads
-//! that meet there. That may forbid too much, never too little; which arm the gate closes is not in the data.
+//! A tagged node counts for every edge that touches it, ends included: a gate on a junction bars all roads that meet
+//! there. The data does not say which arm the gate closes, so this may forbid too much, but never too little.
 
 use rayon::prelude::*;
 
@@ -13,12 +13,12 @@ use super::{Edge, Narrowing, Network, NetworkAccount, Road};
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, Place, WayFacts};
 use crate::osm::{LonLat, NodeTable, Way};
 
-/// Ways a task, and tasks a batch: a batch's edges wait beside the network until they are joined to it, so it is small
-/// against a large extract, and a task is long against what handing it out costs.
+/// Ways per task, and tasks per batch. A batch's edges wait in memory beside the network, so a batch is small compared
+/// with a large extract. A task is long compared with the cost of starting it.
 const WAYS_PER_TASK: usize = 1024;
 const TASKS_PER_BATCH: usize = 128;
 
-/// What all ways are built from.
+/// The inputs for building ways.
 pub(super) struct Source<'s, P, S> {
     pub(super) nodes: &'s NodeTable,
     pub(super) vertices: &'s Vertices,
@@ -31,7 +31,7 @@ where
     P: Fn(LonLat) -> Place + Sync,
     S: Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync,
 {
-    /// Appends the roads and edges of all ways.
+    /// Appends the roads and edges of all ways to the network.
     pub(super) fn build(&self, ways: &[Way], network: &mut Network, account: &mut NetworkAccount) {
         for batch in ways.chunks(WAYS_PER_TASK * TASKS_PER_BATCH) {
             let parts: Vec<Part> = batch.par_chunks(WAYS_PER_TASK).map(|ways| self.part(ways)).collect();
@@ -115,13 +115,13 @@ where
         }
     }
 
-    /// Vertices are located, or they would be [`MISSING`].
+    /// Vertices are located; others would be [`MISSING`].
     fn position(&self, vertex: u32) -> LonLat {
         self.nodes.places[vertex as usize].unwrap_or(LonLat { lon_e7: 0, lat_e7: 0 })
     }
 }
 
-/// Some consecutive ways' share of the network, with ranges and indices from 0.
+/// The network part of some consecutive ways, with ranges and indices from 0.
 #[derive(Default)]
 struct Part {
     network: Network,
@@ -150,7 +150,7 @@ fn road(way: &Way, place: &Place, sections: [CrossSection; 2]) -> Road {
         class: facts.class,
         link: facts.link,
         roundabout: facts.roundabout,
-        // Nobody drives a roundabout against its arrows, whatever else its tags say.
+        // Nobody drives a roundabout against its direction, whatever its other tags say.
         oneway: if facts.roundabout && facts.oneway == Oneway::No { Oneway::Forward } else { facts.oneway },
         name: facts.name,
         reference: facts.reference,
@@ -170,7 +170,7 @@ fn driven(oneway: Oneway, direction: Direction) -> bool {
     }
 }
 
-/// Gives one way's edges their ids: those of which all else is the same are told apart by their order along the way.
+/// Sets the ids of one way's edges. The order along the way distinguishes edges that are otherwise the same.
 fn number(edges: &mut [Edge], way_id: i64) {
     let same = |e: &Edge| (e.from_node, e.to_node, e.direction);
     let mut order: Vec<usize> = (0..edges.len()).collect();

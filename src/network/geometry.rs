@@ -1,32 +1,31 @@
-//! Lengths and headings of edges, near enough to choose what goes straight on: on a sphere, locally flat. Certificates
-//! use the metric frame of `corridor` instead.
+//! Lengths and headings of edges on a sphere, locally flat. They are accurate enough to choose the straight
+//! continuation. Certificates use the metric frame of `corridor`.
 
 use rayon::prelude::*;
 
 use super::{Edge, Network};
 use crate::osm::LonLat;
 
-/// Mean radius of the earth (IUGG), metres: lengths are right to 0.6 %.
+/// Mean radius of the earth (IUGG), metres. Lengths are accurate to 0.6 %.
 pub(crate) const EARTH_RADIUS_M: f64 = 6_371_008.8;
 
-/// What choosing needs to know of every edge.
+/// Geometry of every edge, for choosing continuations.
 pub(super) struct Geometry {
-    /// Metres.
+    /// Length, metres.
     pub(super) length_m: Vec<f32>,
-    /// Direction in which the edge leaves its first node, and in which it leaves its last node going back; degrees
-    /// from east towards north.
+    /// Outward directions of the edge at its first and at its last node, in degrees from east towards north.
     pub(super) outward_deg: Vec<[f32; 2]>,
 }
 
 impl Geometry {
-    /// Measures all edges; a heading is that of the chord over the first `reach_m` of an edge.
+    /// Measures all edges. A heading is that of the chord over the first `reach_m` metres of an edge.
     pub(super) fn measure(network: &Network, reach_m: f64) -> Self {
         let (length_m, outward_deg) = network
             .edges
             .par_iter()
             .map(|edge| {
                 let length_m = length_m(network.positions(edge));
-                // The chord over the whole of a loop is nothing.
+                // The chord over the whole of a loop has no length.
                 let reach_m = if edge.from_node == edge.to_node { reach_m.min(length_m / 2.0) } else { reach_m };
                 let ahead = chord_deg(network.positions(edge), reach_m);
                 let back = chord_deg(network.positions(edge).rev(), reach_m);
@@ -36,26 +35,26 @@ impl Geometry {
         Self { length_m, outward_deg }
     }
 
-    /// By how much a vehicle turns from edge `a` into edge `b`, degrees, 0..=180.
+    /// Turn of a vehicle from edge `a` into edge `b`, degrees, 0..=180.
     pub(super) fn deflection_deg(&self, a: u32, b: u32) -> f64 {
         deflection_deg(f64::from(self.outward_deg[a as usize][1]), f64::from(self.outward_deg[b as usize][0]))
     }
 }
 
 impl Network {
-    /// Length of an edge, metres, right to 0.6 %: for choosing among roads, not for certificates.
+    /// Length of an edge, metres, accurate to 0.6 %. It serves to choose among roads, not for certificates.
     #[must_use]
     pub fn length_m(&self, edge: &Edge) -> f64 {
         length_m(self.positions(edge))
     }
 }
 
-/// The same over the segments next to the node only.
+/// As [`Geometry::deflection_deg`], over the segments next to the node only.
 pub(super) fn segment_deflection_deg(network: &Network, a: &Edge, b: &Edge) -> f64 {
     deflection_deg(chord_deg(network.positions(a).rev(), 0.0), chord_deg(network.positions(b), 0.0))
 }
 
-/// From two directions that leave a node: 0 where one is the other's opposite.
+/// Deflection between two directions that leave a node: 0 for opposite directions.
 fn deflection_deg(back: f64, ahead: f64) -> f64 {
     let between = (back - ahead).abs() % 360.0;
     180.0 - between.min(360.0 - between)
@@ -73,7 +72,7 @@ fn length_m(positions: impl Iterator<Item = LonLat>) -> f64 {
     sum
 }
 
-/// Length of a line by the angle through which it turns, metres: the radius, where it is an arc. `None` where it does not turn.
+/// Mean radius of a line, metres: its length divided by the angle through which it turns. `None` if it does not turn.
 pub(super) fn mean_radius_m(positions: impl Iterator<Item = LonLat>) -> Option<f64> {
     let (mut last, mut chord) = (None::<LonLat>, None::<[f64; 2]>);
     let (mut turned_rad, mut along_m) = (0.0, 0.0);
@@ -89,8 +88,8 @@ pub(super) fn mean_radius_m(positions: impl Iterator<Item = LonLat>) -> Option<f
     radius_m.is_finite().then_some(radius_m)
 }
 
-/// Direction of the chord from the first position to the point `reach_m` along the line, or to its end if it is
-/// shorter, but over one segment at least.
+/// Direction of the chord from the first position to the point `reach_m` along the line. The chord spans at least one
+/// segment and at most the whole line.
 fn chord_deg(mut positions: impl Iterator<Item = LonLat>, reach_m: f64) -> f64 {
     let Some(mut last) = positions.next() else { return 0.0 };
     let mut chord = [0.0_f64; 2];
@@ -109,7 +108,7 @@ fn chord_deg(mut positions: impl Iterator<Item = LonLat>, reach_m: f64) -> f64 {
     chord[1].atan2(chord[0]).to_degrees()
 }
 
-/// East and north from `a` to `b`, metres; across the date line the short way.
+/// Metres east and north from `a` to `b`, by the short way across the date line.
 pub(crate) fn offset_m(a: LonLat, b: LonLat) -> [f64; 2] {
     const TURN_E7: i64 = 3_600_000_000;
     let mut lon_e7 = i64::from(b.lon_e7) - i64::from(a.lon_e7);

@@ -1,7 +1,7 @@
-//! The route graph: ways cut at junctions into directed edges, and strokes of edges that continue straight on.
+//! The road network: ways cut at junctions into directed edges, and strokes of edges that continue straight on.
 //!
-//! Holds all that certification needs, so that a network loaded from a database certifies to the same bytes as one
-//! just built from a file.
+//! It holds everything that certification needs. A network loaded from a database therefore gives the same
+//! certificates, byte for byte, as one built from a file.
 
 mod account;
 mod areas;
@@ -32,28 +32,28 @@ pub use stroke::StrokeOptions;
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, RestrictionKind, RoadClass};
 use crate::osm::{LonLat, StringId, StringPool};
 
-/// Per way: what is the same for all its edges.
+/// Values of a way that all its edges share.
 #[derive(Debug, Clone)]
 pub struct Road {
     /// OSM way id.
     pub way_id: i64,
-    /// Its class.
+    /// Class of the road.
     pub class: RoadClass,
-    /// A `_link` road.
+    /// Whether it is a `_link` road.
     pub link: bool,
-    /// On a roundabout.
+    /// Whether it is on a roundabout.
     pub roundabout: bool,
-    /// Which directions exist.
+    /// Directions that exist.
     pub oneway: Oneway,
     /// `name`
     pub name: Option<StringId>,
     /// `ref`
     pub reference: Option<StringId>,
-    /// Lanes of the carriageway as tagged or assumed, both directions together (for display).
+    /// Lanes of the carriageway as tagged or assumed, both directions together; for display.
     pub lanes: Option<u8>,
     /// ISO 3166-1 alpha-2 code of the country whose defaults were used.
     pub country: [u8; 2],
-    /// Traffic keeps to the left here.
+    /// Whether traffic keeps to the left.
     pub left_hand_traffic: bool,
     /// Strips for travel along the node order, and against it.
     pub sections: [CrossSection; 2],
@@ -61,10 +61,10 @@ pub struct Road {
     pub legal: [Legal; 2],
 }
 
-/// A directed edge of the route graph.
+/// A directed edge of the network.
 #[derive(Debug, Clone)]
 pub struct Edge {
-    /// Stable: same way, node pair and direction give the same id in the next extract. Positive.
+    /// Stable id: the same way, node pair and direction give the same id in the next extract. Positive.
     pub id: i64,
     /// Index into [`Network::roads`].
     pub road: u32,
@@ -72,38 +72,38 @@ pub struct Edge {
     pub from_node: i64,
     /// Last node in direction of travel.
     pub to_node: i64,
-    /// Relative to the way.
+    /// Direction relative to the way.
     pub direction: Direction,
-    /// Positions in [`Network::shapes`], in *way* order whatever the direction; at least two.
+    /// Positions in [`Network::shapes`], in *way* order for both directions; at least two.
     pub shape: Range<u32>,
     /// Narrow places on this edge: range in [`Network::narrowings`].
     pub narrowings: Range<u32>,
-    /// Limits of road and nodes on the edge together, for this direction of travel.
+    /// Limits of the road and of nodes on the edge, for this direction of travel.
     pub legal: Legal,
-    /// A barrier on it bars heavy vehicles.
+    /// Whether a barrier on the edge bars heavy vehicles.
     pub barred: bool,
-    /// The file ends here (a node of the way is missing at this edge's start or end).
+    /// Whether the file ends here: a node of the way is missing at the edge's start or end.
     pub cut: bool,
 }
 
-/// A place where the road is narrower than its cross section: a barrier node, a choker.
+/// A place where the road is narrower than its cross section, such as a barrier node or a choker.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Narrowing {
     /// Index of the node in the edge's shape (way order, from the shape's start).
     pub vertex: u32,
-    /// Room there, metres, centred on the way's line.
+    /// Passable width, metres, centred on the way's line.
     pub passage_m: f32,
 }
 
-/// A chain of edges, each continued straight on into the next.
+/// A chain of edges, each continuing straight on into the next.
 #[derive(Debug, Clone)]
 pub struct Stroke {
-    /// Edges driven before the first: the best approach, not certified with this stroke. Range in
+    /// The edges driven before the first one: the best approach, not certified with this stroke. Range in
     /// [`Network::stroke_edges`], in driving order.
     pub approach: Range<u32>,
-    /// Its edges, in driving order: range in [`Network::stroke_edges`].
+    /// The stroke's edges in driving order: range in [`Network::stroke_edges`].
     pub edges: Range<u32>,
-    /// The last edge continues straight on into the first (a roundabout).
+    /// Whether the last edge continues straight on into the first (a roundabout).
     pub closed: bool,
 }
 
@@ -112,36 +112,36 @@ pub struct Stroke {
 pub struct Restriction {
     /// OSM relation id.
     pub relation_id: i64,
-    /// What the sign says; of `only_…`, one of the movements that it leaves over.
+    /// Kind of the sign. A restriction `only_…` gives one entry for each movement that it forbids.
     pub kind: RestrictionKind,
-    /// It holds at times, or under a condition that was not decided.
+    /// Whether it holds only at times, or under an undecided condition.
     pub conditional: bool,
-    /// Range in [`Network::restriction_edges`]; at least two.
+    /// The sequence: range in [`Network::restriction_edges`], at least two edges.
     pub edges: Range<u32>,
 }
 
-/// The route graph.
+/// The road network.
 #[derive(Debug, Clone, Default)]
 pub struct Network {
-    /// Sorted by way id.
+    /// Roads, sorted by way id.
     pub roads: Vec<Road>,
-    /// Sorted by (way id, position along the way, direction).
+    /// Edges, sorted by (way id, position along the way, direction).
     pub edges: Vec<Edge>,
-    /// Positions of all edges' shapes; both directions share theirs.
+    /// Positions of all edges' shapes. Both directions of a piece share theirs.
     pub shapes: Vec<LonLat>,
-    /// All edges' narrow places.
+    /// Narrow places of all edges.
     pub narrowings: Vec<Narrowing>,
-    /// Every edge is in exactly one stroke's `edges`.
+    /// Strokes. Every edge is in exactly one stroke's `edges`.
     pub strokes: Vec<Stroke>,
-    /// Indices into `edges`.
+    /// Edges of strokes and approaches: indices into `edges`.
     pub stroke_edges: Vec<u32>,
     /// Turn restrictions, by relation.
     pub restrictions: Vec<Restriction>,
-    /// Indices into `edges`.
+    /// Edges of restrictions: indices into `edges`.
     pub restriction_edges: Vec<u32>,
     /// Mapped surfaces of junctions.
     pub areas: Areas,
-    /// Where two-way roads part into carriageways. It follows from strokes and edges.
+    /// Places where two-way roads part into carriageways; derived from strokes and edges.
     pub splits: Splits,
     /// Names and refs.
     pub strings: StringPool,
@@ -162,7 +162,7 @@ impl Network {
         (0..n).map(move |i| shape[if forward { i } else { n - 1 - i }])
     }
 
-    /// The road an edge belongs to.
+    /// The road of an edge.
     #[must_use]
     pub fn road(&self, edge: &Edge) -> &Road {
         &self.roads[edge.road as usize]

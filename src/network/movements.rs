@@ -1,34 +1,34 @@
-//! Every way to go on at every node: straight on along a stroke, by a turn, or back; and over roundabouts in one movement.
+//! Movements at every node: straight on along a stroke, a turn, a U-turn, and passages over roundabouts.
 //!
-//! Promises a fixed order (by node, then by edge), and that no movement is left out but at nodes with more edges than
-//! any real junction has. Restrictions over one node are marked here; those over ways are sequences that only a search can
-//! obey. Whether a vehicle fits is not asked.
+//! The order is fixed (by node, then by edge). A movement is missing only at nodes with more edges than any real
+//! junction has. Restrictions over one node are marked here. Restrictions over ways are sequences that only a search
+//! can obey. Whether a vehicle fits is decided elsewhere.
 
 use std::ops::Range;
 
 use super::{Network, Passage, pairing, reverse};
 
-/// How one goes on at a node.
+/// Kind of a movement at a node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum MovementKind {
-    /// Along a stroke: the certificates of its edges hold for it.
+    /// Along a stroke. The certificates of its edges cover it.
     StraightOn,
-    /// From one stroke to another: a turn, needing a certificate of its own.
+    /// A turn from one stroke to another. It needs a certificate of its own.
     Turn,
     /// Back along the same piece of road.
     UTurn,
 }
 
-/// From one edge into the next.
+/// A movement from one edge into the next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Movement {
-    /// The edge one comes from.
+    /// The edge before the movement.
     pub from: u32,
-    /// The edge one goes into; starts at the node where `from` ends.
+    /// The edge after the movement. It starts at the node where `from` ends.
     pub to: u32,
-    /// How.
+    /// Kind of the movement.
     pub kind: MovementKind,
-    /// The restriction that forbids it (index into [`Network::restrictions`]), the first of several.
+    /// The first restriction that forbids it (index into [`Network::restrictions`]).
     pub forbidden: Option<u32>,
 }
 
@@ -36,14 +36,14 @@ pub struct Movement {
 #[derive(Debug, Clone, Default)]
 pub struct Movements {
     all: Vec<Movement>,
-    /// By edge: where the movements out of it stand.
+    /// By edge: range in `all` of the movements out of it.
     after: Vec<Range<u32>>,
-    /// By `from`, then as the network has them.
+    /// Sorted by `from`, then in the network's order.
     passages: Vec<Passage>,
 }
 
 impl Movements {
-    /// All, by node id, then `from`, then `to`.
+    /// All movements, by node id, then `from`, then `to`.
     #[must_use]
     pub fn all(&self) -> &[Movement] {
         &self.all
@@ -56,7 +56,7 @@ impl Movements {
         &self.all[range.start as usize..range.end as usize]
     }
 
-    /// Where in [`Movements::all`] those of [`Movements::after`] begin.
+    /// Index in [`Movements::all`] at which [`Movements::after`] begins.
     #[must_use]
     pub fn first(&self, edge: u32) -> usize {
         self.after.get(edge as usize).map_or(0, |range| range.start as usize)
@@ -68,7 +68,7 @@ impl Movements {
         self.after(from).iter().find(|movement| movement.to == to)
     }
 
-    /// The same with its place in [`Movements::all`].
+    /// Index in [`Movements::all`] of the movement from one edge into another, if there is one.
     #[must_use]
     pub fn index(&self, from: u32, to: u32) -> Option<usize> {
         let range = self.after.get(from as usize).cloned()?;
@@ -76,20 +76,20 @@ impl Movements {
         Some(range.start as usize + within)
     }
 
-    /// All passages of roundabouts, by the edge that one comes from.
+    /// All passages of roundabouts, by the edge before them.
     #[must_use]
     pub fn passages(&self) -> &[Passage] {
         &self.passages
     }
 
-    /// The passages that begin with an edge, each with its place in [`Movements::passages`].
+    /// The passages that begin with an edge, each with its index in [`Movements::passages`].
     pub fn over(&self, from: u32) -> impl Iterator<Item = (usize, &Passage)> {
         let first = self.passages.partition_point(|passage| passage.from < from);
         self.passages.iter().enumerate().skip(first).take_while(move |(_, passage)| passage.from == from)
     }
 
-    /// The place in [`Movements::passages`] of the one from an edge to another: there is one at most, and no movement between the
-    /// same two edges, for they do not meet.
+    /// Index in [`Movements::passages`] of the passage from one edge to another. There is at most one. The same two
+    /// edges have no movement, because they do not meet.
     #[must_use]
     pub fn passage(&self, from: u32, to: u32) -> Option<usize> {
         self.over(from).find(|(_, passage)| passage.to == to).map(|(place, _)| place)
@@ -97,7 +97,7 @@ impl Movements {
 }
 
 impl Network {
-    /// All movements: takes time and memory in proportion to them (some 3 an edge).
+    /// All movements. Time and memory grow with their number (about 3 per edge).
     #[must_use]
     pub fn movements(&self) -> Movements {
         let mut ends: Vec<(i64, bool, u32)> = Vec::with_capacity(self.edges.len() * 2);
@@ -131,7 +131,7 @@ impl Network {
         movements
     }
 
-    /// By edge: the one that continues it along its stroke, or [`u32::MAX`].
+    /// By edge: the edge that continues it along its stroke, or [`u32::MAX`].
     fn straight_on(&self) -> Vec<u32> {
         let mut next = vec![pairing::NONE; self.edges.len()];
         for stroke in &self.strokes {
@@ -146,7 +146,7 @@ impl Network {
         next
     }
 
-    /// Restrictions of two edges: from, to, and which; sorted.
+    /// Restrictions of two edges: from, to and index of the restriction; sorted.
     fn forbidden_pairs(&self) -> Vec<(u32, u32, u32)> {
         let pair = |(no, restriction): (u32, &super::Restriction)| match *self.sequence(restriction) {
             [from, to] => Some((from, to, no)),

@@ -1,5 +1,5 @@
-//! What goes straight on at each node: an incoming and an outgoing edge are paired where each is the other's best
-//! continuation. Independent of the order in which edges stand, and of the way's own direction.
+//! Straight continuations at each node. An incoming and an outgoing edge are paired if each is the other's best
+//! continuation. The result depends neither on the order of the edges nor on the ways' own directions.
 
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
@@ -13,17 +13,17 @@ use crate::osm::facts::Direction;
 /// No edge.
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Edges at one node beyond which none of them is called straight on: no real junction has them, and a made-up file
+/// Edges at one node above which none of them is called straight on. No real junction has so many, and a crafted file
 /// could make the work quadratic.
 pub(super) const CROWD: usize = 256;
 
-/// Which edge follows and precedes which.
+/// The pairs: which edge follows and which precedes each edge.
 pub(super) struct Pairing {
-    /// By edge: the one straight on after it, or [`NONE`].
+    /// By edge: the edge that continues it straight on, or [`NONE`].
     pub(super) next: Vec<u32>,
-    /// By edge: the one that continues into it, else the one that a vehicle most plausibly comes from, or [`NONE`].
+    /// By edge: the edge that it continues, otherwise the edge that a vehicle most plausibly comes from, or [`NONE`].
     pub(super) before: Vec<u32>,
-    /// Nodes with more edges than can be told apart.
+    /// Number of nodes with more than [`CROWD`] edges.
     pub(super) crowded: u64,
 }
 
@@ -44,7 +44,7 @@ impl Pairing {
             })
             .collect();
         ends.par_sort_unstable();
-        // Every slot belongs to one node, so that no two tasks write the same one.
+        // Every slot belongs to one node, so no two tasks write the same slot.
         let slots = || (0..network.edges.len()).map(|_| AtomicU32::new(NONE)).collect::<Vec<_>>();
         let (next, before) = (slots(), slots());
         let crowded = AtomicU64::new(0);
@@ -68,11 +68,11 @@ struct End {
     edge: u32,
 }
 
-/// Two edges, and how badly they continue each other.
+/// Two edges, with the cost of taking one as the other's continuation.
 struct Candidate {
-    /// Less is better. Thousandths of a degree, so that rounding errors make no difference.
+    /// Less is better. Thousandths of a degree, so that rounding errors do not matter.
     cost: u32,
-    /// The one that arrives and the one that leaves, in an order that does not depend on which is which.
+    /// The arriving and the leaving end, in an order independent of which is which.
     ends: [End; 2],
 }
 
@@ -82,14 +82,14 @@ struct Junction<'n> {
     options: &'n StrokeOptions,
     arriving: &'n [End],
     leaving: &'n [End],
-    /// Two ends of road meet here and no more: the road goes on, however it bends.
+    /// Whether exactly two ends of road meet here. The road then continues, however it bends.
     two_ends: bool,
 }
 
 impl<'n> Junction<'n> {
     fn new(network: &'n Network, geometry: &'n Geometry, options: &'n StrokeOptions, ends: &'n [End]) -> Self {
         let (arriving, leaving) = ends.split_at(ends.partition_point(|end| !end.leaves));
-        // An edge that leaves and its reverse that arrives are one end of road.
+        // A leaving edge and its arriving reverse are one end of road.
         let reversed = |end: &End| arriving.iter().any(|a| reverse(network, a.edge, end.edge));
         let alone = leaving.iter().filter(|end| !reversed(end)).count();
         Self { network, geometry, options, arriving, leaving, two_ends: arriving.len() + alone == 2 }
@@ -114,14 +114,14 @@ impl<'n> Junction<'n> {
         }
     }
 
-    /// The end whose candidate is the least, if any has one.
+    /// The end with the least candidate, if any end has one.
     fn best(&self, ends: &'n [End], candidate: impl Fn(&End) -> Option<Candidate>) -> Option<&'n End> {
         let candidates = ends.iter().filter_map(|end| Some((candidate(end)?, end)));
         candidates.min_by(|(x, _), (y, _)| self.compare(x, y)).map(|(_, end)| end)
     }
 
-    /// One order of all pairs at a node, so that the least is the best of both its edges. No two are alike unless
-    /// they are in the same place and of the same way; those are taken in edge order.
+    /// A total order of all pairs at a node: the least pair is the best of both its edges. Two pairs are equal only if
+    /// they are at the same place and of the same way; these are taken in edge order.
     fn compare(&self, x: &Candidate, y: &Candidate) -> std::cmp::Ordering {
         let by_line =
             || self.compare_ends(&x.ends[0], &y.ends[0]).then_with(|| self.compare_ends(&x.ends[1], &y.ends[1]));
@@ -129,7 +129,7 @@ impl<'n> Junction<'n> {
         x.cost.cmp(&y.cost).then_with(by_line).then_with(by_index)
     }
 
-    /// By what an end of road is, seen from the node: its way, where it leads, and its line.
+    /// Compares two ends of road, seen from the node: by way, by destination, and by line.
     fn compare_ends(&self, x: &End, y: &End) -> std::cmp::Ordering {
         let name = |end: &End| {
             let edge = self.edge(end.edge);
@@ -145,7 +145,7 @@ impl<'n> Junction<'n> {
         (0..shape.len()).map(move |i| shape[if in_way_order { i } else { shape.len() - 1 - i }])
     }
 
-    /// Going straight on from `a` into `b`, if that is what one does.
+    /// The pair of `a` and `b` if `b` continues `a` straight on.
     fn straight_on(&self, a: &End, b: &End) -> Option<Candidate> {
         if reverse(self.network, a.edge, b.edge) || self.onto_or_off_a_ring(a, b) {
             return None;
@@ -165,12 +165,13 @@ impl<'n> Junction<'n> {
         goes.then(|| self.candidate(a, b, deflection_deg + unlike_deg(from, to)))
     }
 
-    /// A hairpin whose apex is the node turns by more than the limit over its chords, but not at the node itself.
+    /// The heading of a hairpin with its apex at the node turns by more than the limit over chords, but not at the node
+    /// itself.
     fn bends_back(&self, a: u32, b: u32) -> f64 {
         segment_deflection_deg(self.network, self.edge(a), self.edge(b))
     }
 
-    /// `a` as what one comes from into `b`, where nothing continues into `b`.
+    /// `a` as the edge that a vehicle comes from into `b`, where nothing continues into `b`.
     fn from(&self, a: &End, b: &End) -> Option<Candidate> {
         let deflection_deg = self.geometry.deflection_deg(a.edge, b.edge);
         let plausible = deflection_deg <= self.options.approach_limit_deg
@@ -179,9 +180,10 @@ impl<'n> Junction<'n> {
         plausible.then(|| self.candidate(a, b, deflection_deg))
     }
 
-    /// Onto a roundabout and off it one turns, however flat the arm meets the ring: a vehicle that leaves it stands on one or two
-    /// arcs, and how it came round is part of the turn's or the passage's certificate. An arm with the ring as its straight approach
-    /// would be judged by a vehicle that has gone round and round: on Heidelberg that made 113 of 254 passages' exits unusable.
+    /// Whether the pair enters or leaves a roundabout, which is always a turn. A vehicle that leaves the ring stands on
+    /// one or two arcs, and the certificate of the turn or passage covers how it came round. With the ring as straight
+    /// approach, an arm would be judged by a vehicle that has circled for ever. On Heidelberg that made 113 of 254
+    /// passages' exits unusable.
     fn onto_or_off_a_ring(&self, a: &End, b: &End) -> bool {
         self.road(a.edge).roundabout != self.road(b.edge).roundabout
     }
@@ -200,8 +202,8 @@ impl<'n> Junction<'n> {
     }
 }
 
-/// What a change of road counts for beside the angle, degrees: enough to tell the road from the ramp beside it, not
-/// enough to call a corner straight.
+/// Cost of a change of road, added to the angle, degrees. It is large enough to prefer the road to the ramp beside it,
+/// and too small to call a corner straight.
 fn unlike_deg(a: &Road, b: &Road) -> f64 {
     if a.way_id == b.way_id {
         return 0.0;

@@ -1,9 +1,9 @@
 //! Turn restrictions of the map become sequences of edges that may not be driven one right after the other.
 //!
-//! Promises: a restriction whose members are on the network forbids at least what its sign does. Where it is drawn
-//! loosely (a way that runs on past the junction) every reading holds. `only_…` forbids whatever else leaves the node; over
-//! ways it is read strictly: from the way one comes from, one must go that way, and to its end. A restriction whose
-//! members no vehicle can drive one after the other forbids nothing, and is counted.
+//! A restriction whose members are on the network forbids at least what its sign forbids. If it is drawn loosely (a way
+//! that continues past the junction), every reading applies. `only_…` forbids every other movement out of the node.
+//! Over ways it is read strictly: after the `from` way a vehicle must take the `via` ways, and to their end. A
+//! restriction whose members no vehicle can drive one after the other forbids nothing and is counted.
 
 use std::ops::Range;
 
@@ -12,12 +12,12 @@ use super::{Network, NetworkAccount, Restriction, reverse};
 use crate::osm::facts::{RestrictedTurn, RestrictionKind};
 use crate::osm::{self, NodeTable, Via};
 
-/// Sequences that one restriction may become, and edges of one way over which a path is followed: none drawn by a
-/// person comes near, and a made-up file cannot ask for more.
+/// Most sequences of one restriction, and most edges of one way over which a path is followed. No hand-drawn
+/// restriction comes near, and a crafted file cannot cause more work.
 const MOST_SEQUENCES: usize = 1024;
 const MOST_VIA_EDGES: usize = 256;
 
-/// Fills `restrictions` and `restriction_edges` of a network that has none.
+/// Fills `restrictions` and `restriction_edges` of a network without restrictions.
 pub(super) fn resolve(
     network: &mut Network,
     restrictions: &[osm::Restriction],
@@ -61,7 +61,7 @@ pub(super) fn resolve(
     }
 }
 
-/// Edges by the node they leave.
+/// Edges, sorted by the node that they leave.
 pub(super) struct Leaving(Vec<u32>);
 
 impl Leaving {
@@ -71,7 +71,7 @@ impl Leaving {
         Self(edges)
     }
 
-    /// In the order of the edges.
+    /// The edges that leave a node, in edge order.
     pub(super) fn at(&self, network: &Network, node: i64) -> &[u32] {
         let from = |edge: &u32| network.edges[*edge as usize].from_node;
         let start = self.0.partition_point(|edge| from(edge) < node);
@@ -88,7 +88,7 @@ struct Resolver<'n> {
 }
 
 impl Resolver<'_> {
-    /// What each rule forbids, sorted; `None` where the members are not on the network.
+    /// The sequences that each rule forbids, sorted. `None` if the members are not on the network.
     fn sequences(&self, restriction: &osm::Restriction) -> Vec<Option<Vec<Vec<u32>>>> {
         let members = |ways: &[i64]| ways.iter().flat_map(|&way| self.edges_of(way)).collect::<Vec<u32>>();
         let (from, to) = (members(&restriction.from), members(&restriction.to));
@@ -123,7 +123,7 @@ impl Resolver<'_> {
         on_network.then_some(all)
     }
 
-    /// A U-turn on one way is its reversal, not the way straight on past the node.
+    /// A U-turn on one way means its reversal, not the continuation past the node.
     fn is_meant(&self, kind: RestrictionKind, from: u32, to: u32) -> bool {
         let same_way = self.way(from) == self.way(to);
         kind.turn != RestrictedTurn::UTurn || !same_way || reverse(self.network, from, to)
@@ -153,7 +153,8 @@ impl Resolver<'_> {
         Some(forbidden)
     }
 
-    /// All ways on from the end of `path` over the ways `via` to one of `to`, each driven in one direction.
+    /// Follows all paths from the end of `path` over the ways `via` to an edge of `to`. Each way is driven in one
+    /// direction.
     fn follow(&self, path: &mut Vec<u32>, via: &[i64], to: &[u32], paths: &mut Vec<Vec<u32>>) {
         let Some(&last) = path.last() else { return };
         let leaving = self.leaving.at(self.network, self.network.edges[last as usize].to_node);

@@ -1,36 +1,37 @@
 //! Passages of roundabouts: from an edge that enters the ring, over its arcs, into an edge that leaves it.
 //!
-//! A long vehicle stands on two arcs at once: it enters, circulates and leaves in one movement. Promises a fixed order and at most
-//! entries times exits a ring; whole circles are left out, and rings whose arcs are all longer than any vehicle.
+//! A long vehicle stands on two arcs at once, so entering, circulating and leaving are one movement. The order is
+//! fixed, and a ring has at most entries times exits passages. Whole circles are left out, and so are rings whose arcs
+//! are all longer than any vehicle.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{Network, Stroke};
 
-/// Where every arc is longer, entering and leaving are two turns, metres: vehicles have 60 m at most, and entering and leaving take
-/// about 20 m of an arc each.
+/// If every arc is longer than this (metres), entering and leaving are two turns. Vehicles have at most 60 m, and
+/// entering and leaving take about 20 m of an arc each.
 const LONGEST_M: f64 = 100.0;
-/// More entries or exits than this are no roundabout, but a ring road.
+/// With more entries or exits than this a ring is a ring road, not a roundabout.
 const MOST_ARMS: usize = 24;
 
-/// One way over a roundabout.
+/// One passage over a roundabout.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Passage {
-    /// The edge one comes from; ends on the ring.
+    /// The edge before the ring; it ends on the ring.
     pub from: u32,
-    /// The edge one goes into; starts on the ring.
+    /// The edge after the ring; it starts on the ring.
     pub to: u32,
-    /// The arcs between, in driving order; at least one, less than the whole ring.
+    /// The arcs between in driving order: at least one, and less than the whole ring.
     pub through: Vec<u32>,
-    /// A restriction that forbids any of its steps (index into [`Network::restrictions`]).
+    /// A restriction that forbids any step of the passage (index into [`Network::restrictions`]).
     pub forbidden: Option<u32>,
 }
 
-/// A roundabout: its arcs in driving order, and who comes and goes at the nodes where they start.
+/// A roundabout: its arcs in driving order, and the edges that enter and leave at the nodes where they start.
 struct Ring {
     arcs: Vec<u32>,
     closed: bool,
-    /// One a node: the start of every arc, and the end of the last one if it is not closed.
+    /// One entry per node: the start of every arc, and the end of the last arc if the ring is not closed.
     entries: Vec<Vec<u32>>,
     exits: Vec<Vec<u32>>,
 }
@@ -61,7 +62,7 @@ impl Network {
         rings.iter().filter(|ring| ring.bounded()).flat_map(|ring| self.passages_of(ring, &bans)).collect()
     }
 
-    /// A stroke that is a roundabout with an arc short for a vehicle, and its nodes.
+    /// The ring of a stroke and its nodes, if the stroke is a roundabout with an arc short enough for a vehicle.
     fn ring(&self, stroke: &Stroke) -> Option<(Ring, Vec<i64>)> {
         let arcs = self.stroke_edges.get(stroke.edges.start as usize..stroke.edges.end as usize)?;
         let edges = || arcs.iter().filter_map(|&arc| self.edges.get(arc as usize));
@@ -72,7 +73,7 @@ impl Network {
         if !stroke.closed {
             nodes.extend(edges().next_back().map(|edge| edge.to_node));
         }
-        // A ring that meets itself is none.
+        // A ring that visits a node twice is no roundabout.
         let apart = nodes.iter().collect::<FxHashSet<_>>().len() == nodes.len();
         let short = edges().any(|edge| self.length_m(edge) <= LONGEST_M);
         let none = || vec![Vec::new(); nodes.len()];
@@ -95,7 +96,7 @@ impl Network {
         out
     }
 
-    /// By first edge: the restrictions.
+    /// Restrictions by their first edge.
     fn bans_by_first(&self) -> FxHashMap<u32, Vec<u32>> {
         let mut bans: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
         for (no, restriction) in (0_u32..).zip(&self.restrictions) {
@@ -106,7 +107,7 @@ impl Network {
         bans
     }
 
-    /// The first restriction on a passage's way.
+    /// The first restriction that forbids a passage.
     fn banned(&self, bans: &FxHashMap<u32, Vec<u32>>, from: u32, through: &[u32], to: u32) -> Option<u32> {
         let way: Vec<u32> = std::iter::once(from).chain(through.iter().copied()).chain([to]).collect();
         let holds = |at: usize, no: u32| {
@@ -122,7 +123,7 @@ impl Ring {
         count(&self.entries) <= MOST_ARMS && count(&self.exits) <= MOST_ARMS
     }
 
-    /// From the node at `place`: the arcs to every other node that one comes to, and who leaves there.
+    /// From the node at `place`: the arcs to every other node, and the edges that leave there.
     fn ways_on(&self, place: usize) -> impl Iterator<Item = (Vec<u32>, &[u32])> {
         let n = self.arcs.len();
         let last = if self.closed { place + n - 1 } else { n };

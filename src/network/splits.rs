@@ -1,7 +1,8 @@
-//! Where a road of two directions parts into two one-way carriageways.
+//! Places where a two-way road parts into two one-way carriageways.
 //!
-//! At such a node the map's lines jog: a two-way road's line is the middle of both directions, a carriageway's line is the middle
-//! of one. Both carriageways have to be there: a road that merely becomes one-way is no such place, and its lane may really end.
+//! The map's lines jog at such a node: a two-way road's line is the middle of both directions, and a carriageway's line
+//! is the middle of one. Both carriageways must exist. A road that merely becomes one-way is no split, because its lane
+//! may really end.
 
 use super::{Network, reverse};
 use crate::osm::facts::Oneway;
@@ -11,13 +12,13 @@ use crate::osm::facts::Oneway;
 pub struct Splits {
     /// Edges that end where the road parts; sorted.
     ends: Vec<u32>,
-    /// Edges that start where the carriageways have become one road; sorted.
+    /// Edges that start where two carriageways have joined; sorted.
     starts: Vec<u32>,
 }
 
 impl Splits {
-    /// Finds them along a network's strokes: one direction goes straight on into a one-way edge, and the other direction comes
-    /// straight on from a one-way edge, at the same node.
+    /// Finds the splits along a network's strokes. At a split one direction continues straight on into a one-way edge,
+    /// and the other direction comes straight on from a one-way edge, at the same node.
     #[must_use]
     pub fn find(network: &Network) -> Self {
         let mut found = Self::default();
@@ -62,14 +63,14 @@ impl Splits {
         self.ends.binary_search(&edge).is_ok()
     }
 
-    /// Whether two carriageways have become the two-way road of `edge` at the edge's start.
+    /// Whether two carriageways join into the two-way road of `edge` at the edge's start.
     #[must_use]
     pub fn joined_before(&self, edge: u32) -> bool {
         self.starts.binary_search(&edge).is_ok()
     }
 }
 
-/// The edge of the same piece of road in the other direction: the two stand side by side in a network.
+/// The edge of the same piece of road in the other direction. The two are neighbours in a network.
 fn other_direction(network: &Network, edge: u32) -> Option<u32> {
     let beside = [edge.checked_sub(1), edge.checked_add(1)];
     let exists = |other: &u32| (*other as usize) < network.edges.len();

@@ -1,30 +1,30 @@
-//! Strokes: chains of edges, each continued straight on into the next, with the edges one comes from before the first.
+//! Strokes: chains of edges, each continuing straight on into the next, with the approach edges before the first.
 //!
-//! A certificate is made over a stroke, so that no kink stands where an edge ends and a vehicle longer than an edge has
-//! its real approach. Movements that are not straight on are turns, and not here.
+//! A certificate is made over a stroke, so no kink stands where an edge ends, and a vehicle longer than an edge has its
+//! real approach. Movements that are not straight on are turns; `movements` lists them.
 
 use super::geometry::Geometry;
 use super::pairing::{NONE, Pairing};
 use super::{Network, NetworkAccount, Stroke};
 
-/// What counts as straight on, and how long strokes and approaches are.
+/// Limits of straight continuations, and lengths of strokes and approaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StrokeOptions {
-    /// Headings at a node are taken over this much of an edge, metres: mapped junctions have bent ends.
+    /// Length of an edge over which its heading at a node is taken, metres. Mapped junctions have bent ends.
     pub heading_reach_m: f64,
-    /// The most that an edge turns into the next one, degrees.
+    /// Largest turn from one edge into the next, degrees.
     pub straight_limit_deg: f64,
-    /// The same within one way: whoever drew it through meant it to go on, and on a hairpin of 12 m radius with a side
-    /// road at its apex two chords of 15 m stand at 72°.
+    /// Largest turn within one way, degrees. Its mapper meant it to continue. On a hairpin of 12 m radius with a side
+    /// road at its apex, two chords of 15 m stand at 72°.
     pub same_way_limit_deg: f64,
-    /// Where only two ends of road meet, the road goes on unless it turns back by more than this, degrees.
+    /// Where only two ends of road meet, the road continues unless it turns back by more than this, degrees.
     pub reversal_deg: f64,
-    /// The most that an approach turns into a stroke's first edge, degrees.
+    /// Largest turn from an approach into a stroke's first edge, degrees.
     pub approach_limit_deg: f64,
-    /// An approach ends with the edge that makes it this long, metres: a type 2 road train needs some 200 m to forget
-    /// how it came (design section 3).
+    /// Least length of an approach, metres; it ends with the edge that reaches it. A type 2 road train needs about 200
+    /// m until its entry no longer matters.
     pub approach_m: f64,
-    /// A stroke ends before the edge that would make it longer than this, metres.
+    /// Largest length of a stroke, metres. A stroke ends before the edge that would exceed it.
     pub max_length_m: f64,
 }
 
@@ -42,11 +42,11 @@ impl Default for StrokeOptions {
     }
 }
 
-/// Edges of an approach at most, however short they are.
+/// Most edges of an approach.
 const APPROACH_EDGES: usize = 256;
 
-/// Fills `strokes` and `stroke_edges` of a network that has none. Strokes are sorted by their first edge; a closed one
-/// starts at its first edge in the network's order and has no approach, for its own last edges are.
+/// Fills `strokes` and `stroke_edges` of a network without strokes. Strokes are sorted by their first edge. A closed
+/// stroke starts at its first edge in the network's order. It has no approach, because its own last edges serve as one.
 pub(super) fn chain(network: &mut Network, options: &StrokeOptions, account: &mut NetworkAccount) {
     let geometry = Geometry::measure(network, options.heading_reach_m);
     let pairing = Pairing::find(network, &geometry, options);
@@ -74,7 +74,7 @@ struct Chain {
     first: u32,
     edges: u32,
     closed: bool,
-    /// The one before became too long.
+    /// Whether it begins because the previous one became too long.
     split: bool,
 }
 
@@ -85,7 +85,7 @@ fn chains(pairing: &Pairing, geometry: &Geometry, max_length_m: f64) -> Vec<Chai
     for first in (0..edges).filter(|&edge| !pairing.continues(edge)) {
         follow(first, pairing, geometry, max_length_m, &mut done, &mut chains);
     }
-    // What is left runs round: the first edge met is the smallest of its ring.
+    // The remaining edges form rings: the first edge found is the smallest of its ring.
     for first in 0..edges {
         if !done[first as usize] {
             let strokes = chains.len();
@@ -99,7 +99,7 @@ fn chains(pairing: &Pairing, geometry: &Geometry, max_length_m: f64) -> Vec<Chai
     chains
 }
 
-/// Follows the road from `first` to its end or back to `first`, as one chain or as several none of which is too long.
+/// Follows the road from `first` to its end or back to `first`, as one chain or as several of limited length.
 fn follow(
     first: u32,
     pairing: &Pairing,
@@ -125,8 +125,8 @@ fn follow(
     chains.push(chain);
 }
 
-/// Appends the edges that lead to `first`, in driving order: back along what continues into it, then along what one
-/// most plausibly comes from, until they are long enough or come round to an edge already there.
+/// Appends the edges that lead to `first`, in driving order. They go back along what continues into it, then along what
+/// a vehicle most plausibly comes from. They end when they are long enough or reach an edge already used.
 fn approach(pairing: &Pairing, geometry: &Geometry, approach_m: f64, first: u32, out: &mut Vec<u32>) {
     let start = out.len();
     let mut length_m = 0.0;

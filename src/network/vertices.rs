@@ -1,7 +1,7 @@
-//! Node references become vertices: indices into the node table, with nodes that stand at one place made one vertex.
+//! Node references become vertices: indices into the node table, with nodes at one place merged into one vertex.
 //!
-//! Promises that two consecutive located vertices of a way, if different, have different places; so that no edge has
-//! zero length. Nodes at one place that no way joins (a bridge over a road) stay apart.
+//! Two consecutive located vertices of a way, if different, have different places, so no edge has zero length. Nodes at
+//! one place that no way joins (a bridge over a road) stay separate.
 
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
@@ -9,22 +9,22 @@ use rustc_hash::FxHashMap;
 use crate::osm::facts::PointFacts;
 use crate::osm::{NodeTable, Way};
 
-/// A reference to a node that the file does not have.
+/// A reference to a node that is not in the file.
 pub(super) const MISSING: u32 = u32::MAX;
 
-/// All ways' vertices, and what is known of each.
+/// The vertices of all ways, and facts about each vertex.
 pub(super) struct Vertices {
     /// Parallel to `Extract::refs`: index into the node table, or [`MISSING`].
     pub(super) of_refs: Vec<u32>,
-    /// By node table index.
+    /// Flags by node table index.
     marks: Vec<u8>,
-    /// Facts of tagged vertices; never iterated.
+    /// Facts of tagged vertices. Never iterated, because its order is not fixed.
     points: FxHashMap<u32, PointFacts>,
-    /// Nodes made one with another; never iterated.
+    /// For each merged node the node that replaces it. Never iterated, because its order is not fixed.
     same: FxHashMap<u32, u32>,
-    /// References without a position.
+    /// Number of references without a position.
     pub(super) missing: u64,
-    /// Nodes made one with an earlier one at the same place.
+    /// Number of nodes merged with an earlier one at the same place.
     pub(super) merged: u64,
 }
 
@@ -33,7 +33,7 @@ const USED_AGAIN: u8 = 2;
 const TAGGED: u8 = 4;
 
 impl Vertices {
-    /// Resolves every reference of `ways`; `points` are the tagged nodes.
+    /// Resolves every reference of `ways`. `points` are the tagged nodes.
     pub(super) fn resolve(ways: &[Way], refs: &[i64], nodes: &NodeTable, points: &[(i64, PointFacts)]) -> Self {
         let buckets = Buckets::new(&nodes.ids);
         let vertex = |&id: &i64| buckets.find(&nodes.ids, id).filter(|&v| nodes.places[v as usize].is_some());
@@ -50,18 +50,18 @@ impl Vertices {
         Self { of_refs, marks, points, missing, merged: same.len() as u64, same }
     }
 
-    /// Whether more than one stretch of road meets here: the node is used by several ways, or by one several times.
+    /// Whether more than one stretch of road meets here: several ways use the node, or one way uses it several times.
     pub(super) fn is_junction(&self, vertex: u32) -> bool {
         self.marks[vertex as usize] & USED_AGAIN != 0
     }
 
-    /// The node that stands for this one in the network, if the file has it.
+    /// The node that replaces this one in the network, if the file has it.
     pub(super) fn node(&self, nodes: &NodeTable, id: i64) -> Option<i64> {
         let v = located(nodes, id);
         (v != MISSING).then(|| nodes.ids[*self.same.get(&v).unwrap_or(&v) as usize])
     }
 
-    /// What the tags of the vertex' nodes say, if any has tags that matter.
+    /// The facts from the tags of the vertex's nodes, if any node has relevant tags.
     pub(super) fn point(&self, vertex: u32) -> Option<&PointFacts> {
         if self.marks[vertex as usize] & TAGGED == 0 { None } else { self.points.get(&vertex) }
     }
@@ -74,17 +74,18 @@ fn located(nodes: &NodeTable, id: i64) -> u32 {
     }
 }
 
-/// Where in a sorted list of ids a search starts and ends: the ids that share their upper bits. With plain
-/// binary searches, a network of 3.0 million edges from 7.6 million references took 1.3 to 1.7 times as long.
+/// Start and end of a search in a sorted list of ids: ids with the same upper bits share a bucket. With plain binary
+/// searches, a network of 3.0 million edges from 7.6 million references took 1.3 to 1.7 times as long.
 struct Buckets {
     least: i64,
     shift: u32,
-    /// By upper bits, less those of the least id: how many ids come before; one more entry than buckets.
+    /// By upper bits, less those of the least id: number of ids before the bucket. There is one more entry than
+    /// buckets.
     starts: Vec<u32>,
 }
 
 impl Buckets {
-    /// Four ids a bucket, if they were evenly spread.
+    /// Four ids per bucket if they were evenly spread.
     fn new(ids: &[i64]) -> Self {
         let (Some(&least), Some(&most)) = (ids.first(), ids.last()) else {
             return Self { least: 0, shift: 0, starts: Vec::new() };
@@ -114,13 +115,13 @@ impl Buckets {
     }
 }
 
-/// A way's slice of an array that is parallel to `Extract::refs`.
+/// A way's slice of an array parallel to `Extract::refs`.
 pub(super) fn of_way<'v>(of_refs: &'v [u32], way: &Way) -> &'v [u32] {
     &of_refs[way.refs.start as usize..way.refs.end as usize]
 }
 
-/// For each node that follows another at its very place along a way: the node it becomes one with, the one of the
-/// smallest id among all that are so joined.
+/// For each node that follows another at its very place along a way: the node that replaces it. That is the node with
+/// the smallest id among all that are joined.
 fn same_place_aliases(ways: &[Way], of_refs: &[u32], nodes: &NodeTable) -> FxHashMap<u32, u32> {
     let same = |pair: &[u32]| {
         pair[0] != pair[1]
@@ -143,7 +144,7 @@ fn same_place_aliases(ways: &[Way], of_refs: &[u32], nodes: &NodeTable) -> FxHas
     joined.into_iter().map(|v| (v, root(&mut parent, v))).collect()
 }
 
-/// The root of `v`, halving the path to it.
+/// The root of `v`. The path to it is halved on the way.
 fn root(parent: &mut FxHashMap<u32, u32>, mut v: u32) -> u32 {
     while let Some(&up) = parent.get(&v) {
         match parent.get(&up) {
@@ -189,7 +190,7 @@ fn point_facts(
     by_vertex
 }
 
-/// Two tagged nodes at one place: what either forbids or narrows counts.
+/// Merges the facts of two tagged nodes at one place: each prohibition and each narrowing counts.
 fn both(a: &PointFacts, b: &PointFacts) -> PointFacts {
     PointFacts {
         legal: a.legal.merge(b.legal),

@@ -1,10 +1,10 @@
-//! What both passes leave in memory: roads as facts in flat arrays. Bounded by the roads, not by the file.
+//! The result of both passes: roads as facts in flat arrays. Its size is bounded by the roads, not by the file.
 
 use std::ops::Range;
 
 use crate::osm::facts::{AreaKind, PointFacts, TurnRule, WayFacts};
 
-/// A position in units of 1e-7 degree (the file's own resolution), WGS 84.
+/// A position on WGS 84 in units of 1e-7 degree, the file's own resolution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct LonLat {
     /// Longitude, 1e-7 degree, −180°..=180°.
@@ -21,29 +21,30 @@ impl LonLat {
     }
 }
 
-/// A drivable way: its facts, and its node references in [`Extract::refs`] (at least two, consecutive ones distinct).
+/// A drivable way: its facts, and its node references in [`Extract::refs`]. There are at least two references, and
+/// consecutive ones differ.
 #[derive(Debug, Clone)]
 pub struct Way {
     /// OSM way id.
     pub id: i64,
-    /// Where its node references stand in [`Extract::refs`].
+    /// Range of its node references in [`Extract::refs`].
     pub refs: Range<u32>,
-    /// What its tags say.
+    /// Facts from its tags.
     pub facts: WayFacts,
 }
 
-/// A turn restriction that holds for heavy goods vehicles, as the relation has it; its members need not be in the file.
+/// A turn restriction for heavy goods vehicles, as the relation gives it. Its members need not be in the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Restriction {
     /// OSM relation id.
     pub id: i64,
-    /// What it says; at least one.
+    /// Its rules; at least one.
     pub rules: Vec<TurnRule>,
-    /// Ways that one comes from (several only with `no_entry`).
+    /// Ways before the turn (several only with `no_entry`).
     pub from: Vec<i64>,
-    /// Where.
+    /// Nodes or ways between.
     pub via: Via,
-    /// Ways that one goes to (several only with `no_exit`).
+    /// Ways after the turn (several only with `no_exit`).
     pub to: Vec<i64>,
 }
 
@@ -52,27 +53,28 @@ pub struct Restriction {
 pub struct RoadArea {
     /// OSM way id.
     pub id: i64,
-    /// What it is of.
+    /// Surface or island.
     pub kind: AreaKind,
-    /// Its node references, in order: at least four, the last one the first again.
+    /// Its node references in order: at least four, and the last equals the first.
     pub refs: Vec<i64>,
 }
 
-/// What lies between the ways of a restriction.
+/// The members between the `from` and `to` ways of a restriction.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Via {
-    /// A node (of several, each).
+    /// A node. If there are several, the restriction holds at each of them.
     Nodes(Vec<i64>),
-    /// Ways, one after the other.
+    /// Ways, driven one after the other.
     Ways(Vec<i64>),
 }
 
-/// Node positions: sorted by id, every node named by a kept way or area; a node that the file lacks has no position.
+/// Node positions, sorted by id. The table has every node that a kept way or area names; a node that the file lacks has
+/// no position.
 #[derive(Debug, Clone, Default)]
 pub struct NodeTable {
-    /// Sorted, distinct.
+    /// Sorted, distinct node ids.
     pub ids: Vec<i64>,
-    /// Parallel to `ids`; `None` where the file has no such node (or at an invalid place).
+    /// Parallel to `ids`. `None` if the file has no such node, or has it at an invalid place.
     pub places: Vec<Option<LonLat>>,
 }
 
@@ -94,7 +96,7 @@ impl NodeTable {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct StringId(pub u32);
 
-/// Interned strings; the same text has the same id, ids follow first use in way order.
+/// Interned strings. The same text has the same id, and ids follow first use in way order.
 #[derive(Debug, Clone, Default)]
 pub struct StringPool {
     texts: Vec<Box<str>>,
@@ -102,7 +104,7 @@ pub struct StringPool {
 }
 
 impl StringPool {
-    /// The id of `text`, new or old.
+    /// The id of `text`, which is added if it is new.
     pub fn intern(&mut self, text: &str) -> StringId {
         if let Some(&id) = self.ids.get(text) {
             return StringId(id);
@@ -125,14 +127,14 @@ impl StringPool {
     }
 }
 
-/// What reading leaves.
+/// The data read from an extract.
 #[derive(Debug, Clone, Default)]
 pub struct Extract {
     /// Kept ways, sorted by id, ids distinct.
     pub ways: Vec<Way>,
-    /// All ways' node references, one after the other.
+    /// Node references of all ways, one way after the other.
     pub refs: Vec<i64>,
-    /// Where those nodes are.
+    /// Positions of those nodes.
     pub nodes: NodeTable,
     /// Tagged nodes on kept ways that narrow or bar the road: sorted by node id.
     pub points: Vec<(i64, PointFacts)>,
@@ -142,6 +144,6 @@ pub struct Extract {
     pub restrictions: Vec<Restriction>,
     /// Names and refs of the ways.
     pub strings: StringPool,
-    /// The account of everything read: by reason, how many ways were left out and why.
+    /// The account of everything read: how many ways were left out, by reason.
     pub account: crate::osm::pbf::ReadAccount,
 }

@@ -1,7 +1,7 @@
-//! Reading: a `.osm.pbf` becomes drivable ways, as facts, and the places of their nodes.
+//! Reading: a `.osm.pbf` becomes drivable ways, as facts, and the positions of their nodes.
 //!
-//! Two passes over the file: ways first, then only the nodes they name. Nothing is dropped without a counted
-//! reason; a damaged file is an error with a byte offset, never a shorter result.
+//! The file is read in two passes: ways first, then only the nodes that they name. Every dropped object has a counted
+//! reason. A damaged file is an error with a byte offset, never a shorter result.
 
 mod extract;
 pub mod facts;

@@ -1,4 +1,4 @@
-//! A vehicle from above, as it stands: bodies, drawbars, axles, hitches. To the scale of the view.
+//! A vehicle from above in its pose: bodies, drawbars, axles, hitches, to the scale of the view.
 
 use super::palette::{self, Colour};
 use super::style::Style;
@@ -7,7 +7,7 @@ use super::{Point, View};
 use crate::stet::motion::Pose;
 use crate::vehicle::Vehicle;
 
-/// How bodies are filled, by unit.
+/// Fill colour of a body, by unit.
 pub(super) type Fill<'a> = dyn Fn(usize) -> Colour + 'a;
 
 /// All units with axles and hitches.
@@ -17,13 +17,13 @@ pub(super) fn vehicle(picture: &mut Picture, view: &View, vehicle: &Vehicle, pos
         for (i, (unit, pose)) in vehicle.units.iter().zip(poses).enumerate() {
             let style = Style::area(fill(i)).filled_at(0.45).outlined(palette::INK, 1.3 * thin);
             p.polygon(&view.all(&pose.outline(unit)), style);
-            // A drawbar shows where the body ends short of the coupling.
+            // A drawbar, where the body ends short of the coupling.
             if unit.front_overhang_m < 0.0 {
                 let from = pose.place(unit.coupling_to_axle_m, 0.0);
                 let to = pose.place(unit.coupling_to_axle_m + unit.front_overhang_m, 0.0);
                 p.segment(view.at(from), view.at(to), Style::line(palette::INK, 1.6 * thin));
             }
-            // And a pole, where the body ends ahead of the hitch.
+            // A pole, where the body ends ahead of the hitch.
             if unit.hitch_offset_m > unit.rear_overhang_m && i + 1 < vehicle.units.len() {
                 let from = pose.place(-unit.rear_overhang_m, 0.0);
                 let to = pose.place(-unit.hitch_offset_m, 0.0);

@@ -1,4 +1,4 @@
-//! Curves over an axis: a frame with round ticks, from values to the page and back to nothing else.
+//! Curves over an axis: a frame with round ticks, and the mapping from values to the page.
 
 use super::furniture::round_below;
 use super::palette::{self, Colour};
@@ -6,7 +6,7 @@ use super::style::{Anchor, Style, TextStyle};
 use super::svg::Picture;
 use super::{Frame, Point};
 
-/// One axis: which values it shows and what they are.
+/// One axis: its range and its label.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scale {
     /// Value at the left or lower end.
@@ -15,19 +15,19 @@ pub struct Scale {
     pub high: f64,
     /// Name with unit, `leeway, m`.
     pub label: String,
-    /// About how many ticks it may have.
+    /// Approximate number of ticks.
     pub ticks: usize,
 }
 
 impl Scale {
-    /// From `low` to `high`; where they are the same, half a unit around them.
+    /// An axis from `low` to `high`. If they are equal, it extends half a unit to both sides.
     #[must_use]
     pub fn new(low: f64, high: f64, label: &str) -> Self {
         let (low, high) = if high > low { (low, high) } else { (low - 0.5, low + 0.5) };
         Self { low, high, label: label.to_owned(), ticks: 6 }
     }
 
-    /// About so many ticks.
+    /// Sets the approximate number of ticks.
     #[must_use]
     pub fn ticks(self, ticks: usize) -> Self {
         Self { ticks: ticks.max(2), ..self }
@@ -37,7 +37,7 @@ impl Scale {
         (value - self.low) / (self.high - self.low)
     }
 
-    /// Round values within, and the decimals that tell them apart.
+    /// Round values in the range, and the number of decimals that distinguish them.
     fn marks(&self) -> (Vec<f64>, usize) {
         let wanted = (self.high - self.low) / self.ticks as f64;
         let below = round_below(wanted);
@@ -51,26 +51,26 @@ impl Scale {
     }
 }
 
-/// A frame for curves. Labels and tick values stand outside it: leave some 60 units on the left and 45 below.
+/// A frame for curves. Labels and tick values are outside it: leave about 60 units on the left and 45 below.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
-    /// On the page.
+    /// Place on the page.
     pub frame: Frame,
-    /// To the right.
+    /// Horizontal axis, to the right.
     pub x: Scale,
-    /// Up.
+    /// Vertical axis, upwards.
     pub y: Scale,
 }
 
 impl Chart {
-    /// Where a pair of values comes to stand.
+    /// The place of a pair of values on the page.
     #[must_use]
     pub fn at(&self, x: f64, y: f64) -> Point {
         let f = &self.frame;
         [f.x + f.width * self.x.share(x), f.y + f.height * (1.0 - self.y.share(y))]
     }
 
-    /// Frame, grid, ticks and labels: draw this first.
+    /// Draws frame, grid, ticks and labels. Call this first.
     pub fn axes(&self, picture: &mut Picture) {
         let small = TextStyle::size(12.0).coloured(palette::GREY);
         let f = self.frame;
@@ -94,13 +94,13 @@ impl Chart {
         });
     }
 
-    /// A curve through pairs of values, cut off at the frame.
+    /// Draws a curve through pairs of values, clipped to the frame.
     pub fn curve(&self, picture: &mut Picture, class: &str, values: &[[f64; 2]], style: Style) {
         let points: Vec<Point> = values.iter().map(|&[x, y]| self.at(x, y)).collect();
         picture.clipped(self.frame, class, |p| p.polyline(&points, style));
     }
 
-    /// The area between a curve and the level `base`, cut off at the frame.
+    /// Draws the area between a curve and the level `base`, clipped to the frame.
     pub fn area(&self, picture: &mut Picture, class: &str, values: &[[f64; 2]], base: f64, colour: Colour) {
         let (Some(first), Some(last)) = (values.first(), values.last()) else { return };
         let mut points = vec![self.at(first[0], base)];
@@ -109,13 +109,13 @@ impl Chart {
         picture.clipped(self.frame, class, |p| p.polygon(&points, Style::area(colour).filled_at(0.25)));
     }
 
-    /// A line across at `y`.
+    /// Draws a horizontal line at `y`.
     pub fn level(&self, picture: &mut Picture, y: f64, style: Style) {
         picture.segment(self.at(self.x.low, y), self.at(self.x.high, y), style);
     }
 }
 
-/// As many decimals as asked for, a true minus sign, no negative zero.
+/// The value with the given number of decimals, a true minus sign and no negative zero.
 fn plain(value: f64, decimals: usize) -> String {
     let text = format!("{:.decimals$}", value.abs());
     if value < 0.0 && text.bytes().any(|b| b.is_ascii_digit() && b != b'0') { format!("\u{2212}{text}") } else { text }

@@ -1,5 +1,4 @@
-//! What stands around and upon a drawing: dimension lines, arrows, a scale bar, a legend. Page units, but for the lengths
-//! that are named in metres.
+//! Dimension lines, arrows, a scale bar and a legend. Units are page units unless metres are named.
 
 use super::palette::{self, Colour};
 use super::style::{Anchor, Style, TextStyle};
@@ -9,7 +8,7 @@ use super::{Frame, Point, View};
 /// Length of an arrow's head.
 const HEAD: f64 = 8.0;
 
-/// A line with a head at `to`.
+/// Draws a line with an arrow head at `to`.
 pub fn arrow(picture: &mut Picture, from: Point, to: Point, colour: Colour, width: f64) {
     let Some(u) = direction(from, to) else { return };
     let neck = along(to, u, -0.8 * HEAD);
@@ -24,14 +23,14 @@ fn head(picture: &mut Picture, tip: Point, u: Point, colour: Colour) {
     picture.polygon(&[tip, wings[0], wings[1]], Style::area(colour));
 }
 
-/// A dimension line between two places with its text in the middle; where the places are closer than two heads, the
-/// heads stand outside and the text beside the far end.
+/// Draws a dimension line between two places with its text in the middle. If the places are closer than two heads, the
+/// heads are outside and the text is beside the far end.
 pub fn dimension(picture: &mut Picture, from: Point, to: Point, text: &str, style: TextStyle) {
     let Some(u) = direction(from, to) else { return };
     let length = (to[0] - from[0]).hypot(to[1] - from[1]);
     let line = Style::line(style.colour, 1.2);
     let upright = upright_deg(u);
-    // Up as the text has it.
+    // Upwards in the direction of the text.
     let up = [-upright.to_radians().sin(), -upright.to_radians().cos()];
     let style = TextStyle { turned_deg: upright, ..style }.haloed();
     if length > 2.6 * HEAD {
@@ -52,7 +51,7 @@ pub fn dimension(picture: &mut Picture, from: Point, to: Point, text: &str, styl
     picture.text(beside, text, style.anchored(anchor));
 }
 
-/// Lines of text in a box near `corner`, with a leader to `target`.
+/// Draws lines of text in a box near `corner`, with a leader to `target`.
 pub fn callout(picture: &mut Picture, target: Point, corner: Point, lines: &[String], colour: Colour) {
     let style = TextStyle::size(14.0);
     let widest = lines.iter().map(|line| style.bold().width(line)).fold(0.0, f64::max);
@@ -68,7 +67,7 @@ pub fn callout(picture: &mut Picture, target: Point, corner: Point, lines: &[Str
     });
 }
 
-/// A scale bar of a round number of metres, at most `most` page units long, its left end at `at`.
+/// Draws a scale bar of a round number of metres, at most `most` page units long, with its left end at `at`.
 pub fn scale_bar(picture: &mut Picture, view: &View, at: Point, most: f64) {
     let metres = round_below(most / view.scale);
     let length = view.length(metres);
@@ -86,21 +85,21 @@ pub fn scale_bar(picture: &mut Picture, view: &View, at: Point, most: f64) {
     });
 }
 
-/// The greatest of 1, 2, 5 times a power of ten that is not above `value`.
+/// The greatest value of 1, 2 or 5 times a power of ten that is not above `value`.
 pub(super) fn round_below(value: f64) -> f64 {
     let power = 10f64.powf(value.max(1e-9).log10().floor());
     let digit = value / power;
-    // A hair of slack: 0.2 / 0.1 is not 2.
+    // A small tolerance, because 0.2 / 0.1 is not 2.
     let digit = [5.0, 2.0].into_iter().find(|d| digit >= d - 1e-9).unwrap_or(1.0);
     digit * power
 }
 
-/// One line of a legend.
+/// One entry of a legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Key {
-    /// How its sample looks: an area where it has a fill, else a line.
+    /// Style of the sample: an area if it has a fill, otherwise a line.
     pub style: Style,
-    /// What it means.
+    /// Meaning of the sample.
     pub text: String,
 }
 
@@ -112,7 +111,7 @@ impl Key {
     }
 }
 
-/// Samples and what they mean, from the top left corner `at` down; returns its height.
+/// Draws samples and their meanings downwards from the top left corner `at`. Returns the height.
 pub fn legend(picture: &mut Picture, at: Point, keys: &[Key]) -> f64 {
     let row = 20.0;
     picture.group("legend", |p| {
@@ -139,7 +138,7 @@ fn along(from: Point, u: Point, by: f64) -> Point {
     [from[0] + by * u[0], from[1] + by * u[1]]
 }
 
-/// The turn, counter-clockwise, of a text along `u` that is never upside down.
+/// Counter-clockwise turn of a text along `u`, such that the text is never upside down.
 fn upright_deg(u: Point) -> f64 {
     let degrees = (-u[1]).atan2(u[0]).to_degrees();
     match degrees {

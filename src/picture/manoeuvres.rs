@@ -1,4 +1,4 @@
-//! The turns of a vehicle: what it sweeps of the road in 90°, 180° and a full circle, with the numbers at their places.
+//! The turns of a vehicle: the road that it sweeps in 90°, 180° and a full circle, with the numbers at their places.
 
 use super::furniture::{arrow, dimension};
 use super::palette;
@@ -10,7 +10,7 @@ use crate::vehicle::Vehicle;
 
 const WIDTH: f64 = 1400.0;
 const MARGIN: f64 = 28.0;
-/// Bodies of the swept area are drawn so far apart, metres: the steps do not show.
+/// Distance between drawn bodies of the swept area, metres. The steps are not visible.
 const SMEAR_M: f64 = 0.25;
 
 /// The picture of a vehicle's manoeuvres.
@@ -88,13 +88,13 @@ fn turn(picture: &mut Picture, vehicle: &Vehicle, turn: &Turn, swept: &Swept, fr
     picture.rect(frame, 0.0, Style::line(palette::PALE, 1.0));
 }
 
-/// Guide places between which the picture looks: from the entry to where the front is well out of the turn.
+/// Guide places that the picture shows: from the entry until the front is well out of the turn.
 fn seen(drive: &Drive, turn: &Turn) -> impl Iterator<Item = f64> + Clone + use<> {
     let last = drive.at_m.last().copied().unwrap_or(0.0).min(turn.radius_m * turn.angle_rad + 14.0);
     (0..=12).map(move |i| -2.0 + (last + 2.0) * f64::from(i) / 12.0)
 }
 
-/// The guide's place when the unit that cuts in most is at the widest place: about when its inner side passes there.
+/// Place of the guide when the inner side of the unit that cuts in most passes the widest place, approximately.
 fn moment(drive: &Drive, swept: &Swept) -> f64 {
     let place = beside(&drive.turn, swept.width_at_m, swept.extent_m[0]);
     let near = |poses: &[crate::stet::motion::Pose]| {
@@ -104,7 +104,7 @@ fn moment(drive: &Drive, swept: &Swept) -> f64 {
     best.map_or(0.0, |(_, at)| *at)
 }
 
-/// A place so far along the path and to its left.
+/// The place `at_m` along the path and `left_m` to its left.
 fn beside(turn: &Turn, at_m: f64, left_m: f64) -> Point {
     let (here, on) = (turn.place(at_m), turn.place(at_m + 1e-3));
     let u = [(on[0] - here[0]) / 1e-3, (on[1] - here[1]) / 1e-3];
@@ -116,7 +116,7 @@ fn pose_at(drive: &Drive, at_m: f64) -> &[crate::stet::motion::Pose] {
     drive.poses.get(k).map_or(&[], Vec::as_slice)
 }
 
-/// All that bodies sweep while the guide is between two places.
+/// Draws the area that the bodies sweep while the guide is between two places.
 fn smear(picture: &mut Picture, view: &View, vehicle: &Vehicle, drive: &Drive, (from, to): (f64, f64)) {
     picture.group("swept", |p| {
         let mut next = from;
@@ -191,7 +191,7 @@ fn width(swept: &Swept) -> String {
     swept.width_m.map_or("past the centre".to_owned(), |metres| format!("{metres:.2} m"))
 }
 
-/// Says so where an angle is beyond what the vehicle allows.
+/// A warning if an angle exceeds the vehicle's limit.
 fn undrivable(vehicle: &Vehicle, angles_rad: &[f64]) -> Option<String> {
     let unit = manoeuvres::beyond_limit(vehicle, angles_rad)?;
     let limit = vehicle.units.get(unit)?.max_articulation_rad.to_degrees();
@@ -238,7 +238,7 @@ fn listed(picture: &mut Picture, at: Point, lines: &[String], findings: &[Findin
     let top = at[1] + 19.0 * lines.len() as f64 + 6.0;
     for (i, f) in findings.iter().enumerate() {
         let y = top + 18.0 * i as f64;
-        // A cross or a tick, not a colour alone.
+        // A cross or a tick as well as the colour.
         let (sign, colour) = if f.passes { ("✓", palette::BLUE) } else { ("✗", palette::VERMILLION) };
         let bound = if f.limit.measure.at_least() { "≥" } else { "≤" };
         let what = f.limit.measure.words().split(',').next().unwrap_or("");

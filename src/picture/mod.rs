@@ -1,23 +1,23 @@
-//! Pictures: the base on which every drawing of corridors, vehicles and charts stands. SVG as text, nothing else.
+//! Pictures of corridors, vehicles and charts, as SVG text.
 //!
-//! Promises: true scale (a [`View`] never stretches one axis against the other), the same input gives the same bytes
-//! (fixed decimals, no clocks, no maps), well-formed XML whatever a name holds, and colours that people with any kind of colour
-//! vision tell apart ([`palette`], with sources). Every picture has its own light background, so that it reads the same on
-//! a dark page. Left out: measuring text (its width is estimated), fonts, animation.
+//! The scale is true: a [`View`] never stretches one axis. The same input gives the same bytes (fixed decimals, no
+//! clocks, no hash maps). The XML is well-formed for any name. People with any kind of colour vision can tell the
+//! colours apart ([`palette`], with sources). Every picture has its own light background, so it looks the same on a
+//! dark page. Text is not measured (its width is estimated), and there are no fonts and no animation.
 //!
 //! | file | for |
 //! | --- | --- |
 //! | `svg` | [`Picture`]: the document, and shapes in page units |
-//! | `style` | how shapes and texts look |
+//! | `style` | appearance of shapes and texts |
 //! | `view` | from metres (x east, y north) to the page |
-//! | `palette` | colours, and scales for numbers |
+//! | `palette` | colours, and colour scales for numbers |
 //! | `furniture` | dimension lines, arrows, scale bar, legend |
 //! | `chart` | a curve over an axis |
 //! | `bodies` | a vehicle from above |
 //! | `turn` | a turn at a junction, with the vehicle all the way round |
 //! | `explanation` | what limits a vehicle on a road |
 //! | `vehicle` | a vehicle with its dimensions |
-//! | `route` | a route's leeway all along, and its shape |
+//! | `route` | the leeway along a route, and the route's shape |
 //! | `manoeuvres` | the turns by which a vehicle is judged |
 
 mod bodies;
@@ -46,5 +46,5 @@ pub use turn::turn;
 pub use vehicle::vehicle;
 pub use view::{Bounds, Frame, View};
 
-/// A place: metres in the world, or page units (right and *down*), as the context says.
+/// A place: metres in the world, or page units (right and *down*), depending on the context.
 pub type Point = [f64; 2];

@@ -1,13 +1,13 @@
-//! Colours that people with any kind of colour vision tell apart, and scales for numbers.
+//! Colours that people with any kind of colour vision can tell apart, and colour scales for numbers.
 //!
 //! Sources: the eight categorical colours are those of Okabe and Ito, *Color Universal Design* (2008),
-//! <https://jfly.uni-koeln.de/color/>; [`sequential`] is viridis (van der Walt and Smith, matplotlib 1.5, CC0), sampled at nine
-//! places; [`diverging`] is RdYlBu of ColorBrewer (Harrower and Brewer 2003, <https://colorbrewer2.org>, colour-blind
-//! safe). No picture says anything by colour alone: signs, labels or line styles say it too.
+//! <https://jfly.uni-koeln.de/color/>. [`sequential`] is viridis (van der Walt and Smith, matplotlib 1.5, CC0), sampled
+//! at nine places. [`diverging`] is RdYlBu of ColorBrewer (Harrower and Brewer 2003, <https://colorbrewer2.org>,
+//! colour-blind safe). No picture uses colour alone: signs, labels or line styles say the same.
 
 use std::fmt;
 
-/// A colour; as text `#rrggbb`.
+/// A colour. Its text form is `#rrggbb`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Colour(pub u8, pub u8, pub u8);
 
@@ -21,7 +21,7 @@ impl fmt::Display for Colour {
 pub const PAPER: Colour = Colour(0xfd, 0xfd, 0xfb);
 /// Text and outlines: 16:1 against [`PAPER`].
 pub const INK: Colour = Colour(0x1b, 0x1f, 0x24);
-/// Secondary text and dimension lines: 6:1 against [`PAPER`], WCAG's 4.5:1 with something to spare.
+/// Secondary text and dimension lines: 6:1 against [`PAPER`]; WCAG asks for 4.5:1.
 pub const GREY: Colour = Colour(0x5b, 0x62, 0x6b);
 /// Grid lines and frames.
 pub const PALE: Colour = Colour(0xd4, 0xd8, 0xdd);
@@ -40,12 +40,12 @@ pub const GREEN: Colour = Colour(0x00, 0x9e, 0x73);
 pub const YELLOW: Colour = Colour(0xf0, 0xe4, 0x42);
 /// Okabe and Ito: blue.
 pub const BLUE: Colour = Colour(0x00, 0x72, 0xb2);
-/// Okabe and Ito: vermillion. What is wrong is drawn in it.
+/// Okabe and Ito: vermillion. It marks faults.
 pub const VERMILLION: Colour = Colour(0xd5, 0x5e, 0x00);
 /// Okabe and Ito: reddish purple.
 pub const PURPLE: Colour = Colour(0xcc, 0x79, 0xa7);
 
-/// One colour a unit, front to rear, repeated: neighbours differ in lightness, too.
+/// Colours of units, front to rear, repeated. Neighbours differ in lightness too.
 const UNITS: [Colour; 7] = [BLUE, ORANGE, GREEN, PURPLE, SKY, VERMILLION, YELLOW];
 
 /// The colour of the `index`-th of several things side by side.
@@ -78,7 +78,7 @@ const RD_YL_BU: [Colour; 9] = [
     Colour(0x45, 0x75, 0xb4),
 ];
 
-/// From dark (0) to light (1), evenly in lightness; beyond its ends it keeps the last colour.
+/// From dark (0) to light (1), with even steps of lightness. Beyond the ends the last colour stays.
 #[must_use]
 pub fn sequential(share: f64) -> Colour {
     between(&VIRIDIS, share)

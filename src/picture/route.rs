@@ -1,4 +1,5 @@
-//! A route as a strip: leeway left and right along all of it, turns marked; below, its shape on the map in the same colours.
+//! A route as a strip: leeway left and right along the route with its turns marked, and below it the route's shape on
+//! the map in the same colours.
 
 use super::furniture::{arrow, scale_bar};
 use super::palette;
@@ -10,13 +11,13 @@ use crate::route::{PartKind, Route, title};
 use crate::stet::known_m;
 use crate::vehicle::Vehicle;
 
-/// Points of a curve at most: of each bucket of stations the least counts.
+/// Most points of a curve. Each bucket of stations shows its least value.
 const MOST_POINTS: usize = 900;
-/// More leeway than this is as good as any, metres.
+/// Leeway above this is cut off, metres.
 const ENOUGH_M: f64 = 1.2;
 /// Leeway at which the map's colours end, metres.
 const FULL_M: f64 = 0.6;
-/// Names of turns closer to each other than this on the page are left out.
+/// A turn's name is left out if it is closer than this to the previous name, page units.
 const NAME_GAP: f64 = 17.0;
 
 /// Draws a certified route.
@@ -75,7 +76,7 @@ fn strip(picture: &mut Picture, network: &Network, route: &Route, frame: Frame) 
     picture.text([frame.x + 172.0, y], "to the right edge; turns are shaded", small);
 }
 
-/// What each turn leads into, on end above the strip, where there is room.
+/// Writes the name of the road after each turn, slanted above the strip, if there is room.
 fn names(picture: &mut Picture, network: &Network, route: &Route, chart: &Chart) {
     let mut last = f64::NEG_INFINITY;
     for part in route.parts() {
@@ -94,7 +95,7 @@ fn names(picture: &mut Picture, network: &Network, route: &Route, chart: &Chart)
     }
 }
 
-/// Kilometres along, and the least leeway nearby; where none is known nothing is drawn.
+/// Kilometres along the route, and the least leeway nearby. Stations without a known leeway are left out.
 fn series(leeway: &[f64], spacing_m: f64) -> Vec<Point> {
     let bucket = leeway.len().div_ceil(MOST_POINTS).max(1);
     leeway

@@ -1,21 +1,21 @@
-//! How shapes and texts look, as values: no style sheets, so that a picture reads the same in every program.
+//! Appearance of shapes and texts as values. There are no style sheets, so a picture looks the same in every program.
 
 use super::palette::{self, Colour};
 
-/// Fill and outline of a shape. Widths in page units.
+/// Fill and outline of a shape. Widths are in page units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Style {
-    /// Inside; `None`: empty.
+    /// Fill colour; `None` for no fill.
     pub fill: Option<Colour>,
-    /// 0 to 1.
+    /// Opacity of the fill, 0 to 1.
     pub fill_opacity: f64,
-    /// Outline; `None`: none.
+    /// Outline colour; `None` for no outline.
     pub stroke: Option<Colour>,
-    /// Its width.
+    /// Width of the outline.
     pub stroke_width: f64,
-    /// 0 to 1.
+    /// Opacity of the outline, 0 to 1.
     pub stroke_opacity: f64,
-    /// Lengths drawn and left out in turn; `None`: a whole line.
+    /// Lengths drawn and left out in turn; `None` for a solid line.
     pub dash: Option<[f64; 2]>,
 }
 
@@ -45,55 +45,55 @@ impl Style {
         Self { stroke: Some(colour), stroke_width: width, ..self }
     }
 
-    /// With so opaque a fill, 0 to 1.
+    /// With this opacity of the fill, 0 to 1.
     #[must_use]
     pub const fn filled_at(self, opacity: f64) -> Self {
         Self { fill_opacity: opacity, ..self }
     }
 
-    /// With so opaque an outline, 0 to 1.
+    /// With this opacity of the outline, 0 to 1.
     #[must_use]
     pub const fn drawn_at(self, opacity: f64) -> Self {
         Self { stroke_opacity: opacity, ..self }
     }
 
-    /// With a dashed outline: so much drawn, so much left out.
+    /// With a dashed outline: the length drawn, and the length left out.
     #[must_use]
     pub const fn dashed(self, drawn: f64, left_out: f64) -> Self {
         Self { dash: Some([drawn, left_out]), ..self }
     }
 }
 
-/// Which end of a text stands at its place.
+/// The part of a text that is at its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
-    /// It begins there.
+    /// Its start.
     Start,
-    /// Its middle is there.
+    /// Its middle.
     Middle,
-    /// It ends there.
+    /// Its end.
     End,
 }
 
-/// How a text looks. Sizes in page units.
+/// Appearance of a text. Sizes are in page units.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextStyle {
     /// Height of the letters.
     pub size: f64,
     /// Colour.
     pub colour: Colour,
-    /// Heavy letters.
+    /// Whether the letters are bold.
     pub bold: bool,
-    /// Which end of it stands at its place.
+    /// The part of the text that is at its place.
     pub anchor: Anchor,
-    /// Counter-clockwise, degrees.
+    /// Counter-clockwise turn, degrees.
     pub turned_deg: f64,
-    /// A rim in the paper's colour, so that it reads on top of lines.
+    /// Whether the letters have a rim in the paper's colour, which keeps them legible over lines.
     pub halo: bool,
 }
 
 impl TextStyle {
-    /// Dark upright letters that begin at their place.
+    /// Dark upright letters that start at their place.
     #[must_use]
     pub const fn size(size: f64) -> Self {
         Self { size, colour: palette::INK, bold: false, anchor: Anchor::Start, turned_deg: 0.0, halo: false }
@@ -105,13 +105,13 @@ impl TextStyle {
         Self { colour, ..self }
     }
 
-    /// Heavy.
+    /// In bold.
     #[must_use]
     pub const fn bold(self) -> Self {
         Self { bold: true, ..self }
     }
 
-    /// With another end at its place.
+    /// With another anchor.
     #[must_use]
     pub const fn anchored(self, anchor: Anchor) -> Self {
         Self { anchor, ..self }
@@ -129,8 +129,8 @@ impl TextStyle {
         Self { halo: true, ..self }
     }
 
-    /// About how wide `text` will be: sans-serif letters are some 0.55 of their size wide on average. Enough to keep labels
-    /// from running into each other, not to set type.
+    /// Approximate width of `text`: sans-serif letters are about 0.55 of their size wide on average. The estimate keeps
+    /// labels apart but is too coarse for typesetting.
     #[must_use]
     pub fn width(&self, text: &str) -> f64 {
         let average = if self.bold { 0.60 } else { 0.55 };

@@ -1,7 +1,6 @@
 //! The SVG document: shapes in page units (right and down from the top left corner), written as text.
 //!
-//! Coordinates have two decimals, whatever they are; places that are no numbers are left out. Text is escaped here
-//! and nowhere else.
+//! Coordinates have two decimals. Places with coordinates that are not finite are left out. Text is escaped only here.
 
 use std::fmt::Write as _;
 
@@ -9,10 +8,10 @@ use super::palette;
 use super::style::{Anchor, Style, TextStyle};
 use super::{Frame, Point};
 
-/// Sans-serif faces that look alike, for programs that know none of the first ones.
+/// Sans-serif faces that look alike; a program uses the first one that it knows.
 const FONTS: &str = "Inter, 'Helvetica Neue', Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 
-/// A picture in the making.
+/// A picture under construction.
 #[derive(Debug, Clone)]
 pub struct Picture {
     width: f64,
@@ -24,7 +23,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// An empty page of so many units. Title and description are what screen readers and tooltips say.
+    /// An empty page of the given size. Screen readers and tooltips use title and description.
     #[must_use]
     pub fn new(width: f64, height: f64, title: &str, description: &str) -> Self {
         let (title, description) = (escaped(title), escaped(description));
@@ -37,14 +36,14 @@ impl Picture {
         Frame { x: 0.0, y: 0.0, width: self.width, height: self.height }
     }
 
-    /// What `draw` draws, as a group of that class: the class says what it is, for tests and for style sheets.
+    /// Draws a group with a class. Tests and style sheets use the class.
     pub fn group(&mut self, class: &str, draw: impl FnOnce(&mut Self)) {
         self.line(format_args!(r#"<g class="{}">"#, escaped(class)));
         draw(self);
         self.line(format_args!("</g>"));
     }
 
-    /// What `draw` draws, cut off at the frame.
+    /// Draws a group clipped to the frame.
     pub fn clipped(&mut self, frame: Frame, class: &str, draw: impl FnOnce(&mut Self)) {
         self.clips += 1;
         let id = format!("clip{}", self.clips);
@@ -55,12 +54,12 @@ impl Picture {
         self.line(format_args!("</g>"));
     }
 
-    /// An open line through the points.
+    /// Draws an open line through the points.
     pub fn polyline(&mut self, points: &[Point], style: Style) {
         self.through("polyline", points, style);
     }
 
-    /// A closed area.
+    /// Draws a closed area.
     pub fn polygon(&mut self, points: &[Point], style: Style) {
         self.through("polygon", points, style);
     }
@@ -73,24 +72,24 @@ impl Picture {
         }
     }
 
-    /// A straight line.
+    /// Draws a straight line.
     pub fn segment(&mut self, from: Point, to: Point, style: Style) {
         self.polyline(&[from, to], style);
     }
 
-    /// A circle.
+    /// Draws a circle.
     pub fn circle(&mut self, centre: Point, radius: f64, style: Style) {
         let [x, y, r] = [centre[0], centre[1], radius].map(number);
         self.line(format_args!(r#"<circle cx="{x}" cy="{y}" r="{r}"{}/>"#, look(&style)));
     }
 
-    /// A rectangle with corners rounded by `radius`.
+    /// Draws a rectangle with corners rounded by `radius`.
     pub fn rect(&mut self, frame: Frame, radius: f64, style: Style) {
         let [x, y, w, h, r] = [frame.x, frame.y, frame.width, frame.height, radius].map(number);
         self.line(format_args!(r#"<rect x="{x}" y="{y}" width="{w}" height="{h}" rx="{r}"{}/>"#, look(&style)));
     }
 
-    /// A line of text; `at` is on its base line.
+    /// Draws a line of text; `at` is on its baseline.
     pub fn text(&mut self, at: Point, text: &str, style: TextStyle) {
         let [x, y, size] = [at[0], at[1], style.size].map(number);
         let mut more = String::new();
@@ -154,7 +153,7 @@ fn look(style: &Style) -> String {
     text
 }
 
-/// Two decimals, always; never `-0.00`, never a word for what is no number.
+/// The number with two decimals, never `-0.00`, and never text for values that are not finite.
 #[must_use]
 pub fn number(value: f64) -> String {
     let text = format!("{value:.2}");

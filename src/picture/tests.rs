@@ -1,4 +1,4 @@
-//! The base: numbers, escaping, true scale, round ticks.
+//! Tests of the basic parts: numbers, escaping, true scale, round ticks.
 
 #![allow(clippy::unwrap_used)]
 

@@ -1,4 +1,4 @@
-//! A turn as a picture: what may be driven on, the path and the corridor about it, and the vehicle's bodies all the way round.
+//! A turn as a picture: the drivable area, the path with its corridor, and the vehicle's bodies all the way round.
 
 use super::palette;
 use super::style::{Style, TextStyle};
@@ -11,12 +11,12 @@ const WIDTH: f64 = 1400.0;
 const HEIGHT: f64 = 1000.0;
 const HEAD: f64 = 96.0;
 const MARGIN: f64 = 28.0;
-/// Metres between the moments at which the bodies are drawn.
+/// Distance between the moments at which the bodies are drawn, metres.
 const MOMENTS_M: f64 = 3.0;
 /// Road shown beyond the turn itself, metres.
 const AROUND_M: f64 = 14.0;
 
-/// The picture of a turn; `None` where there is nothing to draw.
+/// The picture of a turn. `None` without geometry.
 #[must_use]
 pub fn turn(t: &TurnExplanation) -> Option<String> {
     let corridors = t.corridors.as_ref()?;
@@ -102,7 +102,7 @@ fn corridor(picture: &mut Picture, path: &TurnPath, g: &Geometry, view: &View) {
     picture.polyline(&view.all(&g.certificate.plan), Style::line(palette::BLUE, 2.4));
 }
 
-/// A ring where the least leeway stands.
+/// Draws a ring at the place of the least leeway.
 fn mark(picture: &mut Picture, g: &Geometry, view: &View) {
     let cross = Cross::at(&g.corridor, g.place.station);
     let left_m = match g.place.side {

@@ -1,8 +1,8 @@
-//! A vehicle to scale: from above with dimension lines and hinge limits, from the side as a scheme, and every number in a
-//! table.
+//! A vehicle to scale: from above with dimension lines and hinge limits, from the side as a scheme, and every number in
+//! a table.
 //!
-//! From above all is data. From the side only lengths are, and the height of the tallest: cabs, decks and wheels are drawn as
-//! such vehicles usually have them; the picture says so.
+//! The view from above shows data only. The side view shows real lengths, and the height of the tallest unit if known.
+//! Cabs, decks and wheels are drawn as usual for such vehicles, and the picture says so.
 
 use super::furniture::dimension;
 use super::palette;
@@ -15,11 +15,11 @@ use crate::vehicle::{Unit, Vehicle};
 
 const WIDTH: f64 = 1400.0;
 const MARGIN: f64 = 60.0;
-/// Page units a metre at most: small vehicles need not fill the page.
+/// Largest scale, page units per metre. Small vehicles need not fill the page.
 const MOST_SCALE: f64 = 64.0;
-/// Dimension lines shorter than this have no room for their number, page units: the table has it.
+/// Shorter dimension lines (page units) have no room for their number, which is in the table.
 const LEAST_LINE: f64 = 34.0;
-/// Drawn from the side where the height is not known, as a multiple of the width.
+/// Height in the side view if unknown, as a multiple of the width.
 const ASSUMED_HEIGHT: f64 = 1.5;
 
 /// The picture of a vehicle.
@@ -39,14 +39,14 @@ pub fn vehicle(vehicle: &Vehicle) -> String {
     picture.finish()
 }
 
-/// Where everything stands on the page. The front is to the left, as makers draw it; metres run to the right of it.
+/// Places on the page. The front is at the left, as manufacturers draw it.
 struct Layout {
-    /// Straight poses, the front at x = 0 and the rear at x = −length.
+    /// Poses of the straight vehicle, with the front at x = 0 and the rear at x = −length.
     poses: Vec<Pose>,
     view: View,
-    /// Page y of the ground, from the side.
+    /// Page y of the ground in the side view.
     ground: f64,
-    /// Of the first dimension row.
+    /// Page y of the first dimension row.
     rows: f64,
     table: f64,
     height: f64,
@@ -63,7 +63,7 @@ impl Layout {
         let rows = middle + reach + 30.0;
         let table = rows + 4.0 * 34.0 + 10.0;
         let height = table + 22.0 * (vehicle.units.len() as f64 + 1.0) + 70.0;
-        // Turned by half a turn, the front of x = 0 comes to the left edge.
+        // After half a turn the front at x = 0 is at the left edge.
         let ends: Vec<Point> = vec![[0.0, 0.0], [-vehicle.length_m, 0.0]];
         let frame = Frame { x: MARGIN, y: middle - 1.0, width: WIDTH - 2.0 * MARGIN, height: 2.0 };
         let view = View::turned(&ends, std::f64::consts::PI, frame).at_most(MOST_SCALE);
@@ -76,7 +76,7 @@ impl Layout {
     }
 }
 
-/// How far hinge limits are drawn beside the vehicle, metres.
+/// Extent of drawn hinge limits beside the vehicle, metres.
 fn swing_m(vehicle: &Vehicle) -> f64 {
     0.45 * vehicle.width_m()
 }
@@ -85,7 +85,7 @@ fn height_m(vehicle: &Vehicle) -> f64 {
     vehicle.height_m.unwrap_or(ASSUMED_HEIGHT * vehicle.width_m())
 }
 
-/// All units in line, the front bumper at x = 0.
+/// Poses of all units in line, with the front bumper at x = 0.
 fn straight(vehicle: &Vehicle) -> Vec<Pose> {
     let mut coupling = -vehicle.units.first().map_or(0.0, |u| u.front_overhang_m);
     vehicle
@@ -115,11 +115,11 @@ fn heading(picture: &mut Picture, v: &Vehicle) {
     picture.text([MARGIN, 70.0], &text, TextStyle::size(15.0).coloured(palette::GREY));
 }
 
-/// From the side: a scheme.
+/// Draws the side view, as a scheme.
 fn side(picture: &mut Picture, v: &Vehicle, layout: &Layout) {
     let (scale, ground) = (layout.view.scale, layout.ground);
     let tall = height_m(v);
-    // Wheels, deck and frame as parts of the height: 1.0 m, 1.1 m and 0.9 m of 4.3 m.
+    // Wheels, deck and frame as shares of the height: 1.0 m, 1.1 m and 0.9 m of 4.3 m.
     let (wheel, deck, frame) = (0.115 * tall, 0.26 * tall, 0.21 * tall);
     let block = |from_m: f64, to_m: f64, low: f64, high: f64| {
         let (a, b) = (layout.x(from_m), layout.x(to_m));
@@ -139,7 +139,7 @@ fn side(picture: &mut Picture, v: &Vehicle, layout: &Layout) {
                 let cab = next.map_or(front - 2.0, |next| (next + 0.3).max(front - 2.4)).min(front - 0.8);
                 p.rect(block(front, cab, deck, 0.93 * tall), 3.0, style);
             } else if !v.is_dolly(i) {
-                // A frame that carries the next unit is free of load under it.
+                // A frame that carries the next unit has no load of its own under it.
                 let end = if v.carries(i) { next.map_or(rear, |next| (next + 0.2).max(rear)) } else { rear };
                 p.rect(block(front, end, deck, tall), 2.0, style);
             }
@@ -169,13 +169,13 @@ fn extent(unit: &Unit, pose: &Pose) -> (f64, f64, f64) {
     (coupling + unit.front_overhang_m, pose.axle[0] - unit.rear_overhang_m, coupling)
 }
 
-/// From above, with the angles that hinges allow.
+/// Draws the view from above, with the angles that hinges allow.
 fn above(picture: &mut Picture, v: &Vehicle, layout: &Layout) {
     let view = &layout.view;
     picture.group("limits", |p| {
         for (i, (unit, pose)) in v.units.iter().zip(&layout.poses).enumerate() {
             let pivot = pose.place(unit.coupling_to_axle_m, 0.0);
-            // The lock turns the wheels ahead of the steer axle, a hinge the unit behind it.
+            // The lock turns the wheels ahead of the steer axle; a hinge turns the unit behind it.
             let way = if i == 0 { 1.0 } else { -1.0 };
             let reach = 0.5 * v.width_m() + swing_m(v);
             let ray = |angle: f64| [pivot[0] + way * reach * angle.cos(), pivot[1] + reach * angle.sin()];
@@ -212,7 +212,7 @@ fn above(picture: &mut Picture, v: &Vehicle, layout: &Layout) {
     });
 }
 
-/// Rows of dimension lines under the view from above: L, d, overhangs, the whole.
+/// Draws rows of dimension lines under the view from above: L, d, overhangs, total length.
 fn dimensions(picture: &mut Picture, v: &Vehicle, layout: &Layout) {
     let style = TextStyle::size(13.0).coloured(palette::GREY);
     let row = |n: f64| layout.rows + 34.0 * n;

@@ -1,4 +1,5 @@
-//! From metres to the page: y up becomes y down, one scale for both axes, turned if that makes better use of the page.
+//! From metres to the page: y up becomes y down, with one scale for both axes. The world may be turned to use the page
+//! better.
 
 use super::Point;
 
@@ -9,20 +10,20 @@ pub struct Frame {
     pub x: f64,
     /// Upper edge.
     pub y: f64,
-    /// To the right.
+    /// Width, to the right.
     pub width: f64,
-    /// Down.
+    /// Height, downwards.
     pub height: f64,
 }
 
 impl Frame {
-    /// Its middle.
+    /// Its centre.
     #[must_use]
     pub fn centre(&self) -> Point {
         [self.x + 0.5 * self.width, self.y + 0.5 * self.height]
     }
 
-    /// Smaller by `by` on every side.
+    /// The frame reduced by `by` on every side.
     #[must_use]
     pub fn inset(&self, by: f64) -> Self {
         let (width, height) = ((self.width - 2.0 * by).max(0.0), (self.height - 2.0 * by).max(0.0));
@@ -36,7 +37,7 @@ impl Frame {
     }
 }
 
-/// The least box, axes as the points have them, that holds all points. Empty until it got one.
+/// The least axis-parallel box that holds all points. It is empty until it has one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
     /// Least x and y.
@@ -46,7 +47,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Of these points.
+    /// The box of these points.
     #[must_use]
     pub fn of<'p>(points: impl IntoIterator<Item = &'p Point>) -> Self {
         let mut bounds = Self { low: [f64::INFINITY; 2], high: [f64::NEG_INFINITY; 2] };
@@ -56,7 +57,7 @@ impl Bounds {
         bounds
     }
 
-    /// Holds this point, too.
+    /// Extends the box to hold this point.
     pub fn add(&mut self, point: Point) {
         for (axis, &c) in point.iter().enumerate().filter(|(_, c)| c.is_finite()) {
             self.low[axis] = self.low[axis].min(c);
@@ -64,7 +65,7 @@ impl Bounds {
         }
     }
 
-    /// Larger by `by` on every side.
+    /// The box grown by `by` on every side.
     #[must_use]
     pub fn grown(&self, by: f64) -> Self {
         Self { low: self.low.map(|c| c - by), high: self.high.map(|c| c + by) }
@@ -84,23 +85,24 @@ impl Bounds {
 /// Maps metres to the page.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
-    /// Page units a metre.
+    /// Page units per metre.
     pub scale: f64,
-    /// Cosine and sine by which the world is turned, counter-clockwise, before it is drawn.
+    /// Cosine and sine of the angle by which the world is turned, counter-clockwise, before drawing.
     turn: [f64; 2],
-    /// World point, turned, that comes to `on_page`.
+    /// Turned world point that is at `on_page`.
     from: Point,
     on_page: Point,
 }
 
 impl View {
-    /// All of `bounds` as large as it goes in the middle of `frame`, north up.
+    /// Fits all of `bounds` as large as possible into the middle of `frame`, north up.
     #[must_use]
     pub fn fit(bounds: &Bounds, frame: Frame) -> Self {
         Self::filled(bounds, frame, [1.0, 0.0])
     }
 
-    /// All of `points` as large as it goes in the middle of `frame`, the world turned counter-clockwise by `turn_rad` first.
+    /// Fits all of `points` as large as possible into the middle of `frame`, after turning the world counter-clockwise
+    /// by `turn_rad`.
     #[must_use]
     pub fn turned(points: &[Point], turn_rad: f64, frame: Frame) -> Self {
         let turn = [turn_rad.cos(), turn_rad.sin()];
@@ -114,7 +116,7 @@ impl View {
         Self { scale, turn, from: bounds.centre(), on_page: frame.centre() }
     }
 
-    /// The same, at most so many page units a metre.
+    /// As before, with at most `scale` page units per metre.
     #[must_use]
     pub fn at_most(self, scale: f64) -> Self {
         Self { scale: self.scale.min(scale), ..self }
@@ -127,7 +129,7 @@ impl View {
         [self.on_page[0] + self.scale * (p[0] - self.from[0]), self.on_page[1] - self.scale * (p[1] - self.from[1])]
     }
 
-    /// Many of them.
+    /// Places of several world points on the page.
     #[must_use]
     pub fn all(&self, points: &[Point]) -> Vec<Point> {
         points.iter().map(|&p| self.at(p)).collect()

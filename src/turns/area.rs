@@ -1,11 +1,11 @@
-//! The drivable area of a turn: approach and departure strips, what the roads have in common at the junction, and the kerb
-//! return between them, as one set of polygons.
+//! The drivable area of a turn as a set of polygons: approach and departure strips, the part that both roads share at
+//! the junction, and the kerb return between them.
 //!
-//! Promises that no part is made up: beyond the node a road counts only where it is really driven on (its stroke goes on), or
-//! where the other road crosses it. A turn to the near side (right, where traffic keeps right) gets what the lanes of the two
-//! *directions* have in common, a turn across the oncoming traffic what the carriageways have in common. Where the junction's
-//! surface is mapped, the corner is what that has outside both roads, and no kerb return is assumed. Left out: third roads of
-//! the junction.
+//! No part is invented. Beyond the node a road counts only where traffic really drives on it (its stroke continues), or
+//! where the other road crosses it. A turn to the near side (right, for right-hand traffic) gets what the lanes of the
+//! two *directions* share. A turn across the oncoming traffic gets what the carriageways share. If the junction's
+//! surface is mapped, the corner is the mapped surface outside both roads, and no kerb return is assumed. Third roads
+//! of the junction are left out.
 
 use geo::orient::{Direction, Orient};
 use geo::{BooleanOps, LineString, MultiPolygon, Polygon, unary_union};
@@ -13,33 +13,34 @@ use geo::{BooleanOps, LineString, MultiPolygon, Polygon, unary_union};
 use super::arm::{Across, Arm};
 use crate::osm::facts::Policy;
 
-/// What two roads have in common is looked for so far from the node, metres.
+/// Distance from the node within which the roads' shared part is searched, metres.
 const CROSSING_M: f64 = 30.0;
-/// Vertices of a strip that lie this near to the line between their neighbours are left out, metres; rays are shortened by more.
+/// A strip's vertices this close to the line between their neighbours are removed, metres. Rays are shortened by more
+/// than this.
 const COLLINEAR_M: f64 = 5e-4;
-/// The kerb return overlaps the roads by so much, so that rounding leaves no gap between them, metres.
+/// Overlap of the kerb return with the roads, metres, so that rounding leaves no gap between them.
 const OVERLAP_M: f64 = 0.3;
-/// Sharpest and widest corner that gets a kerb return, radians.
+/// Smallest and largest angle of a corner with a kerb return, radians.
 pub(super) const CORNERS_RAD: std::ops::RangeInclusive<f64> = 0.17..=2.62;
-/// A kerb return reaches no farther along its roads than this, metres.
+/// Largest extent of a kerb return along its roads, metres.
 const MOST_RETURN_M: f64 = 15.0;
-/// A kerb return's circle touches both edges to so much, metres: those are drawn in chords of a metre.
+/// Tolerance with which a kerb return's circle touches both edges, metres. The edges are drawn in chords of a metre.
 const TOUCHING_M: f64 = 0.03;
-/// A mapped corner reaches no farther along its roads than this, metres.
+/// Largest extent of a mapped corner along its roads, metres.
 const MOST_CORNER_M: f64 = 20.0;
-/// Chord of a kerb return's arc, radians of arc: the arc is cut off outside, on the side of less room.
+/// Angle of a chord of the kerb return's arc, radians. The arc is cut off outside, on the side with less room.
 const ARC_STEP_RAD: f64 = 0.1;
 
-/// What the area is made from.
+/// The data from which the area is made.
 pub(super) struct Ground<'a> {
     pub(super) from: &'a Arm,
     pub(super) to: &'a Arm,
     pub(super) policy: Policy,
     pub(super) left_hand_traffic: bool,
-    /// By how much the vehicle turns, radians, positive left.
+    /// Turn of the vehicle, radians, positive left.
     pub(super) turn_rad: f64,
     pub(super) kerb_radius_m: f64,
-    /// The junction's surface, if it is mapped.
+    /// The junction's surface, if mapped.
     pub(super) surface: Option<&'a MultiPolygon>,
 }
 
@@ -65,8 +66,8 @@ impl Ground<'_> {
         if near_side && self.policy != Policy::Carriageway { &arm.direction } else { &arm.carriageway }
     }
 
-    /// What both roads cover near the node. A road that ends (begins) there is prolonged straight across the other one, never
-    /// both at once: where neither is real, nothing is.
+    /// The part that both roads cover near the node. A road that ends (or begins) there is extended straight across the
+    /// other road. The roads are never both extended: where neither road is real, nothing is.
     fn common(&self) -> Vec<Polygon> {
         let piece = |arm: &Arm, prolonged: [f64; 2]| {
             let near = (CROSSING_M / arm.line.spacing_m) as usize;
@@ -90,7 +91,7 @@ impl Ground<'_> {
         common
     }
 
-    /// Where the roads' edges on the inside of the turn meet, if that is a corner.
+    /// The corner where the roads' edges on the inside of the turn meet, if there is one.
     fn corner(&self, edges: [&[[f64; 2]]; 2]) -> Option<Corner> {
         let corner =
             CORNERS_RAD.contains(&self.turn_rad.abs()).then(|| crossing(edges[0], edges[1], self.turn_rad))??;
@@ -98,7 +99,7 @@ impl Ground<'_> {
         (CORNERS_RAD.contains(&turned.abs()) && (turned > 0.0) == (self.turn_rad > 0.0)).then_some(corner)
     }
 
-    /// What the junction's surface has between the roads' edges on the inside of the turn.
+    /// The junction's surface between the roads' edges on the inside of the turn.
     fn mapped_corner(&self, surface: &MultiPolygon) -> Vec<Polygon> {
         let edges = [self.kerb(self.from, 0.0), self.kerb(self.to, 0.0)];
         let Some(corner) = self.corner(edges.each_ref().map(Vec::as_slice)) else { return Vec::new() };
@@ -120,7 +121,7 @@ impl Ground<'_> {
         let corner = self.corner([&from_edge, &to_edge])?;
         let turned = corner.turned_rad();
         let radius = self.kerb_radius_m.min(MOST_RETURN_M / (0.5 * turned.abs()).tan());
-        // Its circle touches both edges, however they bend: a ring's edge bends away from the tangent at the corner.
+        // The circle touches both edges, however they bend: a ring's edge bends away from the tangent at the corner.
         let centre = crossing(&self.kerb(self.from, radius), &self.kerb(self.to, radius), self.turn_rad)?.at;
         let touching = |edge: &[[f64; 2]]| {
             let (at, m) = nearest(edge, centre)?;
@@ -141,7 +142,8 @@ impl Ground<'_> {
         Some(polygon(&ring))
     }
 
-    /// The edge of a road near the node on the inside of the turn, or so far beyond it; prolonged where the turn's other road is.
+    /// The edge of a road near the node on the inside of the turn, or a line `beyond_m` outside it. It is extended
+    /// where the turn's other road is.
     fn kerb(&self, arm: &Arm, beyond_m: f64) -> Vec<[f64; 2]> {
         let right = self.turn_rad < 0.0;
         let beyond_m = if right { -beyond_m } else { beyond_m };
@@ -159,7 +161,7 @@ impl Ground<'_> {
     }
 }
 
-/// The place on a line that is nearest to `p`, and how far it is.
+/// The point on a line nearest to `p`, and its distance.
 fn nearest(line: &[[f64; 2]], p: [f64; 2]) -> Option<([f64; 2], f64)> {
     let on_segment = |w: &[[f64; 2]]| {
         let d = [w[1][0] - w[0][0], w[1][1] - w[0][1]];
@@ -171,8 +173,8 @@ fn nearest(line: &[[f64; 2]], p: [f64; 2]) -> Option<([f64; 2], f64)> {
     line.windows(2).map(on_segment).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Points on the inner side of the arc's tangents: its own chord points, which leave the sliver outside each chord unused. (The
-/// kerb bulges towards the vehicle: chords would cut it off, so each is moved outside it, onto the tangents.)
+/// Points on the tangents of the arc, whose polygon lies on the road's side. The kerb bulges towards the vehicle, so
+/// chords would cut it off; each point is moved outside onto the tangents.
 fn arc(centre: [f64; 2], start: [f64; 2], turned: f64) -> Vec<[f64; 2]> {
     let steps = (turned.abs() / ARC_STEP_RAD).ceil().max(1.0);
     let step = turned / steps;
@@ -193,7 +195,7 @@ pub(super) fn stretch(arm: &Arm, range: std::ops::Range<usize>) -> MultiPolygon 
     unary_union(&outline(arm, range, &own, [0.0; 2]).into_iter().collect::<Vec<Polygon>>())
 }
 
-/// The polygon between the edges of an arm's stations, prolonged straight by so many metres before and after.
+/// The polygon between the edges of an arm's stations, extended straight by the given metres before and after.
 fn outline(
     arm: &Arm,
     range: std::ops::Range<usize>,
@@ -218,7 +220,7 @@ fn outline(
     Some(polygon(&ring))
 }
 
-/// Without vertices that say nothing: each left out is within [`COLLINEAR_M`] of what stands for it.
+/// Removes vertices that add nothing: each is within [`COLLINEAR_M`] of the line that replaces it.
 fn thinned(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut out: Vec<[f64; 2]> = Vec::with_capacity(line.len());
     let mut from = 0;
@@ -241,7 +243,7 @@ fn distance_from_chord(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     if length < 1e-9 { f64::INFINITY } else { (d[0] * (p[1] - a[1]) - d[1] * (p[0] - a[0])).abs() / length }
 }
 
-/// Where two lines of edges meet, and their directions there.
+/// The crossing of two edge lines, and their directions there.
 struct Corner {
     at: [f64; 2],
     from: [f64; 2],
@@ -249,20 +251,20 @@ struct Corner {
 }
 
 impl Corner {
-    /// From the one edge's direction to the other's, radians, positive left.
+    /// Angle from one edge's direction to the other's, radians, positive left.
     fn turned_rad(&self) -> f64 {
         let (a, b) = (self.from, self.to);
         (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1])
     }
 
-    /// From either edge a little way onto its road.
+    /// Direction from either edge towards its road.
     fn inward(&self) -> [[f64; 2]; 2] {
         let sign = self.turned_rad().signum();
         [self.from, self.to].map(|d| [sign * d[1] * OVERLAP_M, -sign * d[0] * OVERLAP_M])
     }
 }
 
-/// Where two lines of edges cross in the turn's own sense: the crossing nearest to the end of the first.
+/// The crossing of two edge lines in the turn's own sense: the one nearest to the end of the first line.
 fn crossing(a: &[[f64; 2]], b: &[[f64; 2]], turn_rad: f64) -> Option<Corner> {
     let mut last = None;
     for p in a.windows(2) {
@@ -280,7 +282,7 @@ fn crossing(a: &[[f64; 2]], b: &[[f64; 2]], turn_rad: f64) -> Option<Corner> {
     last
 }
 
-/// Where two segments cross: the place, and the share of each that lies before it.
+/// The crossing of two segments, and the share of each segment before it.
 pub(super) fn segments_cross(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> Option<([f64; 2], f64, f64)> {
     let (r, s) = ([b[0] - a[0], b[1] - a[1]], [d[0] - c[0], d[1] - c[1]]);
     let across = r[0] * s[1] - r[1] * s[0];
@@ -308,7 +310,7 @@ fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] + b[0], a[1] + b[1]]
 }
 
-/// A ring as a polygon that runs counter-clockwise: a union takes rings of the other sense for holes.
+/// A ring as a polygon that runs counter-clockwise. A union treats rings of the other sense as holes.
 pub(super) fn polygon(ring: &[[f64; 2]]) -> Polygon {
     Polygon::new(ring.iter().map(|p| (p[0], p[1])).collect::<LineString>(), Vec::new()).orient(Direction::Default)
 }

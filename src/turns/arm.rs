@@ -1,8 +1,8 @@
-//! A stroke near a junction: its corridor, and how far the road reaches beyond it to both sides.
+//! A stroke near a junction: its corridor, and the extent of the road to both sides.
 //!
-//! A turn's approach and departure are windows of the very corridors by which their edges are certified, so that a route
-//! passes from one into the other without a seam. Edges across are measured from the corridor's own, so that a corridor that was
-//! narrowed (a taper, a narrow place) narrows the junction with it.
+//! A turn's approach and departure are windows of the corridors by which their edges are certified, so a route passes
+//! from one into the other without a seam. Road edges are measured from the corridor's own edges. A corridor that was
+//! narrowed (a taper, a narrow place) therefore narrows the junction with it.
 
 use crate::corridor::{Corridor, Frame, Params, StrokeCorridor, TaperCause, stroke_corridor};
 use crate::network::{Network, Stroke};
@@ -10,7 +10,7 @@ use crate::osm::LonLat;
 use crate::osm::facts::{CrossSection, Direction, Policy, Strip};
 use crate::verdict::UnknownReason;
 
-/// Edges of road across a corridor's centreline, metres, positive left: `[left, right]`.
+/// Edges of the road across a corridor's centreline, metres, positive left: `[left, right]`.
 pub(super) type Across = [f64; 2];
 
 /// A stroke's corridor with its frame and the edges of the road.
@@ -18,12 +18,12 @@ pub(super) type Across = [f64; 2];
 pub struct StrokeLine {
     /// Index into `Network::strokes`.
     pub stroke: u32,
-    /// In which the corridor's positions are.
+    /// Frame of the corridor's positions.
     pub frame: Frame,
-    /// The corridor, as it certifies its edges.
+    /// The corridor by which the stroke's edges are certified.
     pub made: StrokeCorridor,
     pub(super) closed: bool,
-    /// One a station: all lanes of the direction, and all between the kerbs.
+    /// One entry per station: all lanes of the direction, then everything between the kerbs.
     direction: Vec<Across>,
     carriageway: Vec<Across>,
 }
@@ -32,7 +32,7 @@ impl StrokeLine {
     /// Makes the corridor of a stroke.
     ///
     /// # Errors
-    /// Nothing can be said of any of its edges.
+    /// The reason if all edges of the stroke are unknown.
     pub fn new(network: &Network, stroke: u32, policy: Policy, params: &Params) -> Result<Self, UnknownReason> {
         let facts = network.strokes.get(stroke as usize).ok_or(UnknownReason::Geometry)?;
         let made = stroke_corridor(network, facts, policy, params)?;
@@ -52,15 +52,15 @@ impl StrokeLine {
         Ok(Self { stroke, frame, made, closed: facts.closed, direction, carriageway })
     }
 
-    /// How many stations it has.
+    /// Number of stations.
     #[must_use]
     pub fn stations(&self) -> usize {
         self.made.corridor.len()
     }
 }
 
-/// The edges of `strip`, where the policy's own strip has its edges at `own`; never inside `own`. (From the strip's edges as a
-/// narrowed corridor has them: both are narrowed alike.)
+/// The edges of `strip`, where the policy's own strip has its edges at `own`; never inside `own`. The distances between
+/// the strips' edges are kept, so a narrowed corridor narrows both strips alike.
 fn wider(own: Across, section: &CrossSection, policy: Policy, strip: Option<Strip>) -> Across {
     let (Some(base), Some(strip)) = (section.strip(policy), strip) else { return own };
     let left = f64::from(strip.left_m - base.left_m).max(0.0);
@@ -68,8 +68,8 @@ fn wider(own: Across, section: &CrossSection, policy: Policy, strip: Option<Stri
     [own[0] + left, own[1] + right]
 }
 
-/// Along a taper the strip lies up to the taper's move beside where its section has it, and what is measured from the strip lies
-/// no further out than that: so much less road is certain there.
+/// Reduces the road along tapers. A taper moves the strip beside its section's place by up to the taper's move. What is
+/// measured from the strip is uncertain by that move, so that much less road counts.
 fn keep_to_tapers(made: &StrokeCorridor, wider: &mut [&mut Vec<Across>; 2]) {
     let c = &made.corridor;
     for taper in made.tapers.iter().filter(|taper| taper.cause == TaperCause::Section && taper.shift_m != 0.0) {
@@ -83,7 +83,7 @@ fn keep_to_tapers(made: &StrokeCorridor, wider: &mut [&mut Vec<Across>; 2]) {
     }
 }
 
-/// The frame that `stroke_corridor` lays around a stroke.
+/// The frame that `stroke_corridor` uses for a stroke.
 fn frame(network: &Network, stroke: &Stroke) -> Option<Frame> {
     let range = |r: &std::ops::Range<u32>| network.stroke_edges.get(r.start as usize..r.end as usize);
     let (approach, edges) = (range(&stroke.approach)?, range(&stroke.edges)?);
@@ -97,15 +97,15 @@ fn frame(network: &Network, stroke: &Stroke) -> Option<Frame> {
 /// Stations of a stroke around a node, in the frame of the turn.
 #[derive(Debug, Clone)]
 pub(super) struct Arm {
-    /// Stations, with the corridor's own half-widths.
+    /// Stations with the corridor's own half-widths.
     pub(super) line: Corridor,
     pub(super) direction: Vec<Across>,
     pub(super) carriageway: Vec<Across>,
-    /// The node's station in here.
+    /// Index of the node's station in `line`.
     pub(super) node: usize,
-    /// The stroke's station that is the first in here.
+    /// The stroke's station that comes first in `line`.
     pub(super) first: usize,
-    /// Stations that belong to edges of the stroke (those before are driven up to it).
+    /// Stations of the stroke's own edges; the stations before them are approach.
     pub(super) own: std::ops::Range<usize>,
 }
 
@@ -124,7 +124,7 @@ impl Arm {
         }
     }
 
-    /// The beginning of edge `edge` on `line`.
+    /// The start of edge `edge` on `line`.
     pub(super) fn leaving(
         line: &StrokeLine,
         edge: u32,
@@ -144,7 +144,7 @@ impl Arm {
         Self::window(line, 0, frame, [0.0, length_m], true)
     }
 
-    /// `lead`: what is driven before the stroke's own edges counts as road to arrive on, too.
+    /// A window of `line`. With `lead`, the approach before the stroke's own edges counts as road too.
     fn window(
         line: &StrokeLine,
         node: usize,
@@ -192,13 +192,13 @@ impl Arm {
         [self.line.x[k], self.line.y[k]]
     }
 
-    /// Unit vector of travel.
+    /// Unit vector in direction of travel.
     pub(super) fn forward(&self, k: usize) -> [f64; 2] {
         let (sin, cos) = self.line.heading[k].sin_cos();
         [cos, sin]
     }
 
-    /// The place so far to the left of a station.
+    /// The place `left_m` to the left of a station.
     pub(super) fn aside(&self, k: usize, left_m: f64) -> [f64; 2] {
         let [x, y] = self.point(k);
         let [cos, sin] = self.forward(k);
@@ -206,8 +206,8 @@ impl Arm {
     }
 }
 
-/// From one frame into another: they differ where strokes of one junction lie around different degrees. The meridians'
-/// convergence turns headings by the same angle all over a junction (to 1e-6).
+/// Converts from one frame to another. The frames differ if strokes of a junction lie around different degrees. The
+/// convergence of the meridians turns headings by the same angle all over a junction (to 1e-6).
 fn carry_over(c: &mut Corridor, from: Frame, to: Frame) -> Option<()> {
     let points: Vec<[f64; 2]> = c.x.iter().zip(&c.y).map(|(x, y)| [*x, *y]).collect();
     let degrees = from.inverse(&points).ok()?;

@@ -1,6 +1,6 @@
-//! What the map alone says of a turn: its id, by how much it turns, its kerb, a line to draw.
+//! Facts of a turn from the map alone: its id, angle, kerb, and a line to draw.
 //!
-//! Independent of vehicles and policies: the same network gives the same facts.
+//! They do not depend on vehicles and policies: the same network gives the same facts.
 
 use rustc_hash::FxHashSet;
 
@@ -9,20 +9,20 @@ use super::{Kerbs, path, surface};
 use crate::network::{Edge, Movement, MovementKind, Network, Passage, offset_m};
 use crate::osm::LonLat;
 
-/// A turn's line reaches so far along both edges, metres; its angle is measured over the same.
+/// Extent of a turn's line along both edges, metres. The turn's angle is measured over the same length.
 const LINE_M: f64 = 12.0;
 
-/// Where a corner's kerb comes from.
+/// Origin of a corner's kerb.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KerbSource {
     /// A radius by class and country.
     Assumed,
-    /// The junction's surface is mapped.
+    /// The mapped surface of the junction.
     Mapped,
 }
 
 impl KerbSource {
-    /// As the database has it.
+    /// Name in the database.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -32,26 +32,27 @@ impl KerbSource {
     }
 }
 
-/// A turn as the map has it.
+/// A turn as mapped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TurnFacts {
-    /// Stable: the same edges give the same id in the next extract. Positive.
+    /// Stable id: the same edges give the same id in the next extract. Positive.
     pub id: i64,
-    /// From which edge into which. A passage of a roundabout goes into an edge that starts at another node.
+    /// The edges before and after the turn. The edge after a roundabout's passage starts at another node.
     pub movement: Movement,
-    /// The arcs between, in driving order, where it is a passage of a roundabout; else none.
+    /// The arcs between, in driving order, for a passage of a roundabout; otherwise empty.
     pub through: Vec<u32>,
-    /// By how much one turns, degrees, positive left.
+    /// Angle of the turn, degrees, positive left.
     pub angle_deg: f64,
-    /// Assumed radius of the kerb on the inside, metres; `None`: too flat or too acute for one, or mapped.
+    /// Assumed radius of the kerb on the inside, metres. `None` if the corner is too flat or too acute, or is mapped.
     pub kerb_radius_m: Option<f64>,
-    /// Where the kerb comes from; `None`: too flat or too acute for one.
+    /// Origin of the kerb. `None` if the corner is too flat or too acute for one.
     pub kerb_source: Option<KerbSource>,
-    /// The last and first metres of its edges, in driving order.
+    /// The last metres of its first edge and the first metres of its last edge, in driving order.
     pub line: Vec<LonLat>,
 }
 
-/// All turns of a network, in the order of its movements, then the passages of roundabouts; straight on and back are none.
+/// All turns of a network in the order of its movements, then the passages of roundabouts. Straight continuations and
+/// U-turns are not turns.
 #[must_use]
 pub fn turn_facts(network: &Network, kerbs: &Kerbs) -> Vec<TurnFacts> {
     let mut taken = FxHashSet::default();
@@ -72,7 +73,7 @@ pub fn turn_facts(network: &Network, kerbs: &Kerbs) -> Vec<TurnFacts> {
             let line = line(network, movement, &through)?;
             let angle = angle_rad(&line);
             let ring = through.first().and_then(|&arc| network.edges.get(arc as usize));
-            // The assumed radius of a corner; none where it is mapped.
+            // The assumed radius of a corner; none if the corner is mapped.
             let corner = |node: i64, a: &Edge, b: &Edge| {
                 let roads = [network.road(a), network.road(b)];
                 let assumed = !surface::is_mapped(network, node, roads);
@@ -83,7 +84,7 @@ pub fn turn_facts(network: &Network, kerbs: &Kerbs) -> Vec<TurnFacts> {
                 None => vec![corner(from.to_node, from, to)],
             };
             let cornered = ring.is_some() || CORNERS_RAD.contains(&angle.abs());
-            // Of two assumed ones, the sharper one.
+            // Of two assumed corners the sharper one counts.
             let radius_m = corners.into_iter().flatten().reduce(f64::min);
             let (kerb_radius_m, kerb_source) = match radius_m {
                 _ if !cornered => (None, None),
@@ -117,7 +118,7 @@ fn line(network: &Network, movement: Movement, through: &[u32]) -> Option<Vec<Lo
     Some(line)
 }
 
-/// The first [`LINE_M`] of a line.
+/// The first [`LINE_M`] metres of a line.
 fn first_metres(positions: impl Iterator<Item = LonLat>) -> Vec<LonLat> {
     let mut out: Vec<LonLat> = Vec::new();
     let mut left_m = LINE_M;
@@ -143,7 +144,7 @@ fn first_metres(positions: impl Iterator<Item = LonLat>) -> Vec<LonLat> {
     out
 }
 
-/// From the first segment's direction to the last one's by way of all between, as turned.
+/// Angle from the first segment's direction to the last one's, summed over the turns between.
 fn angle_rad(line: &[LonLat]) -> f64 {
     let course = |w: &[LonLat]| {
         let [east, north] = offset_m(w[0], w[1]);

@@ -1,8 +1,9 @@
-//! Which paths a turn has: from a place before to a place after where the two centrelines would meet, near and far, early and late;
-//! on the centrelines, or swinging out to the far side before the turn and after it, as drivers of long vehicles do.
+//! The family of paths of a turn. A path leaves one centreline at some distance before the place where the two would
+//! meet, and joins the other at some distance after it; both distances vary. A path follows the centrelines, or swings
+//! out to the far side before and after the turn, as drivers of long vehicles do.
 //!
-//! The family is the same for the same turn, whatever else is computed; paths that leave the drivable area drop out, the others
-//! keep their numbers.
+//! The same turn always has the same family. Paths that leave the drivable area drop out, and the others keep their
+//! numbers.
 
 use geo::MultiPolygon;
 
@@ -16,37 +17,39 @@ use crate::network::{Movement, Network};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
 
-/// Distances from where the two lines meet, metres. A turn of 90° that takes 12 m of each has a radius of about 10 m.
+/// Distances from the place where the two lines meet, metres. A turn of 90° that takes 12 m of each line has a radius
+/// of about 10 m.
 const FROM_CORNER_M: [f64; 9] = [4.0, 6.0, 8.5, 11.5, 15.0, 19.0, 24.0, 31.0, 40.0];
-/// Swings to the outside before and after the turn, as shares of the room there; with how unlike approach and departure may be
-/// (places in the list above).
+/// Swings to the outside before and after the turn, as shares of the room there. Each comes with the largest difference
+/// between approach and departure (in entries of the list above).
 const SWINGS: [([f64; 2], usize); 5] =
     [([0.0, 0.0], 1), ([1.0, 1.0], 1), ([0.5, 0.5], 0), ([1.0, 0.0], 0), ([0.0, 1.0], 0)];
-/// On and off a roundabout: share of the room on the road's side, and which of the distances.
+/// Candidates for entering and leaving a roundabout: share of the room on the road's side, and the range of distances.
 const FEW: [(f64, std::ops::Range<usize>); 2] = [(0.0, 1..8), (1.0, 2..6)];
-/// More than the candidates from that.
+/// Upper bound of the number of candidates in `FEW`.
 pub(super) const FEW_NUMBERS: u8 = 15;
-/// Left beside the path on the outside of a swing: half a vehicle's width and what its front swings out, metres.
+/// Room kept beside the path on the outside of a swing, metres: half a vehicle's width and the swing of its front.
 const OUTSIDE_M: f64 = 1.9;
-/// A smaller swing is none, metres.
+/// Smallest swing, metres.
 const LEAST_SWING_M: f64 = 0.15;
-/// Over which a path swings out before the turn, and back after it, metres.
+/// Length over which a path swings out before the turn, and back after it, metres.
 const SWING_M: [f64; 2] = [16.0, 22.0];
 /// Distances before and after the node over which lanes shift, metres.
 const SHIFTS_M: [f64; 4] = [10.0, 20.0, 35.0, 55.0];
 /// Share of the angle that each transition takes.
 const SHARES: [f64; 2] = [0.2, 0.42];
-/// Where centrelines meet is looked for so far from the node along each, metres.
+/// Distance from the node within which the meeting place is searched along each centreline, metres.
 const MEET_M: f64 = 90.0;
-/// A centreline that ends is prolonged straight by so much, metres.
+/// Straight extension of a centreline that ends, metres.
 const PROLONGED_M: f64 = 30.0;
-/// Stations of turns tighter than the first lie as close as the second, metres: bounds are as tight as in wider turns then.
+/// Turns tighter than the first value (metres) have stations as close as the second (metres). Bounds are then as tight
+/// as in wider turns.
 const TIGHT_M: [(f64, f64); 2] = [(6.0, 0.25), (25.0, 0.5)];
-/// How often stations are laid twice as close where they step over transitions, so that they are no curve: a carter's corner has
-/// transitions of half a metre.
+/// How often station spacing may be halved where stations step over transitions and would not form a curve. A carter's
+/// corner has transitions of half a metre.
 const HALVINGS: usize = 2;
 
-/// A junction's turn, ready for its family.
+/// A turn at a junction, prepared for its family.
 pub(super) struct Junction {
     pub(super) from: Arm,
     pub(super) to: Arm,
@@ -55,13 +58,13 @@ pub(super) struct Junction {
     policy: Policy,
     left_hand_traffic: bool,
     kerb_radius_m: f64,
-    /// The junction's surface, if it is mapped.
+    /// The junction's surface, if mapped.
     surface: Option<MultiPolygon>,
     reach: Reach,
 }
 
 impl Junction {
-    /// In the metric frame `frame`.
+    /// Prepares the turn in the metric frame `frame`.
     pub(super) fn new(
         network: &Network,
         movement: Movement,
@@ -93,13 +96,13 @@ impl Junction {
         })
     }
 
-    /// Between the strokes' directions at the node, radians, positive left.
+    /// Angle between the strokes' directions at the node, radians, positive left.
     fn turn_rad(&self) -> f64 {
         let (from, to) = (&self.from, &self.to);
         wrapped(to.line.heading[to.node] - from.line.heading[from.node])
     }
 
-    /// The drivable area, and the assumed radius of its kerb return if it has one.
+    /// The drivable area, and the assumed radius of its kerb return, if there is one.
     pub(super) fn area(&self) -> (MultiPolygon, Option<f64>) {
         let ground = Ground {
             from: &self.from,
@@ -133,7 +136,7 @@ impl Junction {
         Ok(TurnCorridors { frame: self.frame, turn_rad, area, kerb_radius_m, paths })
     }
 
-    /// The whole family, without repetitions.
+    /// The whole family without repetitions.
     fn candidates(&self, turn_rad: f64) -> Vec<Candidate> {
         let meeting = self.meeting();
         let mut family = Family::default();
@@ -157,8 +160,9 @@ impl Junction {
         family.of(self.spacing(), self.to.len())
     }
 
-    /// The few that one end of a roundabout's passage has: onto the ring, or off it. The ring bends away from the turn, so that its
-    /// tangent meets the road farther from the node than the path touches the ring: one place more in the list on the road's side.
+    /// The few candidates at one end of a roundabout's passage: entering the ring, or leaving it. The ring bends away
+    /// from the turn, so its tangent meets the road farther from the node than the path touches the ring. On the road's
+    /// side the next larger distance is therefore used.
     pub(super) fn few(&self, onto: bool) -> Vec<Candidate> {
         let turn_rad = self.turn_rad();
         let meeting = self.meeting();
@@ -180,7 +184,7 @@ impl Junction {
         [self.from.line.spacing_m, self.to.line.spacing_m]
     }
 
-    /// Stations so far before and after where the lines meet.
+    /// Stations at the given distances before and after the place where the lines meet.
     fn corner(&self, meeting: Option<[f64; 2]>, [before_m, after_m]: [f64; 2]) -> [usize; 2] {
         let (from, to) = (&self.from, &self.to);
         let [meet_a, meet_b] = meeting.unwrap_or([from.node as f64, to.node as f64]);
@@ -189,7 +193,7 @@ impl Junction {
         [leave as usize, join as usize]
     }
 
-    /// Stations so far before and after the node.
+    /// Stations at the given distances before and after the node.
     fn around_node(&self, [before_m, after_m]: [f64; 2]) -> [usize; 2] {
         let (from, to) = (&self.from, &self.to);
         let back = (from.node as f64 - before_m / from.line.spacing_m).round().max(0.0) as usize;
@@ -197,12 +201,12 @@ impl Junction {
         [back, on.min(to.len() - 1)]
     }
 
-    /// How far to the left a path swings out that takes such shares of the room on the outside.
+    /// Lateral move to the left, metres, of a path that takes the given shares of the room on the outside.
     fn aside_m(&self, turn_rad: f64, corner: [usize; 2], swing: [f64; 2]) -> [f64; 2] {
         let arms = [&self.from, &self.to];
         [0, 1].map(|i| {
             let (line, k) = (&arms[i].line, corner[i]);
-            // To the left of travel is outside where one turns right.
+            // In a right turn the outside is to the left of travel.
             let outside = if turn_rad < 0.0 { line.left_m[k] } else { line.right_m[k] };
             -turn_rad.signum() * (outside - OUTSIDE_M).max(0.0) * swing[i]
         })
@@ -228,7 +232,8 @@ impl Junction {
         Some(points)
     }
 
-    /// Stations (of each arm, with fractions, possibly beyond its end) at which the centrelines cross, nearest to the node.
+    /// The stations at which the centrelines cross, nearest to the node. There is one per arm, with fractions, possibly
+    /// beyond the arm's end.
     fn meeting(&self) -> Option<[f64; 2]> {
         let (from, to) = (&self.from, &self.to);
         let near = |arm: &Arm| {
@@ -258,21 +263,21 @@ impl Junction {
     }
 }
 
-/// Where a path leaves one road and joins another.
+/// The places where a path leaves one road and joins the other.
 pub(super) struct Ends<'a> {
     pub(super) arms: [&'a Arm; 2],
     pub(super) strokes: [u32; 2],
-    /// Of each arm.
+    /// One station per arm.
     pub(super) stations: [usize; 2],
     pub(super) reach: Reach,
 }
 
 impl Ends<'_> {
-    /// The corridor along one path, with what is driven before and after it.
+    /// The corridor along one path, with the road driven before and after it.
     pub(super) fn path(&self, number: u8, points: &[[f64; 2]], mut widths: Widths) -> Option<TurnPath> {
         let [from, to] = self.arms;
         let [leave, join] = self.stations;
-        // At the joints the corridor is the stroke's.
+        // At the joints the corridor has the stroke's half-widths.
         let stroke = |arm: &Arm, k: usize| [arm.line.left_m[k], arm.line.right_m[k]];
         widths.gentle(points, [stroke(from, leave), stroke(to, join)]);
         let before = ((self.reach.run_in_m() + self.reach.counted_before_m()) / from.line.spacing_m) as usize;
@@ -319,28 +324,28 @@ impl Ends<'_> {
     }
 }
 
-/// The station nearest to a point, from a guess near it (chords are shorter than the corridor).
+/// The station nearest to a point, searched from a close guess. (Chords are shorter than the corridor.)
 fn nearest(corridor: &Corridor, p: [f64; 2], guess: usize) -> usize {
     let far = |k: usize| (corridor.x[k] - p[0]).hypot(corridor.y[k] - p[1]);
     let around = guess.saturating_sub(8)..(guess + 9).min(corridor.len());
     around.min_by(|&a, &b| far(a).total_cmp(&far(b))).unwrap_or(guess)
 }
 
-/// A path to be: which stations of both arms it leaves and joins, and where it turns in between.
+/// A candidate path: the stations of both arms at which it leaves and joins, and the place of its corner.
 pub(super) struct Candidate {
     pub(super) number: u8,
     pub(super) leave: usize,
     pub(super) join: usize,
-    /// Stations of both arms at which the corner begins and ends, and how far to their left.
+    /// Stations of both arms at which the corner begins and ends, and the lateral moves to their left.
     corner: [usize; 2],
     aside_m: [f64; 2],
-    /// Of the transitions; `None`: a lane shift.
+    /// Share of the angle in each transition. `None` for a lane shift.
     share: Option<f64>,
 }
 
 type Key = ([usize; 2], [f64; 2], Option<f64>);
 
-/// Candidates by number; what comes again is left out, but keeps its number.
+/// Candidates by number. A repeated candidate is dropped, but the numbers stay.
 #[derive(Default)]
 struct Family {
     known: Vec<(u8, Key)>,
@@ -356,7 +361,7 @@ impl Family {
         self.number += 1;
     }
 
-    /// With room to swing out and back where they do; those that have none drop out.
+    /// The candidates with room to swing out and back; those without it drop out.
     fn of(self, spacing: [f64; 2], stations: usize) -> Vec<Candidate> {
         let candidate = |(number, (corner, aside_m, share)): (u8, Key)| {
             let over = |i: usize| if aside_m[i] == 0.0 { 0 } else { (SWING_M[i] / spacing[i]).round() as usize };
@@ -368,7 +373,7 @@ impl Family {
     }
 }
 
-/// A centreline's points with half-widths, each point once.
+/// A centreline's points with half-widths, without repeated points.
 #[derive(Default)]
 struct Line {
     points: Vec<[f64; 2]>,

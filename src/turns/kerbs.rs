@@ -1,6 +1,6 @@
-//! Kerb radii by class and country, for corners of which nothing is known: `data/kerbs.toml`, each number with its source.
+//! Kerb radii by class and country for unmapped corners: `data/kerbs.toml`, which has a source for each number.
 //!
-//! Every radius from here is assumed; a corner gets the smaller one of its two roads.
+//! Every radius from here is assumed. A corner gets the smaller radius of its two roads.
 
 use serde::{Deserialize, Serialize};
 
@@ -76,7 +76,7 @@ impl Country {
 }
 
 impl Default for Kerbs {
-    /// The table that is built in. (A test reads it: were it damaged, corners would be sharp.)
+    /// The built-in table. (A test reads it: with a damaged table, corners would be sharp.)
     fn default() -> Self {
         Self::from_toml(TABLE).unwrap_or(Self { countries: Vec::new() })
     }
@@ -86,16 +86,16 @@ impl Kerbs {
     /// Reads a table in the form of `data/kerbs.toml`.
     ///
     /// # Errors
-    /// What is wrong with the text, and where.
+    /// The parser's message, with its place in the text.
     pub fn from_toml(text: &str) -> Result<Self, toml::de::Error> {
         let File { country } = toml::from_str(text)?;
         Ok(Self { countries: country })
     }
 
-    /// Whether every radius is one that a kerb may have.
+    /// Tests that every radius is possible for a kerb.
     ///
     /// # Errors
-    /// Which country has another one.
+    /// A message that names the country with an impossible radius.
     pub(crate) fn check(&self) -> Result<(), String> {
         let wrong = |c: &&Country| c.radii().iter().any(|radius_m| !(0.0..=100.0).contains(radius_m));
         match self.countries.iter().find(wrong) {
@@ -104,7 +104,7 @@ impl Kerbs {
         }
     }
 
-    /// The same radius everywhere: what a test or a survey says.
+    /// The same radius everywhere, for tests or from a survey.
     #[must_use]
     pub fn everywhere(radius_m: f64) -> Self {
         let all = Country {

@@ -1,25 +1,27 @@
-//! Turns: every movement at a junction that is not straight on gets corridors of its own, to be certified like any other.
+//! Turns: every movement at a junction that is not straight on gets corridors of its own, which are certified like any
+//! other.
 //!
-//! A turn's corridor begins on the centreline of the stroke that it leaves and ends on that of the stroke it joins, with their
-//! half-widths, so that a route strings stroke, turn and stroke together without a seam. In between it runs along one of a
-//! family of reference paths, as wide as the drivable area lets it be. When in doubt it is narrower: nothing that no road covers
-//! counts as road but the kerb return: as its surface is mapped, or of a radius that is assumed and says so.
+//! A turn's corridor begins on the centreline of the stroke that it leaves and ends on that of the stroke that it
+//! joins, with their half-widths. A route can therefore join stroke, turn and stroke without a seam. In between the
+//! corridor follows one of a family of reference paths, as wide as the drivable area allows. In doubt it is narrower.
+//! Only surface that a road covers counts, with one exception: the kerb return. Its surface is mapped, or it has an
+//! assumed radius and is marked as assumed.
 //!
 //! | file | for |
 //! | --- | --- |
 //! | `arm` | a stroke near the junction, with the edges of the road |
 //! | `kerbs` | assumed kerb radii, `data/kerbs.toml` |
-//! | `surface` | the junction's surface, where it is mapped |
+//! | `surface` | the junction's mapped surface |
 //! | `area` | the drivable area as polygons |
 //! | `path` | transition, arc, transition; lane shifts |
-//! | `rays` | how wide the area is along a path |
-//! | `family` | which paths there are, and the corridors they give |
-//! | `roundabout` | onto a ring, round and off it as one movement |
-//! | `rank` | which of them a vehicle's certificate is worth trying on |
-//! | `facts` | what the map says of a turn: id, angle, line |
+//! | `rays` | the width of the area along a path |
+//! | `family` | the paths, and their corridors |
+//! | `roundabout` | entering, circulating and leaving a ring as one movement |
+//! | `rank` | the order in which a vehicle's paths are certified |
+//! | `facts` | facts of a turn from the map: id, angle, line |
 //!
-//! Left out: surfaces mapped as relations (with holes), lane markings inside the junction; lanes for turning (`turn:lanes`): the vehicle arrives
-//! and leaves in the lanes that its edges are certified for.
+//! Surfaces mapped as relations (with holes), lane markings inside the junction and turning lanes (`turn:lanes`) are
+//! left out. The vehicle arrives and leaves in the lanes that its edges are certified for.
 
 mod area;
 mod arm;
@@ -46,33 +48,33 @@ use crate::network::{Movement, Network};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
 
-/// How turns are made into corridors.
+/// Parameters of turn corridors.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TurnParams {
-    /// How strokes are made into corridors.
+    /// Parameters of stroke corridors.
     pub corridor: Params,
-    /// What is assumed of kerbs.
+    /// Assumed kerb radii.
     pub kerbs: Kerbs,
 }
 
-/// How long the vehicles are for which a turn is made: how much road before and after it counts.
+/// Length class of the vehicles for which a turn is made. It determines how much road before and after the turn counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Reach {
-    /// Up to 20 m.
+    /// Vehicles up to 20 m.
     Short,
-    /// Up to 60 m.
+    /// Vehicles up to 60 m.
     Long,
 }
 
 impl Reach {
-    /// The reach for a vehicle; `None`: it is longer than any.
+    /// The reach for a vehicle. `None` if the vehicle is too long.
     #[must_use]
     pub fn of(vehicle: &crate::vehicle::Vehicle) -> Option<Self> {
         let length_m = vehicle.length_m;
         if length_m <= 20.0 { Some(Self::Short) } else { (length_m <= 60.0).then_some(Self::Long) }
     }
 
-    /// Before the path begins, that counts: the vehicle's tail is still there when its head turns. Metres.
+    /// Length before the path that counts, metres: the vehicle's rear is still there when its front turns.
     const fn counted_before_m(self) -> f64 {
         match self {
             Self::Short => 20.0,
@@ -80,7 +82,7 @@ impl Reach {
         }
     }
 
-    /// Before that: driven, so that the vehicle arrives articulated as the road makes it. Metres.
+    /// Length before that, metres. It is driven, so that the vehicle arrives articulated as on the road.
     const fn run_in_m(self) -> f64 {
         match self {
             Self::Short => 20.0,
@@ -88,8 +90,8 @@ impl Reach {
         }
     }
 
-    /// After the path has ended, that counts: by then a vehicle is as good as straight (its units' angles fall by a factor of e
-    /// over their lengths). Metres.
+    /// Length after the path that counts, metres. At its end a vehicle is almost straight: articulation angles fall by
+    /// a factor of e over a unit's length.
     const fn counted_after_m(self) -> f64 {
         match self {
             Self::Short => 45.0,
@@ -98,7 +100,7 @@ impl Reach {
     }
 }
 
-/// Where a path leaves or joins a stroke's centreline.
+/// The place where a path leaves or joins a stroke's centreline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Joint {
     /// Index into `Network::strokes`.
@@ -107,45 +109,46 @@ pub struct Joint {
     pub station: usize,
 }
 
-/// One way to drive a turn.
+/// One path of a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TurnPath {
-    /// Its place in the family: the same turn, policy and reach give the same path the same number.
+    /// Number in the family. The same turn, policy and reach give the same path the same number.
     pub number: u8,
-    /// Approach, turn, departure: metric, in the turn's frame.
+    /// Corridor of approach, turn and departure, metres in the turn's frame.
     pub corridor: Corridor,
     /// Stations of the turn itself, between the joints.
     pub turn: Range<usize>,
-    /// Stations that count for the turn's certificate: from where the vehicle's tail is when its head begins to turn, to where it
-    /// is straight again (or the departure stroke ends).
+    /// Stations that count for the turn's certificate. They begin at the vehicle's rear when its front starts to turn.
+    /// They end where the vehicle is straight again, or where the departure stroke ends.
     pub counted: Range<usize>,
-    /// Where it leaves the stroke of `from`.
+    /// Where the path leaves the stroke of `from`.
     pub approach: Joint,
-    /// Where it joins the stroke of `to`.
+    /// Where the path joins the stroke of `to`.
     pub departure: Joint,
     /// Smallest radius between the joints, metres.
     pub min_radius_m: f64,
 }
 
-/// All ways to drive a turn that stay on the road.
+/// All paths of a turn that stay on the road.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TurnCorridors {
-    /// In which everything is.
+    /// Frame of all positions.
     pub frame: Frame,
-    /// Between the strokes' directions at the node, radians, positive left.
+    /// Angle between the strokes' directions at the node, radians, positive left.
     pub turn_rad: f64,
-    /// What may be driven on.
+    /// The drivable area.
     pub area: MultiPolygon,
-    /// Assumed radius of the kerb return, metres; `None`: the corner has none (too acute or too flat), or its surface is mapped.
+    /// Assumed radius of the kerb return, metres. `None` if the corner is too acute or too flat, or its surface is
+    /// mapped.
     pub kerb_radius_m: Option<f64>,
-    /// In order of their numbers; may be empty: then no path of the family stays on the road.
+    /// Paths in the order of their numbers. Empty if no path of the family stays on the road.
     pub paths: Vec<TurnPath>,
 }
 
 /// The corridors of a turn, from the network alone.
 ///
 /// # Errors
-/// One of its edges has no corridor.
+/// The reason if one of its edges has no corridor.
 pub fn turn_corridors(
     network: &Network,
     movement: Movement,
@@ -163,7 +166,7 @@ pub fn turn_corridors(
 /// As [`turn_corridors`], on the lines of the two edges' strokes.
 ///
 /// # Errors
-/// One of the edges has no corridor.
+/// The reason if one of the edges has no corridor.
 pub fn turn_on(
     network: &Network,
     movement: Movement,
@@ -175,10 +178,10 @@ pub fn turn_on(
     family::Junction::new(network, movement, lines, lines[0].frame, policy, params, reach)?.corridors()
 }
 
-/// The corridors of a turn, or of a roundabout's passage: as [`turn_corridors`] and [`passage_on`].
+/// The corridors of a turn or of a roundabout's passage, as [`turn_corridors`] and [`passage_on`].
 ///
 /// # Errors
-/// One of its edges or arcs has no corridor; the ring is too small to have any.
+/// The reason if one of its edges or arcs has no corridor, or if the ring is too small.
 pub fn corridors_of(
     network: &Network,
     turn: &TurnFacts,
@@ -198,13 +201,13 @@ pub fn corridors_of(
     passage_on(network, (*movement, through), lines.each_ref(), policy, params, reach)
 }
 
-/// A roundabout entered, circulated over some arcs and left as one movement: `lines` are those of the strokes of `from`, the ring and
-/// `to`.
+/// The corridors of a roundabout that is entered, circulated over some arcs and left as one movement. `lines` are those
+/// of the strokes of `from`, the ring and `to`.
 ///
-/// Joints, frame and stations are as those of a turn, so that a route strings it in the same way.
+/// Joints, frame and stations are as for a turn, so a route joins them in the same way.
 ///
 /// # Errors
-/// One of its edges or arcs has no corridor; the ring is too small to have any.
+/// The reason if one of its edges or arcs has no corridor, or if the ring is too small.
 pub fn passage_on(
     network: &Network,
     over: (Movement, &[u32]),
@@ -216,7 +219,7 @@ pub fn passage_on(
     roundabout::Passage::new(network, over, lines, policy, params, reach)?.corridors()
 }
 
-/// The stroke that an edge belongs to.
+/// The stroke of an edge.
 fn stroke_of(network: &Network, edge: u32) -> Option<u32> {
     let has = |s: &crate::network::Stroke| {
         network.stroke_edges.get(s.edges.start as usize..s.edges.end as usize).is_some_and(|all| all.contains(&edge))

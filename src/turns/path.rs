@@ -1,9 +1,10 @@
-//! Reference paths of a turn: from one place and heading to another by transition, arc and transition, or, where the lanes only
-//! shift, by a curve of minimal jerk.
+//! Reference paths of a turn: from one pose to another by transition, arc and transition. If the lanes only shift, the
+//! path is a curve of minimal jerk.
 //!
-//! Every path is tangent to both centrelines and has no curvature at its ends. Which of them are any good is decided elsewhere.
+//! Every path is tangent to both centrelines and has zero curvature at its ends. `rank` and the certificate judge the
+//! paths.
 
-/// A place and the direction of travel there, radians from x towards y.
+/// A place, and the heading there in radians from x towards y.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Pose {
     pub(super) at: [f64; 2],
@@ -17,27 +18,28 @@ impl Pose {
     }
 }
 
-/// Distance of a path's points, metres.
+/// Distance between a path's points, metres.
 pub(super) const STEP_M: f64 = 0.5;
-/// Steps of integration a point.
+/// Integration steps per point.
 const FINE: usize = 8;
-/// No vehicle of the catalogue turns on a smaller radius, metres.
+/// Smallest radius, metres. No vehicle of the catalogue turns more tightly.
 const LEAST_RADIUS_M: f64 = 3.0;
-/// Lanes that meet at less than this are shifted, not turned, radians.
+/// Lanes that meet at a smaller angle are shifted, not turned, radians.
 const LEAST_CORNER_RAD: f64 = 0.12;
-/// More is a turn back.
+/// Larger angles are U-turns, radians.
 const MOST_CORNER_RAD: f64 = 2.9;
-/// Sharpest bend of a lane shift, 1/m.
+/// Largest curvature of a lane shift, 1/m.
 const MOST_SHIFT_CURVATURE: f64 = 0.12;
 
-/// Into −π..π.
+/// Wraps an angle into −π..π.
 pub(super) fn wrapped(angle: f64) -> f64 {
     let turn = std::f64::consts::TAU;
     angle - turn * (angle / turn).round()
 }
 
-/// The turn from `a` to `b` whose arc has `1 − 2·share` of the angle and whose transitions have `share` each: the widest that the
-/// shorter of the two tangents allows, straight along the rest of the longer one. `None` where the tangents do not meet between.
+/// The turn from `a` to `b`. Its arc has `1 − 2·share` of the angle, and each transition has `share`. It is as wide as
+/// the shorter tangent allows, and straight along the rest of the longer tangent. `None` if the tangents do not meet
+/// between `a` and `b`.
 pub(super) fn corner(a: Pose, b: Pose, share: f64) -> Option<Vec<[f64; 2]>> {
     let turned = wrapped(b.heading - a.heading);
     if !(LEAST_CORNER_RAD..=MOST_CORNER_RAD).contains(&turned.abs()) {
@@ -72,18 +74,18 @@ pub(super) fn corner(a: Pose, b: Pose, share: f64) -> Option<Vec<[f64; 2]>> {
     Some(points)
 }
 
-/// Points from `from` on, over `length_m`, the last one exactly there.
+/// Points from `from` along `u` over `length_m`. The last point is exactly at the end.
 fn straight(from: [f64; 2], u: [f64; 2], length_m: f64) -> Vec<[f64; 2]> {
     let steps = (length_m / STEP_M).round().max(0.0) as usize;
     let length_m = if steps == 0 { 0.0 } else { length_m };
     (0..=steps).map(|i| super::area::along(from, u, length_m * i as f64 / steps.max(1) as f64)).collect()
 }
 
-/// Transition, arc, transition to the left with radius 1 from the origin along x.
+/// Transition, arc and transition to the left with radius 1, from the origin along x.
 struct UnitTurn {
     transition: f64,
     arc: f64,
-    /// From the beginning to where the tangents at both ends meet.
+    /// Distance from the start to where the tangents at both ends meet.
     tangent: f64,
 }
 
@@ -92,7 +94,7 @@ impl UnitTurn {
         // A transition from 0 to curvature 1 over length L turns by L/2.
         let mut unit = Self { transition: 2.0 * share * turned, arc: (1.0 - 2.0 * share) * turned, tangent: 0.0 };
         let end = unit.integrate(256).last().copied().unwrap_or_default();
-        // The end lies where the second tangent, of length `tangent`, ends: y = tangent · sin(turned).
+        // The end lies at the end of the second tangent, of length `tangent`: y = tangent · sin(turned).
         unit.tangent = if turned.sin().abs() > 0.05 { end[1] / turned.sin() } else { end[0] / (1.0 + turned.cos()) };
         unit
     }
@@ -137,7 +139,7 @@ impl UnitTurn {
     }
 }
 
-/// The quintic from `a` to `b` without curvature at its ends. `None` where it would bend as sharply as a corner.
+/// The quintic from `a` to `b` with zero curvature at its ends. `None` if it would bend as sharply as a corner.
 pub(super) fn shift(a: Pose, b: Pose) -> Option<Vec<[f64; 2]>> {
     let chord = (b.at[0] - a.at[0]).hypot(b.at[1] - a.at[1]);
     let ahead = (b.at[0] - a.at[0]) * a.forward()[0] + (b.at[1] - a.at[1]) * a.forward()[1];
@@ -157,7 +159,7 @@ pub(super) fn shift(a: Pose, b: Pose) -> Option<Vec<[f64; 2]>> {
     (sharpest(&points) <= MOST_SHIFT_CURVATURE).then_some(points)
 }
 
-/// Largest curvature of the circles through three points in a row, 1/m.
+/// Largest curvature of the circles through three successive points, 1/m.
 pub(super) fn sharpest(points: &[[f64; 2]]) -> f64 {
     points.windows(3).map(|w| bend(w).abs()).fold(0.0, f64::max)
 }

@@ -1,15 +1,16 @@
-//! Which paths are worth a certificate: the leeway of a vehicle that keeps to the path exactly, at a few places of its bodies.
+//! Ranks paths for certification by the leeway of a vehicle that follows the path exactly, at a few places of its
+//! bodies.
 //!
-//! Decides nothing but the order in which certificates are tried; a bad guess costs a permit, never gives one.
+//! The rank only sets the order in which certificates are tried. A bad guess may cost a permit, but never gives one.
 
 use super::TurnPath;
 use crate::stet::motion::sweep_path;
 use crate::vehicle::Vehicle;
 
-/// Steps of the nominal motion are about this long, metres.
+/// Approximate step of the nominal motion, metres.
 const STEP_M: f64 = 1.5;
 
-/// The least distance of a body from the corridor's edges over the stations that count, metres; negative: outside.
+/// Least distance of a body from the corridor's edges over the counted stations, metres; negative if a body is outside.
 #[must_use]
 pub fn nominal_leeway_m(path: &TurnPath, vehicle: &Vehicle) -> f64 {
     let c = &path.corridor;
@@ -34,7 +35,7 @@ pub fn nominal_leeway_m(path: &TurnPath, vehicle: &Vehicle) -> f64 {
     least
 }
 
-/// From `from` on, as far as it gets nearer.
+/// Index of the point nearest to `p`, searched from `from` while the distance falls.
 fn nearest(line: &[[f64; 2]], p: [f64; 2], from: usize) -> usize {
     let squared = |k: usize| (line[k][0] - p[0]).powi(2) + (line[k][1] - p[1]).powi(2);
     let mut best = from;

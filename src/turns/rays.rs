@@ -1,38 +1,39 @@
-//! Width profile of a path: from every point along the normal to both sides until the drivable area ends.
+//! Width profile of a path: rays along the normal to both sides, from every point to the end of the drivable area.
 //!
-//! Never beyond it: what stands out between two rays (a kerb's corner) narrows both of them, the reach is shortened by what the
-//! polygons are coarse, and it stays clear of the path's centre of curvature, where normals cross.
+//! A width never reaches beyond the area. A kerb's corner between two rays narrows both rays. Rays are shortened by the
+//! coarseness of the polygons. They stay clear of the path's centre of curvature, where normals cross.
 
 use geo::{LineString, MultiPolygon};
 
 use super::path::bend;
 
-/// Off every ray: twice what strips are thinned by, and the sagitta between rays of half a metre at 12 m, metres.
+/// Deduction from every ray, metres: twice the thinning of strips, and the sagitta between rays half a metre apart at
+/// 12 m.
 const MARGIN_M: f64 = 0.004;
-/// |κ|·half-width at most: where normals cross, a place has no one distance from the path. `corridor` allows 0.98, `stet` asks for
-/// stations that are visited; curvature between points is a little more than at them.
+/// Largest |κ|·half-width: where normals cross, a place has no unique distance from the path. `corridor` allows 0.98,
+/// and `stet` needs stations that are visited. Curvature between points is slightly greater than at them.
 const MOST_CROSSING: f64 = 0.9;
-/// Nothing is wider to one side, metres: the longest combinations cut a corner by as much.
+/// Largest half-width, metres. The longest combinations cut a corner by as much.
 const FARTHEST_M: f64 = 12.0;
-/// Half-widths change by so much at most, metres a metre: where another road opens beside the path a ray sees far into it, and a
-/// certificate deducts what a width may change along a body. (Without it a semitrailer lost 6 m where its path passes the mouth of
-/// a side road.)
+/// Largest change of a half-width per metre. Where another road opens beside the path, a ray sees far into it, and a
+/// certificate deducts the change of a width along a body. Without this bound a semi-trailer lost 6 m where its path
+/// passes the mouth of a side road.
 const STEEPEST: f64 = 0.4;
-/// And their slope falls by so much at most, 1/m: a certificate reads a width beside a station by the slope there, and deducts what the
-/// slope may change on the way.
+/// Largest fall of that slope per metre, 1/m. A certificate reads a width beside a station by the slope there, and
+/// deducts what the slope may change on the way.
 const ROUNDEST: f64 = 0.1;
-/// A path that is nearer to the area's end has left it, metres.
+/// Least half-width, metres. A path closer to the area's edge has left the area.
 const LEAST_M: f64 = 0.15;
-/// A corner of the area counts for the segments whose normals may meet it: it lies between their ends, with so much of their
-/// length added at both, and more where normals fan out on the outside of a bend.
+/// Share of a segment's length added at both of its ends to find corners of the area that its normals may meet. More is
+/// added where normals diverge on the outside of a bend.
 const FAN: f64 = 0.1;
 
-/// The area's boundary, ready for rays.
+/// The area's boundary, prepared for rays.
 pub(super) struct Boundary {
     segments: Vec<[[f64; 2]; 2]>,
 }
 
-/// Half-widths of a path, one a point.
+/// Half-widths of a path, one per point.
 pub(super) struct Widths {
     pub(super) left_m: Vec<f64>,
     pub(super) right_m: Vec<f64>,
@@ -47,7 +48,7 @@ impl Boundary {
         Self { segments: rings.flat_map(segments).collect() }
     }
 
-    /// Whether a place is inside (even-odd).
+    /// Whether a place is inside (even-odd rule).
     fn holds(&self, p: [f64; 2]) -> bool {
         let above = |[a, b]: &[[f64; 2]; 2]| {
             (a[1] > p[1]) != (b[1] > p[1]) && p[0] < a[0] + (p[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
@@ -55,7 +56,7 @@ impl Boundary {
         self.segments.iter().filter(|s| above(s)).count() % 2 == 1
     }
 
-    /// Whether a path leaves the area anywhere, between its points too.
+    /// Whether a path leaves the area anywhere, also between its points.
     fn crosses(&self, path: &[[f64; 2]]) -> bool {
         let side = |a: [f64; 2], b: [f64; 2], p: [f64; 2]| {
             (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) >= 0.0
@@ -67,7 +68,7 @@ impl Boundary {
         })
     }
 
-    /// Half-widths along `path`; `None` if it leaves the area.
+    /// Half-widths along `path`. `None` if the path leaves the area.
     pub(super) fn widths(&self, path: &[[f64; 2]]) -> Option<Widths> {
         let near = self.near(path);
         let n = path.len();
@@ -154,8 +155,8 @@ impl Boundary {
 }
 
 impl Widths {
-    /// The largest half-widths below these that change by [`STEEPEST`] at most, and whose slope falls by [`ROUNDEST`] at most; at the
-    /// path's ends no more than `ends`.
+    /// Lowers these half-widths as little as possible until they change by at most [`STEEPEST`] and their slope falls
+    /// by at most [`ROUNDEST`]. At the path's ends they are at most `ends`.
     pub(super) fn gentle(&mut self, path: &[[f64; 2]], ends: [[f64; 2]; 2]) {
         let mut along_m = vec![0.0; path.len()];
         for k in 1..path.len() {
@@ -171,7 +172,7 @@ impl Widths {
     }
 }
 
-/// Lowers half-widths until they change by [`STEEPEST`] at most.
+/// Lowers half-widths until they change by at most [`STEEPEST`].
 fn no_steeper(along_m: &[f64], widths: &mut [f64]) {
     let rise = |k: usize| STEEPEST * (along_m[k] - along_m[k - 1]);
     for k in 1..widths.len() {
@@ -182,8 +183,8 @@ fn no_steeper(along_m: &[f64], widths: &mut [f64]) {
     }
 }
 
-/// Lowers half-widths until no second derivative is below −[`ROUNDEST`]: they are, with a parabola added, the lower convex hull of what
-/// they were with it. Minima stay, and nothing becomes steeper than it was.
+/// Lowers half-widths until no second derivative is below −[`ROUNDEST`]. With a parabola added they are the lower
+/// convex hull of the given ones with that parabola. Minima stay, and nothing becomes steeper.
 fn rounded(along_m: &[f64], widths: &mut [f64]) {
     let lifted: Vec<[f64; 2]> =
         along_m.iter().zip(widths.iter()).map(|(&s, &w)| [s, w + 0.5 * ROUNDEST * s * s]).collect();
@@ -208,7 +209,7 @@ fn rounded(along_m: &[f64], widths: &mut [f64]) {
     }
 }
 
-/// Half-widths towards the centre of curvature stay clear of it.
+/// Keeps half-widths towards the centre of curvature clear of it.
 fn clear_of_centre(path: &[[f64; 2]], widths: &mut Widths) {
     let bends: Vec<f64> = path.windows(3).map(bend).collect();
     for k in 0..path.len() {

@@ -1,8 +1,9 @@
-//! Roundabouts as one movement: onto the ring by one of a few paths, round along its centreline, off it by one of a few.
+//! Roundabouts as one movement: entering the ring by one of a few paths, along its centreline, and leaving it by one of
+//! a few paths.
 //!
-//! The area is that of both turns with the whole ring, as wide as its own corridor; mouths of other arms, aprons and islands that
-//! can be driven over do not count. Joints and stations are those of any turn. Left out: paths that cut across the ring's lanes,
-//! but for the corrections that a certificate makes.
+//! The area is that of both turns and of the whole ring, as wide as the ring's own corridor. Mouths of other arms,
+//! aprons and drivable islands do not count. Joints and stations are those of any turn. Paths that cut across the
+//! ring's lanes are left out, except for the corrections that a certificate makes.
 
 use geo::BooleanOps;
 
@@ -17,17 +18,17 @@ use crate::network::{Movement, MovementKind, Network};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
 
-/// Of a smaller ring a map says too little, metres round.
+/// Least circumference of a ring, metres. A map is too coarse for smaller rings.
 const LEAST_ROUND_M: f64 = 38.0;
-/// A point that is less ahead of the last one is left out, metres.
+/// A point less than this ahead of the previous one is dropped, metres.
 const LEAST_AHEAD_M: f64 = 0.5 * STEP_M;
 
-/// A passage, ready for its family.
+/// A passage, prepared for its family.
 pub(super) struct Passage {
     entry: Junction,
     exit: Junction,
     ring: Ring,
-    /// The exit lies beyond the seam of the ring.
+    /// Whether the exit lies beyond the seam of the ring.
     beyond: bool,
     strokes: [u32; 2],
     frame: Frame,
@@ -100,7 +101,7 @@ impl Passage {
         Ok(TurnCorridors { frame: self.frame, turn_rad, area, kerb_radius_m, paths })
     }
 
-    /// The ring's centreline from where an entry joins it to where an exit leaves it; `None`: the exit begins before.
+    /// The ring's centreline from the joint of an entry to the joint of an exit. `None` if the exit begins earlier.
     fn round(&self, entry: &Candidate, exit: &Candidate) -> Option<Vec<[f64; 2]>> {
         let joins = self.entry.to.first + entry.join;
         let leaves = self.exit.from.first + exit.leave + if self.beyond { self.ring.period? } else { 0 };
@@ -108,10 +109,11 @@ impl Passage {
     }
 }
 
-/// A roundabout's stations.
+/// The stations of a roundabout.
 struct Ring {
     arm: Arm,
-    /// The first station that counts, and how many make a whole circle (to half a station); `None`: it is not closed.
+    /// The first counted station, and the number of stations in a whole circle (to half a station). `None` if the ring
+    /// is not closed.
     first: usize,
     period: Option<usize>,
 }
@@ -132,7 +134,7 @@ impl Ring {
         Ok(Self { arm, first, period })
     }
 
-    /// Stations of the whole ring, the seam twice.
+    /// Stations of the whole ring, with the seam twice.
     fn once(&self) -> std::ops::Range<usize> {
         match self.period {
             Some(n) => self.first..(self.first + n + 2).min(self.arm.len()),
@@ -140,7 +142,7 @@ impl Ring {
         }
     }
 
-    /// Points along the centreline between two stations, as close as a path's.
+    /// Points along the centreline between two stations, as close as a path's points.
     fn centreline(&self, from: usize, to: usize) -> Vec<[f64; 2]> {
         let once = |k: usize| match self.period {
             Some(n) if k >= self.first => self.first + (k - self.first) % n,
@@ -166,7 +168,8 @@ fn hermite([p, q]: [[f64; 2]; 2], [u, v]: [[f64; 2]; 2], chord: f64, t: f64) -> 
     [0, 1].map(|i| p[i] + to * (q[i] - p[i]) + chord * ((t - 2.0 * t2 + t3) * u[i] + (t3 - t2) * v[i]))
 }
 
-/// Three lines as one. The ring's seam and its ends are a whole circle apart to half a station: what would lie behind goes.
+/// Joins three lines into one. The ring's seam and its ends are a whole circle apart to half a station, so points that
+/// would lie behind are dropped.
 fn strung(onto: &[[f64; 2]], round: &[[f64; 2]], off: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut line = onto.to_vec();
     let ahead = |line: &[[f64; 2]], p: [f64; 2]| match *line {

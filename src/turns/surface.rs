@@ -1,6 +1,7 @@
-//! The surface of a junction where it is mapped: what of it there is around a node, less the islands on it.
+//! The mapped surface of a junction around a node, less the islands on it.
 //!
-//! A surface counts where it has the class of one of the turn's roads: one of another class may lie on another level.
+//! A surface counts only if it has the class of one of the turn's roads: a surface of another class may be on another
+//! level.
 
 use geo::{BooleanOps, MultiPolygon, Polygon, unary_union};
 
@@ -8,12 +9,12 @@ use crate::corridor::Frame;
 use crate::network::{Area, Network, Road};
 use crate::osm::facts::AreaKind;
 
-/// Whether the corners at a node between two roads are as mapped.
+/// Whether the corners at a node between two roads are mapped.
 pub(super) fn is_mapped(network: &Network, node: i64, roads: [&Road; 2]) -> bool {
     surfaces(network, node, roads).next().is_some()
 }
 
-/// The surface around a node between two roads, in a metric frame; `None`: not mapped there.
+/// The surface around a node between two roads, in a metric frame. `None` if it is not mapped.
 pub(super) fn surface(network: &Network, node: i64, roads: [&Road; 2], frame: Frame) -> Option<MultiPolygon> {
     let polygon = |area: &Area| {
         let corners = frame.forward(&area.ring).ok()?;

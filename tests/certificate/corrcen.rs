@@ -1,6 +1,7 @@
-//! CORRCEN against the best plan there is: how much RSC its two sweeps leave on the table (design section 5, Corrections).
+//! CORRCEN compared with the best plan: how much RSC its two sweeps leave unused (docs/proof.md).
 //!
-//! The best plan is found by sequential linear programmes that start from the centreline and know nothing of CORRCEN.
+//! The best plan is found by sequential linear programmes that start from the centreline and are independent of
+//! CORRCEN.
 
 mod cases;
 mod optimum;
@@ -18,13 +19,13 @@ use rayon::prelude::*;
 use crate::support::demo::demo;
 use crate::support::extracts::extract;
 
-/// RSC itself: all bounds deducted.
+/// Merit by the RSC, with all bounds deducted.
 struct Certified<'a> {
     problem: &'a Problem<'a>,
     model: &'a Model,
-    /// By unit: what the bounds take off on a straight.
+    /// By unit: deduction of the bounds on a straight, metres.
     straight_m: Vec<f64>,
-    /// Of the plan asked last: by side and station, what they take off beyond that.
+    /// For the last plan: further deduction of the bounds, by side and station.
     bent_m: [Vec<f64>; 2],
 }
 
@@ -62,7 +63,7 @@ impl Merit for Certified<'_> {
     }
 }
 
-/// What the bounds take off on a straight for the first `count` units, of which each goes as if none followed.
+/// Deduction of the bounds on a straight for the first `count` units, each computed as if none followed.
 fn straight_m(vehicle: &Vehicle, count: usize) -> f64 {
     let mut ahead = vehicle.clone();
     ahead.units.truncate(count);
@@ -95,8 +96,8 @@ struct Compared {
     nominal_optimum_m: f64,
 }
 
-/// The corridor made wider or narrower until CORRCEN just fits: there it matters where one steers. `None`: the vehicle
-/// cannot follow it at all.
+/// The corridor widened or narrowed until CORRCEN just fits, where the steering matters. `None` if the vehicle cannot
+/// follow the corridor at all.
 fn as_needed(corridor: &Corridor, model: &Model, options: &Options) -> Option<Corridor> {
     let mut corridor = corridor.clone();
     for _ in 0..3 {
@@ -120,7 +121,7 @@ fn compare(case: &Case) -> Option<Compared> {
     let (nominal, nominal_optimum_m) = optimum(&problem, &mut Nominal(&problem), &centred, most, 3e-5);
     let mut certified = Certified::new(&problem, &model);
     let (smooth, _) = optimum(&problem, &mut certified, &nominal, most, 1e-3);
-    // Once more with a wide trust region: what the bounds take off has changed by then.
+    // A second run with a wide trust region: the deductions of the bounds have changed by then.
     let (_, optimum_m) = optimum(&problem, &mut certified, &smooth, most, 1e-4);
     let compared = Compared {
         name: case.name.clone(),
@@ -131,7 +132,7 @@ fn compare(case: &Case) -> Option<Compared> {
         nominal_optimum_m,
     };
     println!("{}", compared.line());
-    // Nothing is claimed where the bounds do not close, and nothing seen where feet jump.
+    // Nothing is claimed where the bounds do not close, and nothing is measured where feet jump.
     (certificate.result.closes() && compared.corrcen_m > -50.0).then_some(compared)
 }
 
@@ -159,7 +160,7 @@ impl Compared {
     }
 }
 
-/// Prints a distribution; its median.
+/// Prints a distribution and returns its median.
 fn report(what: &str, mut short_m: Vec<f64>) -> f64 {
     short_m.sort_by(f64::total_cmp);
     let at = |p: f64| short_m[((short_m.len() - 1) as f64 * p).round() as usize];

@@ -1,7 +1,8 @@
-//! The ends of corridors: what is promised while the vehicle comes on to a corridor and leaves it, for any point of it.
+//! The ends of corridors: the promise holds while the vehicle enters a corridor and leaves it, for every point of the
+//! vehicle.
 //!
-//! Corridors here bend and change their widths from their first station on and up to their last one. The vehicles have
-//! what shows at an end: long overhangs, hitches far behind an axle or before it, tight limits of hinges.
+//! Corridors here bend and change their widths from the first to the last station. The vehicles have features that
+//! matter at an end: long overhangs, hitches far behind or ahead of an axle, and small hinge limits.
 
 use crate::oracle;
 
@@ -14,7 +15,7 @@ use oracle::path::Path;
 use oracle::road;
 use rayon::prelude::*;
 
-/// RK4 at 0.1 m and the plan's cubic, as in `soundness.rs`; in bends of 8 m the cubic leaves more.
+/// Errors of RK4 at 0.1 m and of the plan's cubic, as in `soundness.rs`. In bends of 8 m the cubic's error is larger.
 const ALLOWANCE_M: f64 = 1e-4;
 const ALLOWANCE_RAD: f64 = 2e-4;
 
@@ -56,7 +57,7 @@ pub fn vehicle(id: &str, tolerance_m: f64, units: Vec<Unit>) -> Vehicle {
     }
 }
 
-/// One of six shapes, with random sizes.
+/// A vehicle of one of six shapes with random sizes.
 fn random_vehicle(draw: &mut Draw) -> Vehicle {
     let sway = draw.between(0.0, 0.6);
     let tolerance_m = draw.between(0.02, 0.3);
@@ -84,14 +85,14 @@ fn random_vehicle(draw: &mut Draw) -> Vehicle {
     }
 }
 
-/// A corridor of a bend, or none, that begins or ends at once; widths run from one end to the other.
+/// A corridor with or without a bend that begins or ends at once. Widths change from one end to the other.
 fn random_corridor(draw: &mut Draw, vehicle: &Vehicle) -> Corridor {
     let spacing_m = [0.05, 0.25, 0.5, 1.0][draw.below(4)];
     let longest = if spacing_m < 0.1 { 20.0 } else { 60.0 };
     let length_m = draw.log_between(3.0, longest);
     let stations = ((length_m / spacing_m) as usize).max(3) + 1;
     let most = draw.sign() / draw.log_between(12.0, 80.0);
-    // Straight, bent from the start, up to the end, or all along; the curvature rises within a metre.
+    // Straight, bent at the start, bent at the end, or bent throughout. Curvature rises within a metre.
     let (early, late) = (draw.one_in(2), draw.one_in(2));
     let rise = (1.0 / spacing_m).max(1.0);
     let curvature: Vec<f64> = (0..stations)
@@ -115,7 +116,7 @@ fn random_corridor(draw: &mut Draw, vehicle: &Vehicle) -> Corridor {
     road::corridor(spacing_m, [0.0; 2], draw.between(-3.0, 3.0), &curvature, &left, &right)
 }
 
-/// Attacks the claims of a corridor; what came below them, in words.
+/// Attacks the claims of a corridor. Returns a description of any refutation.
 pub fn refuted(
     corridor: &Corridor,
     vehicle: &Vehicle,
@@ -126,7 +127,7 @@ pub fn refuted(
     attacked(corridor, vehicle, &duel::path(corridor, vehicle, claim), claim, draw, others)
 }
 
-/// The same along a path that stands for the claim's plan.
+/// As [`refuted`], along a path that follows the claim's plan.
 pub fn attacked(
     corridor: &Corridor,
     vehicle: &Vehicle,
@@ -172,7 +173,7 @@ fn nothing_comes_closer_than_promised_while_any_point_is_on_a_corridor() {
     assert!(tried.len() * 10 >= cases as usize * 7, "only {} corridors could be tried", tried.len());
 }
 
-/// Straight, widening by 5 cm a metre on both sides.
+/// A straight that widens by 5 cm a metre on both sides.
 fn taper(length_m: f64, spacing_m: f64, half_width_m: f64) -> Corridor {
     let stations = (length_m / spacing_m) as usize + 1;
     let widths: Vec<f64> = (0..stations).map(|k| half_width_m + 0.05 * spacing_m * k as f64).collect();
@@ -190,7 +191,7 @@ fn the_front_overhang_counts_from_the_first_station_on() {
             let mut draw = Draw(17);
             let words = refuted(&corridor, vehicle, &claim, &mut draw, 4);
             assert_eq!(words, None);
-            // What the steer path may be off is worth 1 + (a − L)/L at the front corner, at the narrowest station.
+            // The steer path's tolerance counts 1 + (a − L)/L times at the front corner, at the narrowest station.
             let overhang = vehicle.units[0].front_overhang_m;
             let corner_m = 0.15 * (1.0 + overhang / vehicle.units[0].coupling_to_axle_m);
             assert!(claim.rsc_m <= 1.55 - 1.25 - 0.9 * corner_m + 1e-3, "{} {spacing_m}: {}", vehicle.id, claim.rsc_m);
@@ -198,7 +199,7 @@ fn the_front_overhang_counts_from_the_first_station_on() {
     }
 }
 
-/// Straight for a while, a bend of 90° up to the last station.
+/// A straight, then a bend of 90° up to the last station.
 fn into_a_bend(straight_m: f64, radius_m: f64) -> Corridor {
     let bend = (std::f64::consts::FRAC_PI_2 * radius_m) as usize;
     let curvature: Vec<f64> =
@@ -235,7 +236,7 @@ fn a_hinge_margin_holds_as_long_as_any_point_is_on_the_corridor() {
             assert_eq!(words, None, "{}", vehicle.id);
         }
     }
-    // Steering lock: on the last station the crane is steered into the bend as far as it will be.
+    // Steering lock: at the last station the crane is steered into the bend as far as it gets.
     let claim = certify(&into_a_bend(30.0, 20.0), &crane).unwrap();
     let steered = 34.0 - claim.hinge_margin_rad.to_degrees();
     assert!(steered > (5.0_f64 / 20.0).asin().to_degrees(), "{steered}");
@@ -243,8 +244,8 @@ fn a_hinge_margin_holds_as_long_as_any_point_is_on_the_corridor() {
 
 #[test]
 fn the_bounds_of_a_straight_hold_however_long_the_vehicle_has_driven() {
-    // Trailers whose hitch is far behind or before the axle: headings of ten degrees and more on a straight, where the tangent of an
-    // angle is no longer the angle.
+    // Trailers with a hitch far behind or ahead of the axle have headings of ten degrees and more on a straight. There
+    // the tangent of an angle differs from the angle.
     let cases = if std::env::var_os("NETCERT_THOROUGH").is_some() { 600 } else { 60 };
     let tried: Vec<Option<String>> = (0..cases)
         .into_par_iter()

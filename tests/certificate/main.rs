@@ -1,4 +1,4 @@
-//! What the certificate says, judged by an independent simulator, an adversary, closed forms, published values and the paper.
+//! Tests of the certificate by an independent simulator, an adversary, closed forms, published values and the paper.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, unreachable_pub)]
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 

@@ -1,4 +1,4 @@
-//! Where a corridor's stations are no curve nothing is certified, nor just behind.
+//! Nothing is certified at stations that do not form a curve, nor just behind them.
 
 use netcert::corridor::{Corridor, CurvatureProfile};
 use netcert::stet::{Model, Options, SpanResult, certify, certify_planned};

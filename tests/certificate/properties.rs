@@ -1,6 +1,6 @@
-//! What must hold of every certificate (design section 7), over random corridors and vehicles.
+//! Properties of every certificate, over random corridors and vehicles.
 //!
-//! Fixed plan: `max_shift_m` 0, so that the steer axle follows the centreline. Where γ matters corridors are wide
+//! The plan is fixed: `max_shift_m` is 0, so the steer axle follows the centreline. Where γ matters, corridors are wide
 //! enough for γ = 1.
 
 use crate::oracle;
@@ -34,12 +34,12 @@ fn draw_case(index: u64) -> (Draw, Vehicle, Bends, f64) {
     let squares: f64 = vehicle.units.iter().map(|u| u.coupling_to_axle_m.powi(2)).sum();
     let radius = draw.log_between(15.0f64.max(2.0 * squares.sqrt()), 600.0);
     let mut bends = draw::bends(&mut draw, radius, 60.0 + radius.min(150.0));
-    // Whole metres, so that stations 1 m and 0.5 m apart mean the same curve.
+    // Whole metres, so that stations 1 m and 0.5 m apart describe the same curve.
     bends.iter_mut().for_each(|b| b.0 = b.0.round().max(1.0));
     (draw, vehicle, bends, squares / (2.0 * radius))
 }
 
-/// Wide enough for γ = 1: off-tracking and a metre and a half to spare.
+/// A corridor wide enough for γ = 1: offtracking and 1.5 m of reserve.
 fn wide(draw: &mut Draw, bends: &Bends, vehicle: &Vehicle, offtracking_m: f64) -> Corridor {
     let low = 0.5 * vehicle.width_m() + 8.0 + 2.5 * offtracking_m;
     draw::corridor(draw, bends, low, low + 1.5)
@@ -62,8 +62,8 @@ fn moving_and_turning_the_world_changes_nothing() {
     }
 }
 
-/// In a bend that it cannot take a vehicle must not get lost: what is certified on the straight beyond is what the straight is
-/// worth by itself.
+/// In a bend that it cannot take, a vehicle must not get lost: the certificate of the straight beyond must equal that
+/// of the straight alone.
 #[test]
 fn a_place_that_does_not_fit_spoils_nothing_beyond_and_hides_nothing() {
     let fleet = fleet::all();
@@ -104,7 +104,8 @@ fn a_place_that_does_not_fit_spoils_nothing_beyond_and_hides_nothing() {
     }
 }
 
-/// To the last bit, and narrow enough that corrections, the adjoint and SHRINK are all called for by some and not by others.
+/// The results must be equal to the last bit. The corridors are so narrow that some vehicles need corrections, the
+/// adjoint and SHRINK, and others do not.
 #[test]
 fn who_is_certified_beside_it_changes_nothing() {
     let fleet = fleet::all();
@@ -148,13 +149,13 @@ fn a_mirror_changes_nothing() {
     }
 }
 
-/// γ is rounded down to thousandths: where rounding falls the other way RSC may differ by a thousandth of what ε costs.
+/// γ is rounded down to thousandths. If rounding differs, RSC may differ by a thousandth of the cost of ε.
 fn same(index: u64, vehicle: &Vehicle, a: &Corridor, b: &Corridor) {
     let (a, b) =
         (certificate(a, vehicle, &Options::default()).result, certificate(b, vehicle, &Options::default()).result);
     let rounding = (a.shrink - b.shrink).abs();
     assert!(rounding < 1.5e-3, "{index}: γ {} and {}", a.shrink, b.shrink);
-    // Feet are searched for from the last ones found, so that they differ in the last steps of the search: 3e-6 m seen.
+    // Each search for feet starts from the last feet found, so the final search steps differ: 3e-6 m were seen.
     assert_eq!(a.closes(), b.closes(), "{index}, {}: {a:?} and {b:?}", vehicle.id);
     let (Some((a_m, b_m)), Some((a_rad, b_rad))) = (a.rsc_m.zip(b.rsc_m), a.hinge_margin_rad.zip(b.hinge_margin_rad))
     else {
@@ -179,8 +180,8 @@ fn room_on_both_sides_raises_rsc_by_just_that() {
     }
 }
 
-/// Tries a change that can only make matters worse. Cases in which the worse vehicle has no certificate at γ = 1 (its
-/// bounds do not close) say nothing; they may be one in ten.
+/// Tries a change that can only make matters worse. A case says nothing if the worse vehicle has no certificate at γ =
+/// 1 (its bounds do not close). At most one case in ten may say nothing.
 fn never_raises(what: &str, worsen: impl Fn(&mut Draw, &mut Vehicle)) {
     let mut silent = 0;
     for index in 0..CASES {
@@ -237,9 +238,9 @@ fn another_trailer_never_raises_rsc() {
     }
 }
 
-/// Coarser stations make the certificate more careful: the error is of second order and on the safe side. Below 60 m, and for
-/// units of 1.2 m, it is more than a centimetre at 1 m. Where a bend is at the limit from which the adjoint is
-/// used, one spacing may use it and the other not: both bounds hold, and they are within a centimetre there.
+/// Coarser stations make the certificate more careful: the error is of second order and on the safe side. Below 60 m,
+/// and for units of 1.2 m, it exceeds a centimetre at 1 m. Where a bend is at the threshold of the adjoint, only one of
+/// the spacings may use it. Both bounds hold, and they differ by less than a centimetre there.
 #[test]
 fn halving_the_station_spacing_moves_rsc_by_less_than_a_centimetre() {
     let mut worst = (0.0f64, String::new());

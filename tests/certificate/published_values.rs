@@ -1,8 +1,9 @@
-//! Off-tracking against figures from outside: AASHTO's minimum turns, EU circles, closed forms on steady circles; and
-//! against a third simulation's tables (PBS swept widths, FHWA's path), which are nobody's published values.
+//! Offtracking compared with external figures: AASHTO's minimum turns, EU circles, and closed forms on steady circles.
+//! It is also compared with tables of a third simulation (PBS swept widths, FHWA's path), which are not published
+//! values.
 //!
-//! Sources by section of the domain notes: AASHTO Green Book 2011/2018 minimum turns; Directive 96/53/EC with 97/27/EC
-//! 7.6.1; FHWA MAP-21 low-speed off-tracking path; Australian PBS low-speed swept path manoeuvre.
+//! Sources: AASHTO Green Book 2011/2018 minimum turns; Directive 96/53/EC with 97/27/EC 7.6.1; FHWA MAP-21 low-speed
+//! offtracking path; Australian PBS low-speed swept path manoeuvre.
 
 use crate::oracle;
 
@@ -16,7 +17,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const FOOT_M: f64 = 0.3048;
 
-/// Vehicle, CTR, published least inside radius (feet), and how far from it dimensions in the table may lead.
+/// Vehicle, CTR (feet), published least inside radius (feet), and the tolerance for the table's dimensions.
 const AASHTO: [(&str, f64, f64, f64); 7] = [
     ("P", 21.0, 14.4, 0.05),
     ("CITY-BUS", 37.8, 24.5, 0.05),
@@ -27,7 +28,7 @@ const AASHTO: [(&str, f64, f64, f64); 7] = [
     ("US-WB109D", 55.9, 14.9, 0.25),
 ];
 
-/// Two of AASHTO's vehicles have one unit and no place in a fleet of combinations.
+/// Two of AASHTO's vehicles have one unit, so they are not in the fleet of combinations.
 fn aashto(id: &str) -> Vehicle {
     let single = |length: f64, width: f64| {
         let mut vehicle = fleet::vehicle("US-WB40");
@@ -54,7 +55,7 @@ fn aashto_minimum_inside_radii_after_a_turn_of_180_degrees() {
     }
 }
 
-/// Turns of 30° to 180°, least over the turn and its exit, by another RK4 (the domain notes' table, to its two decimals).
+/// Turns of 30° to 180°: the least radius over the turn and its exit, by another RK4 simulation, to two decimals.
 #[test]
 fn inside_radii_at_intermediate_angles() {
     let table: [(&str, f64, [f64; 6]); 5] = [
@@ -77,7 +78,7 @@ fn inside_radii_at_intermediate_angles() {
     }
 }
 
-/// K = ΣL² − Σd² over all hitches but the last.
+/// K = ΣL² − Σd², with d² over all hitches but the last.
 fn k_m2(vehicle: &Vehicle) -> f64 {
     let last = vehicle.units.len() - 1;
     let square = |(i, u): (usize, &netcert::vehicle::Unit)| {
@@ -106,7 +107,7 @@ fn every_vehicle_settles_on_the_closed_form_of_a_steady_circle() {
     println!("worst: {worst:.1e} m");
 }
 
-/// Table 2.4 of the domain notes: outer end of the steer axle on 12.5 m, 90°, rectangular bodies.
+/// Outer end of the steer axle on 12.5 m, 90°, rectangular bodies.
 #[test]
 fn swept_widths_of_the_pbs_turn() {
     let table = [
@@ -150,10 +151,10 @@ fn swept_widths_of_the_pbs_turn() {
     }
 }
 
-/// FHWA MAP-21: 41 ft, 90°, 60 ft lead-in, 105 ft exit; steer axle on the path.
+/// FHWA MAP-21: 41 ft, 90°, 60 ft lead-in, 105 ft exit, with the steer axle on the path.
 #[test]
 fn offtracking_on_the_fhwa_path() {
-    // The exit is 105 ft; a road train needs more of it to show its worst.
+    // The exit is 105 ft. A road train needs a longer one to reach its largest offtracking.
     let turn = |exit_m: f64| Turn::new(41.0 * FOOT_M, FRAC_PI_2, 60.0 * FOOT_M, exit_m);
     let table = [("US-WB40", 2.72), ("US-WB62", 5.71), ("US-WB67", 6.45), ("US-WB67D", 3.92), ("AU-ATRIPLE53", 8.97)];
     for (id, expected) in table {
@@ -164,7 +165,7 @@ fn offtracking_on_the_fhwa_path() {
         println!("{id}: {found:.3} m, table {expected}");
         assert!((found - expected).abs() < 0.02, "{id}: {found}");
     }
-    // TruckSim's control single: drive axles about 50 in, trailer axles 244 in; the dimensions are a plausible guess.
+    // TruckSim's control single: drive axles about 50 in, trailer axles 244 in. The dimensions are a plausible guess.
     let mut single = fleet::vehicle("US-WB62");
     single.units[0].coupling_to_axle_m = 5.69;
     single.units[1].coupling_to_axle_m = 13.54;
@@ -174,7 +175,7 @@ fn offtracking_on_the_fhwa_path() {
 
 #[test]
 fn eu_circle_of_12_5_metres() {
-    // Kingpin on 12.50 − 2.04 m, inner side on 5.30 m: the longest deemed-to-comply wheelbase, 8.135 m.
+    // Kingpin on 12.50 − 2.04 m, inner side on 5.30 m: the longest deemed-to-comply wheelbase is 8.135 m.
     let mut semi = fleet::vehicle("EU-SEMI16.5");
     semi.units.remove(0);
     semi.units[0].coupling_to_axle_m = 8.135;
@@ -183,8 +184,8 @@ fn eu_circle_of_12_5_metres() {
     let inside = turns::inside_radius_m(&semi, &turn, &run);
     println!("deemed to comply: {inside:.4} m");
     assert!((inside - 5.30).abs() < 2e-3, "{inside}");
-    // Inner radius and ring width of a full circle, the outer front corner on 12.50 m; the domain notes' simulation. Three-unit
-    // vehicles are still settling after one circle, so how it is entered shows: 6 cm.
+    // Inner radius and ring width of a full circle with the outer front corner on 12.50 m, by another simulation.
+    // Three-unit vehicles are still settling after one circle, so the entry matters: 6 cm.
     for (id, inner, ring) in [
         ("EU-SEMI16.5", 5.38, 7.12),
         ("EU-CAT18.75", 5.74, 6.76),
@@ -221,7 +222,7 @@ fn the_certifier_gives_the_closed_form_and_none_where_no_circle_is_steady() {
     }
 }
 
-/// The certifier's exact chord step against RK4 on the same turns, vertices 0.1 m apart.
+/// The certifier's exact chord step compared with RK4 on the same turns, with vertices 0.1 m apart.
 #[test]
 fn the_certifiers_motion_is_the_oracles() {
     let turns = [

@@ -1,5 +1,5 @@
-//! The oracle tested by itself: its order of accuracy, its adversary's reach, its roads. What it says of the
-//! certifier is in `soundness.rs`.
+//! Tests of the oracle alone: its order of accuracy, its adversary's reach, its roads. `soundness.rs` compares it with
+//! the certifier.
 
 use crate::oracle;
 
@@ -43,8 +43,8 @@ fn halving_the_step_moves_the_last_axle_by_less_than_two_micrometres() {
     }
 }
 
-/// Design section 4: 0.33 m for the rear of the last trailer of a type 2 road train, ε 0.15 m, σ 0.2° (0.336 m with
-/// the catalogue's dimensions).
+/// 0.33 m for the rear of the last trailer of a type 2 road train with ε 0.15 m and σ 0.2° (0.336 m with the
+/// catalogue's dimensions).
 #[test]
 fn the_adversary_reaches_the_deviation_that_the_design_promises_on_the_straight() {
     let vehicle = fleet::vehicle("AU-ATRIPLE53");

@@ -1,7 +1,8 @@
-//! Truth (design section 7): the swept path of an independent simulator, disturbed by an adversary within the bounds,
-//! never comes closer to an edge than RSC. Over 1,000 random corridors and vehicles, and the hard cases by name.
+//! Soundness: the swept path of an independent simulator, disturbed by an adversary within the bounds, never comes
+//! closer to an edge than RSC. The test uses 1,000 random corridors and vehicles, and named hard cases.
 //!
-//! Numerical allowance: RK4 at 0.1 m is within 2e-6 m, the plan's cubic within 1e-5 m of a 12.5 m circle; together 2e-5 m.
+//! Numerical allowance: RK4 at 0.1 m is within 2e-6 m, and the plan's cubic is within 1e-5 m of a 12.5 m circle;
+//! together 2e-5 m.
 
 use crate::oracle;
 
@@ -18,7 +19,7 @@ const ALLOWANCE_M: f64 = 2e-5;
 struct Case {
     name: String,
     radius_m: f64,
-    /// ε 0.15 m, σ 0.2°.
+    /// Whether ε is 0.15 m and σ is 0.2°.
     as_catalogued: bool,
     vehicle: Vehicle,
     corridor: Corridor,
@@ -70,7 +71,7 @@ impl Verdict {
     }
 }
 
-/// The tightest circle a vehicle can follow for ever: √(ΣL² − Σd²) over all but the last hitch.
+/// The tightest circle that a vehicle can follow for ever: √(ΣL² − Σd²), with d² over all but the last hitch.
 fn tightest_m(vehicle: &Vehicle) -> f64 {
     let last = vehicle.units.len() - 1;
     let squares = |(i, u): (usize, &netcert::vehicle::Unit)| {
@@ -94,8 +95,8 @@ fn random_case(index: u64) -> Case {
         _ => draw.log_between(15.0f64.max(1.25 * tightest_m(&vehicle) + 3.0), 60.0),
     };
     let mut bends = draw::bends(&mut draw, radius, (2.0 * vehicle.length_m).clamp(80.0, 160.0) + radius.min(100.0));
-    // Straight at both ends until the whole vehicle is on it, so that the plan has no slope where it stops: what it
-    // does beyond its ends is not part of a certificate.
+    // Both ends are straight over the length of the vehicle, so the plan has no slope where it stops: a certificate
+    // says nothing beyond the plan's ends.
     bends.insert(0, (25.0, 0.0));
     bends.push((vehicle.length_m + 20.0, 0.0));
     let low = 0.5 * vehicle.width_m() + 0.3;
@@ -111,7 +112,7 @@ fn random_case(index: u64) -> Case {
     }
 }
 
-/// Straight, a turn of `degrees` at `radius`, straight again; then the same to the other side if `bend_back`.
+/// A straight, a turn of `degrees` at `radius`, a straight; with `bend_back` then the same to the other side.
 fn turn(radius: f64, degrees: f64, transition: f64, bend_back: bool) -> Bends {
     let arc = (degrees.to_radians() * radius - transition).max(1.0);
     let mut bends = vec![(15.0, 0.0), (transition, 1.0 / radius), (arc, 1.0 / radius)];
@@ -147,8 +148,8 @@ fn hard_cases() -> Vec<Case> {
                 let seed = (100 * k + 10 * j) as u64;
                 let mut draw = Draw(seed + 17);
                 let bends = turn(radius, degrees, transition, bend_back);
-                // Wide enough to be fit for, off-tracking and all: where a vehicle does not fit even undisturbed, no better bound
-                // than the filter's is sought.
+                // Wide enough for the vehicle with its offtracking. If a vehicle does not fit even undisturbed, no
+                // bound better than the filter's is sought.
                 let low = 0.5 * vehicle.width_m() + 1.0 + tightest_m(&vehicle).powi(2) / (2.0 * radius);
                 let corridor = draw::corridor(&mut draw, &bends, low, low + 3.0);
                 let shape = if bend_back { "S-bend" } else { "turn" };
@@ -166,7 +167,7 @@ fn percentile(sorted: &[f64], p: f64) -> f64 {
     sorted[((sorted.len() - 1) as f64 * p).round() as usize]
 }
 
-/// Prints the distribution of the gap in one class of radii; its median.
+/// Prints the distribution of the gap in one class of radii and returns its median.
 fn report(name: &str, verdicts: &[&Verdict]) -> f64 {
     let mut gaps: Vec<f64> = verdicts.iter().map(|v| v.gap_m()).collect();
     gaps.sort_by(f64::total_cmp);
@@ -226,8 +227,8 @@ fn no_disturbance_within_the_bounds_comes_closer_than_rsc_in_the_hard_cases() {
     }
     report("hard cases", &verdicts.iter().collect::<Vec<_>>());
     assert_sound(&verdicts);
-    // Of the others (half a metre of tolerance with a degree of slip, round the tightest turns) the bounds' recursion does
-    // not close: the answer is `unsafe`, reason articulation, and no claim is left to refute. It was one in five before a heading's bound
-    // included R1.
+    // For the others (half a metre of tolerance with a degree of slip, round the tightest turns) the recursion of the
+    // bounds does not close. The verdict is then `unsafe`, reason articulation, and there is no claim to refute. These
+    // were one in five before the bound of a heading included R1.
     assert!(verdicts.len() * 5 >= cases.len() * 3, "only {} hard cases could be tried", verdicts.len());
 }

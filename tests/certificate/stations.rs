@@ -1,5 +1,5 @@
-//! What stations a metre apart leave out, in the tightest bends: hinges fold farthest between two stations, trailers follow curves and not
-//! chords, and on the inside of a bend feet move several times as far as their points.
+//! Effects between stations a metre apart, in the tightest bends. Hinges fold farthest between two stations. Trailers
+//! follow curves and not chords. On the inside of a bend feet move several times as far as their points.
 
 use crate::ends::{attacked, refuted, unit, vehicle};
 use crate::oracle;
@@ -17,7 +17,7 @@ fn cases() -> u64 {
     if std::env::var_os("NETCERT_THOROUGH").is_some() { 2_000 } else { 200 }
 }
 
-/// A bend, perhaps one to the other side, and what is straight; the curvature rises within one to three stations.
+/// A bend, perhaps one to the other side, and straights. Curvature rises within one to three stations.
 fn tight(draw: &mut Draw, radius_m: f64, half_width: impl Fn(f64) -> [f64; 2]) -> Corridor {
     let rise = 1.0 + draw.below(3) as f64;
     let side = draw.sign();
@@ -33,7 +33,8 @@ fn tight(draw: &mut Draw, radius_m: f64, half_width: impl Fn(f64) -> [f64; 2]) -
     road::corridor(1.0, [0.0; 2], draw.between(-3.0, 3.0), &curvature, &left, &right)
 }
 
-/// Refuted claims, and how many there were. `attack` says what came below a claim; `None` outside: there is no claim.
+/// The number of claims, and the refuted ones. `attack` returns `None` without a claim, otherwise a description of any
+/// refutation.
 fn refute(attack: impl Fn(&mut Draw) -> Option<Option<String>> + Sync) -> (usize, Vec<String>) {
     let one = |index: u64| Some((index, attack(&mut Draw(0x57a7_1000 + index * 7919))?));
     let tried: Vec<(u64, Option<String>)> = (0..cases()).into_par_iter().filter_map(one).collect();
@@ -41,7 +42,7 @@ fn refute(attack: impl Fn(&mut Draw) -> Option<Option<String>> + Sync) -> (usize
     (tried.len(), broken.collect())
 }
 
-/// The corridor's centreline itself, four places a metre: through stations a metre apart a cubic is another curve.
+/// The corridor's own centreline, four vertices per metre: a cubic through stations a metre apart is another curve.
 fn centreline(corridor: &Corridor, vehicle: &Vehicle) -> Path {
     let road = road::Road::new(corridor);
     let places: Vec<[f64; 2]> = (0..=4 * (corridor.len() - 1)).map(|k| road.centre(0.25 * k as f64).0).collect();
@@ -52,7 +53,7 @@ fn centreline(corridor: &Corridor, vehicle: &Vehicle) -> Path {
 #[test]
 fn what_is_nominal_between_stations_is_counted() {
     let (tried, broken) = refute(|draw| {
-        // Hardly any disturbance: what is left is the nominal motion itself.
+        // There is hardly any disturbance, so the test examines the nominal motion itself.
         let hitch = draw.between(-0.6, 8.0);
         let units = [
             unit(draw.between(3.5, 6.4), hitch, 1.0, hitch.max(0.5), 80.0, 0.0),
@@ -75,7 +76,8 @@ fn the_inside_of_a_tight_bend_is_as_wide_as_is_said() {
     let (tried, broken) = refute(|draw| {
         let vehicle = vehicle("rigid", draw.between(0.05, 0.3), vec![unit(4.0, 0.0, 1.0, 1.5, 70.0, 0.3)]);
         let radius_m = draw.log_between(6.0, 12.0);
-        // The wider the tighter it bends: the inside reaches far towards the centre, and its edge runs askew.
+        // The tighter the bend, the wider the corridor: the inside reaches far towards the centre, and its edge runs
+        // askew.
         let (part, other) = (draw.between(0.5, 0.85), draw.between(2.0, 3.0));
         let inside = move |towards: f64| other.max(part * radius_m * (towards * radius_m).clamp(0.0, 1.0));
         let corridor = tight(draw, radius_m, |k| [inside(k), inside(-k)]);

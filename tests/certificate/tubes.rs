@@ -1,5 +1,5 @@
-//! Tubes by themselves (docs/proof.md, sections 3 to 6): at first order the exact reach of the disturbances, and at full size
-//! never left by an adversary matched to the time-varying kernel of the attacked axle.
+//! Tests of tubes alone (docs/proof.md, sections 3 to 6). To first order they are the exact reach of the disturbances.
+//! At full size an adversary matched to the time-varying kernel of the attacked axle never leaves them.
 
 use crate::oracle;
 
@@ -15,7 +15,7 @@ use oracle::simulator::{Disturbance, Drive, Run};
 use rayon::prelude::*;
 
 const STEPS: usize = 10;
-/// In the adversary's hand the steer axle changes sides within this many metres.
+/// Metres within which the adversary's steer axle changes sides.
 const SWING_M: f64 = 0.3;
 
 struct Case {
@@ -24,7 +24,7 @@ struct Case {
     corridor: Corridor,
 }
 
-/// What one axle's tube was against at one station.
+/// The result of attacks on one axle's tube at one station.
 struct Met {
     name: String,
     unit: usize,
@@ -104,13 +104,13 @@ fn path(case: &Case) -> Path {
 impl Bench<'_> {
     fn target(&self, station: usize, unit: usize, side: f64) -> Target {
         let step = self.drive.path.span_of_vertex(station) * STEPS;
-        // Across the axle's own nominal path: along its heading's normal.
+        // Across the axle's own nominal path, along the normal of its heading.
         let normal = left_of(direction(self.nominal.at(step).1[unit]));
         Target { step, unit, ahead_m: 0.0, aside_m: 0.0, push: [side * normal[0], side * normal[1]] }
     }
 
-    /// The most that the linearised chain moves if the steer axle may jump, with the plan's chord added to ε as the tube
-    /// has it: κ ℓ²/8.
+    /// Largest movement of the linearised chain if the steer axle may jump. The plan's chord, κ ℓ²/8, is added to ε as
+    /// in the tube.
     fn reach_m(&self, response: &Kernel, corridor: &Corridor) -> f64 {
         let chord = |step: usize| {
             let place = step as f64 / STEPS as f64 - self.drive.path.span_of_vertex(0) as f64;
@@ -132,8 +132,8 @@ impl Bench<'_> {
         self.drive.body_point(guide, headings, unit, 0.0, 0.0)
     }
 
-    /// The greatest lateral distance of an axle from its own nominal path, over the steps around an attack, against the
-    /// tube there.
+    /// The greatest lateral distance of an axle from its nominal path over the steps around an attack, and the tube
+    /// there.
     fn attack(&self, station: usize, unit: usize, side: f64) -> (f64, f64) {
         let target = self.target(station, unit, side);
         let response = kernel(&self.drive, &self.nominal, &self.calm, &target, self.memory());
@@ -150,7 +150,7 @@ impl Bench<'_> {
         worst
     }
 
-    /// Lateral place of a point across the nominal path of an axle, and the tube's half-width at its foot.
+    /// Lateral place of a point across an axle's nominal path, and the tube's half-width at its foot.
     fn against(&self, point: V2, step: usize, unit: usize) -> Option<(f64, f64)> {
         let off = |k: usize| {
             let at = self.axle(&self.nominal, k, unit);

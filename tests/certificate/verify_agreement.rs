@@ -1,5 +1,5 @@
-//! The checker against the prover and the oracle: no false alarms on random corridors, and no confirmation of what an adversary
-//! has shown to be false.
+//! The checker compared with prover and oracle: no false alarms on random corridors, and no confirmation of what an
+//! adversary has refuted.
 
 use crate::oracle;
 
@@ -29,7 +29,7 @@ fn random(index: u64, least_radius: f64) -> (Vehicle, Corridor) {
     (vehicle, corridor)
 }
 
-/// Claims of spans of 50 m.
+/// Claims about spans of 50 m.
 fn claims(corridor: &Corridor, vehicle: &Vehicle) -> (Planned, Vec<SpanClaim>) {
     let n = corridor.len();
     let spans: Vec<_> = (0..n / 50).map(|k| k * 50..((k + 1) * 50 + 1).min(n)).collect();
@@ -75,12 +75,13 @@ fn what_the_prover_claims_is_confirmed_and_hardly_ever_a_decimetre_more() {
     let alarms: Vec<&String> = outcomes.iter().flat_map(|o| &o.2).collect();
     println!("{made} claims, {} false alarms; 10 cm more: {refuted} refuted", alarms.len());
     assert!(made > 100 && alarms.is_empty(), "{alarms:#?}");
-    // Where the prover's second order is decimetres wide, the checker's branch and bound may prove more than was claimed.
+    // Where the prover's second order is decimetres wide, the checker's branch and bound may prove more than was
+    // claimed.
     assert!(refuted * 20 >= made * 19, "only {refuted} of {made}");
 }
 
-/// Half-widths with kinks at every other station, as drawn by hand or cut from areas: what is read between stations is never more
-/// than there is.
+/// Half-widths with kinks at every other station, as drawn by hand or cut from areas. What is read between stations is
+/// never more than there is.
 #[test]
 fn kinked_widths_are_read_on_the_careful_side() {
     let tried: usize = (0..16_u64)
@@ -108,7 +109,7 @@ fn kinked_widths_are_read_on_the_careful_side() {
     assert!(tried > 60, "only {tried} claims");
 }
 
-/// The checker's own soundness: what an adversary has shown to be false is never confirmed.
+/// Soundness of the checker: what an adversary has refuted is never confirmed.
 #[test]
 fn no_claim_above_what_an_adversary_reached_is_confirmed() {
     let tried: usize = (0..24_u64)
@@ -122,7 +123,7 @@ fn no_claim_above_what_an_adversary_reached_is_confirmed() {
             let row = planned(&corridor, &vehicle, std::slice::from_ref(&whole));
             let chain = Chain::new(&vehicle);
             let subject = Subject::new(&chain, &corridor, shift(&row.plan.coefficients), false).unwrap();
-            // The adversary's own arithmetic is right to 0.02 mm (`soundness.rs`).
+            // The adversary's own arithmetic is accurate to 0.02 mm (`soundness.rs`).
             let refuted = outcome.least.clearance_m + 2e-5 + TOLERANCE_M;
             let above = SpanClaim {
                 stations: whole,

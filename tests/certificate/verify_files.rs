@@ -1,5 +1,5 @@
-//! Certificate files against the checker, on random vehicles and corridors: what is honestly written is confirmed in every member, and
-//! what is changed and sealed anew is refuted.
+//! Certificate files and the checker, on random vehicles and corridors. Every member of an honest file is confirmed. A
+//! changed and newly sealed file is refuted.
 
 use crate::oracle::files::{Case, case};
 
@@ -10,7 +10,7 @@ use netcert::stop::Stop;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-/// A quick run, and one with `NETCERT_THOROUGH` set.
+/// Number of cases; more with `NETCERT_THOROUGH` set.
 fn cases() -> u64 {
     if std::env::var_os("NETCERT_THOROUGH").is_some() { 400 } else { 40 }
 }
@@ -40,7 +40,7 @@ fn honest_files_are_confirmed() {
     assert!(refused.is_empty(), "{} of {} are refused: {refused:#?}", refused.len(), cases());
 }
 
-/// A change, and what it is called. It says whether there was anything to change.
+/// Name of a change, and the change itself. It returns whether there was anything to change.
 type Mutation = (&'static str, fn(&mut Value) -> bool);
 
 fn add(value: &mut Value, by: f64) -> bool {
@@ -57,7 +57,7 @@ fn scale(value: &mut Value, by: f64) -> bool {
 
 const COLUMNS: [&str; 4] = ["left", "right", "left_centred", "right_centred"];
 
-/// Some entries of a column of leeway, 5 m up.
+/// Raises some entries of a column of leeway by 5 m.
 fn leeway(v: &mut Value, column: usize, which: impl Fn(usize, usize) -> bool) -> bool {
     let entries = v["leeway"][COLUMNS[column]].as_array_mut().unwrap();
     let count = entries.len();
@@ -65,7 +65,7 @@ fn leeway(v: &mut Value, column: usize, which: impl Fn(usize, usize) -> bool) ->
     chosen.map(|(_, entry)| add(entry, 5.0)).fold(false, |any, changed| any | changed)
 }
 
-/// All tubes' entries of a member.
+/// Changes all tubes' entries of a member.
 fn tubes(v: &mut Value, member: &str, change: impl Fn(&mut Value) -> bool) -> bool {
     let Some(tubes) = v["tubes"].as_array_mut() else { return false };
     let entries = tubes.iter_mut().flat_map(|tube| tube[member].as_array_mut().unwrap());
@@ -97,7 +97,7 @@ fn other_side(v: &mut Value) -> bool {
     add(&mut v["limiting"]["nominal_m"], 0.05)
 }
 
-/// What matters of each member.
+/// Relevant changes of each member.
 const MUTATIONS: &[Mutation] = &[
     ("every second entry on the left", |v| leeway(v, 0, |k, _| k % 2 == 1)),
     ("every second entry on the right", |v| leeway(v, 1, |k, _| k % 2 == 0)),

@@ -1,4 +1,5 @@
-//! Mapped surfaces of junctions: where they count, what corners they give, what is left out, and that they survive the database.
+//! Mapped surfaces of junctions: where they count, which corners they give, what is left out, and their round trip
+//! through the database.
 
 use std::fs;
 
@@ -14,7 +15,7 @@ use crate::support::ascii_map::{AsciiMap, built, id_of, no_sections, offset, som
 use crate::support::extracts::extract;
 use crate::support::junctions::Drawn;
 
-/// Two roads of 7.5 m; a lorry from E to C turns round the corner in the south-east.
+/// Two roads of 7.5 m. A lorry from E to C turns round the corner in the south-east.
 fn cross() -> AsciiMap {
     AsciiMap::drawn(
         60.0,
@@ -49,7 +50,7 @@ fn rsc_m(map: &AsciiMap, kerb_m: f64) -> f64 {
 fn a_mapped_surface_stands_for_the_kerb() {
     let (sharp, wide) = (rsc_m(&cross(), 0.0), rsc_m(&cross().area('B', &square(25.0), SURFACE), 0.0));
     assert!(sharp < 0.0 && wide > 0.5, "{sharp} {wide}");
-    // As mapped, no rounder than that, whatever is assumed elsewhere.
+    // As mapped, and no rounder, whatever is assumed elsewhere.
     let tight = cross().area('B', &square(4.0), SURFACE);
     assert!((rsc_m(&tight, 15.0) - sharp).abs() < 0.2 && rsc_m(&cross(), 15.0) > sharp + 0.5);
     let drawn = Drawn::new(&tight, false, 15.0);
@@ -61,7 +62,7 @@ fn a_mapped_surface_stands_for_the_kerb() {
 
 #[test]
 fn nothing_counts_that_neither_a_road_nor_the_surface_covers() {
-    // Cut off from 9 m east on the south, so that the corner is lopsided.
+    // Cut off from 9 m east on in the south, so that the corner is lopsided.
     let ring = [[-20.0, -20.0], [9.0, -20.0], [9.0, -6.0], [20.0, -6.0], [20.0, 20.0], [-20.0, 20.0]];
     let bare = corner(&Drawn::new(&cross(), false, 0.0));
     let mapped = corner(&Drawn::new(&cross().area('B', &ring, SURFACE), false, 0.0));
@@ -71,7 +72,7 @@ fn nothing_counts_that_neither_a_road_nor_the_surface_covers() {
     let there = |[east, north]: [f64; 2]| mapped.area.contains(&geo::Point::new(node[0] + east, node[1] + north));
     assert!(there([8.5, -5.5]) && there([6.0, -10.0]) && there([11.0, -5.5]));
     assert!(!there([9.5, -6.5]) && !there([12.0, -12.0]));
-    // And no corridor leaves it.
+    // No corridor leaves the surface either.
     let mut looked_at = 0;
     for path in &mapped.paths {
         let c = &path.corridor;
@@ -175,11 +176,11 @@ fn closed_ways_are_read_as_areas_and_still_counted_as_no_roads() {
     let account = &extract.account;
     assert_eq!((account.ways_read, account.ways_kept, account.road_areas), (6, 1, 2));
     assert_eq!(account.ways_left_out.values().sum::<u64>(), 5);
-    // In a file that is out of order, an id that comes twice is not relied on.
+    // In an unsorted file an id that occurs twice is not used.
     let ways = [way(6, &[3, 4, 6, 3], surface), way(2, &[3, 4, 5, 3], surface), way(6, &[3, 4], ("barrier", "fence"))];
     let areas: Vec<i64> = read(&nodes, &ways).areas.iter().map(|area| area.id).collect();
     assert_eq!(areas, [2]);
-    // A road that follows under the id of an area.
+    // A road that follows with the id of an area.
     let ways = [way(6, &[3, 4, 6, 3], surface), way(2, &[3, 4], surface), way(6, &[3, 4], ("highway", "primary"))];
     let extract = read(&nodes, &ways);
     assert!(extract.areas.is_empty() && extract.ways.len() == 1);
@@ -189,7 +190,7 @@ fn closed_ways_are_read_as_areas_and_still_counted_as_no_roads() {
 fn an_extract_has_the_areas_that_its_map_has() {
     let Some(path) = extract("heidelberg_de.osm.pbf") else { return };
     let extract = read_extract(&path, &|_| ()).unwrap();
-    // By `osmium tags-filter w/area:highway`: eight closed ways, four of them of footways and one for buses.
+    // `osmium tags-filter w/area:highway` finds eight closed ways: four of footways and one for buses.
     let ids: Vec<i64> = extract.areas.iter().map(|area| area.id).collect();
     assert_eq!(ids, [25_497_452, 27_638_566, 254_006_836]);
     assert_eq!(extract.account.road_areas, 3);

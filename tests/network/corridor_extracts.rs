@@ -1,5 +1,5 @@
-//! Every road of a real extract, one stroke a way: finite corridors, all within tolerance, and few that cannot be driven at
-//! all. Those few are mountain hairpins whose inner lane has less than 2 m of radius.
+//! Every road of a real extract, with one stroke per way. Corridors are finite and within tolerance, and few roads
+//! cannot be driven at all. Those few are mountain hairpins whose inner lane has a radius of less than 2 m.
 
 use crate::support::extracts::extract;
 
@@ -15,7 +15,7 @@ use osmpbfreader::{OsmObj, OsmPbfReader};
 const CLASSES: [&str; 8] =
     ["motorway", "trunk", "primary", "secondary", "tertiary", "unclassified", "residential", "motorway_link"];
 
-/// One road, edge and stroke a way, lane of 3.5 m to the right of the line.
+/// One road, edge and stroke per way, with a lane of 3.5 m to the right of the line.
 fn network(file: &str) -> Option<Network> {
     let opened = std::fs::File::open(extract(file)?).unwrap();
     let (mut places, mut ways) = (HashMap::new(), Vec::new());

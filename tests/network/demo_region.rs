@@ -1,4 +1,4 @@
-//! The shipped demo region is what its source draws, is one network, and holds what it is there to show.
+//! The shipped demo region matches its source, is one network, and contains the features that it must show.
 
 #[path = "../../examples/draw_region/alignment.rs"]
 mod alignment;
@@ -31,7 +31,7 @@ fn tags(tags: &osmpbfreader::Tags) -> Vec<(String, String)> {
     pairs
 }
 
-/// Objects are compared, not bytes: another release of the compressor may pack them otherwise.
+/// Objects are compared, not bytes: another release of the compressor may pack them differently.
 #[test]
 fn the_shipped_file_is_what_the_source_draws() {
     let (mut nodes, mut ways) = (Vec::new(), Vec::new());
@@ -65,7 +65,7 @@ fn the_region_is_one_network_of_distinct_places() {
         known = apart;
         known.push(touching.into_iter().flatten().chain(way.refs.iter().copied()).collect());
     }
-    // Carriageways, ramps and streets hang together; each node is on a way.
+    // Carriageways, ramps and streets are connected, and each node is on a way.
     assert_eq!(known.len(), 1, "apart: {:?}", known.iter().map(|s| s.first()).collect::<Vec<_>>());
     assert_eq!(known[0].len(), map.nodes.len());
     let places: BTreeSet<LonLat> = map.nodes.iter().map(|n| n.place).collect();
@@ -122,7 +122,7 @@ fn the_region_holds_what_it_is_there_to_show() {
     assert!((150..=400).contains(&map.ways.len()) && (60e3..200e3).contains(&map.length_m));
 }
 
-/// Traffic keeps left: each ring runs clockwise.
+/// Traffic keeps left, so each ring runs clockwise.
 #[test]
 fn roundabouts_run_clockwise() {
     let map = drawn();

@@ -1,6 +1,6 @@
-//! What must hold of every network: random tangles of roads, with missing nodes, doubled places and reversals.
+//! Properties of every network: random tangles of roads with missing nodes, doubled places and reversals.
 
-// The drawing half of it is for `network_maps.rs`.
+// The drawing functions are for `maps.rs`.
 use crate::support::ascii_map;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,7 +18,7 @@ struct Tangle {
     ways: Vec<(Vec<u8>, &'static str)>,
 }
 
-/// As many nodes, so that ways share many.
+/// Number of nodes: few enough that ways share many.
 const NODES: u8 = 14;
 
 fn tangles() -> impl Strategy<Value = Tangle> {
@@ -39,7 +39,7 @@ fn tangles() -> impl Strategy<Value = Tangle> {
     (prop::collection::vec(place, usize::from(NODES)), ways).prop_map(|(nodes, ways)| Tangle { nodes, ways })
 }
 
-/// The extract of the tangle, its ids counted from `base`.
+/// The extract of the tangle, with ids counted from `base`.
 fn extract(tangle: &Tangle, base: i64) -> Extract {
     const GRID_M: f64 = 37.0;
     let origin = LonLat { lon_e7: 10_000_000, lat_e7: 500_000_000 };
@@ -58,7 +58,7 @@ fn extract(tangle: &Tangle, base: i64) -> Extract {
     extract
 }
 
-/// All ways of `b` behind those of `a`.
+/// All ways of `a`, then those of `b`.
 fn together(mut a: Extract, b: Extract) -> Extract {
     let refs = a.refs.len() as u32;
     a.refs.extend(b.refs);
@@ -68,7 +68,7 @@ fn together(mut a: Extract, b: Extract) -> Extract {
     a
 }
 
-/// Every way drawn the other way round, and the same roads.
+/// Every way drawn in reverse, for the same roads.
 fn reversed(mut extract: Extract) -> Extract {
     for way in &mut extract.ways {
         extract.refs[way.refs.start as usize..way.refs.end as usize].reverse();
@@ -81,7 +81,7 @@ fn reversed(mut extract: Extract) -> Extract {
     extract
 }
 
-/// Short enough that strokes are split and approaches end.
+/// Lengths so short that strokes are split and approaches end.
 fn options() -> StrokeOptions {
     StrokeOptions { max_length_m: 600.0, ..StrokeOptions::default() }
 }
@@ -162,7 +162,7 @@ proptest! {
 
     #[test]
     fn ways_drawn_the_other_way_round_give_the_same_strokes(tangle in tangles()) {
-        // Where a ring too long for one stroke is opened follows the edges' order: here nothing is too long.
+        // A ring too long for one stroke opens at a place that depends on the edges' order. Here nothing is too long.
         let shapes = |extract| shape_of_strokes(&netcert::network::build(extract, &somewhere, &no_sections).0);
         let (there, back) = (shapes(extract(&tangle, 100)), shapes(reversed(extract(&tangle, 100))));
         prop_assert_eq!(there, back);
@@ -188,7 +188,7 @@ proptest! {
 
 type Line = (i64, Vec<LonLat>);
 
-/// Each open stroke as its approach and its edges' lines, each closed one turned to its least beginning.
+/// Each open stroke as its approach and its edges' lines. Each closed stroke is rotated to its least start.
 fn shape_of_strokes(network: &Network) -> BTreeMap<(bool, Vec<Line>, Vec<Line>), u32> {
     let line = |e: &Edge| (network.road(e).way_id, network.positions(e).collect::<Vec<_>>());
     let lines = |range| stroke_edges(network, range).iter().map(line).collect::<Vec<_>>();
@@ -204,10 +204,10 @@ fn shape_of_strokes(network: &Network) -> BTreeMap<(bool, Vec<Line>, Vec<Line>),
     strokes
 }
 
-/// What tells an edge from others: way, ends, direction, line.
+/// Identity of an edge: way, ends, direction, line.
 type Name = (i64, i64, i64, Direction, Vec<LonLat>);
 
-/// Ids by name; several where a way runs over itself.
+/// Ids by name. There are several where a way runs over itself.
 fn ids(network: &Network) -> BTreeMap<Name, Vec<i64>> {
     let mut ids = BTreeMap::<_, Vec<i64>>::new();
     for edge in &network.edges {

@@ -1,4 +1,4 @@
-//! From a file to a network, over it, and round its corners: the reader's rules, drawn maps, turns, roundabouts, routes.
+//! From a file to a network and its use: the reader's rules, drawn maps, turns, roundabouts, routes.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
 
 mod areas;

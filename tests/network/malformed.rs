@@ -1,7 +1,7 @@
-//! Legal rarities and broken files: `malformed/INDEX.tsv` of the shared extracts, every file with what comes of it.
+//! Legal rarities and broken files: every file of `malformed/INDEX.tsv` in the shared extracts, with its outcome.
 //!
-//! The index says for each file whether it may be read (OK), read with losses that are counted (SKIP) or must be
-//! refused (ERR); the table below says exactly how.
+//! The index says for each file whether it may be read (OK), read with counted losses (SKIP) or must be refused (ERR).
+//! The table below gives the exact outcome.
 
 use crate::support::accounts::assert_adds_up;
 use crate::support::extracts::folder_with;
@@ -19,11 +19,11 @@ use netcert::osm::{
 
 const INDEX: &str = "malformed/INDEX.tsv";
 
-/// What a way through four nodes gives.
+/// The outcome of a way through four nodes.
 const PLAIN: &str = "10: 1 2 3 4 | 4 nodes, 4 placed | 9.5,47.1 9.5,47.101 9.501,47.102 9.503,47.103";
 
-/// File and outcome: kept ways with their nodes, ways left out, nodes, their places in the order of their ids; or where
-/// and why the file is refused.
+/// File and outcome. An outcome lists kept ways with their nodes, ways left out, nodes, and their positions in the
+/// order of ids; or the place and reason of a refusal.
 #[rustfmt::skip]
 const EXPECTED: [(&str, &str); 94] = [
     ("ok_plain", PLAIN),
@@ -181,7 +181,7 @@ fn read(path: &Path) -> Result<Extract, ReadError> {
     read_extract(path, &|_| ())
 }
 
-/// What an account must add up to, what an error must name.
+/// Tests that an account adds up, and that an error names its place.
 fn check_account_or_message(path: &Path, outcome: Result<Extract, ReadError>) {
     match outcome {
         Ok(Extract { account, .. }) => assert_adds_up(&account),
@@ -194,7 +194,7 @@ fn check_account_or_message(path: &Path, outcome: Result<Extract, ReadError>) {
     }
 }
 
-/// All that an extract holds, but for the account.
+/// All data of an extract except the account.
 fn contents(extract: &Extract) -> String {
     let Extract { ways, refs, nodes, points, strings, .. } = extract;
     let texts: Vec<_> = strings.texts().collect();

@@ -1,7 +1,7 @@
-//! Networks drawn in ASCII: the map, its tags, and the edges and strokes that must come of it.
+//! Networks drawn in ASCII: the map, its tags, and the expected edges and strokes.
 //!
-//! Edges are written by their end nodes, strokes by their nodes in driving order, approach before `>` (see
-//! `support/ascii_map.rs`). Ways that are only part of the scenery are two-way residential roads.
+//! Edges are written by their end nodes, strokes by their nodes in driving order, with the approach before `>` (see
+//! `support/ascii_map.rs`). Ways that are only scenery are two-way residential roads.
 
 use crate::support::ascii_map;
 
@@ -116,8 +116,8 @@ fn a_one_way_road_against_its_nodes_has_only_that_edge() {
     check(&map, "BA CB", "CBA");
 }
 
-/// An arm has no approach over the ring, though it leaves it at less than the angle of one: a vehicle comes onto it by a turn or a
-/// passage, which are certified with the arm's first metres.
+/// An arm has no approach over the ring, although it leaves the ring at less than the angle limit of an approach. A
+/// vehicle reaches the arm by a turn or a passage, and these are certified with the arm's first metres.
 #[test]
 fn a_roundabout_is_a_ring_and_its_arms_begin_at_it() {
     let map = AsciiMap::drawn(
@@ -192,7 +192,7 @@ fn an_approach_is_long_enough_and_no_longer() {
     .way("aB", ROAD)
     .way("bC", ROAD)
     .way("DF", "highway=motorway_link oneway=yes");
-    // CD is 160 m, BC 180 m: together more than 250 m, so that AB is not needed.
+    // CD is 160 m and BC is 180 m: together more than 250 m, so AB is not needed.
     let (network, account) = check(&map, "AB BC CD DE aB Ba bC Cb DF", "ABCDE aB Ba bC Cb BC>DF");
     assert_eq!(account.strokes_with_approach, 1);
     assert_eq!(network.stroke_edges.len(), network.edges.len() + 2);
@@ -236,7 +236,7 @@ fn a_way_without_a_piece_is_left_out_with_its_reason() {
 
 #[test]
 fn nodes_at_one_place_along_a_way_are_one_node() {
-    // B and X are one crossing; the side road ends at the one, the main road goes on from the other.
+    // B and X are one crossing. The side road ends at B, and the main road continues from X.
     let map = AsciiMap::drawn(
         20.0,
         "

@@ -1,4 +1,4 @@
-//! The reader's rules on small files made here: order, duplicates, a header that is wrong, what is no file at all.
+//! The reader's rules on small files made here: order, duplicates, a wrong header, and paths that are not files.
 
 use std::{fs, path::PathBuf, sync::Mutex};
 

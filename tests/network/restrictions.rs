@@ -1,7 +1,7 @@
-//! Turn restrictions drawn in ASCII: which movements they forbid, and which sequences over ways.
+//! Turn restrictions drawn in ASCII: the movements that they forbid, and the sequences over ways.
 //!
-//! A movement is written by its nodes, `ABC` from A over B to C; one that a restriction over a node forbids gets `!`, straight
-//! on `-`, back `*`.
+//! A movement is written by its nodes: `ABC` from A over B to C. `!` marks a movement that a restriction over a node
+//! forbids, `-` a straight continuation, `*` a U-turn.
 
 use crate::support::ascii_map;
 use crate::support::extracts::extract;
@@ -20,7 +20,7 @@ fn nodes(network: &Network, edges: &[u32]) -> String {
     std::iter::once(first).chain(edges.iter().map(|e| node_of(edge(e).to_node))).collect()
 }
 
-/// All movements but U-turns that nothing forbids, sorted.
+/// All movements except U-turns that nothing forbids, sorted.
 fn movements(network: &Network) -> String {
     let mut all = Vec::new();
     for m in network.movements().all() {
@@ -47,7 +47,7 @@ fn at(node: char) -> Via {
     Via::Nodes(vec![id_of(node)])
 }
 
-/// A crossing: way 1 from A over B to C is two ways (1 and 2), way 3 from D to B, way 4 from B to E.
+/// A crossing. The road from A over B to C is two ways (1 and 2), way 3 goes from D to B, and way 4 from B to E.
 fn crossing() -> AsciiMap {
     AsciiMap::drawn(
         20.0,
@@ -122,7 +122,7 @@ fn straight_on_over_a_way_that_runs_on_closes_the_side_road() {
     assert_eq!(movements(&network), "ABC- ABE! CBA- CBE! EBA EBC");
 }
 
-/// Two carriageways, joined by the way 3 from C to D.
+/// Two carriageways, joined by way 3 from C to D.
 fn carriageways() -> AsciiMap {
     AsciiMap::drawn(
         20.0,
@@ -199,7 +199,7 @@ fn what_is_not_on_the_network_is_counted() {
     let (_, account) = built(&map);
     let of_account = [account.restrictions_read, account.restrictions_kept, account.restrictions_off_network];
     assert_eq!(of_account, [6, 1, 5]);
-    // What one may only go to is no road here: then nothing is left.
+    // The only permitted destination is no road here, so nothing is left.
     let (network_of_only, _) = built(&crossing().restriction(&[1], at('B'), &[78], "restriction=only_left_turn"));
     assert!(movements(&network_of_only).starts_with("ABA*! ABC-! ABD! ABE! CBA- "));
 }

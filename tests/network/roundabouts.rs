@@ -1,6 +1,6 @@
-//! Roundabouts as one movement: which passages there are, who gets over, and that no claim of one is refuted.
+//! Roundabouts as one movement: the passages, the vehicles that can use them, and that no claim is refuted.
 //!
-//! Widths are tagged, kerb radii are the test's own.
+//! Widths are tagged, and kerb radii are the test's own.
 
 use crate::oracle;
 use crate::support::ascii_map::id_of;
@@ -29,7 +29,7 @@ fn every_arm_leads_to_every_other_one() {
     let drawn = Drawn::ring(20.0, 8.0, 8.0, 12.0);
     let passages = drawn.passages();
     assert_eq!(passages.len(), 12);
-    // Entering and leaving by themselves stay.
+    // The turns onto and off the ring still exist.
     assert_eq!(drawn.facts().len(), 12 + 8);
     let ids: std::collections::BTreeSet<i64> = drawn.facts().iter().map(|t| t.id).collect();
     assert_eq!(ids.len(), 20);
@@ -56,7 +56,8 @@ fn who_gets_straight_over_depends_on_the_ring() {
     assert!(semi(40.0, 8.0, 8.0, Policy::Carriageway), "a large ring with room");
     assert!(semi(40.0, 9.0, 14.0, Policy::Direction), "the same in the lanes of its direction");
     assert!(semi(20.0, 8.0, 8.0, Policy::Carriageway));
-    // On a steady circle with its outer front corner at 22.5 m it sweeps 4.7 m: 5 m are just enough, as the adversary finds below.
+    // On a steady circle with its outer front corner at 22.5 m the vehicle sweeps 4.7 m. 5 m are just enough, as the
+    // adversary finds below.
     assert!(!semi(20.0, 4.5, 7.0, Policy::Carriageway), "a small and narrow ring");
     let small = Drawn::ring(20.0, 4.5, 7.0, 12.0);
     assert!(small.safe("WE", Policy::Carriageway, "AGV-TUG4"), "but a tug does");
@@ -99,7 +100,7 @@ fn a_ring_may_be_mapped_in_pieces_and_begin_anywhere() {
         assert!(same.len() > 30, "{ends} {} {} {}", a.len(), b.len(), same.len());
         for (a, b) in same {
             let length_m = |c: &netcert::corridor::Corridor| c.len() as f64 * c.spacing_m;
-            // Stations of the ring lie elsewhere, so that paths may begin and end a metre later.
+            // The ring's stations lie elsewhere, so paths may begin and end a metre later.
             assert!((length_m(&a.corridor) - length_m(&b.corridor)).abs() < 3.0, "{ends} {}", a.number);
             assert!(a.min_radius_m > 0.5 * b.min_radius_m && b.min_radius_m > 0.5 * a.min_radius_m);
         }
@@ -112,7 +113,7 @@ fn one_way_arms_only_enter_or_leave() {
     let tags = "highway=secondary width=8";
     let map = map(20.0, tags, tags, false).without_way(2).way_of_id(2, "Wa", &format!("{tags} oneway=yes"));
     let drawn = Drawn::new(&map, false, 12.0);
-    // Four ways in, three out, not out where one came in.
+    // Four ways in and three out; no exit where the vehicle entered.
     assert_eq!(drawn.passages().len(), 3 + 3 * 2);
     let ends = |t: &TurnFacts| drawn.network.edges[t.movement.to as usize].to_node != id_of('W');
     assert!(drawn.passages().iter().all(ends));
@@ -175,7 +176,7 @@ fn a_path_leaves_and_joins_the_arms_own_centrelines_and_keeps_to_the_ring_betwee
                 assert!((y * cos - x * sin).abs() < 0.01);
                 assert!((c.heading[k] - s.heading[joint.station]).sin().abs() < 0.02);
             }
-            // No jump, no kink: within half a metre headings change by what the radius says.
+            // No jump and no kink: within half a metre headings change as the radius implies.
             let step = (0.5 / c.spacing_m).round().max(1.0);
             let changes =
                 c.heading[path.turn.clone()].windows(step as usize + 1).map(|w| (w[w.len() - 1] - w[0]).abs());
@@ -245,7 +246,7 @@ fn a_restriction_within_the_ring_forbids_the_passage() {
     assert_eq!(verdict, Verdict::Forbidden(ForbiddenReason::Restriction));
 }
 
-/// The simulator with its adversary, on the corridors of passages: right, left, right again, of changing width.
+/// The simulator with its adversary on the corridors of passages: right, left, right again, with changing width.
 #[test]
 fn no_claim_of_a_passage_is_refuted() {
     let (mut fought, mut draw) = (0, Draw(0x9u64));
@@ -280,13 +281,14 @@ fn kerbs_round_the_corner_between_arm_and_ring_and_no_more() {
         .collect();
     let metric = made.frame.forward(&at_ring).unwrap();
     let mean = |i: usize| metric.iter().map(|p| p[i]).sum::<f64>() / metric.len() as f64;
-    // Circles that touch the arm's right edge and the ring's outer edge from outside: where one drives in, and out.
+    // Circles that touch the arm's right edge and the ring's outer edge from outside, at the entry and at the exit.
     let across_m = 0.5 * arm_m + kerb_m;
     let along_m = (radius_m + 0.5 * ring_m + kerb_m).powi(2) - across_m.powi(2);
     for x in [-along_m.sqrt(), along_m.sqrt()] {
         let kerb = geo::Point::new(mean(0) + x, mean(1) - across_m);
         let gap_m = Euclidean.distance(&kerb, &made.area) - kerb_m;
-        // The smoothed ring is 0.16 m off its points. (A fillet along the tangent at the corner would cut 0.89 m into the kerb.)
+        // The smoothed ring is 0.16 m off its points. (A fillet along the tangent at the corner would cut 0.89 m into
+        // the kerb.)
         assert!((-0.2..0.4).contains(&gap_m), "{gap_m}");
     }
 }

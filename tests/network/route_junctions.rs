@@ -1,5 +1,5 @@
-//! Routes over drawn junctions: roundabouts as one movement and leg by leg, turns that share a stretch of road, whole routes that are
-//! refuted though their parts passed, alternatives, and what blocks.
+//! Routes over drawn junctions: roundabouts as one movement and leg by leg, turns that share a stretch of road, whole
+//! routes that are refuted although their parts passed, alternatives, and obstacles.
 
 #![allow(clippy::single_range_in_vec_init)]
 
@@ -24,7 +24,7 @@ fn region(map: &AsciiMap, kerb_m: f64) -> Region {
     region
 }
 
-/// A ring of 20 m radius, four arms at right angles.
+/// A ring of 20 m radius with four arms at right angles.
 fn roundabout() -> AsciiMap {
     let tags = "highway=secondary width=8";
     roundabout::map(20.0, tags, tags, false)
@@ -51,7 +51,7 @@ fn turn(region: &Region, from: &str, to: &str) -> PartKind {
     PartKind::Turn { from: edge(region, from), to: edge(region, to) }
 }
 
-/// One line without a jump or a kink: steps of a station, headings as the curvature says.
+/// Asserts one line without a jump or a kink: station by station, with headings as the curvature implies.
 fn assert_smooth(route: &Route) {
     let c = &route.path.corridor;
     for k in 1..c.len() {
@@ -80,7 +80,7 @@ fn a_long_vehicle_gets_over_a_roundabout_in_one_movement() {
     assert!(route.certificate.result.safe());
     assert_smooth(route);
     whole::hold(&driver.model.vehicle, &route.path.corridor, &route.certificate, 1);
-    // Half the ring and what is left of the arms.
+    // Half the ring and the rest of the arms.
     assert!((route.length_m - (2.0 * 75.0 + 63.0)).abs() < 8.0, "{}", route.length_m);
 }
 
@@ -97,7 +97,7 @@ fn a_short_vehicle_that_may_not_pass_in_one_goes_round_by_its_arcs_past_the_seam
         let turns = route.path.parts.iter().filter(|part| matches!(part.kind, PartKind::Turn { .. })).count();
         assert_eq!(turns, 2);
         assert_smooth(route);
-        // Three quarters of the ring, half of both arms.
+        // Three quarters of the ring and half of both arms.
         assert!((route.length_m - (2.0 * 75.0 + 94.0)).abs() < 15.0, "{from} {to}: {}", route.length_m);
     }
 }
@@ -110,15 +110,15 @@ fn a_restriction_over_the_ring_is_obeyed_by_the_passage() {
     let driver = region.driver("AGV-TUG4");
     let forbidden = ["Wa", "ag", "gm", "mE"].map(|ends| edge(&region, ends));
     let answer = ask(&region, &driver, ["Wa", "mE"], 0);
-    // Round once more is another way, and lawful.
+    // Another circle round the ring is another way, and a legal one.
     assert!(
         answer.routes.iter().all(|route| route.drive.edges.len() == forbidden.len() + 4 && route.drive.over.is_empty())
     );
     assert_eq!(ask(&region, &driver, ["Wa", "gS"], 0).routes.len(), 1);
 }
 
-/// Left into a street and right out of it after so many metres; one-way. If asked, a wide way round that leaves the road before and
-/// joins it after.
+/// One-way: left into a street, and right out of it after `between_m` metres. With `way_round`, a wide way round leaves
+/// the road before and joins it after.
 fn s_bend(width_m: f64, between_m: f64, way_round: bool) -> AsciiMap {
     const ROUND: &str = "abcdefghijklmnopqrs";
     let mut nodes = vec![
@@ -170,7 +170,7 @@ fn turns_that_share_a_stretch_of_road_are_blended_or_refused() {
     assert!(blended > 0 && refused > 0, "{blended} blended, {refused} refused");
 }
 
-/// From W to E by an arc in the north or by a somewhat longer one in the south, which a side street divides in two.
+/// From W to E by an arc in the north, or by a longer one in the south that a side street divides.
 fn two_ways() -> AsciiMap {
     let arc = |names: &str, across_m: f64| -> Vec<(char, [f64; 2])> {
         let angle = |i: u32| std::f64::consts::PI * f64::from(i + 1) / 12.0;
@@ -222,13 +222,14 @@ fn what_blocks_is_few_places_or_few_metres_whichever_is_less() {
     assert_eq!(obstacles(None, 3.0), [(PartKind::Edge(north), None, false)]);
 }
 
-/// Safe by itself.
+/// Whether the turn is safe by itself.
 fn passes(region: &Region, driver: &Driver, from: &str, to: &str) -> bool {
     let place = region.movements.index(edge(region, from), edge(region, to)).unwrap();
     driver.permits.movements[place].verdict == Verdict::Safe
 }
 
-/// Wide enough for each turn and too narrow for one after the other: found by widening the roads step by step.
+/// Wide enough for each turn, but too narrow for both in succession. The width is found by widening the roads step by
+/// step.
 #[test]
 fn a_route_whose_parts_passed_is_refuted_as_a_whole_and_the_search_goes_on() {
     let made = |between_m: f64, eighths: u32| {
@@ -238,7 +239,8 @@ fn a_route_whose_parts_passed_is_refuted_as_a_whole_and_the_search_goes_on() {
         (region, driver, parts)
     };
     let widths: Vec<u32> = (48..80).collect();
-    // From the least width at which both parts pass, as if all wider ones did, to the first at which the whole does, too.
+    // From the least width at which both parts pass (all wider ones are taken to pass) to the first at which the whole
+    // passes too.
     let tight = |between_m: f64| {
         let least = widths.partition_point(|&eighths| !made(between_m, eighths).2);
         for &eighths in &widths[least..] {
@@ -258,7 +260,7 @@ fn a_route_whose_parts_passed_is_refuted_as_a_whole_and_the_search_goes_on() {
         None
     };
     let (between_m, width_m, blocked, answer) = (0..8).find_map(|i| tight(34.0 - 3.0 * f64::from(i))).unwrap();
-    // Too narrow, or a hinge or the lock beyond its limit: then no metres are missing.
+    // The route is too narrow, or a hinge or the lock exceeds its limit; in the latter case no metres are missing.
     let missing = answer.refuted.iter().filter_map(|r| Some(-r.result?.0)).filter(|m| *m > 0.0);
     let least_m = missing.min_by(f64::total_cmp);
     let [obstacle] = answer.obstacles.as_deref().unwrap() else { panic!("{:?}", answer.obstacles) };

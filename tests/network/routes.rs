@@ -1,5 +1,5 @@
-//! Routes: the search against searches that share nothing with it, whole-route certificates against the disturbed simulator,
-//! and what is said where there is no way.
+//! Routes: the search compared with independent searches, whole-route certificates compared with the disturbed
+//! simulator, and the answer if there is no way.
 
 use crate::oracle;
 use crate::support::ascii_map;
@@ -52,7 +52,7 @@ fn grid(streets: &[(usize, bool, u8)], rings: &[usize]) -> Network {
     built(&map).0
 }
 
-/// Dijkstra over nodes, with nothing of the library but the edges' costs: from the end of `from` to the beginning of `to`.
+/// Dijkstra over nodes, from the end of `from` to the start of `to`. It shares only the edges' costs with the library.
 fn by_nodes(network: &Network, graph: &Graph, from: u32, to: u32) -> Option<u64> {
     let edge = |e: u32| &network.edges[e as usize];
     if from == to {
@@ -72,7 +72,7 @@ fn by_nodes(network: &Network, graph: &Graph, from: u32, to: u32) -> Option<u64>
     reached.get(&edge(to).from_node).map(|cost| cost + graph.cost(to))
 }
 
-/// What nobody may use: edges by themselves, from one edge into another, sequences, passages.
+/// Everything barred: single edges, steps from one edge into another, sequences, passages.
 #[derive(Default)]
 struct Barred {
     edges: BTreeSet<u32>,
@@ -81,8 +81,8 @@ struct Barred {
     passages: BTreeSet<(u32, u32)>,
 }
 
-/// Dijkstra over whole histories of the last four edges: slow, and too simple to be wrong. Over a passage it goes edge by edge,
-/// on arcs that need not be open.
+/// Dijkstra over whole histories of the last four edges: slow, and too simple to be wrong. Over a passage it goes edge
+/// by edge, on arcs that need not be open.
 fn by_histories(network: &Network, graph: &Graph, barred: &Barred, from: u32, to: u32) -> Option<u64> {
     if barred.edges.contains(&from) {
         return None;
@@ -132,7 +132,7 @@ fn forbid(network: &mut Network, sequence: &[u32]) {
     network.restrictions.push(Restriction { relation_id: 1, kind, conditional: false, edges });
 }
 
-/// Everything is open, turning back included.
+/// Everything is open, including U-turns.
 fn wide_open(graph: &Graph) -> Access {
     let access = graph.open_access();
     Access { movements: vec![0; access.movements.len()], passages: vec![0; access.passages.len()], ..access }
@@ -223,7 +223,7 @@ proptest! {
             }
         }
         for (slot, (edge, facts)) in access.edges.iter_mut().zip((0..).zip(&network.edges)) {
-            // Most roundabouts are gone over by passages only.
+            // Most roundabouts can be used by passages only.
             if draw.one_in(if network.road(facts).roundabout { 2 } else { 10 }) {
                 *slot = BARRED;
                 barred.edges.insert(edge);
@@ -247,7 +247,7 @@ fn a_way_over_several_places_goes_on_as_it_came() {
     let goals = |all: [&str; 2]| all.map(|ends| Goal { edge: edge(ends), share: 0.5 }).to_vec();
     let start = [Start::new(edge("AB"), 0.0)];
     let places = [goals(["BD", "DB"]), goals(["BE", "EB"])];
-    // From the middle of BD there is no way to E but by turning back, which nobody does.
+    // From the middle of BD the only way to E is a U-turn, which is not allowed.
     assert_eq!(search_over(&graph, &graph.open_access(), &start, &places, &Stop::never()), Ok(None));
     let found = search_over(&graph, &wide_open(&graph), &start, &places, &Stop::never()).unwrap().unwrap();
     assert_eq!(found.drive.edges, ["AB", "BD", "DB", "BE"].map(edge));
@@ -300,7 +300,7 @@ fn answers(region: &Region, driver: &routing::Driver, pairs: u64) -> Vec<Answer>
     (0..pairs).map(ask).collect()
 }
 
-/// No edge, turn or restriction is broken, and the whole is safe.
+/// Asserts that no edge, turn or restriction is violated, and that the whole route is safe.
 fn assert_lawful(region: &Region, driver: &routing::Driver, route: &Route) {
     assert!(route.certificate.result.safe());
     let in_passage = |at: &usize| route.drive.over.iter().any(|arcs| arcs.contains(at));
@@ -330,7 +330,7 @@ fn assert_lawful(region: &Region, driver: &routing::Driver, route: &Route) {
     assert!(least >= route.certificate.result.rsc_m.unwrap());
 }
 
-/// Certified routes of at most so many metres, over turns first.
+/// Number of certified routes of at most `most_m` metres that hold, routes with turns first.
 fn held(region: &Region, driver: &routing::Driver, answers: &[Answer], most_m: f64, count: usize) -> usize {
     let turns =
         |route: &Route| route.path.parts.iter().filter(|part| matches!(part.kind, PartKind::Turn { .. })).count();
@@ -353,7 +353,7 @@ fn routes_of_the_drawn_region_hold_as_a_whole() {
     assert!(found > 6, "{found} routes");
     let turns = held(&region, &driver, &answers, 4_000.0, 4);
     assert!(turns > 2, "{turns} turns");
-    // Where there is none, it is said what blocks, if roads lead there at all.
+    // Without a route the answer names the obstacles, if roads lead there at all.
     for answer in answers.iter().filter(|answer| answer.routes.is_empty()) {
         let Some(obstacles) = &answer.obstacles else { continue };
         let bad = |o: &Obstacle| o.permit.verdict != Verdict::Safe || o.refuted;
@@ -361,7 +361,7 @@ fn routes_of_the_drawn_region_hold_as_a_whole() {
     }
 }
 
-/// The middle of three towns, each with a combination of its own roads.
+/// The middle of three towns, each with a local combination.
 #[test]
 fn routes_of_real_extracts_hold_as_a_whole() {
     let towns = [

@@ -1,4 +1,4 @@
-//! What these tests take from `tests/support/`.
+//! Parts of `tests/support/` that these tests use.
 
 #[path = "../support/accounts.rs"]
 pub(crate) mod accounts;

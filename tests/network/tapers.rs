@@ -1,5 +1,5 @@
-//! Where cross sections meet: lanes keep their width where carriageways join and part and where lanes are added, on both driving
-//! sides, in both directions, under every policy; and no corridor leaves what the map says is road.
+//! Places where cross sections meet. Lanes keep their width where carriageways join and part and where lanes are added,
+//! on both driving sides, in both directions, under every policy. No corridor leaves the mapped road.
 
 use crate::support::ascii_map::{AsciiMap, edge};
 use crate::support::junctions::Drawn;
@@ -16,10 +16,10 @@ use proptest::prelude::*;
 use crate::support::catalogue::catalogued;
 
 const POLICIES: [Policy; 3] = [Policy::Lane, Policy::Direction, Policy::Carriageway];
-/// The nodes' places are rounded to a centimetre, and the curve may leave the line by half a metre.
+/// Tolerance, metres. The nodes' places are rounded to a centimetre, and the curve may leave the line by half a metre.
 const NEAR_M: f64 = 0.02;
 
-/// A stroke's corridor in metres east and north of its first node's drawing origin, by the edge it holds.
+/// A stroke's corridor in metres east and north of its first node's drawing origin, found by an edge of the stroke.
 fn corridor(network: &Network, ends: &str, policy: Policy) -> StrokeCorridor {
     let wanted = edge(network, ends);
     let holds = |s: &&netcert::network::Stroke| {
@@ -38,8 +38,8 @@ fn sharpest_m(made: &StrokeCorridor) -> f64 {
     1.0 / made.corridor.curvature.iter().fold(1e-9_f64, |k, c| k.max(c.abs()))
 }
 
-/// A road that parts into two carriageways, each `jog_m` beside the road's middle after `reach_m`. `side`: 1 where traffic keeps
-/// right, −1 for the mirrored map, where it keeps left.
+/// A road that parts into two carriageways, each `jog_m` beside the road's middle after `reach_m`. `side` is 1 for
+/// right-hand traffic, and −1 for the mirrored map with left-hand traffic.
 fn parted(tags: &str, carriageway: &str, [jog_m, reach_m]: [f64; 2], side: f64) -> Drawn {
     let y = jog_m * side;
     let nodes = [
@@ -76,7 +76,8 @@ fn a_lane_goes_straight_on_where_the_road_parts_and_where_carriageways_join() {
     }
 }
 
-/// What the jog has beyond the half of a carriageway is the median's: the lane goes round it within the line's tolerance.
+/// A jog larger than half a carriageway belongs to the median: the lane goes round the median within the line's
+/// tolerance.
 #[test]
 fn a_wider_jog_leaves_what_the_median_needs() {
     let drawn = parted(ROAD, CARRIAGEWAY, [4.0, 25.0], 1.0);
@@ -96,14 +97,14 @@ fn a_wider_jog_leaves_what_the_median_needs() {
 fn without_a_second_carriageway_or_a_jog_nothing_is_made_up() {
     let flat = parted(ROAD, CARRIAGEWAY, [0.0, 20.0], 1.0);
     assert!(narrowest(&corridor(&flat.network, "AB", Policy::Lane)) < 1.7);
-    // The road becomes one-way, and its line bends as a jog does.
+    // The road becomes one-way, and its line bends like a jog.
     let nodes = [('A', [0.0, 0.0]), ('B', [300.0, 0.0]), ('C', [320.0, -1.625]), ('D', [700.0, -1.625])];
     let map = AsciiMap::placed(&nodes).way("AB", ROAD).way("BCD", &format!("{CARRIAGEWAY} oneway=yes"));
     let alone = Drawn::new(&map, false, 5.0);
     assert!(narrowest(&corridor(&alone.network, "AB", Policy::Lane)) < 1.7);
 }
 
-/// Two lanes become three, of which the opposite direction has two: this direction's lane moves half a lane aside.
+/// Two lanes become three, two of them in the opposite direction. This direction's lane moves aside by half a lane.
 fn widened(length_m: f64, side: f64) -> Drawn {
     let nodes =
         [('A', [0.0, 0.0]), ('B', [300.0, 0.0]), ('C', [300.0 + length_m, 0.0]), ('D', [600.0 + length_m, 0.0])];
@@ -122,12 +123,12 @@ fn lanes_of_both_directions_move_over_together_where_one_is_added() {
         assert!(narrowest(&forth) > 3.25 - NEAR_M && narrowest(&back) > 3.25 - NEAR_M);
         let moved: Vec<_> = forth.tapers.iter().map(|t| (t.shift_m.abs() * 1e3).round() / 1e3).collect();
         assert_eq!(moved, [1.625, 1.625]);
-        // The first node is the origin of the drawing in both, and the road runs east.
+        // In both, the first node is the origin of the drawing, and the road runs east.
         let (f, b) = (&forth.corridor, &back.corridor);
         let origin = [f.x[0], 0.5 * (f.y[0] + b.y[b.len() - 1])];
         for k in 0..f.len() {
             let east_m = f.x[k] - origin[0];
-            // A parallel is no straight line in the frame.
+            // A parallel of latitude is not straight in the frame.
             let parallel_m = 49.0_f64.to_radians().tan() * east_m * east_m / (2.0 * 6.38e6);
             let north_m = f.y[k] - origin[1] - parallel_m;
             let inner_m = if side > 0.0 { north_m + f.left_m[k] } else { north_m - f.right_m[k] };
@@ -166,8 +167,8 @@ fn an_explanation_names_the_taper() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// Nowhere wider than the edge's strip, and nowhere beyond the hull of the road's half at the node and the carriageway at the
-    /// end of the jog, but for the tolerance of the line.
+    /// Nowhere wider than the edge's strip. Nowhere beyond the hull of the road's half at the node and the carriageway
+    /// at the end of the jog, except for the line's tolerance.
     #[test]
     fn no_corridor_leaves_the_road_where_it_parts(
         jog_m in 0.2..6.0_f64, reach_m in 8.0..90.0_f64, lanes in 1..3_u8, ways in 1..3_u8, which in 0..3_usize, join in any::<bool>(),
@@ -193,7 +194,7 @@ proptest! {
                 for side in [c.left_m[k], -c.right_m[k]] {
                     let north_m = c.y[k] + side * c.heading[k].cos() - origin[1];
                     let outwards_m = if join { north_m } else { -north_m };
-                    // Inwards: the opposite half belongs to the policy of the whole carriageway, before the node.
+                    // Inwards, the opposite half belongs to the policy of the whole carriageway before the node.
                     let t = (east_m / reach_m).clamp(0.0, 1.0);
                     let outer_m = if east_m <= 0.0 { half_m } else { half_m.max(t * (jog_m + other_m) + (1.0 - t) * half_m).max(jog_m + other_m) };
                     prop_assert!(outwards_m <= outer_m + 0.55, "{east_m}: {outwards_m} {outer_m}");

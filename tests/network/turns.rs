@@ -1,6 +1,7 @@
-//! Turns of drawn junctions: which vehicles take them, what their corridors promise, and that no claim is refuted.
+//! Turns of drawn junctions: the vehicles that can take them, the properties of their corridors, and that no claim is
+//! refuted.
 //!
-//! Roads cross at right angles unless drawn otherwise; widths are tagged, kerb radii are the test's own.
+//! Roads cross at right angles unless drawn otherwise. Widths are tagged, and kerb radii are the test's own.
 
 use crate::oracle;
 use crate::support::ascii_map;
@@ -63,7 +64,7 @@ fn driving_on_the_left_mirrors_every_turn() {
         for (nodes, mirrored) in [("EBC", "EBA"), ("EBA", "EBC"), ("ABE", "CBE")] {
             let (a, b) = (right.best(nodes, policy, id).unwrap(), left.best(mirrored, policy, id).unwrap());
             assert_eq!(a.safe(), b.safe(), "{nodes} {id}");
-            // Paths that are as good as each other may be tried in another order.
+            // Equally good paths may be tried in another order.
             let (a, b) = (a.rsc_m.unwrap(), b.rsc_m.unwrap());
             assert!((a - b).abs() < 0.25, "{nodes} {id}: {a} {b}");
         }
@@ -74,7 +75,7 @@ fn driving_on_the_left_mirrors_every_turn() {
 fn back_and_straight_on_are_no_turns() {
     let drawn = Drawn::cross("highway=residential", false, 3.0);
     let facts = drawn.facts();
-    // Four arms, from each one to the left and one to the right.
+    // From each of the four arms, one turn to the left and one to the right.
     assert_eq!(facts.len(), 8);
     assert_eq!(facts.iter().filter(|t| (t.angle_deg - 90.0).abs() < 1.0).count(), 4);
     assert_eq!(facts.iter().filter(|t| (t.angle_deg + 90.0).abs() < 1.0).count(), 4);
@@ -142,7 +143,7 @@ fn a_path_leaves_and_joins_the_strokes_own_centrelines() {
                 assert!(across.abs() < 0.01, "{across}");
                 let turned = (c.heading[k] - stroke.heading[joint.station]).sin().abs();
                 assert!(turned < 0.02, "{nodes} {}: {turned}", path.number);
-                // The station may lie half a metre inside the turn, and widths change by 0.4 m a metre.
+                // The station may lie half a metre inside the turn, and widths change by up to 0.4 m a metre.
                 assert!(c.left_m[k] <= stroke.left_m[joint.station] + 0.21);
                 assert!(c.right_m[k] <= stroke.right_m[joint.station] + 0.21);
             }
@@ -202,7 +203,7 @@ fn a_roundabout_is_entered_and_left_by_turns() {
     assert!(drawn.safe("W43", Policy::Carriageway, "AGV-TUG4"));
 }
 
-/// Where all edges are safe.
+/// Certificates with all edges safe.
 fn certified(drawn: &Drawn, ids: &[&str], policy: Policy, threads: usize) -> Certified {
     drawn.certified(ids, &vec![Verdict::Safe; drawn.network.edges.len()], policy, threads)
 }
@@ -243,7 +244,7 @@ fn results_depend_neither_on_threads_nor_on_other_vehicles() {
     assert_eq!(count("read"), ["safe", "unsafe", "unknown", "forbidden"].into_iter().map(count).sum::<u64>());
 }
 
-/// The simulator with its adversary, on the corridors that turns make: tight, of changing width, swinging out.
+/// The simulator with its adversary on the corridors of turns: tight, with changing width, swinging out.
 #[test]
 fn no_claim_of_a_turn_is_refuted() {
     let (mut fought, mut draw) = (0, Draw(0x7u64));

@@ -1,4 +1,4 @@
-//! Asks the certifier, and puts what it claims in the oracle's words.
+//! Runs the certifier and converts its claims to the oracle's types.
 
 use netcert::corridor::Corridor;
 use netcert::stet::{self, Model, Options, Side};
@@ -6,12 +6,12 @@ use netcert::stop::Stop;
 use netcert::vehicle::Vehicle;
 pub use netcert_oracle::claim::{Claim, Place};
 
-/// Asks the certifier, with corrections as they are by default. `None`: it makes no claim worth refuting.
+/// Runs the certifier with default corrections. `None` if it makes no claim worth refuting.
 pub fn certify(corridor: &Corridor, vehicle: &Vehicle) -> Option<Claim> {
     claim(corridor, vehicle, &Options::default())
 }
 
-/// Asks the certifier. `None`: it makes no claim worth refuting.
+/// Runs the certifier. `None` if it makes no claim worth refuting.
 pub fn claim(corridor: &Corridor, vehicle: &Vehicle, options: &Options) -> Option<Claim> {
     let model = Model::new(vehicle).expect("the oracle's vehicles are possible ones");
     let certificate = stet::certify(corridor, &model, options, &Stop::never())
@@ -24,7 +24,7 @@ pub fn claim(corridor: &Corridor, vehicle: &Vehicle, options: &Options) -> Optio
         side: if result.limiting.side == Side::Left { 1.0 } else { -1.0 },
         ahead_m: result.limiting.point_m,
     };
-    // Where the recursion of the bounds does not close there is no RSC: nothing to refute.
+    // Where the recursion of the bounds does not close there is no RSC, so there is nothing to refute.
     let (rsc_m, shrink, hinge_margin_rad) = (result.rsc_m?, result.shrink, result.hinge_margin_rad?);
     (rsc_m > -50.0).then_some(Claim { rsc_m, shrink, hinge_margin_rad, limiting, plan: certificate.plan })
 }

@@ -1,4 +1,4 @@
-//! Certificates of turns and passages against the adversary: the best path and one that is not.
+//! Certificates of turns and passages against the adversary: the best path and another one.
 
 use netcert::certify::best_of;
 use netcert::stet::{Model, Options};
@@ -7,13 +7,14 @@ use netcert::turns::TurnPath;
 use super::draw::Draw;
 use super::{claim, duel, fleet};
 
-/// Paths with less room are not worth a fight, metres.
+/// Paths with less leeway are not attacked, metres.
 const HOPELESS_M: f64 = -3.0;
 
-/// Drives the vehicle along the best of the paths and along `other`, as disturbed as it may be; how many claims held.
+/// Drives the vehicle along the best path and along the path `other`, with all attacks. Returns the number of claims
+/// that held.
 ///
 /// # Panics
-/// One did not: the message begins with `what`.
+/// If a claim is refuted. The message begins with `what`.
 pub fn none_is_refuted(paths: &[TurnPath], id: &str, other: usize, what: &str, draw: &mut Draw) -> usize {
     let vehicle = fleet::vehicle(id);
     let model = Model::new(&vehicle).expect("the oracle's vehicles are possible ones");

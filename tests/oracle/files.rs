@@ -1,5 +1,5 @@
-//! Random corridor files and vehicles, as people make them: catalogued vehicles and impossible-looking ones, points drawn half a metre
-//! to ten metres apart, widths with kinks, bends from 4.5 to 90 m. The same every run.
+//! Random corridor files and vehicles as people make them: catalogued and unusual vehicles, points half a metre to ten
+//! metres apart, widths with kinks, bends from 4.5 to 90 m. They are the same in every run.
 
 use netcert::corridor::{FileCorridor, corridor_from_file};
 use netcert::stet::Options;
@@ -9,11 +9,11 @@ use serde_json::json;
 use super::draw::{self, Draw};
 use super::fleet;
 
-/// Of the vehicles so many are the fleet's, so many random.
+/// Number of vehicles from the fleet, and of random vehicles.
 const FLEET: usize = 20;
 const RANDOM: usize = 256;
 
-/// One case: who drives where, and how far the plan may be off the centreline.
+/// One case: vehicle, corridor file, and the plan's largest distance from the centreline.
 pub struct Case {
     pub index: u64,
     pub vehicle: Vehicle,
@@ -21,17 +21,17 @@ pub struct Case {
     pub options: Options,
 }
 
-/// The case of that number.
+/// The case with this number.
 pub fn case(index: u64) -> Case {
     let mut draw = Draw(0xf11e_5eed + 7919 * index);
     let vehicle = match draw.below(FLEET + RANDOM) {
-        // A vehicle of the fleet is as likely as a random one.
+        // Vehicles of the fleet are as likely as random ones.
         _ if draw.one_in(2) => fleet::all().swap_remove(draw.below(FLEET)),
         number => random_vehicle(number as u64),
     };
     let max_shift_m = if draw.one_in(3) { 0.0 } else { draw.between(0.1, 1.5) };
     loop {
-        // A drawn line that no curve follows is refused with a reason; the next one is tried.
+        // A drawn line that no curve follows is refused with a reason. Then the next line is tried.
         if let Some(given) = corridor(&mut draw, &vehicle) {
             return Case { index, vehicle, given, options: Options { max_shift_m, ..Options::default() } };
         }
@@ -61,7 +61,7 @@ fn random_vehicle(number: u64) -> Vehicle {
             units,
         };
         vehicle.length_m = length_m(&vehicle.units);
-        // What the program takes from a file, which refuses bodies that stand in each other.
+        // Only vehicles that the program accepts from a file, which refuses overlapping bodies.
         if let Ok(vehicle) = Vehicle::from_json(&vehicle.to_json().unwrap().to_string()) {
             return vehicle;
         }
@@ -84,7 +84,7 @@ fn unit(draw: &mut Draw, (i, count): (usize, usize), width_m: f64, longest_m: f6
     }
 }
 
-/// Front of the foremost body to rear of the rearmost, straight.
+/// Length of the straight vehicle, from the front of the foremost body to the rear of the rearmost.
 fn length_m(units: &[Unit]) -> f64 {
     let (mut coupling, mut front, mut rear) = (0.0_f64, f64::NEG_INFINITY, f64::INFINITY);
     for unit in units {
@@ -110,7 +110,7 @@ fn corridor(draw: &mut Draw, vehicle: &Vehicle) -> Option<FileCorridor> {
     corridor_from_file(&file.to_string()).ok()
 }
 
-/// Points so far apart along bends, somewhere in the plane.
+/// Points `apart` metres from each other along bends, at a random place in the plane.
 fn points(draw: &mut Draw, bends: &draw::Bends, apart: f64) -> Vec<[f64; 2]> {
     const STEP_M: f64 = 0.05;
     let total: f64 = bends.iter().map(|bend| bend.0).sum();
@@ -129,7 +129,7 @@ fn points(draw: &mut Draw, bends: &draw::Bends, apart: f64) -> Vec<[f64; 2]> {
     points
 }
 
-/// Half-widths at points: steady, tapered, or with a kink at every point.
+/// Half-widths at points: constant, tapered, or with a kink at every point.
 fn widths(draw: &mut Draw, points: usize, apart: f64, least: f64) -> Vec<f64> {
     let kind = draw.below(3);
     let steady = least + draw.between(0.0, 2.0);

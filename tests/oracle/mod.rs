@@ -1,4 +1,5 @@
-//! The oracle (`crates/oracle`) beside the certifier: what is claimed is asked here, what is possible there.
+//! The link between the certifier and the oracle (`crates/oracle`): claims come from the certifier, attacks from the
+//! oracle.
 #![allow(dead_code, unreachable_pub)]
 
 pub mod claim;

@@ -9,10 +9,10 @@ use super::claim::{Claim, Place};
 use super::draw::Draw;
 use super::duel;
 
-/// RK4 at 0.1 m and the plan's cubic, as in `tests/certificate/soundness.rs`.
+/// Errors of RK4 at 0.1 m and of the plan's cubic, as in `tests/certificate/soundness.rs`.
 const ALLOWANCE_M: f64 = 2e-5;
 
-/// The adversary finds nothing below the RSC, and no hinge beyond its margin.
+/// Asserts that the adversary finds nothing below the RSC, and no hinge beyond its margin.
 pub fn hold(vehicle: &Vehicle, corridor: &Corridor, certificate: &Certificate, seed: u64) {
     let result = &certificate.result;
     let at = &result.limiting;

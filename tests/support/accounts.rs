@@ -1,4 +1,4 @@
-//! What an account of reading must add up to, whatever the file.
+//! The sums that the account of any reading must satisfy.
 
 use netcert::osm::pbf::ReadAccount;
 

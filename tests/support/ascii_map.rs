@@ -1,16 +1,16 @@
-//! A road network drawn in characters becomes an extract, and a network is told back in the same characters.
+//! A road network drawn in characters becomes an extract, and a network is printed in the same characters.
 //!
-//! Every letter or digit is a node whose id is its character code; everything else is decoration. A column is
-//! `metres` wide and a row as high; north is up. Ways are named by their nodes in order, tagged as in OpenStreetMap.
+//! Every letter or digit is a node whose id is its character code; everything else is decoration. A column is `metres`
+//! wide and a row equally high; north is up. Ways are named by their nodes in order and tagged as in OpenStreetMap.
 
 use netcert::network::{Edge, Network, NetworkAccount, build};
 use netcert::osm::facts::{self, CrossSection, Place, PointFacts, WayFacts};
 use netcert::osm::{Extract, LonLat, NodeTable, Restriction, RoadArea, StringPool, Via, Way};
 
-/// Where the upper left corner of a drawing lies.
+/// Position of the upper left corner of a drawing.
 const ORIGIN: LonLat = LonLat { lon_e7: 80_000_000, lat_e7: 490_000_000 };
 
-/// A drawing, with what the file lacks and which ways there are.
+/// A drawing with its ways, and the nodes that the file lacks.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct AsciiMap {
     nodes: Vec<(char, LonLat)>,
@@ -21,7 +21,7 @@ pub(crate) struct AsciiMap {
     areas: Vec<(String, Vec<LonLat>)>,
 }
 
-/// Ways and nodes of areas count from here.
+/// Ids of an area's way and nodes count from here.
 const AREAS: i64 = 1 << 40;
 
 impl AsciiMap {
@@ -37,37 +37,37 @@ impl AsciiMap {
         Self { nodes, ..Self::default() }
     }
 
-    /// Nodes at places so far east and north, metres, that no grid of characters has.
+    /// Nodes at the given metres east and north, for places off the grid of characters.
     pub(crate) fn placed(nodes: &[(char, [f64; 2])]) -> Self {
         let node = |&(c, [east_m, north_m]): &(char, [f64; 2])| (c, offset(ORIGIN, east_m, north_m));
         Self { nodes: nodes.iter().map(node).collect(), ..Self::default() }
     }
 
-    /// Adds a way through these nodes; ids count from 1.
+    /// Adds a way through these nodes. Ids count from 1.
     pub(crate) fn way(self, nodes: &str, tags: &str) -> Self {
         let id = self.ways.len() as i64 + 1;
         self.way_of_id(id, nodes, tags)
     }
 
-    /// Adds a way of this id.
+    /// Adds a way with this id.
     pub(crate) fn way_of_id(mut self, id: i64, nodes: &str, tags: &str) -> Self {
         self.ways.push((id, nodes.to_owned(), tags.to_owned()));
         self
     }
 
-    /// Takes a way back.
+    /// Removes a way.
     pub(crate) fn without_way(mut self, id: i64) -> Self {
         self.ways.retain(|way| way.0 != id);
         self
     }
 
-    /// The file has no such node, though ways name it.
+    /// Removes a node from the file, although ways name it.
     pub(crate) fn missing(mut self, node: char) -> Self {
         self.missing.push(node);
         self
     }
 
-    /// Node `node` stands where `other` stands.
+    /// Puts `node` at the place of `other`.
     pub(crate) fn same_place(mut self, node: char, other: char) -> Self {
         let at = self.nodes.iter().find(|n| n.0 == other).unwrap_or_else(|| panic!("{other} is not drawn")).1;
         self.nodes.retain(|n| n.0 != node);
@@ -75,13 +75,13 @@ impl AsciiMap {
         self
     }
 
-    /// Facts of a tagged node.
+    /// Sets the facts of a tagged node.
     pub(crate) fn point(mut self, node: char, facts: PointFacts) -> Self {
         self.points.push((node, facts));
         self
     }
 
-    /// Adds a turn restriction with these tags (`type=restriction` unless they say otherwise); ids count from 1.
+    /// Adds a turn restriction with these tags (`type=restriction` by default). Ids count from 1.
     pub(crate) fn restriction(mut self, from: &[i64], via: Via, to: &[i64], tags: &str) -> Self {
         let mut pairs: Vec<_> = tags.split_whitespace().filter_map(|tag| tag.split_once('=')).collect();
         if pairs.iter().all(|tag| tag.0 != "type") {
@@ -93,7 +93,7 @@ impl AsciiMap {
         self
     }
 
-    /// Adds a closed way through places so far east and north of a node, metres; the last one is the first again.
+    /// Adds a closed way through places given in metres east and north of a node. Its last reference equals the first.
     pub(crate) fn area(mut self, node: char, corners: &[[f64; 2]], tags: &str) -> Self {
         let at = self.nodes.iter().find(|n| n.0 == node).unwrap_or_else(|| panic!("{node} is not drawn")).1;
         let ring = corners.iter().map(|&[east_m, north_m]| offset(at, east_m, north_m)).collect();
@@ -101,7 +101,7 @@ impl AsciiMap {
         self
     }
 
-    /// What reading a file of this map leaves.
+    /// The extract that reading a file of this map would give.
     pub(crate) fn extract(&self) -> Extract {
         let mut extract = Extract::default();
         let mut ways = self.ways.clone();
@@ -149,12 +149,12 @@ pub(crate) fn id_of(node: char) -> i64 {
     i64::from(u32::from(node))
 }
 
-/// The drawn node of an id.
+/// The drawn node with an id.
 pub(crate) fn node_of(id: i64) -> char {
     u32::try_from(id).ok().and_then(char::from_u32).unwrap_or('?')
 }
 
-/// East and north of a place, near enough for a drawing.
+/// The place east and north of another one, accurate enough for a drawing.
 pub(crate) fn offset(from: LonLat, east_m: f64, north_m: f64) -> LonLat {
     const DEGREE_M: f64 = 111_195.0;
     let cos = from.degrees().1.to_radians().cos();
@@ -164,7 +164,7 @@ pub(crate) fn offset(from: LonLat, east_m: f64, north_m: f64) -> LonLat {
     }
 }
 
-/// Facts of a way with these tags, written `key=value` with spaces between.
+/// Facts of a way with these tags, written `key=value` and separated by spaces.
 pub(crate) fn way_facts(tags: &str, strings: &mut StringPool) -> WayFacts {
     let tags: Vec<_> = tags.split_whitespace().filter_map(|tag| tag.split_once('=')).collect();
     let draft = facts::way_facts(&tags).unwrap_or_else(|why| panic!("{tags:?} is no road: {why}"));
@@ -185,7 +185,7 @@ pub(crate) fn no_sections(_: &WayFacts, _: &Place, _: Option<f64>) -> [CrossSect
     [CrossSection { lane: None, direction: None, carriageway: None }; 2]
 }
 
-/// The network of a map, of one country and without widths.
+/// The network of a map in one country, without widths.
 pub(crate) fn built(map: &AsciiMap) -> (Network, NetworkAccount) {
     build(map.extract(), &somewhere, &no_sections)
 }
@@ -197,7 +197,7 @@ pub(crate) fn edge(network: &Network, ends: &str) -> u32 {
     found.unwrap_or_else(|| panic!("no edge {ends:?}")).0
 }
 
-/// All edges in order: `AB` from A to B, `!` behind a barred one, `~` behind one that is cut.
+/// All edges in order: `AB` from A to B, followed by `!` if barred and `~` if cut.
 pub(crate) fn edges(network: &Network) -> String {
     let edge = |e: &Edge| {
         let mut text = ends(e);
@@ -212,8 +212,8 @@ fn ends(edge: &Edge) -> String {
     [edge.from_node, edge.to_node].into_iter().map(node_of).collect()
 }
 
-/// All strokes in order, a line each: the nodes in driving order, before a `>` those of the approach; `@` behind a
-/// closed one.
+/// All strokes in order, one per line: their nodes in driving order, with the approach's nodes before `>`, and `@`
+/// after a closed stroke.
 pub(crate) fn strokes(network: &Network) -> String {
     let nodes = |range: std::ops::Range<u32>| {
         let edges = network.stroke_edges[range.start as usize..range.end as usize].iter();

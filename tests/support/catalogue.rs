@@ -1,4 +1,4 @@
-//! Vehicles as users get them. (The oracle has a table of its own, so that a slip in the catalogue cannot hide itself.)
+//! Vehicles of the shipped catalogue. (The oracle has its own table, so an error in the catalogue cannot hide itself.)
 
 use netcert::vehicle::{Catalogue, Vehicle};
 

@@ -1,8 +1,8 @@
-//! The region that ships.
+//! The shipped region.
 
 use std::path::{Path, PathBuf};
 
-/// Its extract.
+/// Path of its extract.
 pub(crate) fn demo() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data/demo.osm.pbf")
 }

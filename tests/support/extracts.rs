@@ -1,14 +1,14 @@
-//! Real extracts, which do not ship: those of the folder `NETCERT_EXTRACTS`, or else of `../shared/extracts`.
-//! A test without its extract says so and passes.
+//! Real extracts, which are not shipped. They are in the folder `NETCERT_EXTRACTS`, or else in `../shared/extracts`. A
+//! test without its extract says so and passes.
 
 use std::path::{Path, PathBuf};
 
-/// An extract, if it is there.
+/// Path of an extract, if it exists.
 pub(crate) fn extract(name: &str) -> Option<PathBuf> {
     folder_with(name).map(|folder| folder.join(name))
 }
 
-/// The folder of them all, if it has this file.
+/// The folder of the extracts, if it has this file.
 pub(crate) fn folder_with(name: &str) -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/extracts");
     let folder = std::env::var_os("NETCERT_EXTRACTS").map_or_else(beside, PathBuf::from);

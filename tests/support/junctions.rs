@@ -1,4 +1,5 @@
-//! Drawn junctions with kerbs of the test's own: turns and passages by name, who takes them, what is certified.
+//! Drawn junctions with kerbs of the test's own: turns and passages by name, the vehicles that can take them, and their
+//! certificates.
 
 use netcert::account::AccountRow;
 use netcert::certify::{TurnJob, best_of, certify_turns};
@@ -20,7 +21,7 @@ pub(crate) struct Drawn {
     pub(crate) params: TurnParams,
 }
 
-/// Certificates by the number of their vehicle, in the order in which they came, and the account of it.
+/// Certificates with the number of their vehicle, in the order made, and their account.
 pub(crate) type Certified = (Vec<(usize, TurnCertificate)>, Vec<AccountRow>);
 
 impl Drawn {
@@ -37,7 +38,7 @@ impl Drawn {
         turn_facts(&self.network, &self.params.kerbs)
     }
 
-    /// The turn by the nodes it passes: `EBC` from E over B to C.
+    /// The turn with the nodes that it passes: `EBC` from E over B to C.
     pub(crate) fn turn(&self, nodes: &str) -> TurnFacts {
         let ids: Vec<i64> = nodes.chars().map(id_of).collect();
         let is = |edge: u32, from: i64, to: i64| {
@@ -53,7 +54,7 @@ impl Drawn {
         self.facts().into_iter().filter(|turn| !turn.through.is_empty()).collect()
     }
 
-    /// From the end of one arm to that of another: `WE`.
+    /// The passage from the end of one arm to the end of another: `WE`.
     pub(crate) fn passage(&self, ends: &str) -> TurnFacts {
         let ids: Vec<i64> = ends.chars().map(id_of).collect();
         let edge = |edge: u32| &self.network.edges[edge as usize];
@@ -61,7 +62,7 @@ impl Drawn {
         self.passages().into_iter().find(fits).unwrap_or_else(|| panic!("{ends} is no passage"))
     }
 
-    /// Of a turn, by three nodes, or of a passage, by two ends.
+    /// Corridors of a turn (named by three nodes) or of a passage (named by two ends).
     pub(crate) fn corridors(&self, name: &str, policy: Policy, reach: Reach) -> Result<TurnCorridors, UnknownReason> {
         let turn = if name.len() == 2 { self.passage(name) } else { self.turn(name) };
         corridors_of(&self.network, &turn, policy, &self.params, reach)
@@ -78,7 +79,7 @@ impl Drawn {
         self.best(name, policy, id).is_some_and(|result| result.safe())
     }
 
-    /// Everything that turns, for vehicles to which the edges are `edges`.
+    /// Certifies all turns and passages. `edges` are the vehicles' verdicts on the edges.
     pub(crate) fn certified(&self, ids: &[&str], edges: &[Verdict], policy: Policy, threads: usize) -> Certified {
         let models: Vec<Model> = ids.iter().map(|id| Model::new(&catalogued(id)).unwrap()).collect();
         let edges = vec![edges.to_vec(); models.len()];

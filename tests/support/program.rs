@@ -1,4 +1,4 @@
-//! The built program in a folder of its own: `place.netcert("query --vehicle X").succeeds().tells("…")`.
+//! Runs the built program in a folder of its own: `place.netcert("query --vehicle X").succeeds().tells("…")`.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -12,10 +12,10 @@ use tempfile::TempDir;
 
 use super::demo::demo;
 
-/// A folder to work in, removed afterwards.
+/// A temporary working folder.
 pub(crate) struct Place(TempDir);
 
-/// What came of a run.
+/// The result of a run.
 pub(crate) struct Answer {
     line: String,
     output: Output,
@@ -26,7 +26,7 @@ impl Place {
         Self(TempDir::new().unwrap())
     }
 
-    /// With `demo.gpkg`: AU-SEMI19 and AU-ATRIPLE53 certified. Made once.
+    /// With `demo.gpkg`, in which AU-SEMI19 and AU-ATRIPLE53 are certified. The database is made once.
     pub(crate) fn with_demo() -> Self {
         static MADE: OnceLock<Vec<u8>> = OnceLock::new();
         let made = MADE.get_or_init(|| {
@@ -37,8 +37,8 @@ impl Place {
         Self::empty().file("demo.gpkg", made)
     }
 
-    /// With `demo.gpkg`: these certified where the whole carriageway counts, so that some get round corners. Made once for the
-    /// same vehicles.
+    /// With `demo.gpkg`, in which these vehicles are certified on the whole carriageway, so that some can turn corners.
+    /// The database is made once per set of vehicles.
     pub(crate) fn with_wide_demo(vehicles: &str) -> Self {
         static MADE: Mutex<BTreeMap<String, Arc<OnceLock<Vec<u8>>>>> = Mutex::new(BTreeMap::new());
         let of_these = Arc::clone(MADE.lock().unwrap().entry(vehicles.to_owned()).or_default());
@@ -69,12 +69,12 @@ impl Place {
         Database::open(&self.path("demo.gpkg")).unwrap()
     }
 
-    /// What `demo.gpkg` holds of a vehicle's lanes, by edge.
+    /// All rows of a vehicle in `demo.gpkg` under the lane policy, by edge.
     pub(crate) fn rows(&self, vehicle: &str) -> Vec<EdgeRow> {
         self.database().query(&QueryOptions::new(vehicle, Policy::Lane)).unwrap().map(Result::unwrap).collect()
     }
 
-    /// Changes `demo.gpkg` behind netcert's back: how many rows were changed.
+    /// Changes `demo.gpkg` without netcert. Returns the number of changed rows.
     pub(crate) fn sql(&self, statement: &str) -> u64 {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
         runtime.block_on(async {
@@ -85,7 +85,7 @@ impl Place {
         })
     }
 
-    /// Names of the files here, sorted.
+    /// Names of the files in the folder, sorted.
     pub(crate) fn files(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.0.path()).unwrap();
         let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
@@ -93,7 +93,7 @@ impl Place {
         names
     }
 
-    /// Arguments are parted by blanks; `{demo}` is the region that ships.
+    /// Arguments are separated by blanks. `{demo}` stands for the shipped region.
     pub(crate) fn command(&self, line: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_netcert"));
         command.current_dir(self.0.path()).env_remove("SOURCE_DATE_EPOCH").stdin(Stdio::null());
@@ -120,24 +120,24 @@ impl Answer {
         self.status(0)
     }
 
-    /// Exit status 1 and one error.
+    /// Expects exit status 1 and one error.
     pub(crate) fn fails(self) -> Self {
         assert_eq!(self.err().matches("error: ").count(), 1, "{}: {}", self.line, self.err());
         self.status(1)
     }
 
-    /// Exit status 2.
+    /// Expects exit status 2.
     pub(crate) fn ends_as_misuse(self) -> Self {
         self.status(2)
     }
 
-    /// On standard output.
+    /// Expects `text` on standard output.
     pub(crate) fn shows(self, text: &str) -> Self {
         assert!(self.out().contains(text), "{}: no {text:?} in\n{}", self.line, self.out());
         self
     }
 
-    /// On standard error.
+    /// Expects `text` on standard error.
     pub(crate) fn tells(self, text: &str) -> Self {
         assert!(self.err().contains(text), "{}: no {text:?} in\n{}", self.line, self.err());
         self

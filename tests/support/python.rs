@@ -1,10 +1,10 @@
-//! Python with packages from PyPI, in an environment under `target/engines`, made once.
+//! Python with packages from PyPI, in an environment under `target/engines` that is made once.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
 
-/// The interpreter of the environment of this name; `None`, with a line that says why, where it cannot be made.
+/// The interpreter of the environment with this name. If it cannot be made, prints why and returns `None`.
 pub(crate) fn python(name: &str, packages: &[&str]) -> Option<PathBuf> {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     let _guard = ONE_AT_A_TIME.lock().unwrap();

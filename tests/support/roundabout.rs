@@ -2,14 +2,14 @@
 
 use super::ascii_map::AsciiMap;
 
-/// The ring's nodes. Its way begins and ends at the first.
+/// The ring's nodes. Its way begins and ends at the first one.
 pub(crate) const RING: &str = "abcdefghijklmnopqrstuvwx";
 
 /// The end of each arm, and its node on the ring.
 const ARMS: [(char, char); 4] = [('W', 'a'), ('S', 'g'), ('E', 'm'), ('N', 's')];
 
-/// The ring is way 1, the arms follow. Counter-clockwise from the west, or clockwise where traffic keeps left: there N
-/// is in the south.
+/// A map whose ring is way 1, followed by the arms. The ring runs counter-clockwise from the west, or clockwise for
+/// left-hand traffic, where N is in the south.
 pub(crate) fn map(radius_m: f64, ring: &str, arm: &str, left_hand_traffic: bool) -> AsciiMap {
     let mirror = if left_hand_traffic { -1.0 } else { 1.0 };
     let at = |turn: f64, m: f64| {

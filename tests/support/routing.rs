@@ -1,4 +1,5 @@
-//! A region with everything that routes need, made in memory: network, movements, permits of one vehicle for edges and turns.
+//! A region in memory with everything that routes need: network, movements, and permits of one vehicle for edges and
+//! turns.
 
 use std::collections::HashMap;
 use std::ops::{Deref, DerefMut};
@@ -18,7 +19,7 @@ use netcert::turns::{Kerbs, turn_facts};
 use super::catalogue::catalogued;
 use netcert::reporter::Silent;
 
-/// A network.
+/// A network with its movements.
 pub(crate) struct Region {
     pub(crate) roads: Arc<Roads>,
     pub(crate) settings: Settings,
@@ -55,7 +56,7 @@ impl Region {
         Self::of(read_extract(path, &|_| ()).unwrap(), policy)
     }
 
-    /// The roads within so many degrees of the middle of an extract's nodes.
+    /// The roads within the given degrees of the middle of an extract's nodes.
     pub(crate) fn read_middle(path: &Path, policy: Policy, about_deg: [f64; 2]) -> Self {
         let mut extract = read_extract(path, &|_| ()).unwrap();
         let degrees = |id: &i64| extract.nodes.place(*id).map(LonLat::degrees);
@@ -98,7 +99,7 @@ impl Region {
         Driver(Arc::new(route::Driver { model, permits }))
     }
 
-    /// As the pipeline certifies them.
+    /// Permits with turns, certified as the pipeline does.
     fn with_turns(&self, model: &Model, edges: Vec<Permit>) -> Permits {
         let settings = self.settings();
         let turns = turn_facts(&self.network, &settings.kerbs);

@@ -1,5 +1,5 @@
-//! A made-up network with every kind of value that the store must give back: all limits, permissions, sources and
-//! directions, shared shapes, narrow places, strokes with approach. Size to order.
+//! A synthetic network of any size with every kind of value that the store must give back: all limits, permissions,
+//! sources and directions, shared shapes, narrow places, strokes with approach.
 
 use netcert::network::{Area, Areas, Edge, Narrowing, Network, Restriction, Road, Stroke};
 use netcert::osm::LonLat;
@@ -15,7 +15,7 @@ const CLASSES: [RoadClass; 5] =
 const SOURCES: [WidthSource; 5] =
     [WidthSource::Assumed, WidthSource::FromLanes, WidthSource::Estimated, WidthSource::Tagged, WidthSource::Surveyed];
 
-/// A grid of `ways` roads, 20 in a row, each cut into two edges a direction (every third is a oneway).
+/// A grid of `ways` roads, 20 in a row, each cut into two edges per direction. Every third road is one-way.
 pub(crate) fn network(ways: u32) -> Network {
     let mut network = Network::default();
     for way in 0..ways {
@@ -88,7 +88,7 @@ fn add_way(network: &mut Network, way: u32) {
     }
 }
 
-/// Edges in threes, each stroke with the last edge of the one before as its approach.
+/// Strokes of three edges, each with the last edge of the previous stroke as its approach.
 fn add_strokes(network: &mut Network) {
     let edges: Vec<u32> = (0..network.edges.len() as u32).collect();
     for (no, chain) in edges.chunks(3).enumerate() {
@@ -101,7 +101,7 @@ fn add_strokes(network: &mut Network) {
     }
 }
 
-/// Of two, three and four edges in turn, of both kinds and every turn.
+/// Restrictions of two, three and four edges in turn, of both kinds and every turn.
 fn add_restrictions(network: &mut Network) {
     let turns = ["left_turn", "right_turn", "straight_on", "u_turn", "entry", "exit"];
     for no in 0..network.edges.len() as u32 / 7 {
@@ -146,7 +146,7 @@ fn legal(k: u32) -> Legal {
     }
 }
 
-/// A certificate of every kind, by edge; `seed` tells vehicles apart.
+/// A certificate of every kind, by edge. `seed` distinguishes vehicles.
 pub(crate) fn certificate(edge: u32, seed: u32) -> EdgeCertificate {
     let k = edge.wrapping_mul(2_654_435_761).wrapping_add(seed.wrapping_mul(40_503)) >> 8;
     let verdict = match k % 10 {

@@ -1,5 +1,5 @@
-//! Whether a text is well-formed XML, as far as pictures use it: elements nest, attributes are quoted and not repeated,
-//! markup characters are escaped. An independent reader of what the program writes.
+//! Tests whether a text is well-formed XML, as far as pictures use it: elements nest, attributes are quoted and not
+//! repeated, markup characters are escaped. It is independent of the program's writer.
 
 /// Panics with the place of the first fault.
 pub(crate) fn well_formed(text: &str) {

@@ -1,5 +1,5 @@
-//! What certifying, checking and simulating share, and nothing else: vehicles, corridors, the words of a verdict. No computing of certificates,
-//! no maps, no databases.
+//! Types that prover, checker and simulator share: vehicles, corridors, verdicts. This crate computes no certificates
+//! and knows neither maps nor databases.
 
 pub mod corridor;
 pub mod pace;

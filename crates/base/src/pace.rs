@@ -1,7 +1,7 @@
-//! When a vehicle is where: the paper's tubes are functions of time, a corridor only of arc length.
+//! Converts arc length to time. The paper's tubes are functions of time, and a corridor knows arc length only.
 //!
-//! Promises times that grow along the corridor, of a vehicle that keeps to a limit and, in bends, to a lateral
-//! acceleration. Leaves out braking and accelerating between the two: no certificate depends on it.
+//! Times grow along the corridor. The vehicle keeps to a speed limit and, in bends, to a lateral acceleration. Braking
+//! and accelerating between the two are ignored, because no certificate depends on these times.
 
 use crate::corridor::Corridor;
 
@@ -10,12 +10,13 @@ use crate::corridor::Corridor;
 pub struct Pace {
     /// Speed limit, m/s, > 0.
     pub limit_m_s: f64,
-    /// Lateral acceleration that is not exceeded, m/s², > 0.
+    /// Largest lateral acceleration, m/s², > 0.
     pub lateral_m_s2: f64,
 }
 
-/// 80 km/h, the limit for heavy vehicles on rural roads in most of Europe; 2 m/s², what drivers of loaded heavy vehicles keep
-/// to in bends: a third to a half of what rolls the worst of them over (0.35 g, 3.4 m/s²).
+/// The limit is 80 km/h, which heavy vehicles must keep on rural roads in most of Europe. The lateral acceleration is 2
+/// m/s², which drivers of loaded heavy vehicles keep in bends. The least stable heavy vehicles roll over at 3.4 m/s²
+/// (0.35 g).
 impl Default for Pace {
     fn default() -> Self {
         Self { limit_m_s: 80.0 / 3.6, lateral_m_s2: 2.0 }
@@ -23,13 +24,14 @@ impl Default for Pace {
 }
 
 impl Pace {
-    /// Speed where the path's curvature is `curvature` (1/m), m/s.
+    /// Speed (m/s) where the path has curvature `curvature` (1/m).
     #[must_use]
     pub fn speed_m_s(&self, curvature: f64) -> f64 {
         (self.lateral_m_s2 / curvature.abs()).sqrt().min(self.limit_m_s)
     }
 
-    /// Seconds from the corridor's first station to each; between stations the mean of the speeds at both.
+    /// Seconds from the first station to each station. Between two stations the speed is the mean of the speeds at
+    /// both.
     #[must_use]
     pub fn times_s(&self, corridor: &Corridor) -> Vec<f64> {
         let mut times = Vec::with_capacity(corridor.len());

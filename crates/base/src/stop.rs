@@ -1,26 +1,27 @@
-//! Work that may be told to stop: it asks now and then, and whoever started it says so from another thread.
+//! Cancellation: work polls a shared [`Stop`], and another thread sets it.
 //!
-//! Promises nothing about how soon: each kind of work says where it asks. What has been stopped has no result, and what
-//! has not been stopped has the result that it would have without asking. No clock: who has one tells.
+//! Each kind of work documents where it polls; no latency is promised. Cancelled work has no result. Work that is not
+//! cancelled has the same result as without polling. This module has no clock: a caller with a deadline calls
+//! [`Stop::tell`].
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// Whether work is to stop; copies speak of the same work. [`Stop::default`]: never, unless a copy is told. Once told it
-/// stays so.
+/// A cancellation flag. Clones share one flag. [`Stop::default`] stays unset until [`Stop::tell`] sets it, and a set
+/// flag stays set.
 #[derive(Debug, Clone, Default)]
 pub struct Stop(Arc<State>);
 
 #[derive(Debug, Default)]
 struct State {
     told: AtomicBool,
-    /// How often it may still be asked.
+    /// How many polls are left before the flag sets itself.
     left: Option<AtomicUsize>,
 }
 
-/// Work that has been stopped.
+/// The error of cancelled work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("stopped before it was done")]
+#[error("cancelled before it finished")]
 pub struct Stopped;
 
 impl Stop {
@@ -30,18 +31,18 @@ impl Stop {
         Self::default()
     }
 
-    /// Tells itself once it has been asked so often: a bound on work that does not depend on the machine.
+    /// A flag that sets itself after `questions` polls. It bounds work independently of the machine's speed.
     #[must_use]
     pub fn after(questions: usize) -> Self {
         Self(Arc::new(State { told: AtomicBool::new(false), left: Some(AtomicUsize::new(questions)) }))
     }
 
-    /// Tells the work to stop.
+    /// Cancels the work.
     pub fn tell(&self) {
         self.0.told.store(true, Ordering::Relaxed);
     }
 
-    /// Whether it has been told.
+    /// Polls the flag: whether the work is cancelled.
     #[must_use]
     pub fn told(&self) -> bool {
         let less = |left: usize| left.checked_sub(1);
@@ -49,10 +50,10 @@ impl Stop {
         self.0.told.load(Ordering::Relaxed) || self.0.left.as_ref().is_some_and(used_up)
     }
 
-    /// For `?`.
+    /// Polls the flag, for use with `?`.
     ///
     /// # Errors
-    /// It has been told to stop.
+    /// [`Stopped`] if the work is cancelled.
     pub fn check(&self) -> Result<(), Stopped> {
         if self.told() { Err(Stopped) } else { Ok(()) }
     }

@@ -1,20 +1,20 @@
-//! What is said of an edge and a vehicle, always with its reason.
+//! The verdict on an edge and a vehicle, always with its reason.
 //!
-//! `Safe` holds within the stated model, widths and error bounds only. When in doubt the answer is `Unknown`
-//! or `Unsafe`: no variant may be constructed from a guess.
+//! `Safe` holds only within the stated model, widths and error bounds. In doubt the verdict is `Unknown` or `Unsafe`.
+//! No verdict may be made from a guess.
 
 use serde::{Deserialize, Serialize};
 
-/// The answer for one edge and one vehicle. The reasons are stable, lower-case identifiers in files.
+/// The verdict on one edge and one vehicle. Files write the reasons as stable, lower-case identifiers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Verdict {
     /// RSC ≥ 0 and hinge margin ≥ 0.
     Safe,
-    /// The certificate refutes it, or cannot prove it.
+    /// The certificate refutes the passage, or cannot prove it.
     Unsafe(UnsafeReason),
-    /// A tagged limit or access rule forbids it, whatever the geometry says.
+    /// A tagged limit or access rule forbids the passage, whatever the geometry says.
     Forbidden(ForbiddenReason),
-    /// Nothing can be said.
+    /// Too little is known for a verdict.
     Unknown(UnknownReason),
 }
 
@@ -23,13 +23,13 @@ pub enum Verdict {
 pub enum UnsafeReason {
     /// RSC < 0: the swept bodies need more width than the corridor has.
     Width,
-    /// A hinge would exceed its limit (or the bound's recursion does not close).
+    /// A hinge would exceed its limit, or the recursion of the bounds does not close.
     Articulation,
     /// The prime mover would need more than its steering lock.
     SteeringLock,
 }
 
-/// Which tagged rule forbids the vehicle.
+/// The tagged rule that forbids the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ForbiddenReason {
     /// `maxheight`, `maxheight:physical`
@@ -42,25 +42,25 @@ pub enum ForbiddenReason {
     Length,
     /// `maxwidth`, `maxwidth:physical`
     Width,
-    /// `hgv=no` and its kind
+    /// `hgv=no` and its variants.
     Hgv,
     /// `access`, `vehicle`, `motor_vehicle` = no or private
     Access,
     /// A barrier node that a vehicle of this kind cannot pass.
     Barrier,
-    /// A turn restriction; of turns only.
+    /// A turn restriction. Turns only.
     Restriction,
 }
 
-/// Why nothing can be said.
+/// Why there is no verdict.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum UnknownReason {
     /// No width can be derived.
     Width,
     /// Too short, folded back on itself, or not smoothable within the tolerance.
     Geometry,
-    /// The extract ends on this edge: what comes before or after is not known.
+    /// The extract ends on this edge, so the road before or after it is unknown.
     Cut,
-    /// A limit is tagged whose value could not be read.
+    /// A tagged limit has a value that cannot be read.
     Limit,
 }

@@ -1,24 +1,25 @@
-//! The exact bound on a curve (proof, section 6): the adjoint of the time-varying chain, run backwards from one place.
+//! The exact bound on a curve (proof, section 6): the adjoint of the time-varying chain, run backwards from one node.
 //!
-//! Kernels are solved step by step with mean coefficients and linear sources. What that leaves over – coefficients that
-//! vary within a step, the bow of a source, of |kernel| between nodes – is bounded term by term and added, each times a bound on
-//! what it multiplies; so the kernels themselves may be off by whatever they are.
+//! Kernels are solved step by step with mean coefficients and linear sources. The remainder comes from coefficients
+//! that vary within a step, from the curvature of a source, and from that of |kernel| between nodes. Each term of the
+//! remainder is bounded, multiplied by a bound on what it acts on, and added. The kernels themselves therefore need not
+//! be exact.
 
 use crate::UP;
 use crate::chain::Chain;
 use crate::tubes::Tubes;
 
-/// History is cut when what came before it cannot matter more than this, metres (or radians).
+/// The history is cut where earlier inputs add no more than this, metres (or radians).
 const CUT: f64 = 2e-5;
 
 /// Coefficients of one unit over one step, for the adjoint.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Coefficients {
-    /// Mean ρ/L, and most by which it differs from it.
+    /// Mean ρ/L, and the largest difference from the mean.
     rate: [f64; 2],
-    /// ρ / (L cos δ): the same all through the step.
+    /// ρ / (L cos δ), constant over the step.
     pace: f64,
-    /// Mean cos χ (1+k) and cos χ k / cos δ, and most by which they differ.
+    /// Means of cos χ (1+k) and of cos χ k / cos δ, each with the largest difference from the mean.
     through: [f64; 2],
     back: [f64; 2],
     /// 1/cos δ, cos χ (1+k) and cos χ k / cos δ at the end of the step.
@@ -43,7 +44,7 @@ impl Coefficients {
     }
 }
 
-/// Kernels of `W` outputs over one step: at its beginning and its end, and a bound on their second derivatives between.
+/// Kernels of `W` outputs over one step: at its start, at its end, and a bound on their second derivatives in between.
 #[derive(Debug, Clone, Copy)]
 struct Kernel<const W: usize> {
     from: [f64; W],
@@ -54,7 +55,7 @@ struct Kernel<const W: usize> {
 impl<const W: usize> Kernel<W> {
     const NONE: Self = Self { from: [0.0; W], to: [0.0; W], bow: [0.0; W] };
 
-    /// ∫|kernel| over a step of `h`.
+    /// Upper bound of ∫|kernel| over a step of `h`.
     fn sum(&self, w: usize, h: f64) -> f64 {
         0.5 * h * (self.from[w].abs() + self.to[w].abs()) + h * h * h / 12.0 * self.bow[w]
     }
@@ -64,17 +65,17 @@ impl<const W: usize> Kernel<W> {
     }
 }
 
-/// What is bounded.
+/// An output to bound.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Output {
-    /// A body point so many metres ahead of the axle.
+    /// The lateral place of a body point, metres ahead of the axle.
     Point(f64),
     /// The heading.
     Heading,
 }
 
-/// Bounds on outputs of `unit` at a node, the end of step `node − 1`, several side by side. `None` where a step of the
-/// history is unbounded.
+/// Bounds on `W` outputs of `unit` at a node, which is the end of step `node − 1`. `None` if a step of the history has
+/// no bounds.
 pub(crate) fn bounds<const W: usize>(
     chain: &Chain,
     tubes: &Tubes,
@@ -88,7 +89,7 @@ pub(crate) fn bounds<const W: usize>(
     let mut total = fold(chain, tubes, unit, last, outputs, &mut mu)?;
     for step in (tubes.first..=last).rev() {
         back_one_step(chain, tubes, step, &mut mu, h, &mut total)?;
-        // Now μ stands at the beginning of `step`.
+        // μ now stands at the start of `step`.
         if step % 4 == 0 || step == tubes.first {
             let mut rest = [0.0; W];
             for (j, mu) in mu.iter().enumerate() {
@@ -103,13 +104,13 @@ pub(crate) fn bounds<const W: usize>(
     None
 }
 
-/// What a bound may bow up between the nodes of a step.
+/// Largest factor by which a bound may exceed its values at the two nodes of a step.
 pub(crate) fn bow(chain: &Chain, unit: usize, step_m: f64) -> f64 {
     let least = chain.links[..=unit].iter().map(|link| link.l).fold(f64::INFINITY, f64::min);
     1.0 + 0.5 * (step_m / least).powi(2)
 }
 
-/// Folds the outputs' direct part from the back to the front: what acts at once.
+/// Folds the direct part of the outputs from the back to the front: the inputs that act without lag.
 fn fold<const W: usize>(
     chain: &Chain,
     tubes: &Tubes,
@@ -140,7 +141,7 @@ fn fold<const W: usize>(
     Some(std::array::from_fn(|w| total[w] + n[w].abs() * input))
 }
 
-/// Carries μ from the end of a step to its beginning; adds what the step's inputs can do.
+/// Carries μ from the end of a step to its start, and adds the effect of the step's inputs.
 fn back_one_step<const W: usize>(
     chain: &Chain,
     tubes: &Tubes,
@@ -176,12 +177,12 @@ fn back_one_step<const W: usize>(
             nu.from[w] = c.pace * from - c.back[0] * behind.from[w];
             nu.to[w] = c.pace * to - c.back[0] * behind.to[w];
             nu.bow[w] = c.pace * bow + c.back[0].abs() * behind.bow[w];
-            // What varies within the step, on the axle and on the coupling.
+            // Variation within the step, on the axle and on the coupling.
             let on_axle = kernel.most(0, h) * rate_off
                 + behind.most(w, h) * c.through[1]
                 + c.through[0].abs() * behind.bow[w] * h * h / 8.0;
             let off_coupling = behind.most(w, h) * c.back[1];
-            // Slips and second order first.
+            // Slips and second order.
             let inputs = kernel.sum(0, h) * slips + nu.sum(w, h) * input;
             total[w] += (inputs + h * (on_axle * tube.y + off_coupling * tube.e)) * UP;
         }

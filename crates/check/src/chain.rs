@@ -1,4 +1,4 @@
-//! The vehicle as the proof has it: lengths, hitches, slips; and its gains, once for all roads.
+//! The vehicle in the proof's terms: lengths, hitches, slips. Its straight gains are computed once for all roads.
 
 use crate::gains::Gains;
 use crate::motion::DEFECT_RAD;
@@ -13,13 +13,13 @@ pub(crate) struct Link {
     pub(crate) d: f64,
     /// d / L.
     pub(crate) k: f64,
-    /// σ, with what the nominal motion's rounding is worth, radians.
+    /// σ plus an allowance for rounding of the nominal motion, radians.
     pub(crate) sway: f64,
     /// θ, radians.
     pub(crate) limit: f64,
     /// b/2, metres.
     pub(crate) half_width: f64,
-    /// The body's ends, metres ahead of the axle.
+    /// The body's rear and front ends, metres ahead of the axle.
     pub(crate) rear: f64,
     pub(crate) front: f64,
 }
@@ -36,7 +36,7 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// Works out the gains: some tens of milliseconds.
+    /// Computes the gains, which takes some tens of milliseconds.
     #[must_use]
     pub fn new(vehicle: &Vehicle) -> Self {
         let link = |unit: &netcert_base::vehicle::Unit| Link {
@@ -54,7 +54,7 @@ impl Chain {
         Self { links, tolerance_m: vehicle.tracking_tolerance_m, heading_rad: vehicle.tracking_heading_rad, gains }
     }
 
-    /// From the foremost point to the rearmost when straight, and the most that is ahead of the steer axle, metres.
+    /// With the vehicle straight, metres: from the steer axle to the foremost point, and to the rearmost point.
     pub(crate) fn reach_m(&self) -> (f64, f64) {
         let (mut coupling, mut ahead, mut behind) = (0.0, 0.0_f64, 0.0_f64);
         for link in &self.links {

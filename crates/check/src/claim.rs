@@ -1,4 +1,4 @@
-//! What is claimed of one vehicle on one corridor, and what comes of it. Pure: no input or output.
+//! Claims about one vehicle on one corridor, and their check. Pure: no input or output.
 
 use std::ops::Range;
 
@@ -8,59 +8,60 @@ use crate::motion::{Motion, STEPS};
 use crate::road::{Place, Road, RoadError};
 use netcert_base::corridor::Corridor;
 
-/// A claim counts as proved if the bound found here is no more than this below it, metres: the two programs cut the road into
-/// steps differently. It is deducted here and nowhere else.
+/// A claim counts as proved if it is at most this far above the bound found here, metres. The two programs cut the road
+/// into different steps. The tolerance is applied here and nowhere else.
 pub const TOLERANCE_M: f64 = 1e-3;
-/// The same for hinge margins, radians (0.02°).
+/// The tolerance of hinge margins, radians (0.02°).
 pub(crate) const TOLERANCE_RAD: f64 = 0.02 * std::f64::consts::PI / 180.0;
 
-/// A leeway below minus this says that nothing is bounded.
+/// A leeway below minus this means that nothing is bounded.
 const NOTHING_M: f64 = 50.0;
 
-/// Where the least leeway is said to be it may be found this much above the RSC, metres: the two programs deduct different amounts
-/// for what lies between their steps.
+/// The claimed limiting place may have this much more room than the RSC, metres. The two programs deduct different
+/// amounts for what lies between their steps.
 const LIMITING_TOLERANCE_M: f64 = 0.06;
 
-/// The rear is on the road until the steer axle is so many vehicle lengths on: a quarter turn's arc for its chord (proof, section 7).
+/// Vehicle lengths by which the rear may lag behind the steer axle: the arc of a quarter turn instead of its chord
+/// (proof, section 7).
 const FARTHEST: f64 = 1.6;
 
-/// … and so many stations from there: the prover looks at stations in blocks of eight.
+/// Stations by which the limiting place may lie beyond the span: the prover works on stations in blocks of eight.
 const LIMITING_BEYOND: f64 = 8.0;
 
-/// What came of a claim.
+/// The result of a claim.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// Proved, to the tolerance.
+    /// Proved, within the tolerance.
     Confirmed,
-    /// Not proved; by how much the bound falls short, and where.
+    /// Not proved; says by how much the bound falls short, and where.
     NotConfirmed(Vec<Finding>),
-    /// Not a claim that could be true: a value is missing, impossible or contradicts another.
+    /// A value is missing, impossible or contradicts another.
     Malformed(String),
 }
 
-/// One thing that is not proved.
+/// One claim that is not proved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
-    /// `rsc_m`, `hinge_margin_deg`, `safe` …
+    /// Name of the claim: `rsc_m`, `hinge_margin_deg`, `safe` …
     pub claim: String,
-    /// By how much, and where, in words.
+    /// Size and place of the difference, in words.
     pub detail: String,
-    /// Nothing at all is bounded there: the claim is not proved, but nothing speaks against it either.
+    /// There is no bound at all at that place. The claim is not proved, but nothing contradicts it either.
     pub unbounded: bool,
 }
 
-/// What is claimed of a span of stations.
+/// The claims about a span of stations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpanClaim {
-    /// Stations of the corridor, as `EdgeSpan` has them.
+    /// Stations of the corridor, as in `EdgeSpan`.
     pub stations: Range<usize>,
-    /// Least leeway, metres; `None`: nothing is claimed.
+    /// Least leeway, metres. `None` claims nothing.
     pub rsc_m: Option<f64>,
     /// Least hinge margin, radians.
     pub hinge_margin_rad: Option<f64>,
     /// γ.
     pub shrink: f64,
-    /// Where the least leeway is said to be: metres along the corridor, unit, side (0 left, 1 right), as far as that is known.
+    /// Claimed place of the least leeway, if known: metres along the corridor, unit, side (0 left, 1 right).
     pub limiting: Option<(f64, usize, usize)>,
 }
 
@@ -69,16 +70,17 @@ pub struct Subject<'a> {
     pub(crate) chain: &'a Chain,
     pub(crate) road: Road,
     pub(crate) motion: Option<Motion>,
-    /// Of the steer axle's path at the corridor's stations, metres.
+    /// Shift of the steer axle's path at the corridor's stations, metres.
     shifts: Vec<f64>,
 }
 
 impl<'a> Subject<'a> {
-    /// `shift(s)`: the plan, metres left of the centreline at `s` stations from the corridor's first; it is held beyond both ends.
-    /// `lenient`: stations that do not fit make their stretch one on which nothing is confirmed, not an error.
+    /// `shift(s)` is the plan: metres left of the centreline at `s` stations from the corridor's first. It is held
+    /// beyond both ends. With `lenient`, a station that does not fit is no error; nothing is confirmed on the stretch
+    /// before it.
     ///
     /// # Errors
-    /// Stations that do not fit each other.
+    /// [`RoadError`] if stations do not fit each other.
     pub fn new(
         chain: &'a Chain,
         corridor: &Corridor,
@@ -98,7 +100,7 @@ impl<'a> Subject<'a> {
         Ok(Self { chain, road, motion, shifts })
     }
 
-    /// The shift of the steer axle's path `s` stations from the corridor's first, metres.
+    /// Shift of the steer axle's path `s` stations from the corridor's first, metres.
     pub(crate) fn planned(&self, s: f64) -> f64 {
         let last = self.shifts.len() - 1;
         let s = s.clamp(0.0, last as f64);
@@ -106,7 +108,7 @@ impl<'a> Subject<'a> {
         self.shifts[k] + (self.shifts[(k + 1).min(last)] - self.shifts[k]) * (s - k as f64)
     }
 
-    /// What comes of each claim, and how many kilometres of corridor were swept.
+    /// Checks the claims. Returns the findings of each claim; a claim without findings is proved.
     #[must_use]
     pub fn check(&self, claims: &[SpanClaim]) -> Vec<Vec<Finding>> {
         let mut findings = vec![Vec::new(); claims.len()];
@@ -147,8 +149,9 @@ impl<'a> Subject<'a> {
         findings
     }
 
-    /// Why two columns of leeway (left, right), one entry a station at γ = 1, are not proved. An entry claims what a span of its station
-    /// alone would: the leeway all over both stretches that meet there.
+    /// Checks two columns of leeway (left, right), with one entry per station at γ = 1. Each entry claims what a span
+    /// of its station alone would: the leeway over both stretches that meet there. Returns for each side why it is not
+    /// proved, or `None`.
     pub fn leeway_columns(&self, columns: [&[Option<f64>]; 2]) -> [Option<String>; 2] {
         let stretches = self.road.count - 1;
         let claimed = |column: &[Option<f64>], k: usize| {
@@ -170,14 +173,14 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// What is between a body point and the edge beside it as it passes the normal `s` metres along the corridor, steered exactly.
+    /// Nominal leeway of a body point as it passes the normal `s` metres along the corridor, with exact steering.
     pub fn nominal_at(&self, s: f64, unit: usize, side: usize, a: f64) -> Option<f64> {
         let swept = self.swept(self.chain.tolerance_m)?;
         swept.nominal_at(s / self.road.spacing + self.road.lead as f64, unit, side, a)
     }
 
-    /// The place that limits must be on the span, and have no more room than the RSC, nearly: by the filter, to which the prover may have
-    /// kept.
+    /// Checks the limiting place: it must be on the span and have hardly more room than the RSC. The filter's bounds
+    /// decide, because the prover may have used the filter.
     fn limiting(&self, filtered: &mut Swept<'_>, claim: &SpanClaim) -> Option<Finding> {
         let ((at_m, unit, side), rsc_m) = (claim.limiting?, claim.rsc_m.filter(|rsc_m| *rsc_m > -NOTHING_M)?);
         let own = self.stretches(&claim.stations);
@@ -190,9 +193,10 @@ impl<'a> Subject<'a> {
         let at = at.clamp(own.start as f64, own.end as f64 - 1.0);
         let beyond = LIMITING_BEYOND as usize;
         let near = (at as usize).saturating_sub(beyond)..(at as usize + beyond).min(stretches);
-        // Where half-widths kink the prover deducts half the kink, which it may have stepped over; it is looked at as it is here.
+        // Where half-widths kink, the prover deducts half the kink, which it may have stepped over. The checker
+        // examines the kink itself.
         let kink_m = 0.5 * self.road.kink(side, self.road.lead + near.start..self.road.lead + near.end);
-        // Where much is to spare, or missing, the two part by more: there nothing rests on it.
+        // Where much room is left or missing, the two programs differ by more, but nothing depends on it.
         targets[side][near].fill(rsc_m + LIMITING_TOLERANCE_M + kink_m + 0.25 * rsc_m.abs());
         let roomy = filtered.refute_only(&Targets(targets), Some(unit)).is_empty();
         roomy.then(|| {
@@ -205,24 +209,24 @@ impl<'a> Subject<'a> {
         Some(self.motion.as_ref()?.pose((self.road.lead + k) * STEPS, unit).p)
     }
 
-    /// How far off an axle may be when the steer axle is at station `k`: the filter's bound if that is no more than `enough`, else the
-    /// adjoint's.
+    /// Bound of an axle's deviation when the steer axle is at station `k`. It is the filter's bound if that is at most
+    /// `enough`, otherwise the adjoint's.
     pub fn tube_at(&self, swept: &mut Swept<'_>, k: usize, unit: usize, enough: f64) -> Option<f64> {
         let step = (self.road.lead + k) * STEPS;
         swept.axle_bound(step.checked_sub(1)?, unit, enough)
     }
 
-    /// The vehicle swept at a tolerance.
+    /// The vehicle swept at a tolerance, metres.
     pub fn swept(&self, tolerance_m: f64) -> Option<Swept<'_>> {
         Some(Swept::new(self.chain, &self.road, self.motion.as_ref()?, tolerance_m))
     }
 
-    /// The same, by the filter alone.
+    /// As [`Self::swept`], by the filter alone.
     pub fn filtered(&self, tolerance_m: f64) -> Option<Swept<'_>> {
         Some(Swept::filtered(self.chain, &self.road, self.motion.as_ref()?, tolerance_m))
     }
 
-    /// Foot of a point near `s` (stations of the road), and its lateral place.
+    /// The foot of a point near `guess` (stations of the road), its place, and the point's lateral place.
     pub(crate) fn foot(&self, x: [f64; 2], guess: f64) -> Option<(f64, Place, f64)> {
         foot(&self.road, x, guess)
     }
@@ -240,7 +244,7 @@ impl<'a> Subject<'a> {
         let shortfalls = swept.refute(&Targets([side.clone(), side.clone()]));
         for &i in own {
             let Some(rsc_m) = claims[i].rsc_m else { continue };
-            // A stretch that two spans share was asked for the greater claim.
+            // A stretch shared by two spans was tested for the greater claim.
             let short = |s: &Shortfall, k: usize| s.short_m - (side[k] - asked(rsc_m));
             let worst = shortfalls
                 .iter()
@@ -259,7 +263,7 @@ impl<'a> Subject<'a> {
 
     fn describe(&self, short_m: f64, at: &Shortfall) -> String {
         if short_m.is_infinite() {
-            return format!("{:.1} m: no bound at all there (unit {})", at.station * self.road.spacing, at.unit);
+            return format!("{:.1} m: no bound holds there (unit {})", at.station * self.road.spacing, at.unit);
         }
         format!(
             "off by {:.4} m or more at {:.1} m: unit {}, {} side, {:.1} m ahead of its axle",
@@ -271,7 +275,7 @@ impl<'a> Subject<'a> {
         )
     }
 
-    /// Stretches between the stations of a span; of a single station, those that meet there.
+    /// Stretches between the stations of a span. For a single station, the stretches that meet there.
     fn stretches(&self, stations: &Range<usize>) -> Range<usize> {
         let last = self.road.count - 1;
         let (from, to) = (stations.start.min(last), stations.end.saturating_sub(1).min(last));
@@ -298,18 +302,19 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// What must be found for an RSC to count as proved. Of one below zero nothing is promised to anybody, and the two programs' second
-/// orders part where a vehicle stands metres outside: there, to a thousandth of it.
+/// The bound needed to prove an RSC. A negative RSC promises nothing to anybody, and the second orders of the two
+/// programs differ where a vehicle stands metres outside. There an additional thousandth of the RSC is allowed.
 fn asked(rsc_m: f64) -> f64 {
     rsc_m - TOLERANCE_M + 1e-3 * rsc_m.min(0.0)
 }
 
-/// The same of a single station's entry. Where the vehicle stands outside, on normals that crowd, it is confirmed to a twentieth.
+/// The bound needed to prove a single station's entry. Where the vehicle stands outside, on normals that crowd, a
+/// twentieth is allowed.
 fn asked_alone(leeway_m: f64) -> f64 {
     leeway_m - TOLERANCE_M + 0.05 * leeway_m.min(0.0)
 }
 
-/// One thing that is not proved, with what is found.
+/// A claim that is not proved, with the reason.
 #[must_use]
 pub fn finding(claim: &str, detail: &str) -> Finding {
     Finding { claim: claim.to_owned(), detail: detail.to_owned(), unbounded: false }

@@ -1,20 +1,21 @@
-//! Exact gains on the straight (proof, section 4): the L¹ norms of the impulse responses, bounded from above.
+//! Exact gains on the straight (proof, section 4): L¹ norms of the impulse responses, bounded from above.
 //!
-//! The chain `L y′ = e − y + L slip`, `e⁺ = (1 + k) y − k e` is carried on by its matrix exponential in intervals. Over a step the
-//! trapezoid of |f| lies above ∫|f| but for h³/12 of the largest |f″|, which comes from the states by the same recursion
-//! taken absolutely; so does what is left after the last step. Both are added, so the result is never too small.
+//! The chain `L y′ = e − y + L slip`, `e⁺ = (1 + k) y − k e` is propagated by its matrix exponential in intervals. Over
+//! a step the trapezoid of |f| plus h³/12 of the largest |f″| bounds ∫|f|. The bound of |f″| comes from the states by
+//! the same recursion with absolute values, and so does the integral after the last step. Both are added, so the result
+//! is never too small.
 
 use crate::UP;
 use crate::chain::Link;
 use crate::interval::Interval;
 
-/// Most between the points of a body at which gains are kept, metres; linear between, which is never less (convex). At 0.25 a
-/// kink between two of them cost a millimetre.
+/// Largest distance between the points of a body with stored gains, metres. Gains are convex, so linear interpolation
+/// between the points is never too small. At 0.25 a kink between two points cost a millimetre.
 const KNOT_M: f64 = 0.0625;
-/// What may be left of a response when it is no longer followed, of its gain.
+/// Share of a response's integral at which it is no longer followed.
 const REST: f64 = 1e-6;
 
-/// What the steer axle's ε contributes (for each metre of it), and what all slips do, metres or radians.
+/// Gain from the steer axle's tolerance (per metre of ε), and from all slips at their bounds, metres or radians.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Gain {
     tolerance: f64,
@@ -22,7 +23,7 @@ pub(crate) struct Gain {
 }
 
 impl Gain {
-    /// At a tolerance of γε metres.
+    /// The gain at a tolerance of γε metres.
     pub(crate) fn at(self, tolerance_m: f64) -> f64 {
         (self.tolerance * tolerance_m + self.sway) * UP
     }
@@ -41,24 +42,24 @@ pub(crate) struct UnitGains {
 }
 
 impl UnitGains {
-    /// g(a): the most that the point `a` metres ahead of the axle is off, metres.
+    /// g(a): largest deviation of the point `a` metres ahead of the axle, metres.
     pub(crate) fn point(&self, a: f64, tolerance_m: f64) -> f64 {
         let value = |k: usize| self.points[k].at(tolerance_m);
         self.knots.between(a, value, self.heading.at(tolerance_m))
     }
 }
 
-/// Points along a body, evenly spaced, with the axle and the front coupling among them: there bounds have their kinks.
+/// Evenly spaced points along a body. The axle and the front coupling are among them, because bounds have kinks there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Knots {
     step: f64,
-    /// Knots behind the axle, and all.
+    /// Number of knots behind the axle, and of all knots.
     behind: usize,
     count: usize,
 }
 
 impl Knots {
-    /// At most `most_m` apart, and beyond the body by half its width and a little.
+    /// Knots at most `most_m` apart. They reach beyond the body by half its width and a little more.
     pub(crate) fn new(link: &Link, most_m: f64) -> Self {
         let step = link.l / (link.l / most_m).ceil();
         let reach = |m: f64| ((m + link.half_width) / step).ceil().max(0.0) as usize + 1;
@@ -66,12 +67,12 @@ impl Knots {
         Self { step, behind, count: behind + reach(link.front.max(link.l)) + 1 }
     }
 
-    /// Metres ahead of the axle.
+    /// Places of the knots, metres ahead of the axle.
     pub(crate) fn places(self) -> impl ExactSizeIterator<Item = f64> {
         (0..self.count).map(move |k| (k as f64 - self.behind as f64) * self.step)
     }
 
-    /// The knots that chords over an interval rest on.
+    /// The knots whose chords cover an interval.
     pub(crate) fn about(self, [from, to]: [f64; 2]) -> std::ops::Range<usize> {
         let at = |a: f64| {
             ((a / self.step + self.behind as f64).clamp(0.0, (self.count - 1) as f64) as usize).min(self.count - 2)
@@ -79,7 +80,8 @@ impl Knots {
         at(from)..at(to) + 2
     }
 
-    /// The chord of a convex function's values at the knots; beyond them with the most it can grow per metre.
+    /// Interpolates a convex function between its values at the knots. Beyond the knots it grows by at most `slope` per
+    /// metre.
     pub(crate) fn between(self, a: f64, value: impl Fn(usize) -> f64, slope: f64) -> f64 {
         let x = a / self.step + self.behind as f64;
         let inside = x.clamp(0.0, (self.count - 1) as f64);
@@ -124,7 +126,7 @@ impl Step {
     fn new(links: &[Link]) -> Self {
         let sum: f64 = links.iter().map(|link| link.l).sum();
         let least = links.iter().fold(f64::INFINITY, |least, link| least.min(link.l));
-        // Short units ask for short steps, but a long vehicle with one of them must not take for ever.
+        // Short units need short steps, but a long vehicle with one short unit must still finish.
         let h = (least / 40.0).clamp(sum / 4000.0, 0.05_f64.max(sum / 4000.0));
         Self { h, exponential: exponential(&rates(links), h) }
     }
@@ -149,7 +151,7 @@ fn rates(links: &[Link]) -> Vec<Vec<Interval>> {
     rows
 }
 
-/// Taylor's series, with a remainder below (‖A‖h)ⁿ/n!·e^{‖A‖h} in every element.
+/// Taylor series with a remainder below (‖A‖h)ⁿ/n!·e^{‖A‖h} in every element.
 fn exponential(a: &[Vec<Interval>], h: f64) -> Vec<Vec<Interval>> {
     const TERMS: u32 = 24;
     let n = a.len();
@@ -170,27 +172,27 @@ fn exponential(a: &[Vec<Interval>], h: f64) -> Vec<Vec<Interval>> {
         rest *= norm / f64::from(order) * UP;
     }
     rest *= norm / f64::from(TERMS + 1) * UP;
-    // Below the diagonal only: above it the exponential is exactly 0.
+    // Only on and below the diagonal: above it the exponential is exactly 0.
     for (i, row) in sum.iter_mut().enumerate() {
         row.iter_mut().take(i + 1).for_each(|x| *x = *x + Interval::ball(rest));
     }
     sum
 }
 
-/// Integrals of the response to one input, unit by unit.
+/// The response to one input and its integrals, unit by unit.
 struct Response {
     h: f64,
     /// Centre and radius of y and α at the steps: `[y, ry, α, rα]`.
     nodes: Vec<Vec<[f64; 4]>>,
-    /// Sum of the largest |y″| and |α″| over the steps; what is left of ∫|y| and ∫|α| after the last.
+    /// Sums of the largest |y″| and |α″| over the steps, and the remaining ∫|y| and ∫|α| after the last step.
     bend: Vec<[f64; 2]>,
     rest: Vec<[f64; 2]>,
-    /// Of e, which passes straight through: the pulse that arrives at each front coupling.
+    /// Part of e that passes without lag: the pulse that arrives at each front coupling.
     pulse: Vec<f64>,
 }
 
 impl Response {
-    /// Input 0 is a pulse of e_0, input 1 + j one of slip j.
+    /// Input 0 is a pulse of e_0; input 1 + j is a pulse of slip j.
     fn of(links: &[Link], step: &Step, input: usize) -> Self {
         let n = links.len();
         let (mut y, mut pulse) = (vec![Interval::ZERO; n], vec![0.0; n]);
@@ -216,11 +218,11 @@ impl Response {
         }
     }
 
-    /// Enters the state at a step, and absolute bounds for the step after it. A unit's y stays within what it was and what
-    /// its coupling may become.
+    /// Records the state at a step, and absolute bounds for the step after it. A unit's y stays within its value and
+    /// what its coupling may become.
     fn note(&mut self, links: &[Link], y: &[Interval]) {
         let mut e = Interval::ZERO;
-        // Of e: largest, of its first and second derivative, and of its integral to the end of time.
+        // Bounds of e, of its first and second derivative, and of its integral to infinity.
         let mut coupling = [0.0_f64; 4];
         for (i, link) in links.iter().enumerate() {
             let alpha = (e - y[i]) / link.l;
@@ -246,7 +248,7 @@ impl Response {
         }
     }
 
-    /// ∫|wy·y + wα·α| of a unit, rounded up.
+    /// Upper bound of ∫|wy·y + wα·α| of a unit.
     fn norm(&self, unit: usize, wy: f64, wa: f64) -> f64 {
         let size = |[y, ry, a, ra]: &[f64; 4]| (wy * y + wa * a).abs() + wy * ry + wa.abs() * ra;
         let nodes = &self.nodes[unit];
@@ -254,11 +256,11 @@ impl Response {
         let sum: f64 = nodes.iter().map(size).sum();
         let bend = wy * self.bend[unit][0] + wa.abs() * self.bend[unit][1];
         let rest = wy * self.rest[unit][0] + wa.abs() * self.rest[unit][1];
-        // 1e-10: rounding of the sums and of wy·y + wα·α, relative to terms that decay by tens of orders.
+        // 1e-10 covers rounding of the sums and of wy·y + wα·α, relative to terms that decay by tens of orders.
         (self.h * (sum - 0.5 * ends) + self.h.powi(3) / 12.0 * bend + rest) * (1.0 + 1e-10)
     }
 
-    /// Adds its share to all gains; slips at their bounds.
+    /// Adds this response's share to all gains, with slips at their bounds.
     fn add_to(&self, links: &[Link], input: usize, units: &mut [UnitGains]) {
         for (i, (link, unit)) in links.iter().zip(units).enumerate() {
             let pulse = self.pulse[i];
@@ -285,7 +287,7 @@ mod tests {
 
     #[test]
     fn one_unit_has_its_closed_form() {
-        // y = ε e^{−s/L}/L: norm 1. Slip: norm L. A point at a: |1 − a/L| + |a/L|.
+        // y = ε e^{−s/L}/L has norm 1. Slip has norm L. A point at a has |1 − a/L| + |a/L|.
         let gains = Gains::of(&[link(5.0, 0.0, 0.003)]);
         let unit = &gains.units[0];
         let slip = 5.0 * 0.003_f64.tan();

@@ -1,24 +1,24 @@
-//! Intervals of `f64` that hold the exact result: what the checker decides with.
+//! Intervals of `f64` that hold the exact result. The checker decides with them.
 //!
-//! A sum, product, quotient or root is the nearest `f64` (IEEE 754) moved one step outwards; exponential, sine, cosine
-//! and arc tangent are CORE-MATH's, which are proved to be the nearest `f64`, moved one step outwards too. Nothing here
-//! depends on rounding modes, instruction sets or the system's mathematical library.
+//! A sum, product, quotient or root is the nearest `f64` (IEEE 754) moved one step outwards. Exponential, sine, cosine
+//! and arc tangent come from CORE-MATH, which is proved to return the nearest `f64`; they are moved one step outwards
+//! too. Nothing depends on rounding modes, instruction sets or the system's mathematical library.
 //!
-//! Left out: division by an interval that holds 0 and roots of negative numbers give the whole line, never a panic.
+//! Division by an interval that holds 0 and roots of negative numbers give the whole line; nothing panics.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// All numbers from `lo` to `hi`, both included. Never empty; a NaN end means that nothing is known.
+/// All numbers from `lo` to `hi`, both included. Never empty. A NaN end means that nothing is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Interval {
-    /// Not above any number meant.
+    /// Lower bound.
     pub lo: f64,
-    /// Not below any number meant.
+    /// Upper bound.
     pub hi: f64,
 }
 
 impl Interval {
-    /// Nothing is known.
+    /// The whole line: nothing is known.
     pub const ALL: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
     /// Exactly 0.
     pub const ZERO: Self = Self::at(0.0);
@@ -31,19 +31,19 @@ impl Interval {
         Self { lo: x, hi: x }
     }
 
-    /// From `lo` to `hi`, whichever is less.
+    /// The interval between `a` and `b`, in either order.
     #[must_use]
     pub fn between(a: f64, b: f64) -> Self {
         if a <= b { Self { lo: a, hi: b } } else { Self { lo: b, hi: a } }
     }
 
-    /// From −`r` to `r`, `r` not negative.
+    /// From −`r` to `r`; `r` must not be negative.
     #[must_use]
     pub fn ball(r: f64) -> Self {
         Self { lo: -r, hi: r }
     }
 
-    /// The least magnitude and the greatest.
+    /// The interval of magnitudes.
     #[must_use]
     pub fn abs(self) -> Self {
         if self.lo >= 0.0 {
@@ -61,13 +61,13 @@ impl Interval {
         self.lo.abs().max(self.hi.abs())
     }
 
-    /// The greater of two numbers.
+    /// The interval of the greater of two numbers.
     #[must_use]
     pub fn max(self, other: Self) -> Self {
         Self { lo: self.lo.max(other.lo), hi: self.hi.max(other.hi) }
     }
 
-    /// Both, and all between.
+    /// The least interval that holds both.
     #[must_use]
     pub fn hull(self, other: Self) -> Self {
         Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
@@ -93,7 +93,7 @@ impl Interval {
     #[must_use]
     pub fn exp(self) -> Self {
         let lo = down(core_math::exp(self.lo)).max(0.0);
-        // One number, as is usual: the second call would give the same.
+        // A single number is usual: the second call would give the same.
         let hi = if self.lo == self.hi { up(core_math::exp(self.lo)) } else { up(core_math::exp(self.hi)) };
         Self { lo, hi }
     }
@@ -104,10 +104,10 @@ impl Interval {
         Self { lo: down(core_math::atan(self.lo)), hi: up(core_math::atan(self.hi)) }
     }
 
-    /// Tangent, of angles below a quarter turn.
+    /// Tangent, for angles below a quarter turn.
     #[must_use]
     pub fn tan(self) -> Self {
-        // Beyond π/2 the tangent starts again from below.
+        // The tangent jumps to −∞ at π/2.
         let most = std::f64::consts::FRAC_PI_2 - 1e-7;
         if self.lo <= -most || self.hi >= most {
             return Self::ALL;
@@ -115,7 +115,7 @@ impl Interval {
         Self { lo: down(core_math::tan(self.lo)), hi: up(core_math::tan(self.hi)) }
     }
 
-    /// Sine and cosine of one number (the mean-value theorem widens them to a narrow interval).
+    /// Sine and cosine. A narrow interval is widened by the mean-value theorem.
     #[must_use]
     pub fn sin_cos(self) -> (Self, Self) {
         let middle = f64::midpoint(self.lo, self.hi);
@@ -165,7 +165,8 @@ impl Neg for Interval {
 impl Mul for Interval {
     type Output = Self;
 
-    /// The least and greatest of the four products of ends; of two not negative ones, the usual case, just two are formed.
+    /// The least and greatest of the four products of the ends. The usual case of two non-negative intervals needs two
+    /// products.
     fn mul(self, other: Self) -> Self {
         if self.lo >= 0.0 && other.lo >= 0.0 {
             return Self { lo: down(self.lo * other.lo), hi: up(self.hi * other.hi) };
@@ -190,7 +191,7 @@ impl Div for Interval {
     }
 }
 
-/// With a plain number on the right: it is taken as exact.
+/// A plain number on the right is taken as exact.
 macro_rules! with_number {
     ($($op:ident $name:ident),+) => {$(
         impl $op<f64> for Interval {

@@ -1,9 +1,9 @@
-//! From tubes to leeway (proof, section 7), against what is claimed: branch and bound.
+//! From tubes to leeway (proof, section 7), compared with the claims by branch and bound.
 //!
-//! A cell is one side of one body, from `a0` to `a1` ahead of its axle, during part of a step. Its leeway lies above that of
-//! its four corners but for what second derivatives along the body and in time can take away. Where that is not enough the
-//! cell is halved, or its tubes are replaced by the adjoint's. So nothing is sampled: every cell is decided, by a
-//! bound not below the claim, or by a place where the bound is below it.
+//! A cell is one side of one body, from `a0` to `a1` ahead of its axle, during part of a step. Its leeway is at least
+//! that of its four corners less what second derivatives along the body and in time can take away. If that is too
+//! little, the cell is halved, or the adjoint's bounds replace its tubes. Nothing is sampled: each cell ends with a
+//! bound not below the claim, or with a place where the bound is below the claim.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -19,48 +19,50 @@ use crate::tubes::{Tube, Tubes};
 
 /// Decisions closer than this are repeated in intervals, metres.
 pub(crate) const CLOSE_M: f64 = 1e-6;
-/// What the road's own evaluation may be off, metres: its quadrature (1e-7) and rounding.
+/// Error bound of the road's own evaluation, metres: quadrature (1e-7) and rounding.
 const ROAD_M: f64 = 2e-7;
 /// Widest gap between two stretches that a foot may fall into, metres.
 const GAP_M: f64 = 0.03;
-/// Halvings of a cell at most: 15 m of body to 1 mm.
+/// Most halvings of a cell: from 15 m of body to 1 mm.
 const MOST_HALVINGS: u32 = 16;
-/// Second derivatives are taken at the corners of a cell; between them they may be greater by this factor.
+/// Second derivatives are taken at a cell's corners. Between them they may be greater by this factor.
 const BETWEEN: f64 = 1.25;
-/// Points of a body at which the adjoint is run, metres apart; linear between, which is never less (convex).
+/// Distance between the points of a body at which the adjoint runs, metres. Bounds are convex, so linear interpolation
+/// is never too small.
 const KNOT_M: f64 = 0.25;
-/// The adjoint is asked about pieces of a body no longer than this, metres: a run costs as much as some hundred halvings.
+/// The adjoint runs only for pieces of a body no longer than this, metres. One run costs as much as some hundred
+/// halvings.
 const SHARP_M: f64 = 1.0;
-/// Outputs that go through the adjoint side by side.
+/// Number of outputs that one run of the adjoint carries.
 const ABREAST: usize = 4;
-/// A cell with a corner that has no foot is halved so often; what is left of it touches every normal that passes within the
-/// second length, and no road farther along than the first.
+/// Most halvings of a cell with a corner without foot. The remaining cell touches every normal that passes within
+/// `NEAR_M`, but no road farther along than `FOOTLESS_M` (metres).
 const FOOTLESS_HALVINGS: u32 = 5;
 const FOOTLESS_M: f64 = 6.0;
 const NEAR_M: f64 = 0.1;
-/// A foot is not further from where it would be on a straight than this part of the vehicle's length, and these metres.
+/// A foot is at most this share of the vehicle's length, plus these metres, from its place on a straight.
 const ASTRAY_PART: f64 = 0.5;
 const ASTRAY_M: f64 = 10.0;
-/// Steps of history over which second-order terms are taken from the adjoint's bounds, in vehicle lengths.
+/// Length of the history in which second-order terms use the adjoint's bounds, in vehicle lengths.
 const HISTORY_LENGTHS: f64 = 1.5;
 
-/// What leeway is claimed on each stretch between stations of the corridor, by side (0 left, 1 right), metres;
-/// −∞ where nothing is claimed.
+/// Claimed leeway on each stretch between stations of the corridor, by side (0 left, 1 right), metres. −∞ claims
+/// nothing.
 #[derive(Debug, Clone)]
 pub(crate) struct Targets(pub(crate) [Vec<f64>; 2]);
 
-/// A cell that does not reach what is claimed.
+/// A cell whose bound is below the claim.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Shortfall {
     /// Station of the corridor, as a real number.
     pub(crate) station: f64,
-    /// Unit, side (0 left, 1 right) and metres ahead of the axle.
+    /// Unit.
     pub(crate) unit: usize,
-    /// Side.
+    /// Side (0 left, 1 right).
     pub(crate) side: usize,
-    /// Body point.
+    /// Body point, metres ahead of the axle.
     pub(crate) point_m: f64,
-    /// By how much the bound is below the claim, metres.
+    /// How far the bound is below the claim, metres.
     pub(crate) short_m: f64,
 }
 
@@ -70,12 +72,12 @@ pub struct Swept<'a> {
     pub(crate) road: &'a Road,
     pub(crate) motion: &'a Motion,
     pub(crate) tubes: Tubes,
-    /// Steps whose tubes the adjoint has been through.
+    /// Steps whose tubes the adjoint has tightened.
     tightened: Vec<bool>,
-    /// The adjoint's bounds throughout a step, by unit and step, at knots from the rear end of the unit on; NaN where it was not
-    /// asked, ∞ where it bounds nothing.
+    /// The adjoint's bounds throughout a step, by unit and step, at knots from the unit's rear end on. NaN means not
+    /// computed, ∞ means no bound.
     exact: HashMap<(usize, usize), Vec<f64>>,
-    /// The same at nodes.
+    /// As `exact`, at nodes.
     at_nodes: HashMap<(usize, usize), Vec<f64>>,
     /// Bounds of axle and heading at nodes.
     poses: HashMap<(usize, usize), Option<[f64; 2]>>,
@@ -84,13 +86,13 @@ pub struct Swept<'a> {
 /// A corner of a cell.
 #[derive(Debug, Clone, Copy)]
 struct Corner {
-    /// Foot, in stations.
+    /// Foot, in stations of the road.
     s: f64,
-    /// Half-width less lateral place: nominal leeway.
+    /// Nominal leeway, metres: half-width less lateral place.
     clear: f64,
-    /// What the tubes take away at most.
+    /// Most that the tubes take away, metres.
     dev: f64,
-    /// |second derivative| of the leeway as the point moves, per metre of the coupling's path.
+    /// |second derivative| of the leeway as the point moves, per square metre of the coupling's path.
     bend: f64,
     lateral: f64,
     sin: f64,
@@ -116,7 +118,7 @@ impl<'a> Swept<'a> {
         Self::begin(chain, road, motion, Tubes::new(chain, road.spacing, tolerance_m))
     }
 
-    /// With the filter's bounds alone, however loose: the adjoint is not asked.
+    /// Uses the filter's bounds alone, however loose they are.
     pub(crate) fn filtered(chain: &'a Chain, road: &'a Road, motion: &'a Motion, tolerance_m: f64) -> Self {
         Self::begin(chain, road, motion, Tubes::filtered(chain, road.spacing, tolerance_m))
     }
@@ -137,7 +139,7 @@ impl<'a> Swept<'a> {
         }
     }
 
-    /// The same at a lesser tolerance, for claims on some stretches only.
+    /// The same vehicle at a lesser tolerance, for claims on some stretches only.
     pub(crate) fn within(&self, tolerance_m: f64, stretches: std::ops::Range<usize>) -> Self {
         let steps = self.steps(stretches);
         let (_, behind) = self.chain.reach_m();
@@ -156,20 +158,20 @@ impl<'a> Swept<'a> {
         }
     }
 
-    /// Steps during which some body point may have its foot on some stretches of the corridor.
+    /// Steps during which some body point may have its foot on the given stretches of the corridor.
     pub(crate) fn steps(&self, stretches: std::ops::Range<usize>) -> std::ops::Range<usize> {
         let (ahead, behind) = self.chain.reach_m();
         let stations = |metres: f64| (metres / self.road.spacing).ceil() as usize;
         let from = (self.road.lead + stretches.start).saturating_sub(stations(ahead) + 1) * STEPS;
         let mut to = (self.road.lead + stretches.end + 1 + stations(1.05 * behind)) * STEPS;
-        // In a bend the rear may follow farther behind than on a straight.
+        // In a bend the rear may lag farther behind than on a straight.
         while to < self.motion.steps() && self.rear(to).is_none_or(|s| s <= (self.road.lead + stretches.end) as f64) {
             to += STEPS;
         }
         from..to.min(self.motion.steps())
     }
 
-    /// The foot that is farthest back, in stations, of any unit's rear end at a node; `None` where one has no foot.
+    /// The rearmost foot of all units' rear ends at a node, in stations. `None` if one of them has no foot.
     fn rear(&self, node: usize) -> Option<f64> {
         let feet = self.chain.links.iter().enumerate().flat_map(|(unit, link)| {
             [-link.half_width, link.half_width].map(|b| {
@@ -180,12 +182,12 @@ impl<'a> Swept<'a> {
         feet.reduce(|least, s| Some(least?.min(s?))).flatten()
     }
 
-    /// All places where the claims are not reached, the worst of each stretch and side.
+    /// All places where the bound is below the claim: the worst one of each stretch and side.
     pub(crate) fn refute(&mut self, targets: &Targets) -> Vec<Shortfall> {
         self.refute_only(targets, None)
     }
 
-    /// The same, of one unit only.
+    /// As [`Self::refute`], for one unit only.
     pub(crate) fn refute_only(&mut self, targets: &Targets, only: Option<usize>) -> Vec<Shortfall> {
         let claimed = |k: &usize| targets.0.iter().any(|side| side[*k] > f64::NEG_INFINITY);
         let stretches = targets.0[0].len();
@@ -209,10 +211,10 @@ impl<'a> Swept<'a> {
         found.worst.into_iter().flatten().flatten().collect()
     }
 
-    /// Decides a cell; gives the feet of its ends when it is over.
+    /// Decides a cell. Returns the feet of its ends at its end in time.
     fn cell(&mut self, cell: &Cell, hints: [f64; 2], targets: &Targets, found: &mut Shortfalls) -> [f64; 2] {
         let poses = cell.t.map(|t| self.pose(cell.step, cell.unit, t));
-        // Rough feet: straight on from the hint, or from where the road's stations are.
+        // Rough feet: the hint, or the place on a straight road.
         let guess = |k: usize| {
             if hints[k].is_nan() { self.rough_foot(cell.step, cell.unit, cell.a[k]) } else { hints[k] }
         };
@@ -227,7 +229,7 @@ impl<'a> Swept<'a> {
             }
         }
         let [[Some(c00), Some(c01)], [Some(c10), Some(c11)]] = corners else {
-            // No foot, or nothing is bounded here: whatever is claimed where it may be is not proved.
+            // There is no foot or no bound, so claims about any stretch that the cell may touch are not proved.
             if self.tubes.get(cell.step, cell.unit).is_some() && cell.halvings < FOOTLESS_HALVINGS {
                 let middle = f64::midpoint(cell.a[0], cell.a[1]);
                 for a in [[cell.a[0], middle], [middle, cell.a[1]]] {
@@ -265,7 +267,7 @@ impl<'a> Swept<'a> {
         found: &mut Shortfalls,
         (first, last): (usize, usize),
     ) {
-        // Allowances shrink fourfold: as long as they are what is missing, halve.
+        // Halving divides the allowances by four, so it helps while the allowances are what is missing.
         let halving_helps = slack + 0.75 * (time + body) >= 0.0 && time + body > 0.0;
         let knots = self.knots(cell, all);
         let dull = (!halving_helps || cell.halvings > 5) && self.worth(cell) && !self.sharp(cell, &knots);
@@ -276,7 +278,7 @@ impl<'a> Swept<'a> {
             self.cell(cell, hints, targets, found);
             return;
         }
-        // A cell over several stretches may just be asked for what is claimed of another.
+        // A cell over several stretches may be tested for another stretch's claim.
         let spread = last > first;
         if cell.halvings < MOST_HALVINGS && (halving_helps || spread || dull || cell.halvings < 4) {
             let mut halves = [Cell { halvings: cell.halvings + 1, ..*cell }; 2];
@@ -311,14 +313,14 @@ impl<'a> Swept<'a> {
         self.motion.swing(step, unit).pose(&self.chain.links[unit], self.motion.pose(step, unit), t)
     }
 
-    /// Where the foot would be on a straight road.
+    /// The foot on a straight road, in stations.
     fn rough_foot(&self, step: usize, unit: usize, a: f64) -> f64 {
         let behind: f64 = self.chain.links[..unit].iter().map(|link| link.l + link.d).sum();
         step as f64 / STEPS as f64 - (behind + self.chain.links[unit].l - a) / self.road.spacing
     }
 
-    /// Stretches of the corridor whose normals may pass through a cell: on their stations it lies ahead of the first and not ahead of
-    /// the second.
+    /// Stretches of the corridor whose normals may pass through a cell: it lies ahead of the stretch's first station
+    /// and not ahead of its second.
     fn touched(&self, cell: &Cell, poses: &[Pose; 2]) -> Vec<usize> {
         let sign = if cell.side == 0 { 1.0 } else { -1.0 };
         let b = sign * self.chain.links[cell.unit].half_width;
@@ -347,14 +349,14 @@ impl<'a> Swept<'a> {
         ((own(from).max(0.0) as usize).min(last), (own(to).max(0.0) as usize).min(last))
     }
 
-    /// A body point on the side of a cell; `None` without a foot near the guess, or without a bound.
+    /// A body point on the side of a cell. `None` without a foot near the guess, or without a bound.
     fn corner(&self, cell: &Cell, pose: Pose, a: f64, guess: f64) -> Option<Corner> {
         let link = &self.chain.links[cell.unit];
         let sign = if cell.side == 0 { 1.0 } else { -1.0 };
         let b = sign * link.half_width;
         let x = point(pose, a, b);
         let (s, place, lateral) = foot(self.road, x, guess)?;
-        // Newton may have gone to another leg of the road, on which the vehicle is not.
+        // Newton's method may have reached another leg of the road, where the vehicle is not.
         let away = (s - self.rough_foot(cell.step, cell.unit, a)).abs() * self.road.spacing;
         if away > ASTRAY_PART * self.chain.reach_m().1 + ASTRAY_M {
             return None;
@@ -364,21 +366,21 @@ impl<'a> Swept<'a> {
         let sin = pose.u[0] * n[0] + pose.u[1] * n[1];
         let (width, slope) = self.road.width(cell.side, s);
         let tube = self.tubes.get(cell.step, cell.unit)?;
-        // Normals part on the outside of a bend: there a foot moves no more than its point does.
+        // Normals diverge on the outside of a bend, where a foot moves no more than its point.
         let narrow = 1.0 - (place.curvature * lateral).max(0.0);
         if !(cos > 0.2 && narrow > 0.1) {
             return None;
         }
         let at = a - b * sin / cos;
         let slide = cos * link.half_width * tube.a + sin.abs() * (tube.y + a.abs() * tube.a);
-        // How far, in stations, its foot may be from the nominal one: what the half-width falls on that way is deducted.
+        // Stations by which the foot may be from the nominal one. The fall of the half-width on that way is deducted.
         let reach = slide / narrow / self.road.spacing * UP;
         let second = cos * a.abs() * tube.r1 / link.l
             + 0.5 * sin.abs() * a.abs() * tube.a * tube.a
             + 0.5 * place.curvature.abs() / narrow * slide * slide
             + (width - self.road.narrowest(cell.side, s - reach, s + reach));
         let dev = (cos * self.off(cell.step, cell.unit, at, tube) + second) * UP;
-        // Second derivative of the lateral place, per metre of the coupling's path.
+        // Second derivative of the lateral place, per square metre of the coupling's path.
         let swing = self.motion.swing(cell.step, cell.unit);
         let q = 1.0 + swing.before * swing.before;
         let (sd, cd) = (2.0 * swing.before / q, (2.0 - q) / q);
@@ -402,16 +404,16 @@ impl<'a> Swept<'a> {
         let filter = self.chain.gains.units[unit].point(a, self.tubes.tolerance_m)
             + (1.0 - a / link.l).abs() * tube.extra
             + (a / link.l).abs() * tube.extra_coupling;
-        // Between nodes the coupling leaves its chord.
+        // Between nodes the coupling deviates from its chord.
         let bulge = if unit == 0 { 0.0 } else { (a / link.l).abs() * self.motion.swing(step, unit).bulge };
         let bound = self.exact.get(&(unit, step)).map_or(filter, |exact| {
-            // NaN where the adjoint was not asked is not the lesser.
+            // `min` ignores NaN, which marks places where the adjoint has not run.
             filter.min(Knots::new(link, KNOT_M).between(a, |k| exact[k], tube.a))
         });
         bound + bulge
     }
 
-    /// What a cell's inside may lie below its corners: in time, and along the body with the road's dips.
+    /// How far the inside of a cell may lie below its corners: in time, and along the body with the road's dips.
     fn allowances(&self, cell: &Cell, all: &[Corner; 4], range: [f64; 2]) -> (f64, f64) {
         let bend = all.iter().map(|c| c.bend).fold(0.0, f64::max) * BETWEEN + 1e-5;
         let travel = self.motion.swing(cell.step, cell.unit).len * (cell.t[1] - cell.t[0]);
@@ -431,7 +433,7 @@ impl<'a> Swept<'a> {
         (bend * travel * travel / 8.0, curve * length * length / 8.0 + dip)
     }
 
-    /// The decision once more, in intervals: the corners' nominal leeway from poses, road and widths as they are.
+    /// Repeats the decision in intervals: the corners' nominal leeway from poses, road and widths.
     fn sure(&self, cell: &Cell, poses: &[Pose; 2], all: &[Corner; 4], allowance: f64, target: f64) -> bool {
         all.iter().enumerate().all(|(k, corner)| {
             let (pose, a) = (poses[k / 2], cell.a[k % 2]);
@@ -442,7 +444,7 @@ impl<'a> Swept<'a> {
             let x = at(pose.p[0]) + at(pose.u[0]) * a - half * pose.u[1] - place.c[0];
             let y = at(pose.p[1]) + at(pose.u[1]) * a + half * pose.u[0] - place.c[1];
             let lateral = y * place.t[0] - x * place.t[1] + Interval::ball(ROAD_M);
-            // The foot is not exactly there: the half-width changes by its slope times what is missing.
+            // The foot is not exact: the half-width changes by its slope times the missing way.
             let off = (x * place.t[0] + y * place.t[1]).abs() * corner.slope.abs();
             let (width, _) = self.road.width(cell.side, corner.s);
             let clear = Interval::at(width) * Interval::between(1.0, 1.0 - 1e-14) - lateral * sign - off;
@@ -450,13 +452,13 @@ impl<'a> Swept<'a> {
         })
     }
 
-    /// Whether the adjoint could do better than the filter, and is asked at all.
+    /// Whether the adjoint is allowed and may improve on the filter.
     fn worth(&self, cell: &Cell) -> bool {
         !self.tubes.by_filter()
             && self.tubes.get(cell.step, cell.unit).is_some_and(|tube| tube.extra + tube.extra_coupling > 2e-4)
     }
 
-    /// Knots that the bounds of a cell rest on.
+    /// The knots that a cell's bounds rest on.
     fn knots(&self, cell: &Cell, all: &[Corner; 4]) -> Range<usize> {
         let link = &self.chain.links[cell.unit];
         let slide = all.iter().map(|c| link.half_width * c.sin.abs() / (1.0 - c.sin * c.sin).max(0.01).sqrt());
@@ -464,13 +466,13 @@ impl<'a> Swept<'a> {
         Knots::new(link, KNOT_M).about([cell.a[0] - slide, cell.a[1] + slide])
     }
 
-    /// Whether the adjoint has been asked at all of them.
+    /// Whether the adjoint has run at all of these knots.
     fn sharp(&self, cell: &Cell, knots: &Range<usize>) -> bool {
         let known = self.exact.get(&(cell.unit, cell.step));
         known.is_some_and(|known| known[knots.clone()].iter().all(|bound| !bound.is_nan()))
     }
 
-    /// Bounds of the adjoint for a unit throughout a step, and for the second order of the history before it.
+    /// Computes the adjoint's bounds for a unit throughout a step, after tightening the second order of its history.
     fn sharpen(&mut self, cell: &Cell, knots: Range<usize>) {
         self.tighten_up_to(cell.step);
         self.run(cell.unit, cell.step + 1, knots.clone());
@@ -488,7 +490,7 @@ impl<'a> Swept<'a> {
         }
     }
 
-    /// Runs the adjoint for body points at knots that have not been through it, at a node.
+    /// Runs the adjoint at a node, for body points at knots where it has not run.
     fn run(&mut self, unit: usize, node: usize, knots: Range<usize>) {
         let places: Vec<f64> = Knots::new(&self.chain.links[unit], KNOT_M).places().collect();
         let known = self.at_nodes.entry((unit, node)).or_insert_with(|| vec![f64::NAN; places.len()]);
@@ -502,7 +504,8 @@ impl<'a> Swept<'a> {
         }
     }
 
-    /// The adjoint's bounds on axle and heading throughout a step: the greater of its ends', and what it may bow up between them.
+    /// The adjoint's bounds of axle and heading throughout a step: the greater of both ends, times the factor of
+    /// [`adjoint::bow`].
     fn exact_pose(&mut self, step: usize, unit: usize) -> Option<[f64; 2]> {
         let bow = adjoint::bow(self.chain, unit, self.tubes.step_m);
         let mut at = |node: usize| {
@@ -515,7 +518,7 @@ impl<'a> Swept<'a> {
         Some([0, 1].map(|k| start[k].max(end[k]) * bow))
     }
 
-    /// Lets the adjoint bound what a step's bounds rest on.
+    /// Tightens the steps that a step's bounds rest on.
     fn tighten_up_to(&mut self, last: usize) {
         let (_, behind) = self.chain.reach_m();
         let history = (HISTORY_LENGTHS * behind / self.tubes.step_m) as usize;
@@ -524,7 +527,7 @@ impl<'a> Swept<'a> {
         }
     }
 
-    /// Lets the adjoint bound axle and heading of all units in a step, so that its second order is that of what is so.
+    /// Bounds axle and heading of all units in a step by the adjoint, so that the second order uses these bounds.
     fn tighten(&mut self, step: usize) {
         if std::mem::replace(&mut self.tightened[step], true) {
             return;
@@ -543,21 +546,23 @@ impl<'a> Swept<'a> {
     }
 }
 
-/// How much farther a point may be from the road than from a normal that passes beside it, in a gap between two stretches, metres.
+/// How much farther a point may be from the road than from a normal that passes beside it in a gap between two
+/// stretches, metres.
 fn beside_m(x: [f64; 2], place: &Place) -> f64 {
     let r = [x[0] - place.c[0], x[1] - place.c[1]];
     let off = r[0] * place.t[0] + r[1] * place.t[1];
     off * off / (r[0].hypot(r[1]) + 1e-9)
 }
 
-/// The foot of a point by Newton's method, to 1e-10 m; its place and lateral.
+/// The foot of a point by Newton's method, to 1e-10 m, with its place and the point's lateral place.
 pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<(f64, Place, f64)> {
     let mut s = guess;
     for round in 0..30 {
         let place = road.place(s);
         let r = [x[0] - place.c[0], x[1] - place.c[1]];
         let (off, lateral) = (r[0] * place.t[0] + r[1] * place.t[1], r[1] * place.t[0] - r[0] * place.t[1]);
-        // Where one stretch does not quite lead to the next, a foot may fall into the gap: wider with the distance, if headings differ.
+        // A foot may fall into the gap between two stretches that do not quite meet. The gap grows with the distance if
+        // headings differ.
         if off.abs() < 1e-10 || round == 29 && off.abs() < GAP_M + road.jump(s) * lateral.abs() {
             return Some((s, place, lateral));
         }
@@ -571,7 +576,7 @@ fn point(pose: Pose, a: f64, b: f64) -> [f64; 2] {
     along(along(pose.p, a, pose.u), b, [-pose.u[1], pose.u[0]])
 }
 
-/// The worst of each stretch and side.
+/// The worst shortfall of each stretch and side.
 struct Shortfalls {
     worst: [Vec<Option<Shortfall>>; 2],
 }
@@ -581,11 +586,11 @@ impl Shortfalls {
         Self { worst: [vec![None; stretches], vec![None; stretches]] }
     }
 
-    /// The most that is claimed of stretches `first..=last` and not refuted yet.
+    /// The greatest claim on stretches `first..=last` that is not refuted yet.
     fn target(&self, targets: &Targets, side: usize, first: usize, last: usize) -> Option<f64> {
         let mut most = f64::NEG_INFINITY;
         for k in first..=last {
-            // One refutation of a stretch is enough.
+            // One refutation per stretch is enough.
             if self.worst[side][k].is_none() {
                 most = most.max(targets.0[side][k]);
             }
@@ -624,8 +629,8 @@ impl Shortfalls {
 }
 
 impl Swept<'_> {
-    /// The margin of a hinge (0: the steering lock) throughout a step (proof, section 10), radians; by the adjoint where the
-    /// filter's is below `least`. −∞ where nothing is bounded.
+    /// The margin of a hinge (0: the steering lock) throughout a step (proof, section 10), radians. The adjoint is used
+    /// if the filter's margin is below `least`. −∞ without bounds.
     pub(crate) fn hinge_margin(&mut self, step: usize, unit: usize, least: f64) -> f64 {
         let margin = self.plain_hinge_margin(step, unit);
         if margin >= least {
@@ -635,7 +640,7 @@ impl Swept<'_> {
         self.plain_hinge_margin(step, unit)
     }
 
-    /// |y| of an axle throughout a step; the adjoint's where the filter's is above `enough`.
+    /// Bound of |y| of an axle throughout a step. The adjoint is used if the filter's bound is above `enough`.
     pub(crate) fn axle_bound(&mut self, step: usize, unit: usize, enough: f64) -> Option<f64> {
         let y = self.tubes.get(step, unit)?.y;
         if y <= enough {
@@ -646,8 +651,8 @@ impl Swept<'_> {
         Some(y.min(self.exact_pose(step, unit)?[0]))
     }
 
-    /// What is between a body point and the edge beside it as it passes the normal at `s` (stations of the road), steered exactly. Of
-    /// several passages the one nearest to that on a straight road.
+    /// Nominal leeway of a body point as it passes the normal at `s` (stations of the road), with exact steering. If it
+    /// passes several times, the passage nearest to that on a straight road counts.
     pub(crate) fn nominal_at(&self, s: f64, unit: usize, side: usize, a: f64) -> Option<f64> {
         let place = self.road.place(s);
         let sign = if side == 0 { 1.0 } else { -1.0 };
@@ -667,15 +672,15 @@ impl Swept<'_> {
         Some(self.road.width(side, s).0 - sign * (before + share * (after - before)))
     }
 
-    /// The least margin of a hinge while any point of the vehicle is on the corridor, less what the plan's coupling turns there within a
-    /// station: as much may the hinge be taken to fold by who looks at stations only.
+    /// The least margin of a hinge while any point of the vehicle is on the corridor, less the turn of the unit's
+    /// coupling path within a station. A reader that looks at stations only may find this much less.
     pub fn coarse_hinge_margin(&self, unit: usize) -> f64 {
         let steps = self.steps(0..self.road.count - 1);
         let turn = |step: usize| self.motion.swing(step, unit).curvature * self.road.spacing;
         steps.map(|step| self.plain_hinge_margin(step, unit) - turn(step)).fold(f64::INFINITY, f64::min)
     }
 
-    /// The margin of a hinge throughout a step as the filter has it, radians; −∞ where nothing is bounded.
+    /// The margin of a hinge throughout a step from the current tubes, radians. −∞ without bounds.
     fn plain_hinge_margin(&self, step: usize, unit: usize) -> f64 {
         let swing = |unit: usize| self.motion.swing(step, unit);
         let angles = |unit: usize| [swing(unit).before, swing(unit).after].map(|half| 2.0 * half.atan());

@@ -1,25 +1,26 @@
-//! The second opinion on one vehicle and one corridor: confirms or refutes what is claimed of them, without the code that claimed it.
+//! A second opinion on one vehicle and one corridor: it confirms or refutes claims without the code that made them.
 //!
-//! Written from `docs/proof.md`. It cannot depend on the kernel: Cargo says so. Pure: no input or output.
+//! The crate is written from `docs/proof.md`. Its Cargo manifest keeps it independent of the kernel. It is pure: no
+//! input or output.
 //!
 //! | file | for |
 //! | --- | --- |
-//! | `interval` | numbers that hold the exact result: straight gains, and every decision that is close |
-//! | `chain` | the vehicle as the proof has it |
+//! | `interval` | intervals that hold the exact result, for straight gains and for every close decision |
+//! | `chain` | the vehicle in the proof's terms |
 //! | `gains` | exact gains on the straight (proof, section 4) |
-//! | `road` | the corridor as a curve, and its own consistency |
+//! | `road` | the corridor as a curve, and the test that its stations fit |
 //! | `plan` | the planned shift from its coefficients |
-//! | `motion` | the nominal motion (section 2), four steps a station |
+//! | `motion` | the nominal motion (section 2), four steps per station |
 //! | `tubes` | the filter and the second order (sections 3 and 5) |
-//! | `adjoint` | the exact time-varying bound (section 6), where the filter does not do |
-//! | `leeway` | from tubes to leeway (section 7), by branch and bound against what is claimed |
-//! | `claim` | what is said of one vehicle on one corridor, and what comes of it |
+//! | `adjoint` | the exact time-varying bound (section 6), where the filter is too loose |
+//! | `leeway` | from tubes to leeway (section 7), compared with the claims by branch and bound |
+//! | `claim` | the claims about one vehicle on one corridor, and their results |
 //! | `printed` | the paper's 𝒞, which decides nothing |
 //!
-//! How numbers are trusted. What is *chosen* – the nominal motion, feet, kernels – is plain `f64`: another choice would
-//! give another bound, not a wrong one, and what rounding does to it is counted (`motion::DEFECT_RAD`). What *bounds* is rounded
-//! up: sums and products of numbers that are not negative, by a factor above all that rounding can do (`UP`). What
-//! *decides* is repeated in intervals wherever it is within `leeway::CLOSE_M` of the claim.
+//! Rounding is handled in three ways. Nominal motion, feet and kernels are *chosen* in plain `f64`: another choice
+//! would give another bound and not a wrong one, and their rounding is counted (`motion::DEFECT_RAD`). *Bounds* are
+//! rounded up: sums and products of non-negative numbers grow by a factor larger than all rounding (`UP`). *Decisions*
+//! within `leeway::CLOSE_M` of the claim are repeated in intervals.
 
 mod adjoint;
 mod chain;

@@ -1,51 +1,52 @@
-//! The nominal motion (proof, section 2), in four steps a station: every unit's front coupling goes from vertex to vertex
-//! of its polygon, and tan(β/2) decays by exp(−ℓ/L).
+//! The nominal motion (proof, section 2), in four steps per station. Every unit's front coupling moves from vertex to
+//! vertex of its polygon, and tan(β/2) decays by exp(−ℓ/L).
 //!
-//! Four steps, because a curve leaves its chord by κℓ²/8, which is added to what the coupling may be off – at every
-//! hitch, not just at the steer axle: at quarter stations that is 0.4 mm at 20 m of radius.
+//! A curve deviates from its chord by κℓ²/8. At every hitch, not only at the steer axle, this is added to the
+//! coupling's deviation. With four steps per station it is 0.4 mm at a radius of 20 m.
 
 use crate::chain::{Chain, Link};
 use crate::road::Road;
 
-/// Steps a station.
+/// Steps per station.
 pub(crate) const STEPS: usize = 4;
-/// More slip than the vehicle's own, for what rounding does to headings: they are right to 1e-13 a step of a centimetre and more.
+/// Slip added to the vehicle's own for rounding of headings. Headings are exact to 1e-13 per step of at least a
+/// centimetre.
 pub(crate) const DEFECT_RAD: f64 = 1e-9;
-/// The same for places of couplings, metres: coordinates count from the corridor's first station.
+/// Deviation added for rounding of the couplings' places, metres. Coordinates count from the corridor's first station.
 pub(crate) const DEFECT_M: f64 = 1e-8;
 
-/// Where a unit stands.
+/// The pose of a unit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pose {
-    /// Its axle.
+    /// Place of the axle, metres.
     pub(crate) p: [f64; 2],
-    /// Its heading.
+    /// Heading, a unit vector.
     pub(crate) u: [f64; 2],
 }
 
 /// One step of one unit.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Swing {
-    /// The chord of its front coupling: direction and length.
+    /// The chord of the front coupling: direction, and length in metres.
     pub(crate) c: [f64; 2],
     pub(crate) len: f64,
-    /// tan(δ/2) when it begins and when it ends; it shrinks.
+    /// tan(δ/2) at the start and at the end of the step; it shrinks.
     pub(crate) before: f64,
     pub(crate) after: f64,
-    /// Most by which the coupling's curve leaves the chord, metres, and its curvature there.
+    /// Largest deviation of the coupling's curve from the chord, metres, and the curvature there.
     pub(crate) bulge: f64,
     pub(crate) curvature: f64,
 }
 
 impl Swing {
-    /// tan δ and 1/cos δ for a half-angle's tangent.
+    /// tan δ and 1/cos δ from `half`, which is tan(δ/2).
     pub(crate) fn tan_sec(half: f64) -> (f64, f64) {
         let q = half * half;
-        // A quarter turn and more has no tangent that means anything here.
+        // From a quarter turn on the tangent is meaningless here.
         if q >= 1.0 { (f64::INFINITY, f64::INFINITY) } else { (2.0 * half / (1.0 - q), (1.0 + q) / (1.0 - q)) }
     }
 
-    /// How much a unit behind another is led astray by its chord, as if its coupling were so far off, metres: `led` leaves that of the bulge.
+    /// Deviation of the coupling, metres, that counts as much as what `led` leaves of the chord's effect on the unit.
     pub(crate) fn rest(&self, link: &Link) -> f64 {
         self.bulge * (0.03 + 0.2 * self.len / link.l).min(1.0) + DEFECT_M
     }
@@ -58,7 +59,7 @@ impl Swing {
     }
 }
 
-/// All poses at all nodes and all steps between them; node j is j/STEPS stations along the road.
+/// All poses at all nodes, and all steps between them. Node j is j/STEPS stations along the road.
 pub(crate) struct Motion {
     pub(crate) units: usize,
     poses: Vec<Pose>,
@@ -66,8 +67,8 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
-    /// The motion along the plan: `shift(s)` metres left of the centreline at `s` stations. The vehicle begins straight.
-    /// `None` where it is no motion (a number that is none).
+    /// The motion along the plan: `shift(s)` is in metres left of the centreline at `s` stations. The vehicle starts
+    /// straight. `None` if a number is not finite.
     pub(crate) fn new(chain: &Chain, road: &Road, shift: impl Fn(f64) -> f64) -> Option<Self> {
         let units = chain.links.len();
         let nodes = (road.len() - 1) * STEPS + 1;
@@ -85,7 +86,7 @@ impl Motion {
             motion.step(chain, plan[j - 1], plan[j])?;
         }
         motion.bulges();
-        // Where the road itself may be off, so may the plan.
+        // The road's error bound applies to the plan too.
         for (k, swing) in motion.swings.iter_mut().enumerate().step_by(units) {
             swing.bulge += road.slack((k / units) as f64 / STEPS as f64);
         }
@@ -100,13 +101,13 @@ impl Motion {
             let len = chord[0].hypot(chord[1]);
             let c = if len > 1e-6 { [chord[0] / len, chord[1] / len] } else { u };
             let (sin, cos) = (u[0] * c[1] - u[1] * c[0], u[0] * c[0] + u[1] * c[1]);
-            // Beyond a quarter turn nothing is bounded; the motion goes on, for the road behind it.
+            // Nothing is bounded beyond a quarter turn. The motion continues for the road behind it.
             let before = (sin / (1.0 + cos)).clamp(-9.0, 9.0);
             if !(len.is_finite() && before.is_finite()) {
                 return None;
             }
             let after = before * (-len / link.l).exp();
-            // The unit follows a curve through the vertices; by its chords alone it turns less (proof, section 2).
+            // The unit follows a curve through the vertices. Along chords alone it would turn less (proof, section 2).
             let bend = self.swings.len().checked_sub(self.units).map_or(0.0, |k| cross(self.swings[k].c, c));
             let x = len / link.l;
             let pose = led(link, to, turned(link, to, c, after).u, bend * x * x / (12.0 + 6.0 * x));
@@ -118,7 +119,7 @@ impl Motion {
         Some(())
     }
 
-    /// A step's curvature is the greater of the turns at its two ends, over its length.
+    /// Sets each step's curvature to the greater of the turns at its two ends, over its length.
     fn bulges(&mut self) {
         let turn = |a: &Swing, b: &Swing| cross(a.c, b.c).abs();
         for k in 0..self.swings.len() {
@@ -145,7 +146,8 @@ impl Motion {
     }
 }
 
-/// A unit whose coupling is at `h` and moves along `c`, at an angle of which `half` is the tangent of the half.
+/// The pose of a unit whose coupling is at `h` and moves along `c`. `half` is the tangent of half the angle between
+/// them.
 fn turned(link: &Link, h: [f64; 2], c: [f64; 2], half: f64) -> Pose {
     let q = 1.0 + half * half;
     let (sin, cos) = (2.0 * half / q, (1.0 - half * half) / q);
@@ -153,7 +155,7 @@ fn turned(link: &Link, h: [f64; 2], c: [f64; 2], half: f64) -> Pose {
     Pose { p: along(h, -link.l, u), u }
 }
 
-/// A unit whose coupling is at `h`, its heading `u` turned on by a small angle.
+/// The pose of a unit whose coupling is at `h` and whose heading `u` is turned by a small angle.
 fn led(link: &Link, h: [f64; 2], u: [f64; 2], by: f64) -> Pose {
     let [x, y] = along(u, by, [-u[1], u[0]]);
     let length = x.hypot(y);

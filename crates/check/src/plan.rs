@@ -1,23 +1,24 @@
-//! The planned shift of the steer axle off the centreline, from its integer coefficients: a uniform cubic B-spline with a
-//! knot every four stations, in steps of 2⁻¹² m, as the formats have it.
+//! The planned shift of the steer axle off the centreline: a uniform cubic B-spline with a knot every four stations.
+//! Its coefficients are integers, in steps of 2⁻¹² m.
 
 /// Stations between knots.
 const KNOT_STATIONS: f64 = 4.0;
-/// Metres a step.
+/// Metres per coefficient step.
 pub const STEP_M: f64 = 1.0 / 4096.0;
 
-/// How many coefficients a corridor of `stations` stations has.
+/// Number of coefficients for a corridor of `stations` stations.
 #[must_use]
 pub fn count(stations: usize) -> usize {
     stations.saturating_sub(1) / 4 + 4
 }
 
-/// The shift in metres, positive to the left, `s` stations from the corridor's first; too few coefficients: none.
+/// The shift in metres, positive to the left, `s` stations from the corridor's first. It is 0 if there are too few
+/// coefficients.
 pub fn shift(coefficients: &[i32]) -> impl Fn(f64) -> f64 {
     move |s| {
         let Some(last) = coefficients.len().checked_sub(4) else { return 0.0 };
         let x = (s / KNOT_STATIONS).max(0.0);
-        // The last knot may be the last station: its own spline piece ends there.
+        // The last knot may be the last station, where the last piece of the spline ends.
         let knot = (x as usize).min(last);
         let u = (x - knot as f64).clamp(0.0, 1.0);
         let v = 1.0 - u;
@@ -27,7 +28,10 @@ pub fn shift(coefficients: &[i32]) -> impl Fn(f64) -> f64 {
     }
 }
 
-/// Whether a plan is level at both ends, where the vehicle comes from and goes to.
+/// Tests that a plan is level at both ends, where the vehicle enters and leaves.
+///
+/// # Errors
+/// A message if it is not level.
 pub fn level(coefficients: &[i32]) -> Result<(), String> {
     let n = coefficients.len();
     let same = |part: &[i32]| part.windows(2).all(|pair| pair[0] == pair[1]);

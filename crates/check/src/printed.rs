@@ -1,6 +1,9 @@
-//! The paper's certificate as printed, 𝒞 = w_min − (h_Ω + r_N), from its own formulas: no decision rests on it, but what a
-//! file says of it must be so. r_N: the largest radius of the last unit's ellipse (Eq. 15 to 19, β as printed); h_Ω: the most that
-//! the last axle is nominally off the steer axle's path, both taken across the centreline at the axle's foot; w_min: the least half-width.
+//! The paper's certificate as printed, 𝒞 = w_min − (h_Ω + r_N), from its own formulas. It decides nothing, but a file
+//! must state it correctly.
+//!
+//! r_N is the largest radius of the last unit's ellipse (Eq. 14 to 18, β as printed). h_Ω is the largest nominal
+//! distance of the last axle from the steer axle's path, across the centreline at the axle's foot. w_min is the least
+//! half-width.
 
 use std::f64::consts::FRAC_PI_2;
 use std::ops::Range;
@@ -9,8 +12,8 @@ use crate::claim::Subject;
 use crate::motion::STEPS;
 use netcert_base::vehicle::Vehicle;
 
-/// No 𝒞 is above this: h_Ω is not negative. Edges' own values are held to it; where an edge ends in a corner, whose feet are its
-/// own is a matter of rounding, and no decision rests on it.
+/// Upper bound of 𝒞, metres, because h_Ω is not negative. Edges' values are compared with it. Where an edge ends in a
+/// corner, rounding decides which feet lie on the edge, so an exact comparison is not possible.
 pub fn most_m(subject: &Subject<'_>, vehicle: &Vehicle, stations: Range<usize>) -> f64 {
     narrowest_m(subject, stations) - last_radius_m(vehicle)
 }
@@ -45,7 +48,7 @@ pub fn rsc_m(subject: &Subject<'_>, vehicle: &Vehicle, stations: Range<usize>) -
     narrowest - (off + last_radius_m(vehicle))
 }
 
-/// Squared semi-axes along and across, grown by each trailer's sway ellipse.
+/// r_N, metres, from the squared semi-axes along and across, which grow by each trailer's sway ellipse.
 fn last_radius_m(vehicle: &Vehicle) -> f64 {
     let Some((prime, trailers)) = vehicle.units.split_first() else { return 0.0 };
     let length = prime.front_overhang_m + prime.coupling_to_axle_m + prime.rear_overhang_m;

@@ -1,30 +1,30 @@
-//! The corridor as a curve, and the plan: what the statement is about, read strictly.
+//! The corridor as a curve, read strictly.
 //!
-//! Between stations curvature and half-widths are linear; before the first and after the last station the road goes
-//! straight on (proof, section 8). A corridor whose stations do not fit each other is refused.
+//! Between stations curvature and half-widths are linear. Before the first and after the last station the road
+//! continues straight (proof, section 8). A corridor whose stations do not fit each other is refused.
 
 use netcert_base::corridor::Corridor;
 
-/// Most by which a station may be off the curve that leads to it from the one before, metres and radians, per metre of
-/// spacing, in a file. On the map's strokes what is beyond it is a stretch on which nothing can be confirmed.
+/// Largest deviation of a station from the curve that leads to it, metres and radians, per metre of spacing. In a file
+/// a larger deviation is an error. On the map's strokes nothing is confirmed on that stretch.
 const PLACE_TOLERANCE_M: f64 = 0.02;
 const HEADING_TOLERANCE_RAD: f64 = 0.04;
-/// Most that a corridor turns from one station to the next, radians: beyond it the proof's second order says little.
+/// Largest turn of a corridor from one station to the next, radians. Beyond it the proof's second order says little.
 const MOST_TURN_RAD: f64 = 0.5;
-/// Half-widths stay within what tags and users can mean, metres.
+/// Bound of half-widths that tags and users can mean, metres.
 const MOST_WIDTH_M: f64 = 1e4;
 
-/// Why stations are no corridor.
+/// Why stations do not form a corridor.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("station {station}: {problem}")]
 pub struct RoadError {
-    /// From 0.
+    /// Station, from 0.
     pub station: usize,
-    /// What is wrong, with its size.
+    /// The fault and its size.
     pub problem: String,
 }
 
-/// Three-point Gauss on 0..=1: exact to 1e-7 m here (turns below half a radian a station).
+/// Three-point Gauss-Legendre rule on 0..=1. It is exact to 1e-7 m here (turns below half a radian per station).
 const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
@@ -35,34 +35,36 @@ pub(crate) struct Place {
     pub(crate) c: [f64; 2],
     /// Unit tangent.
     pub(crate) t: [f64; 2],
-    /// 1/m, positive to the left.
+    /// Curvature, 1/m, positive to the left.
     pub(crate) curvature: f64,
 }
 
-/// A corridor, extended straight at both ends, in metres about its first station.
+/// A corridor, extended straight at both ends, in metres relative to its first station.
 #[derive(Debug, Clone)]
 pub(crate) struct Road {
     /// Metres between stations.
     pub(crate) spacing: f64,
-    /// Stations before the corridor's first, and all.
+    /// Stations before the corridor's first, and stations of the corridor itself.
     pub(crate) lead: usize,
     pub(crate) count: usize,
     stations: Vec<Place>,
     /// Curvature at the start and the end of the stretch after each station.
     bends: Vec<[f64; 2]>,
-    /// By how much the curve after each station may be off what leads to the next one, metres: sampling a smooth line leaves that.
+    /// Error bound of the curve after each station against the next station, metres. Sampling a smooth line leaves such
+    /// errors.
     slack: Vec<f64>,
-    /// By how much the heading at the end of the stretch after each station differs from the next one's, radians.
+    /// Heading difference between the end of the stretch after each station and the next station, radians.
     jumps: Vec<f64>,
-    /// Half-widths, left and right.
+    /// Half-widths, left and right, metres.
     pub(crate) widths: Vec<[f64; 2]>,
 }
 
 impl Road {
-    /// Checks that the stations fit each other, and extends the corridor by `lead_m` and `tail_m`.
+    /// Tests that the stations fit each other, and extends the corridor by `lead_m` and `tail_m`.
     ///
     /// # Errors
-    /// The first station that does not fit, and by how much; not so if `lenient`: then nothing is known before such a station.
+    /// [`RoadError`] with the first station that does not fit. With `lenient` such a station is no error, and nothing
+    /// is known of the stretch before it.
     pub(crate) fn new(corridor: &Corridor, lead_m: f64, tail_m: f64, lenient: bool) -> Result<Self, RoadError> {
         let n = corridor.len();
         let same = [&corridor.y, &corridor.heading, &corridor.curvature, &corridor.left_m, &corridor.right_m];
@@ -116,23 +118,23 @@ impl Road {
         Ok(road)
     }
 
-    /// Stations, extensions included.
+    /// Number of stations, extensions included.
     pub(crate) fn len(&self) -> usize {
         self.stations.len()
     }
 
-    /// The stretch that `s` (in stations) lies on, and how far along it, metres; straight on beyond both ends.
+    /// The stretch at `s` (in stations) and the metres along it. The road continues straight beyond both ends.
     fn split(&self, s: f64) -> (usize, f64) {
         let k = (s.max(0.0) as usize).min(self.len() - 1);
         (k, (s - k as f64) * self.spacing)
     }
 
-    /// By how much the curve at `s` may be off, metres; infinite where the stations do not fit.
+    /// Error bound of the curve at `s`, metres. Infinite where the stations do not fit.
     pub(crate) fn slack(&self, s: f64) -> f64 {
         self.slack[self.split(s).0]
     }
 
-    /// By how much headings differ where the stretch of `s` meets its neighbours, radians, at most.
+    /// Largest heading difference where the stretch at `s` meets its neighbours, radians.
     pub(crate) fn jump(&self, s: f64) -> f64 {
         let k = self.split(s).0;
         self.jumps[k.saturating_sub(1)..=k].iter().copied().fold(0.0, f64::max)
@@ -162,7 +164,7 @@ impl Road {
         }
     }
 
-    /// Half-width on a side (0 left, 1 right) at `s`, and its slope per metre.
+    /// Half-width on a side (0 left, 1 right) at `s`, metres, and its slope per metre.
     pub(crate) fn width(&self, side: usize, s: f64) -> (f64, f64) {
         let (k, x) = self.split(s.max(0.0));
         let (w0, w1) = (self.widths[k][side], self.widths[(k + 1).min(self.len() - 1)][side]);
@@ -170,7 +172,7 @@ impl Road {
         (w0 + slope * x, slope)
     }
 
-    /// The least half-width on a side between `from` and `to`.
+    /// The least half-width on a side between `from` and `to` (stations).
     pub(crate) fn narrowest(&self, side: usize, from: f64, to: f64) -> f64 {
         let first = (from.max(0.0).floor() as usize + 1).min(self.len());
         let end = (to.max(0.0).ceil() as usize).clamp(first, self.len().max(first));
@@ -178,9 +180,9 @@ impl Road {
         self.widths[first..end].iter().fold(ends, |least, widths| least.min(widths[side]))
     }
 
-    /// By how much, at most, the least half-width within `reach` of a place between `from` and `to` (all in stations) lies below the
-    /// straight line between any two of its values there: where the slope grows, a quarter of the growth times the length. (Taking
-    /// the least around a place moves what the slope grows by, and parts it, but adds nothing.)
+    /// Bounds a dip of the half-width between `from` and `to` (stations). Let w(s) be the least half-width within
+    /// `reach` of s. w lies below the straight line between any two of its values by at most a quarter of the growth of
+    /// the slope times the length. Taking the least around a place moves and splits that growth but adds nothing.
     pub(crate) fn dip(&self, side: usize, from: f64, to: f64, reach: f64) -> f64 {
         let first = ((from - reach).max(0.0).floor() as usize + 1).min(self.len());
         let end = ((to + reach).max(0.0).ceil() as usize).min(self.len() - 1);
@@ -192,7 +194,7 @@ impl Road {
         0.25 * growth * (to - from)
     }
 
-    /// By how much half-widths at some stations lie below the straight line between their neighbours at most.
+    /// How far half-widths at the given stations lie at most below the straight line between their neighbours.
     pub(crate) fn kink(&self, side: usize, stations: std::ops::Range<usize>) -> f64 {
         let below = |k: usize| {
             let [a, b, c] = [k - 1, k, k + 1].map(|k| self.widths[k][side]);
@@ -201,8 +203,8 @@ impl Road {
         (stations.start.max(1)..stations.end.min(self.len() - 1)).map(below).fold(0.0, f64::max)
     }
 
-    /// On stretches between `from` and `to` (stations): the most that the road bends towards a side (0 left, 1 right), and the
-    /// most by which the curvature changes per metre.
+    /// On the stretches between `from` and `to` (stations): the greatest curvature towards a side (0 left, 1 right),
+    /// and the greatest change of the curvature per metre.
     pub(crate) fn sharpest(&self, side: usize, from: f64, to: f64) -> (f64, f64) {
         let first = from.max(0.0) as usize;
         let last = (to.max(0.0) as usize).min(self.len() - 1);
@@ -221,13 +223,13 @@ fn small_sin_cos(x: f64) -> (f64, f64) {
     (sin, cos)
 }
 
-/// Whether station `k` has usable values and follows from the one before it: by how much the curve from there may be off (metres), and
-/// by how much it ends in another heading (radians).
+/// Tests that station `k` has usable values and follows from the one before it. Returns the error bound of the curve
+/// from there (metres), and the heading difference at its end (radians).
 fn check_station(c: &Corridor, k: usize) -> Result<[f64; 2], RoadError> {
     let wrong = |problem: String| Err(RoadError { station: k, problem });
     let values = [c.x[k], c.y[k], c.heading[k], c.curvature[k], c.left_m[k], c.right_m[k]];
     if !finite(c, k) {
-        return wrong(format!("{values:?} are no place, heading, curvature and half-widths"));
+        return wrong(format!("{values:?} are not all finite and below 1e8: x, y, heading, curvature, half-widths"));
     }
     for (name, w, side) in [("left", c.left_m[k], 1.0), ("right", c.right_m[k], -1.0)] {
         if !(w > 0.0 && w < MOST_WIDTH_M) {
@@ -240,13 +242,13 @@ fn check_station(c: &Corridor, k: usize) -> Result<[f64; 2], RoadError> {
     let Some(before) = k.checked_sub(1) else { return Ok([0.0; 2]) };
     let turn = 0.5 * c.spacing_m * (c.curvature[before] + c.curvature[k]);
     if turn.abs() > MOST_TURN_RAD || c.spacing_m * c.curvature[k].abs() > MOST_TURN_RAD {
-        return wrong(format!("a turn of {turn:.2} rad since the station before is too much for this spacing"));
+        return wrong(format!("the road turns by {turn:.2} rad from the station before, too much for this spacing"));
     }
     let turned = c.heading[k] - c.heading[before] - turn;
     let turned = (turned - std::f64::consts::TAU * (turned / std::f64::consts::TAU).round()).abs();
     let off = turned;
     if off > HEADING_TOLERANCE_RAD * c.spacing_m {
-        return wrong(format!("its heading is {off:.4} rad off what the curvatures say"));
+        return wrong(format!("its heading differs by {off:.4} rad from what the curvatures give"));
     }
     let place =
         Place { c: [c.x[before], c.y[before]], t: [c.heading[before].cos(), c.heading[before].sin()], curvature: 0.0 };
@@ -263,9 +265,9 @@ fn check_station(c: &Corridor, k: usize) -> Result<[f64; 2], RoadError> {
     let at = stretch.place(1.0).c;
     let off = (at[0] - c.x[k]).hypot(at[1] - c.y[k]);
     if off > PLACE_TOLERANCE_M * c.spacing_m {
-        return wrong(format!("it lies {off:.4} m off where the station before and the curvatures lead"));
+        return wrong(format!("it lies {off:.4} m from where the station before and the curvatures lead"));
     }
-    // A heading that is off by x leaves the chord's middle off by an eighth of it.
+    // A heading error of x moves the middle of the chord by an eighth of x per metre.
     Ok([off + 0.125 * c.spacing_m * turned, turned])
 }
 

@@ -1,7 +1,7 @@
-//! The filter (proof, section 5) with the second order and the foot shift (section 3): step by step, what every unit may be
-//! off at most anywhere in the step.
+//! The filter (proof, section 5) with the second order and the foot shift (section 3). It bounds every unit's
+//! deviations anywhere in each step.
 //!
-//! In each step the coefficients are taken at their worst, so that the bounds hold between nodes as well.
+//! Each step uses the worst coefficients within it, so the bounds hold between nodes as well.
 
 use crate::UP;
 use crate::adjoint::{self, Coefficients, Output};
@@ -11,44 +11,45 @@ use crate::motion::{Motion, STEPS, Swing};
 /// Assumption A3.
 const MOST_HEADING_RAD: f64 = 0.6;
 const QUARTER_TURN_RAD: f64 = std::f64::consts::FRAC_PI_2 - 1e-9;
-/// Where the filter lets a heading be off by more, the adjoint is asked: hinge by hinge a long chain loses its way in tight turns.
+/// If the filter's heading bound is larger, the adjoint is used. Hinge by hinge, the filter gets too loose for a long
+/// chain in tight turns.
 const LOOSE_RAD: f64 = 0.12;
-/// Lengths of a unit after which nothing is left of what was before.
+/// Lengths of a unit after which earlier deviations have faded completely.
 const FADED_LENGTHS: f64 = 40.0;
-/// Rounds of guessing until a bound reproduces itself.
+/// Most rounds of raising a guess until it reproduces itself.
 const ROUNDS: usize = 60;
 
 /// Bounds of one unit throughout one step, metres and radians.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Tube {
-    /// Beyond the straight gain: of the axle and, times 1/cos δ, of the coupling.
+    /// Beyond the straight gain: of the axle, and of the coupling times 1/cos δ.
     pub(crate) extra: f64,
     pub(crate) extra_coupling: f64,
-    /// Y, E and A, all included.
+    /// Y, E and A, with everything included.
     pub(crate) y: f64,
     pub(crate) e: f64,
     pub(crate) a: f64,
     pub(crate) r1: f64,
     pub(crate) z: f64,
-    /// z^h of the *front* coupling, foot shift and bulge included; of unit 0 the bulge of the plan.
+    /// z^h of the *front* coupling, with foot shift and bulge. For unit 0 it is the bulge of the plan.
     pub(crate) zh: f64,
 }
 
-/// Coefficients of one unit in one step: at the beginning and the end.
+/// Coefficients of one unit at the start and the end of one step.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bend {
     pub(crate) tan: f64,
     pub(crate) sec: [f64; 2],
-    /// Cosine of χ, from the hitch.
+    /// cos χ, from the hitch.
     pub(crate) cos_chi: [f64; 2],
     pub(crate) tan_chi: f64,
-    /// Length of its coupling's chord over that of the road.
+    /// Length of the coupling's chord over that of the road.
     pub(crate) pace: f64,
     pub(crate) angle: f64,
 }
 
 impl Bend {
-    /// Of a unit that is drawn straight on.
+    /// A unit that is drawn straight on.
     const STRAIGHT: Self = Self { tan: 0.0, sec: [1.0; 2], cos_chi: [1.0; 2], tan_chi: 0.0, pace: 1.0, angle: 0.0 };
 
     pub(crate) fn of(link: &Link, swing: &Swing, step_m: f64) -> Self {
@@ -65,28 +66,28 @@ impl Bend {
         }
     }
 
-    /// ρ at the beginning and the end, for `pace` of its coupling.
+    /// ρ at the start and the end.
     pub(crate) fn rho(&self) -> [f64; 2] {
         [self.pace / self.sec[0], self.pace / self.sec[1]]
     }
 }
 
-/// All tubes; `None` in steps where nothing is bounded (A3 fails).
+/// All tubes. A step has `None` if nothing is bounded in it (A3 fails).
 pub(crate) struct Tubes {
     pub(crate) step_m: f64,
-    /// The first step that is there.
+    /// The first step stored.
     pub(crate) first: usize,
     pub(crate) tolerance_m: f64,
     units: usize,
     tubes: Vec<Option<Tube>>,
     coefficients: Vec<Coefficients>,
-    /// `extra` at the end of the last step, a unit.
+    /// `extra` of each unit at the end of the last step.
     ends: Vec<f64>,
-    /// `extra` after a straight of any length.
+    /// `extra` of each unit after a straight of any length.
     settled: Vec<f64>,
-    /// Axle and heading at the end of the last step as the adjoint has them, where it was asked.
+    /// The adjoint's bounds of axle and heading at the end of the last step, if computed.
     exact: Vec<Option<[f64; 2]>>,
-    /// Where a heading may be off by more, radians, the adjoint is asked.
+    /// The adjoint is used if a heading bound exceeds this, radians.
     loose_rad: f64,
 }
 
@@ -108,17 +109,18 @@ impl Tubes {
         }
     }
 
-    /// Without the adjoint.
+    /// Tubes by the filter alone.
     pub(crate) fn filtered(chain: &Chain, spacing: f64, tolerance_m: f64) -> Self {
         Self { loose_rad: f64::INFINITY, ..Self::new(chain, spacing, tolerance_m) }
     }
 
-    /// Whether the adjoint is never asked.
+    /// Whether the adjoint is never used.
     pub(crate) fn by_filter(&self) -> bool {
         self.loose_rad == f64::INFINITY
     }
 
-    /// From step `first` on, at a tolerance that is no more than `wider`'s: its bounds hold there to begin with.
+    /// Tubes from step `first` on, at a tolerance no greater than that of `wider`. The bounds of `wider` hold at the
+    /// start.
     pub(crate) fn within(wider: &Self, chain: &Chain, first: usize, tolerance_m: f64) -> Self {
         let before = first.checked_sub(1).and_then(|step| wider.tubes.get(step * wider.units..first * wider.units));
         let settled = settled(chain, tolerance_m);
@@ -129,7 +131,8 @@ impl Tubes {
         Self { first, tolerance_m, tubes: Vec::new(), coefficients: Vec::new(), ends, settled, exact, ..*wider }
     }
 
-    /// Adds the next step. Where neither the recursion nor the adjoint closes, nothing is bounded in it, and the filter begins anew.
+    /// Adds the next step. If neither the recursion nor the adjoint closes, nothing is bounded in the step, and the
+    /// filter begins anew.
     pub(crate) fn advance(&mut self, chain: &Chain, motion: &Motion) {
         let step = self.first + self.tubes.len() / self.units;
         let mut passed = Passed::steer_axle(self.tolerance_m, motion.swing(step, 0).bulge);
@@ -184,8 +187,8 @@ impl Tubes {
         }
     }
 
-    /// What the adjoint says of a unit throughout a step that is not there yet: its own second order is guessed, and the guess raised
-    /// until the bounds bear it out.
+    /// The adjoint's bounds of a unit throughout a step that is not stored yet. The unit's second order is guessed, and
+    /// the guess is raised until the resulting bounds do not exceed it.
     fn lid(
         &mut self,
         chain: &Chain,
@@ -232,12 +235,12 @@ impl Tubes {
         self.tubes.get(step.checked_sub(self.first)? * self.units + unit)?.as_ref()
     }
 
-    /// Takes better bounds for a unit in a step that is there: its own second order follows.
+    /// Takes better bounds for a unit in a stored step, and tightens the unit's second order with them.
     pub(crate) fn tighten(&mut self, chain: &Chain, motion: &Motion, step: usize, unit: usize, y: f64, a: f64) {
         let swing = motion.swing(step, unit);
         let link = &chain.links[unit];
         let bend = Bend::of(link, swing, self.step_m);
-        // Its coupling is the hitch of the unit ahead.
+        // The unit's coupling is the hitch of the unit ahead.
         let hitch = unit.checked_sub(1).and_then(|ahead| {
             let tube = self.get(step, ahead)?;
             Some(tube.y + chain.links[ahead].d.abs() * tube.a)
@@ -251,8 +254,8 @@ impl Tubes {
         }
     }
 
-    /// The second order of a step's couplings once more, from what is known of the units by now, front to rear: of the coupling of
-    /// `unit` itself.
+    /// Recomputes the second order of the coupling of `unit` in a stored step, from the current bounds of the units
+    /// ahead, front to rear.
     pub(crate) fn tighten_coupling(&mut self, chain: &Chain, motion: &Motion, step: usize, unit: usize) {
         let mut passed = Passed::steer_axle(self.tolerance_m, motion.swing(step, 0).bulge);
         for i in 0..unit {
@@ -274,7 +277,7 @@ impl Tubes {
     }
 }
 
-/// Bounds that hold in a step whatever the filter says: of the axle, the heading and the front coupling.
+/// Bounds that hold in a step independently of the filter: of the axle, the heading and the front coupling.
 #[derive(Debug, Clone, Copy)]
 struct Lid {
     axle: f64,
@@ -288,11 +291,11 @@ impl Lid {
 
 /// What one unit hands to the next in a step.
 struct Passed {
-    /// E⁰, and E beyond it.
+    /// E⁰, and E − E⁰.
     straight: f64,
     extra: f64,
     zh: f64,
-    /// Slope of what is smooth, and the rough part (foot shift).
+    /// Slope of the smooth part, and size of the rough part (foot shift).
     slope: f64,
     rough: f64,
     cos_chi: [f64; 2],
@@ -317,12 +320,13 @@ struct Unit<'a> {
 }
 
 impl Unit<'_> {
-    /// The bounds of the step: guessed, computed, raised until they reproduce themselves; and `extra` at its end.
+    /// The bounds of the step, and `extra` at its end. The bounds are guessed, computed, and raised until they
+    /// reproduce themselves.
     fn settle(&self, passed: &Passed, before: Option<Tube>, lid: Lid) -> Option<(Tube, f64)> {
         let (link, bend) = (self.link, &self.bend);
         let eta =
             (0..2).map(|k| (bend.sec[k] - 1.0).max((passed.cos_chi[k] * bend.sec[k] - 1.0).abs())).fold(0.0, f64::max);
-        // Steps begin with the larger angle; the ends of both ranges are opposite for χ.
+        // A step begins with its larger angle. For χ the opposite ends can be the worst.
         let eta = eta.max((passed.cos_chi[1] * bend.sec[0] - 1.0).abs());
         let extra_coupling = (passed.extra * (1.0 + eta) + eta * passed.straight) * UP;
         let rho = bend.rho();
@@ -353,13 +357,13 @@ impl Unit<'_> {
         None
     }
 
-    /// Whether the bounds hold for a heading that is off by `a` (A3).
+    /// Whether the bounds hold for a heading deviation of `a` (A3).
     fn bounded(&self, a: f64) -> bool {
         let most = a + self.link.sway;
         most <= MOST_HEADING_RAD && self.bend.angle + most < QUARTER_TURN_RAD
     }
 
-    /// From this unit's tube to the coupling of the next.
+    /// From this unit's tube to the next unit's coupling.
     fn pass_on(&self, passed: &Passed, tube: &Tube, next: &Link, next_bend: &Bend, swing: &Swing) -> Passed {
         let (link, bend) = (self.link, &self.bend);
         let (through, back) = ((1.0 + link.k).abs(), link.k.abs());
@@ -385,8 +389,9 @@ impl Unit<'_> {
     }
 }
 
-/// What the second order adds to the straight bound of each axle on a straight of any length (proof, section 8): a bound from which
-/// the recursion comes back to no more, over a step in which everything before it has faded. Infinite where there is none.
+/// What the second order adds to the straight bound of each axle on a straight of any length (proof, section 8). It is
+/// a bound from which the recursion returns no more, over a step in which everything earlier has faded. Infinite if
+/// there is none.
 fn settled(chain: &Chain, tolerance_m: f64) -> Vec<f64> {
     let mut settled = vec![f64::INFINITY; chain.links.len()];
     let mut passed = Passed::steer_axle(tolerance_m, 0.0);
@@ -404,12 +409,12 @@ fn settled(chain: &Chain, tolerance_m: f64) -> Vec<f64> {
     settled
 }
 
-/// R1 of the proof, at bounds of the axle, the coupling and the heading.
+/// R1 of the proof, from bounds of the axle, the coupling and the heading.
 fn r1(link: &Link, bend: &Bend, curvature: f64, y: f64, e: f64, a: f64) -> f64 {
     let sec = bend.sec[0];
     let own = bend.tan * link.l * a * a / 2.0 + link.l * a.powi(3) / 6.0;
     let bent = |across: f64| own + 0.5 * curvature * sec * (across * bend.tan / sec + 0.5 * link.l * a * a).powi(2);
-    // y + Lα is e/cos δ but for R1 itself, which is no more than with the sum of both bounds.
+    // y + Lα equals e/cos δ except for R1. R1 with the sum of both bounds is an upper bound of R1.
     let across = y + link.l * a;
     bent(across.min(e * sec + bent(across))) * UP
 }

@@ -1,6 +1,6 @@
-//! The certificate of one vehicle on one corridor. Pure: no input or output, no clock, no threads.
+//! The certificate of one vehicle on one corridor. The crate is pure: no input or output, no clock, no threads.
 //!
-//! [`stet`] decides; [`published`] is the paper's own certificate, to the letter, and decides nothing.
+//! [`stet`] decides. [`published`] is the paper's own certificate to the letter and decides nothing.
 
 pub mod published;
 pub mod stet;

@@ -1,12 +1,12 @@
 //! The adversary: bang-bang disturbances matched to the impulse responses of one body point at one instant.
 //!
-//! The responses are those of the time-varying linearisation about a given run, by its adjoint (backward, Heun). The
-//! steer axle cannot jump: its deviation is the bang-bang signal with a bounded slope, so it stays within ±ε.
+//! The responses come from the time-varying linearisation about a given run, by its adjoint (backward, Heun). The steer
+//! axle cannot jump, so its deviation is the bang-bang signal with bounded slope, within ±ε.
 
 use crate::path::{V2, along, direction, dot, left_of};
 use crate::simulator::{Disturbance, Drive, MAX_UNITS, PerUnit, Run};
 
-/// Which body point is to be pushed where: at the end of `step`, along `push` (a unit vector).
+/// The body point to push: at the end of `step`, along `push` (a unit vector).
 #[derive(Debug, Clone, Copy)]
 pub struct Target {
     pub step: usize,
@@ -16,15 +16,15 @@ pub struct Target {
     pub push: V2,
 }
 
-/// Impulse responses of the target's place along `push`: what a unit of deviation at a step's first end point does,
-/// and a unit of slip during the step. From step `first` to the target's step (whose deviation comes last).
+/// Impulse responses of the target's place along `push`: to a unit of deviation at a step's first end point, and to a
+/// unit of slip during the step. They run from step `first` to the target's step, whose deviation comes last.
 pub struct Kernel {
     pub first: usize,
     pub steer: Vec<f64>,
     pub slip: Vec<PerUnit>,
 }
 
-/// The adjoint at one end point: μ (by the guided point's velocity), −dλ/dt, and by each slip angle.
+/// The adjoint at one end point: μ (by the guided point's velocity), −dλ/dt, and the response to each slip angle.
 fn adjoint(
     drive: &Drive<'_>,
     headings: &PerUnit,
@@ -60,7 +60,8 @@ pub fn kernel(drive: &Drive<'_>, run: &Run, disturbance: &Disturbance, target: &
     backwards(drive, run, disturbance, (target.step, window), lambda, target.push)
 }
 
-/// The same of the articulation at `hinge` (0: of the prime mover's heading) after `step`, opened to the left by `sign`.
+/// The impulse responses of the articulation at `hinge` after `step`, positive to the left by `sign`. Hinge 0 is the
+/// prime mover's heading.
 pub fn hinge_kernel(
     drive: &Drive<'_>,
     run: &Run,
@@ -77,7 +78,8 @@ pub fn hinge_kernel(
     backwards(drive, run, disturbance, (step, window), lambda, [0.0; 2])
 }
 
-/// `lambda`: how what is attacked changes with each heading at its step; `push`: with the place of the steer axle there.
+/// `lambda` is the target's change with each heading at its step; `push` is its change with the steer axle's place
+/// there.
 fn backwards(
     drive: &Drive<'_>,
     run: &Run,
@@ -113,7 +115,7 @@ fn fraction(drive: &Drive<'_>, step: usize) -> f64 {
     (step % drive.steps_per_span) as f64 / drive.steps_per_span as f64
 }
 
-/// How the target's place along `push` changes with each heading at its instant.
+/// The change of the target's place along `push` with each heading at its instant.
 fn gradient(drive: &Drive<'_>, headings: &PerUnit, target: &Target) -> PerUnit {
     let mut lambda = [0.0; MAX_UNITS];
     for (k, unit) in drive.vehicle.units.iter().enumerate().take(target.unit + 1) {
@@ -128,26 +130,26 @@ fn gradient(drive: &Drive<'_>, headings: &PerUnit, target: &Target) -> PerUnit {
     lambda
 }
 
-/// The bounds an adversary keeps.
+/// The adversary's bounds.
 #[derive(Debug, Clone, Copy)]
 pub struct Bounds {
-    /// ε: the steer axle's lateral deviation, metres.
+    /// ε: bound of the steer axle's lateral deviation, metres.
     pub steer_m: f64,
-    /// The most its deviation may change in one step, metres.
+    /// Largest change of that deviation in one step, metres.
     pub change_m: f64,
-    /// σ a unit, radians.
+    /// σ of each unit, radians.
     pub slip: PerUnit,
 }
 
 impl Kernel {
-    /// Σ |response| · bound: the most the linearised point can be moved if the steer axle could jump.
+    /// Σ |response| · bound: the largest movement of the linearised point if the steer axle could jump.
     pub fn reach_m(&self, bounds: &Bounds) -> f64 {
         let steer: f64 = self.steer.iter().map(|g| g.abs() * bounds.steer_m).sum();
         let slip: f64 = self.slip.iter().flat_map(|g| (0..MAX_UNITS).map(|i| g[i].abs() * bounds.slip[i])).sum();
         steer + slip
     }
 
-    /// Writes the matched disturbance; past the target's step the steer axle keeps its deviation, slip ends.
+    /// Writes the matched disturbance. After the target's step the steer axle keeps its deviation and slip ends.
     pub fn attack(&self, bounds: &Bounds, steps: usize) -> Disturbance {
         let mut d = Disturbance::none(steps);
         for (k, g) in self.slip.iter().enumerate() {
@@ -161,8 +163,8 @@ impl Kernel {
         d
     }
 
-    /// The bang-bang signal with bounded slope, switching half a transition early; the last switch (the body's own
-    /// share of the deviation) is kept or left out, whichever moves the point further.
+    /// The bang-bang signal with bounded slope, which switches half a transition early. The last switch is the body's
+    /// own share of the deviation. It is kept only if that moves the point farther.
     fn steer_signal(&self, bounds: &Bounds) -> Vec<f64> {
         let count = self.steer.len();
         let transition = (2.0 * bounds.steer_m / bounds.change_m).ceil() as usize;

@@ -1,18 +1,18 @@
-//! What a certifier claims of a corridor, in the oracle's words.
+//! A certifier's claims about a corridor, in the oracle's types.
 
 use crate::path::V2;
 
-/// A certificate's claims that the oracle can try to refute.
+/// The claims of a certificate that the oracle tries to refute.
 pub struct Claim {
     pub rsc_m: f64,
-    /// γ: what the steer axle keeps to is γ ε.
+    /// γ: the steer axle keeps within ±γ ε.
     pub shrink: f64,
     pub hinge_margin_rad: f64,
     pub limiting: Place,
     pub plan: Vec<V2>,
 }
 
-/// A body point whose foot is at a station.
+/// A body point, given by the station of its foot.
 #[derive(Debug, Clone, Copy)]
 pub struct Place {
     pub foot_m: f64,

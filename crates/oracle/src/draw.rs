@@ -1,5 +1,5 @@
-//! Random draws, the same every run: SplitMix64, and corridors of straights, clothoids, arcs and S-bends with
-//! changing widths.
+//! Random draws that are the same in every run (SplitMix64), and random corridors of straights, clothoids, arcs and
+//! S-bends with changing widths.
 
 use netcert_base::corridor::Corridor;
 
@@ -23,7 +23,7 @@ impl Draw {
         low + (high - low) * ((self.bits() >> 11) as f64 / (1u64 << 53) as f64)
     }
 
-    /// Uniform in the logarithm.
+    /// Uniform in the logarithm, in `low..high`.
     pub fn log_between(&mut self, low: f64, high: f64) -> f64 {
         self.between(low.ln(), high.ln()).exp()
     }
@@ -41,7 +41,7 @@ impl Draw {
     }
 }
 
-/// A curve as a list of (length, curvature at its end): the curvature runs linearly from one to the next.
+/// A curve as a list of (length, curvature at its end). Curvature runs linearly from each entry to the next.
 pub type Bends = Vec<(f64, f64)>;
 
 /// Curvature at stations 1 m apart along `bends`, starting straight.
@@ -62,7 +62,7 @@ pub fn curvature_at(bends: &Bends, s: f64) -> f64 {
     kappa
 }
 
-/// Straights, transitions, arcs of at least `radius_m`, S-bends; up to `length_m` long.
+/// Straights, transitions, arcs of at least `radius_m` and S-bends, up to `length_m` in all.
 pub fn bends(draw: &mut Draw, radius_m: f64, length_m: f64) -> Bends {
     let mut bends = vec![(draw.between(5.0, 40.0), 0.0)];
     let mut side = draw.sign();
@@ -86,8 +86,8 @@ pub fn bends(draw: &mut Draw, radius_m: f64, length_m: f64) -> Bends {
     bends
 }
 
-/// Half-widths at `stations` stations: `low..high` in stretches of 30 to 150 m, with cosine tapers between them, and
-/// constant over the first and last 20 m.
+/// Half-widths at `stations` stations: values in `low..high` over stretches of 30 to 150 m, joined by cosine tapers,
+/// and constant over the first and last 20 m.
 pub fn half_widths(draw: &mut Draw, stations: usize, low: f64, high: f64) -> Vec<f64> {
     let mut widths = Vec::with_capacity(stations);
     let mut now = draw.between(low, high);
@@ -110,7 +110,7 @@ pub fn half_widths(draw: &mut Draw, stations: usize, low: f64, high: f64) -> Vec
     widths
 }
 
-/// A corridor along `bends`, somewhere in the plane.
+/// A corridor along `bends`, at a random place and heading.
 pub fn corridor(draw: &mut Draw, bends: &Bends, low: f64, high: f64) -> Corridor {
     let curvature = curvature(bends);
     let left = half_widths(draw, curvature.len(), low, high);

@@ -1,7 +1,9 @@
-//! One corridor, one vehicle, one claim: the adversary does its best, the simulator measures what is left.
+//! One corridor, one vehicle, one claim: the adversary disturbs the drive, and the simulator measures the remaining
+//! clearance.
 //!
-//! Disturbances keep the scope of the promise (design section 5): |e_0| ≤ γ ε, |slip_i| ≤ σ_i, from long before the first
-//! station on. Some also keep the steer axle's course within m of the path's; only those may test the hinge margin.
+//! Disturbances stay within the promise (docs/proof.md, section 1): |e_0| ≤ γ ε and |slip_i| ≤ σ_i, from long before
+//! the first station. Some also keep the steer axle's course within m of the path's. Only those may test the hinge
+//! margin.
 
 use netcert_base::corridor::Corridor;
 use netcert_base::vehicle::Vehicle;
@@ -13,23 +15,23 @@ use crate::path::{Path, along, direction, dot, left_of, wrapped};
 use crate::road::Road;
 use crate::simulator::{Disturbance, Drive, Near, PerUnit, Run, places, sweep};
 
-/// Steps a metre. RK4 is within 2e-6 m of the limit there (`simulator.rs`).
+/// Steps per metre. RK4 is then within 2e-6 m of the limit (`simulator.rs`).
 pub const STEPS_PER_M: usize = 10;
 /// Metres in which the steer axle may swing from one bound to the other in a fast attack.
 const SWING_M: f64 = 0.3;
 
-/// What a duel showed.
+/// The result of a duel.
 #[derive(Debug, Clone)]
 pub struct Outcome {
-    /// Least clearance found, metres, and where.
+    /// Least clearance found, metres, and its place.
     pub least: Near,
     /// The attack that found it.
     pub by: &'static str,
     /// Least clearance without any disturbance.
     pub undisturbed_m: f64,
-    /// Clearance at the limiting place less what the linearised adversary could take: first order, exact.
+    /// Clearance at the limiting place less the linearised adversary's reach, metres. To first order it is exact.
     pub first_order_m: f64,
-    /// Least of θ_i less the articulation met, over attacks within the course tolerance, radians; and its hinge.
+    /// Least θ_i less articulation over the attacks within the course tolerance, radians, and its hinge.
     pub hinge: (f64, usize),
 }
 
@@ -43,7 +45,7 @@ pub struct Duel<'a> {
     outcome: Outcome,
 }
 
-/// How far the foremost point is ahead of the steer axle on the straight, metres.
+/// Distance of the foremost point ahead of the steer axle on the straight, metres.
 fn front_m(vehicle: &Vehicle) -> f64 {
     let mut coupling = 0.0;
     let ahead = vehicle.units.iter().map(|unit| {
@@ -54,14 +56,14 @@ fn front_m(vehicle: &Vehicle) -> f64 {
     ahead.fold(0.0, f64::max)
 }
 
-/// The path that a claim's plan stands for, with room to settle before it and to clear the corridor after it.
+/// The path of a claim's plan, with room to settle before it and to clear the corridor after it.
 pub fn path(corridor: &Corridor, vehicle: &Vehicle, claim: &Claim) -> Path {
     let headings = (corridor.heading[0], corridor.heading[corridor.len() - 1]);
     Path::through(&claim.plan, corridor.spacing_m, headings, 3.0 * vehicle.length_m, vehicle.length_m + 8.0)
 }
 
 impl<'a> Duel<'a> {
-    /// Drives undisturbed.
+    /// Prepares a duel: drives the path undisturbed.
     pub fn new(corridor: &'a Corridor, vehicle: &'a Vehicle, path: &'a Path, shrink: f64) -> Self {
         let drive = Drive::new(vehicle, path, (STEPS_PER_M as f64 * corridor.spacing_m).ceil() as usize);
         let calm = Disturbance::none(drive.steps());
@@ -87,7 +89,8 @@ impl<'a> Duel<'a> {
         duel
     }
 
-    /// Every attack: at the limiting place, at the undisturbed worst, at `others` random places, and at random.
+    /// Runs every attack: at the limiting place, at the worst undisturbed place, at `others` random places, and
+    /// unmatched random ones.
     pub fn fight(mut self, claim: &Claim, draw: &mut Draw, others: usize) -> Outcome {
         let worst = self.outcome.least;
         let worst = Place { foot_m: worst.foot_m, unit: worst.unit, side: worst.side, ahead_m: worst.ahead_m };
@@ -107,24 +110,24 @@ impl<'a> Duel<'a> {
         self.outcome
     }
 
-    /// Steps after which a disturbance no longer matters: the impulse responses are below 1e-3 of their peak by then.
+    /// Steps after which a disturbance no longer matters: the impulse responses are then below 1e-3 of their peak.
     fn memory(&self) -> usize {
         (3.0 * self.drive.vehicle.length_m) as usize * STEPS_PER_M
     }
 
-    /// A disturbed run of `first..end`, from where the undisturbed one was.
+    /// A disturbed run of the steps `first..end` from the undisturbed state at `first`.
     fn from(&self, first: usize, end: usize, disturbance: &Disturbance) -> Run {
         self.drive.some(disturbance, first..end, *self.nominal.at(first).1)
     }
 
-    /// Steps in which some unit is on the corridor: from when the first point comes on to it, and a little longer than until the last
-    /// one has left.
+    /// Steps in which some unit is on the corridor: from the first point's arrival until a little after the last point
+    /// has left.
     fn on_road(&self) -> std::ops::Range<usize> {
         let first = self.drive.path.span_of_vertex(0) * self.drive.steps_per_span;
         first - self.steps_of(front_m(self.drive.vehicle)).min(first)..self.drive.steps()
     }
 
-    /// Steps in which surely some point of the vehicle is on the corridor.
+    /// Steps in which some point of the vehicle is certainly on the corridor.
     fn surely_on_road(&self) -> std::ops::Range<usize> {
         let vehicle = self.drive.vehicle;
         let rear_m = vehicle.length_m - front_m(vehicle);
@@ -145,8 +148,8 @@ impl<'a> Duel<'a> {
         Place { foot_m: draw.between(0.0, self.road.length_m()), unit, side: draw.sign(), ahead_m }
     }
 
-    /// Attacks one place, first about the undisturbed run, then about the attacked one. The clearance that the first
-    /// linearisation promises there.
+    /// Attacks one place twice: linearised about the undisturbed run, then about the attacked run. Returns the
+    /// clearance that the first linearisation predicts.
     fn attack(&mut self, place: Place, fast: bool, by: &'static str) -> f64 {
         let aside_m = place.side * 0.5 * self.drive.vehicle.units[place.unit].width_m;
         let (step, clearance_m) = self.step_at(&place, aside_m);
@@ -169,8 +172,8 @@ impl<'a> Duel<'a> {
         clearance_m - first.reach_m(&bounds)
     }
 
-    /// Folds every hinge, and the steering, as far as it goes within the course tolerance: where it is folded most undisturbed, and at a
-    /// random step.
+    /// Folds every hinge and the steering as far as the course tolerance allows, at two steps: where the undisturbed
+    /// run folds it most, and at a random one.
     fn attack_hinges(&mut self, draw: &mut Draw) {
         let range = self.surely_on_road();
         if range.is_empty() {
@@ -194,7 +197,8 @@ impl<'a> Duel<'a> {
         }
     }
 
-    /// How far a hinge is folded at a step, to the left; of 0: how far the prime mover is turned against its course.
+    /// Articulation of a hinge at a step, positive to the left. For hinge 0, the prime mover's heading against its
+    /// course.
     fn folded(&self, run: &Run, step: usize, hinge: usize) -> f64 {
         let headings = run.at(step).1;
         if let Some(ahead) = hinge.checked_sub(1) {
@@ -207,7 +211,8 @@ impl<'a> Duel<'a> {
         -dot(moved, left_of(u)).atan2(dot(moved, u))
     }
 
-    /// The step at which a body point's foot is nearest to the place's, undisturbed, and its clearance then.
+    /// The step of the undisturbed run at which the body point's foot is nearest to the place's, and the clearance
+    /// then.
     fn step_at(&self, place: &Place, aside_m: f64) -> (usize, f64) {
         let mut guess = place.foot_m;
         let mut miss = |step: usize| {
@@ -215,7 +220,7 @@ impl<'a> Duel<'a> {
             let point = self.drive.body_point(guide, headings, place.unit, place.ahead_m, aside_m);
             let on_path = (step as f64 / self.drive.steps_per_span as f64 + 1.0 - self.drive.path.lead_in as f64)
                 * self.drive.path.spacing_m;
-            // Feet are searched for from where the steer axle is: a corridor may come back to the same spot.
+            // The search starts at the steer axle, because a corridor may come back to the same spot.
             guess = on_path - self.behind(place);
             let at = self.road.locate(point, guess);
             ((at.foot_m - place.foot_m).abs(), if place.side > 0.0 { at.left_m } else { at.right_m })
@@ -231,14 +236,14 @@ impl<'a> Duel<'a> {
         (fine.0, fine.1.1)
     }
 
-    /// How far behind the steer axle a body point is on the straight.
+    /// Distance of a body point behind the steer axle on the straight, metres.
     fn behind(&self, place: &Place) -> f64 {
         let units = &self.drive.vehicle.units;
         let ahead: f64 = units[..place.unit].iter().map(|u| u.coupling_to_axle_m + u.hitch_offset_m).sum();
         ahead + units[place.unit].coupling_to_axle_m - place.ahead_m
     }
 
-    /// Notes the least clearance of a run in `range`, and its articulation if `course` was kept.
+    /// Records the least clearance of a run in `range`, and its articulation if `course` was kept.
     fn measure(&mut self, run: &Run, range: std::ops::Range<usize>, by: &'static str, course: bool) {
         let least = |range: std::ops::Range<usize>, grid: (usize, f64)| {
             let mut least: Option<Near> = None;
@@ -273,7 +278,7 @@ impl<'a> Duel<'a> {
         }
     }
 
-    /// Disturbances that are not matched to anything: constant, waves, or bang-bang at random.
+    /// Unmatched disturbances: constant, waves, or random bang-bang.
     fn noise(&self, draw: &mut Draw) -> Disturbance {
         let mut d = self.calm.clone();
         let steps = self.drive.steps();
@@ -307,7 +312,7 @@ impl<'a> Duel<'a> {
     }
 }
 
-/// The least clearance in one line, for a failure's message.
+/// The least clearance in one line, for failure messages.
 pub fn describe(o: &Outcome) -> String {
     let n = &o.least;
     let side = if n.side > 0.0 { "left" } else { "right" };
@@ -317,7 +322,7 @@ pub fn describe(o: &Outcome) -> String {
     )
 }
 
-/// The whole fight for one claim: how far the least clearance that any attack reached is above it, metres, and how that came about.
+/// Runs all attacks on one claim. Returns how far the least clearance stays above the claim, metres, and a description.
 pub fn margin_m(
     corridor: &Corridor,
     vehicle: &Vehicle,

@@ -1,9 +1,9 @@
-//! The vehicles the oracle drives: dimensions as in the public sources that the catalogue cites, tolerances of its
-//! own choice. A table of the oracle's own, so that a slip in the catalogue cannot hide itself.
+//! The vehicles that the oracle drives. Dimensions come from the public sources that the catalogue cites; tolerances
+//! are the oracle's own. The oracle has its own table, so an error in the catalogue cannot hide itself.
 
 use netcert_base::vehicle::{Unit, Vehicle};
 
-/// id, width, then L, d (hitch behind the axle), front overhang, rear overhang a unit. Metres.
+/// id, width, then per unit L, d (hitch behind the axle), front overhang, rear overhang. Metres.
 type Row = (&'static str, f64, &'static [[f64; 4]]);
 
 /// A vehicle with the tolerances the tests start from: ε 0.15 m, course 3°, σ 0.2°, hinges 70°, lock 42°.
@@ -12,7 +12,7 @@ pub fn vehicle(id: &str) -> Vehicle {
     from_row(row)
 }
 
-/// All of them.
+/// All vehicles of the table.
 pub fn all() -> Vec<Vehicle> {
     FLEET.iter().map(from_row).collect()
 }

@@ -1,7 +1,7 @@
-//! An oracle for the certifier: another simulator, an adversary that disturbs it, and random corridors to drive.
+//! An oracle for the certifier: a second simulator, an adversary that disturbs it, and random corridors to drive.
 //!
-//! Written from the kinematics alone. It shares no code with the certifier and depends on neither kernel nor checker: only vehicles,
-//! corridors and claims go in. It does not model tyres, speed or hinge stops. For tests.
+//! It is written from the kinematics alone and shares no code with the certifier. Its inputs are vehicles, corridors
+//! and claims. It does not model tyres, speed or hinge stops. It is for tests.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 pub mod adversary;

@@ -1,7 +1,8 @@
-//! The steer axle's planned path between its vertices: a Catmull-Rom cubic, straight before the first and after the
+//! The steer axle's planned path through its vertices: a Catmull-Rom cubic, straight before the first and after the
 //! last vertex.
 //!
-//! The cubic through vertices 1 m apart stays within 1e-5 m of a 12.5 m circle. It is C¹; its parameter is one a vertex.
+//! Through vertices 1 m apart the cubic stays within 1e-5 m of a 12.5 m circle. It is C¹. Its parameter grows by one
+//! per vertex.
 
 use std::f64::consts::PI;
 
@@ -37,9 +38,9 @@ pub fn wrapped(angle: f64) -> f64 {
 /// A path for the steer axle, straight at both ends.
 pub struct Path {
     vertices: Vec<V2>,
-    /// Vertices before the plan's own first one.
+    /// Number of vertices before the plan's first one.
     pub lead_in: usize,
-    /// Distance between vertices, metres (nominal: the plan's own vary a little).
+    /// Distance between vertices, metres. The plan's own distances vary a little.
     pub spacing_m: f64,
 }
 
@@ -51,8 +52,8 @@ pub struct Jet {
 }
 
 impl Path {
-    /// Through `plan` (vertices near `spacing_m` apart), entered along `heading_in` for at least `run_in_m` and left
-    /// along `heading_out` for at least `run_out_m`.
+    /// The path through `plan` (vertices about `spacing_m` apart). It is entered along the first of `heading` for at
+    /// least `run_in_m`, and left along the second for at least `run_out_m`.
     pub fn through(plan: &[V2], spacing_m: f64, heading: (f64, f64), run_in_m: f64, run_out_m: f64) -> Self {
         let before = (run_in_m / spacing_m).ceil() as usize + 1;
         let after = (run_out_m / spacing_m).ceil() as usize + 2;
@@ -64,18 +65,18 @@ impl Path {
         Self { vertices, lead_in: before, spacing_m }
     }
 
-    /// Spans that can be driven: from vertex 1 to the last but one.
+    /// Number of spans that can be driven: from vertex 1 to the last but one.
     pub fn spans(&self) -> usize {
         self.vertices.len() - 3
     }
 
-    /// The parameter (in spans from the start) at which the plan's vertex `k` is passed.
+    /// The parameter (in spans from the start) at vertex `k` of the plan.
     pub fn span_of_vertex(&self, k: usize) -> usize {
         k + self.lead_in - 1
     }
 
-    /// Within span `k`, at fraction `t` of it.
-    #[allow(clippy::needless_range_loop)] // both coordinates of four points and three derivatives
+    /// The path in span `k` at fraction `t`.
+    #[allow(clippy::needless_range_loop)] // Both coordinates of four points and three derivatives.
     pub fn jet(&self, k: usize, t: f64) -> Jet {
         let p = &self.vertices[k..k + 4];
         let mut jet = Jet { at: [0.0; 2], first: [0.0; 2], second: [0.0; 2] };

@@ -1,28 +1,28 @@
-//! The corridor as a curve: stations joined by linear curvature, half-widths linear between stations, straight
-//! beyond both ends.
+//! The corridor as a curve: linear curvature and linear half-widths between stations, straight beyond both ends.
 //!
-//! Positions inside a station interval by three-point Gauss: 1e-9 m at 1 m spacing down to 10 m of radius.
+//! Positions inside a station interval come from three-point Gauss quadrature: 1e-9 m at 1 m spacing down to 10 m of
+//! radius.
 
 use netcert_base::corridor::Corridor;
 
 use crate::path::{V2, along, direction, dot, left_of};
 
-/// Half-width of the Gauss nodes, and their weights, on 0..=1.
+/// Nodes and weights of the three-point Gauss-Legendre rule on 0..=1.
 const NODES: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
-/// A corridor with what locating points on it needs.
+/// A corridor, prepared for locating points on it.
 pub struct Road<'a> {
     corridor: &'a Corridor,
     tangents: Vec<V2>,
 }
 
-/// A point as the corridor sees it.
+/// A point relative to the corridor.
 #[derive(Debug, Clone, Copy)]
 pub struct Located {
     pub foot_m: f64,
     pub lateral_m: f64,
-    /// Clearance to the left edge along the normal at the foot, and to the right one.
+    /// Clearance to the left edge along the normal at the foot, then to the right edge, metres.
     pub left_m: f64,
     pub right_m: f64,
 }
@@ -62,20 +62,21 @@ impl<'a> Road<'a> {
         (at, tangent)
     }
 
-    /// `s` measured from station `k`: the part inside the corridor, and what lies beyond an end of it.
+    /// `s` relative to station `k`: the part inside the corridor, and the part beyond an end.
     fn split(&self, s: f64, k: usize) -> (f64, f64) {
         let inside = s.clamp(0.0, self.length_m());
         (inside - k as f64 * self.corridor.spacing_m, s - inside)
     }
 
-    /// A value linear between stations, at `s`.
+    /// The value at `s` of `values`, linear between stations.
     pub fn value(&self, values: &[f64], s: f64) -> f64 {
         let x = (s / self.corridor.spacing_m).clamp(0.0, (values.len() - 1) as f64);
         let k = (x.floor() as usize).min(values.len() - 2);
         values[k] + (values[k + 1] - values[k]) * (x - k as f64)
     }
 
-    /// The foot of `point`, by Newton from `guess` (right to some tens of degrees of the curve), to 1e-9 m.
+    /// The foot of `point` to 1e-9 m, by Newton's method from `guess`. `guess` may be off by some tens of degrees of
+    /// the curve.
     pub fn locate(&self, point: V2, guess: f64) -> Located {
         let mut s = guess;
         let mut lateral_m = 0.0;
@@ -96,7 +97,7 @@ impl<'a> Road<'a> {
     }
 }
 
-/// Sine and cosine of a small angle: 1e-10 up to 0.15 rad, and the library's beyond.
+/// Sine and cosine. Small angles up to 0.15 rad use a series with an error of 1e-10.
 fn small_sin_cos(x: f64) -> (f64, f64) {
     if x.abs() > 0.15 {
         return x.sin_cos();

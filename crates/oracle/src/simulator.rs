@@ -1,21 +1,21 @@
-//! The no-slip n-trailer with slip angles, by RK4 on the headings, and the clearance of what it sweeps.
+//! The no-slip n-trailer with slip angles, integrated by RK4 on the headings, and the clearance of its swept path.
 //!
-//! With u, n the heading and left normal of unit i, v the velocity of its front coupling and τ = tan slip:
-//! L ω = v·n − τ v·u, and the rear coupling moves by v − (L + d) ω n, exactly. Slip is constant within a step and
-//! the steer axle's deviation linear, so that RK4 keeps its order. Hinges have no stops.
+//! Let u and n be the heading and left normal of unit i, v the velocity of its front coupling and τ = tan slip. Then L
+//! ω = v·n − τ v·u, and the rear coupling moves by v − (L + d) ω n, exactly. Slip is constant within a step and the
+//! steer axle's deviation is linear, so RK4 keeps its order. Hinges have no stops.
 
 use netcert_base::vehicle::Vehicle;
 
 use crate::path::{Path, V2, along, direction, dot, left_of};
 use crate::road::Road;
 
-/// Most units a vehicle of the tests may have.
+/// Most units of a vehicle in the tests.
 pub const MAX_UNITS: usize = 8;
-/// One number a unit.
+/// One number per unit.
 pub type PerUnit = [f64; MAX_UNITS];
 
-/// What disturbs a run: the steer axle's lateral deviation at each step's end points, each axle's slip angle in each
-/// step. Metres, radians, positive to the left.
+/// Disturbances of a run: the steer axle's lateral deviation at each step's end points, and each axle's slip angle in
+/// each step. Metres and radians, positive to the left.
 #[derive(Clone)]
 pub struct Disturbance {
     pub steer_m: Vec<f64>,
@@ -23,13 +23,13 @@ pub struct Disturbance {
 }
 
 impl Disturbance {
-    /// None at all, for `steps` steps.
+    /// No disturbance, for `steps` steps.
     pub fn none(steps: usize) -> Self {
         Self { steer_m: vec![0.0; steps + 1], slip: vec![[0.0; MAX_UNITS]; steps] }
     }
 }
 
-/// A vehicle on a path. `guide_m` is the lateral place, left of the steer axle's centre, of the point that follows it.
+/// A vehicle on a path. The guided point follows the path; it is `guide_m` left of the steer axle's centre.
 pub struct Drive<'a> {
     pub vehicle: &'a Vehicle,
     pub path: &'a Path,
@@ -37,7 +37,7 @@ pub struct Drive<'a> {
     pub guide_m: f64,
 }
 
-/// Where everything was, at the end points of the steps from `first` on.
+/// Guided point and headings at the end points of the steps from `first` on.
 pub struct Run {
     pub first: usize,
     pub guide: Vec<V2>,
@@ -45,35 +45,35 @@ pub struct Run {
 }
 
 impl Run {
-    /// Steps at whose end points positions are known.
+    /// Steps at whose end points the state is known.
     pub fn steps(&self) -> std::ops::Range<usize> {
         self.first..self.first + self.headings.len()
     }
 
-    /// Headings after `step` steps of the path.
+    /// Guided point and headings after `step` steps of the path.
     pub fn at(&self, step: usize) -> (V2, &PerUnit) {
         (self.guide[step - self.first], &self.headings[step - self.first])
     }
 }
 
 impl<'a> Drive<'a> {
-    /// The steer axle's centre follows the path.
+    /// A drive whose steer axle's centre follows the path.
     pub fn new(vehicle: &'a Vehicle, path: &'a Path, steps_per_span: usize) -> Self {
         Self { vehicle, path, steps_per_span, guide_m: 0.0 }
     }
 
-    /// Steps from one end of the path to the other.
+    /// Number of steps from one end of the path to the other.
     pub fn steps(&self) -> usize {
         self.path.spans() * self.steps_per_span
     }
 
-    /// The whole path, from straight behind its beginning.
+    /// Drives the whole path, starting straight at its beginning.
     pub fn whole(&self, disturbance: &Disturbance) -> Run {
         let start = self.path.jet(0, 0.0).first;
         self.some(disturbance, 0..self.steps(), [start[1].atan2(start[0]); MAX_UNITS])
     }
 
-    /// The steps `range`, from headings `from`.
+    /// Drives the steps `range`, starting with headings `from`.
     pub fn some(&self, disturbance: &Disturbance, range: std::ops::Range<usize>, from: PerUnit) -> Run {
         let mut run = Run { first: range.start, guide: Vec::new(), headings: Vec::new() };
         let mut state = from;
@@ -114,7 +114,7 @@ impl<'a> Drive<'a> {
         ((step % self.steps_per_span) as f64 + t) / self.steps_per_span as f64
     }
 
-    /// By the path's parameter, within a step at fraction `t`.
+    /// Velocity of the guided point by the path's parameter, at fraction `t` of a step.
     pub fn guide_velocity(&self, disturbance: &Disturbance, step: usize, t: f64) -> V2 {
         let jet = self.path.jet(step / self.steps_per_span, self.fraction(step, t));
         let (e0, e1) = (disturbance.steer_m[step], disturbance.steer_m[step + 1]);
@@ -126,7 +126,7 @@ impl<'a> Drive<'a> {
         along(v, e0 * (1.0 - t) + e1 * t, dn)
     }
 
-    /// dθ_i/dt for the velocity `v` of the guided point.
+    /// dθ_i/dt for velocity `v` of the guided point.
     pub fn rates(&self, headings: &PerUnit, mut v: V2, slip: &PerUnit) -> PerUnit {
         let mut rates = [0.0; MAX_UNITS];
         for (i, unit) in self.vehicle.units.iter().enumerate() {
@@ -153,7 +153,7 @@ impl<'a> Drive<'a> {
         axles
     }
 
-    /// The body point of `unit`, `ahead_m` of its axle and `aside_m` to the left.
+    /// The body point of `unit`, `ahead_m` ahead of its axle and `aside_m` to the left.
     pub fn body_point(&self, guide: V2, headings: &PerUnit, unit: usize, ahead_m: f64, aside_m: f64) -> V2 {
         let u = direction(headings[unit]);
         along(along(self.axles(guide, headings)[unit], ahead_m, u), aside_m, left_of(u))
@@ -173,13 +173,13 @@ pub struct Near {
     pub ahead_m: f64,
     /// +1 on the body's left side, −1 on its right.
     pub side: f64,
-    /// +1 the left edge, −1 the right: the nearer one.
+    /// +1 for the left edge, −1 for the right: the nearer edge.
     pub edge: f64,
-    /// Where its foot is along the corridor.
+    /// Arc length of its foot along the corridor, metres.
     pub foot_m: f64,
 }
 
-/// Places along a unit, metres ahead of its axle: both ends and between them no more than `pitch_m` apart.
+/// Places along a unit, metres ahead of its axle: both ends, and places between them at most `pitch_m` apart.
 pub fn places(vehicle: &Vehicle, unit: usize, pitch_m: f64) -> Vec<f64> {
     let u = &vehicle.units[unit];
     let (back, front) = (-u.rear_overhang_m, u.coupling_to_axle_m + u.front_overhang_m);
@@ -187,8 +187,8 @@ pub fn places(vehicle: &Vehicle, unit: usize, pitch_m: f64) -> Vec<f64> {
     (0..=pieces as usize).map(|k| back + (front - back) * k as f64 / pieces).collect()
 }
 
-/// Visits every body point of both sides (all corners, sides every `pitch_m`) against *both* edges, every `stride`
-/// steps of `range`, whose foot lies on the corridor.
+/// Visits body points every `stride` steps of `range`: all corners, and points every `pitch_m` of both sides. A point
+/// counts against *both* edges if its foot lies on the corridor.
 pub fn sweep(
     drive: &Drive<'_>,
     run: &Run,
@@ -227,8 +227,7 @@ pub fn sweep(
     }
 }
 
-/// Feet of the axles where nothing is known of them yet: walked back from the steer axle, each found from the one
-/// ahead of it.
+/// Feet of the axles at the start of a search, found one after the other back from the steer axle.
 fn first_feet(drive: &Drive<'_>, road: &Road<'_>, step: usize, axles: &[V2; MAX_UNITS]) -> PerUnit {
     let span = step as f64 / drive.steps_per_span as f64 + 1.0 - drive.path.lead_in as f64;
     let mut guess = span * drive.path.spacing_m;

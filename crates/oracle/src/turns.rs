@@ -1,7 +1,7 @@
-//! The turns that published figures are given for: arcs entered from the tangent, what an axle's inner end reaches,
-//! the width that a whole vehicle sweeps.
+//! Turns with published figures: arcs entered from the tangent. The figures are the reach of an axle's inner end and
+//! the swept width of a whole vehicle.
 //!
-//! All turns are to the left; the arc's centre is at (0, radius), the straight before it runs along x.
+//! All turns are to the left. The arc's centre is at (0, radius), and the straight before it runs along x.
 
 use netcert_base::corridor::Corridor;
 use netcert_base::vehicle::Vehicle;
@@ -23,7 +23,7 @@ pub struct Turn {
 }
 
 impl Turn {
-    /// `angle` radians at `radius_m`, then straight on for `exit_m`.
+    /// A turn by `angle` radians at `radius_m`, then straight on for `exit_m`.
     pub fn new(radius_m: f64, angle: f64, lead_in_m: f64, exit_m: f64) -> Self {
         let arc = (radius_m * angle / PITCH_M).round() as usize;
         let pitch = radius_m * angle / arc as f64;
@@ -36,7 +36,7 @@ impl Turn {
         };
         let places: Vec<(V2, f64)> = (0..=before + arc + after).map(place).collect();
         let plan: Vec<V2> = places.iter().map(|p| p.0).collect();
-        // Curvature is linear between stations: half of it at both ends makes the turned angle exact.
+        // Curvature is linear between stations. Half of it at both ends makes the turned angle exact.
         let bend = |k: usize| match k {
             _ if k == before || k == before + arc => 0.5 / radius_m,
             _ if k > before && k < before + arc => 1.0 / radius_m,
@@ -49,7 +49,7 @@ impl Turn {
         Self { radius_m, angle, guide, path, lead_in_m: before as f64 * pitch }
     }
 
-    /// The vertices of the path, without what `Path` adds.
+    /// The vertices of the path, without the extensions that `Path` adds.
     pub fn plan(&self) -> Vec<V2> {
         self.guide.x.iter().zip(&self.guide.y).map(|(&x, &y)| [x, y]).collect()
     }
@@ -60,7 +60,7 @@ impl Turn {
         self.path.span_of_vertex((metres / self.path.spacing_m).round() as usize)
     }
 
-    /// From the arc's centre.
+    /// Distance from the arc's centre.
     pub fn radius_of(&self, point: V2) -> f64 {
         point[0].hypot(point[1] - self.radius_m)
     }
@@ -77,13 +77,13 @@ pub fn inside_radius_m(vehicle: &Vehicle, turn: &Turn, run: &Run) -> f64 {
     run.steps().map(inner_end).fold(f64::INFINITY, f64::min)
 }
 
-/// An undisturbed run of the turn, a step a vertex.
+/// An undisturbed run of the turn with one step per vertex.
 pub fn drive(vehicle: &Vehicle, turn: &Turn, guide_m: f64) -> Run {
     let drive = Drive { guide_m, ..Drive::new(vehicle, &turn.path, 1) };
     drive.whole(&Disturbance::none(drive.steps()))
 }
 
-/// The farthest that each axle centre gets from the path, inwards, over the whole manoeuvre.
+/// Largest inward distance of each axle's centre from the path, over the whole manoeuvre.
 pub fn offtracking_m(vehicle: &Vehicle, turn: &Turn) -> Vec<f64> {
     let run = drive(vehicle, turn, 0.0);
     let drive = Drive::new(vehicle, &turn.path, 1);
@@ -105,7 +105,7 @@ pub fn offtracking_m(vehicle: &Vehicle, turn: &Turn) -> Vec<f64> {
     most
 }
 
-/// The greatest width swept, along normals of the path that the outer end of the steer axle follows.
+/// Largest swept width, along normals of the path that the outer end of the steer axle follows.
 pub fn swept_width_m(vehicle: &Vehicle, turn: &Turn) -> f64 {
     let guide_m = -0.5 * vehicle.units[0].width_m;
     let run = drive(vehicle, turn, guide_m);
@@ -115,7 +115,7 @@ pub fn swept_width_m(vehicle: &Vehicle, turn: &Turn) -> f64 {
     let bins = (road.length_m() / bin_m) as usize + 1;
     let mut extent = vec![(f64::INFINITY, f64::NEG_INFINITY); bins];
     sweep(&drive, &run, &road, run.steps(), (1, 0.2), |near| {
-        // Half-widths are nil: what is left of the corridor is the lateral place itself.
+        // Half-widths are zero, so the clearance is minus the lateral place.
         let lateral = -near.edge * near.clearance_m;
         let lateral = if near.edge > 0.0 { lateral } else { -lateral.abs() };
         let (low, high) = &mut extent[(near.foot_m / bin_m) as usize];
@@ -124,14 +124,14 @@ pub fn swept_width_m(vehicle: &Vehicle, turn: &Turn) -> f64 {
     extent.iter().map(|(low, high)| high - low).filter(|w| w.is_finite()).fold(0.0, f64::max)
 }
 
-/// Steer-axle radius at which the outer front corner runs on a circle of `outer_m`.
+/// Radius of the steer axle at which the outer front corner runs on a circle of `outer_m`.
 pub fn steer_radius_m(vehicle: &Vehicle, outer_m: f64) -> f64 {
     let u = &vehicle.units[0];
     let axle = (outer_m.powi(2) - (u.coupling_to_axle_m + u.front_overhang_m).powi(2)).sqrt() - 0.5 * u.width_m;
     axle.hypot(u.coupling_to_axle_m)
 }
 
-/// Least and greatest distance of any body point from the arc's centre, between two angles turned.
+/// Least and greatest distance of any body point from the arc's centre, between two turned angles.
 pub fn ring_m(vehicle: &Vehicle, turn: &Turn, run: &Run, angles: (f64, f64)) -> (f64, f64) {
     let drive = Drive::new(vehicle, &turn.path, 1);
     let centre = [0.0, turn.radius_m];

@@ -1,31 +1,31 @@
-//! Access tags: which of them speaks for a heavy goods vehicle, per direction of travel.
+//! Access tags: which of them decides for a heavy goods vehicle, per direction of travel.
 //!
-//! The most specific key wins (access < vehicle < motor_vehicle < hgv < hgv_articulated; with a direction before
-//! without), as on the wiki page Key:access. `trailer=no` forbids, since every vehicle here may pull one. Conditions
-//! are not evaluated against a clock; see [`Access::condition`].
+//! The most specific key wins (access < vehicle < motor_vehicle < hgv < hgv_articulated; a key with a direction beats
+//! one without), as on the wiki page Key:access. `trailer=no` forbids, because every vehicle here may pull a trailer.
+//! Conditions are not evaluated against a clock; see [`Access::condition`].
 
 use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::{Direction, Permission};
 
-/// Keys that speak for a heavy goods vehicle, least specific first.
+/// Keys that apply to a heavy goods vehicle, least specific first.
 const KEYS: [&str; 6] = ["access", "vehicle", "motor_vehicle", "hgv", "hgv_articulated", "trailer"];
 const HGV: usize = 3;
 const TRAILER: usize = 5;
 
-/// Whether a key (before its first colon) is read here.
+/// Whether this module reads a key (the part before the first colon).
 pub(super) fn is_access_key(head: &str) -> bool {
     KEYS.contains(&head)
 }
 
-/// The access tags of one object, while they are collected. Index of the inner arrays: none, forward, backward.
+/// The access tags of one object while they are collected. The inner arrays have the indices none, forward, backward.
 #[derive(Debug, Default)]
 pub(super) struct Access {
     tagged: [[Option<Permission>; 3]; KEYS.len()],
-    /// The strictest undecided conditional value per direction: for motor vehicles, for heavy goods vehicles.
+    /// The strictest undecided conditional value per direction: for motor vehicles, then for heavy goods vehicles.
     undecided: [[Permission; 2]; 2],
 }
 
-/// One value, or a list of which any entry is enough. `no` in a list stays no.
+/// The permission of a value or of a list. In a list the most permissive entry counts, except that `no` stays no.
 pub(super) fn permission(value: &str, notes: &mut Notes) -> Permission {
     let mut best = Permission::No;
     for part in value.split(';') {
@@ -49,7 +49,7 @@ pub(super) fn permission(value: &str, notes: &mut Notes) -> Permission {
 }
 
 impl Access {
-    /// `key[:forward|:backward]=value`; other suffixes mean something else and are not read.
+    /// Takes `key[:forward|:backward]=value`. Other suffixes mean something else and are not read.
     pub(super) fn take(&mut self, head: &str, suffix: &str, value: &str, notes: &mut Notes) {
         let side = match suffix {
             "" => 0,
@@ -62,7 +62,7 @@ impl Access {
         }
     }
 
-    /// A conditional value whose condition cannot be decided. A stricter one makes the road not for through traffic; a
+    /// Takes a conditional value with an undecidable condition. A stricter value closes the road to through traffic; a
     /// more lenient one changes nothing.
     pub(super) fn condition(&mut self, head: &str, directions: [bool; 2], value: Permission) {
         let kind = usize::from(KEYS.iter().position(|key| *key == head).is_some_and(|rank| rank >= HGV));
@@ -73,19 +73,19 @@ impl Access {
         }
     }
 
-    /// An implied value, where no tag speaks (busways).
+    /// Sets the implied value of busways if no tag gives one.
     pub(super) fn imply_no_motor_vehicles(&mut self) {
         if self.tagged.iter().flatten().all(Option::is_none) {
             self.tagged[2][0] = Some(Permission::No);
         }
     }
 
-    /// Whether some tag explicitly lets motor vehicles or heavy goods vehicles in, at least to a destination.
+    /// Whether some tag explicitly admits motor vehicles or heavy goods vehicles, at least to a destination.
     pub(super) fn explicitly_open(&self) -> bool {
         self.tagged[..TRAILER].iter().any(|slots| slots[0].is_some_and(|p| p < Permission::No))
     }
 
-    /// The same, of the keys for heavy goods vehicles alone.
+    /// As [`Self::explicitly_open`], for the keys of heavy goods vehicles alone.
     pub(super) fn open_to_hgv(&self) -> bool {
         self.tagged[HGV..TRAILER].iter().any(|slots| slots[0].is_some_and(|p| p < Permission::No))
     }
@@ -94,8 +94,8 @@ impl Access {
         self.tagged[ranks].iter().rev().find_map(|slots| slots[side].or(slots[0]))
     }
 
-    /// (motor_vehicle, hgv) for a direction. Where a tag for heavy goods vehicles speaks, it decides both: a general
-    /// ban with `hgv=designated` is none for them.
+    /// (motor_vehicle, hgv) for a direction. A tag for heavy goods vehicles decides both: a general ban with
+    /// `hgv=designated` does not apply to them.
     pub(super) fn resolve(&self, direction: Direction) -> (Permission, Permission) {
         let side = if direction == Direction::Forward { 1 } else { 2 };
         let general = self.most_specific(0..HGV, side).unwrap_or_default();

@@ -1,26 +1,26 @@
 //! Closed ways that map a road's surface (`area:highway`), and traffic islands on it.
 //!
-//! Kept: the road classes that a lorry uses, where their tags leave it on them, on the ground. When in doubt an area is left
-//! out: then the corners there are as if nobody had mapped them.
+//! Kept are surfaces of road classes that a lorry uses, on the ground, if their tags admit lorries. In doubt an area is
+//! left out, and corners there are handled as unmapped.
 
 use super::class::road_class;
 use super::limits::LegalTags;
 use super::notes::Notes;
 use super::{Direction, Permission, RoadClass, Tags};
 
-/// What an area is of.
+/// Kind of an area.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum AreaKind {
-    /// The surface of roads of this class (`area:highway=primary`, its `_link` too).
+    /// The surface of roads of this class (`area:highway=primary`, or its `_link`).
     Road(RoadClass),
-    /// Not to be driven on (`area:highway=traffic_island`).
+    /// An island that must not be driven on (`area:highway=traffic_island`).
     Island,
 }
 
-/// Keys by whose presence an area may lie above or below other roads.
+/// Keys that show that an area may lie above or below other roads.
 const OTHER_LEVELS: [&str; 5] = ["bridge", "tunnel", "covered", "level", "layer"];
 
-/// What a closed way's tags say of it as an area; `None`: it is none that counts.
+/// The kind of area from a closed way's tags. `None` if the way is no relevant area.
 #[must_use]
 pub fn area_kind(tags: &Tags<'_>) -> Option<AreaKind> {
     let value = tags.iter().find(|(key, _)| *key == "area:highway")?.1;
@@ -38,7 +38,7 @@ pub fn area_kind(tags: &Tags<'_>) -> Option<AreaKind> {
         if OTHER_LEVELS.contains(&head) && !matches!(value, "no" | "0") {
             return None;
         }
-        // A surface kept for buses is none for lorries, whatever else may be on it.
+        // A surface for buses is not for lorries, whoever else may use it.
         if matches!(head, "bus" | "psv") && value == "designated" {
             return None;
         }

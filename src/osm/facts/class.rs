@@ -1,16 +1,16 @@
-//! Which ways are roads for heavy vehicles, and all that one way's tags say, read in one pass.
+//! Selects the ways that are roads for heavy vehicles, and reads all tags of a way in one pass.
 //!
-//! Kept: motorway to residential, `road`, living streets, busways (closed unless tagged open), service roads
-//! including alleys (loading bays stand on service roads). Left out: parking aisles, driveways, drive-throughs and
-//! emergency accesses unless a tag for heavy goods vehicles opens them; tracks unless tagged open to motor vehicles
-//! and either of grade 1 or of known width. A way whose access is denied stays: its verdict says so.
+//! Kept are motorway to residential, `road`, living streets, busways (closed unless tagged open) and service roads with
+//! alleys, because loading bays are on service roads. Parking aisles, driveways, drive-throughs and emergency accesses
+//! are left out unless a tag opens them to heavy goods vehicles. Tracks are left out unless they are tagged open to
+//! motor vehicles and are of grade 1 or known width. A way with denied access stays; its verdict says so.
 
 use crate::osm::facts::limits::LegalTags;
 use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::section_reader::SectionReader;
 use crate::osm::facts::{Direction, Oneway, Permission, RoadClass, Tags, WayDraft, WayFacts};
 
-/// Every reason that [`way_facts`] gives for leaving a way out.
+/// Every reason for which [`way_facts`] leaves a way out.
 pub const LEFT_OUT_REASONS: [&str; 6] = [NO_HIGHWAY, NOT_A_ROAD, NOT_IN_USE, AREA, MINOR_SERVICE, TRACK];
 
 const NO_HIGHWAY: &str = "no_highway";
@@ -64,11 +64,11 @@ fn oneway_tag(value: &str, notes: &mut Notes) -> Option<OnewayTag> {
     })
 }
 
-/// The tags that decide on class and direction.
+/// The tags that determine class and direction.
 #[derive(Debug, Default)]
 struct Basics<'t> {
     oneway: Option<OnewayTag>,
-    /// `oneway:motor_vehicle`, `oneway:hgv`: before `oneway`.
+    /// `oneway:motor_vehicle` and `oneway:hgv`, which override `oneway`.
     oneway_motor: Option<OnewayTag>,
     roundabout: bool,
     area: bool,
@@ -108,10 +108,10 @@ impl<'t> Basics<'t> {
     }
 }
 
-/// What the tags of a way say, or the reason (one of [`LEFT_OUT_REASONS`]) why it is no road for heavy vehicles.
+/// Reads the facts of a way from its tags.
 ///
 /// # Errors
-/// The reason, a stable identifier.
+/// The reason why the way is no road for heavy vehicles: one of [`LEFT_OUT_REASONS`], a stable identifier.
 pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
     let highway = tags.iter().find(|(key, _)| *key == "highway").map(|(_, value)| *value).ok_or(NO_HIGHWAY)?;
     let class = road_class(highway)?;

@@ -1,20 +1,20 @@
-//! Where a road is: country and driving side, looked up offline.
+//! Country and driving side of a position, looked up offline.
 //!
-//! Boundaries: the crate `country-boundaries`; its data are © OpenStreetMap contributors, ODbL, simplified, and
-//! made for "every settlement and major road on the right side of the border". Where no country is found the
-//! code is `ZZ` (left to users by ISO 3166) and traffic is taken to keep to the right.
+//! Boundaries come from the crate `country-boundaries`. Its data are © OpenStreetMap contributors, ODbL, simplified,
+//! and made for "every settlement and major road on the right side of the border". Without a country the code is `ZZ`
+//! (left to users by ISO 3166), and traffic is assumed to keep to the right.
 
 use country_boundaries::{BOUNDARIES_ODBL_180X90, CountryBoundaries, LatLon};
 
 use crate::osm::LonLat;
 use crate::osm::facts::rules::{Rules, RulesError, country_code};
 
-/// What holds at a place, whatever the tags.
+/// Country rules at a position, independent of tags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Place {
-    /// ISO 3166-1 alpha-2; `ZZ` if none is found.
+    /// ISO 3166-1 alpha-2 code; `ZZ` if there is none.
     pub country: [u8; 2],
-    /// Traffic keeps to the left.
+    /// Whether traffic keeps to the left.
     pub left_hand_traffic: bool,
 }
 
@@ -23,13 +23,13 @@ impl Place {
     pub const NOWHERE: Place = Place { country: *b"ZZ", left_hand_traffic: false };
 }
 
-/// Why places cannot be looked up.
+/// Why positions cannot be looked up.
 #[derive(Debug, thiserror::Error)]
 pub enum CountriesError {
     /// The boundaries in the program are damaged.
     #[error("the built-in country boundaries cannot be read: {0}; reinstall netcert")]
     Boundaries(String),
-    /// The rules, which list who drives on the left, are wrong.
+    /// The rules, which list left-hand traffic, are wrong.
     #[error(transparent)]
     Rules(#[from] RulesError),
     /// An override that is not a country code.
@@ -37,7 +37,7 @@ pub enum CountriesError {
     Code(String),
 }
 
-/// The lookup. Holds some 3 MB; load it once.
+/// The lookup. It takes about 3 MB; load it once.
 #[derive(Debug)]
 pub struct Countries {
     boundaries: CountryBoundaries,
@@ -47,48 +47,48 @@ pub struct Countries {
 }
 
 impl Countries {
-    /// With the built-in rules.
+    /// Loads the lookup with the built-in rules.
     ///
     /// # Errors
-    /// If built-in data are damaged.
+    /// [`CountriesError`] if built-in data are damaged.
     pub fn load() -> Result<Countries, CountriesError> {
         Self::with_rules(Rules::builtin()?)
     }
 
-    /// With the driving sides of these rules.
+    /// Loads the lookup with the driving sides of these rules.
     ///
     /// # Errors
-    /// If the built-in boundaries are damaged.
+    /// [`CountriesError`] if the built-in boundaries are damaged.
     pub fn with_rules(rules: Rules) -> Result<Countries, CountriesError> {
         let boundaries = CountryBoundaries::from_reader(BOUNDARIES_ODBL_180X90)
             .map_err(|error| CountriesError::Boundaries(error.to_string()))?;
         Ok(Countries { boundaries, rules, country: None, left_hand_traffic: None })
     }
 
-    /// Every place is in this country (`--country`).
+    /// Overrides the country of every position (`--country`).
     ///
     /// # Errors
-    /// If it is not two letters.
+    /// [`CountriesError::Code`] if `code` is not two letters.
     pub fn in_country(mut self, code: &str) -> Result<Countries, CountriesError> {
         let upper = code.to_ascii_uppercase();
         self.country = Some(country_code(&upper).ok_or_else(|| CountriesError::Code(code.to_owned()))?);
         Ok(self)
     }
 
-    /// Everywhere traffic keeps to this side (`--driving-side`).
+    /// Overrides the driving side of every position (`--driving-side`).
     #[must_use]
     pub fn driving_on_the_left(mut self, left: bool) -> Countries {
         self.left_hand_traffic = Some(left);
         self
     }
 
-    /// The rules that these countries come with.
+    /// The rules of this lookup.
     #[must_use]
     pub fn rules(&self) -> &Rules {
         &self.rules
     }
 
-    /// Country and driving side of a position; overrides come first.
+    /// Country and driving side of a position. Overrides take precedence.
     #[must_use]
     pub fn place(&self, position: LonLat) -> Place {
         let found = match self.country {

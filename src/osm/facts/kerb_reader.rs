@@ -1,6 +1,6 @@
-//! What takes room between the lanes and the edge of the carriageway: parked cars, cycle lanes, shoulders.
+//! Uses that take room between the lanes and the edge of the carriageway: parked cars, cycle lanes, shoulders.
 //!
-//! Sides are those of the way's node order. Cycle tracks and parking bays beside the carriageway take none of it.
+//! Sides refer to the way's node order. Cycle tracks and parking bays beside the carriageway take no room of it.
 
 use crate::osm::facts::section::{Decimetres, Kerb, Parking, UNTAGGED};
 use crate::osm::facts::value;
@@ -8,13 +8,13 @@ use crate::osm::facts::value;
 /// Collects the tags of both sides, in any order.
 #[derive(Debug, Default)]
 pub(super) struct KerbReader {
-    /// Widths as tagged, whether or not the use is.
+    /// Widths as tagged, whether or not the use itself is tagged.
     kerbs: [Kerb; 2],
     orientations: [Parking; 2],
     parked: [bool; 2],
-    /// Parked cars stand beside the carriageway after all.
+    /// Whether a tag says that cars park beside the carriageway.
     parked_beside: [bool; 2],
-    /// Cycle lanes on the carriageway: a width alone may be that of a track beside it.
+    /// Whether a cycle lane on the carriageway is tagged. A width alone may belong to a track beside it.
     cycle_lanes: [bool; 2],
 }
 
@@ -29,7 +29,7 @@ impl KerbReader {
         }
     }
 
-    /// Left and right.
+    /// The uses on the left and on the right.
     pub(super) fn finish(&self) -> [Kerb; 2] {
         [self.kerb(0), self.kerb(1)]
     }
@@ -88,7 +88,7 @@ impl KerbReader {
         }
     }
 
-    /// Both schemes: `parking:right=lane` with `parking:right:orientation`, and the older
+    /// Reads both schemes: `parking:right=lane` with `parking:right:orientation`, and the older
     /// `parking:lane:right=parallel`.
     fn parking(&mut self, suffix: &str, text: &str) {
         let (old, suffix) = match suffix.strip_prefix("lane:") {
@@ -110,7 +110,7 @@ impl KerbReader {
             }
             match kind {
                 "street_side" | "on_kerb" | "lay_by" | "shoulder" | "separate" => self.parked_beside[side] = true,
-                // Half on the kerb is counted as whole.
+                // Half on the kerb counts as fully on the carriageway.
                 "lane" | "on_street" | "half_on_kerb" | "yes" | "marked" | "painted_area_only" => {
                     self.parked[side] |= !old || orientation != Parking::None;
                 }
@@ -129,7 +129,7 @@ fn orientation(text: &str) -> Parking {
     }
 }
 
-/// The sides of the road that a suffix names (none named: both), and what follows.
+/// The sides that a suffix names (both if it names none), and the rest of the suffix.
 fn sides(suffix: &str) -> (&'static [usize], &str) {
     let (side, rest) = suffix.split_once(':').unwrap_or((suffix, ""));
     match side {

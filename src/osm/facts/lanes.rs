@@ -1,7 +1,7 @@
-//! Which lanes a road has, from the left of the way's node order to its right, and whose they are.
+//! The lanes of a road, from the left of the way's node order to its right, with their direction and use.
 //!
-//! Tagged lanes first, else those of the class. Lanes kept for others (bus, cycle) are not open; a road without marked
-//! lanes is shared by both directions.
+//! Tagged lanes count first, then those of the class. Lanes for other traffic (bus, cycle) are not open. Both
+//! directions share a road without marked lanes.
 
 use crate::osm::facts::Direction;
 use crate::osm::facts::layout::{Layout, SHARED, Segment, Use};
@@ -9,7 +9,7 @@ use crate::osm::facts::section::LaneTags;
 use crate::osm::facts::widths::{Builder, LANE_M, SHARED_BELOW_M};
 
 impl Builder<'_> {
-    /// The layout of a road with one direction.
+    /// The layout of a one-way road.
     pub(super) fn one_way(&self, direction: Direction) -> Layout {
         let tags = self.lane_tags(direction);
         let tagged = if tags.count > 0 { tags.count } else { self.tags.lanes };
@@ -24,7 +24,7 @@ impl Builder<'_> {
         self.lay_out(lanes, known, assumed_m, false)
     }
 
-    /// The layout of a road with both.
+    /// The layout of a two-way road.
     pub(super) fn two_way(&self) -> Layout {
         let (forward, backward) = (self.lane_tags(Direction::Forward), self.lane_tags(Direction::Backward));
         let listed = forward.listed > 0 || backward.listed > 0;
@@ -37,7 +37,7 @@ impl Builder<'_> {
                 (false, Some(shared_m)) if !known => shared_m,
                 (false, _) => self.lane_m,
             };
-            // A wide road is not shared for want of a tag: then it has a half for each direction.
+            // A wide road is not shared merely because a tag is missing: each direction gets a half.
             if single || self.tags.carriageway.is_none_or(|width| width.metres() < SHARED_BELOW_M) {
                 return self.lay_out(vec![SHARED], known, Some(assumed_m), true);
             }
@@ -63,8 +63,8 @@ impl Builder<'_> {
         &self.tags.directions[usize::from(direction == Direction::Backward)]
     }
 
-    /// Lanes forward, backward, and for turning in the middle of a two-way road. An odd lane without a direction is
-    /// counted as a middle one: neither direction may rely on it.
+    /// Number of lanes forward, backward, and for turning in the middle of a two-way road. An odd lane without a
+    /// direction counts as a middle lane, which neither direction may use.
     fn lane_counts(&self) -> (u8, u8, u8) {
         let [forward, backward] = [&self.tags.directions[0], &self.tags.directions[1]].map(|tags| tags.count);
         let centre = self.tags.both_ways;
@@ -81,7 +81,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The lanes of one direction from left to right in direction of travel; `count` 0: not known.
+    /// The lanes of one direction, from left to right in direction of travel. `count` 0 means unknown.
     fn lanes(&self, direction: Direction, tags: &LaneTags, count: u8) -> Vec<Segment> {
         let of = Some(direction);
         let plain = |n: u8| vec![Segment { width_m: None, of, used: Use::Lane(direction) }; usize::from(n)];
@@ -92,7 +92,7 @@ impl Builder<'_> {
                     lane.width_m = Some(width_m);
                 }
             }
-            // `lanes` does not count cycle lanes, lists do: so many of the closed lanes are cycle lanes.
+            // `lanes` excludes cycle lanes and lane lists include them, so the difference is the number of cycle lanes.
             let cycle_lanes = if count > 0 { tags.listed - count } else { tags.listed };
             self.close(&mut lanes, cycle_lanes, tags);
             lanes
@@ -119,7 +119,7 @@ impl Builder<'_> {
         }
     }
 
-    /// The lanes of one direction (in order of travel) from the kerb to the middle.
+    /// The lanes of one direction (in direction of travel) from the kerb to the middle.
     fn lanes_from_kerb<'l>(&self, lanes: &'l mut [Segment]) -> Box<dyn Iterator<Item = &'l mut Segment> + 'l> {
         if self.left_hand_traffic { Box::new(lanes.iter_mut()) } else { Box::new(lanes.iter_mut().rev()) }
     }

@@ -1,30 +1,30 @@
 //! A cross section laid out from the left of the way's node order to its right, and the strips that follow from it.
 //!
-//! Everything about sides is here: positions, the kerb by driving side and direction, `placement`. A strip is at least
-//! as wide as the narrowest lane, its edges finite, or it is not given.
+//! Everything about sides is in this file: positions, `placement`, and the kerb by driving side and direction. A strip
+//! is at least as wide as the narrowest lane and its edges are finite; otherwise there is no strip.
 
 use crate::osm::facts::section::{LaneLine, Placement};
 use crate::osm::facts::widths::LANE_M;
 use crate::osm::facts::{CrossSection, Direction, Strip, WidthSource};
 
-/// Who drives on a part of the cross section.
+/// Use of a part of the cross section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Use {
     /// Heavy vehicles of one direction.
     Lane(Direction),
-    /// Heavy vehicles of both directions, in turn.
+    /// Heavy vehicles of both directions, by turns.
     Shared,
-    /// Paved, but not for them in normal running: bus lanes, turning lanes of both directions, shoulders.
+    /// Paved, but not for heavy vehicles in normal running: bus lanes, turning lanes of both directions, shoulders.
     Paved,
-    /// Parking, cycle lanes.
+    /// Parking and cycle lanes.
     Aside,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Segment {
-    /// Metres; `None` until the carriageway has been shared out.
+    /// Width, metres. `None` until the carriageway has been shared out.
     pub(super) width_m: Option<f32>,
-    /// Whose lane it is, open or not; placements count these.
+    /// Direction of the lane, whether or not it is open. Placements count these lanes.
     pub(super) of: Option<Direction>,
     pub(super) used: Use,
 }
@@ -35,7 +35,7 @@ impl Segment {
     }
 }
 
-/// One lane for both directions in turn.
+/// One lane for both directions by turns.
 pub(super) const SHARED: Segment = Segment { width_m: None, of: None, used: Use::Shared };
 
 pub(super) const NO_SECTION: CrossSection = CrossSection { lane: None, direction: None, carriageway: None };
@@ -44,15 +44,15 @@ pub(super) const NO_SECTION: CrossSection = CrossSection { lane: None, direction
 #[derive(Debug, Default)]
 pub(super) struct Layout {
     pub(super) segments: Vec<Segment>,
-    /// Of the carriageway as a whole, and of its division into lanes.
+    /// Evidence of the whole carriageway, and of its division into lanes.
     pub(super) whole: Option<WidthSource>,
     pub(super) divided: Option<WidthSource>,
     pub(super) placement: Placement,
 }
 
 impl Layout {
-    /// Left edges of the segments across the way's line, metres, positive to the left of the node order, and the last
-    /// right edge.
+    /// Left edges of the segments across the way's line, and the last right edge. Metres, positive to the left of the
+    /// node order.
     fn positions(&self) -> Vec<f32> {
         let total_m: f32 = self.segments.iter().filter_map(|s| s.width_m).sum();
         let mut at_m = total_m / 2.0;
@@ -66,7 +66,7 @@ impl Layout {
         edges
     }
 
-    /// Where `placement` puts the way's line, if there is such a lane.
+    /// The position at which `placement` puts the way's line, if the lane exists.
     fn way_line(&self, edges: &[f32]) -> Option<f32> {
         let Placement::At(line, lane, direction) = self.placement else { return None };
         let mut lanes: Vec<usize> = (0..self.segments.len())
@@ -122,8 +122,8 @@ impl Layout {
     }
 }
 
-/// The kerb of a direction's slow lane lies to the left of the node order for traffic on the left going forward, and
-/// for traffic on the right going backward.
+/// Whether the kerb of a direction's slow lane lies to the left of the node order. It does for left-hand traffic going
+/// forward, and for right-hand traffic going backward.
 pub(super) fn kerb_on_the_left_of_the_way(direction: Direction, left_hand_traffic: bool) -> bool {
     left_hand_traffic == (direction == Direction::Forward)
 }

@@ -1,7 +1,7 @@
-//! Legal limits per direction of travel, conditional ones included, and their comparison with a vehicle.
+//! Legal limits per direction of travel, including conditional ones, and their comparison with a vehicle.
 //!
-//! Where several tags limit the same thing the strictest counts. Conditions that only a clock or a calendar can decide
-//! are taken as always fulfilled for numeric limits, and as "not for through traffic" for access.
+//! If several tags limit the same quantity, the strictest counts. A condition that depends on time counts as always
+//! fulfilled for numeric limits, and as "not for through traffic" for access.
 
 use crate::osm::facts::access::{Access, is_access_key, permission};
 use crate::osm::facts::notes::{Note, Notes};
@@ -9,11 +9,11 @@ use crate::osm::facts::{Direction, Legal, Limit, Permission, value};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
-/// Dimensions in tags have two decimals and limits are kept as `f32`: 2.55 must not exceed 2.55.
+/// Tolerance of the comparison: tags have two decimals and limits are `f32`, so 2.55 must not exceed 2.55.
 const SLACK: f64 = 1e-3;
 
 impl Limit {
-    /// The stricter of two; an unreadable one may be stricter than any.
+    /// The stricter of two limits. An unreadable limit may be stricter than any number.
     #[must_use]
     pub fn stricter(self, other: Limit) -> Limit {
         match (self, other) {
@@ -25,7 +25,7 @@ impl Limit {
 }
 
 impl Legal {
-    /// Both sets of rules together: of each the stricter.
+    /// Merges two sets of rules: the stricter limit of each kind.
     #[must_use]
     pub fn merge(self, other: Legal) -> Legal {
         Legal {
@@ -39,9 +39,9 @@ impl Legal {
         }
     }
 
-    /// `Forbidden` if a rule excludes the vehicle, `Unknown(Limit)` if only an unreadable limit stands against it, or
-    /// nothing. What is not known of the vehicle (height, masses) is not compared. `Permission::Restricted` does
-    /// not exclude: a lorry may have its destination here.
+    /// `Forbidden` if a rule excludes the vehicle, `Unknown(Limit)` if only an unreadable limit stands against it,
+    /// otherwise `None`. Unknown properties of the vehicle (height, masses) are not compared. `Permission::Restricted`
+    /// does not exclude, because a lorry may have its destination here.
     #[must_use]
     pub fn forbids(&self, vehicle: &Vehicle) -> Option<Verdict> {
         if self.motor_vehicle == Permission::No {
@@ -71,7 +71,7 @@ impl Legal {
     }
 }
 
-/// What a limit is about.
+/// The quantity that a limit bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Height,
@@ -93,7 +93,7 @@ impl Kind {
         })
     }
 
-    /// The words of conditions: `no @ (weight>7.5)`.
+    /// The kind of a word in a condition, as in `no @ (weight>7.5)`.
     fn of_condition(word: &str) -> Option<Kind> {
         Some(match word {
             "height" => Kind::Height,
@@ -105,7 +105,8 @@ impl Kind {
         })
     }
 
-    /// A value, refused above what any sign shows: there the unit is missing (kilograms, centimetres).
+    /// Reads a value. Values above what any sign shows are refused, because their unit is missing (kilograms,
+    /// centimetres).
     fn read(self, text: &str) -> Limit {
         match self {
             Kind::Height => value::limit(text, value::metres, 15.0),
@@ -127,7 +128,7 @@ impl Kind {
     }
 }
 
-/// Limits and access of one way or node, while its tags are read.
+/// Limits and access of one way or node while its tags are read.
 #[derive(Debug, Default)]
 pub(super) struct LegalTags {
     limits: [Legal; 2],
@@ -135,7 +136,7 @@ pub(super) struct LegalTags {
 }
 
 impl LegalTags {
-    /// Takes a tag if its key (split at the first colon) is about limits or access.
+    /// Takes a tag if its key (split at the first colon) concerns limits or access.
     pub(super) fn take(&mut self, head: &str, suffix: &str, text: &str, notes: &mut Notes) {
         let conditional = suffix == "conditional" || suffix.ends_with(":conditional");
         let plain =
@@ -189,7 +190,7 @@ impl LegalTags {
         }
     }
 
-    /// `no @ (weight>7.5)` is a weight limit. `no @ hazmat` does not concern dimensions. Any other condition is left
+    /// `no @ (weight>7.5)` is a weight limit. `no @ hazmat` does not concern dimensions. Any other condition stays
     /// undecided.
     fn take_conditional_access(&mut self, head: &str, suffix: &str, text: &str, notes: &mut Notes) {
         let directions = match suffix {
@@ -209,7 +210,7 @@ impl LegalTags {
                     notes.add(Note::UndecidedCondition);
                     self.access.condition(head, directions, value);
                 }
-                // More lenient at times: not relied upon.
+                // A condition under which access is more lenient has no effect.
                 _ => {}
             }
         }
@@ -223,7 +224,8 @@ impl LegalTags {
     }
 }
 
-/// `value @ condition` pairs; semicolons inside parentheses belong to the condition, which is empty without an `@`.
+/// `value @ condition` pairs. Semicolons inside parentheses belong to the condition. The condition is empty without an
+/// `@`.
 pub(super) fn clauses(text: &str) -> impl Iterator<Item = (&str, &str)> {
     let mut depth = 0_u32;
     text.split(move |c| {
@@ -239,11 +241,12 @@ pub(super) fn clauses(text: &str) -> impl Iterator<Item = (&str, &str)> {
     .map(|(value, condition)| (value.trim(), condition.trim().trim_start_matches('(').trim_end_matches(')').trim()))
 }
 
-/// A condition that is exactly one comparison with a dimension.
+/// The comparison, if a condition is exactly one comparison with a dimension.
 fn dimension_condition(condition: &str) -> Option<(Kind, Limit)> {
     let (word, bound) = condition.split_once('>')?;
     let kind = Kind::of_condition(word.trim())?;
-    // What is left is a number with its unit, or more than a comparison (`weight>7.5 AND 22:00-06:00`): undecided.
+    // The rest is a number with its unit, or more than a comparison (`weight>7.5 AND 22:00-06:00`), which stays
+    // undecided.
     match kind.read(bound.trim_start_matches('=')) {
         Limit::At(limit) => Some((kind, Limit::At(limit))),
         Limit::None | Limit::Unreadable => None,

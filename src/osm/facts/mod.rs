@@ -1,7 +1,7 @@
 //! Tags become facts: class, direction, lanes, widths with their evidence, limits, access.
 //!
-//! [`way_facts`] and [`point_facts`] know nothing of where a way is; country rules come in with [`cross_sections`].
-//! Tags that cannot be used are noted ([`Notes`]), and the result is then narrower or unknown, never wider.
+//! [`way_facts`] and [`point_facts`] do not use the position. Country rules enter with [`cross_sections`]. Unusable
+//! tags are noted ([`Notes`]) and make the result narrower or unknown, never wider.
 
 mod access;
 mod areas;
@@ -37,7 +37,7 @@ pub use rules::{Rules, RulesError};
 pub use value::{metres, tonnes};
 pub use widths::cross_sections;
 
-/// `highway=*` of a drivable way; `_link` classes are the class with [`WayFacts::link`] set.
+/// `highway=*` of a drivable way. A `_link` has the class of its road and [`WayFacts::link`] set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RoadClass {
@@ -65,14 +65,14 @@ pub enum RoadClass {
     Busway,
 }
 
-/// Which directions of travel exist, relative to the way's node order (roundabouts imply forward).
+/// Directions of travel that exist, relative to the way's node order. A roundabout implies forward.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Oneway {
     /// Both directions.
     No,
     /// Along the way's node order only.
     Forward,
-    /// Against it only (`oneway=-1`).
+    /// Against the way's node order only (`oneway=-1`).
     Backward,
 }
 
@@ -82,11 +82,11 @@ pub enum Oneway {
 pub enum Direction {
     /// Along the way's node order.
     Forward,
-    /// Against it.
+    /// Against the way's node order.
     Backward,
 }
 
-/// Where a width comes from, weakest first: a certificate is worth no more than its width.
+/// Origin of a width, weakest first. A certificate is only as good as its width.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WidthSource {
@@ -98,55 +98,55 @@ pub enum WidthSource {
     Estimated,
     /// `width`, `width:carriageway`, `width:lanes`.
     Tagged,
-    /// Tagged with a source that says surveyed or measured.
+    /// Tagged, with a source that says surveyed or measured.
     Surveyed,
 }
 
-/// A strip of road that a vehicle may use in one direction of travel: signed positions of its edges across
-/// the way's line, metres, positive to the left of *travel*. `left_m > right_m`.
+/// A strip of road that a vehicle may use in one direction of travel. Its edges are signed positions across the way's
+/// line, metres, positive to the left of *travel*. `left_m > right_m`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Strip {
     /// Left edge (usually > 0 or the road's centre line).
     pub left_m: f32,
     /// Right edge.
     pub right_m: f32,
-    /// The weakest evidence that went into it.
+    /// The weakest evidence that the strip rests on.
     pub source: WidthSource,
 }
 
 impl Strip {
-    /// `left_m − right_m`
+    /// Width of the strip, metres: `left_m − right_m`.
     #[must_use]
     pub fn width_m(&self) -> f32 {
         self.left_m - self.right_m
     }
 }
 
-/// Which width counts.
+/// The width that counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Policy {
-    /// Keep to one's lane: the one nearest the kerb that is open to heavy vehicles. The default.
+    /// The lane nearest the kerb that is open to heavy vehicles. The default.
     Lane,
-    /// All lanes of one's direction.
+    /// All lanes of the direction of travel.
     Direction,
-    /// All that is paved between the edges.
+    /// The whole paved carriageway between its edges.
     Carriageway,
 }
 
-/// The strips of one direction of travel of one way. `None`: no usable width.
+/// The strips of one direction of travel of one way. `None` means no usable width.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CrossSection {
-    /// For [`Policy::Lane`].
+    /// Strip for [`Policy::Lane`].
     pub lane: Option<Strip>,
-    /// For [`Policy::Direction`].
+    /// Strip for [`Policy::Direction`].
     pub direction: Option<Strip>,
-    /// For [`Policy::Carriageway`].
+    /// Strip for [`Policy::Carriageway`].
     pub carriageway: Option<Strip>,
 }
 
 impl CrossSection {
-    /// The strip of a policy.
+    /// The strip for a policy.
     #[must_use]
     pub fn strip(&self, policy: Policy) -> Option<Strip> {
         match policy {
@@ -157,7 +157,7 @@ impl CrossSection {
     }
 }
 
-/// A tagged limit that may be unreadable: then a vehicle is neither allowed nor forbidden by it, but `unknown`.
+/// A tagged limit, which may be unreadable. An unreadable limit makes the verdict `unknown`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum Limit {
     /// Not tagged, `none`, `default`, `unsigned`: no limit known.
@@ -165,7 +165,7 @@ pub enum Limit {
     None,
     /// Metres or tonnes.
     At(f32),
-    /// Tagged, but not readable.
+    /// Tagged, but unreadable.
     Unreadable,
 }
 
@@ -180,7 +180,7 @@ pub struct Legal {
     pub max_axle_load: Limit,
     /// Metres.
     pub max_length: Limit,
-    /// Metres, the lesser of legal and physical.
+    /// Metres, the lesser of the legal and the physical width.
     pub max_width: Limit,
     /// Whether heavy goods vehicles may use it.
     pub hgv: Permission,
@@ -188,7 +188,7 @@ pub struct Legal {
     pub motor_vehicle: Permission,
 }
 
-/// An access tag's meaning for a through journey; the stricter is the greater.
+/// Meaning of an access tag for a through journey. The stricter value is the greater.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 pub enum Permission {
     /// yes, designated, permissive, or untagged.
@@ -200,13 +200,13 @@ pub enum Permission {
     No,
 }
 
-/// What the tags of a way say, country-free. Widths, lanes and kerb-side uses are behind
-/// `facts::cross_sections` and private to this folder.
+/// Facts from the tags of a way, independent of the country. Widths, lanes and kerb-side uses are private to this
+/// folder; `facts::cross_sections` reads them.
 #[derive(Debug, Clone)]
 pub struct WayFacts {
-    /// Its class.
+    /// Road class.
     pub class: RoadClass,
-    /// A `_link` road.
+    /// Whether the way is a `_link` road.
     pub link: bool,
     /// `junction=roundabout|circular`
     pub roundabout: bool,
@@ -218,7 +218,7 @@ pub struct WayFacts {
     pub reference: Option<StringId>,
     /// Limits and access along the node order.
     pub legal_forward: Legal,
-    /// Limits and access against it.
+    /// Limits and access against the node order.
     pub legal_backward: Legal,
     /// Widths, lanes and kerb-side uses as tagged.
     section: section::SectionTags,
@@ -231,37 +231,37 @@ impl WayFacts {
         self.section.tagged_lanes()
     }
 
-    /// The tagged width of the carriageway between its edges, metres, as used.
+    /// The tagged width of the carriageway between its edges, metres, as used here.
     #[must_use]
     pub fn tagged_width_m(&self) -> Option<f32> {
         self.section.carriageway.map(section::Millimetres::metres)
     }
 }
 
-/// What the tags of a node on a road say.
+/// Facts from the tags of a node on a road.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PointFacts {
-    /// Limits that hold at the node, both directions.
+    /// Limits at the node, for both directions.
     pub legal: Legal,
-    /// Room between the parts of a barrier or choker, metres: narrows the corridor there.
+    /// Passable width between the parts of a barrier or choker, metres. It narrows the corridor there.
     pub passage_m: Option<f32>,
-    /// A barrier that no heavy vehicle passes (bollard, block, gate locked …).
+    /// Whether a barrier bars heavy vehicles (bollard, block, locked gate …).
     pub barred: bool,
 }
 
 /// A way's or node's tags, in file order.
 pub type Tags<'t> = [(&'t str, &'t str)];
 
-/// A kept way's facts, its texts still borrowed from the block (the reader interns them: `facts.name` and
-/// `facts.reference` are `None` here).
+/// A kept way's facts, with texts borrowed from the block. The reader interns the texts; `facts.name` and
+/// `facts.reference` are `None` here.
 #[derive(Debug, Clone)]
 pub struct WayDraft<'t> {
-    /// All but the texts.
+    /// All facts except the texts.
     pub facts: WayFacts,
     /// `name`
     pub name: Option<&'t str>,
     /// `ref`
     pub reference: Option<&'t str>,
-    /// What could not be used as it stands.
+    /// Remarks on tags that could not be used as they stand.
     pub notes: Notes,
 }

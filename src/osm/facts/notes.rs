@@ -1,13 +1,13 @@
-//! Remarks on tags that were present but could not be used as they stand. They are counted, never silent: the
-//! reader sums them over all kept ways. A remark drops nothing by itself.
+//! Remarks on tags that could not be used as they stand. The reader counts them over all kept ways. A remark by itself
+//! drops nothing.
 
-/// One kind of remark; the names are stable identifiers in the account.
+/// One kind of remark. The names are stable identifiers in the account.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Note {
-    /// `width` and its kin: not a positive length in a known unit, or outside 1.8 m to 40 m. The tag is ignored.
+    /// `width` and similar keys: not a positive length in a known unit, or outside 1.8 m to 40 m. The tag is ignored.
     BadWidth,
-    /// `lanes` and its kin: not a whole number from 1 to 16. Ignored, but 1.5 counts as 1.
+    /// `lanes` and similar keys: not a whole number from 1 to 16. The tag is ignored, but 1.5 counts as 1.
     BadLanes,
     /// `width:lanes` unreadable, or with more than eight lanes. Ignored.
     BadLaneWidths,
@@ -15,17 +15,17 @@ pub enum Note {
     BadPlacement,
     /// `oneway` outside the documented values. Ignored.
     BadOneway,
-    /// A legal limit that cannot be read: the limit counts as unreadable, the verdict becomes `unknown`.
+    /// A legal limit that cannot be read. The limit counts as unreadable, and the verdict becomes `unknown`.
     BadLimit,
-    /// An access value outside the documented ones: counts as no.
+    /// An access value that is not documented. It counts as no.
     BadAccess,
-    /// `maxspeed` that is no speed. It has no bearing on widths.
+    /// `maxspeed` that is not a speed. It has no effect on widths.
     BadSpeed,
-    /// Tagged lanes and tagged width give lanes under 1.8 m or over 6 m.
+    /// Tagged lanes and tagged width imply lanes under 1.8 m or over 6 m.
     WidthContradictsLanes,
-    /// A restriction under a condition that cannot be decided (a time of day, say): counts as not for through traffic.
+    /// A restriction with an undecidable condition (for example a time of day). It counts as not for through traffic.
     UndecidedCondition,
-    /// `oneway=reversible`: both directions exist, but not always; counts as not for through traffic.
+    /// `oneway=reversible`: both directions exist, but not always. It counts as not for through traffic.
     Reversible,
 }
 
@@ -48,18 +48,18 @@ const NAMES: [(Note, &str); 11] = [
 pub struct Notes(pub u32);
 
 impl Notes {
-    /// Adds a remark; the same one twice counts once per way.
+    /// Adds a remark. A repeated remark counts once per way.
     pub fn add(&mut self, note: Note) {
         self.0 |= 1 << note as u8;
     }
 
-    /// Whether it holds the remark.
+    /// Whether the set contains the remark.
     #[must_use]
     pub fn has(self, note: Note) -> bool {
         self.0 & (1 << note as u8) != 0
     }
 
-    /// The names of the remarks in it, always in the same order.
+    /// The names of the remarks in the set, in a fixed order.
     pub fn names(self) -> impl Iterator<Item = &'static str> {
         NAMES.iter().filter(move |(note, _)| self.has(*note)).map(|(_, name)| *name)
     }

@@ -1,19 +1,18 @@
-//! Nodes on roads: barriers, narrow places and limits at a point. Routers tend to ignore them; the network carries them
-//! to the edges on both sides.
+//! Nodes on roads: barriers, narrow places and limits at a point. The network passes them to the edges on both sides.
 
 use crate::osm::facts::limits::LegalTags;
 use crate::osm::facts::notes::Notes;
 use crate::osm::facts::{Direction, Limit, PointFacts, Tags, value};
 
-/// A choker or chicane without a tagged width leaves one lane: the lane width of a minor main road, assumed.
+/// Passable width of a choker or chicane without a tagged width, metres: one lane of a minor main road. Assumed.
 const CALMED_PASSAGE_M: f32 = 3.0;
 
-/// What a barrier does to a lorry when no tag says more.
+/// Effect of a barrier on a lorry without further tags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Barrier {
     /// Opens, or is no obstacle.
     Passable,
-    /// May be opened or removed, if tagged so.
+    /// Bars the road unless tags say that it may be opened or removed.
     Bars,
     /// Limits the height.
     Height,
@@ -25,13 +24,13 @@ fn barrier(value: &str) -> Barrier {
         | "toll_gantry" | "border_control" | "checkpoint" | "cattle_grid" | "entrance" | "sally_port" | "kerb"
         | "bump_gate" | "no" => Barrier::Passable,
         "height_restrictor" => Barrier::Height,
-        // Bollards, blocks, chains, stiles, cycle barriers; and what is not known to open.
+        // Bollards, blocks, chains, stiles, cycle barriers, and everything not known to open.
         _ => Barrier::Bars,
     }
 }
 
-/// What the tags of a node on a road say; nothing if nothing concerns a lorry. Access tags count only on barriers:
-/// elsewhere they belong to what stands beside the road. Limits hold in both directions.
+/// The facts from a node's tags, or `None` if nothing concerns a lorry. Access tags count only on barriers; elsewhere
+/// they belong to objects beside the road. Limits hold in both directions.
 #[must_use]
 pub fn point_facts(tags: &Tags<'_>) -> Option<PointFacts> {
     let get = |wanted: &str| tags.iter().find(|(key, _)| *key == wanted).map(|(_, value)| *value);
@@ -64,7 +63,7 @@ pub fn point_facts(tags: &Tags<'_>) -> Option<PointFacts> {
 
     let opened = rules.access.explicitly_open();
     let barred = match barrier {
-        // Bollards a known distance apart are a narrow place.
+        // Bollards with a known distance between them are a narrow place.
         Some(Barrier::Bars) => !opened && passage_m.is_none(),
         Some(Barrier::Passable | Barrier::Height) => get("locked") == Some("yes") && !opened,
         None => false,

@@ -1,15 +1,15 @@
-//! Turn restrictions: what the tags of a relation forbid to a heavy goods vehicle.
+//! Turn restrictions: what a relation's tags forbid to a heavy goods vehicle.
 //!
-//! <https://wiki.openstreetmap.org/wiki/Relation:restriction>. Conditions (times, weights) are not decided: a turn that is
-//! forbidden at times counts as forbidden, and as such is noted. `except=goods` exempts nobody here: the access key
-//! `goods` means vehicles up to 3.5 t.
+//! <https://wiki.openstreetmap.org/wiki/Relation:restriction>. Conditions (times, weights) are not decided: a turn that
+//! is forbidden at times counts as forbidden and is marked conditional. `except=goods` exempts no vehicle here, because
+//! the access key `goods` means vehicles up to 3.5 t.
 
 use serde::{Deserialize, Serialize};
 
 use super::Tags;
 use super::limits::clauses;
 
-/// Which movement a sign names. Which edges it means follows from the relation's members.
+/// The movement that a sign names. The relation's members determine its edges.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RestrictedTurn {
@@ -27,49 +27,49 @@ pub enum RestrictedTurn {
     Exit,
 }
 
-/// `no_…` forbids the movement, `only_…` all others.
+/// `no_…` forbids the movement, `only_…` forbids all others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct RestrictionKind {
     /// `only_…`
     pub only: bool,
-    /// What is named.
+    /// The named movement.
     pub turn: RestrictedTurn,
 }
 
-/// What a restriction says to heavy goods vehicles.
+/// A rule of a restriction for heavy goods vehicles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct TurnRule {
     /// What it forbids.
     pub kind: RestrictionKind,
-    /// It holds at times, or under a condition that was not decided.
+    /// Whether it holds only at times, or under an undecided condition.
     pub conditional: bool,
 }
 
-/// Why a relation that says it is a restriction restricts no heavy goods vehicle.
+/// Why a restriction relation has no rule for heavy goods vehicles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoRule {
     /// None of its values is known.
     Unknown,
-    /// It speaks of other vehicles only.
+    /// It concerns other vehicles only.
     OtherVehicles,
-    /// `except=hgv` and its kind.
+    /// `except=hgv` or a similar exemption.
     Exempt,
 }
 
-/// Of the keys `restriction:…`, those that speak of heavy goods vehicles too. Trailers: any vehicle here may pull one.
+/// Keys `restriction:…` that include heavy goods vehicles. Any vehicle here may pull a trailer.
 const VEHICLES: [&str; 6] = ["vehicle", "motor_vehicle", "hgv", "hgv_articulated", "goods", "trailer"];
-/// Exempt by `except`.
+/// Values of `except` that exempt heavy goods vehicles.
 const EXEMPTING: [&str; 3] = ["vehicle", "motor_vehicle", "hgv"];
-/// Older tags that limit a restriction to times.
+/// Older tags that limit a restriction to certain times.
 const TIMES: [&str; 4] = ["day_on", "day_off", "hour_on", "hour_off"];
 
-/// The rules that a relation's tags make for heavy goods vehicles, each once, in order; `None` if the relation is no
-/// restriction at all.
+/// The rules of a relation's tags for heavy goods vehicles, each once and in order. `None` if the relation is no
+/// restriction.
 #[must_use]
 pub fn turn_rules(tags: &Tags<'_>) -> Option<Result<Vec<TurnRule>, NoRule>> {
     let of = |key: &str| tags.iter().find(|tag| tag.0 == key).map(|tag| tag.1);
     let kind = of("type")?;
-    // The older `type=restriction:hgv` says for whom in the type.
+    // The older `type=restriction:hgv` names the vehicle in the type.
     let scope = if kind == "restriction" { "" } else { kind.strip_prefix("restriction:")? };
     let timed = tags.iter().any(|tag| TIMES.contains(&tag.0));
     let exempt = of("except").is_some_and(|list| list.split(';').any(|who| EXEMPTING.contains(&who.trim())));
@@ -89,7 +89,7 @@ pub fn turn_rules(tags: &Tags<'_>) -> Option<Result<Vec<TurnRule>, NoRule>> {
         }
     }
     rules.sort_unstable();
-    // What holds always holds under a condition, too.
+    // A rule that always holds also holds under a condition.
     rules.dedup_by_key(|rule| rule.kind);
     Some(match (rules.is_empty(), known, exempted) {
         (false, ..) => Ok(rules),
@@ -129,7 +129,7 @@ impl Key {
     }
 }
 
-/// The known kinds of a value, with whether a condition is left open. Dangerous goods are not modelled.
+/// The known kinds of a value, each with whether its condition is undecided. Dangerous goods are not modelled.
 fn kinds(value: &str, conditional: bool) -> impl Iterator<Item = (RestrictionKind, bool)> + '_ {
     clauses(value)
         .filter(|(_, condition)| !condition.contains("hazmat"))
@@ -155,7 +155,7 @@ fn parse_kind(text: &str) -> Option<RestrictionKind> {
 }
 
 impl RestrictionKind {
-    /// As tagged: `no_left_turn`.
+    /// The tag's text, such as `no_left_turn`.
     #[must_use]
     pub fn name(self) -> String {
         let turn = match self.turn {
@@ -181,7 +181,7 @@ impl RestrictionKind {
 mod tests {
     use super::*;
 
-    /// `no_left_turn?` for a conditional one.
+    /// A conditional rule is shown as `no_left_turn?`.
     fn rules(tags: &[(&str, &str)]) -> Result<Vec<String>, NoRule> {
         let show = |r: &TurnRule| r.kind.name() + if r.conditional { "?" } else { "" };
         turn_rules(tags).unwrap().map(|rules| rules.iter().map(show).collect())

@@ -1,6 +1,6 @@
-//! What is assumed of roads whose widths are not tagged: `data/roads.toml`, built in or read from a path.
+//! Assumptions about roads without tagged widths: `data/roads.toml`, built in or read from a path.
 //!
-//! Figures and their sources stand in the file, which `rules_file` reads and checks.
+//! The file holds the figures and their sources. `rules_file` reads and checks it.
 
 use std::path::{Path, PathBuf};
 
@@ -30,31 +30,31 @@ impl RoadClass {
     ];
 }
 
-/// Why a rules file is not used.
+/// Why a rules file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum RulesError {
     /// The file cannot be read.
     #[error("cannot read the road rules {}: {source}", path.display())]
     Read {
-        /// Which file.
+        /// Path of the file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's message.
         source: std::io::Error,
     },
-    /// Not the TOML that is expected; the message holds line and column.
+    /// Not the expected TOML. The message holds line and column.
     #[error("road rules {name}: {source}")]
     Parse {
-        /// Which file.
+        /// Name of the file.
         name: String,
-        /// What the parser said.
+        /// The parser's message.
         source: Box<toml::de::Error>,
     },
     /// A value outside its bounds, or a class left out.
     #[error("road rules {name}: {what}")]
     Value {
-        /// Which file.
+        /// Name of the file.
         name: String,
-        /// Which entry, and the bound it breaks.
+        /// The entry and the bound that it breaks.
         what: String,
     },
 }
@@ -67,7 +67,7 @@ pub(super) struct ClassRule {
     pub(super) lane_m: f32,
     /// Lanes per direction.
     pub(super) lanes: u8,
-    /// No lane is marked: this many metres are shared by both directions.
+    /// Width shared by both directions where no lane is marked, metres.
     pub(super) shared_m: Option<f32>,
 }
 
@@ -79,14 +79,14 @@ pub(super) struct KerbRule {
     pub(super) perpendicular_parking_m: f32,
     pub(super) cycle_lane_m: f32,
     pub(super) shoulder_m: f32,
-    /// Whole width of an untagged road with `narrow=yes`.
+    /// Whole width of an untagged road with `narrow=yes`, metres.
     pub(super) narrow_m: f32,
 }
 
-/// A country's code, and the width of a lane of each class there, metres.
+/// A country's code, and the lane width of each class there, metres.
 pub(super) type CountryLanes = ([u8; 2], [f32; CLASSES]);
 
-/// A country's rings from a radius on, of the way's line.
+/// A country's ring width, from a radius of the way's line on.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CountryRing {
@@ -94,7 +94,7 @@ pub(super) struct CountryRing {
     pub(super) width_m: f32,
 }
 
-/// Assumed widths by class and country, and who drives on the left.
+/// Assumed widths by class and country, and the countries with left-hand traffic.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rules {
     pub(super) classes: [ClassRule; CLASSES],
@@ -105,23 +105,23 @@ pub struct Rules {
     pub(super) country_rings: Vec<([u8; 2], CountryRing)>,
     pub(super) ramps_m: [Option<f32>; CLASSES],
     pub(super) kerb: KerbRule,
-    /// Sorted; ISO 3166-1 or 3166-2.
+    /// Sorted codes of ISO 3166-1 or 3166-2.
     pub(super) left: Vec<String>,
 }
 
 impl Rules {
-    /// The rules that ship with the program.
+    /// The built-in rules.
     ///
     /// # Errors
-    /// If the built-in file is wrong; a test holds that it is not.
+    /// [`RulesError`] if the built-in file is wrong; a test ensures that it is not.
     pub fn builtin() -> Result<Rules, RulesError> {
         Self::parse(BUILTIN, BUILTIN_NAME)
     }
 
-    /// Rules from a file of the same form as `data/roads.toml`.
+    /// Reads rules from a file with the form of `data/roads.toml`.
     ///
     /// # Errors
-    /// If it cannot be read, is not of that form, or holds a value out of bounds.
+    /// [`RulesError`] if the file cannot be read, has another form, or holds a value out of bounds.
     pub fn from_path(path: &Path) -> Result<Rules, RulesError> {
         let text =
             std::fs::read_to_string(path).map_err(|source| RulesError::Read { path: path.to_owned(), source })?;
@@ -147,7 +147,8 @@ impl Rules {
         }
     }
 
-    /// Assumed width of a roundabout's one-lane ring, if rings are assumed wider than a lane; its radius is that of the way's line.
+    /// Assumed width of a roundabout's one-lane ring, metres, if rings are assumed wider than a lane. The radius is
+    /// that of the way's line.
     #[must_use]
     pub fn ring_m(&self, country: [u8; 2], radius_m: Option<f64>) -> Option<f32> {
         let at = self.country_rings.binary_search_by_key(&country, |(code, _)| *code).ok();
@@ -156,7 +157,7 @@ impl Rules {
         own.map(|rule| rule.width_m).or(self.ring_m)
     }
 
-    /// Assumed width of a one-lane ramp of a class, if such ramps are assumed wider than a lane.
+    /// Assumed width of a one-lane ramp of a class, metres, if such ramps are assumed wider than a lane.
     #[must_use]
     pub fn ramp_m(&self, class: RoadClass) -> Option<f32> {
         self.ramps_m[class as usize]
@@ -169,7 +170,7 @@ impl Rules {
     }
 }
 
-/// `AU` as two bytes; nothing for what is not two capital letters.
+/// `AU` as two bytes. `None` for anything but two capital letters.
 pub(super) fn country_code(code: &str) -> Option<[u8; 2]> {
     <[u8; 2]>::try_from(code.as_bytes()).ok().filter(|letters| letters.iter().all(u8::is_ascii_uppercase))
 }

@@ -1,4 +1,4 @@
-//! The file of assumed widths, as it is written, and what its values may be. Every group of figures names its sources.
+//! The file of assumed widths: its form and the bounds of its values. Every group of figures names its sources.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use serde::Deserialize;
 use crate::osm::facts::RoadClass;
 use crate::osm::facts::rules::{CLASSES, ClassRule, CountryLanes, CountryRing, KerbRule, Rules, country_code};
 
-/// Lanes and carriageways outside these are typing errors, metres.
+/// Bounds of lanes and of carriageways, metres. Values outside are typing errors.
 const LANE_M: [f32; 2] = [1.8, 6.0];
 const CARRIAGEWAY_M: [f32; 2] = [1.8, 12.0];
 
@@ -39,7 +39,7 @@ struct CountryEntry {
     lane_m: BTreeMap<RoadClass, f32>,
 }
 
-/// One-lane carriageways of rings.
+/// One-lane carriageways of roundabout rings.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct RingEntry {
@@ -72,10 +72,11 @@ struct DrivingSide {
 }
 
 impl File {
-    /// The rules that it gives.
+    /// Converts the file to rules.
     ///
     /// # Errors
-    /// The first value out of bounds, figure without a source or code that is none: which, and what is allowed.
+    /// A message about the first value out of bounds, figure without a source, or invalid code. It names the entry and
+    /// what is allowed.
     pub(super) fn check(self) -> Result<Rules, String> {
         let classes = self.classes()?;
         let (countries, country_rings) = (self.countries(&classes)?, self.country_rings()?);

@@ -1,24 +1,24 @@
-//! The tags of a way's cross section: widths, lanes, what else takes room at the kerb, where the way's line lies.
+//! The tags of a way's cross section: widths, lanes, kerb-side uses, and the position of the way's line.
 //!
-//! Kept compact, since there is one for every way of a region; positions come out in `widths`. Directions are
-//! relative to the way's node order; lanes are listed from left to right in direction of travel (wiki: Lanes).
+//! The type is compact, because a region has one per way. `widths` computes positions from it. Directions are relative
+//! to the way's node order. Lanes are listed from left to right in direction of travel (wiki: Lanes).
 
 use std::num::NonZeroU16;
 
 use crate::osm::facts::{Direction, WidthSource};
 
-/// Lanes with given widths per direction, at most.
+/// Most lanes with given widths per direction.
 pub(super) const LISTED: usize = 8;
-/// `width:lanes` is kept in steps of 5 cm, rounded down.
+/// Resolution of `width:lanes`, metres; values are rounded down.
 pub(super) const LANE_STEP_M: f32 = 0.05;
 
-/// A length up to 65 m, exact for what tags give, rounded down.
+/// A length up to 65 m, rounded down. It is exact for lengths in tags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Millimetres(NonZeroU16);
 
 impl Millimetres {
     pub(super) fn from_metres(metres: f32) -> Option<Millimetres> {
-        // The small addition: 3.3 m is 3299.9999 mm in f32.
+        // The addition covers rounding: 3.3 m is 3299.9999 mm in f32.
         let whole = (f64::from(metres) * 1000.0 + 0.01).floor();
         if (1.0..=65535.0).contains(&whole) { NonZeroU16::new(whole as u16).map(Millimetres) } else { None }
     }
@@ -28,7 +28,7 @@ impl Millimetres {
     }
 }
 
-/// Cars parked on the carriageway; the more room they take, the greater.
+/// Cars parked on the carriageway. The more room they take, the greater the value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(super) enum Parking {
     #[default]
@@ -38,11 +38,11 @@ pub(super) enum Parking {
     Perpendicular,
 }
 
-/// A use's own width in decimetres, rounded up: 0 where there is no such use, 255 where its width is not tagged.
+/// Width of a kerb-side use in decimetres, rounded up. 0 means no such use, 255 means an untagged width.
 pub(super) type Decimetres = u8;
 pub(super) const UNTAGGED: Decimetres = u8::MAX;
 
-/// What takes room between the lanes and one edge of the carriageway.
+/// Uses that take room between the lanes and one edge of the carriageway.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Kerb {
     pub(super) parking: Parking,
@@ -54,15 +54,15 @@ pub(super) struct Kerb {
 /// Lanes of one direction of travel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct LaneTags {
-    /// `lanes:forward` and its kin; 0: untagged.
+    /// `lanes:forward` and similar keys; 0 if untagged.
     pub(super) count: u8,
-    /// Lanes of which access or widths are listed, cycle lanes included; 0: none.
+    /// Number of lanes in access or width lists, including cycle lanes; 0 without lists.
     pub(super) listed: u8,
-    /// Bit i: the listed lane i (from the left in direction of travel) is not for heavy vehicles.
+    /// Bit i is set if listed lane i (from the left in direction of travel) is closed to heavy vehicles.
     pub(super) closed: u8,
-    /// Widths of the listed lanes in steps of 5 cm; the first is 0 where they are not known.
+    /// Widths of the listed lanes in steps of 5 cm. The first is 0 if they are unknown.
     pub(super) width_steps: [u8; LISTED],
-    /// Bus lanes without a place (`lanes:psv=1`, `busway=lane`): at the kerb.
+    /// Bus lanes without a position (`lanes:psv=1`, `busway=lane`). They are taken to be at the kerb.
     pub(super) bus: u8,
 }
 
@@ -78,19 +78,19 @@ impl LaneTags {
     }
 }
 
-/// Which line of which lane the way's line follows.
+/// The line of a lane that the way's line follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) enum Placement {
     /// The middle of the carriageway.
     #[default]
     Middle,
-    /// On the way from one place to another: not known.
+    /// Between two placements: unknown.
     Transition,
-    /// A line of a lane, counted from 1 at the left in direction of travel.
+    /// A line of a lane, with lanes counted from 1 at the left in direction of travel.
     At(LaneLine, u8, Direction),
 }
 
-/// See [`Placement::At`].
+/// The line of a lane, for [`Placement::At`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum LaneLine {
     Left,
@@ -98,21 +98,21 @@ pub(super) enum LaneLine {
     Right,
 }
 
-/// All that is tagged about the cross section.
+/// All tags of the cross section.
 #[derive(Debug, Clone)]
 pub(super) struct SectionTags {
-    /// Between the edges of the carriageway.
+    /// Width between the edges of the carriageway.
     pub(super) carriageway: Option<Millimetres>,
     pub(super) source: WidthSource,
     /// `maxwidth:physical`
     pub(super) physical: Option<Millimetres>,
     /// `narrow=yes`
     pub(super) narrow: bool,
-    /// All lanes go one way at a time.
+    /// Whether all lanes go one way at a time.
     pub(super) reversible: bool,
-    /// One lane for both directions in turn.
+    /// Whether both directions share one lane by turns.
     pub(super) alternating: bool,
-    /// `lanes`; 0: untagged.
+    /// `lanes`; 0 if untagged.
     pub(super) lanes: u8,
     /// `lanes:both_ways`
     pub(super) both_ways: u8,

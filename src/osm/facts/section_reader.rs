@@ -1,6 +1,6 @@
-//! Reads the tags of a cross section into [`SectionTags`], in whatever order they come.
+//! Reads the tags of a cross section into [`SectionTags`], in any order.
 //!
-//! A tag that cannot be used is noted and ignored; two tags of which one must be wrong are resolved to the narrower.
+//! An unusable tag is noted and ignored. If two tags contradict each other, the narrower reading counts.
 
 use crate::osm::facts::kerb_reader::KerbReader;
 use crate::osm::facts::notes::{Note, Notes};
@@ -8,10 +8,10 @@ use crate::osm::facts::section::{LANE_STEP_M, LISTED, LaneLine, LaneTags, Millim
 use crate::osm::facts::widths::LANE_M;
 use crate::osm::facts::{Direction, Oneway, WidthSource, value};
 
-/// A carriageway outside these bounds is a typing error or not a road for lorries, metres.
+/// Bounds of a carriageway, metres. Values outside are typing errors, or the way is not for lorries.
 const CARRIAGEWAY_M: std::ops::RangeInclusive<f32> = 1.8..=40.0;
 
-/// Lists of lanes of one direction (index 0: without a suffix), before it is known which direction they mean.
+/// Lane lists of one direction (index 0: without a suffix), before their direction is known.
 #[derive(Debug, Clone, Copy, Default)]
 struct Lists {
     listed: u8,
@@ -25,21 +25,21 @@ struct Lists {
 /// Collects the tags of the cross section, in any order.
 #[derive(Debug, Default)]
 pub(super) struct SectionReader {
-    /// By precedence: `width:carriageway`, `width`, `est_width`.
+    /// In order of precedence: `width:carriageway`, `width`, `est_width`.
     widths: [Option<Millimetres>; 3],
     estimated: bool,
     surveyed: bool,
     physical: Option<Millimetres>,
     narrow: bool,
     both_ways: u8,
-    /// Without a suffix, forward, backward.
+    /// Indices: without a suffix, forward, backward.
     lists: [Lists; 3],
     kerbs: KerbReader,
     placements: [Option<Placement>; 3],
 }
 
 impl SectionReader {
-    /// Takes a tag (key split at the first colon) if it is about the cross section.
+    /// Takes a tag (key split at the first colon) if it concerns the cross section.
     pub(super) fn take(&mut self, head: &str, suffix: &str, text: &str, notes: &mut Notes) {
         match head {
             "width" => match suffix {
@@ -50,7 +50,7 @@ impl SectionReader {
             },
             "est_width" if suffix.is_empty() => self.widths[2] = width(text, notes),
             "source" if matches!(suffix, "width" | "width:carriageway") => self.origin(text),
-            // `limits` reads the same tag as a limit, and notes it there if it is unreadable.
+            // `limits` reads the same tag as a limit, and notes it if it is unreadable.
             "maxwidth" if suffix == "physical" => {
                 self.physical = value::metres(text).and_then(Millimetres::from_metres);
             }
@@ -125,7 +125,7 @@ impl SectionReader {
         lists.width_steps = steps;
     }
 
-    /// A lane is closed if it is kept for others, or shut to any of access, vehicle, motor_vehicle, hgv.
+    /// Closes lanes: those for other traffic, and those closed by access, vehicle, motor_vehicle or hgv.
     fn closed_lanes(&mut self, head: &str, suffix: &str, text: &str, notes: &mut Notes) {
         let Some(index) = list_index(suffix) else { return };
         let mut count = 0;
@@ -150,18 +150,18 @@ impl SectionReader {
         self.lists[index].closed |= closed;
     }
 
-    /// Which direction a side serves depends on the driving side; both directions get a bus lane at the kerb, so that
-    /// the lane beside it is the kerb-side lane whichever it is.
+    /// The driving side determines the direction that a side serves. Both directions get a bus lane at the kerb, so the
+    /// lane beside it is the kerb-side lane in either case.
     fn busway(&mut self, suffix: &str, text: &str) {
         if text == "lane" && matches!(suffix, "" | "left" | "right" | "both") {
             self.lists[0].bus = self.lists[0].bus.max(1);
         }
     }
 
-    /// The tags together, once the way's directions are known.
+    /// Combines the tags, once the way's directions are known.
     pub(super) fn finish(self, oneway: Oneway, reversible: bool, alternating: bool, notes: &mut Notes) -> SectionTags {
         let [mut plain, mut forward, mut backward] = self.lists;
-        // A road of more lanes is a typing error in one of the tags: none is used.
+        // More lanes are a typing error in one of the tags, so none is used.
         if forward.count + backward.count + self.both_ways > value::MOST_LANES {
             notes.add(Note::BadLanes);
             [&mut plain, &mut forward, &mut backward].into_iter().for_each(|lists| lists.count = 0);
@@ -169,7 +169,7 @@ impl SectionReader {
         let directions = match oneway {
             Oneway::Forward => [plain.or(forward).tags(), LaneTags::default()],
             Oneway::Backward => [LaneTags::default(), plain.or(backward).tags()],
-            // Lists without a suffix mean nothing on a two-way road.
+            // Lists without a suffix have no meaning on a two-way road.
             Oneway::No => [forward, backward].map(|lists| {
                 let mut tags = lists.tags();
                 tags.bus = tags.bus.max(plain.bus.div_ceil(2));
@@ -180,7 +180,7 @@ impl SectionReader {
         let placement = match oneway {
             Oneway::Forward => plain_line.or(forward_line),
             Oneway::Backward => plain_line.or(backward_line).map(Placement::backward),
-            // Without a suffix it is not said which direction's lanes are counted: not known.
+            // Without a suffix the direction of the counted lanes is unknown.
             Oneway::No => forward_line.or(backward_line).or(plain_line.map(|_| Placement::Transition)),
         };
         let source = match self.widths {
@@ -221,7 +221,7 @@ impl SectionReader {
 }
 
 impl Placement {
-    /// The same line, counted in the lanes that lead against the node order.
+    /// The same line, counted in the lanes against the node order.
     fn backward(self) -> Placement {
         match self {
             Placement::At(line, lane, _) => Placement::At(line, lane, Direction::Backward),
@@ -231,13 +231,13 @@ impl Placement {
 }
 
 impl Lists {
-    /// What is given without a suffix, else with it.
+    /// The lists without a suffix, or else those with one.
     fn or(self, other: Lists) -> Lists {
         let lists = if self.listed > 0 { self } else { other };
         Lists { count: if self.count > 0 { self.count } else { other.count }, bus: self.bus.max(other.bus), ..lists }
     }
 
-    /// All lists of a direction have to have the same length; where they differ none is used.
+    /// All lists of a direction must have the same length. Otherwise none is used.
     fn agree(&mut self, count: usize, notes: &mut Notes) {
         let count = count as u8;
         if self.listed != 0 && self.listed != count {
@@ -283,7 +283,7 @@ fn side_index(suffix: &str) -> Option<usize> {
     ["", "forward", "backward"].iter().position(|side| *side == suffix)
 }
 
-/// The same of `lanes`, `lanes:forward`, `lanes:backward`.
+/// As [`side_index`], for `lanes`, `lanes:forward`, `lanes:backward`.
 fn list_index(suffix: &str) -> Option<usize> {
     ["lanes", "lanes:forward", "lanes:backward"].iter().position(|side| *side == suffix)
 }

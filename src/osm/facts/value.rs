@@ -1,7 +1,7 @@
-//! Numbers with units as they stand in tags: metres and tonnes unless said otherwise.
+//! Numbers with units as they stand in tags, in metres and tonnes unless stated otherwise.
 //!
-//! A result is finite and greater than zero, or there is none: signs, exponents, ranges, lists, comma decimals and
-//! words are not numbers here. Units: wiki pages Key:width, Key:maxheight, Key:maxweight.
+//! A result is finite and greater than zero, or `None`. Signs, exponents, ranges, lists, comma decimals and words are
+//! not numbers here. Units follow the wiki pages Key:width, Key:maxheight, Key:maxweight.
 
 use crate::osm::facts::Limit;
 
@@ -12,13 +12,13 @@ const POUND_T: f64 = 0.000_453_592_37;
 const SHORT_TON_T: f64 = 0.907_184_74;
 const LONG_TON_T: f64 = 1.016_046_908_8;
 
-/// Beyond this nothing on a road makes sense, and `f32` still holds centimetres.
+/// Largest value accepted. Nothing on a road is larger, and `f32` still resolves centimetres.
 const GREATEST: f64 = 100_000.0;
 
-/// A toll plaza may have this many in one direction.
+/// Most lanes. A toll plaza may have this many in one direction.
 pub(super) const MOST_LANES: u8 = 16;
 
-/// Digits with at most one dot, at the start of `text`, and what follows them.
+/// Digits with at most one dot at the start of `text`, and the rest of `text`.
 fn number(text: &str) -> Option<(f64, &str)> {
     let end = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let (digits, rest) = text.split_at(end);
@@ -32,7 +32,7 @@ fn usable(value: f64) -> Option<f32> {
     (value > 0.0 && value <= GREATEST).then_some(value as f32).filter(|v| *v > 0.0)
 }
 
-/// Inches after feet: nothing, `6"`, `6 in`, or a bare `6`.
+/// Inches after feet: empty, `6"`, `6 in`, or a bare `6`.
 fn inches(text: &str) -> Option<f64> {
     if text.is_empty() {
         return Some(0.0);
@@ -75,8 +75,9 @@ pub fn tonnes(text: &str) -> Option<f32> {
     usable(value * factor)
 }
 
-/// A legal limit. Above `greatest` the unit was probably forgotten (`maxweight=7500`): unreadable, since reading it
-/// as it stands would allow what may be forbidden. `below_default` and `unknown` say that there is a limit, not which.
+/// A legal limit. A value above `greatest` probably lacks its unit (`maxweight=7500`) and is unreadable, because
+/// reading it as it stands would allow what may be forbidden. `below_default` and `unknown` state that there is a
+/// limit, but not its value.
 #[must_use]
 pub(super) fn limit(text: &str, read: fn(&str) -> Option<f32>, greatest: f32) -> Limit {
     match text.trim() {
@@ -88,8 +89,8 @@ pub(super) fn limit(text: &str, read: fn(&str) -> Option<f32>, greatest: f32) ->
     }
 }
 
-/// A lane count from 1 to 16; the second part says whether the value was as documented. `1.5`, once used for narrow
-/// two-way roads, counts as one lane.
+/// A lane count from 1 to 16, and whether the value is as documented. `1.5`, once used for narrow two-way roads, counts
+/// as one lane.
 #[must_use]
 pub(super) fn lane_count(text: &str) -> (Option<u8>, bool) {
     match text.trim() {

@@ -1,9 +1,9 @@
-//! From tags to strips: the cross section of a way, laid out from its left edge to its right one.
+//! From tags to strips: the cross section of a way, laid out from its left edge to its right edge.
 //!
-//! Evidence in this order: `width:carriageway`, `width`, `est_width`, or `width:lanes`; else tagged lanes times an
-//! assumed lane width; else class and country. Parking, cycle lanes and shoulders are deducted from a tagged carriageway;
-//! they add nothing to an assumed one. The way's line is the middle of the carriageway unless `placement` says
-//! otherwise. Where tags contradict each other the narrower reading counts.
+//! The evidence in order of precedence is `width:carriageway`, `width`, `est_width` or `width:lanes`, then tagged lanes
+//! times an assumed lane width, then class and country. Parking, cycle lanes and shoulders are deducted from a tagged
+//! carriageway; they add nothing to an assumed one. The way's line is the middle of the carriageway unless `placement`
+//! says otherwise. If tags contradict each other, the narrower reading counts.
 
 use crate::osm::facts::country::Place;
 use crate::osm::facts::layout::{Layout, NO_SECTION, SHARED, Segment, Use, kerb_on_the_left_of_the_way};
@@ -11,17 +11,18 @@ use crate::osm::facts::rules::{ClassRule, KerbRule, Rules};
 use crate::osm::facts::section::{Decimetres, Kerb, Millimetres, Parking, Placement, SectionTags, UNTAGGED};
 use crate::osm::facts::{CrossSection, Direction, Oneway, WayFacts, WidthSource};
 
-/// Lanes outside these widths are no lanes: width or lane count is wrong, metres.
+/// Bounds of lane widths, metres. Outside them the width or the lane count is wrong.
 pub(super) const LANE_M: std::ops::RangeInclusive<f32> = 1.8..=6.0;
-/// Below this a two-way road without tagged lanes has no lanes: both directions share it (no centre line is marked).
+/// Below this width (metres) both directions share a two-way road without tagged lanes, because no centre line is
+/// marked.
 pub(super) const SHARED_BELOW_M: f32 = 5.0;
-/// Where lanes are not tagged a wide road may have more of them than assumed: no more than this is one lane.
+/// Widest lane on a road without tagged lanes, metres. A wider road may have more lanes than assumed.
 const WIDEST_UNTAGGED_LANE_M: f32 = 4.25;
-/// Widths by lane may exceed the carriageway's by this much (rounding by mappers) before they are dropped.
+/// Largest excess of the lane widths over the carriageway's width, metres, before they are dropped. Mappers round.
 const LISTED_SLACK_M: f32 = 0.3;
 
-/// The cross sections of a way for travel along its node order and against it. `ring_radius_m`: of the ring that a roundabout's way is
-/// part of, if it is known.
+/// The cross sections of a way for travel along its node order and against it. `ring_radius_m` is the radius of the
+/// ring that a roundabout's way is part of, if known.
 #[must_use]
 pub fn cross_sections(facts: &WayFacts, place: &Place, ring_radius_m: Option<f64>, rules: &Rules) -> [CrossSection; 2] {
     let class = rules.class(facts.class);
@@ -51,20 +52,20 @@ pub fn cross_sections(facts: &WayFacts, place: &Place, ring_radius_m: Option<f64
     }
 }
 
-/// Lays a way's cross section out; the lanes themselves are in `lanes`.
+/// Lays out a way's cross section. `lanes` determines the lanes.
 pub(super) struct Builder<'a> {
     pub(super) tags: &'a SectionTags,
     pub(super) class: ClassRule,
     pub(super) lane_m: f32,
-    /// The carriageway of a ring or ramp that has one lane, assumed wider than a lane of its class.
+    /// Assumed carriageway of a one-lane ring or ramp, metres; wider than a lane of its class.
     pub(super) single_m: Option<f32>,
     pub(super) left_hand_traffic: bool,
     pub(super) kerb_rule: KerbRule,
 }
 
 impl Builder<'_> {
-    /// Gives every lane its width. `known`: the number of lanes is tagged. `assumed_m`: instead of the lanes' sum, if
-    /// nothing is tagged.
+    /// Gives every lane its width. `known` says that the number of lanes is tagged. `assumed_m` replaces the lanes' sum
+    /// if nothing is tagged.
     pub(super) fn lay_out(
         &self,
         mut lanes: Vec<Segment>,
@@ -99,7 +100,7 @@ impl Builder<'_> {
         self.limited(self.finish(lanes, source, source))
     }
 
-    /// Shares a tagged width out among the lanes; `None` if the lanes would be too wide to be the ones tagged.
+    /// Shares a tagged width out among the lanes. `None` if the lanes would be too wide to be the tagged ones.
     fn share_out(&self, lanes: &[Segment], room: &Room, known: bool, two_way: bool) -> Option<Layout> {
         let left_m = room.width_m - given_m(lanes);
         let each_m = left_m / unknown(lanes);
@@ -130,8 +131,8 @@ impl Builder<'_> {
         Some(self.with_kerbs(out, room, divided))
     }
 
-    /// A road too narrow for its lanes: one lane, in turn for both directions of a two-way road. Where lanes are tagged
-    /// one of the two tags is wrong, and it may be the width: then no more than an assumed lane.
+    /// A road too narrow for its lanes gets one lane, by turns for both directions of a two-way road. If lanes are
+    /// tagged, one of the two tags is wrong. It may be the width, so the lane is no wider than an assumed one.
     fn one_for_all(&self, lanes: &[Segment], left_m: f32, room: &Room, known: bool, two_way: bool) -> Layout {
         let Some(open) = lanes.iter().find(|lane| matches!(lane.used, Use::Lane(_))) else { return Layout::default() };
         let width_m = left_m.min(if known { self.lane_m } else { SHARED_BELOW_M });
@@ -162,13 +163,13 @@ impl Builder<'_> {
         if within.width_m >= lanes_m || kerbs.iter().all(|kerb| kerb.shoulder_dm == 0) {
             return Some(within);
         }
-        // Many mappers leave shoulders out of the width (motorways with width=7.5, lanes=2, shoulder=yes): if not even
-        // the assumed lanes fit beside them, the lanes are as assumed, but no wider than the tag.
+        // Many mappers leave shoulders out of the width (motorways with width=7.5, lanes=2, shoulder=yes). If not even
+        // the assumed lanes fit beside the shoulders, the lanes are as assumed, but no wider than the tag.
         let without_m = (carriageway_m - taken_m(false)).min(lanes_m);
         Some(Room { width_m: without_m, source: source.min(WidthSource::FromLanes), shoulders: false })
     }
 
-    /// What lies beside the lanes on one side (0: left of the node order), from the edge inwards.
+    /// The parts beside the lanes on one side (0: left of the node order), from the edge inwards.
     fn kerb_segments(&self, side: usize, lanes: &[Segment], shoulders: bool) -> Vec<Segment> {
         let Kerb { parking, parking_dm, cycle_dm, shoulder_dm } = self.tags.kerbs[side];
         let rule = &self.kerb_rule;
@@ -208,14 +209,14 @@ impl Builder<'_> {
     }
 
     fn finish(&self, segments: Vec<Segment>, whole: WidthSource, divided: WidthSource) -> Layout {
-        // Somewhere between two places: the strips are where they would be around the middle, on weaker evidence.
+        // The way's line is between two placements. The strips lie as around the middle, with weaker evidence.
         let weakest =
             if self.tags.placement == Placement::Transition { WidthSource::Estimated } else { WidthSource::Surveyed };
         let placement = self.tags.placement;
         Layout { segments, whole: Some(whole.min(weakest)), divided: Some(divided.min(weakest)), placement }
     }
 
-    /// `maxwidth:physical` as an upper bound of all that is paved: every lane shrinks alike, or one is left.
+    /// Applies `maxwidth:physical` as an upper bound of the paved width. All lanes shrink alike, or one lane is left.
     fn limited(&self, mut layout: Layout) -> Layout {
         let Some(most_m) = self.tags.physical.map(Millimetres::metres) else { return layout };
         let paved = |s: &Segment| s.used != Use::Aside;
@@ -257,7 +258,7 @@ fn given_m(segments: &[Segment]) -> f32 {
     segments.iter().filter_map(|segment| segment.width_m).sum()
 }
 
-/// How many have no width yet.
+/// Number of segments without a width.
 fn unknown(segments: &[Segment]) -> f32 {
     segments.iter().filter(|segment| segment.width_m.is_none()).count() as f32
 }

@@ -1,4 +1,4 @@
-//! The account of a reading: what was read, kept, and left out for which reason.
+//! The account of a reading: counts of objects read, kept and left out, by reason.
 
 use std::collections::BTreeMap;
 
@@ -6,13 +6,12 @@ use crate::account::AccountRow;
 
 use super::{header::HeaderInfo, relations::RelationTally};
 
-/// The account of every object read: what was kept, and what was left out for which reason. Adds up:
-/// `ways_read = ways_kept + Σ ways_left_out`, and likewise for nodes.
+/// Counts of every object read. `ways_read = ways_kept + Σ ways_left_out`, and nodes add up likewise.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ReadAccount {
-    /// What the file says of itself.
+    /// Data from the file's header.
     pub header: HeaderInfo,
-    /// Size of the file.
+    /// Size of the file, bytes.
     pub bytes: u64,
     /// blake3 hash of the file, in hexadecimal digits.
     pub blake3: String,
@@ -22,9 +21,9 @@ pub struct ReadAccount {
     pub ways_kept: u64,
     /// Ways left out, by reason.
     pub ways_left_out: BTreeMap<&'static str, u64>,
-    /// Of the ways left out, those kept as the surface of a road or an island on it.
+    /// Ways left out as roads, but kept as the surface of a road or an island on it.
     pub road_areas: u64,
-    /// Remarks on tags of ways that are roads, each at most once a way.
+    /// Remarks on tags of kept ways, each at most once per way.
     pub tag_notes: BTreeMap<&'static str, u64>,
     /// Node objects in the file.
     pub nodes: NodeTally,
@@ -32,36 +31,36 @@ pub struct ReadAccount {
     pub relations: RelationTally,
     /// Blobs of data, by compression.
     pub blobs: BTreeMap<&'static str, u64>,
-    /// Blobs of a type that no one knows, passed over as the format demands.
+    /// Blobs of an unknown type, skipped as the format demands.
     pub blobs_passed_over: u64,
 }
 
-/// What became of the node objects: `read = placed + unnamed + deleted + invalid + superseded`.
+/// Counts of node objects: `read = placed + unnamed + deleted + invalid + superseded`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct NodeTally {
     /// All objects.
     pub read: u64,
-    /// Named by a kept way or area, and at a place on Earth.
+    /// Named by a kept way or area, at a valid place.
     pub placed: u64,
-    /// Named by neither.
+    /// Named by no kept way or area.
     pub unnamed: u64,
     /// `visible=false`
     pub deleted: u64,
-    /// Named, but at no place on Earth: as if missing.
+    /// Named, but at an invalid place; treated as missing.
     pub invalid: u64,
-    /// Named, and followed by another object of the same id: the last of the file counts.
+    /// Named, but followed by another object with the same id: the file's last one counts.
     pub superseded: u64,
     /// Distinct nodes that kept ways and areas name, in the file or not.
     pub named: u64,
-    /// Of these, not in the file.
+    /// Named nodes that are not in the file.
     pub missing: u64,
-    /// Of the missing or invalid ones, placed after all by a way that carries their place (`LocationsOnWays`).
+    /// Missing or invalid nodes placed by a way that carries their positions (`LocationsOnWays`).
     pub placed_by_ways: u64,
 }
 
 impl ReadAccount {
-    /// What a person should be told. The format has no end mark: a file cut exactly between two blobs is a legal
-    /// shorter one, and only these signs are left of it.
+    /// Warnings for the user. The format has no end mark, so a file cut exactly between two blobs is a legal shorter
+    /// one. Only these signs show the cut.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let nodes = &self.nodes;

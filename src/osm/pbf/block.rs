@@ -1,8 +1,8 @@
-//! A block of objects: its strings, its resolution, its groups. What is common to both passes.
+//! A block of objects: its strings, its resolution, its groups. Both passes use it.
 //!
-//! Promises: nothing is taken from a block before its size is checked: at most [`MAX_ENTITIES`] objects and as many
-//! strings. Of 68 real extracts the fullest block had 180,118 objects and 9,897 strings; without the limit 29 KB of
-//! deflated empty ways inflate to gigabytes of objects.
+//! Sizes are checked before anything is taken from a block: at most [`MAX_ENTITIES`] objects and as many strings. Of 68
+//! real extracts the fullest block had 180,118 objects and 9,897 strings. Without the limit, 29 KB of deflated empty
+//! ways would inflate to gigabytes of objects.
 
 use crate::osm::LonLat;
 
@@ -11,10 +11,10 @@ use super::{
     wire::{Cursor, Packed},
 };
 
-/// Objects, groups and strings a block may hold, each.
+/// Most objects, groups and strings of a block, each.
 pub(super) const MAX_ENTITIES: usize = 1_000_000;
 
-/// A decoded block: borrowed from the inflated bytes.
+/// A decoded block, borrowed from the inflated bytes.
 #[derive(Debug)]
 pub(super) struct Block<'a> {
     pub(super) strings: Strings<'a>,
@@ -45,7 +45,7 @@ impl<'a> Block<'a> {
     }
 }
 
-/// Refuses the count past the limit.
+/// Refuses a count above the limit.
 pub(super) fn limit(count: usize, what: &'static str) -> Result<(), Problem> {
     if count <= MAX_ENTITIES {
         return Ok(());
@@ -61,7 +61,8 @@ fn granularity(found: u64) -> Result<i64, Problem> {
     Err(Problem::Size { what: "granularity", found, allowed: "1 to 2147483647 nanodegrees" })
 }
 
-/// A block's string table. An entry that is not UTF-8 is an error only where a tag uses it: user names are not read.
+/// A block's string table. An entry that is not UTF-8 is an error only if a tag uses it, because user names are not
+/// read.
 #[derive(Debug)]
 pub(super) struct Strings<'a> {
     texts: Vec<Option<&'a str>>,
@@ -109,17 +110,17 @@ impl<'a> Strings<'a> {
     }
 }
 
-/// From a block's numbers to positions.
+/// Converts a block's numbers to positions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Grid {
-    /// Nanodegrees, > 0.
+    /// Nanodegrees per unit, > 0.
     granularity: i64,
     lat_offset: i64,
     lon_offset: i64,
 }
 
 impl Grid {
-    /// The position, or `None` where there is no such place on Earth (writers have 2³¹ − 1 for "undefined").
+    /// The position. `None` if it is invalid (writers use 2³¹ − 1 for "undefined").
     #[inline]
     pub(super) fn place(&self, lat: i64, lon: i64) -> Option<LonLat> {
         Some(LonLat {
@@ -131,20 +132,20 @@ impl Grid {
     #[inline]
     fn e7(&self, number: i64, offset: i64, bound: i32) -> Option<i32> {
         let nanodegrees = number.checked_mul(self.granularity)?.checked_add(offset)?;
-        // To the nearest 1e-7 degree; exact for the usual granularity of 100.
+        // Rounded to the nearest 1e-7 degree; exact for the usual granularity of 100.
         let e7 = nanodegrees.checked_add(50)?.div_euclid(100);
         i32::try_from(e7).ok().filter(|e7| (-bound..=bound).contains(e7))
     }
 }
 
-/// Adds a difference to what it is a difference from.
+/// Adds a delta to the previous value.
 #[inline]
 pub(super) fn add(last: &mut i64, difference: i64, object: ObjectId, what: &'static str) -> Result<i64, Problem> {
     *last = last.checked_add(difference).ok_or(Problem::Overflow { object, what })?;
     Ok(*last)
 }
 
-/// `visible` of an `Info`; absent means yes.
+/// `visible` of an `Info`; the default is true.
 pub(super) fn visible(info: &[u8]) -> Result<bool, Problem> {
     let mut visible = true;
     let mut cursor = Cursor::new(info);
@@ -156,7 +157,7 @@ pub(super) fn visible(info: &[u8]) -> Result<bool, Problem> {
     Ok(visible)
 }
 
-/// Refuses a second dense group in one group: whether its differences go on from the first is nowhere said.
+/// Refuses a second dense group in one group: the format does not say whether its deltas continue from the first.
 pub(super) fn limit_to_one(dense_groups: usize) -> Result<(), Problem> {
     if dense_groups <= 1 {
         return Ok(());

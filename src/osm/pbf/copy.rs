@@ -1,7 +1,7 @@
-//! An extract read through blob by blob, for programs that write it again with changes.
+//! Reads an extract blob by blob, for programs that write it again with changes.
 //!
-//! Promises: the whole file is checked and hashed before the first blob comes; a blob of nodes alone is known without decoding
-//! it, so that it can be copied as it is; one blob in memory at a time.
+//! The whole file is checked and hashed before the first blob. A blob with nodes only is recognised without decoding
+//! it, so it can be copied unchanged. One blob is in memory at a time.
 
 use std::path::Path;
 
@@ -21,33 +21,33 @@ pub struct Blobs {
     inflater: Inflater,
 }
 
-/// One blob: a `Blob` message as it stands in the file.
+/// One `Blob` message as it stands in the file.
 pub struct Blob {
     /// The message.
     pub bytes: Vec<u8>,
-    /// How far in the file it ends.
+    /// Offset in the file of its end.
     pub end: u64,
     frame: Frame,
 }
 
-/// What a blob holds.
+/// Contents of a blob.
 #[derive(Debug)]
 pub enum Contents {
-    /// What the file says of itself.
+    /// The file's header.
     Header(Box<HeaderBlock>),
-    /// Nodes and nothing else.
+    /// Nodes only.
     Nodes,
     /// Ways or relations, perhaps nodes as well.
     Block(Box<PrimitiveBlock>),
-    /// Nothing of the map: to be copied.
+    /// No map data: to be copied.
     Other,
 }
 
 impl Blobs {
-    /// Checks and hashes the file; `progress` is told bytes done and bytes in all.
+    /// Opens, checks and hashes the file. `progress` gets the bytes done and the bytes in all.
     ///
     /// # Errors
-    /// It cannot be read, or is no such file.
+    /// [`ReadError`] if the file cannot be read or is no such file.
     pub fn open(path: &Path, progress: &dyn Fn(u64, u64)) -> Result<Self, ReadError> {
         let mut source = Source::open(path)?;
         let total = source.len;
@@ -60,22 +60,22 @@ impl Blobs {
         })
     }
 
-    /// Of the whole file, in hexadecimal.
+    /// blake3 hash of the whole file, in hexadecimal.
     #[must_use]
     pub fn blake3(&self) -> &str {
         &self.blake3
     }
 
-    /// Bytes of the whole file.
+    /// Size of the whole file, bytes.
     #[must_use]
     pub fn file_bytes(&self) -> u64 {
         self.source.len
     }
 
-    /// The next blob, in order of the file.
+    /// The next blob in the order of the file.
     ///
     /// # Errors
-    /// The file changed, or cannot be read.
+    /// [`ReadError`] if the file changed or cannot be read.
     pub fn next_blob(&mut self) -> Result<Option<Blob>, ReadError> {
         let Some(frame) = self.frames.next() else {
             self.source.check_unchanged()?;
@@ -86,10 +86,10 @@ impl Blobs {
         Ok(Some(Blob { bytes, end: frame.body + frame.size as u64, frame }))
     }
 
-    /// What it holds.
+    /// Decodes a blob.
     ///
     /// # Errors
-    /// It is damaged.
+    /// [`ReadError`] if the blob is damaged.
     pub fn contents(&mut self, blob: &Blob) -> Result<Contents, ReadError> {
         let mut read = || {
             if blob.frame.kind == Kind::Other {

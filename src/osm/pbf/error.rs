@@ -1,4 +1,4 @@
-//! What can be wrong with a file: each error names the file, the byte where the blob starts, and the way out.
+//! Errors of a file. Each names the file, the byte at which the blob starts, and a remedy.
 
 use std::{fmt, io, path::PathBuf};
 
@@ -6,14 +6,14 @@ use thiserror::Error;
 
 use super::wire::WireError;
 
-/// Why a file was not read. A file that gives this error gives nothing else: never a part of itself.
+/// Why a file was not read. A file with this error gives no partial result.
 #[derive(Debug, Error)]
 pub struct ReadError {
     /// The file.
     pub path: PathBuf,
-    /// Where the blob at fault starts (its four-byte length), counted from 0; `None` for the file as a whole.
+    /// Offset at which the faulty blob starts (its four-byte length), from 0. `None` for the file as a whole.
     pub offset: Option<u64>,
-    /// What is wrong.
+    /// The fault.
     #[source]
     pub problem: Problem,
 }
@@ -28,10 +28,10 @@ impl fmt::Display for ReadError {
     }
 }
 
-/// What is wrong with a file.
+/// The fault of a file.
 #[derive(Debug, Error)]
 pub enum Problem {
-    /// The operating system refused.
+    /// An error of the operating system.
     #[error("cannot read: {0}")]
     Io(io::Error),
     /// A directory, a pipe, a device.
@@ -40,110 +40,110 @@ pub enum Problem {
     /// No bytes at all.
     #[error("empty file")]
     Empty,
-    /// Something else under a `.pbf` name; the text says what, the command how to make a PBF of it.
+    /// Another format under a `.pbf` name. The text names it, and the command converts it.
     #[error("not a PBF file, but {what}")]
     NotPbf {
-        /// What it looks like.
+        /// Apparent format.
         what: &'static str,
-        /// The way out.
+        /// Remedy.
         remedy: &'static str,
     },
     /// The file ends too early.
     #[error("truncated: the file ends inside {0}")]
     Truncated(&'static str),
-    /// Size or time of change differ from what they were when reading began.
+    /// The file's size or modification time changed during reading.
     #[error("the file changed while it was read")]
     Changed,
-    /// A length that cannot be: the number is what was found.
+    /// An impossible length.
     #[error("{what} is {found}, allowed is {allowed}")]
     Size {
-        /// Which length.
+        /// Name of the length.
         what: &'static str,
-        /// As found.
+        /// Value found.
         found: i64,
-        /// For people.
+        /// Allowed values, as text.
         allowed: &'static str,
     },
     /// Data before the first `OSMHeader`.
     #[error("no OSMHeader before the data")]
     NoHeader,
-    /// The file needs something of its reader that this one lacks.
+    /// The file requires a feature that this reader lacks.
     #[error("the file requires the feature {0:?}, which is not supported")]
     Feature(String),
     /// A full-history file.
     #[error("a full-history file (HistoricalInformation), but a snapshot is needed")]
     History,
-    /// A compression that is not built in.
+    /// A compression that is not supported.
     #[error("unsupported blob compression {0}")]
     Compression(&'static str),
     /// The compressed data is damaged.
     #[error("cannot inflate the {compression} blob: {detail}")]
     Inflate {
-        /// Which compression.
+        /// Name of the compression.
         compression: &'static str,
-        /// What the decoder says.
+        /// The decoder's message.
         detail: String,
     },
-    /// Inflated data has another size than the blob says.
+    /// Inflated data differs in size from the blob's `raw_size`.
     #[error("raw_size says {declared} bytes, but the data inflates to {found}")]
     RawSize {
         /// `raw_size`
         declared: usize,
-        /// `more` or a number.
+        /// `more`, or a number.
         found: String,
     },
     /// Not well-formed protobuf.
     #[error("damaged message: {0}")]
     Wire(#[from] WireError),
-    /// The generated parser refused.
+    /// The generated parser refused a message.
     #[error("damaged {what}: {detail}")]
     Message {
-        /// Which message.
+        /// Name of the message.
         what: &'static str,
-        /// What the parser says.
+        /// The parser's message.
         detail: String,
     },
-    /// A field that must be there is not.
+    /// A required field is missing.
     #[error("{0} is missing")]
     Missing(&'static str),
-    /// An index that points nowhere.
+    /// An index out of range.
     #[error("{object}: string {index} of a table of {strings}")]
     StringIndex {
-        /// Which object.
+        /// The object.
         object: ObjectId,
-        /// As found.
+        /// Index found.
         index: u64,
-        /// Entries of the block's string table.
+        /// Number of entries in the block's string table.
         strings: usize,
     },
     /// A tag that is not text.
     #[error("{object}: a tag is not valid UTF-8")]
     Utf8 {
-        /// Which object.
+        /// The object.
         object: ObjectId,
     },
     /// Arrays that belong together differ in length.
     #[error("{object}: {what} differ in number")]
     Lengths {
-        /// Which object.
+        /// The object.
         object: ObjectId,
-        /// Which arrays.
+        /// Names of the arrays.
         what: &'static str,
     },
-    /// A sum of differences leaves 64 bits.
+    /// A sum of deltas exceeds 64 bits.
     #[error("{object}: {what} beyond 64 bits")]
     Overflow {
-        /// Which object.
+        /// The object.
         object: ObjectId,
-        /// What was added up.
+        /// The summed quantity.
         what: &'static str,
     },
-    /// More than this program's indices can hold.
+    /// More objects than this program's indices can hold.
     #[error("more than 4,294,967,295 {0}")]
     TooLarge(&'static str),
 }
 
-/// The object that an error is about.
+/// The object of an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ObjectId {
     /// Way with this id.
@@ -152,7 +152,7 @@ pub enum ObjectId {
     Node(i64),
     /// Relation with this id.
     Relation(i64),
-    /// The nodes of a dense group, no single one.
+    /// The nodes of a dense group; no single one.
     DenseNodes,
 }
 
@@ -168,7 +168,7 @@ impl fmt::Display for ObjectId {
 }
 
 impl Problem {
-    /// What the user can do about it.
+    /// What the user can do.
     #[must_use]
     pub fn way_out(&self) -> &'static str {
         match self {

@@ -1,7 +1,7 @@
-//! Framing: where each blob of the file lies, checked from the first byte to the last before anything is decoded.
+//! Framing: the place of each blob in the file, checked from the first byte to the last before anything is decoded.
 //!
-//! Promises: no length is believed before it is compared with its limit and with the file's size, so a truncated file
-//! or one with stray bytes is refused at once. The walk reads the whole file in order and hashes it on the way.
+//! Every length is compared with its limit and with the file's size before it is used, so a truncated file or one with
+//! stray bytes is refused at once. The walk reads the whole file in order and hashes it.
 
 use std::{
     fs::File,
@@ -16,10 +16,10 @@ use super::{
     wire::Cursor,
 };
 
-/// The format's own limit for a `BlobHeader`.
+/// The format's limit for a `BlobHeader`, bytes.
 const MAX_HEADER: usize = 64 << 10;
 
-/// The file, open, and what it was when it was opened.
+/// The open file, and its size and time when it was opened.
 #[derive(Debug)]
 pub(super) struct Source {
     file: File,
@@ -28,23 +28,23 @@ pub(super) struct Source {
     modified: Option<SystemTime>,
 }
 
-/// What a blob holds, by its header.
+/// Type of a blob, from its header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Header,
     Data,
-    /// To be passed over, says the format.
+    /// To be skipped, as the format demands.
     Other,
 }
 
-/// Where a blob lies.
+/// Place of a blob in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Frame {
-    /// Of the four-byte length: what errors name.
+    /// Offset of the four-byte length, which errors name.
     pub(super) offset: u64,
-    /// Of the `Blob` message.
+    /// Offset of the `Blob` message.
     pub(super) body: u64,
-    /// Of the `Blob` message.
+    /// Size of the `Blob` message, bytes.
     pub(super) size: usize,
     pub(super) kind: Kind,
 }
@@ -52,7 +52,7 @@ pub(super) struct Frame {
 impl Source {
     pub(super) fn open(path: &Path) -> Result<Self, ReadError> {
         let at = |problem| ReadError { path: path.to_owned(), offset: None, problem };
-        // Asked before opening: to open a pipe that nobody writes to would wait for ever.
+        // Tested before opening: opening a pipe without a writer would block for ever.
         let found = std::fs::metadata(path).map_err(|error| at(Problem::Io(error)))?;
         if !found.is_file() {
             return Err(at(Problem::NotAFile));
@@ -69,7 +69,7 @@ impl Source {
         ReadError { path: self.path.clone(), offset, problem }
     }
 
-    /// Fills `out` from `offset` on.
+    /// Fills `out` with bytes from `offset`.
     pub(super) fn read_at(&mut self, offset: u64, out: &mut [u8]) -> Result<(), ReadError> {
         let done = self.file.seek(SeekFrom::Start(offset)).and_then(|_| self.file.read_exact(out));
         done.map_err(|error| {
@@ -78,7 +78,7 @@ impl Source {
         })
     }
 
-    /// Whether the file is still what was opened.
+    /// Whether the file is unchanged since it was opened.
     pub(super) fn check_unchanged(&self) -> Result<(), ReadError> {
         let metadata = self.file.metadata().map_err(|error| self.error(None, Problem::Io(error)))?;
         if metadata.len() == self.len && metadata.modified().ok() == self.modified {
@@ -87,7 +87,7 @@ impl Source {
         Err(self.error(None, Problem::Changed))
     }
 
-    /// Every blob of the file, in order, and the file's blake3 hash.
+    /// All blobs of the file in order, and the file's blake3 hash.
     pub(super) fn frames(&mut self, mut progress: impl FnMut(u64)) -> Result<(Vec<Frame>, blake3::Hash), ReadError> {
         let mut walk = Walk { source: self, at: 0, hasher: blake3::Hasher::new(), buffer: vec![0; 1 << 20] };
         let mut frames = Vec::new();
@@ -135,7 +135,7 @@ impl Walk<'_> {
         Ok(Frame { offset, body, size, kind })
     }
 
-    /// The next `n` bytes, at most the buffer's size; hashed.
+    /// The next `n` bytes, at most the buffer's size. They are hashed.
     fn read(&mut self, n: usize, what: &'static str) -> Result<&[u8], Problem> {
         if self.source.len - self.at < n as u64 {
             return Err(if self.at < 4 { self.look_alike() } else { Problem::Truncated(what) });
@@ -150,7 +150,7 @@ impl Walk<'_> {
         Ok(bytes)
     }
 
-    /// What a file is that does not start as a PBF does.
+    /// The apparent format of a file that does not start like a PBF.
     fn look_alike(&mut self) -> Problem {
         let mut start = Vec::new();
         let file = &mut self.source.file;
@@ -182,7 +182,8 @@ const UNKNOWN_FORMAT: Problem = Problem::NotPbf {
     remedy: "give a .osm.pbf file; if this should be one it is damaged: fetch it again",
 };
 
-/// The kind and the size of the blob that follows. Read in place: the crate's message cuts `datasize` to 32 bits.
+/// Type and size of the next blob. The message is read in place, because the crate's message cuts `datasize` to 32
+/// bits.
 fn blob_header(message: &[u8]) -> Result<(Kind, usize), Problem> {
     let mut kind = None;
     let mut size = None;

@@ -1,7 +1,7 @@
-//! From the blocks' batches to the extract: one list of ways in order of id, one table of their nodes.
+//! From the blocks' batches to the extract: one list of ways sorted by id, and one table of their nodes.
 //!
-//! Promises: the result does not depend on the order of blocks or ways in the file, but for one rule: of objects with
-//! the same id, the last in the file counts. In a sorted file nothing is remembered of what was left out.
+//! The result does not depend on the order of blocks or ways in the file, with one exception: of objects with the same
+//! id, the file's last one counts. For a sorted file nothing is stored about objects left out.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::osm::{LonLat, NodeTable, RoadArea, StringPool, Way, facts::PointFacts
 
 use super::{account::NodeTally, error::Problem, nodes::NodeBatch, relations::RelationBatch, ways::WayBatch};
 
-/// Left out: another way with the same id follows in the file.
+/// Left out because another way with the same id follows in the file.
 const DUPLICATE_ID: &str = "duplicate_id";
 
 /// The ways of the blocks read so far.
@@ -27,17 +27,18 @@ pub(super) struct WayGatherer {
     pub(super) notes: BTreeMap<&'static str, u64>,
     pub(super) relations: RelationBatch,
     pub(super) areas: Vec<RoadArea>,
-    /// Parallel to them: whether `overrides` has them.
+    /// Parallel to the areas: whether `overrides` has an entry for them.
     overriding: Vec<bool>,
     /// Largest id so far.
     largest: Option<i64>,
-    /// Some way did not have a larger id than all before it.
+    /// Whether some way had an id not larger than all before it.
     disordered: bool,
-    /// Ways left out that may supersede a kept one: id, and the references of kept ways before it.
+    /// Ways left out that may supersede a kept one: the id, and the number of kept ways' references before it.
     overrides: Vec<(i64, u32)>,
 }
 
-/// Of one id, ways left out that may supersede a kept one: references of kept ways before the last, and how many there are.
+/// For one id, ways left out that may supersede a kept one: kept ways' references before the last of them, and their
+/// number.
 #[derive(Debug, Clone, Copy, Default)]
 struct Overrides {
     last: u32,
@@ -78,7 +79,7 @@ impl WayGatherer {
         left_out.for_each(|(_, id)| self.note_left_out(*id, in_order));
         self.refs.extend_from_slice(&batch.refs);
         self.inline_places.extend(batch.inline_places);
-        // Within a disordered batch any id may be the largest; the last one at least is seen.
+        // In a disordered batch any id may be the largest; only the last one is known.
         self.largest = self.largest.max(Some(if batch.ascending { last } else { i64::MAX }));
         Ok(())
     }
@@ -89,14 +90,14 @@ impl WayGatherer {
         }
     }
 
-    /// Sorts the ways by id and drops those that a later one of the same id supersedes.
+    /// Sorts the ways by id and drops those that a later way with the same id supersedes.
     pub(super) fn finish(&mut self) {
         self.finish_restrictions();
         if !self.disordered {
             return;
         }
         let before = self.ways.len();
-        // References grow in the order of the file, so they tell earlier from later.
+        // References grow in the order of the file, so they tell earlier ways from later ones.
         self.ways.par_sort_unstable_by_key(|way| (way.id, way.refs.start));
         self.ways.dedup_by(|later, earlier| {
             let same = later.id == earlier.id;
@@ -119,7 +120,7 @@ impl WayGatherer {
         self.renumber();
     }
 
-    /// Sorts the areas by id. Those that another way of the same id may supersede go.
+    /// Sorts the areas by id. Drops those that another way with the same id may supersede.
     fn finish_areas(&mut self, overrides: &FxHashMap<i64, Overrides>) {
         let mut overriding = self.overriding.iter();
         self.areas.retain(|area| {
@@ -130,7 +131,7 @@ impl WayGatherer {
         self.areas.sort_by_key(|area| area.id);
     }
 
-    /// Sorts the restrictions by id; of several of the same id the last of the file stays.
+    /// Sorts the restrictions by id. Of several with the same id the file's last one stays.
     fn finish_restrictions(&mut self) {
         let restrictions = &mut self.relations.restrictions;
         let before = restrictions.len();
@@ -145,7 +146,7 @@ impl WayGatherer {
         self.relations.tally.superseded += (before - restrictions.len()) as u64;
     }
 
-    /// Lays references and strings out in the order of the ways, as a sorted file would have had them.
+    /// Lays out references and strings in the order of the ways, as a sorted file would give them.
     fn renumber(&mut self) {
         let (old_refs, old_strings) = (std::mem::take(&mut self.refs), std::mem::take(&mut self.strings));
         for way in &mut self.ways {
@@ -170,7 +171,7 @@ impl WayGatherer {
     }
 }
 
-/// The places of named nodes found so far, parallel to their sorted ids.
+/// The positions of named nodes found so far, parallel to their sorted ids.
 #[derive(Debug)]
 pub(super) struct NodeGatherer {
     places: Vec<Option<LonLat>>,
@@ -204,8 +205,8 @@ impl NodeGatherer {
         }
     }
 
-    /// The table, the facts of its tagged nodes, and the tally. A place that a way carries counts where the file has
-    /// no node; of several the last one of the file.
+    /// The table, the facts of its tagged nodes, and the counts. A position from a way counts if the file has no such
+    /// node; of several the file's last one counts.
     pub(super) fn finish(
         mut self,
         ids: Vec<i64>,

@@ -1,4 +1,4 @@
-//! The file's header: what it demands of a reader, and what it says of itself.
+//! The file's header: the features it requires of a reader, and its metadata.
 
 use osmpbfreader::osmformat::HeaderBlock;
 use protobuf::Message;
@@ -8,25 +8,25 @@ use super::{
     wire::{self, Shape},
 };
 
-/// What this reader can do; anything else that a file requires is refused by name.
+/// Features that this reader supports. Any other required feature is refused by name.
 const SUPPORTED: [&str; 3] = ["OsmSchema-V0.6", "DenseNodes", "LocationsOnWays"];
 
-/// What the first header of a file says. Texts as given, empty if not.
+/// Data of the file's first header. Missing texts are empty.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct HeaderInfo {
     /// West, south, east, north in nanodegrees, if given.
     pub bbox_nanodegrees: Option<[i64; 4]>,
     /// Program that wrote the file.
     pub writing_program: String,
-    /// Where the data is from.
+    /// Source of the data.
     pub source: String,
     /// Seconds since 1970 (UTC) up to which the data is complete, if given.
     pub replication_timestamp_s: Option<i64>,
     /// Sequence number of the replication, if given.
     pub replication_sequence: Option<i64>,
-    /// The file says that its objects are sorted by type and id. Never believed unchecked.
+    /// Whether the file claims to be sorted by type and id. The claim is always checked.
     pub sorted: bool,
-    /// The file says that ways carry the places of their nodes.
+    /// Whether the file claims that ways carry the positions of their nodes.
     pub locations_on_ways: bool,
 }
 
@@ -38,7 +38,7 @@ impl HeaderInfo {
     }
 }
 
-/// Reads a header block and refuses what cannot be read rightly.
+/// Reads a header block. Refuses files that cannot be read correctly.
 pub(super) fn parse(block: &[u8]) -> Result<HeaderInfo, Problem> {
     use Shape::{Bytes, Number};
     wire::check(block, &[(1, Bytes), (4, Bytes), (5, Bytes), (16, Bytes), (17, Bytes), (32, Number), (33, Number)])?;

@@ -1,8 +1,8 @@
 //! From a `Blob` message to the bytes of its block: raw, zlib, lz4, zstd.
 //!
-//! Promises: never more than [`MAX_INFLATED`] bytes whatever the blob claims, `raw_size` and checksums hold, and what
-//! is not supported (lzma, bzip2) is refused by name. The crate's `Blob` has no lz4 and zstd fields and copies the
-//! data, so the message's few fields are read in place.
+//! The output never exceeds [`MAX_INFLATED`] bytes, whatever the blob claims. `raw_size` and checksums are verified.
+//! Unsupported compressions (lzma, bzip2) are refused by name. The crate's `Blob` lacks the lz4 and zstd fields and
+//! copies the data, so the message's few fields are read in place.
 
 use std::io::Read;
 
@@ -10,10 +10,10 @@ use flate2::{Decompress, FlushDecompress, Status};
 
 use super::{error::Problem, wire::Cursor};
 
-/// The format's own limit for a blob and for what it inflates to.
+/// The format's limit for a blob and for its inflated size, bytes.
 pub(super) const MAX_INFLATED: usize = 32 << 20;
 
-/// How a blob was compressed.
+/// Compression of a blob.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Compression {
     Raw,
@@ -33,7 +33,7 @@ impl Compression {
     }
 }
 
-/// Buffers of one thread, used again for each blob.
+/// Buffers of one thread, reused for each blob.
 pub(super) struct Inflater {
     zlib: Decompress,
     bytes: Vec<u8>,
@@ -46,7 +46,7 @@ impl Default for Inflater {
 }
 
 impl Inflater {
-    /// The block's bytes; valid until the next call.
+    /// The block's bytes, valid until the next call.
     pub(super) fn inflate<'b>(&'b mut self, blob: &'b [u8]) -> Result<(&'b [u8], Compression), Problem> {
         let mut raw_size = None;
         let mut data = None;
@@ -107,7 +107,7 @@ fn zlib(decoder: &mut Decompress, data: &[u8], out: &mut [u8]) -> Result<(), Pro
     let declared = out.len();
     let mut end = decoder.decompress(data, out, FlushDecompress::Finish);
     if matches!(end, Ok(Status::Ok | Status::BufError)) && decoder.total_out() as usize == declared {
-        // The buffer is full; what may be left is the checksum, or more data than declared.
+        // The buffer is full. The rest may be the checksum, or more data than declared.
         let rest = data.get(decoder.total_in() as usize..).unwrap_or_default();
         let mut spare = [0];
         end = decoder.decompress(rest, &mut spare, FlushDecompress::Finish);
@@ -119,7 +119,7 @@ fn zlib(decoder: &mut Decompress, data: &[u8], out: &mut [u8]) -> Result<(), Pro
         Ok(Status::StreamEnd) if decoder.total_out() as usize == declared => Ok(()),
         Ok(Status::StreamEnd) => Err(Problem::RawSize { declared, found: decoder.total_out().to_string() }),
         Ok(_) => Err(damaged("the data ends too early".to_owned())),
-        // flate2 has no words for most errors of zlib-rs: "repeated call with bad state".
+        // flate2 reports most errors of zlib-rs only as "repeated call with bad state".
         Err(error) => Err(damaged(
             error.message().filter(|text| !text.contains("bad state")).unwrap_or("the data is damaged").to_owned(),
         )),
@@ -137,7 +137,7 @@ fn zstd(data: &[u8], out: &mut Vec<u8>) -> Result<(), Problem> {
     let declared = out.len();
     let decoder = ruzstd::decoding::StreamingDecoder::new(data).map_err(|error| damaged(error.to_string()))?;
     out.clear();
-    // One byte more than declared is enough to see that there is more.
+    // One byte more than declared shows that there is more.
     decoder.take(declared as u64 + 1).read_to_end(out).map_err(|error| damaged(error.to_string()))?;
     exactly(declared, out.len())
 }

@@ -1,12 +1,12 @@
 //! The file: framing, inflating, index checks, two passes.
 //!
-//! Promises: a file is read whole or not at all; every blob is inflated and every message checked, whatever is kept of
-//! it; the result is the same for any number of threads. The first pass takes ways and relations, the second the nodes
-//! that kept ways name. Most files say that they are sorted (nodes, ways, relations); then the first pass passes over
-//! the blobs in front that look like nodes, and the second one makes sure that nothing else was in them.
+//! A file is read whole or not at all. Every blob is inflated and every message checked, even those that are not kept.
+//! The result is the same for any number of threads. The first pass takes ways and relations, the second pass the nodes
+//! that kept ways name. Most files claim to be sorted (nodes, ways, relations). The first pass then skips the leading
+//! blobs that look like nodes, and the second pass verifies that they hold nothing else.
 //!
-//! Bulk data (ways, dense nodes) is read in place by `wire`; the header, plain nodes and relations through the
-//! messages of `osmpbfreader`, after `wire` has checked what those let pass.
+//! `wire` reads bulk data (ways, dense nodes) in place. Headers, plain nodes and relations are read through the
+//! messages of `osmpbfreader`, after `wire` has checked what those messages do not check.
 
 mod account;
 mod block;
@@ -41,18 +41,18 @@ use frame::{Frame, Kind, Source};
 use gather::{NodeGatherer, WayGatherer};
 use inflate::{Compression, Inflater};
 
-/// How far a reading is.
+/// Progress of a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
-    /// What is being done.
+    /// Current stage.
     pub stage: Stage,
-    /// Bytes of the file dealt with.
+    /// Bytes of the file processed.
     pub done: u64,
-    /// Bytes of the file to deal with in this stage.
+    /// Bytes of the file in this stage.
     pub total: u64,
 }
 
-/// The parts of a reading, in order.
+/// The stages of a reading, in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
     /// Framing and hash.
@@ -64,7 +64,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// What a progress line calls it.
+    /// Name of the stage in a progress line.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -78,16 +78,16 @@ impl Stage {
 /// Reads an extract.
 ///
 /// # Errors
-/// If anything of the file is damaged, truncated or not supported.
+/// [`ReadError`] if anything in the file is damaged, truncated or not supported.
 pub fn read_extract(path: &Path, progress: &(dyn Fn(Progress) + Sync)) -> Result<Extract, ReadError> {
     read_extract_with(path, progress, facts::way_facts, facts::point_facts)
 }
 
-/// As [`read_extract`], with other facts: `way` says what a way's tags mean, or why it is left out; `point` what those of a node on a kept
-/// way mean, if anything. Both are called from many threads.
+/// As [`read_extract`], with other facts. `way` returns a way's facts, or why the way is left out. `point` returns the
+/// facts of a node on a kept way, if any. Both are called from many threads.
 ///
 /// # Errors
-/// If anything of the file is damaged, truncated or not supported.
+/// [`ReadError`] if anything in the file is damaged, truncated or not supported.
 pub fn read_extract_with<W, P>(
     path: &Path,
     progress: &(dyn Fn(Progress) + Sync),
@@ -107,7 +107,7 @@ where
     let mut reading = Reading { source, data, progress, way, point };
     let mut extract = match reading.run(node_blobs)? {
         Some(extract) => extract,
-        // The header's word was wrong: take nothing on trust.
+        // The header's claim was wrong: read every blob in the first pass.
         None => reading.run(0)?.unwrap_or_default(),
     };
     reading.source.check_unchanged()?;
@@ -119,14 +119,14 @@ where
     Ok(extract)
 }
 
-/// Checks every header of the file (concatenated files have several); what the first one says.
+/// Checks every header of the file (concatenated files have several) and returns the data of the first one.
 fn read_headers(source: &mut Source, frames: &[Frame]) -> Result<HeaderInfo, ReadError> {
     let mut first = None;
     for frame in frames {
         match frame.kind {
             Kind::Header => {
                 let parsed = with_block(source, frame, header::parse)?;
-                // Two files one after the other are not sorted, whatever each of them says.
+                // Two concatenated files are not sorted, whatever their headers claim.
                 first = Some(first.map_or(parsed, |info| HeaderInfo { sorted: false, ..info }));
             }
             Kind::Data if first.is_none() => return Err(source.error(Some(frame.offset), Problem::NoHeader)),
@@ -136,7 +136,7 @@ fn read_headers(source: &mut Source, frames: &[Frame]) -> Result<HeaderInfo, Rea
     first.ok_or_else(|| source.error(None, Problem::NoHeader))
 }
 
-/// How many blobs in front hold nodes, in a file that is sorted as it says: found by bisection.
+/// Number of leading node blobs in a file that is sorted as claimed, found by bisection.
 fn leading_node_blobs(source: &mut Source, data: &[Frame]) -> Result<usize, ReadError> {
     let (mut low, mut high) = (0, data.len());
     while low < high {
@@ -151,7 +151,7 @@ fn leading_node_blobs(source: &mut Source, data: &[Frame]) -> Result<usize, Read
     Ok(low)
 }
 
-/// Reads one blob by itself.
+/// Reads a single blob.
 fn with_block<T>(
     source: &mut Source,
     frame: &Frame,
@@ -164,7 +164,7 @@ fn with_block<T>(
     done.map_err(|problem| source.error(Some(frame.offset), problem))
 }
 
-/// A file on its way to an extract.
+/// The state of reading a file.
 struct Reading<'p, W, P> {
     source: Source,
     data: Vec<Frame>,
@@ -178,7 +178,7 @@ where
     W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str> + Sync,
     P: Fn(&Tags<'_>) -> Option<PointFacts> + Sync,
 {
-    /// Both passes, the first `node_blobs` blobs being left to the second one; `None` if they hold more than nodes.
+    /// Runs both passes. The first pass skips the first `node_blobs` blobs. `None` if those hold more than nodes.
     fn run(&mut self, node_blobs: usize) -> Result<Option<Extract>, ReadError> {
         let mut account = ReadAccount::default();
         let (presumed, rest) = self.data.split_at_checked(node_blobs).unwrap_or_default();

@@ -1,6 +1,6 @@
-//! The second pass over a block: where the nodes are that kept ways name, and what their tags say.
+//! The second pass over a block: positions and facts of the nodes that kept ways name.
 //!
-//! Promises: every node of the block is checked, and counted under one heading, whether or not it is named.
+//! Every node of the block is checked and counted under one heading, whether or not it is named.
 
 use osmpbfreader::osmformat;
 use protobuf::Message;
@@ -19,25 +19,25 @@ use super::{
 /// A node that a kept way names.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hit {
-    /// In the table of named nodes.
+    /// Index in the table of named nodes.
     pub(super) index: u32,
-    /// `None`: not on Earth.
+    /// `None` if the place is invalid.
     pub(super) place: Option<LonLat>,
 }
 
-/// What the second pass takes from one block.
+/// Results of the second pass over one block.
 #[derive(Debug, Default)]
 pub(super) struct NodeBatch {
     pub(super) hits: Vec<Hit>,
-    /// What tags of named nodes say: index in `hits`, ascending, and the facts.
+    /// Facts of named nodes with tags: index in `hits` (ascending) and the facts.
     pub(super) points: Vec<(u32, PointFacts)>,
     pub(super) read: u64,
     pub(super) deleted: u64,
-    /// The block holds ways or relations too.
+    /// Whether the block also holds ways or relations.
     pub(super) has_others: bool,
 }
 
-/// Reads the nodes of a block; `ids` are those named, sorted and distinct.
+/// Reads the nodes of a block. `ids` are the named nodes, sorted and distinct.
 pub(super) fn read<P>(block: &Block<'_>, ids: &[i64], facts: &P) -> Result<NodeBatch, Problem>
 where
     P: Fn(&Tags<'_>) -> Option<PointFacts>,
@@ -63,7 +63,7 @@ where
     Ok(reader.batch)
 }
 
-/// Whether a block holds nodes and nothing else, by the kinds of its objects.
+/// Whether a block holds only nodes, judged by the kinds of its objects.
 pub(super) fn only_nodes(bytes: &[u8]) -> Result<bool, Problem> {
     let mut found = false;
     for group in Block::parse(bytes)?.groups {
@@ -79,7 +79,7 @@ pub(super) fn only_nodes(bytes: &[u8]) -> Result<bool, Problem> {
     Ok(found)
 }
 
-/// The sorted ids of named nodes, searched from where the last search ended: nodes of a file mostly ascend.
+/// The sorted ids of named nodes. A search starts where the last one ended, because nodes in a file mostly ascend.
 struct Named<'n> {
     ids: &'n [i64],
     at: usize,
@@ -128,7 +128,7 @@ impl<P> NodeReader<'_, '_, P>
 where
     P: Fn(&Tags<'_>) -> Option<PointFacts>,
 {
-    /// Counts a node; its index if it is named and part of the map.
+    /// Counts a node. Returns its index if it is named and part of the map.
     #[inline]
     fn count(&mut self, id: i64, visible: bool) -> Option<u32> {
         self.batch.read += 1;
@@ -139,7 +139,7 @@ where
         None
     }
 
-    /// Takes a named node, its tags being in `self.tags`.
+    /// Takes a named node, whose tags are in `self.tags`.
     fn take(&mut self, index: u32, place: Option<LonLat>) {
         if !self.tags.is_empty()
             && let Some(facts) = (self.facts)(&self.tags)
@@ -201,7 +201,7 @@ where
         Ok(())
     }
 
-    /// The next node's tags: pairs up to a 0.
+    /// Reads the next node's tags: pairs up to a 0.
     #[inline]
     fn dense_tags(&mut self, keys_values: &mut Cursor<'_>, object: ObjectId) -> Result<(), Problem> {
         self.tags.clear();

@@ -1,7 +1,7 @@
 //! One pass over some of the file's blobs: read in order, decoded in parallel, merged in order.
 //!
-//! Promises: what is merged, and which error is reported, does not depend on the number of threads; at most two
-//! windows of blobs are in memory. While one window is decoded, the same pool merges the one before and reads the next.
+//! The merged result and the reported error do not depend on the number of threads. At most two windows of blobs are in
+//! memory. While one window is decoded, the same pool merges the previous one and reads the next.
 
 use rayon::prelude::*;
 
@@ -11,8 +11,7 @@ use super::{
     inflate::{Compression, Inflater},
 };
 
-/// A window holds this many blobs, or as many as are [`WINDOW_BYTES`] large: enough to keep the threads busy, and
-/// small beside the result.
+/// Size of a window: this many blobs, or this many bytes. It keeps the threads busy and is small beside the result.
 const WINDOW_BLOBS: usize = 32;
 const WINDOW_BYTES: usize = 16 << 20;
 
@@ -55,11 +54,11 @@ impl<'f> Window<'f> {
     }
 }
 
-/// A blob, its compression and what was decoded from it, or what is wrong with it.
+/// A blob with its compression and decoded data, or its fault.
 type Decoded<T> = (Frame, Result<(Compression, T), Problem>);
 
-/// Inflates and decodes the blobs of `frames`, and merges what comes of them in the order of the file. `done` is told
-/// how many bytes of blobs are merged.
+/// Inflates and decodes the blobs of `frames`, and merges the results in the order of the file. `done` gets the number
+/// of blob bytes merged.
 pub(super) fn run<T: Send>(
     source: &mut Source,
     mut frames: &[Frame],

@@ -1,7 +1,6 @@
-//! Relations: those that restrict turns of heavy goods vehicles are kept, all others counted.
+//! Relations: turn restrictions for heavy goods vehicles are kept, and all others counted.
 //!
-//! Promises: every relation is kept or counted under one reason; whatever a relation refers to, itself included, is never
-//! followed.
+//! Every relation is kept or counted under one reason. References to other relations, or to itself, are never followed.
 
 use osmpbfreader::osmformat::{Relation, relation::MemberType};
 use protobuf::Message;
@@ -15,23 +14,24 @@ use super::{
     wire::{self, Shape},
 };
 
-/// What became of the relations: `read = kept + (read − restrictions) + broken_restrictions + other_vehicles + exempt +
+/// Counts of relations: `read = kept + (read − restrictions) + broken_restrictions + other_vehicles + exempt +
 /// superseded`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct RelationTally {
-    /// All.
+    /// All relations.
     pub read: u64,
-    /// Of these, turn restrictions; nothing else is used.
+    /// Turn restrictions. Nothing else is used.
     pub restrictions: u64,
-    /// Of these, without a way `from` and `to` and something `via`, of a kind nobody knows, or members of themselves.
+    /// Restrictions that lack a way `from`, a way `to` or any `via`, that are of an unknown kind, or that are their own
+    /// member.
     pub broken_restrictions: u64,
-    /// Of the others, those that speak of other vehicles than heavy goods vehicles.
+    /// Whole restrictions that concern only vehicles other than heavy goods vehicles.
     pub other_vehicles: u64,
-    /// Of the others, those that heavy goods vehicles are exempt from.
+    /// Whole restrictions that exempt heavy goods vehicles.
     pub exempt: u64,
-    /// Of the others, followed by another one of the same id: the last of the file counts.
+    /// Whole restrictions followed by another one with the same id: the file's last one counts.
     pub superseded: u64,
-    /// Of the whole ones, with a `via` node that is on no kept way, or not in the file.
+    /// Whole restrictions with a `via` node that is on no kept way or not in the file.
     pub restrictions_off_road: u64,
 }
 
@@ -46,19 +46,19 @@ impl RelationTally {
         self.restrictions_off_road += other.restrictions_off_road;
     }
 
-    /// Restrictions that the extract has.
+    /// Restrictions in the extract.
     #[must_use]
     pub fn kept(&self) -> u64 {
         self.restrictions - self.broken_restrictions - self.other_vehicles - self.exempt - self.superseded
     }
 }
 
-/// What is taken from a block's relations.
+/// Results from a block's relations.
 #[derive(Debug, Default)]
 pub(super) struct RelationBatch {
     pub(super) tally: RelationTally,
     pub(super) restrictions: Vec<Restriction>,
-    /// `via` nodes of whole restrictions, whomever they concern.
+    /// `via` nodes of whole restrictions, for any vehicle.
     pub(super) vias: Vec<i64>,
 }
 

@@ -1,8 +1,8 @@
 //! The first pass over a block: ways become facts and node references, relations become turn restrictions.
 //!
-//! Promises: every way is kept or counted under one reason. References keep their order, repeats next to each other
-//! are one. Ways are read in place: the generated message allocates four arrays a way, and half the ways are left
-//! out by their tags alone.
+//! Every way is kept or counted under one reason. References keep their order, and adjacent repeats become one. Ways
+//! are read in place: the generated message allocates four arrays per way, and half the ways are left out by their tags
+//! alone.
 
 use std::collections::BTreeMap;
 
@@ -18,32 +18,32 @@ use super::{
     wire::{Cursor, Packed},
 };
 
-/// Left out: `visible=false`, not part of the map.
+/// Left out: `visible=false`, so not part of the map.
 const DELETED: &str = "deleted";
 /// Left out: fewer than two distinct nodes.
 const TOO_FEW_NODES: &str = "too_few_nodes";
 
-/// A kept way of a block; its texts are in the batch's own pool.
+/// A kept way of a block. Its texts are in the batch's own pool.
 #[derive(Debug)]
 pub(super) struct KeptWay {
     pub(super) id: i64,
-    /// How many of the batch's references are its own.
+    /// Number of the batch's references that belong to it.
     pub(super) refs: u32,
     pub(super) facts: WayFacts,
 }
 
-/// What the first pass takes from one block.
+/// Results of the first pass over one block.
 #[derive(Debug, Default)]
 pub(super) struct WayBatch {
     pub(super) kept: Vec<KeptWay>,
-    /// Of the kept ways, one after the other.
+    /// References of the kept ways, one way after the other.
     pub(super) refs: Vec<i64>,
-    /// Places that kept ways carry themselves (`LocationsOnWays`).
+    /// Positions that kept ways carry (`LocationsOnWays`).
     pub(super) inline_places: Vec<(i64, LonLat)>,
     pub(super) strings: StringPool,
-    /// Of the ways left out, those that map the surface of a road.
+    /// Ways left out as roads that map the surface of a road.
     pub(super) areas: Vec<RoadArea>,
-    /// Ways left out: how many kept ones stand before it, and its id.
+    /// Ways left out: the number of kept ways before it, and its id.
     pub(super) left_out: Vec<(u32, i64)>,
     pub(super) reasons: BTreeMap<&'static str, u64>,
     /// Remarks on tags of kept ways.
@@ -110,7 +110,7 @@ where
         let draft = if way.deleted {
             Err(DELETED)
         } else if refs < 2 {
-            // Only after its tags, so that the reason is the road's and not the length of a fence.
+            // Tested after the tags, so that the reason concerns a road and not the length of a fence.
             (self.facts)(&self.tags).and(Err(TOO_FEW_NODES))
         } else {
             (self.facts)(&self.tags)
@@ -138,7 +138,7 @@ where
         Ok(())
     }
 
-    /// Keeps a closed way that is no road as the surface of one, if its tags say so; its references begin at `start`.
+    /// Keeps a closed way that is no road as the surface of one, if its tags say so. Its references begin at `start`.
     fn area(&mut self, way: &RawWay<'_>, start: usize, object: ObjectId) -> Result<(), Problem> {
         let refs = self.batch.refs.get(start..).unwrap_or_default();
         if refs.len() < 4 || refs.first() != refs.last() {
@@ -163,7 +163,7 @@ where
         self.batch.ends = Some((first, id));
     }
 
-    /// Appends the way's references, without repeats next to each other.
+    /// Appends the way's references without adjacent repeats.
     fn references(&mut self, way: &RawWay<'_>, object: ObjectId) -> Result<(), Problem> {
         let start = self.batch.refs.len();
         let (mut node, mut last) = (0, None);
@@ -178,7 +178,7 @@ where
         block::limit(self.batch.refs.len() - start, "the number of nodes of a way")
     }
 
-    /// Takes the places that the way carries for its nodes.
+    /// Takes the positions that the way carries for its nodes.
     fn inline_places(&mut self, way: &RawWay<'_>, object: ObjectId) -> Result<(), Problem> {
         if way.lats.is_empty() && way.lons.is_empty() {
             return Ok(());
@@ -200,7 +200,7 @@ where
     }
 }
 
-/// A `Way` message's fields, still packed.
+/// The fields of a `Way` message, still packed.
 #[derive(Debug, Default)]
 struct RawWay<'a> {
     id: i64,

@@ -1,12 +1,12 @@
 //! Protobuf's wire format, read in place: strict, without recursion, without allocation.
 //!
-//! Promises: every byte of a message belongs to a well-formed field, or it is an error. The generated messages of
-//! `osmpbfreader` put a known field of the wrong wire type among the unknown ones and so lose it; here it is an error.
-//! Leaves out: groups (wire types 3 and 4), which the format never had: refused.
+//! Every byte of a message belongs to a well-formed field; otherwise the message is an error. The generated messages of
+//! `osmpbfreader` treat a known field of the wrong wire type as unknown and lose it; here it is an error. Groups (wire
+//! types 3 and 4) are refused, because the format never had them.
 
 use thiserror::Error;
 
-/// What is wrong with a message.
+/// The fault of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum WireError {
     /// A varint without its last byte.
@@ -23,13 +23,13 @@ pub enum WireError {
     WireType {
         /// Field number.
         field: u32,
-        /// As found.
+        /// Wire type found.
         wire: u8,
     },
     /// Field number 0, or one past 2²⁹ − 1.
     #[error("a field number is out of range")]
     FieldNumber,
-    /// A known field is written as something else.
+    /// A known field has another wire type.
     #[error("field {0} has a wire type that does not belong to it")]
     WrongType(u32),
 }
@@ -39,7 +39,7 @@ pub enum WireError {
 pub(super) enum Value<'a> {
     Varint(u64),
     Bytes(&'a [u8]),
-    /// Four or eight bytes: no field of the format is of this kind.
+    /// Four or eight bytes. No field of the format has this type.
     Fixed,
 }
 
@@ -66,7 +66,7 @@ impl<'a> Field<'a> {
     }
 }
 
-/// What is left to read of a message or of a packed array.
+/// The unread rest of a message or of a packed array.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cursor<'a> {
     rest: &'a [u8],
@@ -115,7 +115,7 @@ impl<'a> Cursor<'a> {
         Err(if self.rest.len() < 10 { WireError::VarintCut } else { WireError::VarintLong })
     }
 
-    /// A zigzag-coded number.
+    /// Reads a zigzag-coded number.
     #[inline]
     pub(super) fn sint(&mut self) -> Result<i64, WireError> {
         self.varint().map(zigzag)
@@ -128,7 +128,7 @@ impl<'a> Cursor<'a> {
         Ok(taken)
     }
 
-    /// The next field; `None` at the end of the message.
+    /// The next field. `None` at the end of the message.
     #[inline]
     pub(super) fn field(&mut self) -> Result<Option<Field<'a>>, WireError> {
         if self.rest.is_empty() {
@@ -159,7 +159,7 @@ pub(super) fn zigzag(code: u64) -> i64 {
     ((code >> 1) as i64) ^ -((code & 1) as i64)
 }
 
-/// How a field is written.
+/// Encoding of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
     Number,
@@ -168,7 +168,8 @@ pub(super) enum Shape {
     Numbers,
 }
 
-/// Checks a message before a generated parser reads it: well-formed, no groups, and its known fields of the right shape.
+/// Checks a message before a generated parser reads it: well-formed, without groups, and with the right encoding of
+/// known fields.
 pub(super) fn check(message: &[u8], known: &[(u32, Shape)]) -> Result<(), WireError> {
     let mut cursor = Cursor::new(message);
     while let Some(field) = cursor.field()? {
@@ -185,8 +186,8 @@ pub(super) fn check(message: &[u8], known: &[(u32, Shape)]) -> Result<(), WireEr
     Ok(())
 }
 
-/// A repeated number. Usually one packed run, read in place; several runs and single numbers are legal too and are
-/// joined (osmium 1.15 loses all but the last run).
+/// A repeated number. Usually it is one packed run, read in place. Several runs and single numbers are legal too and
+/// are joined. (osmium 1.15 loses all but the last run.)
 #[derive(Debug, Default)]
 pub(super) struct Packed<'a> {
     first: &'a [u8],

@@ -1,7 +1,7 @@
-//! A small `.osm.pbf` writer: for the shipped demo region, for tests and benchmarks.
+//! A small `.osm.pbf` writer for the demo region, tests and benchmarks.
 //!
-//! Promises: the same objects give the same bytes, in the order given; dense nodes, zlib blobs, no metadata.
-//! Leaves out: relations, metadata, any resolution but 1e-7 degree.
+//! The same objects give the same bytes, in the given order: dense nodes, zlib blobs, no metadata. It writes neither
+//! relations nor metadata, and no resolution but 1e-7 degree.
 
 use std::io::Write as _;
 
@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap;
 
 use crate::osm::LonLat;
 
-/// Objects a block holds at most, as other writers have it.
+/// Most objects of a block, as in other writers.
 const BLOCK_OBJECTS: usize = 8000;
 
 /// A node to write.
@@ -20,9 +20,9 @@ const BLOCK_OBJECTS: usize = 8000;
 pub struct NodeRecord {
     /// OSM node id.
     pub id: i64,
-    /// Where it is.
+    /// Position.
     pub place: LonLat,
-    /// Keys and values, in the order they are to have in the file.
+    /// Keys and values, in the order of the file.
     pub tags: Vec<(String, String)>,
 }
 
@@ -33,18 +33,18 @@ pub struct WayRecord {
     pub id: i64,
     /// Node ids along it.
     pub refs: Vec<i64>,
-    /// Keys and values, in the order they are to have in the file.
+    /// Keys and values, in the order of the file.
     pub tags: Vec<(String, String)>,
 }
 
-/// The bytes of a `.osm.pbf` with these objects, nodes first, in the order given. The header says
-/// `Sort.Type_then_ID` if the ids ascend.
+/// The bytes of a `.osm.pbf` with these objects, nodes first, in the given order. The header says `Sort.Type_then_ID`
+/// if the ids ascend.
 #[must_use]
 pub fn write_extract(nodes: &[NodeRecord], ways: &[WayRecord]) -> Vec<u8> {
     write_extract_in_blocks(nodes, ways, BLOCK_OBJECTS)
 }
 
-/// As [`write_extract`], with at most `block_objects` objects a block (at least one).
+/// As [`write_extract`], with at most `block_objects` objects per block (at least one).
 #[must_use]
 pub fn write_extract_in_blocks(nodes: &[NodeRecord], ways: &[WayRecord], block_objects: usize) -> Vec<u8> {
     let block_objects = block_objects.max(1);
@@ -89,7 +89,7 @@ pub fn raw_blob(payload: &[u8]) -> Vec<u8> {
 pub fn zlib_blob(payload: &[u8]) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
     let deflated = encoder.write_all(payload).and_then(|()| encoder.finish());
-    // Writing to memory has no error; were there one, a raw blob says the same.
+    // Writing to memory cannot fail. If it did, a raw blob would hold the same data.
     let Ok(deflated) = deflated else { return raw_blob(payload) };
     let mut blob = fileformat::Blob::new();
     blob.set_raw_size(i32::try_from(payload.len()).unwrap_or(i32::MAX));
@@ -98,11 +98,11 @@ pub fn zlib_blob(payload: &[u8]) -> Vec<u8> {
 }
 
 fn bytes_of(message: &impl Message) -> Vec<u8> {
-    // Fails only for a message that lacks a required field; those built here lack none.
+    // This fails only for a message that lacks a required field; none does here.
     message.write_to_bytes().unwrap_or_default()
 }
 
-/// A block's strings, numbered by first use; 0 is the delimiter.
+/// A block's strings, numbered by first use. 0 is the delimiter.
 #[derive(Default)]
 struct Strings<'t> {
     texts: Vec<&'t str>,
@@ -163,7 +163,7 @@ fn way_block(ways: &[WayRecord]) -> osmformat::PrimitiveBlock {
     strings.block(group)
 }
 
-/// `value − last`; `last` becomes `value`. Wraps for ids 2⁶³ apart, which no map has.
+/// `value − last`. `last` becomes `value`. The difference wraps for ids 2⁶³ apart, which no map has.
 fn delta(last: &mut i64, value: i64) -> i64 {
     let difference = value.wrapping_sub(*last);
     *last = value;

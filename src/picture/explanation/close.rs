@@ -1,5 +1,5 @@
-//! The place that decides, close up. A corner: what error bounds keep and what then is missing or to spare, as dimension
-//! lines across the road's edge. A hinge: its angle and its limit.
+//! A close-up of the deciding place. For a corner it shows, as dimension lines across the road's edge, the error bounds
+//! and the distance that is missing or to spare. For a hinge it shows the angle and its limit.
 
 use super::super::furniture::dimension;
 use super::super::palette::{self, Colour};
@@ -20,9 +20,9 @@ pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: 
 fn corner(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
     let place = &g.place;
     let out = place.outward;
-    // Forward along the road: the outward normal turned so that the road runs to the right.
+    // Forward along the road: the outward normal, turned so that the road runs to the right.
     let along = if place.side == crate::stet::Side::Left { [out[1], -out[0]] } else { [-out[1], out[0]] };
-    // Corner, edge and the farthest that errors reach: all of them in the picture.
+    // Corner, edge and the largest extent of the errors must all be in the picture.
     let (low, high) = (place.nominal_m.min(0.0), place.nominal_m.max(place.bounds_m.unwrap_or(0.0)));
     let reach = (0.7 * (high - low) + 0.35).clamp(0.6, 8.0);
     let middle = shifted(place.corner, out, 0.5 * (low + high));
@@ -48,8 +48,8 @@ fn corner(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
     scale_bar(picture, &view, [frame.x + 14.0, frame.y + frame.height - 12.0], 130.0);
 }
 
-/// Corner, the farthest that errors reach, and edge: what lies between them as dimension lines, drawn `step` metres apart
-/// along the road.
+/// Draws corner, largest extent of the errors, and edge. Dimension lines show the distances between them, `step` metres
+/// apart along the road.
 fn gap(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, (along, step): (Point, f64)) {
     let place = &g.place;
     let Some((rsc, bounds_m)) = g.result.rsc_m.zip(place.bounds_m) else { return };
@@ -57,7 +57,7 @@ fn gap(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, (along
     let worst = shifted(place.corner, out, bounds_m);
     let edge = shifted(place.corner, out, place.nominal_m);
     let colour = verdict_colour(e);
-    // Beside the body, where there is none.
+    // Beside the body, on the side without a body.
     let away = if matches!(place.part, crate::explain::Part::FrontCorner) { 1.0 } else { -1.0 };
     let beside = |point: Point, steps: f64| view.at(shifted(point, along, away * steps * step));
     picture.group("limiting", |p| {
@@ -97,8 +97,8 @@ fn hinge(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
     let ratio = frame.width / frame.height;
     let box_of = [(1.0, ratio), (1.0, -ratio), (-1.0, ratio), (-1.0, -ratio)]
         .map(|(y, x)| [pivot[0] + x * reach, pivot[1] + y * reach]);
-    // From where the angle is counted, to the right: what the unit ahead says for a hinge, the body itself for the steering.
-    // Positive to the left: a unit behind its hinge then points back to the left.
+    // The angle is counted from this direction, to the right: the unit ahead for a hinge, the body itself for the
+    // steering. It is positive to the left: a unit behind its hinge then points back to the left.
     let ahead = h.unit.checked_sub(1).and_then(|ahead| h.poses.get(ahead)).map_or(pose.heading, |pose| pose.heading);
     let (zero, sign) = if h.unit == 0 { (ahead, 1.0) } else { (ahead.map(|c| -c), -1.0) };
     let view = View::turned(&box_of, -ahead[1].atan2(ahead[0]), frame);

@@ -1,7 +1,7 @@
-//! An explanation as a picture: in words at the top, the vehicle where it is tightest, that corner close up with what is
-//! missing as a dimension line, the leeway all along, and the whole edge.
+//! An explanation as a picture: words at the top, the vehicle where it is tightest, a close-up of the deciding corner
+//! with the missing distance, the leeway along the edge, and the whole edge.
 //!
-//! The verdict's colour is never its only sign: the headline and the dimension line say it, too.
+//! The verdict's colour is never its only sign: the headline and the dimension line say it too.
 
 mod close;
 mod scene;
@@ -16,10 +16,10 @@ use crate::verdict::{UnsafeReason, Verdict};
 
 const WIDTH: f64 = 1400.0;
 const MARGIN: f64 = 28.0;
-/// The column on the right: close-up, legend, overview.
+/// Width of the right column: close-up, legend, overview.
 const SIDE: f64 = 420.0;
 
-/// The picture of an explanation; `None` where there is no geometry to draw.
+/// The picture of an explanation. `None` without geometry.
 #[must_use]
 pub fn explanation(e: &Explanation) -> Option<String> {
     let g = e.geometry.as_ref()?;
@@ -58,12 +58,12 @@ fn description(words: &Words) -> String {
     all.join(" ")
 }
 
-/// Whether a hinge decides, not the width.
+/// Whether a hinge decides, and not the width.
 fn hinge_decides(e: &Explanation) -> bool {
     matches!(e.verdict, Verdict::Unsafe(UnsafeReason::Articulation | UnsafeReason::SteeringLock))
 }
 
-/// Blue where it fits, vermillion where it does not, grey where something else decides.
+/// Blue if the vehicle fits, vermillion if not, grey if something else decides.
 fn verdict_colour(e: &Explanation) -> Colour {
     match e.verdict {
         Verdict::Safe => palette::BLUE,
@@ -72,7 +72,7 @@ fn verdict_colour(e: &Explanation) -> Colour {
     }
 }
 
-/// What a body is filled with: the one that limits stands out.
+/// Fill colour of a body. The limiting body stands out.
 fn body_colour(e: &Explanation, g: &Geometry, unit: usize) -> Colour {
     let limits = if hinge_decides(e) { unit == g.hinge.unit || unit + 1 == g.hinge.unit } else { unit == g.place.unit };
     if limits { palette::ORANGE } else { palette::SKY }
@@ -144,7 +144,7 @@ impl Head {
     }
 }
 
-/// Lines of at most so many characters.
+/// Breaks a text into lines of at most `most` characters.
 fn wrap(text: &str, most: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {

@@ -13,12 +13,12 @@ use crate::stet::{Model, tubes};
 /// Road shown before and after the vehicle, metres.
 const AROUND_M: f64 = 4.0;
 
-/// The moment that decides: the steer axle's station and where all units stand.
+/// The deciding moment: the steer axle's station and the poses of all units.
 fn moment<'g>(e: &Explanation, g: &'g Geometry) -> (f64, &'g [Pose]) {
     if hinge_decides(e) { (g.hinge.head, &g.hinge.poses) } else { (g.place.head, &g.place.poses) }
 }
 
-/// From the rear of the vehicle to its front, radians.
+/// Direction from the rear of the vehicle to its front, radians.
 fn chord(poses: &[Pose]) -> f64 {
     match (poses.first(), poses.last()) {
         (Some(first), Some(last)) if poses.len() > 1 => {
@@ -29,7 +29,7 @@ fn chord(poses: &[Pose]) -> f64 {
     }
 }
 
-/// What must be in the picture.
+/// Points that must be in the picture.
 fn content(e: &Explanation, g: &Geometry) -> Vec<Point> {
     let (head, poses) = moment(e, g);
     let mut points = bodies::corners(&e.vehicle, poses);
@@ -45,7 +45,7 @@ fn content(e: &Explanation, g: &Geometry) -> Vec<Point> {
     points
 }
 
-/// How high the scene should be if it is so wide.
+/// Height of the scene for a given width.
 pub(super) fn height(e: &Explanation, g: &Geometry, width: f64) -> f64 {
     let turn = -chord(moment(e, g).1);
     let [cos, sin] = [turn.cos(), turn.sin()];
@@ -67,7 +67,7 @@ pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: 
         mark(p, e, g, &view, frame);
         compass(p, &view, frame);
         scale_bar(p, &view, [frame.x + 16.0, frame.y + frame.height - 14.0], 160.0);
-        // On a straight the road leaves room above it; in a bend, too, on the side to which the vehicle does not go.
+        // On a straight the road leaves room above it. In a bend it does so on the side away from the vehicle's turn.
         let tip = [frame.x + 150.0, frame.y + 20.0];
         arrow(p, [frame.x + 100.0, frame.y + 20.0], tip, palette::GREY, 1.6);
         p.text([frame.x + 14.0, frame.y + 24.0], "driving", TextStyle::size(13.0).coloured(palette::GREY).haloed());
@@ -75,17 +75,17 @@ pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: 
     picture.rect(frame, 0.0, Style::line(palette::PALE, 1.0));
 }
 
-/// Stations to draw: not so many that a loop covers itself.
+/// Range of stations to draw. It is short enough that a loop does not cover itself.
 fn window(e: &Explanation, g: &Geometry, head: f64) -> (f64, f64) {
     let spacing = g.corridor.spacing_m;
     let beyond = 60.0f64.min(e.vehicle.length_m).max(15.0) / spacing;
     let last = g.corridor.len() as f64 - 1.0;
     let rear = head - e.vehicle.length_m / spacing;
-    // Where the vehicle hangs out of an end the road is drawn on straight, as the certificate takes it.
+    // If the vehicle reaches beyond an end, the road is extended straight, as the certificate assumes.
     ((rear - beyond).max(0.0).min(rear), (head + beyond).min(last).max(head + 3.0))
 }
 
-/// The road from one station to another: what is not the edge's in a paler tone.
+/// Draws the road from one station to another. Parts outside the edge have a paler tone.
 pub(super) fn road(picture: &mut Picture, g: &Geometry, view: &View, (from, to): (f64, f64)) {
     let (first, last) = (g.span.start as f64, g.span.end as f64 - 1.0);
     let parts = [(from, first.min(to), false), (from.max(first), to.min(last), true), (last.max(from), to, false)];
@@ -111,7 +111,7 @@ pub(super) fn road(picture: &mut Picture, g: &Geometry, view: &View, (from, to):
     });
 }
 
-/// The road's edges alone, upon what is drawn already.
+/// Draws only the road's edges, over what is already drawn.
 pub(super) fn kerbs(picture: &mut Picture, g: &Geometry, view: &View, (from, to): (f64, f64)) {
     let (left, right) = edges(g, from, to);
     picture.group("kerbs", |p| {
@@ -121,7 +121,7 @@ pub(super) fn kerbs(picture: &mut Picture, g: &Geometry, view: &View, (from, to)
     });
 }
 
-/// Both edges, station by station, ends exactly where asked.
+/// Both edges, station by station, with ends exactly at `from` and `to`.
 fn edges(g: &Geometry, from: f64, to: f64) -> (Vec<Point>, Vec<Point>) {
     let inner = (from.floor() as i64 + 1..to.ceil() as i64).map(|k| k as f64);
     std::iter::once(from)
@@ -143,7 +143,7 @@ fn before_and_after(picture: &mut Picture, e: &Explanation, g: &Geometry, view: 
     });
 }
 
-/// The tube of the limiting unit's axle.
+/// Draws the tube of the limiting unit's axle.
 fn ribbon(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, (from, to): (f64, f64)) {
     let unit = if hinge_decides(e) { g.hinge.unit } else { g.place.unit };
     let Ok(model) = Model::new(&e.vehicle) else { return };
@@ -162,7 +162,7 @@ fn ribbon(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, (fr
     picture.group("tube", |p| p.polygon(&area, Style::area(palette::PURPLE).filled_at(0.35)));
 }
 
-/// Middle of the corridor, and the plan.
+/// Draws the middle of the corridor, and the plan.
 pub(super) fn lines(picture: &mut Picture, g: &Geometry, view: &View, (from, to): (f64, f64)) {
     let stations = (from.max(0.0) as usize)..(to.ceil().max(0.0) as usize + 1).min(g.corridor.len());
     let middle: Vec<Point> = stations
@@ -177,7 +177,7 @@ pub(super) fn lines(picture: &mut Picture, g: &Geometry, view: &View, (from, to)
     picture.group("plan", |p| p.polyline(&view.all(plan), Style::line(palette::BLUE, 2.0)));
 }
 
-/// The place that decides, with what is missing or to spare.
+/// Draws the deciding place, with what is missing or to spare.
 fn mark(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, frame: Frame) {
     let colour = verdict_colour(e);
     let (target, lines) = if hinge_decides(e) {
@@ -199,7 +199,7 @@ fn mark(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, frame
     callout(picture, at, corner_for(at, frame), &lines, colour);
 }
 
-/// Away from the frame's middle, where the road is not.
+/// A corner away from the frame's middle, where the road is not.
 fn corner_for(at: Point, frame: Frame) -> Point {
     let right = at[0] < frame.x + 0.5 * frame.width;
     let x = (if right { at[0] + 50.0 } else { at[0] - 220.0 }).clamp(frame.x + 8.0, frame.x + frame.width - 190.0);

@@ -1,4 +1,4 @@
-//! The whole edge: leeway left and right along it as curves, and its shape on the map coloured by the lesser of the two.
+//! The whole edge: its leeway left and right as curves, and its shape on the map, coloured by the lesser leeway.
 
 use super::super::furniture::{arrow, scale_bar};
 use super::super::palette;
@@ -9,9 +9,9 @@ use super::{hinge_decides, verdict_colour};
 use crate::explain::{Explanation, Geometry};
 use crate::stet::known_m;
 
-/// Points of a curve at most: of each bucket of stations the least counts.
+/// Most points of a curve. Each bucket of stations shows its least value.
 const MOST_POINTS: usize = 600;
-/// More leeway than this is as good as any, metres.
+/// Leeway above this is cut off, metres.
 const ENOUGH_M: f64 = 1.2;
 /// Leeway at which the overview's colours end, metres.
 const FULL_M: f64 = 0.6;
@@ -67,7 +67,7 @@ fn whole(e: &Explanation) -> &'static str {
     if e.road.is_some() { "edge" } else { "corridor" }
 }
 
-/// Metres along and leeway, over the span; where none is known nothing is drawn.
+/// Metres along the span and leeway. Stations without a known leeway are left out.
 fn series(g: &Geometry, leeway: &[f64]) -> Vec<Point> {
     let own = leeway.get(g.span.clone()).unwrap_or_default();
     let bucket = own.len().div_ceil(MOST_POINTS).max(1);

@@ -1,4 +1,4 @@
-//! Corridors just about as wide as their vehicles need, so that it matters where one steers.
+//! Corridors about as wide as their vehicles need, so that the steering matters.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::oracle::draw::{self, Bends, Draw};
 use crate::oracle::fleet;
 use netcert::reporter::Silent;
 
-/// Stations of a real road that are looked at.
+/// Stations of a real road in one case.
 const WINDOW: usize = 320;
 
 pub struct Case {
@@ -21,13 +21,13 @@ pub struct Case {
     pub corridor: Corridor,
 }
 
-/// RSC is compared at γ = 1: a plan that needs less of the driver is not to look as good as one that needs more.
+/// RSC is compared at γ = 1: a plan that asks more of the driver must not look as good as one that asks less.
 fn unshrunk(mut vehicle: Vehicle) -> Vehicle {
     vehicle.min_shrink = 1.0;
     vehicle
 }
 
-/// Squared radius of the tightest circle a vehicle can follow for ever.
+/// Squared radius of the tightest circle that a vehicle can follow for ever.
 fn tightest2(vehicle: &Vehicle) -> f64 {
     let last = vehicle.units.len() - 1;
     let of = |(i, u): (usize, &netcert::vehicle::Unit)| {
@@ -36,7 +36,7 @@ fn tightest2(vehicle: &Vehicle) -> f64 {
     vehicle.units.iter().enumerate().map(of).sum()
 }
 
-/// One or two bends between straights, radii 15 to 300 m: every third an S-bend.
+/// One or two bends between straights, with radii of 15 to 300 m. Every third case is an S-bend.
 pub fn drawn(index: u64) -> Case {
     let mut draw = Draw(0xc077_0000 + 6421 * index);
     let fleet = fleet::all();
@@ -65,7 +65,7 @@ fn s_bend_of(draw: &mut Draw, radius: f64) -> Bends {
     ]
 }
 
-/// Windows about the sharpest bends of a file's roads, with a vehicle each.
+/// Windows around the sharpest bends of a file's roads, each with a vehicle.
 pub fn mapped(file: &Path, count: usize) -> Vec<Case> {
     let countries = Countries::load().unwrap();
     let (network, ..) = read_network(file, &countries, &Silent, &mut Summary::default()).unwrap();
@@ -74,7 +74,7 @@ pub fn mapped(file: &Path, count: usize) -> Vec<Case> {
     windows(&network)
         .into_iter()
         .filter(|window| window.len() == WINDOW)
-        // Every so many: of all sorts, not the sharpest alone.
+        // Every seventh window: all sorts of bends, not only the sharpest.
         .step_by(7)
         .take(count)
         .enumerate()
@@ -85,7 +85,7 @@ pub fn mapped(file: &Path, count: usize) -> Vec<Case> {
         .collect()
 }
 
-/// A window of each stroke about its sharpest station, sharpest 30 m or more first.
+/// A window of each stroke around its sharpest station, those with the sharpest 30 m or more first.
 fn windows(network: &Network) -> Vec<Corridor> {
     let mut all: Vec<(f64, Corridor)> = network
         .strokes

@@ -1,5 +1,5 @@
-//! The best plan there is, near enough: sequential linear programmes over the spline's coefficients in a trust region,
-//! started from the centreline, every step judged by what really comes of it and not by the linear model.
+//! Approximates the best plan by sequential linear programmes over the spline's coefficients in a trust region. They
+//! start from the centreline. Every step is judged by its real result, not by the linear model.
 
 use std::collections::BTreeMap;
 
@@ -10,22 +10,22 @@ use clarabel::solver::{
 
 use super::problem::{Place, Problem};
 
-/// Metres by which a coefficient is moved to see what it does.
+/// Change of a coefficient when its effect is probed, metres.
 const PROBE_M: f64 = 0.004;
-/// The trust region at the start and at the end, metres.
+/// Size of the trust region at the start and at the end, metres.
 const WIDEST_M: f64 = 0.5;
 const NARROWEST_M: f64 = 0.004;
 const MOST_STEPS: usize = 12;
 
-/// What a plan is worth, and what of each place's leeway does not count.
+/// The merit of a plan, and the deduction from each place's leeway.
 pub trait Merit {
-    /// Metres, more is better.
+    /// Merit in metres; more is better.
     fn worth_m(&mut self, coefficients: &[f64]) -> f64;
-    /// To be deducted from a place's leeway; asked after `worth_m` of the plan that led to the places.
+    /// Deductions from the places' leeways. Called after `worth_m` of the plan that led to the places.
     fn deducted_m(&self, places: &[Place]) -> Vec<f64>;
 }
 
-/// Plain nominal leeway.
+/// Merit by plain nominal leeway.
 pub struct Nominal<'a>(pub &'a Problem<'a>);
 
 impl Merit for Nominal<'_> {
@@ -38,10 +38,10 @@ impl Merit for Nominal<'_> {
     }
 }
 
-/// The plan of the greatest merit found from `start`, and its worth.
+/// The plan with the greatest merit found from `start`, and that merit.
 ///
-/// `smoothness` weighs the squared second differences of the coefficients: of plans that are about equally good the smooth
-/// one, which the bounds like better.
+/// `smoothness` weighs the squared second differences of the coefficients. Of plans that are about equally good it
+/// selects the smooth one, which has tighter bounds.
 pub fn optimum(
     problem: &Problem<'_>,
     merit: &mut dyn Merit,
@@ -75,12 +75,12 @@ pub fn optimum(
     (best, worth)
 }
 
-/// A linear programme about one plan.
+/// A linear programme around one plan.
 struct Programme {
     about: Vec<f64>,
-    /// Rows: leeway now and its change by each free coefficient.
+    /// Rows: current leeway, and its change with each free coefficient.
     rows: Vec<(f64, Vec<(usize, f64)>)>,
-    /// The least leeway of the model about the plan, metres.
+    /// The least leeway of the model at the plan, metres.
     level_m: f64,
 }
 
@@ -91,8 +91,8 @@ impl Programme {
         let deducted = merit.deducted_m(&places);
         let leeways: Vec<f64> = places.iter().zip(&deducted).map(|(p, d)| p.leeway_m - d).collect();
         let level_m = leeways.iter().copied().fold(f64::INFINITY, f64::min);
-        // What cannot become the least within the trust region does not matter; nor do two points of one body at one
-        // station, which answer alike.
+        // A leeway that cannot become the least within the trust region does not matter. Of two points of one body at
+        // one station one suffices, because they respond alike.
         let mut nearest = BTreeMap::new();
         for (i, place) in places.iter().enumerate().filter(|(i, _)| leeways[*i] < level_m + 2.5 * trust + 0.05) {
             let least = nearest.entry((place.unit, place.side, place.station)).or_insert(i);
@@ -116,7 +116,7 @@ impl Programme {
         Self { about: plan.to_vec(), rows, level_m }
     }
 
-    /// The plan that the model likes best within the trust region, and what the model promises of it.
+    /// The best plan of the model within the trust region, and the leeway that the model predicts for it.
     fn solve(&self, trust: f64, max_shift_m: f64, smoothness: f64) -> Option<(Vec<f64>, f64)> {
         let free = free_count(self.about.len());
         let level = free;
@@ -130,7 +130,7 @@ impl Programme {
             }
             bounds.push(bound);
         };
-        // t − J x ≤ leeway now, x the change of the free coefficients.
+        // t − J x ≤ current leeway, with x the change of the free coefficients.
         for (leeway, slopes) in &self.rows {
             let mut entries: Vec<(usize, f64)> = slopes.iter().map(|&(j, slope)| (j, -slope)).collect();
             entries.push((level, 1.0));
@@ -166,7 +166,8 @@ impl Programme {
     }
 }
 
-/// Free coefficients: the first three are one, the last four are one, so that the plan is level at its ends.
+/// Number of free coefficients: the first three are equal and the last four are equal, so that the plan is level at its
+/// ends.
 fn free_count(coefficients: usize) -> usize {
     coefficients - 5
 }
@@ -180,7 +181,7 @@ fn spread(free: usize, coefficients: usize) -> std::ops::Range<usize> {
     }
 }
 
-/// ½xᵀPx + qᵀx of the squared second differences of `now + x`; a column is left for the level.
+/// ½xᵀPx + qᵀx of the squared second differences of `now + x`. One more column is kept for the level.
 fn roughness(now: &[f64], weight: f64) -> (CscMatrix<f64>, Vec<f64>) {
     let n = now.len();
     let (mut rows, mut columns, mut values) = (vec![], vec![], vec![]);

@@ -1,8 +1,9 @@
-//! The planning problem itself, by exact nominal motion: where every body point of every unit comes, and what is left
-//! there to either edge.
+//! The planning problem by exact nominal motion: the positions of every body point of every unit, and the leeway there
+//! to either edge.
 //!
-//! Shares the chord step with the certifier (the same polygon through the stations, so that both plan the same thing), but
-//! neither its feet nor its body points: these are every 1.5 m along both sides, and located on the corridor's curve.
+//! It shares the chord step with the certifier (the same polygon through the stations, so both plan the same motion).
+//! It shares neither feet nor body points: here points are every 1.5 m along both sides, located on the corridor's
+//! curve.
 
 use netcert::corridor::Corridor;
 use netcert::stet::KNOT_STATIONS;
@@ -14,27 +15,27 @@ use crate::oracle::road::Road;
 
 const POINT_SPACING_M: f64 = 1.5;
 
-/// A vehicle on a corridor, to be steered by spline coefficients.
+/// A vehicle on a corridor, steered by spline coefficients.
 pub struct Problem<'a> {
     pub corridor: &'a Corridor,
     pub vehicle: &'a Vehicle,
     road: Road<'a>,
-    /// Unit, metres ahead of its axle.
+    /// Unit, and metres ahead of its axle.
     points: Vec<(usize, f64)>,
 }
 
-/// What is left to one edge at a body point while the steer axle is at a vertex.
+/// The leeway to one edge at a body point while the steer axle is at a vertex.
 pub struct Place {
     pub vertex: usize,
     pub unit: usize,
     /// 0 left, 1 right.
     pub side: usize,
-    /// Nearest station to the foot.
+    /// The station nearest to the foot.
     pub station: usize,
     pub leeway_m: f64,
-    /// From the axle, in the unit's own frame: ahead, aside.
+    /// The point relative to the axle, in the unit's frame: ahead, aside.
     arm: V2,
-    /// Change of the leeway with the point's place.
+    /// Change of the leeway with the point's position.
     gradient: V2,
 }
 
@@ -45,7 +46,7 @@ impl<'a> Problem<'a> {
             let (front, rear) = (body.coupling_to_axle_m + body.front_overhang_m, -body.rear_overhang_m);
             let gaps = ((front - rear) / POINT_SPACING_M).ceil().max(1.0);
             points.extend((0..=gaps as usize).map(|i| (unit, front + (rear - front) * i as f64 / gaps)));
-            // Innermost on a steady circle.
+            // The innermost point on a steady circle.
             points.push((unit, 0.0));
         }
         Self { corridor, vehicle, road: Road::new(corridor), points }
@@ -55,14 +56,14 @@ impl<'a> Problem<'a> {
         (self.corridor.len() - 1) / KNOT_STATIONS + 4
     }
 
-    /// Poses at every vertex: the stations, then straight on until the rear has left.
+    /// Poses at every vertex: at the stations, then straight on until the rear has left.
     pub fn drive(&self, coefficients: &[f64]) -> Vec<Vec<Pose>> {
         let c = self.corridor;
         let shifted = |k: usize| {
             let n = left_of(direction(c.heading[k]));
             along([c.x[k], c.y[k]], shift_m(coefficients, k), n)
         };
-        // A vertex behind the first: the vehicle comes along the first station's heading.
+        // A vertex behind the first: the vehicle arrives along the first station's heading.
         let mut path = vec![along(shifted(0), -c.spacing_m, direction(c.heading[0]))];
         path.extend((0..c.len()).map(shifted));
         let (last, out) = (path[c.len()], direction(c.heading[c.len() - 1]));
@@ -113,14 +114,14 @@ impl<'a> Problem<'a> {
         places
     }
 
-    /// The least leeway of all.
+    /// The least of all leeways, metres.
     pub fn least_m(&self, coefficients: &[f64]) -> f64 {
         self.places(&self.drive(coefficients)).iter().fold(f64::INFINITY, |least, place| least.min(place.leeway_m))
     }
 }
 
 impl Place {
-    /// How much less or more is left, to first order, when `nominal` becomes `moved`.
+    /// First-order change of the leeway when `nominal` becomes `moved`, metres.
     pub fn change_m(&self, nominal: &[Vec<Pose>], moved: &[Vec<Pose>]) -> f64 {
         let at = |poses: &[Vec<Pose>]| point(&poses[self.vertex][self.unit], self.arm);
         dot(self.gradient, along(at(moved), -1.0, at(nominal)))
@@ -131,7 +132,7 @@ fn point(pose: &Pose, arm: V2) -> V2 {
     along(along(pose.axle, arm[0], pose.heading), arm[1], left_of(pose.heading))
 }
 
-/// The spline of `stet::shift`, written anew: metres left of the centreline at a station.
+/// The spline of `stet::shift`, written independently: metres left of the centreline at a station.
 pub fn shift_m(coefficients: &[f64], station: usize) -> f64 {
     let last = coefficients.len() - 4;
     let (knot, u) = (station / KNOT_STATIONS, (station % KNOT_STATIONS) as f64 / KNOT_STATIONS as f64);

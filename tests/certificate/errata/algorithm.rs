@@ -12,7 +12,7 @@ use crate::oracle::path::V2;
 
 const TANGENT: Reading = Reading { beta: Beta::Tangent, ..Reading::SIMULATED };
 
-/// Corollary (i) compares q̃_N with q̃_0, and Ω moves one as far as the other.
+/// Corollary (i) compares q̃_N with q̃_0, and Ω moves both equally.
 #[test]
 fn e14_no_center_correction_changes_the_certificate() {
     let s = scenario(5);
@@ -29,7 +29,7 @@ fn e14_no_center_correction_changes_the_certificate() {
     assert!((by(0.0, Offset::FromRoute).rsc.rsc_m - by(1.5, Offset::FromRoute).rsc.rsc_m).abs() > 0.01);
 }
 
-/// Eq. 21 can only be true where nothing needs to be corrected.
+/// Eq. 21 can only hold where nothing needs a correction.
 #[test]
 fn e15_the_theorem_speaks_only_of_instants_that_need_no_correction() {
     let permissible = Permissible::default();
@@ -52,7 +52,7 @@ fn e15_the_theorem_speaks_only_of_instants_that_need_no_correction() {
     assert!(asked > 500 && helped == 0);
 }
 
-/// The tube is the body (Def. 4's Q_0 from the "prime mover dimensions"): what SHRINK takes off is the lorry.
+/// The tube is the body (Def. 4's Q_0 from the "prime mover dimensions"), so SHRINK cuts off parts of the lorry.
 #[test]
 fn e16_shrinking_certifies_a_vehicle_through_a_road_narrower_than_its_body() {
     let system = System { trailers: 2, link_m: 4.0, sway_rad: 0.01, length_m: 2.6, width_m: 2.6 };
@@ -60,7 +60,7 @@ fn e16_shrinking_certifies_a_vehicle_through_a_road_narrower_than_its_body() {
     let route = route(&corridor);
     let run = run(&system, &route, &route.centre, &Permissible::default(), &TANGENT);
     let gamma = run.steps.iter().fold(1.0f64, |least, step| least.min(step.gamma));
-    // Def. 6 permits any γ down to γ_0^min; what is missing asks for 0.71 and leaves 𝒞 at 0 to rounding.
+    // Def. 6 permits any γ down to γ_0^min. The missing room needs 0.71 and leaves 𝒞 at 0 up to rounding.
     let permitted = Permissible::default().min_shrink;
     let tube = |unit: usize| {
         let at = |i: usize| {
@@ -82,7 +82,7 @@ fn e16_shrinking_certifies_a_vehicle_through_a_road_narrower_than_its_body() {
     assert!(decided.rsc_m.unwrap() < -0.29 && !decided.safe(), "netcert shrinks a tolerance, never a body");
 }
 
-/// Line 12 moves q_N with q_0 at once. A trailer that rolls follows a shift only after it has rolled on.
+/// Line 12 moves q_N with q_0 at once. A rolling trailer follows a shift only after it has rolled on.
 #[test]
 fn e18_the_last_trailer_does_not_move_when_the_prime_mover_does() {
     let s = scenario(3);
@@ -102,7 +102,7 @@ fn e18_the_last_trailer_does_not_move_when_the_prime_mover_does() {
     assert!(promised > 0.1 && really < before + 0.02);
 }
 
-/// Def. 1 asks for q_i ∈ C¹; each instant is corrected on its own.
+/// Def. 1 requires q_i ∈ C¹, but each instant is corrected separately.
 #[test]
 fn e19_the_corrected_path_jumps() {
     let s = scenario(5);
@@ -125,7 +125,7 @@ fn e19_the_corrected_path_jumps() {
     let jumps = [jump(&coarse), jump(&first), jump(&second)];
     println!("E19: greatest step of Δq_0 from one instant to the next at 1, 0.5, 0.25 m: {jumps:.3?} m");
     assert!(jumps.iter().all(|&j| j > 0.25), "a jump does not shrink with the step: {jumps:?}");
-    // netcert's plan is smoothed: its steps halve with the spacing.
+    // netcert's plan is smooth: its steps halve with the spacing.
     let plan = |corridor: &Corridor| {
         let model = Model::new(&s.system.vehicle("S5")).unwrap();
         let shift = stet::certify(corridor, &model, &Options::default(), &Stop::never()).unwrap().unwrap().shift_m;

@@ -1,4 +1,4 @@
-//! 𝒞 against what it is said to guarantee, Eq. 22: E4, E5, E7, and hinges that nobody asks (E20).
+//! 𝒞 compared with its claimed guarantee, Eq. 22: E4, E5, E7, and hinges that are never tested (E20).
 
 use netcert::corridor::Corridor;
 use netcert::published::{As, Beta, Offset, Reading, Route, System, cert};
@@ -30,12 +30,12 @@ fn e04_printed_certificate_calls_a_vehicle_safe_that_drives_over_the_edge() {
 fn e05_a_prime_mover_outside_the_road_does_not_count() {
     let system = System { trailers: 3, link_m: 6.0, sway_rad: 0.01, length_m: 2.6, width_m: 2.6 };
     let route = route(&arc(30.0, 150.0, 3.0));
-    // Swung out by as much as the last trailer cuts in.
+    // The prime mover swings out by as much as the last trailer cuts in.
     let path = shifted(&route, -1.9);
     let by = |units| {
         let reading = Reading { units, offset: Offset::FromRoute, ..TIGHT };
         let run = run(&system, &route, &path, &NOTHING, &reading);
-        // The run-in, where the last trailer has not cut in yet, is not what this is about.
+        // The run-in is left out, because the last trailer has not cut in there yet.
         let steady: Vec<_> = run.tubes.iter().map(|tube| tube[200..].to_vec()).collect();
         let rest = Route {
             t_s: route.t_s[150..].to_vec(),
@@ -72,7 +72,7 @@ fn e07_half_a_body_length_to_either_side_is_asked_for_on_a_straight() {
     assert!((decided.rsc_m.unwrap() - (3.5 - 1.3)).abs() < 0.01 && decided.safe());
 }
 
-/// Eq. 12 to 18 bound δ by θ, but nothing computes the δ that a bend asks for.
+/// Eq. 12 to 18 bound δ by θ, but nothing computes the δ that a bend needs.
 #[test]
 fn e20_a_bend_that_the_hinges_cannot_follow_is_certified() {
     let system = scenario(5).system;

@@ -1,4 +1,4 @@
-//! Def. 2 and 5: E10, E11, and the strip that 𝓡(t) is (E17).
+//! Def. 2 and 5: E10, E11, and the strip 𝓡(t) (E17).
 
 use netcert::corridor::Corridor;
 use netcert::published::{As, Offset, Reading, Shape, Stet, System, boundary_leeway};
@@ -45,7 +45,7 @@ fn e11_the_infimum_over_the_whole_boundary_takes_the_far_side_of_the_bend() {
 fn e17_the_strip_at_t_is_not_the_road() {
     let (radius, half, i) = (40.0, 3.0, 60);
     let route = route(&arc(radius, 60.0, half));
-    // A place on the road, 25 m behind; and one on the tangent, far off it.
+    // One place on the road, 25 m behind; another on the tangent, far off the road.
     let behind = route.centre[10];
     assert!(!route.holds(i, behind), "a trailer 25 m behind on the centreline is outside 𝓡(t)");
     let field = along(route.centre[i], 25.0, route.tangent[i]);
@@ -59,7 +59,8 @@ fn e17_the_strip_at_t_is_not_the_road() {
     assert!(is_on_the_road(&route, &point(behind), 10));
 }
 
-/// The same fault in Corollary (i): a trailer that keeps to the centreline to the centimetre has an h_Ω of the road's own bend.
+/// The same fault in Corollary (i): for a trailer that follows the centreline to the centimetre, h_Ω contains the
+/// road's own bend.
 #[test]
 fn e17_h_omega_at_one_instant_measures_the_bend_of_the_road() {
     let system = System { trailers: 1, link_m: 10.0, sway_rad: 0.3, length_m: 8.0, width_m: 2.5 };

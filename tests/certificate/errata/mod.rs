@@ -1,9 +1,9 @@
-//! Errata of the paper, each a test in which the printed form fails and the repaired one, or netcert's own, holds.
-//! `docs/errata.md` tells them to a reader of the paper; numbers there are printed by these tests
-//! (`cargo test --test certificate errata -- --nocapture`).
+//! Errata of the paper. In each test the printed form fails, and the repaired form or netcert's own form holds.
+//! `docs/errata.md` explains them for readers of the paper; these tests print its numbers (`cargo test --test
+//! certificate errata -- --nocapture`).
 //!
-//! What the two code paths are: `netcert::published` to the letter, and the same with the fault's switch in
-//! `Reading` thrown, or `netcert::stet`.
+//! The two code paths are `netcert::published` to the letter, and either the same with the fault's switch in `Reading`
+//! or `netcert::stet`.
 
 mod algorithm;
 mod certificate;
@@ -13,7 +13,7 @@ mod property;
 mod scene;
 mod tubes;
 
-/// The page tells of every test, and of no other.
+/// The page describes every test, and no other.
 #[test]
 fn page_and_tests_are_about_the_same_errata() {
     let page = include_str!("../../../docs/errata.md");

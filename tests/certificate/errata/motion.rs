@@ -1,4 +1,4 @@
-//! Def. 4 in bends: E8, and where the tube of a trailer points (E21).
+//! Def. 4 in bends: E8, and the direction of a trailer's tube (E21).
 
 use netcert::published::{As, Reading, Stet, Sway, System, follower_shape};
 use netcert::stet::steady_offtracking;
@@ -29,7 +29,7 @@ fn e08_without_articulation_trailers_leave_the_bend_on_the_wrong_side() {
     assert!((rolling - closed).abs() < 0.01);
 }
 
-/// With a sway bound for what sway is (rubber, wind, crossfall), the printed tube does not hold the axle that rolls.
+/// If θ bounds real sway (rubber, wind, crossfall), the printed tube does not hold the rolling axle.
 #[test]
 fn e08_the_tube_around_zero_sway_does_not_hold_a_rolling_axle() {
     let slip = System { sway_rad: f64::to_radians(1.0), ..SYSTEM };
@@ -37,7 +37,7 @@ fn e08_the_tube_around_zero_sway_does_not_hold_a_rolling_axle() {
     let by = |sway| run(&slip, &route, &route.centre, &NOTHING, &Reading { sway, ..Reading::SIMULATED });
     let (printed, rolling) = (by(Sway::Zero), by(Sway::NoSlip));
     let i = route.len() - 60;
-    // The tube of positions alone: a prime mover that is a point on its path.
+    // The tube of positions alone: the prime mover is a point on its path.
     let tube = |run: &netcert::published::RouteCert| {
         let e = run.chain.link[0][i].direction;
         let point = netcert::published::Shape::from_semi_axes(e, 1e-3, 1e-3);
@@ -49,7 +49,7 @@ fn e08_the_tube_around_zero_sway_does_not_hold_a_rolling_axle() {
     assert!(tube(&rolling).holds(axle));
 }
 
-/// Ξ turns Q^lim, but what it is added to keeps the prime mover's heading.
+/// Ξ turns Q^lim, but the shape that it is added to keeps the prime mover's heading.
 #[test]
 fn e21_a_trailers_tube_points_where_the_prime_mover_does() {
     let system = System { trailers: 2, link_m: 6.0, sway_rad: f64::to_radians(2.0), length_m: 12.0, width_m: 2.5 };
@@ -70,7 +70,7 @@ fn e21_a_trailers_tube_points_where_the_prime_mover_does() {
     );
     assert!(apart > 20.0);
     assert!(outside == 4, "even with semi-axes that hold the corners (E6)");
-    // Propagated in the trailer's own heading it would hold them.
+    // Propagated in the trailer's own heading, the tube would hold the corners.
     let turned = (0..2).fold(system.prime_shape(own, As::Repaired), |q, _| follower_shape(&q, own, &system, &reading));
     assert!(corners(own).into_iter().all(|c| Stet { shape: turned, ..stet }.holds(c)));
 }

@@ -1,7 +1,7 @@
 //! With E4, E5, E6 and E9 repaired and the same tolerances, 𝒞 is a bound: the deciding RSC is never below it.
 //!
-//! The same tolerances are none at all: the paper has none. The same motion: the paper's q_0 is the prime mover's axle in
-//! netcert's own nominal motion, on the centreline or on netcert's plan.
+//! The tolerances are zero, because the paper has none. The motion is the same: the paper's q_0 is the prime mover's
+//! axle in netcert's own nominal motion, on the centreline or on netcert's plan.
 
 use netcert::corridor::Corridor;
 use netcert::published::{Beta, Reading, System};
@@ -23,8 +23,8 @@ fn vehicle(draw: &mut Draw) -> System {
     }
 }
 
-/// Bends that the vehicle can follow, and a straight in the end as long as the vehicle: what it still does there is in
-/// both certificates.
+/// Bends that the vehicle can follow, and a final straight as long as the vehicle. Both certificates then contain the
+/// vehicle's motion there.
 fn road(draw: &mut Draw, system: &System) -> Corridor {
     let squares = (system.trailers as f64 + 1.0) * system.link_m.powi(2);
     let radius = draw.log_between(15.0f64.max(2.0 * squares.sqrt()), 500.0);
@@ -46,7 +46,7 @@ fn repaired_certificate_is_never_above_the_deciding_one() {
         let model = Model::new(&system.vehicle("random")).unwrap();
         for options in [Options { max_shift_m: 0.0, correction_sweeps: 0 }, Options::default()] {
             let certificate = stet::certify(&corridor, &model, &options, &Stop::never()).unwrap().unwrap();
-            // Of a vehicle whose bounds do not close nothing is claimed.
+            // Without closed bounds nothing is claimed of a vehicle.
             let Some(decided) = certificate.result.rsc_m else { continue };
             claimed += 1;
             let path = &stet::tubes(&corridor, &model, &certificate)[0].centre;
@@ -65,7 +65,7 @@ fn repaired_certificate_is_never_above_the_deciding_one() {
     assert!(claimed * 10 >= 2 * CASES * 9, "only of {claimed} anything is claimed");
 }
 
-/// Eq. 22 over all units, looked at point by point: 𝒞 ≥ 0 as printed does not imply it, repaired it does.
+/// Eq. 22 over all units, tested point by point. 𝒞 ≥ 0 as printed does not imply it; repaired it does.
 #[test]
 fn only_the_repaired_certificate_keeps_the_tubes_on_the_road() {
     let (mut broken, mut kept) = (0, 0);

@@ -23,7 +23,7 @@ pub(crate) fn drawn(w_min_m: f64) -> Corridor {
     drawn_route().unwrap().corridor(w_min_m)
 }
 
-/// An arc to the left of so many metres, half a metre from station to station.
+/// An arc to the left of `length_m` metres, with stations half a metre apart.
 pub(crate) fn arc(radius: f64, length_m: f64, half_m: f64) -> Corridor {
     let stations = (2.0 * length_m) as usize + 1;
     Corridor::from_curvature(0.5, [0.0; 2], 0.0, &vec![1.0 / radius; stations], half_m, half_m)
@@ -44,7 +44,8 @@ pub(crate) fn run(
     route_cert(system, route, path, permissible, reading).unwrap()
 }
 
-/// Whether every point of the ellipse lies between the edges, each point at its own foot: no formula of the paper in it.
+/// Whether every point of the ellipse lies between the edges, each point at its own foot. No formula of the paper is
+/// used.
 pub(crate) fn is_on_the_road(route: &Route, stet: &Stet, near: usize) -> bool {
     stet.outline(720).into_iter().all(|p| {
         let foot = route.foot(p, near);

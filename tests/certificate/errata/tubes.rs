@@ -1,4 +1,4 @@
-//! Ellipses: E1 to E3, E6, E9, and what Table I itself tells of them (E12, E13).
+//! Ellipses: E1 to E3, E6, E9, and the evidence of Table I itself (E12, E13).
 
 use netcert::published::{
     As, Beta, Reading, Shape, System, follower_shape, kurzhanski_varaiya, optimal_beta, peak_sways_m,
@@ -52,7 +52,7 @@ fn e01_the_printed_beta_has_the_largest_tube_behind_the_stiffest_hinge() {
     assert!((radius(0.1, Beta::TraceOptimal) - 5.6).abs() < 0.01, "without sway the tube is the body's");
 }
 
-/// With nothing corrected: else SHRINK hides what β° does (E16).
+/// With nothing corrected, because SHRINK would hide the effect of β° (E16).
 #[test]
 fn e01_only_the_repaired_beta_gives_the_papers_verdicts() {
     let safe = |beta| -> Vec<u32> {
@@ -119,7 +119,7 @@ fn e03_the_printed_rotation_turns_the_sway_ellipse_away_from_the_arc() {
     );
     assert!(beyond(As::Printed) > 100.0);
     assert!(beyond(As::Repaired) <= 1.0 + 1e-9);
-    // Along the axes of the page nothing shows.
+    // Along the axes of the page the fault does not show.
     let east = |rotation| sway_shape(EAST, 4.0, 0.2, rotation).unwrap();
     assert_eq!(east(As::Printed), east(As::Repaired));
 }
@@ -156,7 +156,7 @@ fn e09_the_printed_support_radius_lets_a_tilted_ellipse_over_the_edge() {
     );
     assert!(printed < 0.5 * reach, "{printed} of {reach}");
     assert!((repaired - reach).abs() < 1e-5);
-    // It is never too large, and right on the axes and in the supremum: 𝒞 itself does not suffer.
+    // The printed radius is never too large, and it is right on the axes and in the supremum: 𝒞 itself is unaffected.
     for k in 0..360 {
         let (s, c) = (f64::from(k) * 0.01745).sin_cos();
         assert!(shape.support_radius_m([c, s], As::Printed) <= shape.support_radius_m([c, s], As::Repaired) + 1e-12);
@@ -170,7 +170,7 @@ fn e09_the_printed_support_radius_lets_a_tilted_ellipse_over_the_edge() {
     assert!((greatest(As::Printed) - greatest(As::Repaired)).abs() < 1e-4);
 }
 
-/// The sum of Eq. 16 reaches r_0 + N·a along the vehicle, and no ellipse around it reaches less.
+/// The sum of Eq. 16 reaches r_0 + N·a along the vehicle, and every ellipse around it reaches at least as far.
 #[test]
 fn e12_table_ones_h_xi_is_less_than_any_bound_of_eq_16_can_have() {
     for s in scenarios().unwrap() {
@@ -196,7 +196,7 @@ fn e12_table_ones_h_xi_is_less_than_any_bound_of_eq_16_can_have() {
     }
 }
 
-/// Bodies 𝒟 long around axles L apart.
+/// Bodies of length 𝒟 around axles L apart.
 #[test]
 fn e13_the_bodies_of_table_one_stand_in_each_other() {
     for s in scenarios().unwrap() {

@@ -1,7 +1,7 @@
-//! Corridors in closed form: built from a curvature profile instead of a map.
+//! Corridors in closed form, built from a curvature profile instead of a map.
 //!
-//! What tests, oracles and drawn plans need: straights, arcs and clothoids that are exact, so that a difference is
-//! the fault of what is tested. Positions are integrated to better than 1e-9 m a kilometre for |κ| ≤ 0.5 / spacing.
+//! Tests, oracles and drawn plans use them. Straights, arcs and clothoids are exact here, so a difference is the fault
+//! of the code under test. Positions are integrated to better than 1e-9 m per kilometre for |κ| ≤ 0.5 / spacing.
 
 use super::Corridor;
 
@@ -15,10 +15,10 @@ const GAUSS: [(f64, f64); 5] = [
 ];
 
 impl Corridor {
-    /// The corridor whose curvature is `curvature[i]` (1/m, left positive) at station `i` and linear in between,
-    /// starting at `start` (metres) with `heading` (radians, from x towards y). Half-widths are constant.
+    /// Builds the corridor whose curvature is `curvature[i]` (1/m, left positive) at station `i` and linear between
+    /// stations. It starts at `start` (metres) with `heading` (radians, from x towards y). Half-widths are constant.
     ///
-    /// Station spacing is `spacing_m`; an empty profile gives an empty corridor.
+    /// `spacing_m` is the station spacing. An empty profile gives an empty corridor.
     #[must_use]
     pub fn from_curvature(
         spacing_m: f64,
@@ -60,8 +60,9 @@ impl Corridor {
     }
 }
 
-/// Displacement over one step of length `h` whose curvature runs linearly from `k0` to `k1`: Fresnel integrals, by
-/// Gauss-Legendre. The error is below 1e-15·h for a turn of up to 0.3 rad a step, 1e-11·h up to 1 rad.
+/// Displacement over one step of length `h` whose curvature runs linearly from `k0` to `k1`. The Fresnel integrals are
+/// computed by Gauss-Legendre quadrature. The error is below 1e-15·h for a turn of up to 0.3 rad a step, and below
+/// 1e-11·h for up to 1 rad.
 pub(crate) fn clothoid_step(h: f64, theta: f64, k0: f64, k1: f64) -> (f64, f64) {
     GAUSS.iter().fold((0.0, 0.0), |(dx, dy), &(t, weight)| {
         let (sin, cos) = (theta + h * t * (k0 + 0.5 * (k1 - k0) * t)).sin_cos();
@@ -69,12 +70,12 @@ pub(crate) fn clothoid_step(h: f64, theta: f64, k0: f64, k1: f64) -> (f64, f64) 
     })
 }
 
-/// Writes a curvature profile piece by piece: straight, arc, clothoid. Lengths are rounded to whole stations.
+/// Writes a curvature profile from straights, arcs and clothoids. Each length is rounded to whole stations.
 #[derive(Debug, Clone)]
 pub struct CurvatureProfile {
     /// Distance between stations, metres.
     pub spacing_m: f64,
-    /// One value a station, 1/m, as [`Corridor::from_curvature`] takes it; at least one.
+    /// One value per station (1/m), as [`Corridor::from_curvature`] takes it. There is at least one.
     pub curvature: Vec<f64>,
 }
 
@@ -91,8 +92,8 @@ impl CurvatureProfile {
         self.arc(0.0, length_m)
     }
 
-    /// Continues at constant `curvature` (1/m, left positive) for `length_m`. Where it differs from the last station's,
-    /// it is reached within the first step.
+    /// Continues at constant `curvature` (1/m, left positive) for `length_m`. If the last station has another
+    /// curvature, the first step runs linearly to `curvature`.
     #[must_use]
     pub fn arc(mut self, curvature: f64, length_m: f64) -> Self {
         let steps = self.steps(length_m);
@@ -100,7 +101,7 @@ impl CurvatureProfile {
         self
     }
 
-    /// Continues with curvature linear in arc length, from the last station's to `curvature`, over `length_m`.
+    /// Continues for `length_m` with curvature linear in arc length, from the last station's value to `curvature`.
     #[must_use]
     pub fn clothoid(mut self, curvature: f64, length_m: f64) -> Self {
         let steps = self.steps(length_m);
@@ -135,7 +136,7 @@ mod tests {
 
     #[test]
     fn a_clothoid_ends_where_the_fresnel_integrals_say() {
-        // Euler spiral with κ = s, to s = 1: (C, S) of ∫cos(t²/2), ∫sin(t²/2), by their power series.
+        // Euler spiral with κ = s, up to s = 1. C and S are the power series of ∫cos(t²/2) and ∫sin(t²/2).
         let profile = CurvatureProfile::new(0.125).clothoid(1.0, 1.0);
         let c = Corridor::from_curvature(0.125, [0.0; 2], 0.0, &profile.curvature, 1.0, 1.0);
         let series = |first: u32| {

@@ -1,16 +1,17 @@
-//! Whether stations are the curve that they are taken for (proof, A1): from each, curvature that is linear in between leads to the next.
+//! Checks that the stations lie on the curve that a certificate assumes (proof, A1): linear curvature leads from each
+//! station to the next.
 
 use super::{Corridor, clothoid_step};
 
-/// Most by which a station may be off where the one before it leads, metres and radians, per metre between them: as much as sampling
-/// a smooth line leaves.
+/// Largest distance (metres) and heading difference (radians) between a station and where the station before it leads,
+/// per metre of spacing. Sampling a smooth line leaves as much.
 const PLACE: f64 = 0.02;
 const HEADING: f64 = 0.04;
-/// Most that a corridor turns from one station to the next, radians.
+/// Largest turn of a corridor from one station to the next, radians.
 const MOST_TURN_RAD: f64 = 0.5;
 
 impl Corridor {
-    /// Stations about which nothing can be said, since they do not fit their neighbours; in order.
+    /// Returns in ascending order the stations that do not fit their neighbours. Nothing can be certified there.
     #[must_use]
     pub fn torn(&self) -> Vec<usize> {
         let mut torn = Vec::new();
@@ -27,12 +28,12 @@ impl Corridor {
     }
 }
 
-/// Whether the normals of neighbouring stations cross before they reach an edge.
+/// Whether the normals of neighbouring stations cross within the half-width.
 fn crosses(c: &Corridor, k: usize) -> bool {
     !(c.curvature[k] * c.left_m[k] < 1.0 && -c.curvature[k] * c.right_m[k] < 1.0)
 }
 
-/// Whether station `k` is where the one before it leads.
+/// Whether station `k` lies where the station before it leads.
 fn follows(c: &Corridor, k: usize) -> bool {
     let (h, before) = (c.spacing_m, k - 1);
     let [from, to] = [c.curvature[before], c.curvature[k]];

@@ -1,4 +1,4 @@
-//! A corridor as values: what is certified, whatever it was made from.
+//! A corridor as plain values, independent of its origin.
 
 mod closed;
 mod fit;
@@ -6,10 +6,10 @@ mod fit;
 pub use closed::CurvatureProfile;
 pub(crate) use closed::clothoid_step;
 
-/// A route corridor, sampled at uniform arc length along its C¹ centreline. Metres, radians; `s` grows in driving
-/// direction, lateral is positive to the left. All vectors have one entry a station.
+/// A route corridor, sampled at uniform arc length along its C¹ centreline. Units are metres and radians. Arc length
+/// grows in driving direction, and lateral is positive to the left. All vectors have one entry per station.
 ///
-/// Between stations the centreline is the clothoid-like curve of linear curvature through them, half-widths are linear.
+/// Between stations curvature and half-widths are linear.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Corridor {
     /// Distance between stations along the centreline, metres (near 1).

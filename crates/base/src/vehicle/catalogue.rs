@@ -1,6 +1,6 @@
-//! Vehicles by id: the shipped catalogue (`data/vehicles.toml`, compiled in) and files of the user's own.
+//! Vehicles by id, from the shipped catalogue (`data/vehicles.toml`, compiled in) and from the user's files.
 //!
-//! Order is the file's order, everywhere.
+//! All orders are the file's order.
 
 use std::path::Path;
 
@@ -9,20 +9,20 @@ use super::{Fault, Vehicle, file};
 
 /// The catalogue that ships.
 const BUILTIN: &str = include_str!("../../../../data/vehicles.toml");
-/// What messages call it.
+/// File name of the shipped catalogue in messages.
 const BUILTIN_NAME: &str = "data/vehicles.toml";
-/// A vehicle file is read whole; the shipped one has 43 kB.
+/// Largest vehicle file, bytes. A file is read whole; the shipped one has 43 kB.
 const MAX_FILE_BYTES: u64 = 4 << 20;
-/// Longer texts are compared by their beginning.
+/// Longer texts are compared by their first characters.
 const MAX_COMPARED: usize = 100;
 
-/// Why there is no vehicle.
+/// Why a vehicle or a vehicle file cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum VehicleError {
     /// The file cannot be read.
     #[error("{file}: cannot read the vehicle file: {cause}")]
     Unreadable {
-        /// As given.
+        /// Path as given.
         file: String,
         /// The system's reason.
         cause: std::io::Error,
@@ -30,17 +30,17 @@ pub enum VehicleError {
     /// The file was read and is wrong.
     #[error("{file}: refused{}", listed(.faults))]
     Refused {
-        /// As given.
+        /// Path as given.
         file: String,
-        /// All of them, in file order; never empty.
+        /// All faults in file order; never empty.
         faults: Vec<Fault>,
     },
     /// No vehicle of that id.
     #[error("no vehicle {id:?} in the catalogue{}; `netcert vehicles list` shows all", meant(.nearest))]
     Unknown {
-        /// As asked for.
+        /// Id as asked for.
         id: String,
-        /// The ids most like it, best first; may be empty.
+        /// The most similar ids, best first; may be empty.
         nearest: Vec<String>,
     },
     /// Two sources define the same id.
@@ -64,7 +64,7 @@ fn meant(nearest: &[String]) -> String {
     if nearest.is_empty() { String::new() } else { format!("; did you mean {}?", nearest.join(", ")) }
 }
 
-/// Vehicles in file order, ids distinct.
+/// Vehicles in file order, with distinct ids.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Catalogue {
     vehicles: Vec<Vehicle>,
@@ -72,7 +72,7 @@ pub struct Catalogue {
 }
 
 impl Catalogue {
-    /// The shipped combinations.
+    /// The shipped vehicles.
     ///
     /// # Errors
     /// None in a build whose tests pass: the file is compiled in.
@@ -96,7 +96,7 @@ impl Catalogue {
         Self::from_toml(&text, &file)
     }
 
-    /// The vehicles of TOML text; `file` is what messages call it.
+    /// Reads the vehicles of TOML text. Messages call the text `file`.
     ///
     /// # Errors
     /// [`VehicleError::Refused`] with every fault and its line.
@@ -107,10 +107,10 @@ impl Catalogue {
         }
     }
 
-    /// Both catalogues, this one first; `file` is what messages call the other.
+    /// Appends the vehicles of `other`. Messages call `other` `file`.
     ///
     /// # Errors
-    /// [`VehicleError::Clash`] if an id is in both: a shipped id never means something else.
+    /// [`VehicleError::Clash`] if both catalogues define an id. A shipped id therefore never changes its meaning.
     pub fn extended(mut self, other: Self, file: &str) -> Result<Self, VehicleError> {
         if let Some(twice) = other.vehicles.iter().find(|v| self.find(&v.id).is_some()) {
             return Err(VehicleError::Clash { file: file.to_owned(), id: twice.id.clone() });
@@ -120,10 +120,10 @@ impl Catalogue {
         Ok(self)
     }
 
-    /// The vehicle of an id.
+    /// The vehicle with this id.
     ///
     /// # Errors
-    /// [`VehicleError::Unknown`] with the ids most like it.
+    /// [`VehicleError::Unknown`] with the most similar ids.
     pub fn get(&self, id: &str) -> Result<&Vehicle, VehicleError> {
         self.find(id).ok_or_else(|| VehicleError::Unknown { id: id.to_owned(), nearest: self.nearest(id) })
     }
@@ -132,7 +132,7 @@ impl Catalogue {
         self.vehicles.iter().find(|v| v.id == id)
     }
 
-    /// What is odd about vehicles though not impossible, with vehicle, field and line.
+    /// Warnings with vehicle, field and line: values that are possible but unusual.
     #[must_use]
     pub fn warnings(&self) -> &[Fault] {
         &self.odd
@@ -143,13 +143,13 @@ impl Catalogue {
         self.vehicles.iter()
     }
 
-    /// The vehicles of a region code, in file order.
+    /// The vehicles of a region, in file order.
     pub fn region<'a>(&'a self, code: &'a str) -> impl Iterator<Item = &'a Vehicle> {
         self.vehicles.iter().filter(move |v| v.region == code)
     }
 
-    /// What `ingest` certifies unless told otherwise: the combinations of the country's regions, and those that are
-    /// certified everywhere (a 3-trailer road train), in file order. `country`: ISO 3166-1 alpha-2, upper case.
+    /// The vehicles that `ingest` certifies by default, in file order: those of the country's regions, and those that
+    /// are certified everywhere (a 3-trailer road train). `country` is ISO 3166-1 alpha-2, upper case.
     #[must_use]
     pub fn for_country(&self, regions: &Regions, country: [u8; 2]) -> Vec<&Vehicle> {
         let codes = regions.regions_for(country);
@@ -157,8 +157,8 @@ impl Catalogue {
         self.vehicles.iter().filter(wanted).collect()
     }
 
-    /// At most three ids: those whose id or name holds what was typed, then those that differ from it in at most a
-    /// third of its letters. Case, blanks and punctuation do not count.
+    /// At most three similar ids. First come those whose id or name contains the typed text, then those that differ
+    /// from it in at most a third of its letters. Case, blanks and punctuation are ignored.
     fn nearest(&self, id: &str) -> Vec<String> {
         let wanted = letters(id);
         let typed: Vec<char> = wanted.chars().collect();
@@ -177,7 +177,7 @@ impl Catalogue {
     }
 }
 
-/// What of an id or a name counts in a comparison.
+/// The characters of an id or a name that count in a comparison.
 fn letters(text: &str) -> String {
     text.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).take(MAX_COMPARED).collect()
 }

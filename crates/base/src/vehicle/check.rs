@@ -1,7 +1,7 @@
-//! The bounds that a vehicle must keep: each fault names vehicle, field, value and bound, and the line where known.
+//! The bounds of a vehicle definition. Each fault names vehicle, field, value and bound, and the line if it is known.
 //!
-//! Bounds keep out typing errors (a comma too far right, degrees for radians) and what the kinematics cannot hold;
-//! they do not say that a vehicle is legal anywhere. All faults are collected, not just the first.
+//! The bounds keep out typing errors (a shifted decimal point, degrees for radians) and values that the kinematics
+//! cannot handle. They do not say that a vehicle is legal anywhere. All faults are collected.
 
 use std::fmt;
 
@@ -9,14 +9,14 @@ use super::collide::{self, Clash};
 use super::definition::{VehicleDefinition, closure_m};
 use super::{Unit, Vehicle};
 
-/// One thing wrong with a vehicle file.
+/// One fault of a vehicle file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
-    /// Line in the file, from 1, where it is known.
+    /// Line in the file, from 1, if known.
     pub line: Option<usize>,
     /// `vehicle "id", unit 2 "dolly", width_m`, or empty.
     pub place: String,
-    /// What is wrong and which bound it breaks.
+    /// The fault and the bound that it breaks.
     pub problem: String,
 }
 
@@ -32,7 +32,7 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Where a field stands in a file: vehicle, unit if it is a unit's, name.
+/// A field of a file: vehicle, unit (if the field is a unit's), field name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Place {
     pub(crate) vehicle: usize,
@@ -40,16 +40,17 @@ pub(crate) struct Place {
     pub(crate) field: &'static str,
 }
 
-/// Longest chain: the kernel's cost and the tubes grow with the square of it; the longest in service have eight.
+/// Most units of a vehicle. The kernel's cost and the tubes grow with the square of the number; the longest vehicles in
+/// service have eight.
 const MAX_UNITS: usize = 16;
-/// Names reach tables, layer names and pictures.
+/// Bounds of texts that reach tables, layer names and pictures.
 const MAX_ID_CHARS: usize = 64;
 const MAX_NAME_CHARS: usize = 200;
 const MAX_SOURCE_CHARS: usize = 4000;
-/// The stated length may differ from the units' by the rounding of published dimensions.
+/// Allowed difference between the stated length and the sum of the units: published dimensions are rounded.
 const LENGTH_TOLERANCE_M: f64 = 0.1;
 
-/// Everything wrong with `definitions`, in file order; `line_of` finds the line of a field.
+/// All faults of `definitions`, in file order. `line_of` returns the line of a field.
 pub(crate) fn faults(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place) -> Option<usize>) -> Vec<Fault> {
     let mut check = Check { line_of, vehicle: 0, label: String::new(), faults: Vec::new() };
     for (index, definition) in definitions.iter().enumerate() {
@@ -60,12 +61,12 @@ pub(crate) fn faults(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place) 
         let vehicle = definition.vehicle();
         check.whole(&vehicle);
         check.units(&vehicle.units);
-        // Sums of values that are out of bounds would only repeat the fault.
+        // Sums of values out of bounds would only repeat the fault.
         if check.faults.len() == found && !vehicle.units.is_empty() {
             check.bodies(&vehicle.units);
             check.length(&vehicle);
         }
-        // Bodies that stand in each other straight have been named.
+        // Bodies that already overlap when the vehicle is straight have been reported.
         if check.faults.len() == found {
             check.turning(&vehicle.units, true);
         }
@@ -73,7 +74,7 @@ pub(crate) fn faults(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place) 
     check.faults
 }
 
-/// What is odd about vehicles without a fault, as faults are: a real vehicle may be so, but it should be looked at.
+/// Warnings about vehicles without a fault. A real vehicle may be so, but somebody should look at it.
 pub(crate) fn warnings(definitions: &[VehicleDefinition], line_of: &dyn Fn(Place) -> Option<usize>) -> Vec<Fault> {
     let mut check = Check { line_of, vehicle: 0, label: String::new(), faults: Vec::new() };
     for (index, definition) in definitions.iter().enumerate() {
@@ -152,7 +153,7 @@ impl Check<'_> {
             self.range(at, "front_overhang_m", u.front_overhang_m, -50.0, 20.0);
             self.range(at, "rear_overhang_m", u.rear_overhang_m, -50.0, 50.0);
             self.range(at, "width_m", u.width_m, 0.1, 12.0);
-            // At 90° of lock the steer axle's path gives the axle no direction (1/cos δ); hinges may go past it.
+            // At 90° of lock the steer axle's path gives the axle no direction (1/cos δ). Hinges may exceed 90°.
             let most_deg = if i == 0 { 85.0 } else { 170.0 };
             self.range(at, "max_articulation_deg", u.max_articulation_rad.to_degrees(), 1.0, most_deg);
             self.range(at, "sway_deg", u.sway_rad.to_degrees(), 0.0, 10.0);
@@ -160,8 +161,8 @@ impl Check<'_> {
         }
     }
 
-    /// −L < d: a coupling ahead of the unit's own front coupling reverses the chain. d ≤ 2 L: beyond it, every error
-    /// at the front coupling would leave the rear one more than doubled and opposite.
+    /// d must exceed −L: a coupling ahead of the unit's own front coupling reverses the chain. d must not exceed 2 L:
+    /// beyond that, a deviation at the front coupling leaves the rear coupling more than doubled and reversed.
     fn hitch(&mut self, at: Option<(usize, &Unit)>, u: &Unit) {
         let (d, l) = (u.hitch_offset_m, u.coupling_to_axle_m);
         if !(d > -l && d <= 2.0 * l) {
@@ -170,8 +171,9 @@ impl Check<'_> {
         }
     }
 
-    /// Bodies have a length, and do not stand in each other when the vehicle is straight: a trailer's body may reach
-    /// over the unit that tows it (fifth wheel), but not past that unit's front coupling, nor into the one before.
+    /// Each body has a positive length, and bodies do not overlap when the vehicle is straight. A trailer's body may
+    /// reach over the unit that tows it (fifth wheel). It may not reach past that unit's front coupling, nor into the
+    /// unit before that one.
     fn bodies(&mut self, units: &[Unit]) {
         let (mut coupling, mut rears) = (0.0, Vec::with_capacity(units.len()));
         for (i, u) in units.iter().enumerate() {
@@ -214,7 +216,8 @@ impl Check<'_> {
         }
     }
 
-    /// Hinge limits that the bodies do not let it reach: impossible where even rounded ends meet, else odd.
+    /// Hinge limits that overlapping bodies keep the hinge from reaching. If even rounded ends overlap, the limit is a
+    /// fault, otherwise a warning.
     fn turning(&mut self, units: &[Unit], impossible: bool) {
         for clash in collide::clashes(units).into_iter().filter(|clash| clash.rounded == impossible) {
             let Clash { hinge, units: (ahead, behind), angle_deg, .. } = clash;
@@ -223,7 +226,7 @@ impl Check<'_> {
             let who = format!("the bodies of units {} and {}", ahead + 1, behind + 1);
             match (angle_deg > 0.0, impossible) {
                 (false, _) => {
-                    let problem = format!("{who} stand in each other when the vehicle is straight");
+                    let problem = format!("{who} overlap when the vehicle is straight");
                     self.fault(Some((hinge, unit)), "front_overhang_m", problem);
                 }
                 (true, true) => {
@@ -258,7 +261,7 @@ impl Check<'_> {
     fn range(&mut self, at: Option<(usize, &Unit)>, field: &'static str, value: f64, least: f64, most: f64) {
         if !value.is_finite() {
             self.fault(at, field, format!("{value} is not a finite number"));
-        // Degrees have been through radians: what was written as the bound must pass.
+        // Degrees are converted to radians and back: a value equal to the bound must pass.
         } else if value < least - 1e-9 || value > most + 1e-9 {
             let bound = if value < least { "least" } else { "most" };
             let limit = if value < least { least } else { most };
@@ -278,7 +281,7 @@ impl Check<'_> {
     }
 }
 
-/// Names from files in messages: without control characters, and not a screenful.
+/// A name from a file for use in messages: without control characters, and shortened.
 fn shown(text: &str) -> String {
     let mut short: String = text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).take(40).collect();
     if text.chars().count() > 40 {

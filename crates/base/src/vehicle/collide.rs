@@ -1,45 +1,46 @@
-//! Bodies that would stand in each other: straight, and as each hinge turns to its limit.
+//! Bodies that would overlap when the vehicle is straight, or as a hinge turns to its limit.
 //!
-//! Seen from above, with no heights. What lies over what is normal and left out: a semi-trailer over the unit that carries its
-//! fifth wheel, and a dolly's low frame under the unit that draws it. All else may not meet.
+//! The view is from above, without heights. Two overlaps are normal and left out: a semi-trailer over the unit that
+//! carries its fifth wheel, and a dolly's low frame under the unit that draws it. Other bodies may not overlap.
 //!
-//! Bodies are rectangles, which real ones with rounded or chamfered corners are not. So two answers are told apart: bodies
-//! that meet even with their ends fully rounded off (half circles as wide as the body) cannot be built; bodies of which only the
-//! corners meet are odd.
+//! Bodies are rectangles here, but real bodies have rounded or chamfered corners. So there are two results. Bodies that
+//! overlap even with their ends rounded to half circles cannot be built. Bodies of which only the corners overlap get a
+//! warning.
 
 use super::Unit;
 
-/// Angles are tried in steps of so many degrees.
+/// Step between the angles that are tried, degrees.
 const STEP_DEG: f64 = 0.25;
-/// Bodies that touch do not overlap; published dimensions are rounded, metres.
+/// Overlap that counts as touching, metres: published dimensions are rounded.
 pub(crate) const TOUCH_M: f64 = 0.05;
 
-/// A fifth wheel farther behind the axle than this share of L would lift the front of the unit that carries it. The lead
-/// trailer of a Canadian B-train has it at 0.21 (CA-BTRAIN25); lorries have the eyes of their drawbars from 0.3 on.
+/// Largest distance of a fifth wheel behind the axle, as a share of L. A greater share would lift the front of the unit
+/// that carries it. The lead trailer of a Canadian B-train has 0.21 (CA-BTRAIN25). Lorries have their drawbar eyes at
+/// 0.3 or more.
 const FIFTH_WHEEL_MOST: f64 = 0.28;
 
-/// Two bodies that meet as a hinge turns.
+/// Two bodies that overlap at some angle of a hinge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Clash {
-    /// The unit behind the hinge that turns.
+    /// Index of the unit behind the hinge that turns.
     pub(crate) hinge: usize,
-    /// The bodies, front one first.
+    /// Indices of both units, front one first.
     pub(crate) units: (usize, usize),
-    /// At this angle, degrees; not above the hinge's limit.
+    /// Hinge angle of the overlap, degrees; not above the hinge's limit.
     pub(crate) angle_deg: f64,
-    /// Even with rounded ends; else only their corners.
+    /// Whether the bodies overlap even with rounded ends. Otherwise only their corners overlap.
     pub(crate) rounded: bool,
 }
 
-/// Whether `unit` is a dolly or turntable axle: drawn by a bar, with a unit of which the body lies over it.
+/// Whether `unit` is a dolly or turntable axle: a drawbar draws it, and the next unit's body lies over it.
 #[must_use]
 pub(crate) fn is_dolly(units: &[Unit], unit: usize) -> bool {
     let own = units.get(unit).is_some_and(|u| u.front_overhang_m <= 0.0);
     own && unit > 0 && carries(units, unit)
 }
 
-/// Whether `unit` carries the next one's body on a fifth wheel: the body reaches ahead of the coupling, which is over the
-/// unit's own frame and no farther behind its axles than they can bear.
+/// Whether `unit` carries the next unit's body on a fifth wheel. The body then reaches ahead of the coupling, and the
+/// coupling is no farther behind the axle than [`FIFTH_WHEEL_MOST`] allows.
 #[must_use]
 pub(crate) fn carries(units: &[Unit], unit: usize) -> bool {
     units.get(unit).zip(units.get(unit + 1)).is_some_and(|(carrier, carried)| {
@@ -48,8 +49,8 @@ pub(crate) fn carries(units: &[Unit], unit: usize) -> bool {
     })
 }
 
-/// The first clash of each hinge: with rounded ends where there is one, else of the corners alone. Straight overlaps
-/// (`angle_deg` 0) included.
+/// The first overlap at each hinge: with rounded ends if there is one, otherwise of the corners alone. Overlaps of the
+/// straight vehicle (`angle_deg` 0) are included.
 pub(crate) fn clashes(units: &[Unit]) -> Vec<Clash> {
     (1..units.len()).filter_map(|hinge| first(units, hinge, true).or_else(|| first(units, hinge, false))).collect()
 }
@@ -78,7 +79,7 @@ fn may_not_meet(units: &[Unit], ahead: usize, behind: usize) -> bool {
     !(next && (carries(units, ahead) || is_dolly(units, behind)))
 }
 
-/// A body on the plane: middle, direction, half length and half width.
+/// A body in the plane: centre, direction, half length and half width.
 struct Body {
     middle: [f64; 2],
     along: [f64; 2],
@@ -86,7 +87,7 @@ struct Body {
     half_width: f64,
 }
 
-/// All bodies with the hinge ahead of unit `hinge` turned, the others straight.
+/// All bodies with the hinge ahead of unit `hinge` turned by `angle` and the other hinges straight.
 fn turned(units: &[Unit], hinge: usize, angle: f64) -> Vec<Body> {
     let (mut coupling, mut along) = ([0.0, 0.0], [1.0, 0.0]);
     let mut bodies = Vec::with_capacity(units.len());
@@ -108,7 +109,7 @@ fn turned(units: &[Unit], hinge: usize, angle: f64) -> Vec<Body> {
 }
 
 impl Body {
-    /// Rectangles overlap by more than a touch, by separating axes.
+    /// Whether the rectangles overlap by more than [`TOUCH_M`] (separating axis test).
     fn meets(&self, other: &Self) -> bool {
         let gap = [0, 1].map(|k| other.middle[k] - self.middle[k]);
         let across = |u: [f64; 2]| [-u[1], u[0]];
@@ -120,7 +121,7 @@ impl Body {
         })
     }
 
-    /// The same with ends rounded off to half circles; a body shorter than wide is no more than a disc of its length.
+    /// As [`Self::meets`], with ends rounded to half circles. A body shorter than wide becomes a disc of its length.
     fn rounded_meets(&self, other: &Self) -> bool {
         let radius = |body: &Self| body.half_width.min(body.half_length);
         let core = |body: &Self| {
@@ -135,7 +136,7 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// Distance of two segments.
+/// Distance between two segments.
 fn apart(a: [[f64; 2]; 2], b: [[f64; 2]; 2]) -> f64 {
     let side =
         |p: [f64; 2], s: [[f64; 2]; 2]| (s[1][0] - s[0][0]) * (p[1] - s[0][1]) - (s[1][1] - s[0][1]) * (p[0] - s[0][0]);

@@ -1,6 +1,6 @@
 //! A vehicle as files write it: degrees, optional fields, the names of the TOML format. JSON uses the same names.
 //!
-//! Promises that a vehicle read from a file comes back bit for bit through its definition: angles are written as the
+//! A vehicle read from a file comes back bit for bit through its definition, because each angle is written as the
 //! shortest decimal that converts to the same radians.
 
 use serde::{Deserialize, Serialize};
@@ -13,31 +13,31 @@ use super::{Unit, Vehicle, VehicleError, check, defaults};
 pub struct VehicleDefinition {
     /// Letters, digits, `.`, `-` and `_`; unique in its file.
     pub id: String,
-    /// For people. Default: the id.
+    /// Name for people. Default: the id.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// Region code. Default: empty.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub region: Option<String>,
-    /// Overall length; checked against the units. Default: their sum.
+    /// Overall length. It is checked against the units. Default: their sum.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length_m: Option<f64>,
-    /// Default: not known, so that a tagged height limit leaves the verdict open.
+    /// Height. Default: unknown, and a tagged height limit then leaves the verdict open.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub height_m: Option<f64>,
-    /// Gross mass of the combination. Default: not known.
+    /// Gross mass of the combination. Default: unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gross_mass_t: Option<f64>,
-    /// Heaviest single axle. Default: not known.
+    /// Load of the heaviest single axle. Default: unknown.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axle_load_t: Option<f64>,
-    /// ε. Default 0.15.
+    /// ε, tolerance of the steer axle. Default 0.15.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tracking_tolerance_m: Option<f64>,
-    /// m. Default 3.
+    /// m, tolerance of the steer axle's course. Default 3.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tracking_heading_deg: Option<f64>,
-    /// γ_min. Default 0.3.
+    /// γ_min, least shrinking of ε. Default 0.3.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub min_shrink: Option<f64>,
     /// Where the dimensions come from. Default: empty.
@@ -51,33 +51,33 @@ pub struct VehicleDefinition {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct UnitDefinition {
-    /// For people. Default: `unit 1`, `unit 2` …
+    /// Name for people. Default: `unit 1`, `unit 2` …
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// L.
+    /// L, front coupling to axle.
     pub coupling_to_axle_m: f64,
-    /// d. Default 0.
+    /// d, axle back to rear coupling. Default 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hitch_offset_m: Option<f64>,
-    /// f. Default 1.6.
+    /// f, body ahead of the front coupling. Default 1.6.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub front_overhang_m: Option<f64>,
-    /// r. Default 4.3.
+    /// r, body behind the axle. Default 4.3.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rear_overhang_m: Option<f64>,
-    /// b. Default 2.6.
+    /// b, body width. Default 2.6.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub width_m: Option<f64>,
-    /// θ. Default 42 for the first unit (its steering lock), 70 for the others.
+    /// θ, hinge limit. Default 42 for the first unit (its steering lock), 70 for the others.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub max_articulation_deg: Option<f64>,
-    /// σ. Default 0.2.
+    /// σ, slip of the axle. Default 0.2.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sway_deg: Option<f64>,
 }
 
 impl VehicleDefinition {
-    /// The vehicle, with defaults for what is left out and nothing checked.
+    /// The vehicle with defaults for what is left out. Nothing is checked.
     pub(crate) fn vehicle(&self) -> Vehicle {
         let units: Vec<Unit> = self.unit.iter().enumerate().map(|(i, u)| u.unit(i)).collect();
         let tracking_heading_deg = self.tracking_heading_deg.unwrap_or(defaults::TRACKING_HEADING_DEG);
@@ -117,7 +117,7 @@ impl UnitDefinition {
     }
 }
 
-/// Front of the foremost body to rear of the rearmost when the vehicle stands straight, metres.
+/// Length of the straight vehicle from the front of the foremost body to the rear of the rearmost, metres.
 pub(crate) fn closure_m(units: &[Unit]) -> f64 {
     let (mut coupling, mut front, mut rear) = (0.0_f64, f64::NEG_INFINITY, f64::INFINITY);
     for unit in units {
@@ -130,7 +130,7 @@ pub(crate) fn closure_m(units: &[Unit]) -> f64 {
 }
 
 impl Vehicle {
-    /// The whole definition in file units, nothing left out that is known.
+    /// The whole definition in file units. Only unknown fields are left out.
     #[must_use]
     pub fn definition(&self) -> VehicleDefinition {
         VehicleDefinition {
@@ -152,15 +152,15 @@ impl Vehicle {
     /// The definition as JSON, in the field order of the TOML format.
     ///
     /// # Errors
-    /// None for a vehicle that passed the checks; serde_json's otherwise.
+    /// None for a vehicle that passed the checks; otherwise serde_json's.
     pub fn to_json(&self) -> Result<serde_json::Value, serde_json::Error> {
         serde_json::to_value(self.definition())
     }
 
-    /// A vehicle from its definition in JSON, checked like one from a file.
+    /// Reads a vehicle from its definition in JSON, with the checks of a file.
     ///
     /// # Errors
-    /// [`VehicleError::Refused`] with line (of a syntax error), field and bound.
+    /// [`VehicleError::Refused`] with field and bound, and with the line of a syntax error.
     pub fn from_json(json: &str) -> Result<Self, VehicleError> {
         let refused = |faults| VehicleError::Refused { file: "vehicle definition".into(), faults };
         let definition: VehicleDefinition = serde_json::from_str(json).map_err(|e| {
@@ -184,8 +184,8 @@ fn unit_definition(unit: &Unit) -> UnitDefinition {
     }
 }
 
-/// The shortest decimal number of degrees that converts to exactly `radians` (`to_degrees` turns 42° into
-/// 42.00000000000001°); the plain conversion where none does.
+/// The shortest decimal number of degrees that converts to exactly `radians`. (`to_degrees` turns 42° into
+/// 42.00000000000001°.) If there is none, the plain conversion.
 fn degrees(radians: f64) -> f64 {
     let plain = radians.to_degrees();
     (0..=15)

@@ -1,6 +1,6 @@
-//! TOML text → vehicles, or every fault with the line it stands on.
+//! Reads TOML text into vehicles, or into all its faults with their lines.
 //!
-//! Unknown fields are refused: a misspelt `width_n` would otherwise leave a default in a certificate.
+//! Unknown fields are refused: a misspelt `width_n` would otherwise put a default into a certificate.
 
 use serde::Deserialize;
 use toml::Spanned;
@@ -16,7 +16,7 @@ struct VehicleFile {
     vehicle: Vec<VehicleDefinition>,
 }
 
-/// The vehicles of a file's text, in file order, at least one; and what is odd about them.
+/// The vehicles of a file's text in file order, at least one, and the warnings about them.
 pub(crate) fn parse(text: &str) -> Result<(Vec<Vehicle>, Vec<Fault>), Vec<Fault>> {
     let unreadable = |e: &toml::de::Error| {
         let line = e.span().map(|span| line_at(text, span.start));
@@ -37,7 +37,7 @@ pub(crate) fn parse(text: &str) -> Result<(Vec<Vehicle>, Vec<Fault>), Vec<Fault>
     Ok((file.vehicle.iter().map(VehicleDefinition::vehicle).collect(), odd))
 }
 
-/// Byte offset of a field's value; of its unit or vehicle where the field is left out.
+/// Byte offset of a field's value. If the field is left out, the offset of its unit or vehicle.
 fn offset(tree: &Spanned<DeTable<'_>>, place: Place) -> Option<usize> {
     let vehicle = tree.get_ref().get("vehicle")?.get_ref().get(place.vehicle)?;
     let table = match place.unit {

@@ -2,12 +2,12 @@
 //!
 //! | file | for |
 //! | --- | --- |
-//! | `definition` | a vehicle in the file's units, as TOML and JSON have it, and to and from [`Vehicle`] |
-//! | `defaults` | what a definition that leaves something out gets, and why |
-//! | `check` | the bounds a definition must keep, as faults with a place |
-//! | `collide` | bodies that would stand in each other, straight or turned |
+//! | `definition` | a vehicle in the file's units, as TOML and JSON write it; conversion from and to [`Vehicle`] |
+//! | `defaults` | default values of fields that a definition leaves out, and their reasons |
+//! | `check` | the bounds of a definition, as faults with a place |
+//! | `collide` | bodies that would overlap, straight or turned |
 //! | `file` | TOML text → vehicles, or every fault with its line |
-//! | `catalogue` | the shipped vehicles, which of them belong to a country, and look-up by id |
+//! | `catalogue` | the shipped vehicles, the vehicles of a country, and look-up by id |
 
 mod catalogue;
 mod check;
@@ -26,24 +26,24 @@ pub use check::Fault;
 pub use definition::{UnitDefinition, VehicleDefinition};
 pub use regions::{Region, Regions};
 
-/// One unit of the chain (design section 1). A dolly is a unit of its own. Metres, radians.
+/// One unit of the chain, in metres and radians. A dolly is a unit of its own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Unit {
-    /// For people.
+    /// Name for people.
     pub name: String,
     /// L: front coupling (steer axle for unit 0) to the effective rear axle; > 0.
     pub coupling_to_axle_m: f64,
-    /// d: effective rear axle back to the rear coupling; negative for a fifth wheel ahead of the axle.
+    /// d: effective rear axle back to the rear coupling; negative for a coupling ahead of the axle.
     pub hitch_offset_m: f64,
-    /// f: body ahead of the front coupling (negative: the body starts behind it).
+    /// f: body ahead of the front coupling; negative if the body starts behind it.
     pub front_overhang_m: f64,
     /// r: body behind the axle.
     pub rear_overhang_m: f64,
     /// b: body width.
     pub width_m: f64,
-    /// θ: the most that the hinge at its front coupling can turn; for unit 0 the steering lock.
+    /// θ: largest angle of the hinge at the front coupling; for unit 0 the steering lock.
     pub max_articulation_rad: f64,
-    /// σ: the most by which the axle's motion may differ from its heading.
+    /// σ: largest angle between the axle's motion and its heading (slip).
     pub sway_rad: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Which countries' roads which region's combinations belong to (`data/regions.toml`, compiled in).
+//! Regions: whose combinations run on the roads of which countries (`data/regions.toml`, compiled in).
 
 use std::collections::HashMap;
 
@@ -14,7 +14,7 @@ const BUILTIN: &str = include_str!("../../../../data/regions.toml");
 pub struct Region {
     /// As in [`super::Vehicle::region`].
     pub code: String,
-    /// For people.
+    /// Name for people.
     pub name: String,
     /// ISO 3166-1 alpha-2 codes of its countries, upper case.
     pub countries: Vec<String>,
@@ -59,7 +59,7 @@ impl Regions {
         self.by_country.get(&country).unwrap_or(&self.otherwise)
     }
 
-    /// Ids of the vehicles that are certified in every country beside its own.
+    /// Ids of the vehicles that are certified in every country, in addition to those of the country's regions.
     #[must_use]
     pub fn everywhere(&self) -> &[String] {
         &self.everywhere

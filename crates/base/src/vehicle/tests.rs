@@ -1,4 +1,5 @@
-//! The shipped catalogue keeps its promises; wrong files are refused with line, field and bound; nothing panics.
+//! Tests of the shipped catalogue, and of refusals: wrong files are refused with line, field and bound, and nothing
+//! panics.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
@@ -22,7 +23,7 @@ front_overhang_m = 1.6
 rear_overhang_m = 4.3
 "#;
 
-/// The faults of a file, one a line.
+/// The faults of a file, one per line.
 fn refused(text: &str) -> String {
     match Catalogue::from_toml(text, "my.toml") {
         Ok(_) => panic!("accepted:\n{text}"),
@@ -30,7 +31,7 @@ fn refused(text: &str) -> String {
     }
 }
 
-/// Changing `from` to `to` in a good file gives a message that holds `message`.
+/// Changes `from` to `to` in a valid file and expects `message` in the refusal.
 fn check(from: &str, to: &str, message: &str) {
     assert!(SEMI.contains(from), "{from}");
     let said = refused(&SEMI.replacen(from, to, 1));
@@ -78,8 +79,8 @@ fn the_type_2_road_train_is_three_trailers_on_two_dollies() {
     assert_eq!(train.units[0].max_articulation_rad, 42.0_f64.to_radians());
 }
 
-/// AASHTO's minimum turns, steer axle on the centreline turning radius (metres): the lock must leave room for what the
-/// certificate keeps in reserve, some 6° (3° of heading, 3° of tracking and slip).
+/// AASHTO's minimum turns, as centreline turning radii of the steer axle (metres). The lock must leave what the
+/// certificate keeps in reserve: about 6° (3° of heading, 3° of tracking and slip).
 #[test]
 fn steering_locks_allow_the_published_minimum_turns() {
     let catalogue = Catalogue::builtin().unwrap();
@@ -271,7 +272,7 @@ fn no_country_is_in_two_regions() {
     assert_eq!(all.len(), listed);
 }
 
-/// A piece of TOML that may or may not fit where it is put.
+/// A piece of TOML, valid or not where it is put.
 fn scrap() -> impl Strategy<Value = String> {
     prop_oneof![
         prop::sample::select(vec![
@@ -309,7 +310,7 @@ fn scrap() -> impl Strategy<Value = String> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(3000))]
 
-    /// Cuts and insertions anywhere: a catalogue or a refusal, and what is accepted keeps the bounds and comes back
+    /// Cuts and insertions anywhere give a catalogue or a refusal. An accepted vehicle keeps the bounds and comes back
     /// from JSON.
     #[test]
     fn a_mutated_file_never_panics(edits in prop::collection::vec((any::<prop::sample::Index>(), 0usize..12, scrap()), 1..5)) {

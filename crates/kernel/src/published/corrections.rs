@@ -1,14 +1,15 @@
 //! Def. 6: the permissible corrections of the prime mover, as Algorithm 1 calls them.
 //!
-//! How far they go is not in the paper, nor are Δq_0^max and γ_0^min. Read here: CORRCEN centres the last trailer (μ^c = 1, so
-//! that it moves as far as the prime mover), SHRINK takes off what is still missing, as if all of it reached the trailer.
+//! The paper gives neither the size of a correction nor values of Δq_0^max and γ_0^min. This is the reading here:
+//! CORRCEN centres the last trailer (μ^c = 1, so the trailer moves as far as the prime mover). SHRINK takes off what is
+//! still missing, as if all of it reached the trailer.
 
 use super::ellipse::Shape;
 use super::leeway::Leeway;
 use super::plane::V2;
 use super::reading::As;
 
-/// What is permitted.
+/// The limits of the corrections.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Permissible {
     /// Δq_0^max, metres, ≥ 0.
@@ -17,21 +18,21 @@ pub struct Permissible {
     pub min_shrink: f64,
 }
 
-/// What netcert's own corrections are given by default.
+/// The defaults of netcert's own corrections.
 impl Default for Permissible {
     fn default() -> Self {
         Self { max_shift_m: 1.5, min_shrink: 0.3 }
     }
 }
 
-/// CORRCEN of line 11: Δq_0 along the left normal, metres; away from the side that is short of room, to the middle between
-/// both edges, within ±Δq_0^max.
+/// CORRCEN of line 11: Δq_0 along the left normal, metres. It moves away from the side that lacks room, to the middle
+/// between both edges, within ±Δq_0^max.
 #[must_use]
 pub fn corrcen(leeway: &Leeway, permissible: &Permissible) -> f64 {
     (0.5 * (leeway.left_m - leeway.right_m)).clamp(-permissible.max_shift_m, permissible.max_shift_m)
 }
 
-/// SHRINK of line 14: γ_0 and Q̃_0 = Q_0/γ_0². What is missing comes off the prime mover's radius along `normal`.
+/// SHRINK of line 14: γ_0 and Q̃_0 = Q_0/γ_0². The missing room comes off the prime mover's radius along `normal`.
 #[must_use]
 pub fn shrink(shape: &Shape, leeway: &Leeway, normal: V2, permissible: &Permissible, radius: As) -> (f64, Shape) {
     let missing = (-leeway.least_m()).max(0.0);

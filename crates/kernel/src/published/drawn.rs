@@ -1,4 +1,5 @@
-//! A route for Table I's scenarios, from `data/paper/route.toml`: as long as the paper's, of netcert's own drawing.
+//! A route for Table I's scenarios, from `data/paper/route.toml`. It is as long as the paper's route; its shape is
+//! netcert's own.
 
 use serde::Deserialize;
 use thiserror::Error;
@@ -6,21 +7,21 @@ use thiserror::Error;
 use netcert_base::corridor::Corridor;
 
 const FILE: &str = "data/paper/route.toml";
-/// Stations are about a metre apart, as everywhere; the route's length is a whole number of steps.
+/// Approximate station spacing, metres. The route's length is a whole number of steps.
 const SPACING_M: f64 = 1.0;
 
-/// Why the shipped route cannot be read: a fault of the build, not of a user.
+/// Why the shipped route cannot be read. This is a fault of the build, not of a user.
 #[derive(Debug, Error)]
 pub enum DrawnError {
-    /// Not the fields expected.
+    /// Unexpected fields.
     #[error("{FILE}: {0}")]
     Syntax(#[from] toml::de::Error),
-    /// Pieces or widths that are no route.
+    /// Pieces or widths that do not make a route.
     #[error("{FILE}: {0}")]
     Shape(&'static str),
 }
 
-/// The route's line and how much wider it is than w_min.
+/// The route's curvature, and its half-width beyond w_min.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DrawnRoute {
@@ -44,10 +45,10 @@ struct Knot {
     extra_m: f64,
 }
 
-/// The route that ships.
+/// The shipped route.
 ///
 /// # Errors
-/// None with the file that ships.
+/// None with the shipped file.
 pub fn drawn_route() -> Result<DrawnRoute, DrawnError> {
     let route: DrawnRoute = toml::from_str(include_str!("../../../../data/paper/route.toml"))?;
     let total: f64 = route.piece.iter().map(|p| p.length_m).sum();
@@ -65,7 +66,7 @@ pub fn drawn_route() -> Result<DrawnRoute, DrawnError> {
 }
 
 impl DrawnRoute {
-    /// The corridor with half-widths of `w_min_m` (metres) and more, as much on either side. Its last station stands
+    /// The corridor with half-widths of at least `w_min_m` (metres), equal on both sides. Its last station stands
     /// exactly `length_m` from the first.
     #[must_use]
     pub fn corridor(&self, w_min_m: f64) -> Corridor {

@@ -1,22 +1,22 @@
-//! Def. 1: the ellipse 𝓔(q, Q), and Eq. 2, its support radius as printed and as it is.
+//! Def. 1: the ellipse 𝓔(q, Q). Eq. 2: its support radius, as printed and repaired.
 
 use super::plane::{V2, dot, minus};
 use super::reading::As;
 
-/// Q ∈ S²₊₊ of Def. 1, 1/m²: a point ψ from the centre is inside where ψᵀQψ ≤ 1, so that the eigenvalues are inverse
-/// *squared* semi-axes. The paper keeps to this throughout; only its words ("diagonal elements quantify scaling") fit Q⁻¹.
+/// Q ∈ S²₊₊ of Def. 1, 1/m². A point ψ from the centre is inside if ψᵀQψ ≤ 1, so the eigenvalues are inverse *squared*
+/// semi-axes. The paper's formulas keep to this; only its words ("diagonal elements quantify scaling") fit Q⁻¹.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
     /// First diagonal element.
     pub xx: f64,
-    /// Off the diagonal.
+    /// Off-diagonal element.
     pub xy: f64,
     /// Second diagonal element.
     pub yy: f64,
 }
 
 impl Shape {
-    /// The ellipse with semi-axis `along_m` along the unit vector `axis`, `across_m` across it; both > 0.
+    /// The ellipse with semi-axis `along_m` along the unit vector `axis` and `across_m` across it; both > 0.
     #[must_use]
     pub fn from_semi_axes(axis: V2, along_m: f64, across_m: f64) -> Self {
         Self::rotated(axis, along_m.powi(-2), across_m.powi(-2))
@@ -36,7 +36,7 @@ impl Shape {
         Self { xx: self.yy * d, xy: -self.xy * d, yy: self.xx * d }
     }
 
-    /// Its trace.
+    /// The trace of Q.
     #[must_use]
     pub fn trace(&self) -> f64 {
         self.xx + self.yy
@@ -54,8 +54,8 @@ impl Shape {
         Self { xx: p * self.xx + r * other.xx, xy: p * self.xy + r * other.xy, yy: p * self.yy + r * other.yy }
     }
 
-    /// Eq. 2 along the unit vector `n`, metres: to the letter 1/√(nᵀQn), which is how far the ellipse reaches *on the ray*;
-    /// repaired √(nᵀQ⁻¹n), how far any of its points reaches in that direction (E9).
+    /// Eq. 2 along the unit vector `n`, metres. As printed it is 1/√(nᵀQn), the reach of the ellipse *on the ray*.
+    /// Repaired it is √(nᵀQ⁻¹n), the reach of any of its points in that direction (E9).
     #[must_use]
     pub fn support_radius_m(&self, n: V2, radius: As) -> f64 {
         match radius {
@@ -64,7 +64,7 @@ impl Shape {
         }
     }
 
-    /// sup over n̂ of Eq. 2, metres: the long semi-axis; both readings agree on it.
+    /// The supremum of Eq. 2 over n̂, metres: the long semi-axis. Both readings agree on it.
     #[must_use]
     pub fn largest_radius_m(&self) -> f64 {
         let half = 0.5 * (self.xx - self.yy);
@@ -72,7 +72,7 @@ impl Shape {
         1.0 / least.sqrt()
     }
 
-    /// Q/γ² of Def. 6: semi-axes times γ.
+    /// Q/γ² of Def. 6: the semi-axes times γ.
     #[must_use]
     pub fn shrunk(&self, gamma: f64) -> Self {
         let by = gamma.powi(-2);
@@ -103,10 +103,10 @@ impl Stet {
         self.shape.form(minus(p, self.centre)) <= 1.0
     }
 
-    /// The boundary as `count` points, counter-clockwise, for pictures.
+    /// `count` points of the boundary, counter-clockwise, for pictures.
     #[must_use]
     pub fn outline(&self, count: usize) -> Vec<V2> {
-        // A point of the boundary for each outer normal: Q⁻¹n / √(nᵀQ⁻¹n).
+        // Each outer normal n gives a point of the boundary: Q⁻¹n / √(nᵀQ⁻¹n).
         let inverse = self.shape.inverse();
         let at = |i: usize| {
             let (s, c) = (std::f64::consts::TAU * i as f64 / count.max(1) as f64).sin_cos();
@@ -117,7 +117,7 @@ impl Stet {
         (0..count).map(at).collect()
     }
 
-    /// Whether it lies on the inner side of the line through `edge` with outward normal `n`.
+    /// Whether the tube lies on the inner side of the line through `edge` with outward normal `n`.
     #[must_use]
     pub fn keeps_off(&self, edge: V2, n: V2) -> bool {
         dot(minus(edge, self.centre), n) >= self.shape.support_radius_m(n, As::Repaired)

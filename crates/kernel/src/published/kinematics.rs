@@ -1,6 +1,6 @@
-//! Def. 4: the kinematic maps κ_i and ι_i of one hinge, and Ω and Ξ, which compose them over a sway tuple δ̂.
+//! Def. 4: the kinematic maps κ_i and ι_i of one hinge. Ω and Ξ compose them over a sway tuple δ̂.
 //!
-//! Eq. 5b lets ι_i depend on δ_i, but Eq. 15 to 18, which define it, stand at δ = 0: there is no dependence to be had.
+//! Eq. 5b lets ι_i depend on δ_i. Eq. 15 to 18, which define ι_i, stand at δ = 0, so there is no such dependence.
 
 use super::ellipse::Shape;
 use super::plane::{V2, along, dot, minus, perp, unit_or};
@@ -22,7 +22,7 @@ pub fn follower_centre(q: V2, e: V2, sway_rad: f64, link_m: f64) -> V2 {
     along(q, -link_m, link_direction(e, sway_rad))
 }
 
-/// ι_i, Eq. 5b by Eq. 15, 17 and 18: Q_{i+1} from Q_i, the leader moving along ê.
+/// ι_i, Eq. 5b by Eq. 15, 17 and 18: Q_{i+1} from Q_i, with the leader moving along ê.
 #[must_use]
 pub fn follower_shape(shape: &Shape, e: V2, system: &System, reading: &Reading) -> Shape {
     let Some(limit) = sway_shape(e, system.link_m, system.sway_rad, reading.rotation) else { return *shape };
@@ -39,20 +39,20 @@ pub struct Link {
     pub sway_rad: f64,
 }
 
-/// The whole vehicle along a path of the prime mover: what Ω and Ξ need at every instant.
+/// The motion of the whole vehicle along a path of the prime mover, as Ω and Ξ need it at every instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chain {
     /// q_i(t): `[unit][instant]`, metres.
     pub centre: Vec<Vec<V2>>,
-    /// ê_i(t) and δ_i(t) of hinge i, between units i and i + 1: `[hinge][instant]`; one more entry for the last unit's
-    /// own direction of motion (δ = 0).
+    /// ê_i(t) and δ_i(t) of hinge i, between units i and i + 1: `[hinge][instant]`. One more entry holds the last
+    /// unit's own direction of motion (δ = 0).
     pub link: Vec<Vec<Link>>,
-    /// L, or what stands for it where the sway ellipse is recentred (E2).
+    /// L, or its replacement where the sway ellipse is recentred (E2).
     link_m: f64,
 }
 
 impl Chain {
-    /// Follows the path `q0` of the prime mover, which it enters along `entry` with all units in line.
+    /// Follows the prime mover's path `q0`. The vehicle enters along `entry` with all units in line.
     #[must_use]
     pub fn follow(system: &System, q0: &[V2], entry: V2, reading: &Reading) -> Self {
         let link_m = match (reading.sway, reading.sway_centre) {
@@ -71,7 +71,7 @@ impl Chain {
             let links: Vec<Link> = links.collect();
             let follow = |(&q, link): (&V2, &Link)| follower_centre(q, link.direction, link.sway_rad, link_m);
             let follower: Vec<V2> = q.iter().zip(&links).map(follow).collect();
-            // A rolling axle moves along its link; with δ = 0 throughout it does not, and moves as its places say.
+            // A rolling axle moves along its link. With δ = 0 throughout, it moves as its positions say instead.
             directions = match reading.sway {
                 Sway::Zero => velocities(&follower, entry),
                 Sway::NoSlip => links.iter().map(|l| link_direction(l.direction, l.sway_rad)).collect(),
@@ -83,7 +83,7 @@ impl Chain {
         chain
     }
 
-    /// Ω(t, δ̂(t)) at instant `i` (Eq. 8a, 8c): the centres of all units when the prime mover's is at `q0`.
+    /// Ω(t, δ̂(t)) at instant `i` (Eq. 8a, 8c): the centres of all units for the prime mover's centre `q0`.
     #[must_use]
     pub fn omega(&self, i: usize, q0: V2) -> Vec<V2> {
         let mut centres = vec![q0];
@@ -95,7 +95,7 @@ impl Chain {
         centres
     }
 
-    /// Ξ(t, δ̂(t)) at instant `i` (Eq. 8b, 8d): the shapes of all units from the prime mover's.
+    /// Ξ(t, δ̂(t)) at instant `i` (Eq. 8b, 8d): the shapes of all units from the prime mover's shape.
     #[must_use]
     pub fn xi(&self, i: usize, shape: &Shape, system: &System, reading: &Reading) -> Vec<Shape> {
         let mut shapes = vec![*shape];
@@ -107,14 +107,14 @@ impl Chain {
         shapes
     }
 
-    /// Whether δ̂(t) ∈ Θ at every instant (Assumption 1). Algorithm 1 never asks.
+    /// Whether δ̂(t) ∈ Θ at every instant (Assumption 1). Algorithm 1 does not test it.
     #[must_use]
     pub fn sways_are_allowed(&self, system: &System) -> bool {
         self.link.iter().flatten().all(|link| link.sway_rad.abs() <= system.sway_rad)
     }
 }
 
-/// Velocity unit vectors along a path, by central differences; at its ends by one step.
+/// Unit velocity vectors along a path, by central differences inside and one-sided differences at the ends.
 fn velocities(path: &[V2], entry: V2) -> Vec<V2> {
     let last = path.len().saturating_sub(1);
     let mut before = entry;
@@ -126,8 +126,9 @@ fn velocities(path: &[V2], entry: V2) -> Vec<V2> {
     (0..path.len()).map(at).collect()
 }
 
-/// δ_i(t) of an axle that rolls without slip at `link_m` behind a hinge that moves along `path` in the `directions`. Each
-/// step is exact for a straight step of the hinge: tan(β/2) falls by exp(−ℓ/L), β the angle from link to step.
+/// δ_i(t) of an axle that rolls without slip `link_m` behind a hinge. The hinge moves along `path` in the `directions`.
+/// Each step is exact for a straight step of the hinge: tan(β/2) falls by exp(−ℓ/L), with β the angle from link to
+/// step.
 #[must_use]
 pub fn no_slip_sway(path: &[V2], directions: &[V2], entry: V2, link_m: f64) -> Vec<f64> {
     let angle = |from: V2, to: V2| dot(perp(from), to).atan2(dot(from, to));

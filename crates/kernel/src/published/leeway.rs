@@ -22,10 +22,10 @@ impl Leeway {
     }
 }
 
-/// Eq. 19: ζ − r on both sides; `near` is a station near the ellipse, from which its foot is searched.
+/// Eq. 19: ζ − r on both sides. The foot of the ellipse is searched from station `near`.
 ///
-/// r_l and r_r stand along the normals at the foot: Def. 5 gives them a normal of time, ζ one of place, and only at the foot are
-/// both the same.
+/// r_l and r_r are taken along the normals at the foot. Def. 5 gives r a normal by time and ζ a normal by place; only
+/// at the foot are both the same.
 #[must_use]
 pub fn boundary_leeway(route: &Route, tube: &Stet, near: usize, reading: &Reading) -> Leeway {
     let foot = route.foot(tube.centre, near);
@@ -34,7 +34,7 @@ pub fn boundary_leeway(route: &Route, tube: &Stet, near: usize, reading: &Readin
     Leeway { left_m: left - radius, right_m: right - radius }
 }
 
-/// Eq. 20: ζ_l and ζ_r. Both faults of it (E10, E11) can be kept or repaired on their own.
+/// Eq. 20: ζ_l and ζ_r. Each of its faults (E10, E11) can be kept or repaired separately.
 fn offsets(route: &Route, tube: &Stet, foot: &Foot, reading: &Reading) -> [f64; 2] {
     let outward = match reading.normals {
         As::Printed => -1.0,

@@ -1,12 +1,13 @@
-//! Assumption 1, Eq. 9: how much further apart Ω and Ξ can bring two centres or two shapes, and the constants μ̃ of Def. 6.
+//! Assumption 1, Eq. 9: how much Ω and Ξ can increase the distance between two centres or two shapes. Def. 6: the
+//! constants μ̃.
 //!
-//! Corrections change q_0 and Q_0, not the maps: μ̃^c = μ^c and μ̃^s = μ^s.
+//! Corrections change q_0 and Q_0 and not the maps, so μ̃^c = μ^c and μ̃^s = μ^s.
 
 use super::reach::peak_sways_m;
 use super::system::System;
 
-/// μ^c of Eq. 9a. At fixed t and δ̂ every κ_i of Eq. 6 is a translation, so that the constant is 1 a hinge and 1 for any
-/// chain; that longer chains had a larger one, as the paper's summary says, does not follow from its Def. 4.
+/// μ^c of Eq. 9a. At fixed t and δ̂ every κ_i of Eq. 6 is a translation, so the constant is 1 for each hinge and 1 for
+/// any chain. The paper's summary gives longer chains a larger constant; that does not follow from Def. 4.
 #[must_use]
 pub fn centre_constant(system: &System) -> f64 {
     const TRANSLATION: f64 = 1.0;
@@ -15,9 +16,9 @@ pub fn centre_constant(system: &System) -> f64 {
 
 /// μ^s of Eq. 9b for a fixed β at every hinge: the product of (b/a)²·β/(1 + β).
 ///
-/// With S = (Q^lim)⁻¹ and A = 1 + 1/β, the derivative of Eq. 17 is X ↦ A·K X Kᵀ, K = (A + (1 + β) Q S)⁻¹, and K is similar
-/// by S^½ to the inverse of a symmetric matrix ≥ A: ‖K‖ ≤ √cond(S)/A with cond(S) = (b/a)². Where Q and Q^lim have the same
-/// axes K is symmetric and the factor (b/a)² falls away. A β that depends on Q (Eq. 18) is not covered.
+/// Let S = (Q^lim)⁻¹ and A = 1 + 1/β. The derivative of Eq. 17 is X ↦ A·K X Kᵀ with K = (A + (1 + β) Q S)⁻¹. K is
+/// similar by S^½ to the inverse of a symmetric matrix ≥ A, so ‖K‖ ≤ √cond(S)/A with cond(S) = (b/a)². If Q and Q^lim
+/// have the same axes, K is symmetric and the factor (b/a)² drops out. A β that depends on Q (Eq. 18) is not covered.
 #[must_use]
 pub fn shape_constant(system: &System, beta: f64, same_axes: bool) -> f64 {
     let (a, b) = peak_sways_m(system.link_m, system.sway_rad);
@@ -35,7 +36,7 @@ mod tests {
 
     const SYSTEM: System = System { trailers: 1, link_m: 4.67, sway_rad: 0.164, length_m: 11.2, width_m: 2.6 };
 
-    /// The greatest ratio of Eq. 9b seen over shapes at many angles.
+    /// The greatest ratio of Eq. 9b over shapes at many angles.
     fn steepest(angles: impl Fn(f64) -> f64, beta: f64) -> f64 {
         let limit = sway_shape([1.0, 0.0], SYSTEM.link_m, SYSTEM.sway_rad, As::Repaired);
         let shape = |t: f64, scale: f64| {

@@ -1,9 +1,9 @@
 //! The paper to the letter: Faruqui, Das, Kumar L, Jagtap, *Spatiotemporal Tube-Based Safety-Certificate for Autonomous
-//! Navigation of Articulated Vehicles*. Definition by definition, one file a subject; nothing here decides anything.
+//! Navigation of Articulated Vehicles*. There is one file per subject. Nothing here decides anything.
 //!
-//! Promises the printed formulas, each public item with its number (equations counted through the paper's source). Where the
-//! print cannot be right, [`Reading`] switches to the repaired form, fault by fault; `docs/errata.md` shows each one in
-//! numbers. Independent of [`crate::stet`], which decides.
+//! Each public item holds a printed formula and names its number; equations are counted through the paper's source.
+//! Where the print cannot be right, [`Reading`] switches to the repaired form, fault by fault. `docs/errata.md` shows
+//! each fault in numbers. This module is independent of [`crate::stet`], which decides.
 //!
 //! | file | in the paper |
 //! | --- | --- |
@@ -18,17 +18,18 @@
 //! | `route_cert` | Algorithm 1 |
 //! | `theorem` | the Theorem, Eq. 21-23 |
 //! | `rsc` | the Corollary, Eq. 24-25: CERT, 𝒞, h_Ω, h_Ξ, w_min |
-//! | `table`, `drawn` | Table I, and a route of our own as long as the paper's |
+//! | `table`, `drawn` | Table I, and netcert's own route, as long as the paper's |
 //! | `radius` | r_N^max of a vehicle of the catalogue, for the column `rsc_published_m` |
 //!
-//! What the paper leaves open, and how it is read here:
+//! The paper leaves some points open. They are read here as follows:
 //!
-//! - ê_i(t) is the velocity's direction at q_i(t). With δ = 0 throughout, as Eq. 16 has it, trailers swing *out* of every
-//!   bend; a δ̂(t) of rolling wheels makes Eq. 6-8 the real motion. [`Sway`] is the choice.
-//! - r_0 comes from half the dimensions 𝒟: "prime mover dimensions with margins", margins unnamed.
-//! - How far CORRCEN shifts and SHRINK shrinks is not said: half the difference of the leeways, and what is missing
-//!   (`corrections`). Δq_0^max and γ_0^min have no values in the paper.
-//! - Σ has one L, θ and 𝒟 for all units, couplings over axles.
+//! - ê_i(t) is the velocity's direction at q_i(t). With δ = 0 throughout, as in Eq. 16, trailers swing *out* of every
+//! bend. With the δ̂(t) of rolling wheels Eq. 6-8 are the real motion. [`Sway`] chooses between the two.
+//! - r_0 comes from half the dimensions 𝒟: the paper says "prime mover dimensions with margins" without naming the
+//! margins.
+//! - CORRCEN shifts by half the difference of the leeways, and SHRINK shrinks by what is missing (`corrections`).
+//! Δq_0^max and γ_0^min have no values in the paper.
+//! - Σ has one L, θ and 𝒟 for all units, and couplings over axles.
 
 mod corrections;
 mod drawn;

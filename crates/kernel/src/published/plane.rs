@@ -11,17 +11,17 @@ pub(super) fn minus(a: V2, b: V2) -> V2 {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// u.v of the paper's notation.
+/// Inner product, u·v in the paper.
 pub(super) fn dot(a: V2, b: V2) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-/// u^⊥ = R(90°)u: a quarter turn counter-clockwise, to the left.
+/// u^⊥ = R(90°)u, a quarter turn to the left.
 pub(super) fn perp(a: V2) -> V2 {
     [-a[1], a[0]]
 }
 
-/// To unit length; where there is no direction, `otherwise`.
+/// The vector scaled to unit length, or `otherwise` for a zero vector.
 pub(super) fn unit_or(a: V2, otherwise: V2) -> V2 {
     let length = a[0].hypot(a[1]);
     if length > 0.0 { [a[0] / length, a[1] / length] } else { otherwise }

@@ -1,14 +1,15 @@
-//! r_N^max of a vehicle of the catalogue, for the certificate 𝒞 that stands beside the deciding one and never decides.
+//! r_N^max of a catalogue vehicle, for the published certificate 𝒞. 𝒞 is stored beside the deciding certificate and
+//! never decides.
 //!
-//! Read here: the sway limit ±θ_i is the hinge's physical limit (the paper's own words), but at most the 90° for which its
-//! Eq. 14 means anything; L is the unit's coupling-to-axle length, r_0 the half-length of the prime mover's body (design
-//! section 6); h_Ω is taken at each unit's own foot on the centreline, the reading that is kindest to the printed form.
+//! This is the reading here: the sway limit ±θ_i is the hinge's physical limit (the paper's own words), but at most the
+//! 90° for which Eq. 14 is meaningful. L is the unit's coupling-to-axle length. r_0 is the half-length of the prime
+//! mover's body. h_Ω is taken at each unit's own foot on the centreline, which favours the printed form most.
 
 use super::sum::aligned_squares;
 use netcert_base::vehicle::Unit;
 
-/// r_N^max: the largest support radius of the last unit's ellipse, metres. Eq. 14 to 18, β° as printed (erratum E1). All
-/// rotations are equal on the straight, where δ = 0.
+/// r_N^max: the largest support radius of the last unit's ellipse, metres, by Eq. 14 to 18 with β° as printed (erratum
+/// E1). On the straight, with δ = 0, all rotations are equal.
 #[must_use]
 pub fn last_radius_m(units: &[Unit]) -> f64 {
     let Some(prime) = units.first() else { return 0.0 };

@@ -1,4 +1,4 @@
-//! Eq. 10 to 15: where the follower may be, and the ellipse that is to hold its sway.
+//! Eq. 10 to 15: the follower's reachable set, and the ellipse meant to hold its sway.
 
 use super::ellipse::{Shape, Stet};
 use super::kinematics::link_direction;
@@ -6,7 +6,7 @@ use super::plane::{V2, along, dot, perp};
 use super::reading::{As, Reading};
 use super::system::System;
 
-/// Eq. 11: −L û(t, δ), the displacement from leader to follower, metres; over δ ∈ [−θ, θ] it is the set 𝓗.
+/// Eq. 11: −L û(t, δ), the displacement from leader to follower, metres. Over δ ∈ [−θ, θ] it is the set 𝓗.
 #[must_use]
 pub fn reach_displacement(e: V2, sway_rad: f64, link_m: f64) -> V2 {
     along([0.0; 2], -link_m, link_direction(e, sway_rad))
@@ -25,8 +25,8 @@ pub fn peak_sways_m(link_m: f64, sway_rad: f64) -> (f64, f64) {
     (link_m * (1.0 - sway_rad.cos()), link_m * sway_rad.sin())
 }
 
-/// Eq. 15: Q^lim. To the letter U = [û, û^⊥]ᵀ, which turns the ellipse the wrong way round (E3). `None` where the hinge
-/// does not sway: the ellipse is a point, which no Q describes.
+/// Eq. 15: Q^lim. As printed, U = [û, û^⊥]ᵀ, which turns the ellipse the wrong way (E3). `None` if the hinge does not
+/// sway: the ellipse is then a point, which no Q describes.
 #[must_use]
 pub fn sway_shape(e: V2, link_m: f64, sway_rad: f64, rotation: As) -> Option<Shape> {
     let (a, b) = peak_sways_m(link_m, sway_rad);
@@ -38,8 +38,8 @@ pub fn sway_shape(e: V2, link_m: f64, sway_rad: f64, rotation: As) -> Option<Sha
     (a > 0.0 && b > 0.0).then(|| Shape::from_semi_axes(axis, a, b))
 }
 
-/// 𝓔^lim of Eq. 16 around a leader that stands at `q`: centred at q − L û(0) as printed, or at q − L cos θ û(0), where the
-/// same ellipse holds the whole arc (E2).
+/// 𝓔^lim of Eq. 16 for a leader at `q`. As printed its centre is q − L û(0). Repaired its centre is q − L cos θ û(0),
+/// where the same ellipse holds the whole arc (E2).
 #[must_use]
 pub fn sway_ellipse(q: V2, e: V2, system: &System, reading: &Reading) -> Option<Stet> {
     let shape = sway_shape(e, system.link_m, system.sway_rad, reading.rotation)?;
@@ -50,8 +50,8 @@ pub fn sway_ellipse(q: V2, e: V2, system: &System, reading: &Reading) -> Option<
     Some(Stet { centre: along(q, -behind_m, e), shape })
 }
 
-/// Eq. 10: whether p ∈ 𝓜 = 𝓔_i ⊕ 𝓗, that is, whether the leader may stand where some δ ∈ [−θ, θ] brings the follower
-/// to p. To a thousandth of a radian.
+/// Eq. 10: whether p ∈ 𝓜 = 𝓔_i ⊕ 𝓗. That means the leader may stand where some δ ∈ [−θ, θ] brings the follower to p. δ
+/// is searched to a thousandth of a radian.
 #[must_use]
 pub fn in_reachable_set(leader: &Stet, e: V2, system: &System, p: V2) -> bool {
     let holds = |sway: f64| leader.holds(along(p, system.link_m, link_direction(e, sway)));
@@ -60,7 +60,7 @@ pub fn in_reachable_set(leader: &Stet, e: V2, system: &System, p: V2) -> bool {
     holds(aim) || (-steps..=steps).any(|i| holds(system.sway_rad * f64::from(i) / f64::from(steps)))
 }
 
-/// The δ that points the link from p at the leader's centre.
+/// The δ at which the link from p points at the leader's centre.
 fn aimed_sway(leader: &Stet, e: V2, p: V2) -> f64 {
     let d = along(leader.centre, -1.0, p);
     dot(perp(e), d).atan2(dot(e, d))

@@ -1,53 +1,54 @@
-//! How the print is read: to the letter, or with faults repaired, one switch an erratum (E1 to E11 of `docs/errata.md`).
+//! Readings of the paper: to the letter or with faults repaired, with one switch per erratum (E1 to E11 of
+//! `docs/errata.md`).
 
-/// One fault of the print.
+/// How one fault is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum As {
     /// To the letter.
     Printed,
-    /// As it must be.
+    /// Repaired.
     Repaired,
 }
 
-/// β of Eq. 17. Every β > 0 gives a bound; they differ in how much is given away.
+/// β of Eq. 17. Every β > 0 gives a bound; a worse β gives a looser one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Beta {
     /// Eq. 18, √(tr (Q^lim)⁻¹ / tr Q⁻¹): the inverse of the trace's optimum (E1).
     Printed,
-    /// √(tr Q⁻¹ / tr (Q^lim)⁻¹): the least trace of (Q^b)⁻¹.
+    /// √(tr Q⁻¹ / tr (Q^lim)⁻¹), which gives the least trace of (Q^b)⁻¹.
     TraceOptimal,
-    /// √(n̂ᵀQ⁻¹n̂ / n̂ᵀ(Q^lim)⁻¹n̂): tight along the body's normal n̂, where the semi-axes then add.
+    /// √(n̂ᵀQ⁻¹n̂ / n̂ᵀ(Q^lim)⁻¹n̂), which is tight along the body's normal n̂: the semi-axes add there.
     Tangent,
 }
 
-/// Around which sway angles the tubes of the trailers are centred (E8).
+/// The sway angles at which the trailers' tubes are centred (E8).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sway {
-    /// q_{i+1}(t)|₀: δ = 0, straight behind along the leader's velocity, as Eq. 12 and 16 have it.
+    /// q_{i+1}(t)|₀: δ = 0, straight behind along the leader's velocity, as in Eq. 12 and 16.
     Zero,
     /// The tuple δ̂(t) of axles that roll without slip.
     NoSlip,
 }
 
-/// What |(q̃_N − q̃_0)·n̂_c| of the Corollary (i) is measured between (E4).
+/// The points between which |(q̃_N − q̃_0)·n̂_c| of Corollary (i) is measured (E4).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Offset {
-    /// To the letter: both centres at the same instant, along the normal at the prime mover. In a bend this holds the
-    /// road's own curvature as well.
+    /// To the letter: both centres at the same instant, along the normal at the prime mover. In a bend this includes
+    /// the road's own curvature.
     SameInstant,
-    /// Each centre's lateral offset at its own foot on the centreline, their difference: what Table I's h_Ω of 0.2 to
-    /// 0.6 m can have meant.
+    /// The difference of the centres' lateral offsets, each at its own foot on the centreline. Table I's h_Ω of 0.2 to
+    /// 0.6 m fits this reading.
     OwnFeet,
-    /// The trailer's own lateral offset from the route's centre: repaired.
+    /// Repaired: the trailer's own lateral offset from the route's centre.
     FromRoute,
 }
 
-/// One choice for each fault.
+/// One choice per fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reading {
     /// E1, Eq. 18.
     pub beta: Beta,
-    /// E2, Eq. 14-16: where the sway ellipse is centred.
+    /// E2, Eq. 14-16: the centre of the sway ellipse.
     pub sway_centre: As,
     /// E3, Eq. 15: U_i.
     pub rotation: As,
@@ -55,18 +56,18 @@ pub struct Reading {
     pub offset: Offset,
     /// E5: the last trailer only, or every unit.
     pub units: As,
-    /// E6: half the body's dimensions as semi-axes, or √2 times them, which is the least ellipse of that form that holds
-    /// the corners.
+    /// E6: half the body's dimensions as semi-axes, or √2 times them. The latter is the least ellipse of that form that
+    /// holds the corners.
     pub body: As,
-    /// E7: r_N^max over all directions, or across the road only.
+    /// E7: r_N^max over all directions, or only across the road.
     pub room: As,
-    /// E8.
+    /// E8, Eq. 12 and 16.
     pub sway: Sway,
     /// E9, Eq. 2.
     pub radius: As,
     /// E10, Def. 5: normals inward, or outward as in Algorithm 1.
     pub normals: As,
-    /// E11, Eq. 20: infimum over the whole boundary, or the boundary at the foot.
+    /// E11, Eq. 20: the infimum over the whole boundary, or the boundary at the foot.
     pub boundary: As,
 }
 
@@ -86,9 +87,9 @@ impl Reading {
         boundary: As::Printed,
     };
 
-    /// The nearest reading that can be run on a road with bends and gives what the paper reports: outward normals at the foot, as
-    /// Algorithm 1 has them, offsets at the feet, axles that roll, and the β that the cited sources have. The rest is as
-    /// printed.
+    /// The reading closest to the print that runs on a road with bends and gives the paper's results. Normals point
+    /// outward at the foot, as in Algorithm 1. Offsets are taken at the feet, axles roll, and β is that of the cited
+    /// sources. The rest is as printed.
     pub const SIMULATED: Self = Self {
         beta: Beta::TraceOptimal,
         offset: Offset::OwnFeet,
@@ -99,8 +100,8 @@ impl Reading {
         ..Self::PRINTED
     };
 
-    /// E4, E5, E6 and E9 repaired on top of that: what a certificate needs to bound anything at all. Never more
-    /// than the deciding RSC at equal tolerances (`tests/certificate/errata/`).
+    /// [`Self::SIMULATED`] with E4, E5, E6 and E9 repaired, without which a certificate bounds nothing. It never
+    /// exceeds the deciding RSC at equal tolerances (`tests/certificate/errata/`).
     pub const SOUND: Self = Self {
         offset: Offset::FromRoute,
         units: As::Repaired,

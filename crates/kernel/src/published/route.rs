@@ -4,9 +4,9 @@ use super::plane::{V2, along, dot, minus, perp, unit_or};
 use netcert_base::corridor::Corridor;
 use netcert_base::pace::Pace;
 
-/// (c(·), w(·)) of Def. 2 with t from a speed profile. All vectors have one entry an instant.
+/// (c(·), w(·)) of Def. 2, with t from a speed profile. All vectors have one entry per instant.
 ///
-/// Def. 2 knows one width, evenly about the centre: where a corridor has two half-widths, the lesser one counts on both sides.
+/// Def. 2 has one width, centred. Where a corridor has two half-widths, the lesser one counts on both sides.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Route {
     /// t, seconds, growing.
@@ -22,7 +22,7 @@ pub struct Route {
 }
 
 impl Route {
-    /// From a corridor, driven at `pace`.
+    /// The route along `corridor`, driven at `pace`.
     #[must_use]
     pub fn new(corridor: &Corridor, pace: &Pace) -> Self {
         let sides = corridor.left_m.iter().zip(&corridor.right_m);
@@ -41,13 +41,13 @@ impl Route {
         self.centre.len()
     }
 
-    /// Whether there is none.
+    /// Whether there is no instant.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.centre.is_empty()
     }
 
-    /// The instant before t (seconds) and how far on to the next, 0 to 1; `None` outside [0, T].
+    /// The instant before t (seconds) and the share of the way to the next instant, 0 to 1. `None` outside [0, T].
     #[must_use]
     pub fn instant(&self, t_s: f64) -> Option<(usize, f64)> {
         let (first, last) = (*self.t_s.first()?, *self.t_s.last()?);
@@ -66,7 +66,8 @@ impl Route {
         perp(self.tangent[i])
     }
 
-    /// Eq. 3 to the letter: whether p ∈ 𝓡(t) at instant `i`. This is a strip across the road at c(t), endless along the tangent.
+    /// Eq. 3 to the letter: whether p ∈ 𝓡(t) at instant `i`. The set is a strip across the road at c(t), endless along
+    /// the tangent.
     #[must_use]
     pub fn holds(&self, i: usize, p: V2) -> bool {
         dot(minus(p, self.centre[i]), self.normal(i)).abs() < self.half_width_m[i]
@@ -78,7 +79,7 @@ impl Route {
         along(self.centre[i], self.half_width_m[i], self.normal(i))
     }
 
-    /// Eq. 4b: 𝒫_r(t).
+    /// Eq. 4b: 𝒫_r(t) at instant `i`.
     #[must_use]
     pub fn right(&self, i: usize) -> V2 {
         along(self.centre[i], -self.half_width_m[i], self.normal(i))
@@ -90,8 +91,7 @@ impl Route {
         self.half_width_m.iter().fold(f64::INFINITY, |least, &w| least.min(w))
     }
 
-    /// The foot of `p` on the centreline, searched from station `near` on: where it is among the stations (with its
-    /// fraction), and the lateral offset of `p`, metres, positive left. Straight on beyond both ends.
+    /// The foot of `p` on the centreline, searched from station `near`. The route continues straight beyond both ends.
     #[must_use]
     pub fn foot(&self, p: V2, near: usize) -> Foot {
         let last = self.len() - 1;
@@ -108,12 +108,12 @@ impl Route {
         if k == last || a < 0.0 {
             return Foot { station: k, fraction: 0.0, lateral_m: lateral(k), normal: self.normal(k) };
         }
-        // Between two stations: how far along by the two distances, the normal turns evenly.
+        // Between two stations the fraction follows from both distances, and the normal turns evenly.
         let fraction = a / (a - ahead(k + 1)).max(1e-12);
         let (n0, n1) = (self.normal(k), self.normal(k + 1));
         let normal = unit_or(along(n0, fraction, minus(n1, n0)), n0);
         let lateral_m = (1.0 - fraction) * lateral(k) + fraction * lateral(k + 1);
-        // Seen along either station's tangent the curve itself has gone aside by κx²/2.
+        // Seen along either station's tangent, the curve deviates by κx²/2.
         let bend = dot(minus(self.tangent[k + 1], self.tangent[k]), n0) / self.spacing_m;
         let sag = 0.5 * bend * fraction * (1.0 - fraction) * self.spacing_m * self.spacing_m;
         Foot { station: k, fraction, lateral_m: lateral_m - sag, normal }
@@ -127,16 +127,16 @@ impl Route {
     }
 }
 
-/// Where a point stands beside the centreline.
+/// A foot on the centreline and the point's offset from it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Foot {
     /// Station before the foot.
     pub station: usize,
-    /// How far on to the next one, 0 to 1.
+    /// Share of the way to the next station, 0 to 1.
     pub fraction: f64,
     /// Lateral offset, metres, positive left.
     pub lateral_m: f64,
-    /// n̂ there.
+    /// n̂ at the foot.
     pub normal: V2,
 }
 

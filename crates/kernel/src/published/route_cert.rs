@@ -1,4 +1,5 @@
-//! Algorithm 1, ROUTE_CERT, line by line. It corrects instant by instant, knows no smoothness, and leaves the rest to CERT.
+//! Algorithm 1, ROUTE_CERT, line by line. It corrects each instant by itself, without smoothness, and leaves the rest
+//! to CERT.
 
 use super::corrections::{Permissible, corrcen, shrink};
 use super::ellipse::{Shape, Stet};
@@ -10,14 +11,14 @@ use super::route::Route;
 use super::rsc::{Rsc, cert};
 use super::system::System;
 
-/// What lines 10 to 21 did at an instant.
+/// The correction that lines 10 to 21 made at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Correction {
     /// Line 20: there was leeway on both sides.
     None,
-    /// Line 17: a shift of the centre was enough.
+    /// Line 17: shifting the centre was enough.
     Centre,
-    /// Lines 14 and 15: shift and shrink. Whether that was enough is not asked.
+    /// Lines 14 and 15: shift and shrink. The algorithm does not test whether that was enough.
     CentreAndShape,
 }
 
@@ -28,7 +29,7 @@ pub struct Step {
     pub before: Leeway,
     /// η of the last trailer with q̃_0(i) and Q̃_0(i), after all corrections.
     pub after: Leeway,
-    /// Which.
+    /// The correction made.
     pub correction: Correction,
     /// Δq_0 along the left normal, metres.
     pub shift_m: f64,
@@ -36,22 +37,22 @@ pub struct Step {
     pub gamma: f64,
 }
 
-/// What Algorithm 1 ensures, and how it came there.
+/// The result of Algorithm 1, with intermediate values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RouteCert {
-    /// 𝒞 with its parts.
+    /// 𝒞 and its parts.
     pub rsc: Rsc,
-    /// Corrected tubes 𝓔_i(q̃_i, Q̃_i) of all units: `[unit][instant]`; the first is the prime mover's plan.
+    /// Corrected tubes 𝓔_i(q̃_i, Q̃_i) of all units: `[unit][instant]`. The first one is the prime mover's plan.
     pub tubes: Vec<Vec<Stet>>,
-    /// One an instant.
+    /// One entry per instant.
     pub steps: Vec<Step>,
     /// The nominal motion: q_i, ê_i and δ_i.
     pub chain: Chain,
 }
 
 impl RouteCert {
-    /// 𝓔_i(q̃_i(t), Q̃_i(t)) of a unit at any t (seconds): between two instants q and Q are linear. `None` outside [0, T] or for
-    /// no unit. The route must be the one that this was made of.
+    /// 𝓔_i(q̃_i(t), Q̃_i(t)) of a unit at any t (seconds); q and Q are linear between instants. `None` outside [0, T]
+    /// or for a unit that does not exist. `route` must be the route of this certificate.
     #[must_use]
     pub fn tube_at(&self, route: &Route, unit: usize, t_s: f64) -> Option<Stet> {
         let (i, fraction) = route.instant(t_s)?;
@@ -65,8 +66,8 @@ impl RouteCert {
     }
 }
 
-/// ROUTE_CERT(Σ, 𝓡(t), Ω, Ξ). `path` is q_0(t), nominally the route's centre, one point an instant. `None` where the route is
-/// empty or `path` has another length.
+/// ROUTE_CERT(Σ, 𝓡(t), Ω, Ξ). `path` is q_0(t), nominally the route's centre, with one point per instant. `None` if the
+/// route is empty or `path` has another length.
 #[must_use]
 pub fn route_cert(
     system: &System,
@@ -112,8 +113,8 @@ impl Instant<'_> {
         // Lines 3 and 4.
         let heading = self.chain.link[0][i].direction;
         let nominal = Stet { centre: q0, shape: self.system.prime_shape(heading, reading.body) };
-        // Lines 5 to 9. The normals of Def. 5 belong to the boundary; line 6 takes them from the direction of motion ê_n. Both are
-        // the route's at the foot when the trailer drives along it.
+        // Lines 5 to 9. The normals of Def. 5 belong to the boundary; line 6 takes them from the direction of motion
+        // ê_n. For a trailer that drives along the route, both are the route's normal at the foot.
         let before = self.leeway(&nominal);
         let uncorrected = Step { before, after: before, correction: Correction::None, shift_m: 0.0, gamma: 1.0 };
         // Lines 10 and 20.
@@ -137,7 +138,7 @@ impl Instant<'_> {
         (Step { before, after, correction: Correction::CentreAndShape, shift_m, gamma }, shrunk)
     }
 
-    /// Through Ω and Ξ: the tubes of all units.
+    /// The tubes of all units, through Ω and Ξ.
     fn propagated(&self, prime: &Stet) -> impl Iterator<Item = Stet> + use<> {
         let centres = self.chain.omega(self.i, prime.centre);
         let shapes: Vec<Shape> = self.chain.xi(self.i, &prime.shape, self.system, self.reading);

@@ -1,11 +1,11 @@
-//! The Corollary, Eq. 24 and 25: CERT, which is 𝒞 = w_min − (h_Ω + r_N^max).
+//! The Corollary, Eq. 24 and 25: CERT computes 𝒞 = w_min − (h_Ω + r_N^max).
 
 use super::ellipse::Stet;
 use super::plane::{dot, minus};
 use super::reading::{As, Offset, Reading};
 use super::route::Route;
 
-/// 𝒞 and what it is made of. Where all units count (E5), those of the unit that has the least.
+/// 𝒞 and its parts. If all units count (E5), they are those of the unit with the least 𝒞.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rsc {
     /// w_min, metres: the least *half* width.
@@ -23,7 +23,7 @@ pub struct Rsc {
 }
 
 impl Rsc {
-    /// Eq. 24 from bounds as Table I gives them: r_N^max = h_Ξ r_0^max.
+    /// Eq. 24 from bounds in the form of Table I: r_N^max = h_Ξ r_0^max.
     #[must_use]
     pub fn from_bounds(w_min_m: f64, h_omega_m: f64, h_xi: f64, prime_radius_m: f64) -> Self {
         let last_radius_m = h_xi * prime_radius_m;
@@ -31,14 +31,14 @@ impl Rsc {
         Self { w_min_m, h_omega_m, h_xi, prime_radius_m, last_radius_m, rsc_m }
     }
 
-    /// Eq. 25: 𝒞 ≥ 0, in the paper's sense of the word.
+    /// Eq. 25: 𝒞 ≥ 0, which the paper calls safe.
     #[must_use]
     pub fn printed_safe(&self) -> bool {
         self.rsc_m >= 0.0
     }
 }
 
-/// CERT of line 23 over corrected tubes, `[unit][instant]`. `None` for no unit.
+/// CERT of line 23 over corrected tubes, `[unit][instant]`. `None` without units.
 #[must_use]
 pub fn cert(route: &Route, tubes: &[Vec<Stet>], reading: &Reading) -> Option<Rsc> {
     let prime = tubes.first()?;
@@ -55,7 +55,7 @@ pub fn cert(route: &Route, tubes: &[Vec<Stet>], reading: &Reading) -> Option<Rsc
     }
 }
 
-/// r_i^max: over all instants and directions; across the road only where E7 is repaired.
+/// r_i^max over all instants and directions; only across the road if E7 is repaired.
 fn greatest_radius_m(route: &Route, tube: &[Stet], reading: &Reading) -> f64 {
     let radius = |(i, stet): (usize, &Stet)| match reading.room {
         As::Printed => stet.shape.largest_radius_m(),

@@ -1,16 +1,19 @@
-//! Eq. 16 to 18: an ellipse around the Minkowski sum of two (Kurzhanski and Varaiya), and its free parameter β.
+//! Eq. 16 to 18: an ellipse around the Minkowski sum of two ellipses (Kurzhanski and Varaiya), and its free parameter
+//! β.
 
 use super::ellipse::Shape;
 use super::plane::V2;
 use super::reading::Beta;
 
-/// Eq. 17: Q^b = [(1 + 1/β) Q⁻¹ + (1 + β) (Q^lim)⁻¹]⁻¹; by Eq. 16 its ellipse holds the sum of the other two, whatever β > 0.
+/// Eq. 17: Q^b = [(1 + 1/β) Q⁻¹ + (1 + β) (Q^lim)⁻¹]⁻¹. By Eq. 16 its ellipse holds the sum of the other two for every
+/// β > 0.
 #[must_use]
 pub fn kurzhanski_varaiya(shape: &Shape, limit: &Shape, beta: f64) -> Shape {
     shape.inverse().combined(1.0 + 1.0 / beta, &limit.inverse(), 1.0 + beta).inverse()
 }
 
-/// Eq. 18: β° as printed, or by a rule that keeps what the print promises. `normal` is the body's, for the tangent rule.
+/// Eq. 18: β° as printed, or by a rule that delivers what the paper claims. `normal` is the body's, for the tangent
+/// rule.
 #[must_use]
 pub fn optimal_beta(shape: &Shape, limit: &Shape, normal: V2, beta: Beta) -> f64 {
     let (own, sway) = (shape.inverse(), limit.inverse());
@@ -21,7 +24,7 @@ pub fn optimal_beta(shape: &Shape, limit: &Shape, normal: V2, beta: Beta) -> f64
     }
 }
 
-/// Eq. 17 and 18 as printed where both ellipses have the same axes: squared semi-axes along and across of the bound.
+/// Eq. 17 and 18 as printed for two ellipses with the same axes: squared semi-axes of the bound, along and across.
 pub(super) fn aligned_squares(own: [f64; 2], sway: [f64; 2]) -> [f64; 2] {
     let beta = ((sway[0] + sway[1]) / (own[0] + own[1])).sqrt();
     [0, 1].map(|i| (1.0 + 1.0 / beta) * own[i] + (1.0 + beta) * sway[i])
@@ -33,7 +36,7 @@ mod tests {
     use crate::published::plane::perp;
     use crate::published::reading::As;
 
-    /// Semi-axes and axes at angles all around.
+    /// Pairs of ellipses with many semi-axes and directions.
     fn pairs() -> impl Iterator<Item = (Shape, Shape)> {
         (0..60).map(|i| {
             let t = f64::from(i);

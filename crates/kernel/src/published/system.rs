@@ -5,11 +5,11 @@ use super::plane::V2;
 use super::reading::As;
 use netcert_base::vehicle::{Unit, Vehicle};
 
-/// What the paper says nothing of: the prime mover's steering lock, degrees, as the catalogue assumes it.
+/// The prime mover's steering lock, degrees, as the catalogue assumes it. The paper does not mention it.
 const STEERING_LOCK_DEG: f64 = 42.0;
 
-/// Σ = {Σ_0 … Σ_N} (section II-A of the paper). Couplings are over axles; a unit's position is its axle, its body lies evenly
-/// around it.
+/// Σ = {Σ_0 … Σ_N} (section II-A of the paper). Couplings are over axles. A unit's position is its axle, and its body
+/// is centred on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct System {
     /// N.
@@ -20,20 +20,20 @@ pub struct System {
     pub sway_rad: f64,
     /// 𝒟: length of a body, metres.
     pub length_m: f64,
-    /// 𝒟: its width, metres.
+    /// 𝒟: width of a body, metres.
     pub width_m: f64,
 }
 
 impl System {
-    /// r_0: half the body's length, metres; √2 times that where E6 is repaired.
+    /// r_0: half the body's length, metres; √2 times that if E6 is repaired.
     #[must_use]
     pub fn prime_radius_m(&self, body: As) -> f64 {
         0.5 * self.length_m * hold(body)
     }
 
-    /// The same vehicle for [`crate::stet`], with the paper's own tolerances, which are none: the steer axle exactly on its path,
-    /// no axle slipping. θ limits the hinges. The prime mover has a wheelbase of L as well, for it is a unit like the others;
-    /// in the paper it is the point q_0 itself.
+    /// The same vehicle for [`crate::stet`], with the paper's tolerances: the steer axle stays exactly on its path and
+    /// no axle slips. θ limits the hinges. The prime mover gets a wheelbase of L, as every other unit; in the paper it
+    /// is the point q_0.
     #[must_use]
     pub fn vehicle(&self, id: &str) -> Vehicle {
         let half_m = 0.5 * self.length_m;
@@ -63,7 +63,7 @@ impl System {
         }
     }
 
-    /// Q_0(t) of a prime mover that heads along the unit vector `heading`: semi-axes half the dimensions 𝒟.
+    /// Q_0(t) of a prime mover with heading `heading` (a unit vector). Its semi-axes are half the dimensions 𝒟.
     #[must_use]
     pub fn prime_shape(&self, heading: V2, body: As) -> Shape {
         Shape::from_semi_axes(heading, self.prime_radius_m(body), 0.5 * self.width_m * hold(body))

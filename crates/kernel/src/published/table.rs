@@ -32,13 +32,13 @@ impl Scenario {
     }
 }
 
-/// Why the shipped table cannot be read: a fault of the build, not of a user.
+/// Why the shipped table cannot be read. This is a fault of the build, not of a user.
 #[derive(Debug, Error)]
 pub enum TableError {
-    /// Not the fields expected.
+    /// Unexpected fields.
     #[error("{FILE}: {0}")]
     Syntax(#[from] toml::de::Error),
-    /// A number that no vehicle has.
+    /// A number out of bounds.
     #[error("{FILE}: scenario {number}: units, lengths and angles must be above 0, the angle at most 90°")]
     Bounds {
         /// Sc. No.
@@ -69,7 +69,7 @@ struct Row {
 /// The seven scenarios, in the order of the table.
 ///
 /// # Errors
-/// None with the file that ships.
+/// None with the shipped file.
 pub fn scenarios() -> Result<Vec<Scenario>, TableError> {
     let table: Table = toml::from_str(include_str!("../../../../data/paper/scenarios.toml"))?;
     table.scenario.iter().map(scenario).collect()

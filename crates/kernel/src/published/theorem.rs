@@ -1,7 +1,7 @@
-//! The Theorem, Eq. 21 to 23: the leeway that is said to be enough for permissible corrections to exist.
+//! The Theorem, Eq. 21 to 23: the leeway that is said to suffice for permissible corrections to exist.
 //!
-//! Its right side is never negative, so that it only speaks of instants at which the uncorrected tube has leeway already:
-//! where a correction is needed it says nothing (`docs/errata.md`, E15).
+//! Its right side is never negative. It therefore speaks only of instants at which the uncorrected tube already has
+//! leeway, and says nothing where a correction is needed (`docs/errata.md`, E15).
 
 use super::corrections::Permissible;
 use super::ellipse::Shape;
@@ -10,7 +10,7 @@ use super::lipschitz::centre_constant;
 use super::reading::As;
 use super::system::System;
 
-/// Directions looked at for the supremum over 𝕊¹; the radius is even in n̂, so that half a turn is all.
+/// Directions tried for the supremum over 𝕊¹. The radius is even in n̂, so half a turn suffices.
 const DIRECTIONS: u32 = 720;
 
 /// ρ(t) = min(η_l(t), η_r(t)), metres.
@@ -19,8 +19,8 @@ pub fn worst_side(leeway: &Leeway) -> f64 {
     leeway.least_m()
 }
 
-/// Right side of Eq. 21 and 23 at an instant, metres: μ̃^c Δq_0^max + sup over n̂ of r(Q_N, n̂) − r(Q̃_N, n̂). The supremum is
-/// the greatest of 720 directions, a quarter of a degree apart.
+/// Right side of Eq. 21 and 23 at an instant, metres: μ̃^c Δq_0^max + sup over n̂ of r(Q_N, n̂) − r(Q̃_N, n̂). The
+/// supremum is the greatest over 720 directions, a quarter of a degree apart.
 #[must_use]
 pub fn bound_m(system: &System, permissible: &Permissible, last: &Shape, corrected: &Shape, radius: As) -> f64 {
     let lost = |k: u32| {

@@ -1,8 +1,9 @@
-//! Tubes from the time-varying chain itself, where the filter of `sweep` would cost too much (docs/proof.md, section 6): the
-//! L1 norm of the kernels from every input to every body point, by the adjoint run backwards from each station.
+//! Tubes from the adjoint of the time-varying chain (docs/proof.md, section 6). It computes the L1 norm of the kernels
+//! from every input to every body point, backwards from each station.
 //!
-//! Promises: a bound to second order, as the filter's, and at first order the exact one. Costs some twenty times the
-//! filter: whoever calls says where it is worth it. One vehicle at a time, its body points in lanes.
+//! The bounds hold to second order, as those of the filter in `sweep` do. To first order they are exact. The adjoint
+//! costs about twenty times the filter, so the caller says where it is worth its time. It handles one vehicle at a
+//! time, with body points in lanes.
 
 use super::group::{Group, UnitLanes};
 use super::lanes::{LANES, V, by_instruction_set};
@@ -12,89 +13,91 @@ use super::sweep::{
     hitch_remainder, remainder, row, validity,
 };
 
-/// Σ tan² δ_j/2 over the units up to one, from which on the adjoint is worth its time for it. Bends alone decide that, so that
-/// neither a looser tolerance nor another trailer can bring a tighter bound and raise an RSC. At 0.008 (six units at 120 m,
-/// a semi-trailer at 67 m) the filter costs a centimetre.
+/// The adjoint is used from the unit on at which Σ tan² δ_j/2 over the units up to it exceeds this. Bends alone decide,
+/// so neither a looser tolerance nor another trailer can bring a tighter bound and raise an RSC. At 0.008 (six units at
+/// 120 m, a semi-trailer at 67 m) the filter costs a centimetre.
 const WORTH: f64 = 0.008;
-/// Stations that are remembered, a power of two: beyond what any bound of the longest vehicles recalls.
+/// Stations kept in the history, a power of two. No bound of the longest vehicles reaches farther back.
 const MEMORY: usize = 512;
 /// The history is cut where it can add no more than this, metres.
 const REST_M: f64 = 2e-3;
-/// Cutting is thought of every so many stations.
+/// Stations between two tests of whether the history can be cut.
 const CUT_STATIONS: usize = 8;
-/// Allowance for what interpolation and trapezoids leave, a part of the bound.
+/// Factor that covers the errors of interpolation and trapezoids.
 const SURE: f64 = 1.002;
-/// Rounds in which a guess of the remainder must come to rest.
+/// Most rounds in which a guess of the remainder must settle.
 const ROUNDS: usize = 12;
 
-/// Far back, where kernels are smooth, the adjoint takes two and four stations at a step.
+/// Stations per step. Kernels are smooth far back, so the adjoint takes longer steps there.
 const STRIDES: [usize; 3] = [1, 2, 4];
-/// From so many stations back on.
+/// Stations back from which each stride may be used.
 const STRIDE_AFTER: [usize; 3] = [0, 12, 36];
 
-/// What the adjoint needs of one unit at one station.
+/// Coefficients and bounds of one unit at one station, as the adjoint reads them.
 #[derive(Debug, Clone, Copy, Default)]
 struct Past {
     /// ℓ/L over the step to the next station.
     turned: f64,
-    /// Over that step: exp(−ℓ/L), and the weights of a source here, at the next station, and of its bend.
+    /// Over that step: exp(−ℓ/L), and the weights of a source at this station, at the next one, and of its second
+    /// difference.
     decay: f64,
     early: f64,
     late: f64,
     bend: f64,
-    /// ρ/L, and that over cos δ.
+    /// ρ/L, and ρ/(L cos δ).
     rate: f64,
     rate_secant: f64,
     secant: f64,
     /// cos χ (1 + k), and cos χ k/cos δ.
     couple: f64,
     pass: f64,
-    /// Bounds: z, ρ (σ + z/L), z^h, Y.
+    /// Bounds of z, ρ (σ + z/L), z^h and Y.
     z: f64,
     push: f64,
     hitch: f64,
     axle: f64,
 }
 
-/// Outputs of one unit, eight at a time: weights of its axle's deviation and of its coupling's (over cos δ).
+/// Eight outputs of one unit: weights of its axle's deviation and of its coupling's deviation over cos δ.
 struct Outputs {
     axle: V,
     coupling: V,
 }
 
-/// A bound on eight outputs of a unit, at a guess of the unit's own remainder, and what a metre more of that would add.
+/// Bounds of eight outputs of a unit at a guess of the unit's own remainder, and the growth of each bound per metre of
+/// that remainder.
 struct Reach {
     bound: V,
     per_remainder: V,
 }
 
-/// What a vehicle's steps of one stride have been, by station.
+/// A vehicle's steps of one stride, by station.
 struct History {
     past: Vec<[Past; MAX_UNITS]>,
-    /// Bound of the steer axle's deviation, chord included.
+    /// Bound of the steer axle's deviation, with the bulge of the plan over its chord.
     steer: Vec<f64>,
-    /// Whether the bounds closed all over the step.
+    /// Whether the bounds closed over the whole step.
     closed: Vec<bool>,
 }
 
-/// The last stations of every vehicle of a group, for the adjoint to run back along.
+/// The last [`MEMORY`] stations of every vehicle of a group. The adjoint runs back along them.
 pub(super) struct Trail {
-    /// By vehicle, then by stride; places by station, again and again.
+    /// By vehicle, then by stride. Stations share places modulo [`MEMORY`].
     histories: Vec<[History; STRIDES.len()]>,
-    /// The last block's steps and joints.
+    /// The steps and joints of the last block.
     steps: Vec<[Step; MAX_UNITS]>,
     joints: Vec<[V; MAX_UNITS]>,
-    /// Arc length and tan δ of the step before.
+    /// Arc length and tan δ of the previous step.
     before: [(V, V); MAX_UNITS],
-    /// Stations begun.
+    /// Number of stations begun.
     count: usize,
-    /// By vehicle and unit: its heading, its axle, then its body points.
+    /// By vehicle and unit: the outputs for its heading, its axle and its body points.
     outputs: Vec<Vec<Vec<Outputs>>>,
-    /// What the filter had when the block began.
+    /// The filter's `extra` at the start of the block.
     extra: [V; MAX_UNITS],
 }
 
-/// Bounds at the body points of a vehicle over a block: by unit, point and station.
+/// Bounds at the body points of a vehicle over a block, by unit, point and station.
 pub(super) struct Refined {
     points: [Vec<f64>; MAX_UNITS],
 }
@@ -104,13 +107,13 @@ impl Refined {
         Self { points: std::array::from_fn(|_| Vec::new()) }
     }
 
-    /// [`BLOCK`] bounds a body point.
+    /// The unit's bounds: [`BLOCK`] values per body point.
     pub(super) fn unit(&self, unit: usize) -> &[f64] {
         &self.points[unit]
     }
 }
 
-/// The first two outputs of every unit.
+/// Indices of a unit's outputs: heading, axle, then the body points.
 const HEADING: usize = 0;
 const AXLE: usize = 1;
 const POINTS: usize = 2;
@@ -128,8 +131,9 @@ fn outputs(unit: &UnitModel) -> Vec<Outputs> {
 }
 
 by_instruction_set! {
-    /// The block driven last, for one vehicle's units from `first_unit` on: bounds at their body points into `out`, their rows as
-    /// the adjoint has them. The filter goes over the block again beside it, its second order from the adjoint's bounds.
+    /// Refines the last block for one vehicle's units from `first_unit` on. The bounds at body points go to `out`, and
+    /// the units' rows get the adjoint's values. The filter repeats the block beside the adjoint, with the adjoint's
+    /// second order.
     pub(super) fn refine(
         trail: &mut Trail,
         group: &Group<'_>,
@@ -154,7 +158,7 @@ by_instruction_set! {
 }
 
 impl Trail {
-    /// `used`: whether it will be asked anything.
+    /// `used` says whether the trail will ever be read.
     pub(super) fn new(group: &Group<'_>, used: bool) -> Self {
         let (memory, block) = if used { (MEMORY, BLOCK) } else { (0, 0) };
         let models: &[&Model] = if used { &group.models } else { &[] };
@@ -174,13 +178,13 @@ impl Trail {
         }
     }
 
-    /// A block begins.
+    /// Starts a block.
     #[inline(always)]
     pub(super) fn enter(&mut self, extra: &[V; MAX_UNITS]) {
         self.extra = *extra;
     }
 
-    /// Another station, the `k`-th of its block.
+    /// Records the steps of another station, the `k`-th of its block.
     #[inline(always)]
     pub(super) fn begin(&mut self, k: usize, steps: &[Step; MAX_UNITS], joints: &[V; MAX_UNITS], steer: V) {
         if self.count == 0 {
@@ -194,9 +198,9 @@ impl Trail {
         self.count += 1;
     }
 
-    /// What the filter found for one unit at the station begun last.
+    /// Records the filter's bounds of one unit at the station begun last.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)] // All of one station's bounds, in the innermost loop.
+    #[allow(clippy::too_many_arguments)] // All bounds of one station, in the innermost loop.
     pub(super) fn record(&mut self, group: &Group<'_>, unit: usize, step: &Step, z: V, zh: V, axle: V, closed: V) {
         let of = &group.chain[unit];
         let (advance, tangent) = self.before[unit];
@@ -226,7 +230,7 @@ impl Trail {
         }
     }
 
-    /// The block driven last is as it stays, for one vehicle: its longer strides.
+    /// Completes one vehicle's history after a block: fills the longer strides.
     pub(super) fn close(&mut self, lane: usize, units: usize) {
         let first = self.count - BLOCK;
         for stride in 1..STRIDES.len() {
@@ -247,7 +251,7 @@ impl Trail {
         }
     }
 
-    /// One station, front to rear: a unit's remainder at the coupling counts at once for the units behind it.
+    /// Handles one station, front to rear. A unit's remainder at its coupling counts at once for the units behind it.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)] // As above.
     fn station(
@@ -275,7 +279,7 @@ impl Trail {
             let start = (unit * LANES + lane) * FIELDS * BLOCK;
             let filtered = beside.coupled(of, step, motion.extra[unit]);
             if unit < first_unit {
-                // The filter's bounds stand; only what they mean for the units behind is needed.
+                // The filter's bounds stay in use. The units behind need only their effect.
                 let at = |field: usize| V::splat(rows[start + field * BLOCK + k]);
                 let (axle, own) = (at(row::EXTRA_AXLE), at(row::EXTRA_COUPLING));
                 closes &= axle.0[lane] < MOST;
@@ -324,8 +328,9 @@ impl Trail {
         self.histories[lane][0].closed[station % MEMORY] = closes;
     }
 
-    /// Bounds of a unit's heading and axle, and of its body points (into every [`BLOCK`]-th of `points`), with a
-    /// remainder that the bounds themselves bear out; `coupled` bounds its coupling over cos δ. `None` where there is none.
+    /// Finds a remainder that the bounds computed from it do not exceed. Returns bounds of the unit's heading and axle,
+    /// and writes those of its body points to every [`BLOCK`]-th place of `points`. `coupled` bounds the coupling's
+    /// deviation over cos δ. `None` if no remainder settles.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)] // As above.
     fn settle(
@@ -381,7 +386,7 @@ impl Trail {
         Some((a, axle))
     }
 
-    /// The adjoint of eight outputs of a unit, from `station` back.
+    /// Runs the adjoint of eight outputs of a unit backwards from `station`.
     #[inline(always)]
     fn reach(&self, group: &Group<'_>, lane: usize, station: usize, unit: usize, batch: usize) -> Reach {
         let outputs = &self.outputs[lane][unit][batch];
@@ -390,7 +395,7 @@ impl Trail {
         let steer = histories[0].steer[station % MEMORY];
         let mut mu = [ZERO; MAX_UNITS];
         mu[unit] = outputs.axle;
-        // Couplings pass on at once.
+        // Couplings pass a deviation on without lag.
         let mut nu = outputs.coupling * now[unit].secant;
         let mut bound = ZERO;
         for j in (0..unit).rev() {
@@ -435,7 +440,8 @@ impl Trail {
                 }
             }
             if !histories[stride].closed[(at - STRIDES[stride]) % MEMORY] {
-                // Nothing is claimed of a vehicle that came through there: the bounds begin anew.
+                // The bounds begin anew at a place where they did not close, and nothing is claimed of a vehicle that
+                // came through it.
                 break sum(&straight);
             }
             if gone % CUT_STATIONS == CUT_STATIONS - 1 || stride > 1 {
@@ -447,7 +453,7 @@ impl Trail {
             at -= STRIDES[stride];
             let history = &histories[stride];
             let (past, steer) = (&history.past[at % MEMORY], history.steer[at % MEMORY]);
-            // A bend is known from steps of the same stride.
+            // The second difference needs three steps of the same stride.
             let bent = taken == stride;
             taken = stride;
             let mut rate = ZERO;
@@ -479,8 +485,8 @@ impl Trail {
 }
 
 impl Past {
-    /// A step over `stride` stations in which a unit's axle moves by `a` of its lengths: ∫₀¹ of e^{−aθ} times a source's
-    /// parabola through both ends of the step and the next, in stations.
+    /// Weights of a step over `stride` stations in which the unit's axle moves by `a` of its lengths. They are ∫₀¹
+    /// e^{−aθ} of the source's parabola through both ends of the step and the next station.
     #[inline(always)]
     fn over(a: f64, stride: usize) -> Self {
         let (decay, length) = ((-a).exp(), stride as f64);
@@ -494,7 +500,7 @@ impl Past {
         Self { turned: a, decay, early: early * length, late: late * length, bend: bend * length, ..Self::default() }
     }
 
-    /// Bounds in place of the filter's.
+    /// Replaces the filter's bounds.
     #[inline(always)]
     fn note(&mut self, of: &UnitLanes, lane: usize, z: f64, hitch: f64, axle: f64) {
         self.z = z;
@@ -504,7 +510,7 @@ impl Past {
     }
 }
 
-/// The first unit of a vehicle for which a block of rows bends so much that the adjoint is worth its time.
+/// The first unit of a vehicle for which a block of rows bends enough to make the adjoint worth its time.
 #[inline(always)]
 pub(super) fn first_loose(group: &Group<'_>, lane: usize, rows: &[f64]) -> usize {
     let mut sum = 0.0;

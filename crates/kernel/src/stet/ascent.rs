@@ -1,11 +1,15 @@
-//! The ascent of CORRCEN: spline coefficients that raise the least leeway, by the linear response of the bodies alone.
+//! The ascent of CORRCEN. It searches spline coefficients that raise the least leeway, using the linear response of the
+//! bodies alone.
 //!
-//! Each sweep leaves, at every knot and on each side, the body point with the least leeway: a row. Rows of earlier sweeps stay
-//! while no newer one is of the same point, so that what a correction brings forward is not forgotten. On these rows
-//! preconditioned gradient steps with momentum lower Σ (τ + least leeway nearby − leeway)₊³; τ sinks from step to step, so that
-//! in the end only what limits counts. Why not half the difference of the leeways again and again: that balances every station,
-//! where the best plan gives away room before and after a bend to be less short of it in the bend (`tests/certificate/corrcen.rs`).
-//! Each vehicle for itself, in its lane. Decides nothing: the next sweep says what came of it.
+//! Each sweep yields a row per knot and side: the body point with the least leeway. Rows of earlier sweeps stay until a
+//! newer row concerns the same point, so a correction does not forget the points that it brings forward.
+//!
+//! Preconditioned gradient steps with momentum lower Σ (τ + least leeway nearby − leeway)₊³ over the rows. τ sinks from
+//! step to step, so only the limiting rows count at the end. Repeatedly taking half the difference of the leeways would
+//! balance every station. The best plan instead gives away room before and after a bend to gain room in it
+//! (`tests/certificate/corrcen.rs`).
+//!
+//! Each vehicle has its own lane. The ascent decides nothing: the next sweep measures the result.
 
 use super::group::{Group, gamma};
 use super::lanes::{TAG_MASK, V, by_instruction_set};
@@ -17,41 +21,42 @@ use super::track::Track;
 
 /// Steps of one ascent.
 const STEPS: usize = 12;
-/// τ at the first step and at the last one, metres.
+/// τ at the first step and at the last step, metres.
 const TAU_FIRST_M: f64 = 0.2;
 const TAU_LAST_M: f64 = 0.02;
-/// How much of the last step the next one begins with.
+/// Share of the last step that the next step starts with.
 const MOMENTUM: f64 = 0.85;
-/// What is added to the stiffness, as a part of one row's: where few rows count steps stay small.
+/// Least stiffness, as a share of one row's. It keeps steps small where few rows count.
 const LEAST_STIFFNESS: f64 = 0.1;
-/// Steps after which the stiffness is looked at anew.
+/// Steps between two updates of the stiffness.
 const STIFF_STEPS: usize = 2;
-/// How fast the least leeway nearby may rise with the distance: what is this much better is left alone. Steeper, and a bend
-/// uses less of the room before and after it: 0.003 costs 0.4 cm at the median of `tests/certificate/corrcen.rs`.
+/// Largest rise of the least leeway nearby per metre of distance; rows above it are left alone. A steeper rise makes a
+/// bend use less of the room before and after it: 0.003 costs 0.4 cm at the median of `tests/certificate/corrcen.rs`.
 const RISE: f64 = 0.0005;
-/// Rows with so much more leeway than those that count are not looked at, metres. At 0.2 one corridor in twenty lost 30 cm.
+/// Rows with this much more leeway than the rows that count are skipped, metres. At 0.2 one corridor in twenty lost 30
+/// cm.
 const FAR_M: f64 = 0.4;
 
-/// What is left to one edge at one body point, as the response knows it.
+/// The leeway to one edge at one body point, in the linear response.
 #[derive(Clone, Copy)]
 struct Row {
-    /// Unit and point, as in [`super::lanes::V::tagged`]; what it was the last time it was seen.
+    /// Unit and point, as in [`super::lanes::V::tagged`].
     tag: u64,
-    /// Knot of its foot.
+    /// Knot of the point's foot.
     foot: u32,
-    /// The knot before the steer axle's place then.
+    /// The knot before the steer axle's place when the point is at its foot.
     head: u32,
     unit: u32,
     left: bool,
-    /// Change of the leeway with the axle's deviation there and a knot further, and with the coupling's.
+    /// Change of the leeway with the axle's deviation at `head` and at the next knot, then with the coupling's at both.
     weights: [f32; 4],
-    /// If the plan were the centreline, metres.
+    /// Leeway if the plan were the centreline, metres.
     leeway: f64,
-    /// What γ_min adds to it.
+    /// Leeway that γ_min adds, metres.
     relief: f64,
 }
 
-/// A row as the ascent needs it, small: there are four a knot and vehicle.
+/// A row reduced to what the ascent needs. It is small because there are four per knot and vehicle.
 #[derive(Clone, Copy)]
 struct Pull {
     foot: u32,
@@ -61,10 +66,10 @@ struct Pull {
     leeway: f64,
 }
 
-/// What the sweeps have found so far, and how the bodies answer.
+/// The rows of the sweeps so far, and the response of the bodies.
 pub(super) struct Ascent {
     response: Response,
-    /// By vehicle, in the order of their feet.
+    /// By vehicle, in the order of the feet.
     rows: Vec<Vec<Row>>,
     spacing: f64,
     knots: usize,
@@ -73,7 +78,7 @@ pub(super) struct Ascent {
 }
 
 by_instruction_set! {
-    /// Better coefficients, from `start`.
+    /// Returns better coefficients than `start`.
     pub(super) fn climb(ascent: &mut Ascent, start: Vec<V>) -> Vec<V> {
         ascent.climb(start)
     }
@@ -83,7 +88,7 @@ impl Ascent {
     pub(super) fn new(track: &Track, group: &Group<'_>, max_shift_m: f64) -> Self {
         let spacing = track.spacing * KNOT_STATIONS as f64;
         let count = shift::count(track.count);
-        // Until the rear of the longest has left.
+        // Until the rear of the longest vehicle has left.
         let (length, front) = reach_m(group);
         let grid = count + ((length + front) / spacing).ceil() as usize + 2;
         Self {
@@ -96,7 +101,7 @@ impl Ascent {
         }
     }
 
-    /// Takes up what a sweep of the plan with these coefficients has found.
+    /// Takes up the result of a sweep of the plan with these coefficients.
     pub(super) fn note(&mut self, coarse: &Track, group: &Group<'_>, minima: &[Minima], coefficients: &[V]) {
         self.response.follow(&steer(coefficients, self.response.knots()));
         for (lane, (minima, model)) in minima.iter().zip(&group.models).enumerate() {
@@ -171,7 +176,7 @@ impl Ascent {
         now
     }
 
-    /// First and second derivative of what each row adds to the sum, with the deviations at hand.
+    /// First and second derivative of each row's term of the sum, at the current deviations.
     #[inline(always)]
     fn weigh(&self, lane: usize, pulls: &[Pull], tau: f64, limits: &mut Limits, slopes: &mut [f64], bends: &mut [f64]) {
         for (leeway, pull) in slopes.iter_mut().zip(pulls) {
@@ -187,8 +192,8 @@ impl Ascent {
         }
     }
 
-    /// One step from `ahead`. Responses are averages, all but: the rows of Rᵀ W R sum to Rᵀ W 1, which as a diagonal is
-    /// stiffer than the matrix, so that the step does not overshoot.
+    /// Takes one step from `ahead`. Responses are nearly averages, so the rows of Rᵀ W R sum to Rᵀ W 1. A diagonal of
+    /// these sums is stiffer than the matrix, and the step does not overshoot.
     #[inline(always)]
     fn stepped(&self, ahead: &[V], gradient: &[V], stiffness: &[V], least: f64) -> Vec<V> {
         let by: Vec<V> = gradient.iter().zip(stiffness).map(|(g, h)| *g / (*h + least)).collect();
@@ -200,8 +205,8 @@ impl Ascent {
         out
     }
 
-    /// The rows of each vehicle that may come to matter, with the leeway that the least γ leaves which makes the
-    /// vehicle fit there: a plan is to pass with γ = 1, and if it cannot, with as little shrinking as will do.
+    /// The rows of each vehicle that may matter. Their leeway is eased by the least shrinking with which the vehicle
+    /// fits there: a plan should pass with γ = 1, or with as little shrinking as possible.
     fn chosen(&mut self, start: &[V], limits: &mut Limits) -> Vec<Vec<Pull>> {
         self.response.follow(&steer(start, self.response.knots()));
         let mut chosen = Vec::with_capacity(self.rows.len());
@@ -222,7 +227,7 @@ impl Ascent {
         chosen
     }
 
-    /// What the rows ask of the coefficients.
+    /// Gradient with respect to the coefficients, from the rows' shares.
     #[inline(always)]
     fn asked(&mut self, pulls: &[Vec<Pull>], shares: &[Vec<f64>], of: impl Fn(f32) -> f32) -> Vec<V> {
         self.response.clear();
@@ -244,26 +249,26 @@ impl Ascent {
 }
 
 impl Row {
-    /// Eased by so much leeway.
+    /// The row with `eased` metres added to its leeway.
     #[inline(always)]
     fn pull(&self, eased: f64) -> Pull {
         Pull { foot: self.foot, head: self.head, unit: self.unit, weights: self.weights, leeway: self.leeway + eased }
     }
 }
 
-/// What SHRINK can add to the leeway at a tagged body point.
+/// Leeway that SHRINK can add at a tagged body point, metres.
 pub(super) fn relief(model: &Model, tag: u64) -> f64 {
     let gain = model.units[(tag >> 4) as usize].at[(tag & 15) as usize];
     gain.tracking * model.vehicle.tracking_tolerance_m * (1.0 - gamma(model, 0.0))
 }
 
-/// How much of the way from γ = 1 to γ_min it takes until the least leeway is no longer negative.
+/// Share of the way from γ = 1 to γ_min at which the least leeway reaches zero.
 fn part(full: f64, shrunk: f64) -> f64 {
     if full >= 0.0 || shrunk <= full { 0.0 } else { (full / (full - shrunk)).min(1.0) }
 }
 
 impl Response {
-    /// Change of a row's leeway with the deviations at hand.
+    /// Change of a row's leeway at the current deviations.
     #[inline(always)]
     fn change(&self, row: &Pull, lane: usize) -> f64 {
         let (y, e) = (&self.axle[row.unit as usize], &self.coupling[row.unit as usize]);
@@ -283,7 +288,7 @@ impl Response {
     }
 }
 
-/// The least on one side over the coarse stations about a knot.
+/// The least leeway on one side over the coarse stations next to a knot.
 fn least_at(coarse: &Track, minima: &Minima, foot: usize, left: bool) -> f64 {
     let column = if left { &minima.left } else { &minima.right };
     let k = coarse.lead + 2 * foot;
@@ -291,12 +296,12 @@ fn least_at(coarse: &Track, minima: &Minima, foot: usize, left: bool) -> f64 {
     about.map(|k| column[k]).fold(UNVISITED_M, |least, value| if value < least { value } else { least })
 }
 
-/// Up to which leeway rows count, by the knot of their foot.
+/// Leeway limit below which rows count, by the knot of their foot.
 struct Limits {
     rise: f64,
     /// The least leeway nearby.
     near: Vec<f64>,
-    /// The most that counts, and one over how far that is above the least.
+    /// The limit, and one over its distance to the least leeway nearby.
     at: Vec<(f64, f64)>,
 }
 
@@ -305,8 +310,8 @@ impl Limits {
         Self { rise, near: vec![0.0; knots], at: vec![(0.0, 0.0); knots] }
     }
 
-    /// From feet and leeways. What counts is up to `tau` above the least nearby, but never below zero: what does not fit is not
-    /// forgotten because something nearby fits even less.
+    /// Sets the limits from feet and leeways. The limit is `tau` above the least leeway nearby, but never below zero: a
+    /// place that does not fit must count even if a place nearby fits even less.
     #[inline(always)]
     fn set(&mut self, leeways: impl Iterator<Item = (u32, f64)>, tau: f64) {
         self.near.fill(UNVISITED_M);
@@ -336,7 +341,7 @@ fn steer(coefficients: &[V], knots: usize) -> Vec<V> {
     (0..knots).map(|knot| at(knot.min(last))).collect()
 }
 
-/// (1, 2, 1)/4; the ends are continued.
+/// Smooths with weights (1, 2, 1)/4; the end values are continued.
 #[inline(always)]
 fn smoothed(values: &[V]) -> Vec<V> {
     let last = values.len() - 1;

@@ -1,5 +1,5 @@
-//! Bodies, their points, and the stations under them: each point's feet are followed from station to station, and each keeps
-//! account of those it has been over (proof, section 7, Feet).
+//! Bodies, their points, and the stations under them. Each point's foot is followed from station to station. Each point
+//! records which stations it has passed (proof, section 7, Feet).
 
 use super::group::gamma;
 use super::lanes::{LANES, V};
@@ -7,22 +7,23 @@ use super::model::Model;
 use super::sweep::{BLOCK, Minima};
 use super::track::{Fields, Track};
 
-/// A foot further along than this (metres) is looked up anew.
+/// A foot farther along than this (metres) is searched again.
 pub(super) const NEAR_M: f64 = 1.0;
-/// Stations walked at most to find a foot.
+/// Most stations walked to find a foot.
 const MOST_STEPS: usize = 128;
-/// So many stations in a row may lie between two feet of a point; of more, nothing is certified: it jumped over them.
+/// Most stations between two successive feet of a point. If there are more, the point jumped over them and nothing is
+/// certified there.
 const JUMPED: usize = 4;
-/// A foot is not further from where it would be on a straight than this part of the way to the steer axle, and these metres: else
-/// it was lost in a bend, on a leg that the vehicle has left or has yet to come to.
+/// A foot is lost if it is farther from its place on a straight than this share of the distance to the steer axle plus
+/// these metres. It then lies on a leg of the corridor that the vehicle has left or has yet to reach.
 const ASTRAY_PART: f64 = 0.5;
 const ASTRAY_M: f64 = 10.0;
-/// Added to a head's station wherever a point ahead of it is counted from.
+/// Added to a head's station so that differences stay positive for points ahead of the head.
 const AHEAD: usize = 1 << 20;
-/// Leeway of a point that has no foot: nothing is certified there.
+/// Leeway of a point without a foot: nothing is certified there.
 pub(super) const LOST_M: f64 = -1e3;
 
-/// One unit of one vehicle at its body points.
+/// The body points of one unit of one vehicle.
 pub(super) struct Body {
     pub(super) half_width: f64,
     pub(super) inverse_length: f64,
@@ -30,7 +31,7 @@ pub(super) struct Body {
     pub(super) heading: f64,
     pub(super) axle: f64,
     pub(super) points: Vec<Point>,
-    /// The last unit's axle, whose offset the published form needs: its foot, and where that is on a straight (see [`Point`]).
+    /// Last unit only: its axle, whose offset the published certificate needs.
     pub(super) last_axle: Option<LastAxle>,
 }
 
@@ -39,7 +40,7 @@ pub(super) struct LastAxle {
     pub(super) way: Way,
 }
 
-/// Where a foot is on a straight, in stations behind the head, and how far from there it may be.
+/// Where a foot is on a straight, in stations behind the head, and how far it may be from there.
 pub(super) struct Way {
     pub(super) behind: usize,
     pub(super) astray: usize,
@@ -48,19 +49,19 @@ pub(super) struct Way {
 pub(super) struct Point {
     pub(super) spot: Spot,
     pub(super) tag: u64,
-    /// Distance to the point before, metres; 0 for the first.
+    /// Distance to the previous point, metres; 0 for the first.
     pub(super) gap: f64,
     pub(super) foot: usize,
     pub(super) way: Way,
-    /// Up to this station all have been under it, or are lost.
+    /// Every station up to this one has been under the point or is lost.
     pub(super) covered: usize,
 }
 
-/// A place on a body's axis, metres ahead of its axle, and what bounds it on the straight.
+/// A place on a body's axis, metres ahead of its axle, and its bounds on the straight.
 #[derive(Clone, Copy)]
 pub(super) struct Spot {
     pub(super) ahead: f64,
-    /// g there, and its slope towards half a width ahead and behind.
+    /// g there, and the slopes of g towards half a width ahead and half a width behind.
     pub(super) gain: f64,
     pub(super) slope_ahead: f64,
     pub(super) slope_behind: f64,
@@ -70,11 +71,11 @@ pub(super) struct Spot {
 }
 
 impl Spot {
-    /// `part` of the way from one point of a body to the next behind it: g is convex, so that it is below its chord, and beyond both ends
-    /// no steeper towards them than there.
+    /// The place at share `part` of the way from this point to the next one behind it. g is convex: it lies below its
+    /// chord, and beyond either end it is no steeper towards that end than at the end.
     pub(super) fn between(self, behind: Self, part: f64) -> Self {
         let mix = |a: f64, b: f64| a + (b - a) * part;
-        // The bounds of axle and coupling are both linear in the place, but for where they change sign: convex, too.
+        // The weights of axle and coupling are linear in the place except at sign changes, so they are convex too.
         Self {
             ahead: mix(self.ahead, behind.ahead),
             gain: mix(self.gain, behind.gain),
@@ -87,7 +88,7 @@ impl Spot {
 }
 
 impl Body {
-    /// Nothing is deducted for the straight.
+    /// Removes the straight gains, so that nothing is deducted for them.
     pub(super) fn forget_gains(&mut self) {
         for point in &mut self.points {
             point.spot = Spot { gain: 0.0, slope_ahead: 0.0, slope_behind: 0.0, ..point.spot };
@@ -95,8 +96,8 @@ impl Body {
     }
 }
 
-/// The bodies of a vehicle that stands straight behind the steer axle's first station, at γ = `shrink`. When planning, three
-/// points a side.
+/// The bodies of a vehicle that stands straight behind the steer axle's first station, at γ = `shrink`. Planning uses
+/// three points per unit.
 pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: f64) -> Vec<Body> {
     let tolerance = model.vehicle.tracking_tolerance_m * gamma(model, shrink);
     let last = model.units.len() - 1;
@@ -114,7 +115,7 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
                 behind: track.first_head + AHEAD - foot(ahead),
                 astray: ((ASTRAY_PART * (axle + ahead).abs() + ASTRAY_M) / track.spacing).ceil() as usize,
             };
-            // Innermost on a steady circle.
+            // The innermost point on a steady circle.
             let middle = (0..n).min_by(|&a, &b| unit.points[a].abs().total_cmp(&unit.points[b].abs()));
             let chosen = (0..n).filter(|&p| CERTIFY || p == 0 || Some(p) == middle || p == n - 1);
             let points = chosen.map(|p| {
@@ -149,14 +150,14 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
         .collect()
 }
 
-/// Where eight points lie relative to their foot stations.
+/// Eight points relative to their foot stations.
 pub(super) struct Seen {
     pub(super) at: Fields<V>,
     pub(super) along: V,
     pub(super) lateral: V,
 }
 
-/// Eight stations: consecutive ones, or any.
+/// Eight foot stations: consecutive ones (`Run`, the first) or any (`Each`).
 #[derive(Clone, Copy)]
 pub(super) enum Feet {
     Run(usize),
@@ -172,7 +173,7 @@ impl Feet {
         }
     }
 
-    /// The first and the last of them.
+    /// The first and the last of the eight stations.
     #[inline(always)]
     pub(super) fn range(self) -> (usize, usize) {
         match self {
@@ -184,7 +185,7 @@ impl Feet {
     }
 }
 
-/// Passes over a block that needs no leeways.
+/// Moves on over a block whose leeways are not wanted.
 pub(super) fn skip(track: &Track, body: &mut Body, head: usize) {
     for point in &mut body.points {
         point.foot = point.way.expected(track, head + BLOCK);
@@ -195,7 +196,7 @@ pub(super) fn skip(track: &Track, body: &mut Body, head: usize) {
     }
 }
 
-/// After the last block: every point must have been over the whole corridor.
+/// Ends the sweep: stations that a point has not passed are lost.
 pub(super) fn finish(track: &Track, body: &Body, minima: &mut Minima) {
     for point in &body.points {
         point.lose(track.lead + track.count, minima);
@@ -203,12 +204,12 @@ pub(super) fn finish(track: &Track, body: &Body, minima: &mut Minima) {
 }
 
 impl Way {
-    /// The foot on a straight when the head is at a station.
+    /// The foot on a straight when the head is at station `head`.
     pub(super) fn expected(&self, track: &Track, head: usize) -> usize {
         (head + AHEAD).saturating_sub(self.behind).min(track.len() - LANES)
     }
 
-    /// A foot, or, if that is not where it can be, the one on a straight.
+    /// `foot`, or the foot on a straight if `foot` is too far from it.
     pub(super) fn kept(&self, track: &Track, head: usize, foot: usize) -> usize {
         let expected = self.expected(track, head);
         if foot.abs_diff(expected) > self.astray { expected } else { foot }
@@ -216,7 +217,7 @@ impl Way {
 }
 
 impl LastAxle {
-    /// Raises the offsets by how far the axle is from the planned path, at its own feet.
+    /// Raises the offsets to the axle's distance from the planned path, at its own feet.
     #[inline(always)]
     pub(super) fn follow(&mut self, track: &Track, [x, y]: [V; 2], shift: &[V], lane: usize, minima: &mut Minima) {
         let feet = follow(track, self.foot, x, y);
@@ -234,7 +235,7 @@ impl LastAxle {
 }
 
 impl Point {
-    /// Takes note of the stations that have been under it.
+    /// Records the stations that have been under the point.
     #[inline(always)]
     pub(super) fn cover(&mut self, feet: Feet, minima: &mut Minima) {
         match feet {
@@ -254,8 +255,8 @@ impl Point {
         }
     }
 
-    /// After a block: a foot that is not where it can be is taken back to where it would be on a straight. What was missed
-    /// is lost.
+    /// Called after a block. A foot that is lost goes back to its place on a straight, and the stations in between are
+    /// lost.
     #[inline(always)]
     pub(super) fn keep_on_the_way(&mut self, track: &Track, head: usize, minima: &mut Minima) {
         let expected = self.way.expected(track, head);
@@ -266,7 +267,7 @@ impl Point {
         }
     }
 
-    /// Nothing is certified of the stations after those covered, up to `end`.
+    /// Marks the stations after `covered` up to `end` as lost: nothing is certified there.
     #[cold]
     fn lose(&self, end: usize, minima: &mut Minima) {
         let lost = V::splat(LOST_M).tagged(self.tag).0[0];
@@ -287,7 +288,7 @@ pub(super) fn place(at: Fields<V>, x: V, y: V) -> Seen {
 
 #[inline(always)]
 pub(super) fn near(along: V) -> bool {
-    // A NaN is far: it compares to nothing.
+    // A NaN counts as far, because it compares false.
     let mut all = true;
     for a in along.0 {
         all &= a.abs() <= NEAR_M;
@@ -295,8 +296,8 @@ pub(super) fn near(along: V) -> bool {
     all
 }
 
-/// Each point's own nearest station, walked to from `first`: a step at a time, since one point's foot is next to the
-/// other's.
+/// The nearest station of each point, found by walking from `first`. The walk goes step by step because neighbouring
+/// points have neighbouring feet.
 pub(super) fn follow(track: &Track, first: usize, x: V, y: V) -> [usize; LANES] {
     let f = &track.fields;
     let last = track.len() - 1;
@@ -307,7 +308,7 @@ pub(super) fn follow(track: &Track, first: usize, x: V, y: V) -> [usize; LANES] 
             let (dx, dy) = (x.0[i] - f.x[k], y.0[i] - f.y[k]);
             let along = dx * f.tangent_x[k] + dy * f.tangent_y[k];
             let lateral = dy * f.tangent_x[k] - dx * f.tangent_y[k];
-            // On the outside of a curve stations are further apart than on the line, seen from the point.
+            // On the outside of a curve stations are farther apart at the point than on the line.
             let half = 0.5 * track.spacing * (1.0 - f.curvature[k] * lateral).max(0.1);
             if along > 1.04 * half && k < last {
                 k += 1;
@@ -322,30 +323,30 @@ pub(super) fn follow(track: &Track, first: usize, x: V, y: V) -> [usize; LANES] 
     feet
 }
 
-/// The station to start the next eight from: one further than the last of these, corrected by what it is off.
+/// The station to start the next eight feet from: one after the last of these, corrected by its offset `along`.
 #[inline(always)]
 pub(super) fn next_foot(track: &Track, foot: usize, along: f64) -> usize {
-    // Towards zero of a positive number is rounding, without a call where there is no instruction for it; NaN gives 0.
+    // Truncating a positive number rounds without a call on machines that lack the instruction. NaN gives 0.
     let off = (along / track.spacing + 64.5).clamp(0.0, 128.0) as usize;
     (foot + 1 + off).saturating_sub(64).min(track.len() - LANES)
 }
 
-/// How far a point moves along the corridor while its foot moves a metre, 1 − κb: less than a metre on the inside of a bend. A tenth at
-/// least; half-widths end before.
+/// Metres a point moves along the corridor while its foot moves a metre, 1 − κb. It is below 1 on the inside of a bend.
+/// The least value is 0.1; half-widths end before that.
 #[inline(always)]
 pub(super) fn narrow(at: &Fields<V>, lateral: V) -> V {
     (V::splat(1.0) - at.curvature * lateral).max(V::splat(0.1))
 }
 
-/// Arc length from the station to the foot of a point `along`, `lateral` of it, and the lateral at that foot; `spread` is 1/(1 − κb):
-/// σ = a/(1 − κb), lat = b − (κ/2 + κ'σ/6)·a·σ.
+/// Arc length from the station to the foot of a point at (`along`, `lateral`), and the lateral place at that foot.
+/// `spread` is 1/(1 − κb): σ = a/(1 − κb), lat = b − (κ/2 + κ'σ/6)·a·σ.
 #[inline(always)]
 pub(super) fn foot(at: &Fields<V>, along: V, lateral: V, spread: V) -> (V, V) {
     let sigma = along * spread;
     (sigma, lateral - (at.curvature * 0.5 + at.curvature_slope * sigma * (1.0 / 6.0)) * along * sigma)
 }
 
-/// The lesser of two numbers of which neither is NaN: positions are finite, and a point without a foot is [`LOST_M`].
+/// The lesser of two numbers, neither of which is NaN: positions are finite, and a point without a foot has [`LOST_M`].
 #[inline(always)]
 pub(super) fn least(minimum: f64, value: f64) -> f64 {
     if minimum < value { minimum } else { value }

@@ -1,7 +1,8 @@
-//! Certificates of plans that somebody else made: another planner, a stored file, an optimiser in a test.
+//! Certificates of plans made elsewhere: by another planner, from a stored file, by an optimiser in a test.
 //!
-//! Promises what [`super::certify`] promises, of the plan that is given and no other; nothing is corrected here. Whether a
-//! plan is a good one, or within [`super::Options::max_shift_m`], is not asked: too far off shows as a negative RSC.
+//! [`certify_plan`] promises what [`super::certify`] promises, for exactly the given plan; it corrects nothing. It does
+//! not test whether the plan is good or within [`super::Options::max_shift_m`]. A plan too far off the centreline has a
+//! negative RSC.
 
 use thiserror::Error;
 
@@ -11,18 +12,18 @@ use super::{Certificate, Marks, Swept};
 use netcert_base::corridor::Corridor;
 use netcert_base::stop::Stop;
 
-/// Coefficients that must agree at either end: then q' = q'' = 0 at the first station and at the last one.
+/// Number of coefficients that must be equal at either end, so that q' = q'' = 0 at the first and the last station.
 const LEVEL_ENTRY: usize = 3;
 const LEVEL_EXIT: usize = 4;
 
-/// Why a plan does not belong to a corridor.
+/// Why a plan does not fit a corridor.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum PlanError {
     /// The corridor has no station.
-    #[error("the corridor has no station, so that there is nothing to plan")]
+    #[error("the corridor has no station")]
     NoCorridor,
-    /// Too many coefficients, or too few.
-    #[error("{found} coefficients for {stations} stations, which need {needed}: one every four stations, four more")]
+    /// Too many or too few coefficients.
+    #[error("{found} coefficients for {stations} stations, not {needed} (one per four stations and four more)")]
     Count {
         /// Coefficients given.
         found: usize,
@@ -31,26 +32,26 @@ pub enum PlanError {
         /// Stations of the corridor.
         stations: usize,
     },
-    /// The vehicle would not come, or not go, along the corridor.
+    /// The plan is not level at an end: the vehicle would not enter or leave along the corridor.
     #[error(
         "coefficient {index} differs from coefficient {end} by {} m; the first {LEVEL_ENTRY} must be equal, and the last \
          {LEVEL_EXIT}, so that the plan is level at its ends",
         f64::from(*steps) * STEP_M
     )]
     NotLevel {
-        /// Which coefficient, counted from 0.
+        /// Index of the coefficient, from 0.
         index: usize,
-        /// The end's own.
+        /// Index of the coefficient at the end.
         end: usize,
-        /// By how many steps, saturated.
+        /// The difference in steps, saturated.
         steps: i32,
     },
 }
 
-/// The certificate of one vehicle that follows `plan` over a whole corridor.
+/// Certifies one vehicle that follows `plan` over a whole corridor.
 ///
 /// # Errors
-/// A plan that is not one for this corridor: see [`PlanError`].
+/// [`PlanError`] if the plan does not fit this corridor.
 pub fn certify_plan(corridor: &Corridor, model: &Model, plan: &Plan) -> Result<Certificate, PlanError> {
     check(corridor.len(), plan)?;
     let whole = 0..corridor.len();

@@ -1,20 +1,20 @@
-//! Straight gains (design section 4): the largest deviation of any body point under bounded inputs is the L1 norm of
-//! its impulse responses, a constant of the vehicle.
+//! Straight gains (docs/proof.md, section 4). The largest deviation of a body point under bounded inputs is the L1 norm
+//! of its impulse responses. It is a constant of the vehicle.
 //!
-//! The chain is linear and stationary on the straight. Per unit, with e the deviation of its front coupling and y of
-//! its axle, along the path: L y' = e − y + L slip, α = (e − y)/L, and the next coupling has e = y − d α.
-//! Each response is a feedthrough (a weight on the input of the moment) plus a smooth part, propagated exactly from
-//! sample to sample; only its integral is a sum, and that errs upwards.
+//! On the straight the chain is linear and stationary. For each unit, e is the deviation of its front coupling and y
+//! that of its axle. Along the path L y' = e − y + L slip and α = (e − y)/L. The next coupling has e = y − d α. Each
+//! response is a feedthrough (a weight on the current input) plus a smooth part. The smooth part is propagated exactly
+//! from sample to sample; only its integral is a sum, and the sum errs upwards.
 
 use netcert_base::vehicle::Unit;
 
-/// Sample distance of the impulse responses, metres.
+/// Sampling interval of the impulse responses, metres.
 const STEP_M: f64 = 0.02;
 
-/// Responses are followed until no axle is further off than this part of the impulse.
+/// Responses are followed until every axle's deviation is below this share of the impulse.
 const REST: f64 = 1e-7;
 
-/// A linear form over the state (the units' axle deviations) and the input of the moment.
+/// A linear form over the state (the units' axle deviations) and the current input.
 #[derive(Clone)]
 struct Form {
     state: Vec<f64>,
@@ -24,7 +24,7 @@ struct Form {
 /// The chain on the straight, from one input (the steer axle's deviation, or one axle's slip) to every unit.
 pub(super) struct Chain<'v> {
     units: &'v [Unit],
-    /// Rows of the state matrix: y_i' = rate_i · y + gain_i · e_0 (+ slip).
+    /// Deviation of each unit's front coupling, then of the last rear coupling.
     couplings: Vec<Form>,
     propagator: Vec<Vec<f64>>,
 }
@@ -34,12 +34,12 @@ pub(super) struct Chain<'v> {
 pub(super) struct Gain {
     /// Per metre of the steer axle's tolerance.
     pub(super) tracking: f64,
-    /// All axles' slip at their bounds, metres (radians for a heading).
+    /// With every axle's slip at its bound, metres (radians for a heading).
     pub(super) slip: f64,
 }
 
 impl Gain {
-    /// With the steer axle within ±`tolerance_m`.
+    /// The gain with the steer axle within ±`tolerance_m`.
     pub(super) fn at(self, tolerance_m: f64) -> f64 {
         self.tracking * tolerance_m + self.slip
     }
@@ -69,7 +69,7 @@ impl<'v> Chain<'v> {
         Self { units, couplings, propagator: exponential(&rates, STEP_M) }
     }
 
-    /// The deviation of a point `ahead_m` of unit `unit`'s axle, as a form.
+    /// The deviation of a point `ahead_m` ahead of unit `unit`'s axle, as a form.
     fn point(&self, unit: usize, ahead_m: f64) -> Form {
         let ratio = ahead_m / self.units[unit].coupling_to_axle_m;
         let coupling = &self.couplings[unit];
@@ -122,7 +122,7 @@ impl<'v> Chain<'v> {
         (at_points, all.collect())
     }
 
-    /// ∫|form · state| from the state right after a unit impulse, for each form.
+    /// ∫|form · state| for each form, from the state right after a unit impulse.
     fn norms(&self, mut state: Vec<f64>, forms: &[Form]) -> Vec<f64> {
         let n = state.len();
         let longest = self.units.iter().fold(0.0, |l: f64, u| l.max(u.coupling_to_axle_m));
@@ -140,9 +140,9 @@ impl<'v> Chain<'v> {
                 *last = value;
             }
         }
-        // Trapezoids lie above |f| at its sign changes and short of it by h²/12·∫|f''| elsewhere; the stages' modes
-        // decay no faster than e^(−s/L), so |f''| is of the order of (4/L)²·|f| at most. The rest, a chain of n stages
-        // that starts at REST, holds no more than n²·L of it.
+        // Trapezoids lie above |f| at its sign changes and below it by h²/12·∫|f''| elsewhere. The modes decay no
+        // faster than e^(−s/L), so |f''| is at most about (4/L)²·|f|. The part that is not followed starts at REST in a
+        // chain of n stages, so it adds at most n²·L times REST.
         let shortest = self.units.iter().fold(f64::INFINITY, |l, u| l.min(u.coupling_to_axle_m));
         let trapezoid = STEP_M * STEP_M / 12.0 * (4.0 / shortest).powi(2);
         sums.iter().map(|s| s * (1.0 + trapezoid) + REST * longest * (n * n) as f64).collect()
@@ -153,7 +153,8 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
-/// exp(matrix · step) by its series: the step is a hundredth of the shortest stage or less, eight terms are exact.
+/// exp(matrix · step) by its series. The step is at most a tenth of the shortest unit, so twelve terms are exact to
+/// rounding.
 fn exponential(matrix: &[Vec<f64>], step: f64) -> Vec<Vec<f64>> {
     let n = matrix.len();
     let identity = |i: usize, j: usize| f64::from(u8::from(i == j));
@@ -196,12 +197,13 @@ mod tests {
 
     #[test]
     fn a_single_unit_has_the_closed_form() {
-        // y: a first-order lag, norm 1; at a: (1 − a/L) lag plus a/L feedthrough; α: 1/L + 1/L; slip: L·σ at the axle.
+        // y: a first-order lag with norm 1. At a: (1 − a/L) lag plus a/L feedthrough. α: 1/L + 1/L. Slip: L·σ at the
+        // axle.
         let units = [unit(5.0, 0.0)];
         let (points, headings) = Chain::new(&units).gains(&[vec![0.0, 2.0, 7.0, -3.0]]);
         let expected = [1.0, 1.0, 0.4 + 1.4, 1.6 + 0.6];
         for (gain, want) in points[0].iter().zip(expected) {
-            // Never below, and above by the quadrature's allowance only.
+            // Never below, and above only by the quadrature's allowance.
             let above = gain.tracking - want;
             assert!((-1e-9..5e-5).contains(&above), "{gain:?} {want}");
         }
@@ -211,7 +213,7 @@ mod tests {
 
     #[test]
     fn a_type_2_road_train_swings_its_last_rear_by_a_third_of_a_metre() {
-        // 0.33 m by the design page; an independent adversary attains 0.3362 m (tests/certificate/simulator.rs).
+        // An independent adversary attains 0.3362 m (tests/certificate/simulator.rs).
         let units = [unit(5.3, -0.2), unit(9.5, 2.6), unit(5.0, 0.0), unit(9.5, 2.6), unit(5.0, 0.0), unit(9.5, 0.0)];
         let at: Vec<Vec<f64>> = units.iter().map(|_| vec![-2.8]).collect();
         let (points, _) = Chain::new(&units).gains(&at);

@@ -1,4 +1,4 @@
-//! Up to eight vehicles side by side: their constants in lanes, so that one sweep serves them all.
+//! The constants of up to eight vehicles in lanes, so that one sweep serves them all.
 
 use super::lanes::{LANES, V};
 use super::model::{MAX_UNITS, Model, UnitModel};
@@ -10,18 +10,18 @@ pub(super) const SHRINK_STEPS: f64 = 1000.0;
 /// Vehicles that sweep together. Empty lanes repeat the last vehicle and are not read.
 pub(super) struct Group<'m> {
     pub(super) models: Vec<&'m Model>,
-    /// γ asked of all of them; each keeps to its own least.
+    /// γ wanted for all vehicles. Each vehicle keeps to its own γ_min.
     pub(super) shrink: f64,
-    /// Most units of any of them.
+    /// Largest number of units of any vehicle.
     pub(super) units: usize,
     pub(super) chain: [UnitLanes; MAX_UNITS],
     /// γ ε, metres.
     pub(super) tolerance: V,
-    /// Allowance for the prime mover's course, radians.
+    /// m, the allowance for the prime mover's course, radians.
     pub(super) course: V,
 }
 
-/// Constants of one unit across the vehicles; a vehicle without this unit has a harmless stand-in.
+/// Constants of one unit across the vehicles. A vehicle without this unit has a harmless stand-in.
 #[derive(Clone, Copy)]
 pub(super) struct UnitLanes {
     /// 1 where the vehicle has this unit, else 0.
@@ -36,7 +36,8 @@ pub(super) struct UnitLanes {
     pub(super) ratio: V,
     pub(super) sway: V,
     pub(super) max_articulation: V,
-    /// At the group's γ: bounds on the straight of heading error, axle deviation and (hinge by hinge) coupling deviation.
+    /// At the group's γ, on the straight: bounds of heading error, axle deviation and (hinge by hinge) coupling
+    /// deviation.
     pub(super) heading: V,
     pub(super) axle: V,
     pub(super) coupling: V,
@@ -45,7 +46,7 @@ pub(super) struct UnitLanes {
 }
 
 impl<'m> Group<'m> {
-    /// `models` holds one to eight; `shrink` is γ of each.
+    /// `models` holds one to eight vehicles; `shrink` is the γ wanted of each.
     pub(super) fn new(models: &[&'m Model], shrink: f64) -> Self {
         let lane = |i: usize| models[i.min(models.len() - 1)];
         let per_vehicle = |f: &dyn Fn(&Model) -> f64| {
@@ -89,18 +90,18 @@ impl<'m> Group<'m> {
         }
     }
 
-    /// Longest vehicle, steer axle to rear, metres.
+    /// Greatest distance from steer axle to rear, metres.
     pub(super) fn length(&self) -> f64 {
         self.models.iter().fold(0.0, |l, m| l.max(m.length))
     }
 
-    /// Longest body ahead of a steer axle, metres.
+    /// Greatest distance from steer axle to front, metres.
     pub(super) fn front(&self) -> f64 {
         self.models.iter().fold(0.0, |l, m| l.max(m.front))
     }
 }
 
-/// The γ that `model` allows when `shrink` is asked; its least is rounded up to the thousandths that are stored.
+/// The γ of `model` when `shrink` is wanted. γ_min is rounded up to thousandths, which are stored.
 pub(super) fn gamma(model: &Model, shrink: f64) -> f64 {
     let least = (model.vehicle.min_shrink * SHRINK_STEPS).ceil() / SHRINK_STEPS;
     shrink.max(least).min(1.0)

@@ -1,12 +1,12 @@
-//! Eight numbers side by side. Plain arrays, so that one source serves every instruction set; no fused
-//! multiply-add, so that every machine gives the same bytes. And functions made for more than one instruction set.
+//! Eight numbers side by side, and functions compiled for more than one instruction set. Plain arrays let one source
+//! serve every instruction set. There is no fused multiply-add, so every machine gives the same bytes.
 
-// Index loops over fixed arrays: the form that the compiler turns into vector instructions.
+// The compiler turns index loops over fixed arrays into vector instructions.
 #![allow(clippy::needless_range_loop)]
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// How many lanes: vehicles in the motion, stations at the body points.
+/// Number of lanes: vehicles in the motion, stations at the body points.
 pub(crate) const LANES: usize = 8;
 
 /// Eight `f64`.
@@ -87,7 +87,7 @@ impl V {
         self.map(f64::sqrt)
     }
 
-    /// The greater of each pair: one instruction, unlike `f64::max`, at the price of an unordered NaN.
+    /// The greater of each pair. It is one instruction, unlike `f64::max`; the order of a NaN is undefined.
     #[inline(always)]
     pub(crate) fn max(self, other: V) -> V {
         self.zip(other, |a, b| if a > b { a } else { b })
@@ -99,7 +99,7 @@ impl V {
         self.zip(other, |a, b| if a < b { a } else { b })
     }
 
-    /// Each number with its lowest seven bits of mantissa replaced by `tag`: it moves by less than 3e-14 of itself.
+    /// Replaces the lowest seven bits of each mantissa by `tag`. The number moves by less than 3e-14 of itself.
     #[inline(always)]
     pub(crate) fn tagged(self, tag: u64) -> V {
         self.map(|x| f64::from_bits((x.to_bits() & !TAG_MASK) | tag))
@@ -119,9 +119,9 @@ pub(crate) fn select_negative(sign: V, yes: V, no: V) -> V {
 /// The bits of a [`V::tagged`] number that hold the tag.
 pub(crate) const TAG_MASK: u64 = 0x7f;
 
-/// Functions whose code is made twice, for machines with AVX2 and for any; which is taken is asked at each call. What they call
-/// must be `#[inline(always)]` to have its share of AVX2. Each is a piece of the sweep: a whole one, inlined into one function,
-/// takes the compiler minutes.
+/// Compiles functions twice, for machines with AVX2 and for any machine, and chooses at each call. Functions that they
+/// call must be `#[inline(always)]` to use AVX2. Each function is a piece of the sweep: the whole sweep inlined into
+/// one function takes the compiler minutes.
 macro_rules! by_instruction_set {
     ($(
         $(#[$about:meta])*
@@ -149,7 +149,7 @@ macro_rules! by_instruction_set {
 
             #[cfg(target_arch = "x86_64")]
             if std::arch::is_x86_feature_detected!("avx2") {
-                // SAFETY: the processor has AVX2, just asked.
+                // SAFETY: the processor has AVX2, as tested above.
                 return unsafe { avx2$(::<$($flag),+>)?($($argument),*) };
             }
             any$(::<$($flag),+>)?($($argument),*)

@@ -1,7 +1,7 @@
-//! Leeway at the body points (design section 5), eight consecutive head stations at a time.
+//! Leeway at the body points (docs/proof.md, section 7), for eight consecutive head stations at a time.
 //!
-//! Deducted from the plain distance: the tube of the point, its second-order terms, what may happen between two body
-//! points (inside of a curve) and between two head stations.
+//! The plain distance to the edge is reduced by the tube of the point, by its second-order terms, by what may happen
+//! between two body points (inside of a curve), and by what may happen between two head stations.
 
 use super::body::{
     Body, Feet, LOST_M, NEAR_M, Seen, Spot, follow, foot, least, least as least_of, narrow, near, next_foot, place,
@@ -10,20 +10,22 @@ use super::lanes::{LANES, V, by_instruction_set, select_negative};
 use super::sweep::{BLOCK, FIELDS, Minima, ZERO, row};
 use super::track::{BULGE_MOST, Fields, READ_M, Track};
 
-/// Where half-widths bulge, what lies between two body points is looked at in parts no longer than this, metres: at a radius of
-/// 16 m a part's sagitta is 2 cm.
+/// Where half-widths bulge, a side between two body points is examined in parts no longer than this, metres. At a
+/// radius of 16 m the sagitta of a part is 2 cm.
 const PART_M: f64 = 1.4;
-/// Feet of a side's places are not as evenly spaced as the places: a place may be at another share of the way between two points than
-/// its foot is. By this much on a straight; in a bend by these parts of how far the point is from the middle and the side is long, times
-/// the curvature. Where a side is much longer than the road under it, or shorter, nothing is said of the share.
+/// The feet of a side's places are not spaced as evenly as the places. A place and its foot may therefore lie at
+/// different shares of the way between two points. The difference is at most `UNEVEN` on a straight. A bend adds
+/// `UNEVEN_ASIDE` times the lateral distance and `UNEVEN_ALONG` times the gap, both times the curvature. If the ratio
+/// of road to side is outside `EVEN_ENOUGH`, any share is possible.
 const UNEVEN: f64 = 0.05;
 const UNEVEN_ASIDE: f64 = 0.5;
 const UNEVEN_ALONG: f64 = 0.15;
 const EVEN_ENOUGH: std::ops::Range<f64> = 0.75..1.35;
-/// Half-widths that leave their own slope by less, a metre's way or its square, are read at the axis's station.
+/// If half-widths leave their own slope by less than this (per metre and per square metre), they are read at the
+/// station of the axis.
 const ROUGH: f64 = 0.01;
 
-/// The eight states of a unit that a group of stations needs.
+/// The states of a unit at eight head stations.
 struct States {
     x: V,
     y: V,
@@ -41,22 +43,22 @@ struct States {
 struct Sample {
     feet: Feet,
     tag: u64,
-    /// Leeway at the point, and with what its neighbours take off.
+    /// Leeway at the point, and leeway reduced by what may happen next to the point.
     left: V,
     right: V,
     lowered_left: V,
     lowered_right: V,
     curvature: V,
     bulge: V,
-    /// From its foot's station to the place on the axis, along the corridor and across it.
+    /// The place on the axis relative to its foot's station, along the corridor and across it.
     along: V,
     lateral: V,
 }
 
 by_instruction_set! {
-    /// Lowers `minima` by all points of one unit over one block. `REFINED`: with the bounds of each body point in `refined`
-    /// (a block each) instead of gains and what curvature adds to them.
-    #[allow(clippy::too_many_arguments)] // One call a unit and block, in the innermost loop but one.
+    /// Lowers `minima` by all points of one unit over one block. With `REFINED`, `refined` holds a block of bounds per
+    /// body point, which replace the gains and what curvature adds to them.
+    #[allow(clippy::too_many_arguments)] // One call per unit and block, in the second innermost loop.
     pub(super) fn points<const CERTIFY: bool, const REFINED: bool>(
         track: &Track,
         body: &mut Body,
@@ -144,7 +146,7 @@ by_instruction_set! {
     }
 }
 
-/// One body point at eight head stations; its foot is ready for the next eight.
+/// One body point at eight head stations. The point's foot moves on to the next eight.
 #[inline(always)]
 fn sample<const CERTIFY: bool, const REFINED: bool>(
     track: &Track,
@@ -170,7 +172,8 @@ fn sample<const CERTIFY: bool, const REFINED: bool>(
     sample_apart::<CERTIFY, REFINED>(track, body, index, s, knots)
 }
 
-/// As [`sample`], each point at its own nearest station. Apart, so that the common case stays in registers.
+/// As [`sample`], with each point at its own nearest station. It is a function of its own so that the common case stays
+/// in registers.
 #[cold]
 #[inline(never)]
 fn sample_apart<const CERTIFY: bool, const REFINED: bool>(
@@ -190,7 +193,7 @@ fn sample_apart<const CERTIFY: bool, const REFINED: bool>(
     sample
 }
 
-/// A place of a body at eight head stations, its feet given.
+/// A place of a body at eight head stations with given feet.
 #[inline(always)]
 fn sample_at<const CERTIFY: bool, const REFINED: bool>(
     track: &Track,
@@ -211,7 +214,7 @@ fn sample_at<const CERTIFY: bool, const REFINED: bool>(
     (Sample::new(&seen, Feet::Each(feet), tag, found(left), found(right)), seen)
 }
 
-/// What lies between a body point and the one before it, in so many parts, where half-widths bulge.
+/// Examines the side between a body point and the previous one in `parts` parts, where half-widths bulge.
 #[cold]
 #[inline(never)]
 #[allow(clippy::too_many_arguments)] // As above.
@@ -254,8 +257,8 @@ fn inside<const REFINED: bool>(
     at_marks(track, (last.as_ref().unwrap_or(before), after), s, part_m, minima);
 }
 
-/// What a side leaves at marked stations between two of its points, `gap` apart: no less than the chord of what these leave, but for
-/// what the corridor bends and its width bulges.
+/// Lowers the leeway at marked stations between two points of a side, `gap` metres apart. The leeway is no less than
+/// the chord between the points, less the bend of the corridor and the bulge of its width.
 #[inline(always)]
 fn at_marks(track: &Track, (before, after): (&Sample, &Sample), s: &States, gap: f64, minima: &mut Minima) {
     let [from, to] = [after.feet.range().0, before.feet.range().1];
@@ -271,7 +274,7 @@ fn note_marks(track: &Track, (before, after): (&Sample, &Sample), s: &States, ga
     let [most, least] = bends(&[before, after], s, gap);
     let bend = |bend: V| bend.max(ZERO) * 1.1 + bulge;
     let (bend_left, bend_right) = (bend(most), bend(-least));
-    // Between two marked stations in one gap nothing is asked: what the side may sag from one to the other.
+    // Two marked stations may lie in one gap: this covers the sag of the side between them.
     let between = track.spacing * track.spacing / 8.0;
     for i in 0..LANES {
         let foot = |sample: &Sample| sample.feet.station(i) as f64 + sample.along.0[i] / track.spacing;
@@ -294,7 +297,7 @@ fn note_marks(track: &Track, (before, after): (&Sample, &Sample), s: &States, ga
     }
 }
 
-/// The least value between two shares of the parabola from one end to the other that lies below their chord by `whole`·w(1 − w).
+/// The least value between two shares of the parabola that lies `whole`·w(1 − w) below the chord between its ends.
 fn sagging([behind, ahead]: [f64; 2], whole: f64, [from, to]: [f64; 2]) -> f64 {
     let at = |w: f64| behind + (ahead - behind) * w - whole * w * (1.0 - w);
     let lowest = if whole > 0.0 { 0.5 - 0.5 * (ahead - behind) / whole } else { from };
@@ -326,14 +329,14 @@ impl Sample {
     }
 }
 
-/// Whether half-widths bulge so much somewhere near two body points that a parabola between them says nothing.
+/// Whether half-widths near two body points bulge so much that no parabola between the points bounds them.
 #[inline(always)]
 fn bulges(before: &Sample, sample: &Sample) -> bool {
     before.bulge.max(sample.bulge).0.iter().any(|&bulge| bulge > BULGE_MOST)
 }
 
-/// Greatest and least curvature by which the corridor may bend away from a straight side under some points of it while
-/// these pass a station one after the other, `gap` apart at most.
+/// Greatest and least curvature of the corridor relative to a straight side, under the given points and between them.
+/// The points pass a station one after the other, at most `gap` metres apart.
 #[inline(always)]
 fn bends(samples: &[&Sample], s: &States, gap: f64) -> [V; 2] {
     let sway = s.jerk * gap;
@@ -342,16 +345,18 @@ fn bends(samples: &[&Sample], s: &States, gap: f64) -> [V; 2] {
     [most, least]
 }
 
-/// By how much a straight side of length `gap` may lie below both its ends over a corridor that bends.
+/// Greatest distance of a straight side of length `gap` below both its ends, over a corridor that bends by `bend`.
 #[inline(always)]
 fn whole_sagitta(bend: V, gap: f64) -> V {
     bend.max(ZERO) * (1.1 * gap * gap / 8.0)
 }
 
-/// Between two body points the side is straight while the corridor bends: along the side, leeway is above the parabola
-/// through both ends whose second derivative is the bend (and what the width bulges). Its least value counts at both
-/// ends. Where the width bulges more than [`BULGE_MOST`] its places count one by one: a station sees both ends of each of
-/// the `parts` pass, and what passes between them is at most that part's whole sagitta lower.
+/// Covers the side between two body points: the side is straight while the corridor bends. Along the side, leeway lies
+/// above the parabola through both ends whose second derivative is the bend plus the bulge of the width. The least
+/// value of that parabola counts at both ends.
+///
+/// If the width bulges more than [`BULGE_MOST`], the places of the side count one by one. A station sees both ends of
+/// each of the `parts` pass. Leeway between them is lower by at most the sagitta of one part.
 #[inline(always)]
 fn between_points(before: &mut Sample, sample: &mut Sample, s: &States, gap: f64, parts: f64) {
     let bulge = before.bulge.max(sample.bulge);
@@ -372,7 +377,7 @@ fn between_points(before: &mut Sample, sample: &mut Sample, s: &States, gap: f64
     sample.lowered_right = sample.right - right;
 }
 
-/// Bounds at a body point and at its neighbours, and how far off these are (0: there is none).
+/// Bounds at a body point and at its neighbours, and the distances to the neighbours (0: no neighbour).
 struct Knots {
     ahead: V,
     own: V,
@@ -382,20 +387,20 @@ struct Knots {
 }
 
 impl Knots {
-    /// How much the bound rises `by`/cos φ metres ahead of the point, times cos φ. It is convex along the body: below its
-    /// chords between points, and nowhere steeper than the heading's bound.
+    /// Rise of the bound `by`/cos φ metres ahead of the point, times cos φ. The bound is convex along the body: it lies
+    /// below its chords between points, and its slope is nowhere greater than the bound of the heading.
     #[inline(always)]
     fn lean(&self, by: V, cos: V, heading: V) -> V {
         let to = |other: V, gap: f64| {
             let chord = (other - self.own) * (1.0 / gap.max(1e-9));
-            // Negative beyond the neighbour, if there is one at all.
+            // Negative beyond the neighbour, or without a neighbour.
             select_negative(cos * gap - by.abs(), heading, chord.min(heading))
         };
         select_negative(by, to(self.behind, self.gap_behind), to(self.ahead, self.gap_ahead)) * by.abs()
     }
 }
 
-/// Leeway to the left and to the right of both side points at one along-offset.
+/// Leeway to the left and to the right, at the two side points of one place on the axis.
 #[inline(always)]
 fn leeways<const CERTIFY: bool, const REFINED: bool>(
     track: &Track,
@@ -434,13 +439,14 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let (base, lean_left, lean_right) = if REFINED {
         (c * knots.own, knots.lean(-askew, c, a), knots.lean(askew, c, a))
     } else {
-        // g is convex; extra and g are no steeper than their heading bounds.
+        // g is convex, and neither `extra` nor g is steeper than its heading bound.
         let base = c * (s.extra_axle * spot.from_axle + s.extra_coupling * spot.from_coupling + spot.gain)
             + t * extras * body.half_width
             + (t - c).max(V::splat(0.0)) * a * body.half_width;
         (base, lean_left, lean_right)
     };
-    // Second order: along is how far the point may slide along the corridor; its foot moves as much as normals crowd there.
+    // Second order: `along` is how far the point may slide along the corridor. Its foot slides farther where normals
+    // crowd.
     let along = c * a * body.half_width + t * (axle + a * reach);
     let bend = at.curvature.abs();
     let second = (c * s.remainder + t * a2 * 0.5) * reach;
@@ -451,7 +457,7 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let side = |edge: &Edge, lean: V| {
         let crowd = edge.spread.max(V::splat(1.0));
         let slide = crowd * along;
-        // The foot's own series beyond its third order, too: κ³σ⁴/8, times 1 + |κb| on the outside.
+        // Terms of the foot's series beyond third order: κ³σ⁴/8, times 1 + |κb| on the outside.
         let on2 = edge.on * edge.on;
         let bent = bend * slide * along * 0.5 + bend * bend * bend * on2 * on2 * 0.3;
         edge.room - common - lean - bent - edge.excess(slide)
@@ -459,7 +465,7 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     (side(&edges[0], lean_left), side(&edges[1], lean_right))
 }
 
-/// How far feet move along the corridor while their points move a metre, on the left and on the right: 1 over what is [`narrow`].
+/// Metres a foot moves along the corridor while its point moves a metre, left and right: 1 over [`narrow`].
 #[inline(always)]
 fn spread(at: [&Fields<V>; 2], lateral: [V; 2]) -> [V; 2] {
     let (left, right) = (narrow(at[0], lateral[0]), narrow(at[1], lateral[1]));
@@ -467,17 +473,17 @@ fn spread(at: [&Fields<V>; 2], lateral: [V; 2]) -> [V; 2] {
     [both * right, both * left]
 }
 
-/// One side's point against the edge beside it, read at a station.
+/// One side's point and the edge beside it, read at a station.
 #[derive(Clone, Copy)]
 struct Edge {
-    /// Half-width at the foot less lateral place.
+    /// Half-width at the foot less lateral place, metres.
     room: V,
     /// See [`spread`].
     spread: V,
-    /// From the station to the foot.
+    /// Arc length from the station to the foot, metres.
     on: V,
     slope: V,
-    /// What the reading may be over, a metre's way, and its square.
+    /// Bounds on how much the reading is too great, per metre from the station and per square metre.
     excess: V,
     rounding: V,
 }
@@ -497,7 +503,7 @@ impl Edge {
         Self { room, spread, on, slope: at.right_slope, excess: at.right_excess, rounding: at.rounding }
     }
 
-    /// What the half-width may be less where the point is, up to `slide` from its nominal foot.
+    /// How much less the half-width may be at the point than read, if the point is up to `slide` from its nominal foot.
     #[inline(always)]
     fn excess(&self, slide: V) -> V {
         let way = self.on.abs() + slide;
@@ -506,14 +512,15 @@ impl Edge {
     }
 }
 
-/// Whether half-widths change so much that each side is worth a station of its own.
+/// Whether half-widths change so much that each side needs a station of its own.
 #[inline(always)]
 fn rough(at: &Fields<V>) -> bool {
     let excess = at.left_excess.max(at.right_excess).max(at.rounding);
     excess.0.iter().any(|&excess| excess > ROUGH)
 }
 
-/// Both sides' points, each at the station of its own foot: on the inside of a bend, or askew, that is metres from the axis's.
+/// Reads each side's point at the station of its own foot. In a bend, or with the body askew, that foot is metres from
+/// the foot of the axis.
 #[cold]
 #[inline(never)]
 fn apart(track: &Track, feet: Feet, s: &States, ahead: f64, half_width: f64, edges: &[Edge; 2]) -> [Edge; 2] {

@@ -1,6 +1,7 @@
-//! The certificate: nominal motion → tubes → leeway → corrections → RSC (design sections 3 to 5).
+//! The certificate (docs/proof.md): nominal motion → tubes → leeway → corrections → RSC.
 //!
-//! Pure: a corridor and a vehicle in, a certificate out; no input or output, no clock, no threads.
+//! The module is pure: it takes a corridor and a vehicle and returns a certificate. It has no input or output, no clock
+//! and no threads.
 
 mod adjoint;
 mod ascent;
@@ -38,7 +39,7 @@ use lanes::{LANES, V};
 use sweep::{Minima, Wanted, sweep};
 use track::Track;
 
-/// Which edge of the corridor, seen in driving direction.
+/// An edge of the corridor, seen in driving direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     /// Left of travel.
@@ -47,25 +48,25 @@ pub enum Side {
     Right,
 }
 
-/// Where the least leeway stands.
+/// The place of the least leeway.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limiting {
-    /// Station index in the corridor (the foot of the body point).
+    /// Station index in the corridor: the foot of the body point.
     pub station: usize,
     /// Unit index.
     pub unit: usize,
     /// Side.
     pub side: Side,
-    /// Along the unit: metres ahead of its axle.
+    /// Place along the unit, metres ahead of its axle.
     pub point_m: f64,
 }
 
-/// What limits the corrections, and how many sweeps are spent on them.
+/// Bounds of the corrections, and the number of sweeps spent on them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Options {
-    /// Δq_max: the most by which the steer path may be shifted off the centreline, metres. 0: none.
+    /// Δq_max: largest shift of the steer path off the centreline, metres. 0 allows no correction.
     pub max_shift_m: f64,
-    /// CORRCEN sweeps after the centred one.
+    /// Number of CORRCEN sweeps after the centred one.
     pub correction_sweeps: usize,
 }
 
@@ -78,30 +79,31 @@ impl Default for Options {
 /// The result for one span of stations (an edge, or the whole corridor).
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpanResult {
-    /// RSC at `shrink`, metres: the least leeway of any body point of any unit over the span, all bounds deducted. `None`: nothing
-    /// bounds the vehicle, or a body point could not be followed.
+    /// RSC at `shrink`, metres: the least leeway of any body point of any unit over the span, with all bounds deducted.
+    /// `None` if the bounds do not close or a body point could not be followed.
     pub rsc_m: Option<f64>,
-    /// The paper's 𝒞 as printed, metres; never decides.
+    /// The paper's 𝒞 as printed, metres. It never decides.
     pub rsc_published_m: f64,
-    /// Least hinge margin, radians (negative: a hinge or the steering lock is exceeded). There whenever `rsc_m` is.
+    /// Least hinge margin, radians; negative if a hinge or the steering lock is exceeded. It is `Some` exactly if
+    /// `rsc_m` is.
     pub hinge_margin_rad: Option<f64>,
-    /// The hinge that has it (0: the steering lock); the one whose bounds fail where there is no margin.
+    /// Index of the hinge with the least margin (0: the steering lock). Without a margin, the hinge whose bounds fail.
     pub hinge_unit: usize,
-    /// γ: the tracking tolerance that RSC rests on is γ·ε.
+    /// γ: the RSC holds for a tracking tolerance of γ·ε.
     pub shrink: f64,
-    /// Where the least leeway stands; it says nothing where there is no RSC.
+    /// Place of the least leeway; meaningless without an RSC.
     pub limiting: Limiting,
 }
 
 impl SpanResult {
-    /// Whether the bounds' recursion closes all over the span, and every body point could be followed over it. Where not, a unit
-    /// stands so far across its path that the numbers bound nothing.
+    /// Whether the recursion of the bounds closes over the whole span and every body point could be followed. If not, a
+    /// unit may stand so far across its path that the numbers bound nothing.
     #[must_use]
     pub fn closes(&self) -> bool {
         self.rsc_m.is_some() && self.hinge_margin_rad.is_some()
     }
 
-    /// RSC ≥ 0 and hinge margin ≥ 0.
+    /// Whether RSC ≥ 0 and hinge margin ≥ 0.
     #[must_use]
     pub fn safe(&self) -> bool {
         self.rsc_m.is_some_and(|rsc_m| rsc_m >= 0.0) && self.hinge_margin_rad.is_some_and(|margin| margin >= 0.0)
@@ -113,7 +115,7 @@ impl SpanResult {
         self.rsc_m.is_some_and(|rsc_m| rsc_m < 0.0)
     }
 
-    /// What the numbers say by themselves, law and map aside.
+    /// The verdict of the numbers alone, without law and map.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         match () {
@@ -126,47 +128,50 @@ impl SpanResult {
     }
 }
 
-/// One vehicle's results on a corridor.
+/// One vehicle's plan and results on a corridor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Planned {
-    /// What the steer axle is to follow.
+    /// The path that the steer axle is to follow.
     pub plan: Plan,
-    /// One a span.
+    /// One result per span.
     pub spans: Vec<SpanResult>,
 }
 
-/// A certificate over a whole corridor, with all that a picture, a file or a second program needs.
+/// A certificate over a whole corridor, with everything that a picture, a file or a second program needs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Certificate {
     /// Over all stations.
     pub result: SpanResult,
-    /// The steer axle's planned path: one point a station, metres in the corridor's frame.
+    /// The steer axle's planned path: one point per station, metres in the corridor's frame.
     pub plan: Vec<[f64; 2]>,
-    /// Planned shift of the steer axle off the centreline at each station, metres, positive left: `shift` sampled.
+    /// Planned shift of the steer axle off the centreline at each station, metres, positive left. It is `shift`,
+    /// sampled.
     pub shift_m: Vec<f64>,
     /// The planned shift itself.
     pub shift: Plan,
-    /// Leeway at each station on the left, after correction (at γ = 1), metres: of a span of that station alone. What
-    /// [`known_m`] says of it is what is known.
+    /// Leeway on the left of each station after correction (at γ = 1), metres, as of a span of that station alone. Read
+    /// it through [`known_m`].
     pub left_m: Vec<f64>,
-    /// On the right.
+    /// As `left_m`, on the right.
     pub right_m: Vec<f64>,
-    /// On the left, before correction.
+    /// As `left_m`, before correction.
     pub left_centred_m: Vec<f64>,
-    /// On the right, before correction.
+    /// As `right_m`, before correction.
     pub right_centred_m: Vec<f64>,
 }
 
-/// A leeway of a [`Certificate`]'s columns; `None` where nothing bounds the vehicle, or no body point ever is.
+/// A leeway of a [`Certificate`]'s columns. `None` if the bounds do not close there, or if no body point passes the
+/// station.
 #[must_use]
 pub fn known_m(leeway_m: f64) -> Option<f64> {
     Some(leeway_m).filter(|leeway_m| spans::known(*leeway_m))
 }
 
-/// Results over `spans` of stations for vehicles that sweep the whole corridor one after the other: one row a vehicle.
+/// Certifies vehicles over `spans` of stations. Each vehicle drives the whole corridor by itself, and each gets one
+/// row.
 ///
-/// Every vehicle enters straight, along the first station's heading, and leaves straight, along the last one's. The
-/// result does not depend on which other vehicles are in `models`. An empty corridor gives no row at all.
+/// Every vehicle enters straight, along the first station's heading, and leaves straight, along the last one's. A
+/// result does not depend on the other vehicles in `models`. An empty corridor gives no rows.
 #[must_use]
 pub fn certify_spans(
     corridor: &Corridor,
@@ -178,7 +183,7 @@ pub fn certify_spans(
         return Vec::new();
     }
     let never = Stop::default();
-    // Vehicles of about as many units share a group: a lane costs as much as the longest one in it.
+    // Vehicles with similar numbers of units share a group: a lane costs as much as the longest vehicle in the group.
     let mut order: Vec<usize> = (0..models.len()).collect();
     order.sort_by_key(|&i| models[i].units.len());
     let mut rows: Vec<(usize, Planned)> = Vec::with_capacity(models.len());
@@ -211,8 +216,8 @@ pub fn certify(
     Ok(planned.map(|(certificate, _)| certificate))
 }
 
-/// The certificate over a whole corridor with the plan that [`certify_spans`] makes for `spans`, and what that gives for
-/// each of them: what stands behind the certificate of an edge.
+/// Certifies a whole corridor with the plan that [`certify_spans`] makes for `spans`, and returns the result for each
+/// span. These are the details of an edge's certificate.
 ///
 /// `None` when the corridor has no station.
 ///
@@ -234,7 +239,7 @@ pub fn certify_planned(
     Ok(Some(certified))
 }
 
-/// All leeways at γ = 1, refined wherever that is worth it.
+/// All leeways at γ = 1, refined by the adjoint where that is worth its time.
 fn thorough(track: &Track, group: &Group<'_>, shift: &[V], stop: &Stop) -> Vec<Minima> {
     let full = sweep::<true>(track, group, shift, &Wanted::ALL, stop);
     if full.iter().all(|m| m.loose.iter().all(|&unit| unit == usize::MAX)) {
@@ -244,12 +249,12 @@ fn thorough(track: &Track, group: &Group<'_>, shift: &[V], stop: &Stop) -> Vec<M
     sweep::<true>(track, group, shift, &Wanted { refined: Some(&loose), ..Wanted::ALL }, stop)
 }
 
-/// At which stations it is asked what sides leave between two of their points.
+/// The stations at which the leeway between two points of a side is examined.
 #[derive(Debug, Clone, Copy)]
 enum Marks {
-    /// Where a span begins or ends.
+    /// The first and the last station of each span.
     Ends,
-    /// At all of them: a certificate says what each station by itself would have.
+    /// All stations. A certificate gives the leeway of each station by itself.
     All,
 }
 
@@ -261,11 +266,11 @@ struct Swept<'m> {
     plans: Vec<Plan>,
     /// At γ = 1, by the filter.
     full: Vec<Minima>,
-    /// Without any disturbance, at a few points; only where the filter is loose at all.
+    /// Without any disturbance, at a few points. Only present if the filter is loose somewhere.
     nominal: Option<Vec<Minima>>,
-    /// At γ = 1, by the adjoint where the filter is loose; only for spans near such places.
+    /// At γ = 1, by the adjoint where the filter is loose. Only for spans near such places.
     refined: Option<Vec<Minima>>,
-    /// At γ_min; only near spans that fail.
+    /// At γ_min. Only near spans that fail.
     least: Option<Vec<Minima>>,
 }
 
@@ -283,7 +288,7 @@ impl<'m> Swept<'m> {
         })
     }
 
-    /// `plans` gives each vehicle's, in the group's order.
+    /// `plans` returns one plan per vehicle, in the group's order.
     fn along(
         corridor: &Corridor,
         models: &[&'m Model],
@@ -318,8 +323,8 @@ impl<'m> Swept<'m> {
         if failing.iter().flatten().any(|&fails| fails) {
             let tight = Group::new(models, 0.0);
             let blocks = |lane: usize, head: usize| failing[lane][head / sweep::BLOCK];
-            // From the same kind of bound as at γ = 1, block by block: only then is the leeway concave in γ. Each vehicle for
-            // itself: whether another one of the group is refined must not matter.
+            // Each block uses the same kind of bound as at γ = 1: only then is the leeway concave in γ. Each vehicle is
+            // treated separately, because it must not matter whether another vehicle of the group is refined.
             let any: Vec<bool> = near.iter().map(|blocks| blocks.contains(&true)).collect();
             let own = |lane: usize, head: usize| if any[lane] { is_loose(lane, head) } else { usize::MAX };
             let refined: Option<&dyn Fn(usize, usize) -> usize> = Some(&own);
@@ -329,14 +334,14 @@ impl<'m> Swept<'m> {
         swept
     }
 
-    /// What the first vehicle's sweeps say of the whole corridor, and of each span.
+    /// The first vehicle's certificate over the whole corridor, and its result for each span.
     fn certificate(&self, corridor: &Corridor, spans: &[Range<usize>]) -> (Certificate, Vec<SpanResult>) {
         let whole = 0..corridor.len();
         let track = &self.track;
         let centred = thorough(track, &self.group, &vec![V::splat(0.0); track.len()], self.stop);
         let full = if self.worth(0, &whole) { self.refined.as_ref().unwrap_or(&self.full) } else { &self.full };
         let own = |points: &[f64], marks: &[f64]| spans::alone(track, &whole, points, marks);
-        // Where the bounds do not close somewhere, what they say elsewhere is not claimed either.
+        // If the bounds do not close somewhere, leeways elsewhere are not claimed either.
         let centred_closes = spans::least(track, self.group.models[0], &whole, &centred[0]).result().closes();
         let own_centred = |points: &[f64], marks: &[f64]| {
             if centred_closes { own(points, marks) } else { vec![spans::NOTHING_M; whole.len()] }
@@ -353,7 +358,7 @@ impl<'m> Swept<'m> {
         let (mut left_m, mut right_m) =
             (own(&full[0].left, &full[0].mark_left), own(&full[0].right, &full[0].mark_right));
         for span in spans {
-            // What the span's result rests on: refined for one where it is worth it.
+            // The leeways that the span's result rests on; refined if that was worth its time.
             let best = self.best(0, span);
             left_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.left, &best.mark_left));
             right_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.right, &best.mark_right));
@@ -371,10 +376,10 @@ impl<'m> Swept<'m> {
         (certificate, results)
     }
 
-    /// Head stations, in blocks, in which some unit may touch the span.
+    /// Blocks of head stations in which some unit may touch the span.
     fn touching(&self, span: &Range<usize>) -> Range<usize> {
         let track = &self.track;
-        // As long as the track's extensions allow, so that no other vehicle of the group matters.
+        // The extensions' lengths are used, so that no other vehicle of the group matters.
         let (behind_m, ahead_m) = sweep::reach_m(&self.group);
         let ahead = (ahead_m / track.spacing).ceil() as usize + sweep::BLOCK;
         let behind = (behind_m / track.spacing).ceil() as usize + sweep::BLOCK;
@@ -384,7 +389,7 @@ impl<'m> Swept<'m> {
         first..(last + 1).min(track.len() / sweep::BLOCK + 1)
     }
 
-    /// By vehicle and block of head stations: whether the vehicle may then touch a span that is `meant`.
+    /// By vehicle and block of head stations: whether the vehicle may then touch a span that `meant` accepts.
     fn blocks(&self, spans: &[Range<usize>], meant: impl Fn(usize, &Range<usize>) -> bool) -> Vec<Vec<bool>> {
         let of = |lane: usize| {
             let mut blocks = vec![false; self.track.len() / sweep::BLOCK + 1];
@@ -396,9 +401,9 @@ impl<'m> Swept<'m> {
         (0..self.plans.len()).map(of).collect()
     }
 
-    /// Whether a better bound than the filter's is worth its time: the filter is loose where some unit may touch the
-    /// span, and the vehicle would fit if it kept to its path exactly. (Decided without ε and σ: raising them must not
-    /// bring a better bound.)
+    /// Whether the adjoint is worth its time: the filter is loose where some unit may touch the span, and the vehicle
+    /// would fit if it kept to its path exactly. ε and σ do not decide, because raising them must not bring a better
+    /// bound.
     fn worth(&self, lane: usize, span: &Range<usize>) -> bool {
         let Some(nominal) = &self.nominal else { return false };
         let nominal = &nominal[lane];
@@ -406,7 +411,7 @@ impl<'m> Swept<'m> {
             && spans::stations(&self.track, span).all(|k| nominal.left[k] >= 0.0 && nominal.right[k] >= 0.0)
     }
 
-    /// The best that is known at γ = 1.
+    /// The best known result at γ = 1.
     fn at_full(&self, lane: usize, span: &Range<usize>) -> spans::Least {
         spans::least(&self.track, self.group.models[lane], span, self.best(lane, span))
     }

@@ -1,4 +1,4 @@
-//! A vehicle made ready for the sweep: body points, gains, hinge limits. Computed once a vehicle.
+//! A vehicle prepared for the sweep: body points, gains, hinge limits. It is computed once per vehicle.
 
 use thiserror::Error;
 
@@ -6,12 +6,12 @@ use super::gains::{Chain, Gain};
 use crate::published;
 use netcert_base::vehicle::{Unit, Vehicle};
 
-/// Most units a model takes: what the tags of the sweep's minima can name.
+/// Most units of a model: the tags of the sweep's minima can name no more.
 pub const MAX_UNITS: usize = 8;
-/// Most body points a side and unit, for the same reason.
+/// Most body points per side and unit, for the same reason.
 pub(super) const MAX_POINTS: usize = 16;
-/// Distance of body points along a side, at most. What happens between two of them is bounded by a parabola through
-/// both (`leeway`), which is exact on a steady circle: closer points gain little.
+/// Largest distance between body points along a side. A parabola through two points bounds the leeway between them
+/// (`leeway`). It is exact on a steady circle, so closer points gain little.
 pub(super) const POINT_SPACING_M: f64 = 5.5;
 
 /// Why a vehicle cannot be certified.
@@ -22,24 +22,24 @@ pub enum ModelError {
     Units {
         /// Vehicle id.
         id: String,
-        /// How many it has.
+        /// Number of its units.
         count: usize,
     },
-    /// A dimension that no vehicle has.
+    /// A dimension out of bounds.
     #[error("vehicle {id}, unit {unit}: {what} = {value} is out of bounds")]
     Dimension {
         /// Vehicle id.
         id: String,
         /// Unit index, 0 the prime mover.
         unit: usize,
-        /// Which.
+        /// Name of the dimension.
         what: &'static str,
         /// Its value.
         value: f64,
     },
 }
 
-/// A unit made ready. Lengths in metres, angles in radians; along-offsets are metres ahead of the axle.
+/// A prepared unit, in metres and radians. Places along the unit are metres ahead of its axle.
 #[derive(Debug, Clone)]
 pub(super) struct UnitModel {
     pub(super) length: f64,
@@ -47,28 +47,28 @@ pub(super) struct UnitModel {
     pub(super) half_width: f64,
     pub(super) sway: f64,
     pub(super) max_articulation: f64,
-    /// Along-offsets of the body points, front to rear.
+    /// Places of the body points along the unit, front to rear.
     pub(super) points: Vec<f64>,
-    /// g at each point, and half a width ahead of and behind it.
+    /// g at each point, then half a width ahead of it and half a width behind it.
     pub(super) at: Vec<Gain>,
     pub(super) ahead: Vec<Gain>,
     pub(super) behind: Vec<Gain>,
     /// g at the axle.
     pub(super) axle: Gain,
-    /// ‖α‖₁
+    /// ‖α‖₁, the gain of the heading.
     pub(super) heading: Gain,
-    /// E at the front coupling, hinge by hinge, on the straight.
+    /// E at the front coupling on the straight, hinge by hinge.
     pub(super) coupling: Gain,
 }
 
-/// A vehicle made ready: gains, points, run-in.
+/// A vehicle prepared for the sweep.
 #[derive(Debug, Clone)]
 pub struct Model {
-    /// What it was made from.
+    /// The vehicle as defined.
     pub vehicle: Vehicle,
     pub(super) units: Vec<UnitModel>,
     pub(super) published_radius: f64,
-    /// Ahead of the steer axle, and from there to the rear, when the vehicle stands straight.
+    /// With the vehicle straight, metres: from the steer axle to the front, and to the rear.
     pub(super) front: f64,
     pub(super) length: f64,
 }
@@ -77,7 +77,7 @@ impl Model {
     /// Computes the gains of `vehicle` (about 0.1 s for six units).
     ///
     /// # Errors
-    /// A number of units or a dimension that the certificate's model does not cover.
+    /// [`ModelError`] if the model does not cover the number of units or a dimension.
     pub fn new(vehicle: &Vehicle) -> Result<Self, ModelError> {
         check(vehicle)?;
         let units = &vehicle.units;
@@ -139,7 +139,7 @@ fn next_coupling(unit: &Unit, e: Gain) -> Gain {
     }
 }
 
-/// Front corner to rear corner, with the axle between them: there a body is innermost on a steady circle.
+/// Points from front corner to rear corner, with the axle between them: there a body is innermost on a steady circle.
 fn body_points(unit: &Unit) -> Vec<f64> {
     let (front, rear) = (unit.coupling_to_axle_m + unit.front_overhang_m, -unit.rear_overhang_m);
     let mut marks = vec![front, rear];

@@ -1,8 +1,9 @@
-//! Nominal motion (design section 3): every axle follows its front coupling without slip, by the exact chord step.
+//! Nominal motion (docs/proof.md, section 2): every axle follows its front coupling without slip, by the exact chord
+//! step.
 
 use netcert_base::vehicle::{Unit, Vehicle};
 
-/// Where a unit stands.
+/// The pose of a unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
     /// Its effective rear axle, metres.
@@ -12,7 +13,7 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The place so far ahead of the axle and to the left of the unit's axis, metres.
+    /// The place `ahead_m` ahead of the axle and `left_m` left of the unit's axis, metres.
     #[must_use]
     pub fn place(&self, ahead_m: f64, left_m: f64) -> [f64; 2] {
         let [ux, uy] = self.heading;
@@ -29,8 +30,8 @@ impl Pose {
 }
 
 /// The poses of all units (front to rear) at every vertex of the steer axle's `path` (metres). The vehicle enters
-/// straight, along the first segment. The step is exact for straight segments: vertices every centimetre reproduce a
-/// smooth path to a tenth of a millimetre, every metre to two centimetres in the tightest turns.
+/// straight, along the first segment. The step is exact for straight segments. Vertices every centimetre reproduce a
+/// smooth path to 0.1 mm, vertices every metre to 2 cm in the tightest turns.
 #[must_use]
 pub fn sweep_path(path: &[[f64; 2]], vehicle: &Vehicle) -> Vec<Vec<Pose>> {
     let Some(mut headings) = first_direction(path).map(|u| vec![u; vehicle.units.len()]) else { return Vec::new() };
@@ -48,7 +49,8 @@ pub fn sweep_path(path: &[[f64; 2]], vehicle: &Vehicle) -> Vec<Vec<Pose>> {
     poses
 }
 
-/// The heading after the front coupling has moved by `step`: tan(β'/2) = tan(β/2)·exp(−ℓ/L), β from heading to step.
+/// The heading after the front coupling has moved by `step`: tan(β'/2) = tan(β/2)·exp(−ℓ/L), with β from heading to
+/// step.
 fn turn(heading: [f64; 2], step: [f64; 2], length_m: f64) -> [f64; 2] {
     let moved = step[0].hypot(step[1]);
     if moved == 0.0 {
@@ -56,7 +58,7 @@ fn turn(heading: [f64; 2], step: [f64; 2], length_m: f64) -> [f64; 2] {
     }
     let sine = heading[0] * step[1] - heading[1] * step[0];
     let cosine = heading[0] * step[0] + heading[1] * step[1];
-    // A reversal on the spot has no half-angle: the least positive number stands for "straight back".
+    // A reversal on the spot has no half-angle. The least positive number stands for it.
     let half = sine / (moved + cosine).max(f64::MIN_POSITIVE) * (-moved / length_m).exp();
     let (cos, sin) = ((1.0 - half * half) / (1.0 + half * half), 2.0 * half / (1.0 + half * half));
     let along = scale(step, 1.0 / moved);
@@ -91,14 +93,14 @@ fn scale(a: [f64; 2], by: f64) -> [f64; 2] {
     [a[0] * by, a[1] * by]
 }
 
-/// Off-tracking of the last axle behind the steer axle on a steady circle of radius `radius_m` at the steer axle:
-/// R − √(R² − ΣL² + Σd²), the sum of d² over all units but the last. `None`: no steady state exists there.
+/// Offtracking of the last axle on a steady circle, relative to the steer axle at radius `radius_m`: R − √(R² − ΣL² +
+/// Σd²), with d² summed over all units but the last. `None` if no steady state exists.
 #[must_use]
 pub fn steady_offtracking(vehicle: &Vehicle, radius_m: f64) -> Option<f64> {
     let mut squared = radius_m * radius_m;
     for (i, unit) in vehicle.units.iter().enumerate() {
         squared -= unit.coupling_to_axle_m.powi(2);
-        // Every axle in the chain needs a circle of its own, not only the last.
+        // Every axle of the chain needs a circle, not only the last one.
         if squared <= 0.0 {
             return None;
         }

@@ -1,9 +1,9 @@
-//! CORRCEN: where to steer off the centreline, so that what is left beside the union of all units' swept extents is the most
-//! there can be (design section 5, Corrections).
+//! CORRCEN: plans a steer path off the centreline that leaves the most room beside the swept path of all units.
 //!
-//! First half the difference of the leeways left and right, smoothed; then, after this and every further sweep, an ascent in
-//! the linear response of the bodies to the steer path (`ascent`). Planned on every second station, on nominal leeway less the
-//! straight gains: it decides nothing, the chosen plan is certified with all terms.
+//! The first correction is half the difference of the leeways left and right, smoothed. After this one and after each
+//! further sweep, an ascent follows in the linear response of the bodies to the steer path (`ascent`). Planning uses
+//! every second station, and nominal leeway less the straight gains. It decides nothing: the chosen plan is certified
+//! with all terms.
 
 use std::ops::Range;
 
@@ -18,12 +18,13 @@ use super::sweep::{Minima, UNVISITED_M, Wanted, ZERO, sweep};
 use super::track::Track;
 use netcert_base::stop::Stop;
 
-/// Room beyond this counts for nothing.
+/// Leeway beyond this scores nothing.
 const ENOUGH_M: f64 = 0.5;
 /// Stations of the coarse track between two knots.
 const KNOT_STEP: usize = KNOT_STATIONS / 2;
 
-/// Of the centred path and its corrections, each vehicle's best: never the last by default.
+/// The best plan of each vehicle, out of the centred one and its corrections. The last correction is not always the
+/// best.
 pub(super) fn best(
     track: &Track,
     group: &Group<'_>,
@@ -53,7 +54,7 @@ pub(super) fn best(
                 }
             }
         }
-        // Nothing scores higher than room enough everywhere.
+        // No plan scores more than one with enough leeway everywhere.
         let enough = best_score.iter().take(minima.len()).all(|&score| score >= most);
         if round == options.correction_sweeps || enough || stop.told() {
             break;
@@ -80,8 +81,8 @@ fn sampled(coarse: &Track, coefficients: &[V]) -> Vec<V> {
     (0..coarse.len()).map(at).collect()
 }
 
-/// Leeway summed over the spans by length; room beyond half a metre counts for nothing, what is missing even at γ_min counts
-/// thrice.
+/// Leeway summed over the spans, weighted by length. Leeway beyond [`ENOUGH_M`] scores nothing. What is missing even at
+/// γ_min counts three times.
 fn score(track: &Track, model: &Model, spans: &[Range<usize>], minima: &Minima) -> f64 {
     let worth = |span: &Range<usize>| {
         let (mut full, mut shrunk) = (ENOUGH_M, 0.0_f64);
@@ -98,7 +99,8 @@ fn score(track: &Track, model: &Model, spans: &[Range<usize>], minima: &Minima) 
     spans.iter().map(worth).sum()
 }
 
-/// From the centred plan's sweep: coefficients of half the difference of the leeways, smoothed over about the prime mover's length.
+/// The first correction, from the centred plan's sweep: half the difference of the leeways, smoothed over about the
+/// prime mover's length.
 fn centred_between(coarse: &Track, group: &Group<'_>, minima: &[Minima], centred: &[V], max_shift_m: f64) -> Vec<V> {
     let mut out = centred.to_vec();
     let count = out.len();
@@ -120,7 +122,7 @@ fn centred_between(coarse: &Track, group: &Group<'_>, minima: &[Minima], centred
     out
 }
 
-/// Over `2·half + 1` values; the ends are continued.
+/// Mean over `2·half + 1` values; the end values are continued.
 fn running_mean(values: &[f64], half: usize) -> Vec<f64> {
     let last = values.len() - 1;
     let at = |k: usize| values[k.saturating_sub(half).min(last)];

@@ -1,14 +1,15 @@
-//! How body points answer to a small change of the steer path, to first order and as on a straight: a chain of first-order
-//! lags (design section 4, δ = 0), at the plan's knots, vehicles in lanes.
+//! The first-order response of body points to a small change of the steer path. The chain is taken as on a straight:
+//! first-order lags (docs/proof.md, section 4) at the plan's knots, with vehicles in lanes.
 //!
-//! Decides nothing: planning asks which way to steer, the next sweep says what came of it.
+//! The response decides nothing. Planning asks it which way to steer, and the next sweep measures the result.
 
 use super::group::Group;
 use super::lanes::{LANES, V};
 use super::model::MAX_UNITS;
 use super::sweep::ZERO;
 
-/// The chain from knot to knot: `y' = ρ y + b₀ e + b₁ e'`, exact for a coupling that moves linearly between knots.
+/// The chain from knot to knot: y' = decay·y + before·e + after·e', exact for a coupling that moves linearly between
+/// knots.
 pub(super) struct Response {
     units: usize,
     decay: [V; MAX_UNITS],
@@ -16,13 +17,13 @@ pub(super) struct Response {
     after: [V; MAX_UNITS],
     /// d/L
     ratio: [V; MAX_UNITS],
-    /// Deviations of couplings and axles by unit and knot, or what is asked of them.
+    /// By unit and knot: deviations of couplings and axles, or the gradient with respect to them.
     pub(super) coupling: Vec<Vec<V>>,
     pub(super) axle: Vec<Vec<V>>,
 }
 
 impl Response {
-    /// For knots `spacing` metres apart, over `knots` of them.
+    /// For `knots` knots, `spacing` metres apart.
     pub(super) fn new(group: &Group<'_>, spacing: f64, knots: usize) -> Self {
         let mut out = Self {
             units: group.units,
@@ -47,12 +48,12 @@ impl Response {
         out
     }
 
-    /// How many knots it covers.
+    /// Number of knots.
     pub(super) fn knots(&self) -> usize {
         self.axle[0].len()
     }
 
-    /// Deviations of all units when the steer axle's is `steer`, which begins steady.
+    /// Computes the deviations of all units from the steer axle's, `steer`. The vehicle starts in a steady state.
     #[inline(always)]
     pub(super) fn follow(&mut self, steer: &[V]) {
         self.coupling[0].copy_from_slice(steer);
@@ -78,7 +79,7 @@ impl Response {
         self.coupling.iter_mut().chain(&mut self.axle).for_each(|column| column.fill(ZERO));
     }
 
-    /// The transpose of [`Self::follow`]: from what is asked of couplings and axles to what that asks of the steer axle.
+    /// The transpose of [`Self::follow`]: turns gradients at couplings and axles into the gradient at the steer axle.
     #[inline(always)]
     pub(super) fn trace_back(&mut self) -> &[V] {
         for unit in (0..self.units).rev() {

@@ -1,21 +1,22 @@
-//! The run-in: how far axles may be off when the vehicle has driven straight for as long as one likes (docs/proof.md, section 8).
+//! The run-in: deviations of axles after any length of straight driving (docs/proof.md, section 8).
 //!
-//! The straight gains are those of the linear chain. What the second order adds to them on a straight is the least bound that
-//! bears itself out: it begins a sweep, and every stretch behind a place where the bounds did not close.
+//! The straight gains are those of the linear chain. The second order adds to them, on a straight, the least bound that
+//! reproduces itself. Every sweep starts from that bound, and so does every stretch behind a place where the bounds did
+//! not close.
 
 use super::group::UnitLanes;
 use super::lanes::{V, select_negative};
 use super::model::MAX_UNITS;
 use super::sweep::{self, MOST, Step, Straying, ZERO, hitch_remainder, remainder};
 
-/// Rounds in which a bound must bear itself out; each brings it nearer by a factor of two at least where there is one in range.
+/// Most rounds to find a bound that reproduces itself. Each round at least halves the distance to it, if there is one.
 const ROUNDS: usize = 64;
-/// What a guess is raised by: a part, and metres.
+/// Each guess is raised by this factor and these metres.
 const RAISED: f64 = 1.0 + 1e-4;
 const RAISED_M: f64 = 1e-9;
 
-/// By unit: what the second order adds to the straight bound of its axle, metres; [`MOST`] from the first unit on for which nothing
-/// bears itself out. `tolerance` is that of the steer axle.
+/// What the second order adds to the straight bound of each unit's axle, metres. It is [`MOST`] from the first unit on
+/// for which no bound reproduces itself. `tolerance` is the steer axle's.
 pub(super) fn settled(chain: &[UnitLanes; MAX_UNITS], tolerance: V) -> [V; MAX_UNITS] {
     let mut settled = [ZERO; MAX_UNITS];
     let mut straying = Straying::of_the_steer_axle(tolerance);

@@ -1,21 +1,22 @@
-//! The planned shift of the steer axle off the centreline: a uniform cubic B-spline over the corridor's stations, with
-//! integer coefficients, so that a file or a database can hold exactly what was certified.
+//! The planned shift of the steer axle off the centreline: a uniform cubic B-spline over the corridor's stations. Its
+//! coefficients are integers, so a file or a database can hold exactly what was certified.
 //!
-//! With c_j the coefficient before knot j (the first is c_{−1}), u = k/4 − ⌊k/4⌋ and j = ⌊k/4⌋, the shift at station k is
-//! `q = ((1−u)³ c_{j−1} + (3u³ − 6u² + 4) c_j + (−3u³ + 3u² + 3u + 1) c_{j+1} + u³ c_{j+2}) / 6`. It is C², never outside the
-//! range of its coefficients, and level at both ends: the vehicle comes and goes along the corridor.
+//! Let c_j be the coefficient at knot j (the first is c_{−1}), j = ⌊k/4⌋ and u = k/4 − j. The shift at station k is `q
+//! = ((1−u)³ c_{j−1} + (3u³ − 6u² + 4) c_j + (−3u³ + 3u² + 3u + 1) c_{j+1} + u³ c_{j+2}) / 6`. It is C² and never
+//! outside the range of its coefficients. It is level at both ends, so the vehicle enters and leaves along the
+//! corridor.
 
 use super::lanes::V;
 
 /// Stations between two knots.
 pub const KNOT_STATIONS: usize = 4;
-/// What one step of a coefficient is, metres: 2⁻¹² (a quarter of a millimetre).
+/// Value of one coefficient step, metres: 2⁻¹² (a quarter of a millimetre).
 pub const STEP_M: f64 = 1.0 / 4096.0;
 
 /// A planned shift, positive to the left.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Plan {
-    /// c_{−1}, c_0, …, in steps of [`STEP_M`]: ⌊(stations − 1)/4⌋ + 4 of them.
+    /// c_{−1}, c_0, … in steps of [`STEP_M`]. There are ⌊(stations − 1)/4⌋ + 4 of them.
     pub coefficients: Vec<i32>,
 }
 
@@ -34,7 +35,7 @@ const WEIGHTS: [[f64; 4]; KNOT_STATIONS] = {
 };
 
 impl Plan {
-    /// No shift anywhere along `stations` stations.
+    /// The plan without shift over `stations` stations.
     pub(super) fn centred(stations: usize) -> Self {
         Self { coefficients: vec![0; count(stations)] }
     }
@@ -50,7 +51,7 @@ impl Plan {
         Self { coefficients }
     }
 
-    /// The shift at a station, metres; beyond the corridor as at its end.
+    /// The shift at a station, metres. Beyond the last station it is the last station's.
     #[must_use]
     pub fn at_m(&self, station: usize) -> f64 {
         let Some(last) = self.coefficients.len().checked_sub(4) else { return 0.0 };
@@ -62,7 +63,7 @@ impl Plan {
         WEIGHTS.get(phase).map_or(0.0, sum)
     }
 
-    /// The shift anywhere, `s` stations from the first, metres; beyond the corridor as at its ends.
+    /// The shift `s` stations from the first, metres; `s` need not be whole. Beyond both ends it is the end's.
     #[must_use]
     pub fn between_m(&self, s: f64) -> f64 {
         let Some(last) = self.coefficients.len().checked_sub(4) else { return 0.0 };
@@ -81,25 +82,25 @@ impl Plan {
     }
 }
 
-/// Coefficients of a plan over so many stations.
+/// Number of coefficients of a plan over `stations` stations.
 pub(super) fn count(stations: usize) -> usize {
     stations.saturating_sub(1) / KNOT_STATIONS + 4
 }
 
-/// The shift at a station by coefficients in metres, vehicles in lanes.
+/// The shift at a station from coefficients in metres, with vehicles in lanes.
 pub(super) fn lanes_at(coefficients: &[V], station: usize) -> V {
     let (knot, [a, b, c, d]) = (station / KNOT_STATIONS, WEIGHTS[station % KNOT_STATIONS]);
     coefficients[knot] * a + coefficients[knot + 1] * b + coefficients[knot + 2] * c + coefficients[knot + 3] * d
 }
 
-/// Makes the first three coefficients equal and the last four; all of them where these overlap.
+/// Makes the first three coefficients equal and the last four. If these overlap, all coefficients become `exit`.
 pub(super) fn level<T: Copy>(coefficients: &mut [T], entry: T, exit: T) {
     let last = coefficients.len() - 1;
     coefficients[..3].fill(if last < 6 { exit } else { entry });
     coefficients[last - 3..].fill(exit);
 }
 
-/// What is asked of coefficients that must be equal is asked of each of them.
+/// Gives each coefficient of an end the sum of the end's gradients, because they must stay equal.
 pub(super) fn tie(asked: &mut [V]) {
     let last = asked.len() - 1;
     let sum = |part: &[V]| part.iter().fold(V::splat(0.0), |sum, v| sum + *v);
@@ -108,7 +109,7 @@ pub(super) fn tie(asked: &mut [V]) {
     asked[last - 3..].fill(exit);
 }
 
-/// The shifts of up to eight vehicles at every station of a track, of which `lead` come before the corridor's first.
+/// The shifts of up to eight vehicles at every station of a track. `lead` stations come before the corridor's first.
 pub(super) fn lanes(plans: &[Plan], lead: usize, total: usize, stations: usize) -> Vec<V> {
     let at = |k: usize| {
         let station = k.saturating_sub(lead).min(stations - 1);
@@ -141,7 +142,7 @@ mod tests {
             assert!(q.iter().all(|q| (-0.3001..=0.4001).contains(q)), "{q:?}");
             let slope = |a: f64, b: f64| (a - b).abs();
             if stations > 16 {
-                // u³/6 of a step of 0.7 m, a quarter of a knot on, and nothing at all at the far end.
+                // u³/6 of a step of 0.7 m, a quarter of a knot on; nothing from the far end.
                 assert!(slope(q[1], q[0]) < 0.7 / 384.0 + 1e-9, "{q:?}");
                 assert!(slope(q[stations - 1], q[stations - 2]) < 0.7 / 384.0 + 1e-9, "{q:?}");
             }

@@ -1,4 +1,4 @@
-//! From stations to spans: least leeway, what limits it, and SHRINK.
+//! From stations to spans: least leeway, its place, and SHRINK.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -9,19 +9,20 @@ use super::sweep::{Minima, NOT_CLOSED_RAD, UNVISITED_M};
 use super::track::Track;
 use super::{Limiting, Side, SpanResult};
 
-/// A span takes this many more stations on each side: a foot moves up to two from one station of the steer axle to the next, rounding
-/// included, and a side's least leeway may be a little beside the point that it is noted at.
+/// Stations that a span takes beyond each end. A foot moves up to two stations per station of the steer axle, rounding
+/// included. A side's least leeway may also be a little beside the point where it is noted.
 const STEP_STATIONS: usize = 3;
-/// … and no fewer than these metres, by which a point may be pushed along: stations may be centimetres apart.
+/// Least length of these stations, metres. A point may be pushed this far along, and stations may be centimetres apart.
 const BESIDE_M: f64 = 0.6;
 
-/// Vehicle lengths within which what was driven before has faded to a few hundredths: no unit is longer than half of it.
+/// Vehicle lengths after which an earlier disturbance has faded to a few hundredths. No unit is longer than half a
+/// vehicle.
 const FADING_LENGTHS: usize = 2;
 
-/// RSC where nothing bounds the vehicle; a leeway below half of it says as much.
+/// RSC where the bounds do not close. Any leeway below half of it means the same.
 pub(super) const NOTHING_M: f64 = -1000.0;
 
-/// A span's numbers as the sweep has them: [`NOTHING_M`] and [`NOT_CLOSED_RAD`] stand for none.
+/// A span's numbers as the sweep has them. [`NOTHING_M`] and [`NOT_CLOSED_RAD`] mark missing numbers.
 #[derive(Debug, Clone)]
 pub(super) struct Least {
     pub(super) rsc_m: f64,
@@ -33,7 +34,7 @@ pub(super) struct Least {
 }
 
 impl Least {
-    /// With words for what there is not: neither number means anything where one of them is none.
+    /// The result with `None` for missing numbers. If one of RSC and margin is missing, the other one means nothing.
     pub(super) fn result(self) -> SpanResult {
         let bounded = self.hinge_rad > NOT_CLOSED_RAD + 1.0 && known(self.rsc_m);
         SpanResult {
@@ -47,7 +48,7 @@ impl Least {
     }
 }
 
-/// Whether a leeway is one: less than this is the mark of a place that nothing bounds.
+/// Whether a leeway is a number and not one of the marks [`NOTHING_M`] and [`UNVISITED_M`].
 pub(super) fn known(leeway_m: f64) -> bool {
     leeway_m > 0.5 * NOTHING_M && leeway_m < 0.5 * UNVISITED_M
 }
@@ -62,16 +63,16 @@ pub(super) fn stations(track: &Track, span: &Range<usize>) -> RangeInclusive<usi
     own.start() - beside(track)..=own.end() + beside(track)
 }
 
-/// Stations of a span at which it counts what sides leave between two of their points: its ends; of a span that may lie inside one gap
-/// between points, all.
+/// Stations of a span at which the leeway between two points of a side counts. These are its ends, or all stations of a
+/// span that may lie inside one gap between points.
 pub(super) fn marks(spacing_m: f64, span: &Range<usize>) -> impl Iterator<Item = usize> {
     let last = span.end.max(span.start + 1) - 1;
     let inside = (last - span.start) as f64 * spacing_m <= POINT_SPACING_M;
     (span.start..=last).filter(move |&k| inside || k == span.start || k == last)
 }
 
-/// The least leeways of two vehicles' sweeps, or of one at two tolerances, that a span rests on: at the points whose feet are on it, and
-/// at its ends between two points.
+/// The leeways of two sweeps that a span rests on, pairwise: at the points whose feet are on the span, and at marked
+/// stations between two points.
 fn leeways<'a>(
     track: &'a Track,
     span: &Range<usize>,
@@ -91,19 +92,19 @@ fn own(track: &Track, span: &Range<usize>) -> RangeInclusive<usize> {
     first..=first + span.len().max(1) - 1
 }
 
-/// What each station of a span would have, were it a span of its own.
+/// The least leeway of each station of a span, as of a span of that station alone.
 pub(super) fn alone(track: &Track, span: &Range<usize>, points: &[f64], marks: &[f64]) -> Vec<f64> {
     let least = |k: usize| points[stations(track, &(k..k + 1))].iter().copied().fold(marks[track.lead + k], f64::min);
     span.clone().map(least).collect()
 }
 
-/// The numbers over a span at γ = 1.
+/// The numbers of a span at γ = 1.
 pub(super) fn least(track: &Track, model: &Model, span: &Range<usize>, full: &Minima) -> Least {
     let mut least = f64::INFINITY;
     let mut limiting = Limiting { station: span.start, unit: 0, side: Side::Left, point_m: 0.0 };
     let (mut offset, mut half_width) = (0.0_f64, f64::INFINITY);
     for (k, side, [value, _]) in leeways(track, span, [full; 2]) {
-        // A NaN, which no input should give, is the least of all.
+        // A NaN, which no input should cause, counts as the least value.
         if value < least || value.is_nan() {
             least = if value.is_nan() { NOTHING_M } else { value.max(NOTHING_M) };
             limiting = place(track, model, k, side, value);
@@ -115,17 +116,17 @@ pub(super) fn least(track: &Track, model: &Model, span: &Range<usize>, full: &Mi
     }
     let mut hinge = hinge(track, model, span, full);
     let hinge_unit = if hinge < UNVISITED_M { ((hinge.to_bits() & TAG_MASK) >> 4) as usize } else { 0 };
-    // Where the bounds do not close while the vehicle is on the span, nothing is known of what stands on it.
+    // If the bounds do not close while the vehicle is on the span, nothing is known of the span.
     if hinge < 0.5 * NOT_CLOSED_RAD {
         least = NOTHING_M;
     }
-    // Trailers that were pulled over stations that are no curve are not where they are taken to be for a while.
+    // Trailers that passed torn stations are not at their nominal places for a while.
     let behind = (model.length / track.spacing).ceil() as usize;
     let start = *own(track, span).start();
     if track.torn.iter().any(|k| (start.saturating_sub(FADING_LENGTHS * behind)..start).contains(k)) {
         (least, hinge) = (NOTHING_M, hinge.min(NOT_CLOSED_RAD));
     }
-    // If no point came by, nothing is known.
+    // If no point passed, nothing is known.
     if least >= UNVISITED_M || hinge >= UNVISITED_M {
         (least, hinge) = (NOTHING_M, NOT_CLOSED_RAD);
     }
@@ -139,13 +140,13 @@ pub(super) fn least(track: &Track, model: &Model, span: &Range<usize>, full: &Mi
     }
 }
 
-/// The least hinge margin while any body point is on the span: by the points' own feet, and by the vehicle's length when straight,
-/// should feet have been lost.
+/// The least hinge margin while any body point is on the span. The points' own feet say when, and so does the vehicle's
+/// length when straight, in case feet were lost.
 fn hinge(track: &Track, model: &Model, span: &Range<usize>, full: &Minima) -> f64 {
     let (first, last) = (own(track, span).start() - beside(track), own(track, span).end() + beside(track));
     let stations = |metres: f64| (metres / track.spacing).ceil() as usize;
     let straight = first.saturating_sub(stations(model.front))..=last + stations(model.length);
-    // A foot falls behind by no more than a quarter turn's arc for its chord (proof, section 7, Feet).
+    // A foot falls behind by at most the arc of a quarter turn instead of its chord (proof, section 7, Feet).
     let near =
         straight.start().saturating_sub(stations(model.front))..full.hinge.len().min(last + 2 * stations(model.length));
     let on =
@@ -153,7 +154,7 @@ fn hinge(track: &Track, model: &Model, span: &Range<usize>, full: &Minima) -> f6
     near.filter(on).map(|k| full.hinge[k]).fold(f64::INFINITY, f64::min)
 }
 
-/// Where a tagged leeway at an extended station stands.
+/// The place of a tagged leeway at an extended station.
 fn place(track: &Track, model: &Model, k: usize, side: Side, leeway: f64) -> Limiting {
     let tag = leeway.to_bits() & TAG_MASK;
     let (unit, point) = ((tag >> 4) as usize, (tag & 15) as usize);
@@ -161,9 +162,10 @@ fn place(track: &Track, model: &Model, k: usize, side: Side, leeway: f64) -> Lim
     Limiting { station: k.saturating_sub(track.lead).min(track.count - 1), unit, side, point_m }
 }
 
-/// SHRINK: the largest γ (in thousandths) for which no station of the span has negative leeway, from the leeways at
-/// γ = 1 and at γ_min. Every bound grows with γ as a sum of convex terms, so that the chord between the two is never
-/// above the leeway. What limits is where the chord is least: what gains most by shrinking need not. Where γ_min does not suffice, its negative RSC is the result.
+/// SHRINK: the largest γ (in thousandths) for which no station of the span has negative leeway. Only γ = 1 and γ_min
+/// were swept. Every bound grows with γ as a sum of convex terms, so the chord between the two leeways is never above
+/// the leeway. The limiting place is where the chord is least; another place may gain most by shrinking. If γ_min does
+/// not suffice, the result is its negative RSC.
 pub(super) fn shrunk(
     track: &Track,
     model: &Model,

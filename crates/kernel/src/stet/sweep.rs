@@ -1,8 +1,9 @@
-//! One sweep of a group of vehicles along a track: nominal motion and curved tubes with vehicles in lanes, then leeway
-//! at the body points with stations in lanes (design sections 3 to 5; the layout is the one measured to be fastest).
+//! One sweep of a group of vehicles along a track (docs/proof.md, sections 2 to 7). Nominal motion and curved tubes
+//! have vehicles in lanes; leeway at the body points has stations in lanes. This layout was the fastest of those
+//! measured.
 //!
-//! Promises: no leeway left here is above what any bounded disturbance leaves, up to the model of the design page. Knows
-//! nothing of edges, corrections or shrinking.
+//! No leeway of a certifying sweep is above what any bounded disturbance leaves, within the model of the proof. A sweep
+//! knows nothing of edges, corrections or shrinking.
 
 use super::adjoint::{self, Refined, Trail, first_loose};
 use super::body::{self, Body, Feet};
@@ -13,13 +14,13 @@ use super::model::MAX_UNITS;
 use super::track::{Extensions, Track};
 use netcert_base::stop::{Stop, Stopped};
 
-/// Head stations a block.
+/// Head stations per block.
 pub(super) const BLOCK: usize = 32;
-/// Blocks behind a bend in which the filter still has much of it.
+/// Blocks behind a bend in which the filter still holds much of what it gathered in the bend.
 const FADING_BLOCKS: usize = 3;
-/// Hinge margin where the bounds' recursion does not close.
+/// Hinge margin where the recursion of the bounds does not close.
 pub(super) const NOT_CLOSED_RAD: f64 = -9.0;
-/// What the motion hands to the points: one row a field.
+/// Number of rows that the motion writes per unit, one per field.
 pub(super) const FIELDS: usize = 11;
 /// Bounds beyond this (metres, radians) bound nothing any more.
 pub(super) const MOST: f64 = 100.0;
@@ -32,7 +33,7 @@ pub(super) struct Minima {
     /// Tagged (see [`super::lanes::V::tagged`]) with `unit · 16 + point`.
     pub(super) left: Vec<f64>,
     pub(super) right: Vec<f64>,
-    /// The same of sides between two of their points, at marked stations only.
+    /// As `left` and `right`, for sides between two of their points; at marked stations only.
     pub(super) mark_left: Vec<f64>,
     pub(super) mark_right: Vec<f64>,
     /// Least hinge margin by station of the steer axle, radians, tagged with the unit.
@@ -41,7 +42,7 @@ pub(super) struct Minima {
     pub(super) under: Vec<[u32; 2]>,
     /// Lateral distance of the last axle from the steer path, metres.
     pub(super) offset: Vec<f64>,
-    /// By block of head stations: the first unit for which the adjoint is worth its time there.
+    /// By block of head stations: the first unit for which the adjoint is worth its time.
     pub(super) loose: Vec<usize>,
 }
 
@@ -59,7 +60,8 @@ impl Minima {
         }
     }
 
-    /// Of a sweep that was told to stop: nothing fits anywhere, so that whoever does not ask is not told that something does.
+    /// Minima of a cancelled sweep: nothing fits anywhere, so a caller that does not check for cancellation gets no
+    /// false `safe`.
     fn lost(stations: usize) -> Self {
         let mut lost = Self::new(stations);
         (0..stations).for_each(|k| lost.lose(k));
@@ -71,7 +73,7 @@ impl Minima {
         [self.left[k], self.right[k]] = [V::splat(body::LOST_M).tagged(0).0[0]; 2];
     }
 
-    /// The stations under a body point at eight stations of the steer axle, from `head` on.
+    /// Records the stations under a body point at eight stations of the steer axle, from `head` on.
     #[inline(always)]
     pub(super) fn pass(&mut self, head: usize, feet: Feet) {
         for (lane, [first, last]) in self.under[head..head + LANES].iter_mut().enumerate() {
@@ -80,7 +82,7 @@ impl Minima {
         }
     }
 
-    /// A bend counts for some blocks that follow it, too: what the filter has gathered in it takes as long to fade.
+    /// Marks a bend, and some blocks behind it: what the filter gathered in the bend takes that long to fade.
     fn note_loose(&mut self, head: usize, first: usize) {
         for block in self.loose.iter_mut().skip(head / BLOCK).take(1 + FADING_BLOCKS) {
             *block = first.min(*block);
@@ -88,43 +90,44 @@ impl Minima {
     }
 }
 
-/// Vehicles up to this length and front overhang get the same extensions, so the same bits, beside whichever others: sums
-/// that run along the track round differently from another start. The longest of the catalogue has 52 m and 3 m.
+/// Vehicles up to this length and front overhang get the same extensions. Sums along the track round differently from
+/// another start, so equal extensions give equal bits whichever vehicles share the group. The longest vehicle of the
+/// catalogue has 52 m and 3 m.
 const LEAST_LENGTH_M: f64 = 56.0;
 const LEAST_FRONT_M: f64 = 4.0;
 
-/// How far the group's vehicles are taken to reach behind and ahead of their steer axles, metres.
+/// Assumed reach of the group's vehicles behind and ahead of their steer axles, metres.
 pub(super) fn reach_m(group: &Group<'_>) -> (f64, f64) {
     (group.length().max(LEAST_LENGTH_M), group.front().max(LEAST_FRONT_M))
 }
 
-/// Extensions that a track needs before and after the corridor for this group.
+/// The extensions before and behind the corridor that this group needs.
 pub(super) fn extensions(group: &Group<'_>, spacing: f64) -> Extensions {
     let slack = (BLOCK + 2 * LANES) as f64 * spacing;
     let (length, front_m) = reach_m(group);
     Extensions { lead_m: length + front_m + slack, tail_m: length + 2.0 * front_m + 2.0 * slack + 10.0, front_m }
 }
 
-/// Which leeways a sweep is to give, by vehicle and head station: a vehicle's are left out while its head is in a block
-/// that is not wanted, and come from the adjoint in one that is to be refined.
+/// The leeways that a sweep computes, by vehicle and head station. Blocks that are not wanted are skipped. Blocks to be
+/// refined use the adjoint.
 pub(super) struct Wanted<'w> {
     pub(super) blocks: &'w dyn Fn(usize, usize) -> bool,
     /// The first unit to be refined.
     pub(super) refined: Option<&'w dyn Fn(usize, usize) -> usize>,
-    /// Without `CERTIFY`: not even the straight gains deducted.
+    /// Without `CERTIFY`: not even the straight gains are deducted.
     pub(super) plain: bool,
 }
 
 impl Wanted<'_> {
     /// Everything, by the filter alone.
     pub(super) const ALL: Wanted<'static> = Wanted { blocks: &|_, _| true, refined: None, plain: false };
-    /// What is left of everything when nothing disturbs.
+    /// The leeway of everything without disturbances.
     pub(super) const PLAIN: Wanted<'static> = Wanted { plain: true, ..Self::ALL };
 }
 
-/// Sweeps the steer path `shift` (metres left of the centreline at each extended station, vehicles in lanes).
-/// `CERTIFY`: all bounds deducted, hinges checked; otherwise the nominal leeway of a few points less their
-/// straight gains, for planning. Asks at each block whether to stop; then everything is lost.
+/// Sweeps the steer path `shift` (metres left of the centreline at each extended station, vehicles in lanes). With
+/// `CERTIFY`, all bounds are deducted and hinges are checked. Otherwise the result is the nominal leeway of a few
+/// points less their straight gains, for planning. Each block polls `stop`; a cancelled sweep returns [`Minima::lost`].
 pub(super) fn sweep<const CERTIFY: bool>(
     track: &Track,
     group: &Group<'_>,
@@ -157,7 +160,7 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     if wanted.plain && !CERTIFY {
         bodies.iter_mut().flatten().for_each(Body::forget_gains);
     }
-    // The rear of the longest vehicle has left the corridor when the head is this far beyond.
+    // Beyond this distance of the head, the rear of the longest vehicle has left the corridor.
     let ahead = ((group.front() + 4.0) / track.spacing).ceil() as usize + LANES;
     let last = track.len() - ahead - BLOCK;
     let mut head = track.first_head;
@@ -203,7 +206,7 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
 pub(super) struct Motion {
     heading_x: [V; MAX_UNITS],
     heading_y: [V; MAX_UNITS],
-    /// Last displacement of each front coupling, over its length.
+    /// Last displacement of each front coupling, as a unit vector.
     along_x: [V; MAX_UNITS],
     along_y: [V; MAX_UNITS],
     /// Last turn of each front coupling's chord, radians.
@@ -211,18 +214,18 @@ pub(super) struct Motion {
     /// Last heading change of each unit, radians.
     turned: [V; MAX_UNITS],
     turned_change: [V; MAX_UNITS],
-    /// Last change of each hinge's angle, radians, and how much that differed from the one before.
+    /// Last change of each hinge's angle, radians, and its difference from the change before.
     folding: [V; MAX_UNITS],
     folding_change: [V; MAX_UNITS],
-    /// What curvature adds to the bound on each axle's deviation.
+    /// What curvature adds to the bound of each axle's deviation.
     pub(super) extra: [V; MAX_UNITS],
 }
 
-/// One unit's step, as far as its tubes need it.
+/// One unit's step, as its tubes need it.
 #[derive(Clone, Copy)]
 pub(super) struct Step {
     pub(super) moved: V,
-    /// Arc length of the axle.
+    /// Arc length of the axle, metres.
     pub(super) advance: V,
     /// |sin|, cos, |tan| and 1/cos of the angle from the heading to the chord, before the step.
     pub(super) sine: V,
@@ -233,7 +236,7 @@ pub(super) struct Step {
     pub(super) mid_tangent: V,
     pub(super) hitch_cosine: V,
     pub(super) path_curvature: V,
-    /// By how much the coupling is taken to be off, metres, for what [`chord_lag`] leaves.
+    /// Assumed deviation of the coupling for what [`chord_lag`] leaves, metres.
     pub(super) chord_rest: V,
 }
 
@@ -260,7 +263,7 @@ pub(super) const ZERO: V = V([0.0; LANES]);
 const ONE: V = V([1.0; LANES]);
 
 by_instruction_set! {
-    /// Drives [`BLOCK`] stations from `head` and leaves every unit's rows.
+    /// Drives [`BLOCK`] stations from `head` and writes every unit's rows.
     pub(super) fn drive<const CERTIFY: bool, const REFINE: bool>(
         motion: &mut Motion,
         track: &Track,
@@ -284,7 +287,8 @@ by_instruction_set! {
 }
 
 impl Motion {
-    /// All units stand behind the steer axle's first station, along the corridor's first heading; they have come straight.
+    /// All units stand straight behind the steer axle's first station, along the corridor's first heading, after a
+    /// straight run-in.
     #[inline(always)]
     pub(super) fn new(track: &Track, group: &Group<'_>) -> Self {
         let (x, y) = (V::splat(track.fields.tangent_x[track.lead]), V::splat(track.fields.tangent_y[track.lead]));
@@ -302,8 +306,8 @@ impl Motion {
         }
     }
 
-    /// One head station: rows of every unit there, then the step to the next. `plan`: the steer axle's place there, and at the
-    /// next two.
+    /// One head station: writes the rows of every unit, then steps to the next station. `plan` is the steer axle's
+    /// place at this station and at the next two.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)] // One call, in the innermost loop: a struct would be taken apart at once.
     fn station<const CERTIFY: bool, const REFINE: bool>(
@@ -318,7 +322,7 @@ impl Motion {
         let [place, next, after] = plan;
         let (mut x, mut y) = place;
         let (mut vx, mut vy) = (next.0 - place.0, next.1 - place.1);
-        // The plan may bend more after the step than before it, at the corridor's first station most of all.
+        // The plan may bend more after the step than before it, above all at the corridor's first station.
         let (later_x, later_y) = (after.0 - next.0, after.1 - next.1);
         let mut bend_after = (vx * later_y - vy * later_x).abs() / (vx * vx + vy * vy + 1e-30);
         let mut steps = [Step::NONE; MAX_UNITS];
@@ -328,7 +332,7 @@ impl Motion {
         for unit in 0..group.units {
             let of = &group.chain[unit];
             let (ux, uy) = (self.heading_x[unit], self.heading_y[unit]);
-            // Axle, then the next coupling.
+            // First the axle, then the next coupling.
             x = x - ux * of.length;
             y = y - uy * of.length;
             let mut store = |field: usize, value: V| store(rows, unit, field, k, value);
@@ -366,7 +370,7 @@ impl Motion {
                 let hitch_tangent = tangent * of.ratio;
                 let (ax, ay) = (vx * inverse_moved, vy * inverse_moved);
                 let bend = self.along_x[unit] * ay - self.along_y[unit] * ax;
-                // What a curve turns the unit more than its chords do.
+                // A curve turns the unit more than its chords do.
                 let lengths = moved * of.inverse_length;
                 let more = bend * chord_lag(lengths);
                 let swerve = (bend - self.bend[unit]).abs();
@@ -391,7 +395,7 @@ impl Motion {
                 self.along_x[unit] = ax;
                 self.along_y[unit] = ay;
                 let turned = ux * wy - uy * wx;
-                // The plan's chord has turned at the station, the unit ahead during the step.
+                // The plan's chord turns at the station. The unit ahead turns during the step.
                 let folding = if unit == 0 { bend - self.turned[0] } else { turned_ahead - turned };
                 joints[unit] = double_atan(half_tangent) + self.overshoot(unit, folding);
                 turned_ahead = turned;
@@ -413,8 +417,8 @@ impl Motion {
         }
     }
 
-    /// By how much a hinge may fold farther between two head stations than at either: an eighth of the change's change, and what sines
-    /// of a step's turn are short of its angle.
+    /// How much farther a hinge may fold between two head stations than at either: an eighth of the second difference.
+    /// The factor is a little larger, because sines of a step's turn are smaller than its angle.
     #[inline(always)]
     fn overshoot(&mut self, unit: usize, folding: V) -> V {
         let change = (folding - self.folding[unit]).abs();
@@ -424,7 +428,7 @@ impl Motion {
         most * 0.14
     }
 
-    /// What curvature adds to the straight gains (design section 4, "Curved part and remainder"), and hinge margins.
+    /// Computes what curvature adds to the straight gains (docs/proof.md, section 5), and the hinge margins.
     #[inline(always)]
     fn tubes<const REFINE: bool>(
         &mut self,
@@ -457,8 +461,8 @@ impl Motion {
             let extra_coupling = coupled.extra;
             let (r1, z) = remainder(of, step, a, axle, coupling);
             let extra = filter.grown(of, step, &coupled, z);
-            // Where it does not close, nothing is certified while the vehicle stands here; a vehicle that is certified further
-            // on did not come through here, so that its bounds begin anew, as after a straight. A stand-in closes: it is nobody's.
+            // Nothing is certified where the bounds do not close. Behind that place they begin anew, as after a
+            // straight, because a vehicle certified there did not come through this place. A stand-in always closes.
             closed = closed.min(select_negative(of.present - V::splat(0.5), one, validity(of, step, a).min(short)));
             self.extra[unit] = select_negative(closed, of.settled, extra);
             let y = y.max(extra);
@@ -477,7 +481,7 @@ impl Motion {
             store(row::HINGE, select_negative(closed, V::splat(NOT_CLOSED_RAD), margin));
             (heading_ahead, shift_ahead) = (a, own_shift);
 
-            // On to the next coupling.
+            // Continues at the next coupling.
             straying = straying.next(of, step, a);
             let follower = (unit + 1 < group.units).then(|| (&group.chain[unit + 1], &steps[unit + 1]));
             let zh = hitch_remainder(of, step, follower, a, axle, r1, &straying);
@@ -492,14 +496,14 @@ impl Motion {
 
 /// The recursion of what curvature adds (docs/proof.md, section 5) over one step, front to rear.
 pub(super) struct Filter {
-    /// Beyond the straight bound, of the next coupling.
+    /// E − E⁰ of the next coupling.
     pub(super) coupling: V,
     hitch_cosine: V,
-    /// 1 over the arc length halfway between the fastest axle's and the slowest's: paces are counted against that.
+    /// 1 over the reference arc length, which is halfway between the fastest axle's and the slowest axle's.
     per_reference: V,
 }
 
-/// A unit's coupling in a step.
+/// Bounds at a unit's coupling in a step.
 pub(super) struct Coupled {
     /// Y − Y⁰ when the step begins.
     y: V,
@@ -526,28 +530,28 @@ impl Filter {
         }
     }
 
-    /// `y`: Y − Y⁰ of the unit when the step begins.
+    /// `y` is the unit's Y − Y⁰ when the step begins.
     #[inline(always)]
     pub(super) fn coupled(&self, of: &UnitLanes, step: &Step, y: V) -> Coupled {
-        // η: how much more than on the straight the coupling's deviation counts.
+        // η: relative growth of the coupling's deviation against the straight.
         let eta = (step.secant - 1.0).max((self.hitch_cosine * step.secant - 1.0).abs());
         let extra = (self.coupling + eta * (of.coupling + self.coupling)).min(V::splat(MOST));
         let heading = (of.heading + (extra + y) * of.inverse_length).min(V::splat(MOST));
         Coupled { y, extra, heading }
     }
 
-    /// Y − Y⁰ at the step's end, with z.
+    /// Y − Y⁰ at the end of the step, from the remainder z.
     #[inline(always)]
     fn grown(&self, of: &UnitLanes, step: &Step, coupled: &Coupled, z: V) -> V {
         let rho = (step.advance * self.per_reference - 1.0).abs();
         let input = coupled.extra + z + rho * of.length * (coupled.heading + of.sway);
-        // y' = (input − y)/L: grow by the coupling's arc length, decay by the axle's, which is the shorter.
+        // y' = (input − y)/L. Growth uses the coupling's arc length, decay the axle's, which is shorter.
         let (pn, pd) = decay(step.moved * of.inverse_length);
         let change = (input - coupled.y) * (V::splat(1.0) - pn / pd);
         (coupled.y + change.max(change * step.cosine.max(ZERO))).min(V::splat(MOST))
     }
 
-    /// On to the next coupling.
+    /// Continues at the next coupling.
     #[inline(always)]
     fn pass_on(&mut self, of: &UnitLanes, step: &Step, coupled: &Coupled, y: V, zh: V) {
         let next = (of.ratio + 1.0).abs() * y + of.ratio.abs() * coupled.extra + zh;
@@ -555,7 +559,7 @@ impl Filter {
         self.hitch_cosine = step.hitch_cosine;
     }
 
-    /// A unit's whole step, its second order known and its heading bounded: Y − Y⁰ at its end.
+    /// A unit's whole step with known second order and bounded heading. Returns Y − Y⁰ at its end.
     #[inline(always)]
     pub(super) fn step(&mut self, of: &UnitLanes, step: &Step, mut coupled: Coupled, a: V, z: V, zh: V) -> V {
         coupled.heading = coupled.heading.min(a);
@@ -566,21 +570,21 @@ impl Filter {
     }
 }
 
-/// What a unit turns less along chords than along the curve through their ends, a part of the chords' own turn, the chord being `x` of
-/// its lengths: x²/12 and its next order (docs/proof.md, section 2).
+/// Share of the chords' turn by which a unit turns less along chords than along the curve through their ends. `x` is
+/// chord over unit length. The share is x²/12 with its next order (docs/proof.md, section 2).
 #[inline(always)]
 fn chord_lag(x: V) -> V {
     x * x / (x * 6.0 + 12.0)
 }
 
-/// The plan is a smooth curve through the vertices: it leaves the chord by κℓ²/8 at most.
+/// Largest distance of the plan from its chord, κℓ²/8: the plan is a smooth curve through the vertices.
 #[inline(always)]
 pub(super) fn chord_bulge(step: &Step) -> V {
     step.path_curvature * step.moved * step.moved * 0.125
 }
 
-/// Second-order remainders at bounds `a` of the heading, `axle` of the axle's deviation and `coupled` of the coupling's over cos δ: of the
-/// coupling's relation (R1), and of the axle's motion (z).
+/// Second-order remainders of the coupling's relation (R1) and of the axle's motion (z). `a` bounds the heading, `axle`
+/// the axle's deviation, `coupled` the coupling's deviation over cos δ.
 #[inline(always)]
 pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) -> (V, V) {
     let a2 = a * a;
@@ -590,7 +594,7 @@ pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) 
         let swing = across * step.sine + lean * a * 0.5;
         own + step.path_curvature * step.secant * swing * swing * 0.5
     };
-    // y + Lα is what the coupling is off, but for the remainder itself.
+    // y + Lα equals the coupling's deviation, except for the remainder itself.
     let across = axle + lean;
     let r1 = bent(across.min(coupled + bent(across)));
     let slip = a + of.sway;
@@ -598,8 +602,8 @@ pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) 
     (r1, r1 + step.tangent * axle * (slip + slip3) + of.length * slip3)
 }
 
-/// A bound of the heading, R1 included (`L α = e/cos δ − y + R`), from what it is without; negative in the second place where that
-/// does not bear itself out.
+/// A bound of the heading with R1 (`L α = e/cos δ − y + R`), from its first-order bound. The second value is negative
+/// if the bound does not reproduce itself.
 #[inline(always)]
 pub(super) fn heading(of: &UnitLanes, step: &Step, first_order: V, axle: V, coupled: V) -> (V, V) {
     let with = |more: V| (first_order + more).min(V::splat(MOST));
@@ -607,12 +611,13 @@ pub(super) fn heading(of: &UnitLanes, step: &Step, first_order: V, axle: V, coup
     let first = implied(ZERO);
     let second = implied(first);
     let third = implied(second);
-    // Each growth is less than the one before: the rest of a series that halves, and a little.
+    // Each growth is less than the one before: this covers the rest of a series that at least halves, and a little
+    // more.
     let more = third + (third - second) * 1.5;
     (with(more), more - implied(more))
 }
 
-/// Second-order remainder of the next coupling, the foot shift against its follower included.
+/// Second-order remainder of the next coupling, with the foot shift against its follower.
 #[inline(always)]
 pub(super) fn hitch_remainder(
     of: &UnitLanes,
@@ -636,8 +641,8 @@ pub(super) fn hitch_remainder(
         + reach * (behind.tangent + hitch_tangent) * (straying.slope + straying.rough * next.inverse_length * 2.0)
 }
 
-/// How fast a coupling's deviation may change along its path: the slope of what has passed through axles, and how much of
-/// the steer axle's deviation has passed through none.
+/// How fast a coupling's deviation may change along its path: the slope of the part that has passed through axles, and
+/// the size of the steer axle's deviation that has passed through none.
 #[derive(Clone, Copy)]
 pub(super) struct Straying {
     slope: V,
@@ -657,48 +662,51 @@ impl Straying {
     }
 }
 
-/// Negative where the bounds do not hold: valid while |δ| + A + σ < 90°, so cos δ > sin(A + σ), and the series of the
-/// tangent needs A + σ ≤ 0.6.
+/// Negative where the bounds do not hold. They hold while |δ| + A + σ < 90°, so cos δ > sin(A + σ), and while A + σ ≤
+/// 0.6, which the series of the tangent needs.
 #[inline(always)]
 pub(super) fn validity(of: &UnitLanes, step: &Step, a: V) -> V {
     let slip = a + of.sway;
     (step.cosine - slip).min(V::splat(0.6) - slip)
 }
 
-/// By how much the heading of a path may differ between a unit's own foot and its coupling's, `coupling` off.
+/// Largest heading difference of a path between a unit's own foot and its coupling's foot, if the coupling deviates by
+/// `coupling`.
 #[inline(always)]
 pub(super) fn foot_shift(of: &UnitLanes, step: &Step, coupling: V) -> V {
     coupling * step.sine * step.tangent * of.inverse_length
 }
 
-/// What is left to the limit of the hinge ahead of a unit: nominal articulation (`joint`), heading errors, foot shifts.
+/// Margin to the limit of the hinge ahead of a unit, less nominal articulation (`joint`), heading errors and foot
+/// shifts.
 #[inline(always)]
 pub(super) fn hinge_margin(of: &UnitLanes, joint: V, ahead: V, own_shift: V) -> V {
     of.max_articulation - joint - ahead - own_shift
 }
 
-/// Rows of a unit's block.
+/// Indices of the rows of a unit's block.
 pub(super) mod row {
     /// Axle position and heading.
     pub(crate) const X: usize = 0;
     pub(crate) const Y: usize = 1;
     pub(crate) const UX: usize = 2;
     pub(crate) const UY: usize = 3;
-    /// Curvature of the axle's path, signed.
+    /// Curvature of the axle's path, signed, 1/m.
     pub(crate) const CURVATURE: usize = 4;
-    /// Change of the heading rate, 1/m².
+    /// Change of the curvature per metre, 1/m².
     pub(crate) const JERK: usize = 5;
-    /// Y − Y⁰ and Ẽ − E⁰ of the design page.
+    /// Y − Y⁰ and Ẽ − E⁰ (docs/proof.md, section 5).
     pub(crate) const EXTRA_AXLE: usize = 6;
     pub(crate) const EXTRA_COUPLING: usize = 7;
     /// R1/L
     pub(crate) const REMAINDER: usize = 8;
     pub(crate) const HINGE: usize = 9;
-    /// Square of the way of the axle over the step, m²: behind a hitch that swings it is more than the spacing's.
+    /// Square of the axle's way over the step, m². Behind a hitch that swings the axle it exceeds the square of the
+    /// spacing.
     pub(crate) const WAY2: usize = 10;
 }
 
-/// Spreads a value of vehicles in lanes to the vehicles' own rows.
+/// Writes a value with vehicles in lanes to the vehicles' own rows.
 #[inline(always)]
 fn store(rows: &mut [f64], unit: usize, field: usize, k: usize, value: V) {
     for lane in 0..LANES {
@@ -714,7 +722,8 @@ fn steer(track: &Track, shift: &[V], k: usize) -> (V, V) {
     (V::splat(f.x[k]) - q * f.tangent_y[k], V::splat(f.y[k]) + q * f.tangent_x[k])
 }
 
-/// exp(−x) as a fraction, by the square of the Padé form (3,3) at x/2: 3e-8 at x = 0.8, monotone to x = 9.
+/// exp(−x) as a fraction, by the square of the Padé form (3,3) at x/2. The error is 3e-8 at x = 0.8; the form is
+/// monotone up to x = 9.
 #[inline(always)]
 pub(super) fn decay(x: V) -> (V, V) {
     let x = x * 0.5;
@@ -732,8 +741,8 @@ fn slip_tangent_excess(x: V) -> V {
     x * x2 * ((x2 * 0.07 + 2.0 / 15.0) * x2 + 1.0 / 3.0)
 }
 
-/// 2·atan t for 0 ≤ t ≤ 1, never too small (Abramowitz and Stegun 4.4.47, error 1e-5, and an allowance of twice that); beyond
-/// 1, an angle over 90°, four radians, which no hinge allows.
+/// 2·atan t for 0 ≤ t ≤ 1, never too small (Abramowitz and Stegun 4.4.47, error 1e-5, with an allowance of twice that).
+/// For t > 1, an angle over 90°, it is four radians, which no hinge allows.
 #[inline(always)]
 fn double_atan(t: V) -> V {
     let t2 = t * t;

@@ -1,48 +1,48 @@
-//! A corridor made ready for the sweep: extended straight at both ends, with derivatives, and with the widths that
-//! the sampling may rely on.
+//! A corridor prepared for the sweep: extended straight at both ends, with derivatives, and with half-widths that hold
+//! between samples.
 
 use super::lanes::{LANES, V};
 use super::model::POINT_SPACING_M as MOST_GAP_M;
 use netcert_base::corridor::Corridor;
 
-/// Half-width of the straight extensions, a body gap away from the corridor: they are driven, not certified.
+/// Half-width of the straight extensions beyond a body gap from the corridor: they are driven, not certified.
 const OPEN_M: f64 = 1e6;
 
-/// Convexity of a half-width, 1/m, above which each of its places counts for itself (`leeway`).
+/// Convexity of a half-width, 1/m, above which each place of a side is examined by itself (`leeway`).
 pub(super) const BULGE_MOST: f64 = 0.005;
 
-/// Widths are read by the slope of a station up to so far from it, metres; farther, nothing is certified.
+/// Half-widths are read by a station's slope up to this far from it, metres. Nothing is certified farther away.
 pub(super) const READ_M: f64 = 6.0;
 
 /// Points are trusted to lie at their foot station while |κ·lateral| stays below this.
 const REACH: f64 = 0.9;
 
-/// Stations of the extended corridor, one array a field, and how it lies in the original.
+/// Stations of the extended corridor, one array per field, and their place in the original.
 pub(super) struct Track {
     pub(super) spacing: f64,
-    /// Extended stations before the corridor's first.
+    /// Number of extended stations before the corridor's first.
     pub(super) lead: usize,
-    /// The steer axle's first station: no body point is on the corridor yet.
+    /// The steer axle's first station. No body point is on the corridor yet.
     pub(super) first_head: usize,
-    /// Stations of the corridor itself.
+    /// Number of stations of the corridor itself.
     pub(super) count: usize,
     pub(super) fields: Fields<Vec<f64>>,
     /// Stations that do not fit their neighbours: nothing is certified there.
     pub(super) torn: Vec<usize>,
-    /// The next station from each one on at which a span begins or ends; what a side leaves there between two of its points counts.
+    /// The next marked station from each station on. At marked stations the leeway between two points of a side counts.
     next_mark: Vec<u32>,
 }
 
-/// How far a track goes beyond its corridor, metres.
+/// Lengths of the extensions, metres.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Extensions {
     pub(super) lead_m: f64,
     pub(super) tail_m: f64,
-    /// How far ahead of its steer axle a vehicle reaches at most.
+    /// Largest distance from a steer axle to the vehicle's front.
     pub(super) front_m: f64,
 }
 
-/// What the foot of a body point needs of the corridor.
+/// Fields of the corridor at the foot of a body point.
 pub(super) struct Fields<T> {
     pub(super) x: T,
     pub(super) y: T,
@@ -56,15 +56,15 @@ pub(super) struct Fields<T> {
     pub(super) right_slope: T,
     /// Greatest convexity of either half-width within a body gap, 1/m.
     pub(super) bulge: T,
-    /// By how much a half-width read by its slope is too great at most, σ from the station: by `excess`·σ + `rounding`·σ², up to
-    /// [`READ_M`]; `rounding` serves both sides.
+    /// A half-width read σ from the station by its slope is too great by at most `excess`·σ + `rounding`·σ², for σ up
+    /// to [`READ_M`]. `rounding` serves both sides.
     pub(super) left_excess: T,
     pub(super) right_excess: T,
     pub(super) rounding: T,
 }
 
 impl Track {
-    /// For vehicles that reach `front_m` ahead of their steer axles and need so much road before and behind the corridor.
+    /// Extends `corridor` by `lead_m` and `tail_m` for vehicles that reach `front_m` ahead of their steer axles.
     pub(super) fn new(corridor: &Corridor, Extensions { lead_m, tail_m, front_m }: Extensions) -> Self {
         let h = corridor.spacing_m;
         let count = corridor.len();
@@ -76,7 +76,8 @@ impl Track {
         let slope = |value: &dyn Fn(&Place) -> f64| -> Vec<f64> {
             (0..total)
                 .map(|k| {
-                    // One-sided at the corridor's ends, none beyond them: the extension is not the corridor's.
+                    // One-sided at the corridor's ends, zero beyond them: the extension does not belong to the
+                    // corridor.
                     let inside = |k: usize| k >= lead && k < lead + count;
                     let a = if k > 0 && inside(k - 1) { k - 1 } else { k };
                     let b = if inside(k + 1) { k + 1 } else { k };
@@ -119,7 +120,7 @@ impl Track {
         Self { spacing: h, lead, first_head, count, fields, torn, next_mark }
     }
 
-    /// Every second station, for planning, which does not ask whether they fit; the corridor's first is among them.
+    /// Every second station, the corridor's first among them, for planning. Torn stations do not matter there.
     pub(super) fn coarse(&self) -> Self {
         let first = self.lead % 2;
         let of = |column: &Vec<f64>| column.iter().skip(first).step_by(2).copied().collect::<Vec<f64>>();
@@ -159,7 +160,7 @@ impl Track {
         }
     }
 
-    /// The marked stations between two, both included.
+    /// The marked stations between two stations, both included.
     pub(super) fn marks(&self, from: usize, to: usize) -> impl Iterator<Item = usize> {
         let next = move |k: usize| Some(self.next_mark[k] as usize).filter(|&mark| mark <= to);
         std::iter::successors(next(from), move |&mark| next(mark + 1))
@@ -171,7 +172,8 @@ impl Track {
     }
 }
 
-/// How much each station's half-width lies below the mean of its neighbours', doubled: Δ²w where it is positive.
+/// Δ²w of each station's half-width where it is positive: twice how far the half-width lies below the mean of its
+/// neighbours.
 fn dips(places: &[Place], width: impl Fn(&Place) -> f64) -> Vec<f64> {
     (0..places.len())
         .map(|k| {
@@ -184,9 +186,9 @@ fn dips(places: &[Place], width: impl Fn(&Place) -> f64) -> Vec<f64> {
         .collect()
 }
 
-/// How fast a half-width read by the slope of a station leaves the true one at most, which is linear between stations: what the reading
-/// is over, divided by the way σ, is greatest at a station. Up to the first on either side it is e at most, up to the j-th
-/// no more than e + q(j − 1)h, so e + qσ before: `[e, q]`.
+/// Bounds `[e, q]` on how much a half-width read by a station's slope exceeds the true one, which is linear between
+/// stations. The excess divided by the way σ is greatest at a station. It is at most e up to the first station on
+/// either side, and at most e + q(j − 1)h up to the j-th, so at most e + qσ.
 fn excess(places: &[Place], spacing: f64, width: fn(&Place) -> f64, slope: &[f64]) -> Vec<[f64; 2]> {
     let last = places.len() - 1;
     let most = (READ_M / spacing).ceil() as usize;
@@ -204,15 +206,15 @@ fn excess(places: &[Place], spacing: f64, width: fn(&Place) -> f64, slope: &[f64
                 }
             }
         }
-        // A billionth is rounding.
+        // Values up to 1e-9 are rounding errors.
         at.map(|x| if x > 1e-9 { x } else { 0.0 })
     };
     places.iter().enumerate().map(of).collect()
 }
 
-/// A half-width that may be read anywhere within one station of where it stands: where the width dips between the
-/// places a body point is sampled at (a kink of slope change Δ²w), at most Δ²w/4 of the dip is missed. On the inside of
-/// a curve it ends before the centre of curvature.
+/// A half-width that may be read anywhere within one station. If the width dips between two samples of a body point (a
+/// kink of slope change Δ²w), the samples miss at most Δ²w/4 of the dip. On the inside of a curve the half-width ends
+/// before the centre of curvature.
 fn sampled_width(places: &[Place], dips: &[f64], width: impl Fn(&Place) -> f64, side: f64) -> Vec<f64> {
     (0..places.len())
         .map(|k| {
@@ -224,13 +226,13 @@ fn sampled_width(places: &[Place], dips: &[f64], width: impl Fn(&Place) -> f64, 
         .collect()
 }
 
-/// The greatest dip of either side within a gap between body points of each station, as a second derivative.
+/// The greatest dip of either side within a body gap of each station, as a second derivative.
 fn bulge(left: &[f64], right: &[f64], spacing: f64) -> Vec<f64> {
     let around = (MOST_GAP_M / spacing).ceil() as usize + 1;
     let mut out = vec![0.0; left.len()];
     for k in 0..left.len() {
         let dip = left[k].max(right[k]) / (spacing * spacing);
-        // A thousandth of a millimetre of roundness is rounding.
+        // Dips up to 1e-6 1/m are rounding errors.
         if dip > 1e-6 {
             let end = (k + around + 1).min(out.len());
             for o in &mut out[k.saturating_sub(around)..end] {
@@ -259,7 +261,8 @@ impl Place {
         let beyond = (k - i) as f64 * corridor.spacing_m;
         let i = i as usize;
         let heading = corridor.heading[i];
-        // A side that straddles an end is bounded from both its points: the end's width goes on under the one beyond.
+        // A side that straddles an end is bounded by both its points, so the end's half-width continues under the point
+        // beyond.
         let open = beyond.abs() > MOST_GAP_M + 1.5 * corridor.spacing_m;
         Self {
             x: corridor.x[i] + beyond * heading.cos(),

@@ -1,4 +1,4 @@
-//! The tubes themselves, for files and pictures: where each axle is nominally, and how far it may be off.
+//! The tubes, for files and pictures: each axle's nominal place and the bound of its deviation.
 
 use super::Certificate;
 use super::adjoint::{Refined, Trail, first_loose, refine};
@@ -9,22 +9,22 @@ use super::sweep::{self, BLOCK, FIELDS, Motion, drive, row};
 use super::track::Track;
 use netcert_base::corridor::Corridor;
 
-/// The tube of one unit: one entry for each station that the steer axle passes.
+/// The tube of one unit, with one entry per station that the steer axle passes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tube {
     /// Unit index, 0 the prime mover.
     pub unit: usize,
-    /// Nominal position of its axle, metres in the corridor's frame.
+    /// Nominal position of the axle, metres in the corridor's frame.
     pub centre: Vec<[f64; 2]>,
     /// Nominal heading, a unit vector.
     pub heading: Vec<[f64; 2]>,
-    /// Lateral semi-axis, across the heading, metres: the axle is never further off, at the certificate's γ. What
-    /// [`Tube::bound_m`] says of it is what is known.
+    /// Lateral semi-axis across the heading, metres: the largest deviation of the axle at the certificate's γ. Read it
+    /// through [`Tube::bound_m`].
     pub lateral_m: Vec<f64>,
 }
 
 impl Tube {
-    /// How far off the axle may be at a station; `None` where nothing bounds it.
+    /// Largest deviation of the axle at a station, metres. `None` if the bounds do not close there.
     #[must_use]
     pub fn bound_m(&self, station: usize) -> Option<f64> {
         self.lateral_m.get(station).copied().filter(|lateral_m| *lateral_m < sweep::MOST)

@@ -1,4 +1,4 @@
-//! Limits and access: of ways, of nodes, and against a vehicle.
+//! Limits and access of ways and nodes, and their comparison with a vehicle.
 
 use super::*;
 use crate::vehicle::{Unit, Vehicle};

@@ -12,7 +12,7 @@ use crate::osm::facts::*;
 const RIGHT: Place = Place { country: *b"ZZ", left_hand_traffic: false };
 const LEFT: Place = Place { country: *b"ZZ", left_hand_traffic: true };
 
-/// `highway=primary width=7` as tags.
+/// Parses `highway=primary width=7` into tags.
 fn tags(text: &str) -> Vec<(&str, &str)> {
     text.split_whitespace().map(|tag| tag.split_once('=').expect("key=value")).collect()
 }

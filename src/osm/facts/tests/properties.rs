@@ -1,4 +1,4 @@
-//! What holds whatever the tags.
+//! Properties that hold for any tags.
 
 use proptest::prelude::*;
 
@@ -114,7 +114,7 @@ fn borrowed(tags: &[(String, String)]) -> Vec<(&str, &str)> {
     tags.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect()
 }
 
-/// The same road seen in a mirror: left is right, and lists run the other way.
+/// The same road mirrored: left becomes right, and lists are reversed.
 fn mirrored(tags: &[(String, String)]) -> Vec<(String, String)> {
     let swap = |text: &str| text.replace("left", "\u{1}").replace("right", "left").replace('\u{1}', "right");
     tags.iter()
@@ -139,7 +139,7 @@ proptest! {
                 prop_assert!(strip.left_m.is_finite() && strip.right_m.is_finite());
                 prop_assert!((1.79..=80.0).contains(&strip.width_m()), "{strip:?}");
             }
-            // Each policy allows at least what the one before allows.
+            // Each policy allows at least what the previous one allows.
             for pair in strips.windows(2) {
                 if let [Some(inner), Some(outer)] = pair {
                     prop_assert!(outer.left_m >= inner.left_m && outer.right_m <= inner.right_m, "{section:?}");

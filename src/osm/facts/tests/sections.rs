@@ -22,7 +22,7 @@ fn rings_and_ramps_of_one_lane_are_wider_than_a_lane() {
     assert_eq!(carriageway(ring, b"DE", Some(8.0)), "215..-215 Assumed");
     assert_eq!(carriageway(ring, b"DE", Some(15.0)), "300..-300 Assumed");
     assert_eq!(carriageway(&format!("{ring} lanes=1"), b"DE", Some(15.0)), "300..-300 FromLanes");
-    // Not where anything more is known.
+    // Not if a tag says more.
     assert_eq!(carriageway(&format!("{ring} lanes=2"), b"DE", Some(15.0)), "300..-300 FromLanes");
     assert_eq!(carriageway(&format!("{ring} width=5"), b"DE", Some(15.0)), "250..-250 Tagged");
     assert_eq!(carriageway(&format!("{ring} narrow=yes"), b"DE", Some(15.0)), "110..-110 Assumed");
@@ -38,7 +38,7 @@ fn lanes_times_lane_width() {
         "highway=primary lanes=4",
         "-325..-650 FromLanes | -325..-650 FromLanes | 0..-650 FromLanes | 650..-650 FromLanes",
     );
-    // An odd lane belongs to nobody.
+    // Neither direction gets an odd lane.
     check(
         "highway=primary lanes=3",
         "-162..-488 FromLanes | -162..-488 FromLanes | -162..-488 FromLanes | 488..-488 FromLanes",
@@ -75,7 +75,7 @@ fn a_tagged_width_is_shared_out() {
         "highway=primary width=7 lanes=2 width:source=estimated",
         "0..-350 Estimated | 0..-350 Estimated | 0..-350 Estimated | 350..-350 Estimated",
     );
-    // How many lanes there are is not known: no more than 4.25 m at the kerb is one.
+    // The number of lanes is unknown: at most 4.25 m at the kerb count as one lane.
     check("highway=primary width=6 oneway=yes", "125..-300 Estimated | - | 300..-300 Estimated | 300..-300 Tagged");
 }
 
@@ -105,12 +105,12 @@ fn narrow_two_way_roads_are_shared() {
 
 #[test]
 fn width_and_lanes_that_contradict_give_the_narrower_reading() {
-    // 3 m for two lanes: one lane of 3 m for both.
+    // 3 m for two lanes: one lane of 3 m for both directions.
     check(
         "highway=primary width=3 lanes=2",
         "150..-150 Estimated | 150..-150 Estimated | 150..-150 Estimated | 150..-150 Tagged",
     );
-    // 7 m for five lanes: neither is believed beyond one assumed lane.
+    // 7 m for five lanes: at most one assumed lane is certain.
     check(
         "highway=primary width=7 lanes=5 oneway=yes",
         "162..-162 FromLanes | - | 162..-162 FromLanes | 162..-162 FromLanes",
@@ -125,7 +125,7 @@ fn width_and_lanes_that_contradict_give_the_narrower_reading() {
 
 #[test]
 fn kerb_side_uses_are_deducted_from_a_tagged_width() {
-    // 10 m, of which 2 m are parking on the right: the lanes lie to the left of the middle.
+    // 10 m with 2 m of parking on the right: the lanes lie to the left of the middle.
     check(
         "highway=residential width=10 lanes=2 parking:right=lane parking:right:orientation=parallel parking:right:width=2",
         "100..-300 Tagged | -100..-500 Tagged | 100..-300 Tagged | 500..-300 Tagged",
@@ -148,7 +148,7 @@ fn kerb_side_uses_are_deducted_from_a_tagged_width() {
         "highway=primary width=11 lanes=2 cycleway:both=lane cycleway:both:width=1.5",
         "0..-400 Tagged | 0..-400 Tagged | 0..-400 Tagged | 400..-400 Tagged",
     );
-    // Shoulders are paved: the carriageway policy may use them.
+    // Shoulders are paved, so the carriageway policy may use them.
     check(
         "highway=motorway width=12 lanes=2 shoulder=right shoulder:right:width=2.5",
         "125..-350 Tagged | - | 600..-350 Tagged | 600..-600 Tagged",
@@ -158,7 +158,7 @@ fn kerb_side_uses_are_deducted_from_a_tagged_width() {
         "highway=motorway width=7.5 lanes=2 shoulder=yes",
         "0..-350 FromLanes | - | 350..-350 FromLanes | 350..-350 FromLanes",
     );
-    // More cars than road.
+    // The cars need more than the road has.
     check("highway=residential width=6 parking:both=lane parking:both:orientation=perpendicular", "- | - | - | -");
 }
 

@@ -1,4 +1,4 @@
-//! Which ways are kept, which way they lead, and what is noted.
+//! Which ways are kept, their directions, and the notes on them.
 
 use super::*;
 
