@@ -45,6 +45,7 @@ pub mod picture;
 pub mod pipeline;
 pub mod reporter;
 pub mod route;
+pub mod rows;
 pub mod serve;
 pub mod settings;
 pub mod store;

@@ -6,7 +6,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use netcert::osm::facts::{Policy, WidthSource};
-use netcert::store::{Area, Bounds, Database, EdgeRow, Named, QueryOptions, TurnQuery, VerdictKind, verdict_words};
+use netcert::rows::EdgeRow;
+use netcert::store::{Area, Bounds, Database, Named, QueryOptions, TurnQuery, VerdictKind, verdict_words};
 use netcert::vehicle::Vehicle;
 
 use super::Session;
@@ -166,7 +167,7 @@ struct Totals {
 impl Totals {
     fn add(&mut self, row: &EdgeRow) {
         self.edges += 1;
-        let (verdict, _) = verdict_words(row.verdict);
+        let (verdict, _) = verdict_words(row.certificate.verdict);
         *self.by_verdict.entry(verdict).or_default() += row.length_m;
         if verdict == VerdictKind::Safe.name() {
             *self.safe_by_source.entry(row.width_source).or_default() += row.length_m;

@@ -251,7 +251,7 @@ impl EdgeVerdicts {
     fn note(&mut self, vehicle: usize, certificate: &EdgeCertificate) {
         let slot = self.0.get_mut(vehicle).and_then(|edges| edges.get_mut(certificate.edge as usize));
         if let Some(slot) = slot {
-            *slot = certificate.verdict;
+            *slot = certificate.conclusion.verdict;
         }
     }
 }

@@ -12,10 +12,33 @@ use super::names::verdict_no;
 pub struct EdgeCertificate {
     /// Index into `Network::edges`.
     pub edge: u32,
+    /// What is said of it.
+    pub conclusion: Conclusion,
+}
+
+/// What certificates of edges and of turns have in common on their way to the database.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Conclusion {
     /// With its reason.
     pub verdict: Verdict,
     /// What was computed; `None` where nothing was (`unknown`, or `forbidden` with no corridor). `Safe` needs it.
     pub measured: Option<Measured>,
+}
+
+impl EdgeCertificate {
+    /// Without numbers.
+    #[must_use]
+    pub fn bare(edge: u32, verdict: Verdict) -> Self {
+        Self { edge, conclusion: Conclusion::bare(verdict) }
+    }
+}
+
+impl Conclusion {
+    /// Without numbers.
+    #[must_use]
+    pub fn bare(verdict: Verdict) -> Self {
+        Self { verdict, measured: None }
+    }
 }
 
 /// The numbers of a certificate. Not finite ones are stored as missing.
@@ -66,11 +89,11 @@ impl Packed {
     }
 }
 
-impl EdgeCertificate {
-    /// Rounds; the error says why it may not be stored.
-    pub(super) fn pack(&self) -> Result<Packed, String> {
+impl Conclusion {
+    /// Rounds; `index` is that of the edge or the turn. The error says why it may not be stored.
+    pub(super) fn pack(&self, index: u32) -> Result<Packed, String> {
         let verdict_no = verdict_no(self.verdict).ok_or("its verdict has no number")?;
-        let fid = self.edge.checked_add(1).ok_or("its index is out of range")?;
+        let fid = index.checked_add(1).ok_or("its index is out of range")?;
         let mut packed = Packed {
             fid,
             verdict_no,
@@ -185,7 +208,7 @@ mod tests {
     }
 
     fn pack(verdict: Verdict, m: Measured) -> Result<Packed, String> {
-        EdgeCertificate { edge: 6, verdict, measured: Some(m) }.pack()
+        Conclusion { verdict, measured: Some(m) }.pack(6)
     }
 
     const UNSAFE: Verdict = Verdict::Unsafe(UnsafeReason::Width);
@@ -204,7 +227,7 @@ mod tests {
         #[test]
         fn the_spool_gives_back_what_it_got(rsc in prop::option::of(-50.0..50.0_f64), hinge in -3.0..3.0_f64, edge in 0..u32::MAX) {
             let verdict = UNSAFE;
-            let packed = EdgeCertificate { edge, verdict, measured: rsc.map(|rsc| measured(rsc, hinge, 0.5)) }.pack().unwrap();
+            let packed = Conclusion { verdict, measured: rsc.map(|rsc| measured(rsc, hinge, 0.5)) }.pack(edge).unwrap();
             prop_assert_eq!(Packed::from_bytes(&packed.to_bytes()), packed);
         }
     }
@@ -224,7 +247,7 @@ mod tests {
         assert!(pack(Verdict::Safe, measured(0.1, -1e-9, 1.0)).is_err());
         assert!(pack(Verdict::Safe, measured(f64::NAN, 0.1, 1.0)).is_err());
         assert!(pack(Verdict::Safe, measured(0.1, f64::INFINITY, 1.0)).is_err());
-        assert!(EdgeCertificate { edge: 0, verdict: Verdict::Safe, measured: None }.pack().is_err());
+        assert!(Conclusion::bare(Verdict::Safe).pack(0).is_err());
     }
 
     #[test]

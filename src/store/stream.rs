@@ -11,13 +11,14 @@ use sqlx::{AssertSqlSafe, Row as _};
 use tokio::runtime::Runtime;
 
 use crate::osm::facts::{Direction, Policy, WidthSource};
+use crate::rows::TurnRow;
 use crate::verdict::Verdict;
 
 use super::database::Database;
 use super::error::StoreError;
 use super::names::{corridor_no, width_columns};
 use super::network_read::{verdict, word, word_or_none};
-use super::turns::{self, TurnQuery, TurnRow};
+use super::turns::{self, TurnQuery};
 
 type Sql<T> = Result<T, sqlx::Error>;
 

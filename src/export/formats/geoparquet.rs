@@ -17,9 +17,10 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 
 use super::layers::{Row, asked};
-use super::{Cell, Kind, Layer, Options, Target, one_file_a_layer};
+use super::{Layer, Options, Target, one_file_a_layer};
 use crate::export::{ExportError, Layout, Place, Sink, Source};
 use crate::osm::LonLat;
+use crate::rows::{Cell, Kind};
 use crate::store::Bounds;
 
 /// `geoparquet`

@@ -77,7 +77,7 @@ fn edge_line(out: &mut dyn Write, edge: &ExportEdge) -> io::Result<()> {
             None => out.write_all(NULL)?,
         }
     }
-    for number in [row.rsc_m, row.hinge_margin_deg, row.width_m] {
+    for number in [row.certificate.rsc_m, row.certificate.hinge_margin_deg, row.width_m] {
         match number {
             Some(number) => write!(out, "\t{number}")?,
             None => out.write_all(b"\t\\N")?,
