@@ -9,8 +9,9 @@ use netcert::corridor::{Corridor, EdgeSpan, Params, stroke_corridor};
 use netcert::network::Network;
 use netcert::osm::facts::{Direction, Policy};
 use netcert::rows::EdgeRow;
-use netcert::store::{Database, Named, QueryOptions};
+use netcert::store::{Database, QueryOptions};
 use netcert::verdict::{UnsafeReason, Verdict};
+use netcert::words::Named;
 use rayon::prelude::*;
 
 type Failure = Box<dyn std::error::Error>;

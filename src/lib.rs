@@ -50,3 +50,4 @@ pub mod serve;
 pub mod settings;
 pub mod store;
 pub mod turns;
+pub mod words;

@@ -10,10 +10,11 @@ use crate::account::AccountRow;
 use crate::corridor::{EdgeSpan, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::reporter::Reporter;
+use crate::rows::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StoredPlan};
 use crate::settings::Settings;
 use crate::stet::{Model, Planned, SpanResult, certify_spans};
-use crate::store::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, Named, StoredPlan, VerdictKind, verdict_words};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
+use crate::words::{Named, VerdictKind, verdict_words};
 
 /// Strokes handed to the threads at a time: enough to keep them busy, few enough to hold.
 const BATCH: usize = 512;

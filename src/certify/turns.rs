@@ -13,11 +13,12 @@ use crate::account::AccountRow;
 use crate::network::Network;
 use crate::osm::LonLat;
 use crate::reporter::Reporter;
+use crate::rows::{Conclusion, Measured, StoredPlan, TurnCertificate};
 use crate::settings::Settings;
 use crate::stet::{Model, Options, Plan, SpanResult, certify_spans};
-use crate::store::{Conclusion, Measured, Named, StoredPlan, TurnCertificate, VerdictKind, verdict_words};
 use crate::turns::{Reach, StrokeLine, TurnFacts, TurnPath, nominal_leeway_m, passage_on, turn_on};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
+use crate::words::{Named, VerdictKind, verdict_words};
 
 /// Turns handed to the threads at a time.
 const BATCH: usize = 512;

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use crate::rows::CertificateRow;
-use crate::store::Named as _;
 use crate::verdict::{UnsafeReason, Verdict};
+use crate::words::Named as _;
 use netcert_check::{Finding, Outcome, SpanClaim};
 
 impl CertificateRow {

@@ -14,9 +14,10 @@ use netcert::rows::EdgeRow;
 use netcert::settings::Settings;
 use netcert::stet::Model;
 use netcert::stop::Stop;
-use netcert::store::{CertifiedSet, Database, Named, QueryOptions, verdict_words};
+use netcert::store::{CertifiedSet, Database, QueryOptions};
 use netcert::turns::{TurnFacts, turn_facts};
 use netcert::vehicle::Vehicle;
+use netcert::words::{Named, verdict_words};
 
 use super::Session;
 use super::certify_options;

@@ -6,9 +6,11 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use netcert::osm::facts::{Policy, WidthSource};
+use netcert::rows::Bounds;
 use netcert::rows::EdgeRow;
-use netcert::store::{Area, Bounds, Database, Named, QueryOptions, TurnQuery, VerdictKind, verdict_words};
+use netcert::store::{Area, Database, QueryOptions, TurnQuery};
 use netcert::vehicle::Vehicle;
+use netcert::words::{Named, VerdictKind, verdict_words};
 
 use super::Session;
 use super::area;

@@ -6,7 +6,7 @@ use std::io::{self, BufWriter, StdoutLock, Write};
 
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::rows::{Cell, Column, EdgeRow};
-use netcert::store::{Named, verdict_words};
+use netcert::words::{Named, verdict_words};
 use serde_json::{Map, Value, json};
 
 use super::output::printable;

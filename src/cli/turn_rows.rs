@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 use netcert::rows::TurnRow;
-use netcert::store::{Named, VerdictKind, verdict_words};
 use netcert::turns::KerbSource;
+use netcert::words::{Named, VerdictKind, verdict_words};
 use serde_json::{Map, Value, json};
 
 use super::output::{grouped, printable};

@@ -11,12 +11,14 @@ use netcert::account::AccountRow;
 use netcert::check::{self, Outcome, Report, RowOutcome, SetClaim, SetReport, TurnsClaim};
 use netcert::network::Network;
 use netcert::osm::facts::Policy;
+use netcert::rows::Bounds;
 use netcert::rows::{EdgeRow, TurnRow};
 use netcert::settings::Settings;
-use netcert::store::{Area, Bounds, CertifiedSet, Database, Named, QueryOptions, TurnQuery, verdict_words};
+use netcert::store::{Area, CertifiedSet, Database, QueryOptions, TurnQuery};
 use netcert::turns::{Kerbs, TurnFacts, turn_facts};
 use netcert::vehicle::Vehicle;
 use netcert::verdict::Verdict;
+use netcert::words::{Named, verdict_words};
 
 use super::Session;
 use super::area::bounds;

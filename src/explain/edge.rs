@@ -14,8 +14,8 @@ use crate::rows::CertificateRow;
 use crate::settings::Settings;
 use crate::stet::{Model, Options, SpanResult, certify_planned, certify_spans};
 use crate::stop::{Stop, Stopped};
-use crate::store::{Named as _, verdict_words};
 use crate::verdict::{UnknownReason, Verdict};
+use crate::words::{Named as _, verdict_words};
 
 /// Why `model`'s vehicle may use an edge of the network or not; `None` if there is no such edge.
 #[must_use]

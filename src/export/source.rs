@@ -149,7 +149,7 @@ fn check_certified(database: &mut Database, ask: &Ask) -> Result<(), ExportError
     // The errors of these name the command that makes what is missing.
     drop(database.query(&QueryOptions { edge_id: Some(0), ..QueryOptions::new(vehicle, *policy) })?);
     if !database.has_turns(vehicle, *policy)? {
-        let policy = crate::store::Named::name(*policy);
+        let policy = crate::words::Named::name(*policy);
         let detail = format!(
             "the turns of {vehicle} are not certified here under the {policy} policy; run `netcert certify --vehicle {vehicle} \
              --corridor {policy}`"

@@ -1,8 +1,8 @@
 //! The columns that certificates of edges and of turns have in common.
 
 use crate::stet::Side;
-use crate::store::{Named as _, verdict_words};
 use crate::verdict::Verdict;
+use crate::words::{Named as _, verdict_words};
 
 use super::cell::Kind::{Integer, Real, Text};
 use super::cell::{Cell, Column};

@@ -1,8 +1,9 @@
-//! Edges with their certificates.
+//! Edges: with their certificates, with all that the map says, and with what a permit depends on.
 
 use crate::osm::LonLat;
-use crate::osm::facts::{Direction, Policy, WidthSource};
-use crate::store::Named as _;
+use crate::osm::facts::{Direction, Oneway, Permission, Policy, WidthSource};
+use crate::verdict::Verdict;
+use crate::words::Named as _;
 
 use super::cell::Kind::{Integer, Real, Text};
 use super::cell::{Cell, Column};
@@ -96,4 +97,57 @@ impl EdgeRow {
             limiting_side,
         ]
     }
+}
+
+/// A row of `edge`.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)] // the columns of `edge`
+pub struct EdgeFacts {
+    /// Index into `Network::edges`.
+    pub edge: u32,
+    pub edge_id: i64,
+    pub way_id: i64,
+    pub from_node: i64,
+    pub to_node: i64,
+    pub direction: Direction,
+    pub oneway: Oneway,
+    pub highway: String,
+    pub name: Option<String>,
+    pub reference: Option<String>,
+    pub lanes: Option<u8>,
+    pub length_m: f64,
+    /// By policy: how wide, and where that comes from.
+    pub widths: [(Policy, Option<f64>, Option<WidthSource>); 3],
+    pub min_radius_m: Option<f64>,
+    pub centreline_deviation_m: Option<f64>,
+    /// Height, weight, axle load, length, width: the tag's word, the unit, the limit.
+    pub limits: [(&'static str, &'static str, Option<f64>); 5],
+    /// Names of limits that are tagged with a value that could not be read.
+    pub unreadable_limits: Vec<String>,
+    pub hgv: Permission,
+    pub motor_vehicle: Permission,
+    pub barred: bool,
+    pub cut: bool,
+    /// In direction of travel.
+    pub line: Vec<LonLat>,
+}
+
+/// What a permit of an edge depends on, and where the edge lies on its way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)] // the columns of `edge` and `certificate`
+pub struct EdgeStep {
+    /// Index into `Network::edges`.
+    pub edge: u32,
+    pub way_id: i64,
+    pub from_node: i64,
+    pub to_node: i64,
+    pub direction: Direction,
+    /// Where its shape starts in `Network::shapes`; both directions share it.
+    pub shape_start: u32,
+    /// How many positions its shape has.
+    pub positions: u32,
+    pub verdict: Verdict,
+    pub rsc_m: Option<f64>,
+    /// Of the policy asked for.
+    pub width_source: Option<WidthSource>,
 }

@@ -1,8 +1,9 @@
-//! Turns with their certificates.
+//! Turns: with their certificates, and with what a permit depends on.
 
 use crate::osm::LonLat;
 use crate::osm::facts::Policy;
-use crate::store::Named as _;
+use crate::verdict::Verdict;
+use crate::words::Named as _;
 
 use super::cell::Kind::{Integer, Real, Text};
 use super::cell::{Cell, Column};
@@ -99,4 +100,21 @@ impl TurnRow {
             limiting_side,
         ]
     }
+}
+
+/// What a permit of a turn depends on, and between which edges it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)] // the columns of `turn` and `turn_certificate`
+pub struct TurnStep {
+    /// Index into the network's turns.
+    pub turn: u32,
+    /// Index into `Network::edges`.
+    pub from: u32,
+    pub to: u32,
+    /// The first and the last arc (indices into `Network::edges`), where it is a passage of a roundabout.
+    pub arcs: Option<[u32; 2]>,
+    pub via_node: i64,
+    pub angle_deg: f64,
+    pub verdict: Verdict,
+    pub rsc_m: Option<f64>,
 }

@@ -13,7 +13,7 @@ use super::roads::Roads;
 use crate::route::{self, Graph, MadeTurns, Measure, Permits, Planner, Question, Speeds, Unanswered};
 use crate::stet::Model;
 use crate::stop::Stop;
-use crate::store::Named as _;
+use crate::words::Named as _;
 use serde_json::{Value, json};
 
 /// After so many answers a planner begins afresh: what it keeps of turns and strokes grows with what it has seen.

@@ -11,15 +11,17 @@ use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, Sq
 use crate::account::AccountRow;
 use crate::network::Network;
 use crate::osm::facts::Policy;
+use crate::rows::{EdgeCertificate, StoredPlan};
 use crate::settings::Settings;
+use crate::words::Named;
 
 use super::contents;
 use super::error::StoreError;
-use super::names::{Named, corridor_no};
+use super::names::corridor_no;
 use super::network_read;
-use super::packed::{EdgeCertificate, Packed};
+use super::packed::Packed;
 use super::part::with_suffix;
-use super::plans::{self, StoredPlan};
+use super::plans;
 use super::records::{self, Run, VehicleRecord};
 use super::schema::MIGRATIONS;
 use super::session::Session;

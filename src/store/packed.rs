@@ -1,64 +1,11 @@
 //! A certificate as it is stored: small integers, each rounded to the safe side, so that a stored value never promises
 //! more than the computed one. A `safe` that does not survive the rounding is refused, not stored.
 
-use crate::stet::Side;
+use crate::rows::Conclusion;
 use crate::verdict::Verdict;
 
 use super::bulk::Bulk;
 use super::names::verdict_no;
-
-/// The certificate of one edge, for a vehicle and policy named beside it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EdgeCertificate {
-    /// Index into `Network::edges`.
-    pub edge: u32,
-    /// What is said of it.
-    pub conclusion: Conclusion,
-}
-
-/// What certificates of edges and of turns have in common on their way to the database.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Conclusion {
-    /// With its reason.
-    pub verdict: Verdict,
-    /// What was computed; `None` where nothing was (`unknown`, or `forbidden` with no corridor). `Safe` needs it.
-    pub measured: Option<Measured>,
-}
-
-impl EdgeCertificate {
-    /// Without numbers.
-    #[must_use]
-    pub fn bare(edge: u32, verdict: Verdict) -> Self {
-        Self { edge, conclusion: Conclusion::bare(verdict) }
-    }
-}
-
-impl Conclusion {
-    /// Without numbers.
-    #[must_use]
-    pub fn bare(verdict: Verdict) -> Self {
-        Self { verdict, measured: None }
-    }
-}
-
-/// The numbers of a certificate. Not finite ones are stored as missing.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Measured {
-    /// Metres; rounded down to 1 mm.
-    pub rsc_m: f64,
-    /// Metres; rounded down to 1 mm.
-    pub rsc_published_m: f64,
-    /// Radians; rounded down to 0.01°.
-    pub hinge_margin_rad: f64,
-    /// γ, a multiple of 1/1000 in (0, 1]: RSC rests on it, so it is refused rather than rounded.
-    pub shrink: f64,
-    /// Where the least leeway stands, metres along the edge; rounded to 0.1 m.
-    pub limiting_s_m: f64,
-    /// Unit index there.
-    pub limiting_unit: usize,
-    /// Side there.
-    pub limiting_side: Side,
-}
 
 /// A row of `certificate_compact`, but for vehicle and corridor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -192,6 +139,8 @@ impl Packed {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::rows::Measured;
+    use crate::stet::Side;
     use crate::verdict::UnsafeReason;
     use proptest::prelude::*;
 

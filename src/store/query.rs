@@ -11,39 +11,16 @@ use tokio::runtime::Runtime;
 
 use crate::osm::LonLat;
 use crate::osm::facts::{Policy, WidthSource};
-use crate::rows::EdgeRow;
+use crate::rows::{Bounds, EdgeRow};
+use crate::words::{Named, VerdictKind};
 
-use super::blob::Bounds;
 use super::database::Database;
 use super::error::StoreError;
-use super::names::{Named, corridor_no, width_columns};
+use super::names::{corridor_no, width_columns};
 use super::network_read::{line, word, word_or_none};
 use super::numbers;
 
 type Sql<T> = Result<T, sqlx::Error>;
-
-/// A verdict without its reason.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs)] // as in `Verdict`
-pub enum VerdictKind {
-    Safe,
-    Unsafe,
-    Forbidden,
-    Unknown,
-}
-
-impl Named for VerdictKind {
-    const ALL: &'static [Self] = &[Self::Safe, Self::Unsafe, Self::Forbidden, Self::Unknown];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Safe => "safe",
-            Self::Unsafe => "unsafe",
-            Self::Forbidden => "forbidden",
-            Self::Unknown => "unknown",
-        }
-    }
-}
 
 /// Part of the earth's surface, degrees. Edges that touch it count.
 #[derive(Debug, Clone, PartialEq)]

@@ -89,7 +89,7 @@ impl Drop for Spool {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::store::Conclusion;
+    use crate::rows::Conclusion;
     use crate::verdict::{UnknownReason, Verdict};
 
     #[test]

@@ -7,20 +7,20 @@ use sqlx::{AssertSqlSafe, Row as _};
 
 use crate::network::Network;
 use crate::osm::facts::Policy;
-use crate::rows::TurnRow;
+use crate::rows::{Bounds, StoredPlan, TurnCertificate, TurnCount, TurnRow};
 use crate::turns::{KerbSource, TurnFacts};
-use crate::verdict::Verdict;
+use crate::words::{Named, VerdictKind};
 
-use super::blob::{self, Bounds};
+use super::blob;
 use super::bulk::Bulk;
 use super::database::Database;
 use super::error::{StoreError, content};
-use super::names::{Named, corridor_no};
+use super::names::corridor_no;
 use super::network_read::{line, verdict, word};
 use super::numbers;
-use super::packed::{Conclusion, Packed};
-use super::plans::{self, StoredPlan};
-use super::query::{Area, VerdictKind, polygons};
+use super::packed::Packed;
+use super::plans;
+use super::query::{Area, polygons};
 use super::sets;
 use super::styles::{self, Shows};
 
@@ -29,26 +29,7 @@ type Sql<T> = Result<T, sqlx::Error>;
 const COLUMNS: &str = "turn_certificate_compact (vehicle_no, corridor_no, fid, verdict_no, rsc_mm, rsc_published_mm, \
                        hinge_margin_cdeg, shrink_milli, limiting_s_dm, limiting_at, path_no)";
 
-/// The certificate of one turn, for a vehicle and policy named beside it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TurnCertificate {
-    /// Index into the network's turns ([`crate::turns::turn_facts`]).
-    pub turn: u32,
-    /// What is said of it.
-    pub conclusion: Conclusion,
-    /// The path it rests on.
-    pub path: Option<u8>,
-    /// And the plan, where that is not the path's centreline.
-    pub plan: Option<StoredPlan>,
-}
-
 impl TurnCertificate {
-    /// Without numbers.
-    #[must_use]
-    pub fn bare(turn: u32, verdict: Verdict) -> Self {
-        Self { turn, conclusion: Conclusion::bare(verdict), path: None, plan: None }
-    }
-
     pub(super) fn pack(&self) -> Result<Packed, String> {
         Ok(Packed { path_no: self.path, ..self.conclusion.pack(self.turn)? })
     }
@@ -339,14 +320,4 @@ pub(super) async fn counts(c: &mut SqliteConnection) -> Sql<Vec<TurnCount>> {
         })
     };
     sqlx::query(sql).fetch_all(c).await?.iter().map(count).collect()
-}
-
-/// How many turns have a verdict.
-#[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)]
-pub struct TurnCount {
-    pub vehicle_id: String,
-    pub policy: Policy,
-    pub verdict: Verdict,
-    pub turns: u64,
 }

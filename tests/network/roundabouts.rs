@@ -11,7 +11,7 @@ use crate::support::roundabout::{RING, map};
 use geo::{Distance as _, Euclidean};
 use netcert::osm::Via;
 use netcert::osm::facts::Policy;
-use netcert::store::TurnCertificate;
+use netcert::rows::TurnCertificate;
 use netcert::turns::{Reach, StrokeLine, TurnFacts, corridors_of};
 use netcert::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use oracle::draw::Draw;

@@ -11,7 +11,7 @@ use ascii_map::{AsciiMap, id_of};
 use geo::{Distance as _, Euclidean};
 use netcert::osm::Via;
 use netcert::osm::facts::Policy;
-use netcert::store::TurnCertificate;
+use netcert::rows::TurnCertificate;
 use netcert::turns::{Reach, StrokeLine, turn_corridors};
 use netcert::verdict::{ForbiddenReason, Verdict};
 use oracle::draw::Draw;

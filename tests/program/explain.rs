@@ -15,9 +15,9 @@ use netcert::picture;
 use netcert::rows::{CertificateRow, EdgeRow};
 use netcert::settings::Settings;
 use netcert::stet::{Model, Options, SpanResult, certify, certify_spans};
-use netcert::store::verdict_words;
 use netcert::vehicle::Vehicle;
 use netcert::verdict::{UnsafeReason, Verdict};
+use netcert::words::verdict_words;
 use program::Place;
 
 fn settings() -> Settings {

@@ -7,13 +7,12 @@ use netcert::account::AccountRow;
 use netcert::network::{Edge, Network};
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::rows::EdgeRow;
+use netcert::rows::{Bounds, EdgeCertificate, EdgeMeasure, TurnCertificate};
 use netcert::settings::Settings;
-use netcert::store::{
-    Area, Bounds, Database, EdgeCertificate, EdgeMeasure, QueryOptions, Run, StoreError, TurnCertificate, TurnSet,
-    VehicleRecord, VerdictKind, verdict_words,
-};
+use netcert::store::{Area, Database, QueryOptions, Run, StoreError, TurnSet, VehicleRecord};
 use netcert::turns::{Kerbs, turn_facts};
 use netcert::verdict::{UnknownReason, Verdict};
+use netcert::words::{VerdictKind, verdict_words};
 
 use crate::support::store_network;
 use store_network::{certificate, network};
@@ -159,7 +158,7 @@ fn every_filter_gives_what_a_plain_search_through_all_rows_gives() {
         assert_eq!(all(&path, &options).iter().collect::<Vec<_>>(), expected, "{options:?}");
     };
     for kind in [VerdictKind::Safe, VerdictKind::Unsafe, VerdictKind::Forbidden, VerdictKind::Unknown] {
-        let word = netcert::store::Named::name(kind);
+        let word = netcert::words::Named::name(kind);
         check(&|o| o.verdict = Some(kind), &|row| verdict_words(row.certificate.verdict).0 == word);
     }
     check(&|o| o.min_rsc_m = Some(0.3), &|row| row.certificate.rsc_m.is_some_and(|rsc| rsc >= 0.3));
@@ -203,7 +202,7 @@ fn stats_add_up_to_the_network() {
     let length: f64 = stats.network.iter().map(|row| row.2).sum();
     assert_eq!(stats.network.iter().map(|row| row.1).sum::<u64>(), network.edges.len() as u64);
     for policy in [Policy::Lane, Policy::Direction] {
-        let of = |row: &&netcert::store::StatsRow| row.vehicle_id == "EU-SEMI16.5" && row.policy == policy;
+        let of = |row: &&netcert::rows::StatsRow| row.vehicle_id == "EU-SEMI16.5" && row.policy == policy;
         let rows: Vec<_> = stats.certificates.iter().filter(of).collect();
         assert_eq!(rows.iter().map(|row| row.edges).sum::<u64>(), network.edges.len() as u64);
         assert!((rows.iter().map(|row| row.length_m).sum::<f64>() - length).abs() < 1e-6 * length);

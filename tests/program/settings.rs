@@ -8,9 +8,10 @@ use netcert::osm::facts::Policy;
 use netcert::pipeline;
 use netcert::rows::EdgeRow;
 use netcert::settings::Settings;
-use netcert::store::{Database, Named, QueryOptions, Run, StoreError, TurnQuery};
+use netcert::store::{Database, QueryOptions, Run, StoreError, TurnQuery};
 use netcert::turns::Kerbs;
 use netcert::verdict::Verdict;
+use netcert::words::Named;
 use serde_json::Value;
 
 use crate::serve::http::Server;

@@ -6,8 +6,8 @@ use netcert::osm::LonLat;
 use netcert::osm::facts::{
     AreaKind, CrossSection, Direction, Legal, Limit, Oneway, Permission, RestrictionKind, RoadClass, Strip, WidthSource,
 };
+use netcert::rows::{Conclusion, EdgeCertificate, Measured};
 use netcert::stet::Side;
-use netcert::store::{Conclusion, EdgeCertificate, Measured};
 use netcert::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
 const CLASSES: [RoadClass; 5] =

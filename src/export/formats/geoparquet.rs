@@ -20,8 +20,8 @@ use super::layers::{Row, asked};
 use super::{Layer, Options, Target, one_file_a_layer};
 use crate::export::{ExportError, Layout, Place, Sink, Source};
 use crate::osm::LonLat;
+use crate::rows::Bounds;
 use crate::rows::{Cell, Kind};
-use crate::store::Bounds;
 
 /// `geoparquet`
 pub(super) struct GeoParquet;

@@ -19,7 +19,7 @@ use crate::export::rings::Rings;
 use crate::export::{ExportEdge, ExportError, Layout, Place, Refusal, Sink, Source};
 use crate::osm::LonLat;
 use crate::osm::facts::WidthSource;
-use crate::store::Named;
+use crate::words::Named;
 
 /// Creates the tables in one transaction and loads them from the files beside it.
 const LOAD: &str = include_str!("pgrouting_load.sql");

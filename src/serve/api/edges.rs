@@ -9,7 +9,9 @@ use super::super::region::Region;
 use super::{SCOPE, answered, id};
 use crate::osm::facts::WidthSource;
 use crate::rows::{CertificateRow, EdgeRow};
-use crate::store::{EdgeFacts, MapTurn, Named, QueryOptions, TurnsOf, verdict_words};
+use crate::rows::{EdgeFacts, MapTurn};
+use crate::store::{QueryOptions, TurnsOf};
+use crate::words::{Named, verdict_words};
 
 /// `/api/edges/{id}`
 pub(in super::super) fn edge(region: &Region, ask: &Ask) -> Result<Stored, Problem> {

@@ -18,7 +18,8 @@ use crate::picture;
 use crate::settings::Settings;
 use crate::stet::Model;
 use crate::stop::Stop;
-use crate::store::{Named, QueryOptions, TurnsOf};
+use crate::store::{QueryOptions, TurnsOf};
+use crate::words::Named;
 
 /// Words and picture of one explanation.
 pub(in super::super) struct Explained {

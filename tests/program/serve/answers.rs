@@ -1,8 +1,9 @@
 //! What the server says is what the other verbs say of the same database.
 
 use netcert::rows::EdgeRow;
-use netcert::store::{Stats, verdict_words};
+use netcert::rows::Stats;
 use netcert::verdict::Verdict;
+use netcert::words::verdict_words;
 use serde_json::{Value, json};
 
 use super::http::Server;

@@ -1,6 +1,6 @@
 //! The OpenAPI document: every answer has the form that it describes, and nothing that it does not.
 
-use netcert::store::verdict_words;
+use netcert::words::verdict_words;
 use serde_json::{Map, Value};
 
 use super::http::Server;

@@ -5,7 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use fast_mvt::{MvtReaderRef, MvtValueRef};
 use netcert::osm::facts::Policy;
 use netcert::rows::EdgeRow;
-use netcert::store::{Named, TurnQuery, verdict_words};
+use netcert::store::TurnQuery;
+use netcert::words::{Named, verdict_words};
 
 use super::http::Server;
 

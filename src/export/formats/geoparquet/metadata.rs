@@ -3,8 +3,8 @@
 use serde_json::{Map, Value, json};
 
 use super::SIDES;
+use crate::rows::Bounds;
 use crate::rows::{Column, Kind};
-use crate::store::Bounds;
 
 /// <https://geoparquet.org/releases/v1.1.0/>, of lines in the column `geometry` with their boxes in `bbox`.
 pub(super) fn geo(bounds: Option<Bounds>) -> String {

@@ -10,7 +10,7 @@ use super::spots::Spot;
 use crate::osm::LonLat;
 use crate::osm::facts::Direction;
 use crate::rows::EdgeRow;
-use crate::store::Named as _;
+use crate::words::Named as _;
 
 /// For whom the rules are.
 pub(super) struct Scope {
