@@ -25,22 +25,23 @@
 //! [`settings`] are what a certificate depends on besides network and vehicle. [`pipeline`] runs the stages in that order.
 //!
 //! Some modules come from crates that need neither PROJ nor SQLite nor a web server. `netcert-base` has [`vehicle`], [`verdict`],
-//! [`pace`] (when a vehicle is where) and [`stop`] (work that may be cut off). `netcert-kernel` has [`stet`] and [`published`].
+//! [`speed_profile`] (when a vehicle is where) and [`stop`] (work that may be cut off). `netcert-kernel` has [`stet`] and
+//! [`published`].
 
-pub use netcert_base::{pace, stop, vehicle, verdict};
+pub use netcert_base::{speed_profile, stop, vehicle, verdict};
 pub use netcert_kernel::{published, stet};
 
 pub mod account;
 pub mod certificate;
 pub mod certify;
 pub mod check;
-mod claim;
 pub mod corridor;
 pub mod explain;
 pub mod export;
 pub mod manoeuvres;
 pub mod network;
 pub mod osm;
+mod output_lock;
 pub mod picture;
 pub mod pipeline;
 pub mod reporter;

@@ -2,7 +2,7 @@
 //! no maps, no databases.
 
 pub mod corridor;
-pub mod pace;
+pub mod speed_profile;
 pub mod stop;
 pub mod vehicle;
 pub mod verdict;
