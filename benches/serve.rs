@@ -16,7 +16,8 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use netcert::osm::facts::Policy;
-use netcert::store::{Database, Named as _, QueryOptions};
+use netcert::store::{Database, QueryOptions};
+use netcert::words::Named as _;
 
 /// Most tiles per zoom.
 const MOST_TILES: usize = 300;

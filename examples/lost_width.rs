@@ -8,8 +8,10 @@
 use netcert::corridor::{Corridor, EdgeSpan, Params, stroke_corridor};
 use netcert::network::Network;
 use netcert::osm::facts::{Direction, Policy};
-use netcert::store::{Database, EdgeRow, Named, QueryOptions};
+use netcert::rows::EdgeRow;
+use netcert::store::{Database, QueryOptions};
 use netcert::verdict::{UnsafeReason, Verdict};
+use netcert::words::Named;
 use rayon::prelude::*;
 
 type Failure = Box<dyn std::error::Error>;
@@ -38,7 +40,7 @@ impl Width {
         let station = |s_m: f64| (span.stations.start + (s_m / corridor.spacing_m).round() as usize).min(last);
         Self {
             strip_m,
-            limiting_m: row.limiting_s_m.map(|s_m| width(station(s_m))),
+            limiting_m: row.certificate.limiting_s_m.map(|s_m| width(station(s_m))),
             least_m: width(narrowest),
             least_at_m: (narrowest - span.stations.start) as f64 * corridor.spacing_m,
             length_m: (span.stations.len() - 1) as f64 * corridor.spacing_m,
@@ -65,9 +67,9 @@ struct Count {
 
 impl Count {
     fn add(&mut self, row: &EdgeRow, width: Option<&Width>) {
-        let too_narrow = row.verdict == Verdict::Unsafe(UnsafeReason::Width);
+        let too_narrow = row.certificate.verdict == Verdict::Unsafe(UnsafeReason::Width);
         self.edges += 1;
-        self.safe += usize::from(row.verdict == Verdict::Safe);
+        self.safe += usize::from(row.certificate.verdict == Verdict::Safe);
         self.too_narrow += usize::from(too_narrow);
         self.lost_where_limited += usize::from(too_narrow && width.is_some_and(Width::lost_where_limited));
         self.lost += usize::from(width.is_some_and(Width::lost));
@@ -143,7 +145,7 @@ fn list(rows: &[EdgeRow], widths: &[Option<Width>]) {
             row.edge_id,
             row.way_id,
             row.highway,
-            row.verdict,
+            row.certificate.verdict,
             width.strip_m,
             width.limiting_m.unwrap_or(f64::NAN),
             width.least_m,

@@ -46,7 +46,7 @@
 //! | `serve` | [`serve`]: the map's web server (hyper, axum) |
 //!
 //! Some modules come from crates that need neither PROJ nor SQLite nor a web server; take those where they do.
-//! `netcert-base` has [`vehicle`], [`verdict`], [`pace`] (when a vehicle is where) and [`stop`]. `netcert-kernel` has [`stet`] and
+//! `netcert-base` has [`vehicle`], [`verdict`], [`speed_profile`] (when a vehicle is where) and [`stop`]. `netcert-kernel` has [`stet`] and
 //! [`published`]. `netcert-check` is what [`check`] stands on.
 //!
 //! # The pipeline
@@ -75,14 +75,13 @@
 //!
 //! [`settings`] are what a certificate depends on besides network and vehicle. [`pipeline`] runs the stages in that order.
 
-pub use netcert_base::{pace, stop, vehicle, verdict};
+pub use netcert_base::{speed_profile, stop, vehicle, verdict};
 pub use netcert_kernel::{published, stet};
 
 pub mod account;
 pub mod certificate;
 pub mod certify;
 pub mod check;
-mod claim;
 pub mod corridor;
 pub mod explain;
 #[cfg(feature = "export")]
@@ -90,14 +89,17 @@ pub mod export;
 pub mod manoeuvres;
 pub mod network;
 pub mod osm;
+mod output_lock;
 pub mod picture;
 pub mod pipeline;
 pub mod region;
 pub mod reporter;
 pub mod route;
+pub mod rows;
 pub mod seal;
 #[cfg(feature = "serve")]
 pub mod serve;
 pub mod settings;
 pub mod store;
 pub mod turns;
+pub mod words;

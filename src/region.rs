@@ -11,9 +11,10 @@ use crate::osm::facts::Policy;
 use crate::route::{Driver, Measure, NoDriver, Planner, Roads, Speeds, SpeedsError};
 use crate::stet::{Model, ModelError};
 use crate::stop::{Stop, Stopped};
-use crate::store::{CertifiedSet, Database, Named as _, QueryOptions, Rows, StoreError};
+use crate::store::{CertifiedSet, Database, QueryOptions, Rows, StoreError};
 use crate::turns::turn_facts;
 use crate::vehicle::{Vehicle, VehicleError};
+use crate::words::Named as _;
 
 /// A region: its roads and the certificates of its vehicles.
 ///
@@ -24,7 +25,8 @@ use crate::vehicle::{Vehicle, VehicleError};
 /// # let (_folder, path) = setup::demo_region(false);
 /// use netcert::osm::facts::Policy;
 /// use netcert::region::Region;
-/// use netcert::store::{QueryOptions, VerdictKind};
+/// use netcert::store::QueryOptions;
+/// use netcert::words::VerdictKind;
 ///
 /// let mut region = Region::open(&path)?;
 /// let safe = QueryOptions {

@@ -10,8 +10,8 @@ use serde_json::{Map, Value};
 use crate::corridor::Params;
 use crate::osm::facts::Policy;
 use crate::stet::Options;
-use crate::store::Named as _;
 use crate::turns::{Kerbs, TurnParams};
+use crate::words::Named as _;
 
 /// How certificates are made.
 #[derive(Debug, Clone, PartialEq)]

@@ -15,9 +15,10 @@ use netcert::route::{
     passes_over,
 };
 use netcert::stop::Stop;
-use netcert::store::{Database, Named};
+use netcert::store::Database;
 use netcert::vehicle::Vehicle;
 use netcert::verdict::Verdict;
+use netcert::words::Named;
 use rayon::prelude::*;
 
 /// Pairs that share a planner, and with it the corridors already made.

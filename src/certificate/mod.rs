@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use crate::corridor::{FileCorridor, FrameError};
 use crate::seal::sealed;
 use crate::stet::{Certificate, Model, Options, known_m};
-use crate::store::{Named as _, verdict_words};
+use crate::words::{Named as _, verdict_words};
 use nominal::Nominal;
 
 /// Entries of the columns of leeway claim so much less than the sweep has, metres.

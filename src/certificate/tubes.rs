@@ -2,13 +2,13 @@
 //! be off.
 //!
 //! The certificate itself knows no time, only places along the corridor; `t` is that of a vehicle at the default
-//! [`Pace`]. Nothing is claimed along the heading: `shape` is the disc whose radius is the bound across it, `lateral_m`.
+//! [`SpeedProfile`]. Nothing is claimed along the heading: `shape` is the disc whose radius is the bound across it, `lateral_m`.
 
 use serde_json::{Value, json};
 
 use super::nominal::Nominal;
 use crate::corridor::{FileCorridor, FrameError};
-use crate::pace::Pace;
+use crate::speed_profile::SpeedProfile;
 use crate::stet::{Certificate, Model, Tube, tubes};
 
 /// A disc of no radius has no shape matrix; a micrometre more is on the safe side.
@@ -24,7 +24,7 @@ pub(super) fn json(
     certificate: &Certificate,
     nominal: &Nominal<'_>,
 ) -> Result<Vec<Value>, FrameError> {
-    let t = Pace::default().times_s(&given.corridor);
+    let t = SpeedProfile::default().times_s(&given.corridor);
     tubes(&given.corridor, model, certificate).iter().map(|tube| one(given, tube, nominal, &t)).collect()
 }
 

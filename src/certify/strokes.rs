@@ -11,10 +11,11 @@ use crate::account::AccountRow;
 use crate::corridor::{EdgeSpan, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::reporter::Reporter;
+use crate::rows::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StoredPlan};
 use crate::settings::Settings;
 use crate::stet::{Model, Planned, SpanResult, certify_spans};
-use crate::store::{EdgeCertificate, EdgeMeasure, Measured, Named, StoredPlan, VerdictKind, verdict_words};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
+use crate::words::{Named, VerdictKind, verdict_words};
 
 /// Strokes per batch: enough to keep the threads busy, few enough to hold in memory.
 const BATCH: usize = 512;
@@ -103,7 +104,7 @@ pub fn certify_network<E>(
             }
             outcome.plans.extend(result.plans);
             for (vehicle, certificate) in &result.certificates {
-                *outcome.verdicts.entry(verdict_words(certificate.verdict)).or_default() += 1;
+                *outcome.verdicts.entry(verdict_words(certificate.conclusion.verdict)).or_default() += 1;
                 sink(*vehicle, certificate)?;
             }
         }
@@ -133,7 +134,7 @@ fn with_corridor(job: &Job<'_>, made: &StrokeCorridor) -> StrokeResult {
             let edge = job.network.edges.get(span.edge as usize)?;
             let verdict = verdict(edge, &job.models[vehicle], span.unknown, Some(result));
             let measured = span.unknown.is_none().then(|| measured(made, span, result)).flatten();
-            Some((vehicle, EdgeCertificate { edge: span.edge, verdict, measured }))
+            Some((vehicle, EdgeCertificate { edge: span.edge, conclusion: Conclusion { verdict, measured } }))
         })
         .collect();
     let measures = made.spans.iter().map(|span| {
@@ -156,7 +157,7 @@ fn without_corridor(job: &Job<'_>, stroke: &Stroke, reason: UnknownReason) -> St
     let certificates = (0..job.models.len()).flat_map(|vehicle| edges.iter().map(move |&edge| (vehicle, edge))).map(
         |(vehicle, edge)| {
             let verdict = verdict(&network.edges[edge as usize], &job.models[vehicle], Some(reason), None);
-            (vehicle, EdgeCertificate { edge, verdict, measured: None })
+            (vehicle, EdgeCertificate::bare(edge, verdict))
         },
     );
     let measures = edges.iter().map(|&edge| (edge, EdgeMeasure::default(), Some(reason_name(reason))));

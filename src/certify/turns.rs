@@ -13,11 +13,12 @@ use crate::account::AccountRow;
 use crate::network::Network;
 use crate::osm::LonLat;
 use crate::reporter::Reporter;
+use crate::rows::{Conclusion, Measured, StoredPlan, TurnCertificate};
 use crate::settings::Settings;
 use crate::stet::{Model, Options, Plan, SpanResult, certify_spans};
-use crate::store::{Measured, Named, StoredPlan, TurnCertificate, VerdictKind, verdict_words};
 use crate::turns::{Reach, StrokeLine, TurnFacts, TurnPath, nominal_leeway_m, passage_on, turn_on};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
+use crate::words::{Named, VerdictKind, verdict_words};
 
 /// Turns per batch.
 const BATCH: usize = 512;
@@ -103,7 +104,7 @@ pub fn certify_turns<E>(
         for (laid_out, certificates) in results {
             outcome.laid_out += u64::from(laid_out);
             for (vehicle, certificate) in certificates.iter().enumerate() {
-                *outcome.verdicts.entry(verdict_words(certificate.verdict)).or_default() += 1;
+                *outcome.verdicts.entry(verdict_words(certificate.conclusion.verdict)).or_default() += 1;
                 sink(vehicle, certificate)?;
             }
         }
@@ -192,7 +193,7 @@ fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict>
 /// One certificate per vehicle, and whether any vehicle needed a corridor.
 fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -> (bool, Vec<TurnCertificate>) {
     let turn = &job.turns[index as usize];
-    let bare = |verdict: Verdict| TurnCertificate { turn: index, verdict, measured: None, path: None, plan: None };
+    let bare = |verdict: Verdict| TurnCertificate::bare(index, verdict);
     let mut out: Vec<TurnCertificate> = (0..job.models.len())
         .map(|vehicle| bare(given(job, turn, vehicle).unwrap_or(Verdict::Unknown(UnknownReason::Geometry))))
         .collect();
@@ -318,8 +319,9 @@ fn certificate(turn: u32, paths: &[TurnPath], best: Option<Best>) -> TurnCertifi
                 limiting_side: result.limiting.side,
             };
             let plan = StoredPlan::new(turn, &plan.coefficients);
-            TurnCertificate { turn, verdict, measured: Some(measured), path: Some(path.number), plan }
+            let conclusion = Conclusion { verdict, measured: Some(measured) };
+            TurnCertificate { turn, conclusion, path: Some(path.number), plan }
         }
-        None => TurnCertificate { turn, verdict, measured: None, path: None, plan: None },
+        None => TurnCertificate::bare(turn, verdict),
     }
 }

@@ -7,11 +7,10 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::row_claim::Said;
 use crate::corridor::{EdgeSpan, Params, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::osm::facts::{Policy, Strip};
-use crate::store::EdgeRow;
+use crate::rows::EdgeRow;
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 use netcert_check::Chain;
@@ -119,7 +118,7 @@ impl SetClaim<'_> {
         for row in rows {
             if let (Some(span), Some(claim)) = (
                 span_of(row),
-                span_of(row).and_then(|span| Said::of_edge(row).claim(&span.stations, made.corridor.spacing_m)),
+                span_of(row).and_then(|span| row.certificate.claim(&span.stations, made.corridor.spacing_m)),
             ) {
                 claimed.push((row.edge, span));
                 claims.push(claim);
@@ -137,7 +136,7 @@ impl SetClaim<'_> {
                 all.extend(self.road(made, span));
                 all.extend(self.printed(&subject, row, span));
             }
-            Said::of_edge(row).outcome(all)
+            row.certificate.outcome(all)
         };
         let mut outcome = outcome;
         rows.iter().map(|row| said(row, outcome(row))).collect()
@@ -150,13 +149,13 @@ impl SetClaim<'_> {
             return Outcome::Malformed("there is no such edge".to_owned());
         };
         let expected = expected(edge, self.vehicle, unknown, row);
-        if unknown.is_some() && (row.rsc_m.is_some() || row.hinge_margin_deg.is_some()) {
+        if unknown.is_some() && row.certificate.has_numbers() {
             return wrong("it has numbers where nothing can be said".to_owned());
         }
-        if expected == row.verdict {
+        if expected == row.certificate.verdict {
             Outcome::Confirmed
         } else {
-            wrong(format!("{:?}, but {expected:?} is what follows", row.verdict))
+            wrong(format!("{:?}, but {expected:?} is what follows", row.certificate.verdict))
         }
     }
 
@@ -190,7 +189,7 @@ impl SetClaim<'_> {
     }
 
     fn printed(&self, subject: &Subject<'_>, row: &EdgeRow, span: &EdgeSpan) -> Option<Finding> {
-        let claimed = row.rsc_published_m?;
+        let claimed = row.certificate.rsc_published_m?;
         let printed_m = printed::most_m(subject, self.vehicle, span.stations.clone());
         (claimed > printed_m + TOLERANCE_M)
             .then(|| finding("rsc_published_m", &format!("{claimed} is above {printed_m:.4}")))
@@ -198,11 +197,11 @@ impl SetClaim<'_> {
 }
 
 fn said(row: &EdgeRow, outcome: Outcome) -> RowOutcome {
-    RowOutcome { index: row.edge, id: row.edge_id, verdict: row.verdict, outcome }
+    RowOutcome { index: row.edge, id: row.edge_id, verdict: row.certificate.verdict, outcome }
 }
 
 fn unfit(row: &EdgeRow, why: &str) -> Outcome {
-    match row.verdict {
+    match row.certificate.verdict {
         Verdict::Unknown(_) | Verdict::Forbidden(_) => Outcome::Confirmed,
         _ => Outcome::NotConfirmed(vec![finding("corridor", why)]),
     }
@@ -217,5 +216,5 @@ fn expected(edge: &Edge, vehicle: &Vehicle, unknown: Option<UnknownReason>, row:
         (.., Some(reason)) => return Verdict::Unknown(reason),
         _ => {}
     }
-    Said::of_edge(row).follows(legal.unwrap_or(Verdict::Safe))
+    row.certificate.follows(legal.unwrap_or(Verdict::Safe))
 }

@@ -2,47 +2,12 @@
 
 use std::ops::Range;
 
-use crate::store::{EdgeRow, Named as _, TurnRow};
+use crate::rows::CertificateRow;
 use crate::verdict::{UnsafeReason, Verdict};
+use crate::words::Named as _;
 use netcert_check::{Finding, Outcome, SpanClaim};
 
-/// The columns that certificates of edges and turns have in common.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Said {
-    pub(super) verdict: Verdict,
-    pub(super) rsc_m: Option<f64>,
-    pub(super) rsc_published_m: Option<f64>,
-    pub(super) hinge_margin_deg: Option<f64>,
-    shrink: Option<f64>,
-    /// Metres along the span, unit, side (0 left, 1 right).
-    limiting: Option<(f64, usize, usize)>,
-}
-
-impl Said {
-    pub(super) fn of_edge(row: &EdgeRow) -> Self {
-        let at = row.limiting_s_m.zip(row.limiting_unit).zip(row.limiting_side);
-        Self {
-            verdict: row.verdict,
-            rsc_m: row.rsc_m,
-            rsc_published_m: row.rsc_published_m,
-            hinge_margin_deg: row.hinge_margin_deg,
-            shrink: row.shrink,
-            limiting: at.map(|((s, unit), side)| (s, usize::from(unit), usize::from(side.name() == "right"))),
-        }
-    }
-
-    pub(super) fn of_turn(row: &TurnRow) -> Self {
-        let at = row.limiting_s_m.zip(row.limiting_unit).zip(row.limiting_side);
-        Self {
-            verdict: row.verdict,
-            rsc_m: row.rsc_m,
-            rsc_published_m: row.rsc_published_m,
-            hinge_margin_deg: row.hinge_margin_deg,
-            shrink: row.shrink,
-            limiting: at.map(|((s, unit), side)| (s, usize::from(unit), usize::from(side.name() == "right"))),
-        }
-    }
-
+impl CertificateRow {
     pub(super) fn has_numbers(&self) -> bool {
         self.rsc_m.is_some() || self.hinge_margin_deg.is_some()
     }
@@ -54,8 +19,14 @@ impl Said {
             rsc_m: self.rsc_m,
             hinge_margin_rad: self.hinge_margin_deg.map(f64::to_radians),
             shrink: self.shrink.unwrap_or(1.0),
-            limiting: self.limiting.map(|(s, unit, side)| (stations.start as f64 * spacing_m + s, unit, side)),
+            limiting: self.limiting().map(|(s, unit, side)| (stations.start as f64 * spacing_m + s, unit, side)),
         })
+    }
+
+    /// Metres along the span, unit, side (0 left, 1 right).
+    fn limiting(&self) -> Option<(f64, usize, usize)> {
+        let at = self.limiting_s_m.zip(self.limiting_unit).zip(self.limiting_side);
+        at.map(|((s, unit), side)| (s, usize::from(unit), usize::from(side.name() == "right")))
     }
 
     /// The verdict that follows from the numbers; `safe` if they bear that out.

@@ -11,10 +11,9 @@ use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::database::{RowOutcome, SetReport};
-use super::row_claim::Said;
 use crate::network::Network;
 use crate::osm::facts::Policy;
-use crate::store::TurnRow;
+use crate::rows::{CertificateRow, TurnRow};
 use crate::turns::{
     KerbSource, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, TurnPath, passage_on, turn_on,
 };
@@ -69,7 +68,8 @@ impl TurnsClaim<'_> {
                 batch.par_iter().map(|row| self.row(&chain, row, &stroke_of, &lines)).collect();
             for (row, (outcome, km)) in batch.iter().zip(checked) {
                 report.swept_km += km;
-                report.rows.push(RowOutcome { index: row.turn, id: row.turn_id, verdict: row.verdict, outcome });
+                let verdict = row.certificate.verdict;
+                report.rows.push(RowOutcome { index: row.turn, id: row.turn_id, verdict, outcome });
             }
         }
         report
@@ -109,7 +109,6 @@ impl TurnsClaim<'_> {
 
     /// What comes of a row, and how many kilometres were swept for it.
     fn row(&self, chain: &Chain, row: &TurnRow, stroke_of: &FxHashMap<u32, u32>, lines: &Lines) -> (Outcome, f64) {
-        let said = Said::of_turn(row);
         let Some(turn) = self.facts.get(row.turn as usize) else {
             return (Outcome::Malformed("there is no such turn".to_owned()), 0.0);
         };
@@ -121,8 +120,8 @@ impl TurnsClaim<'_> {
             None => self.made(turn, stroke_of, lines).map_err(Verdict::Unknown),
         };
         match made {
-            Err(expected) => (without_corridor(&said, expected), 0.0),
-            Ok(made) => self.with_corridors(chain, row, &said, &made),
+            Err(expected) => (without_corridor(&row.certificate, expected), 0.0),
+            Ok(made) => self.with_corridors(chain, row, &made),
         }
     }
 
@@ -164,7 +163,8 @@ impl TurnsClaim<'_> {
         }
     }
 
-    fn with_corridors(&self, chain: &Chain, row: &TurnRow, said: &Said, made: &TurnCorridors) -> (Outcome, f64) {
+    fn with_corridors(&self, chain: &Chain, row: &TurnRow, made: &TurnCorridors) -> (Outcome, f64) {
+        let said = &row.certificate;
         let Some(number) = row.path_no else {
             let told = if said.has_numbers() {
                 Outcome::Malformed("it has numbers, but no path".to_owned())
@@ -206,7 +206,7 @@ impl TurnsClaim<'_> {
 }
 
 /// Verdict, reason and the lack of numbers, where there is nothing to work out.
-fn without_corridor(said: &Said, expected: Verdict) -> Outcome {
+fn without_corridor(said: &CertificateRow, expected: Verdict) -> Outcome {
     let wrong = |detail: String| Outcome::NotConfirmed(vec![finding("verdict", &detail)]);
     if said.has_numbers() {
         return wrong("it has numbers where nothing can be said".to_owned());

@@ -5,7 +5,7 @@ use std::path::Path;
 use anyhow::{anyhow, bail};
 use geo::{Coord, LineString, MultiPolygon, Polygon};
 use geojson::{GeoJson, GeometryValue, Position};
-use netcert::store::Bounds;
+use netcert::rows::Bounds;
 
 /// A boundary is read whole; the most detailed ones of a country have some tens of megabytes.
 const MAX_FILE_BYTES: u64 = 256 << 20;

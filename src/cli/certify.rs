@@ -8,8 +8,9 @@ use clap::Args;
 use netcert::osm::facts::Policy;
 use netcert::pipeline;
 use netcert::settings::Settings;
-use netcert::store::{Database, Named};
+use netcert::store::Database;
 use netcert::vehicle::Vehicle;
+use netcert::words::Named;
 use serde_json::json;
 
 use super::Session;

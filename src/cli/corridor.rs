@@ -9,7 +9,7 @@ use netcert::corridor::{self, FileCorridor, corridor_from_file};
 use netcert::explain::{self, Explanation, explain_corridor};
 use netcert::stet::{Certificate, Model, Options};
 use netcert::stop::Stop;
-use netcert::store::Named;
+use netcert::words::Named;
 
 use super::Session;
 use super::explain::{wrapped, write_picture};

@@ -10,12 +10,14 @@ use netcert::network::Network;
 use netcert::osm::facts::Policy;
 use netcert::picture;
 use netcert::pipeline;
+use netcert::rows::EdgeRow;
 use netcert::settings::Settings;
 use netcert::stet::Model;
 use netcert::stop::Stop;
-use netcert::store::{CertifiedSet, Database, EdgeRow, Named, QueryOptions, verdict_words};
+use netcert::store::{CertifiedSet, Database, QueryOptions};
 use netcert::turns::{TurnFacts, turn_facts};
 use netcert::vehicle::Vehicle;
+use netcert::words::{Named, verdict_words};
 
 use super::Session;
 use super::certify_options;
@@ -92,7 +94,7 @@ impl Explain {
         };
         match stored(&mut database, &network, edge, set.as_ref())? {
             Some(row) => {
-                if let Some(detail) = explanation.disagreement(&row) {
+                if let Some(detail) = explanation.disagreement(&row.certificate) {
                     bail!(
                         "{}: the certificate of edge {} for {} is not what this program computes: {detail}; it was made by \
                          another version: run `netcert certify --db {0} --vehicle {2} --corridor {}`",
@@ -208,14 +210,14 @@ impl Explain {
                 None
             };
             let texts = [road.reference, road.name].into_iter().flatten().map(|id| network.strings.text(id));
-            let (verdict, reason) = row.as_ref().map_or(("", ""), |row| verdict_words(row.verdict));
+            let (verdict, reason) = row.as_ref().map_or(("", ""), |row| verdict_words(row.certificate.verdict));
             table.row([
                 facts.id.to_string(),
                 road.way_id.to_string(),
                 facts.direction.name().to_owned(),
                 format!("{}{}", road.class.name(), if road.link { "_link" } else { "" }),
                 row.as_ref().map_or(String::new(), |row| format!("{:.0} m", row.length_m)),
-                row.as_ref().and_then(|row| row.rsc_m).map_or(String::new(), |rsc| format!("{rsc:.2} m")),
+                row.as_ref().and_then(|row| row.certificate.rsc_m).map_or(String::new(), |rsc| format!("{rsc:.2} m")),
                 if reason.is_empty() { verdict.to_owned() } else { format!("{verdict}: {reason}") },
                 printable(&texts.collect::<Vec<_>>().join(" ")),
             ]);

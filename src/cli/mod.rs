@@ -12,6 +12,7 @@ mod explain;
 mod export;
 mod fleet;
 mod ingest;
+mod logger;
 mod manoeuvres;
 mod on_demand;
 pub(crate) mod output;

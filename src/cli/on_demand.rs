@@ -6,8 +6,9 @@ use anyhow::anyhow;
 use netcert::osm::facts::Policy;
 use netcert::pipeline;
 use netcert::settings::Settings;
-use netcert::store::{CertifiedSet, Database, Named};
+use netcert::store::{CertifiedSet, Database};
 use netcert::vehicle::Vehicle;
+use netcert::words::Named;
 use serde_json::json;
 
 use super::Session;

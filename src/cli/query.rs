@@ -6,8 +6,11 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use netcert::osm::facts::{Policy, WidthSource};
-use netcert::store::{Area, Bounds, Database, EdgeRow, Named, QueryOptions, TurnQuery, VerdictKind, verdict_words};
+use netcert::rows::Bounds;
+use netcert::rows::EdgeRow;
+use netcert::store::{Area, Database, QueryOptions, TurnQuery};
 use netcert::vehicle::Vehicle;
+use netcert::words::{Named, VerdictKind, verdict_words};
 
 use super::Session;
 use super::area;
@@ -166,7 +169,7 @@ struct Totals {
 impl Totals {
     fn add(&mut self, row: &EdgeRow) {
         self.edges += 1;
-        let (verdict, _) = verdict_words(row.verdict);
+        let (verdict, _) = verdict_words(row.certificate.verdict);
         *self.by_verdict.entry(verdict).or_default() += row.length_m;
         if verdict == VerdictKind::Safe.name() {
             *self.safe_by_source.entry(row.width_source).or_default() += row.length_m;

@@ -12,7 +12,7 @@ use netcert::network::Network;
 use netcert::picture;
 use netcert::route::{self, Answer, Measure, PartKind, PartResult, Planner, Position, Question, Route as Found};
 use netcert::stop::Stop;
-use netcert::store::{Named, verdict_words};
+use netcert::words::{Named, verdict_words};
 
 use super::Session;
 use super::explain::wrapped;

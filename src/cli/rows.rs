@@ -4,9 +4,9 @@
 
 use std::io::{self, BufWriter, StdoutLock, Write};
 
-use netcert::osm::facts::{Direction, Policy, WidthSource};
-use netcert::stet::Side;
-use netcert::store::{EdgeRow, Named, verdict_words};
+use netcert::osm::facts::{Policy, WidthSource};
+use netcert::rows::{Cell, Column, EdgeRow};
+use netcert::words::{Named, verdict_words};
 use serde_json::{Map, Value, json};
 
 use super::output::printable;
@@ -28,32 +28,6 @@ pub(crate) struct Sink<'h> {
     rows: u64,
 }
 
-const COLUMNS: [&str; 23] = [
-    "edge_id",
-    "way_id",
-    "from_node",
-    "to_node",
-    "direction",
-    "highway",
-    "name",
-    "ref",
-    "length_m",
-    "width_m",
-    "width_source",
-    "min_radius_m",
-    "vehicle_id",
-    "corridor",
-    "verdict",
-    "reason",
-    "rsc_m",
-    "rsc_published_m",
-    "hinge_margin_deg",
-    "shrink",
-    "limiting_s_m",
-    "limiting_unit",
-    "limiting_side",
-];
-
 impl<'h> Sink<'h> {
     /// Writes what comes before the first row.
     pub(crate) fn begin(format: Format, head: &'h Head, out: BufWriter<StdoutLock<'static>>) -> io::Result<Self> {
@@ -64,7 +38,7 @@ impl<'h> Sink<'h> {
                 "{:>19}  {:>11} {:<8}  {:<14} {:>8}  {:>7} {:<10}  {:>7}  {:>8}  {:<22} road",
                 "edge_id", "way", "dir", "highway", "length", "width", "source", "rsc", "hinge", "verdict"
             )?,
-            Format::Csv => writeln!(sink.out, "{}", COLUMNS.join(","))?,
+            Format::Csv => writeln!(sink.out, "{}", names(&EdgeRow::COLUMNS))?,
             Format::Json => {
                 let (vehicle, scope) = (json!(head.vehicle), json!(head.scope));
                 write!(
@@ -122,7 +96,7 @@ impl<'h> Sink<'h> {
     }
 
     fn line(&mut self, row: &EdgeRow) -> io::Result<()> {
-        let (verdict, reason) = verdict_words(row.verdict);
+        let (verdict, reason) = verdict_words(row.certificate.verdict);
         let verdict = if reason.is_empty() { verdict.to_owned() } else { format!("{verdict}: {reason}") };
         let road: Vec<&str> = [&row.reference, &row.name].into_iter().flatten().map(String::as_str).collect();
         let (metres, degrees) = (|m: f64| format!("{m:.2} m"), |d: f64| format!("{d:.1}°"));
@@ -136,44 +110,26 @@ impl<'h> Sink<'h> {
             format!("{:.0} m", row.length_m),
             row.width_m.map_or(String::new(), metres),
             row.width_source.map_or("", WidthSource::name),
-            row.rsc_m.map_or(String::new(), metres),
-            // Less is no angle, but a bound that does not hold.
-            row.hinge_margin_deg.filter(|&d| d > -180.0).map_or(String::new(), degrees),
+            row.certificate.rsc_m.map_or(String::new(), metres),
+            row.certificate.hinge_angle_deg().map_or(String::new(), degrees),
             verdict,
             printable(&road.join(" ")),
         )
     }
 
-    /// In the order of [`COLUMNS`].
     fn members(&self, row: &EdgeRow) -> Map<String, Value> {
-        let (verdict, reason) = verdict_words(row.verdict);
-        let values: [Value; COLUMNS.len()] = [
-            json!(row.edge_id),
-            json!(row.way_id),
-            json!(row.from_node),
-            json!(row.to_node),
-            json!(Direction::name(row.direction)),
-            json!(row.highway),
-            json!(row.name),
-            json!(row.reference),
-            json!(row.length_m),
-            json!(row.width_m),
-            json!(row.width_source.map(WidthSource::name)),
-            json!(row.min_radius_m),
-            json!(self.head.vehicle),
-            json!(self.head.policy.name()),
-            json!(verdict),
-            json!((!reason.is_empty()).then_some(reason)),
-            json!(row.rsc_m),
-            json!(row.rsc_published_m),
-            json!(row.hinge_margin_deg),
-            json!(row.shrink),
-            json!(row.limiting_s_m),
-            json!(row.limiting_unit),
-            json!(row.limiting_side.map(Side::name)),
-        ];
-        COLUMNS.iter().map(|&name| name.to_owned()).zip(values).collect()
+        members(&EdgeRow::COLUMNS, row.cells(&self.head.vehicle, self.head.policy))
     }
+}
+
+/// The line of names that begins a table of these columns.
+pub(super) fn names(columns: &[Column]) -> String {
+    columns.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(",")
+}
+
+/// The members of an object of these columns.
+pub(super) fn members<const N: usize>(columns: &[Column; N], cells: [Cell<'_>; N]) -> Map<String, Value> {
+    columns.iter().map(|(name, _)| (*name).to_owned()).zip(cells.map(Value::from)).collect()
 }
 
 /// A cell as RFC 4180 has it; nothing for null.

@@ -8,7 +8,7 @@ use netcert::serve::{BaseMap, Limits, Options, Server};
 
 use super::Session;
 use super::database::DatabaseArgs;
-use super::output::{results, tell};
+use super::output::results;
 use super::stop::stop;
 
 /// Show the database on a map: a page in the browser, vector tiles and a JSON interface behind it.
@@ -47,12 +47,12 @@ impl Serve {
             (Some(map), Some(text)) => Some(map.named(text)),
             (map, _) => map,
         };
+        super::logger::install();
         let server = Server::bind(Options {
             db: self.db.path()?,
             addr: self.addr,
             allow_remote: self.allow_remote,
             base_map,
-            log: tell,
             limits: Limits::default(),
         })?;
         let mut out = results();

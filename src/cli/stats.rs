@@ -6,7 +6,9 @@ use std::io::Write;
 use clap::{Args, ValueEnum};
 use netcert::account::AccountRow;
 use netcert::osm::facts::{Policy, WidthSource};
-use netcert::store::{self, Database, Named, Run, StatsRow, VerdictKind, verdict_words};
+use netcert::rows::{self, StatsRow};
+use netcert::store::{Database, Run};
+use netcert::words::{Named, VerdictKind, verdict_words};
 use serde_json::{Value, json};
 
 use super::database::DatabaseArgs;
@@ -83,7 +85,7 @@ impl Stats {
     }
 }
 
-fn sets(stats: &store::Stats) -> Vec<Set<'_>> {
+fn sets(stats: &rows::Stats) -> Vec<Set<'_>> {
     let mut sets: Vec<Set<'_>> = Vec::new();
     for row in &stats.certificates {
         match sets.last_mut() {
@@ -94,7 +96,7 @@ fn sets(stats: &store::Stats) -> Vec<Set<'_>> {
     sets
 }
 
-fn network(out: &mut dyn Write, stats: &store::Stats) -> anyhow::Result<()> {
+fn network(out: &mut dyn Write, stats: &rows::Stats) -> anyhow::Result<()> {
     let edges: u64 = stats.network.iter().map(|class| class.1).sum();
     let length_m: f64 = stats.network.iter().map(|class| class.2).sum();
     let (roads, edges) = (grouped(stats.roads), grouped(edges));
@@ -133,7 +135,7 @@ fn shares<'a>(rows: &'a [&'a StatsRow]) -> impl Iterator<Item = String> + 'a {
 }
 
 /// Turns by verdict, a line a set.
-fn turns(out: &mut dyn Write, stats: &store::Stats) -> anyhow::Result<()> {
+fn turns(out: &mut dyn Write, stats: &rows::Stats) -> anyhow::Result<()> {
     let mut table = Table::new(&["vehicle", "policy", ">turns", ">safe", ">unsafe", ">forbidden", ">unknown"]);
     let mut keys: Vec<(&str, Policy)> = stats.turns.iter().map(|t| (t.vehicle_id.as_str(), t.policy)).collect();
     keys.dedup();
@@ -220,7 +222,7 @@ fn percent(of: f64, all: f64) -> String {
     if of == 0.0 || all == 0.0 { "-".to_owned() } else { format!("{:.1} %", 100.0 * of / all) }
 }
 
-fn to_json(stats: &store::Stats, sets: &[Set<'_>], runs: &[(Run, Vec<AccountRow>)]) -> Value {
+fn to_json(stats: &rows::Stats, sets: &[Set<'_>], runs: &[(Run, Vec<AccountRow>)]) -> Value {
     let classes: Vec<Value> = stats
         .network
         .iter()

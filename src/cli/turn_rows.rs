@@ -5,47 +5,21 @@
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use netcert::stet::Side;
-use netcert::store::{Named, TurnRow, VerdictKind, verdict_words};
+use netcert::rows::TurnRow;
 use netcert::turns::KerbSource;
+use netcert::words::{Named, VerdictKind, verdict_words};
 use serde_json::{Map, Value, json};
 
 use super::output::{grouped, printable};
 use super::query::Format;
-use super::rows::{Head, csv};
-
-const COLUMNS: [&str; 23] = [
-    "turn_id",
-    "from_edge",
-    "to_edge",
-    "via_node",
-    "kind",
-    "angle_deg",
-    "kerb_radius_m",
-    "kerb_source",
-    "restriction",
-    "first_arc",
-    "last_arc",
-    "from_name",
-    "to_name",
-    "vehicle_id",
-    "corridor",
-    "verdict",
-    "reason",
-    "rsc_m",
-    "hinge_margin_deg",
-    "shrink",
-    "limiting_s_m",
-    "limiting_unit",
-    "limiting_side",
-];
+use super::rows::{self, Head, csv};
 
 /// Writes all rows.
 pub(super) fn write(format: Format, head: &Head, rows: &[TurnRow], out: &mut dyn Write) -> io::Result<()> {
     match format {
         Format::Table => table(rows, out),
         Format::Csv => {
-            writeln!(out, "{}", COLUMNS.join(","))?;
+            writeln!(out, "{}", rows::names(&TurnRow::COLUMNS))?;
             for row in rows {
                 let cells: Vec<String> = members(head, row).iter().map(|(_, value)| csv(value)).collect();
                 writeln!(out, "{}", cells.join(","))?;
@@ -91,7 +65,7 @@ fn table(rows: &[TurnRow], out: &mut dyn Write) -> io::Result<()> {
         "turn_id", "node", "kind", "angle", "kerb", "rsc", "hinge", "verdict"
     )?;
     for row in rows {
-        let (verdict, reason) = verdict_words(row.verdict);
+        let (verdict, reason) = verdict_words(row.certificate.verdict);
         let verdict = if reason.is_empty() { verdict.to_owned() } else { format!("{verdict}: {reason}") };
         let name = |name: &Option<String>| printable(name.as_deref().unwrap_or("–"));
         writeln!(
@@ -102,8 +76,8 @@ fn table(rows: &[TurnRow], out: &mut dyn Write) -> io::Result<()> {
             row.kind,
             row.angle_deg,
             kerb(row),
-            row.rsc_m.map_or(String::new(), |m| format!("{m:.2} m")),
-            row.hinge_margin_deg.filter(|&d| d > -180.0).map_or(String::new(), |d| format!("{d:.1}°")),
+            row.certificate.rsc_m.map_or(String::new(), |m| format!("{m:.2} m")),
+            row.certificate.hinge_angle_deg().map_or(String::new(), |d| format!("{d:.1}°")),
             verdict,
             name(&row.from_name),
             name(&row.to_name),
@@ -118,42 +92,15 @@ fn kerb(row: &TurnRow) -> String {
     row.kerb_radius_m.map_or_else(|| mapped.unwrap_or_default().to_owned(), |m| format!("{m:.1} m"))
 }
 
-/// In the order of [`COLUMNS`].
 fn members(head: &Head, row: &TurnRow) -> Map<String, Value> {
-    let (verdict, reason) = verdict_words(row.verdict);
-    let values: [Value; COLUMNS.len()] = [
-        json!(row.turn_id),
-        json!(row.from_edge),
-        json!(row.to_edge),
-        json!(row.via_node),
-        json!(row.kind),
-        json!(row.angle_deg),
-        json!(row.kerb_radius_m),
-        json!(row.kerb_source),
-        json!(row.restriction),
-        json!(row.arcs.map(|arcs| arcs[0])),
-        json!(row.arcs.map(|arcs| arcs[1])),
-        json!(row.from_name),
-        json!(row.to_name),
-        json!(head.vehicle),
-        json!(head.policy.name()),
-        json!(verdict),
-        json!((!reason.is_empty()).then_some(reason)),
-        json!(row.rsc_m),
-        json!(row.hinge_margin_deg),
-        json!(row.shrink),
-        json!(row.limiting_s_m),
-        json!(row.limiting_unit),
-        json!(row.limiting_side.map(Side::name)),
-    ];
-    COLUMNS.iter().map(|&name| name.to_owned()).zip(values).collect()
+    rows::members(&TurnRow::COLUMNS, row.cells(&head.vehicle, head.policy))
 }
 
 /// Turns by verdict, in one line.
 pub(super) fn totals(rows: &[TurnRow]) -> String {
     let mut by_verdict: BTreeMap<&str, u64> = BTreeMap::new();
     for row in rows {
-        *by_verdict.entry(verdict_words(row.verdict).0).or_default() += 1;
+        *by_verdict.entry(verdict_words(row.certificate.verdict).0).or_default() += 1;
     }
     let mut text = format!("{} turns", grouped(rows.len() as u64));
     for kind in VerdictKind::ALL {

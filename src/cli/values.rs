@@ -1,7 +1,7 @@
 //! Values of options: words of the library's enumerations, and numbers within bounds.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use netcert::store::Named;
+use netcert::words::Named;
 
 /// One of the enumeration's words; help lists them.
 pub(crate) fn word<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {

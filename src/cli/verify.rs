@@ -11,13 +11,14 @@ use netcert::account::AccountRow;
 use netcert::check::{self, Outcome, Report, RowOutcome, SetClaim, SetReport, TurnsClaim};
 use netcert::network::Network;
 use netcert::osm::facts::Policy;
+use netcert::rows::Bounds;
+use netcert::rows::{EdgeRow, TurnRow};
 use netcert::settings::Settings;
-use netcert::store::{
-    Area, Bounds, CertifiedSet, Database, EdgeRow, Named, QueryOptions, TurnQuery, TurnRow, verdict_words,
-};
+use netcert::store::{Area, CertifiedSet, Database, QueryOptions, TurnQuery};
 use netcert::turns::{Kerbs, TurnFacts, turn_facts};
 use netcert::vehicle::Vehicle;
 use netcert::verdict::Verdict;
+use netcert::words::{Named, verdict_words};
 
 use super::Session;
 use super::area::bounds;
@@ -159,8 +160,10 @@ impl Verify {
         let vehicle = defined(database, set)?;
         let params = settings.turn_params();
         let every = QueryOptions::new(&set.vehicle_id, set.policy);
-        let edges: BTreeMap<u32, Verdict> =
-            database.query(&every)?.map(|row| row.map(|row| (row.edge, row.verdict))).collect::<Result<_, _>>()?;
+        let edges: BTreeMap<u32, Verdict> = database
+            .query(&every)?
+            .map(|row| row.map(|row| (row.edge, row.certificate.verdict)))
+            .collect::<Result<_, _>>()?;
         let query = TurnQuery { area: self.bbox.map(Area::Bounds), ..TurnQuery::new(&set.vehicle_id, set.policy) };
         let rows = self.sampled(database.query_turns(&query)?, |row| row.turn_id);
         let rows: BTreeMap<u32, TurnRow> = rows.into_iter().map(|row| (row.turn, row)).collect();

@@ -10,11 +10,12 @@ use crate::certify::verdict;
 use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::osm::facts::{Direction, Policy};
+use crate::rows::CertificateRow;
 use crate::settings::Settings;
 use crate::stet::{Certificate, Model, Options, SpanResult, certify_planned, certify_spans};
 use crate::stop::{Stop, Stopped};
-use crate::store::{EdgeRow, Named as _, verdict_words};
 use crate::verdict::{UnknownReason, Verdict};
+use crate::words::{Named as _, verdict_words};
 
 /// Why `model`'s vehicle may use an edge of the network or not; `None` if there is no such edge.
 ///
@@ -52,7 +53,7 @@ impl Explanation {
     /// In what the certificate that a database keeps differs from this one; nothing if it says the same, to the rounding
     /// with which it is kept.
     #[must_use]
-    pub fn disagreement(&self, stored: &EdgeRow) -> Option<String> {
+    pub fn disagreement(&self, stored: &CertificateRow) -> Option<String> {
         let words = |verdict| {
             let (verdict, reason) = verdict_words(verdict);
             if reason.is_empty() { verdict.to_owned() } else { format!("{verdict} ({reason})") }

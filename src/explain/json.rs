@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 use super::words::words;
 use super::{Explanation, Geometry, Part};
 use crate::osm::facts::WidthSource;
-use crate::store::{Named as _, verdict_words};
 use crate::vehicle::Vehicle;
+use crate::words::{Named as _, verdict_words};
 
 /// The whole explanation but for the corridor's stations.
 #[must_use]

@@ -3,8 +3,8 @@
 
 use super::{Explanation, Part, Place};
 use crate::osm::facts::{Policy, WidthSource};
-use crate::store::Named as _;
 use crate::vehicle::Vehicle;
+use crate::words::Named as _;
 
 /// The amount of a leeway in centimetres without its sign: never more to spare, never less missing than there is.
 #[must_use]

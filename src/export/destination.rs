@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use super::ExportError;
 use super::sorter::Scratch;
 use super::unfinished::{self, Unfinished};
-use crate::claim::{self, Claim};
+use crate::output_lock::{self, OutputLock};
 
 /// The file by which a folder is known as an export.
 const MARK: &str = "netcert.json";
@@ -44,7 +44,7 @@ pub enum Out {
 pub struct Place {
     kind: Kind,
     /// Held until the output is in its place.
-    claim: Option<Claim>,
+    lock: Option<OutputLock>,
     unfinished: Unfinished,
 }
 
@@ -60,28 +60,28 @@ impl Place {
     /// # Errors
     /// Something else stands there; several files are to go to one stream.
     pub fn begin(out: Out, layout: Layout, unfinished: Unfinished) -> Result<Self, ExportError> {
-        let claim_as = |part: &Path, claim: fn(&Path) -> io::Result<Claim>| {
-            unfinished.make(part, claim).map(Some).map_err(|e| claimed(part, e))
+        let locked = |part: &Path, lock: fn(&Path) -> io::Result<OutputLock>| {
+            unfinished.make(part, lock).map(Some).map_err(|e| not_locked(part, e))
         };
-        let (kind, claim) = match (out, layout) {
+        let (kind, lock) = match (out, layout) {
             (Out::Stream(stream), Layout::File) => (Kind::Stream(Some(stream)), None),
             (Out::Stream(_), Layout::Folder { target, instead }) => return Err(ExportError::NoStream(target, instead)),
             (Out::Path(target), Layout::File) if target.is_dir() => return Err(ExportError::Folder(target)),
             (Out::Path(target), Layout::File) => {
                 let part = beside(&target, ".part");
-                let claim = claim_as(&part, claim::file)?;
-                (Kind::File { part, target }, claim)
+                let lock = locked(&part, output_lock::file)?;
+                (Kind::File { part, target }, lock)
             }
             (Out::Path(target), Layout::Folder { .. }) => {
                 if occupied(&target) {
                     return Err(ExportError::InTheWay(target));
                 }
                 let part = beside(&target, ".part");
-                let claim = claim_as(&part, claim::folder)?;
-                (Kind::Folder { part, target }, claim)
+                let lock = locked(&part, output_lock::folder)?;
+                (Kind::Folder { part, target }, lock)
             }
         };
-        Ok(Self { kind, claim, unfinished })
+        Ok(Self { kind, lock, unfinished })
     }
 
     /// Whether several files are written.
@@ -95,13 +95,13 @@ impl Place {
     /// # Errors
     /// It cannot be made.
     pub fn create(&mut self, name: &str) -> Result<Sink, ExportError> {
-        let held = self.claim.as_ref().and_then(|claim| claim.file.as_ref());
+        let held = self.lock.as_ref().and_then(|lock| lock.file.as_ref());
         let (path, file) = match (&mut self.kind, held) {
             (Kind::Stream(stream), _) => {
                 let stream = stream.take().ok_or_else(|| io::Error::other("a stream takes one file only"))?;
                 return Ok(Sink { stream, file: None });
             }
-            // The claim's own: some systems let nobody else write to a locked file.
+            // The lock's own: some systems let nobody else write to a locked file.
             (Kind::File { part, .. }, Some(held)) => (part.clone(), held.try_clone()),
             (Kind::File { part, .. }, None) => (part.clone(), File::create(part)),
             (Kind::Folder { part, .. }, _) => {
@@ -210,8 +210,8 @@ fn at(path: &Path, source: io::Error) -> ExportError {
     ExportError::Io { path: path.to_owned(), source }
 }
 
-/// The same where the output is claimed.
-fn claimed(path: &Path, source: io::Error) -> ExportError {
+/// The same where another process may hold the output.
+fn not_locked(path: &Path, source: io::Error) -> ExportError {
     if source.kind() == io::ErrorKind::WouldBlock { ExportError::Busy(path.to_owned()) } else { at(path, source) }
 }
 

@@ -8,8 +8,9 @@ use super::ExportError;
 use super::permit::{Permitted, Tally};
 use super::source::{Ask, hash_of};
 use crate::osm::facts::WidthSource;
-use crate::store::{Database, Named, StoreError};
+use crate::store::{Database, StoreError};
 use crate::vehicle::Vehicle;
+use crate::words::Named;
 
 /// Where the data are from, and on which terms: https://opendatacommons.org/licenses/odbl/1-0/
 const LICENCE: &str = "© OpenStreetMap contributors, ODbL 1.0";

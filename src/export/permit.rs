@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 
 use crate::osm::facts::WidthSource;
 use crate::route::Permit;
-use crate::store::verdict_words;
 use crate::verdict::Verdict;
+use crate::words::verdict_words;
 
 /// What is asked beyond a safe certificate.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

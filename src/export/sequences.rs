@@ -8,7 +8,7 @@ use rustc_hash::FxHashSet;
 
 use super::rings::Rings;
 use super::{ExportError, Source};
-use crate::store::TurnStep;
+use crate::rows::TurnStep;
 
 impl Source<'_> {
     /// Whether it is a turn, and refused though both its edges may be used.

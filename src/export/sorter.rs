@@ -19,7 +19,7 @@ pub(super) struct Scratch {
 impl Scratch {
     /// An empty one; of an output it is made by [`super::Place::scratch`].
     pub(super) fn create(path: PathBuf) -> io::Result<Self> {
-        // What stands there is a killed program's: of a living one the name holds the process, or its output is claimed.
+        // What stands there is a killed program's: of a living one the name holds the process, or its output is locked.
         std::fs::remove_file(&path).or_else(|e| if e.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(e) })?;
         let file = File::options().read(true).write(true).create_new(true).open(&path)?;
         if cfg!(unix) {

@@ -12,7 +12,8 @@ use super::rings::Rings;
 use crate::osm::facts::Policy;
 use crate::reporter::Reporter;
 use crate::route::Permit;
-use crate::store::{Database, EdgeRow, QueryOptions, StoreError, TurnRow};
+use crate::rows::{EdgeRow, TurnRow};
+use crate::store::{Database, QueryOptions, StoreError};
 
 /// What is to be exported. The vehicle must be certified under the policy, its turns too.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,7 +96,8 @@ impl<'r> Source<'r> {
         let rows = database.query(&QueryOptions::new(&self.ask.vehicle, self.ask.policy))?;
         let rule = self.ask.rule;
         let with_permit = move |row: EdgeRow| {
-            let refusal = rule.edge(Permit { verdict: row.verdict, rsc_m: row.rsc_m }, row.width_source);
+            let refusal =
+                rule.edge(Permit { verdict: row.certificate.verdict, rsc_m: row.certificate.rsc_m }, row.width_source);
             ExportEdge { row, refusal }
         };
         self.reporter.begin("edges", self.permitted.edges.len() as u64);
@@ -112,7 +114,7 @@ impl<'r> Source<'r> {
     ) -> Result<impl Iterator<Item = Result<ExportTurn, ExportError>> + 'd, ExportError> {
         let rows = database.turn_rows(&self.ask.vehicle, self.ask.policy)?;
         let with_permit = |row: TurnRow| {
-            let permit = Permit { verdict: row.verdict, rsc_m: row.rsc_m };
+            let permit = Permit { verdict: row.certificate.verdict, rsc_m: row.certificate.rsc_m };
             // A turn is permitted only if its edges are: then the bit says so, and else the reason is the turn's own or theirs.
             let refusal = self.ask.rule.turn(permit, self.permitted.turns.get(row.turn));
             ExportTurn { row, refusal }
@@ -147,7 +149,7 @@ fn check_certified(database: &mut Database, ask: &Ask) -> Result<(), ExportError
     // The errors of these name the command that makes what is missing.
     drop(database.query(&QueryOptions { edge_id: Some(0), ..QueryOptions::new(vehicle, *policy) })?);
     if !database.has_turns(vehicle, *policy)? {
-        let policy = crate::store::Named::name(*policy);
+        let policy = crate::words::Named::name(*policy);
         let detail = format!(
             "the turns of {vehicle} are not certified here under the {policy} policy; run `netcert certify --vehicle {vehicle} \
              --corridor {policy}`"

@@ -9,7 +9,8 @@ use std::iter::Peekable;
 use super::ExportError;
 use crate::osm::facts::Direction;
 use crate::osm::pbf::copy::Blobs;
-use crate::store::{EdgeStep, StoreError, Streamed};
+use crate::rows::EdgeStep;
+use crate::store::{StoreError, Streamed};
 
 use super::Source;
 

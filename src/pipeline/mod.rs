@@ -20,9 +20,10 @@ use crate::osm::facts::{Countries, CountriesError, RulesError, cross_sections};
 use crate::osm::pbf::{HeaderInfo, ReadError};
 use crate::osm::{self};
 use crate::reporter::Reporter;
+use crate::rows::EdgeCertificate;
 use crate::settings::Settings;
 use crate::stet::{Model, ModelError};
-use crate::store::{Database, EdgeCertificate, Run, StoreError, TurnSet, VehicleRecord, Writer};
+use crate::store::{Database, Run, StoreError, TurnSet, VehicleRecord, Writer};
 use crate::turns::{TurnFacts, turn_facts};
 use crate::vehicle::{Catalogue, Vehicle, VehicleError};
 use crate::verdict::{UnknownReason, Verdict};
@@ -251,7 +252,7 @@ impl EdgeVerdicts {
     fn note(&mut self, vehicle: usize, certificate: &EdgeCertificate) {
         let slot = self.0.get_mut(vehicle).and_then(|edges| edges.get_mut(certificate.edge as usize));
         if let Some(slot) = slot {
-            *slot = certificate.verdict;
+            *slot = certificate.conclusion.verdict;
         }
     }
 }

@@ -8,7 +8,7 @@ use super::plan::{Answer, Refutation, Route};
 use crate::corridor::FrameError;
 use crate::network::{Edge, Network};
 use crate::stet::{Model, known_m};
-use crate::store::{Named, verdict_words};
+use crate::words::{Named, verdict_words};
 
 /// A stretch of a route with what is left there.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use crate::network::{Edge, Network};
 use crate::osm::facts::RoadClass;
-use crate::store::Named as _;
+use crate::words::Named as _;
 
 /// What is to be least.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

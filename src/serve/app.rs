@@ -7,6 +7,7 @@ use axum::response::{IntoResponse as _, Response};
 use super::answer::{Keep, Stored};
 use super::ask::{Ask, STATE};
 use super::cache::Cache;
+use super::lines;
 use super::options::Options;
 use super::problem::Problem;
 use super::region::{Identity, Region};
@@ -60,7 +61,7 @@ impl App {
             }
             let region = Arc::new(Region::open(&app.options.db)?);
             *app.region.write().unwrap_or_else(PoisonError::into_inner) = Arc::clone(&region);
-            app.options.log(&format!("{}: it has changed; read anew", app.options.db.display()));
+            lines::read_anew(&app.options.db);
             Ok(region)
         };
         self.quick.run(read).await

@@ -11,7 +11,7 @@ use super::problem::Problem;
 use crate::osm::facts::Policy;
 use crate::route::Position;
 use crate::stop::Stop;
-use crate::store::Named;
+use crate::words::Named;
 
 /// More parameters than any endpoint has.
 const MOST_PARAMETERS: usize = 24;

@@ -8,8 +8,8 @@ use serde_json::{Value, json};
 
 use crate::corridor::{Corridor, Frame, FrameError};
 use crate::explain::Ride;
-use crate::pace::Pace;
 use crate::route::Route;
+use crate::speed_profile::SpeedProfile;
 use crate::stet::motion::Pose;
 use crate::stet::{Model, known_m, tubes};
 
@@ -100,7 +100,7 @@ fn turn(a: &Pose, b: &Pose) -> f64 {
 
 fn moments(model: &Model, route: &Route, ride: &Ride, stations: &[usize]) -> Result<Value, FrameError> {
     let (corridor, frame) = (&route.path.corridor, route.path.frame);
-    let times = Pace::default().times_s(corridor);
+    let times = SpeedProfile::default().times_s(corridor);
     let pick = |column: &[f64], parts: f64| -> Vec<f64> {
         stations.iter().filter_map(|&k| column.get(k)).map(|&value| rounded(value, parts)).collect()
     };

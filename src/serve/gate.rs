@@ -2,7 +2,7 @@
 //!
 //! Promises: nothing but `GET` and `HEAD`; no request with a body; no request line beyond the bound; on loopback, no
 //! `Host` that is not this machine's own name (a page elsewhere whose name suddenly means 127.0.0.1 must not read: DNS
-//! rebinding); one line on standard error for each request that is refused.
+//! rebinding); one line in the log for each request that is refused.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Response};
 
 use super::app::App;
-use super::log::{self, Refused};
+use super::lines::{self, Refused};
 use super::options::Options;
 use super::problem::Problem;
 
@@ -27,7 +27,7 @@ pub(super) async fn gate(State(app): State<Arc<App>>, request: Request, next: Ne
         None => next.run(request).await,
     };
     if let Some(refused) = response.extensions().get::<Refused>() {
-        app.options.log(&log::refusal(&method, &target, refused));
+        lines::refused(&method, &target, refused);
     }
     let headers = response.headers_mut();
     for (name, value) in FIXED_HEADERS {
@@ -110,7 +110,6 @@ mod tests {
             addr: std::net::SocketAddr::from(([127, 0, 0, 1], 8080)),
             allow_remote: false,
             base_map: None,
-            log: |_| {},
             limits: super::super::Limits::default(),
         };
         for own in ["localhost", "LOCALHOST:8080", "127.0.0.1", "127.0.0.1:1", "[::1]:8080", "[::1]", "127.8.9.1"] {

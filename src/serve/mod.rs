@@ -11,7 +11,7 @@
 //! | `run` | listening, connections, stopping |
 //! | `routes` | which address is answered by what |
 //! | `gate` | what every request and response passes: methods, host, sizes, security headers |
-//! | `log` | lines on standard error |
+//! | `lines` | what whoever runs the server is told, through `log` |
 //! | `ask` | a request's names and parameters |
 //! | `answer`, `cache` | entity tags, compression, conditional requests; answers kept |
 //! | `problem` | what went wrong, as problem+json |
@@ -32,7 +32,7 @@ mod assets;
 mod cache;
 mod drive;
 mod gate;
-mod log;
+mod lines;
 mod made_once;
 mod names;
 mod options;

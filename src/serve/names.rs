@@ -1,6 +1,6 @@
 //! Names as people type them: without capitals and accents, a ref with or without its space.
 
-use crate::store::RoadRow;
+use crate::rows::RoadRow;
 
 /// A way, its name and ref folded.
 #[derive(Debug)]
@@ -68,7 +68,7 @@ pub(super) fn folded(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::store::Bounds;
+    use crate::rows::Bounds;
 
     fn road(name: &str, reference: &str) -> NamedRoad {
         let text = |text: &str| (!text.is_empty()).then(|| text.to_owned());

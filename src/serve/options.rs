@@ -4,8 +4,6 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::log;
-
 /// What `serve` is asked to do.
 #[derive(Clone)]
 pub struct Options {
@@ -18,16 +16,8 @@ pub struct Options {
     /// Tiles of an online map that the page may show beneath, as `https://…/{z}/{x}/{y}.png`; `None`: no request leaves
     /// the machine.
     pub base_map: Option<BaseMap>,
-    /// A line for whoever runs the server: when the database has changed, and for each request that is refused.
-    pub log: fn(&str),
     /// The bounds.
     pub limits: Limits,
-}
-
-impl Options {
-    pub(super) fn log(&self, line: &str) {
-        (self.log)(&log::line(line));
-    }
 }
 
 /// An online map to show beneath the roads.

@@ -11,7 +11,7 @@ use super::problem::Problem;
 use super::region::{Certified, Region};
 use crate::route::{self, Driver, Measure, NoDriver, Planner, Question, Roads, Speeds, Unanswered};
 use crate::stop::Stop;
-use crate::store::Named as _;
+use crate::words::Named as _;
 use serde_json::{Value, json};
 
 /// After so many answers a planner begins afresh: what it keeps of turns and strokes grows with what it has seen.

@@ -4,7 +4,7 @@ use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use serde_json::json;
 
-use super::log::Refused;
+use super::lines::Refused;
 use crate::stop::Stopped;
 use crate::store::StoreError;
 

@@ -18,10 +18,12 @@ use super::problem::Problem;
 use super::roads::RoadIndex;
 use super::tiles::Overview;
 use crate::osm::facts::Policy;
+use crate::rows::{Bounds, DrivingSides};
 use crate::settings::Settings;
 use crate::stop::Stop;
-use crate::store::{Bounds, CertifiedSet, Database, DrivingSides, Named, Run, StoreError};
+use crate::store::{CertifiedSet, Database, Run, StoreError};
 use crate::vehicle::Vehicle;
+use crate::words::Named;
 
 /// Idle connections that are kept; each may hold 64 MB of the file's pages.
 const MOST_IDLE: usize = 4;

@@ -5,11 +5,11 @@ use sqlx::sqlite::SqliteConnection;
 
 use crate::network::Area;
 use crate::osm::facts::{AreaKind, RoadClass};
+use crate::words::Named;
 
 use super::blob;
 use super::bulk::Bulk;
 use super::error::content;
-use super::names::Named;
 use super::network_read::{line, rows};
 
 type Sql<T> = Result<T, sqlx::Error>;

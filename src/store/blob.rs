@@ -2,6 +2,7 @@
 //! (GeoPackage 1.3, clause 2.1.3). Positions are multiples of 1e-7 degree and come back exactly.
 
 use crate::osm::LonLat;
+use crate::rows::Bounds;
 
 /// Envelope of XY (code 1 in bits 1 to 3), little endian (bit 0).
 const FLAGS: u8 = 0b0000_0011;
@@ -9,40 +10,6 @@ const SRS: i32 = 4326;
 const WKB_LINESTRING: u32 = 2;
 const HEADER_BYTES: usize = 8 + 4 * 8;
 const WKB_BYTES: usize = 1 + 4 + 4;
-
-/// A box in degrees.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounds {
-    /// Least longitude.
-    pub west: f64,
-    /// Least latitude.
-    pub south: f64,
-    /// Greatest longitude.
-    pub east: f64,
-    /// Greatest latitude.
-    pub north: f64,
-}
-
-impl Bounds {
-    /// The box around some positions; `None` if there are none.
-    pub fn around(positions: impl IntoIterator<Item = LonLat>) -> Option<Self> {
-        positions.into_iter().map(LonLat::degrees).fold(None, |bounds, (lon, lat)| {
-            let point = Self { west: lon, south: lat, east: lon, north: lat };
-            Some(bounds.map_or(point, |b: Self| b.union(point)))
-        })
-    }
-
-    /// The smallest box that holds both.
-    #[must_use]
-    pub fn union(self, other: Self) -> Self {
-        Self {
-            west: self.west.min(other.west),
-            south: self.south.min(other.south),
-            east: self.east.max(other.east),
-            north: self.north.max(other.north),
-        }
-    }
-}
 
 /// The blob of a line, and its box. An empty line has no blob.
 pub(super) fn encode(positions: impl ExactSizeIterator<Item = LonLat> + Clone) -> Option<(Vec<u8>, Bounds)> {

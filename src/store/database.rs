@@ -11,15 +11,17 @@ use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, Sq
 use crate::account::AccountRow;
 use crate::network::Network;
 use crate::osm::facts::Policy;
+use crate::rows::{EdgeCertificate, StoredPlan};
 use crate::settings::Settings;
+use crate::words::Named;
 
 use super::contents;
 use super::error::StoreError;
-use super::names::{Named, corridor_no};
+use super::names::corridor_no;
 use super::network_read;
-use super::packed::{EdgeCertificate, Packed};
+use super::packed::Packed;
 use super::part::with_suffix;
-use super::plans::{self, StoredPlan};
+use super::plans;
 use super::records::{self, Run, VehicleRecord};
 use super::schema::MIGRATIONS;
 use super::session::Session;
@@ -165,7 +167,9 @@ impl Database {
     ) -> Result<(), StoreError> {
         let written = self.acceptable(settings)?;
         let unsound = |edge, detail| StoreError::Unsound { edge, vehicle: vehicle.id.clone(), detail };
-        let pack = |certificate: EdgeCertificate| certificate.pack().map_err(|why| unsound(certificate.edge, why));
+        let pack = |certificate: EdgeCertificate| {
+            certificate.conclusion.pack(certificate.edge).map_err(|why| unsound(certificate.edge, why))
+        };
         let mut rows = certificates.into_iter().map(pack).collect::<Result<Vec<Packed>, _>>()?;
         rows.sort_unstable_by_key(|row| row.fid);
         let edges: u32 =

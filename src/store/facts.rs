@@ -3,47 +3,14 @@
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteRow;
 
-use crate::osm::LonLat;
-use crate::osm::facts::{Direction, Oneway, Permission, Policy, WidthSource};
+use crate::osm::facts::Policy;
+use crate::rows::EdgeFacts;
 
 use super::database::Database;
 use super::error::StoreError;
 use super::network_read::{line, word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
-
-/// A row of `edge`.
-#[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)] // the columns of `edge`
-pub struct EdgeFacts {
-    /// Index into `Network::edges`.
-    pub edge: u32,
-    pub edge_id: i64,
-    pub way_id: i64,
-    pub from_node: i64,
-    pub to_node: i64,
-    pub direction: Direction,
-    pub oneway: Oneway,
-    pub highway: String,
-    pub name: Option<String>,
-    pub reference: Option<String>,
-    pub lanes: Option<u8>,
-    pub length_m: f64,
-    /// By policy: how wide, and where that comes from.
-    pub widths: [(Policy, Option<f64>, Option<WidthSource>); 3],
-    pub min_radius_m: Option<f64>,
-    pub centreline_deviation_m: Option<f64>,
-    /// Height, weight, axle load, length, width: the tag's word, the unit, the limit.
-    pub limits: [(&'static str, &'static str, Option<f64>); 5],
-    /// Names of limits that are tagged with a value that could not be read.
-    pub unreadable_limits: Vec<String>,
-    pub hgv: Permission,
-    pub motor_vehicle: Permission,
-    pub barred: bool,
-    pub cut: bool,
-    /// In direction of travel.
-    pub line: Vec<LonLat>,
-}
 
 impl Database {
     /// The edge of an `edge_id`; `None` if there is none.

@@ -6,64 +6,16 @@
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Row as _};
 
-use crate::osm::LonLat;
-use crate::osm::facts::{Direction, Oneway, Policy, RoadClass, WidthSource};
-use crate::verdict::Verdict;
+use crate::osm::facts::{Policy, RoadClass};
+use crate::rows::{Bounds, MapEdge, MapTurn, RscBin};
+use crate::words::Named;
 
-use super::blob::Bounds;
 use super::database::Database;
 use super::error::StoreError;
-use super::names::{Named, corridor_no, width_columns};
+use super::names::{corridor_no, width_columns};
 use super::network_read::{line, verdict, word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
-
-/// An edge as a map draws it.
-#[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)] // the columns of `edge` and `certificate`
-pub struct MapEdge {
-    /// Index into `Network::edges`.
-    pub edge: u32,
-    pub edge_id: i64,
-    pub way_id: i64,
-    pub direction: Direction,
-    pub oneway: Oneway,
-    pub highway: String,
-    pub name: Option<String>,
-    pub reference: Option<String>,
-    pub length_m: f64,
-    /// Of the policy asked for.
-    pub width_m: Option<f64>,
-    pub width_source: Option<WidthSource>,
-    pub verdict: Verdict,
-    /// Millimetres, as kept: rounded down.
-    pub rsc_mm: Option<i64>,
-    /// In direction of travel.
-    pub line: Vec<LonLat>,
-}
-
-/// A turn as a map draws it.
-#[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)] // the columns of `turn` and `turn_certificate`
-pub struct MapTurn {
-    /// Index into the network's turns.
-    pub turn: u32,
-    pub turn_id: i64,
-    pub from_edge: i64,
-    pub to_edge: i64,
-    /// Names of the roads, or their refs.
-    pub from_name: Option<String>,
-    pub to_name: Option<String>,
-    pub kind: String,
-    pub angle_deg: f64,
-    pub kerb_radius_m: Option<f64>,
-    pub restriction: Option<String>,
-    pub verdict: Verdict,
-    /// Millimetres, as kept: rounded down.
-    pub rsc_mm: Option<i64>,
-    /// The last metres before the node and the first after it.
-    pub line: Vec<LonLat>,
-}
 
 /// Which turns are asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,23 +24,6 @@ pub enum TurnsOf {
     Box(Bounds),
     /// Out of this edge or into it (index into `Network::edges`).
     Edge(u32),
-}
-
-/// How many edges have how much to spare.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RscBin {
-    /// Vehicle id.
-    pub vehicle_id: String,
-    /// Which width counts.
-    pub policy: Policy,
-    /// The bin's lower end, millimetres; its width is the one asked for.
-    pub from_mm: i64,
-    /// With its reason.
-    pub verdict: Verdict,
-    /// Directed edges.
-    pub edges: u64,
-    /// Their length, metres.
-    pub length_m: f64,
 }
 
 impl Database {

@@ -2,6 +2,8 @@
 //!
 //! [`Database::create`] makes a new file beside the old one and puts it in place when it is whole; [`Database::open`]
 //! reads one. Certificates are kept as small integers that never promise more than what was computed.
+//!
+//! What goes in and what comes out are the values of `rows`.
 
 mod areas;
 mod blob;
@@ -36,22 +38,12 @@ mod styles;
 mod turns;
 mod writer;
 
-pub use blob::Bounds;
 pub use database::Database;
 pub use error::StoreError;
-pub use facts::EdgeFacts;
-pub use map::{MapEdge, MapTurn, RscBin, TurnsOf};
-pub use names::{Named, verdict_words};
-pub use network_write::EdgeMeasure;
-pub use overview::MainRoad;
-pub use packed::{EdgeCertificate, Measured};
-pub use plans::StoredPlan;
-pub use query::{Area, EdgeRow, QueryOptions, Rows, VerdictKind};
+pub use map::TurnsOf;
+pub use query::{Area, QueryOptions, Rows};
 pub use records::{Run, VehicleRecord};
-pub use roads::RoadRow;
 pub use settings::CertifiedSet;
-pub use sides::DrivingSides;
-pub use stats::{Stats, StatsRow};
-pub use stream::{EdgeStep, StraightOn, Streamed, TurnStep};
-pub use turns::{TurnCertificate, TurnCount, TurnQuery, TurnRow, TurnSet};
+pub use stream::{StraightOn, Streamed};
+pub use turns::{TurnQuery, TurnSet};
 pub use writer::{VehicleNo, Writer};

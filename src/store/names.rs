@@ -1,92 +1,28 @@
-//! The words that stand in the database for the program's enumerations. Stable: users filter by them.
+//! What stands in the database for the program's enumerations: numbers of verdicts and policies, names of columns. Its words are
+//! those of `words`.
 
-use crate::osm::facts::{Direction, Oneway, Permission, Policy, RoadClass, WidthSource};
-use crate::stet::Side;
+use crate::osm::facts::Policy;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
-/// An enumeration with a word for each value.
-pub trait Named: Copy + PartialEq + 'static {
-    /// Every value.
-    const ALL: &'static [Self];
-
-    /// The word for it.
-    fn name(self) -> &'static str;
-
-    /// The value of a word.
-    #[must_use]
-    fn named(word: &str) -> Option<Self> {
-        Self::ALL.iter().copied().find(|value| value.name() == word)
-    }
-}
-
-macro_rules! named {
-    ($kind:ident { $($value:ident = $word:literal),+ $(,)? }) => {
-        impl Named for $kind {
-            const ALL: &'static [Self] = &[$(Self::$value),+];
-
-            fn name(self) -> &'static str {
-                match self { $(Self::$value => $word),+ }
-            }
-        }
-    };
-}
-
-named!(RoadClass {
-    Motorway = "motorway",
-    Trunk = "trunk",
-    Primary = "primary",
-    Secondary = "secondary",
-    Tertiary = "tertiary",
-    Unclassified = "unclassified",
-    Residential = "residential",
-    LivingStreet = "living_street",
-    Service = "service",
-    Track = "track",
-    Busway = "busway",
-});
-named!(Oneway { No = "no", Forward = "forward", Backward = "backward" });
-named!(Direction { Forward = "forward", Backward = "backward" });
-named!(WidthSource {
-    Assumed = "assumed",
-    FromLanes = "from_lanes",
-    Estimated = "estimated",
-    Tagged = "tagged",
-    Surveyed = "surveyed",
-});
-named!(Policy { Lane = "lane", Direction = "direction", Carriageway = "carriageway" });
-named!(Permission { Yes = "yes", Restricted = "restricted", No = "no" });
-named!(Side { Left = "left", Right = "right" });
-
-/// `highway` as a user knows it: the class, with `_link`.
-pub(super) fn highway(class: RoadClass, link: bool) -> String {
-    format!("{}{}", class.name(), if link { "_link" } else { "" })
-}
-
-/// The reverse of [`highway`].
-pub(super) fn class_and_link(highway: &str) -> Option<(RoadClass, bool)> {
-    let (class, link) = highway.strip_suffix("_link").map_or((highway, false), |class| (class, true));
-    Some((RoadClass::named(class)?, link))
-}
-
-/// Every verdict, its number in the database and its words. Numbers are never reused.
-pub(super) const VERDICTS: &[(u8, Verdict, &str, Option<&str>)] = &[
-    (SAFE, Verdict::Safe, "safe", None),
-    (10, Verdict::Unsafe(UnsafeReason::Width), "unsafe", Some("width")),
-    (11, Verdict::Unsafe(UnsafeReason::Articulation), "unsafe", Some("articulation")),
-    (12, Verdict::Unsafe(UnsafeReason::SteeringLock), "unsafe", Some("steering_lock")),
-    (20, Verdict::Forbidden(ForbiddenReason::Height), "forbidden", Some("height")),
-    (21, Verdict::Forbidden(ForbiddenReason::Weight), "forbidden", Some("weight")),
-    (22, Verdict::Forbidden(ForbiddenReason::AxleLoad), "forbidden", Some("axle_load")),
-    (23, Verdict::Forbidden(ForbiddenReason::Length), "forbidden", Some("length")),
-    (24, Verdict::Forbidden(ForbiddenReason::Width), "forbidden", Some("width")),
-    (25, Verdict::Forbidden(ForbiddenReason::Hgv), "forbidden", Some("hgv")),
-    (26, Verdict::Forbidden(ForbiddenReason::Access), "forbidden", Some("access")),
-    (27, Verdict::Forbidden(ForbiddenReason::Barrier), "forbidden", Some("barrier")),
-    (28, Verdict::Forbidden(ForbiddenReason::Restriction), "forbidden", Some("restriction")),
-    (30, Verdict::Unknown(UnknownReason::Width), "unknown", Some("width")),
-    (31, Verdict::Unknown(UnknownReason::Geometry), "unknown", Some("geometry")),
-    (32, Verdict::Unknown(UnknownReason::Cut), "unknown", Some("cut")),
-    (33, Verdict::Unknown(UnknownReason::Limit), "unknown", Some("limit")),
+/// Every verdict and its number in the database. Numbers are never reused.
+pub(super) const VERDICTS: &[(u8, Verdict)] = &[
+    (SAFE, Verdict::Safe),
+    (10, Verdict::Unsafe(UnsafeReason::Width)),
+    (11, Verdict::Unsafe(UnsafeReason::Articulation)),
+    (12, Verdict::Unsafe(UnsafeReason::SteeringLock)),
+    (20, Verdict::Forbidden(ForbiddenReason::Height)),
+    (21, Verdict::Forbidden(ForbiddenReason::Weight)),
+    (22, Verdict::Forbidden(ForbiddenReason::AxleLoad)),
+    (23, Verdict::Forbidden(ForbiddenReason::Length)),
+    (24, Verdict::Forbidden(ForbiddenReason::Width)),
+    (25, Verdict::Forbidden(ForbiddenReason::Hgv)),
+    (26, Verdict::Forbidden(ForbiddenReason::Access)),
+    (27, Verdict::Forbidden(ForbiddenReason::Barrier)),
+    (28, Verdict::Forbidden(ForbiddenReason::Restriction)),
+    (30, Verdict::Unknown(UnknownReason::Width)),
+    (31, Verdict::Unknown(UnknownReason::Geometry)),
+    (32, Verdict::Unknown(UnknownReason::Cut)),
+    (33, Verdict::Unknown(UnknownReason::Limit)),
 ];
 
 /// The number of [`Verdict::Safe`]; the views in `migrations/` rely on it.
@@ -100,12 +36,6 @@ pub(super) fn verdict_no(verdict: Verdict) -> Option<u8> {
 /// The verdict of a number.
 pub(super) fn verdict_of(no: i64) -> Option<Verdict> {
     VERDICTS.iter().find(|row| i64::from(row.0) == no).map(|row| row.1)
-}
-
-/// A verdict's words: the verdict, and its reason (empty for `safe`).
-#[must_use]
-pub fn verdict_words(verdict: Verdict) -> (&'static str, &'static str) {
-    VERDICTS.iter().find(|row| row.1 == verdict).map_or(("unknown", ""), |row| (row.2, row.3.unwrap_or("")))
 }
 
 /// The columns of `edge` that belong to a policy: width, and where it comes from.
@@ -126,27 +56,20 @@ pub(super) fn corridor_no(policy: Policy) -> u8 {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-
-    fn words_come_back<T: Named + std::fmt::Debug>() {
-        for &value in T::ALL {
-            assert_eq!(T::named(value.name()), Some(value));
-        }
-        assert_eq!(T::named("nothing of the kind"), None);
-    }
+    use crate::words::{Named as _, VerdictKind, verdict_words};
 
     #[test]
-    fn every_word_comes_back_to_its_value() {
-        words_come_back::<RoadClass>();
-        words_come_back::<Oneway>();
-        words_come_back::<Direction>();
-        words_come_back::<WidthSource>();
-        words_come_back::<Policy>();
-        words_come_back::<Permission>();
-        words_come_back::<Side>();
-        assert_eq!(class_and_link("motorway_link"), Some((RoadClass::Motorway, true)));
-        assert_eq!(class_and_link("link"), None);
+    fn policies_are_numbered_in_their_order() {
         for (no, &policy) in Policy::ALL.iter().enumerate() {
             assert_eq!(usize::from(corridor_no(policy)), no);
+        }
+    }
+
+    /// Queries ask for a kind of verdict by its ten.
+    #[test]
+    fn each_kind_of_verdict_has_its_ten() {
+        for &(no, verdict) in VERDICTS {
+            assert_eq!(VerdictKind::ALL[usize::from(no / 10)].name(), verdict_words(verdict).0);
         }
     }
 

@@ -11,11 +11,12 @@ use crate::network::{Areas, Edge, Narrowing, Network, Road, Splits, Stroke};
 use crate::osm::facts::{CrossSection, Legal, Limit, Strip};
 use crate::osm::{LonLat, StringPool};
 use crate::verdict::Verdict;
+use crate::words::{Named, class_and_link};
 
 use super::areas;
 use super::blob;
 use super::error::content;
-use super::names::{Named, class_and_link, verdict_of};
+use super::names::verdict_of;
 use super::restrictions::{self, Restrictions};
 
 type Sql<T> = Result<T, sqlx::Error>;

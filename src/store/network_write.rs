@@ -6,24 +6,14 @@ use sqlx::sqlite::SqliteConnection;
 use crate::network::{Edge, Network, Road};
 use crate::osm::LonLat;
 use crate::osm::facts::{CrossSection, Legal, Limit, Strip};
+use crate::rows::{Bounds, EdgeMeasure};
+use crate::words::{Named, highway};
 
-use super::blob::{self, Bounds};
+use super::blob;
 use super::bulk::Bulk;
 use super::error::content;
-use super::names::{Named, highway};
 
 type Sql<T> = Result<T, sqlx::Error>;
-
-/// What the corridor stage measured on an edge.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct EdgeMeasure {
-    /// Metres; `None`: the geodesic length of the map's line is taken.
-    pub length_m: Option<f64>,
-    /// Smallest radius of the centreline, metres. Not finite (a straight): stored as missing.
-    pub min_radius_m: Option<f64>,
-    /// Largest distance of the centreline from the map's line, metres.
-    pub centreline_deviation_m: Option<f64>,
-}
 
 /// Writes all tables of the network; gives the box around it. `measures`: one an edge, or none at all.
 pub(super) async fn write(

@@ -3,43 +3,33 @@
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteRow;
 
+use crate::rows::CertificateRow;
 use crate::stet::Side;
-use crate::verdict::Verdict;
 
 use super::network_read::verdict;
 
-/// Of a table called `c`, in the order in which [`Numbers::read`] wants them one after the other.
+/// Of a table called `c`, in the order in which [`read`] wants them one after the other.
 pub(super) const COLUMNS: &str = "c.verdict_no, c.rsc_mm, c.rsc_published_mm, c.hinge_margin_cdeg, c.shrink_milli, \
                                   c.limiting_s_dm, c.limiting_at";
 
-/// A certificate, in the units of the views.
-pub(super) struct Numbers {
-    pub(super) verdict: Verdict,
-    pub(super) rsc_m: Option<f64>,
-    pub(super) rsc_published_m: Option<f64>,
-    pub(super) hinge_margin_deg: Option<f64>,
-    pub(super) shrink: Option<f64>,
-    pub(super) limiting_s_m: Option<f64>,
-    pub(super) limiting_unit: Option<u16>,
-    pub(super) limiting_side: Option<Side>,
-}
-
-impl Numbers {
-    /// From the columns `first` to `first + 6`; `what` names the row in errors.
-    pub(super) fn read(row: &SqliteRow, first: usize, what: impl FnOnce() -> String) -> Result<Self, sqlx::Error> {
-        let at: Option<u16> = row.try_get(first + 6)?;
-        let parts = |column: usize, parts: f64| -> Result<Option<f64>, sqlx::Error> {
-            Ok(row.try_get::<Option<i64>, _>(first + column)?.map(|whole| whole as f64 / parts))
-        };
-        Ok(Self {
-            verdict: verdict(row, first, what)?,
-            rsc_m: parts(1, 1000.0)?,
-            rsc_published_m: parts(2, 1000.0)?,
-            hinge_margin_deg: parts(3, 100.0)?,
-            shrink: if at.is_some() { Some(parts(4, 1000.0)?.unwrap_or(1.0)) } else { None },
-            limiting_s_m: parts(5, 10.0)?,
-            limiting_unit: at.map(|at| at >> 1),
-            limiting_side: at.map(|at| if at & 1 == 0 { Side::Left } else { Side::Right }),
-        })
-    }
+/// From the columns `first` to `first + 6`; `what` names the row in errors.
+pub(super) fn read(
+    row: &SqliteRow,
+    first: usize,
+    what: impl FnOnce() -> String,
+) -> Result<CertificateRow, sqlx::Error> {
+    let at: Option<u16> = row.try_get(first + 6)?;
+    let parts = |column: usize, parts: f64| -> Result<Option<f64>, sqlx::Error> {
+        Ok(row.try_get::<Option<i64>, _>(first + column)?.map(|whole| whole as f64 / parts))
+    };
+    Ok(CertificateRow {
+        verdict: verdict(row, first, what)?,
+        rsc_m: parts(1, 1000.0)?,
+        rsc_published_m: parts(2, 1000.0)?,
+        hinge_margin_deg: parts(3, 100.0)?,
+        shrink: if at.is_some() { Some(parts(4, 1000.0)?.unwrap_or(1.0)) } else { None },
+        limiting_s_m: parts(5, 10.0)?,
+        limiting_unit: at.map(|at| at >> 1),
+        limiting_side: at.map(|at| if at & 1 == 0 { Side::Left } else { Side::Right }),
+    })
 }

@@ -7,33 +7,16 @@
 use sqlx::sqlite::SqliteRow;
 use sqlx::{AssertSqlSafe, Row as _};
 
-use crate::osm::LonLat;
-use crate::osm::facts::{Policy, RoadClass, WidthSource};
-use crate::verdict::Verdict;
+use crate::osm::facts::{Policy, RoadClass};
+use crate::rows::MainRoad;
+use crate::words::{Named as _, class_and_link};
 
 use super::database::Database;
 use super::error::{StoreError, content};
-use super::names::{Named as _, class_and_link, corridor_no, width_columns};
+use super::names::{corridor_no, width_columns};
 use super::network_read::{line, verdict, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
-
-/// An edge as a map of small scale draws it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MainRoad {
-    /// `highway`.
-    pub class: RoadClass,
-    /// Whether it is a `_link`.
-    pub link: bool,
-    /// Of the policy asked for.
-    pub width_source: Option<WidthSource>,
-    /// With its reason.
-    pub verdict: Verdict,
-    /// Millimetres, as kept: rounded down.
-    pub rsc_mm: Option<i64>,
-    /// In direction of travel.
-    pub line: Vec<LonLat>,
-}
 
 impl Database {
     /// All edges of these classes (with their links), under a vehicle's certificates.

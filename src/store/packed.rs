@@ -1,41 +1,11 @@
 //! A certificate as it is stored: small integers, each rounded to the safe side, so that a stored value never promises
 //! more than the computed one. A `safe` that does not survive the rounding is refused, not stored.
 
-use crate::stet::Side;
+use crate::rows::Conclusion;
 use crate::verdict::Verdict;
 
 use super::bulk::Bulk;
 use super::names::verdict_no;
-
-/// The certificate of one edge, for a vehicle and policy named beside it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EdgeCertificate {
-    /// Index into `Network::edges`.
-    pub edge: u32,
-    /// With its reason.
-    pub verdict: Verdict,
-    /// What was computed; `None` where nothing was (`unknown`, or `forbidden` with no corridor). `Safe` needs it.
-    pub measured: Option<Measured>,
-}
-
-/// The numbers of a certificate. Not finite ones are stored as missing.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Measured {
-    /// Metres; rounded down to 1 mm.
-    pub rsc_m: f64,
-    /// Metres; rounded down to 1 mm.
-    pub rsc_published_m: f64,
-    /// Radians; rounded down to 0.01°.
-    pub hinge_margin_rad: f64,
-    /// γ, a multiple of 1/1000 in (0, 1]: RSC rests on it, so it is refused rather than rounded.
-    pub shrink: f64,
-    /// Where the least leeway stands, metres along the edge; rounded to 0.1 m.
-    pub limiting_s_m: f64,
-    /// Unit index there.
-    pub limiting_unit: usize,
-    /// Side there.
-    pub limiting_side: Side,
-}
 
 /// A row of `certificate_compact`, but for vehicle and corridor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,11 +36,11 @@ impl Packed {
     }
 }
 
-impl EdgeCertificate {
-    /// Rounds; the error says why it may not be stored.
-    pub(super) fn pack(&self) -> Result<Packed, String> {
+impl Conclusion {
+    /// Rounds; `index` is that of the edge or the turn. The error says why it may not be stored.
+    pub(super) fn pack(&self, index: u32) -> Result<Packed, String> {
         let verdict_no = verdict_no(self.verdict).ok_or("its verdict has no number")?;
-        let fid = self.edge.checked_add(1).ok_or("its index is out of range")?;
+        let fid = index.checked_add(1).ok_or("its index is out of range")?;
         let mut packed = Packed {
             fid,
             verdict_no,
@@ -169,6 +139,8 @@ impl Packed {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::rows::Measured;
+    use crate::stet::Side;
     use crate::verdict::UnsafeReason;
     use proptest::prelude::*;
 
@@ -185,7 +157,7 @@ mod tests {
     }
 
     fn pack(verdict: Verdict, m: Measured) -> Result<Packed, String> {
-        EdgeCertificate { edge: 6, verdict, measured: Some(m) }.pack()
+        Conclusion { verdict, measured: Some(m) }.pack(6)
     }
 
     const UNSAFE: Verdict = Verdict::Unsafe(UnsafeReason::Width);
@@ -204,7 +176,7 @@ mod tests {
         #[test]
         fn the_spool_gives_back_what_it_got(rsc in prop::option::of(-50.0..50.0_f64), hinge in -3.0..3.0_f64, edge in 0..u32::MAX) {
             let verdict = UNSAFE;
-            let packed = EdgeCertificate { edge, verdict, measured: rsc.map(|rsc| measured(rsc, hinge, 0.5)) }.pack().unwrap();
+            let packed = Conclusion { verdict, measured: rsc.map(|rsc| measured(rsc, hinge, 0.5)) }.pack(edge).unwrap();
             prop_assert_eq!(Packed::from_bytes(&packed.to_bytes()), packed);
         }
     }
@@ -224,7 +196,7 @@ mod tests {
         assert!(pack(Verdict::Safe, measured(0.1, -1e-9, 1.0)).is_err());
         assert!(pack(Verdict::Safe, measured(f64::NAN, 0.1, 1.0)).is_err());
         assert!(pack(Verdict::Safe, measured(0.1, f64::INFINITY, 1.0)).is_err());
-        assert!(EdgeCertificate { edge: 0, verdict: Verdict::Safe, measured: None }.pack().is_err());
+        assert!(Conclusion::bare(Verdict::Safe).pack(0).is_err());
     }
 
     #[test]

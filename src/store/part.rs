@@ -6,7 +6,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::error::StoreError;
-use crate::claim::{self, Claim};
+use crate::output_lock::{self, OutputLock};
 
 /// A locked, empty `.part` file; removed when dropped unless it became the target.
 pub(super) struct Part {
@@ -14,7 +14,7 @@ pub(super) struct Part {
     pub(super) path: PathBuf,
     /// A killed run had left a part behind, which was emptied.
     pub(super) leftover: bool,
-    claim: Claim,
+    lock: OutputLock,
     placed: bool,
 }
 
@@ -29,16 +29,16 @@ impl Part {
     /// Makes and locks the part of `target`.
     pub(super) fn create(target: &Path) -> Result<Self, StoreError> {
         let path = with_suffix(target, ".part");
-        let claim = claim::file(&path).map_err(|e| StoreError::io(&path, e))?;
+        let lock = output_lock::file(&path).map_err(|e| StoreError::io(&path, e))?;
         remove_companions(&path)?;
-        Ok(Self { target: target.to_owned(), path, leftover: claim.leftover, claim, placed: false })
+        Ok(Self { target: target.to_owned(), path, leftover: lock.leftover, lock, placed: false })
     }
 
     /// Everything to the disk, then over the target in one step. The database must be closed, and nobody in the middle of
     /// changing the old one.
     pub(super) fn place(mut self) -> Result<(), StoreError> {
         let at = |e| StoreError::io(&self.target, e);
-        if let Some(file) = &self.claim.file {
+        if let Some(file) = &self.lock.file {
             file.sync_all().map_err(at)?;
         }
         // A journal that stayed beside the old file must not be taken for one of the new.

@@ -10,41 +10,17 @@ use sqlx::{Arguments as _, AssertSqlSafe, Row as _};
 use tokio::runtime::Runtime;
 
 use crate::osm::LonLat;
-use crate::osm::facts::{Direction, Policy, WidthSource};
-use crate::stet::Side;
-use crate::verdict::Verdict;
+use crate::osm::facts::{Policy, WidthSource};
+use crate::rows::{Bounds, EdgeRow};
+use crate::words::{Named, VerdictKind};
 
-use super::blob::Bounds;
 use super::database::Database;
 use super::error::StoreError;
-use super::names::{Named, corridor_no, width_columns};
+use super::names::{corridor_no, width_columns};
 use super::network_read::{line, word, word_or_none};
-use super::numbers::{self, Numbers};
+use super::numbers;
 
 type Sql<T> = Result<T, sqlx::Error>;
-
-/// A verdict without its reason.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(missing_docs)] // as in `Verdict`
-pub enum VerdictKind {
-    Safe,
-    Unsafe,
-    Forbidden,
-    Unknown,
-}
-
-impl Named for VerdictKind {
-    const ALL: &'static [Self] = &[Self::Safe, Self::Unsafe, Self::Forbidden, Self::Unknown];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Safe => "safe",
-            Self::Unsafe => "unsafe",
-            Self::Forbidden => "forbidden",
-            Self::Unknown => "unknown",
-        }
-    }
-}
 
 /// Part of the earth's surface, degrees. Edges that touch it count.
 #[derive(Debug, Clone, PartialEq)]
@@ -88,37 +64,6 @@ impl QueryOptions {
             min_width_source: None,
         }
     }
-}
-
-/// One edge with its certificate, in the units of the view `certificate`.
-#[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)] // the columns of `edge` and `certificate`
-pub struct EdgeRow {
-    /// Index into `Network::edges`.
-    pub edge: u32,
-    pub edge_id: i64,
-    pub way_id: i64,
-    pub from_node: i64,
-    pub to_node: i64,
-    pub direction: Direction,
-    pub highway: String,
-    pub name: Option<String>,
-    pub reference: Option<String>,
-    pub length_m: f64,
-    /// Of the policy asked for.
-    pub width_m: Option<f64>,
-    pub width_source: Option<WidthSource>,
-    pub min_radius_m: Option<f64>,
-    pub verdict: Verdict,
-    pub rsc_m: Option<f64>,
-    pub rsc_published_m: Option<f64>,
-    pub hinge_margin_deg: Option<f64>,
-    pub shrink: Option<f64>,
-    pub limiting_s_m: Option<f64>,
-    pub limiting_unit: Option<u16>,
-    pub limiting_side: Option<Side>,
-    /// In direction of travel.
-    pub line: Vec<LonLat>,
 }
 
 /// Rows of a query, as they come from the file.
@@ -248,7 +193,6 @@ fn statement(
 
 fn edge_row(row: &SqliteRow) -> Sql<EdgeRow> {
     let fid: u32 = row.try_get(0)?;
-    let numbers = Numbers::read(row, 14, || format!("edge {fid}"))?;
     Ok(EdgeRow {
         edge: fid.saturating_sub(1),
         edge_id: row.try_get(1)?,
@@ -263,14 +207,7 @@ fn edge_row(row: &SqliteRow) -> Sql<EdgeRow> {
         width_m: row.try_get(10)?,
         width_source: word_or_none(row, 11)?,
         min_radius_m: row.try_get(12)?,
-        verdict: numbers.verdict,
-        rsc_m: numbers.rsc_m,
-        rsc_published_m: numbers.rsc_published_m,
-        hinge_margin_deg: numbers.hinge_margin_deg,
-        shrink: numbers.shrink,
-        limiting_s_m: numbers.limiting_s_m,
-        limiting_unit: numbers.limiting_unit,
-        limiting_side: numbers.limiting_side,
+        certificate: numbers::read(row, 14, || format!("edge {fid}"))?,
         line: line(row, 13, || format!("edge {fid}"))?,
     })
 }

@@ -3,25 +3,12 @@
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteRow;
 
-use super::blob::Bounds;
+use crate::rows::{Bounds, RoadRow};
+
 use super::database::Database;
 use super::error::StoreError;
 
 type Sql<T> = Result<T, sqlx::Error>;
-
-/// A way that has edges.
-#[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)] // the columns of `road`
-pub struct RoadRow {
-    pub way_id: i64,
-    pub highway: String,
-    pub name: Option<String>,
-    pub reference: Option<String>,
-    /// Its first edge in order of the network.
-    pub edge_id: i64,
-    /// Around all its edges; single precision, rounded outward.
-    pub bounds: Bounds,
-}
 
 impl Database {
     /// Every way, in order of the network.

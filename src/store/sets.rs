@@ -4,10 +4,11 @@ use sqlx::AssertSqlSafe;
 use sqlx::sqlite::SqliteConnection;
 
 use crate::osm::facts::Policy;
+use crate::rows::Bounds;
+use crate::words::Named;
 
-use super::blob::Bounds;
 use super::bulk::Bulk;
-use super::names::{Named, SAFE, corridor_no, width_columns};
+use super::names::{SAFE, corridor_no, width_columns};
 use super::packed::Packed;
 use super::styles::{self, Shows};
 

@@ -9,10 +9,10 @@ use sqlx::sqlite::{SqliteConnection, SqliteRow};
 
 use crate::osm::facts::Policy;
 use crate::settings::Settings;
+use crate::words::Named;
 
 use super::database::Database;
 use super::error::{StoreError, content};
-use super::names::Named;
 use super::network_read::word;
 
 type Sql<T> = Result<T, sqlx::Error>;

@@ -1,27 +1,11 @@
-//! On which side of the road one drives: most regions know one side only, one at Hong Kong's border or Thailand's both.
+//! On which side of the road one drives.
 
 use sqlx::Row as _;
 
+use crate::rows::DrivingSides;
+
 use super::database::Database;
 use super::error::StoreError;
-
-/// The sides of a region.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct DrivingSides {
-    /// Whether most ways are driven on the left.
-    mostly_left: bool,
-    /// Edges that are driven on the other side, sorted.
-    others: Vec<u32>,
-}
-
-impl DrivingSides {
-    /// Whether an edge (index into `Network::edges`) is driven on the left; `None` where all are driven as most are.
-    #[must_use]
-    pub fn left(&self, edge: u32) -> Option<bool> {
-        let mixed = !self.others.is_empty();
-        mixed.then(|| self.mostly_left != self.others.binary_search(&edge).is_ok())
-    }
-}
 
 impl Database {
     /// On which side each edge is driven.
@@ -41,6 +25,6 @@ impl Database {
             let rows = sqlx::query(others).bind(mostly_left).fetch_all(c).await?;
             rows.iter().map(|row| Ok(row.try_get::<u32, _>(0)?.saturating_sub(1))).collect()
         })?;
-        Ok(DrivingSides { mostly_left, others })
+        Ok(DrivingSides::new(mostly_left, others))
     }
 }

@@ -89,7 +89,7 @@ impl Drop for Spool {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::store::EdgeCertificate;
+    use crate::rows::Conclusion;
     use crate::verdict::{UnknownReason, Verdict};
 
     #[test]
@@ -102,7 +102,7 @@ mod tests {
                 // 4 001 and 10 007 share no factor: every edge once, in a scattered order.
                 let edge = (i * 4001 + lane.0) % edges;
                 let verdict = Verdict::Unknown(UnknownReason::Cut);
-                let packed = EdgeCertificate { edge, verdict, measured: None }.pack().unwrap();
+                let packed = Conclusion::bare(verdict).pack(edge).unwrap();
                 spool.push(lane, packed, folder.path()).unwrap();
             }
         }

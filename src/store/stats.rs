@@ -2,48 +2,16 @@
 
 use sqlx::{AssertSqlSafe, Row as _};
 
-use crate::osm::facts::{Policy, WidthSource};
-use crate::verdict::Verdict;
+use crate::osm::facts::Policy;
+use crate::rows::{Stats, StatsRow};
+use crate::words::Named;
 
 use super::database::Database;
 use super::error::StoreError;
-use super::names::Named;
 use super::network_read::{verdict, word, word_or_none};
-use super::turns::{self, TurnCount};
+use super::turns;
 
 type Sql<T> = Result<T, sqlx::Error>;
-
-/// Edges and metres of road of one vehicle, policy, class and verdict. Both directions of a road count.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StatsRow {
-    /// Vehicle id.
-    pub vehicle_id: String,
-    /// Which width counts.
-    pub policy: Policy,
-    /// `highway`, with `_link`.
-    pub highway: String,
-    /// With its reason.
-    pub verdict: Verdict,
-    /// How many directed edges.
-    pub edges: u64,
-    /// Their length, metres.
-    pub length_m: f64,
-}
-
-/// The whole of it.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Stats {
-    /// Ways.
-    pub roads: u64,
-    /// Directed edges and their length in metres, by class.
-    pub network: Vec<(String, u64, f64)>,
-    /// Where widths come from: directed edges and their length in metres, by policy; no source: no usable width.
-    pub widths: Vec<(Policy, Option<WidthSource>, u64, f64)>,
-    /// By vehicle, policy, class and verdict; those with no edge are left out.
-    pub certificates: Vec<StatsRow>,
-    /// Turns by vehicle, policy and verdict.
-    pub turns: Vec<TurnCount>,
-}
 
 impl Database {
     /// Counts everything.

@@ -10,14 +10,14 @@ use sqlx::sqlite::SqliteRow;
 use sqlx::{AssertSqlSafe, Row as _};
 use tokio::runtime::Runtime;
 
-use crate::osm::facts::{Direction, Policy, WidthSource};
-use crate::verdict::Verdict;
+use crate::osm::facts::Policy;
+use crate::rows::{EdgeStep, TurnRow, TurnStep};
 
 use super::database::Database;
 use super::error::StoreError;
 use super::names::{corridor_no, width_columns};
 use super::network_read::{verdict, word, word_or_none};
-use super::turns::{self, TurnQuery, TurnRow};
+use super::turns::{self, TurnQuery};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -37,43 +37,6 @@ impl<T> Iterator for Streamed<'_, T> {
         let row = row.and_then(|row| row.as_ref().map(self.read).transpose());
         row.map_err(|e| StoreError::sql(self.path, e)).transpose()
     }
-}
-
-/// What a permit of an edge depends on, and where the edge lies on its way.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[allow(missing_docs)] // the columns of `edge` and `certificate`
-pub struct EdgeStep {
-    /// Index into `Network::edges`.
-    pub edge: u32,
-    pub way_id: i64,
-    pub from_node: i64,
-    pub to_node: i64,
-    pub direction: Direction,
-    /// Where its shape starts in `Network::shapes`; both directions share it.
-    pub shape_start: u32,
-    /// How many positions its shape has.
-    pub positions: u32,
-    pub verdict: Verdict,
-    pub rsc_m: Option<f64>,
-    /// Of the policy asked for.
-    pub width_source: Option<WidthSource>,
-}
-
-/// What a permit of a turn depends on, and between which edges it is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[allow(missing_docs)] // the columns of `turn` and `turn_certificate`
-pub struct TurnStep {
-    /// Index into the network's turns.
-    pub turn: u32,
-    /// Index into `Network::edges`.
-    pub from: u32,
-    pub to: u32,
-    /// The first and the last arc (indices into `Network::edges`), where it is a passage of a roundabout.
-    pub arcs: Option<[u32; 2]>,
-    pub via_node: i64,
-    pub angle_deg: f64,
-    pub verdict: Verdict,
-    pub rsc_m: Option<f64>,
 }
 
 /// Straight on along a stroke; `None`: the stroke ends.

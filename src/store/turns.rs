@@ -6,22 +6,21 @@ use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Row as _};
 
 use crate::network::Network;
-use crate::osm::LonLat;
 use crate::osm::facts::Policy;
-use crate::stet::Side;
+use crate::rows::{Bounds, StoredPlan, TurnCertificate, TurnCount, TurnRow};
 use crate::turns::{KerbSource, TurnFacts};
-use crate::verdict::Verdict;
+use crate::words::{Named, VerdictKind};
 
-use super::blob::{self, Bounds};
+use super::blob;
 use super::bulk::Bulk;
 use super::database::Database;
 use super::error::{StoreError, content};
-use super::names::{Named, corridor_no};
+use super::names::corridor_no;
 use super::network_read::{line, verdict, word};
-use super::numbers::{self, Numbers};
-use super::packed::{EdgeCertificate, Measured, Packed};
-use super::plans::{self, StoredPlan};
-use super::query::{Area, VerdictKind, polygons};
+use super::numbers;
+use super::packed::Packed;
+use super::plans;
+use super::query::{Area, polygons};
 use super::sets;
 use super::styles::{self, Shows};
 
@@ -30,26 +29,9 @@ type Sql<T> = Result<T, sqlx::Error>;
 const COLUMNS: &str = "turn_certificate_compact (vehicle_no, corridor_no, fid, verdict_no, rsc_mm, rsc_published_mm, \
                        hinge_margin_cdeg, shrink_milli, limiting_s_dm, limiting_at, path_no)";
 
-/// The certificate of one turn, for a vehicle and policy named beside it.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TurnCertificate {
-    /// Index into the network's turns ([`crate::turns::turn_facts`]).
-    pub turn: u32,
-    /// With its reason.
-    pub verdict: Verdict,
-    /// What was computed; `None` where nothing was.
-    pub measured: Option<Measured>,
-    /// The path it rests on.
-    pub path: Option<u8>,
-    /// And the plan, where that is not the path's centreline.
-    pub plan: Option<StoredPlan>,
-}
-
 impl TurnCertificate {
     pub(super) fn pack(&self) -> Result<Packed, String> {
-        let Self { turn, verdict, measured, path, plan: _ } = self;
-        let packed = EdgeCertificate { edge: *turn, verdict: *verdict, measured: *measured }.pack()?;
-        Ok(Packed { path_no: *path, ..packed })
+        Ok(Packed { path_no: self.path, ..self.conclusion.pack(self.turn)? })
     }
 }
 
@@ -211,40 +193,6 @@ impl TurnQuery {
     }
 }
 
-/// One turn with its certificate, in the units of the view `turn_certificate`.
-#[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)] // the columns of `turn` and `turn_certificate`
-pub struct TurnRow {
-    /// Index into the network's turns.
-    pub turn: u32,
-    pub turn_id: i64,
-    pub from_edge: i64,
-    pub to_edge: i64,
-    /// The first and the last arc, where it is a passage of a roundabout.
-    pub arcs: Option<[i64; 2]>,
-    pub via_node: i64,
-    /// Positive left.
-    pub angle_deg: f64,
-    pub kind: String,
-    pub kerb_radius_m: Option<f64>,
-    pub kerb_source: Option<String>,
-    pub restriction: Option<String>,
-    /// Names of the roads, or their refs.
-    pub from_name: Option<String>,
-    pub to_name: Option<String>,
-    pub verdict: Verdict,
-    pub rsc_m: Option<f64>,
-    pub rsc_published_m: Option<f64>,
-    pub hinge_margin_deg: Option<f64>,
-    pub shrink: Option<f64>,
-    pub limiting_s_m: Option<f64>,
-    pub limiting_unit: Option<u16>,
-    pub limiting_side: Option<Side>,
-    pub path_no: Option<u8>,
-    /// In driving order.
-    pub line: Vec<LonLat>,
-}
-
 impl Database {
     /// Whether the database has this vehicle's turns.
     ///
@@ -338,7 +286,6 @@ pub(super) fn statement(options: &TurnQuery) -> String {
 
 pub(super) fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
     let fid: u32 = row.try_get(0)?;
-    let numbers = Numbers::read(row, 16, || format!("turn {fid}"))?;
     Ok(TurnRow {
         turn: fid.saturating_sub(1),
         turn_id: row.try_get(1)?,
@@ -353,14 +300,7 @@ pub(super) fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
         restriction: row.try_get(9)?,
         from_name: row.try_get(10)?,
         to_name: row.try_get(11)?,
-        verdict: numbers.verdict,
-        rsc_m: numbers.rsc_m,
-        rsc_published_m: numbers.rsc_published_m,
-        hinge_margin_deg: numbers.hinge_margin_deg,
-        shrink: numbers.shrink,
-        limiting_s_m: numbers.limiting_s_m,
-        limiting_unit: numbers.limiting_unit,
-        limiting_side: numbers.limiting_side,
+        certificate: numbers::read(row, 16, || format!("turn {fid}"))?,
         path_no: row.try_get(12)?,
         line: line(row, 13, || format!("turn {fid}"))?,
     })
@@ -380,14 +320,4 @@ pub(super) async fn counts(c: &mut SqliteConnection) -> Sql<Vec<TurnCount>> {
         })
     };
     sqlx::query(sql).fetch_all(c).await?.iter().map(count).collect()
-}
-
-/// How many turns have a verdict.
-#[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)]
-pub struct TurnCount {
-    pub vehicle_id: String,
-    pub policy: Policy,
-    pub verdict: Verdict,
-    pub turns: u64,
 }

@@ -11,19 +11,19 @@ use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, Sq
 use crate::account::AccountRow;
 use crate::network::{Area, Network};
 use crate::osm::facts::Policy;
+use crate::rows::{Bounds, EdgeCertificate, EdgeMeasure, StoredPlan, TurnCertificate};
 use crate::settings::Settings;
 use crate::turns::TurnFacts;
+use crate::words::{Named, verdict_words};
 
 use super::areas;
-use super::blob::Bounds;
 use super::contents;
 use super::database::Database;
 use super::error::{StoreError, content};
-use super::names::{Named, VERDICTS, corridor_no};
-use super::network_write::{self, EdgeMeasure};
-use super::packed::EdgeCertificate;
+use super::names::{VERDICTS, corridor_no};
+use super::network_write;
 use super::part::{Part, with_suffix};
-use super::plans::{self, StoredPlan};
+use super::plans;
 use super::records::{self, Run, VehicleRecord};
 use super::restrictions::{self, Restrictions};
 use super::schema::{APPLIED, BEFORE_DATA, MIGRATIONS};
@@ -32,7 +32,7 @@ use super::sets::{self, Set};
 use super::settings;
 use super::spool::Spool;
 use super::styles::{self, Shows};
-use super::turns::{self, TurnCertificate};
+use super::turns;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -151,8 +151,8 @@ impl Writer {
         policy: Policy,
         certificate: &EdgeCertificate,
     ) -> Result<(), StoreError> {
-        let packed =
-            certificate.pack().map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.edge, detail))?;
+        let packed = certificate.conclusion.pack(certificate.edge);
+        let packed = packed.map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.edge, detail))?;
         self.spool.push((vehicle.0, corridor_no(policy)), packed, &self.session.path)
     }
 
@@ -285,13 +285,10 @@ fn unsound(vehicles: &[VehicleRecord], vehicle_no: u32, edge: u32, detail: Strin
 
 /// The words that stand for numbers.
 async fn add_words(c: &mut SqliteConnection) -> Sql<()> {
-    for (no, _, verdict, reason) in VERDICTS {
-        sqlx::query("INSERT INTO verdict VALUES (?, ?, ?)")
-            .bind(no)
-            .bind(verdict)
-            .bind(reason)
-            .execute(&mut *c)
-            .await?;
+    for &(no, verdict) in VERDICTS {
+        let (verdict, reason) = verdict_words(verdict);
+        let insert = sqlx::query("INSERT INTO verdict VALUES (?, ?, ?)").bind(no).bind(verdict);
+        insert.bind((!reason.is_empty()).then_some(reason)).execute(&mut *c).await?;
     }
     for &policy in Policy::ALL {
         let insert = sqlx::query("INSERT INTO corridor VALUES (?, ?)").bind(corridor_no(policy));

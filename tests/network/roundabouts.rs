@@ -11,7 +11,7 @@ use crate::support::roundabout::{RING, map};
 use geo::{Distance as _, Euclidean};
 use netcert::osm::Via;
 use netcert::osm::facts::Policy;
-use netcert::store::TurnCertificate;
+use netcert::rows::TurnCertificate;
 use netcert::turns::{Reach, StrokeLine, TurnFacts, corridors_of};
 use netcert::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use oracle::draw::Draw;
@@ -204,8 +204,8 @@ fn a_passage_has_one_certificate_whatever_the_threads() {
     let id = drawn.passage("WE").id;
     let over: Vec<_> = one.iter().filter(|c| turns[c.turn as usize].id == id).collect();
     assert_eq!(over.len(), 1);
-    assert_eq!(over[0].verdict, Verdict::Safe);
-    assert!(over[0].measured.is_some() && over[0].path.is_some());
+    assert_eq!(over[0].conclusion.verdict, Verdict::Safe);
+    assert!(over[0].conclusion.measured.is_some() && over[0].path.is_some());
 }
 
 #[test]
@@ -217,7 +217,7 @@ fn arcs_need_leave_but_no_certificate_of_their_own() {
         let mut edges = vec![Verdict::Safe; drawn.network.edges.len()];
         edges[over.through[1] as usize] = verdict;
         let all = certified(&drawn, "AGV-TUG4", &edges, 2);
-        [&over, &past].map(|t| all.iter().find(|c| turns[c.turn as usize].id == t.id).unwrap().verdict)
+        [&over, &past].map(|t| all.iter().find(|c| turns[c.turn as usize].id == t.id).unwrap().conclusion.verdict)
     };
     assert_eq!(of(Verdict::Unsafe(UnsafeReason::Width)), [Verdict::Safe; 2], "nobody goes round for ever");
     let barred = Verdict::Forbidden(ForbiddenReason::Hgv);
@@ -242,7 +242,7 @@ fn a_restriction_within_the_ring_forbids_the_passage() {
     let turns = drawn.facts();
     let all = certified(&drawn, "AGV-TUG4", &safe, 1);
     let id = drawn.passage("SE").id;
-    let verdict = all.iter().find(|c| turns[c.turn as usize].id == id).unwrap().verdict;
+    let verdict = all.iter().find(|c| turns[c.turn as usize].id == id).unwrap().conclusion.verdict;
     assert_eq!(verdict, Verdict::Forbidden(ForbiddenReason::Restriction));
 }
 

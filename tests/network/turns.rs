@@ -12,7 +12,7 @@ use ascii_map::{AsciiMap, id_of};
 use geo::{Distance as _, Euclidean};
 use netcert::osm::Via;
 use netcert::osm::facts::Policy;
-use netcert::store::TurnCertificate;
+use netcert::rows::TurnCertificate;
 use netcert::turns::{Reach, StrokeLine, turn_corridors};
 use netcert::verdict::{ForbiddenReason, Verdict};
 use oracle::draw::Draw;
@@ -222,7 +222,7 @@ fn a_restriction_forbids_whatever_fits() {
     let turns = drawn.facts();
     let of = |nodes: &str| {
         let id = drawn.turn(nodes).id;
-        certificates.iter().find(|(_, c)| turns[c.turn as usize].id == id).unwrap().1.verdict
+        certificates.iter().find(|(_, c)| turns[c.turn as usize].id == id).unwrap().1.conclusion.verdict
     };
     assert_eq!(of("EBC"), Verdict::Forbidden(ForbiddenReason::Restriction));
     assert_eq!(of("EBA"), Verdict::Safe);

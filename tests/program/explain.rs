@@ -12,12 +12,13 @@ use netcert::explain::{self, Explanation};
 use netcert::network::Network;
 use netcert::osm::facts::Policy;
 use netcert::picture;
+use netcert::rows::{CertificateRow, EdgeRow};
 use netcert::settings::Settings;
 use netcert::stet::{Model, Options, SpanResult, certify, certify_spans};
 use netcert::stop::Stop;
-use netcert::store::{EdgeRow, verdict_words};
 use netcert::vehicle::Vehicle;
 use netcert::verdict::{UnsafeReason, Verdict};
+use netcert::words::verdict_words;
 use program::Place;
 
 fn settings() -> Settings {
@@ -37,19 +38,24 @@ fn every_edge_of_the_demo_is_explained_as_it_was_certified() {
     let mut kinds: BTreeMap<(&str, &str), usize> = BTreeMap::new();
     for (i, row) in rows.iter().enumerate() {
         // Hints take dozens of certificates each: of the unsafe edges every sixth.
-        if row.verdict == Verdict::Unsafe(UnsafeReason::Width) && i % 6 != 0 {
+        if row.certificate.verdict == Verdict::Unsafe(UnsafeReason::Width) && i % 6 != 0 {
             continue;
         }
         let e = explain::explain_edge(&network, row.edge, &model, &settings(), &Stop::never()).unwrap().unwrap();
-        assert_eq!(e.disagreement(row), None, "edge {}", row.edge_id);
-        let seen = kinds.entry(verdict_words(row.verdict)).or_default();
+        assert_eq!(e.disagreement(&row.certificate), None, "edge {}", row.edge_id);
+        let seen = kinds.entry(verdict_words(row.certificate.verdict)).or_default();
         *seen += 1;
         let words = explain::words(&e);
-        assert!(words.headline.starts_with(verdict_words(row.verdict).0), "{}: {}", row.edge_id, words.headline);
+        assert!(
+            words.headline.starts_with(verdict_words(row.certificate.verdict).0),
+            "{}: {}",
+            row.edge_id,
+            words.headline
+        );
         assert!(words.scope.contains("holds within the model") && words.scope.contains("no permit"));
         if let Some(g) = &e.geometry {
             let found = g.along_m(g.place.station);
-            let kept = row.limiting_s_m.unwrap_or(found);
+            let kept = row.certificate.limiting_s_m.unwrap_or(found);
             // Kept is the foot of the unit's axis, up to three stations beyond the edge; told is the corner's, on the edge.
             assert!((kept - found).abs() < 4.5, "{}: {kept} and {found}", row.edge_id);
             assert!(match g.result.rsc_m.zip(g.place.bounds_m) {
@@ -74,10 +80,10 @@ fn a_certificate_of_another_version_is_noticed() {
     let place = Place::with_demo();
     let (network, rows) = demo(&place, "AU-SEMI19");
     let model = Model::new(&catalogued("AU-SEMI19")).unwrap();
-    let row = rows.iter().find(|row| row.verdict == Verdict::Safe).unwrap();
+    let row = rows.iter().find(|row| row.certificate.verdict == Verdict::Safe).unwrap();
     let e = explain::explain_edge(&network, row.edge, &model, &settings(), &Stop::never()).unwrap().unwrap();
-    let other = |change: &dyn Fn(&mut EdgeRow)| {
-        let mut row = row.clone();
+    let other = |change: &dyn Fn(&mut CertificateRow)| {
+        let mut row = row.certificate;
         change(&mut row);
         e.disagreement(&row)
     };
@@ -122,7 +128,7 @@ fn the_width_that_would_do_does_and_a_centimetre_less_does_not() {
     for id in ["AU-SEMI19", "AU-ATRIPLE53"] {
         let (network, rows) = demo(&place, id);
         let (vehicle, model) = (catalogued(id), Model::new(&catalogued(id)).unwrap());
-        let unsafe_ones = rows.iter().filter(|row| row.verdict == Verdict::Unsafe(UnsafeReason::Width));
+        let unsafe_ones = rows.iter().filter(|row| row.certificate.verdict == Verdict::Unsafe(UnsafeReason::Width));
         for row in unsafe_ones.step_by(17) {
             let e = explain::explain_edge(&network, row.edge, &model, &settings(), &Stop::never()).unwrap().unwrap();
             let Some(hint) = e.hints.width else { continue };
@@ -286,7 +292,7 @@ fn forbidden_edges_name_the_tag_and_what_the_vehicle_has() {
         ("access", "no through traffic", ""),
     ];
     for (reason, tag, has) in expected {
-        let row = rows.iter().find(|row| verdict_words(row.verdict) == ("forbidden", reason)).unwrap();
+        let row = rows.iter().find(|row| verdict_words(row.certificate.verdict) == ("forbidden", reason)).unwrap();
         let headline = explain::words(
             &explain::explain_edge(&network, row.edge, &model, &settings(), &Stop::never()).unwrap().unwrap(),
         )
@@ -299,10 +305,12 @@ fn forbidden_edges_name_the_tag_and_what_the_vehicle_has() {
 fn the_program_explains_by_id_and_lists_what_a_name_may_mean() {
     let place = Place::with_demo();
     let (_, rows) = demo(&place, "AU-ATRIPLE53");
-    let row =
-        rows.iter().find(|row| row.verdict == Verdict::Unsafe(UnsafeReason::Width) && row.name.is_some()).unwrap();
+    let row = rows
+        .iter()
+        .find(|row| row.certificate.verdict == Verdict::Unsafe(UnsafeReason::Width) && row.name.is_some())
+        .unwrap();
     let line = format!("explain {} --vehicle AU-ATRIPLE53", row.edge_id);
-    let missing = (-row.rsc_m.unwrap() * 100.0 - 0.11).ceil() / 100.0;
+    let missing = (-row.certificate.rsc_m.unwrap() * 100.0 - 0.11).ceil() / 100.0;
     place
         .netcert(&line)
         .succeeds()
@@ -323,7 +331,7 @@ fn the_program_explains_by_id_and_lists_what_a_name_may_mean() {
     let json = place.netcert(&format!("{line} --format json")).succeeds().json();
     assert_eq!(json["verdict"], "unsafe");
     assert_eq!(json["road"]["edge_id"], row.edge_id.to_string());
-    assert!((json["limiting"]["rsc_m"].as_f64().unwrap() - row.rsc_m.unwrap()).abs() < 0.0011);
+    assert!((json["limiting"]["rsc_m"].as_f64().unwrap() - row.certificate.rsc_m.unwrap()).abs() < 0.0011);
     assert_eq!(json["limiting"]["place"]["units"].as_array().unwrap().len(), 6);
 
     let way = format!("explain {} --vehicle AU-ATRIPLE53", row.way_id);

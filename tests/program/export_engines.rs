@@ -12,7 +12,8 @@ use netcert::osm::LonLat;
 use netcert::osm::facts::{Countries, Direction, Permission, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
-use netcert::store::{QueryOptions, VerdictKind};
+use netcert::store::QueryOptions;
+use netcert::words::VerdictKind;
 use program::Place;
 
 /// Node pairs in driving order: of how many roads of the extract.

@@ -6,13 +6,13 @@ use std::process::Command;
 use netcert::account::AccountRow;
 use netcert::network::{Edge, Network};
 use netcert::osm::facts::{Policy, WidthSource};
+use netcert::rows::EdgeRow;
+use netcert::rows::{Bounds, EdgeCertificate, EdgeMeasure, TurnCertificate};
 use netcert::settings::Settings;
-use netcert::store::{
-    Area, Bounds, Database, EdgeCertificate, EdgeMeasure, EdgeRow, QueryOptions, Run, StoreError, TurnCertificate,
-    TurnSet, VehicleRecord, VerdictKind, verdict_words,
-};
+use netcert::store::{Area, Database, QueryOptions, Run, StoreError, TurnSet, VehicleRecord};
 use netcert::turns::{Kerbs, turn_facts};
 use netcert::verdict::{UnknownReason, Verdict};
+use netcert::words::{VerdictKind, verdict_words};
 
 use crate::support::store_network;
 use store_network::{certificate, network};
@@ -123,19 +123,23 @@ fn a_query_gives_every_certificate_back_on_the_safe_side() {
     for (index, row) in (0..).zip(&rows) {
         let (edge, wrote) = (&network.edges[index as usize], certificate(index, 1));
         let road = network.road(edge);
-        assert_eq!((row.edge, row.edge_id, row.way_id, row.verdict), (index, edge.id, road.way_id, wrote.verdict));
+        assert_eq!(
+            (row.edge, row.edge_id, row.way_id, row.certificate.verdict),
+            (index, edge.id, road.way_id, wrote.conclusion.verdict)
+        );
         assert_eq!((row.from_node, row.to_node, row.direction), (edge.from_node, edge.to_node, edge.direction));
         assert!(row.line.iter().copied().eq(network.positions(edge)));
         let lane = road.sections[edge.direction as usize].lane;
         assert_eq!(row.width_source, lane.map(|strip| strip.source));
-        assert_eq!(row.rsc_m.is_some(), wrote.measured.is_some());
-        if let Some(m) = wrote.measured {
+        let kept = &row.certificate;
+        assert_eq!(kept.rsc_m.is_some(), wrote.conclusion.measured.is_some());
+        if let Some(m) = wrote.conclusion.measured {
             let down =
                 |stored: Option<f64>, value: f64, step| stored.unwrap() <= value && value - stored.unwrap() < step;
-            assert!(down(row.rsc_m, m.rsc_m, 1.001e-3) && down(row.rsc_published_m, m.rsc_published_m, 1.001e-3));
-            assert!(down(row.hinge_margin_deg, m.hinge_margin_rad.to_degrees(), 1.001e-2));
-            assert_eq!(row.shrink, Some(m.shrink));
-            assert_eq!((row.limiting_unit, row.limiting_side), (Some(m.limiting_unit as u16), Some(m.limiting_side)));
+            assert!(down(kept.rsc_m, m.rsc_m, 1.001e-3) && down(kept.rsc_published_m, m.rsc_published_m, 1.001e-3));
+            assert!(down(kept.hinge_margin_deg, m.hinge_margin_rad.to_degrees(), 1.001e-2));
+            assert_eq!(kept.shrink, Some(m.shrink));
+            assert_eq!((kept.limiting_unit, kept.limiting_side), (Some(m.limiting_unit as u16), Some(m.limiting_side)));
         }
     }
 }
@@ -154,10 +158,10 @@ fn every_filter_gives_what_a_plain_search_through_all_rows_gives() {
         assert_eq!(all(&path, &options).iter().collect::<Vec<_>>(), expected, "{options:?}");
     };
     for kind in [VerdictKind::Safe, VerdictKind::Unsafe, VerdictKind::Forbidden, VerdictKind::Unknown] {
-        let word = netcert::store::Named::name(kind);
-        check(&|o| o.verdict = Some(kind), &|row| verdict_words(row.verdict).0 == word);
+        let word = netcert::words::Named::name(kind);
+        check(&|o| o.verdict = Some(kind), &|row| verdict_words(row.certificate.verdict).0 == word);
     }
-    check(&|o| o.min_rsc_m = Some(0.3), &|row| row.rsc_m.is_some_and(|rsc| rsc >= 0.3));
+    check(&|o| o.min_rsc_m = Some(0.3), &|row| row.certificate.rsc_m.is_some_and(|rsc| rsc >= 0.3));
     check(&|o| o.min_width_source = Some(WidthSource::Tagged), &|row| row.width_source >= Some(WidthSource::Tagged));
     check(&|o| o.edge_id = Some(every[7].edge_id), &|row| row.edge_id == every[7].edge_id);
     // A corner cut off the box: the index alone would give too many.
@@ -198,7 +202,7 @@ fn stats_add_up_to_the_network() {
     let length: f64 = stats.network.iter().map(|row| row.2).sum();
     assert_eq!(stats.network.iter().map(|row| row.1).sum::<u64>(), network.edges.len() as u64);
     for policy in [Policy::Lane, Policy::Direction] {
-        let of = |row: &&netcert::store::StatsRow| row.vehicle_id == "EU-SEMI16.5" && row.policy == policy;
+        let of = |row: &&netcert::rows::StatsRow| row.vehicle_id == "EU-SEMI16.5" && row.policy == policy;
         let rows: Vec<_> = stats.certificates.iter().filter(of).collect();
         assert_eq!(rows.iter().map(|row| row.edges).sum::<u64>(), network.edges.len() as u64);
         assert!((rows.iter().map(|row| row.length_m).sum::<f64>() - length).abs() < 1e-6 * length);
@@ -242,7 +246,7 @@ fn a_set_is_replaced_whole_and_a_changed_vehicle_loses_its_old_ones() {
     let folder = folder();
     let path = folder.path().join("a.gpkg");
     let edges = build(&path, 50, |i, _| i).edges.len() as u32;
-    let unknown = |edge| EdgeCertificate { edge, verdict: Verdict::Unknown(UnknownReason::Cut), measured: None };
+    let unknown = |edge| EdgeCertificate::bare(edge, Verdict::Unknown(UnknownReason::Cut));
     let mut database = Database::open_to_change(&path).unwrap();
     let sets = |database: &mut Database| -> Vec<String> {
         database.certified().unwrap().into_iter().map(|set| set.layer).collect()
@@ -262,7 +266,10 @@ fn a_set_is_replaced_whole_and_a_changed_vehicle_loses_its_old_ones() {
         .unwrap();
     assert_eq!(sets(&mut database).len(), 3);
     let rows = all(&path, &QueryOptions::new("EU-SEMI16.5", Policy::Lane));
-    assert!(rows.len() == edges as usize && rows.iter().all(|row| row.verdict == Verdict::Unknown(UnknownReason::Cut)));
+    assert!(
+        rows.len() == edges as usize
+            && rows.iter().all(|row| row.certificate.verdict == Verdict::Unknown(UnknownReason::Cut))
+    );
 
     let mut longer = vehicle("EU-SEMI16.5");
     longer.definition = r#"{"id":"EU-SEMI16.5","units":[1]}"#.into();
@@ -300,7 +307,7 @@ fn a_layer_s_style_comes_and_goes_with_it_and_what_people_saved_stays() {
     let mut database = Database::open_to_change(&path).unwrap();
     let mut certify = |vehicle: &VehicleRecord, policy| {
         let settings = Settings { policy, ..Settings::default() };
-        let unknown = |edge| EdgeCertificate { edge, verdict: Verdict::Unknown(UnknownReason::Cut), measured: None };
+        let unknown = |edge| EdgeCertificate::bare(edge, Verdict::Unknown(UnknownReason::Cut));
         let rows = (0..edges).map(unknown);
         database.replace_certificates(vehicle, &settings, rows, Vec::new(), None, &run(), &[]).unwrap();
     };
@@ -331,8 +338,8 @@ fn a_set_with_a_gap_or_a_double_or_a_false_safe_is_refused_and_the_old_one_stand
     refused((0..edges).chain([9]).collect(), "edge 9, vehicle x: it has two certificates");
     refused((0..=edges).collect(), "the network has no such edge");
     let mut false_safe = certificate(0, 5);
-    false_safe.verdict = Verdict::Safe;
-    false_safe.measured.as_mut().unwrap().rsc_m = -0.0001;
+    false_safe.conclusion.verdict = Verdict::Safe;
+    false_safe.conclusion.measured.as_mut().unwrap().rsc_m = -0.0001;
     let error = database
         .replace_certificates(&vehicle("x"), &Settings::default(), [false_safe], Vec::new(), None, &run(), &[])
         .unwrap_err();
@@ -443,7 +450,7 @@ fn child_that_is_killed() {
         let facts = turn_facts(&network, &Kerbs::default());
         let unknown = |turn| {
             let verdict = Verdict::Unknown(UnknownReason::Cut);
-            TurnCertificate { turn, verdict, measured: None, path: None, plan: None }
+            TurnCertificate::bare(turn, verdict)
         };
         loop {
             let rows = (0..network.edges.len() as u32).map(|edge| certificate(edge, 9));
@@ -489,12 +496,13 @@ fn killed_at_any_moment_the_file_is_whole() {
         child.kill().unwrap();
         child.wait().unwrap();
         let rows = all(&path, &QueryOptions::new("EU-SEMI16.5", Policy::Lane));
-        let seed = if rows.iter().map(|row| row.verdict).eq((0..).map(|i| certificate(i, 1).verdict).take(rows.len())) {
+        let verdict = |i, seed| certificate(i, seed).conclusion.verdict;
+        let seed = if rows.iter().map(|row| row.certificate.verdict).eq((0..).map(|i| verdict(i, 1)).take(rows.len())) {
             1
         } else {
             9
         };
-        assert!((0..).zip(&rows).all(|(i, row)| row.verdict == certificate(i, seed).verdict), "half old, half new");
+        assert!((0..).zip(&rows).all(|(i, row)| row.certificate.verdict == verdict(i, seed)), "half old, half new");
         let turned = Database::open(&path).unwrap().has_turns("EU-SEMI16.5", Policy::Lane).unwrap();
         assert_eq!(turned, seed == 9, "new edges come with their turns");
         whole(&path);

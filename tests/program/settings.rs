@@ -6,10 +6,12 @@ use std::sync::{Arc, Mutex, OnceLock};
 
 use netcert::osm::facts::Policy;
 use netcert::pipeline;
+use netcert::rows::EdgeRow;
 use netcert::settings::Settings;
-use netcert::store::{Database, EdgeRow, Named, QueryOptions, Run, StoreError, TurnQuery};
+use netcert::store::{Database, QueryOptions, Run, StoreError, TurnQuery};
 use netcert::turns::Kerbs;
 use netcert::verdict::Verdict;
+use netcert::words::Named;
 use serde_json::Value;
 
 use crate::serve::http::Server;
@@ -50,24 +52,13 @@ fn rows(place: &Place, policy: Policy) -> Vec<EdgeRow> {
 
 /// What a certificate says; the columns of the road stay as `ingest` measured them.
 fn said(row: &EdgeRow) -> String {
-    format!(
-        "{} {:?} {:?} {:?} {:?} {:?} {:?} {:?} {:?}",
-        row.edge_id,
-        row.verdict,
-        row.rsc_m,
-        row.rsc_published_m,
-        row.hinge_margin_deg,
-        row.shrink,
-        row.limiting_s_m,
-        row.limiting_unit,
-        row.limiting_side
-    )
+    format!("{} {:?}", row.edge_id, row.certificate)
 }
 
 /// A turn that the vehicle may take, and places on the edges before and after it.
 fn corner(place: &Place, policy: Policy) -> Option<(i64, String)> {
     let turns = place.database().query_turns(&TurnQuery::new(VEHICLE, policy)).unwrap();
-    let turn = turns.into_iter().find(|turn| turn.verdict == Verdict::Safe)?;
+    let turn = turns.into_iter().find(|turn| turn.certificate.verdict == Verdict::Safe)?;
     let rows = rows(place, policy);
     let middle = |id: i64| {
         let line = &rows.iter().find(|row| row.edge_id == id).unwrap().line;
@@ -101,7 +92,9 @@ fn is_as_if_ingested_with(option: &str, policy: Policy) {
     let changed: Vec<i64> = kept
         .iter()
         .zip(&before)
-        .filter(|(now, before)| said(now) != said(before) && now.rsc_m.is_some_and(|rsc_m| rsc_m.abs() < 3.0))
+        .filter(|(now, before)| {
+            said(now) != said(before) && now.certificate.rsc_m.is_some_and(|rsc_m| rsc_m.abs() < 3.0)
+        })
         .map(|(now, _)| now.edge_id)
         .collect();
     assert!(changed.len() > 3, "{option} changes {} certificates", changed.len());

@@ -6,9 +6,9 @@ use netcert::certify::{TurnJob, best_of, certify_turns};
 use netcert::corridor::Params;
 use netcert::network::{Network, build};
 use netcert::osm::facts::{Countries, Place, Policy, cross_sections};
+use netcert::rows::TurnCertificate;
 use netcert::settings::Settings;
 use netcert::stet::{Model, Options, SpanResult};
-use netcert::store::TurnCertificate;
 use netcert::turns::{Kerbs, Reach, TurnCorridors, TurnFacts, TurnParams, corridors_of, turn_facts};
 use netcert::verdict::{UnknownReason, Verdict};
 

@@ -6,7 +6,8 @@ use std::process::{Command, Output, Stdio};
 use std::sync::{Arc, Mutex, OnceLock};
 
 use netcert::osm::facts::Policy;
-use netcert::store::{Database, EdgeRow, QueryOptions};
+use netcert::rows::EdgeRow;
+use netcert::store::{Database, QueryOptions};
 use sqlx::{Connection as _, SqliteConnection};
 use tempfile::TempDir;
 

@@ -90,8 +90,8 @@ impl Region {
         let job = Job { network: &self.network, models, settings: &settings };
         let mut edges = vec![Permit::UNKNOWN; self.network.edges.len()];
         certify_network(&job, &Silent, |_, certificate| {
-            let rsc_m = certificate.measured.map(|measured| measured.rsc_m);
-            edges[certificate.edge as usize] = Permit { verdict: certificate.verdict, rsc_m };
+            let rsc_m = certificate.conclusion.measured.map(|measured| measured.rsc_m);
+            edges[certificate.edge as usize] = Permit { verdict: certificate.conclusion.verdict, rsc_m };
             Ok::<(), ()>(())
         })
         .unwrap();
@@ -110,8 +110,8 @@ impl Region {
         let mut found = HashMap::new();
         certify_turns(&job, &Silent, |_, certificate| {
             let Movement { from, to, .. } = turns[certificate.turn as usize].movement;
-            let rsc_m = certificate.measured.map(|measured| measured.rsc_m);
-            found.insert((from, to), Permit { verdict: certificate.verdict, rsc_m });
+            let rsc_m = certificate.conclusion.measured.map(|measured| measured.rsc_m);
+            found.insert((from, to), Permit { verdict: certificate.conclusion.verdict, rsc_m });
             Ok::<(), ()>(())
         })
         .unwrap();

@@ -6,8 +6,8 @@ use netcert::osm::LonLat;
 use netcert::osm::facts::{
     AreaKind, CrossSection, Direction, Legal, Limit, Oneway, Permission, RestrictionKind, RoadClass, Strip, WidthSource,
 };
+use netcert::rows::{Conclusion, EdgeCertificate, Measured};
 use netcert::stet::Side;
-use netcert::store::{EdgeCertificate, Measured};
 use netcert::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
 const CLASSES: [RoadClass; 5] =
@@ -171,5 +171,5 @@ pub(crate) fn certificate(edge: u32, seed: u32) -> EdgeCertificate {
         limiting_side: if k.is_multiple_of(2) { Side::Left } else { Side::Right },
     };
     let measured = (!matches!(verdict, Verdict::Unknown(_))).then_some(measured);
-    EdgeCertificate { edge, verdict, measured }
+    EdgeCertificate { edge, conclusion: Conclusion { verdict, measured } }
 }

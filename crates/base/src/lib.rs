@@ -2,7 +2,7 @@
 //! and knows neither maps nor databases.
 
 pub mod corridor;
-pub mod pace;
+pub mod speed_profile;
 pub mod stop;
 pub mod vehicle;
 pub mod verdict;

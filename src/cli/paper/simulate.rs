@@ -2,8 +2,8 @@
 
 use anyhow::anyhow;
 use netcert::corridor::Corridor;
-use netcert::pace::Pace;
 use netcert::published::{Beta, DrawnRoute, Permissible, Reading, Route, RouteCert, Scenario, route_cert};
+use netcert::speed_profile::SpeedProfile;
 use netcert::stet::{self, Certificate, Model, Options};
 use netcert::stop::Stop;
 use netcert::vehicle::Vehicle;
@@ -28,7 +28,7 @@ pub(super) struct Simulated {
 
 pub(super) fn run(scenario: &Scenario, route: &DrawnRoute) -> anyhow::Result<Simulated> {
     let corridor = route.corridor(scenario.w_min_m);
-    let route = Route::new(&corridor, &Pace::default());
+    let route = Route::new(&corridor, &SpeedProfile::default());
     let by = |beta| {
         let reading = Reading { beta, ..Reading::SIMULATED };
         route_cert(&scenario.system, &route, &route.centre, &Permissible::default(), &reading)

@@ -3,8 +3,9 @@
 use std::io::{self, Write};
 
 use super::layers::asked;
-use super::{Cell, Kind, Options, Target, one_file_a_layer};
+use super::{Options, Target, one_file_a_layer};
 use crate::export::{ExportError, Layout, Place, Source};
+use crate::rows::{Cell, Column};
 
 /// `csv`
 pub(super) struct Csv;
@@ -33,7 +34,7 @@ impl Target for Csv {
     }
 }
 
-fn head(out: &mut dyn Write, columns: &[(&str, Kind)]) -> io::Result<()> {
+fn head(out: &mut dyn Write, columns: &[Column]) -> io::Result<()> {
     let names: Vec<&str> = columns.iter().map(|column| column.0).collect();
     write!(out, "{}\r\n", names.join(","))
 }

@@ -6,9 +6,10 @@
 use std::io::{self, Write};
 
 use super::layers::{Row, asked};
-use super::{Cell, Kind, Layer, Options, Target, one_file_a_layer};
+use super::{Layer, Options, Target, one_file_a_layer};
 use crate::export::{ExportError, Layout, Place, Source};
 use crate::osm::LonLat;
+use crate::rows::{Cell, Column};
 
 /// `geojson`
 pub(super) struct GeoJson;
@@ -121,7 +122,7 @@ fn degrees(out: &mut dyn Write, e7: i32) -> io::Result<()> {
     }
 }
 
-fn properties(out: &mut dyn Write, columns: &[(&str, Kind)], cells: &[Cell<'_>]) -> io::Result<()> {
+fn properties(out: &mut dyn Write, columns: &[Column], cells: &[Cell<'_>]) -> io::Result<()> {
     for (i, (cell, (name, _))) in cells.iter().zip(columns).enumerate() {
         write!(out, "{}\"{name}\":", if i == 0 { "{" } else { "," })?;
         match cell {

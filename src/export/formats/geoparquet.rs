@@ -17,10 +17,11 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 
 use super::layers::{Row, asked};
-use super::{Cell, Kind, Layer, Options, Target, one_file_a_layer};
+use super::{Layer, Options, Target, one_file_a_layer};
 use crate::export::{ExportError, Layout, Place, Sink, Source};
 use crate::osm::LonLat;
-use crate::store::Bounds;
+use crate::rows::Bounds;
+use crate::rows::{Cell, Kind};
 
 /// `geoparquet`
 pub(super) struct GeoParquet;

@@ -1,8 +1,9 @@
 //! The two layers that map formats share: directed edges and turns, each row with its cells and its line.
 
-use super::{Cell, EDGE_COLUMNS, Kind, Layer, Options, TURN_COLUMNS, edge_cells, turn_cells};
+use super::{EDGE_COLUMNS, Layer, Options, TURN_COLUMNS, edge_cells, turn_cells};
 use crate::export::{ExportError, Refusal, Source};
 use crate::osm::LonLat;
+use crate::rows::{Cell, Column};
 
 /// One row of a layer.
 pub(super) struct Row<'r> {
@@ -26,7 +27,7 @@ impl Layer {
 
     /// Its columns.
     #[must_use]
-    pub fn columns(self) -> &'static [(&'static str, Kind)] {
+    pub fn columns(self) -> &'static [Column] {
         match self {
             Self::Edges => &EDGE_COLUMNS,
             Self::Turns => &TURN_COLUMNS,

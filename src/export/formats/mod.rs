@@ -21,7 +21,7 @@ mod valhalla;
 
 use super::{ExportError, Layout, Place, Source};
 
-pub use columns::{Cell, EDGE_COLUMNS, Kind, TURN_COLUMNS, edge_cells, turn_cells};
+pub use columns::{EDGE_COLUMNS, TURN_COLUMNS, edge_cells, turn_cells};
 
 /// What is asked of a target beyond the permits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

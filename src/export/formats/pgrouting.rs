@@ -19,7 +19,7 @@ use crate::export::rings::Rings;
 use crate::export::{ExportEdge, ExportError, Layout, Place, Refusal, Sink, Source};
 use crate::osm::LonLat;
 use crate::osm::facts::WidthSource;
-use crate::store::Named;
+use crate::words::Named;
 
 /// Creates the tables in one transaction and loads them from the files beside it.
 const LOAD: &str = include_str!("pgrouting_load.sql");
@@ -77,7 +77,7 @@ fn edge_line(out: &mut dyn Write, edge: &ExportEdge) -> io::Result<()> {
             None => out.write_all(NULL)?,
         }
     }
-    for number in [row.rsc_m, row.hinge_margin_deg, row.width_m] {
+    for number in [row.certificate.rsc_m, row.certificate.hinge_margin_deg, row.width_m] {
         match number {
             Some(number) => write!(out, "\t{number}")?,
             None => out.write_all(b"\t\\N")?,

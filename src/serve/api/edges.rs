@@ -8,8 +8,10 @@ use super::super::problem::Problem;
 use super::super::region::Region;
 use super::{SCOPE, answered, id};
 use crate::osm::facts::WidthSource;
-use crate::stet::Side;
-use crate::store::{EdgeFacts, EdgeRow, MapTurn, Named, QueryOptions, TurnsOf, verdict_words};
+use crate::rows::{CertificateRow, EdgeRow};
+use crate::rows::{EdgeFacts, MapTurn};
+use crate::store::{QueryOptions, TurnsOf};
+use crate::words::{Named, verdict_words};
 
 /// `/api/edges/{id}`
 pub(in super::super) fn edge(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
@@ -82,23 +84,15 @@ fn members(e: &EdgeFacts) -> Map<String, Value> {
 }
 
 fn certificate(vehicle: &str, policy: &str, row: &EdgeRow) -> Value {
-    let (verdict, reason) = verdict_words(row.verdict);
-    json!({
-        "vehicle": vehicle,
-        "policy": policy,
-        "verdict": verdict,
-        "reason": (!reason.is_empty()).then_some(reason),
-        "rsc_m": row.rsc_m,
-        "rsc_published_m": row.rsc_published_m,
-        // Less is no angle, but a bound that does not hold.
-        "hinge_margin_deg": row.hinge_margin_deg.filter(|&degrees| degrees > -180.0),
-        "shrink": row.shrink,
-        "limiting_s_m": row.limiting_s_m,
-        "limiting_unit": row.limiting_unit,
-        "limiting_side": row.limiting_side.map(Side::name),
-        "width_m": row.width_m,
-        "width_source": row.width_source.map(WidthSource::name),
-    })
+    let shown = CertificateRow { hinge_margin_deg: row.certificate.hinge_angle_deg(), ..row.certificate };
+    let columns = CertificateRow::COLUMNS.iter().zip(shown.cells());
+    let mut members = Map::new();
+    members.insert("vehicle".to_owned(), json!(vehicle));
+    members.insert("policy".to_owned(), json!(policy));
+    members.extend(columns.map(|((name, _), cell)| ((*name).to_owned(), Value::from(cell))));
+    members.insert("width_m".to_owned(), json!(row.width_m));
+    members.insert("width_source".to_owned(), json!(row.width_source.map(WidthSource::name)));
+    Value::Object(members)
 }
 
 fn turn(row: &MapTurn, edge_id: i64) -> Value {

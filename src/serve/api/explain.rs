@@ -18,7 +18,8 @@ use crate::picture;
 use crate::settings::Settings;
 use crate::stet::Model;
 use crate::stop::Stop;
-use crate::store::{Named, QueryOptions, TurnsOf};
+use crate::store::{QueryOptions, TurnsOf};
+use crate::words::Named;
 
 /// Words and picture of one explanation.
 pub(in super::super) struct Explained {
@@ -76,7 +77,7 @@ fn of_edge(
     let edge_id = network.edges.get(edge as usize).map(|edge| edge.id);
     let options = QueryOptions { edge_id, ..QueryOptions::new(&model.vehicle.id, settings.policy) };
     let row = region.read(|database| database.query(&options)?.next().transpose())?;
-    if let Some(detail) = row.and_then(|row| explanation.disagreement(&row)) {
+    if let Some(detail) = row.and_then(|row| explanation.disagreement(&row.certificate)) {
         return Err(Problem::stale(format!(
             "the certificate in the database is not what this program computes: {detail}; run `netcert certify \
              --vehicle {} --corridor {}`",

@@ -13,7 +13,9 @@ use super::super::region::Region;
 use super::super::tiles::MOST_ZOOM;
 use super::{SCOPE, answered};
 use crate::osm::facts::Policy;
-use crate::store::{Bounds, Database, Named};
+use crate::rows::Bounds;
+use crate::store::Database;
+use crate::words::Named;
 
 /// As the licence of the data asks: <https://www.openstreetmap.org/copyright>.
 const ATTRIBUTION: &str = "© OpenStreetMap contributors, Open Database License";

@@ -9,7 +9,7 @@ use super::super::problem::Problem;
 use super::super::region::Region;
 use super::{SCOPE, answered};
 use crate::route::{Measure, Question};
-use crate::store::Named;
+use crate::words::Named;
 
 /// Places between beginning and end, at most.
 const MOST_VIA: usize = 8;

@@ -11,7 +11,7 @@ use super::super::names::{NamedRoad, folded};
 use super::super::problem::Problem;
 use super::super::region::Region;
 use super::answered;
-use crate::store::{Bounds, RoadRow};
+use crate::rows::{Bounds, RoadRow};
 
 /// Longest question, characters.
 const LONGEST: usize = 80;

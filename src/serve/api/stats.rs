@@ -8,7 +8,9 @@ use super::super::problem::Problem;
 use super::super::region::Region;
 use super::{SCOPE, answered};
 use crate::osm::facts::{Policy, WidthSource};
-use crate::store::{Database, Named, RscBin, Stats, StatsRow, TurnCount, verdict_words};
+use crate::rows::{RscBin, Stats, StatsRow, TurnCount};
+use crate::store::Database;
+use crate::words::{Named, verdict_words};
 
 /// Width of the histogram's bins, millimetres.
 const BIN_MM: u32 = 100;

@@ -8,8 +8,8 @@ use super::super::problem::Problem;
 use super::super::region::Region;
 use super::{SVG, answered};
 use crate::picture;
-use crate::store::Named;
 use crate::vehicle::{Unit, Vehicle};
+use crate::words::Named;
 
 /// `/api/vehicles`
 pub(in super::super) fn list(region: &Region, ask: &Ask) -> Result<Stored, Problem> {

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::super::ask::shortened;
 use super::super::problem::Problem;
 use crate::osm::LonLat;
-use crate::store::Bounds;
+use crate::rows::Bounds;
 
 /// The deepest zoom: a unit is 15 cm at the equator. Beyond it clients enlarge.
 pub(in super::super) const MOST_ZOOM: u8 = 16;

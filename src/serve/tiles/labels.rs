@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use crate::osm::LonLat;
-use crate::store::MapEdge;
+use crate::rows::MapEdge;
 
 /// Names are shown from this zoom on.
 pub(super) const FIRST_WITH_LABELS: u8 = 11;

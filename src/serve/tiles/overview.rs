@@ -12,8 +12,9 @@ use super::grid::{self, BUFFER, Place};
 use super::raster::{Raster, Said};
 use super::shape;
 use crate::osm::facts::WidthSource;
-use crate::store::{MainRoad, Named, verdict_words};
+use crate::rows::MainRoad;
 use crate::verdict::Verdict;
+use crate::words::{Named, verdict_words};
 
 /// Tiles of greater zooms show each edge.
 pub(super) const LAST_ZOOM: u8 = 10;

@@ -1,10 +1,10 @@
 //! Vehicles and roads that the tests share.
 
 use netcert::corridor::Corridor;
-use netcert::pace::Pace;
 use netcert::published::{
     Permissible, Reading, Route, RouteCert, Scenario, Stet, System, drawn_route, route_cert, scenarios,
 };
+use netcert::speed_profile::SpeedProfile;
 
 use crate::oracle::path::{V2, along};
 
@@ -15,7 +15,7 @@ pub(crate) fn scenario(number: u32) -> Scenario {
 }
 
 pub(crate) fn route(corridor: &Corridor) -> Route {
-    Route::new(corridor, &Pace::default())
+    Route::new(corridor, &SpeedProfile::default())
 }
 
 /// The drawn route of 543.62 m.

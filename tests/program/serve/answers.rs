@@ -1,7 +1,9 @@
 //! What the server says is what the other verbs say of the same database.
 
-use netcert::store::{EdgeRow, Stats, verdict_words};
+use netcert::rows::EdgeRow;
+use netcert::rows::Stats;
 use netcert::verdict::Verdict;
+use netcert::words::verdict_words;
 use serde_json::{Value, json};
 
 use super::http::Server;
@@ -64,11 +66,11 @@ fn an_edge_is_its_row() {
         assert_eq!(edge["highway"], json!(row.highway));
         assert_eq!(edge["length_m"], json!(row.length_m));
         assert_eq!(edge["widths"]["lane"]["width_m"], json!(row.width_m));
-        let (verdict, reason) = verdict_words(row.verdict);
+        let (verdict, reason) = verdict_words(row.certificate.verdict);
         let certificate = &edge["certificate"];
         assert_eq!(certificate["verdict"], verdict);
         assert_eq!(certificate["reason"].as_str().unwrap_or(""), reason);
-        assert_eq!(certificate["rsc_m"], json!(row.rsc_m));
+        assert_eq!(certificate["rsc_m"], json!(row.certificate.rsc_m));
         assert_eq!(edge["certificates"].as_array().unwrap().len(), 2, "one a vehicle");
         assert_eq!(edge["geometry"]["coordinates"].as_array().unwrap().len(), row.line.len());
         for turn in edge["turns"].as_array().unwrap() {
@@ -83,9 +85,9 @@ fn an_explanation_is_that_of_the_verb() {
     let server = Server::demo();
     let rows = server.place.rows(VEHICLE);
     let wanted = [
-        rows.iter().find(|row| row.verdict == Verdict::Safe).unwrap(),
-        rows.iter().find(|row| verdict_words(row.verdict).0 == "unsafe").unwrap(),
-        rows.iter().find(|row| verdict_words(row.verdict).0 == "forbidden").unwrap(),
+        rows.iter().find(|row| row.certificate.verdict == Verdict::Safe).unwrap(),
+        rows.iter().find(|row| verdict_words(row.certificate.verdict).0 == "unsafe").unwrap(),
+        rows.iter().find(|row| verdict_words(row.certificate.verdict).0 == "forbidden").unwrap(),
     ];
     for row in wanted {
         let id = row.edge_id;
@@ -126,17 +128,17 @@ fn statistics_are_those_of_the_verb() {
     assert_eq!(sum(&stats["turns"], "turns") as u64, turns.iter().map(|row| row.turns).sum::<u64>());
     // The histogram counts every edge that has a number, in the bin that does not flatter.
     let rows = server.place.rows(VEHICLE);
-    let numbered = rows.iter().filter(|row| row.rsc_m.is_some()).count() as u64;
+    let numbered = rows.iter().filter(|row| row.certificate.rsc_m.is_some()).count() as u64;
     let bins: Vec<&Value> =
         stats["rsc_histogram"].as_array().unwrap().iter().filter(|bin| bin["vehicle"] == VEHICLE).collect();
     assert_eq!(bins.iter().map(|bin| bin["edges"].as_u64().unwrap()).sum::<u64>(), numbered);
     for row in &rows {
-        let Some(rsc_m) = row.rsc_m else { continue };
+        let Some(rsc_m) = row.certificate.rsc_m else { continue };
         let mm = (rsc_m * 1000.0).round() as i64;
         let from = mm.div_euclid(100) * 100;
         let there = bins.iter().any(|bin| {
             (bin["rsc_from_m"].as_f64().unwrap() * 1000.0).round() as i64 == from
-                && bin["verdict"] == verdict_words(row.verdict).0
+                && bin["verdict"] == verdict_words(row.certificate.verdict).0
         });
         assert!(there, "{rsc_m}");
     }

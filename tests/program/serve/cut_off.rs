@@ -62,7 +62,7 @@ fn round_corners(database: &mut Database, policy: Policy) -> Vec<[Position; 2]> 
         .map(|(edge, (lon, lat))| (edge, Position { lon, lat }))
         .collect();
     let turns = database.query_turns(&TurnQuery::new(VEHICLE, policy)).unwrap().into_iter();
-    let safe = turns.filter(|turn| turn.verdict == Verdict::Safe);
+    let safe = turns.filter(|turn| turn.certificate.verdict == Verdict::Safe);
     safe.map(|turn| [middles[&turn.from_edge], middles[&turn.to_edge]]).collect()
 }
 

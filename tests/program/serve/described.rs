@@ -1,6 +1,6 @@
 //! The OpenAPI document: every answer has the form that it describes, and nothing that it does not.
 
-use netcert::store::verdict_words;
+use netcert::words::verdict_words;
 use serde_json::{Map, Value};
 
 use super::http::Server;
@@ -117,7 +117,7 @@ fn asked(server: &Server) -> Vec<(String, String)> {
     let mut asked: Vec<(String, String)> = Vec::new();
     let mut add = |path: &str, target: String| asked.push((path.to_owned(), target));
     for row in &rows {
-        let words = verdict_words(row.verdict);
+        let words = verdict_words(row.certificate.verdict);
         if seen.contains(&words) {
             continue;
         }
@@ -126,18 +126,19 @@ fn asked(server: &Server) -> Vec<(String, String)> {
         add("/api/edges/{id}", format!("/api/edges/{id}?vehicle={VEHICLE}"));
         add("/api/explain/{id}", format!("/api/explain/{id}?vehicle={VEHICLE}"));
     }
-    let safe = rows.iter().find(|row| verdict_words(row.verdict).0 == "safe" && row.length_m > 100.0).unwrap();
+    let safe =
+        rows.iter().find(|row| verdict_words(row.certificate.verdict).0 == "safe" && row.length_m > 100.0).unwrap();
     add("/api/explain/{id}/picture.svg", format!("/api/explain/{}/picture.svg?vehicle={VEHICLE}", safe.edge_id));
     let edge = server.json(&format!("/api/edges/{}?vehicle={VEHICLE}", safe.edge_id));
     for turn in edge["turns"].as_array().unwrap() {
         add("/api/explain/{id}", format!("/api/explain/{}?vehicle={VEHICLE}", turn["turn_id"].as_str().unwrap()));
     }
-    let place = |row: &netcert::store::EdgeRow, at: usize| {
+    let place = |row: &netcert::rows::EdgeRow, at: usize| {
         let (lon, lat) = row.line[at].degrees();
         format!("{lon},{lat}")
     };
     let from = place(safe, 0);
-    for row in rows.iter().filter(|row| verdict_words(row.verdict).0 == "safe").step_by(60).take(8) {
+    for row in rows.iter().filter(|row| verdict_words(row.certificate.verdict).0 == "safe").step_by(60).take(8) {
         let to = place(row, row.line.len() - 1);
         add(
             "/api/route",

@@ -4,7 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use fast_mvt::{MvtReaderRef, MvtValueRef};
 use netcert::osm::facts::Policy;
-use netcert::store::{EdgeRow, Named, TurnQuery, verdict_words};
+use netcert::rows::EdgeRow;
+use netcert::store::TurnQuery;
+use netcert::words::{Named, verdict_words};
 
 use super::http::Server;
 
@@ -123,14 +125,14 @@ fn every_edge_is_in_the_tiles_of_its_vertices_with_the_numbers_of_query() {
 
 fn matches_row(feature: &Feature, row: &EdgeRow) {
     let tag = |name: &str| feature.tags.get(name).map(String::as_str);
-    let (verdict, reason) = verdict_words(row.verdict);
+    let (verdict, reason) = verdict_words(row.certificate.verdict);
     assert_eq!(tag("edge_id"), Some(row.edge_id.to_string().as_str()));
     assert_eq!(tag("way_id"), Some(row.way_id.to_string().as_str()));
     assert_eq!(tag("highway"), Some(row.highway.as_str()));
     assert_eq!((tag("verdict"), tag("reason")), (Some(verdict), Some(reason).filter(|reason| !reason.is_empty())));
     assert_eq!(tag("direction"), Some(row.direction.name()));
     assert_eq!((tag("name"), tag("ref")), (row.name.as_deref(), row.reference.as_deref()));
-    assert_eq!(tag("rsc_m").map(|text| text.parse().unwrap()), row.rsc_m, "exactly as kept");
+    assert_eq!(tag("rsc_m").map(|text| text.parse().unwrap()), row.certificate.rsc_m, "exactly as kept");
     assert_eq!(tag("width_source"), row.width_source.map(Named::name));
     if let Some(width_m) = row.width_m {
         let shown: f64 = tag("width_m").unwrap().parse().unwrap();
@@ -161,8 +163,8 @@ fn turns_are_in_the_tiles_from_zoom_15_on() {
     for turn in turns {
         let tags = &seen[&turn.turn_id.to_string()];
         assert_eq!(tags["from_edge"], turn.from_edge.to_string());
-        assert_eq!(tags["verdict"], verdict_words(turn.verdict).0);
-        assert_eq!(tags.get("rsc_m").map(|text| text.parse().unwrap()), turn.rsc_m);
+        assert_eq!(tags["verdict"], verdict_words(turn.certificate.verdict).0);
+        assert_eq!(tags.get("rsc_m").map(|text| text.parse().unwrap()), turn.certificate.rsc_m);
     }
 }
 
@@ -193,7 +195,7 @@ fn from_afar_nothing_is_drawn_as_certified_that_is_not() {
         let by_tile: BTreeMap<(u32, u32), Vec<Feature>> =
             tiles(&rows, z).into_iter().map(|tile| (tile, fetch(&server, z, tile, "overview"))).collect();
         for row in rows.iter().filter(|row| classes[..shown].contains(&row.highway.as_str())) {
-            let (verdict, _) = verdict_words(row.verdict);
+            let (verdict, _) = verdict_words(row.certificate.verdict);
             barred += usize::from(verdict != "safe");
             for position in &row.line {
                 let [x, y] = at(z, position.degrees());

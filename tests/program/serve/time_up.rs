@@ -28,7 +28,6 @@ impl Narrow {
             addr: "127.0.0.1:0".parse().unwrap(),
             allow_remote: false,
             base_map: None,
-            log: |_| {},
             limits: Limits { slow, ..Limits::default() },
         });
         let server = server.unwrap();

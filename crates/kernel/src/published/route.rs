@@ -2,7 +2,7 @@
 
 use super::plane::{V2, along, dot, minus, perp, unit_or};
 use netcert_base::corridor::Corridor;
-use netcert_base::pace::Pace;
+use netcert_base::speed_profile::SpeedProfile;
 
 /// (c(·), w(·)) of Def. 2, with t from a speed profile. All vectors have one entry per instant.
 ///
@@ -22,12 +22,12 @@ pub struct Route {
 }
 
 impl Route {
-    /// The route along `corridor`, driven at `pace`.
+    /// The route along `corridor`, driven at `speeds`.
     #[must_use]
-    pub fn new(corridor: &Corridor, pace: &Pace) -> Self {
+    pub fn new(corridor: &Corridor, speeds: &SpeedProfile) -> Self {
         let sides = corridor.left_m.iter().zip(&corridor.right_m);
         Self {
-            t_s: pace.times_s(corridor),
+            t_s: speeds.times_s(corridor),
             centre: corridor.x.iter().zip(&corridor.y).map(|(&x, &y)| [x, y]).collect(),
             tangent: corridor.heading.iter().map(|h| [h.cos(), h.sin()]).collect(),
             half_width_m: sides.map(|(l, r)| l.min(*r)).collect(),
@@ -146,7 +146,7 @@ mod tests {
 
     #[test]
     fn edges_lie_half_a_width_to_either_side_and_bound_the_strip() {
-        let route = Route::new(&Corridor::straight(50.0, 3.0, 2.5), &Pace::default());
+        let route = Route::new(&Corridor::straight(50.0, 3.0, 2.5), &SpeedProfile::default());
         let near = |a: V2, b: V2| (a[0] - b[0]).hypot(a[1] - b[1]) < 1e-12;
         assert!(near(route.left(10), [10.0, 2.5]) && near(route.right(10), [10.0, -2.5]));
         assert!(
@@ -159,7 +159,7 @@ mod tests {
     #[test]
     fn feet_on_a_circle_are_where_the_radius_says() {
         let corridor = Corridor::from_curvature(1.0, [0.0; 2], 0.0, &[1.0 / 40.0; 61], 3.0, 3.0);
-        let route = Route::new(&corridor, &Pace::default());
+        let route = Route::new(&corridor, &SpeedProfile::default());
         for i in 0..400 {
             let (angle, lateral) = (0.003 * f64::from(i) + 0.05, 0.01 * f64::from(i) - 2.0);
             let p = [(40.0 - lateral) * angle.sin(), 40.0 - (40.0 - lateral) * angle.cos()];

@@ -157,13 +157,13 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use netcert_base::corridor::Corridor;
-    use netcert_base::pace::Pace;
+    use netcert_base::speed_profile::SpeedProfile;
 
     const SYSTEM: System = System { trailers: 2, link_m: 4.0, sway_rad: 0.05, length_m: 8.0, width_m: 2.5 };
     const NONE: Permissible = Permissible { max_shift_m: 0.0, min_shrink: 1.0 };
 
     fn straight(half_m: f64) -> Route {
-        Route::new(&Corridor::straight(60.0, half_m, half_m), &Pace::default())
+        Route::new(&Corridor::straight(60.0, half_m, half_m), &SpeedProfile::default())
     }
 
     #[test]
@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn on_a_steady_circle_the_offset_is_the_off_tracking() {
         let corridor = Corridor::from_curvature(0.5, [0.0; 2], 0.0, &[1.0 / 50.0; 400], 9.0, 9.0);
-        let route = Route::new(&corridor, &Pace::default());
+        let route = Route::new(&corridor, &SpeedProfile::default());
         let run = route_cert(&SYSTEM, &route, &route.centre, &NONE, &Reading::SIMULATED).unwrap();
         let expected = 50.0 - (2500.0f64 - 32.0).sqrt();
         assert!((run.rsc.h_omega_m - expected).abs() < 1e-3, "{} not {expected}", run.rsc.h_omega_m);
@@ -194,7 +194,7 @@ mod tests {
     fn tubes_are_functions_of_time() {
         let route = straight(6.0);
         let run = route_cert(&SYSTEM, &route, &route.centre, &NONE, &Reading::SIMULATED).unwrap();
-        let speed = Pace::default().limit_m_s;
+        let speed = SpeedProfile::default().limit_m_s;
         let halfway = run.tube_at(&route, 2, 30.5 / speed).unwrap();
         assert!((halfway.centre[0] - 22.5).abs() < 1e-9 && halfway.shape.distance(&run.tubes[2][30].shape) < 1e-12);
         let end = run.tube_at(&route, 0, *route.t_s.last().unwrap()).unwrap();

@@ -7,7 +7,7 @@ use std::io::{self, Write};
 
 use crate::export::sorter::{Scratch, Sorted, Sorter};
 use crate::export::{ExportError, Place};
-use crate::store::Bounds;
+use crate::rows::Bounds;
 
 /// Boxes to a node, as other writers have it.
 pub(super) const FANOUT: u64 = 16;

@@ -14,10 +14,11 @@ use flatgeobuf::{
 };
 
 use super::layers::{Row, asked};
-use super::{Cell, Kind, Layer, Options, Target, one_file_a_layer};
+use super::{Layer, Options, Target, one_file_a_layer};
 use crate::export::sorter::Scratch;
 use crate::export::{ExportError, Layout, Place, Sink, Source};
-use crate::store::Bounds;
+use crate::rows::Bounds;
+use crate::rows::{Cell, Kind};
 use index::{Index, Located};
 
 /// `flatgeobuf`

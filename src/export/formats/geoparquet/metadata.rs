@@ -3,8 +3,8 @@
 use serde_json::{Map, Value, json};
 
 use super::SIDES;
-use crate::export::formats::Kind;
-use crate::store::Bounds;
+use crate::rows::Bounds;
+use crate::rows::{Column, Kind};
 
 /// <https://geoparquet.org/releases/v1.1.0/>, of lines in the column `geometry` with their boxes in `bbox`.
 pub(super) fn geo(bounds: Option<Bounds>) -> String {
@@ -47,7 +47,7 @@ fn epsg_4326() -> Value {
 
 /// Which type pandas gives each column (<https://pandas.pydata.org/docs/development/developer.html>). Without it a column of whole
 /// numbers with gaps becomes one of doubles, and ids of 63 bits lose their last digits.
-pub(super) fn pandas(columns: &[(&str, Kind)]) -> String {
+pub(super) fn pandas(columns: &[Column]) -> String {
     let plain = columns.iter().map(|&(name, kind)| {
         let (pandas, numpy) = match kind {
             Kind::Integer => ("int64", "Int64"),

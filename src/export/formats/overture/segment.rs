@@ -9,7 +9,8 @@ use serde_json::{Map, Value, json};
 use super::spots::Spot;
 use crate::osm::LonLat;
 use crate::osm::facts::Direction;
-use crate::store::{EdgeRow, Named as _};
+use crate::rows::EdgeRow;
+use crate::words::Named as _;
 
 /// For whom the rules are.
 pub(super) struct Scope {

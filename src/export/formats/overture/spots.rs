@@ -6,7 +6,7 @@ use std::io::Write as _;
 use crate::export::sorter::Scratch;
 use crate::export::{ExportError, Source};
 use crate::osm::facts::Direction;
-use crate::store::EdgeStep;
+use crate::rows::EdgeStep;
 
 /// Of one edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// The right to write at a path, as long as this lives.
 #[derive(Debug)]
-pub(crate) struct Claim {
+pub(crate) struct OutputLock {
     /// The file itself; of a folder, what holds the lock.
     pub(crate) file: Option<File>,
     /// A killed process had left something here, which is gone.
@@ -21,11 +21,11 @@ pub(crate) struct Claim {
 ///
 /// # Errors
 /// A living process holds it ([`io::ErrorKind::WouldBlock`]); it cannot be made.
-pub(crate) fn file(path: &Path) -> io::Result<Claim> {
+pub(crate) fn file(path: &Path) -> io::Result<OutputLock> {
     loop {
         if path.is_dir() {
             // An unfinished folder of this name.
-            remove_unclaimed(path)?;
+            remove_unlocked(path)?;
         }
         let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
         lock(&file)?;
@@ -34,7 +34,7 @@ pub(crate) fn file(path: &Path) -> io::Result<Claim> {
         }
         let leftover = file.metadata()?.len() > 0;
         file.set_len(0)?;
-        return Ok(Claim { file: Some(file), leftover });
+        return Ok(OutputLock { file: Some(file), leftover });
     }
 }
 
@@ -43,15 +43,15 @@ pub(crate) fn file(path: &Path) -> io::Result<Claim> {
 /// # Errors
 /// As [`file`].
 #[cfg(feature = "export")]
-pub(crate) fn folder(path: &Path) -> io::Result<Claim> {
+pub(crate) fn folder(path: &Path) -> io::Result<OutputLock> {
     if !cfg!(unix) {
         // Folders have no locks there.
-        remove_unclaimed(path)?;
-        return fs::create_dir_all(path).map(|()| Claim { file: None, leftover: false });
+        remove_unlocked(path)?;
+        return fs::create_dir_all(path).map(|()| OutputLock { file: None, leftover: false });
     }
     loop {
         if path.is_file() {
-            remove_unclaimed(path)?;
+            remove_unlocked(path)?;
         }
         fs::create_dir_all(path)?;
         let file = match File::open(path) {
@@ -68,12 +68,12 @@ pub(crate) fn folder(path: &Path) -> io::Result<Claim> {
             leftover = true;
             if entry.file_type()?.is_dir() { fs::remove_dir_all(entry.path()) } else { fs::remove_file(entry.path()) }?;
         }
-        return Ok(Claim { file: Some(file), leftover });
+        return Ok(OutputLock { file: Some(file), leftover });
     }
 }
 
 /// Removes a file or folder that no living process holds.
-fn remove_unclaimed(path: &Path) -> io::Result<()> {
+fn remove_unlocked(path: &Path) -> io::Result<()> {
     let opened = match File::open(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
         Err(_) if !cfg!(unix) => None,
@@ -116,20 +116,20 @@ fn same_file(_file: &File, _path: &Path) -> bool {
 mod tests {
     use super::*;
 
-    fn busy(claimed: io::Result<Claim>) -> bool {
-        claimed.is_err_and(|error| error.kind() == io::ErrorKind::WouldBlock)
+    fn busy(locked: io::Result<OutputLock>) -> bool {
+        locked.is_err_and(|error| error.kind() == io::ErrorKind::WouldBlock)
     }
 
     #[test]
     fn what_is_held_stays_and_what_nobody_holds_is_cleared() {
         let place = tempfile::tempdir().unwrap();
-        for make in [file as fn(&Path) -> io::Result<Claim>, folder] {
+        for make in [file as fn(&Path) -> io::Result<OutputLock>, folder] {
             let path = place.path().join("a.part");
             let first = make(&path).unwrap();
             assert!(!first.leftover);
             let inside = if path.is_dir() { path.join("inside") } else { path.clone() };
             fs::write(&inside, "half").unwrap();
-            // Neither kind of claim touches it.
+            // Neither kind of lock touches it.
             assert!(busy(file(&path)) && busy(folder(&path)));
             assert_eq!(fs::read(&inside).unwrap(), b"half");
             drop(first);
@@ -154,15 +154,15 @@ mod tests {
     fn many_at_a_time_one_has_it() {
         let place = tempfile::tempdir().unwrap();
         let (path, gate) = (place.path().join("a.part"), std::sync::Barrier::new(8));
-        let claims: Vec<_> = std::thread::scope(|scope| {
+        let had: Vec<_> = std::thread::scope(|scope| {
             let one = || {
                 gate.wait();
-                let claim = folder(&path);
+                let lock = folder(&path);
                 gate.wait();
-                claim.is_ok()
+                lock.is_ok()
             };
             (0..8).map(|_| scope.spawn(one)).collect::<Vec<_>>().into_iter().map(|t| t.join().unwrap()).collect()
         });
-        assert_eq!(claims.into_iter().filter(|had| *had).count(), 1);
+        assert_eq!(had.into_iter().filter(|had| *had).count(), 1);
     }
 }

@@ -1,5 +1,7 @@
 //! Lines for whoever runs the server. Requests come from outside: nothing of them may move a terminal's cursor, colour it, or
-//! begin a line of its own.
+//! begin a line of its own. Where lines go is the program's choice: they are handed to `log`.
+
+use std::path::Path;
 
 use axum::http::{Method, Uri};
 
@@ -10,8 +12,17 @@ const LONGEST: usize = 300;
 #[derive(Debug, Clone)]
 pub(super) struct Refused(pub(super) String);
 
-/// A refused request.
-pub(super) fn refusal(method: &Method, target: &Uri, Refused(why): &Refused) -> String {
+/// A request is refused.
+pub(super) fn refused(method: &Method, target: &Uri, refused: &Refused) {
+    log::warn!("{}", line(&refusal(method, target, refused)));
+}
+
+/// The database has changed.
+pub(super) fn read_anew(db: &Path) {
+    log::info!("{}", line(&format!("{}: it has changed; read anew", db.display())));
+}
+
+fn refusal(method: &Method, target: &Uri, Refused(why): &Refused) -> String {
     let target = target.path_and_query().map_or("", |target| target.as_str());
     format!("{} {}: {}", cut(method.as_str()), cut(target), cut(why))
 }
@@ -24,7 +35,7 @@ fn cut(text: &str) -> String {
 }
 
 /// As one line: what does not print is written as its escape, `\u{1b}` or `\n`; so is a backslash.
-pub(super) fn line(text: &str) -> String {
+fn line(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

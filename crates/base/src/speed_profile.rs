@@ -5,9 +5,9 @@
 
 use crate::corridor::Corridor;
 
-/// A speed profile: v(s) = min(limit, √(a_lat / |κ(s)|)).
+/// v(s) = min(limit, √(a_lat / |κ(s)|)).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pace {
+pub struct SpeedProfile {
     /// Speed limit, m/s, > 0.
     pub limit_m_s: f64,
     /// Largest lateral acceleration, m/s², > 0.
@@ -17,13 +17,13 @@ pub struct Pace {
 /// The limit is 80 km/h, which heavy vehicles must keep on rural roads in most of Europe. The lateral acceleration is 2
 /// m/s², which drivers of loaded heavy vehicles keep in bends. The least stable heavy vehicles roll over at 3.4 m/s²
 /// (0.35 g).
-impl Default for Pace {
+impl Default for SpeedProfile {
     fn default() -> Self {
         Self { limit_m_s: 80.0 / 3.6, lateral_m_s2: 2.0 }
     }
 }
 
-impl Pace {
+impl SpeedProfile {
     /// Speed (m/s) where the path has curvature `curvature` (1/m).
     #[must_use]
     pub fn speed_m_s(&self, curvature: f64) -> f64 {
@@ -52,22 +52,22 @@ mod tests {
 
     #[test]
     fn bends_take_longer_than_straights() {
-        let pace = Pace::default();
+        let profile = SpeedProfile::default();
         let curvature = vec![0.0, 0.0, 0.02, 0.02];
-        let t = pace.times_s(&Corridor { spacing_m: 1.0, x: vec![0.0; 4], curvature, ..Corridor::default() });
-        let in_the_bend = (pace.lateral_m_s2 / 0.02).sqrt();
-        assert!((t[1] - 1.0 / pace.limit_m_s).abs() < 1e-12);
+        let t = profile.times_s(&Corridor { spacing_m: 1.0, x: vec![0.0; 4], curvature, ..Corridor::default() });
+        let in_the_bend = (profile.lateral_m_s2 / 0.02).sqrt();
+        assert!((t[1] - 1.0 / profile.limit_m_s).abs() < 1e-12);
         assert!((t[3] - t[2] - 1.0 / in_the_bend).abs() < 1e-12);
         assert_eq!(t[0], 0.0);
     }
 
     #[test]
     fn neither_bound_is_exceeded() {
-        let pace = Pace { limit_m_s: 15.0, lateral_m_s2: 1.5 };
+        let profile = SpeedProfile { limit_m_s: 15.0, lateral_m_s2: 1.5 };
         for i in 0..200 {
             let curvature = f64::from(i - 100) * 1e-3;
-            let v = pace.speed_m_s(curvature);
-            assert!(v <= pace.limit_m_s && v * v * curvature.abs() <= pace.lateral_m_s2 + 1e-12);
+            let v = profile.speed_m_s(curvature);
+            assert!(v <= profile.limit_m_s && v * v * curvature.abs() <= profile.lateral_m_s2 + 1e-12);
         }
     }
 }

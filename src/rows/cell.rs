@@ -1,0 +1,49 @@
+//! Columns and their values, for tables of any kind. A cell knows its kind, so that typed formats need no list of their own.
+
+use serde_json::Value;
+
+/// A column's name and the kind of its values.
+pub type Column = (&'static str, Kind);
+
+/// The kind of a column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Whole numbers of up to 63 bits.
+    Integer,
+    /// Numbers.
+    Real,
+    /// Texts.
+    Text,
+    /// Yes or no.
+    Flag,
+}
+
+/// A value, or none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)] // as in `Kind`
+pub enum Cell<'r> {
+    Integer(Option<i64>),
+    Real(Option<f64>),
+    Text(Option<&'r str>),
+    Flag(bool),
+}
+
+impl<'r> Cell<'r> {
+    /// A text; none if it is empty.
+    #[must_use]
+    pub fn filled(text: &'r str) -> Self {
+        Self::Text((!text.is_empty()).then_some(text))
+    }
+}
+
+/// A number that is not finite is `null`.
+impl From<Cell<'_>> for Value {
+    fn from(cell: Cell<'_>) -> Self {
+        match cell {
+            Cell::Integer(value) => value.into(),
+            Cell::Real(value) => value.into(),
+            Cell::Text(value) => value.into(),
+            Cell::Flag(value) => value.into(),
+        }
+    }
+}

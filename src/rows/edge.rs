@@ -1,0 +1,153 @@
+//! Edges: with their certificates, with all that the map says, and with what a permit depends on.
+
+use crate::osm::LonLat;
+use crate::osm::facts::{Direction, Oneway, Permission, Policy, WidthSource};
+use crate::verdict::Verdict;
+use crate::words::Named as _;
+
+use super::cell::Kind::{Integer, Real, Text};
+use super::cell::{Cell, Column};
+use super::certificate::CertificateRow;
+
+/// One edge with its certificate, in the units of the view `certificate`.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)] // the columns of `edge`
+pub struct EdgeRow {
+    /// Index into `Network::edges`.
+    pub edge: u32,
+    pub edge_id: i64,
+    pub way_id: i64,
+    pub from_node: i64,
+    pub to_node: i64,
+    pub direction: Direction,
+    pub highway: String,
+    pub name: Option<String>,
+    pub reference: Option<String>,
+    pub length_m: f64,
+    /// Of the policy asked for.
+    pub width_m: Option<f64>,
+    pub width_source: Option<WidthSource>,
+    pub min_radius_m: Option<f64>,
+    /// Of the vehicle asked for, under that policy.
+    pub certificate: CertificateRow,
+    /// In direction of travel.
+    pub line: Vec<LonLat>,
+}
+
+impl EdgeRow {
+    /// The columns of [`Self::cells`].
+    pub const COLUMNS: [Column; 23] = {
+        let [verdict, reason, rsc, rsc_published, hinge_margin, shrink, limiting_s, limiting_unit, limiting_side] =
+            CertificateRow::COLUMNS;
+        [
+            ("edge_id", Integer),
+            ("way_id", Integer),
+            ("from_node", Integer),
+            ("to_node", Integer),
+            ("direction", Text),
+            ("highway", Text),
+            ("name", Text),
+            ("ref", Text),
+            ("length_m", Real),
+            ("width_m", Real),
+            ("width_source", Text),
+            ("min_radius_m", Real),
+            ("vehicle_id", Text),
+            ("corridor", Text),
+            verdict,
+            reason,
+            rsc,
+            rsc_published,
+            hinge_margin,
+            shrink,
+            limiting_s,
+            limiting_unit,
+            limiting_side,
+        ]
+    };
+
+    /// In the order of [`Self::COLUMNS`], for the vehicle and the policy that were asked for.
+    #[must_use]
+    pub fn cells<'r>(&'r self, vehicle: &'r str, policy: Policy) -> [Cell<'r>; Self::COLUMNS.len()] {
+        let [verdict, reason, rsc, rsc_published, hinge_margin, shrink, limiting_s, limiting_unit, limiting_side] =
+            self.certificate.cells();
+        [
+            Cell::Integer(Some(self.edge_id)),
+            Cell::Integer(Some(self.way_id)),
+            Cell::Integer(Some(self.from_node)),
+            Cell::Integer(Some(self.to_node)),
+            Cell::Text(Some(self.direction.name())),
+            Cell::Text(Some(&self.highway)),
+            Cell::Text(self.name.as_deref()),
+            Cell::Text(self.reference.as_deref()),
+            Cell::Real(Some(self.length_m)),
+            Cell::Real(self.width_m),
+            Cell::Text(self.width_source.map(WidthSource::name)),
+            Cell::Real(self.min_radius_m),
+            Cell::Text(Some(vehicle)),
+            Cell::Text(Some(policy.name())),
+            verdict,
+            reason,
+            rsc,
+            rsc_published,
+            hinge_margin,
+            shrink,
+            limiting_s,
+            limiting_unit,
+            limiting_side,
+        ]
+    }
+}
+
+/// A row of `edge`.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)] // the columns of `edge`
+pub struct EdgeFacts {
+    /// Index into `Network::edges`.
+    pub edge: u32,
+    pub edge_id: i64,
+    pub way_id: i64,
+    pub from_node: i64,
+    pub to_node: i64,
+    pub direction: Direction,
+    pub oneway: Oneway,
+    pub highway: String,
+    pub name: Option<String>,
+    pub reference: Option<String>,
+    pub lanes: Option<u8>,
+    pub length_m: f64,
+    /// By policy: how wide, and where that comes from.
+    pub widths: [(Policy, Option<f64>, Option<WidthSource>); 3],
+    pub min_radius_m: Option<f64>,
+    pub centreline_deviation_m: Option<f64>,
+    /// Height, weight, axle load, length, width: the tag's word, the unit, the limit.
+    pub limits: [(&'static str, &'static str, Option<f64>); 5],
+    /// Names of limits that are tagged with a value that could not be read.
+    pub unreadable_limits: Vec<String>,
+    pub hgv: Permission,
+    pub motor_vehicle: Permission,
+    pub barred: bool,
+    pub cut: bool,
+    /// In direction of travel.
+    pub line: Vec<LonLat>,
+}
+
+/// What a permit of an edge depends on, and where the edge lies on its way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)] // the columns of `edge` and `certificate`
+pub struct EdgeStep {
+    /// Index into `Network::edges`.
+    pub edge: u32,
+    pub way_id: i64,
+    pub from_node: i64,
+    pub to_node: i64,
+    pub direction: Direction,
+    /// Where its shape starts in `Network::shapes`; both directions share it.
+    pub shape_start: u32,
+    /// How many positions its shape has.
+    pub positions: u32,
+    pub verdict: Verdict,
+    pub rsc_m: Option<f64>,
+    /// Of the policy asked for.
+    pub width_source: Option<WidthSource>,
+}

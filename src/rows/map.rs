@@ -1,0 +1,85 @@
+//! What a map shows: just what is drawn, and roads by what they are called.
+
+use crate::osm::LonLat;
+use crate::osm::facts::{Direction, Oneway, RoadClass, WidthSource};
+use crate::verdict::Verdict;
+
+use super::bounds::Bounds;
+
+/// An edge as a map draws it.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)] // the columns of `edge` and `certificate`
+pub struct MapEdge {
+    /// Index into `Network::edges`.
+    pub edge: u32,
+    pub edge_id: i64,
+    pub way_id: i64,
+    pub direction: Direction,
+    pub oneway: Oneway,
+    pub highway: String,
+    pub name: Option<String>,
+    pub reference: Option<String>,
+    pub length_m: f64,
+    /// Of the policy asked for.
+    pub width_m: Option<f64>,
+    pub width_source: Option<WidthSource>,
+    pub verdict: Verdict,
+    /// Millimetres, as kept: rounded down.
+    pub rsc_mm: Option<i64>,
+    /// In direction of travel.
+    pub line: Vec<LonLat>,
+}
+
+/// A turn as a map draws it.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)] // the columns of `turn` and `turn_certificate`
+pub struct MapTurn {
+    /// Index into the network's turns.
+    pub turn: u32,
+    pub turn_id: i64,
+    pub from_edge: i64,
+    pub to_edge: i64,
+    /// Names of the roads, or their refs.
+    pub from_name: Option<String>,
+    pub to_name: Option<String>,
+    pub kind: String,
+    pub angle_deg: f64,
+    pub kerb_radius_m: Option<f64>,
+    pub restriction: Option<String>,
+    pub verdict: Verdict,
+    /// Millimetres, as kept: rounded down.
+    pub rsc_mm: Option<i64>,
+    /// The last metres before the node and the first after it.
+    pub line: Vec<LonLat>,
+}
+
+/// An edge as a map of small scale draws it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MainRoad {
+    /// `highway`.
+    pub class: RoadClass,
+    /// Whether it is a `_link`.
+    pub link: bool,
+    /// Of the policy asked for.
+    pub width_source: Option<WidthSource>,
+    /// With its reason.
+    pub verdict: Verdict,
+    /// Millimetres, as kept: rounded down.
+    pub rsc_mm: Option<i64>,
+    /// In direction of travel.
+    pub line: Vec<LonLat>,
+}
+
+/// A way that has edges.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)] // the columns of `road`
+pub struct RoadRow {
+    pub way_id: i64,
+    pub highway: String,
+    pub name: Option<String>,
+    pub reference: Option<String>,
+    /// Its first edge in order of the network.
+    pub edge_id: i64,
+    /// Around all its edges; single precision, rounded outward.
+    pub bounds: Bounds,
+}

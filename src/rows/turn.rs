@@ -1,0 +1,120 @@
+//! Turns: with their certificates, and with what a permit depends on.
+
+use crate::osm::LonLat;
+use crate::osm::facts::Policy;
+use crate::verdict::Verdict;
+use crate::words::Named as _;
+
+use super::cell::Kind::{Integer, Real, Text};
+use super::cell::{Cell, Column};
+use super::certificate::CertificateRow;
+
+/// One turn with its certificate, in the units of the view `turn_certificate`.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)] // the columns of `turn` and `turn_certificate`
+pub struct TurnRow {
+    /// Index into the network's turns.
+    pub turn: u32,
+    pub turn_id: i64,
+    pub from_edge: i64,
+    pub to_edge: i64,
+    /// The first and the last arc, where it is a passage of a roundabout.
+    pub arcs: Option<[i64; 2]>,
+    pub via_node: i64,
+    /// Positive left.
+    pub angle_deg: f64,
+    pub kind: String,
+    pub kerb_radius_m: Option<f64>,
+    pub kerb_source: Option<String>,
+    pub restriction: Option<String>,
+    /// Names of the roads, or their refs.
+    pub from_name: Option<String>,
+    pub to_name: Option<String>,
+    /// Of the vehicle and the policy asked for.
+    pub certificate: CertificateRow,
+    pub path_no: Option<u8>,
+    /// In driving order.
+    pub line: Vec<LonLat>,
+}
+
+impl TurnRow {
+    /// The columns of [`Self::cells`]. Tables of turns leave out the paper's bound.
+    pub const COLUMNS: [Column; 23] = {
+        let [verdict, reason, rsc, _, hinge_margin, shrink, limiting_s, limiting_unit, limiting_side] =
+            CertificateRow::COLUMNS;
+        [
+            ("turn_id", Integer),
+            ("from_edge", Integer),
+            ("to_edge", Integer),
+            ("via_node", Integer),
+            ("kind", Text),
+            ("angle_deg", Real),
+            ("kerb_radius_m", Real),
+            ("kerb_source", Text),
+            ("restriction", Text),
+            ("first_arc", Integer),
+            ("last_arc", Integer),
+            ("from_name", Text),
+            ("to_name", Text),
+            ("vehicle_id", Text),
+            ("corridor", Text),
+            verdict,
+            reason,
+            rsc,
+            hinge_margin,
+            shrink,
+            limiting_s,
+            limiting_unit,
+            limiting_side,
+        ]
+    };
+
+    /// In the order of [`Self::COLUMNS`], for the vehicle and the policy that were asked for.
+    #[must_use]
+    pub fn cells<'r>(&'r self, vehicle: &'r str, policy: Policy) -> [Cell<'r>; Self::COLUMNS.len()] {
+        let [verdict, reason, rsc, _, hinge_margin, shrink, limiting_s, limiting_unit, limiting_side] =
+            self.certificate.cells();
+        [
+            Cell::Integer(Some(self.turn_id)),
+            Cell::Integer(Some(self.from_edge)),
+            Cell::Integer(Some(self.to_edge)),
+            Cell::Integer(Some(self.via_node)),
+            Cell::Text(Some(&self.kind)),
+            Cell::Real(Some(self.angle_deg)),
+            Cell::Real(self.kerb_radius_m),
+            Cell::Text(self.kerb_source.as_deref()),
+            Cell::Text(self.restriction.as_deref()),
+            Cell::Integer(self.arcs.map(|arcs| arcs[0])),
+            Cell::Integer(self.arcs.map(|arcs| arcs[1])),
+            Cell::Text(self.from_name.as_deref()),
+            Cell::Text(self.to_name.as_deref()),
+            Cell::Text(Some(vehicle)),
+            Cell::Text(Some(policy.name())),
+            verdict,
+            reason,
+            rsc,
+            hinge_margin,
+            shrink,
+            limiting_s,
+            limiting_unit,
+            limiting_side,
+        ]
+    }
+}
+
+/// What a permit of a turn depends on, and between which edges it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)] // the columns of `turn` and `turn_certificate`
+pub struct TurnStep {
+    /// Index into the network's turns.
+    pub turn: u32,
+    /// Index into `Network::edges`.
+    pub from: u32,
+    pub to: u32,
+    /// The first and the last arc (indices into `Network::edges`), where it is a passage of a roundabout.
+    pub arcs: Option<[u32; 2]>,
+    pub via_node: i64,
+    pub angle_deg: f64,
+    pub verdict: Verdict,
+    pub rsc_m: Option<f64>,
+}
