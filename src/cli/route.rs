@@ -103,7 +103,7 @@ impl Route {
         match self.format {
             Format::Json => writeln!(out, "{:#}", route::json(&inputs.roads.network, &inputs.driver.model, &answer))?,
             Format::Geojson => {
-                writeln!(out, "{}", route::geojson(&inputs.roads.network, &inputs.driver.model, &answer)?)?
+                writeln!(out, "{}", route::geojson(&inputs.roads.network, &inputs.driver.model, &answer)?)?;
             }
             Format::Table => tell(&mut out, &inputs, &answer)?,
         }

@@ -24,11 +24,11 @@
 //! The paper leaves some points open. They are read here as follows:
 //!
 //! - ê_i(t) is the velocity's direction at q_i(t). With δ = 0 throughout, as in Eq. 16, trailers swing *out* of every
-//! bend. With the δ̂(t) of rolling wheels Eq. 6-8 are the real motion. [`Sway`] chooses between the two.
+//!   bend. With the δ̂(t) of rolling wheels Eq. 6-8 are the real motion. [`Sway`] chooses between the two.
 //! - r_0 comes from half the dimensions 𝒟: the paper says "prime mover dimensions with margins" without naming the
-//! margins.
+//!   margins.
 //! - CORRCEN shifts by half the difference of the leeways, and SHRINK shrinks by what is missing (`corrections`).
-//! Δq_0^max and γ_0^min have no values in the paper.
+//!   Δq_0^max and γ_0^min have no values in the paper.
 //! - Σ has one L, θ and 𝒟 for all units, and couplings over axles.
 
 mod corrections;

@@ -49,6 +49,8 @@ struct Sample {
     lowered_left: V,
     lowered_right: V,
     curvature: V,
+    /// Curvature of the corridor's parallels through the point's left and right side, 1/m.
+    parallel: [V; 2],
     bulge: V,
     /// The place on the axis relative to its foot's station, along the corridor and across it.
     along: V,
@@ -166,8 +168,8 @@ fn sample<const CERTIFY: bool, const REFINED: bool>(
         body.points[index].foot = next_foot(track, first + last, seen.along.0[last]);
         let feet = Feet::Run(first);
         let spot = &body.points[index].spot;
-        let (left, right) = leeways::<CERTIFY, REFINED>(track, feet, &seen, s, knots, body, spot);
-        return Sample::new(&seen, feet, tag, left, right);
+        let sides = leeways::<CERTIFY, REFINED>(track, feet, &seen, s, knots, body, spot);
+        return Sample::new(&seen, feet, tag, sides);
     }
     sample_apart::<CERTIFY, REFINED>(track, body, index, s, knots)
 }
@@ -206,12 +208,20 @@ fn sample_at<const CERTIFY: bool, const REFINED: bool>(
 ) -> (Sample, Seen) {
     let (x, y) = (s.x + s.ux * spot.ahead, s.y + s.uy * spot.ahead);
     let seen = place(track.fields.gather(&feet), x, y);
-    let (left, right) = leeways::<CERTIFY, REFINED>(track, Feet::Each(feet), &seen, s, knots, body, spot);
+    let sides = leeways::<CERTIFY, REFINED>(track, Feet::Each(feet), &seen, s, knots, body, spot);
     let found = |side: V| {
         let one = |i: usize| if seen.along.0[i].abs() <= 1.5 * NEAR_M { side.0[i] } else { LOST_M };
         V(std::array::from_fn(one))
     };
-    (Sample::new(&seen, Feet::Each(feet), tag, found(left), found(right)), seen)
+    (
+        Sample::new(
+            &seen,
+            Feet::Each(feet),
+            tag,
+            Sides { left: found(sides.left), right: found(sides.right), ..sides },
+        ),
+        seen,
+    )
 }
 
 /// Examines the side between a body point and the previous one in `parts` parts, where half-widths bulge.
@@ -306,11 +316,12 @@ fn sagging([behind, ahead]: [f64; 2], whole: f64, [from, to]: [f64; 2]) -> f64 {
 
 impl Sample {
     #[inline(always)]
-    fn new(seen: &Seen, feet: Feet, tag: u64, left: V, right: V) -> Self {
+    fn new(seen: &Seen, feet: Feet, tag: u64, Sides { left, right, parallel }: Sides) -> Self {
         let (curvature, bulge) = (seen.at.curvature, seen.at.bulge);
         Self {
             feet,
             tag,
+            parallel,
             left,
             right,
             lowered_left: left,
@@ -335,20 +346,47 @@ fn bulges(before: &Sample, sample: &Sample) -> bool {
     before.bulge.max(sample.bulge).0.iter().any(|&bulge| bulge > BULGE_MOST)
 }
 
-/// Greatest and least curvature of the corridor relative to a straight side, under the given points and between them.
-/// The points pass a station one after the other, at most `gap` metres apart.
+/// Greatest and least curvature of the corridor relative to a straight side, under the given points and between them: the
+/// greatest on the left, the least on the right. What counts is the parallel through the point, which bends more than the
+/// centreline on the inside. The points pass a station one after the other, at most `gap` metres apart.
 #[inline(always)]
 fn bends(samples: &[&Sample], s: &States, gap: f64) -> [V; 2] {
     let sway = s.jerk * gap;
-    let most = samples.iter().fold(s.curvature, |most, sample| most.max(sample.curvature)) + sway;
-    let least = samples.iter().fold(s.curvature, |least, sample| least.min(sample.curvature)) - sway;
+    let most = samples.iter().fold(s.curvature, |most, sample| most.max(sample.parallel[0])) + sway;
+    let least = samples.iter().fold(s.curvature, |least, sample| least.min(sample.parallel[1])) - sway;
     [most, least]
+}
+
+/// The curvature under a side of length `gap` whose ends are over parallels of curvature `bend`. Between its ends the side
+/// comes closer to the centre, where parallels bend more.
+#[inline(always)]
+fn sharpest(bend: V, gap: f64) -> V {
+    let bend = bend.max(ZERO);
+    let q = bend * bend * (gap * gap);
+    bend * (q * q * 0.028 + q * 0.03 + 1.1)
 }
 
 /// Greatest distance of a straight side of length `gap` below both its ends, over a corridor that bends by `bend`.
 #[inline(always)]
 fn whole_sagitta(bend: V, gap: f64) -> V {
-    bend.max(ZERO) * (1.1 * gap * gap / 8.0)
+    sharpest(bend, gap) * (gap * gap / 8.0)
+}
+
+/// How far leeway may fall below its lesser end value along a side of length `gap`, if the ends differ by `apart` and its second
+/// derivative is at most c(1 − d′²), c being `bend` (docs/proof.md, section 7). The lowest place is x from the lesser end.
+/// The parabola gives x ≤ gap/2 − apart/(c·gap). The equation's own solution, ln cosh(cx)/c, gives
+/// x ≤ (ln cosh(c·gap)/c − apart)/tanh(c·gap).
+#[inline(always)]
+fn lowest_between(bend: V, gap: f64, apart: V) -> V {
+    let c = bend + 1e-9;
+    let z = c * gap;
+    let z2 = z * z;
+    // Up to z = 2, ln cosh z ≤ (z²/2)/(1 + z²/8), and tanh z ≥ z/(1 + z²/3).
+    let rise = z2 * 0.5 / ((z2 * 0.125 + 1.0) * c);
+    let solved = (rise - apart) * (z2 * (1.0 / 3.0) + 1.0) / z;
+    let parabola = V::splat(0.5 * gap) - apart / z;
+    let nearer = select_negative(V::splat(2.0) - z, parabola, parabola.min(solved)).max(ZERO);
+    c * nearer * nearer * 0.5
 }
 
 /// Covers the side between two body points: the side is straight while the corridor bends. Along the side, leeway lies
@@ -364,10 +402,8 @@ fn between_points(before: &mut Sample, sample: &mut Sample, s: &States, gap: f64
     let [most, least] = bends(&ends, s, gap);
     let [part_most, part_least] = bends(&ends, s, gap / parts);
     let sag = |bend: V, part_bend: V, f: V, g: V| {
-        let whole = (bend.max(ZERO) * 1.1 + bulge) * (0.5 * gap * gap) + 1e-9;
-        let short = (whole - (f - g).abs()).max(ZERO);
-        let parabola = short * short / (whole * 4.0);
-        select_negative(V::splat(BULGE_MOST) - bulge, whole_sagitta(part_bend, gap / parts), parabola)
+        let side = lowest_between(sharpest(bend, gap) + bulge, gap, (f - g).abs());
+        select_negative(V::splat(BULGE_MOST) - bulge, whole_sagitta(part_bend, gap / parts), side)
     };
     let left = sag(most, part_most, before.left, sample.left);
     let right = sag(-least, -part_least, before.right, sample.right);
@@ -400,6 +436,13 @@ impl Knots {
     }
 }
 
+/// Leeway at the two side points of one place on the axis, and the curvature of the corridor's parallels through them.
+struct Sides {
+    left: V,
+    right: V,
+    parallel: [V; 2],
+}
+
 /// Leeway to the left and to the right, at the two side points of one place on the axis.
 #[inline(always)]
 fn leeways<const CERTIFY: bool, const REFINED: bool>(
@@ -410,7 +453,7 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     knots: &Knots,
     body: &Body,
     spot: &Spot,
-) -> (V, V) {
+) -> Sides {
     let at = &seen.at;
     let cos = at.tangent_x * s.ux + at.tangent_y * s.uy;
     let sin = at.tangent_x * s.uy - at.tangent_y * s.ux;
@@ -427,7 +470,8 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let lean_right = (askew * spot.slope_ahead).max(askew * -spot.slope_behind);
     if !CERTIFY {
         let gain = cos * spot.gain;
-        return (left - gain - lean_left, right - gain - lean_right);
+        let parallel = [at.curvature; 2];
+        return Sides { left: left - gain - lean_left, right: right - gain - lean_right, parallel };
     }
     let reach = spot.ahead.abs();
     let (c, t) = (cos.abs(), sin.abs());
@@ -450,19 +494,60 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     let along = c * a * body.half_width + t * (axle + a * reach);
     let bend = at.curvature.abs();
     let second = (c * s.remainder + t * a2 * 0.5) * reach;
-    // Between head stations.
-    let step2 = track.spacing * track.spacing;
-    let between = ((s.curvature - at.curvature).abs() * s.way2.max(V::splat(step2)) + s.jerk * reach * step2) * 0.125;
-    let common = base + second + between;
-    let side = |edge: &Edge, lean: V| {
+    let common = base + second;
+    let parallel = edges.map(|edge| at.curvature * edge.spread);
+    let passing = Passing { s, at, cos, sin, ahead: spot.ahead, step2: track.spacing * track.spacing };
+    let side = |edge: &Edge, lean: V, aside: f64| {
         let crowd = edge.spread.max(V::splat(1.0));
         let slide = crowd * along;
         // Terms of the foot's series beyond third order: κ³σ⁴/8, times 1 + |κb| on the outside.
         let on2 = edge.on * edge.on;
         let bent = bend * slide * along * 0.5 + bend * bend * bend * on2 * on2 * 0.3;
-        edge.room - common - lean - bent - edge.excess(slide)
+        edge.room - common - lean - bent - edge.excess(slide) - passing.sag(edge, aside)
     };
-    (side(&edges[0], lean_left), side(&edges[1], lean_right))
+    Sides {
+        left: side(&edges[0], lean_left, body.half_width),
+        right: side(&edges[1], lean_right, -body.half_width),
+        parallel,
+    }
+}
+
+/// A place on a unit's axis as the vehicle passes from one head station to the next.
+struct Passing<'a> {
+    s: &'a States,
+    at: &'a Fields<V>,
+    cos: V,
+    sin: V,
+    ahead: f64,
+    step2: f64,
+}
+
+impl Passing<'_> {
+    /// How far the clearance of the side point `aside` metres to the left may lie below its chord between two head stations:
+    /// an eighth of its second derivative, where that is positive (docs/proof.md, section 7, "between head stations"). Per metre of
+    /// the axle, the unit turns by `w`, and the point moves by `along` along the road.
+    #[inline(always)]
+    fn sag(&self, edge: &Edge, aside: f64) -> V {
+        let Self { s, at, cos, sin, ahead, step2 } = *self;
+        let (c, t) = (cos.abs(), sin.abs());
+        let w = s.curvature;
+        let own = V::splat(1.0) - w * aside;
+        let along = own * cos - w * sin * ahead;
+        let across = w * own * cos - w * w * sin * ahead;
+        let away = (at.curvature * edge.spread * along * along - across) * aside.signum();
+        // The half-width's slope counts where the foot runs faster or slower.
+        let lever = w.abs() * ahead.abs();
+        let foot = (w.abs() * (lever + 1.0)
+            + at.curvature.abs() * (t + lever) * 2.0
+            + at.curvature_slope.abs() * (at.curvature.abs() * 4.0 + 0.5))
+            * edge.spread
+            * edge.spread;
+        // Both curvatures may change within the step.
+        let change = (at.curvature_slope.abs() * edge.spread * edge.spread + s.jerk) * 0.25;
+        let way2 = s.way2.max(V::splat(step2));
+        let turning = s.jerk * (c * ahead.abs() + t * aside.abs()) * step2;
+        (away.max(ZERO) * way2 + (edge.slope.abs() * foot + change) * way2 + turning) * 0.125
+    }
 }
 
 /// Metres a foot moves along the corridor while its point moves a metre, left and right: 1 over [`narrow`].
