@@ -22,6 +22,8 @@ pub struct Settings {
     pub corridor: Params,
     /// How corrections are made.
     pub stet: Options,
+    /// Which width counts near turns, if it is more than `policy` gives.
+    pub turn_policy: Policy,
     /// What is assumed of kerbs.
     pub kerbs: Kerbs,
     /// Whether turns are certified, too.
@@ -33,6 +35,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             policy: Policy::Lane,
+            turn_policy: Policy::Direction,
             corridor: Params::default(),
             stet: Options::default(),
             kerbs: Kerbs::default(),
@@ -46,6 +49,7 @@ impl Default for Settings {
 #[serde(deny_unknown_fields)]
 struct Written {
     corridor: String,
+    turn_corridor: String,
     smoothing_tolerance_m: f64,
     smoothing_cutoff_m: f64,
     map_tolerance_m: f64,
@@ -61,7 +65,7 @@ impl Settings {
     /// How turns are made.
     #[must_use]
     pub fn turn_params(&self) -> TurnParams {
-        TurnParams { corridor: self.corridor, kerbs: self.kerbs.clone() }
+        TurnParams { strip: self.turn_policy, corridor: self.corridor, kerbs: self.kerbs.clone() }
     }
 
     /// As JSON, whole. The same settings give the same bytes.
@@ -70,11 +74,12 @@ impl Settings {
     /// Which member is out of range.
     pub fn written(&self) -> Result<String, String> {
         // Without `..`: a new member does not compile until it is written.
-        let Self { policy, corridor, stet, kerbs, turns } = self;
+        let Self { policy, corridor, stet, turn_policy, kerbs, turns } = self;
         let Params { tolerance_m, map_tolerance_m, spacing_m, cutoff_m, lead_in_m } = *corridor;
         let Options { max_shift_m, correction_sweeps } = *stet;
         let written = Written {
             corridor: policy.name().to_owned(),
+            turn_corridor: turn_policy.name().to_owned(),
             smoothing_tolerance_m: tolerance_m,
             smoothing_cutoff_m: cutoff_m,
             map_tolerance_m,
@@ -108,8 +113,10 @@ impl Settings {
         let written: Written = serde_json::from_str(text).map_err(|error| error.to_string())?;
         written.check()?;
         let policy = Policy::named(&written.corridor).ok_or("corridor: no such policy")?;
+        let turn_policy = Policy::named(&written.turn_corridor).ok_or("turn_corridor: no such policy")?;
         Ok(Self {
             policy,
+            turn_policy,
             corridor: Params {
                 tolerance_m: written.smoothing_tolerance_m,
                 map_tolerance_m: written.map_tolerance_m,
@@ -157,6 +164,7 @@ mod tests {
     fn some() -> Settings {
         Settings {
             policy: Policy::Direction,
+            turn_policy: Policy::Carriageway,
             corridor: Params {
                 tolerance_m: 0.1 + 0.2,
                 map_tolerance_m: 0.3,
@@ -193,6 +201,7 @@ mod tests {
         assert!(Settings::read(&unknown.to_string()).unwrap_err().contains("max_sway_m"));
         for (name, wrong) in [
             ("corridor", json!("shoulder")),
+            ("turn_corridor", json!("same")),
             ("smoothing_tolerance_m", json!(-0.1)),
             ("smoothing_cutoff_m", json!(0)),
             ("map_tolerance_m", json!(100.5)),

@@ -4,7 +4,7 @@
 //! is yet to be made, what is not given is as in the database's own ingest.
 
 use anyhow::anyhow;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use netcert::corridor::Params;
 use netcert::osm::facts::Policy;
 use netcert::settings::Settings;
@@ -29,9 +29,34 @@ pub(crate) struct CertifyOptions {
     /// How far the steer axle may be planned off the centreline to leave the trailers room, metres [default: 1.5].
     #[arg(long, value_name = "METRES", value_parser = metres)]
     max_shift: Option<f64>,
+    /// Which width counts near turns: no more than elsewhere, all lanes of the vehicle's direction, or the whole carriageway
+    /// [default: direction].
+    ///
+    /// Long vehicles use all lanes of their direction before and after a turn. `same` forbids that. Never less than
+    /// --corridor counts.
+    #[arg(long, value_name = "POLICY")]
+    turn_corridor: Option<TurnCorridor>,
     /// Certify edges only, no turns.
     #[arg(long)]
     no_turns: bool,
+}
+
+/// Values of `--turn-corridor`.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum TurnCorridor {
+    Same,
+    Direction,
+    Carriageway,
+}
+
+impl TurnCorridor {
+    fn policy(self) -> Policy {
+        match self {
+            Self::Same => Policy::Lane,
+            Self::Direction => Policy::Direction,
+            Self::Carriageway => Policy::Carriageway,
+        }
+    }
 }
 
 impl CertifyOptions {
@@ -50,6 +75,7 @@ impl CertifyOptions {
                 ..base.corridor
             },
             stet: Options { max_shift_m: self.max_shift.unwrap_or(base.stet.max_shift_m), ..base.stet },
+            turn_policy: self.turn_corridor.map_or(base.turn_policy, TurnCorridor::policy),
             kerbs: base.kerbs.clone(),
             turns: base.turns && !self.no_turns,
         }

@@ -14,7 +14,7 @@ use crate::corridor::{CentrelineError, Corridor, Frame, FrameError};
 use crate::network::{Movement, MovementKind, Movements, Network};
 use crate::osm::LonLat;
 use crate::stop::{Stop, Stopped};
-use crate::turns::{Joint, StrokeLine};
+use crate::turns::{Joint, Reach, StrokeLine};
 use crate::verdict::UnknownReason;
 
 /// Distance of the route's stations, metres, at most: as on strokes. Sharp turns have closer ones, and so has then the whole.
@@ -159,6 +159,7 @@ pub fn assemble(
             samples: in_frame(&piece, frame)?,
             approach: piece.approach,
             departure: piece.departure,
+            reach: piece.reach,
         });
     }
     legs.push(first..edges.len());
@@ -191,6 +192,7 @@ struct Between {
     samples: Vec<Sample>,
     approach: Joint,
     departure: Joint,
+    reach: Reach,
 }
 
 fn in_frame(piece: &TurnPiece, frame: Frame) -> Result<Vec<Sample>, FrameError> {
@@ -290,7 +292,15 @@ impl Leg {
             to = to.max((from + if before.is_none() { LEAST_STATIONS } else { 0 }).min(last_station));
         }
         let (low, high) = (from.min(to), from.max(to).min(last_station));
-        let samples = samples(corridor, low..high + 1, line.frame, frame)?;
+        let mut samples = samples(corridor, low..high + 1, line.frame, frame)?;
+        // As in the turns' own certificates, their strip counts before and after them.
+        let strip = strokes.turn_params().strip.max(strokes.settings().policy);
+        let metres = |stations: usize| stations as f64 * corridor.spacing_m;
+        for (station, sample) in (low..).zip(&mut samples) {
+            let share_after = before.map_or(0.0, |turn| turn.reach.share_after(metres(station.saturating_sub(from))));
+            let share_before = after.map_or(0.0, |turn| turn.reach.share_before(metres(to.saturating_sub(station))));
+            [sample.left_m, sample.right_m] = line.half_widths(strip, station, share_after.max(share_before));
+        }
         let ends = (0..edges.len()).map(|i| Ok((edges[i], span(i)?.end - 1))).collect::<Result<_, AssemblyError>>()?;
         Ok(Self { samples, first: low, from, to: to.min(last_station), edges: ends })
     }

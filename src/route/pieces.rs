@@ -9,7 +9,7 @@ use super::roads::Roads;
 use crate::corridor::{Corridor, Frame};
 use crate::network::{Movement, Network};
 use crate::settings::Settings;
-use crate::turns::{Joint, StrokeLine, TurnParams};
+use crate::turns::{Joint, Reach, StrokeLine, TurnParams};
 use crate::verdict::UnknownReason;
 
 /// One certified way to drive a turn.
@@ -25,6 +25,8 @@ pub struct TurnPiece {
     pub approach: Joint,
     /// Where it joins the stroke of the edge that one goes to.
     pub departure: Joint,
+    /// How far before and after it the turn's strip counts.
+    pub reach: Reach,
 }
 
 /// Where turns come from.

@@ -42,9 +42,10 @@ impl Turns for MadeTurns {
         let mut safe: Vec<(usize, SpanResult)> = known.into_iter().chain(others).collect();
         safe.sort_by(|a, b| b.1.rsc_m.partial_cmp(&a.1.rsc_m).unwrap_or(std::cmp::Ordering::Equal));
         let frame = made.frame;
+        let reach = Reach::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
         let piece = |path: &TurnPath| {
             let TurnPath { corridor, turn, approach, departure, .. } = path.clone();
-            TurnPiece { frame, corridor, turn, approach, departure }
+            TurnPiece { frame, corridor, turn, approach, departure, reach }
         };
         Ok(safe.into_iter().map(|(path, _)| piece(&made.paths[path])).collect())
     }
