@@ -145,14 +145,22 @@ impl Explain {
                 let mut json = explain::json(&turn.explanation);
                 json["turn_id"] = turn.facts.id.into();
                 json["turn"] = turn.title().into();
+                json["turn_corridor"] = turn.strip.name().into();
                 writeln!(out, "{json:#}")?;
             }
             Format::Text => {
                 writeln!(out, "{}", printable(&turn.title()))?;
                 tell(&mut out, &turn.explanation)?;
-                let note = "This is the turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii \
-                            are assumed where no surface is mapped.";
-                writeln!(out, "{}", wrapped(note, ""))?;
+                let near = match turn.strip {
+                    Policy::Lane => "its own lane",
+                    Policy::Direction => "all lanes of its direction",
+                    Policy::Carriageway => "the whole carriageway",
+                };
+                let note = format!(
+                    "This is the turn by itself, on the best of its paths; its two edges have verdicts of their own. Near the turn \
+                     the vehicle may use {near}. Kerb radii are assumed where no surface is mapped."
+                );
+                writeln!(out, "{}", wrapped(&note, ""))?;
             }
         }
         Ok(out.flush()?)

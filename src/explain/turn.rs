@@ -5,6 +5,7 @@ use super::hints::Hints;
 use super::{Explanation, Geometry};
 use crate::certify::{best_of, turn_verdict};
 use crate::network::{Edge, Network};
+use crate::osm::facts::Policy;
 use crate::settings::Settings;
 use crate::stet::{Model, Options, SpanResult};
 use crate::stop::{Stop, Stopped};
@@ -22,6 +23,8 @@ pub struct TurnExplanation {
     pub corridors: Option<TurnCorridors>,
     /// Which of the paths is best.
     pub path: Option<usize>,
+    /// The strip that the vehicle may use near the turn.
+    pub strip: Policy,
     /// The certificate on it, and the turn's own verdict (whatever its edges' are).
     pub explanation: Explanation,
 }
@@ -73,7 +76,8 @@ pub fn explain_turn(
         conflict: None,
     };
     let path = best.map(|(path, _)| path);
-    Ok(TurnExplanation { facts: facts.clone(), roads, corridors: made.ok(), path, explanation })
+    let strip = settings.turn_policy.max(settings.policy);
+    Ok(TurnExplanation { facts: facts.clone(), roads, corridors: made.ok(), path, strip, explanation })
 }
 
 /// The certificate on a path, with the options that gave `result`: some paths are certified without corrections.
