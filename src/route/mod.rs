@@ -9,7 +9,7 @@
 //! | `speeds` | what an edge costs |
 //! | `bans` | restrictions over ways, as an automaton |
 //! | `permits`, `stored` | what a vehicle may use |
-//! | `roads` | what planners share: the roads, and a vehicle with its permits |
+//! | `roads`, `driver` | what planners share: the roads, and a vehicle with its permits |
 //! | `graph` | edges, movements and passages of roundabouts as a graph |
 //! | `drive` | the edges of a way, and which are driven as part of a passage |
 //! | `search` | the shortest way |
@@ -26,6 +26,7 @@ mod assemble;
 mod bans;
 mod blend;
 mod drive;
+mod driver;
 mod graph;
 mod obstacles;
 mod permits;
@@ -43,6 +44,7 @@ mod turning;
 pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble, passes_over};
 pub use bans::{Bans, Within};
 pub use drive::{Drive, Join};
+pub use driver::Driver;
 pub use graph::{Access, BARRED, Graph};
 pub use obstacles::Obstacle;
 pub use permits::{Permit, Permits};
@@ -50,7 +52,7 @@ pub use pieces::{Menu, NoTurns, Strokes, TurnPiece, Turns};
 pub use plan::{Answer, Planner, Question, Refutation, Route, Unanswered};
 pub use reach::{Components, Reach, components, reach, with_edge};
 pub use report::{PartResult, geojson, json, obstacle_members, place, title};
-pub use roads::{Driver, Roads};
+pub use roads::Roads;
 pub use search::{Found, Goal, Start, search, search_over};
 pub use snap::{Position, SnapError, Snapped, Snapper};
 pub use speeds::{Measure, Speeds, SpeedsError};

@@ -9,10 +9,11 @@ use std::sync::Arc;
 
 use super::assemble::{AssemblyError, PartKind, RoutePath, Way, assemble};
 use super::drive::{Drive, Join};
+use super::driver::Driver;
 use super::graph::{Access, BARRED, Graph};
 use super::obstacles::{self, Obstacle};
 use super::pieces::{Menu, Strokes, Turns};
-use super::roads::{Driver, Roads};
+use super::roads::Roads;
 use super::search::{Found, Goal, Start, search_over};
 use super::snap::{Position, SnapError, Snapped, Snapper};
 use super::speeds::{Measure, Speeds};

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
+use super::driver::Driver;
 use super::permits::{Permit, Permits};
-use super::roads::{Driver, Roads};
+use super::roads::Roads;
 use crate::network::{Movements, Network};
 use crate::stet::{Model, ModelError};
 use crate::store::{CertifiedSet, Database, QueryOptions, StoreError, TurnQuery};

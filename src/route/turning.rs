@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
+use super::driver::Driver;
 use super::pieces::{Strokes, TurnPiece, Turns};
-use super::roads::Driver;
 use crate::certify::best_of;
 use crate::network::Movement;
 use crate::stet::{Options, SpanResult, certify_spans};

@@ -284,7 +284,8 @@ fn a_route_whose_parts_passed_is_refuted_as_a_whole_and_the_search_goes_on() {
 /// In its own lane, over a corner for which it uses the other lanes of its direction, too.
 #[test]
 fn a_route_in_the_lane_has_the_turns_strip_around_a_turn() {
-    let nodes = [('A', [-450.0, 0.0]), ('J', [0.0, 0.0]), ('E', [450.0, 0.0]), ('S', [0.0, -450.0]), ('N', [0.0, 450.0])];
+    let nodes =
+        [('A', [-450.0, 0.0]), ('J', [0.0, 0.0]), ('E', [450.0, 0.0]), ('S', [0.0, -450.0]), ('N', [0.0, 450.0])];
     let tags = "highway=primary lanes=6 width=21";
     let map = AsciiMap::placed(&nodes).way("AJE", tags).way("SJN", tags);
     let mut region = Region::of(map.extract(), Policy::Lane);
