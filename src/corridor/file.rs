@@ -158,7 +158,7 @@ mod tests {
         assert!(with(r#""frame": "metres", "width_m": "3 m""#).contains("expected a number of metres"));
         assert!(with(r#""frame": "metres", "width": 3"#).contains("unknown field `width`"));
         assert!(with(r#""frame": "metres""#).starts_with("width_m: missing"));
-        assert!(with(r#""frame": "metres", "left_m": 3"#).starts_with("right_m: missing"));
+        assert!(with(r#""frame": "metres", "left_m": 3"#).starts_with("right_m: is missing"));
         assert!(with(r#""frame": "metres", "left_m": 3, "width_m": 3"#).starts_with("width_m: is given with left_m"));
         assert!(with(r#""frame": "metres", "width_m": [3, 0]"#).starts_with("width_m[1]: 0 is not a width"));
         assert!(with(r#""frame": "metres", "width_m": [3, 2, 3]"#).contains("3 values for 2 points"));

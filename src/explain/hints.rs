@@ -29,6 +29,8 @@ pub struct Hints {
     pub tolerance_m: Option<f64>,
     /// The least limit of the failing hinge or steering lock with which the vehicle passes, degrees.
     pub hinge_limit_deg: Option<f64>,
+    /// The kerb radius of a turn with an assumed kerb.
+    pub kerb: Option<KerbHint>,
     /// The results with wider strips of the same road.
     pub other_strips: Vec<OtherStrip>,
 }
@@ -40,6 +42,15 @@ pub struct WidthHint {
     pub width_m: f64,
     /// The factor γ on the tracking tolerance at this width.
     pub shrink: f64,
+}
+
+/// What the corner of a turn would have to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum KerbHint {
+    /// A kerb return of this radius would do, metres; half a metre less would not.
+    AtLeast(f64),
+    /// No radius up to this one would do, metres.
+    NotUpTo(f64),
 }
 
 /// The result of the same edge with a wider strip.
@@ -66,6 +77,7 @@ pub(super) fn of(again: &Again<'_>, geometry: &Geometry, model: &Model) -> Hints
         width: too_narrow.then(|| width(again, geometry, model)).flatten(),
         tolerance_m: too_narrow.then(|| tolerance(again, geometry, model)).flatten(),
         hinge_limit_deg: (turns_too_far && !too_narrow).then(|| hinge_limit(again, geometry, model)).flatten(),
+        kerb: None,
         other_strips: Vec::new(),
     }
 }

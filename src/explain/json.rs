@@ -4,7 +4,7 @@
 use serde_json::{Value, json};
 
 use super::words::words;
-use super::{Explanation, Geometry, Part};
+use super::{Explanation, Geometry, KerbHint, Part};
 use crate::osm::facts::WidthSource;
 use crate::vehicle::Vehicle;
 use crate::words::{Named as _, verdict_words};
@@ -91,6 +91,10 @@ fn hints(e: &Explanation) -> Value {
         "width_shrink": e.hints.width.map(|hint| hint.shrink),
         "tracking_tolerance_m": e.hints.tolerance_m,
         "hinge_limit_deg": e.hints.hinge_limit_deg,
+        "kerb_radius_m": match e.hints.kerb {
+            Some(KerbHint::AtLeast(radius_m)) => Some(radius_m),
+            _ => None,
+        },
         "other_strips": e.hints.other_strips.iter().map(strip).collect::<Vec<_>>(),
     })
 }

@@ -32,7 +32,7 @@ mod words;
 use std::ops::Range;
 
 pub use edge::explain_edge;
-pub use hints::{Hints, OtherStrip, WidthHint};
+pub use hints::{Hints, KerbHint, OtherStrip, WidthHint};
 pub use json::json;
 pub use legal::Conflict;
 pub use names::cautious_m;

@@ -1,16 +1,21 @@
 //! Explains a turn of the network. Its corridors are made again, and the one with the best certificate is explained.
 
 use super::edge::geometry;
-use super::hints::Hints;
+use super::hints::{self, Hints, KerbHint};
 use super::{Explanation, Geometry};
 use crate::certify::{best_of, turn_verdict};
+use crate::corridor::Corridor;
 use crate::network::{Edge, Network};
 use crate::osm::facts::Policy;
 use crate::settings::Settings;
-use crate::stet::{Model, Options, SpanResult};
+use crate::stet::{Model, Options, SpanResult, certify_spans};
 use crate::stop::{Stop, Stopped};
-use crate::turns::{KerbSource, Reach, TurnCorridors, TurnFacts, TurnPath, corridors_of};
+use crate::turns::{KerbSource, Kerbs, Reach, TurnCorridors, TurnFacts, TurnParams, TurnPath, corridors_of};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
+
+/// Kerb radii that are tried, metres: in these steps, up to this one.
+const KERB_STEP_M: f64 = 0.5;
+const MOST_KERB_M: f64 = 25.0;
 
 /// What limits a vehicle in a turn.
 #[derive(Debug, Clone)]
@@ -63,18 +68,29 @@ pub fn explain_turn(
     };
     let path =
         made.as_ref().ok().zip(best.as_ref()).and_then(|(made, (path, result))| Some((made.paths.get(*path)?, result)));
-    let geometry = match path {
-        Some((path, result)) => turn_geometry(path, result, model, settings, stop)?,
-        None => None,
-    };
-    let explanation = Explanation {
-        road: None,
-        vehicle: model.vehicle.clone(),
-        verdict,
-        geometry,
-        hints: Hints::default(),
-        conflict: None,
-    };
+    let mut hints = Hints::default();
+    let mut geometry = None;
+    if let Some((path, result)) = path {
+        let made = turn_geometry(path, result, model, settings, stop)?;
+        if let (Some((options, geometry)), Verdict::Unsafe(_)) = (&made, verdict) {
+            let again = |corridor: &Corridor, model: &Model| {
+                stop.check().ok()?;
+                let rows = certify_spans(corridor, &[model], std::slice::from_ref(&path.counted), options);
+                rows.into_iter().next()?.spans.into_iter().next()
+            };
+            hints = hints::of(&again, geometry, model);
+        }
+        geometry = made.map(|(_, geometry)| geometry);
+    }
+    if let (Ok(made), Verdict::Unsafe(_)) = (&made, verdict) {
+        hints.kerb = match made.kerb_radius_m {
+            Some(radius_m) => Some(kerb(network, facts, model, settings, (radius_m, stop))?),
+            None => None,
+        };
+    }
+    stop.check()?;
+    let vehicle = model.vehicle.clone();
+    let explanation = Explanation { road: None, vehicle, verdict, geometry, hints, conflict: None };
     let path = best.map(|(path, _)| path);
     let strip = settings.turn_policy.max(settings.policy);
     Ok(TurnExplanation { facts: facts.clone(), roads, corridors: made.ok(), path, strip, explanation })
@@ -87,14 +103,43 @@ fn turn_geometry(
     model: &Model,
     settings: &Settings,
     stop: &Stop,
-) -> Result<Option<Geometry>, Stopped> {
+) -> Result<Option<(Options, Geometry)>, Stopped> {
     let spans = std::slice::from_ref(&path.counted);
     let corrected = geometry(&path.corridor, spans, 0, model, &settings.stet, stop)?;
-    if corrected.as_ref().is_some_and(|geometry| geometry.result == *result) {
-        return Ok(corrected);
+    if let Some(geometry) = corrected.filter(|geometry| geometry.result == *result) {
+        return Ok(Some((settings.stet, geometry)));
     }
     let plain = Options { max_shift_m: 0.0, correction_sweeps: 0 };
-    geometry(&path.corridor, spans, 0, model, &plain, stop)
+    Ok(geometry(&path.corridor, spans, 0, model, &plain, stop)?.map(|geometry| (plain, geometry)))
+}
+
+/// The least radius of an assumed kerb return with which the turn is safe, in half metres. The turn is made and certified
+/// again for every radius that is tried.
+fn kerb(
+    network: &Network,
+    facts: &TurnFacts,
+    model: &Model,
+    settings: &Settings,
+    (radius_m, stop): (f64, &Stop),
+) -> Result<KerbHint, Stopped> {
+    let Some(reach) = Reach::of(&model.vehicle) else { return Ok(KerbHint::NotUpTo(MOST_KERB_M)) };
+    let safe_with = |steps: u32| -> Result<bool, Stopped> {
+        stop.check()?;
+        let kerbs = Kerbs::everywhere(f64::from(steps) * KERB_STEP_M);
+        let params = TurnParams { kerbs, ..settings.turn_params() };
+        let made = corridors_of(network, facts, settings.policy, &params, reach).ok();
+        let best = made.and_then(|made| best_of(&made.paths, &[model], &settings.stet).pop().flatten());
+        Ok(best.is_some_and(|(_, result)| result.safe()))
+    };
+    let (mut fails, mut does) = ((radius_m / KERB_STEP_M) as u32, (MOST_KERB_M / KERB_STEP_M) as u32);
+    if fails >= does || !safe_with(does)? {
+        return Ok(KerbHint::NotUpTo(MOST_KERB_M));
+    }
+    while does - fails > 1 {
+        let middle = u32::midpoint(fails, does);
+        if safe_with(middle)? { does = middle } else { fails = middle }
+    }
+    Ok(KerbHint::AtLeast(f64::from(does) * KERB_STEP_M))
 }
 
 fn forbids(edge: &Edge, model: &Model) -> Option<Verdict> {

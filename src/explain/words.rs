@@ -1,6 +1,6 @@
 //! Writes an explanation as sentences: first what limits the vehicle and where, then hints, then the scope of the answer.
 
-use super::hints::{MOST_MORE_M, OtherStrip};
+use super::hints::{KerbHint, MOST_MORE_M, OtherStrip};
 use super::names::{cut, hinge_name, named, needed, source_words, strip_name};
 use super::{Explanation, Geometry, HingePlace, Part, Place};
 use crate::corridor::{Taper, TaperCause};
@@ -278,6 +278,15 @@ fn hints(e: &Explanation) -> Vec<String> {
     }
     if let Some(limit) = h.hinge_limit_deg {
         out.push(format!("With a limit of {limit:.1}° it would do."));
+    }
+    match h.kerb {
+        Some(KerbHint::AtLeast(radius_m)) => {
+            out.push(format!("A kerb return of at least {radius_m:.1} m radius would do."));
+        }
+        Some(KerbHint::NotUpTo(radius_m)) => {
+            out.push(format!("No kerb return of up to {radius_m:.0} m radius would do."));
+        }
+        None => {}
     }
     out.extend(h.other_strips.iter().map(other_strip));
     out

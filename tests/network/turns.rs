@@ -10,9 +10,13 @@ use crate::support::junctions::{Certified, Drawn};
 
 use ascii_map::{AsciiMap, id_of};
 use geo::{Distance as _, Euclidean};
+use netcert::explain::{KerbHint, explain_turn, words};
 use netcert::osm::Via;
 use netcert::osm::facts::Policy;
 use netcert::rows::TurnCertificate;
+use netcert::settings::Settings;
+use netcert::stet::Model;
+use netcert::stop::Stop;
 use netcert::turns::{Reach, StrokeLine, turn_corridors};
 use netcert::verdict::{ForbiddenReason, Verdict};
 use oracle::draw::Draw;
@@ -311,4 +315,25 @@ fn no_claim_of_a_turn_over_several_lanes_is_refuted() {
         fought += fight::none_is_refuted(&made.paths, id, made.paths.len() / 3, nodes, &mut draw);
     }
     assert!(fought >= 4, "{fought}");
+}
+
+#[test]
+fn an_unsafe_turn_says_which_kerb_would_do() {
+    let cross = |kerb_m| Drawn::cross("highway=secondary width=7.5", false, kerb_m);
+    let explained = |id: &str| {
+        let drawn = cross(3.0);
+        let kerbs = drawn.params.kerbs.clone();
+        let settings = Settings { policy: Policy::Carriageway, kerbs, ..Settings::default() };
+        let model = Model::new(&catalogued(id)).unwrap();
+        explain_turn(&drawn.network, &drawn.turn("EBC"), &model, &settings, &Stop::never()).unwrap().explanation
+    };
+    let semi = explained("EU-SEMI16.5");
+    let Some(KerbHint::AtLeast(radius_m)) = semi.hints.kerb else { panic!("{:?}", semi.hints) };
+    let safe = |kerb_m: f64| cross(kerb_m).safe("EBC", Policy::Carriageway, "EU-SEMI16.5");
+    assert!(safe(radius_m) && !safe(radius_m - 0.5), "{radius_m}");
+    let words = words(&semi);
+    println!("{} {:?}", words.headline, words.hints);
+    assert!(words.hints.contains(&format!("A kerb return of at least {radius_m:.1} m radius would do.")));
+    let train = explained("AU-ATRIPLE53");
+    assert_eq!(train.hints.kerb, Some(KerbHint::NotUpTo(25.0)));
 }
