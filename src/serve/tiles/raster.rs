@@ -92,7 +92,7 @@ impl Raster {
     }
 }
 
-/// Pieces one after the other, straight on where there is a choice, without crossings that nobody would miss.
+/// Joins pieces end to end into simplified lines. Where several pieces continue a line, the straightest one is taken.
 fn joined(pieces: &[Piece]) -> Vec<Vec<Cell>> {
     let mut at: BTreeMap<Cell, Vec<usize>> = BTreeMap::new();
     for (i, &(a, b)) in pieces.iter().enumerate() {
@@ -118,7 +118,7 @@ fn joined(pieces: &[Piece]) -> Vec<Vec<Cell>> {
     lines
 }
 
-/// The other end of the unused piece that goes on most nearly straight.
+/// The far end of the unused piece that continues the line most nearly straight. Marks the piece as used.
 fn onward(line: &[Cell], pieces: &[Piece], at: &BTreeMap<Cell, Vec<usize>>, used: &mut [bool]) -> Option<Cell> {
     let [.., before, end] = line else { return None };
     let other = |&i: &usize| if pieces[i].0 == *end { pieces[i].1 } else { pieces[i].0 };
