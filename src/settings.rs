@@ -1,8 +1,8 @@
-//! Everything that a certificate depends on besides the network and the vehicle.
+//! The settings that a certificate depends on besides the network and the vehicle.
 //!
-//! Promises that [`Settings::written`] leaves nothing out, and that [`Settings::read`] gives the same settings back or an
-//! error: a member that is missing, unknown, of another type or out of range is never replaced by a default. A database
-//! keeps the text with each set of certificates; whoever computes again reads it there.
+//! [`Settings::written`] writes every setting, and [`Settings::read`] gives the same settings or an error. A member that is
+//! missing, unknown, of another type or out of range is never replaced by a default. A database stores the text with each set
+//! of certificates; a new computation of the set reads the settings from it.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -16,20 +16,20 @@ use crate::words::Named as _;
 /// How certificates are made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
-    /// Which width counts.
+    /// The policy: which width of the road the vehicle may use.
     pub policy: Policy,
-    /// How corridors are made.
+    /// Parameters of corridors.
     pub corridor: Params,
-    /// How corrections are made.
+    /// Options of the certificate's corrections.
     pub stet: Options,
-    /// What is assumed of kerbs.
+    /// Assumed kerb radii.
     pub kerbs: Kerbs,
     /// Whether turns are certified, too.
     pub turns: bool,
 }
 
 impl Default for Settings {
-    /// What `ingest` takes where it is told nothing.
+    /// The settings of `ingest` without options.
     fn default() -> Self {
         Self {
             policy: Policy::Lane,
@@ -41,7 +41,7 @@ impl Default for Settings {
     }
 }
 
-/// The members as they are written. Names are stable: `run.parameters` and exports show them.
+/// The written members. Their names are stable, because `run.parameters` and exports show them.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Written {
@@ -58,18 +58,18 @@ struct Written {
 }
 
 impl Settings {
-    /// How turns are made.
+    /// The parameters of turns.
     #[must_use]
     pub fn turn_params(&self) -> TurnParams {
         TurnParams { corridor: self.corridor, kerbs: self.kerbs.clone() }
     }
 
-    /// As JSON, whole. The same settings give the same bytes.
+    /// All settings as JSON. The same settings give the same bytes.
     ///
     /// # Errors
-    /// Which member is out of range.
+    /// A member is out of range; the error names it.
     pub fn written(&self) -> Result<String, String> {
-        // Without `..`: a new member does not compile until it is written.
+        // The pattern has no `..`, so a new field does not compile until it is written.
         let Self { policy, corridor, stet, kerbs, turns } = self;
         let Params { tolerance_m, map_tolerance_m, spacing_m, cutoff_m, lead_in_m } = *corridor;
         let Options { max_shift_m, correction_sweeps } = *stet;
@@ -89,10 +89,10 @@ impl Settings {
         serde_json::to_string(&written).map_err(|error| error.to_string())
     }
 
-    /// The members but for the table of kerbs, for records that people read.
+    /// The members without the table of kerbs, for records that people read.
     ///
     /// # Errors
-    /// Which member is out of range.
+    /// A member is out of range; the error names it.
     pub fn options(&self) -> Result<Map<String, Value>, String> {
         let mut members: Map<String, Value> =
             serde_json::from_str(&self.written()?).map_err(|error| error.to_string())?;
@@ -100,10 +100,10 @@ impl Settings {
         Ok(members)
     }
 
-    /// Reads what [`Self::written`] wrote.
+    /// Reads the text of [`Self::written`].
     ///
     /// # Errors
-    /// What is wrong with the text.
+    /// The text is no such text; the error says what is wrong.
     pub fn read(text: &str) -> Result<Self, String> {
         let written: Written = serde_json::from_str(text).map_err(|error| error.to_string())?;
         written.check()?;
@@ -128,7 +128,8 @@ impl Settings {
 }
 
 impl Written {
-    /// Bounds that hold the options' own ranges, and keep a damaged file from asking for endless work.
+    /// Checks that members are within bounds. The bounds contain the ranges of the options, and keep a damaged file from
+    /// causing endless work.
     fn check(&self) -> Result<(), String> {
         for (name, value, low, high) in [
             ("smoothing_tolerance_m", self.smoothing_tolerance_m, 0.0, 100.0),
