@@ -84,8 +84,8 @@ impl TurnsClaim<'_> {
         strokes.into_par_iter().map(line).collect::<Vec<_>>().into_iter().collect()
     }
 
-    /// The verdict of a turn that needs no corridor: a restriction forbids it, or one of its edges may not be used. Arcs of a
-    /// roundabout need only leave to be driven on.
+    /// The verdict of a turn that needs no corridor, because a restriction forbids it or one of its edges is not safe. The arcs
+    /// of a roundabout need only be lawful.
     fn barred(&self, turn: &TurnFacts) -> Option<Verdict> {
         if turn.movement.forbidden.is_some() {
             return Some(Verdict::Forbidden(ForbiddenReason::Restriction));

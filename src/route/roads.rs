@@ -1,4 +1,4 @@
-//! What a planner needs besides a question: the roads of a region, and a vehicle with its permits on them.
+//! The roads of a region, and a vehicle with its permits on them. A planner is made from both.
 
 use std::sync::Arc;
 
@@ -24,11 +24,11 @@ impl Roads {
     }
 }
 
-/// A vehicle and what it may use.
+/// A vehicle and its permits.
 #[derive(Debug)]
 pub struct Driver {
     /// The vehicle.
     pub model: Model,
-    /// Its permits, with the settings under which they were made.
+    /// The vehicle's permits, with the settings of its certificates.
     pub permits: Permits,
 }

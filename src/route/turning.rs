@@ -1,4 +1,4 @@
-//! Turns of the network as pieces of routes: the corridors of `turns`, of which those that certify for the vehicle count.
+//! Makes the turns of a route from the corridors of `turns`. Only corridors that are certified as safe for the vehicle count.
 
 use std::sync::Arc;
 
@@ -10,13 +10,13 @@ use crate::stet::{Options, SpanResult, certify_spans};
 use crate::turns::{Reach, TurnCorridors, TurnPath, nominal_leeway_m, passage_on, turn_on};
 use crate::verdict::UnknownReason;
 
-/// Paths of a turn that are tried beside the one that its permit rests on: those with most room by themselves.
+/// Number of paths of a turn that are tried beside the path of its permit. Those with the most nominal room are tried.
 const MORE: usize = 5;
 
-/// Turns made as a route asks for them, under the settings of its strokes.
+/// Turns that are made when a route needs them, with the settings of its strokes.
 #[derive(Debug, Clone)]
 pub struct MadeTurns {
-    /// Who takes the turns.
+    /// The vehicle that takes the turns.
     pub driver: Arc<Driver>,
 }
 
@@ -35,7 +35,7 @@ impl Turns for MadeTurns {
             .filter(|&path| known.as_ref().is_none_or(|(known, _)| *known != path))
             .map(|path| (nominal_leeway_m(&made.paths[path], &self.driver.model.vehicle), path))
             .collect();
-        // Paths come in the order of their numbers; the sort keeps it among equals.
+        // The sort is stable, so paths of equal room stay in order of their numbers.
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         let others =
             ranked.into_iter().take(MORE).filter_map(|(_, path)| Some((path, self.safe(&made.paths[path], options)?)));
