@@ -40,7 +40,7 @@ Examples:
   netcert corridor entry.json --vehicle EU-SEMI16.5
   netcert corridor aisle.json --vehicle AGV-TUG4 --max-shift 0 --out certificate.json
 
-The vehicle is straight when it enters, along the heading at the first point, and it leaves straight.
+The vehicle enters straight, along the heading at the first point, and leaves straight.
 The exit status is 0 for an `unsafe` corridor, too; read `safe` in the certificate.
 
 The certificate holds the vehicle, the corridor, the plan of the steer axle, the leeway at every

@@ -273,6 +273,7 @@ fn blocked(out: &mut dyn Write, network: &Network, answer: &Answer) -> std::io::
         ]);
     }
     table.write(out, "  ")?;
-    let cheapest = "This is the set of least cost. Each place costs 1, plus the metres that are missing there (5 where that is not known).";
+    let cheapest =
+        "The cheapest set of places: each costs 1, plus the metres that are missing there (5 where that is not known).";
     writeln!(out, "\n{}\n", wrapped(cheapest, "  "))
 }

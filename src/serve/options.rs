@@ -27,7 +27,7 @@ pub struct BaseMap {
     pub url: String,
     /// Scheme, host and port of `url`, which the page's content security policy allows.
     pub origin: String,
-    /// The attribution to show beside the map, as plain text. [`Self::parse`] sets it to the host.
+    /// The attribution to show beside the map, as plain text. [`BaseMap::parse`] sets it to the host.
     pub attribution: String,
 }
 

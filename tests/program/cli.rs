@@ -1,4 +1,4 @@
-//! The built program, as a user meets it: what it answers, what it leaves behind, and how it fails.
+//! Tests of the built program as a user sees it: its answers, the files that it leaves, and its errors.
 
 use crate::support::demo::demo;
 use crate::support::program;
@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use program::{Answer, Place};
 use serde_json::{Value, json};
 
-/// Rows of CSV without quoted line breaks, by the header's names.
+/// The rows of a CSV text without quoted line breaks, by the names in the header.
 fn csv(text: &str) -> Vec<BTreeMap<String, String>> {
     let mut lines = text.lines().map(|line| {
         let (mut cells, mut cell, mut quoted) = (Vec::new(), String::new(), false);
@@ -129,7 +129,7 @@ fn a_vehicle_that_is_not_certified_yet_is_and_stays_so() {
     let first = place.netcert("query --vehicle AU-SEMI19 --format csv").succeeds().tells("doing it now");
     let again = place.netcert("query --vehicle AU-SEMI19 --format csv").succeeds();
     assert!(!again.err().contains("doing it now") && again.out() == first.out());
-    // Beside another vehicle, which must not matter.
+    // This database was ingested with another vehicle, too, which must not matter.
     let ingested = Place::with_demo().netcert("query --vehicle AU-SEMI19 --format csv").succeeds();
     assert!(first.out() == ingested.out(), "the same certificates as from ingest");
     place.netcert("query --vehicle AU-ATRIPL53").fails().tells("did you mean AU-ATRIPLE53");
@@ -198,7 +198,7 @@ fn a_vehicle_of_ones_own_is_shown_changed_checked_and_certified() {
     assert_eq!(ours, ids(&place, "--vehicle ours --verdict safe"), "the database keeps the definition");
 }
 
-/// No number stands for "there is none": words and null do.
+/// A missing number is a word or null, never a special number.
 #[test]
 fn what_nothing_bounds_has_no_numbers() {
     let turn = |k: i32| (f64::from(k) * 10.0).to_radians();
@@ -390,7 +390,7 @@ fn a_living_run_is_not_disturbed_by_a_second_one() {
         assert!(Instant::now() < deadline, "it never began");
         std::thread::yield_now();
     }
-    // It stands still, but it lives.
+    // A stopped process still holds its lock.
     signal("-STOP");
     assert!(place.path("demo.gpkg.part").exists(), "it was over too soon");
     place.netcert(line).fails().tells("demo.gpkg.part: another program is writing it");

@@ -1,4 +1,4 @@
-//! `docs/columns.md` against a database and its exports: the same columns, and every value in its range.
+//! Compares `docs/columns.md` with a database and its exports: the columns must be the same, and every value in its range.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,7 +14,7 @@ const VEHICLE: &str = "AU-SEMI19";
 /// Table and column.
 type Name = (String, String);
 
-/// What a column may hold.
+/// The values that a column may have.
 #[derive(Debug, Clone, PartialEq)]
 struct Rule {
     range: Range,
@@ -108,7 +108,7 @@ fn page() -> BTreeMap<Name, Rule> {
     rules
 }
 
-/// What was found: of each column, the values it has. Not a list where only its name is known.
+/// The values found in each column. The set is empty if only the column's name is known.
 type Found = BTreeMap<Name, BTreeSet<Option<String>>>;
 
 fn add_table(found: &mut Found, table: &str, head: &[&str], rows: impl Iterator<Item = Vec<Option<String>>>) {
@@ -123,7 +123,7 @@ fn add_table(found: &mut Found, table: &str, head: &[&str], rows: impl Iterator<
     }
 }
 
-/// All that a user's program may come upon; what the GeoPackage standard describes is left out.
+/// All columns that a user's program may read. Columns of the GeoPackage standard are left out.
 async fn database(place: &Place) -> Found {
     let mut c = SqliteConnection::connect(place.path("demo.gpkg").to_str().unwrap()).await.unwrap();
     let tables = "SELECT name FROM sqlite_schema WHERE type IN ('table', 'view') AND name NOT LIKE 'gpkg\\_%' ESCAPE '\\' \
@@ -135,7 +135,7 @@ async fn database(place: &Place) -> Found {
             sqlx::query_scalar("SELECT name FROM pragma_table_xinfo(?)").bind(&table).fetch_all(&mut c).await.unwrap();
         let shown = if table.starts_with("permit_") { "permit_…".to_owned() } else { table.clone() };
         for column in columns {
-            // Of bytes it is enough that they are there.
+            // The content of blobs is not checked.
             let sql = format!(
                 "SELECT DISTINCT CASE typeof(\"{column}\") WHEN 'blob' THEN 'bytes' ELSE CAST(\"{column}\" AS TEXT) END \
                  FROM \"{table}\""

@@ -1,8 +1,9 @@
-//! The engines themselves, fed with exports of the drawn region: the same pairs of places without and with permits, and no way of
-//! theirs uses what is refused or lies between other places than it was asked for. Then everything that is refused, each by itself,
-//! and the engine has it closed. Judged by tests/engines/permits.py, which knows nothing of how the exports are made.
+//! Runs the engines with exports of the drawn region. They route between the same pairs of places without and with permits. With
+//! permits, no route may use what is refused, and every route must be between the requested places. Then each refused edge and turn
+//! is requested by itself, and the engine must have it closed. tests/engines/permits.py judges the answers; it does not know how the
+//! exports are made.
 //!
-//! Each test skips with a message where its engine cannot be installed.
+//! A test whose engine cannot be installed says so and skips.
 
 use crate::support::demo::demo;
 use crate::support::program;
@@ -16,7 +17,7 @@ use serde_json::Value;
 
 const PAIRS: &str = "40";
 
-/// A python with the engines.
+/// A Python interpreter with the engines installed.
 pub(crate) fn python() -> Option<&'static Path> {
     static PYTHON: OnceLock<Option<PathBuf>> = OnceLock::new();
     let find = || {
@@ -31,7 +32,7 @@ pub(crate) fn python() -> Option<&'static Path> {
     PYTHON.get_or_init(find).as_deref()
 }
 
-/// Runs a script of tests/engines; its last line.
+/// Runs a script of tests/engines and returns the last line that it prints.
 fn said(python: &Path, script: &str, arguments: impl Iterator<Item = PathBuf>) -> String {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/engines").join(script);
     let done = Command::new(python).arg(script).args(arguments).output().unwrap();
@@ -40,7 +41,7 @@ fn said(python: &Path, script: &str, arguments: impl Iterator<Item = PathBuf>) -
     out.lines().last().unwrap_or_default().to_owned()
 }
 
-/// The same with the drawn region and files of the place; the JSON that it prints.
+/// Runs a script with the drawn region and files of the place, and returns the JSON that it prints.
 fn run(python: &Path, script: &str, place: &Place, arguments: &[&str]) -> Value {
     let argument = |name: &&str| if *name == PAIRS { PathBuf::from(name) } else { place.path(name) };
     let line = said(python, script, std::iter::once(demo()).chain(arguments.iter().map(argument)));
@@ -52,7 +53,7 @@ fn export(place: &Place, target: &str, out: &str) {
     place.netcert(&format!("export {target} --vehicle AU-SEMI19 --out {out} {extract} --quiet")).succeeds();
 }
 
-/// Plain it goes where it may not, with permits never; and it still gets somewhere.
+/// Without permits the engine uses what is refused. With permits it never does, and it still finds routes.
 fn keeps_to_permits(answer: &Value, plain: &str, permits: &[&str]) {
     assert_eq!(answer["edges_lost"], 0, "{answer}");
     assert!(answer[plain]["refused_used"].as_u64().unwrap() > 0, "{answer}");
@@ -63,14 +64,14 @@ fn keeps_to_permits(answer: &Value, plain: &str, permits: &[&str]) {
     }
 }
 
-/// Of all that is refused nothing is open, and of all that is permitted something.
+/// Nothing that is refused is open, and something that is permitted is open.
 fn keeps_closed(probe: &Value) {
     let number = |name: &str| probe[name].as_u64().unwrap_or_else(|| panic!("no {name}: {probe}"));
     assert!(number("refused") > 100 && number("permitted") > number("permitted_closed"), "{probe}");
     assert_eq!(number("refused_open"), 0, "{probe}");
 }
 
-/// What is read from tiles and what Valhalla itself says: both.
+/// Checks both the content of the tiles and Valhalla's own answers.
 fn keeps_closed_in_tiles(probe: &Value) {
     keeps_closed(probe);
     for name in ["located_open", "ways_open", "unclear"] {
@@ -118,7 +119,7 @@ fn what_is_refused_is_closed_whatever_its_tags_are() {
     for name in ["plain", "plain_valhalla"] {
         assert_ne!(answer[name]["refused_open"], 0, "the probe finds what is open: {answer}");
     }
-    // What is permitted stays open to Valhalla, but where a road's own tags contradict one another.
+    // What is permitted stays open to Valhalla, except where a road's own tags contradict one another.
     let number = |name: &str| answer["valhalla"][name].as_u64().unwrap();
     assert!(number("permitted_closed") * 10 < number("permitted"), "{answer}");
     // Along the short road there is a way, from it onto the ring none: no place was moved from one to the other.
@@ -169,7 +170,7 @@ fn valhalla_keeps_to_permits() {
     assert_ne!(answer["plain"]["probe"]["refused_open"], 0, "the probe finds what is open: {answer}");
 }
 
-/// Whether there is a PostgreSQL with pgRouting; if not it says so.
+/// Whether PostgreSQL with pgRouting is installed. Prints a message if not.
 pub(crate) fn pgrouting() -> bool {
     let mut versions = std::fs::read_dir("/usr/share/postgresql").into_iter().flatten().flatten();
     let there = versions.any(|version| version.path().join("extension/pgrouting.control").exists());
@@ -200,7 +201,7 @@ fn pgrouting_keeps_to_permits() {
     }
 }
 
-/// PostgreSQL does not run as root, but as a user of its own.
+/// PostgreSQL refuses to run as root, so it runs as a user of its own.
 #[cfg(unix)]
 pub(crate) fn open_to_all(place: &Place) {
     use std::os::unix::fs::PermissionsExt as _;

@@ -1,5 +1,5 @@
-//! What `explain` says is what the database says, its places are where geometry has them, and its hints hold: what is named
-//! passes when certified by itself, one step less does not.
+//! Tests of `explain`: it agrees with the database, its places agree with geometry, and its hints hold. A hinted value passes when
+//! it is certified, and one step less fails.
 
 use crate::support::catalogue::catalogued;
 use crate::support::program;
@@ -25,7 +25,7 @@ fn settings() -> Settings {
     Settings { policy: Policy::Lane, ..Settings::default() }
 }
 
-/// The demo region's network and what its database keeps for a vehicle, by edge.
+/// The demo region's network, and the rows of its database for a vehicle, by edge.
 fn demo(place: &Place, id: &str) -> (Network, Vec<EdgeRow>) {
     (place.database().load_network().unwrap(), place.rows(id))
 }
@@ -37,7 +37,7 @@ fn every_edge_of_the_demo_is_explained_as_it_was_certified() {
     let model = Model::new(&catalogued("AU-SEMI19")).unwrap();
     let mut kinds: BTreeMap<(&str, &str), usize> = BTreeMap::new();
     for (i, row) in rows.iter().enumerate() {
-        // Hints take dozens of certificates each: of the unsafe edges every sixth.
+        // Hints take dozens of certificates each, so only every sixth unsafe edge is explained.
         if row.certificate.verdict == Verdict::Unsafe(UnsafeReason::Width) && i % 6 != 0 {
             continue;
         }
@@ -56,7 +56,8 @@ fn every_edge_of_the_demo_is_explained_as_it_was_certified() {
         if let Some(g) = &e.geometry {
             let found = g.along_m(g.place.station);
             let kept = row.certificate.limiting_s_m.unwrap_or(found);
-            // Kept is the foot of the unit's axis, up to three stations beyond the edge; told is the corner's, on the edge.
+            // The database stores the foot of the unit's axis, up to three stations beyond the edge. The explanation has the foot
+            // of the corner, on the edge.
             assert!((kept - found).abs() < 4.5, "{}: {kept} and {found}", row.edge_id);
             assert!(match g.result.rsc_m.zip(g.place.bounds_m) {
                 Some((rsc_m, bounds_m)) => (g.place.nominal_m - bounds_m - rsc_m).abs() < 1e-9 || bounds_m == 0.0,
@@ -97,7 +98,7 @@ fn a_certificate_of_another_version_is_noticed() {
     assert!(other(&|row| row.shrink = Some(0.5)).unwrap().contains("shrink"));
 }
 
-/// The corridor nowhere narrower than `width_m`: the test's own.
+/// The corridor, widened to `width_m` where it is narrower. This is the test's own code.
 fn at_least(corridor: &Corridor, width_m: f64) -> Corridor {
     let mut wide = corridor.clone();
     for k in 0..corridor.len() {
@@ -145,7 +146,7 @@ fn the_width_that_would_do_does_and_a_centimetre_less_does_not() {
     assert!(checked >= 10, "{checked}");
 }
 
-/// A straight corridor of metres: every place of it is as wide.
+/// A straight corridor of constant width.
 fn straight(width_m: f64) -> Corridor {
     let points = [[0.0, 0.0], [150.0, 0.0]];
     netcert::corridor::from_centreline(&points, &[0.5 * width_m], &[0.5 * width_m], 0.0, 1.0).unwrap()
@@ -160,10 +161,10 @@ fn explained(corridor: &Corridor, vehicle: &Vehicle) -> Explanation {
 
 #[test]
 fn the_tolerance_that_would_do_does_and_a_millimetre_more_does_not() {
-    // On a straight, what tolerance and slip take off is linear in the tolerance: between γ_min and none lies the answer.
+    // On a straight, the deduction is linear in the tolerance, so the answer is between γ_min times the tolerance and zero.
     for id in ["EU-SEMI16.5", "AU-BDOUBLE26", "US-WB40"] {
         let (vehicle, model) = (catalogued(id), Model::new(&catalogued(id)).unwrap());
-        // The widest that is a little too narrow.
+        // The greatest width that is too narrow.
         let safe = |cm: &u32| {
             certify(&straight(f64::from(*cm) / 100.0), &model, &Options::default(), &Stop::never())
                 .unwrap()
@@ -192,7 +193,7 @@ fn the_tolerance_that_would_do_does_and_a_millimetre_more_does_not() {
         assert!((hint.width_m - (width_m + 2.0 * missing)).abs() <= 0.0101, "{id}: {hint:?}, missing {missing}");
         assert!(explain::words(&e).headline.contains("on a straight"));
     }
-    // A body wider than its corridor: no tolerance helps.
+    // The body is wider than the corridor, so no tolerance helps.
     let e = explained(&straight(2.5), &catalogued("EU-SEMI16.5"));
     assert_eq!(e.hints.tolerance_m, None);
     assert!(explain::words(&e).hints.join(" ").contains("No tracking tolerance would do"));
@@ -340,7 +341,7 @@ fn the_program_explains_by_id_and_lists_what_a_name_may_mean() {
     place.netcert(&way).fails().tells(&format!("is {by_way} edges")).tells(&row.edge_id.to_string());
     place.netcert("explain saltbush --vehicle AU-ATRIPLE53").fails().tells("M9 Saltbush Motorway");
     place.netcert("explain nowhere --vehicle AU-ATRIPLE53").fails().tells("no edge, way or road");
-    // Not certified here: explained all the same, and said so.
+    // A vehicle that is not certified here is explained, too, with a message.
     let other = format!("explain {} --vehicle EU-SEMI16.5", row.edge_id);
     place.netcert(&other).succeeds().tells("is not certified in demo.gpkg").shows("holds within the model");
 }

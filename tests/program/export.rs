@@ -1,5 +1,5 @@
-//! What every export has in common: the same permits as `netcert route`, a header that says what it rests on, outputs that are
-//! whole or not there.
+//! Tests of what all exports have in common: the permits of `netcert route`, a header that says what the permits depend on, and
+//! outputs that are complete or absent.
 
 use crate::support::demo::demo;
 use crate::support::program;
@@ -99,7 +99,7 @@ fn an_output_replaces_only_what_an_export_wrote() {
     assert!(out.starts_with("turn_id,from_edge,"));
 }
 
-/// Ctrl-C at some moment while files are written; a run that was faster is made again.
+/// Ctrl-C at some moment while files are written. If a run ends before that, it is repeated.
 #[cfg(unix)]
 #[test]
 fn a_stopped_export_leaves_nothing_behind() {
@@ -123,7 +123,7 @@ fn a_stopped_export_leaves_nothing_behind() {
     assert!(stopped, "every run had ended before it could be stopped");
 }
 
-/// A run that is killed cannot clear up: the next one does. One that is only slow is left alone.
+/// A killed run cannot remove its files, so the next run does. A run that is only slow is left alone.
 #[cfg(unix)]
 #[test]
 fn what_a_killed_export_left_is_cleared_and_a_living_one_is_not_disturbed() {
@@ -141,7 +141,7 @@ fn what_a_killed_export_left_is_cleared_and_a_living_one_is_not_disturbed() {
                 std::thread::yield_now();
             }
             signal("-STOP", run.id());
-            // It may have been through already.
+            // The run may have ended already.
             let in_the_middle = part.exists() && run.try_wait().unwrap().is_none();
             if in_the_middle {
                 place.netcert(&line).fails().tells(".part: another netcert is writing it");

@@ -1,4 +1,4 @@
-//! What the exports for engines hold, read with this program's own reader: nothing lost, nothing opened that is refused.
+//! Reads exports for engines with netcert's own reader. Nothing may be lost, and nothing refused may be open.
 
 use crate::support::demo::demo;
 use crate::support::program;
@@ -16,7 +16,7 @@ use netcert::store::QueryOptions;
 use netcert::words::VerdictKind;
 use program::Place;
 
-/// Node pairs in driving order: of how many roads of the extract.
+/// Pairs of nodes in driving order, and the number of roads of the extract that have each pair.
 fn segments(path: &Path) -> BTreeMap<(i64, i64), u32> {
     let extract = read_extract(path, &|_| ()).unwrap();
     let mut pairs = BTreeMap::new();

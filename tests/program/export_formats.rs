@@ -1,4 +1,4 @@
-//! Exports to map formats: each read back by a program of others, and compared with what the CSV files say.
+//! Reads exports to map formats with other programs and compares them with the CSV files.
 
 use crate::support::program;
 use crate::support::python;
@@ -130,7 +130,7 @@ fn gdal() -> bool {
     there
 }
 
-/// What GDAL reads, as CSV.
+/// The content of a file as GDAL reads it.
 fn by_gdal(place: &Place, file: &str, more: &[&str]) -> Table {
     let mut command = Command::new("ogr2ogr");
     command.args(["-f", "CSV", "/vsistdout/"]).arg(place.path(file)).args(more);

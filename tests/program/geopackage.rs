@@ -1,4 +1,5 @@
-//! The database end to end: what goes in comes out, other programs read it, killed runs leave the old file whole.
+//! Tests of the database from end to end: rows are read as they were written, other programs read the file, and killed runs leave
+//! the old file complete.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -61,7 +62,7 @@ fn folder() -> tempfile::TempDir {
     tempfile::tempdir().unwrap()
 }
 
-/// All but the numbering of texts and positions, which are resolved.
+/// The network as text, with texts and positions in place of their numbers.
 fn plain(network: &Network) -> String {
     let text = |id: Option<_>| id.map(|id| network.strings.text(id));
     let mut all = String::new();
@@ -164,7 +165,7 @@ fn every_filter_gives_what_a_plain_search_through_all_rows_gives() {
     check(&|o| o.min_rsc_m = Some(0.3), &|row| row.certificate.rsc_m.is_some_and(|rsc| rsc >= 0.3));
     check(&|o| o.min_width_source = Some(WidthSource::Tagged), &|row| row.width_source >= Some(WidthSource::Tagged));
     check(&|o| o.edge_id = Some(every[7].edge_id), &|row| row.edge_id == every[7].edge_id);
-    // A corner cut off the box: the index alone would give too many.
+    // A triangle is smaller than its box, so the index alone would give too many rows.
     let triangle = geo::Triangle::new((8.6, 49.4).into(), (8.75, 49.4).into(), (8.6, 49.55).into()).to_polygon();
     let area = geo::MultiPolygon(vec![triangle]);
     let touches = |row: &EdgeRow| {
@@ -507,7 +508,7 @@ fn killed_at_any_moment_the_file_is_whole() {
         assert_eq!(turned, seed == 9, "new edges come with their turns");
         whole(&path);
     }
-    // What a killed run left is no obstacle to the next.
+    // The files of a killed run do not stop the next run.
     let _ = Database::create(&path, &Settings::default()).unwrap();
     build(&path, 10, |i, _| i);
     whole(&path);

@@ -1,4 +1,4 @@
-//! The database and its exports in the hands of others: GDAL, its validator, geopandas, fiona, DuckDB, QGIS.
+//! Reads the database and its exports with other programs: GDAL, its validator, geopandas, fiona, DuckDB, QGIS.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

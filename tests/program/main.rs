@@ -1,5 +1,5 @@
-//! The built program and what it leaves behind: verbs as a user meets them, the database, exports and the engines that read
-//! them, the server, and what `verify` refutes.
+//! Tests of the built program: verbs as a user sees them, the database, exports and the engines that read them, the server, and
+//! what `verify` refutes.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
 
 mod cli;

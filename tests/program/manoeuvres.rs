@@ -1,4 +1,4 @@
-//! Low-speed turns against closed forms, an independent simulator, and tables made by a third one.
+//! Compares low-speed turns with closed forms, an independent simulator, and tables from a third simulator.
 
 use crate::oracle;
 use crate::support::catalogue::catalogued;
@@ -32,7 +32,7 @@ fn a_rigid_lorry_settles_on_the_closed_form_of_a_circle() {
         let circle = manoeuvres::report(&lorry).circle;
         // The outer front corner on 12.5 m: the rear axle's outer end is on a circle of its own, the inner side b nearer.
         let inner = (12.5f64.powi(2) - (length + front).powi(2)).sqrt() - width;
-        // One circle is not for ever: the longest is a centimetre short of its steady state.
+        // After one circle the longest vehicle is still a centimetre from its steady state.
         assert!((circle.inner_m - inner).abs() < 1e-2, "{shape:?}: {} for {inner}", circle.inner_m);
         assert!(circle.outer_m >= 12.5 - 1e-6 && circle.outer_m < 13.2, "{shape:?}: {}", circle.outer_m);
         let steer = manoeuvres::u_turn(&lorry);

@@ -1,5 +1,5 @@
-//! `netcert route` and `netcert reach` as a user meets them: on the drawn region, with the certificate file that `verify`
-//! accepts, and what is said where there is no way.
+//! Tests of `netcert route` and `netcert reach` on the drawn region, with a certificate file that `verify` accepts, and with no
+//! way between the places.
 
 use crate::support::program;
 

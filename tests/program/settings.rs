@@ -1,5 +1,5 @@
-//! A set of certificates keeps the settings that it was made with, and everybody who computes again goes by them: after
-//! `certify OPTION` every verb and the server say what they say of a database that was ingested with that option.
+//! Tests that a set of certificates keeps its settings, and that every new computation uses them. After `certify OPTION`, every verb
+//! and the server answer as for a database that was ingested with that option.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock};
@@ -79,7 +79,7 @@ fn without_column(text: &str, name: &str) -> Vec<String> {
     lines.map(without).collect()
 }
 
-/// Of `certify OPTION` everything must be as after `ingest OPTION`.
+/// Checks that everything after `certify OPTION` is as after `ingest OPTION`.
 fn is_as_if_ingested_with(option: &str, policy: Policy) {
     let (ours, reference) = (base(), ingested(option));
     ours.netcert(&format!("certify --db demo.gpkg --vehicle {VEHICLE} {option}")).succeeds();

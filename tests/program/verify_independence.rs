@@ -1,5 +1,5 @@
-//! The checker shares no code with what it checks. Cargo keeps the crates apart; of what remains in `src/check` no path leads to
-//! `stet` or `pipeline`. The checker is the smaller of the two.
+//! Tests that the checker shares no code with what it checks. Cargo keeps the crates apart; no path in `src/check` may lead to `stet`
+//! or `pipeline`. The checker must be the smaller of the two.
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,5 @@
-//! A certificate file with any member moved in the unsafe direction is refuted, with its hash made anew; and any byte
-//! changed without that is refuted too. Prints the score.
+//! Tests that `verify` refutes a certificate file with any member changed in the unsafe direction and a new hash, and a file with any
+//! byte changed and the old hash. Prints the score.
 
 use crate::support::program;
 

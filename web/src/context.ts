@@ -1,4 +1,4 @@
-// What every part of the page is given: the state, and what of the database does not change while the page is open.
+// The context of every part of the page: the state, and facts of the database that do not change while the page is open.
 
 import type { Region, Vehicle } from "./api/types.ts";
 import type { Question } from "./api/client.ts";
@@ -16,7 +16,7 @@ export function vehicleOf({ vehicles }: Context, id: string): Vehicle | undefine
   return vehicles.find((vehicle) => vehicle.id === id);
 }
 
-/** What the first map asks for. */
+/** The vehicle and policy of the first map. */
 export function question({ store }: Context): Question {
   return { vehicle: store.state.vehicle, policy: store.state.policy };
 }

@@ -1,6 +1,6 @@
-// The state as the part of a link behind `#`, short enough to be mailed: what is as it was at first is left out.
+// The state as the part of a link behind `#`. Values that are as at the beginning are left out, so that links are short.
 //
-// A link may come from anywhere: what cannot be read is ignored, and what the database does not have falls back.
+// A link may come from anywhere. What cannot be read is ignored, and what the database does not have is replaced by a default.
 
 import type { Evidence, Policy, Position, VerdictName } from "./api/types.ts";
 import type { Camera, ColourBy, State } from "./state.ts";
@@ -29,7 +29,7 @@ export function write(state: State, first: State): string {
   if (state.route) parts.set("route", state.route.map(position).join(";"));
   if (state.stats) parts.set("stats", "1");
   if (state.camera) parts.set("at", camera(state.camera));
-  // Commas and semicolons need no escape behind `#`, and a link is to be read.
+  // Commas and semicolons need no escape behind `#`, and links without escapes are easier to read.
   return `#${parts.toString().replaceAll("%2C", ",").replaceAll("%3B", ";")}`;
 }
 
@@ -67,7 +67,7 @@ function camera({ lon, lat, zoom }: Camera): string {
 }
 
 function numbers(text: string, count: number): number[] | null {
-  // An empty text would be the number 0.
+  // `Number` would turn an empty text into 0.
   const all = text.split(",").map((part) => (part.trim() === "" ? Number.NaN : Number(part)));
   return all.length === count && all.every(Number.isFinite) ? all : null;
 }

@@ -1,4 +1,4 @@
-// Start: asks what there is, reads the link, and hands over to the page.
+// The start: loads the region, reads the link, and creates the page.
 
 import { setWorkerUrl } from "maplibre-gl";
 import { api } from "./api/client.ts";
@@ -23,12 +23,12 @@ async function start(): Promise<void> {
     policies: region.policies,
   };
   const context: Context = { store: new Store(read(location.hash, first, possible)), region, vehicles, theme };
-  // Labels are drawn with the page's own font: it has to be there before the first of them is.
+  // Labels are drawn with the page's own font, so the font must be loaded before the first label.
   await Promise.race([document.fonts.load("600 16px 'Inter Variable'"), new Promise((done) => setTimeout(done, 1500))]);
   new Page(context, first, possible);
 }
 
-/** What is shown where the link says nothing: of the vehicles that most of them are like the shortest, and the whole region. */
+/** The state without a link: the whole region, and the shortest certified vehicle of the vehicle region with most of them. */
 function usual(region: Region, vehicles: Vehicle[]): State {
   const certified = vehicles.filter((vehicle) => vehicle.certified.length > 0);
   const alike = (vehicle: Vehicle): number => certified.filter((other) => other.region === vehicle.region).length;

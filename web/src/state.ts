@@ -1,4 +1,4 @@
-// What the page shows, in one place: every part reads it, changes it through `set`, and hears of changes.
+// The state of the page. Every part reads it, changes it through `set`, and is told of changes.
 
 import type { Evidence, Policy, Position, VerdictName } from "./api/types.ts";
 
@@ -18,18 +18,18 @@ export interface State {
   colourBy: ColourBy;
   hidden: ReadonlySet<VerdictName>;
   hiddenClasses: ReadonlySet<string>;
-  /** Roads whose width rests on less are not drawn. */
+  /** The worst source of width of the roads that are drawn. */
   evidence: Evidence;
   camera: Camera | null;
-  /** An edge or a turn. */
+  /** Id of the selected edge or turn. */
   selected: string | null;
-  /** While one chooses: begins empty, has one place, then two. */
+  /** The places of a route. The list is empty at first, then has one place, then two. */
   route: Position[] | null;
   stats: boolean;
   baseMap: boolean;
 }
 
-/** What is shown where nothing else is asked for. */
+/** The state at the beginning. */
 export function beginning(vehicle: string, policy: Policy): State {
   return {
     vehicle,
@@ -61,7 +61,7 @@ export class Store {
     return this.#state;
   }
 
-  /** Takes over what differs and tells everyone which fields those were. */
+  /** Sets the fields that differ and tells all listeners which fields these were. */
   set(next: Partial<State>): void {
     const changed = new Set<keyof State>();
     for (const key of Object.keys(next) as (keyof State)[]) {

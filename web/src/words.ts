@@ -1,7 +1,7 @@
-// The vocabulary of the page: what identifiers are called, numbers as people read them, always to the careful side.
+// The words of the page: names for identifiers, and numbers rounded to the cautious side.
 //
-// `safe` is an identifier of the database. On the page it is "certified", with the scope in sight, or stands in a sentence
-// of the server's that carries its scope.
+// `safe` is an identifier of the database. The page says "certified" and shows the scope, or shows a sentence of the server that
+// has its scope.
 
 import type { Evidence, Policy, VerdictName } from "./api/types.ts";
 
@@ -84,22 +84,22 @@ export function title(road: { ref?: string | null; name?: string | null; highway
   return road.highway ? `Unnamed ${className(road.highway).toLowerCase()}` : "Unnamed road";
 }
 
-/** Nothing bounds the vehicle below this: the size is no measure of what is missing. */
+/** Below this leeway, metres, no missing width is named, because no useful bound holds. */
 const FAR_M = -100;
 
-/** Centimetres to spare or missing, never flattering: `0.31 m to spare`, `0.42 m missing`. */
+/** Room to spare or missing, cautiously rounded: `0.31 m to spare`, `0.42 m missing`. */
 export function margin(rsc_m: number): string {
   if (rsc_m <= FAR_M) return "far too narrow";
   return rsc_m < 0 ? `${careful(rsc_m)} m missing` : `${careful(rsc_m)} m to spare`;
 }
 
-/** Of roads from afar the tiles tell quarters of a metre, rounded down, from −1.25 m to 1 m. */
+/** The margin of an overview's road. Its tiles have quarters of a metre, rounded down, from −1.25 m to 1 m. */
 export function leastMargin(rsc_m: number): string {
   if (rsc_m < -1) return "more than 1 m missing";
   return rsc_m < 0 ? `up to ${careful(rsc_m)} m missing` : `${careful(rsc_m)} m or more to spare`;
 }
 
-/** The amount alone: rounded down where there is room, up where it is missing. */
+/** The amount alone. Room to spare is rounded down, missing room is rounded up. */
 export function careful(rsc_m: number): string {
   const hundredths = rsc_m * 100;
   const whole = rsc_m < 0 ? Math.ceil(-hundredths - 1e-6) : Math.floor(hundredths + 1e-6);

@@ -1,4 +1,4 @@
-//! What the server says is what the other verbs say of the same database.
+//! Compares the server's answers with those of the other verbs on the same database.
 
 use netcert::rows::EdgeRow;
 use netcert::rows::Stats;
@@ -126,7 +126,7 @@ fn statistics_are_those_of_the_verb() {
     assert_eq!(stats["certificates"].as_array().unwrap().len(), certificates.len());
     assert!((sum(&stats["certificates"], "km") - 2.0 * km).abs() < 0.1, "two vehicles");
     assert_eq!(sum(&stats["turns"], "turns") as u64, turns.iter().map(|row| row.turns).sum::<u64>());
-    // The histogram counts every edge that has a number, in the bin that does not flatter.
+    // The histogram counts every edge with an RSC in the bin that is rounded down.
     let rows = server.place.rows(VEHICLE);
     let numbered = rows.iter().filter(|row| row.certificate.rsc_m.is_some()).count() as u64;
     let bins: Vec<&Value> =

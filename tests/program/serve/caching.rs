@@ -69,7 +69,7 @@ fn a_database_that_changes_is_noticed_at_the_next_request() {
     let old = server.get(&tile);
     assert!(!old.body.is_empty());
 
-    // In place.
+    // The file is changed in place.
     server.place.netcert("certify --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway --no-turns").succeeds();
     let changed = server.json("/api/region");
     assert_eq!(changed["policies"], serde_json::json!(["lane", "carriageway"]));
@@ -77,13 +77,13 @@ fn a_database_that_changes_is_noticed_at_the_next_request() {
     assert_eq!(server.get(&tile.replace("lane", "carriageway")).status, 200);
     assert_eq!(server.get(&tile).header("etag"), old.header("etag"), "what did not change has the same tag");
 
-    // Another file in its stead.
+    // Another file replaces it.
     server.place.netcert("ingest {demo} --db other.gpkg --vehicle AU-BDOUBLE26 --no-turns").succeeds();
     std::fs::rename(server.place.path("other.gpkg"), server.place.path("demo.gpkg")).unwrap();
     assert_eq!(server.json("/api/region")["vehicles_certified"], serde_json::json!(["AU-BDOUBLE26"]));
     server.problem(&tile, 404);
 
-    // Gone, and back.
+    // The file is removed and put back.
     std::fs::rename(server.place.path("demo.gpkg"), server.place.path("away.gpkg")).unwrap();
     let problem = server.problem("/api/region", 503);
     assert!(!problem["detail"].as_str().unwrap().contains("gpkg"), "{problem}");

@@ -1,4 +1,4 @@
-//! Work that is told to stop does, wherever it is; what has been stopped has no result.
+//! Tests that work stops when it is told to, wherever it is, and that stopped work has no result.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -23,7 +23,7 @@ use crate::support::program::Place;
 
 const VEHICLE: &str = "AU-SEMI19";
 
-/// Turns that tell the work to stop as soon as one is asked for.
+/// A source of turns that tells the work to stop when the first turn is requested.
 struct Telling {
     inner: MadeTurns,
     stop: Stop,
@@ -98,14 +98,14 @@ fn a_route_that_is_told_to_stop_asks_for_no_further_turn() {
         let told = stop.told().then_some(Unanswered::Stopped(Stopped));
         assert_eq!((stopped_at, asked), (told, usize::from(stop.told())));
         stopped += asked;
-        // The same planner then answers as if nothing had been.
+        // The same planner then answers as if it had not been stopped.
         assert!(planner.answer(&question, &Stop::never()).is_ok());
     }
     assert!(stopped > 0, "no way leads over a turn");
 }
 
-/// Stopped wherever it asks, a route has no answer; with one question more than it asks it has the answer of one that is
-/// never stopped, on the very planner that was stopped so often.
+/// A search that is stopped at any of its checks has no answer. If it is stopped after its last check, it has the answer of a search
+/// that is never stopped, even on a planner that was stopped many times.
 #[test]
 fn a_route_is_whole_or_is_not_there() {
     let (_place, mut database, network, model, settings) = wide();
@@ -134,8 +134,7 @@ fn a_route_is_whole_or_is_not_there() {
     assert!(stops > 15, "it asked fewer than {asked} times");
 }
 
-/// What is left of a certificate once it is told to stop is some metres of one sweep: it asks no more than once in each of
-/// the sweeps that follow.
+/// A certificate that is told to stop ends within some metres of one sweep. Each of the following sweeps checks at most once.
 #[test]
 fn a_certificate_asks_every_few_metres_and_is_whole_or_is_not_there() {
     let (_place, _, network, model, settings) = wide();

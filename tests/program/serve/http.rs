@@ -1,4 +1,4 @@
-//! A running server, and a client of a few lines: one request a connection, unless told otherwise.
+//! A running server, and a small client that makes one request per connection, unless told otherwise.
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::{SocketAddr, TcpStream};
@@ -16,7 +16,7 @@ const PATIENCE: Duration = Duration::from_secs(120);
 
 pub(crate) struct Server {
     child: Child,
-    /// What it has said on standard error; read all the time, so that it never waits for a reader.
+    /// The server's standard error. It is read all the time, so that the server never waits for a reader.
     said: Arc<Mutex<String>>,
     listener: Option<JoinHandle<()>>,
     pub(crate) address: SocketAddr,
@@ -102,7 +102,7 @@ impl Server {
         self.said.lock().unwrap().clone()
     }
 
-    /// Waits for the end; how it ended, and what it said on standard error.
+    /// Waits for the server's end. Returns its exit status and its standard error.
     pub(crate) fn end(mut self) -> (ExitStatus, String) {
         let begin = Instant::now();
         let status = loop {

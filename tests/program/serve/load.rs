@@ -64,7 +64,7 @@ fn many_at_a_time_are_all_answered() {
     tell("tiles, search and region of the demo, 8 clients", all.into_iter().map(|(_, time)| time).collect());
 }
 
-/// The slow lane has few places and a short queue: some are told to come again, at once, and the map goes on meanwhile.
+/// The slow lane has few places and a short queue. Some requests are refused at once, and the map is served meanwhile.
 #[test]
 fn more_than_it_can_do_is_refused_and_the_quick_lane_stays_quick() {
     let server = Server::demo();

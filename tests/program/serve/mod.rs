@@ -1,7 +1,6 @@
 //! `netcert serve` over real HTTP on loopback: the built program, plain sockets, the demo region.
 //!
-//! What it answers is what the other verbs say; what it should refuse it refuses; what it promises of load and stopping
-//! it keeps.
+//! The tests cover its answers, its refusals, and its behaviour under load and when it is stopped.
 
 mod answers;
 mod caching;

@@ -1,5 +1,5 @@
-//! What must not get through: other methods, bodies, other hosts, paths that climb, statements smuggled in, things too
-//! large.
+//! Tests of requests that must be refused: other methods, bodies, other hosts, climbing paths, injected statements, and requests
+//! that are too large.
 
 use std::io::Write as _;
 
@@ -222,7 +222,7 @@ fn other_machines_are_let_in_only_when_asked() {
     assert_eq!(reply.json()["base_map"], said);
 }
 
-/// Escapes, line breaks and marks that turn the writing round come in by every way that a request has.
+/// Escapes, line breaks and marks of writing direction arrive in every part of a request.
 #[test]
 fn a_refused_request_is_one_plain_line_on_standard_error() {
     let server = Server::demo();

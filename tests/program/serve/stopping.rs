@@ -1,4 +1,4 @@
-//! Ctrl-C and kill: what is being answered is answered, then it is over.
+//! Tests of Ctrl-C and kill: requests in progress are answered, then the server ends.
 
 use std::io::{BufReader, Write as _};
 use std::net::TcpStream;

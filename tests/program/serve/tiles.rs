@@ -1,4 +1,4 @@
-//! Tiles, read with somebody else's reader: every edge is in them, where it is, with the numbers of `query`.
+//! Reads tiles with another program's reader. Every edge must be in them, at its place, with the numbers of `query`.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,5 +1,5 @@
-//! A request that is over its time, or whose asker has gone, does not hold up the next one: over HTTP, with room for one
-//! piece of slow work at a time.
+//! Tests over HTTP, with one piece of slow work at a time, that a request whose time is up or whose client has gone does not delay
+//! the next one.
 
 use std::io::{BufReader, Write as _};
 use std::net::{SocketAddr, TcpStream};
@@ -80,7 +80,7 @@ fn short(snap: u32) -> String {
     format!("/api/route?vehicle={VEHICLE}&from={at}&to={at}&drive=none&snap={snap}")
 }
 
-/// How far a road may be from a place changes no answer here, but makes it one that has not been given before.
+/// A different `snap` changes no answer here, but makes each request new to the cache.
 #[test]
 fn the_next_is_answered_soon_whoever_is_cut_off_or_goes_away() {
     let place = Place::with_wide_demo(VEHICLE);

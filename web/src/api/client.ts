@@ -1,4 +1,4 @@
-// The server's API with types. Every call can be given up; a refusal becomes a `ServerProblem` whose message is fit to be shown.
+// The server's API with types. Every call can be aborted. A refusal becomes a `ServerProblem` whose message can be shown.
 
 import type {
   Explanation,
@@ -35,13 +35,13 @@ async function get<T>(path: string, query: Record<string, string>, signal?: Abor
   throw new ServerProblem(said ?? { title: `The server answered ${answer.status}`, status: answer.status });
 }
 
-/** Which certificates are meant. */
+/** The vehicle and policy of the wanted certificates. */
 export interface Question {
   vehicle: string;
   policy: Policy;
 }
 
-/** How far the nearest road that may be used can be from a place on the map: a click is no survey. */
+/** The greatest distance from a clicked place to a usable road, metres. It is large because a click is not exact. */
 export const SNAP_M = 500;
 
 const place = ([lon, lat]: Position): string => `${lon.toFixed(6)},${lat.toFixed(6)}`;

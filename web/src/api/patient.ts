@@ -1,11 +1,11 @@
-// A request that the server turns away for a moment (503) is made again when its `Retry-After` says, a few times at most.
+// Repeats a request that a busy server refuses (503) after the time in `Retry-After`, a few times at most.
 
-/** Tries of one request in all. */
+/** The greatest number of tries of one request. */
 const MOST_TRIES = 4;
-/** A reader is told at once of anything that takes longer, seconds. */
+/** The longest wait, seconds. If the server asks for more, the reader is told at once. */
 const MOST_WAIT_S = 10;
 
-/** As `fetch`. The answer may still be a 503: then the server is busy for long, or names no time. */
+/** Works like `fetch`. The answer may still be a 503 if the server is busy for long or names no time. */
 export async function patient(url: string, init: RequestInit = {}): Promise<Response> {
   for (let tries = 1; ; tries += 1) {
     const answer = await fetch(url, init);
@@ -17,7 +17,7 @@ export async function patient(url: string, init: RequestInit = {}): Promise<Resp
   }
 }
 
-/** Seconds from now, from either form of `Retry-After` (RFC 9110, section 10.2.3); `null` if it is neither. */
+/** The wait in seconds, from either form of `Retry-After` (RFC 9110, section 10.2.3). `null` for any other text. */
 function seconds(header: string | null): number | null {
   if (header === null) return null;
   if (/^\s*\d+\s*$/.test(header)) return Number(header);
@@ -25,7 +25,7 @@ function seconds(header: string | null): number | null {
   return Number.isNaN(date) ? null : Math.max(0, (date - Date.now()) / 1000);
 }
 
-/** Ends early, with the signal's reason, if the request is given up. */
+/** Waits. Rejects early with the signal's reason if the request is aborted. */
 function pause(wait_ms: number, signal?: AbortSignal): Promise<void> {
   return new Promise((done, failed) => {
     const give = () => {

@@ -9,7 +9,7 @@ export interface Histogram {
   step_m: number;
   /** Metres of road in each bin from `from_m` on. */
   lengths_m: number[];
-  /** With less than the first bin, and with more than the last. */
+  /** Metres of road below the first bin and above the last. */
   below_m: number;
   above_m: number;
 }
@@ -29,7 +29,7 @@ export interface Stats {
   scope: string;
 }
 
-/** Bins beyond these are counted together: what lacks metres lacks them anyhow. */
+/** The ends of the histogram. What lies beyond them is counted together. */
 const FIRST_M = -2;
 const LAST_M = 2;
 
@@ -74,7 +74,7 @@ function histogram(rows: StatsRows, id: string): Histogram {
   const bins = Math.round((LAST_M - FIRST_M) / step_m);
   const made: Histogram = { from_m: FIRST_M, step_m, lengths_m: Array<number>(bins).fill(0), below_m: 0, above_m: 0 };
   for (const row of rows.rsc_histogram) {
-    // Of roads that are forbidden or unknown the margin does not matter.
+    // The margin of forbidden and unknown roads does not matter.
     if (row.vehicle !== id || (row.verdict !== "safe" && row.verdict !== "unsafe")) continue;
     const bin = Math.round((row.rsc_from_m - FIRST_M) / step_m);
     if (bin < 0) made.below_m += 1000 * row.km;

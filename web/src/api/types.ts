@@ -1,4 +1,4 @@
-// What the server answers, as far as the page reads it; `/api/openapi.json` describes all of it.
+// The members of the server's answers that the page reads. `/api/openapi.json` describes all members.
 //
 // Lengths are metres, positions [longitude, latitude] in degrees. Ids of edges and turns are text: they have 63 bits.
 
@@ -10,7 +10,7 @@ export type Position = [lon: number, lat: number];
 export interface Region {
   name: string;
   bbox: [west: number, south: number, east: number, north: number];
-  /** Where nearly all roads are: a few stick out of most extracts. */
+  /** A box with nearly all roads, because a few roads lead far out of most extracts. */
   focus?: [west: number, south: number, east: number, north: number] | null;
   timestamp: string | null;
   netcert: string;
@@ -50,7 +50,7 @@ export interface Vehicle {
 export interface SearchHit {
   kind: "edge" | "way" | "road";
   id: string;
-  /** Of a way or a road one of its edges. */
+  /** The edge, or one of the edges of a way or road. */
   edge_id: string;
   name: string | null;
   ref: string | null;
@@ -60,7 +60,7 @@ export interface SearchHit {
   lat: number;
 }
 
-/** `netcert explain --format json`, with where on the map it is. */
+/** The answer of `netcert explain --format json`, with its place on the map. */
 export interface Explanation {
   vehicle: string;
   road: {
@@ -81,7 +81,7 @@ export interface Explanation {
   scope: string;
   limiting: { length_m: number; rsc_m: number; place: { s_m: number; unit: number; side: string; width_m: number } } | null;
   kind: "edge" | "turn";
-  /** Of a turn: from where into where. */
+  /** The roads of a turn. */
   turn?: string;
   note?: string;
   /** Whether there is a picture. */
@@ -105,7 +105,7 @@ export interface RoutePart {
 export interface Drive {
   /** Stations of the moments, metres from the beginning. */
   s_m: number[];
-  /** When the prime mover's axle is there, seconds. */
+  /** The time at which the prime mover's axle is there, seconds. */
   t: number[];
   units: DriveUnit[];
   /** The corridor's edges at the same stations. */
@@ -119,13 +119,13 @@ export interface DriveUnit {
   coupling_to_axle_m: number;
   front_overhang_m: number;
   rear_overhang_m: number;
-  /** Of the axle: longitude, latitude, heading in degrees clockwise from true north. */
+  /** The axle's longitude and latitude, and the unit's heading in degrees clockwise from true north. */
   poses: [number, number, number][];
-  /** How far the axle may be from there to either side, with every error within its bound. */
+  /** The bound on the axle's distance from that place to either side, metres. */
   tube_m: number[];
 }
 
-/** Of each stretch the least; `null` where no body point came by. */
+/** The least leeway of each stretch. `null` where no body point passes. */
 export interface Leeway {
   step_m: number;
   s_m: number[];

@@ -1,4 +1,4 @@
-// The panel on the right, or at the bottom of a narrow screen, with one thing in it at a time.
+// The panel on the right, or at the bottom of a narrow screen. It shows one thing at a time.
 
 import { byId, h } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";

@@ -1,4 +1,4 @@
-// What the page says, and its keys.
+// The help dialog: the meaning of the map, and the keys.
 
 import { Dialog } from "../ui/dialog.ts";
 import { h } from "../ui/dom.ts";

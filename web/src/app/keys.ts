@@ -1,4 +1,4 @@
-// One key a thing. Keys typed into a field, or together with Ctrl and its kind, are left alone.
+// Keyboard shortcuts of one key. Keys typed into a field or with a modifier such as Ctrl are ignored.
 
 export interface Commands {
   escape(): void;

@@ -1,4 +1,4 @@
-// The map, or two of them beside each other that move as one.
+// The map, or two maps side by side that move together.
 
 import { Marker } from "maplibre-gl";
 import type { VehicleStats } from "../api/stats.ts";
@@ -20,10 +20,10 @@ export interface MapActions {
   endComparing(): void;
 }
 
-/** Nearer than this a single road is not shown without being asked for. */
+/** The deepest zoom that fitting a road may use. */
 const FIT_ZOOM = 18;
 
-/** From here on tiles have each road by itself; a little more, so that lines lie apart. */
+/** A zoom at which tiles have each road by itself and lines are apart. */
 const SINGLE_ZOOM = 12;
 
 export class Maps {
@@ -53,7 +53,7 @@ export class Maps {
     }
   }
 
-  /** Of the vehicle on the second map. */
+  /** Shows the numbers of the vehicle on the second map. */
   number(stats: VehicleStats | null): void {
     const { other } = this.context.store.state;
     if (other) this.#card.show(vehicleOf(this.context, other), stats ? certifiedWords(stats.verdicts) : null);
@@ -67,7 +67,7 @@ export class Maps {
     this.first.map.easeTo({ zoom: this.first.map.getZoom() + by, duration: 250 });
   }
 
-  /** So near that each road is a line of its own. */
+  /** Zooms in until each road is a line of its own. */
   approach(lon: number, lat: number): void {
     this.first.map.easeTo({ center: [lon, lat], zoom: Math.max(this.first.map.getZoom() + 2, SINGLE_ZOOM), duration: 600 });
   }
@@ -76,7 +76,7 @@ export class Maps {
     this.first.map.fitBounds([west, south, east, north], { ...this.#room(), maxZoom });
   }
 
-  /** Moves the map if the place lies under the drawer or at the very edge. */
+  /** Moves the map if the place is under the drawer or close to the edge. */
   reveal(lon: number, lat: number): void {
     const { map } = this.first;
     const drawer = byId("drawer");
@@ -88,7 +88,7 @@ export class Maps {
     else if (y > bottom) map.panBy([0, y - bottom + 60]);
   }
 
-  /** A ring where the answer was decided. */
+  /** Draws a ring at the limiting place. */
   mark(place: Position | null): void {
     this.#limit?.remove();
     this.#limit = undefined;
@@ -97,7 +97,7 @@ export class Maps {
     this.#limit = new Marker({ element }).setLngLat(place).addTo(this.first.map);
   }
 
-  /** What is chosen, so that it is seen from afar, too. */
+  /** Outlines the selected road, so that it can be seen at low zooms, too. */
   outline(line: Position[]): void {
     this.#outline = line;
     for (const view of [this.first, this.#second?.view]) view?.outline(line);
@@ -107,7 +107,7 @@ export class Maps {
     this.first.map.jumpTo({ center: [lon, lat], zoom });
   }
 
-  /** What panels cover is no room for what is to be seen. */
+  /** The padding of the parts of the map that panels cover. */
   #room() {
     const narrow = innerWidth < 760;
     const side = narrow || this.#second ? 40 : byId("side").offsetWidth + 40;

@@ -1,4 +1,4 @@
-// The page as a whole: makes its parts and passes each change of the state to those whom it concerns.
+// The page as a whole. It makes the parts and passes each change of the state to the parts that need it.
 
 import { api } from "../api/client.ts";
 import type { Stats } from "../api/stats.ts";
@@ -63,11 +63,11 @@ export class Page {
     addEventListener("hashchange", () => this.#link());
     listenToKeys(this);
     this.#changed(new Set(Object.keys(store.state) as (keyof State)[]), true);
-    // A test, or whoever reads the console, may look at the map.
+    // For tests and for people who use the console.
     Object.assign(globalThis, { netcert: { map: this.#maps.first.map, store } });
   }
 
-  /** One step back: what lies on top is closed first. */
+  /** Goes one step back. What is on top is closed first. */
   escape(): void {
     const { store } = this.context;
     if (this.#routing.driving) this.#routing.endDrive();
@@ -145,12 +145,12 @@ export class Page {
     }
   }
 
-  /** Chosen as by a click; of a road with many edges the one that the answer names. */
+  /** Selects a search result as a click would. For a road with many edges, the edge that the result names is selected. */
   #search(hit: SearchHit): void {
-    // First, so that what the drawer covers is no room for what was found.
+    // Set first, so that the drawer is open when the map is fitted to the visible area.
     this.context.store.set({ selected: hit.edge_id, route: null });
     this.#maps.fit(hit.bbox);
-    // From here arrows and + and − go on.
+    // With the focus on the map, the arrow keys, + and − work.
     this.#maps.first.map.getCanvas().focus({ preventScroll: true });
     if (hit.kind !== "edge") toast(`${title(hit)}: one part of it is chosen; click on the road for another.`);
   }
@@ -221,7 +221,7 @@ export class Page {
     this.#tools.draw();
   }
 
-  /** Moving the map replaces the link; anything else is a step one can go back from. */
+  /** Writes the state into the link. Moving the map replaces the link; other changes add a step to the history. */
   #rewrite(changed: ReadonlySet<keyof State>): void {
     const link = write(this.context.store.state, this.first);
     if (link === this.#written) return;

@@ -159,7 +159,7 @@ export class Routing {
     });
   }
 
-  /** What would have to be certified first. */
+  /** Marks the obstacles that block the route. */
   #blocked(places: Position[]): void {
     void this.view.ready.then(() => {
       const { map } = this.view;
@@ -172,7 +172,7 @@ export class Routing {
     });
   }
 
-  /** Pins that may be dragged to another place. */
+  /** Draws pins that can be dragged to another place. */
   #mark(places: Position[]): void {
     while (this.#markers.length > 0) this.#markers.pop()?.remove();
     places.forEach((place, index) => {
@@ -190,7 +190,7 @@ export class Routing {
   }
 }
 
-/** The server names a place by its degrees; on the page it has a pin. */
+/** Replaces the degrees of a place in a message of the server by the name of its pin. */
 function named(message: string, places: Position[]): string {
   const at = places.findIndex((place) => message.startsWith(`${place.map((degrees) => degrees.toFixed(5)).join(",")}: `));
   if (at < 0) return message;

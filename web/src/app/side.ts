@@ -1,4 +1,4 @@
-// The panel on the left: which vehicle, which strip of road, and what the colours mean.
+// The panel on the left: the vehicle, the policy, and the meaning of the colours.
 
 import type { Policy, SearchHit } from "../api/types.ts";
 import type { VehicleStats } from "../api/stats.ts";

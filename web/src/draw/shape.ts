@@ -1,7 +1,7 @@
-// What a combination looks like: blocks and wheels of each unit, from its dimensions.
+// The shape of a vehicle: blocks and wheels of each unit, made from its dimensions.
 //
-// Lengths and widths are the vehicle's own. Heights of cabs, decks and frames, and how many wheels stand around the
-// effective axle, are a scheme of what such vehicles usually have; whoever draws them says so.
+// Lengths and widths are those of the vehicle. Heights of cabs, decks and frames, and the number of wheels around the effective
+// axle, are typical values. Every picture says so.
 
 import type { Unit, Vehicle } from "../api/types.ts";
 
@@ -19,23 +19,23 @@ export interface Block {
 
 export interface Shape {
   blocks: Block[];
-  /** Ahead of the axle. */
+  /** Positions of the wheels ahead of the axle, metres. */
   wheels: number[];
   wheelRadius: number;
   width: number;
-  /** Of the body, ahead of the axle and behind it (negative). */
+  /** Ends of the body: ahead of the axle, and behind it (negative), metres. */
   front: number;
   rear: number;
 }
 
-/** Height where it is not known, as a multiple of the width. */
+/** The height of a vehicle of unknown height, as a multiple of its width. */
 const ASSUMED_HEIGHT = 1.5;
 
 export function heightOf(vehicle: Vehicle): number {
   return vehicle.height_m ?? ASSUMED_HEIGHT * Math.max(...vehicle.units.map((unit) => unit.width_m));
 }
 
-/** Where the next unit's body begins, ahead of this unit's axle. */
+/** The front of the next unit's body, metres ahead of this unit's axle. */
 function nextFront(unit: Unit, next: Unit | undefined): number | null {
   return next ? -unit.hitch_offset_m + next.front_overhang_m : null;
 }
@@ -123,7 +123,7 @@ function wheels(vehicle: Vehicle, unit: Unit, index: number, bus: boolean): numb
   return vehicle.region === "US" || vehicle.region === "CA" ? [0.65, -0.65] : [1.3, 0, -1.3];
 }
 
-/** Places of the axles when it stands straight, the front bumper at 0, metres back from it. */
+/** Positions of the axles of the straight vehicle, metres behind the front bumper. */
 export function straight(vehicle: Vehicle): number[] {
   let coupling = vehicle.units[0]?.front_overhang_m ?? 0;
   return vehicle.units.map((unit) => {

@@ -8,8 +8,8 @@ import { heightOf, shapes, straight, type Block } from "./shape.ts";
 const ROOM = 0.3;
 
 /**
- * The picture, `metres` wide: give several vehicles the same number and they have one scale. Colours come from the style
- * sheet, `--unit-0` and on.
+ * The picture, `metres` wide. Pictures of the same width have the same scale. Colours are the custom properties `--unit-0`,
+ * `--unit-1` and so on of the style sheet.
  */
 export function sideView(vehicle: Vehicle, metres = vehicle.length_m): SVGSVGElement {
   const height = Math.max(heightOf(vehicle), 1.5);

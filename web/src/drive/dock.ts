@@ -12,7 +12,7 @@ import { Samples } from "./samples.ts";
 import { Scene } from "./scene.ts";
 import { Strip } from "./strip.ts";
 
-/** How far before the tightest place a look at it begins, metres. */
+/** The distance before the tightest place at which a look at it begins, metres. */
 const RUN_UP_M = 60;
 
 export class Dock {
@@ -54,13 +54,13 @@ export class Dock {
     const words = h("div", { class: "dock-words" }, this.#road, this.#time);
     const controls = h("div", { class: "dock-controls" }, this.#play, words, this.#speed.element, this.#look.element, tightest, shut);
     this.element = h("section", { class: "dock", "aria-label": "Drive along the route" }, controls, this.#strip.element);
-    // On top of all, or names would lie on the bodies.
+    // Added on top, so that names do not cover the bodies.
     this.view.map.addLayer(this.#scene);
     this.#player = new Player(view.map, this.#scene, this.#samples, vehicle.length_m, () => this.#draw());
     this.#draw();
   }
 
-  /** From the beginning; where motion is not wanted it waits to be started. */
+  /** Starts at the beginning. If the reader prefers reduced motion, the drive waits to be started. */
   start(): void {
     this.#player.seek(Math.min(this.vehicle.length_m, this.#samples.length));
     this.#player.look = "chase";

@@ -1,4 +1,4 @@
-// The little of WebGL that the drive needs: one program for lit triangles, and buffers of them.
+// The WebGL code of the drive: one program for lit triangles, and buffers of triangles.
 
 import { STRIDE, type Mesh } from "./mesh.ts";
 

@@ -1,11 +1,11 @@
-// Triangles with normals and colours, collected in one array: everything the drive shows is made of them.
+// Triangles with normals and colours, collected in one array. Everything that the drive shows is made of triangles.
 
 import type { Block, Shape } from "../draw/shape.ts";
 import type { Pose } from "./samples.ts";
 
 export type Rgba = readonly [number, number, number, number];
 
-/** Floats a vertex: position, normal, colour. */
+/** Floats per vertex: position, normal, colour. */
 export const STRIDE = 10;
 
 export function rgba(hex: string, alpha = 1): Rgba {
@@ -39,7 +39,7 @@ export class Mesh {
     this.#used = 0;
   }
 
-  /** Two triangles; corners in turn, the last two in a colour of their own if there is one. */
+  /** Adds two triangles. Corners are in order around the quad; the last two may have a second colour. */
   quad(a: Point, b: Point, c: Point, d: Point, normal: Point, colour: Rgba, second: Rgba = colour): void {
     this.#vertex(a, normal, colour);
     this.#vertex(b, normal, colour);
@@ -66,13 +66,13 @@ export class Mesh {
   }
 }
 
-/** A unit's own frame: `ahead` along its heading, `left` across it, `up`; in the drive's frame. */
+/** The frame of a unit (`ahead` along its heading, `left` across it, `up`), placed in the drive's frame. */
 export class Placed {
   constructor(private readonly pose: Pose, private readonly originX = 0, private readonly originY = 0) {}
 
   at(ahead: number, left: number, up: number): Point {
     const { x, y, dx, dy } = this.pose;
-    // y points south: left of (dx, dy) is (dy, −dx).
+    // y points south, so the left of (dx, dy) is (dy, −dx).
     return [x - this.originX + ahead * dx + left * dy, y - this.originY + ahead * dy - left * dx, up];
   }
 
@@ -99,7 +99,7 @@ export function box(mesh: Mesh, placed: Placed, block: Block, colour: Rgba): voi
   const half = block.width / 2;
   const corner = (ahead: number, left: number, up: number): Point => placed.at(ahead, left, up);
   mesh.quad(corner(front, half, high), corner(front, -half, high), corner(rear, -half, high), corner(rear, half, high), UP, colour);
-  // Less light comes from below.
+  // Undersides are darker.
   const dim = mix(colour, [0, 0, 0, 1], 0.2);
   const side = (a: [number, number], b: [number, number], normal: Point): void =>
     mesh.quad(corner(...a, low), corner(...b, low), corner(...b, high), corner(...a, high), normal, dim, colour);
@@ -129,7 +129,7 @@ export function wheel(mesh: Mesh, placed: Placed, ahead: number, left: number, r
   }
 }
 
-/** A ring around an axle, on the ground: how far it may be to either side. */
+/** Adds a ring around an axle on the ground, which shows the bound on the axle's distance to either side. */
 export function ellipse(mesh: Mesh, placed: Placed, across: number, along: number, up: number, colour: Rgba, line: number): void {
   const steps = 40;
   const at = (step: number, more: number): Point => {
@@ -141,7 +141,7 @@ export function ellipse(mesh: Mesh, placed: Placed, across: number, along: numbe
   }
 }
 
-/** Soft and flat, under a unit: what ties a body to the ground. */
+/** Adds a soft, flat shadow under a unit. */
 export function shadow(mesh: Mesh, placed: Placed, shape: Shape): void {
   for (const [beyond, alpha] of [[0.55, 0.05], [0.35, 0.07], [0.15, 0.1]] as const) {
     rectangle(mesh, placed, shape.front + beyond, shape.rear - beyond, shape.width / 2 + beyond, 0, [0, 0, 0, alpha]);
@@ -152,7 +152,7 @@ const GLASS: Rgba = [0.09, 0.13, 0.17, 1];
 const WHITE: Rgba = [1, 0.97, 0.85, 1];
 const RED: Rgba = [0.85, 0.1, 0.1, 1];
 
-/** Windows of the cab, and lights: what shows which way it goes. */
+/** Adds windows of the cab and lights, which show the direction of travel. */
 function fittings(mesh: Mesh, placed: Placed, block: Block): void {
   const tall = block.high - block.low;
   const at = (share: number): number => block.low + share * tall;

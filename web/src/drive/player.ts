@@ -1,4 +1,4 @@
-// Clock and camera of a drive: plays, pauses, seeks, and looks along or from above.
+// The clock and the camera of a drive: play, pause, seek, and the view from behind or above.
 
 import type { Map as Base } from "maplibre-gl";
 import type { Scene } from "./scene.ts";
@@ -6,11 +6,11 @@ import type { Samples } from "./samples.ts";
 
 export type Look = "chase" | "above" | "free";
 
-/** How quickly the camera turns after the vehicle: the share of the difference that is left after a second. */
+/** The share of the angle between camera and vehicle that is left after a second. */
 const TURN_LEFT = 0.12;
-/** A slow machine drives slower rather than in leaps. */
+/** The longest step of time per frame, seconds. On a slow machine the drive slows down and does not jump. */
 const LONGEST_FRAME_S = 0.25;
-/** Of a long vehicle the chasing camera shows so much, metres, from the front: the rest trails behind it. */
+/** The length from the front of a long vehicle that the chasing camera shows, metres. */
 const SHOWN_M = 32;
 
 export class Player {
@@ -29,7 +29,7 @@ export class Player {
     private readonly vehicleLength: number,
     private readonly changed: (player: Player) => void,
   ) {
-    // Whoever takes hold of the map wants to look for themselves.
+    // A reader who drags the map takes over the camera.
     map.on("dragstart", this.#let);
     map.on("rotatestart", this.#let);
   }
@@ -130,7 +130,7 @@ export class Player {
     else this.map.jumpTo(camera);
   }
 
-  /** So that the vehicle has room on the screen. */
+  /** The zoom at which the vehicle fits on the screen. */
   #zoom(chase: boolean): number {
     const { clientWidth: wide, clientHeight: tall } = this.map.getContainer();
     const pixels = Math.min(wide * 0.5, tall) * (chase ? 0.62 : 0.55);

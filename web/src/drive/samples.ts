@@ -1,7 +1,7 @@
-// A drive as arrays in a metric frame, and where everything is at any station between its samples.
+// A drive as arrays in a metric frame, interpolated at any station between its samples.
 //
-// The frame is Mercator's, scaled to metres at the drive's beginning: x east, y south. Far from there a metre is a little
-// more or less of it; bodies are scaled accordingly.
+// The frame is Mercator, scaled to metres at the drive's beginning: x east, y south. Far from the beginning the scale differs a
+// little, and bodies are scaled accordingly.
 
 import { MercatorCoordinate } from "maplibre-gl";
 import type { Drive, Leeway } from "../api/types.ts";
@@ -9,7 +9,7 @@ import type { Drive, Leeway } from "../api/types.ts";
 export interface Pose {
   x: number;
   y: number;
-  /** Towards which it faces, as a unit vector of the frame. */
+  /** The heading as a unit vector of the frame. */
   dx: number;
   dy: number;
 }
@@ -51,7 +51,7 @@ export class Samples {
       poses.forEach(([lon, lat, heading], index) => {
         const [x, y] = this.frame.to(lon, lat);
         const angle = (heading * Math.PI) / 180;
-        // Clockwise from north; y points south.
+        // The angle is clockwise from north, and y points south.
         out.set([x, y, Math.sin(angle), -Math.cos(angle)], 4 * index);
       });
       return out;
@@ -62,7 +62,7 @@ export class Samples {
     return this.drive.units;
   }
 
-  /** All units at a station. */
+  /** The poses of all units at a station. */
   at(s: number): Pose[] {
     const { index, part } = bracket(this.drive.s_m, s);
     return this.#poses.map((poses) => {
@@ -77,12 +77,12 @@ export class Samples {
     });
   }
 
-  /** How far unit `unit` may be from where it is drawn, to either side. */
+  /** The bound on the distance of a unit's axle from its drawn place, to either side, metres. */
   tube(unit: number, s: number): number {
     const own = this.drive.units[unit]?.tube_m ?? [];
     const { index, part } = bracket(this.drive.s_m, s);
     const [a, b] = [own[index] ?? 0, own[index + 1] ?? own[index] ?? 0];
-    // Between two samples the wider one holds.
+    // Between two samples the greater bound holds.
     return part === 0 ? a : Math.max(a, b);
   }
 
@@ -101,7 +101,7 @@ function mapped(from: number[], to: number[], value: number): number {
   return a + part * (b - a);
 }
 
-/** Between which two of ascending numbers a value lies, and how far; the ends hold beyond them. */
+/** The interval of ascending numbers that contains a value, and the value's share of it. Values beyond the ends are clamped. */
 export function bracket(ascending: number[], value: number): { index: number; part: number } {
   let [low, high] = [0, Math.max(ascending.length - 1, 0)];
   while (high - low > 1) {
@@ -113,10 +113,10 @@ export function bracket(ascending: number[], value: number): { index: number; pa
   return { index: low, part: b > a ? Math.min(Math.max((value - a) / (b - a), 0), 1) : 0 };
 }
 
-/** More than this is no leeway: nothing of the vehicle came by. */
+/** A greater leeway means that no body passed, metres. */
 export const OPEN_M = 100;
 
-/** What is left on either side of the stretch that a station lies in, metres. */
+/** The leeway on either side at the stretch of a station, metres. */
 export function leewayAt(leeway: Leeway, s: number): { left: number; right: number } {
   const at = Math.min(Math.max(Math.floor(s / leeway.step_m), 0), leeway.s_m.length - 1);
   return { left: leeway.left_m[at] ?? OPEN_M, right: leeway.right_m[at] ?? OPEN_M };

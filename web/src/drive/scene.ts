@@ -1,5 +1,5 @@
-// The drive in the map's own WebGL context: the corridor on the ground, what the bodies have swept so far, the bodies, and the
-// tubes that bound them. Drawn with the map's frame, so that nothing lags behind the camera.
+// The drive in the map's own WebGL context: the corridor on the ground, the swept path so far, the bodies, and the tubes that
+// bound them. The scene is drawn in the same frame as the map, so that it does not lag behind the camera.
 
 import type { CustomLayerInterface, CustomRenderMethodInput, Map as Base } from "maplibre-gl";
 import type { Route, Vehicle } from "../api/types.ts";
@@ -9,12 +9,12 @@ import { draw, program, refill, remove, upload, type Drawn } from "./gl.ts";
 import { Mesh, Placed, ellipse, mix, rectangle, rgba, shadow, unit as body } from "./mesh.ts";
 import { leewayAt, type Samples } from "./samples.ts";
 
-/** How wide the line along the corridor's edge is drawn, metres. */
+/** The width of the line along the corridor's edge, metres. */
 const EDGE_M = 0.14;
-/** Bodies are metres long: rectangles so far apart overlap. */
+/** The distance of two rectangles of the swept path, metres. Bodies are longer, so the rectangles overlap. */
 const SWEPT_M = 1;
 const MOST_SWEPT = 5000;
-/** Of the tubes' bands so much is shown before and behind the vehicle, and none narrower than can be seen. */
+/** The length of the tubes' bands before and behind the vehicle, metres. */
 const BANDS_M = 90;
 const LEAST_BAND_M = 0.05;
 
@@ -34,7 +34,7 @@ export class Scene implements CustomLayerInterface {
   #moving: Drawn | undefined;
   readonly #mesh = new Mesh(16384);
   readonly #shapes: Shape[];
-  /** Metres between two places at which the swept path is drawn, and vertices at each. */
+  /** Metres between two places of the swept path, and vertices at each place. */
   readonly #step: number;
   #each = 0;
   get #count(): number {
@@ -83,7 +83,7 @@ export class Scene implements CustomLayerInterface {
     gl.disable(gl.STENCIL_TEST);
     const main = input.defaultProjectionData.mainMatrix as unknown as ArrayLike<number>;
     gl.uniformMatrix4fv(this.#matrix, false, this.#local(main, 0, 0));
-    // What lies on the ground covers in the order in which it is drawn.
+    // On the ground, later drawings cover earlier ones.
     gl.disable(gl.DEPTH_TEST);
     draw(gl, this.#ground, 0, this.#ground.vertices);
     const now = Math.floor(this.s / this.#step);
@@ -94,7 +94,7 @@ export class Scene implements CustomLayerInterface {
     gl.bindVertexArray(null);
   }
 
-  /** The tubes of all axles, as bands on the ground: where each may be, with every error within its bound. */
+  /** The tubes of all axles as bands on the ground: the bounds on each axle's place. */
   #bands(): Mesh {
     const count = this.#count;
     const mesh = new Mesh(count * this.#shapes.length * 6);
@@ -117,7 +117,7 @@ export class Scene implements CustomLayerInterface {
     return Math.max(this.samples.tube(unit, s), LEAST_BAND_M);
   }
 
-  /** The corridor with its edges, and all that will have been swept. */
+  /** Builds the parts that do not move: the corridor with its edges, and the whole swept path. */
   #still(gl: WebGL2RenderingContext): void {
     for (const old of [this.#ground, this.#swept, this.#tubes]) if (old) remove(gl, old);
     this.#ground = upload(gl, this.#program!, this.#corridor());
@@ -213,7 +213,7 @@ export class Scene implements CustomLayerInterface {
     draw(gl, this.#moving, 0, this.#mesh.vertices);
   }
 
-  /** From metres around a place of the drive's frame to the screen, in doubles until the last step. */
+  /** The matrix from metres around a place of the drive's frame to the screen, computed in doubles until the last step. */
   #local(main: ArrayLike<number>, x: number, y: number): Float32Array {
     const { origin, metre } = this.samples.frame;
     const [ox, oy] = [origin.x + x * metre, origin.y + y * metre];

@@ -1,5 +1,5 @@
-// What is left on either side, along the route: all of it in a narrow band, and around the vehicle in a wide one that moves in
-// step with it. Upwards is left of travel, downwards right; a stroke across marks where it is tightest.
+// The leeway on either side along the route: the whole route in a narrow band, and the part around the vehicle in a wide band that
+// moves with the vehicle. Up is left of travel, down is right. A stroke across marks the tightest place.
 
 import type { Route } from "../api/types.ts";
 import { marginColour, type Palette } from "../map/palette.ts";
@@ -7,7 +7,7 @@ import { h } from "../ui/dom.ts";
 import { careful, distance } from "../words.ts";
 import { OPEN_M, leewayAt } from "./samples.ts";
 
-/** Metres of leeway that fill half of the band, at least and at most: more is cut off. */
+/** The limits of the leeway that fills half of the band, metres. More leeway is cut off. */
 const LEAST_FULL_M = 0.3;
 const MOST_FULL_M = 1.5;
 /** Metres of road behind and ahead of the vehicle. */
@@ -19,7 +19,7 @@ export class Strip {
   readonly #whole = h("canvas", { class: "strip-whole", "aria-hidden": "true" });
   readonly #slider: HTMLInputElement;
   readonly #numbers = h("div", { class: "strip-numbers", "aria-hidden": "true" });
-  /** Metres that fill half of the band: what nine tenths of the route stay below. */
+  /** The leeway that fills half of the band, metres. Nine tenths of the route have less. */
   readonly #full: number;
   #s = 0;
 
@@ -89,7 +89,7 @@ export class Strip {
     const ratio = devicePixelRatio || 1;
     const size = (value: number): number => Math.min(Math.max(value, 0.02) / this.#full, 1) * (middle - 1);
     leeway.s_m.forEach((s, index) => {
-      // On whole pixels, or seams show between neighbours.
+      // Rounded to whole pixels, because seams would show between neighbours.
       const a = Math.floor(x(s) * ratio) / ratio;
       const b = Math.ceil(x(leeway.s_m[index + 1] ?? length_m) * ratio) / ratio;
       if (b < 0 || a > wide) return;
@@ -114,7 +114,7 @@ export class Strip {
     context.stroke();
     const head = x(this.#s);
     if (near) {
-      // The vehicle's length, to the strip's scale.
+      // The vehicle's length in the scale of the strip.
       const rear = x(this.#s - this.vehicleLength);
       context.fillStyle = this.palette.ink;
       context.beginPath();

@@ -1,4 +1,4 @@
-// The number under the pointer.
+// The card with the margin of the road under the pointer.
 
 import { h, styled } from "../ui/dom.ts";
 import { className, evidenceWords, leastMargin, margin, reasonWords, title, verdictWords } from "../words.ts";

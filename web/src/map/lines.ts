@@ -1,5 +1,5 @@
-// How broad the lines of roads are and where they lie beside the map's line, by zoom: broad enough to be seen from afar, as wide as
-// the road near by.
+// Width and offset of the lines of roads by zoom. At low zooms lines are wide enough to be seen; at deep zooms they are as wide as
+// the road.
 
 import type { ExpressionSpecification } from "maplibre-gl";
 import type { Region } from "../api/types.ts";
@@ -7,21 +7,21 @@ import type { Theme } from "./palette.ts";
 
 export type Numeric = ExpressionSpecification;
 
-/** What of the database a style depends on. */
+/** The facts of the database that a style depends on. */
 export interface Ground {
   region: Region;
   tilesUrl: string;
   theme: Theme;
-  /** Both directions use the same strip: the whole road. */
+  /** Whether both directions use the same strip, the whole road. */
   shared: boolean;
-  /** Of the region's middle, degrees. */
+  /** Latitude of the region's middle, degrees. */
   latitude: number;
 }
 
 export const major = ["motorway", "trunk"];
 export const middle = ["primary", "secondary"];
 
-/** Pixels of one direction of a road by zoom: of motorways and trunk roads, of main roads, of all others. */
+/** Width of one direction of a road in pixels, by zoom: of motorways and trunk roads, of main roads, of all others. */
 const widths: readonly (readonly [zoom: number, big: number, main: number, other: number])[] = [
   [8, 1.1, 0.8, 0.4],
   [12, 2.2, 1.8, 1.1],
@@ -34,7 +34,7 @@ const widths: readonly (readonly [zoom: number, big: number, main: number, other
   [22, 13, 12.5, 11.5],
 ];
 
-/** Something for each zoom, made from the width of a direction there. */
+/** An expression by zoom, made from the width of a direction at each zoom. */
 function byWidth(make: (pixels: Numeric, zoom: number) => Numeric): Numeric {
   const links = (names: string[]): string[] => [...names, ...names.map((name) => `${name}_link`)];
   const stops = widths.flatMap(([zoom, big, main, other]) => {
@@ -48,17 +48,17 @@ export function width(factor: number): Numeric {
   return byWidth((pixels) => ["*", factor, pixels]);
 }
 
-/** From this zoom on roads are drawn as wide as they are, under the lines that say what is certified. */
+/** From this zoom on, roads are drawn in their real width under the lines of verdicts. */
 export const REAL_ZOOM = 17;
 
-/** Pixels a metre of ground at a zoom; tiles are 512 pixels wide. */
+/** Pixels per metre of ground at a zoom. Tiles are 512 pixels wide. */
 export function pixelsPerMetre(zoom: number, latitude: number): number {
   return (512 * 2 ** zoom) / (40_075_016.7 * Math.cos((latitude * Math.PI) / 180));
 }
 
 /**
- * To the side on which one drives, so that the two directions of a road touch, and near by lie in their strips; one-way roads
- * stay where the map has them. `factor` is that of the line's own width.
+ * The offset of a line to the driving side, so that the two directions of a road touch, and at deep zooms lie in their strips.
+ * One-way roads have no offset. `factor` multiplies the line's width.
  */
 export function offset(factor: number, ground: Ground): Numeric {
   const sided = (pixels: Numeric): Numeric => [
@@ -74,7 +74,7 @@ export function offset(factor: number, ground: Ground): Numeric {
   });
 }
 
-/** Where a region has both sides, its tiles say it for each road. */
+/** Whether traffic keeps left. If a region has both sides, its tiles say the side of each road. */
 function drivesLeft(region: Region): ExpressionSpecification {
   return ["to-boolean", ["coalesce", ["get", "left"], region.left_hand_traffic ?? false]];
 }

@@ -1,9 +1,9 @@
 // Colours of the map, for light and dark.
 //
-// Room to spare is blue, the more the further from the paper's lightness; what is missing is orange, and fades the further
-// a road is from fitting: what nearly fits is what people ask about. Blue and orange stay apart under deuteranopia and
-// protanopia (`test/palette.test.mjs` simulates both); verdicts differ in line width and dashes, too, so that nothing hangs on
-// colour alone. Categories are Okabe and Ito's (Color Universal Design, 2008).
+// Room to spare is blue, and more room differs more in lightness from the paper. Missing room is orange, and fades with the amount
+// that is missing, because people ask about what nearly fits. Blue and orange stay apart under deuteranopia and protanopia
+// (`test/palette.test.mjs` simulates both). Verdicts also differ in line width and dashes, so that nothing depends on colour alone.
+// Categories have the colours of Okabe and Ito (Color Universal Design, 2008).
 
 import type { Evidence } from "../api/types.ts";
 
@@ -22,7 +22,7 @@ export const roomSteps: readonly Step[] = [
   { from_m: 1, label: "1 m" },
 ];
 
-/** From hopeless to nearly. */
+/** The steps of missing room, from the most to the least. */
 export const missingSteps: readonly Step[] = [
   { from_m: -Infinity, label: "" },
   { from_m: -1, label: "1 m" },
@@ -42,12 +42,12 @@ export interface Palette {
   forbidden: string;
   unknown: string;
   selected: string;
-  /** Shines from under what is chosen: of no verdict's hue, lighter than all of them. */
+  /** The glow under the selected road. It has no verdict's hue and is lighter than all of them. */
   glow: string;
   route: string;
   routeCasing: string;
   units: readonly string[];
-  /** Of roads as wide as they are. */
+  /** The surface of roads in their real width. */
   surface: string;
   corridor: string;
   swept: string;
@@ -96,13 +96,13 @@ export const palettes: Record<Theme, Palette> = {
   },
 };
 
-/** What of it the style sheet names, as custom properties. */
+/** The colours that the style sheet uses, as custom properties. */
 export function properties({ room, missing, forbidden, unknown, units }: Palette): Record<string, string> {
   const numbered = units.map((colour, index) => [`--unit-${index}`, colour]);
   return { "--safe": room[2], "--unsafe": missing[2], "--forbidden": forbidden, "--unknown": unknown, ...Object.fromEntries(numbered) };
 }
 
-/** Why a road is barred, by `verdict/reason`. */
+/** The colour of each reason, by `verdict/reason`. */
 export const reasonColours: Record<string, string> = {
   "unsafe/width": "#e69f00",
   "unsafe/articulation": "#d55e00",
@@ -111,7 +111,7 @@ export const reasonColours: Record<string, string> = {
   unknown: "#98a0a8",
 };
 
-/** How good a width is: the better, the further from the paper. */
+/** The colour of each source of width. A better source differs more from the paper. */
 export const evidenceColours: Record<Theme, Record<Evidence | "none", string>> = {
   light: {
     none: "#a5abb2",

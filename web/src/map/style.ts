@@ -1,8 +1,7 @@
-// The map's style: background, roads and labels all come from the database's own tiles, nothing from elsewhere.
+// The map's style. Background, roads and labels come only from the database's own tiles.
 //
-// Every road is a directed edge: the two directions of a road are drawn side by side, each on the side on which it is
-// driven. One layer a verdict, because each has a line of its own: certified is broad and solid, not certified thin,
-// forbidden dashed, unknown dotted.
+// Every line is a directed edge. The two directions of a road are drawn side by side, each on its driving side. Each verdict has a
+// layer with its own line: certified is wide and solid, not certified thin, forbidden dashed, unknown dotted.
 
 import type {
   DataDrivenPropertyValueSpecification,
@@ -19,15 +18,15 @@ import { REAL_ZOOM, major, middle, offset, pixelsPerMetre, width, type Ground, t
 import { evidenceColours, missingSteps, palettes, reasonColours, roomSteps, type Palette, type Theme } from "./palette.ts";
 
 export const LABEL_FONT = "Inter Variable";
-/** Drawn in this order: what may be used lies on top. */
+/** The verdicts in drawing order. What may be used is on top. */
 export const verdictLayers: readonly VerdictName[] = ["unknown", "forbidden", "unsafe", "safe"];
 export const edgeLayers = verdictLayers.map((verdict) => `edge-${verdict}`);
-/** From afar one line stands for many roads, and on top lies what may not be used: nothing certified may cover it. */
+/** The drawing order of overviews, where one line stands for many roads. What may not be used is on top. */
 const fromBest: readonly VerdictName[] = ["safe", "unknown", "unsafe", "forbidden"];
 export const overviewLayers = fromBest.map((verdict) => `overview-${verdict}`);
-/** From here on tiles have each road by itself (`src/serve/tiles/mod.rs`). */
+/** From this zoom on, tiles have each road by itself (`src/serve/tiles/mod.rs`). */
 const EDGE_ZOOM = 11;
-/** The source with the line of what is chosen; as all that begin like this it outlives a change of the style. */
+/** The source with the line of the selected road. Sources whose names begin with `own-` survive a change of the style. */
 export const OUTLINE = "own-outline";
 export const turnLayers = verdictLayers.map((verdict) => `turn-${verdict}`);
 
@@ -56,7 +55,7 @@ function colour(verdict: VerdictName, state: State, palette: Palette, theme: The
 const dashes: Partial<Record<VerdictName, number[]>> = { forbidden: [2.2, 1.4], unknown: [0.1, 2] };
 const breadth: Record<VerdictName, number> = { safe: 1.25, unsafe: 0.72, forbidden: 0.6, unknown: 0.75 };
 
-/** What the filters leave, of one verdict. */
+/** The filter for one verdict, combined with the user's filters. */
 export function filter(verdict: VerdictName, state: State): ExpressionSpecification {
   const all: unknown[] = ["all", ["==", ["get", "verdict"], verdict]];
   if (state.hiddenClasses.size > 0) {
@@ -89,14 +88,14 @@ function edge(verdict: VerdictName, state: State, palette: Palette, ground: Grou
   };
 }
 
-/** Roads from afar: both directions in one line, so without an offset. */
+/** Roads of the overview. Both directions are one line, so it has no offset. */
 function overview(verdict: VerdictName, state: State, palette: Palette, ground: Ground): LayerSpecification {
   const { paint, ...own } = edge(verdict, state, palette, ground) as LineLayerSpecification;
   const { "line-offset": _, ...rest } = paint ?? {};
   return { ...own, id: `overview-${verdict}`, "source-layer": "overview", paint: { ...rest, "line-width": width(1.5 * breadth[verdict]) } };
 }
 
-/** Under what is not certified the paper, so that of a certified line beside it nothing shines through its gaps. */
+/** A casing in the paper's colour under roads that are not certified, so that no certified line shows through their gaps. */
 function overviewCasing(verdict: VerdictName, state: State, palette: Palette): LayerSpecification {
   return {
     id: `overview-casing-${verdict}`,
@@ -117,7 +116,7 @@ function turn(verdict: VerdictName, state: State, palette: Palette, ground: Grou
     type: "line",
     source: "roads",
     "source-layer": "turn",
-    // Most turns that are forbidden or unknown lead into roads that are.
+    // Most forbidden or unknown turns lead into forbidden or unknown roads, so they appear later.
     minzoom: verdict === "safe" || verdict === "unsafe" ? 15.5 : 17.5,
     filter: filtered as ExpressionSpecification,
     layout: { "line-cap": "round", "line-join": "round" },
@@ -130,7 +129,7 @@ function turn(verdict: VerdictName, state: State, palette: Palette, ground: Grou
   };
 }
 
-/** A broad line of the paper's colour under all roads keeps crossings and neighbours apart. */
+/** A wide line in the paper's colour under all roads, which keeps crossings and neighbours apart. */
 function casing(palette: Palette, ground: Ground): LayerSpecification {
   return {
     id: "casing",
@@ -144,7 +143,7 @@ function casing(palette: Palette, ground: Ground): LayerSpecification {
   };
 }
 
-/** The strip that a direction has, as wide as it is. */
+/** The strip of a direction in its real width. */
 function surface(palette: Palette, ground: Ground): LayerSpecification {
   const zooms = [REAL_ZOOM, 18, 19, 20, 21, 22];
   const metres = ["coalesce", ["get", "width_m"], 0];
@@ -182,7 +181,7 @@ function highlight(id: string, layer: "edge" | "turn", palette: Palette, ground:
   };
 }
 
-/** What is chosen is found at a glance among the lines of a whole region. */
+/** The glow that makes the selected road stand out in a whole region. */
 function shine(palette: Palette): NonNullable<LineLayerSpecification["paint"]> {
   return { "line-color": palette.glow, "line-width": ["interpolate", ["linear"], ["zoom"], 9, 12, 14, 16, 19, 34], "line-blur": 1.5 };
 }
@@ -192,7 +191,7 @@ function glow(palette: Palette, ground: Ground): LayerSpecification {
   return { ...edge, id, paint: { ...paint, ...shine(palette), "line-opacity": 1 } };
 }
 
-/** Tiles from afar do not have it: a line of its own. */
+/** The glow at low zooms. Overview tiles have no single roads, so the glow has a source of its own. */
 function glowAfar(palette: Palette): LayerSpecification {
   return { id: "glow-afar", type: "line", source: OUTLINE, maxzoom: EDGE_ZOOM, layout: { "line-cap": "round", "line-join": "round" }, paint: shine(palette) };
 }
@@ -219,14 +218,14 @@ function labels(palette: Palette): LayerSpecification {
   };
 }
 
-/** MapLibre takes attributions for HTML. */
+/** Escapes a text, because MapLibre treats attributions as HTML. */
 function plain(text: string): string {
   return h("span", {}, text).innerHTML;
 }
 
 const world: [number, number][] = [[-180, -85], [180, -85], [180, 85], [-180, 85], [-180, -85]];
 
-/** The region's box; outside of it nothing is known, which the paper shows. */
+/** The region's box. Nothing is known outside of it. */
 function extent([west, south, east, north]: Region["bbox"]): GeoJSON.Feature {
   const [x, y] = [0.01 * (east - west), 0.01 * (north - south)];
   const [w, s, e, n] = [west - x, south - y, east + x, north + y];
@@ -242,7 +241,7 @@ export function style(state: State, ground: Ground): StyleSpecification {
     verdictLayers.map((verdict) => make(verdict, state, palette, ground));
   return {
     version: 8,
-    // No `glyphs`: MapLibre then draws letters with the fonts of the page.
+    // Without `glyphs`, MapLibre draws letters with the fonts of the page.
     sources: {
       roads: { type: "vector", tiles: [tilesUrl], maxzoom: region.max_zoom, bounds: region.bbox, attribution: region.attribution },
       outside: { type: "geojson", data: extent(region.bbox) },

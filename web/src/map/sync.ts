@@ -1,8 +1,8 @@
-// Two maps side by side that move as one.
+// Two maps side by side that move together.
 
 import type { Map as Base } from "maplibre-gl";
 
-/** Moves each map with the other; returns how to stop it. */
+/** Moves each map with the other. Returns a function that stops it. */
 export function sync(a: Base, b: Base): () => void {
   let leading = false;
   const follow = (from: Base, to: Base) => () => {

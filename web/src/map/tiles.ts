@@ -1,9 +1,9 @@
-// Tiles by an address of their own, so that they are asked for as everything else is: again, when the server is busy.
+// A protocol of its own for tiles, so that requests for tiles are repeated when the server is busy, like all other requests.
 
 import { addProtocol } from "maplibre-gl";
 import { patient } from "../api/patient.ts";
 
-/** MapLibre fetches in a worker, which knows no page to be relative to: `netcert://tiles/…` comes back here. */
+/** MapLibre fetches in a worker, where relative addresses do not work. `netcert://tiles/…` is handled here. */
 const SCHEME = "netcert";
 
 /** The address under which MapLibre asks for a path of this server. */

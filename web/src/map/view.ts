@@ -1,4 +1,4 @@
-// One map: made for a vehicle and a policy, restyled as the state changes, reporting what is under the pointer.
+// One map for a vehicle and a policy. It is restyled when the state changes, and reports what is under the pointer.
 
 import { AttributionControl, Map as Base, ScaleControl, type GeoJSONSource, type MapGeoJSONFeature, type MapMouseEvent, type Source } from "maplibre-gl";
 import type { Position, Region } from "../api/types.ts";
@@ -8,7 +8,7 @@ import type { Theme } from "./palette.ts";
 import { tileAddress } from "./tiles.ts";
 import { OUTLINE, edgeLayers, overviewLayers, style, turnLayers } from "./style.ts";
 
-/** What a tile says of an edge or a turn; from afar, of all roads that fall on one line: those have no id. */
+/** The tags of an edge or turn in a tile. In an overview, those of all roads that fall on one line, without an id. */
 export interface Under {
   kind: "edge" | "turn" | "overview";
   id: string | null;
@@ -21,7 +21,7 @@ export interface Events {
   moved(): void;
 }
 
-/** How near to a line counts as on it, pixels: a finger is broader than a pointer. */
+/** The greatest distance at which the pointer counts as on a line, pixels. It is greater for a finger. */
 const NEAR_MOUSE = 5;
 const NEAR_TOUCH = 14;
 
@@ -60,7 +60,7 @@ export class View {
     this.#listen();
   }
 
-  /** When the style is in place, so that sources and layers may be added. */
+  /** Resolves when the style is loaded, so that sources and layers can be added. */
   get ready(): Promise<void> {
     return this.#ready;
   }
@@ -85,7 +85,7 @@ export class View {
     void this.#ready.then(() => this.#select(state.selected));
   }
 
-  /** The line of what is chosen: from afar tiles have no single roads that could be told by their ids. */
+  /** Sets the line of the selected road. Overview tiles have no single roads with ids, so the line is set separately. */
   outline(coordinates: Position[]): void {
     const line: GeoJSON.Feature = { type: "Feature", properties: {}, geometry: { type: "LineString", coordinates } };
     void this.#ready.then(() => this.overlay(OUTLINE, { type: "FeatureCollection", features: coordinates.length > 1 ? [line] : [] }));
@@ -98,7 +98,7 @@ export class View {
     else this.map.addSource(name, { type: "geojson", data });
   }
 
-  /** Sources and layers that are not the style's: they outlive a change of it. */
+  /** Sources and layers that do not belong to the style and survive a change of it. */
   #own(): { sources: Record<string, never>; layers: never[] } {
     const now = this.map.getStyle();
     const sources = Object.entries(now?.sources ?? {}).filter(([name]) => name.startsWith("own-"));
@@ -146,7 +146,7 @@ export class View {
 
   #listen(): void {
     const { map, events } = this;
-    // Widths in metres are right only in tiles of the map's own zoom; tilted, MapLibre takes finer ones near the camera.
+    // Widths in metres are right only in tiles of the map's own zoom. On a tilted map, MapLibre takes finer tiles near the camera.
     map.on("styledata", () => {
       const roads = map.getSource("roads") as Source | undefined;
       if (roads) roads.calculateTileZoom = (zoom) => zoom;

@@ -1,4 +1,4 @@
-// Why a road or a turn is what it is: the server's own sentences, its scope, and the picture of the swept path.
+// The explanation of a road or turn: the server's sentences and scope, and the picture of the swept path.
 
 import { api, type Question } from "../api/client.ts";
 import type { Explanation, VerdictName } from "../api/types.ts";
@@ -6,11 +6,11 @@ import { h, prose } from "../ui/dom.ts";
 import { className, evidenceWords, margin, policyWords, reasonWords, title, verdictWords } from "../words.ts";
 import { Picture } from "./picture.ts";
 
-/** What the panel needs of the page around it. */
+/** The functions of the page that the panel uses. */
 export interface Around {
-  /** Marks the place that decides, and goes there if asked to. */
+  /** Marks the limiting place, and moves the map there if `goTo` is true. */
   place(explanation: Explanation | null, goTo: boolean): void;
-  /** The same road for the vehicle on the other map, if there is one. */
+  /** The vehicle and policy of the other map, if there is one. */
   other(): Question | null;
 }
 
@@ -21,7 +21,7 @@ export class ExplainPanel {
 
   constructor(private readonly around: Around) {}
 
-  /** Asks and shows; `goTo` moves the map there. Returns whether there is such a road. */
+  /** Loads and shows an explanation. `goTo` moves the map there. Returns whether there is such a road. */
   async show(id: string, question: Question, goTo: boolean): Promise<void> {
     this.#running?.abort();
     const running = (this.#running = new AbortController());
@@ -78,7 +78,7 @@ function verdict(e: Explanation): Node[] {
   ];
 }
 
-/** The badge has said the verdict: what follows it stands alone. */
+/** The headline without the verdict, which the badge shows already. */
 function sentence(headline: string): string {
   const rest = headline.replace(/^(safe|unsafe|forbidden|unknown): /, "");
   return `${rest.charAt(0).toUpperCase()}${rest.slice(1)}.`;

@@ -1,4 +1,4 @@
-// Which roads are drawn: by what their width rests on, and by class.
+// The filters of drawn roads, by source of width and by class.
 
 import type { Evidence } from "../api/types.ts";
 import type { Context } from "../context.ts";

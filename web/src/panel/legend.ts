@@ -1,4 +1,4 @@
-// Kilometres by verdict, with the lines of the map beside them: legend, summary and filter in one.
+// Kilometres by verdict beside the lines of the map. The panel is legend, summary and filter in one.
 
 import type { VehicleStats } from "../api/stats.ts";
 import type { VerdictName } from "../api/types.ts";

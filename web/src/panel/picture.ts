@@ -1,4 +1,4 @@
-// The picture of an explanation: in the panel only its scene, the swept path at the place that decides; enlarged, all of it.
+// The picture of an explanation. The panel shows only its scene, the swept path at the limiting place; the enlarged view shows all.
 
 import { patient } from "../api/patient.ts";
 import { Dialog } from "../ui/dialog.ts";
@@ -14,7 +14,7 @@ interface Box {
 export class Picture {
   readonly #zoom = new Dialog("picture", "Swept path at the place that decides");
 
-  /** A button with the scene, which fills when the picture has come; it goes away if there is none. */
+  /** A button with the scene. It is filled when the picture is loaded, and removed if there is no picture. */
   show(url: string, alt: string, signal: AbortSignal): HTMLElement {
     const frame = h("span", { class: "scene" });
     const open = () => {
@@ -30,7 +30,7 @@ export class Picture {
   }
 }
 
-/** The picture's scene is its first clipped part: the frame shows just that of the image. */
+/** Shows the scene of the picture, which is its first clipped part, in the frame. */
 function fill(frame: HTMLElement, text: string, url: string, alt: string): void {
   const picture = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
   const [, , wide = 0, tall = 0] = (picture.getAttribute("viewBox") ?? "").split(/\s+/).map(Number);

@@ -6,7 +6,7 @@ import { h, styled } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
 import { careful, distance, duration, margin, reasonWords, signed } from "../words.ts";
 
-/** What the panel asks of the page. */
+/** The functions of the page that the panel uses. */
 export interface Actions {
   drive(): void;
   seek(s: number): void;
@@ -100,7 +100,7 @@ export class RoutePanel {
     ];
   }
 
-  /** Places of one road, one after the other, told by the worst. */
+  /** A group of successive obstacles on one road, shown by the worst of them. */
   #obstacle(group: Obstacle[]): HTMLElement {
     const short = ({ rsc_m }: Obstacle): number => (rsc_m !== null && rsc_m > -100 ? Math.min(rsc_m, 0) : 0);
     const obstacle = group.reduce((worst, one) => (short(one) < short(worst) ? one : worst));
@@ -136,7 +136,7 @@ function reasons(obstacles: Obstacle[]): string {
   return sorted.map(([why, count]) => `${why.charAt(0).toLowerCase()}${why.slice(1)} (${count})`).join(", ");
 }
 
-/** Runs of edges of one road that fail for one reason. */
+/** Groups successive edges of one road that fail for the same reason. */
 function grouped(obstacles: Obstacle[]): Obstacle[][] {
   const groups: Obstacle[][] = [];
   for (const obstacle of obstacles) {
@@ -148,10 +148,10 @@ function grouped(obstacles: Obstacle[]): Obstacle[][] {
   return groups;
 }
 
-/** Nearer than this to where one clicked is there. */
+/** A route that begins or ends within this distance of the click counts as there, metres. */
 const THERE_M = 60;
 
-/** Where the way does not begin or end where one clicked. */
+/** Remarks on places where the route begins or ends away from the click. */
 function away({ places }: RouteAnswer): Node[] {
   const ends: [string, number | undefined][] = [["begins", places[0]?.distance_m], ["ends", places.at(-1)?.distance_m]];
   const far = ends.filter(([, metres]) => metres !== undefined && metres > THERE_M);
@@ -160,7 +160,7 @@ function away({ places }: RouteAnswer): Node[] {
   return [h("p", { class: "note" }, `The way ${words}: nearer there is no road that may be used.`)];
 }
 
-/** Edges of one road, one after the other, are one row. */
+/** Merges successive edges of one road into one row. */
 function merged(parts: RoutePart[]): RoutePart[] {
   const rows: RoutePart[] = [];
   for (const part of parts) {

@@ -1,4 +1,4 @@
-// Go to a road by its name, number or id. A combobox: arrows choose, Enter goes, Escape leaves.
+// The search for a road by name, number or id. It is a combobox: arrows choose, Enter goes to the road, Escape leaves.
 
 import { api } from "../api/client.ts";
 import type { SearchHit } from "../api/types.ts";

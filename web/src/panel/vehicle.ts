@@ -1,4 +1,4 @@
-// The vehicle chosen, drawn to scale, and the dialog in which another one is.
+// The chosen vehicle, drawn to scale, and the dialog in which another vehicle can be chosen.
 
 import type { Vehicle } from "../api/types.ts";
 import { vehicleOf, type Context } from "../context.ts";
@@ -32,7 +32,7 @@ export class VehicleCard {
 
   constructor(private readonly onOpen: () => void) {}
 
-  /** `certified`: what of the roads it may use, if that is known yet. */
+  /** `certified` is the text about the roads that the vehicle may use, if it is known yet. */
   show(vehicle: Vehicle | undefined, certified: string | null): void {
     if (!vehicle) return;
     this.element.setAttribute("aria-label", `Vehicle: ${vehicle.name}. Choose another`);
@@ -45,7 +45,7 @@ export class VehicleCard {
   }
 }
 
-/** All vehicles at one scale: their lengths are seen before they are read. */
+/** The dialog with all vehicles at one scale, so that their lengths can be compared. */
 export class VehicleDialog {
   readonly #dialog = new Dialog("vehicles", "Choose a vehicle");
   #choose: (id: string) => void = () => {};
@@ -94,7 +94,7 @@ export class VehicleDialog {
   }
 }
 
-/** The policy to use for a vehicle: the one wanted if it is certified so, or one that it is. */
+/** The policy for a vehicle: the current one if the vehicle is certified under it, else another one that it is certified under. */
 export function fittingPolicy(context: Context, id: string): Context["store"]["state"]["policy"] {
   const { policy } = context.store.state;
   const certified = vehicleOf(context, id)?.certified ?? [];

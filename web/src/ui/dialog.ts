@@ -1,4 +1,4 @@
-// A modal dialog with a title and a way out; Escape and a click beside it close it.
+// A modal dialog with a title and a button to close it. Escape and a click beside the dialog close it, too.
 
 import { h } from "./dom.ts";
 import { icon } from "./icons.ts";

@@ -1,11 +1,11 @@
-// Elements in one expression, and nothing more: the page needs no framework.
+// Creates elements in one expression. The page needs no framework.
 
 type Child = Node | string | null | undefined | false;
 type Attributes = Record<string, string | number | boolean | null | undefined | ((event: never) => void)>;
 
 const SVG = "http://www.w3.org/2000/svg";
 
-/** `h("button", { class: "go", onclick: start }, "Start")`; what is null, undefined or false is left out. */
+/** Creates an element: `h("button", { class: "go", onclick: start }, "Start")`. Null, undefined and false are left out. */
 export function h<K extends keyof HTMLElementTagNameMap>(
   name: K,
   attributes: Attributes = {},
@@ -33,7 +33,7 @@ function furnish<E extends Element>(element: E, attributes: Attributes, children
   return element;
 }
 
-/** Sets custom properties: the policy forbids style attributes, not the object model. */
+/** Sets custom properties through the object model, because the content security policy forbids style attributes. */
 export function styled<E extends HTMLElement | SVGElement>(element: E, properties: Record<string, string | number>): E {
   for (const [name, value] of Object.entries(properties)) element.style.setProperty(name, String(value));
   return element;
@@ -45,7 +45,7 @@ export function byId(id: string): HTMLElement {
   return element;
 }
 
-/** Text in which `words between backticks` are identifiers. */
+/** A text in which words between backticks become identifiers. */
 export function prose(text: string): DocumentFragment {
   const fragment = document.createDocumentFragment();
   text.split("`").forEach((part, index) => fragment.append(index % 2 === 1 ? h("code", {}, part) : part));

@@ -1,4 +1,4 @@
-// One of a few, side by side: radio buttons with another look, so that arrows and screen readers work.
+// A choice of a few values side by side. They are styled radio buttons, so that arrow keys and screen readers work.
 
 import { h } from "./dom.ts";
 

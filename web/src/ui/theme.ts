@@ -1,4 +1,4 @@
-// Light or dark: as the system has it, until someone chooses; the choice is kept on this machine.
+// The theme: as in the system until the reader chooses light or dark. The choice is stored on this machine.
 
 import { palettes, properties, type Theme } from "../map/palette.ts";
 import { styled } from "./dom.ts";
@@ -24,7 +24,7 @@ export class ThemeSwitch {
     try {
       localStorage.setItem(KEY, this.#chosen);
     } catch {
-      // Private windows may refuse storage; then the choice lasts as long as the page.
+      // Private windows may refuse storage. The choice then lasts until the page is closed.
     }
     this.#apply();
   }

@@ -1,4 +1,4 @@
-// A short message that goes away by itself; screen readers hear it.
+// A short message that disappears by itself. Screen readers announce it.
 
 import { h } from "./dom.ts";
 
