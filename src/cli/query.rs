@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::rows::Bounds;
 use netcert::rows::EdgeRow;
@@ -18,7 +18,7 @@ use super::database::DatabaseArgs;
 use super::fleet;
 use super::on_demand::{self, Wanted};
 use super::output::{km, results};
-use super::rows::{Head, Sink};
+use super::rows::{Format, Head, Sink};
 use super::turn_rows;
 use super::values::{signed_metres, word};
 
@@ -80,14 +80,6 @@ pub(crate) struct Query {
     /// as in the database's ingest, which uses lane unless told otherwise].
     #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
     corridor: Option<Policy>,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Format {
-    Table,
-    Csv,
-    Json,
-    Geojson,
 }
 
 impl Query {

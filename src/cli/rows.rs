@@ -4,13 +4,22 @@
 
 use std::io::{self, BufWriter, StdoutLock, Write};
 
+use clap::ValueEnum;
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::rows::{Cell, Column, EdgeRow};
 use netcert::words::{Named, verdict_words};
 use serde_json::{Map, Value, json};
 
 use super::output::printable;
-use super::query::Format;
+
+/// Form of the answer.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    Table,
+    Csv,
+    Json,
+    Geojson,
+}
 
 /// What is the same for all rows.
 pub(crate) struct Head {

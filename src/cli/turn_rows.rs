@@ -11,8 +11,7 @@ use netcert::words::{Named, VerdictKind, verdict_words};
 use serde_json::{Map, Value, json};
 
 use super::output::{grouped, printable};
-use super::query::Format;
-use super::rows::{self, Head, csv};
+use super::rows::{self, Format, Head, csv};
 
 /// Writes all rows.
 pub(super) fn write(format: Format, head: &Head, rows: &[TurnRow], out: &mut dyn Write) -> io::Result<()> {

@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use super::blend;
+use super::blend::{self, Sample};
 use super::drive::{Drive, Join};
 use super::pieces::{Menu, Strokes, TurnPiece};
 use crate::corridor::{CentrelineError, Corridor, Frame, FrameError};
@@ -112,14 +112,6 @@ pub struct Way<'w> {
     pub start: f64,
     /// The share of the last edge up to the route's end, 0..=1.
     pub end: f64,
-}
-
-/// A point of the centreline with the half-widths there.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Sample {
-    pub(super) at: [f64; 2],
-    pub(super) left_m: f64,
-    pub(super) right_m: f64,
 }
 
 /// Joins the pieces of a way into one corridor. `stop` is checked before each turn and each leg.

@@ -4,7 +4,13 @@
 //! Everything is measured across the stroke between the turns. For a path at an angle to the stroke, half-widths are multiplied
 //! by the cosine of the angle, which never makes them too wide.
 
-use super::assemble::Sample;
+/// A point of the centreline with the half-widths there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sample {
+    pub(super) at: [f64; 2],
+    pub(super) left_m: f64,
+    pub(super) right_m: f64,
+}
 
 /// The greatest distance of a path from the stroke at which it is blended, metres.
 const FARTHEST_M: f64 = 6.0;

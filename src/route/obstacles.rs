@@ -3,11 +3,10 @@
 //! The cost counts both number and size: each place costs one metre plus the metres that are missing there. Two places with 0.1
 //! m missing are cheaper than one place with 3 m missing. Among sets of equal cost, the one with the shortest way is taken.
 
-use super::assemble::PartKind;
+use super::assemble::{AssemblyError, PartKind};
 use super::drive::Drive;
 use super::graph::{Access, BARRED};
 use super::permits::{Permit, Permits};
-use super::plan::Refutation;
 use crate::network::Movements;
 
 /// The price of a missing centimetre. It exceeds the cost of any way on earth (40,000 km are 2³⁶ millimetres; in milliseconds
@@ -19,6 +18,19 @@ const PLACE: f64 = 100.0;
 const NO_NUMBER: f64 = 500.0;
 /// The greatest missing width that counts, centimetres.
 const MOST_MISSING: f64 = 2000.0;
+
+/// A whole route that failed although its parts passed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Refutation {
+    /// The turn that the failure is attributed to, or an edge if no turn is near.
+    pub at: PartKind,
+    /// RSC (metres) and hinge margin (radians) of the whole. `None` if its pieces could not be joined or no bound holds.
+    pub result: Option<(f64, f64)>,
+    /// Why its pieces could not be joined.
+    pub assembly: Option<AssemblyError>,
+    /// Whether the search went on without the place. Otherwise the turn was tried on another path.
+    pub left_out: bool,
+}
 
 /// A place that would have to become safe.
 #[derive(Debug, Clone, PartialEq)]

@@ -11,7 +11,7 @@ use super::assemble::{AssemblyError, PartKind, RoutePath, Way, assemble};
 use super::drive::{Drive, Join};
 use super::driver::Driver;
 use super::graph::{Access, BARRED, Graph};
-use super::obstacles::{self, Obstacle};
+use super::obstacles::{self, Obstacle, Refutation};
 use super::pieces::{Menu, Strokes, Turns};
 use super::roads::Roads;
 use super::search::{Found, Goal, Start, search_over};
@@ -66,19 +66,6 @@ pub struct Route {
     pub path: RoutePath,
     /// The certificate of the whole corridor. It is safe.
     pub certificate: Certificate,
-}
-
-/// A whole route that failed although its parts passed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Refutation {
-    /// The turn that the failure is attributed to, or an edge if no turn is near.
-    pub at: PartKind,
-    /// RSC (metres) and hinge margin (radians) of the whole. `None` if its pieces could not be joined or no bound holds.
-    pub result: Option<(f64, f64)>,
-    /// Why its pieces could not be joined.
-    pub assembly: Option<AssemblyError>,
-    /// Whether the search went on without the place. Otherwise the turn was tried on another path.
-    pub left_out: bool,
 }
 
 /// The answer.

@@ -3,8 +3,8 @@
 use serde_json::{Value, json};
 
 use super::assemble::{PartKind, passes_over};
-use super::obstacles::Obstacle;
-use super::plan::{Answer, Refutation, Route};
+use super::obstacles::{Obstacle, Refutation};
+use super::plan::{Answer, Route};
 use crate::corridor::FrameError;
 use crate::network::{Edge, Network};
 use crate::stet::{Model, known_m};
