@@ -148,8 +148,8 @@ by_instruction_set! {
             points.clear();
             points.resize(unit.points.len() * BLOCK, MOST);
         }
-        for unit in 0..MAX_UNITS {
-            extra[unit].0[lane] = trail.extra[unit].0[lane];
+        for (extra, entered) in extra.iter_mut().zip(&trail.extra) {
+            extra.0[lane] = entered.0[lane];
         }
         for k in 0..BLOCK {
             trail.station(group, lane, first_unit, first + k, k, extra, rows, out);
