@@ -34,8 +34,8 @@ Examples:
   netcert verify certificate.json
 
 The vehicle begins straight where the route begins. Turning back on the road is not considered, nor is
-traffic; times are from speeds by class of road (data/speeds.toml). Exit status 0 also when there is no
-certified route: read `routes` in JSON.")]
+traffic; times are by class of road (data/speeds.toml) and tagged limits. Exit status 0 also when there
+is no certified route: read `routes` in JSON.")]
 pub(crate) struct Route {
     #[command(flatten)]
     inputs: RoutingArgs,
@@ -173,7 +173,7 @@ fn tell(out: &mut dyn Write, inputs: &RoutingInputs, answer: &Answer) -> std::io
     let policy = inputs.settings().policy.name();
     let scope = format!(
         "Within the stated model, widths and error bounds ({policy} policy, every turn's kerbs as the map or assumptions have \
-         them); no permit. Times are by class of road."
+         them); no permit. Times are by class of road and tagged limits."
     );
     writeln!(out, "{}", wrapped(&scope, ""))
 }
