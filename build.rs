@@ -1,4 +1,4 @@
-//! The page is embedded in the program: every file of `web/dist` goes into a table that `src/serve/assets.rs` includes.
+//! Embeds the page in the program: lists every file of `web/dist` in a table that `src/serve/assets.rs` includes.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ fn main() {
     }
     table.push_str("];\n");
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default()).join("page.rs");
-    // Anew, not over what is there: a copied target folder may share its files with the original.
+    // The old file is removed, not overwritten: in a copied target folder it may share its content with the original.
     let _ = fs::remove_file(&out);
     if let Err(error) = fs::write(&out, table) {
         println!("cargo:error={}: cannot write: {error}", out.display());

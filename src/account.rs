@@ -1,19 +1,19 @@
-//! The account of a run: every object read was used, or left out for a counted reason; the counts add up.
+//! The account of a run. It counts every object read as kept or as left out for a reason, and the counts add up.
 
 use serde::{Deserialize, Serialize};
 
 /// One line of the account.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct AccountRow {
-    /// `read`, `network`, `corridors`, `certificates`.
+    /// The stage, such as `read`, `network`, `corridors` or `certificates`.
     pub stage: String,
-    /// What is counted: `way`, `node`, `relation`, `edge`, `tag`.
+    /// The counted item, such as `way`, `node`, `relation`, `edge` or `tag`.
     pub item: String,
-    /// `read` (the total), `kept`, `left_out`, or `noted` (a remark that does not partition the total).
+    /// `read` (the total), `kept`, `left_out`, or `noted` (a remark that is no part of the total).
     pub outcome: String,
-    /// Why, a stable lower-case identifier; empty for totals.
+    /// The reason, a stable identifier in lower case. Empty for totals.
     pub reason: String,
-    /// How many.
+    /// The number of items.
     pub count: u64,
 }
 

@@ -1,36 +1,36 @@
-//! Unfinished files and folders, each written by one process at a time.
+//! Locks for unfinished files and folders, so that only one process writes each of them.
 //!
-//! Promises that what a killed process left under the same name is cleared, and that nothing of a living one is touched. A lock of the
-//! system says which of the two it is: it ends with its process, however that ends. Where a file system has no locks, two
-//! runs at a time are the user's to avoid.
+//! What a killed process left under the same name is cleared; what a running process writes is never touched. A lock of the
+//! operating system tells the two apart, because it ends with its process. On a file system without locks, the user must not
+//! start two runs with the same output.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
 use std::path::Path;
 
-/// The right to write at a path, as long as this lives.
+/// The right to write at a path while this value lives.
 #[derive(Debug)]
 pub(crate) struct OutputLock {
-    /// The file itself; of a folder, what holds the lock.
+    /// The locked file or folder. `None` if the system has no locks for folders.
     pub(crate) file: Option<File>,
-    /// A killed process had left something here, which is gone.
+    /// Whether a killed process had left something here, which was cleared.
     pub(crate) leftover: bool,
 }
 
-/// An empty file at `path`, locked.
+/// Creates or empties the file at `path` and locks it.
 ///
 /// # Errors
-/// A living process holds it ([`io::ErrorKind::WouldBlock`]); it cannot be made.
+/// A running process holds the lock ([`io::ErrorKind::WouldBlock`]), or the file cannot be created.
 pub(crate) fn file(path: &Path) -> io::Result<OutputLock> {
     loop {
         if path.is_dir() {
-            // An unfinished folder of this name.
+            // An earlier run left an unfinished folder of this name.
             remove_unlocked(path)?;
         }
         let file = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(path)?;
         lock(&file)?;
         if !same_file(&file, path) {
-            continue; // whoever held it has just put it in its place, or removed it
+            continue; // the process that held the lock has just renamed or removed the file
         }
         let leftover = file.metadata()?.len() > 0;
         file.set_len(0)?;
@@ -38,14 +38,14 @@ pub(crate) fn file(path: &Path) -> io::Result<OutputLock> {
     }
 }
 
-/// An empty folder at `path`, locked.
+/// Creates or empties the folder at `path` and locks it.
 ///
 /// # Errors
 /// As [`file`].
 #[cfg(feature = "export")]
 pub(crate) fn folder(path: &Path) -> io::Result<OutputLock> {
     if !cfg!(unix) {
-        // Folders have no locks there.
+        // Other systems have no locks for folders.
         remove_unlocked(path)?;
         return fs::create_dir_all(path).map(|()| OutputLock { file: None, leftover: false });
     }
@@ -72,7 +72,7 @@ pub(crate) fn folder(path: &Path) -> io::Result<OutputLock> {
     }
 }
 
-/// Removes a file or folder that no living process holds.
+/// Removes a file or folder that no running process holds.
 fn remove_unlocked(path: &Path) -> io::Result<()> {
     let opened = match File::open(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
@@ -108,7 +108,7 @@ fn same_file(file: &File, path: &Path) -> bool {
 
 #[cfg(not(unix))]
 fn same_file(_file: &File, _path: &Path) -> bool {
-    true // an open file cannot be renamed there
+    true // other systems do not allow an open file to be renamed
 }
 
 #[cfg(all(test, unix))]
@@ -129,7 +129,7 @@ mod tests {
             assert!(!first.leftover);
             let inside = if path.is_dir() { path.join("inside") } else { path.clone() };
             fs::write(&inside, "half").unwrap();
-            // Neither kind of lock touches it.
+            // Neither function touches what is locked.
             assert!(busy(file(&path)) && busy(folder(&path)));
             assert_eq!(fs::read(&inside).unwrap(), b"half");
             drop(first);

@@ -1,7 +1,7 @@
-//! A region's database for programs that call netcert as a library: query it, plan routes, ask why.
+//! A region's database for programs that use netcert as a library. They can query edges, plan routes and explain verdicts.
 //!
-//! [`Region`] opens a database that `netcert ingest` or [`crate::pipeline::ingest`] made. It loads the network when a route or an
-//! explanation first needs it. All verdicts hold within the model, the widths and the error bounds of the set's settings.
+//! [`Region`] opens a database that `netcert ingest` or [`crate::pipeline::ingest`] made. It loads the network when a route or
+//! an explanation first needs it. Verdicts hold within the model, the widths and the error bounds of the set's settings.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -57,7 +57,7 @@ use crate::words::Named as _;
 /// let question = Question { places: vec![from, to], snap_m: 50.0, alternatives: 0, tries: 30 };
 /// let answer = planner.answer(&question, &Stop::never())?;
 /// for route in &answer.routes {
-///     // One certificate over the whole route; it is safe, or the route would not be here.
+///     // One certificate covers the whole route. Every returned route is safe.
 ///     assert!(route.certificate.result.safe());
 ///     println!("{:.1} km, RSC {:?} m", route.length_m / 1000.0, route.certificate.result.rsc_m);
 /// }
@@ -93,10 +93,10 @@ pub struct Region {
     roads: Option<Arc<Roads>>,
 }
 
-/// Why a region gives no answer.
+/// Why a region cannot answer.
 #[derive(Debug, thiserror::Error)]
 pub enum RegionError {
-    /// The file cannot be read, or lacks what is asked for.
+    /// The file cannot be read, or lacks the requested content.
     #[error(transparent)]
     Store(#[from] StoreError),
     /// The vehicle is not certified here.
@@ -107,26 +107,26 @@ pub enum RegionError {
     NotCertified {
         /// The database.
         path: PathBuf,
-        /// Asked for.
+        /// The requested vehicle.
         vehicle: String,
-        /// Asked for.
+        /// The requested policy.
         policy: Policy,
     },
     /// The vehicle's definition in the database cannot be used.
     #[error(transparent)]
     Vehicle(#[from] VehicleError),
-    /// The vehicle has no model.
+    /// The certificate's model does not cover the vehicle.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// The table of speeds cannot be used.
     #[error(transparent)]
     Speeds(#[from] SpeedsError),
-    /// No such edge or turn.
+    /// There is no such edge or turn.
     #[error("{}: no edge or turn {id}; `netcert query` lists their ids", path.display())]
     NoSuchId {
         /// The database.
         path: PathBuf,
-        /// Asked for.
+        /// The requested id.
         id: i64,
     },
     /// The caller cancelled the work.
@@ -147,7 +147,7 @@ impl Region {
     /// Opens a database for reading.
     ///
     /// # Errors
-    /// There is none at `path`, it is another program's, or it is damaged.
+    /// There is no file at `path`, another program made it, or it is damaged.
     pub fn open(path: &Path) -> Result<Self, RegionError> {
         Ok(Self { path: path.to_owned(), database: Database::open(path)?, roads: None })
     }
@@ -163,7 +163,7 @@ impl Region {
     /// The set of a vehicle under a policy.
     ///
     /// # Errors
-    /// There is none.
+    /// The vehicle is not certified under this policy, or the file cannot be read.
     pub fn set(&mut self, vehicle: &str, policy: Policy) -> Result<CertifiedSet, RegionError> {
         self.database.certified_set(vehicle, policy)?.ok_or_else(|| RegionError::NotCertified {
             path: self.path.clone(),
@@ -172,16 +172,17 @@ impl Region {
         })
     }
 
-    /// A vehicle as the database keeps it: its certificates were made with this definition.
+    /// The vehicle's definition in the database, with which its certificates were made. `None` if the database does not have
+    /// the vehicle.
     ///
     /// # Errors
-    /// There is no such vehicle, or its definition cannot be read.
+    /// The file or the definition cannot be read.
     pub fn vehicle(&mut self, id: &str) -> Result<Option<Vehicle>, RegionError> {
         let record = self.database.vehicles()?.into_iter().find(|record| record.id == id);
         Ok(record.map(|record| Vehicle::from_json(&record.definition)).transpose()?)
     }
 
-    /// Edges with their certificates, in order of the network.
+    /// The edges with their certificates, in order of the network.
     ///
     /// # Errors
     /// The vehicle is not certified under this policy; the file cannot be read.
@@ -213,10 +214,10 @@ impl Region {
         Ok(Planner::new(&roads, driver, Speeds::builtin()?, measure))
     }
 
-    /// Why a vehicle may use an edge or not. The certificate is computed again, under the set's settings.
+    /// Explains why an edge is safe or unsafe for a vehicle. The certificate is computed again with the set's settings.
     ///
     /// # Errors
-    /// No such edge, the vehicle is not certified under this policy, or `stop` was told.
+    /// There is no such edge, the vehicle is not certified under this policy, or `stop` was told.
     pub fn explain(
         &mut self,
         edge_id: i64,
@@ -233,10 +234,10 @@ impl Region {
         explain::explain_edge(&roads.network, edge, &model, &settings, stop)?.ok_or_else(unknown)
     }
 
-    /// Why a vehicle may take a turn or not. The certificate is computed again, under the set's settings.
+    /// Explains why a turn is safe or unsafe for a vehicle. The certificate is computed again with the set's settings.
     ///
     /// # Errors
-    /// No such turn, the vehicle is not certified under this policy, or `stop` was told.
+    /// There is no such turn, the vehicle is not certified under this policy, or `stop` was told.
     pub fn explain_turn(
         &mut self,
         turn_id: i64,

@@ -1,18 +1,18 @@
-//! How far a run has come, for whoever shows it.
+//! Reports the progress of a run to the caller.
 
-/// What the caller shows while a run goes on. Called from many threads.
+/// Receives the progress of a run. Methods are called from many threads.
 pub trait Reporter: Sync {
-    /// A stage begins; `total` items are to be done (bytes when reading, edges when certifying).
+    /// A stage begins. `total` is its number of items (bytes when reading, edges when certifying), or 0 if unknown.
     fn begin(&self, stage: &'static str, total: u64);
-    /// So many of them are done.
+    /// `done` items of the stage are done.
     fn advance(&self, done: u64);
-    /// The stage is over.
+    /// The stage has ended.
     fn end(&self);
     /// A remark for people.
     fn note(&self, text: &str);
 }
 
-/// Shows nothing.
+/// A reporter that ignores all reports.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Silent;
 

@@ -1,8 +1,8 @@
-//! Everything that a certificate depends on besides the network and the vehicle.
+//! The settings that a certificate depends on besides the network and the vehicle.
 //!
-//! Promises that [`Settings::written`] leaves nothing out, and that [`Settings::read`] gives the same settings back or an
-//! error: a member that is missing, unknown, of another type or out of range is never replaced by a default. A database
-//! keeps the text with each set of certificates; whoever computes again reads it there.
+//! [`Settings::written`] writes every setting, and [`Settings::read`] gives the same settings or an error. A member that is
+//! missing, unknown, of another type or out of range is never replaced by a default. A database stores the text with each set
+//! of certificates; a new computation of the set reads the settings from it.
 
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -16,23 +16,26 @@ use crate::words::Named as _;
 /// How certificates are made.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
-    /// Which width counts.
+    /// The policy: which width of the road the vehicle may use.
     pub policy: Policy,
-    /// How corridors are made.
+    /// Parameters of corridors.
     pub corridor: Params,
-    /// How corrections are made.
+    /// Options of the certificate's corrections.
     pub stet: Options,
-    /// What is assumed of kerbs.
+    /// The width that the vehicle may use near turns. Never less than that of `policy` counts.
+    pub turn_policy: Policy,
+    /// Assumed kerb radii.
     pub kerbs: Kerbs,
     /// Whether turns are certified, too.
     pub turns: bool,
 }
 
 impl Default for Settings {
-    /// What `ingest` takes where it is told nothing.
+    /// The settings of `ingest` without options.
     fn default() -> Self {
         Self {
             policy: Policy::Lane,
+            turn_policy: Policy::Direction,
             corridor: Params::default(),
             stet: Options::default(),
             kerbs: Kerbs::default(),
@@ -41,11 +44,12 @@ impl Default for Settings {
     }
 }
 
-/// The members as they are written. Names are stable: `run.parameters` and exports show them.
+/// The written members. Their names are stable, because `run.parameters` and exports show them.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Written {
     corridor: String,
+    turn_corridor: String,
     smoothing_tolerance_m: f64,
     smoothing_cutoff_m: f64,
     map_tolerance_m: f64,
@@ -58,23 +62,24 @@ struct Written {
 }
 
 impl Settings {
-    /// How turns are made.
+    /// The parameters of turns.
     #[must_use]
     pub fn turn_params(&self) -> TurnParams {
-        TurnParams { corridor: self.corridor, kerbs: self.kerbs.clone() }
+        TurnParams { strip: self.turn_policy, corridor: self.corridor, kerbs: self.kerbs.clone() }
     }
 
-    /// As JSON, whole. The same settings give the same bytes.
+    /// All settings as JSON. The same settings give the same bytes.
     ///
     /// # Errors
-    /// Which member is out of range.
+    /// A member is out of range; the error names it.
     pub fn written(&self) -> Result<String, String> {
-        // Without `..`: a new member does not compile until it is written.
-        let Self { policy, corridor, stet, kerbs, turns } = self;
+        // The pattern has no `..`, so a new field does not compile until it is written.
+        let Self { policy, corridor, stet, turn_policy, kerbs, turns } = self;
         let Params { tolerance_m, map_tolerance_m, spacing_m, cutoff_m, lead_in_m } = *corridor;
         let Options { max_shift_m, correction_sweeps } = *stet;
         let written = Written {
             corridor: policy.name().to_owned(),
+            turn_corridor: turn_policy.name().to_owned(),
             smoothing_tolerance_m: tolerance_m,
             smoothing_cutoff_m: cutoff_m,
             map_tolerance_m,
@@ -89,10 +94,10 @@ impl Settings {
         serde_json::to_string(&written).map_err(|error| error.to_string())
     }
 
-    /// The members but for the table of kerbs, for records that people read.
+    /// The members without the table of kerbs, for records that people read.
     ///
     /// # Errors
-    /// Which member is out of range.
+    /// A member is out of range; the error names it.
     pub fn options(&self) -> Result<Map<String, Value>, String> {
         let mut members: Map<String, Value> =
             serde_json::from_str(&self.written()?).map_err(|error| error.to_string())?;
@@ -100,16 +105,18 @@ impl Settings {
         Ok(members)
     }
 
-    /// Reads what [`Self::written`] wrote.
+    /// Reads the text of [`Self::written`].
     ///
     /// # Errors
-    /// What is wrong with the text.
+    /// The text is no such text; the error says what is wrong.
     pub fn read(text: &str) -> Result<Self, String> {
         let written: Written = serde_json::from_str(text).map_err(|error| error.to_string())?;
         written.check()?;
         let policy = Policy::named(&written.corridor).ok_or("corridor: no such policy")?;
+        let turn_policy = Policy::named(&written.turn_corridor).ok_or("turn_corridor: no such policy")?;
         Ok(Self {
             policy,
+            turn_policy,
             corridor: Params {
                 tolerance_m: written.smoothing_tolerance_m,
                 map_tolerance_m: written.map_tolerance_m,
@@ -128,7 +135,8 @@ impl Settings {
 }
 
 impl Written {
-    /// Bounds that hold the options' own ranges, and keep a damaged file from asking for endless work.
+    /// Checks that members are within bounds. The bounds contain the ranges of the options, and keep a damaged file from
+    /// causing endless work.
     fn check(&self) -> Result<(), String> {
         for (name, value, low, high) in [
             ("smoothing_tolerance_m", self.smoothing_tolerance_m, 0.0, 100.0),
@@ -157,6 +165,7 @@ mod tests {
     fn some() -> Settings {
         Settings {
             policy: Policy::Direction,
+            turn_policy: Policy::Carriageway,
             corridor: Params {
                 tolerance_m: 0.1 + 0.2,
                 map_tolerance_m: 0.3,
@@ -193,6 +202,7 @@ mod tests {
         assert!(Settings::read(&unknown.to_string()).unwrap_err().contains("max_sway_m"));
         for (name, wrong) in [
             ("corridor", json!("shoulder")),
+            ("turn_corridor", json!("same")),
             ("smoothing_tolerance_m", json!(-0.1)),
             ("smoothing_cutoff_m", json!(0)),
             ("map_tolerance_m", json!(100.5)),

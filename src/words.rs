@@ -1,4 +1,5 @@
-//! The words for the program's enumerations: in databases, exports, answers and options. Stable: users filter by them.
+//! The words for the program's enumerations in databases, exports, answers and options. They are stable, because users
+//! filter by them.
 
 use crate::osm::facts::{Direction, Oneway, Permission, Policy, RoadClass, WidthSource};
 use crate::stet::Side;
@@ -9,10 +10,10 @@ pub trait Named: Copy + PartialEq + 'static {
     /// Every value.
     const ALL: &'static [Self];
 
-    /// The word for it.
+    /// The word for this value.
     fn name(self) -> &'static str;
 
-    /// The value of a word.
+    /// The value with this word.
     #[must_use]
     fn named(word: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|value| value.name() == word)
@@ -57,7 +58,7 @@ named!(Policy { Lane = "lane", Direction = "direction", Carriageway = "carriagew
 named!(Permission { Yes = "yes", Restricted = "restricted", No = "no" });
 named!(Side { Left = "left", Right = "right" });
 
-/// `highway` as a user knows it: the class, with `_link`.
+/// The value of `highway`: the class, with `_link` for links.
 pub(crate) fn highway(class: RoadClass, link: bool) -> String {
     format!("{}{}", class.name(), if link { "_link" } else { "" })
 }
@@ -91,7 +92,7 @@ impl Named for VerdictKind {
     }
 }
 
-/// A verdict's words: the verdict, and its reason (empty for `safe`).
+/// The words for a verdict and for its reason. The reason of `safe` is empty.
 #[must_use]
 pub const fn verdict_words(verdict: Verdict) -> (&'static str, &'static str) {
     match verdict {

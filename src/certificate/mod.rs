@@ -1,12 +1,12 @@
-//! The certificate file: a promise to users and to checks by other programs (`docs/certificate.md` says what each member claims, and to
-//! what it is checked). Everything that the answer rests on is in it.
+//! Writes certificate files. A file holds everything that its answer depends on, so that users and other programs can check
+//! it. `docs/certificate.md` says what each member claims and how closely it is checked.
 //!
 //! | file | for |
 //! | --- | --- |
-//! | `nominal` | where every unit stands when nothing disturbs it, along the smooth plan |
+//! | `nominal` | the poses of all units along the smooth plan when nothing disturbs the vehicle |
 //! | `tubes` | the members of one unit's tube |
 //!
-//! The sweep steps from station to station, and its bounds allow for that. What a file says of nominal places is worked out again
+//! The sweep steps from station to station, and its bounds allow for that. The nominal places in a file are computed again
 //! here in finer steps, so that another program finds the same places.
 
 mod nominal;
@@ -20,21 +20,21 @@ use crate::stet::{Certificate, Model, Options, known_m};
 use crate::words::{Named as _, verdict_words};
 use nominal::Nominal;
 
-/// Entries of the columns of leeway claim so much less than the sweep has, metres.
+/// The columns of leeway claim this much less than the sweep computed, metres.
 const LESS_M: f64 = 1e-2;
 
 /// Why a certificate cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum CertificateError {
-    /// The corridor's frame cannot be left.
+    /// Positions cannot be converted from the corridor's frame.
     #[error(transparent)]
     Frame(#[from] FrameError),
-    /// The vehicle's definition is no JSON.
+    /// The vehicle's definition cannot be written as JSON.
     #[error("the vehicle's definition: {0}")]
     Vehicle(#[from] serde_json::Error),
 }
 
-/// The text of a certificate file, sealed. [`crate::check::certificate`] checks it.
+/// The text of a certificate file with its seal. [`crate::check::certificate`] checks such a text.
 ///
 /// # Errors
 /// See [`CertificateError`].
@@ -47,7 +47,7 @@ pub fn text(
     Ok(sealed(&json(given, model, certificate, options)?))
 }
 
-/// The whole certificate without its seal.
+/// All members of the certificate except the seal.
 ///
 /// # Errors
 /// See [`CertificateError`].
@@ -65,7 +65,7 @@ pub fn json(
     };
     let (verdict, reason) = verdict_words(result.verdict());
     let limiting = result.rsc_m.and_then(|_| limiting(&nominal, certificate));
-    // Where nothing bounds the vehicle on the whole, nothing is claimed of its parts.
+    // If no bound holds for the whole corridor, the file claims no leeway and no tubes.
     let closes = result.closes();
     let column = |column: &[f64]| column.iter().map(|&m| cautious_m(m).filter(|_| closes)).collect::<Vec<_>>();
     Ok(json!({
@@ -95,7 +95,7 @@ pub fn json(
     }))
 }
 
-/// The body point with the least leeway: where it passes the corridor nominally, and what is then between it and the edge.
+/// The body point with the least leeway: its nominal place along the corridor, and its nominal distance from the edge.
 fn limiting(nominal: &Nominal<'_>, certificate: &Certificate) -> Option<Value> {
     let at = &certificate.result.limiting;
     let (s, nominal_m) = nominal.passing(at)?;
@@ -108,7 +108,7 @@ fn limiting(nominal: &Nominal<'_>, certificate: &Certificate) -> Option<Value> {
     }))
 }
 
-/// What is claimed of a leeway: a little less than the sweep has, for what other programs' steps read differently.
+/// The claimed leeway. It is a little less than computed, because other programs use other steps.
 fn cautious_m(leeway_m: f64) -> Option<f64> {
     known_m(leeway_m).map(|leeway_m| leeway_m - LESS_M)
 }

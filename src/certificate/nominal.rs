@@ -1,7 +1,7 @@
-//! Nominal motion along the smooth plan, in steps of an eighth of a station: where every unit stands when nothing disturbs it.
+//! The nominal motion along the smooth plan, when nothing disturbs the vehicle, in steps of an eighth of a station.
 //!
-//! Between stations the centreline is the curve of linear curvature from the station before, as the corridor says; before the first
-//! and after the last station the plan goes straight on.
+//! Between stations the centreline is the curve of linear curvature that starts at the station before, as in the corridor's
+//! definition. Before the first and after the last station the plan goes straight on.
 
 use crate::corridor::Corridor;
 use crate::published::last_radius_m;
@@ -9,23 +9,24 @@ use crate::stet::motion::{Pose, sweep_path};
 use crate::stet::{Limiting, Plan, Side};
 use crate::vehicle::Vehicle;
 
-/// Vertices a station: the chord step is then right to half a millimetre a hinge in the tightest bends.
+/// Vertices per station. With this many, the error of chord steps is half a millimetre per hinge in the tightest bends.
 const PARTS: usize = 8;
-/// A point is looked for this far from where it would be on a straight: this part of the vehicle's length, and these metres.
+/// A point is searched around its place on a straight road, up to this share of the vehicle's length plus [`ASTRAY_M`].
 const ASTRAY_PART: f64 = 0.5;
+/// See [`ASTRAY_PART`]; metres.
 const ASTRAY_M: f64 = 10.0;
-/// Three-point Gauss on 0..=1: right to a micrometre between stations a metre apart.
+/// Nodes and weights of three-point Gauss quadrature on 0..=1. The error is a micrometre between stations a metre apart.
 const GAUSS: [(f64, f64); 3] =
     [(0.112_701_665_379_258_31, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
 
-/// A vehicle that drives along a plan without any error.
+/// The motion of a vehicle that follows a plan without error.
 pub(super) struct Nominal<'c> {
     corridor: &'c Corridor,
     plan: &'c Plan,
     vehicle: &'c Vehicle,
-    /// At each vertex, front to rear.
+    /// The poses at each vertex, front to rear.
     poses: Vec<Vec<Pose>>,
-    /// Vertices before the first station's.
+    /// Number of vertices before the first station.
     lead: usize,
 }
 
@@ -56,13 +57,14 @@ impl<'c> Nominal<'c> {
         nominal
     }
 
-    /// Where an axle is when the steer axle is at a station.
+    /// The position of a unit's axle when the steer axle is at a station.
     pub(super) fn axle(&self, station: usize, unit: usize) -> [f64; 2] {
         self.poses[self.lead + station * PARTS][unit].axle
     }
 
-    /// Where the side point beside a place of a unit's axis is (metres along the corridor) as that place passes a station's normal,
-    /// and how far from the edge it is as it passes there. `None`: it does not pass.
+    /// The place of the limiting side point, metres along the corridor, when the point of the unit's axis beside it passes the
+    /// limiting station's normal; and the side point's distance from the edge when it passes that place, metres. `None` if it
+    /// does not pass.
     pub(super) fn passing(&self, limiting: &Limiting) -> Option<(f64, f64)> {
         let half_m = 0.5 * self.vehicle.units.get(limiting.unit)?.width_m;
         let (left_m, column) = match limiting.side {
@@ -79,7 +81,8 @@ impl<'c> Nominal<'c> {
         Some((s * self.corridor.spacing_m, linear(column, s) - lateral_m * left_m.signum()))
     }
 
-    /// When a body point (unit, ahead of its axle, to its left) passes the normal at `s`: the vertex before, and the share of the step.
+    /// The moment when a body point (unit, metres ahead of its axle, metres to its left) passes the normal at `s`: the vertex
+    /// before it, and the share of the step after that vertex.
     fn crossing(&self, s: f64, (unit, ahead_m, left_m): (usize, f64, f64)) -> Option<(usize, f64)> {
         let here = self.place(s);
         let off = |vertex: usize| along(here, self.poses[vertex][unit].place(ahead_m, left_m));
@@ -92,14 +95,14 @@ impl<'c> Nominal<'c> {
         Some((vertex, a / (a - b)))
     }
 
-    /// A body point between two vertices.
+    /// The position of a body point at a moment between two vertices.
     fn point(&self, (vertex, share): (usize, f64), (unit, ahead_m, left_m): (usize, f64, f64)) -> [f64; 2] {
         let [p, q] = [vertex, vertex + 1].map(|v| self.poses[v][unit].place(ahead_m, left_m));
         [0, 1].map(|i| p[i] + share * (q[i] - p[i]))
     }
 
-    /// The paper's certificate as printed: the least half-width, less the most that the last axle is off the plan while it is on the
-    /// corridor, less the radius of its ellipse. It never decides.
+    /// The paper's certificate as printed, metres: the least half-width, less the last axle's greatest distance from the plan
+    /// while it is on the corridor, less the radius of its ellipse. No verdict depends on it.
     pub(super) fn published_m(&self) -> f64 {
         let last = (self.corridor.len() - 1) as f64;
         let narrowest = self.corridor.left_m.iter().chain(&self.corridor.right_m).fold(f64::INFINITY, |a, &b| a.min(b));
@@ -115,7 +118,7 @@ impl<'c> Nominal<'c> {
         narrowest - (most + last_radius_m(&self.vehicle.units))
     }
 
-    /// The station at which a place of a unit's axis would be on a straight road.
+    /// The station that a point of a unit's axis would have on a straight road.
     fn straight(&self, vertex: usize, unit: usize, ahead_m: f64) -> f64 {
         let units = &self.vehicle.units;
         let before: f64 = units[..unit].iter().map(|u| u.coupling_to_axle_m + u.hitch_offset_m).sum();
@@ -123,7 +126,7 @@ impl<'c> Nominal<'c> {
         (vertex as f64 - self.lead as f64) / PARTS as f64 - behind_m / self.corridor.spacing_m
     }
 
-    /// The foot of a point (in stations) near a guess, by Newton's method, and its lateral place, metres.
+    /// The foot of a point near a guess, in stations, by Newton's method, and the point's lateral offset, metres.
     fn foot(&self, point: [f64; 2], guess: f64) -> Option<(f64, f64)> {
         let mut s = guess;
         for _ in 0..40 {
@@ -137,7 +140,7 @@ impl<'c> Nominal<'c> {
         None
     }
 
-    /// The centreline at `s` (in stations), straight on beyond both ends.
+    /// The centreline at `s` (in stations). It goes straight on beyond both ends.
     fn place(&self, s: f64) -> Place {
         let c = self.corridor;
         let last = c.len() - 1;
@@ -165,17 +168,17 @@ impl<'c> Nominal<'c> {
     }
 }
 
-/// How far ahead of a place's normal a point is, metres.
+/// The distance of a point ahead of a place's normal, metres.
 fn along(place: Place, point: [f64; 2]) -> f64 {
     (point[0] - place.at[0]) * place.tangent[0] + (point[1] - place.at[1]) * place.tangent[1]
 }
 
-/// How far to the left of the centreline a point is, metres.
+/// The distance of a point to the left of the centreline, metres.
 fn across(place: Place, point: [f64; 2]) -> f64 {
     (point[1] - place.at[1]) * place.tangent[0] - (point[0] - place.at[0]) * place.tangent[1]
 }
 
-/// A value that is linear between stations, at `s` (in stations, on the corridor).
+/// The value at `s` (in stations, on the corridor) of a column that is linear between stations.
 fn linear(column: &[f64], s: f64) -> f64 {
     let k = (s as usize).min(column.len().saturating_sub(2));
     let next = column[(k + 1).min(column.len() - 1)];

@@ -1,8 +1,9 @@
-//! Tubes for the certificate file: when the steer axle is where, where each axle then is nominally, and how far it may
-//! be off.
+//! The tubes of a certificate file: for each station of the steer axle the time, the nominal place of each axle, and the bound
+//! on the axle's distance from that place.
 //!
-//! The certificate itself knows no time, only places along the corridor; `t` is that of a vehicle at the default
-//! [`SpeedProfile`]. Nothing is claimed along the heading: `shape` is the disc whose radius is the bound across it, `lateral_m`.
+//! A certificate depends on places along the corridor, not on time; `t` is the time of a vehicle at the default
+//! [`SpeedProfile`]. The bound `lateral_m` holds across the heading; nothing is claimed along the heading. `shape` is the disc
+//! of radius `lateral_m`.
 
 use serde_json::{Value, json};
 
@@ -11,13 +12,14 @@ use crate::corridor::{FileCorridor, FrameError};
 use crate::speed_profile::SpeedProfile;
 use crate::stet::{Certificate, Model, Tube, tubes};
 
-/// A disc of no radius has no shape matrix; a micrometre more is on the safe side.
+/// The least radius of a disc, because a disc of radius 0 has no shape matrix. A greater radius is on the safe side.
 const LEAST_RADIUS_M: f64 = 1e-6;
-/// What is claimed is this much wider than the sweep's bound, metres and a part of it: the checker reads bounds in steps of its own.
+/// The claimed bound is wider than the sweep's by this length, metres, because the checker computes bounds in steps of its own.
 const MORE_M: f64 = 1e-3;
+/// The claimed bound is also wider by this share of the sweep's bound.
 const MORE_PART: f64 = 0.02;
 
-/// One tube a unit, front to rear; centres in the coordinates of the corridor's file.
+/// One tube for each unit, front to rear. Centres are in the coordinates of the corridor's file.
 pub(super) fn json(
     given: &FileCorridor,
     model: &Model,
@@ -32,7 +34,7 @@ fn one(given: &FileCorridor, tube: &Tube, nominal: &Nominal<'_>, t: &[f64]) -> R
     let centre: Vec<[f64; 2]> = (0..tube.centre.len()).map(|k| nominal.axle(k, tube.unit)).collect();
     let lateral = |(k, at): (usize, &[f64; 2])| {
         let own = tube.centre[k];
-        // The sweep's bound is about its own centre.
+        // The sweep's bound is measured from the sweep's own centre.
         let off_m = (at[0] - own[0]).hypot(at[1] - own[1]);
         tube.bound_m(k).map(|bound_m| bound_m * (1.0 + MORE_PART) + off_m + MORE_M)
     };

@@ -1,7 +1,7 @@
-//! The certificates of a database: every row of a vehicle's set, against the network that is in the same file.
+//! Checks the certificates of a database: every row of a vehicle's set, against the network in the same file.
 //!
-//! The road of a stroke is the network's own statement, made by `corridor`; it is checked here against cross sections and map
-//! lines before anything is said about vehicles on it. The plan is the database's; everything else is worked out again.
+//! `corridor` makes the corridor of a stroke from the network. The corridor is checked here against cross sections and map
+//! lines before it is used. The plan comes from the database; everything else is computed again.
 
 use std::collections::BTreeMap;
 
@@ -17,51 +17,52 @@ use netcert_check::Chain;
 use netcert_check::{Finding, Outcome, Subject, TOLERANCE_M, finding};
 use netcert_check::{plan, printed};
 
-/// Strips are measured across the way's line, widths across the corridor's: they differ by the angle between.
+/// Tolerance of widths, metres. Strips are measured across the way's line and widths across the corridor's centreline, which
+/// differ by the angle between the two lines.
 const WIDTH_TOLERANCE_M: f64 = 0.01;
-/// A corridor moves over from strip to strip within so many metres of where they change.
+/// The greatest distance of a taper from the place where strips change, metres.
 const TAPER_M: f64 = 66.0;
 
-/// A vehicle's certificates under one policy.
+/// The certificates of a vehicle's edges under one policy, to be checked.
 pub struct SetClaim<'a> {
     /// The roads.
     pub network: &'a Network,
     /// The vehicle as the database defines it.
     pub vehicle: &'a Vehicle,
-    /// Which width counts.
+    /// The policy of the certificates.
     pub policy: Policy,
-    /// How corridors are made.
+    /// The parameters of corridors.
     pub params: &'a Params,
-    /// Rows that are to be checked, by edge.
+    /// The rows to check, by edge.
     pub rows: &'a BTreeMap<u32, EdgeRow>,
-    /// Plans that are not the centreline, by the stroke's first edge.
+    /// The plans that are not the centreline, by the stroke's first edge.
     pub plans: &'a BTreeMap<u32, Vec<i32>>,
 }
 
-/// What came of one row.
+/// The outcome of checking one row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RowOutcome {
     /// Index of the edge or turn.
     pub index: u32,
     /// `edge_id` or `turn_id`.
     pub id: i64,
-    /// As claimed.
+    /// The claimed verdict.
     pub verdict: Verdict,
-    /// What came of it.
+    /// The outcome.
     pub outcome: Outcome,
 }
 
-/// What came of a set.
+/// The outcome of checking a set.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SetReport {
-    /// One a row, in order of the network's strokes.
+    /// One outcome for each row: edges in order of the network's strokes, turns in order of the turns.
     pub rows: Vec<RowOutcome>,
-    /// Corridor that was swept, approaches included, kilometres.
+    /// Length of the swept corridors, including their approaches, kilometres.
     pub swept_km: f64,
 }
 
 impl SetClaim<'_> {
-    /// Checks all rows: strokes over threads, results in order.
+    /// Checks all rows. Strokes are spread over threads, and the outcomes are in order.
     #[must_use]
     pub fn check(&self) -> SetReport {
         let chain = Chain::new(self.vehicle);
@@ -110,7 +111,7 @@ impl SetClaim<'_> {
         }
         let subject = match Subject::new(chain, &made.corridor, plan::shift(coefficients), true) {
             Ok(subject) => subject,
-            // A stroke may hold a place that no corridor fits; its edges must not be called anything but unknown.
+            // A stroke may have a place that no corridor fits. Only the verdicts unknown and forbidden are confirmed there.
             Err(e) => return rows.iter().map(|row| said(row, unfit(row, &e.to_string()))).collect(),
         };
         let span_of = |row: &EdgeRow| made.spans.iter().find(|span| span.edge == row.edge);
@@ -142,7 +143,7 @@ impl SetClaim<'_> {
         rows.iter().map(|row| said(row, outcome(row))).collect()
     }
 
-    /// Verdict, reason and numbers must agree with each other, with the law and with whether there is a corridor.
+    /// Checks that verdict, reason and numbers agree with each other, with legal limits, and with whether there is a corridor.
     fn without_claims(&self, row: &EdgeRow, unknown: Option<UnknownReason>) -> Outcome {
         let wrong = |detail: String| Outcome::NotConfirmed(vec![finding("verdict", &detail)]);
         let Some(edge) = self.network.edges.get(row.edge as usize) else {
@@ -150,16 +151,17 @@ impl SetClaim<'_> {
         };
         let expected = expected(edge, self.vehicle, unknown, row);
         if unknown.is_some() && row.certificate.has_numbers() {
-            return wrong("it has numbers where nothing can be said".to_owned());
+            return wrong("it has numbers, but nothing can be computed there".to_owned());
         }
         if expected == row.certificate.verdict {
             Outcome::Confirmed
         } else {
-            wrong(format!("{:?}, but {expected:?} is what follows", row.certificate.verdict))
+            wrong(format!("{:?} is claimed, but {expected:?} follows", row.certificate.verdict))
         }
     }
 
-    /// The corridor over a span keeps to the map: no wider than the strip, no further from the line than it may be.
+    /// Checks the corridor over a span against the map: its width against the strip, its distance from the line against the
+    /// tolerance.
     fn road(&self, made: &StrokeCorridor, span: &EdgeSpan) -> Option<Finding> {
         let edge = self.network.edges.get(span.edge as usize)?;
         let section =
@@ -170,9 +172,9 @@ impl SetClaim<'_> {
         }
         let room = |strip: Strip| f64::from(strip.width_m()) - 2.0 * self.params.map_tolerance_m + WIDTH_TOLERANCE_M;
         let most = room(strip);
-        // Where the lane moves over, a taper uses the room of its direction.
+        // In a taper the lane moves over, and may use the width of its direction.
         let tapered = if self.policy == Policy::Lane { section.direction.map_or(most, room).max(most) } else { most };
-        // The first and the last station are the neighbours' as well.
+        // The first and last stations also belong to the neighbouring spans.
         let inner = span.stations.start + 1..span.stations.end.saturating_sub(1);
         let taper = (TAPER_M / made.corridor.spacing_m).ceil() as usize;
         inner.clone().find_map(|k| {
@@ -207,7 +209,7 @@ fn unfit(row: &EdgeRow, why: &str) -> Outcome {
     }
 }
 
-/// The verdict that follows from the law, from whether there is a corridor, and from the row's own numbers.
+/// The verdict that follows from legal limits, from whether there is a corridor, and from the row's own numbers.
 fn expected(edge: &Edge, vehicle: &Vehicle, unknown: Option<UnknownReason>, row: &EdgeRow) -> Verdict {
     let legal = edge.legal.forbids(vehicle);
     match (legal, edge.barred, unknown) {

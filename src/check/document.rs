@@ -1,4 +1,4 @@
-//! A certificate file, read strictly: what is missing, impossible or contradicts another member makes it malformed.
+//! Reads a certificate file strictly. A member that is missing, impossible or contradicts another makes the file malformed.
 
 use serde_json::Value;
 
@@ -7,12 +7,12 @@ use crate::corridor::{Corridor, Frame};
 use crate::vehicle::Vehicle;
 use netcert_check::plan;
 
-/// Positions that are written in degrees come back to this, metres.
+/// Tolerance of positions that are written in degrees, metres.
 const PLACE_TOLERANCE_M: f64 = 1e-4;
-/// Most that a plan may be off the centreline, metres; beyond it nobody speaks of a correction.
+/// The greatest `max_shift_m` of a file, metres.
 const MOST_SHIFT_M: f64 = 100.0;
 
-/// A certificate as its file has it.
+/// The content of a certificate file.
 pub(super) struct Document {
     pub(super) vehicle: Vehicle,
     pub(super) corridor: Corridor,
@@ -20,7 +20,7 @@ pub(super) struct Document {
     pub(super) verdict: String,
     pub(super) reason: Option<String>,
     pub(super) safe: bool,
-    /// RSC, metres, and hinge margin, degrees; nothing is bounded where there are none.
+    /// The RSC in metres and the hinge margin in degrees. `None` if no bound holds.
     pub(super) bounds: Option<(f64, f64)>,
     pub(super) hinge_unit: Option<usize>,
     pub(super) rsc_published_m: Option<f64>,
@@ -28,7 +28,7 @@ pub(super) struct Document {
     pub(super) limiting: Option<Limiting>,
     /// Left, right, left centred, right centred.
     pub(super) leeway: [Vec<Option<f64>>; 4],
-    /// None where nothing is bounded.
+    /// Empty if no bound holds.
     pub(super) tubes: Vec<TubeClaim>,
 }
 
@@ -121,12 +121,12 @@ fn reason(all: &Members<'_>) -> Result<Option<String>, Wrong> {
     if all.value("reason")?.is_null() { Ok(None) } else { Ok(Some(all.text("reason")?.to_owned())) }
 }
 
-/// Both are numbers, or neither is.
+/// RSC and hinge margin. Both must be numbers, or both null.
 fn bounds(all: &Members<'_>) -> Result<Option<(f64, f64)>, Wrong> {
     match (all.number_or_null("rsc_m")?, all.number_or_null("hinge_margin_deg")?) {
         (Some(rsc_m), Some(hinge_deg)) => Ok(Some((rsc_m, hinge_deg))),
         (None, None) => Ok(None),
-        _ => Err("hinge_margin_deg: it is a number where rsc_m is one, and null where that is null".to_owned()),
+        _ => Err("hinge_margin_deg: rsc_m and hinge_margin_deg must both be numbers or both be null".to_owned()),
     }
 }
 
@@ -144,7 +144,7 @@ fn vehicle(value: &Value) -> Result<Vehicle, Wrong> {
     if whole == *value {
         Ok(vehicle)
     } else {
-        Err("vehicle: not the whole definition, every field written out".to_owned())
+        Err("vehicle: not the complete definition with every field written out".to_owned())
     }
 }
 
@@ -182,13 +182,14 @@ fn corridor(all: Members<'_>, unknown: &mut Vec<String>) -> Result<(Corridor, Op
     Ok((c, frame))
 }
 
-/// Positions of the file in the frame's metres.
+/// Converts positions of the file into the frame's metres.
 fn metres(frame: Option<Frame>, places: Vec<[f64; 2]>, path: &str) -> Result<Vec<[f64; 2]>, Wrong> {
     let Some(frame) = frame else { return Ok(places) };
     frame.forward_degrees(places.into_iter().map(|[x, y]| (x, y)).collect()).map_err(|e| format!("{path}: {e}"))
 }
 
-/// The plan's coefficients: as many as there must be, level at both ends, within the shift allowed.
+/// Reads the plan's coefficients and checks their number, that they are level at both ends, and that they are within
+/// `max_shift_m`.
 fn coefficients(all: &Members<'_>, stations: usize) -> Result<Vec<i32>, Wrong> {
     let most_m = all.number("max_shift_m")?;
     if !(0.0..=MOST_SHIFT_M).contains(&most_m) {
@@ -204,7 +205,7 @@ fn coefficients(all: &Members<'_>, stations: usize) -> Result<Vec<i32>, Wrong> {
     Ok(whole)
 }
 
-/// The plan's points are the shifted centreline.
+/// Checks that the plan's points are those of the shifted centreline.
 fn planned(all: &Members<'_>, c: &Corridor, frame: Option<Frame>, coefficients: &[i32]) -> Result<(), Wrong> {
     let points = metres(frame, all.tuples("plan", c.len())?, "plan")?;
     let shift = plan::shift(coefficients);

@@ -1,8 +1,8 @@
-//! A certificate file: every member against what the vehicle on that corridor along that plan is proved to keep
-//! (`docs/certificate.md` says what each member claims).
+//! Checks a certificate file: every member against the bounds that are proved for the vehicle on that corridor along that plan.
+//! `docs/certificate.md` says what each member claims.
 //!
-//! The hash comes first: a file that is not as it was written is refuted whatever it says. Unknown members are
-//! reported, missing ones make it malformed.
+//! The hash is checked first; a file that was changed is malformed. Unknown members are reported. A missing member makes the
+//! file malformed.
 
 use serde_json::Value;
 
@@ -15,24 +15,26 @@ use netcert_check::plan;
 use netcert_check::printed;
 use netcert_check::{Finding, Outcome, SpanClaim, Subject, TOLERANCE_M, finding};
 
-/// Nominal places are found again to this, metres: what a quarter of a station's chord leaves in the tightest bends.
+/// Tolerance of nominal places, metres: the error of chords of a quarter of a station in the tightest bends.
 const NOMINAL_M: f64 = 5e-3;
-/// The same for the most of many places.
+/// Tolerance of `rsc_published_m`, metres, which is a maximum over many nominal places.
 const PRINTED_M: f64 = 0.01;
-/// The hinge that is named as the reason has no more left than this by the filter alone, radians, and what a station's chord turns.
+/// The greatest coarse margin of the hinge that the file names as the reason, radians. It allows for the turn of a station's
+/// chord.
 const HINGE_ABOVE_RAD: f64 = 0.1;
-/// Times come back to this part of them.
+/// Relative tolerance of times.
 const TIME_PART: f64 = 1e-9;
-/// 80 km/h, and 2 m/s² sideways: the pace that `t` is told for.
+/// The greatest speed behind `t`, 80 km/h.
 const LIMIT_M_S: f64 = 80.0 / 3.6;
+/// The greatest sideways acceleration behind `t`.
 const LATERAL_M_S2: f64 = 2.0;
 
-/// What is said of each member.
+/// The outcome of checking each member.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// Member and what came of it, in the order in which they were looked at.
+    /// Each checked member with its outcome, in the order of the checks.
     pub claims: Vec<(String, Outcome)>,
-    /// Members that the format does not know.
+    /// Members that the format does not have.
     pub unknown: Vec<String>,
 }
 
@@ -77,7 +79,7 @@ fn seal(text: &str) -> Result<(), Wrong> {
     if said == seal::hash(body) { Ok(()) } else { Err("sha256: the file is not as it was written".to_owned()) }
 }
 
-/// What is claimed, in the order in which it is told.
+/// The claims, in the order of the report.
 const CLAIMS: [&str; 8] =
     ["verdict", "rsc_m", "hinge_margin_deg", "hinge_unit", "limiting", "rsc_published_m", "leeway", "tubes"];
 
@@ -112,7 +114,7 @@ impl Document {
         }
     }
 
-    /// The RSC, the hinge margin, and the hinge that is the reason for the verdict.
+    /// Checks the RSC, the hinge margin, and the hinge that is the reason for the verdict.
     fn bounded(&self, along: &Subject<'_>) -> Vec<Finding> {
         let Some((rsc_m, hinge_deg)) = self.bounds else { return Vec::new() };
         let claim = SpanClaim {
@@ -139,7 +141,7 @@ impl Document {
         found
     }
 
-    /// Verdict and reason say no more and no less than the numbers.
+    /// Checks that verdict and reason follow from the numbers.
     fn follows(&self) -> Option<Finding> {
         let (verdict, reason) = match (self.bounds, self.hinge_unit) {
             (Some((rsc_m, _)), _) if rsc_m < 0.0 => ("unsafe", Some("width")),
@@ -149,10 +151,11 @@ impl Document {
         };
         let same = self.verdict == verdict && self.reason.as_deref() == reason && self.safe == (verdict == "safe");
         let because = reason.map_or(String::new(), |reason| format!(": {reason}"));
-        (!same).then(|| finding("verdict", &format!("what follows from the numbers is {verdict}{because}")))
+        (!same).then(|| finding("verdict", &format!("{verdict}{because} follows from the numbers")))
     }
 
-    /// The point that is said to limit passes there, with as much room nominally as is said, and the RSC is no more than that.
+    /// Checks that the limiting point passes the stated place with the stated nominal room, and that the RSC is not greater
+    /// than this room.
     fn limit(&self, along: &Subject<'_>) -> Option<Finding> {
         let at = self.limiting.as_ref()?;
         let Some(nominal_m) = along.nominal_at(at.s, at.unit, at.side, at.point_m) else {
@@ -185,7 +188,7 @@ impl Document {
         self.tubes.iter().filter_map(of).collect()
     }
 
-    /// At the pace of the format: between stations the mean of the speeds at both.
+    /// Checks the times. Between stations the speed is the mean of the speeds at both.
     fn times(&self, claim: &TubeClaim) -> Option<(&'static str, String)> {
         let speed = |k: usize| (LATERAL_M_S2 / self.corridor.curvature[k].abs()).sqrt().min(LIMIT_M_S);
         let mut now = 0.0;
@@ -200,7 +203,7 @@ impl Document {
         None
     }
 
-    /// A tube: centres, shapes and radii at the head's stations.
+    /// Checks a tube: its centres, shapes and radii at the stations of the steer axle.
     fn tube(&self, along: &Subject<'_>, swept: &mut Swept<'_>, claim: &TubeClaim) -> Option<(&'static str, String)> {
         let origin = [self.corridor.x[0], self.corridor.y[0]];
         for k in 0..claim.t.len() {
@@ -215,7 +218,7 @@ impl Document {
                 }
                 continue;
             };
-            // The tube is about the centre that the file names.
+            // The claimed tube is around the file's centre, so the offset between the two centres is added to the proved bound.
             let proved = along.tube_at(swept, k, claim.unit, said + TOLERANCE_M - off).map(|lateral_m| lateral_m + off);
             if proved.is_none_or(|proved| proved > said + TOLERANCE_M) {
                 let found = proved.map_or("nothing".to_owned(), |proved| format!("{proved:.4}"));

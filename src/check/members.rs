@@ -1,8 +1,8 @@
-//! Members of a JSON document, by path: what is missing or of the wrong kind is an error that names it.
+//! Reads members of a JSON document by path. A member that is missing or of the wrong type is an error that names the path.
 
 use serde_json::{Map, Value};
 
-/// An object and the path that leads to it.
+/// An object and its path in the document.
 #[derive(Clone, Copy)]
 pub(super) struct Members<'v> {
     object: &'v Map<String, Value>,
@@ -36,7 +36,7 @@ impl<'v> Members<'v> {
         number.ok_or_else(|| format!("{}: not a number", self.path_of(name)))
     }
 
-    /// A number, or null, which says that there is none.
+    /// A number, or `None` for null.
     pub(super) fn number_or_null(&self, name: &str) -> Result<Option<f64>, Wrong> {
         if self.value(name)?.is_null() { Ok(None) } else { self.number(name).map(Some) }
     }
@@ -54,7 +54,7 @@ impl<'v> Members<'v> {
         self.value(name)?.as_str().ok_or_else(|| format!("{}: not a text", self.path_of(name)))
     }
 
-    /// A list of so many.
+    /// A list with `count` entries, or of any length.
     pub(super) fn list(&self, name: &str, count: Option<usize>) -> Result<&'v [Value], Wrong> {
         let list = self.value(name)?.as_array().ok_or_else(|| format!("{}: not a list", self.path_of(name)))?;
         match count {

@@ -1,14 +1,15 @@
-//! The second opinion: confirms or refutes certificates, in files and databases, without the code that made them.
+//! The independent checker: confirms or refutes certificates in files and databases without the code that made them.
 //!
-//! Written from `docs/proof.md` and the file formats. One vehicle on one corridor is the crate `netcert-check`'s, which cannot depend
-//! on the kernel. Nothing of `stet` or `pipeline` is used here, and nothing there
-//! uses this (`tests/program/verify_independence.rs`). What the statement is about comes from those who make it: `vehicle`, `corridor`
-//! (the road's shape and widths), `turns` (a turn's area, paths and widths) and `network`; what is claimed of it is worked out again.
+//! It was written from `docs/proof.md` and the file formats. The crate `netcert-check` checks one vehicle on one corridor; it
+//! cannot depend on the kernel. Nothing of `stet` or `pipeline` is used here, and nothing there uses this module
+//! (`tests/program/verify_independence.rs`). The subject of a claim comes from the modules that the prover uses, too:
+//! `vehicle`, `corridor` (the road's shape and widths), `turns` (a turn's area, paths and widths) and `network`. The claims
+//! themselves are computed again.
 //!
 //! | file | for |
 //! | --- | --- |
 //! | `file`, `document`, `members` | certificate files |
-//! | `database`, `turns`, `said` | databases: their edges, their turns, what a row of either says |
+//! | `database`, `turns`, `row_claim` | databases: edges, turns, and the claims of a row |
 
 mod database;
 mod document;

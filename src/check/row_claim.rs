@@ -1,4 +1,4 @@
-//! What a row of a database says of an edge or a turn, and what must follow from its own numbers.
+//! The claims of a database's row about an edge or turn, and the verdict that follows from the row's own numbers.
 
 use std::ops::Range;
 
@@ -12,7 +12,7 @@ impl CertificateRow {
         self.rsc_m.is_some() || self.hinge_margin_deg.is_some()
     }
 
-    /// What its numbers claim of a span of stations.
+    /// The claim of the row's numbers about a span of stations. `None` without numbers.
     pub(super) fn claim(&self, stations: &Range<usize>, spacing_m: f64) -> Option<SpanClaim> {
         self.has_numbers().then(|| SpanClaim {
             stations: stations.clone(),
@@ -23,18 +23,18 @@ impl CertificateRow {
         })
     }
 
-    /// Metres along the span, unit, side (0 left, 1 right).
+    /// The limiting place: metres along the span, unit, side (0 left, 1 right).
     fn limiting(&self) -> Option<(f64, usize, usize)> {
         let at = self.limiting_s_m.zip(self.limiting_unit).zip(self.limiting_side);
         at.map(|((s, unit), side)| (s, usize::from(unit), usize::from(side.name() == "right")))
     }
 
-    /// The verdict that follows from the numbers; `safe` if they bear that out.
+    /// The verdict that follows from the numbers: `safe` if both bounds are not negative, else an unsafe verdict.
     pub(super) fn follows(&self, safe: Verdict) -> Verdict {
         match (self.rsc_m, self.hinge_margin_deg) {
             (Some(rsc), Some(hinge)) if rsc >= 0.0 && hinge >= 0.0 => safe,
             (Some(rsc), _) if rsc < 0.0 => Verdict::Unsafe(UnsafeReason::Width),
-            // Which of its joints fails is the row's word; that one does, its number says.
+            // The numbers say that a joint fails. The row alone says whether it is the steering lock or a hinge.
             _ => match self.verdict {
                 Verdict::Unsafe(UnsafeReason::SteeringLock) => self.verdict,
                 _ => Verdict::Unsafe(UnsafeReason::Articulation),
@@ -42,7 +42,8 @@ impl CertificateRow {
         }
     }
 
-    /// What is called unsafe is not promised; its numbers are checked where there is something to check them by.
+    /// The outcome for these findings. An unsafe verdict promises nothing, so for a row of too little room the findings
+    /// without a bound are dropped.
     pub(super) fn outcome(&self, mut found: Vec<Finding>) -> Outcome {
         if self.verdict != Verdict::Safe && self.rsc_m.is_none_or(|rsc_m| rsc_m < 0.0) {
             found.retain(|finding| !finding.unbounded);

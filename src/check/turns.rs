@@ -1,8 +1,8 @@
-//! The certificates of turns in a database: every row against the network and the edges' verdicts that are in the same file.
+//! Checks the certificates of turns in a database: every row, against the network and the verdicts of edges in the same file.
 //!
-//! Area, paths and widths are the network's own statement, made by `turns`; that a path's corridor stays within its area is looked at
-//! here. The plan is the database's; everything else is worked out again. Of a turn called unsafe without numbers nothing is
-//! promised, so nothing is asked but that there is a corridor to call so.
+//! `turns` makes area, paths and widths from the network. This module checks that a path's corridor stays within its area. The
+//! plan comes from the database; everything else is computed again. An unsafe turn without numbers promises nothing, so only
+//! the existence of a corridor is checked.
 
 use std::collections::BTreeMap;
 
@@ -23,35 +23,35 @@ use netcert_check::Chain;
 use netcert_check::{Finding, Outcome, Subject, TOLERANCE_M, finding};
 use netcert_check::{plan, printed};
 
-/// The edges of a path's corridor lie this near to the area at least: stations cut off a chord of what rays saw, metres.
+/// The greatest distance of a corridor's edge from the area, metres. Stations replace the measured edge by chords.
 const WITHIN_M: f64 = 0.02;
-/// Rows looked at together: the strokes that they need are made once.
+/// Number of rows that are checked together, so that the strokes that they need are made once.
 const BATCH: usize = 512;
 
-/// A vehicle's certificates of turns under one policy.
+/// The certificates of a vehicle's turns under one policy, to be checked.
 pub struct TurnsClaim<'a> {
     /// The roads.
     pub network: &'a Network,
     /// The vehicle as the database defines it.
     pub vehicle: &'a Vehicle,
-    /// Which width counts.
+    /// The policy of the certificates.
     pub policy: Policy,
-    /// How turns are made into corridors.
+    /// The parameters of the turns' corridors.
     pub params: &'a TurnParams,
     /// All turns of the network, in order.
     pub facts: &'a [TurnFacts],
-    /// By edge: the database's verdict for the vehicle.
+    /// The database's verdicts for the vehicle, by edge.
     pub edges: &'a BTreeMap<u32, Verdict>,
-    /// Rows that are to be checked, by turn.
+    /// The rows to check, by turn.
     pub rows: &'a BTreeMap<u32, TurnRow>,
-    /// Plans that are not the centreline, by turn.
+    /// The plans that are not the centreline, by turn.
     pub plans: &'a BTreeMap<u32, Vec<i32>>,
 }
 
 type Lines = FxHashMap<u32, Result<StrokeLine, UnknownReason>>;
 
 impl TurnsClaim<'_> {
-    /// Checks all rows, over threads; results in order.
+    /// Checks all rows. Rows are spread over threads, and the outcomes are in order.
     #[must_use]
     pub fn check(&self) -> SetReport {
         let chain = Chain::new(self.vehicle);
@@ -84,8 +84,8 @@ impl TurnsClaim<'_> {
         strokes.into_par_iter().map(line).collect::<Vec<_>>().into_iter().collect()
     }
 
-    /// The verdict of a turn that needs no corridor: a restriction forbids it, or one of its edges may not be used. Arcs of a
-    /// roundabout need only leave to be driven on.
+    /// The verdict of a turn that needs no corridor, because a restriction forbids it or one of its edges is not safe. The arcs
+    /// of a roundabout need only be lawful.
     fn barred(&self, turn: &TurnFacts) -> Option<Verdict> {
         if turn.movement.forbidden.is_some() {
             return Some(Verdict::Forbidden(ForbiddenReason::Restriction));
@@ -107,7 +107,7 @@ impl TurnsClaim<'_> {
         turn.through.iter().map(|&arc| of(arc)).find(stops)
     }
 
-    /// What comes of a row, and how many kilometres were swept for it.
+    /// The outcome of a row, and the kilometres that were swept for it.
     fn row(&self, chain: &Chain, row: &TurnRow, stroke_of: &FxHashMap<u32, u32>, lines: &Lines) -> (Outcome, f64) {
         let Some(turn) = self.facts.get(row.turn as usize) else {
             return (Outcome::Malformed("there is no such turn".to_owned()), 0.0);
@@ -125,7 +125,7 @@ impl TurnsClaim<'_> {
         }
     }
 
-    /// What the row says of the turn itself must be so.
+    /// The first column whose fact about the turn differs from the network, if there is one.
     fn misdescribed(&self, turn: &TurnFacts, row: &TurnRow) -> Option<String> {
         let id = |edge: u32| self.network.edges.get(edge as usize).map_or(0, |edge| edge.id);
         let arcs = turn.through.first().zip(turn.through.last()).map(|(&first, &last)| [id(first), id(last)]);
@@ -171,7 +171,7 @@ impl TurnsClaim<'_> {
             } else if matches!(said.verdict, Verdict::Unsafe(_)) {
                 Outcome::Confirmed
             } else {
-                Outcome::NotConfirmed(vec![finding("verdict", "it has no numbers that bear it out")])
+                Outcome::NotConfirmed(vec![finding("verdict", "it has no numbers that support it")])
             };
             return (told, 0.0);
         };
@@ -194,7 +194,7 @@ impl TurnsClaim<'_> {
         let mut found: Vec<Finding> = subject.check(&claims).into_iter().flatten().collect();
         let follows = said.follows(Verdict::Safe);
         if follows != said.verdict {
-            found.push(finding("verdict", &format!("{:?}, but {follows:?} is what follows", said.verdict)));
+            found.push(finding("verdict", &format!("{:?} is claimed, but {follows:?} follows", said.verdict)));
         }
         found.extend(strays(path, made));
         let printed_m = printed::most_m(&subject, self.vehicle, path.counted.clone());
@@ -205,20 +205,20 @@ impl TurnsClaim<'_> {
     }
 }
 
-/// Verdict, reason and the lack of numbers, where there is nothing to work out.
+/// Checks the verdict, the reason and the absence of numbers of a turn without a corridor.
 fn without_corridor(said: &CertificateRow, expected: Verdict) -> Outcome {
     let wrong = |detail: String| Outcome::NotConfirmed(vec![finding("verdict", &detail)]);
     if said.has_numbers() {
-        return wrong("it has numbers where nothing can be said".to_owned());
+        return wrong("it has numbers, but nothing can be computed there".to_owned());
     }
     if said.verdict == expected {
         Outcome::Confirmed
     } else {
-        wrong(format!("{:?}, but {expected:?} is what follows", said.verdict))
+        wrong(format!("{:?} is claimed, but {expected:?} follows", said.verdict))
     }
 }
 
-/// Between its joints a path's corridor stays within the turn's area.
+/// Checks that a path's corridor stays within the turn's area between its joints.
 fn strays(path: &TurnPath, made: &TurnCorridors) -> Option<Finding> {
     let c = &path.corridor;
     path.turn.clone().filter(|&k| k < c.len()).find_map(|k| {

@@ -1,4 +1,4 @@
-//! Part of the earth's surface, as typed (`--bbox`) or from a GeoJSON file (`--within`).
+//! Reads an area from `--bbox` or from the GeoJSON file of `--within`.
 
 use std::path::Path;
 
@@ -7,10 +7,10 @@ use geo::{Coord, LineString, MultiPolygon, Polygon};
 use geojson::{GeoJson, GeometryValue, Position};
 use netcert::rows::Bounds;
 
-/// A boundary is read whole; the most detailed ones of a country have some tens of megabytes.
+/// The file is read into memory. The most detailed boundaries of countries take some tens of megabytes.
 const MAX_FILE_BYTES: u64 = 256 << 20;
 
-/// `W,S,E,N` in degrees. W may be greater than E: the box spans the 180th meridian.
+/// Parses `W,S,E,N` in degrees. A box with W greater than E spans the 180th meridian.
 pub(crate) fn bounds(text: &str) -> Result<Bounds, String> {
     let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
     let &[west, south, east, north] = numbers.as_slice() else {
@@ -22,12 +22,14 @@ pub(crate) fn bounds(text: &str) -> Result<Bounds, String> {
         return Err("give degrees: west,south,east,north, longitudes from -180 to 180, latitudes from -90 to 90".into());
     }
     if south > north {
-        return Err(format!("the south ({south}) is north of the north ({north}); the order is west,south,east,north"));
+        return Err(format!(
+            "the south edge ({south}) is north of the north edge ({north}); the order is west,south,east,north"
+        ));
     }
     Ok(Bounds { west, south, east, north })
 }
 
-/// The polygons of a GeoJSON file: geometries, features or a collection of either.
+/// Reads all polygons of a GeoJSON file. The file may be a geometry, a feature or a collection of either.
 pub(crate) fn polygons(path: &Path) -> anyhow::Result<MultiPolygon> {
     let name = path.display();
     let bytes = std::fs::metadata(path).map_err(|e| anyhow!("{name}: cannot read the area: {e}"))?.len();
@@ -47,7 +49,7 @@ pub(crate) fn polygons(path: &Path) -> anyhow::Result<MultiPolygon> {
     };
     collected.map_err(|why| anyhow!("{name}: {why}"))?;
     if found.is_empty() {
-        bail!("{name}: no Polygon or MultiPolygon in it");
+        bail!("{name}: no Polygon or MultiPolygon in this file");
     }
     Ok(MultiPolygon(found))
 }
@@ -68,7 +70,7 @@ fn collect(value: &GeometryValue, found: &mut Vec<Polygon>) -> Result<(), String
     Ok(())
 }
 
-/// By hand: the crate's own conversion panics on a position of one number.
+/// Written here because the conversion of the `geojson` crate panics on a position of one number.
 fn polygon(rings: &[Vec<Position>]) -> Result<Polygon, String> {
     let mut rings = rings.iter().map(|ring| line(ring)).collect::<Result<Vec<_>, _>>()?.into_iter();
     let outer = rings.next().ok_or("a polygon without rings")?;
@@ -77,7 +79,10 @@ fn polygon(rings: &[Vec<Position>]) -> Result<Polygon, String> {
 
 fn line(ring: &[Position]) -> Result<LineString, String> {
     if ring.len() < 4 {
-        return Err(format!("a ring of {} positions; it takes four, the last being the first", ring.len()));
+        return Err(format!(
+            "a ring of {} positions; a ring needs at least four, and the last must equal the first",
+            ring.len()
+        ));
     }
     ring.iter().map(coord).collect::<Result<Vec<_>, _>>().map(LineString)
 }
@@ -85,7 +90,7 @@ fn line(ring: &[Position]) -> Result<LineString, String> {
 fn coord(position: &Position) -> Result<Coord, String> {
     match *position.as_slice() {
         [x, y, ..] if x.abs() <= 180.0 && y.abs() <= 90.0 => Ok(Coord { x, y }),
-        ref other => Err(format!("position {other:?} is no place; expected longitude and latitude in degrees")),
+        ref other => Err(format!("position {other:?} is no place on earth; give longitude and latitude in degrees")),
     }
 }
 

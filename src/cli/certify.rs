@@ -1,4 +1,4 @@
-//! `netcert certify`: certificates again, or for more vehicles, in a database that exists.
+//! `netcert certify`: makes certificates in an existing database, again or for more vehicles.
 
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -18,26 +18,26 @@ use super::certify_options::{self, CertifyOptions};
 use super::database::DatabaseArgs;
 use super::fleet::{self, Fleet};
 
-/// Certify again, or add vehicles, in a database that exists.
+/// Certify vehicles in an existing database, again or for the first time.
 ///
-/// With no vehicle named, all that the database has are certified again, each as the catalogue defines it now. The
-/// extract is not needed: the roads are in the database. Each vehicle's certificates are replaced in one step. Options
-/// not given are as they were for `ingest`, whatever the vehicle's old certificates were made with. The options stay with
-/// the certificates: `verify`, `explain`, `route` and `serve` compute by them.
+/// Without --vehicle, every vehicle of the database is certified again, with its current definition in the catalogue.
+/// The extract is not needed, because the database holds the roads. Each vehicle's certificates are replaced in one
+/// step. An option that is not given has its value from `ingest`, not the value of the vehicle's old certificates. The
+/// options are stored with the certificates; `verify`, `explain`, `route` and `serve` use them.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   netcert certify --vehicle EU-SEMI16.5 US-WB67     add two vehicles of the catalogue
   netcert certify --vehicle-file ours.toml          add all vehicles of a file
-  netcert certify --corridor direction              with all lanes of one's direction
-  netcert certify --db region.gpkg --max-shift 0    with no shift off the centreline")]
+  netcert certify --corridor direction              use all lanes of the vehicle's direction
+  netcert certify --db region.gpkg --max-shift 0    keep the steer axle on the centreline")]
 pub(crate) struct Certify {
     #[command(flatten)]
     db: DatabaseArgs,
     /// Vehicles to certify.
     #[arg(long, value_name = "ID", num_args = 1..)]
     vehicle: Vec<String>,
-    /// Vehicles of your own; all of them are certified unless --vehicle says which.
+    /// A file with vehicles of your own. Without --vehicle, all of its vehicles are certified.
     #[arg(long, value_name = "F.toml")]
     vehicle_file: Vec<PathBuf>,
     #[command(flatten)]
@@ -53,7 +53,10 @@ impl Certify {
         let work = self.work(&mut database, &fleet, settings.policy)?;
         database.close()?;
         if work.is_empty() {
-            bail!("{}: no vehicle is certified here yet; name some with --vehicle or --vehicle-file", path.display());
+            bail!(
+                "{}: no vehicle is certified here yet; name vehicles with --vehicle or --vehicle-file",
+                path.display()
+            );
         }
         for (policy, vehicles) in work {
             let settings = Settings { policy, ..settings.clone() };
@@ -76,7 +79,8 @@ impl Certify {
         Ok(())
     }
 
-    /// Vehicles by policy. Named ones go by the catalogue and the files, then by what the database keeps.
+    /// The vehicles to certify under each policy. The catalogue and the vehicle files define a vehicle; the database's
+    /// definition is used where they lack its id.
     fn work(
         &self,
         database: &mut Database,

@@ -1,10 +1,10 @@
-//! How certificates are made: the options of `ingest` and `certify`.
+//! The options of `ingest` and `certify` that say how certificates are made.
 //!
-//! A set of certificates keeps its settings, and whoever computes it again takes those: `CertifiedSet::settings`. For a set that
-//! is yet to be made, what is not given is as in the database's own ingest.
+//! A stored set of certificates keeps its settings; `CertifiedSet::settings` returns them for a new computation. A new set takes
+//! the settings of the database's ingest for every option that is not given.
 
 use anyhow::anyhow;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use netcert::corridor::Params;
 use netcert::osm::facts::Policy;
 use netcert::settings::Settings;
@@ -17,30 +17,57 @@ use super::values::{metres, word};
 #[derive(Args, Default)]
 #[command(next_help_heading = "How certificates are made")]
 pub(crate) struct CertifyOptions {
-    /// Which width counts: one's own lane, all lanes of one's direction, or the whole carriageway [default: lane].
+    /// The width that the vehicle may use: its own lane, all lanes of its direction, or the whole carriageway [default:
+    /// lane].
     #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
     pub(crate) corridor: Option<Policy>,
-    /// How far the smoothed centreline may be from the map's line, metres [default: 0.5].
+    /// The greatest distance between the smoothed centreline and the map's line, metres [default: 0.5].
     #[arg(long, value_name = "METRES", value_parser = metres)]
     smoothing_tolerance: Option<f64>,
-    /// Taken off each side for what the map's own position is worth, metres [default: 0].
+    /// Width deducted on each side for errors of the map's position, metres [default: 0].
     #[arg(long, value_name = "METRES", value_parser = metres)]
     map_tolerance: Option<f64>,
-    /// How far the steer axle may be planned off the centreline to leave the trailers room, metres [default: 1.5].
+    /// The greatest planned distance of the steer axle from the centreline, metres. The shift gives the trailers room
+    /// in bends [default: 1.5].
     #[arg(long, value_name = "METRES", value_parser = metres)]
     max_shift: Option<f64>,
-    /// Certify edges only, no turns.
+    /// The width that the vehicle may use near turns: the same as elsewhere, all lanes of its direction, or the whole
+    /// carriageway [default: direction].
+    ///
+    /// Long vehicles use all lanes of their direction before and after a turn; `same` does not allow that. The width is never
+    /// less than that of --corridor.
+    #[arg(long, value_name = "POLICY")]
+    turn_corridor: Option<TurnCorridor>,
+    /// Certify edges only, not the turns at junctions.
     #[arg(long)]
     no_turns: bool,
 }
 
+/// Values of `--turn-corridor`.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum TurnCorridor {
+    Same,
+    Direction,
+    Carriageway,
+}
+
+impl TurnCorridor {
+    fn policy(self) -> Policy {
+        match self {
+            Self::Same => Policy::Lane,
+            Self::Direction => Policy::Direction,
+            Self::Carriageway => Policy::Carriageway,
+        }
+    }
+}
+
 impl CertifyOptions {
-    /// The options over the defaults.
+    /// The default settings with the given options in place.
     pub(crate) fn settings(&self) -> Settings {
         self.over(&Settings::default())
     }
 
-    /// The options over some settings.
+    /// The settings `base` with the given options in place.
     pub(crate) fn over(&self, base: &Settings) -> Settings {
         Settings {
             policy: self.corridor.unwrap_or(base.policy),
@@ -50,18 +77,19 @@ impl CertifyOptions {
                 ..base.corridor
             },
             stet: Options { max_shift_m: self.max_shift.unwrap_or(base.stet.max_shift_m), ..base.stet },
+            turn_policy: self.turn_corridor.map_or(base.turn_policy, TurnCorridor::policy),
             kerbs: base.kerbs.clone(),
             turns: base.turns && !self.no_turns,
         }
     }
 }
 
-/// The settings for the `run` record, which is for people: nothing is computed by it.
+/// The settings for the `run` record. People read that record; no computation uses it.
 pub(crate) fn parameters(settings: &Settings) -> anyhow::Result<serde_json::Map<String, Value>> {
     settings.options().map_err(|detail| anyhow!("these settings cannot be kept: {detail}"))
 }
 
-/// The policy that is asked for, else that of the database's ingest.
+/// The policy `asked`, or the policy of the database's ingest.
 pub(crate) fn policy_of(database: &mut Database, asked: Option<Policy>) -> Result<Policy, StoreError> {
     match asked {
         Some(policy) => Ok(policy),
@@ -69,7 +97,7 @@ pub(crate) fn policy_of(database: &mut Database, asked: Option<Policy>) -> Resul
     }
 }
 
-/// What a vehicle that the database does not certify would be certified with.
+/// The settings for a new set of certificates under `policy`.
 pub(crate) fn of_a_new_set(database: &mut Database, policy: Policy) -> Result<Settings, StoreError> {
     Ok(Settings { policy, ..database.settings_of_new_sets()? })
 }

@@ -1,4 +1,4 @@
-//! `netcert corridor`: one corridor drawn by the user, one vehicle, a whole certificate.
+//! `netcert corridor`: certifies one vehicle through one corridor of the user's, and writes the complete certificate.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -17,7 +17,7 @@ use super::fleet::Fleet;
 use super::output::results;
 use super::values::metres;
 
-/// A corridor is read whole: 64 MiB hold a million points.
+/// The file is read into memory; 64 MiB hold a million points.
 const MAX_FILE_BYTES: u64 = 64 << 20;
 
 /// Certify a vehicle through a corridor of your own: a lane, an aisle, a depot entry.
@@ -28,10 +28,10 @@ const MAX_FILE_BYTES: u64 = 64 << 20;
 ///
 ///   frame                  metres, or lonlat (degrees)
 ///   points                 the centreline, in driving direction
-///   width_m                a number, or a list with one a point;
-///   left_m, right_m        or both sides on their own
-///   smoothing_tolerance_m  the smoothest line within so many metres of the
-///                          points is driven [0.5]; 0: the points are that line
+///   width_m                the width: one number, or a list with one number per point
+///   left_m, right_m        instead of width_m: the widths to the left and right of the centreline
+///   smoothing_tolerance_m  the vehicle follows the smoothest line within this distance of the
+///                          points [default: 0.5]; with 0 it follows the points themselves
 #[derive(Args)]
 #[command(
     verbatim_doc_comment,
@@ -40,30 +40,31 @@ Examples:
   netcert corridor entry.json --vehicle EU-SEMI16.5
   netcert corridor aisle.json --vehicle AGV-TUG4 --max-shift 0 --out certificate.json
 
-The vehicle enters straight, along the first point's heading, and leaves straight.
-Exit status 0 also when the answer is `unsafe`: read the certificate's `safe`.
+The vehicle is straight when it enters, along the heading at the first point, and it leaves straight.
+The exit status is 0 for an `unsafe` corridor, too; read `safe` in the certificate.
 
-The certificate repeats vehicle and corridor and holds the plan of the steer axle, the leeway at
-every station before and after correction, and the tube of every axle. Its `t` is the time of a
-vehicle at 80 km/h, slower where 2 m/s² sideways would be exceeded."
+The certificate holds the vehicle, the corridor, the plan of the steer axle, the leeway at every
+station before and after correction, and the tube of every axle. Its `t` is the time of a vehicle
+at 80 km/h that slows down where the sideways acceleration would exceed 2 m/s²."
 )]
 pub(crate) struct Corridor {
-    /// The corridor.
+    /// The corridor file.
     #[arg(value_name = "CORRIDOR.json")]
     file: PathBuf,
     /// The vehicle; `netcert vehicles list` shows the ids.
     #[arg(long, value_name = "ID")]
     vehicle: String,
-    /// Where its definition stands, if not in the catalogue.
+    /// A file that defines the vehicle, if the catalogue does not.
     #[arg(long, value_name = "F.toml")]
     vehicle_file: Vec<PathBuf>,
-    /// How far the steer axle may be planned off the centreline to leave the trailers room.
+    /// The greatest planned distance of the steer axle from the centreline, metres. The shift gives the trailers room
+    /// in bends.
     #[arg(long, value_name = "METRES", value_parser = metres, default_value_t = Options::default().max_shift_m)]
     max_shift: f64,
-    /// Write the certificate there, as JSON.
+    /// Write the certificate into this file, as JSON.
     #[arg(long, value_name = "CERTIFICATE.json")]
     out: Option<PathBuf>,
-    /// Draw it there: the place that limits, the vehicle on it, and the leeway all along.
+    /// Draw a picture into this file: the tightest place with the vehicle there, and the leeway along the corridor.
     #[arg(long, value_name = "OUT.svg")]
     svg: Option<PathBuf>,
 }
@@ -75,7 +76,7 @@ impl Corridor {
         let given = read(&self.file)?;
         let options = Options { max_shift_m: self.max_shift, ..Options::default() };
         let Some((certificate, why)) = explain_corridor(&given.corridor, &model, &options, &Stop::never())? else {
-            bail!("{}: no station to certify; give two points or more", self.file.display());
+            bail!("{}: the corridor has no station to certify; give two points or more", self.file.display());
         };
         if let Some(path) = &self.out {
             let text = netcert::certificate::text(&given, &model, &certificate, &options)?;
@@ -104,7 +105,7 @@ fn read(path: &Path) -> anyhow::Result<FileCorridor> {
     let cannot = |e: std::io::Error| anyhow!("{name}: cannot read the corridor: {e}");
     let bytes = std::fs::metadata(path).map_err(cannot)?.len();
     if bytes > MAX_FILE_BYTES {
-        bail!("{name}: {bytes} bytes are too many for a corridor; cut it into parts that overlap");
+        bail!("{name}: {bytes} bytes are too many for a corridor; cut the corridor into parts that overlap");
     }
     let text = std::fs::read_to_string(path).map_err(cannot)?;
     corridor_from_file(&text).map_err(|e| anyhow!("{name}: {e}; see `netcert help corridor`"))
@@ -178,7 +179,7 @@ fn answer(
     Ok(())
 }
 
-/// What limits, what would do, and what the answer rests on.
+/// Prints what limits the vehicle, what would make the corridor safe, and the scope of the answer.
 fn because(out: &mut dyn Write, why: &Explanation) -> std::io::Result<()> {
     let words = explain::words(why);
     writeln!(out)?;

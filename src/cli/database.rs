@@ -1,4 +1,4 @@
-//! Which database a verb means: the one named with `--db`, else the only one in the current directory.
+//! Finds the database of a verb: the file of `--db`, or the only database in the current directory.
 
 use std::path::{Path, PathBuf};
 
@@ -44,7 +44,8 @@ fn only_one_in(folder: &Path) -> anyhow::Result<PathBuf> {
     }
 }
 
-/// GeoPackages of other programs do not count; a damaged one of ours does, so that its error is shown.
+/// Whether the file is a netcert database. A damaged netcert database counts, so that its error is shown; a GeoPackage
+/// of another program does not.
 fn is_netcerts(path: &Path) -> bool {
     !matches!(Database::open(path), Err(StoreError::NotNetcert(_) | StoreError::NotSqlite(_)))
 }

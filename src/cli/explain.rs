@@ -1,4 +1,4 @@
-//! `netcert explain`: why an edge is safe or not for a vehicle, in words and as a picture.
+//! `netcert explain`: why an edge or turn is safe or unsafe for a vehicle, in words and as a picture.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -27,13 +27,14 @@ use super::output::{printable, results};
 use super::table::Table;
 use super::values::word;
 
-/// So many candidates are listed where the edge is not clear.
+/// The greatest number of edges in the list that is shown when EDGE matches several.
 const MOST_LISTED: usize = 30;
 
-/// Why an edge is safe or not: which metre of road, which unit, which side, how much is missing, and what would do.
+/// Explain why an edge or turn is safe or unsafe: where it is tightest, for which unit, on which side, and by how much.
 ///
-/// The corridor and the certificate are made again from the database's network; every hint is a certificate of its
-/// own. Certificates that the database keeps must say the same: if they do not, that is an error.
+/// The answer also says what would make the edge safe, such as a wider lane. The corridor and the certificate are
+/// computed again from the database's roads, and every hint is certified, too. If the database's stored certificate
+/// differs from the computed one, the command fails.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -41,8 +42,8 @@ Examples:
   netcert explain 'Great Inland Highway' --vehicle AU-ATRIPLE53      lists its edges
   netcert explain 7129168334710566423 --vehicle AU-ATRIPLE53 --svg why.svg")]
 pub(crate) struct Explain {
-    /// A turn_id, as `netcert query --turns` shows it; an edge_id, as `netcert query` shows it; or a way's id, a road's name or ref: where that is more than one edge,
-    /// they are listed.
+    /// The edge or turn: a turn_id of `netcert query --turns`, an edge_id of `netcert query`, a way's id, or a road's
+    /// name or ref. If several edges match, they are listed.
     #[arg(value_name = "EDGE")]
     edge: String,
     #[command(flatten)]
@@ -50,17 +51,17 @@ pub(crate) struct Explain {
     /// The vehicle; `netcert vehicles list` shows the ids.
     #[arg(long, value_name = "ID")]
     vehicle: String,
-    /// Where its definition stands, if not in the catalogue or the database.
+    /// A file that defines the vehicle, if neither the catalogue nor the database does.
     #[arg(long, value_name = "F.toml")]
     vehicle_file: Vec<PathBuf>,
-    /// Which width counts: one's own lane, all lanes of one's direction, or the whole carriageway [default: as the
-    /// database was made with, lane unless told otherwise].
+    /// The width that the vehicle may use: its own lane, all lanes of its direction, or the whole carriageway [default:
+    /// as in the database's ingest, which uses lane unless told otherwise].
     #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
     corridor: Option<Policy>,
-    /// Draw it there: the place that limits, the vehicle on it, and the leeway all along the edge.
+    /// Draw a picture into this file: the tightest place with the vehicle there, and the leeway along the edge.
     #[arg(long, value_name = "OUT.svg")]
     svg: Option<PathBuf>,
-    /// Form of the answer.
+    /// The output format.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
@@ -124,7 +125,7 @@ impl Explain {
         Ok(out.flush()?)
     }
 
-    /// The turn of that id.
+    /// The turn whose id was given, if there is one.
     fn turn(&self, network: &Network, settings: &Settings) -> Option<TurnFacts> {
         let id: i64 = self.edge.trim().parse().ok()?;
         turn_facts(network, &settings.kerbs).into_iter().find(|turn| turn.id == id)
@@ -145,20 +146,29 @@ impl Explain {
                 let mut json = explain::json(&turn.explanation);
                 json["turn_id"] = turn.facts.id.into();
                 json["turn"] = turn.title().into();
+                json["turn_corridor"] = turn.strip.name().into();
                 writeln!(out, "{json:#}")?;
             }
             Format::Text => {
                 writeln!(out, "{}", printable(&turn.title()))?;
                 tell(&mut out, &turn.explanation)?;
-                let note = "This is the turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii \
-                            are assumed where no surface is mapped.";
-                writeln!(out, "{}", wrapped(note, ""))?;
+                let near = match turn.strip {
+                    Policy::Lane => "its own lane",
+                    Policy::Direction => "all lanes of its direction",
+                    Policy::Carriageway => "the whole carriageway",
+                };
+                let note = format!(
+                    "This is the certificate of the turn alone, on the best of its paths; its two edges have verdicts of their own. \
+                     Near the turn the vehicle may use {near}. Kerb radii are assumed where no surface is mapped."
+                );
+                writeln!(out, "{}", wrapped(&note, ""))?;
             }
         }
         Ok(out.flush()?)
     }
 
-    /// The database's own definition comes first: its certificates were made with it.
+    /// The vehicle's definition. A `--vehicle-file` comes first, then the database, whose certificates were made with
+    /// its own definition, then the catalogue.
     fn vehicle(&self, database: &mut Database) -> anyhow::Result<Vehicle> {
         let fleet = Fleet::new(&self.vehicle_file)?;
         match fleet::kept(database, &self.vehicle)? {
@@ -167,7 +177,8 @@ impl Explain {
         }
     }
 
-    /// The certificates that the database keeps, if it has this vehicle's under this policy, made with this definition.
+    /// The stored set of certificates of this vehicle under this policy. `None` if there is none, or if the user's file
+    /// defines the vehicle otherwise than the set.
     fn set(&self, database: &mut Database, vehicle: &Vehicle, policy: Policy) -> anyhow::Result<Option<CertifiedSet>> {
         let hash = pipeline::record(vehicle)?.blake3();
         let own = Fleet::new(&self.vehicle_file)?.own.contains(&self.vehicle);
@@ -231,7 +242,7 @@ impl Explain {
     }
 }
 
-/// The row that the set keeps of an edge.
+/// The stored row of an edge in `set`.
 fn stored(
     database: &mut Database,
     network: &Network,
@@ -243,7 +254,8 @@ fn stored(
     Ok(database.query(&options)?.next().transpose()?)
 }
 
-/// Edges that `asked` may mean: an edge's id before a way's, before a name or ref, before a part of a name.
+/// Indices of the edges that match `asked`. The first of these with a match decides: edge id, way id, a whole name or ref,
+/// a part of a name or ref.
 fn candidates(network: &Network, asked: &str) -> Vec<u32> {
     let matching = |wanted: &dyn Fn(&netcert::network::Edge) -> bool| -> Vec<u32> {
         (0..).zip(&network.edges).filter(|(_, edge)| wanted(edge)).map(|(i, _)| i).collect()
@@ -267,7 +279,7 @@ fn candidates(network: &Network, asked: &str) -> Vec<u32> {
     if found.is_empty() { matching(&|edge| named(edge, &|text| text.contains(&asked))) } else { found }
 }
 
-/// The words, for a terminal.
+/// Prints the explanation in words for a terminal.
 pub(super) fn tell(out: &mut dyn Write, explanation: &Explanation) -> std::io::Result<()> {
     let words = explain::words(explanation);
     if let Some(road) = &explanation.road {
@@ -297,7 +309,7 @@ pub(super) fn tell(out: &mut dyn Write, explanation: &Explanation) -> std::io::R
     writeln!(out, "\n{}", wrapped(&words.scope, ""))
 }
 
-/// Lines of at most 100 characters, the second and later ones indented by `indent`.
+/// Wraps a text into lines of at most 100 characters. The second and later lines begin with `indent`.
 pub(super) fn wrapped(text: &str, indent: &str) -> String {
     let (mut out, mut column) = (String::new(), 0);
     for word in text.split(' ') {
@@ -316,7 +328,7 @@ pub(super) fn wrapped(text: &str, indent: &str) -> String {
     out
 }
 
-/// Draws an explanation into a file.
+/// Writes the picture of an explanation into a file, as SVG.
 pub(super) fn write_picture(path: &std::path::Path, explanation: &Explanation) -> anyhow::Result<()> {
     let Some(svg) = picture::explanation(explanation) else {
         let words = explain::words(explanation);

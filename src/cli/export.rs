@@ -1,4 +1,4 @@
-//! `netcert export`: what a vehicle may use, for routing engines and map programs.
+//! `netcert export`: writes the roads and turns that a vehicle may use, for routing engines and map programs.
 
 use std::path::{Path, PathBuf};
 
@@ -16,11 +16,11 @@ use super::output::{grouped, results};
 use super::stop::when_stopped;
 use super::values::{metres, word};
 
-/// Writes what a vehicle may use in the form that a routing engine or map program reads.
+/// Write the roads and turns that a vehicle may use in the format of a routing engine or map program.
 ///
-/// A permit is lawful access and a safe certificate, edge by edge and turn by turn; what is not certified is refused. Every
-/// output says in its header or beside it what it rests on: the vehicle, the options, the database's hash. A vehicle that is
-/// not certified in this database yet is certified then and there.
+/// An edge or turn is permitted if access is lawful and its certificate is safe. Everything else is refused, also
+/// what is not certified. The header of every output, or a file beside it, names the vehicle, the options and the hash
+/// of the database. A vehicle that this database has not certified yet is certified first.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -28,10 +28,11 @@ Examples:
   netcert export osm-pbf --vehicle US-WB67 --extract columbus.osm.pbf --out columbus-wb67.osm.pbf
   netcert export csv --vehicle AU-ATRIPLE53 --layer edges --out - | head
 
-docs/export/ has a page for each target: from zero to a routed truck, and what the engine cannot
-express. An output is whole or not there; a folder of an earlier export is replaced.")]
+docs/export/ has a page for each target. The page leads from the download to a routed truck and
+lists what the engine cannot express. An output is never left incomplete. The folder of an earlier
+export is replaced.")]
 pub(crate) struct Export {
-    /// In which form.
+    /// The format to write.
     #[arg(value_name = "TARGET", value_parser = target_names())]
     target: &'static str,
     #[command(flatten)]
@@ -39,26 +40,26 @@ pub(crate) struct Export {
     /// The vehicle; `netcert vehicles list` shows the ids.
     #[arg(long, value_name = "ID")]
     vehicle: String,
-    /// Where its definition stands, if not in the catalogue or the database.
+    /// A file that defines the vehicle, if neither the catalogue nor the database does.
     #[arg(long, value_name = "F.toml")]
     vehicle_file: Vec<PathBuf>,
-    /// Where to: a file or folder, as the target has it; `-` is standard output.
+    /// The file or folder to write; the target says which of the two. `-` is standard output.
     #[arg(long, value_name = "PATH")]
     out: PathBuf,
-    /// The extract that the database was made from; targets that rewrite it or need its node ids ask for it.
+    /// The extract that the database was made from. Targets that rewrite the extract or need its node ids ask for it.
     #[arg(long, value_name = "REGION.osm.pbf")]
     extract: Option<PathBuf>,
-    /// One layer as one file, where a target writes both.
+    /// Write only this layer, as one file, where the target writes both layers.
     #[arg(long, value_name = "LAYER", value_parser = layer())]
     layer: Option<Layer>,
-    /// Permit only with at least so many metres to spare.
+    /// Permit only edges and turns with at least this RSC: the metres to spare at the tightest place.
     #[arg(long, value_name = "METRES", default_value_t = 0.0, value_parser = metres)]
     min_rsc: f64,
-    /// Permit only where an edge's width comes from this source or a better one, worst to best as listed.
+    /// Permit only edges whose width comes from this source or a better one; the list runs from worst to best.
     #[arg(long, value_name = "SOURCE", value_parser = word::<WidthSource>())]
     width_source: Option<WidthSource>,
-    /// Which width counts: one's own lane, all lanes of one's direction, or the whole carriageway [default: as the
-    /// database was made with, lane unless told otherwise].
+    /// The width that the vehicle may use: its own lane, all lanes of its direction, or the whole carriageway [default:
+    /// as in the database's ingest, which uses lane unless told otherwise].
     #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
     corridor: Option<Policy>,
 }
@@ -89,7 +90,7 @@ impl Export {
         let on_disk = unfinished.clone();
         when_stopped(|| on_disk.remove());
         match export::export(&source, target, &Options { layer: self.layer }, (out, unfinished)) {
-            // So that a reader who has enough is no failure.
+            // Kept as an I/O error: `main` then recognises a closed pipe, which is no failure.
             Err(ExportError::Write(error)) => return Err(error.into()),
             done => done?,
         }

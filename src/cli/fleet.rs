@@ -1,4 +1,4 @@
-//! Which vehicle an id means: the catalogue's, one of `--vehicle-file`, or one that a database keeps.
+//! Finds the vehicle of an id in the catalogue, in the files of `--vehicle-file`, or in a database.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use anyhow::Context as _;
 use netcert::store::Database;
 use netcert::vehicle::{Catalogue, Vehicle};
 
-/// The shipped catalogue and the user's files, and the ids of the latter.
+/// The built-in catalogue extended by the user's files, and the ids of the user's vehicles.
 pub(crate) struct Fleet {
     pub(crate) catalogue: Catalogue,
     pub(crate) own: Vec<String>,
@@ -24,7 +24,7 @@ impl Fleet {
     }
 }
 
-/// The vehicle as the database keeps it, if it does.
+/// The vehicle as the database defines it; `None` if the database does not have it.
 pub(crate) fn kept(database: &mut Database, id: &str) -> anyhow::Result<Option<Vehicle>> {
     let Some(record) = database.vehicles()?.into_iter().find(|record| record.id == id) else { return Ok(None) };
     let vehicle = Vehicle::from_json(&record.definition)

@@ -1,4 +1,4 @@
-//! `netcert ingest`: from an extract to a database with certificates.
+//! `netcert ingest`: reads an extract and writes a database with certificates.
 
 use std::path::{Path, PathBuf};
 
@@ -16,12 +16,12 @@ use super::values::country_code;
 
 /// Read an OpenStreetMap extract, certify its roads, and write a GeoPackage.
 ///
-/// Every drivable road of the extract becomes directed edges, each with a certificate for every vehicle: safe, unsafe,
-/// forbidden by a tagged limit, or unknown, always with the reason. Unless told otherwise, the vehicles are those of
-/// the extract's own countries and a 3-trailer road train.
+/// Every drivable road of the extract becomes directed edges. Each edge has one certificate per vehicle: safe, unsafe,
+/// forbidden by a tagged limit, or unknown; every verdict but safe comes with a reason. Unless options choose others,
+/// the vehicles are those of the extract's countries and a 3-trailer road train.
 ///
-/// The database is put in place when it is whole: a run that fails or is killed leaves an older one as it was. A file
-/// that netcert did not make is never overwritten.
+/// The database replaces an older one only when it is complete: a run that fails or is killed leaves the older one
+/// as it was. A file that netcert did not make is never overwritten.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -29,10 +29,10 @@ Examples:
   netcert ingest victoria.osm.pbf --db roads.gpkg --vehicle AU-BDOUBLE26 AU-ATRIPLE53
   netcert ingest island.osm.pbf --country NZ --vehicle-file ours.toml
 
-With SOURCE_DATE_EPOCH set (seconds since 1970), the same input gives the same bytes, time
-stamps included.")]
+If the environment variable SOURCE_DATE_EPOCH is set (seconds since 1970), all time stamps have that
+value, and the same input gives a database of the same bytes.")]
 pub(crate) struct Ingest {
-    /// The extract.
+    /// The OpenStreetMap extract.
     #[arg(value_name = "REGION.osm.pbf", value_hint = ValueHint::FilePath)]
     input: PathBuf,
     /// The database to write [default: the extract's name with .gpkg, in the current directory].
@@ -49,30 +49,31 @@ pub(crate) struct Ingest {
 #[derive(Args)]
 #[command(next_help_heading = "Which vehicles")]
 struct Which {
-    /// Certify this vehicle, and only those named so; `netcert vehicles list` shows the ids.
+    /// Certify only the vehicles with these ids; `netcert vehicles list` shows the ids.
     #[arg(long, value_name = "ID", num_args = 1.., conflicts_with_all = ["all_vehicles", "no_certify"])]
     vehicle: Vec<String>,
-    /// Vehicles of your own; certified unless --vehicle says which.
+    /// A file with vehicles of your own. Without --vehicle, all of its vehicles are certified, too.
     #[arg(long, value_name = "F.toml")]
     vehicle_file: Vec<PathBuf>,
-    /// Certify the whole catalogue.
+    /// Certify all vehicles of the catalogue.
     #[arg(long, conflicts_with = "no_certify")]
     all_vehicles: bool,
-    /// Write the roads only; `certify` or `query` add certificates later.
+    /// Write the roads without certificates; `netcert certify` or `netcert query` can add them later.
     #[arg(long)]
     no_certify: bool,
 }
 
 #[derive(Args)]
-#[command(next_help_heading = "What is assumed of the roads")]
+#[command(next_help_heading = "Assumptions about the roads")]
 struct Roads {
-    /// All roads are in this country (ISO 3166-1, two letters) [default: looked up].
+    /// Treat all roads as in this country (ISO 3166-1, two letters) [default: looked up by position].
     #[arg(long, value_name = "CC", value_parser = country_code)]
     country: Option<String>,
-    /// Traffic keeps to this side everywhere [default: as the country].
+    /// The side of the road that traffic keeps to, everywhere [default: as in the country].
     #[arg(long, value_name = "SIDE", value_parser = ["left", "right"])]
     driving_side: Option<String>,
-    /// Widths assumed where none are tagged, in the form of data/roads.toml [default: that file, built in].
+    /// A file with the widths to assume where none is tagged, in the format of data/roads.toml [default: that file,
+    /// which is built in].
     #[arg(long = "roads", value_name = "F.toml")]
     rules: Option<PathBuf>,
 }
@@ -132,7 +133,7 @@ impl Which {
     }
 }
 
-/// For the `run` record.
+/// The selection as the `run` record keeps it.
 fn selection_words(selection: &Selection) -> serde_json::Value {
     match selection {
         Selection::None => json!("none"),
@@ -163,11 +164,11 @@ impl Roads {
 /// `x/region.osm.pbf` → `region.gpkg`.
 fn default_db(input: &Path) -> anyhow::Result<PathBuf> {
     let Some(name) = input.file_name().and_then(|name| name.to_str()) else {
-        bail!("{}: no name to call the database by; give one with --db", input.display());
+        bail!("{}: cannot name the database after this file; give a name with --db", input.display());
     };
     let stem = [".osm.pbf", ".pbf"].iter().find_map(|end| name.strip_suffix(end)).unwrap_or(name);
     if stem.is_empty() {
-        bail!("{}: no name to call the database by; give one with --db", input.display());
+        bail!("{}: cannot name the database after this file; give a name with --db", input.display());
     }
     Ok(format!("{stem}.gpkg").into())
 }

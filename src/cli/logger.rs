@@ -1,4 +1,4 @@
-//! Where the lines go that the library logs: to standard error, each as it is.
+//! Prints the lines that the library logs to standard error, unchanged.
 
 use log::{LevelFilter, Log, Metadata, Record};
 
@@ -7,7 +7,7 @@ use super::output::tell;
 struct Lines;
 
 impl Log for Lines {
-    /// The library's own lines alone. Other crates log, too, and nobody asked for that.
+    /// Only netcert's own lines are printed. Other crates log details that users did not ask for.
     fn enabled(&self, metadata: &Metadata<'_>) -> bool {
         metadata.target().starts_with("netcert::")
     }
@@ -21,9 +21,9 @@ impl Log for Lines {
     fn flush(&self) {}
 }
 
-/// From now on, lines are printed.
+/// Makes this the program's logger.
 pub(super) fn install() {
-    // It fails where a logger is there already, and then lines go to that one.
+    // `set_logger` fails if a logger is installed already; lines then go to that logger.
     if log::set_logger(&Lines).is_ok() {
         log::set_max_level(LevelFilter::Info);
     }

@@ -1,4 +1,4 @@
-//! `netcert manoeuvres`: low-speed turns of vehicles, with published limits beside them.
+//! `netcert manoeuvres`: computes low-speed turns of vehicles and compares them with published limits.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -15,30 +15,31 @@ use super::fleet::Fleet;
 use super::output::results;
 use super::table::Table;
 
-/// How vehicles turn at low speed: 90°, 180°, a full circle, steady off-tracking; with published limits beside them.
+/// Show how vehicles turn at low speed, beside published limits: 90°, 180°, a full circle, and steady off-tracking.
 ///
-/// In the turns of 90° and 180° the outer end of the steer axle keeps to a path of 12.5 m radius, as the Australian PBS has
-/// it; in the circle the outer front corner comes along the tangent and keeps to 12.5 m, as European rules have it.
-/// Exact no-slip motion of rectangular bodies: real bodies with rounded corners need a little less.
+/// In the turns of 90° and 180°, the outer end of the steer axle follows a path of 12.5 m radius, as in the Australian
+/// Performance-Based Standards (PBS). In the circle, the outer front corner enters along the tangent and follows a
+/// circle of 12.5 m radius, as in European rules. The motion is the exact no-slip motion of rectangular bodies; real
+/// bodies with rounded corners need a little less room.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  netcert manoeuvres                                    the whole catalogue, a line each
+  netcert manoeuvres                                    all vehicles of the catalogue, one a line
   netcert manoeuvres --vehicle AU-BDOUBLE26             one vehicle, with every limit and its source
   netcert manoeuvres --vehicle EU-SEMI16.5 --svg turns.svg
 
-A pass is no approval: assessments use the real bodies, tyres and axle groups.")]
+A pass is no approval: official assessments use the real bodies, tyres and axle groups.")]
 pub(crate) struct Manoeuvres {
     /// The vehicles; `netcert vehicles list` shows the ids [default: all].
     #[arg(long, value_name = "ID", num_args = 1..)]
     vehicle: Vec<String>,
-    /// Where their definitions stand, if not in the catalogue.
+    /// A file that defines the vehicles, if the catalogue does not.
     #[arg(long, value_name = "F.toml")]
     vehicle_file: Vec<PathBuf>,
-    /// Form of the answer.
+    /// The output format.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-    /// Draw the turns of one vehicle there.
+    /// Draw the turns of one vehicle into this file.
     #[arg(long, value_name = "OUT.svg")]
     svg: Option<PathBuf>,
 }
@@ -59,7 +60,7 @@ impl Manoeuvres {
         };
         if let Some(path) = &self.svg {
             let [vehicle] = vehicles.as_slice() else {
-                bail!("--svg draws one vehicle: name it with --vehicle");
+                bail!("--svg draws one vehicle; name that vehicle with --vehicle");
             };
             std::fs::write(path, picture::manoeuvres(vehicle))
                 .map_err(|e| anyhow!("{}: cannot write the picture: {e}", path.display()))?;
@@ -80,7 +81,7 @@ impl Manoeuvres {
     }
 }
 
-/// The strictest PBS level that a measure keeps.
+/// The strictest PBS level whose limit the measure keeps.
 fn level(report: &Report, measure: Measure) -> String {
     let passed = |f: &&Finding| f.limit.measure == measure && f.passes && f.limit.who.starts_with("PBS level");
     report.findings.iter().find(passed).map_or("none".to_owned(), |f| f.limit.who.replace("PBS level ", "L"))
@@ -91,7 +92,7 @@ fn passes(report: &Report, measure: Measure, who: &str) -> &'static str {
     finding.map_or("", |f| if f.passes { "yes" } else { "no" })
 }
 
-/// A dash where a body comes past the centre.
+/// The swept width; a dash if a body passes the centre of the turn.
 fn width(swept: &Swept) -> String {
     swept.width_m.map_or("–".to_owned(), |metres| format!("{metres:.2} m"))
 }
@@ -156,7 +157,7 @@ fn one(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
     writeln!(out, "Rectangular bodies, one effective axle a unit, no tyre slip: a pass is no approval.")
 }
 
-/// What each turn sweeps, with its guide; the circle; steady off-tracking.
+/// Prints what each turn sweeps, with its guide, then the circle and the steady off-tracking.
 fn turns(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
     let mut table =
         Table::new(&["turn", "guide", ">swept path", ">tail swing", ">frontal swing", ">last axle cuts in"]);
@@ -192,7 +193,7 @@ fn turns(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
     writeln!(out, "  steady off-tracking, steer axle to last axle: {}\n", steady.collect::<Vec<_>>().join(", "))
 }
 
-/// Measures beside published limits, and where those come from.
+/// Prints the measures beside the published limits, and the sources of the limits.
 fn limits(out: &mut dyn Write, r: &Report) -> std::io::Result<()> {
     let mut table = Table::new(&["limit", "of", ">at", ">measured", "", "sureness"]);
     for f in &r.findings {
@@ -218,7 +219,7 @@ fn limits(out: &mut dyn Write, r: &Report) -> std::io::Result<()> {
     Ok(())
 }
 
-/// What the turns ask of steering and hinges, beside what they allow.
+/// Prints the greatest angles of steering and hinges in the turns, beside the angles that the vehicle allows.
 fn angles(out: &mut dyn Write, v: &Vehicle, r: &Report) -> std::io::Result<()> {
     let mut table = Table::new(&["greatest angle", ">90°", ">180°", ">circle", ">allowed", ""]);
     for (i, unit) in v.units.iter().enumerate() {
@@ -283,7 +284,7 @@ fn json(v: &Vehicle, r: &Report) -> Value {
     })
 }
 
-/// One line a vehicle and limit, so that a spreadsheet can sort them.
+/// Writes one line for each vehicle and limit, so that a spreadsheet can sort them.
 fn csv(out: &mut dyn Write, all: &[(&Vehicle, Report)]) -> std::io::Result<()> {
     writeln!(out, "vehicle_id,measure,who,limit_m,at_least,measured_m,passes,sureness")?;
     for (v, r) in all {

@@ -1,6 +1,6 @@
-//! What was typed, and the verbs: one file each. Strings stop here; what the library gets is typed.
+//! The command line: one file for each verb. The text of arguments is parsed here, and the library gets typed values.
 //!
-//! Results go to standard output; progress, counts and warnings to standard error.
+//! Results go to standard output; progress, counts and warnings go to standard error.
 
 mod area;
 mod certify;
@@ -38,27 +38,27 @@ use clap::{Parser, Subcommand};
 use clock::Clock;
 use progress::Progress;
 
-/// Certifies, edge by edge, on which roads of an OpenStreetMap extract an articulated vehicle fits.
+/// Certify which roads of an OpenStreetMap extract an articulated vehicle fits.
 #[derive(Parser)]
 #[command(
     version,
     max_term_width = 100,
     after_help = "\
 Start with:
-  netcert ingest data/demo.osm.pbf        makes demo.gpkg, with certificates
-  netcert query --vehicle AU-ATRIPLE53    where a 3-trailer road train may drive
-  netcert help VERB                       what a verb does, with examples
+  netcert ingest data/demo.osm.pbf        make demo.gpkg, with certificates
+  netcert query --vehicle AU-ATRIPLE53    list the roads and whether a 3-trailer road train fits
+  netcert help VERB                       describe a verb, with examples
 
 Results go to standard output, everything else to standard error.
 Exit status: 0 done (also when the answer is `unsafe`), 1 failed, 2 wrong usage.
 
-`safe` holds within the stated model, widths and error bounds; it is no permit."
+`safe` holds within the stated model, widths and error bounds; it is no permit to drive."
 )]
 pub(crate) struct Cli {
-    /// Print nothing but results and errors.
+    /// Print only results and errors.
     #[arg(long, short, global = true, display_order = 900)]
     quiet: bool,
-    /// Threads to use; the result does not depend on it [default: one for each processor].
+    /// Number of threads; results do not depend on it [default: one for each processor].
     #[arg(long, global = true, display_order = 901, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     #[command(subcommand)]
@@ -83,14 +83,14 @@ pub(crate) enum Verb {
     Verify(verify::Verify),
 }
 
-/// What every verb works with.
+/// The output for people and the clock, which every verb uses.
 pub(crate) struct Session {
     progress: Progress,
     clock: Clock,
 }
 
 impl Session {
-    /// Sets the number of threads, reads the clock's environment.
+    /// Sets the number of threads and reads `SOURCE_DATE_EPOCH`.
     pub(crate) fn begin(cli: &Cli) -> anyhow::Result<Self> {
         if let Some(threads) = cli.threads {
             rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global()?;

@@ -1,4 +1,4 @@
-//! A vehicle that a database does not certify yet is certified when it is asked for, and the result is kept.
+//! Certifies a vehicle on demand: if the database lacks its certificates, they are made and stored.
 
 use std::path::{Path, PathBuf};
 
@@ -15,22 +15,22 @@ use super::Session;
 use super::certify_options;
 use super::fleet::{self, Fleet};
 
-/// What a command needs.
+/// The vehicle and certificates that a command needs.
 pub(crate) struct Wanted<'a> {
-    /// Its id.
+    /// The vehicle's id.
     pub(crate) vehicle: &'a str,
-    /// Files that define it, if neither the catalogue nor the database does.
+    /// The files of `--vehicle-file`.
     pub(crate) files: &'a [PathBuf],
-    /// Under this policy; `None`: that of the database's ingest.
+    /// The policy of the certificates. `None` means the policy of the database's ingest.
     pub(crate) policy: Option<Policy>,
-    /// Turns, too.
+    /// Whether certificates of turns are needed, too.
     pub(crate) turns: bool,
-    /// Who asks, for the `run` record.
+    /// The verb's name, for the `run` record.
     pub(crate) command: &'static str,
 }
 
-/// The database with all that is wanted in it, and the set. One that is there keeps its settings; a new one has those of the
-/// database's ingest.
+/// Returns the database and the wanted set of certificates, and makes the set or its turns if they are missing. An
+/// existing set keeps its settings; a new set has those of the database's ingest.
 pub(crate) fn certified(
     session: &Session,
     (path, mut database): (&Path, Database),
@@ -76,7 +76,8 @@ pub(crate) fn certified(
     Ok((database, set))
 }
 
-/// The database's own definition comes first: its other certificates were made with it.
+/// The vehicle's definition. A `--vehicle-file` comes first, then the database, whose other certificates were made with
+/// its own definition, then the catalogue.
 fn definition(database: &mut Database, wanted: &Wanted<'_>) -> anyhow::Result<Vehicle> {
     let fleet = Fleet::new(wanted.files)?;
     match fleet::kept(database, wanted.vehicle)? {

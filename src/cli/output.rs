@@ -1,23 +1,23 @@
-//! The two streams: results to standard output, all else to standard error.
+//! The two output streams: results go to standard output, everything else to standard error.
 
 use std::io::{self, BufWriter, StdoutLock, Write};
 
-/// Standard output, buffered: flush it and mind the error.
+/// Standard output with a buffer. The caller must flush it and handle the error.
 pub(crate) fn results() -> BufWriter<StdoutLock<'static>> {
     BufWriter::with_capacity(1 << 16, io::stdout().lock())
 }
 
-/// A line for people. That nobody reads it is no reason to fail.
+/// Prints a line for people. A failed write to standard error is ignored.
 pub(crate) fn tell(text: &str) {
     let _ = writeln!(io::stderr().lock(), "{text}");
 }
 
-/// The one place where an error is printed. Messages are whole: what, where, and the way out.
+/// Prints an error. Every error message is complete in itself: what failed, where, and what the user can do.
 pub(crate) fn complain(error: &anyhow::Error) {
     tell(&format!("error: {error}"));
 }
 
-/// Whether whoever read the results has enough of them (`netcert query … | head`).
+/// Whether the reader of the results has closed the pipe, as in `netcert query … | head`.
 pub(crate) fn is_closed_pipe(error: &anyhow::Error) -> bool {
     error.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe)
 }
@@ -40,7 +40,7 @@ pub(crate) fn km(metres: f64) -> String {
     format!("{:.1}", metres / 1000.0)
 }
 
-/// Text from a map or file, fit for a terminal: what would move the cursor is replaced.
+/// Text from a map or file, made safe for a terminal: control characters are replaced.
 pub(crate) fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }

@@ -1,4 +1,4 @@
-//! A place as typed: `LON,LAT` in degrees.
+//! Parses a place from the command line: `LON,LAT` in degrees.
 
 use netcert::route::Position;
 

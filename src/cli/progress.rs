@@ -1,5 +1,5 @@
-//! What a run shows on standard error: a bar a stage on a terminal, and at the end a line a stage with time, items and
-//! rate, and what was left out and why.
+//! Shows the progress of a run on standard error. On a terminal each stage has a bar. At the end each stage has a line with
+//! time, items and rate, followed by the items that were left out, with reasons.
 
 use std::io;
 use std::sync::{Mutex, PoisonError};
@@ -13,7 +13,7 @@ use netcert::reporter::Reporter;
 use super::output::{grouped, tell};
 use super::table::Table;
 
-/// Bars hide themselves where standard error is no terminal.
+/// The output for people. Bars are hidden if standard error is no terminal.
 pub(crate) struct Progress {
     quiet: bool,
     bar: Mutex<Option<ProgressBar>>,
@@ -24,7 +24,7 @@ impl Progress {
         Self { quiet, bar: Mutex::default() }
     }
 
-    /// A line, unless `--quiet`.
+    /// Prints a line, unless `--quiet` is given.
     pub(crate) fn say(&self, text: &str) {
         if self.quiet {
             return;
@@ -35,7 +35,7 @@ impl Progress {
         }
     }
 
-    /// What a run ends with.
+    /// Prints the summary at the end of a run.
     pub(crate) fn summary(&self, summary: &Summary) {
         if self.quiet {
             return;
@@ -51,7 +51,7 @@ impl Progress {
                 format!("{}/s", grouped(rate as u64)),
             ]);
         }
-        // As in `tell`: nobody reading it is no failure.
+        // A failed write to standard error is ignored, as in `tell`.
         let _ = table.write(&mut io::stderr().lock(), "  ");
         for line in refusals(&summary.account) {
             tell(&format!("  {line}"));
@@ -59,7 +59,7 @@ impl Progress {
     }
 }
 
-/// `read: 12 of 340 ways left out: construction 7, no_nodes 5`: a line for each thing counted.
+/// One line for each kind of item, such as `read: 12 of 340 ways left out: construction 7, no_nodes 5`.
 pub(crate) fn refusals(account: &[AccountRow]) -> Vec<String> {
     let same = |a: &AccountRow, b: &AccountRow| a.stage == b.stage && a.item == b.item;
     let totals = account.iter().filter(|row| row.outcome == "read");
@@ -117,7 +117,7 @@ impl Reporter for Progress {
     }
 }
 
-/// Wall time for people.
+/// A duration in words for people.
 pub(crate) fn human(seconds: f64) -> String {
     if seconds < 60.0 { format!("{seconds:.1} s") } else { HumanDuration(Duration::from_secs_f64(seconds)).to_string() }
 }

@@ -1,4 +1,4 @@
-//! `netcert query`: the roads and what a vehicle may do there.
+//! `netcert query`: lists edges or turns with their certificates for a vehicle.
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -22,11 +22,11 @@ use super::rows::{Head, Sink};
 use super::turn_rows;
 use super::values::{signed_metres, word};
 
-/// Which roads a vehicle may use, and why not the others.
+/// List which roads a vehicle may use, and why it may not use the others.
 ///
-/// One row for each directed edge: a stretch of road between two junctions, in one direction. A vehicle that is not
-/// certified in this database yet is certified then and there, and the result is kept. Rows come in the order of the
-/// network; a table ends, on standard error, with kilometres by verdict.
+/// Each row is a directed edge: a stretch of road between two junctions, in one direction. A vehicle that this
+/// database has not certified yet is certified first, and the certificates are stored. Rows come in the order of
+/// the network. At the end, standard error shows the kilometres by verdict.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -36,47 +36,48 @@ Examples:
   netcert query --vehicle US-WB67 --verdict safe --min-rsc 0.3 --format geojson > safe.geojson
 
 Columns:
-  rsc      metres that the worst body point has to spare, all error bounds deducted; where
-           negative, so much is missing
-  hinge    degrees left before the tightest hinge or the steering lock is at its limit
+  rsc      metres to spare at the tightest point of any body, after all error bounds are
+           deducted; a negative number is what is missing
+  hinge    degrees left until the tightest hinge or the steering lock reaches its limit
   source   where the width comes from: assumed (by class and country), from_lanes (tagged
-           lanes of an assumed width), estimated, tagged, surveyed
-  verdict  with its reason: `unsafe: width`, `forbidden: weight`, `unknown: geometry`
+           number of lanes, assumed lane width), estimated, tagged, surveyed
+  verdict  the verdict and its reason: `unsafe: width`, `forbidden: weight`, `unknown: geometry`
 
-In JSON, edge_id is a whole number of up to 63 bits: JavaScript needs BigInt to read it. A
-GeoJSON feature has it as text, too, in `id`.")]
+In JSON, edge_id is a whole number of up to 63 bits; JavaScript needs BigInt to read it. A GeoJSON
+feature also has the id as text, in `id`.")]
 pub(crate) struct Query {
     #[command(flatten)]
     db: DatabaseArgs,
     /// The vehicle; `netcert vehicles list` shows the ids.
     #[arg(long, value_name = "ID")]
     vehicle: String,
-    /// Where its definition stands, if not in the catalogue or the database.
+    /// A file that defines the vehicle, if neither the catalogue nor the database does.
     #[arg(long, value_name = "F.toml")]
     vehicle_file: Vec<PathBuf>,
-    /// Only edges that touch this box, degrees; west greater than east spans the 180th meridian.
+    /// Show only edges that touch this box (west, south, east, north, degrees). If west is greater than east, the box
+    /// spans the 180th meridian.
     #[arg(long, value_name = "W,S,E,N", value_parser = area::bounds, allow_hyphen_values = true)]
     bbox: Option<Bounds>,
-    /// Only edges that touch the polygons of this GeoJSON file.
+    /// Show only edges that touch the polygons of this GeoJSON file.
     #[arg(long, value_name = "AREA.geojson", conflicts_with = "bbox")]
     within: Option<PathBuf>,
-    /// Only this verdict.
+    /// Show only rows with this verdict.
     #[arg(long, value_name = "VERDICT", value_parser = word::<VerdictKind>())]
     verdict: Option<VerdictKind>,
-    /// Only with at least so many metres to spare.
+    /// Show only rows with at least this RSC, metres; see column rsc below.
     #[arg(long, value_name = "METRES", value_parser = signed_metres, allow_hyphen_values = true)]
     min_rsc: Option<f64>,
-    /// Only where the width comes from this source or a better one, worst to best as listed.
+    /// Show only edges whose width comes from this source or a better one; the list runs from worst to best.
     #[arg(long, value_name = "SOURCE", value_parser = word::<WidthSource>())]
     width_source: Option<WidthSource>,
-    /// Turns at junctions instead of edges: from one road into another where that is not straight on.
+    /// Show turns instead of edges: the movements at junctions from one road into another that do not go straight on.
     #[arg(long, conflicts_with = "width_source")]
     turns: bool,
-    /// Form of the answer.
+    /// The output format.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
-    /// Which width counts: one's own lane, all lanes of one's direction, or the whole carriageway [default: as the
-    /// database was made with, lane unless told otherwise].
+    /// The width that the vehicle may use: its own lane, all lanes of its direction, or the whole carriageway [default:
+    /// as in the database's ingest, which uses lane unless told otherwise].
     #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
     corridor: Option<Policy>,
 }
@@ -147,7 +148,7 @@ impl Query {
     }
 }
 
-/// What `safe` means; never shown without it.
+/// The scope of `safe`. Every answer that says `safe` shows it.
 fn scope(vehicle: Option<&Vehicle>) -> String {
     let tracking = vehicle.map_or(String::new(), |v| {
         format!(", steered within {} m of the planned path (times `shrink`)", v.tracking_tolerance_m)
@@ -158,7 +159,7 @@ fn scope(vehicle: Option<&Vehicle>) -> String {
     )
 }
 
-/// Metres of road by verdict, and where the widths behind `safe` come from.
+/// Metres of road by verdict, and metres of safe road by the source of its width.
 #[derive(Default)]
 struct Totals {
     edges: u64,

@@ -1,4 +1,4 @@
-//! `netcert reach`: where a vehicle can get to over certified roads and turns, and from where it can come back.
+//! `netcert reach`: finds the roads that a vehicle can reach over certified edges and turns, and from which it can come back.
 
 use std::io::Write;
 
@@ -14,10 +14,10 @@ use super::output::{printable, results};
 use super::position::place;
 use super::routing::{RoutingArgs, RoutingInputs};
 
-/// Which certified roads a vehicle can reach from a place, and from which it can come back.
+/// Find the certified roads that a vehicle can reach from a place, and those from which it can come back.
 ///
-/// Over roads and turns that are certified by themselves, restrictions obeyed; what a single place would open if it were safe
-/// is shown by --what-if.
+/// The vehicle uses edges and turns whose own certificates are safe, and it obeys turn restrictions. With --what-if,
+/// the answer also shows what would become reachable if one more edge were safe.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -25,22 +25,24 @@ Examples:
   netcert reach --vehicle EU-SEMI16.5 --from 8.67,49.40 --format geojson > reach.geojson
   netcert reach --vehicle EU-SEMI16.5 --from 8.67,49.40 --what-if 7129168334710566423
 
-GeoJSON has one line for each certified edge: `reach` is `return` (there and back), `there` (there
-only), `opened` (with --what-if: reached only then) or `no`; `component` numbers the parts of the network
-within which the vehicle can drive from anywhere to anywhere, the largest being 0.")]
+GeoJSON has one line for each certified edge. `reach` is `return` (the vehicle gets there and back),
+`there` (the vehicle gets there but not back), `opened` (the vehicle gets there only with --what-if)
+or `no`. `component` is the number of a part of the network in which the vehicle can drive from
+every edge to every other; the largest part has number 0.")]
 pub(crate) struct Reach {
     #[command(flatten)]
     inputs: RoutingArgs,
-    /// Where it begins, degrees.
+    /// The place where the vehicle begins, degrees.
     #[arg(long, value_name = "LON,LAT", value_parser = place, allow_hyphen_values = true)]
     from: Position,
-    /// How far a certified road may be from there, metres.
+    /// The greatest distance from that place to a certified road, metres.
     #[arg(long, value_name = "METRES", default_value_t = 100.0)]
     snap: f64,
-    /// As if this edge (an edge_id) were safe, and every lawful turn into and out of it.
+    /// Also show what the vehicle could reach if this edge (an edge_id) and every lawful turn into and out of it were
+    /// safe.
     #[arg(long, value_name = "EDGE")]
     what_if: Option<i64>,
-    /// Form of the answer.
+    /// The output format.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
@@ -87,7 +89,7 @@ impl Reach {
 
 fn km(network: &Network, on: impl Fn(usize) -> bool) -> f64 {
     let edges = network.edges.iter().enumerate().filter(|(i, _)| on(*i));
-    // From zero up: an empty sum of floats is -0.
+    // The fold begins at 0.0, because an empty `sum` of floats is -0.0.
     edges.map(|(_, edge)| network.length_m(edge) / 1000.0).fold(0.0, |sum, km| sum + km)
 }
 
@@ -159,7 +161,7 @@ fn geojson(inputs: &RoutingInputs, now: &Found, opened: Option<&Found>, componen
     json!({"type": "FeatureCollection", "features": features})
 }
 
-/// To 1e-7 degree, as the map has it.
+/// Rounds to 1e-7 degree, the precision of OpenStreetMap.
 fn rounded([lon, lat]: [f64; 2]) -> [f64; 2] {
     [lon, lat].map(|degrees| (degrees * 1e7).round() / 1e7)
 }

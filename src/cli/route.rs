@@ -1,4 +1,4 @@
-//! `netcert route`: the shortest way over certified roads and turns, with a certificate over the whole of it.
+//! `netcert route`: finds the best route over certified edges and turns, with one certificate over the whole route.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -21,52 +21,52 @@ use super::position::place;
 use super::routing::{RoutingArgs, RoutingInputs};
 use super::table::Table;
 
-/// The shortest certified route of a vehicle, with one certificate over the whole of it; or what blocks.
+/// Find the best certified route of a vehicle, with one certificate over the whole route, or what blocks it.
 ///
-/// Searched over the roads and turns that the database certifies for the vehicle, restrictions obeyed. The route's corridor is
-/// then certified from end to end; where that fails though its parts passed, the search goes on without the place that
-/// failed.
+/// The search uses the edges and turns that the database certifies for the vehicle, and obeys turn restrictions. Then
+/// the corridor of the route is certified from end to end. If that fails although every part passed, the search goes
+/// on without the place that failed.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   netcert route --vehicle AU-ATRIPLE53 --from 144.29,-36.74 --to 144.33,-36.80
-  netcert route --vehicle EU-SEMI16.5 --from 8.67,49.40 --to 8.70,49.42 --svg way.svg --out certificate.json
+  netcert route --vehicle EU-SEMI16.5 --from 8.67,49.40 --to 8.70,49.42 --out certificate.json
   netcert verify certificate.json
 
-The vehicle begins straight where the route begins. Turning back on the road is not considered, nor is
-traffic; times are by class of road (data/speeds.toml) and tagged limits. Exit status 0 also when there
-is no certified route: read `routes` in JSON.")]
+The vehicle is straight where the route begins. The search never turns back on the road and ignores
+traffic. Times are by class of road (data/speeds.toml) and tagged limits. The exit status is 0 even if
+there is no certified route; read `routes` in JSON.")]
 pub(crate) struct Route {
     #[command(flatten)]
     inputs: RoutingArgs,
-    /// Where it begins, degrees.
+    /// The place where the route begins, degrees.
     #[arg(long, value_name = "LON,LAT", value_parser = place, allow_hyphen_values = true)]
     from: Position,
-    /// Where it ends.
+    /// The place where the route ends, degrees.
     #[arg(long, value_name = "LON,LAT", value_parser = place, allow_hyphen_values = true)]
     to: Position,
-    /// A place to pass, in driving direction; may be given several times.
+    /// A place that the route passes. Give the option once for each place, in driving order.
     #[arg(long, value_name = "LON,LAT", value_parser = place, allow_hyphen_values = true)]
     via: Vec<Position>,
-    /// How far a certified road may be from each place, metres.
+    /// The greatest distance from each place to a certified road, metres.
     #[arg(long, value_name = "METRES", default_value_t = 100.0, value_parser = snap_metres)]
     snap: f64,
-    /// What is to be least.
+    /// What the search minimises.
     #[arg(long, value_enum, default_value_t = Least::Time)]
     least: Least,
-    /// So many more routes that differ.
+    /// Number of alternative routes to find beside the best one.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=9))]
     alternatives: u8,
-    /// How many whole routes may fail before the search is given up.
+    /// Number of whole routes that may fail to certify before the search gives up.
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u16).range(0..=1000))]
     tries: u16,
-    /// Form of the answer.
+    /// The output format.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
-    /// Draw the best route there: leeway all along, and its shape.
+    /// Draw the best route into this file: its shape and the leeway along it.
     #[arg(long, value_name = "OUT.svg")]
     svg: Option<PathBuf>,
-    /// Write the best route's certificate there, as JSON; `netcert verify` checks it.
+    /// Write the certificate of the best route into this file, as JSON; `netcert verify` checks it.
     #[arg(long, value_name = "CERTIFICATE.json")]
     out: Option<PathBuf>,
 }
@@ -129,7 +129,7 @@ impl Route {
 }
 
 fn nothing(path: &Path) -> anyhow::Error {
-    anyhow!("{}: there is no certified route to write; ask without it to see what blocks", path.display())
+    anyhow!("{}: there is no certified route to write; run without --out and --svg to see what blocks", path.display())
 }
 
 fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
@@ -204,7 +204,7 @@ fn numbers(out: &mut dyn Write, inputs: &RoutingInputs, found: &Found) -> std::i
     )
 }
 
-/// Edges of the same road one after the other are one row.
+/// Prints the parts of the route. Consecutive edges of the same road share one row.
 fn parts(out: &mut dyn Write, network: &Network, found: &Found) -> std::io::Result<()> {
     let mut table = Table::new(&[">from", ">length", ">rsc", "", "road"]);
     let mut rows: Vec<(PartResult, String)> = Vec::new();
@@ -233,12 +233,12 @@ fn parts(out: &mut dyn Write, network: &Network, found: &Found) -> std::io::Resu
     table.write(out, "  ")
 }
 
-/// The lesser of two numbers, as far as they are known.
+/// The lesser of two numbers. If only one is known, that one.
 fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.zip(b).map(|(a, b)| a.min(b)).or(a).or(b)
 }
 
-/// How a part is driven.
+/// A word for the movement on a part: along an edge, round a roundabout, or a turn.
 fn how(network: &Network, at: PartKind) -> &'static str {
     match at {
         PartKind::Edge(_) => "along",
@@ -273,7 +273,6 @@ fn blocked(out: &mut dyn Write, network: &Network, answer: &Answer) -> std::io::
         ]);
     }
     table.write(out, "  ")?;
-    let cheapest =
-        "The cheapest set: each place counts as a metre, and the metres that are missing there (5 where nobody knows).";
+    let cheapest = "This is the set of least cost. Each place costs 1, plus the metres that are missing there (5 where that is not known).";
     writeln!(out, "\n{}\n", wrapped(cheapest, "  "))
 }

@@ -1,4 +1,4 @@
-//! A database, a vehicle that it certifies or now does, and all that routing over them needs.
+//! Loads what `route` and `reach` need from a database: the network, the vehicle and its certificates.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -20,19 +20,20 @@ use super::values::word;
 pub(crate) struct RoutingArgs {
     #[command(flatten)]
     db: DatabaseArgs,
-    /// The vehicle; one that is not certified in this database yet is certified then and there, and the result is kept.
+    /// The vehicle; `netcert vehicles list` shows the ids. If this database has not certified it yet, it is certified
+    /// first, and the certificates are stored.
     #[arg(long, value_name = "ID")]
     vehicle: String,
-    /// Where its definition stands, if not in the catalogue or the database.
+    /// A file that defines the vehicle, if neither the catalogue nor the database does.
     #[arg(long, value_name = "F.toml")]
     vehicle_file: Vec<PathBuf>,
-    /// Which width counts: one's own lane, all lanes of one's direction, or the whole carriageway [default: as the
-    /// database was made with, lane unless told otherwise].
+    /// The width that the vehicle may use: its own lane, all lanes of its direction, or the whole carriageway [default:
+    /// as in the database's ingest, which uses lane unless told otherwise].
     #[arg(long, value_name = "POLICY", value_parser = word::<Policy>())]
     corridor: Option<Policy>,
 }
 
-/// What was loaded.
+/// The loaded network, vehicle and speeds.
 pub(crate) struct RoutingInputs {
     pub(crate) path: PathBuf,
     pub(crate) roads: Arc<Roads>,
@@ -66,7 +67,7 @@ impl RoutingInputs {
         Graph::new(&self.roads, &self.speeds, measure)
     }
 
-    /// What the certificates were made with.
+    /// The settings that the certificates were made with.
     pub(crate) fn settings(&self) -> &Settings {
         &self.driver.permits.settings
     }

@@ -1,6 +1,6 @@
-//! Edges with their certificates as a table, CSV, JSON or GeoJSON, written as they come.
+//! Writes edges with their certificates as a table, CSV, JSON or GeoJSON, row by row.
 //!
-//! Names are those of the database's tables `edge` and `certificate`, in their units.
+//! Names and units are those of the database's tables `edge` and `certificate`.
 
 use std::io::{self, BufWriter, StdoutLock, Write};
 
@@ -12,15 +12,15 @@ use serde_json::{Map, Value, json};
 use super::output::printable;
 use super::query::Format;
 
-/// What holds for all rows.
+/// What is the same for all rows.
 pub(crate) struct Head {
     pub(crate) vehicle: String,
     pub(crate) policy: Policy,
-    /// What `safe` means.
+    /// The sentence that says what `safe` means.
     pub(crate) scope: String,
 }
 
-/// Where rows go.
+/// Writes rows in one format to standard output.
 pub(crate) struct Sink<'h> {
     format: Format,
     head: &'h Head,
@@ -29,7 +29,7 @@ pub(crate) struct Sink<'h> {
 }
 
 impl<'h> Sink<'h> {
-    /// Writes what comes before the first row.
+    /// Begins the output and writes what precedes the first row.
     pub(crate) fn begin(format: Format, head: &'h Head, out: BufWriter<StdoutLock<'static>>) -> io::Result<Self> {
         let mut sink = Self { format, head, out, rows: 0 };
         match format {
@@ -48,7 +48,7 @@ impl<'h> Sink<'h> {
                     head.policy.name()
                 )?;
             }
-            // A foreign member beside the features: RFC 7946, section 6.1.
+            // `scope` is a foreign member, which RFC 7946, section 6.1, allows.
             Format::Geojson => {
                 write!(sink.out, "{{\"type\":\"FeatureCollection\",\"scope\":{},\"features\":[", json!(head.scope))?;
             }
@@ -82,7 +82,7 @@ impl<'h> Sink<'h> {
         Ok(())
     }
 
-    /// Writes what comes after the last row.
+    /// Writes what follows the last row.
     pub(crate) fn end(mut self) -> io::Result<()> {
         if matches!(self.format, Format::Json | Format::Geojson) {
             writeln!(self.out, "\n]}}")?;
@@ -122,17 +122,17 @@ impl<'h> Sink<'h> {
     }
 }
 
-/// The line of names that begins a table of these columns.
+/// The header line of CSV.
 pub(super) fn names(columns: &[Column]) -> String {
     columns.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(",")
 }
 
-/// The members of an object of these columns.
+/// The members of a JSON object with these columns.
 pub(super) fn members<const N: usize>(columns: &[Column; N], cells: [Cell<'_>; N]) -> Map<String, Value> {
     columns.iter().map(|(name, _)| (*name).to_owned()).zip(cells.map(Value::from)).collect()
 }
 
-/// A cell as RFC 4180 has it; nothing for null.
+/// A cell of CSV by RFC 4180. Null is an empty cell.
 pub(super) fn csv(value: &Value) -> String {
     let text = match value {
         Value::Null => String::new(),

@@ -1,4 +1,4 @@
-//! `netcert serve`: the certified network on a map, in a browser.
+//! `netcert serve`: shows the certified network on a map in a browser.
 
 use std::io::Write as _;
 use std::net::SocketAddr;
@@ -11,32 +11,33 @@ use super::database::DatabaseArgs;
 use super::output::results;
 use super::stop::stop;
 
-/// Show the database on a map: a page in the browser, vector tiles and a JSON interface behind it.
+/// Show the database on a map in the browser, with vector tiles and a JSON interface.
 ///
-/// Prints its address when it is ready; Ctrl-C ends it. It only reads, and listens on this machine alone unless told
-/// otherwise; the page asks nobody else for anything.
+/// The server prints its address when it is ready; Ctrl-C ends it. It only reads the database. Unless options say
+/// otherwise, only this machine can reach the server, and the page sends requests to no other server.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   netcert serve
-  netcert serve --db region.gpkg --addr 127.0.0.1:0         any free port
-  netcert serve --base-map 'https://tile.example.org/{z}/{x}/{y}.png' --base-map-attribution '© Example'
+  netcert serve --db region.gpkg --addr 127.0.0.1:0         listen on any free port
+  netcert serve --base-map 'https://tile.example.org/{z}/{x}/{y}.png'
 
-The interface is described at /api/openapi.json. When the database is made anew, the next request sees it.")]
+/api/openapi.json describes the JSON interface. If the database is replaced while the server runs,
+the next request is answered from the new one.")]
 pub(crate) struct Serve {
     #[command(flatten)]
     db: DatabaseArgs,
-    /// Where to listen; port 0 picks a free one.
+    /// The address and port to listen on; port 0 picks a free port.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
     addr: SocketAddr,
-    /// Listen where other machines can reach it: there is no log-in and no encryption.
+    /// Allow an address that other machines can reach. The server has no log-in and no encryption.
     #[arg(long)]
     allow_remote: bool,
-    /// Tiles of an online map that the page may show beneath the roads, if the reader wants [default: none; nothing
+    /// Tiles of an online map that the reader of the page can switch on beneath the roads [default: none; no request
     /// leaves this machine].
     #[arg(long, value_name = "URL", value_parser = BaseMap::parse)]
     base_map: Option<BaseMap>,
-    /// Whom to name in the corner of the map while the base map is shown, as its terms ask [default: its host].
+    /// The attribution to show while the base map is on, as its terms of use require [default: its host].
     #[arg(long, value_name = "TEXT", requires = "base_map")]
     base_map_attribution: Option<String>,
 }

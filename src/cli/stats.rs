@@ -1,4 +1,5 @@
-//! `netcert stats`: how much road there is, how much of it each vehicle may use, what limits it, and what made the file.
+//! `netcert stats`: prints how much road there is, how much of it each vehicle may use, why not the rest, and the runs that
+//! made the database.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -16,9 +17,9 @@ use super::output::{grouped, km, results};
 use super::progress::refusals;
 use super::table::Table;
 
-/// How much of the roads each vehicle may use, by class and verdict, and what made the database.
+/// Show the kilometres of road that each vehicle may use, by class and verdict, and the runs that made the database.
 ///
-/// A length is counted once for each direction.
+/// A road of two directions counts twice, once for each direction.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -27,10 +28,10 @@ Examples:
 pub(crate) struct Stats {
     #[command(flatten)]
     db: DatabaseArgs,
-    /// Only this vehicle.
+    /// Show only this vehicle.
     #[arg(long, value_name = "ID")]
     vehicle: Option<String>,
-    /// Form of the answer.
+    /// The output format.
     #[arg(long, value_enum, default_value_t = Form::Table)]
     format: Form,
 }
@@ -41,7 +42,7 @@ enum Form {
     Json,
 }
 
-/// A vehicle under a policy, and its rows.
+/// The rows of one vehicle under one policy.
 struct Set<'a> {
     vehicle: &'a str,
     policy: Policy,
@@ -114,7 +115,7 @@ fn network(out: &mut dyn Write, stats: &rows::Stats) -> anyhow::Result<()> {
     Ok(table.write(out, "")?)
 }
 
-/// One line a set.
+/// Prints one line for each vehicle and policy.
 fn overview(out: &mut dyn Write, sets: &[Set<'_>]) -> anyhow::Result<()> {
     let mut table = Table::new(&["vehicle", "policy", ">safe", ">unsafe", ">forbidden", ">unknown"]);
     for set in sets {
@@ -125,7 +126,7 @@ fn overview(out: &mut dyn Write, sets: &[Set<'_>]) -> anyhow::Result<()> {
     Ok(table.write(out, "")?)
 }
 
-/// Of the rows' length, by verdict.
+/// The share of each verdict in the length of the rows.
 fn shares<'a>(rows: &'a [&'a StatsRow]) -> impl Iterator<Item = String> + 'a {
     let all: f64 = rows.iter().map(|row| row.length_m).sum();
     VerdictKind::ALL.iter().map(move |kind| {
@@ -134,7 +135,7 @@ fn shares<'a>(rows: &'a [&'a StatsRow]) -> impl Iterator<Item = String> + 'a {
     })
 }
 
-/// Turns by verdict, a line a set.
+/// Prints the number of turns by verdict, one line for each vehicle and policy.
 fn turns(out: &mut dyn Write, stats: &rows::Stats) -> anyhow::Result<()> {
     let mut table = Table::new(&["vehicle", "policy", ">turns", ">safe", ">unsafe", ">forbidden", ">unknown"]);
     let mut keys: Vec<(&str, Policy)> = stats.turns.iter().map(|t| (t.vehicle_id.as_str(), t.policy)).collect();
@@ -186,7 +187,7 @@ fn certificates(out: &mut dyn Write, set: &Set<'_>, name: &str) -> anyhow::Resul
     Ok(())
 }
 
-/// Motorways first, links after their class; as in OpenStreetMap's own order of importance.
+/// The key that sorts classes in OpenStreetMap's order of importance: motorways first, links after their class.
 fn rank(class: &str) -> (usize, bool) {
     use netcert::osm::facts::RoadClass;
     let main = class.strip_suffix("_link").unwrap_or(class);
@@ -251,7 +252,7 @@ fn to_json(stats: &rows::Stats, sets: &[Set<'_>], runs: &[(Run, Vec<AccountRow>)
     let runs: Vec<Value> = runs
         .iter()
         .map(|(run, account)| {
-            // Written by this program; text that is no JSON is shown as it is.
+            // This program wrote the text as JSON. Text that is no JSON is shown as a string.
             let parameters = serde_json::from_str(&run.parameters).unwrap_or_else(|_| json!(run.parameters));
             json!({
                 "command": run.command, "input_name": run.input_name, "input_blake3": run.input_blake3,

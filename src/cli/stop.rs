@@ -1,6 +1,6 @@
-//! Being asked to stop: Ctrl-C, or a polite kill.
+//! Reacts to requests to stop: Ctrl-C, and SIGTERM on Unix.
 
-/// Returns when that happens. Where signals cannot be heard, never.
+/// Returns when the program is asked to stop. Never returns if the system offers no such signal.
 pub(super) async fn stop() {
     let interrupted = async {
         if tokio::signal::ctrl_c().await.is_err() {
@@ -21,7 +21,7 @@ pub(super) async fn stop() {
     interrupted.await;
 }
 
-/// Calls this when it happens, and ends the program with the number that shells give to Ctrl-C.
+/// When the program is asked to stop, calls `clear` and exits with 130, the status that shells give to Ctrl-C.
 pub(super) fn when_stopped(clear: impl FnOnce() + Send + 'static) {
     std::thread::spawn(move || {
         let Ok(runtime) = tokio::runtime::Builder::new_current_thread().enable_all().build() else { return };

@@ -1,15 +1,15 @@
-//! A table for people: columns as wide as their widest cell, numbers to the right.
+//! A table for people. Each column is as wide as its widest cell; columns of numbers are aligned to the right.
 
 use std::io::{self, Write};
 
 pub(crate) struct Table {
-    /// Heading, and whether the column is set to the right.
+    /// The heading of each column, and whether the column is aligned to the right.
     columns: Vec<(String, bool)>,
     rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// Headings; one that begins with `>` sets its column to the right.
+    /// A heading that begins with `>` aligns its column to the right.
     pub(crate) fn new(headings: &[&str]) -> Self {
         let column = |heading: &&str| match heading.strip_prefix('>') {
             Some(heading) => (heading.to_owned(), true),
@@ -22,7 +22,7 @@ impl Table {
         self.rows.push(cells.into_iter().collect());
     }
 
-    /// Every line begins with `indent`.
+    /// Writes the table. Every line begins with `indent`.
     pub(crate) fn write(&self, out: &mut dyn Write, indent: &str) -> io::Result<()> {
         let headings: Vec<String> = self.columns.iter().map(|(heading, _)| heading.clone()).collect();
         let lines = || std::iter::once(&headings).chain(&self.rows);

@@ -1,6 +1,6 @@
-//! Turns with their certificates as a table, CSV, JSON or GeoJSON.
+//! Writes turns with their certificates as a table, CSV, JSON or GeoJSON.
 //!
-//! Names are those of the database's tables `turn` and `turn_certificate`, in their units.
+//! Names and units are those of the database's tables `turn` and `turn_certificate`.
 
 use std::collections::BTreeMap;
 use std::io::{self, Write};
@@ -86,7 +86,7 @@ fn table(rows: &[TurnRow], out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// The assumed radius, or that the corner is mapped.
+/// The assumed kerb radius, or a word that says the corner is mapped.
 fn kerb(row: &TurnRow) -> String {
     let mapped = row.kerb_source.as_deref().filter(|source| *source == KerbSource::Mapped.name());
     row.kerb_radius_m.map_or_else(|| mapped.unwrap_or_default().to_owned(), |m| format!("{m:.1} m"))
@@ -96,7 +96,7 @@ fn members(head: &Head, row: &TurnRow) -> Map<String, Value> {
     rows::members(&TurnRow::COLUMNS, row.cells(&head.vehicle, head.policy))
 }
 
-/// Turns by verdict, in one line.
+/// The number of turns by verdict, in one line.
 pub(super) fn totals(rows: &[TurnRow]) -> String {
     let mut by_verdict: BTreeMap<&str, u64> = BTreeMap::new();
     for row in rows {

@@ -1,26 +1,26 @@
-//! Values of options: words of the library's enumerations, and numbers within bounds.
+//! Parses values of options: words of the library's enumerations, and numbers within bounds.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use netcert::words::Named;
 
-/// One of the enumeration's words; help lists them.
+/// A parser for the words of an enumeration. The help text lists the words.
 pub(crate) fn word<T: Named + Send + Sync>() -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(T::ALL.iter().map(|value| value.name()))
         .try_map(|word| T::named(&word).ok_or("not one of the words"))
 }
 
-/// Two letters, made capitals.
+/// Parses a country code of two letters and returns it in capitals.
 pub(crate) fn country_code(text: &str) -> Result<String, String> {
     let letters = text.len() == 2 && text.bytes().all(|b| b.is_ascii_alphabetic());
     if letters { Ok(text.to_ascii_uppercase()) } else { Err("give two letters of ISO 3166-1, such as AU".to_owned()) }
 }
 
-/// Metres from 0 to 100.
+/// Parses a length from 0 to 100 metres.
 pub(crate) fn metres(text: &str) -> Result<f64, String> {
     within(text, 0.0, 100.0)
 }
 
-/// Metres, also negative.
+/// Parses a length from -100 to 100 metres.
 pub(crate) fn signed_metres(text: &str) -> Result<f64, String> {
     within(text, -100.0, 100.0)
 }

@@ -1,4 +1,4 @@
-//! `netcert vehicles`: the catalogue, and files of the user's own.
+//! `netcert vehicles`: lists the catalogue, shows vehicles, and checks the user's vehicle files.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -14,17 +14,19 @@ use super::fleet::Fleet;
 use super::output::results;
 use super::table::Table;
 
-/// Radii at which off-tracking is shown, metres: a town corner, a roundabout's approach, a rural bend.
+/// Radii at which offtracking is shown, metres.
 const RADII_M: [f64; 3] = [50.0, 100.0, 200.0];
 
-/// The vehicles that netcert knows, and checks of your own.
+/// List and show the vehicles that netcert knows, and check vehicle files of your own.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   netcert vehicles list --region AU
-  netcert vehicles show AU-ATRIPLE53 > ours.toml       a pattern for a vehicle of your own: change the id and the rest
+  netcert vehicles show AU-ATRIPLE53 > ours.toml       start a vehicle file of your own
   netcert vehicles show AU-ATRIPLE53 --svg train.svg
-  netcert vehicles check ours.toml")]
+  netcert vehicles check ours.toml
+
+A vehicle of your own needs an id that the catalogue does not have.")]
 pub(crate) struct Vehicles {
     #[command(subcommand)]
     what: What,
@@ -32,33 +34,33 @@ pub(crate) struct Vehicles {
 
 #[derive(Subcommand)]
 enum What {
-    /// All vehicles of the catalogue.
+    /// List the vehicles of the catalogue.
     List {
-        /// Only this region: AU, CA, EU, US, indoor, airside.
+        /// List only vehicles of this region: AU, CA, EU, US, indoor, airside.
         #[arg(long, value_name = "REGION")]
         region: Option<String>,
     },
-    /// One vehicle's definition, with all defaults filled in, as a vehicle file.
+    /// Show the definition of one vehicle as a vehicle file, with all defaults filled in.
     Show {
-        /// Its id.
+        /// The vehicle's id.
         id: String,
-        /// Look here, too.
+        /// A vehicle file in which to look for the id, too.
         #[arg(long, value_name = "F.toml")]
         vehicle_file: Vec<PathBuf>,
-        /// TOML as in a vehicle file, or JSON as in a certificate.
+        /// The output format: TOML as in a vehicle file, or JSON as in a certificate.
         #[arg(long, value_enum, default_value_t = Form::Toml)]
         format: Form,
-        /// Draw it there: from above and from the side, to scale, with its dimensions.
+        /// Draw the vehicle into this file: from above and from the side, to scale, with dimensions.
         #[arg(long, value_name = "OUT.svg")]
         svg: Option<PathBuf>,
     },
-    /// Check a vehicle file: every fault with its line, or what the file holds and what is odd about it.
+    /// Check a vehicle file and list every fault with its line, or else the vehicles and warnings.
     ///
-    /// Refused is what cannot be built: bodies that stand in each other, lengths that do not close, a hinge limit at which
-    /// bodies would meet even with rounded ends. Odd is, and only warned of, what some real vehicle may be: bodies of which
-    /// the corners alone would meet.
+    /// A vehicle that cannot be built is a fault: its bodies overlap, its lengths do not add up, or its bodies would
+    /// meet within a hinge limit even with rounded ends. What a real vehicle may have is only a warning: bodies of which
+    /// only the corners would meet.
     Check {
-        /// The file.
+        /// The vehicle file.
         file: PathBuf,
     },
 }
@@ -134,7 +136,7 @@ fn show(vehicle: &Vehicle, form: Form) -> anyhow::Result<()> {
     Ok(out.flush()?)
 }
 
-/// The last axle's steady off-tracking, by the closed form.
+/// The last axle's steady offtracking at the radii of `RADII_M`, by the closed form.
 fn offtracking(vehicle: &Vehicle) -> String {
     let at = |radius_m: f64| match steady_offtracking(vehicle, radius_m) {
         Some(metres) => format!("{metres:.2} m at {radius_m:.0} m"),
@@ -145,7 +147,7 @@ fn offtracking(vehicle: &Vehicle) -> String {
 
 fn check(file: &Path, session: &Session) -> anyhow::Result<()> {
     let own = Catalogue::from_path(file)?;
-    // A clash with a shipped id, and what the certificate's model does not cover, are faults of the file too.
+    // An id that the catalogue already has is a fault of the file. So is a vehicle that the certificate's model does not cover.
     Catalogue::builtin()?.extended(own.clone(), &file.display().to_string())?;
     for vehicle in own.iter() {
         Model::new(vehicle).map_err(|refused| anyhow::anyhow!("{}: {refused}", file.display()))?;

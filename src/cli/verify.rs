@@ -1,4 +1,4 @@
-//! `netcert verify`: a second opinion on a certificate file or a database, by other code than made it.
+//! `netcert verify`: checks a certificate file or a database with code that is independent of the code that made it.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -26,14 +26,14 @@ use super::output::{grouped, printable, results};
 use super::table::Table;
 use super::values::word;
 
-/// A certificate of a corridor of a million stations has some 700 MB.
+/// A certificate of a million stations has about 700 MB.
 const MAX_FILE_BYTES: u64 = 1 << 30;
-/// Certificates that are not confirmed are listed up to so many; all are counted.
+/// At most this many unconfirmed certificates are listed. All of them are counted.
 const MOST_LISTED: usize = 100;
-/// `--sample` draws the same rows every time.
+/// The seed of `--sample`, fixed so that every run draws the same rows.
 const SEED: u64 = 0x6e65_7463_6572_7431;
 
-/// Check certificates again, independently of what made them.
+/// Check certificates again with code that is independent of the code that made them.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -42,29 +42,30 @@ Examples:
   netcert verify --db demo.gpkg
   netcert verify --db demo.gpkg --vehicle AU-ATRIPLE53 --sample 1000
 
-Every claim is worked out again: geometry, motion along the plan, straight gains, tubes, leeway, hinges,
-RSC and hashes. It is confirmed if the bound found is no more than 1 mm below what is claimed, not confirmed
-(by how much, and where), or malformed. Exit status 1 if any claim is not confirmed.")]
+Every claim is computed again: geometry, motion along the plan, straight gains, tubes, leeway,
+hinges, RSC and hashes. A claim is confirmed if the computed bound is at most 1 mm below the claimed
+one. Otherwise it is not confirmed, and the output says by how much and where. A claim that cannot
+be read is malformed. The exit status is 1 if any claim is not confirmed or is malformed.")]
 pub(crate) struct Verify {
-    /// The certificate file.
+    /// The certificate file to check.
     #[arg(value_name = "CERTIFICATE.json", required_unless_present = "db", conflicts_with = "db")]
     file: Option<PathBuf>,
-    /// The database.
+    /// The database to check.
     #[arg(long, value_name = "REGION.gpkg")]
     db: Option<PathBuf>,
-    /// Only these vehicles.
+    /// Check only these vehicles.
     #[arg(long, value_name = "ID", num_args = 1.., requires = "db")]
     vehicle: Vec<String>,
-    /// Only certificates under this policy.
+    /// Check only certificates under this policy.
     #[arg(long, value_name = "POLICY", value_parser = word::<Policy>(), requires = "db")]
     corridor: Option<Policy>,
-    /// Only edges and turns that touch this box, degrees.
+    /// Check only edges and turns that touch this box (west, south, east, north, degrees).
     #[arg(long, value_name = "W,S,E,N", value_parser = bounds, allow_hyphen_values = true, requires = "db")]
     bbox: Option<Bounds>,
-    /// Only so many certificates of each vehicle, of edges and again of turns, drawn with a fixed seed.
+    /// Check only N certificates of edges and N of turns for each vehicle and policy, drawn with a fixed seed.
     #[arg(long, value_name = "N", requires = "db")]
     sample: Option<usize>,
-    /// The extract that the database was made from: its hash is compared.
+    /// The extract that the database was made from. Its hash is compared with the hash in the database.
     #[arg(long, value_name = "REGION.osm.pbf", requires = "db")]
     input: Option<PathBuf>,
 }
@@ -181,7 +182,7 @@ impl Verify {
         Ok(claim.check())
     }
 
-    /// Rows with the least hashes of seed and id.
+    /// The N rows whose hashes of seed and id are least, or all rows without `--sample`.
     fn sampled<R>(&self, mut rows: Vec<R>, id: impl Fn(&R) -> i64) -> Vec<R> {
         if let Some(n) = self.sample {
             let key = |row: &R| {
@@ -195,7 +196,7 @@ impl Verify {
         rows
     }
 
-    /// Definitions' hashes, the runs' accounts, and the input's hash if it is given.
+    /// Checks the hashes of the vehicles' definitions, the accounts of the runs, and the hash of `--input`.
     fn records(&self, database: &mut Database) -> anyhow::Result<Vec<String>> {
         let mut complaints = Vec::new();
         let sets = database.certified()?;
@@ -252,7 +253,7 @@ fn tell(session: &Session, set: &CertifiedSet, what: &str, report: &SetReport, b
     ));
 }
 
-/// Stages whose parts do not add up to what was read.
+/// Messages for the items of which the counts by outcome do not add up to the count that was read.
 fn unbalanced(account: &[AccountRow]) -> Vec<String> {
     let parts = |total: &AccountRow| -> Option<u64> {
         let part = |row: &&AccountRow| {
@@ -261,7 +262,7 @@ fn unbalanced(account: &[AccountRow]) -> Vec<String> {
         account.iter().filter(part).map(|row| row.count).reduce(|a, b| a + b)
     };
     let total = account.iter().filter(|row| row.outcome == "read");
-    // A total of which no part is told (strokes) is just a number.
+    // A total without counts by outcome, such as that of strokes, has nothing to add up.
     let wrong = |row: &&AccountRow| parts(row).is_some_and(|sum| sum != row.count);
     total.filter(wrong).map(|row| format!("{} {}s of stage {} do not add up", row.count, row.item, row.stage)).collect()
 }

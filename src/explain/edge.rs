@@ -1,5 +1,5 @@
-//! An edge of a network: its stroke's corridor and certificate, made again as `pipeline` makes them, and whether the
-//! certificate that a database keeps says the same.
+//! Explains an edge of a network. The corridor and the certificate of its stroke are computed again as `pipeline` computes
+//! them, and can be compared with the stored certificate.
 
 use super::hints::{self, Hints};
 use super::legal::Conflict;
@@ -17,10 +17,10 @@ use crate::stop::{Stop, Stopped};
 use crate::verdict::{UnknownReason, Verdict};
 use crate::words::{Named as _, verdict_words};
 
-/// Why `model`'s vehicle may use an edge of the network or not; `None` if there is no such edge.
+/// Explains why an edge of the network is safe or unsafe for the vehicle of `model`. `None` if there is no such edge.
 ///
 /// # Errors
-/// `stop` was told: it is asked before each certificate, and every few metres of the edge's own.
+/// `stop` was told. It is checked before each certificate, and every few metres of the edge's own certificate.
 pub fn explain_edge(
     network: &Network,
     edge: u32,
@@ -50,8 +50,8 @@ pub fn explain_edge(
 }
 
 impl Explanation {
-    /// In what the certificate that a database keeps differs from this one; nothing if it says the same, to the rounding
-    /// with which it is kept.
+    /// The difference between the stored certificate of a database and this explanation, in words. `None` if they agree, up
+    /// to the rounding of stored values.
     #[must_use]
     pub fn disagreement(&self, stored: &CertificateRow) -> Option<String> {
         let words = |verdict| {
@@ -63,7 +63,7 @@ impl Explanation {
         }
         let (Some(geometry), Some(rsc_m)) = (&self.geometry, stored.rsc_m) else { return None };
         let result = &geometry.result;
-        // Kept rounded down to the millimetre.
+        // Stored values are rounded down by less than one step.
         let below = |kept: f64, computed: f64, step: f64| (-1e-9..step + 1e-9).contains(&(computed - kept));
         let Some((now_m, margin_rad)) = result.rsc_m.zip(result.hinge_margin_rad) else {
             return Some(format!("its RSC is {rsc_m:.3} m, computed now none: no bound holds"));
@@ -80,10 +80,10 @@ impl Explanation {
     }
 }
 
-/// An edge in its stroke's corridor.
+/// An edge in the corridor of its stroke.
 struct Case {
     made: StrokeCorridor,
-    /// Which of the spans.
+    /// Index of the edge's span.
     which: usize,
 }
 
@@ -103,13 +103,13 @@ impl Case {
         self.made.spans.iter().map(|span| span.stations.clone()).collect()
     }
 
-    /// As the pipeline certifies it: planned for all edges of the stroke together.
+    /// The edge's geometry. As in the pipeline, the plan is made for all edges of the stroke together.
     fn geometry(&self, model: &Model, options: &Options, stop: &Stop) -> Result<Option<Geometry>, Stopped> {
         let geometry = geometry(&self.made.corridor, &self.spans(), self.which, model, options, stop)?;
         Ok(geometry.map(|geometry| Geometry { tapers: self.made.tapers.clone(), ..geometry }))
     }
 
-    /// The edge's result in another corridor of the same stations; none once it is told to stop.
+    /// The edge's result in another corridor with the same stations. `None` after `stop` was told.
     fn result(&self, corridor: &Corridor, model: &Model, options: &Options, stop: &Stop) -> Option<SpanResult> {
         stop.check().ok()?;
         let rows = certify_spans(corridor, &[model], &self.spans(), options);
@@ -117,7 +117,7 @@ impl Case {
     }
 }
 
-/// The certificate of a corridor, seen from one of its spans.
+/// The geometry of one span of a corridor, from the certificate of the whole corridor.
 pub(super) fn geometry(
     corridor: &Corridor,
     spans: &[std::ops::Range<usize>],
@@ -152,8 +152,8 @@ fn stroke_of(network: &Network, edge: u32) -> Option<&Stroke> {
     })
 }
 
-/// What the edge would be with each of the wider strips; one that changes nothing (a single lane) is
-/// left out.
+/// The edge's results with each of the wider strips. A strip that changes nothing, as on a road of a single lane, is left
+/// out.
 fn other_strips(
     network: &Network,
     edge: u32,

@@ -1,59 +1,61 @@
-//! What would do: the least width, the widest tracking tolerance, the hinge limit with which the certificate holds.
+//! Hints: the least width, the widest tracking tolerance and the least hinge limit with which the certificate is safe.
 //!
-//! Each is found by certifying again: what is named passes, one step less (a centimetre of width, a millimetre of
-//! tolerance, a tenth of a degree) does not. Where nothing within reason passes there is no hint.
+//! Each value is found by certifying again. The named value passes, and one step less (a centimetre of width, a millimetre of
+//! tolerance, a tenth of a degree) fails. If no reasonable value passes, there is no hint.
 
 use super::Geometry;
 use crate::corridor::Corridor;
 use crate::osm::facts::Policy;
 use crate::stet::{Model, SpanResult};
 
-/// Widths are tried in centimetres, up to so many metres more than there are.
+/// The step in which widths are tried, metres.
 const STEP_M: f64 = 0.01;
+/// The greatest additional width that is tried, metres.
 pub(super) const MOST_MORE_M: f64 = 8.0;
-/// Tolerances are tried in millimetres.
+/// The step in which tolerances are tried, metres.
 const TOLERANCE_STEP_M: f64 = 0.001;
-/// Angles are tried in tenths of a degree.
+/// The step in which angles are tried, degrees.
 const ANGLE_STEP_DEG: f64 = 0.1;
-/// |κ|·half-width up to which a wider corridor is one: as for an edge's.
+/// The greatest |κ|·half-width of a widened corridor, the same as for the corridor of an edge.
 const MOST_CROSSING: f64 = 0.98;
 
-/// What would do.
+/// Changes that would make an unsafe edge safe.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Hints {
-    /// The width.
+    /// The least width.
     pub width: Option<WidthHint>,
-    /// The widest tracking tolerance with which it fits as wide as it is, metres; less than γ_min allows.
+    /// The widest tracking tolerance with which the vehicle fits the present width, metres. It is less than γ_min times the
+    /// vehicle's tolerance.
     pub tolerance_m: Option<f64>,
-    /// The least limit of the hinge in question (or steering lock) with which it passes, degrees.
+    /// The least limit of the failing hinge or steering lock with which the vehicle passes, degrees.
     pub hinge_limit_deg: Option<f64>,
-    /// Wider strips of the same road.
+    /// The results with wider strips of the same road.
     pub other_strips: Vec<OtherStrip>,
 }
 
-/// A road that is nowhere narrower than this would do.
+/// The least width with which the road would be safe, if it were nowhere narrower.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WidthHint {
     /// Metres, a whole number of centimetres.
     pub width_m: f64,
-    /// The tracking factor γ that it would take.
+    /// The factor γ on the tracking tolerance at this width.
     pub shrink: f64,
 }
 
-/// The same edge with a wider strip.
+/// The result of the same edge with a wider strip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OtherStrip {
-    /// Which.
+    /// The policy that uses this strip.
     pub policy: Policy,
-    /// Where it is narrowest, metres.
+    /// The strip's least width, metres.
     pub width_m: f64,
-    /// Whether the certificate holds there.
+    /// Whether the edge is safe with this strip.
     pub safe: bool,
-    /// Metres; `None`: nothing bounds the vehicle there.
+    /// The RSC, metres. `None` if no bound holds for the vehicle.
     pub rsc_m: Option<f64>,
 }
 
-/// Certifies the same span in another corridor of as many stations, or with another vehicle.
+/// Certifies the same span in another corridor with as many stations, or for another vehicle.
 pub(super) type Again<'a> = dyn Fn(&Corridor, &Model) -> Option<SpanResult> + 'a;
 
 pub(super) fn of(again: &Again<'_>, geometry: &Geometry, model: &Model) -> Hints {
@@ -68,8 +70,8 @@ pub(super) fn of(again: &Again<'_>, geometry: &Geometry, model: &Model) -> Hints
     }
 }
 
-/// The corridor, nowhere narrower than `width_m`: what is missing is added to both sides alike. `None` where an edge of it
-/// would fold on the inside of a bend of the span.
+/// The corridor, widened to `width_m` where it is narrower. The missing width is added to both sides equally. `None` if an
+/// edge of the corridor would fold on the inside of a bend of the span.
 #[must_use]
 pub(super) fn widened(corridor: &Corridor, span: &std::ops::Range<usize>, width_m: f64) -> Option<Corridor> {
     let mut wide = corridor.clone();
@@ -94,7 +96,7 @@ fn width(again: &Again<'_>, geometry: &Geometry, model: &Model) -> Option<WidthH
         again(&wide, model).filter(SpanResult::safe)
     };
     let narrowest = span.clone().map(|k| corridor.left_m[k] + corridor.right_m[k]).fold(f64::INFINITY, f64::min);
-    // At this width nothing has changed, so it is not safe.
+    // This width changes nothing, so the result is still unsafe.
     let fails = (narrowest / STEP_M).floor() as i64;
     let first = ((geometry.place.width_m - 2.0 * geometry.result.rsc_m?) / STEP_M).ceil() as i64;
     let most = fails + (MOST_MORE_M / STEP_M) as i64;
@@ -109,7 +111,7 @@ fn tolerance(again: &Again<'_>, geometry: &Geometry, model: &Model) -> Option<f6
         (exact.tracking_tolerance_m, exact.min_shrink) = (steps as f64 * TOLERANCE_STEP_M, 1.0);
         Model::new(&exact).ok().and_then(|model| again(&geometry.corridor, &model)).is_some_and(|r| r.safe())
     };
-    // γ_min of the vehicle's own tolerance did not do. Counted down from there: the fewest steps that do.
+    // γ_min times the vehicle's tolerance failed. The search counts steps down from there and wants the fewest that pass.
     let fails = (vehicle.tracking_tolerance_m * vehicle.min_shrink / TOLERANCE_STEP_M).ceil() as i64;
     let needed = (-geometry.result.rsc_m? / TOLERANCE_STEP_M).ceil() as i64;
     let fewer = least_that_does(0, needed, fails, |fewer| safe_at(fails - fewer))?;
@@ -131,13 +133,13 @@ fn hinge_limit(again: &Again<'_>, geometry: &Geometry, model: &Model) -> Option<
     least_that_does(fails, first, most, safe_at).map(|steps| steps as f64 * ANGLE_STEP_DEG)
 }
 
-/// A whole number above `fails` and at most `most` that does, while the one below it does not: sought around `first`, then
-/// by halves.
+/// A whole number above `fails` and at most `most` for which `does` holds, while it fails for the number below. The search
+/// starts at `first` and strides outwards, then halves the interval.
 fn least_that_does(fails: i64, first: i64, most: i64, does: impl Fn(i64) -> bool) -> Option<i64> {
     let (mut low, mut high) = (fails, first.clamp(fails + 1, most.max(fails + 1)));
     let mut stride = 2;
     if does(high) {
-        // Down, in growing strides, to one that does not.
+        // Down in growing strides until a number fails.
         while high - low > stride && does(high - stride) {
             high -= stride;
             stride *= 2;

@@ -1,5 +1,5 @@
-//! An explanation as JSON, for pages and programs. Metres and degrees, as the names say; positions are in the corridor's
-//! own metric frame.
+//! Writes an explanation as JSON for pages and programs. Names of members say their units: metres or degrees. Positions are in
+//! the corridor's own metric frame.
 
 use serde_json::{Value, json};
 
@@ -9,14 +9,14 @@ use crate::osm::facts::WidthSource;
 use crate::vehicle::Vehicle;
 use crate::words::{Named as _, verdict_words};
 
-/// The whole explanation but for the corridor's stations.
+/// The whole explanation without the corridor's stations.
 #[must_use]
 pub fn json(e: &Explanation) -> Value {
     let (verdict, reason) = verdict_words(e.verdict);
     let words = words(e);
     let road = e.road.as_ref().map(|road| {
         json!({
-            // As text: 63 bits are more than JavaScript's numbers hold.
+            // The id is text, because it has 63 bits and JavaScript's numbers hold 53.
             "edge_id": road.edge_id.to_string(),
             "way_id": road.way_id,
             "from_node": road.from_node,

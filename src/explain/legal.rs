@@ -1,25 +1,25 @@
-//! The tagged rule that forbids an edge, or that cannot be read, beside what the vehicle has.
+//! The tagged rule that forbids an edge or cannot be read, beside the vehicle's own value.
 
 use crate::network::Edge;
 use crate::osm::facts::Limit;
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
-/// A rule against a vehicle.
+/// A rule that forbids a vehicle or cannot be read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Conflict {
-    /// The tag, or the chief of those that may have said it: where several limit the same, the strictest counts.
+    /// The tag, or the main tag if several tags can set the same limit. The strictest of them counts.
     pub tag: &'static str,
-    /// What it allows, in `unit`; `None` where it is no number, or one that cannot be read.
+    /// The allowed value, in `unit`. `None` if the rule has no number or its number cannot be read.
     pub allowed: Option<f64>,
-    /// What the vehicle has, in `unit`.
+    /// The vehicle's value, in `unit`.
     pub has: Option<f64>,
     /// `m` or `t`.
     pub unit: &'static str,
 }
 
 impl Conflict {
-    /// In the order in which [`crate::osm::facts::Legal::forbids`] decides.
+    /// The first rule in the order in which [`crate::osm::facts::Legal::forbids`] decides.
     pub(super) fn of(edge: &Edge, vehicle: &Vehicle) -> Option<Self> {
         let legal = &edge.legal;
         let rule = |tag| Some(Self { tag, allowed: None, has: None, unit: "" });
@@ -49,7 +49,7 @@ impl Conflict {
     }
 }
 
-/// Limits are kept in single precision: what was tagged had two decimals.
+/// A limit rounded to two decimals, as tags have them. Limits are stored in single precision.
 fn centi(limit: f32) -> f64 {
     (f64::from(limit) * 100.0).round() / 100.0
 }

@@ -1,21 +1,20 @@
-//! Why: what limits a vehicle on an edge of the network or in a corridor, as data, and in words.
+//! Explains what limits a vehicle on an edge, in a turn or in a corridor, as data and in words.
 //!
-//! Promises that nothing is guessed: the corridor and the certificate are computed again, exactly as the pipeline does, and
-//! every hint ("a lane of 3.9 m would do") is a certificate of its own. Says nothing that the certificate does not bear out.
-//! Pictures of it are `picture`'s.
+//! Nothing is guessed: the corridor and the certificate are computed again exactly as in the pipeline, and every hint ("a lane
+//! of 3.9 m would do") is certified, too. `picture` draws explanations.
 //!
 //! | file | for |
 //! | --- | --- |
 //! | `edge` | an edge of a network → [`Explanation`] |
-//! | `given` | a corridor of the user's own → [`Explanation`] |
+//! | `own_corridor` | a corridor of the user's → [`Explanation`] |
 //! | `turn` | a turn of a network → [`TurnExplanation`] |
-//! | `ride` | where every unit stands as the steer axle goes along the plan |
-//! | `place` | the metre of road, the unit, the corner; the hinge |
-//! | `hints` | what would do: certified again, wider, steered more closely, with another strip |
-//! | `legal` | the tagged rule that forbids, beside what the vehicle has |
-//! | `names` | what things are called, amounts that do not flatter |
-//! | `words` | all of it as sentences |
-//! | `json` | all of it as JSON |
+//! | `ride` | the poses of all units while the steer axle follows the plan |
+//! | `tightest` | the place, unit and corner with the least leeway; the hinge with the least margin |
+//! | `hints` | changes that would make the edge safe: more width, closer tracking, another strip |
+//! | `legal` | the tagged rule that forbids, beside the vehicle's value |
+//! | `names` | names of parts and places, and cautiously rounded amounts |
+//! | `words` | the explanation as sentences |
+//! | `json` | the explanation as JSON |
 
 mod edge;
 mod hints;
@@ -49,24 +48,24 @@ use crate::stet::{Certificate, SpanResult};
 use crate::vehicle::Vehicle;
 use crate::verdict::Verdict;
 
-/// What limits a vehicle somewhere.
+/// What limits a vehicle on an edge, in a turn or in a corridor.
 #[derive(Debug, Clone)]
 pub struct Explanation {
-    /// Which road it is about; `None`: a corridor of the user's own.
+    /// The road. `None` for a turn and for a corridor of the user's.
     pub road: Option<RoadFacts>,
     /// The vehicle.
     pub vehicle: Vehicle,
-    /// With its reason.
+    /// The verdict with its reason.
     pub verdict: Verdict,
-    /// What was computed; `None` where there is no corridor.
+    /// The computed certificate and its tightest places. `None` if there is no corridor.
     pub geometry: Option<Geometry>,
-    /// What would do, where it is unsafe.
+    /// Changes that would make an unsafe edge safe.
     pub hints: Hints,
-    /// The rule that forbids, or that cannot be read.
+    /// The rule that forbids or cannot be read.
     pub conflict: Option<Conflict>,
 }
 
-/// An edge, for people.
+/// The facts of an edge that people read.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)] // as in `network::Edge` and `network::Road`
 pub struct RoadFacts {
@@ -75,18 +74,18 @@ pub struct RoadFacts {
     pub from_node: i64,
     pub to_node: i64,
     pub direction: Direction,
-    /// `highway` as tagged, of its class.
+    /// The class of road as in `highway`, with `_link` for links.
     pub highway: String,
     pub name: Option<String>,
     pub reference: Option<String>,
-    /// Which width counts.
+    /// The policy of the certificate.
     pub policy: Policy,
-    /// Where that width comes from; `None`: there is none.
+    /// The source of the width under that policy. `None` if there is no width.
     pub width_source: Option<WidthSource>,
 }
 
 impl RoadFacts {
-    /// Reference and name as far as known, else the way: `A87 Great Inland Highway`, `way 12345`.
+    /// Ref and name, such as `A87 Great Inland Highway`. If both are missing, the way, such as `way 12345`.
     #[must_use]
     pub fn title(&self) -> String {
         let named: Vec<&str> = [&self.reference, &self.name].into_iter().flatten().map(String::as_str).collect();
@@ -97,21 +96,22 @@ impl RoadFacts {
 /// The certificate over a span of a corridor, and the places that decide it.
 #[derive(Debug, Clone)]
 pub struct Geometry {
-    /// The whole corridor: a stroke's, for an edge.
+    /// The whole corridor. For an edge, the corridor of its stroke.
     pub corridor: Corridor,
-    /// The stations it is about.
+    /// The stations of the span.
     pub span: Range<usize>,
-    /// Over the span.
+    /// The result over the span.
     pub result: SpanResult,
-    /// Over the whole corridor, but for `result`, which is the span's: γ, and so the tubes, are.
+    /// The certificate of the whole corridor, except its `result`, which is that of the span. γ and the tubes therefore
+    /// belong to the span.
     pub certificate: Certificate,
-    /// Where every unit stands.
+    /// The poses of all units along the plan.
     pub ride: Ride,
-    /// Where the least leeway stands.
+    /// The place of the least leeway.
     pub place: Place,
-    /// Where the least hinge margin stands.
+    /// The place of the least hinge margin.
     pub hinge: HingePlace,
-    /// Where the strip changes from one cross section to the next; none in a corridor of the user's own.
+    /// The changes of the strip from one cross section to the next. Empty in a turn and in a corridor of the user's.
     pub tapers: Vec<Taper>,
 }
 
@@ -122,7 +122,7 @@ impl Geometry {
         ((station - self.span.start as f64) * self.corridor.spacing_m).clamp(0.0, self.length_m())
     }
 
-    /// The taper in which the least leeway stands, if it stands in one.
+    /// The taper that contains the place of the least leeway, if there is one.
     #[must_use]
     pub fn taper(&self) -> Option<&Taper> {
         let station = self.place.station.round().max(0.0) as usize;

@@ -1,29 +1,30 @@
-//! What things are called in sentences: strips, units, corners, hinges, sources of widths; and amounts rounded to the
-//! side that does not flatter.
+//! Names for sentences (strips, units, corners, hinges, sources of widths), and amounts that are rounded to the cautious
+//! side.
 
 use super::{Explanation, Part, Place};
 use crate::osm::facts::{Policy, WidthSource};
 use crate::vehicle::Vehicle;
 use crate::words::Named as _;
 
-/// The amount of a leeway in centimetres without its sign: never more to spare, never less missing than there is.
+/// The amount of a leeway without its sign, metres with two decimals. Room to spare is rounded down, missing room is rounded
+/// up.
 #[must_use]
 pub fn cautious_m(leeway_m: f64) -> String {
     if leeway_m < 0.0 { needed(-leeway_m) } else { cut(leeway_m) }
 }
 
-/// Metres to spare: never more than there are.
+/// Metres to spare, rounded down.
 pub(super) fn cut(metres: f64) -> String {
     format!("{:.2}", (metres * 100.0 + 1e-6).floor() / 100.0)
 }
 
-/// Metres missing: never fewer than there are.
+/// Missing metres, rounded up.
 pub(super) fn needed(metres: f64) -> String {
     format!("{:.2}", (metres * 100.0 - 1e-6).ceil() / 100.0)
 }
 
 impl Explanation {
-    /// What the strip of road is called under the policy that counts.
+    /// The name of the strip that the vehicle may use under the policy.
     #[must_use]
     pub fn strip_name(&self) -> &'static str {
         self.road.as_ref().map_or("corridor", |road| strip_name(road.policy))
@@ -39,7 +40,7 @@ pub(super) fn strip_name(policy: Policy) -> &'static str {
 }
 
 impl Explanation {
-    /// `rear left corner of trailer 2 (unit 4 of 6)`
+    /// The name of a place on a unit, such as `rear left corner of trailer 2 (unit 4 of 6)`.
     #[must_use]
     pub fn corner(&self, place: &Place) -> String {
         let side = place.side.name();
@@ -54,7 +55,7 @@ impl Explanation {
     }
 }
 
-/// `the tractor`, `trailer 2`: a numbered unit is a name.
+/// The name of a unit in a sentence: `the tractor`, but `trailer 2` without an article.
 pub(super) fn named(vehicle: &Vehicle, unit: usize) -> String {
     let name = vehicle.units.get(unit).map_or("unit", |u| u.name.as_str());
     let numbered = name.ends_with(|c: char| c.is_ascii_digit()) || name.contains(',');
@@ -78,7 +79,7 @@ pub(super) fn hinge_name(vehicle: &Vehicle, unit: usize) -> String {
     }
 }
 
-/// Where a width comes from, in words.
+/// The source of a width in words.
 #[must_use]
 pub(super) fn source_words(source: WidthSource) -> &'static str {
     match source {

@@ -1,4 +1,4 @@
-//! A corridor of the user's own, certified as `netcert corridor` does.
+//! Explains a corridor of the user's, certified as in `netcert corridor`.
 
 use super::Explanation;
 use super::edge::geometry;
@@ -8,11 +8,11 @@ use crate::stet::{Certificate, Model, Options, certify};
 use crate::stop::{Stop, Stopped};
 use crate::verdict::Verdict;
 
-/// Why `model`'s vehicle may use a corridor or not: the certificate of the whole of it, explained. Hints are certified
-/// with the same options. `None` for a corridor without stations.
+/// Certifies the whole corridor for the vehicle of `model` and explains the result. Hints are certified with the same options.
+/// `None` for a corridor without stations.
 ///
 /// # Errors
-/// `stop` was told: it is asked every few metres of each certificate.
+/// `stop` was told. It is checked every few metres of each certificate.
 pub fn explain_corridor(
     corridor: &Corridor,
     model: &Model,

@@ -1,24 +1,23 @@
-//! Where every unit stands as the steer axle goes along the plan: the certificate's nominal motion, for pictures and words.
+//! The poses of all units while the steer axle follows the plan: the certificate's nominal motion, for pictures and words.
 //!
-//! Vertices as far apart as the stations, as in the sweep itself; before the corridor and after it the vehicle drives
-//! straight.
+//! Vertices have the spacing of the stations, as in the sweep. Before and after the corridor the vehicle drives straight.
 
 use crate::corridor::Corridor;
 use crate::stet::motion::{Pose, sweep_path};
 use crate::vehicle::Vehicle;
 
-/// A vehicle's nominal way along a plan.
+/// A vehicle's nominal motion along a plan.
 #[derive(Debug, Clone)]
 pub struct Ride {
-    /// Poses at every vertex: one a station, and as many after the last as the vehicle is long.
+    /// The poses at every vertex. There is a vertex for each station, and vertices over the vehicle's length after the last.
     poses: Vec<Vec<Pose>>,
-    /// Direction in which the steer axle moves at each vertex, radians.
+    /// The direction in which the steer axle moves at each vertex, radians.
     course: Vec<f64>,
     spacing_m: f64,
 }
 
 impl Ride {
-    /// Along `plan`, one point a station of the corridor.
+    /// The motion along `plan`, which has one point for each station of the corridor.
     #[must_use]
     pub fn new(corridor: &Corridor, plan: &[[f64; 2]], vehicle: &Vehicle) -> Self {
         let spacing_m = corridor.spacing_m;
@@ -32,7 +31,7 @@ impl Ride {
         path.extend_from_slice(plan);
         path.extend((1..=beyond).map(|i| ahead(last, leaves, i as f64 * spacing_m)));
         let course = path.windows(2).map(|p| (p[1][1] - p[0][1]).atan2(p[1][0] - p[0][0])).collect::<Vec<f64>>();
-        // At a vertex: halfway between the segments that meet there.
+        // The course at a vertex is halfway between the directions of its two segments.
         let turn = |a: f64, b: f64| (b - a).sin().atan2((b - a).cos());
         let course = course.windows(2).map(|c| c[0] + 0.5 * turn(c[0], c[1])).chain([leaves]).collect();
         let poses = sweep_path(&path, vehicle).split_off(1);
@@ -45,13 +44,13 @@ impl Ride {
         self.poses.len()
     }
 
-    /// Whether there is none.
+    /// Whether there are no vertices.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.poses.is_empty()
     }
 
-    /// The poses, front to rear, when the steer axle has come to `station` (between two: halfway, in proportion).
+    /// The poses, front to rear, when the steer axle is at `station`. Between two stations they are interpolated.
     #[must_use]
     pub fn at(&self, station: f64) -> Vec<Pose> {
         let Some(last) = self.poses.len().checked_sub(1) else { return Vec::new() };
@@ -61,8 +60,8 @@ impl Ride {
         a.iter().zip(b).map(|(a, b)| between(a, b, share)).collect()
     }
 
-    /// Steering angle (unit 0) or articulation of the hinge ahead of `unit`, radians, positive to the left, when the
-    /// steer axle is at vertex `k`.
+    /// The steering angle (unit 0) or the articulation angle of the hinge ahead of `unit`, radians, positive to the left,
+    /// when the steer axle is at vertex `k`.
     #[must_use]
     pub fn angle(&self, k: usize, unit: usize) -> f64 {
         let (Some(poses), Some(course)) = (self.poses.get(k), self.course.get(k)) else { return 0.0 };

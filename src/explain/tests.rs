@@ -1,4 +1,4 @@
-//! Feet, rides and rounding: closed forms.
+//! Tests of feet, rides and rounding against closed forms.
 
 #![allow(clippy::unwrap_used)]
 
@@ -42,7 +42,8 @@ fn steering_on_a_circle_is_the_arc_sine_of_l_over_r() {
     let ride = Ride::new(&corridor, &plan, &vehicle);
     let steering = (3.7_f64 / 30.0).asin();
     assert!((ride.angle(80, 0) - steering).abs() < 2e-3, "{}", ride.angle(80, 0));
-    // Rear axle of the tractor on √(R² − L²); the kingpin, ahead of it, moves a little more into the bend than the tractor points.
+    // The tractor's rear axle is on √(R² − L²). The kingpin is ahead of this axle, so it moves further into the bend than the
+    // tractor points.
     let rear = (30.0_f64.powi(2) - 3.7_f64.powi(2)).sqrt();
     let kingpin = rear.hypot(0.6);
     let hinge = (7.7 / kingpin).asin() - (0.6 / rear).atan();

@@ -1,5 +1,5 @@
-//! The metre of road, the unit and the corner where a vehicle comes closest to an edge; and the hinge that comes closest to
-//! its limit.
+//! Finds the place, the unit and the corner where a vehicle comes closest to an edge, and the hinge that comes closest to its
+//! limit.
 
 use std::ops::Range;
 
@@ -9,76 +9,76 @@ use crate::stet::motion::Pose;
 use crate::stet::{Side, SpanResult};
 use crate::vehicle::{Unit, Vehicle};
 
-/// Wider bends are called straight, metres.
+/// A bend of a greater radius is called straight, metres.
 const STRAIGHT_M: f64 = 2000.0;
 
-/// Which part of a unit's side.
+/// A part of a unit's side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Part {
-    /// Its front corner.
+    /// The front corner.
     FrontCorner,
-    /// Its rear corner.
+    /// The rear corner.
     RearCorner,
-    /// Its side at the axle.
+    /// The side at the axle.
     Axle,
-    /// Its side so many metres ahead of the axle.
+    /// The side at this distance ahead of the axle, metres. Negative values are behind it.
     Side(f64),
 }
 
 /// A bend of the corridor.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bend {
-    /// Of the centreline where it is sharpest under the vehicle, metres.
+    /// The centreline's least radius under the vehicle, metres.
     pub radius_m: f64,
-    /// To which side it goes.
+    /// The side that the bend turns to.
     pub to: Side,
 }
 
-/// Where the least leeway stands. The vehicle stands as it nominally does at that moment.
+/// The place of the least leeway, with the vehicle's nominal poses at that moment.
 #[derive(Debug, Clone)]
 pub struct Place {
-    /// Station at whose normal the corner is nearest to the edge.
+    /// The station on whose normal the corner is.
     pub station: f64,
-    /// Unit index.
+    /// Index of the unit.
     pub unit: usize,
-    /// Which edge.
+    /// The edge of the corridor.
     pub side: Side,
-    /// Which part of the unit.
+    /// The part of the unit.
     pub part: Part,
-    /// Station of the steer axle at that moment; beyond the last where the vehicle is leaving.
+    /// The station of the steer axle at that moment. It is beyond the last station if the vehicle is leaving the corridor.
     pub head: f64,
-    /// All units, front to rear.
+    /// The poses of all units, front to rear.
     pub poses: Vec<Pose>,
-    /// The corner, nominally.
+    /// The nominal position of the corner.
     pub corner: [f64; 2],
-    /// The nearest point of the edge, along the corridor's normal.
+    /// The point of the edge on the same normal.
     pub edge: [f64; 2],
-    /// Unit vector from the middle of the corridor across that edge.
+    /// The unit vector from the centreline across that edge.
     pub outward: [f64; 2],
-    /// From the corner to the edge, nominally; negative: beyond it. Metres.
+    /// The nominal distance from the corner to the edge, metres. Negative if the corner is beyond the edge.
     pub nominal_m: f64,
-    /// What error bounds and allowances take off that, metres; `None`: nothing bounds the vehicle.
+    /// What error bounds and allowances deduct from `nominal_m`, metres. `None` if no bound holds for the vehicle.
     pub bounds_m: Option<f64>,
-    /// Of the corridor there, metres.
+    /// The width of the corridor at the station, metres.
     pub width_m: f64,
-    /// Where the vehicle then is; `None`: on a straight.
+    /// The bend that the vehicle is in. `None` on a straight.
     pub bend: Option<Bend>,
 }
 
-/// Where the least hinge margin stands.
+/// The place of the least hinge margin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HingePlace {
-    /// The unit behind the hinge; 0: the steering.
+    /// Index of the unit behind the hinge. 0 stands for the steering.
     pub unit: usize,
-    /// Station of that unit's front coupling at that moment.
+    /// The station of that unit's front coupling at that moment.
     pub station: f64,
-    /// Station of the steer axle at that moment.
+    /// The station of the steer axle at that moment.
     pub head: f64,
-    /// All units, front to rear.
+    /// The poses of all units, front to rear.
     pub poses: Vec<Pose>,
-    /// Nominal angle, radians, positive to the left.
+    /// The nominal angle, radians, positive to the left.
     pub angle_rad: f64,
-    /// What the hinge allows, radians.
+    /// The greatest angle that the hinge allows, radians.
     pub limit_rad: f64,
 }
 
@@ -124,9 +124,9 @@ impl Place {
     }
 }
 
-/// The head station at which the body point is over the station `wanted`: where its foot passes it.
+/// The station of the steer axle at which the foot of the body point passes the station `wanted`.
 fn head_at(ride: &Ride, wanted: f64, behind: f64, foot_of: &dyn Fn(f64) -> Option<f64>) -> Option<f64> {
-    // The plan and the corridor differ in length by a few metres at most; a trailer cuts some more.
+    // The lengths of plan and corridor differ by a few metres at most, and a trailer that cuts in adds some metres.
     let last = ride.len().checked_sub(1)? as f64;
     let (from, to) = ((wanted + behind - 25.0).clamp(0.0, last), (wanted + behind + 25.0).clamp(0.0, last));
     let (mut best, mut least, mut head) = (from, f64::INFINITY, from);
@@ -141,8 +141,8 @@ fn head_at(ride: &Ride, wanted: f64, behind: f64, foot_of: &dyn Fn(f64) -> Optio
 }
 
 impl HingePlace {
-    /// Where the hinge `result.hinge_unit` turns most while its coupling is over the span; where bounds do not close, where
-    /// the span is sharpest.
+    /// The place where the hinge `result.hinge_unit` turns most while its coupling is over the span. If the bounds do not
+    /// close, the place where the span bends most.
     pub(super) fn of(
         corridor: &Corridor,
         ride: &Ride,
@@ -189,12 +189,12 @@ impl Bend {
     }
 }
 
-/// A corridor across, anywhere along it.
+/// The cross section of a corridor at any place along it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cross {
-    /// On the centreline.
+    /// The point on the centreline.
     pub centre: [f64; 2],
-    /// Unit vector to the left.
+    /// The unit vector to the left.
     pub normal: [f64; 2],
     /// Half-width to the left, metres.
     pub left_m: f64,
@@ -203,7 +203,8 @@ pub struct Cross {
 }
 
 impl Cross {
-    /// At a station with fraction; beyond an end the corridor goes on straight and as wide. The corridor has stations.
+    /// The cross section at a fractional station. Beyond its ends the corridor continues straight with the same width. The
+    /// corridor must have stations.
     #[must_use]
     pub fn at(corridor: &Corridor, station: f64) -> Self {
         let last = corridor.len().saturating_sub(1);
@@ -223,17 +224,17 @@ impl Cross {
         }
     }
 
-    /// The place so far to the left of the centreline, metres.
+    /// The point at the distance `left_m` to the left of the centreline, metres.
     #[must_use]
     pub fn place(&self, left_m: f64) -> [f64; 2] {
         [0, 1].map(|i| self.centre[i] + left_m * self.normal[i])
     }
 }
 
-/// The station (with fraction; beyond the ends, too) on whose normal `point` stands, sought from `guess` on.
+/// The fractional station on whose normal `point` is. The search starts at `guess`; the result may be beyond the ends.
 pub(super) fn foot(corridor: &Corridor, point: [f64; 2], guess: f64) -> f64 {
     let mut station = guess;
-    // Each step is a Newton step but for the curvature: a few of them are within a millimetre.
+    // Each step is a Newton step without the curvature term. A few steps give a millimetre.
     for _ in 0..50 {
         let at = Cross::at(corridor, station);
         let off = [point[0] - at.centre[0], point[1] - at.centre[1]];
@@ -246,7 +247,7 @@ pub(super) fn foot(corridor: &Corridor, point: [f64; 2], guess: f64) -> f64 {
     station
 }
 
-/// From the steer axle back to the axle of `unit` when the vehicle stands straight, metres.
+/// The distance from the steer axle back to the axle of `unit` when the vehicle is straight, metres.
 fn along_chain(vehicle: &Vehicle, unit: usize) -> f64 {
     let before = vehicle.units.iter().take(unit).map(|u| u.coupling_to_axle_m + u.hitch_offset_m).sum::<f64>();
     before + vehicle.units.get(unit).map_or(0.0, |u| u.coupling_to_axle_m)

@@ -1,10 +1,11 @@
-//! A turn of the network: its corridors made again, the one on which the certificate rests, and why it is safe or not.
+//! Explains a turn of the network. Its corridors are made again, and the one with the best certificate is explained.
 
 use super::edge::geometry;
 use super::hints::Hints;
 use super::{Explanation, Geometry};
 use crate::certify::{best_of, turn_verdict};
 use crate::network::{Edge, Network};
+use crate::osm::facts::Policy;
 use crate::settings::Settings;
 use crate::stet::{Model, Options, SpanResult};
 use crate::stop::{Stop, Stopped};
@@ -14,23 +15,25 @@ use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 /// What limits a vehicle in a turn.
 #[derive(Debug, Clone)]
 pub struct TurnExplanation {
-    /// The turn, as the map has it.
+    /// The facts of the turn from the map.
     pub facts: TurnFacts,
-    /// The roads it leads from and to.
+    /// Names of the roads that the turn leads from and to.
     pub roads: [String; 2],
-    /// What may be driven on, and all paths; `None`: one of its edges has no corridor.
+    /// The area and all paths of the turn. `None` if the turn has no corridor.
     pub corridors: Option<TurnCorridors>,
-    /// Which of the paths is best.
+    /// Index of the best path.
     pub path: Option<usize>,
-    /// The certificate on it, and the turn's own verdict (whatever its edges' are).
+    /// The strip that the vehicle may use near the turn.
+    pub strip: Policy,
+    /// The explanation of the certificate on the best path. Its verdict is that of the turn alone, not of its edges.
     pub explanation: Explanation,
 }
 
-/// Why `model`'s vehicle may take a turn or not.
+/// Explains why a turn is safe or unsafe for the vehicle of `model`.
 ///
 /// # Errors
-/// `stop` was told: it is asked before the turn's corridors are made, before they are certified, and every few metres of the
-/// best one's certificate.
+/// `stop` was told. It is checked before the turn's corridors are made, before they are certified, and every few metres of
+/// the best corridor's certificate.
 pub fn explain_turn(
     network: &Network,
     facts: &TurnFacts,
@@ -73,10 +76,11 @@ pub fn explain_turn(
         conflict: None,
     };
     let path = best.map(|(path, _)| path);
-    Ok(TurnExplanation { facts: facts.clone(), roads, corridors: made.ok(), path, explanation })
+    let strip = settings.turn_policy.max(settings.policy);
+    Ok(TurnExplanation { facts: facts.clone(), roads, corridors: made.ok(), path, strip, explanation })
 }
 
-/// The certificate on a path, with the options that gave `result`: some paths are certified without corrections.
+/// The geometry of a path, with the options that gave `result`. Some paths are certified without corrections.
 fn turn_geometry(
     path: &TurnPath,
     result: &SpanResult,
@@ -108,7 +112,7 @@ fn title(network: &Network, edge: &Edge) -> String {
 }
 
 impl TurnExplanation {
-    /// One line: from where to where, by how much, round which kerb.
+    /// The turn in one line: the two roads, the angle and the kerb.
     #[must_use]
     pub fn title(&self) -> String {
         let arcs = self.facts.through.len();

@@ -1,6 +1,4 @@
-//! An explanation as sentences: first what limits and where, then what would do, last what the answer rests on.
-//!
-//! `safe` is never said without its scope.
+//! Writes an explanation as sentences: first what limits the vehicle and where, then hints, then the scope of the answer.
 
 use super::hints::{MOST_MORE_M, OtherStrip};
 use super::names::{cut, hinge_name, named, needed, source_words, strip_name};
@@ -9,19 +7,19 @@ use crate::corridor::{Taper, TaperCause};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
-/// Less leeway than this is no measure of what is missing: what bounds the vehicle is wider than any road.
+/// Below this leeway, metres, the missing width is not named, because the bounds are wider than any road.
 const FAR_M: f64 = -100.0;
 
-/// An explanation, as a person reads it.
+/// An explanation in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Words {
-    /// One line: the verdict, what decides it, and where.
+    /// One line with the verdict, what decides it, and where.
     pub headline: String,
-    /// Whole sentences.
+    /// The reasons as sentences.
     pub reasons: Vec<String>,
-    /// What would do, whole sentences; empty where nothing is wrong.
+    /// The hints as sentences. Empty if the edge is not unsafe.
     pub hints: Vec<String>,
-    /// What the answer rests on.
+    /// The scope: the model, widths and tolerances for which the answer holds.
     pub scope: String,
 }
 
@@ -51,7 +49,7 @@ pub fn words(e: &Explanation) -> Words {
     Words { headline, reasons, hints: hints(e), scope: scope(e) }
 }
 
-/// The RSC where the verdict says that there is one.
+/// The RSC, or −∞ if there is none.
 fn rsc(g: &Geometry) -> f64 {
     g.result.rsc_m.unwrap_or(f64::NEG_INFINITY)
 }
@@ -60,7 +58,7 @@ fn at(g: &Geometry) -> f64 {
     g.along_m(g.place.station)
 }
 
-/// Unit, corner, and where in a bend.
+/// The corner, its unit, and its place in a bend.
 fn who(e: &Explanation, g: &Geometry) -> String {
     format!("{}, {}", e.corner(&g.place), bend(&g.place))
 }
@@ -237,7 +235,7 @@ fn unknown(e: &Explanation, reason: UnknownReason) -> String {
     }
 }
 
-/// What geometry says where something else has decided.
+/// What the certificate says if something else decided the verdict.
 fn beside(e: &Explanation, g: &Geometry) -> String {
     let strip = e.strip_name();
     match () {

@@ -1,9 +1,9 @@
-//! Where an export is written: whole or not at all.
+//! The destination of an export. An output is written completely or not at all.
 //!
-//! A file is written beside its name as `NAME.part`, a folder as `NAME.part/`, and renamed when everything is on the disk. While it
-//! is written it is locked: a second export of the same name is refused, and one that was killed leaves nothing that the next one
-//! does not clear. A folder of an earlier export (it holds `netcert.json`) is replaced; anything else that stands there is left alone. What is not
-//! finished is told to [`Unfinished`], so that a program that is stopped can clear it away.
+//! A file is written as `NAME.part`, a folder as `NAME.part/`, and renamed when everything is on the disk. The part is locked
+//! meanwhile, so a second export of the same name is refused. The next export clears the part of a killed one. The folder of an
+//! earlier export (it holds `netcert.json`) is replaced; any other file or folder is left alone. [`Unfinished`] lists what is
+//! not finished, so that a program that is told to stop can remove it.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -15,10 +15,10 @@ use super::sorter::Scratch;
 use super::unfinished::{self, Unfinished};
 use crate::output_lock::{self, OutputLock};
 
-/// The file by which a folder is known as an export.
+/// The file that marks a folder as an export.
 const MARK: &str = "netcert.json";
 
-/// What a target writes.
+/// The files that a target writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layout {
     /// One file, or a stream.
@@ -27,12 +27,12 @@ pub enum Layout {
     Folder {
         /// The target, for messages.
         target: &'static str,
-        /// What to do for a stream instead; may be empty.
+        /// Words for messages that say how to write a stream instead. May be empty.
         instead: &'static str,
     },
 }
 
-/// Where the user wants it.
+/// The output that the user wants.
 pub enum Out {
     /// A file or folder.
     Path(PathBuf),
@@ -40,10 +40,10 @@ pub enum Out {
     Stream(Box<dyn Write>),
 }
 
-/// An output being written.
+/// An output that is being written.
 pub struct Place {
     kind: Kind,
-    /// Held until the output is in its place.
+    /// Held until the output is renamed.
     lock: Option<OutputLock>,
     unfinished: Unfinished,
 }
@@ -55,10 +55,10 @@ enum Kind {
 }
 
 impl Place {
-    /// Makes room for an output.
+    /// Begins an output.
     ///
     /// # Errors
-    /// Something else stands there; several files are to go to one stream.
+    /// Another file or folder is in the way, another process writes the same output, or several files are to go to one stream.
     pub fn begin(out: Out, layout: Layout, unfinished: Unfinished) -> Result<Self, ExportError> {
         let locked = |part: &Path, lock: fn(&Path) -> io::Result<OutputLock>| {
             unfinished.make(part, lock).map(Some).map_err(|e| not_locked(part, e))
@@ -84,16 +84,16 @@ impl Place {
         Ok(Self { kind, lock, unfinished })
     }
 
-    /// Whether several files are written.
+    /// Whether the output is a folder.
     #[must_use]
     pub fn is_folder(&self) -> bool {
         matches!(self.kind, Kind::Folder { .. })
     }
 
-    /// A file of the output; the name counts in folders only. Call [`Sink::close`] when it is written.
+    /// Creates a file of the output. `name` is used in folders only. Call [`Sink::close`] when the file is written.
     ///
     /// # Errors
-    /// It cannot be made.
+    /// The file cannot be created.
     pub fn create(&mut self, name: &str) -> Result<Sink, ExportError> {
         let held = self.lock.as_ref().and_then(|lock| lock.file.as_ref());
         let (path, file) = match (&mut self.kind, held) {
@@ -101,7 +101,7 @@ impl Place {
                 let stream = stream.take().ok_or_else(|| io::Error::other("a stream takes one file only"))?;
                 return Ok(Sink { stream, file: None });
             }
-            // The lock's own: some systems let nobody else write to a locked file.
+            // The lock's own file handle is used, because some systems let no other handle write to a locked file.
             (Kind::File { part, .. }, Some(held)) => (part.clone(), held.try_clone()),
             (Kind::File { part, .. }, None) => (part.clone(), File::create(part)),
             (Kind::Folder { part, .. }, _) => {
@@ -115,20 +115,20 @@ impl Place {
         Ok(Sink { stream: Box::new(BufWriter::with_capacity(1 << 16, file)), file: Some(twin) })
     }
 
-    /// A whole file at once.
+    /// Writes a whole file at once.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn write_whole(&mut self, name: &str, bytes: &[u8]) -> Result<(), ExportError> {
         let mut sink = self.create(name)?;
         sink.write_all(bytes)?;
         sink.close()
     }
 
-    /// An empty file beside the output for what is needed only while it is written.
+    /// Creates an empty temporary file beside the output.
     ///
     /// # Errors
-    /// It cannot be made.
+    /// The file cannot be created.
     pub(super) fn scratch(&self, suffix: &str) -> Result<Scratch, ExportError> {
         let path = match &self.kind {
             Kind::Stream(_) => std::env::temp_dir().join(format!("netcert-{}{suffix}", std::process::id())),
@@ -137,10 +137,10 @@ impl Place {
         self.unfinished.make(&path, |path| Scratch::create(path.to_owned())).map_err(|e| at(&path, e))
     }
 
-    /// Puts the output in its place.
+    /// Renames the output to its name.
     ///
     /// # Errors
-    /// It cannot be renamed.
+    /// The output cannot be renamed.
     pub fn finish(mut self) -> Result<(), ExportError> {
         let kind = std::mem::replace(&mut self.kind, Kind::Stream(None));
         let done = self.unfinished.settle(|| match &kind {
@@ -149,12 +149,12 @@ impl Place {
             Kind::Folder { target, part } => replace_folder(target, part),
         });
         if done.is_err() {
-            self.kind = kind; // dropped with its part
+            self.kind = kind; // so that dropping this removes the part
         }
         done
     }
 
-    /// An error of writing with the name of what was written.
+    /// Adds the name of the output to an error of writing.
     #[must_use]
     pub fn name(&self, error: ExportError) -> ExportError {
         match (error, &self.kind) {
@@ -168,7 +168,7 @@ impl Place {
 
 impl Drop for Place {
     fn drop(&mut self) {
-        // The next run would clear it anyway.
+        // An error is ignored, because the next export clears the part.
         let _ = match &self.kind {
             Kind::Stream(_) => Ok(()),
             Kind::File { part, .. } | Kind::Folder { part, .. } => remove(part),
@@ -183,10 +183,10 @@ pub struct Sink {
 }
 
 impl Sink {
-    /// Everything to the disk.
+    /// Writes what is buffered and syncs the file to the disk.
     ///
     /// # Errors
-    /// It cannot be written.
+    /// The file cannot be written.
     pub fn close(mut self) -> Result<(), ExportError> {
         self.stream.flush()?;
         if let Some(file) = self.file {
@@ -210,7 +210,7 @@ fn at(path: &Path, source: io::Error) -> ExportError {
     ExportError::Io { path: path.to_owned(), source }
 }
 
-/// The same where another process may hold the output.
+/// The error of locking an output. It is [`ExportError::Busy`] if another process holds the lock.
 fn not_locked(path: &Path, source: io::Error) -> ExportError {
     if source.kind() == io::ErrorKind::WouldBlock { ExportError::Busy(path.to_owned()) } else { at(path, source) }
 }
@@ -221,7 +221,7 @@ fn beside(path: &Path, suffix: &str) -> PathBuf {
     name.into()
 }
 
-/// Something stands there that no earlier export wrote; an empty folder is nothing.
+/// Whether `target` is something that no earlier export wrote. An empty folder does not count.
 fn occupied(target: &Path) -> bool {
     match fs::read_dir(target) {
         Ok(mut entries) => entries.next().is_some() && !target.join(MARK).is_file(),
@@ -233,7 +233,7 @@ fn remove(path: &Path) -> Result<(), ExportError> {
     unfinished::remove(path).map_err(|e| at(path, e))
 }
 
-/// The old folder stands aside until the new one is in its place.
+/// Replaces a folder. The old folder is renamed first and removed when the new one is in its place.
 fn replace_folder(target: &Path, part: &Path) -> Result<(), ExportError> {
     let old = beside(target, ".old");
     remove(&old)?;

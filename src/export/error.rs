@@ -1,4 +1,4 @@
-//! What can go wrong with an export. Every message names the file and the way out.
+//! Errors of an export. Every message names the file and says what to do.
 
 use std::path::PathBuf;
 
@@ -8,10 +8,10 @@ use crate::store::StoreError;
 /// An error of an export.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// The database.
+    /// The database cannot be read.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// The extract.
+    /// The extract cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
     /// Writing failed; [`super::export`] adds the name of the file.
@@ -22,27 +22,27 @@ pub enum ExportError {
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// Something else stands where a folder would be written.
+    /// A file or folder that no export wrote is at the path of the output.
     #[error(
-        "{0}: exists and is no folder of an earlier export; it is left as it is: name another with --out, or move it away"
+        "{0}: exists and is no folder of an earlier export, so it is not replaced; name another with --out, or move it away"
     )]
     InTheWay(PathBuf),
     /// Another process writes the same output.
     #[error("{0}: another netcert is writing it; wait until that is done, or stop it, or name another file with --out")]
     Busy(PathBuf),
-    /// A folder stands where a file would be written.
-    #[error("{0}: is a folder, and this export is one file; name it with --out")]
+    /// A folder is at the path of an output that is one file.
+    #[error("{0}: is a folder, but this export is one file; name a file with --out")]
     Folder(PathBuf),
-    /// The output would replace what it is made from.
-    #[error("{0}: this export is made from that file; name another with --out")]
+    /// The output would replace a file that it is made from.
+    #[error("{0}: this export is made from that file; name another file with --out")]
     OwnInput(PathBuf),
     /// Several files cannot go to standard output.
     #[error("{0} writes several files: give a folder with --out{1}")]
     NoStream(&'static str, &'static str),
-    /// The target needs what the database does not hold.
+    /// The target needs the extract, and none was given.
     #[error("{target} needs the extract that the database was made from ({input}): give it with --extract")]
     NoExtract {
         /// The target.
@@ -50,7 +50,7 @@ pub enum ExportError {
         /// The name of the extract when it was read.
         input: String,
     },
-    /// The wrong extract.
+    /// The given extract is not the one that the database was made from.
     #[error(
         "{path}: not the extract that {database} was made from: blake3 {found}, wanted {wanted} ({input}); give that file, or \
          run `netcert ingest` on this one"
@@ -64,15 +64,15 @@ pub enum ExportError {
         found: String,
         /// Hash of the file that the database was made from.
         wanted: String,
-        /// Its name then.
+        /// Name of that file.
         input: String,
     },
-    /// What was found contradicts what the format needs.
+    /// The content of a file is not what the target needs.
     #[error("{path}: {detail}")]
     Content {
         /// The file.
         path: PathBuf,
-        /// What was found, and the way out.
+        /// What was found, and what to do.
         detail: String,
     },
 }

@@ -1,6 +1,6 @@
-//! What every output says of itself, so that who gets a permit file can tell what it rests on.
+//! The header of every output. It says what the permits depend on, so that a reader of the file can judge them.
 //!
-//! Promises: nothing in it depends on the clock or on where the files lie; the same database and options give the same header.
+//! The header does not depend on a clock or on the paths of files. The same database and options give the same header.
 
 use serde_json::{Map, Value, json};
 
@@ -12,40 +12,40 @@ use crate::store::{Database, StoreError};
 use crate::vehicle::Vehicle;
 use crate::words::Named;
 
-/// Where the data are from, and on which terms: https://opendatacommons.org/licenses/odbl/1-0/
+/// The source and licence of the data: <https://opendatacommons.org/licenses/odbl/1-0/>
 const LICENCE: &str = "© OpenStreetMap contributors, ODbL 1.0";
 
-/// What the database was made from.
+/// The origin of the database and of the vehicle's certificates.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Provenance {
     /// Name of the database's file.
     pub database: String,
-    /// blake3 of it.
+    /// blake3 hash of the database's file.
     pub database_blake3: String,
     /// Name of the extract when it was read.
     pub input: String,
-    /// blake3 of it.
+    /// blake3 hash of the extract.
     pub input_blake3: Option<String>,
-    /// Up to when its data are complete, as it says.
+    /// The extract's replication time stamp.
     pub input_timestamp: Option<String>,
     /// Version of the program that read the extract.
     pub made_by: String,
     /// Every parameter of that run, as JSON.
     pub parameters: Value,
-    /// What the vehicle's certificates were made with, as JSON.
+    /// The settings of the vehicle's certificates, as JSON.
     pub certified_with: Value,
     /// The vehicle's name.
     pub vehicle_name: String,
-    /// The whole vehicle.
+    /// The vehicle's complete definition.
     pub vehicle: Value,
-    /// blake3 of its definition.
+    /// blake3 hash of the definition.
     pub vehicle_blake3: String,
-    /// How far from the planned path it may be steered, metres.
+    /// The vehicle's tracking tolerance, metres.
     pub tracking_tolerance_m: f64,
 }
 
 impl Provenance {
-    /// As the database has it.
+    /// Reads the origin from the database.
     pub(super) fn of(database: &mut Database, ask: &Ask) -> Result<Self, ExportError> {
         let id = &ask.vehicle;
         let record = database.vehicles()?.into_iter().find(|record| record.id == *id).ok_or_else(|| {
@@ -79,7 +79,7 @@ impl Provenance {
 /// The header of an export.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Header {
-    /// What it rests on.
+    /// The origin of the permits.
     pub provenance: Provenance,
     ask: Ask,
     edges: Tally,
@@ -92,7 +92,7 @@ impl Header {
         Self { provenance, ask: ask.clone(), edges, turns }
     }
 
-    /// What a permit in this file means; never shown without it.
+    /// The scope: what a permit in this file means. Every output shows it.
     #[must_use]
     pub fn scope(&self) -> String {
         let p = &self.provenance;
@@ -104,7 +104,7 @@ impl Header {
         )
     }
 
-    /// All of it.
+    /// The whole header as JSON.
     #[must_use]
     pub fn json(&self) -> Value {
         let (p, ask) = (&self.provenance, &self.ask);
@@ -127,19 +127,19 @@ impl Header {
         })
     }
 
-    /// The same in one level, for formats whose metadata are names and texts: `permit.edges.permitted`, …
+    /// The header as pairs of name and text, such as `permit.edges.permitted`, for formats with flat metadata.
     #[must_use]
     pub fn pairs(&self) -> Vec<(String, String)> {
         let mut out = Vec::new();
         if let Value::Object(members) = self.json() {
-            // The definition stays one text: its hash is over it.
+            // The definition stays one text, because its hash is computed over this text.
             flatten("", &members, &mut out);
         }
         out
     }
 }
 
-/// The set's own settings: they may be others than those of the ingest.
+/// The set's own settings, which may differ from those of the ingest.
 fn certified_with(database: &mut Database, ask: &Ask) -> Result<Value, StoreError> {
     let damaged = |detail: &str| StoreError::Damaged { path: ask.db.clone(), detail: detail.to_owned() };
     let set = database.certified_set(&ask.vehicle, ask.policy)?;

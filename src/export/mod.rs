@@ -1,24 +1,26 @@
-//! What a vehicle may use, in the form that a routing engine or a map program reads.
+//! Writes the roads and turns that a vehicle may use in the formats of routing engines and map programs.
 //!
-//! Promises: one rule of what is permitted ([`PermitPolicy`]), that of `netcert route`, for every target; a header in or beside
-//! every output that says what it rests on ([`Header`]); rows streamed in order of the network, the same input giving the
-//! same bytes; outputs that are whole or not there ([`Place`]). What is not certified is refused.
+//! - All targets share one rule of what is permitted ([`PermitPolicy`]), the rule of `netcert route`. What is not certified is
+//!   refused.
+//! - A header in or beside every output says what the permits depend on ([`Header`]).
+//! - Rows are streamed in order of the network, and the same input gives the same bytes.
+//! - An output is complete or absent ([`Place`]).
 //!
 //! | file | for |
 //! | --- | --- |
-//! | `permit` | the rule, and which edges and turns it lets through |
-//! | `header` | what every output says of itself |
+//! | `permit` | the rule, and the edges and turns that it permits |
+//! | `header` | the header of every output |
 //! | `source` | rows from the database, each with its permit |
 //! | `rings` | the arcs of a passage |
-//! | `sequences` | what may not follow what, of edges that may be used |
+//! | `sequences` | sequences of permitted edges that may not be driven |
 //! | `ways` | the extract's ways beside the network's edges |
-//! | `place` | where an output is written: a file, a folder, a stream |
-//! | `unfinished` | what goes if the program is stopped |
-//! | `sorter` | order without holding everything in memory |
-//! | `target` | one file or folder a target |
+//! | `destination` | the output: a file, a folder or a stream |
+//! | `unfinished` | what to remove if the program is stopped |
+//! | `sorter` | sorting outside memory |
+//! | `formats` | one file or folder for each target |
 //!
-//! Left out: the certificate over a whole route. An engine strings together edges and turns that are safe each by itself; only
-//! `netcert route` certifies the whole.
+//! An export does not certify whole routes. An engine joins edges and turns that are each safe by themselves; only `netcert
+//! route` certifies the whole.
 
 mod destination;
 mod error;
@@ -43,7 +45,7 @@ pub use unfinished::Unfinished;
 /// Writes one export from beginning to end.
 ///
 /// # Errors
-/// The database or extract cannot be read, or the output not written; then nothing of it is left behind.
+/// The database or extract cannot be read, or the output cannot be written. Nothing of the output is left then.
 pub fn export(
     source: &Source<'_>,
     target: &dyn Target,

@@ -1,9 +1,10 @@
-//! The rule of what a vehicle may use, for every target: that of `netcert route`, narrowed by what the user asks for.
+//! The rule of what a vehicle may use. It is the rule of `netcert route`, narrowed by the user's options, and the same for every
+//! target.
 //!
-//! An edge is permitted if its verdict is safe (that includes lawful access), its RSC at least the threshold and its width from a
-//! source at least as good as asked. A turn is permitted if both its edges are and its own certificate is safe; so is a
-//! roundabout's passage, whose arcs need not be. Straight on along a stroke the edges' certificates hold. Turning back on
-//! the road is never permitted, nor is anything that is not certified.
+//! An edge is permitted if its verdict is safe (which includes lawful access), its RSC reaches the threshold, and its width comes
+//! from a good enough source. A turn or a passage of a roundabout is permitted if both its edges are permitted and its own
+//! certificate is safe; the arcs of a passage need no permit. Straight on along a stroke, the edges' certificates suffice.
+//! Turning back on the road, and everything without a certificate, is refused.
 
 use std::collections::BTreeMap;
 
@@ -12,30 +13,30 @@ use crate::route::Permit;
 use crate::verdict::Verdict;
 use crate::words::verdict_words;
 
-/// What is asked beyond a safe certificate.
+/// The user's conditions beyond a safe certificate.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PermitPolicy {
-    /// The least RSC of edges and turns, metres; 0 asks for no more than safe.
+    /// The least RSC of edges and turns, metres. 0 adds no condition.
     pub min_rsc_m: f64,
-    /// The least evidence for an edge's width. Kerbs of turns are assumed or mapped whatever is asked here.
+    /// The worst accepted source of an edge's width. The condition does not apply to kerbs of turns.
     pub min_width_source: Option<WidthSource>,
 }
 
-/// Why something may not be used.
+/// Why an edge or turn may not be used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Refusal {
-    /// Its verdict is not `safe`.
+    /// The verdict is not `safe`.
     Verdict(Verdict),
-    /// Safe, with less to spare than asked for.
+    /// The verdict is safe, but the RSC is below the threshold.
     Rsc,
-    /// Safe on a width that is not as well known as asked for.
+    /// The verdict is safe, but the width comes from a worse source than accepted.
     WidthSource,
-    /// Of a turn that is safe by itself: one of its edges is refused.
+    /// The turn is safe by itself, but one of its edges is refused.
     Edge,
 }
 
 impl Refusal {
-    /// Stable words: `unsafe: width`, `rsc`, …
+    /// Stable words for the refusal, such as `unsafe: width` or `rsc`.
     #[must_use]
     pub fn words(self) -> String {
         match self {
@@ -51,19 +52,19 @@ impl Refusal {
 }
 
 impl PermitPolicy {
-    /// Why an edge is refused; `None`: it is permitted.
+    /// Why an edge is refused. `None` if it is permitted.
     #[must_use]
     pub fn edge(&self, permit: Permit, width: Option<WidthSource>) -> Option<Refusal> {
         self.certificate(permit).or_else(|| (!self.width(width)).then_some(Refusal::WidthSource))
     }
 
-    /// Whether a width is known as well as asked for.
+    /// Whether the source of a width is good enough.
     #[must_use]
     pub fn width(&self, source: Option<WidthSource>) -> bool {
         self.min_width_source.is_none_or(|least| source.is_some_and(|source| source >= least))
     }
 
-    /// Why a turn is refused whose edges are `permitted` or not; `None`: it is permitted.
+    /// Why a turn is refused. `permitted` says whether its edges are. `None` if the turn is permitted.
     #[must_use]
     pub fn turn(&self, permit: Permit, permitted: bool) -> Option<Refusal> {
         self.certificate(permit).or((!permitted).then_some(Refusal::Edge))
@@ -73,13 +74,13 @@ impl PermitPolicy {
         if !permit.usable() {
             return Some(Refusal::Verdict(permit.verdict));
         }
-        // A threshold needs a number; safe alone does not.
+        // A threshold above 0 requires an RSC. Without a threshold a safe verdict suffices.
         let enough = self.min_rsc_m <= 0.0 || permit.rsc_m.is_some_and(|rsc_m| rsc_m >= self.min_rsc_m);
         (!enough).then_some(Refusal::Rsc)
     }
 }
 
-/// One bit for each edge or turn: all that is kept in memory of them.
+/// One bit for each edge or turn. An export keeps nothing else of the network in memory.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Bits {
     words: Vec<u64>,
@@ -87,7 +88,7 @@ pub struct Bits {
 }
 
 impl Bits {
-    /// Appends one.
+    /// Appends a bit.
     pub fn push(&mut self, bit: bool) {
         if self.len.is_multiple_of(64) {
             self.words.push(0);
@@ -98,50 +99,50 @@ impl Bits {
         self.len += 1;
     }
 
-    /// So many, none set.
+    /// Bits of this number, none of them set.
     #[must_use]
     pub fn unset(len: usize) -> Self {
         Self { words: vec![0; len.div_ceil(64)], len }
     }
 
-    /// Sets one; beyond the end nothing happens.
+    /// Sets a bit. An index beyond the end is ignored.
     pub fn set(&mut self, index: u32) {
         if let Some(word) = self.words.get_mut(index as usize / 64).filter(|_| (index as usize) < self.len) {
             *word |= 1 << (index % 64);
         }
     }
 
-    /// Whether it is set; beyond the end none is.
+    /// Whether a bit is set. False beyond the end.
     #[must_use]
     pub fn get(&self, index: u32) -> bool {
         let index = index as usize;
         index < self.len && self.words.get(index / 64).is_some_and(|word| word >> (index % 64) & 1 == 1)
     }
 
-    /// How many there are.
+    /// Number of bits.
     #[must_use]
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there are none.
+    /// Whether there are no bits.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 }
 
-/// How many are permitted, and how many refused for which reason.
+/// Numbers of permitted and refused edges or turns.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// Permitted.
+    /// Number of permitted ones.
     pub permitted: u64,
-    /// By [`Refusal::words`].
+    /// Numbers of refused ones by [`Refusal::words`].
     pub refused: BTreeMap<String, u64>,
 }
 
 impl Tally {
-    /// Counts one.
+    /// Counts one edge or turn.
     pub fn count(&mut self, refusal: Option<Refusal>) {
         match refusal {
             None => self.permitted += 1,
@@ -149,23 +150,23 @@ impl Tally {
         }
     }
 
-    /// Permitted and refused.
+    /// The number of permitted and refused ones together.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.permitted + self.refused.values().sum::<u64>()
     }
 }
 
-/// What the rule lets through.
+/// The edges and turns that the rule permits.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Permitted {
-    /// By edge.
+    /// By edge: whether it is permitted.
     pub edges: Bits,
-    /// By turn (passages of roundabouts among them).
+    /// By turn, including passages of roundabouts: whether it is permitted.
     pub turns: Bits,
-    /// Of the edges.
+    /// Numbers of edges.
     pub edge_tally: Tally,
-    /// Of the turns.
+    /// Numbers of turns.
     pub turn_tally: Tally,
 }
 

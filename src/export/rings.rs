@@ -1,4 +1,4 @@
-//! The arcs between a passage's first and last, which the database names alone.
+//! Finds the arcs of a passage. The database names only its first and last arc.
 
 use rustc_hash::FxHashMap;
 
@@ -6,12 +6,12 @@ use rustc_hash::FxHashMap;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Rings {
     rings: Vec<Vec<u32>>,
-    /// By arc: its ring, and where on it.
+    /// By arc: the index of its ring, and its index on the ring.
     at: FxHashMap<u32, (usize, usize)>,
 }
 
 impl Rings {
-    /// Of [`crate::store::Database::rings`].
+    /// Indexes the rings of [`crate::store::Database::rings`].
     pub(super) fn new(rings: Vec<Vec<u32>>) -> Self {
         let places = rings
             .iter()
@@ -20,7 +20,7 @@ impl Rings {
         Self { at: places.collect(), rings }
     }
 
-    /// From the first arc to the last one in driving order; `None` if they are on no ring together.
+    /// The arcs from the first to the last in driving order. `None` if the two are not on the same ring.
     pub(super) fn through(&self, [first, last]: [u32; 2]) -> Option<Vec<u32>> {
         let (&(ring, from), &(same, to)) = (self.at.get(&first)?, self.at.get(&last)?);
         let arcs = self.rings.get(ring).filter(|_| ring == same)?;

@@ -1,8 +1,9 @@
-//! What may not follow what though each edge may be used: refused turns, turn restrictions, refused passages of roundabouts.
+//! Finds the sequences of permitted edges that may not be driven: refused turns, turn restrictions and refused passages of
+//! roundabouts.
 //!
-//! A passage is refused by its own certificate, whatever its arcs and the turns onto and off them have. `netcert route` may still try
-//! the parts, as it certifies the whole afterwards; an export has nobody to do so, and closes the sequence. Formats without
-//! sequences refuse the first step of one.
+//! A passage is refused by its own certificate, even if its arcs and the turns onto and off them are permitted. `netcert route`
+//! may still try the parts, because it certifies the whole route afterwards. An export cannot, so it closes the sequence. Formats
+//! without sequences refuse the first step of the sequence.
 
 use rustc_hash::FxHashSet;
 
@@ -11,14 +12,14 @@ use super::{ExportError, Source};
 use crate::rows::TurnStep;
 
 impl Source<'_> {
-    /// Whether it is a turn, and refused though both its edges may be used.
+    /// Whether the step is a turn that is refused although both its edges are permitted.
     pub(super) fn refuses_turn(&self, step: &TurnStep) -> bool {
         let open = self.permitted.edges.get(step.from) && self.permitted.edges.get(step.to);
         step.arcs.is_none() && open && !self.permitted.turns.get(step.turn)
     }
 
-    /// Sequences of permitted edges (two or more) that may not be driven one right after the other, sorted. Those with a
-    /// refused turn among their steps say nothing new and are left out, so that two edges stand here only for straight on.
+    /// The sequences of two or more permitted edges that may not be driven one right after the other, sorted. A sequence that
+    /// contains a refused turn is left out as redundant. A sequence of two edges is therefore always a step straight on.
     ///
     /// # Errors
     /// The database cannot be read.

@@ -1,7 +1,7 @@
-//! Sorting more records than memory should hold: sorted runs in a file, merged as they are read.
+//! Sorts more records than memory should hold, by sorted runs in a file that are merged as they are read.
 //!
-//! Records are byte strings of one length and sort as bytes do: whoever wants an order of numbers writes them big-endian first.
-//! Memory is that of one run and of one buffer a run, whatever the number of records.
+//! Records are byte strings of one length and sort as bytes. To sort by a number, write it first in a record, big-endian. Memory
+//! holds one run and one buffer for each run, whatever the number of records.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -9,7 +9,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::PathBuf;
 
-/// A file that is needed only while an output is written; it goes when this does, or when the program does.
+/// A temporary file. It is deleted when this value is dropped or the program ends.
 pub(super) struct Scratch {
     path: PathBuf,
     file: BufWriter<File>,
@@ -17,24 +17,24 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
-    /// An empty one; of an output it is made by [`super::Place::scratch`].
+    /// Creates an empty temporary file. [`super::Place::scratch`] makes those of an output.
     pub(super) fn create(path: PathBuf) -> io::Result<Self> {
-        // What stands there is a killed program's: of a living one the name holds the process, or its output is locked.
+        // A file of this name is from a killed program: a running one has its process id in the name, or its output is locked.
         std::fs::remove_file(&path).or_else(|e| if e.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(e) })?;
         let file = File::options().read(true).write(true).create_new(true).open(&path)?;
         if cfg!(unix) {
-            // Without a name it goes when the program does, however that ends.
+            // A file without a name is deleted when the program ends, even if it is killed.
             std::fs::remove_file(&path)?;
         }
         Ok(Self { path, file: BufWriter::with_capacity(1 << 16, file), written: 0 })
     }
 
-    /// How many bytes it has.
+    /// Length of the file, bytes.
     pub(super) fn written(&self) -> u64 {
         self.written
     }
 
-    /// Reads from a place; everything written is there.
+    /// Reads from an offset. Everything that was written before can be read.
     pub(super) fn read_at(&mut self, place: u64, bytes: &mut [u8]) -> io::Result<()> {
         self.file.flush()?;
         let file = self.file.get_mut();
@@ -42,7 +42,7 @@ impl Scratch {
         file.read_exact(bytes)
     }
 
-    /// Reads all of it from the beginning.
+    /// Copies the whole file to `out`.
     pub(super) fn copy_to(&mut self, out: &mut dyn Write) -> io::Result<u64> {
         self.file.flush()?;
         let file = self.file.get_mut();
@@ -66,33 +66,33 @@ impl Write for Scratch {
 impl Drop for Scratch {
     fn drop(&mut self) {
         if !cfg!(unix) {
-            // It holds nothing that anyone needs.
+            // An error is ignored, because nobody needs the file.
             let _ = std::fs::remove_file(&self.path);
         }
     }
 }
 
-/// What a run takes in memory.
+/// Size of a run in memory, bytes.
 const RUN_BYTES: usize = 4 << 20;
-/// What is read of a run at once.
+/// Size of the read buffer of a run, bytes.
 const BUFFER_BYTES: usize = 1 << 13;
 
-/// Takes records in any order and gives them back sorted.
+/// Takes records in any order and returns them sorted.
 pub(super) struct Sorter<const N: usize> {
     scratch: Scratch,
     run: Vec<[u8; N]>,
     most: usize,
-    /// How many records each run in the file has.
+    /// Number of records in each run of the file.
     runs: Vec<u64>,
 }
 
 impl<const N: usize> Sorter<N> {
-    /// One without records, in an empty file.
+    /// A sorter without records. `scratch` must be empty.
     pub(super) fn new(scratch: Scratch) -> Self {
         Self { scratch, run: Vec::new(), most: (RUN_BYTES / N).max(1), runs: Vec::new() }
     }
 
-    /// One more.
+    /// Adds a record.
     pub(super) fn push(&mut self, record: [u8; N]) -> io::Result<()> {
         self.run.push(record);
         if self.run.len() >= self.most { self.spill() } else { Ok(()) }
@@ -106,7 +106,7 @@ impl<const N: usize> Sorter<N> {
         Ok(())
     }
 
-    /// All of them, sorted.
+    /// All records, sorted.
     pub(super) fn sorted(mut self) -> io::Result<Sorted<N>> {
         if !self.run.is_empty() {
             self.spill()?;
@@ -141,7 +141,7 @@ pub(super) struct Sorted<const N: usize> {
 }
 
 impl<const N: usize> Sorted<N> {
-    /// The next of a run goes among the heads.
+    /// Moves the next record of a run to the heads.
     fn refill(&mut self, number: usize) -> io::Result<()> {
         let Some(run) = self.runs.get_mut(number) else { return Ok(()) };
         if run.at == run.buffer.len() {

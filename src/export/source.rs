@@ -1,7 +1,7 @@
-//! Rows from the database, each with its permit, as they come.
+//! Streams rows from the database, each with its permit.
 //!
-//! Before the first row every edge and turn is looked at once: what may be used is kept as one bit each, and counted for the
-//! header. Nothing else of the network is kept.
+//! Before the first row, every edge and turn is read once. Its permit is kept as one bit and counted for the header. Nothing else
+//! of the network is kept in memory.
 
 use std::path::{Path, PathBuf};
 
@@ -15,16 +15,16 @@ use crate::route::Permit;
 use crate::rows::{EdgeRow, TurnRow};
 use crate::store::{Database, QueryOptions, StoreError};
 
-/// What is to be exported. The vehicle must be certified under the policy, its turns too.
+/// What to export. The vehicle and its turns must be certified under the policy.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ask {
     /// The database.
     pub db: PathBuf,
     /// Vehicle id.
     pub vehicle: String,
-    /// Which width counts.
+    /// The policy of the certificates.
     pub policy: Policy,
-    /// What is asked beyond a safe certificate.
+    /// The conditions beyond a safe certificate.
     pub rule: PermitPolicy,
     /// The extract that the database was made from, for targets that need it.
     pub extract: Option<PathBuf>,
@@ -33,41 +33,41 @@ pub struct Ask {
 /// An edge with all its columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportEdge {
-    /// As in `query`.
+    /// The row, as in `netcert query`.
     pub row: EdgeRow,
-    /// Why it may not be used; `None`: it may.
+    /// Why it is refused. `None` if it is permitted.
     pub refusal: Option<Refusal>,
 }
 
 /// A turn with all its columns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportTurn {
-    /// As in `query --turns`.
+    /// The row, as in `netcert query --turns`.
     pub row: TurnRow,
-    /// Why it may not be used; `None`: it may.
+    /// Why it is refused. `None` if it is permitted.
     pub refusal: Option<Refusal>,
 }
 
-/// What an export is made from.
+/// The source of an export.
 pub struct Source<'r> {
-    /// What was asked.
+    /// What to export.
     pub ask: Ask,
-    /// What every output says of itself.
+    /// The header of the output.
     pub header: Header,
-    /// What the rule lets through.
+    /// The permitted edges and turns.
     pub permitted: Permitted,
-    /// Who is told of progress.
+    /// The receiver of progress reports.
     pub reporter: &'r dyn Reporter,
 }
 
-/// Rows between two reports of progress.
+/// Number of rows between two reports of progress.
 const REPORT_ROWS: u64 = 4096;
 
 impl<'r> Source<'r> {
-    /// Reads every permit.
+    /// Opens the database and reads every permit.
     ///
     /// # Errors
-    /// The database cannot be read, or the vehicle is not certified there.
+    /// The database cannot be read, or the vehicle is not certified in it.
     pub fn open(ask: Ask, reporter: &'r dyn Reporter) -> Result<Self, ExportError> {
         let mut database = Database::open_to_stream(&ask.db)?;
         check_certified(&mut database, &ask)?;
@@ -77,7 +77,7 @@ impl<'r> Source<'r> {
         Ok(Self { ask, header, permitted, reporter })
     }
 
-    /// A connection for one stream of rows; several may be open at once.
+    /// Opens a connection for one stream of rows. Several may be open at the same time.
     ///
     /// # Errors
     /// The database cannot be read.
@@ -88,7 +88,7 @@ impl<'r> Source<'r> {
     /// Every edge, permitted or not, in order of the network.
     ///
     /// # Errors
-    /// The database cannot be read; also with each row.
+    /// The database cannot be read. Each row may have the same error.
     pub fn edges<'d>(
         &'d self,
         database: &'d mut Database,
@@ -107,7 +107,7 @@ impl<'r> Source<'r> {
     /// Every turn and passage of a roundabout, permitted or not, in order of the network.
     ///
     /// # Errors
-    /// The database cannot be read; also with each row.
+    /// The database cannot be read. Each row may have the same error.
     pub fn turns<'d>(
         &'d self,
         database: &'d mut Database,
@@ -115,7 +115,7 @@ impl<'r> Source<'r> {
         let rows = database.turn_rows(&self.ask.vehicle, self.ask.policy)?;
         let with_permit = |row: TurnRow| {
             let permit = Permit { verdict: row.certificate.verdict, rsc_m: row.certificate.rsc_m };
-            // A turn is permitted only if its edges are: then the bit says so, and else the reason is the turn's own or theirs.
+            // The bit says whether the turn is permitted with its edges. If not, the rule finds the reason: the turn's or an edge's.
             let refusal = self.ask.rule.turn(permit, self.permitted.turns.get(row.turn));
             ExportTurn { row, refusal }
         };
@@ -123,7 +123,7 @@ impl<'r> Source<'r> {
         Ok(self.told(rows).map(move |row| Ok(with_permit(row?))))
     }
 
-    /// Rows that tell how far they are.
+    /// The rows, with reports of progress.
     pub(super) fn told<'i, T: 'i>(
         &'i self,
         rows: impl Iterator<Item = Result<T, StoreError>> + 'i,
@@ -146,7 +146,7 @@ fn told<'i, T: 'i>(
 
 fn check_certified(database: &mut Database, ask: &Ask) -> Result<(), ExportError> {
     let Ask { vehicle, policy, .. } = ask;
-    // The errors of these name the command that makes what is missing.
+    // These calls fail with errors that name the command to run if certificates are missing.
     drop(database.query(&QueryOptions { edge_id: Some(0), ..QueryOptions::new(vehicle, *policy) })?);
     if !database.has_turns(vehicle, *policy)? {
         let policy = crate::words::Named::name(*policy);
@@ -161,7 +161,7 @@ fn check_certified(database: &mut Database, ask: &Ask) -> Result<(), ExportError
 
 fn permitted(database: &mut Database, ask: &Ask, reporter: &dyn Reporter) -> Result<Permitted, ExportError> {
     let mut out = Permitted::default();
-    // By edge: its width is known well enough. A passage needs that of its arcs, which need no permit of their own.
+    // By edge: whether the source of its width is good enough. A passage needs this of its arcs, which need no permit.
     let mut known = Bits::default();
     let rings = Rings::new(database.rings()?);
     reporter.begin("permits", 0);
@@ -184,7 +184,7 @@ fn permitted(database: &mut Database, ask: &Ask, reporter: &dyn Reporter) -> Res
     Ok(out)
 }
 
-/// blake3 of a file, in hexadecimal.
+/// The blake3 hash of a file, in hexadecimal.
 pub(super) fn hash_of(path: &Path) -> Result<String, ExportError> {
     let at = |source| ExportError::Io { path: path.to_owned(), source };
     let mut hasher = blake3::Hasher::new();

@@ -1,4 +1,4 @@
-//! What an export has on the disk before it is finished, for whoever ends the program in the middle.
+//! The files and folders of an unfinished export, so that a program that is told to stop can remove them.
 
 use std::fs;
 use std::io;
@@ -6,21 +6,21 @@ use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Files and folders that go if the export does not come to its end. Clones share one list.
+/// The files and folders to remove if the export does not finish. Clones share one list.
 #[derive(Debug, Clone, Default)]
 pub struct Unfinished(Arc<Mutex<Vec<PathBuf>>>);
 
 impl Unfinished {
-    /// Makes one more. While this runs nothing is removed, and after a removal nothing is made.
+    /// Makes a file or folder and adds it to the list. Nothing is removed meanwhile, and nothing is made after a removal.
     pub(super) fn make<T>(&self, path: &Path, make: impl FnOnce(&Path) -> io::Result<T>) -> io::Result<T> {
         let mut paths = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let made = make(path)?;
-        // Only now: what could not be made may be another process's.
+        // Added only after success, because what could not be made may belong to another process.
         paths.push(path.to_owned());
         Ok(made)
     }
 
-    /// Puts what was made in its place: none of it goes any more if that succeeds.
+    /// Runs `settle`, which puts the output in its place, and clears the list if it succeeds.
     pub(super) fn settle<E>(&self, settle: impl FnOnce() -> Result<(), E>) -> Result<(), E> {
         let mut paths = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         settle()?;
@@ -28,12 +28,12 @@ impl Unfinished {
         Ok(())
     }
 
-    /// Removes all of them, and keeps the export from making or finishing another one. The program must end now.
+    /// Removes everything on the list, and blocks the export from making or finishing anything. The program must end now.
     pub fn remove(self) {
-        // Never unlocked again.
+        // The lock is never released.
         let paths = ManuallyDrop::new(self.0.lock().unwrap_or_else(PoisonError::into_inner));
         for path in paths.iter() {
-            // What cannot be removed the next export of this name removes.
+            // An error is ignored, because the next export of this name removes what is left.
             let _ = remove(path);
         }
     }

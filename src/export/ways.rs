@@ -1,8 +1,8 @@
-//! The extract's ways and the database's edges side by side: which of a way's nodes each edge goes over.
+//! Matches the extract's ways with the database's edges: finds the nodes of a way that each edge passes.
 //!
-//! Both come in order of way ids, so a merge is enough and nothing of the network is kept. A way whose nodes cannot be told
-//! apart by the edges' ends and lengths (nodes at one place are one in the network) is left whole and said to be unclear; whoever
-//! asks has to refuse all of it.
+//! Both streams are in order of way ids, so a merge suffices and nothing of the network is kept. In the network, nodes at one
+//! place are one node. If the edges' ends and lengths therefore match a way's nodes in several ways, the whole way is reported as
+//! unclear, and the caller must refuse all of it.
 
 use std::iter::Peekable;
 
@@ -14,10 +14,10 @@ use crate::store::{StoreError, Streamed};
 
 use super::Source;
 
-/// A merge needs order; `ingest` does not.
+/// The message for an extract that is not sorted. `ingest` accepts such an extract, but the merge does not.
 const SORT: &str = "this export needs objects sorted by id; sort them with `osmium sort`, then ingest that file";
 
-/// Ids of which the format keeps the steps from one to the next.
+/// Decodes ids, which the format stores as differences from one to the next.
 pub(super) fn ids(steps: &[i64]) -> Vec<i64> {
     let next = |id: &mut i64, step: &i64| {
         *id = id.wrapping_add(*step);
@@ -29,24 +29,24 @@ pub(super) fn ids(steps: &[i64]) -> Vec<i64> {
 /// A stretch of a way between two junctions.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Piece {
-    /// Places of its first and last node in the way's references.
+    /// Index of the first node in the way's references.
     pub(super) first: usize,
-    /// See `first`.
+    /// Index of the last node in the way's references.
     pub(super) last: usize,
-    /// Indices of its edges along the way and against it, where they exist.
+    /// Indices of the edges along the way and against it.
     pub(super) edges: [Option<u32>; 2],
-    /// Their RSC, metres.
+    /// RSC of the two edges, metres.
     pub(super) rsc_m: [Option<f64>; 2],
 }
 
-/// What the network has of a way.
+/// The network's edges on a way.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum OnWay {
-    /// Nothing: it is no road of the network.
+    /// There are none; the way is no road of the network.
     Nothing,
-    /// In way order, not overlapping but at their ends.
+    /// The pieces in way order. They overlap only at their ends.
     Pieces(Vec<Piece>),
-    /// These edges, nobody can say where.
+    /// The way has these edges, but their places are not clear.
     Unclear(Vec<u32>),
 }
 
@@ -57,16 +57,16 @@ pub(super) struct WayEdges<'d> {
 }
 
 impl<'d> WayEdges<'d> {
-    /// Over [`crate::store::Database::edge_steps`].
+    /// Follows the rows of [`crate::store::Database::edge_steps`].
     #[must_use]
     pub(super) fn new(rows: Streamed<'d, EdgeStep>) -> Self {
         Self { rows: rows.peekable(), last_way: i64::MIN }
     }
 
-    /// The edges of the next way; ids must ascend.
+    /// The edges of the next way. Ids must ascend.
     ///
     /// # Errors
-    /// They do not (the text says what to do), the extract lacks a way of the network, or the database cannot be read.
+    /// Ids do not ascend (the text says what to do), the extract lacks a way of the network, or the database cannot be read.
     pub(super) fn of(&mut self, way_id: i64, refs: &[i64]) -> Result<OnWay, String> {
         if way_id <= self.last_way {
             return Err(format!(
@@ -86,10 +86,10 @@ impl<'d> WayEdges<'d> {
         Ok(on_way(&rows, refs))
     }
 
-    /// Whether every edge had its way.
+    /// Checks that every edge had its way.
     ///
     /// # Errors
-    /// The extract lacks one.
+    /// The extract lacks a way.
     pub(super) fn finish(mut self) -> Result<(), String> {
         match self.rows.next() {
             None => Ok(()),
@@ -103,7 +103,7 @@ fn on_way(rows: &[EdgeStep], refs: &[i64]) -> OnWay {
     if rows.is_empty() {
         return OnWay::Nothing;
     }
-    // Repeats next to each other are one node.
+    // Adjacent repetitions of a node count as one.
     let line: Vec<(usize, i64)> = {
         let mut line: Vec<(usize, i64)> = refs.iter().copied().enumerate().collect();
         line.dedup_by_key(|node| node.1);
@@ -125,8 +125,8 @@ fn on_way(rows: &[EdgeStep], refs: &[i64]) -> OnWay {
     OnWay::Pieces(pieces)
 }
 
-/// Where on the line a piece starts: right where the last one ended, or after nodes that the file does not have, if there is only
-/// one such place.
+/// The index on the line at which a piece starts: where the last piece ended, or, after nodes that the file lacks, the only
+/// matching place.
 fn place_of(both: &[EdgeStep], line: &[(usize, i64)], at: usize) -> Option<usize> {
     let row = both.first()?;
     let ends = match row.direction {
@@ -147,10 +147,10 @@ fn place_of(both: &[EdgeStep], line: &[(usize, i64)], at: usize) -> Option<usize
 }
 
 impl Source<'_> {
-    /// The extract, if it is the one that the database was made from.
+    /// The blobs of the extract that the database was made from.
     ///
     /// # Errors
-    /// None is given, it cannot be read, or it is another one.
+    /// No extract is given, it cannot be read, or it is another one.
     pub fn blobs(&self, target: &'static str) -> Result<Blobs, ExportError> {
         let provenance = &self.header.provenance;
         let Some(path) = &self.ask.extract else {
@@ -172,7 +172,7 @@ impl Source<'_> {
         Ok(blobs)
     }
 
-    /// An error of the extract's content.
+    /// An error about the extract's content.
     #[must_use]
     pub fn extract_error(&self, detail: String) -> ExportError {
         ExportError::Content { path: self.ask.extract.clone().unwrap_or_default(), detail }
@@ -216,12 +216,12 @@ mod tests {
 
     #[test]
     fn nodes_that_the_file_lacks_are_passed_over_where_that_is_clear() {
-        // 9 is missing: the network has 1-2 and 3-4.
+        // Node 9 is missing from the extract, so the network has edges 1-2 and 3-4.
         assert_eq!(
             pieces(&[row(0, 0, 2, [1, 2], Forward), row(1, 2, 2, [3, 4], Forward)], &[1, 2, 9, 3, 4]),
             [(0, 1), (3, 4)]
         );
-        // A loop driven twice behind a missing node: which time is not clear.
+        // The way runs twice along a loop behind a missing node, so the edge's place is not clear.
         let again = [row(0, 0, 2, [1, 2], Forward)];
         assert_eq!(on_way(&again, &[9, 1, 2, 1, 2]), OnWay::Unclear(vec![0]));
     }

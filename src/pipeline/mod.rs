@@ -1,8 +1,8 @@
-//! The whole run, stage by stage: read, network, corridors and certificates, store.
+//! Runs the stages in order: read, network, corridors and certificates, store.
 //!
-//! [`ingest`] makes a database from an extract; [`certify`] adds or renews certificates in one that exists. Both use
-//! the same stages on the same network, so that the same edge and vehicle get the same bytes either way. It only conducts: certificates
-//! are made in [`crate::certify`]. It knows nothing of command lines and terminals: it reports through [`Reporter`].
+//! [`ingest`] makes a database from an extract. [`certify`] adds or replaces certificates in an existing database. Both run the
+//! same stages on the same network, so the same edge and vehicle get the same bytes. [`crate::certify`] makes the certificates.
+//! Progress is reported through [`Reporter`], so this module does not depend on command lines or terminals.
 
 mod select;
 
@@ -28,36 +28,36 @@ use crate::turns::{TurnFacts, turn_facts};
 use crate::vehicle::{Catalogue, Vehicle, VehicleError};
 use crate::verdict::{UnknownReason, Verdict};
 
-/// What can end a run.
+/// Why a run fails.
 #[derive(Debug, Error)]
 pub enum RunError {
-    /// The extract.
+    /// The extract cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
-    /// The database.
+    /// The database cannot be read or written.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// The vehicle file or id.
+    /// A vehicle file or id is wrong.
     #[error(transparent)]
     Vehicle(#[from] VehicleError),
-    /// A vehicle that the certificate's model does not cover.
+    /// The certificate's model does not cover a vehicle.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The road rules.
+    /// The road rules are wrong.
     #[error(transparent)]
     Rules(#[from] RulesError),
-    /// The country borders.
+    /// The country borders cannot be used.
     #[error(transparent)]
     Countries(#[from] CountriesError),
-    /// A vehicle as JSON.
+    /// A vehicle cannot be written as JSON.
     #[error("vehicle {id} cannot be written as JSON: {cause}")]
     Definition {
         /// Vehicle id.
         id: String,
-        /// What serde says.
+        /// The serializer's error.
         cause: serde_json::Error,
     },
-    /// Nothing to certify.
+    /// The extract has no road to certify.
     #[error("{path}: no way of this file is a road that a heavy vehicle could use; the account: {account}")]
     NoRoads {
         /// The extract.
@@ -67,47 +67,47 @@ pub enum RunError {
     },
 }
 
-/// What `ingest` is asked to do.
+/// The input of [`ingest`].
 pub struct Ingest<'a> {
     /// The extract.
     pub input: &'a Path,
     /// The database to make.
     pub db: &'a Path,
-    /// The catalogue, own vehicles included.
+    /// The catalogue, including the user's vehicles.
     pub catalogue: &'a Catalogue,
-    /// Which of them to certify.
+    /// The vehicles to certify.
     pub selection: &'a Selection,
-    /// Road rules, borders and driving sides, overrides included.
+    /// Road rules, borders and driving sides, including the user's overrides.
     pub countries: &'a Countries,
-    /// How certificates are made.
+    /// Settings of the certificates.
     pub settings: &'a Settings,
-    /// What the command line said, as JSON, for the `run` record.
+    /// The options of the command line as JSON, for the `run` record.
     pub parameters: serde_json::Value,
-    /// UTC now, `2026-11-21T08:00:00.000Z`: the only clock that reaches the file.
+    /// The time now in UTC, such as `2026-11-21T08:00:00.000Z`. No other clock reaches the file.
     pub now: &'a dyn Fn() -> String,
 }
 
-/// One line of what a run ends with.
+/// The summary of one stage of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StageSummary {
-    /// `read`, `network`, `certificates`, `store`
+    /// The stage: `read` or `load`, `network`, `certificates`, `turns`, `store`.
     pub stage: &'static str,
     /// Wall time, seconds.
     pub seconds: f64,
-    /// How many.
+    /// Number of items.
     pub items: u64,
-    /// Of what.
+    /// The kind of item.
     pub what: &'static str,
 }
 
-/// What a run ends with.
+/// The summary of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Summary {
-    /// In order.
+    /// The stages in order.
     pub stages: Vec<StageSummary>,
-    /// Everything counted.
+    /// The account of the run.
     pub account: Vec<AccountRow>,
-    /// Ids of the vehicles certified.
+    /// Ids of the certified vehicles.
     pub vehicles: Vec<String>,
 }
 
@@ -117,14 +117,14 @@ impl Summary {
     }
 }
 
-/// Reads an extract, certifies its edges and puts the database in place when it is whole.
+/// Reads an extract, certifies its edges and turns, and puts the database in place when it is complete.
 ///
 /// # Errors
-/// Whatever stops it; a database that stood at `db` is then as it was.
+/// See [`RunError`]. An older database at `db` is then unchanged.
 pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunError> {
     let started = (ask.now)();
     let mut summary = Summary::default();
-    // Before the work: is the place writable, is nothing in the way?
+    // Created first, so that a path that cannot be written is reported before the work.
     let mut writer = Database::create(ask.db, ask.settings)?;
     if writer.replaced_leftover() {
         reporter.note("an earlier run was cut short: beginning afresh");
@@ -154,10 +154,10 @@ pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunE
     Ok(summary)
 }
 
-/// Stages one and two: from the file to the route graph.
+/// Stages one and two: reads the extract and builds the network.
 ///
 /// # Errors
-/// Damage of the file, or no roads in it.
+/// The file is damaged or has no roads.
 pub fn read_network(
     input: &Path,
     countries: &Countries,
@@ -201,7 +201,7 @@ fn read_reporting(input: &Path, reporter: &dyn Reporter) -> Result<osm::Extract,
     extract
 }
 
-/// Stages three and four into a new database.
+/// Stages three and four: makes the certificates and adds them to a new database.
 fn certify_into(
     writer: &mut Writer,
     network: &Network,
@@ -240,7 +240,7 @@ fn certify_into(
     Ok(())
 }
 
-/// By vehicle and edge: the verdict; empty where nobody asks.
+/// The verdicts by vehicle and edge, which certificates of turns need. Empty if no turns are certified.
 struct EdgeVerdicts(Vec<Vec<Verdict>>);
 
 impl EdgeVerdicts {
@@ -257,26 +257,26 @@ impl EdgeVerdicts {
     }
 }
 
-/// What `certify` is asked to do.
+/// The input of [`certify`].
 pub struct Certify<'a> {
     /// An existing database.
     pub db: &'a Path,
-    /// The vehicles, whole.
+    /// The complete definitions of the vehicles.
     pub vehicles: &'a [&'a Vehicle],
-    /// How certificates are made.
+    /// Settings of the certificates.
     pub settings: &'a Settings,
-    /// `certify` or `query`, for the `run` record.
+    /// The command for the `run` record, such as `certify` or `query`.
     pub command: &'static str,
-    /// What the command line said, as JSON.
+    /// The options of the command line as JSON, for the `run` record.
     pub parameters: serde_json::Value,
-    /// UTC now.
+    /// The time now in UTC.
     pub now: &'a dyn Fn() -> String,
 }
 
-/// Certifies vehicles on the network of an existing database; each vehicle's certificates are replaced in one step.
+/// Certifies vehicles on the network of an existing database. Each vehicle's certificates are replaced in one step.
 ///
 /// # Errors
-/// Whatever stops it; vehicles not yet done keep their old certificates.
+/// See [`RunError`]. Vehicles that are not done yet keep their old certificates.
 pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, RunError> {
     let mut summary = Summary::default();
     let started = (ask.now)();
@@ -344,15 +344,15 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
     Ok(summary)
 }
 
-/// Seconds since 1970 as `2026-11-21T08:00:00Z`.
+/// Seconds since 1970 as a time stamp, such as `2026-11-21T08:00:00Z`.
 fn utc(seconds: i64) -> Option<String> {
     jiff::Timestamp::from_second(seconds).ok().map(|t| t.to_string())
 }
 
-/// A vehicle as the database keeps it.
+/// The record of a vehicle for the database.
 ///
 /// # Errors
-/// A number that JSON has no form for; checked vehicles have none.
+/// A number of the vehicle has no form in JSON. Checked vehicles have no such number.
 pub fn record(vehicle: &Vehicle) -> Result<VehicleRecord, RunError> {
     let definition =
         vehicle.to_json().map_err(|cause| RunError::Definition { id: vehicle.id.clone(), cause })?.to_string();

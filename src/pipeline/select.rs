@@ -1,5 +1,4 @@
-//! Which vehicles a run certifies: those asked for, or those of the extract's own countries and the ones that are asked
-//! for everywhere (a 3-trailer road train).
+//! Selects the vehicles of a run: the requested ones, or those of the extract's countries and a 3-trailer road train.
 
 use std::collections::BTreeMap;
 
@@ -7,23 +6,23 @@ use super::RunError;
 use crate::network::Network;
 use crate::vehicle::{Catalogue, Regions, Vehicle};
 
-/// A country counts as the extract's own from this share of its roads.
+/// The least share of the roads with which a country counts as one of the extract's countries.
 const OWN_SHARE: f64 = 0.1;
 
-/// Which vehicles to certify.
+/// The vehicles to certify.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Selection {
-    /// Those of the extract's own countries, a 3-trailer road train, and these ids.
+    /// The vehicles of the extract's countries, a 3-trailer road train, and the vehicles with these ids.
     Region(Vec<String>),
-    /// These ids.
+    /// The vehicles with these ids.
     Ids(Vec<String>),
-    /// The whole catalogue.
+    /// All vehicles of the catalogue.
     All,
-    /// None: the network only.
+    /// No vehicle; only the network is written.
     None,
 }
 
-/// The countries that hold at least a tenth of the network's roads, most roads first.
+/// The countries with at least a tenth of the network's roads, those with most roads first.
 #[must_use]
 pub fn own_countries(network: &Network) -> Vec<[u8; 2]> {
     let mut counts: BTreeMap<[u8; 2], usize> = BTreeMap::new();
@@ -39,7 +38,7 @@ pub fn own_countries(network: &Network) -> Vec<[u8; 2]> {
 /// The vehicles of a selection, in catalogue order, each once.
 ///
 /// # Errors
-/// An unknown id, with the ids most like it.
+/// An id is unknown. The error names similar ids.
 pub fn selected<'c>(
     catalogue: &'c Catalogue,
     selection: &Selection,

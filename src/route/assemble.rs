@@ -1,9 +1,9 @@
-//! One corridor for a whole route: stations of strokes and of turns strung together in one metric frame.
+//! Joins the stations of strokes and turns into one corridor for a whole route, in one metric frame.
 //!
-//! Promises a centreline that is that of its pieces (the cubic spline through their stations), and nowhere more width than
-//! the piece there has. The vehicle enters straight where the route begins; where that is within a turn's reach, the route
-//! begins with the turn. Two turns that share a short stretch of road are blended there, within the width of both. What
-//! cannot be strung together is an error that names the place, never a guess.
+//! The centreline is the cubic spline through the stations of the pieces, and the corridor is nowhere wider than its piece.
+//! The vehicle enters straight where the route begins. A route that begins within a turn's reach begins with the turn. Two
+//! turns that share a short stretch of road are blended there, within the width of both. If pieces cannot be joined, the error
+//! names the place.
 
 use std::ops::Range;
 
@@ -14,28 +14,28 @@ use crate::corridor::{CentrelineError, Corridor, Frame, FrameError};
 use crate::network::{Movement, MovementKind, Movements, Network};
 use crate::osm::LonLat;
 use crate::stop::{Stop, Stopped};
-use crate::turns::{Joint, StrokeLine};
+use crate::turns::{Joint, Reach, StrokeLine};
 use crate::verdict::UnknownReason;
 
-/// Distance of the route's stations, metres, at most: as on strokes. Sharp turns have closer ones, and so has then the whole.
+/// The greatest spacing of the route's stations, metres, as on strokes. A route with a sharp turn has the turn's spacing.
 const SPACING_M: f64 = 1.0;
-/// And at least.
+/// The least spacing of the route's stations, metres.
 const LEAST_SPACING_M: f64 = 0.25;
-/// Points nearer to each other than this are one, metres.
+/// Points that are closer than this are merged, metres.
 const LEAST_STEP_M: f64 = 0.3;
-/// A route is at least so many stations long: begun earlier or ended later on its edge if need be.
+/// The least number of stations. A shorter route begins earlier or ends later on its edge.
 const LEAST_STATIONS: usize = 12;
 
-/// What a part of a route is.
+/// The kind of a part of a route.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum PartKind {
     /// Along an edge.
     Edge(u32),
-    /// From an edge into another: at a junction, or over a roundabout ([`passes_over`]).
+    /// From one edge into another at a junction, or over a roundabout ([`passes_over`]).
     Turn {
-        /// The edge one comes from.
+        /// The edge that the vehicle comes from.
         from: u32,
-        /// The edge one goes into.
+        /// The edge that the vehicle goes into.
         to: u32,
     },
 }
@@ -43,35 +43,35 @@ pub enum PartKind {
 /// A stretch of a route.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
-    /// What it is.
+    /// The kind of the part.
     pub kind: PartKind,
-    /// Its stations in the route's corridor; both ends are its neighbours' too.
+    /// The part's stations in the route's corridor. Neighbouring parts share their end stations.
     pub stations: Range<usize>,
 }
 
 /// A route as one corridor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RoutePath {
-    /// In metres.
+    /// The corridor, in metres of `frame`.
     pub corridor: Corridor,
-    /// Where those are.
+    /// The metric frame of the corridor.
     pub frame: Frame,
-    /// In driving order.
+    /// The parts in driving order.
     pub parts: Vec<Part>,
 }
 
-/// Why a route's pieces are no corridor.
+/// Why a route's pieces give no corridor.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AssemblyError {
-    /// Of a piece nothing is known.
+    /// A piece has no corridor.
     #[error("a piece of the route has no corridor")]
     Unknown {
-        /// Which.
+        /// The piece.
         at: PartKind,
-        /// Why.
+        /// The reason.
         reason: UnknownReason,
     },
-    /// Two turns that cannot be driven one after the other on the road between them.
+    /// Two turns cannot be driven one after the other on the road between them.
     #[error("two turns follow each other so closely that no path leads from one into the other")]
     Overlap {
         /// The earlier one.
@@ -79,23 +79,23 @@ pub enum AssemblyError {
         /// The later one.
         at: PartKind,
     },
-    /// Wider than a metric frame.
-    #[error("the route spans more than one metric frame: {0}; cut it into shorter ones with --via and certify each")]
+    /// The route does not fit into one metric frame.
+    #[error("the route spans more than one metric frame: {0}; plan it as several shorter routes and certify each")]
     Frame(#[from] FrameError),
-    /// Nobody waits for it any more.
+    /// The caller cancelled the work.
     #[error(transparent)]
     Stopped(#[from] Stopped),
     /// No centreline leads through the stations.
     #[error("the route's pieces make no smooth line: {error}")]
     Centreline {
-        /// The turn nearest to where the line bends most.
+        /// The turn nearest to the place where the line bends most.
         at: PartKind,
-        /// What is wrong with it.
+        /// What is wrong with the line.
         error: CentrelineError,
     },
 }
 
-/// Whether it is a passage of a roundabout: the edge that one goes into does not start where the other one ends.
+/// Whether a part is a passage of a roundabout: the edge that the vehicle goes into does not start where the other edge ends.
 #[must_use]
 pub fn passes_over(network: &Network, at: PartKind) -> bool {
     let PartKind::Turn { from, to } = at else { return false };
@@ -103,18 +103,18 @@ pub fn passes_over(network: &Network, at: PartKind) -> bool {
     edge(from).zip(edge(to)).is_some_and(|(from, to)| from.to_node != to.from_node)
 }
 
-/// Which way, and where on its first and last edge it begins and ends.
+/// The edges of a route, with its beginning and end on the first and last edge.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Way<'w> {
-    /// Its edges.
+    /// The edges.
     pub drive: &'w Drive,
-    /// Of the first edge, behind: 0..=1.
+    /// The share of the first edge before the route's beginning, 0..=1.
     pub start: f64,
-    /// Of the last edge, driven: 0..=1.
+    /// The share of the last edge up to the route's end, 0..=1.
     pub end: f64,
 }
 
-/// A point of the centreline, on its way into the corridor.
+/// A point of the centreline with the half-widths there.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
     pub(super) at: [f64; 2],
@@ -122,10 +122,10 @@ pub(super) struct Sample {
     pub(super) right_m: f64,
 }
 
-/// Strings the pieces of a way together. Before each turn and each leg it asks whether to stop.
+/// Joins the pieces of a way into one corridor. `stop` is checked before each turn and each leg.
 ///
 /// # Errors
-/// A piece without a corridor, turns that overlap too far, more than a metric frame; told to stop.
+/// See [`AssemblyError`].
 pub fn assemble(
     network: &Network,
     movements: &Movements,
@@ -159,6 +159,7 @@ pub fn assemble(
             samples: in_frame(&piece, frame)?,
             approach: piece.approach,
             departure: piece.departure,
+            reach: piece.reach,
         });
     }
     legs.push(first..edges.len());
@@ -175,7 +176,7 @@ pub fn assemble(
     string.finish(frame, finest_m.max(LEAST_SPACING_M))
 }
 
-/// From one edge into the next, or over the arcs between.
+/// The movement from one edge into the next, or over the arcs between them.
 fn movement(movements: &Movements, from: u32, arcs: &[u32], to: u32) -> Option<Movement> {
     if arcs.is_empty() {
         return movements.between(from, to).copied();
@@ -191,13 +192,14 @@ struct Between {
     samples: Vec<Sample>,
     approach: Joint,
     departure: Joint,
+    reach: Reach,
 }
 
 fn in_frame(piece: &TurnPiece, frame: Frame) -> Result<Vec<Sample>, FrameError> {
     samples(&piece.corridor, piece.turn.clone(), piece.frame, frame)
 }
 
-/// Stations of a corridor, from its frame into the route's.
+/// Stations of a corridor, converted from its own frame into the route's frame.
 fn samples(c: &Corridor, stations: Range<usize>, own: Frame, frame: Frame) -> Result<Vec<Sample>, FrameError> {
     let stations = stations.start.min(c.len())..stations.end.min(c.len());
     let mut at: Vec<[f64; 2]> = stations.clone().map(|k| [c.x[k], c.y[k]]).collect();
@@ -208,8 +210,8 @@ fn samples(c: &Corridor, stations: Range<usize>, own: Frame, frame: Frame) -> Re
     Ok(stations.zip(at).map(|(k, at)| Sample { at, left_m: c.left_m[k], right_m: c.right_m[k] }).collect())
 }
 
-/// Stations of a loop from its first edge's beginning until it is there again: its last edge ends there to a station, and the stations
-/// of one round stand beside those of the next by half a one at most.
+/// The number of stations of one round of a loop, from the beginning of its first edge back to that place. The last edge ends
+/// within a station of that place, and stations of successive rounds differ by at most half a station.
 fn round(line: &StrokeLine) -> usize {
     let (c, spans) = (&line.made.corridor, &line.made.spans);
     let first = spans.first().map_or(0, |span| span.stations.start);
@@ -221,12 +223,12 @@ fn round(line: &StrokeLine) -> usize {
 
 /// A run of edges straight on along one stroke: stations `from..=to` of an unrolled corridor.
 struct Leg {
-    /// All that may be needed, in the route's frame, from station `first` on.
+    /// All stations that may be needed, in the route's frame, from station `first` on.
     samples: Vec<Sample>,
     first: usize,
     from: usize,
     to: usize,
-    /// Where each edge ends.
+    /// Each edge with its last station.
     edges: Vec<(u32, usize)>,
 }
 
@@ -248,7 +250,7 @@ impl Leg {
         let closed = strokes.closed(stroke);
         let (corridor, spans) = (&line.made.corridor, &line.made.spans);
         let last_station = corridor.len() - 1;
-        // A loop is unrolled: what is driven before it closes is a round earlier, in its lead-in.
+        // A loop is unrolled: the edges before the place where it closes are taken one round earlier, from its lead-in.
         let round = if closed { round(line.as_ref()) } else { 0 };
         let closes = |i: usize| places[i..].windows(2).filter(|pair| pair[1] <= pair[0]).count();
         let earlier = |i: usize| round * closes(i);
@@ -256,7 +258,7 @@ impl Leg {
             let stations = spans.get(places[i] as usize).map(|span| span.stations.clone());
             let stations = stations.ok_or_else(|| unknown(edges[i], UnknownReason::Geometry))?;
             let back = earlier(i);
-            // A loop longer than its lead-in cannot be driven past its own beginning in one piece.
+            // If a loop is longer than its lead-in, no leg can pass the loop's beginning.
             if stations.start < back {
                 return Err(unknown(edges[i], UnknownReason::Geometry));
             }
@@ -290,15 +292,24 @@ impl Leg {
             to = to.max((from + if before.is_none() { LEAST_STATIONS } else { 0 }).min(last_station));
         }
         let (low, high) = (from.min(to), from.max(to).min(last_station));
-        let samples = samples(corridor, low..high + 1, line.frame, frame)?;
+        let mut samples = samples(corridor, low..high + 1, line.frame, frame)?;
+        // As in the turns' own certificates, their strip counts before and after them.
+        let strip = strokes.turn_params().strip.max(strokes.settings().policy);
+        let metres = |stations: usize| stations as f64 * corridor.spacing_m;
+        for (station, sample) in (low..).zip(&mut samples) {
+            let share_after = before.map_or(0.0, |turn| turn.reach.share_after(metres(station.saturating_sub(from))));
+            let share_before = after.map_or(0.0, |turn| turn.reach.share_before(metres(to.saturating_sub(station))));
+            [sample.left_m, sample.right_m] = line.half_widths(strip, station, share_after.max(share_before));
+        }
         let ends = (0..edges.len()).map(|i| Ok((edges[i], span(i)?.end - 1))).collect::<Result<_, AssemblyError>>()?;
         Ok(Self { samples, first: low, from, to: to.min(last_station), edges: ends })
     }
 
-    /// Appends the leg's stations and the turn after it. The turn before it is there already, but for what the two share.
+    /// Appends the leg's stations and the turn after it. The turn before it has been added already; if the two turns overlap,
+    /// the shared stretch is blended.
     fn add(&self, string: &mut Strung, before: Option<&Between>, after: Option<&Between>) -> Result<(), AssemblyError> {
         if self.from <= self.to {
-            // Where a turn joins, its own last station stands for the stroke's.
+            // At a joint, the turn's own last station replaces the stroke's station.
             let from = self.from + usize::from(before.is_some());
             let to = (self.to + 1).saturating_sub(usize::from(after.is_some()));
             for station in from..to {
@@ -336,7 +347,7 @@ struct Strung {
 }
 
 impl Strung {
-    /// Two points at one place are one, as narrow as the narrower.
+    /// Appends a point. A point close to the last one is merged with it, with the lesser half-widths.
     fn push(&mut self, kind: PartKind, sample: Sample) {
         if let Some(last) = self.samples.last_mut()
             && (sample.at[0] - last.at[0]).hypot(sample.at[1] - last.at[1]) < LEAST_STEP_M
@@ -349,7 +360,7 @@ impl Strung {
         self.kinds.push(kind);
     }
 
-    /// Takes back the last `count` points of a turn, all of which must be its own, and some of which must stay.
+    /// Removes the last `count` points of a turn. Returns false, and removes nothing, unless points of the turn remain.
     fn drop_last(&mut self, kind: PartKind, count: usize) -> bool {
         let own = self.kinds.iter().rev().take_while(|&&k| k == kind).count();
         if count >= own {
@@ -374,7 +385,7 @@ impl Strung {
         let (left_m, right_m) = (column(|s| s.left_m), column(|s| s.right_m));
         let corridor = crate::corridor::from_centreline(&points, &left_m, &right_m, 0.0, spacing_m)
             .map_err(|error| AssemblyError::Centreline { at: self.turn_at(sharpest(&points)), error })?;
-        // Chords are shorter than arcs by parts in a thousand in the sharpest bends: near enough to say which part it is.
+        // Chords are shorter than arcs by some thousandths in the sharpest bends, which is exact enough to find the part.
         let mut along = Vec::with_capacity(points.len());
         let mut sum = 0.0;
         for (i, point) in points.iter().enumerate() {
@@ -403,7 +414,7 @@ impl Strung {
     }
 }
 
-/// Where a line turns most.
+/// The index of the point at which a line turns most.
 fn sharpest(points: &[[f64; 2]]) -> usize {
     let turn = |w: &[[f64; 2]]| {
         let [u, v] = [[w[1][0] - w[0][0], w[1][1] - w[0][1]], [w[2][0] - w[1][0], w[2][1] - w[1][1]]];

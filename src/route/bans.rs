@@ -1,42 +1,42 @@
-//! Restrictions over ways as an automaton: which forbidden sequences a vehicle is in the middle of.
+//! Turn restrictions over ways as an automaton that knows which forbidden sequences a vehicle is in the middle of.
 //!
-//! The pattern matcher of Aho and Corasick (1975) over edges. A search whose states are edges, and within forbidden
-//! sequences places in them, then obeys all of them without remembering its path. Restrictions over one node are movements
-//! that are barred, and not here.
+//! This is the pattern matcher of Aho and Corasick (1975) over edges. A search whose states are edges, or places within
+//! forbidden sequences, obeys all restrictions without storing its path. Restrictions over one node are not here; they bar
+//! movements.
 
 use rustc_hash::FxHashMap;
 
 use crate::network::Network;
 
-/// Where in which sequences one is: 0 in none, else a node of the tree of all sequences' beginnings.
+/// The place within forbidden sequences: 0 for none, else a node of the tree of all beginnings of sequences.
 pub type Within = u32;
 
 /// The sequences of more than two edges that a network's restrictions forbid.
 #[derive(Debug, Clone, Default)]
 pub struct Bans {
-    /// Children by node and edge; never iterated.
+    /// Children by node and edge. The map is never iterated, so its order does not matter.
     children: FxHashMap<(Within, u32), Within>,
-    /// By node: the longest other beginning that one is in as well.
+    /// By node: the longest other beginning that ends in the same edges.
     fallback: Vec<Within>,
-    /// By node: the edge that led to it (of the root, none).
+    /// By node: the edge that leads to it; `u32::MAX` for the root.
     edge: Vec<u32>,
-    /// By node: a sequence ends here.
+    /// By node: whether a sequence ends here.
     forbidden: Vec<bool>,
 }
 
 impl Bans {
-    /// Of all restrictions over ways.
+    /// The automaton of all restrictions over ways.
     #[must_use]
     pub fn of(network: &Network) -> Self {
         let sequences = network.restrictions.iter().map(|restriction| network.sequence(restriction));
         Self::new(sequences.filter(|edges| edges.len() > 2))
     }
 
-    /// Of these sequences; shorter ones than two edges forbid nothing that can be driven.
+    /// The automaton of these sequences. Sequences of less than two edges are ignored.
     pub fn new<'s>(sequences: impl Iterator<Item = &'s [u32]>) -> Self {
         let mut bans =
             Self { children: FxHashMap::default(), fallback: vec![0], edge: vec![u32::MAX], forbidden: vec![false] };
-        // In the order in which they are made, so that parents come before their children; fallbacks need breadth first.
+        // Nodes by depth in the order of creation, because fallbacks must be computed breadth first.
         let mut by_depth: Vec<Vec<(Within, Within)>> = Vec::new();
         for sequence in sequences.filter(|edges| edges.len() > 1) {
             let mut at = 0;
@@ -68,7 +68,7 @@ impl Bans {
         bans
     }
 
-    /// Nodes of the tree, the root among them.
+    /// Number of nodes in the tree, including the root.
     #[must_use]
     pub fn len(&self) -> usize {
         self.edge.len()
@@ -80,13 +80,13 @@ impl Bans {
         self.edge.len() <= 1
     }
 
-    /// The edge last driven there; of the root none.
+    /// The last driven edge at a node. `None` for the root.
     #[must_use]
     pub fn edge(&self, within: Within) -> Option<u32> {
         self.edge.get(within as usize).copied().filter(|&edge| edge != u32::MAX)
     }
 
-    /// After driving `edge` as well; `None` if that completes a forbidden sequence.
+    /// The place after driving `edge`, too. `None` if that completes a forbidden sequence.
     #[must_use]
     pub fn after(&self, within: Within, edge: u32) -> Option<Within> {
         let next = self.step(within, edge);

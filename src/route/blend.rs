@@ -1,39 +1,42 @@
-//! Two turns that share a stretch of road: from the path of the first into that of the second, within the width of both.
+//! Blends two turns that share a stretch of road: from the path of the first turn into the path of the second, within the width
+//! of both.
 //!
-//! Everything is measured across the stroke between the two. Along a path that runs at an angle to it, half-widths are
-//! taken as if it did not, and then shortened by the angle: narrower than they are, never wider.
+//! Everything is measured across the stroke between the turns. For a path at an angle to the stroke, half-widths are multiplied
+//! by the cosine of the angle, which never makes them too wide.
 
 use super::assemble::Sample;
 
-/// Paths farther from the stroke than this, metres, or at a greater angle than this, are not measured across it.
+/// The greatest distance of a path from the stroke at which it is blended, metres.
 const FARTHEST_M: f64 = 6.0;
+/// The cosine of the greatest angle between a path and the stroke at which the path is blended.
 const LEAST_COSINE: f64 = 0.82;
-/// Less room than this to a side is no road, metres.
+/// The least half-width of a blended stretch, metres.
 const LEAST_HALF_WIDTH_M: f64 = 0.2;
 
-/// The blended stretch, and what of the turns it stands for.
+/// The blended stretch, and the points of the turns that it replaces.
 pub(super) struct Blended {
     pub(super) samples: Vec<Sample>,
-    /// Points off the end of the turn before.
+    /// Number of points to drop at the end of the turn before.
     pub(super) dropped_before: usize,
-    /// Points off the beginning of the turn after.
+    /// Number of points to drop at the beginning of the turn after.
     pub(super) dropped_after: usize,
 }
 
-/// A path where it crosses the normal of a station.
+/// The crossing of a path with the normal of a station.
 #[derive(Clone, Copy)]
 struct Crossing {
-    /// To the left of the stroke's centreline, metres.
+    /// Offset to the left of the stroke's centreline, metres.
     offset_m: f64,
     left_m: f64,
     right_m: f64,
-    /// Between path and stroke.
+    /// Cosine of the angle between path and stroke.
     cosine: f64,
-    /// The path's point before it.
+    /// Index of the path's point before the crossing.
     index: usize,
 }
 
-/// `before` ends on the last of the stroke's points, `after` begins on the first one. `None` if they cannot be blended.
+/// Blends two paths along a stroke. `before` ends at the last of the stroke's points, `after` begins at the first. `None` if the
+/// paths cannot be blended.
 pub(super) fn blend(before: &[Sample], after: &[Sample], stroke: &[Sample]) -> Option<Blended> {
     let last = stroke.len().checked_sub(1).filter(|&last| last > 0)?;
     let mut samples = Vec::with_capacity(stroke.len());
@@ -68,13 +71,13 @@ fn direction(points: &[Sample], k: usize) -> Option<[f64; 2]> {
     (length > 0.0).then(|| [u[0] / length, u[1] / length])
 }
 
-/// Where a path crosses the normal at `at`, nearest to it.
+/// The crossing of a path with the normal at `at` that is nearest to `at`.
 fn crossing(path: &[Sample], at: [f64; 2], tangent: [f64; 2]) -> Option<Crossing> {
     let local = |p: &Sample| {
         let d = [p.at[0] - at[0], p.at[1] - at[1]];
         [d[0] * tangent[0] + d[1] * tangent[1], d[1] * tangent[0] - d[0] * tangent[1]]
     };
-    // A hair of slack, so that a path that begins or ends on this very normal crosses it.
+    // Some slack, so that a path that begins or ends on this normal crosses it.
     const SLACK_M: f64 = 1e-3;
     let mut best: Option<Crossing> = None;
     for (index, pair) in path.windows(2).enumerate() {
@@ -98,7 +101,7 @@ fn crossing(path: &[Sample], at: [f64; 2], tangent: [f64; 2]) -> Option<Crossing
     best
 }
 
-/// From 0 to 1, level at both ends up to the second derivative.
+/// The quintic from 0 to 1 whose first and second derivatives are 0 at both ends.
 fn smooth(t: f64) -> f64 {
     t * t * t * (10.0 + t * (6.0 * t - 15.0))
 }
@@ -108,7 +111,7 @@ fn smooth(t: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Along x, so far to the left at each metre.
+    /// A path along x with the given offset to the left at each metre.
     fn path(offset_m: impl Fn(f64) -> f64, [left_m, right_m]: [f64; 2]) -> Vec<Sample> {
         let metres = (0..=20).map(f64::from);
         metres.map(|x| Sample { at: [x, offset_m(x)], left_m, right_m }).collect()

@@ -1,33 +1,34 @@
-//! The edges of a way, and which of them are driven as part of a roundabout's passage.
+//! The edges of a way, and the ranges of edges that are arcs of a roundabout's passage.
 //!
-//! All edges that the wheels touch are in it, arcs too, so that lengths, times and restrictions need not know of passages.
+//! All driven edges are included, also arcs, so that lengths, times and restrictions need no special case for passages.
 
 use std::ops::Range;
 
 /// Edges in driving order.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Drive {
-    /// All of them, the arcs of passages among them.
+    /// All edges, including the arcs of passages.
     pub edges: Vec<u32>,
-    /// Which of `edges` are arcs of a passage, a range each, in order; an edge that is none stands before and after each.
+    /// The ranges of `edges` that are arcs, one range for each passage, in order. Before and after each range there is an edge
+    /// that is no arc of a passage.
     pub over: Vec<Range<usize>>,
 }
 
-/// From an edge to the next that is driven by itself.
+/// A step from one edge to the next edge that is no arc of a passage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Join<'d> {
-    /// The edge one comes from.
+    /// The edge that the vehicle comes from.
     pub from: u32,
-    /// The arcs between, where it is a passage.
+    /// The arcs between the two edges. Empty unless the step is a passage.
     pub arcs: &'d [u32],
-    /// The edge one goes into.
+    /// The edge that the vehicle goes into.
     pub to: u32,
-    /// The place of `to` in [`Drive::edges`].
+    /// The index of `to` in [`Drive::edges`].
     pub at: usize,
 }
 
 impl Drive {
-    /// In driving order.
+    /// The steps of the drive in driving order.
     pub fn joins(&self) -> impl Iterator<Item = Join<'_>> {
         let mut over = self.over.iter().peekable();
         let mut last = 0;
@@ -40,7 +41,7 @@ impl Drive {
         })
     }
 
-    /// Goes on with `next`, which begins on the edge where this one ends.
+    /// Appends `next`, which must begin on the last edge of this drive.
     pub(super) fn go_on(&mut self, next: &Self) {
         let shift = self.edges.len().saturating_sub(1);
         self.over.extend(next.over.iter().map(|arcs| arcs.start + shift..arcs.end + shift));

@@ -1,7 +1,7 @@
-//! The edge-based graph: states are edges driven to their end (and places in forbidden sequences), steps are movements and
-//! passages of roundabouts.
+//! The edge-based graph. Its states are edges that were driven to their end, and places in forbidden sequences. Its steps are
+//! movements and passages of roundabouts.
 //!
-//! What a vehicle may use comes from outside as [`Access`], so that the same search answers what blocks as well.
+//! A separate [`Access`] says what a vehicle may use, so the same search can also find what blocks a vehicle.
 
 use std::sync::Arc;
 
@@ -10,22 +10,22 @@ use super::roads::Roads;
 use super::speeds::{Measure, Speeds};
 use crate::network::{MovementKind, Movements, Network, Passage};
 
-/// Not to be used at any cost.
+/// The cost of what may not be used.
 pub const BARRED: u64 = u64::MAX;
 
-/// What using an edge, movement or passage costs beside its own cost; [`BARRED`] where it may not be used. A passage has a price of
-/// its own and asks for none of its arcs'.
+/// The price of using an edge, movement or passage, in addition to its cost. [`BARRED`] means that it may not be used. A passage
+/// has a price of its own; the prices of its arcs do not count.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Access {
-    /// One an edge.
+    /// One price for each edge.
     pub edges: Vec<u64>,
-    /// One a movement, in the order of [`Movements::all`].
+    /// One price for each movement, in the order of [`Movements::all`].
     pub movements: Vec<u64>,
-    /// One a passage, in the order of [`Movements::passages`].
+    /// One price for each passage, in the order of [`Movements::passages`].
     pub passages: Vec<u64>,
 }
 
-/// Everything that a search needs besides access.
+/// Everything that a search needs besides an [`Access`].
 #[derive(Debug, Clone)]
 pub struct Graph {
     roads: Arc<Roads>,
@@ -34,23 +34,23 @@ pub struct Graph {
     bans: Bans,
 }
 
-/// An edge driven to its end: the index of the edge, or beyond all edges a node of the forbidden sequences.
+/// A state of the search: the index of an edge, or, beyond all edges, a node of the forbidden sequences.
 pub(super) type State = u32;
 
-/// No passage.
+/// The value for a step that is no passage.
 pub(super) const NO_PASSAGE: u32 = u32::MAX;
 
-/// From the end of a state's edge to the beginning of the next one's.
+/// A step from the end of one edge to the beginning of the next.
 pub(super) struct Step {
     pub(super) next: State,
-    /// Of movement or passage with all penalties, the next edge's among them, not that of the next edge itself.
+    /// The cost of the movement or passage and all prices, including that of the next edge, but without the next edge's cost.
     pub(super) cost: u64,
-    /// Place in [`Movements::passages`], or [`NO_PASSAGE`].
+    /// Index in [`Movements::passages`], or [`NO_PASSAGE`].
     pub(super) passage: u32,
 }
 
 impl Graph {
-    /// With costs by `measure`.
+    /// The graph of these roads, with costs by `measure`.
     #[must_use]
     pub fn new(roads: &Arc<Roads>, speeds: &Speeds, measure: Measure) -> Self {
         let network = &roads.network;
@@ -58,36 +58,36 @@ impl Graph {
         Self { costs, turn_cost: speeds.turn_cost(measure), bans: Bans::of(network), roads: Arc::clone(roads) }
     }
 
-    /// Shared with whoever else drives on them.
+    /// The roads, which planners share.
     pub(super) fn roads(&self) -> &Arc<Roads> {
         &self.roads
     }
 
-    /// The network that it is over.
+    /// The network of the graph.
     #[must_use]
     pub fn network(&self) -> &Network {
         &self.roads.network
     }
 
-    /// All movements of it.
+    /// All movements of the network.
     #[must_use]
     pub fn movements(&self) -> &Movements {
         &self.roads.movements
     }
 
-    /// Milliseconds or millimetres of an edge.
+    /// The cost of an edge, milliseconds or millimetres.
     #[must_use]
     pub fn cost(&self, edge: u32) -> u64 {
         self.costs.get(edge as usize).copied().unwrap_or(BARRED)
     }
 
-    /// Of a part of an edge, rounded up.
+    /// The cost of a share of an edge, rounded up.
     #[must_use]
     pub fn part_cost(&self, edge: u32, share: f64) -> u64 {
         (self.cost(edge) as f64 * share.clamp(0.0, 1.0)).ceil() as u64
     }
 
-    /// Everything may be used but what restrictions and the ban on turning back forbid.
+    /// The access to everything except movements that a restriction forbids, and turning back.
     #[must_use]
     pub fn open_access(&self) -> Access {
         let movement = |m: &crate::network::Movement| {
@@ -105,12 +105,12 @@ impl Graph {
         }
     }
 
-    /// What a turn costs beside its edges.
+    /// The cost of a turn without its edges.
     pub(super) fn turn_cost(&self) -> u64 {
         self.turn_cost
     }
 
-    /// What a movement costs beside its edges.
+    /// The cost of a movement without its edges.
     pub(super) fn movement_cost(&self, kind: MovementKind) -> u64 {
         if kind == MovementKind::StraightOn { 0 } else { self.turn_cost }
     }
@@ -119,7 +119,7 @@ impl Graph {
         self.network().edges.len() + self.bans.len()
     }
 
-    /// The state of an edge that one begins on.
+    /// The state of an edge on which a way begins.
     pub(super) fn first(&self, edge: u32) -> Option<State> {
         self.bans.after(0, edge).map(|within| self.state(edge, within))
     }
@@ -137,17 +137,17 @@ impl Graph {
         if within == 0 { edge } else { self.network().edges.len() as u32 + within }
     }
 
-    /// What a passage costs beside the edges before and after: its arcs, and onto the ring and off it a turn each.
+    /// The cost of a passage without the edges before and after it: its arcs, a turn onto the ring and a turn off it.
     pub(super) fn passage_cost(&self, passage: &Passage) -> u64 {
         passage.through.iter().fold(2 * self.turn_cost, |sum, &arc| sum.saturating_add(self.cost(arc)))
     }
 
-    /// The arcs of a passage; none of [`NO_PASSAGE`].
+    /// The arcs of a passage. Empty for [`NO_PASSAGE`].
     pub(super) fn arcs(&self, passage: u32) -> &[u32] {
         self.movements().passages().get(passage as usize).map_or(&[], |passage| &passage.through)
     }
 
-    /// Where one can go on to from the end of a state's edge.
+    /// All usable steps from the end of a state's edge.
     pub(super) fn steps<'g>(&'g self, access: &'g Access, state: State) -> impl Iterator<Item = Step> + 'g {
         let edge = self.edge_of(state);
         let within = self.within(state);
@@ -169,7 +169,7 @@ impl Graph {
     }
 }
 
-/// Of a step and of the edge that it leads to, `None` where either may not be used.
+/// The price of a step together with the edge that it leads to. `None` if either may not be used.
 fn price(access: &Access, step: Option<&u64>, to: u32) -> Option<u64> {
     let (by_step, by_edge) = (*step?, *access.edges.get(to as usize)?);
     (by_step != BARRED && by_edge != BARRED).then(|| by_step.saturating_add(by_edge))

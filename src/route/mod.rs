@@ -1,31 +1,32 @@
-//! Routes: the shortest way over edges and turns that a vehicle may use, with one certificate over the whole of it.
+//! Plans routes: the best way over edges and turns that a vehicle may use, with one certificate over the whole route.
 //!
-//! Promises that no route is returned without a `safe` certificate over its concatenated corridor, made by the same call
-//! as any other; that no restriction is broken; and that where there is no route, what blocks is named. Leaves out:
-//! turning back on the road, and traffic.
+//! Every returned route has a `safe` certificate over its joined corridor, made by the same function as any other certificate.
+//! No route breaks a turn restriction. If there is no route, the answer names what blocks it. Turning back on the road is not
+//! planned, and traffic is ignored.
 //!
 //! | file | for |
 //! | --- | --- |
-//! | `speeds` | what an edge costs |
+//! | `speeds` | the cost of an edge |
 //! | `bans` | restrictions over ways, as an automaton |
 //! | `permits`, `stored` | what a vehicle may use |
-//! | `roads` | what planners share: the roads, and a vehicle with its permits |
+//! | `roads`, `driver` | what planners share: the roads, and a vehicle with its permits |
 //! | `graph` | edges, movements and passages of roundabouts as a graph |
-//! | `drive` | the edges of a way, and which are driven as part of a passage |
+//! | `drive` | the edges of a way, and the arcs of passages among them |
 //! | `search` | the shortest way |
-//! | `snap` | from a place to the road |
-//! | `pieces` | strokes and turns that a corridor is made of |
-//! | `turning` | turns made as a route asks for them |
-//! | `assemble`, `blend` | from pieces to one corridor |
-//! | `plan` | search, certify, leave out, search on; alternatives |
-//! | `obstacles` | what blocks |
+//! | `snap` | the nearest point on a road to a place |
+//! | `pieces` | strokes and turns, the pieces of a corridor |
+//! | `turning` | turns that are made when a route needs them |
+//! | `assemble`, `blend` | one corridor from pieces |
+//! | `plan` | searches, certifies, leaves out what failed, and searches again; alternatives |
+//! | `obstacles` | what blocks a route |
 //! | `report` | an answer as JSON and GeoJSON |
-//! | `reach` | where one can get to, and back |
+//! | `reach` | what can be reached from a place, and back |
 
 mod assemble;
 mod bans;
 mod blend;
 mod drive;
+mod driver;
 mod graph;
 mod obstacles;
 mod permits;
@@ -43,6 +44,7 @@ mod turning;
 pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble, passes_over};
 pub use bans::{Bans, Within};
 pub use drive::{Drive, Join};
+pub use driver::Driver;
 pub use graph::{Access, BARRED, Graph};
 pub use obstacles::Obstacle;
 pub use permits::{Permit, Permits};
@@ -50,7 +52,7 @@ pub use pieces::{Menu, NoTurns, Strokes, TurnPiece, Turns};
 pub use plan::{Answer, Planner, Question, Refutation, Route, Unanswered};
 pub use reach::{Components, Reach, components, reach, with_edge};
 pub use report::{PartResult, geojson, json, obstacle_members, place, title};
-pub use roads::{Driver, Roads};
+pub use roads::Roads;
 pub use search::{Found, Goal, Start, search, search_over};
 pub use snap::{Position, SnapError, Snapped, Snapper};
 pub use speeds::{Measure, Speeds, SpeedsError};

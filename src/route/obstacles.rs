@@ -1,7 +1,7 @@
-//! What blocks where there is no route: the cheapest set of places that would have to become safe.
+//! Finds what blocks a route: the set of places of least cost that would have to become safe.
 //!
-//! Number and measure count both: a place costs one metre, and what is missing there besides. Two places where a hand's breadth is
-//! missing are thus cheaper than one where three metres are; among sets that cost the same the shortest way over them is taken.
+//! The cost counts both number and size: each place costs one metre plus the metres that are missing there. Two places with 0.1
+//! m missing are cheaper than one place with 3 m missing. Among sets of equal cost, the one with the shortest way is taken.
 
 use super::assemble::PartKind;
 use super::drive::Drive;
@@ -10,36 +10,36 @@ use super::permits::{Permit, Permits};
 use super::plan::Refutation;
 use crate::network::Movements;
 
-/// Of a centimetre: more than any way on earth (40,000 km are 2³⁶ millimetres; the slowest of them two years), and 100,000 of the
-/// dearest places can still be added.
+/// The price of a missing centimetre. It exceeds the cost of any way on earth (40,000 km are 2³⁶ millimetres; in milliseconds
+/// 2³⁶ are two years), and the prices of 100,000 of the dearest places can be added without overflow.
 const CENTIMETRE: u64 = 1 << 36;
-/// Of a place by itself, centimetres.
+/// The cost of a place by itself, centimetres.
 const PLACE: f64 = 100.0;
-/// What counts as missing where there is no number, centimetres: no width or line is known, or no width would help.
+/// The missing width to assume if there is no number, centimetres: no width or line is known, or no width would help.
 const NO_NUMBER: f64 = 500.0;
-/// And what counts at most.
+/// The greatest missing width that counts, centimetres.
 const MOST_MISSING: f64 = 2000.0;
 
 /// A place that would have to become safe.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Obstacle {
-    /// Edge or turn.
+    /// The edge or turn.
     pub at: PartKind,
-    /// What is said of it by itself.
+    /// The permit of the place by itself.
     pub permit: Permit,
-    /// It passed by itself; the whole route failed there.
+    /// Whether the place passed by itself, but a whole route failed there.
     pub refuted: bool,
-    /// So much width is missing, metres, where that is known: on the place's own certificate, or on the whole route's that came
-    /// nearest.
+    /// The missing width, metres, if it is known: from the place's own certificate, or from the whole route that came nearest to
+    /// passing.
     pub missing_m: Option<f64>,
 }
 
-/// What is missing where an RSC is negative.
+/// The missing width if the RSC is negative, metres.
 fn missing_m(rsc_m: Option<f64>) -> Option<f64> {
     rsc_m.filter(|rsc_m| rsc_m.is_finite() && *rsc_m < 0.0).map(|rsc_m| -rsc_m)
 }
 
-/// Of the refutations of a place the one that came nearest.
+/// The least missing width among the refutations of a place, metres.
 fn refuted_missing_m(refuted: &[Refutation], at: PartKind) -> Option<f64> {
     let there = refuted.iter().filter(|refutation| refutation.at == at);
     there.filter_map(|refutation| missing_m(refutation.result.map(|result| result.0))).min_by(f64::total_cmp)
@@ -50,7 +50,7 @@ fn price(missing_m: Option<f64>) -> u64 {
     CENTIMETRE * (PLACE + missing) as u64
 }
 
-/// Everything lawful may be used, what is not safe at its price, and so what was refuted.
+/// The access to everything lawful. Places that are not safe, and refuted places, have a price.
 pub(super) fn priced(permits: &Permits, movements: &Movements, refuted: &[Refutation]) -> Access {
     let mut access = permits.access_at(movements, |permit| price(missing_m(permit.rsc_m)));
     for refutation in refuted.iter().filter(|refutation| refutation.left_out) {
@@ -84,7 +84,7 @@ pub(super) fn on(
     places.collect()
 }
 
-/// Where the price of a place stands.
+/// The slot of a place's price in `access`.
 pub(super) fn slot<'a>(access: &'a mut Access, movements: &Movements, at: PartKind) -> Option<&'a mut u64> {
     match at {
         PartKind::Edge(edge) => access.edges.get_mut(edge as usize),

@@ -1,26 +1,26 @@
-//! Which edges and movements a vehicle may use, with verdict and RSC: what a search starts from.
+//! The edges and movements that a vehicle may use, with verdict and RSC. A search starts from them.
 
 use super::graph::{Access, BARRED};
 use crate::network::{MovementKind, Movements};
 use crate::settings::Settings;
 use crate::verdict::{UnknownReason, Verdict};
 
-/// What is said of an edge or a movement.
+/// The verdict on an edge or a movement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Permit {
-    /// With its reason.
+    /// The verdict with its reason.
     pub verdict: Verdict,
-    /// Metres, where it was computed.
+    /// The RSC, metres, if it was computed.
     pub rsc_m: Option<f64>,
 }
 
 impl Permit {
-    /// Nothing is known of it.
+    /// The permit of what nothing is known about.
     pub const UNKNOWN: Self = Self { verdict: Verdict::Unknown(UnknownReason::Geometry), rsc_m: None };
-    /// Covered by other certificates.
+    /// The permit of what other certificates cover.
     pub const COVERED: Self = Self { verdict: Verdict::Safe, rsc_m: None };
 
-    /// Whether a search may use it: one meaning for routes and exports.
+    /// Whether a search may use it.
     #[must_use]
     pub fn usable(&self) -> bool {
         self.verdict == Verdict::Safe
@@ -30,18 +30,18 @@ impl Permit {
 /// All permits of one vehicle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Permits {
-    /// How they were made: a route over them is certified in the same way.
+    /// The settings of the certificates. A route over these permits is certified with the same settings.
     pub settings: Settings,
-    /// One an edge.
+    /// One permit for each edge.
     pub edges: Vec<Permit>,
-    /// One a movement, in the order of [`Movements::all`]; of those straight on nothing is asked.
+    /// One permit for each movement, in the order of [`Movements::all`]. Movements straight on are covered by their edges.
     pub movements: Vec<Permit>,
-    /// One a passage of a roundabout, in the order of [`Movements::passages`].
+    /// One permit for each passage of a roundabout, in the order of [`Movements::passages`].
     pub passages: Vec<Permit>,
 }
 
 impl Permits {
-    /// With `turn` for every movement that is a turn and for every passage; straight on is covered by the edges.
+    /// Makes permits from those of edges. `turn` gives the permit of each movement that is a turn and of each passage.
     pub fn new(
         settings: Settings,
         edges: Vec<Permit>,
@@ -57,13 +57,13 @@ impl Permits {
         Self { settings, edges, movements: movements.all().iter().map(permit).collect(), passages }
     }
 
-    /// What is safe may be used, and no restriction may be broken; nobody turns back on the road.
+    /// The access to what is safe and breaks no restriction. Turning back on the road is barred.
     #[must_use]
     pub fn access(&self, movements: &Movements) -> Access {
         self.access_at(movements, |_| BARRED)
     }
 
-    /// The same, but what is not safe may be used at a price.
+    /// The access to what is lawful. What is not safe has a price.
     #[must_use]
     pub fn access_at(&self, movements: &Movements, price: impl Fn(&Permit) -> u64) -> Access {
         let cost = |permit: &Permit| if permit.usable() { 0 } else { price(permit) };

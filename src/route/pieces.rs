@@ -1,4 +1,4 @@
-//! What a route's corridor is made of: strokes and turns, each in a frame of its own.
+//! The pieces of a route's corridor: strokes and turns, each in a frame of its own.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -9,31 +9,33 @@ use super::roads::Roads;
 use crate::corridor::{Corridor, Frame};
 use crate::network::{Movement, Network};
 use crate::settings::Settings;
-use crate::turns::{Joint, StrokeLine, TurnParams};
+use crate::turns::{Joint, Reach, StrokeLine, TurnParams};
 use crate::verdict::UnknownReason;
 
 /// One certified way to drive a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TurnPiece {
-    /// In which the corridor's positions are.
+    /// The frame of the corridor's positions.
     pub frame: Frame,
-    /// At least the turn itself.
+    /// A corridor that contains at least the turn.
     pub corridor: Corridor,
-    /// Stations of the turn, between the joints, both included.
+    /// The stations of the turn between the joints, including both.
     pub turn: Range<usize>,
-    /// Where it leaves the stroke of the edge that one comes from.
+    /// The joint with the stroke that the vehicle comes from.
     pub approach: Joint,
-    /// Where it joins the stroke of the edge that one goes to.
+    /// The joint with the stroke that the vehicle goes to.
     pub departure: Joint,
+    /// How far before and after it the turn's strip counts.
+    pub reach: Reach,
 }
 
-/// Where turns come from.
+/// A source of turns.
 pub trait Turns: Send {
-    /// Ways to drive from one edge into another that are certified for the vehicle, the best first; over these arcs, where it is
-    /// a passage of a roundabout.
+    /// The certified ways to drive from one edge into another, the best first. `arcs` are those of a passage of a roundabout,
+    /// else empty.
     ///
     /// # Errors
-    /// There is none, and why.
+    /// The turn has no corridor; the error is the reason.
     fn pieces(&self, strokes: &mut Strokes, movement: &Movement, arcs: &[u32])
     -> Result<Vec<TurnPiece>, UnknownReason>;
 }
@@ -41,7 +43,7 @@ pub trait Turns: Send {
 /// The paths of a turn, the best first.
 type Made = Result<Vec<Arc<TurnPiece>>, UnknownReason>;
 
-/// Which of its paths each turn is to be driven on: the best one, until another is asked for.
+/// Chooses the path of each turn: the best one, until another is requested.
 pub struct Menu {
     turns: Box<dyn Turns>,
     made: FxHashMap<(u32, u32), Made>,
@@ -49,21 +51,21 @@ pub struct Menu {
 }
 
 impl Menu {
-    /// Nothing is made yet.
+    /// A menu without turns. Turns are made when they are first needed.
     #[must_use]
     pub fn new(turns: Box<dyn Turns>) -> Self {
         Self { turns, made: FxHashMap::default(), choice: FxHashMap::default() }
     }
 
-    /// Every turn on its best path again.
+    /// Resets every turn to its best path.
     pub fn begin(&mut self) {
         self.choice.clear();
     }
 
-    /// The path of a turn, or of a passage over these arcs.
+    /// The chosen path of a turn, or of a passage over these arcs.
     ///
     /// # Errors
-    /// There is none, and why.
+    /// The turn has no certified path; the error is the reason.
     pub fn chosen(
         &mut self,
         strokes: &mut Strokes,
@@ -78,7 +80,7 @@ impl Menu {
         made.get(choice).cloned().ok_or(UnknownReason::Geometry)
     }
 
-    /// Takes the next pair of paths of two turns that follow each other; whether there is one.
+    /// Chooses the next pair of paths for two successive turns. Returns whether there is one.
     pub fn another_pair(&mut self, before: (u32, u32), after: (u32, u32)) -> bool {
         if self.another(after.0, after.1) {
             return true;
@@ -90,7 +92,7 @@ impl Menu {
         there
     }
 
-    /// Takes the next path of a turn; whether there is one.
+    /// Chooses the next path of a turn. Returns whether there is one.
     pub fn another(&mut self, from: u32, to: u32) -> bool {
         let choice = self.choice.entry((from, to)).or_insert(0);
         let there = matches!(self.made.get(&(from, to)), Some(Ok(made)) if *choice + 1 < made.len());
@@ -99,7 +101,7 @@ impl Menu {
     }
 }
 
-/// No turn at all: routes then only go straight on.
+/// A source without turns. Routes then only go straight on.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoTurns;
 
@@ -109,18 +111,18 @@ impl Turns for NoTurns {
     }
 }
 
-/// Strokes of a network, made into corridors under one set's settings as they are asked for, and kept.
+/// The corridors of a network's strokes under one set's settings. Each is made when it is first needed, and kept.
 pub struct Strokes {
     roads: Arc<Roads>,
     settings: Settings,
     params: TurnParams,
-    /// By edge: its stroke, and its place in it.
+    /// By edge: its stroke, and its index in the stroke.
     place: Vec<(u32, u32)>,
     made: FxHashMap<u32, Result<Arc<StrokeLine>, UnknownReason>>,
 }
 
 impl Strokes {
-    /// Nothing is made yet.
+    /// The strokes of these roads. No corridor is made yet.
     #[must_use]
     pub fn new(roads: &Arc<Roads>, settings: Settings) -> Self {
         let network = &roads.network;
@@ -139,18 +141,18 @@ impl Strokes {
         &self.roads.network
     }
 
-    /// What the strokes are made with, and all that is strung together from them.
+    /// The settings of the strokes' corridors and of everything that is made from them.
     #[must_use]
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// The same for turns between them.
+    /// The parameters of turns between the strokes.
     pub(super) fn turn_params(&self) -> &TurnParams {
         &self.params
     }
 
-    /// Stroke of an edge, and the edge's place in it.
+    /// The stroke of an edge, and the edge's index in it.
     pub(super) fn of(&self, edge: u32) -> Option<(u32, u32)> {
         self.place.get(edge as usize).copied().filter(|place| place.0 != u32::MAX)
     }
@@ -158,7 +160,7 @@ impl Strokes {
     /// The line of a stroke.
     ///
     /// # Errors
-    /// Nothing can be said of any of its edges.
+    /// The stroke has no corridor; the error is the reason.
     pub fn line(&mut self, stroke: u32) -> Result<Arc<StrokeLine>, UnknownReason> {
         let (network, policy, params) = (&self.roads.network, self.settings.policy, &self.settings.corridor);
         let make = || StrokeLine::new(network, stroke, policy, params).map(Arc::new);
@@ -168,7 +170,7 @@ impl Strokes {
     /// The line of the stroke that an edge belongs to.
     ///
     /// # Errors
-    /// Nothing can be said of any of its edges.
+    /// The stroke has no corridor; the error is the reason.
     pub fn line_of(&mut self, edge: u32) -> Result<Arc<StrokeLine>, UnknownReason> {
         let (stroke, _) = self.of(edge).ok_or(UnknownReason::Geometry)?;
         self.line(stroke)

@@ -1,18 +1,19 @@
-//! From two places to certified routes, or to what blocks.
+//! Plans certified routes between places, or finds what blocks them.
 //!
-//! Promises: a route is returned only with a `safe` certificate over the whole of it. Where that fails though the parts
-//! passed, the turn nearest to the place that limits is driven on another of its paths, and when there is none left it is
-//! left out and the search goes on, so many times as asked; how
-//! often, and where, is part of the answer. Where there is none left, what blocks is said (`obstacles`).
+//! A route is returned only with a `safe` certificate over the whole route. If the whole fails although its parts passed, the
+//! turn nearest to the limiting place is tried on its other paths. If all paths fail, the turn is left out and the search goes
+//! on, up to the requested number of tries. The answer lists the failures. If no route is left, the answer names the obstacles
+//! (`obstacles`).
 
 use std::sync::Arc;
 
 use super::assemble::{AssemblyError, PartKind, RoutePath, Way, assemble};
 use super::drive::{Drive, Join};
+use super::driver::Driver;
 use super::graph::{Access, BARRED, Graph};
 use super::obstacles::{self, Obstacle};
 use super::pieces::{Menu, Strokes, Turns};
-use super::roads::{Driver, Roads};
+use super::roads::Roads;
 use super::search::{Found, Goal, Start, search_over};
 use super::snap::{Position, SnapError, Snapped, Snapper};
 use super::speeds::{Measure, Speeds};
@@ -22,86 +23,86 @@ use crate::network::{MovementKind, Network};
 use crate::stet::{self, Certificate};
 use crate::stop::{Stop, Stopped};
 
-/// A failure of the whole is put down to a turn at most this far from it, metres; else to the edge it is on.
+/// A failure of the whole route is attributed to the nearest turn within this distance, metres, else to the edge at the place.
 const TURN_REACH_M: f64 = 120.0;
-/// So many combinations of its turns' paths are strung together for one way, at most.
+/// The greatest number of combinations of paths that are joined for one way.
 const MOST_STRUNG: usize = 100;
-/// How much an alternative may share with the routes before it, by length.
+/// The greatest share of its length that an alternative may have in common with an earlier route.
 const MOST_SHARED: f64 = 0.75;
-/// How much longer an alternative may be than the first.
+/// The greatest ratio of an alternative's cost to that of the first route.
 const MOST_LONGER: f64 = 2.0;
-/// How often the ways of the routes before are made dearer to find an alternative, each time by half.
+/// How often the edges of earlier routes are made dearer, by half their cost each time, to find one alternative.
 const DEARER: u32 = 6;
 
-/// What is asked.
+/// A request for routes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Question {
-    /// The beginning, the places between, and the end: at least two.
+    /// The beginning, the places between, and the end. There are at least two.
     pub places: Vec<Position>,
-    /// How far the road may be from each, metres.
+    /// The greatest distance of each place from a road, metres.
     pub snap_m: f64,
-    /// How many more routes than the best one.
+    /// Number of routes beside the best one.
     pub alternatives: usize,
-    /// How many whole routes may be certified in vain.
+    /// Number of whole routes that may fail to certify.
     pub tries: usize,
 }
 
 /// A certified route.
 #[derive(Debug, Clone)]
 pub struct Route {
-    /// Its edges.
+    /// The edges.
     pub drive: Drive,
-    /// Of the first edge, behind.
+    /// The share of the first edge before the route's beginning, 0..=1.
     pub start: f64,
-    /// Of the last edge, driven.
+    /// The share of the last edge up to the route's end, 0..=1.
     pub end: f64,
-    /// In the measure asked for: milliseconds or millimetres.
+    /// The cost in the planner's measure, milliseconds or millimetres.
     pub cost: u64,
-    /// By the table of speeds, seconds.
+    /// The time by the table of speeds, seconds.
     pub time_s: f64,
-    /// Along the corridor, metres.
+    /// The length along the corridor, metres.
     pub length_m: f64,
     /// The whole corridor.
     pub path: RoutePath,
-    /// Over the whole of it; safe.
+    /// The certificate of the whole corridor. It is safe.
     pub certificate: Certificate,
 }
 
-/// A whole route that did not certify though its parts did.
+/// A whole route that failed although its parts passed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refutation {
-    /// The turn that is then driven another way or left out; an edge, where no turn is near.
+    /// The turn that the failure is attributed to, or an edge if no turn is near.
     pub at: PartKind,
-    /// RSC and hinge margin (radians) of the whole; `None`: its pieces could not be strung together, or nothing bounds the vehicle.
+    /// RSC (metres) and hinge margin (radians) of the whole. `None` if its pieces could not be joined or no bound holds.
     pub result: Option<(f64, f64)>,
-    /// Why its pieces could not be strung together.
+    /// Why its pieces could not be joined.
     pub assembly: Option<AssemblyError>,
-    /// The search then went on without the place; else the turn was driven on another path.
+    /// Whether the search went on without the place. Otherwise the turn was tried on another path.
     pub left_out: bool,
 }
 
 /// The answer.
 #[derive(Debug, Clone, Default)]
 pub struct Answer {
-    /// Certified, the best first.
+    /// The certified routes, the best first.
     pub routes: Vec<Route>,
     /// Whole routes that failed, in order.
     pub refuted: Vec<Refutation>,
-    /// The tries were used up before the search was.
+    /// Whether the search stopped before all ways were tried.
     pub gave_up: bool,
-    /// Where there is no route: the cheapest set of failing places; `None`: not even roads lead there.
+    /// If there is no route, the set of failing places of least cost. `None` if there is a route, or if no roads lead there.
     pub obstacles: Option<Vec<Obstacle>>,
-    /// Where the places are on the road.
+    /// The requested places, moved to the road.
     pub snapped: Vec<Snapped>,
 }
 
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Unanswered {
-    /// A place that is on no road that the vehicle may use.
+    /// A place is near no road that the vehicle may use.
     #[error(transparent)]
     Place(#[from] SnapError),
-    /// Nobody waits for it any more.
+    /// The caller cancelled the work.
     #[error(transparent)]
     Stopped(#[from] Stopped),
 }
@@ -119,7 +120,7 @@ pub struct Planner {
 }
 
 impl Planner {
-    /// Finds routes that are best by `measure`. Strokes, turns and whole routes are certified under the settings of the
+    /// A planner that finds the best routes by `measure`. Strokes, turns and whole routes are made with the settings of the
     /// driver's permits.
     #[must_use]
     pub fn new(roads: &Arc<Roads>, driver: Arc<Driver>, speeds: Speeds, measure: Measure) -> Self {
@@ -127,7 +128,7 @@ impl Planner {
         Self::with_turns(roads, driver, speeds, measure, turns)
     }
 
-    /// Takes turns from elsewhere.
+    /// A planner with another source of turns.
     #[must_use]
     pub fn with_turns(
         roads: &Arc<Roads>,
@@ -148,23 +149,23 @@ impl Planner {
         }
     }
 
-    /// The roads that it plans on.
+    /// The network of the planner.
     #[must_use]
     pub fn network(&self) -> &Network {
         self.graph.network()
     }
 
-    /// The vehicle that it plans for.
+    /// The vehicle of the planner, with its permits.
     #[must_use]
     pub fn driver(&self) -> &Driver {
         &self.driver
     }
 
-    /// Routes, or what blocks. The planner asks `stop` before each turn, every few thousand states of a search and every few
-    /// metres of a certificate's sweeps. A cancelled answer leaves the planner whole: the next answer is the same as without it.
+    /// Answers with routes or with what blocks them. The planner checks `stop` before each turn, every few thousand states of a
+    /// search and every few metres of a certificate's sweeps. A cancelled call does not change later answers.
     ///
     /// # Errors
-    /// A place is on no road that the vehicle may use; `stop` was told.
+    /// A place is near no road that the vehicle may use, or `stop` was told.
     pub fn answer(&mut self, question: &Question, stop: &Stop) -> Result<Answer, Unanswered> {
         self.stop = stop.clone();
         stop.check()?;
@@ -196,7 +197,7 @@ impl Planner {
         }))
     }
 
-    /// Searches and certifies until a whole route passes, leaving out of `access` what fails. Whether it found one.
+    /// Searches and certifies until a whole route passes, and bars in `access` what fails. Returns whether it found a route.
     fn next_route(
         &mut self,
         access: &mut Access,
@@ -220,12 +221,12 @@ impl Planner {
                 answer.routes.push(route);
                 return Ok(true);
             }
-            // Any other way is as far.
+            // A route that does not fit into one frame fails on every way, so nothing is left out.
             let too_far = failed.iter().any(|failed| matches!(failed.assembly, Some(AssemblyError::Frame(_))));
             if let Some(nearest) = nearest(&mut failed).filter(|_| !too_far) {
                 nearest.left_out = self.leave_out(access, nearest.at);
             }
-            // With nothing left out the search would find the same way again.
+            // If nothing was left out, the search would find the same way again.
             answer.gave_up = !failed.iter().any(|failed| failed.left_out);
             answer.refuted.append(&mut failed);
             if answer.gave_up {
@@ -234,8 +235,8 @@ impl Planner {
         }
     }
 
-    /// Certifies a way, each turn on the best of its paths first. Beside the route what failed before: certificates, and at the end of
-    /// all paths the last pieces that could not be strung together.
+    /// Certifies a way. Each turn starts on its best path. Returns the route, if one passed, and the failures before it: failed
+    /// certificates, and after the last path the pieces that could not be joined.
     fn on_any_paths(
         &mut self,
         found: &Found,
@@ -298,7 +299,7 @@ impl Planner {
         assemble(network, self.graph.movements(), &mut self.strokes, &mut self.menu, &way, &self.stop)
     }
 
-    /// By the table of speeds.
+    /// The driving time by the table of speeds, seconds.
     fn time_s(&self, drive: &Drive, start: f64, end: f64) -> f64 {
         let network = self.graph.network();
         let time = |(share, edge): (f64, u32)| {
@@ -309,13 +310,13 @@ impl Planner {
         1e-3 * (driven + turns as f64)
     }
 
-    /// Whether there was something to leave out.
+    /// Bars a place. Returns whether it was not barred before.
     fn leave_out(&self, access: &mut Access, at: PartKind) -> bool {
         let slot = obstacles::slot(access, self.graph.movements(), at);
         slot.is_some_and(|slot| std::mem::replace(slot, BARRED) != BARRED)
     }
 
-    /// The cheapest set of failing places between the places asked for.
+    /// The set of failing places of least cost between the requested places.
     fn obstacles(&self, answer: &Answer) -> Result<Option<Vec<Obstacle>>, Stopped> {
         let (permits, movements) = (&self.driver.permits, self.graph.movements());
         let mut access = obstacles::priced(permits, movements, &answer.refuted);
@@ -323,7 +324,7 @@ impl Planner {
         Ok(found.map(|(found, ..)| obstacles::on(&found.drive, permits, movements, &mut access, &answer.refuted)))
     }
 
-    /// Adds routes that differ: what the ones before use is made dearer until something else is shorter.
+    /// Adds routes that differ from the earlier ones. Edges of earlier routes are made dearer until another way is cheaper.
     fn alternatives(&mut self, access: &Access, question: &Question, answer: &mut Answer) -> Result<(), Stopped> {
         let Some(first_cost) = answer.routes.first().map(|route| route.cost) else { return Ok(()) };
         let mut access = access.clone();
@@ -362,13 +363,13 @@ impl Planner {
     }
 }
 
-/// What a route costs without what was put on it to find others.
+/// The cost of a route without the surcharges of the search for alternatives.
 fn costs_of(graph: &Graph, route: &Route) -> u64 {
     let edges = shares(&route.drive, route.start, route.end).map(|(share, edge)| graph.part_cost(edge, share));
     edges.sum::<u64>() + turns(graph, &route.drive) * graph.turn_cost()
 }
 
-/// How much of each edge is driven, of a way that begins and ends so far along its first and last one.
+/// The driven share of each edge. The way begins at the share `start` of its first edge and ends at the share `end` of its last.
 fn shares(drive: &Drive, start: f64, end: f64) -> impl Iterator<Item = (f64, u32)> {
     let last = drive.edges.len() - 1;
     drive.edges.iter().enumerate().map(move |(i, &edge)| {
@@ -378,7 +379,7 @@ fn shares(drive: &Drive, start: f64, end: f64) -> impl Iterator<Item = (f64, u32
     })
 }
 
-/// Turns of a way; a passage is two.
+/// The number of turns of a way. A passage counts as two.
 fn turns(graph: &Graph, drive: &Drive) -> u64 {
     let count = |join: Join<'_>| match graph.movements().between(join.from, join.to) {
         Some(movement) => u64::from(movement.kind != MovementKind::StraightOn),
@@ -387,13 +388,13 @@ fn turns(graph: &Graph, drive: &Drive) -> u64 {
     drive.joins().map(count).sum()
 }
 
-/// Of all that failed on one way what came nearest to passing; else the last.
+/// The failure on one way that came nearest to passing, by its RSC.
 fn nearest(failed: &mut [Refutation]) -> Option<&mut Refutation> {
     let rsc_m = |refutation: &Refutation| refutation.result.map_or(f64::NEG_INFINITY, |result| result.0);
     failed.iter_mut().max_by(|a, b| rsc_m(a).total_cmp(&rsc_m(b)))
 }
 
-/// Where the pieces of a way could not be strung together.
+/// The refutation of a way whose pieces could not be joined.
 fn unassembled(error: AssemblyError, drive: &Drive) -> Refutation {
     let at = match &error {
         AssemblyError::Unknown { at, .. }
@@ -409,12 +410,12 @@ fn first_turn(drive: &Drive) -> PartKind {
     first.unwrap_or(PartKind::Edge(drive.edges.first().copied().unwrap_or_default()))
 }
 
-/// What to leave out where a whole route fails: the turn nearest to the place, or the edge it is on.
+/// What to leave out when a whole route fails: the turn nearest to the failing place, or the edge at the place.
 fn culprit(path: &RoutePath, certificate: Option<&Certificate>) -> PartKind {
     let corridor = &path.corridor;
     let at = match certificate {
         Some(c) if c.result.too_narrow() => c.result.limiting.station,
-        // No place is known for a hinge: the sharpest bend.
+        // The place of a hinge's failure is not known, so the sharpest bend is taken.
         _ => sharpest(corridor),
     };
     let distance = |stations: &std::ops::Range<usize>| {

@@ -1,30 +1,30 @@
-//! Where a vehicle can get to from a place over roads and turns that are certified for it, and from where it can come back.
+//! Finds the edges that a vehicle can reach over certified edges and turns, and the edges from which it can come back.
 //!
-//! Over the same graph as routes, restrictions included; the parts are certified, whole routes are not. What a place of
-//! the road would open if it were safe is the same question with that place added.
+//! The graph and the restrictions are those of routes. Each edge and turn is certified by itself; whole routes are not. The
+//! same functions answer what would be reachable if one more edge were safe ([`with_edge`]).
 
 use super::graph::{Access, BARRED, Graph, State};
 use crate::network::MovementKind;
 
-/// What can be reached.
+/// The reachable edges.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reach {
-    /// By edge: some way leads there. Arcs that are driven as part of a passage only are not reached by themselves.
+    /// By edge: whether a way leads there. An arc that is driven only as part of a passage does not count.
     pub there: Vec<bool>,
-    /// By edge: and from there back to the beginning.
+    /// By edge: whether a way leads there and another leads back to the beginning.
     pub and_back: Vec<bool>,
 }
 
-/// The parts of the network between any two places of which a vehicle can drive both ways.
+/// The parts of the network in which a vehicle can drive from every edge to every other.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Components {
-    /// By edge: its component, numbered by size (0 is the largest by number of edges); `None`: it may not be used.
+    /// By edge: its component. Components are numbered by size; 0 has the most edges. `None` if the edge may not be used.
     pub of: Vec<Option<u32>>,
-    /// How many.
+    /// Number of components.
     pub count: usize,
 }
 
-/// Everything that can be reached from any of these edges.
+/// The edges that can be reached from any of the edges `starts`.
 #[must_use]
 pub fn reach(graph: &Graph, access: &Access, starts: &[u32]) -> Reach {
     let usable = |edge: &&u32| access.edges.get(**edge as usize).is_some_and(|&cost| cost != BARRED);
@@ -71,7 +71,7 @@ fn flood(states: usize, first: &[State], mut step: impl FnMut(State, &mut dyn Fn
     seen
 }
 
-/// The access that a vehicle would have if an edge, and every lawful turn and passage into and out of it, were safe.
+/// The access if an edge and every lawful turn and passage into and out of it were safe.
 #[must_use]
 pub fn with_edge(graph: &Graph, access: &Access, edge: u32) -> Access {
     let mut opened = access.clone();
@@ -92,8 +92,8 @@ pub fn with_edge(graph: &Graph, access: &Access, edge: u32) -> Access {
     opened
 }
 
-/// Strongly connected components (Tarjan 1972, without recursion), of the edges that may be used. Sequences that are
-/// forbidden over ways are not minded here: a component may then be a little too large.
+/// The strongly connected components of the usable edges (Tarjan 1972, without recursion). Restrictions over ways are ignored,
+/// so a component may be a little too large.
 #[must_use]
 pub fn components(graph: &Graph, access: &Access) -> Components {
     let edges = graph.network().edges.len();

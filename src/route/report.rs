@@ -1,4 +1,4 @@
-//! A route for people and programs: its parts with their RSC, as GeoJSON, as JSON.
+//! Writes answers as JSON and GeoJSON, with the RSC of each part of a route.
 
 use serde_json::{Value, json};
 
@@ -10,22 +10,22 @@ use crate::network::{Edge, Network};
 use crate::stet::{Model, known_m};
 use crate::words::{Named, verdict_words};
 
-/// A stretch of a route with what is left there.
+/// A stretch of a route with its least leeway.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PartResult {
-    /// What it is.
+    /// The kind of part.
     pub kind: PartKind,
-    /// From the route's beginning, metres.
+    /// Beginning of the part, metres from the route's beginning.
     pub from_m: f64,
-    /// From the route's beginning, metres.
+    /// End of the part, metres from the route's beginning.
     pub to_m: f64,
-    /// The least leeway of any body on it, all bounds deducted, with the tracking tolerance that the whole rests on at most: never
-    /// less than the whole route's RSC. Metres; `None` where no body ever is.
+    /// The least leeway of any body on the part, metres, after all bounds are deducted, with at most the tracking tolerance of
+    /// the whole route's certificate. It is never below the whole route's RSC. `None` if no body passes the part.
     pub rsc_m: Option<f64>,
 }
 
 impl Route {
-    /// In driving order.
+    /// The parts in driving order.
     #[must_use]
     pub fn parts(&self) -> Vec<PartResult> {
         let spacing_m = self.path.corridor.spacing_m;
@@ -44,22 +44,22 @@ impl Route {
         self.path.parts.iter().map(part).collect()
     }
 
-    /// The part where the whole route has least room.
+    /// The part with the least leeway of the whole route.
     #[must_use]
     pub fn limiting(&self) -> Option<PartKind> {
         let station = self.certificate.result.limiting.station;
         self.path.parts.iter().find(|part| part.stations.contains(&station)).map(|part| part.kind)
     }
 
-    /// Where the route has least room, metres from its beginning.
+    /// The place of the least leeway, metres from the route's beginning.
     #[must_use]
     pub fn limiting_m(&self) -> f64 {
         self.certificate.result.limiting.station as f64 * self.path.corridor.spacing_m
     }
 }
 
-/// What an edge, turn or passage is called: `A87 Great Inland Highway`, `Main Street into High Street`, `Main Street over the
-/// roundabout into High Street`.
+/// The title of an edge, turn or passage, such as `A87 Great Inland Highway`, `Main Street into High Street` or `Main Street over
+/// the roundabout into High Street`.
 #[must_use]
 pub fn title(network: &Network, at: PartKind) -> String {
     let of = |edge: u32| network.edges.get(edge as usize).map_or_else(String::new, |edge| road_title(network, edge));
@@ -132,7 +132,7 @@ fn part_members(network: &Network, part: &PartResult) -> Value {
     with(ids(network, part.kind), own)
 }
 
-/// A place that blocks.
+/// The members of an obstacle.
 #[must_use]
 pub fn obstacle_members(network: &Network, obstacle: &Obstacle) -> Value {
     let (verdict, reason) = verdict_words(obstacle.permit.verdict);
@@ -156,7 +156,7 @@ fn refutation_members(network: &Network, refutation: &Refutation) -> Value {
     with(ids(network, refutation.at), own)
 }
 
-/// All of the answer but geometry.
+/// The whole answer without geometry.
 #[must_use]
 pub fn json(network: &Network, model: &Model, answer: &Answer) -> Value {
     let route = |route: &Route| {
@@ -177,10 +177,10 @@ pub fn json(network: &Network, model: &Model, answer: &Answer) -> Value {
     })
 }
 
-/// Each route as one line, then each of its parts; what blocks, as points.
+/// A GeoJSON collection: each route as one line followed by its parts, and obstacles as points.
 ///
 /// # Errors
-/// The frame cannot be left.
+/// Positions cannot be converted from a route's frame.
 pub fn geojson(network: &Network, model: &Model, answer: &Answer) -> Result<Value, FrameError> {
     let mut features = Vec::new();
     for (number, route) in answer.routes.iter().enumerate() {
@@ -198,7 +198,7 @@ pub fn geojson(network: &Network, model: &Model, answer: &Answer) -> Result<Valu
         let whole = with(json!({"kind": "route"}), route_members(network, model, route));
         features.push(feature(0..line.len(), whole));
         for (part, result) in route.path.parts.iter().zip(route.parts()) {
-            // A line has two positions at least.
+            // A line must have at least two positions.
             let end = part.stations.end.max(part.stations.start + 2).min(line.len());
             let start = part.stations.start.min(end.saturating_sub(2));
             features.push(feature(start..end, part_members(network, &result)));
@@ -214,7 +214,7 @@ pub fn geojson(network: &Network, model: &Model, answer: &Answer) -> Result<Valu
     Ok(json!({"type": "FeatureCollection", "features": features}))
 }
 
-/// To 1e-7 degree, a centimetre, as maps have it.
+/// Rounds to 1e-7 degree (about a centimetre), the precision of OpenStreetMap.
 fn rounded([lon, lat]: [f64; 2]) -> [f64; 2] {
     [lon, lat].map(|degrees| (degrees * 1e7).round() / 1e7)
 }

@@ -1,10 +1,8 @@
-//! What a planner needs besides a question: the roads of a region, and a vehicle with its permits on them.
+//! The roads of a region, shared by its planners.
 
 use std::sync::Arc;
 
-use super::permits::Permits;
 use crate::network::{Movements, Network};
-use crate::stet::Model;
 
 /// A network and its movements. Planners of one region share them.
 #[derive(Debug)]
@@ -22,13 +20,4 @@ impl Roads {
         let movements = network.movements();
         Arc::new(Self { network, movements })
     }
-}
-
-/// A vehicle and what it may use.
-#[derive(Debug)]
-pub struct Driver {
-    /// The vehicle.
-    pub model: Model,
-    /// Its permits, with the settings under which they were made.
-    pub permits: Permits,
 }

@@ -1,6 +1,7 @@
-//! The shortest way over the edge-based graph (Dijkstra), from several beginnings to several ends at once.
+//! Finds shortest ways over the edge-based graph by Dijkstra's algorithm, from several beginnings to several ends at once.
 //!
-//! Costs are whole numbers and states of equal cost are left in their order, so that the same question has the same answer.
+//! Costs are whole numbers, and states of equal cost leave the queue in order of their numbers, so the same question has the
+//! same answer.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -9,58 +10,58 @@ use super::drive::Drive;
 use super::graph::{Access, BARRED, Graph, NO_PASSAGE, State};
 use crate::stop::{Stop, Stopped};
 
-/// Where a way may begin.
+/// A possible beginning of a way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Start {
-    /// On this edge.
+    /// The edge.
     pub edge: u32,
-    /// So much of it is behind, 0..=1.
+    /// The share of the edge before the beginning, 0..=1.
     pub share: f64,
-    /// Costs so far.
+    /// The cost so far.
     pub cost: u64,
-    /// In the middle of forbidden sequences; `None`: fresh on the edge.
+    /// The state, if the vehicle is in the middle of forbidden sequences. `None` if it begins on the edge.
     pub(super) state: Option<State>,
 }
 
 impl Start {
-    /// Fresh on an edge.
+    /// A beginning on an edge, without cost so far.
     #[must_use]
     pub fn new(edge: u32, share: f64) -> Self {
         Self { edge, share, cost: 0, state: None }
     }
 }
 
-/// Where a way may end.
+/// A possible end of a way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
-    /// On this edge.
+    /// The edge.
     pub edge: u32,
-    /// After so much of it, 0..=1.
+    /// The share of the edge up to the end, 0..=1.
     pub share: f64,
 }
 
-/// A way.
+/// A way from a start to a goal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
-    /// Which start.
+    /// Index of the start.
     pub start: usize,
-    /// Cost to the goal.
+    /// Cost of the way to the goal.
     pub cost: u64,
-    /// The start's and the goal's edge among them.
+    /// The edges of the way, including those of start and goal.
     pub drive: Drive,
-    /// At the goal.
+    /// The state at the goal.
     pub(super) state: State,
 }
 
-/// So many states between two questions whether to stop: half a millisecond or so.
+/// Number of states between two checks of `stop`, about half a millisecond.
 const STATES: usize = 4096;
-/// Nothing before.
+/// The value for no state and no start.
 const NONE: u32 = u32::MAX;
 
-/// The shortest way to each goal, `None` where there is none. With `any`, only the nearest goal's need be right.
+/// The shortest way to each goal, or `None`. With `any`, only the way to the nearest goal is guaranteed to be the shortest.
 ///
 /// # Errors
-/// `stop` was told: it is asked every few thousand states.
+/// `stop` was told. It is checked every few thousand states.
 pub fn search(
     graph: &Graph,
     access: &Access,
@@ -77,15 +78,15 @@ pub fn search(
     Ok(search.best.iter().map(|best| best.as_ref().map(|best| search.found(best))).collect())
 }
 
-/// The end of a way: before the goal's edge, and on it.
+/// The end of a way to a goal.
 #[derive(Debug, Clone, Copy)]
 struct End {
     cost: u64,
-    /// The state before the goal's edge; [`NONE`]: it is the start's own edge.
+    /// The state before the goal's edge, or [`NONE`] if the goal is on the start's edge.
     before: State,
     at: State,
     start: usize,
-    /// How it came onto the goal's edge.
+    /// The passage onto the goal's edge, or [`NO_PASSAGE`].
     passage: u32,
 }
 
@@ -163,7 +164,7 @@ impl<'g> Search<'g> {
         Ok(())
     }
 
-    /// Of ways that cost the same the one found first: over a roundabout, its passage.
+    /// Takes a way to a state if it is cheaper than the known one. Among ways of equal cost the first one stays.
     fn reach(&mut self, state: State, by: Reached) {
         if by.cost < self.reached[state as usize].cost {
             self.reached[state as usize] = by;
@@ -194,18 +195,18 @@ impl<'g> Search<'g> {
     }
 }
 
-/// Of ends that cost the same the one found first.
+/// Takes an end if it is cheaper than the known one. Among ends of equal cost the first one stays.
 fn take(best: &mut Option<End>, end: End) {
     if end.cost != BARRED && best.is_none_or(|best| end.cost < best.cost) {
         *best = Some(end);
     }
 }
 
-/// The shortest way over several places, each given by the goals that stand for it; a vehicle goes on from a place as it came
-/// to it. `None` if there is none.
+/// The shortest way over several places, each given by its goals. The vehicle leaves a place in the direction in which it
+/// arrived. `None` if there is no way.
 ///
 /// # Errors
-/// `stop` was told: it is asked every few thousand states.
+/// `stop` was told. It is checked every few thousand states.
 pub fn search_over(
     graph: &Graph,
     access: &Access,
@@ -224,7 +225,7 @@ pub fn search_over(
             let Some(found) = found else { continue };
             let mut drive = ways[found.start].clone();
             drive.go_on(&found.drive);
-            // The penalty of the edge itself was counted on the way to the place.
+            // The edge's price is already in the cost to the place, and would be counted again from there.
             let paid = access.edges[goal.edge as usize];
             let start = Start {
                 edge: goal.edge,

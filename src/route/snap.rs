@@ -1,6 +1,6 @@
-//! From a place to the edges that pass it: the nearest ones that may be used, within a stated distance.
+//! Finds the edges nearest to a place that may be used, within a given distance.
 //!
-//! Distances are the network's, on a sphere that is locally flat; a place on the far side of the antimeridian from its road is not
+//! Distances are computed as in the network, on a locally flat sphere. A road on the other side of the antimeridian is not
 //! found.
 
 use std::sync::Arc;
@@ -14,76 +14,76 @@ use crate::network::{EARTH_RADIUS_M, offset_m};
 use crate::osm::LonLat;
 use crate::osm::facts::Direction;
 
-/// So far a road is looked for, to say how far the nearest one is, metres.
+/// The greatest distance at which a road is searched, to report the distance of the nearest one, metres.
 const FARTHEST_M: f64 = 200_000.0;
 
 /// A place on the earth, degrees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Position {
-    /// −180..=180.
+    /// Longitude, −180..=180.
     pub lon: f64,
-    /// −90..=90.
+    /// Latitude, −90..=90.
     pub lat: f64,
 }
 
 impl From<Position> for LonLat {
-    /// To 1e-7 degree.
+    /// Rounds to 1e-7 degree.
     fn from(place: Position) -> Self {
         let e7 = |degrees: f64| (degrees * 1e7).round() as i32;
         Self { lon_e7: e7(place.lon), lat_e7: e7(place.lat) }
     }
 }
 
-/// A place on edges: the same point of the road in every direction that may be used.
+/// A point of a road, on the edge of each direction that may be used.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Snapped {
-    /// Edges with the share of each that is behind; sorted by edge.
+    /// The edges, each with the share of it before the point; sorted by edge.
     pub on: Vec<Goal>,
-    /// The point of the road.
+    /// The point on the road.
     pub position: Position,
-    /// From the place asked for, metres.
+    /// Distance from the requested place, metres.
     pub distance_m: f64,
 }
 
-/// Why a place is on no road.
+/// Why no road was found for a place.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum SnapError {
-    /// Too far away.
+    /// The nearest road is too far away.
     #[error(
         "{lon:.5},{lat:.5}: the nearest road that may be used is {distance_m:.0} m away, at {at_lon:.5},{at_lat:.5}; \
          the most allowed is {most_m:.0} m",
         lon = place.lon, lat = place.lat, at_lon = nearest.lon, at_lat = nearest.lat
     )]
     TooFar {
-        /// Asked for.
+        /// The requested place.
         place: Position,
-        /// Where the road is.
+        /// The nearest point on a road.
         nearest: Position,
-        /// Metres.
+        /// Its distance, metres.
         distance_m: f64,
-        /// Allowed, metres.
+        /// The allowed distance, metres.
         most_m: f64,
     },
-    /// Nothing at all.
+    /// There is no road within 200 km.
     #[error("{lon:.5},{lat:.5}: no road that may be used within 200 km", lon = place.lon, lat = place.lat)]
     Nothing {
-        /// Asked for.
+        /// The requested place.
         place: Position,
     },
 }
 
 type Segment = GeomWithData<Rectangle<[f64; 2]>, (u32, u32)>;
 
-/// An index of all pieces of road, by their segments.
+/// A spatial index of all pieces of road, by their segments.
 pub struct Snapper {
     roads: Arc<Roads>,
     tree: RTree<Segment>,
-    /// The edges of each piece, by the first edge of it; sorted.
+    /// The first edge and another edge of each piece; sorted.
     twins: Vec<(u32, u32)>,
 }
 
 impl Snapper {
-    /// Indexes every piece of road once, whichever directions it has.
+    /// Indexes every piece of road once, also if it has two directions.
     #[must_use]
     pub fn new(roads: &Arc<Roads>) -> Self {
         let network = &roads.network;
@@ -110,10 +110,10 @@ impl Snapper {
         Self { roads: Arc::clone(roads), tree: RTree::bulk_load(segments), twins }
     }
 
-    /// The nearest piece of road of which some direction is `usable`.
+    /// The nearest point on a road with a direction that is `usable`.
     ///
     /// # Errors
-    /// There is none within `most_m` metres.
+    /// There is no such road within `most_m` metres.
     pub fn snap(&self, place: Position, most_m: f64, usable: impl Fn(u32) -> bool) -> Result<Snapped, SnapError> {
         let mut reach_m = most_m.max(50.0);
         loop {
@@ -183,7 +183,7 @@ impl Snapper {
     }
 }
 
-/// The distance of the origin from a segment, and the foot's share of it.
+/// The distance of the origin from a segment, and the share of the segment before the foot.
 fn foot([a, b]: [[f64; 2]; 2]) -> (f64, f64) {
     let u = [b[0] - a[0], b[1] - a[1]];
     let squared = u[0] * u[0] + u[1] * u[1];

@@ -1,4 +1,4 @@
-//! What a stretch of road costs: time by class of road (`data/speeds.toml`) and tagged limits, or distance. Whole
+//! The cost of a stretch of road: time by class of road (`data/speeds.toml`) and tagged limits, or distance. Costs are whole
 //! numbers, so that sums do not depend on their order.
 
 use std::collections::BTreeMap;
@@ -9,7 +9,7 @@ use crate::network::{Edge, Network};
 use crate::osm::facts::RoadClass;
 use crate::words::Named as _;
 
-/// What is to be least.
+/// What a search minimises.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Measure {
     /// Time, milliseconds.
@@ -22,15 +22,15 @@ pub enum Measure {
 /// Why a table of speeds cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum SpeedsError {
-    /// Not TOML, or not of this form.
+    /// The text is not TOML, or has other fields.
     #[error("speeds: {0}")]
     Toml(#[from] toml::de::Error),
-    /// A number out of its bounds, or a class without one.
+    /// A number is out of its bounds, or a class has no number.
     #[error("speeds: {field}: {message}")]
     Value {
-        /// Which.
+        /// The field.
         field: String,
-        /// What is wrong.
+        /// What is wrong with the field.
         message: String,
     },
 }
@@ -40,7 +40,7 @@ pub enum SpeedsError {
 pub struct Speeds {
     m_s: [f64; RoadClass::ALL.len()],
     link_share: f64,
-    /// Beside the way itself, milliseconds.
+    /// The time of a turn, without the time on its edges, milliseconds.
     turn_ms: u64,
 }
 
@@ -53,7 +53,7 @@ struct Form {
 }
 
 impl Speeds {
-    /// The table that ships.
+    /// The built-in table.
     ///
     /// # Errors
     /// None, unless the shipped file is broken (a test reads it).
@@ -61,10 +61,10 @@ impl Speeds {
         Self::from_toml(include_str!("../../data/speeds.toml"))
     }
 
-    /// A table of speeds, every class of road in it.
+    /// Reads a table of speeds, which must have every class of road.
     ///
     /// # Errors
-    /// The field that cannot be.
+    /// A field is missing or wrong. The error names it.
     pub fn from_toml(text: &str) -> Result<Self, SpeedsError> {
         let form: Form = toml::from_str(text)?;
         let wrong = |field: &str, message: String| SpeedsError::Value { field: field.to_owned(), message };
@@ -85,7 +85,7 @@ impl Speeds {
         })
     }
 
-    /// Milliseconds or millimetres of an edge; at least one.
+    /// The cost of an edge, milliseconds or millimetres. It is at least 1.
     #[must_use]
     pub fn cost(&self, network: &Network, edge: &Edge, measure: Measure) -> u64 {
         let length_m = network.length_m(edge);
@@ -103,7 +103,7 @@ impl Speeds {
         (cost.ceil() as u64).max(1)
     }
 
-    /// What a turn costs beside its edges.
+    /// The cost of a turn without its edges.
     #[must_use]
     pub fn turn_cost(&self, measure: Measure) -> u64 {
         match measure {

@@ -1,11 +1,12 @@
-//! Permits as a database keeps them.
+//! Reads permits from a database.
 
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
+use super::driver::Driver;
 use super::permits::{Permit, Permits};
-use super::roads::{Driver, Roads};
+use super::roads::Roads;
 use crate::network::{Movements, Network};
 use crate::stet::{Model, ModelError};
 use crate::store::{CertifiedSet, Database, QueryOptions, StoreError, TurnQuery};
@@ -15,7 +16,7 @@ impl Permits {
     /// The permits of a set, for the edges and turns of the database that `network` is from.
     ///
     /// # Errors
-    /// Its turns are not certified, or its settings cannot be read.
+    /// The set's turns are not certified, or its settings cannot be read.
     pub fn stored(
         database: &mut Database,
         network: &Network,
@@ -53,16 +54,16 @@ pub enum NoDriver {
     /// The file cannot be read, or lacks the permits.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// The vehicle's definition has no model.
+    /// The certificate's model does not cover the vehicle.
     #[error(transparent)]
     Model(#[from] ModelError),
 }
 
 impl Driver {
-    /// A vehicle with the permits of one of its sets in a database. `roads` are that database's.
+    /// A vehicle with the permits of one of its sets in a database. `roads` must be those of the same database.
     ///
     /// # Errors
-    /// The set's turns are not certified, its settings cannot be read, or the vehicle has no model.
+    /// The set's turns are not certified, its settings cannot be read, or the certificate's model does not cover the vehicle.
     pub fn stored(
         database: &mut Database,
         roads: &Roads,

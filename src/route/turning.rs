@@ -1,22 +1,22 @@
-//! Turns of the network as pieces of routes: the corridors of `turns`, of which those that certify for the vehicle count.
+//! Makes the turns of a route from the corridors of `turns`. Only corridors that are certified as safe for the vehicle count.
 
 use std::sync::Arc;
 
+use super::driver::Driver;
 use super::pieces::{Strokes, TurnPiece, Turns};
-use super::roads::Driver;
 use crate::certify::best_of;
 use crate::network::Movement;
 use crate::stet::{Options, SpanResult, certify_spans};
 use crate::turns::{Reach, TurnCorridors, TurnPath, nominal_leeway_m, passage_on, turn_on};
 use crate::verdict::UnknownReason;
 
-/// Paths of a turn that are tried beside the one that its permit rests on: those with most room by themselves.
+/// Number of paths of a turn that are tried beside the path of its permit. Those with the most nominal room are tried.
 const MORE: usize = 5;
 
-/// Turns made as a route asks for them, under the settings of its strokes.
+/// Turns that are made when a route needs them, with the settings of its strokes.
 #[derive(Debug, Clone)]
 pub struct MadeTurns {
-    /// Who takes the turns.
+    /// The vehicle that takes the turns.
     pub driver: Arc<Driver>,
 }
 
@@ -35,16 +35,17 @@ impl Turns for MadeTurns {
             .filter(|&path| known.as_ref().is_none_or(|(known, _)| *known != path))
             .map(|path| (nominal_leeway_m(&made.paths[path], &self.driver.model.vehicle), path))
             .collect();
-        // Paths come in the order of their numbers; the sort keeps it among equals.
+        // The sort is stable, so paths of equal room stay in order of their numbers.
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         let others =
             ranked.into_iter().take(MORE).filter_map(|(_, path)| Some((path, self.safe(&made.paths[path], options)?)));
         let mut safe: Vec<(usize, SpanResult)> = known.into_iter().chain(others).collect();
         safe.sort_by(|a, b| b.1.rsc_m.partial_cmp(&a.1.rsc_m).unwrap_or(std::cmp::Ordering::Equal));
         let frame = made.frame;
+        let reach = Reach::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
         let piece = |path: &TurnPath| {
             let TurnPath { corridor, turn, approach, departure, .. } = path.clone();
-            TurnPiece { frame, corridor, turn, approach, departure }
+            TurnPiece { frame, corridor, turn, approach, departure, reach }
         };
         Ok(safe.into_iter().map(|(path, _)| piece(&made.paths[path])).collect())
     }

@@ -1,4 +1,4 @@
-//! A part of the map.
+//! A box on the map.
 
 use crate::osm::LonLat;
 
@@ -24,7 +24,7 @@ impl Bounds {
         })
     }
 
-    /// The smallest box that holds both.
+    /// The smallest box that contains both boxes.
     #[must_use]
     pub fn union(self, other: Self) -> Self {
         Self {

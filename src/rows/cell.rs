@@ -1,4 +1,4 @@
-//! Columns and their values, for tables of any kind. A cell knows its kind, so that typed formats need no list of their own.
+//! Columns and their values, for tables of any format. A column has a kind, so typed formats need no list of types.
 
 use serde_json::Value;
 
@@ -18,7 +18,7 @@ pub enum Kind {
     Flag,
 }
 
-/// A value, or none.
+/// A value of a column, or none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs)] // as in `Kind`
 pub enum Cell<'r> {
@@ -29,14 +29,14 @@ pub enum Cell<'r> {
 }
 
 impl<'r> Cell<'r> {
-    /// A text; none if it is empty.
+    /// A text. An empty text is no value.
     #[must_use]
     pub fn filled(text: &'r str) -> Self {
         Self::Text((!text.is_empty()).then_some(text))
     }
 }
 
-/// A number that is not finite is `null`.
+/// A number that is not finite becomes `null`.
 impl From<Cell<'_>> for Value {
     fn from(cell: Cell<'_>) -> Self {
         match cell {

@@ -1,4 +1,4 @@
-//! The columns that certificates of edges and of turns have in common.
+//! The columns that certificates of edges and turns have in common.
 
 use crate::stet::Side;
 use crate::verdict::Verdict;
@@ -7,7 +7,7 @@ use crate::words::{Named as _, verdict_words};
 use super::cell::Kind::{Integer, Real, Text};
 use super::cell::{Cell, Column};
 
-/// A certificate as a database keeps it, in the units of the views.
+/// A certificate as a database stores it, in the units of the views.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs)] // the columns of `certificate`
 pub struct CertificateRow {
@@ -35,7 +35,7 @@ impl CertificateRow {
         ("limiting_side", Text),
     ];
 
-    /// In the order of [`Self::COLUMNS`].
+    /// The values in the order of [`Self::COLUMNS`].
     #[must_use]
     pub fn cells(&self) -> [Cell<'static>; Self::COLUMNS.len()] {
         let (verdict, reason) = verdict_words(self.verdict);
@@ -52,7 +52,7 @@ impl CertificateRow {
         ]
     }
 
-    /// The hinge margin where it is an angle. Less than −180° is a bound that does not hold.
+    /// The hinge margin, if it is an angle. A value below −180° means that no bound holds.
     #[must_use]
     pub fn hinge_angle_deg(&self) -> Option<f64> {
         self.hinge_margin_deg.filter(|&degrees| degrees > -180.0)

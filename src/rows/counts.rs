@@ -1,41 +1,41 @@
-//! How much road and how many turns there are, and what is said of them.
+//! Counts of roads and turns by verdict.
 
 use crate::osm::facts::{Policy, WidthSource};
 use crate::verdict::Verdict;
 
-/// Edges and metres of road of one vehicle, policy, class and verdict. Both directions of a road count.
+/// The edges of one vehicle, policy, class and verdict. Each direction of a road is an edge of its own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StatsRow {
     /// Vehicle id.
     pub vehicle_id: String,
-    /// Which width counts.
+    /// The policy of the certificates.
     pub policy: Policy,
-    /// `highway`, with `_link`.
+    /// The class of road as in `highway`, with `_link` for links.
     pub highway: String,
-    /// With its reason.
+    /// The verdict with its reason.
     pub verdict: Verdict,
-    /// How many directed edges.
+    /// Number of directed edges.
     pub edges: u64,
-    /// Their length, metres.
+    /// Length of the edges together, metres.
     pub length_m: f64,
 }
 
-/// The whole of it.
+/// All counts of a database.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Stats {
-    /// Ways.
+    /// Number of ways.
     pub roads: u64,
-    /// Directed edges and their length in metres, by class.
+    /// Class of road, number of directed edges, and their length in metres.
     pub network: Vec<(String, u64, f64)>,
-    /// Where widths come from: directed edges and their length in metres, by policy; no source: no usable width.
+    /// Policy, source of the width, number of directed edges, and their length in metres. `None` means no usable width.
     pub widths: Vec<(Policy, Option<WidthSource>, u64, f64)>,
-    /// By vehicle, policy, class and verdict; those with no edge are left out.
+    /// Counts by vehicle, policy, class and verdict, without empty ones.
     pub certificates: Vec<StatsRow>,
-    /// Turns by vehicle, policy and verdict.
+    /// Counts of turns by vehicle, policy and verdict.
     pub turns: Vec<TurnCount>,
 }
 
-/// How many turns have a verdict.
+/// The number of turns with a verdict.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)]
 pub struct TurnCount {
@@ -45,19 +45,19 @@ pub struct TurnCount {
     pub turns: u64,
 }
 
-/// How many edges have how much to spare.
+/// A bin of the histogram of the RSC.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RscBin {
     /// Vehicle id.
     pub vehicle_id: String,
-    /// Which width counts.
+    /// The policy of the certificates.
     pub policy: Policy,
-    /// The bin's lower end, millimetres; its width is the one asked for.
+    /// The bin's lower end, millimetres. The caller of the query chooses the width of bins.
     pub from_mm: i64,
-    /// With its reason.
+    /// The verdict with its reason.
     pub verdict: Verdict,
-    /// Directed edges.
+    /// Number of directed edges.
     pub edges: u64,
-    /// Their length, metres.
+    /// Length of the edges together, metres.
     pub length_m: f64,
 }

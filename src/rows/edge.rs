@@ -1,4 +1,4 @@
-//! Edges: with their certificates, with all that the map says, and with what a permit depends on.
+//! Rows of edges: with certificates, with all facts from the map, and with the facts that a permit depends on.
 
 use crate::osm::LonLat;
 use crate::osm::facts::{Direction, Oneway, Permission, Policy, WidthSource};
@@ -24,14 +24,14 @@ pub struct EdgeRow {
     pub name: Option<String>,
     pub reference: Option<String>,
     pub length_m: f64,
-    /// Of the policy asked for.
+    /// The width under the query's policy.
     pub width_m: Option<f64>,
     pub width_source: Option<WidthSource>,
     pub min_radius_m: Option<f64>,
     pub maxspeed_kmh: Option<u8>,
-    /// Of the vehicle asked for, under that policy.
+    /// The certificate of the query's vehicle under that policy.
     pub certificate: CertificateRow,
-    /// In direction of travel.
+    /// The map's line in direction of travel.
     pub line: Vec<LonLat>,
 }
 
@@ -68,7 +68,7 @@ impl EdgeRow {
         ]
     };
 
-    /// In the order of [`Self::COLUMNS`], for the vehicle and the policy that were asked for.
+    /// The values in the order of [`Self::COLUMNS`]. `vehicle` and `policy` are those of the query.
     #[must_use]
     pub fn cells<'r>(&'r self, vehicle: &'r str, policy: Policy) -> [Cell<'r>; Self::COLUMNS.len()] {
         let [verdict, reason, rsc, rsc_published, hinge_margin, shrink, limiting_s, limiting_unit, limiting_side] =
@@ -120,23 +120,23 @@ pub struct EdgeFacts {
     pub lanes: Option<u8>,
     pub maxspeed_kmh: Option<u8>,
     pub length_m: f64,
-    /// By policy: how wide, and where that comes from.
+    /// The width in metres and its source, by policy.
     pub widths: [(Policy, Option<f64>, Option<WidthSource>); 3],
     pub min_radius_m: Option<f64>,
     pub centreline_deviation_m: Option<f64>,
-    /// Height, weight, axle load, length, width: the tag's word, the unit, the limit.
+    /// Name, unit and value of each limit: height, weight, axle load, length, width.
     pub limits: [(&'static str, &'static str, Option<f64>); 5],
-    /// Names of limits that are tagged with a value that could not be read.
+    /// Names of the limits whose tagged value could not be read.
     pub unreadable_limits: Vec<String>,
     pub hgv: Permission,
     pub motor_vehicle: Permission,
     pub barred: bool,
     pub cut: bool,
-    /// In direction of travel.
+    /// The map's line in direction of travel.
     pub line: Vec<LonLat>,
 }
 
-/// What a permit of an edge depends on, and where the edge lies on its way.
+/// The facts that a permit of an edge depends on, and the edge's place on its way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs)] // the columns of `edge` and `certificate`
 pub struct EdgeStep {
@@ -146,12 +146,12 @@ pub struct EdgeStep {
     pub from_node: i64,
     pub to_node: i64,
     pub direction: Direction,
-    /// Where its shape starts in `Network::shapes`; both directions share it.
+    /// Index of the shape's start in `Network::shapes`. Both directions share the shape.
     pub shape_start: u32,
-    /// How many positions its shape has.
+    /// Number of positions in the shape.
     pub positions: u32,
     pub verdict: Verdict,
     pub rsc_m: Option<f64>,
-    /// Of the policy asked for.
+    /// The source of the width under the query's policy.
     pub width_source: Option<WidthSource>,
 }

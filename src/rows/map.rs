@@ -1,4 +1,4 @@
-//! What a map shows: just what is drawn, and roads by what they are called.
+//! Rows for maps, with only the columns that are drawn, and ways with their names for the search.
 
 use crate::osm::LonLat;
 use crate::osm::facts::{Direction, Oneway, RoadClass, WidthSource};
@@ -20,13 +20,13 @@ pub struct MapEdge {
     pub name: Option<String>,
     pub reference: Option<String>,
     pub length_m: f64,
-    /// Of the policy asked for.
+    /// The width under the query's policy.
     pub width_m: Option<f64>,
     pub width_source: Option<WidthSource>,
     pub verdict: Verdict,
-    /// Millimetres, as kept: rounded down.
+    /// The RSC in millimetres, rounded down as it is stored.
     pub rsc_mm: Option<i64>,
-    /// In direction of travel.
+    /// The map's line in direction of travel.
     pub line: Vec<LonLat>,
 }
 
@@ -39,7 +39,7 @@ pub struct MapTurn {
     pub turn_id: i64,
     pub from_edge: i64,
     pub to_edge: i64,
-    /// Names of the roads, or their refs.
+    /// Names or refs of the two roads.
     pub from_name: Option<String>,
     pub to_name: Option<String>,
     pub kind: String,
@@ -47,26 +47,26 @@ pub struct MapTurn {
     pub kerb_radius_m: Option<f64>,
     pub restriction: Option<String>,
     pub verdict: Verdict,
-    /// Millimetres, as kept: rounded down.
+    /// The RSC in millimetres, rounded down as it is stored.
     pub rsc_mm: Option<i64>,
-    /// The last metres before the node and the first after it.
+    /// The map's line over the last metres before the node and the first metres after it.
     pub line: Vec<LonLat>,
 }
 
 /// An edge as a map of small scale draws it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MainRoad {
-    /// `highway`.
+    /// The class of road.
     pub class: RoadClass,
-    /// Whether it is a `_link`.
+    /// Whether the road is a `_link`.
     pub link: bool,
-    /// Of the policy asked for.
+    /// The source of the width under the query's policy.
     pub width_source: Option<WidthSource>,
-    /// With its reason.
+    /// The verdict with its reason.
     pub verdict: Verdict,
-    /// Millimetres, as kept: rounded down.
+    /// The RSC in millimetres, rounded down as it is stored.
     pub rsc_mm: Option<i64>,
-    /// In direction of travel.
+    /// The map's line in direction of travel.
     pub line: Vec<LonLat>,
 }
 
@@ -78,8 +78,8 @@ pub struct RoadRow {
     pub highway: String,
     pub name: Option<String>,
     pub reference: Option<String>,
-    /// Its first edge in order of the network.
+    /// The way's first edge in order of the network.
     pub edge_id: i64,
-    /// Around all its edges; single precision, rounded outward.
+    /// The box around all edges of the way, in single precision, rounded outwards.
     pub bounds: Bounds,
 }

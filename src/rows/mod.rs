@@ -1,8 +1,8 @@
-//! Edges, turns and their certificates as plain values, on their way into a database and as they come out of one. Whoever makes,
-//! explains, checks, exports or shows them takes these.
+//! Plain values for edges, turns and their certificates. The modules that compute, store, explain, check, export and show
+//! certificates share them.
 //!
-//! Promises names and units of the columns as `docs/columns.md` has them. Nothing here knows SQLite: `store` writes and fills
-//! them.
+//! Names and units of the columns are those of `docs/columns.md`. Nothing here depends on SQLite; `store` writes and reads
+//! these values.
 
 mod bounds;
 mod cell;

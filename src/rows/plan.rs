@@ -1,7 +1,8 @@
-//! Plans as they are kept: second differences of the spline's integer coefficients, each as a variable-length number
-//! (zigzag, seven bits a byte), deflated where that is shorter. A plan that is the centreline is not kept at all.
+//! Plans in the form in which they are stored: second differences of the spline's integer coefficients, each as a number of
+//! variable length (zigzag, seven bits per byte). The bytes are deflated if that makes them shorter. The first byte is 0 for
+//! plain and 1 for deflated bytes. `docs/measurements.md` has the sizes.
 //!
-//! The first byte says which: 0 plain, 1 deflated. Measured on the drawn region: see `docs/measurements.md`.
+//! A plan that is the centreline is not stored.
 
 use std::io::{Read as _, Write as _};
 
@@ -9,10 +10,10 @@ use flate2::Compression;
 use flate2::read::DeflateDecoder;
 use flate2::write::DeflateEncoder;
 
-/// No corridor has more coefficients: 16 million stations.
+/// The greatest number of coefficients, enough for 16 million stations.
 const MOST_COEFFICIENTS: usize = 1 << 22;
 
-/// A plan on its way to the database.
+/// A packed plan of a stroke or turn.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StoredPlan {
     /// Index of the stroke's first edge in `Network::edges`, or of the turn.
@@ -21,7 +22,7 @@ pub struct StoredPlan {
 }
 
 impl StoredPlan {
-    /// Packs a plan; `None` if it is the centreline.
+    /// Packs a plan. `None` if the plan is the centreline.
     #[must_use]
     pub fn new(at: u32, coefficients: &[i32]) -> Option<Self> {
         if coefficients.iter().all(|&c| c == 0) {
@@ -50,7 +51,7 @@ fn pack(coefficients: &[i32]) -> Vec<u8> {
     done.ok().filter(|deflated| deflated.len() < plain.len()).unwrap_or(plain)
 }
 
-/// The coefficients of a packed plan; `None` for bytes that are no plan.
+/// The coefficients of a packed plan. `None` for bytes that are no plan.
 pub(crate) fn unpack(packed: &[u8]) -> Option<Vec<i32>> {
     let (&kind, rest) = packed.split_first()?;
     let mut plain = Vec::new();

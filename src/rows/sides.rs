@@ -1,21 +1,22 @@
-//! On which side of the road one drives: most regions know one side only, one at Hong Kong's border or Thailand's both.
+//! The driving sides of a region's edges. Most regions have one side; a region at the border of Hong Kong or Thailand has
+//! both.
 
-/// The sides of a region.
+/// The driving sides of a region.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DrivingSides {
-    /// Whether most ways are driven on the left.
+    /// Whether traffic keeps left on most ways.
     mostly_left: bool,
-    /// Edges that are driven on the other side, sorted.
+    /// Edges on which traffic keeps to the other side, sorted.
     others: Vec<u32>,
 }
 
 impl DrivingSides {
-    /// `others` are the edges driven on the other side than most are, sorted.
+    /// `others` are the edges on which traffic keeps to the other side than on most ways, sorted.
     pub(crate) fn new(mostly_left: bool, others: Vec<u32>) -> Self {
         Self { mostly_left, others }
     }
 
-    /// Whether an edge (index into `Network::edges`) is driven on the left; `None` where all are driven as most are.
+    /// Whether traffic keeps left on an edge (index into `Network::edges`). `None` if the whole region has one side.
     #[must_use]
     pub fn left(&self, edge: u32) -> Option<bool> {
         let mixed = !self.others.is_empty();

@@ -1,4 +1,4 @@
-//! Turns: with their certificates, and with what a permit depends on.
+//! Rows of turns: with certificates, and with the facts that a permit depends on.
 
 use crate::osm::LonLat;
 use crate::osm::facts::Policy;
@@ -18,27 +18,27 @@ pub struct TurnRow {
     pub turn_id: i64,
     pub from_edge: i64,
     pub to_edge: i64,
-    /// The first and the last arc, where it is a passage of a roundabout.
+    /// The `edge_id`s of the first and last arc, if the turn is a passage of a roundabout.
     pub arcs: Option<[i64; 2]>,
     pub via_node: i64,
-    /// Positive left.
+    /// Degrees, positive to the left.
     pub angle_deg: f64,
     pub kind: String,
     pub kerb_radius_m: Option<f64>,
     pub kerb_source: Option<String>,
     pub restriction: Option<String>,
-    /// Names of the roads, or their refs.
+    /// Names or refs of the two roads.
     pub from_name: Option<String>,
     pub to_name: Option<String>,
-    /// Of the vehicle and the policy asked for.
+    /// The certificate of the query's vehicle under the query's policy.
     pub certificate: CertificateRow,
     pub path_no: Option<u8>,
-    /// In driving order.
+    /// The map's line in driving order.
     pub line: Vec<LonLat>,
 }
 
 impl TurnRow {
-    /// The columns of [`Self::cells`]. Tables of turns leave out the paper's bound.
+    /// The columns of [`Self::cells`]. Tables of turns leave out `rsc_published_m`.
     pub const COLUMNS: [Column; 23] = {
         let [verdict, reason, rsc, _, hinge_margin, shrink, limiting_s, limiting_unit, limiting_side] =
             CertificateRow::COLUMNS;
@@ -69,7 +69,7 @@ impl TurnRow {
         ]
     };
 
-    /// In the order of [`Self::COLUMNS`], for the vehicle and the policy that were asked for.
+    /// The values in the order of [`Self::COLUMNS`]. `vehicle` and `policy` are those of the query.
     #[must_use]
     pub fn cells<'r>(&'r self, vehicle: &'r str, policy: Policy) -> [Cell<'r>; Self::COLUMNS.len()] {
         let [verdict, reason, rsc, _, hinge_margin, shrink, limiting_s, limiting_unit, limiting_side] =
@@ -102,7 +102,7 @@ impl TurnRow {
     }
 }
 
-/// What a permit of a turn depends on, and between which edges it is.
+/// The facts that a permit of a turn depends on, and the edges of the turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(missing_docs)] // the columns of `turn` and `turn_certificate`
 pub struct TurnStep {
@@ -111,7 +111,7 @@ pub struct TurnStep {
     /// Index into `Network::edges`.
     pub from: u32,
     pub to: u32,
-    /// The first and the last arc (indices into `Network::edges`), where it is a passage of a roundabout.
+    /// The first and last arc (indices into `Network::edges`), if the turn is a passage of a roundabout.
     pub arcs: Option<[u32; 2]>,
     pub via_node: i64,
     pub angle_deg: f64,

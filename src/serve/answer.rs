@@ -1,8 +1,8 @@
-//! From a finished body to a response: entity tag, compression, conditional requests, how long it may be kept.
+//! Turns a finished body into a response, with entity tag, compression, conditional requests and cache headers.
 //!
-//! Tags are hashes of the content, so they change when and only when it does. A client that names the database's
-//! `state` in its request may keep the answer for ever: another state is another address. Without it, it must ask again
-//! each time.
+//! An entity tag is the hash of the content, so it changes exactly when the content changes. A request that names the
+//! database's `state` gets an answer that the client may keep for ever, because another state has another address. For
+//! other requests the client must ask again each time.
 
 use std::io::{Read as _, Write as _};
 
@@ -15,12 +15,12 @@ use flate2::write::GzEncoder;
 
 use super::ask::Ask;
 
-/// Less is not worth compressing, bytes.
+/// Shorter bodies are not compressed, bytes.
 const LEAST_COMPRESSED: usize = 600;
-/// zlib's level; measured on tiles of rhein_neckar: level 6 takes twice the time for 4 % fewer bytes.
+/// zlib's compression level. On tiles of rhein_neckar, level 6 takes twice the time for 4 % fewer bytes.
 const LEVEL: u32 = 4;
 
-/// A body as it is kept: compressed where that helps, with its hash.
+/// A finished body with its hash. The body is stored compressed if that makes it shorter.
 #[derive(Debug)]
 pub(super) struct Stored {
     kind: &'static str,
@@ -30,12 +30,12 @@ pub(super) struct Stored {
     tag: String,
 }
 
-/// How long a client may use an answer without asking.
+/// How long a client may use an answer without asking again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Keep {
-    /// It must ask each time whether it still holds.
+    /// The client must ask each time whether the answer still holds.
     Ask,
-    /// Its address names the content.
+    /// The client may keep the answer, because its address names the content.
     ForEver,
 }
 
@@ -49,12 +49,12 @@ impl Stored {
         Self { kind, bytes: packed.unwrap_or(body), gzipped, plain_len, tag }
     }
 
-    /// Bytes as kept.
+    /// Length of the stored (possibly compressed) body, bytes.
     pub(super) fn len(&self) -> usize {
         self.bytes.len()
     }
 
-    /// The response to a request, `304 Not Modified` where the client has it already.
+    /// The response to a request. It is `304 Not Modified` if the client has the answer already.
     pub(super) fn respond(&self, ask: &Ask, keep: Keep) -> Response {
         let encoded = self.gzipped && ask.gzip;
         let tag = if encoded { format!("\"{}-gz\"", self.tag) } else { format!("\"{}\"", self.tag) };
@@ -86,7 +86,8 @@ impl Stored {
         response
     }
 
-    /// `If-None-Match`: weak comparison (RFC 9110, section 13.1.2); either encoding will do.
+    /// Whether `If-None-Match` names this content, by weak comparison (RFC 9110, section 13.1.2). The tag of either
+    /// encoding matches.
     fn matches(&self, known: &str) -> bool {
         known.split(',').map(str::trim).any(|tag| {
             let tag = tag.strip_prefix("W/").unwrap_or(tag);
@@ -97,7 +98,7 @@ impl Stored {
 
     fn plain(&self) -> Vec<u8> {
         let mut plain = Vec::with_capacity(self.plain_len);
-        // What this program compressed itself: it cannot fail, nor be longer than it was.
+        // This program compressed the bytes, so decompression cannot fail and gives at most `plain_len` bytes.
         let _ = GzDecoder::new(self.bytes.as_slice()).take(self.plain_len as u64).read_to_end(&mut plain);
         plain
     }

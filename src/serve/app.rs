@@ -1,4 +1,4 @@
-//! What all requests share: the region as it is now, finished answers, and the lanes for work.
+//! The state that all requests share: the current region, the cache of finished answers, and the lanes for work.
 
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
@@ -18,19 +18,19 @@ use super::work::Lane;
 pub(super) struct App {
     pub(super) options: Options,
     region: RwLock<Arc<Region>>,
-    /// Held by whoever reads a changed file, so that one does and the others wait.
+    /// Locked while a changed file is read, so that one request reads it and the others wait.
     reading: Mutex<()>,
     cache: Cache,
     quick: Lane,
     slow: Lane,
 }
 
-/// Which lane.
+/// The lane for a piece of work.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Pace {
-    /// Reads some rows.
+    /// For work that reads some rows.
     Quick,
-    /// Certifies, or reads everything.
+    /// For work that certifies or reads the whole database.
     Slow,
 }
 
@@ -48,7 +48,7 @@ impl App {
         }
     }
 
-    /// The region as the file is now.
+    /// The region of the current file. Reads the file if it has changed.
     async fn region(self: &Arc<Self>) -> Result<Arc<Region>, Problem> {
         if let Some(known) = self.unchanged()? {
             return Ok(known);
@@ -67,27 +67,27 @@ impl App {
         self.quick.run(read).await
     }
 
-    /// The region that is known, if the file is still the same.
+    /// The known region, if the file has not changed since it was read.
     fn unchanged(&self) -> Result<Option<Arc<Region>>, Problem> {
         let known = Arc::clone(&self.region.read().unwrap_or_else(PoisonError::into_inner));
         Ok((Identity::of(&self.options.db)? == known.identity).then_some(known))
     }
 
-    /// Makes what the first map of each vehicle would have to wait for.
+    /// Makes the overviews in advance, which the first map of each vehicle needs.
     pub(super) async fn prepare(self: &Arc<Self>) {
         let Ok(region) = self.region().await else { return };
-        // If it fails, whoever asks is told.
+        // An error is ignored here; the first request that needs an overview gets it.
         let _ = self.slow.run(move |stop| tiles::prepare(&region, &stop)).await;
     }
 
-    /// Loads what the first explanation, route and search would have to wait for.
+    /// Loads names and roads in advance, which the first explanation, route and search need.
     pub(super) async fn warm_up(self: Arc<Self>) {
         let Ok(region) = self.region().await else { return };
-        // If it fails, whoever asks is told.
+        // An error is ignored here; the first request that needs the roads gets it.
         let _ = self.slow.run(move |_| region.names().and_then(|_| region.roads()).map(|_| ())).await;
     }
 
-    /// Answers from what was answered before, or by doing the work.
+    /// Answers from the cache, or does the work and caches the answer.
     pub(super) async fn answer(
         self: &Arc<Self>,
         ask: Ask,
@@ -120,7 +120,7 @@ impl App {
         let stored = lane
             .run(move |stop| {
                 asked.stop = stop;
-                // Somebody may have done it while this one waited.
+                // Another request may have made the answer while this one waited.
                 if let Some(stored) = app.cache.get(&key) {
                     return Ok(stored);
                 }

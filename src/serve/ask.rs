@@ -1,7 +1,8 @@
-//! A request as the endpoints see it: names from the path, parameters of the query, and what the client can take.
+//! A request as the endpoints see it: names from the path, parameters of the query, and the encodings that the client
+//! accepts.
 //!
-//! Promises that every value has been decoded and that a name nobody knows is refused: a misspelt parameter must not
-//! pass for the default.
+//! All values are decoded. An unknown parameter is refused; otherwise a misspelt parameter would silently have its
+//! default.
 
 use axum::extract::{FromRequestParts, RawPathParams};
 use axum::http::header::{self, HeaderMap};
@@ -13,14 +14,14 @@ use crate::route::Position;
 use crate::stop::Stop;
 use crate::words::Named;
 
-/// More parameters than any endpoint has.
+/// The greatest number of parameters of a request; no endpoint has as many.
 const MOST_PARAMETERS: usize = 24;
 /// Longest value of one parameter, bytes.
 const LONGEST_VALUE: usize = 200;
-/// May be given with every request: the state of the database that the client has seen; see `answer`.
+/// A parameter that every endpoint accepts: the state of the database that the client has seen. See `answer`.
 pub(super) const STATE: &str = "state";
 
-/// What was asked.
+/// A decoded request.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Ask {
     path: String,
@@ -28,7 +29,7 @@ pub(super) struct Ask {
     parameters: Vec<(String, String)>,
     pub(super) if_none_match: Option<String>,
     pub(super) gzip: bool,
-    /// Told when nobody waits for the answer any more.
+    /// Told to stop when nobody waits for the answer any more.
     pub(super) stop: Stop,
 }
 
@@ -51,7 +52,7 @@ fn text(headers: &HeaderMap, name: header::HeaderName) -> Option<String> {
     (!values.is_empty()).then(|| values.join(", "))
 }
 
-/// Whether `Accept-Encoding` allows gzip: named, or `*`, and not with weight 0 (RFC 9110, section 12.5.3).
+/// Whether `Accept-Encoding` allows gzip, by name or by `*`, with a weight above 0 (RFC 9110, section 12.5.3).
 fn takes_gzip(accepts: &str) -> bool {
     let weight = |wanted: &str| {
         accepts.split(',').find_map(|item| {
@@ -78,7 +79,7 @@ fn read_query(query: &str) -> Result<Vec<(String, String)>, Problem> {
     Ok(parameters)
 }
 
-/// For messages.
+/// A text of the request for use in messages, without control characters and at most 60 characters long.
 pub(super) fn shortened(text: &str) -> String {
     let mut short: String = text.chars().filter(|c| !c.is_control()).take(60).collect();
     if short.chars().count() < text.chars().count() {
@@ -88,7 +89,8 @@ pub(super) fn shortened(text: &str) -> String {
 }
 
 impl Ask {
-    /// Refuses parameters that the endpoint does not know, and any that is given twice unless its name ends in `*`.
+    /// Refuses parameters that `known` lacks, and parameters that are given twice. An entry of `known` that ends in `*`
+    /// may be given several times.
     pub(super) fn only(&self, known: &[&str]) -> Result<(), Problem> {
         for (i, (name, _)) in self.parameters.iter().enumerate() {
             let entry = known.iter().find(|entry| entry.trim_end_matches('*') == name);
@@ -106,7 +108,7 @@ impl Ask {
         Ok(())
     }
 
-    /// A name out of the path.
+    /// The value of a name in the path.
     pub(super) fn name(&self, name: &str) -> Result<&str, Problem> {
         let found = self.names.iter().find(|pair| pair.0 == name).map(|pair| pair.1.as_str());
         found.ok_or_else(|| Problem::fault(format!("the path has no {name}")))
@@ -124,13 +126,13 @@ impl Ask {
         self.parameter(name).ok_or_else(|| Problem::parameter(name, "is missing"))
     }
 
-    /// Path and parameters in one order: the same question has the same key. Without `state`.
+    /// The key for the cache: the path and the sorted parameters without `state`. The same question has the same key.
     pub(super) fn key(&self) -> String {
         let mut parameters: Vec<_> = self.parameters.iter().filter(|pair| pair.0 != STATE).collect();
-        parameters.sort_by(|a, b| a.0.cmp(&b.0)); // stable: the order among several of a name stays
+        parameters.sort_by(|a, b| a.0.cmp(&b.0)); // stable, so several values of one name keep their order
         let mut key = self.path.clone();
         for (name, value) in parameters {
-            // No value holds a control character unescaped: `\n` separates.
+            // Names and values are escaped, so `\n` can separate them.
             key.push('\n');
             key.push_str(&name.escape_default().to_string());
             key.push('\n');
@@ -139,7 +141,7 @@ impl Ask {
         key
     }
 
-    /// A whole number within bounds.
+    /// The whole number of a parameter, within bounds. `None` if the parameter is missing.
     pub(super) fn whole(&self, name: &str, bounds: std::ops::RangeInclusive<u32>) -> Result<Option<u32>, Problem> {
         let Some(text) = self.parameter(name) else { return Ok(None) };
         let value = text.parse::<u32>().ok().filter(|value| bounds.contains(value));
@@ -147,14 +149,14 @@ impl Ask {
         value.map(Some).ok_or_else(|| Problem::parameter(name, format!("give a whole number from {low} to {high}")))
     }
 
-    /// A finite number within bounds.
+    /// The finite number of a parameter, within bounds. `None` if the parameter is missing.
     pub(super) fn number(&self, name: &str, low: f64, high: f64) -> Result<Option<f64>, Problem> {
         let Some(text) = self.parameter(name) else { return Ok(None) };
         let value = text.parse::<f64>().ok().filter(|value| (low..=high).contains(value));
         value.map(Some).ok_or_else(|| Problem::parameter(name, format!("give a number from {low} to {high}")))
     }
 
-    /// Degrees: `lon,lat`.
+    /// The places of a parameter, each `lon,lat` in degrees.
     pub(super) fn places(&self, name: &str) -> Result<Vec<Position>, Problem> {
         self.all(name)
             .map(|text| {
@@ -168,7 +170,7 @@ impl Ask {
     }
 }
 
-/// The value of a word, or which words there are.
+/// The value of a word. The error lists the words that there are.
 pub(super) fn one_of<T: Named>(name: &str, word: &str) -> Result<T, Problem> {
     T::named(word).ok_or_else(|| {
         let words: Vec<&str> = T::ALL.iter().map(|value| value.name()).collect();
@@ -176,7 +178,7 @@ pub(super) fn one_of<T: Named>(name: &str, word: &str) -> Result<T, Problem> {
     })
 }
 
-/// A policy out of the path or a parameter.
+/// The policy of a word from the path or a parameter.
 pub(super) fn policy(word: &str) -> Result<Policy, Problem> {
     one_of("policy", word)
 }

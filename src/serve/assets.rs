@@ -1,7 +1,7 @@
 //! The page: files of `web/dist`, built into the program by `build.rs`.
 //!
-//! Only the addresses of its own table are answered, so there is no path to walk. Names with a hash in them may be kept
-//! for ever.
+//! Only the addresses in the table are answered, and no path of a request reaches the file system. Clients may keep files
+//! below `/assets/` for ever, because their names contain a hash.
 
 use std::sync::{Arc, OnceLock};
 
@@ -36,7 +36,7 @@ pub(super) async fn asset(request: Request) -> Response {
     }
 }
 
-/// By the name's ending.
+/// The media type of a file, by the ending of its name.
 fn kind(name: &str) -> &'static str {
     match name.rsplit('.').next() {
         Some("html") => "text/html; charset=utf-8",

@@ -1,16 +1,16 @@
-//! Finished answers, by key, as long as there is room: the least recently used go first.
+//! A cache of finished answers by key. When the cache is full, the least recently used answers are dropped.
 //!
-//! Promises that all kept bodies and keys together stay within the bound, whatever is put in.
+//! All bodies and keys together never take more bytes than the bound.
 
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::answer::Stored;
 
-/// What an entry takes beside body and key, bytes: three map nodes and their strings' heads.
+/// Bytes that an entry takes beside its body and key: three map nodes and the headers of their strings.
 const OVERHEAD: usize = 300;
 
-/// A bounded map; shared by all threads.
+/// A bounded map that all threads share.
 #[derive(Debug)]
 pub(super) struct Cache {
     most_bytes: usize,
@@ -20,7 +20,7 @@ pub(super) struct Cache {
 #[derive(Debug, Default)]
 struct Inner {
     entries: HashMap<Arc<str>, (u64, Arc<Stored>)>,
-    /// Keys by when they were last used.
+    /// Keys by the clock of their last use.
     order: BTreeMap<u64, Arc<str>>,
     clock: u64,
     bytes: usize,
@@ -44,7 +44,7 @@ impl Cache {
         Some(stored)
     }
 
-    /// An answer that alone would take more than an eighth of the room is not kept.
+    /// Adds an answer. An answer of more than an eighth of the bound is not kept.
     pub(super) fn put(&self, key: &str, stored: Arc<Stored>) {
         let size = size(key, &stored);
         if size > self.most_bytes / 8 {

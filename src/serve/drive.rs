@@ -1,8 +1,9 @@
-//! A certified route to look at: its line, the leeway all along, and the drive: where every unit stands at what time,
-//! in which tube, between which edges of the corridor.
+//! A certified route for display: its line, the leeway along it, and the drive. The drive holds the pose and the tube of
+//! every unit over time, and the edges of the corridor.
 //!
-//! Promises that nothing flatters: leeway is rounded down and the least of its stretch, tubes are rounded up; poses are
-//! the certificate's own nominal motion. Leaves out stations between which a straight line will do.
+//! Numbers are never better than the certificate: leeway is the least of its stretch, rounded down, and tubes are rounded
+//! up. Poses are the certificate's own nominal motion. The drive leaves out stations that lie close to a straight line
+//! between the kept ones.
 
 use serde_json::{Value, json};
 
@@ -13,17 +14,17 @@ use crate::speed_profile::SpeedProfile;
 use crate::stet::motion::Pose;
 use crate::stet::{Model, known_m, tubes};
 
-/// Stretches of the leeway strip, at most: more than a screen has columns.
+/// The greatest number of stretches in the leeway strip, about the columns of a wide screen.
 const MOST_STRETCHES: usize = 1500;
-/// Moments of the drive, at most; then they lie further apart.
+/// The greatest number of moments in the drive. Moments of longer routes lie further apart.
 const MOST_MOMENTS: usize = 6000;
-/// A moment at least so often, metres,
+/// The greatest distance between two moments, metres.
 const LONGEST_M: f64 = 15.0;
-/// and whenever a unit has turned by so much, radians: a body 14 m long turned by 2° about its axle is off by 4 mm
-/// between two.
+/// The greatest turn of a unit between two moments, radians. A body of 14 m that turns by 2° about its axle is drawn at most
+/// 4 mm off between two moments.
 const MOST_TURN_RAD: f64 = 0.035;
 
-/// What a page needs beside the route's numbers: `geometry`, `leeway`, and `drive` if it is wanted.
+/// The members that a page needs beside the route's numbers: `geometry`, `leeway`, and `drive` if `drive` is true.
 pub(super) fn members(model: &Model, route: &Route, drive: bool) -> Result<Value, FrameError> {
     let certificate = &route.certificate;
     let corridor = &route.path.corridor;
@@ -41,8 +42,8 @@ pub(super) fn members(model: &Model, route: &Route, drive: bool) -> Result<Value
     Ok(members)
 }
 
-/// Of each stretch the least, left and right; never less than the route's RSC, since the certificate's γ gives every
-/// station at least that.
+/// The least leeway of each stretch, left and right. It is never below the route's RSC, because the certificate's γ gives
+/// every station at least the RSC.
 fn leeway(route: &Route) -> Value {
     let (certificate, corridor) = (&route.certificate, &route.path.corridor);
     let rsc_m = certificate.result.rsc_m;
@@ -137,7 +138,7 @@ fn moments(model: &Model, route: &Route, ride: &Ride, stations: &[usize]) -> Res
     }))
 }
 
-/// The corridor's edge at a station.
+/// The point on the corridor's left or right edge at a station, metres in the corridor's frame.
 fn beside(c: &Corridor, k: usize, left: bool) -> [f64; 2] {
     let along = |column: &[f64]| column.get(k).copied().unwrap_or_default();
     let by = if left { along(&c.left_m) } else { -along(&c.right_m) };
@@ -145,9 +146,11 @@ fn beside(c: &Corridor, k: usize, left: bool) -> [f64; 2] {
     [along(&c.x) - by * heading.sin(), along(&c.y) + by * heading.cos()]
 }
 
-/// Longitude and latitude of the axle, and the unit's heading clockwise from true north, degrees: grid north is not.
+/// Longitude and latitude of each axle, and the unit's heading clockwise from true north, degrees. The poses are in the grid
+/// of `frame`, whose north differs from true north.
 fn headed(frame: Frame, poses: &[Pose]) -> Result<Vec<[f64; 3]>, FrameError> {
-    /// Far enough that rounding does not show, near enough that the earth is flat.
+    /// Distance ahead at which the heading is measured. Rounding does not matter at this distance, nor does the earth's
+    /// curvature.
     const AHEAD_M: f64 = 50.0;
     let axles: Vec<[f64; 2]> = poses.iter().map(|pose| pose.axle).collect();
     let ahead: Vec<[f64; 2]> = poses.iter().map(|pose| pose.place(AHEAD_M, 0.0)).collect();
@@ -155,7 +158,7 @@ fn headed(frame: Frame, poses: &[Pose]) -> Result<Vec<[f64; 3]>, FrameError> {
     let headed = |(&[lon, lat], &[lon_ahead, lat_ahead]): (&[f64; 2], &[f64; 2])| {
         let east = (lon_ahead - lon + 540.0).rem_euclid(360.0) - 180.0;
         let (sin, cos) = lat.to_radians().sin_cos();
-        let north = (lat_ahead - lat) * (1.0 - E2) / (1.0 - E2 * sin * sin); // in degrees of the parallel's own radius
+        let north = (lat_ahead - lat) * (1.0 - E2) / (1.0 - E2 * sin * sin); // scaled like `east`, for the ellipsoid
         let heading = (east * cos).atan2(north).to_degrees();
         [rounded(lon, 1e7), rounded(lat, 1e7), rounded(heading.rem_euclid(360.0), 100.0)]
     };
@@ -173,7 +176,7 @@ fn rounded(value: f64, parts: f64) -> f64 {
     (value * parts).round() / parts
 }
 
-/// To the millimetre below.
+/// Metres, rounded down to a millimetre.
 fn down(m: f64) -> f64 {
     (m * 1000.0).floor() / 1000.0
 }

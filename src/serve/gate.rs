@@ -1,8 +1,8 @@
-//! What every request passes, and every response: methods, host, sizes; security headers.
+//! The checks that every request passes, and the security headers of every response.
 //!
-//! Promises: nothing but `GET` and `HEAD`; no request with a body; no request line beyond the bound; on loopback, no
-//! `Host` that is not this machine's own name (a page elsewhere whose name suddenly means 127.0.0.1 must not read: DNS
-//! rebinding); one line in the log for each request that is refused.
+//! A request is refused if its method is not `GET` or `HEAD`, if it has a body, or if its address is too long. Unless
+//! --allow-remote is given, a request is also refused if its `Host` is not a loopback name; otherwise a page of another
+//! site could read answers by DNS rebinding. Every refusal writes one line to the log.
 
 use std::sync::Arc;
 
@@ -16,10 +16,10 @@ use super::lines::{self, Refused};
 use super::options::Options;
 use super::problem::Problem;
 
-/// Longest path and query, bytes.
+/// The greatest length of path and query together, bytes.
 const LONGEST_TARGET: usize = 4096;
 
-/// The middleware.
+/// The middleware with the checks and headers.
 pub(super) async fn gate(State(app): State<Arc<App>>, request: Request, next: Next) -> Response {
     let (method, target) = (request.method().clone(), request.uri().clone());
     let mut response = match refusal(&request, &app.options) {
@@ -47,7 +47,7 @@ const FIXED_HEADERS: [(HeaderName, &str); 5] = [
     (HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
 ];
 
-/// Everything from here, nothing inline; MapLibre hands pictures around as blobs.
+/// The policy allows content of this server only, and nothing inline. MapLibre passes images as blobs.
 fn content_security_policy(options: &Options) -> String {
     let map = options.base_map.as_ref().map_or(String::new(), |map| format!(" {}", map.origin));
     format!(
@@ -75,7 +75,7 @@ fn refusal(request: &Request, options: &Options) -> Option<Problem> {
     }
     let hosts: Vec<_> = headers.get_all(header::HOST).iter().collect();
     let host = match (hosts.as_slice(), request.uri().authority()) {
-        // A target in absolute form counts before the header (RFC 9112, section 3.2.2).
+        // A target in absolute form takes precedence over the header (RFC 9112, section 3.2.2).
         (_, Some(authority)) => authority.as_str(),
         ([host], None) => host.to_str().unwrap_or_default(),
         _ => "",
@@ -87,7 +87,7 @@ fn refusal(request: &Request, options: &Options) -> Option<Problem> {
     None
 }
 
-/// Whether a `Host` is this machine's own loopback name, whatever the port.
+/// Whether a `Host` is a loopback name or the server's own address, with any port.
 fn is_own(host: &str, options: &Options) -> bool {
     let (name, port) = match host.rsplit_once(':') {
         Some((name, port)) if !port.ends_with(']') => (name, port),

@@ -1,23 +1,23 @@
-//! Lines for whoever runs the server. Requests come from outside: nothing of them may move a terminal's cursor, colour it, or
-//! begin a line of its own. Where lines go is the program's choice: they are handed to `log`.
+//! Log lines for the operator of the server. Text from requests is escaped, so that it cannot move the cursor of a terminal,
+//! change its colours or begin a new line. The lines go to the `log` crate, and the program decides where they appear.
 
 use std::path::Path;
 
 use axum::http::{Method, Uri};
 
-/// Longest part of a line that a request decides, characters.
+/// The greatest length of each part of a line that comes from a request, characters.
 const LONGEST: usize = 300;
 
-/// What a response says of its refusal, beside its body.
+/// The reason of a refusal. The response carries it as an extension beside its body.
 #[derive(Debug, Clone)]
 pub(super) struct Refused(pub(super) String);
 
-/// A request is refused.
+/// Logs a refused request.
 pub(super) fn refused(method: &Method, target: &Uri, refused: &Refused) {
     log::warn!("{}", line(&refusal(method, target, refused)));
 }
 
-/// The database has changed.
+/// Logs that the database has changed and was read again.
 pub(super) fn read_anew(db: &Path) {
     log::info!("{}", line(&format!("{}: it has changed; read anew", db.display())));
 }
@@ -34,7 +34,7 @@ fn cut(text: &str) -> String {
     }
 }
 
-/// As one line: what does not print is written as its escape, `\u{1b}` or `\n`; so is a backslash.
+/// The text as one line. Characters that do not print, and backslashes, are replaced by escapes such as `\u{1b}` or `\n`.
 fn line(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -54,7 +54,7 @@ mod tests {
     fn what_does_not_print_is_escaped_and_the_rest_stays() {
         assert_eq!(line("Größe \"5\" – it's 道路"), "Größe \"5\" – it's 道路");
         assert_eq!(line("a\nb\r\t\u{1b}[31m\\n\u{7f}"), r"a\nb\r\t\u{1b}[31m\\n\u{7f}");
-        // C1 controls, line separators, marks that turn the writing round, and what takes no room.
+        // C1 controls, line separators, marks of writing direction, and characters of no width.
         for c in ['\u{9b}', '\u{85}', '\u{2028}', '\u{2029}', '\u{202e}', '\u{2066}', '\u{200b}', '\u{feff}', '\u{301}']
         {
             let escaped = line(&c.to_string());

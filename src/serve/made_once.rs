@@ -1,12 +1,12 @@
-//! What is made when it is first asked for: one thing, or the last few of one kind, so that two questions about one
-//! thing (its words, its picture; a map's tiles) cost one.
+//! Values that are made on first use: [`Late`] for one value, [`Recent`] for the last few values of one kind. With them, two
+//! requests that need the same value, such as the words and the picture of one explanation, make it once.
 //!
-//! Promises that each is made once at a time, whoever asks meanwhile waits for it; a failure is not kept.
+//! A value is never made twice at the same time: other callers wait for it. An error is not stored.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// One thing.
+/// One value.
 pub(super) struct Late<T>(Mutex<Option<T>>);
 
 impl<T> Default for Late<T> {
@@ -25,10 +25,10 @@ impl<T: Clone> Late<T> {
     }
 }
 
-/// A thing with its key.
+/// A value with its key.
 type Kept<T> = (String, Arc<Late<Arc<T>>>);
 
-/// Keeps the `most` last ones.
+/// Keeps the `most` values that were made last.
 pub(super) struct Recent<T> {
     most: usize,
     kept: Mutex<VecDeque<Kept<T>>>,
@@ -39,7 +39,7 @@ impl<T> Recent<T> {
         Self { most, kept: Mutex::default() }
     }
 
-    /// The one of this key, else it is made; others are not held up by that.
+    /// The value of this key. Makes the value if it is missing; callers with other keys do not wait meanwhile.
     pub(super) fn get<E>(&self, key: &str, make: impl FnOnce() -> Result<T, E>) -> Result<Arc<T>, E> {
         let slot = {
             let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
@@ -60,7 +60,7 @@ impl<T> Recent<T> {
         made
     }
 
-    /// Takes it out.
+    /// Removes the value of this key.
     pub(super) fn forget(&self, key: &str) {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner).retain(|one| one.0 != key);
     }

@@ -1,27 +1,28 @@
-//! The certified network on a map: a web server over one database, read-only.
+//! A read-only web server that shows one certified database on a map.
 //!
-//! Promises: every answer comes from the database as it is now; every piece of work is bounded in size, time and
-//! number; no request is answered that is not for this server; no address but its own table is ever looked up. `safe`
-//! is never said without its scope. Leaves out: log-in and encryption, which is why it stays on loopback unless told
-//! otherwise.
+//! - Every answer comes from the current state of the database file.
+//! - Every piece of work is bounded in size, time and number.
+//! - The server answers only requests that are meant for it, and only the addresses of its own tables.
+//! - Every answer that says `safe` also says the scope of `safe`.
+//! - There is no log-in and no encryption, so the server listens on loopback only, unless told otherwise.
 //!
 //! | file | for |
 //! | --- | --- |
-//! | `options` | what the command line says; all bounds |
+//! | `options` | options of the command line, and all bounds |
 //! | `run` | listening, connections, stopping |
-//! | `routes` | which address is answered by what |
-//! | `gate` | what every request and response passes: methods, host, sizes, security headers |
-//! | `lines` | what whoever runs the server is told, through `log` |
-//! | `ask` | a request's names and parameters |
-//! | `answer`, `cache` | entity tags, compression, conditional requests; answers kept |
-//! | `problem` | what went wrong, as problem+json |
-//! | `app`, `work` | what requests share; lanes for work that blocks |
-//! | `region`, `roads` | one state of the file; the network in memory |
+//! | `routes` | the endpoint of every address |
+//! | `gate` | checks of every request, security headers of every response |
+//! | `lines` | log lines for the operator of the server |
+//! | `ask` | names and parameters of a request |
+//! | `answer`, `cache` | entity tags, compression, conditional requests; the cache of answers |
+//! | `problem` | errors, as problem+json |
+//! | `app`, `work` | the state that requests share; lanes for work that blocks |
+//! | `region`, `roads` | one state of the database file; the network in memory |
 //! | `planning`, `drive` | routes, and how a vehicle drives along one |
-//! | `recent` | what is made when first asked for; the last results of long work |
-//! | `names` | names as people type them |
+//! | `made_once` | values that are made on first use; the last results of long work |
+//! | `names` | comparison of road names with what people type |
 //! | `tiles` | vector tiles |
-//! | `api` | everything else, one file an endpoint |
+//! | `api` | all other endpoints, one file each |
 //! | `assets` | the page |
 
 mod answer;

@@ -1,13 +1,13 @@
-//! Names as people type them: without capitals and accents, a ref with or without its space.
+//! Compares road names with what people type: capitals, accents and the spaces of a ref do not matter.
 
 use crate::rows::RoadRow;
 
-/// A way, its name and ref folded.
+/// A way with its name and ref in folded form.
 #[derive(Debug)]
 pub(super) struct NamedRoad {
     pub(super) row: RoadRow,
     name: String,
-    /// Without spaces.
+    /// The folded ref without spaces.
     reference: String,
 }
 
@@ -18,7 +18,7 @@ impl NamedRoad {
         Self { row, name, reference }
     }
 
-    /// How well it matches what was asked (folded); less is better, `None` not at all.
+    /// The rank of the match with `asked`, which must be folded. A lower rank is better; `None` means no match.
     pub(super) fn rank(&self, asked: &str) -> Option<u8> {
         let close = asked.replace(' ', "");
         if self.name == asked || (!self.reference.is_empty() && self.reference.split(';').any(|one| one == close)) {
@@ -35,7 +35,7 @@ impl NamedRoad {
     }
 }
 
-/// Small letters without the accents of European languages; single spaces.
+/// The folded form of a text: lower case, without the accents of European languages, with single spaces.
 pub(super) fn folded(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.trim().chars().flat_map(char::to_lowercase) {

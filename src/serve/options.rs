@@ -1,20 +1,20 @@
-//! How to serve: what the command line says, and the bounds.
+//! The options of the server from the command line, and the bounds of its work.
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// What `serve` is asked to do.
+/// The options of the server.
 #[derive(Clone)]
 pub struct Options {
     /// The database.
     pub db: PathBuf,
-    /// Where to listen; port 0 picks one.
+    /// The address to listen on. Port 0 picks a free port.
     pub addr: SocketAddr,
-    /// Listen on an address that other machines reach, and answer to any host name.
+    /// Whether the server may listen on an address that other machines can reach, and answer to any host name.
     pub allow_remote: bool,
-    /// Tiles of an online map that the page may show beneath, as `https://…/{z}/{x}/{y}.png`; `None`: no request leaves
-    /// the machine.
+    /// The online map that the page may show beneath the roads, `https://…/{z}/{x}/{y}.png`. With `None` the page sends
+    /// no request to another server.
     pub base_map: Option<BaseMap>,
     /// The bounds.
     pub limits: Limits,
@@ -23,19 +23,19 @@ pub struct Options {
 /// An online map to show beneath the roads.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BaseMap {
-    /// With `{z}`, `{x}` and `{y}`.
+    /// The template of the tiles' addresses, with `{z}`, `{x}` and `{y}`.
     pub url: String,
-    /// Scheme, host and port of it: what the page's content security policy lets through.
+    /// Scheme, host and port of `url`, which the page's content security policy allows.
     pub origin: String,
-    /// Who is to be named beside it, as plain text; at first its host.
+    /// The attribution to show beside the map, as plain text. [`Self::parse`] sets it to the host.
     pub attribution: String,
 }
 
 impl BaseMap {
-    /// Reads a template.
+    /// Parses the template of the tiles' addresses.
     ///
     /// # Errors
-    /// It is not one.
+    /// The text is no such template. The error says what is wrong.
     pub fn parse(url: &str) -> Result<Self, String> {
         let scheme = ["https://", "http://"].into_iter().find(|scheme| url.starts_with(scheme));
         let scheme = scheme.ok_or("give a template that begins with https://")?;
@@ -53,7 +53,7 @@ impl BaseMap {
         Ok(Self { url: url.to_owned(), origin: format!("{scheme}{host}"), attribution })
     }
 
-    /// With what those who made the map want to be named as.
+    /// Sets the attribution that the makers of the map require.
     #[must_use]
     pub fn named(self, attribution: &str) -> Self {
         Self { attribution: attribution.to_owned(), ..self }
@@ -63,30 +63,30 @@ impl BaseMap {
 /// Bounds of a lane of work.
 #[derive(Debug, Clone, Copy)]
 pub struct LaneLimits {
-    /// Done at a time.
+    /// Pieces of work that run at the same time.
     pub at_a_time: usize,
-    /// May wait beside those.
+    /// Pieces of work that may wait for a place.
     pub waiting: usize,
-    /// Waiting and working together.
+    /// The longest time for waiting and working together.
     pub time: Duration,
 }
 
-/// All bounds; the defaults are for one machine with a few people before it.
+/// All bounds of the server. The defaults suit one machine and a few users.
 #[derive(Debug, Clone, Copy)]
 pub struct Limits {
-    /// Rows from the database: tiles, edges, search.
+    /// Bounds of work that reads some rows: tiles, edges, search.
     pub quick: LaneLimits,
-    /// Certificates: explanations, routes; and whatever reads everything.
+    /// Bounds of work that certifies (explanations, routes) or reads the whole database.
     pub slow: LaneLimits,
-    /// Finished answers kept.
+    /// Size of the cache of finished answers, bytes.
     pub cache_bytes: usize,
-    /// Connections at a time; more wait to be accepted.
+    /// Connections at the same time. Further connections wait to be accepted.
     pub connections: usize,
-    /// For a request's line and headers to arrive, and between two requests.
+    /// The longest time until a request's line and headers have arrived, and between two requests.
     pub header_time: Duration,
-    /// How long one connection may last.
+    /// The longest time that one connection may last.
     pub connection_time: Duration,
-    /// For requests that are being answered when the server is to stop.
+    /// The longest time for requests in progress to finish when the server is told to stop.
     pub stop_time: Duration,
 }
 

@@ -1,8 +1,7 @@
-//! Routes: one thread for each vehicle, policy and measure that was asked for lately, with the planner and all it has
-//! made.
+//! Plans routes. Each recent combination of vehicle, policy and measure has a thread with its own planner.
 //!
-//! A planner answers one question at a time and keeps the corridors it has made. The thread ends when nobody can ask it any
-//! more.
+//! A planner answers one question at a time and keeps the corridors that it has made. The thread ends when its [`Router`]
+//! is dropped.
 
 use std::sync::{Arc, mpsc};
 
@@ -14,29 +13,29 @@ use crate::stop::Stop;
 use crate::words::Named as _;
 use serde_json::{Value, json};
 
-/// After so many answers a planner begins afresh: what it keeps of turns and strokes grows with what it has seen.
+/// After this many answers a planner is replaced by a new one, because the corridors that it keeps grow with every answer.
 const ANSWERS: usize = 100;
-/// Questions that may wait for one planner; the lane lets no more through anyway.
+/// Questions that may wait for one planner. The slow lane lets fewer through.
 const MOST_WAITING: usize = 64;
 
-/// A question, and how much of the answer is wanted.
+/// A question, and the number of drives wanted in the answer.
 #[derive(Debug, Clone)]
 pub(super) struct Ride {
     pub(super) question: Question,
-    /// Of so many routes, from the best on, the drive is wanted.
+    /// Number of routes, from the best on, whose drive is wanted.
     pub(super) drives: usize,
-    /// Told when nobody waits for it any more.
+    /// Told to stop when nobody waits for the answer any more.
     pub(super) stop: Stop,
 }
 
 type Reply = mpsc::Sender<Result<Value, Problem>>;
 
-/// Where questions go.
+/// The sending end of a planner's questions.
 pub(super) struct Router {
     questions: mpsc::SyncSender<(Ride, Reply)>,
 }
 
-/// What one planner is for.
+/// What one planner is made from.
 struct Wanted {
     roads: Arc<Roads>,
     driver: Arc<Driver>,
@@ -45,7 +44,7 @@ struct Wanted {
 }
 
 impl Router {
-    /// Reads the permits and starts the thread.
+    /// Reads the permits of the vehicle and starts the planner's thread.
     pub(super) fn start(region: &Region, certified: &Certified<'_>, measure: Measure) -> Result<Self, Problem> {
         let roads = Arc::clone(&region.roads()?.roads);
         let driver =
@@ -62,7 +61,7 @@ impl Router {
         Ok(Self { questions })
     }
 
-    /// Asks and waits. `None`: the thread has ended, which is a fault.
+    /// Asks the planner and waits for the answer. `None` means that the thread has ended, which is a fault.
     pub(super) fn ask(&self, ride: Ride) -> Option<Result<Value, Problem>> {
         let (reply, answer) = mpsc::channel();
         self.questions.send((ride, reply)).ok()?;
@@ -76,7 +75,7 @@ impl Wanted {
             let mut planner = Planner::new(&self.roads, Arc::clone(&self.driver), self.speeds.clone(), self.measure);
             for _ in 0..ANSWERS {
                 let Ok((ride, reply)) = asked.recv() else { return };
-                // Who asked may have gone.
+                // Sending fails if the request has gone, which is no error.
                 let _ = reply.send(self.answer(&mut planner, &ride));
             }
         }
@@ -102,7 +101,7 @@ impl Wanted {
     }
 }
 
-/// 63 bits are more than JavaScript's numbers hold.
+/// Replaces the ids of edges by text, because they have 63 bits and JavaScript's numbers hold 53.
 fn ids_as_text(value: &mut Value) {
     match value {
         Value::Array(all) => all.iter_mut().for_each(ids_as_text),

@@ -1,4 +1,4 @@
-//! What went wrong, as `application/problem+json` (RFC 9457): a stable type, and a sentence with the way out.
+//! Errors as `application/problem+json` (RFC 9457). Each has a stable type and a sentence that says what to do.
 
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -8,15 +8,15 @@ use super::lines::Refused;
 use crate::stop::Stopped;
 use crate::store::StoreError;
 
-/// A refusal or failure.
+/// A refusal or failure of a request.
 #[derive(Debug, Clone)]
 pub(super) struct Problem {
     pub(super) status: StatusCode,
-    /// Stable, lower case: the last part of `type`.
+    /// The last part of `type`: stable, in lower case.
     kind: &'static str,
     title: &'static str,
     detail: String,
-    /// Which parameter is at fault.
+    /// The parameter at fault.
     parameter: Option<String>,
     retry_after_s: Option<u32>,
 }
@@ -26,7 +26,7 @@ impl Problem {
         Self { status, kind, title, detail: detail.into(), parameter: None, retry_after_s: None }
     }
 
-    /// A parameter that is missing, out of range or no number.
+    /// A parameter is missing, unknown, out of range or cannot be read.
     pub(super) fn parameter(name: &str, detail: impl std::fmt::Display) -> Self {
         let detail = format!("{name}: {detail}");
         let problem = Self::new(StatusCode::BAD_REQUEST, "bad-parameter", "A parameter is wrong", detail);
@@ -37,32 +37,32 @@ impl Problem {
         Self::new(StatusCode::NOT_FOUND, "not-found", "There is no such thing", detail)
     }
 
-    /// Too much to do just now.
+    /// The server has too much to do now.
     pub(super) fn busy(detail: impl Into<String>) -> Self {
         let problem = Self::new(StatusCode::SERVICE_UNAVAILABLE, "busy", "Busy just now", detail);
         Self { retry_after_s: Some(1), ..problem }
     }
 
-    /// Time is up.
+    /// The work took longer than its lane allows.
     pub(super) fn too_slow(limit_s: f64) -> Self {
-        Self::cut_off(format!("not done within {limit_s} s; ask for less, or again when there is less to do"))
+        Self::cut_off(format!("not done within {limit_s} s; ask for less, or ask again when the server is less busy"))
     }
 
     fn cut_off(detail: String) -> Self {
         Self::new(StatusCode::GATEWAY_TIMEOUT, "too-slow", "It takes too long", detail)
     }
 
-    /// A place that is on no road.
+    /// A place is near no road that may be used.
     pub(super) fn no_road(detail: impl Into<String>) -> Self {
         Self::new(StatusCode::UNPROCESSABLE_ENTITY, "no-road", "There is no road that may be used", detail)
     }
 
-    /// Certificates of another version of the program.
+    /// The certificates were made by another version of the program.
     pub(super) fn stale(detail: impl Into<String>) -> Self {
         Self::new(StatusCode::CONFLICT, "stale", "The certificates are of another version", detail)
     }
 
-    /// A fault of the program.
+    /// The program has a fault.
     pub(super) fn fault(detail: impl Into<String>) -> Self {
         let title = "A fault of netcert; please report it";
         Self::new(StatusCode::INTERNAL_SERVER_ERROR, "fault", title, detail)
@@ -70,7 +70,7 @@ impl Problem {
 }
 
 impl From<StoreError> for Problem {
-    /// Without the file's path, which is nobody's business on the other side.
+    /// The message leaves out the path of the file, which clients should not learn.
     fn from(error: StoreError) -> Self {
         let unavailable = |kind, title, detail: String| Self {
             retry_after_s: Some(2),
@@ -108,9 +108,9 @@ impl From<StoreError> for Problem {
 }
 
 impl From<Stopped> for Problem {
-    /// The time of whoever asked is up, or they have gone.
+    /// The time of the request is up, or the client has gone.
     fn from(stopped: Stopped) -> Self {
-        Self::cut_off(format!("{stopped}; ask for less, or again when there is less to do"))
+        Self::cut_off(format!("{stopped}; ask for less, or ask again when the server is less busy"))
     }
 }
 

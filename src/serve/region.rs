@@ -1,7 +1,7 @@
-//! One state of the database file: what holds for all of it, and connections to read more.
+//! One state of the database file: facts of the whole file, and connections to read more.
 //!
-//! Promises that nothing of an older state is used once the file has changed, in place or by another file in its stead:
-//! the application asks for the file's [`Identity`] with every request and begins a new region when it differs.
+//! Nothing of an older state is used after the file has changed or has been replaced: the application compares the file's
+//! [`Identity`] at every request, and opens a new region if it differs.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -25,16 +25,16 @@ use crate::store::{CertifiedSet, Database, Run, StoreError};
 use crate::vehicle::Vehicle;
 use crate::words::Named;
 
-/// Idle connections that are kept; each may hold 64 MB of the file's pages.
+/// Number of idle connections to keep. Each may hold 64 MB of the file's pages.
 const MOST_IDLE: usize = 4;
-/// Explanations kept; each is a picture of some 100 kB.
+/// Number of explanations to keep. Each has a picture of some 100 kB.
 const MOST_EXPLAINED: usize = 16;
-/// Main roads from afar kept, by vehicle and policy: about 60 bytes a vertex.
+/// Number of overviews to keep, one for each vehicle and policy. An overview takes about 60 bytes per vertex.
 pub(super) const MOST_OVERVIEWS: usize = 6;
-/// Planners kept; each holds an index of all roads and what it has made of them.
+/// Number of planners to keep. Each holds an index of all roads and the corridors that it has made.
 const MOST_ROUTERS: usize = 4;
 
-/// What tells one state of a file from another: which file, its length, and when it was written.
+/// The identity of a state of a file: its device and inode, its length, and the time when it was written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Identity {
     device: u64,
@@ -60,7 +60,7 @@ impl Identity {
     }
 }
 
-/// A vehicle with its certificates under a policy, and how they were made.
+/// A vehicle with its set of certificates under a policy, and the settings of that set.
 pub(super) struct Certified<'r> {
     pub(super) vehicle: &'r Vehicle,
     pub(super) set: &'r CertifiedSet,
@@ -71,23 +71,23 @@ pub(super) struct Certified<'r> {
 pub(super) struct Region {
     path: PathBuf,
     pub(super) identity: Identity,
-    /// Names this state; see `answer`.
+    /// The name of this state; see `answer`.
     pub(super) state: String,
-    /// Hash of what was made and of what: the same for the same content, whenever the file was written.
+    /// Hash of the runs and the sets of certificates. It does not depend on the file's path or modification time.
     pub(super) content: String,
     pub(super) extent: Option<Bounds>,
     pub(super) runs: Vec<Run>,
     pub(super) vehicles: Vec<Vehicle>,
     pub(super) sets: Vec<CertifiedSet>,
-    /// Those of `sets` that have turns as well.
+    /// For each of `sets`, whether the vehicle's turns are certified, too.
     turns: Vec<bool>,
-    /// The policy that counts where a request names none.
+    /// The policy of requests that name none.
     pub(super) policy: Policy,
     idle: Mutex<Vec<Database>>,
     roads: Late<Arc<RoadIndex>>,
     names: Late<Arc<[NamedRoad]>>,
     sides: Late<Arc<DrivingSides>>,
-    /// The main roads from afar, by vehicle and policy.
+    /// The last overviews, by vehicle and policy.
     pub(super) overviews: Recent<Overview>,
     /// The last explanations, by id, vehicle and policy.
     pub(super) explained: Recent<Explained>,
@@ -96,7 +96,7 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// Reads what holds for the whole file.
+    /// Opens the file and reads the facts of the whole file.
     pub(super) fn open(path: &Path) -> Result<Self, StoreError> {
         let identity = Identity::of(path)?;
         let mut database = Database::open(path)?;
@@ -137,13 +137,13 @@ impl Region {
         Ok(region)
     }
 
-    /// What the extract's file is called, without its endings.
+    /// The name of the extract's file, without its endings.
     pub(super) fn name(&self) -> &str {
         let ingest = self.runs.iter().rev().find(|run| run.command == "ingest").or(self.runs.last());
         ingest.map_or("region", |run| run.input_name.split('.').next().unwrap_or(&run.input_name))
     }
 
-    /// Reads from the database; blocks. For short reads: nobody cancels them.
+    /// Reads from the database and blocks meanwhile. Such a read cannot be cancelled, so it must be short.
     pub(super) fn read<T>(&self, work: impl FnOnce(&mut Database) -> Result<T, StoreError>) -> Result<T, Problem> {
         let kept = self.idle.lock().unwrap_or_else(PoisonError::into_inner).pop();
         let mut database = match kept {
@@ -156,7 +156,7 @@ impl Region {
                 database
             }
         };
-        let read = work(&mut database)?; // after an error the connection goes
+        let read = work(&mut database)?; // after an error the connection is dropped
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         if idle.len() < MOST_IDLE {
             idle.push(database);
@@ -164,7 +164,7 @@ impl Region {
         Ok(read)
     }
 
-    /// The same, cut off when `stop` is told.
+    /// Reads from the database as [`Self::read`] does, and fails soon after `stop` is told.
     pub(super) fn read_until<T>(
         &self,
         stop: &Stop,
@@ -191,7 +191,7 @@ impl Region {
         self.names.get(read)
     }
 
-    /// On which side one drives; the first call reads it.
+    /// The driving side of every edge; the first call reads them.
     pub(super) fn sides(&self) -> Result<Arc<DrivingSides>, Problem> {
         self.sides.get(|| self.read(Database::driving_sides).map(Arc::new))
     }
@@ -207,7 +207,7 @@ impl Region {
         })
     }
 
-    /// The vehicle's set under this policy, if there is one.
+    /// The vehicle's set under this policy. The error names the policies that the vehicle is certified under.
     pub(super) fn certified(&self, id: &str, policy: Policy) -> Result<Certified<'_>, Problem> {
         let vehicle = self.vehicle(id)?;
         if let Some(set) = self.sets.iter().find(|set| set.vehicle_id == id && set.policy == policy) {
@@ -223,15 +223,15 @@ impl Region {
         )))
     }
 
-    /// Under which policies a vehicle is certified, and whether its turns are.
+    /// The policies that a vehicle is certified under, and whether its turns are certified, too.
     pub(super) fn policies(&self, id: &str) -> Vec<(Policy, bool)> {
         let of = self.sets.iter().zip(&self.turns).filter(|(set, _)| set.vehicle_id == id);
         of.map(|(set, turns)| (set.policy, *turns)).collect()
     }
 }
 
-/// A database brings a small runtime of its own, which must not end on a thread that drives another one, as those of
-/// requests do.
+/// The connections are dropped on a thread of their own. Each holds a small tokio runtime, and such a runtime must not end
+/// on a thread of the server's runtime.
 impl Drop for Region {
     fn drop(&mut self) {
         let idle = std::mem::take(&mut *self.idle.lock().unwrap_or_else(PoisonError::into_inner));
@@ -241,7 +241,7 @@ impl Drop for Region {
     }
 }
 
-/// Of the runs and sets; not of the file's bytes, which would take a second a gigabyte at every start.
+/// The hash of the runs and sets. Hashing the file itself would take a second per gigabyte at every start.
 fn content(runs: &[Run], sets: &[CertifiedSet]) -> String {
     let runs: Vec<_> = runs
         .iter()

@@ -1,4 +1,4 @@
-//! The network in memory, for explanations and routes: loaded when it is first needed.
+//! The network in memory, which explanations and routes need. It is loaded on first use.
 
 use std::sync::Arc;
 
@@ -11,12 +11,12 @@ use crate::route::Roads;
 use crate::settings::Settings;
 use crate::turns::{TurnFacts, turn_facts};
 
-/// The roads of a region, with edges and turns by their ids.
+/// The roads of a region, with look-up of edges and turns by id.
 pub(super) struct RoadIndex {
-    /// Shared with the planners.
+    /// The roads, which the planners share.
     pub(super) roads: Arc<Roads>,
     by_id: FxHashMap<i64, u32>,
-    /// By kerbs: all sets of a database have the same.
+    /// The turns by kerb settings. One entry suffices, because all sets of a database have the same kerbs.
     turns: Recent<Vec<TurnFacts>>,
 }
 
@@ -30,12 +30,12 @@ impl RoadIndex {
         &self.roads.network
     }
 
-    /// The edge of an `edge_id`.
+    /// The index of the edge with this `edge_id`.
     pub(super) fn edge(&self, id: i64) -> Option<u32> {
         self.by_id.get(&id).copied()
     }
 
-    /// The turn of a `turn_id`, with its kerbs as the settings have them.
+    /// The turn with this `turn_id`, with kerbs by `settings`.
     pub(super) fn turn(&self, id: i64, settings: &Settings) -> Result<Option<TurnFacts>, Problem> {
         let key = format!("{:?}", settings.kerbs);
         let make = || Ok::<_, Problem>(turn_facts(self.network(), &settings.kerbs));

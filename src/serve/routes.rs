@@ -1,4 +1,4 @@
-//! Which address is answered by what.
+//! The endpoint of every address.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ use super::tiles;
 
 type Work = fn(&Region, &Ask) -> Result<Stored, Problem>;
 
-/// Addresses that are answered from the database: with how much work, and by what.
+/// The addresses that are answered from the database, each with its lane and its function.
 const ENDPOINTS: &[(&str, Pace, Work)] = &[
     ("/api/vehicles", Pace::Quick, api::vehicles::list),
     ("/api/vehicles/{id}/drawing.svg", Pace::Quick, api::vehicles::drawing),
@@ -32,7 +32,7 @@ const ENDPOINTS: &[(&str, Pace, Work)] = &[
     ("/tiles/{policy}/{vehicle}/{z}/{x}/{y}", Pace::Quick, tiles::tile),
 ];
 
-/// The whole server but for listening.
+/// The whole server except listening.
 pub(super) fn router(app: Arc<App>) -> Router {
     let mut router = Router::new();
     for &(path, pace, work) in ENDPOINTS {
@@ -48,7 +48,7 @@ pub(super) fn router(app: Arc<App>) -> Router {
         .with_state(app)
 }
 
-/// Whether it runs and the database can be read.
+/// Answers `ok` if the server runs and the database can be read.
 async fn health(State(app): State<Arc<App>>, ask: Ask) -> Response {
     app.answer(ask, Pace::Quick, |region, ask| {
         ask.only(&[])?;
@@ -57,10 +57,10 @@ async fn health(State(app): State<Arc<App>>, ask: Ask) -> Response {
     .await
 }
 
-/// What no address stands for.
+/// The answer to an unknown address.
 pub(super) fn nothing(request: &Request) -> Response {
     let path = super::ask::shortened(request.uri().path());
-    Problem::not_found(format!("{path}: no such address; /api/openapi.json describes all")).into_response()
+    Problem::not_found(format!("{path}: no such address; /api/openapi.json lists all addresses")).into_response()
 }
 
 #[cfg(test)]
@@ -74,7 +74,7 @@ mod tests {
         let mut described: Vec<&str> = document["paths"].as_object().unwrap().keys().map(String::as_str).collect();
         let mut answered: Vec<&str> = ENDPOINTS.iter().map(|endpoint| endpoint.0).collect();
         answered.extend(["/healthz", "/api/region", "/api/openapi.json"]);
-        // A tile's last part ends in `.mvt`, which the router cannot say.
+        // The router cannot express that the last part of a tile's address ends in `.mvt`.
         let tiles = answered.iter().position(|path| path.starts_with("/tiles/")).unwrap();
         answered[tiles] = "/tiles/{policy}/{vehicle}/{z}/{x}/{y}.mvt";
         described.sort_unstable();

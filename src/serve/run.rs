@@ -1,7 +1,8 @@
-//! Listening: connections in, bounded in number, time and size of their heads; and stopping.
+//! Listens, accepts connections and stops. The number of connections, their duration and the size of their headers are
+//! bounded.
 //!
-//! Promises that stopping is clean: no connection is accepted any more, requests that are being answered get their
-//! answer as far as the bound on time allows, then the rest is cut.
+//! When the server stops, it accepts no more connections. Requests in progress get their answer if it is ready within the
+//! bound on time; then the other connections are cut.
 
 use std::net::SocketAddr;
 use std::pin::pin;
@@ -23,31 +24,31 @@ use super::region::Region;
 use super::routes;
 use crate::store::StoreError;
 
-/// Largest request line and headers, bytes; more is answered with 431.
+/// The greatest size of request line and headers, bytes. A larger request is answered with 431.
 const MOST_HEAD_BYTES: usize = 16 << 10;
-/// After an error of `accept` (no file handle left): let some connections end.
+/// The pause after an error of `accept`, such as no file handle left. Meanwhile some connections end.
 const PAUSE: Duration = Duration::from_millis(100);
-/// The network is loaded for explanations and routes once the first map is likely to be there.
+/// The delay before the network is loaded for explanations and routes. By then the first map is likely to be shown.
 const WARM_UP_AFTER: Duration = Duration::from_secs(3);
 
-/// Why it cannot serve.
+/// Why the server cannot start.
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
-    /// The database.
+    /// The database cannot be opened.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// Other machines would reach it.
+    /// Other machines could reach the address, and that was not allowed.
     #[error(
-        "{0}: other machines could reach this address; there is no log-in and no encryption: add --allow-remote if \
-         that is meant"
+        "{0}: other machines could reach this address, and the server has no log-in and no encryption; add \
+         --allow-remote to listen there anyway"
     )]
     Remote(SocketAddr),
-    /// The port is taken, or not ours to take.
+    /// The port is taken, or this user may not listen on it.
     #[error("{addr}: cannot listen: {source}; --addr 127.0.0.1:0 picks a free port")]
     Listen {
-        /// Asked for.
+        /// The requested address.
         addr: SocketAddr,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
     /// The system refused something else.
@@ -55,7 +56,7 @@ pub enum ServeError {
     System(#[from] std::io::Error),
 }
 
-/// A server that listens already.
+/// A server that is listening.
 pub struct Server {
     runtime: Runtime,
     listener: TcpListener,
@@ -69,7 +70,7 @@ impl Server {
     /// Opens the database and the port.
     ///
     /// # Errors
-    /// One of them cannot be opened; the address is not loopback and that was not asked for.
+    /// The database or the port cannot be opened. The address is not loopback and `allow_remote` is false.
     pub fn bind(mut options: Options) -> Result<Self, ServeError> {
         if !options.addr.ip().is_loopback() && !options.allow_remote {
             return Err(ServeError::Remote(options.addr));
@@ -86,13 +87,13 @@ impl Server {
         Ok(Self { runtime, listener, address, router, limits, app })
     }
 
-    /// Where it listens.
+    /// The address that the server listens on.
     #[must_use]
     pub fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// Serves until `stop` is done; then ends as promised above.
+    /// Serves until `stop` completes. Then it stops as the module's description says.
     pub fn run(self, stop: impl Future<Output = ()>) {
         let Self { runtime, listener, router, limits, app, .. } = self;
         runtime.spawn(async move {
@@ -101,7 +102,7 @@ impl Server {
             app.warm_up().await;
         });
         runtime.block_on(accept(listener, router, limits, stop));
-        // Work that goes on without anybody waiting for it is cut.
+        // Work that nobody waits for any more is cut.
         runtime.shutdown_timeout(Duration::from_millis(200));
     }
 }
@@ -132,7 +133,7 @@ async fn accept(listener: TcpListener, router: Router, limits: Limits, stop: imp
         });
     }
     drop(listener);
-    // Whoever does not listen any more has ended.
+    // Sending fails if no connection is left, which is no error.
     let _ = stopping.send(true);
     let ended = async { while all.join_next().await.is_some() {} };
     let _ = tokio::time::timeout(limits.stop_time, ended).await;
@@ -150,7 +151,7 @@ async fn connection(stream: TcpStream, router: Router, limits: Limits, mut stopp
             () = tokio::time::sleep(limits.connection_time) => {}
         }
     };
-    // How a connection ends is the client's affair: an error here is that it went away or sent no HTTP.
+    // An error here means that the client went away or sent no HTTP. The server ignores it.
     tokio::select! {
         _ = connection.as_mut() => return,
         () = over => connection.as_mut().graceful_shutdown(),

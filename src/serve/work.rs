@@ -1,10 +1,9 @@
-//! Work that blocks (the database, certificates, pictures), in lanes: so many at a time, so many more may wait, so
-//! long.
+//! Lanes for work that blocks: the database, certificates, pictures. A lane bounds how many pieces of work run at the same
+//! time, how many may wait, and how long each may take.
 //!
-//! Promises that a lane never has more in hand than it was made for, also when those who asked have gone: a place is
-//! free again only when the work itself has ended. Work whose time is up, or for which nobody waits any more, is told to
-//! stop; how soon it does is its own affair. Slow work has a lane of its own, so that a map stays fluent beside
-//! it.
+//! A lane never runs more work than its bound, even if clients have gone: a place is free again only when the work itself
+//! has ended. Work whose time is up, or for which nobody waits any more, is told to stop; it stops at its next check. Slow
+//! work has a lane of its own, so that it does not delay the map.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -16,7 +15,7 @@ use tokio::time::timeout;
 use super::problem::Problem;
 use crate::stop::Stop;
 
-/// A lane.
+/// A lane with its bounds.
 #[derive(Debug)]
 pub(super) struct Lane {
     places: Arc<Semaphore>,
@@ -25,7 +24,7 @@ pub(super) struct Lane {
     limit: Duration,
 }
 
-/// Counts one who waits, as long as it lives.
+/// Counts one waiting request while it lives.
 struct Waiting<'l>(&'l AtomicUsize);
 
 impl Drop for Waiting<'_> {
@@ -44,13 +43,13 @@ impl Drop for Wanted {
 }
 
 impl Lane {
-    /// `at_a_time` of them, `most_waiting` more, each answered within `limit`.
+    /// A lane that runs `at_a_time` pieces of work and lets `most_waiting` more wait. Each is answered within `limit`.
     pub(super) fn new(at_a_time: usize, most_waiting: usize, limit: Duration) -> Self {
         let places = Arc::new(Semaphore::new(at_a_time.max(1)));
         Self { places, waiting: AtomicUsize::new(0), most_waiting, limit }
     }
 
-    /// Does it on a thread that may block; the work is given what tells it that nobody waits any more.
+    /// Runs `work` on a thread that may block. The given [`Stop`] tells the work when nobody waits for it any more.
     pub(super) async fn run<T: Send + 'static>(
         &self,
         work: impl FnOnce(Stop) -> Result<T, Problem> + Send + 'static,
@@ -157,7 +156,7 @@ mod tests {
         });
     }
 
-    /// Work without an end of its own: unless it is told to stop, its place never becomes free.
+    /// The work never ends by itself, so its place becomes free only if the work is told to stop.
     #[test]
     fn who_is_cut_off_or_goes_away_frees_the_place() {
         let lane = Arc::new(Lane::new(1, 4, Duration::from_secs(20)));

@@ -1,4 +1,4 @@
-//! Mapped surfaces of junctions in and out of their table.
+//! Writes and reads the table of mapped surfaces of junctions.
 
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteConnection;
@@ -16,7 +16,7 @@ type Sql<T> = Result<T, sqlx::Error>;
 
 const ISLAND: &str = "island";
 
-/// Inserts them.
+/// Inserts the areas.
 pub(super) async fn insert(c: &mut SqliteConnection, areas: &[Area]) -> Sql<()> {
     let mut bulk = Bulk::new("area", 4);
     for (no, area) in (1_i64..).zip(areas) {
@@ -33,7 +33,7 @@ pub(super) async fn insert(c: &mut SqliteConnection, areas: &[Area]) -> Sql<()> 
     bulk.finish(c).await
 }
 
-/// Reads them.
+/// Reads all areas.
 pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Vec<Area>> {
     rows(c, "SELECT way_id, kind, geom FROM area ORDER BY area_no", |row| {
         let way_id: i64 = row.try_get(0)?;

@@ -1,17 +1,17 @@
-//! Geometries as GeoPackage blobs: `GP`, version 0, XY envelope, WGS 84, then a WKB line string, all little endian
-//! (GeoPackage 1.3, clause 2.1.3). Positions are multiples of 1e-7 degree and come back exactly.
+//! Encodes and decodes geometries as GeoPackage blobs: `GP`, version 0, XY envelope, WGS 84, then a WKB line string, all
+//! little endian (GeoPackage 1.3, clause 2.1.3). Positions are multiples of 1e-7 degree and are preserved exactly.
 
 use crate::osm::LonLat;
 use crate::rows::Bounds;
 
-/// Envelope of XY (code 1 in bits 1 to 3), little endian (bit 0).
+/// The flags: an XY envelope (code 1 in bits 1 to 3), little endian (bit 0).
 const FLAGS: u8 = 0b0000_0011;
 const SRS: i32 = 4326;
 const WKB_LINESTRING: u32 = 2;
 const HEADER_BYTES: usize = 8 + 4 * 8;
 const WKB_BYTES: usize = 1 + 4 + 4;
 
-/// The blob of a line, and its box. An empty line has no blob.
+/// The blob of a line, and the box around the line. An empty line has no blob.
 pub(super) fn encode(positions: impl ExactSizeIterator<Item = LonLat> + Clone) -> Option<(Vec<u8>, Bounds)> {
     let bounds = Bounds::around(positions.clone())?;
     let mut blob = Vec::with_capacity(HEADER_BYTES + WKB_BYTES + 16 * positions.len());

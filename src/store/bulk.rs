@@ -1,16 +1,16 @@
-//! Bulk insertion: many rows a statement. One row a statement costs a trip to SQLite's thread each, ten times the time
-//! (measured, 1 M rows of 8 columns: 188 k rows/s one by one, 1,880 k rows/s by 1,000 and more).
+//! Bulk insertion with many rows per statement. A statement for each row takes ten times as long, because each statement is
+//! handed to SQLite's thread (1 M rows of 8 columns: 188 k rows/s one by one, 1,880 k rows/s by 1,000 and more).
 
 use std::sync::Arc;
 
 use sqlx::sqlite::{Sqlite, SqliteArguments, SqliteConnection};
 use sqlx::{Arguments, AssertSqlSafe, Encode, Type};
 
-/// SQLite's own limit on parameters of a statement (`SQLITE_MAX_VARIABLE_NUMBER`).
+/// SQLite's limit on the parameters of a statement (`SQLITE_MAX_VARIABLE_NUMBER`).
 const MOST_PARAMETERS: usize = 32_766;
 const MOST_ROWS: usize = 2_000;
 
-/// Collects rows of one table and inserts them by the statement-full. Call [`Bulk::finish`] at the end.
+/// Collects rows of one table and inserts many of them with each statement. Call [`Bulk::finish`] at the end.
 pub(super) struct Bulk {
     into: &'static str,
     columns: usize,
@@ -21,7 +21,7 @@ pub(super) struct Bulk {
 }
 
 impl Bulk {
-    /// `into`: the table, with a list of columns if not all are given, as in `edge (fid, geom)`.
+    /// `into` is the table, with a list of columns if rows have only some of them, as in `edge (fid, geom)`.
     pub(super) fn new(into: &'static str, columns: usize) -> Self {
         let rows_a_statement = (MOST_PARAMETERS / columns).min(MOST_ROWS);
         let whole = Self::statement(into, columns, rows_a_statement).into();
@@ -33,12 +33,12 @@ impl Bulk {
         format!("INSERT INTO {into} VALUES {}", vec![row.as_str(); rows].join(","))
     }
 
-    /// The next value of the row.
+    /// Adds the next value of the current row.
     pub(super) fn add<'t, T: Encode<'t, Sqlite> + Type<Sqlite>>(&mut self, value: T) -> Result<(), sqlx::Error> {
         self.values.add(value).map_err(sqlx::Error::Encode)
     }
 
-    /// The row is complete: it is sent when enough have come together.
+    /// Ends the current row. Inserts the collected rows if there are enough for a statement.
     pub(super) async fn end_row(&mut self, connection: &mut SqliteConnection) -> Result<(), sqlx::Error> {
         self.rows += 1;
         debug_assert_eq!(self.values.len(), self.rows * self.columns);
@@ -52,7 +52,7 @@ impl Bulk {
         Ok(())
     }
 
-    /// Sends what is left.
+    /// Inserts the rows that are left.
     pub(super) async fn finish(self, connection: &mut SqliteConnection) -> Result<(), sqlx::Error> {
         if self.rows > 0 {
             let sql = Self::statement(self.into, self.columns, self.rows);

@@ -1,11 +1,11 @@
-//! Which tables without geometry other programs show. GDAL lists every table of a file until one is entered as `attributes`;
-//! then it lists what is entered alone, and what completes the network for this program stays out of sight.
+//! The tables without geometry that other programs list. GDAL lists every table of a file unless some are registered as
+//! `attributes`; then it lists only registered tables, and the tables that only netcert reads stay hidden.
 
 use sqlx::sqlite::SqliteConnection;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
-/// What people read, beside the layers.
+/// The tables that people read beside the layers, with their descriptions.
 const TABLES: [(&str, &str); 6] = [
     ("certificate", "Certificates of edges, one row an edge, vehicle and corridor"),
     ("permit", "Edges that a vehicle may use, one row an edge, vehicle and corridor"),
@@ -15,7 +15,7 @@ const TABLES: [(&str, &str); 6] = [
     ("account", "What became of every object read"),
 ];
 
-/// Enters the tables, and the styles' as QGIS does.
+/// Registers the tables, and the table of styles in the way of QGIS.
 pub(super) async fn add_tables(c: &mut SqliteConnection, time: &str) -> Sql<()> {
     for (table, description) in TABLES {
         add(c, table, description, time, None).await?;
@@ -30,7 +30,7 @@ async fn add(c: &mut SqliteConnection, table: &str, description: &str, time: &st
     Ok(())
 }
 
-/// Notes that a run has changed them.
+/// Sets the time of the last change of the registered tables.
 pub(super) async fn touch_tables(c: &mut SqliteConnection, time: &str) -> Sql<()> {
     let sql = "UPDATE gpkg_contents SET last_change = ? WHERE data_type = 'attributes'";
     sqlx::query(sql).bind(time).execute(c).await?;

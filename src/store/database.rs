@@ -1,4 +1,4 @@
-//! An existing database: opened with every check that tells a wrong file from a right one, read, and changed one whole
+//! An existing database. Opening checks that the file is a database of this program and schema. Changes replace one whole
 //! set of certificates at a time.
 
 use std::io::Read as _;
@@ -30,23 +30,24 @@ use super::turns::{self, PackedSet, TurnSet};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
-/// An open database. Its calls block: asynchronous code calls them from a blocking task.
+/// An open database. All calls block, so asynchronous code must call them from a blocking task.
 pub struct Database {
     pub(super) session: Session,
 }
 
-/// Pages kept in memory, KiB.
+/// Size of the page cache, KiB.
 const CACHE_KIB: u32 = 65_536;
-/// The same for a stream of rows, which comes by each page once: no slower on 98,000 edges and 100,000 turns.
+/// Size of the page cache for a stream of rows, KiB. A stream reads each page once; on 98,000 edges and 100,000 turns it is
+/// no slower with this small cache.
 const STREAM_CACHE_KIB: u32 = 2048;
 
 impl Database {
-    /// Opens for reading only.
+    /// Opens a database for reading only.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         Self::open_to_read(path, CACHE_KIB)
     }
 
-    /// Opens for reading all rows once: memory stays the same however large the file is.
+    /// Opens a database to read all rows once. Memory does not grow with the size of the file.
     ///
     /// # Errors
     /// As [`Self::open`].
@@ -56,13 +57,13 @@ impl Database {
 
     fn open_to_read(path: &Path, cache_kib: u32) -> Result<Self, StoreError> {
         if with_suffix(path, "-journal").exists() {
-            // A killed `certify`: only one who may write can roll back to the old state.
+            // A killed `certify` leaves a journal. Only a connection that may write can roll back to the old state.
             Self::open_to_change(path)?.close()?;
         }
         Self::open_with(path, SqliteConnectOptions::new().read_only(true), cache_kib)
     }
 
-    /// Opens for changes as well.
+    /// Opens a database for reading and changing.
     pub fn open_to_change(path: &Path) -> Result<Self, StoreError> {
         let options = SqliteConnectOptions::new()
             .journal_mode(SqliteJournalMode::Delete)
@@ -84,7 +85,7 @@ impl Database {
         Ok(database)
     }
 
-    /// Whether the schema is the one that this program writes.
+    /// Checks that the schema is the one that this program writes.
     fn check_schema(&mut self) -> Result<(), StoreError> {
         let path = self.session.path.clone();
         let applied = self.session.run(async |c| {
@@ -111,12 +112,12 @@ impl Database {
         Ok(())
     }
 
-    /// Closes the file and says whether that worked (dropping it closes it, too).
+    /// Closes the file and reports errors of closing. Dropping the database closes the file without a report.
     pub fn close(self) -> Result<(), StoreError> {
         self.session.close()
     }
 
-    /// The network, equal to the one that was written.
+    /// Loads the network, which equals the network that was written.
     pub fn load_network(&mut self) -> Result<Network, StoreError> {
         self.session.run(async |c| network_read::read(c).await)
     }
@@ -151,10 +152,13 @@ impl Database {
         })
     }
 
-    /// Puts a complete set of certificates, the plans they rest on, and the vehicle's turns in place of the old ones, in one step:
-    /// killed, the old ones stand. `settings` are what they were made with. Without `turns` it has none afterwards. If the
-    /// vehicle's definition changed, its sets under other policies go as well. `certificates` may come in any order.
-    #[allow(clippy::too_many_arguments)] // All that is replaced in one transaction, each under its own name.
+    /// Replaces a vehicle's set of certificates, its plans and its turns in one transaction. If the program is killed, the
+    /// old set stays.
+    ///
+    /// `certificates` must be complete and may be in any order; `settings` are those they were made with. Without `turns`
+    /// the vehicle has no turns afterwards. If the vehicle's definition has changed, its sets under other policies are
+    /// removed, too.
+    #[allow(clippy::too_many_arguments)] // Each argument is one thing that the transaction replaces.
     pub fn replace_certificates(
         &mut self,
         vehicle: &VehicleRecord,
@@ -190,19 +194,20 @@ impl Database {
         })
     }
 
-    /// The text to keep of a set's settings. All sets have the kerbs of the ingest: there is one table of turns for all of them.
+    /// The text of a set's settings as it is stored. Kerbs must be those of the ingest, because all sets share one table of
+    /// turns.
     fn acceptable(&mut self, settings: &Settings) -> Result<String, StoreError> {
         let refused = |detail| StoreError::SettingsRefused { path: self.session.path.clone(), detail };
         let written = settings.written().map_err(refused)?;
         if self.settings_of_new_sets()?.kerbs == settings.kerbs {
             return Ok(written);
         }
-        let detail = "its turns were made with other kerbs; run `netcert ingest` again for these".to_owned();
+        let detail = "its turns were made with other kerbs; run `netcert ingest` again with the new kerbs".to_owned();
         Err(StoreError::SettingsRefused { path: self.session.path.clone(), detail })
     }
 }
 
-/// A vehicle's new certificates, packed.
+/// A vehicle's new certificates in packed form.
 struct Renewed<'a> {
     settings: String,
     rows: Vec<Packed>,
@@ -268,7 +273,7 @@ async fn account_of(c: &mut SqliteConnection, run_id: i64) -> Sql<Vec<AccountRow
     Ok(rows.into_iter().map(row).collect())
 }
 
-/// The first hundred bytes tell most wrong files apart: https://www.sqlite.org/fileformat.html
+/// Checks the first hundred bytes, which reveal most wrong files: <https://www.sqlite.org/fileformat.html>
 fn check_header(path: &Path) -> Result<(), StoreError> {
     let mut header = Vec::with_capacity(100);
     let file = std::fs::File::open(path).map_err(|e| match e.kind() {

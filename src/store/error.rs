@@ -1,4 +1,4 @@
-//! What can go wrong with a database file. Every message names the file and the way out.
+//! Errors of a database file. Every message names the file and says what to do.
 
 use std::path::{Path, PathBuf};
 
@@ -8,23 +8,23 @@ pub enum StoreError {
     /// There is no such file.
     #[error("{0}: no such database; make one with `netcert ingest REGION.osm.pbf`")]
     Missing(PathBuf),
-    /// Not a SQLite file at all.
+    /// The file is not a SQLite file.
     #[error("{0}: not a GeoPackage (nor any SQLite file); give the file that `netcert ingest` wrote")]
     NotSqlite(PathBuf),
-    /// A SQLite file or GeoPackage that another program made.
+    /// Another program made this SQLite file or GeoPackage.
     #[error("{0}: a SQLite file, but not one that netcert made; give the file that `netcert ingest` wrote")]
     NotNetcert(PathBuf),
-    /// Written by a newer netcert.
+    /// A newer netcert wrote the file.
     #[error("{path}: made by a newer netcert (schema {found}, this program knows {known}); update netcert")]
     Newer {
         /// The database.
         path: PathBuf,
-        /// Its schema version.
+        /// The schema version of the file.
         found: i64,
-        /// The newest this program knows.
+        /// The newest schema version that this program knows.
         known: i64,
     },
-    /// Written by an older or different netcert.
+    /// An older or different netcert wrote the file.
     #[error("{path}: made with another schema ({detail}); run `netcert ingest` again")]
     Older {
         /// The database.
@@ -32,7 +32,7 @@ pub enum StoreError {
         /// What differs.
         detail: String,
     },
-    /// The content cannot be what netcert wrote.
+    /// The file holds content that netcert never writes.
     #[error("{path}: damaged: {detail}; run `netcert ingest` again")]
     Damaged {
         /// The database.
@@ -40,30 +40,30 @@ pub enum StoreError {
         /// What was found.
         detail: String,
     },
-    /// Something that is not a netcert database stands where one would be written.
+    /// A file that is not a netcert database exists at the path of the new database.
     #[error(
-        "{0}: exists and is not a netcert database; it is left as it is: name another file with --db, or move it away"
+        "{0}: exists and is not a netcert database, so it is not overwritten; name another file with --db, or move it away"
     )]
     InTheWay(PathBuf),
-    /// Another process is writing it.
-    #[error("{0}: another program is writing it; wait until that is done, or stop it")]
+    /// Another process is writing the file.
+    #[error("{0}: another program is writing it; wait until that is done, or stop that program")]
     Busy(PathBuf),
-    /// No room on the disk.
+    /// The disk is full.
     #[error(
-        "{0}: the disk is full; free some space, or name another place with --db, and run again: what was there is unchanged"
+        "{0}: the disk is full; free some space, or name another place with --db, and run again; an older file there is unchanged"
     )]
     Full(PathBuf),
-    /// A certificate that may not be stored as it is.
+    /// A certificate may not be stored, because its verdict contradicts its numbers or the set is incomplete.
     #[error("edge {edge}, vehicle {vehicle}: {detail}; this is a fault of netcert, please report it")]
     Unsound {
         /// Index of the edge in the network.
         edge: u32,
         /// Vehicle id.
         vehicle: String,
-        /// What contradicts.
+        /// The contradiction.
         detail: String,
     },
-    /// What a set of certificates was made with cannot be read.
+    /// The settings of a set of certificates cannot be read.
     #[error(
         "{path}: the settings that {vehicle} was certified with under the {policy} policy cannot be read: {detail}; certify it \
          again: `netcert certify --db {path} --vehicle {vehicle} --corridor {policy}`"
@@ -75,26 +75,26 @@ pub enum StoreError {
         vehicle: String,
         /// Word of the policy.
         policy: &'static str,
-        /// What is wrong with them.
+        /// What is wrong with the settings.
         detail: String,
     },
-    /// What the database's ingest was told cannot be read.
+    /// The settings of the database's ingest cannot be read.
     #[error("{path}: the settings of its ingest cannot be read: {detail}; run `netcert ingest` again")]
     IngestSettings {
         /// The database.
         path: PathBuf,
-        /// What is wrong with them.
+        /// What is wrong with the settings.
         detail: String,
     },
-    /// Certificates cannot be kept under these settings.
-    #[error("{path}: no certificates can be kept here under the given settings: {detail}")]
+    /// The database cannot hold certificates under these settings.
+    #[error("{path}: this database cannot hold certificates under the given settings: {detail}")]
     SettingsRefused {
         /// The database.
         path: PathBuf,
-        /// What is wrong with them.
+        /// What is wrong with the settings.
         detail: String,
     },
-    /// The caller asks for what the database does not hold.
+    /// The caller asks for something that the database does not hold.
     #[error("{path}: {detail}")]
     NotThere {
         /// The database.
@@ -107,21 +107,21 @@ pub enum StoreError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// SQLite refused.
+    /// SQLite reported an error.
     #[error("{path}: {source}")]
     Sql {
         /// The database.
         path: PathBuf,
-        /// What SQLite said.
+        /// SQLite's error.
         source: sqlx::Error,
     },
 }
 
 impl StoreError {
-    /// What an error of SQLite means for the file at `path`.
+    /// The error of this crate for an error of SQLite on the file at `path`.
     pub(super) fn sql(path: &Path, source: sqlx::Error) -> Self {
         let path = path.to_owned();
         if let sqlx::Error::Decode(detail) = &source {
@@ -131,7 +131,7 @@ impl StoreError {
             .as_database_error()
             .and_then(sqlx::error::DatabaseError::code)
             .and_then(|code| code.parse::<i32>().ok());
-        // Primary result codes (the low byte): https://www.sqlite.org/rescode.html
+        // The low byte is the primary result code: https://www.sqlite.org/rescode.html
         match code.map(|code| code & 0xff) {
             Some(5 | 6) => Self::Busy(path),
             Some(11) => Self::Damaged { path, detail: source.to_string() },
@@ -141,7 +141,7 @@ impl StoreError {
         }
     }
 
-    /// What an error of the file system means for the file at `path`.
+    /// The error of this crate for an error of the file system on the file at `path`.
     pub(super) fn io(path: &Path, source: std::io::Error) -> Self {
         let path = path.to_owned();
         match source.kind() {
@@ -152,7 +152,7 @@ impl StoreError {
     }
 }
 
-/// An error of content: the database holds what netcert never writes. Reported as [`StoreError::Damaged`].
+/// An error for content that netcert never writes. It becomes [`StoreError::Damaged`].
 pub(super) fn content(detail: impl Into<String>) -> sqlx::Error {
     sqlx::Error::Decode(detail.into().into())
 }

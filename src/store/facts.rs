@@ -1,4 +1,4 @@
-//! One edge with every column that a person may ask about.
+//! Reads one edge with all columns that are of interest to people.
 
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteRow;
@@ -13,7 +13,7 @@ use super::network_read::{line, word, word_or_none};
 type Sql<T> = Result<T, sqlx::Error>;
 
 impl Database {
-    /// The edge of an `edge_id`; `None` if there is none.
+    /// The edge with this `edge_id`, or `None`.
     ///
     /// # Errors
     /// The file cannot be read.

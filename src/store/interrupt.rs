@@ -1,14 +1,14 @@
-//! A statement that reads much may be told to stop.
+//! Stops long statements when the caller is told to stop.
 
 use super::database::Database;
 use super::error::StoreError;
 use crate::stop::Stop;
 
-/// So many instructions of SQLite's machine between two questions: some ten microseconds.
+/// Number of instructions of SQLite's virtual machine between two checks, some ten microseconds.
 const INSTRUCTIONS: i32 = 1000;
 
 impl Database {
-    /// From now on a statement fails soon after `stop` has been told; such a connection is of no more use.
+    /// From now on, a statement fails soon after `stop` is told. Drop the connection after such a failure.
     ///
     /// # Errors
     /// The connection is broken.
@@ -20,7 +20,7 @@ impl Database {
         })
     }
 
-    /// Statements run to their ends again.
+    /// From now on, statements run to their ends again.
     ///
     /// # Errors
     /// The connection is broken.

@@ -1,7 +1,7 @@
-//! What a map shows: edges and turns within a box, with just the columns that are drawn, through the spatial index.
+//! Reads the edges and turns within a box for a map, through the spatial index, with only the columns that are drawn.
 //!
-//! Promises rows in order of the network, every one that touches the box (and some that only come near it: the index
-//! knows boxes in single precision). Leaves out what nobody draws: `query` has the whole row.
+//! Rows come in order of the network. Every row that touches the box is there, and some rows that only come near it, because
+//! the index has boxes in single precision. `query` reads rows with all columns.
 
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Row as _};
@@ -17,12 +17,12 @@ use super::network_read::{line, verdict, word, word_or_none};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
-/// Which turns are asked for.
+/// The turns to read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TurnsOf {
-    /// Out of edges that touch the box.
+    /// The turns out of edges that touch the box.
     Box(Bounds),
-    /// Out of this edge or into it (index into `Network::edges`).
+    /// The turns out of this edge or into it (index into `Network::edges`).
     Edge(u32),
 }
 
@@ -38,8 +38,8 @@ impl Database {
         Ok(row.flatten())
     }
 
-    /// A box that leaves out the outermost fiftieth of the edges on each side: where a map may begin, since an extract
-    /// often has some roads that lead far out of it. `None` if there are no edges.
+    /// A box without the outermost fiftieth of the edges on each side, in which a map can begin. Extracts often have some
+    /// roads that lead far out of their area. `None` if there are no edges.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -56,7 +56,7 @@ impl Database {
         Ok(row.filter(|b| b.west < b.east && b.south < b.north))
     }
 
-    /// Whether most ways are driven on the left.
+    /// Whether traffic keeps left on most ways.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -65,7 +65,7 @@ impl Database {
         self.session.run(async |c| sqlx::query(sql).fetch_one(c).await?.try_get(0))
     }
 
-    /// Edges near a box, of these classes (with their links), under a vehicle's certificates.
+    /// The edges of these classes (with their links) near a box, with a vehicle's certificates.
     ///
     /// # Errors
     /// The file cannot be read. A vehicle that is not certified under this policy has no rows.
@@ -98,7 +98,7 @@ impl Database {
         Ok(rows)
     }
 
-    /// Turns under a vehicle's certificates.
+    /// Turns with a vehicle's certificates.
     ///
     /// # Errors
     /// The file cannot be read. A vehicle whose turns are not certified under this policy has no rows.
@@ -106,13 +106,13 @@ impl Database {
         self.session.run(async |c| turns(c, vehicle, policy, of).await)
     }
 
-    /// How much road has how much to spare, in bins of `width_mm`, for every vehicle under a policy. Edges without a
-    /// number are left out.
+    /// A histogram of length over RSC in bins of `width_mm`, for every vehicle under a policy. Edges without an RSC are left
+    /// out.
     ///
     /// # Errors
     /// The file cannot be read.
     pub fn rsc_bins(&mut self, policy: Policy, width_mm: u32) -> Result<Vec<RscBin>, StoreError> {
-        // Whole-number division rounds towards zero: below zero a bin further down, so that no bin flatters.
+        // Integer division rounds towards zero. Negative values are rounded down explicitly, so that no bin is too high.
         let sql = "SELECT vehicle_id, bin, verdict_no, edges, length_m FROM ( \
                    SELECT c.vehicle_no, c.verdict_no, count(*) AS edges, total(e.length_m) AS length_m, \
                    CASE WHEN c.rsc_mm >= 0 THEN c.rsc_mm / ?1 ELSE -((?1 - 1 - c.rsc_mm) / ?1) END AS bin \
@@ -137,7 +137,7 @@ impl Database {
     }
 }
 
-/// West, south, east, north; `None` where one is missing.
+/// The box of the columns west, south, east, north. `None` if one of them is null.
 fn sides(row: &SqliteRow) -> Sql<Option<Bounds>> {
     let side = |column: usize| row.try_get::<Option<f64>, _>(column);
     let (Some(west), Some(south), Some(east), Some(north)) = (side(0)?, side(1)?, side(2)?, side(3)?) else {

@@ -1,9 +1,8 @@
-//! The database: a GeoPackage, through sqlx, with the schema in `migrations/`.
+//! The database: a GeoPackage that is accessed through sqlx, with the schema in `migrations/`.
 //!
-//! [`Database::create`] makes a new file beside the old one and puts it in place when it is whole; [`Database::open`]
-//! reads one. Certificates are kept as small integers that never promise more than what was computed.
-//!
-//! What goes in and what comes out are the values of `rows`.
+//! [`Database::create`] writes a new file beside an old one and replaces the old one when the new one is complete.
+//! [`Database::open`] opens a file for reading. Certificates are stored as small integers, rounded so that they never claim
+//! more than was computed. Rows are written and read as the types of `rows`.
 
 mod areas;
 mod blob;

@@ -1,5 +1,5 @@
-//! What stands in the database for the program's enumerations: numbers of verdicts and policies, names of columns. Its words are
-//! those of `words`.
+//! The numbers of verdicts and policies in the database, and the names of columns. The words in the database are those of
+//! `words`.
 
 use crate::osm::facts::Policy;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
@@ -25,20 +25,20 @@ pub(super) const VERDICTS: &[(u8, Verdict)] = &[
     (33, Verdict::Unknown(UnknownReason::Limit)),
 ];
 
-/// The number of [`Verdict::Safe`]; the views in `migrations/` rely on it.
+/// The number of [`Verdict::Safe`]. The views in `migrations/` use this number.
 pub(super) const SAFE: u8 = 0;
 
-/// A verdict's number, or `None` for one that [`VERDICTS`] lacks (a test sees to it that there is none).
+/// The number of a verdict. `None` if [`VERDICTS`] lacks the verdict, which a test rules out.
 pub(super) fn verdict_no(verdict: Verdict) -> Option<u8> {
     VERDICTS.iter().find(|row| row.1 == verdict).map(|row| row.0)
 }
 
-/// The verdict of a number.
+/// The verdict with this number.
 pub(super) fn verdict_of(no: i64) -> Option<Verdict> {
     VERDICTS.iter().find(|row| i64::from(row.0) == no).map(|row| row.1)
 }
 
-/// The columns of `edge` that belong to a policy: width, and where it comes from.
+/// The columns of `edge` that belong to a policy: the width and its source.
 pub(super) const fn width_columns(policy: Policy) -> [&'static str; 2] {
     match policy {
         Policy::Lane => ["lane_width_m", "width_source"],
@@ -47,7 +47,7 @@ pub(super) const fn width_columns(policy: Policy) -> [&'static str; 2] {
     }
 }
 
-/// A policy's number in the database: its place in [`Policy::ALL`].
+/// The number of a policy in the database, which is its index in [`Policy::ALL`].
 pub(super) fn corridor_no(policy: Policy) -> u8 {
     policy as u8
 }
@@ -65,7 +65,7 @@ mod tests {
         }
     }
 
-    /// Queries ask for a kind of verdict by its ten.
+    /// Queries select a kind of verdict by the tens digit of its numbers.
     #[test]
     fn each_kind_of_verdict_has_its_ten() {
         for &(no, verdict) in VERDICTS {
@@ -73,7 +73,7 @@ mod tests {
         }
     }
 
-    /// The match is exhaustive: a new reason does not compile until it stands here, and then must have a number.
+    /// The match is exhaustive, so a new reason does not compile until it is added here. The test then requires a number.
     fn successor(verdict: Verdict) -> Option<Verdict> {
         use {ForbiddenReason as F, UnknownReason as N, Verdict as V};
         Some(match verdict {

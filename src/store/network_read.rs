@@ -1,5 +1,5 @@
-//! The network out of its tables: equal to the one that was written, but for the numbering of interned texts, and for
-//! positions that no edge uses. Writing it again gives the same file.
+//! Reads the network from its tables. It equals the network that was written, except the numbering of interned texts and
+//! positions that no edge uses. Writing the read network gives the same file.
 
 use std::ops::Range;
 
@@ -83,7 +83,7 @@ pub(super) async fn rows<T>(
     Ok(all)
 }
 
-/// Ranges index the arrays all over the program: none may point outside.
+/// Checks that no range points outside its array, because the program indexes arrays by these ranges.
 fn check_ranges(network: &Network) -> Sql<()> {
     let within = |range: &Range<u32>, length: usize| range.start <= range.end && range.end as usize <= length;
     let edges = network.edges.iter().all(|edge| within(&edge.narrowings, network.narrowings.len()));
@@ -96,7 +96,7 @@ pub(super) fn range(row: &SqliteRow, column: usize) -> Sql<Range<u32>> {
     Ok(row.try_get(column)?..row.try_get(column + 1)?)
 }
 
-/// A number that counts from 1 in the database, as an index below `length`.
+/// The index of a number that counts from 1 in the database. The index must be below `length`.
 pub(super) fn index(row: &SqliteRow, column: usize, length: usize) -> Sql<u32> {
     let number: i64 = row.try_get(column)?;
     let index = number.checked_sub(1).and_then(|index| u32::try_from(index).ok());
@@ -105,24 +105,24 @@ pub(super) fn index(row: &SqliteRow, column: usize, length: usize) -> Sql<u32> {
         .ok_or_else(|| content(format!("row {number} is referred to, but missing")))
 }
 
-/// The value of a word that stands in a column.
+/// The value of the word in a column.
 pub(super) fn word<T: Named>(row: &SqliteRow, column: usize) -> Sql<T> {
     let word: &str = row.try_get(column)?;
     T::named(word).ok_or_else(|| content(format!("`{word}` is not a word that netcert writes")))
 }
 
-/// The same where there may be none.
+/// The value of the word in a column, or `None` for null.
 pub(super) fn word_or_none<T: Named>(row: &SqliteRow, column: usize) -> Sql<Option<T>> {
     if row.try_get::<Option<&str>, _>(column)?.is_none() { Ok(None) } else { word(row, column).map(Some) }
 }
 
-/// A verdict's number as a verdict; `of` names the row in errors.
+/// The verdict of the number in a column; `of` names the row in errors.
 pub(super) fn verdict(row: &SqliteRow, column: usize, of: impl FnOnce() -> String) -> Sql<Verdict> {
     let number: i64 = row.try_get(column)?;
     verdict_of(number).ok_or_else(|| content(format!("verdict {number} of {}", of())))
 }
 
-/// A geometry's positions; `of` names the row in errors.
+/// The positions of the geometry in a column; `of` names the row in errors.
 pub(super) fn line(row: &SqliteRow, column: usize, of: impl FnOnce() -> String) -> Sql<Vec<LonLat>> {
     blob::decode(row.try_get(column)?).ok_or_else(|| content(format!("the geometry of {}", of())))
 }
@@ -186,7 +186,8 @@ fn road(row: &SqliteRow, sections: &[CrossSection], legals: &[Legal], strings: &
     })
 }
 
-/// An edge; puts its positions where they stood in [`Network::shapes`] (neighbours and directions may share some).
+/// Reads an edge and puts its positions at their old place in [`Network::shapes`]. Neighbours and opposite directions may
+/// share positions.
 fn edge(row: &SqliteRow, expected: i64, roads: usize, shapes: &mut Vec<LonLat>) -> Sql<Edge> {
     let fid: i64 = row.try_get(0)?;
     if fid != expected {
@@ -198,7 +199,7 @@ fn edge(row: &SqliteRow, expected: i64, roads: usize, shapes: &mut Vec<LonLat>) 
         line.reverse();
     }
     let start: u32 = row.try_get(7)?;
-    // Shapes are written in order and touch: a jump ahead is no shape of this network, and could ask for any memory.
+    // Shapes are written in order without gaps. A start beyond the end means damage, and could require any amount of memory.
     if start as usize > shapes.len() || line.len() < 2 {
         return Err(content(format!("the shape of edge {fid}")));
     }

@@ -1,4 +1,4 @@
-//! The network into its tables. Arrays keep their order, so that [`super::network_read`] gives back the same network.
+//! Writes the network into its tables. Arrays keep their order, so that [`super::network_read`] reads the same network.
 
 use rustc_hash::FxHashMap;
 use sqlx::sqlite::SqliteConnection;
@@ -15,7 +15,7 @@ use super::error::content;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
-/// Writes all tables of the network; gives the box around it. `measures`: one an edge, or none at all.
+/// Writes all tables of the network and returns the box around it. `measures` has one entry per edge, or is empty.
 pub(super) async fn write(
     c: &mut SqliteConnection,
     network: &Network,
@@ -102,8 +102,8 @@ async fn edges(c: &mut SqliteConnection, network: &Network, measures: &[EdgeMeas
     Ok(boxes)
 }
 
-/// Where each edge's shape starts when positions that no edge uses (of a piece that was left out) are not counted.
-/// Reading goes by it, edge after edge, so shapes must come in the order of the edges.
+/// The start of each edge's shape, not counting positions that no edge uses (those of pieces that were left out). The shapes
+/// must be in the order of the edges, because the edges are read one after the other by these starts.
 fn shape_starts(network: &Network) -> Sql<Vec<u32>> {
     let mut used = vec![false; network.shapes.len()];
     for edge in &network.edges {
@@ -127,7 +127,7 @@ fn shape_starts(network: &Network) -> Sql<Vec<u32>> {
     network.edges.iter().map(start).collect()
 }
 
-/// The columns that users want beside an edge, though they belong to its road.
+/// Adds the columns of the road that users want with each edge.
 fn add_road_columns(bulk: &mut Bulk, network: &Network, road: &Road, edge: &Edge) -> Sql<()> {
     bulk.add(highway(road.class, road.link))?;
     bulk.add(road.name.map(|id| network.strings.text(id)))?;
@@ -138,7 +138,7 @@ fn add_road_columns(bulk: &mut Bulk, network: &Network, road: &Road, edge: &Edge
     bulk.add(road.max_speed_km_h[edge.direction as usize])?;
     let section = &road.sections[edge.direction as usize];
     for strip in [section.lane, section.direction, section.carriageway] {
-        // Whole millimetres to read; what certifies are the strip's own edges, in `section`.
+        // People read this width, so it is rounded to millimetres. Certificates use the strip's edges in `section`.
         bulk.add(strip.map(|strip| (f64::from(strip.width_m()) * 1000.0).round() / 1000.0))?;
         bulk.add(strip.map(|strip| strip.source.name()))?;
     }
@@ -174,7 +174,7 @@ async fn narrowings_and_strokes(c: &mut SqliteConnection, network: &Network) -> 
     stroke_edges.finish(c).await
 }
 
-/// Neighbours first: along a space-filling curve the tree's pages fill one after the other.
+/// Fills the spatial index along a space-filling curve, so that neighbours share pages and pages fill one after the other.
 async fn spatial_index(c: &mut SqliteConnection, boxes: &[Bounds]) -> Sql<()> {
     let mut order: Vec<(u64, u32)> = (0_u32..).zip(boxes).map(|(index, bounds)| (morton(bounds), index)).collect();
     order.sort_unstable();
@@ -190,7 +190,7 @@ async fn spatial_index(c: &mut SqliteConnection, boxes: &[Bounds]) -> Sql<()> {
     bulk.finish(c).await
 }
 
-/// Place of a box's middle on the Z-order curve.
+/// The position of a box's middle on the Z-order curve.
 fn morton(bounds: &Bounds) -> u64 {
     let spread = |degrees: f64| {
         let mut x = ((degrees + 360.0) / 720.0 * f64::from(u32::MAX)) as u64;
@@ -213,7 +213,7 @@ fn geodesic_length_m(line: &[LonLat]) -> f64 {
     Geodesic.length(&line.iter().map(|place| place.degrees()).collect::<geo::LineString>())
 }
 
-/// A table of distinct values that others refer to by number, filled as they appear.
+/// A table of distinct values that other tables refer to by number. A value is inserted when it first appears.
 struct Distinct<K> {
     numbers: FxHashMap<K, i64>,
     bulk: Bulk,
@@ -287,8 +287,8 @@ fn add_legal(bulk: &mut Bulk, legal: &Legal) -> Sql<()> {
     bulk.add(legal.motor_vehicle.name())
 }
 
-/// The shortest decimal of a single-precision value, as a person wrote it: 3.8, not 3.799999952. It comes back to the
-/// same bits; where it would not, the exact value is taken.
+/// The shortest decimal of a single-precision value, such as 3.8 and not 3.799999952. It converts back to the same bits; if it
+/// does not, the exact value is returned.
 fn decimal(value: f32) -> f64 {
     let exact = f64::from(value);
     value.to_string().parse().ok().filter(|&short: &f64| short as f32 == value).unwrap_or(exact)

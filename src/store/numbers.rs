@@ -1,4 +1,4 @@
-//! The columns that certificates of edges and of turns have in common, read back into metres and words.
+//! Reads the columns that certificates of edges and turns have in common, in metres and words.
 
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteRow;
@@ -8,11 +8,11 @@ use crate::stet::Side;
 
 use super::network_read::verdict;
 
-/// Of a table called `c`, in the order in which [`read`] wants them one after the other.
+/// The columns of a table called `c`, in the order that [`read`] expects.
 pub(super) const COLUMNS: &str = "c.verdict_no, c.rsc_mm, c.rsc_published_mm, c.hinge_margin_cdeg, c.shrink_milli, \
                                   c.limiting_s_dm, c.limiting_at";
 
-/// From the columns `first` to `first + 6`; `what` names the row in errors.
+/// Reads the columns `first` to `first + 6`; `what` names the row in errors.
 pub(super) fn read(
     row: &SqliteRow,
     first: usize,

@@ -1,8 +1,7 @@
-//! The main roads of a region from afar: their lines with what a map of small scale says of them, in one pass over the
-//! table.
+//! Reads the main roads of a region for maps of small scale, in one pass over the table.
 //!
-//! Promises every edge of the classes asked for, in order of the network. Leaves out names and ids: from afar nobody
-//! reads them.
+//! All edges of the requested classes come in order of the network. Names and ids are left out, because maps of small scale
+//! do not show them.
 
 use sqlx::sqlite::SqliteRow;
 use sqlx::{AssertSqlSafe, Row as _};
@@ -19,7 +18,7 @@ use super::network_read::{line, verdict, word_or_none};
 type Sql<T> = Result<T, sqlx::Error>;
 
 impl Database {
-    /// All edges of these classes (with their links), under a vehicle's certificates.
+    /// All edges of these classes (with their links), with a vehicle's certificates.
     ///
     /// # Errors
     /// The file cannot be read. A vehicle that is not certified under this policy has no rows.

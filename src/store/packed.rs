@@ -1,5 +1,5 @@
-//! A certificate as it is stored: small integers, each rounded to the safe side, so that a stored value never promises
-//! more than the computed one. A `safe` that does not survive the rounding is refused, not stored.
+//! A certificate as it is stored: small integers, each rounded down, so that a stored value never claims more than the
+//! computed one. A `safe` certificate whose rounded numbers do not support it is refused.
 
 use crate::rows::Conclusion;
 use crate::verdict::Verdict;
@@ -7,7 +7,7 @@ use crate::verdict::Verdict;
 use super::bulk::Bulk;
 use super::names::verdict_no;
 
-/// A row of `certificate_compact`, but for vehicle and corridor.
+/// A row of `certificate_compact` without vehicle and corridor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Packed {
     pub(super) fid: u32,
@@ -18,12 +18,12 @@ pub(super) struct Packed {
     pub(super) shrink_milli: Option<u16>,
     pub(super) limiting_s_dm: Option<u32>,
     pub(super) limiting_at: Option<u16>,
-    /// Of turns only: which path.
+    /// The number of the path, for turns only.
     pub(super) path_no: Option<u8>,
 }
 
 impl Packed {
-    /// The columns that certificates of edges and of turns have in common, from `fid` on.
+    /// Adds the columns that certificates of edges and turns have in common, from `fid` on.
     pub(super) fn add_to(&self, bulk: &mut Bulk) -> Result<(), sqlx::Error> {
         bulk.add(self.fid)?;
         bulk.add(self.verdict_no)?;
@@ -37,7 +37,7 @@ impl Packed {
 }
 
 impl Conclusion {
-    /// Rounds; `index` is that of the edge or the turn. The error says why it may not be stored.
+    /// Packs the conclusion of the edge or turn with this index. The error says why it may not be stored.
     pub(super) fn pack(&self, index: u32) -> Result<Packed, String> {
         let verdict_no = verdict_no(self.verdict).ok_or("its verdict has no number")?;
         let fid = index.checked_add(1).ok_or("its index is out of range")?;
@@ -63,20 +63,21 @@ impl Conclusion {
         }
         let holds = packed.rsc_mm >= Some(0) && packed.hinge_margin_cdeg >= Some(0);
         if self.verdict == Verdict::Safe && !holds {
-            return Err(format!("it is called safe, but its numbers do not bear that out: {:?}", self.measured));
+            return Err(format!("its verdict is safe, but its numbers do not support that: {:?}", self.measured));
         }
         Ok(packed)
     }
 }
 
-/// The greatest whole number of parts that is not above `value`, as the views divide it back. None for what is not
-/// finite or out of range (a bound that grew without limit), so that the spool, where the least number stands for
-/// none, and the database agree.
+/// The greatest whole number that, divided by `parts` as the views do, is at most `value`.
+///
+/// `None` for a value that is not finite or is out of range, such as a bound that grew without limit. The spool, which marks
+/// a missing number by `i32::MIN`, and the database then agree.
 fn floor_to(value: f64, parts: f64) -> Option<i32> {
     if !(value * parts).is_finite() || (value * parts).abs() > 2e9 {
         return None;
     }
-    // Rounded up first: the product may fall just short of a whole number that divides back to `value` itself.
+    // Rounded up first, because the product may be just below a whole number that gives `value` when divided.
     let mut whole = (value * parts).ceil() as i32;
     if f64::from(whole) / parts > value {
         whole = whole.saturating_sub(1);
@@ -95,10 +96,10 @@ fn shrink_milli(shrink: f64) -> Result<u16, String> {
 }
 
 impl Packed {
-    /// Bytes of [`Packed::to_bytes`].
+    /// Length of [`Packed::to_bytes`].
     pub(super) const BYTES: usize = 26;
 
-    /// For the spool.
+    /// The row as bytes for the spool.
     pub(super) fn to_bytes(self) -> [u8; Self::BYTES] {
         let mut bytes = [0; Self::BYTES];
         bytes[0..4].copy_from_slice(&self.fid.to_le_bytes());
@@ -113,7 +114,7 @@ impl Packed {
         bytes
     }
 
-    /// The reverse of [`Packed::to_bytes`]: the extreme value of each type stands for none.
+    /// The reverse of [`Packed::to_bytes`]. An extreme value of each type stands for a missing number.
     pub(super) fn from_bytes(b: &[u8; Self::BYTES]) -> Self {
         let signed = |at: usize| {
             let value = i32::from_le_bytes([b[at], b[at + 1], b[at + 2], b[at + 3]]);

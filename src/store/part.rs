@@ -1,5 +1,6 @@
-//! The unfinished file: `REGION.gpkg.part` beside the target, locked against a second run, renamed over the target when
-//! it is whole and on the disk. Killed at any moment, the old file is as it was; the next run starts the part afresh.
+//! The unfinished file `REGION.gpkg.part` beside the target. It is locked against a second run. When it is complete and on
+//! the disk, it is renamed over the target. If the program is killed, the old file is unchanged and the next run empties the
+//! part.
 
 use std::ffi::OsString;
 use std::fs::File;
@@ -8,11 +9,11 @@ use std::path::{Path, PathBuf};
 use super::error::StoreError;
 use crate::output_lock::{self, OutputLock};
 
-/// A locked, empty `.part` file; removed when dropped unless it became the target.
+/// A locked `.part` file, empty at first. Dropping it removes the file unless the file became the target.
 pub(super) struct Part {
     pub(super) target: PathBuf,
     pub(super) path: PathBuf,
-    /// A killed run had left a part behind, which was emptied.
+    /// Whether a killed run had left a part behind, which was emptied.
     pub(super) leftover: bool,
     lock: OutputLock,
     placed: bool,
@@ -26,7 +27,7 @@ pub(super) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
 }
 
 impl Part {
-    /// Makes and locks the part of `target`.
+    /// Creates and locks the part of `target`.
     pub(super) fn create(target: &Path) -> Result<Self, StoreError> {
         let path = with_suffix(target, ".part");
         let lock = output_lock::file(&path).map_err(|e| StoreError::io(&path, e))?;
@@ -34,14 +35,14 @@ impl Part {
         Ok(Self { target: target.to_owned(), path, leftover: lock.leftover, lock, placed: false })
     }
 
-    /// Everything to the disk, then over the target in one step. The database must be closed, and nobody in the middle of
-    /// changing the old one.
+    /// Syncs the part to the disk and renames it over the target. The database in the part must be closed, and no process
+    /// may be changing the old one.
     pub(super) fn place(mut self) -> Result<(), StoreError> {
         let at = |e| StoreError::io(&self.target, e);
         if let Some(file) = &self.lock.file {
             file.sync_all().map_err(at)?;
         }
-        // A journal that stayed beside the old file must not be taken for one of the new.
+        // SQLite would apply a journal of the old file to the new file.
         remove_companions(&self.target)?;
         std::fs::rename(&self.path, &self.target).map_err(at)?;
         self.placed = true;
@@ -52,7 +53,7 @@ impl Part {
 impl Drop for Part {
     fn drop(&mut self) {
         if !self.placed {
-            // The next run would empty it anyway.
+            // An error is ignored, because the next run empties the file.
             let _ = std::fs::remove_file(&self.path);
         }
     }
@@ -69,7 +70,7 @@ fn remove_companions(path: &Path) -> Result<(), StoreError> {
     Ok(())
 }
 
-/// The rename itself must be on the disk too.
+/// Syncs the folder of `file`, so that the rename is on the disk, too.
 fn sync_folder(file: &Path) -> std::io::Result<()> {
     let folder = match file.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,

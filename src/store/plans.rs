@@ -1,4 +1,4 @@
-//! The tables of plans: of strokes, and of turns.
+//! The tables of the plans of strokes and of turns.
 
 use std::collections::BTreeMap;
 
@@ -15,11 +15,12 @@ use super::names::corridor_no;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
-/// Where plans of strokes stand, and those of turns.
+/// The table of plans of strokes, with its columns.
 pub(super) const STROKES: &str = "plan (vehicle_no, corridor_no, fid, coefficients)";
+/// The table of plans of turns, with its columns.
 pub(super) const TURNS: &str = "turn_plan (vehicle_no, corridor_no, fid, coefficients)";
 
-/// Inserts the plans of a set, in order of their edges or turns.
+/// Sorts the plans of a set by edge or turn and inserts them.
 pub(super) async fn insert(
     c: &mut SqliteConnection,
     into: &'static str,
@@ -39,12 +40,13 @@ pub(super) async fn insert(
 }
 
 impl Database {
-    /// The plans of a vehicle under a policy, by the stroke's first edge (index). What is not there is the centreline.
+    /// The plans of a vehicle under a policy, by the index of each stroke's first edge. A stroke without an entry follows the
+    /// centreline.
     pub fn plans(&mut self, vehicle: &str, policy: Policy) -> Result<BTreeMap<u32, Vec<i32>>, StoreError> {
         self.plans_in("plan", vehicle, policy)
     }
 
-    /// The plans of a vehicle's turns, by turn (index). What is not there is the centreline of the turn's path.
+    /// The plans of a vehicle's turns, by the turn's index. A turn without an entry follows the centreline of its path.
     pub fn turn_plans(&mut self, vehicle: &str, policy: Policy) -> Result<BTreeMap<u32, Vec<i32>>, StoreError> {
         self.plans_in("turn_plan", vehicle, policy)
     }

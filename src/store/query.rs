@@ -1,5 +1,5 @@
-//! Which edges a vehicle may use, and why not the others: rows stream in order of the network, each with all that a
-//! table, CSV, JSON or GeoJSON needs.
+//! Queries edges with a vehicle's certificates. Rows stream in order of the network, each with all that a table, CSV, JSON or
+//! GeoJSON needs.
 
 use std::pin::Pin;
 
@@ -22,31 +22,31 @@ use super::numbers;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
-/// Part of the earth's surface, degrees. Edges that touch it count.
+/// An area in degrees. An edge that touches the area is in it.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Area {
-    /// A box; `west > east` spans the 180th meridian.
+    /// A box. A box with `west > east` spans the 180th meridian.
     Bounds(Bounds),
     /// Polygons, as from a GeoJSON file.
     Polygons(geo::MultiPolygon),
 }
 
-/// What is asked for. All conditions must hold.
+/// The conditions of a query. All of them must hold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct QueryOptions {
     /// Vehicle id.
     pub vehicle: String,
-    /// Which width counts.
+    /// The policy of the certificates.
     pub policy: Policy,
-    /// Only edges that touch it.
+    /// Only edges that touch this area.
     pub area: Option<Area>,
-    /// Only this edge (`edge_id`).
+    /// Only the edge with this `edge_id`.
     pub edge_id: Option<i64>,
-    /// Only this verdict.
+    /// Only edges with this verdict.
     pub verdict: Option<VerdictKind>,
-    /// Only with an RSC of at least so many metres.
+    /// Only edges with at least this RSC, metres.
     pub min_rsc_m: Option<f64>,
-    /// Only where the width comes from this or better.
+    /// Only edges whose width comes from this source or a better one.
     pub min_width_source: Option<WidthSource>,
 }
 
@@ -66,7 +66,7 @@ impl QueryOptions {
     }
 }
 
-/// Rows of a query, as they come from the file.
+/// The rows of a query, read from the file one by one.
 pub struct Rows<'d> {
     stream: Pin<Box<dyn Stream<Item = Sql<SqliteRow>> + Send + 'd>>,
     runtime: &'d Runtime,
@@ -90,7 +90,7 @@ impl Iterator for Rows<'_> {
 }
 
 impl Rows<'_> {
-    /// The spatial index knows boxes only.
+    /// Whether a line touches the area. The spatial index compares boxes only.
     fn touches(&self, line: &[LonLat]) -> bool {
         let Some(area) = &self.area else { return true };
         let line: geo::LineString = line.iter().map(|place| place.degrees()).collect();
@@ -158,7 +158,7 @@ fn statement(
     bind(f64::from(vehicle_no))?;
     bind(f64::from(corridor_no(options.policy)))?;
     if let Some(kind) = options.verdict {
-        let first = 10.0 * f64::from(kind as u8); // numbers go by tens: see `names::VERDICTS`
+        let first = 10.0 * f64::from(kind as u8); // each kind has ten numbers: see `names::VERDICTS`
         sql += " AND c.verdict_no BETWEEN ? AND ?";
         bind(first)?;
         bind(first + 9.0)?;

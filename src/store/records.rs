@@ -1,4 +1,4 @@
-//! What a database says of itself: its vehicles, and the runs that made it.
+//! The records of a database about its vehicles and the runs that made it.
 
 use sqlx::sqlite::SqliteConnection;
 
@@ -8,14 +8,14 @@ use super::bulk::Bulk;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
-/// A vehicle as it is kept.
+/// A vehicle as it is stored.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct VehicleRecord {
     /// Catalogue id.
     pub id: String,
-    /// For people.
+    /// The name for people.
     pub name: String,
-    /// The whole vehicle as JSON, in the units of the vehicle file. Certificates stand and fall with these bytes.
+    /// The complete vehicle as JSON, in the units of the vehicle file. Certificates hold for exactly these bytes.
     pub definition: String,
 }
 
@@ -27,28 +27,28 @@ impl VehicleRecord {
     }
 }
 
-/// One run of `ingest` or `certify`. Times are the caller's: nothing else in the file depends on the clock.
+/// One run of a command that writes the database. The caller gives the times; nothing else in the file depends on a clock.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Run {
-    /// `ingest`, `certify`, `query`.
+    /// The command: `ingest`, `certify`, or a command that certified on demand, such as `query`.
     pub command: String,
     /// Name of the file read.
     pub input_name: String,
-    /// Its hash, if it was read.
+    /// The hash of the file, if it was read.
     pub input_blake3: Option<String>,
     /// The extract's own time stamp.
     pub replication_timestamp: Option<String>,
     /// Version of the program.
     pub netcert_version: String,
-    /// UTC, `2026-11-21T08:00:00.000Z`.
+    /// The beginning of the run in UTC, such as `2026-11-21T08:00:00.000Z`.
     pub started: String,
-    /// The same; also the time stamp of the layers.
+    /// The end of the run in the same form. Layers have this time stamp.
     pub finished: String,
     /// Every parameter, as JSON.
     pub parameters: String,
 }
 
-/// Adds a run with its account; gives its number.
+/// Adds a run with its account and returns the run's number.
 pub(super) async fn add_run(c: &mut SqliteConnection, run: &Run, account: &[AccountRow]) -> Sql<i64> {
     let run_id: i64 = sqlx::query_scalar("SELECT coalesce(max(run_id), 0) + 1 FROM run").fetch_one(&mut *c).await?;
     sqlx::query("INSERT INTO run VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)")

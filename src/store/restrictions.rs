@@ -1,4 +1,4 @@
-//! Turn restrictions in and out of their tables.
+//! Writes and reads the tables of turn restrictions.
 
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteConnection;
@@ -19,7 +19,7 @@ pub(super) struct Restrictions {
     pub(super) edges: Vec<u32>,
 }
 
-/// Inserts them; the edges must be there.
+/// Inserts the restrictions. Their edges must be in the database already.
 pub(super) async fn insert(c: &mut SqliteConnection, restrictions: &Restrictions) -> Sql<()> {
     let mut bulk = Bulk::new("restriction", 6);
     for (no, restriction) in (1_i64..).zip(&restrictions.all) {
@@ -41,7 +41,7 @@ pub(super) async fn insert(c: &mut SqliteConnection, restrictions: &Restrictions
     bulk.finish(c).await
 }
 
-/// Reads them; `edges`: how many edges the network has.
+/// Reads the restrictions of a network with this number of edges.
 pub(super) async fn read(c: &mut SqliteConnection, edges: usize) -> Sql<Restrictions> {
     let sql = "SELECT fid FROM restriction_edge ORDER BY position";
     let sequence = rows(c, sql, |row| index(row, 0, edges)).await?;

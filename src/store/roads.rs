@@ -1,4 +1,4 @@
-//! Ways with their names and boxes, for looking up a road by what it is called.
+//! Reads ways with their names and boxes, for the search of roads by name.
 
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteRow;

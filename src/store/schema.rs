@@ -1,12 +1,12 @@
-//! The schema, embedded: the files of `migrations/`, in order.
+//! The schema: the files of `migrations/` in order, embedded in the program.
 
 use std::sync::LazyLock;
 
 use sqlx::SqlSafeStr as _;
 use sqlx::migrate::{Migration, MigrationType, Migrator};
 
-/// Version, description and statements of each. `after data` makes the triggers of the spatial index: they call functions that
-/// only spatial programs have (`ST_IsEmpty`), so nothing can be inserted into `edge` after it.
+/// Version, description and statements of each migration. `after data` creates the triggers of the spatial index. The triggers
+/// call functions that only spatial programs have (`ST_IsEmpty`), so netcert inserts all rows of `edge` before it.
 const FILES: &[(i64, &str, &str)] = &[
     (1, "geopackage", include_str!("../../migrations/0001_geopackage.sql")),
     (2, "network", include_str!("../../migrations/0002_network.sql")),
@@ -19,8 +19,8 @@ const FILES: &[(i64, &str, &str)] = &[
     (9, "areas", include_str!("../../migrations/0009_areas.sql")),
 ];
 
-/// The table of what was applied. sqlx would make it with types that GDAL does not know (BIGINT, TIMESTAMP), which it says at every
-/// listing; sqlx takes the one that is there.
+/// The table of applied migrations. sqlx uses an existing table. Its own table would have types that GDAL does not know
+/// (BIGINT, TIMESTAMP), and GDAL would warn of them at every listing.
 pub(super) const APPLIED: &str = "CREATE TABLE IF NOT EXISTS _sqlx_migrations (
     version INTEGER PRIMARY KEY NOT NULL,
     description TEXT NOT NULL,
@@ -33,7 +33,7 @@ pub(super) const APPLIED: &str = "CREATE TABLE IF NOT EXISTS _sqlx_migrations (
 /// The last migration before the bulk of the data.
 pub(super) const BEFORE_DATA: i64 = 3;
 
-/// What a database of this program has been through.
+/// All migrations of a database of this program.
 pub(super) static MIGRATIONS: LazyLock<Migrator> = LazyLock::new(|| {
     let migration = |&(version, description, statements): &(i64, &'static str, &'static str)| {
         Migration::new(version, description.into(), MigrationType::Simple, statements.into_sql_str(), false)

@@ -1,6 +1,6 @@
-//! One connection with a small runtime under it, so that the rest of the program stays plain Rust.
+//! One connection with its own small runtime, so that the rest of the program needs no asynchronous code.
 //!
-//! Blocks the calling thread: asynchronous callers go through a blocking task. Every error names the file.
+//! Calls block the thread, so asynchronous callers must use a blocking task. Every error names the file.
 
 use std::path::{Path, PathBuf};
 
@@ -34,7 +34,7 @@ impl Session {
         self.runtime.block_on(work(&mut self.connection)).map_err(|e| StoreError::sql(&self.path, e))
     }
 
-    /// Closes the file and says whether that worked.
+    /// Closes the file and reports errors of closing.
     pub(super) fn close(self) -> Result<(), StoreError> {
         self.runtime.block_on(self.connection.close()).map_err(|e| StoreError::sql(&self.path, e))
     }

@@ -1,4 +1,4 @@
-//! A set: all certificates of one vehicle under one policy, complete or not there at all, and the layer that shows it.
+//! A set holds all certificates of one vehicle under one policy. A set is complete or absent. A layer shows each set.
 
 use sqlx::AssertSqlSafe;
 use sqlx::sqlite::SqliteConnection;
@@ -17,7 +17,7 @@ type Sql<T> = Result<T, sqlx::Error>;
 const COLUMNS: &str = "certificate_compact (vehicle_no, corridor_no, fid, verdict_no, rsc_mm, rsc_published_mm, \
                        hinge_margin_cdeg, shrink_milli, limiting_s_dm, limiting_at)";
 
-/// Why rows are not a set, or `Ok`: every edge once. `rows` are sorted by edge.
+/// Checks that the rows, sorted by edge, have every edge exactly once. The error names an edge and the reason.
 pub(super) fn check_complete(rows: &[Packed], edges: u32) -> Result<(), (u32, &'static str)> {
     for (row, expected) in rows.iter().zip(1..) {
         if row.fid < expected {
@@ -34,7 +34,7 @@ pub(super) fn check_complete(rows: &[Packed], edges: u32) -> Result<(), (u32, &'
     }
 }
 
-/// Which set, of which run, and how it is shown.
+/// A set to insert: its vehicle, policy and run.
 pub(super) struct Set<'a> {
     pub(super) vehicle_no: u32,
     pub(super) vehicle_id: &'a str,
@@ -43,12 +43,12 @@ pub(super) struct Set<'a> {
     pub(super) run_id: i64,
     /// Time stamp of the layer.
     pub(super) time: &'a str,
-    /// As [`crate::settings::Settings::written`] gives them.
+    /// The settings as text, from [`crate::settings::Settings::written`].
     pub(super) settings: &'a str,
 }
 
 impl Set<'_> {
-    /// Inserts the rows and registers their layer. The set must not be there.
+    /// Inserts the rows and registers their layer. The database must not have the set yet.
     pub(super) async fn insert(&self, c: &mut SqliteConnection, rows: &[Packed]) -> Sql<()> {
         let corridor = corridor_no(self.policy);
         let mut bulk = Bulk::new(COLUMNS, 10);
@@ -72,7 +72,8 @@ impl Set<'_> {
         self.register(c, &layer).await
     }
 
-    /// `permit_<vehicle>`, with the policy unless it is the default; a name that is taken gets a number.
+    /// The layer's name: `permit_<vehicle>`, followed by the policy unless that is `lane`. A number follows if the name is
+    /// taken.
     async fn layer_name(&self, c: &mut SqliteConnection) -> Sql<String> {
         let plain = |ch: char| if ch.is_ascii_alphanumeric() { ch.to_ascii_lowercase() } else { '_' };
         let mut base: String = "permit_".chars().chain(self.vehicle_id.chars().map(plain)).collect();
@@ -90,8 +91,9 @@ impl Set<'_> {
         Ok(name)
     }
 
-    /// Makes the view and enters it as a layer with a style. Its first column is its key (GeoPackage 1.3, requirement 150). No column
-    /// may be named OGC_FID: readers without a key for views add one of that name, and DuckDB refuses two.
+    /// Creates the view and registers it as a layer with a style. The first column is the key (GeoPackage 1.3, requirement
+    /// 150). No column may have the name OGC_FID: some readers add a key of that name to views, and DuckDB refuses two columns
+    /// of one name.
     async fn register(&self, c: &mut SqliteConnection, layer: &str) -> Sql<()> {
         let (vehicle, corridor) = (self.vehicle_no, corridor_no(self.policy));
         let [width, source] = width_columns(self.policy);
@@ -102,7 +104,7 @@ impl Set<'_> {
              FROM certificate_compact AS c JOIN edge AS e ON e.fid = c.fid \
              WHERE c.vehicle_no = {vehicle} AND c.corridor_no = {corridor} AND c.verdict_no = {SAFE}"
         );
-        // Names and numbers in it are the program's own: letters, digits and underscores.
+        // The statement is safe: its names and numbers come from the program and have only letters, digits and underscores.
         sqlx::query(AssertSqlSafe(view)).persistent(false).execute(&mut *c).await?;
         let description = format!("Roads that {} may use ({} policy)", self.vehicle_name, self.policy.name());
         let bounds = network_bounds(c).await?;
@@ -111,15 +113,15 @@ impl Set<'_> {
     }
 }
 
-/// The box of the whole network serves every layer: a box of its own would cost a third of the time of a set (0.6 µs a
-/// certificate of 2 µs), and the standard calls it informative.
+/// The box of the whole network, which every layer has. The standard calls the box informative. Computing a box for each
+/// layer would take a third of the time of a set (0.6 µs of 2 µs per certificate).
 async fn network_bounds(c: &mut SqliteConnection) -> Sql<Option<Bounds>> {
     let sql = "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'edge' AND min_x NOT NULL";
     let bounds = sqlx::query_as(sql).fetch_optional(c).await?;
     Ok(bounds.map(|(west, south, east, north)| Bounds { west, south, east, north }))
 }
 
-/// Enters a table or view of lines as a layer.
+/// Registers a table or view of lines as a layer.
 pub(super) async fn add_layer(
     c: &mut SqliteConnection,
     table: &str,
@@ -145,9 +147,9 @@ pub(super) async fn add_layer(
     Ok(())
 }
 
-/// Takes a set away, with its layer.
+/// Removes a set with its turns and its layer.
 pub(super) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_no: u8) -> Sql<()> {
-    // They rest on the edges' verdicts.
+    // Certificates of turns depend on the verdicts of edges.
     super::turns::remove(c, vehicle_no, corridor_no).await?;
     let layer: Option<String> =
         sqlx::query_scalar("SELECT layer FROM certified_set WHERE vehicle_no = ? AND corridor_no = ?")

@@ -1,6 +1,6 @@
-//! Sets of certificates with the settings they were made with, and the settings of the database's ingest.
+//! Reads the settings of sets of certificates and of the database's ingest.
 //!
-//! Promises that settings come from the database whole or not at all; an error names the set and the way out.
+//! Settings are read completely or not at all. An error names the set and says what to do.
 
 use std::path::PathBuf;
 
@@ -20,11 +20,11 @@ type Sql<T> = Result<T, sqlx::Error>;
 /// A complete set of certificates: one for every edge.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct CertifiedSet {
-    /// Of this vehicle.
+    /// Id of the vehicle.
     pub vehicle_id: String,
-    /// Hash of the vehicle's definition that they were made with.
+    /// Hash of the vehicle's definition that the certificates were made with.
     pub vehicle_blake3: String,
-    /// Under this policy.
+    /// Policy of the certificates.
     pub policy: Policy,
     /// The view that shows the permitted edges.
     pub layer: String,
@@ -34,10 +34,10 @@ pub struct CertifiedSet {
 }
 
 impl CertifiedSet {
-    /// What the certificates depend on besides network and vehicle.
+    /// The settings that the certificates were made with.
     ///
     /// # Errors
-    /// They cannot be read.
+    /// The stored settings cannot be read.
     pub fn settings(&self) -> Result<Settings, StoreError> {
         let read = Settings::read(&self.settings).and_then(|settings| match settings.policy {
             policy if policy == self.policy => Ok(settings),
@@ -51,7 +51,7 @@ impl CertifiedSet {
         })
     }
 
-    /// The settings as they are kept, readable or not: they tell one state of a set from another.
+    /// The stored text of the settings, readable or not. It tells one state of a set from another.
     #[cfg(feature = "serve")]
     pub(crate) fn kept_settings(&self) -> &str {
         &self.settings
@@ -59,7 +59,7 @@ impl CertifiedSet {
 }
 
 impl Database {
-    /// Which certificates there are.
+    /// All sets of certificates in the database.
     pub fn certified(&mut self) -> Result<Vec<CertifiedSet>, StoreError> {
         let path = self.session.path.clone();
         self.session.run(async |c| {
@@ -74,7 +74,7 @@ impl Database {
                     policy: word(row, 2)?,
                     layer: row.try_get(3)?,
                     path: path.clone(),
-                    // Whatever is there: only who asks for the settings is told that they cannot be read.
+                    // Any text is accepted here. Only a call of `settings` reports that it cannot be read.
                     settings: String::from_utf8_lossy(&row.try_get::<Vec<u8>, _>(4)?).into_owned(),
                 })
             };
@@ -82,13 +82,13 @@ impl Database {
         })
     }
 
-    /// A vehicle's certificates under a policy, if there are any.
+    /// A vehicle's set of certificates under a policy, if there is one.
     pub fn certified_set(&mut self, vehicle: &str, policy: Policy) -> Result<Option<CertifiedSet>, StoreError> {
         let of = |set: &CertifiedSet| set.vehicle_id == vehicle && set.policy == policy;
         Ok(self.certified()?.into_iter().find(of))
     }
 
-    /// What `ingest` was told: the settings of a set that is yet to be made. A set that is there has settings of its own:
+    /// The settings of the database's ingest, which new sets use. An existing set has its own:
     /// [`CertifiedSet::settings`].
     pub fn settings_of_new_sets(&mut self) -> Result<Settings, StoreError> {
         let kept = self.session.run(async |c| kept_by_ingest(c).await)?;
@@ -96,7 +96,7 @@ impl Database {
     }
 }
 
-/// The text of the one row.
+/// The text in the only row of `network_settings`.
 async fn kept_by_ingest(c: &mut SqliteConnection) -> Sql<String> {
     let rows = sqlx::query("SELECT CAST(settings AS BLOB) FROM network_settings").fetch_all(c).await?;
     match rows.as_slice() {
@@ -105,7 +105,7 @@ async fn kept_by_ingest(c: &mut SqliteConnection) -> Sql<String> {
     }
 }
 
-/// Writes the one row.
+/// Writes the only row of `network_settings`.
 pub(super) async fn keep(c: &mut SqliteConnection, settings: &str) -> Sql<()> {
     sqlx::query("INSERT INTO network_settings VALUES (?)").bind(settings).execute(c).await?;
     Ok(())

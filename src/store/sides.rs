@@ -1,4 +1,4 @@
-//! On which side of the road one drives.
+//! Reads the driving side of edges.
 
 use sqlx::Row as _;
 
@@ -8,7 +8,7 @@ use super::database::Database;
 use super::error::StoreError;
 
 impl Database {
-    /// On which side each edge is driven.
+    /// The driving side of every edge.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -18,7 +18,7 @@ impl Database {
         let others = "SELECT fid FROM edge WHERE road_no IN \
                       (SELECT road_no FROM road WHERE left_hand_traffic <> ?) ORDER BY fid";
         let others = self.session.run(async |c| {
-            // Edges have no index by road: whoever has one side only is spared the search.
+            // Edges have no index by road, so the search is slow. A database with one driving side skips it.
             if sqlx::query(mixed).fetch_one(&mut *c).await?.try_get::<Option<bool>, _>(0)? != Some(true) {
                 return Ok(Vec::new());
             }

@@ -1,7 +1,7 @@
-//! Where certificates wait until they can be written in order. Strokes finish in any order and for several vehicles at
-//! once; inserted that way they would leave half-empty pages, and the file would depend on the threads.
+//! Stores certificates until they can be written in order. Strokes finish in any order and for several vehicles at the same
+//! time. Inserting certificates in that order would leave half-empty pages, and the file would depend on the threads.
 //!
-//! Memory: one buffer of 64 KiB for each vehicle and policy. The rest is in one temporary file.
+//! Each vehicle and policy has one buffer of about 64 KiB in memory. The rest is in one temporary file.
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
@@ -13,10 +13,10 @@ use super::packed::Packed;
 
 const BUFFER_BYTES: usize = Packed::BYTES * 2600;
 
-/// Vehicle number and corridor number, in the order in which the rows are stored.
+/// Vehicle number and corridor number. Lanes sort in the order in which rows are stored.
 pub(super) type Lane = (u32, u8);
 
-/// Certificates by lane, in the order in which they came.
+/// Certificates by lane, in the order of their arrival.
 pub(super) struct Spool {
     path: PathBuf,
     file: File,
@@ -27,7 +27,7 @@ pub(super) struct Spool {
 #[derive(Default)]
 struct Waiting {
     buffer: Vec<u8>,
-    /// Where full buffers stand in the file.
+    /// Offsets of the full buffers in the file.
     chunks: Vec<u64>,
 }
 
@@ -42,13 +42,13 @@ impl Spool {
             .open(&path)
             .map_err(|e| StoreError::io(&path, e))?;
         if cfg!(unix) {
-            // Without a name it goes when the program does, however that ends.
+            // A file without a name is deleted when the program ends, even if it is killed.
             std::fs::remove_file(&path).map_err(|e| StoreError::io(&path, e))?;
         }
         Ok(Self { path, file, length: 0, lanes: BTreeMap::new() })
     }
 
-    /// Adds one; errors name `name`.
+    /// Adds a certificate. Errors name the file `name`.
     pub(super) fn push(&mut self, lane: Lane, packed: Packed, name: &Path) -> Result<(), StoreError> {
         let waiting = self.lanes.entry(lane).or_default();
         waiting.buffer.extend(packed.to_bytes());
@@ -62,7 +62,7 @@ impl Spool {
         Ok(())
     }
 
-    /// The first lane that waits, with its certificates sorted by edge, and takes it out.
+    /// Takes out the first lane, with its certificates sorted by edge or turn. Errors name the file `name`.
     pub(super) fn take_first(&mut self, name: &Path) -> Result<Option<(Lane, Vec<Packed>)>, StoreError> {
         let Some((lane, waiting)) = self.lanes.pop_first() else { return Ok(None) };
         let mut bytes = vec![0; waiting.chunks.len() * BUFFER_BYTES];
@@ -99,7 +99,7 @@ mod tests {
         let edges = 10_007_u32;
         for i in 0..edges {
             for lane in [(3, 0), (1, 2), (1, 0)] {
-                // 4 001 and 10 007 share no factor: every edge once, in a scattered order.
+                // 4001 and 10,007 share no factor, so every edge comes once, in a scattered order.
                 let edge = (i * 4001 + lane.0) % edges;
                 let verdict = Verdict::Unknown(UnknownReason::Cut);
                 let packed = Conclusion::bare(verdict).pack(edge).unwrap();

@@ -1,4 +1,4 @@
-//! How much road there is, and how much of it each vehicle may use, by class and verdict.
+//! Counts the length of roads, and the length that each vehicle may use, by class and verdict.
 
 use sqlx::{AssertSqlSafe, Row as _};
 
@@ -14,11 +14,11 @@ use super::turns;
 type Sql<T> = Result<T, sqlx::Error>;
 
 impl Database {
-    /// Counts everything.
+    /// The statistics of the whole database.
     pub fn stats(&mut self) -> Result<Stats, StoreError> {
         self.session.run(async |c| {
             let roads: i64 = sqlx::query_scalar("SELECT count(*) FROM road").fetch_one(&mut *c).await?;
-            // A narrow copy: each vehicle's certificates meet it in order, without the geometries.
+            // A copy of `edge` without geometries, which is fast to join with each vehicle's certificates in order.
             sqlx::raw_sql(
                 "CREATE TEMP TABLE IF NOT EXISTS brief (fid INTEGER PRIMARY KEY, highway TEXT, length_m REAL, \
                  lane TEXT, direction TEXT, carriageway TEXT);

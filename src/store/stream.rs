@@ -1,6 +1,6 @@
-//! Rows that an export reads, one at a time: what permits depend on, without geometry, and turns with all their columns.
+//! Streams the rows that an export reads: the facts that permits depend on, without geometry, and turns with all columns.
 //!
-//! Promises: in order of the network, whatever its size only some rows in memory at once.
+//! Rows come in order of the network. Only some rows are in memory at the same time, whatever the size of the network.
 
 use std::path::Path;
 use std::pin::Pin;
@@ -21,7 +21,7 @@ use super::turns::{self, TurnQuery};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
-/// Rows as they come from the file.
+/// Rows that are read from the file one by one.
 pub struct Streamed<'d, T> {
     stream: Pin<Box<dyn Stream<Item = Sql<SqliteRow>> + Send + 'd>>,
     runtime: &'d Runtime,
@@ -39,11 +39,11 @@ impl<T> Iterator for Streamed<'_, T> {
     }
 }
 
-/// Straight on along a stroke; `None`: the stroke ends.
+/// An edge and the edge that follows it straight on along its stroke. `None` means that the stroke ends.
 pub type StraightOn = (u32, Option<u32>);
 
 impl Database {
-    /// Every edge's facts for a vehicle. It must be certified under this policy: see [`Database::query`].
+    /// The facts of every edge for a vehicle. There are no rows if the vehicle is not certified under this policy.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -57,7 +57,7 @@ impl Database {
         Ok(self.streamed(sql, vehicle, policy, edge_step))
     }
 
-    /// Every turn's facts for a vehicle; none where its turns are not certified: see [`Database::has_turns`].
+    /// The facts of every turn for a vehicle. There are no rows if its turns are not certified: see [`Database::has_turns`].
     ///
     /// # Errors
     /// The file cannot be read.
@@ -69,7 +69,7 @@ impl Database {
         Ok(self.streamed(sql.to_owned(), vehicle, policy, turn_step))
     }
 
-    /// Every turn of a vehicle with all columns; none where its turns are not certified.
+    /// Every turn of a vehicle with all columns. There are no rows if its turns are not certified.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -80,7 +80,7 @@ impl Database {
         Ok(Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read: turns::turn_row })
     }
 
-    /// The sequences of edges (indices into `Network::edges`) that turn restrictions forbid, all at once: there are few.
+    /// The sequences of edges (indices into `Network::edges`) of turn restrictions. They are few, so all are read at once.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -94,7 +94,7 @@ impl Database {
         })
     }
 
-    /// Every edge that goes on straight into another, and that one, by stroke.
+    /// Every edge of a stroke with the edge that follows it straight on, stroke by stroke.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -108,7 +108,8 @@ impl Database {
         Ok(Streamed { stream, runtime: &self.session.runtime, path: &self.session.path, read: straight_on })
     }
 
-    /// The arcs of roundabouts (indices into `Network::edges`), each ring in driving order, all at once: there are few.
+    /// The arcs of roundabouts (indices into `Network::edges`), each ring in driving order. They are few, so all are read at
+    /// once.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -142,8 +143,9 @@ fn straight_on(row: &SqliteRow) -> Sql<StraightOn> {
     Ok((row.try_get::<u32, _>(0)?.saturating_sub(1), next.map(|fid| fid.saturating_sub(1))))
 }
 
-/// A geometry's bytes before its positions, and those of one position: see `blob`.
+/// Bytes of a geometry before its positions: see `blob`.
 const GEOMETRY_HEAD: u32 = 49;
+/// Bytes of one position.
 const POSITION_BYTES: u32 = 16;
 
 fn edge_step(row: &SqliteRow) -> Sql<EdgeStep> {

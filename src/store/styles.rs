@@ -1,22 +1,24 @@
-//! Styles for QGIS, which it finds in `layer_styles` and applies when a layer is opened. The files are `data/styles/`.
+//! Styles for QGIS. QGIS finds them in `layer_styles` and applies them when a layer is opened. The files are in
+//! `data/styles/`.
 //!
-//! Styles that people saved stay theirs: a layer with a default of its own keeps it, and a layer that goes leaves theirs behind.
+//! Styles that users saved are never changed: a layer keeps the user's default style, and removing a layer leaves the user's
+//! styles in the table.
 
 use sqlx::sqlite::SqliteConnection;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
-/// Who owns a style that this program wrote.
+/// The owner of the styles that this program writes.
 const OWNER: &str = "netcert";
 
 /// What a layer shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shows {
-    /// The roads, by how well their width is known.
+    /// The roads, by the source of their width.
     Edges,
-    /// What a vehicle may use, by the room it has.
+    /// The roads that a vehicle may use, by the room that it has.
     Permits,
-    /// Turns, by where their kerb comes from.
+    /// The turns, by the source of their kerb.
     Turns,
 }
 
@@ -37,7 +39,7 @@ impl Shows {
     }
 }
 
-/// Gives a layer its style, in place of one that this program gave it before.
+/// Adds the style of a layer and replaces an older one of this program.
 pub(super) async fn add(c: &mut SqliteConnection, layer: &str, shows: Shows, time: &str) -> Sql<()> {
     remove(c, layer).await?;
     let [name, description, style] = shows.style();
@@ -50,7 +52,7 @@ pub(super) async fn add(c: &mut SqliteConnection, layer: &str, shows: Shows, tim
     Ok(())
 }
 
-/// Takes away the style that this program gave a layer.
+/// Removes the style that this program gave a layer.
 pub(super) async fn remove(c: &mut SqliteConnection, layer: &str) -> Sql<()> {
     let sql = "DELETE FROM layer_styles WHERE f_table_name = ? AND owner = ?";
     sqlx::query(sql).bind(layer).bind(OWNER).execute(c).await?;

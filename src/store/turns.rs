@@ -1,6 +1,6 @@
-//! Turns and their certificates in the database: written beside the edges', read for `query`, `explain` and `stats`.
+//! Writes turns and their certificates, and reads them for `query`, `explain` and `stats`.
 //!
-//! A set of turn certificates is complete or not there at all, like a set of edges'.
+//! A set of certificates of turns is complete or absent, like a set of certificates of edges.
 
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Row as _};
@@ -37,22 +37,22 @@ impl TurnCertificate {
 
 /// All turns of a network, and one vehicle's certificates of them.
 pub struct TurnSet<'a> {
-    /// Whose turns they are.
+    /// The network of the turns.
     pub network: &'a Network,
-    /// All of them, in order.
+    /// All turns of the network, in order.
     pub facts: &'a [TurnFacts],
-    /// One a turn, in any order.
+    /// One certificate per turn, in any order.
     pub certificates: Vec<TurnCertificate>,
 }
 
-/// A set, packed: rows in order, and the plans that they rest on.
+/// A packed set: rows in order, and the plans that the certificates were made for.
 pub(super) struct PackedSet {
     pub(super) rows: Vec<Packed>,
     pub(super) plans: Vec<StoredPlan>,
 }
 
 impl TurnSet<'_> {
-    /// The error says of which turn a certificate is missing, or claims more than its numbers say.
+    /// Packs the set. The error names a turn whose certificate is missing or whose numbers do not support its verdict.
     pub(super) fn pack(&mut self) -> Result<PackedSet, (u32, String)> {
         let pack = |turn: &TurnCertificate| turn.pack().map_err(|why| (turn.turn, why));
         let mut rows = self.certificates.iter().map(pack).collect::<Result<Vec<Packed>, _>>()?;
@@ -63,15 +63,15 @@ impl TurnSet<'_> {
     }
 }
 
-/// A turn, ready to be written without the network.
+/// A turn with all that is needed to write it without the network.
 pub(super) struct Record {
     facts: TurnFacts,
     via_node: i64,
-    /// The tagged words of the restriction that forbids it.
+    /// The tagged words of the restriction that forbids the turn.
     restriction: Option<String>,
 }
 
-/// Turns as they are written.
+/// The records of turns, ready to be written.
 pub(super) fn records(network: &Network, turns: Vec<TurnFacts>) -> Vec<Record> {
     let record = |facts: TurnFacts| {
         let via_node = network.edges.get(facts.movement.from as usize).map_or(0, |edge| edge.to_node);
@@ -81,7 +81,7 @@ pub(super) fn records(network: &Network, turns: Vec<TurnFacts>) -> Vec<Record> {
     turns.into_iter().map(record).collect()
 }
 
-/// `left`, `right`, or which way the road forks; `roundabout` for a passage of one.
+/// The kind of a turn by its angle, such as `left` or `slight_right`. A passage of a roundabout is `roundabout`.
 fn kind(facts: &TurnFacts) -> &'static str {
     match facts.angle_deg {
         _ if !facts.through.is_empty() => "roundabout",
@@ -94,7 +94,7 @@ fn kind(facts: &TurnFacts) -> &'static str {
     }
 }
 
-/// Writes the table `turn`; gives the box around it. Turns keep their order: `fid` is the index + 1.
+/// Writes the table `turn` and returns the box around it. Turns keep their order: `fid` is the index + 1.
 pub(super) async fn write(c: &mut SqliteConnection, turns: &[Record]) -> Sql<Option<Bounds>> {
     let mut bulk = Bulk::new("turn", 13);
     let mut bounds: Option<Bounds> = None;
@@ -121,7 +121,7 @@ pub(super) async fn write(c: &mut SqliteConnection, turns: &[Record]) -> Sql<Opt
     Ok(bounds)
 }
 
-/// Writes the turns and enters them as a layer; those of an older run go.
+/// Replaces the turns in the database and registers them as a layer.
 pub(super) async fn add(c: &mut SqliteConnection, records: &[Record], time: &str) -> Sql<()> {
     for sql in [
         "DELETE FROM turn",
@@ -135,7 +135,7 @@ pub(super) async fn add(c: &mut SqliteConnection, records: &[Record], time: &str
     styles::add(c, "turn", Shows::Turns, time).await
 }
 
-/// Inserts a complete set; it must not be there.
+/// Inserts a complete set. The database must not have the set yet.
 pub(super) async fn insert(
     c: &mut SqliteConnection,
     (vehicle_no, policy, run_id): (u32, Policy, i64),
@@ -158,7 +158,7 @@ pub(super) async fn insert(
     Ok(())
 }
 
-/// Takes a set away, if it is there.
+/// Removes a set, if there is one.
 pub(super) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_no: u8) -> Sql<()> {
     for table in ["certified_turns", "turn_plan", "turn_certificate_compact"] {
         let sql = format!("DELETE FROM {table} WHERE vehicle_no = ? AND corridor_no = ?");
@@ -167,20 +167,20 @@ pub(super) async fn remove(c: &mut SqliteConnection, vehicle_no: u32, corridor_n
     Ok(())
 }
 
-/// What is asked of turns. All conditions must hold.
+/// The conditions of a query of turns. All of them must hold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TurnQuery {
     /// Vehicle id.
     pub vehicle: String,
-    /// Which width counts.
+    /// The policy of the certificates.
     pub policy: Policy,
-    /// Only turns whose line touches it.
+    /// Only turns whose line touches this area.
     pub area: Option<Area>,
-    /// Only this turn (`turn_id`).
+    /// Only the turn with this `turn_id`.
     pub turn_id: Option<i64>,
-    /// Only this verdict.
+    /// Only turns with this verdict.
     pub verdict: Option<VerdictKind>,
-    /// Only with an RSC of at least so many metres.
+    /// Only turns with at least this RSC, metres.
     pub min_rsc_m: Option<f64>,
 }
 
@@ -194,7 +194,7 @@ impl TurnQuery {
 }
 
 impl Database {
-    /// Whether the database has this vehicle's turns.
+    /// Whether this vehicle's turns are certified under this policy.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -234,7 +234,8 @@ impl Database {
     }
 }
 
-/// Inserts a vehicle's turns, and the turns themselves if the database has none yet; the vehicle must have none.
+/// Inserts a vehicle's certificates of turns, and the turns themselves if the database has none yet. The database must not
+/// have certificates of turns for this vehicle and policy.
 pub(super) async fn insert_set(
     c: &mut SqliteConnection,
     (vehicle_no, policy, run_id): (u32, Policy, i64),
@@ -260,7 +261,7 @@ async fn fetch(c: &mut SqliteConnection, options: &TurnQuery) -> Sql<Vec<TurnRow
     rows.fetch_all(c).await?.iter().map(turn_row).collect()
 }
 
-/// To be bound: the corridor's number and the vehicle's id. Its rows are for [`turn_row`].
+/// The statement of a query, whose rows [`turn_row`] reads. The caller binds the corridor's number and the vehicle's id.
 pub(super) fn statement(options: &TurnQuery) -> String {
     let mut sql = "SELECT c.fid, t.turn_id, a.edge_id, b.edge_id, t.via_node, t.angle_deg, t.kind, t.kerb_radius_m, \
                    t.kerb_source, t.restriction, coalesce(a.name, a.ref), coalesce(b.name, b.ref), c.path_no, t.geom, \
@@ -272,7 +273,7 @@ pub(super) fn statement(options: &TurnQuery) -> String {
             CROSS JOIN edge AS a ON a.fid = t.from_fid CROSS JOIN edge AS b ON b.fid = t.to_fid \
             WHERE c.corridor_no = ? AND c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?)";
     if let Some(kind) = options.verdict {
-        let first = 10 * kind as u8; // numbers go by tens: see `names::VERDICTS`
+        let first = 10 * kind as u8; // each kind has ten numbers: see `names::VERDICTS`
         sql += &format!(" AND c.verdict_no BETWEEN {first} AND {}", first + 9);
     }
     if let Some(rsc_m) = options.min_rsc_m {
@@ -306,7 +307,7 @@ pub(super) fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
     })
 }
 
-/// Turns by vehicle, policy and verdict.
+/// The number of turns by vehicle, policy and verdict.
 pub(super) async fn counts(c: &mut SqliteConnection) -> Sql<Vec<TurnCount>> {
     let sql = "SELECT vehicle_id, corridor, verdict_no, n FROM (SELECT vehicle_no, corridor_no, verdict_no, count(*) AS n \
                FROM turn_certificate_compact GROUP BY vehicle_no, corridor_no, verdict_no) JOIN vehicle USING (vehicle_no) \

@@ -1,6 +1,6 @@
-//! Writing a whole new database: everything goes to `PATH.part`; [`Writer::finish`] checks it and puts it in place.
+//! Writes a whole new database into `PATH.part`. [`Writer::finish`] checks the file and puts it in place.
 //!
-//! Same calls, same bytes, in whatever order certificates come; time stamps are the caller's.
+//! The same calls give the same bytes, in whatever order certificates come. The caller gives the time stamps.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -36,63 +36,63 @@ use super::turns;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
-/// 5 M rows of 56 bytes took 2.69 s, 2.46 s and 2.31 s with pages of 4 (the default), 8 and 16 KiB; the middle is taken
-/// for the sake of edges that are looked up alone.
+/// Size of a page, bytes. Writing 5 M rows of 56 bytes took 2.69 s, 2.46 s and 2.31 s with pages of 4 (the default), 8 and
+/// 16 KiB. Larger pages make the look-up of single edges slower.
 const PAGE_BYTES: u32 = 8192;
 
-/// A vehicle of this writer, by number.
+/// The number of a vehicle in a [`Writer`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct VehicleNo(u32);
 
-/// A database that is being made. Dropped unfinished, it leaves what was there as it was.
+/// A database under construction. If it is dropped unfinished, an older file at its path stays unchanged.
 pub struct Writer {
     session: Session,
-    /// By policy's number: what its certificates are made with, as it is kept.
+    /// The stored text of the settings, by the policy's number.
     settings: Vec<String>,
     spool: Spool,
     vehicles: Vec<VehicleRecord>,
     account: Vec<AccountRow>,
     plans: BTreeMap<(u32, u8), Vec<StoredPlan>>,
     network: Option<(u32, Option<Bounds>)>,
-    /// Written last: their table comes with a later migration.
+    /// Written last, because a later migration creates their table.
     restrictions: Restrictions,
     areas: Vec<Area>,
-    /// The same; rows, and where their certificates wait.
+    /// The turns, and the spool of their certificates. Also written last.
     turns: Option<(Vec<turns::Record>, Spool)>,
     turn_plans: BTreeMap<(u32, u8), Vec<StoredPlan>>,
     part: Part,
 }
 
 impl Database {
-    /// Begins a new database that will replace what is at `path`, unless that is something netcert did not make. All its
-    /// certificates are made with `settings`, under whatever policy.
+    /// Begins a new database that will replace an older database at `path`. Refuses to replace a file that netcert did not
+    /// make. All certificates must be made with `settings`, except its policy.
     pub fn create(path: &Path, settings: &Settings) -> Result<Writer, StoreError> {
         let refused = |detail| StoreError::SettingsRefused { path: path.to_owned(), detail };
         let written = settings.written().map_err(refused)?;
         let under = |&policy: &Policy| Settings { policy, ..settings.clone() }.written();
         let by_policy: Vec<String> = Policy::ALL.iter().map(under).collect::<Result<_, _>>().map_err(refused)?;
         if path.exists() {
-            // Also rolls back what a killed `certify` left half done, so that its journal is no longer needed.
+            // Opening also rolls back the changes of a killed `certify`, so that its journal is no longer needed.
             match Self::open_to_change(path) {
                 Ok(old) => old.close()?,
                 Err(StoreError::NotSqlite(_) | StoreError::NotNetcert(_)) => {
                     return Err(StoreError::InTheWay(path.to_owned()));
                 }
                 Err(busy @ StoreError::Busy(_)) => return Err(busy),
-                Err(_) => {} // an old or damaged database of netcert's: that is what it is replaced for
+                Err(_) => {} // an old or damaged database of netcert, which the new one replaces
             }
         }
         let part = Part::create(path)?;
         let options = SqliteConnectOptions::new()
             .filename(&part.path)
             .page_size(PAGE_BYTES)
-            // Killed, the part is thrown away: nothing to roll back, nothing to sync before the end.
+            // If the program is killed, the part is thrown away, so no journal and no sync are needed before the end.
             .journal_mode(SqliteJournalMode::Off)
             .synchronous(SqliteSynchronous::Off)
             .locking_mode(SqliteLockingMode::Exclusive)
             .pragma("cache_size", "-65536")
             .pragma("temp_store", "MEMORY")
-            // Checked once over the whole file before it is put in place.
+            // Foreign keys are checked once, over the whole file, before it is put in place.
             .foreign_keys(false);
         let mut session = Session::open(path, &options)?;
         session.run(async |c| {
@@ -120,14 +120,14 @@ impl Database {
 }
 
 impl Writer {
-    /// Whether a killed run had left its part behind: it was begun afresh.
+    /// Whether a killed run had left a part behind, which was emptied.
     #[must_use]
     pub fn replaced_leftover(&self) -> bool {
         self.part.leftover
     }
 
-    /// Writes the network, once. `measures`: one an edge, or empty. May come after the certificates, when the measures
-    /// are known.
+    /// Writes the network; call it once. `measures` has one entry per edge, or is empty. The call may follow those of the
+    /// certificates, because the measures are known only then.
     pub fn network(&mut self, network: &Network, measures: &[EdgeMeasure]) -> Result<(), StoreError> {
         let bounds = self.session.run(async |c| network_write::write(c, network, measures).await)?;
         self.network = Some((network.edges.len() as u32, bounds));
@@ -137,14 +137,14 @@ impl Writer {
         Ok(())
     }
 
-    /// Adds a vehicle; ids must be distinct.
+    /// Adds a vehicle. Ids must be distinct.
     pub fn vehicle(&mut self, vehicle: VehicleRecord) -> VehicleNo {
         self.vehicles.push(vehicle);
         VehicleNo(self.vehicles.len() as u32)
     }
 
-    /// Adds the certificate of one edge, in any order. Of each vehicle and policy that gets any, every edge must get
-    /// exactly one. Refuses a `safe` that its numbers do not bear out.
+    /// Adds the certificate of one edge; edges may come in any order. A vehicle and policy with any certificate must get
+    /// exactly one for every edge. Refuses a `safe` certificate whose numbers do not support it.
     pub fn certificate(
         &mut self,
         vehicle: VehicleNo,
@@ -156,19 +156,20 @@ impl Writer {
         self.spool.push((vehicle.0, corridor_no(policy)), packed, &self.session.path)
     }
 
-    /// Adds plans that are not the centreline, in any order, one a stroke at most.
+    /// Adds the plans of strokes whose plan is not the centreline, in any order, at most one per stroke.
     pub fn plans(&mut self, vehicle: VehicleNo, policy: Policy, plans: Vec<StoredPlan>) {
         self.plans.entry((vehicle.0, corridor_no(policy))).or_default().extend(plans);
     }
 
-    /// Adds the turns of the network, once, before their certificates.
+    /// Adds the turns of the network. Call it once, before adding their certificates.
     pub fn turns(&mut self, network: &Network, facts: Vec<TurnFacts>) -> Result<(), StoreError> {
         let spool = Spool::create(with_suffix(&self.part.path, "-turns"))?;
         self.turns = Some((turns::records(network, facts), spool));
         Ok(())
     }
 
-    /// Adds the certificate of one turn, in any order: of each vehicle and policy that gets any, every turn must get exactly one.
+    /// Adds the certificate of one turn; turns may come in any order. A vehicle and policy with any certificate of a turn must
+    /// get exactly one for every turn.
     pub fn turn_certificate(
         &mut self,
         vehicle: VehicleNo,
@@ -239,7 +240,7 @@ impl Writer {
 }
 
 impl Writer {
-    /// Turns, their layer and their certificates.
+    /// Writes turns, their layer and their certificates.
     fn finish_turns(&mut self, run: &Run, run_id: i64) -> Result<(), StoreError> {
         let Some((records, mut spool)) = self.turns.take() else { return Ok(()) };
         self.session.run(async |c| {
@@ -258,8 +259,8 @@ impl Writer {
     }
 }
 
-/// Waits until nobody is in the middle of changing the old database: its journal must not be taken away from under it.
-/// A journal alone says little: a killed program leaves one, too, which opening the database rolls back or ignores.
+/// Waits until no process is changing the old database, because replacing the file removes its journal. A journal alone does
+/// not prove a change in progress: a killed program leaves one, too, which opening the database rolls back or ignores.
 fn settle(target: &Path) -> Result<(), StoreError> {
     const LONGEST: Duration = Duration::from_secs(60);
     let pending = ["-journal", "-wal"].iter().any(|suffix| with_suffix(target, suffix).exists());
@@ -271,7 +272,7 @@ fn settle(target: &Path) -> Result<(), StoreError> {
         });
         match alone {
             Err(busy @ StoreError::Busy(_)) if start.elapsed() > LONGEST => return Err(busy),
-            Err(StoreError::Busy(_)) => {} // SQLite has waited its five seconds already
+            Err(StoreError::Busy(_)) => {} // SQLite has already waited for its time-out of five seconds
             _ => break,
         }
     }
@@ -283,7 +284,7 @@ fn unsound(vehicles: &[VehicleRecord], vehicle_no: u32, edge: u32, detail: Strin
     StoreError::Unsound { edge, vehicle, detail }
 }
 
-/// The words that stand for numbers.
+/// Inserts the words of verdicts and policies beside their numbers.
 async fn add_words(c: &mut SqliteConnection) -> Sql<()> {
     for &(no, verdict) in VERDICTS {
         let (verdict, reason) = verdict_words(verdict);
@@ -297,8 +298,8 @@ async fn add_words(c: &mut SqliteConnection) -> Sql<()> {
     Ok(())
 }
 
-/// Applies migrations. Their table notes when and how long, which would make every file different: it is written again
-/// without (and without a trace of the first writing).
+/// Applies migrations. sqlx records in their table when each ran and how long it took, which would make every file different.
+/// The table is therefore written again without times, and its old content is erased.
 async fn migrate(c: &mut SqliteConnection, up_to: Option<i64>) -> Sql<()> {
     sqlx::query(APPLIED).execute(&mut *c).await?;
     let done = match up_to {
@@ -323,7 +324,7 @@ async fn migrate(c: &mut SqliteConnection, up_to: Option<i64>) -> Sql<()> {
     Ok(())
 }
 
-/// What a reader will rely on.
+/// Checks the integrity of the file and its foreign keys, which readers rely on.
 async fn check(c: &mut SqliteConnection) -> Sql<()> {
     let quick: String = sqlx::query_scalar("PRAGMA quick_check(1)").fetch_one(&mut *c).await?;
     if quick != "ok" {

@@ -47,8 +47,7 @@ pub(super) struct Ground<'a> {
 impl Ground<'_> {
     /// The drivable area, and whether it has a kerb return of the assumed radius.
     pub(super) fn area(&self) -> (MultiPolygon, bool) {
-        let own = |arm: &Arm, k: usize| [arm.line.left_m[k], -arm.line.right_m[k]];
-        let strip = |arm: &Arm| outline(arm, 0..arm.len(), &|k| own(arm, k), [0.0; 2]);
+        let strip = |arm: &Arm| outline(arm, 0..arm.len(), &|k| arm.strip[k], [0.0; 2]);
         let mut parts: Vec<Polygon> = [strip(self.from), strip(self.to)].into_iter().flatten().collect();
         parts.extend(self.common());
         let corner = match self.surface {
@@ -189,10 +188,9 @@ fn arc(centre: [f64; 2], start: [f64; 2], turned: f64) -> Vec<[f64; 2]> {
     points
 }
 
-/// A stretch of road as wide as its corridor.
+/// A stretch of road as wide as the turn's strip.
 pub(super) fn stretch(arm: &Arm, range: std::ops::Range<usize>) -> MultiPolygon {
-    let own = |k: usize| [arm.line.left_m[k], -arm.line.right_m[k]];
-    unary_union(&outline(arm, range, &own, [0.0; 2]).into_iter().collect::<Vec<Polygon>>())
+    unary_union(&outline(arm, range, &|k| arm.strip[k], [0.0; 2]).into_iter().collect::<Vec<Polygon>>())
 }
 
 /// The polygon between the edges of an arm's stations, extended straight by the given metres before and after.

@@ -4,11 +4,15 @@
 //! from one into the other without a seam. Road edges are measured from the corridor's own edges. A corridor that was
 //! narrowed (a taper, a narrow place) therefore narrows the junction with it.
 
+use super::Reach;
 use crate::corridor::{Corridor, Frame, Params, StrokeCorridor, TaperCause, stroke_corridor};
 use crate::network::{Network, Stroke};
 use crate::osm::LonLat;
 use crate::osm::facts::{CrossSection, Direction, Policy, Strip};
 use crate::verdict::UnknownReason;
+
+/// Largest |κ|·half-width of a strip beyond the corridor's own.
+const MOST_CROSSING: f64 = 0.9;
 
 /// Edges of the road across a corridor's centreline, metres, positive left: `[left, right]`.
 pub(super) type Across = [f64; 2];
@@ -52,11 +56,39 @@ impl StrokeLine {
         Ok(Self { stroke, frame, made, closed: facts.closed, direction, carriageway })
     }
 
+    /// Half-widths at a station of the stroke, left and right: the corridor's own, and of what `strip` has beyond them the
+    /// given share.
+    pub(crate) fn half_widths(&self, strip: Policy, station: usize, share: f64) -> [f64; 2] {
+        widened(&self.made.corridor, station, self.strip(strip, station), share)
+    }
+
+    /// Edges of a strip at a station; never inside the corridor's own.
+    fn strip(&self, strip: Policy, station: usize) -> Across {
+        let c = &self.made.corridor;
+        match strip {
+            Policy::Lane => [c.left_m[station], -c.right_m[station]],
+            Policy::Direction => self.direction[station],
+            Policy::Carriageway => self.carriageway[station],
+        }
+    }
+
     /// Number of stations.
     #[must_use]
     pub fn stations(&self) -> usize {
         self.made.corridor.len()
     }
+}
+
+/// Half-widths of a corridor at a station, left and right, with the given share of what a strip has beyond them. The strip counts
+/// only where normals do not cross.
+fn widened(c: &Corridor, k: usize, strip: Across, share: f64) -> [f64; 2] {
+    let own = [c.left_m[k], c.right_m[k]];
+    let wide = [strip[0], -strip[1]];
+    [0, 1].map(|side| {
+        let towards = if side == 0 { c.curvature[k] } else { -c.curvature[k] };
+        let clear = if towards > 0.0 { MOST_CROSSING / towards } else { f64::INFINITY };
+        own[side].max((own[side] + share * (wide[side] - own[side])).min(clear))
+    })
 }
 
 /// The edges of `strip`, where the policy's own strip has its edges at `own`; never inside `own`. The distances between
@@ -99,6 +131,8 @@ fn frame(network: &Network, stroke: &Stroke) -> Option<Frame> {
 pub(super) struct Arm {
     /// Stations with the corridor's own half-widths.
     pub(super) line: Corridor,
+    /// Edges of the strip that the turn may use.
+    pub(super) strip: Vec<Across>,
     pub(super) direction: Vec<Across>,
     pub(super) carriageway: Vec<Across>,
     /// Index of the node's station in `line`.
@@ -115,12 +149,13 @@ impl Arm {
         line: &StrokeLine,
         edge: u32,
         frame: Frame,
+        strip: Policy,
         reach_m: [f64; 2],
     ) -> Result<Self, UnknownReason> {
         let span = line.made.spans.iter().find(|s| s.edge == edge).ok_or(UnknownReason::Geometry)?;
         match span.unknown {
             Some(reason) => Err(reason),
-            None => Self::window(line, span.stations.end - 1, frame, reach_m, true),
+            None => Self::window(line, span.stations.end - 1, (frame, strip), reach_m, true),
         }
     }
 
@@ -129,26 +164,27 @@ impl Arm {
         line: &StrokeLine,
         edge: u32,
         frame: Frame,
+        strip: Policy,
         reach_m: [f64; 2],
     ) -> Result<Self, UnknownReason> {
         let span = line.made.spans.iter().find(|s| s.edge == edge).ok_or(UnknownReason::Geometry)?;
         match span.unknown {
             Some(reason) => Err(reason),
-            None => Self::window(line, span.stations.start, frame, reach_m, false),
+            None => Self::window(line, span.stations.start, (frame, strip), reach_m, false),
         }
     }
 
     /// All stations of `line`.
-    pub(super) fn whole(line: &StrokeLine, frame: Frame) -> Result<Self, UnknownReason> {
+    pub(super) fn whole(line: &StrokeLine, frame: Frame, strip: Policy) -> Result<Self, UnknownReason> {
         let length_m = line.stations() as f64 * line.made.corridor.spacing_m;
-        Self::window(line, 0, frame, [0.0, length_m], true)
+        Self::window(line, 0, (frame, strip), [0.0, length_m], true)
     }
 
     /// A window of `line`. With `lead`, the approach before the stroke's own edges counts as road too.
     fn window(
         line: &StrokeLine,
         node: usize,
-        frame: Frame,
+        (frame, strip): (Frame, Policy),
         [before_m, after_m]: [f64; 2],
         lead: bool,
     ) -> Result<Self, UnknownReason> {
@@ -176,12 +212,25 @@ impl Arm {
         let own = begins.max(first) - first..end - first;
         Ok(Self {
             line: window,
+            strip: (first..end).map(|k| line.strip(strip, k)).collect(),
             direction: line.direction[first..end].to_vec(),
             carriageway: line.carriageway[first..end].to_vec(),
             node: node - first,
             first,
             own,
         })
+    }
+
+    /// Half-widths of the turn's strip.
+    pub(super) fn wide(&self, k: usize) -> [f64; 2] {
+        widened(&self.line, k, self.strip[k], 1.0)
+    }
+
+    /// Half-widths at a station on the approach to a joint, or on the departure from it.
+    pub(super) fn near_joint(&self, k: usize, joint: usize, reach: Reach) -> [f64; 2] {
+        let away_m = k.abs_diff(joint) as f64 * self.line.spacing_m;
+        let share = if k < joint { reach.share_before(away_m) } else { reach.share_after(away_m) };
+        widened(&self.line, k, self.strip[k], share)
     }
 
     pub(super) fn len(&self) -> usize {

@@ -83,9 +83,10 @@ impl Junction {
             + SWING_M[0]
             + PROLONGED_M;
         let after_m = reach.counted_after_m() + MEET_M + SWING_M[1] + 1.0;
+        let strip = params.strip.max(policy);
         Ok(Self {
-            from: Arm::arriving(lines[0], movement.from, frame, [before_m, MEET_M])?,
-            to: Arm::leaving(lines[1], movement.to, frame, [MEET_M, after_m])?,
+            from: Arm::arriving(lines[0], movement.from, frame, strip, [before_m, MEET_M])?,
+            to: Arm::leaving(lines[1], movement.to, frame, strip, [MEET_M, after_m])?,
             strokes: lines.map(|line| line.stroke),
             frame,
             policy,
@@ -205,9 +206,8 @@ impl Junction {
     fn aside_m(&self, turn_rad: f64, corner: [usize; 2], swing: [f64; 2]) -> [f64; 2] {
         let arms = [&self.from, &self.to];
         [0, 1].map(|i| {
-            let (line, k) = (&arms[i].line, corner[i]);
             // In a right turn the outside is to the left of travel.
-            let outside = if turn_rad < 0.0 { line.left_m[k] } else { line.right_m[k] };
+            let outside = arms[i].wide(corner[i])[usize::from(turn_rad >= 0.0)];
             -turn_rad.signum() * (outside - OUTSIDE_M).max(0.0) * swing[i]
         })
     }
@@ -277,16 +277,16 @@ impl Ends<'_> {
     pub(super) fn path(&self, number: u8, points: &[[f64; 2]], mut widths: Widths) -> Option<TurnPath> {
         let [from, to] = self.arms;
         let [leave, join] = self.stations;
-        // At the joints the corridor has the stroke's half-widths.
-        let stroke = |arm: &Arm, k: usize| [arm.line.left_m[k], arm.line.right_m[k]];
-        widths.gentle(points, [stroke(from, leave), stroke(to, join)]);
+        // At the joints the corridor has the half-widths of the turn's strip.
+        widths.gentle(points, [from.wide(leave), to.wide(join)]);
         let before = ((self.reach.run_in_m() + self.reach.counted_before_m()) / from.line.spacing_m) as usize;
         let after = (self.reach.counted_after_m() / to.line.spacing_m) as usize;
         let lead = leave.saturating_sub(before)..leave;
         let tail = join + 1..(join + 1 + after).min(to.len());
         let mut line = Line::default();
         for k in lead {
-            line.push(from.point(k), from.line.left_m[k], from.line.right_m[k]);
+            let [left_m, right_m] = from.near_joint(k, leave, self.reach);
+            line.push(from.point(k), left_m, right_m);
         }
         let begins = line.length_m;
         for (k, &p) in points.iter().enumerate() {
@@ -294,7 +294,8 @@ impl Ends<'_> {
         }
         let ends = line.length_m;
         for k in tail {
-            line.push(to.point(k), to.line.left_m[k], to.line.right_m[k]);
+            let [left_m, right_m] = to.near_joint(k, join, self.reach);
+            line.push(to.point(k), left_m, right_m);
         }
         let min_radius_m = 1.0 / path::sharpest(points).max(1e-9);
         let tight = TIGHT_M.into_iter().find(|(radius_m, _)| min_radius_m < *radius_m);

@@ -49,12 +49,22 @@ use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
 
 /// Parameters of turn corridors.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct TurnParams {
+    /// The strip that a vehicle may use near a turn; never less than its own policy's. A long vehicle uses all lanes of
+    /// its direction before and after a turn, and guidelines count on it (AASHTO, Green Book, encroachment conditions).
+    pub strip: Policy,
     /// Parameters of stroke corridors.
     pub corridor: Params,
     /// Assumed kerb radii.
     pub kerbs: Kerbs,
+}
+
+impl Default for TurnParams {
+    /// The policy's own strip, and the built-in kerbs.
+    fn default() -> Self {
+        Self { strip: Policy::Lane, corridor: Params::default(), kerbs: Kerbs::default() }
+    }
 }
 
 /// Length class of the vehicles for which a turn is made. It determines how much road before and after the turn counts.
@@ -97,6 +107,17 @@ impl Reach {
             Self::Short => 45.0,
             Self::Long => 100.0,
         }
+    }
+
+    /// Share of the turn's strip beyond the policy's own that counts at a distance before a path begins: all of it at the
+    /// joint, none where the vehicle's rear is when its front begins to turn.
+    pub(crate) fn share_before(self, before_m: f64) -> f64 {
+        (1.0 - before_m / self.counted_before_m()).clamp(0.0, 1.0)
+    }
+
+    /// The same at a distance after a path has ended: all of it for half the way that counts, none at its end.
+    pub(crate) fn share_after(self, after_m: f64) -> f64 {
+        (2.0 - 2.0 * after_m / self.counted_after_m()).clamp(0.0, 1.0)
     }
 }
 

@@ -62,7 +62,7 @@ impl Passage {
             entry: junction(movement.from, first, [from, ring])?,
             exit: junction(last, movement.to, [ring, to])?,
             beyond: place(last)? < place(first)?,
-            ring: Ring::new(ring, frame)?,
+            ring: Ring::new(ring, frame, params.strip.max(policy))?,
             strokes: [from.stroke, to.stroke],
             frame,
             reach,
@@ -119,8 +119,8 @@ struct Ring {
 }
 
 impl Ring {
-    fn new(line: &StrokeLine, frame: Frame) -> Result<Self, UnknownReason> {
-        let arm = Arm::whole(line, frame)?;
+    fn new(line: &StrokeLine, frame: Frame, strip: Policy) -> Result<Self, UnknownReason> {
+        let arm = Arm::whole(line, frame, strip)?;
         let spans = &line.made.spans;
         let (Some(first), Some(last)) = (spans.first(), spans.last()) else { return Err(UnknownReason::Geometry) };
         let (first, end) = (first.stations.start, last.stations.end - 1);

@@ -280,3 +280,25 @@ fn a_route_whose_parts_passed_is_refuted_as_a_whole_and_the_search_goes_on() {
     assert!(route.drive.edges.contains(&edge(&open, "WE")) && !route.drive.edges.contains(&edge(&open, "JK")));
     assert!(route.certificate.result.safe());
 }
+
+/// In its own lane, over a corner for which it uses the other lanes of its direction, too.
+#[test]
+fn a_route_in_the_lane_has_the_turns_strip_around_a_turn() {
+    let nodes =
+        [('A', [-450.0, 0.0]), ('J', [0.0, 0.0]), ('E', [450.0, 0.0]), ('S', [0.0, -450.0]), ('N', [0.0, 450.0])];
+    let tags = "highway=primary lanes=6 width=21";
+    let map = AsciiMap::placed(&nodes).way("AJE", tags).way("SJN", tags);
+    let mut region = Region::of(map.extract(), Policy::Lane);
+    region.kerbs = Kerbs::everywhere(12.0);
+    let driver = region.driver("EU-SEMI16.5");
+    let answer = ask(&region, &driver, ["AJ", "JS"], 0);
+    let [route] = answer.routes.as_slice() else { panic!("{answer:?}") };
+    assert_smooth(route);
+    let c = &route.path.corridor;
+    let width = |k: usize| c.left_m[k] + c.right_m[k];
+    let turn = route.path.parts.iter().find(|part| matches!(part.kind, PartKind::Turn { .. })).unwrap();
+    assert!(width(turn.stations.start) > 2.0 * width(0), "{} {}", width(turn.stations.start), width(0));
+    // Nowhere does the width jump.
+    assert!((1..c.len()).all(|k| (width(k) - width(k - 1)).abs() < 1.0 * c.spacing_m));
+    whole::hold(&driver.model.vehicle, c, &route.certificate, 3);
+}

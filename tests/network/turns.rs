@@ -265,3 +265,50 @@ fn no_claim_of_a_turn_is_refuted() {
     println!("{fought} turn corridors held");
     assert!(fought >= 20, "{fought}");
 }
+
+/// Two streets of three lanes each way.
+fn wide_streets(strip: Policy) -> Drawn {
+    let mut drawn = Drawn::cross("highway=primary lanes=6 width=21", false, 9.0);
+    drawn.params.strip = strip;
+    drawn
+}
+
+#[test]
+fn near_a_turn_all_lanes_of_the_direction_count_where_the_settings_say_so() {
+    let [same, direction] = [Policy::Lane, Policy::Direction].map(wide_streets);
+    let mut more = 0;
+    for (nodes, id) in [("EBC", "EU-SEMI16.5"), ("EBA", "EU-SEMI16.5"), ("EBC", "US-WB67"), ("EBA", "US-WB67")] {
+        let safe = |drawn: &Drawn| drawn.safe(nodes, Policy::Lane, id);
+        println!("{nodes} {id}: same {}, direction {}", safe(&same), safe(&direction));
+        assert!(safe(&direction) || !safe(&same), "{nodes} {id}");
+        more += usize::from(safe(&direction) && !safe(&same));
+    }
+    assert!(more > 0);
+    // The strip is never less than the policy's own.
+    let corridors = |drawn: &Drawn| drawn.corridors("EBC", Policy::Carriageway, Reach::Short).unwrap();
+    assert_eq!(corridors(&same), corridors(&direction));
+}
+
+#[test]
+fn the_strip_narrows_to_the_lane_away_from_the_turn() {
+    let made = wide_streets(Policy::Direction).corridors("EBC", Policy::Lane, Reach::Short).unwrap();
+    let lane = wide_streets(Policy::Lane).corridors("EBC", Policy::Lane, Reach::Short).unwrap();
+    let width = |path: &netcert::turns::TurnPath, k: usize| path.corridor.left_m[k] + path.corridor.right_m[k];
+    let lane_m = width(&lane.paths[0], 0);
+    for path in &made.paths {
+        let last = path.corridor.len() - 1;
+        assert!((width(path, 0) - lane_m).abs() < 0.01 && (width(path, last) - lane_m).abs() < 0.4, "{}", path.number);
+        assert!(width(path, path.turn.start) > 2.0 * lane_m, "{}", path.number);
+    }
+}
+
+#[test]
+fn no_claim_of_a_turn_over_several_lanes_is_refuted() {
+    let (mut fought, mut draw) = (0, Draw(0x51u64));
+    let drawn = wide_streets(Policy::Direction);
+    for (nodes, id) in [("EBC", "EU-SEMI16.5"), ("EBA", "US-WB67"), ("DBC", "US-WB40"), ("EBA", "AU-BDOUBLE26")] {
+        let made = drawn.corridors(nodes, Policy::Lane, Reach::of(&catalogued(id)).unwrap()).unwrap();
+        fought += fight::none_is_refuted(&made.paths, id, made.paths.len() / 3, nodes, &mut draw);
+    }
+    assert!(fought >= 4, "{fought}");
+}

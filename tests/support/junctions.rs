@@ -3,7 +3,6 @@
 
 use netcert::account::AccountRow;
 use netcert::certify::{TurnJob, best_of, certify_turns};
-use netcert::corridor::Params;
 use netcert::network::{Network, build};
 use netcert::osm::facts::{Countries, Place, Policy, cross_sections};
 use netcert::rows::TurnCertificate;
@@ -31,7 +30,7 @@ impl Drawn {
         let place = |_| Place { country: *b"DE", left_hand_traffic };
         let (network, _) =
             build(map.extract(), &place, &|facts, place, ring| cross_sections(facts, place, ring, rules));
-        Self { network, params: TurnParams { corridor: Params::default(), kerbs: Kerbs::everywhere(kerb_m) } }
+        Self { network, params: TurnParams { kerbs: Kerbs::everywhere(kerb_m), ..TurnParams::default() } }
     }
 
     pub(crate) fn facts(&self) -> Vec<TurnFacts> {

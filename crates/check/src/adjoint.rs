@@ -28,7 +28,7 @@ pub(crate) struct Coefficients {
 }
 
 impl Coefficients {
-    pub(crate) fn of(link: &super::chain::Link, bend: &super::tubes::Bend) -> Self {
+    pub(crate) fn of(link: &super::link::Link, bend: &super::tubes::Bend) -> Self {
         let mean = |[a, b]: [f64; 2]| [0.5 * (a + b), 0.5 * (a - b).abs()];
         let rho = bend.rho();
         let through = bend.cos_chi.map(|c| c * (1.0 + link.k));

@@ -1,28 +1,8 @@
 //! The vehicle in the proof's terms: lengths, hitches, slips. Its straight gains are computed once for all roads.
 
 use crate::gains::Gains;
-use crate::motion::DEFECT_RAD;
+use crate::link::{DEFECT_RAD, Link};
 use netcert_base::vehicle::Vehicle;
-
-/// One unit, front to rear.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Link {
-    /// L, metres.
-    pub(crate) l: f64,
-    /// d, metres.
-    pub(crate) d: f64,
-    /// d / L.
-    pub(crate) k: f64,
-    /// σ plus an allowance for rounding of the nominal motion, radians.
-    pub(crate) sway: f64,
-    /// θ, radians.
-    pub(crate) limit: f64,
-    /// b/2, metres.
-    pub(crate) half_width: f64,
-    /// The body's rear and front ends, metres ahead of the axle.
-    pub(crate) rear: f64,
-    pub(crate) front: f64,
-}
 
 /// A vehicle with its straight gains.
 #[derive(Debug, Clone)]

@@ -6,8 +6,8 @@
 //! is never too small.
 
 use crate::UP;
-use crate::chain::Link;
 use crate::interval::Interval;
+use crate::link::Link;
 
 /// Largest distance between the points of a body with stored gains, metres. Gains are convex, so linear interpolation
 /// between the points is never too small. At 0.25 a kink between two points cost a millimetre.

@@ -6,7 +6,7 @@
 //! | file | for |
 //! | --- | --- |
 //! | `interval` | intervals that hold the exact result, for straight gains and for every close decision |
-//! | `chain` | the vehicle in the proof's terms |
+//! | `link`, `chain` | the vehicle in the proof's terms |
 //! | `gains` | exact gains on the straight (proof, section 4) |
 //! | `road` | the corridor as a curve, and the test that its stations fit |
 //! | `plan` | the planned shift from its coefficients |
@@ -18,7 +18,7 @@
 //! | `printed` | the paper's 𝒞, which decides nothing |
 //!
 //! Rounding is handled in three ways. Nominal motion, feet and kernels are *chosen* in plain `f64`: another choice
-//! would give another bound and not a wrong one, and their rounding is counted (`motion::DEFECT_RAD`). *Bounds* are
+//! would give another bound and not a wrong one, and their rounding is counted (`link::DEFECT_RAD`). *Bounds* are
 //! rounded up: sums and products of non-negative numbers grow by a factor larger than all rounding (`UP`). *Decisions*
 //! within `leeway::CLOSE_M` of the claim are repeated in intervals.
 
@@ -28,6 +28,7 @@ mod claim;
 mod gains;
 mod interval;
 mod leeway;
+mod link;
 mod motion;
 pub mod plan;
 pub mod printed;

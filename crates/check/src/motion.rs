@@ -4,14 +4,12 @@
 //! A curve deviates from its chord by κℓ²/8. At every hitch, not only at the steer axle, this is added to the
 //! coupling's deviation. With four steps per station it is 0.4 mm at a radius of 20 m.
 
-use crate::chain::{Chain, Link};
+use crate::chain::Chain;
+use crate::link::Link;
 use crate::road::Road;
 
 /// Steps per station.
 pub(crate) const STEPS: usize = 4;
-/// Slip added to the vehicle's own for rounding of headings. Headings are exact to 1e-13 per step of at least a
-/// centimetre.
-pub(crate) const DEFECT_RAD: f64 = 1e-9;
 /// Deviation added for rounding of the couplings' places, metres. Coordinates count from the corridor's first station.
 pub(crate) const DEFECT_M: f64 = 1e-8;
 

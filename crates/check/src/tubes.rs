@@ -5,7 +5,8 @@
 
 use crate::UP;
 use crate::adjoint::{self, Coefficients, Output};
-use crate::chain::{Chain, Link};
+use crate::chain::Chain;
+use crate::link::Link;
 use crate::motion::{Motion, STEPS, Swing};
 
 /// Assumption A3.

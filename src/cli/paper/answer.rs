@@ -1,4 +1,4 @@
-//! What is printed: three tables for people, or all of it as JSON.
+//! Prints the answer of `netcert paper`: three tables for people, or all numbers as JSON.
 
 use std::io::{self, Write};
 
@@ -15,24 +15,24 @@ pub(super) fn table(out: &mut dyn Write, simulated: &[Simulated], timing: Option
     own_numbers(simulated).write(out, "  ")?;
     writeln!(
         out,
-        "\nAlgorithm 1 on a route of {:.2} m, the table's numbers in brackets. β is the one of least trace; the last\n\
-         column is 𝒞 with β° as printed (erratum E1), the tube of the prime mover shrunk where the algorithm asks for it\n",
+        "\nAlgorithm 1 on a route of {:.2} m, with the table's numbers in brackets. β has the least trace. The last\n\
+         column is 𝒞 with β° as printed (erratum E1); the prime mover's tube is shrunk where the algorithm requires it.\n",
         length_m(simulated)
     )?;
     by_algorithm(simulated).write(out, "  ")?;
     writeln!(
         out,
-        "\nWhat netcert decides for the same vehicles and corridors: RSC, the least leeway of any point of any body. First with the\n\
-         paper's tolerances, which are none, then with ε 0.15 m and σ 0.2°\n"
+        "\nWhat netcert decides for the same vehicles and corridors: RSC, the least leeway of any point of any body. First without\n\
+         tolerances, as in the paper, then with ε 0.15 m and σ 0.2°\n"
     )?;
     decided(simulated).write(out, "  ")?;
     writeln!(
         out,
-        "\nWhy they differ: 𝒞 asks for half a body's length of room to each side (r_N^max, over all directions: E7), at the\n\
-         narrowest place, for the last trailer only; it knows no error of steering and no corner of a body. RSC asks for what\n\
-         each body takes up across the road where it is, and that every hinge stays within ±θ: that is what fails where RSC is\n\
-         positive and the verdict is `unsafe`. In the paper q_0 is on the centreline; in netcert the steer axle, L further ahead.\n\
-         docs/errata.md shows every fault in numbers."
+        "\nWhy they differ: 𝒞 requires half a body's length of room on each side (r_N^max, over all directions: E7), at the\n\
+         narrowest place, and for the last trailer only. 𝒞 allows for no steering error and ignores the corners of bodies. RSC\n\
+         requires the room that each body takes across the road at its place. netcert also requires every hinge to stay within\n\
+         ±θ; where RSC is positive and the verdict is `unsafe`, a hinge does not. The paper puts q_0 on the centreline; netcert\n\
+         puts the steer axle there, L further ahead. docs/errata.md shows every fault in numbers."
     )?;
     if let Some(timing) = timing {
         writeln!(out, "\nRun time on this machine, milliseconds (least of some runs)\n")?;
@@ -44,7 +44,7 @@ pub(super) fn table(out: &mut dyn Write, simulated: &[Simulated], timing: Option
         }
         writeln!(
             out,
-            "  netcert's certificate takes longer where a bend costs its quick bound centimetres and the exact one is asked"
+            "  netcert's certificate takes longer where its quick bound loses centimetres in a bend and the exact bound is computed"
         )?;
         writeln!(out, "  the paper: 0.5 s for two trailers, 1.15 s for five (i7-12650H)")?;
     }

@@ -1,7 +1,7 @@
-//! `netcert paper`: the paper's scenarios, from Table I's own numbers, as simulations, and beside what netcert says; its
-//! figures.
+//! `netcert paper`: runs the paper's scenarios from the numbers of Table I and as simulations, compares them with
+//! netcert's certificates, and draws the paper's figures.
 //!
-//! The figures of two runs are the same bytes; times are not, and stand apart behind `--timing`.
+//! The figures of two runs have the same bytes. Run times differ from run to run, so only `--timing` measures them.
 
 mod answer;
 mod figures;
@@ -19,41 +19,41 @@ use super::Session;
 use super::output::results;
 use simulate::Simulated;
 
-/// Run the scenarios of the paper that netcert's certificate comes from.
+/// Run the scenarios of the paper that netcert's certificate is based on.
 ///
 /// Faruqui, Das, Kumar L, Jagtap: "Spatiotemporal Tube-Based Safety-Certificate
-/// for Autonomous Navigation of Articulated Vehicles". Its Table I lists seven
-/// vehicles with routes and says that 1, 3 and 5 are safe. This prints its
-/// certificate 𝒞 = w_min − (h_Ω + r_N^max) twice, with netcert's own beside it:
+/// for Autonomous Navigation of Articulated Vehicles". Table I of the paper lists
+/// seven vehicles with routes and says that 1, 3 and 5 are safe. This command prints
+/// the paper's certificate 𝒞 = w_min − (h_Ω + r_N^max) in two ways, then netcert's:
 ///
-///   from the table's own numbers;
-///   by its Algorithm 1, on a route as long as the paper's;
+///   𝒞 from the numbers in the table;
+///   𝒞 by the paper's Algorithm 1, on a route as long as the paper's;
 ///   netcert's RSC for the same vehicles and corridors.
 #[derive(Args)]
 #[command(
     verbatim_doc_comment,
     after_help = "\
 Examples:
-  netcert paper                          the numbers
-  netcert paper --out figures            the paper's figures as well, as SVG
-  netcert paper --out figures --timing   run time against trailers, too
+  netcert paper                          print the numbers
+  netcert paper --out figures            also draw the paper's figures, as SVG
+  netcert paper --out figures --timing   also measure run time by number of trailers
 
-The folder gets tubes.svg, leeway.svg and rsc.svg, timing.svg if asked for, and
-tubes.json: what tubes.svg draws, as functions of time.
+--out writes tubes.svg, leeway.svg, rsc.svg, with --timing also timing.svg, and tubes.json:
+the tubes of tubes.svg as functions of time.
 
-The paper's formulas are kept to the letter where they can be followed. They
-decide nothing in netcert: docs/errata.md shows in numbers where the print cannot
-be right. The route is netcert's own drawing (data/paper/route.toml); of its own
-the paper gives the length, 543.62 m."
+This command follows the paper's formulas to the letter where that is possible. No verdict of
+netcert uses them; docs/errata.md shows in numbers where the printed formulas cannot be right. The
+paper gives only the length of its route, 543.62 m. The route here is netcert's own drawing
+(data/paper/route.toml)."
 )]
 pub(crate) struct Paper {
-    /// Write the figures into this folder; it is made if it is missing.
+    /// Write the figures into this folder, which is created if it is missing.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// A table for people, or JSON with all digits.
+    /// The output format: a table for people, or JSON with all digits.
     #[arg(long, value_enum, default_value_t = Form::Table)]
     format: Form,
-    /// Measure run time against the number of trailers, 1 to 10: other numbers every time.
+    /// Measure the run time with 1 to 10 trailers. These numbers differ from run to run.
     #[arg(long)]
     timing: bool,
 }
@@ -92,5 +92,5 @@ fn write(folder: &Path, name: &str, text: &str) -> anyhow::Result<()> {
     let path = folder.join(name);
     std::fs::create_dir_all(folder)
         .and_then(|()| std::fs::write(&path, text))
-        .map_err(|e| anyhow!("{}: cannot write it: {e}; give another folder with --out", path.display()))
+        .map_err(|e| anyhow!("{}: cannot write this file: {e}; give another folder with --out", path.display()))
 }

@@ -1,4 +1,4 @@
-//! One scenario as a simulation: Algorithm 1 with each β, and the deciding certificate for the same vehicle and corridor.
+//! Runs one scenario: Algorithm 1 with each β, and netcert's certificate for the same vehicle and corridor.
 
 use anyhow::anyhow;
 use netcert::corridor::Corridor;
@@ -8,21 +8,21 @@ use netcert::stet::{self, Certificate, Model, Options};
 use netcert::stop::Stop;
 use netcert::vehicle::Vehicle;
 
-/// What netcert assumes of a vehicle of which nothing else is known: ε, the heading's tolerance, σ, γ_min.
+/// netcert's default tolerances of a vehicle: ε in metres, the tolerance of the heading in degrees, σ in degrees, γ_min.
 const USUAL: (f64, f64, f64, f64) = (0.15, 3.0, 0.2, 0.3);
 
-/// A scenario and all that was made of it.
+/// A scenario and its results.
 pub(super) struct Simulated {
     pub(super) scenario: Scenario,
     pub(super) corridor: Corridor,
     pub(super) route: Route,
     /// Algorithm 1 in the reading nearest to the paper's results.
     pub(super) paper: RouteCert,
-    /// The same with β° as printed.
+    /// Algorithm 1 with β° as printed.
     pub(super) printed_beta: RouteCert,
-    /// netcert's, with the paper's tolerances, which are none.
+    /// netcert's certificate without tolerances, as in the paper.
     pub(super) exact: Certificate,
-    /// netcert's, with its usual tolerances.
+    /// netcert's certificate with its default tolerances.
     pub(super) usual: Certificate,
 }
 

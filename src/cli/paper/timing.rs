@@ -1,5 +1,7 @@
-//! Run time against the number of trailers: Algorithm 1 with 1 to 10, netcert as far as it goes, the gains that it computes once
-//! a vehicle apart; a line through each by least squares, with R².
+//! Measures run time over the number of trailers, and fits a line through each series by least squares, with R².
+//!
+//! Algorithm 1 runs with 1 to 10 trailers, netcert with as many as [`MAX_UNITS`] allows. The gains that netcert computes
+//! once per vehicle are measured separately.
 
 use std::time::Instant;
 
@@ -9,29 +11,29 @@ use netcert::speed_profile::SpeedProfile;
 use netcert::stet::{self, MAX_UNITS, Model, Options};
 use netcert::stop::Stop;
 
-/// Most trailers tried.
+/// The greatest number of trailers measured.
 const TRAILERS: usize = 10;
-/// Each time is the least of so many runs: whatever else the machine does only adds to it.
+/// Each time is the least of this many runs, because other work of the machine can only add time.
 const RUNS: usize = 7;
 
 /// Seconds by the number of trailers.
 pub(super) struct Timing {
-    /// Algorithm 1.
+    /// Times of Algorithm 1.
     pub(super) paper: Series,
-    /// netcert's certificate of this route.
+    /// Times of netcert's certificate of the route.
     pub(super) netcert: Series,
-    /// netcert's gains of the vehicle, whatever the route.
+    /// Times of netcert's gains, which depend on the vehicle alone.
     pub(super) gains: Series,
 }
 
 impl Timing {
-    /// Each with its name.
+    /// The three series with their names.
     pub(super) fn series(&self) -> [(&'static str, &Series); 3] {
         [("Algorithm 1", &self.paper), ("netcert, certificate", &self.netcert), ("netcert, gains", &self.gains)]
     }
 }
 
-/// Times and the line through them.
+/// Measured times and the line fitted through them.
 pub(super) struct Series {
     /// (trailers, seconds)
     pub(super) points: Vec<(usize, f64)>,
@@ -53,10 +55,10 @@ impl Series {
     }
 }
 
-/// Room added to each side, so that no vehicle needs correction and all do the same work, metres.
+/// Width added on each side, metres. With it no vehicle needs correction, and all runs do the same work.
 const ROOM_M: f64 = 10.0;
 
-/// Scenario 5's vehicle and route, with other numbers of trailers.
+/// Measures the vehicle and route of scenario 5 with different numbers of trailers.
 pub(super) fn measure(table: &[Scenario], route: &DrawnRoute) -> anyhow::Result<Timing> {
     let scenario = table.get(4).ok_or_else(|| anyhow!("data/paper/scenarios.toml: there is no scenario 5"))?;
     let corridor = route.corridor(scenario.w_min_m + ROOM_M);

@@ -1,11 +1,11 @@
-//! The tubes of a scenario as functions of time, in the form that tubes have in a certificate file, with their leeway.
+//! Writes the tubes of a scenario as functions of time, in the form of the tubes in a certificate file, with their leeway.
 
 use netcert::published::{Reading, Stet, boundary_leeway};
 use serde_json::{Value, json};
 
 use super::simulate::Simulated;
 
-/// The document: t in seconds, `shape` the elements q11, q12, q22 of Q (1/m², Def. 1), leeway in metres.
+/// The JSON document. `t` is in seconds, `shape` holds the elements q11, q12, q22 of Q (1/m², Def. 1), leeway is in metres.
 pub(super) fn json(s: &Simulated) -> String {
     let tubes: Vec<Value> = s.paper.tubes.iter().enumerate().map(|(unit, tube)| one(s, unit, tube)).collect();
     let text = json!({

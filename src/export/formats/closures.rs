@@ -1,7 +1,7 @@
-//! Small rectangles across the roads that a vehicle may not use, for engines that are told by areas what to avoid.
+//! Small rectangles across refused roads, for engines that avoid areas.
 //!
-//! One stands on the longest straight of every stretch between two junctions that is refused, so that it meets no other road. An
-//! area has no direction: a stretch refused one way is closed both ways. Nobody can say a turn by an area.
+//! Every refused stretch between two junctions gets one rectangle, on its longest straight, so that the rectangle meets no other
+//! road. An area has no direction, so a stretch that is refused in one direction is closed in both. An area cannot express a turn.
 
 use std::io::{self, Write};
 
@@ -9,38 +9,38 @@ use super::geojson::position;
 use crate::export::{ExportError, Source};
 use crate::osm::LonLat;
 
-/// Half its size across the road. Engines move lines by half a metre when they thin them out (GraphHopper:
+/// Half the rectangle's size across the road, metres. Engines move lines by half a metre when they simplify them (GraphHopper:
 /// `DEFAULT_WAY_POINT_MAX_DISTANCE`, 0.5 m).
 const ACROSS_M: f64 = 0.75;
-/// Half its size along the road.
+/// Half the rectangle's size along the road, metres.
 const ALONG_M: f64 = 0.25;
-/// On a sphere of the earth's mean radius; a part in 300 matters to nobody here.
+/// Length of a degree on a sphere of the earth's mean radius. The error of 1 in 300 does not matter here.
 const M_PER_DEGREE: f64 = 111_195.0;
 
 /// A closed ring, counterclockwise.
 pub(super) type Ring = [LonLat; 5];
 
-/// What was closed.
+/// Counts of closed stretches.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Closed {
-    /// Stretches.
+    /// Number of closed stretches.
     pub(super) stretches: u64,
-    /// Of them, with one direction that is permitted.
+    /// Number of closed stretches with one permitted direction.
     pub(super) too_much: u64,
 }
 
 impl Closed {
-    /// What a user should know of it.
+    /// The counts in words for the user.
     pub(super) fn note(self) -> String {
         let Self { stretches, too_much } = self;
         format!(
-            "{stretches} stretches are closed, {too_much} of them permitted in one direction (an area has none); refused turns \
-             cannot be said"
+            "{stretches} stretches are closed, {too_much} of them permitted in one direction (an area has no direction); areas \
+             cannot express refused turns"
         )
     }
 }
 
-/// Hands over a rectangle for every refused stretch, in order of the network.
+/// Calls `put` with the rectangle of every refused stretch, in order of the network.
 pub(super) fn each(
     source: &Source<'_>,
     mut put: impl FnMut(&Ring) -> Result<(), ExportError>,
@@ -59,7 +59,7 @@ pub(super) fn each(
     for edge in source.edges(&mut database)? {
         let edge = edge?;
         let refused = edge.refusal.is_some();
-        // Both directions of a stretch come one after the other.
+        // The two directions of a stretch are successive edges.
         if let Some(stretch) = &mut last
             && stretch.way_id == edge.row.way_id
             && stretch.line.iter().rev().eq(&edge.row.line)
@@ -93,7 +93,7 @@ pub(super) fn polygon(out: &mut dyn Write, ring: &Ring) -> io::Result<()> {
     out.write_all(b"]]")
 }
 
-/// A rectangle over the middle of a line's longest straight.
+/// The rectangle across the middle of a line's longest straight.
 fn across(line: &[LonLat]) -> Option<Ring> {
     let step = |pair: &[LonLat]| {
         let ((lon, lat), (to_lon, to_lat)) = (pair[0].degrees(), pair[1].degrees());
@@ -134,7 +134,7 @@ mod tests {
         let degrees = |line: &[LonLat]| line.iter().map(|place| place.degrees()).collect::<geo::LineString>();
         let polygon = geo::Polygon::new(degrees(&ring), vec![]);
         assert!(polygon.intersects(&degrees(&line)) && !polygon.intersects(&degrees(&line[..2])));
-        // 1.5 m by 0.5 m, to the 1.1 cm that positions are rounded to.
+        // The rectangle is 1.5 m by 0.5 m; positions are rounded to 1.1 cm.
         let area_m2 = polygon.signed_area() * M_PER_DEGREE.powi(2) * 49.4_f64.to_radians().cos();
         assert!((0.70..0.80).contains(&area_m2), "{area_m2}");
         assert!(across(&line[..1]).is_none());

@@ -1,4 +1,4 @@
-//! The columns of edges and turns in tables of any kind: those of `query`, then `permitted` and `refusal`.
+//! The columns of edges and turns in tables of any format: those of `query`, then `permitted` and `refusal`.
 
 use super::super::{ExportEdge, ExportTurn, Source};
 use crate::rows::{Cell, Column, EdgeRow, Kind, TurnRow};
@@ -6,10 +6,10 @@ use crate::rows::{Cell, Column, EdgeRow, Kind, TurnRow};
 const OF_EDGES: usize = EdgeRow::COLUMNS.len() + 2;
 const OF_TURNS: usize = TurnRow::COLUMNS.len() + 2;
 
-/// Of edges.
+/// The columns of edges.
 pub const EDGE_COLUMNS: [Column; OF_EDGES] = with_permit(EdgeRow::COLUMNS);
 
-/// Of turns.
+/// The columns of turns.
 pub const TURN_COLUMNS: [Column; OF_TURNS] = with_permit(TurnRow::COLUMNS);
 
 const fn with_permit<const OF_ROW: usize, const ALL: usize>(of_row: [Column; OF_ROW]) -> [Column; ALL] {
@@ -23,13 +23,14 @@ const fn with_permit<const OF_ROW: usize, const ALL: usize>(of_row: [Column; OF_
     all
 }
 
-/// In the order of [`EDGE_COLUMNS`]; `refusal` is the edge's [`super::super::Refusal::words`], empty if it is permitted.
+/// The values in the order of [`EDGE_COLUMNS`]. `refusal` is the edge's [`super::super::Refusal::words`], empty if the edge is
+/// permitted.
 #[must_use]
 pub fn edge_cells<'r>(source: &'r Source<'_>, edge: &'r ExportEdge, refusal: &'r str) -> [Cell<'r>; OF_EDGES] {
     with_refusal(&edge.row.cells(&source.ask.vehicle, source.ask.policy), edge.refusal.is_none(), refusal)
 }
 
-/// In the order of [`TURN_COLUMNS`]; `refusal` as with [`edge_cells`].
+/// The values in the order of [`TURN_COLUMNS`]. `refusal` is as in [`edge_cells`].
 #[must_use]
 pub fn turn_cells<'r>(source: &'r Source<'_>, turn: &'r ExportTurn, refusal: &'r str) -> [Cell<'r>; OF_TURNS] {
     with_refusal(&turn.row.cells(&source.ask.vehicle, source.ask.policy), turn.refusal.is_none(), refusal)

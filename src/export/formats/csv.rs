@@ -1,4 +1,4 @@
-//! Tables as RFC 4180 has them, without geometry: `edges.csv`, `turns.csv`, and the header beside them.
+//! CSV tables by RFC 4180 without geometry: `edges.csv`, `turns.csv`, and the header beside them.
 
 use std::io::{self, Write};
 

@@ -1,7 +1,7 @@
-//! GeoJSON (RFC 7946) and sequences of GeoJSON texts (RFC 8142), one file a layer.
+//! GeoJSON (RFC 7946) and sequences of GeoJSON texts (RFC 8142), one file per layer.
 //!
-//! The header is a foreign member `netcert` (RFC 7946, section 6.1): of the collection, in a sequence of its first feature. Ids of
-//! features are texts, so that no reader rounds 63 bits to a floating-point number; the properties have them as numbers too.
+//! The header is a foreign member `netcert` (RFC 7946, section 6.1) of the collection, or of the first feature of a sequence. Ids
+//! of features are texts, so that no reader rounds 63 bits to a floating-point number. The properties also have them as numbers.
 
 use std::io::{self, Write};
 
@@ -17,7 +17,7 @@ pub(super) struct GeoJson;
 /// `geojsonseq`
 pub(super) struct GeoJsonSeq;
 
-/// What a text of a sequence starts with (RFC 8142, section 2).
+/// The first byte of each text in a sequence (RFC 8142, section 2).
 const RECORD_SEPARATOR: u8 = 0x1e;
 
 impl Target for GeoJson {
@@ -90,7 +90,7 @@ fn feature(out: &mut dyn Write, layer: Layer, row: &Row<'_>, header: Option<&str
     out.write_all(b"}")
 }
 
-/// A `LineString`.
+/// Writes a `LineString`.
 pub(super) fn line_string(out: &mut dyn Write, line: &[LonLat]) -> io::Result<()> {
     out.write_all(b"{\"type\":\"LineString\",\"coordinates\":[")?;
     for (i, place) in line.iter().enumerate() {
@@ -102,7 +102,7 @@ pub(super) fn line_string(out: &mut dyn Write, line: &[LonLat]) -> io::Result<()
     out.write_all(b"]}")
 }
 
-/// A position, with the seven decimals that OpenStreetMap has.
+/// Writes a position with the seven decimals of OpenStreetMap.
 pub(super) fn position(out: &mut dyn Write, place: LonLat) -> io::Result<()> {
     out.write_all(b"[")?;
     degrees(out, place.lon_e7)?;
@@ -111,7 +111,7 @@ pub(super) fn position(out: &mut dyn Write, place: LonLat) -> io::Result<()> {
     out.write_all(b"]")
 }
 
-/// Exactly, without a floating-point number in between.
+/// Writes degrees exactly, without a conversion to floating point.
 fn degrees(out: &mut dyn Write, e7: i32) -> io::Result<()> {
     let (sign, whole, part) =
         (if e7 < 0 { "-" } else { "" }, e7.unsigned_abs() / 10_000_000, e7.unsigned_abs() % 10_000_000);

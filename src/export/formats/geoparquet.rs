@@ -1,7 +1,7 @@
-//! GeoParquet 1.1 (<https://geoparquet.org/releases/v1.1.0/>), one file a layer: lines as WKB, a box column for readers that skip
-//! by it, the header as JSON under the key `netcert` of the file's metadata.
+//! GeoParquet 1.1 (<https://geoparquet.org/releases/v1.1.0/>), one file per layer: lines as WKB, a column of boxes with which
+//! readers can skip rows, and the header as JSON under the key `netcert` of the file's metadata.
 //!
-//! A group of rows is held in memory until it is written, nothing else of the network.
+//! Memory holds one group of rows at a time.
 
 mod metadata;
 
@@ -26,7 +26,7 @@ use crate::rows::{Cell, Kind};
 /// `geoparquet`
 pub(super) struct GeoParquet;
 
-/// Rows a group: some 8 MB of edges.
+/// Rows per group. A group of edges takes some 8 MB.
 const GROUP_ROWS: usize = 1 << 14;
 
 /// The sides of the box, in the order of its columns.
@@ -55,7 +55,7 @@ impl Target for GeoParquet {
     }
 }
 
-/// A file being written.
+/// A file that is being written.
 struct Table {
     writer: SerializedFileWriter<Vec<u8>>,
     sink: Sink,
@@ -92,7 +92,7 @@ impl Table {
     fn end_group(&mut self) -> Result<(), ExportError> {
         self.write_group().map_err(failed)?;
         self.writer.flush()?;
-        // The writer counts what it has written by itself: what is in its hands may go to the file.
+        // The writer keeps its own count of written bytes, so its buffer can be moved to the file.
         self.sink.write_all(self.writer.inner())?;
         self.writer.inner_mut().clear();
         Ok(())
@@ -133,7 +133,7 @@ impl Table {
     }
 }
 
-/// Values of one column of a group.
+/// The values of one column in a group.
 enum Column {
     Integer(Vec<i64>, Vec<i16>),
     Real(Vec<f64>, Vec<i16>),
@@ -152,7 +152,7 @@ impl Column {
     }
 
     fn push(&mut self, cell: &Cell<'_>) {
-        // A level of 0 says that there is none.
+        // A definition level of 0 means that there is no value.
         match (self, cell) {
             (Self::Integer(values, levels), Cell::Integer(value)) => {
                 levels.push(i16::from(value.is_some()));
@@ -167,7 +167,7 @@ impl Column {
                 values.extend(value.map(ByteArray::from));
             }
             (Self::Flag(values), Cell::Flag(value)) => values.push(*value),
-            // Cells are of their columns' kinds: else there is no value rather than a wrong one.
+            // Cells have the kinds of their columns. A cell of another kind would give no value.
             (Self::Integer(_, levels) | Self::Real(_, levels) | Self::Text(_, levels), _) => levels.push(0),
             (Self::Flag(values), _) => values.push(false),
         }
@@ -222,7 +222,7 @@ fn schema(layer: Layer) -> Result<Type, ParquetError> {
     Type::group_type_builder(layer.name()).with_fields(fields).build()
 }
 
-/// A line string as ISO 19125 well-known binary, little endian.
+/// A line string as well-known binary (ISO 19125), little endian.
 fn wkb(line: &[LonLat]) -> Vec<u8> {
     const LINE_STRING: u32 = 2;
     let mut out = Vec::with_capacity(9 + 16 * line.len());

@@ -1,9 +1,9 @@
 //! A custom model for GraphHopper (<https://github.com/graphhopper/graphhopper/blob/master/docs/core/custom-models.md>): priority 0
-//! within an area that holds a rectangle on every refused road.
+//! within an area that has a rectangle on every refused road.
 //!
-//! It is one area, a `MultiPolygon`: GraphHopper asks each area for each edge, but finds its way within one by an index, and takes
-//! a lone rectangle for its bounding box. The header is in the area's properties, which GraphHopper does not read. Turns
-//! cannot be said in a custom model: `osm-pbf` carries them.
+//! All rectangles are in one area, a `MultiPolygon`, because GraphHopper tests every area for every edge, but has an index within
+//! an area. It replaces an area of a single rectangle by its bounding box. The header is in the area's properties, which
+//! GraphHopper does not read. A custom model cannot express turns; `osm-pbf` can.
 
 use std::io::Write as _;
 

@@ -1,4 +1,4 @@
-//! The two layers that map formats share: directed edges and turns, each row with its cells and its line.
+//! The two layers of map formats: directed edges and turns, each row with its cells and its line.
 
 use super::{EDGE_COLUMNS, Layer, Options, TURN_COLUMNS, edge_cells, turn_cells};
 use crate::export::{ExportError, Refusal, Source};
@@ -7,16 +7,16 @@ use crate::rows::{Cell, Column};
 
 /// One row of a layer.
 pub(super) struct Row<'r> {
-    /// Stable from extract to extract: `edge_id` or `turn_id`.
+    /// The `edge_id` or `turn_id`, which is stable from extract to extract.
     pub(super) id: i64,
-    /// In the order of [`Layer::columns`].
+    /// The values in the order of [`Layer::columns`].
     pub(super) cells: &'r [Cell<'r>],
-    /// In direction of travel; at least two positions.
+    /// The line in direction of travel, with at least two positions.
     pub(super) line: &'r [LonLat],
 }
 
 impl Layer {
-    /// Its name, as in files and layers.
+    /// The layer's name, as in file names.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -25,7 +25,7 @@ impl Layer {
         }
     }
 
-    /// Its columns.
+    /// The layer's columns.
     #[must_use]
     pub fn columns(self) -> &'static [Column] {
         match self {
@@ -34,7 +34,7 @@ impl Layer {
         }
     }
 
-    /// How many rows it has.
+    /// Number of rows in the layer.
     #[must_use]
     pub fn rows(self, source: &Source<'_>) -> u64 {
         let bits = match self {
@@ -44,7 +44,7 @@ impl Layer {
         bits.len() as u64
     }
 
-    /// Hands over every row, in order of the network.
+    /// Calls the function with every row, in order of the network.
     pub(super) fn each(
         self,
         source: &Source<'_>,
@@ -73,7 +73,7 @@ impl Layer {
     }
 }
 
-/// The layers that are asked for.
+/// The layers to write.
 pub(super) fn asked(options: &Options) -> impl Iterator<Item = Layer> {
     let only = options.layer;
     [Layer::Edges, Layer::Turns].into_iter().filter(move |&layer| only.is_none_or(|only| only == layer))

@@ -1,8 +1,8 @@
-//! The targets: each a file or folder of this module, entered in [`TARGETS`].
+//! The targets. Each is a file or folder of this module and is listed in [`TARGETS`].
 //!
-//! To add one: implement [`Target`] in a file of its own, add it to [`TARGETS`] and to the list in `docs/export/README.md`. Rows come
-//! from [`Source::edges`] and [`Source::turns`], files from [`Place::create`]; the header goes where the format has room for
-//! it ([`super::Header::json`] or [`super::Header::pairs`]); a folder gets it as `netcert.json` without asking.
+//! To add a target, implement [`Target`] in a new file, and add it to [`TARGETS`] and to the list in `docs/export/README.md`. Rows
+//! come from [`Source::edges`] and [`Source::turns`], files from [`Place::create`]. Write the header where the format has room for
+//! it ([`super::Header::json`] or [`super::Header::pairs`]); a folder gets it as `netcert.json` automatically.
 
 mod closures;
 mod columns;
@@ -23,14 +23,14 @@ use super::{ExportError, Layout, Place, Source};
 
 pub use columns::{EDGE_COLUMNS, TURN_COLUMNS, edge_cells, turn_cells};
 
-/// What is asked of a target beyond the permits.
+/// Options of a target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Options {
-    /// One layer as one file, where a target writes both.
+    /// Write only this layer, as one file, if the target writes both layers.
     pub layer: Option<Layer>,
 }
 
-/// What rows are of.
+/// A layer of rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layer {
     /// Directed edges.
@@ -39,30 +39,30 @@ pub enum Layer {
     Turns,
 }
 
-/// A form that permits are written in.
+/// A format in which permits are written.
 pub trait Target: Sync {
-    /// As it is asked for.
+    /// The name on the command line.
     fn name(&self) -> &'static str;
 
-    /// One line for the help.
+    /// One line for the help text.
     fn about(&self) -> &'static str;
 
-    /// One file or several.
+    /// Whether the output is one file or several.
     fn layout(&self, options: &Options) -> Layout;
 
-    /// Whether it needs the extract that the database was made from.
+    /// Whether the target needs the extract that the database was made from.
     fn needs_extract(&self) -> bool {
         false
     }
 
-    /// Writes everything; the caller puts it in place.
+    /// Writes the whole output. The caller finishes `place`.
     ///
     /// # Errors
-    /// The database or extract cannot be read, or the output not written.
+    /// The database or extract cannot be read, or the output cannot be written.
     fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError>;
 }
 
-/// All targets, as help lists them.
+/// All targets in the order of the help text.
 pub const TARGETS: &[&dyn Target] = &[
     &osrm::Osrm,
     &valhalla::Valhalla,
@@ -78,13 +78,13 @@ pub const TARGETS: &[&dyn Target] = &[
     &csv::Csv,
 ];
 
-/// The target of this name.
+/// The target with this name.
 #[must_use]
 pub fn named(name: &str) -> Option<&'static dyn Target> {
     TARGETS.iter().copied().find(|target| target.name() == name)
 }
 
-/// A file for one layer, a folder for both.
+/// The layout of a target with one file per layer: a file for one layer, a folder for both.
 #[must_use]
 pub fn one_file_a_layer(target: &'static str, options: &Options) -> Layout {
     match options.layer {

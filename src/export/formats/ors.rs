@@ -1,12 +1,13 @@
-//! For openrouteservice: the refused roads as areas to avoid, and as features whose edges its own matching finds.
+//! For openrouteservice: the refused roads as areas to avoid, and as features that its matching turns into edges.
 //!
 //! | file | for |
 //! | --- | --- |
 //! | `avoid_polygons.json` | `options.avoid_polygons` of a request; any instance takes it |
 //! | `match.json` | the body of a request to `/v2/match/PROFILE`: openrouteservice answers with the numbers of its edges |
-//! | `feature_map.jq` | makes that answer into rows of the table `feature_map`, which an instance with dynamic data reads |
+//! | `feature_map.jq` | turns that answer into rows of the table `feature_map`, which an instance with dynamic data reads |
 //!
-//! Its edges have numbers of their own that only its graph knows, so nobody else can write those rows. Turns cannot be said.
+//! Only openrouteservice's own graph has the numbers of its edges, so these rows cannot be written here. Turns cannot be
+//! expressed.
 
 use std::io::Write as _;
 
@@ -17,7 +18,7 @@ use crate::export::{ExportError, Layout, Place, Source};
 /// `ors`
 pub(super) struct Ors;
 
-/// The columns that `DynamicDataService` of openrouteservice asks the table for (its repository at 7719b0c1).
+/// A jq program for the columns of the table that openrouteservice's `DynamicDataService` reads (its repository at 7719b0c1).
 const FEATURE_MAP: &str = r#"# Rows of the table feature_map from the answer of openrouteservice's matching:
 #   jq -r --arg profile driving-hgv -f feature_map.jq answer.json > feature_map.csv
 #   \copy feature_map (dataset_key, profile, graph_timestamp, timestamp, edge_id, value, deleted) from feature_map.csv csv
@@ -34,7 +35,7 @@ impl Target for Ors {
     }
 
     fn about(&self) -> &'static str {
-        "openrouteservice: areas to avoid, and what its dynamic data are made from"
+        "openrouteservice: areas to avoid, and input for its dynamic data"
     }
 
     fn layout(&self, _: &Options) -> Layout {

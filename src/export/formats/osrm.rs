@@ -1,12 +1,12 @@
-//! For `osrm-customize` and `osrm-contract`: which segments are closed and which turns cost.
+//! For `osrm-customize` and `osrm-contract`: closed segments and penalties of turns.
 //!
 //! `segment-speeds.csv` has a line `from,to,0` for every pair of neighbouring nodes, in every direction, that is not permitted, on
-//! any way that OSRM's profiles might take. `turn-penalties.csv` has a line `from,via,to,3276.7` for every turn between
-//! permitted edges that is refused, and for turning back. OSRM keeps penalties in 16 bits: it cannot close a turn, only make
-//! it cost 55 minutes. Segments it closes.
+//! any way that OSRM's profiles might use. `turn-penalties.csv` has a line `from,via,to,3276.7` for every refused turn between
+//! permitted edges, and for turning back. OSRM closes segments. It stores penalties in 16 bits, so a turn cannot be closed, only
+//! be made to cost 55 minutes.
 //!
-//! What it cannot express is refused: of a restriction over ways and of a refused passage of a roundabout the first step;
-//! roundabouts are open only where their arcs are permitted each by itself.
+//! What OSRM cannot express is refused. Of a restriction over ways, and of a refused passage of a roundabout, the first step is
+//! refused. A roundabout is open only where each of its arcs is permitted.
 
 use std::io::Write as _;
 
@@ -18,11 +18,10 @@ use crate::export::ways::{OnWay, Piece, WayEdges, ids};
 use crate::export::{ExportError, Layout, Place, Sink, Source};
 use crate::osm::pbf::copy::Contents;
 
-/// What a refused turn costs, seconds: the most that OSRM can keep (2^15 − 1 tenths).
+/// The penalty of a refused turn, seconds. It is the greatest that OSRM can store (2^15 − 1 tenths).
 const PENALTY_S: f64 = 3276.7;
 
-/// Ways with one of these keys are looked at by OSRM's car profile (`process_way` in `profiles/car.lua` of 26.10); ways without
-/// are no roads to it.
+/// OSRM's car profile looks only at ways with one of these keys (`process_way` in `profiles/car.lua` of 26.10).
 const KEYS: [&[u8]; 3] = [b"highway", b"route", b"bridge"];
 
 /// `osrm`
@@ -116,7 +115,7 @@ impl Tables<'_, '_> {
             let permitted = edges.map(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge)));
             self.close(refs, first, last, permitted.map(|yes| !yes))?;
             let node = |place: usize| refs.get(place).copied().unwrap_or_default();
-            // The neighbour of each end that is another node: repeats next to each other are one.
+            // The nearest different node at each end, because adjacent repetitions of a node count as one.
             let after = (first..last).map(|i| node(i + 1)).find(|&id| id != node(first)).unwrap_or_default();
             let before = (first..last).rev().map(node).find(|&id| id != node(last)).unwrap_or_default();
             for (direction, edge) in edges.into_iter().enumerate() {
@@ -134,7 +133,7 @@ impl Tables<'_, '_> {
         self.close(refs, done, refs.len().saturating_sub(1), [true; 2])
     }
 
-    /// Closes the segments from one place to another, along the way and against it where asked.
+    /// Closes the segments between two indices of a way, along the way and against it as `closed` says.
     fn close(&mut self, refs: &[i64], from: usize, to: usize, closed: [bool; 2]) -> Result<(), ExportError> {
         for pair in refs.get(from..=to).unwrap_or_default().windows(2).filter(|pair| pair[0] != pair[1]) {
             for ([a, b], closed) in [[pair[0], pair[1]], [pair[1], pair[0]]].into_iter().zip(closed) {
@@ -150,7 +149,7 @@ impl Tables<'_, '_> {
         Ok(writeln!(self.turns, "{from},{via},{to},{PENALTY_S}")?)
     }
 
-    /// Refused turns, and the first steps of sequences.
+    /// Writes refused turns and the first steps of refused sequences.
     fn turns(&mut self) -> Result<(), ExportError> {
         let source = self.source;
         let mut database = source.database()?;
@@ -174,8 +173,8 @@ impl Tables<'_, '_> {
     }
 }
 
-/// By edge: its second, its last but one and its last node; zeros where nobody can say. In a file, so that memory does not grow
-/// with the network.
+/// By edge: its second, last but one and last node, or zeros if they are not clear. The nodes are in a file, so that memory does
+/// not grow with the network.
 struct Ends {
     file: Scratch,
     edges: u32,
@@ -188,7 +187,7 @@ impl Ends {
         Self { file, edges: 0 }
     }
 
-    /// Edges come in order.
+    /// Adds an edge. Edges must come in order.
     fn push(&mut self, edge: u32, nodes: [i64; 3]) -> Result<(), ExportError> {
         for _ in self.edges..edge {
             self.file.write_all(&[0; ENDS_BYTES])?;

@@ -1,14 +1,14 @@
-//! For pgRouting: tables by `COPY` with a psql script that loads them, whole or not at all.
+//! For pgRouting: tables in `COPY` format, and a psql script that loads all of them in one transaction.
 //!
 //! | table | for |
 //! | --- | --- |
 //! | `netcert.edge` | `pgr_dijkstra` and all others: directed edges, `cost` in metres, −1 where refused; `reverse_cost` is always −1 |
 //! | `netcert.restriction` | `pgr_trsp`: refused turns and passages, turning back, restrictions over ways |
 //! | `netcert.step` | `pgr_dijkstra` over edges as vertices: every permitted step from one edge into the next |
-//! | `netcert.header` | what it rests on |
+//! | `netcert.header` | the header: what the permits depend on |
 //!
-//! Steps say all of it with the plainest algorithm, and are the only one to have passages of roundabouts; of restrictions over ways
-//! and of refused passages they lack the first step, as no state remembers the way. `netcert.edge` alone knows no turns.
+//! `netcert.step` expresses everything for the plain algorithm, and only it has passages of roundabouts. Restrictions over ways
+//! and refused passages lack their first step there, because no state stores the path. `netcert.edge` alone has no turns.
 
 use std::io::{self, Write};
 
@@ -24,7 +24,7 @@ use crate::words::Named;
 /// Creates the tables in one transaction and loads them from the files beside it.
 const LOAD: &str = include_str!("pgrouting_load.sql");
 
-/// No value, as `COPY` has it.
+/// A missing value in `COPY` format.
 const NULL: &[u8] = b"\\N";
 
 /// `pgrouting`
@@ -88,7 +88,7 @@ fn edge_line(out: &mut dyn Write, edge: &ExportEdge) -> io::Result<()> {
     out.write_all(b"\n")
 }
 
-/// Refused turns between permitted edges, and sequences that are. Turning back is found by the script, from the edges themselves.
+/// Writes refused turns between permitted edges, and refused sequences. The script finds turning back from the edges.
 fn restrictions(source: &Source<'_>, mut out: Sink) -> Result<(), ExportError> {
     let mut database = source.database()?;
     for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
@@ -103,7 +103,7 @@ fn restrictions(source: &Source<'_>, mut out: Sink) -> Result<(), ExportError> {
     out.close()
 }
 
-/// Permitted steps from edge to edge, and the arcs between where there are any.
+/// Writes permitted steps from edge to edge, with the arcs between them.
 fn steps(source: &Source<'_>, mut out: Sink) -> Result<(), ExportError> {
     let permitted = &source.permitted;
     let mut database = source.database()?;
@@ -111,7 +111,7 @@ fn steps(source: &Source<'_>, mut out: Sink) -> Result<(), ExportError> {
     let first_steps = |sequences: Vec<Vec<u32>>| -> FxHashSet<[u32; 2]> {
         sequences.iter().filter_map(|edges| edges.first_chunk().copied()).collect()
     };
-    // A restriction may lead over a passage's arcs, which need not be permitted; a refused passage leaves the others open.
+    // A restriction may lead over a passage's arcs, which need no permit. A refused passage does not close other passages.
     let (by_law, mut banned) = (first_steps(database.forbidden_sequences()?), first_steps(source.sequences()?));
     banned.extend(&by_law);
     for pair in source.told(database.straight_on()?) {
@@ -152,14 +152,14 @@ fn array(edges: &[u32]) -> String {
     format!("{{{}}}", ids.join(","))
 }
 
-/// A text as `COPY` reads it: https://www.postgresql.org/docs/15/sql-copy.html
+/// Writes a text in `COPY` format: <https://www.postgresql.org/docs/15/sql-copy.html>
 fn field(out: &mut dyn Write, text: &str) -> io::Result<()> {
     let escaped = text.replace('\\', "\\\\").replace('\t', "\\t").replace('\n', "\\n").replace('\r', "\\r");
-    // PostgreSQL has no text with a zero in it.
+    // A text in PostgreSQL cannot contain a zero byte.
     out.write_all(escaped.replace('\0', "\u{fffd}").as_bytes())
 }
 
-/// A line as PostGIS reads it: EWKB in hexadecimal, little endian, WGS 84.
+/// Writes a line for PostGIS: EWKB in hexadecimal, little endian, WGS 84.
 fn ewkb(out: &mut dyn Write, line: &[LonLat]) -> io::Result<()> {
     const LINESTRING_WITH_SRID: u32 = 0x2000_0002;
     let mut bytes = vec![1];

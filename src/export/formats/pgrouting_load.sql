@@ -1,5 +1,5 @@
--- Loads an export of netcert into PostgreSQL, whole or not at all. In this folder: psql -d DATABASE -f load.sql
--- A schema `netcert` of an earlier export is replaced.
+-- Loads an export of netcert into PostgreSQL in one transaction. Run in this folder: psql -d DATABASE -f load.sql
+-- The schema `netcert` of an earlier export is replaced.
 
 \set ON_ERROR_STOP on
 
@@ -9,10 +9,10 @@ CREATE EXTENSION IF NOT EXISTS pgrouting CASCADE;
 DROP SCHEMA IF EXISTS netcert CASCADE;
 CREATE SCHEMA netcert;
 
--- What all of it rests on: vehicle, options, the database's hash, scope, licence.
+-- What the permits depend on: vehicle, options, the database's hash, scope, licence.
 CREATE TABLE netcert.header (header jsonb NOT NULL);
 
--- Directed edges; source and target are OpenStreetMap nodes. cost: metres, -1 where the vehicle may not drive.
+-- Directed edges. source and target are OpenStreetMap nodes. cost is in metres, -1 where the vehicle may not drive.
 CREATE TABLE netcert.edge (
     id bigint PRIMARY KEY,
     edge_id bigint NOT NULL UNIQUE,
@@ -33,15 +33,15 @@ CREATE TABLE netcert.edge (
     reverse_cost double precision NOT NULL DEFAULT -1
 );
 
--- For pgr_trsp: edges that may not be driven one right after the other.
+-- For pgr_trsp: sequences of edges that may not be driven one right after the other.
 CREATE TABLE netcert.restriction (
     id bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
     path bigint[] NOT NULL,
     cost double precision NOT NULL DEFAULT 'Infinity'
 );
 
--- For pgr_dijkstra with edges as vertices: source and target are ids of netcert.edge, cost is what is driven after source, to the
--- end of target. arcs: those of a roundabout that is passed in between.
+-- For pgr_dijkstra with edges as vertices. source and target are ids of netcert.edge. cost is the length from the end of source to
+-- the end of target. arcs are the edges of a roundabout between the two.
 CREATE TABLE netcert.step (
     id bigint GENERATED ALWAYS AS IDENTITY PRIMARY KEY,
     source bigint NOT NULL,

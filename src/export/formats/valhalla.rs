@@ -1,9 +1,9 @@
-//! For Valhalla: the extract rewritten as its builder reads it for trucks, and a request to begin with.
+//! For Valhalla: the extract rewritten for its tile builder, and an example request.
 //!
-//! `extract.osm.pbf` is for `valhalla_build_tiles`; its tags close roads to all motor vehicles, so it serves this vehicle alone.
-//! `request.json` has the costing and the vehicle's dimensions, for Valhalla's own checks of limits.
+//! `extract.osm.pbf` is for `valhalla_build_tiles`. Its tags close roads to all motor vehicles, so the file is for this vehicle
+//! only. `request.json` has the costing and the vehicle's dimensions, for Valhalla's own checks of limits.
 //!
-//! What Valhalla cannot express is refused: roundabouts are open only where their arcs are permitted each by itself.
+//! What Valhalla cannot express is refused: a roundabout is open only where each of its arcs is permitted.
 
 use serde_json::{Map, Value, json};
 
@@ -37,11 +37,11 @@ impl Target for Valhalla {
     }
 }
 
-/// Names of Valhalla's truck costing, and those of a vehicle's definition.
+/// Names of dimensions in Valhalla's truck costing and in a vehicle's definition.
 const DIMENSIONS: [(&str, &str); 4] =
     [("height", "height_m"), ("length", "length_m"), ("weight", "gross_mass_t"), ("axle_load", "axle_load_t")];
 
-/// How far Valhalla may move a place onto a road, metres.
+/// The greatest distance over which Valhalla may move a place onto a road, metres.
 const SEARCH_CUTOFF_M: u32 = 10;
 
 fn request(vehicle: &Value) -> Value {
@@ -54,8 +54,8 @@ fn request(vehicle: &Value) -> Value {
     if width_m > 0.0 {
         truck.insert("width".to_owned(), width_m.into());
     }
-    // Valhalla's own values move a place to another road, kilometres away, where few roads lead on from the road asked for, and to
-    // the next crossing within 5 m.
+    // With Valhalla's defaults, a place on a road with few onward roads is moved to a road kilometres away, and a place within 5 m
+    // of a crossing is moved to the crossing.
     let place = json!({
         "lat": 0.0, "lon": 0.0,
         "minimum_reachability": 0, "radius": 0, "search_cutoff": SEARCH_CUTOFF_M, "node_snap_tolerance": 0,

@@ -1,4 +1,4 @@
-//! One edge: what the map says, what was certified for whom, and the turns that lead out of it and into it.
+//! One edge: its facts from the map, its certificates for all vehicles, and the turns that lead out of the edge and into it.
 
 use serde_json::{Map, Value, json};
 

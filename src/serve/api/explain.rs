@@ -1,5 +1,5 @@
-//! Why an edge or a turn is safe or not: certified again on the spot, every hint by a certificate of its own; and
-//! drawn.
+//! Explains why an edge or a turn is safe or unsafe, and draws it. The edge or turn is certified again for the answer, and
+//! every hint is certified, too.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ use crate::stop::Stop;
 use crate::store::{QueryOptions, TurnsOf};
 use crate::words::Named;
 
-/// Words and picture of one explanation.
+/// The members and the picture of one explanation.
 pub(in super::super) struct Explained {
     members: Value,
     picture: Option<String>,
@@ -124,15 +124,15 @@ fn of_turn(
     Ok(Explained { members, picture: picture::turn(&turn) })
 }
 
-/// As GeoJSON, in direction of travel; null where there is no line.
+/// A GeoJSON line in direction of travel. Null if there is no line.
 fn geometry(line: Option<&[LonLat]>) -> Value {
     let Some(line) = line else { return Value::Null };
     let line: Vec<(f64, f64)> = line.iter().map(|position| position.degrees()).collect();
     json!({"type": "LineString", "coordinates": line})
 }
 
-/// Longitude and latitude on the map's line as far along as the limiting place, by its share of the length: the
-/// corridor is another line, some decimetres beside.
+/// Longitude and latitude of the limiting place, on the map's line. The place is transferred by its share of the length,
+/// because the corridor's centreline is another line, some decimetres away.
 fn limiting_place(network: &Network, edge: u32, explanation: &Explanation) -> Option<[f64; 2]> {
     let geometry = explanation.geometry.as_ref()?;
     let share = geometry.along_m(geometry.place.station) / geometry.length_m().max(1e-9);

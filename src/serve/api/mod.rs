@@ -1,5 +1,7 @@
-//! The JSON interface, one file an endpoint. Metres, degrees, seconds, as the names say; ids of edges, turns and ways
-//! as text, since JavaScript's numbers hold 53 bits only.
+//! The JSON interface, with one file per endpoint.
+//!
+//! The names of members say their units: metres, degrees, seconds. Ids of edges, turns and ways are text, because
+//! JavaScript's numbers hold only 53 bits.
 
 pub(super) mod edges;
 pub(super) mod explain;
@@ -23,7 +25,7 @@ use super::problem::Problem;
 const JSON: &str = "application/json";
 const SVG: &str = "image/svg+xml";
 
-/// The description of all this (OpenAPI 3.1); a test holds it against the answers.
+/// The description of the interface (OpenAPI 3.1). A test compares it with the answers.
 pub(super) const OPENAPI: &str = include_str!("../openapi.json");
 
 /// `/api/openapi.json`
@@ -39,14 +41,14 @@ fn answered(value: &Value) -> Stored {
     Stored::new(JSON, value.to_string().into_bytes())
 }
 
-/// An edge's or turn's id.
+/// Parses the id of an edge or turn.
 fn id(text: &str) -> Result<i64, Problem> {
     let plain = !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
     let id = text.parse().ok().filter(|_| plain);
     id.ok_or_else(|| Problem::not_found(format!("{:?} is no id: ids are whole numbers", shortened(text))))
 }
 
-/// What `safe` means; never said without it.
+/// The scope of `safe`. Every answer that says `safe` carries it.
 const SCOPE: &str = "`safe` (certified) holds within the model: the vehicle as defined, steered within its tracking \
                      tolerance of the planned path, on a road as wide as mapped or else assumed; it is no permit and \
                      says nothing of bridges or traffic.";

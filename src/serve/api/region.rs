@@ -1,4 +1,4 @@
-//! What is served: where, from what, for whom, and what it means.
+//! The description of what is served: the area, the extract, the certified vehicles, and the scope of `safe`.
 
 use std::sync::Arc;
 
@@ -17,7 +17,7 @@ use crate::rows::Bounds;
 use crate::store::Database;
 use crate::words::Named;
 
-/// As the licence of the data asks: <https://www.openstreetmap.org/copyright>.
+/// The attribution that the licence of the data requires: <https://www.openstreetmap.org/copyright>.
 const ATTRIBUTION: &str = "© OpenStreetMap contributors, Open Database License";
 
 /// `/api/region`
@@ -66,7 +66,7 @@ fn members(region: &Region, focus: Option<Bounds>, options: &Options) -> Value {
     })
 }
 
-/// To 1e-7 degree, as the map has it; what comes out of the spatial index is single precision.
+/// West, south, east, north, rounded to 1e-7 degree as in OpenStreetMap. The spatial index has single precision only.
 fn sides(b: Bounds) -> [f64; 4] {
     [b.west, b.south, b.east, b.north].map(|degrees| (degrees * 1e7).round() / 1e7)
 }

@@ -1,4 +1,4 @@
-//! A certified route between places, or what blocks.
+//! Answers with a certified route between places, or with the obstacles that block it.
 
 use serde_json::json;
 
@@ -11,11 +11,11 @@ use super::{SCOPE, answered};
 use crate::route::{Measure, Question};
 use crate::words::Named;
 
-/// Places between beginning and end, at most.
+/// The greatest number of places between beginning and end.
 const MOST_VIA: usize = 8;
-/// How far a road may be from a place unless told otherwise, metres: as `netcert route`.
+/// Default of `snap`, the greatest distance from a place to a road, metres. `netcert route` has the same default.
 const SNAP_M: f64 = 100.0;
-/// Whole routes that may fail, unless told otherwise: each costs a certificate over all of it.
+/// Default of `tries`, the number of whole routes that may fail. Each try costs a certificate over the whole route.
 const TRIES: u32 = 12;
 
 /// `/api/route`

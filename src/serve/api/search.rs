@@ -1,7 +1,7 @@
-//! Where something is: an edge or way by its id, a road by its name or ref.
+//! Finds an edge or way by its id, or a road by its name or ref.
 //!
-//! Ways of one name that lie near each other are one road: the `Hauptstraße` of each village is an answer of its own.
-//! The best matches come first, then the roads of most ways; the order depends on nothing else.
+//! Ways of one name that lie near each other are one road, so the `Hauptstraße` of each village is a separate answer.
+//! Results are sorted by how well they match, then by their number of ways.
 
 use serde_json::{Value, json};
 
@@ -13,13 +13,13 @@ use super::super::region::Region;
 use super::answered;
 use crate::rows::{Bounds, RoadRow};
 
-/// Longest question, characters.
+/// The longest search text, characters.
 const LONGEST: usize = 80;
 const DEFAULT_LIMIT: u32 = 12;
 const MOST: u32 = 50;
-/// More matching ways than this are not looked at.
+/// At most this many matching ways are looked at.
 const MOST_WAYS: usize = 5000;
-/// Ways of one name closer than this belong to one road, degrees: 0.01° is 1.1 km of latitude.
+/// Ways of one name that are closer than this belong to one road, degrees. 0.01° is 1.1 km of latitude.
 const NEAR_DEG: f64 = 0.01;
 
 /// `/api/search?q=`
@@ -61,7 +61,7 @@ fn named(region: &Region, asked: &str) -> Result<Vec<Value>, Problem> {
     let roads = region.names()?;
     let mut found: Vec<(u8, &NamedRoad)> =
         roads.iter().filter_map(|road| Some((road.rank(asked)?, road))).take(MOST_WAYS).collect();
-    // Stable: ways of one name and ref stay in order of the network.
+    // The sort is stable, so ways of one name and ref stay in order of the network.
     found.sort_by(|a, b| (a.0, &a.1.row.name, &a.1.row.reference).cmp(&(b.0, &b.1.row.name, &b.1.row.reference)));
     let same = |a: &(u8, &NamedRoad), b: &(u8, &NamedRoad)| {
         a.0 == b.0 && a.1.row.name == b.1.row.name && a.1.row.reference == b.1.row.reference
@@ -76,7 +76,7 @@ fn named(region: &Region, asked: &str) -> Result<Vec<Value>, Problem> {
     Ok(results.into_iter().map(|(_, _, value)| value).collect())
 }
 
-/// Rows that are near each other, directly or through others.
+/// Groups of rows that are near each other, directly or through other rows of the group.
 fn clusters<'r>(rows: &[&'r RoadRow]) -> Vec<Vec<&'r RoadRow>> {
     let mut left: Vec<&RoadRow> = rows.to_vec();
     let mut clusters = Vec::new();
@@ -106,7 +106,7 @@ fn are_near(a: &Bounds, b: &Bounds) -> bool {
 fn result(kind: &str, rows: &[&RoadRow]) -> Value {
     let Some(first) = rows.first() else { return Value::Null };
     let bounds = rows.iter().fold(first.bounds, |bounds, row| bounds.union(row.bounds));
-    // On one of its ways, the middle one.
+    // The point for a label: the middle of the box of the middle way.
     let b = rows.get(rows.len() / 2).map_or(first.bounds, |row| row.bounds);
     let middle = (f64::midpoint(b.west, b.east), f64::midpoint(b.south, b.north));
     let members = json!({

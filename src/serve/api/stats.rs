@@ -1,4 +1,4 @@
-//! A region's numbers: kilometres by class and verdict for each vehicle, what limits, and how much there is to spare.
+//! The statistics of a region: kilometres by class and verdict for each vehicle, and a histogram of the RSC.
 
 use serde_json::{Value, json};
 
@@ -75,7 +75,7 @@ fn bin(bin: &RscBin) -> Value {
     })
 }
 
-/// To a metre.
+/// Kilometres, rounded to a metre.
 fn km(length_m: f64) -> f64 {
     length_m.round() / 1000.0
 }

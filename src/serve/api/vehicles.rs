@@ -1,4 +1,4 @@
-//! The vehicles of the database, with their dimensions, and drawn to scale.
+//! The vehicles of the database with their dimensions, and their drawings to scale.
 
 use serde_json::{Value, json};
 
@@ -49,8 +49,8 @@ fn members(region: &Region, vehicle: &Vehicle) -> Value {
     })
 }
 
-/// Lengths along the unit count from its axle, so that a body can be drawn at a pose: it reaches `coupling_to_axle_m` +
-/// `front_overhang_m` ahead of the axle and `rear_overhang_m` behind.
+/// The members of one unit. Its body reaches `coupling_to_axle_m` + `front_overhang_m` ahead of its axle and
+/// `rear_overhang_m` behind it, so a client can draw the body at a pose of the axle.
 fn unit(vehicle: &Vehicle, index: usize, unit: &Unit) -> Value {
     json!({
         "name": unit.name,
@@ -66,7 +66,7 @@ fn unit(vehicle: &Vehicle, index: usize, unit: &Unit) -> Value {
     })
 }
 
-/// To a millionth of a degree: radians do not come back to the digits that were typed.
+/// Degrees, rounded to a millionth, because a conversion to radians and back changes the last digits that were typed.
 fn degrees(rad: f64) -> f64 {
     (rad.to_degrees() * 1e6).round() / 1e6
 }

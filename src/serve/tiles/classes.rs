@@ -1,11 +1,11 @@
-//! Which roads a zoom shows: all of them once they are few enough, the greater ones before.
+//! The classes of road that each zoom shows: the main classes at low zooms, all classes from zoom 13 on.
 
 use crate::osm::facts::RoadClass;
 
-/// Turns are drawn from this zoom on: before it they lie on top of each other.
+/// Turns are drawn from this zoom on. At lower zooms they would overlap.
 pub(super) const FIRST_WITH_TURNS: u8 = 15;
 
-/// All classes, the greater first.
+/// All classes, from the most important to the least.
 pub(super) const BY_RANK: &[RoadClass] = {
     use RoadClass::{
         Busway, LivingStreet, Motorway, Primary, Residential, Secondary, Service, Tertiary, Track, Trunk, Unclassified,
@@ -13,7 +13,7 @@ pub(super) const BY_RANK: &[RoadClass] = {
     &[Motorway, Trunk, Primary, Secondary, Tertiary, Unclassified, Residential, LivingStreet, Busway, Service, Track]
 };
 
-/// The classes at a zoom, each with its links. As on general maps: a class appears when its roads are some pixels
+/// The classes that a zoom shows, each with its links. As on general maps, a class appears when its roads are some pixels
 /// apart.
 pub(super) fn classes(z: u8) -> &'static [RoadClass] {
     let shown = match z {

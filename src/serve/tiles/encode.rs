@@ -1,7 +1,7 @@
-//! Layers and features as protobuf, by hand: <https://github.com/mapbox/vector-tile-spec/tree/master/2.1>, whose field
-//! numbers stand here beside what is written.
+//! Encodes layers and features as protobuf by <https://github.com/mapbox/vector-tile-spec/tree/master/2.1>. Comments name
+//! the specification's fields.
 //!
-//! Promises the same bytes for the same features in the same order. Keys and values are written once a layer.
+//! The same features in the same order give the same bytes. Each key and each value is written once per layer.
 
 use rustc_hash::FxHashMap;
 
@@ -14,13 +14,13 @@ pub(super) enum Value<'v> {
     Truth(bool),
 }
 
-/// A layer as it grows.
+/// A layer under construction.
 pub(super) struct Layer {
     name: &'static str,
-    /// Units a side of the tile.
+    /// Units per side of the tile.
     extent: u16,
     keys: Vec<&'static str>,
-    /// Encoded values, in the order in which they came up.
+    /// Encoded values, in the order of their first use.
     values: Vec<u8>,
     places: FxHashMap<Vec<u8>, u32>,
     features: Vec<u8>,
@@ -40,21 +40,21 @@ impl Tags<'_> {
         varint(&mut self.pairs, value.into());
     }
 
-    /// Nothing where there is no text.
+    /// Adds a text, if there is one.
     pub(super) fn text(&mut self, key: &'static str, value: Option<&str>) {
         if let Some(text) = value {
             self.add(key, Value::Text(text));
         }
     }
 
-    /// Nothing where it need not be said.
+    /// Adds a truth value, if there is one.
     pub(super) fn truth(&mut self, key: &'static str, value: Option<bool>) {
         if let Some(truth) = value {
             self.add(key, Value::Truth(truth));
         }
     }
 
-    /// Nothing where there is no number.
+    /// Adds a number, if there is one.
     pub(super) fn number(&mut self, key: &'static str, value: Option<f64>) {
         if let Some(number) = value {
             self.add(key, Value::Number(number));
@@ -67,7 +67,7 @@ impl Layer {
         Self { name, extent, keys: Vec::new(), values: Vec::new(), places: FxHashMap::default(), features: Vec::new() }
     }
 
-    /// Adds a feature of lines, unless there is nothing of it in the tile.
+    /// Adds a feature of lines. Adds nothing if `lines` is empty.
     pub(super) fn feature(&mut self, id: Option<u64>, lines: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut Tags<'_>)) {
         if lines.is_empty() {
             return;
@@ -87,7 +87,7 @@ impl Layer {
         bytes(&mut self.features, 2, &feature);
     }
 
-    /// Appends the layer to a tile; an empty one is left out, as the specification asks.
+    /// Appends the layer to a tile. An empty layer is left out, as the specification requires.
     pub(super) fn finish(self, tile: &mut Vec<u8>) {
         if self.features.is_empty() {
             return;
@@ -167,7 +167,8 @@ fn zigzag(value: i64) -> u64 {
     (value << 1 ^ value >> 63) as u64
 }
 
-/// Commands: `MoveTo` 1 once, then `LineTo` 2 for the rest, of each line; parameters are differences (section 4.3).
+/// The commands of the lines: for each line one `MoveTo` (1), then one `LineTo` (2) for the other points. Parameters are
+/// differences between points (section 4.3).
 fn geometry(lines: &[Vec<[i32; 2]>]) -> Vec<u8> {
     let mut out = Vec::new();
     let mut cursor = [0_i32; 2];
@@ -193,7 +194,7 @@ mod tests {
     use super::*;
     use fast_mvt::{MvtReaderRef, MvtValueRef};
 
-    /// The example of the specification, section 4.3.5.3: (2,2) (2,10) (10,10), then (1,1) (3,5).
+    /// The example in section 4.3.5.3 of the specification: (2,2) (2,10) (10,10), then (1,1) (3,5).
     #[test]
     fn geometry_is_the_specifications_example() {
         let lines = [vec![[2, 2], [2, 10], [10, 10]], vec![[1, 1], [3, 5]]];

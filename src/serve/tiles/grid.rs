@@ -1,4 +1,4 @@
-//! Which part of the earth a tile is: `z/x/y` of the web Mercator grid, y southward (XYZ), 4096 units a side.
+//! The web Mercator grid of tiles `z/x/y`, with y southward (XYZ) and 4096 units per side of a tile.
 
 use std::f64::consts::PI;
 
@@ -7,11 +7,12 @@ use super::super::problem::Problem;
 use crate::osm::LonLat;
 use crate::rows::Bounds;
 
-/// The deepest zoom: a unit is 15 cm at the equator. Beyond it clients enlarge.
+/// The deepest zoom, where a unit is 15 cm at the equator. Clients enlarge these tiles for deeper zooms.
 pub(in super::super) const MOST_ZOOM: u8 = 16;
-/// Units a side, as most clients expect.
+/// Units per side of a tile, as most clients expect.
 pub(super) const EXTENT: f64 = 4096.0;
-/// Units around the tile that belong to it as well, so that wide lines end outside: 8 pixels of a 512-pixel tile.
+/// Units around a tile that the tile contains, too, so that wide lines end outside of it. 64 units are 8 pixels of a tile
+/// of 512 pixels.
 pub(super) const BUFFER: f64 = 64.0;
 
 /// A tile's address.
@@ -23,10 +24,10 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// From the path; the last part ends in `.mvt`.
+    /// Parses the address from the parts of the path. The last part ends in `.mvt`.
     pub(super) fn read(z: &str, x: &str, y: &str) -> Result<Self, Problem> {
         let y = y.strip_suffix(".mvt").ok_or_else(|| Problem::not_found("a tile's address ends in .mvt"))?;
-        // No sign, no leading zero, no space: every tile has one address.
+        // No sign, leading zero or space is allowed, so that every tile has one address.
         let number = |name: &str, text: &str| -> Result<u32, Problem> {
             let plain = text.bytes().all(|b| b.is_ascii_digit()) && (text == "0" || !text.starts_with('0'));
             let value = text.parse().ok().filter(|_| plain);
@@ -46,24 +47,24 @@ impl Place {
         f64::from(1_u32 << self.z)
     }
 
-    /// In tile units, x east, y south; not rounded.
+    /// The position in tile units, x east, y south; not rounded.
     pub(super) fn units(self, position: LonLat) -> [f64; 2] {
         self.units_of(world(position))
     }
 
-    /// In tile units, x east, y south; not rounded.
+    /// The point in tile units, x east, y south; not rounded.
     pub(super) fn units_of(self, [x, y]: World) -> [f64; 2] {
         [(x * self.side() - f64::from(self.x)) * EXTENT, (y * self.side() - f64::from(self.y)) * EXTENT]
     }
 
-    /// Its north-western and its south-eastern corner, each moved out by so many units.
+    /// The tile's north-western and south-eastern corners, each moved outwards by `beyond` units.
     pub(super) fn world(self, beyond: f64) -> [World; 2] {
         let corner = |x: f64, y: f64| [x / self.side(), y / self.side()];
         let (x, y, beyond) = (f64::from(self.x), f64::from(self.y), beyond / EXTENT);
         [corner(x - beyond, y - beyond), corner(x + 1.0 + beyond, y + 1.0 + beyond)]
     }
 
-    /// The tile and its buffer. Beyond the 180th meridian there is nothing to look for: no edge crosses it.
+    /// The box of the tile and its buffer, degrees. The box ends at the 180th meridian, because no edge crosses it.
     pub(super) fn bounds(self) -> Bounds {
         let lon = |x: f64| (x * 360.0 - 180.0).clamp(-180.0, 180.0);
         let lat = |y: f64| (PI * (1.0 - 2.0 * y)).sinh().atan().to_degrees();
@@ -72,10 +73,10 @@ impl Place {
     }
 }
 
-/// A place on the web Mercator square: x east, y south, 0 to 1.
+/// A point on the web Mercator square: x east, y south, each from 0 to 1.
 pub(super) type World = [f64; 2];
 
-/// Where a position is on it.
+/// The point of a position on the web Mercator square.
 pub(super) fn world(position: LonLat) -> World {
     let (lon, lat) = position.degrees();
     [(lon + 180.0) / 360.0, 0.5 - lat.to_radians().tan().asinh() / (2.0 * PI)]
@@ -94,7 +95,7 @@ mod tests {
         let close = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs() < 0.1 && (a[1] - b[1]).abs() < 0.1;
         assert!(close(at(west, north), [-BUFFER, -BUFFER]));
         assert!(close(at(east, south), [EXTENT + BUFFER, EXTENT + BUFFER]));
-        // Heidelberg's old bridge, by the formulas of the OpenStreetMap wiki, "Slippy map tilenames".
+        // The tile of Heidelberg's old bridge by the formulas of the OpenStreetMap wiki, "Slippy map tilenames".
         assert!(west < 8.7096 && 8.7096 < east && south < 49.4144 && 49.4144 < north, "{:?}", place.bounds());
     }
 

@@ -1,8 +1,8 @@
-//! Names along roads: edges of one name, joined into lines on which a name has room. Between two junctions there is
-//! seldom any.
+//! Joins edges of one name into lines that are long enough for a label. A single edge between two junctions is usually
+//! too short.
 //!
-//! Promises lines without direction, each road once, in an order that depends on the rows alone. Leaves out what no label
-//! would follow: sharp bends and branches end a line.
+//! The two directions of a road give one line. The order of the lines depends on the rows alone. A line ends at a sharp
+//! bend, because no label follows one.
 
 use std::collections::BTreeMap;
 
@@ -11,12 +11,12 @@ use crate::rows::MapEdge;
 
 /// Names are shown from this zoom on.
 pub(super) const FIRST_WITH_LABELS: u8 = 11;
-/// The cosine of the sharpest bend between two edges of a line, 60°: MapLibre bends text by 45° at most.
+/// The cosine of 60°, the sharpest bend between two edges of a line. MapLibre bends text by 45° at most.
 const LEAST_COSINE: f64 = 0.5;
 
-/// A road's name and where it runs.
+/// A line with the road whose name it shows.
 pub(super) struct Label<'r> {
-    /// The first edge of it, for its name.
+    /// The first edge of the line, which has the name.
     pub(super) road: &'r MapEdge,
     pub(super) line: Vec<LonLat>,
 }
@@ -24,7 +24,7 @@ pub(super) struct Label<'r> {
 type Name<'r> = (&'r str, Option<&'r str>, Option<&'r str>);
 type Ends = BTreeMap<(i32, i32), Vec<usize>>;
 
-/// Joins rows of one class, name and ref.
+/// The labels of the rows at zoom `z`. Rows of one class, name and ref are joined.
 pub(super) fn labels(rows: &[MapEdge], z: u8) -> Vec<Label<'_>> {
     let mut roads: BTreeMap<Name<'_>, Vec<&MapEdge>> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.line.len() > 1 && is_named(row, z)) {
@@ -33,7 +33,7 @@ pub(super) fn labels(rows: &[MapEdge], z: u8) -> Vec<Label<'_>> {
     roads.into_values().flat_map(|mut edges| joined(&mut edges)).collect()
 }
 
-/// As names come up on general maps: main roads first.
+/// Whether the row's name is shown at zoom `z`. As on general maps, names of main roads appear first.
 fn is_named(row: &MapEdge, z: u8) -> bool {
     let first = match row.highway.trim_end_matches("_link") {
         "motorway" | "trunk" | "primary" => FIRST_WITH_LABELS,
@@ -45,7 +45,7 @@ fn is_named(row: &MapEdge, z: u8) -> bool {
 }
 
 fn joined<'r>(edges: &mut Vec<&'r MapEdge>) -> Vec<Label<'r>> {
-    // The other direction of a road is the same line.
+    // The two directions of a road are the same line, so one of them is dropped.
     let mut seen = std::collections::BTreeSet::new();
     edges.retain(|edge| {
         let (a, b) = (key(edge.line.first()), key(edge.line.last()));
@@ -75,7 +75,7 @@ fn joined<'r>(edges: &mut Vec<&'r MapEdge>) -> Vec<Label<'r>> {
     labels
 }
 
-/// The unused edge that goes on most nearly straight from the line's end, in that direction.
+/// The unused edge that continues the line most nearly straight, with its positions in the line's direction.
 fn onward(line: &[LonLat], edges: &[&MapEdge], ends: &Ends, used: &[bool]) -> Option<(usize, Vec<LonLat>)> {
     let [.., before, end] = line else { return None };
     let mut best: Option<(f64, usize, Vec<LonLat>)> = None;
@@ -97,7 +97,7 @@ fn key(position: Option<&LonLat>) -> (i32, i32) {
     position.map_or((0, 0), |p| (p.lon_e7, p.lat_e7))
 }
 
-/// East and north, of equal scale.
+/// The vector between two positions, east and north, in the same scale.
 fn direction(from: &LonLat, to: &LonLat) -> [f64; 2] {
     let ((lon, lat), (lon_to, lat_to)) = (from.degrees(), to.degrees());
     [(lon_to - lon) * lat.to_radians().cos(), lat_to - lat]

@@ -1,17 +1,17 @@
 //! Vector tiles (Mapbox Vector Tile 2.1) of a vehicle's certificates, made from the database on request.
 //!
-//! Promises, from zoom 11 on, that every edge of the zoom's classes is in every tile that its line crosses, with the
-//! numbers as the database keeps them, but for what would be smaller than a sixteenth of a pixel; before, that nothing is
-//! drawn as certified that is not (`overview`); that the same state gives the same bytes.
+//! From zoom 11 on, a tile holds every edge of the zoom's classes whose line crosses the tile, with the database's numbers.
+//! Only lines of less than a sixteenth of a pixel are left out. At lower zooms, nothing is drawn as certified that is not
+//! certified (`overview`). The same state of the database gives the same bytes.
 //!
 //! | file | for |
 //! | --- | --- |
-//! | `place` | which part of the earth a tile is; degrees → tile units |
-//! | `classes` | which roads a zoom shows |
+//! | `grid` | the grid of tiles; conversion of degrees into tile units |
+//! | `classes` | the classes of road that a zoom shows |
 //! | `shape` | clipping, simplifying, rounding |
-//! | `overview` | main roads from afar: many edges as one line |
-//! | `raster` | what falls on one place says the worst; lines joined |
-//! | `labels` | names along roads |
+//! | `overview` | main roads at low zooms: many edges as one line |
+//! | `raster` | joins lines on a raster; each piece shows the worst verdict that falls on it |
+//! | `labels` | lines for the names of roads |
 //! | `encode` | layers and features as protobuf |
 
 mod classes;
@@ -41,10 +41,11 @@ use grid::{EXTENT, Place};
 use labels::{FIRST_WITH_LABELS, Label, labels};
 pub(super) use overview::Overview;
 
-/// Registered with IANA: <https://www.iana.org/assignments/media-types/application/vnd.mapbox-vector-tile>
+/// The media type: <https://www.iana.org/assignments/media-types/application/vnd.mapbox-vector-tile>
 const KIND: &str = "application/vnd.mapbox-vector-tile";
 
-/// Before this zoom a tile holds thousands of edges, and what is neither drawn nor sorted out by stays behind.
+/// From this zoom on, edges have all their tags. At lower zooms a tile holds thousands of edges, so tags that the map does
+/// not use are left out.
 const FIRST_IN_FULL: u8 = 12;
 
 /// `/tiles/{policy}/{vehicle}/{z}/{x}/{y}.mvt`
@@ -93,7 +94,7 @@ fn bytes(region: &Region, set: (&str, Policy), place: Place) -> Result<Vec<u8>, 
     Ok(bytes)
 }
 
-/// Makes what tiles from afar are made of, of as many vehicles as are kept.
+/// Makes the overviews in advance, for the first [`MOST_OVERVIEWS`] sets of certificates.
 pub(super) fn prepare(region: &Region, stop: &Stop) -> Result<(), Problem> {
     for set in region.sets.iter().take(MOST_OVERVIEWS) {
         stop.check()?;
@@ -102,7 +103,7 @@ pub(super) fn prepare(region: &Region, stop: &Stop) -> Result<(), Problem> {
     Ok(())
 }
 
-/// What tiles from afar are made of; whoever comes first reads it.
+/// The overview of a set, from which tiles of low zooms are made. The first call makes it.
 fn overview_of(region: &Region, set: (&str, Policy)) -> Result<Arc<Overview>, Problem> {
     let key = format!("{} {}", set.0, set.1.name());
     region.overviews.get(&key, || {
@@ -154,12 +155,12 @@ fn turn(layer: &mut Layer, row: &MapTurn, place: Place) {
     });
 }
 
-/// As the view `certificate` has it: whole millimetres, rounded down when they were written.
+/// Metres, as in the view `certificate`. The stored millimetres were rounded down when they were written.
 fn metres(mm: i64) -> f64 {
     mm as f64 / 1000.0
 }
 
-/// Rounded down: a width never looks wider than it is.
+/// Metres, rounded down to a centimetre, so that a width never looks greater than it is.
 fn centimetre(m: f64) -> f64 {
     (m * 100.0).floor() / 100.0
 }

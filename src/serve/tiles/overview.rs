@@ -1,9 +1,9 @@
-//! Main roads from afar, up to zoom 10: in memory, without names and ids, and in each tile one line for all that falls
-//! on it.
+//! The main roads at zooms up to 10. They are held in memory without names and ids, and all roads that coincide in a tile
+//! become one line.
 //!
-//! Promises that a road is never drawn as certified where some direction or piece of it is not: of all that falls on one
-//! half pixel the worst verdict counts, margins are rounded down, and what is not certified is drawn a pixel long at
-//! least. Leaves out the classes that `classes` leaves out, ramps before zoom 10, and certified bits of less than half a
+//! A road is never drawn as certified where one of its directions or pieces is not. The worst verdict counts of all that
+//! falls on one half pixel, margins are rounded down, and a piece that is not certified is drawn at least a pixel long.
+//! Left out are the classes that `classes` leaves out, ramps below zoom 10, and certified pieces of less than half a
 //! pixel.
 
 use super::classes::{BY_RANK, classes};
@@ -16,27 +16,29 @@ use crate::rows::MainRoad;
 use crate::verdict::Verdict;
 use crate::words::{Named, verdict_words};
 
-/// Tiles of greater zooms show each edge.
+/// The last zoom of the overview. Tiles of deeper zooms show each edge.
 pub(super) const LAST_ZOOM: u8 = 10;
-/// Units a side, half a pixel where a tile is 512 pixels wide: nothing finer is seen, and small numbers are short.
+/// Units per side of a tile. A unit is half a pixel of a tile of 512 pixels; nobody sees finer detail, and small numbers
+/// are encoded in fewer bytes.
 const EXTENT: f64 = 1024.0;
-/// Units of other layers in one of these.
+/// Units of the other layers in one unit of the overview.
 const COARSER: f64 = grid::EXTENT / EXTENT;
 /// Ramps are shown from this zoom on.
 const FIRST_WITH_RAMPS: u8 = 10;
 
-/// Margins are told in steps of so many millimetres, rounded down; all bounds between two colours are among them.
+/// Size of a step of the margin (the RSC), millimetres. Margins are rounded down to steps; every bound between two colours of
+/// the map is a whole number of steps.
 const STEP_MM: i64 = 250;
-/// From here up the margin makes no difference, in steps;
+/// The greatest margin, in steps. Greater margins are shown as this one.
 const MOST_STEPS: i64 = 4;
-/// from here down neither.
+/// The least margin, in steps. Smaller margins are shown as this one.
 const LEAST_STEPS: i64 = -5;
 
 /// The main roads of a region under a vehicle's certificates.
 pub(in super::super) struct Overview {
-    /// The greater classes first.
+    /// Sorted by class, the most important first.
     roads: Vec<Road>,
-    /// By number.
+    /// The verdicts with their reasons. `Said::verdict` is an index into them.
     verdicts: Vec<Verdict>,
 }
 
@@ -48,8 +50,8 @@ struct Road {
 }
 
 impl Overview {
-    /// The roads that a tile may need, simplified as its finest zoom allows; both directions of a road as one, in order
-    /// of their rows.
+    /// The roads of the overview, simplified for [`LAST_ZOOM`]. The two directions of a road get lines of the same order of
+    /// points, so that they coincide.
     pub(in super::super) fn new(rows: &[MainRoad]) -> Self {
         let mut verdicts: Vec<Verdict> = rows.iter().map(|row| row.verdict).collect();
         verdicts.sort_unstable_by_key(|&verdict| (severity(verdict), verdict_words(verdict)));
@@ -63,7 +65,7 @@ impl Overview {
                 line.iter().fold(first, |bound, p| [pick(bound[0], p[0]), pick(bound[1], p[1])])
             };
             let bounds = [side(f64::min), side(f64::max)];
-            // A direction and its reverse are to be one line.
+            // Reversed if needed, so that both directions of a road have the same line.
             let turned = first.partial_cmp(&last).is_some_and(std::cmp::Ordering::is_gt);
             let line = if turned { line.into_iter().rev().collect() } else { line };
             Some(Road { said, bounds, line })
@@ -121,7 +123,7 @@ fn simplified(row: &MainRoad) -> Vec<grid::World> {
     shape::simplified(&line, 1.0 / (512.0 * 4.0 * f64::from(1_u32 << LAST_ZOOM)))
 }
 
-/// What stands out more, where two are worse than certified: what is known to bar over what is not known.
+/// How strongly a verdict shows over others: a known obstacle over an unknown one, anything over safe.
 fn severity(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::Safe => 0,
@@ -145,7 +147,7 @@ fn said(row: &MainRoad, rank: usize, verdict: usize) -> Said {
     }
 }
 
-/// No margin.
+/// The value of `Said::short` that means there is no margin.
 const UNTOLD: u8 = u8::MAX;
 
 fn steps(short: u8) -> Option<i64> {
@@ -156,7 +158,7 @@ fn source(doubt: u8) -> Option<WidthSource> {
     WidthSource::ALL.iter().rev().nth(usize::from(doubt)).copied()
 }
 
-/// Rank, and whether it is a ramp.
+/// The rank of the class, and whether the road is a ramp.
 fn class_of(said: Said) -> (usize, bool) {
     (usize::from(said.class / 2), said.class % 2 == 1)
 }

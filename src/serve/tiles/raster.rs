@@ -1,55 +1,55 @@
-//! Lines on a raster of half pixels: what falls on the same piece of it is one piece, which says the worst that is said
-//! of any; pieces that say the same are joined into long lines.
+//! Merges lines on a raster of half pixels. Lines that fall on the same piece of the raster become one piece with the worst
+//! of their attributes. Pieces with the same attributes are joined into long lines.
 //!
-//! Promises that wherever a line that is not certified was put in, there is one that is not certified, to a raster step
-//! and the tolerance of joining, however short it was; and the same lines for the same input in any order. Leaves out
-//! certified lines shorter than a step.
+//! Every line that is not certified, however short, leaves a line that is not certified within a raster step and the
+//! tolerance of joining. The same input in any order gives the same lines. Certified lines shorter than a step are left
+//! out.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::shape::simplified;
 
-/// A crossing of the raster.
+/// A point of the raster.
 pub(super) type Cell = [i32; 2];
 
-/// How far a joined line may be from its pieces, steps: a quarter of a pixel.
+/// The greatest distance of a joined line from its pieces, steps. Half a step is a quarter of a pixel.
 const TOLERANCE: f64 = 0.5;
-/// What is shorter than a step is drawn so long, steps: one pixel.
+/// The drawn length of a piece that is shorter than a step, steps. Two steps are one pixel.
 const LEAST_LENGTH: i32 = 2;
 
-/// What a line says. Derived order: the later the worse, within a class.
+/// The attributes of a line. Within a class, the derived order runs from good to bad.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Said {
-    /// Classes stay apart: each can be hidden.
+    /// The class of road. Lines of different classes are never merged, because the page can hide each class.
     pub(super) class: u8,
-    /// 0 is certified, everything else is not.
+    /// 0 means certified, any other value means not certified.
     pub(super) severity: u8,
-    /// Steps of margin below the most that is told.
+    /// Steps of margin below the greatest margin.
     pub(super) short: u8,
-    /// Number of the verdict with its reason.
+    /// Index of the verdict with its reason.
     pub(super) verdict: u8,
-    /// Steps of evidence for the width below the best.
+    /// How many ranks the source of the width is below the best source.
     pub(super) doubt: u8,
 }
 
 impl Said {
-    /// Both of one class: the worse verdict with its margin, on the lesser evidence of the two.
+    /// Merges the attributes of two lines of one class: the worse verdict with its margin, and the weaker source of width.
     fn with(self, other: Self) -> Self {
         Self { doubt: self.doubt.max(other.doubt), ..self.max(other) }
     }
 }
 
-/// A piece between two crossings, the lesser first; between a crossing and itself: less than a step of something.
+/// A piece between two points of the raster, the lesser first. Two equal points stand for a line shorter than a step.
 type Piece = (Cell, Cell);
 
-/// Lines as they come.
+/// The pieces of all added lines.
 #[derive(Default)]
 pub(super) struct Raster {
     pieces: Vec<(u8, Piece, Said)>,
 }
 
 impl Raster {
-    /// Adds a line by its crossings.
+    /// Adds a line, given by its points on the raster.
     pub(super) fn add(&mut self, line: impl Iterator<Item = Cell>, said: Said) {
         let mut last: Option<(Cell, bool)> = None;
         for cell in line {
@@ -67,7 +67,7 @@ impl Raster {
         }
     }
 
-    /// Of each kind its lines, the worse the later.
+    /// The merged lines by their attributes, from good to bad.
     pub(super) fn lines(mut self) -> BTreeMap<Said, Vec<Vec<Cell>>> {
         self.pieces.sort_unstable();
         let same = |a: &(u8, Piece, Said), b: &(u8, Piece, Said)| (a.0, a.1) == (b.0, b.1);
@@ -92,7 +92,7 @@ impl Raster {
     }
 }
 
-/// Pieces one after the other, straight on where there is a choice, without crossings that nobody would miss.
+/// Joins pieces end to end into simplified lines. Where several pieces continue a line, the straightest one is taken.
 fn joined(pieces: &[Piece]) -> Vec<Vec<Cell>> {
     let mut at: BTreeMap<Cell, Vec<usize>> = BTreeMap::new();
     for (i, &(a, b)) in pieces.iter().enumerate() {
@@ -118,7 +118,7 @@ fn joined(pieces: &[Piece]) -> Vec<Vec<Cell>> {
     lines
 }
 
-/// The other end of the unused piece that goes on most nearly straight.
+/// The far end of the unused piece that continues the line most nearly straight. Marks the piece as used.
 fn onward(line: &[Cell], pieces: &[Piece], at: &BTreeMap<Cell, Vec<usize>>, used: &mut [bool]) -> Option<Cell> {
     let [.., before, end] = line else { return None };
     let other = |&i: &usize| if pieces[i].0 == *end { pieces[i].1 } else { pieces[i].0 };

@@ -1,16 +1,17 @@
-//! A line in tile units, made fit to be drawn: clipped to the tile and its buffer, without vertices that nobody would
-//! see, rounded to whole units.
+//! Prepares a line in tile units for drawing: clips it to the tile and its buffer, drops vertices that nobody would see, and
+//! rounds to whole units.
 
 use super::grid::{BUFFER, EXTENT};
 
 type Point = [f64; 2];
 
-/// How far the drawn line may be from the true one, units: a quarter of a pixel, where a tile is 512 pixels wide. At
-/// the deepest zoom, which is enlarged, half a unit, which is what rounding takes anyway.
+/// The greatest distance of the drawn line from the true line, units. Two units are a quarter of a pixel of a tile of 512
+/// pixels.
 const TOLERANCE: f64 = 2.0;
+/// The tolerance at the deepest zoom, which clients enlarge. Rounding alone moves points by as much.
 const FINE_TOLERANCE: f64 = 0.5;
 
-/// The parts of a line within the tile; each has two different points at least.
+/// The drawn parts of a line within the tile and its buffer. Each part has at least two different points.
 pub(super) fn drawn(line: &[Point], fine: bool) -> Vec<Vec<[i32; 2]>> {
     let tolerance = if fine { FINE_TOLERANCE } else { TOLERANCE };
     clipped(line).into_iter().map(|part| rounded(&simplified(&part, tolerance))).filter(|part| part.len() > 1).collect()
@@ -40,7 +41,8 @@ fn between(a: Point, b: Point, share: f64) -> Point {
     if share == 1.0 { b } else { [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])] }
 }
 
-/// From which share of a segment to which it is within tile and buffer (Liang and Barsky, 1984).
+/// The shares of a segment's length at which it enters and leaves the tile and its buffer (Liang and Barsky, 1984). `None` if
+/// the segment is outside.
 fn inside(a: Point, b: Point) -> Option<(f64, f64)> {
     let (low, high) = (-BUFFER, EXTENT + BUFFER);
     let (mut from, mut to) = (0.0_f64, 1.0_f64);
@@ -60,7 +62,7 @@ fn inside(a: Point, b: Point) -> Option<(f64, f64)> {
     (from <= to).then_some((from, to))
 }
 
-/// Douglas and Peucker's way, with the distance to the segment; the ends stay.
+/// Simplifies a line by the algorithm of Douglas and Peucker, with the distance to the segment. The ends stay.
 pub(super) fn simplified(line: &[Point], tolerance: f64) -> Vec<Point> {
     let Some(last) = line.len().checked_sub(1) else { return Vec::new() };
     let mut keep = vec![false; line.len()];
@@ -88,7 +90,7 @@ fn distance(p: Point, a: Point, b: Point) -> f64 {
 }
 
 fn rounded(line: &[Point]) -> Vec<[i32; 2]> {
-    // Clipped: within 16 bits.
+    // The line is clipped, so its coordinates fit into 16 bits.
     let mut points: Vec<[i32; 2]> = line.iter().map(|p| p.map(|c| c.round() as i32)).collect();
     points.dedup();
     points

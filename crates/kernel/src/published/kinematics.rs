@@ -3,18 +3,11 @@
 //! Eq. 5b lets ι_i depend on δ_i. Eq. 15 to 18, which define ι_i, stand at δ = 0, so there is no such dependence.
 
 use super::ellipse::Shape;
-use super::plane::{V2, along, dot, minus, perp, unit_or};
+use super::plane::{V2, along, dot, link_direction, minus, perp, unit_or};
 use super::reach::sway_shape;
 use super::reading::{As, Reading, Sway};
 use super::sum::{kurzhanski_varaiya, optimal_beta};
 use super::system::System;
-
-/// Eq. 7: û_i(t, δ) = cos δ ê + sin δ ê^⊥, along the link from the follower to its leader.
-#[must_use]
-pub fn link_direction(e: V2, sway_rad: f64) -> V2 {
-    let (sin, cos) = sway_rad.sin_cos();
-    along([cos * e[0], cos * e[1]], sin, perp(e))
-}
 
 /// κ_i, Eq. 5a and 6: q_{i+1} = q_i − L û_i(t, δ_i), metres.
 #[must_use]

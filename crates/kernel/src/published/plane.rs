@@ -26,3 +26,10 @@ pub(super) fn unit_or(a: V2, otherwise: V2) -> V2 {
     let length = a[0].hypot(a[1]);
     if length > 0.0 { [a[0] / length, a[1] / length] } else { otherwise }
 }
+
+/// Eq. 7: û_i(t, δ) = cos δ ê + sin δ ê^⊥, along the link from the follower to its leader.
+#[must_use]
+pub fn link_direction(e: V2, sway_rad: f64) -> V2 {
+    let (sin, cos) = sway_rad.sin_cos();
+    along([cos * e[0], cos * e[1]], sin, perp(e))
+}

@@ -1,8 +1,7 @@
 //! Eq. 10 to 15: the follower's reachable set, and the ellipse meant to hold its sway.
 
 use super::ellipse::{Shape, Stet};
-use super::kinematics::link_direction;
-use super::plane::{V2, along, dot, perp};
+use super::plane::{V2, along, dot, link_direction, perp};
 use super::reading::{As, Reading};
 use super::system::System;
 

@@ -5,12 +5,12 @@
 //! costs about twenty times the filter, so the caller says where it is worth its time. It handles one vehicle at a
 //! time, with body points in lanes.
 
-use super::group::{Group, UnitLanes};
-use super::lanes::{LANES, V, by_instruction_set};
+use super::block::{BLOCK, FIELDS, NOT_CLOSED_RAD, row};
+use super::group::Group;
+use super::lanes::{LANES, V, ZERO, by_instruction_set};
 use super::model::{MAX_UNITS, Model, UnitModel};
-use super::sweep::{
-    BLOCK, FIELDS, Filter, MOST, Motion, NOT_CLOSED_RAD, Step, Straying, ZERO, foot_shift, heading, hinge_margin,
-    hitch_remainder, remainder, row, validity,
+use super::step::{
+    Filter, MOST, Step, Straying, UnitLanes, foot_shift, heading, hinge_margin, hitch_remainder, remainder, validity,
 };
 
 /// The adjoint is used from the unit on at which Σ tan² δ_j/2 over the units up to it exceeds this. Bends alone decide,
@@ -139,7 +139,7 @@ by_instruction_set! {
         group: &Group<'_>,
         lane: usize,
         first_unit: usize,
-        motion: &mut Motion,
+        extra: &mut [V; MAX_UNITS],
         rows: &mut [f64],
         out: &mut Refined,
     ) {
@@ -149,10 +149,10 @@ by_instruction_set! {
             points.resize(unit.points.len() * BLOCK, MOST);
         }
         for unit in 0..MAX_UNITS {
-            motion.extra[unit].0[lane] = trail.extra[unit].0[lane];
+            extra[unit].0[lane] = trail.extra[unit].0[lane];
         }
         for k in 0..BLOCK {
-            trail.station(group, lane, first_unit, first + k, k, motion, rows, out);
+            trail.station(group, lane, first_unit, first + k, k, extra, rows, out);
         }
     }
 }
@@ -261,7 +261,7 @@ impl Trail {
         first_unit: usize,
         station: usize,
         k: usize,
-        motion: &mut Motion,
+        extra: &mut [V; MAX_UNITS],
         rows: &mut [f64],
         out: &mut Refined,
     ) {
@@ -271,13 +271,13 @@ impl Trail {
         let mut straying = Straying::of_the_steer_axle(V::splat(steer));
         let (mut heading_ahead, mut shift_ahead) = (group.course, ZERO);
         let mut closes = true;
-        let mut beside = Filter::begin(group, &steps);
+        let mut beside = Filter::begin(&group.chain[..group.units], &steps);
         let mut coupling = V::splat(steer);
         for unit in 0..units {
             let (of, step) = (&group.chain[unit], &steps[unit]);
             let coupled = coupling * step.secant;
             let start = (unit * LANES + lane) * FIELDS * BLOCK;
-            let filtered = beside.coupled(of, step, motion.extra[unit]);
+            let filtered = beside.coupled(of, step, extra[unit]);
             if unit < first_unit {
                 // The filter's bounds stay in use. The units behind need only their effect.
                 let at = |field: usize| V::splat(rows[start + field * BLOCK + k]);
@@ -288,7 +288,7 @@ impl Trail {
                 straying = straying.next(of, step, a);
                 let past = &self.histories[lane][0].past[station % MEMORY][unit];
                 coupling = of.axle + axle + of.hitch * a + past.hitch;
-                motion.extra[unit].0[lane] =
+                extra[unit].0[lane] =
                     beside.step(of, step, filtered, a, V::splat(past.z), V::splat(past.hitch)).0[lane];
                 continue;
             }
@@ -302,19 +302,19 @@ impl Trail {
                 closes = false;
                 store(row::EXTRA_AXLE, MOST);
                 store(row::HINGE, NOT_CLOSED_RAD);
-                motion.extra[unit].0[lane] = of.settled.0[lane];
+                extra[unit].0[lane] = of.settled.0[lane];
                 beside.coupling = ZERO;
                 continue;
             };
             let (a, axle) = (V::splat(a), V::splat(axle));
             let (r1, z) = remainder(of, step, a, axle, coupled);
-            let extra = axle - of.axle;
+            let more = axle - of.axle;
             let own_shift = foot_shift(of, step, axle + of.length * a);
             let ahead = heading_ahead + a + shift_ahead;
             let margin = hinge_margin(of, joints[unit], ahead, if unit == 0 { ZERO } else { own_shift });
             (heading_ahead, shift_ahead) = (a, own_shift);
-            store(row::EXTRA_AXLE, extra.0[lane]);
-            store(row::EXTRA_COUPLING, ((a - of.heading) * of.length - extra).0[lane]);
+            store(row::EXTRA_AXLE, more.0[lane]);
+            store(row::EXTRA_COUPLING, ((a - of.heading) * of.length - more).0[lane]);
             store(row::REMAINDER, (r1 * of.inverse_length).0[lane]);
             store(row::HINGE, margin.0[lane]);
             straying = straying.next(of, step, a);
@@ -323,7 +323,7 @@ impl Trail {
             coupling = axle + of.hitch * a + zh;
             let past = &mut self.histories[lane][0].past[station % MEMORY][unit];
             past.note(of, lane, z.0[lane], zh.0[lane], axle.0[lane]);
-            motion.extra[unit].0[lane] = beside.step(of, step, filtered, a, z, zh).0[lane];
+            extra[unit].0[lane] = beside.step(of, step, filtered, a, z, zh).0[lane];
         }
         self.histories[lane][0].closed[station % MEMORY] = closes;
     }

@@ -11,12 +11,13 @@
 //!
 //! Each vehicle has its own lane. The ascent decides nothing: the next sweep measures the result.
 
+use super::block::{Minima, UNVISITED_M};
 use super::group::{Group, gamma};
-use super::lanes::{TAG_MASK, V, by_instruction_set};
+use super::lanes::{TAG_MASK, V, ZERO, by_instruction_set};
 use super::model::Model;
 use super::response::Response;
 use super::shift::{self, KNOT_STATIONS};
-use super::sweep::{Minima, UNVISITED_M, ZERO, reach_m};
+use super::sweep::reach_m;
 use super::track::Track;
 
 /// Steps of one ascent.

@@ -1,10 +1,10 @@
 //! Bodies, their points, and the stations under them. Each point's foot is followed from station to station. Each point
 //! records which stations it has passed (proof, section 7, Feet).
 
+use super::block::{BLOCK, Feet, LOST_M, Minima};
 use super::group::gamma;
 use super::lanes::{LANES, V};
 use super::model::Model;
-use super::sweep::{BLOCK, Minima};
 use super::track::{Fields, Track};
 
 /// A foot farther along than this (metres) is searched again.
@@ -20,8 +20,6 @@ const ASTRAY_PART: f64 = 0.5;
 const ASTRAY_M: f64 = 10.0;
 /// Added to a head's station so that differences stay positive for points ahead of the head.
 const AHEAD: usize = 1 << 20;
-/// Leeway of a point without a foot: nothing is certified there.
-pub(super) const LOST_M: f64 = -1e3;
 
 /// The body points of one unit of one vehicle.
 pub(super) struct Body {
@@ -155,34 +153,6 @@ pub(super) struct Seen {
     pub(super) at: Fields<V>,
     pub(super) along: V,
     pub(super) lateral: V,
-}
-
-/// Eight foot stations: consecutive ones (`Run`, the first) or any (`Each`).
-#[derive(Clone, Copy)]
-pub(super) enum Feet {
-    Run(usize),
-    Each([usize; LANES]),
-}
-
-impl Feet {
-    #[inline(always)]
-    pub(super) fn station(self, lane: usize) -> usize {
-        match self {
-            Self::Run(first) => first + lane,
-            Self::Each(feet) => feet[lane],
-        }
-    }
-
-    /// The first and the last of the eight stations.
-    #[inline(always)]
-    pub(super) fn range(self) -> (usize, usize) {
-        match self {
-            Self::Run(first) => (first, first + LANES - 1),
-            Self::Each(feet) => {
-                feet.iter().fold((usize::MAX, 0), |(first, last), &foot| (first.min(foot), last.max(foot)))
-            }
-        }
-    }
 }
 
 /// Moves on over a block whose leeways are not wanted.

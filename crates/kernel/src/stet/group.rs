@@ -3,6 +3,7 @@
 use super::lanes::{LANES, V};
 use super::model::{MAX_UNITS, Model, UnitModel};
 use super::run_in;
+use super::step::UnitLanes;
 
 /// γ is stored in thousandths.
 pub(super) const SHRINK_STEPS: f64 = 1000.0;
@@ -19,30 +20,6 @@ pub(super) struct Group<'m> {
     pub(super) tolerance: V,
     /// m, the allowance for the prime mover's course, radians.
     pub(super) course: V,
-}
-
-/// Constants of one unit across the vehicles. A vehicle without this unit has a harmless stand-in.
-#[derive(Clone, Copy)]
-pub(super) struct UnitLanes {
-    /// 1 where the vehicle has this unit, else 0.
-    pub(super) present: V,
-    pub(super) length: V,
-    pub(super) inverse_length: V,
-    /// L + d
-    pub(super) reach: V,
-    /// |d|
-    pub(super) hitch: V,
-    /// d/L
-    pub(super) ratio: V,
-    pub(super) sway: V,
-    pub(super) max_articulation: V,
-    /// At the group's γ, on the straight: bounds of heading error, axle deviation and (hinge by hinge) coupling
-    /// deviation.
-    pub(super) heading: V,
-    pub(super) axle: V,
-    pub(super) coupling: V,
-    /// What the second order adds to `axle` on a straight.
-    pub(super) settled: V,
 }
 
 impl<'m> Group<'m> {

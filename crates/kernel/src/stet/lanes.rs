@@ -53,6 +53,9 @@ impl Neg for V {
     }
 }
 
+pub(crate) const ZERO: V = V([0.0; LANES]);
+pub(crate) const ONE: V = V([1.0; LANES]);
+
 impl V {
     #[inline(always)]
     pub(crate) fn splat(x: f64) -> V {

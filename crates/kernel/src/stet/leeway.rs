@@ -3,11 +3,9 @@
 //! The plain distance to the edge is reduced by the tube of the point, by its second-order terms, by what may happen
 //! between two body points (inside of a curve), and by what may happen between two head stations.
 
-use super::body::{
-    Body, Feet, LOST_M, NEAR_M, Seen, Spot, follow, foot, least, least as least_of, narrow, near, next_foot, place,
-};
-use super::lanes::{LANES, V, by_instruction_set, select_negative};
-use super::sweep::{BLOCK, FIELDS, Minima, ZERO, row};
+use super::block::{BLOCK, FIELDS, Feet, LOST_M, Minima, row};
+use super::body::{Body, NEAR_M, Seen, Spot, follow, foot, least, least as least_of, narrow, near, next_foot, place};
+use super::lanes::{LANES, V, ZERO, by_instruction_set, select_negative};
 use super::track::{BULGE_MOST, Fields, READ_M, Track};
 
 /// Where half-widths bulge, a side between two body points is examined in parts no longer than this, metres. At a

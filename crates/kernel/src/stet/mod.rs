@@ -5,6 +5,7 @@
 
 mod adjoint;
 mod ascent;
+mod block;
 mod body;
 mod external_plan;
 mod gains;
@@ -18,6 +19,7 @@ mod response;
 mod run_in;
 mod shift;
 mod spans;
+mod step;
 mod sweep;
 mod track;
 mod tube;
@@ -34,9 +36,10 @@ pub use motion::steady_offtracking;
 pub use shift::{KNOT_STATIONS, Plan, STEP_M};
 pub use tube::{Tube, tubes};
 
+use block::{BLOCK, Minima};
 use group::Group;
 use lanes::{LANES, V};
-use sweep::{Minima, Wanted, sweep};
+use sweep::{Wanted, sweep};
 use track::Track;
 
 /// An edge of the corridor, seen in driving direction.
@@ -245,7 +248,7 @@ fn thorough(track: &Track, group: &Group<'_>, shift: &[V], stop: &Stop) -> Vec<M
     if full.iter().all(|m| m.loose.iter().all(|&unit| unit == usize::MAX)) {
         return full;
     }
-    let loose = |lane: usize, head: usize| full[lane].loose[head / sweep::BLOCK];
+    let loose = |lane: usize, head: usize| full[lane].loose[head / BLOCK];
     sweep::<true>(track, group, shift, &Wanted { refined: Some(&loose), ..Wanted::ALL }, stop)
 }
 
@@ -308,21 +311,21 @@ impl<'m> Swept<'m> {
         let full = sweep::<true>(&track, &group, &shift, &Wanted::ALL, stop);
         let mut swept = Self { track, group, stop, plans, full, nominal: None, refined: None, least: None };
         let loose: Vec<Vec<usize>> = swept.full.iter().map(|m| m.loose.clone()).collect();
-        let is_loose = |lane: usize, head: usize| loose[lane][head / sweep::BLOCK];
+        let is_loose = |lane: usize, head: usize| loose[lane][head / BLOCK];
 
         if swept.full.iter().any(|m| m.loose.iter().any(|&unit| unit < usize::MAX)) {
             swept.nominal = Some(sweep::<false>(&swept.track, &swept.group, &shift, &Wanted::PLAIN, stop));
         }
         let near = swept.blocks(spans, |lane, span| swept.worth(lane, span));
         if near.iter().flatten().any(|&near| near) {
-            let blocks = |lane: usize, head: usize| near[lane][head / sweep::BLOCK];
+            let blocks = |lane: usize, head: usize| near[lane][head / BLOCK];
             let wanted = Wanted { blocks: &blocks, refined: Some(&is_loose), plain: false };
             swept.refined = Some(sweep::<true>(&swept.track, &swept.group, &shift, &wanted, stop));
         }
         let failing = swept.blocks(spans, |lane, span| swept.at_full(lane, span).rsc_m < 0.0);
         if failing.iter().flatten().any(|&fails| fails) {
             let tight = Group::new(models, 0.0);
-            let blocks = |lane: usize, head: usize| failing[lane][head / sweep::BLOCK];
+            let blocks = |lane: usize, head: usize| failing[lane][head / BLOCK];
             // Each block uses the same kind of bound as at γ = 1: only then is the leeway concave in γ. Each vehicle is
             // treated separately, because it must not matter whether another vehicle of the group is refined.
             let any: Vec<bool> = near.iter().map(|blocks| blocks.contains(&true)).collect();
@@ -381,18 +384,18 @@ impl<'m> Swept<'m> {
         let track = &self.track;
         // The extensions' lengths are used, so that no other vehicle of the group matters.
         let (behind_m, ahead_m) = sweep::reach_m(&self.group);
-        let ahead = (ahead_m / track.spacing).ceil() as usize + sweep::BLOCK;
-        let behind = (behind_m / track.spacing).ceil() as usize + sweep::BLOCK;
+        let ahead = (ahead_m / track.spacing).ceil() as usize + BLOCK;
+        let behind = (behind_m / track.spacing).ceil() as usize + BLOCK;
         let touched = spans::stations(track, span);
-        let first = touched.start().saturating_sub(ahead) / sweep::BLOCK;
-        let last = (touched.end() + behind) / sweep::BLOCK;
-        first..(last + 1).min(track.len() / sweep::BLOCK + 1)
+        let first = touched.start().saturating_sub(ahead) / BLOCK;
+        let last = (touched.end() + behind) / BLOCK;
+        first..(last + 1).min(track.len() / BLOCK + 1)
     }
 
     /// By vehicle and block of head stations: whether the vehicle may then touch a span that `meant` accepts.
     fn blocks(&self, spans: &[Range<usize>], meant: impl Fn(usize, &Range<usize>) -> bool) -> Vec<Vec<bool>> {
         let of = |lane: usize| {
-            let mut blocks = vec![false; self.track.len() / sweep::BLOCK + 1];
+            let mut blocks = vec![false; self.track.len() / BLOCK + 1];
             for span in spans.iter().filter(|span| meant(lane, span)) {
                 blocks[self.touching(span)].iter_mut().for_each(|block| *block = true);
             }

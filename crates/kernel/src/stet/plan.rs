@@ -9,12 +9,13 @@ use std::ops::Range;
 
 use super::Options;
 use super::ascent::{Ascent, climb, relief};
+use super::block::{Minima, UNVISITED_M};
 use super::group::Group;
-use super::lanes::{LANES, TAG_MASK, V};
+use super::lanes::{LANES, TAG_MASK, V, ZERO};
 use super::model::Model;
 use super::shift::{self, KNOT_STATIONS, Plan};
 use super::spans;
-use super::sweep::{Minima, UNVISITED_M, Wanted, ZERO, sweep};
+use super::sweep::{Wanted, sweep};
 use super::track::Track;
 use netcert_base::stop::Stop;
 

@@ -4,9 +4,8 @@
 //! The response decides nothing. Planning asks it which way to steer, and the next sweep measures the result.
 
 use super::group::Group;
-use super::lanes::{LANES, V};
+use super::lanes::{LANES, V, ZERO};
 use super::model::MAX_UNITS;
-use super::sweep::ZERO;
 
 /// The chain from knot to knot: y' = decay·y + before·e + after·e', exact for a coupling that moves linearly between
 /// knots.

@@ -4,10 +4,9 @@
 //! reproduces itself. Every sweep starts from that bound, and so does every stretch behind a place where the bounds did
 //! not close.
 
-use super::group::UnitLanes;
-use super::lanes::{V, select_negative};
+use super::lanes::{V, ZERO, select_negative};
 use super::model::MAX_UNITS;
-use super::sweep::{self, MOST, Step, Straying, ZERO, hitch_remainder, remainder};
+use super::step::{self, MOST, Step, Straying, UnitLanes, hitch_remainder, remainder};
 
 /// Most rounds to find a bound that reproduces itself. Each round at least halves the distance to it, if there is one.
 const ROUNDS: usize = 64;
@@ -24,7 +23,7 @@ pub(super) fn settled(chain: &[UnitLanes; MAX_UNITS], tolerance: V) -> [V; MAX_U
     for (unit, of) in chain.iter().enumerate() {
         let heading = |y: V| {
             let first_order = (of.heading + (coupling + y) * of.inverse_length).min(V::splat(MOST));
-            let (a, short) = sweep::heading(of, &Step::STRAIGHT, first_order, of.axle + y, of.coupling + coupling);
+            let (a, short) = step::heading(of, &Step::STRAIGHT, first_order, of.axle + y, of.coupling + coupling);
             select_negative(short, V::splat(MOST), a)
         };
         let implied = |y: V| {

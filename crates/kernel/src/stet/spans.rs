@@ -2,10 +2,10 @@
 
 use std::ops::{Range, RangeInclusive};
 
+use super::block::{Minima, NOT_CLOSED_RAD, UNVISITED_M};
 use super::group::{SHRINK_STEPS, gamma};
 use super::lanes::TAG_MASK;
 use super::model::{Model, POINT_SPACING_M};
-use super::sweep::{Minima, NOT_CLOSED_RAD, UNVISITED_M};
 use super::track::Track;
 use super::{Limiting, Side, SpanResult};
 

@@ -6,89 +6,18 @@
 //! knows nothing of edges, corrections or shrinking.
 
 use super::adjoint::{self, Refined, Trail, first_loose};
-use super::body::{self, Body, Feet};
-use super::group::{Group, UnitLanes};
-use super::lanes::{LANES, V, by_instruction_set, select_negative};
+use super::block::{BLOCK, FIELDS, Minima, NOT_CLOSED_RAD, row, store};
+use super::body::{self, Body};
+use super::group::Group;
+use super::lanes::{LANES, V, ZERO, by_instruction_set, select_negative};
 use super::leeway;
 use super::model::MAX_UNITS;
+use super::step::{
+    Filter, MOST, Step, Straying, chord_bulge, chord_lag, decay, foot_shift, heading, hinge_margin, hitch_remainder,
+    remainder, validity,
+};
 use super::track::{Extensions, Track};
 use netcert_base::stop::{Stop, Stopped};
-
-/// Head stations per block.
-pub(super) const BLOCK: usize = 32;
-/// Blocks behind a bend in which the filter still holds much of what it gathered in the bend.
-const FADING_BLOCKS: usize = 3;
-/// Hinge margin where the recursion of the bounds does not close.
-pub(super) const NOT_CLOSED_RAD: f64 = -9.0;
-/// Number of rows that the motion writes per unit, one per field.
-pub(super) const FIELDS: usize = 11;
-/// Bounds beyond this (metres, radians) bound nothing any more.
-pub(super) const MOST: f64 = 100.0;
-/// Leeway at a station that no body point visits.
-pub(super) const UNVISITED_M: f64 = 1e9;
-
-/// Least leeways and margins at every extended station, for one vehicle.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Minima {
-    /// Tagged (see [`super::lanes::V::tagged`]) with `unit · 16 + point`.
-    pub(super) left: Vec<f64>,
-    pub(super) right: Vec<f64>,
-    /// As `left` and `right`, for sides between two of their points; at marked stations only.
-    pub(super) mark_left: Vec<f64>,
-    pub(super) mark_right: Vec<f64>,
-    /// Least hinge margin by station of the steer axle, radians, tagged with the unit.
-    pub(super) hinge: Vec<f64>,
-    /// By station of the steer axle: first and last station under any body point.
-    pub(super) under: Vec<[u32; 2]>,
-    /// Lateral distance of the last axle from the steer path, metres.
-    pub(super) offset: Vec<f64>,
-    /// By block of head stations: the first unit for which the adjoint is worth its time.
-    pub(super) loose: Vec<usize>,
-}
-
-impl Minima {
-    fn new(stations: usize) -> Self {
-        Self {
-            left: vec![UNVISITED_M; stations],
-            right: vec![UNVISITED_M; stations],
-            mark_left: vec![UNVISITED_M; stations],
-            mark_right: vec![UNVISITED_M; stations],
-            hinge: vec![UNVISITED_M; stations],
-            under: vec![[u32::MAX, 0]; stations],
-            offset: vec![0.0; stations],
-            loose: vec![usize::MAX; stations / BLOCK + 2],
-        }
-    }
-
-    /// Minima of a cancelled sweep: nothing fits anywhere, so a caller that does not check for cancellation gets no
-    /// false `safe`.
-    fn lost(stations: usize) -> Self {
-        let mut lost = Self::new(stations);
-        (0..stations).for_each(|k| lost.lose(k));
-        lost
-    }
-
-    fn lose(&mut self, k: usize) {
-        self.hinge[k] = V::splat(NOT_CLOSED_RAD).tagged(0).0[0];
-        [self.left[k], self.right[k]] = [V::splat(body::LOST_M).tagged(0).0[0]; 2];
-    }
-
-    /// Records the stations under a body point at eight stations of the steer axle, from `head` on.
-    #[inline(always)]
-    pub(super) fn pass(&mut self, head: usize, feet: Feet) {
-        for (lane, [first, last]) in self.under[head..head + LANES].iter_mut().enumerate() {
-            let foot = feet.station(lane) as u32;
-            (*first, *last) = ((*first).min(foot), (*last).max(foot));
-        }
-    }
-
-    /// Marks a bend, and some blocks behind it: what the filter gathered in the bend takes that long to fade.
-    fn note_loose(&mut self, head: usize, first: usize) {
-        for block in self.loose.iter_mut().skip(head / BLOCK).take(1 + FADING_BLOCKS) {
-            *block = first.min(*block);
-        }
-    }
-}
 
 /// Vehicles up to this length and front overhang get the same extensions. Sums along the track round differently from
 /// another start, so equal extensions give equal bits whichever vehicles share the group. The longest vehicle of the
@@ -171,7 +100,7 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
             let wanted = (wanted.blocks)(lane, head);
             let tight_from = if REFINE && wanted { refined(lane, head) } else { usize::MAX };
             if tight_from < bodies.len() {
-                adjoint::refine(&mut trail, group, lane, tight_from, &mut motion, &mut rows, &mut tight);
+                adjoint::refine(&mut trail, group, lane, tight_from, &mut motion.extra, &mut rows, &mut tight);
             }
             if REFINE {
                 trail.close(lane, bodies.len());
@@ -220,47 +149,6 @@ pub(super) struct Motion {
     /// What curvature adds to the bound of each axle's deviation.
     pub(super) extra: [V; MAX_UNITS],
 }
-
-/// One unit's step, as its tubes need it.
-#[derive(Clone, Copy)]
-pub(super) struct Step {
-    pub(super) moved: V,
-    /// Arc length of the axle, metres.
-    pub(super) advance: V,
-    /// |sin|, cos, |tan| and 1/cos of the angle from the heading to the chord, before the step.
-    pub(super) sine: V,
-    pub(super) cosine: V,
-    pub(super) tangent: V,
-    pub(super) secant: V,
-    /// tan δ halfway through the step, signed.
-    pub(super) mid_tangent: V,
-    pub(super) hitch_cosine: V,
-    pub(super) path_curvature: V,
-    /// Assumed deviation of the coupling for what [`chord_lag`] leaves, metres.
-    pub(super) chord_rest: V,
-}
-
-impl Step {
-    pub(super) const NONE: Step = Step {
-        moved: ZERO,
-        advance: ZERO,
-        sine: ZERO,
-        cosine: ZERO,
-        tangent: ZERO,
-        secant: ZERO,
-        mid_tangent: ZERO,
-        hitch_cosine: ZERO,
-        path_curvature: ZERO,
-        chord_rest: ZERO,
-    };
-
-    /// A metre straight on.
-    pub(super) const STRAIGHT: Step =
-        Step { moved: ONE, advance: ONE, cosine: ONE, secant: ONE, hitch_cosine: ONE, ..Self::NONE };
-}
-
-pub(super) const ZERO: V = V([0.0; LANES]);
-const ONE: V = V([1.0; LANES]);
 
 by_instruction_set! {
     /// Drives [`BLOCK`] stations from `head` and writes every unit's rows.
@@ -441,7 +329,7 @@ impl Motion {
     ) {
         let one = V::splat(1.0);
         let bulge = chord_bulge(&steps[0]);
-        let mut filter = Filter::begin(group, steps);
+        let mut filter = Filter::begin(&group.chain[..group.units], steps);
         let mut straying = Straying::of_the_steer_axle(group.tolerance + bulge);
         let (mut heading_ahead, mut shift_ahead) = (group.course, ZERO);
         // Negative from the first unit on whose bounds do not close.
@@ -494,251 +382,12 @@ impl Motion {
     }
 }
 
-/// The recursion of what curvature adds (docs/proof.md, section 5) over one step, front to rear.
-pub(super) struct Filter {
-    /// E − E⁰ of the next coupling.
-    pub(super) coupling: V,
-    hitch_cosine: V,
-    /// 1 over the reference arc length, which is halfway between the fastest axle's and the slowest axle's.
-    per_reference: V,
-}
-
-/// Bounds at a unit's coupling in a step.
-pub(super) struct Coupled {
-    /// Y − Y⁰ when the step begins.
-    y: V,
-    /// Ẽ − E⁰
-    extra: V,
-    /// A
-    heading: V,
-}
-
-impl Filter {
-    #[inline(always)]
-    pub(super) fn begin(group: &Group<'_>, steps: &[Step; MAX_UNITS]) -> Self {
-        let (mut least, mut most) = (steps[0].advance, steps[0].advance);
-        for (step, of) in steps.iter().zip(&group.chain).take(group.units).skip(1) {
-            // A stand-in must not count: a certificate depends on no other vehicle of the group.
-            let advance = steps[0].advance + of.present * (step.advance - steps[0].advance);
-            least = least.min(advance);
-            most = most.max(advance);
-        }
-        Self {
-            coupling: chord_bulge(&steps[0]),
-            hitch_cosine: V::splat(1.0),
-            per_reference: V::splat(2.0) / (least + most).max(V::splat(1e-12)),
-        }
-    }
-
-    /// `y` is the unit's Y − Y⁰ when the step begins.
-    #[inline(always)]
-    pub(super) fn coupled(&self, of: &UnitLanes, step: &Step, y: V) -> Coupled {
-        // η: relative growth of the coupling's deviation against the straight.
-        let eta = (step.secant - 1.0).max((self.hitch_cosine * step.secant - 1.0).abs());
-        let extra = (self.coupling + eta * (of.coupling + self.coupling)).min(V::splat(MOST));
-        let heading = (of.heading + (extra + y) * of.inverse_length).min(V::splat(MOST));
-        Coupled { y, extra, heading }
-    }
-
-    /// Y − Y⁰ at the end of the step, from the remainder z.
-    #[inline(always)]
-    fn grown(&self, of: &UnitLanes, step: &Step, coupled: &Coupled, z: V) -> V {
-        let rho = (step.advance * self.per_reference - 1.0).abs();
-        let input = coupled.extra + z + rho * of.length * (coupled.heading + of.sway);
-        // y' = (input − y)/L. Growth uses the coupling's arc length, decay the axle's, which is shorter.
-        let (pn, pd) = decay(step.moved * of.inverse_length);
-        let change = (input - coupled.y) * (V::splat(1.0) - pn / pd);
-        (coupled.y + change.max(change * step.cosine.max(ZERO))).min(V::splat(MOST))
-    }
-
-    /// Continues at the next coupling.
-    #[inline(always)]
-    fn pass_on(&mut self, of: &UnitLanes, step: &Step, coupled: &Coupled, y: V, zh: V) {
-        let next = (of.ratio + 1.0).abs() * y + of.ratio.abs() * coupled.extra + zh;
-        self.coupling = next.min(V::splat(MOST));
-        self.hitch_cosine = step.hitch_cosine;
-    }
-
-    /// A unit's whole step with known second order and bounded heading. Returns Y − Y⁰ at its end.
-    #[inline(always)]
-    pub(super) fn step(&mut self, of: &UnitLanes, step: &Step, mut coupled: Coupled, a: V, z: V, zh: V) -> V {
-        coupled.heading = coupled.heading.min(a);
-        let coupled = &coupled;
-        let extra = self.grown(of, step, coupled, z);
-        self.pass_on(of, step, coupled, coupled.y.max(extra), zh);
-        extra
-    }
-}
-
-/// Share of the chords' turn by which a unit turns less along chords than along the curve through their ends. `x` is
-/// chord over unit length. The share is x²/12 with its next order (docs/proof.md, section 2).
-#[inline(always)]
-fn chord_lag(x: V) -> V {
-    x * x / (x * 6.0 + 12.0)
-}
-
-/// Largest distance of the plan from its chord, κℓ²/8: the plan is a smooth curve through the vertices.
-#[inline(always)]
-pub(super) fn chord_bulge(step: &Step) -> V {
-    step.path_curvature * step.moved * step.moved * 0.125
-}
-
-/// Second-order remainders of the coupling's relation (R1) and of the axle's motion (z). `a` bounds the heading, `axle`
-/// the axle's deviation, `coupled` the coupling's deviation over cos δ.
-#[inline(always)]
-pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) -> (V, V) {
-    let a2 = a * a;
-    let lean = of.length * a;
-    let own = step.tangent * of.length * a2 * 0.5 + of.length * a2 * a * (1.0 / 6.0);
-    let bent = |across: V| {
-        let swing = across * step.sine + lean * a * 0.5;
-        own + step.path_curvature * step.secant * swing * swing * 0.5
-    };
-    // y + Lα equals the coupling's deviation, except for the remainder itself.
-    let across = axle + lean;
-    let r1 = bent(across.min(coupled + bent(across)));
-    let slip = a + of.sway;
-    let slip3 = slip_tangent_excess(slip);
-    (r1, r1 + step.tangent * axle * (slip + slip3) + of.length * slip3)
-}
-
-/// A bound of the heading with R1 (`L α = e/cos δ − y + R`), from its first-order bound. The second value is negative
-/// if the bound does not reproduce itself.
-#[inline(always)]
-pub(super) fn heading(of: &UnitLanes, step: &Step, first_order: V, axle: V, coupled: V) -> (V, V) {
-    let with = |more: V| (first_order + more).min(V::splat(MOST));
-    let implied = |more: V| remainder(of, step, with(more), axle, coupled).0 * of.inverse_length;
-    let first = implied(ZERO);
-    let second = implied(first);
-    let third = implied(second);
-    // Each growth is less than the one before: this covers the rest of a series that at least halves, and a little
-    // more.
-    let more = third + (third - second) * 1.5;
-    (with(more), more - implied(more))
-}
-
-/// Second-order remainder of the next coupling, with the foot shift against its follower.
-#[inline(always)]
-pub(super) fn hitch_remainder(
-    of: &UnitLanes,
-    step: &Step,
-    follower: Option<(&UnitLanes, &Step)>,
-    a: V,
-    axle: V,
-    r1: V,
-    straying: &Straying,
-) -> V {
-    let ratio = of.ratio.abs();
-    let hitch_tangent = step.tangent * ratio;
-    let hitch_sine = hitch_tangent * step.hitch_cosine;
-    let reach = axle + of.hitch * a;
-    let swing = reach * hitch_sine;
-    let own = ratio * r1
-        + hitch_sine * of.hitch * a * a * 0.5
-        + step.path_curvature.max(step.tangent * of.inverse_length) * swing * swing * 0.5;
-    let Some((next, behind)) = follower else { return own };
-    own + behind.chord_rest
-        + reach * (behind.tangent + hitch_tangent) * (straying.slope + straying.rough * next.inverse_length * 2.0)
-}
-
-/// How fast a coupling's deviation may change along its path: the slope of the part that has passed through axles, and
-/// the size of the steer axle's deviation that has passed through none.
-#[derive(Clone, Copy)]
-pub(super) struct Straying {
-    slope: V,
-    rough: V,
-}
-
-impl Straying {
-    #[inline(always)]
-    pub(super) fn of_the_steer_axle(rough: V) -> Self {
-        Self { slope: ZERO, rough }
-    }
-
-    #[inline(always)]
-    pub(super) fn next(self, of: &UnitLanes, step: &Step, a: V) -> Self {
-        let through = of.ratio.abs() * step.secant;
-        Self { slope: (of.ratio + 1.0).abs() * (a + of.sway) + through * self.slope, rough: through * self.rough }
-    }
-}
-
-/// Negative where the bounds do not hold. They hold while |δ| + A + σ < 90°, so cos δ > sin(A + σ), and while A + σ ≤
-/// 0.6, which the series of the tangent needs.
-#[inline(always)]
-pub(super) fn validity(of: &UnitLanes, step: &Step, a: V) -> V {
-    let slip = a + of.sway;
-    (step.cosine - slip).min(V::splat(0.6) - slip)
-}
-
-/// Largest heading difference of a path between a unit's own foot and its coupling's foot, if the coupling deviates by
-/// `coupling`.
-#[inline(always)]
-pub(super) fn foot_shift(of: &UnitLanes, step: &Step, coupling: V) -> V {
-    coupling * step.sine * step.tangent * of.inverse_length
-}
-
-/// Margin to the limit of the hinge ahead of a unit, less nominal articulation (`joint`), heading errors and foot
-/// shifts.
-#[inline(always)]
-pub(super) fn hinge_margin(of: &UnitLanes, joint: V, ahead: V, own_shift: V) -> V {
-    of.max_articulation - joint - ahead - own_shift
-}
-
-/// Indices of the rows of a unit's block.
-pub(super) mod row {
-    /// Axle position and heading.
-    pub(crate) const X: usize = 0;
-    pub(crate) const Y: usize = 1;
-    pub(crate) const UX: usize = 2;
-    pub(crate) const UY: usize = 3;
-    /// Curvature of the axle's path, signed, 1/m.
-    pub(crate) const CURVATURE: usize = 4;
-    /// Change of the curvature per metre, 1/m².
-    pub(crate) const JERK: usize = 5;
-    /// Y − Y⁰ and Ẽ − E⁰ (docs/proof.md, section 5).
-    pub(crate) const EXTRA_AXLE: usize = 6;
-    pub(crate) const EXTRA_COUPLING: usize = 7;
-    /// R1/L
-    pub(crate) const REMAINDER: usize = 8;
-    pub(crate) const HINGE: usize = 9;
-    /// Square of the axle's way over the step, m². Behind a hitch that swings the axle it exceeds the square of the
-    /// spacing.
-    pub(crate) const WAY2: usize = 10;
-}
-
-/// Writes a value with vehicles in lanes to the vehicles' own rows.
-#[inline(always)]
-fn store(rows: &mut [f64], unit: usize, field: usize, k: usize, value: V) {
-    for lane in 0..LANES {
-        rows[((unit * LANES + lane) * FIELDS + field) * BLOCK + k] = value.0[lane];
-    }
-}
-
 /// The steer path at an extended station.
 #[inline(always)]
 fn steer(track: &Track, shift: &[V], k: usize) -> (V, V) {
     let f = &track.fields;
     let q = shift[k];
     (V::splat(f.x[k]) - q * f.tangent_y[k], V::splat(f.y[k]) + q * f.tangent_x[k])
-}
-
-/// exp(−x) as a fraction, by the square of the Padé form (3,3) at x/2. The error is 3e-8 at x = 0.8; the form is
-/// monotone up to x = 9.
-#[inline(always)]
-pub(super) fn decay(x: V) -> (V, V) {
-    let x = x * 0.5;
-    let x2 = x * x;
-    let even = x2 * 12.0 + 120.0;
-    let odd = x * (x2 + 60.0);
-    let (n, d) = (even - odd, even + odd);
-    (n * n, d * d)
-}
-
-/// tan x − x for 0 ≤ x ≤ 0.6, never too small.
-#[inline(always)]
-fn slip_tangent_excess(x: V) -> V {
-    let x2 = x * x;
-    x * x2 * ((x2 * 0.07 + 2.0 / 15.0) * x2 + 1.0 / 3.0)
 }
 
 /// 2·atan t for 0 ≤ t ≤ 1, never too small (Abramowitz and Stegun 4.4.47, error 1e-5, with an allowance of twice that).

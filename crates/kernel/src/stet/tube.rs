@@ -2,10 +2,12 @@
 
 use super::Certificate;
 use super::adjoint::{Refined, Trail, first_loose, refine};
+use super::block::{BLOCK, FIELDS, row};
 use super::group::Group;
 use super::lanes::{LANES, V};
 use super::model::Model;
-use super::sweep::{self, BLOCK, FIELDS, Motion, drive, row};
+use super::step::MOST;
+use super::sweep::{self, Motion, drive};
 use super::track::Track;
 use netcert_base::corridor::Corridor;
 
@@ -27,7 +29,7 @@ impl Tube {
     /// Largest deviation of the axle at a station, metres. `None` if the bounds do not close there.
     #[must_use]
     pub fn bound_m(&self, station: usize) -> Option<f64> {
-        self.lateral_m.get(station).copied().filter(|lateral_m| *lateral_m < sweep::MOST)
+        self.lateral_m.get(station).copied().filter(|lateral_m| *lateral_m < MOST)
     }
 }
 
@@ -51,7 +53,7 @@ pub fn tubes(corridor: &Corridor, model: &Model, certificate: &Certificate) -> V
         drive::<true, true>(&mut motion, &track, &group, &shift, head, &mut rows, &mut trail);
         let loose = first_loose(&group, 0, &rows);
         if loose.min(after) < units {
-            refine(&mut trail, &group, 0, loose.min(after), &mut motion, &mut rows, &mut refined);
+            refine(&mut trail, &group, 0, loose.min(after), &mut motion.extra, &mut rows, &mut refined);
         }
         trail.close(0, units);
         after = loose;

@@ -1,5 +1,5 @@
-//! Left and right leeway along the route, before and after correction: Algorithm 1 with β° as printed, with the β of least
-//! trace, and netcert's.
+//! The figure of left and right leeway along the route, before and after correction. It shows Algorithm 1 with β° as
+//! printed, Algorithm 1 with the β of least trace, and netcert's certificate.
 
 use netcert::picture::{Chart, Frame, Key, Picture, Scale, Style, TextStyle, legend, palette};
 use netcert::published::{Correction, Leeway, RouteCert};
@@ -12,7 +12,7 @@ const HEIGHT: f64 = 1440.0;
 const ROW: f64 = 330.0;
 const TOP: f64 = 110.0;
 
-/// Leeway at every station, one side.
+/// The leeway of one side at every station, metres.
 struct Curves {
     before: Vec<f64>,
     after: Vec<f64>,
@@ -21,8 +21,7 @@ struct Curves {
 pub(super) fn figure(five: &Simulated, tight: &Simulated, lane: &Simulated) -> String {
     let title = format!("Boundary leeway before and after correction, scenario {}", five.scenario.number);
     let mut picture = Picture::new(WIDTH, HEIGHT, &title, "Rows of two charts: left and right leeway along the route");
-    let says =
-        "Below 0 the tube, or the body, is over the edge. Where both curves lie on each other nothing was corrected.";
+    let says = "Below 0 the tube or the body is over the edge. Where the two curves coincide, nothing was corrected.";
     heading(&mut picture, &title, &[says]);
     let before = Style::line(palette::VERMILLION, 2.4).dashed(7.0, 5.0);
     let after = Style::line(palette::BLUE, 2.4);
@@ -46,7 +45,7 @@ pub(super) fn figure(five: &Simulated, tight: &Simulated, lane: &Simulated) -> S
     picture.finish()
 }
 
-/// What each row shows, and its curves.
+/// The caption and the two curves of each row.
 fn rows(five: &Simulated, tight: &Simulated, lane: &Simulated) -> Vec<(String, [Curves; 2])> {
     let mut rows = Vec::new();
     let runs = [
@@ -82,7 +81,7 @@ fn draw(picture: &mut Picture, s: &Simulated, chart: &Chart, curves: &Curves, be
     chart.axes(picture);
     chart.level(picture, 0.0, Style::line(palette::INK, 1.4));
     let along = |values: &[f64]| -> Vec<[f64; 2]> {
-        // Where no body point stands there is no leeway: netcert then has a very large number.
+        // A station that no body point reaches has no leeway; netcert stores a very large number there.
         let known = values.iter().enumerate().filter(|(_, v)| v.abs() < 1e3);
         known.map(|(k, &v)| [k as f64 * s.corridor.spacing_m, v]).collect()
     };
@@ -98,7 +97,7 @@ fn algorithm(run: &RouteCert) -> [Curves; 2] {
     [side(|l| l.left_m), side(|l| l.right_m)]
 }
 
-/// The same for both sides, with 0 in it.
+/// The range of leeway in metres, the same for both sides. It contains 0.
 fn scale(sides: &[Curves; 2]) -> [f64; 2] {
     let known = || sides.iter().flat_map(|c| c.before.iter().chain(&c.after)).filter(|v| v.abs() < 1e3);
     let (low, high) = known().fold((0.0_f64, 0.0_f64), |(low, high), &v| (low.min(v), high.max(v)));

@@ -1,4 +1,4 @@
-//! The paper's figures, as SVG. All but the last depend on nothing but the data that ships.
+//! The paper's figures, as SVG. All but `timing.svg` depend only on the data that netcert ships.
 
 mod leeway;
 mod rsc;
@@ -11,13 +11,14 @@ use netcert::published::{DrawnRoute, Scenario};
 use super::simulate::{self, Simulated};
 use super::timing::Timing;
 
-/// The scenario that the paper draws.
+/// Number of the scenario that the paper draws.
 pub(super) const DRAWN: u32 = 5;
 
-/// Narrowest half widths in which scenario 5's vehicle needs correction: by Algorithm 1, whose tubes are wide, and by netcert.
+/// Narrowest half-widths, metres, at which the vehicle of scenario 5 needs correction: by Algorithm 1, whose tubes are wide,
+/// and by netcert.
 const SHORT_OF_ROOM_M: [f64; 2] = [5.0, 1.7];
 
-/// File names and documents.
+/// The file name and the SVG document of each figure.
 pub(super) fn all(
     simulated: &[Simulated],
     route: &DrawnRoute,
@@ -37,7 +38,7 @@ pub(super) fn all(
     Ok(figures)
 }
 
-/// Title and a line or two below it.
+/// Draws the title and the lines of text below it.
 fn heading(picture: &mut Picture, title: &str, lines: &[&str]) {
     picture.text([30.0, 38.0], title, TextStyle::size(20.0).bold());
     for (i, line) in lines.iter().enumerate() {
@@ -46,7 +47,7 @@ fn heading(picture: &mut Picture, title: &str, lines: &[&str]) {
     }
 }
 
-/// How a value is marked: shapes differ as well as colours.
+/// The mark of a value. Marks differ in shape, so that a reader need not tell colours apart.
 #[derive(Clone, Copy)]
 enum Mark {
     Disc,
@@ -68,7 +69,7 @@ impl Mark {
     }
 }
 
-/// Marks with their meanings, one below the other.
+/// Draws the legend: each mark with its meaning, one below the other.
 fn marks(picture: &mut Picture, at: [f64; 2], keys: &[(Mark, palette::Colour, &str)]) {
     picture.group("legend", |p| {
         for (i, (mark, colour, text)) in keys.iter().enumerate() {

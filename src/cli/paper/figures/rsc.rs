@@ -1,4 +1,4 @@
-//! The certificate of every scenario against its narrowest half width: the table's, Algorithm 1's and netcert's.
+//! The figure of every scenario's certificate over its narrowest half-width: from the table, by Algorithm 1, and by netcert.
 
 use netcert::picture::{Anchor, Chart, Frame, Picture, Scale, Style, TextStyle, palette};
 
@@ -15,8 +15,8 @@ pub(super) fn figure(simulated: &[Simulated]) -> String {
         &mut picture,
         title,
         &[
-            "Above 0 is safe. 𝒞 asks for half a body's length to either side; RSC for what the bodies take up across the road.",
-            "RSC here without tolerances, as 𝒞 has none.",
+            "Above 0 is safe. 𝒞 requires half a body's length on either side; RSC requires what the bodies take up across the road.",
+            "RSC is computed without tolerances here, because 𝒞 has none.",
         ],
     );
     let keys = [
@@ -25,7 +25,7 @@ pub(super) fn figure(simulated: &[Simulated]) -> String {
         (Mark::Square, palette::BLUE, "netcert's RSC, same vehicle, same corridor"),
     ];
     marks(&mut picture, [100.0, 118.0], &keys);
-    // A vehicle that nothing bounds has no RSC to draw.
+    // A scenario without an RSC (no bound holds for the vehicle) is left out.
     let (simulated, values): (Vec<&Simulated>, Vec<[f64; 4]>) = simulated
         .iter()
         .filter_map(|s| {

@@ -1,5 +1,5 @@
-//! Run time against the number of trailers, with the lines through it. The paper's two figures are of another machine and
-//! another program: they are named, not drawn.
+//! The figure of run time over the number of trailers, with the fitted lines. The paper's two times come from another
+//! machine and program, so the figure names them in its text and does not draw them.
 
 use netcert::picture::{Chart, Frame, Picture, Scale, Style, TextStyle, palette};
 
@@ -23,7 +23,7 @@ pub(super) fn figure(timing: &Timing) -> String {
         &mut picture,
         title,
         &[
-            "Scenario 5's vehicle and route of 543.62 m, wide enough for all; least of some runs on this machine. Gains are computed once a vehicle. The paper: 0.5 s for two, 1.15 s for five \
+            "Scenario 5's vehicle on its route of 543.62 m, widened for all; least of some runs on this machine. Gains are computed once per vehicle. The paper: 0.5 s for two, 1.15 s for five \
            trailers (i7-12650H).",
         ],
     );

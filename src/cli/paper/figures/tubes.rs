@@ -1,5 +1,5 @@
-//! The tubes of all units of a scenario on the route, coloured by leeway: the left half of each by that to the left, the right
-//! half by that to the right.
+//! The figure of the tubes of all units of a scenario on the route. The left half of each tube is coloured by its leeway to
+//! the left, the right half by its leeway to the right.
 
 use netcert::picture::{Anchor, Bounds, Frame, Picture, Point, Style, TextStyle, View, palette, scale_bar};
 use netcert::published::{As, Leeway, Reading, Stet, boundary_leeway};
@@ -11,7 +11,7 @@ const WIDTH: f64 = 1600.0;
 const HEIGHT: f64 = 940.0;
 const TOP: f64 = 84.0;
 const BAR: f64 = 90.0;
-/// Instants between two ellipses that are drawn whole.
+/// Number of instants from one outlined ellipse to the next.
 const EVERY: usize = 45;
 
 pub(super) fn figure(s: &Simulated) -> String {
@@ -44,7 +44,7 @@ fn leeways(s: &Simulated, tube: &[Stet]) -> Vec<Leeway> {
     tube.iter().enumerate().map(|(i, stet)| boundary_leeway(&s.route, stet, i, &Reading::SIMULATED)).collect()
 }
 
-/// Least and greatest leeway of any unit, outwards to whole metres.
+/// Least and greatest leeway of any unit, rounded outwards to whole metres.
 fn range(leeway: &[Vec<Leeway>]) -> [f64; 2] {
     let values = || leeway.iter().flatten().flat_map(|l| [l.left_m, l.right_m]);
     let low = values().fold(f64::INFINITY, f64::min);
@@ -72,7 +72,7 @@ fn panel(
                 let rim = |k: usize, stet: &Stet| across(s, stet, k, sign);
                 let quad = [pair[0].centre, pair[1].centre, rim(i + 1, &pair[1]), rim(i, &pair[0])];
                 let colour = palette::sequential((value - range[0]) / (range[1] - range[0]));
-                // The outline in the same colour closes the hairlines between neighbours.
+                // The outline in the same colour covers the hairlines between neighbouring quads.
                 p.polygon(&view.all(&quad), Style::area(colour).outlined(colour, 0.6));
             }
         }
@@ -92,7 +92,7 @@ fn panel(
     });
 }
 
-/// Where the tube ends to one side of its centre, across the road.
+/// The point where the tube ends across the road, to the left of its centre (`sign` 1) or to the right (`sign` -1).
 fn across(s: &Simulated, stet: &Stet, near: usize, sign: f64) -> Point {
     let normal = s.route.foot(stet.centre, near).normal;
     let radius = sign * stet.shape.support_radius_m(normal, As::Printed);

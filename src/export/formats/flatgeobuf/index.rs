@@ -1,7 +1,7 @@
-//! The packed Hilbert R-tree of a FlatGeobuf file: features in order of a curve that fills the plane, 16 boxes to a node, levels from
-//! the root to the leaves.
+//! The packed Hilbert R-tree of a FlatGeobuf file: features in order of a space-filling curve, 16 boxes per node, levels from the
+//! root to the leaves.
 //!
-//! Every level is a file while it is built: a few boxes are held in memory, whatever the number of features.
+//! Each level is built in a temporary file, so memory holds only a few boxes, whatever the number of features.
 
 use std::io::{self, Write};
 
@@ -9,17 +9,17 @@ use crate::export::sorter::{Scratch, Sorted, Sorter};
 use crate::export::{ExportError, Place};
 use crate::rows::Bounds;
 
-/// Boxes to a node, as other writers have it.
+/// Boxes per node, as in other writers.
 pub(super) const FANOUT: u64 = 16;
 
-/// A box and a place, as in the file.
+/// Bytes of a node in the file: a box and an offset.
 const NODE_BYTES: usize = 40;
-/// Sides, place, length.
+/// Bytes of a [`Located`]: a box, an offset and a length.
 const LOCATED_BYTES: usize = 48;
-/// Key and number before them.
+/// Bytes of a [`Located`] with its key and number before it.
 const KEYED_BYTES: usize = 12 + LOCATED_BYTES;
 
-/// Where a feature is, on earth and in the file of features.
+/// A feature's box on earth, and its offset and length in the file of features.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Located {
     pub(super) around: Bounds,
@@ -63,12 +63,12 @@ pub(super) struct Index {
     /// Features in order of the curve.
     ordered: Scratch,
     features: u64,
-    /// From the leaves to the root.
+    /// The levels from the leaves to the root.
     levels: Vec<Scratch>,
 }
 
 impl Index {
-    /// Of at least one feature.
+    /// Builds the index of at least one feature.
     pub(super) fn build(
         located: &mut Scratch,
         features: u64,
@@ -90,7 +90,7 @@ impl Index {
         let sizes = sizes(features);
         let mut levels = vec![leaves];
         for (level, pair) in sizes.windows(2).enumerate() {
-            // Nodes count from the root on.
+            // Nodes are numbered from the root.
             let first_child: u64 = sizes[level + 1..].iter().sum();
             let mut parents = place.scratch(&format!(".level{}", level + 1))?;
             raise(&mut levels[level], pair[0], first_child, &mut parents)?;
@@ -99,18 +99,18 @@ impl Index {
         Ok(Self { ordered, features, levels })
     }
 
-    /// The nodes, root first.
+    /// Writes the nodes, root first.
     pub(super) fn write(&mut self, out: &mut dyn Write) -> io::Result<()> {
         self.levels.iter_mut().rev().try_for_each(|level| level.copy_to(out).map(|_| ()))
     }
 
-    /// The features in the order in which the file has them.
+    /// The features in the order of the file.
     pub(super) fn in_order(&mut self) -> io::Result<impl Iterator<Item = io::Result<Located>> + '_> {
         Ok(records::<LOCATED_BYTES>(&mut self.ordered, self.features).map(|bytes| Ok(Located::of(&bytes?))))
     }
 }
 
-/// Nodes a level, from the leaves to the root; above a single leaf there is still a root.
+/// The number of nodes on each level, from the leaves to the root. Even a single leaf has a root above it.
 fn sizes(features: u64) -> Vec<u64> {
     let mut sizes = vec![features];
     let mut nodes = features;
@@ -123,7 +123,7 @@ fn sizes(features: u64) -> Vec<u64> {
     }
 }
 
-/// Along the curve; features of one place of it stay in their order.
+/// Sorts features along the curve. Features with the same key stay in their order.
 fn sort(
     located: &mut Scratch,
     features: u64,
@@ -142,7 +142,7 @@ fn sort(
     sorter.sorted()
 }
 
-/// One node for every [`FANOUT`] of a level, with the box around them and the number of the first.
+/// Writes a parent node for every [`FANOUT`] nodes of a level, with the box around them and the number of the first.
 fn raise(level: &mut Scratch, nodes: u64, first_child: u64, parents: &mut Scratch) -> io::Result<()> {
     let mut around: Option<Bounds> = None;
     for (number, bytes) in (0_u64..).zip(records::<NODE_BYTES>(level, nodes)) {
@@ -160,7 +160,7 @@ fn raise(level: &mut Scratch, nodes: u64, first_child: u64, parents: &mut Scratc
     Ok(())
 }
 
-/// Records of a file, a few at a time.
+/// The records of a file, read in blocks.
 fn records<const N: usize>(file: &mut Scratch, count: u64) -> impl Iterator<Item = io::Result<[u8; N]>> + '_ {
     const AT_ONCE: u64 = 512;
     let mut buffer = Vec::new();
@@ -178,11 +178,11 @@ fn records<const N: usize>(file: &mut Scratch, count: u64) -> impl Iterator<Item
     })
 }
 
-/// How far along a Hilbert curve over 2^16 × 2^16 cells of the bounds a box's middle lies.
+/// The position of a box's middle along the Hilbert curve over 2^16 × 2^16 cells of the bounds.
 fn along_curve(around: Bounds, bounds: Bounds) -> u32 {
     const LAST: f64 = 65_535.0;
     let cell = |low: f64, high: f64, from: f64, to: f64| {
-        // No width: every middle is at its beginning.
+        // Bounds without width have one cell.
         let share = if to > from { (0.5 * (low + high) - from) / (to - from) } else { 0.0 };
         (LAST * share) as u32
     };
@@ -191,7 +191,7 @@ fn along_curve(around: Bounds, bounds: Bounds) -> u32 {
     let mut along = 0_u32;
     for bit in (0..16).rev() {
         let (right, up) = (x >> bit & 1, y >> bit & 1);
-        // The quarters come in the order (0, 0), (0, 1), (1, 1), (1, 0), the first and last turned.
+        // The quarters are visited in the order (0, 0), (0, 1), (1, 1), (1, 0); the first and last are rotated.
         along = along << 2 | ((3 * right) ^ up);
         if up == 0 {
             if right == 1 {
@@ -213,7 +213,7 @@ mod tests {
         let bounds = Bounds { west: 0.0, south: 0.0, east: 65_535.0, north: 65_535.0 };
         let mut cells: Vec<(u32, i32, i32)> = Vec::new();
         for (x, y) in (0..N).flat_map(|x| (0..N).map(move |y| (x, y))) {
-            // Cells of 2048: the middle of each.
+            // The middle of each cell of size 2048.
             let (lon, lat) = (f64::from(x * 2048 + 1024), f64::from(y * 2048 + 1024));
             let key = along_curve(Bounds { west: lon, south: lat, east: lon, north: lat }, bounds);
             cells.push((key >> 22, x as i32, y as i32));

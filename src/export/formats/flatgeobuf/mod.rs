@@ -1,7 +1,7 @@
-//! FlatGeobuf 3 (<https://flatgeobuf.org>), one file a layer, with the spatial index that lets readers fetch a part of it.
+//! FlatGeobuf 3 (<https://flatgeobuf.org>), one file per layer, with the spatial index that lets readers fetch a part of the file.
 //!
-//! Features stand in the index's order, so they wait in a file beside the output, and what orders them is sorted outside memory
-//! (the crate's own writer keeps some 140 bytes a feature). The header is JSON in the format's `metadata`.
+//! Features must be in the index's order. They are collected in a temporary file, and their order is sorted outside memory (the
+//! crate's own writer keeps some 140 bytes per feature in memory). The header is JSON in the format's `metadata`.
 
 mod index;
 
@@ -24,7 +24,7 @@ use index::{Index, Located};
 /// `flatgeobuf`
 pub(super) struct FlatGeobuf;
 
-/// `fgb`, version 3, `fgb`, patch 0: what a file starts with.
+/// The first bytes of a file: `fgb`, version 3, `fgb`, patch 0.
 const MAGIC: [u8; 8] = *b"fgb\x03fgb\x00";
 
 impl Target for FlatGeobuf {
@@ -50,11 +50,11 @@ impl Target for FlatGeobuf {
     }
 }
 
-/// What a file is put together from.
+/// The parts of a file.
 struct Parts {
-    /// Feature after feature, in order of the network.
+    /// The features in order of the network.
     features: Scratch,
-    /// Where each is, in the same order.
+    /// The place of each feature, in the same order.
     located: Scratch,
     count: u64,
     end: u64,
@@ -112,7 +112,7 @@ fn column_type(kind: Kind) -> ColumnType {
     }
 }
 
-/// The header with its length before it.
+/// The encoded header, preceded by its length.
 fn header(source: &Source<'_>, layer: Layer, features: u64, bounds: Option<Bounds>) -> Vec<u8> {
     let mut builder = FlatBufferBuilder::new();
     let mut columns = Vec::new();
@@ -137,7 +137,7 @@ fn header(source: &Source<'_>, layer: Layer, features: u64, bounds: Option<Bound
         geometry_type: GeometryType::LineString,
         columns: Some(columns),
         features_count: features,
-        // 0 says that there is no index.
+        // 0 means that the file has no index.
         index_node_size: if bounds.is_some() { index::FANOUT as u16 } else { 0 },
         crs: Some(crs),
         title: Some(title),
@@ -150,7 +150,7 @@ fn header(source: &Source<'_>, layer: Layer, features: u64, bounds: Option<Bound
     builder.finished_data().to_vec()
 }
 
-/// A feature with its length before it.
+/// An encoded feature, preceded by its length.
 fn feature<'b>(builder: &'b mut FlatBufferBuilder<'static>, row: &Row<'_>) -> &'b [u8] {
     builder.reset();
     let mut xy = Vec::with_capacity(2 * row.line.len());
@@ -166,7 +166,7 @@ fn feature<'b>(builder: &'b mut FlatBufferBuilder<'static>, row: &Row<'_>) -> &'
     builder.finished_data()
 }
 
-/// Number of the column and value, for each that there is; little endian, texts with their length.
+/// The encoded values: for each value that is present, the column's number and the value, little endian. Texts have their length.
 fn properties(cells: &[Cell<'_>]) -> Vec<u8> {
     let mut out = Vec::with_capacity(256);
     for (column, cell) in (0_u16..).zip(cells) {

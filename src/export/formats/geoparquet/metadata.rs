@@ -1,4 +1,4 @@
-//! What stands beside the rows of a GeoParquet file: `geo` makes it one, `pandas` keeps its ids whole.
+//! The metadata of a GeoParquet file: `geo` is required by the format, `pandas` keeps pandas from rounding ids.
 
 use serde_json::{Map, Value, json};
 
@@ -6,7 +6,7 @@ use super::SIDES;
 use crate::rows::Bounds;
 use crate::rows::{Column, Kind};
 
-/// <https://geoparquet.org/releases/v1.1.0/>, of lines in the column `geometry` with their boxes in `bbox`.
+/// The member `geo` of <https://geoparquet.org/releases/v1.1.0/>: lines in the column `geometry`, their boxes in `bbox`.
 pub(super) fn geo(bounds: Option<Bounds>) -> String {
     let covering: Map<_, _> = SIDES.iter().map(|&side| (side.to_owned(), json!(["bbox", side]))).collect();
     let mut column = json!({
@@ -22,8 +22,8 @@ pub(super) fn geo(bounds: Option<Bounds>) -> String {
     json!({"version": "1.1.0", "primary_column": "geometry", "columns": {"geometry": column}}).to_string()
 }
 
-/// EPSG:4326 as PROJJSON: the name that every other format of this program has for it, so that tables join. Its axes are latitude
-/// and longitude; coordinates of WKB are x and y, longitude first, whatever the system says (GeoParquet 1.1, "Coordinate axis order").
+/// EPSG:4326 as PROJJSON. Every other format of this program names the same system, so that tables can be joined. Its axes are
+/// latitude and longitude, but coordinates in WKB are always x and y, longitude first (GeoParquet 1.1, "Coordinate axis order").
 fn epsg_4326() -> Value {
     json!({
         "$schema": "https://proj.org/schemas/v0.7/projjson.schema.json",
@@ -45,8 +45,8 @@ fn epsg_4326() -> Value {
     })
 }
 
-/// Which type pandas gives each column (<https://pandas.pydata.org/docs/development/developer.html>). Without it a column of whole
-/// numbers with gaps becomes one of doubles, and ids of 63 bits lose their last digits.
+/// The type of each column in pandas (<https://pandas.pydata.org/docs/development/developer.html>). Without it pandas reads a
+/// column of integers with gaps as doubles, and ids of 63 bits lose their last digits.
 pub(super) fn pandas(columns: &[Column]) -> String {
     let plain = columns.iter().map(|&(name, kind)| {
         let (pandas, numpy) = match kind {

@@ -1,4 +1,4 @@
-//! Blocks of new objects, gathered in a file until their turn comes; and texts put into blocks that exist.
+//! Blocks of new objects, which are collected in a file until they are written, and texts that are added to existing blocks.
 
 use std::io::{self, Write};
 
@@ -10,7 +10,7 @@ use crate::export::ExportError;
 use crate::export::sorter::Scratch;
 use crate::osm::pbf::write::{frame, zlib_blob};
 
-/// Objects a block holds at most, as other writers have it.
+/// The greatest number of objects in a block, as in other writers.
 const BLOCK_OBJECTS: usize = 8000;
 
 /// Writes a block as one framed blob.
@@ -26,30 +26,30 @@ pub(super) fn write_blob(out: &mut dyn Write, kind: &str, blob: &[u8]) -> Result
     Ok(out.write_all(&framed)?)
 }
 
-/// A block's strings with what is added to them.
+/// The strings of a block, to which new ones can be added.
 pub(super) struct Texts {
     table: Vec<Vec<u8>>,
     numbers: FxHashMap<Vec<u8>, u32>,
 }
 
 impl Texts {
-    /// Over the strings of a block.
+    /// Begins with the strings of a block.
     pub(super) fn over(table: Vec<Vec<u8>>) -> Self {
         let numbers = (0_u32..).zip(&table).skip(1).map(|(number, text)| (text.clone(), number)).collect();
         Self { table, numbers }
     }
 
-    /// None but the delimiter.
+    /// Begins with the delimiter only.
     fn none() -> Self {
         Self { table: vec![Vec::new()], numbers: FxHashMap::default() }
     }
 
-    /// What a number stands for; nothing for a wrong one.
+    /// The text of a number. Empty for a wrong number.
     pub(super) fn text(&self, number: u32) -> &[u8] {
         self.table.get(number as usize).map_or(&[], Vec::as_slice)
     }
 
-    /// The number of a text.
+    /// The number of a text, which is added if it is new.
     pub(super) fn number(&mut self, text: &[u8]) -> u32 {
         if let Some(&number) = self.numbers.get(text) {
             return number;
@@ -65,7 +65,7 @@ impl Texts {
     }
 }
 
-/// New objects on their way: in a file, in blocks, in the order in which they were added.
+/// New objects, collected as blocks in a file in the order in which they were added.
 pub(super) struct Spool {
     file: Scratch,
     texts: Texts,
@@ -78,7 +78,7 @@ impl Spool {
         Self { file, texts: Texts::none(), ways: Vec::new(), relations: Vec::new() }
     }
 
-    /// A way with these tags; what else is known of it is as in `like`, whose texts are `texts`.
+    /// Adds a way with these tags. Its other texts are numbers of `texts`.
     pub(super) fn way(&mut self, mut way: Way, tags: &[(Vec<u8>, Vec<u8>)], texts: &Texts) -> Result<(), ExportError> {
         way.keys = tags.iter().map(|(key, _)| self.texts.number(key)).collect();
         way.vals = tags.iter().map(|(_, value)| self.texts.number(value)).collect();
@@ -90,7 +90,7 @@ impl Spool {
         self.flush_full()
     }
 
-    /// A relation of members by kind, id and role.
+    /// Adds a relation of members, each given by kind, id and role.
     pub(super) fn relation(
         &mut self,
         id: i64,
@@ -131,7 +131,7 @@ impl Spool {
         write_block(&mut self.file, &block)
     }
 
-    /// Appends all to the output.
+    /// Appends all blocks to the output.
     pub(super) fn pour(&mut self, out: &mut dyn Write) -> Result<(), ExportError> {
         self.flush()?;
         self.file.copy_to(out)?;

@@ -1,15 +1,15 @@
-//! The extract written again with permits on its roads: every object kept, tags added, ways split where they must be.
+//! Writes the extract again with permits on its roads. Every object is kept, tags are added, and ways are split where needed.
 //!
 //! | what | how |
 //! | --- | --- |
 //! | a direction that is refused | `hgv:forward=no`, `hgv:backward=no`, both: `hgv=no`; for Valhalla `motor_vehicle:forward=no`, … for each of them, too |
-//! | a road that is not in the network | as one of which both directions are refused |
-//! | what is certified | `netcert:forward=yes`, `netcert:rsc:forward=0.31` (metres), … |
+//! | a road that is not in the network | the tags of a road with both directions refused |
+//! | a direction that is permitted | `netcert:forward=yes`, `netcert:rsc:forward=0.31` (metres), … |
 //! | a turn or passage that is refused, turning back, a restriction over ways | a relation `type=restriction`, `restriction:hgv=no_…`; for Valhalla `restriction=no_…`, of turns both |
 //!
-//! The first part of a split way keeps its id, the others get ids from [`FIRST_NEW_ID`] on; relations name the parts. Blobs of nodes
-//! and blocks without a change are copied as they are. In memory: some bytes for each way that is split and each edge of a refused
-//! turn, besides the bit for each edge and turn that every export has.
+//! The first part of a split way keeps the way's id, the others get ids from [`FIRST_NEW_ID`] on. Relations name the parts. Blobs
+//! of nodes and blocks without a change are copied. Memory holds some bytes for each split way and each edge of a refused turn,
+//! besides the bit for each edge and turn that every export has.
 
 mod block;
 mod refusals;
@@ -23,17 +23,17 @@ pub(super) use rewrite::rewrite;
 use super::{Options, Target};
 use crate::export::{ExportError, Layout, Place, Source};
 
-/// New objects have ids from here on: beyond those of OpenStreetMap (nodes reached 1.3e10 in 2026), within the 40 bits that
-/// Valhalla keeps.
+/// The first id of new objects. It is beyond the ids of OpenStreetMap (nodes reached 1.3e10 in 2026) and within the 40 bits that
+/// Valhalla stores.
 const FIRST_NEW_ID: i64 = 100_000_000_000;
 
-/// For whom the tags are.
+/// The reader of the tags.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Flavour {
-    /// Tags as OpenStreetMap has them, that speak of heavy goods vehicles alone.
+    /// Programs that read OpenStreetMap's tags for heavy goods vehicles.
     Hgv,
-    /// Valhalla does not read `hgv:forward`, and obeys `restriction:hgv` not everywhere: tags of all motor vehicles, in a file for
-    /// this vehicle alone.
+    /// Valhalla. It does not read `hgv:forward` and does not obey `restriction:hgv` everywhere, so the tags are those of all motor
+    /// vehicles, and the file is for this vehicle only.
     Valhalla,
 }
 

@@ -1,7 +1,7 @@
-//! What relations refuse: turning back, turns between permitted edges, and sequences of edges.
+//! Writes relations that refuse turning back, turns between permitted edges, and sequences of edges.
 //!
-//! Promises: nothing is said again that the extract says as plainly. How a refusal must be worded so that an engine obeys was
-//! tried on small networks; `tests/engines/run_shapes.py` does so again.
+//! A refusal that the extract has already is not repeated. The wording that engines obey was found by trials on small networks;
+//! `tests/engines/run_shapes.py` repeats them.
 
 use std::io::Write as _;
 
@@ -21,7 +21,7 @@ use crate::osm::pbf::copy::Contents;
 const ALL: &str = "restriction";
 const HGV: &str = "restriction:hgv";
 
-/// Valhalla 3.9.1 drops a restriction over more edges than this, counting its own, which end at every node that two ways share.
+/// Valhalla 3.9.1 drops a restriction over more of its own edges than this. Its edges end at every node that two ways share.
 const MOST_VIA_SEGMENTS: usize = 10;
 
 /// A way and the node at which it ends.
@@ -31,22 +31,22 @@ pub(super) struct End {
     pub(super) node: i64,
 }
 
-/// Of an edge: its first and its last node, in direction of travel, each with its way; two ways where it is a loop.
+/// The first and last node of an edge, in direction of travel, each with its way. The ways differ if the edge is a loop.
 type Ends = [End; 2];
 
-/// Gathered while ways and relations go by; written after them.
+/// The refusals, which are collected while ways and relations are read and written after them.
 pub(super) struct Refusals<'s, 'r> {
     source: &'s Source<'r>,
     flavour: Flavour,
     cuts: Cuts,
     sequences: Vec<Vec<u32>>,
-    /// Of edges of which relations will speak.
+    /// The ends of the edges that relations will name.
     ends: FxHashMap<u32, Ends>,
-    /// Of edges in the middle of a sequence: the nodes between their ends.
+    /// The nodes between the ends of each edge in the middle of a sequence.
     between: FxHashMap<u32, Vec<i64>>,
-    /// Ends at which nobody turns back. In a file: there are as many as edges.
+    /// The ends at which turning back is refused. They are in a file, because there are as many as edges.
     dead_ends: Scratch,
-    /// Refused by the extract already, under this key.
+    /// What the extract refuses already, by key.
     said: FxHashSet<(&'static str, Refused)>,
     relations: Spool,
     next_id: i64,
@@ -71,12 +71,12 @@ impl<'s, 'r> Refusals<'s, 'r> {
         })
     }
 
-    /// Where ways must end.
+    /// The places at which ways must end.
     pub(super) fn cuts(&self) -> &Cuts {
         &self.cuts
     }
 
-    /// Where an edge lies, over these nodes; kept if a relation will speak of it.
+    /// Notes the ends and nodes of an edge, if a relation will name it.
     pub(super) fn lies(&mut self, edge: u32, ends: Ends, nodes: &[i64]) {
         if self.cuts.speaks_of(edge) {
             self.ends.insert(edge, ends);
@@ -86,7 +86,7 @@ impl<'s, 'r> Refusals<'s, 'r> {
         }
     }
 
-    /// Nobody turns back here.
+    /// Notes an end at which turning back is refused.
     pub(super) fn dead_end(&mut self, end: End) -> Result<(), ExportError> {
         for number in [end.way, end.node] {
             self.dead_ends.write_all(&number.to_le_bytes())?;
@@ -94,8 +94,8 @@ impl<'s, 'r> Refusals<'s, 'r> {
         Ok(())
     }
 
-    /// What the extract itself refuses. Valhalla's two ways of refusing a turn fail at different places: one does not stand for the
-    /// other. To all others a restriction of everybody is one of lorries.
+    /// Notes what a relation of the extract refuses. For Valhalla the two keys are kept apart, because they fail at different
+    /// places. For other readers a restriction of all vehicles counts as one of lorries.
     pub(super) fn hear(&mut self, relation: &Relation, texts: &Texts) {
         for key in [ALL, HGV] {
             if let Some(refused) = refused(relation, texts, key) {
@@ -104,7 +104,7 @@ impl<'s, 'r> Refusals<'s, 'r> {
         }
     }
 
-    /// Writes all of it, after the extract's own relations.
+    /// Writes all refusals, after the extract's own relations.
     pub(super) fn write(mut self, out: &mut Sink) -> Result<(), ExportError> {
         self.turning_back()?;
         self.turns()?;
@@ -118,7 +118,7 @@ impl<'s, 'r> Refusals<'s, 'r> {
     }
 
     fn turning_back(&mut self) -> Result<(), ExportError> {
-        // Valhalla obeys no restriction of lorries where it turns back for want of another way on.
+        // Valhalla ignores restrictions of lorries where turning back is the only way on.
         let key = if self.flavour == Flavour::Hgv { HGV } else { ALL };
         let mut bytes = [0; 16];
         for at in (0..self.dead_ends.written()).step_by(bytes.len()) {
@@ -143,16 +143,16 @@ impl<'s, 'r> Refusals<'s, 'r> {
         Ok(())
     }
 
-    /// From the last node of an edge into another edge.
+    /// Refuses a step from the last node of one edge into another edge.
     fn step(&mut self, [from, to]: [Ends; 2], word: &str) -> Result<(), ExportError> {
         let members = over(from[1].way, from[1].node, to[0].way);
-        // Valhalla obeys `restriction` into the first seven ways of a node only, and `restriction:hgv` not between two ways that meet
-        // at both ends; what neither refuses would have to be both.
+        // Valhalla obeys `restriction` only into the first seven ways of a node, and ignores `restriction:hgv` between two ways that
+        // meet at both ends. Both keys are written, so only a turn with both conditions stays open.
         let keys: &[&'static str] = if self.flavour == Flavour::Hgv { &[HGV] } else { &[ALL, HGV] };
         keys.iter().try_for_each(|key| self.relation(&members, key, word))
     }
 
-    /// Refuses further ahead what is too long for Valhalla.
+    /// Shortens sequences that are too long for Valhalla, by refusing them earlier.
     fn shorten(&mut self) -> Result<(), ExportError> {
         let most = |edges: &Vec<u32>| edges.iter().filter_map(|edge| self.between.get(edge)).map(|n| n.len() + 1).sum();
         if self.sequences.iter().map(most).all(|segments: usize| segments <= MOST_VIA_SEGMENTS) {
@@ -173,7 +173,7 @@ impl<'s, 'r> Refusals<'s, 'r> {
         Ok(())
     }
 
-    /// Of the nodes within sequences those at which any other way of the extract passes: it is read once more.
+    /// The nodes within sequences at which another way of the extract passes. The extract is read once more.
     fn shared_nodes(&self) -> Result<FxHashSet<i64>, ExportError> {
         let mut passed: FxHashMap<i64, u8> = self.between.values().flatten().map(|&node| (node, 0)).collect();
         let mut blobs = self.source.blobs("valhalla")?;
@@ -199,7 +199,7 @@ impl<'s, 'r> Refusals<'s, 'r> {
         let mut members = vec![(Kind::WAY, from[1].way, "from")];
         for [first, last] in between {
             members.push((Kind::WAY, first.way, "via"));
-            // Two where it is a loop.
+            // The edge has two ways if it is a loop.
             if last.way != first.way {
                 members.push((Kind::WAY, last.way, "via"));
             }
@@ -208,7 +208,7 @@ impl<'s, 'r> Refusals<'s, 'r> {
         self.relation(&members, if self.flavour == Flavour::Hgv { HGV } else { ALL }, "no_straight_on")
     }
 
-    /// Says it, if nobody did.
+    /// Adds a relation, unless the extract has the same refusal.
     fn relation(&mut self, members: &[Member], key: &'static str, word: &str) -> Result<(), ExportError> {
         if Refused::by(members.iter().copied()).is_some_and(|refused| self.said.contains(&(key, refused))) {
             return Ok(());
@@ -225,7 +225,7 @@ fn over(from: i64, via: i64, to: i64) -> [Member; 3] {
     [(Kind::WAY, from, "from"), (Kind::NODE, via, "via"), (Kind::WAY, to, "to")]
 }
 
-/// Where ways must end so that relations can speak of edges.
+/// The places at which ways must end so that relations can name edges.
 fn cuts(source: &Source<'_>, sequences: &[Vec<u32>]) -> Result<Cuts, ExportError> {
     let mut cuts = Cuts::none(source.permitted.edges.len());
     let mut database = source.database()?;

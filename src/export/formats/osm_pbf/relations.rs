@@ -1,4 +1,4 @@
-//! Relations: those of the extract name the parts of ways that were split, and new ones refuse turns.
+//! Relations. Those of the extract are changed to name the parts of split ways; new ones refuse turns.
 
 use osmpbfreader::osmformat::Relation;
 pub(super) use osmpbfreader::osmformat::relation::MemberType as Kind;
@@ -15,10 +15,10 @@ pub(super) struct PartEnds {
     pub(super) ends: [i64; 2],
 }
 
-/// By way: its parts, in way order; of split ways only.
+/// The parts of each split way, in way order.
 pub(super) type Splits = FxHashMap<i64, Vec<PartEnds>>;
 
-/// Puts parts in the place of split ways; whether there were any.
+/// Replaces split ways by their parts. Returns whether there were any.
 pub(super) fn name_parts(relation: &mut Relation, splits: &Splits, texts: &mut Texts) -> bool {
     let ids = ids(&relation.memids);
     let kinds: Vec<Kind> = relation.types.iter().map(EnumOrUnknown::enum_value_or_default).collect();
@@ -60,16 +60,16 @@ fn roles(relation: &Relation, texts: &Texts) -> Vec<String> {
     relation.roles_sid.iter().map(|&role| String::from_utf8_lossy(texts.text(role as u32)).into_owned()).collect()
 }
 
-/// What a relation refuses: from a way over a node or over ways into a way.
+/// A refusal of a relation: from a way, over a node or over ways, into a way.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) struct Refused {
     over_ways: bool,
-    /// In driving order.
+    /// The ids of the members in driving order.
     ids: Vec<i64>,
 }
 
 impl Refused {
-    /// By members with their roles; `None` if they are no restriction of one `from` and one `to`.
+    /// The refusal by members with these roles. `None` unless there is one `from` and one `to`.
     pub(super) fn by<'m>(members: impl Iterator<Item = (Kind, i64, &'m str)>) -> Option<Self> {
         let (mut from, mut via, mut to, mut over_ways) = (Vec::new(), Vec::new(), Vec::new(), false);
         for (kind, id, role) in members {
@@ -88,10 +88,10 @@ impl Refused {
     }
 }
 
-/// Keys that take something away from a restriction.
+/// Keys that limit a restriction.
 const BUT: [&str; 5] = ["except", "day_on", "day_off", "hour_on", "hour_off"];
 
-/// What a relation refuses always and without exception under this key, if it is so plain.
+/// What a relation refuses under this key, always and without exception. `None` if it does not.
 pub(super) fn refused(relation: &Relation, texts: &Texts, key: &str) -> Option<Refused> {
     let restriction = value(relation, texts, "type") == Some(b"restriction");
     let refuses = value(relation, texts, key).is_some_and(|word| word.starts_with(b"no_"));
@@ -103,7 +103,7 @@ pub(super) fn refused(relation: &Relation, texts: &Texts, key: &str) -> Option<R
     Refused::by(kinds.zip(ids).zip(&roles).map(|((kind, id), role)| (kind, id, role.as_str())))
 }
 
-/// Where one passes through a `via`: itself if it is a node, else the ends of the way, which are known if it was split.
+/// The nodes of a `via`: the node itself, or the ends of the way, which are known only if the way was split.
 fn via_nodes(id: i64, kind: Option<Kind>, splits: &Splits) -> Vec<i64> {
     match kind {
         Some(Kind::NODE) => vec![id],
@@ -115,14 +115,14 @@ fn via_nodes(id: i64, kind: Option<Kind>, splits: &Splits) -> Vec<i64> {
     }
 }
 
-/// The part at the `via`. Where that is not known the first one: a restriction over ways is written anew with the parts that it
-/// means.
+/// The part of a way at the `via`. If the nodes of the `via` are not known, the first part; a restriction over ways is written
+/// again with the right parts.
 fn touching(parts: &[PartEnds], via: &[i64]) -> i64 {
     let touches = |part: &&PartEnds| part.ends.iter().any(|end| via.contains(end));
     parts.iter().find(touches).or(parts.first()).map_or(0, |part| part.id)
 }
 
-/// Which word refuses a turn by so many degrees, positive left.
+/// The word that refuses a turn by this angle, degrees, positive to the left.
 pub(super) fn refusal_word(angle_deg: f64) -> &'static str {
     match angle_deg {
         a if a > 35.0 => "no_left_turn",

@@ -1,5 +1,5 @@
-//! The pass over the extract: nodes copied, ways tagged and split, relations naming the parts, new objects after those of their
-//! kind.
+//! Rewrites the extract in one pass: copies nodes, tags and splits ways, makes relations name the parts, and writes new objects
+//! after those of their kind.
 
 use osmpbfreader::osmformat::{HeaderBlock, PrimitiveBlock, PrimitiveGroup, Way};
 use protobuf::Message as _;
@@ -15,7 +15,7 @@ use crate::export::{ExportError, Place, Sink, Source};
 use crate::osm::pbf::copy::Contents;
 use crate::osm::pbf::write::zlib_blob;
 
-/// Ways with one of these keys may be roads to an engine.
+/// An engine may take a way with one of these keys for a road.
 const KEYS: [&[u8]; 3] = [b"highway", b"route", b"bridge"];
 
 /// Writes the extract again as the file `name` of an output.
@@ -61,7 +61,7 @@ struct Rewriter<'s, 'r> {
     refusals: Refusals<'s, 'r>,
     splits: Splits,
     new_ways: Spool,
-    /// Of the next new way.
+    /// Id of the next new way.
     next_id: i64,
     unclear: u64,
     stage: Stage,
@@ -106,7 +106,7 @@ impl Rewriter<'_, '_> {
         write_blob(&mut self.out, "OSMHeader", &zlib_blob(&bytes))
     }
 
-    /// Goes on to objects of a kind; when ways are over their new ones come.
+    /// Goes on to objects of a kind. Writes the new ways after the last way.
     fn reach(&mut self, stage: Stage) -> Result<(), ExportError> {
         if stage < self.stage {
             let detail =
@@ -148,7 +148,7 @@ impl Rewriter<'_, '_> {
         Ok(())
     }
 
-    /// Whether the way is another one now.
+    /// Tags and splits a way. Returns whether it was changed.
     fn way(&mut self, way: &mut Way, texts: &mut Texts, edges: &mut WayEdges<'_>) -> Result<bool, ExportError> {
         if way.id() >= FIRST_NEW_ID {
             let detail = format!("way {} has an id that new ways have: was it made by an export?", way.id());
@@ -174,7 +174,7 @@ impl Rewriter<'_, '_> {
         Ok(true)
     }
 
-    /// The parts' ids; the first keeps the way's.
+    /// The ids of the parts. The first part keeps the way's id.
     fn number(&mut self, way_id: i64, parts: &[Part], refs: &[i64]) -> Vec<i64> {
         let mut ids = vec![way_id];
         for _ in parts.iter().skip(1) {
@@ -190,7 +190,7 @@ impl Rewriter<'_, '_> {
         ids
     }
 
-    /// Tells on which ways edges lie of which relations will speak, and where nobody may turn back.
+    /// Notes the ends of the edges that relations will name, and the ends at which turning back is refused.
     fn lay(&mut self, pieces: &[Piece], parts: &[Part], ids: &[i64], refs: &[i64]) -> Result<(), ExportError> {
         for piece in pieces {
             let way = |within: &dyn Fn(&Part) -> bool| {
@@ -248,7 +248,7 @@ fn stage_of(group: &PrimitiveGroup) -> Stage {
     }
 }
 
-/// A part's references as the format has them: each less the one before.
+/// The references of a part in the format's form: differences from one to the next.
 fn steps(refs: &[i64], part: &Part) -> Vec<i64> {
     let mut last = 0;
     let step = |&node: &i64| node.wrapping_sub(std::mem::replace(&mut last, node));

@@ -1,10 +1,10 @@
-//! Where a way must be split: at changes of what is permitted, and at the ends of edges of which a relation speaks.
+//! Splits ways where the permits change, and at the ends of edges that a relation names.
 
 use super::tags::Said;
 use crate::export::permit::{Bits, Permitted};
 use crate::export::ways::Piece;
 
-/// A way as it is written: its references from one place to another.
+/// A part of a way as it is written: a range of the way's references.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Part {
     pub(super) first: usize,
@@ -14,23 +14,23 @@ pub(super) struct Part {
 
 /// Edges at whose ends a way must end: those of refused turns.
 pub(super) struct Cuts {
-    /// At the edge's first node, and at its last, in direction of travel.
+    /// By edge: whether a way must end at its first node, and at its last, in direction of travel.
     pub(super) at: [Bits; 2],
 }
 
 impl Cuts {
-    /// Of so many edges none.
+    /// No cuts, for this number of edges.
     pub(super) fn none(edges: usize) -> Self {
         Self { at: [Bits::unset(edges), Bits::unset(edges)] }
     }
 
-    /// Whether a relation will speak of it.
+    /// Whether a relation will name the edge.
     pub(super) fn speaks_of(&self, edge: u32) -> bool {
         self.at.iter().any(|bits| bits.get(edge))
     }
 
-    /// Whether a way must end at a piece's first node, and at its last. Where both directions are permitted turning back is refused,
-    /// at both ends.
+    /// Whether a way must end at a piece's first node, and at its last. If both directions are permitted, turning back is refused at
+    /// both ends, so the way must end at both.
     fn of(&self, piece: &Piece, permitted: [bool; 2]) -> [bool; 2] {
         let cut = |edge: Option<u32>, end: usize| {
             edge.is_some_and(|edge| self.at.get(end).is_some_and(|bits| bits.get(edge)))
@@ -40,10 +40,10 @@ impl Cuts {
     }
 }
 
-/// The parts of a way with these pieces and so many references; neighbours share their end.
+/// The parts of a way with these pieces and references. Neighbouring parts share a node.
 pub(super) fn parts(pieces: &[Piece], refs: &[i64], permitted: &Permitted, cuts: &Cuts) -> Vec<Part> {
     let mut out: Vec<Part> = Vec::new();
-    // Whether the part so far may not go on.
+    // Whether the last part must not be extended.
     let mut ended = false;
     let mut add = |part: Part, cut: [bool; 2]| {
         if part.first == part.last {
@@ -62,13 +62,13 @@ pub(super) fn parts(pieces: &[Piece], refs: &[i64], permitted: &Permitted, cuts:
     };
     let mut done = 0;
     for piece in pieces {
-        // Between pieces nodes are missing: nobody drives there.
+        // Between pieces the extract lacks nodes, so nothing is permitted there.
         add(Part { first: done, last: piece.first, said: Said::default() }, [false; 2]);
         let yes = piece.edges.map(|edge| edge.is_some_and(|edge| permitted.edges.get(edge)));
         let said = Said { permitted: yes, rsc_m: piece.rsc_m };
         let cut = cuts.of(piece, yes);
         match middle_of_loop(piece, refs).filter(|_| cut != [false; 2]) {
-            // The way comes back to where it begins: a relation could not tell its ends apart.
+            // The piece returns to its beginning. It is split in the middle, because a relation could not tell its ends apart.
             Some(middle) => {
                 add(Part { first: piece.first, last: middle, said }, [cut[0], true]);
                 add(Part { first: middle, last: piece.last, said }, [true, cut[1]]);
@@ -120,7 +120,7 @@ mod tests {
             spans(&pieces, &[9, 1, 2, 3, 8], &[0, 1], &cuts),
             [(0, 1, [false; 2]), (1, 2, [true, false]), (2, 3, [true, false]), (3, 4, [false; 2])]
         );
-        // Both directions permitted: turning back is refused at both ends.
+        // Both directions are permitted, so turning back is refused at both ends.
         let both = [piece(0, 1, [Some(0), Some(1)]), piece(1, 2, [Some(2), Some(3)])];
         assert_eq!(spans(&both, &[1, 2, 3], &[0, 1, 2, 3], &Cuts::none(10)).len(), 2);
     }

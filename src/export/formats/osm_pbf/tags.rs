@@ -1,7 +1,7 @@
-//! Which tags a road gets, by what is permitted on it.
+//! The tags of a road by its permits.
 //!
-//! A permit never opens what a tag closes: nothing is said in favour of the vehicle but in keys of netcert's own. What a refusal
-//! would contradict is kept under `netcert:was:…`.
+//! A permit never opens what a tag closes: only keys of netcert's own favour the vehicle. A tag that contradicts a refusal is kept
+//! under `netcert:was:…`.
 //!
 //! What closes a direction to Valhalla 3.9.1 (`lua/graph.lua`, `filter_tags_generic`), in the order of its rules:
 //!
@@ -11,14 +11,15 @@
 //! 4. `motor_vehicle:forward` sets its direction, or else `vehicle:forward` does; `backward` likewise.
 //! 5. `oneway=-1` exchanges the two directions.
 //!
-//! So a refused direction gets the tag of rule 4, beside `hgv=no` where both are refused, and rule 5 is kept from exchanging them.
+//! A refused direction therefore gets the tag of rule 4, and `hgv=no` if both directions are refused. A tag that would trigger rule
+//! 5 is moved away.
 
 use super::Flavour;
 
 /// A key and its value.
 pub(super) type Tag = (Vec<u8>, Vec<u8>);
 
-/// What is said of a stretch of road: permitted or not, and the least RSC, along the way and against it.
+/// The permits of a stretch of road: whether it is permitted, and the least RSC, along the way and against it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Said {
     pub(super) permitted: [bool; 2],
@@ -27,12 +28,12 @@ pub(super) struct Said {
 
 const DIRECTIONS: [&str; 2] = ["forward", "backward"];
 
-/// The tags of a stretch: `tags` with what is said of it.
+/// The tags of a stretch: `tags` with its permits.
 pub(super) fn with_permits(tags: &[Tag], said: Said, flavour: Flavour) -> Vec<Tag> {
     let mut out: Vec<Tag> = Vec::with_capacity(tags.len() + 6);
     for (key, value) in tags {
         if key.starts_with(b"netcert") {
-            continue; // of an earlier export
+            continue; // a tag of an earlier export
         }
         let gives_way = contradicts(key, said.permitted, flavour) || exchanges(key, value, said.permitted, flavour);
         let key = if gives_way { [b"netcert:was:", key.as_slice()].concat() } else { key.clone() };
@@ -61,7 +62,7 @@ pub(super) fn with_permits(tags: &[Tag], said: Said, flavour: Flavour) -> Vec<Ta
     out
 }
 
-/// Whether a key speaks of what is refused: then it gives way.
+/// Whether a key contradicts a refusal, so that its tag is moved away.
 fn contradicts(key: &[u8], permitted: [bool; 2], flavour: Flavour) -> bool {
     let Ok(key) = std::str::from_utf8(key) else { return false };
     let mut parts = key.split(':');
@@ -70,7 +71,7 @@ fn contradicts(key: &[u8], permitted: [bool; 2], flavour: Flavour) -> bool {
     let ours = subject == Some("hgv") || flavour == Flavour::Valhalla && subject == Some("motor_vehicle");
     let refused = match direction {
         Some(direction) => permitted.get(direction) == Some(&false),
-        // Without a direction it speaks of both, and gives way to the more special key; but not under a condition.
+        // A key without a direction applies to both, but a key with a direction overrides it, unless the key has a condition.
         None => {
             subject == Some("hgv")
                 && (permitted == [false; 2] || permitted != [true; 2] && key.ends_with(":conditional"))
@@ -79,7 +80,7 @@ fn contradicts(key: &[u8], permitted: [bool; 2], flavour: Flavour) -> bool {
     ours && refused
 }
 
-/// Whether a tag would make Valhalla take what is said of one direction for the other one.
+/// Whether a tag would make Valhalla exchange the permits of the two directions.
 fn exchanges(key: &[u8], value: &[u8], permitted: [bool; 2], flavour: Flavour) -> bool {
     flavour == Flavour::Valhalla && permitted[0] != permitted[1] && key == b"oneway" && value == b"-1"
 }

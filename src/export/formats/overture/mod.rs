@@ -2,10 +2,11 @@
 //! way, with connectors at its junctions, `access_restrictions` on the stretches that the vehicle may not use and
 //! `prohibited_transitions` for the turns that it may not make.
 //!
-//! Every rule is scoped to lorries at least as long as the vehicle; who is shorter is not spoken of. Ids are those of
-//! OpenStreetMap (`w` or `n` and the number), not of GERS. Memory holds one way; what is needed of other ways waits in a file.
+//! Every rule applies to lorries at least as long as the vehicle and says nothing about shorter ones. Ids are those of
+//! OpenStreetMap (`w` or `n` and the number), not of GERS. Memory holds one way; facts of other ways are in a temporary file.
 //!
-//! What the schema cannot express is refused: an arc of a roundabout that is not permitted by itself stays denied to passages that are.
+//! What the schema cannot express is refused: an arc of a roundabout that is not permitted by itself stays denied even to a
+//! permitted passage.
 
 mod segment;
 mod spots;
@@ -59,7 +60,7 @@ impl Target for Overture {
     }
 }
 
-/// The vehicle's length, to which all rules are scoped.
+/// The vehicle's length, metres, which is the scope of all rules.
 fn length_m(source: &Source<'_>) -> Result<f64, ExportError> {
     let definition = source.header.provenance.vehicle.to_string();
     let vehicle = Vehicle::from_json(&definition)
@@ -99,13 +100,13 @@ fn write_connectors(source: &Source<'_>, nodes: Sorted<NODE_BYTES>, place: &mut 
     end(sink)
 }
 
-/// Id and position.
+/// Bytes of an id and a position.
 const NODE_BYTES: usize = 16;
 
-/// Sorts by id.
+/// The record of a node, which sorts by id.
 fn node_record(node: i64, at: LonLat) -> [u8; NODE_BYTES] {
     let mut record = [0; NODE_BYTES];
-    // With its highest bit turned, a signed number sorts as bytes do.
+    // With its highest bit inverted, a signed number sorts as bytes.
     record[..8].copy_from_slice(&(node.cast_unsigned() ^ 1 << 63).to_be_bytes());
     record[8..12].copy_from_slice(&at.lon_e7.to_be_bytes());
     record[12..].copy_from_slice(&at.lat_e7.to_be_bytes());
@@ -119,11 +120,11 @@ fn node_of(record: &[u8; NODE_BYTES]) -> (i64, LonLat) {
     ((half ^ 1 << 63).cast_signed(), LonLat { lon_e7, lat_e7: (at as u32).cast_signed() })
 }
 
-/// What may not follow what, by the first edge.
+/// The transitions that are prohibited, by the first edge.
 struct Transitions {
-    /// From, to; both permitted, the turn not.
+    /// The edges of refused turns: from and to, both permitted.
     turns: std::iter::Peekable<Sorted<8>>,
-    /// The others of [`Source::sequences`], by their first edge; there are few.
+    /// The sequences of [`Source::sequences`], by their first edge. They are few.
     sequences: BTreeMap<u32, Vec<Vec<u32>>>,
 }
 
@@ -145,7 +146,7 @@ impl Transitions {
         Ok(Self { turns: turns.sorted()?.peekable(), sequences })
     }
 
-    /// What may not follow an edge, each as the edges after it. Edges come in order.
+    /// The prohibited sequences after an edge, each without that edge. Edges must come in order.
     fn of(&mut self, edge: u32) -> Result<Vec<Vec<u32>>, ExportError> {
         let mut out = Vec::new();
         let halves = |record: &[u8; 8]| {
@@ -199,7 +200,7 @@ impl Writer<'_, '_> {
         open.map_or(Ok(()), |done| self.write(&done))
     }
 
-    /// What may not follow a permitted edge that ends at a node.
+    /// The prohibited sequences after a permitted edge that ends at the node `end`.
     fn forbidden(&mut self, edge: u32, end: i64) -> Result<Vec<segment::Forbidden>, ExportError> {
         let mut out = Vec::new();
         for sequence in self.transitions.of(edge)? {

@@ -1,4 +1,4 @@
-//! One segment as the schema has it: a way or an unbroken chain of it, its stretches between junctions as linear references.
+//! One segment of the schema: a way or an unbroken chain of it. Stretches between junctions are linear references.
 //!
 //! Linear references are shares of the geodesic length on the WGS 84 ellipsoid
 //! (<https://docs.overturemaps.org/guides/transportation/linear-referencing>).
@@ -12,12 +12,12 @@ use crate::osm::facts::Direction;
 use crate::rows::EdgeRow;
 use crate::words::Named as _;
 
-/// For whom the rules are.
+/// The vehicles that the rules apply to.
 pub(super) struct Scope {
     pub(super) length_m: f64,
 }
 
-/// A sequence that may not follow: node, segment, heading on it.
+/// A prohibited sequence: for each step the node, the segment and the heading on it.
 pub(super) struct Forbidden {
     pub(super) steps: Vec<(i64, String, Direction)>,
 }
@@ -25,16 +25,16 @@ pub(super) struct Forbidden {
 /// A stretch between two junctions.
 pub(super) struct Piece {
     pub(super) shape_start: u32,
-    /// Its ends along the way.
+    /// The end nodes, in way order.
     nodes: [i64; 2],
-    /// Along the way.
+    /// The line, in way order.
     line: Vec<LonLat>,
-    /// By heading: what may not follow it; `None`: it may not be used that way itself, or not by anyone.
+    /// By heading: the prohibited sequences after it. `None` if the stretch may not be used in this heading.
     pub(super) permitted: [Option<Vec<Forbidden>>; 2],
 }
 
 impl Piece {
-    /// From the first of its edges; nothing is permitted yet.
+    /// A stretch made from the first of its edges. Nothing is permitted yet.
     pub(super) fn new(row: &EdgeRow, spot: &Spot) -> Self {
         let mut line = row.line.clone();
         let mut nodes = [row.from_node, row.to_node];
@@ -46,7 +46,7 @@ impl Piece {
     }
 }
 
-/// A way, or what the extract has of it without a gap.
+/// A way, or a part of it without a gap in the extract.
 pub(super) struct Segment {
     pub(super) way_id: i64,
     pub(super) chain: u32,
@@ -55,24 +55,24 @@ pub(super) struct Segment {
     pub(super) pieces: Vec<Piece>,
 }
 
-/// `w123`; `w123.1` for what comes after a gap.
+/// The id of a segment: `w123`, and `w123.1` for the part after a gap.
 pub(super) fn id(way_id: i64, chain: u32) -> String {
     if chain == 0 { format!("w{way_id}") } else { format!("w{way_id}.{chain}") }
 }
 
-/// `n123`.
+/// The id of a connector, such as `n123`.
 pub(super) fn connector_id(node: i64) -> String {
     format!("n{node}")
 }
 
 impl Segment {
-    /// Without stretches.
+    /// A segment without stretches.
     pub(super) fn new(row: &EdgeRow, spot: &Spot) -> Self {
         let Spot { way_id, chain, .. } = *spot;
         Self { way_id, chain, highway: row.highway.clone(), name: row.name.clone(), pieces: Vec::new() }
     }
 
-    /// Where it meets others.
+    /// The nodes at which the segment meets others.
     pub(super) fn nodes(&self) -> impl Iterator<Item = (i64, LonLat)> + '_ {
         self.pieces.iter().flat_map(|piece| {
             let ends = [piece.line.first(), piece.line.last()];
@@ -80,7 +80,7 @@ impl Segment {
         })
     }
 
-    /// A GeoJSON feature.
+    /// The segment as a GeoJSON feature.
     pub(super) fn feature(&self, scope: &Scope) -> Value {
         let at = self.at();
         let (class, link) = class(&self.highway);
@@ -123,13 +123,13 @@ impl Segment {
         })
     }
 
-    /// All positions; where two stretches meet, once.
+    /// All positions. A position at which two stretches meet comes once.
     fn line(&self) -> impl Iterator<Item = LonLat> + '_ {
         let begin = self.pieces.first().and_then(|piece| piece.line.first()).copied();
         begin.into_iter().chain(self.pieces.iter().flat_map(|piece| piece.line.iter().skip(1).copied()))
     }
 
-    /// Linear references of the stretches' ends, from 0 to 1: one more than there are stretches.
+    /// The linear references of the stretches' ends, from 0 to 1. There is one more than there are stretches.
     fn at(&self) -> Vec<f64> {
         let mut along_m = vec![0.0];
         let mut so_far_m = 0.0;
@@ -137,7 +137,7 @@ impl Segment {
             so_far_m += length_m(&piece.line);
             along_m.push(so_far_m);
         }
-        // A tenth of a millimetre on a way of 100 km; so that the text does not depend on the last bits.
+        // Rounded so that the text does not depend on the last bits. The step is 0.1 mm on a way of 100 km.
         let share = |m: f64| if so_far_m > 0.0 { (m / so_far_m * 1e9).round() / 1e9 } else { 0.0 };
         let mut at: Vec<f64> = along_m.into_iter().map(share).collect();
         if let Some(last) = at.last_mut() {
@@ -153,7 +153,7 @@ impl Segment {
         begin.into_iter().chain(ends).zip(at).map(connector).collect()
     }
 
-    /// Stretches that may not be used, neighbours as one rule; without a heading where it is the same for both.
+    /// The rules for stretches that may not be used. Neighbouring stretches share a rule, and a rule for both headings names none.
     fn denials(&self, at: &[f64], scope: &Scope) -> Vec<Value> {
         let denied = |heading: usize| -> Vec<[usize; 2]> {
             let mut ranges: Vec<[usize; 2]> = Vec::new();
@@ -180,7 +180,7 @@ impl Segment {
         forward.chain(backward.into_iter().map(|range| rule(range, Some(Direction::Backward)))).collect()
     }
 
-    /// What may not follow which stretch; turning back on the road never may.
+    /// The prohibited transitions of each stretch, including turning back on the road.
     fn transitions(&self, at: &[f64], scope: &Scope) -> Vec<Value> {
         let mut rules = Vec::new();
         for (i, piece) in self.pieces.iter().enumerate() {
@@ -209,7 +209,7 @@ impl Segment {
 }
 
 impl Scope {
-    /// Whom a rule concerns: lorries at least as long.
+    /// The condition of a rule: lorries at least as long as the vehicle.
     fn when(&self, heading: Option<Direction>) -> Value {
         let mut when = Map::new();
         if let Some(heading) = heading {
@@ -223,7 +223,8 @@ impl Scope {
     }
 }
 
-/// Left out where it is all of the segment, or where rounding leaves nothing between: then the rule holds for more than it must.
+/// Adds the range of a rule. The range is left out if it is the whole segment, or if rounding makes it empty; the rule then holds
+/// for the whole segment.
 fn between(rule: &mut Map<String, Value>, at: &[f64], [from, to]: [usize; 2]) {
     if let (Some(&from), Some(&to)) = (at.get(from), at.get(to))
         && from < to
@@ -238,7 +239,7 @@ fn length_m(line: &[LonLat]) -> f64 {
     line.windows(2).map(|pair| Geodesic.distance(point(&pair[0]), point(&pair[1]))).sum()
 }
 
-/// The schema's class, and whether it is a slip road. Busways have no class of their own there.
+/// The schema's class, and whether the road is a slip road. The schema has no class for busways.
 fn class(highway: &str) -> (&str, bool) {
     let (class, link) = highway.strip_suffix("_link").map_or((highway, false), |class| (class, true));
     (if class == "busway" { "unknown" } else { class }, link)

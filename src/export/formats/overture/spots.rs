@@ -1,5 +1,5 @@
-//! Where every edge lies: on which way, on which unbroken chain of it, in which direction. In a file by edge, so that rules of one
-//! segment can name others without the network in memory.
+//! The place of every edge: its way, the unbroken chain of the way, and its direction. The places are in a file by edge, so that
+//! rules of one segment can name other segments without the network in memory.
 
 use std::io::Write as _;
 
@@ -8,28 +8,28 @@ use crate::export::{ExportError, Source};
 use crate::osm::facts::Direction;
 use crate::rows::EdgeStep;
 
-/// Of one edge.
+/// The place of one edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Spot {
     pub(super) way_id: i64,
-    /// A way that the extract lacks a part of is several chains; they count from 0.
+    /// Index of the chain. A way with gaps in the extract has several chains.
     pub(super) chain: u32,
-    /// Edges of one stretch share it, whatever their direction.
+    /// Start of the shape, which the edges of a stretch in both directions share.
     pub(super) shape_start: u32,
     pub(super) heading: Direction,
-    /// The node where it ends, in direction of travel.
+    /// The node at the edge's end, in direction of travel.
     pub(super) end: i64,
 }
 
 const SPOT_BYTES: usize = 32;
 
-/// All of them.
+/// The places of all edges.
 pub(super) struct Spots {
     file: Scratch,
 }
 
 impl Spots {
-    /// Reads every edge once; the file is empty.
+    /// Reads every edge once. `file` must be empty.
     pub(super) fn create(source: &Source<'_>, mut file: Scratch) -> Result<Self, ExportError> {
         let mut database = source.database()?;
         source.reporter.begin("ways", source.permitted.edges.len() as u64);
@@ -41,7 +41,7 @@ impl Spots {
         Ok(Self { file })
     }
 
-    /// Of an edge of the network.
+    /// The place of an edge of the network.
     pub(super) fn get(&mut self, edge: u32) -> Result<Spot, ExportError> {
         let mut bytes = [0; SPOT_BYTES];
         self.file.read_at(u64::from(edge) * SPOT_BYTES as u64, &mut bytes)?;

@@ -1,0 +1,137 @@
+//! What a sweep leaves behind: the rows of a block of head stations, and the least leeways over all of them.
+
+use super::lanes::{LANES, V};
+
+/// Head stations per block.
+pub(super) const BLOCK: usize = 32;
+/// Blocks behind a bend in which the filter still holds much of what it gathered in the bend.
+const FADING_BLOCKS: usize = 3;
+/// Hinge margin where the recursion of the bounds does not close.
+pub(super) const NOT_CLOSED_RAD: f64 = -9.0;
+/// Number of rows that the motion writes per unit, one per field.
+pub(super) const FIELDS: usize = 11;
+/// Leeway at a station that no body point visits.
+pub(super) const UNVISITED_M: f64 = 1e9;
+/// Leeway of a point without a foot: nothing is certified there.
+pub(super) const LOST_M: f64 = -1e3;
+
+/// Indices of the rows of a unit's block.
+pub(super) mod row {
+    /// Axle position and heading.
+    pub(crate) const X: usize = 0;
+    pub(crate) const Y: usize = 1;
+    pub(crate) const UX: usize = 2;
+    pub(crate) const UY: usize = 3;
+    /// Curvature of the axle's path, signed, 1/m.
+    pub(crate) const CURVATURE: usize = 4;
+    /// Change of the curvature per metre, 1/m².
+    pub(crate) const JERK: usize = 5;
+    /// Y − Y⁰ and Ẽ − E⁰ (docs/proof.md, section 5).
+    pub(crate) const EXTRA_AXLE: usize = 6;
+    pub(crate) const EXTRA_COUPLING: usize = 7;
+    /// R1/L
+    pub(crate) const REMAINDER: usize = 8;
+    pub(crate) const HINGE: usize = 9;
+    /// Square of the axle's way over the step, m². Behind a hitch that swings the axle it exceeds the square of the
+    /// spacing.
+    pub(crate) const WAY2: usize = 10;
+}
+
+/// Writes a value with vehicles in lanes to the vehicles' own rows.
+#[inline(always)]
+pub(super) fn store(rows: &mut [f64], unit: usize, field: usize, k: usize, value: V) {
+    for lane in 0..LANES {
+        rows[((unit * LANES + lane) * FIELDS + field) * BLOCK + k] = value.0[lane];
+    }
+}
+
+/// Eight foot stations: consecutive ones (`Run`, the first) or any (`Each`).
+#[derive(Clone, Copy)]
+pub(super) enum Feet {
+    Run(usize),
+    Each([usize; LANES]),
+}
+
+impl Feet {
+    #[inline(always)]
+    pub(super) fn station(self, lane: usize) -> usize {
+        match self {
+            Self::Run(first) => first + lane,
+            Self::Each(feet) => feet[lane],
+        }
+    }
+
+    /// The first and the last of the eight stations.
+    #[inline(always)]
+    pub(super) fn range(self) -> (usize, usize) {
+        match self {
+            Self::Run(first) => (first, first + LANES - 1),
+            Self::Each(feet) => {
+                feet.iter().fold((usize::MAX, 0), |(first, last), &foot| (first.min(foot), last.max(foot)))
+            }
+        }
+    }
+}
+
+/// Least leeways and margins at every extended station, for one vehicle.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Minima {
+    /// Tagged (see [`super::lanes::V::tagged`]) with `unit · 16 + point`.
+    pub(super) left: Vec<f64>,
+    pub(super) right: Vec<f64>,
+    /// As `left` and `right`, for sides between two of their points; at marked stations only.
+    pub(super) mark_left: Vec<f64>,
+    pub(super) mark_right: Vec<f64>,
+    /// Least hinge margin by station of the steer axle, radians, tagged with the unit.
+    pub(super) hinge: Vec<f64>,
+    /// By station of the steer axle: first and last station under any body point.
+    pub(super) under: Vec<[u32; 2]>,
+    /// Lateral distance of the last axle from the steer path, metres.
+    pub(super) offset: Vec<f64>,
+    /// By block of head stations: the first unit for which the adjoint is worth its time.
+    pub(super) loose: Vec<usize>,
+}
+
+impl Minima {
+    pub(super) fn new(stations: usize) -> Self {
+        Self {
+            left: vec![UNVISITED_M; stations],
+            right: vec![UNVISITED_M; stations],
+            mark_left: vec![UNVISITED_M; stations],
+            mark_right: vec![UNVISITED_M; stations],
+            hinge: vec![UNVISITED_M; stations],
+            under: vec![[u32::MAX, 0]; stations],
+            offset: vec![0.0; stations],
+            loose: vec![usize::MAX; stations / BLOCK + 2],
+        }
+    }
+
+    /// Minima of a cancelled sweep: nothing fits anywhere, so a caller that does not check for cancellation gets no
+    /// false `safe`.
+    pub(super) fn lost(stations: usize) -> Self {
+        let mut lost = Self::new(stations);
+        (0..stations).for_each(|k| lost.lose(k));
+        lost
+    }
+
+    pub(super) fn lose(&mut self, k: usize) {
+        self.hinge[k] = V::splat(NOT_CLOSED_RAD).tagged(0).0[0];
+        [self.left[k], self.right[k]] = [V::splat(LOST_M).tagged(0).0[0]; 2];
+    }
+
+    /// Records the stations under a body point at eight stations of the steer axle, from `head` on.
+    #[inline(always)]
+    pub(super) fn pass(&mut self, head: usize, feet: Feet) {
+        for (lane, [first, last]) in self.under[head..head + LANES].iter_mut().enumerate() {
+            let foot = feet.station(lane) as u32;
+            (*first, *last) = ((*first).min(foot), (*last).max(foot));
+        }
+    }
+
+    /// Marks a bend, and some blocks behind it: what the filter gathered in the bend takes that long to fade.
+    pub(super) fn note_loose(&mut self, head: usize, first: usize) {
+        for block in self.loose.iter_mut().skip(head / BLOCK).take(1 + FADING_BLOCKS) {
+            *block = first.min(*block);
+        }
+    }
+}

@@ -1,0 +1,278 @@
+//! One unit's step: what it adds to the bounds of the unit ahead (docs/proof.md, sections 3 and 5).
+
+use super::lanes::{ONE, V, ZERO};
+use super::model::MAX_UNITS;
+
+/// Bounds beyond this (metres, radians) bound nothing any more.
+pub(super) const MOST: f64 = 100.0;
+
+/// Constants of one unit across the vehicles. A vehicle without this unit has a harmless stand-in.
+#[derive(Clone, Copy)]
+pub(super) struct UnitLanes {
+    /// 1 where the vehicle has this unit, else 0.
+    pub(super) present: V,
+    pub(super) length: V,
+    pub(super) inverse_length: V,
+    /// L + d
+    pub(super) reach: V,
+    /// |d|
+    pub(super) hitch: V,
+    /// d/L
+    pub(super) ratio: V,
+    pub(super) sway: V,
+    pub(super) max_articulation: V,
+    /// At the group's γ, on the straight: bounds of heading error, axle deviation and (hinge by hinge) coupling
+    /// deviation.
+    pub(super) heading: V,
+    pub(super) axle: V,
+    pub(super) coupling: V,
+    /// What the second order adds to `axle` on a straight.
+    pub(super) settled: V,
+}
+
+/// One unit's step, as its tubes need it.
+#[derive(Clone, Copy)]
+pub(super) struct Step {
+    pub(super) moved: V,
+    /// Arc length of the axle, metres.
+    pub(super) advance: V,
+    /// |sin|, cos, |tan| and 1/cos of the angle from the heading to the chord, before the step.
+    pub(super) sine: V,
+    pub(super) cosine: V,
+    pub(super) tangent: V,
+    pub(super) secant: V,
+    /// tan δ halfway through the step, signed.
+    pub(super) mid_tangent: V,
+    pub(super) hitch_cosine: V,
+    pub(super) path_curvature: V,
+    /// Assumed deviation of the coupling for what [`chord_lag`] leaves, metres.
+    pub(super) chord_rest: V,
+}
+
+impl Step {
+    pub(super) const NONE: Step = Step {
+        moved: ZERO,
+        advance: ZERO,
+        sine: ZERO,
+        cosine: ZERO,
+        tangent: ZERO,
+        secant: ZERO,
+        mid_tangent: ZERO,
+        hitch_cosine: ZERO,
+        path_curvature: ZERO,
+        chord_rest: ZERO,
+    };
+
+    /// A metre straight on.
+    pub(super) const STRAIGHT: Step =
+        Step { moved: ONE, advance: ONE, cosine: ONE, secant: ONE, hitch_cosine: ONE, ..Self::NONE };
+}
+
+/// The recursion of what curvature adds (docs/proof.md, section 5) over one step, front to rear.
+pub(super) struct Filter {
+    /// E − E⁰ of the next coupling.
+    pub(super) coupling: V,
+    hitch_cosine: V,
+    /// 1 over the reference arc length, which is halfway between the fastest axle's and the slowest axle's.
+    per_reference: V,
+}
+
+/// Bounds at a unit's coupling in a step.
+pub(super) struct Coupled {
+    /// Y − Y⁰ when the step begins.
+    y: V,
+    /// Ẽ − E⁰
+    pub(super) extra: V,
+    /// A
+    pub(super) heading: V,
+}
+
+impl Filter {
+    #[inline(always)]
+    pub(super) fn begin(chain: &[UnitLanes], steps: &[Step; MAX_UNITS]) -> Self {
+        let (mut least, mut most) = (steps[0].advance, steps[0].advance);
+        for (step, of) in steps.iter().zip(chain).skip(1) {
+            // A stand-in must not count: a certificate depends on no other vehicle of the group.
+            let advance = steps[0].advance + of.present * (step.advance - steps[0].advance);
+            least = least.min(advance);
+            most = most.max(advance);
+        }
+        Self {
+            coupling: chord_bulge(&steps[0]),
+            hitch_cosine: V::splat(1.0),
+            per_reference: V::splat(2.0) / (least + most).max(V::splat(1e-12)),
+        }
+    }
+
+    /// `y` is the unit's Y − Y⁰ when the step begins.
+    #[inline(always)]
+    pub(super) fn coupled(&self, of: &UnitLanes, step: &Step, y: V) -> Coupled {
+        // η: relative growth of the coupling's deviation against the straight.
+        let eta = (step.secant - 1.0).max((self.hitch_cosine * step.secant - 1.0).abs());
+        let extra = (self.coupling + eta * (of.coupling + self.coupling)).min(V::splat(MOST));
+        let heading = (of.heading + (extra + y) * of.inverse_length).min(V::splat(MOST));
+        Coupled { y, extra, heading }
+    }
+
+    /// Y − Y⁰ at the end of the step, from the remainder z.
+    #[inline(always)]
+    pub(super) fn grown(&self, of: &UnitLanes, step: &Step, coupled: &Coupled, z: V) -> V {
+        let rho = (step.advance * self.per_reference - 1.0).abs();
+        let input = coupled.extra + z + rho * of.length * (coupled.heading + of.sway);
+        // y' = (input − y)/L. Growth uses the coupling's arc length, decay the axle's, which is shorter.
+        let (pn, pd) = decay(step.moved * of.inverse_length);
+        let change = (input - coupled.y) * (V::splat(1.0) - pn / pd);
+        (coupled.y + change.max(change * step.cosine.max(ZERO))).min(V::splat(MOST))
+    }
+
+    /// Continues at the next coupling.
+    #[inline(always)]
+    pub(super) fn pass_on(&mut self, of: &UnitLanes, step: &Step, coupled: &Coupled, y: V, zh: V) {
+        let next = (of.ratio + 1.0).abs() * y + of.ratio.abs() * coupled.extra + zh;
+        self.coupling = next.min(V::splat(MOST));
+        self.hitch_cosine = step.hitch_cosine;
+    }
+
+    /// A unit's whole step with known second order and bounded heading. Returns Y − Y⁰ at its end.
+    #[inline(always)]
+    pub(super) fn step(&mut self, of: &UnitLanes, step: &Step, mut coupled: Coupled, a: V, z: V, zh: V) -> V {
+        coupled.heading = coupled.heading.min(a);
+        let coupled = &coupled;
+        let extra = self.grown(of, step, coupled, z);
+        self.pass_on(of, step, coupled, coupled.y.max(extra), zh);
+        extra
+    }
+}
+
+/// Share of the chords' turn by which a unit turns less along chords than along the curve through their ends. `x` is
+/// chord over unit length. The share is x²/12 with its next order (docs/proof.md, section 2).
+#[inline(always)]
+pub(super) fn chord_lag(x: V) -> V {
+    x * x / (x * 6.0 + 12.0)
+}
+
+/// Largest distance of the plan from its chord, κℓ²/8: the plan is a smooth curve through the vertices.
+#[inline(always)]
+pub(super) fn chord_bulge(step: &Step) -> V {
+    step.path_curvature * step.moved * step.moved * 0.125
+}
+
+/// Second-order remainders of the coupling's relation (R1) and of the axle's motion (z). `a` bounds the heading, `axle`
+/// the axle's deviation, `coupled` the coupling's deviation over cos δ.
+#[inline(always)]
+pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) -> (V, V) {
+    let a2 = a * a;
+    let lean = of.length * a;
+    let own = step.tangent * of.length * a2 * 0.5 + of.length * a2 * a * (1.0 / 6.0);
+    let bent = |across: V| {
+        let swing = across * step.sine + lean * a * 0.5;
+        own + step.path_curvature * step.secant * swing * swing * 0.5
+    };
+    // y + Lα equals the coupling's deviation, except for the remainder itself.
+    let across = axle + lean;
+    let r1 = bent(across.min(coupled + bent(across)));
+    let slip = a + of.sway;
+    let slip3 = slip_tangent_excess(slip);
+    (r1, r1 + step.tangent * axle * (slip + slip3) + of.length * slip3)
+}
+
+/// A bound of the heading with R1 (`L α = e/cos δ − y + R`), from its first-order bound. The second value is negative
+/// if the bound does not reproduce itself.
+#[inline(always)]
+pub(super) fn heading(of: &UnitLanes, step: &Step, first_order: V, axle: V, coupled: V) -> (V, V) {
+    let with = |more: V| (first_order + more).min(V::splat(MOST));
+    let implied = |more: V| remainder(of, step, with(more), axle, coupled).0 * of.inverse_length;
+    let first = implied(ZERO);
+    let second = implied(first);
+    let third = implied(second);
+    // Each growth is less than the one before: this covers the rest of a series that at least halves, and a little
+    // more.
+    let more = third + (third - second) * 1.5;
+    (with(more), more - implied(more))
+}
+
+/// Second-order remainder of the next coupling, with the foot shift against its follower.
+#[inline(always)]
+pub(super) fn hitch_remainder(
+    of: &UnitLanes,
+    step: &Step,
+    follower: Option<(&UnitLanes, &Step)>,
+    a: V,
+    axle: V,
+    r1: V,
+    straying: &Straying,
+) -> V {
+    let ratio = of.ratio.abs();
+    let hitch_tangent = step.tangent * ratio;
+    let hitch_sine = hitch_tangent * step.hitch_cosine;
+    let reach = axle + of.hitch * a;
+    let swing = reach * hitch_sine;
+    let own = ratio * r1
+        + hitch_sine * of.hitch * a * a * 0.5
+        + step.path_curvature.max(step.tangent * of.inverse_length) * swing * swing * 0.5;
+    let Some((next, behind)) = follower else { return own };
+    own + behind.chord_rest
+        + reach * (behind.tangent + hitch_tangent) * (straying.slope + straying.rough * next.inverse_length * 2.0)
+}
+
+/// How fast a coupling's deviation may change along its path: the slope of the part that has passed through axles, and
+/// the size of the steer axle's deviation that has passed through none.
+#[derive(Clone, Copy)]
+pub(super) struct Straying {
+    slope: V,
+    rough: V,
+}
+
+impl Straying {
+    #[inline(always)]
+    pub(super) fn of_the_steer_axle(rough: V) -> Self {
+        Self { slope: ZERO, rough }
+    }
+
+    #[inline(always)]
+    pub(super) fn next(self, of: &UnitLanes, step: &Step, a: V) -> Self {
+        let through = of.ratio.abs() * step.secant;
+        Self { slope: (of.ratio + 1.0).abs() * (a + of.sway) + through * self.slope, rough: through * self.rough }
+    }
+}
+
+/// Negative where the bounds do not hold. They hold while |δ| + A + σ < 90°, so cos δ > sin(A + σ), and while A + σ ≤
+/// 0.6, which the series of the tangent needs.
+#[inline(always)]
+pub(super) fn validity(of: &UnitLanes, step: &Step, a: V) -> V {
+    let slip = a + of.sway;
+    (step.cosine - slip).min(V::splat(0.6) - slip)
+}
+
+/// Largest heading difference of a path between a unit's own foot and its coupling's foot, if the coupling deviates by
+/// `coupling`.
+#[inline(always)]
+pub(super) fn foot_shift(of: &UnitLanes, step: &Step, coupling: V) -> V {
+    coupling * step.sine * step.tangent * of.inverse_length
+}
+
+/// Margin to the limit of the hinge ahead of a unit, less nominal articulation (`joint`), heading errors and foot
+/// shifts.
+#[inline(always)]
+pub(super) fn hinge_margin(of: &UnitLanes, joint: V, ahead: V, own_shift: V) -> V {
+    of.max_articulation - joint - ahead - own_shift
+}
+
+/// exp(−x) as a fraction, by the square of the Padé form (3,3) at x/2. The error is 3e-8 at x = 0.8; the form is
+/// monotone up to x = 9.
+#[inline(always)]
+pub(super) fn decay(x: V) -> (V, V) {
+    let x = x * 0.5;
+    let x2 = x * x;
+    let even = x2 * 12.0 + 120.0;
+    let odd = x * (x2 + 60.0);
+    let (n, d) = (even - odd, even + odd);
+    (n * n, d * d)
+}
+
+/// tan x − x for 0 ≤ x ≤ 0.6, never too small.
+#[inline(always)]
+fn slip_tangent_excess(x: V) -> V {
+    let x2 = x * x;
+    x * x2 * ((x2 * 0.07 + 2.0 / 15.0) * x2 + 1.0 / 3.0)
+}
