@@ -40,13 +40,16 @@ CREATE TABLE road (
     section_forward INTEGER NOT NULL REFERENCES section (section_no),
     section_backward INTEGER NOT NULL REFERENCES section (section_no),
     legal_forward INTEGER NOT NULL REFERENCES legal (legal_no),
-    legal_backward INTEGER NOT NULL REFERENCES legal (legal_no)
+    legal_backward INTEGER NOT NULL REFERENCES legal (legal_no),
+    maxspeed_forward_kmh INTEGER,
+    maxspeed_backward_kmh INTEGER
 );
 
 -- One row per directed edge; `geom` runs in direction of travel. `edge_id` is stable from extract to extract, `fid` is
 -- not. Limits are those of the way and of its nodes on this edge together. `min_radius_m` is NULL on a straight and
 -- where no corridor could be laid (then `centreline_deviation_m` is NULL too). `width_source` belongs to
--- `lane_width_m`. `barred`: a barrier on it stops heavy vehicles; `cut`: the extract ends on it.
+-- `lane_width_m`. `maxspeed_kmh`: the lowest tagged limit for heavy vehicles. `barred`: a barrier on it stops heavy
+-- vehicles; `cut`: the extract ends on it.
 CREATE TABLE edge (
     fid INTEGER PRIMARY KEY NOT NULL,
     edge_id INTEGER NOT NULL,
@@ -62,6 +65,7 @@ CREATE TABLE edge (
     oneway TEXT NOT NULL,
     left_hand_traffic BOOLEAN NOT NULL,
     lanes INTEGER,
+    maxspeed_kmh INTEGER,
     lane_width_m DOUBLE,
     width_source TEXT,
     direction_width_m DOUBLE,

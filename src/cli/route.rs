@@ -34,7 +34,7 @@ Examples:
   netcert verify certificate.json
 
 The vehicle is straight where the route begins. The search never turns back on the road and ignores
-traffic. Times come from speeds by class of road (data/speeds.toml). The exit status is 0 even if
+traffic. Times are by class of road (data/speeds.toml) and tagged limits. The exit status is 0 even if
 there is no certified route; read `routes` in JSON.")]
 pub(crate) struct Route {
     #[command(flatten)]
@@ -173,7 +173,7 @@ fn tell(out: &mut dyn Write, inputs: &RoutingInputs, answer: &Answer) -> std::io
     let policy = inputs.settings().policy.name();
     let scope = format!(
         "Within the stated model, widths and error bounds ({policy} policy, every turn's kerbs as the map or assumptions have \
-         them); no permit. Times are by class of road."
+         them); no permit. Times are by class of road and tagged limits."
     );
     writeln!(out, "{}", wrapped(&scope, ""))
 }

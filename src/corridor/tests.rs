@@ -49,6 +49,7 @@ fn network(edges: &[(Vec<[f64; 2]>, CrossSection)], closed: bool) -> (Network, S
             left_hand_traffic: false,
             sections: [*section; 2],
             legal: [Legal::default(); 2],
+            max_speed_km_h: [None; 2],
         });
         n.edges.push(Edge {
             id: i as i64 + 1,

@@ -159,6 +159,7 @@ fn road(way: &Way, place: &Place, sections: [CrossSection; 2]) -> Road {
         left_hand_traffic: place.left_hand_traffic,
         sections,
         legal: [facts.legal_forward, facts.legal_backward],
+        max_speed_km_h: facts.max_speed_km_h,
     }
 }
 

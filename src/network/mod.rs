@@ -18,6 +18,7 @@ mod splits;
 mod stroke;
 mod vertices;
 
+use std::num::NonZeroU8;
 use std::ops::Range;
 
 pub use account::NetworkAccount;
@@ -59,6 +60,8 @@ pub struct Road {
     pub sections: [CrossSection; 2],
     /// Limits and access for travel along the node order, and against it.
     pub legal: [Legal; 2],
+    /// Lowest tagged speed limit for heavy vehicles along the node order, and against it, km/h. No verdict depends on it.
+    pub max_speed_km_h: [Option<NonZeroU8>; 2],
 }
 
 /// A directed edge of the network.

@@ -1,5 +1,5 @@
-//! The cost of a stretch of road: time by class of road (`data/speeds.toml`), or distance. Costs are whole numbers, so that sums
-//! do not depend on their order.
+//! The cost of a stretch of road: time by class of road (`data/speeds.toml`) and tagged limits, or distance. Costs are whole
+//! numbers, so that sums do not depend on their order.
 
 use std::collections::BTreeMap;
 
@@ -95,7 +95,9 @@ impl Speeds {
                 let road = network.road(edge);
                 let m_s = RoadClass::ALL.iter().zip(self.m_s).find(|(class, _)| **class == road.class);
                 let m_s = m_s.map_or(self.m_s[0], |(_, m_s)| m_s);
-                1e3 * length_m / (m_s * if road.link { self.link_share } else { 1.0 })
+                let m_s = m_s * if road.link { self.link_share } else { 1.0 };
+                let limit = road.max_speed_km_h[edge.direction as usize];
+                1e3 * length_m / limit.map_or(m_s, |km_h| m_s.min(f64::from(km_h.get()) / 3.6))
             }
         };
         (cost.ceil() as u64).max(1)

@@ -28,6 +28,7 @@ pub struct EdgeRow {
     pub width_m: Option<f64>,
     pub width_source: Option<WidthSource>,
     pub min_radius_m: Option<f64>,
+    pub maxspeed_kmh: Option<u8>,
     /// The certificate of the query's vehicle under that policy.
     pub certificate: CertificateRow,
     /// The map's line in direction of travel.
@@ -36,7 +37,7 @@ pub struct EdgeRow {
 
 impl EdgeRow {
     /// The columns of [`Self::cells`].
-    pub const COLUMNS: [Column; 23] = {
+    pub const COLUMNS: [Column; 24] = {
         let [verdict, reason, rsc, rsc_published, hinge_margin, shrink, limiting_s, limiting_unit, limiting_side] =
             CertificateRow::COLUMNS;
         [
@@ -52,6 +53,7 @@ impl EdgeRow {
             ("width_m", Real),
             ("width_source", Text),
             ("min_radius_m", Real),
+            ("maxspeed_kmh", Integer),
             ("vehicle_id", Text),
             ("corridor", Text),
             verdict,
@@ -84,6 +86,7 @@ impl EdgeRow {
             Cell::Real(self.width_m),
             Cell::Text(self.width_source.map(WidthSource::name)),
             Cell::Real(self.min_radius_m),
+            Cell::Integer(self.maxspeed_kmh.map(i64::from)),
             Cell::Text(Some(vehicle)),
             Cell::Text(Some(policy.name())),
             verdict,
@@ -115,6 +118,7 @@ pub struct EdgeFacts {
     pub name: Option<String>,
     pub reference: Option<String>,
     pub lanes: Option<u8>,
+    pub maxspeed_kmh: Option<u8>,
     pub length_m: f64,
     /// The width in metres and its source, by policy.
     pub widths: [(Policy, Option<f64>, Option<WidthSource>); 3],

@@ -22,7 +22,7 @@ impl Database {
                    length_m, lane_width_m, width_source, direction_width_m, direction_width_source, \
                    carriageway_width_m, carriageway_width_source, min_radius_m, centreline_deviation_m, max_height_m, \
                    max_weight_t, max_axle_load_t, max_length_m, max_width_m, unreadable_limits, hgv, motor_vehicle, \
-                   barred, cut, geom FROM edge WHERE edge_id = ?";
+                   barred, cut, geom, maxspeed_kmh FROM edge WHERE edge_id = ?";
         self.session.run(async |c| {
             let row = sqlx::query(sql).bind(edge_id).fetch_optional(c).await?;
             row.as_ref().map(facts).transpose()
@@ -47,6 +47,7 @@ fn facts(row: &SqliteRow) -> Sql<EdgeFacts> {
         name: row.try_get(8)?,
         reference: row.try_get(9)?,
         lanes: row.try_get(10)?,
+        maxspeed_kmh: row.try_get(31)?,
         length_m: row.try_get(11)?,
         widths: [width(Policy::Lane, 12)?, width(Policy::Direction, 14)?, width(Policy::Carriageway, 16)?],
         min_radius_m: row.try_get(18)?,

@@ -182,6 +182,7 @@ fn road(row: &SqliteRow, sections: &[CrossSection], legals: &[Legal], strings: &
         left_hand_traffic: row.try_get(9)?,
         sections: [section(10)?, section(11)?],
         legal: [legal(12)?, legal(13)?],
+        max_speed_km_h: [row.try_get(14)?, row.try_get(15)?],
     })
 }
 

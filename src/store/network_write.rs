@@ -34,7 +34,7 @@ pub(super) async fn write(
 async fn roads(c: &mut SqliteConnection, network: &Network) -> Sql<()> {
     let mut sections = Distinct::new("section", 10);
     let mut legals = Distinct::new("legal", 9);
-    let mut bulk = Bulk::new("road", 14);
+    let mut bulk = Bulk::new("road", 16);
     for (no, road) in (1_i64..).zip(&network.roads) {
         let mut section = [0; 2];
         let mut legal = [0; 2];
@@ -56,6 +56,9 @@ async fn roads(c: &mut SqliteConnection, network: &Network) -> Sql<()> {
         for no in section.into_iter().chain(legal) {
             bulk.add(no)?;
         }
+        for limit in road.max_speed_km_h {
+            bulk.add(limit)?;
+        }
         bulk.end_row(c).await?;
     }
     sections.bulk.finish(c).await?;
@@ -64,7 +67,7 @@ async fn roads(c: &mut SqliteConnection, network: &Network) -> Sql<()> {
 }
 
 async fn edges(c: &mut SqliteConnection, network: &Network, measures: &[EdgeMeasure]) -> Sql<Vec<Bounds>> {
-    let mut bulk = Bulk::new("edge", 36);
+    let mut bulk = Bulk::new("edge", 37);
     let mut boxes = Vec::with_capacity(network.edges.len());
     let mut line = Vec::new();
     let starts = shape_starts(network)?;
@@ -132,6 +135,7 @@ fn add_road_columns(bulk: &mut Bulk, network: &Network, road: &Road, edge: &Edge
     bulk.add(road.oneway.name())?;
     bulk.add(road.left_hand_traffic)?;
     bulk.add(road.lanes)?;
+    bulk.add(road.max_speed_km_h[edge.direction as usize])?;
     let section = &road.sections[edge.direction as usize];
     for strip in [section.lane, section.direction, section.carriageway] {
         // People read this width, so it is rounded to millimetres. Certificates use the strip's edges in `section`.

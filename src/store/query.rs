@@ -148,7 +148,7 @@ fn statement(
     let [width, source] = width_columns(options.policy);
     let mut sql = format!(
         "SELECT c.fid, e.edge_id, e.way_id, e.from_node, e.to_node, e.direction, e.highway, e.name, e.ref, e.length_m, \
-         e.{width}, e.{source}, e.min_radius_m, e.geom, {columns} \
+         e.{width}, e.{source}, e.min_radius_m, e.geom, e.maxspeed_kmh, {columns} \
          FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
          WHERE c.vehicle_no = ? AND c.corridor_no = ?",
         columns = numbers::COLUMNS
@@ -207,7 +207,8 @@ fn edge_row(row: &SqliteRow) -> Sql<EdgeRow> {
         width_m: row.try_get(10)?,
         width_source: word_or_none(row, 11)?,
         min_radius_m: row.try_get(12)?,
-        certificate: numbers::read(row, 14, || format!("edge {fid}"))?,
+        maxspeed_kmh: row.try_get(14)?,
+        certificate: numbers::read(row, 15, || format!("edge {fid}"))?,
         line: line(row, 13, || format!("edge {fid}"))?,
     })
 }

@@ -60,6 +60,7 @@ fn road(way_id: i64, section: CrossSection) -> Road {
         left_hand_traffic: false,
         sections: [section; 2],
         legal: [Legal::default(); 2],
+        max_speed_km_h: [None; 2],
     }
 }
 

@@ -71,6 +71,24 @@ fn what_the_writer_writes_comes_back() {
 }
 
 #[test]
+fn speeds_that_are_not_read_are_counted_and_end_nothing() {
+    let tagged = |id, key, value| way(id, &[1, 2], &[("highway", "primary"), (key, value)]);
+    let ways = [
+        tagged(1, "maxspeed", "50"),
+        tagged(2, "maxspeed", "50;70"),
+        tagged(3, "maxspeed:hgv", "fast"),
+        tagged(4, "maxspeed", "DE:rural"),
+        tagged(5, "maxspeed:conditional", "30 @ wet"),
+    ];
+    let extract = read(&write::write_extract(&[node(1), node(2)], &ways)).unwrap();
+    let limits = extract.ways.iter().map(|way| way.facts.max_speed_km_h[0].map_or(0, std::num::NonZeroU8::get));
+    assert_eq!(limits.collect::<Vec<_>>(), [50, 0, 0, 0, 0]);
+    let rows = extract.account.rows();
+    let notes = rows.iter().filter(|row| row.item == "tag").map(|row| (row.reason.as_str(), row.count));
+    assert_eq!(notes.collect::<Vec<_>>(), [("bad_speed", 2), ("national_speed", 1)]);
+}
+
+#[test]
 fn a_header_that_says_sorted_is_not_believed() {
     let nodes: Vec<_> = (1..=90).map(node).collect();
     let ways: Vec<_> = (1..=40).map(|id| way(id, &[id, id + 50], ROAD)).collect();

@@ -254,6 +254,46 @@ fn a_way_over_several_places_goes_on_as_it_came() {
 }
 
 #[test]
+fn a_slow_short_road_loses_to_a_fast_long_one() {
+    /// Over B and C: whether straight on, and the seconds or metres from B to C that way.
+    fn driven(tags: &str, ends: [&str; 2], measure: Measure) -> (bool, f64) {
+        let map = AsciiMap::drawn(250.0, "A B   C D\n\n    E")
+            .way("AB", "highway=primary")
+            .way("BC", &format!("highway=primary {tags}"))
+            .way("CD", "highway=primary")
+            .way("BEC", "highway=primary name=Detour");
+        let roads = Roads::new(built(&map).0);
+        let graph = Graph::new(&roads, &Speeds::builtin().unwrap(), measure);
+        let [from, to] = ends.map(|ends| ascii_map::edge(&roads.network, ends));
+        let goal = [Goal { edge: to, share: 1.0 }];
+        let found = search(&graph, &graph.open_access(), &[Start::new(from, 0.0)], &goal, true, &Stop::never());
+        let edges = found.unwrap().remove(0).unwrap().drive.edges;
+        let road = roads.network.road(&roads.network.edges[edges[1] as usize]);
+        let straight = (0..).zip(&roads.network.edges).find(|(_, edge)| edge.road == 1).unwrap().0;
+        (road.name.is_none(), graph.cost(straight) as f64 / 1e3)
+    }
+    let (there, back) = (["AB", "CD"], ["DC", "BA"]);
+    let (_, length_m) = driven("", there, Measure::Distance);
+    for (tags, ends, straight_on, km_h) in [
+        ("", there, true, 65.0),
+        ("maxspeed=20", there, false, 20.0),
+        ("maxspeed=60 maxspeed:hgv=20", there, false, 20.0),
+        ("maxspeed=35mph", there, true, 56.0),
+        ("maxspeed=100", there, true, 65.0),
+        ("maxspeed=none", there, true, 65.0),
+        ("maxspeed=DE:urban", there, true, 65.0),
+        ("maxspeed=0", there, true, 65.0),
+        ("maxspeed:backward=20", there, true, 65.0),
+        ("maxspeed:backward=20", back, false, 65.0),
+    ] {
+        let (straight, s) = driven(tags, ends, Measure::Time);
+        assert_eq!(straight, straight_on, "{tags}");
+        assert!((s - length_m / (km_h / 3.6)).abs() < 0.01, "{tags}: {s} s");
+    }
+    assert!(driven("maxspeed=20", there, Measure::Distance).0, "the distance does not depend on speeds");
+}
+
+#[test]
 fn reach_tells_there_from_there_and_back_and_what_an_edge_would_open() {
     let map = AsciiMap::drawn(50.0, "A B C D\n\n  E F")
         .way("AB", "highway=residential")

@@ -128,6 +128,8 @@ fn a_query_gives_every_certificate_back_on_the_safe_side() {
             (row.edge, row.edge_id, row.way_id, row.certificate.verdict),
             (index, edge.id, road.way_id, wrote.conclusion.verdict)
         );
+        let limit = network.road(edge).max_speed_km_h[edge.direction as usize];
+        assert_eq!(row.maxspeed_kmh, limit.map(std::num::NonZeroU8::get));
         assert_eq!((row.from_node, row.to_node, row.direction), (edge.from_node, edge.to_node, edge.direction));
         assert!(row.line.iter().copied().eq(network.positions(edge)));
         let lane = road.sections[edge.direction as usize].lane;

@@ -1,6 +1,8 @@
 //! A synthetic network of any size with every kind of value that the store must give back: all limits, permissions,
 //! sources and directions, shared shapes, narrow places, strokes with approach.
 
+use std::num::NonZeroU8;
+
 use netcert::network::{Area, Areas, Edge, Narrowing, Network, Restriction, Road, Stroke};
 use netcert::osm::LonLat;
 use netcert::osm::facts::{
@@ -53,6 +55,7 @@ fn add_way(network: &mut Network, way: u32) {
         left_hand_traffic: way % 2 == 1,
         sections: [section(way), section(way + 1)],
         legal: [legal(way), legal(way * 7 + 2)],
+        max_speed_km_h: [NonZeroU8::new((way % 4 * 30) as u8), NonZeroU8::new((way % 3 * 50) as u8)],
     });
     // A position of a piece that was left out.
     network.shapes.extend((way % 9 == 7).then_some(LonLat { lon_e7: 1, lat_e7: 2 }));

@@ -8,6 +8,7 @@
 use crate::osm::facts::limits::LegalTags;
 use crate::osm::facts::notes::{Note, Notes};
 use crate::osm::facts::section_reader::SectionReader;
+use crate::osm::facts::speed::SpeedTags;
 use crate::osm::facts::{Direction, Oneway, Permission, RoadClass, Tags, WayDraft, WayFacts};
 
 /// Every reason for which [`way_facts`] leaves a way out.
@@ -89,14 +90,6 @@ impl<'t> Basics<'t> {
             "tracktype" => self.grade1 = value == "grade1",
             "name" => self.name = Some(value),
             "ref" => self.reference = Some(value),
-            "maxspeed" => {
-                let leading = value.bytes().take_while(u8::is_ascii_digit).count();
-                if leading == 0 && !value.bytes().all(|b| b.is_ascii_alphabetic() || matches!(b, b':' | b'_'))
-                    || value == "NaN"
-                {
-                    notes.add(Note::BadSpeed);
-                }
-            }
             _ => {}
         }
     }
@@ -120,11 +113,13 @@ pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
     let mut notes = Notes::default();
     let mut basics = Basics::default();
     let mut legal = LegalTags::default();
+    let mut speed = SpeedTags::default();
     let mut section = SectionReader::default();
     for &(key, value) in tags {
         basics.take(key, value, &mut notes);
         let (head, suffix) = key.split_once(':').unwrap_or((key, ""));
         legal.take(head, suffix, value, &mut notes);
+        speed.take(head, suffix, value, &mut notes);
         section.take(head, suffix, value, &mut notes);
     }
 
@@ -169,6 +164,7 @@ pub fn way_facts<'t>(tags: &Tags<'t>) -> Result<WayDraft<'t>, &'static str> {
             reference: None,
             legal_forward,
             legal_backward,
+            max_speed_km_h: speed.km_h,
             section,
         },
         name: basics.name,

@@ -1,4 +1,4 @@
-//! Tags become facts: class, direction, lanes, widths with their evidence, limits, access.
+//! Tags become facts: class, direction, lanes, widths with their evidence, limits, access, speed limits.
 //!
 //! [`way_facts`] and [`point_facts`] do not use the position. Country rules enter with [`cross_sections`]. Unusable
 //! tags are noted ([`Notes`]) and make the result narrower or unknown, never wider.
@@ -18,10 +18,13 @@ mod rules;
 mod rules_file;
 mod section;
 mod section_reader;
+mod speed;
 #[cfg(test)]
 mod tests;
 mod value;
 mod widths;
+
+use std::num::NonZeroU8;
 
 use serde::{Deserialize, Serialize};
 
@@ -220,6 +223,8 @@ pub struct WayFacts {
     pub legal_forward: Legal,
     /// Limits and access against the node order.
     pub legal_backward: Legal,
+    /// Lowest tagged speed limit for heavy vehicles along the node order, and against it, km/h.
+    pub max_speed_km_h: [Option<NonZeroU8>; 2],
     /// Widths, lanes and kerb-side uses as tagged.
     section: section::SectionTags,
 }

@@ -19,8 +19,10 @@ pub enum Note {
     BadLimit,
     /// An access value that is not documented. It counts as no.
     BadAccess,
-    /// `maxspeed` that is not a speed. It has no effect on widths.
+    /// `maxspeed` and similar keys: not a speed from 1 to 200 km/h in a known unit. The tag is ignored.
     BadSpeed,
+    /// `maxspeed` and similar keys: a national default such as `DE:urban`, without a number. The tag is ignored.
+    NationalSpeed,
     /// Tagged lanes and tagged width imply lanes under 1.8 m or over 6 m.
     WidthContradictsLanes,
     /// A restriction with an undecidable condition (for example a time of day). It counts as not for through traffic.
@@ -29,7 +31,7 @@ pub enum Note {
     Reversible,
 }
 
-const NAMES: [(Note, &str); 11] = [
+const NAMES: [(Note, &str); 12] = [
     (Note::BadWidth, "bad_width"),
     (Note::BadLanes, "bad_lanes"),
     (Note::BadLaneWidths, "bad_lane_widths"),
@@ -38,6 +40,7 @@ const NAMES: [(Note, &str); 11] = [
     (Note::BadLimit, "bad_limit"),
     (Note::BadAccess, "bad_access"),
     (Note::BadSpeed, "bad_speed"),
+    (Note::NationalSpeed, "national_speed"),
     (Note::WidthContradictsLanes, "width_contradicts_lanes"),
     (Note::UndecidedCondition, "undecided_condition"),
     (Note::Reversible, "reversible"),

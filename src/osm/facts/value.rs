@@ -1,7 +1,10 @@
-//! Numbers with units as they stand in tags, in metres and tonnes unless stated otherwise.
+//! Numbers with units as they stand in tags, in metres, tonnes and km/h unless stated otherwise.
 //!
 //! A result is finite and greater than zero, or `None`. Signs, exponents, ranges, lists, comma decimals and words are
-//! not numbers here. Units follow the wiki pages Key:width, Key:maxheight, Key:maxweight.
+//! not numbers here. Units follow the wiki pages Key:width, Key:maxheight, Key:maxweight,
+//! Key:maxspeed.
+
+use std::num::NonZeroU8;
 
 use crate::osm::facts::Limit;
 
@@ -11,6 +14,14 @@ const MILE_M: f64 = 1609.344;
 const POUND_T: f64 = 0.000_453_592_37;
 const SHORT_TON_T: f64 = 0.907_184_74;
 const LONG_TON_T: f64 = 1.016_046_908_8;
+const MILE_KM: f64 = MILE_M / 1000.0;
+const NAUTICAL_MILE_KM: f64 = 1.852;
+
+/// `maxspeed=walk`, km/h. The tag names no number. Assumed: a brisk walk.
+const WALK_KM_H: NonZeroU8 = NonZeroU8::new(7).unwrap();
+
+/// Largest speed limit accepted, km/h. No road has a higher one.
+const GREATEST_KM_H: f64 = 200.0;
 
 /// Largest value accepted. Nothing on a road is larger, and `f32` still resolves centimetres.
 const GREATEST: f64 = 100_000.0;
@@ -87,6 +98,53 @@ pub(super) fn limit(text: &str, read: fn(&str) -> Option<f32>, greatest: f32) ->
             _ => Limit::Unreadable,
         },
     }
+}
+
+/// What a tag says of a speed limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Speed {
+    /// Km/h, to the nearest whole number.
+    KmH(NonZeroU8),
+    /// `none`, or `signals` and `variable`, whose limit the tag does not say.
+    Unlimited,
+    /// The default of a country and a kind of road, as `DE:urban`. The tag names no number.
+    National,
+    /// Anything else, lists among them.
+    Unreadable,
+}
+
+/// A speed limit: `50`, `50 km/h`, `30 mph`, `10 knots`, `walk`, `none`, `DE:urban`.
+#[must_use]
+pub(super) fn speed(text: &str) -> Speed {
+    match text.trim() {
+        "none" | "signals" | "variable" => Speed::Unlimited,
+        "walk" => Speed::KmH(WALK_KM_H),
+        text if national(text) => Speed::National,
+        text => km_h(text).map_or(Speed::Unreadable, Speed::KmH),
+    }
+}
+
+fn km_h(text: &str) -> Option<NonZeroU8> {
+    let (value, unit) = number(text)?;
+    let factor = match unit {
+        "" | "km/h" | "kmh" | "kph" => 1.0,
+        "mph" => MILE_KM,
+        "knots" => NAUTICAL_MILE_KM,
+        _ => return None,
+    };
+    let km_h = value * factor;
+    // What rounds to 0 is no speed.
+    (km_h <= GREATEST_KM_H).then(|| NonZeroU8::new(km_h.round() as u8)).flatten()
+}
+
+/// A country, perhaps with its region, and a kind of road or zone: `DE:urban`, `BE-VLG:rural`, `FR:zone30`.
+fn national(text: &str) -> bool {
+    let Some((place, kind)) = text.split_once(':') else { return false };
+    let country = place.split('-').next().unwrap_or("");
+    country.len() == 2
+        && country.bytes().all(|b| b.is_ascii_uppercase())
+        && kind.starts_with(|c: char| c.is_ascii_alphabetic())
+        && kind.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b':' | b'_' | b'-'))
 }
 
 /// A lane count from 1 to 16, and whether the value is as documented. `1.5`, once used for narrow two-way roads, counts
@@ -182,6 +240,64 @@ mod tests {
         assert_eq!(limit("", metres, 15.0), Limit::Unreadable);
         assert_eq!(limit("4", metres, 15.0), Limit::At(4.0));
         assert_eq!(limit("7500", tonnes, 500.0), Limit::Unreadable);
+    }
+
+    #[test]
+    fn speeds_are_read_in_the_units_of_the_wiki() {
+        for (text, km_h) in [
+            ("50", 50),
+            (" 50 ", 50),
+            ("50 km/h", 50),
+            ("50kmh", 50),
+            ("30 mph", 48),
+            ("30mph", 48),
+            ("55 mph", 89),
+            ("10 knots", 19),
+            ("12.5", 13),
+            ("5", 5),
+            ("200", 200),
+            ("walk", 7),
+        ] {
+            assert_eq!(NonZeroU8::new(km_h).map(Speed::KmH), Some(speed(text)), "{text}");
+        }
+        for text in ["none", "signals", "variable"] {
+            assert_eq!(speed(text), Speed::Unlimited, "{text}");
+        }
+        for text in ["DE:urban", "DE:rural", "AU:urban", "BE-VLG:rural", "GB:nsl_single", "FR:zone30", "DE:zone:30"] {
+            assert_eq!(speed(text), Speed::National, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_speed_is_unreadable() {
+        for text in [
+            "",
+            " ",
+            "0",
+            "0.4",
+            "-3",
+            "NaN",
+            "inf",
+            "201",
+            "5030",
+            "99999999999999999999",
+            "1e400",
+            "50;70",
+            "50,5",
+            "50|70",
+            "30-50",
+            "~50",
+            "50 mps",
+            "50 mph 30",
+            "fifty",
+            "de:urban",
+            "DE:",
+            "DE:50",
+            ":urban",
+            "50 @ (22:00-06:00)",
+        ] {
+            assert_eq!(speed(text), Speed::Unreadable, "{text}");
+        }
     }
 
     #[test]

@@ -69,6 +69,7 @@ fn members(e: &EdgeFacts) -> Map<String, Value> {
         "name": e.name,
         "ref": e.reference,
         "lanes": e.lanes,
+        "maxspeed_kmh": e.maxspeed_kmh,
         "length_m": e.length_m,
         "widths": widths,
         "min_radius_m": e.min_radius_m,

@@ -65,6 +65,7 @@ fn an_edge_is_its_row() {
         assert_eq!(edge["way_id"], row.way_id.to_string());
         assert_eq!(edge["highway"], json!(row.highway));
         assert_eq!(edge["length_m"], json!(row.length_m));
+        assert_eq!(edge["maxspeed_kmh"], json!(row.maxspeed_kmh));
         assert_eq!(edge["widths"]["lane"]["width_m"], json!(row.width_m));
         let (verdict, reason) = verdict_words(row.certificate.verdict);
         let certificate = &edge["certificate"];

@@ -24,6 +24,10 @@ fn odd_values_are_noted_and_change_nothing() {
         ("lanes=NaN", "bad_lanes"),
         ("maxspeed=-3", "bad_speed"),
         ("maxspeed=NaN", "bad_speed"),
+        ("maxspeed=50;70", "bad_speed"),
+        ("maxspeed:hgv:forward=fast", "bad_speed"),
+        ("maxspeed=DE:urban", "national_speed"),
+        ("maxspeed:hgv=AU:rural", "national_speed"),
         ("maxheight=0", "bad_limit"),
         ("maxheight=below_default", "bad_limit"),
         ("maxweight=-3", "bad_limit"),
@@ -37,8 +41,11 @@ fn odd_values_are_noted_and_change_nothing() {
     }
     for tag in [
         "maxspeed=none",
-        "maxspeed=40_mph",
-        "maxspeed=DE:urban",
+        "maxspeed=40mph",
+        "maxspeed:conditional=30_@_(22:00-06:00)",
+        "maxspeed:lanes=80|60",
+        "maxspeed:type=DE:urban",
+        "maxspeed:bus=fast",
         "maxheight=default",
         "maxheight=12'6\"",
         "oneway=-1",
@@ -96,6 +103,35 @@ fn directions_come_from_oneway_roundabouts_and_motorways() {
         "highway=motorway oneway=reversible lanes=2",
         "0..-350 FromLanes | 0..-350 FromLanes | 350..-350 FromLanes | 350..-350 FromLanes",
     );
+}
+
+#[test]
+fn the_lowest_speed_limit_for_heavy_vehicles_counts_in_its_direction() {
+    for (text, km_h) in [
+        ("", [0, 0]),
+        ("maxspeed=50", [50, 50]),
+        ("maxspeed=30mph", [48, 48]),
+        ("maxspeed=walk", [7, 7]),
+        ("maxspeed=none", [0, 0]),
+        ("maxspeed=none maxspeed:hgv=80", [80, 80]),
+        ("maxspeed=100 maxspeed:hgv=60", [60, 60]),
+        ("maxspeed=50 maxspeed:hgv=80", [50, 50]),
+        ("maxspeed:hgv=none maxspeed=70", [70, 70]),
+        ("maxspeed:forward=70", [70, 0]),
+        ("maxspeed:backward=30", [0, 30]),
+        ("maxspeed=100 maxspeed:backward=70", [100, 70]),
+        ("maxspeed=100 maxspeed:hgv:forward=60 maxspeed:hgv:backward=40", [60, 40]),
+        ("maxspeed=DE:rural", [0, 0]),
+        ("maxspeed=DE:rural maxspeed:hgv=60", [60, 60]),
+        ("maxspeed=50;70", [0, 0]),
+        ("maxspeed=fast maxspeed:forward=40", [40, 0]),
+        ("maxspeed=80 maxspeed:conditional=30_@_(22:00-06:00) maxspeed:hgv:conditional=60_@_wet", [80, 80]),
+        ("maxspeed=80 maxspeed:lanes=60|40 maxspeed:bus=20 maxspeed:advisory=10 zone:maxspeed=30", [80, 80]),
+        ("oneway=-1 maxspeed:backward=30", [0, 30]),
+    ] {
+        let read = draft(&format!("highway=primary {text}")).facts.max_speed_km_h;
+        assert_eq!(read.map(|limit| limit.map_or(0, std::num::NonZeroU8::get)), km_h, "{text}");
+    }
 }
 
 #[test]
