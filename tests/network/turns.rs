@@ -319,7 +319,7 @@ fn no_claim_of_a_turn_over_several_lanes_is_refuted() {
 
 #[test]
 fn an_unsafe_turn_says_which_kerb_would_do() {
-    let cross = |kerb_m| Drawn::cross("highway=secondary width=7.5", false, kerb_m);
+    let cross = |kerb_m| Drawn::cross("highway=secondary width=6.5", false, kerb_m);
     let explained = |id: &str| {
         let drawn = cross(3.0);
         let kerbs = drawn.params.kerbs.clone();
@@ -328,7 +328,7 @@ fn an_unsafe_turn_says_which_kerb_would_do() {
         explain_turn(&drawn.network, &drawn.turn("EBC"), &model, &settings, &Stop::never()).unwrap().explanation
     };
     let semi = explained("EU-SEMI16.5");
-    let Some(KerbHint::AtLeast(radius_m)) = semi.hints.kerb else { panic!("{:?}", semi.hints) };
+    let Some(KerbHint::AtLeast(radius_m)) = semi.hints.kerb else { panic!("{:?} {:?}", semi.verdict, semi.hints) };
     let safe = |kerb_m: f64| cross(kerb_m).safe("EBC", Policy::Carriageway, "EU-SEMI16.5");
     assert!(safe(radius_m) && !safe(radius_m - 0.5), "{radius_m}");
     let words = words(&semi);

@@ -92,5 +92,5 @@ fn write(folder: &Path, name: &str, text: &str) -> anyhow::Result<()> {
     let path = folder.join(name);
     std::fs::create_dir_all(folder)
         .and_then(|()| std::fs::write(&path, text))
-        .map_err(|e| anyhow!("{}: cannot write this file: {e}; give another folder with --out", path.display()))
+        .map_err(|e| anyhow!("{}: cannot write it: {e}; give another folder with --out", path.display()))
 }
