@@ -7,8 +7,9 @@
 use crate::oracle;
 
 use netcert::corridor::Corridor;
+use netcert::stet::{Model, Plan, certify_plan};
 use netcert::vehicle::{Unit, Vehicle};
-use oracle::claim::{Claim, Place, certify};
+use oracle::claim::{Claim, Place, certify, of};
 use oracle::draw::Draw;
 use oracle::duel::{self, Duel};
 use oracle::path::Path;
@@ -283,4 +284,29 @@ fn the_bounds_of_a_straight_hold_however_long_the_vehicle_has_driven() {
     println!("{} of {cases} straights have a claim, {} are refuted", tried.len(), broken.len());
     assert!(broken.is_empty(), "{} of {} claims refuted: {broken:#?}", broken.len(), tried.len());
     assert!(tried.len() * 3 >= cases as usize, "only {} straights could be tried", tried.len());
+}
+
+/// A plan may bend more than one over the tolerance. The steer axle, off the plan by its tolerance on the inside, then turns back.
+#[test]
+fn a_plan_that_bends_within_the_tolerance_is_not_certified() {
+    /// Coefficients of a plan that corrections once made, a fifth of a metre apart. Its curvature times the tolerance is 1.14
+    /// at most, at the last jog.
+    const JOGS: [i32; 88] = [
+        2397, 2397, 2397, 2216, 2103, 2089, 2109, 2130, 2153, 2177, 2202, 2229, 2256, 2286, 2316, 2348, 2381, 2415,
+        2451, 2488, 2527, 2565, 2605, 2646, 2687, 2729, 2771, 2814, 2857, 2901, 2945, 2989, 3034, 3079, 3125, 3170,
+        3216, 3258, 3300, 3390, 3560, 3693, 3698, 3685, 3726, 3746, 3732, 3739, 3765, 3783, 3789, 3796, 3810, 3829,
+        3847, 3866, 3884, 3904, 3924, 3946, 3969, 3993, 4019, 4041, 4058, 4083, 4129, 4167, 4146, 4126, 4240, 4336,
+        4091, 3880, 4495, 5543, 5894, 5622, 5832, 6029, 6117, 6134, 6143, 6144, 6144, 6144, 6144, 6144,
+    ];
+    let mut draw = Draw(0xe4d5_0000 + 3155 * 7919);
+    let vehicle = random_vehicle(&mut draw);
+    let corridor = random_corridor(&mut draw, &vehicle);
+    let model = Model::new(&vehicle).unwrap();
+    let mut refute = |coefficients: Vec<i32>| {
+        let claim = of(&corridor, certify_plan(&corridor, &model, &Plan { coefficients }).unwrap())?;
+        Some(refuted(&corridor, &vehicle, &claim, &mut draw, 3))
+    };
+    assert_eq!(refute(JOGS.to_vec()), None);
+    let straight = (0..88).map(|j: i32| JOGS[0] + (JOGS[87] - JOGS[0]) * (j - 3).clamp(0, 80) / 80).collect();
+    assert_eq!(refute(straight), Some(None), "a plan without jogs is certified");
 }

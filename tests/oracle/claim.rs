@@ -1,7 +1,7 @@
 //! Runs the certifier and converts its claims to the oracle's types.
 
 use netcert::corridor::Corridor;
-use netcert::stet::{self, Model, Options, Side};
+use netcert::stet::{self, Certificate, Model, Options, Side};
 use netcert::stop::Stop;
 use netcert::vehicle::Vehicle;
 pub use netcert_oracle::claim::{Claim, Place};
@@ -17,6 +17,11 @@ pub fn claim(corridor: &Corridor, vehicle: &Vehicle, options: &Options) -> Optio
     let certificate = stet::certify(corridor, &model, options, &Stop::never())
         .expect("nobody cancels")
         .expect("the corridor has stations");
+    of(corridor, certificate)
+}
+
+/// The claim of a certificate. `None` if it claims nothing worth refuting.
+pub fn of(corridor: &Corridor, certificate: Certificate) -> Option<Claim> {
     let result = certificate.result;
     let limiting = Place {
         foot_m: result.limiting.station as f64 * corridor.spacing_m,

@@ -11,6 +11,8 @@ use crate::motion::{Motion, STEPS, Swing};
 
 /// Assumption A3.
 const MOST_HEADING_RAD: f64 = 0.6;
+/// Largest curvature of a coupling's path times the coupling's deviation (A3).
+const CURLED: f64 = 0.9;
 const QUARTER_TURN_RAD: f64 = std::f64::consts::FRAC_PI_2 - 1e-9;
 /// If the filter's heading bound is larger, the adjoint is used. Hinge by hinge, the filter gets too loose for a long
 /// chain in tight turns.
@@ -172,6 +174,8 @@ impl Tubes {
                     .and_then(|lid| unit.settle(&passed, before, lid))
                     .or(plain)
             };
+            // Beyond the radius of its path a deviating coupling would turn back.
+            let found = found.filter(|_| swing.curvature.abs() * coupling < CURLED);
             let Some((tube, end)) = found else {
                 self.tubes.truncate(first);
                 self.tubes.extend(std::iter::repeat_n(None, self.units));

@@ -359,7 +359,7 @@ impl Trail {
         let (a, axle) = loop {
             let axle = at(z, AXLE);
             let (a, short) = heading(of, step, V::splat(at(z, HEADING)), V::splat(axle), coupled);
-            let valid = validity(of, step, a).min(short).0[lane] >= 0.0;
+            let valid = validity(of, step, a, coupled * step.cosine).min(short).0[lane] >= 0.0;
             if rounds == ROUNDS || !valid || !axle.is_finite() {
                 return None;
             }

@@ -19,6 +19,11 @@ const UNEVEN: f64 = 0.05;
 const UNEVEN_ASIDE: f64 = 0.5;
 const UNEVEN_ALONG: f64 = 0.15;
 const EVEN_ENOUGH: std::ops::Range<f64> = 0.75..1.35;
+/// Over parallels that bend more than this (1/m), parts are no longer than `BENT_PART_M`.
+const BENT: f64 = 0.08;
+const BENT_PART_M: f64 = 0.9;
+/// A gap between two body points that costs more than this is covered in parts, metres.
+const SAG_M: f64 = 0.03;
 /// If half-widths leave their own slope by less than this (per metre and per square metre), they are read at the
 /// station of the axis.
 const ROUGH: f64 = 0.01;
@@ -112,13 +117,21 @@ by_instruction_set! {
                     match &mut before {
                         Some(before) => {
                             let gap = body.points[index].gap;
-                            let parts = if bulges(before, &sample) { (gap / PART_M).ceil().max(1.0) } else { 1.0 };
-                            if parts > 1.0 {
-                                inside::<REFINED>(track, body, index, &s, &knots, (before, &sample), parts, minima);
+                            let parts = if bulges(before, &sample) {
+                                (gap / part_m(before, &sample)).ceil().max(1.0)
                             } else {
-                                at_marks(track, (before, &sample), &s, gap, minima);
+                                1.0
+                            };
+                            if parts == 1.0 && gap > PART_M && sags(before, &sample, &s, gap) {
+                                piecewise::<REFINED>(track, body, index, &s, &knots, (before, &mut sample), minima);
+                            } else {
+                                if parts > 1.0 {
+                                    inside::<REFINED>(track, body, index, &s, &knots, (before, &sample), parts, minima);
+                                } else {
+                                    at_marks(track, (before, &sample), &s, gap, minima);
+                                }
+                                between_points(before, &mut sample, &s, gap, parts);
                             }
-                            between_points(before, &mut sample, &s, gap, parts);
                         }
                         None => {
                             let heads = Feet::Run(head + group * LANES);
@@ -236,25 +249,10 @@ fn inside<const REFINED: bool>(
     parts: f64,
     minima: &mut Minima,
 ) {
-    let (ahead, point) = (&body.points[index - 1], &body.points[index]);
-    let part_m = point.gap / parts;
+    let part_m = body.points[index].gap / parts;
     let mut last: Option<Sample> = None;
     for number in 1..parts as usize {
-        let part = number as f64 / parts;
-        let spot = ahead.spot.between(point.spot, part);
-        let inner = Knots {
-            ahead: knots.ahead,
-            own: knots.ahead + (knots.own - knots.ahead) * part,
-            behind: knots.own,
-            gap_ahead: part * point.gap,
-            gap_behind: (1.0 - part) * point.gap,
-        };
-        let (x, y) = (s.x + s.ux * spot.ahead, s.y + s.uy * spot.ahead);
-        let from = before.feet.station(0) as f64;
-        let guess = (from + (after.feet.station(0) as f64 - from) * part).round() as usize;
-        let feet = follow(track, guess, x, y);
-        let tag = if part < 0.5 { before.tag } else { after.tag };
-        let (mut sample, _) = sample_at::<true, REFINED>(track, body, &spot, s, &inner, feet, tag);
+        let mut sample = inner::<REFINED>(track, body, index, s, knots, (before, after), number as f64 / parts);
         let [most, least] = bends(&[before, &sample, after], s, part_m);
         sample.lowered_left = sample.left - whole_sagitta(most, part_m);
         sample.lowered_right = sample.right - whole_sagitta(-least, part_m);
@@ -263,6 +261,76 @@ fn inside<const REFINED: bool>(
         last = Some(sample);
     }
     at_marks(track, (last.as_ref().unwrap_or(before), after), s, part_m, minima);
+}
+
+/// Whether the bound between two body points would take more than [`SAG_M`] off either side.
+#[inline(always)]
+fn sags(before: &Sample, sample: &Sample, s: &States, gap: f64) -> bool {
+    let [most, least] = bends(&[before, sample], s, gap);
+    let left = lowest_between(sharpest(most, gap), gap, (before.left - sample.left).abs());
+    let right = lowest_between(sharpest(-least, gap), gap, (before.right - sample.right).abs());
+    left.max(right).0.iter().any(|&sag| sag > SAG_M)
+}
+
+/// Covers the side between a body point and the previous one in parts of at most [`PART_M`]. The bound between two points counts
+/// the sharpest parallel under either of them; where a side is half in a bend, that is much for the whole gap.
+#[cold]
+#[inline(never)]
+fn piecewise<const REFINED: bool>(
+    track: &Track,
+    body: &Body,
+    index: usize,
+    s: &States,
+    knots: &Knots,
+    (before, after): (&mut Sample, &mut Sample),
+    minima: &mut Minima,
+) {
+    let parts = (body.points[index].gap / PART_M).ceil();
+    let part_m = body.points[index].gap / parts;
+    let mut last: Option<Sample> = None;
+    for number in 1..parts as usize {
+        let mut inner = inner::<REFINED>(track, body, index, s, knots, (before, after), number as f64 / parts);
+        let previous = last.as_mut().unwrap_or(before);
+        between_points(previous, &mut inner, s, part_m, 1.0);
+        at_marks(track, (previous, &inner), s, part_m, minima);
+        if let Some(passed) = last.replace(inner) {
+            passed.lower(minima);
+        }
+    }
+    let previous = last.as_mut().unwrap_or(before);
+    between_points(previous, after, s, part_m, 1.0);
+    at_marks(track, (previous, after), s, part_m, minima);
+    if let Some(passed) = last {
+        passed.lower(minima);
+    }
+}
+
+/// A place of the side between a body point and the previous one, at a share of the gap.
+#[inline(always)]
+fn inner<const REFINED: bool>(
+    track: &Track,
+    body: &Body,
+    index: usize,
+    s: &States,
+    knots: &Knots,
+    (before, after): (&Sample, &Sample),
+    part: f64,
+) -> Sample {
+    let (ahead, point) = (&body.points[index - 1], &body.points[index]);
+    let spot = ahead.spot.between(point.spot, part);
+    let inner = Knots {
+        ahead: knots.ahead,
+        own: knots.ahead + (knots.own - knots.ahead) * part,
+        behind: knots.own,
+        gap_ahead: part * point.gap,
+        gap_behind: (1.0 - part) * point.gap,
+    };
+    let (x, y) = (s.x + s.ux * spot.ahead, s.y + s.uy * spot.ahead);
+    let from = before.feet.station(0) as f64;
+    let guess = (from + (after.feet.station(0) as f64 - from) * part).round() as usize;
+    let feet = follow(track, guess, x, y);
+    let tag = if part < 0.5 { before.tag } else { after.tag };
+    sample_at::<true, REFINED>(track, body, &spot, s, &inner, feet, tag).0
 }
 
 /// Lowers the leeway at marked stations between two points of a side, `gap` metres apart. The leeway is no less than
@@ -342,6 +410,13 @@ impl Sample {
 #[inline(always)]
 fn bulges(before: &Sample, sample: &Sample) -> bool {
     before.bulge.max(sample.bulge).0.iter().any(|&bulge| bulge > BULGE_MOST)
+}
+
+/// Length of the parts in which a bulging side is examined, metres.
+#[inline(always)]
+fn part_m(before: &Sample, sample: &Sample) -> f64 {
+    let [a, b] = [before, sample].map(|sample| sample.parallel[0].abs().max(sample.parallel[1].abs()));
+    if a.max(b).0.iter().any(|&bend| bend > BENT) { BENT_PART_M } else { PART_M }
 }
 
 /// Greatest and least curvature of the corridor relative to a straight side, under the given points and between them: the
@@ -544,7 +619,7 @@ impl Passing<'_> {
         let change = (at.curvature_slope.abs() * edge.spread * edge.spread + s.jerk) * 0.25;
         let way2 = s.way2.max(V::splat(step2));
         let turning = s.jerk * (c * ahead.abs() + t * aside.abs()) * step2;
-        (away.max(ZERO) * way2 + (edge.slope.abs() * foot + change) * way2 + turning) * 0.125
+        (away.max(ZERO) * 1.2 * way2 + (edge.slope.abs() * foot + change) * way2 + turning) * 0.125
     }
 }
 

@@ -5,6 +5,8 @@ use super::model::MAX_UNITS;
 
 /// Bounds beyond this (metres, radians) bound nothing any more.
 pub(super) const MOST: f64 = 100.0;
+/// Largest curvature of a coupling's path times the coupling's deviation.
+const CURLED: f64 = 0.8;
 
 /// Constants of one unit across the vehicles. A vehicle without this unit has a harmless stand-in.
 #[derive(Clone, Copy)]
@@ -237,11 +239,12 @@ impl Straying {
 }
 
 /// Negative where the bounds do not hold. They hold while |δ| + A + σ < 90°, so cos δ > sin(A + σ), and while A + σ ≤
-/// 0.6, which the series of the tangent needs.
+/// 0.6, which the series of the tangent needs. They hold while the coupling's deviation is less than the radius of its path;
+/// beyond, the deviating coupling would turn back. [`CURLED`] leaves room for what the path bends more between stations.
 #[inline(always)]
-pub(super) fn validity(of: &UnitLanes, step: &Step, a: V) -> V {
+pub(super) fn validity(of: &UnitLanes, step: &Step, a: V, coupling: V) -> V {
     let slip = a + of.sway;
-    (step.cosine - slip).min(V::splat(0.6) - slip)
+    (step.cosine - slip).min(V::splat(0.6) - slip).min(V::splat(CURLED) - step.path_curvature * coupling)
 }
 
 /// Largest heading difference of a path between a unit's own foot and its coupling's foot, if the coupling deviates by

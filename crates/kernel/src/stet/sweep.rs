@@ -351,7 +351,8 @@ impl Motion {
             let extra = filter.grown(of, step, &coupled, z);
             // Nothing is certified where the bounds do not close. Behind that place they begin anew, as after a
             // straight, because a vehicle certified there did not come through this place. A stand-in always closes.
-            closed = closed.min(select_negative(of.present - V::splat(0.5), one, validity(of, step, a).min(short)));
+            let valid = validity(of, step, a, coupling).min(short);
+            closed = closed.min(select_negative(of.present - V::splat(0.5), one, valid));
             self.extra[unit] = select_negative(closed, of.settled, extra);
             let y = y.max(extra);
 
