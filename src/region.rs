@@ -14,7 +14,6 @@ use crate::stop::{Stop, Stopped};
 use crate::store::{CertifiedSet, Database, QueryOptions, Rows, StoreError};
 use crate::turns::turn_facts;
 use crate::vehicle::{Vehicle, VehicleError};
-use crate::words::Named as _;
 
 /// A region: its roads and the certificates of its vehicles.
 ///
@@ -99,19 +98,6 @@ pub enum RegionError {
     /// The file cannot be read, or lacks the requested content.
     #[error(transparent)]
     Store(#[from] StoreError),
-    /// The vehicle is not certified here.
-    #[error(
-        "{}: {vehicle} is not certified here under the {} policy; run `netcert certify --db {0} --vehicle {vehicle} \
-         --corridor {1}`", path.display(), policy.name()
-    )]
-    NotCertified {
-        /// The database.
-        path: PathBuf,
-        /// The requested vehicle.
-        vehicle: String,
-        /// The requested policy.
-        policy: Policy,
-    },
     /// The vehicle's definition in the database cannot be used.
     #[error(transparent)]
     Vehicle(#[from] VehicleError),
@@ -160,18 +146,6 @@ impl Region {
         Ok(self.database.certified()?)
     }
 
-    /// The set of a vehicle under a policy.
-    ///
-    /// # Errors
-    /// The vehicle is not certified under this policy, or the file cannot be read.
-    pub fn set(&mut self, vehicle: &str, policy: Policy) -> Result<CertifiedSet, RegionError> {
-        self.database.certified_set(vehicle, policy)?.ok_or_else(|| RegionError::NotCertified {
-            path: self.path.clone(),
-            vehicle: vehicle.to_owned(),
-            policy,
-        })
-    }
-
     /// The vehicle's definition in the database, with which its certificates were made. `None` if the database does not have
     /// the vehicle.
     ///
@@ -207,11 +181,18 @@ impl Region {
     /// # Errors
     /// The vehicle's edges or turns are not certified under this policy; the file cannot be read.
     pub fn planner(&mut self, vehicle: &str, policy: Policy, measure: Measure) -> Result<Planner, RegionError> {
-        let set = self.set(vehicle, policy)?;
-        let definition = self.definition(vehicle, policy)?;
+        let driver = self.driver(vehicle, policy)?;
+        Ok(Planner::new(&self.roads()?, driver, Speeds::builtin()?, measure))
+    }
+
+    /// A vehicle with its permits on [`Self::roads`].
+    ///
+    /// # Errors
+    /// The vehicle's edges or turns are not certified under this policy; the file cannot be read.
+    pub fn driver(&mut self, vehicle: &str, policy: Policy) -> Result<Arc<Driver>, RegionError> {
+        let (set, vehicle) = self.certified(vehicle, policy)?;
         let roads = self.roads()?;
-        let driver = Driver::stored(&mut self.database, &roads, &definition, &set)?;
-        Ok(Planner::new(&roads, driver, Speeds::builtin()?, measure))
+        Ok(Driver::stored(&mut self.database, &roads, &vehicle, &set)?)
     }
 
     /// Explains why an edge is safe or unsafe for a vehicle. The certificate is computed again with the set's settings.
@@ -225,8 +206,8 @@ impl Region {
         policy: Policy,
         stop: &Stop,
     ) -> Result<Explanation, RegionError> {
-        let settings = self.set(vehicle, policy)?.settings()?;
-        let model = Model::new(&self.definition(vehicle, policy)?)?;
+        let (set, vehicle) = self.certified(vehicle, policy)?;
+        let (settings, model) = (set.settings()?, Model::new(&vehicle)?);
         let roads = self.roads()?;
         let unknown = || RegionError::NoSuchId { path: self.path.clone(), id: edge_id };
         let found = (0_u32..).zip(&roads.network.edges).find(|(_, edge)| edge.id == edge_id);
@@ -245,8 +226,8 @@ impl Region {
         policy: Policy,
         stop: &Stop,
     ) -> Result<TurnExplanation, RegionError> {
-        let settings = self.set(vehicle, policy)?.settings()?;
-        let model = Model::new(&self.definition(vehicle, policy)?)?;
+        let (set, vehicle) = self.certified(vehicle, policy)?;
+        let (settings, model) = (set.settings()?, Model::new(&vehicle)?);
         let roads = self.roads()?;
         let turns = turn_facts(&roads.network, &settings.kerbs);
         let turn = turns.into_iter().find(|turn| turn.id == turn_id);
@@ -254,11 +235,10 @@ impl Region {
         Ok(explain::explain_turn(&roads.network, &turn, &model, &settings, stop)?)
     }
 
-    fn definition(&mut self, vehicle: &str, policy: Policy) -> Result<Vehicle, RegionError> {
-        self.vehicle(vehicle)?.ok_or_else(|| RegionError::NotCertified {
-            path: self.path.clone(),
-            vehicle: vehicle.to_owned(),
-            policy,
-        })
+    /// The set of a vehicle under a policy, and the vehicle.
+    fn certified(&mut self, vehicle: &str, policy: Policy) -> Result<(CertifiedSet, Vehicle), RegionError> {
+        let set = self.database.certified_set(vehicle, policy)?;
+        let both = set.zip(self.vehicle(vehicle)?);
+        both.ok_or_else(|| StoreError::not_certified(&self.path, vehicle, policy).into())
     }
 }

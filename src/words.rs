@@ -59,7 +59,8 @@ named!(Permission { Yes = "yes", Restricted = "restricted", No = "no" });
 named!(Side { Left = "left", Right = "right" });
 
 /// The value of `highway`: the class, with `_link` for links.
-pub(crate) fn highway(class: RoadClass, link: bool) -> String {
+#[must_use]
+pub fn highway(class: RoadClass, link: bool) -> String {
     format!("{}{}", class.name(), if link { "_link" } else { "" })
 }
 

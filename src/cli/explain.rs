@@ -17,7 +17,7 @@ use netcert::stop::Stop;
 use netcert::store::{CertifiedSet, Database, QueryOptions};
 use netcert::turns::{TurnFacts, turn_facts};
 use netcert::vehicle::Vehicle;
-use netcert::words::{Named, verdict_words};
+use netcert::words::{Named, highway, verdict_words};
 
 use super::Session;
 use super::certify_options;
@@ -226,7 +226,7 @@ impl Explain {
                 facts.id.to_string(),
                 road.way_id.to_string(),
                 facts.direction.name().to_owned(),
-                format!("{}{}", road.class.name(), if road.link { "_link" } else { "" }),
+                highway(road.class, road.link),
                 row.as_ref().map_or(String::new(), |row| format!("{:.0} m", row.length_m)),
                 row.as_ref().and_then(|row| row.certificate.rsc_m).map_or(String::new(), |rsc| format!("{rsc:.2} m")),
                 if reason.is_empty() { verdict.to_owned() } else { format!("{verdict}: {reason}") },

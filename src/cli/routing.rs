@@ -3,16 +3,15 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use anyhow::anyhow;
 use clap::Args;
 use netcert::osm::facts::Policy;
+use netcert::region::Region;
 use netcert::route::{Driver, Graph, Measure, Roads, Speeds};
 use netcert::settings::Settings;
 use netcert::store::Database;
 
 use super::Session;
 use super::database::DatabaseArgs;
-use super::fleet;
 use super::on_demand::{self, Wanted};
 use super::values::word;
 
@@ -47,18 +46,11 @@ impl RoutingArgs {
         let database = Database::open(&path)?;
         let (files, policy) = (&self.vehicle_file[..], self.corridor);
         let wanted = Wanted { vehicle: &self.vehicle, files, policy, turns: true, command };
-        let (mut database, set) = on_demand::certified(session, (&path, database), &wanted)?;
-        let vehicle = fleet::kept(&mut database, &self.vehicle)?.ok_or_else(|| {
-            anyhow!(
-                "{}: {} is not certified here; run `netcert certify --db {0} --vehicle {1}`",
-                path.display(),
-                self.vehicle
-            )
-        })?;
-        let roads = Roads::new(database.load_network()?);
-        let driver = Driver::stored(&mut database, &roads, &vehicle, &set)?;
+        let (database, set) = on_demand::certified(session, (&path, database), &wanted)?;
         database.close()?;
-        Ok(RoutingInputs { path, roads, driver, speeds: Speeds::builtin()? })
+        let mut region = Region::open(&path)?;
+        let driver = region.driver(&self.vehicle, set.policy)?;
+        Ok(RoutingInputs { path, roads: region.roads()?, driver, speeds: Speeds::builtin()? })
     }
 }
 

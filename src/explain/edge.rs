@@ -15,7 +15,7 @@ use crate::settings::Settings;
 use crate::stet::{Certificate, Model, Options, SpanResult, certify_planned, certify_spans};
 use crate::stop::{Stop, Stopped};
 use crate::verdict::{UnknownReason, Verdict};
-use crate::words::{Named as _, verdict_words};
+use crate::words::{highway, verdict_words};
 
 /// Explains why an edge of the network is safe or unsafe for the vehicle of `model`. `None` if there is no such edge.
 ///
@@ -194,7 +194,7 @@ fn road_facts(network: &Network, edge: &Edge, policy: Policy) -> RoadFacts {
         from_node: edge.from_node,
         to_node: edge.to_node,
         direction: edge.direction,
-        highway: format!("{}{}", road.class.name(), if road.link { "_link" } else { "" }),
+        highway: highway(road.class, road.link),
         name: text(road.name),
         reference: text(road.reference),
         policy,

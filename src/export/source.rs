@@ -96,8 +96,7 @@ impl<'r> Source<'r> {
         let rows = database.query(&QueryOptions::new(&self.ask.vehicle, self.ask.policy))?;
         let rule = self.ask.rule;
         let with_permit = move |row: EdgeRow| {
-            let refusal =
-                rule.edge(Permit { verdict: row.certificate.verdict, rsc_m: row.certificate.rsc_m }, row.width_source);
+            let refusal = rule.edge(Permit::of(&row.certificate), row.width_source);
             ExportEdge { row, refusal }
         };
         self.reporter.begin("edges", self.permitted.edges.len() as u64);
@@ -114,7 +113,7 @@ impl<'r> Source<'r> {
     ) -> Result<impl Iterator<Item = Result<ExportTurn, ExportError>> + 'd, ExportError> {
         let rows = database.turn_rows(&self.ask.vehicle, self.ask.policy)?;
         let with_permit = |row: TurnRow| {
-            let permit = Permit { verdict: row.certificate.verdict, rsc_m: row.certificate.rsc_m };
+            let permit = Permit::of(&row.certificate);
             // The bit says whether the turn is permitted with its edges. If not, the rule finds the reason: the turn's or an edge's.
             let refusal = self.ask.rule.turn(permit, self.permitted.turns.get(row.turn));
             ExportTurn { row, refusal }

@@ -2,6 +2,7 @@
 
 use super::graph::{Access, BARRED};
 use crate::network::{MovementKind, Movements};
+use crate::rows::CertificateRow;
 use crate::settings::Settings;
 use crate::verdict::{UnknownReason, Verdict};
 
@@ -19,6 +20,12 @@ impl Permit {
     pub const UNKNOWN: Self = Self { verdict: Verdict::Unknown(UnknownReason::Geometry), rsc_m: None };
     /// The permit of what other certificates cover.
     pub const COVERED: Self = Self { verdict: Verdict::Safe, rsc_m: None };
+
+    /// The permit that a stored certificate gives.
+    #[must_use]
+    pub fn of(certificate: &CertificateRow) -> Self {
+        Self { verdict: certificate.verdict, rsc_m: certificate.rsc_m }
+    }
 
     /// Whether a search may use it.
     #[must_use]

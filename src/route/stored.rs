@@ -29,18 +29,13 @@ impl Permits {
         for row in database.query(&QueryOptions::new(vehicle, policy))? {
             let row = row?;
             if let Some(slot) = edges.get_mut(row.edge as usize) {
-                *slot = Permit { verdict: row.certificate.verdict, rsc_m: row.certificate.rsc_m };
+                *slot = Permit::of(&row.certificate);
             }
         }
         let turns: FxHashMap<(i64, i64), Permit> = database
             .query_turns(&TurnQuery::new(vehicle, policy))?
             .into_iter()
-            .map(|row| {
-                (
-                    (row.from_edge, row.to_edge),
-                    Permit { verdict: row.certificate.verdict, rsc_m: row.certificate.rsc_m },
-                )
-            })
+            .map(|row| ((row.from_edge, row.to_edge), Permit::of(&row.certificate)))
             .collect();
         let id = |edge: u32| network.edges.get(edge as usize).map_or(0, |edge| edge.id);
         let turn = |from, to| turns.get(&(id(from), id(to))).copied().unwrap_or(Permit::UNKNOWN);

@@ -2,6 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::osm::facts::Policy;
+use crate::words::Named as _;
+
 /// An error of the store.
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
@@ -121,6 +124,16 @@ pub enum StoreError {
 }
 
 impl StoreError {
+    /// The database has no set of this vehicle and policy.
+    pub(crate) fn not_certified(path: &Path, vehicle: &str, policy: Policy) -> Self {
+        let policy = policy.name();
+        let detail = format!(
+            "{vehicle} is not certified here under the {policy} policy; run `netcert certify --vehicle {vehicle} \
+             --corridor {policy}`"
+        );
+        Self::NotThere { path: path.to_owned(), detail }
+    }
+
     /// The error of this crate for an error of SQLite on the file at `path`.
     pub(super) fn sql(path: &Path, source: sqlx::Error) -> Self {
         let path = path.to_owned();

@@ -116,14 +116,7 @@ impl Database {
                        WHERE vehicle_id = ? AND corridor_no = ?";
             sqlx::query_scalar(sql).bind(vehicle).bind(corridor_no(policy)).fetch_optional(c).await
         })?;
-        number.ok_or_else(|| StoreError::NotThere {
-            path: self.session.path.clone(),
-            detail: format!(
-                "{vehicle} is not certified here under the {policy} policy; run `netcert certify --vehicle {vehicle} \
-                 --corridor {policy}`",
-                policy = policy.name()
-            ),
-        })
+        number.ok_or_else(|| StoreError::not_certified(&self.session.path, vehicle, policy))
     }
 }
 
