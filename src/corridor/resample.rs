@@ -77,6 +77,7 @@ impl<C: Fn(f64) -> Jet<2>> Track<'_, C> {
             curvature: Vec::with_capacity(n),
             left_m: Vec::with_capacity(n),
             right_m: Vec::with_capacity(n),
+            areas: Vec::new(),
         };
         let (mut hint, mut heading) = (0, 0.0_f64);
         let mut before = [1.0, 0.0];

@@ -205,6 +205,7 @@ impl Arm {
             curvature: cut(&c.curvature),
             left_m: cut(&c.left_m),
             right_m: cut(&c.right_m),
+            areas: Vec::new(),
         };
         if line.frame != frame {
             carry_over(&mut window, line.frame, frame).ok_or(UnknownReason::Geometry)?;

@@ -77,6 +77,7 @@ fn straight_m(vehicle: &Vehicle, count: usize) -> f64 {
         y: vec![0.0; stations as usize],
         heading: vec![0.0; stations as usize],
         curvature: vec![0.0; stations as usize],
+        areas: Vec::new(),
     };
     let fixed = Options { max_shift_m: 0.0, correction_sweeps: 0 };
     let certificate = stet::certify(&corridor, &Model::new(&ahead).unwrap(), &fixed, &Stop::never()).unwrap().unwrap();

@@ -144,6 +144,7 @@ fn a_mirror_changes_nothing() {
             curvature: negated(&corridor.curvature),
             left_m: corridor.right_m.clone(),
             right_m: corridor.left_m.clone(),
+            areas: Vec::new(),
         };
         same(index, &vehicle, &corridor, &mirrored);
     }

@@ -113,5 +113,6 @@ fn slice(c: &Corridor, range: std::ops::Range<usize>) -> Corridor {
         curvature: of(&c.curvature),
         left_m: of(&c.left_m),
         right_m: of(&c.right_m),
+        areas: Vec::new(),
     }
 }

@@ -37,6 +37,7 @@ impl Corridor {
             curvature: curvature.to_vec(),
             left_m: vec![left_m; n],
             right_m: vec![right_m; n],
+            areas: Vec::new(),
         };
         let ([mut x, mut y], mut theta) = (start, heading);
         for (i, &k0) in curvature.iter().enumerate() {

@@ -1,8 +1,10 @@
 //! A corridor as plain values, independent of its origin.
 
+mod area;
 mod closed;
 mod fit;
 
+pub use area::{Area, AreaSpan};
 pub use closed::CurvatureProfile;
 pub(crate) use closed::clothoid_step;
 
@@ -26,6 +28,8 @@ pub struct Corridor {
     pub left_m: Vec<f64>,
     /// Half-width to the right, metres, > 0.
     pub right_m: Vec<f64>,
+    /// Areas that stand in for the half-widths, in the order of their first stations.
+    pub areas: Vec<AreaSpan>,
 }
 
 impl Corridor {

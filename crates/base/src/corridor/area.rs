@@ -1,0 +1,54 @@
+//! Areas: where a junction is wider than a corridor, bodies are held against the junction's area instead.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A part of the plane: what lies inside an odd number of rings. The last vertex of a ring joins the first. Positions are
+/// metres in the corridor's frame.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Area {
+    /// The boundary.
+    pub rings: Vec<Vec<[f64; 2]>>,
+}
+
+/// Stations of the steer axle over which bodies are held against an area instead of the corridor's half-widths.
+///
+/// The area counts between the first and the last of these stations. Where several spans of a corridor count, a body may be
+/// in any of their areas, and the one that leaves it the most room decides.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AreaSpan {
+    /// Stations of the steer axle; at least two.
+    pub heads: Range<usize>,
+    /// The area. All of the vehicle is inside, from its front to its rear, while the steer axle is at these stations.
+    pub area: Arc<Area>,
+}
+
+impl Area {
+    /// The boundary's segments.
+    pub fn segments(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
+        self.rings.iter().flat_map(|ring| (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]))
+    }
+
+    /// Whether a place lies inside. Places on the boundary may count either way.
+    #[must_use]
+    pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
+        let crossed =
+            |[a, b]: [[f64; 2]; 2]| (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+        self.segments().filter(|segment| crossed(*segment)).count() % 2 == 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_in_a_hole_is_outside() {
+        let square = |half: f64| vec![[-half, -half], [half, -half], [half, half], [-half, half]];
+        let area = Area { rings: vec![square(5.0), square(1.0)] };
+        assert!(area.contains([3.0, 0.5]));
+        assert!(!area.contains([0.3, 0.2]));
+        assert!(!area.contains([7.0, 0.0]));
+        assert_eq!(area.segments().count(), 8);
+    }
+}
