@@ -82,6 +82,10 @@ pub(super) struct Minima {
     /// As `left` and `right`, for sides between two of their points; at marked stations only.
     pub(super) mark_left: Vec<f64>,
     pub(super) mark_right: Vec<f64>,
+    /// By station of the steer axle, left and right: the least leeway in areas over the step that begins there, tagged, and the
+    /// foot of its point.
+    pub(super) area: [Vec<f64>; 2],
+    pub(super) area_foot: [Vec<u32>; 2],
     /// Least hinge margin by station of the steer axle, radians, tagged with the unit.
     pub(super) hinge: Vec<f64>,
     /// By station of the steer axle: first and last station under any body point.
@@ -99,6 +103,8 @@ impl Minima {
             right: vec![UNVISITED_M; stations],
             mark_left: vec![UNVISITED_M; stations],
             mark_right: vec![UNVISITED_M; stations],
+            area: [vec![UNVISITED_M; stations], vec![UNVISITED_M; stations]],
+            area_foot: [vec![0; stations], vec![0; stations]],
             hinge: vec![UNVISITED_M; stations],
             under: vec![[u32::MAX, 0]; stations],
             offset: vec![0.0; stations],

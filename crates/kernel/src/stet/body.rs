@@ -5,6 +5,7 @@ use super::block::{BLOCK, Feet, LOST_M, Minima};
 use super::group::gamma;
 use super::lanes::{LANES, V};
 use super::model::Model;
+use super::plane::Stand;
 use super::track::{Fields, Track};
 
 /// A foot farther along than this (metres) is searched again.
@@ -18,6 +19,8 @@ const JUMPED: usize = 4;
 /// these metres. It then lies on a leg of the corridor that the vehicle has left or has yet to reach.
 const ASTRAY_PART: f64 = 0.5;
 const ASTRAY_M: f64 = 10.0;
+/// `Point::covered` of a point that comes from an area: no station counts as jumped over until its next foot.
+pub(super) const FRESH: usize = usize::MAX;
 /// Added to a head's station so that differences stay positive for points ahead of the head.
 const AHEAD: usize = 1 << 20;
 
@@ -29,6 +32,8 @@ pub(super) struct Body {
     pub(super) heading: f64,
     pub(super) axle: f64,
     pub(super) points: Vec<Point>,
+    /// The unit at the last station, where areas count.
+    pub(super) stood: Option<Stand>,
     /// Last unit only: its axle, whose offset the published certificate needs.
     pub(super) last_axle: Option<LastAxle>,
 }
@@ -142,6 +147,7 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
                 heading: unit.heading.at(tolerance),
                 axle: unit.axle.at(tolerance),
                 points: points.collect(),
+                stood: None,
                 last_axle: (CERTIFY && index == last).then(|| LastAxle { foot: foot(0.0), way: way(0.0) }),
             }
         })
@@ -208,6 +214,9 @@ impl Point {
     /// Records the stations that have been under the point.
     #[inline(always)]
     pub(super) fn cover(&mut self, feet: Feet, minima: &mut Minima) {
+        if self.covered == FRESH {
+            self.covered = feet.range().0;
+        }
         match feet {
             Feet::Run(first) if first <= self.covered + JUMPED => self.covered = self.covered.max(first + LANES - 1),
             Feet::Run(first) => {
@@ -230,7 +239,7 @@ impl Point {
     #[inline(always)]
     pub(super) fn keep_on_the_way(&mut self, track: &Track, head: usize, minima: &mut Minima) {
         let expected = self.way.expected(track, head);
-        if self.covered + self.way.astray < expected || self.foot.abs_diff(expected) > self.way.astray {
+        if self.covered.saturating_add(self.way.astray) < expected || self.foot.abs_diff(expected) > self.way.astray {
             self.lose(expected, minima);
             self.foot = expected;
             self.covered = expected.saturating_sub(1);
@@ -240,6 +249,9 @@ impl Point {
     /// Marks the stations after `covered` up to `end` as lost: nothing is certified there.
     #[cold]
     fn lose(&self, end: usize, minima: &mut Minima) {
+        if self.covered == FRESH {
+            return;
+        }
         let lost = V::splat(LOST_M).tagged(self.tag).0[0];
         for k in self.covered + 1..end.min(minima.left.len()) {
             minima.left[k] = least(minima.left[k], lost);

@@ -6,6 +6,7 @@
 use super::block::{BLOCK, FIELDS, Feet, LOST_M, Minima, row};
 use super::body::{Body, NEAR_M, Seen, Spot, follow, foot, least, least as least_of, narrow, near, next_foot, place};
 use super::lanes::{LANES, V, ZERO, by_instruction_set, select_negative};
+use super::plane;
 use super::track::{BULGE_MOST, Fields, READ_M, Track};
 
 /// Where half-widths bulge, a side between two body points is examined in parts no longer than this, metres. At a
@@ -74,7 +75,15 @@ by_instruction_set! {
         head: usize,
         minima: &mut Minima,
     ) {
+        let mut alone = false;
         for group in 0..BLOCK / LANES {
+            let first = head + group * LANES;
+            if track.areas.touch(first - 1, first + LANES) {
+                alone = track.areas.replace(first, first + LANES - 1);
+                plane::pass::<CERTIFY, REFINED>(track, body, block, refined, head, first, alone, minima);
+            } else {
+                alone = false;
+            }
             let load = |field: usize| -> V {
                 let start = field * BLOCK + group * LANES;
                 let mut out = [0.0; LANES];
@@ -93,6 +102,12 @@ by_instruction_set! {
                 extra_coupling: load(row::EXTRA_COUPLING),
                 remainder: load(row::REMAINDER),
             };
+            if alone {
+                if CERTIFY && let Some(axle) = &mut body.last_axle {
+                    axle.follow(track, [s.x, s.y], shift, lane, minima);
+                }
+                continue;
+            }
             let mut before: Option<Sample> = None;
             let bounds = |index: usize| -> V {
                 let start = index * BLOCK + group * LANES;
@@ -152,6 +167,9 @@ by_instruction_set! {
         }
         if let Some(axle) = &mut body.last_axle {
             axle.foot = axle.way.kept(track, head + BLOCK, axle.foot);
+        }
+        if alone {
+            return;
         }
         for point in &mut body.points {
             point.keep_on_the_way(track, head + BLOCK, minima);

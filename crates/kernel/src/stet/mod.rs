@@ -15,6 +15,7 @@ mod leeway;
 mod model;
 pub mod motion;
 mod plan;
+mod plane;
 mod response;
 mod run_in;
 mod shift;
@@ -366,6 +367,12 @@ impl<'m> Swept<'m> {
             left_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.left, &best.mark_left));
             right_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.right, &best.mark_right));
         }
+        spans::lower_by_areas(track, [&mut left_m, &mut right_m], self.best(0, &whole));
+        let (mut left_centred_m, mut right_centred_m) = (
+            own_centred(&centred[0].left, &centred[0].mark_left),
+            own_centred(&centred[0].right, &centred[0].mark_right),
+        );
+        spans::lower_by_areas(track, [&mut left_centred_m, &mut right_centred_m], &centred[0]);
         let certificate = Certificate {
             result: self.result(0, &whole),
             plan,
@@ -373,8 +380,8 @@ impl<'m> Swept<'m> {
             shift,
             left_m,
             right_m,
-            left_centred_m: own_centred(&centred[0].left, &centred[0].mark_left),
-            right_centred_m: own_centred(&centred[0].right, &centred[0].mark_right),
+            left_centred_m,
+            right_centred_m,
         };
         (certificate, results)
     }

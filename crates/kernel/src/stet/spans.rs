@@ -75,15 +75,42 @@ pub(super) fn marks(spacing_m: f64, span: &Range<usize>) -> impl Iterator<Item =
 /// stations between two points.
 fn leeways<'a>(
     track: &'a Track,
+    model: &'a Model,
     span: &Range<usize>,
     [one, other]: [&'a Minima; 2],
 ) -> impl Iterator<Item = (usize, Side, [f64; 2])> {
     let points = stations(track, span).map(move |k| (k, [&one.left, &one.right], [&other.left, &other.right]));
     let marks = marks(track.spacing, span).map(|k| track.lead + k);
     let between = move |k: usize| (k, [&one.mark_left, &one.mark_right], [&other.mark_left, &other.mark_right]);
-    points.chain(marks.map(between)).flat_map(|(k, one, other)| {
+    let edges = points.chain(marks.map(between)).flat_map(|(k, one, other)| {
         [(Side::Left, 0), (Side::Right, 1)].map(|(side, i)| (k, side, [one[i][k], other[i][k]]))
-    })
+    });
+    let heads = heads(track, model, span, one).filter(|_| !track.areas.windows.is_empty());
+    let areas = heads.flat_map(move |head| {
+        [(Side::Left, 0), (Side::Right, 1)]
+            .map(|(side, i)| (one.area_foot[i][head] as usize, side, [one.area[i][head], other.area[i][head]]))
+    });
+    edges.chain(areas)
+}
+
+/// Stations of the steer axle at which any body point is on the span. The points' own feet say which, and so does the vehicle's
+/// length when straight, in case feet were lost.
+fn heads<'a>(
+    track: &'a Track,
+    model: &'a Model,
+    span: &Range<usize>,
+    full: &'a Minima,
+) -> impl Iterator<Item = usize> + 'a {
+    let (first, last) = (own(track, span).start() - beside(track), own(track, span).end() + beside(track));
+    let stations = |metres: f64| (metres / track.spacing).ceil() as usize;
+    let straight = first.saturating_sub(stations(model.front))..=last + stations(model.length);
+    // A foot falls behind by at most the arc of a quarter turn instead of its chord (proof, section 7, Feet).
+    let near =
+        straight.start().saturating_sub(stations(model.front))..full.hinge.len().min(last + 2 * stations(model.length));
+    let on = move |k: &usize| {
+        straight.contains(k) || full.under[*k][0] as usize <= last && full.under[*k][1] as usize >= first
+    };
+    near.filter(on)
 }
 
 /// Extended stations of a span of corridor stations.
@@ -98,12 +125,23 @@ pub(super) fn alone(track: &Track, span: &Range<usize>, points: &[f64], marks: &
     span.clone().map(least).collect()
 }
 
+/// Lowers columns of leeways, left and right, by the least leeway in areas of each step, at the station of its foot.
+pub(super) fn lower_by_areas(track: &Track, columns: [&mut [f64]; 2], minima: &Minima) {
+    for (side, column) in columns.into_iter().enumerate() {
+        for (foot, leeway) in minima.area_foot[side].iter().zip(&minima.area[side]) {
+            if let Some(least) = (*foot as usize).checked_sub(track.lead).and_then(|k| column.get_mut(k)) {
+                *least = least.min(*leeway);
+            }
+        }
+    }
+}
+
 /// The numbers of a span at γ = 1.
 pub(super) fn least(track: &Track, model: &Model, span: &Range<usize>, full: &Minima) -> Least {
     let mut least = f64::INFINITY;
     let mut limiting = Limiting { station: span.start, unit: 0, side: Side::Left, point_m: 0.0 };
     let (mut offset, mut half_width) = (0.0_f64, f64::INFINITY);
-    for (k, side, [value, _]) in leeways(track, span, [full; 2]) {
+    for (k, side, [value, _]) in leeways(track, model, span, [full; 2]) {
         // A NaN, which no input should cause, counts as the least value.
         if value < least || value.is_nan() {
             least = if value.is_nan() { NOTHING_M } else { value.max(NOTHING_M) };
@@ -140,18 +178,9 @@ pub(super) fn least(track: &Track, model: &Model, span: &Range<usize>, full: &Mi
     }
 }
 
-/// The least hinge margin while any body point is on the span. The points' own feet say when, and so does the vehicle's
-/// length when straight, in case feet were lost.
+/// The least hinge margin while any body point is on the span.
 fn hinge(track: &Track, model: &Model, span: &Range<usize>, full: &Minima) -> f64 {
-    let (first, last) = (own(track, span).start() - beside(track), own(track, span).end() + beside(track));
-    let stations = |metres: f64| (metres / track.spacing).ceil() as usize;
-    let straight = first.saturating_sub(stations(model.front))..=last + stations(model.length);
-    // A foot falls behind by at most the arc of a quarter turn instead of its chord (proof, section 7, Feet).
-    let near =
-        straight.start().saturating_sub(stations(model.front))..full.hinge.len().min(last + 2 * stations(model.length));
-    let on =
-        |k: &usize| straight.contains(k) || full.under[*k][0] as usize <= last && full.under[*k][1] as usize >= first;
-    near.filter(on).map(|k| full.hinge[k]).fold(f64::INFINITY, f64::min)
+    heads(track, model, span, full).map(|k| full.hinge[k]).fold(f64::INFINITY, f64::min)
 }
 
 /// The place of a tagged leeway at an extended station.
@@ -184,7 +213,7 @@ pub(super) fn shrunk(
     if lowest.rsc_m < 0.0 || floor >= 1.0 {
         return lowest;
     }
-    let all = || leeways(track, span, [full, at_least]);
+    let all = || leeways(track, model, span, [full, at_least]);
     let fails = all().filter(|(_, _, [f, _])| *f < 0.0);
     let part = fails.fold(1.0_f64, |part, (_, _, [f, l])| part.min(l / (l - f)));
     let shrink = ((floor + (1.0 - floor) * part) * SHRINK_STEPS).floor() / SHRINK_STEPS;

@@ -3,6 +3,7 @@
 
 use super::lanes::{LANES, V};
 use super::model::POINT_SPACING_M as MOST_GAP_M;
+use super::plane::Areas;
 use netcert_base::corridor::Corridor;
 
 /// Half-width of the straight extensions beyond a body gap from the corridor: they are driven, not certified.
@@ -29,6 +30,8 @@ pub(super) struct Track {
     pub(super) fields: Fields<Vec<f64>>,
     /// Stations that do not fit their neighbours: nothing is certified there.
     pub(super) torn: Vec<usize>,
+    /// Areas that stand in for the half-widths.
+    pub(super) areas: Areas,
     /// The next marked station from each station on. At marked stations the leeway between two points of a side counts.
     next_mark: Vec<u32>,
 }
@@ -117,7 +120,8 @@ impl Track {
         };
         let torn = corridor.torn().into_iter().map(|k| lead + k).collect();
         let next_mark = vec![u32::MAX; fields.x.len() + 1];
-        Self { spacing: h, lead, first_head, count, fields, torn, next_mark }
+        let areas = Areas::new(corridor, lead);
+        Self { spacing: h, lead, first_head, count, fields, torn, areas, next_mark }
     }
 
     /// Every second station, the corridor's first among them, for planning. Torn stations do not matter there.
@@ -148,6 +152,7 @@ impl Track {
             count: self.count.div_ceil(2),
             fields,
             torn: Vec::new(),
+            areas: self.areas.coarse(first),
             next_mark: Vec::new(),
         }
     }

@@ -1,0 +1,330 @@
+//! The room that an area leaves: distances to its boundary, found through a grid of cells.
+
+use netcert_base::corridor::Area;
+
+/// A place in the plane, metres.
+pub(super) type Point = [f64; 2];
+
+/// Side of a cell, metres.
+const CELL_M: f64 = 3.0;
+/// Distances up to this are exact, metres. Beyond it a place just has at least this much room.
+const FAR_M: f64 = 4.0;
+/// Most cells of a grid. An area of a square kilometre has a ninth of it.
+const MOST_CELLS: usize = 1 << 20;
+/// Distance between the places at which a piece outside the area is measured, metres.
+const SAMPLED_M: f64 = 0.1;
+
+/// An area's boundary, with the segments near each cell of a grid.
+pub(crate) struct Ground {
+    origin: Point,
+    columns: usize,
+    rows: usize,
+    segments: Vec<[Point; 2]>,
+    /// Segments within [`FAR_M`] of each cell: `near[starts[cell]..starts[cell + 1]]`.
+    starts: Vec<u32>,
+    near: Vec<u32>,
+    /// Whether each cell's own corner lies inside.
+    inside: Vec<bool>,
+}
+
+impl Ground {
+    /// `None` if the boundary has no segment, is not finite, or is too large for a grid. Nothing is inside then.
+    pub(super) fn new(area: &Area) -> Option<Self> {
+        let segments: Vec<[Point; 2]> = area.segments().collect();
+        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        for p in segments.iter().flatten() {
+            for k in 0..2 {
+                if !p[k].is_finite() {
+                    return None;
+                }
+                (low[k], high[k]) = (low[k].min(p[k]), high[k].max(p[k]));
+            }
+        }
+        // The offsets are no round numbers, so a cell's corner hardly ever lies on a boundary drawn in round numbers.
+        let origin = [low[0] - FAR_M - 0.137_421, low[1] - FAR_M - 0.211_973];
+        let cells = |k: usize| ((high[k] + FAR_M - origin[k]) / CELL_M).ceil() + 1.0;
+        if segments.is_empty() || cells(0) * cells(1) > MOST_CELLS as f64 {
+            return None;
+        }
+        let (columns, rows) = (cells(0) as usize, cells(1) as usize);
+        let mut ground = Self {
+            origin,
+            columns,
+            rows,
+            segments,
+            starts: Vec::with_capacity(columns * rows + 1),
+            near: Vec::new(),
+            inside: Vec::new(),
+        };
+        ground.sort_segments();
+        ground.mark_inside();
+        Some(ground)
+    }
+
+    /// Lists the segments near each cell.
+    fn sort_segments(&mut self) {
+        let mut pairs: Vec<(u32, u32)> = Vec::new();
+        let half = 0.5 * CELL_M;
+        let reach = FAR_M + half * std::f64::consts::SQRT_2;
+        for (number, &[a, b]) in (0..).zip(&self.segments) {
+            let range = |k: usize, count: usize| {
+                let from = (a[k].min(b[k]) - FAR_M - self.origin[k]) / CELL_M;
+                let to = (a[k].max(b[k]) + FAR_M - self.origin[k]) / CELL_M;
+                from.floor().max(0.0) as usize..=(to.floor().max(0.0) as usize).min(count - 1)
+            };
+            for row in range(1, self.rows) {
+                for column in range(0, self.columns) {
+                    let corner = self.corner(column, row);
+                    if distance([corner[0] + half, corner[1] + half], a, b) <= reach {
+                        pairs.push(((row * self.columns + column) as u32, number));
+                    }
+                }
+            }
+        }
+        pairs.sort_unstable();
+        let mut next = 0;
+        for cell in 0..(self.columns * self.rows) as u32 {
+            self.starts.push(next as u32);
+            while pairs.get(next).is_some_and(|(of, _)| *of == cell) {
+                next += 1;
+            }
+        }
+        self.starts.push(next as u32);
+        self.near = pairs.into_iter().map(|(_, segment)| segment).collect();
+    }
+
+    /// Marks the cells whose corner lies inside, row by row: the boundary changes sides where it crosses the row.
+    fn mark_inside(&mut self) {
+        for row in 0..self.rows {
+            let y = self.corner(0, row)[1];
+            let mut crossings: Vec<f64> = self
+                .segments
+                .iter()
+                .filter(|[a, b]| (a[1] > y) != (b[1] > y))
+                .map(|[a, b]| crossing(*a, *b, y))
+                .collect();
+            crossings.sort_unstable_by(f64::total_cmp);
+            for column in 0..self.columns {
+                let x = self.corner(column, row)[0];
+                self.inside.push(crossings.partition_point(|&at| at <= x) % 2 == 1);
+            }
+        }
+    }
+
+    fn corner(&self, column: usize, row: usize) -> Point {
+        [self.origin[0] + column as f64 * CELL_M, self.origin[1] + row as f64 * CELL_M]
+    }
+
+    /// The cell of a place. `None` outside the grid, which is outside the area.
+    fn cell(&self, p: Point) -> Option<(usize, usize)> {
+        let [x, y] = [0, 1].map(|k| (p[k] - self.origin[k]) / CELL_M);
+        let on = x >= 0.0 && y >= 0.0 && x < self.columns as f64 && y < self.rows as f64;
+        on.then_some((x as usize, y as usize))
+    }
+
+    fn near(&self, (column, row): (usize, usize)) -> &[u32] {
+        let cell = row * self.columns + column;
+        &self.near[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
+
+    /// Whether a place lies inside: as its cell's corner, unless the boundary is crossed an odd number of times on the way
+    /// there, along the row and then along the column.
+    fn contains(&self, p: Point) -> bool {
+        let Some(cell) = self.cell(p) else { return false };
+        let corner = self.corner(cell.0, cell.1);
+        let mut inside = self.inside[cell.1 * self.columns + cell.0];
+        for &segment in self.near(cell) {
+            let [a, b] = self.segments[segment as usize];
+            if (a[1] > p[1]) != (b[1] > p[1]) {
+                let at = crossing(a, b, p[1]);
+                inside ^= at > corner[0] && at <= p[0];
+            }
+            if (a[0] > corner[0]) != (b[0] > corner[0]) {
+                let at = crossing([a[1], a[0]], [b[1], b[0]], corner[0]);
+                inside ^= at > corner[1] && at <= p[1];
+            }
+        }
+        inside
+    }
+
+    /// Distance to the boundary, at most [`FAR_M`].
+    fn distance(&self, p: Point) -> f64 {
+        let Some(cell) = self.cell(p) else { return FAR_M };
+        let near = self.near(cell).iter();
+        near.map(|&s| self.segments[s as usize]).fold(FAR_M, |least, [a, b]| least.min(distance(p, a, b)))
+    }
+
+    /// Room of a place: its distance to the boundary, negative outside. Never too great.
+    pub(super) fn room(&self, p: Point) -> f64 {
+        let far = self.distance(p);
+        match self.contains(p) {
+            true => far,
+            false if far < FAR_M => -far,
+            false => -self.segments.iter().fold(f64::INFINITY, |least, [a, b]| least.min(distance(p, *a, *b))),
+        }
+    }
+
+    /// Room of the part of the plane that a straight piece of a side covers while it moves from `before` to `after`: the
+    /// distance of the hull of both from the boundary. Never too great; negative where the hull is not inside.
+    pub(super) fn swept(&self, before: [Point; 2], after: [Point; 2]) -> f64 {
+        let corners = [before[0], before[1], after[1], after[0]];
+        let middle = [0, 1].map(|k| 0.25 * corners.iter().map(|p| p[k]).sum::<f64>());
+        let reach = corners.iter().map(|p| apart(*p, middle)).fold(0.0, f64::max);
+        let inside = self.contains(middle);
+        let rough = self.distance(middle) - reach;
+        let mut least = FAR_M - reach;
+        if inside && rough >= least {
+            return rough;
+        }
+        let mut touched = !inside || reach >= FAR_M;
+        if let Some(cell) = self.cell(middle).filter(|_| !touched) {
+            for &number in self.near(cell) {
+                let [a, b] = self.segments[number as usize];
+                if distance(middle, a, b) - reach < least {
+                    match hull_distance(&corners, a, b) {
+                        Some(far) => least = least.min(far),
+                        None => touched = true,
+                    }
+                }
+            }
+        }
+        if touched { -self.depth(before, after) } else { least }
+    }
+
+    /// How far a swept piece is outside at most, metres. Measured at places of the piece before and after; every place of the hull is
+    /// close to one of these.
+    fn depth(&self, before: [Point; 2], after: [Point; 2]) -> f64 {
+        let length = apart(before[0], before[1]);
+        let parts = (length / SAMPLED_M).ceil().max(1.0);
+        let mut deepest = 0.0_f64;
+        for piece in [before, after] {
+            for i in 0..=parts as usize {
+                let part = i as f64 / parts;
+                let p = [0, 1].map(|k| piece[0][k] + part * (piece[1][k] - piece[0][k]));
+                deepest = deepest.max(-self.room(p));
+            }
+        }
+        let along = [0, 1].map(|k| (before[1][k] - before[0][k]) / length.max(1e-9));
+        let aside = |i: usize| {
+            let moved = [0, 1].map(|k| after[i][k] - before[i][k]);
+            (along[0] * moved[1] - along[1] * moved[0]).abs()
+        };
+        // A piece slides along itself, so the places between two samples are close to a sample of either moment.
+        deepest + 0.5 * (length / parts) + 0.5 * aside(0).max(aside(1))
+    }
+
+    /// Whether any vertex of the boundary lies within a rectangle: an island may be so small that no side of it is near.
+    pub(super) fn under(&self, corners: [Point; 4]) -> bool {
+        let within = |p: Point| {
+            (0..4).all(|i| {
+                let (a, b) = (corners[i], corners[(i + 1) % 4]);
+                (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) >= 0.0
+            })
+        };
+        self.segments.iter().any(|[a, _]| within(*a))
+    }
+}
+
+/// Where the line from `a` to `b` reaches the second coordinate `y`.
+fn crossing(a: Point, b: Point, y: f64) -> f64 {
+    a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+}
+
+fn apart(a: Point, b: Point) -> f64 {
+    ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
+}
+
+/// Distance of `p` from the segment from `a` to `b`.
+fn distance(p: Point, a: Point, b: Point) -> f64 {
+    let (d, e) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+    let share = ((d[0] * e[0] + d[1] * e[1]) / (d[0] * d[0] + d[1] * d[1]).max(1e-18)).clamp(0.0, 1.0);
+    apart(e, [share * d[0], share * d[1]])
+}
+
+/// Distance of the hull of four points from a segment. `None` if they touch.
+fn hull_distance(corners: &[Point; 4], a: Point, b: Point) -> Option<f64> {
+    let mut least = corners.iter().fold(f64::INFINITY, |least, p| least.min(distance(*p, a, b)));
+    // All pairs: the order of the corners around the hull does not matter.
+    for i in 0..4 {
+        for j in i + 1..4 {
+            let (p, q) = (corners[i], corners[j]);
+            if cross(p, q, a, b) {
+                return None;
+            }
+            least = least.min(distance(a, p, q)).min(distance(b, p, q));
+        }
+    }
+    let within = (0..4).any(|left_out| {
+        let [p, q, r] = [1, 2, 3].map(|k| corners[(left_out + k) % 4]);
+        let turn = |p: Point, q: Point| (q[0] - p[0]) * (a[1] - p[1]) - (q[1] - p[1]) * (a[0] - p[0]);
+        let turns = [turn(p, q), turn(q, r), turn(r, p)];
+        turns.iter().all(|&t| t > 0.0) || turns.iter().all(|&t| t < 0.0)
+    });
+    (!within).then_some(least)
+}
+
+/// Whether two segments cross.
+fn cross(p: Point, q: Point, a: Point, b: Point) -> bool {
+    let turn = |p: Point, q: Point, r: Point| (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
+    let (c, d) = (turn(p, q, a), turn(p, q, b));
+    let (e, f) = (turn(a, b, p), turn(a, b, q));
+    (c > 0.0) != (d > 0.0) && (e > 0.0) != (f > 0.0)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    fn square(at: Point, half: f64) -> Vec<Point> {
+        [[-half, -half], [half, -half], [half, half], [-half, half]].map(|p| [p[0] + at[0], p[1] + at[1]]).to_vec()
+    }
+
+    fn yard() -> Ground {
+        Ground::new(&Area { rings: vec![square([0.0; 2], 20.0), square([5.0, 5.0], 1.0)] }).unwrap()
+    }
+
+    #[test]
+    fn a_place_has_the_room_to_the_nearest_edge_or_island() {
+        let ground = yard();
+        for (p, room) in [
+            ([0.0, 0.0], FAR_M),
+            ([18.5, 3.0], 1.5),
+            ([5.0, 7.0], 1.0),
+            ([5.2, 5.0], -0.8),
+            ([21.0, 0.0], -1.0),
+            ([0.0, -30.0], -10.0),
+        ] {
+            assert!((ground.room(p) - room).abs() < 1e-12, "{p:?}: {}", ground.room(p));
+        }
+    }
+
+    #[test]
+    fn cells_know_inside_and_outside_as_the_area_does() {
+        let area = Area { rings: vec![square([0.0; 2], 20.0), square([5.0, 5.0], 1.0), square([-9.0, 3.0], 4.0)] };
+        let ground = Ground::new(&area).unwrap();
+        for i in 0..120 {
+            for j in 0..120 {
+                let p = [-30.0 + 0.5 * f64::from(i) + 0.013, -30.0 + 0.5 * f64::from(j) + 0.017];
+                assert_eq!(ground.contains(p), area.contains(p), "{p:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_piece_that_passes_an_edge_between_two_moments_does_not_fit() {
+        let ground = yard();
+        let [before, after] = [[[3.5, 3.0], [4.5, 3.0]], [[3.5, 8.0], [4.6, 8.0]]];
+        assert!(ground.swept(before, after) < 0.0);
+        // Beside the island there is room, and an edge that is a metre and a half away counts.
+        let beside = ground.swept([[17.0, 1.0], [17.0, 2.0]], [[18.0, 1.5], [18.5, 2.5]]);
+        assert!((beside - 1.5).abs() < 1e-12 || (1.0..=1.5).contains(&beside), "{beside}");
+    }
+
+    #[test]
+    fn an_island_under_the_body_is_found() {
+        let ground = yard();
+        assert!(ground.under([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]]));
+        assert!(!ground.under([[-10.0, 0.0], [0.0, 0.0], [0.0, 10.0], [-10.0, 10.0]]));
+    }
+}

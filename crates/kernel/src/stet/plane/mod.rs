@@ -1,0 +1,415 @@
+//! Leeway in the plane (docs/proof.md, section 11): where a corridor has areas, bodies are held against their boundary instead
+//! of the corridor's edges.
+//!
+//! At the foot of its axle a unit deviates across its heading and in its heading, and not along. A body point is therefore within a
+//! small rectangle around its nominal place. A piece of a side is made longer by what its points may move along, and its leeway is
+//! the distance of the longer piece from the boundary, less what its points may move across.
+
+mod ground;
+
+use netcert_base::corridor::Corridor;
+
+use super::block::{BLOCK, Minima, NOT_CLOSED_RAD, UNVISITED_M, row};
+use super::body::{Body, FRESH, least};
+use super::lanes::{LANES, V};
+use super::track::Track;
+use ground::{Ground, Point};
+
+/// Most body points of a unit.
+const MOST_POINTS: usize = 16;
+/// Sides are covered in pieces no longer than this, metres. The hull of a piece over a step is little larger than what the piece
+/// sweeps.
+const PIECE_M: f64 = 1.4;
+/// Share by which the motion's second derivative, taken at the stations, may be greater between them.
+const BETWEEN: f64 = 1.25;
+/// Leeway where nothing is bounded. It is above the mark for a missing bound, which the hinges set.
+const FAR_OUTSIDE_M: f64 = -300.0;
+/// Most stations walked to find the foot of a body point.
+const MOST_STEPS: usize = 16;
+
+/// A span of stations of the steer axle, with its area.
+pub(super) struct Window {
+    /// First and last extended station.
+    pub(super) first: usize,
+    pub(super) last: usize,
+    /// Position in the corridor's list; windows of a thinned track share the area.
+    area: usize,
+}
+
+/// The areas of a corridor, prepared for its extended stations.
+#[derive(Default)]
+pub(super) struct Areas {
+    pub(super) windows: Vec<Window>,
+    /// `None` where an area cannot be used: nothing is inside.
+    grounds: Vec<Option<std::sync::Arc<Ground>>>,
+}
+
+impl Areas {
+    pub(super) fn new(corridor: &Corridor, lead: usize) -> Self {
+        let last = corridor.len().saturating_sub(1);
+        let windows = corridor.areas.iter().enumerate().map(|(area, span)| Window {
+            first: lead + span.heads.start.min(last),
+            last: lead + span.heads.end.saturating_sub(1).min(last),
+            area,
+        });
+        let ground = |span: &netcert_base::corridor::AreaSpan| Ground::new(&span.area).map(std::sync::Arc::new);
+        Self { windows: windows.collect(), grounds: corridor.areas.iter().map(ground).collect() }
+    }
+
+    /// The areas for every second station.
+    pub(super) fn coarse(&self, first: usize) -> Self {
+        let half = |k: usize| k.saturating_sub(first).div_ceil(2);
+        let windows = self
+            .windows
+            .iter()
+            .map(|w| Window { first: half(w.first), last: w.last.saturating_sub(first) / 2, area: w.area })
+            .collect();
+        Self { windows, grounds: self.grounds.clone() }
+    }
+
+    /// Whether any area counts over the step from station `k` to the next.
+    fn over(&self, k: usize) -> bool {
+        self.windows.iter().any(|w| w.first <= k && k < w.last)
+    }
+
+    /// Whether any area counts near the given stations of the steer axle.
+    #[inline(always)]
+    pub(super) fn touch(&self, from: usize, to: usize) -> bool {
+        self.windows.iter().any(|w| w.first <= to && from <= w.last)
+    }
+
+    /// Whether areas count from the step before station `from` to the step behind station `to`. The corridor's edges then
+    /// do not matter.
+    #[inline(always)]
+    pub(super) fn replace(&self, from: usize, to: usize) -> bool {
+        !self.windows.is_empty() && (from.saturating_sub(1)..=to).all(|k| self.over(k))
+    }
+
+    /// The areas that count over the step from station `k` to the next.
+    fn at(&self, k: usize) -> impl Iterator<Item = Option<&Ground>> {
+        self.windows
+            .iter()
+            .filter(move |w| w.first <= k && k < w.last)
+            .map(|w| self.grounds.get(w.area).and_then(|ground| ground.as_deref()))
+    }
+
+    /// The areas that count at station `k`.
+    fn on(&self, k: usize) -> impl Iterator<Item = Option<&Ground>> {
+        self.windows
+            .iter()
+            .filter(move |w| w.first <= k && k <= w.last)
+            .map(|w| self.grounds.get(w.area).and_then(|ground| ground.as_deref()))
+    }
+}
+
+/// A unit at a head station.
+#[derive(Clone)]
+pub(super) struct Stand {
+    head: usize,
+    axle: Point,
+    along: Point,
+    /// Way of the axle to the next station, metres, and change of its curvature per metre, 1/m².
+    way: f64,
+    jerk: f64,
+    /// Bounds of how far each body point is from its nominal place, across the nominal heading and along it, metres.
+    across: [f64; MOST_POINTS],
+    along_m: [f64; MOST_POINTS],
+}
+
+impl Stand {
+    fn place(&self, ahead: f64, aside: f64) -> Point {
+        let [x, y] = self.along;
+        [self.axle[0] + ahead * x - aside * y, self.axle[1] + ahead * y + aside * x]
+    }
+
+    /// The unit at station `k` of the block that begins at station `head`.
+    fn read<const REFINED: bool>(body: &Body, block: &[f64], refined: &[f64], head: usize, k: usize) -> Self {
+        let at = |field: usize| block[field * BLOCK + k];
+        let (extra_axle, extra_coupling, remainder) =
+            (at(row::EXTRA_AXLE), at(row::EXTRA_COUPLING), at(row::REMAINDER));
+        let a = (extra_axle + extra_coupling) * body.inverse_length + body.heading + remainder;
+        let half = body.half_width;
+        let (mut across, mut along_m) = ([0.0; MOST_POINTS], [0.0; MOST_POINTS]);
+        for (index, point) in body.points.iter().enumerate() {
+            let spot = &point.spot;
+            let reach = spot.ahead.abs();
+            let own = if REFINED {
+                refined[index * BLOCK + k]
+            } else {
+                spot.gain + extra_axle * spot.from_axle + extra_coupling * spot.from_coupling
+            };
+            across[index] = own + reach * remainder + reach * a * a * a / 6.0 + half * a * a * 0.5;
+            along_m[index] = half * a + reach * a * a * 0.5;
+        }
+        Self {
+            head: head + k,
+            axle: [at(row::X), at(row::Y)],
+            along: [at(row::UX), at(row::UY)],
+            way: at(row::WAY2).sqrt(),
+            jerk: at(row::JERK),
+            across,
+            along_m,
+        }
+    }
+}
+
+/// The least leeway of one unit over a step, by side.
+#[derive(Clone, Copy)]
+struct Lowest {
+    leeway: f64,
+    point: usize,
+}
+
+impl Lowest {
+    const NONE: Self = Self { leeway: UNVISITED_M, point: 0 };
+
+    fn lower(&mut self, leeway: f64, point: usize) {
+        // A NaN, which no input should cause, counts as no room.
+        if leeway < self.leeway || leeway.is_nan() {
+            *self = Self { leeway: if leeway.is_nan() { FAR_OUTSIDE_M } else { leeway.max(FAR_OUTSIDE_M) }, point };
+        }
+    }
+}
+
+/// Lowers `minima` by one unit over eight head stations from `first` on, of the block that begins at `head`. With `alone`, the
+/// corridor's edges do not count at these stations, and the feet of the body points are followed here.
+#[allow(clippy::too_many_arguments)] // One call per unit and eight stations.
+pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
+    track: &Track,
+    body: &mut Body,
+    block: &[f64],
+    refined: &[f64],
+    head: usize,
+    first: usize,
+    alone: bool,
+    minima: &mut Minima,
+) {
+    let mut feet = [0; MOST_POINTS];
+    for (foot, point) in feet.iter_mut().zip(&body.points) {
+        *foot = point.foot;
+    }
+    for station in first..first + LANES {
+        let k = station - head;
+        let stand = Stand::read::<REFINED>(body, block, refined, head, k);
+        for (foot, point) in feet.iter_mut().zip(&body.points) {
+            *foot = walked(track, *foot + usize::from(station > first), stand.place(point.spot.ahead, 0.0));
+        }
+        if CERTIFY {
+            if alone {
+                let hinge = V::splat(block[row::HINGE * BLOCK + k]).tagged(body.points[0].tag).0[0];
+                minima.hinge[station] = least(minima.hinge[station], hinge);
+                let [from, to] = &mut minima.under[station];
+                for &foot in &feet[..body.points.len()] {
+                    (*from, *to) = ((*from).min(foot as u32), (*to).max(foot as u32));
+                }
+            }
+            let closes = block[row::HINGE * BLOCK + k] > 0.5 * NOT_CLOSED_RAD;
+            if let Some(before) = body.stood.take().filter(|before| before.head + 1 == station)
+                && track.areas.over(before.head)
+            {
+                let lowest = if closes {
+                    step(track, body, &before, &stand)
+                } else {
+                    [Lowest { leeway: FAR_OUTSIDE_M, point: 0 }; 2]
+                };
+                for (side, lowest) in lowest.into_iter().enumerate() {
+                    let tagged = V::splat(lowest.leeway).tagged(body.points[lowest.point].tag).0[0];
+                    if tagged < minima.area[side][before.head] {
+                        minima.area[side][before.head] = tagged;
+                        minima.area_foot[side][before.head] = feet[lowest.point] as u32;
+                    }
+                }
+            }
+            body.stood = Some(stand);
+        } else {
+            plan(track, body, &stand, &feet, minima);
+        }
+    }
+    if alone {
+        for (point, foot) in body.points.iter_mut().zip(feet) {
+            point.foot = (foot + 1).min(track.len() - LANES);
+            point.covered = FRESH;
+        }
+    }
+}
+
+/// The least leeways of a unit, left and right, over the step between two stations.
+fn step(track: &Track, body: &Body, before: &Stand, after: &Stand) -> [Lowest; 2] {
+    let mut lowest = [Lowest::NONE; 2];
+    let half = body.half_width;
+    let [sine, cosine] = [
+        before.along[0] * after.along[1] - before.along[1] * after.along[0],
+        before.along[0] * after.along[0] + before.along[1] * after.along[1],
+    ];
+    let turned = sine.atan2(cosine).abs();
+    let way = before.way.max(track.spacing);
+    // How far a point leaves the straight line between its places at both stations: the arc of the axle, the arc of the point around
+    // the axle, and an uneven turn.
+    let sag = |ahead: f64| {
+        let lever = ahead.abs() + half;
+        0.125 * BETWEEN * (way * turned + lever * (turned * turned + before.jerk.max(after.jerk) * way * way))
+    };
+    // The first step of a window: nothing may already be under the body.
+    let begins = track.areas.windows.iter().any(|w| w.first == before.head);
+    let room = |before_ends: [Point; 2], after_ends: [Point; 2]| {
+        let rooms = track.areas.at(before.head).map(|ground| match ground {
+            Some(ground) => ground.swept(before_ends, after_ends),
+            None => FAR_OUTSIDE_M,
+        });
+        rooms.fold(FAR_OUTSIDE_M, f64::max)
+    };
+    let across = |index: usize| before.across[index].max(after.across[index]);
+    let along = |index: usize| before.along_m[index].max(after.along_m[index]);
+    let last = body.points.len() - 1;
+    let (front, rear) = (body.points[0].spot.ahead, body.points[last].spot.ahead);
+    // The front edge, before by as much behind its place and after by as much ahead of it as its points may be.
+    let edge = |index: usize, ahead: f64| {
+        let moved = along(index);
+        let ends = |stand: &Stand, by: f64| [half, -half].map(|aside| stand.place(ahead + by, aside));
+        room(ends(before, -moved), ends(after, moved)) - across(index) - sag(ahead)
+    };
+    if begins {
+        let corners = [(rear, -half), (front, -half), (front, half), (rear, half)];
+        let outline = corners.map(|(ahead, aside)| before.place(ahead, aside));
+        let blocked = track.areas.at(before.head).all(|ground| ground.is_none_or(|ground| ground.under(outline)));
+        let leeway = if blocked { -half } else { edge(last, rear) };
+        lowest.iter_mut().for_each(|lowest| lowest.lower(leeway, last));
+    }
+    let leeway = edge(0, front);
+    lowest.iter_mut().for_each(|lowest| lowest.lower(leeway, 0));
+    for index in 1..body.points.len() {
+        let (ahead, behind) = (body.points[index - 1].spot.ahead, body.points[index].spot.ahead);
+        let parts = (body.points[index].gap / PIECE_M).ceil().max(1.0);
+        let sag = sag(ahead).max(sag(behind));
+        let moved = along(index - 1).max(along(index));
+        for part in 0..parts as usize {
+            let at = |share: f64, a: f64, b: f64| a + (b - a) * share;
+            let [from, to] = [part as f64 / parts, (part + 1) as f64 / parts];
+            // The bound is convex along the side: chords between body points are never below it.
+            let most = [from, to].map(|share| at(share, across(index - 1), across(index)));
+            let most = most[0].max(most[1]) + sag;
+            let point = if from + to < 1.0 { index - 1 } else { index };
+            let piece = [at(from, ahead, behind) + moved, at(to, ahead, behind) - moved];
+            for (lowest, aside) in lowest.iter_mut().zip([half, -half]) {
+                let ends = |stand: &Stand| piece.map(|ahead| stand.place(ahead, aside));
+                lowest.lower(room(ends(before), ends(after)) - most, point);
+            }
+        }
+    }
+    lowest
+}
+
+/// Lowers the planning leeways at the feet of a unit's points: the nominal room of the sides between them, less the straight gains.
+fn plan(track: &Track, body: &Body, stand: &Stand, feet: &[usize; MOST_POINTS], minima: &mut Minima) {
+    if track.areas.on(stand.head).next().is_none() {
+        return;
+    }
+    for index in 0..body.points.len() {
+        let before = index.saturating_sub(1);
+        let (ahead, behind) = (&body.points[before], &body.points[index]);
+        let (from, to) = (ahead.spot.ahead, behind.spot.ahead);
+        let parts = ((from - to) / PIECE_M).ceil().max(1.0);
+        for (side, aside) in [body.half_width, -body.half_width].into_iter().enumerate() {
+            for part in 0..=parts as usize {
+                let share = part as f64 / parts;
+                let p = stand.place(from + (to - from) * share, aside);
+                let rooms =
+                    track.areas.on(stand.head).map(|ground| ground.map_or(FAR_OUTSIDE_M, |ground| ground.room(p)));
+                let near = if share < 0.5 { before } else { index };
+                let point = &body.points[near];
+                let leeway = rooms.fold(FAR_OUTSIDE_M, f64::max) - point.spot.gain;
+                let tagged = V::splat(leeway).tagged(point.tag).0[0];
+                let column = if side == 0 { &mut minima.left } else { &mut minima.right };
+                column[feet[near]] = least(column[feet[near]], tagged);
+            }
+        }
+    }
+}
+
+/// The station nearest to a place, found by walking from `foot`.
+fn walked(track: &Track, foot: usize, [x, y]: Point) -> usize {
+    let f = &track.fields;
+    let last = track.len() - 1;
+    let mut k = foot.min(last);
+    let along = |k: usize| (x - f.x[k]) * f.tangent_x[k] + (y - f.y[k]) * f.tangent_y[k];
+    for _ in 0..MOST_STEPS {
+        let away = along(k);
+        if away > 0.55 * track.spacing && k < last {
+            k += 1;
+        } else if away < -0.55 * track.spacing && k > 0 {
+            k -= 1;
+        } else {
+            break;
+        }
+    }
+    k
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use std::sync::Arc;
+
+    use netcert_base::corridor::{Area, AreaSpan, Corridor, CurvatureProfile};
+    use netcert_base::stop::Stop;
+    use netcert_base::vehicle::Catalogue;
+
+    use crate::stet::{Certificate, Model, Options, certify};
+
+    const VEHICLES: [&str; 4] = ["EU-SEMI16.5", "US-WB67", "AU-BDOUBLE26", "AU-ATRIPLE53"];
+
+    fn certified(corridor: &Corridor, vehicle: &str) -> Certificate {
+        let model = Model::new(Catalogue::builtin().unwrap().get(vehicle).unwrap()).unwrap();
+        let fixed = Options { max_shift_m: 0.0, correction_sweeps: 0 };
+        certify(corridor, &model, &fixed, &Stop::never()).unwrap().unwrap()
+    }
+
+    /// The corridor with its own edges as an area, prolonged straight by `beyond_m`.
+    fn as_area(corridor: &Corridor, beyond_m: f64, heads: std::ops::Range<usize>) -> Corridor {
+        let last = corridor.len() - 1;
+        let edge = |k: usize, along: f64, aside: f64| {
+            let (sin, cos) = corridor.heading[k].sin_cos();
+            [corridor.x[k] + along * cos - aside * sin, corridor.y[k] + along * sin + aside * cos]
+        };
+        let mut ring = vec![edge(0, -beyond_m, -corridor.right_m[0])];
+        ring.extend((0..=last).map(|k| edge(k, 0.0, -corridor.right_m[k])));
+        ring.push(edge(last, beyond_m, -corridor.right_m[last]));
+        ring.push(edge(last, beyond_m, corridor.left_m[last]));
+        ring.extend((0..=last).rev().map(|k| edge(k, 0.0, corridor.left_m[k])));
+        ring.push(edge(0, -beyond_m, corridor.left_m[0]));
+        let area = Arc::new(Area { rings: vec![ring] });
+        Corridor { areas: vec![AreaSpan { heads, area }], ..corridor.clone() }
+    }
+
+    #[test]
+    fn on_a_straight_the_plane_and_the_corridor_agree() {
+        let corridor = Corridor::straight(260.0, 2.0, 1.9);
+        for vehicle in VEHICLES {
+            let by_edges = certified(&corridor, vehicle).result.rsc_m.unwrap();
+            let in_area = as_area(&corridor, 90.0, 0..corridor.len());
+            let by_area = certified(&in_area, vehicle).result.rsc_m.unwrap();
+            assert!((by_edges - by_area).abs() < 0.01, "{vehicle}: {by_edges} {by_area}");
+        }
+    }
+
+    #[test]
+    fn in_a_bend_the_plane_is_no_worse_than_the_corridor() {
+        for (radius_m, angle) in [(60.0, 0.8), (25.0, 1.2), (14.0, 1.57)] {
+            let profile = CurvatureProfile::new(0.5)
+                .straight(90.0)
+                .clothoid(1.0 / radius_m, 8.0)
+                .arc(1.0 / radius_m, radius_m * angle - 8.0)
+                .clothoid(0.0, 8.0)
+                .straight(90.0);
+            let corridor = Corridor::from_curvature(0.5, [3.0, 4.0], 6.0, &profile.curvature, 7.0, 4.0);
+            for vehicle in VEHICLES {
+                let by_edges = certified(&corridor, vehicle).result.rsc_m;
+                let in_area = as_area(&corridor, 90.0, 0..corridor.len());
+                let by_area = certified(&in_area, vehicle).result.rsc_m;
+                if let (Some(by_edges), Some(by_area)) = (by_edges, by_area) {
+                    assert!(by_area > by_edges - 0.08, "{vehicle} R {radius_m}: {by_edges} {by_area}");
+                }
+            }
+        }
+    }
+}
