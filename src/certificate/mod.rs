@@ -14,7 +14,7 @@ mod tubes;
 
 use serde_json::{Value, json};
 
-use crate::corridor::{FileCorridor, FrameError};
+use crate::corridor::{Area, AreaSpan, FileCorridor, FrameError};
 use crate::seal::sealed;
 use crate::stet::{Certificate, Model, Options, known_m};
 use crate::words::{Named as _, verdict_words};
@@ -71,7 +71,7 @@ pub fn json(
     Ok(json!({
         "netcert": env!("CARGO_PKG_VERSION"),
         "vehicle": vehicle.to_json()?,
-        "corridor": {"frame": frame, "spacing_m": corridor.spacing_m, "stations": stations(given)?},
+        "corridor": corridor_member(given, &frame)?,
         "max_shift_m": options.max_shift_m,
         "verdict": verdict,
         "reason": (!reason.is_empty()).then_some(reason),
@@ -95,10 +95,29 @@ pub fn json(
     }))
 }
 
-/// The body point with the least leeway: its nominal place along the corridor, and its nominal distance from the edge.
+/// The corridor; with `areas` where it has any.
+fn corridor_member(given: &FileCorridor, frame: &Value) -> Result<Value, FrameError> {
+    let corridor = &given.corridor;
+    let mut all = json!({"frame": frame, "spacing_m": corridor.spacing_m, "stations": stations(given)?});
+    if !corridor.areas.is_empty() {
+        let rings = |area: &Area| area.rings.iter().map(|ring| given.to_input(ring)).collect::<Result<Vec<_>, _>>();
+        let area = |span: &AreaSpan| {
+            let last = span.heads.end.saturating_sub(1);
+            Ok(json!({"heads": [span.heads.start, last], "rings": rings(&span.area)?}))
+        };
+        all["areas"] = corridor.areas.iter().map(area).collect::<Result<Vec<Value>, FrameError>>()?.into();
+    }
+    Ok(all)
+}
+
+/// The body point with the least leeway: its nominal place along the corridor, and its nominal distance from the edge. An area
+/// has no edge beside a station, so that distance is null there.
 fn limiting(nominal: &Nominal<'_>, certificate: &Certificate) -> Option<Value> {
     let at = &certificate.result.limiting;
-    let (s, nominal_m) = nominal.passing(at)?;
+    let (s, nominal_m) = match at.in_area {
+        true => (nominal.along_m(at.station), None),
+        false => nominal.passing(at).map(|(s, nominal_m)| (s, Some(nominal_m)))?,
+    };
     Some(json!({
         "s": s,
         "unit": at.unit,

@@ -81,6 +81,11 @@ impl<'c> Nominal<'c> {
         Some((s * self.corridor.spacing_m, linear(column, s) - lateral_m * left_m.signum()))
     }
 
+    /// Metres along the corridor to a station.
+    pub(super) fn along_m(&self, station: usize) -> f64 {
+        station as f64 * self.corridor.spacing_m
+    }
+
     /// The moment when a body point (unit, metres ahead of its axle, metres to its left) passes the normal at `s`: the vertex
     /// before it, and the share of the step after that vertex.
     fn crossing(&self, s: f64, (unit, ahead_m, left_m): (usize, f64, f64)) -> Option<(usize, f64)> {

@@ -1,9 +1,11 @@
 //! Reads a certificate file strictly. A member that is missing, impossible or contradicts another makes the file malformed.
 
+use std::sync::Arc;
+
 use serde_json::Value;
 
 use super::members::{Members, Wrong};
-use crate::corridor::{Corridor, Frame};
+use crate::corridor::{Area, AreaSpan, Corridor, Frame};
 use crate::vehicle::Vehicle;
 use netcert_check::plan;
 
@@ -37,7 +39,8 @@ pub(super) struct Limiting {
     pub(super) unit: usize,
     pub(super) side: usize,
     pub(super) point_m: f64,
-    pub(super) nominal_m: f64,
+    /// `None` where an area limits.
+    pub(super) nominal_m: Option<f64>,
 }
 
 pub(super) struct TubeClaim {
@@ -149,7 +152,7 @@ fn vehicle(value: &Value) -> Result<Vehicle, Wrong> {
 }
 
 fn corridor(all: Members<'_>, unknown: &mut Vec<String>) -> Result<(Corridor, Option<Frame>), Wrong> {
-    unknown.extend(all.unknown(&["frame", "spacing_m", "stations"]));
+    unknown.extend(all.unknown(&["frame", "spacing_m", "stations", "areas"]));
     let frame = Members::of(all.value("frame")?, "corridor.frame")?;
     unknown.extend(frame.unknown(&["input", "proj"]));
     let frame = match frame.text("input")? {
@@ -179,7 +182,35 @@ fn corridor(all: Members<'_>, unknown: &mut Vec<String>) -> Result<(Corridor, Op
         c.x.push(x);
         c.y.push(y);
     }
+    c.areas = areas(&all, frame, c.len(), unknown)?;
     Ok((c, frame))
+}
+
+/// The areas of a corridor. A corridor without areas has no such member.
+fn areas(
+    all: &Members<'_>,
+    frame: Option<Frame>,
+    stations: usize,
+    unknown: &mut Vec<String>,
+) -> Result<Vec<AreaSpan>, Wrong> {
+    if !all.has("areas") {
+        return Ok(Vec::new());
+    }
+    let mut spans = Vec::new();
+    for (i, area) in all.list("areas", None)?.iter().enumerate() {
+        let path = format!("corridor.areas[{i}]");
+        let area = Members::of(area, &path)?;
+        unknown.extend(area.unknown(&["heads", "rings"]));
+        let heads = area.numbers("heads", 2)?;
+        let whole = heads.iter().all(|k| k.fract() == 0.0 && *k >= 0.0 && *k < stations as f64);
+        if !whole || heads[0] >= heads[1] {
+            return Err(format!("{path}.heads: {heads:?} are not two stations of the corridor in driving order"));
+        }
+        let rings = area.rings("rings")?.into_iter();
+        let rings = rings.map(|ring| metres(frame, ring, &format!("{path}.rings"))).collect::<Result<_, _>>()?;
+        spans.push(AreaSpan { heads: heads[0] as usize..heads[1] as usize + 1, area: Arc::new(Area { rings }) });
+    }
+    Ok(spans)
 }
 
 /// Converts positions of the file into the frame's metres.
@@ -246,7 +277,15 @@ fn limiting(
     if !(0.0..=corridor.spacing_m * corridor.len() as f64).contains(&s) {
         return Err(format!("limiting.s: {s} is not on the corridor"));
     }
-    Ok(Some(Limiting { s, unit, side, point_m, nominal_m: at.number("nominal_m")? }))
+    Ok(Some(Limiting { s, unit, side, point_m, nominal_m: nominal_m(&at, corridor)? }))
+}
+
+/// The nominal distance from the edge. It may be null where the corridor has areas.
+fn nominal_m(at: &Members<'_>, corridor: &Corridor) -> Result<Option<f64>, Wrong> {
+    match at.number_or_null("nominal_m")? {
+        None if corridor.areas.is_empty() => Err("limiting.nominal_m: null, and the corridor has no areas".to_owned()),
+        nominal_m => Ok(nominal_m),
+    }
 }
 
 fn tube_claim(

@@ -158,15 +158,18 @@ impl Document {
     /// than this room.
     fn limit(&self, along: &Subject<'_>) -> Option<Finding> {
         let at = self.limiting.as_ref()?;
+        let Some(said_m) = at.nominal_m else {
+            return self.bounds.is_none().then(|| finding("limiting", "there is no rsc_m"));
+        };
         let Some(nominal_m) = along.nominal_at(at.s, at.unit, at.side, at.point_m) else {
             return Some(finding("limiting", "that point does not pass there"));
         };
-        if (nominal_m - at.nominal_m).abs() > NOMINAL_M {
-            let detail = format!("nominal_m is {:.4}, found {nominal_m:.4}", at.nominal_m);
+        if (nominal_m - said_m).abs() > NOMINAL_M {
+            let detail = format!("nominal_m is {:.4}, found {nominal_m:.4}", said_m);
             return Some(finding("limiting", &detail));
         }
         match self.bounds {
-            Some((rsc_m, _)) if rsc_m <= at.nominal_m + TOLERANCE_M => None,
+            Some((rsc_m, _)) if rsc_m <= said_m + TOLERANCE_M => None,
             Some(_) => Some(finding("limiting", "nominal_m is below rsc_m")),
             None => Some(finding("limiting", "there is no rsc_m")),
         }

@@ -1,5 +1,6 @@
 //! Reads members of a JSON document by path. A member that is missing or of the wrong type is an error that names the path.
 
+use serde::Deserialize as _;
 use serde_json::{Map, Value};
 
 /// An object and its path in the document.
@@ -25,6 +26,10 @@ impl<'v> Members<'v> {
     /// Names that are not among `known`.
     pub(super) fn unknown(&self, known: &[&str]) -> Vec<String> {
         self.object.keys().filter(|name| !known.contains(&name.as_str())).map(|name| self.path_of(name)).collect()
+    }
+
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.object.contains_key(name)
     }
 
     pub(super) fn value(&self, name: &str) -> Result<&'v Value, Wrong> {
@@ -99,6 +104,17 @@ impl<'v> Members<'v> {
             if value.is_null() { Ok(None) } else { self.tuple(name, k, value).map(Some) }
         };
         self.list(name, Some(count))?.iter().enumerate().map(one).collect()
+    }
+
+    /// A list of lists of places.
+    pub(super) fn rings(&self, name: &str) -> Result<Vec<Vec<[f64; 2]>>, Wrong> {
+        let place = |value: &Value| <[f64; 2]>::deserialize(value).ok().filter(|p| p.iter().all(|x| x.is_finite()));
+        let ring = |(k, value): (usize, &Value)| {
+            let places = value.as_array().and_then(|list| list.iter().map(place).collect::<Option<Vec<_>>>());
+            let wrong = || format!("{}[{k}]: not a ring of at least three places", self.path_of(name));
+            places.filter(|places| places.len() > 2).ok_or_else(wrong)
+        };
+        self.list(name, None)?.iter().enumerate().map(ring).collect()
     }
 
     fn tuple<const N: usize>(&self, name: &str, k: usize, value: &Value) -> Result<[f64; N], Wrong> {

@@ -9,6 +9,7 @@ use std::ops::Range;
 
 use super::blend::{self, Sample};
 use super::drive::{Drive, Join};
+use super::grounds::{self, Ground};
 use super::pieces::{Menu, Strokes, TurnPiece};
 use crate::corridor::{CentrelineError, Corridor, Frame, FrameError};
 use crate::network::{Movement, MovementKind, Movements, Network};
@@ -149,6 +150,7 @@ pub fn assemble(
             at,
             spacing_m: piece.corridor.spacing_m,
             samples: in_frame(&piece, frame)?,
+            grounds: Ground::of(&piece, frame)?,
             approach: piece.approach,
             departure: piece.departure,
             reach: piece.reach,
@@ -165,7 +167,7 @@ pub fn assemble(
     }
     let finest_m = between.iter().map(|turn| turn.spacing_m).fold(SPACING_M, f64::min);
     stop.check()?;
-    string.finish(frame, finest_m.max(LEAST_SPACING_M))
+    string.finish(frame, finest_m.max(LEAST_SPACING_M), &between)
 }
 
 /// The movement from one edge into the next, or over the arcs between them.
@@ -182,6 +184,7 @@ struct Between {
     at: PartKind,
     spacing_m: f64,
     samples: Vec<Sample>,
+    grounds: Vec<Ground>,
     approach: Joint,
     departure: Joint,
     reach: Reach,
@@ -371,11 +374,11 @@ impl Strung {
         nearest.or_else(|| self.kinds.get(point).copied()).unwrap_or(PartKind::Edge(0))
     }
 
-    fn finish(self, frame: Frame, spacing_m: f64) -> Result<RoutePath, AssemblyError> {
+    fn finish(self, frame: Frame, spacing_m: f64, turns: &[Between]) -> Result<RoutePath, AssemblyError> {
         let column = |of: fn(&Sample) -> f64| self.samples.iter().map(of).collect::<Vec<f64>>();
         let points: Vec<[f64; 2]> = self.samples.iter().map(|sample| sample.at).collect();
         let (left_m, right_m) = (column(|s| s.left_m), column(|s| s.right_m));
-        let corridor = crate::corridor::from_centreline(&points, &left_m, &right_m, 0.0, spacing_m)
+        let mut corridor = crate::corridor::from_centreline(&points, &left_m, &right_m, 0.0, spacing_m)
             .map_err(|error| AssemblyError::Centreline { at: self.turn_at(sharpest(&points)), error })?;
         // Chords are shorter than arcs by some thousandths in the sharpest bends, which is exact enough to find the part.
         let mut along = Vec::with_capacity(points.len());
@@ -402,6 +405,15 @@ impl Strung {
         if let Some(part) = parts.last_mut() {
             part.stations.end = last + 1;
         }
+        let mut turns = turns.iter();
+        for part in parts.iter().filter(|part| matches!(part.kind, PartKind::Turn { .. })) {
+            // Every turn of the way keeps a part, in the same order.
+            let Some(turn) = turns.by_ref().find(|turn| turn.at == part.kind) else { break };
+            corridor
+                .areas
+                .extend(turn.grounds.iter().map(|ground| ground.along(&corridor, &part.stations)).collect::<Vec<_>>());
+        }
+        grounds::open_ends(&mut corridor);
         Ok(RoutePath { corridor, frame, parts })
     }
 }

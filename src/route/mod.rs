@@ -28,6 +28,7 @@ mod blend;
 mod drive;
 mod driver;
 mod graph;
+mod grounds;
 mod obstacles;
 mod permits;
 mod pieces;

@@ -63,6 +63,8 @@ pub struct Limiting {
     pub side: Side,
     /// Place along the unit, metres ahead of its axle.
     pub point_m: f64,
+    /// Whether the boundary of an area limits there, and not the corridor's edge.
+    pub in_area: bool,
 }
 
 /// Bounds of the corrections, and the number of sweeps spent on them.

@@ -71,6 +71,13 @@ pub(super) fn marks(spacing_m: f64, span: &Range<usize>) -> impl Iterator<Item =
     (span.start..=last).filter(move |&k| inside || k == span.start || k == last)
 }
 
+/// The foot of a limiting point: its extended station, and whether an area limits there.
+#[derive(Clone, Copy)]
+struct Foot {
+    station: usize,
+    in_area: bool,
+}
+
 /// The leeways of two sweeps that a span rests on, pairwise: at the points whose feet are on the span, and at marked
 /// stations between two points.
 fn leeways<'a>(
@@ -78,17 +85,20 @@ fn leeways<'a>(
     model: &'a Model,
     span: &Range<usize>,
     [one, other]: [&'a Minima; 2],
-) -> impl Iterator<Item = (usize, Side, [f64; 2])> {
+) -> impl Iterator<Item = (Foot, Side, [f64; 2])> {
     let points = stations(track, span).map(move |k| (k, [&one.left, &one.right], [&other.left, &other.right]));
     let marks = marks(track.spacing, span).map(|k| track.lead + k);
     let between = move |k: usize| (k, [&one.mark_left, &one.mark_right], [&other.mark_left, &other.mark_right]);
     let edges = points.chain(marks.map(between)).flat_map(|(k, one, other)| {
-        [(Side::Left, 0), (Side::Right, 1)].map(|(side, i)| (k, side, [one[i][k], other[i][k]]))
+        let foot = Foot { station: k, in_area: false };
+        [(Side::Left, 0), (Side::Right, 1)].map(|(side, i)| (foot, side, [one[i][k], other[i][k]]))
     });
     let heads = heads(track, model, span, one).filter(|_| !track.areas.windows.is_empty());
     let areas = heads.flat_map(move |head| {
-        [(Side::Left, 0), (Side::Right, 1)]
-            .map(|(side, i)| (one.area_foot[i][head] as usize, side, [one.area[i][head], other.area[i][head]]))
+        [(Side::Left, 0), (Side::Right, 1)].map(|(side, i)| {
+            let foot = Foot { station: one.area_foot[i][head] as usize, in_area: true };
+            (foot, side, [one.area[i][head], other.area[i][head]])
+        })
     });
     edges.chain(areas)
 }
@@ -139,13 +149,13 @@ pub(super) fn lower_by_areas(track: &Track, columns: [&mut [f64]; 2], minima: &M
 /// The numbers of a span at γ = 1.
 pub(super) fn least(track: &Track, model: &Model, span: &Range<usize>, full: &Minima) -> Least {
     let mut least = f64::INFINITY;
-    let mut limiting = Limiting { station: span.start, unit: 0, side: Side::Left, point_m: 0.0 };
+    let mut limiting = Limiting { station: span.start, unit: 0, side: Side::Left, point_m: 0.0, in_area: false };
     let (mut offset, mut half_width) = (0.0_f64, f64::INFINITY);
-    for (k, side, [value, _]) in leeways(track, model, span, [full; 2]) {
+    for (foot, side, [value, _]) in leeways(track, model, span, [full; 2]) {
         // A NaN, which no input should cause, counts as the least value.
         if value < least || value.is_nan() {
             least = if value.is_nan() { NOTHING_M } else { value.max(NOTHING_M) };
-            limiting = place(track, model, k, side, value);
+            limiting = place(track, model, foot, side, value);
         }
     }
     for k in own(track, span) {
@@ -184,11 +194,12 @@ fn hinge(track: &Track, model: &Model, span: &Range<usize>, full: &Minima) -> f6
 }
 
 /// The place of a tagged leeway at an extended station.
-fn place(track: &Track, model: &Model, k: usize, side: Side, leeway: f64) -> Limiting {
+fn place(track: &Track, model: &Model, foot: Foot, side: Side, leeway: f64) -> Limiting {
     let tag = leeway.to_bits() & TAG_MASK;
     let (unit, point) = ((tag >> 4) as usize, (tag & 15) as usize);
     let point_m = model.units.get(unit).and_then(|u| u.points.get(point)).copied().unwrap_or(0.0);
-    Limiting { station: k.saturating_sub(track.lead).min(track.count - 1), unit, side, point_m }
+    let station = foot.station.saturating_sub(track.lead).min(track.count - 1);
+    Limiting { station, unit, side, point_m, in_area: foot.in_area }
 }
 
 /// SHRINK: the largest γ (in thousandths) for which no station of the span has negative leeway. Only γ = 1 and γ_min
@@ -222,10 +233,10 @@ pub(super) fn shrunk(
     }
     let part = (shrink - floor) / (1.0 - floor);
     let (mut rsc_m, mut limiting) = (f64::INFINITY, at_full.limiting);
-    for (k, side, [f, l]) in all() {
+    for (foot, side, [f, l]) in all() {
         let chord = l + (f - l) * part;
         if chord < rsc_m {
-            (rsc_m, limiting) = (chord, place(track, model, k, side, f));
+            (rsc_m, limiting) = (chord, place(track, model, foot, side, f));
         }
     }
     Least { rsc_m, shrink, limiting, ..lowest }
