@@ -207,6 +207,8 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
             if let Some(before) = body.stood.take().filter(|before| before.head + 1 == station)
                 && track.areas.over(before.head)
             {
+                let along = before.along_m.iter().chain(&stand.along_m).fold(0.0, |most: f64, m| most.max(*m));
+                minima.prolong(before.head, body.points[0].tag, along);
                 let lowest = if closes {
                     step(track, body, &before, &stand)
                 } else {
