@@ -5,7 +5,7 @@ use super::block::{BLOCK, Feet, LOST_M, Minima};
 use super::group::gamma;
 use super::lanes::{LANES, V};
 use super::model::Model;
-use super::plane::Stand;
+use super::plane::{Rooms, Stand};
 use super::track::{Fields, Track};
 
 /// A foot farther along than this (metres) is searched again.
@@ -34,6 +34,7 @@ pub(super) struct Body {
     pub(super) points: Vec<Point>,
     /// The unit at the last station, where areas count.
     pub(super) stood: Option<Stand>,
+    pub(super) rooms: Rooms,
     /// Last unit only: its axle, whose offset the published certificate needs.
     pub(super) last_axle: Option<LastAxle>,
 }
@@ -148,6 +149,7 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
                 axle: unit.axle.at(tolerance),
                 points: points.collect(),
                 stood: None,
+                rooms: Rooms::new(&unit.points),
                 last_axle: (CERTIFY && index == last).then(|| LastAxle { foot: foot(0.0), way: way(0.0) }),
             }
         })

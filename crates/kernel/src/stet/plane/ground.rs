@@ -19,7 +19,7 @@ pub(crate) struct Ground {
     origin: Point,
     columns: usize,
     rows: usize,
-    segments: Vec<[Point; 2]>,
+    segments: Vec<Segment>,
     /// Segments within [`FAR_M`] of each cell: `near[starts[cell]..starts[cell + 1]]`.
     starts: Vec<u32>,
     near: Vec<u32>,
@@ -30,9 +30,9 @@ pub(crate) struct Ground {
 impl Ground {
     /// `None` if the boundary has no segment, is not finite, or is too large for a grid. Nothing is inside then.
     pub(super) fn new(area: &Area) -> Option<Self> {
-        let segments: Vec<[Point; 2]> = area.segments().collect();
+        let segments: Vec<Segment> = area.segments().map(Segment::new).collect();
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for p in segments.iter().flatten() {
+        for p in segments.iter().map(|segment| segment.a) {
             for k in 0..2 {
                 if !p[k].is_finite() {
                     return None;
@@ -66,7 +66,8 @@ impl Ground {
         let mut pairs: Vec<(u32, u32)> = Vec::new();
         let half = 0.5 * CELL_M;
         let reach = FAR_M + half * std::f64::consts::SQRT_2;
-        for (number, &[a, b]) in (0..).zip(&self.segments) {
+        for (number, segment) in (0..).zip(&self.segments) {
+            let (a, b) = (segment.a, segment.b);
             let range = |k: usize, count: usize| {
                 let from = (a[k].min(b[k]) - FAR_M - self.origin[k]) / CELL_M;
                 let to = (a[k].max(b[k]) + FAR_M - self.origin[k]) / CELL_M;
@@ -75,7 +76,7 @@ impl Ground {
             for row in range(1, self.rows) {
                 for column in range(0, self.columns) {
                     let corner = self.corner(column, row);
-                    if distance([corner[0] + half, corner[1] + half], a, b) <= reach {
+                    if segment.squared([corner[0] + half, corner[1] + half]) <= reach * reach {
                         pairs.push(((row * self.columns + column) as u32, number));
                     }
                 }
@@ -97,12 +98,8 @@ impl Ground {
     fn mark_inside(&mut self) {
         for row in 0..self.rows {
             let y = self.corner(0, row)[1];
-            let mut crossings: Vec<f64> = self
-                .segments
-                .iter()
-                .filter(|[a, b]| (a[1] > y) != (b[1] > y))
-                .map(|[a, b]| crossing(*a, *b, y))
-                .collect();
+            let mut crossings: Vec<f64> =
+                self.segments.iter().filter(|s| (s.a[1] > y) != (s.b[1] > y)).map(|s| crossing(s.a, s.b, y)).collect();
             crossings.sort_unstable_by(f64::total_cmp);
             for column in 0..self.columns {
                 let x = self.corner(column, row)[0];
@@ -134,7 +131,7 @@ impl Ground {
         let corner = self.corner(cell.0, cell.1);
         let mut inside = self.inside[cell.1 * self.columns + cell.0];
         for &segment in self.near(cell) {
-            let [a, b] = self.segments[segment as usize];
+            let Segment { a, b, .. } = self.segments[segment as usize];
             if (a[1] > p[1]) != (b[1] > p[1]) {
                 let at = crossing(a, b, p[1]);
                 inside ^= at > corner[0] && at <= p[0];
@@ -147,48 +144,53 @@ impl Ground {
         inside
     }
 
-    /// Distance to the boundary, at most [`FAR_M`].
-    fn distance(&self, p: Point) -> f64 {
-        let Some(cell) = self.cell(p) else { return FAR_M };
-        let near = self.near(cell).iter();
-        near.map(|&s| self.segments[s as usize]).fold(FAR_M, |least, [a, b]| least.min(distance(p, a, b)))
-    }
-
-    /// Room of a place: its distance to the boundary, negative outside. Never too great.
+    /// Room of a place: its distance to the boundary, negative outside, at most [`FAR_M`].
     pub(super) fn room(&self, p: Point) -> f64 {
-        let far = self.distance(p);
+        let near = self.cell(p).map_or(&[][..], |cell| self.near(cell)).iter();
+        let far = near.map(|&s| self.segments[s as usize].squared(p)).fold(FAR_M * FAR_M, f64::min).sqrt();
         match self.contains(p) {
             true => far,
             false if far < FAR_M => -far,
-            false => -self.segments.iter().fold(f64::INFINITY, |least, [a, b]| least.min(distance(p, *a, *b))),
+            false => -self.segments.iter().map(|s| s.squared(p)).fold(f64::INFINITY, f64::min).sqrt(),
         }
     }
 
     /// Room of the part of the plane that a straight piece of a side covers while it moves from `before` to `after`: the
-    /// distance of the hull of both from the boundary. Never too great; negative where the hull is not inside.
-    pub(super) fn swept(&self, before: [Point; 2], after: [Point; 2]) -> f64 {
+    /// distance of the hull of both from the boundary. Never too great; negative where the hull is not inside. A room of at least
+    /// `enough` need not be exact. With `inside`, the piece is known to be inside before.
+    pub(super) fn swept(&self, before: [Point; 2], after: [Point; 2], enough: f64, inside: bool) -> f64 {
         let corners = [before[0], before[1], after[1], after[0]];
         let middle = [0, 1].map(|k| 0.25 * corners.iter().map(|p| p[k]).sum::<f64>());
         let reach = corners.iter().map(|p| apart(*p, middle)).fold(0.0, f64::max);
-        let inside = self.contains(middle);
-        let rough = self.distance(middle) - reach;
-        let mut least = FAR_M - reach;
-        if inside && rough >= least {
-            return rough;
+        let Some(cell) = self.cell(middle).filter(|_| reach < FAR_M) else { return -self.depth(before, after) };
+        let near = self.near(cell);
+        let mut nearest = (FAR_M * FAR_M, None);
+        for &number in near {
+            let squared = self.segments[number as usize].squared(middle);
+            if squared < nearest.0 {
+                nearest = (squared, Some(number));
+            }
         }
-        let mut touched = !inside || reach >= FAR_M;
-        if let Some(cell) = self.cell(middle).filter(|_| !touched) {
-            for &number in self.near(cell) {
-                let [a, b] = self.segments[number as usize];
-                if distance(middle, a, b) - reach < least {
-                    match hull_distance(&corners, a, b) {
-                        Some(far) => least = least.min(far),
-                        None => touched = true,
-                    }
+        if !inside && !self.contains(middle) {
+            return -self.depth(before, after);
+        }
+        let rough = nearest.0.sqrt() - reach;
+        let Some(first) = nearest.1.filter(|_| rough < enough) else { return rough };
+        let Some(mut least) = self.segments[first as usize].hull_distance(&corners) else {
+            return -self.depth(before, after);
+        };
+        least = least.min(FAR_M - reach);
+        for &number in near.iter().filter(|&&number| number != first) {
+            let segment = &self.segments[number as usize];
+            let within = least + reach;
+            if segment.squared(middle) < within * within {
+                match segment.hull_distance(&corners) {
+                    Some(far) => least = least.min(far),
+                    None => return -self.depth(before, after),
                 }
             }
         }
-        if touched { -self.depth(before, after) } else { least }
+        least
     }
 
     /// How far a swept piece is outside at most, metres. Measured at places of the piece before and after; every place of the hull is
@@ -221,7 +223,7 @@ impl Ground {
                 (b[0] - a[0]) * (p[1] - a[1]) - (b[1] - a[1]) * (p[0] - a[0]) >= 0.0
             })
         };
-        self.segments.iter().any(|[a, _]| within(*a))
+        self.segments.iter().any(|segment| within(segment.a))
     }
 }
 
@@ -230,37 +232,57 @@ fn crossing(a: Point, b: Point, y: f64) -> f64 {
     a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
 }
 
-fn apart(a: Point, b: Point) -> f64 {
+pub(super) fn apart(a: Point, b: Point) -> f64 {
     ((a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)).sqrt()
 }
 
-/// Distance of `p` from the segment from `a` to `b`.
-fn distance(p: Point, a: Point, b: Point) -> f64 {
-    let (d, e) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
-    let share = ((d[0] * e[0] + d[1] * e[1]) / (d[0] * d[0] + d[1] * d[1]).max(1e-18)).clamp(0.0, 1.0);
-    apart(e, [share * d[0], share * d[1]])
+/// A segment of the boundary.
+struct Segment {
+    a: Point,
+    b: Point,
+    along: Point,
+    /// 1 over the square of its length.
+    inverse: f64,
 }
 
-/// Distance of the hull of four points from a segment. `None` if they touch.
-fn hull_distance(corners: &[Point; 4], a: Point, b: Point) -> Option<f64> {
-    let mut least = corners.iter().fold(f64::INFINITY, |least, p| least.min(distance(*p, a, b)));
-    // All pairs: the order of the corners around the hull does not matter.
-    for i in 0..4 {
-        for j in i + 1..4 {
-            let (p, q) = (corners[i], corners[j]);
-            if cross(p, q, a, b) {
-                return None;
-            }
-            least = least.min(distance(a, p, q)).min(distance(b, p, q));
-        }
+impl Segment {
+    fn new([a, b]: [Point; 2]) -> Self {
+        let along = [b[0] - a[0], b[1] - a[1]];
+        Self { a, b, along, inverse: 1.0 / (along[0] * along[0] + along[1] * along[1]).max(1e-18) }
     }
-    let within = (0..4).any(|left_out| {
-        let [p, q, r] = [1, 2, 3].map(|k| corners[(left_out + k) % 4]);
-        let turn = |p: Point, q: Point| (q[0] - p[0]) * (a[1] - p[1]) - (q[1] - p[1]) * (a[0] - p[0]);
-        let turns = [turn(p, q), turn(q, r), turn(r, p)];
-        turns.iter().all(|&t| t > 0.0) || turns.iter().all(|&t| t < 0.0)
-    });
-    (!within).then_some(least)
+
+    /// Square of the distance of a place.
+    #[inline(always)]
+    fn squared(&self, p: Point) -> f64 {
+        let e = [p[0] - self.a[0], p[1] - self.a[1]];
+        let share = ((self.along[0] * e[0] + self.along[1] * e[1]) * self.inverse).clamp(0.0, 1.0);
+        let off = [e[0] - share * self.along[0], e[1] - share * self.along[1]];
+        off[0] * off[0] + off[1] * off[1]
+    }
+
+    /// Distance of the hull of four points. `None` if they touch.
+    fn hull_distance(&self, corners: &[Point; 4]) -> Option<f64> {
+        let (a, b) = (self.a, self.b);
+        let mut least = corners.iter().fold(f64::INFINITY, |least, p| least.min(self.squared(*p)));
+        // All pairs: the order of the corners around the hull does not matter.
+        for i in 0..4 {
+            for j in i + 1..4 {
+                let (p, q) = (corners[i], corners[j]);
+                if cross(p, q, a, b) {
+                    return None;
+                }
+                let pair = Self::new([p, q]);
+                least = least.min(pair.squared(a)).min(pair.squared(b));
+            }
+        }
+        let within = (0..4).any(|left_out| {
+            let [p, q, r] = [1, 2, 3].map(|k| corners[(left_out + k) % 4]);
+            let turn = |p: Point, q: Point| (q[0] - p[0]) * (a[1] - p[1]) - (q[1] - p[1]) * (a[0] - p[0]);
+            let turns = [turn(p, q), turn(q, r), turn(r, p)];
+            turns.iter().all(|&t| t > 0.0) || turns.iter().all(|&t| t < 0.0)
+        });
+        (!within).then(|| least.sqrt())
+    }
 }
 
 /// Whether two segments cross.
@@ -315,9 +337,9 @@ mod tests {
     fn a_piece_that_passes_an_edge_between_two_moments_does_not_fit() {
         let ground = yard();
         let [before, after] = [[[3.5, 3.0], [4.5, 3.0]], [[3.5, 8.0], [4.6, 8.0]]];
-        assert!(ground.swept(before, after) < 0.0);
+        assert!(ground.swept(before, after, FAR_M, false) < 0.0);
         // Beside the island there is room, and an edge that is a metre and a half away counts.
-        let beside = ground.swept([[17.0, 1.0], [17.0, 2.0]], [[18.0, 1.5], [18.5, 2.5]]);
+        let beside = ground.swept([[17.0, 1.0], [17.0, 2.0]], [[18.0, 1.5], [18.5, 2.5]], FAR_M, false);
         assert!((beside - 1.5).abs() < 1e-12 || (1.0..=1.5).contains(&beside), "{beside}");
     }
 

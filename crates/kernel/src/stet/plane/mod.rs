@@ -9,7 +9,7 @@ mod ground;
 
 use netcert_base::corridor::Corridor;
 
-use super::block::{BLOCK, Minima, NOT_CLOSED_RAD, UNVISITED_M, row};
+use super::block::{BLOCK, Minima, NOT_CLOSED_RAD, row};
 use super::body::{Body, FRESH, least};
 use super::lanes::{LANES, V};
 use super::track::Track;
@@ -24,6 +24,8 @@ const PIECE_M: f64 = 1.4;
 const BETWEEN: f64 = 1.25;
 /// Leeway where nothing is bounded. It is above the mark for a missing bound, which the hinges set.
 const FAR_OUTSIDE_M: f64 = -300.0;
+/// Most that a piece's ends are prolonged where its room is carried from step to step, metres.
+const PROLONGED_M: f64 = 0.25;
 /// Most stations walked to find the foot of a body point.
 const MOST_STEPS: usize = 16;
 
@@ -83,6 +85,11 @@ impl Areas {
     #[inline(always)]
     pub(super) fn replace(&self, from: usize, to: usize) -> bool {
         !self.windows.is_empty() && (from.saturating_sub(1)..=to).all(|k| self.over(k))
+    }
+
+    /// Whether other areas count over the step from station `k` to the next than over the step before.
+    fn changes(&self, k: usize) -> bool {
+        self.windows.iter().any(|w| w.first == k || w.last == k)
     }
 
     /// The areas that count over the step from station `k` to the next.
@@ -157,16 +164,18 @@ impl Stand {
 #[derive(Clone, Copy)]
 struct Lowest {
     leeway: f64,
-    point: usize,
+    /// The body point near it. `None` while another unit has less leeway.
+    point: Option<usize>,
 }
 
 impl Lowest {
-    const NONE: Self = Self { leeway: UNVISITED_M, point: 0 };
-
     fn lower(&mut self, leeway: f64, point: usize) {
         // A NaN, which no input should cause, counts as no room.
         if leeway < self.leeway || leeway.is_nan() {
-            *self = Self { leeway: if leeway.is_nan() { FAR_OUTSIDE_M } else { leeway.max(FAR_OUTSIDE_M) }, point };
+            *self = Self {
+                leeway: if leeway.is_nan() { FAR_OUTSIDE_M } else { leeway.max(FAR_OUTSIDE_M) },
+                point: Some(point),
+            };
         }
     }
 }
@@ -209,17 +218,19 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
             {
                 let along = before.along_m.iter().chain(&stand.along_m).fold(0.0, |most: f64, m| most.max(*m));
                 minima.prolong(before.head, body.points[0].tag, along);
+                let known = [minima.area[0][before.head], minima.area[1][before.head]];
                 let lowest = if closes {
-                    step(track, body, &before, &stand)
+                    let mut rooms = std::mem::replace(&mut body.rooms, Rooms::new(&[]));
+                    let lowest = Passage::new(track, body, &before, &stand).lowest(&mut rooms, known);
+                    body.rooms = rooms;
+                    lowest
                 } else {
-                    [Lowest { leeway: FAR_OUTSIDE_M, point: 0 }; 2]
+                    [Lowest { leeway: FAR_OUTSIDE_M, point: Some(0) }; 2]
                 };
                 for (side, lowest) in lowest.into_iter().enumerate() {
-                    let tagged = V::splat(lowest.leeway).tagged(body.points[lowest.point].tag).0[0];
-                    if tagged < minima.area[side][before.head] {
-                        minima.area[side][before.head] = tagged;
-                        minima.area_foot[side][before.head] = feet[lowest.point] as u32;
-                    }
+                    let Some(point) = lowest.point else { continue };
+                    minima.area[side][before.head] = V::splat(lowest.leeway).tagged(body.points[point].tag).0[0];
+                    minima.area_foot[side][before.head] = feet[point] as u32;
                 }
             }
             body.stood = Some(stand);
@@ -235,70 +246,174 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
     }
 }
 
-/// The least leeways of a unit, left and right, over the step between two stations.
-fn step(track: &Track, body: &Body, before: &Stand, after: &Stand) -> [Lowest; 2] {
-    let mut lowest = [Lowest::NONE; 2];
-    let half = body.half_width;
-    let [sine, cosine] = [
-        before.along[0] * after.along[1] - before.along[1] * after.along[0],
-        before.along[0] * after.along[0] + before.along[1] * after.along[1],
-    ];
-    let turned = sine.atan2(cosine).abs();
-    let way = before.way.max(track.spacing);
-    // How far a point leaves the straight line between its places at both stations: the arc of the axle, the arc of the point around
-    // the axle, and an uneven turn.
-    let sag = |ahead: f64| {
-        let lever = ahead.abs() + half;
-        0.125 * BETWEEN * (way * turned + lever * (turned * turned + before.jerk.max(after.jerk) * way * way))
-    };
-    // The first step of a window: nothing may already be under the body.
-    let begins = track.areas.windows.iter().any(|w| w.first == before.head);
-    let room = |before_ends: [Point; 2], after_ends: [Point; 2]| {
-        let rooms = track.areas.at(before.head).map(|ground| match ground {
-            Some(ground) => ground.swept(before_ends, after_ends),
+/// A piece of a side between two body points.
+struct Piece {
+    /// The body point behind it, and the shares of the way there from the point ahead at which the piece begins and ends.
+    index: usize,
+    from: f64,
+    to: f64,
+    /// Its ends, metres ahead of the axle.
+    ends: [f64; 2],
+    /// 0 left, 1 right.
+    side: usize,
+}
+
+impl Piece {
+    /// The body point near it.
+    fn point(&self) -> usize {
+        if self.from + self.to < 1.0 { self.index - 1 } else { self.index }
+    }
+}
+
+/// Rooms of a unit's pieces, carried from step to step. A piece that moves by a metre loses at most a metre of room, so most pieces
+/// need not be measured in most steps.
+pub(super) struct Rooms {
+    pieces: Vec<Piece>,
+    rooms: Vec<f64>,
+    /// By side: the piece with the least leeway in the last step. It is measured first.
+    critical: [usize; 2],
+    /// The station after the last step.
+    head: usize,
+}
+
+impl Rooms {
+    /// The pieces of a side whose body points are at these places, metres ahead of the axle.
+    pub(super) fn new(points: &[f64]) -> Self {
+        let mut pieces = Vec::new();
+        for index in 1..points.len() {
+            let (ahead, behind) = (points[index - 1], points[index]);
+            let parts = ((ahead - behind) / PIECE_M).ceil().max(1.0);
+            for part in 0..parts as usize {
+                let [from, to] = [part as f64 / parts, (part + 1) as f64 / parts];
+                let ends = [from, to].map(|share| ahead + (behind - ahead) * share);
+                pieces.extend([0, 1].map(|side| Piece { index, from, to, ends, side }));
+            }
+        }
+        Self { rooms: vec![f64::NEG_INFINITY; pieces.len()], pieces, critical: [0, 1], head: 0 }
+    }
+
+    /// Forgets the rooms unless they are those of the step before station `head`.
+    fn enter(&mut self, head: usize, anew: bool) {
+        if self.head != head || anew {
+            self.rooms.fill(f64::NEG_INFINITY);
+        }
+        self.head = head + 1;
+    }
+}
+
+/// One unit over the step between two stations.
+struct Passage<'a> {
+    track: &'a Track,
+    body: &'a Body,
+    before: &'a Stand,
+    after: &'a Stand,
+    turned: f64,
+    way: f64,
+}
+
+impl<'a> Passage<'a> {
+    fn new(track: &'a Track, body: &'a Body, before: &'a Stand, after: &'a Stand) -> Self {
+        let (u, v) = (before.along, after.along);
+        let turned = (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]).abs();
+        Self { track, body, before, after, turned, way: before.way.max(track.spacing) }
+    }
+
+    /// How far a point leaves the straight line between its places at both stations: the arc of the axle, the arc of the point around
+    /// the axle, and an uneven turn.
+    fn sag(&self, ahead: f64) -> f64 {
+        let lever = ahead.abs() + self.body.half_width;
+        let uneven = self.before.jerk.max(self.after.jerk) * self.way * self.way;
+        0.125 * BETWEEN * (self.way * self.turned + lever * (self.turned * self.turned + uneven))
+    }
+
+    fn across(&self, index: usize) -> f64 {
+        self.before.across[index].max(self.after.across[index])
+    }
+
+    fn along(&self, index: usize) -> f64 {
+        self.before.along_m[index].max(self.after.along_m[index])
+    }
+
+    /// Room of a piece between its ends at both stations: the greatest over the areas. Rooms of at least `enough` need not be exact.
+    /// `inside` is the one area's, if only one counts.
+    fn room(&self, before: [Point; 2], after: [Point; 2], enough: f64, inside: bool) -> f64 {
+        let inside = inside && self.track.areas.at(self.before.head).nth(1).is_none();
+        let rooms = self.track.areas.at(self.before.head).map(|ground| match ground {
+            Some(ground) => ground.swept(before, after, enough, inside),
             None => FAR_OUTSIDE_M,
         });
         rooms.fold(FAR_OUTSIDE_M, f64::max)
-    };
-    let across = |index: usize| before.across[index].max(after.across[index]);
-    let along = |index: usize| before.along_m[index].max(after.along_m[index]);
-    let last = body.points.len() - 1;
-    let (front, rear) = (body.points[0].spot.ahead, body.points[last].spot.ahead);
-    // The front edge, before by as much behind its place and after by as much ahead of it as its points may be.
-    let edge = |index: usize, ahead: f64| {
-        let moved = along(index);
+    }
+
+    /// Leeway of the front edge, before by as much behind its place and after by as much ahead of it as its points may be; or of the
+    /// rear edge.
+    fn edge(&self, index: usize, known: f64) -> f64 {
+        let (half, moved, ahead) = (self.body.half_width, self.along(index), self.body.points[index].spot.ahead);
         let ends = |stand: &Stand, by: f64| [half, -half].map(|aside| stand.place(ahead + by, aside));
-        room(ends(before, -moved), ends(after, moved)) - across(index) - sag(ahead)
-    };
-    if begins {
+        let most = self.across(index) + self.sag(ahead);
+        self.room(ends(self.before, -moved), ends(self.after, moved), known + most, false) - most
+    }
+
+    /// Leeway when the first step of an area begins: nothing may already be under the body.
+    fn beginning(&self) -> f64 {
+        let (half, last) = (self.body.half_width, self.body.points.len() - 1);
+        let (front, rear) = (self.body.points[0].spot.ahead, self.body.points[last].spot.ahead);
         let corners = [(rear, -half), (front, -half), (front, half), (rear, half)];
-        let outline = corners.map(|(ahead, aside)| before.place(ahead, aside));
-        let blocked = track.areas.at(before.head).all(|ground| ground.is_none_or(|ground| ground.under(outline)));
-        let leeway = if blocked { -half } else { edge(last, rear) };
-        lowest.iter_mut().for_each(|lowest| lowest.lower(leeway, last));
+        let outline = corners.map(|(ahead, aside)| self.before.place(ahead, aside));
+        let mut grounds = self.track.areas.at(self.before.head);
+        let blocked = grounds.all(|ground| ground.is_none_or(|ground| ground.under(outline)));
+        if blocked { -half } else { self.edge(last, f64::INFINITY) }
     }
-    let leeway = edge(0, front);
-    lowest.iter_mut().for_each(|lowest| lowest.lower(leeway, 0));
-    for index in 1..body.points.len() {
-        let (ahead, behind) = (body.points[index - 1].spot.ahead, body.points[index].spot.ahead);
-        let parts = (body.points[index].gap / PIECE_M).ceil().max(1.0);
-        let sag = sag(ahead).max(sag(behind));
-        let moved = along(index - 1).max(along(index));
-        for part in 0..parts as usize {
-            let at = |share: f64, a: f64, b: f64| a + (b - a) * share;
-            let [from, to] = [part as f64 / parts, (part + 1) as f64 / parts];
-            // The bound is convex along the side: chords between body points are never below it.
-            let most = [from, to].map(|share| at(share, across(index - 1), across(index)));
-            let most = most[0].max(most[1]) + sag;
-            let point = if from + to < 1.0 { index - 1 } else { index };
-            let piece = [at(from, ahead, behind) + moved, at(to, ahead, behind) - moved];
-            for (lowest, aside) in lowest.iter_mut().zip([half, -half]) {
-                let ends = |stand: &Stand| piece.map(|ahead| stand.place(ahead, aside));
-                lowest.lower(room(ends(before), ends(after)) - most, point);
-            }
+
+    /// The least leeways, left and right, or those in `known` where they are less.
+    fn lowest(&self, rooms: &mut Rooms, known: [f64; 2]) -> [Lowest; 2] {
+        let mut lowest = known.map(|leeway| Lowest { leeway, point: None });
+        let body = self.body;
+        rooms.enter(self.before.head, self.track.areas.changes(self.before.head));
+        if self.track.areas.windows.iter().any(|w| w.first == self.before.head) {
+            let leeway = self.beginning();
+            lowest.iter_mut().for_each(|lowest| lowest.lower(leeway, body.points.len() - 1));
         }
+        let first = rooms.critical;
+        for number in first {
+            self.measure(rooms, number, &mut lowest);
+        }
+        let leeway = self.edge(0, lowest[0].leeway.max(lowest[1].leeway));
+        lowest.iter_mut().for_each(|lowest| lowest.lower(leeway, 0));
+        for number in (0..rooms.pieces.len()).filter(|number| !first.contains(number)) {
+            self.measure(rooms, number, &mut lowest);
+        }
+        lowest
     }
-    lowest
+
+    /// Lowers the least leeway of a piece's side.
+    fn measure(&self, rooms: &mut Rooms, number: usize, lowest: &mut [Lowest; 2]) {
+        let Some(piece) = rooms.pieces.get(number) else { return };
+        let (index, aside) = (piece.index, if piece.side == 0 { self.body.half_width } else { -self.body.half_width });
+        let lowest = &mut lowest[piece.side];
+        let [ahead, behind] = [index - 1, index].map(|point| self.body.points[point].spot.ahead);
+        let moved = self.along(index - 1).max(self.along(index));
+        // The bound is convex along the side: chords between body points are never below it.
+        let across = [self.across(index - 1), self.across(index)];
+        let most = [piece.from, piece.to].map(|share| across[0] + (across[1] - across[0]) * share);
+        let most = most[0].max(most[1]) + self.sag(ahead).max(self.sag(behind));
+        let ends =
+            |stand: &Stand| [stand.place(piece.ends[0] + moved, aside), stand.place(piece.ends[1] - moved, aside)];
+        let (before, after) = (ends(self.before), ends(self.after));
+        // The hulls of two steps share the piece at the station between them, up to the change of its prolongation.
+        let step = ground::apart(before[0], after[0]).max(ground::apart(before[1], after[1]));
+        let left = rooms.rooms[number] - step - PROLONGED_M;
+        rooms.rooms[number] = if left - most >= lowest.leeway && moved <= PROLONGED_M {
+            left
+        } else {
+            let room = self.room(before, after, lowest.leeway + most, rooms.rooms[number] > 0.0);
+            if room - most < lowest.leeway {
+                rooms.critical[piece.side] = number;
+            }
+            lowest.lower(room - most, piece.point());
+            room
+        };
+    }
 }
 
 /// Lowers the planning leeways at the feet of a unit's points: the nominal room of the sides between them, less the straight gains.
