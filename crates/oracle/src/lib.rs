@@ -5,6 +5,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 pub mod adversary;
+pub mod area;
 pub mod claim;
 pub mod draw;
 pub mod duel;
@@ -12,4 +13,5 @@ pub mod fleet;
 pub mod path;
 pub mod road;
 pub mod simulator;
+pub mod swept;
 pub mod turns;
