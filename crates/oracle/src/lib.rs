@@ -12,6 +12,7 @@ pub mod duel;
 pub mod fleet;
 pub mod path;
 pub mod road;
+pub mod siege;
 pub mod simulator;
 pub mod swept;
 pub mod turns;
