@@ -7,6 +7,7 @@
 pub mod adversary;
 pub mod area;
 pub mod claim;
+pub mod crossing;
 pub mod draw;
 pub mod duel;
 pub mod fleet;
