@@ -12,6 +12,7 @@ pub mod draw;
 pub mod duel;
 pub mod fleet;
 pub mod path;
+pub mod planner;
 pub mod road;
 pub mod siege;
 pub mod simulator;
