@@ -263,7 +263,9 @@ mod tests {
 
     use super::*;
     use crate::claim::Place;
+    use crate::crossing::Crossing;
     use crate::fleet;
+    use crate::planner::drivable;
     use crate::road;
     use netcert_base::corridor::{Area, AreaSpan};
 
@@ -314,5 +316,21 @@ mod tests {
         assert!(found.under.is_some());
         assert!(found.refutes(&claim(&corridor, 0.0)).is_some());
         assert!(found.least.unwrap().room_m < 0.0);
+    }
+
+    #[test]
+    fn in_turns_the_adversary_gets_as_far_as_is_possible_at_first_order() {
+        for (index, id) in
+            ["EU-SEMI16.5", "US-WB67", "US-WB40", "AU-BDOUBLE26"].into_iter().cycle().take(12).enumerate()
+        {
+            let vehicle = fleet::vehicle(id);
+            let mut draw = Draw(0x51e6e + index as u64 * 7919);
+            let crossing = Crossing::drawn(&mut draw);
+            let corridor = crossing.corridor(&drivable(&crossing, &vehicle, 1).way, &vehicle);
+            let found = besiege(&corridor, &vehicle, &claim(&corridor, 0.0), &mut draw, 5);
+            let room_m = found.least.unwrap().room_m;
+            assert!((room_m - found.first_order_m).abs() < 0.03, "{index} {id}: {found:?}");
+            assert!(room_m < found.undisturbed_m - 0.1, "{index} {id}: {found:?}");
+        }
     }
 }
