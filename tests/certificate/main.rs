@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, unreachable_pub)]
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
+mod areas;
 mod corrcen;
 mod ends;
 mod errata;

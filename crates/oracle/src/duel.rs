@@ -18,7 +18,7 @@ use crate::simulator::{Disturbance, Drive, Near, PerUnit, Run, places, sweep};
 /// Steps per metre. RK4 is then within 2e-6 m of the limit (`simulator.rs`).
 pub const STEPS_PER_M: usize = 10;
 /// Metres in which the steer axle may swing from one bound to the other in a fast attack.
-const SWING_M: f64 = 0.3;
+pub(crate) const SWING_M: f64 = 0.3;
 
 /// The result of a duel.
 #[derive(Debug, Clone)]
@@ -38,11 +38,11 @@ pub struct Outcome {
 /// Vehicle, road and plan of one claim.
 pub struct Duel<'a> {
     pub drive: Drive<'a>,
-    road: Road<'a>,
-    calm: Disturbance,
-    nominal: Run,
-    bounds: Bounds,
-    outcome: Outcome,
+    pub(crate) road: Road<'a>,
+    pub(crate) calm: Disturbance,
+    pub(crate) nominal: Run,
+    pub(crate) bounds: Bounds,
+    pub(crate) outcome: Outcome,
 }
 
 /// Distance of the foremost point ahead of the steer axle on the straight, metres.
@@ -111,18 +111,18 @@ impl<'a> Duel<'a> {
     }
 
     /// Steps after which a disturbance no longer matters: the impulse responses are then below 1e-3 of their peak.
-    fn memory(&self) -> usize {
+    pub(crate) fn memory(&self) -> usize {
         (3.0 * self.drive.vehicle.length_m) as usize * STEPS_PER_M
     }
 
     /// A disturbed run of the steps `first..end` from the undisturbed state at `first`.
-    fn from(&self, first: usize, end: usize, disturbance: &Disturbance) -> Run {
+    pub(crate) fn from(&self, first: usize, end: usize, disturbance: &Disturbance) -> Run {
         self.drive.some(disturbance, first..end, *self.nominal.at(first).1)
     }
 
     /// Steps in which some unit is on the corridor: from the first point's arrival until a little after the last point
     /// has left.
-    fn on_road(&self) -> std::ops::Range<usize> {
+    pub(crate) fn on_road(&self) -> std::ops::Range<usize> {
         let first = self.drive.path.span_of_vertex(0) * self.drive.steps_per_span;
         first - self.steps_of(front_m(self.drive.vehicle)).min(first)..self.drive.steps()
     }
@@ -174,7 +174,7 @@ impl<'a> Duel<'a> {
 
     /// Folds every hinge and the steering as far as the course tolerance allows, at two steps: where the undisturbed
     /// run folds it most, and at a random one.
-    fn attack_hinges(&mut self, draw: &mut Draw) {
+    pub(crate) fn attack_hinges(&mut self, draw: &mut Draw) {
         let range = self.surely_on_road();
         if range.is_empty() {
             return;
@@ -265,7 +265,7 @@ impl<'a> Duel<'a> {
         }
     }
 
-    fn measure_hinges(&mut self, run: &Run, range: std::ops::Range<usize>) {
+    pub(crate) fn measure_hinges(&mut self, run: &Run, range: std::ops::Range<usize>) {
         let units = &self.drive.vehicle.units;
         let on_road = self.surely_on_road();
         for step in range.filter(|step| step % 2 == 0 && on_road.contains(step)) {
@@ -279,7 +279,7 @@ impl<'a> Duel<'a> {
     }
 
     /// Unmatched disturbances: constant, waves, or random bang-bang.
-    fn noise(&self, draw: &mut Draw) -> Disturbance {
+    pub(crate) fn noise(&self, draw: &mut Draw) -> Disturbance {
         let mut d = self.calm.clone();
         let steps = self.drive.steps();
         let units = self.drive.vehicle.units.len();

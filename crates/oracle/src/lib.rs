@@ -5,11 +5,16 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
 
 pub mod adversary;
+pub mod area;
 pub mod claim;
+pub mod crossing;
 pub mod draw;
 pub mod duel;
 pub mod fleet;
 pub mod path;
+pub mod planner;
 pub mod road;
+pub mod siege;
 pub mod simulator;
+pub mod swept;
 pub mod turns;

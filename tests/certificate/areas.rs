@@ -1,0 +1,134 @@
+//! Areas: where they stand in for half-widths, no body comes closer to what lies outside than RSC. An adversary attacks
+//! turns through drawn crossings, whatever their RSC. A planner of the oracle's own says how many of the turns that can
+//! be driven are certified.
+
+use crate::oracle;
+use crate::support::catalogue::catalogued;
+
+use netcert::stet::Options;
+use netcert::vehicle::Vehicle;
+use oracle::claim::claim;
+use oracle::crossing::{Crossing, Manoeuvre};
+use oracle::draw::Draw;
+use oracle::planner::{drivable, room_m};
+use oracle::siege::{Found, besiege};
+use rayon::prelude::*;
+
+const VEHICLES: [&str; 4] = ["EU-SEMI16.5", "US-WB67", "US-WB40", "AU-BDOUBLE26"];
+/// Places at which each claim is attacked.
+const PLACES: usize = 5;
+/// Turns that are drawn for a crossing. The one with the most room is attacked, since there a claim decides something.
+const TURNS: usize = 6;
+/// Room undisturbed with which a turn counts as drivable with some to spare, metres.
+const SPARE_M: f64 = 0.3;
+
+fn cases(usual: u64) -> u64 {
+    if std::env::var_os("NETCERT_THOROUGH").is_some() { 5 * usual } else { usual }
+}
+
+/// An attacked claim.
+struct Attacked {
+    words: String,
+    rsc_m: f64,
+    found: Found,
+    refuted: Option<String>,
+}
+
+/// Attacks a turn of one vehicle, with the plan that corrections make and along the centreline. A turn without a claim
+/// is `None`.
+fn attacked(
+    name: &str,
+    crossing: &Crossing,
+    way: &Manoeuvre,
+    vehicle: &Vehicle,
+    draw: &mut Draw,
+) -> [Option<Attacked>; 2] {
+    let corridor = crossing.corridor(way, vehicle);
+    let shifts = [Options::default(), Options { max_shift_m: 0.0, ..Options::default() }];
+    shifts.map(|options| {
+        let claim = claim(&corridor, vehicle, &options)?;
+        let found = besiege(&corridor, vehicle, &claim, draw, PLACES);
+        let words = format!("{name}, {}, shift {}: {way:?}", vehicle.id, options.max_shift_m);
+        Some(Attacked { words, rsc_m: claim.rsc_m, refuted: found.refutes(&claim), found })
+    })
+}
+
+/// Attacks all vehicles' turns through crossings, and prints how close the adversary got.
+fn besieged(what: &str, crossings: u64, seed: u64, draw_crossing: impl Fn(&mut Draw) -> Crossing + Sync) {
+    let one = |index: u64| {
+        let mut draw = Draw(seed + index * 7919);
+        let crossing = draw_crossing(&mut draw);
+        let mut attack = |id: &&str| {
+            let vehicle = catalogued(id);
+            let drawn = (0..TURNS).map(|_| Manoeuvre::drawn(&mut draw, &crossing));
+            let ways: Vec<(f64, Manoeuvre)> = drawn.map(|way| (room_m(&crossing, &vehicle, &way), way)).collect();
+            let (_, way) = ways.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap();
+            attacked(&format!("{what} {index}"), &crossing, &way, &vehicle, &mut draw)
+        };
+        VEHICLES.iter().flat_map(&mut attack).collect::<Vec<_>>()
+    };
+    let tried: Vec<Option<Attacked>> = (0..crossings).into_par_iter().flat_map_iter(one).collect();
+    let claims: Vec<&Attacked> = tried.iter().flatten().collect();
+    let refuted =
+        |attacked: &&Attacked| attacked.refuted.as_ref().map(|words| format!("{}\n  {words}", attacked.words));
+    let broken: Vec<String> = claims.iter().filter_map(refuted).collect();
+    let median = |of: fn(&Attacked) -> f64| {
+        let mut sorted: Vec<f64> = claims.iter().map(|claim| of(claim)).filter(|x| x.is_finite()).collect();
+        sorted.sort_by(f64::total_cmp);
+        sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
+    };
+    println!(
+        "{what}: {} of {} turns have a claim, {} with an RSC of zero or more; {} refuted",
+        claims.len(),
+        tried.len(),
+        claims.iter().filter(|claim| claim.rsc_m >= 0.0).count(),
+        broken.len(),
+    );
+    println!(
+        "  median of the least found less RSC {:.1} mm, of the first-order bound {:.1} mm; the disturbances take {:.1} mm",
+        1e3 * median(|claim| claim.found.least_m() - claim.rsc_m),
+        1e3 * median(|claim| claim.found.first_order_m - claim.rsc_m),
+        1e3 * median(|claim| claim.found.undisturbed_m - claim.found.least_m()),
+    );
+    assert!(broken.is_empty(), "{} of {} claims refuted:\n{}", broken.len(), claims.len(), broken.join("\n"));
+    assert!(2 * claims.len() >= tried.len(), "only {} of {} turns have a claim", claims.len(), tried.len());
+}
+
+#[test]
+fn no_body_comes_closer_to_what_lies_outside_an_area_than_rsc() {
+    besieged("crossing", cases(200), 0xa4ea_0000, Crossing::drawn);
+}
+
+#[test]
+fn islands_in_the_mouths_of_a_crossing_are_kept_clear_of() {
+    besieged("crossing with islands", cases(60), 0x151a_0000, Crossing::with_islands);
+}
+
+/// The planner knows nothing of certificates and disturbances, so what it finds is no more than a turn to certify.
+#[test]
+fn most_turns_that_can_be_driven_with_room_to_spare_are_certified() {
+    let one = |index: u64| {
+        let mut draw = Draw(0x9ec_a110 + index * 104_729);
+        let crossing = if index % 4 == 3 { Crossing::with_islands(&mut draw) } else { Crossing::drawn(&mut draw) };
+        let recalled = |id: &&str| {
+            let vehicle = catalogued(id);
+            let best = drivable(&crossing, &vehicle, index);
+            let corridor = crossing.corridor(&best.way, &vehicle);
+            (best.room_m >= SPARE_M).then(|| {
+                let claim = claim(&corridor, &vehicle, &Options::default());
+                let safe = claim.as_ref().is_some_and(|claim| claim.rsc_m >= 0.0 && claim.hinge_margin_rad >= 0.0);
+                let numbers = claim.map(|claim| (claim.rsc_m, claim.shrink, claim.hinge_margin_rad.to_degrees()));
+                (safe, format!("{index} {id}: room {:.2} m, RSC, γ and hinge {numbers:?}, {:?}", best.room_m, best.way))
+            })
+        };
+        VEHICLES.iter().filter_map(recalled).collect::<Vec<_>>()
+    };
+    let turns: Vec<(bool, String)> = (0..20_u64).into_par_iter().flat_map_iter(one).collect();
+    let certified = turns.iter().filter(|(safe, _)| *safe).count();
+    println!("of {} turns with {SPARE_M} m to spare {certified} are certified; the others:", turns.len());
+    for (_, words) in turns.iter().filter(|(safe, _)| !safe) {
+        println!("  {words}");
+    }
+    assert!(turns.len() >= 20, "only {} turns can be driven with room to spare", turns.len());
+    assert!(5 * certified >= 4 * turns.len(), "only {certified} of {} turns are certified", turns.len());
+}
