@@ -24,7 +24,7 @@ use std::ops::Range;
 pub use centreline::{CentrelineError, from_centreline};
 pub use file::{FileCorridor, FileError, corridor_from_file};
 pub use frame::{Frame, FrameError, HALF_WIDTH_M};
-pub use netcert_base::corridor::{Corridor, CurvatureProfile};
+pub use netcert_base::corridor::{Area, AreaSpan, Corridor, CurvatureProfile};
 pub use stroke::stroke_corridor;
 
 use crate::verdict::UnknownReason;
