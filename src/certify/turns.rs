@@ -1,7 +1,7 @@
 //! Turns of a whole network: corridors and certificates, spread over threads, in a fixed order.
 //!
 //! A turn needs no certificate if the vehicle may not use one of its edges; it then has that edge's verdict. For the
-//! others, the paths with the greatest nominal leeway are tried, and the best certificate counts.
+//! others, the paths that the planner finds are tried, and the best certificate counts.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use crate::reporter::Reporter;
 use crate::rows::{Conclusion, Measured, StoredPlan, TurnCertificate};
 use crate::settings::Settings;
 use crate::stet::{Model, Options, Plan, SpanResult, certify_spans};
-use crate::turns::{Reach, StrokeLine, TurnFacts, TurnPath, nominal_leeway_m, passage_on, turn_on};
+use crate::turns::{Planner, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnPath, passage_on, turn_on};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use crate::words::{Named, VerdictKind, verdict_words};
 
@@ -24,13 +24,11 @@ use crate::words::{Named, VerdictKind, verdict_words};
 const BATCH: usize = 512;
 /// Batches for which a stroke's line is kept after its last turn. Neighbouring turns follow soon.
 const KEPT_BATCHES: usize = 6;
-/// Most paths that get a full certificate.
-const TRIED: usize = 3;
-/// Largest lack of leeway that corrections may make up, metres: the allowed shift and half a metre of lining up. If
-/// more is missing, only the best path is certified, without corrections, for the record.
+/// Largest lack of room that corrections may make up, metres: the allowed shift and half a metre of lining up. If more
+/// is missing, only the best path is certified, without corrections, for the record.
 const HOPELESS_M: f64 = 0.5;
-/// Nominal leeways that differ by less count as equal, metres.
-const RANK_STEP_M: f64 = 0.05;
+/// A safe path with this RSC is good enough; no other one is tried, metres.
+const ENOUGH_M: f64 = 0.2;
 
 /// Inputs of a certification of turns.
 #[derive(Clone, Copy)]
@@ -226,8 +224,8 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
             Ok(made) => {
                 laid_out = true;
                 let models: Vec<&Model> = live.iter().map(|&v| &job.models[v]).collect();
-                for (&v, best) in live.iter().zip(best_planned(&made.paths, &models, &job.settings.stet)) {
-                    out[v] = certificate(index, &made.paths, best);
+                for (&v, best) in live.iter().zip(best_planned(&made, &models, &job.settings.stet)) {
+                    out[v] = certificate(index, best);
                 }
             }
         }
@@ -237,50 +235,41 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
 
 /// For each vehicle the path with the best certificate, and its result.
 #[must_use]
-pub fn best_of(paths: &[TurnPath], models: &[&Model], options: &Options) -> Vec<Option<(usize, SpanResult)>> {
-    let best = best_planned(paths, models, options).into_iter();
+pub fn best_of(made: &TurnCorridors, models: &[&Model], options: &Options) -> Vec<Option<(TurnPath, SpanResult)>> {
+    let best = best_planned(made, models, options).into_iter();
     best.map(|best| best.map(|Best { path, result, .. }| (path, result))).collect()
 }
 
 /// The best certificate of a turn.
 struct Best {
-    /// Index of the path.
-    path: usize,
+    path: TurnPath,
     result: SpanResult,
     plan: Plan,
 }
 
-fn best_planned(paths: &[TurnPath], models: &[&Model], options: &Options) -> Vec<Option<Best>> {
-    let hopeless_m = -(options.max_shift_m + HOPELESS_M);
-    // By path: the vehicles that try it, fully or for the record.
-    let mut tries: BTreeMap<(usize, bool), Vec<usize>> = BTreeMap::new();
-    for (vehicle, model) in models.iter().enumerate() {
-        let mut ranked: Vec<(f64, usize)> =
-            paths.iter().enumerate().map(|(i, path)| (nominal_leeway_m(path, &model.vehicle), i)).collect();
-        // Of paths with about equal leeway the gentler one comes first: its tubes are narrower.
-        let steps = |leeway_m: f64| (leeway_m / RANK_STEP_M).floor();
-        let gentle = |path: usize| paths[path].min_radius_m;
-        ranked.sort_by(|a, b| {
-            let more_room = steps(b.0).total_cmp(&steps(a.0));
-            more_room.then(gentle(b.1).total_cmp(&gentle(a.1))).then(a.1.cmp(&b.1))
-        });
-        let hope = ranked.iter().take_while(|(leeway_m, _)| *leeway_m >= hopeless_m).count();
-        for &(_, path) in ranked.iter().take(hope.clamp(1, TRIED)) {
-            tries.entry((path, hope > 0)).or_default().push(vehicle);
+fn best_planned(made: &TurnCorridors, models: &[&Model], options: &Options) -> Vec<Option<Best>> {
+    let mut planner = Planner::new(made);
+    models.iter().map(|model| best_path(made, &mut planner, model, options)).collect()
+}
+
+fn best_path(made: &TurnCorridors, planner: &mut Planner<'_>, model: &Model, options: &Options) -> Option<Best> {
+    let mut best: Option<Best> = None;
+    for planned in planner.plan(&model.vehicle) {
+        let hope = planned.score_m >= -(options.max_shift_m + HOPELESS_M);
+        if !hope && best.is_some() {
+            break;
         }
-    }
-    let mut best: Vec<Option<Best>> = models.iter().map(|_| None).collect();
-    for ((path, thoroughly), vehicles) in tries {
-        let options = if thoroughly { *options } else { Options { max_shift_m: 0.0, correction_sweeps: 0 } };
-        let trying: Vec<&Model> = vehicles.iter().map(|&v| models[v]).collect();
-        let tried = &paths[path];
-        for (&v, row) in
-            vehicles.iter().zip(certify_spans(&tried.corridor, &trying, std::slice::from_ref(&tried.counted), &options))
-        {
-            let Some(result) = row.spans.into_iter().next() else { continue };
-            if best[v].as_ref().is_none_or(|known| better(&result, &known.result)) {
-                best[v] = Some(Best { path, result, plan: row.plan });
-            }
+        let options = if hope { *options } else { Options { max_shift_m: 0.0, correction_sweeps: 0 } };
+        let Some(path) = made.path(planned.code) else { continue };
+        let rows = certify_spans(&path.corridor, &[model], std::slice::from_ref(&path.counted), &options);
+        let Some(row) = rows.into_iter().next() else { continue };
+        let Some(result) = row.spans.into_iter().next() else { continue };
+        let enough = result.safe() && result.rsc_m.is_some_and(|m| m >= ENOUGH_M);
+        if best.as_ref().is_none_or(|known| better(&result, &known.result)) {
+            best = Some(Best { path, result, plan: row.plan });
+        }
+        if enough {
+            break;
         }
     }
     best
@@ -298,16 +287,15 @@ fn better(a: &SpanResult, b: &SpanResult) -> bool {
 /// The verdict of a turn's best result.
 #[must_use]
 pub fn turn_verdict(result: Option<&SpanResult>) -> Verdict {
-    // Without a result no path of the family stays on the road.
+    // Without a result no path can be driven at all.
     result.map_or(Verdict::Unsafe(UnsafeReason::Width), SpanResult::verdict)
 }
 
-fn certificate(turn: u32, paths: &[TurnPath], best: Option<Best>) -> TurnCertificate {
+fn certificate(turn: u32, best: Option<Best>) -> TurnCertificate {
     let verdict = turn_verdict(best.as_ref().map(|best| &best.result));
     let bounded = best.and_then(|best| Some((best.result.rsc_m?, best.result.hinge_margin_rad?, best)));
     match bounded {
         Some((rsc_m, hinge_margin_rad, Best { path, result, plan })) => {
-            let path = &paths[path];
             let along = result.limiting.station.saturating_sub(path.counted.start) as f64 * path.corridor.spacing_m;
             let measured = Measured {
                 rsc_m,
@@ -320,7 +308,7 @@ fn certificate(turn: u32, paths: &[TurnPath], best: Option<Best>) -> TurnCertifi
             };
             let plan = StoredPlan::new(turn, &plan.coefficients);
             let conclusion = Conclusion { verdict, measured: Some(measured) };
-            TurnCertificate { turn, conclusion, path: Some(path.number), plan }
+            TurnCertificate { turn, conclusion, path: Some(path.code), plan }
         }
         None => TurnCertificate::bare(turn, verdict),
     }

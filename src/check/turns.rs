@@ -165,7 +165,7 @@ impl TurnsClaim<'_> {
 
     fn with_corridors(&self, chain: &Chain, row: &TurnRow, made: &TurnCorridors) -> (Outcome, f64) {
         let said = &row.certificate;
-        let Some(number) = row.path_no else {
+        let Some(code) = row.path_no else {
             let told = if said.has_numbers() {
                 Outcome::Malformed("it has numbers, but no path".to_owned())
             } else if matches!(said.verdict, Verdict::Unsafe(_)) {
@@ -175,8 +175,8 @@ impl TurnsClaim<'_> {
             };
             return (told, 0.0);
         };
-        let Some(path) = made.paths.iter().find(|path| path.number == number) else {
-            return (Outcome::Malformed(format!("the turn has no path {number}")), 0.0);
+        let Some(path) = made.path(code) else {
+            return (Outcome::Malformed(format!("the turn has no path {code}")), 0.0);
         };
         let none = vec![0; plan::count(path.corridor.len())];
         let coefficients = self.plans.get(&row.turn).unwrap_or(&none);
@@ -196,7 +196,7 @@ impl TurnsClaim<'_> {
         if follows != said.verdict {
             found.push(finding("verdict", &format!("{:?} is claimed, but {follows:?} follows", said.verdict)));
         }
-        found.extend(strays(path, made));
+        found.extend(strays(&path, made));
         let printed_m = printed::most_m(&subject, self.vehicle, path.counted.clone());
         if let Some(claimed) = said.rsc_published_m.filter(|claimed| *claimed > printed_m + TOLERANCE_M) {
             found.push(finding("rsc_published_m", &format!("{claimed} is above {printed_m:.4}")));

@@ -24,10 +24,10 @@ pub struct TurnExplanation {
     pub facts: TurnFacts,
     /// Names of the roads that the turn leads from and to.
     pub roads: [String; 2],
-    /// The area and all paths of the turn. `None` if the turn has no corridor.
+    /// The area of the turn, and what its paths are made from. `None` if the turn has no corridor.
     pub corridors: Option<TurnCorridors>,
-    /// Index of the best path.
-    pub path: Option<usize>,
+    /// The best path.
+    pub path: Option<TurnPath>,
     /// The strip that the vehicle may use near the turn.
     pub strip: Policy,
     /// The explanation of the certificate on the best path. Its verdict is that of the turn alone, not of its edges.
@@ -54,7 +54,7 @@ pub fn explain_turn(
         None => Err(UnknownReason::Geometry),
     };
     stop.check()?;
-    let best = made.as_ref().ok().and_then(|made| best_of(&made.paths, &[model], &settings.stet).pop().flatten());
+    let best = made.as_ref().ok().and_then(|made| best_of(made, &[model], &settings.stet).pop().flatten());
     let legal = [facts.movement.from, facts.movement.to]
         .into_iter()
         .chain(facts.through.iter().copied())
@@ -66,11 +66,9 @@ pub fn explain_turn(
         (Err(reason), _) => Verdict::Unknown(*reason),
         (Ok(_), best) => turn_verdict(best.as_ref().map(|(_, result)| result)),
     };
-    let path =
-        made.as_ref().ok().zip(best.as_ref()).and_then(|(made, (path, result))| Some((made.paths.get(*path)?, result)));
     let mut hints = Hints::default();
     let mut geometry = None;
-    if let Some((path, result)) = path {
+    if let Some((path, result)) = &best {
         let made = turn_geometry(path, result, model, settings, stop)?;
         if let (Some((options, geometry)), Verdict::Unsafe(_)) = (&made, verdict) {
             let again = |corridor: &Corridor, model: &Model| {
@@ -128,7 +126,7 @@ fn kerb(
         let kerbs = Kerbs::everywhere(f64::from(steps) * KERB_STEP_M);
         let params = TurnParams { kerbs, ..settings.turn_params() };
         let made = corridors_of(network, facts, settings.policy, &params, reach).ok();
-        let best = made.and_then(|made| best_of(&made.paths, &[model], &settings.stet).pop().flatten());
+        let best = made.and_then(|made| best_of(&made, &[model], &settings.stet).pop().flatten());
         Ok(best.is_some_and(|(_, result)| result.safe()))
     };
     let (mut fails, mut does) = ((radius_m / KERB_STEP_M) as u32, (MOST_KERB_M / KERB_STEP_M) as u32);

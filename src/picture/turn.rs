@@ -20,7 +20,7 @@ const AROUND_M: f64 = 14.0;
 #[must_use]
 pub fn turn(t: &TurnExplanation) -> Option<String> {
     let corridors = t.corridors.as_ref()?;
-    let path = corridors.paths.get(t.path?)?;
+    let path = t.path.as_ref()?;
     let e = &t.explanation;
     let g = e.geometry.as_ref()?;
     let words = words(e);

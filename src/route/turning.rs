@@ -7,10 +7,10 @@ use super::pieces::{Strokes, TurnPiece, Turns};
 use crate::certify::best_of;
 use crate::network::Movement;
 use crate::stet::{Options, SpanResult, certify_spans};
-use crate::turns::{Reach, TurnCorridors, TurnPath, nominal_leeway_m, passage_on, turn_on};
+use crate::turns::{Planner, Reach, TurnCorridors, TurnPath, passage_on, turn_on};
 use crate::verdict::UnknownReason;
 
-/// Number of paths of a turn that are tried beside the path of its permit. Those with the most nominal room are tried.
+/// Number of simple paths of a turn that are tried beside the path of its permit. Those with the most room are tried.
 const MORE: usize = 5;
 
 /// Turns that are made when a route needs them, with the settings of its strokes.
@@ -29,25 +29,24 @@ impl Turns for MadeTurns {
     ) -> Result<Vec<TurnPiece>, UnknownReason> {
         let made = self.made(strokes, movement, arcs)?;
         let options = &strokes.settings().stet;
-        let known = best_of(&made.paths, &[&self.driver.model], options).pop().flatten();
+        let known = best_of(&made, &[&self.driver.model], options).pop().flatten();
         let known = known.filter(|(_, result)| result.safe());
-        let mut ranked: Vec<(f64, usize)> = (0..made.paths.len())
-            .filter(|&path| known.as_ref().is_none_or(|(known, _)| *known != path))
-            .map(|path| (nominal_leeway_m(&made.paths[path], &self.driver.model.vehicle), path))
-            .collect();
-        // The sort is stable, so paths of equal room stay in order of their numbers.
-        ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let others =
-            ranked.into_iter().take(MORE).filter_map(|(_, path)| Some((path, self.safe(&made.paths[path], options)?)));
-        let mut safe: Vec<(usize, SpanResult)> = known.into_iter().chain(others).collect();
+        let code = known.as_ref().map(|(path, _)| path.code);
+        let others = Planner::new(&made).best_seeds(&self.driver.model.vehicle, MORE);
+        let others = others.into_iter().filter(|other| Some(other.code) != code).filter_map(|other| {
+            let path = made.path(other.code)?;
+            let result = self.safe(&path, options)?;
+            Some((path, result))
+        });
+        let mut safe: Vec<(TurnPath, SpanResult)> = known.into_iter().chain(others).collect();
         safe.sort_by(|a, b| b.1.rsc_m.partial_cmp(&a.1.rsc_m).unwrap_or(std::cmp::Ordering::Equal));
         let frame = made.frame;
         let reach = Reach::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
-        let piece = |path: &TurnPath| {
-            let TurnPath { corridor, turn, approach, departure, .. } = path.clone();
+        let piece = |path: TurnPath| {
+            let TurnPath { corridor, turn, approach, departure, .. } = path;
             TurnPiece { frame, corridor, turn, approach, departure, reach }
         };
-        Ok(safe.into_iter().map(|(path, _)| piece(&made.paths[path])).collect())
+        Ok(safe.into_iter().map(|(path, _)| piece(path)).collect())
     }
 }
 

@@ -65,8 +65,8 @@ pub struct TurnCertificate {
     pub turn: u32,
     /// The verdict and the numbers.
     pub conclusion: Conclusion,
-    /// Number of the path that was certified.
-    pub path: Option<u8>,
+    /// Code of the path that was certified.
+    pub path: Option<i64>,
     /// The plan on that path. `None` if the plan is the path's centreline.
     pub plan: Option<StoredPlan>,
 }

@@ -32,7 +32,7 @@ pub struct TurnRow {
     pub to_name: Option<String>,
     /// The certificate of the query's vehicle under the query's policy.
     pub certificate: CertificateRow,
-    pub path_no: Option<u8>,
+    pub path_no: Option<i64>,
     /// The map's line in driving order.
     pub line: Vec<LonLat>,
 }

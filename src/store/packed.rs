@@ -18,8 +18,8 @@ pub(super) struct Packed {
     pub(super) shrink_milli: Option<u16>,
     pub(super) limiting_s_dm: Option<u32>,
     pub(super) limiting_at: Option<u16>,
-    /// The number of the path, for turns only.
-    pub(super) path_no: Option<u8>,
+    /// The code of the path, for turns only.
+    pub(super) path_no: Option<i64>,
 }
 
 impl Packed {
@@ -97,7 +97,7 @@ fn shrink_milli(shrink: f64) -> Result<u16, String> {
 
 impl Packed {
     /// Length of [`Packed::to_bytes`].
-    pub(super) const BYTES: usize = 26;
+    pub(super) const BYTES: usize = 33;
 
     /// The row as bytes for the spool.
     pub(super) fn to_bytes(self) -> [u8; Self::BYTES] {
@@ -110,7 +110,7 @@ impl Packed {
         bytes[17..19].copy_from_slice(&self.shrink_milli.unwrap_or(u16::MAX).to_le_bytes());
         bytes[19..23].copy_from_slice(&self.limiting_s_dm.unwrap_or(u32::MAX).to_le_bytes());
         bytes[23..25].copy_from_slice(&self.limiting_at.unwrap_or(u16::MAX).to_le_bytes());
-        bytes[25] = self.path_no.unwrap_or(u8::MAX);
+        bytes[25..33].copy_from_slice(&self.path_no.unwrap_or(i64::MIN).to_le_bytes());
         bytes
     }
 
@@ -131,7 +131,7 @@ impl Packed {
             shrink_milli: short(17),
             limiting_s_dm: Some(unsigned(19)).filter(|&value| value != u32::MAX),
             limiting_at: short(23),
-            path_no: Some(b[25]).filter(|&value| value != u8::MAX),
+            path_no: b.last_chunk().map(|last| i64::from_le_bytes(*last)).filter(|&value| value != i64::MIN),
         }
     }
 }

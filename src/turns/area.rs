@@ -10,7 +10,9 @@
 use geo::orient::{Direction, Orient};
 use geo::{BooleanOps, LineString, MultiPolygon, Polygon, unary_union};
 
+use super::Reach;
 use super::arm::{Across, Arm};
+use crate::corridor::Area;
 use crate::osm::facts::Policy;
 
 /// Distance from the node within which the roads' shared part is searched, metres.
@@ -18,6 +20,11 @@ const CROSSING_M: f64 = 30.0;
 /// A strip's vertices this close to the line between their neighbours are removed, metres. Rays are shortened by more
 /// than this.
 const COLLINEAR_M: f64 = 5e-4;
+/// Straight extension of a strip beyond the end of its corridor, metres. The longest vehicle's rear is there when the
+/// corridor begins, and a body that sticks out over the end is not held against a road's end that nobody has drawn.
+const EXTENDED_M: f64 = 70.0;
+/// Vertices of the whole area this close to the line between their neighbours are removed, metres.
+const STRAIGHT_M: f64 = 1e-5;
 /// Overlap of the kerb return with the roads, metres, so that rounding leaves no gap between them.
 const OVERLAP_M: f64 = 0.3;
 /// Smallest and largest angle of a corner with a kerb return, radians.
@@ -42,13 +49,20 @@ pub(super) struct Ground<'a> {
     pub(super) kerb_radius_m: f64,
     /// The junction's surface, if mapped.
     pub(super) surface: Option<&'a MultiPolygon>,
+    pub(super) reach: Reach,
+    /// Whether the approach and the departure are extended straight beyond the end of their corridor.
+    pub(super) extended: [bool; 2],
 }
 
 impl Ground<'_> {
     /// The drivable area, and whether it has a kerb return of the assumed radius.
     pub(super) fn area(&self) -> (MultiPolygon, bool) {
-        let strip = |arm: &Arm| outline(arm, 0..arm.len(), &|k| arm.strip[k], [0.0; 2]);
-        let mut parts: Vec<Polygon> = [strip(self.from), strip(self.to)].into_iter().flatten().collect();
+        let strip =
+            |arm: &Arm, beyond_m: [f64; 2]| outline(arm, 0..arm.len(), &|k| arm.near_node(k, self.reach), beyond_m);
+        let before_m = if self.extended[0] && self.from.complete[0] { EXTENDED_M } else { 0.0 };
+        let after_m = if self.extended[1] && self.to.complete[1] { EXTENDED_M } else { 0.0 };
+        let strips = [strip(self.from, [before_m, 0.0]), strip(self.to, [0.0, after_m])];
+        let mut parts: Vec<Polygon> = strips.into_iter().flatten().collect();
         parts.extend(self.common());
         let corner = match self.surface {
             Some(surface) => self.mapped_corner(surface),
@@ -216,6 +230,23 @@ fn outline(
     let mut ring = side(0);
     ring.extend(side(1).into_iter().rev());
     Some(polygon(&ring))
+}
+
+/// The boundary of an area as rings without vertices that add nothing.
+pub(super) fn rings(area: &MultiPolygon) -> Area {
+    let rings = area.iter().flat_map(|p| std::iter::once(p.exterior()).chain(p.interiors()));
+    let open = |ring: &LineString| {
+        let mut ring: Vec<[f64; 2]> = ring.coords().map(|c| [c.x, c.y]).collect();
+        ring.dedup();
+        if ring.first() == ring.last() {
+            ring.pop();
+        }
+        let n = ring.len();
+        let corner = |&k: &usize| distance_from_chord(ring[k], ring[(k + n - 1) % n], ring[(k + 1) % n]) > STRAIGHT_M;
+        let kept: Vec<usize> = (0..n).filter(corner).collect();
+        kept.into_iter().map(|k| ring[k]).collect::<Vec<_>>()
+    };
+    Area { rings: rings.map(open).filter(|ring| ring.len() > 2).collect() }
 }
 
 /// Removes vertices that add nothing: each is within [`COLLINEAR_M`] of the line that replaces it.

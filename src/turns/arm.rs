@@ -5,6 +5,7 @@
 //! narrowed (a taper, a narrow place) therefore narrows the junction with it.
 
 use super::Reach;
+use super::path::{Pose, hermite};
 use crate::corridor::{Corridor, Frame, Params, StrokeCorridor, TaperCause, stroke_corridor};
 use crate::network::{Network, Stroke};
 use crate::osm::LonLat;
@@ -13,6 +14,9 @@ use crate::verdict::UnknownReason;
 
 /// Largest |κ|·half-width of a strip beyond the corridor's own.
 const MOST_CROSSING: f64 = 0.9;
+/// Distance from the node within which a turn may use its whole strip, metres. Paths leave and join the centrelines
+/// within it; beyond it the strip narrows to the corridor's own, as before and after a path.
+const WHOLE_STRIP_M: f64 = 60.0;
 
 /// Edges of the road across a corridor's centreline, metres, positive left: `[left, right]`.
 pub(super) type Across = [f64; 2];
@@ -127,7 +131,7 @@ fn frame(network: &Network, stroke: &Stroke) -> Option<Frame> {
 }
 
 /// Stations of a stroke around a node, in the frame of the turn.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Arm {
     /// Stations with the corridor's own half-widths.
     pub(super) line: Corridor,
@@ -141,6 +145,8 @@ pub(super) struct Arm {
     pub(super) first: usize,
     /// Stations of the stroke's own edges; the stations before them are approach.
     pub(super) own: std::ops::Range<usize>,
+    /// Whether the stroke's corridor begins and ends where `line` does.
+    pub(super) complete: [bool; 2],
 }
 
 impl Arm {
@@ -219,6 +225,7 @@ impl Arm {
             node: node - first,
             first,
             own,
+            complete: [first == 0, end == c.len()],
         })
     }
 
@@ -234,6 +241,15 @@ impl Arm {
         widened(&self.line, k, self.strip[k], share)
     }
 
+    /// Edges of the turn's strip at a station, wherever paths leave and join: the whole strip near the node, and the
+    /// corridor's own far from it.
+    pub(super) fn near_node(&self, k: usize, reach: Reach) -> Across {
+        let away_m = k.abs_diff(self.node) as f64 * self.line.spacing_m - WHOLE_STRIP_M;
+        let share = if k < self.node { reach.share_before(away_m) } else { reach.share_after(away_m) };
+        let [left, right] = widened(&self.line, k, self.strip[k], share);
+        [left, -right]
+    }
+
     pub(super) fn len(&self) -> usize {
         self.line.len()
     }
@@ -246,6 +262,23 @@ impl Arm {
     pub(super) fn forward(&self, k: usize) -> [f64; 2] {
         let (sin, cos) = self.line.heading[k].sin_cos();
         [cos, sin]
+    }
+
+    /// The pose `left_m` to the left of a place between stations.
+    pub(super) fn pose(&self, station: f64, left_m: f64) -> Pose {
+        let k = (station.max(0.0) as usize).min(self.len() - 1);
+        let next = (k + 1).min(self.len() - 1);
+        let t = if next > k { (station - k as f64).clamp(0.0, 1.0) } else { 0.0 };
+        let at = if t > 0.0 {
+            let places = [self.point(k), self.point(next)];
+            let chord = (places[1][0] - places[0][0]).hypot(places[1][1] - places[0][1]);
+            hermite(places, [self.forward(k), self.forward(next)], chord, t)
+        } else {
+            self.point(k)
+        };
+        let heading = self.line.heading[k] + t * (self.line.heading[next] - self.line.heading[k]);
+        let (sin, cos) = heading.sin_cos();
+        Pose { at: [at[0] - left_m * sin, at[1] + left_m * cos], heading }
     }
 
     /// The place `left_m` to the left of a station.

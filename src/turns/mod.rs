@@ -3,7 +3,8 @@
 //!
 //! A turn's corridor begins on the centreline of the stroke that it leaves and ends on that of the stroke that it
 //! joins, with their half-widths. A route can therefore join stroke, turn and stroke without a seam. In between the
-//! corridor follows one of a family of reference paths, as wide as the drivable area allows. In doubt it is narrower.
+//! corridor follows a path that a planner finds for the vehicle, as wide as the drivable area allows. In doubt it is
+//! narrower, and the area itself counts beside it.
 //! Only surface that a road covers counts, with one exception: the kerb return. Its surface is mapped, or it has an
 //! assumed radius and is marked as assumed.
 //!
@@ -14,10 +15,14 @@
 //! | `surface` | the junction's mapped surface |
 //! | `area` | the drivable area as polygons |
 //! | `path` | transition, arc, transition; lane shifts |
-//! | `rays` | the width of the area along a path |
-//! | `family` | the paths, and their corridors |
+//! | `code` | a path's parameters in one integer |
+//! | `junction` | a turn's arms, and the path of each code |
 //! | `roundabout` | entering, circulating and leaving a ring as one movement |
-//! | `rank` | the order in which a vehicle's paths are certified |
+//! | `rays` | the width of the area along a path |
+//! | `ends` | the corridor along a path, with its area |
+//! | `corridors` | a turn, prepared: from codes to corridors |
+//! | `family` | the paths with which the search begins |
+//! | `planner` | the search for the path with the most room for a vehicle |
 //! | `facts` | facts of a turn from the map: id, angle, line |
 //!
 //! Surfaces mapped as relations (with holes), lane markings inside the junction and turning lanes (`turn:lanes`) are
@@ -25,25 +30,28 @@
 
 mod area;
 mod arm;
+mod code;
+mod corridors;
+mod ends;
 mod facts;
 mod family;
+mod junction;
 mod kerbs;
 mod path;
-mod rank;
+mod planner;
 mod rays;
 mod roundabout;
 mod surface;
 
 use std::ops::Range;
 
-use geo::MultiPolygon;
-
 pub use arm::StrokeLine;
+pub use corridors::TurnCorridors;
 pub use facts::{KerbSource, TurnFacts, turn_facts};
 pub use kerbs::Kerbs;
-pub use rank::nominal_leeway_m;
+pub use planner::{Planned, Planner};
 
-use crate::corridor::{Corridor, Frame, Params};
+use crate::corridor::{Corridor, Params};
 use crate::network::{Movement, Network};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
@@ -92,6 +100,14 @@ impl Reach {
         }
     }
 
+    /// Length of the longest vehicle, metres.
+    const fn longest_m(self) -> f64 {
+        match self {
+            Self::Short => 20.0,
+            Self::Long => 60.0,
+        }
+    }
+
     /// Length before that, metres. It is driven, so that the vehicle arrives articulated as on the road.
     const fn run_in_m(self) -> f64 {
         match self {
@@ -133,8 +149,8 @@ pub struct Joint {
 /// One path of a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TurnPath {
-    /// Number in the family. The same turn, policy and reach give the same path the same number.
-    pub number: u8,
+    /// Code of the path. The same turn, policy and reach make the same path from the same code.
+    pub code: i64,
     /// Corridor of approach, turn and departure, metres in the turn's frame.
     pub corridor: Corridor,
     /// Stations of the turn itself, between the joints.
@@ -148,22 +164,6 @@ pub struct TurnPath {
     pub departure: Joint,
     /// Smallest radius between the joints, metres.
     pub min_radius_m: f64,
-}
-
-/// All paths of a turn that stay on the road.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TurnCorridors {
-    /// Frame of all positions.
-    pub frame: Frame,
-    /// Angle between the strokes' directions at the node, radians, positive left.
-    pub turn_rad: f64,
-    /// The drivable area.
-    pub area: MultiPolygon,
-    /// Assumed radius of the kerb return, metres. `None` if the corner is too acute or too flat, or its surface is
-    /// mapped.
-    pub kerb_radius_m: Option<f64>,
-    /// Paths in the order of their numbers. Empty if no path of the family stays on the road.
-    pub paths: Vec<TurnPath>,
 }
 
 /// The corridors of a turn, from the network alone.
@@ -196,7 +196,8 @@ pub fn turn_on(
     params: &TurnParams,
     reach: Reach,
 ) -> Result<TurnCorridors, UnknownReason> {
-    family::Junction::new(network, movement, lines, lines[0].frame, policy, params, reach)?.corridors()
+    let frame = lines[0].frame;
+    Ok(TurnCorridors::at(junction::Junction::new(network, movement, lines, frame, policy, params, reach)?, frame))
 }
 
 /// The corridors of a turn or of a roundabout's passage, as [`turn_corridors`] and [`passage_on`].
@@ -237,7 +238,8 @@ pub fn passage_on(
     params: &TurnParams,
     reach: Reach,
 ) -> Result<TurnCorridors, UnknownReason> {
-    roundabout::Passage::new(network, over, lines, policy, params, reach)?.corridors()
+    let frame = lines[0].frame;
+    Ok(TurnCorridors::over(roundabout::Passage::new(network, over, lines, policy, params, reach)?, frame))
 }
 
 /// The stroke of an edge.

@@ -20,8 +20,8 @@ impl Pose {
 
 /// Distance between a path's points, metres.
 pub(super) const STEP_M: f64 = 0.5;
-/// Integration steps per point.
-const FINE: usize = 8;
+/// Simpson's steps per transition, to find where a turn ends.
+const FINE: usize = 12;
 /// Smallest radius, metres. No vehicle of the catalogue turns more tightly.
 const LEAST_RADIUS_M: f64 = 3.0;
 /// Lanes that meet at a smaller angle are shifted, not turned, radians.
@@ -37,12 +37,12 @@ pub(super) fn wrapped(angle: f64) -> f64 {
     angle - turn * (angle / turn).round()
 }
 
-/// The turn from `a` to `b`. Its arc has `1 − 2·share` of the angle, and each transition has `share`. It is as wide as
-/// the shorter tangent allows, and straight along the rest of the longer tangent. `None` if the tangents do not meet
-/// between `a` and `b`.
-pub(super) fn corner(a: Pose, b: Pose, share: f64) -> Option<Vec<[f64; 2]>> {
+/// The turn from `a` to `b`. Each transition has its share of the angle, and the arc has the rest. It is as wide as the
+/// shorter tangent allows, and straight along the rest of the longer tangent. Points are about `step_m` apart. `None`
+/// if the tangents do not meet between `a` and `b`.
+pub(super) fn corner(a: Pose, b: Pose, shares: [f64; 2], step_m: f64) -> Option<Vec<[f64; 2]>> {
     let turned = wrapped(b.heading - a.heading);
-    if !(LEAST_CORNER_RAD..=MOST_CORNER_RAD).contains(&turned.abs()) {
+    if !(LEAST_CORNER_RAD..=MOST_CORNER_RAD).contains(&turned.abs()) || shares[0] + shares[1] > 1.0 + 1e-9 {
         return None;
     }
     let (u, v) = (a.forward(), b.forward());
@@ -50,106 +50,114 @@ pub(super) fn corner(a: Pose, b: Pose, share: f64) -> Option<Vec<[f64; 2]>> {
     let sine = u[0] * v[1] - u[1] * v[0];
     let before = (gap[0] * v[1] - gap[1] * v[0]) / sine;
     let after = (u[0] * gap[1] - u[1] * gap[0]) / sine;
-    let tangent = before.min(after);
-    if tangent.is_nan() || tangent <= 1.0 {
-        return None;
-    }
-    let unit = UnitTurn::new(turned.abs(), share);
-    let radius = tangent / unit.tangent;
+    let unit = UnitTurn::new(turned.abs(), shares);
+    let radius = (before / unit.tangents[0]).min(after / unit.tangents[1]);
     if radius.is_nan() || radius < LEAST_RADIUS_M {
         return None;
     }
-    let mut points = straight(a.at, u, before - tangent);
+    let mut points = straight(a.at, u, before - radius * unit.tangents[0], step_m);
     let from = *points.last()?;
-    let curve = unit.points(radius);
     let sign = turned.signum();
-    let (sin, cos) = a.heading.sin_cos();
-    points.extend(curve.iter().skip(1).map(|p| {
+    points.extend(unit.points(radius, step_m).iter().skip(1).map(|p| {
         let (x, y) = (p[0], sign * p[1]);
-        [from[0] + x * cos - y * sin, from[1] + x * sin + y * cos]
+        [from[0] + x * u[0] - y * u[1], from[1] + x * u[1] + y * u[0]]
     }));
     let end = *points.last()?;
-    let rest = straight(end, v, after - tangent);
+    let rest = straight(end, v, after - radius * unit.tangents[1], step_m);
     points.extend(rest.into_iter().skip(1));
     Some(points)
 }
 
 /// Points from `from` along `u` over `length_m`. The last point is exactly at the end.
-fn straight(from: [f64; 2], u: [f64; 2], length_m: f64) -> Vec<[f64; 2]> {
-    let steps = (length_m / STEP_M).round().max(0.0) as usize;
+fn straight(from: [f64; 2], u: [f64; 2], length_m: f64, step_m: f64) -> Vec<[f64; 2]> {
+    let steps = (length_m / step_m).round().max(0.0) as usize;
     let length_m = if steps == 0 { 0.0 } else { length_m };
     (0..=steps).map(|i| super::area::along(from, u, length_m * i as f64 / steps.max(1) as f64)).collect()
 }
 
 /// Transition, arc and transition to the left with radius 1, from the origin along x.
 struct UnitTurn {
-    transition: f64,
+    transitions: [f64; 2],
     arc: f64,
-    /// Distance from the start to where the tangents at both ends meet.
-    tangent: f64,
+    /// Distances from both ends to where the tangents there meet.
+    tangents: [f64; 2],
 }
 
 impl UnitTurn {
-    fn new(turned: f64, share: f64) -> Self {
+    fn new(turned: f64, shares: [f64; 2]) -> Self {
         // A transition from 0 to curvature 1 over length L turns by L/2.
-        let mut unit = Self { transition: 2.0 * share * turned, arc: (1.0 - 2.0 * share) * turned, tangent: 0.0 };
-        let end = unit.integrate(256).last().copied().unwrap_or_default();
-        // The end lies at the end of the second tangent, of length `tangent`: y = tangent · sin(turned).
-        unit.tangent = if turned.sin().abs() > 0.05 { end[1] / turned.sin() } else { end[0] / (1.0 + turned.cos()) };
+        let transitions = shares.map(|share| 2.0 * share * turned);
+        let arc = (turned - 0.5 * (transitions[0] + transitions[1])).max(0.0);
+        let mut unit = Self { transitions, arc, tangents: [0.0; 2] };
+        let mut end = [0.0; 2];
+        let mut from = 0.0;
+        for length in [transitions[0], arc, transitions[1]] {
+            let h = length / FINE as f64;
+            for i in 0..FINE {
+                end = unit.step(end, from + i as f64 * h, h);
+            }
+            from += length;
+        }
+        // The end lies at the end of the second tangent: y = tangent · sin(turned).
+        let (sin, cos) = turned.sin_cos();
+        let second = end[1] / sin;
+        unit.tangents = [end[0] - second * cos, second];
         unit
     }
 
     fn length(&self) -> f64 {
-        2.0 * self.transition + self.arc
+        self.transitions[0] + self.arc + self.transitions[1]
     }
 
     fn heading(&self, s: f64) -> f64 {
-        let (l, arc) = (self.transition, self.arc);
-        let rising = |s: f64| if l > 0.0 { 0.5 * s * s / l } else { 0.0 };
-        if s <= l {
-            rising(s)
-        } else if s <= l + arc {
-            0.5 * l + (s - l)
+        let ([before, after], arc) = (self.transitions, self.arc);
+        let rising = |s: f64, l: f64| if l > 0.0 { 0.5 * s * s / l } else { 0.0 };
+        if s <= before {
+            rising(s, before)
+        } else if s <= before + arc {
+            0.5 * before + (s - before)
         } else {
             let left = (self.length() - s).max(0.0);
-            l + arc - rising(left)
+            0.5 * (before + after) + arc - rising(left, after)
         }
     }
 
-    /// `n + 1` points, by Simpson's rule on the heading.
-    fn integrate(&self, n: usize) -> Vec<[f64; 2]> {
-        let h = self.length() / n as f64;
+    /// The place a length `h` on from `p` at `s`, by Simpson's rule on the heading.
+    fn step(&self, p: [f64; 2], s: f64, h: f64) -> [f64; 2] {
+        [(s, 1.0), (s + 0.5 * h, 4.0), (s + h, 1.0)].into_iter().fold(p, |p, (at, weight)| {
+            let (sin, cos) = self.heading(at).sin_cos();
+            [p[0] + h / 6.0 * weight * cos, p[1] + h / 6.0 * weight * sin]
+        })
+    }
+
+    /// Points about `step_m` apart, scaled to a radius.
+    fn points(&self, radius: f64, step_m: f64) -> Vec<[f64; 2]> {
+        let steps = ((self.length() * radius / step_m).ceil() as usize).max(4);
+        let h = self.length() / steps as f64;
         let mut p = [0.0; 2];
-        let mut out = vec![p];
-        for i in 0..n {
-            let s = i as f64 * h;
-            for (at, weight) in [(s, 1.0), (s + 0.5 * h, 4.0), (s + h, 1.0)] {
-                let (sin, cos) = self.heading(at).sin_cos();
-                p = [p[0] + h / 6.0 * weight * cos, p[1] + h / 6.0 * weight * sin];
+        let mut out = Vec::with_capacity(steps + 1);
+        out.push(p);
+        for i in 0..steps {
+            for half in [0.0, 0.5] {
+                p = self.step(p, (i as f64 + half) * h, 0.5 * h);
             }
-            out.push(p);
+            out.push([p[0] * radius, p[1] * radius]);
         }
         out
-    }
-
-    /// Points about [`STEP_M`] apart, scaled to a radius.
-    fn points(&self, radius: f64) -> Vec<[f64; 2]> {
-        let steps = ((self.length() * radius / STEP_M).ceil() as usize).max(4);
-        self.integrate(steps * FINE).into_iter().step_by(FINE).map(|p| [p[0] * radius, p[1] * radius]).collect()
     }
 }
 
 /// The quintic from `a` to `b` with zero curvature at its ends. `None` if it would bend as sharply as a corner.
-pub(super) fn shift(a: Pose, b: Pose) -> Option<Vec<[f64; 2]>> {
+pub(super) fn shift(a: Pose, b: Pose, step_m: f64) -> Option<Vec<[f64; 2]>> {
     let chord = (b.at[0] - a.at[0]).hypot(b.at[1] - a.at[1]);
     let ahead = (b.at[0] - a.at[0]) * a.forward()[0] + (b.at[1] - a.at[1]) * a.forward()[1];
     if !(chord > 4.0 && ahead > 0.7 * chord && wrapped(b.heading - a.heading).abs() < 1.0) {
         return None;
     }
     let (u, v) = (a.forward(), b.forward());
-    let steps = (chord / STEP_M).ceil() as usize;
+    let steps = (chord / step_m).ceil() as usize;
     let blend = |t: f64| {
-        let (t3, t4, t5) = (t * t * t, t.powi(4), t.powi(5));
+        let (t3, t4, t5) = (t * t * t, t * t * t * t, t * t * t * t * t);
         let to = 10.0 * t3 - 15.0 * t4 + 6.0 * t5;
         let leaves = t - 6.0 * t3 + 8.0 * t4 - 3.0 * t5;
         let arrives = -4.0 * t3 + 7.0 * t4 - 3.0 * t5;
@@ -157,6 +165,13 @@ pub(super) fn shift(a: Pose, b: Pose) -> Option<Vec<[f64; 2]>> {
     };
     let points: Vec<[f64; 2]> = (0..=steps).map(|i| blend(i as f64 / steps as f64)).collect();
     (sharpest(&points) <= MOST_SHIFT_CURVATURE).then_some(points)
+}
+
+/// The cubic between two places with directions.
+pub(super) fn hermite([p, q]: [[f64; 2]; 2], [u, v]: [[f64; 2]; 2], chord: f64, t: f64) -> [f64; 2] {
+    let (t2, t3) = (t * t, t * t * t);
+    let to = 3.0 * t2 - 2.0 * t3;
+    [0, 1].map(|i| p[i] + to * (q[i] - p[i]) + chord * ((t - 2.0 * t2 + t3) * u[i] + (t3 - t2) * v[i]))
 }
 
 /// Largest curvature of the circles through three successive points, 1/m.
@@ -181,13 +196,13 @@ mod tests {
     #[test]
     fn a_corner_ends_where_and_as_it_shall() {
         for turned in [0.2, 0.8, FRAC_PI_2, 2.0, 2.8] {
-            for sign in [1.0, -1.0] {
+            for (sign, shares) in [(1.0, [0.25; 2]), (-1.0, [0.25; 2]), (1.0, [0.1, 0.5]), (-1.0, [0.6, 0.3])] {
                 let a = Pose { at: [3.0, -2.0], heading: 0.4 };
                 let (before, after) = (32.0, 41.0);
                 let v = super::super::area::along(a.at, a.forward(), before);
                 let mut b = Pose { at: v, heading: a.heading + sign * turned };
                 b.at = super::super::area::along(v, b.forward(), after);
-                let points = corner(a, b, 0.25).unwrap();
+                let points = corner(a, b, shares, STEP_M).unwrap();
                 let end = points.last().unwrap();
                 assert!((end[0] - b.at[0]).hypot(end[1] - b.at[1]) < 1e-3, "{turned}: {end:?} {b:?}");
                 let n = points.len();
@@ -201,7 +216,7 @@ mod tests {
     fn a_right_angle_without_transitions_is_a_quarter_of_a_circle() {
         let a = Pose { at: [0.0; 2], heading: 0.0 };
         let b = Pose { at: [12.0, 12.0], heading: FRAC_PI_2 };
-        for p in corner(a, b, 0.0).unwrap() {
+        for p in corner(a, b, [0.0; 2], STEP_M).unwrap() {
             assert!((p[0].hypot(p[1] - 12.0) - 12.0).abs() < 1e-4, "{p:?}");
         }
     }
@@ -209,9 +224,9 @@ mod tests {
     #[test]
     fn lanes_that_do_not_meet_ahead_have_no_corner() {
         let a = Pose { at: [0.0; 2], heading: 0.0 };
-        assert!(corner(a, Pose { at: [-5.0, 5.0], heading: FRAC_PI_2 }, 0.2).is_none());
-        assert!(corner(a, Pose { at: [20.0, 1.0], heading: 0.0 }, 0.2).is_none());
-        let shifted = shift(a, Pose { at: [40.0, 2.0], heading: 0.0 }).unwrap();
+        assert!(corner(a, Pose { at: [-5.0, 5.0], heading: FRAC_PI_2 }, [0.2; 2], STEP_M).is_none());
+        assert!(corner(a, Pose { at: [20.0, 1.0], heading: 0.0 }, [0.2; 2], STEP_M).is_none());
+        let shifted = shift(a, Pose { at: [40.0, 2.0], heading: 0.0 }, STEP_M).unwrap();
         assert!(sharpest(&shifted) < 0.01);
     }
 }

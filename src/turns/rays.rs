@@ -12,7 +12,7 @@ use super::path::bend;
 const MARGIN_M: f64 = 0.004;
 /// Largest |κ|·half-width: where normals cross, a place has no unique distance from the path. `corridor` allows 0.98,
 /// and `stet` needs stations that are visited. Curvature between points is slightly greater than at them.
-const MOST_CROSSING: f64 = 0.9;
+const MOST_CROSSING: f64 = 0.85;
 /// Largest half-width, metres. The longest combinations cut a corner by as much.
 const FARTHEST_M: f64 = 12.0;
 /// Largest change of a half-width per metre. Where another road opens beside the path, a ray sees far into it, and a
@@ -28,7 +28,11 @@ const LEAST_M: f64 = 0.15;
 /// added where normals diverge on the outside of a bend.
 const FAN: f64 = 0.1;
 
+/// Half-width of a path that leaves the area, metres.
+const SLIM_M: f64 = 0.5;
+
 /// The area's boundary, prepared for rays.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Boundary {
     segments: Vec<[[f64; 2]; 2]>,
 }
@@ -155,6 +159,11 @@ impl Boundary {
 }
 
 impl Widths {
+    /// The half-widths of a path of `n` points that leaves the area. No vehicle fits into them.
+    pub(super) fn slim(n: usize) -> Self {
+        Self { left_m: vec![SLIM_M; n], right_m: vec![SLIM_M; n] }
+    }
+
     /// Lowers these half-widths as little as possible until they change by at most [`STEEPEST`] and their slope falls
     /// by at most [`ROUNDEST`]. At the path's ends they are at most `ends`.
     pub(super) fn gentle(&mut self, path: &[[f64; 2]], ends: [[f64; 2]; 2]) {

@@ -5,14 +5,15 @@
 //! aprons and drivable islands do not count. Joints and stations are those of any turn. Paths that cut across the
 //! ring's lanes are left out, except for the corrections that a certificate makes.
 
-use geo::BooleanOps;
+use geo::{BooleanOps, MultiPolygon};
 
 use super::area::stretch;
 use super::arm::{Arm, StrokeLine};
-use super::family::{Candidate, Ends, FEW_NUMBERS, Junction};
-use super::path::STEP_M;
-use super::rays::Boundary;
-use super::{Reach, TurnCorridors, TurnParams};
+use super::code::Shape;
+use super::family::{FEW_NUMBERS, few};
+use super::junction::{Junction, PathLine};
+use super::path::{STEP_M, hermite};
+use super::{Reach, TurnParams};
 use crate::corridor::Frame;
 use crate::network::{Movement, MovementKind, Network};
 use crate::osm::facts::Policy;
@@ -23,16 +24,17 @@ const LEAST_ROUND_M: f64 = 38.0;
 /// A point less than this ahead of the previous one is dropped, metres.
 const LEAST_AHEAD_M: f64 = 0.5 * STEP_M;
 
-/// A passage, prepared for its family.
+/// A passage, prepared.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Passage {
-    entry: Junction,
-    exit: Junction,
+    pub(super) entry: Junction,
+    pub(super) exit: Junction,
+    entries: Vec<Shape>,
+    exits: Vec<Shape>,
     ring: Ring,
     /// Whether the exit lies beyond the seam of the ring.
     beyond: bool,
-    strokes: [u32; 2],
-    frame: Frame,
-    reach: Reach,
+    pub(super) strokes: [u32; 2],
 }
 
 impl Passage {
@@ -58,58 +60,58 @@ impl Passage {
             let movement = Movement { from, to, kind: MovementKind::Turn, forbidden: None };
             Junction::new(network, movement, lines, frame, policy, params, reach)
         };
+        let entry = junction(movement.from, first, [from, ring])?;
+        let exit = junction(last, movement.to, [ring, to])?;
         Ok(Self {
-            entry: junction(movement.from, first, [from, ring])?,
-            exit: junction(last, movement.to, [ring, to])?,
+            entries: few(&entry, true),
+            exits: few(&exit, false),
+            entry,
+            exit,
             beyond: place(last)? < place(first)?,
             ring: Ring::new(ring, frame, params.strip.max(policy))?,
             strokes: [from.stroke, to.stroke],
-            frame,
-            reach,
         })
     }
 
-    pub(super) fn corridors(&self) -> Result<TurnCorridors, UnknownReason> {
-        let ((onto, kerb), (off, other_kerb)) = (self.entry.area(), self.exit.area());
+    /// The drivable area, and the least assumed radius of its kerb returns, if there is one.
+    pub(super) fn area(&self) -> (MultiPolygon, Option<f64>) {
+        let ((onto, kerb), (off, other_kerb)) = (self.entry.area([true, false]), self.exit.area([false, true]));
         let ring = stretch(&self.ring.arm, self.ring.once());
-        let area = onto.union(&off).union(&ring);
-        let boundary = Boundary::new(&area);
-        let on_road = |junction: &Junction, onto: bool| -> Vec<(Candidate, Vec<[f64; 2]>)> {
-            let with_points = |candidate| junction.points(&candidate).map(|points| (candidate, points));
-            let stays = |(_, points): &(Candidate, Vec<[f64; 2]>)| boundary.widths(points).is_some();
-            junction.few(onto).into_iter().filter_map(with_points).filter(stays).collect()
-        };
-        let (entries, exits) = (on_road(&self.entry, true), on_road(&self.exit, false));
-        let mut paths = Vec::new();
-        for (entry, onto) in &entries {
-            for (exit, off) in &exits {
-                let Some(round) = self.round(entry, exit) else { continue };
-                let points = strung(onto, &round, off);
-                let ends = Ends {
-                    arms: [&self.entry.from, &self.exit.to],
-                    strokes: self.strokes,
-                    stations: [entry.leave, exit.join],
-                    reach: self.reach,
-                };
-                let number = entry.number * FEW_NUMBERS + exit.number;
-                paths.extend(boundary.widths(&points).and_then(|widths| ends.path(number, &points, widths)));
-            }
-        }
+        (onto.union(&off).union(&ring), kerb.into_iter().chain(other_kerb).reduce(f64::min))
+    }
+
+    /// Angle from the one road to the other, radians, positive left.
+    pub(super) fn turn_rad(&self) -> f64 {
         let (from, to) = (&self.entry.from, &self.exit.to);
-        let turn_rad = super::path::wrapped(to.line.heading[to.node] - from.line.heading[from.node]);
-        let kerb_radius_m = kerb.into_iter().chain(other_kerb).reduce(f64::min);
-        Ok(TurnCorridors { frame: self.frame, turn_rad, area, kerb_radius_m, paths })
+        super::path::wrapped(to.line.heading[to.node] - from.line.heading[from.node])
+    }
+
+    /// The numbers of all paths.
+    pub(super) fn numbers(&self) -> Vec<i64> {
+        let exits = 0..self.exits.len();
+        (0..self.entries.len()).flat_map(|i| exits.clone().map(move |j| (i * FEW_NUMBERS + j) as i64)).collect()
+    }
+
+    /// The line of the path with a number, with points about `step_m` apart.
+    pub(super) fn line(&self, number: i64, step_m: f64) -> Option<PathLine> {
+        let number = usize::try_from(number).ok()?;
+        let entry = self.entry.line(self.entries.get(number / FEW_NUMBERS)?, step_m)?;
+        let exit = self.exit.line(self.exits.get(number % FEW_NUMBERS)?, step_m)?;
+        let round = self.round(&entry, &exit)?;
+        let points = strung(&entry.points, &round, &exit.points);
+        Some(PathLine { points, joints: [entry.joints[0], exit.joints[1]] })
     }
 
     /// The ring's centreline from the joint of an entry to the joint of an exit. `None` if the exit begins earlier.
-    fn round(&self, entry: &Candidate, exit: &Candidate) -> Option<Vec<[f64; 2]>> {
-        let joins = self.entry.to.first + entry.join;
-        let leaves = self.exit.from.first + exit.leave + if self.beyond { self.ring.period? } else { 0 };
+    fn round(&self, entry: &PathLine, exit: &PathLine) -> Option<Vec<[f64; 2]>> {
+        let joins = self.entry.to.first + entry.joints[1];
+        let leaves = self.exit.from.first + exit.joints[0] + if self.beyond { self.ring.period? } else { 0 };
         (joins <= leaves).then(|| self.ring.centreline(joins, leaves))
     }
 }
 
 /// The stations of a roundabout.
+#[derive(Debug, Clone, PartialEq)]
 struct Ring {
     arm: Arm,
     /// The first counted station, and the number of stations in a whole circle (to half a station). `None` if the ring
@@ -159,13 +161,6 @@ impl Ring {
         line.push(self.arm.point(once(to)));
         line
     }
-}
-
-/// The cubic between two places with directions.
-fn hermite([p, q]: [[f64; 2]; 2], [u, v]: [[f64; 2]; 2], chord: f64, t: f64) -> [f64; 2] {
-    let (t2, t3) = (t * t, t * t * t);
-    let to = 3.0 * t2 - 2.0 * t3;
-    [0, 1].map(|i| p[i] + to * (q[i] - p[i]) + chord * ((t - 2.0 * t2 + t3) * u[i] + (t3 - t2) * v[i]))
 }
 
 /// Joins three lines into one. The ring's seam and its ends are a whole circle apart to half a station, so points that

@@ -74,13 +74,13 @@ fn nothing_counts_that_neither_a_road_nor_the_surface_covers() {
     assert!(!there([9.5, -6.5]) && !there([12.0, -12.0]));
     // No corridor leaves the surface either.
     let mut looked_at = 0;
-    for path in &mapped.paths {
+    for path in &mapped.on_road() {
         let c = &path.corridor;
         for k in path.turn.clone() {
             let (sin, cos) = c.heading[k].sin_cos();
             for across in [c.left_m[k], -c.right_m[k]] {
                 let at = geo::Point::new(c.x[k] - across * sin, c.y[k] + across * cos);
-                assert!(Euclidean.distance(&at, &mapped.area) < 0.02, "path {} at {k}", path.number);
+                assert!(Euclidean.distance(&at, &mapped.area) < 0.02, "path {} at {k}", path.code);
                 looked_at += 1;
             }
         }

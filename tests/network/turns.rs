@@ -107,7 +107,7 @@ fn a_corridor_never_leaves_the_drivable_area() {
         let mut looked_at = 0;
         for turn in drawn.facts() {
             let made = turn_corridors(&drawn.network, turn.movement, policy, &drawn.params, Reach::Short).unwrap();
-            for path in &made.paths {
+            for path in &made.on_road() {
                 let c = &path.corridor;
                 for k in 4 * path.turn.start..4 * path.turn.end.saturating_sub(1) {
                     // Between stations too: half-widths are linear there.
@@ -118,7 +118,7 @@ fn a_corridor_never_leaves_the_drivable_area() {
                         let (x, y) = (mix(&c.x) - across * sin, mix(&c.y) + across * cos);
                         let out = Euclidean.distance(&geo::Point::new(x, y), &made.area);
                         // The chord between stations half a metre apart cuts off millimetres.
-                        assert!(out < 0.02, "{policy:?} kerb {kerb_m}: path {} is {out:.3} m out at {k}", path.number);
+                        assert!(out < 0.02, "{policy:?} kerb {kerb_m}: path {} is {out:.3} m out at {k}", path.code);
                         looked_at += 1;
                     }
                 }
@@ -133,20 +133,20 @@ fn a_path_leaves_and_joins_the_strokes_own_centrelines() {
     let drawn = Drawn::cross("highway=secondary width=9", false, 8.0);
     for nodes in ["EBC", "EBA", "ABD"] {
         let made = drawn.corridors(nodes, Policy::Carriageway, Reach::Long).unwrap();
-        assert!(made.paths.len() > 20, "{}", made.paths.len());
-        for path in &made.paths {
+        assert!(made.on_road().len() > 20, "{}", made.on_road().len());
+        for path in &made.on_road() {
             for (joint, k) in [(path.approach, path.turn.start), (path.departure, path.turn.end - 1)] {
                 let line =
                     StrokeLine::new(&drawn.network, joint.stroke, Policy::Carriageway, &drawn.params.corridor).unwrap();
                 let (c, stroke) = (&path.corridor, &line.made.corridor);
                 let off = (c.x[k] - stroke.x[joint.station]).hypot(c.y[k] - stroke.y[joint.station]);
                 // Stations of the turn lie half a metre apart.
-                assert!(off < 0.6, "{nodes} {}: {off}", path.number);
+                assert!(off < 0.6, "{nodes} {}: {off}", path.code);
                 let across = (c.x[k] - stroke.x[joint.station]) * -stroke.heading[joint.station].sin()
                     + (c.y[k] - stroke.y[joint.station]) * stroke.heading[joint.station].cos();
                 assert!(across.abs() < 0.01, "{across}");
                 let turned = (c.heading[k] - stroke.heading[joint.station]).sin().abs();
-                assert!(turned < 0.02, "{nodes} {}: {turned}", path.number);
+                assert!(turned < 0.02, "{nodes} {}: {turned}", path.code);
                 // The station may lie half a metre inside the turn, and widths change by up to 0.4 m a metre.
                 assert!(c.left_m[k] <= stroke.left_m[joint.station] + 0.21);
                 assert!(c.right_m[k] <= stroke.right_m[joint.station] + 0.21);
@@ -262,8 +262,7 @@ fn no_claim_of_a_turn_is_refuted() {
             ("DBC", "AU-BDOUBLE26"),
         ] {
             let made = drawn.corridors(nodes, Policy::Carriageway, Reach::of(&catalogued(id)).unwrap()).unwrap();
-            let other = made.paths.len() / 3;
-            fought += fight::none_is_refuted(&made.paths, id, other, &format!("{width} {nodes}"), &mut draw);
+            fought += fight::none_is_refuted(&made, id, 3, &format!("{width} {nodes}"), &mut draw);
         }
     }
     println!("{fought} turn corridors held");
@@ -298,11 +297,11 @@ fn the_strip_narrows_to_the_lane_away_from_the_turn() {
     let made = wide_streets(Policy::Direction).corridors("EBC", Policy::Lane, Reach::Short).unwrap();
     let lane = wide_streets(Policy::Lane).corridors("EBC", Policy::Lane, Reach::Short).unwrap();
     let width = |path: &netcert::turns::TurnPath, k: usize| path.corridor.left_m[k] + path.corridor.right_m[k];
-    let lane_m = width(&lane.paths[0], 0);
-    for path in &made.paths {
+    let lane_m = width(&lane.on_road()[0], 0);
+    for path in &made.on_road() {
         let last = path.corridor.len() - 1;
-        assert!((width(path, 0) - lane_m).abs() < 0.01 && (width(path, last) - lane_m).abs() < 0.4, "{}", path.number);
-        assert!(width(path, path.turn.start) > 2.0 * lane_m, "{}", path.number);
+        assert!((width(path, 0) - lane_m).abs() < 0.01 && (width(path, last) - lane_m).abs() < 0.4, "{}", path.code);
+        assert!(width(path, path.turn.start) > 2.0 * lane_m, "{}", path.code);
     }
 }
 
@@ -312,7 +311,7 @@ fn no_claim_of_a_turn_over_several_lanes_is_refuted() {
     let drawn = wide_streets(Policy::Direction);
     for (nodes, id) in [("EBC", "EU-SEMI16.5"), ("EBA", "US-WB67"), ("DBC", "US-WB40"), ("EBA", "AU-BDOUBLE26")] {
         let made = drawn.corridors(nodes, Policy::Lane, Reach::of(&catalogued(id)).unwrap()).unwrap();
-        fought += fight::none_is_refuted(&made.paths, id, made.paths.len() / 3, nodes, &mut draw);
+        fought += fight::none_is_refuted(&made, id, 3, nodes, &mut draw);
     }
     assert!(fought >= 4, "{fought}");
 }

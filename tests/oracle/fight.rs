@@ -2,7 +2,7 @@
 
 use netcert::certify::best_of;
 use netcert::stet::{Model, Options};
-use netcert::turns::TurnPath;
+use netcert::turns::TurnCorridors;
 
 use super::draw::Draw;
 use super::{claim, duel, fleet};
@@ -10,22 +10,23 @@ use super::{claim, duel, fleet};
 /// Paths with less leeway are not attacked, metres.
 const HOPELESS_M: f64 = -3.0;
 
-/// Drives the vehicle along the best path and along the path `other`, with all attacks. Returns the number of claims
-/// that held.
+/// Drives the vehicle along the best path and along another one on the road, one `part`th of the way through them, with
+/// all attacks. Returns the number of claims that held.
 ///
 /// # Panics
 /// If a claim is refuted. The message begins with `what`.
-pub fn none_is_refuted(paths: &[TurnPath], id: &str, other: usize, what: &str, draw: &mut Draw) -> usize {
+pub fn none_is_refuted(made: &TurnCorridors, id: &str, part: usize, what: &str, draw: &mut Draw) -> usize {
     let vehicle = fleet::vehicle(id);
     let model = Model::new(&vehicle).expect("the oracle's vehicles are possible ones");
-    let best = best_of(paths, &[&model], &Options::default()).pop().flatten();
+    let best = best_of(made, &[&model], &Options::default()).pop().flatten();
+    let mut others = made.on_road();
+    let other = (!others.is_empty()).then(|| others.swap_remove(others.len() / part));
     let mut held = 0;
-    for path in best.map(|(path, _)| path).into_iter().chain([other]) {
-        let Some(corridor) = paths.get(path).map(|path| &path.corridor) else { continue };
-        let Some(claim) = claim::certify(corridor, &vehicle).filter(|claim| claim.rsc_m >= HOPELESS_M) else {
+    for path in best.map(|(path, _)| path).into_iter().chain(other) {
+        let Some(claim) = claim::certify(&path.corridor, &vehicle).filter(|claim| claim.rsc_m >= HOPELESS_M) else {
             continue;
         };
-        let (gap_m, outcome) = duel::margin_m(corridor, &vehicle, &claim, draw, 1);
+        let (gap_m, outcome) = duel::margin_m(&path.corridor, &vehicle, &claim, draw, 1);
         assert!(gap_m > -2e-5, "{what} {id}: {gap_m} {}", duel::describe(&outcome));
         held += 1;
     }

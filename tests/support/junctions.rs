@@ -71,7 +71,7 @@ impl Drawn {
         let vehicle = catalogued(id);
         let made = self.corridors(name, policy, Reach::of(&vehicle).unwrap()).unwrap();
         let model = Model::new(&vehicle).unwrap();
-        best_of(&made.paths, &[&model], &Options::default()).pop().unwrap().map(|(_, result)| result)
+        best_of(&made, &[&model], &Options::default()).pop().unwrap().map(|(_, result)| result)
     }
 
     pub(crate) fn safe(&self, name: &str, policy: Policy, id: &str) -> bool {

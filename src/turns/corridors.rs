@@ -1,0 +1,120 @@
+//! A turn, prepared for any vehicle of a length class: its area, and the corridor of every path code.
+
+use std::sync::Arc;
+
+use geo::MultiPolygon;
+
+use super::area::rings;
+use super::arm::Arm;
+use super::code::PathCode;
+use super::ends::Ends;
+use super::junction::{Junction, PathLine};
+use super::path::STEP_M;
+use super::rays::{Boundary, Widths};
+use super::roundabout::Passage;
+use super::{Reach, TurnPath, family};
+use crate::corridor::{Area, Frame};
+
+/// A turn whose paths are made from codes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TurnCorridors {
+    /// Frame of all positions.
+    pub frame: Frame,
+    /// Angle between the strokes' directions at the node, radians, positive left.
+    pub turn_rad: f64,
+    /// The drivable area.
+    pub area: MultiPolygon,
+    /// Assumed radius of the kerb return, metres. `None` if the corner is too acute or too flat, or its surface is
+    /// mapped.
+    pub kerb_radius_m: Option<f64>,
+    /// The area's boundary.
+    rings: Arc<Area>,
+    way: Way,
+}
+
+/// Over one node, or over a roundabout.
+#[derive(Debug, Clone, PartialEq)]
+enum Way {
+    Corner(Box<Junction>),
+    Passage(Box<Passage>),
+}
+
+impl TurnCorridors {
+    pub(super) fn at(junction: Junction, frame: Frame) -> Self {
+        let (area, kerb_radius_m) = junction.area([true; 2]);
+        let (turn_rad, rings) = (junction.turn_rad(), Arc::new(rings(&area)));
+        Self { frame, turn_rad, area, kerb_radius_m, rings, way: Way::Corner(Box::new(junction)) }
+    }
+
+    pub(super) fn over(passage: Passage, frame: Frame) -> Self {
+        let (area, kerb_radius_m) = passage.area();
+        let (turn_rad, rings) = (passage.turn_rad(), Arc::new(rings(&area)));
+        Self { frame, turn_rad, area, kerb_radius_m, rings, way: Way::Passage(Box::new(passage)) }
+    }
+
+    /// The path with a code. `None` if the turn has no such path.
+    #[must_use]
+    pub fn path(&self, code: i64) -> Option<TurnPath> {
+        let line = self.line(code, STEP_M)?;
+        let widths = Boundary::new(&self.area).widths(&line.points);
+        self.along(code, &line, widths.unwrap_or_else(|| Widths::slim(line.points.len())))
+    }
+
+    /// The codes with which a search for a path begins.
+    #[must_use]
+    pub fn seeds(&self) -> Vec<i64> {
+        match &self.way {
+            Way::Corner(junction) => family::seeds(junction).iter().map(PathCode::encode).collect(),
+            Way::Passage(passage) => passage.numbers(),
+        }
+    }
+
+    /// The paths of [`Self::seeds`] that stay on the road.
+    #[must_use]
+    pub fn on_road(&self) -> Vec<TurnPath> {
+        let boundary = Boundary::new(&self.area);
+        let path = |code: i64| {
+            let line = self.line(code, STEP_M)?;
+            let widths = boundary.widths(&line.points)?;
+            self.along(code, &line, widths)
+        };
+        self.seeds().into_iter().filter_map(path).collect()
+    }
+
+    fn along(&self, code: i64, line: &PathLine, widths: Widths) -> Option<TurnPath> {
+        let strokes = match &self.way {
+            Way::Corner(junction) => junction.strokes,
+            Way::Passage(passage) => passage.strokes,
+        };
+        let ends = Ends { arms: self.arms(), strokes, stations: line.joints, reach: self.reach() };
+        ends.path(code, &line.points, widths, &self.rings)
+    }
+
+    /// The line of the path with a code, with points about `step_m` apart.
+    pub(super) fn line(&self, code: i64, step_m: f64) -> Option<PathLine> {
+        match &self.way {
+            Way::Corner(junction) => junction.line(&PathCode::decode(code)?.shape(), step_m),
+            Way::Passage(passage) => passage.line(code, step_m),
+        }
+    }
+
+    /// The road before the turn and the road after it.
+    pub(super) fn arms(&self) -> [&Arm; 2] {
+        match &self.way {
+            Way::Corner(junction) => [&junction.from, &junction.to],
+            Way::Passage(passage) => [&passage.entry.from, &passage.exit.to],
+        }
+    }
+
+    pub(super) fn reach(&self) -> Reach {
+        match &self.way {
+            Way::Corner(junction) => junction.reach,
+            Way::Passage(passage) => passage.entry.reach,
+        }
+    }
+
+    /// The area's boundary.
+    pub(super) fn rings(&self) -> &Area {
+        &self.rings
+    }
+}

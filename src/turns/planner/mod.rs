@@ -1,0 +1,165 @@
+//! The search for the path with the most room for a vehicle, in the plane.
+//!
+//! It begins with a family of paths, keeps the best few and varies their parameters. It decides nothing: paths are
+//! certified afterwards. The same turn and vehicle always give the same paths.
+
+mod field;
+mod score;
+
+use field::Field;
+use score::Scorer;
+
+use super::code::{PARAMETERS, PathCode};
+use super::corridors::TurnCorridors;
+use crate::vehicle::Vehicle;
+
+/// Paths told at most, and seeds that are refined.
+const KEPT: usize = 3;
+/// A path with this score is good enough, metres.
+const EASY_M: f64 = 0.5;
+/// Turns whose best seed scores less are given up, metres.
+const HOPELESS_M: f64 = -1.5;
+/// Paths that are scored to refine a seed.
+const TRIES: usize = 160;
+/// Failures in a row after which steps are halved.
+const PATIENCE: usize = 14;
+/// First steps of the parameters, in steps of the code's grid.
+const FIRST_STEPS: [i16; PARAMETERS] = [8, 8, 4, 4, 8, 8, 2, 2, 2, 2];
+/// Beyond the node and the roads' meeting place, metres: how far the field reaches.
+const AROUND_M: f64 = 80.0;
+
+/// A path that the search found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Planned {
+    /// Its code.
+    pub code: i64,
+    /// Its score, metres: about the leeway that a certificate may find.
+    pub score_m: f64,
+}
+
+/// Plans paths of one turn, for any vehicles of its length class.
+pub struct Planner<'a> {
+    made: &'a TurnCorridors,
+    field: Field,
+    scored: u64,
+}
+
+impl<'a> Planner<'a> {
+    /// Prepares a turn.
+    #[must_use]
+    pub fn new(made: &'a TurnCorridors) -> Self {
+        let [from, to] = made.arms();
+        let (a, b) = (from.point(from.node), to.point(to.node));
+        let centre = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+        let apart_m = 0.5 * (a[0] - b[0]).hypot(a[1] - b[1]);
+        let field = Field::new(made.rings(), centre, apart_m + AROUND_M + made.reach().longest_m());
+        Self { made, field, scored: 0 }
+    }
+
+    /// Up to three paths, the best one first. None if no seed can be driven at all.
+    pub fn plan(&mut self, vehicle: &Vehicle) -> Vec<Planned> {
+        let made = self.made;
+        let mut scorer = Scorer::new(made, vehicle);
+        let mut best = self.seeds(&mut scorer, KEPT);
+        let Some(first) = best.first().copied() else { return best };
+        if first.score_m >= EASY_M || first.score_m < HOPELESS_M || PathCode::decode(first.code).is_none() {
+            return best;
+        }
+        let mut draw = Draw(0x9e37_79b9_7f4a_7c15);
+        for planned in &mut best {
+            self.refine(&mut scorer, planned, &mut draw);
+            if planned.score_m >= EASY_M {
+                break;
+            }
+        }
+        best.sort_by(|a, b| b.score_m.total_cmp(&a.score_m).then(a.code.cmp(&b.code)));
+        best.dedup_by_key(|planned| planned.code);
+        best
+    }
+
+    /// The `count` seeds with the best scores, the best one first.
+    #[must_use]
+    pub fn best_seeds(&mut self, vehicle: &Vehicle, count: usize) -> Vec<Planned> {
+        let made = self.made;
+        self.seeds(&mut Scorer::new(made, vehicle), count)
+    }
+
+    /// Number of paths that were scored.
+    #[must_use]
+    pub fn scored(&self) -> u64 {
+        self.scored
+    }
+
+    fn seeds(&mut self, scorer: &mut Scorer<'_>, count: usize) -> Vec<Planned> {
+        let mut best: Vec<Planned> = Vec::new();
+        for code in self.made.seeds() {
+            let floor_m = if best.len() < count { f64::NEG_INFINITY } else { best[count - 1].score_m };
+            let Some(score_m) = self.score_m(scorer, code, floor_m).filter(|m| *m > floor_m) else { continue };
+            let place = best.partition_point(|known| known.score_m >= score_m);
+            best.insert(place, Planned { code, score_m });
+            best.truncate(count);
+        }
+        best
+    }
+
+    /// Varies a few parameters at a time, in steps that become smaller.
+    fn refine(&mut self, scorer: &mut Scorer<'_>, planned: &mut Planned, draw: &mut Draw) {
+        let Some(mut at) = PathCode::decode(planned.code).filter(|code| !code.shift) else { return };
+        let mut steps = FIRST_STEPS;
+        let mut failed = 0;
+        let mut way = draw.way();
+        for _ in 0..TRIES {
+            let mut other = at;
+            for (to, (step, sign)) in other.steps.iter_mut().zip(steps.iter().zip(way)) {
+                *to += step * sign;
+            }
+            let other = other.clamped();
+            let better = if other == at { None } else { self.score_m(scorer, other.encode(), planned.score_m) };
+            if let Some(score_m) = better.filter(|m| *m > planned.score_m) {
+                // What helped once is tried again, but not the way back.
+                (at, failed) = (other, 1);
+                *planned = Planned { code: at.encode(), score_m };
+                if score_m >= EASY_M {
+                    return;
+                }
+                continue;
+            }
+            failed += 1;
+            way = if failed % 2 == 1 { way.map(|sign| -sign) } else { draw.way() };
+            if failed >= PATIENCE {
+                if steps.iter().all(|step| *step == 1) {
+                    return;
+                }
+                steps = steps.map(|step| (step / 2).max(1));
+                failed = 0;
+            }
+        }
+    }
+
+    fn score_m(&mut self, scorer: &mut Scorer<'_>, code: i64, floor_m: f64) -> Option<f64> {
+        self.scored += 1;
+        scorer.score_m(&mut self.field, code, floor_m)
+    }
+}
+
+/// A fixed sequence that looks random (xorshift).
+struct Draw(u64);
+
+impl Draw {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+
+    /// Directions of one to three parameters; the others stay.
+    fn way(&mut self) -> [i16; PARAMETERS] {
+        let mut way = [0; PARAMETERS];
+        for _ in 0..=self.next() % 3 {
+            let draw = self.next();
+            way[(draw >> 8) as usize % PARAMETERS] = if draw & 1 == 0 { 1 } else { -1 };
+        }
+        way
+    }
+}

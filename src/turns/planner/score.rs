@@ -1,0 +1,140 @@
+//! The score of a path for a vehicle: the least room around the bodies of a vehicle that follows the path exactly, less
+//! an estimate of the tubes, and less where the path asks for more steering or bending than is prudent.
+
+use super::field::Field;
+use crate::turns::corridors::TurnCorridors;
+use crate::vehicle::{Unit, Vehicle};
+
+/// Distance between a path's points and between the moments looked at, metres.
+pub(super) const STEP_M: f64 = 1.0;
+/// Estimated deviation of the first unit from its nominal place, and how much more each further unit deviates, metres.
+const TUBE_M: [f64; 2] = [0.09, 0.03];
+/// Angles kept from the steering lock and from the other hinges' limits, radians.
+const SPARE_RAD: [f64; 2] = [0.105, 0.14];
+/// Metres of room that a radian beyond that is worth.
+const PER_RAD_M: f64 = 14.0;
+/// Least distance between the points looked at along a side, metres.
+const SIDE_STEP_M: f64 = 1.0;
+/// Way that the rear goes on the road that a path joins before the score ends, metres.
+const BEYOND_M: f64 = 5.0;
+
+/// Scores paths of one turn for one vehicle.
+pub(super) struct Scorer<'a> {
+    made: &'a TurnCorridors,
+    vehicle: &'a Vehicle,
+    /// The units' headings (unit vectors) by station of the approach at which the steer axle is.
+    approach: Vec<[f64; 2]>,
+    headings: Vec<[f64; 2]>,
+}
+
+impl<'a> Scorer<'a> {
+    pub(super) fn new(made: &'a TurnCorridors, vehicle: &'a Vehicle) -> Self {
+        let from = made.arms()[0];
+        let mut headings = vec![from.forward(0); vehicle.units.len()];
+        let mut approach = headings.clone();
+        for k in 1..from.len() {
+            let (a, b) = (from.point(k - 1), from.point(k));
+            follow(&mut headings, [b[0] - a[0], b[1] - a[1]], &vehicle.units);
+            approach.extend_from_slice(&headings);
+        }
+        Self { made, vehicle, approach, headings }
+    }
+
+    /// The score of the path with a code, metres. At most `floor_m` is told of paths that score less. `None` if the
+    /// turn has no such path.
+    pub(super) fn score_m(&mut self, field: &mut Field, code: i64, floor_m: f64) -> Option<f64> {
+        let line = self.made.line(code, STEP_M)?;
+        let (units, to) = (&self.vehicle.units, self.made.arms()[1]);
+        let [leave, join] = line.joints;
+        let count = units.len();
+        self.headings.copy_from_slice(self.approach.get(leave * count..(leave + 1) * count)?);
+        let tail = ((self.vehicle.length_m + BEYOND_M) / to.line.spacing_m).ceil() as usize;
+        let tail = (join + 1..(join + 1 + tail).min(to.len())).map(|k| to.point(k));
+        let mut at = *line.points.first()?;
+        let (mut least_m, mut beyond_rad) = (f64::INFINITY, 0.0_f64);
+        for p in line.points.iter().skip(1).copied().chain(tail) {
+            let step = [p[0] - at[0], p[1] - at[1]];
+            let length_m = step[0].hypot(step[1]);
+            if length_m < 1e-6 {
+                continue;
+            }
+            at = p;
+            follow(&mut self.headings, step, units);
+            let mut ahead = [step[0] / length_m, step[1] / length_m];
+            for (i, (&heading, unit)) in self.headings.iter().zip(units).enumerate() {
+                let most_rad = unit.max_articulation_rad - SPARE_RAD[usize::from(i > 0)];
+                let cosine = ahead[0] * heading[0] + ahead[1] * heading[1];
+                if cosine < most_rad.cos() {
+                    beyond_rad = beyond_rad.max(cosine.clamp(-1.0, 1.0).acos() - most_rad);
+                }
+                ahead = heading;
+            }
+            let spent_m = PER_RAD_M * beyond_rad;
+            if least_m - spent_m <= floor_m {
+                return Some(floor_m);
+            }
+            let mut coupling = p;
+            for (i, (heading, unit)) in self.headings.iter().zip(units).enumerate() {
+                let tube_m = TUBE_M[0] + i as f64 * TUBE_M[1];
+                let axle = along(coupling, *heading, -unit.coupling_to_axle_m);
+                let room_m = room_m(field, axle, *heading, unit, least_m + tube_m);
+                least_m = least_m.min(room_m - tube_m);
+                coupling = along(axle, *heading, -unit.hitch_offset_m);
+            }
+            if least_m - spent_m <= floor_m {
+                return Some(floor_m);
+            }
+        }
+        Some(least_m - PER_RAD_M * beyond_rad)
+    }
+}
+
+/// Turns the units' headings as the steer axle moves by `step`.
+fn follow(headings: &mut [[f64; 2]], mut step: [f64; 2], units: &[Unit]) {
+    for (heading, unit) in headings.iter_mut().zip(units) {
+        let turned = turned(*heading, step, unit.coupling_to_axle_m);
+        let reach = unit.coupling_to_axle_m + unit.hitch_offset_m;
+        step = [step[0] - reach * (turned[0] - heading[0]), step[1] - reach * (turned[1] - heading[1])];
+        *heading = turned;
+    }
+}
+
+/// The heading after the front coupling has moved by `step`, as in the kernel's nominal motion.
+fn turned(heading: [f64; 2], step: [f64; 2], length_m: f64) -> [f64; 2] {
+    let moved = step[0].hypot(step[1]);
+    if moved < 1e-12 {
+        return heading;
+    }
+    let sine = heading[0] * step[1] - heading[1] * step[0];
+    let cosine = heading[0] * step[0] + heading[1] * step[1];
+    let half = sine / (moved + cosine).max(f64::MIN_POSITIVE) * (-moved / length_m).exp();
+    let (cos, sin) = ((1.0 - half * half) / (1.0 + half * half), 2.0 * half / (1.0 + half * half));
+    let ahead = [step[0] / moved, step[1] / moved];
+    [ahead[0] * cos + ahead[1] * sin, ahead[1] * cos - ahead[0] * sin]
+}
+
+/// Least distance of a unit's sides from the boundary, where it is below `least_m`. Distance changes by no more than
+/// the place does, so a place with much room speaks for its neighbours.
+fn room_m(field: &mut Field, axle: [f64; 2], heading: [f64; 2], unit: &Unit, mut least_m: f64) -> f64 {
+    let front = unit.coupling_to_axle_m + unit.front_overhang_m;
+    let length_m = front + unit.rear_overhang_m;
+    let rear = along(axle, heading, -unit.rear_overhang_m);
+    for half in [0.5 * unit.width_m, -0.5 * unit.width_m] {
+        let corner = [rear[0] - half * heading[1], rear[1] + half * heading[0]];
+        let mut s = 0.0;
+        loop {
+            let m = field.distance_m(along(corner, heading, s));
+            let beyond_m = m - least_m;
+            least_m = least_m.min(m);
+            if s >= length_m {
+                break;
+            }
+            s = (s + beyond_m.max(SIDE_STEP_M)).min(length_m);
+        }
+    }
+    least_m
+}
+
+fn along(p: [f64; 2], u: [f64; 2], m: f64) -> [f64; 2] {
+    [p[0] + m * u[0], p[1] + m * u[1]]
+}
