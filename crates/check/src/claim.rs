@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::chain::Chain;
 use crate::leeway::{Shortfall, Swept, Targets, foot};
 use crate::motion::{Motion, STEPS};
+use crate::plane::Cramped;
 use crate::road::{Place, Road, RoadError};
 use netcert_base::corridor::Corridor;
 
@@ -80,7 +81,7 @@ impl<'a> Subject<'a> {
     /// before it.
     ///
     /// # Errors
-    /// [`RoadError`] if stations do not fit each other.
+    /// [`RoadError`] if stations do not fit each other, or an area is malformed.
     pub fn new(
         chain: &'a Chain,
         corridor: &Corridor,
@@ -135,6 +136,7 @@ impl<'a> Subject<'a> {
             let mut swept = whole.within(tolerance_m, range);
             let own: Vec<usize> = (0..claims.len()).filter(|&i| claims[i].shrink == shrink).collect();
             self.leeway(&mut swept, claims, &own, &mut findings);
+            self.room(&mut swept, claims, &own, &mut findings);
             for i in own {
                 if let Some(short) =
                     claims[i].hinge_margin_rad.and_then(|margin| self.hinges(&mut swept, &claims[i].stations, margin))
@@ -150,8 +152,8 @@ impl<'a> Subject<'a> {
     }
 
     /// Checks two columns of leeway (left, right), with one entry per station at γ = 1. Each entry claims what a span
-    /// of its station alone would: the leeway over both stretches that meet there. Returns for each side why it is not
-    /// proved, or `None`.
+    /// of its station alone would: the leeway over both stretches that meet there. Columns claim nothing about steps in
+    /// areas: what they show there is for drawing. Returns for each side why it is not proved, or `None`.
     pub fn leeway_columns(&self, columns: [&[Option<f64>]; 2]) -> [Option<String>; 2] {
         let stretches = self.road.count - 1;
         let claimed = |column: &[Option<f64>], k: usize| {
@@ -197,8 +199,12 @@ impl<'a> Subject<'a> {
         // examines the kink itself.
         let kink_m = 0.5 * self.road.kink(side, self.road.lead + near.start..self.road.lead + near.end);
         // Where much room is left or missing, the two programs differ by more, but nothing depends on it.
-        targets[side][near].fill(rsc_m + LIMITING_TOLERANCE_M + kink_m + 0.25 * rsc_m.abs());
-        let roomy = filtered.refute_only(&Targets(targets), Some(unit)).is_empty();
+        let target = rsc_m + LIMITING_TOLERANCE_M + 0.25 * rsc_m.abs();
+        let (about, all) = (filtered.steps(near.clone()), filtered.steps(own));
+        let in_areas = [(about.start.max(all.start)..about.end.min(all.end), target)];
+        targets[side][near].fill(target + kink_m);
+        let roomy = filtered.refute_only(&Targets(targets), Some(unit)).is_empty()
+            && filtered.cramped(&in_areas, Some((unit, side)))[0].is_none();
         roomy.then(|| {
             finding("limiting", &format!("unit {unit} has more room than the RSC at {at_m:.1} m on that side"))
         })
@@ -259,6 +265,37 @@ impl<'a> Subject<'a> {
                 findings[i].push(Finding { unbounded, ..finding("rsc_m", &self.describe(short_m, at)) });
             }
         }
+    }
+
+    /// Checks the room in areas, in all steps in which any point of the vehicle may be on a span.
+    fn room(&self, swept: &mut Swept<'_>, claims: &[SpanClaim], own: &[usize], findings: &mut [Vec<Finding>]) {
+        let claimed = |&i: &usize| Some((i, asked(claims[i].rsc_m?)));
+        let mut own: Vec<(usize, f64)> = own.iter().filter_map(claimed).collect();
+        // A greater claim that is proved settles the lesser ones in the steps that they share.
+        own.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let steps = |i: usize| swept.steps(self.stretches(&claims[i].stations));
+        let asked: Vec<_> = own.iter().map(|&(i, target)| (steps(i), target)).collect();
+        for ((i, _), worst) in own.iter().zip(swept.cramped(&asked, None)) {
+            if let Some(worst) = worst {
+                let unbounded = worst.short_m.is_infinite();
+                findings[*i].push(Finding { unbounded, ..finding("rsc_m", &self.describe_cramped(&worst)) });
+            }
+        }
+    }
+
+    fn describe_cramped(&self, at: &Cramped) -> String {
+        let from_start_m = (at.step as f64 / STEPS as f64 - self.road.lead as f64) * self.road.spacing;
+        if at.short_m.is_infinite() {
+            return format!("{from_start_m:.1} m, in an area: no bound holds there (unit {})", at.unit);
+        }
+        format!(
+            "off by {:.4} m or more in an area, with the steer axle at {from_start_m:.1} m: unit {}, {:.1} m ahead of its \
+             axle and {:.1} m to the left",
+            at.short_m + TOLERANCE_M,
+            at.unit,
+            at.at[0],
+            at.at[1]
+        )
     }
 
     fn describe(&self, short_m: f64, at: &Shortfall) -> String {

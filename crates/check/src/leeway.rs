@@ -182,7 +182,8 @@ impl<'a> Swept<'a> {
         feet.reduce(|least, s| Some(least?.min(s?))).flatten()
     }
 
-    /// All places where the bound is below the claim: the worst one of each stretch and side.
+    /// All places where the bound is below the claim: the worst one of each stretch and side. In areas half-widths mean
+    /// nothing, so their steps are left out.
     pub(crate) fn refute(&mut self, targets: &Targets) -> Vec<Shortfall> {
         self.refute_only(targets, None)
     }
@@ -197,6 +198,11 @@ impl<'a> Swept<'a> {
         let mut found = Shortfalls::new(stretches);
         let mut feet = vec![f64::NAN; self.chain.links.len() * 4];
         for step in self.steps(first..last + 1) {
+            if self.road.plane.decides(step) {
+                // Feet move on unseen.
+                feet.fill(f64::NAN);
+                continue;
+            }
             for unit in only.map_or(0..self.chain.links.len(), |unit| unit..unit + 1) {
                 for side in 0..2 {
                     let link = &self.chain.links[unit];
@@ -270,10 +276,11 @@ impl<'a> Swept<'a> {
         // Halving divides the allowances by four, so it helps while the allowances are what is missing.
         let halving_helps = slack + 0.75 * (time + body) >= 0.0 && time + body > 0.0;
         let knots = self.knots(cell, all);
-        let dull = (!halving_helps || cell.halvings > 5) && self.worth(cell) && !self.sharp(cell, &knots);
+        let (step, unit) = (cell.step, cell.unit);
+        let dull = (!halving_helps || cell.halvings > 5) && self.worth(step, unit) && !self.sharp(step, unit, &knots);
         let short = (cell.a[1] - cell.a[0]).abs() <= SHARP_M;
         if dull && short {
-            self.sharpen(cell, knots);
+            self.sharpen(step, unit, knots);
             let hints = [all[0].s, all[1].s];
             self.cell(cell, hints, targets, found);
             return;
@@ -303,7 +310,8 @@ impl<'a> Swept<'a> {
         found.add(cell, least.s - self.road.lead as f64, point_m, -slack, (first, last), targets);
     }
 
-    fn pose(&self, step: usize, unit: usize, t: f64) -> Pose {
+    /// The nominal pose after a share of a step.
+    pub(crate) fn pose(&self, step: usize, unit: usize, t: f64) -> Pose {
         if t == 0.0 {
             return self.motion.pose(step, unit);
         }
@@ -399,7 +407,7 @@ impl<'a> Swept<'a> {
     }
 
     /// The first-order bound at `a` throughout a step.
-    fn off(&self, step: usize, unit: usize, a: f64, tube: &Tube) -> f64 {
+    pub(crate) fn off(&self, step: usize, unit: usize, a: f64, tube: &Tube) -> f64 {
         let link = &self.chain.links[unit];
         let filter = self.chain.gains.units[unit].point(a, self.tubes.tolerance_m)
             + (1.0 - a / link.l).abs() * tube.extra
@@ -453,9 +461,9 @@ impl<'a> Swept<'a> {
     }
 
     /// Whether the adjoint is allowed and may improve on the filter.
-    fn worth(&self, cell: &Cell) -> bool {
+    fn worth(&self, step: usize, unit: usize) -> bool {
         !self.tubes.by_filter()
-            && self.tubes.get(cell.step, cell.unit).is_some_and(|tube| tube.extra + tube.extra_coupling > 2e-4)
+            && self.tubes.get(step, unit).is_some_and(|tube| tube.extra + tube.extra_coupling > 2e-4)
     }
 
     /// The knots that a cell's bounds rest on.
@@ -467,26 +475,37 @@ impl<'a> Swept<'a> {
     }
 
     /// Whether the adjoint has run at all of these knots.
-    fn sharp(&self, cell: &Cell, knots: &Range<usize>) -> bool {
-        let known = self.exact.get(&(cell.unit, cell.step));
+    fn sharp(&self, step: usize, unit: usize, knots: &Range<usize>) -> bool {
+        let known = self.exact.get(&(unit, step));
         known.is_some_and(|known| known[knots.clone()].iter().all(|bound| !bound.is_nan()))
     }
 
+    /// Whether the adjoint may improve on the bounds of a piece of a body, from `a[0]` to `a[1]` ahead of its axle.
+    pub(crate) fn dull(&self, step: usize, unit: usize, a: [f64; 2]) -> bool {
+        let knots = Knots::new(&self.chain.links[unit], KNOT_M).about(a);
+        self.worth(step, unit) && !self.sharp(step, unit, &knots)
+    }
+
+    /// Computes the adjoint's bounds of a piece of a body.
+    pub(crate) fn sharpen_about(&mut self, step: usize, unit: usize, a: [f64; 2]) {
+        self.sharpen(step, unit, Knots::new(&self.chain.links[unit], KNOT_M).about(a));
+    }
+
     /// Computes the adjoint's bounds for a unit throughout a step, after tightening the second order of its history.
-    fn sharpen(&mut self, cell: &Cell, knots: Range<usize>) {
-        self.tighten_up_to(cell.step);
-        self.run(cell.unit, cell.step + 1, knots.clone());
-        let first = cell.step == self.tubes.first;
+    fn sharpen(&mut self, step: usize, unit: usize, knots: Range<usize>) {
+        self.tighten_up_to(step);
+        self.run(unit, step + 1, knots.clone());
+        let first = step == self.tubes.first;
         if !first {
-            self.run(cell.unit, cell.step, knots.clone());
+            self.run(unit, step, knots.clone());
         }
-        let bow = adjoint::bow(self.chain, cell.unit, self.tubes.step_m);
-        let count = Knots::new(&self.chain.links[cell.unit], KNOT_M).places().len();
-        let at = |node: usize, knot: usize| self.at_nodes.get(&(cell.unit, node)).map_or(f64::INFINITY, |at| at[knot]);
-        let exact = self.exact.entry((cell.unit, cell.step)).or_insert_with(|| vec![f64::NAN; count]);
+        let bow = adjoint::bow(self.chain, unit, self.tubes.step_m);
+        let count = Knots::new(&self.chain.links[unit], KNOT_M).places().len();
+        let at = |node: usize, knot: usize| self.at_nodes.get(&(unit, node)).map_or(f64::INFINITY, |at| at[knot]);
+        let exact = self.exact.entry((unit, step)).or_insert_with(|| vec![f64::NAN; count]);
         for knot in knots {
-            let end = at(cell.step + 1, knot);
-            exact[knot] = if first { end } else { end.max(at(cell.step, knot)) } * bow;
+            let end = at(step + 1, knot);
+            exact[knot] = if first { end } else { end.max(at(step, knot)) } * bow;
         }
     }
 
@@ -572,7 +591,7 @@ pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<(f64, Place, 
 }
 
 /// A body point, `a` ahead of the axle and `b` to its left.
-fn point(pose: Pose, a: f64, b: f64) -> [f64; 2] {
+pub(crate) fn point(pose: Pose, a: f64, b: f64) -> [f64; 2] {
     along(along(pose.p, a, pose.u), b, [-pose.u[1], pose.u[0]])
 }
 

@@ -14,6 +14,7 @@
 //! | `tubes` | the filter and the second order (sections 3 and 5) |
 //! | `adjoint` | the exact time-varying bound (section 6), where the filter is too loose |
 //! | `leeway` | from tubes to leeway (section 7), compared with the claims by branch and bound |
+//! | `plane` | the same in areas, where bodies are held against a part of the plane |
 //! | `claim` | the claims about one vehicle on one corridor, and their results |
 //! | `printed` | the paper's 𝒞, which decides nothing |
 //!
@@ -31,6 +32,7 @@ mod leeway;
 mod link;
 mod motion;
 pub mod plan;
+mod plane;
 pub mod printed;
 mod road;
 mod tubes;

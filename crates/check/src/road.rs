@@ -3,6 +3,7 @@
 //! Between stations curvature and half-widths are linear. Before the first and after the last station the road
 //! continues straight (proof, section 8). A corridor whose stations do not fit each other is refused.
 
+use crate::plane::Plane;
 use netcert_base::corridor::Corridor;
 
 /// Largest deviation of a station from the curve that leads to it, metres and radians, per metre of spacing. In a file
@@ -57,6 +58,8 @@ pub(crate) struct Road {
     jumps: Vec<f64>,
     /// Half-widths, left and right, metres.
     pub(crate) widths: Vec<[f64; 2]>,
+    /// Areas that stand in for the half-widths.
+    pub(crate) plane: Plane,
 }
 
 impl Road {
@@ -64,7 +67,7 @@ impl Road {
     ///
     /// # Errors
     /// [`RoadError`] with the first station that does not fit. With `lenient` such a station is no error, and nothing
-    /// is known of the stretch before it.
+    /// is known of the stretch before it. Areas must be well-formed even so.
     pub(crate) fn new(corridor: &Corridor, lead_m: f64, tail_m: f64, lenient: bool) -> Result<Self, RoadError> {
         let n = corridor.len();
         let same = [&corridor.y, &corridor.heading, &corridor.curvature, &corridor.left_m, &corridor.right_m];
@@ -101,6 +104,7 @@ impl Road {
             widths: Vec::with_capacity(lead + n + tail),
             slack: Vec::with_capacity(lead + n + tail),
             jumps: Vec::with_capacity(lead + n + tail),
+            plane: Plane::new(corridor, lead)?,
         };
         for k in 0..lead + n + tail {
             let inner = k.saturating_sub(lead).min(n - 1);
@@ -261,6 +265,7 @@ fn check_station(c: &Corridor, k: usize) -> Result<[f64; 2], RoadError> {
         widths: Vec::new(),
         slack: vec![0.0],
         jumps: vec![0.0],
+        plane: Plane::default(),
     };
     let at = stretch.place(1.0).c;
     let off = (at[0] - c.x[k]).hypot(at[1] - c.y[k]);

@@ -1,0 +1,496 @@
+//! Room in areas: over some stations a body is held against a part of the plane, not against the corridor's half-widths.
+//!
+//! A step is in an area if both its ends are between the first and the last station of an `AreaSpan`. In such steps each
+//! place of a body's outline must keep the claimed distance from the area's complement, all deviations deducted. Feet,
+//! normals and half-widths play no part there.
+//!
+//! **Deviations.** When its axle is at its foot, a unit is off by y across and α in heading, and by nothing along. The
+//! point a ahead of the axle and c to its left is then off by
+//!
+//! ```text
+//! across   y + a sin α − c (1 − cos α)        along   −a (1 − cos α) − c sin α
+//! ```
+//!
+//! y + aα is the corridor's first-order bound plus a R/L (proof, section 3). R has the term L(α − sin α), so y + a sin α
+//! is bounded by the same R1. Both displacements are affine in (a, c), so their length is convex, and on a piece of a body
+//! it is greatest at a corner (`Swept::stray`).
+//!
+//! **Room.** The distance to the complement changes by no more than the way between two places. So a piece keeps at
+//! least the distance of its nominal places less the greatest deviation. The nominal places of a piece in a part of a
+//! step are in the hull of its corners at both ends, but for a bow (`Swept::bow`). A cell whose bound is too low is
+//! halved, or the adjoint's bounds replace its tubes, until each cell ends with a bound not below the claim, or holds a
+//! place where the bound is below it.
+//!
+//! **What lies under a body.** Nothing can come under a body but across its outline. Where a check begins, and where
+//! the areas that count change, all of the body is examined; elsewhere its outline is.
+//!
+//! A place outside all areas has no room. It fails every claim of zero or more. A negative claim promises nothing; it
+//! holds there if the deviation is no greater than what it concedes.
+
+use std::ops::Range;
+
+use crate::UP;
+use crate::claim::TOLERANCE_M;
+use crate::leeway::{Swept, point};
+use crate::motion::STEPS;
+use crate::road::RoadError;
+use netcert_base::corridor::{Area, AreaSpan, Corridor};
+
+/// Deducted for rounding, metres. Coordinates of 1e8 m are exact to 3e-8.
+const ROUNDING_M: f64 = 1e-6;
+/// Cells that extend and move less than this are not halved, metres.
+const FINEST_M: f64 = 1e-4;
+/// The adjoint runs only for pieces of a body no longer than this, metres.
+const SHARP_M: f64 = 1.0;
+/// Largest coordinates (metres), and most vertices of one area.
+const FARTHEST_M: f64 = 1e8;
+const MOST_VERTICES: usize = 100_000;
+/// Strips into which a boundary is sorted. More hardly help, and a boundary of long segments is in all of them.
+const STRIPS: usize = 64;
+/// Most comparisons of cells with segments, for one piece in one step. Some thousand decide an honest claim.
+const MOST_WORK: usize = 10_000_000;
+/// Once a claim has failed, only places that are worse by this are looked for, metres.
+const WORSE_M: f64 = 0.01;
+
+type Point = [f64; 2];
+type Segment = [Point; 2];
+
+/// The areas of a corridor.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Plane {
+    spans: Vec<Span>,
+}
+
+#[derive(Debug, Clone)]
+struct Span {
+    steps: Range<usize>,
+    boundary: Boundary,
+}
+
+impl Plane {
+    /// The areas in the road's frame: metres from the corridor's first station, and steps from the road's start. The road
+    /// begins `lead` stations before the corridor.
+    ///
+    /// # Errors
+    /// [`RoadError`] at the first station of an area that is malformed.
+    pub(crate) fn new(corridor: &Corridor, lead: usize) -> Result<Self, RoadError> {
+        let span = |span: &AreaSpan| {
+            let heads = &span.heads;
+            let wrong = |problem| RoadError { station: heads.start, problem };
+            if heads.len() < 2 || heads.end > corridor.len() {
+                let n = corridor.len();
+                return Err(wrong(format!(
+                    "an area for stations {heads:?}; it needs two at least, of the corridor's {n}"
+                )));
+            }
+            let boundary = Boundary::new(&span.area, [corridor.x[0], corridor.y[0]]).map_err(wrong)?;
+            Ok(Span { steps: (lead + heads.start) * STEPS..(lead + heads.end - 1) * STEPS, boundary })
+        };
+        Ok(Self { spans: corridor.areas.iter().map(span).collect::<Result<_, _>>()? })
+    }
+
+    /// Whether an area, and not the corridor's half-widths, decides in a step.
+    pub(crate) fn decides(&self, step: usize) -> bool {
+        self.spans.iter().any(|span| span.steps.contains(&step))
+    }
+
+    /// The spans that count in a step.
+    fn active(&self, step: usize) -> Vec<usize> {
+        (0..self.spans.len()).filter(|&k| self.spans[k].steps.contains(&step)).collect()
+    }
+}
+
+/// An area's boundary. Its segments are sorted into strips of northing; a segment is in each strip that it meets.
+#[derive(Debug, Clone)]
+struct Boundary {
+    segments: Vec<Segment>,
+    strips: Vec<Vec<u32>>,
+    low: f64,
+    height: f64,
+}
+
+impl Boundary {
+    fn new(area: &Area, origin: Point) -> Result<Self, String> {
+        let vertices = || area.rings.iter().flatten();
+        if vertices().count() > MOST_VERTICES {
+            return Err(format!("an area of {} vertices; at most {MOST_VERTICES}", vertices().count()));
+        }
+        if area.rings.is_empty() {
+            return Err("an area without a boundary".to_owned());
+        }
+        if let Some(ring) = area.rings.iter().find(|ring| ring.len() < 3) {
+            return Err(format!("a ring of {} vertices in an area; it needs 3", ring.len()));
+        }
+        if let Some(vertex) = vertices().find(|vertex| !vertex.iter().all(|x| x.abs() < FARTHEST_M)) {
+            return Err(format!("an area's vertex {vertex:?} is not finite and below 1e8"));
+        }
+        let own = |[x, y]: Point| [x - origin[0], y - origin[1]];
+        let segments: Vec<Segment> = area.segments().map(|segment| segment.map(own)).collect();
+        let ends = |y: fn(f64, f64) -> f64, from: f64| segments.iter().fold(from, |most, [a, _]| y(most, a[1]));
+        let (low, high) = (ends(f64::min, f64::INFINITY), ends(f64::max, f64::NEG_INFINITY));
+        let height = ((high - low) / STRIPS as f64).max(1e-3);
+        let mut boundary = Self { segments: Vec::new(), strips: vec![Vec::new(); STRIPS], low, height };
+        for (k, [a, b]) in segments.iter().enumerate() {
+            for strip in boundary.strips_of(a[1].min(b[1]), a[1].max(b[1])) {
+                boundary.strips[strip].push(k as u32);
+            }
+        }
+        boundary.segments = segments;
+        Ok(boundary)
+    }
+
+    /// The strips between two northings. Beyond the boundary it is the first or the last.
+    fn strips_of(&self, from: f64, to: f64) -> Range<usize> {
+        let at = |y: f64| (((y - self.low) / self.height).max(0.0) as usize).min(STRIPS - 1);
+        at(from)..at(to) + 1
+    }
+
+    /// The segments that may be within `reach` of the hull of some points.
+    fn near(&self, points: &[Point], reach: f64) -> Vec<u32> {
+        let [low, high] = bounds(points);
+        let meets = |k: &u32| {
+            let [from, to] = bounds(&self.segments[*k as usize]);
+            (0..2).all(|i| from[i] <= high[i] + reach && to[i] >= low[i] - reach)
+        };
+        let strips = &self.strips[self.strips_of(low[1] - reach, high[1] + reach)];
+        let mut near: Vec<u32> = strips.iter().flatten().copied().filter(meets).collect();
+        near.sort_unstable();
+        near.dedup();
+        near
+    }
+
+    /// Those of some segments that are closer to a hull than `reach`, with their distances.
+    fn within(&self, segments: &[u32], hull: &[Point], reach: f64) -> Vec<(u32, f64)> {
+        let apart = |&k: &u32| (k, clearance(hull, self.segments[k as usize]));
+        segments.iter().map(apart).filter(|(_, apart)| *apart < reach).collect()
+    }
+
+    /// Whether a place is inside: whether a ray to the east crosses the boundary an odd number of times.
+    fn contains(&self, [x, y]: Point) -> bool {
+        let crossed = |k: &&u32| {
+            let [a, b] = self.segments[**k as usize];
+            (a[1] > y) != (b[1] > y) && x < a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0])
+        };
+        self.strips[self.strips_of(y, y)].iter().flatten().filter(crossed).count() % 2 == 1
+    }
+}
+
+/// The place where a claim fails by most in an area.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Cramped {
+    pub(crate) step: usize,
+    pub(crate) unit: usize,
+    /// The body point: metres ahead of the axle, and to its left.
+    pub(crate) at: Point,
+    /// How far the bound is below the claim, metres. Infinite where nothing is bounded.
+    pub(crate) short_m: f64,
+}
+
+/// A piece of a body, from `a[0]` to `a[1]` ahead of its axle and from `c[0]` to `c[1]` to its left, in a part of a step.
+#[derive(Debug, Clone, Copy)]
+struct Piece {
+    unit: usize,
+    step: usize,
+    a: [f64; 2],
+    c: [f64; 2],
+    /// Shares of the step.
+    t: [f64; 2],
+}
+
+impl Piece {
+    fn middle(&self) -> Self {
+        let middle = |[from, to]: [f64; 2]| [f64::midpoint(from, to); 2];
+        Self { a: middle(self.a), c: middle(self.c), t: middle(self.t), ..*self }
+    }
+
+    fn halves(&self, cut: fn(&mut Self) -> &mut [f64; 2]) -> [Self; 2] {
+        let mut halves = [*self; 2];
+        let [from, to] = *cut(&mut halves[0]);
+        cut(&mut halves[0])[1] = f64::midpoint(from, to);
+        cut(&mut halves[1])[0] = f64::midpoint(from, to);
+        halves
+    }
+
+    /// How far the piece extends ahead and aside, and how far it moves, metres.
+    fn extent(&self, corners: &[Point; 8]) -> [f64; 3] {
+        let moved = |i: usize| (corners[i + 4][0] - corners[i][0]).hypot(corners[i + 4][1] - corners[i][1]);
+        [(self.a[1] - self.a[0]).abs(), (self.c[1] - self.c[0]).abs(), (0..4).map(moved).fold(0.0, f64::max)]
+    }
+
+    fn size(&self, corners: &[Point; 8]) -> f64 {
+        self.extent(corners).into_iter().fold(0.0, f64::max)
+    }
+
+    fn halves_of_longest(&self, corners: &[Point; 8]) -> [Self; 2] {
+        let [a, c, moved] = self.extent(corners);
+        if a >= c && a >= moved {
+            self.halves(|piece| &mut piece.a)
+        } else if c >= moved {
+            self.halves(|piece| &mut piece.c)
+        } else {
+            self.halves(|piece| &mut piece.t)
+        }
+    }
+}
+
+impl Swept<'_> {
+    /// Checks claims about steps: that all of every body has at least so much room, metres, in those steps that are in
+    /// areas. Returns for each claim the place where it fails by most. `only` looks at one unit, and at its front, its
+    /// rear and one side (0 left, 1 right).
+    pub(crate) fn cramped(
+        &mut self,
+        claims: &[(Range<usize>, f64)],
+        only: Option<(usize, usize)>,
+    ) -> Vec<Option<Cramped>> {
+        // Claims of neighbouring spans share steps.
+        let mut proved = vec![f64::NEG_INFINITY; self.motion.steps()];
+        claims.iter().map(|(steps, claimed)| self.cramped_in(steps.clone(), *claimed, only, &mut proved)).collect()
+    }
+
+    fn cramped_in(
+        &mut self,
+        steps: Range<usize>,
+        claimed: f64,
+        only: Option<(usize, usize)>,
+        proved: &mut [f64],
+    ) -> Option<Cramped> {
+        let mut worst: Option<Cramped> = None;
+        let mut before = Vec::new();
+        for step in steps {
+            let active = self.road.plane.active(step);
+            let whole = active != before;
+            before.clone_from(&active);
+            if active.is_empty() || !whole && proved[step] >= claimed {
+                continue;
+            }
+            for unit in only.map_or(0..self.chain.links.len(), |(unit, _)| unit..unit + 1) {
+                if self.tubes.get(step, unit).is_none() {
+                    return Some(Cramped { step, unit, at: [0.0; 2], short_m: f64::INFINITY });
+                }
+                for piece in self.pieces(step, unit, whole, only.map(|(_, side)| side)) {
+                    // Only what is worse than the worst so far is of interest.
+                    let target = claimed - worst.map_or(0.0, |worst| worst.short_m + WORSE_M);
+                    if let Some((at, bound)) = self.least(piece, target, &active, worst.is_some()) {
+                        worst = Some(Cramped { step, unit, at, short_m: claimed - bound });
+                    }
+                }
+            }
+            if worst.is_none() {
+                proved[step] = proved[step].max(claimed);
+            }
+        }
+        worst
+    }
+
+    /// A body's outline in a step, or all of the body.
+    fn pieces(&self, step: usize, unit: usize, whole: bool, side: Option<usize>) -> Vec<Piece> {
+        let link = &self.chain.links[unit];
+        let (sides, b) = ([link.rear, link.front], link.half_width);
+        let piece = |a: [f64; 2], c: [f64; 2]| Piece { unit, step, a, c, t: [0.0, 1.0] };
+        if whole && side.is_none() {
+            // The outline is a part of it, but it is sooner decided by itself.
+            return [
+                piece(sides, [b; 2]),
+                piece(sides, [-b; 2]),
+                piece([link.front; 2], [-b, b]),
+                piece([link.rear; 2], [-b, b]),
+                piece(sides, [-b, b]),
+            ]
+            .to_vec();
+        }
+        let ends = sides.map(|a| piece([a; 2], [-b, b]));
+        let own = [b, -b].into_iter().enumerate().filter(|(own, _)| side.is_none_or(|side| side == *own));
+        ends.into_iter().chain(own.map(|(_, c)| piece(sides, [c; 2]))).collect()
+    }
+
+    /// The place of a piece whose bound is least, with the bound, if that is below `target`. Once a claim is `refuted`, the
+    /// adjoint is spared: the search ends at a place whose bound it may still improve.
+    fn least(&mut self, piece: Piece, mut target: f64, active: &[usize], mut refuted: bool) -> Option<(Point, f64)> {
+        let spans = &self.road.plane.spans;
+        let boundaries: Vec<&Boundary> = active.iter().map(|&k| &spans[k].boundary).collect();
+        let mut strict = target >= -TOLERANCE_M;
+        let reach = self.demand(&piece, target, strict).needed;
+        let corners = self.corners(&piece);
+        let near = boundaries.iter().map(|boundary| boundary.near(&corners, reach)).collect();
+        let mut open: Vec<(Piece, Vec<Vec<u32>>)> = vec![(piece, near)];
+        let (mut least, mut work) = (None, 0);
+        while let Some((piece, near)) = open.pop() {
+            let Demand { needed, bow } = self.demand(&piece, target, strict);
+            if needed <= 0.0 {
+                continue;
+            }
+            let corners = self.corners(&piece);
+            let hull = hull(&corners);
+            work += 1 + near.iter().map(Vec::len).sum::<usize>();
+            // What was far enough from the whole piece is far enough from its parts.
+            let near: Vec<Vec<(u32, f64)>> =
+                boundaries.iter().zip(&near).map(|(b, near)| b.within(near, &hull, needed)).collect();
+            if near.iter().zip(&boundaries).any(|(near, b)| near.is_empty() && b.contains(corners[0])) {
+                continue;
+            }
+            let middle = piece.middle();
+            let place = self.corners(&middle)[0];
+            let known: Vec<Vec<u32>> = near.iter().map(|near| near.iter().map(|(k, _)| *k).collect()).collect();
+            let room = |points: &[Point]| {
+                let room = |(b, near): (&&Boundary, &Vec<u32>)| {
+                    b.contains(points[0])
+                        .then(|| b.within(near, points, needed).iter().fold(needed, |r, (_, d)| r.min(*d)))
+                };
+                boundaries.iter().zip(&known).filter_map(room).reduce(f64::max)
+            };
+            let there = room(&[place]);
+            let stray = self.stray(&middle);
+            let bound = there.unwrap_or(0.0) - stray - ROUNDING_M;
+            let failed = bound < target || strict && there.is_none();
+            let dull = failed && work <= MOST_WORK && self.dull(piece.step, piece.unit, piece.a);
+            let long = (piece.a[1] - piece.a[0]).abs() > SHARP_M;
+            let size = piece.size(&corners);
+            if dull && refuted {
+                break;
+            }
+            if dull && !long {
+                self.sharpen_about(piece.step, piece.unit, piece.a);
+                open.push((piece, known));
+            } else if !dull && (failed || size <= FINEST_M || work > MOST_WORK) {
+                let bound = if failed {
+                    bound
+                } else {
+                    room(&hull).unwrap_or(0.0) - self.stray(&piece) - bow[0] - bow[1] - ROUNDING_M
+                };
+                // A place outside all areas may fail with a bound that would do.
+                let bound = bound.min(target - ROUNDING_M);
+                least = Some(([middle.a[0], middle.c[0]], bound));
+                (target, strict, refuted) = (bound - WORSE_M, false, true);
+            } else {
+                // Halving the time divides the bow by four.
+                let closest = |near: &Vec<(u32, f64)>| near.iter().map(|(_, d)| *d).reduce(f64::min).unwrap_or(0.0);
+                let lacking = needed - near.iter().map(closest).fold(0.0, f64::max);
+                let halves = if dull {
+                    piece.halves(|piece| &mut piece.a)
+                } else if 0.75 * bow[0] >= lacking {
+                    piece.halves(|piece| &mut piece.t)
+                } else {
+                    piece.halves_of_longest(&corners)
+                };
+                open.extend(halves.map(|half| (half, known.clone())));
+            }
+        }
+        least
+    }
+
+    fn demand(&self, piece: &Piece, target: f64, strict: bool) -> Demand {
+        let bow = self.bow(piece);
+        let needed = target + self.stray(piece) + bow[0] + bow[1] + ROUNDING_M;
+        Demand { needed: if strict { needed.max(ROUNDING_M) } else { needed }, bow }
+    }
+
+    /// The corners of a piece at the start of its time, then at its end.
+    fn corners(&self, piece: &Piece) -> [Point; 8] {
+        let mut corners = [[0.0; 2]; 8];
+        for (i, corner) in corners.iter_mut().enumerate() {
+            let pose = self.pose(piece.step, piece.unit, piece.t[i / 4]);
+            *corner = point(pose, piece.a[i / 2 % 2], piece.c[i % 2]);
+        }
+        corners
+    }
+
+    /// Bound of the distance of a piece's places from their nominal places, metres.
+    fn stray(&self, piece: &Piece) -> f64 {
+        let (step, unit) = (piece.step, piece.unit);
+        let Some(tube) = self.tubes.get(step, unit) else { return f64::INFINITY };
+        let c = piece.c[0].abs().max(piece.c[1].abs());
+        let at = |a: f64| {
+            let turned = 0.5 * tube.a * tube.a;
+            let across = self.off(step, unit, a, tube) + a.abs() * tube.r1 / self.chain.links[unit].l + c * turned;
+            let along = a.abs() * turned + c * tube.a;
+            across.hypot(along) * UP
+        };
+        at(piece.a[0]).max(at(piece.a[1]))
+    }
+
+    /// How far a piece's nominal places may be outside of the hull of its corners, metres.
+    ///
+    /// While its coupling moves along a chord, a unit turns by sin β/L per metre. A point ρ from the coupling is
+    /// accelerated by at most ρ (|sin β cos β| + sin² β)/L² per square metre. It leaves the line between two of its places by
+    /// an eighth of that times the square of the way. At the end of a step the unit turns by what chords leave out
+    /// (`motion::led`), κℓ·x²/12. Returns both; the first is a quarter in half the time.
+    fn bow(&self, piece: &Piece) -> [f64; 2] {
+        let link = &self.chain.links[piece.unit];
+        let swing = self.motion.swing(piece.step, piece.unit);
+        let q = 1.0 + swing.before * swing.before;
+        let sin = if swing.before.abs() < 1.0 { 2.0 * swing.before.abs() / q } else { 1.0 };
+        let reach = |a: f64, c: f64| (a - link.l).hypot(c);
+        let most = piece.a.iter().flat_map(|&a| piece.c.map(|c| reach(a, c))).fold(0.0, f64::max);
+        let (x, share) = (swing.len / link.l, piece.t[1] - piece.t[0]);
+        let led = swing.curvature * swing.len / 12.0;
+        [sin * (1.0 + sin) * share * share / 8.0, led].map(|part| most * x * x * part * UP)
+    }
+}
+
+/// The room that a piece needs to be decided, and the bow's part of it, metres.
+struct Demand {
+    needed: f64,
+    bow: [f64; 2],
+}
+
+/// The least and the greatest coordinates of some points.
+fn bounds(points: &[Point]) -> [Point; 2] {
+    points.iter().fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], p| {
+        [[low[0].min(p[0]), low[1].min(p[1])], [high[0].max(p[0]), high[1].max(p[1])]]
+    })
+}
+
+/// Twice the area of a triangle, positive if it is traversed to the left.
+fn turn(a: Point, b: Point, c: Point) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// The vertices of the convex hull of some points, to the left (Andrew's monotone chain).
+fn hull(points: &[Point]) -> Vec<Point> {
+    let mut sorted = points.to_vec();
+    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+    sorted.dedup();
+    if sorted.len() < 3 {
+        return sorted;
+    }
+    let chain = |points: &mut dyn Iterator<Item = Point>| {
+        let mut chain: Vec<Point> = Vec::new();
+        for p in points {
+            while chain.len() >= 2 && turn(chain[chain.len() - 2], chain[chain.len() - 1], p) <= 0.0 {
+                chain.pop();
+            }
+            chain.push(p);
+        }
+        chain.pop();
+        chain
+    };
+    let mut hull = chain(&mut sorted.iter().copied());
+    hull.extend(chain(&mut sorted.iter().rev().copied()));
+    hull
+}
+
+/// The distance between a convex polygon and a segment. A polygon of one or two vertices is a point or a segment.
+fn clearance(hull: &[Point], segment: Segment) -> f64 {
+    let edges = || (0..hull.len()).map(|i| [hull[i], hull[(i + 1) % hull.len()]]);
+    if hull.len() > 2 && edges().all(|[a, b]| turn(a, b, segment[0]) >= 0.0) {
+        return 0.0;
+    }
+    edges().map(|edge| apart(edge, segment)).fold(f64::INFINITY, f64::min)
+}
+
+/// The distance between two segments.
+fn apart([a, b]: Segment, [c, d]: Segment) -> f64 {
+    let crossed = turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0;
+    if crossed {
+        return 0.0;
+    }
+    to_segment(a, [c, d]).min(to_segment(b, [c, d])).min(to_segment(c, [a, b])).min(to_segment(d, [a, b]))
+}
+
+/// The distance of a place from a segment.
+fn to_segment(p: Point, [a, b]: Segment) -> f64 {
+    let (way, from) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+    let square = way[0] * way[0] + way[1] * way[1];
+    let share = if square > 0.0 { ((from[0] * way[0] + from[1] * way[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
+    (from[0] - share * way[0]).hypot(from[1] - share * way[1])
+}
