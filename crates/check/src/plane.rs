@@ -494,3 +494,6 @@ fn to_segment(p: Point, [a, b]: Segment) -> f64 {
     let share = if square > 0.0 { ((from[0] * way[0] + from[1] * way[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
     (from[0] - share * way[0]).hypot(from[1] - share * way[1])
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,421 @@
+#![allow(clippy::unwrap_used)]
+
+use std::sync::Arc;
+
+use super::*;
+use crate::chain::Chain;
+use crate::claim::{SpanClaim, Subject};
+use netcert_base::corridor::CurvatureProfile;
+use netcert_base::vehicle::{Unit, Vehicle};
+
+fn unit(l: f64, hitch_m: f64, front_m: f64, rear_m: f64, most_deg: f64) -> Unit {
+    Unit {
+        name: String::new(),
+        coupling_to_axle_m: l,
+        hitch_offset_m: hitch_m,
+        front_overhang_m: front_m,
+        rear_overhang_m: rear_m,
+        width_m: 2.55,
+        max_articulation_rad: f64::to_radians(most_deg),
+        sway_rad: 0.003,
+    }
+}
+
+/// A tractor with a semi-trailer, 16 m long.
+fn semi() -> Chain {
+    Chain::new(&Vehicle {
+        id: "semi".to_owned(),
+        name: String::new(),
+        region: String::new(),
+        length_m: 16.0,
+        height_m: None,
+        gross_mass_t: None,
+        axle_load_t: None,
+        tracking_tolerance_m: 0.15,
+        tracking_heading_rad: 0.02,
+        min_shrink: 0.5,
+        source: String::new(),
+        units: vec![unit(3.7, -0.6, 1.4, 0.9, 45.0), unit(7.7, 0.0, 1.6, 4.0, 80.0)],
+    })
+}
+
+fn square([x, y]: Point, half: f64) -> Vec<Point> {
+    vec![[x - half, y - half], [x + half, y - half], [x + half, y + half], [x - half, y + half]]
+}
+
+/// Rings given along a straight road from `start` with `heading`, as an area of the plane.
+fn area(start: Point, heading: f64, rings: &[Vec<Point>]) -> Arc<Area> {
+    let (sin, cos) = heading.sin_cos();
+    let place = |[x, y]: &Point| [start[0] + x * cos - y * sin, start[1] + x * sin + y * cos];
+    Arc::new(Area { rings: rings.iter().map(|ring| ring.iter().map(place).collect()).collect() })
+}
+
+const START: Point = [1000.0, -500.0];
+const HEADING: f64 = 0.7;
+
+fn strip(half: f64) -> Vec<Point> {
+    vec![[-300.0, -half], [500.0, -half], [500.0, half], [-300.0, half]]
+}
+
+/// A straight of 160 stations, a metre apart and 2.2 m wide to either side, with areas for stations of the steer axle.
+fn straight(areas: &[(Range<usize>, Vec<Vec<Point>>)]) -> Corridor {
+    let mut corridor = Corridor::from_curvature(1.0, START, HEADING, &[0.0; 160], 2.2, 2.2);
+    let span = |(heads, rings): &(Range<usize>, Vec<Vec<Point>>)| AreaSpan {
+        heads: heads.clone(),
+        area: area(START, HEADING, rings),
+    };
+    corridor.areas = areas.iter().map(span).collect();
+    corridor
+}
+
+fn claim(stations: Range<usize>, rsc_m: f64) -> SpanClaim {
+    SpanClaim { stations, rsc_m: Some(rsc_m), hinge_margin_rad: None, shrink: 1.0, limiting: None }
+}
+
+fn confirmed(chain: &Chain, corridor: &Corridor, claim: &SpanClaim) -> bool {
+    Subject::new(chain, corridor, |_| 0.0, false).unwrap().check(std::slice::from_ref(claim))[0].is_empty()
+}
+
+/// The greatest RSC that is confirmed on some stations, to 0.1 mm.
+fn most(chain: &Chain, corridor: &Corridor, stations: Range<usize>) -> f64 {
+    let subject = Subject::new(chain, corridor, |_| 0.0, false).unwrap();
+    bisect(|rsc_m| subject.check(&[claim(stations.clone(), rsc_m)])[0].is_empty())
+}
+
+fn bisect(mut holds: impl FnMut(f64) -> bool) -> f64 {
+    let (mut low, mut high) = (-0.2, 3.0);
+    while high - low > 1e-4 {
+        let middle = f64::midpoint(low, high);
+        if holds(middle) { low = middle } else { high = middle }
+    }
+    low
+}
+
+#[test]
+fn on_a_straight_an_area_of_the_roads_width_says_what_the_half_widths_say() {
+    let chain = semi();
+    let by_road = most(&chain, &straight(&[]), 70..90);
+    let by_area = most(&chain, &straight(&[(0..160, vec![strip(2.2)])]), 70..90);
+    // What an area takes off in addition: a corner also moves along, by half the width times the heading.
+    let longer = |unit: usize, a: f64| {
+        let (gains, c) = (&chain.gains.units[unit], chain.links[unit].half_width);
+        let (across, turned) = (gains.point(a, 0.15), gains.heading.at(0.15));
+        let square = 0.5 * turned * turned;
+        (across + c * square).hypot(c * turned + a.abs() * square) - across
+    };
+    let ends = (0..2).flat_map(|unit| [(unit, chain.links[unit].front), (unit, chain.links[unit].rear)]);
+    let longer = ends.map(|(unit, a)| longer(unit, a)).fold(0.0, f64::max);
+    assert!(by_area < by_road + 1e-4, "{by_road} {by_area}");
+    assert!(by_area > by_road - longer - 2e-3, "{by_road} {by_area} {longer}");
+}
+
+#[test]
+fn outside_the_steps_of_an_area_half_widths_decide() {
+    let chain = semi();
+    let wide = straight(&[(40..90, vec![strip(4.0)])]);
+    let (by_road, mixed) = (most(&chain, &straight(&[]), 60..150), most(&chain, &wide, 60..150));
+    assert!((by_road - mixed).abs() < 2e-4, "{by_road} {mixed}");
+    let inside = most(&chain, &straight(&[(20..140, vec![strip(4.0)])]), 60..90);
+    assert!((inside - by_road - 1.8).abs() < 0.05, "{by_road} {inside}");
+}
+
+#[test]
+fn a_narrower_area_is_refuted_and_the_place_is_named() {
+    let chain = semi();
+    let rsc_m = most(&chain, &straight(&[(0..160, vec![strip(2.2)])]), 70..90);
+    let narrow = straight(&[(0..160, vec![strip(2.2 - 0.004)])]);
+    let subject = Subject::new(&chain, &narrow, |_| 0.0, false).unwrap();
+    let found = subject.check(&[claim(70..90, rsc_m)]);
+    assert_eq!(found[0].len(), 1);
+    assert!(found[0][0].detail.contains("in an area"), "{}", found[0][0].detail);
+    assert!(!found[0][0].unbounded);
+    assert!(subject.check(&[claim(70..90, rsc_m - 0.004)])[0].is_empty());
+}
+
+#[test]
+fn claims_that_share_steps_are_decided_each_for_itself() {
+    let chain = semi();
+    let corridor = straight(&[(0..160, vec![strip(2.2)])]);
+    let rsc_m = most(&chain, &corridor, 70..90);
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
+    let claims = [claim(70..90, rsc_m), claim(75..95, rsc_m + 0.2), claim(60..100, rsc_m - 0.2)];
+    assert_eq!(subject.check(&claims).iter().map(Vec::len).collect::<Vec<_>>(), [0, 1, 0]);
+}
+
+#[test]
+fn a_bump_at_the_side_counts_between_the_corners_of_a_body() {
+    // A post of 2 cm: no corner is near it at a node, but sides pass it.
+    let chain = semi();
+    let post = straight(&[(0..160, vec![strip(6.0), square([80.1, 2.2], 0.01)])]);
+    let rsc_m = most(&chain, &post, 78..82);
+    assert!(rsc_m < most(&chain, &straight(&[(0..160, vec![strip(2.19)])]), 78..82) + 0.03);
+    assert!(rsc_m > 0.4, "{rsc_m}");
+}
+
+#[test]
+fn a_hole_on_the_way_is_refuted_however_small() {
+    let chain = semi();
+    let with = |hole: Vec<Point>| straight(&[(0..160, vec![strip(6.0), hole])]);
+    assert!(confirmed(&chain, &straight(&[(0..160, vec![strip(6.0)])]), &claim(70..90, 0.0)));
+    for hole in [square([80.0, 0.3], 1.0), square([80.03, 0.3], 0.05), square([80.03, 0.3], 1e-3)] {
+        assert!(!confirmed(&chain, &with(hole), &claim(70..90, 0.0)));
+    }
+    assert!(confirmed(&chain, &with(square([80.0, 4.0], 1.0)), &claim(70..90, 0.0)));
+}
+
+#[test]
+fn a_hole_under_a_body_where_the_check_begins_is_refuted() {
+    let chain = semi();
+    // The steer axle is at station 60. The semi-trailer reaches from 58 m back to 45 m.
+    let hole = vec![strip(6.0), square([50.0, 0.1], 0.1)];
+    let begins = straight(&[(60..160, hole.clone())]);
+    let subject = Subject::new(&chain, &begins, |_| 0.0, false).unwrap();
+    let motion = subject.motion.as_ref().unwrap();
+    let first = (subject.road.lead + 60) * STEPS;
+    let mut swept = Swept::new(&chain, &subject.road, motion, 0.15);
+    let steps = first..first + 4;
+    let found = swept.cramped(&[(steps, 0.0)], None)[0].unwrap();
+    assert_eq!((found.step, found.unit), (first, 1));
+    assert!((found.at[0].abs() < 6.0 && found.at[1].abs() < 0.5), "{found:?}");
+    // The same where one of two areas ends.
+    let ends = straight(&[(20..61, vec![strip(6.0)]), (20..160, hole)]);
+    let subject = Subject::new(&chain, &ends, |_| 0.0, false).unwrap();
+    let mut swept = Swept::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
+    assert_eq!(swept.cramped(&[(first - 8..first, 0.0)], None), [None]);
+    assert_eq!(swept.cramped(&[(first - 8..first + 8, 0.0)], None)[0].unwrap().step, first);
+}
+
+#[test]
+fn where_two_areas_count_a_body_may_be_in_either() {
+    let chain = semi();
+    let part = |from: f64, to: f64| vec![vec![[from, -3.0], [to, -3.0], [to, 3.0], [from, 3.0]]];
+    let both = |overlap: f64| straight(&[(0..120, part(-300.0, 80.0)), (0..160, part(80.0 - overlap, 500.0))]);
+    assert!(confirmed(&chain, &both(4.0), &claim(70..90, 0.5)));
+    // In the middle of the overlap there is half of it.
+    assert!(!confirmed(&chain, &both(1.0), &claim(70..90, 0.5)));
+    assert!(!confirmed(&chain, &both(-0.1), &claim(70..90, 0.0)));
+}
+
+#[test]
+fn outside_there_is_no_room_even_for_a_vehicle_that_never_deviates() {
+    let mut chain = semi();
+    chain.tolerance_m = 0.0;
+    let aside = straight(&[(0..160, vec![square([80.0, 400.0], 50.0)])]);
+    assert!(!confirmed(&chain, &aside, &claim(70..90, 0.0)));
+}
+
+#[test]
+fn a_limiting_place_in_an_area_must_be_short_of_room() {
+    let chain = semi();
+    let mut corridor = straight(&[(0..160, vec![strip(2.2), square([60.0, 2.3], 0.5)])]);
+    corridor.left_m.fill(20.0);
+    let rsc_m = most(&chain, &corridor, 40..110);
+    let at = |limiting| SpanClaim { limiting: Some(limiting), ..claim(40..110, rsc_m) };
+    assert!(confirmed(&chain, &corridor, &at((60.0, 1, 0))));
+    assert!(!confirmed(&chain, &corridor, &at((100.0, 1, 0))));
+}
+
+#[test]
+fn columns_claim_nothing_in_areas() {
+    let chain = semi();
+    // The steer axle is in the area from station 40 to 120. So no corridor step touches what is 60 to 100.
+    let corridor = straight(&[(40..121, vec![strip(2.2)])]);
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
+    let column = |stations: Range<usize>| -> Vec<Option<f64>> {
+        (0..160).map(|k| stations.contains(&k).then_some(9.0)).collect()
+    };
+    let [left, right] = subject.leeway_columns([&column(60..100), &column(118..122)]);
+    assert_eq!(left, None);
+    assert!(right.is_some());
+}
+
+/// A road that turns left by a right angle, on an arc of 14 m with short clothoids. The two streets are 5 m wide to
+/// either side. The inner corner is rounded by 12 m.
+fn turn_left() -> Corridor {
+    let curvature = 1.0 / 14.0;
+    let quarter = std::f64::consts::FRAC_PI_2 * 14.0;
+    let profile = CurvatureProfile::new(0.5).straight(60.0).clothoid(curvature, 4.0).arc(curvature, quarter - 4.0);
+    let profile = profile.clothoid(0.0, 4.0).straight(60.0).curvature;
+    let mut corridor = Corridor::from_curvature(0.5, START, 0.0, &profile, 0.5, 0.5);
+    let n = corridor.len();
+    let (x, y) = (corridor.x[n - 1] - START[0], 5.0 + 12.0);
+    let mut ring = vec![[-300.0, 5.0], [-300.0, -5.0], [x + 5.0, -5.0], [x + 5.0, 300.0], [x - 5.0, 300.0]];
+    // From the second street's inner kerb round to the first's.
+    let round = |k: i32| f64::from(k) * std::f64::consts::FRAC_PI_2 / 16.0;
+    ring.extend((0..=16).map(|k| [x - 17.0 + 12.0 * round(k).cos(), y - 12.0 * round(k).sin()]));
+    corridor.areas = vec![AreaSpan { heads: 0..n, area: area(START, 0.0, &[ring]) }];
+    corridor
+}
+
+#[test]
+fn in_a_turn_the_bound_is_the_nominal_distance_less_the_deviation() {
+    let (chain, corridor) = (semi(), turn_left());
+    let subject = Subject::new(&chain, &corridor, |_| 0.0, false).unwrap();
+    let mut swept = Swept::new(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
+    let steps = swept.steps(100..190);
+    let proved = bisect(|target| swept.cramped(&[(steps.clone(), target)], None)[0].is_none());
+    let dense = densest(&swept, &corridor, steps.clone());
+    assert!(proved > 0.2 && proved < dense + 1e-3 && proved > dense - 0.03, "{proved} {dense}");
+    // A fresh check has sharpened fewer of the earlier steps, which costs a millimetre.
+    let rsc_m = most(&chain, &corridor, 100..191);
+    assert!((rsc_m - TOLERANCE_M - proved).abs() < 3e-3, "{rsc_m} {proved}");
+    // The filter alone is too loose.
+    let mut filtered = Swept::filtered(&chain, &subject.road, subject.motion.as_ref().unwrap(), 0.15);
+    assert!(filtered.cramped(&[(steps, proved)], None)[0].is_some());
+    // Half-widths of half a metre, which no part of the vehicle keeps, say nothing.
+    assert!(!confirmed(&chain, &Corridor { areas: Vec::new(), ..corridor.clone() }, &claim(100..191, 0.0)));
+    // Nor does any drive come closer than what is proved.
+    let closest = (0..100_u64).map(|seed| driven(&subject, &corridor, seed)).fold(f64::INFINITY, f64::min);
+    assert!(closest > proved && closest < proved + 0.2, "{closest} {proved}");
+}
+
+/// The least room on a drive whose steer axle deviates to either side and whose axles slip, both as they happen to.
+fn driven(subject: &Subject<'_>, corridor: &Corridor, seed: u64) -> f64 {
+    let (chain, road, area) = (subject.chain, &subject.road, &corridor.areas[0].area);
+    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    let mut random = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let fine = 0.02;
+    let place = |s: f64, off: f64| {
+        let place = road.place(s);
+        [place.c[0] - off * place.t[1], place.c[1] + off * place.t[0]]
+    };
+    let (mut s, end) = (road.lead as f64, (road.lead + 240) as f64);
+    let (mut off, mut to) = (0.0_f64, 0.15);
+    let mut slips = [1.0_f64, 1.0];
+    let mut couplings: Vec<Point> = vec![place(s, 0.0)];
+    let mut axles: Vec<Point> = Vec::new();
+    for link in &chain.links {
+        let h = couplings[couplings.len() - 1];
+        axles.push([h[0] - link.l, h[1]]);
+        couplings.push([h[0] - link.l - link.d, h[1]]);
+    }
+    let (mut least, mut count) = (f64::INFINITY, 0);
+    while s < end {
+        s += fine / road.spacing;
+        // Now and then the deviation changes sides, within some decimetres.
+        if random() < fine / 6.0 {
+            to = if random() < 0.5 { 0.15 } else { -0.15 };
+        }
+        if random() < fine / 6.0 {
+            slips = [random(), random()].map(|x: f64| if x < 0.5 { 1.0 } else { -1.0 });
+        }
+        off += (to - off).clamp(-0.3 * fine, 0.3 * fine);
+        let mut h = place(s, off);
+        count += 1;
+        for (unit, link) in chain.links.iter().enumerate() {
+            let p = axles[unit];
+            // The axle moves at its slip to the heading, so far that the coupling stays at its distance.
+            let u = [(couplings[unit][0] - p[0]) / link.l, (couplings[unit][1] - p[1]) / link.l];
+            let (sin, cos) = f64::sin_cos(slips[unit] * 0.003);
+            let way = [u[0] * cos - u[1] * sin, u[1] * cos + u[0] * sin];
+            let from = [h[0] - p[0], h[1] - p[1]];
+            let along = from[0] * way[0] + from[1] * way[1];
+            let by = along - (along * along - from[0] * from[0] - from[1] * from[1] + link.l * link.l).sqrt();
+            let p = [p[0] + by * way[0], p[1] + by * way[1]];
+            let u = [(h[0] - p[0]) / link.l, (h[1] - p[1]) / link.l];
+            (couplings[unit], axles[unit]) = (h, p);
+            h = [p[0] - link.d * u[0], p[1] - link.d * u[1]];
+            if s > (road.lead + 110) as f64 && s < (road.lead + 200) as f64 && count % 10 == 0 {
+                for k in 0..=30 {
+                    let a = link.rear + (link.front - link.rear) * f64::from(k) / 30.0;
+                    for b in [-link.half_width, link.half_width] {
+                        let [x, y] = point(crate::motion::Pose { p, u }, a, b);
+                        let place = [x + START[0], y + START[1]];
+                        let room = area.segments().map(|s| to_segment(place, s)).fold(f64::INFINITY, f64::min);
+                        least = least.min(if area.contains(place) { room } else { 0.0 });
+                    }
+                }
+            }
+        }
+    }
+    least
+}
+
+/// The least distance of nominal places from the area's boundary, less their deviation: at all nodes, every 5 cm.
+fn densest(swept: &Swept<'_>, corridor: &Corridor, steps: Range<usize>) -> f64 {
+    let area = &corridor.areas[0].area;
+    let mut least = f64::INFINITY;
+    for step in steps {
+        for unit in 0..swept.chain.links.len() {
+            let link = &swept.chain.links[unit];
+            let pose = swept.motion.pose(step, unit);
+            let count = ((link.front - link.rear) / 0.05) as usize;
+            let sides = (0..=count).map(|k| link.rear + (link.front - link.rear) * k as f64 / count as f64);
+            let across = (0..=50).map(|k| link.half_width * (k as f64 / 25.0 - 1.0));
+            let outline = sides
+                .flat_map(|a| [[a, link.half_width], [a, -link.half_width]])
+                .chain(across.flat_map(|c| [[link.front, c], [link.rear, c]]));
+            for [a, c] in outline {
+                let [x, y] = point(pose, a, c);
+                let place = [x + START[0], y + START[1]];
+                assert!(area.contains(place), "{place:?}");
+                let room = area.segments().map(|s| to_segment(place, s)).fold(f64::INFINITY, f64::min);
+                let at = Piece { unit, step, a: [a; 2], c: [c; 2], t: [0.0; 2] };
+                least = least.min(room - swept.stray(&at));
+            }
+        }
+    }
+    least
+}
+
+#[test]
+fn malformed_areas_are_refused_with_a_reason() {
+    let chain = semi();
+    let refused = |heads: Range<usize>, rings: Vec<Vec<Point>>| {
+        let corridor = straight(&[(heads, rings)]);
+        Subject::new(&chain, &corridor, |_| 0.0, true).err().map(|error| error.to_string()).unwrap()
+    };
+    let many: Vec<Point> = (0..=MOST_VERTICES).map(|k| [k as f64, 0.0]).collect();
+    #[allow(clippy::reversed_empty_ranges)]
+    let cases = [
+        (refused(20..21, vec![strip(3.0)]), "station 20: an area for stations 20..21; it needs two"),
+        (refused(30..20, vec![strip(3.0)]), "station 30: an area for stations 30..20"),
+        (refused(150..161, vec![strip(3.0)]), "of the corridor's 160"),
+        (refused(0..usize::MAX, vec![strip(3.0)]), "of the corridor's 160"),
+        (refused(20..30, vec![]), "without a boundary"),
+        (refused(20..30, vec![vec![[0.0; 2], [1.0; 2]]]), "a ring of 2 vertices"),
+        (refused(20..30, vec![vec![[0.0; 2], [1.0; 2], [f64::NAN, 2.0]]]), "not finite"),
+        (refused(20..30, vec![vec![[0.0; 2], [1.0; 2], [1e9, 2.0]]]), "below 1e8"),
+        (refused(20..30, vec![many]), "an area of 100001 vertices; at most 100000"),
+    ];
+    for (message, part) in cases {
+        assert!(message.contains(part), "{message}");
+    }
+}
+
+#[test]
+fn a_boundary_of_many_long_segments_takes_seconds_at_most() {
+    let chain = semi();
+    // A comb: 20,000 slits across the road, each within a strip that the sides meet.
+    let mut ring = vec![[-300.0, -6.0], [500.0, -6.0]];
+    ring.extend((0..20_000).map(|k| [70.0 - 1e-3 * f64::from(k), if k % 2 == 0 { 1.5 } else { 6.0 }]));
+    ring.push([-300.0, 6.0]);
+    let corridor = straight(&[(0..160, vec![ring])]);
+    let began = std::time::Instant::now();
+    assert!(!confirmed(&chain, &corridor, &claim(40..90, 0.2)));
+    assert!(began.elapsed().as_secs() < 30);
+}
+
+#[test]
+fn distances_of_hulls_are_exact() {
+    let square = hull(&[[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0], [1.0, 1.0], [1.0, 0.0]]);
+    assert_eq!(square.len(), 4);
+    for (segment, expected) in [
+        ([[3.0, -5.0], [3.0, 5.0]], 1.0),
+        ([[3.0, 3.0], [3.0, 5.0]], f64::sqrt(2.0)),
+        ([[1.0, 1.0], [1.5, 1.0]], 0.0),
+        ([[-1.0, 1.0], [5.0, 1.0]], 0.0),
+        ([[4.0, 0.0], [0.0, 4.0]], 0.0),
+        ([[5.0, 0.0], [0.0, 5.0]], 0.5 * f64::sqrt(2.0)),
+    ] {
+        assert!((clearance(&square, segment) - expected).abs() < 1e-12, "{segment:?}");
+    }
+    let line = hull(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]]);
+    assert!((clearance(&line, [[1.0, 1.0], [9.0, 1.0]]) - 1.0).abs() < 1e-12);
+    assert!((clearance(&hull(&[[0.0; 2]; 3]), [[3.0, 4.0], [3.0, 9.0]]) - 5.0).abs() < 1e-12);
+}
