@@ -1,7 +1,6 @@
 //! What a sweep leaves behind: the rows of a block of head stations, and the least leeways over all of them.
 
 use super::lanes::{LANES, V};
-use super::model::MAX_UNITS;
 
 /// Head stations per block.
 pub(super) const BLOCK: usize = 32;
@@ -87,8 +86,6 @@ pub(super) struct Minima {
     /// foot of its point.
     pub(super) area: [Vec<f64>; 2],
     pub(super) area_foot: [Vec<u32>; 2],
-    /// By station of the steer axle and unit: how far pieces of its sides were prolonged over the step, metres. Empty without areas.
-    pub(super) prolonged: Vec<[f32; MAX_UNITS]>,
     /// Least hinge margin by station of the steer axle, radians, tagged with the unit.
     pub(super) hinge: Vec<f64>,
     /// By station of the steer axle: first and last station under any body point.
@@ -108,7 +105,6 @@ impl Minima {
             mark_right: vec![UNVISITED_M; stations],
             area: [vec![UNVISITED_M; stations], vec![UNVISITED_M; stations]],
             area_foot: [vec![0; stations], vec![0; stations]],
-            prolonged: Vec::new(),
             hinge: vec![UNVISITED_M; stations],
             under: vec![[u32::MAX, 0]; stations],
             offset: vec![0.0; stations],
@@ -127,21 +123,6 @@ impl Minima {
     pub(super) fn lose(&mut self, k: usize) {
         self.hinge[k] = V::splat(NOT_CLOSED_RAD).tagged(0).0[0];
         [self.left[k], self.right[k]] = [V::splat(LOST_M).tagged(0).0[0]; 2];
-    }
-
-    /// Records how far pieces of a unit were prolonged over the step that begins at station `head`. The unit is that of a tag.
-    pub(super) fn prolong(&mut self, head: usize, tag: u64, metres: f64) {
-        if self.prolonged.is_empty() {
-            self.prolonged = vec![[0.0; MAX_UNITS]; self.left.len()];
-        }
-        // Rounded up.
-        self.prolonged[head][(tag >> 4) as usize] = (metres * (1.0 + 1e-6)) as f32;
-    }
-
-    /// How much farther any unit's pieces were prolonged here than in `other`, metres.
-    pub(super) fn prolonged_beyond(&self, other: &Self, head: usize) -> f64 {
-        let (Some(own), Some(other)) = (self.prolonged.get(head), other.prolonged.get(head)) else { return 0.0 };
-        own.iter().zip(other).fold(0.0, |most, (own, other)| f64::from(own - other).max(most))
     }
 
     /// Records the stations under a body point at eight stations of the steer axle, from `head` on.

@@ -95,11 +95,9 @@ fn leeways<'a>(
     });
     let heads = heads(track, model, span, one).filter(|_| !track.areas.windows.is_empty());
     let areas = heads.flat_map(move |head| {
-        // Leeways are concave in γ for pieces of the same length (proof, section 11).
-        let shorter = one.prolonged_beyond(other, head);
         [(Side::Left, 0), (Side::Right, 1)].map(|(side, i)| {
             let foot = Foot { station: one.area_foot[i][head] as usize, in_area: true };
-            (foot, side, [one.area[i][head], other.area[i][head] - shorter])
+            (foot, side, [one.area[i][head], other.area[i][head]])
         })
     });
     edges.chain(areas)

@@ -14,6 +14,34 @@ const MOST_CELLS: usize = 1 << 20;
 /// Distance between the places at which a piece outside the area is measured, metres.
 const SAMPLED_M: f64 = 0.1;
 
+/// A piece of a side over a step.
+pub(super) struct Swept<'a> {
+    /// Its ends at both stations.
+    pub(super) before: [Point; 2],
+    pub(super) after: [Point; 2],
+    /// Most that its places may move in any direction, and both ends in a given one, metres. Between the ends it is convex.
+    pub(super) most: f64,
+    pub(super) stray: &'a dyn Fn(Point) -> [f64; 2],
+    /// A leeway of at least this much need not be exact.
+    pub(super) enough: f64,
+}
+
+impl Swept<'_> {
+    /// Most that the piece may come closer to what is `gap` away from it, in metres and direction. An end that is farther back may
+    /// move more.
+    fn stray_towards(&self, gap: Point, far: f64) -> f64 {
+        if far < 1e-9 {
+            return self.most;
+        }
+        let towards = [gap[0] / far, gap[1] / far];
+        let reached = |p: Point| towards[0] * p[0] + towards[1] * p[1];
+        let ends = [0, 1].map(|end| reached(self.before[end]).max(reached(self.after[end])));
+        let stray = (self.stray)(towards);
+        let most = ends[0].max(ends[1]);
+        (stray[0] + ends[0] - most).max(stray[1] + ends[1] - most)
+    }
+}
+
 /// An area's boundary, with the segments near each cell of a grid.
 pub(crate) struct Ground {
     origin: Point,
@@ -155,14 +183,18 @@ impl Ground {
         }
     }
 
-    /// Room of the part of the plane that a straight piece of a side covers while it moves from `before` to `after`: the
-    /// distance of the hull of both from the boundary. Never too great; negative where the hull is not inside. A room of at least
-    /// `enough` need not be exact. With `inside`, the piece is known to be inside before.
-    pub(super) fn swept(&self, before: [Point; 2], after: [Point; 2], enough: f64, inside: bool) -> f64 {
-        let corners = [before[0], before[1], after[1], after[0]];
+    /// Room and leeway of a piece of a side over a step. The room is the distance from the boundary of the hull of the piece at both
+    /// stations; the leeway is less by what the piece may move towards each segment. Neither is too great. Both are negative where
+    /// the hull is not inside. With `inside`, the piece is known to be inside at the first station.
+    pub(super) fn swept(&self, piece: &Swept<'_>, inside: bool) -> (f64, f64) {
+        let corners = [piece.before[0], piece.before[1], piece.after[1], piece.after[0]];
+        let outside = || {
+            let depth = self.depth(piece.before, piece.after);
+            (-depth, -depth - piece.most)
+        };
         let middle = [0, 1].map(|k| 0.25 * corners.iter().map(|p| p[k]).sum::<f64>());
         let reach = corners.iter().map(|p| apart(*p, middle)).fold(0.0, f64::max);
-        let Some(cell) = self.cell(middle).filter(|_| reach < FAR_M) else { return -self.depth(before, after) };
+        let Some(cell) = self.cell(middle).filter(|_| reach < FAR_M) else { return outside() };
         let near = self.near(cell);
         let mut nearest = (FAR_M * FAR_M, None);
         for &number in near {
@@ -172,25 +204,25 @@ impl Ground {
             }
         }
         if !inside && !self.contains(middle) {
-            return -self.depth(before, after);
+            return outside();
         }
         let rough = nearest.0.sqrt() - reach;
-        let Some(first) = nearest.1.filter(|_| rough < enough) else { return rough };
-        let Some(mut least) = self.segments[first as usize].hull_distance(&corners) else {
-            return -self.depth(before, after);
+        let Some(first) = nearest.1.filter(|_| rough - piece.most < piece.enough) else {
+            return (rough, rough - piece.most);
         };
-        least = least.min(FAR_M - reach);
-        for &number in near.iter().filter(|&&number| number != first) {
+        let (mut room, mut leeway) = (FAR_M - reach, FAR_M - reach - piece.most);
+        for &number in std::iter::once(&first).chain(near.iter().filter(|&&number| number != first)) {
             let segment = &self.segments[number as usize];
-            let within = least + reach;
-            if segment.squared(middle) < within * within {
-                match segment.hull_distance(&corners) {
-                    Some(far) => least = least.min(far),
-                    None => return -self.depth(before, after),
-                }
+            let within = (leeway + piece.most).max(room) + reach;
+            if segment.squared(middle) >= within * within {
+                continue;
             }
+            let Some(gap) = segment.gap(&corners) else { return outside() };
+            let far = apart(gap, [0.0; 2]);
+            room = room.min(far);
+            leeway = leeway.min(far - piece.stray_towards(gap, far));
         }
-        least
+        (room, leeway)
     }
 
     /// How far a swept piece is outside at most, metres. Measured at places of the piece before and after; every place of the hull is
@@ -260,10 +292,25 @@ impl Segment {
         off[0] * off[0] + off[1] * off[1]
     }
 
-    /// Distance of the hull of four points. `None` if they touch.
-    fn hull_distance(&self, corners: &[Point; 4]) -> Option<f64> {
+    /// The place of the segment that is nearest to `p`, from `p`.
+    #[inline(always)]
+    fn towards(&self, p: Point) -> Point {
+        let e = [p[0] - self.a[0], p[1] - self.a[1]];
+        let share = ((self.along[0] * e[0] + self.along[1] * e[1]) * self.inverse).clamp(0.0, 1.0);
+        [share * self.along[0] - e[0], share * self.along[1] - e[1]]
+    }
+
+    /// The shortest way from the hull of four points to the segment. `None` if they touch.
+    fn gap(&self, corners: &[Point; 4]) -> Option<Point> {
         let (a, b) = (self.a, self.b);
-        let mut least = corners.iter().fold(f64::INFINITY, |least, p| least.min(self.squared(*p)));
+        let mut least = (f64::INFINITY, [0.0; 2]);
+        let mut shorter = |gap: Point| {
+            let squared = gap[0] * gap[0] + gap[1] * gap[1];
+            if squared < least.0 {
+                least = (squared, gap);
+            }
+        };
+        corners.iter().for_each(|p| shorter(self.towards(*p)));
         // All pairs: the order of the corners around the hull does not matter.
         for i in 0..4 {
             for j in i + 1..4 {
@@ -272,7 +319,7 @@ impl Segment {
                     return None;
                 }
                 let pair = Self::new([p, q]);
-                least = least.min(pair.squared(a)).min(pair.squared(b));
+                [a, b].into_iter().for_each(|end| shorter(pair.towards(end).map(|x| -x)));
             }
         }
         let within = (0..4).any(|left_out| {
@@ -281,7 +328,7 @@ impl Segment {
             let turns = [turn(p, q), turn(q, r), turn(r, p)];
             turns.iter().all(|&t| t > 0.0) || turns.iter().all(|&t| t < 0.0)
         });
-        (!within).then(|| least.sqrt())
+        (!within).then_some(least.1)
     }
 }
 
@@ -333,14 +380,23 @@ mod tests {
         }
     }
 
+    fn room(before: [Point; 2], after: [Point; 2]) -> f64 {
+        yard().swept(&Swept { before, after, most: 0.0, enough: FAR_M, stray: &|_| [0.0; 2] }, false).0
+    }
+
     #[test]
     fn a_piece_that_passes_an_edge_between_two_moments_does_not_fit() {
-        let ground = yard();
-        let [before, after] = [[[3.5, 3.0], [4.5, 3.0]], [[3.5, 8.0], [4.6, 8.0]]];
-        assert!(ground.swept(before, after, FAR_M, false) < 0.0);
-        // Beside the island there is room, and an edge that is a metre and a half away counts.
-        let beside = ground.swept([[17.0, 1.0], [17.0, 2.0]], [[18.0, 1.5], [18.5, 2.5]], FAR_M, false);
-        assert!((beside - 1.5).abs() < 1e-12 || (1.0..=1.5).contains(&beside), "{beside}");
+        assert!(room([[3.5, 3.0], [4.5, 3.0]], [[3.5, 8.0], [4.6, 8.0]]) < 0.0);
+        assert!((room([[17.0, 1.0], [17.0, 2.0]], [[18.0, 1.5], [18.5, 2.5]]) - 1.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_moves_along_an_edge_costs_no_leeway() {
+        let (before, after) = ([[17.0, 1.0], [17.0, 2.0]], [[18.0, 1.5], [18.5, 2.5]]);
+        let stray = |towards: Point| [0.3 * towards[1].abs() + 0.1 * towards[0].abs(); 2];
+        let piece = Swept { before, after, most: 0.4, enough: FAR_M, stray: &stray };
+        let (room, leeway) = yard().swept(&piece, false);
+        assert!((room - 1.5).abs() < 1e-12 && (leeway - 1.4).abs() < 1e-12, "{room} {leeway}");
     }
 
     #[test]
