@@ -89,7 +89,8 @@ fn mouths<'a>(
         let less_m = params.corridor.map_tolerance_m;
         let (left_m, right_m) = (f64::from(strip.left_m) - less_m, f64::from(strip.right_m) + less_m);
         let (left_m, right_m) = if outward { (left_m, right_m) } else { (-right_m, -left_m) };
-        if !(left_m > right_m) || !edge.narrowings.is_empty() {
+        // A narrow place may be anywhere in the mouth. A width that is not a number is none.
+        if (left_m - right_m).is_nan() || left_m <= right_m || !edge.narrowings.is_empty() {
             return None;
         }
         let places: Vec<_> = network.positions(edge).collect();
