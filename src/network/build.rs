@@ -5,7 +5,7 @@
 
 use super::edges::Source;
 use super::vertices::Vertices;
-use super::{Network, NetworkAccount, Splits, StrokeOptions, areas, edge_id, restrictions, stroke};
+use super::{Crossings, Network, NetworkAccount, Splits, StrokeOptions, areas, edge_id, restrictions, stroke};
 use crate::osm::facts::{CrossSection, Place, WayFacts};
 use crate::osm::{Extract, LonLat};
 
@@ -46,5 +46,6 @@ pub fn build_with(
     account.id_collisions = edge_id::resolve_collisions(&mut network.edges);
     stroke::chain(&mut network, options, &mut account);
     network.splits = Splits::find(&network);
+    network.crossings = Crossings::find(&network);
     (network, account)
 }

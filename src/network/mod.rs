@@ -6,6 +6,7 @@
 mod account;
 mod areas;
 mod build;
+mod crossings;
 mod cut;
 mod edge_id;
 mod edges;
@@ -24,6 +25,7 @@ use std::ops::Range;
 pub use account::NetworkAccount;
 pub use areas::{Area, Areas};
 pub use build::{build, build_with};
+pub use crossings::Crossings;
 pub(crate) use geometry::{EARTH_RADIUS_M, offset_m};
 pub use movements::{Movement, MovementKind, Movements};
 pub use roundabouts::Passage;
@@ -146,6 +148,8 @@ pub struct Network {
     pub areas: Areas,
     /// Places where two-way roads part into carriageways; derived from strokes and edges.
     pub splits: Splits,
+    /// Edges by node; derived from edges.
+    pub crossings: Crossings,
     /// Names and refs.
     pub strings: StringPool,
 }

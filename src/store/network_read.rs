@@ -7,7 +7,7 @@ use futures_util::TryStreamExt as _;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{Row as _, Sqlite};
 
-use crate::network::{Areas, Edge, Narrowing, Network, Road, Splits, Stroke};
+use crate::network::{Areas, Crossings, Edge, Narrowing, Network, Road, Splits, Stroke};
 use crate::osm::facts::{CrossSection, Legal, Limit, Strip};
 use crate::osm::{LonLat, StringPool};
 use crate::verdict::Verdict;
@@ -62,10 +62,12 @@ pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
         restriction_edges,
         areas,
         splits: Splits::default(),
+        crossings: Crossings::default(),
         strings,
     };
     check_ranges(&network)?;
     network.splits = Splits::find(&network);
+    network.crossings = Crossings::find(&network);
     network.areas = Areas::new(areas::read(c).await?, &network);
     Ok(network)
 }

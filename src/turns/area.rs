@@ -4,8 +4,8 @@
 //! No part is invented. Beyond the node a road counts only where traffic really drives on it (its stroke continues), or
 //! where the other road crosses it. A turn to the near side (right, for right-hand traffic) gets what the lanes of the
 //! two *directions* share. A turn across the oncoming traffic gets what the carriageways share. If the junction's
-//! surface is mapped, the corner is the mapped surface outside both roads, and no kerb return is assumed. Third roads
-//! of the junction are left out.
+//! surface is mapped, the corner is the mapped surface outside both roads, and no kerb return is assumed. What the other
+//! roads of the junction add inside the crossing is made in `crossing`.
 
 use geo::orient::{Direction, Orient};
 use geo::{BooleanOps, LineString, MultiPolygon, Polygon, unary_union};
@@ -16,7 +16,7 @@ use crate::corridor::Area;
 use crate::osm::facts::Policy;
 
 /// Distance from the node within which the roads' shared part is searched, metres.
-const CROSSING_M: f64 = 30.0;
+pub(super) const CROSSING_M: f64 = 30.0;
 /// A strip's vertices this close to the line between their neighbours are removed, metres. Rays are shortened by more
 /// than this.
 const COLLINEAR_M: f64 = 5e-4;
@@ -49,6 +49,8 @@ pub(super) struct Ground<'a> {
     pub(super) kerb_radius_m: f64,
     /// The junction's surface, if mapped.
     pub(super) surface: Option<&'a MultiPolygon>,
+    /// What the crossing has beside the two roads' strips.
+    pub(super) crossing: &'a [Polygon],
     pub(super) reach: Reach,
     /// Whether the approach and the departure are extended straight beyond the end of their corridor.
     pub(super) extended: [bool; 2],
@@ -64,6 +66,7 @@ impl Ground<'_> {
         let strips = [strip(self.from, [before_m, 0.0]), strip(self.to, [0.0, after_m])];
         let mut parts: Vec<Polygon> = strips.into_iter().flatten().collect();
         parts.extend(self.common());
+        parts.extend_from_slice(self.crossing);
         let corner = match self.surface {
             Some(surface) => self.mapped_corner(surface),
             None => self.kerb_return().into_iter().collect(),
@@ -104,55 +107,16 @@ impl Ground<'_> {
         common
     }
 
-    /// The corner where the roads' edges on the inside of the turn meet, if there is one.
-    fn corner(&self, edges: [&[[f64; 2]]; 2]) -> Option<Corner> {
-        let corner =
-            CORNERS_RAD.contains(&self.turn_rad.abs()).then(|| crossing(edges[0], edges[1], self.turn_rad))??;
-        let turned = corner.turned_rad();
-        (CORNERS_RAD.contains(&turned.abs()) && (turned > 0.0) == (self.turn_rad > 0.0)).then_some(corner)
-    }
-
     /// The junction's surface between the roads' edges on the inside of the turn.
     fn mapped_corner(&self, surface: &MultiPolygon) -> Vec<Polygon> {
         let edges = [self.kerb(self.from, 0.0), self.kerb(self.to, 0.0)];
-        let Some(corner) = self.corner(edges.each_ref().map(Vec::as_slice)) else { return Vec::new() };
-        let [a, b] = corner.inward();
-        let between = polygon(&[
-            add(along(corner.at, corner.from, -MOST_CORNER_M), a),
-            add(add(corner.at, a), b),
-            add(along(corner.at, corner.to, MOST_CORNER_M), b),
-        ]);
-        surface.intersection(&between).0
+        Corner::between(edges.each_ref().map(Vec::as_slice), self.turn_rad)
+            .map_or_else(Vec::new, |corner| corner.mapped(surface))
     }
 
     /// The corner between the roads' edges on the inside of the turn, rounded with the kerb radius.
     fn kerb_return(&self) -> Option<Polygon> {
-        if self.kerb_radius_m <= 0.0 {
-            return None;
-        }
-        let (from_edge, to_edge) = (self.kerb(self.from, 0.0), self.kerb(self.to, 0.0));
-        let corner = self.corner([&from_edge, &to_edge])?;
-        let turned = corner.turned_rad();
-        let radius = self.kerb_radius_m.min(MOST_RETURN_M / (0.5 * turned.abs()).tan());
-        // The circle touches both edges, however they bend: a ring's edge bends away from the tangent at the corner.
-        let centre = crossing(&self.kerb(self.from, radius), &self.kerb(self.to, radius), self.turn_rad)?.at;
-        let touching = |edge: &[[f64; 2]]| {
-            let (at, m) = nearest(edge, centre)?;
-            ((m - radius).abs() < TOUCHING_M).then_some(at)
-        };
-        let (start, end) = (touching(&from_edge)?, touching(&to_edge)?);
-        let (u, v) = (unit(centre, start), unit(centre, end));
-        let rounds = (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]);
-        if (rounds > 0.0) != (turned > 0.0) || rounds.abs() > *CORNERS_RAD.end() {
-            return None;
-        }
-        let [a, b] = corner.inward();
-        let mut ring = arc(centre, start, rounds);
-        ring.push(end);
-        ring.push(along(end, v, OVERLAP_M));
-        ring.push(add(add(corner.at, a), b));
-        ring.push(along(start, u, OVERLAP_M));
-        Some(polygon(&ring))
+        rounded(&|arm, beyond_m| self.kerb([self.from, self.to][arm], beyond_m), self.turn_rad, self.kerb_radius_m)
     }
 
     /// The edge of a road near the node on the inside of the turn, or a line `beyond_m` outside it. It is extended
@@ -172,6 +136,41 @@ impl Ground<'_> {
         }
         line
     }
+}
+
+/// The corner between two roads, rounded with a kerb radius. `kerb` is the edge of either road on the inside of the
+/// turn from the one into the other, or a line the given distance outside it.
+pub(super) fn rounded(
+    kerb: &dyn Fn(usize, f64) -> Vec<[f64; 2]>,
+    turn_rad: f64,
+    kerb_radius_m: f64,
+) -> Option<Polygon> {
+    if kerb_radius_m <= 0.0 {
+        return None;
+    }
+    let (from_edge, to_edge) = (kerb(0, 0.0), kerb(1, 0.0));
+    let corner = Corner::between([&from_edge, &to_edge], turn_rad)?;
+    let turned = corner.turned_rad();
+    let radius = kerb_radius_m.min(MOST_RETURN_M / (0.5 * turned.abs()).tan());
+    // The circle touches both edges, however they bend: a ring's edge bends away from the tangent at the corner.
+    let centre = crossing(&kerb(0, radius), &kerb(1, radius), turn_rad)?.at;
+    let touching = |edge: &[[f64; 2]]| {
+        let (at, m) = nearest(edge, centre)?;
+        ((m - radius).abs() < TOUCHING_M).then_some(at)
+    };
+    let (start, end) = (touching(&from_edge)?, touching(&to_edge)?);
+    let (u, v) = (unit(centre, start), unit(centre, end));
+    let rounds = (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]);
+    if (rounds > 0.0) != (turned > 0.0) || rounds.abs() > *CORNERS_RAD.end() {
+        return None;
+    }
+    let [a, b] = corner.inward();
+    let mut ring = arc(centre, start, rounds);
+    ring.push(end);
+    ring.push(along(end, v, OVERLAP_M));
+    ring.push(add(add(corner.at, a), b));
+    ring.push(along(start, u, OVERLAP_M));
+    Some(polygon(&ring))
 }
 
 /// The point on a line nearest to `p`, and its distance.
@@ -273,13 +272,31 @@ fn distance_from_chord(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
 }
 
 /// The crossing of two edge lines, and their directions there.
-struct Corner {
+pub(super) struct Corner {
     at: [f64; 2],
     from: [f64; 2],
     to: [f64; 2],
 }
 
 impl Corner {
+    /// The corner where two edges on the inside of a turn meet, if there is one.
+    pub(super) fn between(edges: [&[[f64; 2]]; 2], turn_rad: f64) -> Option<Self> {
+        let corner = CORNERS_RAD.contains(&turn_rad.abs()).then(|| crossing(edges[0], edges[1], turn_rad))??;
+        let turned = corner.turned_rad();
+        (CORNERS_RAD.contains(&turned.abs()) && (turned > 0.0) == (turn_rad > 0.0)).then_some(corner)
+    }
+
+    /// A surface between the two edges.
+    pub(super) fn mapped(&self, surface: &MultiPolygon) -> Vec<Polygon> {
+        let [a, b] = self.inward();
+        let between = polygon(&[
+            add(along(self.at, self.from, -MOST_CORNER_M), a),
+            add(add(self.at, a), b),
+            add(along(self.at, self.to, MOST_CORNER_M), b),
+        ]);
+        surface.intersection(&between).0
+    }
+
     /// Angle from one edge's direction to the other's, radians, positive left.
     fn turned_rad(&self) -> f64 {
         let (a, b) = (self.from, self.to);

@@ -132,7 +132,7 @@ mod tests {
             let code = PathCode { shift, steps: raw }.clamped();
             prop_assert!(code.encode() > 255);
             prop_assert_eq!(PathCode::decode(code.encode()), Some(code));
-            prop_assert_eq!(PathCode::nearest(&code.shape()).steps[0..2], code.steps[0..2]);
+            prop_assert_eq!(&PathCode::nearest(&code.shape()).steps[..2], &code.steps[..2]);
             if !shift {
                 prop_assert_eq!(PathCode::nearest(&code.shape()), code);
             }

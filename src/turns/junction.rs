@@ -1,12 +1,13 @@
 //! A turn at a junction, prepared: its two arms, its area, and the path of each code.
 
-use geo::MultiPolygon;
+use geo::{MultiPolygon, Polygon};
 
 use super::Reach;
 use super::TurnParams;
 use super::area::{Ground, along, segments_cross};
 use super::arm::{Arm, StrokeLine};
 use super::code::Shape;
+use super::crossing;
 use super::path::{self, wrapped};
 use super::surface::surface;
 use crate::corridor::Frame;
@@ -36,6 +37,8 @@ pub(super) struct Junction {
     kerb_radius_m: f64,
     /// The junction's surface, if mapped.
     surface: Option<MultiPolygon>,
+    /// What the crossing has beside the two roads.
+    crossing: Vec<Polygon>,
     pub(super) reach: Reach,
     /// The stations at which the centrelines cross, if they do.
     meeting: Option<[f64; 2]>,
@@ -66,6 +69,7 @@ impl Junction {
         let before_m = reach.run_in_m() + reach.counted_before_m() + LEAVE_M;
         let after_m = reach.counted_after_m() + MEET_M + JOIN_M;
         let strip = params.strip.max(policy);
+        let surface = surface(network, node, [from, to], frame);
         let mut junction = Self {
             from: Arm::arriving(lines[0], movement.from, frame, strip, [before_m, MEET_M])?,
             to: Arm::leaving(lines[1], movement.to, frame, strip, [MEET_M, after_m])?,
@@ -73,7 +77,8 @@ impl Junction {
             policy,
             left_hand_traffic: from.left_hand_traffic,
             kerb_radius_m: params.kerbs.radius_m(from, to),
-            surface: surface(network, node, [from, to], frame),
+            crossing: crossing::parts(network, movement, frame, params, surface.as_ref()),
+            surface,
             reach,
             meeting: None,
         };
@@ -98,6 +103,7 @@ impl Junction {
             turn_rad: self.turn_rad(),
             kerb_radius_m: self.kerb_radius_m,
             surface: self.surface.as_ref(),
+            crossing: &self.crossing,
             reach: self.reach,
             extended,
         };

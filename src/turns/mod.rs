@@ -14,6 +14,7 @@
 //! | `kerbs` | assumed kerb radii, `data/kerbs.toml` |
 //! | `surface` | the junction's mapped surface |
 //! | `area` | the drivable area as polygons |
+//! | `crossing` | what the other roads of the junction add to it |
 //! | `path` | transition, arc, transition; lane shifts |
 //! | `code` | a path's parameters in one integer |
 //! | `junction` | a turn's arms, and the path of each code |
@@ -32,6 +33,7 @@ mod area;
 mod arm;
 mod code;
 mod corridors;
+mod crossing;
 mod ends;
 mod facts;
 mod family;

@@ -156,6 +156,25 @@ fn a_path_leaves_and_joins_the_strokes_own_centrelines() {
 }
 
 #[test]
+fn a_path_has_an_area_that_holds_it_and_the_road_behind_it() {
+    let drawn = Drawn::cross("highway=secondary width=9", false, 8.0);
+    for (nodes, reach) in [("EBC", Reach::Short), ("EBA", Reach::Long), ("ABD", Reach::Short)] {
+        let made = drawn.corridors(nodes, Policy::Carriageway, reach).unwrap();
+        for path in made.on_road() {
+            let c = &path.corridor;
+            let [span] = &c.areas[..] else { panic!("{nodes}: {} areas", c.areas.len()) };
+            assert!(span.heads.start <= path.turn.start && span.heads.end > path.turn.end && span.heads.end < c.len());
+            for k in path.counted.start..span.heads.end {
+                assert!(span.area.contains([c.x[k], c.y[k]]), "{nodes} {} at {k}", path.code);
+            }
+            // The code makes the same path again.
+            assert_eq!(made.path(path.code).as_ref(), Some(&path));
+        }
+        assert_eq!((made.path(-1), made.path(7), made.path(i64::MAX)), (None, None, None));
+    }
+}
+
+#[test]
 fn a_roundabout_is_entered_and_left_by_turns() {
     let map = AsciiMap::drawn(
         2.0,

@@ -5,91 +5,95 @@ use crate::corridor::Area;
 
 /// Distance between nodes, metres.
 const CELL_M: f64 = 0.25;
-/// Nodes along a block. The boundary's segments that may be nearest are found once a block.
-const BLOCK: usize = 16;
+/// Cells along a block. Blocks share the nodes between them.
+const BLOCK: usize = 8;
+const NODES: usize = BLOCK + 1;
+/// Blocks along a tile.
+const TILE: usize = 8;
 /// Greatest distance that is told, metres.
 const FARTHEST_M: f64 = 6.0;
-/// Added to distances in the raster, where 0 stands for a node that was not asked for yet.
-const OFFSET_M: f32 = 100.0;
 
 type Segment = [[f64; 2]; 2];
 
-/// The distances in a rectangle.
+/// The distances in a square.
 pub(super) struct Field {
     low: [f64; 2],
-    size: [usize; 2],
-    nodes: Vec<f32>,
+    /// Blocks along each side.
+    side: usize,
     segments: Vec<Segment>,
-    /// By block: the segments that may be nearest to its nodes.
-    blocks: Vec<Option<Vec<Segment>>>,
+    /// By tile: the segments that may be nearest to its nodes.
+    tiles: Vec<Option<Vec<Segment>>>,
+    blocks: Vec<Option<Box<Block>>>,
     /// By row of nodes: where the boundary crosses it.
     rows: Vec<Option<Vec<f64>>>,
+}
+
+/// A few nodes, and the segments that may be nearest to them. Nodes that nobody has asked for are NaN.
+struct Block {
+    nodes: [f32; NODES * NODES],
+    segments: Vec<Segment>,
 }
 
 impl Field {
     /// The field of an area within `around_m` of a place, in both directions of both axes.
     pub(super) fn new(area: &Area, centre: [f64; 2], around_m: f64) -> Self {
         let low = centre.map(|c| c - around_m);
-        let near = |s: &Segment| {
-            (0..2).all(|i| s[0][i].min(s[1][i]) <= centre[i] + around_m && s[0][i].max(s[1][i]) >= low[i])
-        };
-        let blocks = (2.0 * around_m / (CELL_M * BLOCK as f64)).ceil() as usize + 1;
-        let size = [blocks * BLOCK; 2];
-        // Segments beyond the rectangle count for the inside, too.
-        let segments: Vec<Segment> = area.segments().collect();
-        let (mut segments, far): (Vec<Segment>, Vec<Segment>) = segments.into_iter().partition(near);
-        let beside = |s: &Segment| s[0][0].max(s[1][0]) > low[0];
-        segments.extend(far.into_iter().filter(beside));
+        let tiles = (2.0 * around_m / (CELL_M * (BLOCK * TILE) as f64)).ceil() as usize;
+        let side = tiles * TILE;
         Self {
             low,
-            size,
-            nodes: vec![0.0; size[0] * size[1]],
-            segments,
-            blocks: vec![None; blocks * blocks],
-            rows: vec![None; size[1]],
+            side,
+            segments: area.segments().collect(),
+            tiles: vec![None; tiles * tiles],
+            blocks: (0..side * side).map(|_| None).collect(),
+            rows: vec![None; side * BLOCK + 1],
         }
     }
 
-    /// Distance of a place from the boundary, metres, positive inside. Places outside the rectangle are far outside.
+    /// Distance of a place from the boundary, metres, positive inside. Places outside the square are far outside.
     pub(super) fn distance_m(&mut self, [x, y]: [f64; 2]) -> f64 {
         let (u, v) = ((x - self.low[0]) / CELL_M, (y - self.low[1]) / CELL_M);
-        let most = (self.size[0] - 1) as f64;
+        let most = (self.side * BLOCK) as f64;
         if !(u >= 0.0 && v >= 0.0 && u < most && v < most) {
             return -FARTHEST_M;
         }
         let (i, j) = (u as usize, v as usize);
         let (s, t) = (u - i as f64, v - j as f64);
-        let [a, b, c, d] = [(i, j), (i + 1, j), (i, j + 1), (i + 1, j + 1)].map(|(i, j)| self.node(i, j));
+        let at = j / BLOCK * self.side + i / BLOCK;
+        if self.blocks[at].is_none() {
+            self.blocks[at] = Some(Box::new(self.block(i / BLOCK, j / BLOCK)));
+        }
+        let first = (j % BLOCK) * NODES + i % BLOCK;
+        let corners =
+            [(first, i, j), (first + 1, i + 1, j), (first + NODES, i, j + 1), (first + NODES + 1, i + 1, j + 1)];
+        let [a, b, c, d] = corners.map(|(node, i, j)| {
+            let known = self.blocks[at].as_ref().map_or(f32::NAN, |block| block.nodes[node]);
+            f64::from(if known.is_nan() { self.fill(at, node, i, j) } else { known })
+        });
         (a + s * (b - a)) * (1.0 - t) + (c + s * (d - c)) * t
     }
 
-    fn node(&mut self, i: usize, j: usize) -> f64 {
-        let at = j * self.size[0] + i;
-        if self.nodes[at] == 0.0 {
-            self.nodes[at] = self.exact(i, j) as f32 + OFFSET_M;
-        }
-        f64::from(self.nodes[at] - OFFSET_M)
-    }
-
-    fn exact(&mut self, i: usize, j: usize) -> f64 {
+    /// Computes a node of a block.
+    fn fill(&mut self, at: usize, node: usize, i: usize, j: usize) -> f32 {
         let p = [self.low[0] + i as f64 * CELL_M, self.low[1] + j as f64 * CELL_M];
-        let squared = self.block(i / BLOCK, j / BLOCK).iter().map(|s| squared(*s, p)).fold(f64::INFINITY, f64::min);
-        let distance_m = squared.sqrt().min(FARTHEST_M);
         let beyond = self.row(j).iter().filter(|x| **x > p[0]).count();
-        if beyond % 2 == 1 { distance_m } else { -distance_m }
+        let Some(block) = &mut self.blocks[at] else { return f32::NAN };
+        let squared = block.segments.iter().map(|s| squared(*s, p)).fold(FARTHEST_M * FARTHEST_M, f64::min);
+        let distance_m = if beyond % 2 == 1 { squared.sqrt() } else { -squared.sqrt() };
+        block.nodes[node] = distance_m as f32;
+        distance_m as f32
     }
 
-    fn block(&mut self, i: usize, j: usize) -> &[Segment] {
+    fn block(&mut self, i: usize, j: usize) -> Block {
         let side_m = BLOCK as f64 * CELL_M;
-        let (low, segments) = (self.low, &self.segments);
-        let blocks = self.size[0] / BLOCK;
-        self.blocks[j * blocks + i].get_or_insert_with(|| {
-            let centre = [low[0] + (i as f64 + 0.5) * side_m, low[1] + (j as f64 + 0.5) * side_m];
-            let far: Vec<f64> = segments.iter().map(|s| squared(*s, centre).sqrt()).collect();
-            let half = side_m * std::f64::consts::FRAC_1_SQRT_2;
-            let most = far.iter().copied().fold(FARTHEST_M + half, f64::min) + 2.0 * half;
-            segments.iter().zip(&far).filter(|(_, far)| **far <= most).map(|(s, _)| *s).collect()
-        })
+        let centre = |n: usize, side_m: f64, low: f64| low + (n as f64 + 0.5) * side_m;
+        let low = self.low;
+        let (tile_m, all) = (TILE as f64 * side_m, &self.segments);
+        let (a, b) = (i / TILE, j / TILE);
+        let tile = self.tiles[b * (self.side / TILE) + a]
+            .get_or_insert_with(|| nearest(all, [centre(a, tile_m, low[0]), centre(b, tile_m, low[1])], tile_m));
+        let segments = nearest(tile, [centre(i, side_m, low[0]), centre(j, side_m, low[1])], side_m);
+        Block { nodes: [f32::NAN; NODES * NODES], segments }
     }
 
     fn row(&mut self, j: usize) -> &[f64] {
@@ -101,6 +105,14 @@ impl Field {
             segments.iter().filter(crosses).map(at).collect()
         })
     }
+}
+
+/// The segments that may be the nearest one to a place in a square.
+fn nearest(segments: &[Segment], centre: [f64; 2], side_m: f64) -> Vec<Segment> {
+    let half_m = side_m * std::f64::consts::FRAC_1_SQRT_2;
+    let far: Vec<f64> = segments.iter().map(|s| squared(*s, centre).sqrt()).collect();
+    let most_m = far.iter().copied().fold(FARTHEST_M, f64::min) + 2.0 * half_m;
+    segments.iter().zip(&far).filter(|(_, far)| **far <= most_m).map(|(s, _)| *s).collect()
 }
 
 /// Squared distance of a place from a segment.

@@ -19,6 +19,9 @@ const KEPT: usize = 3;
 const EASY_M: f64 = 0.5;
 /// Turns whose best seed scores less are given up, metres.
 const HOPELESS_M: f64 = -1.5;
+/// Distances between the moments at which seeds and refined paths are scored, metres.
+const COARSE_M: f64 = 2.0;
+const FINE_M: f64 = 1.0;
 /// Paths that are scored to refine a seed.
 const TRIES: usize = 160;
 /// Failures in a row after which steps are halved.
@@ -94,11 +97,18 @@ impl<'a> Planner<'a> {
         let mut best: Vec<Planned> = Vec::new();
         for code in self.made.seeds() {
             let floor_m = if best.len() < count { f64::NEG_INFINITY } else { best[count - 1].score_m };
-            let Some(score_m) = self.score_m(scorer, code, floor_m).filter(|m| *m > floor_m) else { continue };
+            let Some(score_m) = self.score_m(scorer, code, (COARSE_M, floor_m)).filter(|m| *m > floor_m) else {
+                continue;
+            };
             let place = best.partition_point(|known| known.score_m >= score_m);
             best.insert(place, Planned { code, score_m });
             best.truncate(count);
         }
+        for planned in &mut best {
+            let fine = self.score_m(scorer, planned.code, (FINE_M, f64::NEG_INFINITY));
+            planned.score_m = fine.unwrap_or(planned.score_m);
+        }
+        best.sort_by(|a, b| b.score_m.total_cmp(&a.score_m).then(a.code.cmp(&b.code)));
         best
     }
 
@@ -114,7 +124,8 @@ impl<'a> Planner<'a> {
                 *to += step * sign;
             }
             let other = other.clamped();
-            let better = if other == at { None } else { self.score_m(scorer, other.encode(), planned.score_m) };
+            let better =
+                if other == at { None } else { self.score_m(scorer, other.encode(), (FINE_M, planned.score_m)) };
             if let Some(score_m) = better.filter(|m| *m > planned.score_m) {
                 // What helped once is tried again, but not the way back.
                 (at, failed) = (other, 1);
@@ -136,9 +147,9 @@ impl<'a> Planner<'a> {
         }
     }
 
-    fn score_m(&mut self, scorer: &mut Scorer<'_>, code: i64, floor_m: f64) -> Option<f64> {
+    fn score_m(&mut self, scorer: &mut Scorer<'_>, code: i64, how: (f64, f64)) -> Option<f64> {
         self.scored += 1;
-        scorer.score_m(&mut self.field, code, floor_m)
+        scorer.score_m(&mut self.field, code, how)
     }
 }
 

@@ -5,15 +5,13 @@ use super::field::Field;
 use crate::turns::corridors::TurnCorridors;
 use crate::vehicle::{Unit, Vehicle};
 
-/// Distance between a path's points and between the moments looked at, metres.
-pub(super) const STEP_M: f64 = 1.0;
 /// Estimated deviation of the first unit from its nominal place, and how much more each further unit deviates, metres.
 const TUBE_M: [f64; 2] = [0.09, 0.03];
 /// Angles kept from the steering lock and from the other hinges' limits, radians.
 const SPARE_RAD: [f64; 2] = [0.105, 0.14];
 /// Metres of room that a radian beyond that is worth.
 const PER_RAD_M: f64 = 14.0;
-/// Least distance between the points looked at along a side, metres.
+/// Least distance between the places looked at along a side, metres.
 const SIDE_STEP_M: f64 = 1.0;
 /// Way that the rear goes on the road that a path joins before the score ends, metres.
 const BEYOND_M: f64 = 5.0;
@@ -40,16 +38,17 @@ impl<'a> Scorer<'a> {
         Self { made, vehicle, approach, headings }
     }
 
-    /// The score of the path with a code, metres. At most `floor_m` is told of paths that score less. `None` if the
+    /// The score of the path with a code, metres, from moments about `step_m` apart. At most `floor_m` is told of paths that score less. `None` if the
     /// turn has no such path.
-    pub(super) fn score_m(&mut self, field: &mut Field, code: i64, floor_m: f64) -> Option<f64> {
-        let line = self.made.line(code, STEP_M)?;
+    pub(super) fn score_m(&mut self, field: &mut Field, code: i64, (step_m, floor_m): (f64, f64)) -> Option<f64> {
+        let line = self.made.line(code, step_m)?;
         let (units, to) = (&self.vehicle.units, self.made.arms()[1]);
         let [leave, join] = line.joints;
         let count = units.len();
         self.headings.copy_from_slice(self.approach.get(leave * count..(leave + 1) * count)?);
         let tail = ((self.vehicle.length_m + BEYOND_M) / to.line.spacing_m).ceil() as usize;
-        let tail = (join + 1..(join + 1 + tail).min(to.len())).map(|k| to.point(k));
+        let every = ((step_m / to.line.spacing_m).round() as usize).max(1);
+        let tail = (join + 1..(join + 1 + tail).min(to.len())).step_by(every).map(|k| to.point(k));
         let mut at = *line.points.first()?;
         let (mut least_m, mut beyond_rad) = (f64::INFINITY, 0.0_f64);
         for p in line.points.iter().skip(1).copied().chain(tail) {

@@ -1,0 +1,201 @@
+//! What a crossing has beside the strips of a turn's two roads: the mouths of its other roads, the parts that two roads
+//! share, and the corners between neighbouring roads. Inside the crossing no lane is reserved for one direction.
+//!
+//! Nothing is invented: every part is carriageway of a road of the map, or a corner as turns have it (mapped, else
+//! rounded with the assumed radius). Between carriageways that run side by side there is no corner, so a median stays
+//! out. Rings have islands and lanes of their own and are left alone.
+
+use geo::{BooleanOps, MultiPolygon, Polygon};
+
+use super::TurnParams;
+use super::area::{CROSSING_M, Corner, along, polygon, rounded};
+use super::path::wrapped;
+use crate::corridor::Frame;
+use crate::network::{Edge, Movement, Network, Road};
+use crate::osm::facts::Direction;
+
+/// Length of another road's mouth that bodies may overhang, from the node, metres. Parts that two roads share end there,
+/// too.
+const MOUTH_M: f64 = 15.0;
+/// Least angle at which two roads share a part, radians. At smaller angles they run side by side.
+const LEAST_ANGLE_RAD: f64 = 0.5;
+
+/// The carriageway of a road from the node outwards.
+struct Mouth<'a> {
+    road: &'a Road,
+    line: Vec<[f64; 2]>,
+    /// Edges of the carriageway, metres to the left of `line`.
+    left_m: f64,
+    right_m: f64,
+    bearing: f64,
+    /// Whether it is one of the turn's own roads.
+    own: bool,
+}
+
+/// The parts of the crossing at the end of a movement's first edge.
+pub(super) fn parts(
+    network: &Network,
+    movement: Movement,
+    frame: Frame,
+    params: &TurnParams,
+    surface: Option<&MultiPolygon>,
+) -> Vec<Polygon> {
+    let Some(node) = network.edges.get(movement.from as usize).map(|edge| edge.to_node) else { return Vec::new() };
+    let mouths = mouths(network, node, movement, frame, params);
+    if mouths.iter().any(|mouth| mouth.road.roundabout) {
+        return Vec::new();
+    }
+    let mut parts: Vec<Polygon> =
+        mouths.iter().filter(|mouth| !mouth.own).filter_map(|mouth| mouth.outline(0.0)).collect();
+    for (i, a) in mouths.iter().enumerate() {
+        for b in &mouths[i + 1..] {
+            if wrapped(a.bearing - b.bearing).sin().abs() >= LEAST_ANGLE_RAD.sin() {
+                parts.extend(shared(a, b));
+                parts.extend(shared(b, a));
+            }
+        }
+    }
+    for (i, a) in mouths.iter().enumerate() {
+        let b = &mouths[(i + 1) % mouths.len()];
+        // The turn's own corner is made from its corridors.
+        if !(a.own && b.own) {
+            parts.extend(corner(a, b, params, surface));
+        }
+    }
+    parts
+}
+
+/// The mouths around a node, counter-clockwise.
+fn mouths<'a>(
+    network: &'a Network,
+    node: i64,
+    movement: Movement,
+    frame: Frame,
+    params: &TurnParams,
+) -> Vec<Mouth<'a>> {
+    let own: Vec<&Edge> =
+        [movement.from, movement.to].into_iter().filter_map(|edge| network.edges.get(edge as usize)).collect();
+    let mut pieces: Vec<&Edge> = Vec::new();
+    for edge in network.crossings.at(node).iter().filter_map(|&edge| network.edges.get(edge as usize)) {
+        if !pieces.iter().any(|known| known.road == edge.road && known.shape == edge.shape) {
+            pieces.push(edge);
+        }
+    }
+    let mouth = |edge: &'a Edge| {
+        let road = network.road(edge);
+        let outward = edge.from_node == node;
+        let section = road.sections[usize::from(edge.direction == Direction::Backward)];
+        let strip = section.carriageway.or(section.direction)?;
+        let less_m = params.corridor.map_tolerance_m;
+        let (left_m, right_m) = (f64::from(strip.left_m) - less_m, f64::from(strip.right_m) + less_m);
+        let (left_m, right_m) = if outward { (left_m, right_m) } else { (-right_m, -left_m) };
+        // A narrow place may be anywhere in the mouth. A width that is not a number is none.
+        if (left_m - right_m).is_nan() || left_m <= right_m || !edge.narrowings.is_empty() {
+            return None;
+        }
+        let places: Vec<_> = network.positions(edge).collect();
+        let mut line = frame.forward(&places).ok()?;
+        if !outward {
+            line.reverse();
+        }
+        let line = first_metres(&line, CROSSING_M);
+        let (first, last) = (line.first()?, line.get(1)?);
+        let bearing = (last[1] - first[1]).atan2(last[0] - first[0]);
+        let own = own.iter().any(|own| own.road == edge.road && own.shape == edge.shape);
+        Some(Mouth { road, line, left_m, right_m, bearing, own })
+    };
+    let mut mouths: Vec<Mouth<'a>> = pieces.into_iter().filter_map(mouth).collect();
+    mouths.sort_by(|a, b| a.bearing.total_cmp(&b.bearing));
+    mouths
+}
+
+impl Mouth<'_> {
+    /// The line `left_m` to the left.
+    fn aside(&self, left_m: f64) -> Vec<[f64; 2]> {
+        let n = self.line.len();
+        let place = |k: usize| {
+            let (a, b) = (self.line[k.saturating_sub(1)], self.line[(k + 1).min(n - 1)]);
+            let d = [b[0] - a[0], b[1] - a[1]];
+            along(self.line[k], [-d[1], d[0]], left_m / d[0].hypot(d[1]).max(1e-9))
+        };
+        (0..n).map(place).collect()
+    }
+
+    /// Unit vector from the node outwards.
+    fn outwards(&self) -> [f64; 2] {
+        let (sin, cos) = self.bearing.sin_cos();
+        [cos, sin]
+    }
+
+    /// The carriageway as far as the mouth reaches, extended straight over the node by `beyond_m`.
+    fn outline(&self, beyond_m: f64) -> Option<Polygon> {
+        let near = Mouth { line: first_metres(&self.line, MOUTH_M), ..*self };
+        let side = |left_m: f64| {
+            let mut side = near.aside(left_m);
+            if let (true, Some(&first)) = (beyond_m > 0.0, side.first()) {
+                side.insert(0, along(first, self.outwards(), -beyond_m));
+            }
+            side
+        };
+        let mut ring = side(self.left_m);
+        ring.extend(side(self.right_m).into_iter().rev());
+        (ring.len() > 3).then(|| polygon(&ring))
+    }
+}
+
+/// The part of a road's mouth that another road crosses.
+fn shared(a: &Mouth<'_>, b: &Mouth<'_>) -> Vec<Polygon> {
+    match (a.outline(0.0), b.outline(MOUTH_M)) {
+        (Some(a), Some(b)) => a.intersection(&b).0,
+        _ => Vec::new(),
+    }
+}
+
+/// The corner between a mouth and the next one counter-clockwise.
+fn corner(a: &Mouth<'_>, b: &Mouth<'_>, params: &TurnParams, surface: Option<&MultiPolygon>) -> Vec<Polygon> {
+    let between = (b.bearing - a.bearing).rem_euclid(std::f64::consts::TAU);
+    if between >= std::f64::consts::PI {
+        return Vec::new();
+    }
+    // Who arrives on the one road and leaves on the other turns right.
+    let turn_rad = between - std::f64::consts::PI;
+    let kerb = |arm: usize, beyond_m: f64| {
+        if arm == 0 {
+            let mut line = a.aside(a.left_m + beyond_m);
+            line.reverse();
+            let end = line.last().map(|&last| along(last, a.outwards(), -CROSSING_M));
+            line.extend(end);
+            line
+        } else {
+            let mut line = b.aside(b.right_m - beyond_m);
+            if let Some(&first) = line.first() {
+                line.insert(0, along(first, b.outwards(), -CROSSING_M));
+            }
+            line
+        }
+    };
+    match surface {
+        Some(surface) => Corner::between([&kerb(0, 0.0), &kerb(1, 0.0)], turn_rad)
+            .map_or_else(Vec::new, |corner| corner.mapped(surface)),
+        None => rounded(&kerb, turn_rad, params.kerbs.radius_m(a.road, b.road)).into_iter().collect(),
+    }
+}
+
+/// The first metres of a line.
+fn first_metres(line: &[[f64; 2]], length_m: f64) -> Vec<[f64; 2]> {
+    let mut out: Vec<[f64; 2]> = line.first().copied().into_iter().collect();
+    let mut left_m = length_m;
+    for w in line.windows(2) {
+        let d = [w[1][0] - w[0][0], w[1][1] - w[0][1]];
+        let step_m = d[0].hypot(d[1]);
+        if step_m >= left_m {
+            out.push(along(w[0], d, left_m / step_m.max(1e-9)));
+            break;
+        }
+        if step_m > 0.05 {
+            out.push(w[1]);
+        }
+        left_m -= step_m;
+    }
+    out
+}
