@@ -12,14 +12,35 @@
 //! ```
 //!
 //! y + aα is the corridor's first-order bound plus a R/L (proof, section 3). R has the term L(α − sin α), so y + a sin α
-//! is bounded by the same R1. Both displacements are affine in (a, c), so their length is convex, and on a piece of a body
-//! it is greatest at a corner (`Swept::stray`).
+//! is bounded by the same R1. Call this bound q(a), and let A bound α. Both displacements are affine in (a, c), so their
+//! length is convex, and on a piece of a body it is greatest at a corner (`Swept::stray`).
 //!
-//! **Room.** The distance to the complement changes by no more than the way between two places. So a piece keeps at
-//! least the distance of its nominal places less the greatest deviation. The nominal places of a piece in a part of a
-//! step are in the hull of its corners at both ends, but for a bow (`Swept::bow`). A cell whose bound is too low is
-//! halved, or the adjoint's bounds replace its tubes, until each cell ends with a bound not below the claim, or holds a
-//! place where the bound is below it.
+//! **Deviations in a direction.** Let m be a unit vector with the parts m_u along the nominal heading and m_n to its left.
+//! Towards m, the point is off by
+//!
+//! ```text
+//! m_n (y + a' sin α) − (1 − cos α) (m_n c + m_u a),     a' = a − c m_u/m_n
+//! ```
+//!
+//! So across and along do not both count in full. a' is where the line through the point in the direction m meets the
+//! body's axis. The first term is at most |m_n| q(a'), and at most |m_n| q(a) + |m_u c| A. The lesser counts. Beyond the
+//! last knots q grows by A per metre. The second term is at most −(m_n c + m_u a) A²/2 if that is positive, else 0. For one
+//! motion at one moment, all this is affine in (a, c). So the greatest of the corners' bounds holds for the piece
+//! (`Swept::toward`).
+//!
+//! In a part of a step the heading turns by some φ. Seen from the unit, m turns as much. In between it is a sum of its
+//! directions at both ends. The factors are not below zero, and they add up to 1/cos(φ/2) at most. So the greater of the
+//! bounds at both ends, times this, holds in between.
+//!
+//! **Room.** The nominal places of a piece in a part of a step are in the hull of its corners at both ends, but for a bow
+//! (`Swept::bow`). The hull is convex, and so is a segment of the boundary. In the direction m of their closest places they
+//! are as far apart as these. So the piece keeps from the segment at least this distance, less the bow, less the greatest
+//! deviation towards m. A part of a deviation is within the same bound, so no place gets across the segment. The least over
+//! all segments is the cell's bound. A segment is done with at once if it is far enough for `Swept::stray`. A segment that
+//! touches the hull has no direction, and `Swept::stray` counts.
+//!
+//! A cell whose bound is too low is halved, or the adjoint's bounds replace its tubes, until each cell ends with a bound not
+//! below the claim, or holds a place where the bound is below it. The adjoint runs about a and about a'.
 //!
 //! **What lies under a body.** Nothing can come under a body but across its outline. Where a check begins, and where
 //! the areas that count change, all of the body is examined; elsewhere its outline is.
@@ -49,6 +70,8 @@ const MOST_VERTICES: usize = 100_000;
 const STRIPS: usize = 64;
 /// Most comparisons of cells with segments, for one piece in one step. Some thousand decide an honest claim.
 const MOST_WORK: usize = 10_000_000;
+/// A comparison in a direction counts as so many.
+const DIRECTED_WORK: usize = 8;
 /// Once a claim has failed, only places that are worse by this are looked for, metres.
 const WORSE_M: f64 = 0.01;
 
@@ -157,12 +180,6 @@ impl Boundary {
         near.sort_unstable();
         near.dedup();
         near
-    }
-
-    /// Those of some segments that are closer to a hull than `reach`, with their distances.
-    fn within(&self, segments: &[u32], hull: &[Point], reach: f64) -> Vec<(u32, f64)> {
-        let apart = |&k: &u32| (k, clearance(hull, self.segments[k as usize]));
-        segments.iter().map(apart).filter(|(_, apart)| *apart < reach).collect()
     }
 
     /// Whether a place is inside: whether a ray to the east crosses the boundary an odd number of times.
@@ -309,65 +326,82 @@ impl Swept<'_> {
         let spans = &self.road.plane.spans;
         let boundaries: Vec<&Boundary> = active.iter().map(|&k| &spans[k].boundary).collect();
         let mut strict = target >= -TOLERANCE_M;
-        let reach = self.demand(&piece, target, strict).needed;
+        let reach = self.taken(&piece).needed(target, strict);
         let corners = self.corners(&piece);
         let near = boundaries.iter().map(|boundary| boundary.near(&corners, reach)).collect();
         let mut open: Vec<(Piece, Vec<Vec<u32>>)> = vec![(piece, near)];
         let (mut least, mut work) = (None, 0);
         while let Some((piece, near)) = open.pop() {
-            let Demand { needed, bow } = self.demand(&piece, target, strict);
+            let taken = self.taken(&piece);
+            let needed = taken.needed(target, strict);
             if needed <= 0.0 {
                 continue;
             }
             let corners = self.corners(&piece);
             let hull = hull(&corners);
             work += 1 + near.iter().map(Vec::len).sum::<usize>();
-            // What was far enough from the whole piece is far enough from its parts.
-            let near: Vec<Vec<(u32, f64)>> =
-                boundaries.iter().zip(&near).map(|(b, near)| b.within(near, &hull, needed)).collect();
+            // What is far enough from the whole piece is far enough from its parts.
+            let close = |(b, near): (&&Boundary, &Vec<u32>)| -> Vec<(u32, f64)> {
+                let apart = near.iter().map(|&k| (k, way(&hull, b.segments[k as usize])));
+                let within = apart.filter(|(_, way)| length(*way) < needed);
+                let kept =
+                    within.map(|(k, way)| (k, way, self.kept(&piece, &taken, &hull, b.segments[k as usize], way)));
+                let close = kept.filter(|(_, way, kept)| *kept < target || strict && length(*way) < ROUNDING_M);
+                close.map(|(k, _, kept)| (k, kept)).collect()
+            };
+            let near: Vec<Vec<(u32, f64)>> = boundaries.iter().zip(&near).map(close).collect();
             if near.iter().zip(&boundaries).any(|(near, b)| near.is_empty() && b.contains(corners[0])) {
                 continue;
             }
-            let middle = piece.middle();
-            let place = self.corners(&middle)[0];
+            work += DIRECTED_WORK * near.iter().map(Vec::len).sum::<usize>();
             let known: Vec<Vec<u32>> = near.iter().map(|near| near.iter().map(|(k, _)| *k).collect()).collect();
-            let room = |points: &[Point]| {
+            // The room of a piece, and the way to the segment that leaves it no more.
+            let room = |piece: &Piece, taken: &Taken, points: &[Point]| {
                 let room = |(b, near): (&&Boundary, &Vec<u32>)| {
-                    b.contains(points[0])
-                        .then(|| b.within(near, points, needed).iter().fold(needed, |r, (_, d)| r.min(*d)))
+                    let to = |&k: &u32| {
+                        let (segment, way) = (b.segments[k as usize], way(points, b.segments[k as usize]));
+                        (self.kept(piece, taken, points, segment, way), way)
+                    };
+                    let least = |x: (f64, Point), y: (f64, Point)| if y.0 < x.0 { y } else { x };
+                    b.contains(points[0]).then(|| near.iter().map(to).fold((f64::INFINITY, [0.0; 2]), least))
                 };
-                boundaries.iter().zip(&known).filter_map(room).reduce(f64::max)
+                boundaries.iter().zip(&known).filter_map(room).reduce(|x, y| if y.0 > x.0 { y } else { x })
             };
-            let there = room(&[place]);
-            let stray = self.stray(&middle);
-            let bound = there.unwrap_or(0.0) - stray - ROUNDING_M;
+            let middle = piece.middle();
+            let still = self.taken(&middle).still();
+            let there = room(&middle, &still, &self.corners(&middle)[..1]);
+            let bound = there.map_or(still.no_room(), |(bound, _)| bound);
             let failed = bound < target || strict && there.is_none();
-            let dull = failed && work <= MOST_WORK && self.dull(piece.step, piece.unit, piece.a);
-            let long = (piece.a[1] - piece.a[0]).abs() > SHARP_M;
+            let levers = there.map_or(piece.a, |(_, way)| self.levers(&piece, way));
+            let dull = failed
+                && work <= MOST_WORK
+                && [piece.a, levers].into_iter().any(|a| self.dull(piece.step, piece.unit, a));
+            let [long, spread] = [piece.a, levers].map(|a| (a[1] - a[0]).abs());
+            // Across a body the levers spread too.
+            let (long, wide) = (long > SHARP_M, spread > long + SHARP_M);
             let size = piece.size(&corners);
             if dull && refuted {
                 break;
             }
-            if dull && !long {
+            if dull && !long && !wide {
                 self.sharpen_about(piece.step, piece.unit, piece.a);
+                self.sharpen_about(piece.step, piece.unit, levers);
                 open.push((piece, known));
             } else if !dull && (failed || size <= FINEST_M || work > MOST_WORK) {
-                let bound = if failed {
-                    bound
-                } else {
-                    room(&hull).unwrap_or(0.0) - self.stray(&piece) - bow[0] - bow[1] - ROUNDING_M
-                };
+                let whole = || room(&piece, &taken, &hull).map_or(taken.no_room(), |(bound, _)| bound);
                 // A place outside all areas may fail with a bound that would do.
-                let bound = bound.min(target - ROUNDING_M);
+                let bound = if failed { bound } else { whole() }.min(target - ROUNDING_M);
                 least = Some(([middle.a[0], middle.c[0]], bound));
                 (target, strict, refuted) = (bound - WORSE_M, false, true);
             } else {
                 // Halving the time divides the bow by four.
-                let closest = |near: &Vec<(u32, f64)>| near.iter().map(|(_, d)| *d).reduce(f64::min).unwrap_or(0.0);
-                let lacking = needed - near.iter().map(closest).fold(0.0, f64::max);
-                let halves = if dull {
+                let kept = |near: &Vec<(u32, f64)>| near.iter().map(|(_, kept)| *kept).reduce(f64::min);
+                let lacking = target - near.iter().filter_map(kept).fold(taken.no_room(), f64::max);
+                let halves = if dull && long {
                     piece.halves(|piece| &mut piece.a)
-                } else if 0.75 * bow[0] >= lacking {
+                } else if dull {
+                    piece.halves(|piece| &mut piece.c)
+                } else if 0.75 * taken.bow[0] >= lacking {
                     piece.halves(|piece| &mut piece.t)
                 } else {
                     piece.halves_of_longest(&corners)
@@ -378,10 +412,66 @@ impl Swept<'_> {
         least
     }
 
-    fn demand(&self, piece: &Piece, target: f64, strict: bool) -> Demand {
-        let bow = self.bow(piece);
-        let needed = target + self.stray(piece) + bow[0] + bow[1] + ROUNDING_M;
-        Demand { needed: if strict { needed.max(ROUNDING_M) } else { needed }, bow }
+    /// What is deducted for a piece, whatever the direction.
+    fn taken(&self, piece: &Piece) -> Taken {
+        let headings = piece.t.map(|t| self.pose(piece.step, piece.unit, t).u);
+        let [x, y] = [headings[0][0] + headings[1][0], headings[0][1] + headings[1][1]];
+        let (swing, l) = (self.motion.swing(piece.step, piece.unit), self.chain.links[piece.unit].l);
+        Taken {
+            stray: self.stray(piece),
+            bow: self.bow(piece),
+            headings,
+            // Twice the cosine of half the turn is the length of the sum.
+            between: 2.0 / length([x, y]) * UP,
+            led: swing.curvature * swing.len / 12.0 * (swing.len / l).powi(2),
+        }
+    }
+
+    /// Bound of the distance that a piece keeps from a segment, metres. `way` is the shortest from its hull.
+    fn kept(&self, piece: &Piece, taken: &Taken, hull: &[Point], segment: Segment, way: Point) -> f64 {
+        let apart = length(way);
+        if apart < ROUNDING_M {
+            return taken.no_room();
+        }
+        let m = way.map(|x| x / apart);
+        // Any direction would do, so rounding of this one does no harm.
+        let beyond = |s: Point| hull.iter().map(move |x| m[0] * (s[0] - x[0]) + m[1] * (s[1] - x[1]));
+        let apart = segment.into_iter().flat_map(beyond).fold(f64::INFINITY, f64::min);
+        apart - self.toward(piece, taken, m) - taken.bow[0] - taken.bow[1] - ROUNDING_M
+    }
+
+    /// Bound of how far a piece's places are off towards a unit vector, metres.
+    fn toward(&self, piece: &Piece, taken: &Taken, m: Point) -> f64 {
+        let (step, unit) = (piece.step, piece.unit);
+        let Some(tube) = self.tubes.get(step, unit) else { return f64::INFINITY };
+        let across = |a: f64| self.off(step, unit, a, tube) + a.abs() * tube.r1 / self.chain.links[unit].l;
+        let own = piece.a.map(across);
+        let at = |[along, aside]: [f64; 2], k: usize, c: f64| {
+            let a = piece.a[k];
+            let apart = aside.abs() * own[k] + (along * c).abs() * tube.a;
+            let lever = a - c * along / aside;
+            let joint = if lever.is_finite() { aside.abs() * across(lever) } else { f64::INFINITY };
+            apart.min(joint) + 0.5 * tube.a * tube.a * (-aside * c - along * a).max(0.0)
+        };
+        let frames = taken.headings.map(|u| framed(m, u));
+        let corners = frames.into_iter().flat_map(|m| [0, 1].into_iter().flat_map(move |k| piece.c.map(|c| (m, k, c))));
+        let most = corners.map(|(m, k, c)| at(m, k, c)).fold(0.0, f64::max);
+        // At the end of a step the heading may turn a little farther.
+        ((most * taken.between + taken.led * taken.stray) * UP).min(taken.stray)
+    }
+
+    /// The places on the axis where the bounds of a piece's deviations along `way` are taken, as far as knots reach.
+    fn levers(&self, piece: &Piece, way: Point) -> [f64; 2] {
+        let link = &self.chain.links[piece.unit];
+        let middle = piece.middle();
+        let [along, aside] = framed(way, self.pose(piece.step, piece.unit, middle.t[0]).u);
+        if aside.abs() <= 1e-9 * length(way) {
+            return piece.a;
+        }
+        let [rear, front] = [link.rear - link.half_width, link.front + link.half_width];
+        let levers = piece.a.into_iter().flat_map(|a| piece.c.map(|c| a - c * along / aside));
+        let levers = levers.map(|a| a.clamp(rear, front));
+        levers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], a| [low.min(a), high.max(a)])
     }
 
     /// The corners of a piece at the start of its time, then at its end.
@@ -427,10 +517,44 @@ impl Swept<'_> {
     }
 }
 
-/// The room that a piece needs to be decided, and the bow's part of it, metres.
-struct Demand {
-    needed: f64,
+/// What is deducted for a piece.
+#[derive(Debug, Clone, Copy)]
+struct Taken {
+    /// For deviations to all sides, and for the bow, metres.
+    stray: f64,
     bow: [f64; 2],
+    /// The nominal headings at both ends of the piece's time.
+    headings: [Point; 2],
+    /// In between, a bound for both ends may be greater by this factor, and the heading off by this angle.
+    between: f64,
+    led: f64,
+}
+
+impl Taken {
+    /// The distance that decides a claim without a direction, metres.
+    fn needed(&self, target: f64, strict: bool) -> f64 {
+        let needed = target - self.no_room();
+        if strict { needed.max(ROUNDING_M) } else { needed }
+    }
+
+    /// The bound where the nominal place is on the boundary or outside, metres.
+    fn no_room(&self) -> f64 {
+        -(self.stray + self.bow[0] + self.bow[1] + ROUNDING_M)
+    }
+
+    /// For a nominal place, which has no bow.
+    fn still(self) -> Self {
+        Self { bow: [0.0; 2], ..self }
+    }
+}
+
+/// The parts of a vector along a heading, and to its left.
+fn framed(m: Point, u: Point) -> [f64; 2] {
+    [m[0] * u[0] + m[1] * u[1], m[1] * u[0] - m[0] * u[1]]
+}
+
+fn length([x, y]: Point) -> f64 {
+    x.hypot(y)
 }
 
 /// The least and the greatest coordinates of some points.
@@ -469,30 +593,35 @@ fn hull(points: &[Point]) -> Vec<Point> {
     hull
 }
 
-/// The distance between a convex polygon and a segment. A polygon of one or two vertices is a point or a segment.
-fn clearance(hull: &[Point], segment: Segment) -> f64 {
+/// The shortest way from a convex polygon to a segment. A polygon of one or two vertices is a point or a segment.
+fn way(hull: &[Point], segment: Segment) -> Point {
     let edges = || (0..hull.len()).map(|i| [hull[i], hull[(i + 1) % hull.len()]]);
     if hull.len() > 2 && edges().all(|[a, b]| turn(a, b, segment[0]) >= 0.0) {
-        return 0.0;
+        return [0.0; 2];
     }
-    edges().map(|edge| apart(edge, segment)).fold(f64::INFINITY, f64::min)
+    edges().map(|edge| apart(edge, segment)).fold([f64::INFINITY; 2], shorter)
 }
 
-/// The distance between two segments.
-fn apart([a, b]: Segment, [c, d]: Segment) -> f64 {
+fn shorter(x: Point, y: Point) -> Point {
+    if y[0] * y[0] + y[1] * y[1] < x[0] * x[0] + x[1] * x[1] { y } else { x }
+}
+
+/// The shortest way from a segment to another.
+fn apart([a, b]: Segment, [c, d]: Segment) -> Point {
     let crossed = turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0;
     if crossed {
-        return 0.0;
+        return [0.0; 2];
     }
-    to_segment(a, [c, d]).min(to_segment(b, [c, d])).min(to_segment(c, [a, b])).min(to_segment(d, [a, b]))
+    let back = |p: Point| to_segment(p, [a, b]).map(|x| -x);
+    [to_segment(b, [c, d]), back(c), back(d)].into_iter().fold(to_segment(a, [c, d]), shorter)
 }
 
-/// The distance of a place from a segment.
-fn to_segment(p: Point, [a, b]: Segment) -> f64 {
+/// The shortest way from a place to a segment.
+fn to_segment(p: Point, [a, b]: Segment) -> Point {
     let (way, from) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
     let square = way[0] * way[0] + way[1] * way[1];
     let share = if square > 0.0 { ((from[0] * way[0] + from[1] * way[1]) / square).clamp(0.0, 1.0) } else { 0.0 };
-    (from[0] - share * way[0]).hypot(from[1] - share * way[1])
+    [share * way[0] - from[0], share * way[1] - from[1]]
 }
 
 #[cfg(test)]
