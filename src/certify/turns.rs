@@ -247,6 +247,12 @@ struct Best {
     plan: Plan,
 }
 
+impl Best {
+    fn suffices(&self) -> bool {
+        self.result.safe() && self.result.rsc_m.is_some_and(|m| m >= ENOUGH_M)
+    }
+}
+
 fn best_planned(made: &TurnCorridors, models: &[&Model], options: &Options) -> Vec<Option<Best>> {
     let mut planner = Planner::new(made);
     models.iter().map(|model| best_path(made, &mut planner, model, options)).collect()
@@ -259,17 +265,19 @@ fn best_path(made: &TurnCorridors, planner: &mut Planner<'_>, model: &Model, opt
         if !hope && best.is_some() {
             break;
         }
-        let options = if hope { *options } else { Options { max_shift_m: 0.0, correction_sweeps: 0 } };
         let Some(path) = made.path(planned.code) else { continue };
-        let rows = certify_spans(&path.corridor, &[model], std::slice::from_ref(&path.counted), &options);
-        let Some(row) = rows.into_iter().next() else { continue };
-        let Some(result) = row.spans.into_iter().next() else { continue };
-        let enough = result.safe() && result.rsc_m.is_some_and(|m| m >= ENOUGH_M);
-        if best.as_ref().is_none_or(|known| better(&result, &known.result)) {
-            best = Some(Best { path, result, plan: row.plan });
-        }
-        if enough {
-            break;
+        // The planned path as it is, then with corrections, which may steer more sharply.
+        let plain = Options { max_shift_m: 0.0, correction_sweeps: 0 };
+        for options in [Some(plain), hope.then_some(*options)].into_iter().flatten() {
+            let rows = certify_spans(&path.corridor, &[model], std::slice::from_ref(&path.counted), &options);
+            let Some(row) = rows.into_iter().next() else { continue };
+            let Some(result) = row.spans.into_iter().next() else { continue };
+            if best.as_ref().is_none_or(|known| better(&result, &known.result)) {
+                best = Some(Best { path: path.clone(), result, plan: row.plan });
+            }
+            if best.as_ref().is_some_and(Best::suffices) {
+                return best;
+            }
         }
     }
     best

@@ -95,7 +95,7 @@ pub struct SpanResult {
     pub hinge_margin_rad: Option<f64>,
     /// Index of the hinge with the least margin (0: the steering lock). Without a margin, the hinge whose bounds fail.
     pub hinge_unit: usize,
-    /// γ: the RSC holds for a tracking tolerance of γ·ε.
+    /// γ: RSC and hinge margin hold for a tracking tolerance of γ·ε.
     pub shrink: f64,
     /// Place of the least leeway; meaningless without an RSC.
     pub limiting: Limiting,
@@ -325,7 +325,7 @@ impl<'m> Swept<'m> {
             let wanted = Wanted { blocks: &blocks, refined: Some(&is_loose), plain: false };
             swept.refined = Some(sweep::<true>(&swept.track, &swept.group, &shift, &wanted, stop));
         }
-        let failing = swept.blocks(spans, |lane, span| swept.at_full(lane, span).rsc_m < 0.0);
+        let failing = swept.blocks(spans, |lane, span| swept.at_full(lane, span).fails());
         if failing.iter().flatten().any(|&fails| fails) {
             let tight = Group::new(models, 0.0);
             let blocks = |lane: usize, head: usize| failing[lane][head / BLOCK];
@@ -438,7 +438,7 @@ impl<'m> Swept<'m> {
     fn result(&self, lane: usize, span: &Range<usize>) -> SpanResult {
         let at_full = self.at_full(lane, span);
         match &self.least {
-            Some(least) if at_full.rsc_m < 0.0 => {
+            Some(least) if at_full.fails() => {
                 let model = self.group.models[lane];
                 spans::shrunk(&self.track, model, span, (self.best(lane, span), &least[lane]), &at_full).result()
             }

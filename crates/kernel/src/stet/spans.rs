@@ -34,9 +34,19 @@ pub(super) struct Least {
 }
 
 impl Least {
+    /// Whether the bounds close.
+    fn closes(&self) -> bool {
+        self.hinge_rad > NOT_CLOSED_RAD + 1.0 && known(self.rsc_m)
+    }
+
+    /// Whether a leeway or a hinge margin is negative, or missing.
+    pub(super) fn fails(&self) -> bool {
+        self.rsc_m < 0.0 || self.hinge_rad < 0.0
+    }
+
     /// The result with `None` for missing numbers. If one of RSC and margin is missing, the other one means nothing.
     pub(super) fn result(self) -> SpanResult {
-        let bounded = self.hinge_rad > NOT_CLOSED_RAD + 1.0 && known(self.rsc_m);
+        let bounded = self.closes();
         SpanResult {
             rsc_m: bounded.then_some(self.rsc_m),
             rsc_published_m: self.published_m,
@@ -202,10 +212,10 @@ fn place(track: &Track, model: &Model, foot: Foot, side: Side, leeway: f64) -> L
     Limiting { station, unit, side, point_m, in_area: foot.in_area }
 }
 
-/// SHRINK: the largest γ (in thousandths) for which no station of the span has negative leeway. Only γ = 1 and γ_min
-/// were swept. Every bound grows with γ as a sum of convex terms, so the chord between the two leeways is never above
-/// the leeway. The limiting place is where the chord is least; another place may gain most by shrinking. If γ_min does
-/// not suffice, the result is its negative RSC.
+/// SHRINK: the largest γ (in thousandths) for which no station of the span has negative leeway and no hinge a negative margin.
+/// Only γ = 1 and γ_min were swept. Every bound grows with γ as a sum of convex terms, so the chord between the two values is never
+/// above the value. The limiting place is where the chord is least; another place may gain most by shrinking. If γ_min does
+/// not suffice, or if the bounds close at γ_min alone, the result is that of γ_min.
 pub(super) fn shrunk(
     track: &Track,
     model: &Model,
@@ -214,19 +224,15 @@ pub(super) fn shrunk(
     at_full: &Least,
 ) -> Least {
     let floor = gamma(model, 0.0);
-    let lowest = Least {
-        hinge_rad: at_full.hinge_rad,
-        hinge_unit: at_full.hinge_unit,
-        published_m: at_full.published_m,
-        shrink: floor,
-        ..least(track, model, span, at_least)
-    };
-    if lowest.rsc_m < 0.0 || floor >= 1.0 {
+    let lowest = Least { published_m: at_full.published_m, shrink: floor, ..least(track, model, span, at_least) };
+    if lowest.fails() || floor >= 1.0 || !at_full.closes() {
         return lowest;
     }
     let all = || leeways(track, model, span, [full, at_least]);
     let fails = all().filter(|(_, _, [f, _])| *f < 0.0);
     let part = fails.fold(1.0_f64, |part, (_, _, [f, l])| part.min(l / (l - f)));
+    let (f, l) = (at_full.hinge_rad, lowest.hinge_rad);
+    let part = if f < 0.0 { part.min(l / (l - f)) } else { part };
     let shrink = ((floor + (1.0 - floor) * part) * SHRINK_STEPS).floor() / SHRINK_STEPS;
     if shrink <= floor {
         return lowest;
@@ -239,5 +245,6 @@ pub(super) fn shrunk(
             (rsc_m, limiting) = (chord, place(track, model, foot, side, f));
         }
     }
-    Least { rsc_m, shrink, limiting, ..lowest }
+    let hinge_rad = (l + (f - l) * part).min(l);
+    Least { rsc_m, shrink, limiting, hinge_rad, hinge_unit: at_full.hinge_unit, ..lowest }
 }
