@@ -1,12 +1,11 @@
 //! Checks the certificates of turns in a database: every row, against the network and the verdicts of edges in the same file.
 //!
-//! `turns` makes area, paths and widths from the network. This module checks that a path's corridor stays within its area. The
-//! plan comes from the database; everything else is computed again. An unsafe turn without numbers promises nothing, so only
+//! `turns` makes the area and the path from the network. The path's code and the
+//! plan come from the database; everything else is computed again. An unsafe turn without numbers promises nothing, so only
 //! the existence of a corridor is checked.
 
 use std::collections::BTreeMap;
 
-use geo::{Distance as _, Euclidean, Point};
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -14,17 +13,13 @@ use super::database::{RowOutcome, SetReport};
 use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::rows::{CertificateRow, TurnRow};
-use crate::turns::{
-    KerbSource, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, TurnPath, passage_on, turn_on,
-};
+use crate::turns::{KerbSource, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, passage_on, turn_on};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 use netcert_check::Chain;
 use netcert_check::{Finding, Outcome, Subject, TOLERANCE_M, finding};
 use netcert_check::{plan, printed};
 
-/// The greatest distance of a corridor's edge from the area, metres. Stations replace the measured edge by chords.
-const WITHIN_M: f64 = 0.02;
 /// Number of rows that are checked together, so that the strokes that they need are made once.
 const BATCH: usize = 512;
 
@@ -196,7 +191,6 @@ impl TurnsClaim<'_> {
         if follows != said.verdict {
             found.push(finding("verdict", &format!("{:?} is claimed, but {follows:?} follows", said.verdict)));
         }
-        found.extend(strays(&path, made));
         let printed_m = printed::most_m(&subject, self.vehicle, path.counted.clone());
         if let Some(claimed) = said.rsc_published_m.filter(|claimed| *claimed > printed_m + TOLERANCE_M) {
             found.push(finding("rsc_published_m", &format!("{claimed} is above {printed_m:.4}")));
@@ -216,16 +210,4 @@ fn without_corridor(said: &CertificateRow, expected: Verdict) -> Outcome {
     } else {
         wrong(format!("{:?} is claimed, but {expected:?} follows", said.verdict))
     }
-}
-
-/// Checks that a path's corridor stays within the turn's area between its joints.
-fn strays(path: &TurnPath, made: &TurnCorridors) -> Option<Finding> {
-    let c = &path.corridor;
-    path.turn.clone().filter(|&k| k < c.len()).find_map(|k| {
-        let (sin, cos) = c.heading[k].sin_cos();
-        let off_m =
-            |left_m: f64| Euclidean.distance(&Point::new(c.x[k] - left_m * sin, c.y[k] + left_m * cos), &made.area);
-        let most_m = off_m(c.left_m[k]).max(off_m(-c.right_m[k]));
-        (most_m > WITHIN_M).then(|| finding("corridor", &format!("{most_m:.3} m beyond the area at station {k}")))
-    })
 }

@@ -185,6 +185,10 @@ impl<'a> Subject<'a> {
     /// decide, because the prover may have used the filter.
     fn limiting(&self, filtered: &mut Swept<'_>, claim: &SpanClaim) -> Option<Finding> {
         let ((at_m, unit, side), rsc_m) = (claim.limiting?, claim.rsc_m.filter(|rsc_m| *rsc_m > -NOTHING_M)?);
+        // How far a body is outside of an area is not measured here (`plane`).
+        if rsc_m < 0.0 && self.in_area(&claim.stations) {
+            return None;
+        }
         let own = self.stretches(&claim.stations);
         let at = at_m / self.road.spacing;
         if unit >= self.chain.links.len() || at < own.start as f64 - 1.0 || at > own.end as f64 + LIMITING_BEYOND {
@@ -208,6 +212,14 @@ impl<'a> Subject<'a> {
         roomy.then(|| {
             finding("limiting", &format!("unit {unit} has more room than the RSC at {at_m:.1} m on that side"))
         })
+    }
+
+    /// Whether areas count in any step in which the vehicle is on some stations.
+    fn in_area(&self, stations: &Range<usize>) -> bool {
+        let (ahead, behind) = self.chain.reach_m();
+        let reach = |metres: f64| (FARTHEST * metres / self.road.spacing).ceil() as usize;
+        let first = (self.road.lead + stations.start).saturating_sub(reach(ahead)) * STEPS;
+        (first..(self.road.lead + stations.end + reach(behind)) * STEPS).any(|step| self.road.plane.decides(step))
     }
 
     /// Nominal place of an axle (from the corridor's first station) when the steer axle is at station `k`.

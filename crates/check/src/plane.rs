@@ -61,6 +61,8 @@ use netcert_base::corridor::{Area, AreaSpan, Corridor};
 const ROUNDING_M: f64 = 1e-6;
 /// Cells that extend and move less than this are not halved, metres.
 const FINEST_M: f64 = 1e-4;
+/// For cells that extend and move less than this the adjoint may run, even if their middle does by the filter, metres.
+const SMALL_M: f64 = 0.03;
 /// The adjoint runs only for pieces of a body no longer than this, metres.
 const SHARP_M: f64 = 1.0;
 /// Largest coordinates (metres), and most vertices of one area.
@@ -170,6 +172,8 @@ impl Boundary {
 
     /// The segments that may be within `reach` of the hull of some points.
     fn near(&self, points: &[Point], reach: f64) -> Vec<u32> {
+        // A negative claim asks for less than none.
+        let reach = reach.max(0.0);
         let [low, high] = bounds(points);
         let meets = |k: &u32| {
             let [from, to] = bounds(&self.segments[*k as usize]);
@@ -372,14 +376,15 @@ impl Swept<'_> {
             let there = room(&middle, &still, &self.corners(&middle)[..1]);
             let bound = there.map_or(still.no_room(), |(bound, _)| bound);
             let failed = bound < target || strict && there.is_none();
+            let size = piece.size(&corners);
             let levers = there.map_or(piece.a, |(_, way)| self.levers(&piece, way));
-            let dull = failed
+            // A small piece whose middle does by a hair may fail all the same.
+            let dull = (failed || size <= SMALL_M)
                 && work <= MOST_WORK
                 && [piece.a, levers].into_iter().any(|a| self.dull(piece.step, piece.unit, a));
             let [long, spread] = [piece.a, levers].map(|a| (a[1] - a[0]).abs());
             // Across a body the levers spread too.
             let (long, wide) = (long > SHARP_M, spread > long + SHARP_M);
-            let size = piece.size(&corners);
             if dull && refuted {
                 break;
             }
