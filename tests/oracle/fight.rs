@@ -5,10 +5,12 @@ use netcert::stet::{Model, Options};
 use netcert::turns::TurnCorridors;
 
 use super::draw::Draw;
-use super::{claim, duel, fleet};
+use super::{claim, duel, fleet, siege};
 
 /// Paths with less leeway are not attacked, metres.
 const HOPELESS_M: f64 = -3.0;
+/// Places of the bodies that are attacked where areas count.
+const PLACES: usize = 4;
 
 /// Drives the vehicle along the best path and along another one on the road, one `part`th of the way through them, with
 /// all attacks. Returns the number of claims that held.
@@ -26,6 +28,12 @@ pub fn none_is_refuted(made: &TurnCorridors, id: &str, part: usize, what: &str, 
         let Some(claim) = claim::certify(&path.corridor, &vehicle).filter(|claim| claim.rsc_m >= HOPELESS_M) else {
             continue;
         };
+        if !path.corridor.areas.is_empty() {
+            let refuted = siege::besiege(&path.corridor, &vehicle, &claim, draw, PLACES).refutes(&claim);
+            assert!(refuted.is_none(), "{what} {id}: {refuted:?}");
+            held += 1;
+            continue;
+        }
         let (gap_m, outcome) = duel::margin_m(&path.corridor, &vehicle, &claim, draw, 1);
         assert!(gap_m > -2e-5, "{what} {id}: {gap_m} {}", duel::describe(&outcome));
         held += 1;

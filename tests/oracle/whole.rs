@@ -7,10 +7,12 @@ use netcert::vehicle::Vehicle;
 
 use super::claim::{Claim, Place};
 use super::draw::Draw;
-use super::duel;
+use super::{duel, siege};
 
 /// Errors of RK4 at 0.1 m and of the plan's cubic, as in `tests/certificate/soundness.rs`.
 const ALLOWANCE_M: f64 = 2e-5;
+/// Places of the bodies that are attacked where areas count.
+const PLACES: usize = 8;
 
 /// Asserts that the adversary finds nothing below the RSC, and no hinge beyond its margin.
 pub fn hold(vehicle: &Vehicle, corridor: &Corridor, certificate: &Certificate, seed: u64) {
@@ -25,6 +27,14 @@ pub fn hold(vehicle: &Vehicle, corridor: &Corridor, certificate: &Certificate, s
     let plan = certificate.plan.clone();
     let (rsc_m, shrink, hinge_margin_rad) = (result.rsc_m.unwrap(), result.shrink, result.hinge_margin_rad.unwrap());
     let claim = Claim { rsc_m, shrink, hinge_margin_rad, limiting, plan };
+    if !corridor.areas.is_empty() {
+        let found = siege::besiege(corridor, vehicle, &claim, &mut Draw(seed), PLACES);
+        let length_m = corridor.len() as f64 * corridor.spacing_m;
+        println!("{length_m:.0} m, RSC {:.3} m, least room found {:.3} m", claim.rsc_m, found.least_m());
+        let refuted = found.refutes(&claim);
+        assert!(refuted.is_none(), "{refuted:?}");
+        return;
+    }
     let (gap_m, outcome) = duel::margin_m(corridor, vehicle, &claim, &mut Draw(seed), 2);
     let length_m = corridor.len() as f64 * corridor.spacing_m;
     println!("{length_m:.0} m, RSC {:.3} m, {}", claim.rsc_m, duel::describe(&outcome));

@@ -8,7 +8,7 @@ use crate::vehicle::{Unit, Vehicle};
 /// Estimated deviation of the first unit from its nominal place, and how much more each further unit deviates, metres.
 const TUBE_M: [f64; 2] = [0.09, 0.03];
 /// Angles kept from the steering lock and from the other hinges' limits, radians.
-const SPARE_RAD: [f64; 2] = [0.105, 0.14];
+const SPARE_RAD: [f64; 2] = [0.12, 0.14];
 /// Metres of room that a radian beyond that is worth.
 const PER_RAD_M: f64 = 14.0;
 /// Least distance between the places looked at along a side, metres.
@@ -58,11 +58,14 @@ impl<'a> Scorer<'a> {
                 continue;
             }
             at = p;
+            let before = self.headings.first().copied()?;
             follow(&mut self.headings, step, units);
             let mut ahead = [step[0] / length_m, step[1] / length_m];
             for (i, (&heading, unit)) in self.headings.iter().zip(units).enumerate() {
                 let most_rad = unit.max_articulation_rad - SPARE_RAD[usize::from(i > 0)];
-                let cosine = ahead[0] * heading[0] + ahead[1] * heading[1];
+                // A chord points where the steer axle goes in the middle of the step.
+                let of = if i == 0 { middle(before, heading) } else { heading };
+                let cosine = ahead[0] * of[0] + ahead[1] * of[1];
                 if cosine < most_rad.cos() {
                     beyond_rad = beyond_rad.max(cosine.clamp(-1.0, 1.0).acos() - most_rad);
                 }
@@ -132,6 +135,13 @@ fn room_m(field: &mut Field, axle: [f64; 2], heading: [f64; 2], unit: &Unit, mut
         }
     }
     least_m
+}
+
+/// The heading halfway between two.
+fn middle(u: [f64; 2], v: [f64; 2]) -> [f64; 2] {
+    let [x, y] = [u[0] + v[0], u[1] + v[1]];
+    let length = x.hypot(y).max(1e-9);
+    [x / length, y / length]
 }
 
 fn along(p: [f64; 2], u: [f64; 2], m: f64) -> [f64; 2] {
