@@ -143,7 +143,7 @@ fn s_bend(width_m: f64, between_m: f64, way_round: bool) -> AsciiMap {
 #[test]
 fn turns_that_share_a_stretch_of_road_are_blended_or_refused() {
     let (mut blended, mut refused) = (0, 0);
-    for between_m in [10.0, 24.0, 42.0] {
+    for between_m in [4.0, 7.0, 10.0, 17.0, 24.0, 33.0, 42.0] {
         let region = region(&s_bend(8.0, between_m, false), 12.0);
         let driver = region.driver("AGV-TUG4");
         let (mut strokes, mut menu) = (region.strokes(), Menu::new(Box::new(Region::turns(&driver))));

@@ -202,7 +202,7 @@ fn the_tolerance_that_would_do_does_and_a_millimetre_more_does_not() {
 #[test]
 fn the_steering_limit_that_would_do_does_and_less_does_not() {
     let mut vehicle = catalogued("EU-SEMI16.5");
-    vehicle.units[0].max_articulation_rad = 20f64.to_radians();
+    vehicle.units[0].max_articulation_rad = 14f64.to_radians();
     let bend: Vec<[f64; 2]> = (0..60)
         .map(|i| (f64::from(i) / 14.0).min(1.2))
         .map(f64::sin_cos)
@@ -226,7 +226,7 @@ fn the_steering_limit_that_would_do_does_and_less_does_not() {
     assert!(safe_with(limit) && !safe_with(limit - 0.1), "{limit}");
     let words = explain::words(&e);
     assert!(
-        words.headline.contains("the steering would need") && words.headline.contains("its 20°"),
+        words.headline.contains("the steering would need") && words.headline.contains("its 14°"),
         "{}",
         words.headline
     );

@@ -197,8 +197,12 @@ pub fn certify_spans(
         let members: Vec<&Model> = chunk.iter().map(|&i| models[i]).collect();
         let swept = Swept::new(corridor, &members, spans, Marks::Ends, options, &never);
         for (lane, (&i, plan)) in chunk.iter().zip(&swept.plans).enumerate() {
-            let spans = spans.iter().map(|span| swept.result(lane, span)).collect();
-            rows.push((i, Planned { plan: plan.clone(), spans }));
+            let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(lane, span)).collect();
+            let held = held(corridor, members[lane], spans, Marks::Ends, options, &results, &never);
+            rows.push(match held {
+                Some((held, spans)) => (i, Planned { plan: held.plans[0].clone(), spans }),
+                None => (i, Planned { plan: plan.clone(), spans: results }),
+            });
         }
     }
     rows.sort_by_key(|(i, _)| *i);
@@ -239,10 +243,39 @@ pub fn certify_planned(
     if corridor.is_empty() {
         return Ok(None);
     }
-    let certified = Swept::new(corridor, &[model], spans, Marks::All, options, stop).certificate(corridor, spans);
+    let swept = Swept::new(corridor, &[model], spans, Marks::All, options, stop);
+    let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
+    let certified = match held(corridor, model, spans, Marks::All, options, &results, stop) {
+        Some((held, _)) => held.certificate(corridor, spans),
+        None => swept.certificate(corridor, spans),
+    };
     // A cancelled sweep ends early and its numbers mean nothing. `stop` stays told.
     stop.check()?;
     Ok(Some(certified))
+}
+
+/// Certifies again without corrections where areas count, if the corrected plan steers or folds too far. A path over a junction is
+/// planned with the steering in mind; corrections are not. `None` if that is no remedy.
+fn held<'m>(
+    corridor: &Corridor,
+    model: &'m Model,
+    spans: &[Range<usize>],
+    marks: Marks,
+    options: &Options,
+    results: &[SpanResult],
+    stop: &'m Stop,
+) -> Option<(Swept<'m>, Vec<SpanResult>)> {
+    let corrected = options.max_shift_m > 0.0 && options.correction_sweeps > 0;
+    let folds = |result: &SpanResult| !result.safe() && !result.too_narrow();
+    if corridor.areas.is_empty() || !corrected || !results.iter().any(folds) {
+        return None;
+    }
+    let swept = Swept::along(corridor, &[model], spans, marks, stop, &|track, group| {
+        plan::best(track, group, spans, options, true, stop)
+    });
+    let held: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
+    let safe = |results: &[SpanResult]| results.iter().filter(|result| result.safe()).count();
+    (safe(&held) > safe(results)).then_some((swept, held))
 }
 
 /// All leeways at γ = 1, refined by the adjoint where that is worth its time.
@@ -290,7 +323,7 @@ impl<'m> Swept<'m> {
         stop: &'m Stop,
     ) -> Self {
         Self::along(corridor, models, spans, marks, stop, &|track, group| {
-            plan::best(track, group, spans, options, stop)
+            plan::best(track, group, spans, options, false, stop)
         })
     }
 
