@@ -122,12 +122,14 @@ impl<'a> Test<'a> {
         let mut ride = Ride::new(self.crossing, vehicle, way);
         let mut least = f64::INFINITY;
         loop {
-            let axles = ride.axles();
-            for (unit, part) in vehicle.units.iter().enumerate() {
-                let body = Body::new(part, axles[unit], ride.headings[unit]);
-                least = self.sides(&body, least);
-                if least <= enough {
-                    return least;
+            // Looking at every station takes twice the time, and the exact room does so anyway.
+            if ride.now.is_multiple_of(2) {
+                let axles = ride.axles();
+                for (unit, part) in vehicle.units.iter().enumerate() {
+                    least = self.sides(&Body::new(part, axles[unit], ride.headings[unit]), least);
+                    if least <= enough {
+                        return least;
+                    }
                 }
             }
             let (more, limit) = ride.advance();
