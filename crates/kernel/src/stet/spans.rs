@@ -215,7 +215,7 @@ fn place(track: &Track, model: &Model, foot: Foot, side: Side, leeway: f64) -> L
 /// SHRINK: the largest γ (in thousandths) for which no station of the span has negative leeway and no hinge a negative margin.
 /// Only γ = 1 and γ_min were swept. Every bound grows with γ as a sum of convex terms, so the chord between the two values is never
 /// above the value. The limiting place is where the chord is least; another place may gain most by shrinking. If γ_min does
-/// not suffice, or if the bounds close at γ_min alone, the result is that of γ_min.
+/// not suffice, the result is that of γ_min. If the bounds do not close at γ = 1, nothing is claimed.
 pub(super) fn shrunk(
     track: &Track,
     model: &Model,
@@ -225,7 +225,10 @@ pub(super) fn shrunk(
 ) -> Least {
     let floor = gamma(model, 0.0);
     let lowest = Least { published_m: at_full.published_m, shrink: floor, ..least(track, model, span, at_least) };
-    if lowest.fails() || floor >= 1.0 || !at_full.closes() {
+    if !at_full.closes() {
+        return Least { hinge_rad: at_full.hinge_rad, hinge_unit: at_full.hinge_unit, ..lowest };
+    }
+    if lowest.fails() || floor >= 1.0 {
         return lowest;
     }
     let all = || leeways(track, model, span, [full, at_least]);
