@@ -24,9 +24,9 @@ use crate::words::{Named, VerdictKind, verdict_words};
 const BATCH: usize = 512;
 /// Batches for which a stroke's line is kept after its last turn. Neighbouring turns follow soon.
 const KEPT_BATCHES: usize = 6;
-/// Largest lack of room that corrections may make up, metres: the allowed shift and half a metre of lining up. If more
-/// is missing, only the best path is certified, without corrections, for the record.
-const HOPELESS_M: f64 = 0.5;
+/// Planned paths that score less than minus this, metres, are certified as they are, for the record: corrections do not make up for
+/// more.
+const HOPELESS_M: f64 = 0.4;
 /// A safe path with this RSC is good enough; no other one is tried, metres.
 const ENOUGH_M: f64 = 0.2;
 
@@ -261,7 +261,7 @@ fn best_planned(made: &TurnCorridors, models: &[&Model], options: &Options) -> V
 fn best_path(made: &TurnCorridors, planner: &mut Planner<'_>, model: &Model, options: &Options) -> Option<Best> {
     let mut best: Option<Best> = None;
     for planned in planner.plan(&model.vehicle) {
-        let hope = planned.score_m >= -(options.max_shift_m + HOPELESS_M);
+        let hope = planned.score_m >= -HOPELESS_M;
         if !hope && best.is_some() {
             break;
         }

@@ -96,7 +96,7 @@ fn besieged(what: &str, crossings: u64, seed: u64, draw_crossing: impl Fn(&mut D
 
 #[test]
 fn no_body_comes_closer_to_what_lies_outside_an_area_than_rsc() {
-    besieged("crossing", cases(200), 0xa4ea_0000, Crossing::drawn);
+    besieged("crossing", cases(100), 0xa4ea_0000, Crossing::drawn);
 }
 
 #[test]
