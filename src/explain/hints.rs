@@ -110,7 +110,7 @@ fn width(again: &Again<'_>, geometry: &Geometry, model: &Model) -> Option<WidthH
     let narrowest = span.clone().map(|k| corridor.left_m[k] + corridor.right_m[k]).fold(f64::INFINITY, f64::min);
     // This width changes nothing, so the result is still unsafe.
     let fails = (narrowest / STEP_M).floor() as i64;
-    let first = ((geometry.place.width_m - 2.0 * geometry.result.rsc_m?) / STEP_M).ceil() as i64;
+    let first = ((geometry.place.width_m? - 2.0 * geometry.result.rsc_m?) / STEP_M).ceil() as i64;
     let most = fails + (MOST_MORE_M / STEP_M) as i64;
     let steps = least_that_does(fails, first, most, |steps| safe_at(steps).is_some())?;
     Some(WidthHint { width_m: steps as f64 * STEP_M, shrink: safe_at(steps)?.shrink })

@@ -4,13 +4,18 @@
 use std::ops::Range;
 
 use super::ride::Ride;
-use crate::corridor::Corridor;
+use crate::corridor::{Area, Corridor};
 use crate::stet::motion::Pose;
 use crate::stet::{Side, SpanResult};
 use crate::vehicle::{Unit, Vehicle};
 
 /// A bend of a greater radius is called straight, metres.
 const STRAIGHT_M: f64 = 2000.0;
+
+/// Distance between the places looked at along a side that an area limits, metres.
+const SIDE_STEP_M: f64 = 0.25;
+/// How far from the limiting station the steer axle may be at that moment, in vehicle lengths.
+const FAR_LENGTHS: f64 = 1.6;
 
 /// A part of a unit's side.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -59,8 +64,8 @@ pub struct Place {
     pub nominal_m: f64,
     /// What error bounds and allowances deduct from `nominal_m`, metres. `None` if no bound holds for the vehicle.
     pub bounds_m: Option<f64>,
-    /// The width of the corridor at the station, metres.
-    pub width_m: f64,
+    /// The width of the corridor at the station, metres. `None` where an area limits.
+    pub width_m: Option<f64>,
     /// The bend that the vehicle is in. `None` on a straight.
     pub bend: Option<Bend>,
 }
@@ -85,6 +90,9 @@ pub struct HingePlace {
 impl Place {
     pub(super) fn of(corridor: &Corridor, ride: &Ride, vehicle: &Vehicle, result: &SpanResult) -> Option<Self> {
         let limiting = &result.limiting;
+        if limiting.in_area {
+            return Self::in_area(corridor, ride, vehicle, result);
+        }
         let unit = vehicle.units.get(limiting.unit)?;
         let (behind_m, to_rear_m) = (along_chain(vehicle, limiting.unit), vehicle.length_m);
         let wanted = limiting.station as f64;
@@ -118,10 +126,75 @@ impl Place {
             outward,
             nominal_m,
             bounds_m: result.rsc_m.map(|rsc_m| (nominal_m - rsc_m).max(0.0)),
-            width_m: at.left_m + at.right_m,
+            width_m: Some(at.left_m + at.right_m),
             bend: Bend::sharpest(corridor, rear..head.ceil().max(station) as usize + 1),
         })
     }
+}
+
+impl Place {
+    /// The place of the limiting unit's side that comes closest to the boundary of the areas.
+    fn in_area(corridor: &Corridor, ride: &Ride, vehicle: &Vehicle, result: &SpanResult) -> Option<Self> {
+        let limiting = &result.limiting;
+        let unit = vehicle.units.get(limiting.unit)?;
+        let aside = if limiting.side == Side::Left { 0.5 } else { -0.5 } * unit.width_m;
+        let (front, rear) = (unit.coupling_to_axle_m + unit.front_overhang_m, -unit.rear_overhang_m);
+        let pieces = ((front - rear) / SIDE_STEP_M).ceil().max(1.0);
+        let near_m = (limiting.station as f64 * corridor.spacing_m, FAR_LENGTHS * vehicle.length_m);
+        let mut best: Option<(f64, usize, f64, [f64; 2])> = None;
+        for head in 0..ride.len() {
+            let areas: Vec<&Area> = counting(corridor, head);
+            if areas.is_empty() || (head as f64 * corridor.spacing_m - near_m.0).abs() > near_m.1 {
+                continue;
+            }
+            let poses = ride.at(head as f64);
+            let pose = poses.get(limiting.unit)?;
+            for i in 0..=pieces as usize {
+                let ahead = front + (rear - front) * i as f64 / pieces;
+                let Some((room_m, edge)) = room(&areas, pose.place(ahead, aside)) else { continue };
+                if best.is_none_or(|(least_m, ..)| room_m < least_m) {
+                    best = Some((room_m, head, ahead, edge));
+                }
+            }
+        }
+        let (nominal_m, head, ahead, edge) = best?;
+        let poses = ride.at(head as f64);
+        let corner = poses.get(limiting.unit)?.place(ahead, aside);
+        let (off, sign) = ([edge[0] - corner[0], edge[1] - corner[1]], nominal_m.signum());
+        let length = off[0].hypot(off[1]).max(1e-9);
+        let station = foot(corridor, corner, limiting.station as f64);
+        let behind = (head as f64 - vehicle.length_m / corridor.spacing_m).max(0.0) as usize;
+        Some(Self {
+            station,
+            unit: limiting.unit,
+            side: limiting.side,
+            part: Part::of(unit, ahead),
+            head: head as f64,
+            poses,
+            corner,
+            edge,
+            outward: off.map(|c| sign * c / length),
+            nominal_m,
+            bounds_m: result.rsc_m.map(|rsc_m| (nominal_m - rsc_m).max(0.0)),
+            width_m: None,
+            bend: Bend::sharpest(corridor, behind..head + 1),
+        })
+    }
+}
+
+/// The areas that count while the steer axle is at a station.
+fn counting(corridor: &Corridor, head: usize) -> Vec<&Area> {
+    corridor.areas.iter().filter(|span| span.heads.contains(&head)).map(|span| span.area.as_ref()).collect()
+}
+
+/// The room of a place in the area that leaves it most, metres, negative outside, and the nearest place of that boundary.
+fn room(areas: &[&Area], p: [f64; 2]) -> Option<(f64, [f64; 2])> {
+    let of = |area: &&Area| {
+        let edge = area.nearest(p)?;
+        let far = (edge[0] - p[0]).hypot(edge[1] - p[1]);
+        Some((if area.contains(p) { far } else { -far }, edge))
+    };
+    areas.iter().filter_map(of).max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// The station of the steer axle at which the foot of the body point passes the station `wanted`.

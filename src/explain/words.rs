@@ -133,11 +133,11 @@ fn gap(e: &Explanation, (place, bounds_m): (&Place, f64), strip: &str) -> String
         format!("stands {:.2} m beyond its edge", -place.nominal_m)
     };
     let part = if matches!(place.part, Part::FrontCorner | Part::RearCorner) { "corner" } else { "side" };
-    format!(
-        "The {strip} is {:.2} m wide there{source}; steered exactly, that {part} {nominally}, and {bounds_m:.2} m are kept for \
-         errors.",
-        place.width_m
-    )
+    let there = match place.width_m {
+        Some(width_m) => format!("The {strip} is {width_m:.2} m wide there{source}"),
+        None => "The edge of the junction's area counts there".to_owned(),
+    };
+    format!("{there}; steered exactly, that {part} {nominally}, and {bounds_m:.2} m are kept for errors.")
 }
 
 fn tapers(taper: &Taper, strip: &str) -> String {
@@ -258,16 +258,17 @@ fn hints(e: &Explanation) -> Vec<String> {
     let (h, strip) = (&e.hints, e.strip_name());
     let mut out = Vec::new();
     if g.result.too_narrow() {
-        out.push(match h.width {
+        let widened = g.place.width_m.is_some();
+        out.extend(match h.width {
             Some(hint) => {
                 let how = if hint.shrink < 1.0 {
                     format!(", tracked as closely as γ = {:.3}", hint.shrink)
                 } else {
                     String::new()
                 };
-                format!("A {strip} of at least {:.2} m would do{how}.", hint.width_m)
+                Some(format!("A {strip} of at least {:.2} m would do{how}.", hint.width_m))
             }
-            None => format!("No {strip} up to {MOST_MORE_M:.0} m wider along the same line would do."),
+            None => widened.then(|| format!("No {strip} up to {MOST_MORE_M:.0} m wider along the same line would do.")),
         });
         out.push(match h.tolerance_m {
             Some(tolerance_m) => {

@@ -54,7 +54,7 @@ pub fn turn(t: &TurnExplanation) -> Option<String> {
 fn keys() -> Vec<Key> {
     vec![
         Key::new(Style::area(palette::ROAD).outlined(palette::INK, 1.2), "what this turn may use of the road"),
-        Key::new(Style::line(palette::VERMILLION, 1.6), "edges of the corridor that was certified"),
+        Key::new(Style::line(palette::VERMILLION, 1.6), "edges that count before and after the junction"),
         Key::new(Style::line(palette::BLUE, 2.4), "planned path of the steer axle"),
         Key::new(
             Style::area(palette::SKY).filled_at(0.2),
@@ -89,25 +89,25 @@ fn swept(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View) {
 }
 
 fn corridor(picture: &mut Picture, path: &TurnPath, g: &Geometry, view: &View) {
-    let side = |left: bool| -> Vec<Point> {
+    let side = |left: bool, stations: std::ops::Range<usize>| -> Vec<Point> {
         let at = |k: usize| {
             let cross = Cross::at(&path.corridor, k as f64);
             view.at(cross.place(if left { cross.left_m } else { -cross.right_m }))
         };
-        path.counted.clone().map(at).collect()
+        stations.map(at).collect()
     };
-    for left in [true, false] {
-        picture.polyline(&side(left), Style::line(palette::VERMILLION, 1.6));
+    // Where the area counts, its outline is the edge.
+    let (before, after) =
+        (path.counted.start..path.turn.start.max(path.counted.start), path.turn.end..path.counted.end);
+    for stations in [before, after] {
+        for left in [true, false] {
+            picture.polyline(&side(left, stations.clone()), Style::line(palette::VERMILLION, 1.6));
+        }
     }
     picture.polyline(&view.all(&g.certificate.plan), Style::line(palette::BLUE, 2.4));
 }
 
 /// Draws a ring at the place of the least leeway.
 fn mark(picture: &mut Picture, g: &Geometry, view: &View) {
-    let cross = Cross::at(&g.corridor, g.place.station);
-    let left_m = match g.place.side {
-        crate::stet::Side::Left => cross.left_m,
-        crate::stet::Side::Right => -cross.right_m,
-    };
-    picture.circle(view.at(cross.place(left_m)), 9.0, Style::line(palette::INK, 2.0));
+    picture.circle(view.at(g.place.edge), 9.0, Style::line(palette::INK, 2.0));
 }

@@ -23,7 +23,7 @@ const TURNS: usize = 6;
 const SPARE_M: f64 = 0.3;
 
 fn cases(usual: u64) -> u64 {
-    if std::env::var_os("NETCERT_THOROUGH").is_some() { 5 * usual } else { usual }
+    if std::env::var_os("NETCERT_THOROUGH").is_some() { 10 * usual } else { usual }
 }
 
 /// An attacked claim.

@@ -29,6 +29,19 @@ impl Area {
         self.rings.iter().flat_map(|ring| (0..ring.len()).map(|i| [ring[i], ring[(i + 1) % ring.len()]]))
     }
 
+    /// The place of the boundary that is nearest to `p`. `None` without a boundary.
+    #[must_use]
+    pub fn nearest(&self, p: [f64; 2]) -> Option<[f64; 2]> {
+        let on = |[a, b]: [[f64; 2]; 2]| {
+            let (along, from) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
+            let square = along[0] * along[0] + along[1] * along[1];
+            let share = ((along[0] * from[0] + along[1] * from[1]) / square.max(1e-18)).clamp(0.0, 1.0);
+            [a[0] + share * along[0], a[1] + share * along[1]]
+        };
+        let far = |q: &[f64; 2]| (q[0] - p[0]).powi(2) + (q[1] - p[1]).powi(2);
+        self.segments().map(on).min_by(|a, b| far(a).total_cmp(&far(b)))
+    }
+
     /// Whether a place lies inside. Places on the boundary may count either way.
     #[must_use]
     pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
@@ -50,5 +63,7 @@ mod tests {
         assert!(!area.contains([0.3, 0.2]));
         assert!(!area.contains([7.0, 0.0]));
         assert_eq!(area.segments().count(), 8);
+        assert_eq!(area.nearest([3.0, 0.5]), Some([1.0, 0.5]));
+        assert_eq!(Area::default().nearest([3.0, 0.5]), None);
     }
 }

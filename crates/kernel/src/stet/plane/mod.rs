@@ -374,26 +374,25 @@ impl<'a> Passage<'a> {
         rooms.fold((FAR_OUTSIDE_M, FAR_OUTSIDE_M), |most, room| (most.0.max(room.0), most.1.max(room.1)))
     }
 
-    /// Leeway of the front edge or the rear edge, at body point `index`.
-    fn edge(&self, index: usize, enough: f64) -> f64 {
-        let (half, ahead) = (self.body.half_width, self.body.points[index].spot.ahead);
-        let ends = |stand: &Stand| [half, -half].map(|aside| stand.place(ahead, aside));
+    /// Leeway of the left or right half (0 or 1) of the front edge or the rear edge, at body point `index`.
+    fn edge(&self, index: usize, side: usize, enough: f64) -> f64 {
+        let half = if side == 0 { self.body.half_width } else { -self.body.half_width };
+        let ahead = self.body.points[index].spot.ahead;
+        let ends = |stand: &Stand| [half, 0.0].map(|aside| stand.place(ahead, aside));
         let sag = self.sag(ahead);
         let most = self.most(self.across[index], ahead) + sag;
-        let stray = |towards: Point| [half, -half].map(|aside| self.stray(towards, ahead, aside) + sag);
+        let stray = |towards: Point| [half, 0.0].map(|aside| self.stray(towards, ahead, aside) + sag);
         let piece = Swept { before: ends(self.before), after: ends(self.after), most, enough, stray: &stray };
         self.room(&piece, false).1
     }
 
-    /// Leeway when the first step of an area begins: nothing may already be under the body.
-    fn beginning(&self) -> f64 {
+    /// Whether something may already be under the body when the first step of an area begins.
+    fn blocked(&self) -> bool {
         let (half, last) = (self.body.half_width, self.body.points.len() - 1);
         let (front, rear) = (self.body.points[0].spot.ahead, self.body.points[last].spot.ahead);
         let corners = [(rear, -half), (front, -half), (front, half), (rear, half)];
         let outline = corners.map(|(ahead, aside)| self.before.place(ahead, aside));
-        let mut grounds = self.track.areas.at(self.before.head);
-        let blocked = grounds.all(|ground| ground.is_none_or(|ground| ground.under(outline)));
-        if blocked { -half } else { self.edge(last, f64::INFINITY) }
+        self.track.areas.at(self.before.head).all(|ground| ground.is_none_or(|ground| ground.under(outline)))
     }
 
     /// The least leeways, left and right, or those in `known` where they are less.
@@ -402,15 +401,19 @@ impl<'a> Passage<'a> {
         let body = self.body;
         rooms.enter(self.before.head, self.track.areas.changes(self.before.head));
         if self.track.areas.windows.iter().any(|w| w.first == self.before.head) {
-            let leeway = self.beginning();
-            lowest.iter_mut().for_each(|lowest| lowest.lower(leeway, body.points.len() - 1));
+            let (blocked, last) = (self.blocked(), body.points.len() - 1);
+            for (side, lowest) in lowest.iter_mut().enumerate() {
+                let leeway = if blocked { -body.half_width } else { self.edge(last, side, f64::INFINITY) };
+                lowest.lower(leeway, last);
+            }
         }
         let first = rooms.critical;
         for number in first {
             self.measure(rooms, number, &mut lowest);
         }
-        let leeway = self.edge(0, lowest[0].leeway.max(lowest[1].leeway));
-        lowest.iter_mut().for_each(|lowest| lowest.lower(leeway, 0));
+        for (side, lowest) in lowest.iter_mut().enumerate() {
+            lowest.lower(self.edge(0, side, lowest.leeway), 0);
+        }
         for number in (0..rooms.pieces.len()).filter(|number| !first.contains(number)) {
             self.measure(rooms, number, &mut lowest);
         }
