@@ -238,7 +238,7 @@ fn a_route_whose_parts_passed_is_refuted_as_a_whole_and_the_search_goes_on() {
         let parts = passes(&region, &driver, "AJ", "JK") && passes(&region, &driver, "JK", "KD");
         (region, driver, parts)
     };
-    let widths: Vec<u32> = (48..80).collect();
+    let widths: Vec<u32> = (26..80).collect();
     // From the least width at which both parts pass (all wider ones are taken to pass) to the first at which the whole
     // passes too.
     let tight = |between_m: f64| {
