@@ -266,7 +266,7 @@ fn the_corner_stands_where_geometry_has_it() {
         let left = place.side == netcert::stet::Side::Left;
         let apart = distance_to_edge(&corridor, left, place.corner);
         assert!((apart - place.nominal_m.abs()).abs() < 0.02, "{id}: {apart}, told {}", place.nominal_m);
-        assert!((place.width_m - width).abs() < 1e-9);
+        assert!((place.width_m.unwrap() - width).abs() < 1e-9);
         let bounds_m = place.bounds_m.unwrap();
         assert!(bounds_m > 0.05 && bounds_m < 1.0, "{id}: {bounds_m}");
         assert!((place.bend.unwrap().radius_m - 40.0).abs() < 1.5, "{id}: {:?}", place.bend);
