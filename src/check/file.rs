@@ -165,7 +165,7 @@ impl Document {
             return Some(finding("limiting", "that point does not pass there"));
         };
         if (nominal_m - said_m).abs() > NOMINAL_M {
-            let detail = format!("nominal_m is {:.4}, found {nominal_m:.4}", said_m);
+            let detail = format!("nominal_m is {said_m:.4}, found {nominal_m:.4}");
             return Some(finding("limiting", &detail));
         }
         match self.bounds {
