@@ -63,7 +63,7 @@ mod tests {
         assert!(!area.contains([0.3, 0.2]));
         assert!(!area.contains([7.0, 0.0]));
         assert_eq!(area.segments().count(), 8);
-        assert_eq!(area.nearest([3.0, 0.5]), Some([1.0, 0.5]));
+        assert_eq!(area.nearest([2.5, 0.5]), Some([1.0, 0.5]));
         assert_eq!(Area::default().nearest([3.0, 0.5]), None);
     }
 }
