@@ -9,6 +9,7 @@ mod file;
 mod frame;
 mod merge;
 mod observation;
+mod outline;
 mod polyline;
 mod profile;
 mod resample;
@@ -25,6 +26,7 @@ pub use centreline::{CentrelineError, from_centreline};
 pub use file::{FileCorridor, FileError, corridor_from_file};
 pub use frame::{Frame, FrameError, HALF_WIDTH_M};
 pub use netcert_base::corridor::{Area, AreaSpan, Corridor, CurvatureProfile};
+pub(crate) use outline::{from_chord_m, open_ends, outline};
 pub use stroke::stroke_corridor;
 
 use crate::verdict::UnknownReason;

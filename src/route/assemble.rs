@@ -9,9 +9,9 @@ use std::ops::Range;
 
 use super::blend::{self, Sample};
 use super::drive::{Drive, Join};
-use super::grounds::{self, Ground};
+use super::grounds::Ground;
 use super::pieces::{Menu, Strokes, TurnPiece};
-use crate::corridor::{CentrelineError, Corridor, Frame, FrameError};
+use crate::corridor::{CentrelineError, Corridor, Frame, FrameError, open_ends};
 use crate::network::{Movement, MovementKind, Movements, Network};
 use crate::osm::LonLat;
 use crate::stop::{Stop, Stopped};
@@ -150,7 +150,7 @@ pub fn assemble(
             at,
             spacing_m: piece.corridor.spacing_m,
             samples: in_frame(&piece, frame)?,
-            grounds: Ground::of(&piece, frame)?,
+            ground: Ground::of(&piece, frame)?,
             approach: piece.approach,
             departure: piece.departure,
             reach: piece.reach,
@@ -184,7 +184,7 @@ struct Between {
     at: PartKind,
     spacing_m: f64,
     samples: Vec<Sample>,
-    grounds: Vec<Ground>,
+    ground: Option<Ground>,
     approach: Joint,
     departure: Joint,
     reach: Reach,
@@ -409,11 +409,10 @@ impl Strung {
         for part in parts.iter().filter(|part| matches!(part.kind, PartKind::Turn { .. })) {
             // Every turn of the way keeps a part, in the same order.
             let Some(turn) = turns.by_ref().find(|turn| turn.at == part.kind) else { break };
-            corridor
-                .areas
-                .extend(turn.grounds.iter().map(|ground| ground.along(&corridor, &part.stations)).collect::<Vec<_>>());
+            let span = turn.ground.as_ref().map(|ground| ground.along(&corridor, &part.stations));
+            corridor.areas.extend(span);
         }
-        grounds::open_ends(&mut corridor);
+        open_ends(&mut corridor, [true; 2]);
         Ok(RoutePath { corridor, frame, parts })
     }
 }

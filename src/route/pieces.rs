@@ -6,7 +6,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use super::roads::Roads;
-use crate::corridor::{Corridor, Frame};
+use crate::corridor::{AreaSpan, Corridor, Frame};
 use crate::network::{Movement, Network};
 use crate::settings::Settings;
 use crate::turns::{Joint, Reach, StrokeLine, TurnParams};
@@ -25,6 +25,8 @@ pub struct TurnPiece {
     pub approach: Joint,
     /// The joint with the stroke that the vehicle goes to.
     pub departure: Joint,
+    /// The junction's area, and the stations of `corridor` at which it counts.
+    pub area: Option<AreaSpan>,
     /// How far before and after it the turn's strip counts.
     pub reach: Reach,
 }

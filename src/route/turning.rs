@@ -43,8 +43,8 @@ impl Turns for MadeTurns {
         let frame = made.frame;
         let reach = Reach::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
         let piece = |path: TurnPath| {
-            let TurnPath { corridor, turn, approach, departure, .. } = path;
-            TurnPiece { frame, corridor, turn, approach, departure, reach }
+            let TurnPath { corridor, area, turn, approach, departure, .. } = path;
+            TurnPiece { frame, corridor, turn, approach, departure, area, reach }
         };
         Ok(safe.into_iter().map(|(path, _)| piece(path)).collect())
     }

@@ -12,19 +12,16 @@ use geo::{BooleanOps, LineString, MultiPolygon, Polygon, unary_union};
 
 use super::Reach;
 use super::arm::{Across, Arm};
-use crate::corridor::Area;
+use crate::corridor::{Area, from_chord_m, outline};
 use crate::osm::facts::Policy;
 
 /// Distance from the node within which the roads' shared part is searched, metres.
 pub(super) const CROSSING_M: f64 = 30.0;
-/// A strip's vertices this close to the line between their neighbours are removed, metres. Rays are shortened by more
-/// than this.
-const COLLINEAR_M: f64 = 5e-4;
-/// Straight extension of a strip beyond the end of its corridor, metres. The longest vehicle's rear is there when the
-/// corridor begins, and a body that sticks out over the end is not held against a road's end that nobody has drawn.
-const EXTENDED_M: f64 = 70.0;
 /// Vertices of the whole area this close to the line between their neighbours are removed, metres.
 const STRAIGHT_M: f64 = 1e-5;
+/// Straight road beyond a road's end that planned paths may use, and its overlap with the road, metres.
+const BEYOND_M: f64 = 70.0;
+const OVERLAP_ROAD_M: f64 = 12.0;
 /// Overlap of the kerb return with the roads, metres, so that rounding leaves no gap between them.
 const OVERLAP_M: f64 = 0.3;
 /// Smallest and largest angle of a corner with a kerb return, radians.
@@ -52,19 +49,13 @@ pub(super) struct Ground<'a> {
     /// What the crossing has beside the two roads' strips.
     pub(super) crossing: &'a [Polygon],
     pub(super) reach: Reach,
-    /// Whether the approach and the departure are extended straight beyond the end of their corridor.
-    pub(super) extended: [bool; 2],
 }
 
 impl Ground<'_> {
     /// The drivable area, and whether it has a kerb return of the assumed radius.
     pub(super) fn area(&self) -> (MultiPolygon, bool) {
-        let strip =
-            |arm: &Arm, beyond_m: [f64; 2]| outline(arm, 0..arm.len(), &|k| arm.near_node(k, self.reach), beyond_m);
-        let before_m = if self.extended[0] && self.from.complete[0] { EXTENDED_M } else { 0.0 };
-        let after_m = if self.extended[1] && self.to.complete[1] { EXTENDED_M } else { 0.0 };
-        let strips = [strip(self.from, [before_m, 0.0]), strip(self.to, [0.0, after_m])];
-        let mut parts: Vec<Polygon> = strips.into_iter().flatten().collect();
+        let strip = |arm: &Arm| strip(arm, 0..arm.len(), &|k| arm.near_node(k, self.reach), [0.0; 2]);
+        let mut parts: Vec<Polygon> = [self.from, self.to].into_iter().filter_map(strip).collect();
         parts.extend(self.common());
         parts.extend_from_slice(self.crossing);
         let corner = match self.surface {
@@ -90,7 +81,7 @@ impl Ground<'_> {
             let first = arm.node.saturating_sub(near).max(arm.own.start);
             let end = (arm.node + near + 1).min(arm.own.end);
             let edges = self.edges(arm);
-            outline(arm, first..end, &|k| edges[k], prolonged)
+            strip(arm, first..end, &|k| edges[k], prolonged)
         };
         let ends = if self.from.node + 2 >= self.from.own.end { CROSSING_M } else { 0.0 };
         let begins = if self.to.node <= self.to.own.start + 1 { CROSSING_M } else { 0.0 };
@@ -203,32 +194,31 @@ fn arc(centre: [f64; 2], start: [f64; 2], turned: f64) -> Vec<[f64; 2]> {
 
 /// A stretch of road as wide as the turn's strip.
 pub(super) fn stretch(arm: &Arm, range: std::ops::Range<usize>) -> MultiPolygon {
-    unary_union(&outline(arm, range, &|k| arm.strip[k], [0.0; 2]).into_iter().collect::<Vec<Polygon>>())
+    unary_union(&strip(arm, range, &|k| arm.strip[k], [0.0; 2]).into_iter().collect::<Vec<Polygon>>())
 }
 
 /// The polygon between the edges of an arm's stations, extended straight by the given metres before and after.
-fn outline(
+fn strip(
     arm: &Arm,
     range: std::ops::Range<usize>,
     edges: &dyn Fn(usize) -> Across,
-    prolonged: [f64; 2],
+    prolonged_m: [f64; 2],
 ) -> Option<Polygon> {
-    let last = range.end.checked_sub(1).filter(|last| *last > range.start)?;
-    let first = range.start;
-    let side = |which: usize| {
-        let mut line = Vec::with_capacity(range.len() + 2);
-        if prolonged[0] > 0.0 {
-            line.push(along(arm.aside(first, edges(first)[which]), arm.forward(first), -prolonged[0]));
-        }
-        line.extend(range.clone().map(|k| arm.aside(k, edges(k)[which])));
-        if prolonged[1] > 0.0 {
-            line.push(along(arm.aside(last, edges(last)[which]), arm.forward(last), prolonged[1]));
-        }
-        thinned(&line)
-    };
-    let mut ring = side(0);
-    ring.extend(side(1).into_iter().rev());
-    Some(polygon(&ring))
+    outline(&arm.line, range, edges, prolonged_m).map(|ring| polygon(&ring))
+}
+
+/// An area with the straight road beyond the ends of the two roads' corridors, for planning: a planned path is not held against the
+/// cut end of a road (see [`crate::corridor::open_ends`]).
+pub(super) fn opened(area: &MultiPolygon, [from, to]: [&Arm; 2], reach: Reach) -> MultiPolygon {
+    let overlap = |arm: &Arm| (OVERLAP_ROAD_M / arm.line.spacing_m) as usize;
+    let edges = |arm: &Arm, k: usize| arm.near_node(k, reach);
+    let before = from.complete[0]
+        .then(|| strip(from, 0..overlap(from).min(from.len()), &|k| edges(from, k), [BEYOND_M, 0.0]))
+        .flatten();
+    let after = to.complete[1]
+        .then(|| strip(to, to.len().saturating_sub(overlap(to))..to.len(), &|k| edges(to, k), [0.0, BEYOND_M]))
+        .flatten();
+    [before, after].into_iter().flatten().fold(area.clone(), |area, strip| area.union(&strip))
 }
 
 /// The boundary of an area as rings without vertices that add nothing.
@@ -241,34 +231,11 @@ pub(super) fn rings(area: &MultiPolygon) -> Area {
             ring.pop();
         }
         let n = ring.len();
-        let corner = |&k: &usize| distance_from_chord(ring[k], ring[(k + n - 1) % n], ring[(k + 1) % n]) > STRAIGHT_M;
+        let corner = |&k: &usize| from_chord_m(ring[k], ring[(k + n - 1) % n], ring[(k + 1) % n]) > STRAIGHT_M;
         let kept: Vec<usize> = (0..n).filter(corner).collect();
         kept.into_iter().map(|k| ring[k]).collect::<Vec<_>>()
     };
     Area { rings: rings.map(open).filter(|ring| ring.len() > 2).collect() }
-}
-
-/// Removes vertices that add nothing: each is within [`COLLINEAR_M`] of the line that replaces it.
-fn thinned(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
-    let mut out: Vec<[f64; 2]> = Vec::with_capacity(line.len());
-    let mut from = 0;
-    out.extend(line.first());
-    for i in 2..line.len() {
-        if (from + 1..i).any(|k| distance_from_chord(line[k], line[from], line[i]) > COLLINEAR_M) {
-            from = i - 1;
-            out.push(line[from]);
-        }
-    }
-    if line.len() > 1 {
-        out.extend(line.last());
-    }
-    out
-}
-
-fn distance_from_chord(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
-    let d = [b[0] - a[0], b[1] - a[1]];
-    let length = d[0].hypot(d[1]);
-    if length < 1e-9 { f64::INFINITY } else { (d[0] * (p[1] - a[1]) - d[1] * (p[0] - a[0])).abs() / length }
 }
 
 /// The crossing of two edge lines, and their directions there.

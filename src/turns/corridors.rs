@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use geo::MultiPolygon;
 
-use super::area::rings;
+use super::area::{opened, rings};
 use super::arm::Arm;
 use super::code::PathCode;
 use super::ends::Ends;
@@ -41,7 +41,7 @@ enum Way {
 
 impl TurnCorridors {
     pub(super) fn at(junction: Junction, frame: Frame) -> Self {
-        let (area, kerb_radius_m) = junction.area([true; 2]);
+        let (area, kerb_radius_m) = junction.area();
         let (turn_rad, rings) = (junction.turn_rad(), Arc::new(rings(&area)));
         Self { frame, turn_rad, area, kerb_radius_m, rings, way: Way::Corner(Box::new(junction)) }
     }
@@ -113,8 +113,8 @@ impl TurnCorridors {
         }
     }
 
-    /// The area's boundary.
-    pub(super) fn rings(&self) -> &Area {
-        &self.rings
+    /// The boundary of the area for planning.
+    pub(super) fn opened(&self) -> Area {
+        rings(&opened(&self.area, self.arms(), self.reach()))
     }
 }

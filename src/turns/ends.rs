@@ -8,7 +8,7 @@ use super::arm::Arm;
 use super::path::{self, STEP_M};
 use super::rays::Widths;
 use super::{Joint, Reach, TurnPath};
-use crate::corridor::{Area, AreaSpan, Corridor};
+use crate::corridor::{Area, AreaSpan, Corridor, open_ends};
 
 /// Turns tighter than the first value (metres) have stations as close as the second (metres). Bounds are then as tight
 /// as in wider turns.
@@ -48,7 +48,7 @@ impl Ends<'_> {
         let lead = leave.saturating_sub(before)..leave;
         let tail = join + 1..(join + 1 + after).min(to.len());
         let mut line = Line::default();
-        for k in lead {
+        for k in lead.clone() {
             let [left_m, right_m] = from.near_joint(k, leave, self.reach);
             line.push(from.point(k), left_m, right_m);
         }
@@ -57,7 +57,7 @@ impl Ends<'_> {
             line.push(p, widths.left_m[k], widths.right_m[k]);
         }
         let ends = line.length_m;
-        for k in tail {
+        for k in tail.clone() {
             let [left_m, right_m] = to.near_joint(k, join, self.reach);
             line.push(to.point(k), left_m, right_m);
         }
@@ -77,9 +77,13 @@ impl Ends<'_> {
             whole.then_some((corridor, turn, counted))
         };
         let (mut corridor, turn, counted) = (0..=HALVINGS).find_map(sampled)?;
-        corridor.areas = self.areas(&corridor, &turn, area);
+        let span = self.area(&corridor, &turn, area);
+        corridor.areas.extend(span.clone());
+        // A road may end with the corridor: its area ends there, too.
+        open_ends(&mut corridor, [from.complete[0] && lead.start == 0, to.complete[1] && tail.end == to.len()]);
         Some(TurnPath {
             code,
+            area: span,
             turn,
             counted,
             approach: Joint { stroke: self.strokes[0], station: from.first + leave },
@@ -90,16 +94,13 @@ impl Ends<'_> {
     }
 
     /// The stations at which the junction's area counts: from shortly before the path leaves its road until all of the
-    /// vehicle has joined the other one. Empty if the corridor ends at once.
-    fn areas(&self, corridor: &Corridor, turn: &Range<usize>, area: &Arc<Area>) -> Vec<AreaSpan> {
+    /// vehicle has joined the other one. `None` if the corridor ends at once.
+    fn area(&self, corridor: &Corridor, turn: &Range<usize>, area: &Arc<Area>) -> Option<AreaSpan> {
         let stations = |m: f64| (m / corridor.spacing_m).ceil() as usize;
         let joined = turn.end.saturating_sub(1);
         let start = turn.start.saturating_sub(stations(BEFORE_M));
         let end = (joined + stations(self.reach.longest_m() + BEYOND_M) + 1).min(corridor.len().saturating_sub(1));
-        if end < start + 2 {
-            return Vec::new();
-        }
-        vec![AreaSpan { heads: start..end, area: Arc::clone(area) }]
+        (end >= start + 2).then(|| AreaSpan { heads: start..end, area: Arc::clone(area) })
     }
 }
 

@@ -92,9 +92,8 @@ impl Junction {
         wrapped(to.line.heading[to.node] - from.line.heading[from.node])
     }
 
-    /// The drivable area, and the assumed radius of its kerb return, if there is one. `extended` tells whether the
-    /// approach and the departure go on straight where their corridors end.
-    pub(super) fn area(&self, extended: [bool; 2]) -> (MultiPolygon, Option<f64>) {
+    /// The drivable area, and the assumed radius of its kerb return, if there is one.
+    pub(super) fn area(&self) -> (MultiPolygon, Option<f64>) {
         let ground = Ground {
             from: &self.from,
             to: &self.to,
@@ -105,7 +104,6 @@ impl Junction {
             surface: self.surface.as_ref(),
             crossing: &self.crossing,
             reach: self.reach,
-            extended,
         };
         let (area, rounded) = ground.area();
         (area, rounded.then_some(self.kerb_radius_m))

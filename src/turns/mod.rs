@@ -53,7 +53,7 @@ pub use facts::{KerbSource, TurnFacts, turn_facts};
 pub use kerbs::Kerbs;
 pub use planner::{Planned, Planner};
 
-use crate::corridor::{Corridor, Params};
+use crate::corridor::{AreaSpan, Corridor, Params};
 use crate::network::{Movement, Network};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
@@ -153,8 +153,11 @@ pub struct Joint {
 pub struct TurnPath {
     /// Code of the path. The same turn, policy and reach make the same path from the same code.
     pub code: i64,
-    /// Corridor of approach, turn and departure, metres in the turn's frame.
+    /// Corridor of approach, turn and departure, metres in the turn's frame. Its areas are the junction's and, where a road ends with it,
+    /// the straight road beyond.
     pub corridor: Corridor,
+    /// The junction's area, and the stations of `corridor` at which it counts. `None` if the corridor ends at once.
+    pub area: Option<AreaSpan>,
     /// Stations of the turn itself, between the joints.
     pub turn: Range<usize>,
     /// Stations that count for the turn's certificate. They begin at the vehicle's rear when its front starts to turn.

@@ -75,7 +75,7 @@ impl Passage {
 
     /// The drivable area, and the least assumed radius of its kerb returns, if there is one.
     pub(super) fn area(&self) -> (MultiPolygon, Option<f64>) {
-        let ((onto, kerb), (off, other_kerb)) = (self.entry.area([true, false]), self.exit.area([false, true]));
+        let ((onto, kerb), (off, other_kerb)) = (self.entry.area(), self.exit.area());
         let ring = stretch(&self.ring.arm, self.ring.once());
         (onto.union(&off).union(&ring), kerb.into_iter().chain(other_kerb).reduce(f64::min))
     }

@@ -44,7 +44,6 @@ pub struct Planned {
 pub struct Planner<'a> {
     made: &'a TurnCorridors,
     field: Field,
-    scored: u64,
 }
 
 impl<'a> Planner<'a> {
@@ -55,8 +54,8 @@ impl<'a> Planner<'a> {
         let (a, b) = (from.point(from.node), to.point(to.node));
         let centre = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
         let apart_m = 0.5 * (a[0] - b[0]).hypot(a[1] - b[1]);
-        let field = Field::new(made.rings(), centre, apart_m + AROUND_M + made.reach().longest_m());
-        Self { made, field, scored: 0 }
+        let field = Field::new(&made.opened(), centre, apart_m + AROUND_M + made.reach().longest_m());
+        Self { made, field }
     }
 
     /// Up to three paths, the best one first. None if no seed can be driven at all.
@@ -85,12 +84,6 @@ impl<'a> Planner<'a> {
     pub fn best_seeds(&mut self, vehicle: &Vehicle, count: usize) -> Vec<Planned> {
         let made = self.made;
         self.seeds(&mut Scorer::new(made, vehicle), count)
-    }
-
-    /// Number of paths that were scored.
-    #[must_use]
-    pub fn scored(&self) -> u64 {
-        self.scored
     }
 
     fn seeds(&mut self, scorer: &mut Scorer<'_>, count: usize) -> Vec<Planned> {
@@ -148,7 +141,6 @@ impl<'a> Planner<'a> {
     }
 
     fn score_m(&mut self, scorer: &mut Scorer<'_>, code: i64, how: (f64, f64)) -> Option<f64> {
-        self.scored += 1;
         scorer.score_m(&mut self.field, code, how)
     }
 }

@@ -37,16 +37,20 @@ pub fn sweep_path(path: &[[f64; 2]], vehicle: &Vehicle) -> Vec<Vec<Pose>> {
     let Some(mut headings) = first_direction(path).map(|u| vec![u; vehicle.units.len()]) else { return Vec::new() };
     let mut poses = vec![chain(path[0], &headings, vehicle)];
     for pair in path.windows(2) {
-        let mut step = sub(pair[1], pair[0]);
-        for (heading, unit) in headings.iter_mut().zip(&vehicle.units) {
-            let turned = turn(*heading, step, unit.coupling_to_axle_m);
-            let reach = unit.coupling_to_axle_m + unit.hitch_offset_m;
-            step = sub(step, scale(sub(turned, *heading), reach));
-            *heading = turned;
-        }
+        follow(&mut headings, sub(pair[1], pair[0]), &vehicle.units);
         poses.push(chain(pair[1], &headings, vehicle));
     }
     poses
+}
+
+/// Turns the units' headings (front to rear, unit vectors) as the steer axle moves by `step`, metres.
+pub fn follow(headings: &mut [[f64; 2]], mut step: [f64; 2], units: &[Unit]) {
+    for (heading, unit) in headings.iter_mut().zip(units) {
+        let turned = turn(*heading, step, unit.coupling_to_axle_m);
+        let reach = unit.coupling_to_axle_m + unit.hitch_offset_m;
+        step = sub(step, scale(sub(turned, *heading), reach));
+        *heading = turned;
+    }
 }
 
 /// The heading after the front coupling has moved by `step`: tan(β'/2) = tan(β/2)·exp(−ℓ/L), with β from heading to

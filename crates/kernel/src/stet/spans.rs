@@ -103,7 +103,7 @@ fn leeways<'a>(
         let foot = Foot { station: k, in_area: false };
         [(Side::Left, 0), (Side::Right, 1)].map(|(side, i)| (foot, side, [one[i][k], other[i][k]]))
     });
-    let heads = heads(track, model, span, one).filter(|_| !track.areas.windows.is_empty());
+    let heads = heads(track, model, span, one).filter(|_| !track.areas.is_empty());
     let areas = heads.flat_map(move |head| {
         [(Side::Left, 0), (Side::Right, 1)].map(|(side, i)| {
             let foot = Foot { station: one.area_foot[i][head] as usize, in_area: true };

@@ -6,10 +6,12 @@
 
 mod ground;
 
-use netcert_base::corridor::Corridor;
+use std::sync::Arc;
+
+use netcert_base::corridor::{AreaSpan, Corridor};
 
 use super::block::{BLOCK, Minima, NOT_CLOSED_RAD, row};
-use super::body::{Body, FRESH, least};
+use super::body::{Body, FRESH, Point as BodyPoint, least};
 use super::lanes::{LANES, V};
 use super::track::Track;
 use ground::{Ground, Point, Swept};
@@ -29,87 +31,78 @@ const OBLIQUE: f64 = 0.05;
 const MOST_STEPS: usize = 16;
 
 /// A span of stations of the steer axle, with its area.
-pub(super) struct Window {
+#[derive(Clone)]
+struct Window {
     /// First and last extended station.
-    pub(super) first: usize,
-    pub(super) last: usize,
-    /// Position in the corridor's list; windows of a thinned track share the area.
-    area: usize,
+    first: usize,
+    last: usize,
+    /// `None` where the area cannot be used: nothing is inside.
+    ground: Option<Arc<Ground>>,
 }
 
 /// The areas of a corridor, prepared for its extended stations.
-#[derive(Default)]
-pub(super) struct Areas {
-    pub(super) windows: Vec<Window>,
-    /// `None` where an area cannot be used: nothing is inside.
-    grounds: Vec<Option<std::sync::Arc<Ground>>>,
-}
+pub(super) struct Areas(Vec<Window>);
 
 impl Areas {
     pub(super) fn new(corridor: &Corridor, lead: usize) -> Self {
         let last = corridor.len().saturating_sub(1);
-        let windows = corridor.areas.iter().enumerate().map(|(area, span)| Window {
+        let window = |span: &AreaSpan| Window {
             first: lead + span.heads.start.min(last),
             last: lead + span.heads.end.saturating_sub(1).min(last),
-            area,
-        });
-        let ground = |span: &netcert_base::corridor::AreaSpan| Ground::new(&span.area).map(std::sync::Arc::new);
-        Self { windows: windows.collect(), grounds: corridor.areas.iter().map(ground).collect() }
+            ground: Ground::new(&span.area).map(Arc::new),
+        };
+        Self(corridor.areas.iter().map(window).collect())
     }
 
     /// The areas for every second station.
     pub(super) fn coarse(&self, first: usize) -> Self {
-        let half = |k: usize| k.saturating_sub(first).div_ceil(2);
-        let windows = self
-            .windows
-            .iter()
-            .map(|w| Window { first: half(w.first), last: w.last.saturating_sub(first) / 2, area: w.area })
-            .collect();
-        Self { windows, grounds: self.grounds.clone() }
+        let half = |w: &Window| Window {
+            first: w.first.saturating_sub(first).div_ceil(2),
+            last: w.last.saturating_sub(first) / 2,
+            ground: w.ground.clone(),
+        };
+        Self(self.0.iter().map(half).collect())
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The areas that count at all of the given stations of the steer axle.
+    fn count(&self, from: usize, to: usize) -> impl Iterator<Item = Option<&Ground>> {
+        self.0.iter().filter(move |w| w.first <= from && to <= w.last).map(|w| w.ground.as_deref())
     }
 
     /// Whether any area counts over the step from station `k` to the next.
     fn over(&self, k: usize) -> bool {
-        self.windows.iter().any(|w| w.first <= k && k < w.last)
+        self.count(k, k + 1).next().is_some()
     }
 
     /// Whether any area counts near the given stations of the steer axle.
     #[inline(always)]
     pub(super) fn touch(&self, from: usize, to: usize) -> bool {
-        self.windows.iter().any(|w| w.first <= to && from <= w.last)
+        self.0.iter().any(|w| w.first <= to && from <= w.last)
     }
 
     /// Whether areas count from the step before station `from` to the step behind station `to`. The corridor's edges then
     /// do not matter.
     #[inline(always)]
     pub(super) fn replace(&self, from: usize, to: usize) -> bool {
-        !self.windows.is_empty() && (from.saturating_sub(1)..=to).all(|k| self.over(k))
+        (from.saturating_sub(1)..=to).all(|k| self.over(k))
+    }
+
+    /// Whether an area begins to count at station `k`.
+    fn begins(&self, k: usize) -> bool {
+        self.0.iter().any(|w| w.first == k)
     }
 
     /// Whether other areas count over the step from station `k` to the next than over the step before.
     fn changes(&self, k: usize) -> bool {
-        self.windows.iter().any(|w| w.first == k || w.last == k)
-    }
-
-    /// The areas that count over the step from station `k` to the next.
-    fn at(&self, k: usize) -> impl Iterator<Item = Option<&Ground>> {
-        self.windows
-            .iter()
-            .filter(move |w| w.first <= k && k < w.last)
-            .map(|w| self.grounds.get(w.area).and_then(|ground| ground.as_deref()))
-    }
-
-    /// The areas that count at station `k`.
-    fn on(&self, k: usize) -> impl Iterator<Item = Option<&Ground>> {
-        self.windows
-            .iter()
-            .filter(move |w| w.first <= k && k <= w.last)
-            .map(|w| self.grounds.get(w.area).and_then(|ground| ground.as_deref()))
+        self.begins(k) || self.0.iter().any(|w| w.last == k)
     }
 }
 
 /// A unit at a head station.
-#[derive(Clone)]
 pub(super) struct Stand {
     head: usize,
     axle: Point,
@@ -214,10 +207,8 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
             {
                 let known = [minima.area[0][before.head], minima.area[1][before.head]];
                 let lowest = if closes {
-                    let mut rooms = std::mem::replace(&mut body.rooms, Rooms::new(&[]));
-                    let lowest = Passage::new(track, body, &before, &stand).lowest(&mut rooms, known);
-                    body.rooms = rooms;
-                    lowest
+                    let passage = Passage::new(track, (&body.points, body.half_width), &before, &stand);
+                    passage.lowest(&mut body.rooms, known)
                 } else {
                     [Lowest { leeway: FAR_OUTSIDE_M, point: Some(0) }; 2]
                 };
@@ -290,8 +281,9 @@ impl Rooms {
 
 /// One unit over the step between two stations.
 struct Passage<'a> {
-    track: &'a Track,
-    body: &'a Body,
+    areas: &'a Areas,
+    points: &'a [BodyPoint],
+    half_width: f64,
     before: &'a Stand,
     after: &'a Stand,
     /// Turn of the nominal heading, radians, and way of the axle, metres.
@@ -303,18 +295,24 @@ struct Passage<'a> {
 }
 
 impl<'a> Passage<'a> {
-    fn new(track: &'a Track, body: &'a Body, before: &'a Stand, after: &'a Stand) -> Self {
+    fn new(
+        track: &'a Track,
+        (points, half_width): (&'a [BodyPoint], f64),
+        before: &'a Stand,
+        after: &'a Stand,
+    ) -> Self {
         let (u, v) = (before.along, after.along);
         let turn = (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]).abs();
         let across = std::array::from_fn(|index| before.across[index].max(after.across[index]));
         let way = before.way.max(track.spacing);
-        Self { track, body, before, after, turn, way, across, heading: before.turned.max(after.turned) }
+        let heading = before.turned.max(after.turned);
+        Self { areas: &track.areas, points, half_width, before, after, turn, way, across, heading }
     }
 
     /// Bound of the first order across the heading, `ahead` metres ahead of the axle. It is convex: chords between body points are
     /// never below it, and it is nowhere steeper than the heading's bound.
     fn across_at(&self, ahead: f64) -> f64 {
-        let points = &self.body.points;
+        let points = self.points;
         let last = points.len() - 1;
         let (front, rear) = (points[0].spot.ahead, points[last].spot.ahead);
         if ahead >= front {
@@ -351,7 +349,7 @@ impl<'a> Passage<'a> {
 
     /// Most that a place may move in any direction.
     fn most(&self, across: f64, ahead: f64) -> f64 {
-        let (a, half) = (self.heading, self.body.half_width);
+        let (a, half) = (self.heading, self.half_width);
         let (across, along) = (across + 0.5 * half * a * a, half * a + 0.5 * ahead.abs() * a * a);
         (across * across + along * along).sqrt() * (1.0 + 0.125 * self.turn * self.turn)
     }
@@ -359,15 +357,15 @@ impl<'a> Passage<'a> {
     /// How far a point leaves the straight line between its places at both stations: the arc of the axle, the arc of the point around
     /// the axle, and an uneven turn.
     fn sag(&self, ahead: f64) -> f64 {
-        let lever = ahead.abs() + self.body.half_width;
+        let lever = ahead.abs() + self.half_width;
         let uneven = self.before.jerk.max(self.after.jerk) * self.way * self.way;
         0.125 * BETWEEN * (self.way * self.turn + lever * (self.turn * self.turn + uneven))
     }
 
     /// Room and leeway of a piece that has these ends at both stations: the greatest over the areas.
     fn room(&self, piece: &Swept<'_>, inside: bool) -> (f64, f64) {
-        let inside = inside && self.track.areas.at(self.before.head).nth(1).is_none();
-        let rooms = self.track.areas.at(self.before.head).map(|ground| match ground {
+        let inside = inside && self.areas.count(self.before.head, self.before.head + 1).nth(1).is_none();
+        let rooms = self.areas.count(self.before.head, self.before.head + 1).map(|ground| match ground {
             Some(ground) => ground.swept(piece, inside),
             None => (FAR_OUTSIDE_M, FAR_OUTSIDE_M),
         });
@@ -376,8 +374,8 @@ impl<'a> Passage<'a> {
 
     /// Leeway of the left or right half (0 or 1) of the front edge or the rear edge, at body point `index`.
     fn edge(&self, index: usize, side: usize, enough: f64) -> f64 {
-        let half = if side == 0 { self.body.half_width } else { -self.body.half_width };
-        let ahead = self.body.points[index].spot.ahead;
+        let half = if side == 0 { self.half_width } else { -self.half_width };
+        let ahead = self.points[index].spot.ahead;
         let ends = |stand: &Stand| [half, 0.0].map(|aside| stand.place(ahead, aside));
         let sag = self.sag(ahead);
         let most = self.most(self.across[index], ahead) + sag;
@@ -388,22 +386,23 @@ impl<'a> Passage<'a> {
 
     /// Whether something may already be under the body when the first step of an area begins.
     fn blocked(&self) -> bool {
-        let (half, last) = (self.body.half_width, self.body.points.len() - 1);
-        let (front, rear) = (self.body.points[0].spot.ahead, self.body.points[last].spot.ahead);
+        let (half, last) = (self.half_width, self.points.len() - 1);
+        let (front, rear) = (self.points[0].spot.ahead, self.points[last].spot.ahead);
         let corners = [(rear, -half), (front, -half), (front, half), (rear, half)];
         let outline = corners.map(|(ahead, aside)| self.before.place(ahead, aside));
-        self.track.areas.at(self.before.head).all(|ground| ground.is_none_or(|ground| ground.under(outline)))
+        self.areas
+            .count(self.before.head, self.before.head + 1)
+            .all(|ground| ground.is_none_or(|ground| ground.under(outline)))
     }
 
     /// The least leeways, left and right, or those in `known` where they are less.
     fn lowest(&self, rooms: &mut Rooms, known: [f64; 2]) -> [Lowest; 2] {
         let mut lowest = known.map(|leeway| Lowest { leeway, point: None });
-        let body = self.body;
-        rooms.enter(self.before.head, self.track.areas.changes(self.before.head));
-        if self.track.areas.windows.iter().any(|w| w.first == self.before.head) {
-            let (blocked, last) = (self.blocked(), body.points.len() - 1);
+        rooms.enter(self.before.head, self.areas.changes(self.before.head));
+        if self.areas.begins(self.before.head) {
+            let (blocked, last) = (self.blocked(), self.points.len() - 1);
             for (side, lowest) in lowest.iter_mut().enumerate() {
-                let leeway = if blocked { -body.half_width } else { self.edge(last, side, f64::INFINITY) };
+                let leeway = if blocked { -self.half_width } else { self.edge(last, side, f64::INFINITY) };
                 lowest.lower(leeway, last);
             }
         }
@@ -423,9 +422,9 @@ impl<'a> Passage<'a> {
     /// Lowers the least leeway of a piece's side.
     fn measure(&self, rooms: &mut Rooms, number: usize, lowest: &mut [Lowest; 2]) {
         let Some(piece) = rooms.pieces.get(number) else { return };
-        let (index, aside) = (piece.index, if piece.side == 0 { self.body.half_width } else { -self.body.half_width });
+        let (index, aside) = (piece.index, if piece.side == 0 { self.half_width } else { -self.half_width });
         let lowest = &mut lowest[piece.side];
-        let [ahead, behind] = [index - 1, index].map(|point| self.body.points[point].spot.ahead);
+        let [ahead, behind] = [index - 1, index].map(|point| self.points[point].spot.ahead);
         let sag = self.sag(ahead).max(self.sag(behind));
         let most = piece.ends.map(|ahead| self.most(self.across_at(ahead), ahead));
         let most = most[0].max(most[1]) + sag;
@@ -451,7 +450,7 @@ impl<'a> Passage<'a> {
 
 /// Lowers the planning leeways at the feet of a unit's points: the nominal room of the sides between them, less the straight gains.
 fn plan(track: &Track, body: &Body, stand: &Stand, feet: &[usize; MOST_POINTS], minima: &mut Minima) {
-    if track.areas.on(stand.head).next().is_none() {
+    if track.areas.count(stand.head, stand.head).next().is_none() {
         return;
     }
     for index in 0..body.points.len() {
@@ -463,8 +462,10 @@ fn plan(track: &Track, body: &Body, stand: &Stand, feet: &[usize; MOST_POINTS], 
             for part in 0..=parts as usize {
                 let share = part as f64 / parts;
                 let p = stand.place(from + (to - from) * share, aside);
-                let rooms =
-                    track.areas.on(stand.head).map(|ground| ground.map_or(FAR_OUTSIDE_M, |ground| ground.room(p)));
+                let rooms = track
+                    .areas
+                    .count(stand.head, stand.head)
+                    .map(|ground| ground.map_or(FAR_OUTSIDE_M, |ground| ground.room(p)));
                 let near = if share < 0.5 { before } else { index };
                 let point = &body.points[near];
                 let leeway = rooms.fold(FAR_OUTSIDE_M, f64::max) - point.spot.gain;
