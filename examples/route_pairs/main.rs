@@ -2,17 +2,19 @@
 //! over the whole route refuted its parts, and checks that no route is returned without a certificate.
 //!
 //! `cargo run --release --example route_pairs -- REGION.gpkg VEHICLE POLICY PAIRS`, with a database that certifies the
-//! vehicle's edges and turns. Pairs are drawn twice: among all safe edges, most of which no route joins, and within the
-//! largest part of the network in which every edge reaches every other one.
+//! vehicle's edges and turns. Pairs are drawn three times: among all safe edges, most of which no route joins, among the safe
+//! edges of main roads (tertiary and above), and within the largest part of the network in which every edge reaches every
+//! other one. For main roads it lists what blocks.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use netcert::osm::facts::Policy;
+use netcert::osm::facts::{Policy, RoadClass};
 use netcert::route::{
-    Answer, Driver, Graph, Measure, PartKind, Permit, Planner, Position, Question, Roads, Route, Speeds, components,
-    passes_over,
+    Answer, Driver, Graph, Measure, Obstacle, PartKind, Permit, Planner, Position, Question, Roads, Route, Speeds,
+    components, passes_over,
 };
 use netcert::stop::Stop;
 use netcert::store::Database;
@@ -21,6 +23,8 @@ use netcert::verdict::Verdict;
 use netcert::words::Named;
 use rayon::prelude::*;
 
+/// Edges shorter than this are inside junctions, metres.
+const SHORT_M: f64 = 30.0;
 /// Pairs that share a planner, and with it the corridors already made.
 const SHARED: u64 = 50;
 
@@ -84,7 +88,7 @@ impl Region {
         firsts.into_par_iter().flat_map_iter(shared).collect()
     }
 
-    fn tell(&self, from: &[u32], pairs: u64) {
+    fn tell(&self, from: &[u32], pairs: u64) -> Vec<Answer> {
         let start = Instant::now();
         let answers = self.answers(from, pairs);
         let seconds = start.elapsed().as_secs_f64();
@@ -112,6 +116,59 @@ impl Region {
             parts(&over),
             mean(answers.iter().filter_map(|a| a.obstacles.as_ref().map(Vec::len))),
         );
+        answers
+    }
+
+    /// Prints what blocks, each place once: on how many places, and between how many pairs.
+    fn tell_obstacles(&self, answers: &[Answer]) {
+        let mut places: BTreeMap<PartKind, (String, usize)> = BTreeMap::new();
+        for obstacle in answers.iter().filter_map(|answer| answer.obstacles.as_ref()).flatten() {
+            places.entry(obstacle.at).or_insert_with(|| (self.words(obstacle), 0)).1 += 1;
+        }
+        let mut kinds: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+        for (words, pairs) in places.values() {
+            let kind = kinds.entry(words).or_default();
+            *kind = (kind.0 + 1, kind.1 + pairs);
+        }
+        let mut kinds: Vec<_> = kinds.into_iter().collect();
+        kinds.sort_by_key(|(_, (_, pairs))| std::cmp::Reverse(*pairs));
+        println!(
+            "  no lawful way: {}",
+            answers.iter().filter(|a| a.routes.is_empty() && a.obstacles.is_none()).count()
+        );
+        println!("  what blocks (places, pairs):");
+        for (words, (places, pairs)) in kinds {
+            println!("    {places:5} {pairs:5}  {words}");
+        }
+    }
+
+    fn words(&self, obstacle: &Obstacle) -> String {
+        let network = &self.roads.network;
+        let edge = |edge: u32| &network.edges[edge as usize];
+        let missing = match obstacle.missing_m {
+            None => "no number".to_owned(),
+            Some(m) => ["to 0.3 m", "to 1 m", "to 3 m", "more"]
+                [[0.3, 1.0, 3.0].iter().filter(|most| m > **most).count()]
+            .to_owned(),
+        };
+        let verdict = format!("{:?}", obstacle.permit.verdict);
+        let whole = if obstacle.refuted { ", refuted as a whole" } else { "" };
+        match obstacle.at {
+            PartKind::Edge(at) => {
+                let road = network.road(edge(at));
+                let main = if road.class <= RoadClass::Tertiary { "main" } else { "minor" };
+                let link = if road.link { " link" } else { "" };
+                format!("edge, {main}{link}, {verdict}, {missing}{whole}")
+            }
+            at @ PartKind::Turn { from, to } => {
+                let kind = if passes_over(network, at) { "passage" } else { "turn" };
+                let main = |at: u32| network.road(edge(at)).class <= RoadClass::Tertiary;
+                let short = [from, to].iter().any(|&at| network.length_m(edge(at)) < SHORT_M);
+                let main = ["minor", "minor and main", "main"][usize::from(main(from)) + usize::from(main(to))];
+                let short = if short { ", beside a short edge" } else { "" };
+                format!("{kind}, {main}{short}, {verdict}, {missing}{whole}")
+            }
+        }
     }
 }
 
@@ -141,6 +198,11 @@ fn main() {
     );
     println!(" among all safe edges:");
     region.tell(&safe, pairs);
+    let network = &region.roads.network;
+    let main = |edge: &u32| network.road(&network.edges[*edge as usize]).class <= RoadClass::Tertiary;
+    let main_roads: Vec<u32> = safe.iter().copied().filter(main).collect();
+    println!(" among the {} safe edges of main roads:", main_roads.len());
+    region.tell_obstacles(&region.tell(&main_roads, pairs));
     let parts = components(&region.graph(), &permits.access(&region.roads.movements));
     let largest: Vec<u32> = safe.iter().copied().filter(|&edge| parts.of[edge as usize] == Some(0)).collect();
     println!(" among the {} edges of the largest of {} parts:", largest.len(), parts.count);
