@@ -11,8 +11,8 @@ const CELL_M: f64 = 3.0;
 const FAR_M: f64 = 4.0;
 /// Most cells of a grid. An area of a square kilometre has a ninth of it.
 const MOST_CELLS: usize = 1 << 20;
-/// Distance between the places at which a piece outside the area is measured, metres.
-const SAMPLED_M: f64 = 0.1;
+/// How much deeper outside than measured a piece is taken to be, metres.
+const ROUNDED_M: f64 = 0.1;
 
 /// A piece of a side over a step.
 pub(super) struct Swept<'a> {
@@ -27,6 +27,25 @@ pub(super) struct Swept<'a> {
 }
 
 impl Swept<'_> {
+    /// The piece at both stations, prolonged by what it slides along itself: what is left is its way across, and the difference
+    /// of its two directions, metres.
+    fn unslid(&self) -> ([Point; 2], [Point; 2], f64) {
+        let (mut before, mut after) = (self.before, self.after);
+        let unit = |piece: [Point; 2]| {
+            let length = apart(piece[0], piece[1]).max(1e-9);
+            [0, 1].map(|k| (piece[0][k] - piece[1][k]) / length)
+        };
+        let (u, v) = (unit(before), unit(after));
+        let slid: f64 = [0, 1].map(|k| u[k] * (after[1][k] - before[1][k])).iter().sum();
+        let (ahead, behind) = if slid > 0.0 { (0, 1) } else { (1, 0) };
+        for k in 0..2 {
+            before[ahead][k] += slid * u[k];
+            after[behind][k] -= slid * v[k];
+        }
+        let turned = [0, 1].map(|k| before[0][k] - before[1][k] - after[0][k] + after[1][k]);
+        (before, after, apart(turned, [0.0; 2]))
+    }
+
     /// Most that the piece may come closer to what is `gap` away from it, in metres and direction. An end that is farther back may
     /// move more.
     fn stray_towards(&self, gap: Point, far: f64) -> f64 {
@@ -189,7 +208,7 @@ impl Ground {
     pub(super) fn swept(&self, piece: &Swept<'_>, inside: bool) -> (f64, f64) {
         let corners = [piece.before[0], piece.before[1], piece.after[1], piece.after[0]];
         let outside = || {
-            let depth = self.depth(piece.before, piece.after);
+            let depth = self.depth(piece);
             (-depth, -depth - piece.most)
         };
         let middle = [0, 1].map(|k| 0.25 * corners.iter().map(|p| p[k]).sum::<f64>());
@@ -225,26 +244,37 @@ impl Ground {
         (room, leeway)
     }
 
-    /// How far a swept piece is outside at most, metres. Measured at places of the piece before and after; every place of the hull is
-    /// close to one of these.
-    fn depth(&self, before: [Point; 2], after: [Point; 2]) -> f64 {
-        let length = apart(before[0], before[1]);
-        let parts = (length / SAMPLED_M).ceil().max(1.0);
-        let mut deepest = 0.0_f64;
-        for piece in [before, after] {
-            for i in 0..=parts as usize {
-                let part = i as f64 / parts;
-                let p = [0, 1].map(|k| piece[0][k] + part * (piece[1][k] - piece[0][k]));
-                deepest = deepest.max(-self.room(p));
+    /// How far a swept piece is outside at most, metres: at least as deep as any place of its hull, and little deeper unless the leeway
+    /// is enough. Rooms change no faster than places, so a place speaks for those around it.
+    fn depth(&self, swept: &Swept<'_>) -> f64 {
+        let between = |a: Point, b: Point, part: f64| [0, 1].map(|k| a[k] + part * (b[k] - a[k]));
+        let (before, after, turned) = swept.unslid();
+        let length = apart(before[0], before[1]).max(apart(after[0], after[1]));
+        let way = apart(before[0], after[0]).max(apart(before[1], after[1]));
+        let (mut deepest, mut most) = (0.0_f64, 0.0_f64);
+        // The parts of the piece and of the step, by their middle and half of their extent.
+        let mut open = vec![([0.5; 2], [0.5 * length, 0.5 * way])];
+        while let Some(([part, moment], [half_length, half_way])) = open.pop() {
+            let [front, rear] = [0, 1].map(|i| between(before[i], after[i], moment));
+            let depth = -self.room(between(front, rear, part));
+            deepest = deepest.max(depth);
+            let bound = depth + half_length + half_way;
+            if bound.is_nan() {
+                return f64::INFINITY;
+            }
+            let close = bound <= deepest + ROUNDED_M || -bound - swept.most >= swept.enough;
+            if close {
+                most = most.max(bound);
+            } else if half_length >= half_way {
+                let by = 0.5 * half_length / length;
+                open.extend([part - by, part + by].map(|part| ([part, moment], [0.5 * half_length, half_way])));
+            } else {
+                let by = 0.5 * half_way / way;
+                open.extend([moment - by, moment + by].map(|moment| ([part, moment], [half_length, 0.5 * half_way])));
             }
         }
-        let along = [0, 1].map(|k| (before[1][k] - before[0][k]) / length.max(1e-9));
-        let aside = |i: usize| {
-            let moved = [0, 1].map(|k| after[i][k] - before[i][k]);
-            (along[0] * moved[1] - along[1] * moved[0]).abs()
-        };
-        // A piece slides along itself, so the places between two samples are close to a sample of either moment.
-        deepest + 0.5 * (length / parts) + 0.5 * aside(0).max(aside(1))
+        // A place of the hull between two of the piece's own is off the piece by at most that much.
+        most + 0.25 * turned
     }
 
     /// Whether any vertex of the boundary lies within a rectangle: an island may be so small that no side of it is near.
@@ -388,6 +418,45 @@ mod tests {
     fn a_piece_that_passes_an_edge_between_two_moments_does_not_fit() {
         assert!(room([[3.5, 3.0], [4.5, 3.0]], [[3.5, 8.0], [4.6, 8.0]]) < 0.0);
         assert!((room([[17.0, 1.0], [17.0, 2.0]], [[18.0, 1.5], [18.5, 2.5]]) - 1.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_outside_is_as_deep_as_its_deepest_place() {
+        let ground = yard();
+        let mut state = 7_u32;
+        let mut draw = |least: f64, most: f64| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            least + (most - least) * f64::from(state >> 8) / f64::from(1_u32 << 24)
+        };
+        for _ in 0..300 {
+            let (at, heading, turn) = ([draw(15.0, 24.0), draw(-6.0, 6.0)], draw(-3.2, 3.2), draw(-0.1, 0.1));
+            let (length, slid, aside) = (draw(0.0, 1.5), draw(-1.0, 1.0), draw(-0.8, 0.8));
+            let ends = |at: Point, heading: f64| [at, [at[0] - length * heading.cos(), at[1] - length * heading.sin()]];
+            let moved = [
+                at[0] + slid * heading.cos() - aside * heading.sin(),
+                at[1] + slid * heading.sin() + aside * heading.cos(),
+            ];
+            let (before, after) = (ends(at, heading), ends(moved, heading + turn));
+            let mut deepest = 0.0_f64;
+            for i in 0..=40 {
+                for j in 0..=40 {
+                    let (part, moment) = (f64::from(i) / 40.0, f64::from(j) / 40.0);
+                    let between = |a: Point, b: Point, t: f64| [0, 1].map(|k| a[k] + t * (b[k] - a[k]));
+                    let piece = [0, 1].map(|end| between(before[end], after[end], moment));
+                    deepest = deepest.max(-ground.room(between(piece[0], piece[1], part)));
+                }
+            }
+            let depth = |enough: f64| {
+                let swept = Swept { before, after, most: 0.0, enough, stray: &|_| [0.0; 2] };
+                ground.depth(&swept)
+            };
+            // What slides is prolonged, and the prolonged piece goes aside and turns, too.
+            let off = aside.abs() + turn.abs() * (length + slid.abs());
+            let found = depth(f64::INFINITY);
+            assert!(found >= deepest, "{found} {deepest}: {before:?} {after:?}");
+            assert!(found <= deepest + ROUNDED_M + off + 0.02, "{found} {deepest}: {before:?} {after:?}");
+            assert!(depth(-1.0) >= deepest);
+        }
     }
 
     #[test]
