@@ -10,8 +10,9 @@ use geo::{BooleanOps, MultiPolygon, Polygon};
 use super::TurnParams;
 use super::area::{CROSSING_M, Corner, along, polygon, rounded};
 use super::path::wrapped;
+use super::surface::surface;
 use crate::corridor::Frame;
-use crate::network::{Edge, Movement, Network, Road};
+use crate::network::{Edge, Network, Road};
 use crate::osm::facts::Direction;
 
 /// Length of another road's mouth that bodies may overhang, from the node, metres. Parts that two roads share end there,
@@ -32,16 +33,16 @@ struct Mouth<'a> {
     own: bool,
 }
 
-/// The parts of the crossing at the end of a movement's first edge.
+/// The parts of the crossing at the end of the first of two edges, beside the strips of their roads.
 pub(super) fn parts(
     network: &Network,
-    movement: Movement,
+    own: [u32; 2],
     frame: Frame,
     params: &TurnParams,
-    surface: Option<&MultiPolygon>,
+    mapped: Option<&MultiPolygon>,
 ) -> Vec<Polygon> {
-    let Some(node) = network.edges.get(movement.from as usize).map(|edge| edge.to_node) else { return Vec::new() };
-    let mouths = mouths(network, node, movement, frame, params);
+    let Some(node) = network.edges.get(own[0] as usize).map(|edge| edge.to_node) else { return Vec::new() };
+    let mouths = mouths(network, node, own, frame, params);
     if mouths.iter().any(|mouth| mouth.road.roundabout) {
         return Vec::new();
     }
@@ -59,22 +60,30 @@ pub(super) fn parts(
         let b = &mouths[(i + 1) % mouths.len()];
         // The turn's own corner is made from its corridors.
         if !(a.own && b.own) {
-            parts.extend(corner(a, b, params, surface));
+            parts.extend(corner(a, b, params, mapped));
         }
     }
     parts
 }
 
+/// The parts of a crossing that two edges of one road pass. A node without another road has none.
+pub(super) fn passed(network: &Network, own: [u32; 2], frame: Frame, params: &TurnParams) -> Vec<Polygon> {
+    let [Some(before), Some(after)] = own.map(|edge| network.edges.get(edge as usize)) else { return Vec::new() };
+    let piece = |edge: &Edge| (edge.road, edge.shape.start);
+    let meets = |edge: &u32| {
+        let edge = network.edges.get(*edge as usize);
+        edge.is_some_and(|edge| ![piece(before), piece(after)].contains(&piece(edge)))
+    };
+    if !network.crossings.at(before.to_node).iter().any(meets) {
+        return Vec::new();
+    }
+    let mapped = surface(network, before.to_node, [network.road(before), network.road(after)], frame);
+    parts(network, own, frame, params, mapped.as_ref())
+}
+
 /// The mouths around a node, counter-clockwise.
-fn mouths<'a>(
-    network: &'a Network,
-    node: i64,
-    movement: Movement,
-    frame: Frame,
-    params: &TurnParams,
-) -> Vec<Mouth<'a>> {
-    let own: Vec<&Edge> =
-        [movement.from, movement.to].into_iter().filter_map(|edge| network.edges.get(edge as usize)).collect();
+fn mouths<'a>(network: &'a Network, node: i64, own: [u32; 2], frame: Frame, params: &TurnParams) -> Vec<Mouth<'a>> {
+    let own: Vec<&Edge> = own.into_iter().filter_map(|edge| network.edges.get(edge as usize)).collect();
     let mut pieces: Vec<&Edge> = Vec::new();
     for edge in network.crossings.at(node).iter().filter_map(|&edge| network.edges.get(edge as usize)) {
         if !pieces.iter().any(|known| known.road == edge.road && known.shape == edge.shape) {
@@ -152,7 +161,7 @@ fn shared(a: &Mouth<'_>, b: &Mouth<'_>) -> Vec<Polygon> {
 }
 
 /// The corner between a mouth and the next one counter-clockwise.
-fn corner(a: &Mouth<'_>, b: &Mouth<'_>, params: &TurnParams, surface: Option<&MultiPolygon>) -> Vec<Polygon> {
+fn corner(a: &Mouth<'_>, b: &Mouth<'_>, params: &TurnParams, mapped: Option<&MultiPolygon>) -> Vec<Polygon> {
     let between = (b.bearing - a.bearing).rem_euclid(std::f64::consts::TAU);
     if between >= std::f64::consts::PI {
         return Vec::new();
@@ -174,7 +183,7 @@ fn corner(a: &Mouth<'_>, b: &Mouth<'_>, params: &TurnParams, surface: Option<&Mu
             line
         }
     };
-    match surface {
+    match mapped {
         Some(surface) => Corner::between([&kerb(0, 0.0), &kerb(1, 0.0)], turn_rad)
             .map_or_else(Vec::new, |corner| corner.mapped(surface)),
         None => rounded(&kerb, turn_rad, params.kerbs.radius_m(a.road, b.road)).into_iter().collect(),

@@ -7,7 +7,7 @@ use super::TurnParams;
 use super::area::{Ground, along, segments_cross};
 use super::arm::{Arm, StrokeLine};
 use super::code::Shape;
-use super::crossing;
+use super::crossing::{parts, passed};
 use super::path::{self, wrapped};
 use super::surface::surface;
 use crate::corridor::Frame;
@@ -23,6 +23,8 @@ const MEET_M: f64 = 90.0;
 const JOIN_M: f64 = 23.0;
 /// Straight extension of a centreline that ends, metres.
 const PROLONGED_M: f64 = 30.0;
+/// Nodes along the two roads within this distance of the turn's node belong to the same junction, metres.
+const COMPLEX_M: f64 = 30.0;
 /// Smaller lateral moves and angles are none, metres and radians.
 const LEAST_SWING: f64 = 0.01;
 
@@ -77,7 +79,7 @@ impl Junction {
             policy,
             left_hand_traffic: from.left_hand_traffic,
             kerb_radius_m: params.kerbs.radius_m(from, to),
-            crossing: crossing::parts(network, movement, frame, params, surface.as_ref()),
+            crossing: crossing(network, movement, lines, frame, params, surface.as_ref()),
             surface,
             reach,
             meeting: None,
@@ -184,4 +186,32 @@ impl Junction {
         }
         best.map(|(_, at)| at)
     }
+}
+
+/// What the junction has beside the two roads: at the turn's node, and at the nodes close to it along both roads. Where a road
+/// meets two carriageways, a ramp with two mouths or two staggered roads, all of that is one junction.
+fn crossing(
+    network: &Network,
+    movement: Movement,
+    lines: [&StrokeLine; 2],
+    frame: Frame,
+    params: &TurnParams,
+    surface: Option<&MultiPolygon>,
+) -> Vec<Polygon> {
+    let mut all = parts(network, [movement.from, movement.to], frame, params, surface);
+    for (line, edge, arrives) in [(lines[0], movement.from, true), (lines[1], movement.to, false)] {
+        let spans = &line.made.spans;
+        let Some(own) = spans.iter().find(|span| span.edge == edge) else { continue };
+        let node = if arrives { own.stations.end - 1 } else { own.stations.start };
+        let near = (COMPLEX_M / line.made.corridor.spacing_m) as usize;
+        for [before, after] in spans.array_windows() {
+            let at = after.stations.start;
+            // The turn's own node is at the end or at the beginning of its edge.
+            let other = if arrives { before.edge != edge } else { after.edge != edge };
+            if other && at.abs_diff(node) <= near {
+                all.extend(passed(network, [before.edge, after.edge], frame, params));
+            }
+        }
+    }
+    all
 }
