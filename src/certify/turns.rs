@@ -29,6 +29,9 @@ const KEPT_BATCHES: usize = 6;
 const HOPELESS_M: f64 = 0.4;
 /// A safe path with this RSC is good enough; no other one is tried, metres.
 const ENOUGH_M: f64 = 0.2;
+/// If no more than this is missing, more paths are tried, metres; and how many.
+const NEARLY_M: f64 = 0.3;
+const MORE_PATHS: usize = 8;
 
 /// Inputs of a certification of turns.
 #[derive(Clone, Copy)]
@@ -248,6 +251,11 @@ struct Best {
 }
 
 impl Best {
+    /// Whether little is missing, so another path may fit.
+    fn nearly_fits(&self) -> bool {
+        !self.result.safe() && self.result.rsc_m.is_some_and(|m| m >= -NEARLY_M)
+    }
+
     fn suffices(&self) -> bool {
         self.result.safe() && self.result.rsc_m.is_some_and(|m| m >= ENOUGH_M)
     }
@@ -260,27 +268,44 @@ fn best_planned(made: &TurnCorridors, models: &[&Model], options: &Options) -> V
 
 fn best_path(made: &TurnCorridors, planner: &mut Planner<'_>, model: &Model, options: &Options) -> Option<Best> {
     let mut best: Option<Best> = None;
+    let mut tried: Vec<i64> = Vec::new();
     for planned in planner.plan(&model.vehicle) {
         let hope = planned.score_m >= -HOPELESS_M;
         if !hope && best.is_some() {
             break;
         }
-        let Some(path) = made.path(planned.code) else { continue };
-        // The planned path as it is, then with corrections, which may steer more sharply.
-        let plain = Options { max_shift_m: 0.0, correction_sweeps: 0 };
-        for options in [Some(plain), hope.then_some(*options)].into_iter().flatten() {
-            let rows = certify_spans(&path.corridor, &[model], std::slice::from_ref(&path.counted), &options);
-            let Some(row) = rows.into_iter().next() else { continue };
-            let Some(result) = row.spans.into_iter().next() else { continue };
-            if best.as_ref().is_none_or(|known| better(&result, &known.result)) {
-                best = Some(Best { path: path.clone(), result, plan: row.plan });
-            }
-            if best.as_ref().is_some_and(Best::suffices) {
-                return best;
+        tried.push(planned.code);
+        try_path(made, planned.code, model, hope.then_some(options), &mut best);
+        if best.as_ref().is_some_and(Best::suffices) {
+            return best;
+        }
+    }
+    if best.as_ref().is_some_and(Best::nearly_fits) {
+        for planned in planner.best_seeds(&model.vehicle, MORE_PATHS).iter().filter(|p| !tried.contains(&p.code)) {
+            try_path(made, planned.code, model, Some(options), &mut best);
+            if best.as_ref().is_some_and(|best| best.result.safe()) {
+                break;
             }
         }
     }
     best
+}
+
+/// Certifies a path as planned, then with corrections, which may steer more sharply. Keeps the better result.
+fn try_path(made: &TurnCorridors, code: i64, model: &Model, corrected: Option<&Options>, best: &mut Option<Best>) {
+    let Some(path) = made.path(code) else { return };
+    let plain = Options { max_shift_m: 0.0, correction_sweeps: 0 };
+    for options in [Some(&plain), corrected].into_iter().flatten() {
+        let rows = certify_spans(&path.corridor, &[model], std::slice::from_ref(&path.counted), options);
+        let Some(row) = rows.into_iter().next() else { continue };
+        let Some(result) = row.spans.into_iter().next() else { continue };
+        if best.as_ref().is_none_or(|known| better(&result, &known.result)) {
+            *best = Some(Best { path: path.clone(), result, plan: row.plan });
+        }
+        if best.as_ref().is_some_and(Best::suffices) {
+            return;
+        }
+    }
 }
 
 /// Orders results: safe first, then closed bounds, then the greater RSC. Ties keep the first one.
