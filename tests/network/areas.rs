@@ -17,6 +17,10 @@ use crate::support::junctions::Drawn;
 
 /// Two roads of 7.5 m. A lorry from E to C turns round the corner in the south-east.
 fn cross() -> AsciiMap {
+    cross_of("width=7.5")
+}
+
+fn cross_of(width: &str) -> AsciiMap {
     AsciiMap::drawn(
         60.0,
         "
@@ -27,8 +31,8 @@ fn cross() -> AsciiMap {
             E
         ",
     )
-    .way("ABC", "highway=secondary width=7.5")
-    .way("DBE", "highway=secondary width=7.5")
+    .way("ABC", &format!("highway=secondary {width}"))
+    .way("DBE", &format!("highway=secondary {width}"))
 }
 
 const SURFACE: &str = "area:highway=secondary";
@@ -48,11 +52,13 @@ fn rsc_m(map: &AsciiMap, kerb_m: f64) -> f64 {
 
 #[test]
 fn a_mapped_surface_stands_for_the_kerb() {
-    let (sharp, wide) = (rsc_m(&cross(), 0.0), rsc_m(&cross().area('B', &square(25.0), SURFACE), 0.0));
+    // Without a kerb return the corner is too sharp for the lorry.
+    let narrow = || cross_of("width=7");
+    let (sharp, wide) = (rsc_m(&narrow(), 0.0), rsc_m(&narrow().area('B', &square(25.0), SURFACE), 0.0));
     assert!(sharp < 0.0 && wide > 0.5, "{sharp} {wide}");
     // As mapped, and no rounder, whatever is assumed elsewhere.
-    let tight = cross().area('B', &square(4.0), SURFACE);
-    assert!((rsc_m(&tight, 15.0) - sharp).abs() < 0.2 && rsc_m(&cross(), 15.0) > sharp + 0.5);
+    let tight = narrow().area('B', &square(4.0), SURFACE);
+    assert!((rsc_m(&tight, 15.0) - sharp).abs() < 0.2 && rsc_m(&narrow(), 15.0) > sharp + 0.5);
     let drawn = Drawn::new(&tight, false, 15.0);
     for turn in drawn.facts() {
         assert_eq!((turn.kerb_radius_m, turn.kerb_source), (None, Some(KerbSource::Mapped)));

@@ -2,7 +2,6 @@
 //! an estimate of the tubes, and less where the path asks for more steering or bending than is prudent.
 
 use super::field::Field;
-use crate::stet::motion::follow;
 use crate::turns::corridors::TurnCorridors;
 use crate::vehicle::{Unit, Vehicle};
 
@@ -90,6 +89,31 @@ impl<'a> Scorer<'a> {
         }
         Some(least_m - PER_RAD_M * beyond_rad)
     }
+}
+
+/// Turns the units' headings as the steer axle moves by `step`. Roads and turns are made without the prover, so this is
+/// its own.
+fn follow(headings: &mut [[f64; 2]], mut step: [f64; 2], units: &[Unit]) {
+    for (heading, unit) in headings.iter_mut().zip(units) {
+        let turned = turned(*heading, step, unit.coupling_to_axle_m);
+        let reach = unit.coupling_to_axle_m + unit.hitch_offset_m;
+        step = [step[0] - reach * (turned[0] - heading[0]), step[1] - reach * (turned[1] - heading[1])];
+        *heading = turned;
+    }
+}
+
+/// The heading after the front coupling has moved by `step`, as in the kernel's nominal motion.
+fn turned(heading: [f64; 2], step: [f64; 2], length_m: f64) -> [f64; 2] {
+    let moved = step[0].hypot(step[1]);
+    if moved < 1e-12 {
+        return heading;
+    }
+    let sine = heading[0] * step[1] - heading[1] * step[0];
+    let cosine = heading[0] * step[0] + heading[1] * step[1];
+    let half = sine / (moved + cosine).max(f64::MIN_POSITIVE) * (-moved / length_m).exp();
+    let (cos, sin) = ((1.0 - half * half) / (1.0 + half * half), 2.0 * half / (1.0 + half * half));
+    let ahead = [step[0] / moved, step[1] / moved];
+    [ahead[0] * cos + ahead[1] * sin, ahead[1] * cos - ahead[0] * sin]
 }
 
 /// Least distance of a unit's sides from the boundary, where it is below `least_m`. Distance changes by no more than

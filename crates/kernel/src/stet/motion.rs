@@ -44,7 +44,7 @@ pub fn sweep_path(path: &[[f64; 2]], vehicle: &Vehicle) -> Vec<Vec<Pose>> {
 }
 
 /// Turns the units' headings (front to rear, unit vectors) as the steer axle moves by `step`, metres.
-pub fn follow(headings: &mut [[f64; 2]], mut step: [f64; 2], units: &[Unit]) {
+fn follow(headings: &mut [[f64; 2]], mut step: [f64; 2], units: &[Unit]) {
     for (heading, unit) in headings.iter_mut().zip(units) {
         let turned = turn(*heading, step, unit.coupling_to_axle_m);
         let reach = unit.coupling_to_axle_m + unit.hitch_offset_m;
