@@ -53,7 +53,7 @@ fn rsc_m(map: &AsciiMap, kerb_m: f64) -> f64 {
 #[test]
 fn a_mapped_surface_stands_for_the_kerb() {
     // Without a kerb return the corner is too sharp for the lorry.
-    let narrow = || cross_of("width=7");
+    let narrow = || cross_of("width=7.3");
     let (sharp, wide) = (rsc_m(&narrow(), 0.0), rsc_m(&narrow().area('B', &square(25.0), SURFACE), 0.0));
     assert!(sharp < 0.0 && wide > 0.5, "{sharp} {wide}");
     // As mapped, and no rounder, whatever is assumed elsewhere.
