@@ -21,7 +21,7 @@ use rayon::prelude::*;
 
 /// Angles of the turns, degrees.
 const ANGLES_DEG: std::ops::RangeInclusive<f64> = 60.0..=105.0;
-/// Room undisturbed with which a turn counts as drivable, metres; each with the room below which the next class begins.
+/// Bounds between classes of undisturbed room, metres. From the second bound on a turn counts as drivable.
 const SPARE_M: [f64; 3] = [0.15, 0.3, 0.5];
 
 /// A turn on a drawn crossing.
