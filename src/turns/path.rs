@@ -20,6 +20,8 @@ impl Pose {
 
 /// Distance between a path's points, metres.
 pub(super) const STEP_M: f64 = 0.5;
+/// Shorter straight lines are points, metres.
+const LEAST_STRAIGHT_M: f64 = 1e-6;
 /// Simpson's steps per transition, to find where a turn ends.
 const FINE: usize = 12;
 /// Smallest radius, metres. No vehicle of the catalogue turns more tightly.
@@ -68,11 +70,14 @@ pub(super) fn corner(a: Pose, b: Pose, shares: [f64; 2], step_m: f64) -> Option<
     Some(points)
 }
 
-/// Points from `from` along `u` over `length_m`. The last point is exactly at the end.
+/// Points from `from` along `u` over `length_m`. The last point is exactly at the end, however short the line is: a path
+/// that left out a few centimetres would miss the place where it goes on.
 fn straight(from: [f64; 2], u: [f64; 2], length_m: f64, step_m: f64) -> Vec<[f64; 2]> {
-    let steps = (length_m / step_m).round().max(0.0) as usize;
-    let length_m = if steps == 0 { 0.0 } else { length_m };
-    (0..=steps).map(|i| super::area::along(from, u, length_m * i as f64 / steps.max(1) as f64)).collect()
+    if length_m < LEAST_STRAIGHT_M {
+        return vec![from];
+    }
+    let steps = (length_m / step_m).round().max(1.0);
+    (0..=steps as usize).map(|i| super::area::along(from, u, length_m * i as f64 / steps)).collect()
 }
 
 /// Transition, arc and transition to the left with radius 1, from the origin along x.
@@ -208,6 +213,19 @@ mod tests {
                 let n = points.len();
                 let first = bend(&points[..3]).abs();
                 assert!(first < sharpest(&points) && bend(&points[n - 3..]).abs() < sharpest(&points));
+            }
+        }
+    }
+
+    #[test]
+    fn a_corner_with_a_short_straight_line_ends_where_it_shall() {
+        let a = Pose { at: [0.0; 2], heading: 0.0 };
+        for unequal_m in [0.001, 0.05, 0.1, 0.2, 0.24, 0.26] {
+            for tangents in [[20.0 + unequal_m, 20.0], [20.0, 20.0 + unequal_m]] {
+                let b = Pose { at: tangents, heading: FRAC_PI_2 };
+                let points = corner(a, b, [0.2; 2], STEP_M).unwrap();
+                let end = points.last().unwrap();
+                assert!((end[0] - b.at[0]).hypot(end[1] - b.at[1]) < 1e-3, "{tangents:?}: {end:?}");
             }
         }
     }
