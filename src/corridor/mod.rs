@@ -75,6 +75,9 @@ pub struct EdgeSpan {
 pub struct StrokeCorridor {
     /// The corridor in the stroke's metric frame.
     pub corridor: Corridor,
+    /// Edges of the strip at each station as the map has them, metres to the left of the centreline: `[left, right]`. The corridor is
+    /// narrower where the strip tapers to that of the next edge. Never inside the corridor.
+    pub untapered: Vec<[f64; 2]>,
     /// The edges' spans in driving order.
     pub spans: Vec<EdgeSpan>,
     /// Changes from one cross section to the next, in driving order.

@@ -6,7 +6,7 @@
 use super::course::{Course, Link, Piece, Room, closed_course, open_course};
 use super::frame::Frame;
 use super::merge::Jog;
-use super::profile::{Across, CHANGE_M, Gap, Stretch, limit_offset, profile};
+use super::profile::{Across, CHANGE_M, Gap, Profile, Stretch, limit_offset, profile};
 use super::resample::{ArcLength, LEAST_OFFSET_FACTOR, Track};
 use super::smooth::{Smoothed, Smoothing, smooth};
 use super::taper::{Ramp, guideline_ratio};
@@ -24,6 +24,8 @@ const LEAST_EDGE_M: f64 = 0.01;
 const LEAST_SPEED: f64 = 0.3;
 /// Least change of width that is listed as a taper, metres.
 const LEAST_TAPER_M: f64 = 0.05;
+/// Where two sections meet, the narrower one counts for this distance to both sides, metres. Stations are closer.
+const BESIDE_M: f64 = 1.5;
 /// |κ|·half-width from which normals nearly cross inside the corridor.
 const MOST_CROSSING: f64 = 0.98;
 
@@ -51,7 +53,8 @@ pub fn stroke_corridor(
     let asked = Smoothing { tolerance_m: params.tolerance_m, cutoff_m: params.cutoff_m };
     let smoothed = smooth(&course.line, asked);
     let stretches = stretches(&links, &course.pieces).ok_or(UnknownReason::Width)?;
-    let (mut profile, ramps) = profile(&stretches, &aside, &gaps(network, &links, &course, &smoothed));
+    let gaps = gaps(network, &links, &course, &smoothed);
+    let (mut profile, ramps) = profile(&stretches, &aside, &gaps);
     let folded = limit_offset(&mut profile, &smoothed.curve, 1.0 - LEAST_OFFSET_FACTOR, LEAST_SPEED);
 
     let track = Track { curve: &|u| smoothed.curve.at(u), profile: &profile };
@@ -67,7 +70,9 @@ pub fn stroke_corridor(
         station(from)..station(to) + 1
     };
     let tapers = tapers(&stretches, &jogs, &ramps, &stations);
-    Ok(StrokeCorridor { corridor, spans, tapers })
+    let untapered = Untapered { stretches: &stretches, aside: &aside, gaps: &gaps, profile: &profile, arc: &arc };
+    let untapered = untapered.edges(&corridor);
+    Ok(StrokeCorridor { corridor, untapered, spans, tapers })
 }
 
 /// The tapers, in the order of the line.
@@ -102,6 +107,41 @@ fn tapers(
     }
     tapers.sort_by(|a, b| a.0.total_cmp(&b.0));
     tapers.into_iter().map(|(_, taper)| taper).collect()
+}
+
+/// The strips without the tapers between them.
+struct Untapered<'c> {
+    stretches: &'c [Stretch],
+    aside: &'c [Ramp],
+    gaps: &'c [Gap],
+    profile: &'c Profile,
+    arc: &'c ArcLength,
+}
+
+impl Untapered<'_> {
+    /// The edges of the strip at every station. Where two sections meet, what they have in common counts. Near a narrow place the
+    /// corridor's own edges count.
+    fn edges(&self, c: &Corridor) -> Vec<[f64; 2]> {
+        let mut hint = 0;
+        let mut first = 0;
+        (0..c.len())
+            .map(|k| {
+                let own = [c.left_m[k], -c.right_m[k]];
+                let u = self.arc.parameter(k as f64 * c.spacing_m, &mut hint);
+                while self.stretches.get(first).is_some_and(|s| s.to < u - BESIDE_M) {
+                    first += 1;
+                }
+                let near = self.stretches.iter().skip(first).take_while(|s| s.from <= u + BESIDE_M);
+                let strip =
+                    near.map(|s| [s.strip.left_m, s.strip.right_m]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+                let narrow = self.gaps.iter().any(|gap| (gap.at - u).abs() < CHANGE_M);
+                let Some([left_m, right_m]) = strip.filter(|_| !narrow) else { return own };
+                let [_, _, middle_m] = self.profile.at(u)[0];
+                let by_m = self.aside.iter().map(|ramp| ramp.at(u)).sum::<f64>() - middle_m;
+                [own[0].max(left_m + by_m), own[1].min(right_m + by_m)]
+            })
+            .collect()
+    }
 }
 
 /// The data from which a span is cut.

@@ -202,6 +202,39 @@ fn the_kerb_lane_moves_over_at_full_width_where_a_lane_is_added() {
 }
 
 #[test]
+fn a_wide_road_before_a_narrow_one_has_its_own_width_without_the_taper() {
+    let wide = section(strip((4.0, -4.0)), strip((4.0, -4.0)));
+    let narrow = section(strip((2.5, -2.5)), strip((2.5, -2.5)));
+    let line = |from: i32, to: i32| (from..=to).map(|i| [50.0 * f64::from(i), 0.0]).collect::<Vec<_>>();
+    let (n, s) = network(&[(line(0, 4), wide), (line(4, 8), narrow)], false);
+    let made = stroke_corridor(&n, &s, Policy::Lane, &Params::default()).unwrap();
+    let c = &made.corridor;
+    assert_eq!(made.untapered.len(), c.len());
+    for (k, [left, right]) in made.untapered.iter().enumerate() {
+        let m = k as f64 * c.spacing_m;
+        let wanted = if m < 198.0 { 4.0 } else { 2.5 };
+        if !(198.0..199.0).contains(&m) {
+            assert!((left - wanted).abs() < 0.01 && (right + wanted).abs() < 0.01, "{m}: {left} {right}");
+        }
+        assert!(*left >= c.left_m[k] && *right <= -c.right_m[k]);
+    }
+    // The corridor itself tapers inside the wide road.
+    assert!(c.left_m[190] < 3.9, "{}", c.left_m[190]);
+}
+
+#[test]
+fn a_narrow_place_is_narrow_without_the_taper_too() {
+    let line: Vec<_> = (0..=10).map(|i| [20.0 * f64::from(i), 0.0]).collect();
+    let wide = strip((3.5, -3.5));
+    let (mut n, s) = network(&[(line, section(wide, wide))], false);
+    n.narrowings.push(Narrowing { vertex: 5, passage_m: 4.0 });
+    n.edges[0].narrowings = 0..1;
+    let made = stroke_corridor(&n, &s, Policy::Lane, &Params::default()).unwrap();
+    let [left, right] = made.untapered[100];
+    assert!((left - 2.0).abs() < 0.01 && (right + 2.0).abs() < 0.01, "{left} {right}");
+}
+
+#[test]
 fn a_narrow_place_narrows_a_few_metres_of_road() {
     let line: Vec<_> = (0..=10).map(|i| [20.0 * f64::from(i), 0.0]).collect();
     let (mut n, s) = network(&[(line, section(strip((0.0, -3.5)), strip((0.0, -3.5))))], false);

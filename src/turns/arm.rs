@@ -1,8 +1,8 @@
 //! A stroke near a junction: its corridor, and the extent of the road to both sides.
 //!
 //! A turn's approach and departure are windows of the corridors by which their edges are certified, so a route passes
-//! from one into the other without a seam. Road edges are measured from the corridor's own edges. A corridor that was
-//! narrowed (a taper, a narrow place) therefore narrows the junction with it.
+//! from one into the other without a seam. Road edges are measured from the strip's edges without tapers: a road that
+//! goes on narrower beyond the junction is as wide as mapped up to it. A narrow place narrows the junction with it.
 
 use super::Reach;
 use super::path::{Pose, hermite};
@@ -52,7 +52,8 @@ impl StrokeLine {
             let Some(edge) = network.edges.get(span.edge as usize) else { continue };
             let section = network.road(edge).sections[usize::from(edge.direction == Direction::Backward)];
             for k in span.stations.clone() {
-                direction[k] = wider(own[k], &section, policy, section.direction);
+                // A taper to the next edge narrows the corridor, not the road.
+                direction[k] = wider(made.untapered[k], &section, policy, section.direction);
                 carriageway[k] = wider(direction[k], &section, policy, section.carriageway.or(section.direction));
             }
         }
