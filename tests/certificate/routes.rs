@@ -11,6 +11,7 @@ use crate::support::extracts::extract;
 use crate::support::routing::{Driver, Region};
 
 use netcert::network::MovementKind;
+use netcert::osm::LonLat;
 use netcert::osm::facts::Policy;
 use netcert::route::{Measure, PartKind, Position, Question, Route};
 use netcert::stet::{self, Options};
@@ -86,7 +87,7 @@ fn turns(route: &Route) -> usize {
 
 /// The middle of an edge's longest piece.
 fn middle(region: &Region, edge: u32) -> Position {
-    let line: Vec<_> = region.network.positions(&region.network.edges[edge as usize]).map(|at| at.degrees()).collect();
+    let line: Vec<_> = region.network.positions(&region.network.edges[edge as usize]).map(LonLat::degrees).collect();
     let length = |pair: &&[(f64, f64)]| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1);
     let [a, b] = line.windows(2).max_by(|p, q| length(p).total_cmp(&length(q))).unwrap() else { unreachable!() };
     Position { lon: f64::midpoint(a.0, b.0), lat: f64::midpoint(a.1, b.1) }
