@@ -165,7 +165,10 @@ impl TurnExplanation {
         }
         let angle = self.facts.angle_deg;
         let side = if angle > 0.0 { "left" } else { "right" };
+        // Edges of roads that bend or taper may leave no room for the return that is assumed.
+        let left_out = self.corridors.as_ref().is_some_and(|made| made.kerb_radius_m.is_none());
         let kerb = match (self.facts.kerb_radius_m, self.facts.kerb_source) {
+            (Some(_), _) if left_out => ", corner not rounded".to_owned(),
             (Some(m), _) => format!(", kerb radius {m:.1} m (assumed)"),
             (None, Some(KerbSource::Mapped)) => ", kerb as mapped".to_owned(),
             _ => String::new(),

@@ -11,6 +11,7 @@ mod no_curve;
 mod oracle;
 mod properties;
 mod published_values;
+mod routes;
 mod simulator;
 mod soundness;
 mod stations;

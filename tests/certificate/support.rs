@@ -6,3 +6,7 @@ pub(crate) mod catalogue;
 pub(crate) mod demo;
 #[path = "../support/extracts.rs"]
 pub(crate) mod extracts;
+// The network's tests use more of it.
+#[path = "../support/routing.rs"]
+#[allow(dead_code)]
+pub(crate) mod routing;

@@ -11,6 +11,7 @@ pub mod crossing;
 pub mod draw;
 pub mod duel;
 pub mod fleet;
+pub mod journey;
 pub mod path;
 pub mod planner;
 pub mod road;

@@ -3,7 +3,7 @@
 //! Where an area counts, disturbances push the places of bodies that have the least room at the boundary nearest to
 //! them. Bounds, attacks on hinges and noise are those of a duel, which also measures half-widths where no area counts.
 
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use netcert_base::corridor::Corridor;
 use netcert_base::vehicle::Vehicle;
@@ -15,7 +15,7 @@ use crate::draw::Draw;
 use crate::duel::{self, Duel, STEPS_PER_M, SWING_M};
 use crate::path::{Path, V2, along, dot};
 use crate::simulator::{Disturbance, Near, Run, sweep};
-use crate::swept::{Grounds, Worst, body};
+use crate::swept::{Grounds, Stretch, Worst, body};
 
 /// Steps between the states that are searched for places to attack.
 const COARSE: usize = 5;
@@ -42,10 +42,25 @@ pub struct Found {
     pub first_order_m: f64,
     /// A place of the boundary that got under a body, and the step.
     pub under: Option<(usize, V2)>,
-    /// Least clearance to the half-widths where no area counts.
+    /// Least clearance to the half-widths where no area counts. Where a unit may be in an area or beside it, the greater of
+    /// its room and its clearance.
     pub outside: Option<Near>,
     /// Least θ_i less articulation over the attacks within the course tolerance, radians, and its hinge.
     pub hinge: (f64, usize),
+}
+
+impl Default for Found {
+    fn default() -> Self {
+        Self {
+            least: None,
+            by: "nothing",
+            undisturbed_m: f64::INFINITY,
+            first_order_m: f64::INFINITY,
+            under: None,
+            outside: None,
+            hinge: (f64::INFINITY, 0),
+        }
+    }
 }
 
 impl Found {
@@ -82,11 +97,26 @@ pub fn besiege(corridor: &Corridor, vehicle: &Vehicle, claim: &Claim, draw: &mut
     Siege::new(corridor, vehicle, &path, claim.shrink).fight(draw, places)
 }
 
+/// What a claim is about: steps of the drive, and feet of body points along the corridor, metres.
+#[derive(Debug, Clone)]
+pub(crate) struct Scope {
+    pub(crate) steps: Range<usize>,
+    pub(crate) feet_m: RangeInclusive<f64>,
+}
+
+impl Scope {
+    /// All of a drive.
+    pub(crate) fn whole() -> Self {
+        Self { steps: 0..usize::MAX, feet_m: f64::NEG_INFINITY..=f64::INFINITY }
+    }
+}
+
 /// Vehicle, areas and plan of one claim.
 pub struct Siege<'a> {
-    duel: Duel<'a>,
-    grounds: Grounds,
-    found: Found,
+    pub(crate) duel: Duel<'a>,
+    pub(crate) grounds: Grounds,
+    pub(crate) found: Found,
+    pub(crate) scope: Scope,
 }
 
 impl<'a> Siege<'a> {
@@ -94,32 +124,22 @@ impl<'a> Siege<'a> {
     pub fn new(corridor: &'a Corridor, vehicle: &'a Vehicle, path: &'a Path, shrink: f64) -> Self {
         let duel = Duel::new(corridor, vehicle, path, shrink);
         let grounds = Grounds::new(corridor, &duel.drive);
-        let found = Found {
-            least: None,
-            by: "nothing",
-            undisturbed_m: f64::INFINITY,
-            first_order_m: f64::INFINITY,
-            under: None,
-            outside: None,
-            hinge: (f64::INFINITY, 0),
-        };
-        let mut siege = Self { duel, grounds, found };
-        siege.with_nominal(|siege, nominal| siege.measure(nominal, siege.duel.on_road(), "nothing"));
-        siege.found.undisturbed_m = siege.found.least.map_or(f64::INFINITY, |worst| worst.room_m);
+        let mut siege = Self { duel, grounds, found: Found::default(), scope: Scope::whole() };
+        siege.begin();
         siege
+    }
+
+    /// Forgets what was found, and measures the undisturbed run.
+    pub(crate) fn begin(&mut self) {
+        self.found = Found::default();
+        self.with_nominal(|siege, nominal| siege.measure(nominal, siege.duel.on_road(), "nothing"));
+        self.found.undisturbed_m = self.found.least.map_or(f64::INFINITY, |worst| worst.room_m);
     }
 
     /// Runs every attack.
     pub fn fight(mut self, draw: &mut Draw, places: usize) -> Found {
-        for (k, worst) in self.targets(places).into_iter().enumerate() {
-            for fast in [true, false] {
-                self.attack(worst, (fast, 1.0), if fast { "a push" } else { "a push within the course tolerance" });
-            }
-            // At a kink of the boundary the nearest place may not be the one that is reached.
-            if k < 2 {
-                self.attack(worst, (true, -1.0), "a push away");
-            }
-        }
+        let steps = self.grounds.steps();
+        self.attack_in(steps, places);
         self.duel.attack_hinges(draw);
         let noise = self.duel.noise(draw);
         let run = self.duel.drive.whole(&noise);
@@ -128,8 +148,21 @@ impl<'a> Siege<'a> {
         self.found
     }
 
+    /// Attacks the worst places of the areas in some steps.
+    pub(crate) fn attack_in(&mut self, steps: Range<usize>, places: usize) {
+        for (k, worst) in self.targets(steps, places).into_iter().enumerate() {
+            for fast in [true, false] {
+                self.attack(worst, (fast, 1.0), if fast { "a push" } else { "a push within the course tolerance" });
+            }
+            // At a kink of the boundary the nearest place may not be the one that is reached.
+            if k < 2 {
+                self.attack(worst, (true, -1.0), "a push away");
+            }
+        }
+    }
+
     /// Calls `act` with the undisturbed run, which it may not change.
-    fn with_nominal(&mut self, act: impl FnOnce(&mut Self, &Run)) {
+    pub(crate) fn with_nominal(&mut self, act: impl FnOnce(&mut Self, &Run)) {
         let empty = Run { first: 0, guide: Vec::new(), headings: Vec::new() };
         let nominal = std::mem::replace(&mut self.duel.nominal, empty);
         act(self, &nominal);
@@ -138,9 +171,9 @@ impl<'a> Siege<'a> {
 
     /// The places at which the adversary gets closest to the boundary at first order. Those of each edge are looked at
     /// whose room is less than a little before and after, and the edge's ends at the same moment.
-    fn targets(&mut self, places: usize) -> Vec<Worst> {
+    fn targets(&mut self, steps: Range<usize>, places: usize) -> Vec<Worst> {
         let (drive, nominal) = (&self.duel.drive, &self.duel.nominal);
-        let steps: Vec<usize> = self.grounds.steps().step_by(COARSE).collect();
+        let steps: Vec<usize> = steps.step_by(COARSE).collect();
         let mut kept: Vec<Worst> = Vec::new();
         for unit in 0..drive.vehicle.units.len() {
             for edge in EDGES {
@@ -165,7 +198,8 @@ impl<'a> Siege<'a> {
         }
         let mut reached: Vec<(f64, Worst)> = kept.into_iter().map(|one| (self.first_order_m(&one), one)).collect();
         reached.sort_by(|a, b| a.0.total_cmp(&b.0));
-        self.found.first_order_m = reached.first().map_or(f64::INFINITY, |first| first.0);
+        let first_order_m = reached.first().map_or(f64::INFINITY, |first| first.0);
+        self.found.first_order_m = self.found.first_order_m.min(first_order_m);
         reached.truncate(places);
         reached.into_iter().map(|(_, one)| one).collect()
     }
@@ -225,27 +259,43 @@ impl<'a> Siege<'a> {
     }
 
     /// Records the least room of a run in some steps, and its clearance where no area counts.
-    fn measure(&mut self, run: &Run, range: Range<usize>, by: &'static str) {
+    pub(crate) fn measure(&mut self, run: &Run, range: Range<usize>, by: &'static str) {
         let drive = &self.duel.drive;
-        let range = range.start.max(run.first)..range.end.min(run.steps().end);
+        let range = range.start.max(run.first).max(self.scope.steps.start)
+            ..range.end.min(run.steps().end).min(self.scope.steps.end);
         if let Some(worst) = self.grounds.least(drive, run, range.clone())
             && self.found.least.is_none_or(|least| worst.room_m < least.room_m)
         {
             (self.found.least, self.found.by) = (Some(worst), by);
         }
         self.found.under = self.found.under.or_else(|| self.grounds.under(drive, run, range.clone()));
-        let mut from = range.start;
-        while from < range.end {
-            let outside = (from..range.end).take_while(|step| self.grounds.surely_none(*step)).count();
-            let least = &mut self.found.outside;
-            if outside > 0 {
-                sweep(drive, run, &self.duel.road, from..from + outside, (COARSE, 0.5), |near| {
-                    if least.is_none_or(|least| near.clearance_m < least.clearance_m) {
-                        *least = Some(near);
-                    }
-                });
+        let least = &mut self.found.outside;
+        let mut note = |near: Near| {
+            if self.scope.feet_m.contains(&near.foot_m)
+                && least.is_none_or(|least| near.clearance_m < least.clearance_m)
+            {
+                *least = Some(near);
             }
-            from += outside.max(1);
+        };
+        for stretch in self.grounds.stretches(range) {
+            match stretch {
+                Stretch::Outside(steps) => sweep(drive, run, &self.duel.road, steps, (COARSE, 0.5), &mut note),
+                Stretch::Doubtful(steps) => {
+                    let mut units: Vec<(usize, Near)> = Vec::new();
+                    sweep(drive, run, &self.duel.road, steps, (COARSE, 0.5), |near| {
+                        match units.last_mut().filter(|(unit, last)| (*unit, last.step) == (near.unit, near.step)) {
+                            Some((_, last)) if near.clearance_m < last.clearance_m => *last = near,
+                            Some(_) => {}
+                            None => units.push((near.unit, near)),
+                        }
+                    });
+                    for (unit, near) in units {
+                        let room_m = self.grounds.room_m(drive, run, near.step, unit);
+                        note(Near { clearance_m: near.clearance_m.max(room_m), ..near });
+                    }
+                }
+                Stretch::Inside(_) => {}
+            }
         }
     }
 }

@@ -21,6 +21,17 @@ pub struct Grounds {
     clock: usize,
 }
 
+/// Steps over which the same is known of all units.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Stretch {
+    /// Some area counts for every unit.
+    Inside(Range<usize>),
+    /// No area counts for any unit.
+    Outside(Range<usize>),
+    /// Areas may count for some units and not for others.
+    Doubtful(Range<usize>),
+}
+
 /// The least room of a run, and its place.
 #[derive(Debug, Clone, Copy)]
 pub struct Worst {
@@ -91,6 +102,31 @@ impl Grounds {
     /// Whether no area counts at a step for any unit.
     pub fn surely_none(&self, step: usize) -> bool {
         self.spans.iter().all(|(_, steps)| step + self.clock < steps.start || steps.end + self.clock <= step)
+    }
+
+    /// What is known of the steps of a range, in order.
+    pub fn stretches(&self, range: Range<usize>) -> Vec<Stretch> {
+        let mut stretches = Vec::new();
+        let mut from = range.start;
+        let kind = |step: usize| (self.surely(step), self.surely_none(step));
+        while from < range.end {
+            let first = kind(from);
+            let steps = from..(from..range.end).find(|step| kind(*step) != first).unwrap_or(range.end);
+            from = steps.end;
+            stretches.push(match first {
+                (true, _) => Stretch::Inside(steps),
+                (_, true) => Stretch::Outside(steps),
+                _ => Stretch::Doubtful(steps),
+            });
+        }
+        stretches
+    }
+
+    /// The least room of a unit at a step in the areas that may count.
+    pub fn room_m(&self, drive: &Drive<'_>, run: &Run, step: usize, unit: usize) -> f64 {
+        let (grounds, body) = (self.counting(step), body(drive, run, step, unit));
+        let rooms = EDGES.into_iter().filter_map(|edge| in_any(&grounds, &body, edge, f64::INFINITY));
+        rooms.map(|touch| touch.room_m).fold(f64::INFINITY, f64::min)
     }
 
     /// The areas that may count at a step. One more than really counts only adds to the room.
