@@ -239,6 +239,13 @@ fn a_route_whose_parts_passed_is_refuted_as_a_whole_and_the_search_goes_on() {
         (region, driver, parts)
     };
     let widths: Vec<u32> = (26..80).collect();
+    // The same with a way round.
+    let opened = |width_m: f64, between_m: f64| {
+        let open = region(&s_bend(width_m, between_m, true), 12.0);
+        let driver = open.driver("EU-SEMI16.5");
+        let answer = ask(&open, &driver, ["AW", "ED"], 0);
+        (open, driver, answer)
+    };
     // From the least width at which both parts pass (all wider ones are taken to pass) to the first at which the whole
     // passes too.
     let tight = |between_m: f64| {
@@ -253,8 +260,10 @@ fn a_route_whose_parts_passed_is_refuted_as_a_whole_and_the_search_goes_on() {
             if !answer.routes.is_empty() {
                 return None;
             }
-            if answer.refuted.iter().any(|r| r.result.is_some()) {
-                return Some((between_m, 0.125 * f64::from(eighths), region, answer));
+            let width_m = 0.125 * f64::from(eighths);
+            // With a way round the approach has one more node, so the whole may pass by a hair.
+            if answer.refuted.iter().any(|r| r.result.is_some()) && !opened(width_m, between_m).2.refuted.is_empty() {
+                return Some((between_m, width_m, region, answer));
             }
         }
         None
@@ -271,10 +280,8 @@ fn a_route_whose_parts_passed_is_refuted_as_a_whole_and_the_search_goes_on() {
     assert_eq!(obstacle.missing_m, least_m);
     assert!(place(&blocked.network, obstacle.at).is_some());
 
-    let open = region(&s_bend(width_m, between_m, true), 12.0);
-    let driver = open.driver("EU-SEMI16.5");
+    let (open, driver, answer) = opened(width_m, between_m);
     assert!(passes(&open, &driver, "WJ", "JK") && passes(&open, &driver, "JK", "KE"));
-    let answer = ask(&open, &driver, ["AW", "ED"], 0);
     let [route] = answer.routes.as_slice() else { panic!("{answer:?}") };
     assert!(!answer.refuted.is_empty() && !answer.gave_up && answer.obstacles.is_none());
     assert!(route.drive.edges.contains(&edge(&open, "WE")) && !route.drive.edges.contains(&edge(&open, "JK")));
