@@ -1,5 +1,8 @@
 //! Straight continuations at each node. An incoming and an outgoing edge are paired if each is the other's best
 //! continuation. The result depends neither on the order of the edges nor on the ways' own directions.
+//!
+//! A road that becomes narrow ends where other roads meet it. A vehicle that turns off there need not fit the narrow part. The way
+//! on is a movement with a certificate of its own, so the edge beyond does not have it as its approach.
 
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
@@ -8,7 +11,7 @@ use rayon::prelude::*;
 use super::geometry::{Geometry, segment_deflection_deg};
 use super::{Edge, Network, Road, StrokeOptions, reverse};
 use crate::osm::LonLat;
-use crate::osm::facts::Direction;
+use crate::osm::facts::{Direction, Oneway};
 
 /// No edge.
 pub(super) const NONE: u32 = u32::MAX;
@@ -16,6 +19,11 @@ pub(super) const NONE: u32 = u32::MAX;
 /// Edges at one node above which none of them is called straight on. No real junction has so many, and a crafted file
 /// could make the work quadratic.
 pub(super) const CROWD: usize = 256;
+
+/// Carriageways below this width are narrow, metres: two lorries do not meet on them.
+const NARROW_M: f32 = 5.0;
+/// Least difference of width at which a road becomes narrow, metres.
+const NARROWER_M: f32 = 0.4;
 
 /// The pairs: which edge follows and which precedes each edge.
 pub(super) struct Pairing {
@@ -96,17 +104,26 @@ impl<'n> Junction<'n> {
     }
 
     fn pair(&self, next: &[AtomicU32], before: &[AtomicU32]) {
+        // Edges at which a road begins although another one leads straight on into them.
+        let mut alone: Vec<u32> = Vec::new();
         for a in self.arriving {
             let best = self.best(self.leaving, |b| self.straight_on(a, b));
             if let Some(b) = best
                 && self.best(self.arriving, |a| self.straight_on(a, b)) == Some(a)
             {
+                if self.ends_here(a, b) {
+                    alone.push(b.edge);
+                    continue;
+                }
                 next[a.edge as usize].store(b.edge, Ordering::Relaxed);
                 before[b.edge as usize].store(a.edge, Ordering::Relaxed);
             }
         }
         for b in self.leaving {
             let slot = &before[b.edge as usize];
+            if alone.contains(&b.edge) {
+                continue;
+            }
             if slot.load(Ordering::Relaxed) == NONE {
                 let origin = self.best(self.arriving, |a| self.from(a, b));
                 slot.store(origin.map_or(NONE, |a| a.edge), Ordering::Relaxed);
@@ -178,6 +195,21 @@ impl<'n> Junction<'n> {
             && !reverse(self.network, a.edge, b.edge)
             && !self.onto_or_off_a_ring(a, b);
         plausible.then(|| self.candidate(a, b, deflection_deg))
+    }
+
+    /// Whether a wide road and a narrow one meet where there are other ways to go. A road that parts into two carriageways is no
+    /// narrower for that: tapers keep the lanes' width.
+    fn ends_here(&self, a: &End, b: &End) -> bool {
+        let (from, to) = (self.road(a.edge), self.road(b.edge));
+        if self.two_ends || from.roundabout || (from.oneway == Oneway::No) != (to.oneway == Oneway::No) {
+            return false;
+        }
+        let width_m = |end: &End, road: &Road| {
+            let section = road.sections[usize::from(self.edge(end.edge).direction == Direction::Backward)];
+            section.carriageway.map(|strip| strip.width_m())
+        };
+        let (Some(from_m), Some(to_m)) = (width_m(a, from), width_m(b, to)) else { return false };
+        from_m.min(to_m) < NARROW_M && (from_m - to_m).abs() >= NARROWER_M
     }
 
     /// Whether the pair enters or leaves a roundabout, which is always a turn. A vehicle that leaves the ring stands on

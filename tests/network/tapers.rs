@@ -1,7 +1,7 @@
 //! Places where cross sections meet. Lanes keep their width where carriageways join and part and where lanes are added,
 //! on both driving sides, in both directions, under every policy. No corridor leaves the mapped road.
 
-use crate::support::ascii_map::{AsciiMap, edge};
+use crate::support::ascii_map::{AsciiMap, edge, strokes};
 use crate::support::junctions::Drawn;
 
 use netcert::corridor::{Params, StrokeCorridor, TaperCause, stroke_corridor};
@@ -102,6 +102,40 @@ fn without_a_second_carriageway_or_a_jog_nothing_is_made_up() {
     let map = AsciiMap::placed(&nodes).way("AB", ROAD).way("BCD", &format!("{CARRIAGEWAY} oneway=yes"));
     let alone = Drawn::new(&map, false, 5.0);
     assert!(narrowest(&corridor(&alone.network, "AB", Policy::Lane)) < 1.7);
+}
+
+/// A road of 7 m that becomes narrow at a side road.
+fn becomes_narrow(beyond: &str, side_road: bool) -> Drawn {
+    let nodes = [('A', [0.0, 0.0]), ('B', [300.0, 0.0]), ('C', [600.0, 0.0]), ('D', [300.0, -200.0])];
+    let map = AsciiMap::placed(&nodes)
+        .way("AB", "highway=secondary width=7")
+        .way("BC", &format!("highway=secondary {beyond}"));
+    let map = if side_road { map.way("DB", "highway=secondary width=7") } else { map };
+    Drawn::new(&map, false, 9.0)
+}
+
+#[test]
+fn a_road_that_becomes_narrow_at_a_junction_ends_there() {
+    let drawn = becomes_narrow("width=4", true);
+    assert_eq!(strokes(&drawn.network), "AB BA BC CB DB BD");
+    // Its edges keep their width to their ends, and the way on is a movement of its own.
+    let made = corridor(&drawn.network, "AB", Policy::Carriageway);
+    assert!(narrowest(&made) > 7.0 - NEAR_M, "{}", narrowest(&made));
+    assert!(drawn.safe("ABC", Policy::Carriageway, "EU-SEMI16.5"));
+    assert!(drawn.safe("ABD", Policy::Carriageway, "EU-SEMI16.5"));
+    // A road on which the lorry does not fit at all does not close the turn before it.
+    let closed = becomes_narrow("width=2.6", true);
+    assert!(closed.safe("ABD", Policy::Carriageway, "EU-SEMI16.5"));
+    assert!(!closed.safe("ABC", Policy::Carriageway, "EU-SEMI16.5"));
+}
+
+#[test]
+fn a_road_goes_on_where_it_becomes_narrow_without_a_junction_or_by_little() {
+    for (beyond, side_road) in [("width=4", false), ("width=6.5", true), ("width=5.5", true)] {
+        let drawn = becomes_narrow(beyond, side_road);
+        let made = corridor(&drawn.network, "AB", Policy::Carriageway);
+        assert!(narrowest(&made) < 6.9 && made.spans.len() == 2, "{beyond}: {}", narrowest(&made));
+    }
 }
 
 /// Two lanes become three, two of them in the opposite direction. This direction's lane moves aside by half a lane.
