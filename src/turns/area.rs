@@ -22,6 +22,10 @@ const STRAIGHT_M: f64 = 1e-5;
 /// Straight road beyond a road's end that planned paths may use, and its overlap with the road, metres.
 const BEYOND_M: f64 = 70.0;
 const OVERLAP_ROAD_M: f64 = 12.0;
+/// How far the parts of a road that changes its width are prolonged over their joint, metres; and the greatest angle between them,
+/// radians. Within it they would be one stroke if they were equally wide.
+const JOINT_M: f64 = 2.0;
+const JOINT_RAD: f64 = 0.79;
 /// Overlap of the kerb return with the roads, metres, so that rounding leaves no gap between them.
 const OVERLAP_M: f64 = 0.3;
 /// Smallest and largest angle of a corner with a kerb return, radians.
@@ -57,6 +61,7 @@ impl Ground<'_> {
         let strip = |arm: &Arm| strip(arm, 0..arm.len(), &|k| arm.near_node(k, self.reach), [0.0; 2]);
         let mut parts: Vec<Polygon> = [self.from, self.to].into_iter().filter_map(strip).collect();
         parts.extend(self.common());
+        parts.extend(self.joint());
         parts.extend_from_slice(self.crossing);
         let corner = match self.surface {
             Some(surface) => self.mapped_corner(surface),
@@ -74,7 +79,7 @@ impl Ground<'_> {
     }
 
     /// The part that both roads cover near the node. A road that ends (or begins) there is extended straight across the
-    /// other road. The roads are never both extended: where neither road is real, nothing is.
+    /// other road. The roads are never both extended by so much: where neither road is real, nothing is.
     fn common(&self) -> Vec<Polygon> {
         let piece = |arm: &Arm, prolonged: [f64; 2]| {
             let near = (CROSSING_M / arm.line.spacing_m) as usize;
@@ -96,6 +101,25 @@ impl Ground<'_> {
             common.extend(both(&from_on, &to));
         }
         common
+    }
+
+    /// The joint of a road that only changes its width: each part is as the map has it up to the node, but smoothing leaves a gap of
+    /// centimetres there. What both parts have in common, prolonged over it, closes the gap.
+    fn joint(&self) -> Vec<Polygon> {
+        let meets = self.from.node + 2 >= self.from.own.end && self.to.node <= self.to.own.start + 1;
+        if !meets || self.turn_rad.abs() > JOINT_RAD {
+            return Vec::new();
+        }
+        let near = |arm: &Arm| (2.0 * JOINT_M / arm.line.spacing_m).ceil() as usize;
+        let piece = |arm: &Arm, prolonged: [f64; 2]| {
+            let range =
+                arm.node.saturating_sub(near(arm)).max(arm.own.start)..(arm.node + near(arm) + 1).min(arm.own.end);
+            strip(arm, range, &|k| arm.near_node(k, self.reach), prolonged)
+        };
+        match (piece(self.from, [0.0, JOINT_M]), piece(self.to, [JOINT_M, 0.0])) {
+            (Some(from), Some(to)) => from.intersection(&to).0,
+            _ => Vec::new(),
+        }
     }
 
     /// The junction's surface between the roads' edges on the inside of the turn.

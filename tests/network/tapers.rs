@@ -106,7 +106,12 @@ fn without_a_second_carriageway_or_a_jog_nothing_is_made_up() {
 
 /// A road of 7 m that becomes narrow at a side road.
 fn becomes_narrow(beyond: &str, side_road: bool) -> Drawn {
-    let nodes = [('A', [0.0, 0.0]), ('B', [300.0, 0.0]), ('C', [600.0, 0.0]), ('D', [300.0, -200.0])];
+    becomes_narrow_at_an_angle(beyond, side_road, 0.0)
+}
+
+/// The same with a narrow part that ends `aside_m` to the left.
+fn becomes_narrow_at_an_angle(beyond: &str, side_road: bool, aside_m: f64) -> Drawn {
+    let nodes = [('A', [0.0, 0.0]), ('B', [300.0, 0.0]), ('C', [600.0, aside_m]), ('D', [300.0, -200.0])];
     let map = AsciiMap::placed(&nodes)
         .way("AB", "highway=secondary width=7")
         .way("BC", &format!("highway=secondary {beyond}"));
@@ -127,6 +132,14 @@ fn a_road_that_becomes_narrow_at_a_junction_ends_there() {
     let closed = becomes_narrow("width=2.6", true);
     assert!(closed.safe("ABD", Policy::Carriageway, "EU-SEMI16.5"));
     assert!(!closed.safe("ABC", Policy::Carriageway, "EU-SEMI16.5"));
+}
+
+#[test]
+fn the_way_into_a_narrow_road_has_no_gap_where_the_road_bends() {
+    for aside_m in [-40.0, -10.0, 10.0, 40.0] {
+        let drawn = becomes_narrow_at_an_angle("width=4.5", true, aside_m);
+        assert!(drawn.safe("ABC", Policy::Carriageway, "EU-SEMI16.5"), "{aside_m}");
+    }
 }
 
 #[test]
