@@ -66,15 +66,20 @@ impl Field {
         let first = (j % BLOCK) * NODES + i % BLOCK;
         let corners =
             [(first, i, j), (first + 1, i + 1, j), (first + NODES, i, j + 1), (first + NODES + 1, i + 1, j + 1)];
-        let [a, b, c, d] = corners.map(|(node, i, j)| {
-            let known = self.blocks[at].as_ref().map_or(f32::NAN, |block| block.nodes[node]);
-            f64::from(if known.is_nan() { self.fill(at, node, i, j) } else { known })
-        });
+        let mut known = corners.map(|(node, ..)| self.blocks[at].as_ref().map_or(f32::NAN, |block| block.nodes[node]));
+        if known.iter().any(|m| m.is_nan()) {
+            known = corners.map(|(node, i, j)| self.fill(at, node, i, j));
+        }
+        let [a, b, c, d] = known.map(f64::from);
         (a + s * (b - a)) * (1.0 - t) + (c + s * (d - c)) * t
     }
 
-    /// Computes a node of a block.
+    /// A node of a block, computed when it is first asked for.
     fn fill(&mut self, at: usize, node: usize, i: usize, j: usize) -> f32 {
+        let known = self.blocks[at].as_ref().map_or(f32::NAN, |block| block.nodes[node]);
+        if !known.is_nan() {
+            return known;
+        }
         let p = [self.low[0] + i as f64 * CELL_M, self.low[1] + j as f64 * CELL_M];
         let beyond = self.row(j).iter().filter(|x| **x > p[0]).count();
         let Some(block) = &mut self.blocks[at] else { return f32::NAN };

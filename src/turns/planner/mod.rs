@@ -9,6 +9,7 @@ mod score;
 use field::Field;
 use score::Scorer;
 
+use super::Reach;
 use super::code::{PARAMETERS, PathCode};
 use super::corridors::TurnCorridors;
 use crate::vehicle::Vehicle;
@@ -17,8 +18,9 @@ use crate::vehicle::Vehicle;
 const KEPT: usize = 3;
 /// A path with this score is good enough, metres.
 const EASY_M: f64 = 0.5;
-/// Turns whose best seed scores less are given up, metres.
-const HOPELESS_M: f64 = -1.5;
+/// Turns whose best seed scores less are given up, metres: for vehicles up to 20 m, and for longer ones. On Sydney and Heidelberg no turn
+/// became safe whose best seed scored less than -0.84 m, and -1.42 m for a B-double.
+const HOPELESS_M: [f64; 2] = [-1.1, -1.5];
 /// Distances between the moments at which seeds and refined paths are scored, metres.
 const COARSE_M: f64 = 2.0;
 const FINE_M: f64 = 1.0;
@@ -64,7 +66,7 @@ impl<'a> Planner<'a> {
         let mut scorer = Scorer::new(made, vehicle);
         let mut best = self.seeds(&mut scorer, KEPT);
         let Some(first) = best.first().copied() else { return best };
-        if first.score_m >= EASY_M || first.score_m < HOPELESS_M || PathCode::decode(first.code).is_none() {
+        if first.score_m >= EASY_M || first.score_m < self.hopeless_m() || PathCode::decode(first.code).is_none() {
             return best;
         }
         let mut draw = Draw(0x9e37_79b9_7f4a_7c15);
@@ -77,6 +79,13 @@ impl<'a> Planner<'a> {
         best.sort_by(|a, b| b.score_m.total_cmp(&a.score_m).then(a.code.cmp(&b.code)));
         best.dedup_by_key(|planned| planned.code);
         best
+    }
+
+    fn hopeless_m(&self) -> f64 {
+        match self.made.reach() {
+            Reach::Short => HOPELESS_M[0],
+            Reach::Long => HOPELESS_M[1],
+        }
     }
 
     /// The `count` seeds with the best scores, the best one first.

@@ -13,6 +13,9 @@ const SPARE_RAD: [f64; 2] = [0.12, 0.14];
 const PER_RAD_M: f64 = 14.0;
 /// Least distance between the places looked at along a side, metres.
 const SIDE_STEP_M: f64 = 1.0;
+/// One in this many moments is looked at first. What they lack beyond [`SURE_M`], metres, other samples along a side hardly make up.
+const FEW: usize = 5;
+const SURE_M: f64 = 0.1;
 /// Way that the rear goes on the road that a path joins before the score ends, metres.
 const BEYOND_M: f64 = 5.0;
 
@@ -23,6 +26,8 @@ pub(super) struct Scorer<'a> {
     /// The units' headings (unit vectors) by station of the approach at which the steer axle is.
     approach: Vec<[f64; 2]>,
     headings: Vec<[f64; 2]>,
+    /// By moment and unit of the path at hand: axle and heading.
+    stands: Vec<[[f64; 2]; 2]>,
 }
 
 impl<'a> Scorer<'a> {
@@ -35,7 +40,7 @@ impl<'a> Scorer<'a> {
             follow(&mut headings, [b[0] - a[0], b[1] - a[1]], &vehicle.units);
             approach.extend_from_slice(&headings);
         }
-        Self { made, vehicle, approach, headings }
+        Self { made, vehicle, approach, headings, stands: Vec::new() }
     }
 
     /// The score of the path with a code, metres, from moments about `step_m` apart. At most `floor_m` is told of paths that score less. `None` if the
@@ -50,7 +55,8 @@ impl<'a> Scorer<'a> {
         let every = ((step_m / to.line.spacing_m).round() as usize).max(1);
         let tail = (join + 1..(join + 1 + tail).min(to.len())).step_by(every).map(|k| to.point(k));
         let mut at = *line.points.first()?;
-        let (mut least_m, mut beyond_rad) = (f64::INFINITY, 0.0_f64);
+        let mut beyond_rad = 0.0_f64;
+        self.stands.clear();
         for p in line.points.iter().skip(1).copied().chain(tail) {
             let step = [p[0] - at[0], p[1] - at[1]];
             let length_m = step[0].hypot(step[1]);
@@ -71,23 +77,41 @@ impl<'a> Scorer<'a> {
                 }
                 ahead = heading;
             }
-            let spent_m = PER_RAD_M * beyond_rad;
-            if least_m - spent_m <= floor_m {
-                return Some(floor_m);
-            }
             let mut coupling = p;
-            for (i, (heading, unit)) in self.headings.iter().zip(units).enumerate() {
-                let tube_m = TUBE_M[0] + i as f64 * TUBE_M[1];
+            for (heading, unit) in self.headings.iter().zip(units) {
                 let axle = along(coupling, *heading, -unit.coupling_to_axle_m);
-                let room_m = room_m(field, axle, *heading, unit, least_m + tube_m);
-                least_m = least_m.min(room_m - tube_m);
+                self.stands.push([axle, *heading]);
                 coupling = along(axle, *heading, -unit.hitch_offset_m);
             }
-            if least_m - spent_m <= floor_m {
-                return Some(floor_m);
+        }
+        let spent_m = PER_RAD_M * beyond_rad;
+        let needed_m = floor_m + spent_m;
+        let moments = self.stands.len() / count.max(1);
+        // Most paths lack room for many moments on end: a few moments far apart refuse them soonest.
+        let refused_m = needed_m - SURE_M;
+        if self.room_m(field, (0..moments).rev().step_by(FEW), refused_m) <= refused_m {
+            return Some(floor_m);
+        }
+        let room_m = self.room_m(field, 0..moments, needed_m);
+        // Rounding must not make a path better than the floor that is not.
+        Some(if room_m > needed_m { room_m - spent_m } else { floor_m })
+    }
+
+    /// Least room around the bodies at moments of the path at hand, less the tubes. The search ends where it is no more than
+    /// `needed_m`.
+    fn room_m(&self, field: &mut Field, moments: impl Iterator<Item = usize>, needed_m: f64) -> f64 {
+        let units = &self.vehicle.units;
+        let mut least_m = f64::INFINITY;
+        for stands in moments.filter_map(|moment| self.stands.get(moment * units.len()..(moment + 1) * units.len())) {
+            for (i, (&[axle, heading], unit)) in stands.iter().zip(units).enumerate() {
+                let tube_m = TUBE_M[0] + i as f64 * TUBE_M[1];
+                least_m = least_m.min(room_m(field, axle, heading, unit, least_m + tube_m) - tube_m);
+            }
+            if least_m <= needed_m {
+                break;
             }
         }
-        Some(least_m - PER_RAD_M * beyond_rad)
+        least_m
     }
 }
 

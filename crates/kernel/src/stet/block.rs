@@ -1,5 +1,7 @@
 //! What a sweep leaves behind: the rows of a block of head stations, and the least leeways over all of them.
 
+use std::ops::{Range, RangeInclusive};
+
 use super::lanes::{LANES, V};
 
 /// Head stations per block.
@@ -86,6 +88,11 @@ pub(super) struct Minima {
     /// foot of its point.
     pub(super) area: [Vec<f64>; 2],
     pub(super) area_foot: [Vec<u32>; 2],
+    /// The least leeway in areas over the steps of `counted`. Steps with more are not noted. Without such steps, all are.
+    pub(super) floor: f64,
+    pub(super) counted: Range<usize>,
+    /// Areas are not looked at.
+    pub(super) bare: bool,
     /// Least hinge margin by station of the steer axle, radians, tagged with the unit.
     pub(super) hinge: Vec<f64>,
     /// By station of the steer axle: first and last station under any body point.
@@ -105,6 +112,9 @@ impl Minima {
             mark_right: vec![UNVISITED_M; stations],
             area: [vec![UNVISITED_M; stations], vec![UNVISITED_M; stations]],
             area_foot: [vec![0; stations], vec![0; stations]],
+            floor: f64::INFINITY,
+            counted: 0..0,
+            bare: false,
             hinge: vec![UNVISITED_M; stations],
             under: vec![[u32::MAX, 0]; stations],
             offset: vec![0.0; stations],
@@ -123,6 +133,11 @@ impl Minima {
     pub(super) fn lose(&mut self, k: usize) {
         self.hinge[k] = V::splat(NOT_CLOSED_RAD).tagged(0).0[0];
         [self.left[k], self.right[k]] = [V::splat(LOST_M).tagged(0).0[0]; 2];
+    }
+
+    /// Whether no leeway at these stations is negative.
+    pub(super) fn room_on(&self, mut stations: RangeInclusive<usize>) -> bool {
+        stations.all(|k| self.left[k] >= 0.0 && self.right[k] >= 0.0)
     }
 
     /// Records the stations under a body point at eight stations of the steer axle, from `head` on.

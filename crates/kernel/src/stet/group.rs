@@ -55,12 +55,13 @@ impl<'m> Group<'m> {
         };
         let tolerance = per_vehicle(&tolerance);
         let mut chain: [UnitLanes; MAX_UNITS] = std::array::from_fn(unit);
-        let settled = run_in::settled(&chain, tolerance);
+        let units = models.iter().map(|m| m.units.len()).max().unwrap_or(0);
+        let settled = run_in::settled(&chain, units, tolerance);
         chain.iter_mut().zip(settled).for_each(|(unit, settled)| unit.settled = settled);
         Self {
             models: models.to_vec(),
             shrink,
-            units: models.iter().map(|m| m.units.len()).max().unwrap_or(0),
+            units,
             chain,
             tolerance,
             course: per_vehicle(&|m| m.vehicle.tracking_heading_rad),

@@ -305,6 +305,8 @@ struct Swept<'m> {
     plans: Vec<Plan>,
     /// At γ = 1, by the filter.
     full: Vec<Minima>,
+    /// By vehicle: whether areas were left out at γ = 1. Nothing fits then.
+    bare: Vec<bool>,
     /// Without any disturbance, at a few points. Only present if the filter is loose somewhere.
     nominal: Option<Vec<Minima>>,
     /// At γ = 1, by the adjoint where the filter is loose. Only for spans near such places.
@@ -344,33 +346,111 @@ impl<'m> Swept<'m> {
         }
         let plans = plans(&track, &group);
         let shift = shift::lanes(&plans, track.lead, track.len(), track.count);
-        let full = sweep::<true>(&track, &group, &shift, &Wanted::ALL, stop);
-        let mut swept = Self { track, group, stop, plans, full, nominal: None, refined: None, least: None };
-        let loose: Vec<Vec<usize>> = swept.full.iter().map(|m| m.loose.clone()).collect();
-        let is_loose = |lane: usize, head: usize| loose[lane][head / BLOCK];
-
-        if swept.full.iter().any(|m| m.loose.iter().any(|&unit| unit < usize::MAX)) {
-            swept.nominal = Some(sweep::<false>(&swept.track, &swept.group, &shift, &Wanted::PLAIN, stop));
-        }
-        let near = swept.blocks(spans, |lane, span| swept.worth(lane, span));
-        if near.iter().flatten().any(|&near| near) {
-            let blocks = |lane: usize, head: usize| near[lane][head / BLOCK];
-            let wanted = Wanted { blocks: &blocks, refined: Some(&is_loose), plain: false };
-            swept.refined = Some(sweep::<true>(&swept.track, &swept.group, &shift, &wanted, stop));
-        }
-        let failing = swept.blocks(spans, |lane, span| swept.at_full(lane, span).fails());
-        if failing.iter().flatten().any(|&fails| fails) {
-            let tight = Group::new(models, 0.0);
-            let blocks = |lane: usize, head: usize| failing[lane][head / BLOCK];
-            // Each block uses the same kind of bound as at γ = 1: only then is the leeway concave in γ. Each vehicle is
-            // treated separately, because it must not matter whether another vehicle of the group is refined.
-            let any: Vec<bool> = near.iter().map(|blocks| blocks.contains(&true)).collect();
-            let own = |lane: usize, head: usize| if any[lane] { is_loose(lane, head) } else { usize::MAX };
-            let refined: Option<&dyn Fn(usize, usize) -> usize> = Some(&own);
-            let wanted = Wanted { blocks: &blocks, refined: refined.filter(|_| swept.refined.is_some()), plain: false };
-            swept.least = Some(sweep::<true>(&swept.track, &tight, &shift, &wanted, stop));
+        let mut swept = Self {
+            track,
+            group,
+            stop,
+            plans,
+            full: Vec::new(),
+            bare: vec![false; models.len()],
+            nominal: None,
+            refined: None,
+            least: None,
+        };
+        let only = match (marks, spans) {
+            (Marks::Ends, [only]) if !swept.track.areas.is_empty() => Some(only),
+            _ => None,
+        };
+        match only {
+            Some(span) => swept.measure_least(span, &shift),
+            None => swept.measure(spans, &shift),
         }
         swept
+    }
+
+    /// The sweeps along the plans.
+    fn measure(&mut self, spans: &[Range<usize>], shift: &[V]) {
+        self.full = sweep::<true>(&self.track, &self.group, shift, &Wanted::ALL, self.stop);
+        if self.full.iter().any(|m| m.loose.iter().any(|&unit| unit < usize::MAX)) {
+            self.nominal = Some(sweep::<false>(&self.track, &self.group, shift, &Wanted::PLAIN, self.stop));
+        }
+        let near = self.blocks(spans, |lane, span| self.worth(lane, span));
+        self.refine(&near, shift, &Wanted::ALL);
+        let failing = self.blocks(spans, |lane, span| self.at_full(lane, span).fails());
+        self.tighten(&failing, &near, shift, &Wanted::ALL);
+    }
+
+    /// As [`Self::measure`], for the least leeway of one span in areas. Most time goes into distances there, so they are measured only
+    /// where they may decide: at γ_min alone for a vehicle that would not fit if it kept to its path exactly.
+    fn measure_least(&mut self, span: &Range<usize>, shift: &[V]) {
+        let spans = std::slice::from_ref(span);
+        let least = Wanted { only: Some(span), ..Wanted::ALL };
+        self.full = sweep::<true>(&self.track, &self.group, shift, &Wanted { bare: true, ..Wanted::ALL }, self.stop);
+        let plain = Wanted { only: Some(span), ..Wanted::PLAIN };
+        let nominal = sweep::<false>(&self.track, &self.group, shift, &plain, self.stop);
+        let fits: Vec<bool> = nominal.iter().map(|m| m.room_on(spans::stations(&self.track, span))).collect();
+        self.nominal = Some(nominal);
+        self.bare = fits.iter().map(|fits| !fits).collect();
+        let near = self.blocks(spans, |lane, span| self.worth(lane, span));
+        self.refine(&near, shift, &least);
+        self.fill(&self.blocks(spans, |lane, span| fits[lane] && !self.worth(lane, span)), shift, &least);
+        let failing = self.blocks(spans, |lane, span| self.at_full(lane, span).fails());
+        self.tighten(&failing, &near, shift, &least);
+        // Between γ_min and 1, SHRINK asks for the leeways of all steps.
+        let shrinks = |lane: usize| {
+            let model = self.group.models[lane];
+            let fits_at = |least: &Vec<Minima>| !spans::least(&self.track, model, span, &least[lane]).fails();
+            self.at_full(lane, span).fails() && self.least.as_ref().is_some_and(fits_at)
+        };
+        if (0..fits.len()).any(shrinks) {
+            if near.iter().any(|blocks| !blocks.contains(&true)) {
+                self.full = sweep::<true>(&self.track, &self.group, shift, &Wanted::ALL, self.stop);
+                self.bare.fill(false);
+            }
+            self.refine(&near, shift, &Wanted::ALL);
+            let failing = self.blocks(spans, |lane, span| self.at_full(lane, span).fails());
+            self.tighten(&failing, &near, shift, &Wanted::ALL);
+        }
+    }
+
+    /// Refines by the adjoint what is `near`, by vehicle and block.
+    fn refine(&mut self, near: &[Vec<bool>], shift: &[V], wanted: &Wanted<'_>) {
+        if near.iter().flatten().any(|&near| near) {
+            let blocks = |lane: usize, head: usize| near[lane][head / BLOCK];
+            let loose = |lane: usize, head: usize| self.full[lane].loose[head / BLOCK];
+            let wanted = Wanted { blocks: &blocks, refined: Some(&loose), ..*wanted };
+            self.refined = Some(sweep::<true>(&self.track, &self.group, shift, &wanted, self.stop));
+        }
+    }
+
+    /// Measures what a bare sweep left out, for vehicles of which any block is wanted.
+    fn fill(&mut self, blocks: &[Vec<bool>], shift: &[V], wanted: &Wanted<'_>) {
+        let any: Vec<bool> = blocks.iter().map(|blocks| blocks.contains(&true)).collect();
+        if any.contains(&true) {
+            let blocks = |lane: usize, _: usize| any[lane];
+            let wanted = Wanted { blocks: &blocks, ..*wanted };
+            let filled = sweep::<true>(&self.track, &self.group, shift, &wanted, self.stop);
+            for ((full, filled), _) in self.full.iter_mut().zip(filled).zip(&any).filter(|(_, any)| **any) {
+                *full = filled;
+            }
+        }
+    }
+
+    /// Sweeps at γ_min what fails at γ = 1, by vehicle and block.
+    fn tighten(&mut self, failing: &[Vec<bool>], near: &[Vec<bool>], shift: &[V], wanted: &Wanted<'_>) {
+        if !failing.iter().flatten().any(|&fails| fails) {
+            return;
+        }
+        let tight = Group::new(&self.group.models, 0.0);
+        let blocks = |lane: usize, head: usize| failing[lane][head / BLOCK];
+        // Each block uses the same kind of bound as at γ = 1: only then is the leeway concave in γ. Each vehicle is
+        // treated separately, because it must not matter whether another vehicle of the group is refined.
+        let any: Vec<bool> = near.iter().map(|blocks| blocks.contains(&true)).collect();
+        let loose = |lane: usize, head: usize| self.full[lane].loose[head / BLOCK];
+        let own = |lane: usize, head: usize| if any[lane] { loose(lane, head) } else { usize::MAX };
+        let refined: Option<&dyn Fn(usize, usize) -> usize> = Some(&own);
+        let wanted = Wanted { blocks: &blocks, refined: refined.filter(|_| self.refined.is_some()), ..*wanted };
+        self.least = Some(sweep::<true>(&self.track, &tight, shift, &wanted, self.stop));
     }
 
     /// The first vehicle's certificate over the whole corridor, and its result for each span.
@@ -453,12 +533,13 @@ impl<'m> Swept<'m> {
         let Some(nominal) = &self.nominal else { return false };
         let nominal = &nominal[lane];
         self.full[lane].loose[self.touching(span)].iter().any(|&unit| unit < usize::MAX)
-            && spans::stations(&self.track, span).all(|k| nominal.left[k] >= 0.0 && nominal.right[k] >= 0.0)
+            && nominal.room_on(spans::stations(&self.track, span))
     }
 
     /// The best known result at γ = 1.
     fn at_full(&self, lane: usize, span: &Range<usize>) -> spans::Least {
-        spans::least(&self.track, self.group.models[lane], span, self.best(lane, span))
+        let least = spans::least(&self.track, self.group.models[lane], span, self.best(lane, span));
+        if self.bare[lane] { least.unmeasured() } else { least }
     }
 
     fn best(&self, lane: usize, span: &Range<usize>) -> &Minima {

@@ -15,12 +15,12 @@ const RAISED: f64 = 1.0 + 1e-4;
 const RAISED_M: f64 = 1e-9;
 
 /// What the second order adds to the straight bound of each unit's axle, metres. It is [`MOST`] from the first unit on
-/// for which no bound reproduces itself. `tolerance` is the steer axle's.
-pub(super) fn settled(chain: &[UnitLanes; MAX_UNITS], tolerance: V) -> [V; MAX_UNITS] {
+/// for which no bound reproduces itself. `tolerance` is the steer axle's; units behind the first `units` are stand-ins.
+pub(super) fn settled(chain: &[UnitLanes; MAX_UNITS], units: usize, tolerance: V) -> [V; MAX_UNITS] {
     let mut settled = [ZERO; MAX_UNITS];
     let mut straying = Straying::of_the_steer_axle(tolerance);
     let mut coupling = ZERO;
-    for (unit, of) in chain.iter().enumerate() {
+    for (unit, of) in chain.iter().enumerate().take(units) {
         let heading = |y: V| {
             let first_order = (of.heading + (coupling + y) * of.inverse_length).min(V::splat(MOST));
             let (a, short) = step::heading(of, &Step::STRAIGHT, first_order, of.axle + y, of.coupling + coupling);
@@ -33,7 +33,11 @@ pub(super) fn settled(chain: &[UnitLanes; MAX_UNITS], tolerance: V) -> [V; MAX_U
         let mut y = ZERO;
         for _ in 0..ROUNDS {
             let next = implied(y);
-            y = select_negative(y - next, next * RAISED + RAISED_M, y);
+            let raised = select_negative(y - next, next * RAISED + RAISED_M, y);
+            if raised.0 == y.0 {
+                break;
+            }
+            y = raised;
         }
         let y = select_negative(y - implied(y), V::splat(MOST), y).min(V::splat(MOST));
         settled[unit] = y;

@@ -44,6 +44,11 @@ impl Least {
         self.rsc_m < 0.0 || self.hinge_rad < 0.0
     }
 
+    /// The numbers where areas were left out: the leeway is less than any, and not known to be enough.
+    pub(super) fn unmeasured(self) -> Self {
+        Self { rsc_m: self.rsc_m.min(-f64::MIN_POSITIVE), ..self }
+    }
+
     /// The result with `None` for missing numbers. If one of RSC and margin is missing, the other one means nothing.
     pub(super) fn result(self) -> SpanResult {
         let bounded = self.closes();
@@ -121,16 +126,23 @@ fn heads<'a>(
     span: &Range<usize>,
     full: &'a Minima,
 ) -> impl Iterator<Item = usize> + 'a {
-    let (first, last) = (own(track, span).start() - beside(track), own(track, span).end() + beside(track));
+    let (first, last) = stations(track, span).into_inner();
     let stations = |metres: f64| (metres / track.spacing).ceil() as usize;
-    let straight = first.saturating_sub(stations(model.front))..=last + stations(model.length);
+    let straight = straight(track, model, span);
     // A foot falls behind by at most the arc of a quarter turn instead of its chord (proof, section 7, Feet).
     let near =
-        straight.start().saturating_sub(stations(model.front))..full.hinge.len().min(last + 2 * stations(model.length));
+        straight.start.saturating_sub(stations(model.front))..full.hinge.len().min(last + 2 * stations(model.length));
     let on = move |k: &usize| {
         straight.contains(k) || full.under[*k][0] as usize <= last && full.under[*k][1] as usize >= first
     };
     near.filter(on)
+}
+
+/// Stations of the steer axle at which the vehicle is on the span, by its length when straight.
+pub(super) fn straight(track: &Track, model: &Model, span: &Range<usize>) -> Range<usize> {
+    let (first, last) = stations(track, span).into_inner();
+    let stations = |metres: f64| (metres / track.spacing).ceil() as usize;
+    first.saturating_sub(stations(model.front))..last + stations(model.length) + 1
 }
 
 /// Extended stations of a span of corridor stations.

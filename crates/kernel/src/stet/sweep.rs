@@ -5,13 +5,16 @@
 //! No leeway of a certifying sweep is above what any bounded disturbance leaves, within the model of the proof. A sweep
 //! knows nothing of edges, corrections or shrinking.
 
+use std::ops::Range;
+
 use super::adjoint::{self, Refined, Trail, first_loose};
 use super::block::{BLOCK, FIELDS, Minima, NOT_CLOSED_RAD, row, store};
 use super::body::{self, Body};
 use super::group::Group;
 use super::lanes::{LANES, V, ZERO, by_instruction_set, select_negative};
 use super::leeway;
-use super::model::MAX_UNITS;
+use super::model::{MAX_UNITS, Model};
+use super::spans;
 use super::step::{
     Filter, MOST, Step, Straying, chord_bulge, chord_lag, decay, foot_shift, heading, hinge_margin, hitch_remainder,
     remainder, validity,
@@ -45,11 +48,16 @@ pub(super) struct Wanted<'w> {
     pub(super) refined: Option<&'w dyn Fn(usize, usize) -> usize>,
     /// Without `CERTIFY`: not even the straight gains are deducted.
     pub(super) plain: bool,
+    /// Only the least leeway of this span is asked for, or (if `plain`) whether any is negative. What has more need not be noted.
+    pub(super) only: Option<&'w Range<usize>>,
+    /// Areas are not looked at: no leeway is noted where they count.
+    pub(super) bare: bool,
 }
 
 impl Wanted<'_> {
     /// Everything, by the filter alone.
-    pub(super) const ALL: Wanted<'static> = Wanted { blocks: &|_, _| true, refined: None, plain: false };
+    pub(super) const ALL: Wanted<'static> =
+        Wanted { blocks: &|_, _| true, refined: None, plain: false, only: None, bare: false };
     /// The leeway of everything without disturbances.
     pub(super) const PLAIN: Wanted<'static> = Wanted { plain: true, ..Self::ALL };
 }
@@ -80,6 +88,11 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     stop: &Stop,
 ) -> Result<Vec<Minima>, Stopped> {
     let mut minima = vec![Minima::new(track.len()); group.models.len()];
+    minima.iter_mut().for_each(|minima| minima.bare = wanted.bare);
+    if let Some(span) = wanted.only {
+        let counted = |model: &&Model| spans::straight(track, model, span);
+        minima.iter_mut().zip(&group.models).for_each(|(minima, model)| minima.counted = counted(model));
+    }
     let mut rows = vec![0.0; group.units * LANES * FIELDS * BLOCK];
     let mut motion = Motion::new(track, group);
     let mut trail = Trail::new(group, REFINE);
@@ -123,6 +136,11 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
             }
         }
         head += BLOCK;
+        if wanted.plain
+            && wanted.only.is_some_and(|span| minima.iter().all(|m| !m.room_on(spans::stations(track, span))))
+        {
+            break;
+        }
     }
     for (bodies, minima) in bodies.iter().zip(&mut minima) {
         bodies.iter().for_each(|body| body::finish(track, body, minima));

@@ -11,8 +11,11 @@ const CELL_M: f64 = 3.0;
 const FAR_M: f64 = 4.0;
 /// Most cells of a grid. An area of a square kilometre has a ninth of it.
 const MOST_CELLS: usize = 1 << 20;
-/// How much deeper outside than measured a piece is taken to be, metres.
+/// Segments that share a box.
+const BUNDLE: usize = 8;
+/// How much deeper outside than it is a piece may be taken to be: metres, and as a share of its depth.
 const ROUNDED_M: f64 = 0.1;
+const ROUNDED: f64 = 0.1;
 
 /// A piece of a side over a step.
 pub(super) struct Swept<'a> {
@@ -67,6 +70,8 @@ pub(crate) struct Ground {
     columns: usize,
     rows: usize,
     segments: Vec<Segment>,
+    /// Corners of boxes around every [`BUNDLE`] segments.
+    bundles: Vec<[Point; 2]>,
     /// Segments within [`FAR_M`] of each cell: `near[starts[cell]..starts[cell + 1]]`.
     starts: Vec<u32>,
     near: Vec<u32>,
@@ -98,6 +103,7 @@ impl Ground {
             origin,
             columns,
             rows,
+            bundles: segments.chunks(BUNDLE).map(around).collect(),
             segments,
             starts: Vec::with_capacity(columns * rows + 1),
             near: Vec::new(),
@@ -198,8 +204,20 @@ impl Ground {
         match self.contains(p) {
             true => far,
             false if far < FAR_M => -far,
-            false => -self.segments.iter().map(|s| s.squared(p)).fold(f64::INFINITY, f64::min).sqrt(),
+            false => -self.squared(p).sqrt(),
         }
+    }
+
+    /// Square of the distance of a place from the boundary.
+    fn squared(&self, p: Point) -> f64 {
+        let mut least = f64::INFINITY;
+        for (segments, [low, high]) in self.segments.chunks(BUNDLE).zip(&self.bundles) {
+            let [x, y] = [0, 1].map(|k| (low[k] - p[k]).max(p[k] - high[k]).max(0.0));
+            if x * x + y * y < least {
+                least = segments.iter().map(|s| s.squared(p)).fold(least, f64::min);
+            }
+        }
+        least
     }
 
     /// Room and leeway of a piece of a side over a step. The room is the distance from the boundary of the hull of the piece at both
@@ -245,36 +263,39 @@ impl Ground {
     }
 
     /// How far a swept piece is outside at most, metres: at least as deep as any place of its hull, and little deeper unless the leeway
-    /// is enough. Rooms change no faster than places, so a place speaks for those around it.
+    /// is enough. Rooms change no faster than places, so a place speaks for those around it. What is enough changes no depth that is
+    /// not enough.
     fn depth(&self, swept: &Swept<'_>) -> f64 {
         let between = |a: Point, b: Point, part: f64| [0, 1].map(|k| a[k] + part * (b[k] - a[k]));
         let (before, after, turned) = swept.unslid();
+        // A place of the hull between two of the piece's own is off the piece by at most that much.
+        let off = 0.25 * turned;
         let length = apart(before[0], before[1]).max(apart(after[0], after[1]));
         let way = apart(before[0], after[0]).max(apart(before[1], after[1]));
-        let (mut deepest, mut most) = (0.0_f64, 0.0_f64);
-        // The parts of the piece and of the step, by their middle and half of their extent.
-        let mut open = vec![([0.5; 2], [0.5 * length, 0.5 * way])];
-        while let Some(([part, moment], [half_length, half_way])) = open.pop() {
+        let mut most = 0.0_f64;
+        // The parts of the piece and of the step, by their middle and half of their extent, and how deep they may be.
+        let mut open = vec![([0.5; 2], [0.5 * length, 0.5 * way], f64::INFINITY)];
+        while let Some(([part, moment], [half_length, half_way], within)) = open.pop() {
+            if within <= most {
+                continue;
+            }
             let [front, rear] = [0, 1].map(|i| between(before[i], after[i], moment));
             let depth = -self.room(between(front, rear, part));
-            deepest = deepest.max(depth);
             let bound = depth + half_length + half_way;
             if bound.is_nan() {
                 return f64::INFINITY;
             }
-            let close = bound <= deepest + ROUNDED_M || -bound - swept.most >= swept.enough;
-            if close {
+            if half_length + half_way <= ROUNDED_M.max(ROUNDED * depth) || -bound - off - swept.most >= swept.enough {
                 most = most.max(bound);
             } else if half_length >= half_way {
                 let by = 0.5 * half_length / length;
-                open.extend([part - by, part + by].map(|part| ([part, moment], [0.5 * half_length, half_way])));
+                open.extend([part - by, part + by].map(|part| ([part, moment], [0.5 * half_length, half_way], bound)));
             } else {
                 let by = 0.5 * half_way / way;
-                open.extend([moment - by, moment + by].map(|moment| ([part, moment], [half_length, 0.5 * half_way])));
+                open.extend([moment - by, moment + by].map(|at| ([part, at], [half_length, 0.5 * half_way], bound)));
             }
         }
-        // A place of the hull between two of the piece's own is off the piece by at most that much.
-        most + 0.25 * turned
+        most + off
     }
 
     /// Whether any vertex of the boundary lies within a rectangle: an island may be so small that no side of it is near.
@@ -287,6 +308,14 @@ impl Ground {
         };
         self.segments.iter().any(|segment| within(segment.a))
     }
+}
+
+/// The corners of a box around segments.
+fn around(segments: &[Segment]) -> [Point; 2] {
+    let ends = segments.iter().flat_map(|s| [s.a, s.b]);
+    ends.fold([[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]], |[low, high], p| {
+        [[0, 1].map(|k| p[k].min(low[k])), [0, 1].map(|k| p[k].max(high[k]))]
+    })
 }
 
 /// Where the line from `a` to `b` reaches the second coordinate `y`.
@@ -454,7 +483,10 @@ mod tests {
             let off = aside.abs() + turn.abs() * (length + slid.abs());
             let found = depth(f64::INFINITY);
             assert!(found >= deepest, "{found} {deepest}: {before:?} {after:?}");
-            assert!(found <= deepest + ROUNDED_M + off + 0.02, "{found} {deepest}: {before:?} {after:?}");
+            assert!(
+                found <= deepest + ROUNDED_M.max(ROUNDED * deepest) + off + 0.02,
+                "{found} {deepest}: {before:?} {after:?}"
+            );
             assert!(depth(-1.0) >= deepest);
         }
     }

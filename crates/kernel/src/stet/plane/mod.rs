@@ -25,6 +25,8 @@ const PIECE_M: f64 = 1.4;
 const BETWEEN: f64 = 1.25;
 /// Leeway where nothing is bounded. It is above the mark for a missing bound, which the hinges set.
 const FAR_OUTSIDE_M: f64 = -300.0;
+/// Leeways that differ by less are measured where only the least one counts, metres: rounding decides between them.
+const SAME_M: f64 = 1e-9;
 /// Directions at a smaller sine to the heading meet the axis too far away.
 const OBLIQUE: f64 = 0.05;
 /// Most stations walked to find the foot of a body point.
@@ -204,8 +206,9 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
             let closes = block[row::HINGE * BLOCK + k] > 0.5 * NOT_CLOSED_RAD;
             if let Some(before) = body.stood.take().filter(|before| before.head + 1 == station)
                 && track.areas.over(before.head)
+                && !minima.bare
             {
-                let known = [minima.area[0][before.head], minima.area[1][before.head]];
+                let known = [0, 1].map(|side| minima.area[side][before.head].min(minima.floor + SAME_M));
                 let lowest = if closes {
                     let passage = Passage::new(track, (&body.points, body.half_width), &before, &stand);
                     passage.lowest(&mut body.rooms, known)
@@ -216,6 +219,9 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
                     let Some(point) = lowest.point else { continue };
                     minima.area[side][before.head] = V::splat(lowest.leeway).tagged(body.points[point].tag).0[0];
                     minima.area_foot[side][before.head] = feet[point] as u32;
+                    if minima.counted.contains(&before.head) {
+                        minima.floor = minima.floor.min(lowest.leeway);
+                    }
                 }
             }
             body.stood = Some(stand);
@@ -247,6 +253,8 @@ struct Piece {
 pub(super) struct Rooms {
     pieces: Vec<Piece>,
     rooms: Vec<f64>,
+    /// By side: room of its half of the front edge.
+    front: [f64; 2],
     /// By side: the piece with the least leeway in the last step. It is measured first.
     critical: [usize; 2],
     /// The station after the last step.
@@ -267,13 +275,20 @@ impl Rooms {
                 pieces.extend([0, 1].map(|side| Piece { index, point, ends, side }));
             }
         }
-        Self { rooms: vec![f64::NEG_INFINITY; pieces.len()], pieces, critical: [0, 1], head: 0 }
+        Self {
+            rooms: vec![f64::NEG_INFINITY; pieces.len()],
+            pieces,
+            front: [f64::NEG_INFINITY; 2],
+            critical: [0, 1],
+            head: 0,
+        }
     }
 
     /// Forgets the rooms unless they are those of the step before station `head`.
     fn enter(&mut self, head: usize, anew: bool) {
         if self.head != head || anew {
             self.rooms.fill(f64::NEG_INFINITY);
+            self.front = [f64::NEG_INFINITY; 2];
         }
         self.head = head + 1;
     }
@@ -372,16 +387,21 @@ impl<'a> Passage<'a> {
         rooms.fold((FAR_OUTSIDE_M, FAR_OUTSIDE_M), |most, room| (most.0.max(room.0), most.1.max(room.1)))
     }
 
-    /// Leeway of the left or right half (0 or 1) of the front edge or the rear edge, at body point `index`.
-    fn edge(&self, index: usize, side: usize, enough: f64) -> f64 {
+    /// Room and leeway of the left or right half (0 or 1) of the front edge or the rear edge, at body point `index`, which had this room
+    /// in the step before. A leeway of at least `enough` need not be exact.
+    fn edge(&self, index: usize, side: usize, known: f64, enough: f64) -> (f64, f64) {
         let half = if side == 0 { self.half_width } else { -self.half_width };
         let ahead = self.points[index].spot.ahead;
         let ends = |stand: &Stand| [half, 0.0].map(|aside| stand.place(ahead, aside));
         let sag = self.sag(ahead);
         let most = self.most(self.across[index], ahead) + sag;
+        let (before, after) = (ends(self.before), ends(self.after));
+        let left = known - moved(before, after);
+        if left - most >= enough {
+            return (left, left - most);
+        }
         let stray = |towards: Point| [half, 0.0].map(|aside| self.stray(towards, ahead, aside) + sag);
-        let piece = Swept { before: ends(self.before), after: ends(self.after), most, enough, stray: &stray };
-        self.room(&piece, false).1
+        self.room(&Swept { before, after, most, enough, stray: &stray }, known > 0.0)
     }
 
     /// Whether something may already be under the body when the first step of an area begins.
@@ -402,7 +422,8 @@ impl<'a> Passage<'a> {
         if self.areas.begins(self.before.head) {
             let (blocked, last) = (self.blocked(), self.points.len() - 1);
             for (side, lowest) in lowest.iter_mut().enumerate() {
-                let leeway = if blocked { -self.half_width } else { self.edge(last, side, f64::INFINITY) };
+                let edge = || self.edge(last, side, f64::NEG_INFINITY, f64::INFINITY).1;
+                let leeway = if blocked { -self.half_width } else { edge() };
                 lowest.lower(leeway, last);
             }
         }
@@ -411,7 +432,9 @@ impl<'a> Passage<'a> {
             self.measure(rooms, number, &mut lowest);
         }
         for (side, lowest) in lowest.iter_mut().enumerate() {
-            lowest.lower(self.edge(0, side, lowest.leeway), 0);
+            let (room, leeway) = self.edge(0, side, rooms.front[side], lowest.leeway);
+            rooms.front[side] = room;
+            lowest.lower(leeway, 0);
         }
         for number in (0..rooms.pieces.len()).filter(|number| !first.contains(number)) {
             self.measure(rooms, number, &mut lowest);
@@ -430,9 +453,7 @@ impl<'a> Passage<'a> {
         let most = most[0].max(most[1]) + sag;
         let ends = |stand: &Stand| piece.ends.map(|ahead| stand.place(ahead, aside));
         let (before, after) = (ends(self.before), ends(self.after));
-        // The hulls of two steps share the piece at the station between them.
-        let step = ground::apart(before[0], after[0]).max(ground::apart(before[1], after[1]));
-        let left = rooms.rooms[number] - step;
+        let left = rooms.rooms[number] - moved(before, after);
         rooms.rooms[number] = if left - most >= lowest.leeway {
             left
         } else {
@@ -446,6 +467,11 @@ impl<'a> Passage<'a> {
             room
         };
     }
+}
+
+/// Most that the room of a piece falls over a step, metres: the hulls of two steps share the piece at the station between them.
+fn moved(before: [Point; 2], after: [Point; 2]) -> f64 {
+    ground::apart(before[0], after[0]).max(ground::apart(before[1], after[1]))
 }
 
 /// Lowers the planning leeways at the feet of a unit's points: the nominal room of the sides between them, less the straight gains.
@@ -505,7 +531,7 @@ mod tests {
     use netcert_base::stop::Stop;
     use netcert_base::vehicle::Catalogue;
 
-    use crate::stet::{Certificate, Model, Options, certify};
+    use crate::stet::{Certificate, Model, Options, certify, certify_planned, certify_spans};
 
     const VEHICLES: [&str; 4] = ["EU-SEMI16.5", "US-WB67", "AU-BDOUBLE26", "AU-ATRIPLE53"];
 
@@ -541,6 +567,36 @@ mod tests {
             let by_area = certified(&in_area, vehicle).result.rsc_m.unwrap();
             assert!((by_edges - by_area).abs() < 0.002, "{vehicle}: {by_edges} {by_area}");
         }
+    }
+
+    #[test]
+    fn one_span_has_the_numbers_that_a_whole_certificate_has_for_it() {
+        let profile = CurvatureProfile::new(0.5)
+            .straight(90.0)
+            .clothoid(0.07, 8.0)
+            .arc(0.07, 10.0)
+            .clothoid(0.0, 8.0)
+            .straight(90.0);
+        let fixed = Options { max_shift_m: 0.0, correction_sweeps: 0 };
+        let mut seen = [false; 3];
+        for half_m in (0..40).map(|step| 1.0 + 0.05 * f64::from(step)) {
+            let corridor = Corridor::from_curvature(0.5, [3.0, 4.0], 6.0, &profile.curvature, 7.0, half_m);
+            let in_area = as_area(&corridor, 90.0, 100..corridor.len() - 60);
+            let span = 120..corridor.len() - 20;
+            for vehicle in VEHICLES {
+                let model = Model::new(Catalogue::builtin().unwrap().get(vehicle).unwrap()).unwrap();
+                let spans = std::slice::from_ref(&span);
+                let quick = certify_spans(&in_area, &[&model], spans, &fixed).remove(0).spans.remove(0);
+                let (_, mut whole) = certify_planned(&in_area, &model, spans, &fixed, &Stop::never()).unwrap().unwrap();
+                let whole = whole.remove(0);
+                let near = |a: Option<f64>, b: Option<f64>| a.zip(b).map_or(a == b, |(a, b)| (a - b).abs() < 1e-6);
+                assert!(near(quick.rsc_m, whole.rsc_m), "{vehicle} {half_m}: {quick:?} {whole:?}");
+                assert!(near(quick.hinge_margin_rad, whole.hinge_margin_rad), "{vehicle} {half_m}");
+                assert_eq!((quick.shrink, quick.verdict()), (whole.shrink, whole.verdict()), "{vehicle} {half_m}");
+                seen[usize::from(quick.safe()) + usize::from(quick.safe() && quick.shrink < 1.0)] = true;
+            }
+        }
+        assert_eq!(seen, [true; 3], "unsafe, safe, safe with less tolerance");
     }
 
     #[test]
