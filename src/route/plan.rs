@@ -62,6 +62,8 @@ pub struct Route {
     pub time_s: f64,
     /// The length along the corridor, metres.
     pub length_m: f64,
+    /// Length of the vehicle when straight, metres.
+    pub vehicle_length_m: f64,
     /// The whole corridor.
     pub path: RoutePath,
     /// The certificate of the whole corridor. It is safe.
@@ -277,7 +279,8 @@ impl Planner {
         }
         let time_s = self.time_s(&found.drive, start, end);
         let length_m = (path.corridor.len() - 1) as f64 * path.corridor.spacing_m;
-        Ok(Ok(Route { drive: found.drive.clone(), start, end, cost: found.cost, time_s, length_m, path, certificate }))
+        let (drive, cost, vehicle_length_m) = (found.drive.clone(), found.cost, self.driver.model.vehicle.length_m);
+        Ok(Ok(Route { drive, start, end, cost, time_s, length_m, vehicle_length_m, path, certificate }))
     }
 
     fn assembled(&mut self, found: &Found, start: f64, end: f64) -> Result<RoutePath, AssemblyError> {

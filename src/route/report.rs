@@ -1,5 +1,7 @@
 //! Writes answers as JSON and GeoJSON, with the RSC of each part of a route.
 
+use std::ops::Range;
+
 use serde_json::{Value, json};
 
 use super::assemble::{PartKind, passes_over};
@@ -31,7 +33,8 @@ impl Route {
         let spacing_m = self.path.corridor.spacing_m;
         let certificate = &self.certificate;
         let part = |part: &super::assemble::Part| {
-            let own = |column: &[f64]| column.get(part.stations.clone()).unwrap_or_default().to_vec();
+            let stations = self.noted(&part.stations);
+            let own = |column: &[f64]| column.get(stations.clone()).unwrap_or_default().to_vec();
             let both = own(&certificate.left_m).into_iter().chain(own(&certificate.right_m));
             let least = both.filter_map(known_m).min_by(f64::total_cmp);
             PartResult {
@@ -42,6 +45,16 @@ impl Route {
             }
         };
         self.path.parts.iter().map(part).collect()
+    }
+
+    /// The stations at which the certificate notes leeways of a part. In areas it notes the least leeway of a vehicle's place at one
+    /// station under the vehicle, which may belong to the part beside. Feet are at most twice the vehicle's length apart.
+    fn noted(&self, part: &Range<usize>) -> Range<usize> {
+        let corridor = &self.path.corridor;
+        let near = (2.0 * self.vehicle_length_m / corridor.spacing_m).ceil() as usize;
+        let wider = part.start.saturating_sub(near)..(part.end + near).min(corridor.len());
+        let meets = |heads: &Range<usize>| heads.start < wider.end && heads.end > wider.start;
+        if corridor.areas.iter().any(|span| meets(&span.heads)) { wider } else { part.clone() }
     }
 
     /// The part with the least leeway of the whole route.

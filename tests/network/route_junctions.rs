@@ -12,6 +12,7 @@ use ascii_map::AsciiMap;
 use netcert::network::Movement;
 use netcert::osm::facts::Policy;
 use netcert::route::*;
+use netcert::stet::certify_planned;
 use netcert::stop::Stop;
 use netcert::turns::Kerbs;
 use netcert::verdict::{UnsafeReason, Verdict};
@@ -168,6 +169,31 @@ fn turns_that_share_a_stretch_of_road_are_blended_or_refused() {
         blended += usize::from(shared);
     }
     assert!(blended > 0 && refused > 0, "{blended} blended, {refused} refused");
+}
+
+/// A part of a route has no more leeway than the certificate of its stations, wherever in the area the least leeway is noted.
+#[test]
+fn no_part_of_a_route_has_more_leeway_than_its_own_stations() {
+    let mut turns = 0;
+    for width_m in [6.0, 8.0, 12.0] {
+        let region = region(&s_bend(width_m, 120.0, false), 12.0);
+        let driver = region.driver("EU-SEMI16.5");
+        let answer = ask(&region, &driver, ["AJ", "KD"], 0);
+        for route in &answer.routes {
+            let spans: Vec<_> = route.path.parts.iter().map(|part| part.stations.clone()).collect();
+            let options = &driver.permits.settings.stet;
+            let corridor = &route.path.corridor;
+            let (_, own) = certify_planned(corridor, &driver.model, &spans, options, &Stop::never()).unwrap().unwrap();
+            for (part, own) in route.parts().iter().zip(own) {
+                if own.shrink != route.certificate.result.shrink {
+                    continue;
+                }
+                assert!(part.rsc_m.unwrap() <= own.rsc_m.unwrap() + 1e-9, "{width_m}: {part:?} {own:?}");
+                turns += usize::from(matches!(part.kind, PartKind::Turn { .. }));
+            }
+        }
+    }
+    assert!(turns > 3, "{turns}");
 }
 
 /// From W to E by an arc in the north, or by a longer one in the south that a side street divides.
