@@ -1,8 +1,8 @@
 //! The drivable area of a turn as a set of polygons: approach and departure strips, the part that both roads share at
 //! the junction, and the kerb return between them.
 //!
-//! No part is invented. Beyond the node a road counts only where traffic really drives on it (its stroke continues), or
-//! where the other road crosses it. A turn to the near side (right, for right-hand traffic) gets what the lanes of the
+//! No part is invented, except that two parts of one road join without a gap. Beyond the node a road counts only where
+//! traffic really drives on it (its stroke continues), or where the other road crosses it. A turn to the near side (right, for right-hand traffic) gets what the lanes of the
 //! two *directions* share. A turn across the oncoming traffic gets what the carriageways share. If the junction's
 //! surface is mapped, the corner is the mapped surface outside both roads, and no kerb return is assumed. What the other
 //! roads of the junction add inside the crossing is made in `crossing`.
