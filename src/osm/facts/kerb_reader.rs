@@ -29,6 +29,11 @@ impl KerbReader {
         }
     }
 
+    /// Whether a side has a cycle lane.
+    pub(super) fn has_cycle_lane(&self) -> bool {
+        self.cycle_lanes.iter().any(|lane| *lane)
+    }
+
     /// The uses on the left and on the right.
     pub(super) fn finish(&self) -> [Kerb; 2] {
         [self.kerb(0), self.kerb(1)]

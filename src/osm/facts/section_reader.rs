@@ -19,6 +19,8 @@ struct Lists {
     width_steps: [u8; LISTED],
     count: u8,
     bus: u8,
+    /// Lanes with turns (`turn:lanes`); 0 if untagged.
+    turns: u8,
     unusable: bool,
 }
 
@@ -56,6 +58,7 @@ impl SectionReader {
             }
             "narrow" if suffix.is_empty() => self.narrow = text == "yes",
             "lanes" => self.lanes(suffix, text, notes),
+            "turn" => self.turns(suffix, text),
             "placement" => self.placement(suffix, text, notes),
             "access" | "vehicle" | "motor_vehicle" | "hgv" | "bus" | "psv" | "cycleway" | "bicycle"
                 if suffix.starts_with("lanes") =>
@@ -102,6 +105,13 @@ impl SectionReader {
             Some(index) if bus => self.lists[index].bus = count,
             Some(index) => self.lists[index].count = count,
         }
+    }
+
+    /// Counts the lanes of `turn:lanes`. More than a road can have are a typing error.
+    fn turns(&mut self, suffix: &str, text: &str) {
+        let Some(index) = list_index(suffix) else { return };
+        let lanes = u8::try_from(text.split('|').count()).unwrap_or(u8::MAX);
+        self.lists[index].turns = if lanes <= value::MOST_LANES { lanes } else { 0 };
     }
 
     fn lane_widths(&mut self, suffix: &str, text: &str, notes: &mut Notes) {
@@ -166,6 +176,10 @@ impl SectionReader {
             notes.add(Note::BadLanes);
             [&mut plain, &mut forward, &mut backward].into_iter().for_each(|lists| lists.count = 0);
         }
+        // With a cycle lane the lists are ambiguous, because they may include it.
+        if !self.kerbs.has_cycle_lane() {
+            count_turns([&mut plain, &mut forward, &mut backward], self.both_ways, oneway);
+        }
         let directions = match oneway {
             Oneway::Forward => [plain.or(forward).tags(), LaneTags::default()],
             Oneway::Backward => [LaneTags::default(), plain.or(backward).tags()],
@@ -216,6 +230,26 @@ impl SectionReader {
         self.placements[index] = placement(text, direction);
         if self.placements[index].is_none() {
             notes.add(Note::BadPlacement);
+        }
+    }
+}
+
+/// Takes the lanes with turns as the number of lanes where that is not tagged. On a two-way road whose lanes are counted, each
+/// direction keeps at least one.
+fn count_turns([plain, forward, backward]: [&mut Lists; 3], both_ways: u8, oneway: Oneway) {
+    let unknown = |lists: &Lists| lists.count == 0 && lists.listed == 0;
+    if oneway != Oneway::No {
+        let own = if oneway == Oneway::Forward { forward } else { backward };
+        if unknown(plain) && unknown(own) {
+            plain.count = if plain.turns > 0 { plain.turns } else { own.turns };
+        }
+        return;
+    }
+    let of = |lists: &Lists| if unknown(lists) { lists.turns } else { lists.count };
+    let running = of(forward).max(1) + of(backward).max(1) + both_ways;
+    if plain.count == 0 || running <= plain.count {
+        for lists in [forward, backward].into_iter().filter(|lists| unknown(lists)) {
+            lists.count = lists.turns;
         }
     }
 }

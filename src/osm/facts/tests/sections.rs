@@ -180,6 +180,37 @@ fn lanes_for_others_are_not_the_kerb_side_lane() {
 }
 
 #[test]
+fn lanes_with_turns_are_counted_where_lanes_are_not() {
+    check(
+        "highway=primary oneway=yes turn:lanes=left|through",
+        "0..-325 FromLanes | - | 325..-325 FromLanes | 325..-325 FromLanes",
+    );
+    check("highway=primary oneway=-1 turn:lanes:backward=left|none", "- | 0..-325 FromLanes | - | 325..-325 FromLanes");
+    check(
+        "highway=primary lanes=3 turn:lanes:forward=left|through",
+        "-162..-488 FromLanes | -162..-488 FromLanes | 162..-488 FromLanes | 488..-488 FromLanes",
+    );
+    // No lane would be left for the way back.
+    check(
+        "highway=primary lanes=2 turn:lanes:forward=left|through",
+        "0..-325 FromLanes | 0..-325 FromLanes | 0..-325 FromLanes | 325..-325 FromLanes",
+    );
+    // A tagged number of lanes counts.
+    check(
+        "highway=primary oneway=yes lanes=2 turn:lanes=left|through|right",
+        "0..-325 FromLanes | - | 325..-325 FromLanes | 325..-325 FromLanes",
+    );
+    // One of the lanes may be the cycle lane.
+    let ambiguous = "highway=primary oneway=yes cycleway:right=lane";
+    let carriageway = |text: &str| {
+        let place = Place { country: *b"DE", left_hand_traffic: false };
+        let [forward, _] = cross_sections(&draft(text).facts, &place, None, &Rules::builtin().unwrap());
+        show(forward.carriageway)
+    };
+    assert_eq!(carriageway(&format!("{ambiguous} turn:lanes=left|through")), carriageway(ambiguous));
+}
+
+#[test]
 fn left_hand_traffic_mirrors() {
     check_at("highway=tertiary", &LEFT, "300..0 Assumed | 300..0 Assumed | 300..0 Assumed | 300..-300 Assumed");
     check_at(
