@@ -16,7 +16,7 @@ use crate::reporter::Reporter;
 use crate::rows::{Conclusion, Measured, StoredPlan, TurnCertificate};
 use crate::settings::Settings;
 use crate::stet::{Model, Options, Plan, SpanResult, certify_spans};
-use crate::turns::{Planner, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnPath, passage_on, turn_on};
+use crate::turns::{Planner, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnPath, turn_on};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use crate::words::{Named, VerdictKind, verdict_words};
 
@@ -151,7 +151,7 @@ fn lay_lines(job: &TurnJob<'_>, batch: &[u32], strokes: &[u32], lines: &mut Line
         .iter()
         .map(|&turn| &job.turns[turn as usize])
         .filter(|turn| (0..job.models.len()).any(|vehicle| given(job, turn, vehicle).is_none()))
-        .flat_map(|turn| [turn.movement.from, turn.movement.to].into_iter().chain(turn.through.first().copied()))
+        .flat_map(|turn| [turn.movement.from, turn.movement.to].into_iter().chain(turn.through.iter().copied()))
         .map(|edge| strokes[edge as usize])
         .collect::<FxHashSet<u32>>()
         .into_iter()
@@ -172,8 +172,8 @@ fn lay_lines(job: &TurnJob<'_>, batch: &[u32], strokes: &[u32], lines: &mut Line
     lines.extend(made);
 }
 
-/// The verdict of a turn without a certificate: the turn is forbidden, or one of its edges cannot be used. The arcs of
-/// a roundabout need no certificate of their own, because no vehicle circles forever. They must only be open to the
+/// The verdict of a turn without a certificate: the turn is forbidden, or one of its edges cannot be used. The edges that a
+/// passage leads over need no certificate of their own, because its certificate covers them. They must only be open to the
 /// vehicle.
 fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict> {
     if turn.movement.forbidden.is_some() {
@@ -199,7 +199,7 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
         .map(|vehicle| bare(given(job, turn, vehicle).unwrap_or(Verdict::Unknown(UnknownReason::Geometry))))
         .collect();
     let line = |edge: u32| match lines.get(&strokes[edge as usize]) {
-        Some((_, Ok(line))) => Ok(line),
+        Some((_, Ok(line))) => Ok(line.as_ref()),
         Some((_, Err(reason))) => Err(*reason),
         None => Err(UnknownReason::Geometry),
     };
@@ -213,14 +213,7 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
         }
         let made = || {
             let (network, policy, params) = (job.network, job.settings.policy, &job.settings.turn_params());
-            let (from, to) = (line(turn.movement.from)?, line(turn.movement.to)?);
-            match turn.through.first() {
-                Some(&arc) => {
-                    let over = (turn.movement, turn.through.as_slice());
-                    passage_on(network, over, [from, line(arc)?, to], policy, params, reach)
-                }
-                None => turn_on(network, turn.movement, [from, to], policy, params, reach),
-            }
+            turn_on(network, (turn.movement, &turn.through), &line, policy, params, reach)
         };
         match made() {
             Err(reason) => live.iter().for_each(|&v| out[v] = bare(Verdict::Unknown(reason))),

@@ -13,7 +13,7 @@ use super::database::{RowOutcome, SetReport};
 use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::rows::{CertificateRow, TurnRow};
-use crate::turns::{KerbSource, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, passage_on, turn_on};
+use crate::turns::{KerbSource, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, turn_on};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 use netcert_check::Chain;
@@ -73,14 +73,14 @@ impl TurnsClaim<'_> {
     fn lines(&self, batch: &[&TurnRow], stroke_of: &FxHashMap<u32, u32>) -> Lines {
         let open =
             batch.iter().filter_map(|row| self.facts.get(row.turn as usize)).filter(|t| self.barred(t).is_none());
-        let edges = open.flat_map(|t| [t.movement.from, t.movement.to].into_iter().chain(t.through.first().copied()));
+        let edges = open.flat_map(|t| [t.movement.from, t.movement.to].into_iter().chain(t.through.iter().copied()));
         let strokes: FxHashSet<u32> = edges.filter_map(|edge| stroke_of.get(&edge).copied()).collect();
         let line = |stroke| (stroke, StrokeLine::new(self.network, stroke, self.policy, &self.params.corridor));
         strokes.into_par_iter().map(line).collect::<Vec<_>>().into_iter().collect()
     }
 
-    /// The verdict of a turn that needs no corridor, because a restriction forbids it or one of its edges is not safe. The arcs
-    /// of a roundabout need only be lawful.
+    /// The verdict of a turn that needs no corridor, because a restriction forbids it or one of its edges is not safe. The edges
+    /// that a passage leads over need only be lawful.
     fn barred(&self, turn: &TurnFacts) -> Option<Verdict> {
         if turn.movement.forbidden.is_some() {
             return Some(Verdict::Forbidden(ForbiddenReason::Restriction));
@@ -148,14 +148,7 @@ impl TurnsClaim<'_> {
             Some(Err(reason)) => Err(*reason),
             None => Err(UnknownReason::Geometry),
         };
-        let (from, to) = (line(turn.movement.from)?, line(turn.movement.to)?);
-        match turn.through.first() {
-            Some(&arc) => {
-                let over = (turn.movement, turn.through.as_slice());
-                passage_on(self.network, over, [from, line(arc)?, to], self.policy, self.params, reach)
-            }
-            None => turn_on(self.network, turn.movement, [from, to], self.policy, self.params, reach),
-        }
+        turn_on(self.network, (turn.movement, &turn.through), &line, self.policy, self.params, reach)
     }
 
     fn with_corridors(&self, chain: &Chain, row: &TurnRow, made: &TurnCorridors) -> (Outcome, f64) {

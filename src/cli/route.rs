@@ -8,7 +8,7 @@ use anyhow::{anyhow, bail};
 use clap::{Args, ValueEnum};
 use netcert::certificate;
 use netcert::corridor::FileCorridor;
-use netcert::network::Network;
+use netcert::network::{Network, PassageKind};
 use netcert::picture;
 use netcert::route::{self, Answer, Measure, PartKind, PartResult, Planner, Position, Question, Route as Found};
 use netcert::stop::Stop;
@@ -238,12 +238,15 @@ fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     a.zip(b).map(|(a, b)| a.min(b)).or(a).or(b)
 }
 
-/// A word for the movement on a part: along an edge, round a roundabout, or a turn.
+/// A word for the movement on a part: along an edge, round a roundabout, across a complex, or a turn.
 fn how(network: &Network, at: PartKind) -> &'static str {
     match at {
         PartKind::Edge(_) => "along",
-        PartKind::Turn { .. } if route::passes_over(network, at) => "round",
-        PartKind::Turn { .. } => "turn",
+        PartKind::Turn { .. } => match route::passes_over(network, at) {
+            Some(PassageKind::Roundabout) => "round",
+            Some(PassageKind::Complex) => "across",
+            None => "turn",
+        },
     }
 }
 

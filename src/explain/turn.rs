@@ -5,7 +5,7 @@ use super::hints::{self, Hints, KerbHint};
 use super::{Explanation, Geometry};
 use crate::certify::{best_of, turn_verdict};
 use crate::corridor::Corridor;
-use crate::network::{Edge, Network};
+use crate::network::{Edge, Network, PassageKind};
 use crate::osm::facts::Policy;
 use crate::settings::Settings;
 use crate::stet::{Model, Options, SpanResult, certify_spans};
@@ -22,6 +22,8 @@ const MOST_KERB_M: f64 = 25.0;
 pub struct TurnExplanation {
     /// The facts of the turn from the map.
     pub facts: TurnFacts,
+    /// The junction that it leads over, if it is a passage.
+    pub passage: Option<PassageKind>,
     /// Names of the roads that the turn leads from and to.
     pub roads: [String; 2],
     /// The area of the turn, and what its paths are made from. `None` if the turn has no corridor.
@@ -91,7 +93,8 @@ pub fn explain_turn(
     let explanation = Explanation { road: None, vehicle, verdict, geometry, hints, conflict: None };
     let path = best.map(|(path, _)| path);
     let strip = settings.turn_policy.max(settings.policy);
-    Ok(TurnExplanation { facts: facts.clone(), roads, corridors: made.ok(), path, strip, explanation })
+    let passage = network.passage_kind(&facts.through);
+    Ok(TurnExplanation { facts: facts.clone(), passage, roads, corridors: made.ok(), path, strip, explanation })
 }
 
 /// The geometry of a path, with the options that gave `result`. Some paths are certified without corrections.
@@ -158,10 +161,16 @@ impl TurnExplanation {
     /// The turn in one line: the two roads, the angle and the kerb.
     #[must_use]
     pub fn title(&self) -> String {
-        let arcs = self.facts.through.len();
-        if arcs > 0 {
-            let [from, to] = &self.roads;
-            return format!("{from} → {to}: over a roundabout, {arcs} {}", if arcs == 1 { "arc" } else { "arcs" });
+        let [from, to] = &self.roads;
+        let count = self.facts.through.len();
+        let (one, more) = (count == 1, if count == 1 { "" } else { "s" });
+        match self.passage {
+            Some(PassageKind::Roundabout) => return format!("{from} → {to}: over a roundabout, {count} arc{more}"),
+            Some(PassageKind::Complex) => {
+                let lie = if one { "lies" } else { "lie" };
+                return format!("{from} → {to}: over {} nodes, {count} edge{more} {lie} between", count + 1);
+            }
+            None => {}
         }
         let angle = self.facts.angle_deg;
         let side = if angle > 0.0 { "left" } else { "right" };

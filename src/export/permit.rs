@@ -2,8 +2,8 @@
 //! target.
 //!
 //! An edge is permitted if its verdict is safe (which includes lawful access), its RSC reaches the threshold, and its width comes
-//! from a good enough source. A turn or a passage of a roundabout is permitted if both its edges are permitted and its own
-//! certificate is safe; the arcs of a passage need no permit. Straight on along a stroke, the edges' certificates suffice.
+//! from a good enough source. A turn or a passage is permitted if both its edges are permitted and its own
+//! certificate is safe; the edges that a passage leads over need no permit. Straight on along a stroke, the edges' certificates suffice.
 //! Turning back on the road, and everything without a certificate, is refused.
 
 use std::collections::BTreeMap;
@@ -162,7 +162,7 @@ impl Tally {
 pub struct Permitted {
     /// By edge: whether it is permitted.
     pub edges: Bits,
-    /// By turn, including passages of roundabouts: whether it is permitted.
+    /// By turn, including passages: whether it is permitted.
     pub turns: Bits,
     /// Numbers of edges.
     pub edge_tally: Tally,

@@ -1,4 +1,5 @@
-//! Finds the arcs of a passage. The database names only its first and last arc.
+//! Finds the edges of a passage. The database names only the first and the last one: of a roundabout the arcs between follow from
+//! the ring, and a complex has at most two edges inside.
 
 use rustc_hash::FxHashMap;
 
@@ -20,9 +21,13 @@ impl Rings {
         Self { at: places.collect(), rings }
     }
 
-    /// The arcs from the first to the last in driving order. `None` if the two are not on the same ring.
+    /// The edges from the first to the last in driving order. `None` if only one of them is on a ring, or they are on two.
     pub(super) fn through(&self, [first, last]: [u32; 2]) -> Option<Vec<u32>> {
-        let (&(ring, from), &(same, to)) = (self.at.get(&first)?, self.at.get(&last)?);
+        let (&(ring, from), &(same, to)) = match (self.at.get(&first), self.at.get(&last)) {
+            (None, None) if first == last => return Some(vec![first]),
+            (None, None) => return Some(vec![first, last]),
+            (a, b) => (a?, b?),
+        };
         let arcs = self.rings.get(ring).filter(|_| ring == same)?;
         let count = if to >= from { to - from + 1 } else { arcs.len() - from + to + 1 };
         Some(arcs.iter().cycle().skip(from).take(count).copied().collect())
@@ -41,5 +46,12 @@ mod tests {
         assert_eq!(rings.through([3, 3]), Some(vec![3]));
         assert_eq!(rings.through([7, 3]), None);
         assert_eq!(rings.through([7, 4]), None);
+    }
+
+    #[test]
+    fn edges_inside_a_complex_are_those_that_are_named() {
+        let rings = Rings::new(vec![vec![7, 8, 9]]);
+        assert_eq!(rings.through([4, 4]), Some(vec![4]));
+        assert_eq!(rings.through([4, 5]), Some(vec![4, 5]));
     }
 }

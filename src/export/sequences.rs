@@ -1,7 +1,6 @@
-//! Finds the sequences of permitted edges that may not be driven: refused turns, turn restrictions and refused passages of
-//! roundabouts.
+//! Finds the sequences of permitted edges that may not be driven: refused turns, turn restrictions and refused passages.
 //!
-//! A passage is refused by its own certificate, even if its arcs and the turns onto and off them are permitted. `netcert route`
+//! A passage is refused by its own certificate, even if the edges between and the turns onto and off them are permitted. `netcert route`
 //! may still try the parts, because it certifies the whole route afterwards. An export cannot, so it closes the sequence. Formats
 //! without sequences refuse the first step of the sequence.
 

@@ -103,7 +103,7 @@ impl<'r> Source<'r> {
         Ok(self.told(rows).map(move |row| Ok(with_permit(row?))))
     }
 
-    /// Every turn and passage of a roundabout, permitted or not, in order of the network.
+    /// Every turn and passage, permitted or not, in order of the network.
     ///
     /// # Errors
     /// The database cannot be read. Each row may have the same error.
@@ -160,7 +160,7 @@ fn check_certified(database: &mut Database, ask: &Ask) -> Result<(), ExportError
 
 fn permitted(database: &mut Database, ask: &Ask, reporter: &dyn Reporter) -> Result<Permitted, ExportError> {
     let mut out = Permitted::default();
-    // By edge: whether the source of its width is good enough. A passage needs this of its arcs, which need no permit.
+    // By edge: whether the source of its width is good enough. A passage needs this of the edges that it leads over, which need no permit.
     let mut known = Bits::default();
     let rings = Rings::new(database.rings()?);
     reporter.begin("permits", 0);

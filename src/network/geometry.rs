@@ -47,11 +47,12 @@ impl Network {
     pub fn length_m(&self, edge: &Edge) -> f64 {
         length_m(self.positions(edge))
     }
-}
 
-/// As [`Geometry::deflection_deg`], over the segments next to the node only.
-pub(super) fn segment_deflection_deg(network: &Network, a: &Edge, b: &Edge) -> f64 {
-    deflection_deg(chord_deg(network.positions(a).rev(), 0.0), chord_deg(network.positions(b), 0.0))
+    /// Turn of a vehicle from the end of edge `a` to the start of edge `b`, degrees, 0..=180. Directions are those of chords of
+    /// `reach_m` metres, at least one segment.
+    pub(super) fn deflection_over_deg(&self, a: &Edge, b: &Edge, reach_m: f64) -> f64 {
+        deflection_deg(chord_deg(self.positions(a).rev(), reach_m), chord_deg(self.positions(b), reach_m))
+    }
 }
 
 /// Deflection between two directions that leave a node: 0 for opposite directions.

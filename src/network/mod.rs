@@ -6,6 +6,7 @@
 mod account;
 mod areas;
 mod build;
+mod complexes;
 mod crossings;
 mod cut;
 mod edge_id;
@@ -13,6 +14,7 @@ mod edges;
 mod geometry;
 mod movements;
 mod pairing;
+mod passages;
 mod restrictions;
 mod roundabouts;
 mod splits;
@@ -28,7 +30,7 @@ pub use build::{build, build_with};
 pub use crossings::Crossings;
 pub(crate) use geometry::{EARTH_RADIUS_M, offset_m};
 pub use movements::{Movement, MovementKind, Movements};
-pub use roundabouts::Passage;
+pub use passages::{Passage, PassageKind};
 pub use splits::Splits;
 pub use stroke::StrokeOptions;
 

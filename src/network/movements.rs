@@ -1,4 +1,4 @@
-//! Movements at every node: straight on along a stroke, a turn, a U-turn, and passages over roundabouts.
+//! Movements at every node: straight on along a stroke, a turn, a U-turn, and passages over several nodes.
 //!
 //! The order is fixed (by node, then by edge). A movement is missing only at nodes with more edges than any real
 //! junction has. Restrictions over one node are marked here. Restrictions over ways are sequences that only a search
@@ -76,7 +76,7 @@ impl Movements {
         Some(range.start as usize + within)
     }
 
-    /// All passages of roundabouts, by the edge before them.
+    /// All passages, by the edge before them.
     #[must_use]
     pub fn passages(&self) -> &[Passage] {
         &self.passages
@@ -132,7 +132,7 @@ impl Network {
     }
 
     /// By edge: the edge that continues it along its stroke, or [`u32::MAX`].
-    fn straight_on(&self) -> Vec<u32> {
+    pub(super) fn straight_on(&self) -> Vec<u32> {
         let mut next = vec![pairing::NONE; self.edges.len()];
         for stroke in &self.strokes {
             let edges = &self.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize];

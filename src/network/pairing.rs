@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
-use super::geometry::{Geometry, segment_deflection_deg};
+use super::geometry::Geometry;
 use super::{Edge, Network, Road, StrokeOptions, reverse};
 use crate::osm::LonLat;
 use crate::osm::facts::{Direction, Oneway};
@@ -185,7 +185,7 @@ impl<'n> Junction<'n> {
     /// The heading of a hairpin with its apex at the node turns by more than the limit over chords, but not at the node
     /// itself.
     fn bends_back(&self, a: u32, b: u32) -> f64 {
-        segment_deflection_deg(self.network, self.edge(a), self.edge(b))
+        self.network.deflection_over_deg(self.edge(a), self.edge(b), 0.0)
     }
 
     /// `a` as the edge that a vehicle comes from into `b`, where nothing continues into `b`.

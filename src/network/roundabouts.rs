@@ -14,19 +14,6 @@ const LONGEST_M: f64 = 100.0;
 /// With more entries or exits than this a ring is a ring road, not a roundabout.
 const MOST_ARMS: usize = 24;
 
-/// One passage over a roundabout.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Passage {
-    /// The edge before the ring; it ends on the ring.
-    pub from: u32,
-    /// The edge after the ring; it starts on the ring.
-    pub to: u32,
-    /// The arcs between in driving order: at least one, and less than the whole ring.
-    pub through: Vec<u32>,
-    /// A restriction that forbids any step of the passage (index into [`Network::restrictions`]).
-    pub forbidden: Option<u32>,
-}
-
 /// A roundabout: its arcs in driving order, and the edges that enter and leave at the nodes where they start.
 struct Ring {
     arcs: Vec<u32>,
@@ -37,9 +24,8 @@ struct Ring {
 }
 
 impl Network {
-    /// All passages of roundabouts, by ring, entry and exit.
-    #[must_use]
-    pub fn passages(&self) -> Vec<Passage> {
+    /// All ways over roundabouts, by ring, entry and exit: the edge before, the arcs, and the edge after.
+    pub(super) fn over_rings(&self) -> Vec<(u32, Vec<u32>, u32)> {
         let mut nodes = FxHashMap::default();
         let mut rings = Vec::new();
         for stroke in &self.strokes {
@@ -58,8 +44,7 @@ impl Network {
                 rings[ring].exits[place].push(index);
             }
         }
-        let bans = self.bans_by_first();
-        rings.iter().filter(|ring| ring.bounded()).flat_map(|ring| self.passages_of(ring, &bans)).collect()
+        rings.iter().filter(|ring| ring.bounded()).flat_map(Ring::ways_over).collect()
     }
 
     /// The ring of a stroke and its nodes, if the stroke is a roundabout with an arc short enough for a vehicle.
@@ -80,44 +65,22 @@ impl Network {
         let ring = Ring { arcs: arcs.to_vec(), closed: stroke.closed, entries: none(), exits: none() };
         (apart && short).then_some((ring, nodes))
     }
-
-    fn passages_of(&self, ring: &Ring, bans: &FxHashMap<u32, Vec<u32>>) -> Vec<Passage> {
-        let mut out = Vec::new();
-        for (place, entries) in ring.entries.iter().enumerate() {
-            for &from in entries {
-                for (through, exits) in ring.ways_on(place) {
-                    for &to in exits {
-                        let forbidden = self.banned(bans, from, &through, to);
-                        out.push(Passage { from, to, through: through.clone(), forbidden });
-                    }
-                }
-            }
-        }
-        out
-    }
-
-    /// Restrictions by their first edge.
-    fn bans_by_first(&self) -> FxHashMap<u32, Vec<u32>> {
-        let mut bans: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
-        for (no, restriction) in (0_u32..).zip(&self.restrictions) {
-            if let Some(&first) = self.sequence(restriction).first() {
-                bans.entry(first).or_default().push(no);
-            }
-        }
-        bans
-    }
-
-    /// The first restriction that forbids a passage.
-    fn banned(&self, bans: &FxHashMap<u32, Vec<u32>>, from: u32, through: &[u32], to: u32) -> Option<u32> {
-        let way: Vec<u32> = std::iter::once(from).chain(through.iter().copied()).chain([to]).collect();
-        let holds = |at: usize, no: u32| {
-            self.restrictions.get(no as usize).is_some_and(|ban| way[at..].starts_with(self.sequence(ban)))
-        };
-        (0..way.len()).find_map(|at| bans.get(&way[at])?.iter().copied().find(|&no| holds(at, no)))
-    }
 }
 
 impl Ring {
+    /// The ways from every entry to every exit.
+    fn ways_over(&self) -> Vec<(u32, Vec<u32>, u32)> {
+        let mut ways = Vec::new();
+        for (place, entries) in self.entries.iter().enumerate() {
+            for &from in entries {
+                for (through, exits) in self.ways_on(place) {
+                    ways.extend(exits.iter().map(|&to| (from, through.clone(), to)));
+                }
+            }
+        }
+        ways
+    }
+
     fn bounded(&self) -> bool {
         let count = |ends: &[Vec<u32>]| ends.iter().map(Vec::len).sum::<usize>();
         count(&self.entries) <= MOST_ARMS && count(&self.exits) <= MOST_ARMS

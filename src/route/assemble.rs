@@ -12,7 +12,7 @@ use super::drive::{Drive, Join};
 use super::grounds::Ground;
 use super::pieces::{Menu, Strokes, TurnPiece};
 use crate::corridor::{CentrelineError, Corridor, Frame, FrameError, open_ends};
-use crate::network::{Movement, MovementKind, Movements, Network};
+use crate::network::{Movement, MovementKind, Movements, Network, PassageKind};
 use crate::osm::LonLat;
 use crate::stop::{Stop, Stopped};
 use crate::turns::{Joint, Reach, StrokeLine};
@@ -32,7 +32,7 @@ const LEAST_STATIONS: usize = 12;
 pub enum PartKind {
     /// Along an edge.
     Edge(u32),
-    /// From one edge into another at a junction, or over a roundabout ([`passes_over`]).
+    /// From one edge into another at a junction, or over several nodes ([`passes_over`]).
     Turn {
         /// The edge that the vehicle comes from.
         from: u32,
@@ -96,12 +96,18 @@ pub enum AssemblyError {
     },
 }
 
-/// Whether a part is a passage of a roundabout: the edge that the vehicle goes into does not start where the other edge ends.
+/// The kind of the passage that a part is. `None` if the edge that the vehicle goes into starts where the other edge ends.
 #[must_use]
-pub fn passes_over(network: &Network, at: PartKind) -> bool {
-    let PartKind::Turn { from, to } = at else { return false };
+pub fn passes_over(network: &Network, at: PartKind) -> Option<PassageKind> {
+    let PartKind::Turn { from, to } = at else { return None };
     let edge = |edge: u32| network.edges.get(edge as usize);
-    edge(from).zip(edge(to)).is_some_and(|(from, to)| from.to_node != to.from_node)
+    let (from, to) = (edge(from)?, edge(to)?);
+    if from.to_node == to.from_node {
+        return None;
+    }
+    let at_node = network.crossings.at(from.to_node).iter().filter_map(|&other| edge(other));
+    let on_ring = at_node.into_iter().any(|other| network.road(other).roundabout);
+    Some(if on_ring { PassageKind::Roundabout } else { PassageKind::Complex })
 }
 
 /// The edges of a route, with its beginning and end on the first and last edge.

@@ -1,4 +1,4 @@
-//! The edges of a way, and the ranges of edges that are arcs of a roundabout's passage.
+//! The edges of a way, and the ranges of edges that lie inside passages (arcs of a roundabout, or edges inside a complex).
 //!
 //! All driven edges are included, also arcs, so that lengths, times and restrictions need no special case for passages.
 

@@ -43,7 +43,7 @@ pub struct Permits {
     pub edges: Vec<Permit>,
     /// One permit for each movement, in the order of [`Movements::all`]. Movements straight on are covered by their edges.
     pub movements: Vec<Permit>,
-    /// One permit for each passage of a roundabout, in the order of [`Movements::passages`].
+    /// One permit for each passage, in the order of [`Movements::passages`].
     pub passages: Vec<Permit>,
 }
 

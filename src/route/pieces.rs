@@ -33,7 +33,7 @@ pub struct TurnPiece {
 
 /// A source of turns.
 pub trait Turns: Send {
-    /// The certified ways to drive from one edge into another, the best first. `arcs` are those of a passage of a roundabout,
+    /// The certified ways to drive from one edge into another, the best first. `arcs` are the edges between of a passage,
     /// else empty.
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use super::assemble::{PartKind, passes_over};
 use super::obstacles::{Obstacle, Refutation};
 use super::plan::{Answer, Route};
 use crate::corridor::FrameError;
-use crate::network::{Edge, Network};
+use crate::network::{Edge, Network, PassageKind};
 use crate::stet::{Model, known_m};
 use crate::words::{Named, verdict_words};
 
@@ -78,7 +78,7 @@ pub fn title(network: &Network, at: PartKind) -> String {
     let of = |edge: u32| network.edges.get(edge as usize).map_or_else(String::new, |edge| road_title(network, edge));
     match at {
         PartKind::Edge(edge) => of(edge),
-        PartKind::Turn { from, to } if passes_over(network, at) => {
+        PartKind::Turn { from, to } if passes_over(network, at) == Some(PassageKind::Roundabout) => {
             format!("{} over the roundabout into {}", of(from), of(to))
         }
         PartKind::Turn { from, to } => format!("{} into {}", of(from), of(to)),
@@ -110,7 +110,7 @@ fn ids(network: &Network, at: PartKind) -> Value {
     match at {
         PartKind::Edge(edge) => json!({"kind": "edge", "edge_id": id(edge), "title": title(network, at)}),
         PartKind::Turn { from, to } => {
-            let kind = if passes_over(network, at) { "roundabout" } else { "turn" };
+            let kind = passes_over(network, at).map_or("turn", PassageKind::name);
             json!({"kind": kind, "from_edge": id(from), "to_edge": id(to), "title": title(network, at)})
         }
     }

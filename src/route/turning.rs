@@ -7,7 +7,7 @@ use super::pieces::{Strokes, TurnPiece, Turns};
 use crate::certify::best_of;
 use crate::network::Movement;
 use crate::stet::{Options, SpanResult, certify_spans};
-use crate::turns::{Planner, Reach, TurnCorridors, TurnPath, passage_on, turn_on};
+use crate::turns::{Planner, Reach, TurnCorridors, TurnPath, turn_on};
 use crate::verdict::UnknownReason;
 
 /// Number of simple paths of a turn that are tried beside the path of its permit. Those with the most room are tried.
@@ -53,13 +53,15 @@ impl Turns for MadeTurns {
 impl MadeTurns {
     fn made(&self, strokes: &mut Strokes, movement: &Movement, arcs: &[u32]) -> Result<TurnCorridors, UnknownReason> {
         let reach = Reach::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
-        let (from, to) = (strokes.line_of(movement.from)?, strokes.line_of(movement.to)?);
-        let ring = arcs.first().map(|&arc| strokes.line_of(arc)).transpose()?;
+        let driven = [movement.from, movement.to].into_iter().chain(arcs.iter().copied());
+        let lines: Vec<_> =
+            driven.map(|edge| Ok((edge, strokes.line_of(edge)?))).collect::<Result<_, UnknownReason>>()?;
+        let line = |edge: u32| {
+            let found = lines.iter().find(|(of, _)| *of == edge);
+            found.map(|(_, line)| line.as_ref()).ok_or(UnknownReason::Geometry)
+        };
         let (network, policy, params) = (strokes.network(), strokes.settings().policy, strokes.turn_params());
-        match ring {
-            Some(ring) => passage_on(network, (*movement, arcs), [&from, &ring, &to], policy, params, reach),
-            None => turn_on(network, *movement, [&from, &to], policy, params, reach),
-        }
+        turn_on(network, (*movement, arcs), &line, policy, params, reach)
     }
 
     fn safe(&self, path: &TurnPath, options: &Options) -> Option<SpanResult> {

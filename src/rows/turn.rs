@@ -18,7 +18,7 @@ pub struct TurnRow {
     pub turn_id: i64,
     pub from_edge: i64,
     pub to_edge: i64,
-    /// The `edge_id`s of the first and last arc, if the turn is a passage of a roundabout.
+    /// The `edge_id`s of the first and last edge between, if the turn is a passage.
     pub arcs: Option<[i64; 2]>,
     pub via_node: i64,
     /// Degrees, positive to the left.
@@ -111,7 +111,7 @@ pub struct TurnStep {
     /// Index into `Network::edges`.
     pub from: u32,
     pub to: u32,
-    /// The first and last arc (indices into `Network::edges`), if the turn is a passage of a roundabout.
+    /// The first and last edge between (indices into `Network::edges`), if the turn is a passage.
     pub arcs: Option<[u32; 2]>,
     pub via_node: i64,
     pub angle_deg: f64,

@@ -5,7 +5,7 @@
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Row as _};
 
-use crate::network::Network;
+use crate::network::{Network, PassageKind};
 use crate::osm::facts::Policy;
 use crate::rows::{Bounds, StoredPlan, TurnCertificate, TurnCount, TurnRow};
 use crate::turns::{KerbSource, TurnFacts};
@@ -69,6 +69,7 @@ pub(super) struct Record {
     via_node: i64,
     /// The tagged words of the restriction that forbids the turn.
     restriction: Option<String>,
+    passage: Option<PassageKind>,
 }
 
 /// The records of turns, ready to be written.
@@ -76,15 +77,16 @@ pub(super) fn records(network: &Network, turns: Vec<TurnFacts>) -> Vec<Record> {
     let record = |facts: TurnFacts| {
         let via_node = network.edges.get(facts.movement.from as usize).map_or(0, |edge| edge.to_node);
         let forbids = facts.movement.forbidden.and_then(|no| network.restrictions.get(no as usize));
-        Record { via_node, restriction: forbids.map(|restriction| restriction.kind.name()), facts }
+        let restriction = forbids.map(|restriction| restriction.kind.name());
+        Record { via_node, restriction, passage: network.passage_kind(&facts.through), facts }
     };
     turns.into_iter().map(record).collect()
 }
 
-/// The kind of a turn by its angle, such as `left` or `slight_right`. A passage of a roundabout is `roundabout`.
-fn kind(facts: &TurnFacts) -> &'static str {
+/// The kind of a turn by its angle, such as `left` or `slight_right`. A passage has the kind of its junction.
+fn kind(facts: &TurnFacts, passage: Option<PassageKind>) -> &'static str {
     match facts.angle_deg {
-        _ if !facts.through.is_empty() => "roundabout",
+        _ if passage.is_some() => passage.map_or("", PassageKind::name),
         a if a > 150.0 => "sharp_left",
         a if a > 35.0 => "left",
         a if a > 0.0 => "slight_left",
@@ -98,7 +100,7 @@ fn kind(facts: &TurnFacts) -> &'static str {
 pub(super) async fn write(c: &mut SqliteConnection, turns: &[Record]) -> Sql<Option<Bounds>> {
     let mut bulk = Bulk::new("turn", 13);
     let mut bounds: Option<Bounds> = None;
-    for (fid, Record { facts, via_node, restriction }) in (1_i64..).zip(turns) {
+    for (fid, Record { facts, via_node, restriction, passage }) in (1_i64..).zip(turns) {
         let (geom, around) = blob::encode(facts.line.iter().copied()).ok_or_else(|| content("a turn has no line"))?;
         bounds = Some(bounds.map_or(around, |b| b.union(around)));
         bulk.add(fid)?;
@@ -108,7 +110,7 @@ pub(super) async fn write(c: &mut SqliteConnection, turns: &[Record]) -> Sql<Opt
         bulk.add(*via_node)?;
         bulk.add(geom)?;
         bulk.add((facts.angle_deg * 10.0).round() / 10.0)?;
-        bulk.add(kind(facts))?;
+        bulk.add(kind(facts, *passage))?;
         bulk.add(facts.kerb_radius_m)?;
         bulk.add(facts.kerb_source.map(KerbSource::name))?;
         bulk.add(restriction.as_deref())?;

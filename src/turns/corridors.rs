@@ -6,9 +6,11 @@ use geo::MultiPolygon;
 
 use super::area::{opened, rings};
 use super::arm::Arm;
+use super::arms::{Arms, PathLine};
 use super::code::PathCode;
+use super::complex::Complex;
 use super::ends::Ends;
-use super::junction::{Junction, PathLine};
+use super::junction::Junction;
 use super::path::STEP_M;
 use super::rays::{Boundary, Widths};
 use super::roundabout::Passage;
@@ -32,24 +34,31 @@ pub struct TurnCorridors {
     way: Way,
 }
 
-/// Over one node, or over a roundabout.
+/// Over one node, over a complex, or over a roundabout.
 #[derive(Debug, Clone, PartialEq)]
 enum Way {
-    Corner(Box<Junction>),
+    Direct(Box<Arms>),
     Passage(Box<Passage>),
 }
 
 impl TurnCorridors {
     pub(super) fn at(junction: Junction, frame: Frame) -> Self {
-        let (area, kerb_radius_m) = junction.area();
-        let (turn_rad, rings) = (junction.turn_rad(), Arc::new(rings(&area)));
-        Self { frame, turn_rad, area, kerb_radius_m, rings, way: Way::Corner(Box::new(junction)) }
+        let area = junction.area();
+        Self::on(area, frame, junction.arms.turn_rad(), Way::Direct(Box::new(junction.arms)))
+    }
+
+    pub(super) fn across(complex: Complex, frame: Frame) -> Self {
+        let area = complex.area();
+        Self::on(area, frame, complex.arms.turn_rad(), Way::Direct(Box::new(complex.arms)))
     }
 
     pub(super) fn over(passage: Passage, frame: Frame) -> Self {
-        let (area, kerb_radius_m) = passage.area();
-        let (turn_rad, rings) = (passage.turn_rad(), Arc::new(rings(&area)));
-        Self { frame, turn_rad, area, kerb_radius_m, rings, way: Way::Passage(Box::new(passage)) }
+        Self::on(passage.area(), frame, passage.turn_rad(), Way::Passage(Box::new(passage)))
+    }
+
+    fn on((area, kerb_radius_m): (MultiPolygon, Option<f64>), frame: Frame, turn_rad: f64, way: Way) -> Self {
+        let rings = Arc::new(rings(&area));
+        Self { frame, turn_rad, area, kerb_radius_m, rings, way }
     }
 
     /// The path with a code. `None` if the turn has no such path.
@@ -64,7 +73,7 @@ impl TurnCorridors {
     #[must_use]
     pub fn seeds(&self) -> Vec<i64> {
         match &self.way {
-            Way::Corner(junction) => family::seeds(junction).iter().map(PathCode::encode).collect(),
+            Way::Direct(arms) => family::seeds(arms).iter().map(PathCode::encode).collect(),
             Way::Passage(passage) => passage.numbers(),
         }
     }
@@ -83,7 +92,7 @@ impl TurnCorridors {
 
     fn along(&self, code: i64, line: &PathLine, widths: Widths) -> Option<TurnPath> {
         let strokes = match &self.way {
-            Way::Corner(junction) => junction.strokes,
+            Way::Direct(arms) => arms.strokes,
             Way::Passage(passage) => passage.strokes,
         };
         let ends = Ends { arms: self.arms(), strokes, stations: line.joints, reach: self.reach() };
@@ -93,7 +102,7 @@ impl TurnCorridors {
     /// The line of the path with a code, with points about `step_m` apart.
     pub(super) fn line(&self, code: i64, step_m: f64) -> Option<PathLine> {
         match &self.way {
-            Way::Corner(junction) => junction.line(&PathCode::decode(code)?.shape(), step_m),
+            Way::Direct(arms) => arms.line(&PathCode::decode(code)?.shape(), step_m),
             Way::Passage(passage) => passage.line(code, step_m),
         }
     }
@@ -101,15 +110,15 @@ impl TurnCorridors {
     /// The road before the turn and the road after it.
     pub(super) fn arms(&self) -> [&Arm; 2] {
         match &self.way {
-            Way::Corner(junction) => [&junction.from, &junction.to],
-            Way::Passage(passage) => [&passage.entry.from, &passage.exit.to],
+            Way::Direct(arms) => [&arms.from, &arms.to],
+            Way::Passage(passage) => [&passage.entry.arms.from, &passage.exit.arms.to],
         }
     }
 
     pub(super) fn reach(&self) -> Reach {
         match &self.way {
-            Way::Corner(junction) => junction.reach,
-            Way::Passage(passage) => passage.entry.reach,
+            Way::Direct(arms) => arms.reach,
+            Way::Passage(passage) => passage.entry.arms.reach,
         }
     }
 

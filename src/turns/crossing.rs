@@ -81,6 +81,13 @@ pub(super) fn passed(network: &Network, own: [u32; 2], frame: Frame, params: &Tu
     parts(network, own, frame, params, mapped.as_ref())
 }
 
+/// The whole carriageway of edges inside a crossing, one part from each end. Edges are shorter than twice a mouth.
+pub(super) fn carriageways(network: &Network, edges: &[u32], frame: Frame, params: &TurnParams) -> Vec<Polygon> {
+    let edges = edges.iter().filter_map(|&edge| network.edges.get(edge as usize));
+    let ends = edges.flat_map(|edge| [(edge, edge.from_node), (edge, edge.to_node)]);
+    ends.filter_map(|(edge, node)| mouth(network, edge, node, frame, params)?.outline(0.0)).collect()
+}
+
 /// The mouths around a node, counter-clockwise.
 fn mouths<'a>(network: &'a Network, node: i64, own: [u32; 2], frame: Frame, params: &TurnParams) -> Vec<Mouth<'a>> {
     let own: Vec<&Edge> = own.into_iter().filter_map(|edge| network.edges.get(edge as usize)).collect();
@@ -90,32 +97,37 @@ fn mouths<'a>(network: &'a Network, node: i64, own: [u32; 2], frame: Frame, para
             pieces.push(edge);
         }
     }
-    let mouth = |edge: &'a Edge| {
-        let road = network.road(edge);
-        let outward = edge.from_node == node;
-        let section = road.sections[usize::from(edge.direction == Direction::Backward)];
-        let strip = section.carriageway.or(section.direction)?;
-        let less_m = params.corridor.map_tolerance_m;
-        let (left_m, right_m) = (f64::from(strip.left_m) - less_m, f64::from(strip.right_m) + less_m);
-        let (left_m, right_m) = if outward { (left_m, right_m) } else { (-right_m, -left_m) };
-        // A narrow place may be anywhere in the mouth. A width that is not a number is none.
-        if (left_m - right_m).is_nan() || left_m <= right_m || !edge.narrowings.is_empty() {
-            return None;
-        }
-        let places: Vec<_> = network.positions(edge).collect();
-        let mut line = frame.forward(&places).ok()?;
-        if !outward {
-            line.reverse();
-        }
-        let line = first_metres(&line, CROSSING_M);
-        let (first, last) = (line.first()?, line.get(1)?);
-        let bearing = (last[1] - first[1]).atan2(last[0] - first[0]);
+    let of = |edge: &'a Edge| {
         let own = own.iter().any(|own| own.road == edge.road && own.shape == edge.shape);
-        Some(Mouth { road, line, left_m, right_m, bearing, own })
+        Some(Mouth { own, ..mouth(network, edge, node, frame, params)? })
     };
-    let mut mouths: Vec<Mouth<'a>> = pieces.into_iter().filter_map(mouth).collect();
+    let mut mouths: Vec<Mouth<'a>> = pieces.into_iter().filter_map(of).collect();
     mouths.sort_by(|a, b| a.bearing.total_cmp(&b.bearing));
     mouths
+}
+
+/// The mouth of an edge at a node. `None` if the road has no width there that counts.
+fn mouth<'a>(network: &'a Network, edge: &Edge, node: i64, frame: Frame, params: &TurnParams) -> Option<Mouth<'a>> {
+    let road = network.road(edge);
+    let outward = edge.from_node == node;
+    let section = road.sections[usize::from(edge.direction == Direction::Backward)];
+    let strip = section.carriageway.or(section.direction)?;
+    let less_m = params.corridor.map_tolerance_m;
+    let (left_m, right_m) = (f64::from(strip.left_m) - less_m, f64::from(strip.right_m) + less_m);
+    let (left_m, right_m) = if outward { (left_m, right_m) } else { (-right_m, -left_m) };
+    // A narrow place may be anywhere in the mouth. A width that is not a number is none.
+    if (left_m - right_m).is_nan() || left_m <= right_m || !edge.narrowings.is_empty() {
+        return None;
+    }
+    let places: Vec<_> = network.positions(edge).collect();
+    let mut line = frame.forward(&places).ok()?;
+    if !outward {
+        line.reverse();
+    }
+    let line = first_metres(&line, CROSSING_M);
+    let (first, last) = (line.first()?, line.get(1)?);
+    let bearing = (last[1] - first[1]).atan2(last[0] - first[0]);
+    Some(Mouth { road, line, left_m, right_m, bearing, own: false })
 }
 
 impl Mouth<'_> {

@@ -37,9 +37,9 @@ impl KerbSource {
 pub struct TurnFacts {
     /// Stable id: the same edges give the same id in the next extract. Positive.
     pub id: i64,
-    /// The edges before and after the turn. The edge after a roundabout's passage starts at another node.
+    /// The edges before and after the turn. The edge after a passage starts at another node.
     pub movement: Movement,
-    /// The arcs between, in driving order, for a passage of a roundabout; otherwise empty.
+    /// The edges between, in driving order, for a passage; otherwise empty.
     pub through: Vec<u32>,
     /// Angle of the turn, degrees, positive left.
     pub angle_deg: f64,
@@ -51,7 +51,7 @@ pub struct TurnFacts {
     pub line: Vec<LonLat>,
 }
 
-/// All turns of a network in the order of its movements, then the passages of roundabouts. Straight continuations and
+/// All turns of a network in the order of its movements, then the passages. Straight continuations and
 /// U-turns are not turns.
 #[must_use]
 pub fn turn_facts(network: &Network, kerbs: &Kerbs) -> Vec<TurnFacts> {
@@ -72,18 +72,19 @@ pub fn turn_facts(network: &Network, kerbs: &Kerbs) -> Vec<TurnFacts> {
             }
             let line = line(network, movement, &through)?;
             let angle = angle_rad(&line);
-            let ring = through.first().and_then(|&arc| network.edges.get(arc as usize));
+            let ends = [through.first(), through.last()];
+            let between = ends.map(|edge| edge.and_then(|&edge| network.edges.get(edge as usize)));
             // The assumed radius of a corner; none if the corner is mapped.
             let corner = |node: i64, a: &Edge, b: &Edge| {
                 let roads = [network.road(a), network.road(b)];
                 let assumed = !surface::is_mapped(network, node, roads);
                 assumed.then(|| kerbs.radius_m(roads[0], roads[1]))
             };
-            let corners = match ring {
-                Some(ring) => vec![corner(from.to_node, from, ring), corner(to.from_node, ring, to)],
-                None => vec![corner(from.to_node, from, to)],
+            let corners = match between {
+                [Some(first), Some(last)] => vec![corner(from.to_node, from, first), corner(to.from_node, last, to)],
+                _ => vec![corner(from.to_node, from, to)],
             };
-            let cornered = ring.is_some() || CORNERS_RAD.contains(&angle.abs());
+            let cornered = !through.is_empty() || CORNERS_RAD.contains(&angle.abs());
             // Of two assumed corners the sharper one counts.
             let radius_m = corners.into_iter().flatten().reduce(f64::min);
             let (kerb_radius_m, kerb_source) = match radius_m {

@@ -2,8 +2,8 @@
 //! where the two would meet, and join the other at some distance after it; both distances vary. They follow the
 //! centrelines, or swing out to the far side before and after the turn, as drivers of long vehicles do.
 
+use super::arms::Arms;
 use super::code::{PathCode, Shape};
-use super::junction::Junction;
 
 /// Distances from the place where the two lines meet, metres. A turn of 90° that takes 12 m of each line has a radius
 /// of about 10 m.
@@ -30,19 +30,19 @@ const SHARES: [f64; 2] = [0.2, 0.425];
 const MOST_SHIFT_RAD: f64 = 1.0;
 
 /// The codes with which the search begins, without repetitions.
-pub(super) fn seeds(junction: &Junction) -> Vec<PathCode> {
+pub(super) fn seeds(arms: &Arms) -> Vec<PathCode> {
     let mut shapes = Vec::new();
     for (swing, unlike) in SWINGS {
         for (i, before_m) in FROM_CORNER_M.into_iter().enumerate() {
             for (j, after_m) in FROM_CORNER_M.into_iter().enumerate().filter(|(j, _)| i.abs_diff(*j) <= unlike) {
-                shapes.push(swung(junction, [before_m, after_m], swing, SHARES[0]));
+                shapes.push(swung(arms, [before_m, after_m], swing, SHARES[0]));
                 if i == j && swing == [0.0, 0.0] {
-                    shapes.push(swung(junction, [before_m, after_m], swing, SHARES[1]));
+                    shapes.push(swung(arms, [before_m, after_m], swing, SHARES[1]));
                 }
             }
         }
     }
-    if junction.turn_rad().abs() < MOST_SHIFT_RAD {
+    if arms.turn_rad().abs() < MOST_SHIFT_RAD {
         for before_m in SHIFTS_M {
             shapes.extend(SHIFTS_M.map(|after_m| shifted([before_m, after_m])));
         }
@@ -52,7 +52,7 @@ pub(super) fn seeds(junction: &Junction) -> Vec<PathCode> {
     for shape in shapes {
         let code = PathCode::nearest(&shape);
         let shape = code.shape();
-        let key = (junction.corner(&shape), shape.aside_m, shape.shares);
+        let key = (arms.corner(&shape), shape.aside_m, shape.shares);
         if !known.contains(&key) {
             known.push(key);
             codes.push(code);
@@ -64,12 +64,12 @@ pub(super) fn seeds(junction: &Junction) -> Vec<PathCode> {
 /// The few shapes at one end of a roundabout's passage, by number: entering the ring, or leaving it. The ring bends away
 /// from the turn, so its tangent meets the road farther from the node than the path touches the ring. On the road's
 /// side the next larger distance is therefore used.
-pub(super) fn few(junction: &Junction, onto: bool) -> Vec<Shape> {
+pub(super) fn few(arms: &Arms, onto: bool) -> Vec<Shape> {
     let sides = |road_m: f64, ring_m: f64| if onto { [road_m, ring_m] } else { [ring_m, road_m] };
     let mut shapes = Vec::new();
     for (swing, places) in FEW {
         for w in FROM_CORNER_M[places].windows(2) {
-            shapes.push(swung(junction, sides(w[1], w[0]), sides(swing, 0.0), SHARES[0]));
+            shapes.push(swung(arms, sides(w[1], w[0]), sides(swing, 0.0), SHARES[0]));
         }
     }
     shapes.extend(SHIFTS_M[..2].iter().map(|m| shifted([*m; 2])));
@@ -77,10 +77,10 @@ pub(super) fn few(junction: &Junction, onto: bool) -> Vec<Shape> {
 }
 
 /// A path that takes the given shares of the room on the outside.
-fn swung(junction: &Junction, from_corner_m: [f64; 2], swing: [f64; 2], share: f64) -> Shape {
+fn swung(arms: &Arms, from_corner_m: [f64; 2], swing: [f64; 2], share: f64) -> Shape {
     let mut shape = Shape { shares: Some([share; 2]), ..shifted(from_corner_m) };
-    let (corner, turn_rad) = (junction.corner(&shape), junction.turn_rad());
-    for (i, arm) in [&junction.from, &junction.to].into_iter().enumerate() {
+    let (corner, turn_rad) = (arms.corner(&shape), arms.turn_rad());
+    for (i, arm) in [&arms.from, &arms.to].into_iter().enumerate() {
         // In a right turn the outside is to the left of travel.
         let outside = arm.wide(corner[i].round() as usize)[usize::from(turn_rad >= 0.0)];
         let aside_m = (outside - OUTSIDE_M).max(0.0) * swing[i];

@@ -17,7 +17,9 @@
 //! | `crossing` | what the other roads of the junction add to it |
 //! | `path` | transition, arc, transition; lane shifts |
 //! | `code` | a path's parameters in one integer |
-//! | `junction` | a turn's arms, and the path of each code |
+//! | `arms` | the two roads of a turn, and the path of each code |
+//! | `junction` | a turn over one node, with its area |
+//! | `complex` | a movement over several nodes of one crossing |
 //! | `roundabout` | entering, circulating and leaving a ring as one movement |
 //! | `rays` | the width of the area along a path |
 //! | `ends` | the corridor along a path, with its area |
@@ -31,7 +33,9 @@
 
 mod area;
 mod arm;
+mod arms;
 mod code;
+mod complex;
 mod corridors;
 mod crossing;
 mod ends;
@@ -54,7 +58,7 @@ pub use kerbs::Kerbs;
 pub use planner::{Planned, Planner};
 
 use crate::corridor::{AreaSpan, Corridor, Params};
-use crate::network::{Movement, Network};
+use crate::network::{Movement, Network, PassageKind};
 use crate::osm::facts::Policy;
 use crate::verdict::UnknownReason;
 
@@ -182,33 +186,13 @@ pub fn turn_corridors(
     params: &TurnParams,
     reach: Reach,
 ) -> Result<TurnCorridors, UnknownReason> {
-    let line = |edge: u32| {
-        let stroke = stroke_of(network, edge).ok_or(UnknownReason::Geometry)?;
-        StrokeLine::new(network, stroke, policy, &params.corridor)
-    };
-    turn_on(network, movement, [&line(movement.from)?, &line(movement.to)?], policy, params, reach)
+    on_lines_of(network, (movement, &[]), policy, params, reach)
 }
 
-/// As [`turn_corridors`], on the lines of the two edges' strokes.
+/// The corridors of a turn or passage, as [`turn_corridors`].
 ///
 /// # Errors
-/// The reason if one of the edges has no corridor.
-pub fn turn_on(
-    network: &Network,
-    movement: Movement,
-    lines: [&StrokeLine; 2],
-    policy: Policy,
-    params: &TurnParams,
-    reach: Reach,
-) -> Result<TurnCorridors, UnknownReason> {
-    let frame = lines[0].frame;
-    Ok(TurnCorridors::at(junction::Junction::new(network, movement, lines, frame, policy, params, reach)?, frame))
-}
-
-/// The corridors of a turn or of a roundabout's passage, as [`turn_corridors`] and [`passage_on`].
-///
-/// # Errors
-/// The reason if one of its edges or arcs has no corridor, or if the ring is too small.
+/// The reason if one of its edges has no corridor, or if a ring is too small.
 pub fn corridors_of(
     network: &Network,
     turn: &TurnFacts,
@@ -216,35 +200,63 @@ pub fn corridors_of(
     params: &TurnParams,
     reach: Reach,
 ) -> Result<TurnCorridors, UnknownReason> {
-    let TurnFacts { movement, through, .. } = turn;
-    let Some(&arc) = through.first() else {
-        return turn_corridors(network, turn.movement, policy, params, reach);
-    };
-    let line = |edge: u32| {
-        let stroke = stroke_of(network, edge).ok_or(UnknownReason::Geometry)?;
-        StrokeLine::new(network, stroke, policy, &params.corridor)
-    };
-    let lines = [line(turn.movement.from)?, line(arc)?, line(turn.movement.to)?];
-    passage_on(network, (*movement, through), lines.each_ref(), policy, params, reach)
+    on_lines_of(network, (turn.movement, &turn.through), policy, params, reach)
 }
 
-/// The corridors of a roundabout that is entered, circulated over some arcs and left as one movement. `lines` are those
-/// of the strokes of `from`, the ring and `to`.
-///
-/// Joints, frame and stations are as for a turn, so a route joins them in the same way.
-///
-/// # Errors
-/// The reason if one of its edges or arcs has no corridor, or if the ring is too small.
-pub fn passage_on(
+fn on_lines_of(
     network: &Network,
     over: (Movement, &[u32]),
-    lines: [&StrokeLine; 3],
     policy: Policy,
     params: &TurnParams,
     reach: Reach,
 ) -> Result<TurnCorridors, UnknownReason> {
-    let frame = lines[0].frame;
-    Ok(TurnCorridors::over(roundabout::Passage::new(network, over, lines, policy, params, reach)?, frame))
+    let edges = [over.0.from, over.0.to].into_iter().chain(over.1.iter().copied());
+    let strokes = edges.map(|edge| Some((edge, stroke_of(network, edge)?)));
+    let strokes: Vec<(u32, u32)> = strokes.collect::<Option<_>>().ok_or(UnknownReason::Geometry)?;
+    let mut lines: Vec<StrokeLine> = Vec::new();
+    for (_, stroke) in &strokes {
+        if !lines.iter().any(|line| line.stroke == *stroke) {
+            lines.push(StrokeLine::new(network, *stroke, policy, &params.corridor)?);
+        }
+    }
+    let line = |edge: u32| {
+        let stroke = strokes.iter().find(|of| of.0 == edge).map(|of| of.1);
+        lines.iter().find(|line| Some(line.stroke) == stroke).ok_or(UnknownReason::Geometry)
+    };
+    turn_on(network, over, &line, policy, params, reach)
+}
+
+/// The corridors of a turn, or of a passage over edges, given in driving order after the movement. `line` gives the line of an
+/// edge's stroke; it is asked for the movement's edges and those between.
+///
+/// All have joints, frame and stations alike, so a route joins them in the same way.
+///
+/// # Errors
+/// The reason if one of the edges has no corridor, or if a ring is too small.
+pub fn turn_on<'l>(
+    network: &Network,
+    (movement, through): (Movement, &[u32]),
+    line: &dyn Fn(u32) -> Result<&'l StrokeLine, UnknownReason>,
+    policy: Policy,
+    params: &TurnParams,
+    reach: Reach,
+) -> Result<TurnCorridors, UnknownReason> {
+    let (from, to) = (line(movement.from)?, line(movement.to)?);
+    let frame = from.frame;
+    let over = (movement, through);
+    match (network.passage_kind(through), through.first()) {
+        (Some(PassageKind::Roundabout), Some(&arc)) => {
+            let passage = roundabout::Passage::new(network, over, [from, line(arc)?, to], policy, params, reach)?;
+            Ok(TurnCorridors::over(passage, frame))
+        }
+        (Some(PassageKind::Complex), _) => {
+            Ok(TurnCorridors::across(complex::Complex::new(network, over, line, policy, params, reach)?, frame))
+        }
+        _ => {
+            let junction = junction::Junction::new(network, movement, [from, to], frame, policy, params, reach)?;
+            Ok(TurnCorridors::at(junction, frame))
+        }
+    }
 }
 
 /// The stroke of an edge.

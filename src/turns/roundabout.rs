@@ -9,9 +9,10 @@ use geo::{BooleanOps, MultiPolygon};
 
 use super::area::stretch;
 use super::arm::{Arm, StrokeLine};
+use super::arms::PathLine;
 use super::code::Shape;
 use super::family::{FEW_NUMBERS, few};
-use super::junction::{Junction, PathLine};
+use super::junction::Junction;
 use super::path::{STEP_M, hermite};
 use super::{Reach, TurnParams};
 use crate::corridor::Frame;
@@ -63,8 +64,8 @@ impl Passage {
         let entry = junction(movement.from, first, [from, ring])?;
         let exit = junction(last, movement.to, [ring, to])?;
         Ok(Self {
-            entries: few(&entry, true),
-            exits: few(&exit, false),
+            entries: few(&entry.arms, true),
+            exits: few(&exit.arms, false),
             entry,
             exit,
             beyond: place(last)? < place(first)?,
@@ -82,7 +83,7 @@ impl Passage {
 
     /// Angle from the one road to the other, radians, positive left.
     pub(super) fn turn_rad(&self) -> f64 {
-        let (from, to) = (&self.entry.from, &self.exit.to);
+        let (from, to) = (&self.entry.arms.from, &self.exit.arms.to);
         super::path::wrapped(to.line.heading[to.node] - from.line.heading[from.node])
     }
 
@@ -95,8 +96,8 @@ impl Passage {
     /// The line of the path with a number, with points about `step_m` apart.
     pub(super) fn line(&self, number: i64, step_m: f64) -> Option<PathLine> {
         let number = usize::try_from(number).ok()?;
-        let entry = self.entry.line(self.entries.get(number / FEW_NUMBERS)?, step_m)?;
-        let exit = self.exit.line(self.exits.get(number % FEW_NUMBERS)?, step_m)?;
+        let entry = self.entry.arms.line(self.entries.get(number / FEW_NUMBERS)?, step_m)?;
+        let exit = self.exit.arms.line(self.exits.get(number % FEW_NUMBERS)?, step_m)?;
         let round = self.round(&entry, &exit)?;
         let points = strung(&entry.points, &round, &exit.points);
         Some(PathLine { points, joints: [entry.joints[0], exit.joints[1]] })
@@ -104,8 +105,8 @@ impl Passage {
 
     /// The ring's centreline from the joint of an entry to the joint of an exit. `None` if the exit begins earlier.
     fn round(&self, entry: &PathLine, exit: &PathLine) -> Option<Vec<[f64; 2]>> {
-        let joins = self.entry.to.first + entry.joints[1];
-        let leaves = self.exit.from.first + exit.joints[0] + if self.beyond { self.ring.period? } else { 0 };
+        let joins = self.entry.arms.to.first + entry.joints[1];
+        let leaves = self.exit.arms.from.first + exit.joints[0] + if self.beyond { self.ring.period? } else { 0 };
         (joins <= leaves).then(|| self.ring.centreline(joins, leaves))
     }
 }

@@ -1,0 +1,101 @@
+//! Ways over junction complexes: one crossing that the map draws as several nodes with short edges between them, such as a
+//! dual carriageway, staggered arms, or a slip road that begins and ends within a lorry's length.
+//!
+//! Listed are ways that turn at the first node and at the last one. Of any other way one step is straight on, so it is a single
+//! turn, whose area has the other node. U-turns are left out; they remain two turns.
+
+use super::{MovementKind, Network, reverse};
+
+/// Greatest length of the edges inside, together, metres.
+const INSIDE_M: f64 = 30.0;
+/// Nodes with more ends of edges belong to no complex. Real junctions have at most a dozen, and a crafted file could have
+/// very many ways over its nodes.
+const MOST_ENDS: usize = 16;
+/// Ways that turn by more than this are U-turns, degrees; and the length over which directions are taken, metres.
+const U_TURN_DEG: f64 = 150.0;
+const HEADING_M: f64 = 15.0;
+
+/// The step from one edge into the next.
+type Kinds<'a> = &'a dyn Fn(u32, u32) -> MovementKind;
+
+impl Network {
+    /// All ways over complexes, by the first edge inside: the edge before, one or two edges inside, and the edge after. Between
+    /// two edges there is at most one way, the one with the fewest edges inside, then with the first ones.
+    pub(super) fn over_complexes(&self) -> Vec<(u32, Vec<u32>, u32)> {
+        let next = self.straight_on();
+        let kind = |from: u32, to: u32| match () {
+            () if next[from as usize] == to => MovementKind::StraightOn,
+            () if reverse(self, from, to) => MovementKind::UTurn,
+            () => MovementKind::Turn,
+        };
+        let mut ways = Vec::new();
+        for first in 0..self.edges.len() as u32 {
+            let Some(length_m) = self.inside(first, INSIDE_M) else { continue };
+            let entries: Vec<u32> =
+                self.ends_at(first, true).filter(|&from| kind(from, first) == MovementKind::Turn).collect();
+            if entries.is_empty() {
+                continue;
+            }
+            let mut insides = vec![vec![first]];
+            insides.extend(self.second(first, INSIDE_M - length_m, &kind).map(|second| vec![first, second]));
+            for inside in insides {
+                ways.extend(self.ways_through(&entries, &inside, &kind));
+            }
+        }
+        ways.sort_by(|a, b| (a.0, a.2, a.1.len(), &a.1).cmp(&(b.0, b.2, b.1.len(), &b.1)));
+        ways.dedup_by(|b, a| (a.0, a.2) == (b.0, b.2));
+        ways.sort_by(|a, b| (&a.1, a.0, a.2).cmp(&(&b.1, b.0, b.2)));
+        ways
+    }
+
+    /// The length of an edge that may lie inside a complex, metres.
+    fn inside(&self, edge: u32, most_m: f64) -> Option<f64> {
+        let e = &self.edges[edge as usize];
+        let few = |node: i64| (1..=MOST_ENDS).contains(&self.crossings.at(node).len());
+        if self.road(e).roundabout || e.from_node == e.to_node || !few(e.from_node) || !few(e.to_node) {
+            return None;
+        }
+        Some(self.length_m(e)).filter(|length_m| *length_m <= most_m)
+    }
+
+    /// Second edges inside, after a first one.
+    fn second<'a>(&'a self, first: u32, most_m: f64, kind: Kinds<'a>) -> impl Iterator<Item = u32> + 'a {
+        let start = self.edges[first as usize].from_node;
+        self.ends_at(first, false).filter(move |&second| {
+            kind(first, second) != MovementKind::UTurn
+                && self.edges[second as usize].to_node != start
+                && self.inside(second, most_m).is_some()
+        })
+    }
+
+    /// The ways from the given entries through the edges inside that end with a turn.
+    fn ways_through(&self, entries: &[u32], inside: &[u32], kind: Kinds<'_>) -> Vec<(u32, Vec<u32>, u32)> {
+        let (Some(&first), Some(&last)) = (inside.first(), inside.last()) else { return Vec::new() };
+        let nodes = [self.edges[first as usize].from_node, self.edges[last as usize].from_node];
+        let exits = self
+            .ends_at(last, false)
+            .filter(|&to| kind(last, to) == MovementKind::Turn && !nodes.contains(&self.edges[to as usize].to_node));
+        let exits: Vec<u32> = exits.collect();
+        let mut ways = Vec::new();
+        for &from in entries {
+            let before = &self.edges[from as usize];
+            let back = self.edges[last as usize].to_node == before.from_node;
+            let goes = |to: &&u32| {
+                !back && self.deflection_over_deg(before, &self.edges[**to as usize], HEADING_M) <= U_TURN_DEG
+            };
+            ways.extend(exits.iter().filter(goes).map(|&to| (from, inside.to_vec(), to)));
+        }
+        ways
+    }
+
+    /// Edges, no arcs of roundabouts, that end where an edge begins (`before`), or begin where it ends.
+    fn ends_at(&self, edge: u32, before: bool) -> impl Iterator<Item = u32> + '_ {
+        let e = &self.edges[edge as usize];
+        let node = if before { e.from_node } else { e.to_node };
+        let meets = move |other: &u32| {
+            let o = &self.edges[*other as usize];
+            *other != edge && (if before { o.to_node } else { o.from_node }) == node && !self.road(o).roundabout
+        };
+        self.crossings.at(node).iter().copied().filter(meets)
+    }
+}

@@ -1,0 +1,86 @@
+//! Passages: movements over a junction that the map draws as several nodes. They enter by one edge, pass the edges inside, and
+//! leave by another edge. Their certificate covers the whole way, because a long vehicle stands on several of the nodes at once.
+//!
+//! There are two kinds: over the arcs of a roundabout (`roundabouts`), and over the short edges inside a complex (`complexes`).
+
+use rustc_hash::FxHashMap;
+
+use super::Network;
+
+/// The junction that a passage leads over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PassageKind {
+    /// A roundabout. The edges between are its arcs.
+    Roundabout,
+    /// A complex. The edges between lie inside it.
+    Complex,
+}
+
+impl PassageKind {
+    /// Name in the database and in answers.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Roundabout => "roundabout",
+            Self::Complex => "complex",
+        }
+    }
+}
+
+/// One passage.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Passage {
+    /// The edge before the junction. It ends at the junction's first node.
+    pub from: u32,
+    /// The edge after the junction. It starts at the junction's last node.
+    pub to: u32,
+    /// The edges between in driving order: at least one. Of a roundabout, less than the whole ring.
+    pub through: Vec<u32>,
+    /// A restriction that forbids any step of the passage (index into [`Network::restrictions`]).
+    pub forbidden: Option<u32>,
+}
+
+impl Network {
+    /// All passages: those of roundabouts, then those of complexes.
+    #[must_use]
+    pub fn passages(&self) -> Vec<Passage> {
+        let bans = Bans::of(self);
+        let ways = self.over_rings().into_iter().chain(self.over_complexes());
+        ways.map(|(from, through, to)| {
+            let forbidden = bans.first(self, from, &through, to);
+            Passage { from, to, through, forbidden }
+        })
+        .collect()
+    }
+
+    /// The kind of a passage over these edges. `None` if there are none.
+    #[must_use]
+    pub fn passage_kind(&self, through: &[u32]) -> Option<PassageKind> {
+        let edge = self.edges.get(*through.first()? as usize)?;
+        Some(if self.road(edge).roundabout { PassageKind::Roundabout } else { PassageKind::Complex })
+    }
+}
+
+/// Restrictions by their first edge.
+struct Bans(FxHashMap<u32, Vec<u32>>);
+
+impl Bans {
+    fn of(network: &Network) -> Self {
+        let mut bans: FxHashMap<u32, Vec<u32>> = FxHashMap::default();
+        for (no, restriction) in (0_u32..).zip(&network.restrictions) {
+            if let Some(&first) = network.sequence(restriction).first() {
+                bans.entry(first).or_default().push(no);
+            }
+        }
+        Self(bans)
+    }
+
+    /// The first restriction that forbids a step of a way.
+    fn first(&self, network: &Network, from: u32, through: &[u32], to: u32) -> Option<u32> {
+        let way: Vec<u32> = std::iter::once(from).chain(through.iter().copied()).chain([to]).collect();
+        let holds = |at: usize, no: u32| {
+            network.restrictions.get(no as usize).is_some_and(|ban| way[at..].starts_with(network.sequence(ban)))
+        };
+        (0..way.len()).find_map(|at| self.0.get(&way[at])?.iter().copied().find(|&no| holds(at, no)))
+    }
+}
