@@ -28,7 +28,8 @@
 //! | `planner` | the search for the path with the most room for a vehicle |
 //! | `facts` | facts of a turn from the map: id, angle, line |
 //!
-//! Surfaces mapped as relations (with holes) and lane markings inside the junction are left out. The vehicle arrives and leaves in the lanes that its edges are certified for.
+//! Surfaces mapped as relations (with holes) and lane markings inside the junction are left out. The vehicle arrives and
+//! leaves in the lanes that its edges are certified for.
 
 mod area;
 mod arm;
