@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
+use netcert::network::PassageKind;
 use netcert::osm::facts::{Policy, RoadClass};
 use netcert::route::{
     Answer, Driver, Graph, Measure, Obstacle, PartKind, Permit, Planner, Position, Question, Roads, Route, Speeds,
@@ -97,7 +98,7 @@ impl Region {
         let parts = |wanted: &dyn Fn(PartKind) -> bool| {
             routes().flat_map(|route| &route.path.parts).filter(|part| wanted(part.kind)).count()
         };
-        let over = |at| passes_over(&self.roads.network, at);
+        let over = |at| passes_over(&self.roads.network, at).is_some();
         println!(
             "  {pairs} pairs: {} routed, {} with a way over certified parts, {} refuted as a whole at least once \
              ({} refutations, {} where pieces could not be strung together), {} given up, {} returned uncertified; {seconds:.1} s",
@@ -110,7 +111,7 @@ impl Region {
             routes().filter(|route| !route.certificate.result.safe()).count(),
         );
         println!(
-            "  {:.0} km of routes over {} turns and {} roundabouts; where there is none, {:.1} places block on average",
+            "  {:.0} km of routes over {} turns and {} passages; where there is none, {:.1} places block on average",
             routes().map(|route: &Route| route.length_m / 1000.0).sum::<f64>(),
             parts(&|at| matches!(at, PartKind::Turn { .. }) && !over(at)),
             parts(&over),
@@ -161,7 +162,7 @@ impl Region {
                 format!("edge, {main}{link}, {verdict}, {missing}{whole}")
             }
             at @ PartKind::Turn { from, to } => {
-                let kind = if passes_over(network, at) { "passage" } else { "turn" };
+                let kind = passes_over(network, at).map_or("turn", PassageKind::name);
                 let main = |at: u32| network.road(edge(at)).class <= RoadClass::Tertiary;
                 let short = [from, to].iter().any(|&at| network.length_m(edge(at)) < SHORT_M);
                 let main = ["minor", "minor and main", "main"][usize::from(main(from)) + usize::from(main(to))];

@@ -1,4 +1,4 @@
-//! Cuts a way's vertices into pieces: at junctions, at reversals, and where the file lacks a node.
+//! Cuts a way's vertices into pieces: at junctions, at sharp corners, at reversals, and where the file lacks a node.
 //!
 //! A piece has at least two vertices. Consecutive vertices differ, and no inner vertex is a junction.
 
@@ -36,8 +36,14 @@ pub(super) struct CutWay {
 }
 
 impl CutWay {
-    /// Cuts the way with these vertices, which may include [`MISSING`].
-    pub(super) fn cut(&mut self, vertices: &[u32], is_junction: impl Fn(u32) -> bool) -> Result<(), Unusable> {
+    /// Cuts the way with these vertices, which may include [`MISSING`]. `is_corner` tells whether a line has a sharp corner at
+    /// the inner vertex of an index.
+    pub(super) fn cut(
+        &mut self,
+        vertices: &[u32],
+        is_junction: impl Fn(u32) -> bool,
+        is_corner: impl Fn(&[u32], usize) -> bool,
+    ) -> Result<(), Unusable> {
         self.line.clear();
         self.pieces.clear();
         let mut from = 0;
@@ -47,7 +53,7 @@ impl CutWay {
             from += run.len() + 1;
             located |= !run.is_empty();
             consecutive |= run.len() > 1;
-            self.cut_run(run, cut, &is_junction);
+            self.cut_run(run, cut, &|line, i| is_junction(line[i]) || is_corner(line, i));
         }
         match (self.pieces.is_empty(), located, consecutive) {
             (false, ..) => Ok(()),
@@ -57,8 +63,9 @@ impl CutWay {
         }
     }
 
-    /// Cuts a run of located vertices. `cut` says whether a node is missing before it and after it.
-    fn cut_run(&mut self, run: &[u32], cut: [bool; 2], is_junction: &impl Fn(u32) -> bool) {
+    /// Cuts a run of located vertices. `cut` says whether a node is missing before it and after it, `ends_at` whether pieces end
+    /// at an inner vertex.
+    fn cut_run(&mut self, run: &[u32], cut: [bool; 2], ends_at: &impl Fn(&[u32], usize) -> bool) {
         let start = self.line.len();
         for &v in run {
             if self.line.len() == start || self.line.last() != Some(&v) {
@@ -73,7 +80,7 @@ impl CutWay {
         let mut from = start;
         for i in start + 1..=last {
             let reverses = i < last && self.line[i - 1] == self.line[i + 1];
-            if i == last || reverses || is_junction(self.line[i]) {
+            if i == last || reverses || ends_at(&self.line[start..], i - start) {
                 let at_file_end = (cut[0] && from == start) || (cut[1] && i == last);
                 self.pieces.push(Piece { vertices: from..i + 1, cut: at_file_end });
                 from = i;
@@ -88,7 +95,7 @@ mod tests {
 
     fn pieces(vertices: &[u32], junctions: &[u32]) -> Vec<(Vec<u32>, bool)> {
         let mut way = CutWay::default();
-        way.cut(vertices, |v| junctions.contains(&v)).map_or(Vec::new(), |()| {
+        way.cut(vertices, |v| junctions.contains(&v), |_, _| false).map_or(Vec::new(), |()| {
             way.pieces.iter().map(|p| (way.line[p.vertices.clone()].to_vec(), p.cut)).collect()
         })
     }
@@ -112,7 +119,7 @@ mod tests {
 
     #[test]
     fn a_way_without_a_piece_says_why() {
-        let why = |vertices: &[u32]| CutWay::default().cut(vertices, |_| false);
+        let why = |vertices: &[u32]| CutWay::default().cut(vertices, |_| false, |_, _| false);
         assert_eq!(why(&[MISSING, MISSING]), Err(Unusable::NoNodeInFile));
         assert_eq!(why(&[]), Err(Unusable::NoNodeInFile));
         assert_eq!(why(&[1, MISSING, 2]), Err(Unusable::NodesApart));

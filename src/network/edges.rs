@@ -5,6 +5,7 @@
 
 use rayon::prelude::*;
 
+use super::corners;
 use super::cut::{CutWay, Piece};
 use super::edge_id::edge_id;
 use super::geometry::mean_radius_m;
@@ -48,7 +49,8 @@ where
         for way in ways {
             part.account.ways_read += 1;
             let vertices = of_way(&self.vertices.of_refs, way);
-            match cut.cut(vertices, |v| self.vertices.is_junction(v)) {
+            let corner = |line: &[u32], at| !way.facts.roundabout && corners::cuts(line, at, &|v| self.position(v));
+            match cut.cut(vertices, |v| self.vertices.is_junction(v), corner) {
                 Ok(()) => {
                     part.account.ways_kept += 1;
                     self.add_way(way, vertices, &cut, &mut part);

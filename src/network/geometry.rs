@@ -56,7 +56,7 @@ impl Network {
 }
 
 /// Deflection between two directions that leave a node: 0 for opposite directions.
-fn deflection_deg(back: f64, ahead: f64) -> f64 {
+pub(super) fn deflection_deg(back: f64, ahead: f64) -> f64 {
     let between = (back - ahead).abs() % 360.0;
     180.0 - between.min(360.0 - between)
 }
@@ -91,7 +91,7 @@ pub(super) fn mean_radius_m(positions: impl Iterator<Item = LonLat>) -> Option<f
 
 /// Direction of the chord from the first position to the point `reach_m` along the line. The chord spans at least one
 /// segment and at most the whole line.
-fn chord_deg(mut positions: impl Iterator<Item = LonLat>, reach_m: f64) -> f64 {
+pub(super) fn chord_deg(mut positions: impl Iterator<Item = LonLat>, reach_m: f64) -> f64 {
     let Some(mut last) = positions.next() else { return 0.0 };
     let mut chord = [0.0_f64; 2];
     let mut left_m = reach_m;

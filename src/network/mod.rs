@@ -1,4 +1,4 @@
-//! The road network: ways cut at junctions into directed edges, and strokes of edges that continue straight on.
+//! The road network: ways cut at junctions and sharp corners into directed edges, and strokes of edges that continue straight on.
 //!
 //! It holds everything that certification needs. A network loaded from a database therefore gives the same
 //! certificates, byte for byte, as one built from a file.
@@ -7,6 +7,7 @@ mod account;
 mod areas;
 mod build;
 mod complexes;
+mod corners;
 mod crossings;
 mod cut;
 mod edge_id;

@@ -2,12 +2,13 @@
 //! continuation. The result depends neither on the order of the edges nor on the ways' own directions.
 //!
 //! A road that becomes narrow ends where other roads meet it. A vehicle that turns off there need not fit the narrow part. The way
-//! on is a movement with a certificate of its own, so the edge beyond does not have it as its approach.
+//! on is a movement with a certificate of its own, so the edge beyond does not have it as its approach. So it is at a sharp corner.
 
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
+use super::corners::{corner_deg, is_sharp};
 use super::geometry::Geometry;
 use super::{Edge, Network, Road, StrokeOptions, reverse};
 use crate::osm::LonLat;
@@ -90,7 +91,7 @@ struct Junction<'n> {
     options: &'n StrokeOptions,
     arriving: &'n [End],
     leaving: &'n [End],
-    /// Whether exactly two ends of road meet here. The road then continues, however it bends.
+    /// Whether exactly two ends of road meet here. The road then continues unless it turns sharply.
     two_ends: bool,
 }
 
@@ -179,7 +180,7 @@ impl<'n> Junction<'n> {
             self.options.straight_limit_deg
         };
         let goes = deflection_deg <= limit_deg || (self.two_ends && self.bends_back(a.edge, b.edge) <= limit_deg);
-        goes.then(|| self.candidate(a, b, deflection_deg + unlike_deg(from, to)))
+        (goes && !self.turns_sharply(a, b)).then(|| self.candidate(a, b, deflection_deg + unlike_deg(from, to)))
     }
 
     /// The heading of a hairpin with its apex at the node turns by more than the limit over chords, but not at the node
@@ -193,7 +194,8 @@ impl<'n> Junction<'n> {
         let deflection_deg = self.geometry.deflection_deg(a.edge, b.edge);
         let plausible = deflection_deg <= self.options.approach_limit_deg
             && !reverse(self.network, a.edge, b.edge)
-            && !self.onto_or_off_a_ring(a, b);
+            && !self.onto_or_off_a_ring(a, b)
+            && !self.turns_sharply(a, b);
         plausible.then(|| self.candidate(a, b, deflection_deg))
     }
 
@@ -218,6 +220,12 @@ impl<'n> Junction<'n> {
     /// passages' exits unusable.
     fn onto_or_off_a_ring(&self, a: &End, b: &End) -> bool {
         self.road(a.edge).roundabout != self.road(b.edge).roundabout
+    }
+
+    /// Whether the pair is a corner that no smoothed line rounds. The way round is a turn. A ring goes on, however it is drawn.
+    fn turns_sharply(&self, a: &End, b: &End) -> bool {
+        let line = |end: &End| self.network.positions(self.edge(end.edge));
+        !self.road(a.edge).roundabout && is_sharp(corner_deg(line(a).rev(), line(b)))
     }
 
     fn candidate(&self, a: &End, b: &End, cost_deg: f64) -> Candidate {

@@ -17,7 +17,8 @@ pub struct StrokeOptions {
     /// Largest turn within one way, degrees. Its mapper meant it to continue. On a hairpin of 12 m radius with a side
     /// road at its apex, two chords of 15 m stand at 72°.
     pub same_way_limit_deg: f64,
-    /// Where only two ends of road meet, the road continues unless it turns back by more than this, degrees.
+    /// Where only two ends of road meet, the road continues unless it has a sharp corner there or turns back by more than this,
+    /// degrees.
     pub reversal_deg: f64,
     /// Largest turn from an approach into a stroke's first edge, degrees.
     pub approach_limit_deg: f64,

@@ -3,6 +3,7 @@
 
 mod areas;
 mod complexes;
+mod corners;
 mod corridor_extracts;
 mod demo_region;
 mod graph_properties;

@@ -71,19 +71,16 @@ fn at_a_t_the_side_road_begins_and_ends() {
 
 #[test]
 fn a_road_split_into_ways_goes_on_however_it_bends() {
-    let map = AsciiMap::drawn(
-        20.0,
-        "
-        A---B
-             \\
-              C
-             /
-            D
-        ",
-    )
-    .way("ABC", "highway=secondary ref=B1")
-    .way("DC", "highway=residential");
-    check(&map, "AC CA DC CD", "ACD DCA");
+    // A hairpin of 150° in steps of 50°, with a change of ways in the middle.
+    let at =
+        |from: [f64; 2], deg: f64, m: f64| [from[0] + m * deg.to_radians().cos(), from[1] + m * deg.to_radians().sin()];
+    let b = at([0.0, 0.0], 0.0, 60.0);
+    let c = at(b, -50.0, 8.0);
+    let d = at(c, -100.0, 8.0);
+    let map = AsciiMap::placed(&[('A', [0.0, 0.0]), ('B', b), ('C', c), ('D', d), ('E', at(d, -150.0, 60.0))])
+        .way("ABC", "highway=secondary ref=B1")
+        .way("EDC", "highway=residential");
+    check(&map, "AC CA EC CE", "ACE ECA");
 }
 
 #[test]
@@ -263,14 +260,15 @@ fn a_spike_is_cut_where_it_turns_back() {
 #[test]
 fn a_closed_way_is_a_loop_each_way_round() {
     let map = AsciiMap::drawn(
-        60.0,
+        30.0,
         "
-        A--B
-        |  |
-        D--C
+         B-C
+        A   D
+        H   E
+         G-F
         ",
     )
-    .way("ABCDA", ROAD);
+    .way("ABCDEFGHA", ROAD);
     check(&map, "AA AA", "AA@ AA@");
 }
 
@@ -279,14 +277,16 @@ fn a_lollipop_is_a_stick_and_a_loop() {
     let map = AsciiMap::drawn(
         30.0,
         "
-               .B
-              /  \\
-        S----A    C
-              \\  /
-               'D
+                 B--C
+
+                      D
+        S----A        |
+                      E
+
+                 G--F
         ",
     )
-    .way("SABCDA", ROAD);
+    .way("SABCDEFGA", ROAD);
     check(&map, "SA AS AA AA", "SAA S>AAS");
 }
 
@@ -297,13 +297,16 @@ fn a_way_that_crosses_itself_goes_straight_on() {
         "
                E
                |
-        A------B--------C
-               |        |
-               |        |
-               F--------D
+        A------B---C
+               |
+               |     D
+               |     |
+               G     H
+
+                 K-F
         ",
     )
-    .way("ABCDFBE", ROAD);
+    .way("ABCDHFKGBE", ROAD);
     check(&map, "AB BA BB BB BE EB", "ABBE EBBA");
 }
 

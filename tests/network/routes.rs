@@ -257,11 +257,13 @@ fn a_way_over_several_places_goes_on_as_it_came() {
 fn a_slow_short_road_loses_to_a_fast_long_one() {
     /// Over B and C: whether straight on, and the seconds or metres from B to C that way.
     fn driven(tags: &str, ends: [&str; 2], measure: Measure) -> (bool, f64) {
-        let map = AsciiMap::drawn(250.0, "A B   C D\n\n    E")
+        let nodes = [(0.0, 0.0), (500.0, 0.0), (1500.0, 0.0), (2000.0, 0.0), (975.0, -475.0), (1025.0, -475.0)];
+        let nodes: Vec<_> = "ABCDEF".chars().zip(nodes.map(|(x, y)| [x, y])).collect();
+        let map = AsciiMap::placed(&nodes)
             .way("AB", "highway=primary")
             .way("BC", &format!("highway=primary {tags}"))
             .way("CD", "highway=primary")
-            .way("BEC", "highway=primary name=Detour");
+            .way("BEFC", "highway=primary name=Detour");
         let roads = Roads::new(built(&map).0);
         let graph = Graph::new(&roads, &Speeds::builtin().unwrap(), measure);
         let [from, to] = ends.map(|ends| ascii_map::edge(&roads.network, ends));

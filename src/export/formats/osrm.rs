@@ -3,7 +3,7 @@
 //! `segment-speeds.csv` has a line `from,to,0` for every pair of neighbouring nodes, in every direction, that is not permitted, on
 //! any way that OSRM's profiles might use. `turn-penalties.csv` has a line `from,via,to,3276.7` for every refused turn between
 //! permitted edges, and for turning back. OSRM closes segments. It stores penalties in 16 bits, so a turn cannot be closed, only
-//! be made to cost 55 minutes.
+//! be made to cost 55 minutes. Where nothing else meets, OSRM has no turn that could cost anything, so the segment before is closed.
 //!
 //! What OSRM cannot express is refused. Of a restriction over ways, and of a refused passage of a roundabout, the first step is
 //! refused. A roundabout is open only where each of its arcs is permitted.
@@ -11,6 +11,7 @@
 use std::io::Write as _;
 
 use osmpbfreader::osmformat::PrimitiveBlock;
+use rustc_hash::FxHashMap;
 
 use super::{Options, Target};
 use crate::export::sorter::Scratch;
@@ -46,9 +47,10 @@ impl Target for Osrm {
 
     fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
         let ends = Ends::new(place.scratch(".ends")?);
+        let meeting = refused_at(source)?;
         let speeds = place.create("segment-speeds.csv")?;
         let turns = place.create("turn-penalties.csv")?;
-        let mut tables = Tables { source, speeds, turns, ends, unclear: 0 };
+        let mut tables = Tables { source, speeds, turns, ends, meeting, unclear: 0 };
         tables.ways()?;
         tables.turns()?;
         if tables.unclear > 0 {
@@ -65,7 +67,22 @@ struct Tables<'s, 'r> {
     speeds: Sink,
     turns: Sink,
     ends: Ends,
+    /// By node of a refused turn: how many ends of pieces meet there.
+    meeting: FxHashMap<i64, u32>,
     unclear: u64,
+}
+
+/// The nodes of all refused turns.
+fn refused_at(source: &Source<'_>) -> Result<FxHashMap<i64, u32>, ExportError> {
+    let mut database = source.database()?;
+    let mut nodes = FxHashMap::default();
+    for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
+        let step = step?;
+        if source.refuses_turn(&step) {
+            nodes.insert(step.via_node, 0);
+        }
+    }
+    Ok(nodes)
 }
 
 impl Tables<'_, '_> {
@@ -115,6 +132,9 @@ impl Tables<'_, '_> {
             let permitted = edges.map(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge)));
             self.close(refs, first, last, permitted.map(|yes| !yes))?;
             let node = |place: usize| refs.get(place).copied().unwrap_or_default();
+            for end in [node(first), node(last)] {
+                self.meeting.entry(end).and_modify(|ends| *ends += 1);
+            }
             // The nearest different node at each end, because adjacent repetitions of a node count as one.
             let after = (first..last).map(|i| node(i + 1)).find(|&id| id != node(first)).unwrap_or_default();
             let before = (first..last).rev().map(node).find(|&id| id != node(last)).unwrap_or_default();
@@ -169,7 +189,13 @@ impl Tables<'_, '_> {
 
     fn refuse(&mut self, from: u32, to: u32) -> Result<(), ExportError> {
         let ([_, before, via], [after, ..]) = (self.ends.get(from)?, self.ends.get(to)?);
-        if before == 0 || after == 0 { Ok(()) } else { self.penalise(before, via, after) }
+        if before == 0 || after == 0 {
+            return Ok(());
+        }
+        if self.meeting.get(&via) == Some(&2) {
+            return Ok(writeln!(self.speeds, "{before},{via},0")?);
+        }
+        self.penalise(before, via, after)
     }
 }
 
