@@ -40,7 +40,8 @@ const MOST_LISTED: usize = 30;
 Examples:
   netcert explain 7129168334710566423 --vehicle AU-ATRIPLE53
   netcert explain 'Great Inland Highway' --vehicle AU-ATRIPLE53      lists its edges
-  netcert explain 7129168334710566423 --vehicle AU-ATRIPLE53 --svg why.svg")]
+  netcert explain 7129168334710566423 --vehicle AU-ATRIPLE53 --svg why.svg
+  netcert explain 7129168334710566423 --vehicle AU-ATRIPLE53 --format geojson > why.geojson")]
 pub(crate) struct Explain {
     /// The edge or turn: a turn_id of `netcert query --turns`, an edge_id of `netcert query`, a way's id, or a road's
     /// name or ref. If several edges match, they are listed.
@@ -61,7 +62,8 @@ pub(crate) struct Explain {
     /// Draw a picture into this file: the tightest place with the vehicle there, and the leeway along the edge.
     #[arg(long, value_name = "OUT.svg")]
     svg: Option<PathBuf>,
-    /// The output format.
+    /// The output format. `geojson` has the shapes for a map, such as one in QGIS: what the vehicle may use of the road, its
+    /// planned path, the ground that each unit sweeps, and the tightest place.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
@@ -70,6 +72,7 @@ pub(crate) struct Explain {
 enum Format {
     Text,
     Json,
+    Geojson,
 }
 
 impl Explain {
@@ -120,6 +123,7 @@ impl Explain {
         let mut out = results();
         match self.format {
             Format::Json => writeln!(out, "{:#}", explain::json(&explanation))?,
+            Format::Geojson => writeln!(out, "{}", explain::edge_geojson(&explanation, &Stop::never())?)?,
             Format::Text => tell(&mut out, &explanation)?,
         }
         Ok(out.flush()?)
@@ -149,6 +153,7 @@ impl Explain {
                 json["turn_corridor"] = turn.strip.name().into();
                 writeln!(out, "{json:#}")?;
             }
+            Format::Geojson => writeln!(out, "{}", explain::turn_geojson(turn, &Stop::never())?)?,
             Format::Text => {
                 writeln!(out, "{}", printable(&turn.title()))?;
                 tell(&mut out, &turn.explanation)?;

@@ -73,7 +73,9 @@ pub struct EdgeSpan {
 /// certified.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StrokeCorridor {
-    /// The corridor in the stroke's metric frame.
+    /// The stroke's metric frame.
+    pub frame: Frame,
+    /// The corridor in that frame.
     pub corridor: Corridor,
     /// Edges of the strip at each station as the map has them, metres to the left of the centreline: `[left, right]`. The corridor is
     /// narrower where the strip tapers to that of the next edge. Never inside the corridor.

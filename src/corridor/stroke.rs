@@ -40,7 +40,7 @@ pub fn stroke_corridor(
     policy: Policy,
     params: &Params,
 ) -> Result<StrokeCorridor, UnknownReason> {
-    let (mut links, approach) = links(network, stroke, policy, params)?;
+    let (frame, mut links, approach) = links(network, stroke, policy, params)?;
     if stroke.closed {
         // A loop is its own approach.
         links.drain(..approach);
@@ -72,7 +72,7 @@ pub fn stroke_corridor(
     let tapers = tapers(&stretches, &jogs, &ramps, &stations);
     let untapered = Untapered { stretches: &stretches, aside: &aside, gaps: &gaps, profile: &profile, arc: &arc };
     let untapered = untapered.edges(&corridor);
-    Ok(StrokeCorridor { corridor, untapered, spans, tapers })
+    Ok(StrokeCorridor { frame, corridor, untapered, spans, tapers })
 }
 
 /// The tapers, in the order of the line.
@@ -185,13 +185,13 @@ fn all_finite(c: &Corridor) -> bool {
     [&c.x, &c.y, &c.heading, &c.curvature, &c.left_m, &c.right_m].iter().all(|v| v.iter().all(|x| x.is_finite()))
 }
 
-/// Approach and edges of the stroke in the frame, and the number of approach edges.
+/// The stroke's frame, its approach and edges in it, and the number of approach edges.
 fn links<'n>(
     network: &'n Network,
     stroke: &Stroke,
     policy: Policy,
     params: &Params,
-) -> Result<(Vec<Link<'n>>, usize), UnknownReason> {
+) -> Result<(Frame, Vec<Link<'n>>, usize), UnknownReason> {
     let range = |r: &std::ops::Range<u32>| network.stroke_edges.get(r.start as usize..r.end as usize);
     let (Some(approach), Some(edges)) = (range(&stroke.approach), range(&stroke.edges)) else {
         return Err(UnknownReason::Geometry);
@@ -206,8 +206,8 @@ fn links<'n>(
         positions.extend(network.positions(&network.edges[index as usize]));
         ends.push(positions.len());
     }
-    let metric = Frame::around(&positions).and_then(|frame| frame.forward(&positions));
-    let metric = metric.map_err(|_| UnknownReason::Geometry)?;
+    let metric = Frame::around(&positions).and_then(|frame| Ok((frame, frame.forward(&positions)?)));
+    let (frame, metric) = metric.map_err(|_| UnknownReason::Geometry)?;
     let mut start = 0;
     let links = chain
         .iter()
@@ -218,7 +218,7 @@ fn links<'n>(
             link(network, index, points, policy, params.map_tolerance_m)
         })
         .collect();
-    Ok((links, approach.len()))
+    Ok((frame, links, approach.len()))
 }
 
 fn link(network: &Network, index: u32, points: Vec<[f64; 2]>, policy: Policy, map_tolerance_m: f64) -> Link<'_> {

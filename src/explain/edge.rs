@@ -3,6 +3,7 @@
 
 use super::hints::{self, Hints};
 use super::legal::Conflict;
+use super::no_bound;
 use super::ride::Ride;
 use super::tightest::{HingePlace, Place};
 use super::{Explanation, Geometry, RoadFacts};
@@ -44,9 +45,15 @@ pub fn explain_edge(
     if let (Ok(case), Some(geometry), Verdict::Unsafe(_)) = (&case, &geometry, verdict) {
         hints = hints::of(&|corridor, model| case.result(corridor, model, &settings.stet, stop), geometry, model);
         hints.other_strips = other_strips(network, edge, (model, geometry.result.rsc_m), settings, stop);
+        if !geometry.result.closes() {
+            let safe =
+                |model: &Model| case.result(&case.made.corridor, model, &settings.stet, stop).is_some_and(|r| r.safe());
+            hints.shorter = no_bound::shorter(&model.vehicle, &safe, stop)?;
+        }
     }
     stop.check()?;
-    Ok(Some(Explanation { road: Some(road), vehicle: model.vehicle.clone(), verdict, geometry, hints, conflict }))
+    let (road, vehicle) = (Some(road), model.vehicle.clone());
+    Ok(Some(Explanation { road, turn: None, vehicle, verdict, geometry, hints, conflict }))
 }
 
 impl Explanation {
@@ -106,7 +113,8 @@ impl Case {
     /// The edge's geometry. As in the pipeline, the plan is made for all edges of the stroke together.
     fn geometry(&self, model: &Model, options: &Options, stop: &Stop) -> Result<Option<Geometry>, Stopped> {
         let geometry = geometry(&self.made.corridor, &self.spans(), self.which, model, options, stop)?;
-        Ok(geometry.map(|geometry| Geometry { tapers: self.made.tapers.clone(), ..geometry }))
+        let placed = |geometry| Geometry { frame: Some(self.made.frame), tapers: self.made.tapers.clone(), ..geometry };
+        Ok(geometry.map(placed))
     }
 
     /// The edge's result in another corridor with the same stations. `None` after `stop` was told.
@@ -115,6 +123,24 @@ impl Case {
         let rows = certify_spans(corridor, &[model], &self.spans(), options);
         rows.into_iter().next()?.spans.into_iter().nth(self.which)
     }
+}
+
+/// The verdict of an edge, as `explain_edge` finds it.
+pub(super) fn edge_verdict(
+    network: &Network,
+    edge: u32,
+    model: &Model,
+    settings: &Settings,
+    stop: &Stop,
+) -> Result<Option<Verdict>, Stopped> {
+    stop.check()?;
+    let Some(facts) = network.edges.get(edge as usize) else { return Ok(None) };
+    let (result, unknown) = match Case::of(network, edge, settings) {
+        Ok(case) => (case.result(&case.made.corridor, model, &settings.stet, stop), case.unknown()),
+        Err(reason) => (None, Some(reason)),
+    };
+    stop.check()?;
+    Ok(Some(verdict(facts, model, unknown, result.as_ref())))
 }
 
 /// The geometry of one span of a corridor, from the certificate of the whole corridor.
@@ -142,7 +168,8 @@ fn seen_from(
     let ride = Ride::new(corridor, &certificate.plan, &model.vehicle);
     let place = Place::of(corridor, &ride, &model.vehicle, &result)?;
     let hinge = HingePlace::of(corridor, &ride, &model.vehicle, &span, &result)?;
-    Some(Geometry { corridor: corridor.clone(), span, result, certificate, ride, place, hinge, tapers: Vec::new() })
+    let (frame, corridor, tapers) = (None, corridor.clone(), Vec::new());
+    Some(Geometry { frame, corridor, span, result, certificate, ride, place, hinge, tapers })
 }
 
 fn stroke_of(network: &Network, edge: u32) -> Option<&Stroke> {
@@ -199,5 +226,6 @@ fn road_facts(network: &Network, edge: &Edge, policy: Policy) -> RoadFacts {
         reference: text(road.reference),
         policy,
         width_source: section.strip(policy).map(|strip| strip.source),
+        line: network.positions(edge).collect(),
     }
 }

@@ -31,6 +31,8 @@ pub struct Hints {
     pub hinge_limit_deg: Option<f64>,
     /// The kerb radius of a turn with an assumed kerb.
     pub kerb: Option<KerbHint>,
+    /// A shorter vehicle of the catalogue, if no bound holds for this one. `None` if none was looked for.
+    pub shorter: Option<ShorterHint>,
     /// The results with wider strips of the same road.
     pub other_strips: Vec<OtherStrip>,
 }
@@ -51,6 +53,15 @@ pub enum KerbHint {
     AtLeast(f64),
     /// No radius up to this one would do, metres.
     NotUpTo(f64),
+}
+
+/// The answer of the search for a shorter vehicle.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ShorterHint {
+    /// The longest of the catalogue's shorter vehicles of its region that is safe here: its id and its length, metres.
+    Does(String, f64),
+    /// None of so many shorter vehicles is safe here, and the length of the shortest of them, metres.
+    NoneOf(usize, f64),
 }
 
 /// The result of the same edge with a wider strip.
@@ -78,6 +89,7 @@ pub(super) fn of(again: &Again<'_>, geometry: &Geometry, model: &Model) -> Hints
         tolerance_m: too_narrow.then(|| tolerance(again, geometry, model)).flatten(),
         hinge_limit_deg: (turns_too_far && !too_narrow).then(|| hinge_limit(again, geometry, model)).flatten(),
         kerb: None,
+        shorter: None,
         other_strips: Vec::new(),
     }
 }

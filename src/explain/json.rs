@@ -4,7 +4,7 @@
 use serde_json::{Value, json};
 
 use super::words::words;
-use super::{Explanation, Geometry, KerbHint, Part};
+use super::{Explanation, Geometry, KerbHint, Part, ShorterHint};
 use crate::osm::facts::WidthSource;
 use crate::vehicle::Vehicle;
 use crate::words::{Named as _, verdict_words};
@@ -48,12 +48,7 @@ pub fn json(e: &Explanation) -> Value {
 
 fn limiting(g: &Geometry, vehicle: &Vehicle) -> Value {
     let (place, hinge, result) = (&g.place, &g.hinge, &g.result);
-    let (part, ahead_m) = match place.part {
-        Part::FrontCorner => ("front_corner", None),
-        Part::RearCorner => ("rear_corner", None),
-        Part::Axle => ("axle", Some(0.0)),
-        Part::Side(m) => ("side", Some(m)),
-    };
+    let (part, ahead_m) = body_part(place.part);
     json!({
         "length_m": g.length_m(),
         "rsc_m": result.rsc_m,
@@ -84,6 +79,16 @@ fn limiting(g: &Geometry, vehicle: &Vehicle) -> Value {
     })
 }
 
+/// The name of a part of a body, and its distance ahead of the axle, metres.
+pub(super) fn body_part(part: Part) -> (&'static str, Option<f64>) {
+    match part {
+        Part::FrontCorner => ("front_corner", None),
+        Part::RearCorner => ("rear_corner", None),
+        Part::Axle => ("axle", Some(0.0)),
+        Part::Side(m) => ("side", Some(m)),
+    }
+}
+
 fn hints(e: &Explanation) -> Value {
     let strip = |other: &super::OtherStrip| json!({"corridor": other.policy.name(), "width_m": other.width_m, "safe": other.safe, "rsc_m": other.rsc_m});
     json!({
@@ -93,6 +98,10 @@ fn hints(e: &Explanation) -> Value {
         "hinge_limit_deg": e.hints.hinge_limit_deg,
         "kerb_radius_m": match e.hints.kerb {
             Some(KerbHint::AtLeast(radius_m)) => Some(radius_m),
+            _ => None,
+        },
+        "shorter_vehicle": match &e.hints.shorter {
+            Some(ShorterHint::Does(id, length_m)) => Some(json!({"id": id, "length_m": length_m})),
             _ => None,
         },
         "other_strips": e.hints.other_strips.iter().map(strip).collect::<Vec<_>>(),

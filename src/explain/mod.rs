@@ -10,19 +10,26 @@
 //! | `turn` | a turn of a network → [`TurnExplanation`] |
 //! | `ride` | the poses of all units while the steer axle follows the plan |
 //! | `tightest` | the place, unit and corner with the least leeway; the hinge with the least margin |
+//! | `no_bound` | why no bound holds for a vehicle, and which shorter vehicle would do |
 //! | `hints` | changes that would make the edge safe: more width, closer tracking, another strip |
 //! | `legal` | the tagged rule that forbids, beside the vehicle's value |
 //! | `names` | names of parts and places, and cautiously rounded amounts |
 //! | `words` | the explanation as sentences |
 //! | `json` | the explanation as JSON |
+//! | `drawn`, `swept` | the shapes that a map shows of an explanation |
+//! | `geojson` | these shapes as GeoJSON, for maps and for programs such as QGIS |
 
+mod drawn;
 mod edge;
+mod geojson;
 mod hints;
 mod json;
 mod legal;
 mod names;
+mod no_bound;
 mod own_corridor;
 mod ride;
+mod swept;
 #[cfg(test)]
 mod tests;
 mod tightest;
@@ -32,7 +39,8 @@ mod words;
 use std::ops::Range;
 
 pub use edge::explain_edge;
-pub use hints::{Hints, KerbHint, OtherStrip, WidthHint};
+pub use geojson::{MapError, TURN_NOTE, edge_geojson, turn_geojson};
+pub use hints::{Hints, KerbHint, OtherStrip, ShorterHint, WidthHint};
 pub use json::json;
 pub use legal::Conflict;
 pub use names::cautious_m;
@@ -42,17 +50,20 @@ pub use tightest::{Bend, Cross, HingePlace, Part, Place};
 pub use turn::{TurnExplanation, explain_turn};
 pub use words::{Words, words};
 
-use crate::corridor::{Corridor, Taper};
+use crate::corridor::{Corridor, Frame, Taper};
+use crate::osm::LonLat;
 use crate::osm::facts::{Direction, Policy, WidthSource};
 use crate::stet::{Certificate, SpanResult};
 use crate::vehicle::Vehicle;
-use crate::verdict::Verdict;
+use crate::verdict::{UnsafeReason, Verdict};
 
 /// What limits a vehicle on an edge, in a turn or in a corridor.
 #[derive(Debug, Clone)]
 pub struct Explanation {
     /// The road. `None` for a turn and for a corridor of the user's.
     pub road: Option<RoadFacts>,
+    /// What only a turn has.
+    pub turn: Option<TurnRoads>,
     /// The vehicle.
     pub vehicle: Vehicle,
     /// The verdict with its reason.
@@ -63,6 +74,16 @@ pub struct Explanation {
     pub hints: Hints,
     /// The rule that forbids or cannot be read.
     pub conflict: Option<Conflict>,
+}
+
+/// Roads of a turn that its sentences name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TurnRoads {
+    /// The road that forbids the turn or makes it unknown. `None` if the turn itself decides.
+    pub decides: Option<String>,
+    /// Roads before and after the turn that the vehicle may not use, each with its verdict. The turn then has their verdict in a
+    /// database.
+    pub refused: Vec<(String, Verdict)>,
 }
 
 /// The facts of an edge that people read.
@@ -82,6 +103,16 @@ pub struct RoadFacts {
     pub policy: Policy,
     /// The source of the width under that policy. `None` if there is no width.
     pub width_source: Option<WidthSource>,
+    /// The map's line in driving direction.
+    pub line: Vec<LonLat>,
+}
+
+impl Explanation {
+    /// Whether a hinge or the steering decides, and not the width.
+    #[must_use]
+    pub fn hinge_decides(&self) -> bool {
+        matches!(self.verdict, Verdict::Unsafe(UnsafeReason::Articulation | UnsafeReason::SteeringLock))
+    }
 }
 
 impl RoadFacts {
@@ -96,6 +127,8 @@ impl RoadFacts {
 /// The certificate over a span of a corridor, and the places that decide it.
 #[derive(Debug, Clone)]
 pub struct Geometry {
+    /// The frame of all positions. `None` for a corridor of the user's.
+    pub frame: Option<Frame>,
     /// The whole corridor. For an edge, the corridor of its stroke.
     pub corridor: Corridor,
     /// The stations of the span.

@@ -27,7 +27,11 @@ impl Explanation {
     /// The name of the strip that the vehicle may use under the policy.
     #[must_use]
     pub fn strip_name(&self) -> &'static str {
-        self.road.as_ref().map_or("corridor", |road| strip_name(road.policy))
+        match (&self.road, &self.turn) {
+            (Some(road), _) => strip_name(road.policy),
+            (None, Some(_)) => "road",
+            (None, None) => "corridor",
+        }
     }
 }
 

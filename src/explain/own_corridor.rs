@@ -35,5 +35,8 @@ pub fn explain_corridor(
         stop.check()?;
     }
     let vehicle = model.vehicle.clone();
-    Ok(Some((certificate, Explanation { road: None, vehicle, verdict, geometry: Some(found), hints, conflict: None })))
+    Ok(Some((
+        certificate,
+        Explanation { road: None, turn: None, vehicle, verdict, geometry: Some(found), hints, conflict: None },
+    )))
 }

@@ -1,8 +1,9 @@
 //! Explains a turn of the network. Its corridors are made again, and the one with the best certificate is explained.
 
-use super::edge::geometry;
+use super::edge::{edge_verdict, geometry};
 use super::hints::{self, Hints, KerbHint};
-use super::{Explanation, Geometry};
+use super::legal::Conflict;
+use super::{Explanation, Geometry, TurnRoads, no_bound};
 use crate::certify::{best_of, turn_verdict};
 use crate::corridor::Corridor;
 use crate::network::{Edge, Network, PassageKind};
@@ -30,6 +31,8 @@ pub struct TurnExplanation {
     pub corridors: Option<TurnCorridors>,
     /// The best path.
     pub path: Option<TurnPath>,
+    /// The policy of the certificate.
+    pub policy: Policy,
     /// The strip that the vehicle may use near the turn.
     pub strip: Policy,
     /// The explanation of the certificate on the best path. Its verdict is that of the turn alone, not of its edges.
@@ -71,8 +74,8 @@ pub fn explain_turn(
     let mut hints = Hints::default();
     let mut geometry = None;
     if let Some((path, result)) = &best {
-        let made = turn_geometry(path, result, model, settings, stop)?;
-        if let (Some((options, geometry)), Verdict::Unsafe(_)) = (&made, verdict) {
+        let found = turn_geometry(path, result, model, settings, stop)?;
+        if let (Some((options, geometry)), Verdict::Unsafe(_)) = (&found, verdict) {
             let again = |corridor: &Corridor, model: &Model| {
                 stop.check().ok()?;
                 let rows = certify_spans(corridor, &[model], std::slice::from_ref(&path.counted), options);
@@ -80,7 +83,8 @@ pub fn explain_turn(
             };
             hints = hints::of(&again, geometry, model);
         }
-        geometry = made.map(|(_, geometry)| geometry);
+        let frame = made.as_ref().ok().map(|made| made.frame);
+        geometry = found.map(|(_, geometry)| Geometry { frame, ..geometry });
     }
     if let (Ok(made), Verdict::Unsafe(_)) = (&made, verdict) {
         hints.kerb = match made.kerb_radius_m {
@@ -90,11 +94,18 @@ pub fn explain_turn(
     }
     stop.check()?;
     let vehicle = model.vehicle.clone();
-    let explanation = Explanation { road: None, vehicle, verdict, geometry, hints, conflict: None };
+    if let (Ok(_), Verdict::Unsafe(_)) = (&made, verdict)
+        && geometry.as_ref().is_none_or(|geometry| !geometry.result.closes())
+    {
+        let safe = |model: &Model| certified_safe(network, facts, model, settings);
+        hints.shorter = no_bound::shorter(&vehicle, &safe, stop)?;
+    }
+    let (named, conflict) = roads_that_decide(network, facts, model, settings, verdict, stop)?;
+    let explanation = Explanation { road: None, turn: Some(named), vehicle, verdict, geometry, hints, conflict };
     let path = best.map(|(path, _)| path);
     let strip = settings.turn_policy.max(settings.policy);
-    let passage = network.passage_kind(&facts.through);
-    Ok(TurnExplanation { facts: facts.clone(), passage, roads, corridors: made.ok(), path, strip, explanation })
+    let (facts, policy, passage) = (facts.clone(), settings.policy, network.passage_kind(&facts.through));
+    Ok(TurnExplanation { facts, passage, roads, corridors: made.ok(), path, policy, strip, explanation })
 }
 
 /// The geometry of a path, with the options that gave `result`. Some paths are certified without corrections.
@@ -141,6 +152,51 @@ fn kerb(
         if safe_with(middle)? { does = middle } else { fails = middle }
     }
     Ok(KerbHint::AtLeast(f64::from(does) * KERB_STEP_M))
+}
+
+/// Whether the turn is safe for a vehicle, on the best of its own paths.
+fn certified_safe(network: &Network, facts: &TurnFacts, model: &Model, settings: &Settings) -> bool {
+    let Some(reach) = Reach::of(&model.vehicle) else { return false };
+    let made = corridors_of(network, facts, settings.policy, &settings.turn_params(), reach).ok();
+    let best = made.and_then(|made| best_of(&made, &[model], &settings.stet).pop().flatten());
+    best.is_some_and(|(_, result)| result.safe())
+}
+
+/// The roads that the turn's sentences name, and the rule of the one that forbids it.
+fn roads_that_decide(
+    network: &Network,
+    facts: &TurnFacts,
+    model: &Model,
+    settings: &Settings,
+    own: Verdict,
+    stop: &Stop,
+) -> Result<(TurnRoads, Option<Conflict>), Stopped> {
+    let mut named = TurnRoads { decides: None, refused: Vec::new() };
+    let edges = [facts.movement.from].into_iter().chain(facts.through.iter().copied()).chain([facts.movement.to]);
+    if let Verdict::Forbidden(ForbiddenReason::Restriction) = own {
+        return Ok((named, None));
+    }
+    let mut conflict = None;
+    for index in edges {
+        let Some(edge) = network.edges.get(index as usize) else { continue };
+        let Some(verdict) = edge_verdict(network, index, model, settings, stop)? else { continue };
+        if verdict == own && !matches!(own, Verdict::Safe | Verdict::Unsafe(_)) && named.decides.is_none() {
+            named.decides = Some(title(network, edge));
+            conflict = Conflict::of(edge, &model.vehicle);
+        }
+        // The arcs of a roundabout need no certificates of their own.
+        let ends = [facts.movement.from, facts.movement.to].contains(&index);
+        if ends && verdict != Verdict::Safe && matches!(own, Verdict::Safe | Verdict::Unsafe(_)) {
+            named.refused.push((format!("{} (edge {})", title(network, edge), edge.id), verdict));
+        }
+    }
+    // The order in which `certify` lets roads decide.
+    named.refused.sort_by_key(|(_, verdict)| match verdict {
+        Verdict::Forbidden(_) => 0,
+        Verdict::Unsafe(_) => 1,
+        _ => 2,
+    });
+    Ok((named, conflict))
 }
 
 fn forbids(edge: &Edge, model: &Model) -> Option<Verdict> {

@@ -1,11 +1,13 @@
 //! Writes an explanation as sentences: first what limits the vehicle and where, then hints, then the scope of the answer.
 
 use super::hints::{KerbHint, MOST_MORE_M, OtherStrip};
-use super::names::{cut, hinge_name, named, needed, source_words, strip_name};
+use super::names::{cut, hinge_name, needed, source_words, strip_name};
+use super::no_bound;
 use super::{Explanation, Geometry, HingePlace, Part, Place};
 use crate::corridor::{Taper, TaperCause};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
+use crate::words::verdict_words;
 
 /// Below this leeway, metres, the missing width is not named, because the bounds are wider than any road.
 const FAR_M: f64 = -100.0;
@@ -38,14 +40,18 @@ pub fn words(e: &Explanation) -> Words {
         (Verdict::Unsafe(UnsafeReason::Width), Some(g)) => {
             format!("unsafe: {} m too narrow at {:.0} m: {}", needed(-rsc(g)), at(g), who(e, g))
         }
-        (Verdict::Unsafe(_), Some(g)) => format!("unsafe: {}", hinge_headline(&e.vehicle, g)),
-        (Verdict::Safe | Verdict::Unsafe(_), None) => "nothing was computed".to_owned(),
+        (Verdict::Unsafe(_), Some(g)) => format!("unsafe: {}", hinge_headline(e, g)),
+        (Verdict::Safe, None) => "nothing was computed".to_owned(),
+        (Verdict::Unsafe(_), None) => {
+            "unsafe: no path was found that leads from the one road into the other".to_owned()
+        }
     };
-    let reasons = match (e.verdict, &e.geometry) {
+    let mut reasons = match (e.verdict, &e.geometry) {
         (Verdict::Safe | Verdict::Unsafe(_), Some(g)) => geometry_reasons(e, g),
         (_, Some(g)) => vec![beside(e, g)],
         (_, None) => Vec::new(),
     };
+    reasons.extend(e.turn.as_ref().and_then(|turn| refused(&turn.refused)));
     Words { headline, reasons, hints: hints(e), scope: scope(e) }
 }
 
@@ -73,24 +79,22 @@ fn bend(place: &Place) -> String {
     }
 }
 
-fn hinge_headline(vehicle: &Vehicle, g: &Geometry) -> String {
-    let h = &g.hinge;
-    let name = hinge_name(vehicle, h.unit);
-    let place = g.along_m(h.station);
-    let Some(margin_rad) = g.result.hinge_margin_rad else {
-        if let Some(station) = g.corridor.torn().into_iter().find(|k| g.span.contains(k)) {
-            return format!(
-                "the line drawn for the road is no curve at {:.0} m: nothing is certified there",
-                g.along_m(station as f64)
-            );
-        }
-        let sharpest = g.corridor.curvature[g.span.clone()].iter().fold(0.0_f64, |k, c| k.max(c.abs()));
-        return format!(
-            "the road turns too sharply at {place:.0} m, to a radius of {:.1} m: no bound holds for {}",
-            1.0 / sharpest.max(1e-6),
-            named(vehicle, h.unit)
-        );
+/// The roads beside a turn that the vehicle may not use, in one sentence.
+fn refused(roads: &[(String, Verdict)]) -> Option<String> {
+    let one = |(road, verdict): &(String, Verdict)| {
+        let (verdict, reason) = verdict_words(*verdict);
+        format!("{road} is itself {verdict} ({})", reason.replace('_', " "))
     };
+    let all: Vec<String> = roads.iter().map(one).collect();
+    let whose = if all.len() > 1 { "the verdict of the first of them" } else { "that verdict" };
+    (!all.is_empty()).then(|| format!("{}: a database lists the turn with {whose}.", all.join(", and ")))
+}
+
+fn hinge_headline(e: &Explanation, g: &Geometry) -> String {
+    let h = &g.hinge;
+    let name = hinge_name(&e.vehicle, h.unit);
+    let place = g.along_m(h.station);
+    let Some(margin_rad) = g.result.hinge_margin_rad else { return no_bound::headline(e, g) };
     let over_deg = (-margin_rad.to_degrees() * 10.0 - 1e-6).ceil() / 10.0;
     format!("{name} would need {over_deg:.1}° more than its {:.0}° at {place:.0} m", h.limit_rad.to_degrees())
 }
@@ -109,6 +113,9 @@ fn geometry_reasons(e: &Explanation, g: &Geometry) -> Vec<String> {
         reasons.extend(g.taper().map(|taper| tapers(taper, strip)));
         reasons.push(tracking(&e.vehicle, g));
         reasons.push(hinge_reason(&e.vehicle, g, margin_rad));
+    }
+    if !g.result.closes() {
+        reasons.extend(no_bound::reason(e, g));
     }
     let shift = g.certificate.shift_m.get(g.span.clone()).unwrap_or_default();
     let most = shift.iter().fold(0.0_f64, |most, q| if q.abs() > most.abs() { *q } else { most });
@@ -195,8 +202,15 @@ fn hinge_reason(vehicle: &Vehicle, g: &Geometry, margin_rad: f64) -> String {
 }
 
 fn forbidden(e: &Explanation, reason: ForbiddenReason) -> String {
-    let Some(c) = &e.conflict else { return "forbidden".to_owned() };
-    match (reason, c.allowed, c.has) {
+    if reason == ForbiddenReason::Restriction {
+        return "forbidden: a restriction on the map bans this turn".to_owned();
+    }
+    let on =
+        e.turn.as_ref().and_then(|turn| turn.decides.as_ref()).map_or(String::new(), |road| format!(", on {road}"));
+    let Some(c) = &e.conflict else {
+        return format!("forbidden: {}{on}", verdict_words(e.verdict).1.replace('_', " "));
+    };
+    let said = match (reason, c.allowed, c.has) {
         (ForbiddenReason::Hgv, ..) => "forbidden: no heavy goods vehicles (hgv=no or its kind)".to_owned(),
         (ForbiddenReason::Access, ..) => {
             "forbidden: no through traffic of motor vehicles (access, vehicle or motor_vehicle = no or private)"
@@ -214,11 +228,14 @@ fn forbidden(e: &Explanation, reason: ForbiddenReason) -> String {
             format!("forbidden: {} is {allowed} {unit}, the vehicle's {what} {has:.2} {unit}", c.tag, unit = c.unit)
         }
         _ => format!("forbidden: {}", c.tag),
-    }
+    };
+    format!("{said}{on}")
 }
 
 fn unknown(e: &Explanation, reason: UnknownReason) -> String {
-    match (reason, &e.conflict) {
+    let on =
+        e.turn.as_ref().and_then(|turn| turn.decides.as_ref()).map_or(String::new(), |road| format!(", on {road}"));
+    let said = match (reason, &e.conflict) {
         (UnknownReason::Width, _) => format!("unknown: no width of the {} can be derived", e.strip_name()),
         (UnknownReason::Geometry, _) => {
             "unknown: the line on the map gives no corridor: too short, folded back on itself, \
@@ -232,18 +249,19 @@ fn unknown(e: &Explanation, reason: UnknownReason) -> String {
             format!("unknown: {} is tagged with a value that cannot be read", c.tag)
         }
         (UnknownReason::Limit, None) => "unknown: a limit is tagged with a value that cannot be read".to_owned(),
-    }
+    };
+    format!("{said}{on}")
 }
 
 /// What the certificate says if something else decided the verdict.
 fn beside(e: &Explanation, g: &Geometry) -> String {
     let strip = e.strip_name();
     match () {
-        () if !g.result.closes() => format!("Besides, {}.", hinge_headline(&e.vehicle, g)),
+        () if !g.result.closes() => format!("Besides, {}.", hinge_headline(e, g)),
         () if g.result.too_narrow() => {
             format!("Besides, the {strip} is {} m too narrow at {:.0} m: {}.", needed(-rsc(g)), at(g), who(e, g))
         }
-        () if !g.result.safe() => format!("Besides, {}.", hinge_headline(&e.vehicle, g)),
+        () if !g.result.safe() => format!("Besides, {}.", hinge_headline(e, g)),
         () => format!(
             "Its width alone would do, as far as it is known: {} m to spare at {:.0} m, {}.",
             cut(rsc(g)),
@@ -254,10 +272,12 @@ fn beside(e: &Explanation, g: &Geometry) -> String {
 }
 
 fn hints(e: &Explanation) -> Vec<String> {
-    let Some(g) = e.geometry.as_ref().filter(|_| matches!(e.verdict, Verdict::Unsafe(_))) else { return Vec::new() };
+    if !matches!(e.verdict, Verdict::Unsafe(_)) {
+        return Vec::new();
+    }
     let (h, strip) = (&e.hints, e.strip_name());
     let mut out = Vec::new();
-    if g.result.too_narrow() {
+    if let Some(g) = e.geometry.as_ref().filter(|g| g.result.too_narrow()) {
         let widened = g.place.width_m.is_some();
         out.extend(match h.width {
             Some(hint) => {
@@ -289,6 +309,7 @@ fn hints(e: &Explanation) -> Vec<String> {
         }
         None => {}
     }
+    out.extend(h.shorter.as_ref().map(no_bound::words));
     out.extend(h.other_strips.iter().map(other_strip));
     out
 }
@@ -318,6 +339,7 @@ fn other_strip(other: &OtherStrip) -> String {
 fn scope(e: &Explanation) -> String {
     let v = &e.vehicle;
     let width = match e.road.as_ref() {
+        None if e.turn.is_some() => "roads as wide as mapped or else assumed".to_owned(),
         None => "a corridor as wide as the file says".to_owned(),
         Some(road) => match road.width_source {
             Some(source) => format!("a width that is {}", source_words(source)),

@@ -27,7 +27,7 @@ use crate::words::Named;
 
 /// Number of idle connections to keep. Each may hold 64 MB of the file's pages.
 const MOST_IDLE: usize = 4;
-/// Number of explanations to keep. Each has a picture of some 100 kB.
+/// Number of explanations to keep. Each has a picture and shapes for the map of some 100 kB.
 const MOST_EXPLAINED: usize = 16;
 /// Number of overviews to keep, one for each vehicle and policy. An overview takes about 60 bytes per vertex.
 pub(super) const MOST_OVERVIEWS: usize = 6;

@@ -25,6 +25,7 @@ const ENDPOINTS: &[(&str, Pace, Work)] = &[
     ("/api/vehicles/{id}/drawing.svg", Pace::Quick, api::vehicles::drawing),
     ("/api/edges/{id}", Pace::Quick, api::edges::edge),
     ("/api/explain/{id}", Pace::Slow, api::explain::explain),
+    ("/api/explain/{id}/map.geojson", Pace::Slow, api::explain::mapped),
     ("/api/explain/{id}/picture.svg", Pace::Slow, api::explain::drawn),
     ("/api/route", Pace::Slow, api::route::route),
     ("/api/search", Pace::Quick, api::search::search),

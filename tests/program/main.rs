@@ -6,6 +6,7 @@ mod cli;
 mod columns;
 mod engines;
 mod explain;
+mod explain_shapes;
 mod export;
 mod export_engines;
 mod export_formats;

@@ -147,6 +147,58 @@ inPage("a road found by its name is chosen as by a click, seen near by and from 
   assert.deepEqual(await chosen(page), { glow: 0, "selected-edge": 0, "glow-afar": 0 });
 });
 
+/** What the map shows of an explanation: how many shapes, by layer. */
+const shapes = (page) =>
+  page.evaluate(() => {
+    const { map } = globalThis.netcert;
+    const layers = ["ground", "swept", "path", "body", "label"].map((name) => `own-shapes-${name}`).filter((id) => map.getLayer(id));
+    return Object.fromEntries(layers.map((id) => [id.replace("own-shapes-", ""), map.queryRenderedFeatures({ layers: [id] }).length]));
+  });
+
+inPage("an explained turn is drawn on the map with a key, in both themes, and closing removes it", "#v=AU-SEMI19&policy=carriageway", async (page) => {
+  const turn = await page.evaluate(async () => {
+    const edges = globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-safe"] });
+    for (const id of new Set(edges.map(({ properties }) => String(properties.edge_id)))) {
+      const { turns } = await (await fetch(`/api/edges/${id}?vehicle=AU-SEMI19&policy=carriageway`)).json();
+      const found = turns.find((one) => one.verdict === "safe");
+      if (found) return found.turn_id;
+    }
+    return null;
+  });
+  assert.ok(turn, "the drawn region has a safe turn");
+  const said = await ask(`/api/explain/${turn}/map.geojson?vehicle=AU-SEMI19&policy=carriageway`);
+  const tightest = said.features.find(({ properties }) => properties.part === "tightest");
+  assert.deepEqual(await shapes(page), {}, "nothing is drawn at first");
+  await page.evaluate((selected) => globalThis.netcert.store.set({ selected }), turn);
+  await page.waitForSelector(".map-key li");
+  await page.evaluate((center) => globalThis.netcert.map.jumpTo({ center, zoom: 18 }), tightest.geometry.coordinates);
+  await idle(page);
+  await page.waitForFunction(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["own-shapes-label"] }).length > 0);
+  const drawn = await shapes(page);
+  for (const [layer, count] of Object.entries(drawn)) assert.ok(count > 0, layer);
+  assert.equal(Object.keys(drawn).length, 5);
+  // The key names each unit, in words.
+  const key = await text(page, ".map-key");
+  for (const words of ["this turn may use", "Planned path", "least room", "prime mover sweeps", "semi-trailer sweeps"]) assert.ok(key.includes(words), words);
+  // The ring stands at the tightest place and not at the node.
+  const off = await page.evaluate((at) => {
+    const ring = document.querySelector(".limit").getBoundingClientRect();
+    const canvas = globalThis.netcert.map.getCanvas().getBoundingClientRect();
+    const { x, y } = globalThis.netcert.map.project(at);
+    return Math.hypot(ring.x + ring.width / 2 - canvas.x - x, ring.y + ring.height / 2 - canvas.y - y);
+  }, tightest.geometry.coordinates);
+  assert.ok(off < 3, `${off} px`);
+  const edge = () => page.evaluate(() => globalThis.netcert.map.getPaintProperty("own-shapes-edge", "line-color"));
+  const before = await edge();
+  await page.keyboard.press("d");
+  await page.waitForFunction((was) => globalThis.netcert.map.getPaintProperty("own-shapes-edge", "line-color") !== was, before);
+  await idle(page);
+  assert.deepEqual(Object.keys(await shapes(page)), Object.keys(drawn));
+  await page.click(".drawer-close");
+  await page.waitForFunction(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["own-shapes-ground", "own-shapes-swept", "own-shapes-path"] }).length === 0);
+  assert.equal(await page.locator(".limit").count(), 0);
+});
+
 inPage("a search without result says so", "", async (page) => {
   await page.keyboard.press("/");
   await page.keyboard.type("no such road anywhere");

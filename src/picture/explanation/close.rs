@@ -6,13 +6,13 @@ use super::super::palette::{self, Colour};
 use super::super::style::{Anchor, Style, TextStyle};
 use super::super::svg::Picture;
 use super::super::{Frame, Point, View, bodies, scale_bar};
-use super::{body_colour, hinge_decides, scene, verdict_colour};
+use super::{body_colour, scene, verdict_colour};
 use crate::explain::{Explanation, Geometry, cautious_m};
 
 pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: Frame) {
     picture.clipped(frame, "close-up", |p| {
         p.rect(frame, 0.0, Style::area(palette::PAPER));
-        if hinge_decides(e) { hinge(p, e, g, frame) } else { corner(p, e, g, frame) }
+        if e.hinge_decides() { hinge(p, e, g, frame) } else { corner(p, e, g, frame) }
     });
     picture.rect(frame, 0.0, Style::line(palette::PALE, 1.0));
 }

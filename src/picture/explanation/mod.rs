@@ -12,7 +12,7 @@ use super::style::{Style, TextStyle};
 use super::svg::Picture;
 use super::{Frame, Key, legend};
 use crate::explain::{Explanation, Geometry, Words, words};
-use crate::verdict::{UnsafeReason, Verdict};
+use crate::verdict::Verdict;
 
 const WIDTH: f64 = 1400.0;
 const MARGIN: f64 = 28.0;
@@ -58,11 +58,6 @@ fn description(words: &Words) -> String {
     all.join(" ")
 }
 
-/// Whether a hinge decides, and not the width.
-fn hinge_decides(e: &Explanation) -> bool {
-    matches!(e.verdict, Verdict::Unsafe(UnsafeReason::Articulation | UnsafeReason::SteeringLock))
-}
-
 /// Blue if the vehicle fits, vermillion if not, grey if something else decides.
 fn verdict_colour(e: &Explanation) -> Colour {
     match e.verdict {
@@ -74,13 +69,14 @@ fn verdict_colour(e: &Explanation) -> Colour {
 
 /// Fill colour of a body. The limiting body stands out.
 fn body_colour(e: &Explanation, g: &Geometry, unit: usize) -> Colour {
-    let limits = if hinge_decides(e) { unit == g.hinge.unit || unit + 1 == g.hinge.unit } else { unit == g.place.unit };
+    let limits =
+        if e.hinge_decides() { unit == g.hinge.unit || unit + 1 == g.hinge.unit } else { unit == g.place.unit };
     if limits { palette::ORANGE } else { palette::SKY }
 }
 
 fn keys(e: &Explanation, g: &Geometry) -> Vec<Key> {
     let unit = |i: usize| e.vehicle.units.get(i).map_or("unit", |unit| unit.name.as_str());
-    let limits = match (hinge_decides(e), g.hinge.unit) {
+    let limits = match (e.hinge_decides(), g.hinge.unit) {
         (true, 0) => format!("{}, nominally", unit(0)),
         (true, behind) => format!("{} and what tows it, nominally", unit(behind)),
         (false, _) => format!("{}, nominally", unit(g.place.unit)),

@@ -5,7 +5,7 @@ use super::super::palette;
 use super::super::style::{Anchor, Style, TextStyle};
 use super::super::svg::Picture;
 use super::super::{Bounds, Frame, Point, View, bodies, callout};
-use super::{body_colour, hinge_decides, verdict_colour};
+use super::{body_colour, verdict_colour};
 use crate::explain::{Cross, Explanation, Geometry, cautious_m};
 use crate::stet::motion::Pose;
 use crate::stet::{Model, tubes};
@@ -15,7 +15,7 @@ const AROUND_M: f64 = 4.0;
 
 /// The deciding moment: the steer axle's station and the poses of all units.
 fn moment<'g>(e: &Explanation, g: &'g Geometry) -> (f64, &'g [Pose]) {
-    if hinge_decides(e) { (g.hinge.head, &g.hinge.poses) } else { (g.place.head, &g.place.poses) }
+    if e.hinge_decides() { (g.hinge.head, &g.hinge.poses) } else { (g.place.head, &g.place.poses) }
 }
 
 /// Direction from the rear of the vehicle to its front, radians.
@@ -145,7 +145,7 @@ fn before_and_after(picture: &mut Picture, e: &Explanation, g: &Geometry, view: 
 
 /// Draws the tube of the limiting unit's axle.
 fn ribbon(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, (from, to): (f64, f64)) {
-    let unit = if hinge_decides(e) { g.hinge.unit } else { g.place.unit };
+    let unit = if e.hinge_decides() { g.hinge.unit } else { g.place.unit };
     let Ok(model) = Model::new(&e.vehicle) else { return };
     let all = tubes(&g.corridor, &model, &g.certificate);
     let Some(tube) = all.get(unit) else { return };
@@ -180,7 +180,7 @@ pub(super) fn lines(picture: &mut Picture, g: &Geometry, view: &View, (from, to)
 /// Draws the deciding place, with what is missing or to spare.
 fn mark(picture: &mut Picture, e: &Explanation, g: &Geometry, view: &View, frame: Frame) {
     let colour = verdict_colour(e);
-    let (target, lines) = if hinge_decides(e) {
+    let (target, lines) = if e.hinge_decides() {
         let h = &g.hinge;
         let coupling = h.poses.get(h.unit).zip(e.vehicle.units.get(h.unit));
         let place = coupling.map_or([0.0; 2], |(pose, unit)| pose.place(unit.coupling_to_axle_m, 0.0));

@@ -5,7 +5,7 @@ use super::super::palette;
 use super::super::style::{Anchor, Style, TextStyle};
 use super::super::svg::Picture;
 use super::super::{Bounds, Chart, Frame, Point, Scale, View};
-use super::{hinge_decides, verdict_colour};
+use super::verdict_colour;
 use crate::explain::{Explanation, Geometry};
 use crate::stet::known_m;
 
@@ -35,7 +35,7 @@ pub(super) fn draw(picture: &mut Picture, e: &Explanation, g: &Geometry, frame: 
     chart.curve(picture, "left", &left, Style::line(palette::BLUE, 1.8));
     chart.curve(picture, "right", &right, Style::line(palette::GREEN, 1.8).dashed(7.0, 3.0));
     let (s, colour) = (g.along_m(g.place.station), verdict_colour(e));
-    if let Some(rsc_m) = g.result.rsc_m.filter(|_| !hinge_decides(e)) {
+    if let Some(rsc_m) = g.result.rsc_m.filter(|_| !e.hinge_decides()) {
         let at = chart.at(s, rsc_m.clamp(chart.y.low, chart.y.high));
         picture.segment([at[0], frame.y], [at[0], frame.y + frame.height], Style::line(colour, 1.0).dashed(3.0, 3.0));
         picture.circle(at, 5.0, Style::area(colour).outlined(palette::PAPER, 1.2));
@@ -110,7 +110,7 @@ pub(super) fn overview(picture: &mut Picture, e: &Explanation, g: &Geometry, fra
             let off = [first[0] - 12.0 * uy, first[1] + 12.0 * ux];
             arrow(p, off, [off[0] + 34.0 * ux, off[1] + 34.0 * uy], palette::INK, 1.4);
         }
-        let station = if hinge_decides(e) { g.hinge.station } else { g.place.station };
+        let station = if e.hinge_decides() { g.hinge.station } else { g.place.station };
         let at = view.at(point((station.max(0.0) as usize).min(g.corridor.len() - 1)));
         p.circle(at, 9.0, Style::line(verdict_colour(e), 2.6));
         scale_bar(p, &view, [frame.x + 14.0, frame.y + frame.height - 10.0], 120.0);

@@ -10,8 +10,8 @@ use super::super::ask::{Ask, policy};
 use super::super::problem::Problem;
 use super::super::region::{Certified, Region};
 use super::super::roads::RoadIndex;
-use super::{SVG, answered, id};
-use crate::explain::{self, Explanation};
+use super::{GEOJSON, SVG, answered, id};
+use crate::explain::{self, Explanation, MapError};
 use crate::network::Network;
 use crate::osm::LonLat;
 use crate::picture;
@@ -21,10 +21,11 @@ use crate::stop::Stop;
 use crate::store::{QueryOptions, TurnsOf};
 use crate::words::Named;
 
-/// The members and the picture of one explanation.
+/// The members, the picture and the shapes for a map of one explanation.
 pub(in super::super) struct Explained {
     members: Value,
     picture: Option<String>,
+    map: Value,
 }
 
 /// `/api/explain/{id}`
@@ -40,6 +41,11 @@ pub(in super::super) fn drawn(region: &Region, ask: &Ask) -> Result<Stored, Prob
         return Err(Problem::not_found(format!("there is nothing to draw: {headline}")));
     };
     Ok(Stored::new(SVG, svg.clone().into_bytes()))
+}
+
+/// `/api/explain/{id}/map.geojson`
+pub(in super::super) fn mapped(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    explained(region, ask).map(|explained| Stored::new(GEOJSON, explained.map.to_string().into_bytes()))
 }
 
 fn explained(region: &Region, ask: &Ask) -> Result<Arc<Explained>, Problem> {
@@ -90,7 +96,8 @@ fn of_edge(
     members["at"] = json!(limiting_place(network, edge, &explanation));
     let line = network.edges.get(edge as usize).map(|edge| network.positions(edge).collect::<Vec<_>>());
     members["geometry"] = geometry(line.as_deref());
-    Ok(Explained { members, picture: picture::explanation(&explanation) })
+    let map = explain::edge_geojson(&explanation, stop).map_err(unmapped)?;
+    Ok(Explained { members, picture: picture::explanation(&explanation), map })
 }
 
 fn of_turn(
@@ -117,11 +124,16 @@ fn of_turn(
     let set = (model.vehicle.id.as_str(), settings.policy);
     let turns = region.read(|database| database.map_turns(set, TurnsOf::Edge(facts.movement.from)))?;
     members["geometry"] = geometry(turns.iter().find(|row| row.turn_id == id).map(|row| row.line.as_slice()));
-    members["note"] = json!(
-        "The turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii are \
-         assumed where no surface is mapped."
-    );
-    Ok(Explained { members, picture: picture::turn(&turn) })
+    members["note"] = json!(explain::TURN_NOTE);
+    let map = explain::turn_geojson(&turn, stop).map_err(unmapped)?;
+    Ok(Explained { members, picture: picture::turn(&turn), map })
+}
+
+fn unmapped(error: MapError) -> Problem {
+    match error {
+        MapError::Stopped(stopped) => stopped.into(),
+        MapError::Frame(error) => Problem::fault(error.to_string()),
+    }
 }
 
 /// A GeoJSON line in direction of travel. Null if there is no line.

@@ -24,6 +24,7 @@ use super::problem::Problem;
 
 const JSON: &str = "application/json";
 const SVG: &str = "image/svg+xml";
+const GEOJSON: &str = "application/geo+json";
 
 /// The description of the interface (OpenAPI 3.1). A test compares it with the answers.
 pub(super) const OPENAPI: &str = include_str!("../openapi.json");

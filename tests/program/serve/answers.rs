@@ -116,6 +116,34 @@ fn an_explanation_is_that_of_the_verb() {
 }
 
 #[test]
+fn the_shapes_of_an_explanation_are_those_of_the_verb() {
+    let server = Server::demo();
+    let rows = server.place.rows(VEHICLE);
+    let mut ids: Vec<String> = Vec::new();
+    for wanted in ["safe", "unsafe", "unknown"] {
+        let row = rows.iter().find(|row| verdict_words(row.certificate.verdict).0 == wanted).unwrap();
+        ids.push(row.edge_id.to_string());
+    }
+    let turns =
+        rows.iter().map(|row| server.json(&format!("/api/edges/{}?vehicle={VEHICLE}", row.edge_id))["turns"].clone());
+    let turns: Vec<Value> = turns.take(12).flat_map(|turns| turns.as_array().unwrap().clone()).collect();
+    ids.extend(turns.iter().step_by(4).map(|turn| turn["turn_id"].as_str().unwrap().to_owned()));
+    let mut parts = std::collections::BTreeSet::new();
+    for id in &ids {
+        let line = format!("explain {id} --db demo.gpkg --vehicle {VEHICLE} --format geojson");
+        let said = server.place.netcert(&line).succeeds().json();
+        let reply = server.get(&format!("/api/explain/{id}/map.geojson?vehicle={VEHICLE}&policy=lane"));
+        assert_eq!((reply.status, reply.header("content-type")), (200, Some("application/geo+json")), "{id}");
+        assert!(reply.json() == said, "{id}: {said}");
+        parts.extend(said["features"].as_array().unwrap().iter().map(|shape| shape["properties"]["part"].to_string()));
+    }
+    assert!(parts.len() >= 6, "{parts:?}");
+    server.problem(&format!("/api/explain/1/map.geojson?vehicle={VEHICLE}"), 404);
+    server.problem(&format!("/api/explain/{}/map.geojson", ids[0]), 400);
+    server.problem(&format!("/api/explain/{}/map.geojson?vehicle={VEHICLE}&zoom=3", ids[0]), 400);
+}
+
+#[test]
 fn statistics_are_those_of_the_verb() {
     let server = Server::demo();
     let stats = server.json("/api/stats?policy=lane");

@@ -94,7 +94,7 @@ fn every_answer_has_the_described_form() {
         let reply = server.get(target);
         assert_eq!(reply.status, 200, "{target}: {}", reply.text());
         assert!(reply.header("content-type").unwrap().starts_with(kind.as_str()), "{target}");
-        if kind == "application/json" {
+        if kind.ends_with("json") {
             let mut found = Vec::new();
             faults(&document, &schema["schema"], &reply.json(), path, &mut found);
             found.truncate(20);
@@ -125,13 +125,16 @@ fn asked(server: &Server) -> Vec<(String, String)> {
         let id = row.edge_id;
         add("/api/edges/{id}", format!("/api/edges/{id}?vehicle={VEHICLE}"));
         add("/api/explain/{id}", format!("/api/explain/{id}?vehicle={VEHICLE}"));
+        add("/api/explain/{id}/map.geojson", format!("/api/explain/{id}/map.geojson?vehicle={VEHICLE}"));
     }
     let safe =
         rows.iter().find(|row| verdict_words(row.certificate.verdict).0 == "safe" && row.length_m > 100.0).unwrap();
     add("/api/explain/{id}/picture.svg", format!("/api/explain/{}/picture.svg?vehicle={VEHICLE}", safe.edge_id));
     let edge = server.json(&format!("/api/edges/{}?vehicle={VEHICLE}", safe.edge_id));
     for turn in edge["turns"].as_array().unwrap() {
-        add("/api/explain/{id}", format!("/api/explain/{}?vehicle={VEHICLE}", turn["turn_id"].as_str().unwrap()));
+        let id = turn["turn_id"].as_str().unwrap();
+        add("/api/explain/{id}", format!("/api/explain/{id}?vehicle={VEHICLE}"));
+        add("/api/explain/{id}/map.geojson", format!("/api/explain/{id}/map.geojson?vehicle={VEHICLE}"));
     }
     let place = |row: &netcert::rows::EdgeRow, at: usize| {
         let (lon, lat) = row.line[at].degrees();

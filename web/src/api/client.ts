@@ -8,6 +8,7 @@ import type {
   Region,
   RouteAnswer,
   SearchHit,
+  Shapes,
   StatsRows,
   Vehicle,
 } from "./types.ts";
@@ -53,6 +54,8 @@ export const api = {
   search: (q: string, signal?: AbortSignal) => get<SearchHit[]>("/api/search", { q }, signal),
   explain: (id: string, question: Question, signal?: AbortSignal) =>
     get<Explanation>(`/api/explain/${encodeURIComponent(id)}`, asked(question), signal),
+  shapes: (id: string, question: Question, signal?: AbortSignal) =>
+    get<Shapes>(`/api/explain/${encodeURIComponent(id)}/map.geojson`, asked(question), signal),
   pictureUrl: (id: string, question: Question) =>
     `/api/explain/${encodeURIComponent(id)}/picture.svg?${new URLSearchParams(asked(question))}`,
   route: (from: Position, to: Position, question: Question, signal?: AbortSignal) =>

@@ -79,7 +79,8 @@ export interface Explanation {
   reasons: string[];
   hints_in_words: string[];
   scope: string;
-  limiting: { length_m: number; rsc_m: number; place: { s_m: number; unit: number; side: string; width_m: number } } | null;
+  /** `rsc_m` is null if no bound holds, `width_m` where the area of a junction limits. */
+  limiting: { length_m: number; rsc_m: number | null; place: { s_m: number; unit: number; side: string; width_m: number | null } } | null;
   kind: "edge" | "turn";
   /** The roads of a turn. */
   turn?: string;
@@ -90,6 +91,24 @@ export interface Explanation {
   /** The place that decides, or the turn's node. */
   at: Position | null;
 }
+
+/** What a shape of an explanation shows. */
+export type Part = "area" | "strip" | "beyond" | "swept" | "path" | "body" | "tightest" | "hinge" | "line";
+
+export interface ShapeProperties {
+  part: Part;
+  turn_id?: string;
+  rsc_m: number | null;
+  /** The index of a unit and its name: of swept ground, of a body, or of the one that decides. */
+  unit?: number;
+  unit_name?: string | null;
+  side?: "left" | "right";
+  /** What the hinge has left of its limit; null if no bound holds. */
+  margin_deg?: number | null;
+}
+
+/** The shapes of an explanation, for the map. */
+export type Shapes = GeoJSON.FeatureCollection<GeoJSON.Geometry, ShapeProperties>;
 
 export interface RoutePart {
   kind: "edge" | "turn";

@@ -2,9 +2,10 @@
 
 import { Marker } from "maplibre-gl";
 import type { VehicleStats } from "../api/stats.ts";
-import type { Position } from "../api/types.ts";
+import type { Position, Shapes } from "../api/types.ts";
 import { question, vehicleOf, type Context } from "../context.ts";
 import { HoverCard } from "../map/hovercard.ts";
+import { ShapesLayer } from "../map/shapes.ts";
 import { sync } from "../map/sync.ts";
 import { View, type Under } from "../map/view.ts";
 import { VehicleCard } from "../panel/vehicle.ts";
@@ -31,6 +32,7 @@ export class Maps {
   readonly #root = byId("maps");
   readonly #hover: HoverCard;
   readonly #card: VehicleCard;
+  readonly #shapes: ShapesLayer;
   #limit: Marker | undefined;
   #outline: Position[] = [];
   #second: { view: View; stop: () => void; pane: HTMLElement } | undefined;
@@ -40,12 +42,14 @@ export class Maps {
     this.#card = new VehicleCard(actions.chooseOther);
     const pane = this.#root.appendChild(h("div", { class: "pane" }));
     this.first = this.#view(pane, context.store.state.vehicle);
+    this.#shapes = new ShapesLayer(this.first);
   }
 
   update(changed: ReadonlySet<keyof State>): void {
     const { store, theme } = this.context;
     const { state } = store;
     this.first.update(state, question(this.context), theme.theme);
+    this.#shapes.recolour(theme.theme);
     if (changed.has("other")) this.#compare(state.other);
     if (this.#second && state.other) {
       this.#second.view.update(state, { ...question(this.context), vehicle: state.other }, theme.theme);
@@ -95,6 +99,14 @@ export class Maps {
     if (!place) return;
     const element = h("div", { class: "limit", role: "img", "aria-label": "The place that decides" });
     this.#limit = new Marker({ element }).setLngLat(place).addTo(this.first.map);
+  }
+
+  /** Draws the shapes of an explanation, and moves the ring to its tightest place. Null removes them. */
+  shapes(shapes: Shapes | null): void {
+    this.#shapes.show(shapes, this.context.theme.theme);
+    const decides = shapes?.features.find(({ properties }) => properties.part === "hinge")
+      ?? shapes?.features.find(({ properties }) => properties.part === "tightest");
+    if (decides?.geometry.type === "Point") this.mark(decides.geometry.coordinates as Position);
   }
 
   /** Outlines the selected road, so that it can be seen at low zooms, too. */

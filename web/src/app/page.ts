@@ -46,6 +46,7 @@ export class Page {
     });
     this.#explain = new ExplainPanel({
       place: (explanation, goTo) => this.#place(explanation, goTo),
+      shapes: (shapes) => this.#maps.shapes(shapes),
       other: () => (store.state.other ? { ...question(context), vehicle: store.state.other } : null),
     });
     this.#routing = new Routing(context, this.#maps.first, this.#drawer);
@@ -191,8 +192,7 @@ export class Page {
       this.#drawer.show(this.#explain.element);
       void this.#explain.show(state.selected, question(this.context), goTo);
     } else {
-      this.#maps.mark(null);
-      this.#maps.outline([]);
+      this.#explain.end();
       if (!state.route) this.#drawer.hide();
     }
   }

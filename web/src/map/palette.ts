@@ -97,9 +97,11 @@ export const palettes: Record<Theme, Palette> = {
 };
 
 /** The colours that the style sheet uses, as custom properties. */
-export function properties({ room, missing, forbidden, unknown, units }: Palette): Record<string, string> {
+export function properties({ room, missing, forbidden, unknown, units, corridor, ink, route, routeCasing }: Palette): Record<string, string> {
   const numbered = units.map((colour, index) => [`--unit-${index}`, colour]);
-  return { "--safe": room[2], "--unsafe": missing[2], "--forbidden": forbidden, "--unknown": unknown, ...Object.fromEntries(numbered) };
+  const verdicts = { "--safe": room[2], "--unsafe": missing[2], "--forbidden": forbidden, "--unknown": unknown };
+  const shapes = { "--ground": corridor, "--edge": ink, "--path": route, "--path-casing": routeCasing };
+  return { ...verdicts, ...shapes, ...Object.fromEntries(numbered) };
 }
 
 /** The colour of each reason, by `verdict/reason`. */

@@ -1,15 +1,18 @@
 // The explanation of a road or turn: the server's sentences and scope, and the picture of the swept path.
 
 import { api, type Question } from "../api/client.ts";
-import type { Explanation, VerdictName } from "../api/types.ts";
+import type { Explanation, Shapes, VerdictName } from "../api/types.ts";
 import { h, prose } from "../ui/dom.ts";
 import { className, evidenceWords, margin, policyWords, reasonWords, title, verdictWords } from "../words.ts";
+import { labelled, mapKey } from "./mapkey.ts";
 import { Picture } from "./picture.ts";
 
 /** The functions of the page that the panel uses. */
 export interface Around {
   /** Marks the limiting place, and moves the map there if `goTo` is true. */
   place(explanation: Explanation | null, goTo: boolean): void;
+  /** Draws the shapes of an explanation on the map; null removes them. */
+  shapes(shapes: Shapes | null): void;
   /** The vehicle and policy of the other map, if there is one. */
   other(): Question | null;
 }
@@ -17,6 +20,8 @@ export interface Around {
 export class ExplainPanel {
   readonly element = h("div", { class: "explain" });
   readonly #picture = new Picture();
+  /** The place of the key to the shapes on the map. */
+  readonly #key = h("div", { class: "map-key" });
   #running: AbortController | undefined;
 
   constructor(private readonly around: Around) {}
@@ -26,6 +31,8 @@ export class ExplainPanel {
     this.#running?.abort();
     const running = (this.#running = new AbortController());
     this.around.place(null, false);
+    this.around.shapes(null);
+    this.#key.replaceChildren();
     this.element.replaceChildren(h("p", { class: "waiting" }, "Certifying again, to explain why …"));
     try {
       const other = this.around.other();
@@ -35,9 +42,29 @@ export class ExplainPanel {
       ]);
       this.element.replaceChildren(...this.#content(id, question, own, other && beside ? { other, beside } : null));
       this.around.place(own, goTo);
+      void this.#draw(id, question, running.signal);
     } catch (error) {
       if (running.signal.aborted) return;
       this.element.replaceChildren(h("h2", {}, "Nothing to explain"), h("p", { class: "problem", role: "alert" }, (error as Error).message));
+    }
+  }
+
+  /** Ends what is under way, because nothing is chosen any more. */
+  end(): void {
+    this.#running?.abort();
+    this.around.place(null, false);
+    this.around.shapes(null);
+  }
+
+  /** Draws the shapes on the map, and tells in the panel what they mean. */
+  async #draw(id: string, question: Question, signal: AbortSignal): Promise<void> {
+    try {
+      const shapes = await api.shapes(id, question, signal);
+      if (signal.aborted) return;
+      this.around.shapes(labelled(shapes));
+      this.#key.replaceChildren(...mapKey(shapes));
+    } catch {
+      // The explanation itself is there; the map stays as it is.
     }
   }
 
@@ -56,7 +83,7 @@ export class ExplainPanel {
       const alt = `The swept path where it is tightest: ${own.headline}`;
       nodes.push(this.#picture.show(api.pictureUrl(id, question), alt, this.#running!.signal));
     }
-    nodes.push(list("What decides", own.reasons), list("What would do", own.hints_in_words));
+    nodes.push(this.#key, list("What decides", own.reasons), list("What would do", own.hints_in_words));
     if (road) nodes.push(width(own), h("p", { class: "ids" }, "Edge ", h("code", {}, road.edge_id)));
     nodes.push(h("p", { class: "scope" }, prose([own.note, own.scope].filter(Boolean).join(" "))));
     return nodes;
@@ -66,7 +93,8 @@ export class ExplainPanel {
 /** The verdict as a label, the number, and the server's sentence. */
 function verdict(e: Explanation): Node[] {
   const decided = (e.verdict === "safe" || e.verdict === "unsafe") && e.limiting !== null && e.reason !== "articulation" && e.reason !== "steering_lock";
-  const number = decided && e.limiting ? margin(e.limiting.rsc_m) : reasonWords(e.verdict, e.reason);
+  const unbounded = e.verdict === "unsafe" && e.limiting !== null && e.limiting.rsc_m === null;
+  const number = unbounded ? "Too sharp a bend" : decided && e.limiting ? margin(e.limiting.rsc_m ?? -Infinity) : reasonWords(e.verdict, e.reason);
   return [
     h(
       "div",
@@ -92,7 +120,8 @@ function list(heading: string, items: string[]): Node {
 function width(e: Explanation): Node {
   if (!e.road) return document.createTextNode("");
   const source = evidenceWords[e.road.width_source ?? "none"].toLowerCase();
-  const metres = e.limiting ? `${e.limiting.place.width_m.toFixed(2)} m where it is tightest, ` : "";
+  const width_m = e.limiting?.place.width_m;
+  const metres = typeof width_m === "number" ? `${width_m.toFixed(2)} m where it is tightest, ` : "";
   const row = (name: string, value: string) => h("div", {}, h("dt", {}, name), h("dd", {}, value));
   return h(
     "dl",
