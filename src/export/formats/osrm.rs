@@ -11,7 +11,7 @@
 use std::io::Write as _;
 
 use osmpbfreader::osmformat::PrimitiveBlock;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{Options, Target};
 use crate::export::sorter::Scratch;
@@ -47,10 +47,10 @@ impl Target for Osrm {
 
     fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
         let ends = Ends::new(place.scratch(".ends")?);
-        let meeting = refused_at(source)?;
+        let stopped = stopped(source)?;
         let speeds = place.create("segment-speeds.csv")?;
         let turns = place.create("turn-penalties.csv")?;
-        let mut tables = Tables { source, speeds, turns, ends, meeting, unclear: 0 };
+        let mut tables = Tables { source, speeds, turns, ends, stopped, unclear: 0 };
         tables.ways()?;
         tables.turns()?;
         if tables.unclear > 0 {
@@ -67,22 +67,32 @@ struct Tables<'s, 'r> {
     speeds: Sink,
     turns: Sink,
     ends: Ends,
-    /// By node of a refused turn: how many ends of pieces meet there.
-    meeting: FxHashMap<i64, u32>,
+    /// Edges whose last segment is closed, because the only way on is refused.
+    stopped: FxHashSet<u32>,
     unclear: u64,
 }
 
-/// The nodes of all refused turns.
-fn refused_at(source: &Source<'_>) -> Result<FxHashMap<i64, u32>, ExportError> {
+/// The edges from which the only way on is a refused turn: nothing else meets where they end.
+fn stopped(source: &Source<'_>) -> Result<FxHashSet<u32>, ExportError> {
+    let (vehicle, policy) = (&source.ask.vehicle, source.ask.policy);
     let mut database = source.database()?;
-    let mut nodes = FxHashMap::default();
-    for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
+    let mut refused: Vec<(u32, i64)> = Vec::new();
+    for step in source.told(database.turn_steps(vehicle, policy)?) {
         let step = step?;
-        if source.refuses_turn(&step) {
-            nodes.insert(step.via_node, 0);
+        refused.extend(source.refuses_turn(&step).then_some((step.from, step.via_node)));
+    }
+    // How many ends of pieces meet at each of these nodes. Both edges of a piece come one after the other.
+    let mut meeting: FxHashMap<i64, u32> = refused.iter().map(|&(_, node)| (node, 0)).collect();
+    let mut piece = None;
+    for row in source.told(database.edge_steps(vehicle, policy)?) {
+        let row = row?;
+        if piece.replace(row.shape_start) != Some(row.shape_start) {
+            for node in [row.from_node, row.to_node] {
+                meeting.entry(node).and_modify(|ends| *ends += 1);
+            }
         }
     }
-    Ok(nodes)
+    Ok(refused.into_iter().filter(|(_, node)| meeting.get(node) == Some(&2)).map(|(edge, _)| edge).collect())
 }
 
 impl Tables<'_, '_> {
@@ -132,9 +142,6 @@ impl Tables<'_, '_> {
             let permitted = edges.map(|edge| edge.is_some_and(|edge| self.source.permitted.edges.get(edge)));
             self.close(refs, first, last, permitted.map(|yes| !yes))?;
             let node = |place: usize| refs.get(place).copied().unwrap_or_default();
-            for end in [node(first), node(last)] {
-                self.meeting.entry(end).and_modify(|ends| *ends += 1);
-            }
             // The nearest different node at each end, because adjacent repetitions of a node count as one.
             let after = (first..last).map(|i| node(i + 1)).find(|&id| id != node(first)).unwrap_or_default();
             let before = (first..last).rev().map(node).find(|&id| id != node(last)).unwrap_or_default();
@@ -145,9 +152,16 @@ impl Tables<'_, '_> {
                     self.ends.push(edge, [second, last_but_one, end])?;
                 }
             }
-            if permitted == [true; 2] {
-                self.penalise(before, node(last), before)?;
-                self.penalise(after, node(first), after)?;
+            let stops = edges.map(|edge| edge.is_some_and(|edge| self.stopped.contains(&edge)));
+            let ends = [[before, node(last)], [after, node(first)]];
+            for (end, [from, via]) in ends.into_iter().enumerate() {
+                // Of a single segment the way back may be closed.
+                let back = !(stops[1 - end] && ends[1 - end] == [via, from]);
+                if stops[end] {
+                    writeln!(self.speeds, "{from},{via},0")?;
+                } else if permitted == [true; 2] && back {
+                    self.penalise(from, via, from)?;
+                }
             }
         }
         self.close(refs, done, refs.len().saturating_sub(1), [true; 2])
@@ -188,12 +202,10 @@ impl Tables<'_, '_> {
     }
 
     fn refuse(&mut self, from: u32, to: u32) -> Result<(), ExportError> {
-        let ([_, before, via], [after, ..]) = (self.ends.get(from)?, self.ends.get(to)?);
-        if before == 0 || after == 0 {
+        let ([_, before, via], [after, _, end]) = (self.ends.get(from)?, self.ends.get(to)?);
+        let closed = self.stopped.contains(&from) || (self.stopped.contains(&to) && after == end);
+        if before == 0 || after == 0 || closed {
             return Ok(());
-        }
-        if self.meeting.get(&via) == Some(&2) {
-            return Ok(writeln!(self.speeds, "{before},{via},0")?);
         }
         self.penalise(before, via, after)
     }
