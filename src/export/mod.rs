@@ -12,6 +12,7 @@
 //! | `header` | the header of every output |
 //! | `source` | rows from the database, each with its permit |
 //! | `rings` | the arcs of a passage |
+//! | `corners` | edges before a refused corner of a road |
 //! | `sequences` | sequences of permitted edges that may not be driven |
 //! | `ways` | the extract's ways beside the network's edges |
 //! | `destination` | the output: a file, a folder or a stream |
@@ -22,6 +23,7 @@
 //! An export does not certify whole routes. An engine joins edges and turns that are each safe by themselves; only `netcert
 //! route` certifies the whole.
 
+mod corners;
 mod destination;
 mod error;
 pub mod formats;

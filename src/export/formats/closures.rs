@@ -1,7 +1,8 @@
 //! Small rectangles across refused roads, for engines that avoid areas.
 //!
 //! Every refused stretch between two junctions gets one rectangle, on its longest straight, so that the rectangle meets no other
-//! road. An area has no direction, so a stretch that is refused in one direction is closed in both. An area cannot express a turn.
+//! road. An area has no direction, so a stretch that is refused in one direction is closed in both. An area cannot express a turn. A
+//! stretch that leads only to a refused corner of the road is closed instead.
 
 use std::io::{self, Write};
 
@@ -25,7 +26,7 @@ pub(super) type Ring = [LonLat; 5];
 pub(super) struct Closed {
     /// Number of closed stretches.
     pub(super) stretches: u64,
-    /// Number of closed stretches with one permitted direction.
+    /// Number of closed stretches with a permitted direction.
     pub(super) too_much: u64,
 }
 
@@ -34,8 +35,8 @@ impl Closed {
     pub(super) fn note(self) -> String {
         let Self { stretches, too_much } = self;
         format!(
-            "{stretches} stretches are closed, {too_much} of them permitted in one direction (an area has no direction); areas \
-             cannot express refused turns"
+            "{stretches} stretches are closed, {too_much} of them permitted in a direction (an area has no direction, and a stretch \
+             before a refused corner is closed); areas cannot express refused turns"
         )
     }
 }
@@ -55,20 +56,22 @@ pub(super) fn each(
         }
         Ok(())
     };
+    let stopped = source.stopped()?;
     let mut database = source.database()?;
-    for edge in source.edges(&mut database)? {
+    for (index, edge) in (0_u32..).zip(source.edges(&mut database)?) {
         let edge = edge?;
-        let refused = edge.refusal.is_some();
+        let permitted = edge.refusal.is_none();
+        let refused = !permitted || stopped.contains(&index);
         // The two directions of a stretch are successive edges.
         if let Some(stretch) = &mut last
             && stretch.way_id == edge.row.way_id
             && stretch.line.iter().rev().eq(&edge.row.line)
         {
             stretch.refused |= refused;
-            stretch.permitted |= !refused;
+            stretch.permitted |= permitted;
             continue;
         }
-        let stretch = Stretch { way_id: edge.row.way_id, line: edge.row.line, refused, permitted: !refused };
+        let stretch = Stretch { way_id: edge.row.way_id, line: edge.row.line, refused, permitted };
         if let Some(done) = last.replace(stretch) {
             end(done)?;
         }

@@ -11,7 +11,7 @@
 use std::io::Write as _;
 
 use osmpbfreader::osmformat::PrimitiveBlock;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashSet;
 
 use super::{Options, Target};
 use crate::export::sorter::Scratch;
@@ -47,7 +47,7 @@ impl Target for Osrm {
 
     fn write(&self, source: &Source<'_>, _: &Options, place: &mut Place) -> Result<(), ExportError> {
         let ends = Ends::new(place.scratch(".ends")?);
-        let stopped = stopped(source)?;
+        let stopped = source.stopped()?;
         let speeds = place.create("segment-speeds.csv")?;
         let turns = place.create("turn-penalties.csv")?;
         let mut tables = Tables { source, speeds, turns, ends, stopped, unclear: 0 };
@@ -70,29 +70,6 @@ struct Tables<'s, 'r> {
     /// Edges whose last segment is closed, because the only way on is refused.
     stopped: FxHashSet<u32>,
     unclear: u64,
-}
-
-/// The edges from which the only way on is a refused turn: nothing else meets where they end.
-fn stopped(source: &Source<'_>) -> Result<FxHashSet<u32>, ExportError> {
-    let (vehicle, policy) = (&source.ask.vehicle, source.ask.policy);
-    let mut database = source.database()?;
-    let mut refused: Vec<(u32, i64)> = Vec::new();
-    for step in source.told(database.turn_steps(vehicle, policy)?) {
-        let step = step?;
-        refused.extend(source.refuses_turn(&step).then_some((step.from, step.via_node)));
-    }
-    // How many ends of pieces meet at each of these nodes. Both edges of a piece come one after the other.
-    let mut meeting: FxHashMap<i64, u32> = refused.iter().map(|&(_, node)| (node, 0)).collect();
-    let mut piece = None;
-    for row in source.told(database.edge_steps(vehicle, policy)?) {
-        let row = row?;
-        if piece.replace(row.shape_start) != Some(row.shape_start) {
-            for node in [row.from_node, row.to_node] {
-                meeting.entry(node).and_modify(|ends| *ends += 1);
-            }
-        }
-    }
-    Ok(refused.into_iter().filter(|(_, node)| meeting.get(node) == Some(&2)).map(|(edge, _)| edge).collect())
 }
 
 impl Tables<'_, '_> {
