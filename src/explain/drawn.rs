@@ -85,7 +85,8 @@ impl Drawn {
 
 impl Motion {
     fn of(e: &Explanation, g: &Geometry, heads: &Range<usize>, stop: &Stop) -> Result<Self, Stopped> {
-        let path = g.certificate.plan.get(g.span.clone()).unwrap_or_default().to_vec();
+        let path = LineString::from(g.certificate.plan.get(g.span.clone()).unwrap_or_default().to_vec());
+        let path = path.simplify(STRAIGHT_M).coords().map(|c| [c.x, c.y]).collect();
         let poses = if e.hinge_decides() { &g.hinge.poses } else { &g.place.poses };
         Ok(Self { path, swept: swept(&e.vehicle, &g.ride, heads, stop)?, poses: poses.clone() })
     }

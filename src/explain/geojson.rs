@@ -76,7 +76,7 @@ impl Writer<'_> {
     /// All features. Without a corridor there is only the map's line.
     fn features(&self, drawn: Option<&Drawn>, line: &[LonLat]) -> Result<Vec<Value>, FrameError> {
         let Some(drawn) = drawn else {
-            let line: Vec<[f64; 2]> = line.iter().map(|place| place.degrees().into()).collect();
+            let line: Vec<[f64; 2]> = line.iter().map(|place| rounded(place.degrees().into())).collect();
             let geometry = json!({"type": "LineString", "coordinates": line});
             return Ok(if line.len() > 1 { vec![self.feature("line", &geometry, &[])] } else { Vec::new() });
         };
@@ -202,13 +202,14 @@ fn point(frame: Frame, place: [f64; 2]) -> Result<Value, FrameError> {
     Ok(json!({"type": "Point", "coordinates": degrees(frame, &[place])?.first()}))
 }
 
-/// Longitudes and latitudes with the seven decimals of OpenStreetMap, without repeated places.
+/// A position with the seven decimals of OpenStreetMap.
+fn rounded(place: [f64; 2]) -> [f64; 2] {
+    place.map(|degrees| (degrees * PARTS).round() / PARTS)
+}
+
+/// Rounded positions of places in the frame, without repeated ones.
 fn degrees(frame: Frame, places: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, FrameError> {
-    let mut out: Vec<[f64; 2]> = frame
-        .inverse(places)?
-        .into_iter()
-        .map(|place| place.map(|degrees| (degrees * PARTS).round() / PARTS))
-        .collect();
+    let mut out: Vec<[f64; 2]> = frame.inverse(places)?.into_iter().map(rounded).collect();
     out.dedup();
     Ok(out)
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use geo::{Area as _, BooleanOps as _, ConvexHull as _, MultiPoint, MultiPolygon, Polygon, Simplify as _};
+use geo::{Area as _, BooleanOps as _, Buffer as _, ConvexHull as _, MultiPoint, MultiPolygon, Polygon, Simplify as _};
 
 use super::ride::Ride;
 use crate::stet::motion::Pose;
@@ -21,6 +21,8 @@ const TURNED_RAD: f64 = 0.012;
 const STRAIGHT_M: f64 = 0.01;
 /// The same while shapes are united, metres.
 const NEARLY_STRAIGHT_M: f64 = 5e-4;
+/// Half the width of cracks that are closed and of spikes that are cut off, metres. In rounded positions their sides would cross.
+const THIN_M: f64 = 0.02;
 /// Smaller gaps between two moments are closed, square metres.
 const GAP_M2: f64 = 0.05;
 
@@ -75,7 +77,7 @@ fn one(unit: &Unit, poses: &[Pose]) -> MultiPolygon {
             parts.push(hull(&[pair[0][left], pair[0][right], pair[1][left], pair[1][right]]));
         }
     }
-    let whole = united(parts).simplify(STRAIGHT_M);
+    let whole = united(parts).buffer(THIN_M).buffer(-2.0 * THIN_M).buffer(THIN_M).simplify(STRAIGHT_M);
     let closed = |polygon: Polygon| {
         let (exterior, mut holes) = polygon.into_inner();
         holes.retain(|hole| Polygon::new(hole.clone(), Vec::new()).unsigned_area() >= GAP_M2);

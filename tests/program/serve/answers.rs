@@ -120,7 +120,7 @@ fn the_shapes_of_an_explanation_are_those_of_the_verb() {
     let server = Server::demo();
     let rows = server.place.rows(VEHICLE);
     let mut ids: Vec<String> = Vec::new();
-    for wanted in ["safe", "unsafe", "unknown"] {
+    for wanted in ["safe", "unsafe", "forbidden"] {
         let row = rows.iter().find(|row| verdict_words(row.certificate.verdict).0 == wanted).unwrap();
         ids.push(row.edge_id.to_string());
     }
