@@ -5,6 +5,7 @@ use std::io::Write;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use netcert::network::Network;
+use netcert::osm::rounded;
 use netcert::route::{self, Measure, PartKind, Position, Reach as Found, Snapper};
 use serde_json::{Value, json};
 
@@ -159,9 +160,4 @@ fn geojson(inputs: &RoutingInputs, now: &Found, opened: Option<&Found>, componen
         }));
     }
     json!({"type": "FeatureCollection", "features": features})
-}
-
-/// Rounds to 1e-7 degree, the precision of OpenStreetMap.
-fn rounded([lon, lat]: [f64; 2]) -> [f64; 2] {
-    [lon, lat].map(|degrees| (degrees * 1e7).round() / 1e7)
 }

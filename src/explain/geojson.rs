@@ -11,16 +11,13 @@ use super::drawn::{Drawn, Motion};
 use super::json::{body_part, json as answer};
 use super::{Explanation, Geometry, TurnExplanation};
 use crate::corridor::{Frame, FrameError};
-use crate::osm::LonLat;
+use crate::osm::{LonLat, rounded};
 use crate::stop::{Stop, Stopped};
 use crate::words::{Named as _, verdict_words};
 
 /// What every explanation of a turn adds to its scope.
 pub const TURN_NOTE: &str = "The turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii are \
                              assumed where no surface is mapped.";
-
-/// Parts of a degree that are kept, as in OpenStreetMap.
-const PARTS: f64 = 1e7;
 
 /// Why an explanation cannot be drawn on a map.
 #[derive(Debug, thiserror::Error)]
@@ -200,11 +197,6 @@ fn polygons(frame: Frame, shape: &MultiPolygon) -> Result<std::option::IntoIter<
 
 fn point(frame: Frame, place: [f64; 2]) -> Result<Value, FrameError> {
     Ok(json!({"type": "Point", "coordinates": degrees(frame, &[place])?.first()}))
-}
-
-/// A position with the seven decimals of OpenStreetMap.
-fn rounded(place: [f64; 2]) -> [f64; 2] {
-    place.map(|degrees| (degrees * PARTS).round() / PARTS)
 }
 
 /// Rounded positions of places in the frame, without repeated ones.

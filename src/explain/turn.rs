@@ -97,7 +97,7 @@ pub fn explain_turn(
     if let (Ok(_), Verdict::Unsafe(_)) = (&made, verdict)
         && geometry.as_ref().is_none_or(|geometry| !geometry.result.closes())
     {
-        let safe = |model: &Model| certified_safe(network, facts, model, settings);
+        let safe = |model: &Model| is_safe(network, facts, model, settings, &settings.turn_params());
         hints.shorter = no_bound::shorter(&vehicle, &safe, stop)?;
     }
     let (named, conflict) = roads_that_decide(network, facts, model, settings, verdict, stop)?;
@@ -134,14 +134,10 @@ fn kerb(
     settings: &Settings,
     (radius_m, stop): (f64, &Stop),
 ) -> Result<KerbHint, Stopped> {
-    let Some(reach) = Reach::of(&model.vehicle) else { return Ok(KerbHint::NotUpTo(MOST_KERB_M)) };
     let safe_with = |steps: u32| -> Result<bool, Stopped> {
         stop.check()?;
         let kerbs = Kerbs::everywhere(f64::from(steps) * KERB_STEP_M);
-        let params = TurnParams { kerbs, ..settings.turn_params() };
-        let made = corridors_of(network, facts, settings.policy, &params, reach).ok();
-        let best = made.and_then(|made| best_of(&made, &[model], &settings.stet).pop().flatten());
-        Ok(best.is_some_and(|(_, result)| result.safe()))
+        Ok(is_safe(network, facts, model, settings, &TurnParams { kerbs, ..settings.turn_params() }))
     };
     let (mut fails, mut does) = ((radius_m / KERB_STEP_M) as u32, (MOST_KERB_M / KERB_STEP_M) as u32);
     if fails >= does || !safe_with(does)? {
@@ -155,9 +151,9 @@ fn kerb(
 }
 
 /// Whether the turn is safe for a vehicle, on the best of its own paths.
-fn certified_safe(network: &Network, facts: &TurnFacts, model: &Model, settings: &Settings) -> bool {
+fn is_safe(network: &Network, facts: &TurnFacts, model: &Model, settings: &Settings, params: &TurnParams) -> bool {
     let Some(reach) = Reach::of(&model.vehicle) else { return false };
-    let made = corridors_of(network, facts, settings.policy, &settings.turn_params(), reach).ok();
+    let made = corridors_of(network, facts, settings.policy, params, reach).ok();
     let best = made.and_then(|made| best_of(&made, &[model], &settings.stet).pop().flatten());
     best.is_some_and(|(_, result)| result.safe())
 }
@@ -184,7 +180,7 @@ fn roads_that_decide(
             named.decides = Some(title(network, edge));
             conflict = Conflict::of(edge, &model.vehicle);
         }
-        // The arcs of a roundabout need no certificates of their own.
+        // The edges that a passage leads over need no certificates of their own.
         let ends = [facts.movement.from, facts.movement.to].contains(&index);
         if ends && verdict != Verdict::Safe && matches!(own, Verdict::Safe | Verdict::Unsafe(_)) {
             named.refused.push((format!("{} (edge {})", title(network, edge), edge.id), verdict));
@@ -219,13 +215,12 @@ impl TurnExplanation {
     pub fn title(&self) -> String {
         let [from, to] = &self.roads;
         let count = self.facts.through.len();
-        let (one, more) = (count == 1, if count == 1 { "" } else { "s" });
         match self.passage {
-            Some(PassageKind::Roundabout) => return format!("{from} → {to}: over a roundabout, {count} arc{more}"),
-            Some(PassageKind::Complex) => {
-                let lie = if one { "lies" } else { "lie" };
-                return format!("{from} → {to}: over {} nodes, {count} edge{more} {lie} between", count + 1);
+            Some(PassageKind::Roundabout) => {
+                let arcs = if count == 1 { "arc" } else { "arcs" };
+                return format!("{from} → {to}: over a roundabout, {count} {arcs}");
             }
+            Some(PassageKind::Complex) => return format!("{from} → {to}: one movement over {} nodes", count + 1),
             None => {}
         }
         let angle = self.facts.angle_deg;

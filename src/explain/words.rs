@@ -201,12 +201,17 @@ fn hinge_reason(vehicle: &Vehicle, g: &Geometry, margin_rad: f64) -> String {
     )
 }
 
+/// The road that decides a turn's verdict, to be appended to a sentence.
+fn on_road(e: &Explanation) -> String {
+    let road = e.turn.as_ref().and_then(|turn| turn.decides.as_ref());
+    road.map_or(String::new(), |road| format!(", on {road}"))
+}
+
 fn forbidden(e: &Explanation, reason: ForbiddenReason) -> String {
     if reason == ForbiddenReason::Restriction {
         return "forbidden: a restriction on the map bans this turn".to_owned();
     }
-    let on =
-        e.turn.as_ref().and_then(|turn| turn.decides.as_ref()).map_or(String::new(), |road| format!(", on {road}"));
+    let on = on_road(e);
     let Some(c) = &e.conflict else {
         return format!("forbidden: {}{on}", verdict_words(e.verdict).1.replace('_', " "));
     };
@@ -233,8 +238,7 @@ fn forbidden(e: &Explanation, reason: ForbiddenReason) -> String {
 }
 
 fn unknown(e: &Explanation, reason: UnknownReason) -> String {
-    let on =
-        e.turn.as_ref().and_then(|turn| turn.decides.as_ref()).map_or(String::new(), |road| format!(", on {road}"));
+    let on = on_road(e);
     let said = match (reason, &e.conflict) {
         (UnknownReason::Width, _) => format!("unknown: no width of the {} can be derived", e.strip_name()),
         (UnknownReason::Geometry, _) => {

@@ -11,7 +11,7 @@
 //! | `permit` | the rule, and the edges and turns that it permits |
 //! | `header` | the header of every output |
 //! | `source` | rows from the database, each with its permit |
-//! | `rings` | the arcs of a passage |
+//! | `rings` | the edges that a passage leads over |
 //! | `corners` | edges before a refused corner of a road |
 //! | `sequences` | sequences of permitted edges that may not be driven |
 //! | `ways` | the extract's ways beside the network's edges |

@@ -77,12 +77,11 @@ impl Network {
             .filter(|&to| kind(last, to) == MovementKind::Turn && !nodes.contains(&self.edges[to as usize].to_node));
         let exits: Vec<u32> = exits.collect();
         let mut ways = Vec::new();
-        for &from in entries {
+        let ends = self.edges[last as usize].to_node;
+        for &from in entries.iter().filter(|&&from| self.edges[from as usize].from_node != ends) {
             let before = &self.edges[from as usize];
-            let back = self.edges[last as usize].to_node == before.from_node;
-            let goes = |to: &&u32| {
-                !back && self.deflection_over_deg(before, &self.edges[**to as usize], HEADING_M) <= U_TURN_DEG
-            };
+            let goes =
+                |to: &&u32| self.deflection_over_deg(before, &self.edges[**to as usize], HEADING_M) <= U_TURN_DEG;
             ways.extend(exits.iter().filter(goes).map(|&to| (from, inside.to_vec(), to)));
         }
         ways

@@ -6,17 +6,12 @@ use super::geometry::{chord_deg, deflection_deg, offset_m};
 use crate::osm::LonLat;
 
 /// Length of line at which the directions beside a vertex are taken, metres. It passes over steps that smoothing takes out.
-const REACH_M: f64 = 2.5;
+pub(super) const REACH_M: f64 = 2.5;
 /// Least turn at a sharp corner, degrees. Smoothing rounds such a corner to a radius of some metres, if at all. No lorry steers
 /// through that: of the corners above it in five extracts, two were on edges that were safe for a lorry.
 const SHARP_DEG: f64 = 60.0;
 
-/// Turn of the line at a vertex, degrees, 0..=180. `back` and `ahead` are the line to both sides, from the vertex outwards.
-pub(super) fn corner_deg(back: impl Iterator<Item = LonLat>, ahead: impl Iterator<Item = LonLat>) -> f64 {
-    deflection_deg(chord_deg(back, REACH_M), chord_deg(ahead, REACH_M))
-}
-
-/// Whether a turn of the line is a sharp corner.
+/// Whether a turn of the line is a sharp corner. Its directions are those of chords of [`REACH_M`].
 pub(super) fn is_sharp(corner_deg: f64) -> bool {
     corner_deg >= SHARP_DEG
 }
@@ -24,7 +19,9 @@ pub(super) fn is_sharp(corner_deg: f64) -> bool {
 /// Whether a way is cut at an inner vertex of its line. Of several sharp corners within reach of each other only the sharpest
 /// one is cut: they are one corner with a short side.
 pub(super) fn cuts(line: &[u32], at: usize, place: &impl Fn(u32) -> LonLat) -> bool {
-    let corner = |i: usize| corner_deg(line[..=i].iter().rev().map(|&v| place(v)), line[i..].iter().map(|&v| place(v)));
+    let back_deg = |i: usize| chord_deg(line[..=i].iter().rev().map(|&v| place(v)), REACH_M);
+    let ahead_deg = |i: usize| chord_deg(line[i..].iter().map(|&v| place(v)), REACH_M);
+    let corner = |i: usize| deflection_deg(back_deg(i), ahead_deg(i));
     let own_deg = corner(at);
     if !is_sharp(own_deg) {
         return false;

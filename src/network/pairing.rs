@@ -2,13 +2,13 @@
 //! continuation. The result depends neither on the order of the edges nor on the ways' own directions.
 //!
 //! A road that becomes narrow ends where other roads meet it. A vehicle that turns off there need not fit the narrow part. The way
-//! on is a movement with a certificate of its own, so the edge beyond does not have it as its approach. So it is at a sharp corner.
+//! on is a movement with a certificate of its own, so the edge beyond does not have it as its approach. At a sharp corner the road ends, too.
 
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
-use super::corners::{corner_deg, is_sharp};
+use super::corners::{REACH_M, is_sharp};
 use super::geometry::Geometry;
 use super::{Edge, Network, Road, StrokeOptions, reverse};
 use crate::osm::LonLat;
@@ -224,8 +224,8 @@ impl<'n> Junction<'n> {
 
     /// Whether the pair is a corner that no smoothed line rounds. The way round is a turn. A ring goes on, however it is drawn.
     fn turns_sharply(&self, a: &End, b: &End) -> bool {
-        let line = |end: &End| self.network.positions(self.edge(end.edge));
-        !self.road(a.edge).roundabout && is_sharp(corner_deg(line(a).rev(), line(b)))
+        let corner_deg = || self.network.deflection_over_deg(self.edge(a.edge), self.edge(b.edge), REACH_M);
+        !self.road(a.edge).roundabout && is_sharp(corner_deg())
     }
 
     fn candidate(&self, a: &End, b: &End, cost_deg: f64) -> Candidate {

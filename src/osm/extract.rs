@@ -21,6 +21,12 @@ impl LonLat {
     }
 }
 
+/// Rounds longitude and latitude in degrees to the map's precision, 1e-7 degree (about a centimetre).
+#[must_use]
+pub fn rounded(degrees: [f64; 2]) -> [f64; 2] {
+    degrees.map(|degrees| (degrees * 1e7).round() / 1e7)
+}
+
 /// A drivable way: its facts, and its node references in [`Extract::refs`]. There are at least two references, and
 /// consecutive ones differ.
 #[derive(Debug, Clone)]

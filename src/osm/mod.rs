@@ -7,4 +7,4 @@ mod extract;
 pub mod facts;
 pub mod pbf;
 
-pub use extract::{Extract, LonLat, NodeTable, Restriction, RoadArea, StringId, StringPool, Via, Way};
+pub use extract::{Extract, LonLat, NodeTable, Restriction, RoadArea, StringId, StringPool, Via, Way, rounded};

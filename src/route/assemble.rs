@@ -293,7 +293,7 @@ impl Leg {
             to = to.max((from + if before.is_none() { LEAST_STATIONS } else { 0 }).min(last_station));
         }
         let (low, high) = (from.min(to), from.max(to).min(last_station));
-        let mut samples = samples(corridor, low..high + 1, line.frame, frame)?;
+        let mut samples = samples(corridor, low..high + 1, line.made.frame, frame)?;
         // As in the turns' own certificates, their strip counts before and after them.
         let strip = strokes.turn_params().strip.max(strokes.settings().policy);
         let metres = |stations: usize| stations as f64 * corridor.spacing_m;

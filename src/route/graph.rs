@@ -1,5 +1,5 @@
 //! The edge-based graph. Its states are edges that were driven to their end, and places in forbidden sequences. Its steps are
-//! movements and passages of roundabouts.
+//! movements and passages.
 //!
 //! A separate [`Access`] says what a vehicle may use, so the same search can also find what blocks a vehicle.
 

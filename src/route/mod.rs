@@ -10,7 +10,7 @@
 //! | `bans` | restrictions over ways, as an automaton |
 //! | `permits`, `stored` | what a vehicle may use |
 //! | `roads`, `driver` | what planners share: the roads, and a vehicle with its permits |
-//! | `graph` | edges, movements and passages of roundabouts as a graph |
+//! | `graph` | edges, movements and passages as a graph |
 //! | `drive` | the edges of a way, and the arcs of passages among them |
 //! | `search` | the shortest way |
 //! | `snap` | the nearest point on a road to a place |

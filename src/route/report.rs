@@ -9,6 +9,7 @@ use super::obstacles::{Obstacle, Refutation};
 use super::plan::{Answer, Route};
 use crate::corridor::FrameError;
 use crate::network::{Edge, Network, PassageKind};
+use crate::osm::rounded;
 use crate::stet::{Model, known_m};
 use crate::words::{Named, verdict_words};
 
@@ -225,9 +226,4 @@ pub fn geojson(network: &Network, model: &Model, answer: &Answer) -> Result<Valu
         }));
     }
     Ok(json!({"type": "FeatureCollection", "features": features}))
-}
-
-/// Rounds to 1e-7 degree (about a centimetre), the precision of OpenStreetMap.
-fn rounded([lon, lat]: [f64; 2]) -> [f64; 2] {
-    [lon, lat].map(|degrees| (degrees * 1e7).round() / 1e7)
 }

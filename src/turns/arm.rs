@@ -7,8 +7,7 @@
 use super::Reach;
 use super::path::{Pose, hermite};
 use crate::corridor::{Corridor, Frame, Params, StrokeCorridor, TaperCause, stroke_corridor};
-use crate::network::{Network, Stroke};
-use crate::osm::LonLat;
+use crate::network::Network;
 use crate::osm::facts::{CrossSection, Direction, Policy, Strip};
 use crate::verdict::UnknownReason;
 
@@ -26,8 +25,6 @@ pub(super) type Across = [f64; 2];
 pub struct StrokeLine {
     /// Index into `Network::strokes`.
     pub stroke: u32,
-    /// Frame of the corridor's positions.
-    pub frame: Frame,
     /// The corridor by which the stroke's edges are certified.
     pub made: StrokeCorridor,
     pub(super) closed: bool,
@@ -44,7 +41,6 @@ impl StrokeLine {
     pub fn new(network: &Network, stroke: u32, policy: Policy, params: &Params) -> Result<Self, UnknownReason> {
         let facts = network.strokes.get(stroke as usize).ok_or(UnknownReason::Geometry)?;
         let made = stroke_corridor(network, facts, policy, params)?;
-        let frame = frame(network, facts).ok_or(UnknownReason::Geometry)?;
         let c = &made.corridor;
         let own: Vec<Across> = c.left_m.iter().zip(&c.right_m).map(|(l, r)| [*l, -*r]).collect();
         let (mut direction, mut carriageway) = (own.clone(), own.clone());
@@ -58,7 +54,7 @@ impl StrokeLine {
             }
         }
         keep_to_tapers(&made, &mut [&mut direction, &mut carriageway]);
-        Ok(Self { stroke, frame, made, closed: facts.closed, direction, carriageway })
+        Ok(Self { stroke, made, closed: facts.closed, direction, carriageway })
     }
 
     /// Half-widths at a station of the stroke, left and right: the corridor's own, and of what `strip` has beyond them the
@@ -118,17 +114,6 @@ fn keep_to_tapers(made: &StrokeCorridor, wider: &mut [&mut Vec<Across>; 2]) {
             }
         }
     }
-}
-
-/// The frame that `stroke_corridor` uses for a stroke.
-fn frame(network: &Network, stroke: &Stroke) -> Option<Frame> {
-    let range = |r: &std::ops::Range<u32>| network.stroke_edges.get(r.start as usize..r.end as usize);
-    let (approach, edges) = (range(&stroke.approach)?, range(&stroke.edges)?);
-    let mut positions: Vec<LonLat> = Vec::new();
-    for &edge in approach.iter().chain(edges) {
-        positions.extend(network.positions(network.edges.get(edge as usize)?));
-    }
-    Frame::around(&positions).ok()
 }
 
 /// Stations of a stroke around a node, in the frame of the turn.
@@ -214,8 +199,8 @@ impl Arm {
             right_m: cut(&c.right_m),
             areas: Vec::new(),
         };
-        if line.frame != frame {
-            carry_over(&mut window, line.frame, frame).ok_or(UnknownReason::Geometry)?;
+        if line.made.frame != frame {
+            carry_over(&mut window, line.made.frame, frame).ok_or(UnknownReason::Geometry)?;
         }
         let own = begins.max(first) - first..end - first;
         Ok(Self {

@@ -34,7 +34,7 @@ impl Complex {
         params: &TurnParams,
         reach: Reach,
     ) -> Result<Self, UnknownReason> {
-        let frame = line(movement.from)?.frame;
+        let frame = line(movement.from)?.made.frame;
         let way: Vec<u32> = [&[movement.from], through, &[movement.to]].concat();
         let mut turns = Vec::new();
         for &[from, to] in way.array_windows() {

@@ -242,7 +242,7 @@ pub fn turn_on<'l>(
     reach: Reach,
 ) -> Result<TurnCorridors, UnknownReason> {
     let (from, to) = (line(movement.from)?, line(movement.to)?);
-    let frame = from.frame;
+    let frame = from.made.frame;
     let over = (movement, through);
     match (network.passage_kind(through), through.first()) {
         (Some(PassageKind::Roundabout), Some(&arc)) => {

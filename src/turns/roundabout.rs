@@ -56,7 +56,7 @@ impl Passage {
                 return Err(reason);
             }
         }
-        let frame = from.frame;
+        let frame = from.made.frame;
         let junction = |from: u32, to: u32, lines: [&StrokeLine; 2]| {
             let movement = Movement { from, to, kind: MovementKind::Turn, forbidden: None };
             Junction::new(network, movement, lines, frame, policy, params, reach)

@@ -35,7 +35,7 @@ pub struct Options {
 pub enum Layer {
     /// Directed edges.
     Edges,
-    /// Turns and passages of roundabouts.
+    /// Turns and passages.
     Turns,
 }
 

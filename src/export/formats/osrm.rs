@@ -5,8 +5,8 @@
 //! permitted edges, and for turning back. OSRM closes segments. It stores penalties in 16 bits, so a turn cannot be closed, only
 //! be made to cost 55 minutes. Where nothing else meets, OSRM has no turn that could cost anything, so the segment before is closed.
 //!
-//! What OSRM cannot express is refused. Of a restriction over ways, and of a refused passage of a roundabout, the first step is
-//! refused. A roundabout is open only where each of its arcs is permitted.
+//! What OSRM cannot express is refused. Of a restriction over ways, and of a refused passage, the first step is refused. A passage
+//! is open only where each of its edges and turns is permitted.
 
 use std::io::Write as _;
 

@@ -7,7 +7,7 @@
 //! | `netcert.step` | `pgr_dijkstra` over edges as vertices: every permitted step from one edge into the next |
 //! | `netcert.header` | the header: what the permits depend on |
 //!
-//! `netcert.step` expresses everything for the plain algorithm, and only it has passages of roundabouts. Restrictions over ways
+//! `netcert.step` expresses everything for the plain algorithm, and only it has passages. Restrictions over ways
 //! and refused passages lack their first step there, because no state stores the path. `netcert.edge` alone has no turns.
 
 use std::io::{self, Write};

@@ -3,7 +3,7 @@
 //! `extract.osm.pbf` is for `valhalla_build_tiles`. Its tags close roads to all motor vehicles, so the file is for this vehicle
 //! only. `request.json` has the costing and the vehicle's dimensions, for Valhalla's own checks of limits.
 //!
-//! What Valhalla cannot express is refused: a roundabout is open only where each of its arcs is permitted.
+//! What Valhalla cannot express is refused: a passage is open only where each of its edges and turns is permitted.
 
 use serde_json::{Map, Value, json};
 

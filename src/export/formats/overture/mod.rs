@@ -5,8 +5,8 @@
 //! Every rule applies to lorries at least as long as the vehicle and says nothing about shorter ones. Ids are those of
 //! OpenStreetMap (`w` or `n` and the number), not of GERS. Memory holds one way; facts of other ways are in a temporary file.
 //!
-//! What the schema cannot express is refused: an arc of a roundabout that is not permitted by itself stays denied even to a
-//! permitted passage.
+//! What the schema cannot express is refused: an edge that is not permitted by itself stays denied even to a permitted passage
+//! over it.
 
 mod segment;
 mod spots;
