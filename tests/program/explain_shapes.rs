@@ -103,11 +103,11 @@ fn well_drawn(feature: &Feature) {
 
 #[test]
 fn the_shapes_are_valid_and_say_what_the_words_say() {
-    let place = Place::with_wide_demo(VEHICLE);
+    let places = [Place::with_wide_demo(VEHICLE), Place::with_unknown_road()];
     let mut seen = BTreeSet::new();
-    for kind in ["edge", "turn"] {
-        for (id, _) in some_of_each(&place, kind) {
-            let shapes = shapes(&place, &id);
+    for (place, kind) in places.iter().flat_map(|place| [(place, "edge"), (place, "turn")]) {
+        for (id, _) in some_of_each(place, kind) {
+            let shapes = shapes(place, &id);
             let line = format!("explain {id} --vehicle {VEHICLE} --corridor carriageway --format json");
             let said = place.netcert(&line).succeeds().json();
             let header = &shapes.foreign_members.as_ref().unwrap()["netcert"];
@@ -145,10 +145,10 @@ fn the_shapes_are_valid_and_say_what_the_words_say() {
         }
     }
     println!("{seen:?}");
-    for part in ["area", "swept", "path", "body", "tightest", "hinge"] {
+    for part in ["area", "swept", "path", "body", "tightest", "hinge", "line"] {
         assert!(seen.contains(&format!("turn {part}")), "{part}");
     }
-    for part in ["strip", "swept", "path", "body", "tightest"] {
+    for part in ["strip", "swept", "path", "body", "tightest", "line"] {
         assert!(seen.contains(&format!("edge {part}")), "{part}");
     }
 }

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 use std::sync::{Arc, Mutex, OnceLock};
 
+use netcert::osm::LonLat;
 use netcert::osm::facts::Policy;
+use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 use netcert::rows::EdgeRow;
 use netcert::store::{Database, QueryOptions};
 use sqlx::{Connection as _, SqliteConnection};
@@ -50,6 +52,23 @@ impl Place {
             place.read("demo.gpkg")
         });
         Self::empty().file("demo.gpkg", made)
+    }
+
+    /// With `demo.gpkg` of the drawn `unknown.osm.pbf`, in which AU-SEMI19 is certified on the whole carriageway: a wide road, and a side
+    /// road whose parked cars leave no width, so that its edges and the turns onto and off it are unknown.
+    pub(crate) fn with_unknown_road() -> Self {
+        let at = |id, lon_e7, lat_e7| NodeRecord { id, place: LonLat { lon_e7, lat_e7 }, tags: Vec::new() };
+        let nodes = [at(1, 0, 0), at(2, 30_000, 0), at(3, 60_000, 0), at(4, 30_000, 30_000)];
+        let way = |id, refs: &[i64], tags: &[(&str, &str)]| {
+            let tags = tags.iter().map(|&(key, value)| (key.to_owned(), value.to_owned())).collect();
+            WayRecord { id, refs: refs.to_vec(), tags }
+        };
+        let parked = [("parking:both", "lane"), ("parking:both:orientation", "perpendicular")];
+        let side = [&[("highway", "residential"), ("width", "6")], &parked[..]].concat();
+        let ways = [way(1, &[1, 2, 3], &[("highway", "primary"), ("width", "12")]), way(2, &[2, 4], &side)];
+        let place = Self::empty().file("unknown.osm.pbf", write_extract(&nodes, &ways));
+        place.netcert("ingest unknown.osm.pbf --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway").succeeds();
+        place
     }
 
     pub(crate) fn file(self, name: &str, bytes: impl AsRef<[u8]>) -> Self {

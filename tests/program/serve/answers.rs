@@ -1,12 +1,15 @@
 //! Compares the server's answers with those of the other verbs on the same database.
 
+use netcert::osm::facts::Policy;
 use netcert::rows::EdgeRow;
 use netcert::rows::Stats;
+use netcert::store::QueryOptions;
 use netcert::verdict::Verdict;
 use netcert::words::verdict_words;
 use serde_json::{Value, json};
 
 use super::http::Server;
+use crate::support::program::Place;
 use crate::support::xml;
 
 const VEHICLE: &str = "AU-SEMI19";
@@ -128,11 +131,18 @@ fn the_shapes_of_an_explanation_are_those_of_the_verb() {
         rows.iter().map(|row| server.json(&format!("/api/edges/{}?vehicle={VEHICLE}", row.edge_id))["turns"].clone());
     let turns: Vec<Value> = turns.take(12).flat_map(|turns| turns.as_array().unwrap().clone()).collect();
     ids.extend(turns.iter().step_by(4).map(|turn| turn["turn_id"].as_str().unwrap().to_owned()));
+    // The demo region has nothing unknown.
+    let drawn = Server::over(Place::with_unknown_road(), "serve --db demo.gpkg --addr 127.0.0.1:0");
+    let unknown = |row: &&EdgeRow| verdict_words(row.certificate.verdict).0 == "unknown";
+    let set = QueryOptions::new(VEHICLE, Policy::Carriageway);
+    let rows: Vec<EdgeRow> = drawn.place.database().query(&set).unwrap().map(Result::unwrap).collect();
+    let unknown_id = rows.iter().find(unknown).unwrap().edge_id.to_string();
+    let asked = ids.iter().map(|id| (&server, id, "lane")).chain([(&drawn, &unknown_id, "carriageway")]);
     let mut parts = std::collections::BTreeSet::new();
-    for id in &ids {
+    for (server, id, policy) in asked {
         let line = format!("explain {id} --db demo.gpkg --vehicle {VEHICLE} --format geojson");
         let said = server.place.netcert(&line).succeeds().json();
-        let reply = server.get(&format!("/api/explain/{id}/map.geojson?vehicle={VEHICLE}&policy=lane"));
+        let reply = server.get(&format!("/api/explain/{id}/map.geojson?vehicle={VEHICLE}&policy={policy}"));
         assert_eq!((reply.status, reply.header("content-type")), (200, Some("application/geo+json")), "{id}");
         assert!(reply.json() == said, "{id}: {said}");
         parts.extend(said["features"].as_array().unwrap().iter().map(|shape| shape["properties"]["part"].to_string()));
