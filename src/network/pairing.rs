@@ -1,8 +1,9 @@
 //! Straight continuations at each node. An incoming and an outgoing edge are paired if each is the other's best
 //! continuation. The result depends neither on the order of the edges nor on the ways' own directions.
 //!
-//! A road that becomes narrow ends where other roads meet it. A vehicle that turns off there need not fit the narrow part. The way
-//! on is a movement with a certificate of its own, so the edge beyond does not have it as its approach. At a sharp corner the road ends, too.
+//! A road that becomes narrow ends where other roads meet it. A vehicle that turns off there need not fit the narrow part. The same
+//! holds where the road bends: a trailer does not follow the lane round the bend. The way on is a movement with a certificate of its
+//! own, so the edge beyond does not have it as its approach. At a sharp corner the road ends, too.
 
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 
@@ -192,19 +193,23 @@ impl<'n> Junction<'n> {
     /// `a` as the edge that a vehicle comes from into `b`, where nothing continues into `b`.
     fn from(&self, a: &End, b: &End) -> Option<Candidate> {
         let deflection_deg = self.geometry.deflection_deg(a.edge, b.edge);
-        let plausible = deflection_deg <= self.options.approach_limit_deg
+        let limit_deg = if self.two_ends { self.options.approach_limit_deg } else { self.options.bend_limit_deg };
+        let plausible = deflection_deg <= limit_deg
             && !reverse(self.network, a.edge, b.edge)
             && !self.onto_or_off_a_ring(a, b)
             && !self.turns_sharply(a, b);
         plausible.then(|| self.candidate(a, b, deflection_deg))
     }
 
-    /// Whether a wide road and a narrow one meet where there are other ways to go. A road that parts into two carriageways is no
-    /// narrower for that: tapers keep the lanes' width.
+    /// Whether the road ends where there are other ways to go: it bends, or a wide and a narrow part meet. A road that parts into two
+    /// carriageways is no narrower for that: tapers keep the lanes' width.
     fn ends_here(&self, a: &End, b: &End) -> bool {
         let (from, to) = (self.road(a.edge), self.road(b.edge));
         if self.two_ends || from.roundabout || (from.oneway == Oneway::No) != (to.oneway == Oneway::No) {
             return false;
+        }
+        if self.geometry.deflection_deg(a.edge, b.edge) > self.options.bend_limit_deg {
+            return true;
         }
         let width_m = |end: &End, road: &Road| {
             let section = road.sections[usize::from(self.edge(end.edge).direction == Direction::Backward)];

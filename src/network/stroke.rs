@@ -20,7 +20,9 @@ pub struct StrokeOptions {
     /// Where only two ends of road meet, the road continues unless it has a sharp corner there or turns back by more than this,
     /// degrees.
     pub reversal_deg: f64,
-    /// Largest turn from an approach into a stroke's first edge, degrees.
+    /// Largest bend at a node where other roads meet the stroke, degrees. Beyond it the stroke ends, and the way on is a turn.
+    pub bend_limit_deg: f64,
+    /// Largest turn from an approach into a stroke's first edge where no other road meets them, degrees.
     pub approach_limit_deg: f64,
     /// Least length of an approach, metres; it ends with the edge that reaches it. A type 2 road train needs about 200
     /// m until its entry no longer matters.
@@ -36,6 +38,7 @@ impl Default for StrokeOptions {
             straight_limit_deg: 45.0,
             same_way_limit_deg: 75.0,
             reversal_deg: 120.0,
+            bend_limit_deg: 10.0,
             approach_limit_deg: 60.0,
             approach_m: 250.0,
             max_length_m: 40_000.0,

@@ -17,6 +17,9 @@ const MOST_CROSSING: f64 = 0.9;
 /// within it; beyond it the strip narrows to the corridor's own, as before and after a path.
 const WHOLE_STRIP_M: f64 = 60.0;
 
+/// Largest change of a strip's half-width per metre beside a path. A certificate deducts the change along a body.
+const STEEPEST: f64 = 0.1;
+
 /// Edges of the road across a corridor's centreline, metres, positive left: `[left, right]`.
 pub(super) type Across = [f64; 2];
 
@@ -31,6 +34,8 @@ pub struct StrokeLine {
     /// One entry per station: all lanes of the direction, then everything between the kerbs.
     direction: Vec<Across>,
     carriageway: Vec<Across>,
+    /// The same without steps: where the road becomes wider, it does so gradually.
+    gradual: [Vec<Across>; 2],
 }
 
 impl StrokeLine {
@@ -54,13 +59,24 @@ impl StrokeLine {
             }
         }
         keep_to_tapers(&made, &mut [&mut direction, &mut carriageway]);
-        Ok(Self { stroke, made, closed: facts.closed, direction, carriageway })
+        let gradual = [&direction, &carriageway].map(|edges| gradual(&made.corridor, edges));
+        Ok(Self { stroke, made, closed: facts.closed, direction, carriageway, gradual })
     }
 
     /// Half-widths at a station of the stroke, left and right: the corridor's own, and of what `strip` has beyond them the
     /// given share.
     pub(crate) fn half_widths(&self, strip: Policy, station: usize, share: f64) -> [f64; 2] {
-        widened(&self.made.corridor, station, self.strip(strip, station), share)
+        widened(&self.made.corridor, station, self.gradual(strip, station), share)
+    }
+
+    /// Edges of a strip at a station for half-widths: as [`Self::strip`], without steps.
+    fn gradual(&self, strip: Policy, station: usize) -> Across {
+        let c = &self.made.corridor;
+        match strip {
+            Policy::Lane => [c.left_m[station], -c.right_m[station]],
+            Policy::Direction => self.gradual[0][station],
+            Policy::Carriageway => self.gradual[1][station],
+        }
     }
 
     /// Edges of a strip at a station; never inside the corridor's own.
@@ -92,6 +108,22 @@ fn widened(c: &Corridor, k: usize, strip: Across, share: f64) -> [f64; 2] {
     })
 }
 
+/// The edges of a strip without steps: nowhere farther out than they are, and nowhere inside the corridor.
+fn gradual(c: &Corridor, edges: &[Across]) -> Vec<Across> {
+    let mut out = edges.to_vec();
+    let step_m = STEEPEST * c.spacing_m;
+    let limit = |out: &mut [Across], k: usize, beside: usize| {
+        let [left, right] = out[beside];
+        out[k] = [
+            out[k][0].min(left + step_m).max(c.left_m[k].min(edges[k][0])),
+            out[k][1].max(right - step_m).min((-c.right_m[k]).max(edges[k][1])),
+        ];
+    };
+    (1..out.len()).for_each(|k| limit(&mut out, k, k - 1));
+    (1..out.len()).rev().for_each(|k| limit(&mut out, k - 1, k));
+    out
+}
+
 /// The edges of `strip`, where the policy's own strip has its edges at `own`; never inside `own`. The distances between
 /// the strips' edges are kept, so a narrowed corridor narrows both strips alike.
 fn wider(own: Across, section: &CrossSection, policy: Policy, strip: Option<Strip>) -> Across {
@@ -121,8 +153,9 @@ fn keep_to_tapers(made: &StrokeCorridor, wider: &mut [&mut Vec<Across>; 2]) {
 pub(super) struct Arm {
     /// Stations with the corridor's own half-widths.
     pub(super) line: Corridor,
-    /// Edges of the strip that the turn may use.
+    /// Edges of the strip that the turn may use, for its area and, without steps, for half-widths.
     pub(super) strip: Vec<Across>,
+    gradual: Vec<Across>,
     pub(super) direction: Vec<Across>,
     pub(super) carriageway: Vec<Across>,
     /// Index of the node's station in `line`.
@@ -206,6 +239,7 @@ impl Arm {
         Ok(Self {
             line: window,
             strip: (first..end).map(|k| line.strip(strip, k)).collect(),
+            gradual: (first..end).map(|k| line.gradual(strip, k)).collect(),
             direction: line.direction[first..end].to_vec(),
             carriageway: line.carriageway[first..end].to_vec(),
             node: node - first,
@@ -217,14 +251,14 @@ impl Arm {
 
     /// Half-widths of the turn's strip.
     pub(super) fn wide(&self, k: usize) -> [f64; 2] {
-        widened(&self.line, k, self.strip[k], 1.0)
+        widened(&self.line, k, self.gradual[k], 1.0)
     }
 
     /// Half-widths at a station on the approach to a joint, or on the departure from it.
     pub(super) fn near_joint(&self, k: usize, joint: usize, reach: Reach) -> [f64; 2] {
         let away_m = k.abs_diff(joint) as f64 * self.line.spacing_m;
         let share = if k < joint { reach.share_before(away_m) } else { reach.share_after(away_m) };
-        widened(&self.line, k, self.strip[k], share)
+        widened(&self.line, k, self.gradual[k], share)
     }
 
     /// Edges of the turn's strip at a station, wherever paths leave and join: the whole strip near the node, and the

@@ -31,6 +31,8 @@ pub struct TurnCorridors {
     pub kerb_radius_m: Option<f64>,
     /// The area's boundary.
     rings: Arc<Area>,
+    /// The boundary of the area with the straight road beyond the ends of both roads: a path may join its road at the very end.
+    opened: Boundary,
     way: Way,
 }
 
@@ -58,14 +60,15 @@ impl TurnCorridors {
 
     fn on((area, kerb_radius_m): (MultiPolygon, Option<f64>), frame: Frame, turn_rad: f64, way: Way) -> Self {
         let rings = Arc::new(rings(&area));
-        Self { frame, turn_rad, area, kerb_radius_m, rings, way }
+        let opened = Boundary::new(&opened(&area, way.arms(), way.reach()));
+        Self { frame, turn_rad, area, kerb_radius_m, rings, opened, way }
     }
 
     /// The path with a code. `None` if the turn has no such path.
     #[must_use]
     pub fn path(&self, code: i64) -> Option<TurnPath> {
         let line = self.line(code, STEP_M)?;
-        let widths = Boundary::new(&self.area).widths(&line.points);
+        let widths = self.opened.widths(&line.points);
         self.along(code, &line, widths.unwrap_or_else(|| Widths::slim(line.points.len())))
     }
 
@@ -81,10 +84,9 @@ impl TurnCorridors {
     /// The paths of [`Self::seeds`] that stay on the road.
     #[must_use]
     pub fn on_road(&self) -> Vec<TurnPath> {
-        let boundary = Boundary::new(&self.area);
         let path = |code: i64| {
             let line = self.line(code, STEP_M)?;
-            let widths = boundary.widths(&line.points)?;
+            let widths = self.opened.widths(&line.points)?;
             self.along(code, &line, widths)
         };
         self.seeds().into_iter().filter_map(path).collect()
@@ -109,21 +111,31 @@ impl TurnCorridors {
 
     /// The road before the turn and the road after it.
     pub(super) fn arms(&self) -> [&Arm; 2] {
-        match &self.way {
-            Way::Direct(arms) => [&arms.from, &arms.to],
-            Way::Passage(passage) => [&passage.entry.arms.from, &passage.exit.arms.to],
-        }
+        self.way.arms()
     }
 
     pub(super) fn reach(&self) -> Reach {
-        match &self.way {
-            Way::Direct(arms) => arms.reach,
-            Way::Passage(passage) => passage.entry.arms.reach,
-        }
+        self.way.reach()
     }
 
     /// The boundary of the area for planning.
     pub(super) fn opened(&self) -> Area {
         rings(&opened(&self.area, self.arms(), self.reach()))
+    }
+}
+
+impl Way {
+    fn arms(&self) -> [&Arm; 2] {
+        match self {
+            Self::Direct(arms) => [&arms.from, &arms.to],
+            Self::Passage(passage) => [&passage.entry.arms.from, &passage.exit.arms.to],
+        }
+    }
+
+    fn reach(&self) -> Reach {
+        match self {
+            Self::Direct(arms) => arms.reach,
+            Self::Passage(passage) => passage.entry.arms.reach,
+        }
     }
 }

@@ -21,6 +21,10 @@ const MOUTH_M: f64 = 15.0;
 /// Least angle at which two roads share a part, radians. At smaller angles they run side by side.
 const LEAST_ANGLE_RAD: f64 = 0.5;
 
+/// Least angle between two mouths of a road that goes on, radians; and how far each is extended over the node, metres.
+const GOES_ON_RAD: f64 = 2.36;
+const JOINT_M: f64 = 2.0;
+
 /// The carriageway of a road from the node outwards.
 struct Mouth<'a> {
     road: &'a Road,
@@ -47,12 +51,15 @@ pub(super) fn parts(
         return Vec::new();
     }
     let mut parts: Vec<Polygon> =
-        mouths.iter().filter(|mouth| !mouth.own).filter_map(|mouth| mouth.outline(0.0)).collect();
+        mouths.iter().filter(|mouth| !mouth.own).filter_map(|mouth| mouth.outline(MOUTH_M, 0.0)).collect();
     for (i, a) in mouths.iter().enumerate() {
         for b in &mouths[i + 1..] {
             if wrapped(a.bearing - b.bearing).sin().abs() >= LEAST_ANGLE_RAD.sin() {
                 parts.extend(shared(a, b));
                 parts.extend(shared(b, a));
+            }
+            if wrapped(a.bearing - b.bearing).abs() >= GOES_ON_RAD {
+                parts.extend(joint(a, b));
             }
         }
     }
@@ -85,7 +92,7 @@ pub(super) fn passed(network: &Network, own: [u32; 2], frame: Frame, params: &Tu
 pub(super) fn carriageways(network: &Network, edges: &[u32], frame: Frame, params: &TurnParams) -> Vec<Polygon> {
     let edges = edges.iter().filter_map(|&edge| network.edges.get(edge as usize));
     let ends = edges.flat_map(|edge| [(edge, edge.from_node), (edge, edge.to_node)]);
-    ends.filter_map(|(edge, node)| mouth(network, edge, node, frame, params)?.outline(0.0)).collect()
+    ends.filter_map(|(edge, node)| mouth(network, edge, node, frame, params)?.outline(MOUTH_M, 0.0)).collect()
 }
 
 /// The mouths around a node, counter-clockwise.
@@ -148,9 +155,9 @@ impl Mouth<'_> {
         [cos, sin]
     }
 
-    /// The carriageway as far as the mouth reaches, extended straight over the node by `beyond_m`.
-    fn outline(&self, beyond_m: f64) -> Option<Polygon> {
-        let near = Mouth { line: first_metres(&self.line, MOUTH_M), ..*self };
+    /// The first metres of the carriageway, extended straight over the node by `beyond_m`.
+    fn outline(&self, length_m: f64, beyond_m: f64) -> Option<Polygon> {
+        let near = Mouth { line: first_metres(&self.line, length_m), ..*self };
         let side = |left_m: f64| {
             let mut side = near.aside(left_m);
             if let (true, Some(&first)) = (beyond_m > 0.0, side.first()) {
@@ -166,7 +173,15 @@ impl Mouth<'_> {
 
 /// The part of a road's mouth that another road crosses.
 fn shared(a: &Mouth<'_>, b: &Mouth<'_>) -> Vec<Polygon> {
-    match (a.outline(0.0), b.outline(MOUTH_M)) {
+    match (a.outline(MOUTH_M, 0.0), b.outline(MOUTH_M, MOUTH_M)) {
+        (Some(a), Some(b)) => a.intersection(&b).0,
+        _ => Vec::new(),
+    }
+}
+
+/// The outside of the bend between two mouths of a road that goes on: what both have in common, each extended over the node.
+fn joint(a: &Mouth<'_>, b: &Mouth<'_>) -> Vec<Polygon> {
+    match (a.outline(JOINT_M, JOINT_M), b.outline(JOINT_M, JOINT_M)) {
         (Some(a), Some(b)) => a.intersection(&b).0,
         _ => Vec::new(),
     }

@@ -162,8 +162,8 @@ fn a_ramp_is_driven_from_its_motorway() {
         20.0,
         "
         A----------------B------------C------------------D
-                           '--.
-                               '--E------------F
+                           '--------.
+                                     '-----------E------------F
         ",
     )
     .way("ABC", "highway=motorway ref=A5 oneway=yes")
@@ -181,8 +181,8 @@ fn an_approach_is_long_enough_and_no_longer() {
                     a        b
                     |        |
         A-----------B--------C-------D------------E
-                                       '---.
-                                             F
+                                       '------------.
+                                                     '-------------F
         ",
     )
     .way("ABCDE", "highway=motorway oneway=yes")
@@ -274,18 +274,17 @@ fn a_closed_way_is_a_loop_each_way_round() {
 
 #[test]
 fn a_lollipop_is_a_stick_and_a_loop() {
-    let map = AsciiMap::drawn(
-        30.0,
-        "
-                 B--C
-
-                      D
-        S----A        |
-                      E
-
-                 G--F
-        ",
-    )
+    // The loop begins straight ahead, and ends within 10 degrees of that.
+    let map = AsciiMap::placed(&[
+        ('S', [-120.0, 0.0]),
+        ('A', [0.0, 0.0]),
+        ('B', [200.0, 0.0]),
+        ('C', [215.3, -12.9]),
+        ('D', [216.0, -20.8]),
+        ('E', [210.9, -27.0]),
+        ('F', [191.0, -28.7]),
+        ('G', [170.0, -27.0]),
+    ])
     .way("SABCDEFGA", ROAD);
     check(&map, "SA AS AA AA", "SAA S>AAS");
 }

@@ -7,8 +7,8 @@ use program::Place;
 
 /// Along the Great Inland Highway, straight on.
 const ALONG: &str = "--from 126.050430,-30.217983 --to 126.049200,-30.213800";
-/// From one road over two corners into another.
-const OVER_CORNERS: &str = "--from 126.005973,-30.208248 --to 126.046205,-30.176383";
+/// From the Stock Route Road round a corner into the Great Inland Highway.
+const ROUND_A_CORNER: &str = "--from 126.026942,-30.203315 --to 126.046615,-30.205563";
 
 #[test]
 fn routes_are_told_written_verified_or_explained() {
@@ -25,7 +25,7 @@ fn routes_are_told_written_verified_or_explained() {
     assert!(features.len() > 1 && features[1..].iter().all(|f| f["properties"]["rsc_m"].is_number()));
 
     place
-        .netcert(&format!("route --vehicle AU-ATRIPLE53 {OVER_CORNERS}"))
+        .netcert(&format!("route --vehicle AU-ATRIPLE53 {ROUND_A_CORNER}"))
         .succeeds()
         .shows("no certified route")
         .shows("What would have to become safe: ")
