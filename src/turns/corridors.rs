@@ -31,8 +31,8 @@ pub struct TurnCorridors {
     pub kerb_radius_m: Option<f64>,
     /// The area's boundary.
     rings: Arc<Area>,
-    /// The boundary of the area with the straight road beyond the ends of both roads: a path may join its road at the very end.
-    opened: Boundary,
+    /// The area with the straight road beyond the ends of both roads: a path may join its road at the very end.
+    opened: MultiPolygon,
     way: Way,
 }
 
@@ -60,7 +60,7 @@ impl TurnCorridors {
 
     fn on((area, kerb_radius_m): (MultiPolygon, Option<f64>), frame: Frame, turn_rad: f64, way: Way) -> Self {
         let rings = Arc::new(rings(&area));
-        let opened = Boundary::new(&opened(&area, way.arms(), way.reach()));
+        let opened = opened(&area, way.arms(), way.reach());
         Self { frame, turn_rad, area, kerb_radius_m, rings, opened, way }
     }
 
@@ -68,7 +68,7 @@ impl TurnCorridors {
     #[must_use]
     pub fn path(&self, code: i64) -> Option<TurnPath> {
         let line = self.line(code, STEP_M)?;
-        let widths = self.opened.widths(&line.points);
+        let widths = Boundary::new(&self.opened).widths(&line.points);
         self.along(code, &line, widths.unwrap_or_else(|| Widths::slim(line.points.len())))
     }
 
@@ -84,9 +84,10 @@ impl TurnCorridors {
     /// The paths of [`Self::seeds`] that stay on the road.
     #[must_use]
     pub fn on_road(&self) -> Vec<TurnPath> {
+        let boundary = Boundary::new(&self.opened);
         let path = |code: i64| {
             let line = self.line(code, STEP_M)?;
-            let widths = self.opened.widths(&line.points)?;
+            let widths = boundary.widths(&line.points)?;
             self.along(code, &line, widths)
         };
         self.seeds().into_iter().filter_map(path).collect()
@@ -120,7 +121,7 @@ impl TurnCorridors {
 
     /// The boundary of the area for planning.
     pub(super) fn opened(&self) -> Area {
-        rings(&opened(&self.area, self.arms(), self.reach()))
+        rings(&self.opened)
     }
 }
 

@@ -173,18 +173,16 @@ impl Mouth<'_> {
 
 /// The part of a road's mouth that another road crosses.
 fn shared(a: &Mouth<'_>, b: &Mouth<'_>) -> Vec<Polygon> {
-    match (a.outline(MOUTH_M, 0.0), b.outline(MOUTH_M, MOUTH_M)) {
-        (Some(a), Some(b)) => a.intersection(&b).0,
-        _ => Vec::new(),
-    }
+    common(a.outline(MOUTH_M, 0.0), b.outline(MOUTH_M, MOUTH_M))
 }
 
 /// The outside of the bend between two mouths of a road that goes on: what both have in common, each extended over the node.
 fn joint(a: &Mouth<'_>, b: &Mouth<'_>) -> Vec<Polygon> {
-    match (a.outline(JOINT_M, JOINT_M), b.outline(JOINT_M, JOINT_M)) {
-        (Some(a), Some(b)) => a.intersection(&b).0,
-        _ => Vec::new(),
-    }
+    common(a.outline(JOINT_M, JOINT_M), b.outline(JOINT_M, JOINT_M))
+}
+
+fn common(a: Option<Polygon>, b: Option<Polygon>) -> Vec<Polygon> {
+    a.zip(b).map_or_else(Vec::new, |(a, b)| a.intersection(&b).0)
 }
 
 /// The corner between a mouth and the next one counter-clockwise.
