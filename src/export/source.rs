@@ -148,12 +148,7 @@ fn check_certified(database: &mut Database, ask: &Ask) -> Result<(), ExportError
     // These calls fail with errors that name the command to run if certificates are missing.
     drop(database.query(&QueryOptions { edge_id: Some(0), ..QueryOptions::new(vehicle, *policy) })?);
     if !database.has_turns(vehicle, *policy)? {
-        let policy = crate::words::Named::name(*policy);
-        let detail = format!(
-            "the turns of {vehicle} are not certified here under the {policy} policy; run `netcert certify --vehicle {vehicle} \
-             --corridor {policy}`"
-        );
-        return Err(StoreError::NotThere { path: ask.db.clone(), detail }.into());
+        return Err(StoreError::turns_not_certified(&ask.db, vehicle, *policy).into());
     }
     Ok(())
 }

@@ -61,3 +61,16 @@ pub struct RscBin {
     /// Length of the edges together, metres.
     pub length_m: f64,
 }
+
+/// The edges of one vehicle, policy and verdict, by whether the vehicle needs no more room there than a reference.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RelativeCount {
+    /// The verdict with its reason. The comparison does not change it.
+    pub verdict: Verdict,
+    /// Whether the vehicle needs no more room than the reference: see [`super::Relative`].
+    pub as_reference: bool,
+    /// Number of directed edges.
+    pub edges: u64,
+    /// Length of the edges together, metres.
+    pub length_m: f64,
+}

@@ -97,6 +97,23 @@ pub enum StoreError {
         /// What is wrong with the settings.
         detail: String,
     },
+    /// Two vehicles were certified with different settings, so their certificates do not compare.
+    #[error(
+        "{path}: {vehicle} and {reference} were certified with different settings under the {policy} policy, so they do not \
+         compare: {differ}; certify both alike: `netcert certify --db {path} --vehicle {vehicle} {reference} --corridor {policy}`"
+    )]
+    NotAlike {
+        /// The database.
+        path: PathBuf,
+        /// Vehicle id.
+        vehicle: String,
+        /// Vehicle id of the reference.
+        reference: String,
+        /// Word of the policy.
+        policy: &'static str,
+        /// The settings that differ, the vehicle's value first.
+        differ: String,
+    },
     /// The caller asks for something that the database does not hold.
     #[error("{path}: {detail}")]
     NotThere {
@@ -129,6 +146,16 @@ impl StoreError {
         let policy = policy.name();
         let detail = format!(
             "{vehicle} is not certified here under the {policy} policy; run `netcert certify --vehicle {vehicle} \
+             --corridor {policy}`"
+        );
+        Self::NotThere { path: path.to_owned(), detail }
+    }
+
+    /// The database has no certificates of turns of this vehicle and policy.
+    pub(crate) fn turns_not_certified(path: &Path, vehicle: &str, policy: Policy) -> Self {
+        let policy = policy.name();
+        let detail = format!(
+            "the turns of {vehicle} are not certified here under the {policy} policy; run `netcert certify --vehicle {vehicle} \
              --corridor {policy}`"
         );
         Self::NotThere { path: path.to_owned(), detail }

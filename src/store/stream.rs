@@ -125,7 +125,7 @@ impl Database {
         })
     }
 
-    fn streamed<T>(
+    pub(super) fn streamed<T>(
         &mut self,
         sql: String,
         vehicle: &str,

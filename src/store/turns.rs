@@ -9,7 +9,7 @@ use crate::network::{Network, PassageKind};
 use crate::osm::facts::Policy;
 use crate::rows::{Bounds, StoredPlan, TurnCertificate, TurnCount, TurnRow};
 use crate::turns::{KerbSource, TurnFacts};
-use crate::words::{Named, VerdictKind};
+use crate::words::VerdictKind;
 
 use super::blob;
 use super::bulk::Bulk;
@@ -215,14 +215,7 @@ impl Database {
     /// The vehicle's turns are not certified here ([`StoreError::NotThere`]); the file cannot be read.
     pub fn query_turns(&mut self, options: &TurnQuery) -> Result<Vec<TurnRow>, StoreError> {
         if !self.has_turns(&options.vehicle, options.policy)? {
-            let (vehicle, policy) = (&options.vehicle, options.policy.name());
-            return Err(StoreError::NotThere {
-                path: self.session.path.clone(),
-                detail: format!(
-                    "the turns of {vehicle} are not certified here under the {policy} policy; run `netcert certify \
-                     --vehicle {vehicle} --corridor {policy}`"
-                ),
-            });
+            return Err(StoreError::turns_not_certified(&self.session.path, &options.vehicle, options.policy));
         }
         let area = options.area.as_ref().map(polygons);
         let mut rows = self.session.run(async |c| fetch(c, options).await)?;

@@ -1,0 +1,183 @@
+//! A vehicle beside a reference vehicle on the same road: `relative_m` and `as_reference`.
+//!
+//! This is a statement of its own. It makes nothing safe and opens no permit: a verdict says what is proved of one vehicle, this
+//! says whether a second one was given less room by its own certificate. Both RSCs are lower bounds, each at the best plan found, so
+//! the comparison is one of certificates and no proof of what the reference needs.
+
+use crate::stet::{SpanResult, known_m};
+use crate::verdict::{UnsafeReason, Verdict};
+
+use super::cell::Kind::{Flag, Real};
+use super::cell::{Cell, Column};
+use super::certificate::CertificateRow;
+
+/// What a comparison takes from one certificate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Standing {
+    verdict: Verdict,
+    /// The RSC rounded down, millimetres. `None` if there is none, or if the bounds do not close.
+    rsc_mm: Option<i64>,
+    /// Whether every hinge and the steering lock are within their limits. A row that is `unsafe: width` may exceed them, too.
+    hinges_hold: bool,
+}
+
+impl Standing {
+    /// Of a stored certificate: the RSC in metres, in whole millimetres, and the hinge margin in degrees.
+    #[must_use]
+    pub fn stored(verdict: Verdict, rsc_m: Option<f64>, hinge_margin_deg: Option<f64>) -> Self {
+        let rsc_mm = rsc_m.and_then(known_m).map(|rsc_m| (rsc_m * 1000.0).round() as i64);
+        Self { verdict, rsc_mm, hinges_hold: hinge_margin_deg.is_some_and(|margin| margin >= 0.0) }
+    }
+
+    /// Of a stored certificate as a row.
+    #[must_use]
+    pub fn of(certificate: &CertificateRow) -> Self {
+        Self::stored(certificate.verdict, certificate.rsc_m, certificate.hinge_margin_deg)
+    }
+
+    /// Of a result at full precision. `verdict` is the verdict with law and map.
+    #[must_use]
+    pub fn computed(verdict: Verdict, result: &SpanResult) -> Self {
+        let rsc_mm = result.rsc_m.and_then(known_m).map(|rsc_m| (rsc_m * 1000.0).floor() as i64);
+        Self { verdict, rsc_mm, hinges_hold: result.hinge_margin_rad.is_some_and(|margin| margin >= 0.0) }
+    }
+
+    /// Of what has no certificate.
+    #[must_use]
+    pub fn bare(verdict: Verdict) -> Self {
+        Self { verdict, rsc_mm: None, hinges_hold: false }
+    }
+
+    /// The verdict.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        self.verdict
+    }
+
+    /// Whether room alone decides here: access is lawful, and no hinge and no steering lock fails. Else there is nothing to compare.
+    fn by_room(&self) -> bool {
+        self.hinges_hold && matches!(self.verdict, Verdict::Safe | Verdict::Unsafe(UnsafeReason::Width))
+    }
+}
+
+/// The comparison of a vehicle with a reference on one edge, turn or route.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Relative {
+    /// RSC of the vehicle less RSC of the reference, metres, rounded to the safe side. `None` if either has none.
+    pub relative_m: Option<f64>,
+    /// Whether the vehicle needs no more room than the reference. It does not mean `safe`.
+    pub as_reference: bool,
+}
+
+impl Relative {
+    /// The columns of [`Self::cells`]. They follow all other columns.
+    pub const COLUMNS: [Column; 2] = [("relative_m", Real), ("as_reference", Flag)];
+
+    /// Compares two vehicles. Each RSC is rounded down to a millimetre, so the reference's true one may be up to a millimetre
+    /// more: this millimetre is deducted.
+    #[must_use]
+    pub fn between(vehicle: Standing, reference: Standing) -> Self {
+        let relative_mm = vehicle.rsc_mm.zip(reference.rsc_mm).map(|(own, other)| own - other - 1);
+        Self::new(relative_mm, vehicle.by_room() && reference.by_room())
+    }
+
+    /// Compares a vehicle with itself. The difference is 0: nothing is rounded.
+    #[must_use]
+    pub fn to_itself(vehicle: Standing) -> Self {
+        Self::new(vehicle.rsc_mm.map(|_| 0), vehicle.by_room())
+    }
+
+    fn new(relative_mm: Option<i64>, by_room: bool) -> Self {
+        let as_reference = by_room && relative_mm.is_some_and(|mm| mm >= 0);
+        Self { relative_m: relative_mm.map(|mm| mm as f64 / 1000.0), as_reference }
+    }
+
+    /// The values in the order of [`Self::COLUMNS`].
+    #[must_use]
+    pub fn cells(self) -> [Cell<'static>; 2] {
+        [Cell::Real(self.relative_m), Cell::Flag(self.as_reference)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stet::{Limiting, Side};
+    use crate::verdict::{ForbiddenReason, UnknownReason};
+
+    const WIDTH: Verdict = Verdict::Unsafe(UnsafeReason::Width);
+
+    fn standing(verdict: Verdict, rsc_m: f64) -> Standing {
+        Standing::stored(verdict, Some(rsc_m), Some(12.0))
+    }
+
+    fn said(vehicle: Standing, reference: Standing) -> (Option<f64>, bool) {
+        let said = Relative::between(vehicle, reference);
+        (said.relative_m, said.as_reference)
+    }
+
+    #[test]
+    fn a_millimetre_is_deducted_for_what_the_reference_lost_by_rounding() {
+        let reference = standing(WIDTH, -0.3);
+        assert_eq!(said(standing(WIDTH, -0.299), reference), (Some(0.0), true));
+        assert_eq!(said(standing(WIDTH, -0.3), reference), (Some(-0.001), false));
+        assert_eq!(said(standing(Verdict::Safe, 0.057), standing(Verdict::Safe, 0.029)), (Some(0.027), true));
+        for mm in -5000..5000 {
+            let own = standing(WIDTH, f64::from(mm) / 1000.0);
+            assert_eq!(Relative::between(own, reference).relative_m, Some(f64::from(mm + 299) / 1000.0));
+        }
+    }
+
+    #[test]
+    fn the_same_vehicle_needs_exactly_as_much() {
+        let own = Relative::to_itself(standing(WIDTH, -0.3));
+        assert_eq!((own.relative_m, own.as_reference), (Some(0.0), true));
+        let folded = Relative::to_itself(standing(Verdict::Unsafe(UnsafeReason::Articulation), 0.4));
+        assert_eq!((folded.relative_m, folded.as_reference), (Some(0.0), false));
+        assert_eq!(Relative::to_itself(Standing::bare(WIDTH)), Relative::default());
+    }
+
+    #[test]
+    fn without_both_rscs_there_is_no_comparison() {
+        let (there, none) = (standing(Verdict::Safe, 1.0), Standing::bare(WIDTH));
+        let open = Standing::stored(WIDTH, Some(-1000.0), Some(-515.67));
+        for (vehicle, reference) in [(there, none), (none, there), (none, none), (there, open), (open, there)] {
+            assert_eq!(said(vehicle, reference), (None, false));
+        }
+    }
+
+    /// Law, missing facts, hinges and the steering lock are no matter of room, on either side.
+    #[test]
+    fn what_room_does_not_decide_is_never_as_the_reference() {
+        let other = [
+            Verdict::Unsafe(UnsafeReason::Articulation),
+            Verdict::Unsafe(UnsafeReason::SteeringLock),
+            Verdict::Forbidden(ForbiddenReason::Length),
+            Verdict::Unknown(UnknownReason::Limit),
+        ];
+        for verdict in other {
+            assert_eq!(said(standing(verdict, 2.0), standing(Verdict::Safe, 0.5)), (Some(1.499), false), "{verdict:?}");
+            assert_eq!(said(standing(Verdict::Safe, 2.0), standing(verdict, 0.5)), (Some(1.499), false), "{verdict:?}");
+        }
+        // Where the road is too narrow, the reason is `width`, even if a hinge fails as well.
+        let folds = Standing::stored(WIDTH, Some(-0.1), Some(-0.01));
+        assert_eq!(said(folds, standing(WIDTH, -0.5)), (Some(0.399), false));
+        assert_eq!(said(standing(WIDTH, -0.1), Standing::stored(WIDTH, Some(-0.5), None)), (Some(0.399), false));
+    }
+
+    #[test]
+    fn full_precision_is_rounded_down_like_a_stored_certificate() {
+        let result = |rsc_m| SpanResult {
+            rsc_m: Some(rsc_m),
+            rsc_published_m: 0.0,
+            hinge_margin_rad: Some(0.1),
+            hinge_unit: 0,
+            shrink: 1.0,
+            limiting: Limiting { station: 0, unit: 0, side: Side::Left, point_m: 0.0, in_area: false },
+        };
+        let computed = |rsc_m| Standing::computed(Verdict::Safe, &result(rsc_m));
+        assert_eq!(computed(0.5007), standing(Verdict::Safe, 0.5));
+        assert_eq!(said(computed(0.5007), computed(0.4999)), (Some(0.0), true));
+        assert_eq!(said(computed(0.5007), computed(0.5005)), (Some(-0.001), false));
+    }
+}
