@@ -13,6 +13,7 @@ use super::Session;
 use super::database::DatabaseArgs;
 use super::on_demand::{self, Wanted};
 use super::output::{grouped, results};
+use super::relative::RelativeArgs;
 use super::stop::when_stopped;
 use super::values::{metres, word};
 
@@ -27,6 +28,7 @@ Examples:
   netcert export osrm --vehicle EU-SEMI16.5 --extract heidelberg.osm.pbf --out permits/
   netcert export osm-pbf --vehicle US-WB67 --extract columbus.osm.pbf --out columbus-wb67.osm.pbf
   netcert export csv --vehicle AU-ATRIPLE53 --layer edges --out - | head
+  netcert export geojson --vehicle AU-BDOUBLE26 --relative-to AU-SEMI19 --out compared/
 
 docs/export/ has a page for each target. The page leads from the download to a routed truck and
 lists what the engine cannot express. An output is never left incomplete. The folder of an earlier
@@ -55,6 +57,8 @@ pub(crate) struct Export {
     /// Permit only edges and turns with at least this RSC: the metres to spare at the tightest place.
     #[arg(long, value_name = "METRES", default_value_t = 0.0, value_parser = metres)]
     min_rsc: f64,
+    #[command(flatten)]
+    relative: RelativeArgs,
     /// Permit only edges whose width comes from this source or a better one; the list runs from worst to best.
     #[arg(long, value_name = "SOURCE", value_parser = word::<WidthSource>())]
     width_source: Option<WidthSource>,
@@ -83,6 +87,8 @@ impl Export {
                 return Err(ExportError::OwnInput(self.out.clone()).into());
             }
         }
+        formats::check_reference(target, self.relative.relative_to.as_deref())?;
+        self.relative.check(&path, &self.vehicle, self.corridor)?;
         let source = self.source(session, &path)?;
         let to_stream = self.out.as_os_str() == "-";
         let out = if to_stream { Out::Stream(Box::new(results())) } else { Out::Path(self.out.clone()) };
@@ -115,6 +121,7 @@ impl Export {
             policy: set.policy,
             rule: PermitPolicy { min_rsc_m: self.min_rsc, min_width_source: self.width_source },
             extract: self.extract.clone(),
+            relative_to: self.relative.relative_to.clone(),
         };
         Ok(Source::open(ask, &session.progress)?)
     }

@@ -21,6 +21,7 @@ mod position;
 mod progress;
 mod query;
 mod reach;
+mod relative;
 mod route;
 mod routing;
 mod rows;

@@ -6,7 +6,7 @@ use anyhow::anyhow;
 use netcert::osm::facts::Policy;
 use netcert::pipeline;
 use netcert::settings::Settings;
-use netcert::store::{CertifiedSet, Database};
+use netcert::store::{CertifiedSet, Database, Reference};
 use netcert::vehicle::Vehicle;
 use netcert::words::Named;
 use serde_json::json;
@@ -16,6 +16,7 @@ use super::certify_options;
 use super::fleet::{self, Fleet};
 
 /// The vehicle and certificates that a command needs.
+#[derive(Clone, Copy)]
 pub(crate) struct Wanted<'a> {
     /// The vehicle's id.
     pub(crate) vehicle: &'a str,
@@ -33,8 +34,38 @@ pub(crate) struct Wanted<'a> {
 /// existing set keeps its settings; a new set has those of the database's ingest.
 pub(crate) fn certified(
     session: &Session,
+    at: (&Path, Database),
+    wanted: &Wanted<'_>,
+) -> anyhow::Result<(Database, CertifiedSet)> {
+    certified_like(session, at, wanted, None)
+}
+
+/// Returns the database and `id` as a reference for the set of `wanted`. The reference's certificates are made if they are missing,
+/// with the settings of that set.
+pub(crate) fn reference(
+    session: &Session,
     (path, mut database): (&Path, Database),
     wanted: &Wanted<'_>,
+    (set, id): (&CertifiedSet, &str),
+) -> anyhow::Result<(Database, Reference)> {
+    let settings = set.settings()?;
+    if let Some(kept) = database.certified_set(id, set.policy)? {
+        // Checked as it will be, before its turns are made.
+        let kept = kept.settings()?;
+        let as_it_will_be = Settings { turns: kept.turns || wanted.turns, ..kept };
+        database.alike((&set.vehicle_id, &settings), (id, &as_it_will_be))?;
+    }
+    let wanted = Wanted { vehicle: id, policy: Some(set.policy), ..*wanted };
+    let (mut database, _) = certified_like(session, (path, database), &wanted, Some(&settings))?;
+    let reference = database.reference(set, id)?;
+    Ok((database, reference))
+}
+
+fn certified_like(
+    session: &Session,
+    (path, mut database): (&Path, Database),
+    wanted: &Wanted<'_>,
+    like: Option<&Settings>,
 ) -> anyhow::Result<(Database, CertifiedSet)> {
     let policy = certify_options::policy_of(&mut database, wanted.policy)?;
     let kept = database.certified_set(wanted.vehicle, policy)?;
@@ -47,7 +78,10 @@ pub(crate) fn certified(
             }
             settings
         }
-        None => certify_options::of_a_new_set(&mut database, policy)?,
+        None => match like {
+            Some(settings) => settings.clone(),
+            None => certify_options::of_a_new_set(&mut database, policy)?,
+        },
     };
     let vehicle = definition(&mut database, wanted)?;
     database.close()?;

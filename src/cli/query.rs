@@ -7,8 +7,8 @@ use std::path::PathBuf;
 use clap::Args;
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::rows::Bounds;
-use netcert::rows::EdgeRow;
-use netcert::store::{Area, Database, QueryOptions, TurnQuery};
+use netcert::rows::{EdgeRow, Relative};
+use netcert::store::{Area, Beside, Database, QueryOptions, TurnQuery};
 use netcert::vehicle::Vehicle;
 use netcert::words::{Named, VerdictKind, verdict_words};
 
@@ -18,6 +18,7 @@ use super::database::DatabaseArgs;
 use super::fleet;
 use super::on_demand::{self, Wanted};
 use super::output::{km, results};
+use super::relative::{self, Compared, RelativeArgs};
 use super::rows::{Format, Head, Sink};
 use super::turn_rows;
 use super::values::{signed_metres, word};
@@ -34,6 +35,7 @@ Examples:
   netcert query --vehicle EU-SEMI16.5 --verdict unsafe --bbox 8.6,49.3,8.8,49.5
   netcert query --vehicle AU-BDOUBLE26 --within shire.geojson --format csv > shire.csv
   netcert query --vehicle US-WB67 --verdict safe --min-rsc 0.3 --format geojson > safe.geojson
+  netcert query --vehicle AU-BDOUBLE26 --relative-to AU-SEMI19 --verdict unsafe --as-reference
 
 Columns:
   rsc      metres to spare at the tightest point of any body, after all error bounds are
@@ -42,6 +44,12 @@ Columns:
   source   where the width comes from: assumed (by class and country), from_lanes (tagged
            number of lanes, assumed lane width), estimated, tagged, surveyed
   verdict  the verdict and its reason: `unsafe: width`, `forbidden: weight`, `unknown: geometry`
+
+With --relative-to, two columns more, which say nothing of `safe`:
+  relative_m    the RSC less that of the reference: at 0 or more, the vehicle needs no more room there;
+                a negative number is what it needs more
+  as_reference  yes, if relative_m is at least 0 and room alone decides for both: neither is forbidden or
+                unknown there, and no hinge and no steering lock fails
 
 In JSON, edge_id is a whole number of up to 63 bits; JavaScript needs BigInt to read it. A GeoJSON
 feature also has the id as text, in `id`.")]
@@ -73,6 +81,11 @@ pub(crate) struct Query {
     /// Show turns instead of edges: the movements at junctions from one road into another that do not go straight on.
     #[arg(long, conflicts_with = "width_source")]
     turns: bool,
+    #[command(flatten)]
+    relative: RelativeArgs,
+    /// Show only rows on which the vehicle needs no more room than the vehicle of --relative-to.
+    #[arg(long, requires = "relative_to")]
+    as_reference: bool,
     /// The output format.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
@@ -93,10 +106,18 @@ impl Query {
         let (files, policy) = (&self.vehicle_file[..], self.corridor);
         let wanted = Wanted { vehicle: &self.vehicle, files, policy, turns: self.turns, command: "query" };
         let (mut database, set) = on_demand::certified(session, (&path, database), &wanted)?;
+        let mut compared = None;
+        if let Some(id) = &self.relative.relative_to {
+            let (opened, reference) = on_demand::reference(session, (&path, database), &wanted, (&set, id))?;
+            database = opened;
+            compared = Some(Compared::open(&path, reference)?);
+        }
         let vehicle = fleet::kept(&mut database, &self.vehicle)?;
         if self.turns {
-            return self.tell_turns(session, &mut database, vehicle.as_ref(), set.policy, area);
+            let beside = compared.as_mut().map(Compared::turns).transpose()?;
+            return self.tell_turns(session, &mut database, vehicle.as_ref(), set.policy, (area, beside));
         }
+        let mut beside = compared.as_mut().map(Compared::edges).transpose()?;
         let options = QueryOptions {
             area,
             verdict: self.verdict,
@@ -104,13 +125,16 @@ impl Query {
             min_width_source: self.width_source,
             ..QueryOptions::new(&self.vehicle, set.policy)
         };
-        let head = Head { vehicle: self.vehicle.clone(), policy: set.policy, scope: scope(vehicle.as_ref()) };
+        let head = self.head(set.policy, scope(vehicle.as_ref()));
         let mut totals = Totals::default();
         let mut sink = Sink::begin(self.format, &head, results())?;
         for row in database.query(&options)? {
             let row = row?;
-            totals.add(&row);
-            sink.row(&row)?;
+            let relative = relative::beside(&mut beside, row.edge, &row.certificate)?;
+            if self.shows(relative) {
+                totals.add(&row, relative);
+                sink.row(&row, relative)?;
+            }
         }
         sink.end()?;
         session.progress.say(&totals.to_string());
@@ -124,19 +148,36 @@ impl Query {
         database: &mut Database,
         vehicle: Option<&Vehicle>,
         policy: Policy,
-        area: Option<Area>,
+        (area, mut beside): (Option<Area>, Option<Beside<'_>>),
     ) -> anyhow::Result<()> {
         let (verdict, min_rsc_m) = (self.verdict, self.min_rsc);
-        let rows =
-            database.query_turns(&TurnQuery { area, verdict, min_rsc_m, ..TurnQuery::new(&self.vehicle, policy) })?;
+        let options = TurnQuery { area, verdict, min_rsc_m, ..TurnQuery::new(&self.vehicle, policy) };
+        let mut rows = Vec::new();
+        for row in database.query_turns(&options)? {
+            let relative = relative::beside(&mut beside, row.turn, &row.certificate)?;
+            if self.shows(relative) {
+                rows.push((row, relative));
+            }
+        }
         let scope = format!("{} Kerb radii of corners are assumed where no surface is mapped.", scope(vehicle));
-        let head = Head { vehicle: self.vehicle.clone(), policy, scope };
+        let head = self.head(policy, scope);
         let mut out = results();
         turn_rows::write(self.format, &head, &rows, &mut out)?;
         out.flush()?;
         session.progress.say(&turn_rows::totals(&rows));
         session.progress.say(&head.scope);
         Ok(())
+    }
+
+    fn head(&self, policy: Policy, mut scope: String) -> Head {
+        let relative_to = self.relative.relative_to.clone();
+        scope += &relative_to.as_deref().map_or_else(String::new, relative::scope);
+        Head { vehicle: self.vehicle.clone(), policy, scope, relative_to }
+    }
+
+    /// Whether a row is shown that the database gave.
+    fn shows(&self, relative: Option<Relative>) -> bool {
+        !self.as_reference || relative.is_some_and(|relative| relative.as_reference)
     }
 }
 
@@ -157,15 +198,21 @@ struct Totals {
     edges: u64,
     by_verdict: BTreeMap<&'static str, f64>,
     safe_by_source: BTreeMap<Option<WidthSource>, f64>,
+    /// Metres of road on which the vehicle needs no more room than the reference, by verdict. `None` without a reference.
+    as_reference: Option<BTreeMap<&'static str, f64>>,
 }
 
 impl Totals {
-    fn add(&mut self, row: &EdgeRow) {
+    fn add(&mut self, row: &EdgeRow, relative: Option<Relative>) {
         self.edges += 1;
         let (verdict, _) = verdict_words(row.certificate.verdict);
         *self.by_verdict.entry(verdict).or_default() += row.length_m;
         if verdict == VerdictKind::Safe.name() {
             *self.safe_by_source.entry(row.width_source).or_default() += row.length_m;
+        }
+        if let Some(relative) = relative {
+            let metres = self.as_reference.get_or_insert_default().entry(verdict).or_default();
+            *metres += if relative.as_reference { row.length_m } else { 0.0 };
         }
     }
 }
@@ -186,6 +233,11 @@ impl std::fmt::Display for Totals {
             .collect();
         if !sources.is_empty() {
             write!(f, "\nwidths behind `safe`: {}", sources.join(", "))?;
+        }
+        if let Some(lengths) = &self.as_reference {
+            let of = |kind: &VerdictKind| Some(format!("{} {} km", kind.name(), km(*lengths.get(kind.name())?)));
+            let lengths: Vec<String> = VerdictKind::ALL.iter().filter_map(of).collect();
+            write!(f, "\nas the reference: {}", lengths.join(", "))?;
         }
         Ok(())
     }

@@ -6,11 +6,12 @@ use std::io::{self, BufWriter, StdoutLock, Write};
 
 use clap::ValueEnum;
 use netcert::osm::facts::{Policy, WidthSource};
-use netcert::rows::{Cell, Column, EdgeRow};
+use netcert::rows::{Cell, Column, EdgeRow, Relative};
 use netcert::words::{Named, verdict_words};
 use serde_json::{Map, Value, json};
 
 use super::output::printable;
+use super::relative;
 
 /// Form of the answer.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -27,6 +28,8 @@ pub(crate) struct Head {
     pub(crate) policy: Policy,
     /// The sentence that says what `safe` means.
     pub(crate) scope: String,
+    /// The reference vehicle, if rows are compared with one.
+    pub(crate) relative_to: Option<String>,
 }
 
 /// Writes rows in one format to standard output.
@@ -44,36 +47,49 @@ impl<'h> Sink<'h> {
         match format {
             Format::Table => writeln!(
                 sink.out,
-                "{:>19}  {:>11} {:<8}  {:<14} {:>8}  {:>7} {:<10}  {:>7}  {:>8}  {:<22} road",
-                "edge_id", "way", "dir", "highway", "length", "width", "source", "rsc", "hinge", "verdict"
+                "{:>19}  {:>11} {:<8}  {:<14} {:>8}  {:>7} {:<10}  {:>7}  {:>8}  {:<22} {}road",
+                "edge_id",
+                "way",
+                "dir",
+                "highway",
+                "length",
+                "width",
+                "source",
+                "rsc",
+                "hinge",
+                "verdict",
+                head.heading()
             )?,
-            Format::Csv => writeln!(sink.out, "{}", names(&EdgeRow::COLUMNS))?,
+            Format::Csv => writeln!(sink.out, "{}", head.names(&EdgeRow::COLUMNS))?,
             Format::Json => {
                 let (vehicle, scope) = (json!(head.vehicle), json!(head.scope));
                 write!(
                     sink.out,
-                    "{{\"netcert\":\"{}\",\"vehicle_id\":{vehicle},\"corridor\":\"{}\",\"scope\":{scope},\"edges\":[",
+                    "{{\"netcert\":\"{}\",\"vehicle_id\":{vehicle},\"corridor\":\"{}\",{}\"scope\":{scope},\"edges\":[",
                     env!("CARGO_PKG_VERSION"),
-                    head.policy.name()
+                    head.policy.name(),
+                    head.member()
                 )?;
             }
-            // `scope` is a foreign member, which RFC 7946, section 6.1, allows.
+            // `relative_to` and `scope` are foreign members, which RFC 7946, section 6.1, allows.
             Format::Geojson => {
-                write!(sink.out, "{{\"type\":\"FeatureCollection\",\"scope\":{},\"features\":[", json!(head.scope))?;
+                let (member, scope) = (head.member(), json!(head.scope));
+                write!(sink.out, "{{\"type\":\"FeatureCollection\",{member}\"scope\":{scope},\"features\":[")?;
             }
         }
         Ok(sink)
     }
 
-    pub(crate) fn row(&mut self, row: &EdgeRow) -> io::Result<()> {
+    /// Writes a row, with its comparison if the head names a reference.
+    pub(crate) fn row(&mut self, row: &EdgeRow, relative: Option<Relative>) -> io::Result<()> {
         match self.format {
-            Format::Table => self.line(row)?,
+            Format::Table => self.line(row, relative)?,
             Format::Csv => {
-                let cells: Vec<String> = self.members(row).iter().map(|(_, value)| csv(value)).collect();
+                let cells: Vec<String> = self.members(row, relative).iter().map(|(_, value)| csv(value)).collect();
                 writeln!(self.out, "{}", cells.join(","))?;
             }
             Format::Json => {
-                let members = Value::Object(self.members(row));
+                let members = Value::Object(self.members(row, relative));
                 self.item(&members)?;
             }
             Format::Geojson => {
@@ -82,7 +98,7 @@ impl<'h> Sink<'h> {
                     "type": "Feature",
                     "id": row.edge_id.to_string(),
                     "geometry": {"type": "LineString", "coordinates": coordinates},
-                    "properties": self.members(row),
+                    "properties": self.members(row, relative),
                 });
                 self.item(&feature)?;
             }
@@ -104,14 +120,14 @@ impl<'h> Sink<'h> {
         write!(self.out, "{between}{value}")
     }
 
-    fn line(&mut self, row: &EdgeRow) -> io::Result<()> {
+    fn line(&mut self, row: &EdgeRow, relative: Option<Relative>) -> io::Result<()> {
         let (verdict, reason) = verdict_words(row.certificate.verdict);
         let verdict = if reason.is_empty() { verdict.to_owned() } else { format!("{verdict}: {reason}") };
         let road: Vec<&str> = [&row.reference, &row.name].into_iter().flatten().map(String::as_str).collect();
         let (metres, degrees) = (|m: f64| format!("{m:.2} m"), |d: f64| format!("{d:.1}°"));
         writeln!(
             self.out,
-            "{:>19}  {:>11} {:<8}  {:<14} {:>8}  {:>7} {:<10}  {:>7}  {:>8}  {:<22} {}",
+            "{:>19}  {:>11} {:<8}  {:<14} {:>8}  {:>7} {:<10}  {:>7}  {:>8}  {:<22} {}{}",
             row.edge_id,
             row.way_id,
             row.direction.name(),
@@ -122,23 +138,52 @@ impl<'h> Sink<'h> {
             row.certificate.rsc_m.map_or(String::new(), metres),
             row.certificate.hinge_angle_deg().map_or(String::new(), degrees),
             verdict,
+            columns(relative),
             printable(&road.join(" ")),
         )
     }
 
-    fn members(&self, row: &EdgeRow) -> Map<String, Value> {
-        members(&EdgeRow::COLUMNS, row.cells(&self.head.vehicle, self.head.policy))
+    fn members(&self, row: &EdgeRow, relative: Option<Relative>) -> Map<String, Value> {
+        members(&EdgeRow::COLUMNS, row.cells(&self.head.vehicle, self.head.policy), relative)
     }
 }
 
-/// The header line of CSV.
-pub(super) fn names(columns: &[Column]) -> String {
-    columns.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(",")
+impl Head {
+    /// The header line of CSV.
+    pub(super) fn names(&self, columns: &[Column]) -> String {
+        let more = if self.relative_to.is_some() { &Relative::COLUMNS[..] } else { &[] };
+        columns.iter().chain(more).map(|(name, _)| *name).collect::<Vec<_>>().join(",")
+    }
+
+    /// The headings of the columns that compare, in a table for people.
+    pub(super) fn heading(&self) -> String {
+        self.relative_to.as_ref().map_or_else(String::new, |_| padded(&["relative_m", "as_reference"]))
+    }
+
+    /// The member of JSON that names the reference.
+    pub(super) fn member(&self) -> String {
+        self.relative_to.as_ref().map_or_else(String::new, |id| format!("\"relative_to\":{},", json!(id)))
+    }
 }
 
-/// The members of a JSON object with these columns.
-pub(super) fn members<const N: usize>(columns: &[Column; N], cells: [Cell<'_>; N]) -> Map<String, Value> {
-    columns.iter().map(|(name, _)| (*name).to_owned()).zip(cells.map(Value::from)).collect()
+/// The columns that compare, in a table for people.
+pub(super) fn columns(relative: Option<Relative>) -> String {
+    relative.map_or_else(String::new, |relative| padded(&relative::words(relative)))
+}
+
+fn padded(cells: &[impl AsRef<str>; 2]) -> String {
+    let [relative_m, as_reference] = cells.each_ref().map(AsRef::as_ref);
+    format!("{relative_m:>10}  {as_reference:<12}  ")
+}
+
+/// The members of a JSON object with these columns, and after them those of the comparison.
+pub(super) fn members<const N: usize>(
+    columns: &[Column; N],
+    cells: [Cell<'_>; N],
+    relative: Option<Relative>,
+) -> Map<String, Value> {
+    let own = columns.iter().map(|(name, _)| (*name).to_owned()).zip(cells.map(Value::from));
+    own.chain(relative.into_iter().flat_map(relative::members)).collect()
 }
 
 /// A cell of CSV by RFC 4180. Null is an empty cell.

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use netcert::rows::TurnRow;
+use netcert::rows::{Relative, TurnRow};
 use netcert::turns::KerbSource;
 use netcert::words::{Named, VerdictKind, verdict_words};
 use serde_json::{Map, Value, json};
@@ -13,12 +13,15 @@ use serde_json::{Map, Value, json};
 use super::output::{grouped, printable};
 use super::rows::{self, Format, Head, csv};
 
+/// A turn with its comparison, if there is one.
+pub(super) type Row = (TurnRow, Option<Relative>);
+
 /// Writes all rows.
-pub(super) fn write(format: Format, head: &Head, rows: &[TurnRow], out: &mut dyn Write) -> io::Result<()> {
+pub(super) fn write(format: Format, head: &Head, rows: &[Row], out: &mut dyn Write) -> io::Result<()> {
     match format {
-        Format::Table => table(rows, out),
+        Format::Table => table(head, rows, out),
         Format::Csv => {
-            writeln!(out, "{}", rows::names(&TurnRow::COLUMNS))?;
+            writeln!(out, "{}", head.names(&TurnRow::COLUMNS))?;
             for row in rows {
                 let cells: Vec<String> = members(head, row).iter().map(|(_, value)| csv(value)).collect();
                 writeln!(out, "{}", cells.join(","))?;
@@ -30,17 +33,19 @@ pub(super) fn write(format: Format, head: &Head, rows: &[TurnRow], out: &mut dyn
             let (version, policy) = (env!("CARGO_PKG_VERSION"), head.policy.name());
             write!(
                 out,
-                "{{\"netcert\":\"{version}\",\"vehicle_id\":{vehicle},\"corridor\":\"{policy}\",\"scope\":{scope},\"turns\":["
+                "{{\"netcert\":\"{version}\",\"vehicle_id\":{vehicle},\"corridor\":\"{policy}\",{}\"scope\":{scope},\"turns\":[",
+                head.member()
             )?;
             items(out, rows.iter().map(|row| Value::Object(members(head, row))))
         }
         Format::Geojson => {
-            write!(out, "{{\"type\":\"FeatureCollection\",\"scope\":{},\"features\":[", json!(head.scope))?;
-            let feature = |row: &TurnRow| {
-                let coordinates: Vec<Value> = row.line.iter().map(|place| json!(place.degrees())).collect();
+            let (member, scope) = (head.member(), json!(head.scope));
+            write!(out, "{{\"type\":\"FeatureCollection\",{member}\"scope\":{scope},\"features\":[")?;
+            let feature = |row: &Row| {
+                let coordinates: Vec<Value> = row.0.line.iter().map(|place| json!(place.degrees())).collect();
                 json!({
                     "type": "Feature",
-                    "id": row.turn_id.to_string(),
+                    "id": row.0.turn_id.to_string(),
                     "geometry": {"type": "LineString", "coordinates": coordinates},
                     "properties": members(head, row),
                 })
@@ -57,19 +62,27 @@ fn items(out: &mut dyn Write, values: impl Iterator<Item = Value>) -> io::Result
     writeln!(out, "\n]}}")
 }
 
-fn table(rows: &[TurnRow], out: &mut dyn Write) -> io::Result<()> {
+fn table(head: &Head, rows: &[Row], out: &mut dyn Write) -> io::Result<()> {
     writeln!(
         out,
-        "{:>19}  {:>11} {:<12} {:>6}  {:>6}  {:>7}  {:>7}  {:<22} from → to",
-        "turn_id", "node", "kind", "angle", "kerb", "rsc", "hinge", "verdict"
+        "{:>19}  {:>11} {:<12} {:>6}  {:>6}  {:>7}  {:>7}  {:<22} {}from → to",
+        "turn_id",
+        "node",
+        "kind",
+        "angle",
+        "kerb",
+        "rsc",
+        "hinge",
+        "verdict",
+        head.heading()
     )?;
-    for row in rows {
+    for (row, relative) in rows {
         let (verdict, reason) = verdict_words(row.certificate.verdict);
         let verdict = if reason.is_empty() { verdict.to_owned() } else { format!("{verdict}: {reason}") };
         let name = |name: &Option<String>| printable(name.as_deref().unwrap_or("–"));
         writeln!(
             out,
-            "{:>19}  {:>11} {:<12} {:>5.0}°  {:>6}  {:>7}  {:>7}  {:<22} {} → {}",
+            "{:>19}  {:>11} {:<12} {:>5.0}°  {:>6}  {:>7}  {:>7}  {:<22} {}{} → {}",
             row.turn_id,
             row.via_node,
             row.kind,
@@ -78,6 +91,7 @@ fn table(rows: &[TurnRow], out: &mut dyn Write) -> io::Result<()> {
             row.certificate.rsc_m.map_or(String::new(), |m| format!("{m:.2} m")),
             row.certificate.hinge_angle_deg().map_or(String::new(), |d| format!("{d:.1}°")),
             verdict,
+            rows::columns(*relative),
             name(&row.from_name),
             name(&row.to_name),
         )?;
@@ -91,14 +105,14 @@ fn kerb(row: &TurnRow) -> String {
     row.kerb_radius_m.map_or_else(|| mapped.unwrap_or_default().to_owned(), |m| format!("{m:.1} m"))
 }
 
-fn members(head: &Head, row: &TurnRow) -> Map<String, Value> {
-    rows::members(&TurnRow::COLUMNS, row.cells(&head.vehicle, head.policy))
+fn members(head: &Head, (row, relative): &Row) -> Map<String, Value> {
+    rows::members(&TurnRow::COLUMNS, row.cells(&head.vehicle, head.policy), *relative)
 }
 
 /// The number of turns by verdict, in one line.
-pub(super) fn totals(rows: &[TurnRow]) -> String {
+pub(super) fn totals(rows: &[Row]) -> String {
     let mut by_verdict: BTreeMap<&str, u64> = BTreeMap::new();
-    for row in rows {
+    for (row, _) in rows {
         *by_verdict.entry(verdict_words(row.certificate.verdict).0).or_default() += 1;
     }
     let mut text = format!("{} turns", grouped(rows.len() as u64));

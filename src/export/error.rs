@@ -50,6 +50,14 @@ pub enum ExportError {
         /// The name of the extract when it was read.
         input: String,
     },
+    /// The target has no columns for a comparison.
+    #[error("{target} has no columns for --relative-to; these targets have: {others}")]
+    NoReference {
+        /// The target.
+        target: &'static str,
+        /// The targets that have columns.
+        others: String,
+    },
     /// The given extract is not the one that the database was made from.
     #[error(
         "{path}: not the extract that {database} was made from: blake3 {found}, wanted {wanted} ({input}); give that file, or \

@@ -15,6 +15,10 @@ use crate::words::Named;
 /// The source and licence of the data: <https://opendatacommons.org/licenses/odbl/1-0/>
 const LICENCE: &str = "© OpenStreetMap contributors, ODbL 1.0";
 
+/// What a comparison says. It stands beside the scope of permits.
+const AS_REFERENCE: &str = "as_reference: by their certificates on the same road, the vehicle needs no more room than this one. It \
+                            makes nothing safe and opens no permit.";
+
 /// The origin of the database and of the vehicle's certificates.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Provenance {
@@ -42,6 +46,8 @@ pub struct Provenance {
     pub vehicle_blake3: String,
     /// The vehicle's tracking tolerance, metres.
     pub tracking_tolerance_m: f64,
+    /// Name and blake3 hash of the definition of the vehicle that is compared with.
+    pub relative_to: Option<(String, String)>,
 }
 
 impl Provenance {
@@ -51,6 +57,7 @@ impl Provenance {
         let record = database.vehicles()?.into_iter().find(|record| record.id == *id).ok_or_else(|| {
             StoreError::NotThere { path: ask.db.clone(), detail: format!("{id} is not certified here") }
         })?;
+        let other = database.vehicles()?.into_iter().find(|record| Some(&record.id) == ask.relative_to.as_ref());
         let damaged = |detail: String| StoreError::Damaged { path: ask.db.clone(), detail };
         let vehicle = Vehicle::from_json(&record.definition).map_err(|e| damaged(e.to_string()))?;
         let runs = database.runs()?;
@@ -72,6 +79,7 @@ impl Provenance {
             vehicle: serde_json::from_str(&record.definition).unwrap_or_default(),
             vehicle_blake3: record.blake3(),
             tracking_tolerance_m: vehicle.tracking_tolerance_m,
+            relative_to: other.map(|record| (record.name.clone(), record.blake3())),
         })
     }
 }
@@ -108,7 +116,7 @@ impl Header {
     #[must_use]
     pub fn json(&self) -> Value {
         let (p, ask) = (&self.provenance, &self.ask);
-        json!({
+        let mut header = json!({
             "netcert": env!("CARGO_PKG_VERSION"),
             "scope": self.scope(),
             "licence": LICENCE,
@@ -124,7 +132,11 @@ impl Header {
             "database": {"name": p.database, "blake3": p.database_blake3},
             "input": {"name": p.input, "blake3": p.input_blake3, "timestamp": p.input_timestamp},
             "made_by": {"netcert": p.made_by, "parameters": p.parameters},
-        })
+        });
+        if let (Some(id), Some((name, blake3))) = (&ask.relative_to, &p.relative_to) {
+            header["relative_to"] = json!({"id": id, "name": name, "blake3": blake3, "scope": AS_REFERENCE});
+        }
+        header
     }
 
     /// The header as pairs of name and text, such as `permit.edges.permitted`, for formats with flat metadata.

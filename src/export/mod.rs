@@ -54,6 +54,7 @@ pub fn export(
     options: &formats::Options,
     (out, unfinished): (Out, Unfinished),
 ) -> Result<(), ExportError> {
+    formats::check_reference(target, source.ask.relative_to.as_deref())?;
     let mut place = Place::begin(out, target.layout(options), unfinished)?;
     let written = target.write(source, options, &mut place).and_then(|()| {
         if place.is_folder() {

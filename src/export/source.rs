@@ -13,7 +13,7 @@ use crate::osm::facts::Policy;
 use crate::reporter::Reporter;
 use crate::route::Permit;
 use crate::rows::{EdgeRow, TurnRow};
-use crate::store::{Database, QueryOptions, StoreError};
+use crate::store::{Database, QueryOptions, Reference, StoreError};
 
 /// What to export. The vehicle and its turns must be certified under the policy.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +28,8 @@ pub struct Ask {
     pub rule: PermitPolicy,
     /// The extract that the database was made from, for targets that need it.
     pub extract: Option<PathBuf>,
+    /// The vehicle to compare with, for targets that have columns. It must be certified like `vehicle`. No permit depends on it.
+    pub relative_to: Option<String>,
 }
 
 /// An edge with all its columns.
@@ -56,6 +58,8 @@ pub struct Source<'r> {
     pub header: Header,
     /// The permitted edges and turns.
     pub permitted: Permitted,
+    /// The vehicle to compare with.
+    pub reference: Option<Reference>,
     /// The receiver of progress reports.
     pub reporter: &'r dyn Reporter,
 }
@@ -71,10 +75,11 @@ impl<'r> Source<'r> {
     pub fn open(ask: Ask, reporter: &'r dyn Reporter) -> Result<Self, ExportError> {
         let mut database = Database::open_to_stream(&ask.db)?;
         check_certified(&mut database, &ask)?;
+        let reference = reference(&mut database, &ask)?;
         let provenance = Provenance::of(&mut database, &ask)?;
         let permitted = permitted(&mut database, &ask, reporter)?;
         let header = Header::new(provenance, &ask, &permitted);
-        Ok(Self { ask, header, permitted, reporter })
+        Ok(Self { ask, header, permitted, reference, reporter })
     }
 
     /// Opens a connection for one stream of rows. Several may be open at the same time.
@@ -151,6 +156,15 @@ fn check_certified(database: &mut Database, ask: &Ask) -> Result<(), ExportError
         return Err(StoreError::turns_not_certified(&ask.db, vehicle, *policy).into());
     }
     Ok(())
+}
+
+fn reference(database: &mut Database, ask: &Ask) -> Result<Option<Reference>, ExportError> {
+    let Some(id) = &ask.relative_to else { return Ok(None) };
+    let set = database.certified_set(&ask.vehicle, ask.policy)?;
+    let set = set.ok_or_else(|| StoreError::not_certified(&ask.db, &ask.vehicle, ask.policy))?;
+    let reference = database.reference(&set, id)?;
+    reference.check_turns(database)?;
+    Ok(Some(reference))
 }
 
 fn permitted(database: &mut Database, ask: &Ask, reporter: &dyn Reporter) -> Result<Permitted, ExportError> {

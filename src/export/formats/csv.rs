@@ -23,10 +23,14 @@ impl Target for Csv {
         one_file_a_layer(self.name(), options)
     }
 
+    fn has_columns(&self) -> bool {
+        true
+    }
+
     fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
         for layer in asked(options) {
             let mut sink = place.create(&format!("{}.csv", layer.name()))?;
-            head(&mut sink, layer.columns())?;
+            head(&mut sink, &layer.columns(source))?;
             layer.each(source, |row| Ok(line(&mut sink, row.cells)?))?;
             sink.close()?;
         }

@@ -6,7 +6,7 @@
 use std::io::{self, Write};
 
 use super::layers::{Row, asked};
-use super::{Layer, Options, Target, one_file_a_layer};
+use super::{Options, Target, one_file_a_layer};
 use crate::export::{ExportError, Layout, Place, Source};
 use crate::osm::LonLat;
 use crate::rows::{Cell, Column};
@@ -33,16 +33,21 @@ impl Target for GeoJson {
         one_file_a_layer(self.name(), options)
     }
 
+    fn has_columns(&self) -> bool {
+        true
+    }
+
     fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
         for layer in asked(options) {
             let mut sink = place.create(&format!("{}.geojson", layer.name()))?;
             let (name, header) = (layer.name(), source.header.json());
             write!(sink, "{{\"type\":\"FeatureCollection\",\"name\":\"{name}\",\"netcert\":{header},\"features\":[")?;
+            let columns = layer.columns(source);
             let mut between = "\n";
             layer.each(source, |row| {
                 sink.write_all(between.as_bytes())?;
                 between = ",\n";
-                Ok(feature(&mut sink, layer, row, None)?)
+                Ok(feature(&mut sink, &columns, row, None)?)
             })?;
             sink.write_all(b"\n]}\n")?;
             sink.close()?;
@@ -64,13 +69,18 @@ impl Target for GeoJsonSeq {
         one_file_a_layer(self.name(), options)
     }
 
+    fn has_columns(&self) -> bool {
+        true
+    }
+
     fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
         for layer in asked(options) {
             let mut sink = place.create(&format!("{}.geojsons", layer.name()))?;
+            let columns = layer.columns(source);
             let mut header = Some(source.header.json().to_string());
             layer.each(source, |row| {
                 sink.write_all(&[RECORD_SEPARATOR])?;
-                feature(&mut sink, layer, row, header.take().as_deref())?;
+                feature(&mut sink, &columns, row, header.take().as_deref())?;
                 Ok(sink.write_all(b"\n")?)
             })?;
             sink.close()?;
@@ -79,11 +89,11 @@ impl Target for GeoJsonSeq {
     }
 }
 
-fn feature(out: &mut dyn Write, layer: Layer, row: &Row<'_>, header: Option<&str>) -> io::Result<()> {
+fn feature(out: &mut dyn Write, columns: &[Column], row: &Row<'_>, header: Option<&str>) -> io::Result<()> {
     write!(out, "{{\"type\":\"Feature\",\"id\":\"{}\",\"geometry\":", row.id)?;
     line_string(out, row.line)?;
     out.write_all(b",\"properties\":")?;
-    properties(out, layer.columns(), row.cells)?;
+    properties(out, columns, row.cells)?;
     if let Some(header) = header {
         write!(out, ",\"netcert\":{header}")?;
     }

@@ -17,11 +17,10 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 
 use super::layers::{Row, asked};
-use super::{Layer, Options, Target, one_file_a_layer};
+use super::{Options, Target, one_file_a_layer};
 use crate::export::{ExportError, Layout, Place, Sink, Source};
 use crate::osm::LonLat;
-use crate::rows::Bounds;
-use crate::rows::{Cell, Kind};
+use crate::rows::{self, Bounds, Cell, Kind};
 
 /// `geoparquet`
 pub(super) struct GeoParquet;
@@ -45,11 +44,17 @@ impl Target for GeoParquet {
         one_file_a_layer(self.name(), options)
     }
 
+    fn has_columns(&self) -> bool {
+        true
+    }
+
     fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
         for layer in asked(options) {
-            let mut file = Table::create(layer, place.create(&format!("{}.parquet", layer.name()))?)?;
+            let columns = layer.columns(source);
+            let sink = place.create(&format!("{}.parquet", layer.name()))?;
+            let mut file = Table::create(schema(layer.name(), &columns).map_err(failed)?, &columns, sink)?;
             layer.each(source, |row| file.push(row))?;
-            file.close(layer, &source.header.json().to_string())?;
+            file.close(&columns, &source.header.json().to_string())?;
         }
         Ok(())
     }
@@ -66,14 +71,13 @@ struct Table {
 }
 
 impl Table {
-    fn create(layer: Layer, sink: Sink) -> Result<Self, ExportError> {
+    fn create(schema: Type, columns: &[rows::Column], sink: Sink) -> Result<Self, ExportError> {
         let properties = WriterProperties::builder()
             .set_compression(Compression::SNAPPY)
             .set_created_by(concat!("netcert ", env!("CARGO_PKG_VERSION")).to_owned())
             .build();
-        let writer =
-            SerializedFileWriter::new(Vec::new(), Arc::new(schema(layer).map_err(failed)?), Arc::new(properties));
-        let group = layer.columns().iter().map(|column| Column::of(column.1)).collect();
+        let writer = SerializedFileWriter::new(Vec::new(), Arc::new(schema), Arc::new(properties));
+        let group = columns.iter().map(|column| Column::of(column.1)).collect();
         let (lines, boxes) = (Vec::new(), Default::default());
         Ok(Self { writer: writer.map_err(failed)?, sink, group, lines, boxes, bounds: None })
     }
@@ -120,11 +124,11 @@ impl Table {
         Ok(())
     }
 
-    fn close(mut self, layer: Layer, header: &str) -> Result<(), ExportError> {
+    fn close(mut self, columns: &[rows::Column], header: &str) -> Result<(), ExportError> {
         if !self.lines.is_empty() {
             self.end_group()?;
         }
-        let pandas = metadata::pandas(layer.columns());
+        let pandas = metadata::pandas(columns);
         for (key, value) in [("geo", metadata::geo(self.bounds)), ("netcert", header.to_owned()), ("pandas", pandas)] {
             self.writer.append_key_value_metadata(KeyValue { key: key.to_owned(), value: Some(value) });
         }
@@ -199,27 +203,27 @@ impl Column {
     }
 }
 
-fn schema(layer: Layer) -> Result<Type, ParquetError> {
+fn schema(name: &str, columns: &[rows::Column]) -> Result<Type, ParquetError> {
     let column = |name: &str, physical, repetition, logical| {
         let column = Type::primitive_type_builder(name, physical).with_repetition(repetition);
         Ok::<_, ParquetError>(Arc::new(column.with_logical_type(logical).build()?))
     };
     let mut fields = Vec::new();
-    for &(name, kind) in layer.columns() {
+    for &(column_name, kind) in columns {
         let (physical, repetition, logical) = match kind {
             Kind::Integer => (Physical::INT64, Repetition::OPTIONAL, None),
             Kind::Real => (Physical::DOUBLE, Repetition::OPTIONAL, None),
             Kind::Text => (Physical::BYTE_ARRAY, Repetition::OPTIONAL, Some(LogicalType::String)),
             Kind::Flag => (Physical::BOOLEAN, Repetition::REQUIRED, None),
         };
-        fields.push(column(name, physical, repetition, logical)?);
+        fields.push(column(column_name, physical, repetition, logical)?);
     }
     fields.push(column("geometry", Physical::BYTE_ARRAY, Repetition::REQUIRED, None)?);
     let sides = SIDES.map(|side| column(side, Physical::DOUBLE, Repetition::REQUIRED, None));
     let sides = sides.into_iter().collect::<Result<Vec<_>, _>>()?;
     let around = Type::group_type_builder("bbox").with_repetition(Repetition::REQUIRED).with_fields(sides).build()?;
     fields.push(Arc::new(around));
-    Type::group_type_builder(layer.name()).with_fields(fields).build()
+    Type::group_type_builder(name).with_fields(fields).build()
 }
 
 /// A line string as well-known binary (ISO 19125), little endian.

@@ -3,7 +3,8 @@
 use super::{EDGE_COLUMNS, Layer, Options, TURN_COLUMNS, edge_cells, turn_cells};
 use crate::export::{ExportError, Refusal, Source};
 use crate::osm::LonLat;
-use crate::rows::{Cell, Column};
+use crate::rows::{Cell, Column, Relative, Standing};
+use crate::store::{Beside, Database, Reference};
 
 /// One row of a layer.
 pub(super) struct Row<'r> {
@@ -25,13 +26,15 @@ impl Layer {
         }
     }
 
-    /// The layer's columns.
+    /// The layer's columns. Those of a comparison come last.
     #[must_use]
-    pub fn columns(self) -> &'static [Column] {
-        match self {
-            Self::Edges => &EDGE_COLUMNS,
-            Self::Turns => &TURN_COLUMNS,
-        }
+    pub fn columns(self, source: &Source<'_>) -> Vec<Column> {
+        let own = match self {
+            Self::Edges => &EDGE_COLUMNS[..],
+            Self::Turns => &TURN_COLUMNS[..],
+        };
+        let more = if source.reference.is_some() { &Relative::COLUMNS[..] } else { &[] };
+        [own, more].concat()
     }
 
     /// Number of rows in the layer.
@@ -51,26 +54,56 @@ impl Layer {
         mut put: impl FnMut(&Row<'_>) -> Result<(), ExportError>,
     ) -> Result<(), ExportError> {
         let mut database = source.database()?;
+        let mut compared = Compared::open(source)?;
         match self {
             Self::Edges => {
+                let mut beside = compared.edges()?;
                 for edge in source.edges(&mut database)? {
                     let edge = edge?;
                     let refusal = edge.refusal.map_or_else(String::new, Refusal::words);
-                    let cells = edge_cells(source, &edge, &refusal);
+                    let own = Standing::of(&edge.row.certificate);
+                    let relative = beside.as_mut().map(|other| other.relative(edge.row.edge, own)).transpose()?;
+                    let cells = with_relative(&edge_cells(source, &edge, &refusal), relative);
                     put(&Row { id: edge.row.edge_id, cells: &cells, line: &edge.row.line })?;
                 }
             }
             Self::Turns => {
+                let mut beside = compared.turns()?;
                 for turn in source.turns(&mut database)? {
                     let turn = turn?;
                     let refusal = turn.refusal.map_or_else(String::new, Refusal::words);
-                    let cells = turn_cells(source, &turn, &refusal);
+                    let own = Standing::of(&turn.row.certificate);
+                    let relative = beside.as_mut().map(|other| other.relative(turn.row.turn, own)).transpose()?;
+                    let cells = with_relative(&turn_cells(source, &turn, &refusal), relative);
                     put(&Row { id: turn.row.turn_id, cells: &cells, line: &turn.row.line })?;
                 }
             }
         }
         Ok(())
     }
+}
+
+/// The reference of an export with a connection of its own, if there is one.
+struct Compared<'s>(Option<(&'s Reference, Database)>);
+
+impl<'s> Compared<'s> {
+    fn open(source: &'s Source<'_>) -> Result<Self, ExportError> {
+        let with_database = |reference| Ok::<_, ExportError>((reference, source.database()?));
+        Ok(Self(source.reference.as_ref().map(with_database).transpose()?))
+    }
+
+    fn edges(&mut self) -> Result<Option<Beside<'_>>, ExportError> {
+        Ok(self.0.as_mut().map(|(reference, database)| reference.edges(database)).transpose()?)
+    }
+
+    fn turns(&mut self) -> Result<Option<Beside<'_>>, ExportError> {
+        Ok(self.0.as_mut().map(|(reference, database)| reference.turns(database)).transpose()?)
+    }
+}
+
+fn with_relative<'r>(cells: &[Cell<'r>], relative: Option<Relative>) -> Vec<Cell<'r>> {
+    let more = relative.into_iter().flat_map(|relative| -> [Cell<'r>; 2] { relative.cells() });
+    cells.iter().copied().chain(more).collect()
 }
 
 /// The layers to write.

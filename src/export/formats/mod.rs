@@ -55,6 +55,11 @@ pub trait Target: Sync {
         false
     }
 
+    /// Whether the target writes columns, and so takes a reference vehicle ([`super::Ask::relative_to`]).
+    fn has_columns(&self) -> bool {
+        false
+    }
+
     /// Writes the whole output. The caller finishes `place`.
     ///
     /// # Errors
@@ -82,6 +87,18 @@ pub const TARGETS: &[&dyn Target] = &[
 #[must_use]
 pub fn named(name: &str) -> Option<&'static dyn Target> {
     TARGETS.iter().copied().find(|target| target.name() == name)
+}
+
+/// Refuses a reference vehicle where the target has no columns for the comparison.
+///
+/// # Errors
+/// The target has no columns; the error names the targets that have.
+pub fn check_reference(target: &dyn Target, reference: Option<&str>) -> Result<(), ExportError> {
+    if reference.is_none() || target.has_columns() {
+        return Ok(());
+    }
+    let others: Vec<&str> = TARGETS.iter().filter(|target| target.has_columns()).map(|target| target.name()).collect();
+    Err(ExportError::NoReference { target: target.name(), others: others.join(", ") })
 }
 
 /// The layout of a target with one file per layer: a file for one layer, a folder for both.

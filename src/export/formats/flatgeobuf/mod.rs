@@ -40,6 +40,10 @@ impl Target for FlatGeobuf {
         one_file_a_layer(self.name(), options)
     }
 
+    fn has_columns(&self) -> bool {
+        true
+    }
+
     fn write(&self, source: &Source<'_>, options: &Options, place: &mut Place) -> Result<(), ExportError> {
         for layer in asked(options) {
             let mut parts = Parts::create(place)?;
@@ -116,7 +120,7 @@ fn column_type(kind: Kind) -> ColumnType {
 fn header(source: &Source<'_>, layer: Layer, features: u64, bounds: Option<Bounds>) -> Vec<u8> {
     let mut builder = FlatBufferBuilder::new();
     let mut columns = Vec::new();
-    for &(name, kind) in layer.columns() {
+    for &(name, kind) in &layer.columns(source) {
         let name = builder.create_string(name);
         let nullable = kind != Kind::Flag;
         let column = ColumnArgs { name: Some(name), type_: column_type(kind), nullable, ..ColumnArgs::default() };

@@ -1,0 +1,88 @@
+//! `--relative-to REF`: what the verbs share that compare a vehicle with a reference vehicle.
+
+use std::path::Path;
+
+use clap::Args;
+use netcert::osm::facts::Policy;
+use netcert::rows::{Cell, CertificateRow, Relative, Standing};
+use netcert::store::{Beside, Database, Reference, StoreError};
+
+use super::certify_options;
+
+#[derive(Args)]
+pub(crate) struct RelativeArgs {
+    /// Compare with this vehicle on the same road: `relative_m` is the RSC less its RSC, and `as_reference` says that no
+    /// more room is needed than it needs. That is a statement of its own and not `safe`.
+    #[arg(long, value_name = "REF")]
+    pub(crate) relative_to: Option<String>,
+}
+
+impl RelativeArgs {
+    /// Checks that the reference is certified under the policy, turns included. `vehicle` is certified on demand, so it may be
+    /// the reference and not there yet.
+    pub(crate) fn check(&self, path: &Path, vehicle: &str, asked: Option<Policy>) -> anyhow::Result<()> {
+        let Some(id) = self.relative_to.as_deref().filter(|id| *id != vehicle) else { return Ok(()) };
+        let mut database = Database::open(path)?;
+        let policy = certify_options::policy_of(&mut database, asked)?;
+        if let Some(set) = database.certified_set(id, policy)? {
+            return Ok(database.reference(&set, id)?.check_turns(&mut database)?);
+        }
+        // The set is not there, so this call fails with the error that names the command to run.
+        drop(database.query(&netcert::store::QueryOptions::new(id, policy))?);
+        Ok(())
+    }
+}
+
+/// A reference with a connection of its own, from which its certificates are read beside other rows.
+pub(crate) struct Compared {
+    reference: Reference,
+    database: Database,
+}
+
+impl Compared {
+    pub(crate) fn open(path: &Path, reference: Reference) -> Result<Self, StoreError> {
+        Ok(Self { reference, database: Database::open_to_stream(path)? })
+    }
+
+    pub(crate) fn edges(&mut self) -> Result<Beside<'_>, StoreError> {
+        self.reference.edges(&mut self.database)
+    }
+
+    pub(crate) fn turns(&mut self) -> Result<Beside<'_>, StoreError> {
+        self.reference.turns(&mut self.database)
+    }
+}
+
+/// The comparison of a row, if one is asked for.
+pub(crate) fn beside(
+    reference: &mut Option<Beside<'_>>,
+    index: u32,
+    certificate: &CertificateRow,
+) -> Result<Option<Relative>, StoreError> {
+    reference.as_mut().map(|reference| reference.relative(index, Standing::of(certificate))).transpose()
+}
+
+/// What follows the scope of `safe` in an answer that compares.
+pub(crate) fn scope(reference: &str) -> String {
+    format!(
+        " `as_reference` compares with {reference} alone: by their certificates on the same road, the vehicle needs no more room \
+         than {reference}. It makes nothing safe and is no permit."
+    )
+}
+
+/// The additional columns of a table for people: `relative_m`, and a word for `as_reference`.
+pub(crate) fn words(relative: Relative) -> [String; 2] {
+    let relative_m = relative.relative_m.map_or_else(String::new, |m| format!("{m:+.3} m"));
+    let word = match relative {
+        Relative { as_reference: true, .. } => "yes",
+        Relative { relative_m: Some(_), .. } => "no",
+        Relative { relative_m: None, .. } => "",
+    };
+    [relative_m, word.to_owned()]
+}
+
+/// The additional members of a JSON object.
+pub(crate) fn members(relative: Relative) -> impl Iterator<Item = (String, serde_json::Value)> {
+    let names = Relative::COLUMNS.map(|(name, _)| name.to_owned());
+    names.into_iter().zip(relative.cells().map(|cell: Cell<'_>| cell.into()))
+}
