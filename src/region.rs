@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::explain::{self, Explanation, TurnExplanation};
 use crate::osm::facts::Policy;
-use crate::route::{Driver, Measure, NoDriver, Planner, Roads, Speeds, SpeedsError};
+use crate::route::{Driver, Measure, NoDriver, Peer, Planner, Roads, Speeds, SpeedsError};
 use crate::stet::{Model, ModelError};
 use crate::stop::{Stop, Stopped};
 use crate::store::{CertifiedSet, Database, QueryOptions, Rows, StoreError};
@@ -193,6 +193,17 @@ impl Region {
         let (set, vehicle) = self.certified(vehicle, policy)?;
         let roads = self.roads()?;
         Ok(Driver::stored(&mut self.database, &roads, &vehicle, &set)?)
+    }
+
+    /// The vehicle `reference` beside a vehicle, to compare the answers of the vehicle's planner with.
+    ///
+    /// # Errors
+    /// Either vehicle's edges or turns are not certified under this policy, or with different settings; the file cannot be read.
+    pub fn peer(&mut self, vehicle: &str, policy: Policy, reference: &str) -> Result<Peer, RegionError> {
+        let (set, _) = self.certified(vehicle, policy)?;
+        let (_, other) = self.certified(reference, policy)?;
+        let reference = self.database.reference(&set, reference)?;
+        Ok(Peer::stored(&mut self.database, &set, (&reference, &other))?)
     }
 
     /// Explains why an edge is safe or unsafe for a vehicle. The certificate is computed again with the set's settings.

@@ -22,6 +22,7 @@ mod progress;
 mod query;
 mod reach;
 mod relative;
+mod relative_stats;
 mod route;
 mod routing;
 mod rows;

@@ -1,5 +1,6 @@
 //! `--relative-to REF`: what the verbs share that compare a vehicle with a reference vehicle.
 
+use std::io::Write;
 use std::path::Path;
 
 use clap::Args;
@@ -85,4 +86,17 @@ pub(crate) fn words(relative: Relative) -> [String; 2] {
 pub(crate) fn members(relative: Relative) -> impl Iterator<Item = (String, serde_json::Value)> {
     let names = Relative::COLUMNS.map(|(name, _)| name.to_owned());
     names.into_iter().zip(relative.cells().map(|cell: Cell<'_>| cell.into()))
+}
+
+/// Prints the comparison of a route with a reference in one line.
+pub(crate) fn tell(out: &mut dyn Write, id: &str, relative: Relative) -> std::io::Result<()> {
+    let Some(relative_m) = relative.relative_m else {
+        return writeln!(out, "  relative              no comparison with {id}: it has no RSC on this way");
+    };
+    let words = match relative_m {
+        _ if relative.as_reference => "no more room is needed than it needs here",
+        m if m < 0.0 => "more room is needed than it needs here",
+        _ => "a hinge, the steering lock or the law stops it here",
+    };
+    writeln!(out, "  relative     {relative_m:>+8.3} m  beside {id}: {words}")
 }

@@ -10,7 +10,10 @@ use netcert::certificate;
 use netcert::corridor::FileCorridor;
 use netcert::network::{Network, PassageKind};
 use netcert::picture;
-use netcert::route::{self, Answer, Measure, PartKind, PartResult, Planner, Position, Question, Route as Found};
+use netcert::region::Region;
+use netcert::route::{
+    self, Answer, Comparison, Measure, PartKind, PartResult, Peer, Planner, Position, Question, Route as Found,
+};
 use netcert::stop::Stop;
 use netcert::words::{Named, verdict_words};
 
@@ -18,6 +21,7 @@ use super::Session;
 use super::explain::wrapped;
 use super::output::{printable, results};
 use super::position::place;
+use super::relative::{self, RelativeArgs};
 use super::routing::{RoutingArgs, RoutingInputs};
 use super::table::Table;
 
@@ -32,6 +36,7 @@ Examples:
   netcert route --vehicle AU-ATRIPLE53 --from 144.29,-36.74 --to 144.33,-36.80
   netcert route --vehicle EU-SEMI16.5 --from 8.67,49.40 --to 8.70,49.42 --out certificate.json
   netcert verify certificate.json
+  netcert route --vehicle AU-BDOUBLE26 --relative-to AU-SEMI19 --from 144.29,-36.74 --to 144.33,-36.80
 
 The vehicle is straight where the route begins. The search never turns back on the road and ignores
 traffic. Times are by class of road (data/speeds.toml) and tagged limits. The exit status is 0 even if
@@ -60,6 +65,8 @@ pub(crate) struct Route {
     /// Number of whole routes that may fail to certify before the search gives up.
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u16).range(0..=1000))]
     tries: u16,
+    #[command(flatten)]
+    relative: RelativeArgs,
     /// The output format.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
@@ -91,23 +98,41 @@ fn snap_metres(text: &str) -> Result<f64, String> {
 
 impl Route {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        self.inputs.check(&self.relative)?;
         let inputs = self.inputs.load(session, "route")?;
+        let peer = self.peer(&inputs)?;
         let measure = if self.least == Least::Time { Measure::Time } else { Measure::Distance };
         let driver = Arc::clone(&inputs.driver);
         let mut planner = Planner::new(&inputs.roads, driver, inputs.speeds.clone(), measure);
         let places = [self.from].into_iter().chain(self.via.iter().copied()).chain([self.to]).collect();
         let (alternatives, tries) = (usize::from(self.alternatives), usize::from(self.tries));
         let answer = planner.answer(&Question { places, snap_m: self.snap, alternatives, tries }, &Stop::never())?;
+        let stop = Stop::never();
+        let compared = peer.map(|peer| peer.beside(&inputs.driver, &answer, &stop)).transpose()?;
         self.write_files(&inputs, &answer, session)?;
+        let (network, model) = (&inputs.roads.network, &inputs.driver.model);
         let mut out = results();
         match self.format {
-            Format::Json => writeln!(out, "{:#}", route::json(&inputs.roads.network, &inputs.driver.model, &answer))?,
-            Format::Geojson => {
-                writeln!(out, "{}", route::geojson(&inputs.roads.network, &inputs.driver.model, &answer)?)?;
+            Format::Json => {
+                let mut json = route::json(network, model, &answer);
+                compared.iter().for_each(|compared| compared.add_to_json(&mut json));
+                writeln!(out, "{json:#}")?;
             }
-            Format::Table => tell(&mut out, &inputs, &answer)?,
+            Format::Geojson => {
+                let mut json = route::geojson(network, model, &answer)?;
+                compared.iter().for_each(|compared| compared.add_to_geojson(&mut json));
+                writeln!(out, "{json}")?;
+            }
+            Format::Table => tell(&mut out, &inputs, &answer, compared.as_ref())?,
         }
         Ok(out.flush()?)
+    }
+
+    /// The reference vehicle, if one is to be compared with.
+    fn peer(&self, inputs: &RoutingInputs) -> anyhow::Result<Option<Peer>> {
+        let Some(reference) = &self.relative.relative_to else { return Ok(None) };
+        let vehicle = &inputs.driver.model.vehicle.id;
+        Ok(Some(Region::open(&inputs.path)?.peer(vehicle, inputs.settings().policy, reference)?))
     }
 
     fn write_files(&self, inputs: &RoutingInputs, answer: &Answer, session: &Session) -> anyhow::Result<()> {
@@ -139,7 +164,12 @@ fn write(path: &Path, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
     }
 }
 
-fn tell(out: &mut dyn Write, inputs: &RoutingInputs, answer: &Answer) -> std::io::Result<()> {
+fn tell(
+    out: &mut dyn Write,
+    inputs: &RoutingInputs,
+    answer: &Answer,
+    compared: Option<&Comparison>,
+) -> std::io::Result<()> {
     let (network, vehicle) = (&inputs.roads.network, &inputs.driver.model.vehicle);
     for (number, found) in answer.routes.iter().enumerate() {
         let which = if number == 0 { "a certified route" } else { "another one" };
@@ -152,13 +182,17 @@ fn tell(out: &mut dyn Write, inputs: &RoutingInputs, answer: &Answer) -> std::io
             (found.time_s / 60.0).ceil()
         )?;
         numbers(out, inputs, found)?;
+        if let Some(compared) = compared {
+            let relative = compared.routes.get(number).copied().unwrap_or_default();
+            relative::tell(out, &compared.relative_to, relative)?;
+        }
         writeln!(out)?;
         parts(out, network, found)?;
         writeln!(out)?;
     }
     if answer.routes.is_empty() {
         writeln!(out, "{} {}: no certified route\n", vehicle.id, vehicle.name)?;
-        blocked(out, network, answer)?;
+        blocked(out, network, answer, compared)?;
     }
     for refutation in &answer.refuted {
         let why = match (&refutation.result, &refutation.assembly) {
@@ -250,7 +284,12 @@ fn how(network: &Network, at: PartKind) -> &'static str {
     }
 }
 
-fn blocked(out: &mut dyn Write, network: &Network, answer: &Answer) -> std::io::Result<()> {
+fn blocked(
+    out: &mut dyn Write,
+    network: &Network,
+    answer: &Answer,
+    compared: Option<&Comparison>,
+) -> std::io::Result<()> {
     let Some(obstacles) = &answer.obstacles else {
         return writeln!(out, "  No roads lead there at all, lawful turns and one-way roads considered.\n");
     };
@@ -259,21 +298,26 @@ fn blocked(out: &mut dyn Write, network: &Network, answer: &Answer) -> std::io::
     }
     let count = obstacles.len();
     writeln!(out, "  What would have to become safe: {count} {}\n", if count == 1 { "place" } else { "places" })?;
-    let mut table = Table::new(&["at", "", "verdict", ">missing", "road"]);
-    for obstacle in obstacles {
+    let as_reference = compared.map(|compared| format!("as {}", compared.relative_to));
+    let more = as_reference.iter().flat_map(|heading| [">relative", heading.as_str()]);
+    let headings: Vec<&str> = ["at", "", "verdict", ">missing"].into_iter().chain(more).chain(["road"]).collect();
+    let mut table = Table::new(&headings);
+    for (number, obstacle) in obstacles.iter().enumerate() {
         let (verdict, reason) = verdict_words(obstacle.permit.verdict);
         let verdict = match (obstacle.refuted, reason) {
             (true, _) => "refuted as part of the whole".to_owned(),
             (false, "") => verdict.to_owned(),
             (false, reason) => format!("{verdict}: {reason}"),
         };
-        table.row([
+        let relative = compared.map(|compared| compared.obstacles.get(number).copied().unwrap_or_default());
+        let own = [
             route::place(network, obstacle.at).map_or_else(String::new, |[lon, lat]| format!("{lon:.5},{lat:.5}")),
             how(network, obstacle.at).to_owned(),
             verdict,
             obstacle.missing_m.filter(|m| *m < 100.0).map_or_else(String::new, |m| format!("{m:.2} m")),
-            printable(&route::title(network, obstacle.at)),
-        ]);
+        ];
+        let road = printable(&route::title(network, obstacle.at));
+        table.row(own.into_iter().chain(relative.into_iter().flat_map(relative::words)).chain([road]));
     }
     table.write(out, "  ")?;
     let cheapest =

@@ -13,6 +13,7 @@ use netcert::store::Database;
 use super::Session;
 use super::database::DatabaseArgs;
 use super::on_demand::{self, Wanted};
+use super::relative::RelativeArgs;
 use super::values::word;
 
 #[derive(Args)]
@@ -41,6 +42,11 @@ pub(crate) struct RoutingInputs {
 }
 
 impl RoutingArgs {
+    /// Checks that a reference vehicle is there to be compared with.
+    pub(crate) fn check(&self, relative: &RelativeArgs) -> anyhow::Result<()> {
+        relative.check(&self.db.path()?, &self.vehicle, self.corridor)
+    }
+
     pub(crate) fn load(&self, session: &Session, command: &'static str) -> anyhow::Result<RoutingInputs> {
         let path = self.db.path()?;
         let database = Database::open(&path)?;

@@ -15,6 +15,8 @@ use serde_json::{Value, json};
 use super::database::DatabaseArgs;
 use super::output::{grouped, km, results};
 use super::progress::refusals;
+use super::relative::RelativeArgs;
+use super::relative_stats::{Compared, with_comparison};
 use super::table::Table;
 
 /// Show the kilometres of road that each vehicle may use, by class and verdict, and the runs that made the database.
@@ -24,13 +26,16 @@ use super::table::Table;
 #[command(after_help = "\
 Examples:
   netcert stats
-  netcert stats --db region.gpkg --format json")]
+  netcert stats --db region.gpkg --format json
+  netcert stats --vehicle AU-BDOUBLE26 --relative-to AU-SEMI19    how much of what is not safe is as for AU-SEMI19")]
 pub(crate) struct Stats {
     #[command(flatten)]
     db: DatabaseArgs,
     /// Show only this vehicle.
     #[arg(long, value_name = "ID")]
     vehicle: Option<String>,
+    #[command(flatten)]
+    relative: RelativeArgs,
     /// The output format.
     #[arg(long, value_enum, default_value_t = Form::Table)]
     format: Form,
@@ -68,12 +73,21 @@ impl Stats {
                 );
             }
         }
+        let compared = self
+            .relative
+            .relative_to
+            .as_deref()
+            .map(|id| Compared::read(&mut database, sets.iter().map(|set| (set.vehicle, set.policy)), id))
+            .transpose()?;
         let mut out = results();
         match self.format {
-            Form::Json => writeln!(out, "{:#}", to_json(&stats, &sets, &runs))?,
+            Form::Json => writeln!(out, "{:#}", with_comparison(to_json(&stats, &sets, &runs), compared.as_ref()))?,
             Form::Table => {
                 network(&mut out, &stats)?;
                 overview(&mut out, &sets)?;
+                if let Some(compared) = &compared {
+                    compared.tell(&mut out)?;
+                }
                 for set in &sets {
                     let name = names.get(set.vehicle).map_or("", String::as_str);
                     certificates(&mut out, set, name)?;

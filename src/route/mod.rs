@@ -20,6 +20,7 @@
 //! | `plan` | searches, certifies, leaves out what failed, and searches again; alternatives |
 //! | `obstacles` | what blocks a route |
 //! | `report` | an answer as JSON and GeoJSON |
+//! | `relative` | an answer beside a reference vehicle |
 //! | `reach` | what can be reached from a place, and back |
 
 mod assemble;
@@ -34,6 +35,7 @@ mod permits;
 mod pieces;
 mod plan;
 mod reach;
+mod relative;
 mod report;
 mod roads;
 mod search;
@@ -52,6 +54,7 @@ pub use permits::{Permit, Permits};
 pub use pieces::{Menu, NoTurns, Strokes, TurnPiece, Turns};
 pub use plan::{Answer, Planner, Question, Route, Unanswered};
 pub use reach::{Components, Reach, components, reach, with_edge};
+pub use relative::{Comparison, Peer, Standings};
 pub use report::{PartResult, geojson, json, obstacle_members, place, title};
 pub use roads::Roads;
 pub use search::{Found, Goal, Start, search, search_over};

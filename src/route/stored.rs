@@ -1,4 +1,4 @@
-//! Reads permits from a database.
+//! Reads permits from a database, and certificates for comparisons.
 
 use std::sync::Arc;
 
@@ -6,11 +6,15 @@ use rustc_hash::FxHashMap;
 
 use super::driver::Driver;
 use super::permits::{Permit, Permits};
+use super::relative::{Peer, Standings};
 use super::roads::Roads;
 use crate::network::{Movements, Network};
+use crate::osm::facts::Policy;
+use crate::rows::Standing;
 use crate::stet::{Model, ModelError};
-use crate::store::{CertifiedSet, Database, QueryOptions, StoreError, TurnQuery};
+use crate::store::{CertifiedSet, Database, QueryOptions, Reference, StoreError, TurnQuery};
 use crate::vehicle::Vehicle;
+use crate::verdict::{UnknownReason, Verdict};
 
 impl Permits {
     /// The permits of a set, for the edges and turns of the database that `network` is from.
@@ -67,5 +71,53 @@ impl Driver {
     ) -> Result<Arc<Self>, NoDriver> {
         let permits = Permits::stored(database, &roads.network, &roads.movements, set)?;
         Ok(Arc::new(Self { model: Model::new(vehicle)?, permits }))
+    }
+}
+
+impl Standings {
+    /// The certificates of a vehicle, edges and turns.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn stored(database: &mut Database, vehicle: &str, policy: Policy) -> Result<Self, StoreError> {
+        let mut out = Self::default();
+        for row in database.edge_standings(vehicle, policy)? {
+            put(&mut out.edges, row?);
+        }
+        let mut turns = Vec::new();
+        for row in database.turn_standings(vehicle, policy)? {
+            put(&mut turns, row?);
+        }
+        for step in database.turn_steps(vehicle, policy)? {
+            let step = step?;
+            let standing = turns.get(step.turn as usize).copied();
+            out.turns.extend(standing.map(|standing| ((step.from, step.to), standing)));
+        }
+        Ok(out)
+    }
+}
+
+/// Puts a standing at its index. Sets are complete, so nothing is left between; if it were, nothing would be known there.
+fn put(all: &mut Vec<Standing>, (index, standing): (u32, Standing)) {
+    all.resize(all.len().max(index as usize + 1), Standing::bare(Verdict::Unknown(UnknownReason::Geometry)));
+    if let Some(slot) = all.get_mut(index as usize) {
+        *slot = standing;
+    }
+}
+
+impl Peer {
+    /// The reference of a set, with the stored certificates of both. `vehicle` is the reference.
+    ///
+    /// # Errors
+    /// The reference's turns are not certified, the file cannot be read, or the certificate's model does not cover the reference.
+    pub fn stored(
+        database: &mut Database,
+        set: &CertifiedSet,
+        (reference, vehicle): (&Reference, &Vehicle),
+    ) -> Result<Self, NoDriver> {
+        reference.check_turns(database)?;
+        let own = Standings::stored(database, &set.vehicle_id, set.policy)?;
+        let other = Standings::stored(database, reference.id(), set.policy)?;
+        Ok(Self { model: Model::new(vehicle)?, same: reference.same(), own, other })
     }
 }
