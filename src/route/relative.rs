@@ -74,6 +74,7 @@ impl Peer {
             let verdict = self.other.against(&route.path).unwrap_or_else(|| certificate.result.verdict());
             Standing::computed(verdict, &certificate.result)
         });
+        let other = if route.path.corridor.areas.is_empty() { other } else { other.in_area() };
         Ok(Relative::between(own, other))
     }
 

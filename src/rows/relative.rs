@@ -19,14 +19,21 @@ pub struct Standing {
     rsc_mm: Option<i64>,
     /// Whether every hinge and the steering lock are within their limits. A row that is `unsafe: width` may exceed them, too.
     hinges_hold: bool,
+    /// Whether areas of junctions count there.
+    in_area: bool,
 }
+
+/// Where a body does not fit into the area of a junction, the prover rounds what is missing up: by at most this length, millimetres,
+/// or this share of what is missing (`docs/proof.md`, section 11). An RSC below 0 may be so much too low there.
+const ROUNDED_MM: i64 = 100;
+const ROUNDED_SHARE: i64 = 10;
 
 impl Standing {
     /// Of a stored certificate: the RSC in metres, in whole millimetres, and the hinge margin in degrees.
     #[must_use]
     pub fn stored(verdict: Verdict, rsc_m: Option<f64>, hinge_margin_deg: Option<f64>) -> Self {
         let rsc_mm = rsc_m.and_then(known_m).map(|rsc_m| (rsc_m * 1000.0).round() as i64);
-        Self { verdict, rsc_mm, hinges_hold: hinge_margin_deg.is_some_and(|margin| margin >= 0.0) }
+        Self { verdict, rsc_mm, hinges_hold: hinge_margin_deg.is_some_and(|margin| margin >= 0.0), in_area: false }
     }
 
     /// Of a stored certificate as a row.
@@ -39,19 +46,32 @@ impl Standing {
     #[must_use]
     pub fn computed(verdict: Verdict, result: &SpanResult) -> Self {
         let rsc_mm = result.rsc_m.and_then(known_m).map(|rsc_m| (rsc_m * 1000.0).floor() as i64);
-        Self { verdict, rsc_mm, hinges_hold: result.hinge_margin_rad.is_some_and(|margin| margin >= 0.0) }
+        let hinges_hold = result.hinge_margin_rad.is_some_and(|margin| margin >= 0.0);
+        Self { verdict, rsc_mm, hinges_hold, in_area: false }
     }
 
     /// Of what has no certificate.
     #[must_use]
     pub fn bare(verdict: Verdict) -> Self {
-        Self { verdict, rsc_mm: None, hinges_hold: false }
+        Self { verdict, rsc_mm: None, hinges_hold: false, in_area: false }
+    }
+
+    /// The same on a turn, a passage, or a route over one: there areas of junctions count.
+    #[must_use]
+    pub fn in_area(self) -> Self {
+        Self { in_area: true, ..self }
     }
 
     /// The verdict.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         self.verdict
+    }
+
+    /// The greatest RSC that may stand behind the stored one, millimetres.
+    fn most_mm(&self) -> Option<i64> {
+        let rounded = |mm: i64| if self.in_area && mm < 0 { ROUNDED_MM.max(-mm / ROUNDED_SHARE) } else { 0 };
+        self.rsc_mm.map(|mm| mm + 1 + rounded(mm))
     }
 
     /// Whether room alone decides here: access is lawful, and no hinge and no steering lock fails. Else there is nothing to compare.
@@ -74,10 +94,11 @@ impl Relative {
     pub const COLUMNS: [Column; 2] = [("relative_m", Real), ("as_reference", Flag)];
 
     /// Compares two vehicles. Each RSC is rounded down to a millimetre, so the reference's true one may be up to a millimetre
-    /// more: this millimetre is deducted.
+    /// more: this millimetre is deducted. Where the reference does not fit into the area of a junction, its RSC is rounded more
+    /// coarsely, and a decimetre or a tenth of it is deducted.
     #[must_use]
     pub fn between(vehicle: Standing, reference: Standing) -> Self {
-        let relative_mm = vehicle.rsc_mm.zip(reference.rsc_mm).map(|(own, other)| own - other - 1);
+        let relative_mm = vehicle.rsc_mm.zip(reference.most_mm()).map(|(own, other)| own - other);
         Self::new(relative_mm, vehicle.by_room() && reference.by_room())
     }
 
@@ -126,6 +147,17 @@ mod tests {
             let own = standing(WIDTH, f64::from(mm) / 1000.0);
             assert_eq!(Relative::between(own, reference).relative_m, Some(f64::from(mm + 299) / 1000.0));
         }
+    }
+
+    #[test]
+    fn what_a_reference_lacks_in_an_area_is_rounded_coarsely() {
+        let turn = |rsc_m| standing(WIDTH, rsc_m).in_area();
+        assert_eq!(said(turn(-0.2), turn(-0.3)), (Some(-0.001), false));
+        assert_eq!(said(turn(-0.199), turn(-0.3)), (Some(0.0), true));
+        assert_eq!(said(turn(-1.8), turn(-2.0)), (Some(-0.001), false));
+        // An RSC of 0 or more is not rounded so.
+        assert_eq!(said(turn(0.301), turn(0.3)), (Some(0.0), true));
+        assert_eq!(Relative::to_itself(turn(-0.3)).relative_m, Some(0.0));
     }
 
     #[test]

@@ -83,7 +83,7 @@ impl Database {
         vehicle: &str,
         policy: Policy,
     ) -> Result<Streamed<'_, IndexedStanding>, StoreError> {
-        Ok(self.standings("certificate_compact", vehicle, policy))
+        Ok(self.standings("certificate_compact", vehicle, policy, standing))
     }
 
     /// The standing of every turn of a vehicle, in order of the network. There are no rows if its turns are not certified.
@@ -95,15 +95,22 @@ impl Database {
         vehicle: &str,
         policy: Policy,
     ) -> Result<Streamed<'_, IndexedStanding>, StoreError> {
-        Ok(self.standings("turn_certificate_compact", vehicle, policy))
+        let in_area = |row: &SqliteRow| standing(row).map(|(turn, standing)| (turn, standing.in_area()));
+        Ok(self.standings("turn_certificate_compact", vehicle, policy, in_area))
     }
 
-    fn standings(&mut self, table: &str, vehicle: &str, policy: Policy) -> Streamed<'_, IndexedStanding> {
+    fn standings(
+        &mut self,
+        table: &str,
+        vehicle: &str,
+        policy: Policy,
+        read: fn(&SqliteRow) -> Sql<IndexedStanding>,
+    ) -> Streamed<'_, IndexedStanding> {
         let sql = format!(
             "SELECT fid, verdict_no, rsc_mm, hinge_margin_cdeg FROM {table} \
              WHERE vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND corridor_no = ? ORDER BY fid"
         );
-        self.streamed(sql, vehicle, policy, standing)
+        self.streamed(sql, vehicle, policy, read)
     }
 
     /// Numbers and lengths of a set's edges by verdict and by whether the vehicle needs no more room than the reference.
