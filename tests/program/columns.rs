@@ -197,7 +197,9 @@ fn everything() -> Found {
         add_table(&mut found, table, &columns, std::iter::empty());
     }
     for (table, turns) in [("edges", ""), ("turns", " --turns")] {
-        let answer = place.netcert(&format!("query --vehicle {VEHICLE} --format csv{turns}")).succeeds();
+        let answer = place
+            .netcert(&format!("query --vehicle {VEHICLE} --relative-to AU-ATRIPLE53 --format csv{turns}"))
+            .succeeds();
         csv(&mut found, table, &answer.out());
     }
     pgrouting(&mut found, &place);

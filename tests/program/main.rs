@@ -17,6 +17,7 @@ mod manoeuvres;
 mod oracle;
 mod pages;
 mod paper;
+mod relative;
 mod route_cli;
 mod serve;
 mod settings;
