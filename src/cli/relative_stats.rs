@@ -43,8 +43,9 @@ impl<'a> Compared<'a> {
         for (set, counts) in &self.sets {
             for kind in VerdictKind::ALL {
                 let of = || counts.iter().filter(|count| verdict_words(count.verdict).0 == kind.name());
-                let all: f64 = of().map(|count| count.length_m).sum();
-                let alike: f64 = of().filter(|count| count.as_reference).map(|count| count.length_m).sum();
+                // From 0: the sum of no numbers is −0.
+                let metres = |sum: f64, count: &RelativeCount| sum + count.length_m;
+                let (all, alike) = (of().fold(0.0, metres), of().filter(|count| count.as_reference).fold(0.0, metres));
                 if all == 0.0 {
                     continue;
                 }
