@@ -83,6 +83,7 @@ pub mod certificate;
 pub mod certify;
 pub mod check;
 pub mod corridor;
+pub mod evidence;
 pub mod explain;
 #[cfg(feature = "export")]
 pub mod export;
