@@ -4,7 +4,7 @@ use std::fs::File;
 
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
-use parquet::file::metadata::ParquetMetaData;
+use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData, RowGroupMetaData};
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::record::{Field, Row};
 use serde_json::Value;
@@ -43,7 +43,7 @@ fn damaged(what: &str) -> Failure {
 }
 
 fn check_compression(metadata: &ParquetMetaData) -> Result<(), Failure> {
-    let used = metadata.row_groups().iter().flat_map(|group| group.columns()).map(|column| column.compression());
+    let used = metadata.row_groups().iter().flat_map(RowGroupMetaData::columns).map(ColumnChunkMetaData::compression);
     let known = |used: &Compression| matches!(used, Compression::UNCOMPRESSED | Compression::SNAPPY);
     match used.into_iter().find(|used| !known(used)) {
         Some(used) => {

@@ -101,5 +101,5 @@ fn explained(left: &[&Candidate<'_>], line_m: f64) -> f64 {
 fn listed<'c>(index: &Index<'_>, all: impl Iterator<Item = &'c Candidate<'c>>, or: &str) -> String {
     let all: Vec<String> = all.map(|candidate| candidate.told(index)).collect();
     let more = if all.len() > TOLD { format!(" and {} more", all.len() - TOLD) } else { String::new() };
-    all.into_iter().take(TOLD).collect::<Vec<_>>().join(or) + &more
+    all.into_iter().take(TOLD).collect::<Vec<_>>().join(or) + more.as_str()
 }

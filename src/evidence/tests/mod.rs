@@ -1,1 +1,10 @@
-//! Tests.
+//! Tests of reading and matching. Files are written by the tests, networks are drawn by them.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod cells;
+mod cuts;
+mod faults;
+mod formats;
+mod reference;
+mod write;
