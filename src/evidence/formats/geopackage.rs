@@ -2,6 +2,7 @@
 //!
 //! The file is opened read-only. Styles and other tables of programs are not looked at.
 
+use std::io::Read as _;
 use std::path::Path;
 
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteRow};
@@ -14,6 +15,7 @@ use crate::evidence::shape::from_geopackage;
 
 /// All records of a file, table after table, numbered through.
 pub(super) fn records(path: &Path) -> Result<Vec<Record>, Failure> {
+    whole(path)?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build()?;
     runtime.block_on(async {
         let options = SqliteConnectOptions::new().filename(path).read_only(true).create_if_missing(false);
@@ -22,6 +24,31 @@ pub(super) fn records(path: &Path) -> Result<Vec<Record>, Failure> {
         connection.close().await.map_err(|error| failed(&error))?;
         records
     })
+}
+
+/// Checks that all pages are there that the header counts (<https://www.sqlite.org/fileformat.html>, 1.3). SQLite takes the
+/// missing part of the last page for zeros.
+fn whole(path: &Path) -> Result<(), Failure> {
+    let mut header = [0; 100];
+    let mut file = std::fs::File::open(path)?;
+    let read = file.read_exact(&mut header);
+    let word = |at: usize| header.iter().skip(at).take(4).fold(0, |word, &byte| word << 8 | u64::from(byte));
+    let page = match word(16) >> 16 {
+        1 => 65_536,
+        size => size,
+    };
+    // The count is in use where the change counter equals the one beside the version.
+    let pages = if word(24) == word(92) { word(28) } else { 0 };
+    let length = file.metadata()?.len();
+    if read.is_ok()
+        && header.starts_with(b"SQLite format 3\0")
+        && page > 0
+        && length % page == 0
+        && length >= pages * page
+    {
+        return Ok(());
+    }
+    Err("no GeoPackage, or one that was cut off; write the file again".to_owned().into())
 }
 
 fn failed(error: &sqlx::Error) -> Failure {
@@ -121,18 +148,18 @@ async fn reference(
     connection: &mut SqliteConnection,
     table: &str,
 ) -> Result<Option<(String, i32, Transform)>, Failure> {
-    let found = "SELECT g.column_name, g.srs_id, s.organization, s.organization_coordsys_id, s.definition \
+    let found = "SELECT g.column_name, g.srs_id, s.organization, s.organization_coordsys_id \
                  FROM gpkg_geometry_columns g LEFT JOIN gpkg_spatial_ref_sys s USING (srs_id) \
                  WHERE g.table_name = ?1 AND EXISTS \
                  (SELECT 1 FROM gpkg_contents WHERE table_name = ?1 AND data_type = 'features')";
-    type Found = (String, i32, Option<String>, Option<i64>, Option<String>);
+    type Found = (String, i32, Option<String>, Option<i64>);
     let found: Option<Found> =
         sqlx::query_as(found).bind(table).fetch_optional(connection).await.map_err(|error| failed(&error))?;
-    let Some((column, srs, authority, code, definition)) = found else { return Ok(None) };
+    let Some((column, srs, authority, code)) = found else { return Ok(None) };
     let (Some(authority), Some(code)) = (authority, code.filter(|_| srs > 0)) else {
         return Err(format!("the reference system of table `{table}` is not given; say which it is").into());
     };
-    let transform = Transform::of(&authority, code, &definition.unwrap_or_default())?;
+    let transform = Transform::of(&authority, code)?;
     Ok(Some((column, srs, transform)))
 }
 

@@ -1,36 +1,38 @@
 //! Reference systems of a GeoPackage, transformed to WGS 84 by PROJ.
 //!
-//! Systems that are much used need no database of PROJ, which a machine may lack or have in another version. Others are taken
-//! only where PROJ knows a real transformation: a shift that it leaves out can be a hundred metres.
+//! Systems that are much used need no database of PROJ, which a machine may lack. Others are taken only where PROJ knows how
+//! accurate its transformation is: a change of datum that it leaves out can be a hundred metres.
 
 use proj::Proj;
 
-use crate::evidence::shape::Shape;
+use crate::evidence::shape::{Shape, Xy};
 
-/// WGS 84 in degrees, longitude first.
-const WGS84: &str = "+proj=longlat +datum=WGS84 +no_defs +type=crs";
+/// Least accuracy of a transformation, metres.
+const ACCURACY_M: f64 = 5.0;
 
 /// A way from a reference system to longitude and latitude.
 pub(super) enum Transform {
     /// Coordinates are longitude and latitude already.
     None,
-    /// Through PROJ.
-    Proj(Box<Proj>),
+    /// By formula.
+    Formula(Proj),
+    /// By PROJ's database, which may take another operation at every place.
+    Database(Proj),
 }
 
 impl Transform {
-    /// The transformation of a system by its authority's code, or else by its definition as text.
-    pub(super) fn of(authority: &str, code: i64, definition: &str) -> Result<Self, String> {
+    /// The transformation of an authority's system.
+    pub(super) fn of(authority: &str, code: i64) -> Result<Self, String> {
         let epsg = authority.eq_ignore_ascii_case("EPSG");
         // ETRS89, GDA94, GDA2020 and NAD83 differ from WGS 84 by less than two metres.
         if epsg && [4326, 4258, 4283, 7844, 4269].contains(&code) {
             return Ok(Self::None);
         }
         let made = match projected(code).filter(|_| epsg) {
-            Some(pipeline) => Proj::new(&pipeline).ok(),
-            None => by_database(&format!("{authority}:{code}")).or_else(|| by_database(definition)),
+            Some(pipeline) => Proj::new(&pipeline).ok().map(Self::Formula),
+            None => by_database(authority, code).map(Self::Database),
         };
-        made.map(|proj| Self::Proj(Box::new(proj))).ok_or_else(|| {
+        made.ok_or_else(|| {
             format!(
                 "its reference system {authority}:{code} cannot be transformed here; transform it to WGS 84 \
                  (`ogr2ogr -t_srs EPSG:4326 NEW.gpkg FILE`)"
@@ -40,15 +42,32 @@ impl Transform {
 
     /// Transforms all positions of a shape.
     pub(super) fn apply(&self, shape: &mut Shape) -> Result<(), String> {
-        let Self::Proj(proj) = self else { return Ok(()) };
         for at in shape.positions_mut() {
-            let place: (f64, f64) = proj
-                .convert((at[0], at[1]))
-                .map_err(|error| format!("x {}, y {} cannot be transformed: {error}; correct them", at[0], at[1]))?;
-            *at = [place.0, place.1];
+            *at = match self {
+                Self::None => *at,
+                Self::Formula(proj) | Self::Database(proj) => converted(proj, *at)?,
+            };
         }
-        Ok(())
+        match self {
+            Self::Database(proj) if !accurate(proj) => {
+                Err("PROJ has no accurate transformation to WGS 84 there; transform it with another program".to_owned())
+            }
+            _ => Ok(()),
+        }
     }
+}
+
+fn converted(proj: &Proj, [x, y]: Xy) -> Result<Xy, String> {
+    let place: (f64, f64) = proj
+        .convert((x, y))
+        .map_err(|error| format!("x {x}, y {y} cannot be transformed to WGS 84: {error}; correct them"))?;
+    Ok([place.0, place.1])
+}
+
+/// Whether the operation of the last position is accurate. PROJ gives −1 where it does not know.
+fn accurate(proj: &Proj) -> bool {
+    let info = proj.proj_info();
+    (0.0..=ACCURACY_M).contains(&info.accuracy) && !info.description.is_some_and(|text| text.contains("allpark"))
 }
 
 /// The pipeline from a projected system to degrees, for systems that are much used: Web Mercator and UTM.
@@ -70,8 +89,16 @@ fn pipeline(projection: &str) -> String {
     format!("+proj=pipeline +step +inv {projection} +step +proj=unitconvert +xy_in=rad +xy_out=deg")
 }
 
-/// A transformation from PROJ's database.
-fn by_database(system: &str) -> Option<Proj> {
-    let (from, to) = (Proj::new(system).ok()?, Proj::new(WGS84).ok()?);
-    from.create_crs_to_crs_from_pj(&to, None, Some(vec!["ALLOW_BALLPARK=NO"])).ok()
+/// A transformation from PROJ's database. Only systems of the plane are asked for: for others the crate `proj` panics, as PROJ
+/// gives it no error. The definition in the file is not used, as it may lack the change of datum.
+fn by_database(authority: &str, code: i64) -> Option<Proj> {
+    if !authority.bytes().all(|byte| byte.is_ascii_alphanumeric()) {
+        return None;
+    }
+    let system = format!("{authority}:{code}");
+    let described = Proj::new(&system).ok()?.to_projjson(None, None, None).ok()?;
+    let described: serde_json::Value = serde_json::from_str(&described).ok()?;
+    let kind = described.get("type")?.as_str()?;
+    let plane = ["ProjectedCRS", "GeographicCRS"].contains(&kind);
+    plane.then(|| Proj::new_known_crs(&system, "EPSG:4326", None).ok()).flatten()
 }

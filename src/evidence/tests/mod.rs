@@ -4,7 +4,13 @@
 
 mod cells;
 mod cuts;
+mod drawn;
 mod faults;
 mod formats;
+mod ids;
+mod lines;
+mod noise;
+mod points;
 mod reference;
+mod speed;
 mod write;
