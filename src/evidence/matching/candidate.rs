@@ -22,6 +22,11 @@ const CHORD_M: f64 = 10.0;
 const HEADING_DEG: f64 = 20.0;
 const SAMPLE_HEADING_DEG: f64 = 45.0;
 
+/// A piece shorter than this is passed by chance where a line begins or ends a little off. It is meant only where the line goes
+/// on beyond both its ends, metres.
+pub(super) const SHORT_M: f64 = 10.0;
+pub(super) const GOES_ON_M: f64 = 5.0;
+
 /// A place on the piece that the line passes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Sample {
@@ -82,6 +87,14 @@ impl<'i> Candidate<'i> {
 
     pub(super) fn mean_m(&self) -> f64 {
         self.samples.iter().map(|sample| sample.distance_m).sum::<f64>() / self.samples.len() as f64
+    }
+
+    /// Whether the line could pass the piece by chance.
+    pub(super) fn by_chance(&self, line_m: f64) -> bool {
+        let [from, to] = self.stretch();
+        // The outermost samples are a quarter of a short piece from its ends, or farther.
+        let end_m = self.length_m / 4.0;
+        self.length_m < SHORT_M && (from - end_m < GOES_ON_M || to + end_m > line_m - GOES_ON_M)
     }
 
     /// Distance at a place of the line that the piece is beside: that of the nearest sample, metres.

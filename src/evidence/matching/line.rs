@@ -1,6 +1,6 @@
 //! Rows whose place is a drawn line: the edges that it covers.
 
-use super::candidate::{Candidate, REACH_M};
+use super::candidate::{Candidate, GOES_ON_M, REACH_M, SHORT_M};
 use super::index::Index;
 use super::names::{Fit, Wanted, told};
 use super::rivals::{Standing, followed, standing};
@@ -43,9 +43,10 @@ fn decided(index: &Index<'_>, all: &[Candidate<'_>], line_m: f64) -> Found {
     let mut edges = Vec::new();
     let mut beaten = vec![false; all.len()];
     for (i, candidate) in all.iter().enumerate().filter(|(_, candidate)| candidate.name != Fit::Differs) {
+        let covered = candidate.covered >= COVERED && !candidate.by_chance(line_m);
         match standing(all, &follows, i) {
-            Standing::Alone if candidate.covered >= COVERED => edges.extend(&candidate.edges),
-            Standing::Ties(others) if candidate.covered >= COVERED => {
+            Standing::Alone if covered => edges.extend(&candidate.edges),
+            Standing::Ties(others) if covered => {
                 let all = std::iter::once(i).chain(others).map(|i| &all[i]);
                 return Err(Match::Ambiguous(format!("could be {}", listed(index, all, " or "))));
             }
@@ -76,6 +77,13 @@ fn nothing(index: &Index<'_>, left: &[&Candidate<'_>]) -> String {
         .collect();
     if !other.is_empty() {
         return format!("the road has another name: {}", other.join(", "));
+    }
+    let short: Vec<&Candidate<'_>> = left.iter().copied().filter(|candidate| candidate.covered >= COVERED).collect();
+    if !short.is_empty() {
+        let told = listed(index, short.into_iter(), ", ");
+        return format!(
+            "an edge of less than {SHORT_M} m is meant only where the line goes on {GOES_ON_M} m beyond both ends; name it in `edge_id`: {told}"
+        );
     }
     let mut left = left.to_vec();
     left.sort_by(|a, b| b.covered.total_cmp(&a.covered));

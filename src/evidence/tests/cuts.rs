@@ -56,7 +56,7 @@ fn damaged(name: &str, write: impl Fn(&Table, &Path), step: usize) {
     let bytes = std::fs::read(&path).unwrap();
     for at in (0..bytes.len()).step_by(step) {
         let mut changed = bytes.clone();
-        changed[at] ^= 0x55;
+        changed[at] ^= MASK;
         std::fs::write(&path, changed).unwrap();
         let whole = std::panic::catch_unwind(|| {
             let _: Result<Vec<Row>, _> = read(&path);
@@ -64,6 +64,8 @@ fn damaged(name: &str, write: impl Fn(&Table, &Path), step: usize) {
         assert!(whole.is_ok(), "{name}: byte {at}");
     }
 }
+
+const MASK: u8 = 0x55;
 
 #[test]
 fn a_changed_byte_panics_nowhere() {

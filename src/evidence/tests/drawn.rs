@@ -22,8 +22,10 @@ pub(super) fn at([east_m, north_m]: [f64; 2]) -> LonLat {
 #[derive(Default)]
 pub(super) struct Drawing {
     nodes: Vec<(i64, LonLat)>,
-    ways: Vec<(i64, Vec<i64>, Vec<(&'static str, String)>)>,
+    ways: Vec<(i64, Vec<i64>, Tags)>,
 }
+
+type Tags = Vec<(&'static str, String)>;
 
 impl Drawing {
     pub(super) fn node(mut self, id: i64, place: [f64; 2]) -> Self {

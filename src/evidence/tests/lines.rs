@@ -147,6 +147,20 @@ fn a_bend_and_short_edges_are_followed() {
 }
 
 #[test]
+fn a_short_edge_at_the_end_of_a_line_is_passed_by_chance() {
+    let network = Drawing::default()
+        .road(1, &[[0.0, 0.0], [100.0, 0.0]], "")
+        .road(2, &[[100.0, 0.0], [104.0, 0.0]], "")
+        .network();
+    assert_eq!(told(&network, &line(&[[0.0, 0.0], [104.0, 0.0]])), "1:1000-1001 1:1001-1000");
+    let alone = told(&network, &line(&[[100.0, 0.0], [104.0, 0.0]]));
+    assert!(
+        alone.starts_with("unmatched: an edge of less than 10 m is meant only where the line goes on 5 m"),
+        "{alone}"
+    );
+}
+
+#[test]
 fn the_antimeridian_is_no_border() {
     use super::super::Place;
     use crate::osm::LonLat;
