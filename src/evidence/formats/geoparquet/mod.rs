@@ -3,6 +3,7 @@
 mod cells;
 
 use std::fs::File;
+use std::panic::AssertUnwindSafe;
 
 use parquet::basic::Compression;
 use parquet::errors::ParquetError;
@@ -15,8 +16,13 @@ use crate::evidence::error::Failure;
 use crate::evidence::shape::from_wkb;
 use cells::Cell;
 
-/// All records of a file, numbered from 1.
+/// All records of a file, numbered from 1. The crate panics on pages whose sizes contradict each other; that is an error here.
 pub(super) fn records(file: File) -> Result<Vec<Record>, Failure> {
+    let read = AssertUnwindSafe(|| read(file));
+    std::panic::catch_unwind(read).unwrap_or_else(|_| Err(damaged("its pages contradict each other")))
+}
+
+fn read(file: File) -> Result<Vec<Record>, Failure> {
     let reader = SerializedFileReader::new(file).map_err(|error| failed(&error))?;
     let metadata = reader.metadata();
     check_compression(metadata)?;
