@@ -76,6 +76,11 @@ impl Column {
     }
 }
 
+/// Whether a column is a geometry by its name. Beside a format's own geometry it is a copy that GDAL left there.
+pub(super) fn is_geometry(name: &str) -> bool {
+    Column::named(name) == Some(Column::Geometry)
+}
+
 /// Whether a column is for other programs: feature ids of GDAL, and what begins with `_`.
 fn ignored(name: &str) -> bool {
     name.starts_with('_') || name.eq_ignore_ascii_case("fid") || name.eq_ignore_ascii_case("ogc_fid")

@@ -3,7 +3,7 @@
 use geojson::{Feature, GeoJson, GeometryValue, Position, feature::Id};
 use serde_json::Value;
 
-use crate::evidence::columns::{Column, Record, columns, real_text};
+use crate::evidence::columns::{Column, Record, columns, is_geometry, real_text};
 use crate::evidence::error::Failure;
 use crate::evidence::shape::{Shape, Xy};
 
@@ -62,22 +62,20 @@ fn known_reference(crs: Option<&Value>) -> Result<(), Failure> {
     Err(Failure::File(format!("its reference system is {name}; transform it to WGS 84 (EPSG:4326)")))
 }
 
-/// Checks the names of all members at once, in the order in which they first occur.
+/// Checks the names of all members at once, in the order in which they first occur. A geometry as a member is a copy that GDAL
+/// left there.
 fn check_names(features: &[Numbered]) -> Result<(), Failure> {
     let mut seen = std::collections::HashSet::new();
     let names = features.iter().filter_map(|(_, feature)| feature.properties.as_ref()).flat_map(|all| all.keys());
-    let names: Vec<&str> = names.map(String::as_str).filter(|name| seen.insert(*name)).collect();
-    columns(names.iter().copied())?;
-    match names.iter().find(|name| Column::named(name) == Some(Column::Geometry)) {
-        Some(name) => Err(Failure::File(format!("a property `{name}`; a feature has its own geometry"))),
-        None => Ok(()),
-    }
+    let names = names.map(String::as_str).filter(|name| seen.insert(*name) && !is_geometry(name));
+    columns(names)?;
+    Ok(())
 }
 
 fn record(number: u64, feature: &Feature) -> Record {
     let mut record = Record::new(number);
     for (name, value) in feature.properties.iter().flatten() {
-        let Some(column) = Column::named(name) else { continue };
+        let Some(column) = Column::named(name).filter(|_| !is_geometry(name)) else { continue };
         match scalar(value) {
             Ok(text) => record.set(column, &text),
             Err(what) => record.fault(column, what),

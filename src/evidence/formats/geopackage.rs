@@ -9,7 +9,7 @@ use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, ConnectOptions as _, Connection as _, Row as _};
 
 use super::reference::Transform;
-use crate::evidence::columns::{Column, Record, columns, real_text};
+use crate::evidence::columns::{Column, Record, columns, is_geometry, real_text};
 use crate::evidence::error::Failure;
 use crate::evidence::shape::from_geopackage;
 
@@ -174,6 +174,7 @@ async fn known_columns(
         sqlx::query_as(names).bind(table).fetch_all(connection).await.map_err(|error| failed(&error))?;
     let meaning = names.iter().map(|(name, key)| match name.as_str() {
         name if Some(name) == geometry => "geometry",
+        name if geometry.is_some() && is_geometry(name) => "_copy",
         name if *key > 0 && Column::named(name).is_none() => "_key",
         name => name,
     });

@@ -119,3 +119,19 @@ fn another_sqlite_file_is_refused() {
     let database = refusal(read_as("rows.gpkg", b"quantity,value\n"));
     assert!(database.contains("no GeoPackage, or one that was cut off"), "{database}");
 }
+
+/// GDAL keeps the text of a CSV file's geometry beside the geometry that it makes of it.
+#[test]
+fn a_copy_of_the_geometry_does_not_matter() {
+    let cells = ["lane_width", "3.5", "office", "POINT (1 1)"].map(str::to_owned).to_vec();
+    let columns = vec!["quantity", "value", "source", "WKT"];
+    let copied = Table { columns, rows: vec![(cells, Drawn::Point([8.0, 49.0]))] };
+    let rows = |name: &str, write: &dyn Fn(&Table, &Path)| {
+        let (_folder, path) = temporary(name);
+        write(&copied, &path);
+        read(&path).unwrap()
+    };
+    let expected = super::super::Place::Point(crate::osm::LonLat { lon_e7: 80_000_000, lat_e7: 490_000_000 });
+    assert_eq!(rows("rows.geojson", &geojson)[0].place, expected);
+    assert_eq!(rows("rows.gpkg", &wgs84)[0].place, expected);
+}

@@ -11,7 +11,7 @@ use parquet::file::metadata::{ColumnChunkMetaData, ParquetMetaData, RowGroupMeta
 use parquet::file::reader::{FileReader as _, RowGroupReader, SerializedFileReader};
 use serde_json::Value;
 
-use crate::evidence::columns::{Column, Record, columns};
+use crate::evidence::columns::{Column, Record, columns, is_geometry};
 use crate::evidence::error::Failure;
 use crate::evidence::shape::from_wkb;
 use cells::Cell;
@@ -101,7 +101,11 @@ fn meanings(metadata: &ParquetMetaData) -> Result<Vec<(usize, Column)>, Failure>
         .map(|field| (schema.columns().iter().position(|leaf| leaf.path().parts()[0] == field.name()), field))
         .map(|(leaf, field)| (leaf.unwrap_or(usize::MAX), field.name()))
         .collect();
-    let names = leaves.iter().map(|(_, name)| if Some(*name) == geometry.as_deref() { "geometry" } else { name });
+    let names = leaves.iter().map(|(_, name)| match geometry.as_deref() {
+        Some(geometry) if geometry == *name => "geometry",
+        Some(_) if is_geometry(name) => "_copy",
+        _ => name,
+    });
     let columns = columns(names)?;
     if geometry.is_none() && columns.contains(&Some(Column::Geometry)) {
         return Err("no GeoParquet: the metadata `geo` is missing, so its reference system is unknown"
