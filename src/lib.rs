@@ -61,6 +61,7 @@
 //! | certificates | [`stet`] | a corridor and a [`vehicle`] → [`stet::Certificate`] |
 //! | the paper | [`published`] | a corridor and a vehicle → the paper's own certificate, to the letter; it decides nothing |
 //! | turns | [`turns`] | two strokes that meet → the corridors in which one turns from one into the other |
+//! | evidence | [`evidence`] | files with measurements → rows, and the edges or junctions that they mean |
 //! | whole networks | [`certify`] | network and vehicles → certificates of edges and turns, over threads |
 //! | store | [`store`] | network, turns and certificates → a GeoPackage |
 //! | routes | [`route`] | a network with permits, two places → the shortest way that certifies as a whole |
@@ -83,6 +84,7 @@ pub mod certificate;
 pub mod certify;
 pub mod check;
 pub mod corridor;
+pub mod evidence;
 pub mod explain;
 #[cfg(feature = "export")]
 pub mod export;

@@ -1,0 +1,163 @@
+//! The columns that a file with measurements may have, and one record of it as text.
+//!
+//! Every format gives its cells as text and its geometry as a shape. What they mean is read once, in `rows.rs`.
+
+use super::error::Fault;
+use super::shape::Shape;
+
+/// A column with a meaning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Column {
+    Quantity,
+    Value,
+    Unit,
+    Sigma,
+    Source,
+    Date,
+    Licence,
+    WayId,
+    FromNode,
+    ToNode,
+    EdgeId,
+    Junction,
+    FromEdge,
+    ToEdge,
+    Direction,
+    Name,
+    Note,
+    Id,
+    Vehicle,
+    Geometry,
+    Lon,
+    Lat,
+}
+
+/// Columns by name. The first name of a column is the one that messages use; the others mean the same.
+const NAMES: &[(&str, Column)] = &[
+    ("quantity", Column::Quantity),
+    ("value", Column::Value),
+    ("unit", Column::Unit),
+    ("sigma", Column::Sigma),
+    ("source", Column::Source),
+    ("date", Column::Date),
+    ("licence", Column::Licence),
+    ("way_id", Column::WayId),
+    ("from_node", Column::FromNode),
+    ("to_node", Column::ToNode),
+    ("edge_id", Column::EdgeId),
+    ("junction", Column::Junction),
+    ("from_edge", Column::FromEdge),
+    ("to_edge", Column::ToEdge),
+    ("direction", Column::Direction),
+    ("name", Column::Name),
+    ("note", Column::Note),
+    ("id", Column::Id),
+    ("vehicle", Column::Vehicle),
+    ("geometry", Column::Geometry),
+    ("lon", Column::Lon),
+    ("lat", Column::Lat),
+    ("what", Column::Quantity),
+    ("uncertainty", Column::Sigma),
+    ("license", Column::Licence),
+    ("node", Column::Junction),
+    ("geom", Column::Geometry),
+    ("wkb_geometry", Column::Geometry),
+    ("wkt", Column::Geometry),
+];
+
+impl Column {
+    pub(super) fn name(self) -> &'static str {
+        NAMES.iter().find(|(_, column)| *column == self).map_or("", |(name, _)| name)
+    }
+
+    pub(super) fn named(name: &str) -> Option<Self> {
+        let name = name.trim();
+        NAMES.iter().find(|(known, _)| known.eq_ignore_ascii_case(name)).map(|(_, column)| *column)
+    }
+}
+
+/// Whether a column is a geometry by its name. Beside a format's own geometry it is a copy that GDAL left there.
+pub(super) fn is_geometry(name: &str) -> bool {
+    Column::named(name) == Some(Column::Geometry)
+}
+
+/// Whether a column is for other programs: feature ids of GDAL, and what begins with `_`.
+fn ignored(name: &str) -> bool {
+    name.starts_with('_') || name.eq_ignore_ascii_case("fid") || name.eq_ignore_ascii_case("ogc_fid")
+}
+
+/// The meaning of each column of a header; `None` for those to ignore.
+pub(super) fn columns<'n>(names: impl IntoIterator<Item = &'n str>) -> Result<Vec<Option<Column>>, String> {
+    let mut found: Vec<Option<Column>> = Vec::new();
+    let mut unknown = Vec::new();
+    for name in names {
+        let column = Column::named(name);
+        if column.is_none() && !ignored(name.trim()) {
+            unknown.push(format!("`{}`", name.trim().escape_debug()));
+        }
+        if let Some(twice) = column.filter(|_| found.contains(&column)) {
+            return Err(format!("two columns for `{}`; keep one of them", twice.name()));
+        }
+        found.push(column);
+    }
+    if unknown.is_empty() { Ok(found) } else { Err(unknown_columns(&unknown)) }
+}
+
+fn unknown_columns(unknown: &[String]) -> String {
+    let known: Vec<&str> = NAMES.iter().map(|(name, _)| *name).collect();
+    let first: String = unknown.iter().take(5).map(String::as_str).collect::<Vec<_>>().join(", ");
+    let word = if unknown.len() == 1 { "column" } else { "columns" };
+    format!(
+        "unknown {word} {first}; known are {}; let the names of others begin with `_`, and they are ignored",
+        known.join(", ")
+    )
+}
+
+/// One record of a file.
+#[derive(Debug, Default)]
+pub(super) struct Record {
+    /// As [`super::Row::number`].
+    pub(super) number: u64,
+    /// Cells that are not empty.
+    pub(super) cells: Vec<(Column, String)>,
+    pub(super) shape: Option<Shape>,
+    /// What the reader of the format found faulty.
+    pub(super) faults: Vec<Fault>,
+}
+
+impl Record {
+    pub(super) fn new(number: u64) -> Self {
+        Self { number, ..Self::default() }
+    }
+
+    /// Adds a cell. Cells of space alone are empty.
+    pub(super) fn set(&mut self, column: Column, text: &str) {
+        let text = text.trim();
+        if !text.is_empty() {
+            self.cells.push((column, text.to_owned()));
+        }
+    }
+
+    /// Adds the geometry, or what is wrong with it.
+    pub(super) fn set_shape(&mut self, shape: Result<Option<Shape>, String>) {
+        match shape {
+            Ok(shape) => self.shape = shape,
+            Err(what) => self.fault(Column::Geometry, what),
+        }
+    }
+
+    pub(super) fn text(&self, column: Column) -> Option<&str> {
+        self.cells.iter().find(|cell| cell.0 == column).map(|cell| cell.1.as_str())
+    }
+
+    pub(super) fn fault(&mut self, column: Column, what: impl Into<String>) {
+        self.faults.push(Fault { row: self.number, column: column.name(), what: what.into() });
+    }
+}
+
+/// A number of a binary format as text that reads back to the same bits. Above 2^53 a double may stand for another integer
+/// than was meant, so it is written with an exponent, and no id is read from it.
+pub(super) fn real_text(value: f64) -> String {
+    const EXACT: f64 = 9_007_199_254_740_992.0;
+    if value.abs() >= EXACT { format!("{value:e}") } else { value.to_string() }
+}

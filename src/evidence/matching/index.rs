@@ -1,0 +1,182 @@
+//! The network by place, by id and by node.
+//!
+//! Both directions of a stretch of road are one piece. Roads on the other side of the antimeridian are found, too.
+
+use std::ops::Range;
+
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
+use rustc_hash::FxHashMap;
+
+use crate::network::{EARTH_RADIUS_M, Edge, Network, Road, offset_m};
+use crate::osm::LonLat;
+
+/// A stretch of road between two nodes.
+pub(super) struct Piece {
+    /// Its edges along the way and against it; at least one.
+    pub(super) edges: [Option<u32>; 2],
+    /// Its nodes in the order of the way.
+    pub(super) ends: [i64; 2],
+    road: u32,
+    shape: Range<u32>,
+}
+
+/// Where an end of road is.
+struct Node {
+    at: LonLat,
+    /// Pieces that begin or end there; twice for a loop.
+    arms: Vec<u32>,
+}
+
+type Segment = GeomWithData<Rectangle<[f64; 2]>, u32>;
+type Junction = GeomWithData<[f64; 2], i64>;
+
+/// The network, prepared for matching.
+pub(super) struct Index<'n> {
+    pub(super) network: &'n Network,
+    /// In the order of the edges.
+    pub(super) pieces: Vec<Piece>,
+    segments: RTree<Segment>,
+    junctions: RTree<Junction>,
+    edges: FxHashMap<i64, u32>,
+    nodes: FxHashMap<i64, Node>,
+}
+
+impl<'n> Index<'n> {
+    pub(super) fn new(network: &'n Network) -> Self {
+        let pieces = pieces(network);
+        let mut nodes: FxHashMap<i64, Node> = FxHashMap::default();
+        let mut segments = Vec::new();
+        for (index, piece) in (0_u32..).zip(&pieces) {
+            let shape = &network.shapes[piece.shape.start as usize..piece.shape.end as usize];
+            let boxes = shape.windows(2).map(|pair| Rectangle::from_corners(corner(pair[0]), corner(pair[1])));
+            segments.extend(boxes.map(|around| GeomWithData::new(around, index)));
+            for (node, at) in piece.ends.into_iter().zip([shape[0], shape[shape.len() - 1]]) {
+                nodes.entry(node).or_insert_with(|| Node { at, arms: Vec::new() }).arms.push(index);
+            }
+        }
+        let mut junctions: Vec<Junction> = nodes
+            .iter()
+            .filter(|(_, node)| node.arms.len() >= 3)
+            .map(|(&id, node)| GeomWithData::new(corner(node.at), id))
+            .collect();
+        junctions.sort_unstable_by_key(|junction| junction.data);
+        let edges = (0_u32..).zip(&network.edges).map(|(index, edge)| (edge.id, index)).collect();
+        let (segments, junctions) = (RTree::bulk_load(segments), RTree::bulk_load(junctions));
+        Self { network, pieces, segments, junctions, edges, nodes }
+    }
+
+    /// The edge of an id.
+    pub(super) fn edge(&self, id: i64) -> Option<(u32, &'n Edge)> {
+        let index = *self.edges.get(&id)?;
+        Some((index, self.network.edges.get(index as usize)?))
+    }
+
+    /// The pieces of a way, in its order.
+    pub(super) fn of_way(&self, way_id: i64) -> &[Piece] {
+        let Ok(road) = self.network.roads.binary_search_by_key(&way_id, |road| road.way_id) else { return &[] };
+        let first = self.pieces.partition_point(|piece| (piece.road as usize) < road);
+        let end = self.pieces.partition_point(|piece| piece.road as usize <= road);
+        &self.pieces[first..end]
+    }
+
+    /// Where a node is at which a road begins or ends.
+    pub(super) fn node(&self, id: i64) -> Option<LonLat> {
+        self.nodes.get(&id).map(|node| node.at)
+    }
+
+    pub(super) fn road(&self, piece: &Piece) -> &'n Road {
+        &self.network.roads[piece.road as usize]
+    }
+
+    /// The positions of a piece in the order of its way.
+    pub(super) fn line(&self, piece: &Piece) -> &'n [LonLat] {
+        &self.network.shapes[piece.shape.start as usize..piece.shape.end as usize]
+    }
+
+    /// Pieces near a line; sorted.
+    pub(super) fn pieces_near_line(&self, line: &[LonLat], reach_m: f64) -> Vec<u32> {
+        let mut found: Vec<u32> = line.windows(2).flat_map(|pair| self.pieces_near(pair, reach_m)).collect();
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// Pieces whose segments come near a box around these positions; sorted.
+    pub(super) fn pieces_near(&self, positions: &[LonLat], reach_m: f64) -> Vec<u32> {
+        let near = |around: &AABB<[f64; 2]>| {
+            let found = self.segments.locate_in_envelope_intersecting(around).map(|segment| segment.data);
+            found.collect::<Vec<_>>()
+        };
+        let mut found: Vec<u32> = boxes(positions, reach_m).iter().flat_map(near).collect();
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// Junctions with at least three ends of road in a box around these positions, with their places; sorted by id.
+    pub(super) fn junctions_near(&self, positions: &[LonLat], reach_m: f64) -> Vec<(i64, LonLat)> {
+        let near = |around: &AABB<[f64; 2]>| {
+            let found = self.junctions.locate_in_envelope(around).map(|junction| junction.data);
+            found.collect::<Vec<_>>()
+        };
+        let mut found: Vec<i64> = boxes(positions, reach_m).iter().flat_map(near).collect();
+        found.sort_unstable();
+        found.dedup();
+        found.into_iter().filter_map(|id| Some((id, self.node(id)?))).collect()
+    }
+
+    /// A piece for messages: `way 12 (edges 34, 56)`.
+    pub(super) fn told(&self, piece: &Piece) -> String {
+        let ids: Vec<String> =
+            piece.edges.iter().flatten().map(|&edge| self.network.edges[edge as usize].id.to_string()).collect();
+        let word = if ids.len() == 1 { "edge" } else { "edges" };
+        format!("way {} ({word} {})", self.road(piece).way_id, ids.join(", "))
+    }
+}
+
+/// Groups the directions of each stretch. They are neighbours in the network.
+fn pieces(network: &Network) -> Vec<Piece> {
+    let same = |a: &(u32, &Edge), b: &(u32, &Edge)| a.1.road == b.1.road && a.1.shape == b.1.shape;
+    let edges: Vec<(u32, &Edge)> = (0..).zip(&network.edges).collect();
+    let piece = |group: &[(u32, &Edge)]| {
+        let (_, edge) = group[0];
+        let mut edges = [None; 2];
+        for &(index, edge) in group {
+            edges[edge.direction as usize] = Some(index);
+        }
+        let mut ends = [edge.from_node, edge.to_node];
+        ends.rotate_left(edge.direction as usize);
+        Piece { edges, ends, road: edge.road, shape: edge.shape.clone() }
+    };
+    edges.chunk_by(same).map(piece).collect()
+}
+
+fn corner(at: LonLat) -> [f64; 2] {
+    let (lon, lat) = at.degrees();
+    [lon, lat]
+}
+
+/// The box around positions and `reach_m` more; two if it goes over the antimeridian.
+fn boxes(positions: &[LonLat], reach_m: f64) -> Vec<AABB<[f64; 2]>> {
+    let Some(&first) = positions.first() else { return Vec::new() };
+    let start = corner(first);
+    let dy = (reach_m / EARTH_RADIUS_M).to_degrees();
+    let (mut least, mut most) = (start, start);
+    for &at in positions {
+        // By the short way across the antimeridian.
+        let east = offset_m(first, at)[0].signum();
+        let mut lon = corner(at)[0];
+        if (lon - start[0]).abs() > 180.0 {
+            lon += 360.0 * east;
+        }
+        for (side, x) in [lon, corner(at)[1]].into_iter().enumerate() {
+            (least[side], most[side]) = (least[side].min(x), most[side].max(x));
+        }
+    }
+    let dx = dy / least[1].abs().max(most[1].abs()).to_radians().cos().max(0.01);
+    let around =
+        |turn: f64| AABB::from_corners([least[0] - dx + turn, least[1] - dy], [most[0] + dx + turn, most[1] + dy]);
+    let over = [(least[0] - dx < -180.0, 360.0), (most[0] + dx > 180.0, -360.0)];
+    std::iter::once(around(0.0)).chain(over.into_iter().filter(|side| side.0).map(|side| around(side.1))).collect()
+}

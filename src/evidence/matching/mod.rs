@@ -1,0 +1,75 @@
+//! Which edges or junctions a row of evidence means.
+//!
+//! Ids are looked up, geometries are measured. A row that could mean two roads is ambiguous and never guessed. Every row is
+//! matched alone, so the number of threads does not matter.
+
+mod area;
+mod candidate;
+mod index;
+mod line;
+mod named;
+mod names;
+mod point;
+mod rivals;
+mod track;
+
+use rayon::prelude::*;
+
+use super::row::{Along, Place, Row};
+use crate::network::Network;
+use index::Index;
+
+/// What a row means.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Match {
+    /// Edges, as sorted indices into [`Network::edges`]; at least one.
+    Edges(Vec<u32>),
+    /// A junction, or one corner of it.
+    Corner {
+        /// OSM node id.
+        node: i64,
+        /// The edge that ends and the edge that begins at the corner: indices into [`Network::edges`].
+        edges: Option<[u32; 2]>,
+    },
+    /// The surface of these junctions: OSM node ids, sorted, at least one.
+    Area(Vec<i64>),
+    /// No road or junction. The text says why.
+    Unmatched(String),
+    /// Several could be meant. The text names them with their distances.
+    Ambiguous(String),
+}
+
+/// Matches rows to the network. The result has the order of the rows.
+#[must_use]
+pub fn match_rows(network: &Network, rows: &[Row]) -> Vec<Match> {
+    let index = Index::new(network);
+    rows.par_iter().map(|row| match_row(&index, row).unwrap_or_else(|other| other)).collect()
+}
+
+/// A match, or as `Err` what stands in its way. Both are answers.
+type Found = Result<Match, Match>;
+
+fn match_row(index: &Index<'_>, row: &Row) -> Found {
+    match &row.place {
+        Place::Edge(id) => named::edge(index, row, *id),
+        Place::Way { way_id, nodes } => named::way(index, row, *way_id, *nodes),
+        Place::Junction { node, edges } => named::junction(index, row, *node, *edges),
+        Place::Line(line) => line::matched(index, row, line),
+        Place::Point(at) => point::matched(index, row, *at),
+        Place::Polygon(_) => area::matched(index, row),
+    }
+}
+
+fn unmatched<T>(why: impl Into<String>) -> Result<T, Match> {
+    Err(Match::Unmatched(why.into()))
+}
+
+/// Which of the edges `[forward, backward]` of a piece are meant.
+fn directed(edges: [Option<u32>; 2], along: Along) -> Vec<u32> {
+    let [forward, backward] = edges;
+    match along {
+        Along::Both => forward.into_iter().chain(backward).collect(),
+        Along::Forward => forward.into_iter().collect(),
+        Along::Backward => backward.into_iter().collect(),
+    }
+}

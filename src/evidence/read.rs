@@ -1,0 +1,92 @@
+//! From a file to rows: all or nothing.
+//!
+//! A file's name says its format, else its first bytes do. What cells mean is the same in all formats.
+
+use std::path::Path;
+
+use super::cells::Cells;
+use super::columns::{Column, Record};
+use super::error::{EvidenceError, Failure, Fault};
+use super::formats;
+use super::row::{Quantity, Row};
+use super::{places, values};
+
+/// Reads a file with measurements: CSV, GeoJSON, GeoPackage or GeoParquet.
+///
+/// # Errors
+/// The file cannot be read, or something in it is faulty. All faulty rows are named.
+pub fn read(path: &Path) -> Result<Vec<Row>, EvidenceError> {
+    let records = formats::records(path).map_err(|failure| failure.at(path))?;
+    if records.is_empty() {
+        return Err(Failure::File("has no rows; nothing was read".to_owned()).at(path));
+    }
+    let mut faults = Vec::new();
+    let rows = records.into_iter().filter_map(|record| row(record).map_err(|found| faults.extend(found)).ok());
+    let rows: Vec<Row> = rows.collect();
+    if faults.is_empty() { Ok(rows) } else { Err(EvidenceError::Rows { path: path.to_owned(), faults }) }
+}
+
+/// The row of a record, or everything that is wrong with it.
+fn row(record: Record) -> Result<Row, Vec<Fault>> {
+    let mut cells = Cells { record };
+    let row = assemble(&mut cells);
+    let faults = cells.record.faults;
+    match row {
+        Some(row) if faults.is_empty() => Ok(row),
+        _ => Err(faults),
+    }
+}
+
+fn assemble(cells: &mut Cells) -> Option<Row> {
+    let quantity = quantity(cells);
+    let source = source(cells);
+    let date = date(cells);
+    // Value and place depend on what was measured.
+    let quantity = quantity?;
+    let value = values::value(cells, quantity);
+    let place = places::place(cells, quantity);
+    let along = places::along(cells, place.as_ref().map(|place| &place.0));
+    let ((value, sigma), (place, at)) = (value?, place?);
+    Some(Row {
+        number: cells.record.number,
+        id: cells.owned(Column::Id),
+        quantity,
+        value,
+        sigma,
+        along: along?,
+        place,
+        way_id: cells.id(Column::WayId),
+        at,
+        source: source?,
+        date,
+        licence: cells.owned(Column::Licence),
+        name: cells.owned(Column::Name),
+        note: cells.owned(Column::Note),
+    })
+}
+
+fn quantity(cells: &mut Cells) -> Option<Quantity> {
+    let text = cells.owned(Column::Quantity).unwrap_or_default();
+    let found = Quantity::named(&text.to_ascii_lowercase());
+    if found.is_some() {
+        return found;
+    }
+    let known = Quantity::ALL.map(Quantity::name).join(", ");
+    let found = if text.is_empty() { "is empty".to_owned() } else { format!("`{}` is none", text.escape_debug()) };
+    cells.refuse(Column::Quantity, format!("{found}; known are {known}"))
+}
+
+fn source(cells: &mut Cells) -> Option<String> {
+    let source = cells.owned(Column::Source);
+    source.or_else(|| cells.refuse(Column::Source, "is empty; say who measured it, or what it was taken from"))
+}
+
+/// The day of the measurement. Whether it is in the past is not asked: nothing here has a clock.
+fn date(cells: &mut Cells) -> Option<String> {
+    let text = cells.owned(Column::Date)?;
+    let day = jiff::civil::Date::strptime("%Y-%m-%d", &text).ok().filter(|day| day.to_string() == text);
+    if day.is_some() {
+        return Some(text);
+    }
+    cells.refuse(Column::Date, format!("`{}` is no day; write it like 2026-05-31", text.escape_debug()))
+}

@@ -1,0 +1,16 @@
+//! Tests of reading and matching. Files are written by the tests, networks are drawn by them.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod cells;
+mod cuts;
+mod drawn;
+mod faults;
+mod formats;
+mod ids;
+mod lines;
+mod noise;
+mod points;
+mod reference;
+mod speed;
+mod write;
