@@ -1,6 +1,7 @@
 //! The words for the program's enumerations in databases, exports, answers and options. They are stable, because users
 //! filter by them.
 
+use crate::evidence::{Along, Quantity};
 use crate::osm::facts::{Direction, Oneway, Permission, Policy, RoadClass, WidthSource};
 use crate::stet::Side;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
@@ -57,6 +58,17 @@ named!(WidthSource {
 named!(Policy { Lane = "lane", Direction = "direction", Carriageway = "carriageway" });
 named!(Permission { Yes = "yes", Restricted = "restricted", No = "no" });
 named!(Side { Left = "left", Right = "right" });
+named!(Along { Both = "both", Forward = "forward", Backward = "backward" });
+named!(Quantity {
+    CarriagewayWidth = "carriageway_width",
+    DirectionWidth = "direction_width",
+    LaneWidth = "lane_width",
+    KerbRadius = "kerb_radius",
+    MaxHeight = "max_height",
+    MaxWeight = "max_weight",
+    DrivableBy = "drivable_by",
+    Surface = "surface",
+});
 
 /// The value of `highway`: the class, with `_link` for links.
 #[must_use]

@@ -8,7 +8,7 @@ use clap::Args;
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::rows::Bounds;
 use netcert::rows::{EdgeRow, Relative};
-use netcert::store::{Area, Beside, Database, QueryOptions, TurnQuery};
+use netcert::store::{Area, Beside, Database, QueryOptions, ReferenceReader, TurnQuery};
 use netcert::vehicle::Vehicle;
 use netcert::words::{Named, VerdictKind, verdict_words};
 
@@ -18,7 +18,7 @@ use super::database::DatabaseArgs;
 use super::fleet;
 use super::on_demand::{self, Wanted};
 use super::output::{km, results};
-use super::relative::{self, Compared, RelativeArgs};
+use super::relative::{self, RelativeArgs};
 use super::rows::{Format, Head, Sink};
 use super::turn_rows;
 use super::values::{signed_metres, word};
@@ -110,14 +110,14 @@ impl Query {
         if let Some(id) = &self.relative.relative_to {
             let (opened, reference) = on_demand::reference(session, (&path, database), &wanted, (&set, id))?;
             database = opened;
-            compared = Some(Compared::open(&path, reference)?);
+            compared = Some(ReferenceReader::open(&path, reference)?);
         }
         let vehicle = fleet::kept(&mut database, &self.vehicle)?;
         if self.turns {
-            let beside = compared.as_mut().map(Compared::turns).transpose()?;
+            let beside = compared.as_mut().map(ReferenceReader::turns).transpose()?;
             return self.tell_turns(session, &mut database, vehicle.as_ref(), set.policy, (area, beside));
         }
-        let mut beside = compared.as_mut().map(Compared::edges).transpose()?;
+        let mut beside = compared.as_mut().map(ReferenceReader::edges).transpose()?;
         let options = QueryOptions {
             area,
             verdict: self.verdict,

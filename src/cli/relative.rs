@@ -6,7 +6,7 @@ use std::path::Path;
 use clap::Args;
 use netcert::osm::facts::Policy;
 use netcert::rows::{Cell, CertificateRow, Relative, Standing};
-use netcert::store::{Beside, Database, Reference, StoreError};
+use netcert::store::{Beside, Database, StoreError};
 
 use super::certify_options;
 
@@ -25,32 +25,8 @@ impl RelativeArgs {
         let Some(id) = self.relative_to.as_deref().filter(|id| *id != vehicle) else { return Ok(()) };
         let mut database = Database::open(path)?;
         let policy = certify_options::policy_of(&mut database, asked)?;
-        if let Some(set) = database.certified_set(id, policy)? {
-            return Ok(database.reference(&set, id)?.check_turns(&mut database)?);
-        }
-        // The set is not there, so this call fails with the error that names the command to run.
-        drop(database.query(&netcert::store::QueryOptions::new(id, policy))?);
-        Ok(())
-    }
-}
-
-/// A reference with a connection of its own, from which its certificates are read beside other rows.
-pub(crate) struct Compared {
-    reference: Reference,
-    database: Database,
-}
-
-impl Compared {
-    pub(crate) fn open(path: &Path, reference: Reference) -> Result<Self, StoreError> {
-        Ok(Self { reference, database: Database::open_to_stream(path)? })
-    }
-
-    pub(crate) fn edges(&mut self) -> Result<Beside<'_>, StoreError> {
-        self.reference.edges(&mut self.database)
-    }
-
-    pub(crate) fn turns(&mut self) -> Result<Beside<'_>, StoreError> {
-        self.reference.turns(&mut self.database)
+        let set = database.certified_set(id, policy)?.ok_or_else(|| StoreError::not_certified(path, id, policy))?;
+        Ok(database.reference(&set, id)?.check_turns(&mut database)?)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The columns that a file with measurements may have, and one record of it as text.
 //!
-//! Every format gives its cells as text and its geometry as a shape. What they mean is read once, in `rows.rs`.
+//! Every format gives its cells as text and its geometry as a shape. What they mean is read in one place, `read.rs`.
 
 use super::error::Fault;
 use super::shape::Shape;

@@ -8,6 +8,7 @@ use super::columns::Column;
 use super::row::{Along, Place, Quantity};
 use super::shape::{self, Shape};
 use crate::osm::LonLat;
+use crate::words::Named as _;
 
 /// The place of a row, and where its geometry begins if ids give the place.
 pub(super) fn place(cells: &mut Cells, quantity: Quantity) -> Option<(Place, Option<LonLat>)> {
@@ -137,8 +138,7 @@ fn fitting<T>(cells: &mut Cells, quantity: Quantity, found: (Place, T)) -> Optio
 /// The direction of travel of a row.
 pub(super) fn along(cells: &mut Cells, place: Option<&Place>) -> Option<Along> {
     let Some(text) = cells.text(Column::Direction) else { return Some(Along::Both) };
-    let all = [Along::Both, Along::Forward, Along::Backward];
-    let Some(along) = all.into_iter().find(|along| along.name().eq_ignore_ascii_case(text)) else {
+    let Some(along) = Along::named(&text.to_ascii_lowercase()) else {
         let what = format!("`{}` is no direction; known are both, forward, backward", text.escape_debug());
         return cells.refuse(Column::Direction, what);
     };

@@ -10,6 +10,7 @@ use super::error::{EvidenceError, Failure, Fault};
 use super::formats;
 use super::row::{Quantity, Row};
 use super::{places, values};
+use crate::words::Named as _;
 
 /// Reads a file with measurements: CSV, GeoJSON, GeoPackage or GeoParquet.
 ///
@@ -71,7 +72,7 @@ fn quantity(cells: &mut Cells) -> Option<Quantity> {
     if found.is_some() {
         return found;
     }
-    let known = Quantity::ALL.map(Quantity::name).join(", ");
+    let known = Quantity::ALL.iter().map(|quantity| quantity.name()).collect::<Vec<_>>().join(", ");
     let found = if text.is_empty() { "is empty".to_owned() } else { format!("`{}` is none", text.escape_debug()) };
     cells.refuse(Column::Quantity, format!("{found}; known are {known}"))
 }

@@ -26,39 +26,6 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// All quantities.
-    pub const ALL: [Self; 8] = [
-        Self::CarriagewayWidth,
-        Self::DirectionWidth,
-        Self::LaneWidth,
-        Self::KerbRadius,
-        Self::MaxHeight,
-        Self::MaxWeight,
-        Self::DrivableBy,
-        Self::Surface,
-    ];
-
-    /// The word in the column `quantity`.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::CarriagewayWidth => "carriageway_width",
-            Self::DirectionWidth => "direction_width",
-            Self::LaneWidth => "lane_width",
-            Self::KerbRadius => "kerb_radius",
-            Self::MaxHeight => "max_height",
-            Self::MaxWeight => "max_weight",
-            Self::DrivableBy => "drivable_by",
-            Self::Surface => "surface",
-        }
-    }
-
-    /// The quantity of a word.
-    #[must_use]
-    pub fn named(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|quantity| quantity.name() == word)
-    }
-
     /// Whether more of it helps. A limit does not: there the value counts as it is.
     fn helps(self) -> bool {
         matches!(self, Self::CarriagewayWidth | Self::DirectionWidth | Self::LaneWidth | Self::KerbRadius)
@@ -115,18 +82,6 @@ pub enum Along {
     Forward,
     /// Against them.
     Backward,
-}
-
-impl Along {
-    /// The word in the column `direction`.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Both => "both",
-            Self::Forward => "forward",
-            Self::Backward => "backward",
-        }
-    }
 }
 
 /// One measurement.

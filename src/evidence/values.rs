@@ -4,6 +4,7 @@ use super::cells::Cells;
 use super::columns::Column;
 use super::row::{Quantity, Value};
 use super::shape::{self, Shape};
+use crate::words::Named as _;
 
 /// Units by name, with what they are in metres or tonnes.
 const LENGTHS: [(&str, f64); 5] = [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("ft", 0.3048), ("in", 0.0254)];
@@ -75,7 +76,7 @@ pub(super) fn value(cells: &mut Cells, quantity: Quantity) -> Option<(Value, f64
 fn vehicle(cells: &mut Cells) -> Option<Value> {
     match cells.owned(Column::Vehicle) {
         Some(vehicle) => Some(Value::Vehicle(vehicle)),
-        None => cells.refuse(Column::Vehicle, "is empty; give the id of the vehicle (`netcert vehicles`)"),
+        None => cells.refuse(Column::Vehicle, "is empty; give the id of the vehicle (`netcert vehicles list`)"),
     }
 }
 

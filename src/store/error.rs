@@ -142,7 +142,8 @@ pub enum StoreError {
 
 impl StoreError {
     /// The database has no set of this vehicle and policy.
-    pub(crate) fn not_certified(path: &Path, vehicle: &str, policy: Policy) -> Self {
+    #[must_use]
+    pub fn not_certified(path: &Path, vehicle: &str, policy: Policy) -> Self {
         let policy = policy.name();
         let detail = format!(
             "{vehicle} is not certified here under the {policy} policy; run `netcert certify --vehicle {vehicle} \

@@ -43,7 +43,7 @@ pub use error::StoreError;
 pub use map::TurnsOf;
 pub use query::{Area, QueryOptions, Rows};
 pub use records::{Run, VehicleRecord};
-pub use relative::{Beside, IndexedStanding, Reference};
+pub use relative::{Beside, IndexedStanding, Reference, ReferenceReader};
 pub use settings::CertifiedSet;
 pub use stream::{StraightOn, Streamed};
 pub use turns::{TurnQuery, TurnSet};

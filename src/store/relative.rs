@@ -6,6 +6,7 @@
 
 use std::collections::BTreeMap;
 use std::iter::Fuse;
+use std::path::Path;
 
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteRow;
@@ -122,8 +123,8 @@ impl Database {
         set: &CertifiedSet,
         reference: &Reference,
     ) -> Result<Vec<RelativeCount>, StoreError> {
-        let mut other = Self::open_to_stream(&self.session.path)?;
-        let mut beside = reference.edges(&mut other)?;
+        let mut other = ReferenceReader::open(&self.session.path, reference.clone())?;
+        let mut beside = other.edges()?;
         let sql = "SELECT c.fid, c.verdict_no, c.rsc_mm, c.hinge_margin_cdeg, e.length_m \
                    FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
                    WHERE c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) AND c.corridor_no = ? \
@@ -180,25 +181,6 @@ impl Reference {
         self.same
     }
 
-    /// Its edges, to be read beside those of the set. `database` is a connection of its own.
-    ///
-    /// # Errors
-    /// The file cannot be read.
-    pub fn edges<'d>(&self, database: &'d mut Database) -> Result<Beside<'d>, StoreError> {
-        let rows = if self.same { None } else { Some(database.edge_standings(&self.id, self.policy)?.fuse()) };
-        Ok(Beside { rows, ahead: None })
-    }
-
-    /// Its turns, to be read beside those of the set. `database` is a connection of its own.
-    ///
-    /// # Errors
-    /// Its turns are not certified ([`StoreError::NotThere`]); the file cannot be read.
-    pub fn turns<'d>(&self, database: &'d mut Database) -> Result<Beside<'d>, StoreError> {
-        self.check_turns(database)?;
-        let rows = if self.same { None } else { Some(database.turn_standings(&self.id, self.policy)?.fuse()) };
-        Ok(Beside { rows, ahead: None })
-    }
-
     /// Checks that its turns are certified.
     ///
     /// # Errors
@@ -208,6 +190,43 @@ impl Reference {
             return Ok(());
         }
         Err(StoreError::turns_not_certified(&database.session.path, &self.id, self.policy))
+    }
+}
+
+/// A reference with a connection of its own, from which its certificates are read beside other rows.
+pub struct ReferenceReader {
+    reference: Reference,
+    database: Database,
+}
+
+impl ReferenceReader {
+    /// Opens the database at `path`, in which the reference is.
+    ///
+    /// # Errors
+    /// As [`Database::open`].
+    pub fn open(path: &Path, reference: Reference) -> Result<Self, StoreError> {
+        Ok(Self { reference, database: Database::open_to_stream(path)? })
+    }
+
+    /// The reference's edges, to be read beside those of the set.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn edges(&mut self) -> Result<Beside<'_>, StoreError> {
+        let Reference { id, policy, same } = &self.reference;
+        let rows = if *same { None } else { Some(self.database.edge_standings(id, *policy)?.fuse()) };
+        Ok(Beside { rows, ahead: None })
+    }
+
+    /// The reference's turns, to be read beside those of the set.
+    ///
+    /// # Errors
+    /// Its turns are not certified ([`StoreError::NotThere`]); the file cannot be read.
+    pub fn turns(&mut self) -> Result<Beside<'_>, StoreError> {
+        self.reference.check_turns(&mut self.database)?;
+        let Reference { id, policy, same } = &self.reference;
+        let rows = if *same { None } else { Some(self.database.turn_standings(id, *policy)?.fuse()) };
+        Ok(Beside { rows, ahead: None })
     }
 }
 

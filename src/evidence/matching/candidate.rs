@@ -13,7 +13,7 @@ use crate::osm::LonLat;
 /// Greatest distance between a road and what was drawn along it, metres.
 pub(super) const REACH_M: f64 = 15.0;
 /// Distance of samples, metres.
-const STEP_M: f64 = 5.0;
+pub(super) const STEP_M: f64 = 5.0;
 /// A sample may lie so far beyond the end of the line, metres.
 const BEYOND_M: f64 = 1.0;
 /// Half the length of the chords whose headings are compared, metres.

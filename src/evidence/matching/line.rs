@@ -1,11 +1,11 @@
 //! Rows whose place is a drawn line: the edges that it covers.
 
-use super::candidate::{Candidate, GOES_ON_M, REACH_M, SHORT_M};
+use super::candidate::{Candidate, GOES_ON_M, REACH_M, SHORT_M, STEP_M};
 use super::index::Index;
 use super::names::{Fit, Wanted, told};
 use super::rivals::{Standing, followed, standing};
 use super::track::Track;
-use super::{Found, Match, unmatched};
+use super::{Found, Match, TOLD, unmatched};
 use crate::evidence::row::Row;
 use crate::osm::LonLat;
 
@@ -15,8 +15,6 @@ const COVERED: f64 = 0.6;
 const EXPLAINED: f64 = 0.6;
 /// Local metres hold over no longer line.
 const LONGEST_M: f64 = 100_000.0;
-/// Candidates that a message names.
-const TOLD: usize = 4;
 
 /// The edges along a line.
 pub(super) fn matched(index: &Index<'_>, row: &Row, line: &[LonLat]) -> Found {
@@ -97,9 +95,9 @@ fn explained(left: &[&Candidate<'_>], line_m: f64) -> f64 {
     let roads = left.iter().filter(|candidate| candidate.name != Fit::Differs);
     let mut stretches: Vec<[f64; 2]> = roads.map(|candidate| candidate.stretch()).collect();
     stretches.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-    let (mut sum_m, mut until_m) = (0.0, 0.0_f64);
+    let (mut sum_m, mut until_m, half_m) = (0.0, 0.0_f64, STEP_M / 2.0);
     // The outermost samples are half a step from the ends of the road.
-    for [from, to] in stretches.into_iter().map(|[from, to]| [(from - 2.5).max(0.0), (to + 2.5).min(line_m)]) {
+    for [from, to] in stretches.into_iter().map(|[from, to]| [(from - half_m).max(0.0), (to + half_m).min(line_m)]) {
         sum_m += (to - from.max(until_m)).max(0.0);
         until_m = until_m.max(to);
     }
@@ -107,7 +105,5 @@ fn explained(left: &[&Candidate<'_>], line_m: f64) -> f64 {
 }
 
 fn listed<'c>(index: &Index<'_>, all: impl Iterator<Item = &'c Candidate<'c>>, or: &str) -> String {
-    let all: Vec<String> = all.map(|candidate| candidate.told(index)).collect();
-    let more = if all.len() > TOLD { format!(" and {} more", all.len() - TOLD) } else { String::new() };
-    all.into_iter().take(TOLD).collect::<Vec<_>>().join(or) + more.as_str()
+    super::listed(&all.map(|candidate| candidate.told(index)).collect::<Vec<_>>(), or)
 }

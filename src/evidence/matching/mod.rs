@@ -64,6 +64,15 @@ fn unmatched<T>(why: impl Into<String>) -> Result<T, Match> {
     Err(Match::Unmatched(why.into()))
 }
 
+/// Candidates that a message names.
+const TOLD: usize = 4;
+
+/// The first candidates, and how many more there are.
+fn listed(told: &[String], or: &str) -> String {
+    let more = if told.len() > TOLD { format!(" and {} more", told.len() - TOLD) } else { String::new() };
+    told.iter().take(TOLD).map(String::as_str).collect::<Vec<_>>().join(or) + more.as_str()
+}
+
 /// Which of the edges `[forward, backward]` of a piece are meant.
 fn directed(edges: [Option<u32>; 2], along: Along) -> Vec<u32> {
     let [forward, backward] = edges;

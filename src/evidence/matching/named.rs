@@ -6,6 +6,7 @@ use super::{Found, Match, directed, unmatched};
 use crate::evidence::row::Row;
 use crate::network::offset_m;
 use crate::osm::LonLat;
+use crate::words::Named as _;
 
 /// A geometry beside ids may lie so far from what they mean, metres. It is often a place beside the road for a label.
 const BESIDE_M: f64 = 100.0;

@@ -5,15 +5,13 @@ use super::index::{Index, Piece};
 use super::names::{Fit, Wanted, told};
 use super::rivals::could_be_meant;
 use super::track::Track;
-use super::{Found, Match, directed, unmatched};
+use super::{Found, Match, directed, listed, unmatched};
 use crate::evidence::row::{Quantity, Row};
 use crate::network::offset_m;
 use crate::osm::LonLat;
 
 /// Greatest distance of a kerb's position from the node of its junction, metres.
 const JUNCTION_M: f64 = 25.0;
-/// Candidates that a message names.
-const TOLD: usize = 4;
 
 /// The edges or the junction at a position.
 pub(super) fn matched(index: &Index<'_>, row: &Row, at: LonLat) -> Found {
@@ -73,7 +71,5 @@ fn decided(told: &[String], only: impl FnOnce() -> Match) -> Found {
     if told.len() <= 1 {
         return Ok(only());
     }
-    let first: Vec<&str> = told.iter().take(TOLD).map(String::as_str).collect();
-    let more = if told.len() > TOLD { format!(" and {} more", told.len() - TOLD) } else { String::new() };
-    Err(Match::Ambiguous(format!("could be {}{more}", first.join(" or "))))
+    Err(Match::Ambiguous(format!("could be {}", listed(told, " or "))))
 }

@@ -33,6 +33,12 @@ impl Drawing {
         self
     }
 
+    /// Nodes 1 to 4 of a main road, so many metres along it, and the far ends 5 and 6 of side roads at nodes 2 and 3.
+    pub(super) fn main_road(self, along: [f64; 4], aside: [f64; 2]) -> Self {
+        let drawn = (1..).zip(along).fold(self, |drawn, (id, east_m)| drawn.node(id, [east_m, 0.0]));
+        drawn.node(5, [along[1], aside[0]]).node(6, [along[2], aside[1]])
+    }
+
     /// A residential way, or one with other tags `key=value`.
     pub(super) fn way(mut self, id: i64, nodes: &[i64], tags: &'static str) -> Self {
         let mut pairs: Vec<(&str, String)> = vec![("highway", "residential".to_owned())];

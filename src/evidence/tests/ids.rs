@@ -7,12 +7,7 @@ use crate::network::Network;
 /// A main road 1-2-3-4, a side road 2-5, a one-way road 3-6, and a ring 10-11-12.
 fn network() -> Network {
     Drawing::default()
-        .node(1, [0.0, 0.0])
-        .node(2, [100.0, 0.0])
-        .node(3, [200.0, 0.0])
-        .node(4, [300.0, 0.0])
-        .node(5, [100.0, 80.0])
-        .node(6, [200.0, 80.0])
+        .main_road([0.0, 100.0, 200.0, 300.0], [80.0, 80.0])
         .node(10, [1000.0, 0.0])
         .node(11, [1060.0, 0.0])
         .node(12, [1030.0, 60.0])

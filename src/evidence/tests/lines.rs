@@ -133,12 +133,7 @@ fn a_bend_and_short_edges_are_followed() {
     let network = Drawing::default().road(1, &bend, "").network();
     assert_eq!(told(&network, &line(&moved)), "1:1000-1018 1:1018-1000");
     let network = Drawing::default()
-        .node(1, [0.0, 0.0])
-        .node(2, [50.0, 0.0])
-        .node(3, [53.0, 0.0])
-        .node(4, [100.0, 0.0])
-        .node(5, [50.0, 40.0])
-        .node(6, [53.0, -40.0])
+        .main_road([0.0, 50.0, 53.0, 100.0], [40.0, -40.0])
         .way(1, &[1, 2, 3, 4], "")
         .way(2, &[2, 5], "")
         .way(3, &[3, 6], "")

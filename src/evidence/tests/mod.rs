@@ -12,5 +12,4 @@ mod lines;
 mod noise;
 mod points;
 mod reference;
-mod speed;
 mod write;

@@ -7,12 +7,7 @@ use crate::network::Network;
 /// Two junctions 100 m apart on a road, with a parallel road 20 m away.
 fn network() -> Network {
     Drawing::default()
-        .node(1, [0.0, 0.0])
-        .node(2, [100.0, 0.0])
-        .node(3, [200.0, 0.0])
-        .node(4, [300.0, 0.0])
-        .node(5, [100.0, 80.0])
-        .node(6, [200.0, 80.0])
+        .main_road([0.0, 100.0, 200.0, 300.0], [80.0, 80.0])
         .way(1, &[1, 2, 3, 4], "name=Main")
         .way(2, &[2, 5], "name=North")
         .way(3, &[3, 6], "")
@@ -42,12 +37,7 @@ fn a_kerb_means_the_nearest_junction() {
     // At node 1 the road only ends.
     assert_eq!(told(&network(), &kerb([0.0, 0.0])), "unmatched: no junction within 25 m");
     let close = Drawing::default()
-        .node(1, [0.0, 0.0])
-        .node(2, [50.0, 0.0])
-        .node(3, [60.0, 0.0])
-        .node(4, [100.0, 0.0])
-        .node(5, [50.0, 40.0])
-        .node(6, [60.0, -40.0])
+        .main_road([0.0, 50.0, 60.0, 100.0], [40.0, -40.0])
         .way(1, &[1, 2, 3, 4], "")
         .way(2, &[2, 5], "")
         .way(3, &[3, 6], "")

@@ -4,7 +4,7 @@ use super::{EDGE_COLUMNS, Layer, Options, TURN_COLUMNS, edge_cells, turn_cells};
 use crate::export::{ExportError, Refusal, Source};
 use crate::osm::LonLat;
 use crate::rows::{Cell, Column, Relative, Standing};
-use crate::store::{Beside, Database, Reference};
+use crate::store::ReferenceReader;
 
 /// One row of a layer.
 pub(super) struct Row<'r> {
@@ -54,10 +54,11 @@ impl Layer {
         mut put: impl FnMut(&Row<'_>) -> Result<(), ExportError>,
     ) -> Result<(), ExportError> {
         let mut database = source.database()?;
-        let mut compared = Compared::open(source)?;
+        let reference = source.reference.clone().map(|reference| ReferenceReader::open(&source.ask.db, reference));
+        let mut reference = reference.transpose()?;
         match self {
             Self::Edges => {
-                let mut beside = compared.edges()?;
+                let mut beside = reference.as_mut().map(ReferenceReader::edges).transpose()?;
                 for edge in source.edges(&mut database)? {
                     let edge = edge?;
                     let refusal = edge.refusal.map_or_else(String::new, Refusal::words);
@@ -68,7 +69,7 @@ impl Layer {
                 }
             }
             Self::Turns => {
-                let mut beside = compared.turns()?;
+                let mut beside = reference.as_mut().map(ReferenceReader::turns).transpose()?;
                 for turn in source.turns(&mut database)? {
                     let turn = turn?;
                     let refusal = turn.refusal.map_or_else(String::new, Refusal::words);
@@ -80,24 +81,6 @@ impl Layer {
             }
         }
         Ok(())
-    }
-}
-
-/// The reference of an export with a connection of its own, if there is one.
-struct Compared<'s>(Option<(&'s Reference, Database)>);
-
-impl<'s> Compared<'s> {
-    fn open(source: &'s Source<'_>) -> Result<Self, ExportError> {
-        let with_database = |reference| Ok::<_, ExportError>((reference, source.database()?));
-        Ok(Self(source.reference.as_ref().map(with_database).transpose()?))
-    }
-
-    fn edges(&mut self) -> Result<Option<Beside<'_>>, ExportError> {
-        Ok(self.0.as_mut().map(|(reference, database)| reference.edges(database)).transpose()?)
-    }
-
-    fn turns(&mut self) -> Result<Option<Beside<'_>>, ExportError> {
-        Ok(self.0.as_mut().map(|(reference, database)| reference.turns(database)).transpose()?)
     }
 }
 
