@@ -65,7 +65,8 @@ CREATE TABLE certified_set (
 ) WITHOUT ROWID;
 
 -- Millimetres, hundredths of a degree, thousandths and decimetres; every value is rounded to the safe side.
--- shrink_milli NULL: 1. limiting_at: 2 × unit + (1 on the right). No foreign keys: the check costs more than the row;
+-- shrink_milli NULL: 1. limiting_at: 2 × unit + (1 on the right). need_cm: the least width of the strip with which an edge that
+-- lacks room would be safe, if its stroke were nowhere narrower; rounded up. No foreign keys: the check costs more than the row;
 -- the writer numbers the rows from the edges themselves. The generated columns take no room; a view's column has a type
 -- only if it is one of a table, and without one GDAL shows numbers as text. certificate_no names the row in the views: 32
 -- bits of fid, 2 of corridor, then the vehicle; up to 2^19 vehicles a floating-point number holds it exactly.
@@ -80,6 +81,7 @@ CREATE TABLE certificate_compact (
     shrink_milli INTEGER,
     limiting_s_dm INTEGER,
     limiting_at INTEGER,
+    need_cm INTEGER,
     rsc_m DOUBLE AS (rsc_mm / 1000.0),
     rsc_published_m DOUBLE AS (rsc_published_mm / 1000.0),
     hinge_margin_deg DOUBLE AS (hinge_margin_cdeg / 100.0),
@@ -87,6 +89,7 @@ CREATE TABLE certificate_compact (
     limiting_s_m DOUBLE AS (limiting_s_dm / 10.0),
     limiting_unit INTEGER AS (limiting_at >> 1),
     limiting_side TEXT AS (CASE limiting_at & 1 WHEN 0 THEN 'left' WHEN 1 THEN 'right' END),
+    need_width_m DOUBLE AS (need_cm / 100.0),
     certificate_no INTEGER AS ((vehicle_no << 34) | (corridor_no << 32) | fid),
     PRIMARY KEY (vehicle_no, corridor_no, fid)
 ) WITHOUT ROWID;
@@ -105,6 +108,7 @@ SELECT
     c.limiting_s_m,
     c.limiting_unit,
     c.limiting_side,
+    c.need_width_m,
     w.verdict,
     w.reason,
     c.fid AS edge_fid,

@@ -36,7 +36,8 @@ CREATE TABLE certified_turns (
 ) WITHOUT ROWID;
 
 -- As `certificate_compact`. `path_no`: which of the turn's reference paths it rests on. No numbers where one of the turn's edges
--- has the verdict already: then it is that edge's.
+-- has the verdict already: then it is that edge's. `need_kerb_cm`: the least radius of the turn's own kerbs with which a turn that lacks
+-- room would be safe; `need_flare_cm`: if no radius helps, the width that the strip near the turn would need on both roads.
 CREATE TABLE turn_certificate_compact (
     vehicle_no INTEGER NOT NULL,
     corridor_no INTEGER NOT NULL,
@@ -48,6 +49,8 @@ CREATE TABLE turn_certificate_compact (
     shrink_milli INTEGER,
     limiting_s_dm INTEGER,
     limiting_at INTEGER,
+    need_kerb_cm INTEGER,
+    need_flare_cm INTEGER,
     path_no INTEGER,
     rsc_m DOUBLE AS (rsc_mm / 1000.0),
     rsc_published_m DOUBLE AS (rsc_published_mm / 1000.0),
@@ -56,6 +59,8 @@ CREATE TABLE turn_certificate_compact (
     limiting_s_m DOUBLE AS (limiting_s_dm / 10.0),
     limiting_unit INTEGER AS (limiting_at >> 1),
     limiting_side TEXT AS (CASE limiting_at & 1 WHEN 0 THEN 'left' WHEN 1 THEN 'right' END),
+    need_kerb_radius_m DOUBLE AS (need_kerb_cm / 100.0),
+    need_flare_m DOUBLE AS (need_flare_cm / 100.0),
     certificate_no INTEGER AS ((vehicle_no << 34) | (corridor_no << 32) | fid),
     PRIMARY KEY (vehicle_no, corridor_no, fid)
 ) WITHOUT ROWID;
@@ -73,6 +78,8 @@ SELECT
     c.limiting_s_m,
     c.limiting_unit,
     c.limiting_side,
+    c.need_kerb_radius_m,
+    c.need_flare_m,
     w.verdict,
     w.reason,
     c.path_no,

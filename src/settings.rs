@@ -28,6 +28,8 @@ pub struct Settings {
     pub kerbs: Kerbs,
     /// Whether turns are certified, too.
     pub turns: bool,
+    /// Whether the least width or kerb radius is looked for where room is lacking.
+    pub needs: bool,
 }
 
 impl Default for Settings {
@@ -40,6 +42,7 @@ impl Default for Settings {
             stet: Options::default(),
             kerbs: Kerbs::default(),
             turns: true,
+            needs: true,
         }
     }
 }
@@ -58,6 +61,7 @@ struct Written {
     max_shift_m: f64,
     correction_sweeps: u16,
     turns: bool,
+    needs: bool,
     kerbs: Kerbs,
 }
 
@@ -65,7 +69,7 @@ impl Settings {
     /// The parameters of turns.
     #[must_use]
     pub fn turn_params(&self) -> TurnParams {
-        TurnParams { strip: self.turn_policy, corridor: self.corridor, kerbs: self.kerbs.clone() }
+        TurnParams { strip: self.turn_policy, corridor: self.corridor, kerbs: self.kerbs.clone(), own_kerb_m: None }
     }
 
     /// All settings as JSON. The same settings give the same bytes.
@@ -74,7 +78,7 @@ impl Settings {
     /// A member is out of range; the error names it.
     pub fn written(&self) -> Result<String, String> {
         // The pattern has no `..`, so a new field does not compile until it is written.
-        let Self { policy, corridor, stet, turn_policy, kerbs, turns } = self;
+        let Self { policy, corridor, stet, turn_policy, kerbs, turns, needs } = self;
         let Params { tolerance_m, map_tolerance_m, spacing_m, cutoff_m, lead_in_m } = *corridor;
         let Options { max_shift_m, correction_sweeps } = *stet;
         let written = Written {
@@ -88,6 +92,7 @@ impl Settings {
             max_shift_m,
             correction_sweeps: u16::try_from(correction_sweeps).map_err(|_| "correction_sweeps: out of range")?,
             turns: *turns,
+            needs: *needs,
             kerbs: kerbs.clone(),
         };
         written.check()?;
@@ -130,6 +135,7 @@ impl Settings {
             },
             kerbs: written.kerbs,
             turns: written.turns,
+            needs: written.needs,
         })
     }
 }
@@ -176,6 +182,7 @@ mod tests {
             stet: Options { max_shift_m: 0.0, correction_sweeps: 5 },
             kerbs: Kerbs::everywhere(2.5),
             turns: false,
+            needs: false,
         }
     }
 

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
+use super::needs::{Narrow, edge_needs};
 use crate::account::AccountRow;
 use crate::corridor::{EdgeSpan, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
@@ -14,7 +15,7 @@ use crate::reporter::Reporter;
 use crate::rows::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StoredPlan};
 use crate::settings::Settings;
 use crate::stet::{Model, Planned, SpanResult, certify_spans};
-use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
+use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use crate::words::{Named, VerdictKind, verdict_words};
 
 /// Strokes per batch: enough to keep the threads busy, few enough to hold in memory.
@@ -117,16 +118,16 @@ pub fn certify_network<E>(
 fn certify_stroke(job: &Job<'_>, stroke: &Stroke) -> StrokeResult {
     let made = stroke_corridor(job.network, stroke, job.settings.policy, &job.settings.corridor);
     match made {
-        Ok(made) => with_corridor(job, &made),
+        Ok(made) => with_corridor(job, stroke, &made),
         Err(reason) => without_corridor(job, stroke, reason),
     }
 }
 
-fn with_corridor(job: &Job<'_>, made: &StrokeCorridor) -> StrokeResult {
+fn with_corridor(job: &Job<'_>, stroke: &Stroke, made: &StrokeCorridor) -> StrokeResult {
     let spans: Vec<_> = made.spans.iter().map(|s| s.stations.clone()).collect();
     let models: Vec<&Model> = job.models.iter().collect();
     let rows = certify_spans(&made.corridor, &models, &spans, &job.settings.stet);
-    let certificates = rows
+    let mut certificates: Vec<(usize, EdgeCertificate)> = rows
         .iter()
         .enumerate()
         .flat_map(|(vehicle, row)| made.spans.iter().zip(&row.spans).map(move |(span, result)| (vehicle, span, result)))
@@ -134,9 +135,13 @@ fn with_corridor(job: &Job<'_>, made: &StrokeCorridor) -> StrokeResult {
             let edge = job.network.edges.get(span.edge as usize)?;
             let verdict = verdict(edge, &job.models[vehicle], span.unknown, Some(result));
             let measured = span.unknown.is_none().then(|| measured(made, span, result)).flatten();
-            Some((vehicle, EdgeCertificate { edge: span.edge, conclusion: Conclusion { verdict, measured } }))
+            let conclusion = Conclusion { verdict, measured };
+            Some((vehicle, EdgeCertificate { edge: span.edge, conclusion, need_width_m: None }))
         })
         .collect();
+    if job.settings.needs {
+        add_needs(job, stroke, made, &rows, &mut certificates);
+    }
     let measures = made.spans.iter().map(|span| {
         let measure = EdgeMeasure {
             length_m: None,
@@ -149,6 +154,40 @@ fn with_corridor(job: &Job<'_>, made: &StrokeCorridor) -> StrokeResult {
     let plan = |(vehicle, row): (usize, &Planned)| Some((vehicle, StoredPlan::new(first, &row.plan.coefficients)?));
     let plans = rows.iter().enumerate().filter_map(plan).collect();
     StrokeResult { measures: measures.collect(), certificates, plans }
+}
+
+/// Adds what the edges need that lack room.
+fn add_needs(
+    job: &Job<'_>,
+    stroke: &Stroke,
+    made: &StrokeCorridor,
+    rows: &[Planned],
+    certificates: &mut [(usize, EdgeCertificate)],
+) {
+    let corridor = &made.corridor;
+    for (vehicle, row) in rows.iter().enumerate() {
+        let mut lacking: Vec<&mut EdgeCertificate> = certificates
+            .iter_mut()
+            .filter(|(of, known)| *of == vehicle && known.conclusion.verdict == Verdict::Unsafe(UnsafeReason::Width))
+            .map(|(_, known)| known)
+            .collect();
+        if lacking.is_empty() {
+            continue;
+        }
+        let narrow: Vec<Narrow<'_>> = lacking
+            .iter()
+            .filter_map(|known| {
+                let (_, result) = made.spans.iter().zip(&row.spans).find(|(span, _)| span.edge == known.edge)?;
+                let at = result.limiting.station.min(corridor.len() - 1);
+                let width_m = corridor.left_m[at] + corridor.right_m[at];
+                Some(Narrow { edge: known.edge, result, width_m })
+            })
+            .collect();
+        let needs = edge_needs(job, stroke, &job.models[vehicle], &narrow);
+        for (known, need) in lacking.iter_mut().zip(needs) {
+            known.need_width_m = need;
+        }
+    }
 }
 
 fn without_corridor(job: &Job<'_>, stroke: &Stroke, reason: UnknownReason) -> StrokeResult {

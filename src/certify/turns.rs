@@ -9,11 +9,12 @@ use std::sync::Arc;
 use rayon::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::needs::TurnCase;
 use crate::account::AccountRow;
 use crate::network::Network;
 use crate::osm::LonLat;
 use crate::reporter::Reporter;
-use crate::rows::{Conclusion, Measured, StoredPlan, TurnCertificate};
+use crate::rows::{Conclusion, Measured, StoredPlan, TurnCertificate, TurnNeed};
 use crate::settings::Settings;
 use crate::stet::{Model, Options, Plan, SpanResult, certify_spans};
 use crate::turns::{Planner, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnPath, turn_on};
@@ -32,6 +33,8 @@ const ENOUGH_M: f64 = 0.2;
 /// If no more than this is missing, more paths are tried, metres; and how many.
 const NEARLY_M: f64 = 0.3;
 const MORE_PATHS: usize = 8;
+/// How many seeds [`fits`] certifies.
+const SEEDS: usize = 2;
 
 /// Inputs of a certification of turns.
 #[derive(Clone, Copy)]
@@ -222,6 +225,12 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
                 let models: Vec<&Model> = live.iter().map(|&v| &job.models[v]).collect();
                 for (&v, best) in live.iter().zip(best_planned(&made, &models, &job.settings.stet)) {
                     out[v] = certificate(index, best);
+                    let lacks = out[v].conclusion.verdict == Verdict::Unsafe(UnsafeReason::Width);
+                    if lacks && job.settings.needs {
+                        let case =
+                            TurnCase { network: job.network, turn, model: &job.models[v], settings: job.settings };
+                        out[v].need = case.need(made.kerb_radius_m, &line);
+                    }
                 }
             }
         }
@@ -284,6 +293,17 @@ fn best_path(made: &TurnCorridors, planner: &mut Planner<'_>, model: &Model, opt
     best
 }
 
+/// Whether one of the seeds with the most room is safe. A cheap look: `true` is certified, `false` may be a path that was not tried.
+#[must_use]
+pub fn fits(made: &TurnCorridors, model: &Model, options: &Options) -> bool {
+    let seeds = Planner::new(made).best_seeds(&model.vehicle, SEEDS);
+    let mut best = None;
+    seeds.iter().filter(|seed| seed.score_m >= -NEARLY_M).any(|seed| {
+        try_path(made, seed.code, model, Some(options), &mut best);
+        best.as_ref().is_some_and(|best| best.result.safe())
+    })
+}
+
 /// Certifies a path as planned, then with corrections, which may steer more sharply. Keeps the better result.
 fn try_path(made: &TurnCorridors, code: i64, model: &Model, corrected: Option<&Options>, best: &mut Option<Best>) {
     let Some(path) = made.path(code) else { return };
@@ -334,7 +354,7 @@ fn certificate(turn: u32, best: Option<Best>) -> TurnCertificate {
             };
             let plan = StoredPlan::new(turn, &plan.coefficients);
             let conclusion = Conclusion { verdict, measured: Some(measured) };
-            TurnCertificate { turn, conclusion, path: Some(path.code), plan }
+            TurnCertificate { turn, conclusion, path: Some(path.code), need: TurnNeed::default(), plan }
         }
         None => TurnCertificate::bare(turn, verdict),
     }

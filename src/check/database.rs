@@ -164,8 +164,7 @@ impl SetClaim<'_> {
     /// tolerance.
     fn road(&self, made: &StrokeCorridor, span: &EdgeSpan) -> Option<Finding> {
         let edge = self.network.edges.get(span.edge as usize)?;
-        let section =
-            &self.network.road(edge).sections[usize::from(edge.direction == crate::osm::facts::Direction::Backward)];
+        let section = self.network.section(edge);
         let strip = section.strip(self.policy)?;
         if span.centreline_deviation_m > self.params.tolerance_m {
             return Some(finding("corridor", &format!("{:.2} m off the map's line", span.centreline_deviation_m)));

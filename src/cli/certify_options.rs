@@ -41,6 +41,9 @@ pub(crate) struct CertifyOptions {
     /// Certify edges only, not the turns at junctions.
     #[arg(long)]
     no_turns: bool,
+    /// Do not look for the width or kerb radius that would be enough where room is lacking. Certifying is then faster.
+    #[arg(long)]
+    no_needs: bool,
 }
 
 /// Values of `--turn-corridor`.
@@ -80,6 +83,7 @@ impl CertifyOptions {
             turn_policy: self.turn_corridor.map_or(base.turn_policy, TurnCorridor::policy),
             kerbs: base.kerbs.clone(),
             turns: base.turns && !self.no_turns,
+            needs: base.needs && !self.no_needs,
         }
     }
 }

@@ -27,7 +27,7 @@ pub use file::{FileCorridor, FileError, corridor_from_file};
 pub use frame::{Frame, FrameError, HALF_WIDTH_M};
 pub use netcert_base::corridor::{Area, AreaSpan, Corridor, CurvatureProfile};
 pub(crate) use outline::{from_chord_m, open_ends, outline};
-pub use stroke::stroke_corridor;
+pub use stroke::{Sections, stroke_corridor, stroke_corridor_on};
 
 use crate::verdict::UnknownReason;
 

@@ -13,7 +13,7 @@ use super::taper::{Ramp, guideline_ratio};
 use super::{Corridor, EdgeSpan, Params, StrokeCorridor, Taper, TaperCause};
 use crate::network::{Edge, Network, Stroke};
 use crate::osm::LonLat;
-use crate::osm::facts::{Direction, Oneway, Policy, Strip};
+use crate::osm::facts::{CrossSection, Direction, Oneway, Policy, Strip};
 use crate::verdict::UnknownReason;
 
 /// Shortest stroke with a usable direction, metres.
@@ -40,7 +40,24 @@ pub fn stroke_corridor(
     policy: Policy,
     params: &Params,
 ) -> Result<StrokeCorridor, UnknownReason> {
-    let (frame, mut links, approach) = links(network, stroke, policy, params)?;
+    stroke_corridor_on(network, stroke, &|edge| network.section(edge), policy, params)
+}
+
+/// The cross section of each edge.
+pub type Sections<'a> = dyn Fn(&Edge) -> CrossSection + Sync + 'a;
+
+/// The corridor of a stroke, as [`stroke_corridor`], with other cross sections.
+///
+/// # Errors
+/// As [`stroke_corridor`].
+pub fn stroke_corridor_on(
+    network: &Network,
+    stroke: &Stroke,
+    sections: &Sections<'_>,
+    policy: Policy,
+    params: &Params,
+) -> Result<StrokeCorridor, UnknownReason> {
+    let (frame, mut links, approach) = links(network, stroke, sections, policy, params)?;
     if stroke.closed {
         // A loop is its own approach.
         links.drain(..approach);
@@ -189,6 +206,7 @@ fn all_finite(c: &Corridor) -> bool {
 fn links<'n>(
     network: &'n Network,
     stroke: &Stroke,
+    sections: &Sections<'_>,
     policy: Policy,
     params: &Params,
 ) -> Result<(Frame, Vec<Link<'n>>, usize), UnknownReason> {
@@ -215,21 +233,28 @@ fn links<'n>(
         .map(|(&index, end)| {
             let points = metric[start..end].to_vec();
             start = end;
-            link(network, index, points, policy, params.map_tolerance_m)
+            link(network, index, points, sections, policy, params.map_tolerance_m)
         })
         .collect();
     Ok((frame, links, approach.len()))
 }
 
-fn link(network: &Network, index: u32, points: Vec<[f64; 2]>, policy: Policy, map_tolerance_m: f64) -> Link<'_> {
+fn link<'n>(
+    network: &'n Network,
+    index: u32,
+    points: Vec<[f64; 2]>,
+    sections: &Sections<'_>,
+    policy: Policy,
+    map_tolerance_m: f64,
+) -> Link<'n> {
     let edge = &network.edges[index as usize];
     let road = network.road(edge);
-    let section = road.sections[usize::from(edge.direction == Direction::Backward)];
+    let section = sections(edge);
     Link {
         index,
         edge,
         points,
-        room: room(network, edge, policy, map_tolerance_m),
+        room: room(section, policy, map_tolerance_m),
         direction: section.direction.and_then(|strip| across(strip, 0.0)),
         two_way: road.oneway == Oneway::No,
         ratio: guideline_ratio(road.class),
@@ -244,8 +269,7 @@ fn across(strip: Strip, map_tolerance_m: f64) -> Option<Across> {
 
 /// The strips of an edge under a policy: the strip itself, the lanes of its direction in which a lane may shift, and
 /// the paved surface.
-fn room(network: &Network, edge: &Edge, policy: Policy, map_tolerance_m: f64) -> Option<Room> {
-    let section = network.road(edge).sections[usize::from(edge.direction == Direction::Backward)];
+fn room(section: CrossSection, policy: Policy, map_tolerance_m: f64) -> Option<Room> {
     let across = |strip: Strip| across(strip, map_tolerance_m);
     let strip = section.strip(policy).and_then(across)?;
     let wider = (policy == Policy::Lane).then_some(section.direction).flatten().and_then(across);

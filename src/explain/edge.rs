@@ -10,7 +10,7 @@ use super::{Explanation, Geometry, RoadFacts};
 use crate::certify::verdict;
 use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
-use crate::osm::facts::{Direction, Policy};
+use crate::osm::facts::Policy;
 use crate::rows::CertificateRow;
 use crate::settings::Settings;
 use crate::stet::{Certificate, Model, Options, SpanResult, certify_planned, certify_spans};
@@ -214,7 +214,7 @@ fn other_strips(
 fn road_facts(network: &Network, edge: &Edge, policy: Policy) -> RoadFacts {
     let road = network.road(edge);
     let text = |id: Option<crate::osm::StringId>| id.map(|id| network.strings.text(id).to_owned());
-    let section = road.sections[usize::from(edge.direction == Direction::Backward)];
+    let section = network.section(edge);
     RoadFacts {
         edge_id: edge.id,
         way_id: road.way_id,

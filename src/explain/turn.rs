@@ -4,19 +4,18 @@ use super::edge::{edge_verdict, geometry};
 use super::hints::{self, Hints, KerbHint};
 use super::legal::Conflict;
 use super::{Explanation, Geometry, TurnRoads, no_bound};
-use crate::certify::{best_of, turn_verdict};
+use crate::certify::{MOST_KERB_M, best_of, turn_verdict};
 use crate::corridor::Corridor;
 use crate::network::{Edge, Network, PassageKind};
 use crate::osm::facts::Policy;
 use crate::settings::Settings;
 use crate::stet::{Model, Options, SpanResult, certify_spans};
 use crate::stop::{Stop, Stopped};
-use crate::turns::{KerbSource, Kerbs, Reach, TurnCorridors, TurnFacts, TurnParams, TurnPath, corridors_of};
+use crate::turns::{KerbSource, Reach, TurnCorridors, TurnFacts, TurnParams, TurnPath, corridors_of};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
-/// Kerb radii that are tried, metres: in these steps, up to this one.
+/// Kerb radii are tried in these steps, metres, up to [`MOST_KERB_M`].
 const KERB_STEP_M: f64 = 0.5;
-const MOST_KERB_M: f64 = 25.0;
 
 /// What limits a vehicle in a turn.
 #[derive(Debug, Clone)]
@@ -136,8 +135,8 @@ fn kerb(
 ) -> Result<KerbHint, Stopped> {
     let safe_with = |steps: u32| -> Result<bool, Stopped> {
         stop.check()?;
-        let kerbs = Kerbs::everywhere(f64::from(steps) * KERB_STEP_M);
-        Ok(is_safe(network, facts, model, settings, &TurnParams { kerbs, ..settings.turn_params() }))
+        let own_kerb_m = Some(f64::from(steps) * KERB_STEP_M);
+        Ok(is_safe(network, facts, model, settings, &TurnParams { own_kerb_m, ..settings.turn_params() }))
     };
     let (mut fails, mut does) = ((radius_m / KERB_STEP_M) as u32, (MOST_KERB_M / KERB_STEP_M) as u32);
     if fails >= does || !safe_with(does)? {

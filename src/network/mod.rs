@@ -18,6 +18,7 @@ mod pairing;
 mod passages;
 mod restrictions;
 mod roundabouts;
+mod site;
 mod splits;
 mod stroke;
 mod vertices;
@@ -32,6 +33,7 @@ pub use crossings::Crossings;
 pub(crate) use geometry::{EARTH_RADIUS_M, offset_m};
 pub use movements::{Movement, MovementKind, Movements};
 pub use passages::{Passage, PassageKind};
+pub use site::Site;
 pub use splits::Splits;
 pub use stroke::StrokeOptions;
 
@@ -153,6 +155,8 @@ pub struct Network {
     pub splits: Splits,
     /// Edges by node; derived from edges.
     pub crossings: Crossings,
+    /// What is known of single places beside the map.
+    pub site: Site,
     /// Names and refs.
     pub strings: StringPool,
 }

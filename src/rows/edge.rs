@@ -31,13 +31,15 @@ pub struct EdgeRow {
     pub maxspeed_kmh: Option<u8>,
     /// The certificate of the query's vehicle under that policy.
     pub certificate: CertificateRow,
+    /// The least width with which the edge would be safe, if its stroke were nowhere narrower, metres.
+    pub need_width_m: Option<f64>,
     /// The map's line in direction of travel.
     pub line: Vec<LonLat>,
 }
 
 impl EdgeRow {
     /// The columns of [`Self::cells`].
-    pub const COLUMNS: [Column; 24] = {
+    pub const COLUMNS: [Column; 25] = {
         let [verdict, reason, rsc, rsc_published, hinge_margin, shrink, limiting_s, limiting_unit, limiting_side] =
             CertificateRow::COLUMNS;
         [
@@ -65,6 +67,7 @@ impl EdgeRow {
             limiting_s,
             limiting_unit,
             limiting_side,
+            ("need_width_m", Real),
         ]
     };
 
@@ -98,6 +101,7 @@ impl EdgeRow {
             limiting_s,
             limiting_unit,
             limiting_side,
+            Cell::Real(self.need_width_m),
         ]
     }
 }

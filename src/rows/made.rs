@@ -12,6 +12,8 @@ pub struct EdgeCertificate {
     pub edge: u32,
     /// The verdict and the numbers.
     pub conclusion: Conclusion,
+    /// The least width of the strip with which an edge without enough room would be safe, if its stroke were nowhere narrower, metres.
+    pub need_width_m: Option<f64>,
 }
 
 /// The verdict and the numbers that certificates of edges and turns have in common.
@@ -27,7 +29,7 @@ impl EdgeCertificate {
     /// A certificate without numbers.
     #[must_use]
     pub fn bare(edge: u32, verdict: Verdict) -> Self {
-        Self { edge, conclusion: Conclusion::bare(verdict) }
+        Self { edge, conclusion: Conclusion::bare(verdict), need_width_m: None }
     }
 }
 
@@ -67,6 +69,8 @@ pub struct TurnCertificate {
     pub conclusion: Conclusion,
     /// Code of the path that was certified.
     pub path: Option<i64>,
+    /// What would be enough for a turn without enough room.
+    pub need: TurnNeed,
     /// The plan on that path. `None` if the plan is the path's centreline.
     pub plan: Option<StoredPlan>,
 }
@@ -75,8 +79,17 @@ impl TurnCertificate {
     /// A certificate without numbers.
     #[must_use]
     pub fn bare(turn: u32, verdict: Verdict) -> Self {
-        Self { turn, conclusion: Conclusion::bare(verdict), path: None, plan: None }
+        Self { turn, conclusion: Conclusion::bare(verdict), path: None, need: TurnNeed::default(), plan: None }
     }
+}
+
+/// What would be enough for a turn that lacks room. At most one of both is there.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TurnNeed {
+    /// The least radius of the kerbs on the inside with which the turn would be safe at the widths there are, metres.
+    pub kerb_radius_m: Option<f64>,
+    /// If no radius helps: the least width that the strip near the turn would need on both roads, metres.
+    pub flare_m: Option<f64>,
 }
 
 /// Measures of an edge from the corridor stage.

@@ -21,7 +21,7 @@ pub use cell::{Cell, Column, Kind};
 pub use certificate::CertificateRow;
 pub use counts::{RelativeCount, RscBin, Stats, StatsRow, TurnCount};
 pub use edge::{EdgeFacts, EdgeRow, EdgeStep};
-pub use made::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, TurnCertificate};
+pub use made::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, TurnCertificate, TurnNeed};
 pub use map::{MainRoad, MapEdge, MapTurn, RoadRow};
 pub use plan::StoredPlan;
 pub(crate) use plan::unpack;

@@ -33,13 +33,17 @@ pub struct TurnRow {
     /// The certificate of the query's vehicle under the query's policy.
     pub certificate: CertificateRow,
     pub path_no: Option<i64>,
+    /// The least radius of the kerbs on the inside with which the turn would be safe, metres.
+    pub need_kerb_radius_m: Option<f64>,
+    /// If no radius helps: the least width of the strip near the turn with which it would be safe, on both roads, metres.
+    pub need_flare_m: Option<f64>,
     /// The map's line in driving order.
     pub line: Vec<LonLat>,
 }
 
 impl TurnRow {
     /// The columns of [`Self::cells`]. Tables of turns leave out `rsc_published_m`.
-    pub const COLUMNS: [Column; 23] = {
+    pub const COLUMNS: [Column; 25] = {
         let [verdict, reason, rsc, _, hinge_margin, shrink, limiting_s, limiting_unit, limiting_side] =
             CertificateRow::COLUMNS;
         [
@@ -66,6 +70,8 @@ impl TurnRow {
             limiting_s,
             limiting_unit,
             limiting_side,
+            ("need_kerb_radius_m", Real),
+            ("need_flare_m", Real),
         ]
     };
 
@@ -98,6 +104,8 @@ impl TurnRow {
             limiting_s,
             limiting_unit,
             limiting_side,
+            Cell::Real(self.need_kerb_radius_m),
+            Cell::Real(self.need_flare_m),
         ]
     }
 }

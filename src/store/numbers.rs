@@ -12,6 +12,11 @@ use super::network_read::verdict;
 pub(super) const COLUMNS: &str = "c.verdict_no, c.rsc_mm, c.rsc_published_mm, c.hinge_margin_cdeg, c.shrink_milli, \
                                   c.limiting_s_dm, c.limiting_at";
 
+/// A column in centimetres, as metres.
+pub(super) fn centimetres(row: &SqliteRow, column: usize) -> Result<Option<f64>, sqlx::Error> {
+    Ok(row.try_get::<Option<i64>, _>(column)?.map(|cm| cm as f64 / 100.0))
+}
+
 /// Reads the columns `first` to `first + 6`; `what` names the row in errors.
 pub(super) fn read(
     row: &SqliteRow,

@@ -1,7 +1,7 @@
 //! A certificate as it is stored: small integers, each rounded down, so that a stored value never claims more than the
 //! computed one. A `safe` certificate whose rounded numbers do not support it is refused.
 
-use crate::rows::Conclusion;
+use crate::rows::{Conclusion, EdgeCertificate};
 use crate::verdict::Verdict;
 
 use super::bulk::Bulk;
@@ -18,6 +18,8 @@ pub(super) struct Packed {
     pub(super) shrink_milli: Option<u16>,
     pub(super) limiting_s_dm: Option<u32>,
     pub(super) limiting_at: Option<u16>,
+    /// What would be enough, centimetres: an edge's width; a turn's kerb radius, and the width of both its roads.
+    pub(super) needs_cm: [Option<u16>; 2],
     /// The code of the path, for turns only.
     pub(super) path_no: Option<i64>,
 }
@@ -32,7 +34,15 @@ impl Packed {
         bulk.add(self.hinge_margin_cdeg)?;
         bulk.add(self.shrink_milli)?;
         bulk.add(self.limiting_s_dm)?;
-        bulk.add(self.limiting_at)
+        bulk.add(self.limiting_at)?;
+        bulk.add(self.needs_cm[0])
+    }
+}
+
+impl EdgeCertificate {
+    /// Packs the certificate. The error says why it may not be stored.
+    pub(super) fn pack(&self) -> Result<Packed, String> {
+        Ok(Packed { needs_cm: [need_cm(self.need_width_m), None], ..self.conclusion.pack(self.edge)? })
     }
 }
 
@@ -50,6 +60,7 @@ impl Conclusion {
             shrink_milli: None,
             limiting_s_dm: None,
             limiting_at: None,
+            needs_cm: [None; 2],
             path_no: None,
         };
         if let Some(m) = &self.measured {
@@ -85,6 +96,12 @@ fn floor_to(value: f64, parts: f64) -> Option<i32> {
     Some(whole)
 }
 
+/// A need in centimetres, rounded up. `None` if it is out of range.
+pub(super) fn need_cm(need_m: Option<f64>) -> Option<u16> {
+    let cm = (need_m? * 100.0 - 1e-6).ceil();
+    (0.0..60_000.0).contains(&cm).then_some(cm as u16)
+}
+
 fn shrink_milli(shrink: f64) -> Result<u16, String> {
     let milli = (shrink * 1000.0).round();
     let quantised = (1.0..=1000.0).contains(&milli) && (milli / 1000.0 - shrink).abs() < 1e-9;
@@ -97,7 +114,7 @@ fn shrink_milli(shrink: f64) -> Result<u16, String> {
 
 impl Packed {
     /// Length of [`Packed::to_bytes`].
-    pub(super) const BYTES: usize = 33;
+    pub(super) const BYTES: usize = 37;
 
     /// The row as bytes for the spool.
     pub(super) fn to_bytes(self) -> [u8; Self::BYTES] {
@@ -110,7 +127,10 @@ impl Packed {
         bytes[17..19].copy_from_slice(&self.shrink_milli.unwrap_or(u16::MAX).to_le_bytes());
         bytes[19..23].copy_from_slice(&self.limiting_s_dm.unwrap_or(u32::MAX).to_le_bytes());
         bytes[23..25].copy_from_slice(&self.limiting_at.unwrap_or(u16::MAX).to_le_bytes());
-        bytes[25..33].copy_from_slice(&self.path_no.unwrap_or(i64::MIN).to_le_bytes());
+        for (at, need) in [(25, self.needs_cm[0]), (27, self.needs_cm[1])] {
+            bytes[at..at + 2].copy_from_slice(&need.unwrap_or(u16::MAX).to_le_bytes());
+        }
+        bytes[29..37].copy_from_slice(&self.path_no.unwrap_or(i64::MIN).to_le_bytes());
         bytes
     }
 
@@ -131,6 +151,7 @@ impl Packed {
             shrink_milli: short(17),
             limiting_s_dm: Some(unsigned(19)).filter(|&value| value != u32::MAX),
             limiting_at: short(23),
+            needs_cm: [short(25), short(27)],
             path_no: b.last_chunk().map(|last| i64::from_le_bytes(*last)).filter(|&value| value != i64::MIN),
         }
     }
@@ -178,8 +199,17 @@ mod tests {
         fn the_spool_gives_back_what_it_got(rsc in prop::option::of(-50.0..50.0_f64), hinge in -3.0..3.0_f64, edge in 0..u32::MAX) {
             let verdict = UNSAFE;
             let packed = Conclusion { verdict, measured: rsc.map(|rsc| measured(rsc, hinge, 0.5)) }.pack(edge).unwrap();
+            let packed = Packed { needs_cm: [need_cm(rsc), need_cm(Some(3.25))], ..packed };
             prop_assert_eq!(Packed::from_bytes(&packed.to_bytes()), packed);
         }
+    }
+
+    #[test]
+    fn a_need_is_rounded_up_to_centimetres() {
+        assert_eq!(
+            [Some(3.3), Some(3.301), Some(0.0), Some(-1.0), Some(1e9), None].map(need_cm),
+            [Some(330), Some(331), Some(0), None, None, None]
+        );
     }
 
     #[test]

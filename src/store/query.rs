@@ -46,6 +46,8 @@ pub struct QueryOptions {
     pub verdict: Option<VerdictKind>,
     /// Only edges with at least this RSC, metres.
     pub min_rsc_m: Option<f64>,
+    /// Only edges that would be safe with at most this much more width, metres.
+    pub needs_at_most_m: Option<f64>,
     /// Only edges whose width comes from this source or a better one.
     pub min_width_source: Option<WidthSource>,
 }
@@ -61,6 +63,7 @@ impl QueryOptions {
             edge_id: None,
             verdict: None,
             min_rsc_m: None,
+            needs_at_most_m: None,
             min_width_source: None,
         }
     }
@@ -141,7 +144,7 @@ fn statement(
     let [width, source] = width_columns(options.policy);
     let mut sql = format!(
         "SELECT c.fid, e.edge_id, e.way_id, e.from_node, e.to_node, e.direction, e.highway, e.name, e.ref, e.length_m, \
-         e.{width}, e.{source}, e.min_radius_m, e.geom, e.maxspeed_kmh, {columns} \
+         e.{width}, e.{source}, e.min_radius_m, e.geom, e.maxspeed_kmh, c.need_cm, {columns} \
          FROM certificate_compact AS c CROSS JOIN edge AS e ON e.fid = c.fid \
          WHERE c.vehicle_no = ? AND c.corridor_no = ?",
         columns = numbers::COLUMNS
@@ -159,6 +162,10 @@ fn statement(
     if let Some(rsc_m) = options.min_rsc_m {
         sql += " AND c.rsc_mm >= ?";
         bind(rsc_m * 1000.0)?;
+    }
+    if let Some(more_m) = options.needs_at_most_m {
+        sql += &format!(" AND c.need_cm <= 100.0 * (e.{width} + ?) + 1e-6");
+        bind(more_m)?;
     }
     if let Some(least) = options.min_width_source {
         let enough: Vec<_> =
@@ -201,7 +208,8 @@ fn edge_row(row: &SqliteRow) -> Sql<EdgeRow> {
         width_source: word_or_none(row, 11)?,
         min_radius_m: row.try_get(12)?,
         maxspeed_kmh: row.try_get(14)?,
-        certificate: numbers::read(row, 15, || format!("edge {fid}"))?,
+        need_width_m: numbers::centimetres(row, 15)?,
+        certificate: numbers::read(row, 16, || format!("edge {fid}"))?,
         line: line(row, 13, || format!("edge {fid}"))?,
     })
 }

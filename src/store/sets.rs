@@ -15,7 +15,7 @@ use super::styles::{self, Shows};
 type Sql<T> = Result<T, sqlx::Error>;
 
 const COLUMNS: &str = "certificate_compact (vehicle_no, corridor_no, fid, verdict_no, rsc_mm, rsc_published_mm, \
-                       hinge_margin_cdeg, shrink_milli, limiting_s_dm, limiting_at)";
+                       hinge_margin_cdeg, shrink_milli, limiting_s_dm, limiting_at, need_cm)";
 
 /// Checks that the rows, sorted by edge, have every edge exactly once. The error names an edge and the reason.
 pub(super) fn check_complete(rows: &[Packed], edges: u32) -> Result<(), (u32, &'static str)> {
@@ -51,7 +51,7 @@ impl Set<'_> {
     /// Inserts the rows and registers their layer. The database must not have the set yet.
     pub(super) async fn insert(&self, c: &mut SqliteConnection, rows: &[Packed]) -> Sql<()> {
         let corridor = corridor_no(self.policy);
-        let mut bulk = Bulk::new(COLUMNS, 10);
+        let mut bulk = Bulk::new(COLUMNS, 11);
         for row in rows {
             bulk.add(self.vehicle_no)?;
             bulk.add(corridor)?;

@@ -17,8 +17,8 @@ use super::database::Database;
 use super::error::{StoreError, content};
 use super::names::corridor_no;
 use super::network_read::{line, verdict, word};
-use super::numbers;
-use super::packed::Packed;
+use super::numbers::{self, centimetres};
+use super::packed::{Packed, need_cm};
 use super::plans;
 use super::query::{Area, polygons};
 use super::sets;
@@ -27,11 +27,13 @@ use super::styles::{self, Shows};
 type Sql<T> = Result<T, sqlx::Error>;
 
 const COLUMNS: &str = "turn_certificate_compact (vehicle_no, corridor_no, fid, verdict_no, rsc_mm, rsc_published_mm, \
-                       hinge_margin_cdeg, shrink_milli, limiting_s_dm, limiting_at, path_no)";
+                       hinge_margin_cdeg, shrink_milli, limiting_s_dm, limiting_at, need_kerb_cm, need_flare_cm, \
+                       path_no)";
 
 impl TurnCertificate {
     pub(super) fn pack(&self) -> Result<Packed, String> {
-        Ok(Packed { path_no: self.path, ..self.conclusion.pack(self.turn)? })
+        let needs_cm = [self.need.kerb_radius_m, self.need.flare_m].map(need_cm);
+        Ok(Packed { path_no: self.path, needs_cm, ..self.conclusion.pack(self.turn)? })
     }
 }
 
@@ -145,11 +147,12 @@ pub(super) async fn insert(
     plans: &mut [StoredPlan],
 ) -> Sql<()> {
     let corridor = corridor_no(policy);
-    let mut bulk = Bulk::new(COLUMNS, 11);
+    let mut bulk = Bulk::new(COLUMNS, 13);
     for row in rows {
         bulk.add(vehicle_no)?;
         bulk.add(corridor)?;
         row.add_to(&mut bulk)?;
+        bulk.add(row.needs_cm[1])?;
         bulk.add(row.path_no)?;
         bulk.end_row(c).await?;
     }
@@ -184,6 +187,8 @@ pub struct TurnQuery {
     pub verdict: Option<VerdictKind>,
     /// Only turns with at least this RSC, metres.
     pub min_rsc_m: Option<f64>,
+    /// Only turns whose kerb radius would be enough with at most this much more, metres.
+    pub needs_at_most_m: Option<f64>,
 }
 
 impl TurnQuery {
@@ -191,7 +196,7 @@ impl TurnQuery {
     #[must_use]
     pub fn new(vehicle: &str, policy: Policy) -> Self {
         let vehicle = vehicle.to_owned();
-        Self { vehicle, policy, area: None, turn_id: None, verdict: None, min_rsc_m: None }
+        Self { vehicle, policy, area: None, turn_id: None, verdict: None, min_rsc_m: None, needs_at_most_m: None }
     }
 }
 
@@ -261,7 +266,7 @@ pub(super) fn statement(options: &TurnQuery) -> String {
     let mut sql = "SELECT c.fid, t.turn_id, a.edge_id, b.edge_id, t.via_node, t.angle_deg, t.kind, t.kerb_radius_m, \
                    t.kerb_source, t.restriction, coalesce(a.name, a.ref), coalesce(b.name, b.ref), c.path_no, t.geom, \
                    (SELECT edge_id FROM edge WHERE fid = t.first_arc_fid), \
-                   (SELECT edge_id FROM edge WHERE fid = t.last_arc_fid), "
+                   (SELECT edge_id FROM edge WHERE fid = t.last_arc_fid), c.need_kerb_cm, c.need_flare_cm, "
         .to_owned();
     sql += numbers::COLUMNS;
     sql += " FROM turn_certificate_compact AS c CROSS JOIN turn AS t ON t.fid = c.fid \
@@ -273,6 +278,9 @@ pub(super) fn statement(options: &TurnQuery) -> String {
     }
     if let Some(rsc_m) = options.min_rsc_m {
         sql += &format!(" AND c.rsc_mm >= {}", rsc_m * 1000.0);
+    }
+    if let Some(more_m) = options.needs_at_most_m {
+        sql += &format!(" AND c.need_kerb_cm <= 100.0 * (t.kerb_radius_m + {more_m}) + 1e-6");
     }
     if let Some(id) = options.turn_id {
         sql += &format!(" AND c.fid = (SELECT fid FROM turn WHERE turn_id = {id})");
@@ -296,7 +304,9 @@ pub(super) fn turn_row(row: &SqliteRow) -> Sql<TurnRow> {
         restriction: row.try_get(9)?,
         from_name: row.try_get(10)?,
         to_name: row.try_get(11)?,
-        certificate: numbers::read(row, 16, || format!("turn {fid}"))?,
+        need_kerb_radius_m: centimetres(row, 16)?,
+        need_flare_m: centimetres(row, 17)?,
+        certificate: numbers::read(row, 18, || format!("turn {fid}"))?,
         path_no: row.try_get(12)?,
         line: line(row, 13, || format!("turn {fid}"))?,
     })

@@ -151,8 +151,8 @@ impl Writer {
         policy: Policy,
         certificate: &EdgeCertificate,
     ) -> Result<(), StoreError> {
-        let packed = certificate.conclusion.pack(certificate.edge);
-        let packed = packed.map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.edge, detail))?;
+        let packed =
+            certificate.pack().map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.edge, detail))?;
         self.spool.push((vehicle.0, corridor_no(policy)), packed, &self.session.path)
     }
 

@@ -6,9 +6,9 @@
 
 use super::Reach;
 use super::path::{Pose, hermite};
-use crate::corridor::{Corridor, Frame, Params, StrokeCorridor, TaperCause, stroke_corridor};
+use crate::corridor::{Corridor, Frame, Params, Sections, StrokeCorridor, TaperCause, stroke_corridor_on};
 use crate::network::Network;
-use crate::osm::facts::{CrossSection, Direction, Policy, Strip};
+use crate::osm::facts::{CrossSection, Policy, Strip};
 use crate::verdict::UnknownReason;
 
 /// Largest |κ|·half-width of a strip beyond the corridor's own.
@@ -44,14 +44,28 @@ impl StrokeLine {
     /// # Errors
     /// The reason if all edges of the stroke are unknown.
     pub fn new(network: &Network, stroke: u32, policy: Policy, params: &Params) -> Result<Self, UnknownReason> {
+        Self::on(network, stroke, &|edge| network.section(edge), policy, params)
+    }
+
+    /// Makes the corridor of a stroke with other cross sections.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn on(
+        network: &Network,
+        stroke: u32,
+        sections: &Sections<'_>,
+        policy: Policy,
+        params: &Params,
+    ) -> Result<Self, UnknownReason> {
         let facts = network.strokes.get(stroke as usize).ok_or(UnknownReason::Geometry)?;
-        let made = stroke_corridor(network, facts, policy, params)?;
+        let made = stroke_corridor_on(network, facts, sections, policy, params)?;
         let c = &made.corridor;
         let own: Vec<Across> = c.left_m.iter().zip(&c.right_m).map(|(l, r)| [*l, -*r]).collect();
         let (mut direction, mut carriageway) = (own.clone(), own.clone());
         for span in &made.spans {
             let Some(edge) = network.edges.get(span.edge as usize) else { continue };
-            let section = network.road(edge).sections[usize::from(edge.direction == Direction::Backward)];
+            let section = sections(edge);
             for k in span.stations.clone() {
                 // A taper to the next edge narrows the corridor, not the road.
                 direction[k] = wider(made.untapered[k], &section, policy, section.direction);

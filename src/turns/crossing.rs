@@ -13,7 +13,6 @@ use super::path::wrapped;
 use super::surface::surface;
 use crate::corridor::Frame;
 use crate::network::{Edge, Network, Road};
-use crate::osm::facts::Direction;
 
 /// Length of another road's mouth that bodies may overhang, from the node, metres. Parts that two roads share end there,
 /// too.
@@ -27,6 +26,8 @@ const JOINT_M: f64 = 2.0;
 
 /// The carriageway of a road from the node outwards.
 struct Mouth<'a> {
+    network: &'a Network,
+    edge: &'a Edge,
     road: &'a Road,
     line: Vec<[f64; 2]>,
     /// Edges of the carriageway, metres to the left of `line`.
@@ -67,7 +68,7 @@ pub(super) fn parts(
         let b = &mouths[(i + 1) % mouths.len()];
         // The turn's own corner is made from its corridors.
         if !(a.own && b.own) {
-            parts.extend(corner(a, b, params, mapped));
+            parts.extend(corner(node, [a, b], params, mapped));
         }
     }
     parts
@@ -114,10 +115,10 @@ fn mouths<'a>(network: &'a Network, node: i64, own: [u32; 2], frame: Frame, para
 }
 
 /// The mouth of an edge at a node. `None` if the road has no width there that counts.
-fn mouth<'a>(network: &'a Network, edge: &Edge, node: i64, frame: Frame, params: &TurnParams) -> Option<Mouth<'a>> {
+fn mouth<'a>(network: &'a Network, edge: &'a Edge, node: i64, frame: Frame, params: &TurnParams) -> Option<Mouth<'a>> {
     let road = network.road(edge);
     let outward = edge.from_node == node;
-    let section = road.sections[usize::from(edge.direction == Direction::Backward)];
+    let section = network.section(edge);
     let strip = section.carriageway.or(section.direction)?;
     let less_m = params.corridor.map_tolerance_m;
     let (left_m, right_m) = (f64::from(strip.left_m) - less_m, f64::from(strip.right_m) + less_m);
@@ -134,7 +135,7 @@ fn mouth<'a>(network: &'a Network, edge: &Edge, node: i64, frame: Frame, params:
     let line = first_metres(&line, CROSSING_M);
     let (first, last) = (line.first()?, line.get(1)?);
     let bearing = (last[1] - first[1]).atan2(last[0] - first[0]);
-    Some(Mouth { road, line, left_m, right_m, bearing, own: false })
+    Some(Mouth { network, edge, road, line, left_m, right_m, bearing, own: false })
 }
 
 impl Mouth<'_> {
@@ -186,7 +187,7 @@ fn common(a: Option<Polygon>, b: Option<Polygon>) -> Vec<Polygon> {
 }
 
 /// The corner between a mouth and the next one counter-clockwise.
-fn corner(a: &Mouth<'_>, b: &Mouth<'_>, params: &TurnParams, mapped: Option<&MultiPolygon>) -> Vec<Polygon> {
+fn corner(node: i64, [a, b]: [&Mouth<'_>; 2], params: &TurnParams, mapped: Option<&MultiPolygon>) -> Vec<Polygon> {
     let between = (b.bearing - a.bearing).rem_euclid(std::f64::consts::TAU);
     if between >= std::f64::consts::PI {
         return Vec::new();
@@ -211,7 +212,10 @@ fn corner(a: &Mouth<'_>, b: &Mouth<'_>, params: &TurnParams, mapped: Option<&Mul
     match mapped {
         Some(surface) => Corner::between([&kerb(0, 0.0), &kerb(1, 0.0)], turn_rad)
             .map_or_else(Vec::new, |corner| corner.mapped(surface)),
-        None => rounded(&kerb, turn_rad, params.kerbs.radius_m(a.road, b.road)).into_iter().collect(),
+        None => {
+            let radius_m = params.kerbs.at(a.network, node, [a.edge, b.edge]);
+            rounded(&kerb, turn_rad, radius_m).into_iter().collect()
+        }
     }
 }
 

@@ -17,6 +17,8 @@ const LINE_M: f64 = 12.0;
 pub enum KerbSource {
     /// A radius by class and country.
     Assumed,
+    /// A radius measured on site.
+    Surveyed,
     /// The mapped surface of the junction.
     Mapped,
 }
@@ -27,6 +29,7 @@ impl KerbSource {
     pub fn name(self) -> &'static str {
         match self {
             Self::Assumed => "assumed",
+            Self::Surveyed => "surveyed",
             Self::Mapped => "mapped",
         }
     }
@@ -43,7 +46,7 @@ pub struct TurnFacts {
     pub through: Vec<u32>,
     /// Angle of the turn, degrees, positive left.
     pub angle_deg: f64,
-    /// Assumed radius of the kerb on the inside, metres. `None` if the corner is too flat or too acute, or is mapped.
+    /// Radius of the kerb on the inside, metres. `None` if the corner is too flat or too acute, or is mapped.
     pub kerb_radius_m: Option<f64>,
     /// Origin of the kerb. `None` if the corner is too flat or too acute for one.
     pub kerb_source: Option<KerbSource>,
@@ -74,23 +77,25 @@ pub fn turn_facts(network: &Network, kerbs: &Kerbs) -> Vec<TurnFacts> {
             let angle = angle_rad(&line);
             let ends = [through.first(), through.last()];
             let between = ends.map(|edge| edge.and_then(|&edge| network.edges.get(edge as usize)));
-            // The assumed radius of a corner; none if the corner is mapped.
+            // The radius of a corner, and whether it is surveyed; none if the corner is mapped.
             let corner = |node: i64, a: &Edge, b: &Edge| {
                 let roads = [network.road(a), network.road(b)];
-                let assumed = !surface::is_mapped(network, node, roads);
-                assumed.then(|| kerbs.radius_m(roads[0], roads[1]))
+                let radius = || (kerbs.at(network, node, [a, b]), network.site_kerb_m(node, [a, b]).is_some());
+                (!surface::is_mapped(network, node, roads)).then(radius)
             };
             let corners = match between {
                 [Some(first), Some(last)] => vec![corner(from.to_node, from, first), corner(to.from_node, last, to)],
                 _ => vec![corner(from.to_node, from, to)],
             };
             let cornered = !through.is_empty() || CORNERS_RAD.contains(&angle.abs());
-            // Of two assumed corners the sharper one counts.
-            let radius_m = corners.into_iter().flatten().reduce(f64::min);
-            let (kerb_radius_m, kerb_source) = match radius_m {
+            // Of two corners the sharper one counts.
+            let sharpest = corners.into_iter().flatten().reduce(|a, b| if b.0 < a.0 { b } else { a });
+            let (kerb_radius_m, kerb_source) = match sharpest {
                 _ if !cornered => (None, None),
                 None => (None, Some(KerbSource::Mapped)),
-                Some(m) if m > 0.0 => (Some(m), Some(KerbSource::Assumed)),
+                Some((m, surveyed)) if m > 0.0 => {
+                    (Some(m), Some(if surveyed { KerbSource::Surveyed } else { KerbSource::Assumed }))
+                }
                 Some(_) => (None, None),
             };
             let angle_deg = angle.to_degrees();

@@ -46,8 +46,9 @@ impl Junction {
         reach: Reach,
     ) -> Result<Self, UnknownReason> {
         let edge = |index: u32| network.edges.get(index as usize).ok_or(UnknownReason::Geometry);
-        let (from, to) = (network.road(edge(movement.from)?), network.road(edge(movement.to)?));
-        let node = edge(movement.from)?.to_node;
+        let own = [edge(movement.from)?, edge(movement.to)?];
+        let [from, to] = own.map(|edge| network.road(edge));
+        let node = own[0].to_node;
         let before_m = reach.run_in_m() + reach.counted_before_m() + LEAVE_M;
         let after_m = reach.counted_after_m() + MEET_M + JOIN_M;
         let strip = params.strip.max(policy);
@@ -58,7 +59,7 @@ impl Junction {
             arms: Arms::new(arriving, leaving, lines.map(|line| line.stroke), reach),
             policy,
             left_hand_traffic: from.left_hand_traffic,
-            kerb_radius_m: params.kerbs.radius_m(from, to),
+            kerb_radius_m: params.own_kerb_m.unwrap_or_else(|| params.kerbs.at(network, node, own)),
             crossing: crossing(network, movement, lines, frame, params, surface.as_ref()),
             surface,
         })

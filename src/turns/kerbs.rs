@@ -4,7 +4,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::network::Road;
+use crate::network::{Edge, Network, Road};
 use crate::osm::facts::RoadClass;
 
 const TABLE: &str = include_str!("../../data/kerbs.toml");
@@ -128,6 +128,13 @@ impl Kerbs {
     #[must_use]
     pub fn radius_m(&self, a: &Road, b: &Road) -> f64 {
         self.of(a).min(self.of(b))
+    }
+
+    /// The radius at the corner of two edges that meet at a node, metres: as the network's site has it, else assumed.
+    #[must_use]
+    pub fn at(&self, network: &Network, node: i64, [a, b]: [&Edge; 2]) -> f64 {
+        let known = network.site_kerb_m(node, [a, b]);
+        known.unwrap_or_else(|| self.radius_m(network.road(a), network.road(b)))
     }
 
     fn of(&self, road: &Road) -> f64 {

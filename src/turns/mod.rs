@@ -72,12 +72,15 @@ pub struct TurnParams {
     pub corridor: Params,
     /// Assumed kerb radii.
     pub kerbs: Kerbs,
+    /// The radius of the turn's own corners instead, metres: those on the inside, where its roads meet. The other corners of the
+    /// junction stay.
+    pub own_kerb_m: Option<f64>,
 }
 
 impl Default for TurnParams {
     /// The policy's own strip, and the built-in kerbs.
     fn default() -> Self {
-        Self { strip: Policy::Lane, corridor: Params::default(), kerbs: Kerbs::default() }
+        Self { strip: Policy::Lane, corridor: Params::default(), kerbs: Kerbs::default(), own_kerb_m: None }
     }
 }
 

@@ -11,6 +11,7 @@ mod kerb_reader;
 mod lanes;
 mod layout;
 mod limits;
+mod measured;
 mod notes;
 mod points;
 mod restrictions;

@@ -1,0 +1,216 @@
+//! What would be enough where a certificate lacks room: the least width of an edge, the least kerb radius of a turn.
+//!
+//! Each value is certified: with it, the edge or turn is safe. The search goes in steps, because nobody measures a road to the millimetre,
+//! and it ends with a value that does. A value one step lower need not fail.
+
+use std::sync::Arc;
+
+use super::strokes::Job;
+use super::turns::fits;
+use crate::corridor::stroke_corridor_on;
+use crate::network::{Network, Stroke};
+use crate::osm::facts::Policy;
+use crate::rows::TurnNeed;
+use crate::settings::Settings;
+use crate::stet::{Model, SpanResult, certify_spans};
+use crate::turns::{Reach, StrokeLine, TurnFacts, TurnParams, turn_on};
+use crate::verdict::UnknownReason;
+
+/// Widths are tried in these parts of a metre.
+const WIDTHS: f64 = 20.0;
+/// The greatest additional width that is tried, metres.
+const MOST_MORE_M: f64 = 8.0;
+/// A width that leaves less than this is close enough to the least one, metres.
+const CLOSE_M: f64 = 0.05;
+/// How many widths of a stroke are tried for one vehicle.
+const ROUNDS: usize = 12;
+/// The kerb radii that are tried, metres.
+const KERBS_M: [f64; 14] = [2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 14.0, 16.0, 20.0, MOST_KERB_M];
+/// The greatest one.
+pub const MOST_KERB_M: f64 = 25.0;
+/// Widths of both arms at a junction are tried in these parts of a metre, and how many of them.
+const FLARES: f64 = 2.0;
+const MORE_FLARES: u8 = 10;
+
+/// An edge of a stroke that is too narrow.
+pub(super) struct Narrow<'r> {
+    /// Index into `Network::edges`.
+    pub(super) edge: u32,
+    /// Its result with the widths of the map.
+    pub(super) result: &'r SpanResult,
+    /// The width at its limiting place, metres.
+    pub(super) width_m: f64,
+}
+
+/// The search for one edge's need, in steps of width.
+struct Search {
+    edge: u32,
+    /// A width that failed, and the RSC with it.
+    fails: (i64, f64),
+    does: Option<i64>,
+    next: Option<i64>,
+    most: i64,
+}
+
+impl Search {
+    fn begin(narrow: &Narrow<'_>, least_m: f64) -> Option<Self> {
+        let rsc_m = narrow.result.rsc_m?;
+        let fails = (least_m * WIDTHS).floor() as i64;
+        let most = fails + (MOST_MORE_M * WIDTHS) as i64;
+        let first = (((narrow.width_m - 2.0 * rsc_m) * WIDTHS).ceil() as i64).clamp(fails + 1, most);
+        Some(Self { edge: narrow.edge, fails: (fails, rsc_m), does: None, next: Some(first), most })
+    }
+
+    /// Takes the result with a width, and decides what to try next.
+    fn take(&mut self, steps: i64, result: Option<&SpanResult>) {
+        let rsc_m = result.and_then(|result| result.rsc_m).unwrap_or(f64::NEG_INFINITY);
+        if result.is_some_and(SpanResult::safe) {
+            if self.does.is_none_or(|known| steps < known) {
+                self.does = Some(steps);
+                let less = ((2.0 * rsc_m * WIDTHS).floor() as i64).max(1);
+                let next = (steps - less).max(self.fails.0 + 1);
+                self.next = Some(next).filter(|&next| next < steps && rsc_m >= CLOSE_M);
+            }
+        } else if steps > self.fails.0 {
+            let better = rsc_m > self.fails.1 + 1e-3;
+            self.fails = (steps, rsc_m);
+            let more =
+                if rsc_m < 0.0 && rsc_m.is_finite() { ((-2.0 * rsc_m * WIDTHS).ceil() as i64).max(1) } else { 10 };
+            self.next = match self.does {
+                Some(does) => {
+                    Some((steps + more).min(steps + (does - steps) / 2)).filter(|&next| next > steps && next < does)
+                }
+                None if steps >= self.most => None,
+                // What another width does not change, such as a bollard, may be decided by the widest one at once.
+                None => Some(if better { (steps + more).min(self.most) } else { self.most }),
+            };
+        }
+    }
+}
+
+/// For each edge, the least width in metres with which it would be safe, if its stroke were nowhere narrower. `None` if no width up to
+/// [`MOST_MORE_M`] more would do.
+pub(super) fn edge_needs(job: &Job<'_>, stroke: &Stroke, model: &Model, narrow: &[Narrow<'_>]) -> Vec<Option<f64>> {
+    let policy = job.settings.policy;
+    let least_m = |edge: u32| {
+        let strip = job.network.edges.get(edge as usize).and_then(|edge| job.network.section(edge).strip(policy));
+        strip.map(|strip| f64::from(strip.width_m()))
+    };
+    let mut searches: Vec<Option<Search>> =
+        narrow.iter().map(|narrow| Search::begin(narrow, least_m(narrow.edge)?)).collect();
+    for _ in 0..ROUNDS {
+        let mut wanted: Vec<i64> = searches.iter().flatten().filter_map(|search| search.next).collect();
+        wanted.sort_unstable();
+        let Some(&steps) = wanted.get(wanted.len() / 2) else { break };
+        let results = with_width(job, stroke, model, steps as f64 / WIDTHS);
+        for search in searches.iter_mut().flatten().filter(|search| search.next.is_some()) {
+            let result = results.iter().find(|(edge, _)| *edge == search.edge).map(|(_, result)| result);
+            search.take(steps, result);
+        }
+    }
+    searches.into_iter().map(|search| Some(search?.does? as f64 / WIDTHS)).collect()
+}
+
+/// The results of a stroke that is nowhere narrower than a width, by edge. Edges without a corridor there are left out.
+fn with_width(job: &Job<'_>, stroke: &Stroke, model: &Model, width_m: f64) -> Vec<(u32, SpanResult)> {
+    let Settings { policy, corridor, stet, .. } = job.settings;
+    let sections = |edge: &_| job.network.section(edge).at_least(*policy, width_m);
+    let Ok(made) = stroke_corridor_on(job.network, stroke, &sections, *policy, corridor) else { return Vec::new() };
+    let spans: Vec<_> = made.spans.iter().map(|span| span.stations.clone()).collect();
+    let row = certify_spans(&made.corridor, &[model], &spans, stet).into_iter().next();
+    let results = row.map_or_else(Vec::new, |row| row.spans);
+    let known = made.spans.iter().zip(results).filter(|(span, _)| span.unknown.is_none());
+    known.map(|(span, result)| (span.edge, result)).collect()
+}
+
+/// The lines of strokes, by edge.
+pub type LineOf<'l> = dyn Fn(u32) -> Result<&'l StrokeLine, UnknownReason> + 'l;
+
+/// The inputs of a search for what a turn needs.
+#[derive(Clone, Copy)]
+pub struct TurnCase<'a> {
+    /// The road network.
+    pub network: &'a Network,
+    /// The turn.
+    pub turn: &'a TurnFacts,
+    /// The vehicle.
+    pub model: &'a Model,
+    /// Settings of the certificates.
+    pub settings: &'a Settings,
+}
+
+impl TurnCase<'_> {
+    /// What would be enough for a turn that lacks room: the least of some radii of its own kerbs; if no radius up to
+    /// [`MOST_KERB_M`] does, the least width of both roads at the junction. `radius_m` is the radius it has, `None` if its corner is
+    /// not rounded.
+    #[must_use]
+    pub fn need(&self, radius_m: Option<f64>, line: &LineOf<'_>) -> TurnNeed {
+        let kerb_radius_m = radius_m.and_then(|radius_m| self.kerb(radius_m, line));
+        let flare_m = if kerb_radius_m.is_none() { self.flare(line) } else { None };
+        TurnNeed { kerb_radius_m, flare_m }
+    }
+
+    /// The least radius of the turn's own kerbs with which the turn is safe, metres.
+    #[must_use]
+    pub fn kerb(&self, radius_m: f64, line: &LineOf<'_>) -> Option<f64> {
+        let safe = |&own_kerb_m: &f64| {
+            self.is_safe(&TurnParams { own_kerb_m: Some(own_kerb_m), ..self.settings.turn_params() }, line)
+        };
+        let radii: Vec<f64> = KERBS_M.iter().copied().filter(|&other_m| other_m > radius_m).collect();
+        least_of(&radii, safe)
+    }
+
+    /// The least width of the vehicle's strip near the turn, on both roads, with which the turn is safe, metres.
+    fn flare(&self, line: &LineOf<'_>) -> Option<f64> {
+        let (network, params) = (self.network, self.settings.turn_params());
+        let strip = params.strip.max(self.settings.policy);
+        let ends = [self.turn.movement.from, self.turn.movement.to];
+        let has_m = ends.iter().map(|&edge| {
+            let edge = network.edges.get(edge as usize)?;
+            Some(f64::from(network.section(edge).strip(strip)?.width_m()))
+        });
+        let has_m = has_m.collect::<Option<Vec<f64>>>()?.into_iter().fold(f64::INFINITY, f64::min);
+        let strokes = ends.map(|edge| line(edge).ok().map(|line| line.stroke));
+        let [Some(from), Some(to)] = strokes else { return None };
+        let safe = |&width_m: &f64| {
+            let wide = |stroke: u32| self.widened(stroke, strip, width_m).ok().map(Arc::new);
+            let (Some(a), Some(b)) = (wide(from), wide(to)) else { return false };
+            let lines = |edge: u32| match line(edge)?.stroke {
+                stroke if stroke == a.stroke => Ok(a.as_ref()),
+                stroke if stroke == b.stroke => Ok(b.as_ref()),
+                _ => line(edge),
+            };
+            self.is_safe(&params, &lines)
+        };
+        let next = (has_m * FLARES).floor() + 1.0;
+        let widths: Vec<f64> = (0..MORE_FLARES).map(|k| (next + f64::from(k)) / FLARES).collect();
+        least_of(&widths, safe)
+    }
+
+    fn widened(&self, stroke: u32, strip: Policy, width_m: f64) -> Result<StrokeLine, UnknownReason> {
+        let sections = |edge: &_| self.network.section(edge).at_least(strip, width_m);
+        StrokeLine::on(self.network, stroke, &sections, self.settings.policy, &self.settings.corridor)
+    }
+
+    /// Whether the turn is safe on one of its paths.
+    fn is_safe(&self, params: &TurnParams, line: &LineOf<'_>) -> bool {
+        let Some(reach) = Reach::of(&self.model.vehicle) else { return false };
+        let over = (self.turn.movement, &self.turn.through[..]);
+        let made = turn_on(self.network, over, line, self.settings.policy, params, reach).ok();
+        made.is_some_and(|made| fits(&made, self.model, &self.settings.stet))
+    }
+}
+
+/// The least of some growing numbers that does, if the greatest does.
+fn least_of(numbers: &[f64], does: impl Fn(&f64) -> bool) -> Option<f64> {
+    let (mut high, mut low) = (numbers.len().checked_sub(1)?, None);
+    if !does(&numbers[high]) {
+        return None;
+    }
+    while low.map_or(0, |low: usize| low + 1) < high {
+        let middle = usize::midpoint(low.map_or(0, |low| low + 1), high);
+        let middle = middle.min(high - 1);
+        if does(&numbers[middle]) { high = middle } else { low = Some(middle) }
+    }
+    numbers.get(high).copied()
+}

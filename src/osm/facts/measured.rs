@@ -1,0 +1,153 @@
+//! A cross section with a measured or supposed width in place of the map's.
+//!
+//! A width says how wide a strip is, not where it lies. The strip keeps its middle and grows or shrinks on both sides alike.
+
+use super::{CrossSection, Policy, Strip, WidthSource};
+
+impl CrossSection {
+    /// The section whose strip for `policy` has this width, metres, from this source.
+    ///
+    /// A carriageway's lanes keep their shares of it; a lane's share of a measured carriageway is `estimated` at best. A lane or direction
+    /// leaves the strips around it as they are, except that they contain it. A strip that the map does not have lies around the line.
+    #[must_use]
+    pub fn with_width(&self, policy: Policy, width_m: f64, source: WidthSource) -> Self {
+        let known = self.strip(policy).filter(|strip| strip.width_m() > 0.0);
+        let Some(strip) = known else { return self.with_strip(policy, about(0.0, width_m, source)) };
+        if policy != Policy::Carriageway {
+            let middle_m = f64::midpoint(f64::from(strip.left_m), f64::from(strip.right_m));
+            return self.with_strip(policy, about(middle_m, width_m, source));
+        }
+        let shared = |part: Strip| {
+            let whole = (part.left_m, part.right_m) == (strip.left_m, strip.right_m);
+            Strip {
+                source: if whole { source } else { source.min(WidthSource::Estimated) },
+                ..scaled(part, strip, width_m)
+            }
+        };
+        Self {
+            lane: self.lane.map(shared),
+            direction: self.direction.map(shared),
+            carriageway: Some(Strip { source, ..scaled(strip, strip, width_m) }),
+        }
+    }
+
+    /// The section whose strip for `policy` is nowhere narrower than this width, metres. The source of the width stays. A strip that the
+    /// map does not have stays unknown.
+    #[must_use]
+    pub fn at_least(&self, policy: Policy, width_m: f64) -> Self {
+        match self.strip(policy) {
+            Some(strip) if f64::from(strip.width_m()) < width_m => self.with_width(policy, width_m, strip.source),
+            _ => *self,
+        }
+    }
+
+    /// Puts a strip into the section. Narrower policies stay within it, wider ones contain it.
+    fn with_strip(&self, policy: Policy, strip: Strip) -> Self {
+        let within = |part: Strip| Strip {
+            left_m: part.left_m.min(strip.left_m),
+            right_m: part.right_m.max(strip.right_m),
+            ..part
+        };
+        let around = |part: Strip| Strip {
+            left_m: part.left_m.max(strip.left_m),
+            right_m: part.right_m.min(strip.right_m),
+            ..part
+        };
+        let usable = |part: &Strip| part.width_m() > 0.0;
+        match policy {
+            Policy::Lane => Self {
+                lane: Some(strip),
+                direction: self.direction.map(around),
+                carriageway: self.carriageway.map(around),
+            },
+            Policy::Direction => Self {
+                lane: self.lane.map(within).filter(usable),
+                direction: Some(strip),
+                carriageway: self.carriageway.map(around),
+            },
+            Policy::Carriageway => Self { carriageway: Some(strip), ..*self },
+        }
+    }
+}
+
+/// A strip around a middle.
+fn about(middle_m: f64, width_m: f64, source: WidthSource) -> Strip {
+    no_wider(
+        Strip { left_m: (middle_m + 0.5 * width_m) as f32, right_m: (middle_m - 0.5 * width_m) as f32, source },
+        width_m,
+    )
+}
+
+/// A part of the carriageway `whole`, with the same share of a carriageway of this width.
+fn scaled(part: Strip, whole: Strip, width_m: f64) -> Strip {
+    let (left_m, right_m) = (f64::from(whole.left_m), f64::from(whole.right_m));
+    let (middle_m, share) = (f64::midpoint(left_m, right_m), width_m / (left_m - right_m));
+    let at = |edge_m: f32| middle_m + (f64::from(edge_m) - middle_m) * share;
+    let (left_m, right_m) = (at(part.left_m), at(part.right_m));
+    no_wider(Strip { left_m: left_m as f32, right_m: right_m as f32, source: part.source }, left_m - right_m)
+}
+
+/// Single precision may round a width up. A strip is no wider than what was measured.
+fn no_wider(mut strip: Strip, width_m: f64) -> Strip {
+    while f64::from(strip.left_m) - f64::from(strip.right_m) > width_m {
+        strip.left_m = strip.left_m.next_down();
+    }
+    strip
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn strip(left_m: f32, right_m: f32) -> Strip {
+        Strip { left_m, right_m, source: WidthSource::Assumed }
+    }
+
+    /// Two lanes of 3 m, traffic on the right, travel along the line.
+    fn road() -> CrossSection {
+        CrossSection {
+            lane: Some(strip(0.0, -3.0)),
+            direction: Some(strip(0.0, -3.0)),
+            carriageway: Some(strip(3.0, -3.0)),
+        }
+    }
+
+    #[test]
+    fn lanes_keep_their_shares_of_a_measured_carriageway() {
+        let wide = road().with_width(Policy::Carriageway, 7.0, WidthSource::Surveyed);
+        assert_eq!(wide.carriageway.unwrap(), Strip { left_m: 3.5, right_m: -3.5, source: WidthSource::Surveyed });
+        assert_eq!(wide.lane.unwrap(), Strip { left_m: 0.0, right_m: -3.5, source: WidthSource::Estimated });
+    }
+
+    #[test]
+    fn a_measured_lane_grows_on_both_sides_and_the_carriageway_contains_it() {
+        let wide = road().with_width(Policy::Lane, 3.5, WidthSource::Surveyed);
+        assert_eq!(wide.lane.unwrap(), Strip { left_m: 0.25, right_m: -3.25, source: WidthSource::Surveyed });
+        assert_eq!(wide.carriageway.unwrap(), strip(3.0, -3.25));
+        let narrow = road().with_width(Policy::Direction, 2.0, WidthSource::Surveyed);
+        assert_eq!(narrow.lane.unwrap(), strip(-0.5, -2.5));
+        assert_eq!(narrow.carriageway.unwrap(), strip(3.0, -3.0));
+    }
+
+    #[test]
+    fn nothing_is_narrowed_by_a_least_width_and_nothing_invented() {
+        assert_eq!(road().at_least(Policy::Lane, 2.5), road());
+        let none = CrossSection { lane: None, direction: None, carriageway: None };
+        assert_eq!(none.at_least(Policy::Lane, 2.5), none);
+        assert!((none.with_width(Policy::Lane, 2.5, WidthSource::Surveyed).lane.unwrap().width_m() - 2.5).abs() < 1e-6);
+    }
+
+    proptest! {
+        #[test]
+        fn no_strip_is_wider_than_what_was_measured(width_m in 1.0..30.0_f64, left in -2.0..4.0_f32, own in 0.5..9.0_f32) {
+            let around = CrossSection { carriageway: Some(strip(left, left - own)), ..road() };
+            for &policy in Policy::ALL {
+                let made = around.with_width(policy, width_m, WidthSource::Surveyed).strip(policy).unwrap();
+                let made_m = f64::from(made.left_m) - f64::from(made.right_m);
+                prop_assert!(made_m <= width_m && made_m > width_m - 1e-5);
+            }
+        }
+    }
+}
