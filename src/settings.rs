@@ -28,8 +28,19 @@ pub struct Settings {
     pub kerbs: Kerbs,
     /// Whether turns are certified, too.
     pub turns: bool,
-    /// Whether the least width or kerb radius is looked for where room is lacking.
-    pub needs: bool,
+    /// Where the least width or kerb radius is looked for that would be enough.
+    pub needs: Needs,
+}
+
+/// For which certificates that lack room it is looked for what would be enough.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Needs {
+    /// For none.
+    Off,
+    /// For edges.
+    Edges,
+    /// For edges and turns. A turn takes as long to search as it takes to certify several turns.
+    All,
 }
 
 impl Default for Settings {
@@ -42,7 +53,7 @@ impl Default for Settings {
             stet: Options::default(),
             kerbs: Kerbs::default(),
             turns: true,
-            needs: true,
+            needs: Needs::Edges,
         }
     }
 }
@@ -61,7 +72,7 @@ struct Written {
     max_shift_m: f64,
     correction_sweeps: u16,
     turns: bool,
-    needs: bool,
+    needs: String,
     kerbs: Kerbs,
 }
 
@@ -92,7 +103,7 @@ impl Settings {
             max_shift_m,
             correction_sweeps: u16::try_from(correction_sweeps).map_err(|_| "correction_sweeps: out of range")?,
             turns: *turns,
-            needs: *needs,
+            needs: needs.name().to_owned(),
             kerbs: kerbs.clone(),
         };
         written.check()?;
@@ -119,6 +130,7 @@ impl Settings {
         written.check()?;
         let policy = Policy::named(&written.corridor).ok_or("corridor: no such policy")?;
         let turn_policy = Policy::named(&written.turn_corridor).ok_or("turn_corridor: no such policy")?;
+        let needs = Needs::named(&written.needs).ok_or("needs: no such word")?;
         Ok(Self {
             policy,
             turn_policy,
@@ -135,7 +147,7 @@ impl Settings {
             },
             kerbs: written.kerbs,
             turns: written.turns,
-            needs: written.needs,
+            needs,
         })
     }
 }
@@ -182,7 +194,7 @@ mod tests {
             stet: Options { max_shift_m: 0.0, correction_sweeps: 5 },
             kerbs: Kerbs::everywhere(2.5),
             turns: false,
-            needs: false,
+            needs: Needs::All,
         }
     }
 
@@ -217,6 +229,7 @@ mod tests {
             ("lead_in_m", json!(1e9)),
             ("max_shift_m", json!(-1)),
             ("correction_sweeps", json!(101)),
+            ("needs", json!("some")),
         ] {
             let mut out = whole.clone();
             out[name] = wrong.clone();

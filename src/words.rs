@@ -3,6 +3,7 @@
 
 use crate::evidence::{Along, Quantity};
 use crate::osm::facts::{Direction, Oneway, Permission, Policy, RoadClass, WidthSource};
+use crate::settings::Needs;
 use crate::stet::Side;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 
@@ -56,6 +57,7 @@ named!(WidthSource {
     Surveyed = "surveyed",
 });
 named!(Policy { Lane = "lane", Direction = "direction", Carriageway = "carriageway" });
+named!(Needs { Off = "off", Edges = "edges", All = "all" });
 named!(Permission { Yes = "yes", Restricted = "restricted", No = "no" });
 named!(Side { Left = "left", Right = "right" });
 named!(Along { Both = "both", Forward = "forward", Backward = "backward" });
@@ -162,6 +164,7 @@ mod tests {
         words_come_back::<Direction>();
         words_come_back::<WidthSource>();
         words_come_back::<Policy>();
+        words_come_back::<Needs>();
         words_come_back::<Permission>();
         words_come_back::<Side>();
         assert_eq!(class_and_link("motorway_link"), Some((RoadClass::Motorway, true)));

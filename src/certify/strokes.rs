@@ -13,7 +13,7 @@ use crate::corridor::{EdgeSpan, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::reporter::Reporter;
 use crate::rows::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StoredPlan};
-use crate::settings::Settings;
+use crate::settings::{Needs, Settings};
 use crate::stet::{Model, Planned, SpanResult, certify_spans};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use crate::words::{Named, VerdictKind, verdict_words};
@@ -139,7 +139,7 @@ fn with_corridor(job: &Job<'_>, stroke: &Stroke, made: &StrokeCorridor) -> Strok
             Some((vehicle, EdgeCertificate { edge: span.edge, conclusion, need_width_m: None }))
         })
         .collect();
-    if job.settings.needs {
+    if job.settings.needs != Needs::Off {
         add_needs(job, stroke, made, &rows, &mut certificates);
     }
     let measures = made.spans.iter().map(|span| {

@@ -15,7 +15,7 @@ use crate::network::Network;
 use crate::osm::LonLat;
 use crate::reporter::Reporter;
 use crate::rows::{Conclusion, Measured, StoredPlan, TurnCertificate, TurnNeed};
-use crate::settings::Settings;
+use crate::settings::{Needs, Settings};
 use crate::stet::{Model, Options, Plan, SpanResult, certify_spans};
 use crate::turns::{Planner, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnPath, turn_on};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
@@ -226,7 +226,7 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
                 for (&v, best) in live.iter().zip(best_planned(&made, &models, &job.settings.stet)) {
                     out[v] = certificate(index, best);
                     let lacks = out[v].conclusion.verdict == Verdict::Unsafe(UnsafeReason::Width);
-                    if lacks && job.settings.needs {
+                    if lacks && job.settings.needs == Needs::All {
                         let case =
                             TurnCase { network: job.network, turn, model: &job.models[v], settings: job.settings };
                         out[v].need = case.need(made.kerb_radius_m, &line);

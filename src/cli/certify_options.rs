@@ -7,7 +7,7 @@ use anyhow::anyhow;
 use clap::{Args, ValueEnum};
 use netcert::corridor::Params;
 use netcert::osm::facts::Policy;
-use netcert::settings::Settings;
+use netcert::settings::{Needs, Settings};
 use netcert::stet::Options;
 use netcert::store::{Database, StoreError};
 use serde_json::Value;
@@ -41,9 +41,10 @@ pub(crate) struct CertifyOptions {
     /// Certify edges only, not the turns at junctions.
     #[arg(long)]
     no_turns: bool,
-    /// Do not look for the width or kerb radius that would be enough where room is lacking. Certifying is then faster.
-    #[arg(long)]
-    no_needs: bool,
+    /// Where room is lacking, look for what would be enough: `edges` for the width of edges, `all` for the kerb radius of
+    /// turns, too, which takes several times as long, `off` for neither [default: edges].
+    #[arg(long, value_name = "WHERE", value_parser = word::<Needs>())]
+    needs: Option<Needs>,
 }
 
 /// Values of `--turn-corridor`.
@@ -83,7 +84,7 @@ impl CertifyOptions {
             turn_policy: self.turn_corridor.map_or(base.turn_policy, TurnCorridor::policy),
             kerbs: base.kerbs.clone(),
             turns: base.turns && !self.no_turns,
-            needs: base.needs && !self.no_needs,
+            needs: self.needs.unwrap_or(base.needs),
         }
     }
 }

@@ -174,5 +174,6 @@ pub(crate) fn certificate(edge: u32, seed: u32) -> EdgeCertificate {
         limiting_side: if k.is_multiple_of(2) { Side::Left } else { Side::Right },
     };
     let measured = (!matches!(verdict, Verdict::Unknown(_))).then_some(measured);
-    EdgeCertificate { edge, conclusion: Conclusion { verdict, measured } }
+    let need_width_m = (verdict == Verdict::Unsafe(UnsafeReason::Width)).then(|| 3.0 + f64::from(k % 40) / 20.0);
+    EdgeCertificate { edge, conclusion: Conclusion { verdict, measured }, need_width_m }
 }

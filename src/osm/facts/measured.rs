@@ -143,7 +143,7 @@ mod tests {
         #[test]
         fn no_strip_is_wider_than_what_was_measured(width_m in 1.0..30.0_f64, left in -2.0..4.0_f32, own in 0.5..9.0_f32) {
             let around = CrossSection { carriageway: Some(strip(left, left - own)), ..road() };
-            for &policy in Policy::ALL {
+            for &policy in <Policy as crate::words::Named>::ALL {
                 let made = around.with_width(policy, width_m, WidthSource::Surveyed).strip(policy).unwrap();
                 let made_m = f64::from(made.left_m) - f64::from(made.right_m);
                 prop_assert!(made_m <= width_m && made_m > width_m - 1e-5);
