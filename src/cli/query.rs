@@ -8,7 +8,8 @@ use clap::Args;
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::rows::Bounds;
 use netcert::rows::{EdgeRow, Relative};
-use netcert::store::{Area, Beside, Database, QueryOptions, ReferenceReader, TurnQuery};
+use netcert::settings::Needs;
+use netcert::store::{Area, Beside, CertifiedSet, Database, QueryOptions, ReferenceReader, TurnQuery};
 use netcert::vehicle::Vehicle;
 use netcert::words::{Named, VerdictKind, verdict_words};
 
@@ -21,7 +22,7 @@ use super::output::{km, results};
 use super::relative::{self, RelativeArgs};
 use super::rows::{Format, Head, Sink};
 use super::turn_rows;
-use super::values::{signed_metres, word};
+use super::values::{metres, signed_metres, word};
 
 /// List which roads a vehicle may use, and why it may not use the others.
 ///
@@ -35,6 +36,7 @@ Examples:
   netcert query --vehicle EU-SEMI16.5 --verdict unsafe --bbox 8.6,49.3,8.8,49.5
   netcert query --vehicle AU-BDOUBLE26 --within shire.geojson --format csv > shire.csv
   netcert query --vehicle US-WB67 --verdict safe --min-rsc 0.3 --format geojson > safe.geojson
+  netcert query --vehicle AU-BDOUBLE26 --needs-at-most 0.3 --format csv > to-measure.csv
   netcert query --vehicle AU-BDOUBLE26 --relative-to AU-SEMI19 --verdict unsafe --as-reference
 
 Columns:
@@ -44,6 +46,9 @@ Columns:
   source   where the width comes from: assumed (by class and country), from_lanes (tagged
            number of lanes, assumed lane width), estimated, tagged, surveyed
   verdict  the verdict and its reason: `unsafe: width`, `forbidden: weight`, `unknown: geometry`
+
+  needs    only with --needs-at-most: the width, or with --turns the kerb radius, with which the
+           row would be safe if its road were nowhere narrower
 
 With --relative-to, two columns more, which say nothing of `safe`:
   relative_m    the RSC less that of the reference: at 0 or more, the vehicle needs no more room there;
@@ -75,6 +80,10 @@ pub(crate) struct Query {
     /// Show only rows with at least this RSC, metres; see column rsc below.
     #[arg(long, value_name = "METRES", value_parser = signed_metres, allow_hyphen_values = true)]
     min_rsc: Option<f64>,
+    /// Show only rows that lack room and would be safe with at most this much more, metres: a wider road, or with --turns a
+    /// greater kerb radius.
+    #[arg(long, value_name = "METRES", value_parser = metres)]
+    needs_at_most: Option<f64>,
     /// Show only edges whose width comes from this source or a better one; the list runs from worst to best.
     #[arg(long, value_name = "SOURCE", value_parser = word::<WidthSource>())]
     width_source: Option<WidthSource>,
@@ -112,6 +121,7 @@ impl Query {
             database = opened;
             compared = Some(ReferenceReader::open(&path, reference)?);
         }
+        self.needs_are_known(&set)?;
         let vehicle = fleet::kept(&mut database, &self.vehicle)?;
         if self.turns {
             let beside = compared.as_mut().map(ReferenceReader::turns).transpose()?;
@@ -122,6 +132,7 @@ impl Query {
             area,
             verdict: self.verdict,
             min_rsc_m: self.min_rsc,
+            needs_at_most_m: self.needs_at_most,
             min_width_source: self.width_source,
             ..QueryOptions::new(&self.vehicle, set.policy)
         };
@@ -150,8 +161,8 @@ impl Query {
         policy: Policy,
         (area, mut beside): (Option<Area>, Option<Beside<'_>>),
     ) -> anyhow::Result<()> {
-        let (verdict, min_rsc_m) = (self.verdict, self.min_rsc);
-        let options = TurnQuery { area, verdict, min_rsc_m, ..TurnQuery::new(&self.vehicle, policy) };
+        let (verdict, min_rsc_m, needs_at_most_m) = (self.verdict, self.min_rsc, self.needs_at_most);
+        let options = TurnQuery { area, verdict, min_rsc_m, needs_at_most_m, ..TurnQuery::new(&self.vehicle, policy) };
         let mut rows = Vec::new();
         for row in database.query_turns(&options)? {
             let relative = relative::beside(&mut beside, row.turn, &row.certificate)?;
@@ -169,10 +180,25 @@ impl Query {
         Ok(())
     }
 
+    /// Refuses `--needs-at-most` where the set was certified without looking for needs. An empty answer would mislead.
+    fn needs_are_known(&self, set: &CertifiedSet) -> anyhow::Result<()> {
+        let asked = if self.turns { Needs::All } else { Needs::Edges };
+        let known = set.settings()?.needs;
+        if self.needs_at_most.is_some() && known != asked && known != Needs::All {
+            let (id, policy, word) = (&set.vehicle_id, set.policy.name(), asked.name());
+            anyhow::bail!(
+                "--needs-at-most: {id} was certified with --needs {}, so this database does not have what is asked; \
+                 `netcert certify --vehicle {id} --corridor {policy} --needs {word}` looks for it",
+                known.name()
+            );
+        }
+        Ok(())
+    }
+
     fn head(&self, policy: Policy, mut scope: String) -> Head {
         let relative_to = self.relative.relative_to.clone();
         scope += &relative_to.as_deref().map_or_else(String::new, relative::scope);
-        Head { vehicle: self.vehicle.clone(), policy, scope, relative_to }
+        Head { vehicle: self.vehicle.clone(), policy, scope, relative_to, needs: self.needs_at_most.is_some() }
     }
 
     /// Whether a row is shown that the database gave.

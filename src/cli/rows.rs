@@ -30,6 +30,8 @@ pub(crate) struct Head {
     pub(crate) scope: String,
     /// The reference vehicle, if rows are compared with one.
     pub(crate) relative_to: Option<String>,
+    /// Whether tables for people have a column with what would be enough. Other formats always have it.
+    pub(crate) needs: bool,
 }
 
 /// Writes rows in one format to standard output.
@@ -138,7 +140,7 @@ impl<'h> Sink<'h> {
             row.certificate.rsc_m.map_or(String::new(), metres),
             row.certificate.hinge_angle_deg().map_or(String::new(), degrees),
             verdict,
-            columns(relative),
+            self.head.cells(row.need_width_m, relative),
             printable(&road.join(" ")),
         )
     }
@@ -155,9 +157,17 @@ impl Head {
         columns.iter().chain(more).map(|(name, _)| *name).collect::<Vec<_>>().join(",")
     }
 
-    /// The headings of the columns that compare, in a table for people.
+    /// The headings of the columns that a table for people has on demand.
     pub(super) fn heading(&self) -> String {
-        self.relative_to.as_ref().map_or_else(String::new, |_| padded(&["relative_m", "as_reference"]))
+        let needs = if self.needs { need("needs") } else { String::new() };
+        needs + self.relative_to.as_ref().map_or_else(String::new, |_| padded(&["relative_m", "as_reference"])).as_str()
+    }
+
+    /// The cells of these columns: what would be enough, metres, and the comparison.
+    pub(super) fn cells(&self, need_m: Option<f64>, relative: Option<Relative>) -> String {
+        let metres = need_m.map_or_else(String::new, |m| format!("{m:.2} m"));
+        let needs = if self.needs { need(&metres) } else { String::new() };
+        needs + relative.map_or_else(String::new, |relative| padded(&relative::words(relative))).as_str()
     }
 
     /// The member of JSON that names the reference.
@@ -166,9 +176,8 @@ impl Head {
     }
 }
 
-/// The columns that compare, in a table for people.
-pub(super) fn columns(relative: Option<Relative>) -> String {
-    relative.map_or_else(String::new, |relative| padded(&relative::words(relative)))
+fn need(cell: &str) -> String {
+    format!("{cell:>7}  ")
 }
 
 fn padded(cells: &[impl AsRef<str>; 2]) -> String {

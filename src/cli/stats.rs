@@ -7,7 +7,7 @@ use std::io::Write;
 use clap::{Args, ValueEnum};
 use netcert::account::AccountRow;
 use netcert::osm::facts::{Policy, WidthSource};
-use netcert::rows::{self, StatsRow};
+use netcert::rows::{self, NeedCount, StatsRow};
 use netcert::store::{Database, Run};
 use netcert::words::{Named, VerdictKind, verdict_words};
 use serde_json::{Value, json};
@@ -91,6 +91,7 @@ impl Stats {
                 for set in &sets {
                     let name = names.get(set.vehicle).map_or("", String::as_str);
                     certificates(&mut out, set, name)?;
+                    needs(&mut out, set, &stats.needs)?;
                 }
                 turns(&mut out, &stats)?;
                 record(&mut out, &runs)?;
@@ -201,6 +202,22 @@ fn certificates(out: &mut dyn Write, set: &Set<'_>, name: &str) -> anyhow::Resul
     Ok(())
 }
 
+/// Prints how much road would be safe if it were somewhat wider: each length includes those before it.
+fn needs(out: &mut dyn Write, set: &Set<'_>, needs: &[NeedCount]) -> anyhow::Result<()> {
+    let of_set = |need: &&NeedCount| need.vehicle_id == set.vehicle && need.policy == set.policy;
+    let mut sum_m = 0.0;
+    let mut steps = Vec::new();
+    for need in needs.iter().filter(of_set) {
+        let Some(more_m) = need.more_m else { continue };
+        sum_m += need.length_m;
+        steps.push(format!("{more_m} m {} km", km(sum_m)));
+    }
+    if !steps.is_empty() {
+        writeln!(out, "  unsafe, but safe with more width of up to: {}", steps.join(", "))?;
+    }
+    Ok(())
+}
+
 /// The key that sorts classes in OpenStreetMap's order of importance: motorways first, links after their class.
 fn rank(class: &str) -> (usize, bool) {
     use netcert::osm::facts::RoadClass;
@@ -263,6 +280,13 @@ fn to_json(stats: &rows::Stats, sets: &[Set<'_>], runs: &[(Run, Vec<AccountRow>)
             })
         })
         .collect();
+    let needs = stats.needs.iter().filter(|need| sets.iter().any(|set| set.vehicle == need.vehicle_id)).map(|need| {
+        json!({
+            "vehicle_id": need.vehicle_id, "corridor": need.policy.name(), "more_width_m": need.more_m,
+            "edges": need.edges, "length_m": need.length_m,
+        })
+    });
+    let needs: Vec<Value> = needs.collect();
     let runs: Vec<Value> = runs
         .iter()
         .map(|(run, account)| {
@@ -276,6 +300,7 @@ fn to_json(stats: &rows::Stats, sets: &[Set<'_>], runs: &[(Run, Vec<AccountRow>)
         })
         .collect();
     json!({
-        "roads": stats.roads, "network": classes, "widths": widths, "certificates": certificates, "runs": runs,
+        "roads": stats.roads, "network": classes, "widths": widths, "certificates": certificates, "needs": needs,
+        "runs": runs,
     })
 }

@@ -33,6 +33,28 @@ pub struct Stats {
     pub certificates: Vec<StatsRow>,
     /// Counts of turns by vehicle, policy and verdict.
     pub turns: Vec<TurnCount>,
+    /// What edges that lack room would need, by vehicle and policy.
+    pub needs: Vec<NeedCount>,
+}
+
+/// The edges of one vehicle and policy that lack room and would be safe with some more width.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NeedCount {
+    /// Vehicle id.
+    pub vehicle_id: String,
+    /// The policy of the certificates.
+    pub policy: Policy,
+    /// How much more width does, at most, metres. `None` for the edges for which no width was found that does.
+    pub more_m: Option<f64>,
+    /// Number of directed edges.
+    pub edges: u64,
+    /// Length of the edges together, metres.
+    pub length_m: f64,
+}
+
+impl NeedCount {
+    /// The steps of [`Self::more_m`], metres. Needs above the last one have it as their upper bound.
+    pub const STEPS_M: [f64; 7] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0];
 }
 
 /// The number of turns with a verdict.

@@ -19,7 +19,7 @@ mod turn;
 pub use bounds::Bounds;
 pub use cell::{Cell, Column, Kind};
 pub use certificate::CertificateRow;
-pub use counts::{RelativeCount, RscBin, Stats, StatsRow, TurnCount};
+pub use counts::{NeedCount, RelativeCount, RscBin, Stats, StatsRow, TurnCount};
 pub use edge::{EdgeFacts, EdgeRow, EdgeStep};
 pub use made::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, TurnCertificate, TurnNeed};
 pub use map::{MainRoad, MapEdge, MapTurn, RoadRow};
