@@ -307,7 +307,7 @@ fn where_told(entry: &Entry) -> String {
         Target::Edge(id) => format!("edge {id}"),
         Target::Corner { node, edges: None } => format!("junction {node}"),
         Target::Corner { node, edges: Some(_) } => format!("a corner of junction {node}"),
-        Target::Area(node) => format!("junction {node}"),
+        Target::Area(node) => format!("the surface of junction {node}"),
     };
     let more = entry.places.len().saturating_sub(1);
     match entry.targets().next() {

@@ -132,6 +132,9 @@ pub fn entries(network: &Network, file: &str, rows: Vec<Row>, first: i64) -> Vec
 
 /// Matches entries anew, to a network that may be another one than before.
 pub fn match_again(network: &Network, entries: &mut [Entry]) {
+    if entries.is_empty() {
+        return;
+    }
     let rows: Vec<Row> = entries.iter().map(|entry| entry.row.clone()).collect();
     for (entry, found) in entries.iter_mut().zip(match_rows(network, &rows)) {
         entry.set(found, network);

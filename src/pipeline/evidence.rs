@@ -23,6 +23,9 @@ use crate::vehicle::Vehicle;
 use crate::verdict::Verdict;
 use crate::words::Named as _;
 
+/// Notes on measurements that an ingest prints one by one.
+const MOST_NOTES: usize = 20;
+
 /// What to change.
 #[derive(Debug, Clone, PartialEq)]
 pub enum What {
@@ -255,28 +258,32 @@ pub(super) fn carried_over(
     evidence::match_again(network, &mut register.entries);
     let decision = evidence::decide(network, &mut register.entries);
     network.site = decision.site;
+    let mut notes: Vec<String> =
+        before.iter().zip(&register.entries).filter_map(|(old, new)| difference(old, new)).collect();
+    notes.extend(decision.conflicts.into_iter().map(|conflict| format!("conflict: {}", conflict.what)));
     reporter.note(&format!("{} measurements taken over from the older database", register.entries.len()));
-    for (old, new) in before.iter().zip(&register.entries) {
-        let name = format!("measurement {} ({}:{}), {}", new.no, new.file, new.row.number, new.row.quantity.name());
-        let why = new.why.as_deref().unwrap_or_default();
-        let same = old.targets().eq(new.targets());
-        match (old.state, new.state) {
-            (State::Matched, State::Matched) if same => {}
-            (State::Matched, State::Matched) => {
-                reporter.note(&format!("{name}: matched {} before, and {} now", places(old), places(new)))
-            }
-            (State::Matched, now) => reporter.note(&format!("{name}: matched before, {} now: {why}", now.name())),
-            (then, State::Matched) => {
-                reporter.note(&format!("{name}: {} before, now matched: {}", then.name(), places(new)));
-            }
-            _ => {}
-        }
-    }
-    for conflict in &decision.conflicts {
-        reporter.note(&conflict.what);
+    notes.iter().take(MOST_NOTES).for_each(|note| reporter.note(note));
+    if notes.len() > MOST_NOTES {
+        let more = notes.len() - MOST_NOTES;
+        reporter.note(&format!("and {more} more such measurements; `netcert evidence list` shows all"));
     }
     let account = account(&register.entries);
     (register, account)
+}
+
+/// How a measurement is matched otherwise than before.
+fn difference(old: &Entry, new: &Entry) -> Option<String> {
+    let name = format!("measurement {} ({}:{}), {}", new.no, new.file, new.row.number, new.row.quantity.name());
+    let why = new.why.as_deref().unwrap_or_default();
+    match (old.state, new.state) {
+        (State::Matched, State::Matched) if old.targets().eq(new.targets()) => None,
+        (State::Matched, State::Matched) => {
+            Some(format!("{name}: matched {} before, and {} now", places(old), places(new)))
+        }
+        (State::Matched, now) => Some(format!("{name}: matched before, {} now: {why}", now.name())),
+        (then, State::Matched) => Some(format!("{name}: {} before, now matched: {}", then.name(), places(new))),
+        _ => None,
+    }
 }
 
 /// The places of an entry in words, the first few of them.

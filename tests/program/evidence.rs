@@ -105,6 +105,14 @@ fn the_width_that_is_needed_makes_an_edge_safe_and_removing_it_restores_the_map(
     assert_eq!(row.width_source, Some(WidthSource::Surveyed));
     place.netcert(&format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 150 --input {{demo}}")).succeeds();
 
+    let verify = format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 1");
+    for tampered in ["UPDATE evidence_place SET counts = 0 WHERE place_no = 1", "UPDATE evidence_place SET edge_id = 1"]
+    {
+        let other = Place::empty().file("demo.gpkg", place.read("demo.gpkg"));
+        assert!(other.sql(tampered) > 0);
+        other.netcert(&verify).fails();
+    }
+
     place.netcert("evidence add survey.csv").succeeds().shows("not added again").shows("nothing changed");
     let list = place.netcert("evidence list --format json").succeeds().json();
     assert_eq!(list.as_array().unwrap().len(), measured);
