@@ -127,6 +127,7 @@ impl Add {
         let what = What::Add { file, rows, matched_only: self.matched_only };
         let ask = EvidenceChange { db: &db, what, dry_run: self.dry_run, now: &|| session.clock.now() };
         let changed = pipeline::change_evidence(ask, &session.progress)?;
+        session.progress.summary(&changed.summary);
         let mut out = results();
         for line in rows_told(&changed) {
             writeln!(out, "{}", printable(&line))?;
@@ -152,6 +153,7 @@ impl Remove {
         let what = What::Remove(numbers);
         let ask = EvidenceChange { db: &db, what, dry_run: false, now: &|| session.clock.now() };
         let changed = pipeline::change_evidence(ask, &session.progress)?;
+        session.progress.summary(&changed.summary);
         let mut out = results();
         for entry in &changed.removed {
             writeln!(out, "removed {}", printable(&line(entry)))?;

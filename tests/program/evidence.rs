@@ -152,6 +152,7 @@ fn what_is_certified_again_is_what_certify_makes() {
     let made = rows_of(&place, &all);
     assert!(made["edge"] != before["edge"] && made["turn"] != before["turn"]);
     assert_ne!(made["turn_certificate_compact"], before["turn_certificate_compact"]);
+    place.netcert(&format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 40")).succeeds();
     let whole = Place::empty().file("demo.gpkg", place.read("demo.gpkg"));
     whole.netcert("certify").succeeds();
     assert_eq!(rows_of(&whole, &CERTIFICATES), rows_of(&place, &CERTIFICATES));

@@ -2,29 +2,29 @@
 //!
 //! The result is that of certifying everything again. All of a change is one transaction.
 
+mod again;
+mod carried;
+
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
+use again::Again;
+pub(super) use carried::carried_over;
+
 use super::{RunError, Summary};
 use crate::account::AccountRow;
-use crate::certify::{Job, Touched, TurnJob, certify_some_turns, certify_strokes};
+use crate::certify::{Job, Touched, certify_strokes};
 use crate::evidence::{self, Conflict, Entry, Quantity, Row, State, Target};
 use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::reporter::Reporter;
-use crate::rows::{EdgeCertificate, EdgeMeasure, StoredPlan, TurnCertificate};
-use crate::settings::Settings;
-use crate::stet::Model;
-use crate::store::{Database, Register, Renewal, Run, SetRenewal, StoreError};
+use crate::rows::EdgeMeasure;
+use crate::store::{Database, Register, Renewal, Run, StoreError};
 use crate::turns::{KerbSource, TurnFacts, turn_facts};
-use crate::vehicle::Vehicle;
 use crate::verdict::Verdict;
 use crate::words::Named as _;
-
-/// Notes on measurements that an ingest prints one by one.
-const MOST_NOTES: usize = 20;
 
 /// What to change.
 #[derive(Debug, Clone, PartialEq)]
@@ -248,60 +248,6 @@ fn measured(network: &Network, touched: &Touched, measures: &[EdgeMeasure]) -> V
     all
 }
 
-/// The register of an older database, matched anew to another network, and what became of it in words.
-pub(super) fn carried_over(
-    network: &mut Network,
-    mut register: Register,
-    reporter: &dyn Reporter,
-) -> (Register, Vec<AccountRow>) {
-    let before = register.entries.clone();
-    evidence::match_again(network, &mut register.entries);
-    let decision = evidence::decide(network, &mut register.entries);
-    network.site = decision.site;
-    let mut notes: Vec<String> =
-        before.iter().zip(&register.entries).filter_map(|(old, new)| difference(old, new)).collect();
-    notes.extend(decision.conflicts.into_iter().map(|conflict| format!("conflict: {}", conflict.what)));
-    reporter.note(&format!("{} measurements taken over from the older database", register.entries.len()));
-    notes.iter().take(MOST_NOTES).for_each(|note| reporter.note(note));
-    if notes.len() > MOST_NOTES {
-        let more = notes.len() - MOST_NOTES;
-        reporter.note(&format!("and {more} more such measurements; `netcert evidence list` shows all"));
-    }
-    let account = account(&register.entries);
-    (register, account)
-}
-
-/// How a measurement is matched otherwise than before.
-fn difference(old: &Entry, new: &Entry) -> Option<String> {
-    let name = format!("measurement {} ({}:{}), {}", new.no, new.file, new.row.number, new.row.quantity.name());
-    let why = new.why.as_deref().unwrap_or_default();
-    match (old.state, new.state) {
-        (State::Matched, State::Matched) if old.targets().eq(new.targets()) => None,
-        (State::Matched, State::Matched) => {
-            Some(format!("{name}: matched {} before, and {} now", places(old), places(new)))
-        }
-        (State::Matched, now) => Some(format!("{name}: matched before, {} now: {why}", now.name())),
-        (then, State::Matched) => Some(format!("{name}: {} before, now matched: {}", then.name(), places(new))),
-        _ => None,
-    }
-}
-
-/// The places of an entry in words, the first few of them.
-fn places(entry: &Entry) -> String {
-    const TOLD: usize = 3;
-    let told = entry.targets().take(TOLD).map(|target| match target {
-        Target::Edge(id) => format!("edge {id}"),
-        Target::Corner { node, edges: None } | Target::Area(node) => format!("junction {node}"),
-        Target::Corner { node, edges: Some([from, to]) } => {
-            format!("the corner of edges {from} and {to} at node {node}")
-        }
-    });
-    let told: Vec<String> = told.collect();
-    let more = entry.places.len().saturating_sub(TOLD);
-    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-    told.join(", ") + more.as_str()
-}
-
 /// The account of a register.
 pub(super) fn account(entries: &[Entry]) -> Vec<AccountRow> {
     let count = |state: State| entries.iter().filter(|entry| entry.state == state).count() as u64;
@@ -338,124 +284,4 @@ fn mapped_corners(network: &Network, turns: &[TurnFacts], added: &[Entry]) -> Ve
         Some(Conflict { entries: vec![entry.no], what })
     };
     corners.filter_map(conflict).collect()
-}
-
-/// What is to be certified again.
-struct Again<'a> {
-    db: &'a Path,
-    network: &'a Network,
-    facts: Option<&'a [TurnFacts]>,
-    touched: &'a Touched,
-}
-
-/// Sets that are certified together: corridors are made once for all of them.
-struct Group {
-    settings: Settings,
-    turns: bool,
-    policy: Policy,
-    vehicles: Vec<String>,
-}
-
-impl Again<'_> {
-    /// Certifies the touched part of every set, each with its own settings and vehicle.
-    fn sets(
-        &self,
-        db: &mut Database,
-        reporter: &dyn Reporter,
-        changed: &mut EvidenceChanged,
-    ) -> Result<Vec<SetRenewal>, RunError> {
-        if self.touched.strokes.is_empty() && self.touched.turns.is_empty() {
-            return Ok(Vec::new());
-        }
-        let clock = std::time::Instant::now();
-        let mut groups: Vec<Group> = Vec::new();
-        for set in db.certified()? {
-            let (settings, turns) = (set.settings()?, db.has_turns(&set.vehicle_id, set.policy)?);
-            match groups.iter_mut().find(|group| group.settings == settings && group.turns == turns) {
-                Some(group) => group.vehicles.push(set.vehicle_id),
-                None => groups.push(Group { settings, turns, policy: set.policy, vehicles: vec![set.vehicle_id] }),
-            }
-        }
-        let records = db.vehicles()?;
-        let mut renewed = Vec::new();
-        for group in groups {
-            let of = |id: &String| {
-                let record = records.iter().find(|record| record.id == *id);
-                let record = record.ok_or_else(|| StoreError::NotThere {
-                    path: self.db.to_owned(),
-                    detail: format!("vehicle {id} is missing; run `netcert ingest` again"),
-                })?;
-                Ok(Model::new(&Vehicle::from_json(&record.definition)?)?)
-            };
-            let models = group.vehicles.iter().map(of).collect::<Result<Vec<Model>, RunError>>()?;
-            renewed.extend(self.group(db, &group, &models, reporter, changed)?);
-        }
-        let made = renewed.iter().map(|set| set.edges.len() + set.turns.len()).sum::<usize>();
-        changed.summary.stage("certificates", clock, made as u64, "certificates");
-        Ok(renewed)
-    }
-
-    fn group(
-        &self,
-        db: &mut Database,
-        group: &Group,
-        models: &[Model],
-        reporter: &dyn Reporter,
-        changed: &mut EvidenceChanged,
-    ) -> Result<Vec<SetRenewal>, RunError> {
-        let Group { settings, policy, vehicles, .. } = group;
-        let job = Job { network: self.network, models, settings };
-        let mut edges: Vec<Vec<EdgeCertificate>> = vec![Vec::new(); models.len()];
-        let Ok(outcome) =
-            certify_strokes::<std::convert::Infallible>(&job, &self.touched.strokes, reporter, |vehicle, made| {
-                edges[vehicle].push(made.clone());
-                Ok(())
-            });
-        let mut plans: Vec<Vec<StoredPlan>> = vec![Vec::new(); models.len()];
-        for (vehicle, plan) in outcome.plans {
-            plans[vehicle].push(plan);
-        }
-        let mut verdicts = Vec::new();
-        let mut edge_changes = Vec::new();
-        for (vehicle, made) in vehicles.iter().zip(&edges) {
-            let mut known = db.edge_verdicts(vehicle, *policy)?;
-            let mut changes = VerdictChanges::default();
-            for certificate in made {
-                if let Some(slot) = known.get_mut(certificate.edge as usize) {
-                    let before = std::mem::replace(slot, certificate.conclusion.verdict);
-                    changes.note(Some(before), *slot);
-                }
-            }
-            verdicts.push(known);
-            edge_changes.push(changes);
-        }
-        let mut turns: Vec<Vec<TurnCertificate>> = vec![Vec::new(); models.len()];
-        if let (true, Some(facts)) = (group.turns, self.facts) {
-            let job = TurnJob { network: self.network, turns: facts, models, edges: &verdicts, settings };
-            let Ok(_) =
-                certify_some_turns::<std::convert::Infallible>(&job, &self.touched.turns, reporter, |vehicle, made| {
-                    turns[vehicle].push(made.clone());
-                    Ok(())
-                });
-        }
-        let mut renewed = Vec::new();
-        let made = edges.into_iter().zip(plans).zip(turns).zip(edge_changes);
-        for (vehicle, (((edges, plans), turns), edge_changes)) in vehicles.iter().zip(made) {
-            let mut turn_changes = VerdictChanges::default();
-            if group.turns {
-                let before = db.turn_verdicts(vehicle, *policy)?;
-                for turn in &turns {
-                    turn_changes.note(before.get(turn.turn as usize).copied(), turn.conclusion.verdict);
-                }
-            }
-            changed.sets.push(SetChanged {
-                vehicle: vehicle.clone(),
-                policy: *policy,
-                edges: edge_changes,
-                turns: group.turns.then_some(turn_changes),
-            });
-            renewed.push(SetRenewal { vehicle: vehicle.clone(), policy: *policy, edges, plans, turns });
-        }
-        Ok(renewed)
-    }
 }
