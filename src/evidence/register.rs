@@ -283,7 +283,7 @@ fn against_map(network: &Network, edges: &Edges<'_>, entry: &Entry) -> Option<Co
     let lower_m = entry.row.lower_m()?;
     for (target, _) in entry.places.iter().filter(|place| place.1) {
         let Target::Edge(id) = *target else { continue };
-        let Some(strip) = edges.of_id(id).and_then(|edge| network.map_section(edge).strip(policy)) else { continue };
+        let Some(strip) = edges.of_id(id).and_then(|edge| network.mapped_section(edge).strip(policy)) else { continue };
         let tagged_m = f64::from(strip.width_m());
         if strip.source >= WidthSource::Tagged && (tagged_m - lower_m).abs() >= 0.01 {
             places += 1;
@@ -385,7 +385,7 @@ impl<'n> Edges<'n> {
         }
         for (id, widths_m) in widths_m {
             let Some(edge) = self.of_id(id) else { continue };
-            let section = self.network.map_section(edge).with_widths(widths_m, WidthSource::Surveyed);
+            let section = self.network.mapped_section(edge).with_widths(widths_m, WidthSource::Surveyed);
             site.set_section(edge, section);
         }
         site
