@@ -27,6 +27,7 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
     match &cli.verb {
         Verb::Ingest(verb) => verb.run(&session),
         Verb::Certify(verb) => verb.run(&session),
+        Verb::Evidence(verb) => verb.run(&session),
         Verb::Query(verb) => verb.run(&session),
         Verb::Explain(verb) => verb.run(&session),
         Verb::Route(verb) => verb.run(&session),

@@ -1,7 +1,7 @@
 //! The words for the program's enumerations in databases, exports, answers and options. They are stable, because users
 //! filter by them.
 
-use crate::evidence::{Along, Quantity};
+use crate::evidence::{Along, Quantity, State, Usage};
 use crate::osm::facts::{Direction, Oneway, Permission, Policy, RoadClass, WidthSource};
 use crate::settings::Needs;
 use crate::stet::Side;
@@ -71,6 +71,9 @@ named!(Quantity {
     DrivableBy = "drivable_by",
     Surface = "surface",
 });
+
+named!(State { Matched = "matched", Unmatched = "unmatched", Ambiguous = "ambiguous" });
+named!(Usage { Counts = "counts", Superseded = "superseded", Kept = "kept" });
 
 /// The value of `highway`: the class, with `_link` for links.
 #[must_use]

@@ -3,7 +3,7 @@
   <renderer-v2 type="RuleRenderer" symbollevels="0" forceraster="0" enableorderby="0">
     <rules key="root">
       <rule key="forbidden" symbol="0" label="Forbidden by a turn restriction" filter="&quot;restriction&quot; IS NOT NULL"/>
-      <rule key="mapped" symbol="1" label="Kerb of the junction&#x27;s mapped surface" filter="&quot;restriction&quot; IS NULL AND &quot;kerb_source&quot; = &#x27;mapped&#x27;"/>
+      <rule key="mapped" symbol="1" label="Kerb of the junction&#x27;s mapped surface, or surveyed" filter="&quot;restriction&quot; IS NULL AND &quot;kerb_source&quot; IN (&#x27;mapped&#x27;, &#x27;surveyed&#x27;)"/>
       <rule key="assumed" symbol="2" label="Kerb assumed by class and country" filter="&quot;restriction&quot; IS NULL AND &quot;kerb_source&quot; = &#x27;assumed&#x27;"/>
       <rule key="none" symbol="3" label="No kerb on the inside" filter="&quot;restriction&quot; IS NULL AND &quot;kerb_source&quot; IS NULL"/>
     </rules>

@@ -3,10 +3,12 @@
 mod least;
 mod needs;
 mod strokes;
+mod touched;
 mod turns;
 
 pub use least::least_that_does;
 pub use needs::{LineOf, MOST_KERB_M, TurnCase};
 pub(crate) use strokes::verdict;
-pub use strokes::{Job, certify_network};
-pub use turns::{TurnJob, TurnOutcome, best_of, certify_turns, fits, turn_verdict};
+pub use strokes::{Job, certify_network, certify_strokes};
+pub use touched::Touched;
+pub use turns::{TurnJob, TurnOutcome, best_of, certify_some_turns, certify_turns, fits, turn_verdict};

@@ -35,7 +35,7 @@ pub struct Job<'a> {
 /// Results of a certification other than the certificates.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outcome {
-    /// One per edge.
+    /// One per edge of the network. Edges that were not certified have the default.
     pub measures: Vec<EdgeMeasure>,
     /// Edges by the reason why they have no corridor. `None` counts edges with a corridor.
     corridors: BTreeMap<Option<&'static str>, u64>,
@@ -87,13 +87,28 @@ struct StrokeResult {
 pub fn certify_network<E>(
     job: &Job<'_>,
     reporter: &dyn Reporter,
+    sink: impl FnMut(usize, &EdgeCertificate) -> Result<(), E>,
+) -> Result<Outcome, E> {
+    let all: Vec<u32> = (0..).take(job.network.strokes.len()).collect();
+    certify_strokes(job, &all, reporter, sink)
+}
+
+/// Certifies the edges of some strokes, given as indices into [`Network::strokes`], as [`certify_network`] does.
+///
+/// # Errors
+/// The first error of `sink`.
+pub fn certify_strokes<E>(
+    job: &Job<'_>,
+    strokes: &[u32],
+    reporter: &dyn Reporter,
     mut sink: impl FnMut(usize, &EdgeCertificate) -> Result<(), E>,
 ) -> Result<Outcome, E> {
     let network = job.network;
     let mut outcome = Outcome { measures: vec![EdgeMeasure::default(); network.edges.len()], ..Outcome::default() };
-    reporter.begin("certificates", network.edges.len() as u64);
+    let strokes: Vec<&Stroke> = strokes.iter().filter_map(|&stroke| network.strokes.get(stroke as usize)).collect();
+    reporter.begin("certificates", strokes.iter().map(|stroke| stroke.edges.len() as u64).sum());
     let mut done = 0;
-    for batch in network.strokes.chunks(BATCH) {
+    for batch in strokes.chunks(BATCH) {
         let results: Vec<StrokeResult> = batch.par_iter().map(|stroke| certify_stroke(job, stroke)).collect();
         for result in results {
             done += result.measures.len() as u64;

@@ -94,14 +94,28 @@ type Lines = FxHashMap<u32, (usize, Result<Arc<StrokeLine>, UnknownReason>)>;
 pub fn certify_turns<E>(
     job: &TurnJob<'_>,
     reporter: &dyn Reporter,
+    sink: impl FnMut(usize, &TurnCertificate) -> Result<(), E>,
+) -> Result<TurnOutcome, E> {
+    let all: Vec<u32> = (0..).take(job.turns.len()).collect();
+    certify_some_turns(job, &all, reporter, sink)
+}
+
+/// Certifies some turns, given as indices into [`TurnJob::turns`], as [`certify_turns`] does.
+///
+/// # Errors
+/// The first error of `sink`.
+pub fn certify_some_turns<E>(
+    job: &TurnJob<'_>,
+    turns: &[u32],
+    reporter: &dyn Reporter,
     mut sink: impl FnMut(usize, &TurnCertificate) -> Result<(), E>,
 ) -> Result<TurnOutcome, E> {
-    let mut outcome = TurnOutcome { turns: job.turns.len() as u64, ..TurnOutcome::default() };
-    reporter.begin("turns", job.turns.len() as u64);
+    let mut outcome = TurnOutcome { turns: turns.len() as u64, ..TurnOutcome::default() };
+    reporter.begin("turns", turns.len() as u64);
     let strokes = strokes_of_edges(job.network);
     let mut lines = Lines::default();
     let mut done = 0;
-    for (number, batch) in neighbours(job.turns).chunks(BATCH).enumerate() {
+    for (number, batch) in neighbours(job.turns, turns).chunks(BATCH).enumerate() {
         lay_lines(job, batch, &strokes, &mut lines, number);
         let results: Vec<(bool, Vec<TurnCertificate>)> =
             batch.par_iter().map(|&turn| certify_turn(job, turn, &strokes, &lines)).collect();
@@ -120,7 +134,7 @@ pub fn certify_turns<E>(
 }
 
 /// By edge: its stroke.
-fn strokes_of_edges(network: &Network) -> Vec<u32> {
+pub(super) fn strokes_of_edges(network: &Network) -> Vec<u32> {
     let mut of_edge = vec![u32::MAX; network.edges.len()];
     for (index, stroke) in (0..).zip(&network.strokes) {
         for &edge in &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize] {
@@ -130,8 +144,8 @@ fn strokes_of_edges(network: &Network) -> Vec<u32> {
     of_edge
 }
 
-/// Indices of the turns, sorted so that neighbouring turns are close to each other. Few strokes are then made twice.
-fn neighbours(turns: &[TurnFacts]) -> Vec<u32> {
+/// Indices of the turns `which`, sorted so that neighbouring turns are close to each other. Few strokes are then made twice.
+fn neighbours(turns: &[TurnFacts], which: &[u32]) -> Vec<u32> {
     let place =
         |turn: &TurnFacts| turn.line.get(turn.line.len() / 2).copied().unwrap_or(LonLat { lon_e7: 0, lat_e7: 0 });
     let spread = |e7: i32| {
@@ -142,8 +156,8 @@ fn neighbours(turns: &[TurnFacts]) -> Vec<u32> {
         x = (x | x << 2) & 0x3333_3333_3333_3333;
         (x | x << 1) & 0x5555_5555_5555_5555
     };
-    let mut order: Vec<(u64, u32)> =
-        (0..).zip(turns).map(|(i, turn)| (spread(place(turn).lon_e7) | spread(place(turn).lat_e7) << 1, i)).collect();
+    let along = |turn: &TurnFacts| spread(place(turn).lon_e7) | spread(place(turn).lat_e7) << 1;
+    let mut order: Vec<(u64, u32)> = which.iter().filter_map(|&i| Some((along(turns.get(i as usize)?), i))).collect();
     order.sort_unstable();
     order.into_iter().map(|(_, i)| i).collect()
 }

@@ -164,7 +164,8 @@ impl Explain {
                 };
                 let note = format!(
                     "This is the certificate of the turn alone, on the best of its paths; its two edges have verdicts of their own. \
-                     Near the turn the vehicle may use {near}. Kerb radii are assumed where no surface is mapped."
+                     Near the turn the vehicle may use {near}. Kerb radii are assumed where they are neither surveyed nor \
+                     mapped."
                 );
                 writeln!(out, "{}", wrapped(&note, ""))?;
             }

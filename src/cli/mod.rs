@@ -8,6 +8,7 @@ mod certify_options;
 mod clock;
 mod corridor;
 mod database;
+mod evidence;
 mod explain;
 mod export;
 mod fleet;
@@ -71,6 +72,7 @@ pub(crate) struct Cli {
 pub(crate) enum Verb {
     Ingest(ingest::Ingest),
     Certify(certify::Certify),
+    Evidence(evidence::Evidence),
     Query(query::Query),
     Explain(explain::Explain),
     Route(route::Route),

@@ -170,7 +170,8 @@ impl Query {
                 rows.push((row, relative));
             }
         }
-        let scope = format!("{} Kerb radii of corners are assumed where no surface is mapped.", scope(vehicle));
+        let scope =
+            format!("{} Kerb radii of corners are assumed where they are neither surveyed nor mapped.", scope(vehicle));
         let head = self.head(policy, scope);
         let mut out = results();
         turn_rows::write(self.format, &head, &rows, &mut out)?;

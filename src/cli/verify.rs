@@ -9,6 +9,7 @@ use anyhow::{anyhow, bail};
 use clap::Args;
 use netcert::account::AccountRow;
 use netcert::check::{self, Outcome, Report, RowOutcome, SetClaim, SetReport, TurnsClaim};
+use netcert::evidence::{self, Entry};
 use netcert::network::Network;
 use netcert::osm::facts::Policy;
 use netcert::rows::Bounds;
@@ -83,6 +84,7 @@ impl Verify {
         let mut database = Database::open(path)?;
         let mut complaints = self.records(&mut database)?;
         let network = database.load_network()?;
+        complaints.extend(measurements(&mut database, &network)?);
         let sets = self.sets(&mut database)?;
         let mut out = results();
         let mut table = Table::new(&["vehicle", "corridor", "of", "verdict", ">confirmed", ">not", ">malformed"]);
@@ -230,6 +232,22 @@ impl Verify {
         }
         Ok(complaints)
     }
+}
+
+/// Decides again what of the register counts. Complaints name measurements for which the database says otherwise.
+fn measurements(database: &mut Database, network: &Network) -> anyhow::Result<Vec<String>> {
+    let kept = database.register()?.entries;
+    let mut again = kept.clone();
+    evidence::match_again(network, &mut again);
+    evidence::decide(network, &mut again);
+    let differ = kept.iter().zip(&again).filter(|(kept, again)| kept != again);
+    let complaint = |(kept, _): (&Entry, &Entry)| {
+        format!(
+            "not confirmed  measurement {}: its place, or whether it counts there, is not what follows from it",
+            kept.no
+        )
+    };
+    Ok(differ.map(complaint).collect())
 }
 
 /// The vehicle of a set, as the database defines it.

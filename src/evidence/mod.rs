@@ -1,7 +1,7 @@
 //! Evidence: measurements that somebody made, read from files and matched to the road network.
 //!
 //! [`read`] takes a file as a whole or refuses it, with every faulty row. [`match_rows`] says which edges or junctions a row
-//! means. Where two roads could be meant it says so and does not guess. What a measurement changes is decided elsewhere.
+//! means. Where two roads could be meant it says so and does not guess. [`decide`] says which measurements of a register count.
 
 mod cells;
 mod columns;
@@ -10,8 +10,10 @@ mod formats;
 mod matching;
 mod places;
 mod read;
+mod register;
 mod row;
 mod shape;
+mod stored;
 #[cfg(test)]
 mod tests;
 mod values;
@@ -19,4 +21,7 @@ mod values;
 pub use error::{EvidenceError, Fault};
 pub use matching::{Match, match_rows};
 pub use read::read;
+pub(crate) use register::Edges;
+pub use register::{Conflict, Decision, Entry, State, Target, Usage, decide, entries, match_again, without_doubles};
 pub use row::{Along, Place, Quantity, Row, Value};
+pub(crate) use stored::{Columns, parts};

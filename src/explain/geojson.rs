@@ -17,7 +17,7 @@ use crate::words::{Named as _, verdict_words};
 
 /// What every explanation of a turn adds to its scope.
 pub const TURN_NOTE: &str = "The turn by itself, on the best of its paths; its two edges have verdicts of their own. Kerb radii are \
-                             assumed where no surface is mapped.";
+                             assumed where they are neither surveyed nor mapped.";
 
 /// Why an explanation cannot be drawn on a map.
 #[derive(Debug, thiserror::Error)]

@@ -91,6 +91,6 @@ pub(super) fn source_words(source: WidthSource) -> &'static str {
         WidthSource::FromLanes => "from the tagged number of lanes, their width assumed",
         WidthSource::Estimated => "tagged as estimated",
         WidthSource::Tagged => "tagged",
-        WidthSource::Surveyed => "tagged as surveyed",
+        WidthSource::Surveyed => "surveyed",
     }
 }

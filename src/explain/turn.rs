@@ -228,6 +228,7 @@ impl TurnExplanation {
         let left_out = self.corridors.as_ref().is_some_and(|made| made.kerb_radius_m.is_none());
         let kerb = match (self.facts.kerb_radius_m, self.facts.kerb_source) {
             (Some(_), _) if left_out => ", corner not rounded".to_owned(),
+            (Some(m), Some(KerbSource::Surveyed)) => format!(", kerb radius {m:.1} m (surveyed)"),
             (Some(m), _) => format!(", kerb radius {m:.1} m (assumed)"),
             (None, Some(KerbSource::Mapped)) => ", kerb as mapped".to_owned(),
             _ => String::new(),

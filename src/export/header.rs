@@ -107,7 +107,7 @@ impl Header {
         format!(
             "A permit holds within the stated model, widths and error bounds, for {} steered within {} m of the planned path \
              (times shrink), edge by edge and turn by turn: `netcert route` certifies a whole route. Kerbs of turns are assumed \
-             where no surface is mapped. It is no legal permit and says nothing of bridges or traffic. What is not listed as permitted is refused.",
+             where they are neither surveyed nor mapped. It is no legal permit and says nothing of bridges or traffic. What is not listed as permitted is refused.",
             self.ask.vehicle, p.tracking_tolerance_m
         )
     }

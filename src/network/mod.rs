@@ -34,6 +34,7 @@ pub(crate) use geometry::{EARTH_RADIUS_M, offset_m};
 pub use movements::{Movement, MovementKind, Movements};
 pub use passages::{Passage, PassageKind};
 pub use site::Site;
+pub(crate) use site::{Pieces, pieces};
 pub use splits::Splits;
 pub use stroke::StrokeOptions;
 

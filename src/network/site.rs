@@ -2,13 +2,16 @@
 //!
 //! Certificates see a network with a site like any other network. A place without an entry is as the map has it.
 
+use std::collections::BTreeSet;
+
 use rustc_hash::FxHashMap;
 
 use super::{Edge, Network};
+use crate::osm::LonLat;
 use crate::osm::facts::{CrossSection, Direction};
 
 /// Two pieces of road that form a corner, in order. A piece is known by its road and by where its shape begins.
-type Pieces = [(u32, u32); 2];
+pub(crate) type Pieces = [(u32, u32); 2];
 
 /// Entries for single places.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -17,13 +20,21 @@ pub struct Site {
     sections: FxHashMap<i64, CrossSection>,
     /// By node, and by corner. Metres.
     kerbs: FxHashMap<(i64, Option<Pieces>), f64>,
+    /// Paved surfaces by the node of their junction: closed rings.
+    surfaces: FxHashMap<i64, Vec<Vec<LonLat>>>,
 }
 
 impl Site {
     /// Whether every place is as the map has it.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.sections.is_empty() && self.kerbs.is_empty()
+        self.sections.is_empty() && self.kerbs.is_empty() && self.surfaces.is_empty()
+    }
+
+    /// The cross section that an edge has here.
+    #[must_use]
+    pub fn section(&self, edge: &Edge) -> Option<CrossSection> {
+        self.sections.get(&edge.id).copied()
     }
 
     /// Gives an edge a cross section of its own.
@@ -35,20 +46,51 @@ impl Site {
     pub fn set_kerb(&mut self, node: i64, between: Option<[&Edge; 2]>, radius_m: f64) {
         self.kerbs.insert((node, between.map(pieces)), radius_m);
     }
+
+    /// Adds a paved surface without kerbs and islands to the junction at a node: a closed ring that does not cross itself.
+    pub fn add_surface(&mut self, node: i64, ring: Vec<LonLat>) {
+        self.surfaces.entry(node).or_default().push(ring);
+    }
+
+    /// The paved surfaces of the junction at a node.
+    pub fn surfaces(&self, node: i64) -> &[Vec<LonLat>] {
+        self.surfaces.get(&node).map_or(&[], Vec::as_slice)
+    }
 }
 
-fn pieces(edges: [&Edge; 2]) -> Pieces {
+/// The pieces of a corner, the same for both ways round it.
+pub(crate) fn pieces(edges: [&Edge; 2]) -> Pieces {
     let mut pieces = edges.map(|edge| (edge.road, edge.shape.start));
     pieces.sort_unstable();
     pieces
+}
+
+impl Site {
+    /// Where two sites differ: ids of edges, and ids of nodes with other kerbs or surfaces; both sorted.
+    #[must_use]
+    pub fn differences(&self, other: &Self) -> (Vec<i64>, Vec<i64>) {
+        let differ = |edge: &&i64| self.sections.get(edge) != other.sections.get(edge);
+        let edges: BTreeSet<i64> = self.sections.keys().chain(other.sections.keys()).filter(differ).copied().collect();
+        let differ = |corner: &&(i64, Option<Pieces>)| self.kerbs.get(corner) != other.kerbs.get(corner);
+        let corners = self.kerbs.keys().chain(other.kerbs.keys()).filter(differ);
+        let mut nodes: BTreeSet<i64> = corners.map(|corner| corner.0).collect();
+        let differ = |node: &&i64| self.surfaces.get(node) != other.surfaces.get(node);
+        nodes.extend(self.surfaces.keys().chain(other.surfaces.keys()).filter(differ));
+        (edges.into_iter().collect(), nodes.into_iter().collect())
+    }
 }
 
 impl Network {
     /// The strips of an edge: those of its site, else those of its road.
     #[must_use]
     pub fn section(&self, edge: &Edge) -> CrossSection {
-        let own = self.site.sections.get(&edge.id).copied();
-        own.unwrap_or_else(|| self.road(edge).sections[usize::from(edge.direction == Direction::Backward)])
+        self.site.section(edge).unwrap_or_else(|| self.mapped_section(edge))
+    }
+
+    /// The strips of an edge's road.
+    #[must_use]
+    pub fn mapped_section(&self, edge: &Edge) -> CrossSection {
+        self.road(edge).sections[usize::from(edge.direction == Direction::Backward)]
     }
 
     /// The kerb radius that the site has for the corner of two edges at a node, metres. `None` if the site says nothing.

@@ -4,6 +4,7 @@
 //! same stages on the same network, so the same edge and vehicle get the same bytes. [`crate::certify`] makes the certificates.
 //! Progress is reported through [`Reporter`], so this module does not depend on command lines or terminals.
 
+mod evidence;
 mod select;
 
 use std::path::{Path, PathBuf};
@@ -11,6 +12,7 @@ use std::time::Instant;
 
 use thiserror::Error;
 
+pub use evidence::{EvidenceChange, EvidenceChanged, SetChanged, VerdictChanges, What, change_evidence};
 pub use select::{Selection, own_countries, selected};
 
 use crate::account::AccountRow;
@@ -129,7 +131,19 @@ pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunE
     if writer.replaced_leftover() {
         reporter.note("an earlier run was cut short: beginning afresh");
     }
-    let (network, header, hash) = read_network(ask.input, ask.countries, reporter, &mut summary)?;
+    let (mut network, header, hash) = read_network(ask.input, ask.countries, reporter, &mut summary)?;
+    let mut parameters = ask.parameters.clone();
+    if let Some(why) = writer.register_lost() {
+        reporter.note(&format!("the measurements of the older database are lost, because it cannot be read: {why}"));
+    }
+    if let Some(register) = writer.older_register() {
+        let (register, account) = evidence::carried_over(&mut network, register, reporter);
+        summary.account.extend(account);
+        if let Some(parameters) = parameters.as_object_mut() {
+            parameters.insert("measurements".to_owned(), register.entries.len().into());
+        }
+        writer.evidence(register);
+    }
     let vehicles = selected(ask.catalogue, ask.selection, &network)?;
     let models = vehicles.iter().map(|v| Model::new(v)).collect::<Result<Vec<_>, _>>()?;
     certify_into(&mut writer, &network, &models, ask.settings, reporter, &mut summary)?;
@@ -145,7 +159,7 @@ pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunE
         netcert_version: env!("CARGO_PKG_VERSION").to_owned(),
         started,
         finished: (ask.now)(),
-        parameters: ask.parameters.to_string(),
+        parameters: parameters.to_string(),
     })?;
     reporter.end();
     let certificates = network.edges.len() as u64 * models.len() as u64;

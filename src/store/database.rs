@@ -17,6 +17,7 @@ use crate::words::Named;
 
 use super::contents;
 use super::error::StoreError;
+use super::evidence::{self, RegisterState};
 use super::names::corridor_no;
 use super::network_read;
 use super::packed::Packed;
@@ -33,6 +34,8 @@ type Sql<T> = Result<T, sqlx::Error>;
 /// An open database. All calls block, so asynchronous code must call them from a blocking task.
 pub struct Database {
     pub(super) session: Session,
+    /// The state of the register when the network was loaded.
+    loaded: Option<RegisterState>,
 }
 
 /// Size of the page cache, KiB.
@@ -80,7 +83,7 @@ impl Database {
             .busy_timeout(Duration::from_secs(5))
             .pragma("cache_size", format!("-{cache_kib}"))
             .pragma("temp_store", "MEMORY");
-        let mut database = Self { session: Session::open(path, &options)? };
+        let mut database = Self { session: Session::open(path, &options)?, loaded: None };
         database.check_schema()?;
         Ok(database)
     }
@@ -119,6 +122,8 @@ impl Database {
 
     /// Loads the network, which equals the network that was written.
     pub fn load_network(&mut self) -> Result<Network, StoreError> {
+        // Read first: a change while the network is read is then noticed.
+        self.loaded = Some(self.register_state()?);
         self.session.run(async |c| network_read::read(c).await)
     }
 
@@ -183,13 +188,24 @@ impl Database {
         };
         let policy = settings.policy;
         let mut renewed = Renewed { settings: written, rows, plans, turns: turns.zip(packed) };
-        self.session.run(async |c| {
+        let loaded = self.loaded;
+        let path = self.session.path.clone();
+        let same = self.session.run(async |c| {
             sqlx::query("BEGIN IMMEDIATE").execute(&mut *c).await?;
+            if loaded.is_some() && loaded != Some(evidence::state(c).await?) {
+                sqlx::query("ROLLBACK").execute(&mut *c).await?;
+                return Ok(false);
+            }
             let done = replace(c, vehicle, policy, &mut renewed, run, account).await;
             let end = if done.is_ok() { "COMMIT" } else { "ROLLBACK" };
             let ended = sqlx::query(end).execute(&mut *c).await;
-            done.and(ended.map(|_| ()))
-        })
+            done.and(ended.map(|_| true))
+        })?;
+        if same { Ok(()) } else { Err(StoreError::RegisterChanged(path)) }
+    }
+
+    pub(super) fn register_state(&mut self) -> Result<RegisterState, StoreError> {
+        self.session.run(async |c| evidence::state(c).await)
     }
 
     /// The text of a set's settings as it is stored. Kerbs must be those of the ingest, because all sets share one table of

@@ -51,6 +51,9 @@ pub enum StoreError {
     /// Another process is writing the file.
     #[error("{0}: another program is writing it; wait until that is done, or stop that program")]
     Busy(PathBuf),
+    /// The register of measurements changed while certificates were made, so they may not hold any more.
+    #[error("{0}: measurements were added or removed meanwhile, so nothing was stored; run again")]
+    RegisterChanged(PathBuf),
     /// The disk is full.
     #[error(
         "{0}: the disk is full; free some space, or name another place with --db, and run again; an older file there is unchanged"

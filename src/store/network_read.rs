@@ -16,6 +16,7 @@ use crate::words::{Named, class_and_link};
 use super::areas;
 use super::blob;
 use super::error::content;
+use super::evidence;
 use super::names::verdict_of;
 use super::restrictions::{self, Restrictions};
 
@@ -70,6 +71,7 @@ pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
     network.splits = Splits::find(&network);
     network.crossings = Crossings::find(&network);
     network.areas = Areas::new(areas::read(c).await?, &network);
+    network.site = evidence::site(c, &network).await?;
     Ok(network)
 }
 

@@ -136,7 +136,11 @@ fn add_road_columns(bulk: &mut Bulk, network: &Network, road: &Road, edge: &Edge
     bulk.add(road.left_hand_traffic)?;
     bulk.add(road.lanes)?;
     bulk.add(road.max_speed_km_h[edge.direction as usize])?;
-    let section = &road.sections[edge.direction as usize];
+    add_widths(bulk, &network.section(edge))
+}
+
+/// Adds the columns of an edge's widths.
+pub(super) fn add_widths(bulk: &mut Bulk, section: &CrossSection) -> Sql<()> {
     for strip in [section.lane, section.direction, section.carriageway] {
         // People read this width, so it is rounded to millimetres. Certificates use the strip's edges in `section`.
         bulk.add(strip.map(|strip| (f64::from(strip.width_m()) * 1000.0).round() / 1000.0))?;

@@ -34,6 +34,22 @@ pub(super) fn check_complete(rows: &[Packed], edges: u32) -> Result<(), (u32, &'
     }
 }
 
+/// Inserts certificates of edges.
+pub(super) async fn insert_rows(
+    c: &mut SqliteConnection,
+    (vehicle_no, corridor): (u32, u8),
+    rows: &[Packed],
+) -> Sql<()> {
+    let mut bulk = Bulk::new(COLUMNS, 11);
+    for row in rows {
+        bulk.add(vehicle_no)?;
+        bulk.add(corridor)?;
+        row.add_to(&mut bulk)?;
+        bulk.end_row(c).await?;
+    }
+    bulk.finish(c).await
+}
+
 /// A set to insert: its vehicle, policy and run.
 pub(super) struct Set<'a> {
     pub(super) vehicle_no: u32,
@@ -51,14 +67,7 @@ impl Set<'_> {
     /// Inserts the rows and registers their layer. The database must not have the set yet.
     pub(super) async fn insert(&self, c: &mut SqliteConnection, rows: &[Packed]) -> Sql<()> {
         let corridor = corridor_no(self.policy);
-        let mut bulk = Bulk::new(COLUMNS, 11);
-        for row in rows {
-            bulk.add(self.vehicle_no)?;
-            bulk.add(corridor)?;
-            row.add_to(&mut bulk)?;
-            bulk.end_row(c).await?;
-        }
-        bulk.finish(c).await?;
+        insert_rows(c, (self.vehicle_no, corridor), rows).await?;
         let layer = self.layer_name(c).await?;
         sqlx::query("INSERT INTO certified_set VALUES (?, ?, ?, ?, ?, ?)")
             .bind(self.vehicle_no)

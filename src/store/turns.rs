@@ -139,14 +139,12 @@ pub(super) async fn add(c: &mut SqliteConnection, records: &[Record], time: &str
     styles::add(c, "turn", Shows::Turns, time).await
 }
 
-/// Inserts a complete set. The database must not have the set yet.
-pub(super) async fn insert(
+/// Inserts certificates of turns.
+pub(super) async fn insert_rows(
     c: &mut SqliteConnection,
-    (vehicle_no, policy, run_id): (u32, Policy, i64),
+    (vehicle_no, corridor): (u32, u8),
     rows: &[Packed],
-    plans: &mut [StoredPlan],
 ) -> Sql<()> {
-    let corridor = corridor_no(policy);
     let mut bulk = Bulk::new(COLUMNS, 13);
     for row in rows {
         bulk.add(vehicle_no)?;
@@ -156,7 +154,18 @@ pub(super) async fn insert(
         bulk.add(row.path_no)?;
         bulk.end_row(c).await?;
     }
-    bulk.finish(c).await?;
+    bulk.finish(c).await
+}
+
+/// Inserts a complete set. The database must not have the set yet.
+pub(super) async fn insert(
+    c: &mut SqliteConnection,
+    (vehicle_no, policy, run_id): (u32, Policy, i64),
+    rows: &[Packed],
+    plans: &mut [StoredPlan],
+) -> Sql<()> {
+    let corridor = corridor_no(policy);
+    insert_rows(c, (vehicle_no, corridor), rows).await?;
     plans::insert(c, plans::TURNS, (vehicle_no, corridor), plans).await?;
     let set = sqlx::query("INSERT INTO certified_turns VALUES (?, ?, ?, ?)").bind(vehicle_no).bind(corridor);
     set.bind(run_id).bind(rows.len() as i64).execute(c).await?;

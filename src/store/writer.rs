@@ -20,6 +20,7 @@ use super::areas;
 use super::contents;
 use super::database::Database;
 use super::error::{StoreError, content};
+use super::evidence::{self, Register, RegisterState};
 use super::names::{VERDICTS, corridor_no};
 use super::network_write;
 use super::part::{Part, with_suffix};
@@ -60,6 +61,10 @@ pub struct Writer {
     /// The turns, and the spool of their certificates. Also written last.
     turns: Option<(Vec<turns::Record>, Spool)>,
     turn_plans: BTreeMap<(u32, u8), Vec<StoredPlan>>,
+    /// Nothing if there is no older database, or none with measurements that can be read.
+    older: Option<Older>,
+    /// The register to write.
+    evidence: Register,
     part: Part,
 }
 
@@ -71,15 +76,20 @@ impl Database {
         let written = settings.written().map_err(refused)?;
         let under = |&policy: &Policy| Settings { policy, ..settings.clone() }.written();
         let by_policy: Vec<String> = Policy::ALL.iter().map(under).collect::<Result<_, _>>().map_err(refused)?;
+        let mut older = None;
         if path.exists() {
             // Opening also rolls back the changes of a killed `certify`, so that its journal is no longer needed.
             match Self::open_to_change(path) {
-                Ok(old) => old.close()?,
+                Ok(mut old) => {
+                    older = Some(old.register().and_then(|register| Ok((register, old.register_state()?))));
+                    old.close()?;
+                }
                 Err(StoreError::NotSqlite(_) | StoreError::NotNetcert(_)) => {
                     return Err(StoreError::InTheWay(path.to_owned()));
                 }
                 Err(busy @ StoreError::Busy(_)) => return Err(busy),
-                Err(_) => {} // an old or damaged database of netcert, which the new one replaces
+                // An old or damaged database of netcert, which the new one replaces.
+                Err(other) => older = has_measurements(path).then_some(Err(other)),
             }
         }
         let part = Part::create(path)?;
@@ -114,6 +124,8 @@ impl Database {
             areas: Vec::new(),
             turns: None,
             turn_plans: BTreeMap::new(),
+            older,
+            evidence: Register::default(),
             part,
         })
     }
@@ -124,6 +136,24 @@ impl Writer {
     #[must_use]
     pub fn replaced_leftover(&self) -> bool {
         self.part.leftover
+    }
+
+    /// The register of the older database; `None` if it has no measurements and never had any, or cannot be read.
+    #[must_use]
+    pub fn older_register(&self) -> Option<Register> {
+        let known = self.older.as_ref()?.as_ref().ok()?;
+        (known.0.last_no > 0).then(|| known.0.clone())
+    }
+
+    /// Why the register of the older database cannot be read, if so.
+    #[must_use]
+    pub fn register_lost(&self) -> Option<&StoreError> {
+        self.older.as_ref()?.as_ref().err()
+    }
+
+    /// Adds the register. The network must have its site.
+    pub fn evidence(&mut self, register: Register) {
+        self.evidence = register;
     }
 
     /// Writes the network; call it once. `measures` has one entry per edge, or is empty. The call may follow those of the
@@ -219,12 +249,14 @@ impl Writer {
             self.session.run(async |c| set.insert(c, &rows).await)?;
         }
         let (all_plans, all_restrictions, all_areas) = (&mut self.plans, &self.restrictions, &self.areas);
+        let register = &self.evidence;
         self.session.run(async |c| {
             sqlx::query("COMMIT").execute(&mut *c).await?;
             migrate(c, None).await?;
             sqlx::query("BEGIN").execute(&mut *c).await?;
             restrictions::insert(c, all_restrictions).await?;
             areas::insert(c, all_areas).await?;
+            evidence::write(c, register, &run.finished).await?;
             for (&(vehicle_no, corridor), plans) in all_plans {
                 plans::insert(c, plans::STROKES, (vehicle_no, corridor), plans).await?;
             }
@@ -235,6 +267,7 @@ impl Writer {
         self.session.run(async |c| check(c).await)?;
         self.session.close()?;
         settle(&self.part.target)?;
+        nothing_added_meanwhile(&self.part.target, self.older.as_ref())?;
         self.part.place()
     }
 }
@@ -257,6 +290,27 @@ impl Writer {
         self.session.run(async |c| sqlx::query("COMMIT").execute(c).await)?;
         Ok(())
     }
+}
+
+/// The register of an older database, with its state, or why it cannot be read.
+type Older = Result<(Register, RegisterState), StoreError>;
+
+/// Refuses to lose measurements that somebody added to the older database meanwhile.
+fn nothing_added_meanwhile(target: &Path, older: Option<&Older>) -> Result<(), StoreError> {
+    let Some(Ok((_, before))) = older else { return Ok(()) };
+    match Database::open(target).and_then(|mut older| older.register_state()) {
+        Ok(now) if now != *before => Err(StoreError::RegisterChanged(target.to_owned())),
+        _ => Ok(()),
+    }
+}
+
+/// Whether a database that this program cannot use has measurements. In doubt it has none.
+fn has_measurements(path: &Path) -> bool {
+    let options = SqliteConnectOptions::new().filename(path).read_only(true);
+    let count = Session::open(path, &options).and_then(|mut session| {
+        session.run(async |c| sqlx::query_scalar::<_, i64>("SELECT count(*) FROM evidence").fetch_one(c).await)
+    });
+    count.is_ok_and(|count| count > 0)
 }
 
 /// Waits until no process is changing the old database, because replacing the file removes its journal. A journal alone does

@@ -5,6 +5,7 @@
 mod cli;
 mod columns;
 mod engines;
+mod evidence;
 mod explain;
 mod explain_shapes;
 mod export;

@@ -31,6 +31,41 @@ impl CrossSection {
         }
     }
 
+    /// The section with several widths, metres, in the order of [`Policy`] (lane, direction, carriageway).
+    ///
+    /// A strip stays within the next wider one that has a width of its own: nothing makes that one wider.
+    #[must_use]
+    pub fn with_widths(&self, widths_m: [Option<f64>; 3], source: WidthSource) -> Self {
+        let mut made = *self;
+        let mut outer: Option<Policy> = None;
+        for policy in [Policy::Carriageway, Policy::Direction, Policy::Lane] {
+            let Some(width_m) = widths_m[policy as usize] else { continue };
+            let around = made;
+            made = made.with_width(policy, width_m, source);
+            if let Some(outer) = outer {
+                made = made.kept_within(outer, &around);
+            }
+            outer = Some(policy);
+        }
+        made
+    }
+
+    /// The section with the strip for `outer` and those around it as `around` has them, and the others cut to it.
+    fn kept_within(&self, outer: Policy, around: &Self) -> Self {
+        let Some(limit) = around.strip(outer) else { return *self };
+        let cut = |part: Option<Strip>| {
+            let part = part?;
+            let cut = Strip {
+                left_m: part.left_m.min(limit.left_m),
+                right_m: part.right_m.max(limit.right_m),
+                source: part.source,
+            };
+            Some(cut).filter(|cut| cut.width_m() > 0.0)
+        };
+        let direction = if outer == Policy::Direction { around.direction } else { cut(self.direction) };
+        Self { lane: cut(self.lane), direction, carriageway: around.carriageway }
+    }
+
     /// The section whose strip for `policy` is nowhere narrower than this width, metres. The source of the width stays. A strip that the
     /// map does not have stays unknown.
     #[must_use]
@@ -129,6 +164,17 @@ mod tests {
         let narrow = road().with_width(Policy::Direction, 2.0, WidthSource::Surveyed);
         assert_eq!(narrow.lane.unwrap(), strip(-0.5, -2.5));
         assert_eq!(narrow.carriageway.unwrap(), strip(3.0, -3.0));
+    }
+
+    #[test]
+    fn a_measured_lane_does_not_widen_a_measured_carriageway() {
+        let made = road().with_widths([Some(3.5), None, Some(6.4)], WidthSource::Surveyed);
+        assert!((made.carriageway.unwrap().width_m() - 6.4).abs() < 1e-6);
+        let (lane, carriageway) = (made.lane.unwrap(), made.carriageway.unwrap());
+        assert!(lane.right_m >= carriageway.right_m && lane.width_m() <= 3.5 && lane.width_m() > 3.3);
+        let alone = road().with_widths([Some(3.5), None, None], WidthSource::Surveyed);
+        assert_eq!(alone, road().with_width(Policy::Lane, 3.5, WidthSource::Surveyed));
+        assert_eq!(road().with_widths([None; 3], WidthSource::Surveyed), road());
     }
 
     #[test]

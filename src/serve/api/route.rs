@@ -45,7 +45,7 @@ pub(in super::super) fn route(region: &Region, ask: &Ask) -> Result<Stored, Prob
     };
     let mut members = answer?;
     members["scope"] = json!(format!(
-        "{SCOPE} Kerb radii of corners are assumed where no surface is mapped; times are by class of road and tagged limits."
+        "{SCOPE} Kerb radii of corners are assumed where they are neither surveyed nor mapped; times are by class of road and tagged limits."
     ));
     Ok(answered(&members))
 }

@@ -1,0 +1,393 @@
+//! The register: the measurements that a database keeps, what each was matched to, and which of them count.
+//!
+//! Of several measurements of one place the latest counts; where dates are equal or missing, the least. Every choice between rows, and every
+//! difference from the map, is reported. Nothing here knows databases or vehicles.
+
+use std::collections::BTreeMap;
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::matching::{Match, match_rows};
+use super::row::{Quantity, Row};
+use crate::network::{Network, Pieces, Site, pieces};
+use crate::osm::facts::{Policy, WidthSource};
+
+/// Whether a place was found for a measurement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum State {
+    /// Its place was found.
+    Matched,
+    /// No road or junction was found.
+    Unmatched,
+    /// Several could be meant.
+    Ambiguous,
+}
+
+/// What becomes of a matched measurement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Usage {
+    /// Certificates use it, at one of its places at least.
+    Counts,
+    /// Another measurement of the same places counts.
+    Superseded,
+    /// No certificate uses such a quantity, or the value says nothing.
+    Kept,
+}
+
+/// A place of the network.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Target {
+    /// `edge_id`
+    Edge(i64),
+    /// A junction, or one corner of it.
+    Corner {
+        /// OSM node id.
+        node: i64,
+        /// `edge_id` of the edge that ends and of the edge that begins at the corner.
+        edges: Option<[i64; 2]>,
+    },
+    /// A junction whose surface was measured: OSM node id.
+    Area(i64),
+}
+
+/// A measurement of the register.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    /// Its number, which it keeps.
+    pub no: i64,
+    /// Name of the file that it came from.
+    pub file: String,
+    /// The measurement.
+    pub row: Row,
+    /// Whether its place was found.
+    pub state: State,
+    /// Why not, or why it is not used.
+    pub why: Option<String>,
+    /// Its places, each with whether it counts there.
+    pub places: Vec<(Target, bool)>,
+}
+
+impl Entry {
+    /// What becomes of it; `None` if it is not matched.
+    #[must_use]
+    pub fn usage(&self) -> Option<Usage> {
+        match self.state {
+            State::Matched if self.places.iter().any(|place| place.1) => Some(Usage::Counts),
+            State::Matched if self.unused().is_some() => Some(Usage::Kept),
+            State::Matched => Some(Usage::Superseded),
+            State::Unmatched | State::Ambiguous => None,
+        }
+    }
+
+    /// Why no certificate can use it.
+    fn unused(&self) -> Option<&'static str> {
+        match self.row.quantity {
+            Quantity::MaxHeight | Quantity::MaxWeight => Some("kept, not used by certificates: the map's limits count"),
+            Quantity::Surface | Quantity::DrivableBy => Some("kept, not used by certificates yet"),
+            Quantity::KerbRadius => None,
+            _ => self
+                .row
+                .lower_m()
+                .is_none_or(|m| m <= 0.0)
+                .then_some("kept, not used by certificates: its uncertainty leaves no width"),
+        }
+    }
+
+    /// Its places without whether they count.
+    pub fn targets(&self) -> impl Iterator<Item = Target> + '_ {
+        self.places.iter().map(|place| place.0)
+    }
+
+    fn set(&mut self, found: Match, network: &Network) {
+        let id = |edge: u32| network.edges.get(edge as usize).map_or(0, |edge| edge.id);
+        let (state, targets, why) = match found {
+            Match::Edges(edges) => {
+                (State::Matched, edges.into_iter().map(|edge| Target::Edge(id(edge))).collect(), None)
+            }
+            Match::Corner { node, edges } => {
+                (State::Matched, vec![Target::Corner { node, edges: edges.map(|pair| pair.map(id)) }], None)
+            }
+            Match::Area(nodes) => (State::Matched, nodes.into_iter().map(Target::Area).collect(), None),
+            Match::Unmatched(why) => (State::Unmatched, Vec::new(), Some(why)),
+            Match::Ambiguous(why) => (State::Ambiguous, Vec::new(), Some(why)),
+        };
+        self.state = state;
+        self.places = targets.into_iter().map(|target| (target, false)).collect();
+        self.why = why.or_else(|| self.unused().map(str::to_owned));
+    }
+}
+
+/// Rows as new entries, numbered from `first` on, with their places in a network. Which of them count is not decided yet.
+#[must_use]
+pub fn entries(network: &Network, file: &str, rows: Vec<Row>, first: i64) -> Vec<Entry> {
+    let found = match_rows(network, &rows);
+    let entry = |((no, row), found): ((i64, Row), Match)| {
+        let file = file.to_owned();
+        let mut entry = Entry { no, file, row, state: State::Unmatched, why: None, places: Vec::new() };
+        entry.set(found, network);
+        entry
+    };
+    (first..).zip(rows).zip(found).map(entry).collect()
+}
+
+/// Matches entries anew, to a network that may be another one than before.
+pub fn match_again(network: &Network, entries: &mut [Entry]) {
+    if entries.is_empty() {
+        return;
+    }
+    let rows: Vec<Row> = entries.iter().map(|entry| entry.row.clone()).collect();
+    for (entry, found) in entries.iter_mut().zip(match_rows(network, &rows)) {
+        entry.set(found, network);
+    }
+}
+
+/// The rows that are not in the register yet, and those that are, each with the number that the register has for it. A row that a
+/// file has twice is kept once; its double has no number yet.
+#[must_use]
+pub fn without_doubles(register: &[Entry], rows: Vec<Row>) -> (Vec<Row>, Vec<(Row, Option<i64>)>) {
+    let mut known: FxHashMap<String, Option<i64>> =
+        register.iter().map(|entry| (content(&entry.row), Some(entry.no))).collect();
+    let (mut new, mut doubles) = (Vec::new(), Vec::new());
+    for row in rows {
+        let content = content(&row);
+        match known.get(&content) {
+            Some(&no) => doubles.push((row, no)),
+            None => {
+                known.insert(content, None);
+                new.push(row);
+            }
+        }
+    }
+    (new, doubles)
+}
+
+/// All that a row says. Where it stood in its file does not matter.
+fn content(row: &Row) -> String {
+    format!("{:?}", Row { number: 0, ..row.clone() })
+}
+
+/// A contradiction between a measurement and another one, or the map.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Conflict {
+    /// The measurements: the one that counts first.
+    pub entries: Vec<i64>,
+    /// What contradicts what, and what counts.
+    pub what: String,
+}
+
+/// What counts, and what contradicts it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Decision {
+    /// What certificates see.
+    pub site: Site,
+    /// Contradictions, by measurement.
+    pub conflicts: Vec<Conflict>,
+}
+
+/// A place at which one measurement of a quantity counts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Spot {
+    Edge(i64),
+    Corner(i64, Option<Pieces>),
+}
+
+/// Decides which entries count, and marks them.
+pub fn decide(network: &Network, register: &mut [Entry]) -> Decision {
+    let edges = Edges::of(network, register.iter().flat_map(Entry::targets));
+    let mut rivals: BTreeMap<(Quantity, Spot), Vec<(usize, usize)>> = BTreeMap::new();
+    for (i, entry) in register.iter_mut().enumerate() {
+        let unused = entry.unused().is_some();
+        for (k, (target, counts)) in entry.places.iter_mut().enumerate() {
+            *counts = false;
+            if let (false, Some(spot)) = (unused, edges.spot(*target)) {
+                rivals.entry((entry.row.quantity, spot)).or_default().push((i, k));
+            }
+        }
+    }
+    let mut overruled: BTreeMap<(i64, i64), usize> = BTreeMap::new();
+    for places in rivals.values() {
+        let Some(&(first, k)) = best(register, places) else { continue };
+        register[first].places[k].1 = true;
+        let value = |i: usize| register[i].row.lower_m();
+        for &(other, _) in places.iter().filter(|place| value(place.0) != value(first)) {
+            *overruled.entry((register[first].no, register[other].no)).or_default() += 1;
+        }
+    }
+    let mut conflicts = between_rows(register, &overruled);
+    conflicts.extend(register.iter().filter_map(|entry| against_map(network, &edges, entry)));
+    conflicts.sort_by_key(|conflict| conflict.entries[0]);
+    let counting = register.iter().flat_map(|entry| {
+        let lower_m = entry.row.lower_m();
+        let counting = entry.places.iter().filter(|place| place.1);
+        counting.filter_map(move |place| Some((entry.row.quantity, place.0, lower_m?)))
+    });
+    Decision { site: edges.site(counting), conflicts }
+}
+
+/// Of several measurements of one place, the one that counts.
+fn best<'p>(register: &[Entry], places: &'p [(usize, usize)]) -> Option<&'p (usize, usize)> {
+    let date = |place: &(usize, usize)| register[place.0].row.date.as_deref();
+    let latest = places.iter().filter_map(date).max();
+    // A row without a date may be the latest one.
+    let eligible = places.iter().filter(|place| date(place).is_none() || date(place) == latest);
+    let value = |place: &(usize, usize)| register[place.0].row.lower_m().unwrap_or(f64::INFINITY);
+    eligible.min_by(|a, b| value(a).total_cmp(&value(b)).then(register[a.0].no.cmp(&register[b.0].no)))
+}
+
+fn between_rows(register: &[Entry], overruled: &BTreeMap<(i64, i64), usize>) -> Vec<Conflict> {
+    let by_no: FxHashMap<i64, &Entry> = register.iter().map(|entry| (entry.no, entry)).collect();
+    let conflict = |(&(first, other), &places): (&(i64, i64), &usize)| {
+        let (a, b) = (by_no.get(&first)?, by_no.get(&other)?);
+        let later = match (&a.row.date, &b.row.date) {
+            (Some(a), Some(b)) if a > b => "it is later",
+            _ => "it is the lesser",
+        };
+        let what = format!(
+            "{} says {} and {} says {} for {}; {first} counts there, {later}",
+            a.label(),
+            a.says(),
+            b.label(),
+            b.says(),
+            counted(places, a.row.quantity),
+        );
+        Some(Conflict { entries: vec![first, other], what })
+    };
+    overruled.iter().filter_map(conflict).collect()
+}
+
+impl Entry {
+    /// How messages name it.
+    fn label(&self) -> String {
+        format!("{} ({}:{})", self.no, self.file, self.row.number)
+    }
+
+    /// Its quantity and what counts of it.
+    fn says(&self) -> String {
+        format!("{} {}", crate::words::Named::name(self.row.quantity), metres(self.row.lower_m().unwrap_or(0.0)))
+    }
+}
+
+fn metres(m: f64) -> String {
+    format!("{m:.2} m")
+}
+
+fn counted(places: usize, quantity: Quantity) -> String {
+    let kind = if quantity == Quantity::KerbRadius { "corner" } else { "directed edge" };
+    format!("{places} {kind}{}", if places == 1 { "" } else { "s" })
+}
+
+/// What of an entry that counts contradicts a width that somebody tagged.
+fn against_map(network: &Network, edges: &Edges<'_>, entry: &Entry) -> Option<Conflict> {
+    let policy = policy(entry.row.quantity)?;
+    let (mut places, mut least_m, mut most_m) = (0, f64::INFINITY, f64::NEG_INFINITY);
+    let lower_m = entry.row.lower_m()?;
+    for (target, _) in entry.places.iter().filter(|place| place.1) {
+        let Target::Edge(id) = *target else { continue };
+        let Some(strip) = edges.of_id(id).and_then(|edge| network.mapped_section(edge).strip(policy)) else { continue };
+        let tagged_m = f64::from(strip.width_m());
+        if strip.source >= WidthSource::Tagged && (tagged_m - lower_m).abs() >= 0.01 {
+            places += 1;
+            (least_m, most_m) = (least_m.min(tagged_m), most_m.max(tagged_m));
+        }
+    }
+    if places == 0 {
+        return None;
+    }
+    let tagged =
+        if most_m - least_m < 0.01 { metres(most_m) } else { format!("{} to {}", metres(least_m), metres(most_m)) };
+    let measured = match (lower_m < least_m, lower_m > most_m) {
+        (true, _) => "is less than the map's tagged",
+        (_, true) => "is more than the map's tagged",
+        _ => "differs from the map's tagged",
+    };
+    let what = format!(
+        "{}: {} {measured} {tagged} on {}; the measurement counts",
+        entry.label(),
+        entry.says(),
+        counted(places, entry.row.quantity),
+    );
+    Some(Conflict { entries: vec![entry.no], what })
+}
+
+/// The strip whose width a quantity is.
+fn policy(quantity: Quantity) -> Option<Policy> {
+    match quantity {
+        Quantity::CarriagewayWidth => Some(Policy::Carriageway),
+        Quantity::DirectionWidth => Some(Policy::Direction),
+        Quantity::LaneWidth => Some(Policy::Lane),
+        _ => None,
+    }
+}
+
+/// The edges of a network that measurements name.
+pub(crate) struct Edges<'n> {
+    network: &'n Network,
+    indices: FxHashMap<i64, u32>,
+}
+
+impl<'n> Edges<'n> {
+    pub(crate) fn of(network: &'n Network, targets: impl Iterator<Item = Target>) -> Self {
+        let mut named = FxHashSet::default();
+        for target in targets {
+            match target {
+                Target::Edge(id) => named.extend([id]),
+                Target::Corner { edges, .. } => named.extend(edges.into_iter().flatten()),
+                Target::Area(_) => {}
+            }
+        }
+        let indices = if named.is_empty() {
+            FxHashMap::default()
+        } else {
+            let known = (0_u32..).zip(&network.edges).filter(|(_, edge)| named.contains(&edge.id));
+            known.map(|(index, edge)| (edge.id, index)).collect()
+        };
+        Self { network, indices }
+    }
+
+    fn of_id(&self, id: i64) -> Option<&'n crate::network::Edge> {
+        self.network.edges.get(*self.indices.get(&id)? as usize)
+    }
+
+    /// `None` if the network does not have the place, or if surfaces are meant.
+    fn spot(&self, target: Target) -> Option<Spot> {
+        match target {
+            Target::Edge(id) => self.of_id(id).map(|edge| Spot::Edge(edge.id)),
+            Target::Corner { node, edges: None } => Some(Spot::Corner(node, None)),
+            Target::Corner { node, edges: Some([a, b]) } => {
+                Some(Spot::Corner(node, Some(pieces([self.of_id(a)?, self.of_id(b)?]))))
+            }
+            Target::Area(_) => None,
+        }
+    }
+
+    /// Whether the network has the place.
+    pub(crate) fn has(&self, target: Target) -> bool {
+        matches!(target, Target::Area(_)) || self.spot(target).is_some()
+    }
+
+    /// The site of measurements that count: at most one for each place and quantity.
+    pub(crate) fn site(&self, counting: impl Iterator<Item = (Quantity, Target, f64)>) -> Site {
+        let mut site = Site::default();
+        let mut widths_m: FxHashMap<i64, [Option<f64>; 3]> = FxHashMap::default();
+        for (quantity, target, lower_m) in counting {
+            match (policy(quantity), target) {
+                (Some(policy), Target::Edge(id)) => widths_m.entry(id).or_default()[policy as usize] = Some(lower_m),
+                (None, Target::Corner { node, edges }) => {
+                    let edges = edges.map(|pair| pair.map(|id| self.of_id(id)));
+                    match edges {
+                        None => site.set_kerb(node, None, lower_m),
+                        Some([Some(a), Some(b)]) => site.set_kerb(node, Some([a, b]), lower_m),
+                        Some(_) => {}
+                    }
+                }
+                _ => {}
+            }
+        }
+        for (id, widths_m) in widths_m {
+            let Some(edge) = self.of_id(id) else { continue };
+            let section = self.network.mapped_section(edge).with_widths(widths_m, WidthSource::Surveyed);
+            site.set_section(edge, section);
+        }
+        site
+    }
+}

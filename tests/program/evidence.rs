@@ -1,0 +1,340 @@
+//! The register of measurements: what is measured counts, what sees it is certified again and nothing else, removing it gives back the
+//! map, and a newer ingest keeps it.
+
+use std::collections::BTreeMap;
+
+use netcert::osm::LonLat;
+use netcert::osm::facts::{Policy, WidthSource};
+use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
+use netcert::rows::EdgeCertificate;
+use netcert::settings::Settings;
+use netcert::store::{Run, StoreError};
+use netcert::verdict::{UnknownReason, Verdict};
+use serde_json::Value;
+use sqlx::{AssertSqlSafe, Column as _, Connection as _, Row as _, SqliteConnection};
+
+use crate::support::program::Place;
+
+const VEHICLE: &str = "AU-SEMI19";
+/// What depends on measurements.
+const CERTIFICATES: [&str; 4] = ["certificate_compact", "plan", "turn_certificate_compact", "turn_plan"];
+const NETWORK: [&str; 6] = ["edge", "turn", "section", "road", "evidence", "evidence_place"];
+
+fn sql<T>(place: &Place, work: impl AsyncFnOnce(&mut SqliteConnection) -> T) -> T {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+    runtime.block_on(async {
+        let mut c = SqliteConnection::connect(place.path("demo.gpkg").to_str().unwrap()).await.unwrap();
+        let found = work(&mut c).await;
+        c.close().await.unwrap();
+        found
+    })
+}
+
+/// All rows of tables, byte for byte.
+fn rows_of<'t>(place: &Place, tables: &[&'t str]) -> BTreeMap<&'t str, Vec<String>> {
+    sql(place, async |c| {
+        let mut all = BTreeMap::new();
+        for &table in tables {
+            let head =
+                sqlx::query(AssertSqlSafe(format!("SELECT * FROM {table} LIMIT 1"))).fetch_optional(&mut *c).await;
+            let head =
+                head.unwrap().map(|row| row.columns().iter().map(|c| format!("quote(\"{}\")", c.name())).collect());
+            let columns: Vec<String> = head.unwrap_or_else(|| vec!["1".to_owned()]);
+            let statement = format!("SELECT {} AS line FROM {table} ORDER BY line", columns.join(" || ' ' || "));
+            let rows = sqlx::query(AssertSqlSafe(statement)).fetch_all(&mut *c).await.unwrap();
+            all.insert(table, rows.iter().map(|row| row.get::<String, _>(0)).collect());
+        }
+        all
+    })
+}
+
+fn ids(place: &Place, statement: &str) -> Vec<Vec<i64>> {
+    sql(place, async |c| {
+        let rows = sqlx::query(AssertSqlSafe(statement.to_owned())).fetch_all(c).await.unwrap();
+        rows.iter().map(|row| (0..row.len()).map(|column| row.get::<i64, _>(column)).collect()).collect()
+    })
+}
+
+fn edges_of(place: &Place) -> Vec<Value> {
+    let answer = place.netcert(&format!("query --vehicle {VEHICLE} --format json")).succeeds();
+    answer.json()["edges"].as_array().unwrap().clone()
+}
+
+/// The edges of the stroke of an edge.
+fn stroke_of(place: &Place, edge_id: i64) -> Vec<i64> {
+    let statement = format!(
+        "SELECT e.edge_id FROM stroke AS s JOIN stroke_edge AS p ON p.position > s.edge_start AND p.position <= s.edge_end \
+         JOIN edge AS e ON e.fid = p.fid WHERE s.stroke_no = (SELECT stroke_no FROM stroke JOIN stroke_edge \
+         ON position > edge_start AND position <= edge_end JOIN edge USING (fid) WHERE edge_id = {edge_id})"
+    );
+    ids(place, &statement).into_iter().flatten().collect()
+}
+
+#[test]
+fn the_width_that_is_needed_makes_an_edge_safe_and_removing_it_restores_the_map() {
+    let place = Place::with_demo();
+    let before = rows_of(&place, &[&CERTIFICATES[..], &NETWORK].concat());
+    let edges = edges_of(&place);
+    let needy: Vec<(i64, f64)> =
+        edges.iter().filter_map(|edge| Some((edge["edge_id"].as_i64()?, edge["need_width_m"].as_f64()?))).collect();
+    let width = |id: i64| edges.iter().find(|edge| edge["edge_id"] == id).unwrap()["width_m"].as_f64().unwrap();
+    let &(edge, need) = needy.iter().find(|(edge, _)| stroke_of(&place, *edge).len() > 2).unwrap();
+    let mut file = "quantity,value,sigma,edge_id,source\n".to_owned();
+    for id in stroke_of(&place, edge).into_iter().filter(|&id| width(id) < need) {
+        file += &format!("lane_width,{need},0,{id},tape measure\n");
+    }
+    let measured = file.lines().count() - 1;
+    let place = place.file("survey.csv", &file);
+    place
+        .netcert("evidence add survey.csv --dry-run")
+        .succeeds()
+        .shows("would be certified again")
+        .shows("dry run: nothing was changed");
+    assert_eq!(rows_of(&place, &[&CERTIFICATES[..], &NETWORK].concat()), before);
+    place
+        .netcert("evidence add survey.csv")
+        .succeeds()
+        .shows(&format!("{measured} measurement"))
+        .shows(&format!("widths of {measured} directed edge"))
+        .shows(&format!("{VEHICLE}, lane policy: "))
+        .shows("AU-ATRIPLE53, lane policy: ")
+        .shows("became safe");
+    let now = edges_of(&place).into_iter().find(|row| row["edge_id"] == edge).unwrap();
+    assert_eq!((&now["verdict"], &now["width_source"]), (&"safe".into(), &"surveyed".into()), "{now}");
+    let row = place.rows(VEHICLE).into_iter().find(|row| row.edge_id == edge).unwrap();
+    assert_eq!(row.width_source, Some(WidthSource::Surveyed));
+    place.netcert(&format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 150 --input {{demo}}")).succeeds();
+
+    let verify = format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 1");
+    for tampered in ["UPDATE evidence_place SET counts = 0 WHERE place_no = 1", "UPDATE evidence_place SET edge_id = 1"]
+    {
+        let other = Place::empty().file("demo.gpkg", place.read("demo.gpkg"));
+        assert!(other.sql(tampered) > 0);
+        other.netcert(&verify).fails();
+    }
+
+    place.netcert("evidence add survey.csv").succeeds().shows("not added again").shows("nothing changed");
+    let list = place.netcert("evidence list --format json").succeeds().json();
+    assert_eq!(list.as_array().unwrap().len(), measured);
+    assert!(list.as_array().unwrap().iter().all(|one| one["used"] == "counts" && one["state"] == "matched"));
+    place.netcert("evidence show 1").succeeds().shows("\"source\": \"tape measure\"");
+    place.netcert("evidence remove --all").succeeds().shows("no longer safe");
+    assert_eq!(rows_of(&place, &[&CERTIFICATES[..], &NETWORK].concat()), before);
+    assert!(place.netcert("evidence list").succeeds().out().is_empty());
+    // Numbers are not given twice.
+    place.netcert("evidence add survey.csv").succeeds();
+    place.netcert(&format!("evidence show {}", measured + 1)).succeeds();
+    place.netcert("evidence show 1").fails().tells("no measurement 1");
+}
+
+#[test]
+fn what_is_certified_again_is_what_certify_makes() {
+    let place = Place::with_wide_demo(VEHICLE);
+    let all = [&CERTIFICATES[..], &NETWORK].concat();
+    let before = rows_of(&place, &all);
+    let edges = ids(&place, "SELECT edge_id FROM edge ORDER BY fid");
+    let corners = ids(
+        &place,
+        "SELECT via_node, a.edge_id, b.edge_id FROM turn AS t JOIN edge AS a ON a.fid = from_fid \
+         JOIN edge AS b ON b.fid = to_fid WHERE first_arc_fid IS NULL ORDER BY t.fid",
+    );
+    let roads = ids(&place, "SELECT way_id FROM road WHERE roundabout ORDER BY road_no");
+    let mut file = "quantity,value,sigma,edge_id,way_id,junction,from_edge,to_edge,source,date\n".to_owned();
+    file += &format!("carriageway_width,7.1,0.1,{},,,,,tape,2026-01-02\n", edges[40][0]);
+    file += &format!("lane_width,2.9,0,{},,,,,tape,\n", edges[200][0]);
+    file += &format!("carriageway_width,9,0,,{},,,,tape,\n", roads[0][0]);
+    let [node, from, to] = corners[corners.len() / 2][..] else { panic!() };
+    file += &format!("kerb_radius,14,0.2,,,{node},{from},{to},tape,\n");
+    file += &format!("kerb_radius,9,0,,,{},,,tape,\n", corners[3][0]);
+    let place = place.file("survey.csv", &file);
+    place.netcert("evidence add survey.csv").succeeds().shows("5 measurements added: 5 matched");
+    assert_eq!(ids(&place, "SELECT count(*) FROM turn WHERE kerb_source = 'surveyed'").len(), 1);
+    let made = rows_of(&place, &all);
+    assert!(made["edge"] != before["edge"] && made["turn"] != before["turn"]);
+    assert_ne!(made["turn_certificate_compact"], before["turn_certificate_compact"]);
+    place.netcert(&format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 40")).succeeds();
+    let whole = Place::empty().file("demo.gpkg", place.read("demo.gpkg"));
+    whole.netcert("certify").succeeds();
+    assert_eq!(rows_of(&whole, &CERTIFICATES), rows_of(&place, &CERTIFICATES));
+
+    // A new database of the same extract takes the register over, and comes to the same.
+    whole.netcert(&format!("ingest {{demo}} --db demo.gpkg --vehicle {VEHICLE} --corridor carriageway")).succeeds();
+    let again = rows_of(&whole, &all);
+    assert!(all.iter().all(|table| again[table] == made[table]), "{:?}", all.iter().find(|t| again[*t] != made[*t]));
+
+    place.netcert("evidence remove 1 2 3 4 5").succeeds();
+    assert_eq!(rows_of(&place, &all), before);
+}
+
+/// A road of three ways, and another extract in which the last one is gone.
+fn drawn(place: Place) -> Place {
+    let node = |id: i64| NodeRecord {
+        id,
+        place: LonLat { lon_e7: 80_000_000 + 30_000 * id as i32, lat_e7: 490_000_000 },
+        tags: Vec::new(),
+    };
+    let way = |id: i64, width: &str| WayRecord {
+        id,
+        refs: vec![id, id + 1],
+        tags: [("highway", "secondary"), ("width", width)]
+            .map(|(key, value)| (key.to_owned(), value.to_owned()))
+            .to_vec(),
+    };
+    let nodes: Vec<NodeRecord> = (1..=4).map(node).collect();
+    let ways = [way(1, "7"), way(2, "7"), way(3, "7")];
+    let place = place.file("old.osm.pbf", write_extract(&nodes, &ways));
+    place.file("new.osm.pbf", write_extract(&nodes, &ways[..2]))
+}
+
+#[test]
+fn a_newer_ingest_keeps_the_register_and_says_what_is_matched_otherwise() {
+    let place = drawn(Place::empty());
+    place.netcert("ingest old.osm.pbf --db demo.gpkg --no-certify").succeeds();
+    let rows =
+        "quantity,value,way_id,source\ncarriageway_width,6.2,2,a\ncarriageway_width,6.4,3,b\nlane_width,3,77,c\n";
+    let place = place.file("survey.csv", rows);
+    place
+        .netcert("evidence add survey.csv")
+        .succeeds()
+        .shows("2 matched, 1 unmatched")
+        .shows("way 77 is no road of this network")
+        .shows("is less than the map's tagged 7.00 m");
+    let widths = |place: &Place| {
+        sql(place, async |c| {
+            let all = "SELECT DISTINCT way_id, carriageway_width_m FROM edge ORDER BY way_id";
+            let rows = sqlx::query_as::<_, (i64, f64)>(all).fetch_all(c).await.unwrap();
+            rows.into_iter().map(|(way, m)| (way, (m * 100.0).round() as i64)).collect::<Vec<_>>()
+        })
+    };
+    assert_eq!(widths(&place), [(1, 700), (2, 620), (3, 640)]);
+    place
+        .netcert("ingest new.osm.pbf --db demo.gpkg --no-certify")
+        .succeeds()
+        .tells("3 measurements taken over")
+        .tells("measurement 2 (survey.csv:3), carriageway_width: matched before, unmatched now");
+    assert_eq!(widths(&place), [(1, 700), (2, 620)]);
+    place
+        .netcert("ingest old.osm.pbf --db demo.gpkg --no-certify")
+        .succeeds()
+        .tells("unmatched before, now matched: edge");
+    assert_eq!(widths(&place), [(1, 700), (2, 620), (3, 640)]);
+    place.netcert("evidence list --state unmatched").succeeds().shows("way 77").tells("1 measurement");
+}
+
+#[test]
+fn of_two_measurements_the_later_counts_and_without_dates_the_lesser() {
+    let place = drawn(Place::empty());
+    place.netcert("ingest old.osm.pbf --db demo.gpkg --no-certify").succeeds();
+    let width = |way: i64| {
+        let statement =
+            format!("SELECT CAST(round(carriageway_width_m * 100) AS INTEGER) FROM edge WHERE way_id = {way}");
+        ids(&place, &statement)[0][0]
+    };
+    let add = |name: &str, rows: &str| {
+        std::fs::write(place.path(name), format!("quantity,value,way_id,source,date\n{rows}")).unwrap();
+        place.netcert(&format!("evidence add {name}")).succeeds()
+    };
+    add("a.csv", "carriageway_width,6.2,1,a,2026-01-01\ncarriageway_width,6.2,2,a,\n");
+    let told = add("b.csv", "carriageway_width,6.8,1,b,2026-02-01\ncarriageway_width,6.8,2,b,2026-02-01\n");
+    let _ = told
+        .shows("conflict: 3 (b.csv:2) says carriageway_width 6.80 m and 1 (a.csv:2) says carriageway_width 6.20 m")
+        .shows("3 counts there, it is later")
+        .shows("2 counts there, it is the lesser");
+    assert_eq!((width(1), width(2)), (680, 620));
+    place.netcert("evidence list").succeeds().shows("superseded");
+    place.netcert("evidence remove 3").succeeds();
+    assert_eq!((width(1), width(2)), (620, 620));
+    // Both in one file, and one of them twice.
+    let told = add("c.csv", "lane_width,3,3,c,\nlane_width,3.2,3,c,\nlane_width,3,3,c,\n");
+    let _ = told.shows("conflict: ").shows("row 4: the file has it twice").shows("2 measurements added");
+    // Limits, surfaces and vehicles are kept and change nothing, and netcert says so.
+    let told = add("d.csv", "max_height,3.8,3,d,\n").shows("kept, not used by certificates").out();
+    assert!(told.contains("widths of 0 directed edges"), "{told}");
+}
+
+#[test]
+fn a_faulty_file_changes_nothing_and_names_row_and_way_out() {
+    let place = drawn(Place::empty());
+    place.netcert("ingest old.osm.pbf --db demo.gpkg --no-certify").succeeds();
+    let before = place.read("demo.gpkg");
+    let refused = |name: &str, text: &str, said: &str| {
+        std::fs::write(place.path(name), text).unwrap();
+        place.netcert(&format!("evidence add {name}")).fails().tells(name).tells(said);
+        assert!(place.read("demo.gpkg") == before, "{name}");
+    };
+    let good = "lane_width,3,1,me";
+    refused(
+        "unit.csv",
+        &format!("quantity,value,way_id,source,unit\n{good},m\n{good},yard\n"),
+        "row 3: unit: `yard` is no unit",
+    );
+    refused(
+        "wide.csv",
+        &format!("quantity,value,way_id,source\n{good}\nlane_width,300,1,me\n"),
+        "row 3: value: 300 m is no width",
+    );
+    refused("column.csv", "quantity,value,way_id,source,colour\nlane_width,3,1,me,red\n", "unknown column `colour`");
+    refused("place.csv", "quantity,value,source\nlane_width,3,me\n", "no place; give `way_id`");
+    refused("empty.csv", "quantity,value,way_id,source\n", "has no rows");
+    place.netcert("evidence add missing.csv").fails().tells("missing.csv");
+    // An edge that no longer exists is no fault of the file: it is kept and said.
+    std::fs::write(place.path("gone.csv"), "quantity,value,edge_id,way_id,source\nlane_width,3,99,1,me\n").unwrap();
+    place
+        .netcert("evidence add gone.csv --matched-only")
+        .succeeds()
+        .shows("edge 99 does not exist; way 1 has today")
+        .shows("1 measurement left out")
+        .shows("nothing changed");
+    assert!(place.read("demo.gpkg") == before);
+    place.netcert("evidence remove 4").fails().tells("measurement 4 is not in the register, so nothing was removed");
+    place.netcert("evidence remove").ends_as_misuse();
+    assert!(place.read("demo.gpkg") == before);
+}
+
+#[test]
+fn a_change_that_fails_at_its_end_leaves_everything_as_it_was() {
+    let place = drawn(Place::empty());
+    place.netcert("ingest old.osm.pbf --db demo.gpkg --vehicle EU-SEMI16.5").succeeds();
+    let all = [&CERTIFICATES[..], &NETWORK].concat();
+    place.sql("CREATE TRIGGER fails BEFORE INSERT ON run BEGIN SELECT raise(ABORT, 'no room'); END");
+    let before = rows_of(&place, &all);
+    let place = place.file("survey.csv", "quantity,value,way_id,source\ncarriageway_width,5,2,a\n");
+    place.netcert("evidence add survey.csv").fails().tells("no room");
+    assert_eq!(rows_of(&place, &all), before);
+    assert_eq!(ids(&place, "SELECT count(*) FROM sqlite_schema WHERE type = 'trigger' AND tbl_name = 'edge'"), [[6]]);
+    place.sql("DROP TRIGGER fails");
+    place.netcert("evidence add survey.csv").succeeds();
+    assert_eq!(ids(&place, "SELECT count(*) FROM sqlite_schema WHERE type = 'trigger' AND tbl_name = 'edge'"), [[6]]);
+}
+
+#[test]
+fn certificates_of_a_register_that_changed_meanwhile_are_not_stored() {
+    let place = drawn(Place::empty());
+    place.netcert("ingest old.osm.pbf --db demo.gpkg --no-certify").succeeds();
+    let mut database = netcert::store::Database::open_to_change(&place.path("demo.gpkg")).unwrap();
+    let edges = database.load_network().unwrap().edges.len() as u32;
+    let place = place.file("survey.csv", "quantity,value,way_id,source\ncarriageway_width,5,2,a\n");
+    place.netcert("evidence add survey.csv").succeeds();
+    let run = Run {
+        command: "certify".into(),
+        input_name: "demo.gpkg".into(),
+        input_blake3: None,
+        replication_timestamp: None,
+        netcert_version: "0".into(),
+        started: "2026-11-23T08:00:00.000Z".into(),
+        finished: "2026-11-23T08:00:01.000Z".into(),
+        parameters: "{}".into(),
+    };
+    let vehicle = netcert::pipeline::record(&crate::support::catalogue::catalogued(VEHICLE)).unwrap();
+    let settings = Settings { policy: Policy::Lane, ..database.settings_of_new_sets().unwrap() };
+    let mut replace = || {
+        let certificates =
+            (0..edges).map(|edge| EdgeCertificate::bare(edge, Verdict::Unknown(UnknownReason::Geometry)));
+        database.replace_certificates(&vehicle, &settings, certificates, Vec::new(), None, &run, &[])
+    };
+    assert!(matches!(replace(), Err(StoreError::RegisterChanged(_))));
+    assert!(place.database().certified().unwrap().is_empty());
+    database.load_network().unwrap();
+    let certificates = (0..edges).map(|edge| EdgeCertificate::bare(edge, Verdict::Unknown(UnknownReason::Geometry)));
+    database.replace_certificates(&vehicle, &settings, certificates, Vec::new(), None, &run, &[]).unwrap();
+}
