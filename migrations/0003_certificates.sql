@@ -108,9 +108,9 @@ SELECT
     c.limiting_s_m,
     c.limiting_unit,
     c.limiting_side,
-    c.need_width_m,
     w.verdict,
     w.reason,
+    c.need_width_m,
     c.fid AS edge_fid,
     c.vehicle_no,
     c.corridor_no

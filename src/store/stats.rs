@@ -72,12 +72,12 @@ fn stats_row(row: &sqlx::sqlite::SqliteRow) -> Sql<StatsRow> {
 
 /// Counts edges that are `unsafe: width` by how much more width would do.
 async fn needs(c: &mut SqliteConnection) -> Sql<Vec<NeedCount>> {
-    let steps: String = NeedCount::STEPS_M.iter().map(|m| format!("WHEN more_m <= {m} THEN {m} ")).collect();
+    let steps: String = NeedCount::STEPS_M.iter().map(|m| format!("WHEN more_m <= {m:?} THEN {m:?} ")).collect();
     let last = NeedCount::STEPS_M[NeedCount::STEPS_M.len() - 1];
     // A need below the edge's own width means that a narrower neighbour decides.
     let sql = format!(
         "SELECT vehicle_id, corridor, step_m, edges, length_m FROM ( \
-         SELECT vehicle_no, corridor_no, CASE WHEN more_m IS NULL THEN NULL {steps} ELSE {last} END AS step_m, \
+         SELECT vehicle_no, corridor_no, CASE WHEN more_m IS NULL THEN NULL {steps} ELSE {last:?} END AS step_m, \
          count(*) AS edges, total(length_m) AS length_m FROM ( \
          SELECT c.vehicle_no, c.corridor_no, b.length_m, round(c.need_cm / 100.0 - CASE c.corridor_no \
          WHEN 0 THEN b.width_0 WHEN 1 THEN b.width_1 ELSE b.width_2 END, 4) AS more_m \
