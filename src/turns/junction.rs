@@ -8,7 +8,7 @@ use super::area::Ground;
 use super::arm::{Arm, StrokeLine};
 use super::arms::{Arms, MEET_M};
 use super::crossing::{parts, passed};
-use super::surface::surface;
+use super::surface::{beside_the_map, surface};
 use crate::corridor::Frame;
 use crate::network::{Movement, Network};
 use crate::osm::facts::Policy;
@@ -60,7 +60,10 @@ impl Junction {
             policy,
             left_hand_traffic: from.left_hand_traffic,
             kerb_radius_m: params.own_kerb_m.unwrap_or_else(|| params.kerbs.at(network, node, own)),
-            crossing: crossing(network, movement, lines, frame, params, surface.as_ref()),
+            crossing: crossing(network, movement, lines, frame, params, surface.as_ref())
+                .into_iter()
+                .chain(beside_the_map(network, node, frame))
+                .collect(),
             surface,
         })
     }

@@ -102,7 +102,7 @@ impl Reach {
     }
 
     /// Length before the path that counts, metres: the vehicle's rear is still there when its front turns.
-    const fn counted_before_m(self) -> f64 {
+    pub(crate) const fn counted_before_m(self) -> f64 {
         match self {
             Self::Short => 20.0,
             Self::Long => 60.0,
@@ -127,7 +127,7 @@ impl Reach {
 
     /// Length after the path that counts, metres. At its end a vehicle is almost straight: articulation angles fall by
     /// a factor of e over a unit's length.
-    const fn counted_after_m(self) -> f64 {
+    pub(crate) const fn counted_after_m(self) -> f64 {
         match self {
             Self::Short => 45.0,
             Self::Long => 100.0,

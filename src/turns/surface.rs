@@ -7,6 +7,7 @@ use geo::{BooleanOps, MultiPolygon, Polygon, unary_union};
 
 use crate::corridor::Frame;
 use crate::network::{Area, Network, Road};
+use crate::osm::LonLat;
 use crate::osm::facts::AreaKind;
 
 /// Whether the corners at a node between two roads are mapped.
@@ -25,6 +26,12 @@ pub(super) fn surface(network: &Network, node: i64, roads: [&Road; 2], frame: Fr
     let islands = areas.iter().flat_map(|area| network.areas.islands(area));
     let islands: Vec<Polygon> = islands.map(polygon).collect::<Option<_>>()?;
     (!roads.is_empty()).then(|| unary_union(&roads).difference(&unary_union(&islands)))
+}
+
+/// What is paved at a node beside the map, in a metric frame. It counts beside the strips and kerb returns of the roads.
+pub(super) fn beside_the_map(network: &Network, node: i64, frame: Frame) -> Vec<Polygon> {
+    let polygon = |ring: &Vec<LonLat>| Some(super::area::polygon(&frame.forward(ring).ok()?));
+    network.site.surfaces(node).iter().filter_map(polygon).collect()
 }
 
 fn surfaces<'a>(network: &'a Network, node: i64, roads: [&'a Road; 2]) -> impl Iterator<Item = &'a Area> {
