@@ -14,6 +14,7 @@ mod register;
 mod row;
 mod shape;
 mod stored;
+mod surface;
 #[cfg(test)]
 mod tests;
 mod values;
@@ -25,3 +26,4 @@ pub(crate) use register::Edges;
 pub use register::{Conflict, Decision, Entry, State, Target, Usage, decide, entries, match_again, without_doubles};
 pub use row::{Along, Place, Quantity, Row, Value};
 pub(crate) use stored::{Columns, parts};
+pub(crate) use surface::{Counted, surface};

@@ -9,6 +9,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::matching::{Match, match_rows};
 use super::row::{Quantity, Row};
+use super::surface::Counted;
 use crate::network::{Network, Pieces, Site, pieces};
 use crate::osm::facts::{Policy, WidthSource};
 
@@ -83,7 +84,12 @@ impl Entry {
     fn unused(&self) -> Option<&'static str> {
         match self.row.quantity {
             Quantity::MaxHeight | Quantity::MaxWeight => Some("kept, not used by certificates: the map's limits count"),
-            Quantity::Surface | Quantity::DrivableBy => Some("kept, not used by certificates yet"),
+            Quantity::DrivableBy => Some("kept, not used by certificates yet"),
+            Quantity::Surface => self
+                .row
+                .counted()
+                .is_none()
+                .then_some("kept, not used by certificates: it has holes, or its uncertainty leaves nothing of it"),
             Quantity::KerbRadius => None,
             _ => self
                 .row
@@ -189,6 +195,7 @@ pub struct Decision {
 enum Spot {
     Edge(i64),
     Corner(i64, Option<Pieces>),
+    Area(i64),
 }
 
 /// Decides which entries count, and marks them.
@@ -217,9 +224,9 @@ pub fn decide(network: &Network, register: &mut [Entry]) -> Decision {
     conflicts.extend(register.iter().filter_map(|entry| against_map(network, &edges, entry)));
     conflicts.sort_by_key(|conflict| conflict.entries[0]);
     let counting = register.iter().flat_map(|entry| {
-        let lower_m = entry.row.lower_m();
+        let counted = entry.row.counted();
         let counting = entry.places.iter().filter(|place| place.1);
-        counting.filter_map(move |place| Some((entry.row.quantity, place.0, lower_m?)))
+        counting.filter_map(move |place| Some((entry.row.quantity, place.0, counted.clone()?)))
     });
     Decision { site: edges.site(counting), conflicts }
 }
@@ -348,7 +355,7 @@ impl<'n> Edges<'n> {
         self.network.edges.get(*self.indices.get(&id)? as usize)
     }
 
-    /// `None` if the network does not have the place, or if surfaces are meant.
+    /// `None` if the network does not have the place.
     fn spot(&self, target: Target) -> Option<Spot> {
         match target {
             Target::Edge(id) => self.of_id(id).map(|edge| Spot::Edge(edge.id)),
@@ -356,20 +363,29 @@ impl<'n> Edges<'n> {
             Target::Corner { node, edges: Some([a, b]) } => {
                 Some(Spot::Corner(node, Some(pieces([self.of_id(a)?, self.of_id(b)?]))))
             }
-            Target::Area(_) => None,
+            Target::Area(node) => Some(Spot::Area(node)),
         }
     }
 
     /// Whether the network has the place.
     pub(crate) fn has(&self, target: Target) -> bool {
-        matches!(target, Target::Area(_)) || self.spot(target).is_some()
+        self.spot(target).is_some()
     }
 
     /// The site of measurements that count: at most one for each place and quantity.
-    pub(crate) fn site(&self, counting: impl Iterator<Item = (Quantity, Target, f64)>) -> Site {
+    pub(crate) fn site(&self, counting: impl Iterator<Item = (Quantity, Target, Counted)>) -> Site {
         let mut site = Site::default();
         let mut widths_m: FxHashMap<i64, [Option<f64>; 3]> = FxHashMap::default();
-        for (quantity, target, lower_m) in counting {
+        for (quantity, target, counted) in counting {
+            let lower_m = match counted {
+                Counted::Metres(lower_m) => lower_m,
+                Counted::Surface(rings) => {
+                    if let Target::Area(node) = target {
+                        rings.into_iter().for_each(|ring| site.add_surface(node, ring));
+                    }
+                    continue;
+                }
+            };
             match (policy(quantity), target) {
                 (Some(policy), Target::Edge(id)) => widths_m.entry(id).or_default()[policy as usize] = Some(lower_m),
                 (None, Target::Corner { node, edges }) => {

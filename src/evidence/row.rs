@@ -119,7 +119,7 @@ pub struct Row {
 }
 
 /// 95 % of a normal distribution lie above its mean less so many standard deviations.
-const ONE_SIDED_95: f64 = 1.64;
+pub(super) const ONE_SIDED_95: f64 = 1.64;
 
 impl Row {
     /// What counts, metres: value − 1.64 σ (95 %, one-sided) but at least 0 for metres that help, the value as it is for a

@@ -57,7 +57,10 @@ impl Bounds {
     }
 }
 
-/// The value of a row and its standard uncertainty.
+/// The greatest standard uncertainty of a surface's outline, metres.
+const MOST_OUTLINE_M: f64 = 20.0;
+
+/// The value of a row and its standard uncertainty. That of a surface is in metres, of its outline.
 pub(super) fn value(cells: &mut Cells, quantity: Quantity) -> Option<(Value, f64)> {
     if quantity != Quantity::DrivableBy {
         cells.refuse_all(&[Column::Vehicle], "belongs to `drivable_by`; leave it empty here");
@@ -66,9 +69,18 @@ pub(super) fn value(cells: &mut Cells, quantity: Quantity) -> Option<(Value, f64
         Some(bounds) => measured(cells, quantity, &bounds),
         None => {
             let what = format!("`{}` takes none; leave it empty", quantity.name());
-            cells.refuse_all(&[Column::Value, Column::Unit, Column::Sigma], &what);
-            let value = if quantity == Quantity::Surface { surface(cells) } else { vehicle(cells) };
-            value.map(|value| (value, 0.0))
+            cells.refuse_all(&[Column::Value, Column::Unit], &what);
+            if quantity == Quantity::Surface {
+                let (value, sigma) = (surface(cells), uncertainty(cells));
+                let (value, sigma) = (value?, sigma?);
+                if sigma > MOST_OUTLINE_M {
+                    let what = format!("{sigma} m is no uncertainty of an outline; give at most {MOST_OUTLINE_M} m");
+                    return cells.refuse(Column::Sigma, what);
+                }
+                return Some((value, sigma));
+            }
+            cells.refuse_all(&[Column::Sigma], &what);
+            vehicle(cells).map(|value| (value, 0.0))
         }
     }
 }

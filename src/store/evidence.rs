@@ -3,7 +3,7 @@
 use sqlx::Row as _;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 
-use crate::evidence::{Columns, Edges, Entry, Quantity, Row, State, Target, parts};
+use crate::evidence::{Columns, Counted, Edges, Entry, Quantity, Row, State, Target, Value, parts, surface};
 use crate::network::{Network, Site};
 use crate::rows::Bounds;
 use crate::words::Named;
@@ -119,14 +119,29 @@ fn target(row: &SqliteRow, first: usize) -> Sql<Target> {
     }
 }
 
+/// What counts of a surface whose outline is known to `sigma` metres.
+fn measured_surface(geom: Option<Vec<u8>>, sigma: f64) -> Option<Counted> {
+    let columns = Columns { geom, ..Columns::default() };
+    match parts(Quantity::Surface, &columns).ok()?.0 {
+        Value::Polygon(rings) => surface(&rings, sigma).map(Counted::Surface),
+        _ => None,
+    }
+}
+
 /// What certificates see of the register.
 pub(super) async fn site(c: &mut SqliteConnection, network: &Network) -> Sql<Site> {
-    let sql = "SELECT edge_id, node, from_edge, to_edge, lower, quantity, evidence_no FROM evidence_place \
-               JOIN (SELECT evidence_no, lower, quantity FROM evidence) USING (evidence_no) WHERE counts ORDER BY place_no";
+    let sql = "SELECT edge_id, node, from_edge, to_edge, lower, quantity, evidence_no, sigma, geom FROM evidence_place \
+               JOIN (SELECT evidence_no, lower, quantity, sigma, geom FROM evidence) USING (evidence_no) WHERE counts \
+               ORDER BY place_no";
     let counting = rows(c, sql, |row| {
         let (lower_m, no): (Option<f64>, i64) = (row.try_get(4)?, row.try_get(6)?);
-        let lower_m = lower_m.ok_or_else(|| content(format!("measurement {no} counts and has no value")))?;
-        Ok((word::<Quantity>(row, 5)?, target(row, 0)?, lower_m))
+        let quantity: Quantity = word(row, 5)?;
+        let counted = match quantity {
+            Quantity::Surface => measured_surface(row.try_get(8)?, row.try_get(7)?),
+            _ => lower_m.map(Counted::Metres),
+        };
+        let counted = counted.ok_or_else(|| content(format!("measurement {no} counts and has no value")))?;
+        Ok((quantity, target(row, 0)?, counted))
     })
     .await?;
     if counting.is_empty() {

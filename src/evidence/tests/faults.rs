@@ -124,6 +124,14 @@ fn the_other_columns_are_checked_too() {
         "vehicle: belongs to `drivable_by`; leave it empty here",
     );
     check("quantity,value,edge_id,vehicle", "drivable_by,,1,", "vehicle: is empty; give the id of the vehicle");
+    check("quantity,sigma,edge_id,vehicle", "drivable_by,3,1,X", "sigma: `drivable_by` takes none; leave it empty");
+    let square = "POLYGON ((8 49, 8.001 49, 8.001 49.001, 8 49))";
+    check(
+        "quantity,sigma,geometry",
+        &format!("surface,30,\"{square}\""),
+        "sigma: 30 m is no uncertainty of an outline",
+    );
+    check("quantity,sigma,geometry", &format!("surface,-1,\"{square}\""), "sigma: -1 is negative");
     check("quantity,value,edge_id,vehicle", "drivable_by,3,1,X", "value: `drivable_by` takes none; leave it empty");
     let text = refusal(read_csv("quantity,value,edge_id,source\nlane_width,3,1, \n"));
     assert!(text.starts_with("rows.csv:row 2: source: is empty; say who measured it"), "{text}");
