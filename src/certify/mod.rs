@@ -7,7 +7,7 @@ mod touched;
 mod turns;
 
 pub use least::least_that_does;
-pub use needs::{LineOf, MOST_KERB_M, TurnCase};
+pub use needs::{KERBS_M, LineOf, MOST_KERB_M, TurnCase, edge_need, least_of};
 pub(crate) use strokes::verdict;
 pub use strokes::{Job, certify_network, certify_strokes};
 pub use touched::Touched;

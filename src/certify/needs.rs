@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::strokes::Job;
 use super::turns::fits;
-use crate::corridor::stroke_corridor_on;
+use crate::corridor::{stroke_corridor, stroke_corridor_on};
 use crate::network::{Network, Stroke};
 use crate::osm::facts::Policy;
 use crate::rows::TurnNeed;
@@ -25,7 +25,7 @@ const CLOSE_M: f64 = 0.05;
 /// How many widths of a stroke are tried for one vehicle.
 const ROUNDS: usize = 12;
 /// The kerb radii that are tried, metres.
-const KERBS_M: [f64; 14] = [2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 14.0, 16.0, 20.0, MOST_KERB_M];
+pub const KERBS_M: [f64; 14] = [2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 14.0, 16.0, 20.0, MOST_KERB_M];
 /// The greatest one.
 pub const MOST_KERB_M: f64 = 25.0;
 /// Widths of both arms at a junction are tried in these parts of a metre, and how many of them.
@@ -109,6 +109,22 @@ pub(super) fn edge_needs(job: &Job<'_>, stroke: &Stroke, model: &Model, narrow: 
         }
     }
     searches.into_iter().map(|search| Some(search?.does? as f64 / WIDTHS)).collect()
+}
+
+/// The least width in metres with which an edge that lacks room would be safe, if its stroke were nowhere narrower. `None` if the edge
+/// does not lack room, or no width up to 8 m more would do.
+#[must_use]
+pub fn edge_need(network: &Network, edge: u32, model: &Model, settings: &Settings) -> Option<f64> {
+    let of = |stroke: &Stroke| &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize];
+    let stroke = network.strokes.iter().find(|stroke| of(stroke).contains(&edge))?;
+    let made = stroke_corridor(network, stroke, settings.policy, &settings.corridor).ok()?;
+    let span = made.spans.iter().find(|span| span.edge == edge && span.unknown.is_none())?;
+    let rows = certify_spans(&made.corridor, &[model], std::slice::from_ref(&span.stations), &settings.stet);
+    let result = rows.first()?.spans.first()?;
+    let at = result.limiting.station.min(made.corridor.len() - 1);
+    let width_m = made.corridor.left_m[at] + made.corridor.right_m[at];
+    let job = Job { network, models: std::slice::from_ref(model), settings };
+    edge_needs(&job, stroke, model, &[Narrow { edge, result, width_m }]).pop().flatten()
 }
 
 /// The results of a stroke that is nowhere narrower than a width, by edge. Edges without a corridor there are left out.
@@ -202,7 +218,8 @@ impl TurnCase<'_> {
 }
 
 /// The least of some growing numbers that does, if the greatest does.
-fn least_of(numbers: &[f64], does: impl Fn(&f64) -> bool) -> Option<f64> {
+#[must_use]
+pub fn least_of(numbers: &[f64], mut does: impl FnMut(&f64) -> bool) -> Option<f64> {
     let (mut high, mut low) = (numbers.len().checked_sub(1)?, None);
     if !does(&numbers[high]) {
         return None;

@@ -177,7 +177,7 @@ pub fn assemble(
 }
 
 /// The movement from one edge into the next, or over the arcs between them.
-fn movement(movements: &Movements, from: u32, arcs: &[u32], to: u32) -> Option<Movement> {
+pub(super) fn movement(movements: &Movements, from: u32, arcs: &[u32], to: u32) -> Option<Movement> {
     if arcs.is_empty() {
         return movements.between(from, to).copied();
     }

@@ -17,8 +17,10 @@
 //! | `pieces` | strokes and turns, the pieces of a corridor |
 //! | `turning` | turns that are made when a route needs them |
 //! | `assemble`, `blend` | one corridor from pieces |
+//! | `whole` | the certificate of a whole way, and where it fails |
 //! | `plan` | searches, certifies, leaves out what failed, and searches again; alternatives |
 //! | `obstacles` | what blocks a route |
+//! | `conditions` | a route that is certified if widths and radii are as it says |
 //! | `report` | an answer as JSON and GeoJSON |
 //! | `relative` | an answer beside a reference vehicle |
 //! | `reach` | what can be reached from a place, and back |
@@ -26,6 +28,7 @@
 mod assemble;
 mod bans;
 mod blend;
+mod conditions;
 mod drive;
 mod driver;
 mod graph;
@@ -43,9 +46,11 @@ mod snap;
 mod speeds;
 mod stored;
 mod turning;
+mod whole;
 
 pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble, passes_over};
 pub use bans::{Bans, Within};
+pub use conditions::{Condition, ConditionAt, Conditional, Hopeless, SHEET_COLUMNS};
 pub use drive::{Drive, Join};
 pub use driver::Driver;
 pub use graph::{Access, BARRED, Graph};
@@ -55,7 +60,7 @@ pub use pieces::{Menu, NoTurns, Strokes, TurnPiece, Turns};
 pub use plan::{Answer, Planner, Question, Route, Unanswered};
 pub use reach::{Components, Reach, components, reach, with_edge};
 pub use relative::{Comparison, Peer, Standings};
-pub use report::{PartResult, geojson, json, obstacle_members, place, title};
+pub use report::{CONDITIONAL, PartResult, condition_members, geojson, json, obstacle_members, place, title};
 pub use roads::Roads;
 pub use search::{Found, Goal, Start, search, search_over};
 pub use snap::{Position, SnapError, Snapped, Snapper};

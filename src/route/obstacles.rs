@@ -11,7 +11,7 @@ use crate::network::Movements;
 
 /// The price of a missing centimetre. It exceeds the cost of any way on earth (40,000 km are 2³⁶ millimetres; in milliseconds
 /// 2³⁶ are two years), and the prices of 100,000 of the dearest places can be added without overflow.
-const CENTIMETRE: u64 = 1 << 36;
+pub(super) const CENTIMETRE: u64 = 1 << 36;
 /// The cost of a place by itself, centimetres.
 const PLACE: f64 = 100.0;
 /// The missing width to assume if there is no number, centimetres: no width or line is known, or no width would help.

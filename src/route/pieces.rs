@@ -59,6 +59,12 @@ impl Menu {
         Self { turns, made: FxHashMap::default(), choice: FxHashMap::default() }
     }
 
+    /// Forgets turns of which this holds, by the edges before and after them.
+    pub(super) fn forget(&mut self, changed: impl Fn(u32, u32) -> bool) {
+        self.made.retain(|&(from, to), _| !changed(from, to));
+        self.choice.clear();
+    }
+
     /// Resets every turn to its best path.
     pub fn begin(&mut self) {
         self.choice.clear();
@@ -141,6 +147,12 @@ impl Strokes {
 
     pub(super) fn network(&self) -> &Network {
         &self.roads.network
+    }
+
+    /// Goes on with roads that differ from the earlier ones by their site. The lines of these strokes are made again.
+    pub(super) fn go_on_with(&mut self, roads: &Arc<Roads>, changed: impl Fn(u32) -> bool) {
+        self.roads = Arc::clone(roads);
+        self.made.retain(|&stroke, _| !changed(stroke));
     }
 
     /// The settings of the strokes' corridors and of everything that is made from them.

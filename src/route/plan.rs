@@ -7,26 +7,23 @@
 
 use std::sync::Arc;
 
-use super::assemble::{AssemblyError, PartKind, RoutePath, Way, assemble};
+use super::assemble::{AssemblyError, PartKind, RoutePath, Way};
+use super::conditions::Conditional;
 use super::drive::{Drive, Join};
 use super::driver::Driver;
 use super::graph::{Access, BARRED, Graph};
 use super::obstacles::{self, Obstacle, Refutation};
-use super::pieces::{Menu, Strokes, Turns};
+use super::pieces::Turns;
 use super::roads::Roads;
 use super::search::{Found, Goal, Start, search_over};
 use super::snap::{Position, SnapError, Snapped, Snapper};
 use super::speeds::{Measure, Speeds};
 use super::turning::MadeTurns;
-use crate::corridor::Corridor;
+use super::whole::{Certified, Whole};
 use crate::network::{MovementKind, Network};
-use crate::stet::{self, Certificate};
+use crate::stet::Certificate;
 use crate::stop::{Stop, Stopped};
 
-/// A failure of the whole route is attributed to the nearest turn within this distance, metres, else to the edge at the place.
-const TURN_REACH_M: f64 = 120.0;
-/// The greatest number of combinations of paths that are joined for one way.
-const MOST_STRUNG: usize = 100;
 /// The greatest share of its length that an alternative may have in common with an earlier route.
 const MOST_SHARED: f64 = 0.75;
 /// The greatest ratio of an alternative's cost to that of the first route.
@@ -81,6 +78,8 @@ pub struct Answer {
     pub gave_up: bool,
     /// If there is no route, the set of failing places of least cost. `None` if there is a route, or if no roads lead there.
     pub obstacles: Option<Vec<Obstacle>>,
+    /// A route that is certified only under conditions, if one was asked for and there is no other.
+    pub conditional: Option<Conditional>,
     /// The requested places, moved to the road.
     pub snapped: Vec<Snapped>,
 }
@@ -98,14 +97,13 @@ pub enum Unanswered {
 
 /// Answers questions about one vehicle. It keeps the corridors that it has made, so later questions are answered faster.
 pub struct Planner {
-    graph: Graph,
-    snapper: Snapper,
-    driver: Arc<Driver>,
-    menu: Menu,
-    strokes: Strokes,
+    pub(super) graph: Graph,
+    pub(super) snapper: Snapper,
+    pub(super) driver: Arc<Driver>,
+    whole: Whole,
     speeds: Speeds,
     access: Access,
-    stop: Stop,
+    pub(super) stop: Stop,
 }
 
 impl Planner {
@@ -113,7 +111,7 @@ impl Planner {
     /// driver's permits.
     #[must_use]
     pub fn new(roads: &Arc<Roads>, driver: Arc<Driver>, speeds: Speeds, measure: Measure) -> Self {
-        let turns = Box::new(MadeTurns { driver: Arc::clone(&driver) });
+        let turns = Box::new(MadeTurns::new(Arc::clone(&driver)));
         Self::with_turns(roads, driver, speeds, measure, turns)
     }
 
@@ -130,8 +128,7 @@ impl Planner {
             graph: Graph::new(roads, &speeds, measure),
             snapper: Snapper::new(roads),
             access: driver.permits.access(&roads.movements),
-            strokes: Strokes::new(roads, driver.permits.settings.clone()),
-            menu: Menu::new(turns),
+            whole: Whole::new(roads, Arc::clone(&driver), turns),
             driver,
             speeds,
             stop: Stop::default(),
@@ -163,7 +160,6 @@ impl Planner {
         let snapped = question.places.iter().map(snap).collect::<Result<Vec<_>, _>>()?;
         let mut answer = Answer { snapped, ..Answer::default() };
         let mut access = self.access.clone();
-        self.menu.begin();
         self.next_route(&mut access, question, &mut answer, &|_| true)?;
         if answer.routes.is_empty() {
             answer.obstacles = self.obstacles(&answer)?;
@@ -173,7 +169,8 @@ impl Planner {
         Ok(answer)
     }
 
-    fn way(&self, access: &Access, snapped: &[Snapped]) -> Result<Option<(Found, f64, f64)>, Stopped> {
+    /// The way of least cost over the places, with the shares of its first and last edge.
+    pub(super) fn way(&self, access: &Access, snapped: &[Snapped]) -> Result<Option<(Found, f64, f64)>, Stopped> {
         let Some((from, places)) = snapped.split_first() else { return Ok(None) };
         let starts: Vec<Start> = from.on.iter().map(|on| Start::new(on.edge, on.share)).collect();
         let goals: Vec<Vec<Goal>> = places.iter().map(|place| place.on.clone()).collect();
@@ -224,8 +221,7 @@ impl Planner {
         }
     }
 
-    /// Certifies a way. Each turn starts on its best path. Returns the route, if one passed, and the failures before it: failed
-    /// certificates, and after the last path the pieces that could not be joined.
+    /// Certifies a way. Returns the route, if one passed, and the failures before it.
     fn on_any_paths(
         &mut self,
         found: &Found,
@@ -233,60 +229,18 @@ impl Planner {
         end: f64,
         tries: usize,
     ) -> Result<(Option<Route>, Vec<Refutation>), Stopped> {
-        self.menu.begin();
-        let mut failed: Vec<Refutation> = Vec::new();
-        for strung in 1.. {
-            let refutation = match self.certify(found, start, end)? {
-                Ok(route) => return Ok((Some(route), failed)),
-                Err(refutation) => refutation,
-            };
-            let turn = |at| if let PartKind::Turn { from, to } = at { Some((from, to)) } else { None };
-            let another = match (&refutation.assembly, turn(refutation.at)) {
-                (Some(AssemblyError::Overlap { before, at }), _) => {
-                    turn(*before).zip(turn(*at)).is_some_and(|(before, at)| self.menu.another_pair(before, at))
-                }
-                (_, Some((from, to))) => self.menu.another(from, to),
-                (_, None) => false,
-            };
-            let goes_on = another && strung < MOST_STRUNG && failed.len() < tries;
-            if refutation.assembly.is_none() || !goes_on {
-                failed.push(refutation);
-            }
-            if !goes_on {
-                break;
-            }
-        }
-        Ok((None, failed))
+        let way = Way { drive: &found.drive, start, end };
+        let (certified, failed) = self.whole.on_any_paths(&way, tries, &self.stop)?;
+        Ok((certified.map(|certified| self.route(found, (start, end), certified)), failed))
     }
 
-    fn certify(&mut self, found: &Found, start: f64, end: f64) -> Result<Result<Route, Refutation>, Stopped> {
-        let path = match self.assembled(found, start, end) {
-            Ok(path) => path,
-            Err(AssemblyError::Stopped(stopped)) => return Err(stopped),
-            Err(error) => return Ok(Err(unassembled(error, &found.drive))),
-        };
-        let certificate =
-            stet::certify(&path.corridor, &self.driver.model, &self.driver.permits.settings.stet, &self.stop)?;
-        let refuted = |certificate: Option<&Certificate>| Refutation {
-            at: culprit(&path, certificate),
-            result: certificate.and_then(|c| c.result.rsc_m.zip(c.result.hinge_margin_rad)),
-            assembly: None,
-            left_out: false,
-        };
-        let Some(certificate) = certificate else { return Ok(Err(refuted(None))) };
-        if !certificate.result.safe() {
-            return Ok(Err(refuted(Some(&certificate))));
-        }
+    /// The route on a way that was certified.
+    pub(super) fn route(&self, found: &Found, (start, end): (f64, f64), certified: Certified) -> Route {
+        let Certified { path, certificate } = certified;
         let time_s = self.time_s(&found.drive, start, end);
         let length_m = (path.corridor.len() - 1) as f64 * path.corridor.spacing_m;
         let (drive, cost, vehicle_length_m) = (found.drive.clone(), found.cost, self.driver.model.vehicle.length_m);
-        Ok(Ok(Route { drive, start, end, cost, time_s, length_m, vehicle_length_m, path, certificate }))
-    }
-
-    fn assembled(&mut self, found: &Found, start: f64, end: f64) -> Result<RoutePath, AssemblyError> {
-        let way = Way { drive: &found.drive, start, end };
-        let network = self.graph.network();
-        assemble(network, self.graph.movements(), &mut self.strokes, &mut self.menu, &way, &self.stop)
+        Route { drive, start, end, cost, time_s, length_m, vehicle_length_m, path, certificate }
     }
 
     /// The driving time by the table of speeds, seconds.
@@ -382,43 +336,4 @@ fn turns(graph: &Graph, drive: &Drive) -> u64 {
 fn nearest(failed: &mut [Refutation]) -> Option<&mut Refutation> {
     let rsc_m = |refutation: &Refutation| refutation.result.map_or(f64::NEG_INFINITY, |result| result.0);
     failed.iter_mut().max_by(|a, b| rsc_m(a).total_cmp(&rsc_m(b)))
-}
-
-/// The refutation of a way whose pieces could not be joined.
-fn unassembled(error: AssemblyError, drive: &Drive) -> Refutation {
-    let at = match &error {
-        AssemblyError::Unknown { at, .. }
-        | AssemblyError::Overlap { at, .. }
-        | AssemblyError::Centreline { at, .. } => *at,
-        AssemblyError::Frame(_) | AssemblyError::Stopped(_) => first_turn(drive),
-    };
-    Refutation { at, result: None, assembly: Some(error), left_out: false }
-}
-
-fn first_turn(drive: &Drive) -> PartKind {
-    let first = drive.joins().next().map(|join| PartKind::Turn { from: join.from, to: join.to });
-    first.unwrap_or(PartKind::Edge(drive.edges.first().copied().unwrap_or_default()))
-}
-
-/// What to leave out when a whole route fails: the turn nearest to the failing place, or the edge at the place.
-fn culprit(path: &RoutePath, certificate: Option<&Certificate>) -> PartKind {
-    let corridor = &path.corridor;
-    let at = match certificate {
-        Some(c) if c.result.too_narrow() => c.result.limiting.station,
-        // The place of a hinge's failure is not known, so the sharpest bend is taken.
-        _ => sharpest(corridor),
-    };
-    let distance = |stations: &std::ops::Range<usize>| {
-        if stations.contains(&at) { 0 } else { stations.start.abs_diff(at).min(stations.end.abs_diff(at)) }
-    };
-    let turns = path.parts.iter().filter(|part| matches!(part.kind, PartKind::Turn { .. }));
-    let nearest = turns.min_by_key(|part| distance(&part.stations));
-    let near = nearest.filter(|part| distance(&part.stations) as f64 * corridor.spacing_m <= TURN_REACH_M);
-    let on = || path.parts.iter().find(|part| part.stations.contains(&at)).or(path.parts.first());
-    near.or_else(on).map_or(PartKind::Edge(0), |part| part.kind)
-}
-
-fn sharpest(corridor: &Corridor) -> usize {
-    let bend = |k: &usize| corridor.curvature.get(*k).map_or(0.0, |c| c.abs());
-    (0..corridor.len()).max_by(|a, b| bend(a).total_cmp(&bend(b))).unwrap_or(0)
 }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use serde_json::{Value, json};
 
 use super::assemble::{PartKind, passes_over};
+use super::conditions::Conditional;
 use super::obstacles::{Obstacle, Refutation};
 use super::plan::{Answer, Route};
 use crate::corridor::FrameError;
@@ -12,6 +13,9 @@ use crate::network::{Edge, Network, PassageKind};
 use crate::osm::rounded;
 use crate::stet::{Model, known_m};
 use crate::words::{Named, verdict_words};
+
+/// The verdict of a route that is certified only under conditions. It is no verdict of a certificate by itself.
+pub const CONDITIONAL: &str = "conditional";
 
 /// A stretch of a route with its least leeway.
 #[derive(Debug, Clone, PartialEq)]
@@ -170,20 +174,61 @@ fn refutation_members(network: &Network, refutation: &Refutation) -> Value {
     with(ids(network, refutation.at), own)
 }
 
-/// The whole answer without geometry.
+/// The numbers of a route's certificate. Under conditions the verdict is not `safe`.
+fn certificate_members(route: &Route, conditions: &[Value]) -> Value {
+    let result = &route.certificate.result;
+    let (verdict, _) = verdict_words(result.verdict());
+    json!({
+        "verdict": if conditions.is_empty() { verdict } else { CONDITIONAL },
+        "rsc_m": result.rsc_m,
+        "hinge_margin_deg": result.hinge_margin_rad.map(f64::to_degrees),
+        "shrink": result.shrink,
+    })
+}
+
+/// The members of a route's conditions.
+#[must_use]
+pub fn condition_members(network: &Network, conditional: &Conditional) -> Vec<Value> {
+    (1..).zip(&conditional.conditions).map(|(number, condition)| condition.members(network, number)).collect()
+}
+
+/// The members of a route that is certified under conditions. `safe` is false.
+fn conditional_members(network: &Network, model: &Model, conditional: &Conditional) -> Value {
+    let route = &conditional.route;
+    let conditions = condition_members(network, conditional);
+    let own = json!({
+        "safe": false,
+        "certificate": certificate_members(route, &conditions),
+        "conditions": conditions,
+    });
+    with(route_members(network, model, route), own)
+}
+
+/// The whole answer without geometry. `rsc_m`, `certificate` and `conditions` are those of the first route, or of the conditional one.
 #[must_use]
 pub fn json(network: &Network, model: &Model, answer: &Answer) -> Value {
+    let parts =
+        |route: &Route| -> Vec<Value> { route.parts().iter().map(|part| part_members(network, part)).collect() };
     let route = |route: &Route| {
-        let parts: Vec<Value> = route.parts().iter().map(|part| part_members(network, part)).collect();
-        with(route_members(network, model, route), json!({"parts": parts}))
+        let own = json!({"certificate": certificate_members(route, &[]), "conditions": [], "parts": parts(route)});
+        with(route_members(network, model, route), own)
     };
+    let conditional = answer.conditional.as_ref().map(|conditional| {
+        with(conditional_members(network, model, conditional), json!({"parts": parts(&conditional.route)}))
+    });
+    let best = answer.routes.first().map(route).or_else(|| conditional.clone()).unwrap_or_default();
+    let of_best = |name: &str| best.get(name).cloned();
     let snapped = answer
         .snapped
         .iter()
         .map(|s| json!({"position": [s.position.lon, s.position.lat], "distance_m": s.distance_m}));
     json!({
         "vehicle_id": model.vehicle.id,
+        "rsc_m": of_best("rsc_m"),
+        "certificate": of_best("certificate"),
+        "conditions": of_best("conditions").unwrap_or_else(|| json!([])),
         "routes": answer.routes.iter().map(route).collect::<Vec<_>>(),
+        "conditional": conditional,
         "places": snapped.collect::<Vec<_>>(),
         "refuted": answer.refuted.iter().map(|r| refutation_members(network, r)).collect::<Vec<_>>(),
         "gave_up": answer.gave_up,
@@ -197,7 +242,12 @@ pub fn json(network: &Network, model: &Model, answer: &Answer) -> Value {
 /// Positions cannot be converted from a route's frame.
 pub fn geojson(network: &Network, model: &Model, answer: &Answer) -> Result<Value, FrameError> {
     let mut features = Vec::new();
-    for (number, route) in answer.routes.iter().enumerate() {
+    let certified = answer.routes.iter().map(|route| (route, json!({"kind": "route", "conditions": []})));
+    let conditional = answer.conditional.as_ref().map(|conditional| {
+        let kind = json!({"kind": "conditional_route"});
+        (&conditional.route, with(conditional_members(network, model, conditional), kind))
+    });
+    for (number, (route, own)) in certified.chain(conditional).enumerate() {
         let c = &route.path.corridor;
         let metres: Vec<[f64; 2]> = c.x.iter().zip(&c.y).map(|(&x, &y)| [x, y]).collect();
         let line: Vec<[f64; 2]> = route.path.frame.inverse(&metres)?.into_iter().map(rounded).collect();
@@ -209,7 +259,7 @@ pub fn geojson(network: &Network, model: &Model, answer: &Answer) -> Result<Valu
                 "properties": with(json!({"route": number + 1, "vehicle_id": model.vehicle.id}), properties),
             })
         };
-        let whole = with(json!({"kind": "route"}), route_members(network, model, route));
+        let whole = with(route_members(network, model, route), own);
         features.push(feature(0..line.len(), whole));
         for (part, result) in route.path.parts.iter().zip(route.parts()) {
             // A line must have at least two positions.
@@ -217,6 +267,14 @@ pub fn geojson(network: &Network, model: &Model, answer: &Answer) -> Result<Valu
             let start = part.stations.start.min(end.saturating_sub(2));
             features.push(feature(start..end, part_members(network, &result)));
         }
+    }
+    for condition in answer.conditional.iter().flat_map(|conditional| condition_members(network, conditional)) {
+        let of = json!({"vehicle_id": model.vehicle.id, "feature": "condition"});
+        features.push(json!({
+            "type": "Feature",
+            "geometry": {"type": "Point", "coordinates": condition.get("place")},
+            "properties": with(of, condition),
+        }));
     }
     for obstacle in answer.obstacles.iter().flatten() {
         features.push(json!({

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::network::{Movements, Network};
 
 /// A network and its movements. Planners of one region share them.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Roads {
     /// Edges, roads and strokes.
     pub network: Network,

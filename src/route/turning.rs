@@ -10,7 +10,7 @@ use crate::stet::{Options, SpanResult, certify_spans};
 use crate::turns::{Planner, Reach, TurnCorridors, TurnPath, turn_on};
 use crate::verdict::UnknownReason;
 
-/// Number of simple paths of a turn that are tried beside the path of its permit. Those with the most room are tried.
+/// The usual number of simple paths of a turn.
 const MORE: usize = 5;
 
 /// Turns that are made when a route needs them, with the settings of its strokes.
@@ -18,6 +18,16 @@ const MORE: usize = 5;
 pub struct MadeTurns {
     /// The vehicle that takes the turns.
     pub driver: Arc<Driver>,
+    /// Number of simple paths of a turn that are tried beside the path of its permit. Those with the most room are tried.
+    pub more: usize,
+}
+
+impl MadeTurns {
+    /// Turns with the usual number of paths.
+    #[must_use]
+    pub fn new(driver: Arc<Driver>) -> Self {
+        Self { driver, more: MORE }
+    }
 }
 
 impl Turns for MadeTurns {
@@ -32,7 +42,7 @@ impl Turns for MadeTurns {
         let known = best_of(&made, &[&self.driver.model], options).pop().flatten();
         let known = known.filter(|(_, result)| result.safe());
         let code = known.as_ref().map(|(path, _)| path.code);
-        let others = Planner::new(&made).best_seeds(&self.driver.model.vehicle, MORE);
+        let others = Planner::new(&made).best_seeds(&self.driver.model.vehicle, self.more);
         let others = others.into_iter().filter(|other| Some(other.code) != code).filter_map(|other| {
             let path = made.path(other.code)?;
             let result = self.safe(&path, options)?;

@@ -128,7 +128,7 @@ impl Region {
     }
 
     pub(crate) fn turns(driver: &Driver) -> MadeTurns {
-        MadeTurns { driver: Arc::clone(&driver.0) }
+        MadeTurns::new(Arc::clone(&driver.0))
     }
 
     pub(crate) fn planner(&self, driver: &Driver, measure: Measure) -> Planner {

@@ -83,7 +83,7 @@ fn a_route_that_is_told_to_stop_asks_for_no_further_turn() {
     let (_place, mut database, network, model, settings) = wide();
     let (roads, driver) = on_the_road(&mut database, network, &model, &settings);
     let pairs = round_corners(&mut database, settings.policy);
-    let inner = MadeTurns { driver: Arc::clone(&driver) };
+    let inner = MadeTurns::new(Arc::clone(&driver));
     let speeds = Speeds::builtin().unwrap();
     let mut stopped = 0;
     for places in pairs.into_iter().take(12) {

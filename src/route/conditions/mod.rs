@@ -1,0 +1,83 @@
+//! Routes under conditions: where no route is certified outright, the way with the fewest and smallest conditions.
+//!
+//! A condition is a width or a kerb radius that somebody can measure on site. The route has one certificate over the whole, made on
+//! a network on which every condition holds. Without its conditions the route is not safe, and nothing here says that they hold.
+
+mod fit;
+mod report;
+mod search;
+mod suppositions;
+mod turn_need;
+
+pub use report::SHEET_COLUMNS;
+pub use search::Hopeless;
+
+use super::plan::Route;
+use super::snap::Snapped;
+use crate::evidence::Quantity;
+use crate::network::Network;
+use crate::osm::facts::Policy;
+
+/// A route that is certified if all conditions hold.
+#[derive(Debug, Clone)]
+pub struct Conditional {
+    /// The route. Its certificate is safe on a network on which the conditions hold.
+    pub route: Route,
+    /// The conditions in driving order; at least one.
+    pub conditions: Vec<Condition>,
+    /// The requested places, moved to the road.
+    pub snapped: Vec<Snapped>,
+}
+
+/// Something that has to be so on site.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Condition {
+    /// What has to be measured: a width, a kerb radius or a paved surface.
+    pub quantity: Quantity,
+    /// Where.
+    pub at: ConditionAt,
+    /// The least value as the map or an assumption has it, metres. `None` for a surface.
+    pub assumed_m: Option<f64>,
+    /// The value that it must have at least, metres.
+    pub needed_m: f64,
+}
+
+/// The place of a condition.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum ConditionAt {
+    /// Along edges that follow each other, in driving order.
+    Road(Vec<u32>),
+    /// At the corner between an edge that ends and one that begins at a node.
+    Corner {
+        /// OSM node id.
+        node: i64,
+        /// The two edges.
+        between: [u32; 2],
+    },
+    /// Around an OSM node: everything is paved, without kerbs and islands, up to the needed distance from it.
+    Junction(i64),
+}
+
+impl Condition {
+    /// Length of the road of the condition, metres; 0 for a corner.
+    #[must_use]
+    pub fn length_m(&self, network: &Network) -> f64 {
+        match &self.at {
+            ConditionAt::Road(edges) => edges
+                .iter()
+                .filter_map(|&edge| network.edges.get(edge as usize))
+                .map(|edge| network.length_m(edge))
+                .sum(),
+            ConditionAt::Corner { .. } | ConditionAt::Junction(_) => 0.0,
+        }
+    }
+}
+
+/// The quantity that is the width for a policy.
+const fn width_of(policy: Policy) -> Quantity {
+    match policy {
+        Policy::Lane => Quantity::LaneWidth,
+        Policy::Direction => Quantity::DirectionWidth,
+        Policy::Carriageway => Quantity::CarriagewayWidth,
+    }
+}

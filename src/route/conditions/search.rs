@@ -1,0 +1,142 @@
+//! The search for the way with the fewest and smallest conditions.
+
+use super::Conditional;
+use super::fit::{Fitted, Fitter, Unfit};
+use crate::network::{MovementKind, Network};
+use crate::route::assemble::{PartKind, Way};
+use crate::route::graph::{Access, BARRED};
+use crate::route::obstacles::{self, CENTIMETRE, Refutation};
+use crate::route::permits::Permit;
+use crate::route::plan::{Planner, Question, Unanswered};
+use crate::stop::Stop;
+use crate::verdict::{UnsafeReason, Verdict};
+
+/// How many ways are tried at most. Places for which nothing does are left out of the next one.
+const WAYS: usize = 20;
+/// The price of a turn by itself, and of an edge by itself and for each metre of it, in centimetres of missing room. A kilometre to
+/// measure costs as much as a turn.
+const TURN_CM: f64 = 100.0;
+const EDGE_CM: f64 = 20.0;
+const EDGE_CM_PER_M: f64 = 0.1;
+/// What a turn may lack whose certificate has no number, because the road before or after it lacks room, centimetres.
+const NO_NUMBER_CM: f64 = 50.0;
+/// What a turn may lack that a hinge or the steering lock stops, centimetres.
+const HINGE_CM: f64 = 300.0;
+/// The greatest missing width that counts, centimetres.
+const MOST_MISSING_CM: f64 = 2000.0;
+
+/// No route, not even under conditions.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Hopeless {
+    /// Places on the ways that were tried for which no width, kerb radius or paving does.
+    pub places: Vec<PartKind>,
+    /// Whether the search stopped before all ways were tried.
+    pub gave_up: bool,
+}
+
+impl Planner {
+    /// The way with the fewest and smallest conditions, certified as a whole on a network on which they hold. `refuted` are the ways
+    /// that failed as a whole without conditions.
+    ///
+    /// # Errors
+    /// A place is near no road that the vehicle may lawfully use, or `stop` was told.
+    pub fn under_conditions(
+        &mut self,
+        question: &Question,
+        refuted: &[Refutation],
+        stop: &Stop,
+    ) -> Result<Result<Conditional, Hopeless>, Unanswered> {
+        self.stop = stop.clone();
+        let mut access = self.conditional_access(refuted);
+        let open = |edge: u32| access.edges.get(edge as usize).is_some_and(|&price| price != BARRED);
+        let snap = |place| self.snapper.snap(place, question.snap_m, open);
+        let snapped = question.places.iter().map(|&place| snap(place)).collect::<Result<Vec<_>, _>>()?;
+        let mut fitter = Fitter::new(self.graph.roads(), &self.driver);
+        let mut hopeless = Hopeless::default();
+        for _ in 0..WAYS {
+            let Some((found, start, end)) = self.way(&access, &snapped)? else { return Ok(Err(hopeless)) };
+            let way = Way { drive: &found.drive, start, end };
+            match fitter.fit(&way, &access, stop)? {
+                Ok(Fitted { certified, supposed }) => {
+                    let kerbs = &self.driver.permits.settings.kerbs;
+                    let conditions = supposed.conditions(self.network(), kerbs, &found.drive.edges);
+                    let route = self.route(&found, (start, end), certified);
+                    return Ok(Ok(Conditional { route, conditions, snapped }));
+                }
+                Err(Unfit(places)) => {
+                    let mut barred = false;
+                    for at in places {
+                        let slot = obstacles::slot(&mut access, self.graph.movements(), at);
+                        barred |= slot.is_some_and(|slot| std::mem::replace(slot, BARRED) != BARRED);
+                        hopeless.places.push(at);
+                    }
+                    // If nothing can be left out, the next search would find the same way.
+                    if !barred {
+                        break;
+                    }
+                }
+            }
+        }
+        hopeless.gave_up = true;
+        Ok(Err(hopeless))
+    }
+
+    /// The access to what is safe, and at a price to what room would make safe.
+    fn conditional_access(&self, refuted: &[Refutation]) -> Access {
+        let (network, movements, permits) = (self.network(), self.graph.movements(), &self.driver.permits);
+        let mut access =
+            Access {
+                edges: (0_u32..).zip(&permits.edges).map(|(edge, permit)| edge_price(network, edge, permit)).collect(),
+                movements: movements
+                    .all()
+                    .iter()
+                    .zip(&permits.movements)
+                    .map(|(m, permit)| {
+                        if m.forbidden.is_some() || m.kind == MovementKind::UTurn { BARRED } else { turn_price(permit) }
+                    })
+                    .collect(),
+                passages: movements
+                    .passages()
+                    .iter()
+                    .zip(&permits.passages)
+                    .map(|(p, permit)| if p.forbidden.is_some() { BARRED } else { turn_price(permit) })
+                    .collect(),
+            };
+        for refutation in refuted.iter().filter(|refutation| refutation.left_out) {
+            if let Some(slot) = obstacles::slot(&mut access, movements, refutation.at).filter(|slot| **slot == 0) {
+                let missing_m = refutation.result.map(|(rsc_m, _)| (-rsc_m).max(0.0));
+                *slot = price(TURN_CM + missing_m.map_or(MOST_MISSING_CM, |missing_m| 100.0 * missing_m));
+            }
+        }
+        access
+    }
+}
+
+fn price(cm: f64) -> u64 {
+    CENTIMETRE * cm.clamp(1.0, TURN_CM + MOST_MISSING_CM) as u64
+}
+
+/// The price of an edge: a measure of what has to be measured there, and of how much is missing.
+fn edge_price(network: &Network, edge: u32, permit: &Permit) -> u64 {
+    match (permit.verdict, permit.rsc_m) {
+        (Verdict::Safe, _) => 0,
+        (Verdict::Unsafe(UnsafeReason::Width), Some(rsc_m)) if rsc_m.is_finite() => {
+            let length_m = network.edges.get(edge as usize).map_or(0.0, |edge| network.length_m(edge));
+            price(EDGE_CM + EDGE_CM_PER_M * length_m + 200.0 * (-rsc_m).max(0.0))
+        }
+        _ => BARRED,
+    }
+}
+
+/// The price of a turn or passage.
+fn turn_price(permit: &Permit) -> u64 {
+    match (permit.verdict, permit.rsc_m) {
+        (Verdict::Safe, _) => 0,
+        (Verdict::Unsafe(UnsafeReason::Width), missing) => {
+            let missing_cm = missing.filter(|rsc_m| rsc_m.is_finite()).map(|rsc_m| 100.0 * (-rsc_m).max(0.0));
+            price(TURN_CM + missing_cm.unwrap_or(NO_NUMBER_CM))
+        }
+        (Verdict::Unsafe(UnsafeReason::Articulation | UnsafeReason::SteeringLock), _) => price(TURN_CM + HINGE_CM),
+        _ => BARRED,
+    }
+}

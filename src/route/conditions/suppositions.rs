@@ -1,0 +1,223 @@
+//! Widths and kerb radii that are supposed along a way, and the conditions that they are.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use rustc_hash::FxHashSet;
+
+use super::{Condition, ConditionAt, width_of};
+use crate::evidence::Quantity;
+use crate::network::{self, Network};
+use crate::osm::LonLat;
+use crate::osm::facts::Policy;
+use crate::turns::Kerbs;
+
+/// Widths are supposed in these parts of a metre, and kerb radii in these.
+const WIDTHS: f64 = 20.0;
+const RADII: f64 = 2.0;
+
+/// What is supposed. Every value is a whole number of its parts.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Suppositions {
+    /// What is known of places anyway.
+    base: Arc<network::Site>,
+    /// By edge and strip, metres.
+    widths_m: BTreeMap<(u32, Policy), f64>,
+    /// By node, edge that ends and edge that begins there, metres.
+    kerbs_m: BTreeMap<(i64, [u32; 2]), f64>,
+    /// By node: the position of the node, and how far around it everything is paved, metres.
+    paved_m: BTreeMap<i64, (LonLat, f64)>,
+}
+
+impl Suppositions {
+    /// Nothing is supposed beyond what is known.
+    pub(super) fn new(base: Arc<network::Site>) -> Self {
+        Self { base, widths_m: BTreeMap::new(), kerbs_m: BTreeMap::new(), paved_m: BTreeMap::new() }
+    }
+
+    /// Supposes that an edge's strip is at least so wide. Returns whether that is more than before.
+    pub(super) fn widen(&mut self, network: &Network, edge: u32, strip: Policy, width_m: f64) -> bool {
+        let width_m = (width_m * WIDTHS - 1e-6).ceil() / WIDTHS;
+        if self.width_m(network, edge, strip).is_none_or(|has_m| has_m >= width_m) {
+            return false;
+        }
+        self.widths_m.insert((edge, strip), width_m);
+        true
+    }
+
+    /// The width of an edge's strip under the suppositions, metres. `None` if it is not known at all.
+    pub(super) fn width_m(&self, network: &Network, edge: u32, strip: Policy) -> Option<f64> {
+        let supposed_m = self.widths_m.get(&(edge, strip)).copied();
+        supposed_m.or_else(|| self.known_width_m(network, edge, strip))
+    }
+
+    /// Supposes that a corner has at least this radius.
+    pub(super) fn round(&mut self, node: i64, between: [u32; 2], radius_m: f64) {
+        let radius_m = (radius_m * RADII - 1e-6).ceil() / RADII;
+        let known_m = self.kerbs_m.entry((node, between)).or_insert(radius_m);
+        *known_m = known_m.max(radius_m);
+    }
+
+    /// Supposes that everything is paved up to this distance from a node.
+    pub(super) fn pave(&mut self, node: i64, at: LonLat, radius_m: f64) {
+        let paved = self.paved_m.entry(node).or_insert((at, radius_m));
+        paved.1 = paved.1.max(radius_m);
+    }
+
+    /// How far around a node everything is supposed to be paved, metres.
+    pub(super) fn paved_m(&self, node: i64) -> Option<f64> {
+        self.paved_m.get(&node).map(|paved| paved.1)
+    }
+
+    /// The radius supposed for a corner, metres.
+    pub(super) fn radius_m(&self, node: i64, between: [u32; 2]) -> Option<f64> {
+        self.kerbs_m.get(&(node, between)).copied()
+    }
+
+    /// The width of an edge's strip without the suppositions, metres.
+    pub(super) fn known_width_m(&self, network: &Network, edge: u32, strip: Policy) -> Option<f64> {
+        let edge = network.edges.get(edge as usize)?;
+        let section = self.base.section(edge).unwrap_or_else(|| network.mapped_section(edge));
+        Some(f64::from(section.strip(strip)?.width_m()))
+    }
+
+    /// Makes everything supposed hold on a network.
+    pub(super) fn apply(&self, network: &mut Network) {
+        network.site = self.site(network);
+    }
+
+    fn site(&self, network: &Network) -> network::Site {
+        let mut site = network::Site::clone(&self.base);
+        for (&(edge, strip), &width_m) in &self.widths_m {
+            let Some(edge) = network.edges.get(edge as usize) else { continue };
+            let section = site.section(edge).unwrap_or_else(|| network.mapped_section(edge));
+            site.set_section(edge, section.at_least(strip, width_m));
+        }
+        for (&(node, [from, to]), &radius_m) in &self.kerbs_m {
+            if let (Some(from), Some(to)) = (network.edges.get(from as usize), network.edges.get(to as usize)) {
+                site.set_kerb(node, Some([from, to]), radius_m);
+            }
+        }
+        for (&node, &(at, radius_m)) in &self.paved_m {
+            site.add_surface(node, disc(at, radius_m));
+        }
+        site
+    }
+
+    /// What is supposed here and not in `less`.
+    pub(super) fn beyond(&self, less: &Self) -> Self {
+        let mut own = self.clone();
+        own.widths_m.retain(|key, value| less.widths_m.get(key) != Some(value));
+        own.kerbs_m.retain(|key, value| less.kerbs_m.get(key) != Some(value));
+        own.paved_m.retain(|key, value| less.paved_m.get(key) != Some(value));
+        own
+    }
+
+    /// Supposes what others suppose, too. The greater value counts.
+    pub(super) fn add(&mut self, other: &Self) {
+        for (&key, &m) in &other.widths_m {
+            let known_m = self.widths_m.entry(key).or_insert(m);
+            *known_m = known_m.max(m);
+        }
+        for (&(node, between), &m) in &other.kerbs_m {
+            self.round(node, between, m);
+        }
+        for (&node, &(at, m)) in &other.paved_m {
+            self.pave(node, at, m);
+        }
+    }
+
+    /// The edges and nodes at which these suppositions differ from others.
+    pub(super) fn differ(&self, other: &Self) -> (FxHashSet<u32>, FxHashSet<i64>) {
+        let edges = differing(&self.widths_m, &other.widths_m).map(|(edge, _)| edge).collect();
+        let corners = differing(&self.kerbs_m, &other.kerbs_m).map(|(node, _)| node);
+        (edges, corners.chain(differing(&self.paved_m, &other.paved_m)).collect())
+    }
+
+    /// The conditions in the order of a way, on a network on which nothing is supposed. Edges that follow each other on one road and need the same are one condition.
+    pub(super) fn conditions(&self, network: &Network, kerbs: &Kerbs, way: &[u32]) -> Vec<Condition> {
+        let mut found: Vec<(usize, Condition)> = Vec::new();
+        for (i, edge) in way.iter().enumerate() {
+            for (&(_, strip), &needed_m) in self.widths_m.range((*edge, Policy::Lane)..=(*edge, Policy::Carriageway)) {
+                let Some(assumed_m) = self.known_width_m(network, *edge, strip) else { continue };
+                let quantity = width_of(strip);
+                let goes_on = |(_, condition): &&mut (usize, Condition)| {
+                    let ConditionAt::Road(edges) = &condition.at else { return false };
+                    condition.quantity == quantity
+                        && condition.needed_m == needed_m
+                        && i > 0
+                        && edges.last() == way.get(i - 1)
+                        && same_road(network, way[i - 1], *edge)
+                };
+                match found.iter_mut().rev().find(goes_on) {
+                    Some((_, condition)) => {
+                        condition.assumed_m = condition.assumed_m.map(|known_m| known_m.min(assumed_m));
+                        if let ConditionAt::Road(edges) = &mut condition.at {
+                            edges.push(*edge);
+                        }
+                    }
+                    None => {
+                        found.push((
+                            i,
+                            Condition {
+                                quantity,
+                                at: ConditionAt::Road(vec![*edge]),
+                                assumed_m: Some(assumed_m),
+                                needed_m,
+                            },
+                        ));
+                    }
+                }
+            }
+        }
+        for (&(node, between), &needed_m) in &self.kerbs_m {
+            let edges = between.map(|edge| network.edges.get(edge as usize));
+            let [Some(from), Some(to)] = edges else { continue };
+            let assumed_m = kerbs.at(network, node, [from, to]);
+            let place = way.iter().position(|edge| between.contains(edge)).unwrap_or(way.len());
+            let at = ConditionAt::Corner { node, between };
+            found.push((place, Condition { quantity: Quantity::KerbRadius, at, assumed_m: Some(assumed_m), needed_m }));
+        }
+        for (&node, &(_, needed_m)) in &self.paved_m {
+            let meets = |edge: &u32| network.edges.get(*edge as usize).is_some_and(|edge| edge.to_node == node);
+            let place = way.iter().position(meets).unwrap_or(way.len());
+            let at = ConditionAt::Junction(node);
+            found.push((place, Condition { quantity: Quantity::Surface, at, assumed_m: None, needed_m }));
+        }
+        found.sort_by_key(|(place, _)| *place);
+        found.into_iter().map(|(_, condition)| condition).collect()
+    }
+}
+
+/// The keys whose values differ, or that only one of both has.
+fn differing<K: Copy + Ord, V: PartialEq>(a: &BTreeMap<K, V>, b: &BTreeMap<K, V>) -> impl Iterator<Item = K> {
+    let of_a = a.iter().filter(|(key, value)| b.get(*key) != Some(*value)).map(|(key, _)| *key);
+    let of_b = b.keys().filter(|key| !a.contains_key(*key)).copied();
+    of_a.chain(of_b)
+}
+
+/// A closed polygon within a circle around a position.
+pub(super) fn disc(at: LonLat, radius_m: f64) -> Vec<LonLat> {
+    const CORNERS: u32 = 48;
+    /// A degree of latitude is nowhere shorter, metres. The sphere that it belongs to makes no circle too large by a hundredth.
+    const DEGREE_M: f64 = 110_574.0;
+    const WITHIN: f64 = 0.985;
+    let (lon, lat) = at.degrees();
+    let corner = |k: u32| {
+        let (sin, cos) = (f64::from(k % CORNERS) / f64::from(CORNERS) * std::f64::consts::TAU).sin_cos();
+        let degrees = WITHIN * radius_m / (1.01 * DEGREE_M);
+        let east = degrees * cos / lat.to_radians().cos().max(0.01);
+        let e7 = |degrees: f64| (degrees * 1e7).round() as i32;
+        LonLat { lon_e7: e7(lon + east), lat_e7: e7(lat + degrees * sin) }
+    };
+    (0..=CORNERS).map(corner).collect()
+}
+
+/// Whether two edges have the same name, or lie on the same way.
+fn same_road(network: &Network, a: u32, b: u32) -> bool {
+    let road = |edge: u32| network.edges.get(edge as usize).map(|edge| network.road(edge));
+    road(a).zip(road(b)).is_some_and(|(a, b)| {
+        a.way_id == b.way_id
+            || ((a.name.is_some() || a.reference.is_some()) && (a.name, a.reference) == (b.name, b.reference))
+    })
+}
