@@ -47,6 +47,27 @@ pub fn text(
     Ok(sealed(&json(given, model, certificate, options)?))
 }
 
+/// The text of a certificate file of a corridor that is as `conditions` say. Its verdict is `conditional` instead of `safe`.
+///
+/// # Errors
+/// See [`CertificateError`].
+pub fn text_under(
+    conditions: Vec<Value>,
+    given: &FileCorridor,
+    model: &Model,
+    certificate: &Certificate,
+    options: &Options,
+) -> Result<String, CertificateError> {
+    let mut document = json(given, model, certificate, options)?;
+    if !conditions.is_empty() && certificate.result.safe() {
+        document["verdict"] = json!("conditional");
+        document["reason"] = json!("conditions");
+        document["safe"] = json!(false);
+    }
+    document["conditions"] = Value::Array(conditions);
+    Ok(sealed(&document))
+}
+
 /// All members of the certificate except the seal.
 ///
 /// # Errors

@@ -22,6 +22,8 @@ pub(super) struct Document {
     pub(super) verdict: String,
     pub(super) reason: Option<String>,
     pub(super) safe: bool,
+    /// How many conditions the file names. The corridor is as they say.
+    pub(super) conditions: usize,
     /// The RSC in metres and the hinge margin in degrees. `None` if no bound holds.
     pub(super) bounds: Option<(f64, f64)>,
     pub(super) hinge_unit: Option<usize>,
@@ -70,6 +72,7 @@ const MEMBERS: &[&str] = &[
     "shift",
     "leeway",
     "tubes",
+    "conditions",
     "sha256",
 ];
 pub(super) const COLUMNS: [&str; 4] = ["left", "right", "left_centred", "right_centred"];
@@ -106,6 +109,10 @@ impl Document {
             verdict: all.text("verdict")?.to_owned(),
             reason: reason(&all)?,
             safe: all.truth("safe")?,
+            conditions: match document.get("conditions") {
+                Some(_) => all.list("conditions", None)?.len(),
+                None => 0,
+            },
             bounds: bounds(&all)?,
             hinge_unit: hinge_unit(&all, &vehicle)?,
             rsc_published_m: all.number_or_null("rsc_published_m")?,

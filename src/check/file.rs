@@ -36,6 +36,8 @@ pub struct Report {
     pub claims: Vec<(String, Outcome)>,
     /// Members that the format does not have.
     pub unknown: Vec<String>,
+    /// The titles of the conditions under which the certificate holds.
+    pub conditions: Vec<String>,
 }
 
 impl Report {
@@ -49,7 +51,7 @@ impl Report {
 /// Checks a certificate file.
 #[must_use]
 pub fn certificate(text: &str) -> Report {
-    let mut report = Report { claims: Vec::new(), unknown: Vec::new() };
+    let mut report = Report { claims: Vec::new(), unknown: Vec::new(), conditions: Vec::new() };
     let sealed = seal(text);
     let holds = sealed.is_ok();
     report.claims.push(("sha256".to_owned(), sealed.map_or_else(Outcome::Malformed, |()| Outcome::Confirmed)));
@@ -63,6 +65,7 @@ pub fn certificate(text: &str) -> Report {
             return report;
         }
     };
+    report.conditions = conditions(&document);
     match Document::read(&document, &mut report.unknown) {
         Ok(read) => read.check(&mut report.claims),
         Err(wrong) => {
@@ -71,6 +74,16 @@ pub fn certificate(text: &str) -> Report {
         }
     }
     report
+}
+
+/// Each condition in one line, as far as it can be read.
+fn conditions(document: &Value) -> Vec<String> {
+    let line = |condition: &Value| {
+        let text = |name: &str| condition.get(name).and_then(Value::as_str).unwrap_or("?").to_owned();
+        let number = |name: &str| condition.get(name).and_then(Value::as_f64).map_or("?".to_owned(), |m| m.to_string());
+        format!("{}: {} at least {} {}", text("title"), text("kind").replace('_', " "), number("needed"), text("unit"))
+    };
+    document.get("conditions").and_then(Value::as_array).into_iter().flatten().map(line).collect()
 }
 
 fn seal(text: &str) -> Result<(), Wrong> {
@@ -145,6 +158,7 @@ impl Document {
     fn follows(&self) -> Option<Finding> {
         let (verdict, reason) = match (self.bounds, self.hinge_unit) {
             (Some((rsc_m, _)), _) if rsc_m < 0.0 => ("unsafe", Some("width")),
+            (Some((_, hinge_deg)), _) if hinge_deg >= 0.0 && self.conditions > 0 => ("conditional", Some("conditions")),
             (Some((_, hinge_deg)), _) if hinge_deg >= 0.0 => ("safe", None),
             (Some(_), Some(0)) => ("unsafe", Some("steering_lock")),
             _ => ("unsafe", Some("articulation")),

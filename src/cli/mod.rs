@@ -28,6 +28,7 @@ mod route;
 mod routing;
 mod rows;
 mod serve;
+mod sheet;
 mod stats;
 mod stop;
 mod table;

@@ -12,7 +12,8 @@ use netcert::network::{Network, PassageKind};
 use netcert::picture;
 use netcert::region::Region;
 use netcert::route::{
-    self, Answer, Comparison, Measure, PartKind, PartResult, Peer, Planner, Position, Question, Route as Found,
+    self, Answer, Comparison, Conditional, Measure, PartKind, PartResult, Peer, Planner, Position, Question,
+    Route as Found, Unanswered,
 };
 use netcert::stop::Stop;
 use netcert::words::{Named, verdict_words};
@@ -23,6 +24,7 @@ use super::output::{printable, results};
 use super::position::place;
 use super::relative::{self, RelativeArgs};
 use super::routing::{RoutingArgs, RoutingInputs};
+use super::sheet;
 use super::table::Table;
 
 /// Find the best certified route of a vehicle, with one certificate over the whole route, or what blocks it.
@@ -30,17 +32,23 @@ use super::table::Table;
 /// The search uses the edges and turns that the database certifies for the vehicle, and obeys turn restrictions. Then
 /// the corridor of the route is certified from end to end. If that fails although every part passed, the search goes
 /// on without the place that failed.
+///
+/// If no route is certified, the answer is the way with the fewest and smallest conditions: widths, kerb radii and paved
+/// junctions that somebody can measure on site. That way has one certificate over the whole, which holds only if all
+/// conditions do. It is not `safe` before.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   netcert route --vehicle AU-ATRIPLE53 --from 144.29,-36.74 --to 144.33,-36.80
   netcert route --vehicle EU-SEMI16.5 --from 8.67,49.40 --to 8.70,49.42 --out certificate.json
   netcert verify certificate.json
+  netcert route --vehicle US-WB67 --from 8.67,49.40 --to 8.70,49.42 --sheet conditions.html
   netcert route --vehicle AU-BDOUBLE26 --relative-to AU-SEMI19 --from 144.29,-36.74 --to 144.33,-36.80
 
 The vehicle is straight where the route begins. The search never turns back on the road and ignores
 traffic. Times are by class of road (data/speeds.toml) and tagged limits. The exit status is 0 even if
-there is no certified route; read `routes` in JSON.")]
+there is no certified route; read `routes` in JSON. A route under conditions is in `conditional`,
+never in `routes`.")]
 pub(crate) struct Route {
     #[command(flatten)]
     inputs: RoutingArgs,
@@ -65,15 +73,23 @@ pub(crate) struct Route {
     /// Number of whole routes that may fail to certify before the search gives up.
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u16).range(0..=1000))]
     tries: u16,
+    /// Do not look for a route under conditions if no route is certified.
+    #[arg(long)]
+    certified_only: bool,
     #[command(flatten)]
     relative: RelativeArgs,
     /// The output format.
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
+    /// Write the conditions of the route as a sheet to take along and fill in: a page to print, or a table for `netcert
+    /// evidence add`.
+    #[arg(long, value_name = "OUT.html|.csv|.geojson", conflicts_with = "certified_only")]
+    sheet: Option<PathBuf>,
     /// Draw the best route into this file: its shape and the leeway along it.
     #[arg(long, value_name = "OUT.svg")]
     svg: Option<PathBuf>,
-    /// Write the certificate of the best route into this file, as JSON; `netcert verify` checks it.
+    /// Write the certificate of the best route into this file, as JSON; `netcert verify` checks it. The file of a route under
+    /// conditions names them.
     #[arg(long, value_name = "CERTIFICATE.json")]
     out: Option<PathBuf>,
 }
@@ -106,7 +122,8 @@ impl Route {
         let mut planner = Planner::new(&inputs.roads, driver, inputs.speeds.clone(), measure);
         let places = [self.from].into_iter().chain(self.via.iter().copied()).chain([self.to]).collect();
         let (alternatives, tries) = (usize::from(self.alternatives), usize::from(self.tries));
-        let answer = planner.answer(&Question { places, snap_m: self.snap, alternatives, tries }, &Stop::never())?;
+        let question = Question { places, snap_m: self.snap, alternatives, tries };
+        let answer = self.answer(&mut planner, &question)?;
         let stop = Stop::never();
         let compared = peer.map(|peer| peer.beside(&inputs.driver, &answer, &stop)).transpose()?;
         self.write_files(&inputs, &answer, session)?;
@@ -128,6 +145,28 @@ impl Route {
         Ok(out.flush()?)
     }
 
+    /// Certified routes, or else a route under conditions. A place that is near no safe road may be near a lawful one.
+    fn answer(&self, planner: &mut Planner, question: &Question) -> anyhow::Result<Answer> {
+        let stop = Stop::never();
+        let certified = match planner.answer(question, &stop) {
+            Err(Unanswered::Place(error)) => Err(error),
+            answer => Ok(answer?),
+        };
+        if self.certified_only || certified.as_ref().is_ok_and(|answer| !answer.routes.is_empty()) {
+            return Ok(certified?);
+        }
+        let refuted = certified.as_ref().map_or(&[][..], |answer| &answer.refuted[..]);
+        let Ok(Conditional { route, conditions, snapped }) = planner.under_conditions(question, refuted, &stop)? else {
+            return Ok(certified?);
+        };
+        // A way that passes without any condition is a certified route.
+        if conditions.is_empty() {
+            return Ok(Answer { routes: vec![route], snapped, ..Answer::default() });
+        }
+        let conditional = Some(Conditional { route, conditions, snapped: snapped.clone() });
+        Ok(Answer { conditional, snapped, ..certified.unwrap_or_default() })
+    }
+
     /// The reference vehicle, if one is to be compared with.
     fn peer(&self, inputs: &RoutingInputs) -> anyhow::Result<Option<Peer>> {
         let Some(reference) = &self.relative.relative_to else { return Ok(None) };
@@ -136,18 +175,30 @@ impl Route {
     }
 
     fn write_files(&self, inputs: &RoutingInputs, answer: &Answer, session: &Session) -> anyhow::Result<()> {
-        let best = answer.routes.first();
+        let network = &inputs.roads.network;
+        let conditional = answer.conditional.as_ref();
+        let best = answer.routes.first().or(conditional.map(|conditional| &conditional.route));
         if let Some(path) = &self.out {
             let best = best.ok_or_else(|| nothing(path))?;
             let given = FileCorridor { corridor: best.path.corridor.clone(), frame: Some(best.path.frame) };
-            let options = &inputs.settings().stet;
-            write(path, certificate::text(&given, &inputs.driver.model, &best.certificate, options)?)?;
-            session.progress.say(&format!("{}: the whole certificate", path.display()));
+            let (model, options) = (&inputs.driver.model, &inputs.settings().stet);
+            let conditions = conditional.map_or_else(Vec::new, |known| route::condition_members(network, known));
+            write(path, certificate::text_under(conditions, &given, model, &best.certificate, options)?)?;
+            let under = if conditional.is_some() { ", which holds under its conditions" } else { "" };
+            session.progress.say(&format!("{}: the whole certificate{under}", path.display()));
         }
         if let Some(path) = &self.svg {
             let best = best.ok_or_else(|| nothing(path))?;
-            write(path, picture::route(&inputs.roads.network, &inputs.driver.model.vehicle, best))?;
+            let conditions = conditional.map_or(0, |conditional| conditional.conditions.len());
+            write(path, picture::route(network, &inputs.driver.model.vehicle, best, conditions))?;
             session.progress.say(&format!("{}: the picture", path.display()));
+        }
+        if let Some(path) = &self.sheet {
+            let Some(conditional) = conditional else {
+                bail!("{}: there are no conditions to write; run without --sheet", path.display());
+            };
+            write(path, sheet::text(path, network, &inputs.driver.model.vehicle, conditional)?)?;
+            session.progress.say(&format!("{}: {} conditions to check", path.display(), conditional.conditions.len()));
         }
         Ok(())
     }
@@ -192,7 +243,12 @@ fn tell(
     }
     if answer.routes.is_empty() {
         writeln!(out, "{} {}: no certified route\n", vehicle.id, vehicle.name)?;
-        blocked(out, network, answer, compared)?;
+        if let Some(conditional) = &answer.conditional {
+            under_conditions(out, inputs, conditional)?;
+        }
+        if answer.conditional.is_none() || answer.obstacles.is_some() {
+            blocked(out, network, answer, compared)?;
+        }
     }
     for refutation in &answer.refuted {
         let why = match (&refutation.result, &refutation.assembly) {
@@ -210,6 +266,38 @@ fn tell(
          them); no permit. Times are by class of road and tagged limits."
     );
     writeln!(out, "{}", wrapped(&scope, ""))
+}
+
+/// Tells a route that is certified only under conditions.
+fn under_conditions(out: &mut dyn Write, inputs: &RoutingInputs, conditional: &Conditional) -> std::io::Result<()> {
+    let (network, found) = (&inputs.roads.network, &conditional.route);
+    let count = conditional.conditions.len();
+    let (conditions, hold) = if count == 1 { ("condition", "holds") } else { ("conditions", "hold") };
+    let minutes = (found.time_s / 60.0).ceil();
+    writeln!(
+        out,
+        "  A route if {count} {conditions} {hold}, {:.1} km, about {minutes:.0} min\n",
+        found.length_m / 1000.0
+    )?;
+    let mut table = Table::new(&[">", "what has to be so", ">over", "at", "where"]);
+    for (number, condition) in (1..).zip(&conditional.conditions) {
+        let length_m = condition.length_m(network);
+        table.row([
+            number.to_string(),
+            condition.words(),
+            if length_m > 0.0 { format!("{length_m:.0} m") } else { String::new() },
+            condition.place(network).map_or_else(String::new, |[lon, lat]| format!("{lat:.5}, {lon:.5}")),
+            printable(&condition.title(network)),
+        ]);
+    }
+    table.write(out, "  ")?;
+    writeln!(out)?;
+    numbers(out, inputs, found)?;
+    writeln!(out)?;
+    parts(out, network, found)?;
+    let told = "The numbers hold only if all of this is so on site. Nothing here says that it is: `netcert route --sheet` writes it \
+                down to be checked, and `netcert evidence add` takes the measurements.";
+    writeln!(out, "\n{}\n", wrapped(told, "  "))
 }
 
 fn numbers(out: &mut dyn Write, inputs: &RoutingInputs, found: &Found) -> std::io::Result<()> {

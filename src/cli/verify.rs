@@ -327,6 +327,12 @@ fn verify_file(path: &Path) -> anyhow::Result<()> {
     for line in lines(&report) {
         writeln!(out, "{line}")?;
     }
+    if !report.conditions.is_empty() {
+        writeln!(out, "The certificate holds only if all of this is so on site; nothing here says that it is:")?;
+        for (number, condition) in (1..).zip(&report.conditions) {
+            writeln!(out, "  {number}. {}", printable(condition))?;
+        }
+    }
     out.flush()?;
     if report.confirmed() {
         return Ok(());

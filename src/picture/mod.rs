@@ -18,6 +18,7 @@
 //! | `explanation` | what limits a vehicle on a road |
 //! | `vehicle` | a vehicle with its dimensions |
 //! | `route` | the leeway along a route, and the route's shape |
+//! | `sheet` | a page to print: a route under conditions |
 //! | `manoeuvres` | the turns by which a vehicle is judged |
 
 mod bodies;
@@ -27,6 +28,7 @@ mod furniture;
 mod manoeuvres;
 pub mod palette;
 mod route;
+mod sheet;
 mod style;
 mod svg;
 #[cfg(test)]
@@ -40,6 +42,7 @@ pub use explanation::explanation;
 pub use furniture::{Key, arrow, callout, dimension, legend, scale_bar};
 pub use manoeuvres::manoeuvres;
 pub use route::route;
+pub use sheet::sheet;
 pub use style::{Anchor, Style, TextStyle};
 pub use svg::{Picture, escaped, number};
 pub use turn::turn;

@@ -20,11 +20,16 @@ const FULL_M: f64 = 0.6;
 /// A turn's name is left out if it is closer than this to the previous name, page units.
 const NAME_GAP: f64 = 17.0;
 
-/// Draws a certified route.
+/// Draws a route that is certified under so many conditions; 0 if it is certified as it is.
 #[must_use]
-pub fn route(network: &Network, vehicle: &Vehicle, route: &Route) -> String {
+pub fn route(network: &Network, vehicle: &Vehicle, route: &Route, conditions: usize) -> String {
     let result = &route.certificate.result;
-    let head = format!("{}: a certified route of {:.1} km", vehicle.id, route.length_m / 1000.0);
+    let km = route.length_m / 1000.0;
+    let head = match conditions {
+        0 => format!("{}: a certified route of {km:.1} km", vehicle.id),
+        1 => format!("{}: a route of {km:.1} km, certified only if one condition holds", vehicle.id),
+        many => format!("{}: a route of {km:.1} km, certified only if {many} conditions hold", vehicle.id),
+    };
     let unit = vehicle.units.get(result.limiting.unit).map_or("", |unit| &unit.name);
     let at = route.limiting().map_or_else(String::new, |at| title(network, at));
     let said = format!(
