@@ -4,8 +4,11 @@
 //! `cargo run --release --example route_pairs -- REGION.gpkg VEHICLE POLICY PAIRS`, with a database that certifies the
 //! vehicle's edges and turns. Pairs are drawn three times: among all safe edges, most of which no route joins, among the safe
 //! edges of main roads (tertiary and above), and within the largest part of the network in which every edge reaches every
-//! other one. For main roads it lists what blocks.
+//! other one. For main roads it lists what blocks. With `conditions` pairs are drawn among all lawful edges of main roads, and
+//! pairs without a certified route are asked for a route under conditions.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
+
+mod conditions;
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -66,13 +69,16 @@ impl Region {
         Graph::new(&self.roads, &Speeds::builtin().unwrap(), Measure::Time)
     }
 
+    /// A vertex of one of these edges.
+    fn place(&self, from: &[u32], draw: &mut Draw) -> Position {
+        let line: Vec<_> =
+            self.roads.network.positions(&self.roads.network.edges[from[draw.of(from.len())] as usize]).collect();
+        let (lon, lat) = line[draw.of(line.len())].degrees();
+        Position { lon, lat }
+    }
+
     fn answers(&self, from: &[u32], pairs: u64) -> Vec<Answer> {
-        let place = |draw: &mut Draw| {
-            let line: Vec<_> =
-                self.roads.network.positions(&self.roads.network.edges[from[draw.of(from.len())] as usize]).collect();
-            let (lon, lat) = line[draw.of(line.len())].degrees();
-            Position { lon, lat }
-        };
+        let place = |draw: &mut Draw| self.place(from, draw);
         let shared = |first: u64| {
             let speeds = Speeds::builtin().unwrap();
             let mut planner = Planner::new(&self.roads, Arc::clone(&self.driver), speeds, Measure::Time);
@@ -180,8 +186,8 @@ fn mean(counts: impl Iterator<Item = usize>) -> f64 {
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [file, vehicle, policy, pairs] = arguments.as_slice() else {
-        panic!("usage: route_pairs REGION.gpkg VEHICLE POLICY PAIRS");
+    let [file, vehicle, policy, pairs, conditions @ ..] = arguments.as_slice() else {
+        panic!("usage: route_pairs REGION.gpkg VEHICLE POLICY PAIRS [conditions]");
     };
     let pairs: u64 = pairs.parse().unwrap();
     let region = Region::open(file, vehicle, Policy::named(policy).expect("lane, direction or carriageway"));
@@ -197,10 +203,16 @@ fn main() {
         good(&permits.passages),
         ways.1
     );
-    println!(" among all safe edges:");
-    region.tell(&safe, pairs);
     let network = &region.roads.network;
     let main = |edge: &u32| network.road(&network.edges[*edge as usize]).class <= RoadClass::Tertiary;
+    if !conditions.is_empty() {
+        let lawful = |edge: &u32| !matches!(permits.edges[*edge as usize].verdict, Verdict::Forbidden(_));
+        let main_roads: Vec<u32> = (0..network.edges.len() as u32).filter(lawful).filter(main).collect();
+        println!(" among the {} lawful edges of main roads:", main_roads.len());
+        return conditions::tell(&region, &main_roads, pairs);
+    }
+    println!(" among all safe edges:");
+    region.tell(&safe, pairs);
     let main_roads: Vec<u32> = safe.iter().copied().filter(main).collect();
     println!(" among the {} safe edges of main roads:", main_roads.len());
     region.tell_obstacles(&region.tell(&main_roads, pairs));

@@ -10,6 +10,7 @@ mod demo_region;
 mod graph_properties;
 mod malformed;
 mod maps;
+mod needs;
 #[path = "../oracle/mod.rs"]
 mod oracle;
 mod reader_rules;

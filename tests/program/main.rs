@@ -4,6 +4,7 @@
 
 mod cli;
 mod columns;
+mod conditional;
 mod engines;
 mod evidence;
 mod explain;
