@@ -11,7 +11,7 @@ use crate::osm::facts::Policy;
 use crate::settings::Settings;
 use crate::stet::{Model, Options, SpanResult, certify_spans};
 use crate::stop::{Stop, Stopped};
-use crate::turns::{KerbSource, Reach, TurnCorridors, TurnFacts, TurnParams, TurnPath, corridors_of};
+use crate::turns::{KerbSource, Kerbs, Reach, TurnCorridors, TurnFacts, TurnParams, TurnPath, corridors_of};
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 
 /// Kerb radii are tried in these steps, metres, up to [`MOST_KERB_M`].
@@ -135,8 +135,8 @@ fn kerb(
 ) -> Result<KerbHint, Stopped> {
     let safe_with = |steps: u32| -> Result<bool, Stopped> {
         stop.check()?;
-        let own_kerb_m = Some(f64::from(steps) * KERB_STEP_M);
-        Ok(is_safe(network, facts, model, settings, &TurnParams { own_kerb_m, ..settings.turn_params() }))
+        let kerbs = Kerbs::everywhere(f64::from(steps) * KERB_STEP_M);
+        Ok(is_safe(network, facts, model, settings, &TurnParams { kerbs, ..settings.turn_params() }))
     };
     let (mut fails, mut does) = ((radius_m / KERB_STEP_M) as u32, (MOST_KERB_M / KERB_STEP_M) as u32);
     if fails >= does || !safe_with(does)? {
