@@ -12,7 +12,7 @@ use netcert::osm::facts::{Countries, Policy, cross_sections};
 use netcert::osm::pbf::read_extract;
 use netcert::osm::{Extract, LonLat, Way};
 use netcert::route::{self, MadeTurns, Measure, Permit, Permits, Planner, Roads, Speeds, Strokes};
-use netcert::settings::Settings;
+use netcert::settings::{Needs, Settings};
 use netcert::stet::Model;
 use netcert::turns::{Kerbs, turn_facts};
 
@@ -79,7 +79,8 @@ impl Region {
         let (network, _) = build(extract, &|position| countries.place(position), &|way, place, ring| {
             cross_sections(way, place, ring, rules)
         });
-        let settings = Settings { policy, ..Settings::default() };
+        // Permits need no needs, and on real extracts the search for them takes longer than all certificates.
+        let settings = Settings { policy, needs: Needs::Off, ..Settings::default() };
         Self { roads: Roads::new(network), settings, kerbs: Kerbs::default() }
     }
 
