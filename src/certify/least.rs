@@ -1,4 +1,4 @@
-//! The least number for which something does.
+//! The least number for which something does: of whole numbers, or of a list.
 
 /// A whole number above `fails` and at most `most` for which `does` holds, while it fails for the number below. The search
 /// starts at `first` and strides outwards, then halves the interval.
@@ -28,6 +28,21 @@ pub fn least_that_does(fails: i64, first: i64, most: i64, does: impl Fn(i64) -> 
         if does(middle) { high = middle } else { low = middle }
     }
     Some(high)
+}
+
+/// The least of some growing numbers that does, if the greatest does.
+#[must_use]
+pub fn least_of(numbers: &[f64], mut does: impl FnMut(&f64) -> bool) -> Option<f64> {
+    let (mut high, mut low) = (numbers.len().checked_sub(1)?, None);
+    if !does(&numbers[high]) {
+        return None;
+    }
+    while low.map_or(0, |low: usize| low + 1) < high {
+        let middle = usize::midpoint(low.map_or(0, |low| low + 1), high);
+        let middle = middle.min(high - 1);
+        if does(&numbers[middle]) { high = middle } else { low = Some(middle) }
+    }
+    numbers.get(high).copied()
 }
 
 #[cfg(test)]

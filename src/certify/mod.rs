@@ -6,8 +6,8 @@ mod strokes;
 mod touched;
 mod turns;
 
-pub use least::least_that_does;
-pub use needs::{KERBS_M, LineOf, MOST_KERB_M, TurnCase, edge_need, least_of};
+pub use least::{least_of, least_that_does};
+pub use needs::{KERBS_M, LineOf, MOST_KERB_M, MOST_MORE_M, TurnCase, edge_need, flares};
 pub(crate) use strokes::verdict;
 pub use strokes::{Job, certify_network, certify_strokes};
 pub use touched::Touched;

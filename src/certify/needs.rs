@@ -5,9 +5,10 @@
 
 use std::sync::Arc;
 
+use super::least::least_of;
 use super::strokes::Job;
 use super::turns::fits;
-use crate::corridor::{stroke_corridor, stroke_corridor_on};
+use crate::corridor::{StrokeCorridor, stroke_corridor, stroke_corridor_on};
 use crate::network::{Network, Stroke};
 use crate::osm::facts::Policy;
 use crate::rows::TurnNeed;
@@ -19,7 +20,7 @@ use crate::verdict::UnknownReason;
 /// Widths are tried in these parts of a metre.
 const WIDTHS: f64 = 20.0;
 /// The greatest additional width that is tried, metres.
-const MOST_MORE_M: f64 = 8.0;
+pub const MOST_MORE_M: f64 = 8.0;
 /// A width that leaves less than this is close enough to the least one, metres.
 const CLOSE_M: f64 = 0.05;
 /// How many widths of a stroke are tried for one vehicle.
@@ -32,6 +33,13 @@ pub const MOST_KERB_M: f64 = 25.0;
 const FLARES: f64 = 2.0;
 const MORE_FLARES: u8 = 10;
 
+/// Widths to try for the roads beside a turn of which the narrower one is so wide, metres.
+#[must_use]
+pub fn flares(has_m: f64) -> Vec<f64> {
+    let next = (has_m * FLARES).floor() + 1.0;
+    (0..MORE_FLARES).map(|k| (next + f64::from(k)) / FLARES).collect()
+}
+
 /// An edge of a stroke that is too narrow.
 pub(super) struct Narrow<'r> {
     /// Index into `Network::edges`.
@@ -40,6 +48,14 @@ pub(super) struct Narrow<'r> {
     pub(super) result: &'r SpanResult,
     /// The width at its limiting place, metres.
     pub(super) width_m: f64,
+}
+
+impl<'r> Narrow<'r> {
+    pub(super) fn of(made: &StrokeCorridor, edge: u32, result: &'r SpanResult) -> Self {
+        let corridor = &made.corridor;
+        let at = result.limiting.station.min(corridor.len() - 1);
+        Self { edge, result, width_m: corridor.left_m[at] + corridor.right_m[at] }
+    }
 }
 
 /// The search for one edge's need, in steps of width.
@@ -88,9 +104,9 @@ impl Search {
     }
 }
 
-/// For each edge, the least width in metres with which it would be safe, if its stroke were nowhere narrower. `None` if no width up to
-/// [`MOST_MORE_M`] more would do.
-pub(super) fn edge_needs(job: &Job<'_>, stroke: &Stroke, model: &Model, narrow: &[Narrow<'_>]) -> Vec<Option<f64>> {
+/// Edges with the least width in metres with which each would be safe, if its stroke were nowhere narrower. An edge for which no width
+/// up to [`MOST_MORE_M`] more would do is left out.
+pub(super) fn edge_needs(job: &Job<'_>, stroke: &Stroke, model: &Model, narrow: &[Narrow<'_>]) -> Vec<(u32, f64)> {
     let policy = job.settings.policy;
     let least_m = |edge: u32| {
         let strip = job.network.edges.get(edge as usize).and_then(|edge| job.network.section(edge).strip(policy));
@@ -108,23 +124,20 @@ pub(super) fn edge_needs(job: &Job<'_>, stroke: &Stroke, model: &Model, narrow: 
             search.take(steps, result);
         }
     }
-    searches.into_iter().map(|search| Some(search?.does? as f64 / WIDTHS)).collect()
+    searches.into_iter().flatten().filter_map(|search| Some((search.edge, search.does? as f64 / WIDTHS))).collect()
 }
 
-/// The least width in metres with which an edge that lacks room would be safe, if its stroke were nowhere narrower. `None` if the edge
-/// does not lack room, or no width up to 8 m more would do.
+/// The least width in metres with which an edge that lacks room would be safe, if its stroke were nowhere narrower. `stroke` is an index
+/// into [`Network::strokes`]. `None` if no width up to 8 m more would do.
 #[must_use]
-pub fn edge_need(network: &Network, edge: u32, model: &Model, settings: &Settings) -> Option<f64> {
-    let of = |stroke: &Stroke| &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize];
-    let stroke = network.strokes.iter().find(|stroke| of(stroke).contains(&edge))?;
+pub fn edge_need(network: &Network, (stroke, edge): (u32, u32), model: &Model, settings: &Settings) -> Option<f64> {
+    let stroke = network.strokes.get(stroke as usize)?;
     let made = stroke_corridor(network, stroke, settings.policy, &settings.corridor).ok()?;
     let span = made.spans.iter().find(|span| span.edge == edge && span.unknown.is_none())?;
     let rows = certify_spans(&made.corridor, &[model], std::slice::from_ref(&span.stations), &settings.stet);
-    let result = rows.first()?.spans.first()?;
-    let at = result.limiting.station.min(made.corridor.len() - 1);
-    let width_m = made.corridor.left_m[at] + made.corridor.right_m[at];
+    let narrow = Narrow::of(&made, edge, rows.first()?.spans.first()?);
     let job = Job { network, models: std::slice::from_ref(model), settings };
-    edge_needs(&job, stroke, model, &[Narrow { edge, result, width_m }]).pop().flatten()
+    edge_needs(&job, stroke, model, &[narrow]).pop().map(|(_, need_m)| need_m)
 }
 
 /// The results of a stroke that is nowhere narrower than a width, by edge. Edges without a corridor there are left out.
@@ -167,8 +180,7 @@ impl TurnCase<'_> {
     }
 
     /// The least radius of the turn's own kerbs with which the turn is safe, metres.
-    #[must_use]
-    pub fn kerb(&self, radius_m: f64, line: &LineOf<'_>) -> Option<f64> {
+    fn kerb(&self, radius_m: f64, line: &LineOf<'_>) -> Option<f64> {
         let safe = |&own_kerb_m: &f64| {
             self.is_safe(&TurnParams { own_kerb_m: Some(own_kerb_m), ..self.settings.turn_params() }, line)
         };
@@ -198,9 +210,7 @@ impl TurnCase<'_> {
             };
             self.is_safe(&params, &lines)
         };
-        let next = (has_m * FLARES).floor() + 1.0;
-        let widths: Vec<f64> = (0..MORE_FLARES).map(|k| (next + f64::from(k)) / FLARES).collect();
-        least_of(&widths, safe)
+        least_of(&flares(has_m), safe)
     }
 
     fn widened(&self, stroke: u32, strip: Policy, width_m: f64) -> Result<StrokeLine, UnknownReason> {
@@ -215,19 +225,4 @@ impl TurnCase<'_> {
         let made = turn_on(self.network, over, line, self.settings.policy, params, reach).ok();
         made.is_some_and(|made| fits(&made, self.model, &self.settings.stet))
     }
-}
-
-/// The least of some growing numbers that does, if the greatest does.
-#[must_use]
-pub fn least_of(numbers: &[f64], mut does: impl FnMut(&f64) -> bool) -> Option<f64> {
-    let (mut high, mut low) = (numbers.len().checked_sub(1)?, None);
-    if !does(&numbers[high]) {
-        return None;
-    }
-    while low.map_or(0, |low: usize| low + 1) < high {
-        let middle = usize::midpoint(low.map_or(0, |low| low + 1), high);
-        let middle = middle.min(high - 1);
-        if does(&numbers[middle]) { high = middle } else { low = Some(middle) }
-    }
-    numbers.get(high).copied()
 }

@@ -179,7 +179,6 @@ fn add_needs(
     rows: &[Planned],
     certificates: &mut [(usize, EdgeCertificate)],
 ) {
-    let corridor = &made.corridor;
     for (vehicle, row) in rows.iter().enumerate() {
         let mut lacking: Vec<&mut EdgeCertificate> = certificates
             .iter_mut()
@@ -193,14 +192,12 @@ fn add_needs(
             .iter()
             .filter_map(|known| {
                 let (_, result) = made.spans.iter().zip(&row.spans).find(|(span, _)| span.edge == known.edge)?;
-                let at = result.limiting.station.min(corridor.len() - 1);
-                let width_m = corridor.left_m[at] + corridor.right_m[at];
-                Some(Narrow { edge: known.edge, result, width_m })
+                Some(Narrow::of(made, known.edge, result))
             })
             .collect();
         let needs = edge_needs(job, stroke, &job.models[vehicle], &narrow);
-        for (known, need) in lacking.iter_mut().zip(needs) {
-            known.need_width_m = need;
+        for known in &mut lacking {
+            known.need_width_m = needs.iter().find(|(edge, _)| *edge == known.edge).map(|(_, need_m)| *need_m);
         }
     }
 }

@@ -7,7 +7,6 @@
 use rstar::{AABB, RTree};
 use rustc_hash::FxHashSet;
 
-use super::turns::strokes_of_edges;
 use crate::network::{EARTH_RADIUS_M, Network};
 use crate::osm::LonLat;
 use crate::turns::TurnFacts;
@@ -67,7 +66,7 @@ impl TouchedTurns {
         places.sort_unstable_by_key(|at| (at.lon_e7, at.lat_e7));
         places.dedup();
         let nodes = RTree::bulk_load(places.into_iter().map(|at| at.degrees().into()).collect());
-        Self { of_edge: strokes_of_edges(network), strokes: strokes.iter().copied().collect(), nodes }
+        Self { of_edge: network.strokes_of_edges(), strokes: strokes.iter().copied().collect(), nodes }
     }
 
     fn has(&self, turn: &TurnFacts) -> bool {

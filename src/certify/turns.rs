@@ -112,7 +112,7 @@ pub fn certify_some_turns<E>(
 ) -> Result<TurnOutcome, E> {
     let mut outcome = TurnOutcome { turns: turns.len() as u64, ..TurnOutcome::default() };
     reporter.begin("turns", turns.len() as u64);
-    let strokes = strokes_of_edges(job.network);
+    let strokes = job.network.strokes_of_edges();
     let mut lines = Lines::default();
     let mut done = 0;
     for (number, batch) in neighbours(job.turns, turns).chunks(BATCH).enumerate() {
@@ -131,17 +131,6 @@ pub fn certify_some_turns<E>(
     }
     reporter.end();
     Ok(outcome)
-}
-
-/// By edge: its stroke.
-pub(super) fn strokes_of_edges(network: &Network) -> Vec<u32> {
-    let mut of_edge = vec![u32::MAX; network.edges.len()];
-    for (index, stroke) in (0..).zip(&network.strokes) {
-        for &edge in &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize] {
-            of_edge[edge as usize] = index;
-        }
-    }
-    of_edge
 }
 
 /// Indices of the turns `which`, sorted so that neighbouring turns are close to each other. Few strokes are then made twice.

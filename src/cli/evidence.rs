@@ -18,7 +18,7 @@ use super::output::{grouped, printable, results};
 use super::table::Table;
 use super::values::word;
 
-/// Keep measurements of roads, and certify with them: widths and kerb radii that somebody measured on site.
+/// Keep measurements of roads, and certify with them: widths, kerb radii and paved surfaces that somebody measured on site.
 ///
 /// The register is part of the database. A measured width counts in place of the map's: value less 1.64 times its standard
 /// uncertainty. A newer `ingest` takes the register over.

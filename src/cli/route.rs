@@ -70,7 +70,8 @@ pub(crate) struct Route {
     /// Number of alternative routes to find beside the best one.
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=9))]
     alternatives: u8,
-    /// Number of whole routes that may fail to certify before the search gives up.
+    /// Number of whole routes that may fail to certify before the search gives up. Of ways under conditions at most 20 are
+    /// tried.
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u16).range(0..=1000))]
     tries: u16,
     /// Do not look for a route under conditions if no route is certified.
@@ -123,7 +124,7 @@ impl Route {
         let places = [self.from].into_iter().chain(self.via.iter().copied()).chain([self.to]).collect();
         let (alternatives, tries) = (usize::from(self.alternatives), usize::from(self.tries));
         let question = Question { places, snap_m: self.snap, alternatives, tries };
-        let answer = self.answer(&mut planner, &question)?;
+        let answer = self.answer(&mut planner, &question, session)?;
         let stop = Stop::never();
         let compared = peer.map(|peer| peer.beside(&inputs.driver, &answer, &stop)).transpose()?;
         self.write_files(&inputs, &answer, session)?;
@@ -146,7 +147,7 @@ impl Route {
     }
 
     /// Certified routes, or else a route under conditions. A place that is near no safe road may be near a lawful one.
-    fn answer(&self, planner: &mut Planner, question: &Question) -> anyhow::Result<Answer> {
+    fn answer(&self, planner: &mut Planner, question: &Question, session: &Session) -> anyhow::Result<Answer> {
         let stop = Stop::never();
         let certified = match planner.answer(question, &stop) {
             Err(Unanswered::Place(error)) => Err(error),
@@ -155,6 +156,7 @@ impl Route {
         if self.certified_only || certified.as_ref().is_ok_and(|answer| !answer.routes.is_empty()) {
             return Ok(certified?);
         }
+        session.progress.say("No route is certified. Looking for one under conditions, which takes longer");
         let refuted = certified.as_ref().map_or(&[][..], |answer| &answer.refuted[..]);
         let Ok(Conditional { route, conditions, snapped }) = planner.under_conditions(question, refuted, &stop)? else {
             return Ok(certified?);
@@ -286,7 +288,7 @@ fn under_conditions(out: &mut dyn Write, inputs: &RoutingInputs, conditional: &C
             number.to_string(),
             condition.words(),
             if length_m > 0.0 { format!("{length_m:.0} m") } else { String::new() },
-            condition.place(network).map_or_else(String::new, |[lon, lat]| format!("{lat:.5}, {lon:.5}")),
+            condition.place(network).map_or_else(String::new, |[lon, lat]| format!("{lon:.5},{lat:.5}")),
             printable(&condition.title(network)),
         ]);
     }

@@ -124,7 +124,7 @@ fn turn_geometry(
     Ok(geometry(&path.corridor, spans, 0, model, &plain, stop)?.map(|geometry| (plain, geometry)))
 }
 
-/// The least radius of an assumed kerb return with which the turn is safe, in half metres. The turn is made and certified
+/// The least radius of a kerb return with which the turn is safe, in half metres. The turn is made and certified
 /// again for every radius that is tried.
 fn kerb(
     network: &Network,
@@ -135,8 +135,10 @@ fn kerb(
 ) -> Result<KerbHint, Stopped> {
     let safe_with = |steps: u32| -> Result<bool, Stopped> {
         stop.check()?;
-        let kerbs = Kerbs::everywhere(f64::from(steps) * KERB_STEP_M);
-        Ok(is_safe(network, facts, model, settings, &TurnParams { kerbs, ..settings.turn_params() }))
+        let radius_m = f64::from(steps) * KERB_STEP_M;
+        // A surveyed corner keeps its radius, whatever is assumed of corners. The turn's own one must not.
+        let (kerbs, own_kerb_m) = (Kerbs::everywhere(radius_m), Some(radius_m));
+        Ok(is_safe(network, facts, model, settings, &TurnParams { kerbs, own_kerb_m, ..settings.turn_params() }))
     };
     let (mut fails, mut does) = ((radius_m / KERB_STEP_M) as u32, (MOST_KERB_M / KERB_STEP_M) as u32);
     if fails >= does || !safe_with(does)? {

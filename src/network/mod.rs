@@ -177,6 +177,18 @@ impl Network {
         (0..n).map(move |i| shape[if forward { i } else { n - 1 - i }])
     }
 
+    /// By edge: its stroke, as an index into `strokes`.
+    #[must_use]
+    pub fn strokes_of_edges(&self) -> Vec<u32> {
+        let mut of_edge = vec![u32::MAX; self.edges.len()];
+        for (index, stroke) in (0..).zip(&self.strokes) {
+            for &edge in &self.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize] {
+                of_edge[edge as usize] = index;
+            }
+        }
+        of_edge
+    }
+
     /// The road of an edge.
     #[must_use]
     pub fn road(&self, edge: &Edge) -> &Road {

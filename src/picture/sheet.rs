@@ -43,7 +43,7 @@ pub fn sheet(network: &Network, vehicle: &Vehicle, conditional: &Conditional) ->
         let place = condition.place(network).map_or_else(String::new, |[lon, lat]| {
             format!(
                 "<br><a href=\"https://www.openstreetmap.org/?mlat={lat:.6}&amp;mlon={lon:.6}#map=19/{lat:.6}/{lon:.6}\">\
-                 {lat:.5}, {lon:.5}</a>"
+                 latitude {lat:.5}, longitude {lon:.5}</a>"
             )
         });
         let length_m = condition.length_m(network);

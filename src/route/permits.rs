@@ -73,7 +73,17 @@ impl Permits {
     /// The access to what is lawful. What is not safe has a price.
     #[must_use]
     pub fn access_at(&self, movements: &Movements, price: impl Fn(&Permit) -> u64) -> Access {
-        let cost = |permit: &Permit| if permit.usable() { 0 } else { price(permit) };
+        self.access_by(movements, |_, permit| price(permit), &price)
+    }
+
+    /// The access to what is lawful. What is not safe has a price: `edge` gives that of an edge, `turn` that of a movement or passage.
+    pub(super) fn access_by(
+        &self,
+        movements: &Movements,
+        edge: impl Fn(u32, &Permit) -> u64,
+        turn: impl Fn(&Permit) -> u64,
+    ) -> Access {
+        let cost = |permit: &Permit| if permit.usable() { 0 } else { turn(permit) };
         let movement = |(m, permit): (&crate::network::Movement, &Permit)| {
             if m.forbidden.is_some() || m.kind == MovementKind::UTurn { BARRED } else { cost(permit) }
         };
@@ -81,7 +91,10 @@ impl Permits {
             if p.forbidden.is_some() { BARRED } else { cost(permit) }
         };
         Access {
-            edges: self.edges.iter().map(cost).collect(),
+            edges: (0..)
+                .zip(&self.edges)
+                .map(|(i, permit)| if permit.usable() { 0 } else { edge(i, permit) })
+                .collect(),
             movements: movements.all().iter().zip(&self.movements).map(movement).collect(),
             passages: movements.passages().iter().zip(&self.passages).map(passage).collect(),
         }

@@ -12,6 +12,7 @@ use super::bulk::Bulk;
 use super::database::Database;
 use super::error::{StoreError, content};
 use super::network_read::{rows, word};
+use super::sets::add_layer_of;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -233,19 +234,7 @@ fn add(bulk: &mut Bulk, entry: &Entry) -> Sql<()> {
 
 /// Registers the measurements as a layer, and their places as a table.
 async fn add_layers(c: &mut SqliteConnection, bounds: Option<Bounds>, time: &str) -> Sql<()> {
-    sqlx::query(
-        "INSERT INTO gpkg_contents VALUES ('evidence', 'features', 'evidence', 'Measurements', ?, ?, ?, ?, ?, 4326)",
-    )
-    .bind(time)
-    .bind(bounds.map(|b| b.west))
-    .bind(bounds.map(|b| b.south))
-    .bind(bounds.map(|b| b.east))
-    .bind(bounds.map(|b| b.north))
-    .execute(&mut *c)
-    .await?;
-    sqlx::query("INSERT INTO gpkg_geometry_columns VALUES ('evidence', 'geom', 'GEOMETRY', 4326, 0, 0)")
-        .execute(&mut *c)
-        .await?;
+    add_layer_of(c, ("evidence", "GEOMETRY"), "Measurements", time, bounds).await?;
     let sql = "INSERT INTO gpkg_contents (table_name, data_type, identifier, description, last_change) \
                VALUES ('evidence_place', 'attributes', 'evidence_place', 'Where measurements belong', ?)";
     sqlx::query(sql).bind(time).execute(c).await?;

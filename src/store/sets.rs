@@ -138,6 +138,17 @@ pub(super) async fn add_layer(
     time: &str,
     bounds: Option<Bounds>,
 ) -> Sql<()> {
+    add_layer_of(c, (table, "LINESTRING"), description, time, bounds).await
+}
+
+/// Registers a table or view as a layer of geometries of a type.
+pub(super) async fn add_layer_of(
+    c: &mut SqliteConnection,
+    (table, geometries): (&str, &str),
+    description: &str,
+    time: &str,
+    bounds: Option<Bounds>,
+) -> Sql<()> {
     sqlx::query("INSERT INTO gpkg_contents VALUES (?, 'features', ?, ?, ?, ?, ?, ?, ?, 4326)")
         .bind(table)
         .bind(table)
@@ -149,8 +160,9 @@ pub(super) async fn add_layer(
         .bind(bounds.map(|b| b.north))
         .execute(&mut *c)
         .await?;
-    sqlx::query("INSERT INTO gpkg_geometry_columns VALUES (?, 'geom', 'LINESTRING', 4326, 0, 0)")
+    sqlx::query("INSERT INTO gpkg_geometry_columns VALUES (?, 'geom', ?, 4326, 0, 0)")
         .bind(table)
+        .bind(geometries)
         .execute(c)
         .await?;
     Ok(())

@@ -376,6 +376,21 @@ fn no_claim_of_a_turn_over_several_lanes_is_refuted() {
 }
 
 #[test]
+fn a_surveyed_corner_gets_the_hint_of_an_assumed_one() {
+    let drawn = Drawn::cross("highway=secondary width=6.5", false, 3.0);
+    let settings = Settings { policy: Policy::Carriageway, kerbs: drawn.params.kerbs.clone(), ..Settings::default() };
+    let model = Model::new(&catalogued("EU-SEMI16.5")).unwrap();
+    let turn = drawn.turn("EBC");
+    let mut surveyed = drawn.network.clone();
+    let [from, to] = [turn.movement.from, turn.movement.to].map(|edge| &drawn.network.edges[edge as usize]);
+    surveyed.site.set_kerb(from.to_node, Some([from, to]), 3.0);
+    let hint =
+        |network| explain_turn(network, &turn, &model, &settings, &Stop::never()).unwrap().explanation.hints.kerb;
+    assert!(matches!(hint(&drawn.network), Some(KerbHint::AtLeast(_))));
+    assert_eq!(hint(&surveyed), hint(&drawn.network));
+}
+
+#[test]
 fn an_unsafe_turn_says_which_kerb_would_do() {
     let cross = |kerb_m| Drawn::cross("highway=secondary width=6.5", false, kerb_m);
     let explained = |id: &str| {

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 
 use super::suppositions::Suppositions;
 use super::turn_need::Turning;
-use crate::certify::edge_need;
+use crate::certify::{MOST_KERB_M, MOST_MORE_M, edge_need};
 use crate::network::{self, MovementKind, Network};
 use crate::osm::facts::Policy;
 use crate::route::assemble::{PartKind, Way, movement};
@@ -28,16 +28,13 @@ const BESIDE_M: f64 = 20.0;
 /// The least that is added to a width or a radius where the whole fails, metres.
 const WIDER_M: f64 = 0.1;
 const ROUNDER_M: f64 = 1.0;
-/// The greatest radius and the greatest additional width, metres.
-const MOST_RADIUS_M: f64 = 25.0;
-/// By how much more of a junction is supposed to be paved, and how far at most, metres.
+/// How far a junction is supposed to be paved: by how much more, at most and at first, metres.
 const PAVED_STEP_M: f64 = 3.0;
 const MOST_PAVED_M: f64 = 36.0;
 const FIRST_PAVED_M: f64 = 9.0;
 /// Where the whole lacks this much, more than one thing is supposed at once, metres; what it lacks where no bound holds.
 const MUCH_M: f64 = 0.3;
 const NO_BOUND_M: f64 = 1.0;
-const MOST_WIDER_M: f64 = 8.0;
 
 /// Fits ways, and keeps what it has found out about edges.
 pub(super) struct Fitter {
@@ -65,20 +62,13 @@ pub(super) struct Fitted {
 pub(super) struct Unfit(pub(super) Vec<PartKind>);
 
 impl Fitter {
-    pub(super) fn new(roads: &Roads, driver: &Arc<Driver>) -> Self {
-        let mut stroke_of = vec![u32::MAX; roads.network.edges.len()];
-        for (stroke, facts) in (0_u32..).zip(&roads.network.strokes) {
-            for &edge in &roads.network.stroke_edges[facts.edges.start as usize..facts.edges.end as usize] {
-                stroke_of[edge as usize] = stroke;
-            }
-        }
+    pub(super) fn new(roads: &Arc<Roads>, driver: &Arc<Driver>) -> Self {
         let base = Arc::new(roads.network.site.clone());
-        let own = Arc::new(Roads { network: roads.network.clone(), movements: roads.movements.clone() });
         Self {
-            roads: own,
+            roads: Arc::clone(roads),
             driver: Arc::clone(driver),
             base,
-            stroke_of: stroke_of.into(),
+            stroke_of: roads.network.strokes_of_edges().into(),
             needs_m: FxHashMap::default(),
             turns: FxHashMap::default(),
             whole: None,
@@ -153,7 +143,8 @@ impl Fitter {
             }
             stop.check()?;
             let (network, driver) = (&self.roads.network, &self.driver);
-            let need = || edge_need(network, edge, &driver.model, &driver.permits.settings);
+            let stroke = self.stroke_of.get(edge as usize).copied().unwrap_or(u32::MAX);
+            let need = || edge_need(network, (stroke, edge), &driver.model, &driver.permits.settings);
             match *self.needs_m.entry(edge).or_insert_with(need) {
                 Some(need_m) => {
                     self.widen_near(drive, i, strip, need_m, supposed);
@@ -271,17 +262,17 @@ impl Fitter {
         let Some(has_m) = supposed.width_m(network, edge, strip) else { return false };
         let first_m = supposed.known_width_m(network, edge, strip).unwrap_or(has_m);
         let width_m = has_m + more_m.max(WIDER_M);
-        width_m <= first_m + MOST_WIDER_M && self.widen_near(drive, at, strip, width_m, supposed)
+        width_m <= first_m + MOST_MORE_M && self.widen_near(drive, at, strip, width_m, supposed)
     }
 
     /// Supposes greater radii of a turn's corners, if radii were what helped it.
     fn rounder(&self, turning: &Turning<'_>, missing_m: f64, supposed: &mut Suppositions) -> bool {
         let corners = turning.corners(&self.roads.network);
         let known: Vec<_> = corners.iter().filter_map(|&(node, between)| supposed.radius_m(node, between)).collect();
-        let Some(radius_m) = known.into_iter().reduce(f64::max).filter(|&radius_m| radius_m < MOST_RADIUS_M) else {
+        let Some(radius_m) = known.into_iter().reduce(f64::max).filter(|&radius_m| radius_m < MOST_KERB_M) else {
             return false;
         };
-        let radius_m = (radius_m + (4.0 * missing_m).max(ROUNDER_M)).min(MOST_RADIUS_M);
+        let radius_m = (radius_m + (4.0 * missing_m).max(ROUNDER_M)).min(MOST_KERB_M);
         for (node, between) in corners {
             supposed.round(node, between, radius_m);
         }
@@ -309,7 +300,7 @@ impl Fitter {
             let Some(has_m) = supposed.width_m(network, edge, strip) else { continue };
             let first_m = supposed.known_width_m(network, edge, strip).unwrap_or(has_m);
             let width_m = has_m + (2.0 * missing_m).max(WIDER_M);
-            more |= width_m <= first_m + MOST_WIDER_M && supposed.widen(network, edge, strip, width_m);
+            more |= width_m <= first_m + MOST_MORE_M && supposed.widen(network, edge, strip, width_m);
         }
         more
     }

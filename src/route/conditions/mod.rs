@@ -23,7 +23,7 @@ use crate::osm::facts::Policy;
 pub struct Conditional {
     /// The route. Its certificate is safe on a network on which the conditions hold.
     pub route: Route,
-    /// The conditions in driving order; at least one.
+    /// The conditions in driving order. Empty if the way passes as it is: then it is a certified route.
     pub conditions: Vec<Condition>,
     /// The requested places, moved to the road.
     pub snapped: Vec<Snapped>,

@@ -2,7 +2,7 @@
 
 use super::Conditional;
 use super::fit::{Fitted, Fitter, Unfit};
-use crate::network::{MovementKind, Network};
+use crate::network::Network;
 use crate::route::assemble::{PartKind, Way};
 use crate::route::graph::{Access, BARRED};
 use crate::route::obstacles::{self, CENTIMETRE, Refutation};
@@ -11,7 +11,7 @@ use crate::route::plan::{Planner, Question, Unanswered};
 use crate::stop::Stop;
 use crate::verdict::{UnsafeReason, Verdict};
 
-/// How many ways are tried at most. Places for which nothing does are left out of the next one.
+/// How many ways are tried at most, if the question allows as many. Places for which nothing does are left out of the next one.
 const WAYS: usize = 20;
 /// The price of a turn by itself, and of an edge by itself and for each metre of it, in centimetres of missing room. A kilometre to
 /// measure costs as much as a turn.
@@ -53,7 +53,7 @@ impl Planner {
         let snapped = question.places.iter().map(|&place| snap(place)).collect::<Result<Vec<_>, _>>()?;
         let mut fitter = Fitter::new(self.graph.roads(), &self.driver);
         let mut hopeless = Hopeless::default();
-        for _ in 0..WAYS {
+        for _ in 0..WAYS.min(question.tries.max(1)) {
             let Some((found, start, end)) = self.way(&access, &snapped)? else { return Ok(Err(hopeless)) };
             let way = Way { drive: &found.drive, start, end };
             match fitter.fit(&way, &access, stop)? {
@@ -84,24 +84,7 @@ impl Planner {
     /// The access to what is safe, and at a price to what room would make safe.
     fn conditional_access(&self, refuted: &[Refutation]) -> Access {
         let (network, movements, permits) = (self.network(), self.graph.movements(), &self.driver.permits);
-        let mut access =
-            Access {
-                edges: (0_u32..).zip(&permits.edges).map(|(edge, permit)| edge_price(network, edge, permit)).collect(),
-                movements: movements
-                    .all()
-                    .iter()
-                    .zip(&permits.movements)
-                    .map(|(m, permit)| {
-                        if m.forbidden.is_some() || m.kind == MovementKind::UTurn { BARRED } else { turn_price(permit) }
-                    })
-                    .collect(),
-                passages: movements
-                    .passages()
-                    .iter()
-                    .zip(&permits.passages)
-                    .map(|(p, permit)| if p.forbidden.is_some() { BARRED } else { turn_price(permit) })
-                    .collect(),
-            };
+        let mut access = permits.access_by(movements, |edge, permit| edge_price(network, edge, permit), turn_price);
         for refutation in refuted.iter().filter(|refutation| refutation.left_out) {
             if let Some(slot) = obstacles::slot(&mut access, movements, refutation.at).filter(|slot| **slot == 0) {
                 let missing_m = refutation.result.map(|(rsc_m, _)| (-rsc_m).max(0.0));
@@ -116,10 +99,9 @@ fn price(cm: f64) -> u64 {
     CENTIMETRE * cm.clamp(1.0, TURN_CM + MOST_MISSING_CM) as u64
 }
 
-/// The price of an edge: a measure of what has to be measured there, and of how much is missing.
+/// The price of an edge that is not safe: a measure of what has to be measured there, and of how much is missing.
 fn edge_price(network: &Network, edge: u32, permit: &Permit) -> u64 {
     match (permit.verdict, permit.rsc_m) {
-        (Verdict::Safe, _) => 0,
         (Verdict::Unsafe(UnsafeReason::Width), Some(rsc_m)) if rsc_m.is_finite() => {
             let length_m = network.edges.get(edge as usize).map_or(0.0, |edge| network.length_m(edge));
             price(EDGE_CM + EDGE_CM_PER_M * length_m + 200.0 * (-rsc_m).max(0.0))
@@ -128,10 +110,9 @@ fn edge_price(network: &Network, edge: u32, permit: &Permit) -> u64 {
     }
 }
 
-/// The price of a turn or passage.
+/// The price of a turn or passage that is not safe.
 fn turn_price(permit: &Permit) -> u64 {
     match (permit.verdict, permit.rsc_m) {
-        (Verdict::Safe, _) => 0,
         (Verdict::Unsafe(UnsafeReason::Width), missing) => {
             let missing_cm = missing.filter(|rsc_m| rsc_m.is_finite()).map(|rsc_m| 100.0 * (-rsc_m).max(0.0));
             price(TURN_CM + missing_cm.unwrap_or(NO_NUMBER_CM))

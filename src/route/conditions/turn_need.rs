@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::suppositions::Suppositions;
-use crate::certify::{KERBS_M, best_of, fits, least_of};
+use crate::certify::{KERBS_M, best_of, fits, flares, least_of};
 use crate::network::{Movement, Network};
 use crate::osm::LonLat;
 use crate::osm::facts::Policy;
@@ -14,9 +14,6 @@ use crate::stet::Model;
 use crate::turns::{Planner, Reach, StrokeLine, TurnCorridors, turn_on};
 use crate::verdict::UnknownReason;
 
-/// Widths before and after a turn are tried in these parts of a metre, and how many of them.
-const FLARES: f64 = 2.0;
-const MORE_FLARES: u8 = 10;
 /// The kerb radius that is supposed together with wider roads, if neither alone is enough, metres.
 const KERB_WITH_FLARE_M: f64 = 12.0;
 /// How far around its nodes a junction is supposed to be paved, metres; and how far together with wider roads.
@@ -247,8 +244,7 @@ impl Turning<'_> {
         let ends = [self.join.from, self.join.to];
         let has_m = ends.into_iter().map(|edge| supposed.width_m(network, edge, self.strip()));
         let has_m = has_m.collect::<Option<Vec<f64>>>()?.into_iter().fold(f64::INFINITY, f64::min);
-        let next = (has_m * FLARES).floor() + 1.0;
-        Some((0..MORE_FLARES).map(|k| (next + f64::from(k)) / FLARES).collect())
+        Some(flares(has_m))
     }
 
     /// The strip that counts near turns.
