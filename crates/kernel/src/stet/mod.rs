@@ -109,6 +109,11 @@ impl SpanResult {
         self.rsc_m.is_some() && self.hinge_margin_rad.is_some()
     }
 
+    /// Whether the vehicle would fold or steer too far, or its bounds do not close, though no room is known to be missing.
+    fn folds(&self) -> bool {
+        !self.safe() && !self.too_narrow()
+    }
+
     /// Whether RSC ≥ 0 and hinge margin ≥ 0.
     #[must_use]
     pub fn safe(&self) -> bool {
@@ -198,7 +203,7 @@ pub fn certify_spans(
         let swept = Swept::new(corridor, &members, spans, Marks::Ends, options, &never);
         for (lane, (&i, plan)) in chunk.iter().zip(&swept.plans).enumerate() {
             let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(lane, span)).collect();
-            let held = held(corridor, members[lane], spans, Marks::Ends, options, &results, &never);
+            let held = held(corridor, (&swept, lane), spans, Marks::Ends, options, &results);
             rows.push(match held {
                 Some((held, spans)) => (i, Planned { plan: held.plans[0].clone(), spans }),
                 None => (i, Planned { plan: plan.clone(), spans: results }),
@@ -226,6 +231,28 @@ pub fn certify(
     Ok(planned.map(|(certificate, _)| certificate))
 }
 
+/// The result of one vehicle for each span, as [`certify_spans`] gives it.
+///
+/// # Errors
+/// `stop` was told: each sweep asks it every few metres.
+pub fn certify_parts(
+    corridor: &Corridor,
+    model: &Model,
+    spans: &[Range<usize>],
+    options: &Options,
+    stop: &Stop,
+) -> Result<Vec<SpanResult>, Stopped> {
+    if corridor.is_empty() {
+        return Ok(Vec::new());
+    }
+    let swept = Swept::new(corridor, &[model], spans, Marks::Ends, options, stop);
+    let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
+    let held = held(corridor, (&swept, 0), spans, Marks::Ends, options, &results);
+    // A cancelled sweep ends early and its numbers mean nothing. `stop` stays told.
+    stop.check()?;
+    Ok(held.map_or(results, |(_, held)| held))
+}
+
 /// Certifies a whole corridor with the plan that [`certify_spans`] makes for `spans`, and returns the result for each
 /// span. These are the details of an edge's certificate.
 ///
@@ -245,7 +272,7 @@ pub fn certify_planned(
     }
     let swept = Swept::new(corridor, &[model], spans, Marks::All, options, stop);
     let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
-    let certified = match held(corridor, model, spans, Marks::All, options, &results, stop) {
+    let certified = match held(corridor, (&swept, 0), spans, Marks::All, options, &results) {
         Some((held, _)) => held.certificate(corridor, spans),
         None => swept.certificate(corridor, spans),
     };
@@ -254,28 +281,53 @@ pub fn certify_planned(
     Ok(Some(certified))
 }
 
-/// Certifies again without corrections where areas count, if the corrected plan steers or folds too far. A path over a junction is
-/// planned with the steering in mind; corrections are not. `None` if that is no remedy.
+/// Certifies a vehicle of a group again without corrections where areas count, if the corrected plan steers or folds too far. A path
+/// over a junction is planned with the steering in mind; corrections are not. If corrections are needed over another area, they are taken
+/// back only over areas where the vehicle folds. `None` if that is no remedy.
 fn held<'m>(
     corridor: &Corridor,
-    model: &'m Model,
+    (corrected, lane): (&Swept<'m>, usize),
     spans: &[Range<usize>],
     marks: Marks,
     options: &Options,
     results: &[SpanResult],
-    stop: &'m Stop,
 ) -> Option<(Swept<'m>, Vec<SpanResult>)> {
-    let corrected = options.max_shift_m > 0.0 && options.correction_sweeps > 0;
-    let folds = |result: &SpanResult| !result.safe() && !result.too_narrow();
-    if corridor.areas.is_empty() || !corrected || !results.iter().any(folds) {
+    let corrects = options.max_shift_m > 0.0 && options.correction_sweeps > 0;
+    if corridor.areas.is_empty() || !corrects || !results.iter().any(SpanResult::folds) {
         return None;
     }
-    let swept = Swept::along(corridor, &[model], spans, marks, stop, &|track, group| {
-        plan::best(track, group, spans, options, true, stop)
-    });
-    let held: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
+    let (model, stop) = (corrected.group.models[lane], corrected.stop);
+    let without = |held: &[Range<usize>]| {
+        let swept = Swept::along(corridor, &[model], spans, marks, stop, &|track, group| {
+            plan::best(track, group, spans, options, held, stop)
+        });
+        let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
+        (swept, results)
+    };
     let safe = |results: &[SpanResult]| results.iter().filter(|result| result.safe()).count();
-    (safe(&held) > safe(results)).then_some((swept, held))
+    let all: Vec<Range<usize>> = corridor.areas.iter().map(|area| area.heads.clone()).collect();
+    let mut best = Some(without(&all)).filter(|(_, held)| safe(held) > safe(results));
+    let mut held: Vec<Range<usize>> = Vec::new();
+    let mut folding = folding(corrected, lane, &all);
+    for _ in 0..HOLDS {
+        let most = best.as_ref().map_or(safe(results), |(_, results)| safe(results));
+        let known = held.len();
+        held.extend(folding.into_iter().filter(|area| !held.contains(area)).collect::<Vec<_>>());
+        if most == spans.len() || held.len() == known || held.len() == all.len() || stop.told() {
+            break;
+        }
+        let (swept, results) = without(&held);
+        folding = self::folding(&swept, 0, &all);
+        if safe(&results) > most {
+            best = Some((swept, results));
+        }
+    }
+    best
+}
+
+/// The areas over which a vehicle folds or steers too far, by the stations of its steer axle.
+fn folding(swept: &Swept<'_>, lane: usize, areas: &[Range<usize>]) -> Vec<Range<usize>> {
+    areas.iter().filter(|area| swept.result(lane, area).folds()).cloned().collect()
 }
 
 /// All leeways at γ = 1, refined by the adjoint where that is worth its time.
@@ -287,6 +339,9 @@ fn thorough(track: &Track, group: &Group<'_>, shift: &[V], stop: &Stop) -> Vec<M
     let loose = |lane: usize, head: usize| full[lane].loose[head / BLOCK];
     sweep::<true>(track, group, shift, &Wanted { refined: Some(&loose), ..Wanted::ALL }, stop)
 }
+
+/// How often corrections are taken back over more areas.
+const HOLDS: usize = 3;
 
 /// The stations at which the leeway between two points of a side is examined.
 #[derive(Debug, Clone, Copy)]
@@ -325,7 +380,7 @@ impl<'m> Swept<'m> {
         stop: &'m Stop,
     ) -> Self {
         Self::along(corridor, models, spans, marks, stop, &|track, group| {
-            plan::best(track, group, spans, options, false, stop)
+            plan::best(track, group, spans, options, &[], stop)
         })
     }
 

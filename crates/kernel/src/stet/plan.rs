@@ -25,13 +25,13 @@ const ENOUGH_M: f64 = 0.5;
 const KNOT_STEP: usize = KNOT_STATIONS / 2;
 
 /// The best plan of each vehicle, out of the centred one and its corrections. The last correction is not always the
-/// best. With `held`, the plan is the centreline where areas count.
+/// best. The plan is the centreline near the stations `held`.
 pub(super) fn best(
     track: &Track,
     group: &Group<'_>,
     spans: &[Range<usize>],
     options: &Options,
-    held: bool,
+    held: &[Range<usize>],
     stop: &Stop,
 ) -> Vec<Plan> {
     let centred = vec![Plan::centred(track.count); group.models.len()];
@@ -66,9 +66,7 @@ pub(super) fn best(
             now = centred_between(&coarse, group, &minima, &now, options.max_shift_m);
         }
         now = climb(&mut ascent, now);
-        if held {
-            hold(track, &mut now);
-        }
+        hold(track, held, &mut now);
     }
     let coefficient = |lane: usize| {
         let best = &best;
@@ -77,12 +75,15 @@ pub(super) fn best(
     (0..group.models.len()).map(|lane| Plan::through(track.count, coefficient(lane))).collect()
 }
 
-/// Takes back corrections at the knots whose splines reach into an area's stations.
-fn hold(track: &Track, coefficients: &mut [V]) {
+/// Takes back corrections at the knots whose splines reach into some stations.
+fn hold(track: &Track, held: &[Range<usize>], coefficients: &mut [V]) {
     for (i, coefficient) in coefficients.iter_mut().enumerate() {
         let at = (track.lead + KNOT_STATIONS * i).saturating_sub(KNOT_STATIONS);
         let reach = 2 * KNOT_STATIONS;
-        if track.areas.touch(at.saturating_sub(reach), at + reach) {
+        let touch = |held: &Range<usize>| {
+            track.lead + held.start <= at + reach && at.saturating_sub(reach) < track.lead + held.end
+        };
+        if held.iter().any(touch) {
             *coefficient = ZERO;
         }
     }
