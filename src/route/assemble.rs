@@ -176,13 +176,15 @@ pub fn assemble(
     string.finish(frame, finest_m.max(LEAST_SPACING_M), &between)
 }
 
-/// The movement from one edge into the next, or over the arcs between them.
+/// The movement from one edge into the next, or over the arcs between them. A way may lead over arcs that are no passage of the
+/// network, if its steps are lawful one by one.
 pub(super) fn movement(movements: &Movements, from: u32, arcs: &[u32], to: u32) -> Option<Movement> {
     if arcs.is_empty() {
         return movements.between(from, to).copied();
     }
-    let passage = movements.passages().get(movements.passage(from, to)?)?;
-    Some(Movement { from, to, kind: MovementKind::Turn, forbidden: passage.forbidden })
+    let passage = movements.passage(from, to).and_then(|place| movements.passages().get(place));
+    let forbidden = passage.filter(|passage| passage.through == arcs).and_then(|passage| passage.forbidden);
+    Some(Movement { from, to, kind: MovementKind::Turn, forbidden })
 }
 
 /// A turn of the route, in the route's frame.

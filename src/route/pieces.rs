@@ -12,7 +12,7 @@ use crate::settings::Settings;
 use crate::turns::{Joint, Reach, StrokeLine, TurnParams};
 use crate::verdict::UnknownReason;
 
-/// One certified way to drive a turn.
+/// One way to drive a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TurnPiece {
     /// The frame of the corridor's positions.
@@ -33,23 +33,44 @@ pub struct TurnPiece {
 
 /// A source of turns.
 pub trait Turns: Send {
-    /// The certified ways to drive from one edge into another, the best first. `arcs` are the edges between of a passage,
+    /// The ways to drive from one edge into another that the source counts, the best first. `arcs` are the edges between of a passage,
     /// else empty.
     ///
     /// # Errors
     /// The turn has no corridor; the error is the reason.
     fn pieces(&self, strokes: &mut Strokes, movement: &Movement, arcs: &[u32])
     -> Result<Vec<TurnPiece>, UnknownReason>;
+
+    /// The first of [`Turns::pieces`] alone, if that is less work.
+    ///
+    /// # Errors
+    /// The turn has no corridor; the error is the reason.
+    fn first(
+        &self,
+        strokes: &mut Strokes,
+        movement: &Movement,
+        arcs: &[u32],
+    ) -> Result<Option<TurnPiece>, UnknownReason> {
+        Ok(self.pieces(strokes, movement, arcs)?.into_iter().next())
+    }
 }
 
-/// The paths of a turn, the best first.
-type Made = Result<Vec<Arc<TurnPiece>>, UnknownReason>;
+/// The paths of a turn that were made.
+struct Made {
+    /// The best first.
+    paths: Result<Vec<Arc<TurnPiece>>, UnknownReason>,
+    /// Whether these are all.
+    all: bool,
+}
+
+/// By turn, the place of its chosen path. A turn that is missing has its best path.
+pub(super) type Choices = FxHashMap<(u32, u32), usize>;
 
 /// Chooses the path of each turn: the best one, until another is requested.
 pub struct Menu {
     turns: Box<dyn Turns>,
     made: FxHashMap<(u32, u32), Made>,
-    choice: FxHashMap<(u32, u32), usize>,
+    choice: Choices,
 }
 
 impl Menu {
@@ -62,7 +83,7 @@ impl Menu {
     /// Forgets turns of which this holds, by the edges before and after them.
     pub(super) fn forget(&mut self, changed: impl Fn(u32, u32) -> bool) {
         self.made.retain(|&(from, to), _| !changed(from, to));
-        self.choice.clear();
+        self.choice.retain(|&(from, to), _| !changed(from, to));
     }
 
     /// Resets every turn to its best path.
@@ -73,7 +94,7 @@ impl Menu {
     /// The chosen path of a turn, or of a passage over these arcs.
     ///
     /// # Errors
-    /// The turn has no certified path; the error is the reason.
+    /// The turn has no path that counts; the error is the reason.
     pub fn chosen(
         &mut self,
         strokes: &mut Strokes,
@@ -82,10 +103,28 @@ impl Menu {
     ) -> Result<Arc<TurnPiece>, UnknownReason> {
         let key = (movement.from, movement.to);
         let turns = &self.turns;
-        let make = || Ok(turns.pieces(strokes, movement, arcs)?.into_iter().map(Arc::new).collect());
-        let made = self.made.entry(key).or_insert_with(make).as_ref().map_err(|reason| *reason)?;
-        let choice = self.choice.get(&key).copied().unwrap_or(0);
-        made.get(choice).cloned().ok_or(UnknownReason::Geometry)
+        let choice = self.choice.entry(key).or_insert(0);
+        let mut first = || Ok(turns.first(strokes, movement, arcs)?.into_iter().map(Arc::new).collect());
+        let made = self.made.entry(key).or_insert_with(|| Made { paths: first(), all: false });
+        if *choice > 0 && !made.all {
+            let pieces = turns.pieces(strokes, movement, arcs);
+            let paths = pieces.map(|pieces| pieces.into_iter().map(Arc::new).collect());
+            *made = Made { paths, all: true };
+        }
+        let paths = made.paths.as_ref().map_err(|reason| *reason)?;
+        // There may be no other path after all.
+        *choice = (*choice).min(paths.len().saturating_sub(1));
+        paths.get(*choice).cloned().ok_or(UnknownReason::Geometry)
+    }
+
+    /// The paths chosen so far, by their places in the order of each turn's paths.
+    pub(super) fn choices(&self) -> &Choices {
+        &self.choice
+    }
+
+    /// Chooses these paths, and of every other turn the best one.
+    pub(super) fn choose(&mut self, choices: &Choices) {
+        self.choice.clone_from(choices);
     }
 
     /// Chooses the next pair of paths for two successive turns. Returns whether there is one.
@@ -100,10 +139,15 @@ impl Menu {
         there
     }
 
-    /// Chooses the next path of a turn. Returns whether there is one.
+    /// Chooses the next path of a turn. Returns whether there may be one. If there is none, the turn keeps its path.
     pub fn another(&mut self, from: u32, to: u32) -> bool {
         let choice = self.choice.entry((from, to)).or_insert(0);
-        let there = matches!(self.made.get(&(from, to)), Some(Ok(made)) if *choice + 1 < made.len());
+        let more = |made: &Made| match &made.paths {
+            Ok(paths) if made.all => *choice + 1 < paths.len(),
+            Ok(paths) => !paths.is_empty(),
+            Err(_) => false,
+        };
+        let there = self.made.get(&(from, to)).is_some_and(more);
         *choice += usize::from(there);
         there
     }

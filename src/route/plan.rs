@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use super::assemble::{AssemblyError, PartKind, RoutePath, Way};
-use super::conditions::Conditional;
+use super::conditions::{Conditional, Fitter};
 use super::drive::{Drive, Join};
 use super::driver::Driver;
 use super::graph::{Access, BARRED, Graph};
@@ -101,6 +101,8 @@ pub struct Planner {
     pub(super) snapper: Snapper,
     pub(super) driver: Arc<Driver>,
     whole: Whole,
+    /// Made when a route under conditions is first asked for.
+    pub(super) fitter: Option<Box<Fitter>>,
     speeds: Speeds,
     access: Access,
     pub(super) stop: Stop,
@@ -129,6 +131,7 @@ impl Planner {
             snapper: Snapper::new(roads),
             access: driver.permits.access(&roads.movements),
             whole: Whole::new(roads, Arc::clone(&driver), turns),
+            fitter: None,
             driver,
             speeds,
             stop: Stop::default(),

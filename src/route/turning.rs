@@ -1,4 +1,4 @@
-//! Makes the turns of a route from the corridors of `turns`. Only corridors that are certified as safe for the vehicle count.
+//! Makes the turns of a route from the corridors of `turns`.
 
 use std::sync::Arc;
 
@@ -20,13 +20,16 @@ pub struct MadeTurns {
     pub driver: Arc<Driver>,
     /// Number of simple paths of a turn that are tried beside the path of its permit. Those with the most room are tried.
     pub more: usize,
+    /// Whether paths count whose own certificate is not safe. That certificate judges the road before and after the turn as if the
+    /// vehicle went straight on there. A route under conditions is judged as a whole.
+    pub unsafe_too: bool,
 }
 
 impl MadeTurns {
     /// Turns with the usual number of paths.
     #[must_use]
     pub fn new(driver: Arc<Driver>) -> Self {
-        Self { driver, more: MORE }
+        Self { driver, more: MORE, unsafe_too: false }
     }
 }
 
@@ -39,24 +42,32 @@ impl Turns for MadeTurns {
     ) -> Result<Vec<TurnPiece>, UnknownReason> {
         let made = self.made(strokes, movement, arcs)?;
         let options = &strokes.settings().stet;
-        let known = best_of(&made, &[&self.driver.model], options).pop().flatten();
-        let known = known.filter(|(_, result)| result.safe());
+        let known = self.best(&made, options);
         let code = known.as_ref().map(|(path, _)| path.code);
         let others = Planner::new(&made).best_seeds(&self.driver.model.vehicle, self.more);
         let others = others.into_iter().filter(|other| Some(other.code) != code).filter_map(|other| {
             let path = made.path(other.code)?;
-            let result = self.safe(&path, options)?;
+            let result = self.certified(&path, options)?;
             Some((path, result))
         });
-        let mut safe: Vec<(TurnPath, SpanResult)> = known.into_iter().chain(others).collect();
-        safe.sort_by(|a, b| b.1.rsc_m.partial_cmp(&a.1.rsc_m).unwrap_or(std::cmp::Ordering::Equal));
-        let frame = made.frame;
-        let reach = Reach::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
-        let piece = |path: TurnPath| {
-            let TurnPath { corridor, area, turn, approach, departure, .. } = path;
-            TurnPiece { frame, corridor, turn, approach, departure, area, reach }
-        };
-        Ok(safe.into_iter().map(|(path, _)| piece(path)).collect())
+        let mut others: Vec<(TurnPath, SpanResult)> = others.collect();
+        let order = |result: &SpanResult| (result.safe(), result.rsc_m);
+        others.sort_by(|a, b| order(&b.1).partial_cmp(&order(&a.1)).unwrap_or(std::cmp::Ordering::Equal));
+        known.into_iter().chain(others).map(|(path, _)| self.piece(&made, path)).collect()
+    }
+
+    fn first(
+        &self,
+        strokes: &mut Strokes,
+        movement: &Movement,
+        arcs: &[u32],
+    ) -> Result<Option<TurnPiece>, UnknownReason> {
+        let made = self.made(strokes, movement, arcs)?;
+        match self.best(&made, &strokes.settings().stet) {
+            Some((path, _)) => self.piece(&made, path).map(Some),
+            // Another path may count although the best one of the search does not.
+            None => Ok(self.pieces(strokes, movement, arcs)?.into_iter().next()),
+        }
     }
 }
 
@@ -74,8 +85,22 @@ impl MadeTurns {
         turn_on(network, (*movement, arcs), &line, policy, params, reach)
     }
 
-    fn safe(&self, path: &TurnPath, options: &Options) -> Option<SpanResult> {
+    fn best(&self, made: &TurnCorridors, options: &Options) -> Option<(TurnPath, SpanResult)> {
+        best_of(made, &[&self.driver.model], options).pop().flatten().filter(|(_, result)| self.counts(result))
+    }
+
+    fn piece(&self, made: &TurnCorridors, path: TurnPath) -> Result<TurnPiece, UnknownReason> {
+        let TurnPath { corridor, area, turn, approach, departure, .. } = path;
+        let reach = Reach::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
+        Ok(TurnPiece { frame: made.frame, corridor, turn, approach, departure, area, reach })
+    }
+
+    fn counts(&self, result: &SpanResult) -> bool {
+        self.unsafe_too || result.safe()
+    }
+
+    fn certified(&self, path: &TurnPath, options: &Options) -> Option<SpanResult> {
         let rows = certify_spans(&path.corridor, &[&self.driver.model], std::slice::from_ref(&path.counted), options);
-        rows.into_iter().next()?.spans.into_iter().next().filter(SpanResult::safe)
+        rows.into_iter().next()?.spans.into_iter().next().filter(|result| self.counts(result))
     }
 }

@@ -8,14 +8,19 @@ use super::assemble::{AssemblyError, PartKind, RoutePath, Way, assemble};
 use super::drive::Drive;
 use super::driver::Driver;
 use super::obstacles::Refutation;
-use super::pieces::{Menu, Strokes, Turns};
+use super::pieces::{Choices, Menu, Strokes, Turns};
 use super::roads::Roads;
 use crate::corridor::Corridor;
-use crate::stet::{self, Certificate};
+use crate::network::offset_m;
+use crate::osm::LonLat;
+use crate::stet::{self, Certificate, SpanResult};
 use crate::stop::{Stop, Stopped};
 
 /// A failure of the whole route is attributed to the nearest turn within this distance, metres, else to the edge at the place.
 const TURN_REACH_M: f64 = 120.0;
+/// What changes at this distance from a turn's nodes matters to no vehicle that takes the turn, metres: the road that counts before and
+/// after a turn is shorter.
+const BESIDE_M: f64 = 250.0;
 /// The greatest number of combinations of paths that are joined for one way.
 const MOST_STRUNG: usize = 100;
 
@@ -35,6 +40,19 @@ pub(super) struct Certified {
     pub(super) certificate: Certificate,
 }
 
+/// A way whose pieces could be joined, with the result for each of its parts.
+pub(super) struct Looked {
+    pub(super) path: RoutePath,
+    /// By part of the path.
+    pub(super) results: Vec<SpanResult>,
+}
+
+impl Looked {
+    pub(super) fn safe(&self) -> bool {
+        self.results.iter().all(SpanResult::safe)
+    }
+}
+
 impl Whole {
     /// Nothing is made yet. Strokes and turns have the settings of the driver's permits.
     pub(super) fn new(roads: &Arc<Roads>, driver: Arc<Driver>, turns: Box<dyn Turns>) -> Self {
@@ -47,17 +65,16 @@ impl Whole {
         let network = &roads.network;
         let stroke = |edge: u32| self.strokes.of(edge).map(|place| place.0);
         let strokes: FxHashSet<u32> = edges.iter().filter_map(|&edge| stroke(edge)).collect();
-        let node = |edge: u32, end: bool| {
-            network.edges.get(edge as usize).map_or(0, |edge| if end { edge.to_node } else { edge.from_node })
+        let line = |edge: u32| network.edges.get(edge as usize).map(|edge| network.positions(edge));
+        let around = nodes.iter().filter_map(|&node| network.crossings.at(node).first().copied());
+        let changed: Vec<LonLat> = edges.iter().copied().chain(around).filter_map(line).flatten().collect();
+        let near = |a: LonLat, b: LonLat| {
+            let [east_m, north_m] = offset_m(a, b);
+            east_m.hypot(north_m) < BESIDE_M
         };
-        let ends = edges.iter().flat_map(|&edge| [node(edge, false), node(edge, true)]);
-        let nodes: FxHashSet<i64> = nodes.iter().copied().chain(ends).collect();
         self.menu.forget(|from, to| {
-            let [a, b] = [node(from, true), node(to, false)];
-            // The edges inside a passage are not known here.
-            a != b
-                || nodes.contains(&a)
-                || [from, to].into_iter().filter_map(stroke).any(|stroke| strokes.contains(&stroke))
+            let ends = [line(from).and_then(|mut line| line.next_back()), line(to).and_then(|mut line| line.next())];
+            ends.into_iter().flatten().any(|end| changed.iter().any(|&at| near(at, end)))
         });
         self.strokes.go_on_with(roads, |stroke| strokes.contains(&stroke));
         self.roads = Arc::clone(roads);
@@ -97,11 +114,66 @@ impl Whole {
         Ok((None, failed))
     }
 
-    fn certify(&mut self, way: &Way<'_>, stop: &Stop) -> Result<Result<Certified, Refutation>, Stopped> {
-        let roads = &self.roads;
-        let path = match assemble(&roads.network, &roads.movements, &mut self.strokes, &mut self.menu, way, stop) {
+    /// Joins the pieces of a way and certifies each of its parts. Turns have the chosen paths, unless two of them overlap; then others
+    /// are chosen.
+    pub(super) fn look(
+        &mut self,
+        way: &Way<'_>,
+        choices: &mut Choices,
+        stop: &Stop,
+    ) -> Result<Result<Looked, AssemblyError>, Stopped> {
+        self.menu.choose(choices);
+        let mut joined = self.assemble(way, stop)?;
+        for _ in 0..MOST_STRUNG {
+            let Err(AssemblyError::Overlap {
+                before: PartKind::Turn { from: a, to: b },
+                at: PartKind::Turn { from, to },
+            }) = joined
+            else {
+                break;
+            };
+            if !self.menu.another_pair((a, b), (from, to)) {
+                break;
+            }
+            joined = self.assemble(way, stop)?;
+        }
+        let path = match joined {
             Ok(path) => path,
-            Err(AssemblyError::Stopped(stopped)) => return Err(stopped),
+            Err(error) => return Ok(Err(error)),
+        };
+        choices.clone_from(self.menu.choices());
+        let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
+        let results = stet::certify_parts(&path.corridor, model, &parts(&path), options, stop)?;
+        Ok(Ok(Looked { path, results }))
+    }
+
+    /// The certificate of a way over the whole, if it is safe, with the plan that is best for its parts.
+    pub(super) fn prove(&self, path: RoutePath, stop: &Stop) -> Result<Option<Certified>, Stopped> {
+        let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
+        let certified = stet::certify_planned(&path.corridor, model, &parts(&path), options, stop)?;
+        let safe = certified.filter(|(certificate, _)| certificate.result.safe());
+        Ok(safe.map(|(certificate, _)| Certified { path, certificate }))
+    }
+
+    /// Chooses the next path of a turn. Returns whether there may be one.
+    pub(super) fn another(&mut self, (from, to): (u32, u32), choices: &mut Choices) -> bool {
+        self.menu.choose(choices);
+        let another = self.menu.another(from, to);
+        choices.clone_from(self.menu.choices());
+        another
+    }
+
+    fn assemble(&mut self, way: &Way<'_>, stop: &Stop) -> Result<Result<RoutePath, AssemblyError>, Stopped> {
+        let roads = &self.roads;
+        match assemble(&roads.network, &roads.movements, &mut self.strokes, &mut self.menu, way, stop) {
+            Err(AssemblyError::Stopped(stopped)) => Err(stopped),
+            joined => Ok(joined),
+        }
+    }
+
+    fn certify(&mut self, way: &Way<'_>, stop: &Stop) -> Result<Result<Certified, Refutation>, Stopped> {
+        let path = match self.assemble(way, stop)? {
+            Ok(path) => path,
             Err(error) => return Ok(Err(unassembled(error, way.drive))),
         };
         let certificate = stet::certify(&path.corridor, &self.driver.model, &self.driver.permits.settings.stet, stop)?;
@@ -117,6 +189,11 @@ impl Whole {
         }
         Ok(Ok(Certified { path, certificate }))
     }
+}
+
+/// The stations of a path's parts.
+fn parts(path: &RoutePath) -> Vec<std::ops::Range<usize>> {
+    path.parts.iter().map(|part| part.stations.clone()).collect()
 }
 
 /// The refutation of a way whose pieces could not be joined.

@@ -4,6 +4,7 @@
 mod areas;
 mod bends;
 mod complexes;
+mod conditions;
 mod corners;
 mod corridor_extracts;
 mod demo_region;

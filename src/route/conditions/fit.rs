@@ -1,45 +1,43 @@
 //! Finds what has to hold on one way, so that the whole way is certified.
+//!
+//! Each edge and turn that is not safe by itself gets what it needs. Then the whole way is certified, and where it fails more is supposed.
+//! Two turns on too short a road between them become one passage. At last everything is taken back that the whole can do without.
 
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
+use super::ConditionAt;
+use super::failing::{Failing, failing, place_of};
+use super::joint;
 use super::suppositions::Suppositions;
 use super::turn_need::Turning;
-use crate::certify::{MOST_KERB_M, MOST_MORE_M, edge_need};
+use crate::certify::edge_need;
 use crate::network::{self, MovementKind, Network};
 use crate::osm::facts::Policy;
-use crate::route::assemble::{PartKind, Way, movement};
+use crate::route::assemble::{AssemblyError, PartKind, Way, movement};
 use crate::route::drive::{Drive, Join};
 use crate::route::driver::Driver;
 use crate::route::graph::Access;
-use crate::route::obstacles::Refutation;
+use crate::route::pieces::Choices;
 use crate::route::roads::Roads;
 use crate::route::turning::MadeTurns;
-use crate::route::whole::{Certified, Whole};
+use crate::route::whole::{Certified, Looked, Whole};
 use crate::stop::{Stop, Stopped};
 
 /// How many paths of a turn are tried beside the best one.
-const MORE_PATHS: usize = 1;
+const MORE_PATHS: usize = 2;
 /// How often a whole way is tried, each time with more supposed where it failed.
-const ROUNDS: usize = 10;
+const ROUNDS: usize = 12;
+/// How often at most something is taken back.
+const LESS: usize = 8;
 /// Where an edge lacks room, its way is as wide as it must be over the vehicle's length and this, metres.
 const BESIDE_M: f64 = 20.0;
-/// The least that is added to a width or a radius where the whole fails, metres.
-const WIDER_M: f64 = 0.1;
-const ROUNDER_M: f64 = 1.0;
-/// How far a junction is supposed to be paved: by how much more, at most and at first, metres.
-const PAVED_STEP_M: f64 = 3.0;
-const MOST_PAVED_M: f64 = 36.0;
-const FIRST_PAVED_M: f64 = 9.0;
-/// Where the whole lacks this much, more than one thing is supposed at once, metres; what it lacks where no bound holds.
-const MUCH_M: f64 = 0.3;
-const NO_BOUND_M: f64 = 1.0;
 
-/// Fits ways, and keeps what it has found out about edges.
-pub(super) struct Fitter {
-    roads: Arc<Roads>,
-    driver: Arc<Driver>,
+/// Fits ways, and keeps what it has found out about edges and turns. Its answers do not depend on earlier ones.
+pub(in crate::route) struct Fitter {
+    pub(super) roads: Arc<Roads>,
+    pub(super) driver: Arc<Driver>,
     base: Arc<network::Site>,
     stroke_of: Arc<[u32]>,
     needs_m: FxHashMap<u32, Option<f64>>,
@@ -49,17 +47,40 @@ pub(super) struct Fitter {
     whole: Option<(Whole, Suppositions)>,
 }
 
-/// The edges before and after a turn, and the widths of the roads beside it in centimetres.
-type TurnKey = (u32, u32, Vec<i64>);
+/// The edges of a turn, with the widths of the roads beside it in centimetres.
+type TurnKey = (Vec<u32>, Vec<i64>);
 
 /// A way that is certified if everything supposed holds.
 pub(super) struct Fitted {
+    /// The edges. Turns that are driven as one are one passage.
+    pub(super) drive: Drive,
     pub(super) certified: Certified,
     pub(super) supposed: Suppositions,
 }
 
 /// The places on a way for which nothing does.
 pub(super) struct Unfit(pub(super) Vec<PartKind>);
+
+/// A way while it is fitted.
+pub(super) struct Fitting {
+    pub(super) drive: Drive,
+    start: f64,
+    end: f64,
+    pub(super) supposed: Suppositions,
+    /// How often more room was sought.
+    pub(super) helped: usize,
+    choices: Choices,
+}
+
+/// What becomes of a step of a way.
+enum Step {
+    /// It needs nothing, or what is supposed now.
+    Done,
+    /// It is now part of a longer passage.
+    Merged,
+    /// Nothing does.
+    Unfit,
+}
 
 impl Fitter {
     pub(super) fn new(roads: &Arc<Roads>, driver: &Arc<Driver>) -> Self {
@@ -82,62 +103,185 @@ impl Fitter {
         access: &Access,
         stop: &Stop,
     ) -> Result<Result<Fitted, Unfit>, Stopped> {
-        let mut supposed = Suppositions::new(Arc::clone(&self.base));
-        let mut unfit = self.suppose_widths(way.drive, access, &mut supposed, stop)?;
-        unfit.extend(self.suppose_turns(way.drive, access, &mut supposed, stop)?);
-        if !unfit.is_empty() {
-            return Ok(Err(Unfit(unfit)));
+        let supposed = Suppositions::new(Arc::clone(&self.base));
+        let mut fitting = Fitting {
+            drive: way.drive.clone(),
+            start: way.start,
+            end: way.end,
+            supposed,
+            helped: 0,
+            choices: Choices::default(),
+        };
+        // Turns that are not safe by themselves may pass as parts of the whole.
+        let roomy = fitting.drive.edges.iter().all(|&edge| access.edges.get(edge as usize) == Some(&0));
+        if roomy && self.look(&mut fitting, stop)?.is_ok_and(|looked| looked.safe()) {
+            if let Some(certified) = self.fresh(&fitting, stop)? {
+                return Ok(Ok(Fitted { drive: fitting.drive, certified, supposed: fitting.supposed }));
+            }
         }
+        let mut unfit = self.suppose_widths(&mut fitting, access, stop)?;
+        unfit.extend(self.suppose_turns(&mut fitting, access, stop)?);
+        if unfit.is_empty() {
+            unfit.extend(self.suppose_until_safe(&mut fitting, stop)?);
+        }
+        if unfit.is_empty() {
+            self.take_back(&mut fitting, access, stop)?;
+            // The answer is made from nothing that was made before.
+            if let Some(certified) = self.fresh(&fitting, stop)? {
+                return Ok(Ok(Fitted { drive: fitting.drive, certified, supposed: fitting.supposed }));
+            }
+            unfit.extend(fitting.drive.joins().next().map(|join| PartKind::Turn { from: join.from, to: join.to }));
+        }
+        let unfit = unfit.into_iter().flat_map(|at| joint::parted(way.drive, at)).collect();
+        Ok(Err(Unfit(unfit)))
+    }
+
+    /// Supposes more where the whole fails, until it is safe. Returns the place where nothing more does.
+    fn suppose_until_safe(&mut self, fitting: &mut Fitting, stop: &Stop) -> Result<Option<PartKind>, Stopped> {
         let mut last = None;
         for _ in 0..ROUNDS {
-            supposed.apply(network_of(&mut self.roads));
-            let fresh = self.whole.is_none();
-            let going = match self.whole.take() {
-                None => self.new_whole(),
-                Some((mut whole, before)) => {
-                    let (edges, nodes) = supposed.differ(&before);
-                    whole.go_on_with(&self.roads, &edges, &nodes);
-                    whole
+            let goes_on = match self.look(fitting, stop)? {
+                Err(error) => {
+                    let at = place_of(&error, &fitting.drive);
+                    last = Some(at);
+                    self.merge(fitting, at, stop)?
+                }
+                Ok(looked) if looked.safe() => return Ok(None),
+                Ok(looked) => {
+                    let places = failing(&looked);
+                    last = places.first().map(|place| place.at);
+                    let mut more = false;
+                    for place in places {
+                        more |= self.help(fitting, &place, stop)?;
+                    }
+                    more
                 }
             };
-            let (going, _) = self.whole.insert((going, supposed.clone()));
-            let result = certify(going, way, stop)?;
-            let refutation = match result {
-                Ok(certified) if fresh => return Ok(Ok(Fitted { certified, supposed })),
-                // The answer is made from nothing that was made before.
-                Ok(_) => match certify(&mut self.new_whole(), way, stop)? {
-                    Ok(certified) => return Ok(Ok(Fitted { certified, supposed })),
-                    Err(refutation) => refutation,
-                },
-                Err(refutation) => refutation,
-            };
-            last = Some(refutation.at);
-            if !self.suppose_more(way.drive, &refutation, &mut supposed) {
+            if !goes_on {
                 break;
             }
         }
-        Ok(Err(Unfit(last.into_iter().collect())))
+        Ok(last.or_else(|| fitting.drive.edges.first().map(|&edge| PartKind::Edge(edge))))
+    }
+
+    /// Supposes more at a place where the whole fails, or drives another path there. Returns whether there is more to try.
+    fn help(&mut self, fitting: &mut Fitting, place: &Failing, stop: &Stop) -> Result<bool, Stopped> {
+        let PartKind::Turn { from, to } = place.at else { return Ok(self.more_room(fitting, place)) };
+        let another = |fitter: &mut Self, fitting: &mut Fitting| {
+            fitter.whole.as_mut().is_some_and(|(whole, _)| whole.another((from, to), &mut fitting.choices))
+        };
+        // More room does not unfold a vehicle. Another path may, or one path over two turns.
+        if place.folds {
+            return Ok(another(self, fitting)
+                || self.merge(fitting, place.at, stop)?
+                || self.more_room(fitting, place));
+        }
+        if self.more_room(fitting, place) {
+            // The turn's paths are others now.
+            fitting.choices.remove(&(from, to));
+            return Ok(true);
+        }
+        Ok(another(self, fitting) || self.merge(fitting, place.at, stop)?)
+    }
+
+    /// Makes one passage of a turn and the turn nearest to it, and supposes what the passage needs.
+    fn merge(&mut self, fitting: &mut Fitting, at: PartKind, stop: &Stop) -> Result<bool, Stopped> {
+        let roads = Arc::clone(&self.roads);
+        let Some((merged, at)) = joint::merged(&roads.network, &roads.movements, &fitting.drive, at) else {
+            return Ok(false);
+        };
+        drop(roads);
+        let before = std::mem::replace(&mut fitting.drive, merged);
+        let place = fitting.drive.joins().position(|join| (join.from, join.to) == at);
+        let step = place.map_or(Ok(Step::Unfit), |place| self.suppose_turn(fitting, place, stop))?;
+        if matches!(step, Step::Unfit) {
+            fitting.drive = before;
+        }
+        Ok(!matches!(step, Step::Unfit))
+    }
+
+    /// Joins and certifies the way under what is supposed.
+    fn look(&mut self, fitting: &mut Fitting, stop: &Stop) -> Result<Result<Looked, AssemblyError>, Stopped> {
+        fitting.supposed.apply(network_of(&mut self.roads));
+        let going = match self.whole.take() {
+            None => self.new_whole(),
+            Some((mut whole, before)) => {
+                let (edges, nodes) = fitting.supposed.differ(&before);
+                whole.go_on_with(&self.roads, &edges, &nodes);
+                whole
+            }
+        };
+        let (whole, _) = self.whole.insert((going, fitting.supposed.clone()));
+        let Fitting { drive, start, end, choices, .. } = fitting;
+        whole.look(&Way { drive, start: *start, end: *end }, choices, stop)
+    }
+
+    /// The way under what is supposed, if it is safe when everything is made anew.
+    fn fresh(&mut self, fitting: &Fitting, stop: &Stop) -> Result<Option<Certified>, Stopped> {
+        fitting.supposed.apply(network_of(&mut self.roads));
+        let mut fresh = self.new_whole();
+        let way = Way { drive: &fitting.drive, start: fitting.start, end: fitting.end };
+        match fresh.look(&way, &mut fitting.choices.clone(), stop)? {
+            Ok(looked) => fresh.prove(looked.path, stop),
+            Err(_) => Ok(None),
+        }
     }
 
     /// Certifies ways on the roads as they are now.
     fn new_whole(&self) -> Whole {
-        let turns = Box::new(MadeTurns { driver: Arc::clone(&self.driver), more: MORE_PATHS });
+        let driver = Arc::clone(&self.driver);
+        let turns = Box::new(MadeTurns { driver, more: MORE_PATHS, unsafe_too: true });
         Whole::new(&self.roads, Arc::clone(&self.driver), turns)
+    }
+
+    /// Takes back what the whole is safe without, roads first. What remains is less where less does.
+    fn take_back(&mut self, fitting: &mut Fitting, access: &Access, stop: &Stop) -> Result<(), Stopped> {
+        let kerbs = self.driver.permits.settings.kerbs.clone();
+        let mut conditions = fitting.supposed.conditions(&self.roads.network, &kerbs, &fitting.drive.edges);
+        conditions.sort_by_key(|condition| match condition.at {
+            ConditionAt::Road(_) => 0,
+            ConditionAt::Junction(_) => 1,
+            ConditionAt::Corner { .. } => 2,
+        });
+        let mut left = LESS;
+        for condition in conditions {
+            // The road needs by itself what it has no permit without.
+            let priced = |edge: &u32| access.edges.get(*edge as usize).is_some_and(|&price| price > 0);
+            if matches!(&condition.at, ConditionAt::Road(edges) if edges.iter().any(priced)) {
+                continue;
+            }
+            // Most often nothing at all does, or hardly less; the rest is halved.
+            let less = fitting.supposed.less(&condition);
+            let (mut low, mut high) = (0, less.len());
+            let mut at = 0;
+            while low < high && left > 0 {
+                left -= 1;
+                let before = std::mem::replace(&mut fitting.supposed, less[at].clone());
+                let choices = fitting.choices.clone();
+                if self.look(fitting, stop)?.is_ok_and(|looked| looked.safe()) {
+                    high = at;
+                } else {
+                    (fitting.supposed, fitting.choices) = (before, choices);
+                    low = at + 1;
+                }
+                at = usize::midpoint(low, high);
+            }
+        }
+        Ok(())
     }
 
     /// Supposes for each edge with a price the width that it needs, and as much for the way near it.
     fn suppose_widths(
         &mut self,
-        drive: &Drive,
+        fitting: &mut Fitting,
         access: &Access,
-        supposed: &mut Suppositions,
         stop: &Stop,
     ) -> Result<Vec<PartKind>, Stopped> {
         let strip = self.driver.permits.settings.policy;
         let mut unfit = Vec::new();
-        supposed.apply(network_of(&mut self.roads));
-        for (i, &edge) in drive.edges.iter().enumerate() {
-            let inside = drive.over.iter().any(|arcs| arcs.contains(&i));
+        fitting.supposed.apply(network_of(&mut self.roads));
+        for (i, edge) in fitting.drive.edges.clone().into_iter().enumerate() {
+            let inside = fitting.drive.over.iter().any(|arcs| arcs.contains(&i));
             if inside || access.edges.get(edge as usize).is_none_or(|&price| price == 0) {
                 continue;
             }
@@ -147,7 +291,7 @@ impl Fitter {
             let need = || edge_need(network, (stroke, edge), &driver.model, &driver.permits.settings);
             match *self.needs_m.entry(edge).or_insert_with(need) {
                 Some(need_m) => {
-                    self.widen_near(drive, i, strip, need_m, supposed);
+                    self.widen_near(fitting, i, strip, need_m);
                 }
                 None => unfit.push(PartKind::Edge(edge)),
             }
@@ -156,9 +300,10 @@ impl Fitter {
     }
 
     /// Supposes a width for an edge of a way, and for its neighbours on the same stroke up to the vehicle's length.
-    fn widen_near(&self, drive: &Drive, at: usize, strip: Policy, width_m: f64, supposed: &mut Suppositions) -> bool {
+    pub(super) fn widen_near(&self, fitting: &mut Fitting, at: usize, strip: Policy, width_m: f64) -> bool {
         let network = &self.roads.network;
         let reach_m = self.driver.model.vehicle.length_m + BESIDE_M;
+        let Fitting { drive, supposed, .. } = fitting;
         let edges = &drive.edges;
         let stroke = |edge: u32| self.stroke_of.get(edge as usize);
         let mut more = supposed.widen(network, edges[at], strip, width_m);
@@ -178,35 +323,57 @@ impl Fitter {
     }
 
     /// Supposes for each turn with a price what it needs.
-    fn suppose_turns(
-        &mut self,
-        drive: &Drive,
-        access: &Access,
-        supposed: &mut Suppositions,
-        stop: &Stop,
-    ) -> Result<Vec<PartKind>, Stopped> {
+    fn suppose_turns(&mut self, fitting: &mut Fitting, access: &Access, stop: &Stop) -> Result<Vec<PartKind>, Stopped> {
         let mut unfit = Vec::new();
-        for join in drive.joins() {
-            let at = PartKind::Turn { from: join.from, to: join.to };
-            let Some(turning) = self.turning(drive, join) else {
-                unfit.push(at);
+        let mut place = 0;
+        loop {
+            let step = |join: Join<'_>| (PartKind::Turn { from: join.from, to: join.to }, self.price(access, join));
+            let Some((at, price)) = fitting.drive.joins().nth(place).map(step) else { break };
+            if price == 0 {
+                place += 1;
                 continue;
-            };
-            let Some(turning) = turning.filter(|_| self.price(access, join) > 0) else { continue };
-            stop.check()?;
-            let network = network_of(&mut self.roads);
-            let key = (join.from, join.to, turning.widths_cm(network, supposed));
-            let need = self.turns.entry(key).or_insert_with(|| {
-                let mut own = supposed.clone();
-                own.apply(network);
-                (turning.is_safe(network) || turning.meet(network, &mut own)).then(|| own.beyond(supposed))
-            });
-            match need {
-                Some(need) => supposed.add(need),
-                None => unfit.push(at),
+            }
+            match self.suppose_turn(fitting, place, stop)? {
+                Step::Done => place += 1,
+                // The way has fewer steps now, and the earlier turn may be the one that was merged.
+                Step::Merged => place = place.saturating_sub(1),
+                Step::Unfit => {
+                    unfit.push(at);
+                    place += 1;
+                }
             }
         }
         Ok(unfit)
+    }
+
+    /// Supposes what a step of the way needs, or merges it with the turn nearest to it if nothing does.
+    fn suppose_turn(&mut self, fitting: &mut Fitting, place: usize, stop: &Stop) -> Result<Step, Stopped> {
+        stop.check()?;
+        let Some(join) = fitting.drive.joins().nth(place) else { return Ok(Step::Done) };
+        let at = PartKind::Turn { from: join.from, to: join.to };
+        let need = match self.turning(&fitting.drive, join) {
+            None => None,
+            Some(None) => return Ok(Step::Done),
+            Some(Some(turning)) => {
+                let network = network_of(&mut self.roads);
+                let known = turning.widths(network, &fitting.supposed);
+                let edges = [&[join.from], join.arcs, &[join.to]].concat();
+                let need = self.turns.entry((edges, turning.widths_cm(network, &known))).or_insert_with(|| {
+                    let mut own = known.clone();
+                    own.apply(network);
+                    (turning.is_safe(network) || turning.meet(network, &mut own)).then(|| own.beyond(&known))
+                });
+                need.clone()
+            }
+        };
+        match need {
+            Some(need) => {
+                fitting.supposed.add(&need);
+                Ok(Step::Done)
+            }
+            None if self.merge(fitting, at, stop)? => Ok(Step::Merged),
+            None => Ok(Step::Unfit),
+        }
     }
 
     fn price(&self, access: &Access, join: Join<'_>) -> u64 {
@@ -219,7 +386,7 @@ impl Fitter {
     }
 
     /// The turn of a step; `Some(None)` if the step goes straight on.
-    fn turning<'t>(&self, drive: &'t Drive, join: Join<'t>) -> Option<Option<Turning<'t>>> {
+    pub(super) fn turning<'t>(&self, drive: &'t Drive, join: Join<'t>) -> Option<Option<Turning<'t>>> {
         let movement = movement(&self.roads.movements, join.from, join.arcs, join.to)?;
         let turns = movement.kind != MovementKind::StraightOn;
         Some(turns.then(|| Turning {
@@ -230,92 +397,6 @@ impl Fitter {
             stroke_of: Arc::clone(&self.stroke_of),
         }))
     }
-
-    /// Supposes more where the whole failed. Returns whether there is more to suppose.
-    fn suppose_more(&mut self, drive: &Drive, refutation: &Refutation, supposed: &mut Suppositions) -> bool {
-        // What cannot be joined is no matter of room. If no bound holds, much is missing.
-        if refutation.assembly.is_some() {
-            return false;
-        }
-        let missing_m = refutation.result.map_or(NO_BOUND_M, |(rsc_m, _)| (-rsc_m).max(0.0));
-        match refutation.at {
-            PartKind::Edge(edge) => {
-                let strip = self.driver.permits.settings.policy;
-                let place = drive.edges.iter().position(|&other| other == edge);
-                place.is_some_and(|at| self.widen_by(drive, at, strip, 2.0 * missing_m, supposed))
-            }
-            PartKind::Turn { from, to } => {
-                let Some(join) = drive.joins().find(|join| (join.from, join.to) == (from, to)) else { return false };
-                let Some(Some(turning)) = self.turning(drive, join) else { return false };
-                let small = missing_m < MUCH_M;
-                let rounder = self.rounder(&turning, missing_m, supposed);
-                let paved = !(rounder && small) && self.more_paved(&turning, small, supposed);
-                let wider = !((rounder || paved) && small) && self.wider(&turning, missing_m, supposed);
-                rounder || paved || wider
-            }
-        }
-    }
-
-    fn widen_by(&self, drive: &Drive, at: usize, strip: Policy, more_m: f64, supposed: &mut Suppositions) -> bool {
-        let edge = drive.edges[at];
-        let network = &self.roads.network;
-        let Some(has_m) = supposed.width_m(network, edge, strip) else { return false };
-        let first_m = supposed.known_width_m(network, edge, strip).unwrap_or(has_m);
-        let width_m = has_m + more_m.max(WIDER_M);
-        width_m <= first_m + MOST_MORE_M && self.widen_near(drive, at, strip, width_m, supposed)
-    }
-
-    /// Supposes greater radii of a turn's corners, if radii were what helped it.
-    fn rounder(&self, turning: &Turning<'_>, missing_m: f64, supposed: &mut Suppositions) -> bool {
-        let corners = turning.corners(&self.roads.network);
-        let known: Vec<_> = corners.iter().filter_map(|&(node, between)| supposed.radius_m(node, between)).collect();
-        let Some(radius_m) = known.into_iter().reduce(f64::max).filter(|&radius_m| radius_m < MOST_KERB_M) else {
-            return false;
-        };
-        let radius_m = (radius_m + (4.0 * missing_m).max(ROUNDER_M)).min(MOST_KERB_M);
-        for (node, between) in corners {
-            supposed.round(node, between, radius_m);
-        }
-        true
-    }
-
-    /// Supposes more of a junction to be paved; `only_more`: if that was what helped the turn.
-    fn more_paved(&self, turning: &Turning<'_>, only_more: bool, supposed: &mut Suppositions) -> bool {
-        let mut more = false;
-        for (node, at) in turning.nodes(&self.roads.network) {
-            let known_m = supposed.paved_m(node).or((!only_more).then_some(FIRST_PAVED_M));
-            if let Some(radius_m) = known_m.filter(|&radius_m| radius_m < MOST_PAVED_M) {
-                supposed.pave(node, at, radius_m + PAVED_STEP_M);
-                more = true;
-            }
-        }
-        more
-    }
-
-    /// Supposes wider roads before and after a turn.
-    fn wider(&self, turning: &Turning<'_>, missing_m: f64, supposed: &mut Suppositions) -> bool {
-        let (network, strip) = (&self.roads.network, turning.strip());
-        let mut more = false;
-        for edge in turning.near(network) {
-            let Some(has_m) = supposed.width_m(network, edge, strip) else { continue };
-            let first_m = supposed.known_width_m(network, edge, strip).unwrap_or(has_m);
-            let width_m = has_m + (2.0 * missing_m).max(WIDER_M);
-            more |= width_m <= first_m + MOST_MORE_M && supposed.widen(network, edge, strip, width_m);
-        }
-        more
-    }
-}
-
-/// Certifies a way, or says where it failed.
-fn certify(whole: &mut Whole, way: &Way<'_>, stop: &Stop) -> Result<Result<Certified, Refutation>, Stopped> {
-    let (certified, mut failed) = whole.on_any_paths(way, 1, stop)?;
-    let nowhere = || Refutation {
-        at: PartKind::Edge(way.drive.edges.first().copied().unwrap_or_default()),
-        result: None,
-        assembly: None,
-        left_out: false,
-    };
-    Ok(certified.ok_or_else(|| failed.pop().unwrap_or_else(nowhere)))
 }
 
 /// The network of roads that nobody else holds. If somebody does, it is copied first.

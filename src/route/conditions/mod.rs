@@ -3,12 +3,15 @@
 //! A condition is a width or a kerb radius that somebody can measure on site. The route has one certificate over the whole, made on
 //! a network on which every condition holds. Without its conditions the route is not safe, and nothing here says that they hold.
 
+mod failing;
 mod fit;
+mod joint;
 mod report;
 mod search;
 mod suppositions;
 mod turn_need;
 
+pub(super) use fit::Fitter;
 pub use report::SHEET_COLUMNS;
 pub use search::Hopeless;
 

@@ -8,10 +8,11 @@ use crate::route::graph::{Access, BARRED};
 use crate::route::obstacles::{self, CENTIMETRE, Refutation};
 use crate::route::permits::Permit;
 use crate::route::plan::{Planner, Question, Unanswered};
-use crate::stop::Stop;
+use crate::route::snap::Snapped;
+use crate::stop::{Stop, Stopped};
 use crate::verdict::{UnsafeReason, Verdict};
 
-/// How many ways are tried at most, if the question allows as many. Places for which nothing does are left out of the next one.
+/// How many ways are tried at most, if the question allows as many.
 const WAYS: usize = 20;
 /// The price of a turn by itself, and of an edge by itself and for each metre of it, in centimetres of missing room. A kilometre to
 /// measure costs as much as a turn.
@@ -47,17 +48,33 @@ impl Planner {
         stop: &Stop,
     ) -> Result<Result<Conditional, Hopeless>, Unanswered> {
         self.stop = stop.clone();
-        let mut access = self.conditional_access(refuted);
+        let access = self.conditional_access(refuted);
         let open = |edge: u32| access.edges.get(edge as usize).is_some_and(|&price| price != BARRED);
         let snap = |place| self.snapper.snap(place, question.snap_m, open);
         let snapped = question.places.iter().map(|&place| snap(place)).collect::<Result<Vec<_>, _>>()?;
-        let mut fitter = Fitter::new(self.graph.roads(), &self.driver);
+        let kept = self.fitter.take();
+        let mut fitter = kept.unwrap_or_else(|| Box::new(Fitter::new(self.graph.roads(), &self.driver)));
+        let answer = self.fit(&mut fitter, question, snapped, access, stop);
+        self.fitter = Some(fitter);
+        Ok(answer?)
+    }
+
+    /// Fits one way after the other. Places for which nothing does are left out of the next one.
+    fn fit(
+        &self,
+        fitter: &mut Fitter,
+        question: &Question,
+        snapped: Vec<Snapped>,
+        mut access: Access,
+        stop: &Stop,
+    ) -> Result<Result<Conditional, Hopeless>, Stopped> {
         let mut hopeless = Hopeless::default();
         for _ in 0..WAYS.min(question.tries.max(1)) {
-            let Some((found, start, end)) = self.way(&access, &snapped)? else { return Ok(Err(hopeless)) };
+            let Some((mut found, start, end)) = self.way(&access, &snapped)? else { return Ok(Err(hopeless)) };
             let way = Way { drive: &found.drive, start, end };
             match fitter.fit(&way, &access, stop)? {
-                Ok(Fitted { certified, supposed }) => {
+                Ok(Fitted { drive, certified, supposed }) => {
+                    found.drive = drive;
                     let kerbs = &self.driver.permits.settings.kerbs;
                     let conditions = supposed.conditions(self.network(), kerbs, &found.drive.edges);
                     let route = self.route(&found, (start, end), certified);

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashSet;
 
+use super::turn_need::PAVED_M;
 use super::{Condition, ConditionAt, width_of};
+use crate::certify::KERBS_M;
 use crate::evidence::Quantity;
 use crate::network::{self, Network};
 use crate::osm::LonLat;
@@ -102,6 +104,53 @@ impl Suppositions {
             site.add_surface(node, disc(at, radius_m));
         }
         site
+    }
+
+    /// The widths alone that are supposed for some edges.
+    pub(super) fn widths_of(&self, edges: &[u32]) -> Self {
+        let mut own = Self::new(Arc::clone(&self.base));
+        own.widths_m =
+            self.widths_m.iter().filter(|((edge, _), _)| edges.contains(edge)).map(|(k, v)| (*k, *v)).collect();
+        own
+    }
+
+    /// The same with less supposed for a condition, from nothing at all to little less than it asks.
+    pub(super) fn less(&self, condition: &Condition) -> Vec<Self> {
+        let fewer: &[f64] = match condition.at {
+            ConditionAt::Junction(_) => &PAVED_M,
+            ConditionAt::Corner { .. } => &KERBS_M,
+            ConditionAt::Road(_) => &[],
+        };
+        let most_m = condition.needed_m;
+        let least_m = condition.assumed_m.unwrap_or(0.0);
+        let fewer = fewer.iter().filter(|&&m| least_m < m && m < most_m).map(|&m| self.with_only(condition, m));
+        std::iter::once(self.with_only(condition, 0.0)).chain(fewer).collect()
+    }
+
+    /// The same with another value for a condition; 0: without it.
+    fn with_only(&self, condition: &Condition, value_m: f64) -> Self {
+        let mut other = self.clone();
+        let some = value_m > 0.0;
+        match &condition.at {
+            ConditionAt::Road(edges) => other
+                .widths_m
+                .retain(|(edge, strip), _| !(edges.contains(edge) && width_of(*strip) == condition.quantity)),
+            ConditionAt::Corner { node, between } => {
+                other.kerbs_m.remove(&(*node, *between));
+                if some {
+                    other.round(*node, *between, value_m);
+                }
+            }
+            ConditionAt::Junction(node) if some => {
+                if let Some(paved) = other.paved_m.get_mut(node) {
+                    paved.1 = value_m;
+                }
+            }
+            ConditionAt::Junction(node) => {
+                other.paved_m.remove(node);
+            }
+        }
+        other
     }
 
     /// What is supposed here and not in `less`.

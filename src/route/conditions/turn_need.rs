@@ -17,7 +17,7 @@ use crate::verdict::UnknownReason;
 /// The kerb radius that is supposed together with wider roads, if neither alone is enough, metres.
 const KERB_WITH_FLARE_M: f64 = 12.0;
 /// How far around its nodes a junction is supposed to be paved, metres; and how far together with wider roads.
-const PAVED_M: [f64; 10] = [6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 25.0, 30.0];
+pub(super) const PAVED_M: [f64; 10] = [6.0, 8.0, 10.0, 12.0, 14.0, 16.0, 18.0, 20.0, 25.0, 30.0];
 const PAVED_WITH_FLARE_M: f64 = 20.0;
 /// If the best simple path lacks more than this where everything is as wide as it may be, no other is looked for, metres.
 const HOPELESS_M: f64 = 1.0;
@@ -75,6 +75,11 @@ impl Turning<'_> {
         found
     }
 
+    /// Of suppositions, those that are widths of the roads beside the turn.
+    pub(super) fn widths(&self, network: &Network, supposed: &Suppositions) -> Suppositions {
+        supposed.widths_of(&self.near(network))
+    }
+
     /// The widths of the roads beside the turn in centimetres, under suppositions.
     pub(super) fn widths_cm(&self, network: &Network, supposed: &Suppositions) -> Vec<i64> {
         let policies = [self.settings().policy, self.strip()];
@@ -120,11 +125,18 @@ impl Turning<'_> {
     }
 
     /// Adds to `supposed` the least that makes the turn safe: a kerb radius, else a paved junction, else wider roads beside it, else all
-    /// of that. Returns whether something does. The site of `network` changes.
+    /// of that. If nothing makes its own certificate safe, but a path can be driven, it is all of that, too: the whole way decides.
+    /// Returns whether there is hope. The site of `network` changes.
     pub(super) fn meet(&self, network: &mut Network, supposed: &mut Suppositions) -> bool {
         let generous = self.generous(network, supposed);
         generous.apply(network);
-        let Some(look) = self.look(network) else { return false };
+        let Some(look) = self.look(network) else {
+            let driven = self
+                .made(network)
+                .is_some_and(|made| !Planner::new(&made).best_seeds(&self.driver.model.vehicle, 1).is_empty());
+            *supposed = generous;
+            return driven;
+        };
         // What has to be checked at one place comes before what has to be checked along a road.
         self.by_kerb(network, supposed, look)
             || self.by_paving(network, supposed, look)
@@ -142,7 +154,7 @@ impl Turning<'_> {
         for (node, at) in self.nodes(network) {
             generous.pave(node, at, PAVED_WITH_FLARE_M);
         }
-        if let Some(width_m) = self.widths(network, supposed).and_then(|widths| widths.last().copied()) {
+        if let Some(width_m) = self.flares(network, supposed).and_then(|widths| widths.last().copied()) {
             for edge in self.near(network) {
                 generous.widen(network, edge, self.strip(), width_m);
             }
@@ -176,7 +188,7 @@ impl Turning<'_> {
 
     fn by_flare(&self, network: &mut Network, supposed: &mut Suppositions, look: Look) -> bool {
         let corners = self.corners(network);
-        let Some(widths) = self.widths(network, supposed) else { return false };
+        let Some(widths) = self.flares(network, supposed) else { return false };
         let mut paved = supposed.clone();
         self.nodes(network).into_iter().for_each(|(node, at)| paved.pave(node, at, PAVED_WITH_FLARE_M));
         for base_of in [supposed.clone(), self.rounded(&corners, supposed, KERB_WITH_FLARE_M), paved] {
@@ -240,7 +252,7 @@ impl Turning<'_> {
     }
 
     /// Widths to try for the roads beside the turn, metres.
-    fn widths(&self, network: &Network, supposed: &Suppositions) -> Option<Vec<f64>> {
+    fn flares(&self, network: &Network, supposed: &Suppositions) -> Option<Vec<f64>> {
         let ends = [self.join.from, self.join.to];
         let has_m = ends.into_iter().map(|edge| supposed.width_m(network, edge, self.strip()));
         let has_m = has_m.collect::<Option<Vec<f64>>>()?.into_iter().fold(f64::INFINITY, f64::min);

@@ -1,0 +1,107 @@
+//! Routes under conditions over drawn junctions.
+
+use crate::support::ascii_map;
+use crate::support::routing;
+
+use ascii_map::AsciiMap;
+use netcert::evidence::Quantity;
+use netcert::osm::facts::Policy;
+use netcert::route::*;
+use netcert::stop::Stop;
+use netcert::turns::Kerbs;
+use routing::Region;
+
+const TAGS: &str = "highway=tertiary width=7";
+
+fn region(map: &AsciiMap, kerb_m: f64) -> Region {
+    let mut region = Region::of(map.extract(), Policy::Carriageway);
+    region.kerbs = Kerbs::everywhere(kerb_m);
+    region
+}
+
+/// The middle of the first piece of an edge.
+fn on(region: &Region, ends: &str) -> Position {
+    let edge = ascii_map::edge(&region.network, ends) as usize;
+    let line: Vec<_> = region.network.positions(&region.network.edges[edge]).collect();
+    let (a, b) = (line[0].degrees(), line[1].degrees());
+    Position { lon: f64::midpoint(a.0, b.0), lat: f64::midpoint(a.1, b.1) }
+}
+
+struct Asked {
+    answer: Answer,
+    under: Result<Conditional, Hopeless>,
+}
+
+fn ask(region: &Region, vehicle: &str, [from, to]: [&str; 2]) -> Asked {
+    let driver = region.driver(vehicle);
+    let mut planner = region.planner(&driver, Measure::Distance);
+    let places = vec![on(region, from), on(region, to)];
+    let question = Question { places, snap_m: 5.0, alternatives: 0, tries: 20 };
+    let answer = planner.answer(&question, &Stop::never()).unwrap();
+    let under = planner.under_conditions(&question, &answer.refuted, &Stop::never()).unwrap();
+    let again = planner.under_conditions(&question, &answer.refuted, &Stop::never()).unwrap();
+    match (&under, &again) {
+        (Ok(first), Ok(second)) => assert_eq!(
+            (&first.conditions, &first.route.path),
+            (&second.conditions, &second.route.path),
+            "what was found before does not change an answer"
+        ),
+        (first, second) => assert_eq!(first.is_ok(), second.is_ok()),
+    }
+    Asked { answer, under }
+}
+
+/// A crossing of two roads at a right angle.
+fn crossing() -> AsciiMap {
+    AsciiMap::placed(&[
+        ('W', [-300.0, 0.0]),
+        ('a', [0.0, 0.0]),
+        ('E', [300.0, 0.0]),
+        ('N', [0.0, 300.0]),
+        ('S', [0.0, -300.0]),
+    ])
+    .way("WaE", TAGS)
+    .way("NaS", TAGS)
+}
+
+/// Two staggered arms: the way over them turns right and, `apart_m` later, left.
+fn staggered(apart_m: f64) -> AsciiMap {
+    let nodes = [
+        ('W', [-300.0, 0.0]),
+        ('N', [0.0, 300.0]),
+        ('a', [0.0, 0.0]),
+        ('b', [0.0, -apart_m]),
+        ('S', [0.0, -300.0]),
+        ('E', [300.0, -apart_m]),
+    ];
+    AsciiMap::placed(&nodes).way("Wa", TAGS).way("NabS", TAGS).way("bE", TAGS)
+}
+
+#[test]
+fn a_corner_too_sharp_is_a_condition_and_a_round_one_is_none() {
+    let asked = ask(&region(&crossing(), 3.0), "AU-SEMI19", ["Wa", "aS"]);
+    assert!(asked.answer.routes.is_empty());
+    let found = asked.under.unwrap();
+    assert!(found.route.certificate.result.safe());
+    assert!(!found.conditions.is_empty());
+    assert!(found.conditions.iter().all(|condition| condition.assumed_m.is_none_or(|m| m < condition.needed_m)));
+
+    let asked = ask(&region(&crossing(), 25.0), "AU-SEMI19", ["Wa", "aS"]);
+    assert_eq!(asked.answer.routes.len(), 1);
+    assert_eq!(asked.under.unwrap().conditions, [], "a way that passes as it is has no condition");
+}
+
+#[test]
+fn two_turns_on_too_short_a_road_pass_under_conditions() {
+    for apart_m in [14.0, 24.0, 36.0] {
+        let region = region(&staggered(apart_m), 3.0);
+        let asked = ask(&region, "AU-SEMI19", ["Wa", "bE"]);
+        assert!(asked.answer.routes.is_empty());
+        let found = asked.under.unwrap_or_else(|hopeless| panic!("{apart_m} m apart: {hopeless:?}"));
+        let driven = ["Wa", "ab", "bE"].map(|ends| ascii_map::edge(&region.network, ends));
+        assert_eq!(found.route.drive.edges, driven);
+        assert!(found.route.certificate.result.safe());
+        let places = [Quantity::KerbRadius, Quantity::Surface, Quantity::CarriagewayWidth];
+        assert!(found.conditions.iter().all(|condition| places.contains(&condition.quantity)));
+    }
+}
