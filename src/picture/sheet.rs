@@ -1,6 +1,6 @@
 //! A page to print and to take along: a route under conditions, its conditions as numbered pins, and a box for each value to fill in.
 //!
-//! The page needs no other file. Its only links lead to OpenStreetMap, for people who read it on a screen.
+//! The page needs no other file but its style sheet, if that is not within. Its only links lead to OpenStreetMap, for people who read it on a screen.
 
 use std::fmt::Write as _;
 
@@ -15,19 +15,33 @@ use crate::vehicle::Vehicle;
 
 const HEAD: &str = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
     <meta name=\"viewport\" content=\"width=device-width\">";
-const STYLE: &str = "body{font:15px/1.4 sans-serif;color:#1a1a1a;background:#fff;max-width:60rem;margin:1rem auto;padding:0 1rem}\
+/// The style sheet of the page.
+pub const SHEET_STYLE: &str = "body{font:15px/1.4 sans-serif;color:#1a1a1a;background:#fff;max-width:60rem;margin:1rem auto;padding:0 1rem}\
     h1{font-size:1.4rem;margin:0 0 .3rem}svg{width:100%;height:auto}\
     table{border-collapse:collapse;width:100%}th,td{border:1px solid #888;padding:.35rem .5rem;text-align:left;vertical-align:top}\
     td.fill{min-width:5.5rem;height:2.6rem}th{background:#f2f2f2}tr{break-inside:avoid}.scope{border-left:4px solid #b35900;padding-left:.7rem}\
     @media print{body{margin:0;max-width:none}a{color:inherit;text-decoration:none}}";
 
+/// Where the page has its style sheet.
+#[derive(Debug, Clone, Copy)]
+pub enum SheetStyle<'a> {
+    /// In the page, so that it is one file.
+    Within,
+    /// At an address, because a server may forbid styles within pages.
+    At(&'a str),
+}
+
 /// The sheet of a route under conditions, as a whole HTML document.
 #[must_use]
-pub fn sheet(network: &Network, vehicle: &Vehicle, conditional: &Conditional) -> String {
+pub fn sheet(network: &Network, vehicle: &Vehicle, conditional: &Conditional, style: SheetStyle<'_>) -> String {
     let route = &conditional.route;
     let count = conditional.conditions.len();
     let title = format!("{}: a route of {:.1} km if {count} conditions hold", vehicle.id, route.length_m / 1000.0);
-    let mut page = format!("{HEAD}<title>{0}</title><style>{STYLE}</style></head><body><h1>{0}</h1>", escaped(&title));
+    let style = match style {
+        SheetStyle::Within => format!("<style>{SHEET_STYLE}</style>"),
+        SheetStyle::At(address) => format!("<link rel=\"stylesheet\" href=\"{}\">", escaped(address)),
+    };
+    let mut page = format!("{HEAD}<title>{0}</title>{style}</head><body><h1>{0}</h1>", escaped(&title));
     let rsc = route.certificate.result.rsc_m.map_or("unknown".to_owned(), |rsc_m| format!("{rsc_m:.2} m"));
     let _ = write!(
         page,

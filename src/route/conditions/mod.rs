@@ -6,11 +6,12 @@
 mod fit;
 mod report;
 mod search;
+mod sheet;
 mod suppositions;
 mod turn_need;
 
-pub use report::SHEET_COLUMNS;
 pub use search::Hopeless;
+pub use sheet::{csv as sheet_csv, geojson as sheet_geojson};
 
 use super::plan::Route;
 use super::snap::Snapped;
