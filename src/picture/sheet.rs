@@ -39,7 +39,10 @@ pub fn sheet(network: &Network, vehicle: &Vehicle, conditional: &Conditional, st
     let title = format!("{}: a route of {:.1} km if {count} conditions hold", vehicle.id, route.length_m / 1000.0);
     let style = match style {
         SheetStyle::Within => format!("<style>{SHEET_STYLE}</style>"),
-        SheetStyle::At(address) => format!("<link rel=\"stylesheet\" href=\"{}\">", escaped(address)),
+        // The empty icon keeps browsers from asking the server for one.
+        SheetStyle::At(address) => {
+            format!("<link rel=\"icon\" href=\"data:,\"><link rel=\"stylesheet\" href=\"{}\">", escaped(address))
+        }
     };
     let mut page = format!("{HEAD}<title>{0}</title>{style}</head><body><h1>{0}</h1>", escaped(&title));
     let rsc = route.certificate.result.rsc_m.map_or("unknown".to_owned(), |rsc_m| format!("{rsc_m:.2} m"));
@@ -93,7 +96,8 @@ fn map(network: &Network, conditional: &Conditional) -> String {
     let bounds = Bounds::of(line.iter().chain(pins.iter().flatten()));
     let view = View::fit(&bounds, frame);
     let mut picture = Picture::new(1000.0, 500.0, "The route and its conditions", "Numbers are those of the table");
-    picture.polyline(&view.all(&line), Style::line(palette::BLUE, 3.0));
+    // Dashed, as nothing certified is.
+    picture.polyline(&view.all(&line), Style::line(palette::INK, 3.0).dashed(9.0, 5.0));
     for (at, colour) in [(line.first(), palette::GREEN), (line.last(), palette::INK)] {
         if let Some(&at) = at {
             picture.circle(view.at(at), 6.0, Style::area(colour).outlined(palette::PAPER, 1.5));
@@ -101,7 +105,10 @@ fn map(network: &Network, conditional: &Conditional) -> String {
     }
     for (number, pin) in (1..).zip(&pins) {
         let Some(pin) = pin else { continue };
-        let at = view.at(*pin);
+        // Pins of one place stand side by side.
+        let before = pins.iter().take(number - 1).filter(|other| other.as_ref() == Some(pin)).count();
+        let [x, y] = view.at(*pin);
+        let at = [x + 21.0 * before as f64, y];
         picture.circle(at, 10.0, Style::area(palette::VERMILLION).outlined(palette::PAPER, 1.5));
         let text = TextStyle::size(11.0).bold().anchored(Anchor::Middle).coloured(palette::PAPER);
         picture.text([at[0], at[1] + 4.0], &format!("{number}"), text);

@@ -25,16 +25,14 @@ const scenes = {
   "../how-to/survey/route": { db: "demo", hash: `#v=AU-ATRIPLE53&route=${survey}`, png: true, play: conditional },
   "../how-to/survey/slider": {
     db: "demo",
-    hash: `#v=AU-ATRIPLE53&policy=carriageway&route=${survey}`,
+    hash: `#v=AU-ATRIPLE53&route=${survey}`,
     png: true,
     async play(page) {
       await conditional(page);
-      await page.click(".why");
-      await page.waitForSelector(".suppose input");
+      await page.locator(".why").first().click();
+      await page.click(".suppose-need button");
+      await page.waitForSelector(".suppose-opens ul");
       await page.locator(".suppose").evaluate((section) => section.scrollIntoView({ block: "end" }));
-      await page.focus(".suppose input");
-      await page.keyboard.press("End");
-      await page.waitForSelector(".suppose-enough");
     },
   },
   "../how-to/survey/sheet": {
