@@ -116,7 +116,8 @@ export class Routing {
     this.#line.show(best ? "certified" : conditional ? "conditional" : "blocked", line?.coordinates ?? [], theme);
     this.#pin(conditional ? "condition" : "obstacle", this.#items);
     // The map stays where the reader has gone meanwhile.
-    if (search !== "none" && typeof search !== "object") this.#fit([from, to, ...(line?.coordinates ?? [])]);
+    const gone = this.context.store.state.selected !== null || search === "none" || typeof search === "object";
+    if (!gone) this.#fit([from, to, ...(line?.coordinates ?? [])]);
   }
 
   drive(): void {

@@ -97,7 +97,7 @@ export function conditionalFoot(route: ConditionalRoute, sheet: (form: "html" | 
     h(
       "p",
       { class: "scope" },
-      "Measure, fill in the sheet, and give it to `netcert evidence add`: then ask again. Under all conditions the whole way has one certificate, within the stated model, widths and error bounds. Without them it has none; no permit.".replaceAll("`", ""),
+      "Measure, fill in the sheet, and give it to netcert evidence add: then ask again. Under all conditions the whole way has one certificate, within the stated model, widths and error bounds. Without them it has none; no permit.",
     ),
   ];
 }
