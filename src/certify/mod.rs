@@ -3,6 +3,7 @@
 mod least;
 mod needs;
 mod strokes;
+mod suppose;
 mod touched;
 mod turns;
 
@@ -10,5 +11,6 @@ pub use least::{least_of, least_that_does};
 pub use needs::{KERBS_M, LineOf, MOST_KERB_M, MOST_MORE_M, TurnCase, edge_need, flares};
 pub(crate) use strokes::verdict;
 pub use strokes::{Job, certify_network, certify_strokes};
+pub use suppose::{stroke_at_least, turn_with_kerb};
 pub use touched::Touched;
 pub use turns::{TurnJob, TurnOutcome, best_of, certify_some_turns, certify_turns, fits, turn_verdict};

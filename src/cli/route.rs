@@ -13,7 +13,7 @@ use netcert::picture;
 use netcert::region::Region;
 use netcert::route::{
     self, Answer, Comparison, Conditional, Measure, PartKind, PartResult, Peer, Planner, Position, Question,
-    Route as Found, Unanswered,
+    Route as Found,
 };
 use netcert::stop::Stop;
 use netcert::words::{Named, verdict_words};
@@ -146,27 +146,15 @@ impl Route {
         Ok(out.flush()?)
     }
 
-    /// Certified routes, or else a route under conditions. A place that is near no safe road may be near a lawful one.
+    /// Certified routes, or else a route under conditions, if one is wanted.
     fn answer(&self, planner: &mut Planner, question: &Question, session: &Session) -> anyhow::Result<Answer> {
         let stop = Stop::never();
-        let certified = match planner.answer(question, &stop) {
-            Err(Unanswered::Place(error)) => Err(error),
-            answer => Ok(answer?),
-        };
-        if self.certified_only || certified.as_ref().is_ok_and(|answer| !answer.routes.is_empty()) {
-            return Ok(certified?);
+        if self.certified_only {
+            return Ok(planner.answer(question, &stop)?);
         }
-        session.progress.say("No route is certified. Looking for one under conditions, which takes longer");
-        let refuted = certified.as_ref().map_or(&[][..], |answer| &answer.refuted[..]);
-        let Ok(Conditional { route, conditions, snapped }) = planner.under_conditions(question, refuted, &stop)? else {
-            return Ok(certified?);
-        };
-        // A way that passes without any condition is a certified route.
-        if conditions.is_empty() {
-            return Ok(Answer { routes: vec![route], snapped, ..Answer::default() });
-        }
-        let conditional = Some(Conditional { route, conditions, snapped: snapped.clone() });
-        Ok(Answer { conditional, snapped, ..certified.unwrap_or_default() })
+        let say =
+            || session.progress.say("No route is certified. Looking for one under conditions, which takes longer");
+        Ok(planner.best_answer(question, &stop, say)?)
     }
 
     /// The reference vehicle, if one is to be compared with.

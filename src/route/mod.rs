@@ -19,14 +19,16 @@
 //! | `assemble`, `blend` | one corridor from pieces |
 //! | `whole` | the certificate of a whole way, and where it fails |
 //! | `plan` | searches, certifies, leaves out what failed, and searches again; alternatives |
-//! | `obstacles` | what blocks a route |
+//! | `obstacles` | what blocks a route, and on which way |
 //! | `conditions` | a route that is certified if widths and radii are as it says |
+//! | `best` | certified routes, else one under conditions |
 //! | `report` | an answer as JSON and GeoJSON |
 //! | `relative` | an answer beside a reference vehicle |
 //! | `reach` | what can be reached from a place, and back |
 
 mod assemble;
 mod bans;
+mod best;
 mod blend;
 mod conditions;
 mod drive;
@@ -50,11 +52,11 @@ mod whole;
 
 pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble, passes_over};
 pub use bans::{Bans, Within};
-pub use conditions::{Condition, ConditionAt, Conditional, Hopeless, SHEET_COLUMNS};
+pub use conditions::{Condition, ConditionAt, Conditional, Hopeless, sheet_csv, sheet_geojson};
 pub use drive::{Drive, Join};
 pub use driver::Driver;
 pub use graph::{Access, BARRED, Graph};
-pub use obstacles::{Obstacle, Refutation};
+pub use obstacles::{BlockedWay, Obstacle, Refutation};
 pub use permits::{Permit, Permits};
 pub use pieces::{Menu, NoTurns, Strokes, TurnPiece, Turns};
 pub use plan::{Answer, Planner, Question, Route, Unanswered};

@@ -7,7 +7,8 @@ use super::assemble::{AssemblyError, PartKind};
 use super::drive::Drive;
 use super::graph::{Access, BARRED};
 use super::permits::{Permit, Permits};
-use crate::network::Movements;
+use crate::network::{Movements, Network};
+use crate::osm::rounded;
 
 /// The price of a missing centimetre. It exceeds the cost of any way on earth (40,000 km are 2³⁶ millimetres; in milliseconds
 /// 2³⁶ are two years), and the prices of 100,000 of the dearest places can be added without overflow.
@@ -44,6 +45,59 @@ pub struct Obstacle {
     /// The missing width, metres, if it is known: from the place's own certificate, or from the whole route that came nearest to
     /// passing.
     pub missing_m: Option<f64>,
+}
+
+/// The way that the fewest and smallest obstacles block. Nothing certifies it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlockedWay {
+    /// All its edges in driving order.
+    pub edges: Vec<u32>,
+    /// The share of the first edge before its beginning, and of the last edge up to its end, 0..=1.
+    pub start: f64,
+    /// See `start`.
+    pub end: f64,
+}
+
+impl BlockedWay {
+    /// Its line on the map, degrees.
+    #[must_use]
+    pub fn line(&self, network: &Network) -> Vec<[f64; 2]> {
+        let last = self.edges.len().saturating_sub(1);
+        let mut line: Vec<[f64; 2]> = Vec::new();
+        for (i, &edge) in self.edges.iter().enumerate() {
+            let Some(edge) = network.edges.get(edge as usize) else { continue };
+            let whole: Vec<[f64; 2]> = network.positions(edge).map(|at| <[f64; 2]>::from(at.degrees())).collect();
+            let from = if i == 0 { self.start } else { 0.0 };
+            let to = if i == last { self.end } else { 1.0 };
+            line.extend(cut(&whole, from, to));
+        }
+        line.dedup();
+        line
+    }
+}
+
+/// A piece of a line, from one share of its length to another.
+fn cut(line: &[[f64; 2]], from: f64, to: f64) -> Vec<[f64; 2]> {
+    let Some(first) = line.first() else { return Vec::new() };
+    let shrink = first[1].to_radians().cos();
+    let length = |p: &[[f64; 2]]| ((p[1][0] - p[0][0]) * shrink).hypot(p[1][1] - p[0][1]);
+    let whole: f64 = line.windows(2).map(length).sum();
+    let (from, to) = (from.clamp(0.0, 1.0) * whole, to.clamp(0.0, 1.0) * whole);
+    let mut piece = Vec::new();
+    let mut sum = 0.0;
+    for pair in line.windows(2) {
+        let own = length(pair);
+        let at = |along: f64| {
+            let share = ((along - sum) / own.max(1e-12)).clamp(0.0, 1.0);
+            rounded([0, 1].map(|axis| pair[0][axis] + share * (pair[1][axis] - pair[0][axis])))
+        };
+        if sum + own >= from && sum <= to {
+            piece.extend([at(from), at(to)]);
+        }
+        sum += own;
+    }
+    piece.dedup();
+    piece
 }
 
 /// The missing width if the RSC is negative, metres.
@@ -120,6 +174,15 @@ fn permit(permits: &Permits, movements: &Movements, at: PartKind) -> Option<Perm
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_piece_of_a_line_begins_and_ends_at_its_shares() {
+        let line = [[0.0, 0.0], [0.0, 1.0], [0.0, 3.0], [0.0, 4.0]];
+        assert_eq!(cut(&line, 0.125, 0.5), [[0.0, 0.5], [0.0, 1.0], [0.0, 2.0]]);
+        assert_eq!(cut(&line, 0.0, 1.0), line);
+        assert_eq!(cut(&line, 0.3, 0.3).len(), 1);
+        assert!(cut(&[], 0.0, 1.0).is_empty());
+    }
 
     #[test]
     fn number_and_metres_count_both() {

@@ -12,7 +12,7 @@ use super::conditions::{Conditional, Fitter};
 use super::drive::{Drive, Join};
 use super::driver::Driver;
 use super::graph::{Access, BARRED, Graph};
-use super::obstacles::{self, Obstacle, Refutation};
+use super::obstacles::{self, BlockedWay, Obstacle, Refutation};
 use super::pieces::Turns;
 use super::roads::Roads;
 use super::search::{Found, Goal, Start, search_over};
@@ -78,6 +78,8 @@ pub struct Answer {
     pub gave_up: bool,
     /// If there is no route, the set of failing places of least cost. `None` if there is a route, or if no roads lead there.
     pub obstacles: Option<Vec<Obstacle>>,
+    /// The way on which these obstacles lie.
+    pub blocked: Option<BlockedWay>,
     /// A route that is certified only under conditions, if one was asked for and there is no other.
     pub conditional: Option<Conditional>,
     /// The requested places, moved to the road.
@@ -165,7 +167,7 @@ impl Planner {
         let mut access = self.access.clone();
         self.next_route(&mut access, question, &mut answer, &|_| true)?;
         if answer.routes.is_empty() {
-            answer.obstacles = self.obstacles(&answer)?;
+            (answer.obstacles, answer.blocked) = self.obstacles(&answer)?.unzip();
         } else {
             self.alternatives(&access, question, &mut answer)?;
         }
@@ -263,12 +265,15 @@ impl Planner {
         slot.is_some_and(|slot| std::mem::replace(slot, BARRED) != BARRED)
     }
 
-    /// The set of failing places of least cost between the requested places.
-    fn obstacles(&self, answer: &Answer) -> Result<Option<Vec<Obstacle>>, Stopped> {
+    /// The set of failing places of least cost between the requested places, and the way on which they lie.
+    fn obstacles(&self, answer: &Answer) -> Result<Option<(Vec<Obstacle>, BlockedWay)>, Stopped> {
         let (permits, movements) = (&self.driver.permits, self.graph.movements());
         let mut access = obstacles::priced(permits, movements, &answer.refuted);
         let found = self.way(&access, &answer.snapped)?;
-        Ok(found.map(|(found, ..)| obstacles::on(&found.drive, permits, movements, &mut access, &answer.refuted)))
+        Ok(found.map(|(found, start, end)| {
+            let obstacles = obstacles::on(&found.drive, permits, movements, &mut access, &answer.refuted);
+            (obstacles, BlockedWay { edges: found.drive.edges, start, end })
+        }))
     }
 
     /// Adds routes that differ from the earlier ones. Edges of earlier routes are made dearer until another way is cheaper.

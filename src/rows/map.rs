@@ -26,6 +26,8 @@ pub struct MapEdge {
     pub verdict: Verdict,
     /// The RSC in millimetres, rounded down as it is stored.
     pub rsc_mm: Option<i64>,
+    /// The least width with which the edge would be safe, if its stroke were nowhere narrower, metres.
+    pub need_width_m: Option<f64>,
     /// The map's line in direction of travel.
     pub line: Vec<LonLat>,
 }

@@ -8,7 +8,8 @@ use std::sync::{Arc, mpsc};
 use super::drive;
 use super::problem::Problem;
 use super::region::{Certified, Region};
-use crate::route::{self, Driver, Measure, NoDriver, Planner, Question, Roads, Speeds, Unanswered};
+use crate::picture::{self, SheetStyle};
+use crate::route::{self, Conditional, Driver, Measure, NoDriver, Planner, Question, Roads, Speeds, Unanswered};
 use crate::stop::Stop;
 use crate::words::Named as _;
 use serde_json::{Value, json};
@@ -24,11 +25,31 @@ pub(super) struct Ride {
     pub(super) question: Question,
     /// Number of routes, from the best on, whose drive is wanted.
     pub(super) drives: usize,
+    /// Whether a route under conditions is wanted where no route is certified.
+    pub(super) conditions: bool,
     /// Told to stop when nobody waits for the answer any more.
     pub(super) stop: Stop,
 }
 
-type Reply = mpsc::Sender<Result<Value, Problem>>;
+/// An answer, and the sheets of its route under conditions, if it has one.
+#[derive(Debug)]
+pub(super) struct Planned {
+    pub(super) members: Value,
+    pub(super) sheets: Option<Sheets>,
+}
+
+/// The sheet of a route's conditions in its three forms.
+#[derive(Debug)]
+pub(super) struct Sheets {
+    pub(super) html: String,
+    pub(super) csv: String,
+    pub(super) geojson: String,
+}
+
+/// The address of the style sheet of [`Sheets::html`].
+pub(super) const SHEET_STYLE_AT: &str = "/api/sheet.css";
+
+type Reply = mpsc::Sender<Result<Planned, Problem>>;
 
 /// The sending end of a planner's questions.
 pub(super) struct Router {
@@ -62,7 +83,7 @@ impl Router {
     }
 
     /// Asks the planner and waits for the answer. `None` means that the thread has ended, which is a fault.
-    pub(super) fn ask(&self, ride: Ride) -> Option<Result<Value, Problem>> {
+    pub(super) fn ask(&self, ride: Ride) -> Option<Result<Planned, Problem>> {
         let (reply, answer) = mpsc::channel();
         self.questions.send((ride, reply)).ok()?;
         answer.recv().ok()
@@ -81,23 +102,42 @@ impl Wanted {
         }
     }
 
-    fn answer(&self, planner: &mut Planner, ride: &Ride) -> Result<Value, Problem> {
-        let answer = planner.answer(&ride.question, &ride.stop).map_err(|unanswered| match unanswered {
+    fn answer(&self, planner: &mut Planner, ride: &Ride) -> Result<Planned, Problem> {
+        let answer = match ride.conditions {
+            true => planner.best_answer(&ride.question, &ride.stop, || ()),
+            false => planner.answer(&ride.question, &ride.stop),
+        };
+        let answer = answer.map_err(|unanswered| match unanswered {
             Unanswered::Place(error) => Problem::no_road(error.to_string()),
             Unanswered::Stopped(stopped) => stopped.into(),
         })?;
-        let mut members = route::json(&self.roads.network, &self.driver.model, &answer);
-        for (i, found) in answer.routes.iter().enumerate() {
+        let (network, model) = (&self.roads.network, &self.driver.model);
+        let mut members = route::json(network, model, &answer);
+        let certified =
+            answer.routes.iter().enumerate().map(|(i, found)| (format!("/routes/{i}"), found, i < ride.drives));
+        let conditional = answer.conditional.iter().map(|known| ("/conditional".to_owned(), &known.route, false));
+        for (place, found, drive) in certified.chain(conditional) {
             ride.stop.check()?;
-            let more = drive::members(&self.driver.model, found, i < ride.drives);
-            let more = more.map_err(|error| Problem::fault(error.to_string()))?;
-            if let (Some(Value::Object(route)), Value::Object(more)) = (members["routes"].get_mut(i), more) {
+            let more = drive::members(model, found, drive).map_err(|error| Problem::fault(error.to_string()))?;
+            if let (Some(Value::Object(route)), Value::Object(more)) = (members.pointer_mut(&place), more) {
                 route.extend(more);
             }
         }
+        let line = answer.blocked.as_ref().map(|way| way.line(network)).filter(|line| line.len() > 1);
+        members["blocked_way"] = json!(line.map(|line| json!({"type": "LineString", "coordinates": line})));
         members["policy"] = json!(self.driver.permits.settings.policy.name());
         ids_as_text(&mut members);
-        Ok(members)
+        let sheets = answer.conditional.as_ref().map(|conditional| self.sheets(conditional));
+        Ok(Planned { members, sheets })
+    }
+
+    fn sheets(&self, conditional: &Conditional) -> Sheets {
+        let (network, vehicle) = (&self.roads.network, &self.driver.model.vehicle);
+        Sheets {
+            html: picture::sheet(network, vehicle, conditional, SheetStyle::At(SHEET_STYLE_AT)),
+            csv: route::sheet_csv(network, conditional),
+            geojson: route::sheet_geojson(network, vehicle, conditional),
+        }
     }
 }
 
@@ -110,6 +150,9 @@ fn ids_as_text(value: &mut Value) {
                 match member {
                     Value::Number(id) if matches!(name.as_str(), "edge_id" | "from_edge" | "to_edge") => {
                         *member = json!(id.to_string());
+                    }
+                    Value::Array(all) if name == "edge_ids" => {
+                        all.iter_mut().for_each(|id| *id = json!(id.to_string()));
                     }
                     other => ids_as_text(other),
                 }

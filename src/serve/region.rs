@@ -13,7 +13,7 @@ use super::api::explain::Explained;
 use super::ask::shortened;
 use super::made_once::{Late, Recent};
 use super::names::NamedRoad;
-use super::planning::Router;
+use super::planning::{Planned, Router};
 use super::problem::Problem;
 use super::roads::RoadIndex;
 use super::tiles::Overview;
@@ -31,6 +31,9 @@ const MOST_IDLE: usize = 4;
 const MOST_EXPLAINED: usize = 16;
 /// Number of overviews to keep, one for each vehicle and policy. An overview takes about 60 bytes per vertex.
 pub(super) const MOST_OVERVIEWS: usize = 6;
+/// Number of answers of planners to keep, so that a route and the sheets of its conditions are planned once. An answer with a long drive
+/// has some megabytes.
+const MOST_PLANNED: usize = 4;
 /// Number of planners to keep. Each holds an index of all roads and the corridors that it has made.
 const MOST_ROUTERS: usize = 4;
 
@@ -91,6 +94,8 @@ pub(super) struct Region {
     pub(super) overviews: Recent<Overview>,
     /// The last explanations, by id, vehicle and policy.
     pub(super) explained: Recent<Explained>,
+    /// The last answers of planners, by the whole question.
+    pub(super) planned: Recent<Planned>,
     /// The last planners, by vehicle, policy and measure.
     pub(super) routers: Recent<Router>,
 }
@@ -132,6 +137,7 @@ impl Region {
             sides: Late::default(),
             overviews: Recent::new(MOST_OVERVIEWS),
             explained: Recent::new(MOST_EXPLAINED),
+            planned: Recent::new(MOST_PLANNED),
             routers: Recent::new(MOST_ROUTERS),
         };
         Ok(region)

@@ -28,8 +28,13 @@ const ENDPOINTS: &[(&str, Pace, Work)] = &[
     ("/api/explain/{id}/map.geojson", Pace::Slow, api::explain::mapped),
     ("/api/explain/{id}/picture.svg", Pace::Slow, api::explain::drawn),
     ("/api/route", Pace::Slow, api::route::route),
+    ("/api/sheet.css", Pace::Quick, api::route::sheet_css),
+    ("/api/sheet.csv", Pace::Slow, api::route::sheet_csv),
+    ("/api/sheet.geojson", Pace::Slow, api::route::sheet_geojson),
+    ("/api/sheet.html", Pace::Slow, api::route::sheet_html),
     ("/api/search", Pace::Quick, api::search::search),
     ("/api/stats", Pace::Slow, api::stats::stats),
+    ("/api/suppose/{id}", Pace::Slow, api::suppose::suppose),
     ("/tiles/{policy}/{vehicle}/{z}/{x}/{y}", Pace::Quick, tiles::tile),
 ];
 

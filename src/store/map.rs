@@ -14,6 +14,7 @@ use super::database::Database;
 use super::error::StoreError;
 use super::names::{corridor_no, width_columns};
 use super::network_read::{line, verdict, word, word_or_none};
+use super::numbers;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -78,7 +79,7 @@ impl Database {
         let [width, source] = width_columns(policy);
         let mut sql = format!(
             "SELECT e.fid, e.edge_id, e.way_id, e.direction, e.oneway, e.highway, e.name, e.ref, e.length_m, \
-             e.{width}, e.{source}, c.verdict_no, c.rsc_mm, e.geom FROM rtree_edge_geom AS t \
+             e.{width}, e.{source}, c.verdict_no, c.rsc_mm, e.geom, c.need_cm FROM rtree_edge_geom AS t \
              CROSS JOIN edge AS e ON e.fid = t.id \
              CROSS JOIN certificate_compact AS c \
              ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
@@ -163,6 +164,7 @@ fn map_edge(row: &SqliteRow) -> Sql<MapEdge> {
         verdict: verdict(row, 11, || format!("edge {fid}"))?,
         rsc_mm: row.try_get(12)?,
         line: line(row, 13, || format!("edge {fid}"))?,
+        need_width_m: numbers::centimetres(row, 14)?,
     })
 }
 

@@ -28,6 +28,13 @@ export const verdictWords: Record<VerdictName, { name: string; meaning: string }
   unknown: { name: "Unknown", meaning: "nothing can be said: no width, broken geometry, an unreadable limit" },
 };
 
+/** What the line of a route stands for, by its kind. */
+export const routeWords: Record<"certified" | "conditional" | "blocked", string> = {
+  certified: "Certified as a whole",
+  conditional: "Only under conditions: not certified",
+  blocked: "Blocked: what stands in its way",
+};
+
 export const policyWords: Record<Policy, { name: string; meaning: string }> = {
   lane: { name: "Own lane", meaning: "Every part of the vehicle stays in its own lane." },
   direction: { name: "Own direction", meaning: "It may use all lanes of its own direction." },

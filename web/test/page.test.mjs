@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
-import { edgePixel, everything, idle, load, missing, open } from "./support.mjs";
+import { edgePixel, everything, idle, load, missing, open, tests } from "./support.mjs";
 
 const { palettes } = await load("map/palette.ts");
 
@@ -12,20 +12,7 @@ before(async () => {
 });
 after(() => all?.close());
 
-/** A test with a page of its own, after which no error may have been seen and nothing asked of strangers. */
-function inPage(name, hash, run, options) {
-  test(name, { skip: missing }, async () => {
-    const opened = await open(all.browser, all.address, hash, options);
-    try {
-      await idle(opened.page);
-      await run(opened.page, opened);
-      assert.deepEqual(opened.errors, []);
-      assert.deepEqual(opened.strangers, []);
-    } finally {
-      await opened.close();
-    }
-  });
-}
+const inPage = tests(() => all);
 
 const text = (page, selector) => page.locator(selector).innerText();
 const ask = (path) => fetch(all.address + path).then((answer) => answer.json());

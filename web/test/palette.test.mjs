@@ -47,6 +47,14 @@ for (const [theme, palette] of Object.entries(palettes)) {
       }
     });
   }
+  test(`${theme}: a route under conditions has a colour that no road and no other route has, whoever looks`, () => {
+    for (const [name, matrix] of Object.entries(simulations)) {
+      for (const colour of [...palette.room, ...palette.missing, palette.forbidden, palette.unknown, palette.conditionalGap]) {
+        const apart = difference(colour, palette.conditional, matrix);
+        assert.ok(apart > 25, `${colour} and ${palette.conditional} under ${name}: ΔE ${apart.toFixed(1)}`);
+      }
+    }
+  });
   test(`${theme}: what is chosen shines from under every line, whoever looks`, () => {
     for (const [name, matrix] of Object.entries(simulations)) {
       for (const colour of [palette.paper, ...palette.room, ...palette.missing, palette.forbidden, palette.unknown]) {

@@ -3,9 +3,11 @@
 //
 // Environment: NETCERT the program, CHROMIUM the browser, NETCERT_TEST_DB a database instead of the drawn region's.
 
+import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { existsSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
+import { test } from "node:test";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
@@ -32,14 +34,14 @@ export async function load(path) {
   return import(`data:text/javascript;base64,${Buffer.from(made.outputFiles[0].contents).toString("base64")}`);
 }
 
-/** The drawn region, certified for two vehicles, one of them under two policies. */
+/** The drawn region, certified for two vehicles under two policies. */
 export function demoDatabase(folder) {
   if (process.env.NETCERT_TEST_DB) return process.env.NETCERT_TEST_DB;
   const db = join(folder, "demo.gpkg");
   const run = (...args) => execFileSync(program, ["--quiet", ...args], { stdio: ["ignore", "ignore", "inherit"] });
   const vehicles = ["--vehicle", "AU-SEMI19", "--vehicle", "AU-ATRIPLE53"];
   run("ingest", join(root, "data/demo.osm.pbf"), "--db", db, ...vehicles);
-  run("certify", "--db", db, "--vehicle", "AU-SEMI19", "--corridor", "carriageway");
+  run("certify", "--db", db, ...vehicles, "--corridor", "carriageway", "--needs", "all");
   return db;
 }
 
@@ -92,14 +94,15 @@ export function launch() {
 /** Database, server and browser together; `close` ends all three. */
 export async function everything() {
   const folder = mkdtempSync(join(tmpdir(), "netcert-page-"));
-  const server = await serve(demoDatabase(folder));
+  const db = demoDatabase(folder);
+  const server = await serve(db);
   const browser = await launch();
   const close = async () => {
     await browser.close();
     await server.stop();
     rmSync(folder, { recursive: true, force: true });
   };
-  return { address: server.address, direct: server.direct, browser, close };
+  return { address: server.address, direct: server.direct, db, browser, close };
 }
 
 /** Opens the page and waits until the map is drawn. `errors` and `strangers` fill as it is used. */
@@ -147,4 +150,20 @@ export function edgePixel(page, verdict, least_m = -1e9) {
     }
     return null;
   }, [verdict, least_m]);
+}
+
+/** Makes tests with a page of their own, after which no error may have been seen and nothing asked of strangers. */
+export function tests(all) {
+  return (name, hash, run, options) =>
+    test(name, { skip: missing }, async () => {
+      const opened = await open(all().browser, all().address, hash, options);
+      try {
+        await idle(opened.page);
+        await run(opened.page, opened);
+        assert.deepEqual(opened.errors, []);
+        assert.deepEqual(opened.strangers, []);
+      } finally {
+        await opened.close();
+      }
+    });
 }

@@ -1,17 +1,52 @@
-// Takes the pictures of docs/serve.md, with databases of three real extracts:
+// Takes the pictures of docs/serve.md and docs/how-to/survey.md, with databases of the drawn region and of three real extracts:
 //
-//     node tools/screenshots.mjs FOLDER [NAME…]      FOLDER holds heidelberg.gpkg, columbus.gpkg, victoria.gpkg
+//     node tools/screenshots.mjs FOLDER [NAME…]      FOLDER holds demo.gpkg, heidelberg.gpkg, columbus.gpkg, victoria.gpkg
 //
 // The extracts are not part of the repository; each picture says in its scene what it shows of them.
 
 import { mkdir, writeFile } from "node:fs/promises";
-import { join } from "node:path";
+import { dirname, join } from "node:path";
 import { edgePixel, idle, launch, open, root, serve } from "../test/support.mjs";
 
 const size = { width: 1280, height: 800 };
 const wait = (page, ms) => page.waitForTimeout(ms);
 
+/** The places of docs/how-to/survey.md. */
+const survey = "126.026942,-30.203315;126.046615,-30.205563";
+
+/** The page's answer under conditions. */
+async function conditional(page) {
+  await page.waitForSelector(".verdict.is-conditional", { timeout: 120_000 });
+  await wait(page, 1500);
+}
+
 const scenes = {
+  // Of the drawn region, certified for AU-ATRIPLE53 in its own lane and on the whole carriageway.
+  "../how-to/survey/route": { db: "demo", hash: `#v=AU-ATRIPLE53&route=${survey}`, png: true, play: conditional },
+  "../how-to/survey/slider": {
+    db: "demo",
+    hash: `#v=AU-ATRIPLE53&route=${survey}`,
+    png: true,
+    async play(page) {
+      await conditional(page);
+      await page.locator(".why").first().click();
+      await page.click(".suppose-need button");
+      await page.waitForSelector(".suppose-opens ul");
+      await page.locator(".suppose").evaluate((section) => section.scrollIntoView({ block: "end" }));
+    },
+  },
+  "../how-to/survey/sheet": {
+    db: "demo",
+    hash: `#v=AU-ATRIPLE53&route=${survey}`,
+    png: true,
+    async play(page) {
+      await conditional(page);
+      const href = await page.locator(".sheets a").first().getAttribute("href");
+      const sheet = await page.context().newPage();
+      await sheet.goto(new URL(href, page.url()).href);
+      return sheet;
+    },
+  },
   heidelberg: {
     db: "heidelberg",
     hash: "#v=EU-SEMI16.5&at=13.6,49.4035,8.6815",
@@ -70,16 +105,19 @@ const out = join(root, "docs/serve");
 await mkdir(out, { recursive: true });
 const browser = await launch();
 for (const name of names.length > 0 ? names : Object.keys(scenes)) {
-  const { db, hash, dark, play } = scenes[name];
+  const { db, hash, dark, png, play } = scenes[name];
   const server = await serve(join(folder, `${db}.gpkg`));
   const { page, close } = await open(browser, server.address, hash, { viewport: size, colorScheme: dark ? "dark" : "light" });
   await idle(page);
-  await play(page);
+  const shown = (await play(page)) ?? page;
   await idle(page);
   await wait(page, 600);
-  const bytes = await webp(page, await page.screenshot());
-  await writeFile(join(out, `${name}.webp`), bytes);
-  console.log(`${name}.webp ${bytes.length} bytes`);
+  const picture = await shown.screenshot();
+  const bytes = png ? picture : await webp(page, picture);
+  const file = `${name}.${png ? "png" : "webp"}`;
+  await mkdir(dirname(join(out, file)), { recursive: true });
+  await writeFile(join(out, file), bytes);
+  console.log(`${file} ${bytes.length} bytes`);
   await close();
   await server.stop();
 }

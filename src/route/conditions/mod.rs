@@ -8,12 +8,13 @@ mod fit;
 mod joint;
 mod report;
 mod search;
+mod sheet;
 mod suppositions;
 mod turn_need;
 
 pub(super) use fit::Fitter;
-pub use report::SHEET_COLUMNS;
 pub use search::Hopeless;
+pub use sheet::{csv as sheet_csv, geojson as sheet_geojson};
 
 use super::plan::Route;
 use super::snap::Snapped;

@@ -10,7 +10,7 @@ use super::super::ask::{Ask, policy};
 use super::super::problem::Problem;
 use super::super::region::{Certified, Region};
 use super::super::roads::RoadIndex;
-use super::{GEOJSON, SVG, answered, id};
+use super::{GEOJSON, SVG, answered, id, suppose};
 use crate::explain::{self, Explanation, MapError};
 use crate::network::Network;
 use crate::osm::LonLat;
@@ -83,7 +83,7 @@ fn of_edge(
     let edge_id = network.edges.get(edge as usize).map(|edge| edge.id);
     let options = QueryOptions { edge_id, ..QueryOptions::new(&model.vehicle.id, settings.policy) };
     let row = region.read(|database| database.query(&options)?.next().transpose())?;
-    if let Some(detail) = row.and_then(|row| explanation.disagreement(&row.certificate)) {
+    if let Some(detail) = row.as_ref().and_then(|row| explanation.disagreement(&row.certificate)) {
         return Err(Problem::stale(format!(
             "the certificate in the database is not what this program computes: {detail}; run `netcert certify \
              --vehicle {} --corridor {}`",
@@ -94,6 +94,7 @@ fn of_edge(
     let mut members = explain::json(&explanation);
     members["kind"] = json!("edge");
     members["at"] = json!(limiting_place(network, edge, &explanation));
+    members["suppose"] = suppose::of_edge(network, edge, settings, row.as_ref());
     let line = network.edges.get(edge as usize).map(|edge| network.positions(edge).collect::<Vec<_>>());
     members["geometry"] = geometry(line.as_deref());
     let map = explain::edge_geojson(&explanation, stop).map_err(unmapped)?;
@@ -124,6 +125,7 @@ fn of_turn(
     let set = (model.vehicle.id.as_str(), settings.policy);
     let turns = region.read(|database| database.map_turns(set, TurnsOf::Edge(facts.movement.from)))?;
     members["geometry"] = geometry(turns.iter().find(|row| row.turn_id == id).map(|row| row.line.as_slice()));
+    members["suppose"] = suppose::of_turn(region, &facts, set, turn.explanation.verdict)?;
     members["note"] = json!(explain::TURN_NOTE);
     let map = explain::turn_geojson(&turn, stop).map_err(unmapped)?;
     Ok(Explained { members, picture: picture::turn(&turn), map })

@@ -9,6 +9,7 @@ pub(super) mod region;
 pub(super) mod route;
 pub(super) mod search;
 pub(super) mod stats;
+pub(super) mod suppose;
 pub(super) mod vehicles;
 
 use std::sync::Arc;

@@ -1,13 +1,16 @@
-//! Answers with a certified route between places, or with the obstacles that block it.
+//! Answers with a certified route between places, else with a route under conditions and the obstacles, and with the sheets of conditions.
+
+use std::sync::Arc;
 
 use serde_json::json;
 
 use super::super::answer::Stored;
 use super::super::ask::{Ask, policy};
-use super::super::planning::{Ride, Router};
+use super::super::planning::{Planned, Ride, Router, Sheets};
 use super::super::problem::Problem;
 use super::super::region::Region;
-use super::{SCOPE, answered};
+use super::{GEOJSON, SCOPE, answered};
+use crate::picture;
 use crate::route::{Measure, Question};
 use crate::words::Named;
 
@@ -18,9 +21,48 @@ const SNAP_M: f64 = 100.0;
 /// Default of `tries`, the number of whole routes that may fail. Each try costs a certificate over the whole route.
 const TRIES: u32 = 12;
 
+/// The parameters of a route and of its sheets.
+const PARAMETERS: [&str; 11] =
+    ["vehicle", "policy", "from", "to", "via*", "alternatives", "snap", "tries", "least", "drive", "conditions"];
+
 /// `/api/route`
 pub(in super::super) fn route(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    ask.only(&["vehicle", "policy", "from", "to", "via*", "alternatives", "snap", "tries", "least", "drive"])?;
+    Ok(answered(&planned(region, ask)?.members))
+}
+
+/// `/api/sheet.html`
+pub(in super::super) fn sheet_html(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    sheet(region, ask, "text/html; charset=utf-8", |sheets| &sheets.html)
+}
+
+/// `/api/sheet.csv`
+pub(in super::super) fn sheet_csv(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    sheet(region, ask, "text/csv; charset=utf-8", |sheets| &sheets.csv)
+}
+
+/// `/api/sheet.geojson`
+pub(in super::super) fn sheet_geojson(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    sheet(region, ask, GEOJSON, |sheets| &sheets.geojson)
+}
+
+/// `/api/sheet.css`
+pub(in super::super) fn sheet_css(_: &Region, ask: &Ask) -> Result<Stored, Problem> {
+    ask.only(&[])?;
+    Ok(Stored::new("text/css; charset=utf-8", picture::SHEET_STYLE.as_bytes().to_vec()))
+}
+
+fn sheet(region: &Region, ask: &Ask, kind: &'static str, form: fn(&Sheets) -> &String) -> Result<Stored, Problem> {
+    let planned = planned(region, ask)?;
+    let Some(sheets) = &planned.sheets else {
+        let detail = "there is no route under conditions between these places, so there is nothing to check; /api/route has the answer";
+        return Err(Problem::not_found(detail));
+    };
+    Ok(Stored::new(kind, form(sheets).clone().into_bytes()))
+}
+
+/// The answer to a question. The last ones are kept.
+fn planned(region: &Region, ask: &Ask) -> Result<Arc<Planned>, Problem> {
+    ask.only(&PARAMETERS)?;
     let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
     let certified = region.certified(ask.required("vehicle")?, policy)?;
     let vehicle = certified.vehicle;
@@ -38,16 +80,20 @@ pub(in super::super) fn route(region: &Region, ask: &Ask) -> Result<Stored, Prob
         )));
     }
     let key = format!("{} {} {measure:?}", vehicle.id, policy.name());
-    let router = region.routers.get(&key, || Router::start(region, &certified, measure))?;
-    let Some(answer) = router.ask(ride) else {
-        region.routers.forget(&key);
-        return Err(Problem::fault("the search for routes broke off"));
-    };
-    let mut members = answer?;
-    members["scope"] = json!(format!(
-        "{SCOPE} Kerb radii of corners are assumed where they are neither surveyed nor mapped; times are by class of road and tagged limits."
-    ));
-    Ok(answered(&members))
+    let question = format!("{key} {:?} {} {}", ride.question, ride.drives, ride.conditions);
+    region.planned.get(&question, || {
+        let router = region.routers.get(&key, || Router::start(region, &certified, measure))?;
+        let Some(answer) = router.ask(ride) else {
+            region.routers.forget(&key);
+            return Err(Problem::fault("the search for routes broke off"));
+        };
+        let mut planned = answer?;
+        planned.members["scope"] = json!(format!(
+            "{SCOPE} Kerb radii of corners are assumed where they are neither surveyed nor mapped; times are by class of road and \
+             tagged limits. A route under conditions is certified only if every condition holds on site."
+        ));
+        Ok(planned)
+    })
 }
 
 fn ride(ask: &Ask) -> Result<Ride, Problem> {
@@ -67,8 +113,13 @@ fn ride(ask: &Ask) -> Result<Ride, Problem> {
         "none" => 0,
         _ => return Err(Problem::parameter("drive", "give best, all or none")),
     };
+    let conditions = match ask.parameter("conditions").unwrap_or("search") {
+        "search" => true,
+        "none" => false,
+        _ => return Err(Problem::parameter("conditions", "give search or none")),
+    };
     let snap_m = ask.number("snap", 0.0, 5000.0)?.unwrap_or(SNAP_M);
     let tries = ask.whole("tries", 0..=30)?.unwrap_or(TRIES) as usize;
     let question = Question { places, snap_m, alternatives, tries };
-    Ok(Ride { question, drives, stop: ask.stop.clone() })
+    Ok(Ride { question, drives, conditions, stop: ask.stop.clone() })
 }

@@ -129,6 +129,7 @@ mod tests {
             width_source: None,
             verdict: Verdict::Unknown(UnknownReason::Width),
             rsc_mm: None,
+            need_width_m: None,
             line: points.iter().map(|&(lon_e7, lat_e7)| LonLat { lon_e7, lat_e7 }).collect(),
         }
     }

@@ -135,6 +135,7 @@ fn edge(layer: &mut Layer, row: &MapEdge, left: Option<bool>, place: Place) {
         if place.z >= FIRST_IN_FULL {
             tags.add("way_id", Value::Whole(row.way_id));
             tags.number("width_m", row.width_m.map(centimetre));
+            tags.number("need_width_m", row.need_width_m);
             tags.number("length_m", Some(centimetre(row.length_m)));
         }
     });

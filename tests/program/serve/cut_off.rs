@@ -45,7 +45,11 @@ impl Turns for Telling {
 
 /// The demo under the carriageway policy, where some corners pass.
 fn wide() -> (Place, Database, Network, Model, Settings) {
-    let place = Place::with_wide_demo("AU-SEMI19");
+    wide_for(VEHICLE)
+}
+
+fn wide_for(vehicle: &str) -> (Place, Database, Network, Model, Settings) {
+    let place = Place::with_wide_demo(vehicle);
     let mut database = place.database();
     let network = database.load_network().unwrap();
     let settings = Settings { policy: Policy::Carriageway, ..Settings::default() };
@@ -72,7 +76,7 @@ fn on_the_road(
     model: &Model,
     settings: &Settings,
 ) -> (Arc<Roads>, Arc<Driver>) {
-    let set = database.certified_set(VEHICLE, settings.policy).unwrap().unwrap();
+    let set = database.certified_set(&model.vehicle.id, settings.policy).unwrap().unwrap();
     let roads = Roads::new(network);
     let driver = Driver::stored(database, &roads, &model.vehicle, &set).unwrap();
     (roads, driver)
@@ -132,6 +136,31 @@ fn a_route_is_whole_or_is_not_there() {
     assert_eq!(said(&whole), said(&answer));
     assert_eq!(whole.routes[0].certificate, answer.routes[0].certificate);
     assert!(stops > 15, "it asked fewer than {asked} times");
+}
+
+/// A search for a route under conditions that is stopped has no answer, and one that is not has the whole.
+#[test]
+fn a_route_under_conditions_is_whole_or_is_not_there() {
+    let (_place, mut database, network, model, settings) = wide_for("AU-ATRIPLE53");
+    let (roads, driver) = on_the_road(&mut database, network, &model, &settings);
+    let places = [[126.026_942, -30.203_315], [126.046_615, -30.205_563]].map(|[lon, lat]| Position { lon, lat });
+    let question = Question { places: places.to_vec(), snap_m: 100.0, alternatives: 0, tries: 30 };
+    let mut planner = Planner::new(&roads, Arc::clone(&driver), Speeds::builtin().unwrap(), Measure::Time);
+    let (mut asked, mut searched) = (1, 0);
+    let whole = loop {
+        let mut begun = false;
+        match planner.best_answer(&question, &Stop::after(asked), || begun = true) {
+            Ok(whole) => break whole,
+            Err(unanswered) => assert_eq!(unanswered, Unanswered::Stopped(Stopped)),
+        }
+        searched += usize::from(begun);
+        asked *= 2;
+    };
+    assert!(searched > 1, "it was never stopped while it looked for conditions");
+    assert!(whole.routes.is_empty() && !whole.conditional.as_ref().unwrap().conditions.is_empty());
+    let again = planner.best_answer(&question, &Stop::never(), || ()).unwrap();
+    let said = |answer| route::json(&roads.network, &model, answer).to_string();
+    assert_eq!(said(&whole), said(&again));
 }
 
 /// A certificate that is told to stop ends within some metres of one sweep. Each of the following sweeps checks at most once.

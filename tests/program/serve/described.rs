@@ -4,8 +4,10 @@ use netcert::words::verdict_words;
 use serde_json::{Map, Value};
 
 use super::http::Server;
+use crate::support::program::Place;
 
 const VEHICLE: &str = "AU-SEMI19";
+const LONG: &str = "AU-ATRIPLE53";
 
 /// What is wrong with a value by a schema: the keywords that the document uses (`type`, `properties`, `required`,
 /// `additionalProperties`, `items`, `minItems`, `maxItems`, `enum`, `pattern` of digits, `anyOf`, `$ref`).
@@ -86,8 +88,11 @@ fn item_faults(document: &Value, schema: &Value, items: &[Value], at: &str, foun
 fn every_answer_has_the_described_form() {
     let server = Server::demo();
     let document = server.json("/api/openapi.json");
-    let asked = asked(&server);
-    for (path, target) in &asked {
+    let wide = Server::over(Place::with_wide_demo(LONG), "serve --db demo.gpkg --addr 127.0.0.1:0");
+    let asked: Vec<_> = asked(&server).into_iter().map(|asked| (&server, asked)).collect();
+    let under_conditions = asked_under_conditions(&wide).into_iter().map(|asked| (&wide, asked));
+    let asked: Vec<(&Server, (String, String))> = asked.into_iter().chain(under_conditions).collect();
+    for (server, (path, target)) in &asked {
         let answers = &document["paths"][path]["get"]["responses"]["200"]["content"];
         let (kind, schema) =
             answers.as_object().and_then(|kinds| kinds.iter().next()).unwrap_or_else(|| panic!("{path}"));
@@ -102,12 +107,34 @@ fn every_answer_has_the_described_form() {
         }
     }
     for path in document["paths"].as_object().unwrap().keys() {
-        assert!(asked.iter().any(|(asked, _)| asked == path), "{path} was not asked");
+        assert!(asked.iter().any(|(_, (asked, _))| asked == path), "{path} was not asked");
     }
     let mut found = Vec::new();
     let problem = server.problem("/api/search?q=", 400);
     faults(&document, &document["components"]["schemas"]["Problem"], &problem, "problem", &mut found);
     assert_eq!(found, Vec::<String>::new());
+}
+
+/// Routes under conditions, their sheets, and suppositions of an edge and a turn.
+fn asked_under_conditions(wide: &Server) -> Vec<(String, String)> {
+    let question = format!("vehicle={LONG}&from=126.026942,-30.203315&to=126.046615,-30.205563");
+    let mut asked = vec![("/api/sheet.css".to_owned(), "/api/sheet.css".to_owned())];
+    for path in ["/api/route", "/api/sheet.csv", "/api/sheet.geojson", "/api/sheet.html"] {
+        asked.push((path.to_owned(), format!("{path}?{question}")));
+    }
+    let answer = wide.json(&format!("/api/route?{question}"));
+    let obstacles = answer["obstacles"].as_array().unwrap();
+    let edges = obstacles.iter().flat_map(|obstacle| [&obstacle["from_edge"], &obstacle["edge_id"]]);
+    for edge in edges.filter_map(Value::as_str) {
+        let facts = wide.json(&format!("/api/edges/{edge}?vehicle={LONG}"));
+        let turns = facts["turns"].as_array().unwrap().iter().filter(|turn| turn["kerb_radius_m"].is_number());
+        let turns = turns.filter(|turn| turn["verdict"] == "unsafe").filter_map(|turn| turn["turn_id"].as_str());
+        for id in turns.chain([edge]) {
+            asked.push(("/api/suppose/{id}".to_owned(), format!("/api/suppose/{id}?vehicle={LONG}&metres=20")));
+            asked.push(("/api/explain/{id}".to_owned(), format!("/api/explain/{id}?vehicle={LONG}")));
+        }
+    }
+    asked
 }
 
 /// Every path of the document with questions that bring out as many members as may be.
@@ -145,7 +172,9 @@ fn asked(server: &Server) -> Vec<(String, String)> {
         let to = place(row, row.line.len() - 1);
         add(
             "/api/route",
-            format!("/api/route?vehicle={VEHICLE}&from={from}&to={to}&alternatives=1&drive=all&snap=500"),
+            format!(
+                "/api/route?vehicle={VEHICLE}&from={from}&to={to}&alternatives=1&drive=all&snap=500&conditions=none"
+            ),
         );
     }
     for path in ["/healthz", "/api/openapi.json", "/api/region", "/api/vehicles", "/api/stats"] {

@@ -4,6 +4,7 @@
 
 mod answers;
 mod caching;
+mod conditional;
 mod cut_off;
 mod described;
 pub(crate) mod http;

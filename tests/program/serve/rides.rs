@@ -35,7 +35,8 @@ fn places(server: &Server) -> [String; 2] {
     for (from, to) in
         all.iter().step_by(5).flat_map(|from| all.iter().rev().step_by(13).map(move |to| (from, to))).take(300)
     {
-        let answer = server.json(&format!("/api/route?vehicle={VEHICLE}&from={from}&to={to}&drive=none&tries=30"));
+        let answer = server
+            .json(&format!("/api/route?vehicle={VEHICLE}&from={from}&to={to}&drive=none&tries=30&conditions=none"));
         let route = &answer["routes"][0];
         if route["length_m"].as_f64().is_some_and(|m| m > 300.0) {
             let turns = route["parts"].as_array().unwrap().iter().any(|part| part["kind"] == "turn");
@@ -134,7 +135,8 @@ fn where_there_is_no_route_the_answer_says_what_blocks() {
     let all = middles(&server);
     let mut blocked = 0;
     for (from, to) in all.iter().zip(all.iter().rev()).step_by(9) {
-        let answer = server.json(&format!("/api/route?vehicle={VEHICLE}&from={from}&to={to}&drive=none&tries=0"));
+        let answer = server
+            .json(&format!("/api/route?vehicle={VEHICLE}&from={from}&to={to}&drive=none&tries=0&conditions=none"));
         if answer["routes"].as_array().unwrap().is_empty() {
             blocked += 1;
             for obstacle in answer["obstacles"].as_array().into_iter().flatten() {

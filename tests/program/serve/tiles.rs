@@ -134,6 +134,8 @@ fn matches_row(feature: &Feature, row: &EdgeRow) {
     assert_eq!((tag("name"), tag("ref")), (row.name.as_deref(), row.reference.as_deref()));
     assert_eq!(tag("rsc_m").map(|text| text.parse().unwrap()), row.certificate.rsc_m, "exactly as kept");
     assert_eq!(tag("width_source"), row.width_source.map(Named::name));
+    let need_m = tag("need_width_m").map(|shown| shown.parse::<f64>().unwrap());
+    assert_eq!(need_m, row.need_width_m, "{}", row.edge_id);
     if let Some(width_m) = row.width_m {
         let shown: f64 = tag("width_m").unwrap().parse().unwrap();
         assert!(shown <= width_m && width_m - shown < 0.0101, "{shown} {width_m}");

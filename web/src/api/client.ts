@@ -9,6 +9,7 @@ import type {
   RouteAnswer,
   SearchHit,
   Shapes,
+  Supposed,
   StatsRows,
   Vehicle,
 } from "./types.ts";
@@ -47,6 +48,13 @@ export const SNAP_M = 500;
 
 const place = ([lon, lat]: Position): string => `${lon.toFixed(6)},${lat.toFixed(6)}`;
 const asked = ({ vehicle, policy }: Question): Record<string, string> => ({ vehicle, policy });
+const ride = (from: Position, to: Position, question: Question): Record<string, string> => ({ ...asked(question), from: place(from), to: place(to), snap: String(SNAP_M) });
+
+interface Turn {
+  turn_id: string;
+  from_edge: string;
+  to_edge: string;
+}
 
 export const api = {
   region: () => get<Region>("/api/region", {}),
@@ -58,8 +66,18 @@ export const api = {
     get<Shapes>(`/api/explain/${encodeURIComponent(id)}/map.geojson`, asked(question), signal),
   pictureUrl: (id: string, question: Question) =>
     `/api/explain/${encodeURIComponent(id)}/picture.svg?${new URLSearchParams(asked(question))}`,
-  route: (from: Position, to: Position, question: Question, signal?: AbortSignal) =>
-    get<RouteAnswer>("/api/route", { ...asked(question), from: place(from), to: place(to), snap: String(SNAP_M) }, signal),
+  suppose: (id: string, metres: number, question: Question, signal?: AbortSignal) =>
+    get<Supposed>(`/api/suppose/${encodeURIComponent(id)}`, { ...asked(question), metres: metres.toFixed(2) }, signal),
+  /** The id of the turn from one edge into another. Null if there is none. */
+  turn: async (from: string, to: string, question: Question, signal?: AbortSignal): Promise<string | null> => {
+    const { turns } = await get<{ turns: Turn[] }>(`/api/edges/${encodeURIComponent(from)}`, asked(question), signal);
+    return turns.find((turn) => turn.from_edge === from && turn.to_edge === to)?.turn_id ?? null;
+  },
+  /** `conditions` says whether to look for a route under conditions where none is certified. */
+  route: (from: Position, to: Position, question: Question, conditions: "search" | "none", signal?: AbortSignal) =>
+    get<RouteAnswer>("/api/route", { ...ride(from, to, question), conditions }, signal),
+  sheetUrl: (form: "html" | "csv" | "geojson", from: Position, to: Position, question: Question) =>
+    `/api/sheet.${form}?${new URLSearchParams(ride(from, to, question))}`,
   stats: async (policy: Policy, signal?: AbortSignal): Promise<Stats> =>
     digest(await get<StatsRows>("/api/stats", { policy }, signal)),
   tilesPath: ({ tiles }: Region, { vehicle, policy }: Question) =>

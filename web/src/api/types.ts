@@ -87,9 +87,40 @@ export interface Explanation {
   note?: string;
   /** Whether there is a picture. */
   picture: boolean;
+  /** What may be supposed of it; null if neither a width nor a kerb radius decides. */
+  suppose: Supposable | null;
   geometry?: { type: "LineString"; coordinates: Position[] } | null;
   /** The place that decides, or the turn's node. */
   at: Position | null;
+}
+
+export type Quantity = "kerb_radius" | "lane_width" | "direction_width" | "carriageway_width";
+
+/** The range of a slider, metres, and what is known to be enough. */
+export interface Supposable {
+  quantity: Quantity;
+  now: number;
+  low: number;
+  high: number;
+  step: number;
+  /** The stored need; null if none is known. */
+  need: number | null;
+  /** Of a turn that no radius helps: the width of both roads that would do. */
+  need_flare: number | null;
+}
+
+/** The answer to a supposition, which is no certificate. */
+export interface Supposed {
+  kind: "edge" | "turn";
+  quantity: Quantity;
+  supposed: number;
+  enough: boolean;
+  reason: string | null;
+  rsc_m: number | null;
+  /** Other edges of the stroke that would do, too. */
+  opens?: { edge_id: string; title: string; length_m: number; rsc_m: number | null }[];
+  opens_m?: number;
+  scope: string;
 }
 
 /** What a shape of an explanation shows. */
@@ -110,8 +141,11 @@ export interface ShapeProperties {
 /** The shapes of an explanation, for the map. */
 export type Shapes = GeoJSON.FeatureCollection<GeoJSON.Geometry, ShapeProperties>;
 
+/** A passage leads over a roundabout or over several nodes. */
+export type PartKind = "edge" | "turn" | "roundabout" | "complex";
+
 export interface RoutePart {
-  kind: "edge" | "turn";
+  kind: PartKind;
   title: string;
   edge_id?: string;
   from_edge?: string;
@@ -169,8 +203,28 @@ export interface Route {
   drive: Drive;
 }
 
+/** What has to be so on site. */
+export interface Condition {
+  number: number;
+  kind: Quantity | "surface";
+  place: Position | null;
+  assumed: number | null;
+  needed: number;
+  title: string;
+  edge_id?: string | null;
+  length_m?: number;
+  from_edge?: string | null;
+  to_edge?: string | null;
+}
+
+/** A route that is certified only if all of its conditions hold. It has no drive. */
+export interface ConditionalRoute extends Omit<Route, "drive" | "safe"> {
+  safe: false;
+  conditions: Condition[];
+}
+
 export interface Obstacle {
-  kind: "edge" | "turn";
+  kind: PartKind;
   title: string;
   edge_id?: string;
   from_edge?: string;
@@ -187,6 +241,9 @@ export interface RouteAnswer {
   places: { position: Position; distance_m: number }[];
   gave_up: boolean;
   obstacles: Obstacle[] | null;
+  conditional: ConditionalRoute | null;
+  /** The way on which the obstacles lie. */
+  blocked_way: { type: "LineString"; coordinates: Position[] } | null;
 }
 
 /** Rows of `/api/stats`; lengths count once for each direction. */

@@ -37,7 +37,7 @@ export class Page {
     const { store, theme } = context;
     this.#vehicles = new VehicleDialog(context);
     this.#stats = new StatsDialog(context);
-    this.#drawer = new Drawer(() => store.set({ selected: null, route: null }));
+    this.#drawer = new Drawer(() => this.#close(), () => store.set({ selected: null }));
     this.#maps = new Maps(context, {
       click: (under, lon, lat) => this.#click(under, lon, lat),
       moved: (camera) => store.set({ camera }),
@@ -47,6 +47,7 @@ export class Page {
     this.#explain = new ExplainPanel({
       place: (explanation, goTo) => this.#place(explanation, goTo),
       shapes: (shapes) => this.#maps.shapes(shapes),
+      select: (selected) => store.set({ selected }),
       other: () => (store.state.other ? { ...question(context), vehicle: store.state.other } : null),
     });
     this.#routing = new Routing(context, this.#maps.first, this.#drawer);
@@ -72,8 +73,14 @@ export class Page {
   escape(): void {
     const { store } = this.context;
     if (this.#routing.driving) this.#routing.endDrive();
-    else if (store.state.selected || store.state.route) store.set({ selected: null, route: null });
+    else if (store.state.selected || store.state.route) this.#close();
     else if (store.state.other) store.set({ other: null });
+  }
+
+  /** Closes the explanation, and if there is none, the route. */
+  #close(): void {
+    const { store } = this.context;
+    store.set(store.state.selected ? { selected: null } : { route: null });
   }
 
   find(): void {
@@ -140,8 +147,8 @@ export class Page {
     const id = under?.id ?? null;
     if (route && route.length < 2) store.set({ route: [...route, [lon, lat]] });
     else if (under?.kind === "overview") this.#maps.approach(lon, lat);
-    else if (!this.#routing.driving && (id || !route)) {
-      store.set({ selected: id, ...(id ? { route: null } : {}) });
+    else if (!this.#routing.driving) {
+      store.set({ selected: id });
       if (id) this.#maps.reveal(lon, lat);
     }
   }
@@ -149,7 +156,8 @@ export class Page {
   /** Selects a search result as a click would. For a road with many edges, the edge that the result names is selected. */
   #search(hit: SearchHit): void {
     // Set first, so that the drawer is open when the map is fitted to the visible area.
-    this.context.store.set({ selected: hit.edge_id, route: null });
+    const { route } = this.context.store.state;
+    this.context.store.set({ selected: hit.edge_id, route: route?.length === 2 ? route : null });
     this.#maps.fit(hit.bbox);
     // With the focus on the map, the arrow keys, + and − work.
     this.#maps.first.map.getCanvas().focus({ preventScroll: true });
@@ -178,7 +186,8 @@ export class Page {
     this.#maps.update(changed);
     this.#tools.draw();
     if (changed.has("route") || (certificates && state.route)) this.#routing.update();
-    if (changed.has("selected") || ((certificates || changed.has("other")) && state.selected)) this.#select(first && !state.camera);
+    const again = (certificates || changed.has("other")) && state.selected;
+    if (changed.has("selected") || changed.has("route") || again) this.#select(first && !state.camera);
     if (changed.has("stats")) {
       if (state.stats) void this.#stats.open();
       else this.#stats.close();
@@ -189,11 +198,11 @@ export class Page {
   #select(goTo: boolean): void {
     const { state } = this.context.store;
     if (state.selected) {
-      this.#drawer.show(this.#explain.element);
+      this.#drawer.show(this.#explain.element, state.route !== null);
       void this.#explain.show(state.selected, question(this.context), goTo);
     } else {
       this.#explain.end();
-      if (!state.route) this.#drawer.hide();
+      if (!this.#routing.present()) this.#drawer.hide();
     }
   }
 

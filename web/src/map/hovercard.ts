@@ -34,6 +34,7 @@ function content({ kind, properties }: Under): Node[] {
   const road = { ref: text("ref"), name: text("name"), highway: text("highway") };
   const name = { turn: "Turn", overview: "The worst of what lies here", edge: title(road) }[kind];
   const source = text("width_source") as Evidence | null;
+  const need = properties["need_width_m"];
   const parts = [
     road.highway ? className(road.highway) : null,
     kind !== "turn" ? `width: ${evidenceWords[source ?? "none"].toLowerCase()}` : null,
@@ -41,6 +42,7 @@ function content({ kind, properties }: Under): Node[] {
   return [
     h("div", { class: `hover-number is-${verdict}` }, h("i", { class: `line line-${verdict}` }), number),
     h("div", { class: "hover-name" }, name),
+    typeof need === "number" ? h("div", { class: "hover-more" }, `${need.toFixed(2)} m would do, nowhere narrower along the road`) : null,
     h("div", { class: "hover-more" }, [verdictWords[verdict].name, ...parts].join(" · ")),
     kind === "overview" ? h("div", { class: "hover-more" }, "Click to go nearer.") : null,
   ].filter((node) => node !== null);

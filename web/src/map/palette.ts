@@ -46,6 +46,9 @@ export interface Palette {
   glow: string;
   route: string;
   routeCasing: string;
+  /** The stripes of a route under conditions. No verdict has their hue, nor has any line of roads two colours. */
+  conditional: string;
+  conditionalGap: string;
   units: readonly string[];
   /** The surface of roads in their real width. */
   surface: string;
@@ -69,6 +72,8 @@ export const palettes: Record<Theme, Palette> = {
     glow: "#ffd60a",
     route: "#111417",
     routeCasing: "#ffffff",
+    conditional: "#ffdd00",
+    conditionalGap: "#111417",
     units: ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#c9bb1c"],
     surface: "#e6e3dc",
     corridor: "#d6d3cb",
@@ -89,6 +94,8 @@ export const palettes: Record<Theme, Palette> = {
     glow: "#ffe033",
     route: "#ffffff",
     routeCasing: "#15181c",
+    conditional: "#ffee11",
+    conditionalGap: "#000000",
     units: ["#3d9bd8", "#e69f00", "#1fb489", "#d48fb6", "#7cc6f0", "#e0702a", "#f0e442"],
     surface: "#22262b",
     corridor: "#2c3138",
@@ -97,11 +104,12 @@ export const palettes: Record<Theme, Palette> = {
 };
 
 /** The colours that the style sheet uses, as custom properties. */
-export function properties({ room, missing, forbidden, unknown, units, corridor, ink, route, routeCasing }: Palette): Record<string, string> {
+export function properties({ room, missing, forbidden, unknown, units, corridor, ink, route, routeCasing, conditional, conditionalGap }: Palette): Record<string, string> {
   const numbered = units.map((colour, index) => [`--unit-${index}`, colour]);
   const verdicts = { "--safe": room[2], "--unsafe": missing[2], "--forbidden": forbidden, "--unknown": unknown };
   const shapes = { "--ground": corridor, "--edge": ink, "--path": route, "--path-casing": routeCasing };
-  return { ...verdicts, ...shapes, ...Object.fromEntries(numbered) };
+  const routes = { "--conditional": conditional, "--conditional-gap": conditionalGap, "--obstacle": missing[3] };
+  return { ...verdicts, ...shapes, ...routes, ...Object.fromEntries(numbered) };
 }
 
 /** The colour of each reason, by `verdict/reason`. */

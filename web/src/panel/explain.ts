@@ -6,6 +6,7 @@ import { h, prose } from "../ui/dom.ts";
 import { className, evidenceWords, margin, policyWords, reasonWords, title, verdictWords } from "../words.ts";
 import { labelled, mapKey } from "./mapkey.ts";
 import { Picture } from "./picture.ts";
+import { suppose } from "./suppose.ts";
 
 /** The functions of the page that the panel uses. */
 export interface Around {
@@ -15,6 +16,8 @@ export interface Around {
   shapes(shapes: Shapes | null): void;
   /** The vehicle and policy of the other map, if there is one. */
   other(): Question | null;
+  /** Opens another road. */
+  select(id: string): void;
 }
 
 export class ExplainPanel {
@@ -83,7 +86,9 @@ export class ExplainPanel {
       const alt = `The swept path where it is tightest: ${own.headline}`;
       nodes.push(this.#picture.show(api.pictureUrl(id, question), alt, this.#running!.signal));
     }
-    nodes.push(this.#key, list("What decides", own.reasons), list("What would do", own.hints_in_words));
+    nodes.push(list("What decides", own.reasons), list("What would do", own.hints_in_words));
+    if (own.suppose && own.verdict === "unsafe") nodes.push(suppose(id, question, own.suppose, (other) => this.around.select(other), this.#running!.signal));
+    nodes.push(this.#key);
     if (road) nodes.push(width(own), h("p", { class: "ids" }, "Edge ", h("code", {}, road.edge_id)));
     nodes.push(h("p", { class: "scope" }, prose([own.note, own.scope].filter(Boolean).join(" "))));
     return nodes;

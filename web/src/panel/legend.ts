@@ -7,7 +7,7 @@ import { evidenceColours, missingSteps, palettes, reasonColours, roomSteps, type
 import type { ColourBy } from "../state.ts";
 import { h, styled } from "../ui/dom.ts";
 import { Segmented } from "../ui/segmented.ts";
-import { EVIDENCE, VERDICTS, evidenceWords, kilometres, percent, reasonWords, verdictWords } from "../words.ts";
+import { EVIDENCE, VERDICTS, evidenceWords, kilometres, percent, reasonWords, routeWords, verdictWords } from "../words.ts";
 
 export class Legend {
   readonly element = h("section", { class: "legend", "aria-label": "Roads by verdict" });
@@ -30,7 +30,7 @@ export class Legend {
       (colourBy) => context.store.set({ colourBy }),
     );
     const by = h("div", { class: "labelled" }, h("span", { class: "label", "aria-hidden": "true" }, "Colour by"), this.#by.element);
-    this.element.append(this.#headline, this.#bar, this.#rows, by, this.#scale);
+    this.element.append(this.#headline, this.#bar, this.#rows, by, this.#scale, routeKey());
     this.draw();
   }
 
@@ -99,6 +99,12 @@ function scale(name: string, steps: readonly Step[], colours: readonly string[])
     h("span", { class: "scale-cell" }, styled(h("i", {}), { background: colours[index] ?? "" }), h("span", {}, step.label)),
   );
   return h("div", { class: "scale" }, h("span", { class: "scale-name" }, name), h("div", { class: "scale-cells" }, ...cells));
+}
+
+/** The lines of routes, which are seen while there is one. */
+function routeKey(): HTMLElement {
+  const row = ([kind, text]: readonly [string, string]) => h("span", { class: "key-item" }, h("i", { class: `line line-${kind}`, "aria-hidden": "true" }), text);
+  return h("div", { class: "route-key", "aria-label": "Lines of a route" }, ...Object.entries(routeWords).map(row));
 }
 
 function key(entries: readonly (readonly [string, string])[]): HTMLElement {

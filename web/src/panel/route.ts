@@ -1,41 +1,75 @@
-// A certified route between two places, or what blocks it.
+// A route between two places: certified, or under conditions, or what blocks it.
 
-import type { Obstacle, Route, RouteAnswer, RoutePart } from "../api/types.ts";
+import type { ConditionalRoute, Position, Route, RouteAnswer, RoutePart } from "../api/types.ts";
 import { marginColour, type Palette } from "../map/palette.ts";
 import { h, styled } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
-import { careful, distance, duration, margin, reasonWords, signed } from "../words.ts";
+import { distance, duration, margin, signed } from "../words.ts";
+import { reasons } from "./blocked.ts";
+import { along, conditionalFoot, conditionalHead } from "./conditions.ts";
+import { NumberedList, type Item, type NumberedActions } from "./numbered.ts";
 
 /** The functions of the page that the panel uses. */
-export interface Actions {
+export interface Actions extends NumberedActions {
   drive(): void;
   seek(s: number): void;
-  select(id: string | null, place: [number, number] | null): void;
+  go(place: Position): void;
   swap(): void;
   clear(): void;
 }
 
+/** The state of the search for a route under conditions: under way, without result, or failed. */
+export type Search = "searching" | "none" | { failed: string } | undefined;
+
+/** What the panel needs beside the answer. */
+export interface Around {
+  palette: Palette;
+  /** The same question on the command line. */
+  command: string;
+  /** The address of a sheet of the conditions. */
+  sheet(form: "html" | "csv" | "geojson"): string;
+  search: Search;
+}
+
 const ways = "Lawful turns and one-way roads considered; traffic is not.";
+const longer = "Looking for a route under conditions, which may take a minute …";
 
 export class RoutePanel {
   readonly element = h("div", { class: "route" });
+  #list: NumberedList | null = null;
 
   constructor(private readonly actions: Actions) {}
 
   waiting(chosen: number): void {
     const text = ["Click on the map where it begins.", "Now click where it is to go."][chosen] ?? "Searching, and certifying the whole way …";
+    this.#list = null;
     this.element.replaceChildren(h("h2", {}, "Certified route"), h("p", { class: chosen < 2 ? "prompt" : "waiting", role: "status" }, text), this.#tools(false));
+  }
+
+  /** No place for a certified route is near, and the search for one under conditions is under way. */
+  searching(): void {
+    this.element.replaceChildren(h("h2", {}, "No certified route"), h("p", { class: "waiting", role: "status" }, longer), this.#tools(true));
   }
 
   failed(message: string): void {
     this.element.replaceChildren(h("h2", {}, "No route"), h("p", { class: "problem", role: "alert" }, message), this.#tools(true));
   }
 
-  show(answer: RouteAnswer, palette: Palette, command: string): void {
+  show(answer: RouteAnswer, items: readonly Item[], around: Around): void {
     const best = answer.routes[0];
-    const content = best ? this.#found(best, palette) : this.#blocked(answer);
-    const same = h("details", { class: "command" }, h("summary", {}, "The same on the command line"), h("code", {}, command));
+    this.#list = best ? null : new NumberedList(answer.conditional ? "condition" : "obstacle", items, this.actions);
+    const content = best
+      ? this.#found(best, around.palette)
+      : answer.conditional
+        ? this.#conditional(answer.conditional, around)
+        : this.#blocked(answer, around.search);
+    const same = h("details", { class: "command" }, h("summary", {}, "The same on the command line"), h("code", {}, around.command));
     this.element.replaceChildren(...content, ...away(answer), same, this.#tools(true));
+  }
+
+  /** Shows which line belongs to the chosen pin. */
+  mark(number: number | null): void {
+    this.#list?.mark(number);
   }
 
   #tools(both: boolean): HTMLElement {
@@ -61,12 +95,21 @@ export class RoutePanel {
       go,
       h("dl", { class: "facts columns" }, fact("Length", distance(route.length_m)), fact("Time", duration(route.time_s)), fact("Hinges", `${(Math.floor(route.hinge_margin_deg * 10) / 10).toFixed(1)}° left`)),
       h("h3", {}, "Along the way"),
-      this.#parts(route.parts, palette),
+      this.#parts(route.parts, palette, (part) => this.actions.seek(part.from_m)),
       h("p", { class: "scope" }, `${tolerance}Proved from end to end within the stated model, widths and error bounds; no permit. ${ways}`),
     ];
   }
 
-  #parts(parts: RoutePart[], palette: Palette): HTMLElement {
+  #conditional(route: ConditionalRoute, { palette, sheet }: Around): Node[] {
+    return [
+      ...conditionalHead(route),
+      this.#list!.element,
+      ...conditionalFoot(route, sheet),
+      h("details", { class: "along" }, h("summary", {}, "Along the way, if all of it is so"), this.#parts(route.parts, palette, (part) => this.actions.go(along(route, part.from_m)))),
+    ];
+  }
+
+  #parts(parts: RoutePart[], palette: Palette, go: (part: RoutePart) => void): HTMLElement {
     const rows = merged(parts).map((part) => {
       const rsc = part.rsc_m > 100 ? "" : signed(part.rsc_m);
       const colour = styled(h("i", { class: "dot" }), { background: marginColour(palette, part.rsc_m) });
@@ -75,9 +118,9 @@ export class RoutePanel {
         {},
         h(
           "button",
-          { type: "button", onclick: () => this.actions.seek(part.from_m) },
+          { type: "button", onclick: () => go(part) },
           colour,
-          h("span", { class: part.kind === "turn" ? "part is-turn" : "part" }, part.title),
+          h("span", { class: part.kind === "edge" ? "part" : "part is-turn" }, part.title),
           h("span", { class: "part-length" }, distance(part.to_m - part.from_m)),
           h("span", { class: "part-rsc" }, rsc),
         ),
@@ -86,7 +129,7 @@ export class RoutePanel {
     return h("ol", { class: "parts" }, ...rows);
   }
 
-  #blocked(answer: RouteAnswer): Node[] {
+  #blocked(answer: RouteAnswer, search: Search): Node[] {
     if (answer.obstacles === null) {
       return [h("h2", {}, "No route"), h("p", { class: "headline-words" }, `No roads lead there at all. ${ways}`)];
     }
@@ -94,58 +137,25 @@ export class RoutePanel {
     const what = count === 1 ? "one place is not certified for this vehicle" : `${count} places are not certified for this vehicle`;
     return [
       h("h2", {}, "No certified route"),
-      h("p", { class: "headline-words" }, `Even on the easiest way ${what}: ${reasons(answer.obstacles)}. See the map.`),
-      h("ol", { class: "parts" }, ...grouped(answer.obstacles).map((group) => this.#obstacle(group))),
+      h(
+        "div",
+        { class: "verdict is-blocked" },
+        h("span", { class: "badge" }, h("i", { class: "line line-blocked" }), "Blocked"),
+      ),
+      searchWords(search),
+      h("p", { class: "headline-words" }, `Even on the easiest way ${what}: ${reasons(answer.obstacles)}. It is the dotted line on the map.`),
+      this.#list!.element,
       h("p", { class: "scope" }, `Each of them would have to be certified first. ${answer.gave_up ? "The search was given up before all ways were tried. " : ""}${ways}`),
     ];
   }
-
-  /** A group of successive obstacles on one road, shown by the worst of them. */
-  #obstacle(group: Obstacle[]): HTMLElement {
-    const short = ({ rsc_m }: Obstacle): number => (rsc_m !== null && rsc_m > -100 ? Math.min(rsc_m, 0) : 0);
-    const obstacle = group.reduce((worst, one) => (short(one) < short(worst) ? one : worst));
-    const most = group.length > 1 ? "up to " : "";
-    const missing = short(obstacle) < 0 ? `${most}${careful(short(obstacle))} m missing` : "";
-    const places = group.length > 1 ? `${group.length} places · ` : "";
-    const why = places + whyNot(obstacle);
-    const select = () => this.actions.select(obstacle.edge_id ?? null, obstacle.place);
-    return h(
-      "li",
-      {},
-      h(
-        "button",
-        { type: "button", onclick: select },
-        h("i", { class: `line line-${obstacle.verdict === "refuted" ? "unsafe" : obstacle.verdict}` }),
-        h("span", { class: obstacle.kind === "turn" ? "part is-turn" : "part" }, obstacle.title.replace(/^(.+) into \1$/, "Turn on $1")),
-        h("span", { class: "part-length" }, why),
-        h("span", { class: "part-rsc" }, missing),
-      ),
-    );
-  }
 }
 
-function whyNot({ verdict, reason }: Obstacle): string {
-  return verdict === "refuted" ? "Fails as part of the whole" : reasonWords(verdict, reason);
-}
-
-/** `too narrow (31), no access (2)`, the most frequent first. */
-function reasons(obstacles: Obstacle[]): string {
-  const counts = new Map<string, number>();
-  for (const obstacle of obstacles) counts.set(whyNot(obstacle), (counts.get(whyNot(obstacle)) ?? 0) + 1);
-  const sorted = [...counts].sort((a, b) => b[1] - a[1]);
-  return sorted.map(([why, count]) => `${why.charAt(0).toLowerCase()}${why.slice(1)} (${count})`).join(", ");
-}
-
-/** Groups successive edges of one road that fail for the same reason. */
-function grouped(obstacles: Obstacle[]): Obstacle[][] {
-  const groups: Obstacle[][] = [];
-  for (const obstacle of obstacles) {
-    const last = groups.at(-1)?.[0];
-    const same = last && last.kind === "edge" && obstacle.kind === "edge" && last.title === obstacle.title && whyNot(last) === whyNot(obstacle);
-    if (same) groups.at(-1)!.push(obstacle);
-    else groups.push([obstacle]);
-  }
-  return groups;
+/** What became of the search for a route under conditions. */
+function searchWords(search: Search): Node {
+  if (search === "searching") return h("p", { class: "waiting", role: "status" }, longer);
+  if (search === "none") return h("p", { class: "note" }, "Nor is there a route under conditions: on every way that was tried something decides that no measurement helps.");
+  if (search) return h("p", { class: "note", role: "alert" }, `No route under conditions was found: ${search.failed}. The command line has no limit of time.`);
+  return document.createTextNode("");
 }
 
 /** A route that begins or ends within this distance of the click counts as there, metres. */

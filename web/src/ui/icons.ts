@@ -23,6 +23,8 @@ const paths = {
   chase: "M12 3l8 4.5v9L12 21l-8-4.5v-9zM12 12l8-4.5M12 12v9M12 12L4 7.5",
   above: "M5 5h14v14H5zM12 8v8M8 12h8",
   swap: "M4 9h14M14 5l4 4l-4 4M20 15H6M10 11l-4 4l4 4",
+  back: "M19 12H5M11 6l-6 6l6 6",
+  sheet: "M7 8V4h10v4M7 17H4v-7a2 2 0 0 1 2-2h12a2 2 0 0 1 2 2v7h-3M7 14h10v6H7z",
   layers: "M12 4l9 5l-9 5l-9-5zM3.5 13.5L12 18.3l8.5-4.8",
 } as const;
 

@@ -1,0 +1,38 @@
+//! The best answer that there is: certified routes, else a route under conditions beside what blocks.
+
+use super::conditions::Conditional;
+use super::plan::{Answer, Planner, Question, Unanswered};
+use crate::stop::Stop;
+
+impl Planner {
+    /// Certified routes, or else a route under conditions. `searching` is called before the search for conditions, which takes
+    /// longer. A place that is near no safe road may be near a lawful one.
+    ///
+    /// # Errors
+    /// A place is near no road that the vehicle may use, or `stop` was told.
+    pub fn best_answer(
+        &mut self,
+        question: &Question,
+        stop: &Stop,
+        searching: impl FnOnce(),
+    ) -> Result<Answer, Unanswered> {
+        let certified = match self.answer(question, stop) {
+            Err(Unanswered::Place(error)) => Err(error),
+            answer => Ok(answer?),
+        };
+        if certified.as_ref().is_ok_and(|answer| !answer.routes.is_empty()) {
+            return Ok(certified?);
+        }
+        searching();
+        let refuted = certified.as_ref().map_or(&[][..], |answer| &answer.refuted[..]);
+        let Ok(Conditional { route, conditions, snapped }) = self.under_conditions(question, refuted, stop)? else {
+            return Ok(certified?);
+        };
+        // A way that passes without any condition is a certified route.
+        if conditions.is_empty() {
+            return Ok(Answer { routes: vec![route], snapped, ..Answer::default() });
+        }
+        let conditional = Some(Conditional { route, conditions, snapped: snapped.clone() });
+        Ok(Answer { conditional, snapped, ..certified.unwrap_or_default() })
+    }
+}

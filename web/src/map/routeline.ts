@@ -1,0 +1,71 @@
+// The line of a route. What is certified as a whole is a solid line. A route under conditions is striped in two colours, and the way
+// that obstacles block is dotted, so that neither can be taken for a certified one, with any colour vision.
+
+import type { LayerSpecification } from "maplibre-gl";
+import type { Position } from "../api/types.ts";
+import { palettes, type Palette, type Theme } from "./palette.ts";
+import type { View } from "./view.ts";
+
+/** What a line stands for. */
+export type RouteKind = "certified" | "conditional" | "blocked";
+
+export const ROUTE = "own-route";
+const nothing: GeoJSON.FeatureCollection = { type: "FeatureCollection", features: [] };
+
+type Line = Extract<LayerSpecification, { type: "line" }>;
+
+/** The layers from below to above. */
+function layers(palette: Palette): Line[] {
+  const line = (name: string, kind: RouteKind, paint: Line["paint"], cap: "round" | "butt" = "round"): Line => ({
+    id: `${ROUTE}-${name}`,
+    type: "line",
+    source: ROUTE,
+    filter: ["==", ["get", "kind"], kind],
+    layout: { "line-cap": cap, "line-join": "round" },
+    paint: { ...paint },
+  });
+  // At deep zooms the certified line gives way to the drive, which nothing else has.
+  const fading: NonNullable<Line["paint"]> = { "line-opacity": ["interpolate", ["linear"], ["zoom"], 16.5, 0.9, 18, 0] };
+  const kept: NonNullable<Line["paint"]> = { "line-opacity": ["interpolate", ["linear"], ["zoom"], 16.5, 1, 19, 0.6] };
+  return [
+    line("casing", "certified", { ...fading, "line-color": palette.routeCasing, "line-width": 7 }),
+    line("line", "certified", { ...fading, "line-color": palette.route, "line-width": 3.2 }),
+    line("conditional-casing", "conditional", { ...kept, "line-color": palette.routeCasing, "line-width": 9 }),
+    line("conditional-ground", "conditional", { ...kept, "line-color": palette.conditionalGap, "line-width": 6.5 }),
+    line("conditional", "conditional", { ...kept, "line-color": palette.conditional, "line-width": 4.2, "line-dasharray": [2, 1] }, "butt"),
+    line("blocked-casing", "blocked", { ...kept, "line-color": palette.routeCasing, "line-width": 7 }),
+    line("blocked", "blocked", { ...kept, "line-color": palette.route, "line-width": 3.6, "line-dasharray": [0.1, 1.9] }),
+  ];
+}
+
+/** Draws one line at a time. */
+export class RouteLine {
+  #drawn = false;
+
+  constructor(private readonly view: View) {}
+
+  /** Draws another line; fewer than two positions remove it. */
+  show(kind: RouteKind, coordinates: Position[], theme: Theme): void {
+    const line: GeoJSON.Feature = { type: "Feature", properties: { kind }, geometry: { type: "LineString", coordinates } };
+    this.#drawn = coordinates.length > 1;
+    void this.view.ready.then(() => {
+      this.view.overlay(ROUTE, this.#drawn ? { ...nothing, features: [line] } : nothing);
+      this.#draw(theme);
+    });
+  }
+
+  recolour(theme: Theme): void {
+    void this.view.ready.then(() => {
+      if (this.#drawn) this.#draw(theme);
+    });
+  }
+
+  #draw(theme: Theme): void {
+    const { map } = this.view;
+    const before = map.getLayer("names") ? "names" : undefined;
+    for (const layer of layers(palettes[theme])) {
+      if (!map.getLayer(layer.id)) map.addLayer(layer, before);
+      map.setPaintProperty(layer.id, "line-color", layer.paint?.["line-color"]);
+    }
+  }
+}
