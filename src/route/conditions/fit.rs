@@ -114,10 +114,11 @@ impl Fitter {
         };
         // Turns that are not safe by themselves may pass as parts of the whole.
         let roomy = fitting.drive.edges.iter().all(|&edge| access.edges.get(edge as usize) == Some(&0));
-        if roomy && self.look(&mut fitting, stop)?.is_ok_and(|looked| looked.safe()) {
-            if let Some(certified) = self.fresh(&fitting, stop)? {
-                return Ok(Ok(Fitted { drive: fitting.drive, certified, supposed: fitting.supposed }));
-            }
+        if roomy
+            && self.look(&mut fitting, stop)?.is_ok_and(|looked| looked.safe())
+            && let Some(certified) = self.fresh(&fitting, stop)?
+        {
+            return Ok(Ok(Fitted { drive: fitting.drive, certified, supposed: fitting.supposed }));
         }
         let mut unfit = self.suppose_widths(&mut fitting, access, stop)?;
         unfit.extend(self.suppose_turns(&mut fitting, access, stop)?);
