@@ -11,6 +11,7 @@ mod explain;
 mod explain_shapes;
 mod export;
 mod export_engines;
+mod export_evidence;
 mod export_formats;
 mod geopackage;
 mod gis;
