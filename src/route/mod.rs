@@ -23,6 +23,7 @@
 //! | `conditions` | a route that is certified if widths and radii are as it says |
 //! | `report` | an answer as JSON and GeoJSON |
 //! | `relative` | an answer beside a reference vehicle |
+//! | `survey` | which measurements would open most |
 //! | `reach` | what can be reached from a place, and back |
 
 mod assemble;
@@ -45,6 +46,7 @@ mod search;
 mod snap;
 mod speeds;
 mod stored;
+mod survey;
 mod turning;
 mod whole;
 
@@ -66,4 +68,7 @@ pub use search::{Found, Goal, Start, search, search_over};
 pub use snap::{Position, SnapError, Snapped, Snapper};
 pub use speeds::{Measure, Speeds, SpeedsError};
 pub use stored::NoDriver;
+pub use survey::{
+    Opens, Pair, Pairs, SURVEY_COLUMNS, SURVEY_SCOPE, Step, Survey, SurveyLine, survey_pairs, survey_region,
+};
 pub use turning::MadeTurns;

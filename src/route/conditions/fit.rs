@@ -24,7 +24,7 @@ const MORE_PATHS: usize = 1;
 /// How often a whole way is tried, each time with more supposed where it failed.
 const ROUNDS: usize = 10;
 /// Where an edge lacks room, its way is as wide as it must be over the vehicle's length and this, metres.
-const BESIDE_M: f64 = 20.0;
+pub(in crate::route) const BESIDE_M: f64 = 20.0;
 /// The least that is added to a width or a radius where the whole fails, metres.
 const WIDER_M: f64 = 0.1;
 const ROUNDER_M: f64 = 1.0;

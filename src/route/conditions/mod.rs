@@ -12,6 +12,12 @@ mod turn_need;
 pub use report::SHEET_COLUMNS;
 pub use search::Hopeless;
 
+// What `survey` opens places with.
+pub(super) use fit::BESIDE_M;
+pub(super) use search::{edge_price, turn_price};
+pub(super) use suppositions::Suppositions;
+pub(super) use turn_need::Turning;
+
 use super::plan::Route;
 use super::snap::Snapped;
 use crate::evidence::Quantity;
@@ -74,7 +80,7 @@ impl Condition {
 }
 
 /// The quantity that is the width for a policy.
-const fn width_of(policy: Policy) -> Quantity {
+pub(super) const fn width_of(policy: Policy) -> Quantity {
     match policy {
         Policy::Lane => Quantity::LaneWidth,
         Policy::Direction => Quantity::DirectionWidth,
