@@ -25,6 +25,7 @@ mod route_cli;
 mod serve;
 mod settings;
 mod support;
+mod survey;
 mod turns_program;
 mod vehicle_pictures;
 mod verify_database;
