@@ -32,6 +32,7 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Verb::Explain(verb) => verb.run(&session),
         Verb::Route(verb) => verb.run(&session),
         Verb::Reach(verb) => verb.run(&session),
+        Verb::Survey(verb) => verb.run(&session),
         Verb::Corridor(verb) => verb.run(&session),
         Verb::Export(verb) => verb.run(&session),
         Verb::Vehicles(verb) => verb.run(&session),

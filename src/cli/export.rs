@@ -12,7 +12,7 @@ use netcert::store::Database;
 use super::Session;
 use super::database::DatabaseArgs;
 use super::on_demand::{self, Wanted};
-use super::output::{grouped, results};
+use super::output::{grouped, printable, results};
 use super::relative::RelativeArgs;
 use super::stop::when_stopped;
 use super::values::{metres, word};
@@ -104,6 +104,9 @@ impl Export {
         session.progress.say(&counts("turns", &source.permitted.turn_tally));
         if !to_stream {
             session.progress.say(&format!("{}: written", self.out.display()));
+        }
+        if let Some(words) = source.header.provenance.measurements.words() {
+            session.progress.say(&printable(&words));
         }
         session.progress.say(&source.header.scope());
         Ok(())

@@ -31,6 +31,7 @@ mod serve;
 mod sheet;
 mod stats;
 mod stop;
+mod survey;
 mod table;
 mod turn_rows;
 mod values;
@@ -78,6 +79,7 @@ pub(crate) enum Verb {
     Explain(explain::Explain),
     Route(route::Route),
     Reach(reach::Reach),
+    Survey(survey::Survey),
     Corridor(corridor::Corridor),
     Export(export::Export),
     Vehicles(vehicles::Vehicles),

@@ -87,7 +87,7 @@ impl Reporter for Progress {
         let template = match (total, stage) {
             (0, _) => "{prefix:>12} {spinner} {elapsed}",
             (_, "certificates") => "{prefix:>12} [{bar:30}] {human_pos}/{human_len} edges, {eta} left",
-            (_, "turns") | (_, "edges") => "{prefix:>12} [{bar:30}] {human_pos}/{human_len}, {eta} left",
+            (_, "turns" | "edges" | "survey") => "{prefix:>12} [{bar:30}] {human_pos}/{human_len}, {eta} left",
             _ => "{prefix:>12} [{bar:30}] {bytes}/{total_bytes}, {eta} left",
         };
         let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());

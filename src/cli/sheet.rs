@@ -1,4 +1,4 @@
-//! The sheet of a route's conditions: a page to print, or a table that `netcert evidence add` reads when it is filled in.
+//! The sheet of conditions: a page to print, or a table that `netcert evidence add` reads when it is filled in.
 
 use std::path::Path;
 
@@ -8,6 +8,27 @@ use netcert::picture::{self, SheetStyle};
 use netcert::route::{Conditional, sheet_csv, sheet_geojson};
 use netcert::vehicle::Vehicle;
 
+/// The form of a sheet.
+#[derive(Clone, Copy)]
+pub(super) enum Kind {
+    Table,
+    Geojson,
+    Page,
+}
+
+impl Kind {
+    /// The form that a file's name asks for.
+    pub(super) fn of(path: &Path) -> anyhow::Result<Self> {
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+        match ending.as_str() {
+            "csv" => Ok(Self::Table),
+            "geojson" | "json" => Ok(Self::Geojson),
+            "html" | "htm" => Ok(Self::Page),
+            _ => bail!("{}: a sheet is a file that ends with .html, .csv or .geojson", path.display()),
+        }
+    }
+}
+
 /// The sheet in the form that the file's name asks for.
 pub(super) fn text(
     path: &Path,
@@ -15,11 +36,9 @@ pub(super) fn text(
     vehicle: &Vehicle,
     conditional: &Conditional,
 ) -> anyhow::Result<String> {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
-    match ending.as_str() {
-        "csv" => Ok(sheet_csv(network, conditional)),
-        "geojson" | "json" => Ok(sheet_geojson(network, vehicle, conditional)),
-        "html" | "htm" => Ok(picture::sheet(network, vehicle, conditional, SheetStyle::Within)),
-        _ => bail!("{}: a sheet is a file that ends with .html, .csv or .geojson", path.display()),
-    }
+    Ok(match Kind::of(path)? {
+        Kind::Table => sheet_csv(network, conditional),
+        Kind::Geojson => sheet_geojson(network, vehicle, conditional),
+        Kind::Page => picture::sheet(network, vehicle, conditional, SheetStyle::Within),
+    })
 }

@@ -5,6 +5,7 @@
 use serde_json::{Map, Value, json};
 
 use super::ExportError;
+use super::measurements::Measurements;
 use super::permit::{Permitted, Tally};
 use super::source::{Ask, hash_of};
 use crate::osm::facts::WidthSource;
@@ -48,6 +49,8 @@ pub struct Provenance {
     pub tracking_tolerance_m: f64,
     /// Name and blake3 hash of the definition of the vehicle that is compared with.
     pub relative_to: Option<(String, String)>,
+    /// The measurements with which the certificates were made.
+    pub measurements: Measurements,
 }
 
 impl Provenance {
@@ -80,6 +83,7 @@ impl Provenance {
             vehicle_blake3: record.blake3(),
             tracking_tolerance_m: vehicle.tracking_tolerance_m,
             relative_to: other.map(|record| (record.name.clone(), record.blake3())),
+            measurements: Measurements::of(&database.register()?.entries),
         })
     }
 }
@@ -129,6 +133,7 @@ impl Header {
                 "turns": tally(&self.turns),
             },
             "certified_with": p.certified_with,
+            "evidence": p.measurements.json(),
             "database": {"name": p.database, "blake3": p.database_blake3},
             "input": {"name": p.input, "blake3": p.input_blake3, "timestamp": p.input_timestamp},
             "made_by": {"netcert": p.made_by, "parameters": p.parameters},

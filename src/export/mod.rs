@@ -10,6 +10,7 @@
 //! | --- | --- |
 //! | `permit` | the rule, and the edges and turns that it permits |
 //! | `header` | the header of every output |
+//! | `measurements` | the measurements behind the permits, for the header |
 //! | `source` | rows from the database, each with its permit |
 //! | `rings` | the edges that a passage leads over |
 //! | `corners` | edges before a refused corner of a road |
@@ -28,6 +29,7 @@ mod destination;
 mod error;
 pub mod formats;
 mod header;
+mod measurements;
 mod permit;
 mod rings;
 mod sequences;
@@ -40,6 +42,7 @@ pub use destination::{Layout, Out, Place, Sink};
 pub use error::ExportError;
 pub use formats::Target;
 pub use header::{Header, Provenance};
+pub use measurements::{MeasuredBy, Measurements};
 pub use permit::{Bits, PermitPolicy, Permitted, Refusal, Tally};
 pub use source::{Ask, ExportEdge, ExportTurn, Source};
 pub use unfinished::Unfinished;

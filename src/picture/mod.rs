@@ -42,7 +42,7 @@ pub use explanation::explanation;
 pub use furniture::{Key, arrow, callout, dimension, legend, scale_bar};
 pub use manoeuvres::manoeuvres;
 pub use route::route;
-pub use sheet::{SHEET_STYLE, SheetStyle, sheet};
+pub use sheet::{SHEET_STYLE, SheetStyle, sheet, survey_sheet};
 pub use style::{Anchor, Style, TextStyle};
 pub use svg::{Picture, escaped, number};
 pub use turn::turn;

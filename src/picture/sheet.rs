@@ -1,4 +1,4 @@
-//! A page to print and to take along: a route under conditions, its conditions as numbered pins, and a box for each value to fill in.
+//! A page to print and to take along: conditions of a route or of a survey as numbered pins, and a box for each value to fill in.
 //!
 //! The page needs no other file but its style sheet, if that is not within. Its only links lead to OpenStreetMap, for people who read it on a screen.
 
@@ -9,10 +9,14 @@ use super::palette;
 use super::style::{Anchor, Style, TextStyle};
 use super::svg::{Picture, escaped};
 use super::{Bounds, Frame, Point, View};
-use crate::network::Network;
-use crate::route::{ConditionAt, Conditional};
+use crate::network::{Network, offset_m};
+use crate::osm::LonLat;
+use crate::osm::facts::{Direction, RoadClass};
+use crate::route::{Condition, ConditionAt, Conditional, Opens, Position, SURVEY_SCOPE, Survey, SurveyLine};
 use crate::vehicle::Vehicle;
 
+/// How far the map of a survey goes beyond its places, metres.
+const AROUND_M: f64 = 300.0;
 const HEAD: &str = "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\
     <meta name=\"viewport\" content=\"width=device-width\">";
 /// The style sheet of the page.
@@ -54,9 +58,46 @@ pub fn sheet(network: &Network, vehicle: &Vehicle, conditional: &Conditional, st
         escaped(&vehicle.name)
     );
     page += &map(network, conditional);
-    page += "<table><thead><tr><th>No.</th><th>Where</th><th>What has to be so</th><th>Measured, m</th><th>Uncertainty, m</th>\
-             <th>Date, by</th><th>Photo</th></tr></thead><tbody>";
-    for (number, condition) in (1..).zip(&conditional.conditions) {
+    page += &table(network, (1..).zip(&conditional.conditions));
+    page += "<p>Write the measurements into the sheet as CSV (<code>netcert route --sheet conditions.csv</code>), then \
+             <code>netcert evidence add conditions.csv</code>.</p></body></html>\n";
+    page
+}
+
+/// The sheet of a survey, as a whole HTML document.
+#[must_use]
+pub fn survey_sheet(network: &Network, vehicle: &Vehicle, survey: &Survey) -> String {
+    let title = format!("{}: the measurements that would open most", vehicle.id);
+    let mut page = format!("{HEAD}<title>{0}</title><style>{SHEET_STYLE}</style></head><body><h1>{0}</h1>", escaped(&title));
+    let _ = write!(
+        page,
+        "<p>{}.</p><p class=\"scope\">{SURVEY_SCOPE} What counts of a measurement is its value less 1.64 times its standard \
+         uncertainty.</p>",
+        escaped(&vehicle.name)
+    );
+    let lines: Vec<_> = survey.lines().collect();
+    page += &survey_map(network, &lines);
+    let amount = |number: f64| match survey.opens {
+        Opens::Metres => format!("{:.1} km of certified road, each direction by itself", number / 1000.0),
+        Opens::Pairs => format!("{number:.0} pairs of places"),
+    };
+    for step in lines.chunk_by(|a, b| a.rank == b.rank) {
+        let Some(first) = step.first() else { continue };
+        let (opens, total) = (amount(first.opens), amount(first.total));
+        let _ = write!(page, "<h2>{}. Opens {opens}; {total} with those before</h2>", first.rank);
+        page += &table(network, step.iter().map(|line| (line.number, line.condition)));
+    }
+    page += "<p>Write the measurements into the sheet as CSV (<code>netcert survey --sheet survey.csv</code>), then \
+             <code>netcert evidence add survey.csv</code>.</p></body></html>\n";
+    page
+}
+
+/// A row for each condition, with room for what is measured.
+fn table<'c>(network: &Network, conditions: impl Iterator<Item = (usize, &'c Condition)>) -> String {
+    let mut page = "<table><thead><tr><th>No.</th><th>Where</th><th>What has to be so</th><th>Measured, m</th><th>Uncertainty, m</th>\
+                    <th>Date, by</th><th>Photo</th></tr></thead><tbody>"
+        .to_owned();
+    for (number, condition) in conditions {
         let place = condition.place(network).map_or_else(String::new, |[lon, lat]| {
             format!(
                 "<br><a href=\"https://www.openstreetmap.org/?mlat={lat:.6}&amp;mlon={lon:.6}#map=19/{lat:.6}/{lon:.6}\">\
@@ -76,9 +117,7 @@ pub fn sheet(network: &Network, vehicle: &Vehicle, conditional: &Conditional, st
             escaped(&condition.words())
         );
     }
-    page += "</tbody></table><p>Write the measurements into the sheet as CSV (<code>netcert route --sheet conditions.csv</code>), then \
-             <code>netcert evidence add conditions.csv</code>.</p></body></html>\n";
-    page
+    page + "</tbody></table>"
 }
 
 /// The route with the conditions as numbered pins.
@@ -103,16 +142,52 @@ fn map(network: &Network, conditional: &Conditional) -> String {
             picture.circle(view.at(at), 6.0, Style::area(colour).outlined(palette::PAPER, 1.5));
         }
     }
-    for (number, pin) in (1..).zip(&pins) {
-        let Some(pin) = pin else { continue };
-        // Pins of one place stand side by side.
-        let before = pins.iter().take(number - 1).filter(|other| other.as_ref() == Some(pin)).count();
+    let numbered: Vec<_> = (1..).zip(&pins).filter_map(|(number, pin)| Some((number, (*pin)?))).collect();
+    pin_down(&mut picture, &view, &numbered);
+    scale_bar(&mut picture, &view, [40.0, 480.0], 160.0);
+    picture.finish()
+}
+
+/// The places of a survey as pins with the numbers of their steps, and the roads between them.
+fn survey_map(network: &Network, lines: &[SurveyLine<'_>]) -> String {
+    let places: Vec<(usize, LonLat)> = lines
+        .iter()
+        .filter_map(|line| {
+            let [lon, lat] = line.condition.place(network)?;
+            Some((line.rank, Position { lon, lat }.into()))
+        })
+        .collect();
+    let Some(&(_, centre)) = places.first() else { return String::new() };
+    let pins: Vec<(usize, Point)> = places.iter().map(|&(rank, at)| (rank, offset_m(centre, at))).collect();
+    let mut bounds = Bounds::of(pins.iter().map(|(_, at)| at));
+    for [x, y] in [bounds.low, bounds.high] {
+        bounds.add([x - AROUND_M, y - AROUND_M]);
+        bounds.add([x + AROUND_M, y + AROUND_M]);
+    }
+    let view = View::fit(&bounds, Frame { x: 30.0, y: 20.0, width: 940.0, height: 440.0 });
+    let mut picture = Picture::new(1000.0, 500.0, "The places of the survey", "Numbers are those of the steps");
+    let within =
+        |[x, y]: Point| (bounds.low[0]..=bounds.high[0]).contains(&x) && (bounds.low[1]..=bounds.high[1]).contains(&y);
+    // The larger roads show where the places are; all roads of a town would hide it.
+    for edge in network.edges.iter().filter(|edge| network.road(edge).class <= RoadClass::Tertiary) {
+        let line: Vec<Point> = network.positions(edge).map(|at| offset_m(centre, at)).collect();
+        if edge.direction == Direction::Forward && line.iter().all(|&at| within(at)) {
+            picture.polyline(&view.all(&line), Style::line(palette::PALE, 1.0));
+        }
+    }
+    pin_down(&mut picture, &view, &pins);
+    scale_bar(&mut picture, &view, [40.0, 480.0], 160.0);
+    picture.finish()
+}
+
+/// Numbered pins. Those of one place stand side by side.
+fn pin_down(picture: &mut Picture, view: &View, pins: &[(usize, Point)]) {
+    for (i, (number, pin)) in pins.iter().enumerate() {
+        let before = pins[..i].iter().filter(|(_, other)| other == pin).count();
         let [x, y] = view.at(*pin);
         let at = [x + 21.0 * before as f64, y];
         picture.circle(at, 10.0, Style::area(palette::VERMILLION).outlined(palette::PAPER, 1.5));
         let text = TextStyle::size(11.0).bold().anchored(Anchor::Middle).coloured(palette::PAPER);
         picture.text([at[0], at[1] + 4.0], &format!("{number}"), text);
     }
-    scale_bar(&mut picture, &view, [40.0, 480.0], 160.0);
-    picture.finish()
 }

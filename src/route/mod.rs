@@ -24,6 +24,7 @@
 //! | `best` | certified routes, else one under conditions |
 //! | `report` | an answer as JSON and GeoJSON |
 //! | `relative` | an answer beside a reference vehicle |
+//! | `survey` | which measurements would open most |
 //! | `reach` | what can be reached from a place, and back |
 
 mod assemble;
@@ -47,12 +48,13 @@ mod search;
 mod snap;
 mod speeds;
 mod stored;
+mod survey;
 mod turning;
 mod whole;
 
 pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble, passes_over};
 pub use bans::{Bans, Within};
-pub use conditions::{Condition, ConditionAt, Conditional, Hopeless, sheet_csv, sheet_geojson};
+pub use conditions::{Condition, ConditionAt, Conditional, Hopeless, SHEET_COLUMNS, sheet_csv, sheet_features, sheet_geojson};
 pub use drive::{Drive, Join};
 pub use driver::Driver;
 pub use graph::{Access, BARRED, Graph};
@@ -68,4 +70,7 @@ pub use search::{Found, Goal, Start, search, search_over};
 pub use snap::{Position, SnapError, Snapped, Snapper};
 pub use speeds::{Measure, Speeds, SpeedsError};
 pub use stored::NoDriver;
+pub use survey::{
+    Opens, Pair, Pairs, SURVEY_COLUMNS, SURVEY_SCOPE, Step, Survey, SurveyLine, survey_pairs, survey_region,
+};
 pub use turning::MadeTurns;

@@ -146,6 +146,12 @@ impl Planner {
         self.graph.network()
     }
 
+    /// The roads of the planner.
+    #[must_use]
+    pub fn roads(&self) -> &Arc<Roads> {
+        self.graph.roads()
+    }
+
     /// The vehicle of the planner, with its permits.
     #[must_use]
     pub fn driver(&self) -> &Driver {

@@ -150,6 +150,11 @@ fn part_members(network: &Network, part: &PartResult) -> Value {
     with(ids(network, part.kind), own)
 }
 
+/// The members of a part of a route under conditions. Its RSC holds only under them.
+fn conditional_part_members(network: &Network, part: &PartResult) -> Value {
+    with(part_members(network, part), json!({"verdict": CONDITIONAL}))
+}
+
 /// The members of an obstacle.
 #[must_use]
 pub fn obstacle_members(network: &Network, obstacle: &Obstacle) -> Value {
@@ -207,14 +212,17 @@ fn conditional_members(network: &Network, model: &Model, conditional: &Condition
 /// The whole answer without geometry. `rsc_m`, `certificate` and `conditions` are those of the first route, or of the conditional one.
 #[must_use]
 pub fn json(network: &Network, model: &Model, answer: &Answer) -> Value {
-    let parts =
-        |route: &Route| -> Vec<Value> { route.parts().iter().map(|part| part_members(network, part)).collect() };
+    let parts = |route: &Route, members: fn(&Network, &PartResult) -> Value| -> Vec<Value> {
+        route.parts().iter().map(|part| members(network, part)).collect()
+    };
     let route = |route: &Route| {
-        let own = json!({"certificate": certificate_members(route, &[]), "conditions": [], "parts": parts(route)});
+        let parts = parts(route, part_members);
+        let own = json!({"certificate": certificate_members(route, &[]), "conditions": [], "parts": parts});
         with(route_members(network, model, route), own)
     };
     let conditional = answer.conditional.as_ref().map(|conditional| {
-        with(conditional_members(network, model, conditional), json!({"parts": parts(&conditional.route)}))
+        let parts = parts(&conditional.route, conditional_part_members);
+        with(conditional_members(network, model, conditional), json!({"parts": parts}))
     });
     let best = answer.routes.first().map(route).or_else(|| conditional.clone()).unwrap_or_default();
     let of_best = |name: &str| best.get(name).cloned();
@@ -242,12 +250,15 @@ pub fn json(network: &Network, model: &Model, answer: &Answer) -> Value {
 /// Positions cannot be converted from a route's frame.
 pub fn geojson(network: &Network, model: &Model, answer: &Answer) -> Result<Value, FrameError> {
     let mut features = Vec::new();
-    let certified = answer.routes.iter().map(|route| (route, json!({"kind": "route", "conditions": []})));
+    type Members = fn(&Network, &PartResult) -> Value;
+    let certified =
+        answer.routes.iter().map(|route| (route, json!({"kind": "route", "conditions": []}), part_members as Members));
     let conditional = answer.conditional.as_ref().map(|conditional| {
         let kind = json!({"kind": "conditional_route"});
-        (&conditional.route, with(conditional_members(network, model, conditional), kind))
+        let own = with(conditional_members(network, model, conditional), kind);
+        (&conditional.route, own, conditional_part_members as Members)
     });
-    for (number, (route, own)) in certified.chain(conditional).enumerate() {
+    for (number, (route, own, members)) in certified.chain(conditional).enumerate() {
         let c = &route.path.corridor;
         let metres: Vec<[f64; 2]> = c.x.iter().zip(&c.y).map(|(&x, &y)| [x, y]).collect();
         let line: Vec<[f64; 2]> = route.path.frame.inverse(&metres)?.into_iter().map(rounded).collect();
@@ -265,7 +276,7 @@ pub fn geojson(network: &Network, model: &Model, answer: &Answer) -> Result<Valu
             // A line must have at least two positions.
             let end = part.stations.end.max(part.stations.start + 2).min(line.len());
             let start = part.stations.start.min(end.saturating_sub(2));
-            features.push(feature(start..end, part_members(network, &result)));
+            features.push(feature(start..end, members(network, &result)));
         }
     }
     for condition in answer.conditional.iter().flat_map(|conditional| condition_members(network, conditional)) {

@@ -32,7 +32,7 @@ const ROUNDS: usize = 12;
 /// How often at most something is taken back.
 const LESS: usize = 8;
 /// Where an edge lacks room, its way is as wide as it must be over the vehicle's length and this, metres.
-const BESIDE_M: f64 = 20.0;
+pub(in crate::route) const BESIDE_M: f64 = 20.0;
 
 /// Fits ways, and keeps what it has found out about edges and turns. Its answers do not depend on earlier ones.
 pub(in crate::route) struct Fitter {
@@ -362,7 +362,10 @@ impl Fitter {
                 let need = self.turns.entry((edges, turning.widths_cm(network, &known))).or_insert_with(|| {
                     let mut own = known.clone();
                     own.apply(network);
-                    (turning.is_safe(network) || turning.meet(network, &mut own)).then(|| own.beyond(&known))
+                    let does = turning.is_safe(network)
+                        || turning.meet(network, &mut own)
+                        || turning.hope(network, &mut own);
+                    does.then(|| own.beyond(&known))
                 });
                 need.clone()
             }

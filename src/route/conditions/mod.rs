@@ -13,8 +13,15 @@ mod suppositions;
 mod turn_need;
 
 pub(super) use fit::Fitter;
+pub use report::SHEET_COLUMNS;
 pub use search::Hopeless;
-pub use sheet::{csv as sheet_csv, geojson as sheet_geojson};
+pub use sheet::{csv as sheet_csv, features as sheet_features, geojson as sheet_geojson};
+
+// What `survey` opens places with.
+pub(super) use fit::BESIDE_M;
+pub(super) use search::{edge_price, turn_price};
+pub(super) use suppositions::Suppositions;
+pub(super) use turn_need::Turning;
 
 use super::plan::Route;
 use super::snap::Snapped;
@@ -78,7 +85,7 @@ impl Condition {
 }
 
 /// The quantity that is the width for a policy.
-const fn width_of(policy: Policy) -> Quantity {
+pub(super) const fn width_of(policy: Policy) -> Quantity {
     match policy {
         Policy::Lane => Quantity::LaneWidth,
         Policy::Direction => Quantity::DirectionWidth,

@@ -12,7 +12,7 @@ use crate::route::report::title as title_of;
 use crate::words::Named as _;
 
 /// The columns of a sheet. Those that begin with `_` are for the reader; a register of measurements ignores them.
-pub(super) const SHEET_COLUMNS: [&str; 16] = [
+pub const SHEET_COLUMNS: [&str; 16] = [
     "id",
     "quantity",
     "value",

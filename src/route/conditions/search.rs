@@ -117,7 +117,7 @@ fn price(cm: f64) -> u64 {
 }
 
 /// The price of an edge that is not safe: a measure of what has to be measured there, and of how much is missing.
-fn edge_price(network: &Network, edge: u32, permit: &Permit) -> u64 {
+pub(in crate::route) fn edge_price(network: &Network, edge: u32, permit: &Permit) -> u64 {
     match (permit.verdict, permit.rsc_m) {
         (Verdict::Unsafe(UnsafeReason::Width), Some(rsc_m)) if rsc_m.is_finite() => {
             let length_m = network.edges.get(edge as usize).map_or(0.0, |edge| network.length_m(edge));
@@ -128,7 +128,7 @@ fn edge_price(network: &Network, edge: u32, permit: &Permit) -> u64 {
 }
 
 /// The price of a turn or passage that is not safe.
-fn turn_price(permit: &Permit) -> u64 {
+pub(in crate::route) fn turn_price(permit: &Permit) -> u64 {
     match (permit.verdict, permit.rsc_m) {
         (Verdict::Unsafe(UnsafeReason::Width), missing) => {
             let missing_cm = missing.filter(|rsc_m| rsc_m.is_finite()).map(|rsc_m| 100.0 * (-rsc_m).max(0.0));

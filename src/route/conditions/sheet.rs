@@ -2,10 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
-use super::Conditional;
+use super::{Condition, Conditional};
 use super::report::SHEET_COLUMNS;
 use crate::network::Network;
-use crate::route::report::condition_members;
 use crate::vehicle::Vehicle;
 
 /// A table with a row for each edge, corner or junction.
@@ -23,24 +22,28 @@ pub fn csv(network: &Network, conditional: &Conditional) -> String {
 /// A feature for each row: a point, or the polygon of a surface.
 #[must_use]
 pub fn geojson(network: &Network, vehicle: &Vehicle, conditional: &Conditional) -> String {
-    let members = condition_members(network, conditional);
-    let rings: Vec<_> = conditional.conditions.iter().map(|condition| condition.ring(network)).collect();
-    let feature = |(number, row): (usize, [String; 16])| {
+    let conditions = (1..).zip(&conditional.conditions);
+    let features: Vec<Value> =
+        conditions.flat_map(|(number, condition)| features(network, condition, number, &Map::new())).collect();
+    let scope = format!("The route of {} is certified only if every condition holds on site.", vehicle.id);
+    json!({"type": "FeatureCollection", "_scope": scope, "features": features}).to_string() + "\n"
+}
+
+/// A feature for each row of a condition, with `more` among its properties.
+#[must_use]
+pub fn features(network: &Network, condition: &Condition, number: usize, more: &Map<String, Value>) -> Vec<Value> {
+    let place = condition.place(network);
+    let polygon = condition.ring(network).map(|ring| json!({"type": "Polygon", "coordinates": [ring]}));
+    let geometry = polygon.unwrap_or_else(|| json!({"type": "Point", "coordinates": place}));
+    let feature = |row: [String; 16]| {
         let named = SHEET_COLUMNS.iter().zip(row).filter(|(name, _)| **name != "geometry");
         let mut properties: Map<String, Value> =
             named.map(|(name, text)| ((*name).to_owned(), cell(name, text))).collect();
         properties.insert("_condition".to_owned(), json!(number));
-        let ring = rings.get(number - 1).and_then(Option::as_ref);
-        let place = members.get(number - 1).and_then(|members| members.get("place"));
-        let geometry = match ring {
-            Some(ring) => json!({"type": "Polygon", "coordinates": [ring]}),
-            None => json!({"type": "Point", "coordinates": place}),
-        };
+        properties.extend(more.clone());
         json!({"type": "Feature", "geometry": geometry, "properties": properties})
     };
-    let features: Vec<Value> = rows(network, conditional).map(feature).collect();
-    let scope = format!("The route of {} is certified only if every condition holds on site.", vehicle.id);
-    json!({"type": "FeatureCollection", "_scope": scope, "features": features}).to_string() + "\n"
+    condition.sheet(network, number).into_iter().map(feature).collect()
 }
 
 /// The rows of all conditions, each with the number of its condition, from 1.

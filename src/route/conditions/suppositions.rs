@@ -20,7 +20,7 @@ const RADII: f64 = 2.0;
 
 /// What is supposed. Every value is a whole number of its parts.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Suppositions {
+pub(in crate::route) struct Suppositions {
     /// What is known of places anyway.
     base: Arc<network::Site>,
     /// By edge and strip, metres.
@@ -33,12 +33,12 @@ pub(super) struct Suppositions {
 
 impl Suppositions {
     /// Nothing is supposed beyond what is known.
-    pub(super) fn new(base: Arc<network::Site>) -> Self {
+    pub(in crate::route) fn new(base: Arc<network::Site>) -> Self {
         Self { base, widths_m: BTreeMap::new(), kerbs_m: BTreeMap::new(), paved_m: BTreeMap::new() }
     }
 
     /// Supposes that an edge's strip is at least so wide. Returns whether that is more than before.
-    pub(super) fn widen(&mut self, network: &Network, edge: u32, strip: Policy, width_m: f64) -> bool {
+    pub(in crate::route) fn widen(&mut self, network: &Network, edge: u32, strip: Policy, width_m: f64) -> bool {
         let width_m = (width_m * WIDTHS - 1e-6).ceil() / WIDTHS;
         if self.width_m(network, edge, strip).is_none_or(|has_m| has_m >= width_m) {
             return false;
@@ -48,43 +48,43 @@ impl Suppositions {
     }
 
     /// The width of an edge's strip under the suppositions, metres. `None` if it is not known at all.
-    pub(super) fn width_m(&self, network: &Network, edge: u32, strip: Policy) -> Option<f64> {
+    pub(in crate::route) fn width_m(&self, network: &Network, edge: u32, strip: Policy) -> Option<f64> {
         let supposed_m = self.widths_m.get(&(edge, strip)).copied();
         supposed_m.or_else(|| self.known_width_m(network, edge, strip))
     }
 
     /// Supposes that a corner has at least this radius.
-    pub(super) fn round(&mut self, node: i64, between: [u32; 2], radius_m: f64) {
+    pub(in crate::route) fn round(&mut self, node: i64, between: [u32; 2], radius_m: f64) {
         let radius_m = (radius_m * RADII - 1e-6).ceil() / RADII;
         let known_m = self.kerbs_m.entry((node, between)).or_insert(radius_m);
         *known_m = known_m.max(radius_m);
     }
 
     /// Supposes that everything is paved up to this distance from a node.
-    pub(super) fn pave(&mut self, node: i64, at: LonLat, radius_m: f64) {
+    pub(in crate::route) fn pave(&mut self, node: i64, at: LonLat, radius_m: f64) {
         let paved = self.paved_m.entry(node).or_insert((at, radius_m));
         paved.1 = paved.1.max(radius_m);
     }
 
     /// How far around a node everything is supposed to be paved, metres.
-    pub(super) fn paved_m(&self, node: i64) -> Option<f64> {
+    pub(in crate::route) fn paved_m(&self, node: i64) -> Option<f64> {
         self.paved_m.get(&node).map(|paved| paved.1)
     }
 
     /// The radius supposed for a corner, metres.
-    pub(super) fn radius_m(&self, node: i64, between: [u32; 2]) -> Option<f64> {
+    pub(in crate::route) fn radius_m(&self, node: i64, between: [u32; 2]) -> Option<f64> {
         self.kerbs_m.get(&(node, between)).copied()
     }
 
     /// The width of an edge's strip without the suppositions, metres.
-    pub(super) fn known_width_m(&self, network: &Network, edge: u32, strip: Policy) -> Option<f64> {
+    pub(in crate::route) fn known_width_m(&self, network: &Network, edge: u32, strip: Policy) -> Option<f64> {
         let edge = network.edges.get(edge as usize)?;
         let section = self.base.section(edge).unwrap_or_else(|| network.mapped_section(edge));
         Some(f64::from(section.strip(strip)?.width_m()))
     }
 
     /// Makes everything supposed hold on a network.
-    pub(super) fn apply(&self, network: &mut Network) {
+    pub(in crate::route) fn apply(&self, network: &mut Network) {
         network.site = self.site(network);
     }
 
@@ -154,7 +154,7 @@ impl Suppositions {
     }
 
     /// What is supposed here and not in `less`.
-    pub(super) fn beyond(&self, less: &Self) -> Self {
+    pub(in crate::route) fn beyond(&self, less: &Self) -> Self {
         let mut own = self.clone();
         own.widths_m.retain(|key, value| less.widths_m.get(key) != Some(value));
         own.kerbs_m.retain(|key, value| less.kerbs_m.get(key) != Some(value));
@@ -163,7 +163,7 @@ impl Suppositions {
     }
 
     /// Supposes what others suppose, too. The greater value counts.
-    pub(super) fn add(&mut self, other: &Self) {
+    pub(in crate::route) fn add(&mut self, other: &Self) {
         for (&key, &m) in &other.widths_m {
             let known_m = self.widths_m.entry(key).or_insert(m);
             *known_m = known_m.max(m);
@@ -176,15 +176,38 @@ impl Suppositions {
         }
     }
 
+    /// Gives both ways round a corner the greater of their radii: there is one kerb.
+    pub(in crate::route) fn level_corners(&mut self, network: &Network) {
+        let kerb = |&(node, between): &(i64, [u32; 2])| {
+            let [from, to] = between.map(|edge| network.edges.get(edge as usize));
+            Some((node, network::pieces([from?, to?])))
+        };
+        let mut most: BTreeMap<_, f64> = BTreeMap::new();
+        for (key, &radius_m) in &self.kerbs_m {
+            let known_m = most.entry(kerb(key)).or_insert(radius_m);
+            *known_m = known_m.max(radius_m);
+        }
+        for (key, radius_m) in &mut self.kerbs_m {
+            *radius_m = most.get(&kerb(key)).copied().unwrap_or(*radius_m);
+        }
+    }
+
+    /// Whether another value than in `other` is supposed for a place that `other` supposes something for.
+    pub(in crate::route) fn raises(&self, other: &Self) -> bool {
+        other.widths_m.iter().any(|(key, value)| self.widths_m.get(key) != Some(value))
+            || other.kerbs_m.iter().any(|(key, value)| self.kerbs_m.get(key) != Some(value))
+            || other.paved_m.iter().any(|(key, value)| self.paved_m.get(key) != Some(value))
+    }
+
     /// The edges and nodes at which these suppositions differ from others.
-    pub(super) fn differ(&self, other: &Self) -> (FxHashSet<u32>, FxHashSet<i64>) {
+    pub(in crate::route) fn differ(&self, other: &Self) -> (FxHashSet<u32>, FxHashSet<i64>) {
         let edges = differing(&self.widths_m, &other.widths_m).map(|(edge, _)| edge).collect();
         let corners = differing(&self.kerbs_m, &other.kerbs_m).map(|(node, _)| node);
         (edges, corners.chain(differing(&self.paved_m, &other.paved_m)).collect())
     }
 
     /// The conditions in the order of a way, on a network on which nothing is supposed. Edges that follow each other on one road and need the same are one condition.
-    pub(super) fn conditions(&self, network: &Network, kerbs: &Kerbs, way: &[u32]) -> Vec<Condition> {
+    pub(in crate::route) fn conditions(&self, network: &Network, kerbs: &Kerbs, way: &[u32]) -> Vec<Condition> {
         let mut found: Vec<(usize, Condition)> = Vec::new();
         for (i, edge) in way.iter().enumerate() {
             for (&(_, strip), &needed_m) in self.widths_m.range((*edge, Policy::Lane)..=(*edge, Policy::Carriageway)) {
@@ -246,7 +269,7 @@ fn differing<K: Copy + Ord, V: PartialEq>(a: &BTreeMap<K, V>, b: &BTreeMap<K, V>
 }
 
 /// A closed polygon within a circle around a position.
-pub(super) fn disc(at: LonLat, radius_m: f64) -> Vec<LonLat> {
+pub(in crate::route) fn disc(at: LonLat, radius_m: f64) -> Vec<LonLat> {
     const CORNERS: u32 = 48;
     /// A degree of latitude is nowhere shorter, metres. The sphere that it belongs to makes no circle too large by a hundredth.
     const DEGREE_M: f64 = 110_574.0;

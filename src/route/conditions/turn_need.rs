@@ -23,13 +23,13 @@ const PAVED_WITH_FLARE_M: f64 = 20.0;
 const HOPELESS_M: f64 = 1.0;
 
 /// A turn or passage of a way, on a network of its own.
-pub(super) struct Turning<'a> {
-    pub(super) driver: Arc<Driver>,
-    pub(super) drive: &'a Drive,
-    pub(super) join: Join<'a>,
-    pub(super) movement: Movement,
+pub(in crate::route) struct Turning<'a> {
+    pub(in crate::route) driver: Arc<Driver>,
+    pub(in crate::route) drive: &'a Drive,
+    pub(in crate::route) join: Join<'a>,
+    pub(in crate::route) movement: Movement,
     /// The strokes of edges, by index.
-    pub(super) stroke_of: Arc<[u32]>,
+    pub(in crate::route) stroke_of: Arc<[u32]>,
 }
 
 /// How hard to look for a path.
@@ -41,7 +41,7 @@ enum Look {
 
 impl Turning<'_> {
     /// The corners of the turn: node, edge that ends, edge that begins there.
-    pub(super) fn corners(&self, network: &Network) -> Vec<(i64, [u32; 2])> {
+    pub(in crate::route) fn corners(&self, network: &Network) -> Vec<(i64, [u32; 2])> {
         let Join { from, arcs, to, .. } = self.join;
         let node = |edge: u32, end: bool| {
             network.edges.get(edge as usize).map_or(0, |edge| if end { edge.to_node } else { edge.from_node })
@@ -53,7 +53,7 @@ impl Turning<'_> {
     }
 
     /// The edges of the way before and after the turn on which its corridor lies.
-    pub(super) fn near(&self, network: &Network) -> Vec<u32> {
+    pub(in crate::route) fn near(&self, network: &Network) -> Vec<u32> {
         let Some(reach) = Reach::of(&self.driver.model.vehicle) else { return Vec::new() };
         let edges = &self.drive.edges;
         let stroke = |edge: u32| self.stroke_of.get(edge as usize);
@@ -81,7 +81,7 @@ impl Turning<'_> {
     }
 
     /// The widths of the roads beside the turn in centimetres, under suppositions.
-    pub(super) fn widths_cm(&self, network: &Network, supposed: &Suppositions) -> Vec<i64> {
+    pub(in crate::route) fn widths_cm(&self, network: &Network, supposed: &Suppositions) -> Vec<i64> {
         let policies = [self.settings().policy, self.strip()];
         let width =
             |edge: u32, strip: Policy| supposed.width_m(network, edge, strip).map_or(-1, |m| (100.0 * m) as i64);
@@ -89,7 +89,7 @@ impl Turning<'_> {
     }
 
     /// Whether the turn is safe on the network as it is.
-    pub(super) fn is_safe(&self, network: &Network) -> bool {
+    pub(in crate::route) fn is_safe(&self, network: &Network) -> bool {
         self.passes(network, Look::Thorough)
     }
 
@@ -125,18 +125,11 @@ impl Turning<'_> {
     }
 
     /// Adds to `supposed` the least that makes the turn safe: a kerb radius, else a paved junction, else wider roads beside it, else all
-    /// of that. If nothing makes its own certificate safe, but a path can be driven, it is all of that, too: the whole way decides.
-    /// Returns whether there is hope. The site of `network` changes.
-    pub(super) fn meet(&self, network: &mut Network, supposed: &mut Suppositions) -> bool {
+    /// of that. Returns whether something does. The site of `network` changes.
+    pub(in crate::route) fn meet(&self, network: &mut Network, supposed: &mut Suppositions) -> bool {
         let generous = self.generous(network, supposed);
         generous.apply(network);
-        let Some(look) = self.look(network) else {
-            let driven = self
-                .made(network)
-                .is_some_and(|made| !Planner::new(&made).best_seeds(&self.driver.model.vehicle, 1).is_empty());
-            *supposed = generous;
-            return driven;
-        };
+        let Some(look) = self.look(network) else { return false };
         // What has to be checked at one place comes before what has to be checked along a road.
         self.by_kerb(network, supposed, look)
             || self.by_paving(network, supposed, look)
@@ -146,6 +139,16 @@ impl Turning<'_> {
                 *supposed = generous;
                 true
             }
+    }
+
+    /// Supposes everything at its greatest, if a path can then be driven. Its own certificate need not be safe: the whole way decides.
+    pub(super) fn hope(&self, network: &mut Network, supposed: &mut Suppositions) -> bool {
+        let generous = self.generous(network, supposed);
+        generous.apply(network);
+        let seeds = |made: TurnCorridors| Planner::new(&made).best_seeds(&self.driver.model.vehicle, 1);
+        let driven = self.made(network).is_some_and(|made| !seeds(made).is_empty());
+        *supposed = generous;
+        driven
     }
 
     /// The suppositions with everything at its greatest.
@@ -238,7 +241,7 @@ impl Turning<'_> {
     }
 
     /// The nodes at which the vehicle turns, with their positions.
-    pub(super) fn nodes(&self, network: &Network) -> Vec<(i64, LonLat)> {
+    pub(in crate::route) fn nodes(&self, network: &Network) -> Vec<(i64, LonLat)> {
         let end = |edge: u32, end: bool| {
             let edge = network.edges.get(edge as usize)?;
             let mut line = network.positions(edge);
@@ -260,7 +263,7 @@ impl Turning<'_> {
     }
 
     /// The strip that counts near turns.
-    pub(super) fn strip(&self) -> Policy {
+    pub(in crate::route) fn strip(&self) -> Policy {
         let settings = self.settings();
         settings.turn_policy.max(settings.policy)
     }
