@@ -68,7 +68,8 @@ pub fn sheet(network: &Network, vehicle: &Vehicle, conditional: &Conditional, st
 #[must_use]
 pub fn survey_sheet(network: &Network, vehicle: &Vehicle, survey: &Survey) -> String {
     let title = format!("{}: the measurements that would open most", vehicle.id);
-    let mut page = format!("{HEAD}<title>{0}</title><style>{SHEET_STYLE}</style></head><body><h1>{0}</h1>", escaped(&title));
+    let mut page =
+        format!("{HEAD}<title>{0}</title><style>{SHEET_STYLE}</style></head><body><h1>{0}</h1>", escaped(&title));
     let _ = write!(
         page,
         "<p>{}.</p><p class=\"scope\">{SURVEY_SCOPE} What counts of a measurement is its value less 1.64 times its standard \

@@ -54,7 +54,9 @@ mod whole;
 
 pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble, passes_over};
 pub use bans::{Bans, Within};
-pub use conditions::{Condition, ConditionAt, Conditional, Hopeless, SHEET_COLUMNS, sheet_csv, sheet_features, sheet_geojson};
+pub use conditions::{
+    Condition, ConditionAt, Conditional, Hopeless, SHEET_COLUMNS, sheet_csv, sheet_features, sheet_geojson,
+};
 pub use drive::{Drive, Join};
 pub use driver::Driver;
 pub use graph::{Access, BARRED, Graph};

@@ -362,9 +362,8 @@ impl Fitter {
                 let need = self.turns.entry((edges, turning.widths_cm(network, &known))).or_insert_with(|| {
                     let mut own = known.clone();
                     own.apply(network);
-                    let does = turning.is_safe(network)
-                        || turning.meet(network, &mut own)
-                        || turning.hope(network, &mut own);
+                    let does =
+                        turning.is_safe(network) || turning.meet(network, &mut own) || turning.hope(network, &mut own);
                     does.then(|| own.beyond(&known))
                 });
                 need.clone()

@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Condition, Conditional};
 use super::report::SHEET_COLUMNS;
+use super::{Condition, Conditional};
 use crate::network::Network;
 use crate::vehicle::Vehicle;
 
