@@ -118,7 +118,10 @@ impl Wanted {
         let conditional = answer.conditional.iter().map(|known| ("/conditional".to_owned(), &known.route, false));
         for (place, found, drive) in certified.chain(conditional) {
             ride.stop.check()?;
-            let more = drive::members(model, found, drive).map_err(|error| Problem::fault(error.to_string()))?;
+            let mut more = drive::members(model, found, drive).map_err(|error| Problem::fault(error.to_string()))?;
+            if place == "/conditional" {
+                more["leeway"]["verdict"] = json!(route::CONDITIONAL);
+            }
             if let (Some(Value::Object(route)), Value::Object(more)) = (members.pointer_mut(&place), more) {
                 route.extend(more);
             }

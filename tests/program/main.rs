@@ -2,6 +2,7 @@
 //! what `verify` refutes.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, clippy::print_stderr)]
 
+mod all_outputs;
 mod cli;
 mod columns;
 mod conditional;
