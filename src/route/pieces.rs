@@ -63,6 +63,13 @@ struct Made {
     all: bool,
 }
 
+impl Made {
+    fn all(turns: &dyn Turns, strokes: &mut Strokes, movement: &Movement, arcs: &[u32]) -> Self {
+        let pieces = turns.pieces(strokes, movement, arcs);
+        Self { paths: pieces.map(|pieces| pieces.into_iter().map(Arc::new).collect()), all: true }
+    }
+}
+
 /// By turn, the place of its chosen path. A turn that is missing has its best path.
 pub(super) type Choices = FxHashMap<(u32, u32), usize>;
 
@@ -107,12 +114,10 @@ impl Menu {
         let mut first = || Ok(turns.first(strokes, movement, arcs)?.into_iter().map(Arc::new).collect());
         let made = self.made.entry(key).or_insert_with(|| Made { paths: first(), all: false });
         if *choice > 0 && !made.all {
-            let pieces = turns.pieces(strokes, movement, arcs);
-            let paths = pieces.map(|pieces| pieces.into_iter().map(Arc::new).collect());
-            *made = Made { paths, all: true };
+            *made = Made::all(turns.as_ref(), strokes, movement, arcs);
         }
         let paths = made.paths.as_ref().map_err(|reason| *reason)?;
-        // There may be no other path after all.
+        // A choice may come from another menu.
         *choice = (*choice).min(paths.len().saturating_sub(1));
         paths.get(*choice).cloned().ok_or(UnknownReason::Geometry)
     }
@@ -139,14 +144,18 @@ impl Menu {
         there
     }
 
-    /// Chooses the next path of a turn. Returns whether there may be one. If there is none, the turn keeps its path.
+    /// Makes all paths of a turn, so that another one can be chosen.
+    pub(super) fn make_all(&mut self, strokes: &mut Strokes, movement: &Movement, arcs: &[u32]) {
+        let key = (movement.from, movement.to);
+        if !self.made.get(&key).is_some_and(|made| made.all) {
+            self.made.insert(key, Made::all(self.turns.as_ref(), strokes, movement, arcs));
+        }
+    }
+
+    /// Chooses the next of the paths that were made of a turn. Returns whether there is one.
     pub fn another(&mut self, from: u32, to: u32) -> bool {
         let choice = self.choice.entry((from, to)).or_insert(0);
-        let more = |made: &Made| match &made.paths {
-            Ok(paths) if made.all => *choice + 1 < paths.len(),
-            Ok(paths) => !paths.is_empty(),
-            Err(_) => false,
-        };
+        let more = |made: &Made| made.paths.as_ref().is_ok_and(|paths| *choice + 1 < paths.len());
         let there = self.made.get(&(from, to)).is_some_and(more);
         *choice += usize::from(there);
         there

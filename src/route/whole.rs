@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashSet;
 
-use super::assemble::{AssemblyError, PartKind, RoutePath, Way, assemble};
+use super::assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble, movement};
 use super::drive::Drive;
 use super::driver::Driver;
 use super::obstacles::Refutation;
@@ -95,13 +95,10 @@ impl Whole {
                 Ok(certified) => return Ok((Some(certified), failed)),
                 Err(refutation) => refutation,
             };
-            let turn = |at| if let PartKind::Turn { from, to } = at { Some((from, to)) } else { None };
-            let another = match (&refutation.assembly, turn(refutation.at)) {
-                (Some(AssemblyError::Overlap { before, at }), _) => {
-                    turn(*before).zip(turn(*at)).is_some_and(|(before, at)| self.menu.another_pair(before, at))
-                }
-                (_, Some((from, to))) => self.menu.another(from, to),
-                (_, None) => false,
+            let another = match (&refutation.assembly, refutation.at) {
+                // All pairs of paths of the two turns were tried.
+                (Some(AssemblyError::Overlap { .. }), _) => false,
+                (_, at) => self.make_all(way.drive, at).is_some_and(|(from, to)| self.menu.another(from, to)),
             };
             let goes_on = another && strung < MOST_STRUNG && failed.len() < tries;
             if refutation.assembly.is_none() || !goes_on {
@@ -121,25 +118,11 @@ impl Whole {
         way: &Way<'_>,
         choices: &mut Choices,
         stop: &Stop,
-    ) -> Result<Result<Looked, AssemblyError>, Stopped> {
+    ) -> Result<Result<Looked, Refutation>, Stopped> {
         self.menu.choose(choices);
-        let mut joined = self.assemble(way, stop)?;
-        for _ in 0..MOST_STRUNG {
-            let Err(AssemblyError::Overlap {
-                before: PartKind::Turn { from: a, to: b },
-                at: PartKind::Turn { from, to },
-            }) = joined
-            else {
-                break;
-            };
-            if !self.menu.another_pair((a, b), (from, to)) {
-                break;
-            }
-            joined = self.assemble(way, stop)?;
-        }
-        let path = match joined {
+        let path = match self.joined(way, stop)? {
             Ok(path) => path,
-            Err(error) => return Ok(Err(error)),
+            Err(refutation) => return Ok(Err(refutation)),
         };
         choices.clone_from(self.menu.choices());
         let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
@@ -155,26 +138,51 @@ impl Whole {
         Ok(safe.map(|(certificate, _)| Certified { path, certificate }))
     }
 
-    /// Chooses the next path of a turn. Returns whether there may be one.
-    pub(super) fn another(&mut self, (from, to): (u32, u32), choices: &mut Choices) -> bool {
+    /// Chooses the next path of a turn of a way. Returns whether there is one.
+    pub(super) fn another(&mut self, drive: &Drive, at: PartKind, choices: &mut Choices) -> bool {
         self.menu.choose(choices);
-        let another = self.menu.another(from, to);
+        let another = self.make_all(drive, at).is_some_and(|(from, to)| self.menu.another(from, to));
         choices.clone_from(self.menu.choices());
         another
     }
 
-    fn assemble(&mut self, way: &Way<'_>, stop: &Stop) -> Result<Result<RoutePath, AssemblyError>, Stopped> {
-        let roads = &self.roads;
-        match assemble(&roads.network, &roads.movements, &mut self.strokes, &mut self.menu, way, stop) {
-            Err(AssemblyError::Stopped(stopped)) => Err(stopped),
-            joined => Ok(joined),
+    /// Makes all paths of a turn of a way. Returns the edges before and after the turn. `None` if the way has no such turn.
+    fn make_all(&mut self, drive: &Drive, at: PartKind) -> Option<(u32, u32)> {
+        let PartKind::Turn { from, to } = at else { return None };
+        let join = drive.joins().find(|join| (join.from, join.to) == (from, to))?;
+        let movement = movement(&self.roads.movements, from, join.arcs, to)?;
+        self.menu.make_all(&mut self.strokes, &movement, join.arcs);
+        Some((from, to))
+    }
+
+    /// Joins the pieces of a way. If two turns overlap, their other paths are tried.
+    fn joined(&mut self, way: &Way<'_>, stop: &Stop) -> Result<Result<RoutePath, Refutation>, Stopped> {
+        let mut strung = 0;
+        loop {
+            strung += 1;
+            let roads = &self.roads;
+            let error = match assemble(&roads.network, &roads.movements, &mut self.strokes, &mut self.menu, way, stop) {
+                Ok(path) => return Ok(Ok(path)),
+                Err(AssemblyError::Stopped(stopped)) => return Err(stopped),
+                Err(error) => error,
+            };
+            let another = match error {
+                AssemblyError::Overlap { before, at } => {
+                    let turns = self.make_all(way.drive, before).zip(self.make_all(way.drive, at));
+                    turns.is_some_and(|(before, at)| self.menu.another_pair(before, at))
+                }
+                _ => false,
+            };
+            if !another || strung >= MOST_STRUNG {
+                return Ok(Err(unassembled(error, way.drive)));
+            }
         }
     }
 
     fn certify(&mut self, way: &Way<'_>, stop: &Stop) -> Result<Result<Certified, Refutation>, Stopped> {
-        let path = match self.assemble(way, stop)? {
+        let path = match self.joined(way, stop)? {
             Ok(path) => path,
-            Err(error) => return Ok(Err(unassembled(error, way.drive))),
+            Err(refutation) => return Ok(Err(refutation)),
         };
         let certificate = stet::certify(&path.corridor, &self.driver.model, &self.driver.permits.settings.stet, stop)?;
         let refuted = |certificate: Option<&Certificate>| Refutation {
@@ -220,14 +228,19 @@ fn culprit(path: &RoutePath, certificate: Option<&Certificate>) -> PartKind {
         // The place of a hinge's failure is not known, so the sharpest bend is taken.
         _ => sharpest(corridor),
     };
-    let distance = |stations: &std::ops::Range<usize>| {
+    let on = || path.parts.iter().find(|part| part.stations.contains(&at)).or(path.parts.first());
+    turn_near(path, at, TURN_REACH_M).or_else(|| on().map(|part| part.kind)).unwrap_or(PartKind::Edge(0))
+}
+
+/// The turn that is nearest to a station, if it is within some metres.
+pub(super) fn turn_near(path: &RoutePath, at: usize, within_m: f64) -> Option<PartKind> {
+    let distance = |part: &&Part| {
+        let stations = &part.stations;
         if stations.contains(&at) { 0 } else { stations.start.abs_diff(at).min(stations.end.abs_diff(at)) }
     };
     let turns = path.parts.iter().filter(|part| matches!(part.kind, PartKind::Turn { .. }));
-    let nearest = turns.min_by_key(|part| distance(&part.stations));
-    let near = nearest.filter(|part| distance(&part.stations) as f64 * corridor.spacing_m <= TURN_REACH_M);
-    let on = || path.parts.iter().find(|part| part.stations.contains(&at)).or(path.parts.first());
-    near.or_else(on).map_or(PartKind::Edge(0), |part| part.kind)
+    let nearest = turns.min_by_key(distance)?;
+    (distance(&nearest) as f64 * path.corridor.spacing_m <= within_m).then_some(nearest.kind)
 }
 
 fn sharpest(corridor: &Corridor) -> usize {

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::support::program;
+use crate::support::{program, sheet};
 
 use program::Place;
 
@@ -112,24 +112,8 @@ fn measurements_close_the_conditions() {
     let place = Place::with_wide_demo(VEHICLE);
     let corner = format!("route --vehicle {VEHICLE} {ROUND_A_CORNER}");
     place.netcert(&format!("{corner} --sheet sheet.csv")).succeeds();
-    let sheet = place.read("sheet.csv");
-    let mut reader = csv::Reader::from_reader(&sheet[..]);
-    let header = reader.headers().unwrap().clone();
-    let column = |name: &str| header.iter().position(|known| known == name).unwrap();
-    let mut filled = csv::Writer::from_writer(Vec::new());
-    filled.write_record(&header).unwrap();
-    for record in reader.records() {
-        let record = record.unwrap();
-        let mut cells: Vec<String> = record.iter().map(str::to_owned).collect();
-        if &record[column("quantity")] != "surface" {
-            cells[column("value")] = record[column("_needed")].to_owned();
-        }
-        for (name, text) in [("sigma", "0"), ("source", "tape"), ("date", "2026-11-23"), ("licence", "ODbL-1.0")] {
-            cells[column(name)] = text.to_owned();
-        }
-        filled.write_record(&cells).unwrap();
-    }
-    std::fs::write(place.path("filled.csv"), filled.into_inner().unwrap()).unwrap();
+    let empty = place.read("sheet.csv");
+    std::fs::write(place.path("filled.csv"), sheet::filled(&empty)).unwrap();
     place.netcert("evidence add sheet.csv").fails();
     assert_eq!(route(&place, ROUND_A_CORNER)["routes"], Value::Array(Vec::new()), "an empty sheet changes nothing");
 
@@ -139,7 +123,7 @@ fn measurements_close_the_conditions() {
     assert_eq!((&answer["certificate"]["verdict"], answer["routes"].as_array().unwrap().len()), (&"safe".into(), 1));
     place.netcert("verify --db demo.gpkg").succeeds();
 
-    let numbers: Vec<String> = (1..reader_rows(&sheet)).map(|number| number.to_string()).collect();
+    let numbers: Vec<String> = (1..reader_rows(&empty)).map(|number| number.to_string()).collect();
     place.netcert(&format!("evidence remove {}", numbers.join(" "))).succeeds();
     assert_eq!(route(&place, ROUND_A_CORNER)["routes"], Value::Array(Vec::new()));
 }

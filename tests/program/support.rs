@@ -8,6 +8,8 @@ pub(crate) mod demo;
 pub(crate) mod program;
 #[path = "../support/python.rs"]
 pub(crate) mod python;
+#[path = "../support/sheet.rs"]
+pub(crate) mod sheet;
 #[path = "../support/store_network.rs"]
 pub(crate) mod store_network;
 #[path = "../support/xml.rs"]

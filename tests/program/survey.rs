@@ -6,7 +6,7 @@ use netcert::osm::LonLat;
 use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
 use serde_json::Value;
 
-use crate::support::program;
+use crate::support::{program, sheet};
 
 use program::Place;
 
@@ -120,30 +120,6 @@ fn measures(step: &Value) -> Vec<&Value> {
     places.iter().flat_map(|place| place["measure"].as_array().unwrap()).collect()
 }
 
-/// The rows of a sheet up to a rank, with the needed values as measured.
-fn filled(sheet: &[u8], rank: &str) -> Vec<u8> {
-    let mut reader = csv::Reader::from_reader(sheet);
-    let header = reader.headers().unwrap().clone();
-    let column = |name: &str| header.iter().position(|known| known == name).unwrap();
-    let mut filled = csv::Writer::from_writer(Vec::new());
-    filled.write_record(&header).unwrap();
-    for record in reader.records() {
-        let record = record.unwrap();
-        if &record[column("_rank")] != rank {
-            continue;
-        }
-        let mut cells: Vec<String> = record.iter().map(str::to_owned).collect();
-        if &record[column("quantity")] != "surface" {
-            cells[column("value")] = record[column("_needed")].to_owned();
-        }
-        for (name, text) in [("sigma", "0"), ("source", "tape"), ("date", "2026-11-23"), ("licence", "ODbL-1.0")] {
-            cells[column(name)] = text.to_owned();
-        }
-        filled.write_record(&cells).unwrap();
-    }
-    filled.into_inner().unwrap()
-}
-
 /// On the drawn region corners open most. The first one opens more than the second, and both open what was said.
 #[test]
 fn what_the_best_measurements_open_is_what_they_open_once_they_are_in() {
@@ -156,12 +132,8 @@ fn what_the_best_measurements_open_is_what_they_open_once_they_are_in() {
     assert!(number(&steps[0]["opens"]) > 10_000.0 && steps.iter().all(|step| !measures(step).is_empty()));
     let sum = steps.iter().fold(number(&found["reachable_before"]), |sum, step| sum + number(&step["opens"]));
     assert!((sum - number(&steps[1]["reachable"])).abs() < 1e-6);
-    let sheet = place.netcert(&format!("{line} csv")).succeeds().out();
-    let filled: Vec<u8> = ["1", "2"].iter().flat_map(|rank| filled(sheet.as_bytes(), rank)).collect();
-    let filled = String::from_utf8(filled).unwrap();
-    let header = filled.lines().next().unwrap().to_owned();
-    let rows: Vec<&str> = filled.lines().filter(|line| *line != header).collect();
-    std::fs::write(place.path("filled.csv"), format!("{header}\n{}\n", rows.join("\n"))).unwrap();
+    let table = place.netcert(&format!("{line} csv")).succeeds().out();
+    std::fs::write(place.path("filled.csv"), sheet::filled(table.as_bytes())).unwrap();
     place.netcert("evidence add filled.csv --db demo.gpkg").succeeds();
     assert!((number(&json(&place)["reachable_before"]) - sum).abs() < 1.0);
 }

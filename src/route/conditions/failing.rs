@@ -4,9 +4,8 @@ use super::fit::{Fitter, Fitting};
 use super::suppositions::Suppositions;
 use super::turn_need::Turning;
 use crate::certify::{MOST_KERB_M, MOST_MORE_M};
-use crate::route::assemble::{AssemblyError, Part, PartKind};
-use crate::route::drive::Drive;
-use crate::route::whole::Looked;
+use crate::route::assemble::{Part, PartKind};
+use crate::route::whole::{Looked, turn_near};
 use crate::stet::SpanResult;
 
 /// A failure on an edge is that of the nearest turn within this distance, metres.
@@ -64,34 +63,14 @@ fn culprit(looked: &Looked, part: &Part, result: &SpanResult) -> PartKind {
         return part.kind;
     }
     let stations = &part.stations;
-    let at =
-        if result.too_narrow() { result.limiting.station.clamp(stations.start, stations.end) } else { stations.start };
-    let apart = |part: &Part| {
-        let of = &part.stations;
-        if of.contains(&at) { 0 } else { of.start.abs_diff(at).min(of.end.abs_diff(at)) }
-    };
-    let turns = looked.path.parts.iter().filter(|part| matches!(part.kind, PartKind::Turn { .. }));
-    let nearest = turns.min_by_key(|part| apart(part));
-    let spacing_m = looked.path.corridor.spacing_m;
-    nearest.filter(|part| apart(part) as f64 * spacing_m <= TURN_REACH_M).map_or(part.kind, |part| part.kind)
-}
-
-/// The place where the pieces of a way could not be joined.
-pub(super) fn place_of(error: &AssemblyError, drive: &Drive) -> PartKind {
-    match error {
-        AssemblyError::Unknown { at, .. }
-        | AssemblyError::Overlap { at, .. }
-        | AssemblyError::Centreline { at, .. } => *at,
-        AssemblyError::Frame(_) | AssemblyError::Stopped(_) => {
-            PartKind::Edge(drive.edges.first().copied().unwrap_or_default())
-        }
-    }
+    let limiting = result.limiting.station.clamp(stations.start, stations.end);
+    let at = if result.too_narrow() { limiting } else { stations.start };
+    turn_near(&looked.path, at, TURN_REACH_M).unwrap_or(part.kind)
 }
 
 impl Fitter {
     /// Supposes more room at a place. Returns whether there is more to suppose.
     pub(super) fn more_room(&self, fitting: &mut Fitting, place: &Failing) -> bool {
-        fitting.helped += 1;
         let missing_m = place.missing_m;
         match place.at {
             PartKind::Edge(edge) => {
@@ -99,11 +78,11 @@ impl Fitter {
                 at.is_some_and(|at| self.widen_by(fitting, at, 2.0 * missing_m))
             }
             PartKind::Turn { from, to } => {
-                let Fitting { drive, supposed, helped, .. } = fitting;
+                let Fitting { drive, supposed, round, .. } = fitting;
                 let Some(join) = drive.joins().find(|join| (join.from, join.to) == (from, to)) else { return false };
                 let Some(Some(turning)) = self.turning(drive, join) else { return false };
                 // The road that limits may not be one that the vehicle drives.
-                if place.beside && *helped % 3 > 0 && self.wider(&turning, missing_m, supposed) {
+                if place.beside && *round % 3 < 2 && self.wider(&turning, missing_m, supposed) {
                     return true;
                 }
                 let small = missing_m < MUCH_M;

@@ -1,24 +1,25 @@
 //! Finds what has to hold on one way, so that the whole way is certified.
 //!
 //! Each edge and turn that is not safe by itself gets what it needs. Then the whole way is certified, and where it fails more is supposed.
-//! Two turns on too short a road between them become one passage. At last everything is taken back that the whole can do without.
+//! Two turns on too short a road between them become one passage. At last the conditions that the whole does not need are taken back.
 
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
 use super::ConditionAt;
-use super::failing::{Failing, failing, place_of};
+use super::failing::{Failing, failing};
 use super::joint;
 use super::suppositions::Suppositions;
 use super::turn_need::Turning;
 use crate::certify::edge_need;
 use crate::network::{self, MovementKind, Network};
 use crate::osm::facts::Policy;
-use crate::route::assemble::{AssemblyError, PartKind, Way, movement};
+use crate::route::assemble::{PartKind, Way, movement};
 use crate::route::drive::{Drive, Join};
 use crate::route::driver::Driver;
 use crate::route::graph::Access;
+use crate::route::obstacles::Refutation;
 use crate::route::pieces::Choices;
 use crate::route::roads::Roads;
 use crate::route::turning::MadeTurns;
@@ -58,7 +59,7 @@ pub(super) struct Fitted {
     pub(super) supposed: Suppositions,
 }
 
-/// The places on a way for which nothing does.
+/// The places on a way for which nothing does. None if no single place is at fault.
 pub(super) struct Unfit(pub(super) Vec<PartKind>);
 
 /// A way while it is fitted.
@@ -67,8 +68,8 @@ pub(super) struct Fitting {
     start: f64,
     end: f64,
     pub(super) supposed: Suppositions,
-    /// How often more room was sought.
-    pub(super) helped: usize,
+    /// How often the whole has failed.
+    pub(super) round: usize,
     choices: Choices,
 }
 
@@ -109,7 +110,7 @@ impl Fitter {
             start: way.start,
             end: way.end,
             supposed,
-            helped: 0,
+            round: 0,
             choices: Choices::default(),
         };
         // Turns that are not safe by themselves may pass as parts of the whole.
@@ -131,7 +132,8 @@ impl Fitter {
             if let Some(certified) = self.fresh(&fitting, stop)? {
                 return Ok(Ok(Fitted { drive: fitting.drive, certified, supposed: fitting.supposed }));
             }
-            unfit.extend(fitting.drive.joins().next().map(|join| PartKind::Turn { from: join.from, to: join.to }));
+            // No single place is at fault.
+            return Ok(Err(Unfit(Vec::new())));
         }
         let unfit = unfit.into_iter().flat_map(|at| joint::parted(way.drive, at)).collect();
         Ok(Err(Unfit(unfit)))
@@ -140,10 +142,10 @@ impl Fitter {
     /// Supposes more where the whole fails, until it is safe. Returns the place where nothing more does.
     fn suppose_until_safe(&mut self, fitting: &mut Fitting, stop: &Stop) -> Result<Option<PartKind>, Stopped> {
         let mut last = None;
-        for _ in 0..ROUNDS {
+        for round in 0..ROUNDS {
+            fitting.round = round;
             let goes_on = match self.look(fitting, stop)? {
-                Err(error) => {
-                    let at = place_of(&error, &fitting.drive);
+                Err(Refutation { at, .. }) => {
                     last = Some(at);
                     self.merge(fitting, at, stop)?
                 }
@@ -169,7 +171,8 @@ impl Fitter {
     fn help(&mut self, fitting: &mut Fitting, place: &Failing, stop: &Stop) -> Result<bool, Stopped> {
         let PartKind::Turn { from, to } = place.at else { return Ok(self.more_room(fitting, place)) };
         let another = |fitter: &mut Self, fitting: &mut Fitting| {
-            fitter.whole.as_mut().is_some_and(|(whole, _)| whole.another((from, to), &mut fitting.choices))
+            let Fitting { drive, choices, .. } = fitting;
+            fitter.whole.as_mut().is_some_and(|(whole, _)| whole.another(drive, place.at, choices))
         };
         // More room does not unfold a vehicle. Another path may, or one path over two turns.
         if place.folds {
@@ -202,7 +205,7 @@ impl Fitter {
     }
 
     /// Joins and certifies the way under what is supposed.
-    fn look(&mut self, fitting: &mut Fitting, stop: &Stop) -> Result<Result<Looked, AssemblyError>, Stopped> {
+    fn look(&mut self, fitting: &mut Fitting, stop: &Stop) -> Result<Result<Looked, Refutation>, Stopped> {
         fitting.supposed.apply(network_of(&mut self.roads));
         let going = match self.whole.take() {
             None => self.new_whole(),
@@ -246,12 +249,12 @@ impl Fitter {
         });
         let mut left = LESS;
         for condition in conditions {
-            // The road needs by itself what it has no permit without.
+            // Such a road is not safe without its width.
             let priced = |edge: &u32| access.edges.get(*edge as usize).is_some_and(|&price| price > 0);
             if matches!(&condition.at, ConditionAt::Road(edges) if edges.iter().any(priced)) {
                 continue;
             }
-            // Most often nothing at all does, or hardly less; the rest is halved.
+            // First the condition is left out, then the values between are halved.
             let less = fitting.supposed.less(&condition);
             let (mut low, mut high) = (0, less.len());
             let mut at = 0;

@@ -203,7 +203,7 @@ pub fn certify_spans(
         let swept = Swept::new(corridor, &members, spans, Marks::Ends, options, &never);
         for (lane, (&i, plan)) in chunk.iter().zip(&swept.plans).enumerate() {
             let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(lane, span)).collect();
-            let held = held(corridor, (&swept, lane), spans, Marks::Ends, options, &results);
+            let held = held(corridor, members[lane], spans, Marks::Ends, options, &results, &never);
             rows.push(match held {
                 Some((held, spans)) => (i, Planned { plan: held.plans[0].clone(), spans }),
                 None => (i, Planned { plan: plan.clone(), spans: results }),
@@ -247,7 +247,7 @@ pub fn certify_parts(
     }
     let swept = Swept::new(corridor, &[model], spans, Marks::Ends, options, stop);
     let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
-    let held = held(corridor, (&swept, 0), spans, Marks::Ends, options, &results);
+    let held = held(corridor, model, spans, Marks::Ends, options, &results, stop);
     // A cancelled sweep ends early and its numbers mean nothing. `stop` stays told.
     stop.check()?;
     Ok(held.map_or(results, |(_, held)| held))
@@ -272,7 +272,7 @@ pub fn certify_planned(
     }
     let swept = Swept::new(corridor, &[model], spans, Marks::All, options, stop);
     let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
-    let certified = match held(corridor, (&swept, 0), spans, Marks::All, options, &results) {
+    let certified = match held(corridor, model, spans, Marks::All, options, &results, stop) {
         Some((held, _)) => held.certificate(corridor, spans),
         None => swept.certificate(corridor, spans),
     };
@@ -281,22 +281,22 @@ pub fn certify_planned(
     Ok(Some(certified))
 }
 
-/// Certifies a vehicle of a group again without corrections where areas count, if the corrected plan steers or folds too far. A path
-/// over a junction is planned with the steering in mind; corrections are not. If corrections are needed over another area, they are taken
-/// back only over areas where the vehicle folds. `None` if that is no remedy.
+/// Certifies a vehicle again without corrections where areas count, if the corrected plan steers or folds too far. A path over a junction
+/// is planned with the steering in mind; corrections are not. If corrections are needed over another area, they are taken back only over
+/// areas where the vehicle folds. `None` if that is no remedy.
 fn held<'m>(
     corridor: &Corridor,
-    (corrected, lane): (&Swept<'m>, usize),
+    model: &'m Model,
     spans: &[Range<usize>],
     marks: Marks,
     options: &Options,
     results: &[SpanResult],
+    stop: &'m Stop,
 ) -> Option<(Swept<'m>, Vec<SpanResult>)> {
     let corrects = options.max_shift_m > 0.0 && options.correction_sweeps > 0;
     if corridor.areas.is_empty() || !corrects || !results.iter().any(SpanResult::folds) {
         return None;
     }
-    let (model, stop) = (corrected.group.models[lane], corrected.stop);
     let without = |held: &[Range<usize>]| {
         let swept = Swept::along(corridor, &[model], spans, marks, stop, &|track, group| {
             plan::best(track, group, spans, options, held, stop)
@@ -307,27 +307,26 @@ fn held<'m>(
     let safe = |results: &[SpanResult]| results.iter().filter(|result| result.safe()).count();
     let all: Vec<Range<usize>> = corridor.areas.iter().map(|area| area.heads.clone()).collect();
     let mut best = Some(without(&all)).filter(|(_, held)| safe(held) > safe(results));
+    let mut most = best.as_ref().map_or(safe(results), |(_, held)| safe(held));
+    // By itself and not from `results`, which may come from a group: no other vehicle may matter.
     let mut held: Vec<Range<usize>> = Vec::new();
-    let mut folding = folding(corrected, lane, &all);
     for _ in 0..HOLDS {
-        let most = best.as_ref().map_or(safe(results), |(_, results)| safe(results));
-        let known = held.len();
-        held.extend(folding.into_iter().filter(|area| !held.contains(area)).collect::<Vec<_>>());
-        if most == spans.len() || held.len() == known || held.len() == all.len() || stop.told() {
+        if most == spans.len() || all.len() < 2 || held.len() == all.len() || stop.told() {
             break;
         }
         let (swept, results) = without(&held);
-        folding = self::folding(&swept, 0, &all);
+        let folding: Vec<_> = all.iter().filter(|area| swept.result(0, area).folds()).cloned().collect();
         if safe(&results) > most {
+            most = safe(&results);
             best = Some((swept, results));
+        }
+        let known = held.len();
+        held.extend(folding.into_iter().filter(|area| !held.contains(area)).collect::<Vec<_>>());
+        if held.len() == known {
+            break;
         }
     }
     best
-}
-
-/// The areas over which a vehicle folds or steers too far, by the stations of its steer axle.
-fn folding(swept: &Swept<'_>, lane: usize, areas: &[Range<usize>]) -> Vec<Range<usize>> {
-    areas.iter().filter(|area| swept.result(lane, area).folds()).cloned().collect()
 }
 
 /// All leeways at γ = 1, refined by the adjoint where that is worth its time.
@@ -340,8 +339,8 @@ fn thorough(track: &Track, group: &Group<'_>, shift: &[V], stop: &Stop) -> Vec<M
     sweep::<true>(track, group, shift, &Wanted { refined: Some(&loose), ..Wanted::ALL }, stop)
 }
 
-/// How often corrections are taken back over more areas.
-const HOLDS: usize = 3;
+/// How often a vehicle is certified with corrections taken back over some areas only.
+const HOLDS: usize = 4;
 
 /// The stations at which the leeway between two points of a side is examined.
 #[derive(Debug, Clone, Copy)]
