@@ -8,6 +8,7 @@ use netcert::network::MovementKind;
 use netcert::route::{Access, BARRED, Goal, Measure, PartKind, Planner, Question, Snapper, Speeds, Start, search_over};
 use netcert::stop::Stop;
 use netcert::verdict::Verdict;
+use netcert::words::Named as _;
 use rayon::prelude::*;
 
 use super::{Draw, Region};
@@ -17,7 +18,8 @@ enum Outcome {
     /// No lawful way joins the places.
     Unjoined,
     Certified,
-    Conditions(usize),
+    /// By quantity, the number of conditions.
+    Conditions(BTreeMap<&'static str, usize>),
     /// No route. The text says what stopped the search.
     Nothing(String),
 }
@@ -30,22 +32,27 @@ pub(super) fn tell(region: &Region, from: &[u32], pairs: u64) {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
     let mut conditions: Vec<usize> = Vec::new();
+    let mut quantities: BTreeMap<&str, usize> = BTreeMap::new();
     let mut seconds: Vec<f64> = Vec::new();
     for (outcome, took_s) in outcomes {
-        let word = match outcome {
+        let word = match &outcome {
             Outcome::Unjoined => "no lawful way",
             Outcome::Certified => "certified",
-            Outcome::Conditions(1) => "1 condition",
-            Outcome::Conditions(2..=3) => "2 to 3 conditions",
-            Outcome::Conditions(_) => "more conditions",
+            Outcome::Conditions(of) => match of.values().sum() {
+                0 => "certified as it is",
+                1 => "1 condition",
+                2..=3 => "2 to 3 conditions",
+                _ => "more conditions",
+            },
             Outcome::Nothing(_) => "none",
         };
         *counts.entry(word).or_default() += 1;
         if let Outcome::Nothing(why) = &outcome {
             *reasons.entry(why.clone()).or_default() += 1;
         }
-        if let Outcome::Conditions(count) = outcome {
-            conditions.push(count);
+        if let Outcome::Conditions(of) = outcome {
+            conditions.push(of.values().sum());
+            of.into_iter().for_each(|(quantity, count)| *quantities.entry(quantity).or_default() += count);
             seconds.push(took_s);
         }
     }
@@ -57,6 +64,7 @@ pub(super) fn tell(region: &Region, from: &[u32], pairs: u64) {
     for (why, pairs) in reasons {
         println!("    {pairs:5}  none: {why}");
     }
+    println!("  conditions by quantity: {quantities:?}");
     println!(
         "  conditions: median {median}, most {}; seconds for such a route: median {:.1}, 9 of 10 within {:.1}; {:.0} s in all",
         conditions.last().copied().unwrap_or(0),
@@ -86,7 +94,9 @@ fn outcome(region: &Region, lawful: &Access, from: &[u32], pair: u64) -> (Outcom
         match planner.under_conditions(&question, &answer.refuted, &stop).unwrap() {
             Ok(route) => {
                 assert!(route.route.certificate.result.safe(), "certified under its conditions");
-                Outcome::Conditions(route.conditions.len())
+                let mut of = BTreeMap::new();
+                route.conditions.iter().for_each(|c| *of.entry(c.quantity.name()).or_default() += 1);
+                Outcome::Conditions(of)
             }
             Err(hopeless) if hopeless.gave_up => Outcome::Nothing("given up".to_owned()),
             Err(hopeless) => Outcome::Nothing(match hopeless.places.last() {

@@ -15,6 +15,8 @@ use crate::verdict::UnknownReason;
 /// One way to drive a turn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TurnPiece {
+    /// The code of the path. A turn has at most one path of a code.
+    pub code: i64,
     /// The frame of the corridor's positions.
     pub frame: Frame,
     /// A corridor that contains at least the turn.
@@ -53,49 +55,87 @@ pub trait Turns: Send {
     ) -> Result<Option<TurnPiece>, UnknownReason> {
         Ok(self.pieces(strokes, movement, arcs)?.into_iter().next())
     }
-}
 
-/// The paths of a turn that were made.
-struct Made {
-    /// The best first.
-    paths: Result<Vec<Arc<TurnPiece>>, UnknownReason>,
-    /// Whether these are all.
-    all: bool,
-}
-
-impl Made {
-    fn all(turns: &dyn Turns, strokes: &mut Strokes, movement: &Movement, arcs: &[u32]) -> Self {
-        let pieces = turns.pieces(strokes, movement, arcs);
-        Self { paths: pieces.map(|pieces| pieces.into_iter().map(Arc::new).collect()), all: true }
+    /// The path of a code, if there is one and it counts.
+    ///
+    /// # Errors
+    /// The turn has no corridor; the error is the reason.
+    fn of_code(
+        &self,
+        strokes: &mut Strokes,
+        movement: &Movement,
+        arcs: &[u32],
+        code: i64,
+    ) -> Result<Option<TurnPiece>, UnknownReason> {
+        Ok(self.pieces(strokes, movement, arcs)?.into_iter().find(|piece| piece.code == code))
     }
 }
 
-/// By turn, the place of its chosen path. A turn that is missing has its best path.
-pub(super) type Choices = FxHashMap<(u32, u32), usize>;
+/// The paths of a turn that were made.
+#[derive(Default)]
+struct Made {
+    /// Those that the source counts, the best first. `None` if nobody has asked for them.
+    paths: Option<Result<Vec<Arc<TurnPiece>>, UnknownReason>>,
+    /// Whether these are all.
+    all: bool,
+    /// Those that were asked for by their code.
+    coded: Vec<Arc<TurnPiece>>,
+}
+
+impl Made {
+    fn make_all(&mut self, turns: &dyn Turns, strokes: &mut Strokes, movement: &Movement, arcs: &[u32]) {
+        if !self.all {
+            let pieces = turns.pieces(strokes, movement, arcs);
+            self.paths = Some(pieces.map(|pieces| pieces.into_iter().map(Arc::new).collect()));
+            self.all = true;
+        }
+    }
+
+    fn counted(&self) -> &[Arc<TurnPiece>] {
+        self.paths.as_ref().and_then(|paths| paths.as_ref().ok()).map_or(&[], Vec::as_slice)
+    }
+
+    fn of_code(&self, code: i64) -> Option<Arc<TurnPiece>> {
+        self.counted().iter().chain(&self.coded).find(|piece| piece.code == code).cloned()
+    }
+}
+
+/// By turn, the code of its chosen path. A turn that is missing has its best path.
+pub(super) type Choices = FxHashMap<(u32, u32), i64>;
 
 /// Chooses the path of each turn: the best one, until another is requested.
 pub struct Menu {
     turns: Box<dyn Turns>,
     made: FxHashMap<(u32, u32), Made>,
-    choice: Choices,
+    /// Paths asked for by their place among those that count, and by their code.
+    places: FxHashMap<(u32, u32), usize>,
+    codes: Choices,
+    /// What was chosen last.
+    chosen: Choices,
 }
 
 impl Menu {
     /// A menu without turns. Turns are made when they are first needed.
     #[must_use]
     pub fn new(turns: Box<dyn Turns>) -> Self {
-        Self { turns, made: FxHashMap::default(), choice: FxHashMap::default() }
+        Self {
+            turns,
+            made: FxHashMap::default(),
+            places: FxHashMap::default(),
+            codes: Choices::default(),
+            chosen: Choices::default(),
+        }
     }
 
     /// Forgets turns of which this holds, by the edges before and after them.
     pub(super) fn forget(&mut self, changed: impl Fn(u32, u32) -> bool) {
         self.made.retain(|&(from, to), _| !changed(from, to));
-        self.choice.retain(|&(from, to), _| !changed(from, to));
+        self.places.retain(|&(from, to), _| !changed(from, to));
     }
 
     /// Resets every turn to its best path.
     pub fn begin(&mut self) {
-        self.choice.clear();
+        self.choose(&Choices::default());
     }
 
     /// The chosen path of a turn, or of a passage over these arcs.
@@ -109,27 +149,42 @@ impl Menu {
         arcs: &[u32],
     ) -> Result<Arc<TurnPiece>, UnknownReason> {
         let key = (movement.from, movement.to);
-        let turns = &self.turns;
-        let choice = self.choice.entry(key).or_insert(0);
-        let mut first = || Ok(turns.first(strokes, movement, arcs)?.into_iter().map(Arc::new).collect());
-        let made = self.made.entry(key).or_insert_with(|| Made { paths: first(), all: false });
-        if *choice > 0 && !made.all {
-            *made = Made::all(turns.as_ref(), strokes, movement, arcs);
+        let turns = self.turns.as_ref();
+        let made = self.made.entry(key).or_default();
+        let place = self.places.get(&key).copied();
+        if let (None, Some(&code)) = (place, self.codes.get(&key)) {
+            let known = made.of_code(code);
+            let piece = known.or_else(|| turns.of_code(strokes, movement, arcs, code).ok().flatten().map(Arc::new));
+            // What has changed since the path was chosen may have no such path.
+            if let Some(piece) = piece {
+                if made.of_code(code).is_none() {
+                    made.coded.push(Arc::clone(&piece));
+                }
+                self.chosen.insert(key, code);
+                return Ok(piece);
+            }
         }
-        let paths = made.paths.as_ref().map_err(|reason| *reason)?;
-        // A choice may come from another menu.
-        *choice = (*choice).min(paths.len().saturating_sub(1));
-        paths.get(*choice).cloned().ok_or(UnknownReason::Geometry)
+        let place = place.unwrap_or(0);
+        if place > 0 {
+            made.make_all(turns, strokes, movement, arcs);
+        }
+        let first = || Ok(turns.first(strokes, movement, arcs)?.into_iter().map(Arc::new).collect());
+        let paths = made.paths.get_or_insert_with(first).as_ref().map_err(|reason| *reason)?;
+        let piece = paths.get(place.min(paths.len().saturating_sub(1))).cloned().ok_or(UnknownReason::Geometry)?;
+        self.chosen.insert(key, piece.code);
+        Ok(piece)
     }
 
-    /// The paths chosen so far, by their places in the order of each turn's paths.
+    /// The paths chosen so far.
     pub(super) fn choices(&self) -> &Choices {
-        &self.choice
+        &self.chosen
     }
 
     /// Chooses these paths, and of every other turn the best one.
     pub(super) fn choose(&mut self, choices: &Choices) {
-        self.choice.clone_from(choices);
+        self.places.clear();
+        self.codes.clone_from(choices);
+        self.chosen.clone_from(choices);
     }
 
     /// Chooses the next pair of paths for two successive turns. Returns whether there is one.
@@ -139,26 +194,32 @@ impl Menu {
         }
         let there = before != after && self.another(before.0, before.1);
         if there {
-            self.choice.remove(&after);
+            self.places.insert(after, 0);
         }
         there
     }
 
     /// Makes all paths of a turn, so that another one can be chosen.
     pub(super) fn make_all(&mut self, strokes: &mut Strokes, movement: &Movement, arcs: &[u32]) {
-        let key = (movement.from, movement.to);
-        if !self.made.get(&key).is_some_and(|made| made.all) {
-            self.made.insert(key, Made::all(self.turns.as_ref(), strokes, movement, arcs));
-        }
+        let made = self.made.entry((movement.from, movement.to)).or_default();
+        made.make_all(self.turns.as_ref(), strokes, movement, arcs);
     }
 
     /// Chooses the next of the paths that were made of a turn. Returns whether there is one.
     pub fn another(&mut self, from: u32, to: u32) -> bool {
-        let choice = self.choice.entry((from, to)).or_insert(0);
-        let more = |made: &Made| made.paths.as_ref().is_ok_and(|paths| *choice + 1 < paths.len());
-        let there = self.made.get(&(from, to)).is_some_and(more);
-        *choice += usize::from(there);
-        there
+        let key = (from, to);
+        let paths = self.made.get(&key).map_or(&[][..], Made::counted);
+        let of_code = |code: &i64| paths.iter().position(|piece| piece.code == *code);
+        let next = match (self.places.get(&key), self.codes.get(&key)) {
+            (Some(&place), _) => place + 1,
+            // A path that does not count comes before all that do.
+            (None, Some(code)) => of_code(code).map_or(0, |place| place + 1),
+            (None, None) => 1,
+        };
+        let Some(piece) = paths.get(next) else { return false };
+        self.chosen.insert(key, piece.code);
+        self.places.insert(key, next);
+        true
     }
 }
 

@@ -69,6 +69,18 @@ impl Turns for MadeTurns {
             None => Ok(self.pieces(strokes, movement, arcs)?.into_iter().next()),
         }
     }
+
+    fn of_code(
+        &self,
+        strokes: &mut Strokes,
+        movement: &Movement,
+        arcs: &[u32],
+        code: i64,
+    ) -> Result<Option<TurnPiece>, UnknownReason> {
+        let made = self.made(strokes, movement, arcs)?;
+        let counts = |path: &TurnPath| self.unsafe_too || self.certified(path, &strokes.settings().stet).is_some();
+        made.path(code).filter(counts).map(|path| self.piece(&made, path)).transpose()
+    }
 }
 
 impl MadeTurns {
@@ -90,9 +102,9 @@ impl MadeTurns {
     }
 
     fn piece(&self, made: &TurnCorridors, path: TurnPath) -> Result<TurnPiece, UnknownReason> {
-        let TurnPath { corridor, area, turn, approach, departure, .. } = path;
+        let TurnPath { code, corridor, area, turn, approach, departure, .. } = path;
         let reach = Reach::of(&self.driver.model.vehicle).ok_or(UnknownReason::Geometry)?;
-        Ok(TurnPiece { frame: made.frame, corridor, turn, approach, departure, area, reach })
+        Ok(TurnPiece { code, frame: made.frame, corridor, turn, approach, departure, area, reach })
     }
 
     fn counts(&self, result: &SpanResult) -> bool {

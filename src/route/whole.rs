@@ -60,14 +60,14 @@ impl Whole {
         Self { roads: Arc::clone(roads), driver, strokes, menu: Menu::new(turns) }
     }
 
-    /// Goes on with roads whose site differs at these edges and nodes. What lies beside them is made again.
-    pub(super) fn go_on_with(&mut self, roads: &Arc<Roads>, edges: &FxHashSet<u32>, nodes: &FxHashSet<i64>) {
+    /// Goes on with roads whose site differs along these edges and at nodes at these positions. What lies beside them is made again.
+    pub(super) fn go_on_with(&mut self, roads: &Arc<Roads>, edges: &FxHashSet<u32>, nodes: &[LonLat]) {
         let network = &roads.network;
         let stroke = |edge: u32| self.strokes.of(edge).map(|place| place.0);
         let strokes: FxHashSet<u32> = edges.iter().filter_map(|&edge| stroke(edge)).collect();
         let line = |edge: u32| network.edges.get(edge as usize).map(|edge| network.positions(edge));
-        let around = nodes.iter().filter_map(|&node| network.crossings.at(node).first().copied());
-        let changed: Vec<LonLat> = edges.iter().copied().chain(around).filter_map(line).flatten().collect();
+        let along = edges.iter().copied().filter_map(line).flatten();
+        let changed: Vec<LonLat> = along.chain(nodes.iter().copied()).collect();
         let near = |a: LonLat, b: LonLat| {
             let [east_m, north_m] = offset_m(a, b);
             east_m.hypot(north_m) < BESIDE_M

@@ -37,7 +37,8 @@ fn ask(region: &Region, vehicle: &str, [from, to]: [&str; 2]) -> Asked {
     let mut planner = region.planner(&driver, Measure::Distance);
     let places = vec![on(region, from), on(region, to)];
     let question = Question { places, snap_m: 5.0, alternatives: 0, tries: 20 };
-    let answer = planner.answer(&question, &Stop::never()).unwrap();
+    // A place may be on no safe road.
+    let answer = planner.answer(&question, &Stop::never()).unwrap_or_default();
     let under = planner.under_conditions(&question, &answer.refuted, &Stop::never()).unwrap();
     let again = planner.under_conditions(&question, &answer.refuted, &Stop::never()).unwrap();
     match (&under, &again) {
@@ -104,4 +105,59 @@ fn two_turns_on_too_short_a_road_pass_under_conditions() {
         let places = [Quantity::KerbRadius, Quantity::Surface, Quantity::CarriagewayWidth];
         assert!(found.conditions.iter().all(|condition| places.contains(&condition.quantity)));
     }
+}
+
+/// Two crossings of one road, far apart, with a corner to turn at each.
+fn two_crossings() -> AsciiMap {
+    let nodes = [
+        ('W', [-300.0, 0.0]),
+        ('a', [0.0, 0.0]),
+        ('b', [0.0, -500.0]),
+        ('E', [300.0, -500.0]),
+        ('N', [0.0, 300.0]),
+        ('S', [0.0, -800.0]),
+    ];
+    AsciiMap::placed(&nodes).way("Wa", TAGS).way("NabS", TAGS).way("bE", TAGS)
+}
+
+#[test]
+fn a_way_needs_what_its_sections_need() {
+    let region = region(&two_crossings(), 3.0);
+    let conditions = |ends: [&str; 2]| {
+        let found = ask(&region, "AU-SEMI19", ends).under.unwrap();
+        assert!(found.route.certificate.result.safe());
+        found.conditions
+    };
+    let [first, second, whole] = [["Wa", "ab"], ["ab", "bE"], ["Wa", "bE"]].map(conditions);
+    assert!(!first.is_empty() && !second.is_empty(), "{first:?} {second:?}");
+    assert!(whole.len() <= first.len() + second.len(), "{whole:?}");
+    let places = |conditions: &[Condition]| -> Vec<ConditionAt> {
+        conditions
+            .iter()
+            .map(|condition| condition.at.clone())
+            .filter(|at| !matches!(at, ConditionAt::Road(_)))
+            .collect()
+    };
+    let parts = [places(&first), places(&second)].concat();
+    assert!(places(&whole).iter().all(|at| parts.contains(at)), "{whole:?}: {first:?}, {second:?}");
+}
+
+#[test]
+fn the_widths_along_one_road_are_one_condition() {
+    // Three pieces of one road, narrower and narrower.
+    let nodes =
+        [('W', [-300.0, 0.0]), ('a', [-150.0, 0.0]), ('b', [0.0, 0.0]), ('c', [150.0, 0.0]), ('E', [300.0, 0.0])];
+    let narrow = |width_m: f64| format!("highway=tertiary name=High_Street width={width_m}");
+    let map = AsciiMap::placed(&nodes)
+        .way("Wa", &narrow(7.0))
+        .way("ab", &narrow(2.4))
+        .way("bc", &narrow(2.3))
+        .way("cE", &narrow(7.0));
+    let region = region(&map, 3.0);
+    let found = ask(&region, "AU-SEMI19", ["Wa", "cE"]).under.unwrap();
+    let [condition] = found.conditions.as_slice() else { panic!("{:?}", found.conditions) };
+    assert_eq!(condition.quantity, Quantity::CarriagewayWidth);
+    let ConditionAt::Road(edges) = &condition.at else { panic!("{condition:?}") };
+    assert!(["ab", "bc"].iter().all(|ends| edges.contains(&ascii_map::edge(&region.network, ends))), "{condition:?}");
+    assert_eq!(condition.assumed_m.map(|m| (10.0 * m).round()), Some(23.0), "the least of them");
 }

@@ -10,7 +10,7 @@ use crate::stet::SpanResult;
 
 /// A failure on an edge is that of the nearest turn within this distance, metres.
 const TURN_REACH_M: f64 = 60.0;
-/// The least that is added to a width or a radius where the whole fails, metres.
+/// The least that is added to a width or a radius where the whole fails first, metres.
 const WIDER_M: f64 = 0.1;
 const ROUNDER_M: f64 = 1.0;
 /// How far a junction is supposed to be paved: by how much more, at most and at first, metres.
@@ -30,6 +30,12 @@ pub(super) struct Failing {
     pub(super) folds: bool,
     /// Whether the road before or after the turn limits, not the junction.
     beside: bool,
+}
+
+/// The least that is added to a width, metres. A wider road has another middle, so a little more may not help at once: later rounds add
+/// more.
+fn wider_m(round: usize) -> f64 {
+    WIDER_M * (1 + round) as f64
 }
 
 /// The places where a way fails, in driving order, each once.
@@ -82,13 +88,14 @@ impl Fitter {
                 let Some(join) = drive.joins().find(|join| (join.from, join.to) == (from, to)) else { return false };
                 let Some(Some(turning)) = self.turning(drive, join) else { return false };
                 // The road that limits may not be one that the vehicle drives.
-                if place.beside && *round % 3 < 2 && self.wider(&turning, missing_m, supposed) {
+                let wider_m = (2.0 * missing_m).max(wider_m(*round));
+                if place.beside && *round % 3 < 2 && self.wider(&turning, wider_m, supposed) {
                     return true;
                 }
                 let small = missing_m < MUCH_M;
                 let rounder = self.rounder(&turning, missing_m, supposed);
                 let paved = !(rounder && small) && self.more_paved(&turning, small, supposed);
-                let wider = !((rounder || paved) && small) && self.wider(&turning, missing_m, supposed);
+                let wider = !((rounder || paved) && small) && self.wider(&turning, wider_m, supposed);
                 rounder || paved || wider
             }
         }
@@ -99,7 +106,7 @@ impl Fitter {
         let edge = fitting.drive.edges[at];
         let Some(has_m) = fitting.supposed.width_m(network, edge, strip) else { return false };
         let first_m = fitting.supposed.known_width_m(network, edge, strip).unwrap_or(has_m);
-        let width_m = has_m + more_m.max(WIDER_M);
+        let width_m = has_m + more_m.max(wider_m(fitting.round));
         width_m <= first_m + MOST_MORE_M && self.widen_near(fitting, at, strip, width_m)
     }
 
@@ -131,13 +138,13 @@ impl Fitter {
     }
 
     /// Supposes wider roads before and after a turn.
-    fn wider(&self, turning: &Turning<'_>, missing_m: f64, supposed: &mut Suppositions) -> bool {
+    fn wider(&self, turning: &Turning<'_>, more_m: f64, supposed: &mut Suppositions) -> bool {
         let (network, strip) = (&self.roads.network, turning.strip());
         let mut more = false;
         for edge in turning.near(network) {
             let Some(has_m) = supposed.width_m(network, edge, strip) else { continue };
             let first_m = supposed.known_width_m(network, edge, strip).unwrap_or(has_m);
-            let width_m = has_m + (2.0 * missing_m).max(WIDER_M);
+            let width_m = has_m + more_m;
             more |= width_m <= first_m + MOST_MORE_M && supposed.widen(network, edge, strip, width_m);
         }
         more

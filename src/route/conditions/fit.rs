@@ -1,15 +1,17 @@
 //! Finds what has to hold on one way, so that the whole way is certified.
 //!
-//! Each edge and turn that is not safe by itself gets what it needs. Then the whole way is certified, and where it fails more is supposed.
-//! Two turns on too short a road between them become one passage. At last the conditions that the whole does not need are taken back.
+//! A way is fitted section by section (`sections`). Each edge and turn that is not safe by itself gets what it needs. Then the section is
+//! certified, and where it fails more is supposed. Two turns on too short a road between them become one passage. At last the conditions
+//! that the section does not need are taken back. The whole way is certified with what all sections need.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
-use super::ConditionAt;
 use super::failing::{Failing, failing};
 use super::joint;
+use super::sections::{Section, sections};
 use super::suppositions::Suppositions;
 use super::turn_need::Turning;
 use crate::certify::edge_need;
@@ -30,8 +32,8 @@ use crate::stop::{Stop, Stopped};
 const MORE_PATHS: usize = 2;
 /// How often a whole way is tried, each time with more supposed where it failed.
 const ROUNDS: usize = 12;
-/// How often at most something is taken back.
-const LESS: usize = 8;
+/// A leg between two turns that is as much longer than the vehicle parts a way, metres.
+const APART_M: f64 = 80.0;
 /// Where an edge lacks room, its way is as wide as it must be over the vehicle's length and this, metres.
 pub(in crate::route) const BESIDE_M: f64 = 20.0;
 
@@ -44,9 +46,15 @@ pub(in crate::route) struct Fitter {
     needs_m: FxHashMap<u32, Option<f64>>,
     /// What turns need; `None` if nothing does.
     turns: FxHashMap<TurnKey, Option<Suppositions>>,
+    /// Sections with what their edges and turns need by themselves, and with what the whole section needs.
+    supposed: FxHashMap<SectionKey, Result<Fitting, Unfit>>,
+    settled: FxHashMap<SectionKey, Result<Fitting, Unfit>>,
     /// What was certified last, and what was supposed there.
     whole: Option<(Whole, Suppositions)>,
 }
+
+/// The edges of a section, the arcs of its passages, its ends, and which edges and steps have a price.
+type SectionKey = (Vec<u32>, Vec<Range<usize>>, [u64; 2], Vec<bool>);
 
 /// The edges of a turn, with the widths of the roads beside it in centimetres.
 type TurnKey = (Vec<u32>, Vec<i64>);
@@ -60,9 +68,11 @@ pub(super) struct Fitted {
 }
 
 /// The places on a way for which nothing does. None if no single place is at fault.
+#[derive(Clone)]
 pub(super) struct Unfit(pub(super) Vec<PartKind>);
 
 /// A way while it is fitted.
+#[derive(Clone)]
 pub(super) struct Fitting {
     pub(super) drive: Drive,
     start: f64,
@@ -70,7 +80,28 @@ pub(super) struct Fitting {
     pub(super) supposed: Suppositions,
     /// How often the whole has failed.
     pub(super) round: usize,
-    choices: Choices,
+    pub(super) choices: Choices,
+}
+
+impl Fitting {
+    fn new(base: &Arc<network::Site>, way: &Way<'_>) -> Self {
+        Self {
+            drive: Drive { edges: way.drive.edges.clone(), over: Vec::new() },
+            start: way.start,
+            end: way.end,
+            supposed: Suppositions::new(Arc::clone(base)),
+            round: 0,
+            choices: Choices::default(),
+        }
+    }
+
+    /// Takes over the passages, suppositions and paths of a section that begins at the edge `first` of this way.
+    fn take_over(&mut self, section: &Self, first: usize) {
+        let over = section.drive.over.iter().map(|arcs| arcs.start + first..arcs.end + first);
+        self.drive.over.extend(over);
+        self.supposed.add(&section.supposed);
+        self.choices.extend(&section.choices);
+    }
 }
 
 /// What becomes of a step of a way.
@@ -93,6 +124,8 @@ impl Fitter {
             stroke_of: roads.network.strokes_of_edges().into(),
             needs_m: FxHashMap::default(),
             turns: FxHashMap::default(),
+            supposed: FxHashMap::default(),
+            settled: FxHashMap::default(),
             whole: None,
         }
     }
@@ -104,42 +137,86 @@ impl Fitter {
         access: &Access,
         stop: &Stop,
     ) -> Result<Result<Fitted, Unfit>, Stopped> {
-        let supposed = Suppositions::new(Arc::clone(&self.base));
-        let mut fitting = Fitting {
-            drive: way.drive.clone(),
-            start: way.start,
-            end: way.end,
-            supposed,
-            round: 0,
-            choices: Choices::default(),
-        };
-        // Turns that are not safe by themselves may pass as parts of the whole.
-        let roomy = fitting.drive.edges.iter().all(|&edge| access.edges.get(edge as usize) == Some(&0));
-        if roomy
-            && self.look(&mut fitting, stop)?.is_ok_and(|looked| looked.safe())
-            && let Some(certified) = self.fresh(&fitting, stop)?
-        {
-            return Ok(Ok(Fitted { drive: fitting.drive, certified, supposed: fitting.supposed }));
+        let long_m = self.driver.model.vehicle.length_m + APART_M;
+        let sections = sections(&self.roads.network, &self.roads.movements, way, long_m);
+        // Where nothing does for a place, nothing needs to be known of other sections.
+        let mut unfit = Vec::new();
+        for section in &sections {
+            unfit.extend(self.suppose(section, access, stop)?.err().into_iter().flat_map(|Unfit(places)| places));
         }
-        let mut unfit = self.suppose_widths(&mut fitting, access, stop)?;
-        unfit.extend(self.suppose_turns(&mut fitting, access, stop)?);
-        if unfit.is_empty() {
-            unfit.extend(self.suppose_until_safe(&mut fitting, stop)?);
-        }
-        if unfit.is_empty() {
-            self.take_back(&mut fitting, access, stop)?;
-            // The answer is made from nothing that was made before.
-            if let Some(certified) = self.fresh(&fitting, stop)? {
-                return Ok(Ok(Fitted { drive: fitting.drive, certified, supposed: fitting.supposed }));
+        let mut whole = Fitting::new(&self.base, way);
+        for section in sections.iter().take_while(|_| unfit.is_empty()) {
+            match self.settle(section, access, stop)? {
+                Ok(own) => whole.take_over(&own, section.first),
+                Err(Unfit(places)) => return Ok(Err(Unfit(places))),
             }
-            // No single place is at fault.
-            return Ok(Err(Unfit(Vec::new())));
         }
-        let unfit = unfit.into_iter().flat_map(|at| joint::parted(way.drive, at)).collect();
-        Ok(Err(Unfit(unfit)))
+        if !unfit.is_empty() {
+            return Ok(Err(Unfit(unfit)));
+        }
+        whole.drive.over.sort_by_key(|arcs| arcs.start);
+        whole.supposed.level_roads(&self.roads.network, &whole.drive.edges);
+        // The answer is made from nothing that was made before.
+        if let Some(certified) = self.fresh(&whole, stop)? {
+            return Ok(Ok(Fitted { drive: whole.drive, certified, supposed: whole.supposed }));
+        }
+        if let Some(at) = self.suppose_until_safe(&mut whole, stop)? {
+            return Ok(Err(Unfit(joint::parted(way.drive, at))));
+        }
+        Ok(match self.fresh(&whole, stop)? {
+            Some(certified) => Ok(Fitted { drive: whole.drive, certified, supposed: whole.supposed }),
+            // No single place is at fault.
+            None => Err(Unfit(Vec::new())),
+        })
     }
 
-    /// Supposes more where the whole fails, until it is safe. Returns the place where nothing more does.
+    /// Supposes for each edge and turn of a section what it needs by itself.
+    fn suppose(&mut self, section: &Section, access: &Access, stop: &Stop) -> Result<Result<Fitting, Unfit>, Stopped> {
+        let key = self.section_key(section, access);
+        if let Some(known) = self.supposed.get(&key) {
+            return Ok(known.clone());
+        }
+        let mut fitting = Fitting::new(&self.base, &section.way());
+        fitting.drive.clone_from(&section.drive);
+        let mut unfit = Vec::new();
+        // Turns that are not safe by themselves may pass as parts of the whole.
+        let roomy = fitting.drive.edges.iter().all(|&edge| access.edges.get(edge as usize) == Some(&0));
+        if !(roomy && self.look(&mut fitting, stop)?.is_ok_and(|looked| looked.safe())) {
+            unfit.extend(self.suppose_widths(&mut fitting, access, stop)?);
+            unfit.extend(self.suppose_turns(&mut fitting, access, stop)?);
+        }
+        let unfit: Vec<PartKind> = unfit.into_iter().flat_map(|at| joint::parted(&section.drive, at)).collect();
+        let supposed = if unfit.is_empty() { Ok(fitting) } else { Err(Unfit(unfit)) };
+        self.supposed.insert(key, supposed.clone());
+        Ok(supposed)
+    }
+
+    /// Supposes the least that makes a section safe.
+    fn settle(&mut self, section: &Section, access: &Access, stop: &Stop) -> Result<Result<Fitting, Unfit>, Stopped> {
+        let key = self.section_key(section, access);
+        if let Some(known) = self.settled.get(&key) {
+            return Ok(known.clone());
+        }
+        let mut settled = self.suppose(section, access, stop)?;
+        if let Ok(fitting) = &mut settled {
+            match self.suppose_until_safe(fitting, stop)? {
+                Some(at) => settled = Err(Unfit(joint::parted(&section.drive, at))),
+                None => self.lessen(fitting, access, stop)?,
+            }
+        }
+        self.settled.insert(key, settled.clone());
+        Ok(settled)
+    }
+
+    /// Everything that decides what a section needs.
+    fn section_key(&self, section: &Section, access: &Access) -> SectionKey {
+        let Section { drive, start, end, .. } = section;
+        let edges = drive.edges.iter().map(|&edge| access.edges.get(edge as usize).is_none_or(|&price| price > 0));
+        let priced = edges.chain(drive.joins().map(|join| self.price(access, join) > 0)).collect();
+        (drive.edges.clone(), drive.over.clone(), [start.to_bits(), end.to_bits()], priced)
+    }
+
+    /// Supposes more where a way fails, until it is safe. Returns the place where nothing more does.
     fn suppose_until_safe(&mut self, fitting: &mut Fitting, stop: &Stop) -> Result<Option<PartKind>, Stopped> {
         let mut last = None;
         for round in 0..ROUNDS {
@@ -205,12 +282,13 @@ impl Fitter {
     }
 
     /// Joins and certifies the way under what is supposed.
-    fn look(&mut self, fitting: &mut Fitting, stop: &Stop) -> Result<Result<Looked, Refutation>, Stopped> {
+    pub(super) fn look(&mut self, fitting: &mut Fitting, stop: &Stop) -> Result<Result<Looked, Refutation>, Stopped> {
         fitting.supposed.apply(network_of(&mut self.roads));
         let going = match self.whole.take() {
             None => self.new_whole(),
             Some((mut whole, before)) => {
-                let (edges, nodes) = fitting.supposed.differ(&before);
+                let edges = fitting.supposed.differing_edges(&before);
+                let nodes = fitting.supposed.differing_nodes(&before, &self.roads.network);
                 whole.go_on_with(&self.roads, &edges, &nodes);
                 whole
             }
@@ -236,42 +314,6 @@ impl Fitter {
         let driver = Arc::clone(&self.driver);
         let turns = Box::new(MadeTurns { driver, more: MORE_PATHS, unsafe_too: true });
         Whole::new(&self.roads, Arc::clone(&self.driver), turns)
-    }
-
-    /// Takes back what the whole is safe without, roads first. What remains is less where less does.
-    fn take_back(&mut self, fitting: &mut Fitting, access: &Access, stop: &Stop) -> Result<(), Stopped> {
-        let kerbs = self.driver.permits.settings.kerbs.clone();
-        let mut conditions = fitting.supposed.conditions(&self.roads.network, &kerbs, &fitting.drive.edges);
-        conditions.sort_by_key(|condition| match condition.at {
-            ConditionAt::Road(_) => 0,
-            ConditionAt::Junction(_) => 1,
-            ConditionAt::Corner { .. } => 2,
-        });
-        let mut left = LESS;
-        for condition in conditions {
-            // Such a road is not safe without its width.
-            let priced = |edge: &u32| access.edges.get(*edge as usize).is_some_and(|&price| price > 0);
-            if matches!(&condition.at, ConditionAt::Road(edges) if edges.iter().any(priced)) {
-                continue;
-            }
-            // First the condition is left out, then the values between are halved.
-            let less = fitting.supposed.less(&condition);
-            let (mut low, mut high) = (0, less.len());
-            let mut at = 0;
-            while low < high && left > 0 {
-                left -= 1;
-                let before = std::mem::replace(&mut fitting.supposed, less[at].clone());
-                let choices = fitting.choices.clone();
-                if self.look(fitting, stop)?.is_ok_and(|looked| looked.safe()) {
-                    high = at;
-                } else {
-                    (fitting.supposed, fitting.choices) = (before, choices);
-                    low = at + 1;
-                }
-                at = usize::midpoint(low, high);
-            }
-        }
-        Ok(())
     }
 
     /// Supposes for each edge with a price the width that it needs, and as much for the way near it.

@@ -6,8 +6,10 @@
 mod failing;
 mod fit;
 mod joint;
+mod less;
 mod report;
 mod search;
+mod sections;
 mod sheet;
 mod suppositions;
 mod turn_need;

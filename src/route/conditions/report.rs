@@ -37,7 +37,16 @@ impl Condition {
     pub fn title(&self, network: &Network) -> String {
         match &self.at {
             ConditionAt::Road(edges) => {
-                edges.first().map_or_else(String::new, |&edge| title_of(network, PartKind::Edge(edge)))
+                let mut titles: Vec<String> = Vec::new();
+                for title in edges.iter().map(|&edge| title_of(network, PartKind::Edge(edge))) {
+                    if !titles.contains(&title) {
+                        titles.push(title);
+                    }
+                }
+                match titles.as_slice() {
+                    [first, _, _, _, ..] => format!("{first} and {} more", titles.len() - 1),
+                    _ => titles.join(" and "),
+                }
             }
             ConditionAt::Corner { between: [from, to], .. } => {
                 title_of(network, PartKind::Turn { from: *from, to: *to })

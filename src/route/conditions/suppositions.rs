@@ -13,7 +13,14 @@ use crate::network::{self, Network};
 use crate::osm::LonLat;
 use crate::osm::facts::Policy;
 use crate::turns::Kerbs;
+use crate::words::Named;
 
+/// Less than what a road lacks, as shares of it.
+const WIDTH_SHARES: [f64; 3] = [0.25, 0.5, 0.75];
+/// Widths of one road that differ by no more than this become one condition, metres.
+const LEVEL_M: f64 = 0.5;
+/// An edge that turns less than this into the next one goes straight on, radians.
+const STRAIGHT_RAD: f64 = 0.35;
 /// Widths are supposed in these parts of a metre, and kerb radii in these.
 const WIDTHS: f64 = 20.0;
 const RADII: f64 = 2.0;
@@ -39,7 +46,7 @@ impl Suppositions {
 
     /// Supposes that an edge's strip is at least so wide. Returns whether that is more than before.
     pub(in crate::route) fn widen(&mut self, network: &Network, edge: u32, strip: Policy, width_m: f64) -> bool {
-        let width_m = (width_m * WIDTHS - 1e-6).ceil() / WIDTHS;
+        let width_m = in_steps(width_m);
         if self.width_m(network, edge, strip).is_none_or(|has_m| has_m >= width_m) {
             return false;
         }
@@ -115,26 +122,29 @@ impl Suppositions {
     }
 
     /// The same with less supposed for a condition, from nothing at all to little less than it asks.
-    pub(super) fn less(&self, condition: &Condition) -> Vec<Self> {
-        let fewer: &[f64] = match condition.at {
-            ConditionAt::Junction(_) => &PAVED_M,
-            ConditionAt::Corner { .. } => &KERBS_M,
-            ConditionAt::Road(_) => &[],
+    pub(super) fn less(&self, condition: &Condition) -> impl Iterator<Item = Self> {
+        let (most_m, least_m) = (condition.needed_m, condition.assumed_m.unwrap_or(0.0));
+        let fewer: Vec<f64> = match condition.at {
+            ConditionAt::Junction(_) => PAVED_M.to_vec(),
+            ConditionAt::Corner { .. } => KERBS_M.to_vec(),
+            ConditionAt::Road(_) => WIDTH_SHARES.map(|share| least_m + share * (most_m - least_m)).to_vec(),
         };
-        let most_m = condition.needed_m;
-        let least_m = condition.assumed_m.unwrap_or(0.0);
-        let fewer = fewer.iter().filter(|&&m| least_m < m && m < most_m).map(|&m| self.with_only(condition, m));
-        std::iter::once(self.with_only(condition, 0.0)).chain(fewer).collect()
+        let fewer = fewer.into_iter().filter(move |&m| least_m < m && m < most_m);
+        std::iter::once(0.0).chain(fewer).map(|m| self.with_only(condition, m))
     }
 
     /// The same with another value for a condition; 0: without it.
-    fn with_only(&self, condition: &Condition, value_m: f64) -> Self {
+    pub(super) fn with_only(&self, condition: &Condition, value_m: f64) -> Self {
         let mut other = self.clone();
         let some = value_m > 0.0;
         match &condition.at {
-            ConditionAt::Road(edges) => other
-                .widths_m
-                .retain(|(edge, strip), _| !(edges.contains(edge) && width_of(*strip) == condition.quantity)),
+            ConditionAt::Road(edges) => other.widths_m.retain(|(edge, strip), width_m| {
+                let meant = edges.contains(edge) && width_of(*strip) == condition.quantity;
+                if meant {
+                    *width_m = in_steps(value_m);
+                }
+                !meant || some
+            }),
             ConditionAt::Corner { node, between } => {
                 other.kerbs_m.remove(&(*node, *between));
                 if some {
@@ -176,6 +186,47 @@ impl Suppositions {
         }
     }
 
+    /// Gives edges of a way that follow each other on one road the greatest of their widths, if these differ little; and a lane that is
+    /// all of its direction one width. There is less to measure.
+    pub(in crate::route) fn level_roads(&mut self, network: &Network, way: &[u32]) {
+        for &edge in way {
+            let strips = [Policy::Lane, Policy::Direction];
+            let [Some(lane_m), Some(direction_m)] = strips.map(|strip| self.widths_m.get(&(edge, strip)).copied())
+            else {
+                continue;
+            };
+            let [lane, direction] = strips.map(|strip| self.known_width_m(network, edge, strip));
+            if lane == direction {
+                self.widths_m.remove(&(edge, Policy::Direction));
+                self.widths_m.insert((edge, Policy::Lane), lane_m.max(direction_m));
+            }
+        }
+        for &strip in <Policy as Named>::ALL {
+            let mut run: Vec<u32> = Vec::new();
+            for (i, &edge) in way.iter().enumerate() {
+                let follows = i > 0 && run.last() == Some(&way[i - 1]) && goes_on(network, way[i - 1], edge);
+                let Some(&width_m) = self.widths_m.get(&(edge, strip)) else { continue };
+                let near = |other: &u32| {
+                    self.widths_m.get(&(*other, strip)).is_some_and(|other_m| (other_m - width_m).abs() <= LEVEL_M)
+                };
+                if !(follows && run.iter().all(near)) {
+                    self.level(&run, strip);
+                    run.clear();
+                }
+                run.push(edge);
+            }
+            self.level(&run, strip);
+        }
+    }
+
+    fn level(&mut self, run: &[u32], strip: Policy) {
+        let widths = run.iter().filter_map(|&edge| self.widths_m.get(&(edge, strip)).copied());
+        let Some(most_m) = widths.reduce(f64::max) else { return };
+        run.iter().for_each(|&edge| {
+            self.widths_m.insert((edge, strip), most_m);
+        });
+    }
+
     /// Gives both ways round a corner the greater of their radii: there is one kerb.
     pub(in crate::route) fn level_corners(&mut self, network: &Network) {
         let kerb = |&(node, between): &(i64, [u32; 2])| {
@@ -199,11 +250,18 @@ impl Suppositions {
             || other.paved_m.iter().any(|(key, value)| self.paved_m.get(key) != Some(value))
     }
 
-    /// The edges and nodes at which these suppositions differ from others.
-    pub(in crate::route) fn differ(&self, other: &Self) -> (FxHashSet<u32>, FxHashSet<i64>) {
-        let edges = differing(&self.widths_m, &other.widths_m).map(|(edge, _)| edge).collect();
-        let corners = differing(&self.kerbs_m, &other.kerbs_m).map(|(node, _)| node);
-        (edges, corners.chain(differing(&self.paved_m, &other.paved_m)).collect())
+    /// The edges whose widths differ from other suppositions.
+    pub(in crate::route) fn differing_edges(&self, other: &Self) -> FxHashSet<u32> {
+        differing(&self.widths_m, &other.widths_m).map(|(edge, _)| edge).collect()
+    }
+
+    /// The positions of the nodes at which something else than a width differs from other suppositions.
+    pub(super) fn differing_nodes(&self, other: &Self, network: &Network) -> Vec<LonLat> {
+        let end = |edge: u32| network.edges.get(edge as usize).and_then(|edge| network.positions(edge).next_back());
+        let corners = differing(&self.kerbs_m, &other.kerbs_m).filter_map(|(_, [from, _])| end(from));
+        let paved = differing(&self.paved_m, &other.paved_m);
+        let paved = paved.filter_map(|node| self.paved_m.get(&node).or(other.paved_m.get(&node)).map(|paved| paved.0));
+        corners.chain(paved).collect()
     }
 
     /// The conditions in the order of a way, on a network on which nothing is supposed. Edges that follow each other on one road and need the same are one condition.
@@ -213,15 +271,15 @@ impl Suppositions {
             for (&(_, strip), &needed_m) in self.widths_m.range((*edge, Policy::Lane)..=(*edge, Policy::Carriageway)) {
                 let Some(assumed_m) = self.known_width_m(network, *edge, strip) else { continue };
                 let quantity = width_of(strip);
-                let goes_on = |(_, condition): &&mut (usize, Condition)| {
+                let follows = |(_, condition): &&mut (usize, Condition)| {
                     let ConditionAt::Road(edges) = &condition.at else { return false };
                     condition.quantity == quantity
                         && condition.needed_m == needed_m
                         && i > 0
                         && edges.last() == way.get(i - 1)
-                        && same_road(network, way[i - 1], *edge)
+                        && goes_on(network, way[i - 1], *edge)
                 };
-                match found.iter_mut().rev().find(goes_on) {
+                match found.iter_mut().rev().find(follows) {
                     Some((_, condition)) => {
                         condition.assumed_m = condition.assumed_m.map(|known_m| known_m.min(assumed_m));
                         if let ConditionAt::Road(edges) = &mut condition.at {
@@ -261,6 +319,11 @@ impl Suppositions {
     }
 }
 
+/// A width, rounded up to a whole number of its parts.
+fn in_steps(width_m: f64) -> f64 {
+    (width_m * WIDTHS - 1e-6).ceil() / WIDTHS
+}
+
 /// The keys whose values differ, or that only one of both has.
 fn differing<K: Copy + Ord, V: PartialEq>(a: &BTreeMap<K, V>, b: &BTreeMap<K, V>) -> impl Iterator<Item = K> {
     let of_a = a.iter().filter(|(key, value)| b.get(*key) != Some(*value)).map(|(key, _)| *key);
@@ -285,11 +348,26 @@ pub(in crate::route) fn disc(at: LonLat, radius_m: f64) -> Vec<LonLat> {
     (0..=CORNERS).map(corner).collect()
 }
 
-/// Whether two edges have the same name, or lie on the same way.
-fn same_road(network: &Network, a: u32, b: u32) -> bool {
+/// Whether one edge goes on in the next one: under the same name, as the same way, or straight on.
+fn goes_on(network: &Network, a: u32, b: u32) -> bool {
     let road = |edge: u32| network.edges.get(edge as usize).map(|edge| network.road(edge));
-    road(a).zip(road(b)).is_some_and(|(a, b)| {
+    let same = road(a).zip(road(b)).is_some_and(|(a, b)| {
         a.way_id == b.way_id
             || ((a.name.is_some() || a.reference.is_some()) && (a.name, a.reference) == (b.name, b.reference))
-    })
+    });
+    same || bend_rad(network, a, b).is_some_and(|bend_rad| bend_rad < STRAIGHT_RAD)
+}
+
+/// The angle between the end of an edge and the beginning of the next one, radians. `None` if they do not meet.
+fn bend_rad(network: &Network, a: u32, b: u32) -> Option<f64> {
+    let [from, to] = [a, b].map(|edge| network.edges.get(edge as usize));
+    let (from, to) = (from?, to?);
+    if from.to_node != to.from_node {
+        return None;
+    }
+    let (mut before, mut after) = (network.positions(from), network.positions(to));
+    let (end, last) = (before.next_back()?, before.next_back()?);
+    let (start, next) = (after.next()?, after.next()?);
+    let [u, v] = [network::offset_m(last, end), network::offset_m(start, next)];
+    Some((u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]).abs())
 }

@@ -199,7 +199,7 @@ impl Opener {
         if self.settings.turn_policy.max(self.settings.policy) != Policy::Carriageway {
             return;
         }
-        let (edges, _) = supposed.differ(&self.chosen);
+        let edges = supposed.differing_edges(&self.chosen);
         for (edge, back) in edges.into_iter().filter_map(|edge| Some((edge, self.back_of[edge as usize]?))) {
             if let Some(width_m) = supposed.width_m(&self.network, edge, Policy::Carriageway) {
                 supposed.widen(&self.network, back, Policy::Carriageway, width_m);
@@ -406,7 +406,7 @@ impl Opener {
     /// What is supposed beyond what was chosen before.
     fn conditions(&self, supposed: &Suppositions) -> Vec<Condition> {
         let new = supposed.beyond(&self.chosen);
-        let (edges, _) = supposed.differ(&self.chosen);
+        let edges = supposed.differing_edges(&self.chosen);
         let mut way: Vec<u32> = edges.into_iter().collect();
         way.sort_by_key(|&edge| self.place_of[edge as usize]);
         let mut conditions = new.conditions(&self.roads.network, &self.settings.kerbs, &way);

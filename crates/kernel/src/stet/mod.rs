@@ -21,6 +21,7 @@ mod run_in;
 mod shift;
 mod spans;
 mod step;
+mod stretches;
 mod sweep;
 mod track;
 mod tube;
@@ -245,12 +246,10 @@ pub fn certify_parts(
     if corridor.is_empty() {
         return Ok(Vec::new());
     }
-    let swept = Swept::new(corridor, &[model], spans, Marks::Ends, options, stop);
-    let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
-    let held = held(corridor, model, spans, Marks::Ends, options, &results, stop);
+    let (_, results) = best_swept(corridor, model, spans, Marks::Ends, options, stop);
     // A cancelled sweep ends early and its numbers mean nothing. `stop` stays told.
     stop.check()?;
-    Ok(held.map_or(results, |(_, held)| held))
+    Ok(results)
 }
 
 /// Certifies a whole corridor with the plan that [`certify_spans`] makes for `spans`, and returns the result for each
@@ -270,15 +269,39 @@ pub fn certify_planned(
     if corridor.is_empty() {
         return Ok(None);
     }
-    let swept = Swept::new(corridor, &[model], spans, Marks::All, options, stop);
-    let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
-    let certified = match held(corridor, model, spans, Marks::All, options, &results, stop) {
-        Some((held, _)) => held.certificate(corridor, spans),
-        None => swept.certificate(corridor, spans),
-    };
+    let (swept, _) = best_swept(corridor, model, spans, Marks::All, options, stop);
+    let certified = swept.certificate(corridor, spans);
     // A cancelled sweep ends early and its numbers mean nothing. `stop` stays told.
     stop.check()?;
     Ok(Some(certified))
+}
+
+/// The sweeps along the plan under which most spans are safe: that of each stretch by itself, or one for the whole corridor.
+fn best_swept<'m>(
+    corridor: &Corridor,
+    model: &'m Model,
+    spans: &[Range<usize>],
+    marks: Marks,
+    options: &Options,
+    stop: &'m Stop,
+) -> (Swept<'m>, Vec<SpanResult>) {
+    let results = |swept: &Swept<'m>| -> Vec<SpanResult> { spans.iter().map(|span| swept.result(0, span)).collect() };
+    let safe = |results: &[SpanResult]| results.iter().filter(|result| result.safe()).count();
+    let joined = stretches::plan(corridor, model, spans, options, stop).map(|plan| {
+        let swept = Swept::along(corridor, &[model], spans, marks, stop, &|_, _| vec![plan.clone()]);
+        let results = results(&swept);
+        (swept, results)
+    });
+    let most = joined.as_ref().map_or(0, |(_, joined)| safe(joined));
+    match joined {
+        Some(joined) if most == spans.len() => joined,
+        joined => {
+            let swept = Swept::new(corridor, &[model], spans, marks, options, stop);
+            let results = results(&swept);
+            let whole = held(corridor, model, spans, marks, options, &results, stop).unwrap_or((swept, results));
+            joined.filter(|_| most > safe(&whole.1)).unwrap_or(whole)
+        }
+    }
 }
 
 /// Certifies a vehicle again without corrections where areas count, if the corrected plan steers or folds too far. A path over a junction

@@ -7,6 +7,8 @@ pub(super) type Point = [f64; 2];
 
 /// Side of a cell, metres.
 const CELL_M: f64 = 3.0;
+/// No place of a cell is farther from its middle, metres: half of its diagonal and an allowance for rounding.
+const HALF_CELL_M: f64 = 0.5 * CELL_M * std::f64::consts::SQRT_2 + 1e-6;
 /// Distances up to this are exact, metres. Beyond it a place just has at least this much room.
 const FAR_M: f64 = 4.0;
 /// Most cells of a grid. An area of a square kilometre has a ninth of it.
@@ -64,6 +66,14 @@ impl Swept<'_> {
     }
 }
 
+/// A segment near a cell.
+#[derive(Clone, Copy)]
+struct Near {
+    segment: u32,
+    /// Distance from the cell's middle, metres.
+    middle_m: f64,
+}
+
 /// An area's boundary, with the segments near each cell of a grid.
 pub(crate) struct Ground {
     origin: Point,
@@ -72,9 +82,9 @@ pub(crate) struct Ground {
     segments: Vec<Segment>,
     /// Corners of boxes around every [`BUNDLE`] segments.
     bundles: Vec<[Point; 2]>,
-    /// Segments within [`FAR_M`] of each cell: `near[starts[cell]..starts[cell + 1]]`.
+    /// Segments within [`FAR_M`] of each cell, the nearest to its middle first: `near[starts[cell]..starts[cell + 1]]`.
     starts: Vec<u32>,
-    near: Vec<u32>,
+    near: Vec<Near>,
     /// Whether each cell's own corner lies inside.
     inside: Vec<bool>,
 }
@@ -116,9 +126,9 @@ impl Ground {
 
     /// Lists the segments near each cell.
     fn sort_segments(&mut self) {
-        let mut pairs: Vec<(u32, u32)> = Vec::new();
+        let mut pairs: Vec<(u32, Near)> = Vec::new();
         let half = 0.5 * CELL_M;
-        let reach = FAR_M + half * std::f64::consts::SQRT_2;
+        let reach = FAR_M + HALF_CELL_M;
         for (number, segment) in (0..).zip(&self.segments) {
             let (a, b) = (segment.a, segment.b);
             let range = |k: usize, count: usize| {
@@ -129,13 +139,17 @@ impl Ground {
             for row in range(1, self.rows) {
                 for column in range(0, self.columns) {
                     let corner = self.corner(column, row);
-                    if segment.squared([corner[0] + half, corner[1] + half]) <= reach * reach {
-                        pairs.push(((row * self.columns + column) as u32, number));
+                    let squared = segment.squared([corner[0] + half, corner[1] + half]);
+                    if squared <= reach * reach {
+                        let near = Near { segment: number, middle_m: squared.sqrt() };
+                        pairs.push(((row * self.columns + column) as u32, near));
                     }
                 }
             }
         }
-        pairs.sort_unstable();
+        pairs.sort_unstable_by(|(cell, a), (other, b)| {
+            cell.cmp(other).then(a.middle_m.total_cmp(&b.middle_m)).then(a.segment.cmp(&b.segment))
+        });
         let mut next = 0;
         for cell in 0..(self.columns * self.rows) as u32 {
             self.starts.push(next as u32);
@@ -144,7 +158,7 @@ impl Ground {
             }
         }
         self.starts.push(next as u32);
-        self.near = pairs.into_iter().map(|(_, segment)| segment).collect();
+        self.near = pairs.into_iter().map(|(_, near)| near).collect();
     }
 
     /// Marks the cells whose corner lies inside, row by row: the boundary changes sides where it crosses the row.
@@ -172,9 +186,27 @@ impl Ground {
         on.then_some((x as usize, y as usize))
     }
 
-    fn near(&self, (column, row): (usize, usize)) -> &[u32] {
+    fn near(&self, (column, row): (usize, usize)) -> &[Near] {
         let cell = row * self.columns + column;
         &self.near[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
+
+    /// Square of the distance of a place from the boundary, at most the square of [`FAR_M`]; and the nearest segment, if it is so near.
+    fn nearest(&self, near: &[Near], p: Point) -> (f64, Option<u32>) {
+        let mut nearest = (FAR_M * FAR_M, None);
+        let mut nearest_m = FAR_M;
+        for &Near { segment, middle_m } in near {
+            // All that follow are farther.
+            if middle_m - HALF_CELL_M >= nearest_m {
+                break;
+            }
+            let squared = self.segments[segment as usize].squared(p);
+            if squared < nearest.0 {
+                nearest = (squared, Some(segment));
+                nearest_m = squared.sqrt();
+            }
+        }
+        nearest
     }
 
     /// Whether a place lies inside: as its cell's corner, unless the boundary is crossed an odd number of times on the way
@@ -183,7 +215,8 @@ impl Ground {
         let Some(cell) = self.cell(p) else { return false };
         let corner = self.corner(cell.0, cell.1);
         let mut inside = self.inside[cell.1 * self.columns + cell.0];
-        for &segment in self.near(cell) {
+        // The way from the corner does not leave the cell.
+        for &Near { segment, .. } in self.near(cell).iter().take_while(|near| near.middle_m <= HALF_CELL_M) {
             let Segment { a, b, .. } = self.segments[segment as usize];
             if (a[1] > p[1]) != (b[1] > p[1]) {
                 let at = crossing(a, b, p[1]);
@@ -199,8 +232,7 @@ impl Ground {
 
     /// Room of a place: its distance to the boundary, negative outside, at most [`FAR_M`].
     pub(super) fn room(&self, p: Point) -> f64 {
-        let near = self.cell(p).map_or(&[][..], |cell| self.near(cell)).iter();
-        let far = near.map(|&s| self.segments[s as usize].squared(p)).fold(FAR_M * FAR_M, f64::min).sqrt();
+        let far = self.nearest(self.cell(p).map_or(&[][..], |cell| self.near(cell)), p).0.sqrt();
         match self.contains(p) {
             true => far,
             false if far < FAR_M => -far,
@@ -233,13 +265,7 @@ impl Ground {
         let reach = corners.iter().map(|p| apart(*p, middle)).fold(0.0, f64::max);
         let Some(cell) = self.cell(middle).filter(|_| reach < FAR_M) else { return outside() };
         let near = self.near(cell);
-        let mut nearest = (FAR_M * FAR_M, None);
-        for &number in near {
-            let squared = self.segments[number as usize].squared(middle);
-            if squared < nearest.0 {
-                nearest = (squared, Some(number));
-            }
-        }
+        let nearest = self.nearest(near, middle);
         if !inside && !self.contains(middle) {
             return outside();
         }
@@ -248,9 +274,13 @@ impl Ground {
             return (rough, rough - piece.most);
         };
         let (mut room, mut leeway) = (FAR_M - reach, FAR_M - reach - piece.most);
-        for &number in std::iter::once(&first).chain(near.iter().filter(|&&number| number != first)) {
-            let segment = &self.segments[number as usize];
+        let nearest = Near { segment: first, middle_m: 0.0 };
+        for near in std::iter::once(&nearest).chain(near.iter().filter(|near| near.segment != first)) {
+            let segment = &self.segments[near.segment as usize];
             let within = (leeway + piece.most).max(room) + reach;
+            if near.middle_m - HALF_CELL_M >= within {
+                break;
+            }
             if segment.squared(middle) >= within * within {
                 continue;
             }
