@@ -281,7 +281,7 @@ fn best_path(made: &TurnCorridors, planner: &mut Planner<'_>, model: &Model, opt
         }
         tried.push(planned.code);
         try_path(made, planned.code, model, hope.then_some(options), &mut best);
-        // Paths come by their score. A later one is seldom better: 1 cm for one safe turn in ten.
+        // Paths come by their score. On Heidelberg a later one was better for a fifth of the safe turns, by 1.4 cm for one in ten.
         if best.as_ref().is_some_and(|best| best.result.safe()) {
             return best;
         }

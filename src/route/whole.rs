@@ -60,7 +60,8 @@ impl Whole {
         Self { roads: Arc::clone(roads), driver, strokes, menu: Menu::new(turns) }
     }
 
-    /// Goes on with roads whose site differs along these edges and at nodes at these positions. What lies beside them is made again.
+    /// Goes on with roads on which these edges have other widths, and nodes at these positions other corners or surfaces. What lies
+    /// beside them is made again.
     pub(super) fn go_on_with(&mut self, roads: &Arc<Roads>, edges: &FxHashSet<u32>, nodes: &[LonLat]) {
         let network = &roads.network;
         let stroke = |edge: u32| self.strokes.of(edge).map(|place| place.0);

@@ -161,3 +161,13 @@ fn the_widths_along_one_road_are_one_condition() {
     assert!(["ab", "bc"].iter().all(|ends| edges.contains(&ascii_map::edge(&region.network, ends))), "{condition:?}");
     assert_eq!(condition.assumed_m.map(|m| (10.0 * m).round()), Some(23.0), "the least of them");
 }
+
+#[test]
+fn a_corner_where_no_other_road_meets_is_a_condition() {
+    let nodes = [('W', [-300.0, 0.0]), ('a', [0.0, 0.0]), ('S', [0.0, -300.0])];
+    let region = region(&AsciiMap::placed(&nodes).way("WaS", TAGS), 3.0);
+    let found = ask(&region, "AU-SEMI19", ["Wa", "aS"]).under.unwrap_or_else(|hopeless| panic!("{hopeless:?}"));
+    assert!(found.route.certificate.result.safe());
+    let corner = found.conditions.iter().find(|condition| condition.quantity == Quantity::KerbRadius);
+    assert!(corner.is_some_and(|corner| corner.assumed_m == Some(3.0)), "{:?}", found.conditions);
+}

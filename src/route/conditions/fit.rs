@@ -11,14 +11,12 @@ use rustc_hash::FxHashMap;
 
 use super::failing::{Failing, failing};
 use super::joint;
+use super::parts::TurnKey;
 use super::sections::{Section, sections};
 use super::suppositions::Suppositions;
-use super::turn_need::Turning;
-use crate::certify::edge_need;
-use crate::network::{self, MovementKind, Network};
-use crate::osm::facts::Policy;
-use crate::route::assemble::{PartKind, Way, movement};
-use crate::route::drive::{Drive, Join};
+use crate::network::{self, Network};
+use crate::route::assemble::{PartKind, Way};
+use crate::route::drive::Drive;
 use crate::route::driver::Driver;
 use crate::route::graph::Access;
 use crate::route::obstacles::Refutation;
@@ -30,22 +28,21 @@ use crate::stop::{Stop, Stopped};
 
 /// How many paths of a turn are tried beside the best one.
 const MORE_PATHS: usize = 2;
-/// How often a whole way is tried, each time with more supposed where it failed.
+/// How often a way is tried, each time with more supposed where it failed.
 const ROUNDS: usize = 12;
 /// A leg between two turns that is as much longer than the vehicle parts a way, metres.
 const APART_M: f64 = 80.0;
-/// Where an edge lacks room, its way is as wide as it must be over the vehicle's length and this, metres.
-pub(in crate::route) const BESIDE_M: f64 = 20.0;
 
 /// Fits ways, and keeps what it has found out about edges and turns. Its answers do not depend on earlier ones.
 pub(in crate::route) struct Fitter {
     pub(super) roads: Arc<Roads>,
     pub(super) driver: Arc<Driver>,
     base: Arc<network::Site>,
-    stroke_of: Arc<[u32]>,
-    needs_m: FxHashMap<u32, Option<f64>>,
+    pub(super) stroke_of: Arc<[u32]>,
+    /// The widths that edges need.
+    pub(super) needs_m: FxHashMap<u32, Option<f64>>,
     /// What turns need; `None` if nothing does.
-    turns: FxHashMap<TurnKey, Option<Suppositions>>,
+    pub(super) turns: FxHashMap<TurnKey, Option<Suppositions>>,
     /// Sections with what their edges and turns need by themselves, and with what the whole section needs.
     supposed: FxHashMap<SectionKey, Result<Fitting, Unfit>>,
     settled: FxHashMap<SectionKey, Result<Fitting, Unfit>>,
@@ -55,9 +52,6 @@ pub(in crate::route) struct Fitter {
 
 /// The edges of a section, the arcs of its passages, its ends, and which edges and steps have a price.
 type SectionKey = (Vec<u32>, Vec<Range<usize>>, [u64; 2], Vec<bool>);
-
-/// The edges of a turn, with the widths of the roads beside it in centimetres.
-type TurnKey = (Vec<u32>, Vec<i64>);
 
 /// A way that is certified if everything supposed holds.
 pub(super) struct Fitted {
@@ -78,7 +72,7 @@ pub(super) struct Fitting {
     start: f64,
     end: f64,
     pub(super) supposed: Suppositions,
-    /// How often the whole has failed.
+    /// How often it has failed.
     pub(super) round: usize,
     pub(super) choices: Choices,
 }
@@ -86,7 +80,7 @@ pub(super) struct Fitting {
 impl Fitting {
     fn new(base: &Arc<network::Site>, way: &Way<'_>) -> Self {
         Self {
-            drive: Drive { edges: way.drive.edges.clone(), over: Vec::new() },
+            drive: way.drive.clone(),
             start: way.start,
             end: way.end,
             supposed: Suppositions::new(Arc::clone(base)),
@@ -102,16 +96,6 @@ impl Fitting {
         self.supposed.add(&section.supposed);
         self.choices.extend(&section.choices);
     }
-}
-
-/// What becomes of a step of a way.
-enum Step {
-    /// It needs nothing, or what is supposed now.
-    Done,
-    /// It is now part of a longer passage.
-    Merged,
-    /// Nothing does.
-    Unfit,
 }
 
 impl Fitter {
@@ -144,17 +128,17 @@ impl Fitter {
         for section in &sections {
             unfit.extend(self.suppose(section, access, stop)?.err().into_iter().flat_map(|Unfit(places)| places));
         }
-        let mut whole = Fitting::new(&self.base, way);
-        for section in sections.iter().take_while(|_| unfit.is_empty()) {
-            match self.settle(section, access, stop)? {
-                Ok(own) => whole.take_over(&own, section.first),
-                Err(Unfit(places)) => return Ok(Err(Unfit(places))),
-            }
-        }
         if !unfit.is_empty() {
             return Ok(Err(Unfit(unfit)));
         }
-        whole.drive.over.sort_by_key(|arcs| arcs.start);
+        let mut whole = Fitting::new(&self.base, way);
+        whole.drive.over.clear();
+        for section in &sections {
+            match self.settle(section, access, stop)? {
+                Ok(own) => whole.take_over(&own, section.first),
+                Err(unfit) => return Ok(Err(unfit)),
+            }
+        }
         whole.supposed.level_roads(&self.roads.network, &whole.drive.edges);
         // The answer is made from nothing that was made before.
         if let Some(certified) = self.fresh(&whole, stop)? {
@@ -177,7 +161,6 @@ impl Fitter {
             return Ok(known.clone());
         }
         let mut fitting = Fitting::new(&self.base, &section.way());
-        fitting.drive.clone_from(&section.drive);
         let mut unfit = Vec::new();
         // Turns that are not safe by themselves may pass as parts of the whole.
         let roomy = fitting.drive.edges.iter().all(|&edge| access.edges.get(edge as usize) == Some(&0));
@@ -244,7 +227,7 @@ impl Fitter {
         Ok(last.or_else(|| fitting.drive.edges.first().map(|&edge| PartKind::Edge(edge))))
     }
 
-    /// Supposes more at a place where the whole fails, or drives another path there. Returns whether there is more to try.
+    /// Supposes more at a place where a way fails, or drives another path there. Returns whether there is more to try.
     fn help(&mut self, fitting: &mut Fitting, place: &Failing, stop: &Stop) -> Result<bool, Stopped> {
         let PartKind::Turn { from, to } = place.at else { return Ok(self.more_room(fitting, place)) };
         let another = |fitter: &mut Self, fitting: &mut Fitting| {
@@ -263,22 +246,6 @@ impl Fitter {
             return Ok(true);
         }
         Ok(another(self, fitting) || self.merge(fitting, place.at, stop)?)
-    }
-
-    /// Makes one passage of a turn and the turn nearest to it, and supposes what the passage needs.
-    fn merge(&mut self, fitting: &mut Fitting, at: PartKind, stop: &Stop) -> Result<bool, Stopped> {
-        let roads = Arc::clone(&self.roads);
-        let Some((merged, at)) = joint::merged(&roads.network, &roads.movements, &fitting.drive, at) else {
-            return Ok(false);
-        };
-        drop(roads);
-        let before = std::mem::replace(&mut fitting.drive, merged);
-        let place = fitting.drive.joins().position(|join| (join.from, join.to) == at);
-        let step = place.map_or(Ok(Step::Unfit), |place| self.suppose_turn(fitting, place, stop))?;
-        if matches!(step, Step::Unfit) {
-            fitting.drive = before;
-        }
-        Ok(!matches!(step, Step::Unfit))
     }
 
     /// Joins and certifies the way under what is supposed.
@@ -315,139 +282,9 @@ impl Fitter {
         let turns = Box::new(MadeTurns { driver, more: MORE_PATHS, unsafe_too: true });
         Whole::new(&self.roads, Arc::clone(&self.driver), turns)
     }
-
-    /// Supposes for each edge with a price the width that it needs, and as much for the way near it.
-    fn suppose_widths(
-        &mut self,
-        fitting: &mut Fitting,
-        access: &Access,
-        stop: &Stop,
-    ) -> Result<Vec<PartKind>, Stopped> {
-        let strip = self.driver.permits.settings.policy;
-        let mut unfit = Vec::new();
-        fitting.supposed.apply(network_of(&mut self.roads));
-        for (i, edge) in fitting.drive.edges.clone().into_iter().enumerate() {
-            let inside = fitting.drive.over.iter().any(|arcs| arcs.contains(&i));
-            if inside || access.edges.get(edge as usize).is_none_or(|&price| price == 0) {
-                continue;
-            }
-            stop.check()?;
-            let (network, driver) = (&self.roads.network, &self.driver);
-            let stroke = self.stroke_of.get(edge as usize).copied().unwrap_or(u32::MAX);
-            let need = || edge_need(network, (stroke, edge), &driver.model, &driver.permits.settings);
-            match *self.needs_m.entry(edge).or_insert_with(need) {
-                Some(need_m) => {
-                    self.widen_near(fitting, i, strip, need_m);
-                }
-                None => unfit.push(PartKind::Edge(edge)),
-            }
-        }
-        Ok(unfit)
-    }
-
-    /// Supposes a width for an edge of a way, and for its neighbours on the same stroke up to the vehicle's length.
-    pub(super) fn widen_near(&self, fitting: &mut Fitting, at: usize, strip: Policy, width_m: f64) -> bool {
-        let network = &self.roads.network;
-        let reach_m = self.driver.model.vehicle.length_m + BESIDE_M;
-        let Fitting { drive, supposed, .. } = fitting;
-        let edges = &drive.edges;
-        let stroke = |edge: u32| self.stroke_of.get(edge as usize);
-        let mut more = supposed.widen(network, edges[at], strip, width_m);
-        let mut go = |others: &mut dyn Iterator<Item = u32>| {
-            let mut far_m = 0.0;
-            for edge in others.take_while(|&edge| stroke(edge) == stroke(edges[at])) {
-                if far_m >= reach_m {
-                    break;
-                }
-                more |= supposed.widen(network, edge, strip, width_m);
-                far_m += network.edges.get(edge as usize).map_or(0.0, |edge| network.length_m(edge));
-            }
-        };
-        go(&mut edges[..at].iter().rev().copied());
-        go(&mut edges[at + 1..].iter().copied());
-        more
-    }
-
-    /// Supposes for each turn with a price what it needs.
-    fn suppose_turns(&mut self, fitting: &mut Fitting, access: &Access, stop: &Stop) -> Result<Vec<PartKind>, Stopped> {
-        let mut unfit = Vec::new();
-        let mut place = 0;
-        loop {
-            let step = |join: Join<'_>| (PartKind::Turn { from: join.from, to: join.to }, self.price(access, join));
-            let Some((at, price)) = fitting.drive.joins().nth(place).map(step) else { break };
-            if price == 0 {
-                place += 1;
-                continue;
-            }
-            match self.suppose_turn(fitting, place, stop)? {
-                Step::Done => place += 1,
-                // The way has fewer steps now, and the earlier turn may be the one that was merged.
-                Step::Merged => place = place.saturating_sub(1),
-                Step::Unfit => {
-                    unfit.push(at);
-                    place += 1;
-                }
-            }
-        }
-        Ok(unfit)
-    }
-
-    /// Supposes what a step of the way needs, or merges it with the turn nearest to it if nothing does.
-    fn suppose_turn(&mut self, fitting: &mut Fitting, place: usize, stop: &Stop) -> Result<Step, Stopped> {
-        stop.check()?;
-        let Some(join) = fitting.drive.joins().nth(place) else { return Ok(Step::Done) };
-        let at = PartKind::Turn { from: join.from, to: join.to };
-        let need = match self.turning(&fitting.drive, join) {
-            None => None,
-            Some(None) => return Ok(Step::Done),
-            Some(Some(turning)) => {
-                let network = network_of(&mut self.roads);
-                let known = turning.widths(network, &fitting.supposed);
-                let edges = [&[join.from], join.arcs, &[join.to]].concat();
-                let need = self.turns.entry((edges, turning.widths_cm(network, &known))).or_insert_with(|| {
-                    let mut own = known.clone();
-                    own.apply(network);
-                    let does =
-                        turning.is_safe(network) || turning.meet(network, &mut own) || turning.hope(network, &mut own);
-                    does.then(|| own.beyond(&known))
-                });
-                need.clone()
-            }
-        };
-        match need {
-            Some(need) => {
-                fitting.supposed.add(&need);
-                Ok(Step::Done)
-            }
-            None if self.merge(fitting, at, stop)? => Ok(Step::Merged),
-            None => Ok(Step::Unfit),
-        }
-    }
-
-    fn price(&self, access: &Access, join: Join<'_>) -> u64 {
-        let movements = &self.roads.movements;
-        let price = match movements.index(join.from, join.to) {
-            Some(place) => access.movements.get(place),
-            None => movements.passage(join.from, join.to).and_then(|place| access.passages.get(place)),
-        };
-        price.copied().unwrap_or(0)
-    }
-
-    /// The turn of a step; `Some(None)` if the step goes straight on.
-    pub(super) fn turning<'t>(&self, drive: &'t Drive, join: Join<'t>) -> Option<Option<Turning<'t>>> {
-        let movement = movement(&self.roads.movements, join.from, join.arcs, join.to)?;
-        let turns = movement.kind != MovementKind::StraightOn;
-        Some(turns.then(|| Turning {
-            driver: Arc::clone(&self.driver),
-            drive,
-            join,
-            movement,
-            stroke_of: Arc::clone(&self.stroke_of),
-        }))
-    }
 }
 
 /// The network of roads that nobody else holds. If somebody does, it is copied first.
-fn network_of(roads: &mut Arc<Roads>) -> &mut Network {
+pub(super) fn network_of(roads: &mut Arc<Roads>) -> &mut Network {
     &mut Arc::make_mut(roads).network
 }

@@ -16,14 +16,7 @@ pub(super) fn merged(
     at: PartKind,
 ) -> Option<(Drive, (u32, u32))> {
     let PartKind::Turn { from, to } = at else { return None };
-    // The indices of the edges before and after each turn.
-    let turns: Vec<[usize; 2]> = drive
-        .joins()
-        .filter(|join| {
-            movement(movements, join.from, join.arcs, join.to).is_none_or(|m| m.kind != MovementKind::StraightOn)
-        })
-        .map(|join| [join.at - join.arcs.len() - 1, join.at])
-        .collect();
+    let turns = turns(movements, drive);
     let own = turns.iter().position(|&[a, b]| (drive.edges[a], drive.edges[b]) == (from, to))?;
     let spans = own.checked_sub(1).map(|before| [turns[before][0], turns[own][1]]);
     let spans = spans.into_iter().chain(turns.get(own + 1).map(|after| [turns[own][0], after[1]]));
@@ -40,6 +33,14 @@ pub(super) fn merged(
     over.sort_by_key(|arcs| arcs.start);
     let ends = (drive.edges[a], drive.edges[b]);
     Some((Drive { edges: drive.edges.clone(), over }, ends))
+}
+
+/// The indices of the edges before and after each turn of a way.
+pub(super) fn turns(movements: &Movements, drive: &Drive) -> Vec<[usize; 2]> {
+    let turns = drive.joins().filter(|join| {
+        movement(movements, join.from, join.arcs, join.to).is_none_or(|m| m.kind != MovementKind::StraightOn)
+    });
+    turns.map(|join| [join.at - join.arcs.len() - 1, join.at]).collect()
 }
 
 /// The places on a way that a place is made of: the steps inside a passage that [`merged`] made, else the place itself.

@@ -7,6 +7,7 @@ mod failing;
 mod fit;
 mod joint;
 mod less;
+mod parts;
 mod report;
 mod search;
 mod sections;
@@ -20,7 +21,7 @@ pub use search::Hopeless;
 pub use sheet::{csv as sheet_csv, features as sheet_features, geojson as sheet_geojson};
 
 // What `survey` opens places with.
-pub(super) use fit::BESIDE_M;
+pub(super) use parts::BESIDE_M;
 pub(super) use search::{edge_price, turn_price};
 pub(super) use suppositions::Suppositions;
 pub(super) use turn_need::Turning;

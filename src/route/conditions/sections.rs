@@ -5,8 +5,9 @@
 
 use std::ops::Range;
 
-use crate::network::{MovementKind, Movements, Network};
-use crate::route::assemble::{Way, movement};
+use super::joint;
+use crate::network::{Movements, Network};
+use crate::route::assemble::Way;
 use crate::route::drive::Drive;
 
 /// A stretch of a way.
@@ -33,23 +34,14 @@ pub(super) fn sections(network: &Network, movements: &Movements, way: &Way<'_>, 
     let drive = way.drive;
     let mut sections = Vec::new();
     let (mut first, mut start) = (0, way.start);
-    for leg in legs(movements, drive) {
+    for turns in joint::turns(movements, drive).windows(2) {
+        let leg = turns[0][1]..turns[1][0] + 1;
         let Some((at, share)) = middle(network, &drive.edges, leg, long_m) else { continue };
         sections.push(section(drive, first..at + 1, (start, share)));
         (first, start) = (at, share);
     }
     sections.push(section(drive, first..drive.edges.len(), (start, way.end)));
     sections
-}
-
-/// The legs between two turns, as ranges of edges.
-fn legs(movements: &Movements, drive: &Drive) -> Vec<Range<usize>> {
-    let turns = drive.joins().filter(|join| {
-        movement(movements, join.from, join.arcs, join.to).is_none_or(|m| m.kind != MovementKind::StraightOn)
-    });
-    // The last edge before each turn, and the first one after it.
-    let turns: Vec<[usize; 2]> = turns.map(|join| [join.at - join.arcs.len() - 1, join.at]).collect();
-    turns.windows(2).map(|pair| pair[0][1]..pair[1][0] + 1).collect()
 }
 
 /// The edge in the middle of a leg that is long enough, and the share of the edge before the middle.

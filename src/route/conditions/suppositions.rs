@@ -9,7 +9,7 @@ use super::turn_need::PAVED_M;
 use super::{Condition, ConditionAt, width_of};
 use crate::certify::KERBS_M;
 use crate::evidence::Quantity;
-use crate::network::{self, Network};
+use crate::network::{self, Network, Road};
 use crate::osm::LonLat;
 use crate::osm::facts::Policy;
 use crate::turns::Kerbs;
@@ -19,8 +19,6 @@ use crate::words::Named;
 const WIDTH_SHARES: [f64; 3] = [0.25, 0.5, 0.75];
 /// Widths of one road that differ by no more than this become one condition, metres.
 const LEVEL_M: f64 = 0.5;
-/// An edge that turns less than this into the next one goes straight on, radians.
-const STRAIGHT_RAD: f64 = 0.35;
 /// Widths are supposed in these parts of a metre, and kerb radii in these.
 const WIDTHS: f64 = 20.0;
 const RADII: f64 = 2.0;
@@ -189,6 +187,7 @@ impl Suppositions {
     /// Gives edges of a way that follow each other on one road the greatest of their widths, if these differ little; and a lane that is
     /// all of its direction one width. There is less to measure.
     pub(in crate::route) fn level_roads(&mut self, network: &Network, way: &[u32]) {
+        let strokes = network.strokes_of_edges();
         for &edge in way {
             let strips = [Policy::Lane, Policy::Direction];
             let [Some(lane_m), Some(direction_m)] = strips.map(|strip| self.widths_m.get(&(edge, strip)).copied())
@@ -204,7 +203,7 @@ impl Suppositions {
         for &strip in <Policy as Named>::ALL {
             let mut run: Vec<u32> = Vec::new();
             for (i, &edge) in way.iter().enumerate() {
-                let follows = i > 0 && run.last() == Some(&way[i - 1]) && goes_on(network, way[i - 1], edge);
+                let follows = i > 0 && run.last() == Some(&way[i - 1]) && goes_on(network, &strokes, way[i - 1], edge);
                 let Some(&width_m) = self.widths_m.get(&(edge, strip)) else { continue };
                 let near = |other: &u32| {
                     self.widths_m.get(&(*other, strip)).is_some_and(|other_m| (other_m - width_m).abs() <= LEVEL_M)
@@ -264,8 +263,10 @@ impl Suppositions {
         corners.chain(paved).collect()
     }
 
-    /// The conditions in the order of a way, on a network on which nothing is supposed. Edges that follow each other on one road and need the same are one condition.
+    /// The conditions in the order of a way, on a network on which nothing is supposed. Edges that follow each other on one road and
+    /// need the same are one condition.
     pub(in crate::route) fn conditions(&self, network: &Network, kerbs: &Kerbs, way: &[u32]) -> Vec<Condition> {
+        let strokes = network.strokes_of_edges();
         let mut found: Vec<(usize, Condition)> = Vec::new();
         for (i, edge) in way.iter().enumerate() {
             for (&(_, strip), &needed_m) in self.widths_m.range((*edge, Policy::Lane)..=(*edge, Policy::Carriageway)) {
@@ -277,7 +278,7 @@ impl Suppositions {
                         && condition.needed_m == needed_m
                         && i > 0
                         && edges.last() == way.get(i - 1)
-                        && goes_on(network, way[i - 1], *edge)
+                        && goes_on(network, &strokes, way[i - 1], *edge)
                 };
                 match found.iter_mut().rev().find(follows) {
                     Some((_, condition)) => {
@@ -348,26 +349,13 @@ pub(in crate::route) fn disc(at: LonLat, radius_m: f64) -> Vec<LonLat> {
     (0..=CORNERS).map(corner).collect()
 }
 
-/// Whether one edge goes on in the next one: under the same name, as the same way, or straight on.
-fn goes_on(network: &Network, a: u32, b: u32) -> bool {
+/// Whether one edge goes on in another one: under the same name, as the same way, or on the same stroke.
+fn goes_on(network: &Network, strokes: &[u32], a: u32, b: u32) -> bool {
+    let stroke = |edge: u32| strokes.get(edge as usize).filter(|&&stroke| stroke != u32::MAX);
     let road = |edge: u32| network.edges.get(edge as usize).map(|edge| network.road(edge));
-    let same = road(a).zip(road(b)).is_some_and(|(a, b)| {
+    let same = |a: &Road, b: &Road| {
         a.way_id == b.way_id
-            || ((a.name.is_some() || a.reference.is_some()) && (a.name, a.reference) == (b.name, b.reference))
-    });
-    same || bend_rad(network, a, b).is_some_and(|bend_rad| bend_rad < STRAIGHT_RAD)
-}
-
-/// The angle between the end of an edge and the beginning of the next one, radians. `None` if they do not meet.
-fn bend_rad(network: &Network, a: u32, b: u32) -> Option<f64> {
-    let [from, to] = [a, b].map(|edge| network.edges.get(edge as usize));
-    let (from, to) = (from?, to?);
-    if from.to_node != to.from_node {
-        return None;
-    }
-    let (mut before, mut after) = (network.positions(from), network.positions(to));
-    let (end, last) = (before.next_back()?, before.next_back()?);
-    let (start, next) = (after.next()?, after.next()?);
-    let [u, v] = [network::offset_m(last, end), network::offset_m(start, next)];
-    Some((u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]).abs())
+            || ((a.name.is_some() || a.reference.is_some()) && (&a.name, &a.reference) == (&b.name, &b.reference))
+    };
+    road(a).zip(road(b)).is_some_and(|(a, b)| same(a, b)) || stroke(a).is_some_and(|of_a| stroke(b) == Some(of_a))
 }

@@ -83,6 +83,13 @@ impl Default for Options {
     }
 }
 
+impl Options {
+    /// Whether any correction is allowed.
+    fn correct(&self) -> bool {
+        self.max_shift_m > 0.0 && self.correction_sweeps > 0
+    }
+}
+
 /// The result for one span of stations (an edge, or the whole corridor).
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpanResult {
@@ -232,7 +239,7 @@ pub fn certify(
     Ok(planned.map(|(certificate, _)| certificate))
 }
 
-/// The result of one vehicle for each span, as [`certify_spans`] gives it.
+/// The result of one vehicle for each span, as [`certify_planned`] gives it.
 ///
 /// # Errors
 /// `stop` was told: each sweep asks it every few metres.
@@ -253,7 +260,8 @@ pub fn certify_parts(
 }
 
 /// Certifies a whole corridor with the plan that [`certify_spans`] makes for `spans`, and returns the result for each
-/// span. These are the details of an edge's certificate.
+/// span. These are the details of an edge's certificate. Between areas that are far apart, as on a route, each stretch is planned by
+/// itself.
 ///
 /// `None` when the corridor has no station.
 ///
@@ -285,23 +293,34 @@ fn best_swept<'m>(
     options: &Options,
     stop: &'m Stop,
 ) -> (Swept<'m>, Vec<SpanResult>) {
-    let results = |swept: &Swept<'m>| -> Vec<SpanResult> { spans.iter().map(|span| swept.result(0, span)).collect() };
     let safe = |results: &[SpanResult]| results.iter().filter(|result| result.safe()).count();
     let joined = stretches::plan(corridor, model, spans, options, stop).map(|plan| {
         let swept = Swept::along(corridor, &[model], spans, marks, stop, &|_, _| vec![plan.clone()]);
-        let results = results(&swept);
+        let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
         (swept, results)
     });
-    let most = joined.as_ref().map_or(0, |(_, joined)| safe(joined));
     match joined {
-        Some(joined) if most == spans.len() => joined,
-        joined => {
-            let swept = Swept::new(corridor, &[model], spans, marks, options, stop);
-            let results = results(&swept);
-            let whole = held(corridor, model, spans, marks, options, &results, stop).unwrap_or((swept, results));
-            joined.filter(|_| most > safe(&whole.1)).unwrap_or(whole)
+        None => swept_as_one(corridor, model, spans, marks, options, stop),
+        Some(joined) if safe(&joined.1) == spans.len() => joined,
+        Some(joined) => {
+            let whole = swept_as_one(corridor, model, spans, marks, options, stop);
+            if safe(&joined.1) > safe(&whole.1) { joined } else { whole }
         }
     }
+}
+
+/// The sweeps along one plan for the whole corridor, with corrections taken back where that helps.
+fn swept_as_one<'m>(
+    corridor: &Corridor,
+    model: &'m Model,
+    spans: &[Range<usize>],
+    marks: Marks,
+    options: &Options,
+    stop: &'m Stop,
+) -> (Swept<'m>, Vec<SpanResult>) {
+    let swept = Swept::new(corridor, &[model], spans, marks, options, stop);
+    let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
+    held(corridor, model, spans, marks, options, &results, stop).unwrap_or((swept, results))
 }
 
 /// Certifies a vehicle again without corrections where areas count, if the corrected plan steers or folds too far. A path over a junction
@@ -316,8 +335,7 @@ fn held<'m>(
     results: &[SpanResult],
     stop: &'m Stop,
 ) -> Option<(Swept<'m>, Vec<SpanResult>)> {
-    let corrects = options.max_shift_m > 0.0 && options.correction_sweeps > 0;
-    if corridor.areas.is_empty() || !corrects || !results.iter().any(SpanResult::folds) {
+    if corridor.areas.is_empty() || !options.correct() || !results.iter().any(SpanResult::folds) {
         return None;
     }
     let without = |held: &[Range<usize>]| {

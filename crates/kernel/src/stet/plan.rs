@@ -35,7 +35,7 @@ pub(super) fn best(
     stop: &Stop,
 ) -> Vec<Plan> {
     let centred = vec![Plan::centred(track.count); group.models.len()];
-    if options.max_shift_m <= 0.0 || options.correction_sweeps == 0 {
+    if !options.correct() {
         return centred;
     }
     let coarse = track.coarse();

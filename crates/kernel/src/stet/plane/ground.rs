@@ -530,6 +530,56 @@ mod tests {
         assert!((room - 1.5).abs() < 1e-12 && (leeway - 1.4).abs() < 1e-12, "{room} {leeway}");
     }
 
+    /// A star of 90 corners with an island, and places around it.
+    fn star() -> (Area, Vec<Point>) {
+        let corner = |k: u32| {
+            let angle = f64::from(k) / 90.0 * std::f64::consts::TAU;
+            let radius = 14.0 + 5.0 * (7.0 * angle).sin() + 0.8 * (31.0 * angle).cos();
+            [radius * angle.cos(), radius * angle.sin()]
+        };
+        let area = Area { rings: vec![(0..90).map(corner).collect(), square([2.3, -4.1], 0.7)] };
+        let places = (0..6_400_u32).map(|i| [f64::from(i % 80), f64::from(i / 80)].map(|k| -21.0 + 0.531 * k));
+        (area, places.collect())
+    }
+
+    #[test]
+    fn the_nearest_segments_of_a_cell_are_those_of_the_whole_boundary() {
+        let (area, places) = star();
+        let ground = Ground::new(&area).unwrap();
+        for p in places {
+            let far = apart(area.nearest(p).unwrap(), p);
+            let room = if area.contains(p) { far.min(FAR_M) } else { -far };
+            assert!((ground.room(p) - room).abs() < 1e-9, "{p:?}: {} {room}", ground.room(p));
+        }
+    }
+
+    #[test]
+    fn the_room_of_a_swept_piece_is_that_to_the_whole_boundary() {
+        let (area, places) = star();
+        let ground = Ground::new(&area).unwrap();
+        let mut near = 0;
+        for (i, at) in places.into_iter().enumerate().filter(|(_, at)| area.contains(*at)) {
+            let (sin, cos) = (0.7 * i as f64).sin_cos();
+            let ends = |at: Point| [at, [at[0] - 1.2 * cos, at[1] - 1.2 * sin]];
+            let (before, after) = (ends(at), ends([at[0] + 0.4 * cos - 0.1 * sin, at[1] + 0.4 * sin + 0.1 * cos]));
+            let corners = [before[0], before[1], after[1], after[0]];
+            let gaps: Option<Vec<Point>> = area.segments().map(|s| Segment::new(s).gap(&corners)).collect();
+            let swept = Swept { before, after, most: 0.3, enough: FAR_M, stray: &|_| [0.3; 2] };
+            let (room, leeway) = ground.swept(&swept, false);
+            let Some(gaps) = gaps else {
+                assert!(room <= 0.0 && leeway <= -0.3, "{at:?}: {room} {leeway}");
+                continue;
+            };
+            let far = gaps.iter().map(|gap| apart(*gap, [0.0; 2])).fold(f64::INFINITY, f64::min);
+            assert!(room <= far + 1e-9 && leeway <= far - 0.3 + 1e-9, "{at:?}: {room} {leeway} {far}");
+            if far < FAR_M - 1.5 {
+                near += 1;
+                assert!((room - far).abs() < 1e-9 && (leeway - far + 0.3).abs() < 1e-9, "{at:?}: {room} {far}");
+            }
+        }
+        assert!(near > 500, "{near}");
+    }
+
     #[test]
     fn an_island_under_the_body_is_found() {
         let ground = yard();

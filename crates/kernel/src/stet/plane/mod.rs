@@ -524,7 +524,7 @@ fn walked(track: &Track, foot: usize, [x, y]: Point) -> usize {
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
-mod tests {
+pub(super) mod tests {
     use std::sync::Arc;
 
     use netcert_base::corridor::{Area, AreaSpan, Corridor, CurvatureProfile};
@@ -542,7 +542,7 @@ mod tests {
     }
 
     /// The corridor with its own edges as an area, prolonged straight by `beyond_m`.
-    fn as_area(corridor: &Corridor, beyond_m: f64, heads: std::ops::Range<usize>) -> Corridor {
+    pub(in crate::stet) fn as_area(corridor: &Corridor, beyond_m: f64, heads: std::ops::Range<usize>) -> Corridor {
         let last = corridor.len() - 1;
         let edge = |k: usize, along: f64, aside: f64| {
             let (sin, cos) = corridor.heading[k].sin_cos();
