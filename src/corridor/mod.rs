@@ -18,7 +18,7 @@ mod spline;
 mod stroke;
 mod taper;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use std::ops::Range;
 
@@ -78,7 +78,7 @@ pub struct StrokeCorridor {
     /// The corridor in that frame.
     pub corridor: Corridor,
     /// Edges of the strip at each station as the map has them, metres to the left of the centreline: `[left, right]`. The corridor is
-    /// narrower where the strip tapers to that of the next edge. Never inside the corridor.
+    /// narrower where the strip tapers to that of the next edge, and reaches beyond these edges where it moves aside.
     pub untapered: Vec<[f64; 2]>,
     /// The edges' spans in driving order.
     pub spans: Vec<EdgeSpan>,

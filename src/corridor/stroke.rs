@@ -136,8 +136,8 @@ struct Untapered<'c> {
 }
 
 impl Untapered<'_> {
-    /// The edges of the strip at every station. Where two sections meet, what they have in common counts. Near a narrow place the
-    /// corridor's own edges count.
+    /// The edges of the strip at every station. Where two sections meet, what they have in common counts. Near a narrow place nothing
+    /// outside the corridor counts.
     fn edges(&self, c: &Corridor) -> Vec<[f64; 2]> {
         let mut hint = 0;
         let mut first = 0;
@@ -151,11 +151,12 @@ impl Untapered<'_> {
                 let near = self.stretches.iter().skip(first).take_while(|s| s.from <= u + BESIDE_M);
                 let strip =
                     near.map(|s| [s.strip.left_m, s.strip.right_m]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
-                let narrow = self.gaps.iter().any(|gap| (gap.at - u).abs() < CHANGE_M);
-                let Some([left_m, right_m]) = strip.filter(|_| !narrow) else { return own };
+                let Some([left_m, right_m]) = strip else { return own };
                 let [_, _, middle_m] = self.profile.at(u)[0];
                 let by_m = self.aside.iter().map(|ramp| ramp.at(u)).sum::<f64>() - middle_m;
-                [own[0].max(left_m + by_m), own[1].min(right_m + by_m)]
+                let [left_m, right_m] = [left_m + by_m, right_m + by_m];
+                let narrow = self.gaps.iter().any(|gap| (gap.at - u).abs() < CHANGE_M);
+                if narrow { [left_m.min(own[0]), right_m.max(own[1])] } else { [left_m, right_m] }
             })
             .collect()
     }

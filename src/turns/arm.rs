@@ -6,9 +6,9 @@
 
 use super::Reach;
 use super::path::{Pose, hermite};
-use crate::corridor::{Corridor, Frame, Params, Sections, StrokeCorridor, TaperCause, stroke_corridor_on};
+use crate::corridor::{Corridor, Frame, Params, Sections, StrokeCorridor, stroke_corridor_on};
 use crate::network::Network;
-use crate::osm::facts::{CrossSection, Policy, Strip};
+use crate::osm::facts::{Policy, Strip};
 use crate::verdict::UnknownReason;
 
 /// Largest |κ|·half-width of a strip beyond the corridor's own.
@@ -67,12 +67,13 @@ impl StrokeLine {
             let Some(edge) = network.edges.get(span.edge as usize) else { continue };
             let section = sections(edge);
             for k in span.stations.clone() {
-                // A taper to the next edge narrows the corridor, not the road.
-                direction[k] = wider(made.untapered[k], &section, policy, section.direction);
-                carriageway[k] = wider(direction[k], &section, policy, section.carriageway.or(section.direction));
+                // A taper to the next edge narrows and moves the corridor, not the road.
+                let strip = made.untapered[k];
+                direction[k] = outer(own[k], wider(strip, section.strip(policy), section.direction));
+                let all = section.carriageway.or(section.direction);
+                carriageway[k] = outer(direction[k], wider(strip, section.strip(policy), all));
             }
         }
-        keep_to_tapers(&made, &mut [&mut direction, &mut carriageway]);
         let gradual = [&direction, &carriageway].map(|edges| gradual(&made.corridor, edges));
         Ok(Self { stroke, made, closed: facts.closed, direction, carriageway, gradual })
     }
@@ -138,28 +139,17 @@ fn gradual(c: &Corridor, edges: &[Across]) -> Vec<Across> {
     out
 }
 
-/// The edges of `strip`, where the policy's own strip has its edges at `own`; never inside `own`. The distances between
-/// the strips' edges are kept, so a narrowed corridor narrows both strips alike.
-fn wider(own: Across, section: &CrossSection, policy: Policy, strip: Option<Strip>) -> Across {
-    let (Some(base), Some(strip)) = (section.strip(policy), strip) else { return own };
+/// The edges of `strip`, where `base` has its edges at `own`; never inside `own`.
+fn wider(own: Across, base: Option<Strip>, strip: Option<Strip>) -> Across {
+    let (Some(base), Some(strip)) = (base, strip) else { return own };
     let left = f64::from(strip.left_m - base.left_m).max(0.0);
     let right = f64::from(strip.right_m - base.right_m).min(0.0);
     [own[0] + left, own[1] + right]
 }
 
-/// Reduces the road along tapers. A taper moves the strip beside its section's place by up to the taper's move. What is
-/// measured from the strip is uncertain by that move, so that much less road counts.
-fn keep_to_tapers(made: &StrokeCorridor, wider: &mut [&mut Vec<Across>; 2]) {
-    let c = &made.corridor;
-    for taper in made.tapers.iter().filter(|taper| taper.cause == TaperCause::Section && taper.shift_m != 0.0) {
-        let less_m = taper.shift_m.abs();
-        for k in taper.stations.clone() {
-            for edges in wider.iter_mut() {
-                let [left, right] = edges[k];
-                edges[k] = [(left - less_m).max(c.left_m[k]), (right + less_m).min(-c.right_m[k])];
-            }
-        }
-    }
+/// The outer edges of two strips.
+fn outer(a: Across, b: Across) -> Across {
+    [a[0].max(b[0]), a[1].min(b[1])]
 }
 
 /// Stations of a stroke around a node, in the frame of the turn.
@@ -337,4 +327,65 @@ fn carry_over(c: &mut Corridor, from: Frame, to: Frame) -> Option<()> {
         (c.x[k], c.y[k]) = (x, y);
     }
     Some(())
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::corridor::tests::{network, strip};
+    use crate::osm::facts::CrossSection;
+
+    fn line(sections: &[CrossSection], policy: Policy) -> StrokeLine {
+        let points = |part: usize| (0..=4).map(|i| [200.0 * part as f64 + 50.0 * f64::from(i), 0.0]).collect();
+        let edges: Vec<_> = sections.iter().enumerate().map(|(part, section)| (points(part), *section)).collect();
+        let (mut network, stroke) = network(&edges, false);
+        network.strokes.push(stroke);
+        StrokeLine::new(&network, 0, policy, &Params::default()).unwrap()
+    }
+
+    /// The edges at a station, metres to the left of the map's line, which leads east.
+    fn across(line: &StrokeLine, edges: &[Across], k: usize) -> Across {
+        edges[k].map(|left_m| line.made.corridor.y[k] + left_m)
+    }
+
+    fn near(a: Across, b: Across) -> bool {
+        (a[0] - b[0]).abs() < 0.02 && (a[1] - b[1]).abs() < 0.02
+    }
+
+    #[test]
+    fn the_carriageway_of_a_road_of_four_lanes_is_as_wide_as_its_lanes() {
+        let section =
+            CrossSection { lane: strip((-3.5, -7.0)), direction: strip((0.0, -7.0)), carriageway: strip((7.0, -7.0)) };
+        for policy in [Policy::Lane, Policy::Direction, Policy::Carriageway] {
+            let line = line(&[section], policy);
+            let direction = if policy == Policy::Carriageway { [7.0, -7.0] } else { [0.0, -7.0] };
+            for k in 20..180 {
+                assert!(near(across(&line, &line.direction, k), direction), "{policy:?} {k}");
+                assert!(near(across(&line, &line.carriageway, k), [7.0, -7.0]), "{policy:?} {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn where_a_lane_is_added_the_road_is_as_wide_as_mapped_though_the_vehicle_moves_aside() {
+        let two = CrossSection { lane: strip((0.0, -3.5)), direction: strip((3.5, -3.5)), carriageway: None };
+        let three = CrossSection { lane: strip((-1.75, -5.25)), direction: strip((5.25, -5.25)), carriageway: None };
+        for sections in [[two, three], [three, two]] {
+            let line = line(&sections, Policy::Lane);
+            let c = &line.made.corridor;
+            assert!((c.y[c.len() - 1] - c.y[0]).abs() > 1.7, "the vehicle moves aside");
+            for k in 0..c.len() {
+                let beyond_m = c.x[k] - 200.0;
+                // Stations beside the node may be either part's.
+                let beside = beyond_m.abs() < 2.5;
+                let wide = beside || (beyond_m > 0.0) == (sections[1] == three);
+                let mapped = if wide { [5.25, -5.25] } else { [3.5, -3.5] };
+                let own = [c.left_m[k], -c.right_m[k]].map(|left_m| c.y[k] + left_m);
+                let (found, most) = (across(&line, &line.direction, k), outer(own, mapped));
+                assert!(beside || near(found, most), "{k}: {found:?} {most:?}");
+                assert!(found[0] <= most[0] + 0.02 && found[1] >= most[1] - 0.02, "{k}: {found:?} {most:?}");
+            }
+        }
+    }
 }
