@@ -480,7 +480,7 @@ impl<'m> Swept<'m> {
     fn measure_least(&mut self, span: &Range<usize>, shift: &[V]) {
         let spans = std::slice::from_ref(span);
         let least = Wanted { only: Some(span), ..Wanted::ALL };
-        self.full = sweep::<true>(&self.track, &self.group, shift, &Wanted { bare: true, ..Wanted::ALL }, self.stop);
+        self.full = sweep::<true>(&self.track, &self.group, shift, &Wanted { bare: true, ..least }, self.stop);
         let plain = Wanted { only: Some(span), ..Wanted::PLAIN };
         let nominal = sweep::<false>(&self.track, &self.group, shift, &plain, self.stop);
         let fits: Vec<bool> = nominal.iter().map(|m| m.room_on(spans::stations(&self.track, span))).collect();
@@ -596,17 +596,10 @@ impl<'m> Swept<'m> {
         (certificate, results)
     }
 
-    /// Blocks of head stations in which some unit may touch the span.
-    fn touching(&self, span: &Range<usize>) -> Range<usize> {
-        let track = &self.track;
-        // The extensions' lengths are used, so that no other vehicle of the group matters.
-        let (behind_m, ahead_m) = sweep::reach_m(&self.group);
-        let ahead = (ahead_m / track.spacing).ceil() as usize + BLOCK;
-        let behind = (behind_m / track.spacing).ceil() as usize + BLOCK;
-        let touched = spans::stations(track, span);
-        let first = touched.start().saturating_sub(ahead) / BLOCK;
-        let last = (touched.end() + behind) / BLOCK;
-        first..(last + 1).min(track.len() / BLOCK + 1)
+    /// Blocks of head stations in which some unit of a vehicle may touch the span. No other vehicle of the group matters.
+    fn touching(&self, lane: usize, span: &Range<usize>) -> Range<usize> {
+        let heads = spans::touching(&self.track, self.group.models[lane], span);
+        heads.start / BLOCK..(heads.end.div_ceil(BLOCK)).min(self.track.len() / BLOCK + 1)
     }
 
     /// By vehicle and block of head stations: whether the vehicle may then touch a span that `meant` accepts.
@@ -614,7 +607,7 @@ impl<'m> Swept<'m> {
         let of = |lane: usize| {
             let mut blocks = vec![false; self.track.len() / BLOCK + 1];
             for span in spans.iter().filter(|span| meant(lane, span)) {
-                blocks[self.touching(span)].iter_mut().for_each(|block| *block = true);
+                blocks[self.touching(lane, span)].iter_mut().for_each(|block| *block = true);
             }
             blocks
         };
@@ -627,7 +620,7 @@ impl<'m> Swept<'m> {
     fn worth(&self, lane: usize, span: &Range<usize>) -> bool {
         let Some(nominal) = &self.nominal else { return false };
         let nominal = &nominal[lane];
-        self.full[lane].loose[self.touching(span)].iter().any(|&unit| unit < usize::MAX)
+        self.full[lane].loose[self.touching(lane, span)].iter().any(|&unit| unit < usize::MAX)
             && nominal.room_on(spans::stations(&self.track, span))
     }
 

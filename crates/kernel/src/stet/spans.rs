@@ -2,10 +2,11 @@
 
 use std::ops::{Range, RangeInclusive};
 
-use super::block::{Minima, NOT_CLOSED_RAD, UNVISITED_M};
+use super::block::{BLOCK, Minima, NOT_CLOSED_RAD, UNVISITED_M};
 use super::group::{SHRINK_STEPS, gamma};
 use super::lanes::TAG_MASK;
 use super::model::{Model, POINT_SPACING_M};
+use super::sweep::LEAST_LENGTH_M;
 use super::track::Track;
 use super::{Limiting, Side, SpanResult};
 
@@ -143,6 +144,16 @@ pub(super) fn straight(track: &Track, model: &Model, span: &Range<usize>) -> Ran
     let (first, last) = stations(track, span).into_inner();
     let stations = |metres: f64| (metres / track.spacing).ceil() as usize;
     first.saturating_sub(stations(model.front))..last + stations(model.length) + 1
+}
+
+/// Stations of the steer axle at which a vehicle may be on the span, feet that fall behind in a bend included, and a block more.
+pub(super) fn touching(track: &Track, model: &Model, span: &Range<usize>) -> Range<usize> {
+    let stations_of = |metres: f64| (metres / track.spacing).ceil() as usize;
+    let touched = stations(track, span);
+    // No unit falls behind by its whole length, and the reach of a group is enough for every vehicle.
+    let behind_m = (2.0 * model.length).min(model.length.max(LEAST_LENGTH_M));
+    let ahead = stations_of(model.front) + BLOCK;
+    touched.start().saturating_sub(ahead)..touched.end() + stations_of(behind_m) + BLOCK + 1
 }
 
 /// Extended stations of a span of corridor stations.

@@ -25,7 +25,7 @@ use netcert_base::stop::{Stop, Stopped};
 /// Vehicles up to this length and front overhang get the same extensions. Sums along the track round differently from
 /// another start, so equal extensions give equal bits whichever vehicles share the group. The longest vehicle of the
 /// catalogue has 52 m and 3 m.
-const LEAST_LENGTH_M: f64 = 56.0;
+pub(super) const LEAST_LENGTH_M: f64 = 56.0;
 const LEAST_FRONT_M: f64 = 4.0;
 
 /// Assumed reach of the group's vehicles behind and ahead of their steer axles, metres.
@@ -104,7 +104,11 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     }
     // Beyond this distance of the head, the rear of the longest vehicle has left the corridor.
     let ahead = ((group.front() + 4.0) / track.spacing).ceil() as usize + LANES;
-    let last = track.len() - ahead - BLOCK;
+    let mut last = track.len() - ahead - BLOCK;
+    if let Some(span) = wanted.only {
+        let left = group.models.iter().map(|model| spans::touching(track, model, span).end).max();
+        last = left.map_or(last, |left| last.min(left));
+    }
     let mut head = track.first_head;
     while head < last {
         stop.check()?;
