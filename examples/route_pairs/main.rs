@@ -17,8 +17,8 @@ use std::time::Instant;
 use netcert::network::PassageKind;
 use netcert::osm::facts::{Policy, RoadClass};
 use netcert::route::{
-    Answer, Driver, Graph, Measure, Obstacle, PartKind, Permit, Planner, Position, Question, Roads, Route, Speeds,
-    components, passes_over,
+    Answer, AssemblyError, Driver, Graph, Measure, Obstacle, PartKind, Permit, Planner, Position, Question, Roads,
+    Route, Speeds, components, passes_over,
 };
 use netcert::stop::Stop;
 use netcert::store::Database;
@@ -149,6 +149,36 @@ impl Region {
         }
     }
 
+    /// Prints where whole routes failed although their parts passed, the ten commonest places.
+    fn tell_refutations(&self, answers: &[Answer]) {
+        let network = &self.roads.network;
+        let name = |edge: u32| network.edges[edge as usize].id;
+        let mut places: BTreeMap<String, usize> = BTreeMap::new();
+        for refutation in answers.iter().flat_map(|answer| &answer.refuted) {
+            let at = |at: PartKind| match at {
+                PartKind::Edge(edge) => format!("edge {}", name(edge)),
+                PartKind::Turn { from, to } => {
+                    let length_m = network.length_m(&network.edges[from as usize]);
+                    format!("turn from edge {} ({length_m:.0} m) into edge {}", name(from), name(to))
+                }
+            };
+            let why = match (&refutation.assembly, refutation.result) {
+                (Some(AssemblyError::Overlap { before, .. }), _) => format!("overlaps the {}", at(*before)),
+                (Some(error), _) => error.to_string(),
+                (None, Some((rsc_m, hinge_rad))) if rsc_m < 0.0 => {
+                    format!("lacks {:.1} m; hinge {hinge_rad:.2}", -rsc_m)
+                }
+                (None, Some((_, hinge_rad))) => format!("lacks {hinge_rad:.2} rad at a hinge"),
+                (None, None) => "no bound".to_owned(),
+            };
+            *places.entry(format!("{}: {why}", at(refutation.at))).or_default() += 1;
+        }
+        let mut places: Vec<_> = places.into_iter().collect();
+        places.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        println!("  where whole routes failed (times):");
+        places.iter().take(10).for_each(|(words, count)| println!("    {count:5}  {words}"));
+    }
+
     fn words(&self, obstacle: &Obstacle) -> String {
         let network = &self.roads.network;
         let edge = |edge: u32| &network.edges[edge as usize];
@@ -215,9 +245,11 @@ fn main() {
     region.tell(&safe, pairs);
     let main_roads: Vec<u32> = safe.iter().copied().filter(main).collect();
     println!(" among the {} safe edges of main roads:", main_roads.len());
-    region.tell_obstacles(&region.tell(&main_roads, pairs));
+    let answers = region.tell(&main_roads, pairs);
+    region.tell_obstacles(&answers);
+    region.tell_refutations(&answers);
     let parts = components(&region.graph(), &permits.access(&region.roads.movements));
     let largest: Vec<u32> = safe.iter().copied().filter(|&edge| parts.of[edge as usize] == Some(0)).collect();
     println!(" among the {} edges of the largest of {} parts:", largest.len(), parts.count);
-    region.tell(&largest, pairs);
+    region.tell_refutations(&region.tell(&largest, pairs));
 }
