@@ -163,6 +163,30 @@ fn the_widths_along_one_road_are_one_condition() {
 }
 
 #[test]
+fn a_road_that_is_narrow_twice_is_one_condition() {
+    let nodes = [
+        ('W', [-260.0, 0.0]),
+        ('a', [-180.0, 0.0]),
+        ('b', [-100.0, 0.0]),
+        ('c', [100.0, 0.0]),
+        ('d', [180.0, 0.0]),
+        ('E', [260.0, 0.0]),
+    ];
+    let map = AsciiMap::placed(&nodes)
+        .way("Wa", "highway=tertiary width=7")
+        .way("ab", "highway=tertiary ref=7 name=High_Street width=2.4")
+        .way("bc", "highway=tertiary ref=7 width=7")
+        .way("cd", "highway=tertiary ref=7 name=Low_Street width=2.3")
+        .way("dE", "highway=tertiary width=7");
+    let region = region(&map, 3.0);
+    let found = ask(&region, "AU-SEMI19", ["Wa", "dE"]).under.unwrap();
+    let [condition] = found.conditions.as_slice() else { panic!("{:?}", found.conditions) };
+    let ConditionAt::Road(edges) = &condition.at else { panic!("{condition:?}") };
+    let over = |ends: &str| edges.contains(&ascii_map::edge(&region.network, ends));
+    assert_eq!(["ab", "bc", "cd"].map(over), [true, false, true], "the wide piece between needs nothing");
+}
+
+#[test]
 fn a_corner_where_no_other_road_meets_is_a_condition() {
     let nodes = [('W', [-300.0, 0.0]), ('a', [0.0, 0.0]), ('S', [0.0, -300.0])];
     let region = region(&AsciiMap::placed(&nodes).way("WaS", TAGS), 3.0);

@@ -139,10 +139,13 @@ impl Fitter {
                 Err(unfit) => return Ok(Err(unfit)),
             }
         }
-        whole.supposed.level_roads(&self.roads.network, &whole.drive.edges);
-        // The answer is made from nothing that was made before.
-        if let Some(certified) = self.fresh(&whole, stop)? {
-            return Ok(Ok(Fitted { drive: whole.drive, certified, supposed: whole.supposed }));
+        // Fewer conditions first. The answer is made from nothing that was made before.
+        let mut level = whole.clone();
+        level.supposed.level_roads(&self.roads.network, &whole.drive.edges);
+        for whole in [level, whole.clone()] {
+            if let Some(certified) = self.fresh(&whole, stop)? {
+                return Ok(Ok(Fitted { drive: whole.drive, certified, supposed: whole.supposed }));
+            }
         }
         if let Some(at) = self.suppose_until_safe(&mut whole, stop)? {
             return Ok(Err(Unfit(joint::parted(way.drive, at))));

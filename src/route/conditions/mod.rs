@@ -7,6 +7,7 @@ mod failing;
 mod fit;
 mod joint;
 mod less;
+mod level;
 mod parts;
 mod report;
 mod search;
@@ -59,7 +60,7 @@ pub struct Condition {
 /// The place of a condition.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ConditionAt {
-    /// Along edges that follow each other, in driving order.
+    /// Along edges of one road, in driving order.
     Road(Vec<u32>),
     /// At the corner between an edge that ends and one that begins at a node.
     Corner {

@@ -5,20 +5,18 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashSet;
 
+use super::level::roads;
 use super::turn_need::PAVED_M;
 use super::{Condition, ConditionAt, width_of};
 use crate::certify::KERBS_M;
 use crate::evidence::Quantity;
-use crate::network::{self, Network, Road};
+use crate::network::{self, Network};
 use crate::osm::LonLat;
 use crate::osm::facts::Policy;
 use crate::turns::Kerbs;
-use crate::words::Named;
 
 /// Less than what a road lacks, as shares of it.
 const WIDTH_SHARES: [f64; 3] = [0.25, 0.5, 0.75];
-/// Widths of one road that differ by no more than this become one condition, metres.
-const LEVEL_M: f64 = 0.5;
 /// Widths are supposed in these parts of a metre, and kerb radii in these.
 const WIDTHS: f64 = 20.0;
 const RADII: f64 = 2.0;
@@ -29,7 +27,7 @@ pub(in crate::route) struct Suppositions {
     /// What is known of places anyway.
     base: Arc<network::Site>,
     /// By edge and strip, metres.
-    widths_m: BTreeMap<(u32, Policy), f64>,
+    pub(super) widths_m: BTreeMap<(u32, Policy), f64>,
     /// By node, edge that ends and edge that begins there, metres.
     kerbs_m: BTreeMap<(i64, [u32; 2]), f64>,
     /// By node: the position of the node, and how far around it everything is paved, metres.
@@ -184,48 +182,6 @@ impl Suppositions {
         }
     }
 
-    /// Gives edges of a way that follow each other on one road the greatest of their widths, if these differ little; and a lane that is
-    /// all of its direction one width. There is less to measure.
-    pub(in crate::route) fn level_roads(&mut self, network: &Network, way: &[u32]) {
-        let strokes = network.strokes_of_edges();
-        for &edge in way {
-            let strips = [Policy::Lane, Policy::Direction];
-            let [Some(lane_m), Some(direction_m)] = strips.map(|strip| self.widths_m.get(&(edge, strip)).copied())
-            else {
-                continue;
-            };
-            let [lane, direction] = strips.map(|strip| self.known_width_m(network, edge, strip));
-            if lane == direction {
-                self.widths_m.remove(&(edge, Policy::Direction));
-                self.widths_m.insert((edge, Policy::Lane), lane_m.max(direction_m));
-            }
-        }
-        for &strip in <Policy as Named>::ALL {
-            let mut run: Vec<u32> = Vec::new();
-            for (i, &edge) in way.iter().enumerate() {
-                let follows = i > 0 && run.last() == Some(&way[i - 1]) && goes_on(network, &strokes, way[i - 1], edge);
-                let Some(&width_m) = self.widths_m.get(&(edge, strip)) else { continue };
-                let near = |other: &u32| {
-                    self.widths_m.get(&(*other, strip)).is_some_and(|other_m| (other_m - width_m).abs() <= LEVEL_M)
-                };
-                if !(follows && run.iter().all(near)) {
-                    self.level(&run, strip);
-                    run.clear();
-                }
-                run.push(edge);
-            }
-            self.level(&run, strip);
-        }
-    }
-
-    fn level(&mut self, run: &[u32], strip: Policy) {
-        let widths = run.iter().filter_map(|&edge| self.widths_m.get(&(edge, strip)).copied());
-        let Some(most_m) = widths.reduce(f64::max) else { return };
-        run.iter().for_each(|&edge| {
-            self.widths_m.insert((edge, strip), most_m);
-        });
-    }
-
     /// Gives both ways round a corner the greater of their radii: there is one kerb.
     pub(in crate::route) fn level_corners(&mut self, network: &Network) {
         let kerb = |&(node, between): &(i64, [u32; 2])| {
@@ -263,42 +219,27 @@ impl Suppositions {
         corners.chain(paved).collect()
     }
 
-    /// The conditions in the order of a way, on a network on which nothing is supposed. Edges that follow each other on one road and
-    /// need the same are one condition.
+    /// The conditions in the order of a way, on a network on which nothing is supposed. Edges of one road that need the same are one
+    /// condition, also where edges between them need nothing.
     pub(in crate::route) fn conditions(&self, network: &Network, kerbs: &Kerbs, way: &[u32]) -> Vec<Condition> {
-        let strokes = network.strokes_of_edges();
         let mut found: Vec<(usize, Condition)> = Vec::new();
-        for (i, edge) in way.iter().enumerate() {
+        // By road, strip and width: the place of its condition.
+        let mut of_road: BTreeMap<(usize, Policy, u64), usize> = BTreeMap::new();
+        for ((i, edge), road) in way.iter().enumerate().zip(roads(network, way)) {
             for (&(_, strip), &needed_m) in self.widths_m.range((*edge, Policy::Lane)..=(*edge, Policy::Carriageway)) {
                 let Some(assumed_m) = self.known_width_m(network, *edge, strip) else { continue };
-                let quantity = width_of(strip);
-                let follows = |(_, condition): &&mut (usize, Condition)| {
-                    let ConditionAt::Road(edges) = &condition.at else { return false };
-                    condition.quantity == quantity
-                        && condition.needed_m == needed_m
-                        && i > 0
-                        && edges.last() == way.get(i - 1)
-                        && goes_on(network, &strokes, way[i - 1], *edge)
-                };
-                match found.iter_mut().rev().find(follows) {
-                    Some((_, condition)) => {
-                        condition.assumed_m = condition.assumed_m.map(|known_m| known_m.min(assumed_m));
-                        if let ConditionAt::Road(edges) = &mut condition.at {
-                            edges.push(*edge);
-                        }
+                let place = *of_road.entry((road, strip, needed_m.to_bits())).or_insert(found.len());
+                if let Some((_, condition)) = found.get_mut(place) {
+                    condition.assumed_m = condition.assumed_m.map(|known_m| known_m.min(assumed_m));
+                    if let ConditionAt::Road(edges) = &mut condition.at
+                        && !edges.contains(edge)
+                    {
+                        edges.push(*edge);
                     }
-                    None => {
-                        found.push((
-                            i,
-                            Condition {
-                                quantity,
-                                at: ConditionAt::Road(vec![*edge]),
-                                assumed_m: Some(assumed_m),
-                                needed_m,
-                            },
-                        ));
-                    }
+                    continue;
                 }
+                let at = ConditionAt::Road(vec![*edge]);
+                found.push((i, Condition { quantity: width_of(strip), at, assumed_m: Some(assumed_m), needed_m }));
             }
         }
         for (&(node, between), &needed_m) in &self.kerbs_m {
@@ -347,15 +288,4 @@ pub(in crate::route) fn disc(at: LonLat, radius_m: f64) -> Vec<LonLat> {
         LonLat { lon_e7: e7(lon + east), lat_e7: e7(lat + degrees * sin) }
     };
     (0..=CORNERS).map(corner).collect()
-}
-
-/// Whether one edge goes on in another one: under the same name, as the same way, or on the same stroke.
-fn goes_on(network: &Network, strokes: &[u32], a: u32, b: u32) -> bool {
-    let stroke = |edge: u32| strokes.get(edge as usize).filter(|&&stroke| stroke != u32::MAX);
-    let road = |edge: u32| network.edges.get(edge as usize).map(|edge| network.road(edge));
-    let same = |a: &Road, b: &Road| {
-        a.way_id == b.way_id
-            || ((a.name.is_some() || a.reference.is_some()) && (&a.name, &a.reference) == (&b.name, &b.reference))
-    };
-    road(a).zip(road(b)).is_some_and(|(a, b)| same(a, b)) || stroke(a).is_some_and(|of_a| stroke(b) == Some(of_a))
 }
