@@ -211,17 +211,24 @@ fn title(network: &Network, edge: &Edge) -> String {
 }
 
 impl TurnExplanation {
-    /// The turn in one line: the two roads, the angle and the kerb.
+    /// The turn in one line: the two roads, the angle, the kerb and the islands.
     #[must_use]
     pub fn title(&self) -> String {
         let [from, to] = &self.roads;
         let count = self.facts.through.len();
+        let islands = match self.corridors.as_ref().map_or(0, |made| made.islands.len()) {
+            0 => String::new(),
+            1 => ", a traffic island in its area".to_owned(),
+            many => format!(", {many} traffic islands in its area"),
+        };
         match self.passage {
             Some(PassageKind::Roundabout) => {
                 let arcs = if count == 1 { "arc" } else { "arcs" };
-                return format!("{from} → {to}: over a roundabout, {count} {arcs}");
+                return format!("{from} → {to}: over a roundabout, {count} {arcs}{islands}");
             }
-            Some(PassageKind::Complex) => return format!("{from} → {to}: one movement over {} nodes", count + 1),
+            Some(PassageKind::Complex) => {
+                return format!("{from} → {to}: one movement over {} nodes{islands}", count + 1);
+            }
             None => {}
         }
         let angle = self.facts.angle_deg;
@@ -235,6 +242,6 @@ impl TurnExplanation {
             (None, Some(KerbSource::Mapped)) => ", kerb as mapped".to_owned(),
             _ => String::new(),
         };
-        format!("{} → {}: {:.0}° to the {side}{kerb}", self.roads[0], self.roads[1], angle.abs())
+        format!("{from} → {to}: {:.0}° to the {side}{kerb}{islands}", angle.abs())
     }
 }

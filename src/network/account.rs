@@ -50,8 +50,12 @@ pub struct NetworkAccount {
     pub crowded_nodes: u64,
     /// Mapped surfaces and islands read.
     pub areas_read: u64,
-    /// Areas at junctions.
+    /// Surfaces at junctions, and islands near roads.
     pub areas_kept: u64,
+    /// Islands among them.
+    pub islands_kept: u64,
+    /// Islands that lack nodes or cross themselves, taken as the convex hull of the nodes there are.
+    pub islands_widened: u64,
     /// Areas left out: the file lacks some of their nodes.
     pub areas_cut: u64,
     /// Areas left out: the ring crosses itself or encloses nothing.
@@ -143,6 +147,8 @@ impl NetworkAccount {
             ("area", "kept", "", self.areas_kept),
             ("area", "left_out", "missing_node", self.areas_cut),
             ("area", "left_out", "invalid", self.areas_invalid),
+            ("area", "noted", "island", self.islands_kept),
+            ("area", "noted", "island_widened", self.islands_widened),
             (
                 "area",
                 "left_out",

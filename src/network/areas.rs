@@ -1,16 +1,20 @@
-//! Mapped surfaces of junctions: the closed ways around each node, and the islands on them.
+//! Mapped surfaces of junctions: the closed ways around each node; and traffic islands near roads.
 //!
-//! An area is kept only if it is whole: every node is in the file, and the ring does not cross itself. Areas around no
-//! junction are left out. A node on an area's edge is outside the area.
+//! A surface is kept only if it is whole: every node is in the file, and the ring does not cross itself. Surfaces around no
+//! junction are left out. A node on a surface's edge is outside the surface. An island takes road away, so one that is not whole
+//! is kept as the convex hull of what is known of it.
 
-use geo::{LineString, Polygon, Validation};
+use geo::{ConvexHull, LineString, MultiPoint, Point, Polygon, Validation};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::{Network, NetworkAccount};
+use super::{EARTH_RADIUS_M, Network, NetworkAccount};
 use crate::osm::facts::AreaKind;
 use crate::osm::{LonLat, NodeTable, RoadArea};
 
-/// The surface of roads at a junction, or an island on it.
+/// Islands farther from every road than this are left out, metres. Roads and measured surfaces reach less far from their lines.
+const NEAR_ROAD_M: f64 = 100.0;
+
+/// The surface of roads at a junction, or an island.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Area {
     /// OSM way id.
@@ -28,8 +32,10 @@ pub struct Areas {
     all: Vec<Area>,
     /// By node of the network: indices into `all` of the surfaces around it.
     around: FxHashMap<i64, Vec<u32>>,
-    /// Islands: indices into `all`.
-    islands: Vec<u32>,
+    /// Islands from south to north: their extents, and indices into `all`.
+    islands: Vec<(Extent, u32)>,
+    /// The greatest extent of an island from south to north, 1e-7 degree.
+    tallest: i32,
 }
 
 impl Areas {
@@ -44,11 +50,11 @@ impl Areas {
         nodes.dedup();
         let (mut around, mut islands) = (FxHashMap::<i64, Vec<u32>>::default(), Vec::new());
         for (index, area) in (0..).zip(&all) {
+            let Some(extent) = Extent::of(&area.ring) else { continue };
             if area.kind == AreaKind::Island {
-                islands.push(index);
+                islands.push((extent, index));
                 continue;
             }
-            let Some(extent) = Extent::of(&area.ring) else { continue };
             let first = nodes.partition_point(|node| node.0 < extent.south);
             let end = nodes.partition_point(|node| node.0 <= extent.north);
             for &(lat_e7, lon_e7, id) in &nodes[first..end] {
@@ -57,7 +63,9 @@ impl Areas {
                 }
             }
         }
-        Self { all, around, islands }
+        islands.sort_unstable_by_key(|&(extent, index)| (extent.south, index));
+        let tallest = islands.iter().map(|(extent, _)| extent.north.saturating_sub(extent.south)).max().unwrap_or(0);
+        Self { all, around, islands, tallest }
     }
 
     /// All areas, sorted by way id.
@@ -71,46 +79,80 @@ impl Areas {
         self.around.get(&node).into_iter().flatten().filter_map(|&index| self.all.get(index as usize))
     }
 
-    /// The islands that may lie on a surface.
-    pub fn islands<'a>(&'a self, surface: &Area) -> impl Iterator<Item = &'a Area> {
-        let extent = Extent::of(&surface.ring);
-        let near = move |area: &&Area| match (extent, Extent::of(&area.ring)) {
-            (Some(a), Some(b)) => a.meets(b),
-            _ => false,
-        };
-        self.islands.iter().filter_map(|&index| self.all.get(index as usize)).filter(near)
+    /// Whether there are no islands at all.
+    #[must_use]
+    pub fn without_islands(&self) -> bool {
+        self.islands.is_empty()
+    }
+
+    /// The islands that may lie within the box around the given places, from south to north.
+    pub fn islands(&self, places: &[LonLat]) -> impl Iterator<Item = &Area> {
+        let around = Extent::of(places);
+        self.islands_in(around).filter_map(|index| self.all.get(index as usize))
+    }
+
+    fn islands_in(&self, around: Option<Extent>) -> impl Iterator<Item = u32> {
+        let range = around.map_or(0..0, |around| {
+            let lowest = around.south.saturating_sub(self.tallest);
+            self.islands.partition_point(|island| island.0.south < lowest)
+                ..self.islands.partition_point(|island| island.0.south <= around.north)
+        });
+        let meets = move |island: &&(Extent, u32)| around.is_some_and(|around| around.meets(island.0));
+        self.islands[range].iter().filter(meets).map(|island| island.1)
     }
 }
 
-/// Keeps the areas of an extract that lie around the network's nodes.
+/// Keeps the surfaces of an extract that lie around the network's nodes, and the islands near its roads.
 pub(super) fn resolve(network: &mut Network, areas: Vec<RoadArea>, nodes: &NodeTable, account: &mut NetworkAccount) {
     account.areas_read = areas.len() as u64;
-    let mut whole = Vec::new();
+    let mut usable = Vec::new();
     for RoadArea { id: way_id, kind, refs } in areas {
-        let Some(ring) = refs.iter().map(|&node| nodes.place(node)).collect::<Option<Vec<LonLat>>>() else {
-            account.areas_cut += 1;
-            continue;
+        let known: Vec<LonLat> = refs.iter().filter_map(|&node| nodes.place(node)).collect();
+        let (cut, simple) = (known.len() < refs.len(), is_simple(&known));
+        let ring = match kind {
+            _ if !cut && simple => Some(known),
+            AreaKind::Island => hull(&known),
+            AreaKind::Road(_) => None,
         };
-        if is_simple(&ring) {
-            whole.push(Area { way_id, kind, ring });
-        } else {
-            account.areas_invalid += 1;
+        match ring {
+            Some(ring) => {
+                account.islands_widened += u64::from(cut || !simple);
+                usable.push(Area { way_id, kind, ring });
+            }
+            None if cut => account.areas_cut += 1,
+            None => account.areas_invalid += 1,
         }
     }
-    let found = Areas::new(whole, network);
+    let found = Areas::new(usable, network);
     let mut used: FxHashSet<u32> = found.around.values().flatten().copied().collect();
-    let surfaces: Vec<u32> = used.iter().copied().collect();
-    for surface in surfaces.iter().filter_map(|&index| found.all.get(index as usize)) {
-        let extent = Extent::of(&surface.ring);
-        let on_it = |&index: &u32| {
-            let other = found.all.get(index as usize).and_then(|island| Extent::of(&island.ring));
-            extent.zip(other).is_some_and(|(a, b)| a.meets(b))
-        };
-        used.extend(found.islands.iter().copied().filter(on_it));
+    if !found.without_islands() {
+        used.extend(near_roads(&found, network));
     }
     let kept = (0..).zip(found.all).filter(|(index, _)| used.contains(index)).map(|(_, area)| area).collect::<Vec<_>>();
     account.areas_kept = kept.len() as u64;
+    account.islands_kept = kept.iter().filter(|area| area.kind == AreaKind::Island).count() as u64;
     network.areas = Areas::new(kept, network);
+}
+
+/// The islands near any segment of any road.
+fn near_roads(areas: &Areas, network: &Network) -> FxHashSet<u32> {
+    let mut near = FxHashSet::default();
+    for edge in &network.edges {
+        let line: Vec<LonLat> = network.positions(edge).collect();
+        for segment in line.windows(2) {
+            near.extend(areas.islands_in(Extent::of(segment).map(|extent| extent.wider_by(NEAR_ROAD_M))));
+        }
+    }
+    near
+}
+
+/// The convex hull of places as a closed ring. `None` if they enclose nothing.
+fn hull(places: &[LonLat]) -> Option<Vec<LonLat>> {
+    let points: MultiPoint<f64> =
+        places.iter().map(|at| Point::new(f64::from(at.lon_e7), f64::from(at.lat_e7))).collect();
+    let corner = |at: &geo::Coord| LonLat { lon_e7: at.x as i32, lat_e7: at.y as i32 };
+    let ring: Vec<LonLat> = points.convex_hull().exterior().coords().map(corner).collect();
+    is_simple(&ring).then_some(ring)
 }
 
 /// Node and position of both ends of every edge.
@@ -125,10 +167,13 @@ fn ends(network: &Network) -> impl Iterator<Item = (i64, LonLat)> + '_ {
 /// Whether a ring encloses an area and does not touch itself.
 fn is_simple(ring: &[LonLat]) -> bool {
     let corners: LineString = ring.iter().map(|at| at.degrees()).collect();
-    Polygon::new(corners, Vec::new()).is_valid()
+    let twice = |w: &[LonLat]| {
+        i128::from(w[0].lon_e7) * i128::from(w[1].lat_e7) - i128::from(w[1].lon_e7) * i128::from(w[0].lat_e7)
+    };
+    ring.windows(2).map(twice).sum::<i128>() != 0 && Polygon::new(corners, Vec::new()).is_valid()
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Extent {
     west: i32,
     south: i32,
@@ -140,6 +185,20 @@ impl Extent {
     fn of(ring: &[LonLat]) -> Option<Self> {
         let (lons, lats) = (ring.iter().map(|at| at.lon_e7), ring.iter().map(|at| at.lat_e7));
         Some(Self { west: lons.clone().min()?, south: lats.clone().min()?, east: lons.max()?, north: lats.max()? })
+    }
+
+    /// The extent with this much around it.
+    fn wider_by(self, metres: f64) -> Self {
+        let north = (metres / EARTH_RADIUS_M).to_degrees() * 1e7;
+        let lat = f64::from(self.south).abs().max(f64::from(self.north).abs()) * 1e-7;
+        let east = (north / lat.to_radians().cos().max(1e-6)).min(3.6e9);
+        let (east, north) = (east as i32, north as i32);
+        Self {
+            west: self.west.saturating_sub(east),
+            south: self.south.saturating_sub(north),
+            east: self.east.saturating_add(east),
+            north: self.north.saturating_add(north),
+        }
     }
 
     fn meets(self, other: Self) -> bool {

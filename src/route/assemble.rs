@@ -15,7 +15,7 @@ use crate::corridor::{CentrelineError, Corridor, Frame, FrameError, open_ends};
 use crate::network::{Movement, MovementKind, Movements, Network, PassageKind};
 use crate::osm::LonLat;
 use crate::stop::{Stop, Stopped};
-use crate::turns::{Joint, Reach, StrokeLine};
+use crate::turns::{Joint, Reach, StrokeLine, cut_out_of_route};
 use crate::verdict::UnknownReason;
 
 /// The greatest spacing of the route's stations, metres, as on strokes. A route with a sharp turn has the turn's spacing.
@@ -173,7 +173,9 @@ pub fn assemble(
     }
     let finest_m = between.iter().map(|turn| turn.spacing_m).fold(SPACING_M, f64::min);
     stop.check()?;
-    string.finish(frame, finest_m.max(LEAST_SPACING_M), &between)
+    let mut path = string.finish(frame, finest_m.max(LEAST_SPACING_M), &between)?;
+    cut_out_of_route(network, frame, &mut path.corridor.areas)?;
+    Ok(path)
 }
 
 /// The movement from one edge into the next, or over the arcs between them. A way may lead over arcs that are no passage of the

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use geo::MultiPolygon;
+use geo::{MultiPolygon, Polygon};
 
 use super::area::{opened, rings};
 use super::arm::Arm;
@@ -10,12 +10,15 @@ use super::arms::{Arms, PathLine};
 use super::code::PathCode;
 use super::complex::Complex;
 use super::ends::Ends;
+use super::islands;
 use super::junction::Junction;
 use super::path::STEP_M;
 use super::rays::{Boundary, Widths};
 use super::roundabout::Passage;
 use super::{Reach, TurnPath, family};
 use crate::corridor::{Area, Frame};
+use crate::network::Network;
+use crate::verdict::UnknownReason;
 
 /// A turn whose paths are made from codes.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,8 +27,10 @@ pub struct TurnCorridors {
     pub frame: Frame,
     /// Angle between the strokes' directions at the node, radians, positive left.
     pub turn_rad: f64,
-    /// The drivable area.
+    /// The drivable area, without the islands.
     pub area: MultiPolygon,
+    /// The mapped traffic islands that the area would have in it.
+    pub islands: Vec<Polygon>,
     /// Assumed radius of the kerb return, metres. `None` if the corner is too acute or too flat, or its surface is
     /// mapped.
     pub kerb_radius_m: Option<f64>,
@@ -44,24 +49,32 @@ enum Way {
 }
 
 impl TurnCorridors {
-    pub(super) fn at(junction: Junction, frame: Frame) -> Self {
+    pub(super) fn at(junction: Junction, network: &Network, frame: Frame) -> Result<Self, UnknownReason> {
         let area = junction.area();
-        Self::on(area, frame, junction.arms.turn_rad(), Way::Direct(Box::new(junction.arms)))
+        Self::on(area, (network, frame), junction.arms.turn_rad(), Way::Direct(Box::new(junction.arms)))
     }
 
-    pub(super) fn across(complex: Complex, frame: Frame) -> Self {
+    pub(super) fn across(complex: Complex, network: &Network, frame: Frame) -> Result<Self, UnknownReason> {
         let area = complex.area();
-        Self::on(area, frame, complex.arms.turn_rad(), Way::Direct(Box::new(complex.arms)))
+        Self::on(area, (network, frame), complex.arms.turn_rad(), Way::Direct(Box::new(complex.arms)))
     }
 
-    pub(super) fn over(passage: Passage, frame: Frame) -> Self {
-        Self::on(passage.area(), frame, passage.turn_rad(), Way::Passage(Box::new(passage)))
+    pub(super) fn over(passage: Passage, network: &Network, frame: Frame) -> Result<Self, UnknownReason> {
+        Self::on(passage.area(), (network, frame), passage.turn_rad(), Way::Passage(Box::new(passage)))
     }
 
-    fn on((area, kerb_radius_m): (MultiPolygon, Option<f64>), frame: Frame, turn_rad: f64, way: Way) -> Self {
-        let rings = Arc::new(rings(&area));
+    fn on(
+        (area, kerb_radius_m): (MultiPolygon, Option<f64>),
+        (network, frame): (&Network, Frame),
+        turn_rad: f64,
+        way: Way,
+    ) -> Result<Self, UnknownReason> {
         let opened = opened(&area, way.arms(), way.reach());
-        Self { frame, turn_rad, area, kerb_radius_m, rings, opened, way }
+        // An island that cannot be placed may lie anywhere.
+        let islands = islands::touching(network, frame, &opened).map_err(|_| UnknownReason::Geometry)?;
+        let (area, opened) = (islands::without(area, &islands), islands::without(opened, &islands));
+        let rings = Arc::new(rings(&area));
+        Ok(Self { frame, turn_rad, area, islands, kerb_radius_m, rings, opened, way })
     }
 
     /// The path with a code. `None` if the turn has no such path.
@@ -98,7 +111,8 @@ impl TurnCorridors {
             Way::Direct(arms) => arms.strokes,
             Way::Passage(passage) => passage.strokes,
         };
-        let ends = Ends { arms: self.arms(), strokes, stations: line.joints, reach: self.reach() };
+        let ends =
+            Ends { arms: self.arms(), strokes, stations: line.joints, reach: self.reach(), islands: &self.islands };
         ends.path(code, &line.points, widths, &self.rings)
     }
 

@@ -19,7 +19,10 @@ use crate::network::{Edge, Network, Road};
 const MOUTH_M: f64 = 15.0;
 /// Least angle at which two roads share a part, radians. At smaller angles they run side by side.
 const LEAST_ANGLE_RAD: f64 = 0.5;
-
+/// Most roads at a node, and most nodes of a crossing, whose parts count. More are no crossing that was built; the area without
+/// their parts is smaller.
+const MOST_ROADS: usize = 16;
+pub(super) const MOST_NODES: usize = 32;
 /// Least angle between two mouths of a road that goes on, radians; and how far each is extended over the node, metres.
 const GOES_ON_RAD: f64 = 2.36;
 const JOINT_M: f64 = 2.0;
@@ -104,6 +107,9 @@ fn mouths<'a>(network: &'a Network, node: i64, own: [u32; 2], frame: Frame, para
         if !pieces.iter().any(|known| known.road == edge.road && known.shape == edge.shape) {
             pieces.push(edge);
         }
+    }
+    if pieces.len() > MOST_ROADS {
+        return Vec::new();
     }
     let of = |edge: &'a Edge| {
         let own = own.iter().any(|own| own.road == edge.road && own.shape == edge.shape);

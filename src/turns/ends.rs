@@ -4,7 +4,10 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use geo::Polygon;
+
 use super::arm::Arm;
+use super::islands;
 use super::path::{self, STEP_M};
 use super::rays::Widths;
 use super::{Joint, Reach, TurnPath};
@@ -28,6 +31,8 @@ pub(super) struct Ends<'a> {
     /// One station per arm.
     pub(super) stations: [usize; 2],
     pub(super) reach: Reach,
+    /// Islands that the turn's area lacks.
+    pub(super) islands: &'a [Polygon],
 }
 
 impl Ends<'_> {
@@ -81,6 +86,7 @@ impl Ends<'_> {
         corridor.areas.extend(span.clone());
         // A road may end with the corridor: its area ends there, too.
         open_ends(&mut corridor, [from.complete[0] && lead.start == 0, to.complete[1] && tail.end == to.len()]);
+        islands::cut_out(&mut corridor.areas, self.islands);
         Some(TurnPath {
             code,
             area: span,

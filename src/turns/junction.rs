@@ -7,7 +7,7 @@ use super::TurnParams;
 use super::area::Ground;
 use super::arm::{Arm, StrokeLine};
 use super::arms::{Arms, MEET_M};
-use super::crossing::{parts, passed};
+use super::crossing::{MOST_NODES, parts, passed};
 use super::surface::{beside_the_map, surface};
 use crate::corridor::Frame;
 use crate::network::{Movement, Network};
@@ -96,6 +96,7 @@ fn crossing(
     params: &TurnParams,
     surface: Option<&MultiPolygon>,
 ) -> Vec<Polygon> {
+    let mut nodes = 1;
     let mut all = parts(network, [movement.from, movement.to], frame, params, surface);
     for (line, edge, arrives) in [(lines[0], movement.from, true), (lines[1], movement.to, false)] {
         let spans = &line.made.spans;
@@ -106,7 +107,8 @@ fn crossing(
             let at = after.stations.start;
             // The turn's own node is at the end or at the beginning of its edge.
             let other = if arrives { before.edge != edge } else { after.edge != edge };
-            if other && at.abs_diff(node) <= near {
+            if other && at.abs_diff(node) <= near && nodes < MOST_NODES {
+                nodes += 1;
                 all.extend(passed(network, [before.edge, after.edge], frame, params));
             }
         }

@@ -13,6 +13,7 @@
 //! | `arm` | a stroke near the junction, with the edges of the road |
 //! | `kerbs` | assumed kerb radii, `data/kerbs.toml` |
 //! | `surface` | the junction's mapped surface |
+//! | `islands` | mapped islands, which every area lacks |
 //! | `area` | the drivable area as polygons |
 //! | `crossing` | what the other roads of the junction add to it |
 //! | `path` | transition, arc, transition; lane shifts |
@@ -41,6 +42,7 @@ mod crossing;
 mod ends;
 mod facts;
 mod family;
+mod islands;
 mod junction;
 mod kerbs;
 mod path;
@@ -54,6 +56,7 @@ use std::ops::Range;
 pub use arm::StrokeLine;
 pub use corridors::TurnCorridors;
 pub use facts::{KerbSource, TurnFacts, turn_facts};
+pub(crate) use islands::cut_out_of_route;
 pub use kerbs::Kerbs;
 pub use planner::{Planned, Planner};
 
@@ -250,14 +253,14 @@ pub fn turn_on<'l>(
     match (network.passage_kind(through), through.first()) {
         (Some(PassageKind::Roundabout), Some(&arc)) => {
             let passage = roundabout::Passage::new(network, over, [from, line(arc)?, to], policy, params, reach)?;
-            Ok(TurnCorridors::over(passage, frame))
+            TurnCorridors::over(passage, network, frame)
         }
         (Some(PassageKind::Complex), _) => {
-            Ok(TurnCorridors::across(complex::Complex::new(network, over, line, policy, params, reach)?, frame))
+            TurnCorridors::across(complex::Complex::new(network, over, line, policy, params, reach)?, network, frame)
         }
         _ => {
             let junction = junction::Junction::new(network, movement, [from, to], frame, policy, params, reach)?;
-            Ok(TurnCorridors::at(junction, frame))
+            TurnCorridors::at(junction, network, frame)
         }
     }
 }

@@ -1,9 +1,9 @@
-//! The mapped surface of a junction around a node, less the islands on it.
+//! The mapped surface of a junction around a node. Islands on it are taken out later, with all others (`islands`).
 //!
 //! A surface counts only if it has the class of one of the turn's roads: a surface of another class may be on another
 //! level.
 
-use geo::{BooleanOps, MultiPolygon, Polygon, unary_union};
+use geo::{MultiPolygon, Polygon, unary_union};
 
 use crate::corridor::Frame;
 use crate::network::{Area, Network, Road};
@@ -21,11 +21,8 @@ pub(super) fn surface(network: &Network, node: i64, roads: [&Road; 2], frame: Fr
         let corners = frame.forward(&area.ring).ok()?;
         Some(super::area::polygon(&corners))
     };
-    let areas: Vec<&Area> = surfaces(network, node, roads).collect();
-    let roads: Vec<Polygon> = areas.iter().copied().map(polygon).collect::<Option<_>>()?;
-    let islands = areas.iter().flat_map(|area| network.areas.islands(area));
-    let islands: Vec<Polygon> = islands.map(polygon).collect::<Option<_>>()?;
-    (!roads.is_empty()).then(|| unary_union(&roads).difference(&unary_union(&islands)))
+    let roads: Vec<Polygon> = surfaces(network, node, roads).map(polygon).collect::<Option<_>>()?;
+    (!roads.is_empty()).then(|| unary_union(&roads))
 }
 
 /// What is paved at a node beside the map, in a metric frame. It counts beside the strips and kerb returns of the roads.

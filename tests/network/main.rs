@@ -9,6 +9,7 @@ mod corners;
 mod corridor_extracts;
 mod demo_region;
 mod graph_properties;
+mod islands;
 mod malformed;
 mod maps;
 mod needs;

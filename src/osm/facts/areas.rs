@@ -1,7 +1,8 @@
-//! Closed ways that map a road's surface (`area:highway`), and traffic islands on it.
+//! Closed ways that map a road's surface (`area:highway`), and traffic islands.
 //!
-//! Kept are surfaces of road classes that a lorry uses, on the ground, if their tags admit lorries. In doubt an area is
-//! left out, and corners there are handled as unmapped.
+//! Kept are surfaces of road classes that a lorry uses, on the ground, if their tags admit lorries. In doubt a surface is
+//! left out, and corners there are handled as unmapped. In doubt an island is kept, on whatever level it may be: it only takes
+//! road away.
 
 use super::class::road_class;
 use super::limits::LegalTags;
@@ -13,7 +14,7 @@ use super::{Direction, Permission, RoadClass, Tags};
 pub enum AreaKind {
     /// The surface of roads of this class (`area:highway=primary`, or its `_link`).
     Road(RoadClass),
-    /// An island that must not be driven on (`area:highway=traffic_island`).
+    /// An island that must not be driven on (`area:highway=traffic_island`, `traffic_calming=island`).
     Island,
 }
 
@@ -23,10 +24,13 @@ const OTHER_LEVELS: [&str; 5] = ["bridge", "tunnel", "covered", "level", "layer"
 /// The kind of area from a closed way's tags. `None` if the way is no relevant area.
 #[must_use]
 pub fn area_kind(tags: &Tags<'_>) -> Option<AreaKind> {
-    let value = tags.iter().find(|(key, _)| *key == "area:highway")?.1;
-    if value == "traffic_island" {
+    let value = |wanted: &str| tags.iter().find(|(key, _)| *key == wanted).map(|tag| tag.1);
+    // A closed way with `highway` is a path around something, unless it says otherwise.
+    let ground = value("highway").is_none() || value("area") == Some("yes");
+    if value("area:highway") == Some("traffic_island") || value("traffic_calming") == Some("island") && ground {
         return Some(AreaKind::Island);
     }
+    let value = value("area:highway")?;
     let class = road_class(value).ok()?;
     if matches!(class, RoadClass::Track | RoadClass::Busway) || value == "road" {
         return None;
@@ -63,6 +67,12 @@ mod tests {
             (&[("surface", "asphalt"), ("area:highway", "primary_link")], road(RoadClass::Primary)),
             (&[("area:highway", "service"), ("layer", "0")], road(RoadClass::Service)),
             (&[("area:highway", "traffic_island"), ("layer", "1")], Some(AreaKind::Island)),
+            (&[("traffic_calming", "island"), ("surface", "grass")], Some(AreaKind::Island)),
+            (&[("traffic_calming", "island"), ("highway", "footway"), ("area", "yes")], Some(AreaKind::Island)),
+            (&[("traffic_calming", "island"), ("area:highway", "primary")], Some(AreaKind::Island)),
+            (&[("traffic_calming", "island"), ("highway", "footway")], None),
+            (&[("traffic_calming", "painted_island")], None),
+            (&[("traffic_calming", "table")], None),
             (&[("area:highway", "footway")], None),
             (&[("area:highway", "yes")], None),
             (&[("area:highway", "track")], None),
