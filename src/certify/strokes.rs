@@ -148,7 +148,7 @@ fn with_corridor(job: &Job<'_>, stroke: &Stroke, made: &StrokeCorridor) -> Strok
         .flat_map(|(vehicle, row)| made.spans.iter().zip(&row.spans).map(move |(span, result)| (vehicle, span, result)))
         .filter_map(|(vehicle, span, result)| {
             let edge = job.network.edges.get(span.edge as usize)?;
-            let verdict = verdict(edge, &job.models[vehicle], span.unknown, Some(result));
+            let verdict = verdict((job.network, edge), &job.models[vehicle], span.unknown, Some(result));
             let measured = span.unknown.is_none().then(|| measured(made, span, result)).flatten();
             let conclusion = Conclusion { verdict, measured };
             Some((vehicle, EdgeCertificate { edge: span.edge, conclusion, need_width_m: None }))
@@ -207,7 +207,8 @@ fn without_corridor(job: &Job<'_>, stroke: &Stroke, reason: UnknownReason) -> St
     let edges = &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize];
     let certificates = (0..job.models.len()).flat_map(|vehicle| edges.iter().map(move |&edge| (vehicle, edge))).map(
         |(vehicle, edge)| {
-            let verdict = verdict(&network.edges[edge as usize], &job.models[vehicle], Some(reason), None);
+            let at = (network, &network.edges[edge as usize]);
+            let verdict = verdict(at, &job.models[vehicle], Some(reason), None);
             (vehicle, EdgeCertificate::bare(edge, verdict))
         },
     );
@@ -234,12 +235,12 @@ fn measured(made: &StrokeCorridor, span: &EdgeSpan, result: &SpanResult) -> Opti
 
 /// Combines the verdicts. A prohibition comes first, then a missing corridor. An unreadable limit only replaces `safe`.
 pub(crate) fn verdict(
-    edge: &Edge,
+    (network, edge): (&Network, &Edge),
     model: &Model,
     unknown: Option<UnknownReason>,
     result: Option<&SpanResult>,
 ) -> Verdict {
-    let legal = edge.legal.forbids(&model.vehicle);
+    let legal = network.legal(edge).forbids(&model.vehicle);
     if let Some(forbidden @ Verdict::Forbidden(_)) = legal {
         return forbidden;
     }

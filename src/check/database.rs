@@ -149,7 +149,7 @@ impl SetClaim<'_> {
         let Some(edge) = self.network.edges.get(row.edge as usize) else {
             return Outcome::Malformed("there is no such edge".to_owned());
         };
-        let expected = expected(edge, self.vehicle, unknown, row);
+        let expected = expected((self.network, edge), self.vehicle, unknown, row);
         if unknown.is_some() && row.certificate.has_numbers() {
             return wrong("it has numbers, but nothing can be computed there".to_owned());
         }
@@ -209,8 +209,13 @@ fn unfit(row: &EdgeRow, why: &str) -> Outcome {
 }
 
 /// The verdict that follows from legal limits, from whether there is a corridor, and from the row's own numbers.
-fn expected(edge: &Edge, vehicle: &Vehicle, unknown: Option<UnknownReason>, row: &EdgeRow) -> Verdict {
-    let legal = edge.legal.forbids(vehicle);
+fn expected(
+    (network, edge): (&Network, &Edge),
+    vehicle: &Vehicle,
+    unknown: Option<UnknownReason>,
+    row: &EdgeRow,
+) -> Verdict {
+    let legal = network.legal(edge).forbids(vehicle);
     match (legal, edge.barred, unknown) {
         (Some(forbidden @ Verdict::Forbidden(_)), ..) => return forbidden,
         (_, true, _) => return Verdict::Forbidden(ForbiddenReason::Barrier),

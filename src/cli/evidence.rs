@@ -238,7 +238,7 @@ fn changes_told(changed: &EvidenceChanged, dry_run: bool) -> Vec<String> {
     }
     let (edges, junctions) = (counted(changed.edges, "directed edge"), counted(changed.junctions, "junction"));
     let mut told = vec![format!(
-        "widths of {edges} and kerbs at {junctions} {}",
+        "widths or limits of {edges} and kerbs at {junctions} {}",
         if dry_run { "would change" } else { "changed" }
     )];
     let [again, turns] = changed.again;
@@ -280,7 +280,8 @@ impl List {
         let mut number = 0;
         for entry in entries {
             number += 1;
-            let counts = entry.row.lower_m().map_or_else(String::new, |m| format!("{m:.2} m"));
+            let unit = if matches!(entry.row.value, Value::Tonnes(_)) { "t" } else { "m" };
+            let counts = entry.row.lower().map_or_else(String::new, |least| format!("{least:.2} {unit}"));
             let cells = [
                 entry.no.to_string(),
                 entry.row.quantity.name().to_owned(),
@@ -368,7 +369,7 @@ fn described(entry: &Entry) -> serde_json::Value {
         "value": value,
         "unit": unit,
         "sigma": row.sigma,
-        "counts_m": row.lower_m(),
+        "counts": row.lower(),
         "place": place,
         "direction": direction,
         "source": row.source,

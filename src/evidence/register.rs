@@ -10,8 +10,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use super::matching::{Match, match_rows};
 use super::row::{Quantity, Row};
 use super::surface::Counted;
-use crate::network::{Network, Pieces, Site, pieces};
-use crate::osm::facts::{Policy, WidthSource};
+use crate::network::{Edge, Network, Pieces, Site, pieces};
+use crate::osm::facts::{Limit, Policy, WidthSource};
 
 /// Whether a place was found for a measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -83,7 +83,6 @@ impl Entry {
     /// Why no certificate can use it.
     fn unused(&self) -> Option<&'static str> {
         match self.row.quantity {
-            Quantity::MaxHeight | Quantity::MaxWeight => Some("kept, not used by certificates: the map's limits count"),
             Quantity::DrivableBy => Some("kept, not used by certificates yet"),
             Quantity::Surface => self
                 .row
@@ -93,9 +92,9 @@ impl Entry {
             Quantity::KerbRadius => None,
             _ => self
                 .row
-                .lower_m()
-                .is_none_or(|m| m <= 0.0)
-                .then_some("kept, not used by certificates: its uncertainty leaves no width"),
+                .lower()
+                .is_none_or(|least| least <= 0.0)
+                .then_some("kept, not used by certificates: its uncertainty leaves nothing of it"),
         }
     }
 
@@ -215,7 +214,7 @@ pub fn decide(network: &Network, register: &mut [Entry]) -> Decision {
     for places in rivals.values() {
         let Some(&(first, k)) = best(register, places) else { continue };
         register[first].places[k].1 = true;
-        let value = |i: usize| register[i].row.lower_m();
+        let value = |i: usize| register[i].row.lower();
         for &(other, _) in places.iter().filter(|place| value(place.0) != value(first)) {
             *overruled.entry((register[first].no, register[other].no)).or_default() += 1;
         }
@@ -237,7 +236,7 @@ fn best<'p>(register: &[Entry], places: &'p [(usize, usize)]) -> Option<&'p (usi
     let latest = places.iter().filter_map(date).max();
     // A row without a date may be the latest one.
     let eligible = places.iter().filter(|place| date(place).is_none() || date(place) == latest);
-    let value = |place: &(usize, usize)| register[place.0].row.lower_m().unwrap_or(f64::INFINITY);
+    let value = |place: &(usize, usize)| register[place.0].row.lower().unwrap_or(f64::INFINITY);
     eligible.min_by(|a, b| value(a).total_cmp(&value(b)).then(register[a.0].no.cmp(&register[b.0].no)))
 }
 
@@ -270,12 +269,13 @@ impl Entry {
 
     /// Its quantity and what counts of it.
     fn says(&self) -> String {
-        format!("{} {}", crate::words::Named::name(self.row.quantity), metres(self.row.lower_m().unwrap_or(0.0)))
+        format!("{} {}", crate::words::Named::name(self.row.quantity), self.shown(self.row.lower().unwrap_or(0.0)))
     }
-}
 
-fn metres(m: f64) -> String {
-    format!("{m:.2} m")
+    /// A number in the unit of its quantity.
+    fn shown(&self, value: f64) -> String {
+        format!("{value:.2} {}", if self.row.quantity == Quantity::MaxWeight { "t" } else { "m" })
+    }
 }
 
 fn counted(places: usize, quantity: Quantity) -> String {
@@ -283,37 +283,62 @@ fn counted(places: usize, quantity: Quantity) -> String {
     format!("{places} {kind}{}", if places == 1 { "" } else { "s" })
 }
 
-/// What of an entry that counts contradicts a width that somebody tagged.
+/// What the map says of a quantity at an edge.
+enum Tagged {
+    Value(f64),
+    /// A tag that cannot be read.
+    Unreadable,
+}
+
+/// What somebody tagged there. Assumed widths are no contradiction.
+fn tagged(network: &Network, edge: &Edge, quantity: Quantity) -> Option<Tagged> {
+    let limit = match quantity {
+        Quantity::MaxHeight => edge.legal.max_height,
+        Quantity::MaxWeight => edge.legal.max_weight,
+        _ => {
+            let strip = network.mapped_section(edge).strip(policy(quantity)?)?;
+            return (strip.source >= WidthSource::Tagged).then_some(Tagged::Value(f64::from(strip.width_m())));
+        }
+    };
+    match limit {
+        Limit::None => None,
+        Limit::At(most) => Some(Tagged::Value(f64::from(most))),
+        Limit::Unreadable => Some(Tagged::Unreadable),
+    }
+}
+
+/// What of an entry that counts contradicts a width or limit that somebody tagged.
 fn against_map(network: &Network, edges: &Edges<'_>, entry: &Entry) -> Option<Conflict> {
-    let policy = policy(entry.row.quantity)?;
-    let (mut places, mut least_m, mut most_m) = (0, f64::INFINITY, f64::NEG_INFINITY);
-    let lower_m = entry.row.lower_m()?;
+    let (mut places, mut unreadable, mut least, mut most) = (0, 0, f64::INFINITY, f64::NEG_INFINITY);
+    let (quantity, lower) = (entry.row.quantity, entry.row.lower()?);
     for (target, _) in entry.places.iter().filter(|place| place.1) {
         let Target::Edge(id) = *target else { continue };
-        let Some(strip) = edges.of_id(id).and_then(|edge| network.mapped_section(edge).strip(policy)) else { continue };
-        let tagged_m = f64::from(strip.width_m());
-        if strip.source >= WidthSource::Tagged && (tagged_m - lower_m).abs() >= 0.01 {
-            places += 1;
-            (least_m, most_m) = (least_m.min(tagged_m), most_m.max(tagged_m));
+        match edges.of_id(id).and_then(|edge| tagged(network, edge, quantity)) {
+            Some(Tagged::Value(value)) if (value - lower).abs() >= 0.01 => {
+                places += 1;
+                (least, most) = (least.min(value), most.max(value));
+            }
+            Some(Tagged::Unreadable) => unreadable += 1,
+            _ => {}
         }
     }
-    if places == 0 {
-        return None;
+    let shown = |value: f64| entry.shown(value);
+    let (label, says) = (entry.label(), entry.says());
+    let mut told = Vec::new();
+    if places > 0 {
+        let tagged = if most - least < 0.01 { shown(most) } else { format!("{} to {}", shown(least), shown(most)) };
+        let measured = match (lower < least, lower > most) {
+            (true, _) => "is less than the map's tagged",
+            (_, true) => "is more than the map's tagged",
+            _ => "differs from the map's tagged",
+        };
+        told.push(format!("{measured} {tagged} on {}", counted(places, quantity)));
     }
-    let tagged =
-        if most_m - least_m < 0.01 { metres(most_m) } else { format!("{} to {}", metres(least_m), metres(most_m)) };
-    let measured = match (lower_m < least_m, lower_m > most_m) {
-        (true, _) => "is less than the map's tagged",
-        (_, true) => "is more than the map's tagged",
-        _ => "differs from the map's tagged",
-    };
-    let what = format!(
-        "{}: {} {measured} {tagged} on {}; the measurement counts",
-        entry.label(),
-        entry.says(),
-        counted(places, entry.row.quantity),
-    );
-    Some(Conflict { entries: vec![entry.no], what })
+    if unreadable > 0 {
+        told.push(format!("replaces a tag that cannot be read on {}", counted(unreadable, quantity)));
+    }
+    let what = format!("{label}: {says} {}; the measurement counts", told.join(", and "));
+    (!told.is_empty()).then(|| Conflict { entries: vec![entry.no], what })
 }
 
 /// The strip whose width a quantity is.
@@ -351,7 +376,7 @@ impl<'n> Edges<'n> {
         Self { network, indices }
     }
 
-    fn of_id(&self, id: i64) -> Option<&'n crate::network::Edge> {
+    fn of_id(&self, id: i64) -> Option<&'n Edge> {
         self.network.edges.get(*self.indices.get(&id)? as usize)
     }
 
@@ -377,8 +402,8 @@ impl<'n> Edges<'n> {
         let mut site = Site::default();
         let mut widths_m: FxHashMap<i64, [Option<f64>; 3]> = FxHashMap::default();
         for (quantity, target, counted) in counting {
-            let lower_m = match counted {
-                Counted::Metres(lower_m) => lower_m,
+            let lower = match counted {
+                Counted::Number(lower) => lower,
                 Counted::Surface(rings) => {
                     if let Target::Area(node) = target {
                         rings.into_iter().for_each(|ring| site.add_surface(node, ring));
@@ -386,14 +411,25 @@ impl<'n> Edges<'n> {
                     continue;
                 }
             };
-            match (policy(quantity), target) {
-                (Some(policy), Target::Edge(id)) => widths_m.entry(id).or_default()[policy as usize] = Some(lower_m),
-                (None, Target::Corner { node, edges }) => {
+            match (quantity, target) {
+                (Quantity::MaxHeight | Quantity::MaxWeight, Target::Edge(id)) => {
+                    let Some(edge) = self.of_id(id) else { continue };
+                    let limits = site.limits_mut(edge);
+                    let slot =
+                        if quantity == Quantity::MaxHeight { &mut limits.height_m } else { &mut limits.weight_t };
+                    *slot = Some(lower as f32);
+                }
+                (Quantity::KerbRadius, Target::Corner { node, edges }) => {
                     let edges = edges.map(|pair| pair.map(|id| self.of_id(id)));
                     match edges {
-                        None => site.set_kerb(node, None, lower_m),
-                        Some([Some(a), Some(b)]) => site.set_kerb(node, Some([a, b]), lower_m),
+                        None => site.set_kerb(node, None, lower),
+                        Some([Some(a), Some(b)]) => site.set_kerb(node, Some([a, b]), lower),
                         Some(_) => {}
+                    }
+                }
+                (_, Target::Edge(id)) => {
+                    if let Some(policy) = policy(quantity) {
+                        widths_m.entry(id).or_default()[policy as usize] = Some(lower);
                     }
                 }
                 _ => {}

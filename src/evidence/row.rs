@@ -25,13 +25,6 @@ pub enum Quantity {
     Surface,
 }
 
-impl Quantity {
-    /// Whether more of it helps. A limit does not: there the value counts as it is.
-    fn helps(self) -> bool {
-        matches!(self, Self::CarriagewayWidth | Self::DirectionWidth | Self::LaneWidth | Self::KerbRadius)
-    }
-}
-
 /// The value that was measured.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Value {
@@ -122,12 +115,10 @@ pub struct Row {
 pub(super) const ONE_SIDED_95: f64 = 1.64;
 
 impl Row {
-    /// What counts, metres: value − 1.64 σ (95 %, one-sided) but at least 0 for metres that help, the value as it is for a
-    /// limit. `None` if the value is not in metres.
+    /// What counts, metres or tonnes: value − 1.64 σ (95 %, one-sided), but at least 0. `None` if the value is no number.
     #[must_use]
-    pub fn lower_m(&self) -> Option<f64> {
-        let Value::Metres(value_m) = self.value else { return None };
-        let less_m = if self.quantity.helps() { ONE_SIDED_95 * self.sigma } else { 0.0 };
-        Some((value_m - less_m).max(0.0))
+    pub fn lower(&self) -> Option<f64> {
+        let (Value::Metres(value) | Value::Tonnes(value)) = self.value else { return None };
+        Some((value - ONE_SIDED_95 * self.sigma).max(0.0))
     }
 }

@@ -8,8 +8,8 @@ use crate::osm::LonLat;
 /// What counts of a measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Counted {
-    /// Metres.
-    Metres(f64),
+    /// Metres, or tonnes of a mass.
+    Number(f64),
     /// Closed rings of paved surfaces.
     Surface(Vec<Vec<LonLat>>),
 }
@@ -18,12 +18,12 @@ pub(crate) enum Counted {
 const DEGREE_M: f64 = 111_200.0;
 
 impl Row {
-    /// What certificates use of the measurement: metres less the uncertainty, or a surface drawn in by it. `None` if nothing is left, or
-    /// if the surface has holes.
+    /// What certificates use of the measurement: a number less the uncertainty, or a surface drawn in by it. `None` if nothing is left, if
+    /// the surface has holes, or if it names a vehicle.
     pub(crate) fn counted(&self) -> Option<Counted> {
         match (self.quantity, &self.value) {
             (Quantity::Surface, Value::Polygon(rings)) => surface(rings, self.sigma).map(Counted::Surface),
-            _ => self.lower_m().map(Counted::Metres),
+            _ => self.lower().map(Counted::Number),
         }
     }
 }

@@ -31,7 +31,7 @@ pub fn explain_edge(
 ) -> Result<Option<Explanation>, Stopped> {
     stop.check()?;
     let Some(facts) = network.edges.get(edge as usize) else { return Ok(None) };
-    let conflict = Conflict::of(facts, &model.vehicle);
+    let conflict = Conflict::of(network, facts, &model.vehicle);
     let road = road_facts(network, facts, settings.policy);
     let case = Case::of(network, edge, settings);
     stop.check()?;
@@ -39,7 +39,7 @@ pub fn explain_edge(
         Ok(case) => (case.geometry(model, &settings.stet, stop)?, case.unknown()),
         Err(reason) => (None, Some(*reason)),
     };
-    let verdict = verdict(facts, model, unknown, geometry.as_ref().map(|g| &g.result));
+    let verdict = verdict((network, facts), model, unknown, geometry.as_ref().map(|g| &g.result));
     let geometry = geometry.filter(|_| unknown.is_none());
     let mut hints = Hints::default();
     if let (Ok(case), Some(geometry), Verdict::Unsafe(_)) = (&case, &geometry, verdict) {
@@ -140,7 +140,7 @@ pub(super) fn edge_verdict(
         Err(reason) => (None, Some(reason)),
     };
     stop.check()?;
-    Ok(Some(verdict(facts, model, unknown, result.as_ref())))
+    Ok(Some(verdict((network, facts), model, unknown, result.as_ref())))
 }
 
 /// The geometry of one span of a corridor, from the certificate of the whole corridor.

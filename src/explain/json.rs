@@ -29,8 +29,9 @@ pub fn json(e: &Explanation) -> Value {
             "width_source": road.width_source.map(WidthSource::name),
         })
     });
-    let conflict =
-        e.conflict.map(|c| json!({"tag": c.tag, "allowed": c.allowed, "vehicle_has": c.has, "unit": c.unit}));
+    let conflict = e.conflict.map(
+        |c| json!({"tag": c.tag, "allowed": c.allowed, "vehicle_has": c.has, "unit": c.unit, "surveyed": c.surveyed}),
+    );
     json!({
         "vehicle": e.vehicle.id,
         "road": road,

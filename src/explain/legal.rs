@@ -1,6 +1,6 @@
-//! The tagged rule that forbids an edge or cannot be read, beside the vehicle's own value.
+//! The rule that forbids an edge or cannot be read, tagged or measured, beside the vehicle's own value.
 
-use crate::network::Edge;
+use crate::network::{Edge, Network};
 use crate::osm::facts::Limit;
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
@@ -16,13 +16,15 @@ pub struct Conflict {
     pub has: Option<f64>,
     /// `m` or `t`.
     pub unit: &'static str,
+    /// Whether the limit is a measurement of the register and not the map's.
+    pub surveyed: bool,
 }
 
 impl Conflict {
     /// The first rule in the order in which [`crate::osm::facts::Legal::forbids`] decides.
-    pub(super) fn of(edge: &Edge, vehicle: &Vehicle) -> Option<Self> {
-        let legal = &edge.legal;
-        let rule = |tag| Some(Self { tag, allowed: None, has: None, unit: "" });
+    pub(super) fn of(network: &Network, edge: &Edge, vehicle: &Vehicle) -> Option<Self> {
+        let (legal, limits) = (&network.legal(edge), network.site.limits(edge));
+        let rule = |tag| Some(Self { tag, allowed: None, has: None, unit: "", surveyed: false });
         let dimensions = [
             (legal.max_height, vehicle.height_m, "maxheight", "m", ForbiddenReason::Height),
             (legal.max_weight, vehicle.gross_mass_t, "maxweight", "t", ForbiddenReason::Weight),
@@ -36,12 +38,17 @@ impl Conflict {
             Some(Verdict::Forbidden(reason)) => {
                 let (limit, has, tag, unit, _) = dimensions.into_iter().find(|row| row.4 == reason)?;
                 let allowed = if let Limit::At(most) = limit { Some(centi(most)) } else { None };
-                Some(Self { tag, allowed, has, unit })
+                let surveyed = match reason {
+                    ForbiddenReason::Height => limits.height_m.is_some(),
+                    ForbiddenReason::Weight => limits.weight_t.is_some(),
+                    _ => false,
+                };
+                Some(Self { tag, allowed, has, unit, surveyed })
             }
             Some(Verdict::Unknown(UnknownReason::Limit)) => {
                 let unreadable = |row: &&(Limit, Option<f64>, _, _, _)| row.0 == Limit::Unreadable && row.1.is_some();
                 let (_, has, tag, unit, _) = dimensions.iter().find(unreadable)?;
-                Some(Self { tag, allowed: None, has: *has, unit })
+                Some(Self { tag, allowed: None, has: *has, unit, surveyed: false })
             }
             _ if edge.barred => rule("barrier"),
             _ => None,

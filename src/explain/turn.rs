@@ -63,7 +63,7 @@ pub fn explain_turn(
         .into_iter()
         .chain(facts.through.iter().copied())
         .filter_map(|edge| network.edges.get(edge as usize))
-        .find_map(|edge| forbids(edge, model));
+        .find_map(|edge| forbids(network, edge, model));
     let verdict = match (&made, &best) {
         _ if facts.movement.forbidden.is_some() => Verdict::Forbidden(ForbiddenReason::Restriction),
         _ if legal.is_some() => legal.unwrap_or(Verdict::Safe),
@@ -179,7 +179,7 @@ fn roads_that_decide(
         let Some(verdict) = edge_verdict(network, index, model, settings, stop)? else { continue };
         if verdict == own && !matches!(own, Verdict::Safe | Verdict::Unsafe(_)) && named.decides.is_none() {
             named.decides = Some(title(network, edge));
-            conflict = Conflict::of(edge, &model.vehicle);
+            conflict = Conflict::of(network, edge, &model.vehicle);
         }
         // The edges that a passage leads over need no certificates of their own.
         let ends = [facts.movement.from, facts.movement.to].contains(&index);
@@ -196,8 +196,8 @@ fn roads_that_decide(
     Ok((named, conflict))
 }
 
-fn forbids(edge: &Edge, model: &Model) -> Option<Verdict> {
-    match edge.legal.forbids(&model.vehicle) {
+fn forbids(network: &Network, edge: &Edge, model: &Model) -> Option<Verdict> {
+    match network.legal(edge).forbids(&model.vehicle) {
         Some(forbidden @ Verdict::Forbidden(_)) => Some(forbidden),
         _ => edge.barred.then_some(Verdict::Forbidden(ForbiddenReason::Barrier)),
     }

@@ -230,7 +230,9 @@ fn forbidden(e: &Explanation, reason: ForbiddenReason) -> String {
                 ForbiddenReason::Length => "length",
                 _ => "width",
             };
-            format!("forbidden: {} is {allowed} {unit}, the vehicle's {what} {has:.2} {unit}", c.tag, unit = c.unit)
+            let measured = if c.surveyed { " (measured)" } else { "" };
+            let (tag, unit) = (c.tag, c.unit);
+            format!("forbidden: {tag} is {allowed} {unit}{measured}, the vehicle's {what} {has:.2} {unit}")
         }
         _ => format!("forbidden: {}", c.tag),
     };

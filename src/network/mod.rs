@@ -89,7 +89,7 @@ pub struct Edge {
     pub shape: Range<u32>,
     /// Narrow places on this edge: range in [`Network::narrowings`].
     pub narrowings: Range<u32>,
-    /// Limits of the road and of nodes on the edge, for this direction of travel.
+    /// Limits of the road and of nodes on the edge, for this direction of travel, as the map has them. [`Network::legal`] has those that count.
     pub legal: Legal,
     /// Whether a barrier on the edge bars heavy vehicles.
     pub barred: bool,

@@ -1,4 +1,4 @@
-//! What is known of single places beside the map: widths of edges and radii of kerbs, measured on site or supposed by a condition.
+//! What is known of single places beside the map: widths of edges, radii of kerbs and limits, measured on site or supposed by a condition.
 //!
 //! Certificates see a network with a site like any other network. A place without an entry is as the map has it.
 
@@ -8,10 +8,19 @@ use rustc_hash::FxHashMap;
 
 use super::{Edge, Network};
 use crate::osm::LonLat;
-use crate::osm::facts::{CrossSection, Direction};
+use crate::osm::facts::{CrossSection, Direction, Legal, Limit};
 
 /// Two pieces of road that form a corner, in order. A piece is known by its road and by where its shape begins.
 pub(crate) type Pieces = [(u32, u32); 2];
+
+/// Limits of an edge that count in place of the map's. `None` leaves the map's limit.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct SiteLimits {
+    /// Greatest height of a vehicle, metres.
+    pub height_m: Option<f32>,
+    /// Greatest mass of a vehicle, tonnes.
+    pub weight_t: Option<f32>,
+}
 
 /// Entries for single places.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -22,13 +31,16 @@ pub struct Site {
     kerbs: FxHashMap<(i64, Option<Pieces>), f64>,
     /// Paved surfaces by the node of their junction: closed rings.
     surfaces: FxHashMap<i64, Vec<Vec<LonLat>>>,
+    /// By `edge_id`.
+    limits: FxHashMap<i64, SiteLimits>,
 }
 
 impl Site {
     /// Whether every place is as the map has it.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.sections.is_empty() && self.kerbs.is_empty() && self.surfaces.is_empty()
+        let Self { sections, kerbs, surfaces, limits } = self;
+        sections.is_empty() && kerbs.is_empty() && surfaces.is_empty() && limits.is_empty()
     }
 
     /// The cross section that an edge has here.
@@ -40,6 +52,17 @@ impl Site {
     /// Gives an edge a cross section of its own.
     pub fn set_section(&mut self, edge: &Edge, section: CrossSection) {
         self.sections.insert(edge.id, section);
+    }
+
+    /// The limits that an edge has here.
+    #[must_use]
+    pub fn limits(&self, edge: &Edge) -> SiteLimits {
+        self.limits.get(&edge.id).copied().unwrap_or_default()
+    }
+
+    /// The limits that an edge has here, to be changed.
+    pub fn limits_mut(&mut self, edge: &Edge) -> &mut SiteLimits {
+        self.limits.entry(edge.id).or_default()
     }
 
     /// Gives all corners at a node a kerb radius, metres, or only the corner between two edges.
@@ -66,11 +89,14 @@ pub(crate) fn pieces(edges: [&Edge; 2]) -> Pieces {
 }
 
 impl Site {
-    /// Where two sites differ: ids of edges, and ids of nodes with other kerbs or surfaces; both sorted.
+    /// Where two sites differ: ids of edges with other widths or limits, and ids of nodes with other kerbs or surfaces; both sorted.
     #[must_use]
     pub fn differences(&self, other: &Self) -> (Vec<i64>, Vec<i64>) {
         let differ = |edge: &&i64| self.sections.get(edge) != other.sections.get(edge);
-        let edges: BTreeSet<i64> = self.sections.keys().chain(other.sections.keys()).filter(differ).copied().collect();
+        let mut edges: BTreeSet<i64> =
+            self.sections.keys().chain(other.sections.keys()).filter(differ).copied().collect();
+        let differ = |edge: &&i64| self.limits.get(edge) != other.limits.get(edge);
+        edges.extend(self.limits.keys().chain(other.limits.keys()).filter(differ));
         let differ = |corner: &&(i64, Option<Pieces>)| self.kerbs.get(corner) != other.kerbs.get(corner);
         let corners = self.kerbs.keys().chain(other.kerbs.keys()).filter(differ);
         let mut nodes: BTreeSet<i64> = corners.map(|corner| corner.0).collect();
@@ -91,6 +117,17 @@ impl Network {
     #[must_use]
     pub fn mapped_section(&self, edge: &Edge) -> CrossSection {
         self.road(edge).sections[usize::from(edge.direction == Direction::Backward)]
+    }
+
+    /// The limits and access rules of an edge: those of its site, else those of the map.
+    #[must_use]
+    pub fn legal(&self, edge: &Edge) -> Legal {
+        let SiteLimits { height_m, weight_t } = self.site.limits(edge);
+        Legal {
+            max_height: height_m.map_or(edge.legal.max_height, Limit::At),
+            max_weight: weight_t.map_or(edge.legal.max_weight, Limit::At),
+            ..edge.legal
+        }
     }
 
     /// The kerb radius that the site has for the corner of two edges at a node, metres. `None` if the site says nothing.

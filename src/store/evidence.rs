@@ -102,7 +102,7 @@ fn entry(row: &SqliteRow) -> Sql<Entry> {
     };
     let state = State::named(&column("state")?).ok_or_else(|| named("state"))?;
     // What counts must be what the value gives: nothing else may be certified with.
-    if row.try_get::<Option<f64>, _>("lower")? != measured.lower_m() {
+    if row.try_get::<Option<f64>, _>("lower")? != measured.lower() {
         return Err(content(format!("`lower` of measurement {no} is not what its value and sigma give")));
     }
     Ok(Entry { no, file: column("file")?, row: measured, state, why: optional("why")?, places: Vec::new() })
@@ -135,11 +135,11 @@ pub(super) async fn site(c: &mut SqliteConnection, network: &Network) -> Sql<Sit
                JOIN (SELECT evidence_no, lower, quantity, sigma, geom FROM evidence) USING (evidence_no) WHERE counts \
                ORDER BY place_no";
     let counting = rows(c, sql, |row| {
-        let (lower_m, no): (Option<f64>, i64) = (row.try_get(4)?, row.try_get(6)?);
+        let (lower, no): (Option<f64>, i64) = (row.try_get(4)?, row.try_get(6)?);
         let quantity: Quantity = word(row, 5)?;
         let counted = match quantity {
             Quantity::Surface => measured_surface(row.try_get(8)?, row.try_get(7)?),
-            _ => lower_m.map(Counted::Metres),
+            _ => lower.map(Counted::Number),
         };
         let counted = counted.ok_or_else(|| content(format!("measurement {no} counts and has no value")))?;
         Ok((quantity, target(row, 0)?, counted))
@@ -213,7 +213,7 @@ fn add(bulk: &mut Bulk, entry: &Entry) -> Sql<()> {
     bulk.add(row.quantity.name())?;
     bulk.add(columns.value)?;
     bulk.add(row.sigma)?;
-    bulk.add(row.lower_m())?;
+    bulk.add(row.lower())?;
     bulk.add(columns.vehicle)?;
     bulk.add(row.along.name())?;
     bulk.add(columns.way_id)?;

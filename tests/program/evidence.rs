@@ -95,7 +95,7 @@ fn the_width_that_is_needed_makes_an_edge_safe_and_removing_it_restores_the_map(
         .netcert("evidence add survey.csv")
         .succeeds()
         .shows(&format!("{measured} measurement"))
-        .shows(&format!("widths of {measured} directed edge"))
+        .shows(&format!("widths or limits of {measured} directed edge"))
         .shows(&format!("{VEHICLE}, lane policy: "))
         .shows("AU-ATRIPLE53, lane policy: ")
         .shows("became safe");
@@ -247,9 +247,91 @@ fn of_two_measurements_the_later_counts_and_without_dates_the_lesser() {
     // Both in one file, and one of them twice.
     let told = add("c.csv", "lane_width,3,3,c,\nlane_width,3.2,3,c,\nlane_width,3,3,c,\n");
     let _ = told.shows("conflict: ").shows("row 4: the file has it twice").shows("2 measurements added");
-    // Limits, surfaces and vehicles are kept and change nothing, and netcert says so.
-    let told = add("d.csv", "max_height,3.8,3,d,\n").shows("kept, not used by certificates").out();
-    assert!(told.contains("widths of 0 directed edges"), "{told}");
+    // A limit whose uncertainty leaves nothing changes nothing, and netcert says so.
+    std::fs::write(place.path("d.csv"), "quantity,value,sigma,way_id,source\nmax_height,3.8,3.8,3,d\n").unwrap();
+    let told = place.netcert("evidence add d.csv").succeeds().shows("kept, not used by certificates").out();
+    assert!(told.contains("widths or limits of 0 directed edges"), "{told}");
+}
+
+#[test]
+fn measured_limits_count_in_place_of_the_map_and_removing_them_restores_it() {
+    let place = Place::with_demo();
+    let all = [&CERTIFICATES[..], &NETWORK].concat();
+    let before = rows_of(&place, &all);
+    let edges = edges_of(&place);
+    let safe: Vec<i64> =
+        edges.iter().filter(|edge| edge["verdict"] == "safe").filter_map(|edge| edge["edge_id"].as_i64()).collect();
+    let (low, weak, high) = (safe[0], safe[safe.len() / 2], safe[safe.len() - 1]);
+    // 4.4 m less 1.64 times 0.1 m is less than the vehicle's 4.3 m. Its mass is 42.5 t.
+    let file = format!(
+        "quantity,value,sigma,edge_id,source\nmax_height,4.4,0.1,{low},laser\nmax_weight,42,0,{weak},sign\n\
+         max_height,4.4,0.05,{high},laser\n"
+    );
+    let place = place.file("limits.csv", file);
+    place
+        .netcert("evidence add limits.csv")
+        .succeeds()
+        .shows("3 matched")
+        .shows("limits of 3 directed edges")
+        .shows("no longer safe");
+    let verdict = |id: i64| {
+        let edges = edges_of(&place);
+        let row = edges.iter().find(|row| row["edge_id"] == id).unwrap();
+        (row["verdict"].as_str().unwrap().to_owned(), row["reason"].as_str().unwrap_or_default().to_owned())
+    };
+    let said = |verdict: &str, reason: &str| (verdict.to_owned(), reason.to_owned());
+    assert_eq!(verdict(low), said("forbidden", "height"));
+    assert_eq!(verdict(weak), said("forbidden", "weight"));
+    assert_eq!(verdict(high), said("safe", ""));
+    place
+        .netcert(&format!("explain {low} --vehicle {VEHICLE}"))
+        .succeeds()
+        .shows("maxheight is 4.24 m (measured), the vehicle's height 4.30 m");
+    place.netcert(&format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 300")).succeeds();
+    let made = rows_of(&place, &CERTIFICATES);
+    let whole = Place::empty().file("demo.gpkg", place.read("demo.gpkg"));
+    whole.netcert("certify").succeeds();
+    assert_eq!(rows_of(&whole, &CERTIFICATES), made);
+    place.netcert("evidence remove --all").succeeds().shows("became safe");
+    assert_eq!(rows_of(&place, &all), before);
+}
+
+#[test]
+fn a_measured_limit_replaces_a_tag_and_says_so() {
+    let node = |id: i64| NodeRecord {
+        id,
+        place: LonLat { lon_e7: 80_000_000 + 30_000 * id as i32, lat_e7: 490_000_000 },
+        tags: Vec::new(),
+    };
+    let way = |id: i64, height: &str| WayRecord {
+        id,
+        refs: vec![id, id + 1],
+        tags: [("highway", "secondary"), ("width", "9"), ("maxheight", height)]
+            .map(|(key, value)| (key.to_owned(), value.to_owned()))
+            .to_vec(),
+    };
+    let nodes: Vec<NodeRecord> = (1..=3).map(node).collect();
+    let extract = write_extract(&nodes, &[way(1, "3.5"), way(2, "low")]);
+    let place = Place::empty()
+        .file("low.osm.pbf", extract)
+        .file("limits.csv", "quantity,value,way_id,source\nmax_height,4.2,1,laser\nmax_height,4.2,2,laser\n");
+    place.netcert("ingest low.osm.pbf --db demo.gpkg --vehicle EU-SEMI16.5 --corridor carriageway").succeeds();
+    let reasons = || {
+        let answer = place.netcert("query --vehicle EU-SEMI16.5 --format json").succeeds().json();
+        let edges = answer["edges"].as_array().unwrap().clone();
+        edges.iter().map(|edge| format!("{}: {}", edge["verdict"], edge["reason"])).collect::<Vec<_>>()
+    };
+    let mapped = reasons();
+    assert!(mapped.iter().any(|said| said == "\"forbidden\": \"height\""), "{mapped:?}");
+    place
+        .netcert("evidence add limits.csv")
+        .succeeds()
+        .shows("max_height 4.20 m is more than the map's tagged 3.50 m on 2 directed edges; the measurement counts")
+        .shows("max_height 4.20 m replaces a tag that cannot be read on 2 directed edges; the measurement counts");
+    let measured = reasons();
+    assert!(measured.iter().all(|said| !said.contains("height") && !said.contains("limit")), "{measured:?}");
+    place.netcert("evidence remove --all").succeeds();
+    assert_eq!(reasons(), mapped);
 }
 
 #[test]

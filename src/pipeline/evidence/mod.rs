@@ -67,7 +67,7 @@ pub struct EvidenceChanged {
     pub removed: Vec<Entry>,
     /// Contradictions that the added measurements have part in.
     pub conflicts: Vec<Conflict>,
-    /// Directed edges whose widths changed.
+    /// Directed edges whose widths or limits changed.
     pub edges: usize,
     /// Junctions whose kerbs changed.
     pub junctions: usize,
