@@ -287,7 +287,7 @@ fn measured_limits_count_in_place_of_the_map_and_removing_them_restores_it() {
         .netcert(&format!("explain {low} --vehicle {VEHICLE}"))
         .succeeds()
         .shows("maxheight is 4.24 m (measured), the vehicle's height 4.30 m");
-    place.netcert(&format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 300")).succeeds();
+    place.netcert(&format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 150")).succeeds();
     let made = rows_of(&place, &CERTIFICATES);
     let whole = Place::empty().file("demo.gpkg", place.read("demo.gpkg"));
     whole.netcert("certify").succeeds();
