@@ -57,21 +57,28 @@ impl Field {
         if !(u >= 0.0 && v >= 0.0 && u < most && v < most) {
             return -FARTHEST_M;
         }
-        let (i, j) = (u as usize, v as usize);
-        let (s, t) = (u - i as f64, v - j as f64);
+        let (i, j) = (u as i32 as usize, v as i32 as usize);
+        let (s, t) = ((u - i as f64) as f32, (v - j as f64) as f32);
         let at = j / BLOCK * self.side + i / BLOCK;
+        let first = (j % BLOCK) * NODES + i % BLOCK;
+        let between = |[a, b, c, d]: [f32; 4]| f64::from((a + s * (b - a)) * (1.0 - t) + (c + s * (d - c)) * t);
+        if let Some(Block { nodes, .. }) = self.blocks[at].as_deref() {
+            let m = between([nodes[first], nodes[first + 1], nodes[first + NODES], nodes[first + NODES + 1]]);
+            if !m.is_nan() {
+                return m;
+            }
+        }
+        between(self.corners(at, first, [i, j]))
+    }
+
+    /// The four nodes around a place, computed where they are not known.
+    #[cold]
+    fn corners(&mut self, at: usize, first: usize, [i, j]: [usize; 2]) -> [f32; 4] {
         if self.blocks[at].is_none() {
             self.blocks[at] = Some(Box::new(self.block(i / BLOCK, j / BLOCK)));
         }
-        let first = (j % BLOCK) * NODES + i % BLOCK;
-        let corners =
-            [(first, i, j), (first + 1, i + 1, j), (first + NODES, i, j + 1), (first + NODES + 1, i + 1, j + 1)];
-        let mut known = corners.map(|(node, ..)| self.blocks[at].as_ref().map_or(f32::NAN, |block| block.nodes[node]));
-        if known.iter().any(|m| m.is_nan()) {
-            known = corners.map(|(node, i, j)| self.fill(at, node, i, j));
-        }
-        let [a, b, c, d] = known.map(f64::from);
-        (a + s * (b - a)) * (1.0 - t) + (c + s * (d - c)) * t
+        [(first, i, j), (first + 1, i + 1, j), (first + NODES, i, j + 1), (first + NODES + 1, i + 1, j + 1)]
+            .map(|(node, i, j)| self.fill(at, node, i, j))
     }
 
     /// A node of a block, computed when it is first asked for.

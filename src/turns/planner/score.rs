@@ -16,6 +16,9 @@ const SIDE_STEP_M: f64 = 1.0;
 /// One in this many moments is looked at first. What they lack beyond [`SURE_M`], metres, other samples along a side hardly make up.
 const FEW: usize = 5;
 const SURE_M: f64 = 0.1;
+/// Moments that refused the last paths. They are looked at first, while the vehicle is still followed: most paths lack room where the
+/// one before lacked it.
+const CRITICAL: usize = 3;
 /// Way that the rear goes on the road that a path joins before the score ends, metres.
 const BEYOND_M: f64 = 5.0;
 
@@ -28,6 +31,8 @@ pub(super) struct Scorer<'a> {
     headings: Vec<[f64; 2]>,
     /// By moment and unit of the path at hand: axle and heading.
     stands: Vec<[[f64; 2]; 2]>,
+    /// The last critical moments, the newest one first.
+    critical: [usize; CRITICAL],
 }
 
 impl<'a> Scorer<'a> {
@@ -40,7 +45,7 @@ impl<'a> Scorer<'a> {
             follow(&mut headings, [b[0] - a[0], b[1] - a[1]], &vehicle.units);
             approach.extend_from_slice(&headings);
         }
-        Self { made, vehicle, approach, headings, stands: Vec::new() }
+        Self { made, vehicle, approach, headings, stands: Vec::new(), critical: [usize::MAX; CRITICAL] }
     }
 
     /// The score of the path with a code, metres, from moments about `step_m` apart. At most `floor_m` is told of paths that score less. `None` if the
@@ -83,35 +88,68 @@ impl<'a> Scorer<'a> {
                 self.stands.push([axle, *heading]);
                 coupling = along(axle, *heading, -unit.hitch_offset_m);
             }
+            let moment = self.stands.len() / count.max(1) - 1;
+            let needed_m = floor_m + PER_RAD_M * beyond_rad;
+            if self.critical.contains(&moment) && self.lacks(field, moment, needed_m) {
+                return Some(floor_m);
+            }
         }
         let spent_m = PER_RAD_M * beyond_rad;
         let needed_m = floor_m + spent_m;
         let moments = self.stands.len() / count.max(1);
         // Most paths lack room for many moments on end: a few moments far apart refuse them soonest.
         let refused_m = needed_m - SURE_M;
-        if self.room_m(field, (0..moments).rev().step_by(FEW), refused_m) <= refused_m {
+        let (few_m, moment) = self.room_m(field, (0..moments).rev().step_by(FEW), refused_m);
+        if few_m <= refused_m {
+            self.note(moment);
             return Some(floor_m);
         }
-        let room_m = self.room_m(field, 0..moments, needed_m);
+        let (room_m, moment) = self.room_m(field, 0..moments, needed_m);
+        self.note(moment);
         // Rounding must not make a path better than the floor that is not.
         Some(if room_m > needed_m { room_m - spent_m } else { floor_m })
     }
 
-    /// Least room around the bodies at moments of the path at hand, less the tubes. The search ends where it is no more than
-    /// `needed_m`.
-    fn room_m(&self, field: &mut Field, moments: impl Iterator<Item = usize>, needed_m: f64) -> f64 {
-        let units = &self.vehicle.units;
-        let mut least_m = f64::INFINITY;
-        for stands in moments.filter_map(|moment| self.stands.get(moment * units.len()..(moment + 1) * units.len())) {
-            for (i, (&[axle, heading], unit)) in stands.iter().zip(units).enumerate() {
-                let tube_m = TUBE_M[0] + i as f64 * TUBE_M[1];
-                least_m = least_m.min(room_m(field, axle, heading, unit, least_m + tube_m) - tube_m);
+    /// Least room around the bodies at moments of the path at hand, less the tubes, and the moment that has it. The search ends where it
+    /// is no more than `needed_m`.
+    fn room_m(&self, field: &mut Field, moments: impl Iterator<Item = usize>, needed_m: f64) -> (f64, usize) {
+        let mut least = (f64::INFINITY, 0);
+        for moment in moments {
+            for (tube_m, axle, heading, unit) in self.at(moment) {
+                let room_m = room_m(field, axle, heading, unit, least.0 + tube_m) - tube_m;
+                if room_m < least.0 {
+                    least = (room_m, moment);
+                }
             }
-            if least_m <= needed_m {
+            if least.0 <= needed_m {
                 break;
             }
         }
-        least_m
+        least
+    }
+
+    /// Whether any body has less room than needed at a moment, the tubes deducted.
+    fn lacks(&self, field: &mut Field, moment: usize, needed_m: f64) -> bool {
+        self.at(moment).any(|(tube_m, axle, heading, unit)| {
+            let needed_m = needed_m + tube_m;
+            room_m(field, axle, heading, unit, needed_m) < needed_m
+        })
+    }
+
+    /// The units at a moment: tube, axle, heading.
+    fn at(&self, moment: usize) -> impl Iterator<Item = (f64, [f64; 2], [f64; 2], &Unit)> {
+        let units = &self.vehicle.units;
+        let stands = self.stands.iter().skip(moment * units.len());
+        let tubes = (0..).map(|i| TUBE_M[0] + f64::from(i) * TUBE_M[1]);
+        stands.zip(units).zip(tubes).map(|((&[axle, heading], unit), tube_m)| (tube_m, axle, heading, unit))
+    }
+
+    /// Takes a moment for critical.
+    fn note(&mut self, moment: usize) {
+        if !self.critical.contains(&moment) {
+            self.critical.rotate_right(1);
+            self.critical[0] = moment;
+        }
     }
 }
 

@@ -88,9 +88,12 @@ pub(super) struct Minima {
     /// foot of its point.
     pub(super) area: [Vec<f64>; 2],
     pub(super) area_foot: [Vec<u32>; 2],
-    /// The least leeway in areas over the steps of `counted`. Steps with more are not noted. Without such steps, all are.
+    /// The least leeway in areas over the steps of `counted`, or what it is known to be below. Steps with more are not noted. Without
+    /// such steps, all are.
     pub(super) floor: f64,
     pub(super) counted: Range<usize>,
+    /// Steps with less than this are noted in any case, metres.
+    pub(super) keep: f64,
     /// Areas are not looked at.
     pub(super) bare: bool,
     /// Least hinge margin by station of the steer axle, radians, tagged with the unit.
@@ -114,6 +117,7 @@ impl Minima {
             area_foot: [vec![0; stations], vec![0; stations]],
             floor: f64::INFINITY,
             counted: 0..0,
+            keep: f64::NEG_INFINITY,
             bare: false,
             hinge: vec![UNVISITED_M; stations],
             under: vec![[u32::MAX, 0]; stations],
@@ -138,6 +142,16 @@ impl Minima {
     /// Whether no leeway at these stations is negative.
     pub(super) fn room_on(&self, mut stations: RangeInclusive<usize>) -> bool {
         stations.all(|k| self.left[k] >= 0.0 && self.right[k] >= 0.0)
+    }
+
+    /// The least leeway at these stations.
+    pub(super) fn least_on(&self, stations: RangeInclusive<usize>) -> f64 {
+        stations.fold(f64::INFINITY, |least, k| least.min(self.left[k]).min(self.right[k]))
+    }
+
+    /// No step in areas that is not noted has less leeway than this.
+    pub(super) fn unnoted(&self) -> f64 {
+        if self.counted.is_empty() { UNVISITED_M } else { self.floor.max(self.keep) }
     }
 
     /// Records the stations under a body point at eight stations of the steer axle, from `head` on.

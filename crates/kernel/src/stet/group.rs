@@ -1,6 +1,6 @@
 //! The constants of up to eight vehicles in lanes, so that one sweep serves them all.
 
-use super::lanes::{LANES, V};
+use super::lanes::V;
 use super::model::{MAX_UNITS, Model, UnitModel};
 use super::run_in;
 use super::step::UnitLanes;
@@ -11,8 +11,8 @@ pub(super) const SHRINK_STEPS: f64 = 1000.0;
 /// Vehicles that sweep together. Empty lanes repeat the last vehicle and are not read.
 pub(super) struct Group<'m> {
     pub(super) models: Vec<&'m Model>,
-    /// γ wanted for all vehicles. Each vehicle keeps to its own γ_min.
-    pub(super) shrink: f64,
+    /// γ wanted of each vehicle. Each keeps to its own γ_min.
+    pub(super) shrinks: Vec<f64>,
     /// Largest number of units of any vehicle.
     pub(super) units: usize,
     pub(super) chain: [UnitLanes; MAX_UNITS],
@@ -25,18 +25,19 @@ pub(super) struct Group<'m> {
 impl<'m> Group<'m> {
     /// `models` holds one to eight vehicles; `shrink` is the γ wanted of each.
     pub(super) fn new(models: &[&'m Model], shrink: f64) -> Self {
-        let lane = |i: usize| models[i.min(models.len() - 1)];
-        let per_vehicle = |f: &dyn Fn(&Model) -> f64| {
-            let mut out = [0.0; LANES];
-            for (i, o) in out.iter_mut().enumerate() {
-                *o = f(lane(i));
-            }
-            V(out)
+        Self::mixed(models, vec![shrink; models.len()])
+    }
+
+    /// As [`Self::new`], with a γ for each. A vehicle may be there several times.
+    pub(super) fn mixed(models: &[&'m Model], shrinks: Vec<f64>) -> Self {
+        let per_vehicle = |f: &dyn Fn(&Model, f64) -> f64| {
+            let lane = |i: usize| i.min(models.len() - 1);
+            V(std::array::from_fn(|i| f(models[lane(i)], shrinks[lane(i)])))
         };
-        let tolerance = |m: &Model| m.vehicle.tracking_tolerance_m * gamma(m, shrink);
+        let tolerance = |m: &Model, shrink: f64| m.vehicle.tracking_tolerance_m * gamma(m, shrink);
         let unit = |u: usize| {
             let of = |f: &dyn Fn(&UnitModel, f64) -> f64, absent: f64| {
-                per_vehicle(&|m: &Model| m.units.get(u).map_or(absent, |unit| f(unit, tolerance(m))))
+                per_vehicle(&|m, shrink| m.units.get(u).map_or(absent, |unit| f(unit, tolerance(m, shrink))))
             };
             UnitLanes {
                 present: of(&|_, _| 1.0, 0.0),
@@ -60,11 +61,11 @@ impl<'m> Group<'m> {
         chain.iter_mut().zip(settled).for_each(|(unit, settled)| unit.settled = settled);
         Self {
             models: models.to_vec(),
-            shrink,
             units,
             chain,
             tolerance,
-            course: per_vehicle(&|m| m.vehicle.tracking_heading_rad),
+            course: per_vehicle(&|m, _| m.vehicle.tracking_heading_rad),
+            shrinks,
         }
     }
 

@@ -7,10 +7,12 @@ mod adjoint;
 mod ascent;
 mod block;
 mod body;
+mod course;
 mod external_plan;
 mod gains;
 mod group;
 mod lanes;
+mod least;
 mod leeway;
 mod model;
 pub mod motion;
@@ -27,21 +29,24 @@ mod track;
 mod tube;
 
 use std::ops::Range;
+use std::rc::Rc;
 
 use netcert_base::corridor::Corridor;
 use netcert_base::stop::{Stop, Stopped};
 use netcert_base::verdict::{UnsafeReason, Verdict};
 
+pub use course::Course;
 pub use external_plan::{PlanError, certify_plan};
 pub use model::{MAX_UNITS, Model, ModelError};
 pub use motion::steady_offtracking;
+pub use plane::Grounds;
 pub use shift::{KNOT_STATIONS, Plan, STEP_M};
 pub use tube::{Tube, tubes};
 
 use block::{BLOCK, Minima};
 use group::Group;
 use lanes::{LANES, V};
-use sweep::{Wanted, sweep};
+use sweep::{Refining, Wanted, sweep};
 use track::Track;
 
 /// An edge of the corridor, seen in driving direction.
@@ -377,11 +382,22 @@ fn thorough(track: &Track, group: &Group<'_>, shift: &[V], stop: &Stop) -> Vec<M
         return full;
     }
     let loose = |lane: usize, head: usize| full[lane].loose[head / BLOCK];
-    sweep::<true>(track, group, shift, &Wanted { refined: Some(&loose), ..Wanted::ALL }, stop)
+    sweep::<true>(track, group, shift, &Wanted { refining: Refining::From(&loose), ..Wanted::ALL }, stop)
 }
 
 /// How often a vehicle is certified with corrections taken back over some areas only.
 const HOLDS: usize = 4;
+
+/// The corridor, prepared for vehicles and spans.
+fn track(corridor: &Corridor, models: &[&Model], spans: &[Range<usize>], marks: Marks, grounds: &Grounds) -> Rc<Track> {
+    let group = Group::new(models, 1.0);
+    let mut track = Track::on(corridor, sweep::extensions(&group, corridor.spacing_m), grounds);
+    match marks {
+        Marks::Ends => track.mark(spans.iter().flat_map(|span| spans::marks(corridor.spacing_m, span))),
+        Marks::All => track.mark(0..corridor.len()),
+    }
+    Rc::new(track)
+}
 
 /// The stations at which the leeway between two points of a side is examined.
 #[derive(Debug, Clone, Copy)]
@@ -394,7 +410,7 @@ enum Marks {
 
 /// A group of vehicles after its sweeps.
 struct Swept<'m> {
-    track: Track,
+    track: Rc<Track>,
     group: Group<'m>,
     stop: &'m Stop,
     plans: Vec<Plan>,
@@ -433,15 +449,28 @@ impl<'m> Swept<'m> {
         stop: &'m Stop,
         plans: &dyn Fn(&Track, &Group<'m>) -> Vec<Plan>,
     ) -> Self {
-        let group = Group::new(models, 1.0);
-        let mut track = Track::new(corridor, sweep::extensions(&group, corridor.spacing_m));
-        match marks {
-            Marks::Ends => track.mark(spans.iter().flat_map(|span| spans::marks(corridor.spacing_m, span))),
-            Marks::All => track.mark(0..corridor.len()),
+        let (mut swept, shift) =
+            Self::ready(track(corridor, models, spans, marks, &Grounds::default()), models, stop, plans);
+        match (marks, spans) {
+            (Marks::Ends, [only]) if !corridor.areas.is_empty() => {
+                swept.measure_least(only, &shift, f64::NEG_INFINITY);
+            }
+            _ => swept.measure(spans, &shift),
         }
+        swept
+    }
+
+    /// Before any sweep along the plans, which it returns as shifts.
+    fn ready(
+        track: Rc<Track>,
+        models: &[&'m Model],
+        stop: &'m Stop,
+        plans: &dyn Fn(&Track, &Group<'m>) -> Vec<Plan>,
+    ) -> (Self, Vec<V>) {
+        let group = Group::new(models, 1.0);
         let plans = plans(&track, &group);
         let shift = shift::lanes(&plans, track.lead, track.len(), track.count);
-        let mut swept = Self {
+        let swept = Self {
             track,
             group,
             stop,
@@ -452,15 +481,7 @@ impl<'m> Swept<'m> {
             refined: None,
             least: None,
         };
-        let only = match (marks, spans) {
-            (Marks::Ends, [only]) if !swept.track.areas.is_empty() => Some(only),
-            _ => None,
-        };
-        match only {
-            Some(span) => swept.measure_least(span, &shift),
-            None => swept.measure(spans, &shift),
-        }
-        swept
+        (swept, shift)
     }
 
     /// The sweeps along the plans.
@@ -470,69 +491,23 @@ impl<'m> Swept<'m> {
             self.nominal = Some(sweep::<false>(&self.track, &self.group, shift, &Wanted::PLAIN, self.stop));
         }
         let near = self.blocks(spans, |lane, span| self.worth(lane, span));
-        self.refine(&near, shift, &Wanted::ALL);
+        self.refine(&near, shift);
         let failing = self.blocks(spans, |lane, span| self.at_full(lane, span).fails());
-        self.tighten(&failing, &near, shift, &Wanted::ALL);
-    }
-
-    /// As [`Self::measure`], for the least leeway of one span in areas. Most time goes into distances there, so they are measured only
-    /// where they may decide: at γ_min alone for a vehicle that would not fit if it kept to its path exactly.
-    fn measure_least(&mut self, span: &Range<usize>, shift: &[V]) {
-        let spans = std::slice::from_ref(span);
-        let least = Wanted { only: Some(span), ..Wanted::ALL };
-        self.full = sweep::<true>(&self.track, &self.group, shift, &Wanted { bare: true, ..least }, self.stop);
-        let plain = Wanted { only: Some(span), ..Wanted::PLAIN };
-        let nominal = sweep::<false>(&self.track, &self.group, shift, &plain, self.stop);
-        let fits: Vec<bool> = nominal.iter().map(|m| m.room_on(spans::stations(&self.track, span))).collect();
-        self.nominal = Some(nominal);
-        self.bare = fits.iter().map(|fits| !fits).collect();
-        let near = self.blocks(spans, |lane, span| self.worth(lane, span));
-        self.refine(&near, shift, &least);
-        self.fill(&self.blocks(spans, |lane, span| fits[lane] && !self.worth(lane, span)), shift, &least);
-        let failing = self.blocks(spans, |lane, span| self.at_full(lane, span).fails());
-        self.tighten(&failing, &near, shift, &least);
-        // Between γ_min and 1, SHRINK asks for the leeways of all steps.
-        let shrinks = |lane: usize| {
-            let model = self.group.models[lane];
-            let fits_at = |least: &Vec<Minima>| !spans::least(&self.track, model, span, &least[lane]).fails();
-            self.at_full(lane, span).fails() && self.least.as_ref().is_some_and(fits_at)
-        };
-        if (0..fits.len()).any(shrinks) {
-            if near.iter().any(|blocks| !blocks.contains(&true)) {
-                self.full = sweep::<true>(&self.track, &self.group, shift, &Wanted::ALL, self.stop);
-                self.bare.fill(false);
-            }
-            self.refine(&near, shift, &Wanted::ALL);
-            let failing = self.blocks(spans, |lane, span| self.at_full(lane, span).fails());
-            self.tighten(&failing, &near, shift, &Wanted::ALL);
-        }
+        self.tighten(&failing, &near, shift);
     }
 
     /// Refines by the adjoint what is `near`, by vehicle and block.
-    fn refine(&mut self, near: &[Vec<bool>], shift: &[V], wanted: &Wanted<'_>) {
+    fn refine(&mut self, near: &[Vec<bool>], shift: &[V]) {
         if near.iter().flatten().any(|&near| near) {
             let blocks = |lane: usize, head: usize| near[lane][head / BLOCK];
             let loose = |lane: usize, head: usize| self.full[lane].loose[head / BLOCK];
-            let wanted = Wanted { blocks: &blocks, refined: Some(&loose), ..*wanted };
+            let wanted = Wanted { blocks: &blocks, refining: Refining::From(&loose), ..Wanted::ALL };
             self.refined = Some(sweep::<true>(&self.track, &self.group, shift, &wanted, self.stop));
         }
     }
 
-    /// Measures what a bare sweep left out, for vehicles of which any block is wanted.
-    fn fill(&mut self, blocks: &[Vec<bool>], shift: &[V], wanted: &Wanted<'_>) {
-        let any: Vec<bool> = blocks.iter().map(|blocks| blocks.contains(&true)).collect();
-        if any.contains(&true) {
-            let blocks = |lane: usize, _: usize| any[lane];
-            let wanted = Wanted { blocks: &blocks, ..*wanted };
-            let filled = sweep::<true>(&self.track, &self.group, shift, &wanted, self.stop);
-            for ((full, filled), _) in self.full.iter_mut().zip(filled).zip(&any).filter(|(_, any)| **any) {
-                *full = filled;
-            }
-        }
-    }
-
     /// Sweeps at γ_min what fails at γ = 1, by vehicle and block.
-    fn tighten(&mut self, failing: &[Vec<bool>], near: &[Vec<bool>], shift: &[V], wanted: &Wanted<'_>) {
+    fn tighten(&mut self, failing: &[Vec<bool>], near: &[Vec<bool>], shift: &[V]) {
         if !failing.iter().flatten().any(|&fails| fails) {
             return;
         }
@@ -543,8 +518,8 @@ impl<'m> Swept<'m> {
         let any: Vec<bool> = near.iter().map(|blocks| blocks.contains(&true)).collect();
         let loose = |lane: usize, head: usize| self.full[lane].loose[head / BLOCK];
         let own = |lane: usize, head: usize| if any[lane] { loose(lane, head) } else { usize::MAX };
-        let refined: Option<&dyn Fn(usize, usize) -> usize> = Some(&own);
-        let wanted = Wanted { blocks: &blocks, refined: refined.filter(|_| self.refined.is_some()), ..*wanted };
+        let refining = if self.refined.is_some() { Refining::From(&own) } else { Refining::Nowhere };
+        let wanted = Wanted { blocks: &blocks, refining, ..Wanted::ALL };
         self.least = Some(sweep::<true>(&self.track, &tight, shift, &wanted, self.stop));
     }
 

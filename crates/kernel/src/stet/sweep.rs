@@ -13,7 +13,7 @@ use super::body::{self, Body};
 use super::group::Group;
 use super::lanes::{LANES, V, ZERO, by_instruction_set, select_negative};
 use super::leeway;
-use super::model::{MAX_UNITS, Model};
+use super::model::MAX_UNITS;
 use super::spans;
 use super::step::{
     Filter, MOST, Step, Straying, chord_bulge, chord_lag, decay, foot_shift, heading, hinge_margin, hitch_remainder,
@@ -44,20 +44,45 @@ pub(super) fn extensions(group: &Group<'_>, spacing: f64) -> Extensions {
 /// refined use the adjoint.
 pub(super) struct Wanted<'w> {
     pub(super) blocks: &'w dyn Fn(usize, usize) -> bool,
-    /// The first unit to be refined.
-    pub(super) refined: Option<&'w dyn Fn(usize, usize) -> usize>,
+    pub(super) refining: Refining<'w>,
     /// Without `CERTIFY`: not even the straight gains are deducted.
     pub(super) plain: bool,
     /// Only the least leeway of this span is asked for, or (if `plain`) whether any is negative. What has more need not be noted.
     pub(super) only: Option<&'w Range<usize>>,
-    /// Areas are not looked at: no leeway is noted where they count.
-    pub(super) bare: bool,
+    /// Steps in areas with less leeway than this are noted, though another one has less.
+    pub(super) keep: f64,
+    /// Two lanes of one vehicle that does not fit anyway, at γ = 1 and at γ_min.
+    pub(super) hopeless: Option<Hopeless>,
+}
+
+/// What the first use of the adjoint by vehicle and head station depends on.
+#[derive(Clone, Copy)]
+pub(super) enum Refining<'w> {
+    /// The filter serves everywhere.
+    Nowhere,
+    /// From this unit on.
+    From(&'w dyn Fn(usize, usize) -> usize),
+    /// Where this sweep finds the filter loose.
+    WhereLoose,
+}
+
+/// A sweep that only asks how much is missing. At γ = 1 areas are not looked at; where the bounds do not close, the sweep ends.
+#[derive(Clone, Copy)]
+pub(super) struct Hopeless {
+    /// What the least leeway in areas is believed to be below, metres. If it is not, the sweep is repeated without.
+    pub(super) below_m: f64,
 }
 
 impl Wanted<'_> {
     /// Everything, by the filter alone.
-    pub(super) const ALL: Wanted<'static> =
-        Wanted { blocks: &|_, _| true, refined: None, plain: false, only: None, bare: false };
+    pub(super) const ALL: Wanted<'static> = Wanted {
+        blocks: &|_, _| true,
+        refining: Refining::Nowhere,
+        plain: false,
+        only: None,
+        keep: f64::NEG_INFINITY,
+        hopeless: None,
+    };
     /// The leeway of everything without disturbances.
     pub(super) const PLAIN: Wanted<'static> = Wanted { plain: true, ..Self::ALL };
 }
@@ -72,11 +97,19 @@ pub(super) fn sweep<const CERTIFY: bool>(
     wanted: &Wanted<'_>,
     stop: &Stop,
 ) -> Vec<Minima> {
-    let swept = match wanted.refined {
-        Some(refined) if CERTIFY => sweep_blocks::<CERTIFY, true>(track, group, shift, wanted, refined, stop),
-        _ => sweep_blocks::<CERTIFY, false>(track, group, shift, wanted, &|_, _| usize::MAX, stop),
+    let swept = match wanted.refining {
+        Refining::Nowhere => sweep_blocks::<CERTIFY, false>(track, group, shift, wanted, stop),
+        _ if CERTIFY => sweep_blocks::<CERTIFY, true>(track, group, shift, wanted, stop),
+        _ => sweep_blocks::<CERTIFY, false>(track, group, shift, wanted, stop),
     };
-    swept.unwrap_or_else(|_| vec![Minima::lost(track.len()); group.models.len()])
+    let swept = swept.unwrap_or_else(|_| vec![Minima::lost(track.len()); group.models.len()]);
+    match wanted.hopeless {
+        Some(Hopeless { below_m }) if below_m.is_finite() && swept.last().is_some_and(|m| m.floor >= below_m) => {
+            let wanted = Wanted { hopeless: Some(Hopeless { below_m: f64::INFINITY }), ..*wanted };
+            sweep::<CERTIFY>(track, group, shift, &wanted, stop)
+        }
+        _ => swept,
+    }
 }
 
 fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
@@ -84,21 +117,23 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     group: &Group<'_>,
     shift: &[V],
     wanted: &Wanted<'_>,
-    refined: &dyn Fn(usize, usize) -> usize,
     stop: &Stop,
 ) -> Result<Vec<Minima>, Stopped> {
     let mut minima = vec![Minima::new(track.len()); group.models.len()];
-    minima.iter_mut().for_each(|minima| minima.bare = wanted.bare);
     if let Some(span) = wanted.only {
-        let counted = |model: &&Model| spans::straight(track, model, span);
-        minima.iter_mut().zip(&group.models).for_each(|(minima, model)| minima.counted = counted(model));
+        for (minima, model) in minima.iter_mut().zip(&group.models) {
+            (minima.counted, minima.keep) = (spans::straight(track, model, span), wanted.keep);
+        }
+    }
+    if let (Some(Hopeless { below_m }), [full, least]) = (wanted.hopeless, minima.as_mut_slice()) {
+        (full.bare, least.floor) = (true, below_m);
     }
     let mut rows = vec![0.0; group.units * LANES * FIELDS * BLOCK];
     let mut motion = Motion::new(track, group);
     let mut trail = Trail::new(group, REFINE);
     let mut tight = Refined::new();
     let mut bodies: Vec<Vec<Body>> =
-        group.models.iter().map(|m| body::bodies::<CERTIFY>(m, track, group.shrink)).collect();
+        group.models.iter().zip(&group.shrinks).map(|(m, shrink)| body::bodies::<CERTIFY>(m, track, *shrink)).collect();
     if wanted.plain && !CERTIFY {
         bodies.iter_mut().flatten().for_each(Body::forget_gains);
     }
@@ -109,13 +144,24 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
         let left = group.models.iter().map(|model| spans::touching(track, model, span).end).max();
         last = left.map_or(last, |left| last.min(left));
     }
+    // Nothing else counts when all of every vehicle has left.
+    let span = wanted.only.cloned().unwrap_or(0..track.count);
+    let touched = spans::stations(track, &span);
     let mut head = track.first_head;
     while head < last {
         stop.check()?;
         drive::<CERTIFY, REFINE>(&mut motion, track, group, shift, head, &mut rows, &mut trail);
         for (lane, (bodies, minima)) in bodies.iter_mut().zip(&mut minima).enumerate() {
+            if CERTIFY && !matches!(wanted.refining, Refining::From(_)) {
+                minima.note_loose(head, first_loose(group, lane, &rows));
+            }
+            let refining = wanted.refining;
             let wanted = (wanted.blocks)(lane, head);
-            let tight_from = if REFINE && wanted { refined(lane, head) } else { usize::MAX };
+            let tight_from = match refining {
+                Refining::From(unit) if REFINE && wanted => unit(lane, head),
+                Refining::WhereLoose if REFINE && wanted => minima.loose[head / BLOCK],
+                _ => usize::MAX,
+            };
             if tight_from < bodies.len() {
                 adjoint::refine(&mut trail, group, lane, tight_from, &mut motion.extra, &mut rows, &mut tight);
             }
@@ -125,9 +171,6 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
             if !wanted {
                 bodies.iter_mut().for_each(|body| body::skip(track, body, head));
                 continue;
-            }
-            if CERTIFY && !REFINE {
-                minima.note_loose(head, first_loose(group, lane, &rows));
             }
             for (unit, body) in bodies.iter_mut().enumerate() {
                 let start = (unit * LANES + lane) * FIELDS * BLOCK;
@@ -143,6 +186,21 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
         if wanted.plain
             && wanted.only.is_some_and(|span| minima.iter().all(|m| !m.room_on(spans::stations(track, span))))
         {
+            break;
+        }
+        if bodies.iter().zip(&group.models).all(|(bodies, model)| {
+            head >= spans::straight(track, model, &span).end
+                && bodies.iter().flat_map(|body| &body.points).all(|point| point.foot > *touched.end() + 1)
+        }) {
+            break;
+        }
+        if let (Some(_), Some(full)) = (wanted.hopeless, minima.first())
+            && full.hinge[head - BLOCK..head]
+                .iter()
+                .zip(head - BLOCK..)
+                .any(|(&hinge, k)| hinge < 0.5 * NOT_CLOSED_RAD && full.counted.contains(&k))
+        {
+            minima.iter_mut().for_each(|minima| minima.floor = f64::NEG_INFINITY);
             break;
         }
     }

@@ -3,7 +3,7 @@
 
 use super::lanes::{LANES, V};
 use super::model::POINT_SPACING_M as MOST_GAP_M;
-use super::plane::Areas;
+use super::plane::{Areas, Grounds};
 use netcert_base::corridor::Corridor;
 
 /// Half-width of the straight extensions beyond a body gap from the corridor: they are driven, not certified.
@@ -68,7 +68,16 @@ pub(super) struct Fields<T> {
 
 impl Track {
     /// Extends `corridor` by `lead_m` and `tail_m` for vehicles that reach `front_m` ahead of their steer axles.
-    pub(super) fn new(corridor: &Corridor, Extensions { lead_m, tail_m, front_m }: Extensions) -> Self {
+    pub(super) fn new(corridor: &Corridor, extensions: Extensions) -> Self {
+        Self::on(corridor, extensions, &Grounds::default())
+    }
+
+    /// As [`Self::new`], with areas that may be prepared already.
+    pub(super) fn on(
+        corridor: &Corridor,
+        Extensions { lead_m, tail_m, front_m }: Extensions,
+        grounds: &Grounds,
+    ) -> Self {
         let h = corridor.spacing_m;
         let count = corridor.len();
         let lead = (lead_m / h).ceil() as usize + LANES;
@@ -120,7 +129,7 @@ impl Track {
         };
         let torn = corridor.torn().into_iter().map(|k| lead + k).collect();
         let next_mark = vec![u32::MAX; fields.x.len() + 1];
-        let areas = Areas::new(corridor, lead);
+        let areas = Areas::new(corridor, lead, grounds);
         Self { spacing: h, lead, first_head, count, fields, torn, areas, next_mark }
     }
 

@@ -6,9 +6,10 @@
 
 mod ground;
 
+use std::cell::RefCell;
 use std::sync::Arc;
 
-use netcert_base::corridor::{AreaSpan, Corridor};
+use netcert_base::corridor::{Area, AreaSpan, Corridor};
 
 use super::block::{BLOCK, Minima, NOT_CLOSED_RAD, row};
 use super::body::{Body, FRESH, Point as BodyPoint, least};
@@ -42,16 +43,31 @@ struct Window {
     ground: Option<Arc<Ground>>,
 }
 
+/// Areas whose boundaries have been prepared. Paths of one junction share its area.
+#[derive(Default)]
+pub struct Grounds(RefCell<Vec<(Arc<Area>, Option<Arc<Ground>>)>>);
+
+impl Grounds {
+    fn of(&self, area: &Arc<Area>) -> Option<Arc<Ground>> {
+        if let Some((_, ground)) = self.0.borrow().iter().find(|(known, _)| Arc::ptr_eq(known, area)) {
+            return ground.clone();
+        }
+        let ground = Ground::new(area).map(Arc::new);
+        self.0.borrow_mut().push((Arc::clone(area), ground.clone()));
+        ground
+    }
+}
+
 /// The areas of a corridor, prepared for its extended stations.
 pub(super) struct Areas(Vec<Window>);
 
 impl Areas {
-    pub(super) fn new(corridor: &Corridor, lead: usize) -> Self {
+    pub(super) fn new(corridor: &Corridor, lead: usize, grounds: &Grounds) -> Self {
         let last = corridor.len().saturating_sub(1);
         let window = |span: &AreaSpan| Window {
             first: lead + span.heads.start.min(last),
             last: lead + span.heads.end.saturating_sub(1).min(last),
-            ground: Ground::new(&span.area).map(Arc::new),
+            ground: grounds.of(&span.area),
         };
         Self(corridor.areas.iter().map(window).collect())
     }
@@ -208,7 +224,8 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
                 && track.areas.over(before.head)
                 && !minima.bare
             {
-                let known = [0, 1].map(|side| minima.area[side][before.head].min(minima.floor + SAME_M));
+                let known = (minima.floor + SAME_M).max(minima.keep);
+                let known = [0, 1].map(|side| minima.area[side][before.head].min(known));
                 let lowest = if closes {
                     let passage = Passage::new(track, (&body.points, body.half_width), &before, &stand);
                     passage.lowest(&mut body.rooms, known)
@@ -259,6 +276,8 @@ pub(super) struct Rooms {
     critical: [usize; 2],
     /// The station after the last step.
     head: usize,
+    /// Without disturbances: the places that were measured last, with their rooms.
+    places: Vec<(Point, f64)>,
 }
 
 impl Rooms {
@@ -281,6 +300,7 @@ impl Rooms {
             front: [f64::NEG_INFINITY; 2],
             critical: [0, 1],
             head: 0,
+            places: Vec::new(),
         }
     }
 
@@ -475,10 +495,15 @@ fn moved(before: [Point; 2], after: [Point; 2]) -> f64 {
 }
 
 /// Lowers the planning leeways at the feet of a unit's points: the nominal room of the sides between them, less the straight gains.
-fn plan(track: &Track, body: &Body, stand: &Stand, feet: &[usize; MOST_POINTS], minima: &mut Minima) {
+fn plan(track: &Track, body: &mut Body, stand: &Stand, feet: &[usize; MOST_POINTS], minima: &mut Minima) {
     if track.areas.count(stand.head, stand.head).next().is_none() {
         return;
     }
+    let only = !minima.counted.is_empty();
+    if track.areas.changes(stand.head) || track.areas.changes(stand.head.saturating_sub(1)) {
+        body.rooms.places.clear();
+    }
+    let mut number = 0;
     for index in 0..body.points.len() {
         let before = index.saturating_sub(1);
         let (ahead, behind) = (&body.points[before], &body.points[index]);
@@ -488,13 +513,34 @@ fn plan(track: &Track, body: &Body, stand: &Stand, feet: &[usize; MOST_POINTS], 
             for part in 0..=parts as usize {
                 let share = part as f64 / parts;
                 let p = stand.place(from + (to - from) * share, aside);
+                number += 1;
+                // Room falls by no more than the place moves.
+                if only
+                    && body
+                        .rooms
+                        .places
+                        .get(number - 1)
+                        .is_some_and(|(q, room)| room - ground::apart(*q, p) >= minima.floor.max(0.0))
+                {
+                    continue;
+                }
                 let rooms = track
                     .areas
                     .count(stand.head, stand.head)
                     .map(|ground| ground.map_or(FAR_OUTSIDE_M, |ground| ground.room(p)));
                 let near = if share < 0.5 { before } else { index };
                 let point = &body.points[near];
-                let leeway = rooms.fold(FAR_OUTSIDE_M, f64::max) - point.spot.gain;
+                let room = rooms.fold(FAR_OUTSIDE_M, f64::max);
+                if only {
+                    match body.rooms.places.get_mut(number - 1) {
+                        Some(known) => *known = (p, room),
+                        None => body.rooms.places.push((p, room)),
+                    }
+                }
+                let leeway = room - point.spot.gain;
+                if minima.counted.contains(&stand.head) {
+                    minima.floor = minima.floor.min(leeway);
+                }
                 let tagged = V::splat(leeway).tagged(point.tag).0[0];
                 let column = if side == 0 { &mut minima.left } else { &mut minima.right };
                 column[feet[near]] = least(column[feet[near]], tagged);

@@ -1,0 +1,49 @@
+//! A corridor with areas, prepared for one vehicle and several plans: the turns of a region are certified on it.
+
+use std::ops::Range;
+use std::rc::Rc;
+
+use netcert_base::corridor::Corridor;
+use netcert_base::stop::Stop;
+
+use super::plane::Grounds;
+use super::track::Track;
+use super::{Marks, Model, Options, Planned, Swept, held, plan, track};
+
+/// A corridor prepared for one vehicle and one span of stations. Its certificates are those of [`super::certify_spans`].
+pub struct Course<'c> {
+    corridor: &'c Corridor,
+    model: &'c Model,
+    span: Range<usize>,
+    track: Rc<Track>,
+}
+
+impl<'c> Course<'c> {
+    /// Prepares a corridor. `None` if it has no station. Paths of one junction share `grounds`.
+    #[must_use]
+    pub fn new(corridor: &'c Corridor, model: &'c Model, span: &Range<usize>, grounds: &Grounds) -> Option<Self> {
+        let spans = std::slice::from_ref(span);
+        let prepared = || track(corridor, &[model], spans, Marks::Ends, grounds);
+        (!corridor.is_empty()).then(|| Self { corridor, model, span: span.clone(), track: prepared() })
+    }
+
+    /// Certifies the vehicle along the best plan. `None` if it would have less leeway than `above_m` even if it followed that plan exactly.
+    #[must_use]
+    pub fn certify(&self, options: &Options, above_m: f64) -> Option<Planned> {
+        let never = Stop::default();
+        let spans = std::slice::from_ref(&self.span);
+        let plans = |track: &Track, group: &_| plan::best(track, group, spans, options, &[], &never);
+        let (mut swept, shift) = Swept::ready(Rc::clone(&self.track), &[self.model], &never, &plans);
+        if self.corridor.areas.is_empty() {
+            swept.measure(spans, &shift);
+        } else if !swept.measure_least(&self.span, &shift, above_m) {
+            return None;
+        }
+        let results = vec![swept.result(0, &self.span)];
+        let held = held(self.corridor, self.model, spans, Marks::Ends, options, &results, &never);
+        Some(match held {
+            Some((held, spans)) => Planned { plan: held.plans[0].clone(), spans },
+            None => Planned { plan: swept.plans[0].clone(), spans: results },
+        })
+    }
+}
