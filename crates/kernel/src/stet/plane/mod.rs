@@ -45,7 +45,9 @@ struct Window {
 
 /// Areas whose boundaries have been prepared. Paths of one junction share its area.
 #[derive(Default)]
-pub struct Grounds(RefCell<Vec<(Arc<Area>, Option<Arc<Ground>>)>>);
+pub struct Grounds(RefCell<Vec<Prepared>>);
+
+type Prepared = (Arc<Area>, Option<Arc<Ground>>);
 
 impl Grounds {
     fn of(&self, area: &Arc<Area>) -> Option<Arc<Ground>> {
