@@ -118,8 +118,8 @@ const EXPECTED: [(&str, &str); 94] = [
     ("err_deep_nesting_64KiB", PLAIN),
     ("real_sydney_au_cut_at_60pct", "at 292574: truncated: the file ends inside a blob"),
     ("real_sydney_au_one_bit_flipped", "at 292574: cannot inflate the zlib blob: the data is damaged"),
-    ("ok_real_sydney_au_blocks_reversed", "701 ways, 49 minor_service, 2385 no_highway, 2192 not_a_road, 8 not_in_use, 4 track | 31305 nodes, 3482 placed, 27823 unnamed | 292 relations, 55 restrictions, 1 broken"),
-    ("skip_real_sydney_au_one_block_missing", "701 ways, 49 minor_service, 2385 no_highway, 2192 not_a_road, 8 not_in_use, 4 track | 27305 nodes, 2822 placed, 24483 unnamed, 660 missing | 292 relations, 55 restrictions, 1 broken, 7 off the road"),
+    ("ok_real_sydney_au_blocks_reversed", "701 ways, 49 minor_service, 2385 no_highway, 2192 not_a_road, 8 not_in_use, 4 track | 31305 nodes, 3518 placed, 27787 unnamed | 292 relations, 55 restrictions, 1 broken"),
+    ("skip_real_sydney_au_one_block_missing", "701 ways, 49 minor_service, 2385 no_highway, 2192 not_a_road, 8 not_in_use, 4 track | 27305 nodes, 2858 placed, 24447 unnamed, 660 missing | 292 relations, 55 restrictions, 1 broken, 7 off the road"),
 ];
 
 #[test]

@@ -227,7 +227,9 @@ impl Suppositions {
         let mut of_road: BTreeMap<(usize, Policy, u64), usize> = BTreeMap::new();
         for ((i, edge), road) in way.iter().enumerate().zip(roads(network, way)) {
             for (&(_, strip), &needed_m) in self.widths_m.range((*edge, Policy::Lane)..=(*edge, Policy::Carriageway)) {
-                let Some(assumed_m) = self.known_width_m(network, *edge, strip) else { continue };
+                // What is as wide anyway need not be measured.
+                let known_m = self.known_width_m(network, *edge, strip);
+                let Some(assumed_m) = known_m.filter(|has_m| *has_m < needed_m) else { continue };
                 let place = *of_road.entry((road, strip, needed_m.to_bits())).or_insert(found.len());
                 if let Some((_, condition)) = found.get_mut(place) {
                     condition.assumed_m = condition.assumed_m.map(|known_m| known_m.min(assumed_m));
