@@ -26,6 +26,8 @@ const BEYOND_M: f64 = 5.0;
 pub(super) struct Scorer<'a> {
     made: &'a TurnCorridors,
     vehicle: &'a Vehicle,
+    /// By unit: the angle to the unit ahead that costs nothing, radians, and its cosine.
+    limits: Vec<(f64, f64)>,
     /// The units' headings (unit vectors) by station of the approach at which the steer axle is.
     approach: Vec<[f64; 2]>,
     headings: Vec<[f64; 2]>,
@@ -45,7 +47,9 @@ impl<'a> Scorer<'a> {
             follow(&mut headings, [b[0] - a[0], b[1] - a[1]], &vehicle.units);
             approach.extend_from_slice(&headings);
         }
-        Self { made, vehicle, approach, headings, stands: Vec::new(), critical: [usize::MAX; CRITICAL] }
+        let prudent = |(i, unit): (usize, &Unit)| unit.max_articulation_rad - SPARE_RAD[usize::from(i > 0)];
+        let limits = vehicle.units.iter().enumerate().map(prudent).map(|rad| (rad, rad.cos())).collect();
+        Self { made, vehicle, limits, approach, headings, stands: Vec::new(), critical: [usize::MAX; CRITICAL] }
     }
 
     /// The score of the path with a code, metres, from moments about `step_m` apart. At most `floor_m` is told of paths that score less. `None` if the
@@ -64,7 +68,7 @@ impl<'a> Scorer<'a> {
         self.stands.clear();
         for p in line.points.iter().skip(1).copied().chain(tail) {
             let step = [p[0] - at[0], p[1] - at[1]];
-            let length_m = step[0].hypot(step[1]);
+            let length_m = length(step);
             if length_m < 1e-6 {
                 continue;
             }
@@ -72,12 +76,11 @@ impl<'a> Scorer<'a> {
             let before = self.headings.first().copied()?;
             follow(&mut self.headings, step, units);
             let mut ahead = [step[0] / length_m, step[1] / length_m];
-            for (i, (&heading, unit)) in self.headings.iter().zip(units).enumerate() {
-                let most_rad = unit.max_articulation_rad - SPARE_RAD[usize::from(i > 0)];
+            for (i, (&heading, &(most_rad, least_cosine))) in self.headings.iter().zip(&self.limits).enumerate() {
                 // A chord points where the steer axle goes in the middle of the step.
                 let of = if i == 0 { middle(before, heading) } else { heading };
                 let cosine = ahead[0] * of[0] + ahead[1] * of[1];
-                if cosine < most_rad.cos() {
+                if cosine < least_cosine {
                     beyond_rad = beyond_rad.max(cosine.clamp(-1.0, 1.0).acos() - most_rad);
                 }
                 ahead = heading;
@@ -166,7 +169,7 @@ fn follow(headings: &mut [[f64; 2]], mut step: [f64; 2], units: &[Unit]) {
 
 /// The heading after the front coupling has moved by `step`, as in the kernel's nominal motion.
 fn turned(heading: [f64; 2], step: [f64; 2], length_m: f64) -> [f64; 2] {
-    let moved = step[0].hypot(step[1]);
+    let moved = length(step);
     if moved < 1e-12 {
         return heading;
     }
@@ -203,8 +206,13 @@ fn room_m(field: &mut Field, axle: [f64; 2], heading: [f64; 2], unit: &Unit, mut
 /// The heading halfway between two.
 fn middle(u: [f64; 2], v: [f64; 2]) -> [f64; 2] {
     let [x, y] = [u[0] + v[0], u[1] + v[1]];
-    let length = x.hypot(y).max(1e-9);
+    let length = length([x, y]).max(1e-9);
     [x / length, y / length]
+}
+
+/// Unlike `hypot` it is inlined.
+fn length([x, y]: [f64; 2]) -> f64 {
+    (x * x + y * y).sqrt()
 }
 
 fn along(p: [f64; 2], u: [f64; 2], m: f64) -> [f64; 2] {

@@ -13,6 +13,8 @@ const HALF_CELL_M: f64 = 0.5 * CELL_M * std::f64::consts::SQRT_2 + 1e-6;
 const FAR_M: f64 = 4.0;
 /// Most cells of a grid. An area of a square kilometre has a ninth of it.
 const MOST_CELLS: usize = 1 << 20;
+/// A rough room is enough if it leaves this much more than what is enough, metres: the piece soon needs a better one otherwise.
+const SPARE_M: f64 = 0.2;
 /// Segments that share a box.
 const BUNDLE: usize = 8;
 /// How much deeper outside than it is a piece may be taken to be: metres, and as a share of its depth.
@@ -270,7 +272,7 @@ impl Ground {
             return outside();
         }
         let rough = nearest.0.sqrt() - reach;
-        let Some(first) = nearest.1.filter(|_| rough - piece.most < piece.enough) else {
+        let Some(first) = nearest.1.filter(|_| rough - piece.most < piece.enough + SPARE_M) else {
             return (rough, rough - piece.most);
         };
         let (mut room, mut leeway) = (FAR_M - reach, FAR_M - reach - piece.most);

@@ -267,11 +267,14 @@ struct Piece {
     side: usize,
 }
 
-/// Rooms of a unit's pieces, carried from step to step. A piece that moves by a metre loses at most a metre of room, so most pieces
-/// need not be measured in most steps.
+/// Rooms of a unit's pieces, carried from step to step. A piece that moves by a metre loses at most a metre of room. A piece that slides
+/// along its side goes where it was itself and the piece ahead of it, and loses what it moves aside. So most pieces need not be
+/// measured in most steps.
 pub(super) struct Rooms {
     pieces: Vec<Piece>,
     rooms: Vec<f64>,
+    /// The rooms in the step before.
+    before: Vec<f64>,
     /// By side: room of its half of the front edge.
     front: [f64; 2],
     /// By side: the piece with the least leeway in the last step. It is measured first.
@@ -298,6 +301,7 @@ impl Rooms {
         }
         Self {
             rooms: vec![f64::NEG_INFINITY; pieces.len()],
+            before: vec![f64::NEG_INFINITY; pieces.len()],
             pieces,
             front: [f64::NEG_INFINITY; 2],
             critical: [0, 1],
@@ -312,7 +316,36 @@ impl Rooms {
             self.rooms.fill(f64::NEG_INFINITY);
             self.front = [f64::NEG_INFINITY; 2];
         }
+        self.before.copy_from_slice(&self.rooms);
         self.head = head + 1;
+    }
+
+    /// The room of a place without disturbances, unless it is known to be at least `enough`: it falls by no more than the place has moved
+    /// since it was measured. Places are numbered.
+    fn nominal(&mut self, areas: &Areas, head: usize, (number, p): (usize, Point), enough: f64) -> Option<f64> {
+        let known = self.places.get(number);
+        if known.is_some_and(|(q, room)| room - ground::apart(*q, p) >= enough) {
+            return None;
+        }
+        let rooms = areas.count(head, head).map(|ground| ground.map_or(FAR_OUTSIDE_M, |ground| ground.room(p)));
+        let room = rooms.fold(FAR_OUTSIDE_M, f64::max);
+        match self.places.get_mut(number) {
+            Some(known) => *known = (p, room),
+            None => self.places.push((p, room)),
+        }
+        Some(room)
+    }
+
+    /// The room in the step before of the piece and of the one ahead of it on its side, if the latter is at least this long.
+    fn slid(&self, number: usize, slide: f64) -> Option<f64> {
+        let (own, ahead) = (self.before.get(number)?, number.checked_sub(2)?);
+        (self.pieces[ahead].length() >= slide).then(|| own.min(self.before[ahead]))
+    }
+}
+
+impl Piece {
+    fn length(&self) -> f64 {
+        self.ends[0] - self.ends[1]
     }
 }
 
@@ -329,6 +362,11 @@ struct Passage<'a> {
     /// The greater ones of both stations' bounds.
     across: [f64; MOST_POINTS],
     heading: f64,
+    /// Most that any place of the body may move in any direction, what it leaves its straight line by included.
+    most: f64,
+    /// How far both sides slide along themselves at most, and by side how far they move aside. `None` if they do not slide forward, or if
+    /// several areas count.
+    slide: Option<(f64, [f64; 2])>,
 }
 
 impl<'a> Passage<'a> {
@@ -343,7 +381,32 @@ impl<'a> Passage<'a> {
         let across = std::array::from_fn(|index| before.across[index].max(after.across[index]));
         let way = before.way.max(track.spacing);
         let heading = before.turned.max(after.turned);
-        Self { areas: &track.areas, points, half_width, before, after, turn, way, across, heading }
+        let areas = &track.areas;
+        let mut passage =
+            Self { areas, points, half_width, before, after, turn, way, across, heading, most: 0.0, slide: None };
+        let [front, rear] = [0, points.len() - 1].map(|index| points[index].spot.ahead);
+        // Between two points what a place may move is convex.
+        let most = points.iter().zip(&passage.across).map(|(point, across)| passage.most(*across, point.spot.ahead));
+        passage.most = most.fold(0.0, f64::max) + passage.sag(front).max(passage.sag(rear));
+        passage.slide =
+            passage.slide([front, rear]).filter(|_| areas.count(before.head, before.head + 1).nth(1).is_none());
+        passage
+    }
+
+    /// [`Self::slide`] of sides with these ends. What a place moves is linear along its side.
+    fn slide(&self, ends: [f64; 2]) -> Option<(f64, [f64; 2])> {
+        let [x, y] = self.before.along;
+        let moves = |half: f64| {
+            ends.map(|ahead| {
+                let (p, q) = (self.before.place(ahead, half), self.after.place(ahead, half));
+                let d = [q[0] - p[0], q[1] - p[1]];
+                [d[0] * x + d[1] * y, d[1] * x - d[0] * y]
+            })
+        };
+        let (left, right) = (moves(self.half_width), moves(-self.half_width));
+        let all = || left.iter().chain(&right).map(|[along, _]| *along);
+        let aside = [left, right].map(|[front, rear]| front[1].abs().max(rear[1].abs()));
+        all().all(|along| along >= 0.0).then(|| (all().fold(0.0, f64::max), aside))
     }
 
     /// Bound of the first order across the heading, `ahead` metres ahead of the axle. It is convex: chords between body points are
@@ -467,6 +530,12 @@ impl<'a> Passage<'a> {
     /// Lowers the least leeway of a piece's side.
     fn measure(&self, rooms: &mut Rooms, number: usize, lowest: &mut [Lowest; 2]) {
         let Some(piece) = rooms.pieces.get(number) else { return };
+        let carried = self.slide.and_then(|(slide, aside)| Some(rooms.slid(number, slide)? - aside[piece.side]));
+        let carried = carried.unwrap_or(f64::NEG_INFINITY);
+        if carried - self.most >= lowest[piece.side].leeway {
+            rooms.rooms[number] = carried;
+            return;
+        }
         let (index, aside) = (piece.index, if piece.side == 0 { self.half_width } else { -self.half_width });
         let lowest = &mut lowest[piece.side];
         let [ahead, behind] = [index - 1, index].map(|point| self.points[point].spot.ahead);
@@ -475,13 +544,13 @@ impl<'a> Passage<'a> {
         let most = most[0].max(most[1]) + sag;
         let ends = |stand: &Stand| piece.ends.map(|ahead| stand.place(ahead, aside));
         let (before, after) = (ends(self.before), ends(self.after));
-        let left = rooms.rooms[number] - moved(before, after);
+        let left = carried.max(rooms.before[number] - moved(before, after));
         rooms.rooms[number] = if left - most >= lowest.leeway {
             left
         } else {
             let stray = |towards: Point| piece.ends.map(|ahead| self.stray(towards, ahead, aside) + sag);
             let swept = Swept { before, after, most, enough: lowest.leeway, stray: &stray };
-            let (room, leeway) = self.room(&swept, rooms.rooms[number] > 0.0);
+            let (room, leeway) = self.room(&swept, rooms.before[number] > 0.0);
             if leeway < lowest.leeway {
                 rooms.critical[piece.side] = number;
             }
@@ -512,33 +581,18 @@ fn plan(track: &Track, body: &mut Body, stand: &Stand, feet: &[usize; MOST_POINT
         let (from, to) = (ahead.spot.ahead, behind.spot.ahead);
         let parts = ((from - to) / PIECE_M).ceil().max(1.0);
         for (side, aside) in [body.half_width, -body.half_width].into_iter().enumerate() {
-            for part in 0..=parts as usize {
+            // The first part begins where the one ahead ends. The first point is a place by itself.
+            let places = if index == 0 { 0..=0 } else { 1..=parts as usize };
+            for part in places {
                 let share = part as f64 / parts;
                 let p = stand.place(from + (to - from) * share, aside);
+                // Only what is negative or the least is asked for.
+                let enough = if only { minima.floor.max(0.0) } else { f64::INFINITY };
                 number += 1;
-                // Room falls by no more than the place moves.
-                if only
-                    && body
-                        .rooms
-                        .places
-                        .get(number - 1)
-                        .is_some_and(|(q, room)| room - ground::apart(*q, p) >= minima.floor.max(0.0))
-                {
-                    continue;
-                }
-                let rooms = track
-                    .areas
-                    .count(stand.head, stand.head)
-                    .map(|ground| ground.map_or(FAR_OUTSIDE_M, |ground| ground.room(p)));
+                let room = body.rooms.nominal(&track.areas, stand.head, (number - 1, p), enough);
+                let Some(room) = room else { continue };
                 let near = if share < 0.5 { before } else { index };
                 let point = &body.points[near];
-                let room = rooms.fold(FAR_OUTSIDE_M, f64::max);
-                if only {
-                    match body.rooms.places.get_mut(number - 1) {
-                        Some(known) => *known = (p, room),
-                        None => body.rooms.places.push((p, room)),
-                    }
-                }
                 let leeway = room - point.spot.gain;
                 if minima.counted.contains(&stand.head) {
                     minima.floor = minima.floor.min(leeway);
