@@ -6,7 +6,7 @@ use anyhow::anyhow;
 use netcert::osm::facts::Policy;
 use netcert::pipeline;
 use netcert::settings::Settings;
-use netcert::store::{CertifiedSet, Database, Reference};
+use netcert::store::{CertifiedSet, DRIVABLE_BY, Database, Reference};
 use netcert::vehicle::Vehicle;
 use netcert::words::Named;
 use serde_json::json;
@@ -40,8 +40,8 @@ pub(crate) fn certified(
     certified_like(session, at, wanted, None)
 }
 
-/// Returns the database and `id` as a reference for the set of `wanted`. The reference's certificates are made if they are missing,
-/// with the settings of that set.
+/// Returns the database and `id` as a reference for the set of `wanted`. Certificates that the reference lacks are made with the
+/// settings of that set.
 pub(crate) fn reference(
     session: &Session,
     (path, mut database): (&Path, Database),
@@ -49,14 +49,17 @@ pub(crate) fn reference(
     (set, id): (&CertifiedSet, &str),
 ) -> anyhow::Result<(Database, Reference)> {
     let settings = set.settings()?;
-    if let Some(kept) = database.certified_set(id, set.policy)? {
-        // Checked as it will be, before its turns are made.
-        let kept = kept.settings()?;
-        let as_it_will_be = Settings { turns: kept.turns || wanted.turns, ..kept };
-        database.alike((&set.vehicle_id, &settings), (id, &as_it_will_be))?;
+    let vehicles = if id == DRIVABLE_BY { database.known_vehicle_ids()? } else { vec![id.to_owned()] };
+    for vehicle in &vehicles {
+        if let Some(kept) = database.certified_set(vehicle, set.policy)? {
+            // Checked as it will be, before its turns are made.
+            let kept = kept.settings()?;
+            let as_it_will_be = Settings { turns: kept.turns || wanted.turns, ..kept };
+            database.alike((&set.vehicle_id, &settings), (vehicle, &as_it_will_be))?;
+        }
+        let wanted = Wanted { vehicle, policy: Some(set.policy), ..*wanted };
+        (database, _) = certified_like(session, (path, database), &wanted, Some(&settings))?;
     }
-    let wanted = Wanted { vehicle: id, policy: Some(set.policy), ..*wanted };
-    let (mut database, _) = certified_like(session, (path, database), &wanted, Some(&settings))?;
     let reference = database.reference(set, id)?;
     Ok((database, reference))
 }

@@ -6,14 +6,15 @@ use std::path::Path;
 use clap::Args;
 use netcert::osm::facts::Policy;
 use netcert::rows::{Cell, CertificateRow, Relative, Standing};
-use netcert::store::{Beside, Database, StoreError};
+use netcert::store::{Beside, DRIVABLE_BY, Database, StoreError};
 
 use super::certify_options;
 
 #[derive(Args)]
 pub(crate) struct RelativeArgs {
     /// Compare with this vehicle on the same road: `relative_m` is the RSC less its RSC, and `as_reference` says that no
-    /// more room is needed than it needs. That is a statement of its own and not `safe`.
+    /// more room is needed than it needs. That is a statement of its own and not `safe`. `drivable_by` compares with the
+    /// vehicles that the register of measurements knows to go there, where it knows any; not for routes.
     #[arg(long, value_name = "REF")]
     pub(crate) relative_to: Option<String>,
 }
@@ -25,8 +26,25 @@ impl RelativeArgs {
         let Some(id) = self.relative_to.as_deref().filter(|id| *id != vehicle) else { return Ok(()) };
         let mut database = Database::open(path)?;
         let policy = certify_options::policy_of(&mut database, asked)?;
-        let set = database.certified_set(id, policy)?.ok_or_else(|| StoreError::not_certified(path, id, policy))?;
-        Ok(database.reference(&set, id)?.check_turns(&mut database)?)
+        let ids = if id == DRIVABLE_BY { database.known_vehicle_ids()? } else { vec![id.to_owned()] };
+        for id in ids.iter().filter(|id| *id != vehicle) {
+            let set = database.certified_set(id, policy)?.ok_or_else(|| StoreError::not_certified(path, id, policy))?;
+            database.reference(&set, id)?.check_turns(&mut database)?;
+        }
+        Ok(())
+    }
+
+    /// Refuses [`DRIVABLE_BY`] for whole routes.
+    ///
+    /// # Errors
+    /// The reference is [`DRIVABLE_BY`].
+    pub(crate) fn check_one_vehicle(&self) -> anyhow::Result<()> {
+        anyhow::ensure!(
+            self.relative_to.as_deref() != Some(DRIVABLE_BY),
+            "--relative-to {DRIVABLE_BY} compares single edges and turns: use it with `query`, `stats` and `export`, and give a route \
+             one vehicle to compare with"
+        );
+        Ok(())
     }
 }
 
@@ -41,6 +59,12 @@ pub(crate) fn beside(
 
 /// What follows the scope of `safe` in an answer that compares.
 pub(crate) fn scope(reference: &str) -> String {
+    if reference == DRIVABLE_BY {
+        return " `as_reference` compares with vehicles that the register of measurements knows to go there, and says nothing elsewhere: by \
+                their certificates on the same road, the vehicle needs no more room than one of them. It makes nothing safe and is no \
+                permit."
+            .to_owned();
+    }
     format!(
         " `as_reference` compares with {reference} alone: by their certificates on the same road, the vehicle needs no more room \
          than {reference}. It makes nothing safe and is no permit."

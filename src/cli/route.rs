@@ -115,6 +115,7 @@ fn snap_metres(text: &str) -> Result<f64, String> {
 
 impl Route {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        self.relative.check_one_vehicle()?;
         self.inputs.check(&self.relative)?;
         let inputs = self.inputs.load(session, "route")?;
         let peer = self.peer(&inputs)?;

@@ -83,7 +83,9 @@ impl Entry {
     /// Why no certificate can use it.
     fn unused(&self) -> Option<&'static str> {
         match self.row.quantity {
-            Quantity::DrivableBy => Some("kept, not used by certificates yet"),
+            Quantity::DrivableBy => {
+                Some("kept, not used by certificates; `--relative-to drivable_by` compares with it")
+            }
             Quantity::Surface => self
                 .row
                 .counted()

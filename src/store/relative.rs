@@ -1,5 +1,8 @@
 //! Reads the certificates of a reference vehicle beside those of another vehicle.
 //!
+//! [`DRIVABLE_BY`] stands for the vehicles that the register knows to go somewhere: each is compared where it is known to go, and
+//! nowhere else (`known_vehicles`).
+//!
 //! Two sets compare only if they were made with the same settings. [`Database::reference`] checks that; every reader of a reference
 //! begins there. [`Beside`] takes rows in order of the network and reads the reference's certificates along with them, so memory does
 //! not grow with the network.
@@ -18,6 +21,7 @@ use crate::words::Named as _;
 
 use super::database::Database;
 use super::error::StoreError;
+use super::known_vehicles::KnownVehicle;
 use super::names::verdict_no;
 use super::network_read::verdict;
 use super::settings::CertifiedSet;
@@ -28,30 +32,48 @@ type Sql<T> = Result<T, sqlx::Error>;
 /// The standing of an edge or turn, with its index in the network.
 pub type IndexedStanding = (u32, Standing);
 
-/// A reference vehicle whose certificates were made like those of a set.
+/// Instead of a vehicle's id: on each road the vehicles that the register knows to go there.
+pub const DRIVABLE_BY: &str = "drivable_by";
+
+/// A reference whose certificates were made like those of a set.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reference {
     id: String,
     policy: Policy,
+    vehicles: Vec<ReferenceVehicle>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct ReferenceVehicle {
+    id: String,
     /// Whether it is the set's own vehicle.
     same: bool,
+    /// Where it is compared. `None` means everywhere.
+    known: Option<KnownVehicle>,
 }
 
 impl Database {
-    /// The vehicle `reference` as a reference for a set.
+    /// The vehicle `reference`, or those of [`DRIVABLE_BY`], as a reference for a set.
     ///
     /// # Errors
-    /// It is not certified under the set's policy ([`StoreError::NotThere`]), or with other settings ([`StoreError::NotAlike`]).
+    /// A vehicle is not certified under the set's policy, or the register knows none ([`StoreError::NotThere`]); a vehicle is certified
+    /// with other settings ([`StoreError::NotAlike`]).
     pub fn reference(&mut self, set: &CertifiedSet, reference: &str) -> Result<Reference, StoreError> {
-        let (id, policy) = (reference.to_owned(), set.policy);
-        if set.vehicle_id == reference {
-            return Ok(Reference { id, policy, same: true });
+        let vehicles = match reference {
+            DRIVABLE_BY => self.known_vehicles()?.into_iter().map(|(id, known)| (id, Some(known))).collect(),
+            _ => vec![(reference.to_owned(), None)],
+        };
+        let mut all = Vec::new();
+        for (id, known) in vehicles {
+            let same = set.vehicle_id == id;
+            if !same {
+                let other = self.certified_set(&id, set.policy)?;
+                let other = other.ok_or_else(|| StoreError::not_certified(&self.session.path, &id, set.policy))?;
+                self.alike((&set.vehicle_id, &set.settings()?), (&id, &other.settings()?))?;
+            }
+            all.push(ReferenceVehicle { id, same, known });
         }
-        let path = self.session.path.clone();
-        let other = self.certified_set(reference, policy)?;
-        let other = other.ok_or_else(|| StoreError::not_certified(&path, reference, policy))?;
-        self.alike((&set.vehicle_id, &set.settings()?), (reference, &other.settings()?))?;
-        Ok(Reference { id, policy, same: false })
+        Ok(Reference { id: reference.to_owned(), policy: set.policy, vehicles: all })
     }
 
     /// Checks that two vehicles were, or would be, certified with the same settings under the same policy.
@@ -169,16 +191,16 @@ fn differences(settings: &Settings, others: &Settings) -> String {
 }
 
 impl Reference {
-    /// The vehicle's id.
+    /// The vehicle's id, or [`DRIVABLE_BY`].
     #[must_use]
     pub fn id(&self) -> &str {
         &self.id
     }
 
-    /// Whether it is the compared vehicle itself.
+    /// Whether it is the compared vehicle itself, everywhere.
     #[must_use]
     pub fn same(&self) -> bool {
-        self.same
+        self.vehicles.iter().all(|vehicle| vehicle.same && vehicle.known.is_none())
     }
 
     /// Checks that its turns are certified.
@@ -186,17 +208,20 @@ impl Reference {
     /// # Errors
     /// They are not ([`StoreError::NotThere`]); the file cannot be read.
     pub fn check_turns(&self, database: &mut Database) -> Result<(), StoreError> {
-        if database.has_turns(&self.id, self.policy)? {
-            return Ok(());
+        for ReferenceVehicle { id, .. } in &self.vehicles {
+            if !database.has_turns(id, self.policy)? {
+                return Err(StoreError::turns_not_certified(&database.session.path, id, self.policy));
+            }
         }
-        Err(StoreError::turns_not_certified(&database.session.path, &self.id, self.policy))
+        Ok(())
     }
 }
 
-/// A reference with a connection of its own, from which its certificates are read beside other rows.
+/// A reference with connections of its own, from which its certificates are read beside other rows.
 pub struct ReferenceReader {
     reference: Reference,
-    database: Database,
+    /// One for each vehicle that is read.
+    databases: Vec<Database>,
 }
 
 impl ReferenceReader {
@@ -205,7 +230,9 @@ impl ReferenceReader {
     /// # Errors
     /// As [`Database::open`].
     pub fn open(path: &Path, reference: Reference) -> Result<Self, StoreError> {
-        Ok(Self { reference, database: Database::open_to_stream(path)? })
+        let read = reference.vehicles.iter().filter(|vehicle| !vehicle.same);
+        let databases = read.map(|_| Database::open_to_stream(path)).collect::<Result<_, _>>()?;
+        Ok(Self { reference, databases })
     }
 
     /// The reference's edges, to be read beside those of the set.
@@ -213,9 +240,7 @@ impl ReferenceReader {
     /// # Errors
     /// The file cannot be read.
     pub fn edges(&mut self) -> Result<Beside<'_>, StoreError> {
-        let Reference { id, policy, same } = &self.reference;
-        let rows = if *same { None } else { Some(self.database.edge_standings(id, *policy)?.fuse()) };
-        Ok(Beside { rows, ahead: None })
+        self.beside(|database, id, policy| database.edge_standings(id, policy), |known| &known.edges)
     }
 
     /// The reference's turns, to be read beside those of the set.
@@ -223,26 +248,69 @@ impl ReferenceReader {
     /// # Errors
     /// Its turns are not certified ([`StoreError::NotThere`]); the file cannot be read.
     pub fn turns(&mut self) -> Result<Beside<'_>, StoreError> {
-        self.reference.check_turns(&mut self.database)?;
-        let Reference { id, policy, same } = &self.reference;
-        let rows = if *same { None } else { Some(self.database.turn_standings(id, *policy)?.fuse()) };
-        Ok(Beside { rows, ahead: None })
+        if let Some(database) = self.databases.first_mut() {
+            self.reference.check_turns(database)?;
+        }
+        self.beside(|database, id, policy| database.turn_standings(id, policy), |known| &known.turns)
+    }
+
+    fn beside(
+        &mut self,
+        standings: impl for<'s> Fn(&'s mut Database, &str, Policy) -> Result<Streamed<'s, IndexedStanding>, StoreError>,
+        places: impl Fn(&KnownVehicle) -> &Vec<u32>,
+    ) -> Result<Beside<'_>, StoreError> {
+        let mut databases = self.databases.iter_mut();
+        let mut vehicles = Vec::new();
+        for vehicle in &self.reference.vehicles {
+            let database = if vehicle.same { None } else { databases.next() };
+            let rows = match database {
+                Some(database) => Some(standings(database, &vehicle.id, self.reference.policy)?.fuse()),
+                None => None,
+            };
+            let places = vehicle.known.as_ref().map(|known| places(known).as_slice());
+            vehicles.push(BesideVehicle { rows, ahead: None, places });
+        }
+        Ok(Beside { vehicles })
     }
 }
 
 /// The certificates of a reference, read along with rows of another vehicle.
 pub struct Beside<'d> {
-    /// `None` if the reference is the vehicle itself.
+    vehicles: Vec<BesideVehicle<'d>>,
+}
+
+struct BesideVehicle<'d> {
+    /// `None` if it is the compared vehicle itself.
     rows: Option<Fuse<Streamed<'d, IndexedStanding>>>,
     ahead: Option<IndexedStanding>,
+    /// The sorted indices at which it is compared. `None` means all.
+    places: Option<&'d [u32]>,
 }
 
 impl Beside<'_> {
-    /// Compares the edge or turn with this index in the network. Calls must be in order of the network; they may leave rows out.
+    /// Compares the edge or turn with this index in the network. Calls must be in order of the network; they may leave rows out. Of
+    /// several vehicles the one counts beside which the compared vehicle needs the least more room.
     ///
     /// # Errors
     /// The file cannot be read.
     pub fn relative(&mut self, index: u32, own: Standing) -> Result<Relative, StoreError> {
+        let mut best = Relative::default();
+        for vehicle in &mut self.vehicles {
+            let relative = vehicle.relative(index, own)?;
+            let rank = |relative: Relative| (relative.as_reference, relative.relative_m.unwrap_or(f64::NEG_INFINITY));
+            if rank(relative) > rank(best) {
+                best = relative;
+            }
+        }
+        Ok(best)
+    }
+}
+
+impl BesideVehicle<'_> {
+    fn relative(&mut self, index: u32, own: Standing) -> Result<Relative, StoreError> {
+        if self.places.is_some_and(|places| places.binary_search(&index).is_err()) {
+            return Ok(Relative::default());
+        }
         let Some(rows) = &mut self.rows else { return Ok(Relative::to_itself(own)) };
         while self.ahead.is_none_or(|(at, _)| at < index) {
             self.ahead = match rows.next() {

@@ -305,3 +305,56 @@ fn targets_without_columns_name_those_that_have_them() {
     }
     assert_eq!(place.files(), ["demo.gpkg"]);
 }
+
+#[test]
+fn drivable_by_compares_only_where_the_register_knows_a_vehicle_to_go() {
+    let place = Place::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
+    let ask = format!("query --vehicle {TRAIN} --relative-to drivable_by --format csv");
+    place.netcert(&ask).fails().tells("the register knows no vehicle that goes anywhere");
+    let everywhere = |turns: &str| rows(&csv(&place, &format!("--vehicle {TRAIN} --relative-to {SEMI} {turns}")));
+    let (edges, turns) = (everywhere(""), everywhere("--turns"));
+    let compared = |all: &BTreeMap<String, BTreeMap<String, String>>| {
+        let passage = |row: &BTreeMap<String, String>| {
+            row.get("kind").is_some_and(|kind| ["roundabout", "complex"].contains(&kind.as_str()))
+        };
+        let ids =
+            all.iter().filter(|(_, row)| !row["relative_m"].is_empty() && !passage(row)).map(|(id, _)| id.clone());
+        ids.take(2).collect::<Vec<_>>()
+    };
+    let (of_edges, of_turns) = (compared(&edges), compared(&turns));
+    let ([semi, both], [corner, _]) = (&of_edges[..], &of_turns[..]) else { panic!("{of_edges:?} {of_turns:?}") };
+    let turn = &turns[corner];
+    let mut file = "quantity,edge_id,junction,from_edge,to_edge,vehicle,source\n".to_owned();
+    for (edge, vehicle) in [(semi, SEMI), (both, SEMI), (both, TRAIN)] {
+        file += &format!("drivable_by,{edge},,,,{vehicle},a permit\n");
+    }
+    file += &format!("drivable_by,,{},{},{},{SEMI},a permit\n", turn["via_node"], turn["from_edge"], turn["to_edge"]);
+    // A junction without a corner says nothing of its turns.
+    file += &format!("drivable_by,,{},,,{SEMI},a permit\n", turn["via_node"]);
+    let place = place.file("known.csv", &file);
+    place.netcert("evidence add known.csv").succeeds().shows("5 matched");
+
+    for (turns, all, known) in [("", &edges, vec![semi, both]), ("--turns", &turns, vec![corner])] {
+        let with = csv(&place, &format!("--vehicle {TRAIN} --relative-to drivable_by {turns}"));
+        check_prefix(&with, &csv(&place, &format!("--vehicle {TRAIN} {turns}")));
+        for (id, row) in &rows(&with) {
+            let said = (row["relative_m"].as_str(), row["as_reference"].as_str());
+            let other = &all[id];
+            match id {
+                _ if !known.contains(&id) => assert_eq!(said, ("", "false"), "{id}"),
+                // The vehicle beside itself, if it has more room so.
+                _ if id == both && other["as_reference"] == "false" => assert_eq!(said.0.parse::<f64>().unwrap(), 0.0),
+                _ => assert_eq!(said, (other["relative_m"].as_str(), other["as_reference"].as_str()), "{id}"),
+            }
+        }
+    }
+    let json =
+        place.netcert(&format!("query --vehicle {TRAIN} --relative-to drivable_by --format json")).succeeds().json();
+    assert!(json["scope"].as_str().unwrap().contains("the register of measurements knows to go there"));
+    place.netcert("stats --relative-to drivable_by").succeeds().shows("drivable_by");
+    place.netcert(&format!("export csv --vehicle {TRAIN} --relative-to drivable_by --out known")).succeeds();
+    place
+        .netcert(&format!("route --vehicle {TRAIN} --relative-to drivable_by {ALONG}"))
+        .fails()
+        .tells("single edges and turns");
+}
