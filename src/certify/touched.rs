@@ -22,6 +22,8 @@ pub struct Touched {
     pub strokes: Vec<u32>,
     /// Indices of turns, sorted.
     pub turns: Vec<u32>,
+    /// Nodes at which a road's width, a kerb or a surface differs, sorted.
+    pub nodes: Vec<i64>,
 }
 
 impl Touched {
@@ -43,7 +45,9 @@ impl Touched {
         }
         let touched = TouchedTurns::new(network, &strokes, &places);
         let turns = (0..).zip(turns).filter(|(_, turn)| touched.has(turn)).map(|(index, _)| index).collect();
-        Self { strokes, turns }
+        let mut nodes: Vec<i64> = places.into_iter().collect();
+        nodes.sort_unstable();
+        Self { strokes, turns, nodes }
     }
 }
 

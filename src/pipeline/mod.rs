@@ -26,7 +26,7 @@ use crate::rows::EdgeCertificate;
 use crate::settings::Settings;
 use crate::stet::{Model, ModelError};
 use crate::store::{Database, Run, StoreError, TurnSet, VehicleRecord, Writer};
-use crate::turns::{TurnFacts, turn_facts};
+use crate::turns::{TurnFacts, junction_areas, junction_nodes, turn_facts};
 use crate::vehicle::{Catalogue, Vehicle, VehicleError};
 use crate::verdict::{UnknownReason, Verdict};
 
@@ -244,7 +244,8 @@ fn certify_into(
     }
     let clock = Instant::now();
     let turns = turn_facts(network, &settings.kerbs);
-    writer.turns(network, turns.clone())?;
+    let junctions = junction_areas(network, &junction_nodes(network, &turns), &settings.turn_params());
+    writer.turns(network, turns.clone(), junctions)?;
     let job = TurnJob { network, turns: &turns, models, edges: &verdicts.0, settings };
     let outcome = certify_turns(&job, reporter, |vehicle, certificate| {
         writer.turn_certificate(numbers[vehicle], settings.policy, certificate)
@@ -316,6 +317,7 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
 
     let mut turn_certificates = vec![Vec::new(); models.len()];
     let mut turns: Option<Vec<TurnFacts>> = None;
+    let mut junctions = Vec::new();
     if ask.settings.turns {
         let clock = Instant::now();
         let facts = turn_facts(&network, &ask.settings.kerbs);
@@ -327,6 +329,10 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
         })?;
         summary.account.extend(outcome.rows());
         summary.stage("turns", clock, outcome.certificates(), "turn certificates");
+        if !db.keeps_turns()? {
+            let nodes = junction_nodes(&network, &facts);
+            junctions = junction_areas(&network, &nodes, &settings.turn_params());
+        }
         turns = Some(facts);
     }
 
@@ -348,7 +354,8 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
             parameters: ask.parameters.to_string(),
         };
         let vehicle = record(&model.vehicle)?;
-        let turns = turns.as_deref().map(|facts| TurnSet { network: &network, facts, certificates: turned });
+        let set = |facts| TurnSet { network: &network, facts, junctions: &junctions, certificates: turned };
+        let turns = turns.as_deref().map(set);
         db.replace_certificates(&vehicle, ask.settings, certificates, plans, turns, &run, &summary.account)?;
         summary.vehicles.push(model.vehicle.id.clone());
     }

@@ -1,4 +1,4 @@
-//! Encodes and decodes geometries as GeoPackage blobs: `GP`, version 0, XY envelope, WGS 84, then a WKB line string, all
+//! Encodes and decodes geometries as GeoPackage blobs: `GP`, version 0, XY envelope, WGS 84, then a WKB line string or multipolygon, all
 //! little endian (GeoPackage 1.3, clause 2.1.3). Positions are multiples of 1e-7 degree and are preserved exactly.
 
 use crate::osm::LonLat;
@@ -8,6 +8,8 @@ use crate::rows::Bounds;
 const FLAGS: u8 = 0b0000_0011;
 const SRS: i32 = 4326;
 const WKB_LINESTRING: u32 = 2;
+const WKB_POLYGON: u32 = 3;
+const WKB_MULTIPOLYGON: u32 = 6;
 const HEADER_BYTES: usize = 8 + 4 * 8;
 const WKB_BYTES: usize = 1 + 4 + 4;
 
@@ -15,20 +17,87 @@ const WKB_BYTES: usize = 1 + 4 + 4;
 pub(super) fn encode(positions: impl ExactSizeIterator<Item = LonLat> + Clone) -> Option<(Vec<u8>, Bounds)> {
     let bounds = Bounds::around(positions.clone())?;
     let mut blob = Vec::with_capacity(HEADER_BYTES + WKB_BYTES + 16 * positions.len());
+    header(&mut blob, bounds);
+    begin(&mut blob, WKB_LINESTRING);
+    put_line(&mut blob, positions);
+    Some((blob, bounds))
+}
+
+/// The blob of polygons, each with its outer ring first, and the box around them. Without a position there is no blob.
+pub(super) fn encode_polygons(polygons: &[Vec<Vec<LonLat>>]) -> Option<(Vec<u8>, Bounds)> {
+    let rings = || polygons.iter().flatten();
+    let bounds = rings().filter_map(|ring| Bounds::around(ring.iter().copied())).reduce(Bounds::union)?;
+    let vertices: usize = rings().map(Vec::len).sum();
+    let mut blob =
+        Vec::with_capacity(HEADER_BYTES + WKB_BYTES * (1 + polygons.len()) + 4 * rings().count() + 16 * vertices);
+    header(&mut blob, bounds);
+    begin(&mut blob, WKB_MULTIPOLYGON);
+    blob.extend((polygons.len() as u32).to_le_bytes());
+    for rings in polygons {
+        begin(&mut blob, WKB_POLYGON);
+        blob.extend((rings.len() as u32).to_le_bytes());
+        rings.iter().for_each(|ring| put_line(&mut blob, ring.iter().copied()));
+    }
+    Some((blob, bounds))
+}
+
+fn header(blob: &mut Vec<u8>, bounds: Bounds) {
     blob.extend(b"GP");
     blob.extend([0, FLAGS]);
     blob.extend(SRS.to_le_bytes());
     for side in [bounds.west, bounds.east, bounds.south, bounds.north] {
         blob.extend(side.to_le_bytes());
     }
+}
+
+/// The byte order and the type of a geometry.
+fn begin(blob: &mut Vec<u8>, wkb_type: u32) {
     blob.push(1);
-    blob.extend(WKB_LINESTRING.to_le_bytes());
+    blob.extend(wkb_type.to_le_bytes());
+}
+
+fn put_line(blob: &mut Vec<u8>, positions: impl ExactSizeIterator<Item = LonLat>) {
     blob.extend((positions.len() as u32).to_le_bytes());
     for (lon, lat) in positions.map(LonLat::degrees) {
         blob.extend(lon.to_le_bytes());
         blob.extend(lat.to_le_bytes());
     }
-    Some((blob, bounds))
+}
+
+/// The polygons of a blob that [`encode_polygons`] wrote; `None` for anything else.
+pub(super) fn decode_polygons(blob: &[u8]) -> Option<Vec<Vec<Vec<LonLat>>>> {
+    let (header, mut wkb) = blob.split_at_checked(HEADER_BYTES)?;
+    if !header.starts_with(&[b'G', b'P', 0, FLAGS]) {
+        return None;
+    }
+    let polygons = count_of(&mut wkb, Some(WKB_MULTIPOLYGON))?;
+    let mut all = Vec::new();
+    for _ in 0..polygons {
+        let rings = count_of(&mut wkb, Some(WKB_POLYGON))?;
+        let mut polygon = Vec::new();
+        for _ in 0..rings {
+            let points = count_of(&mut wkb, None)? as usize;
+            let (line, rest) = wkb.split_at_checked(points.checked_mul(16)?)?;
+            wkb = rest;
+            polygon.push(positions(line)?);
+        }
+        all.push(polygon);
+    }
+    wkb.is_empty().then_some(all)
+}
+
+/// Takes a count, after the byte order and this type if there is one, from the front of `wkb`.
+fn count_of(wkb: &mut &[u8], wkb_type: Option<u32>) -> Option<u32> {
+    if let Some(wkb_type) = wkb_type {
+        let (first, rest) = wkb.split_first_chunk::<5>()?;
+        if *first != [1, wkb_type as u8, 0, 0, 0] {
+            return None;
+        }
+        *wkb = rest;
+    }
+    let (count, rest) = wkb.split_first_chunk::<4>()?;
+    *wkb = rest;
+    Some(u32::from_le_bytes(*count))
 }
 
 /// The positions of a blob that [`encode`] wrote; `None` for anything else.
@@ -37,10 +106,14 @@ pub(super) fn decode(blob: &[u8]) -> Option<Vec<LonLat>> {
     let (wkb, points) = wkb.split_at_checked(WKB_BYTES)?;
     let expected = header.starts_with(&[b'G', b'P', 0, FLAGS]) && wkb.starts_with(&[1, WKB_LINESTRING as u8, 0, 0, 0]);
     let count = u32::from_le_bytes(wkb.get(5..9)?.try_into().ok()?);
-    let (points, []) = points.as_chunks::<16>() else { return None };
-    if !expected || points.len() != count as usize {
+    if !expected || points.len() != (count as usize).checked_mul(16)? {
         return None;
     }
+    positions(points)
+}
+
+fn positions(bytes: &[u8]) -> Option<Vec<LonLat>> {
+    let (points, []) = bytes.as_chunks::<16>() else { return None };
     points.iter().map(|point| Some(LonLat { lon_e7: e7(&point[..8])?, lat_e7: e7(&point[8..])? })).collect()
 }
 
@@ -71,8 +144,23 @@ mod tests {
         }
 
         #[test]
+        fn polygons_come_back_exactly_and_cut_anywhere_are_none(
+            places in prop::collection::vec(prop::collection::vec(prop::collection::vec(
+                (-1_800_000_000..=1_800_000_000, -900_000_000..=900_000_000), 1..9), 1..4), 1..4)
+        ) {
+            let place = |&(lon_e7, lat_e7): &(i32, i32)| LonLat { lon_e7, lat_e7 };
+            let ring = |ring: &Vec<(i32, i32)>| ring.iter().map(place).collect::<Vec<_>>();
+            let polygons: Vec<Vec<Vec<LonLat>>> =
+                places.iter().map(|rings| rings.iter().map(ring).collect()).collect();
+            let (blob, _) = encode_polygons(&polygons).unwrap();
+            prop_assert_eq!(decode_polygons(&blob).unwrap(), polygons);
+            prop_assert!((0..blob.len()).all(|cut| decode_polygons(&blob[..cut]).is_none()));
+            prop_assert!(decode(&blob).is_none());
+        }
+
+        #[test]
         fn anything_else_is_no_geometry(bytes in prop::collection::vec(any::<u8>(), 0..120)) {
-            prop_assert!(decode(&bytes).is_none());
+            prop_assert!(decode(&bytes).is_none() && decode_polygons(&bytes).is_none());
         }
     }
 

@@ -8,7 +8,7 @@ use crate::account::AccountRow;
 use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::rows::{EdgeCertificate, EdgeMeasure, StoredPlan, TurnCertificate};
-use crate::turns::{KerbSource, TurnFacts};
+use crate::turns::{JunctionArea, KerbSource, TurnFacts};
 use crate::verdict::Verdict;
 
 use super::bulk::Bulk;
@@ -21,7 +21,7 @@ use super::network_write::add_widths;
 use super::packed::Packed;
 use super::plans;
 use super::records::{self, Run};
-use super::{sets, turns};
+use super::{junctions, sets, turns};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -49,6 +49,8 @@ pub struct Renewal<'a> {
     pub edges: &'a [(u32, EdgeMeasure)],
     /// All turns of the network, if the database has turns and any of their kerbs may differ.
     pub turns: Option<&'a [TurnFacts]>,
+    /// If the database has turns: nodes whose junctions may differ, and the areas that these junctions have now.
+    pub junctions: Option<(&'a [i64], &'a [JunctionArea])>,
     /// Certificates.
     pub sets: Vec<SetRenewal>,
     /// The record of the run.
@@ -153,11 +155,14 @@ fn pack(set: &mut SetRenewal) -> Result<PackedRenewal, StoreError> {
 }
 
 async fn write(c: &mut SqliteConnection, renewal: &mut Renewal<'_>, packed: &[PackedRenewal]) -> Sql<()> {
-    let Renewal { network, register, edges, turns, sets, run, account } = renewal;
+    let Renewal { network, register, edges, turns, junctions, sets, run, account } = renewal;
     evidence::write(c, register, &run.finished).await?;
     change_edges(c, network, edges).await?;
     if let Some(facts) = turns {
         change_kerbs(c, facts).await?;
+    }
+    if let Some((nodes, areas)) = junctions {
+        junctions::replace(c, nodes, areas).await?;
     }
     for (set, packed) in sets.iter_mut().zip(packed) {
         let number = sqlx::query_scalar("SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?");

@@ -18,6 +18,7 @@ const FILES: &[(i64, &str, &str)] = &[
     (8, "turn plans", include_str!("../../migrations/0008_turn_plans.sql")),
     (9, "areas", include_str!("../../migrations/0009_areas.sql")),
     (10, "evidence", include_str!("../../migrations/0010_evidence.sql")),
+    (11, "junctions", include_str!("../../migrations/0011_junctions.sql")),
 ];
 
 /// The table of applied migrations. sqlx uses an existing table. Its own table would have types that GDAL does not know

@@ -20,6 +20,8 @@ pub(super) enum Shows {
     Permits,
     /// The turns, by the source of their kerb.
     Turns,
+    /// The areas of junctions.
+    Junctions,
 }
 
 impl Shows {
@@ -35,6 +37,7 @@ impl Shows {
             Self::Turns => {
                 ["kerb source", "Where each turn's kerb comes from", include_str!("../../data/styles/turn.qml")]
             }
+            Self::Junctions => ["area", "What roads and corners cover", include_str!("../../data/styles/junction.qml")],
         }
     }
 }

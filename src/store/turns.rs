@@ -8,13 +8,14 @@ use sqlx::{AssertSqlSafe, Row as _};
 use crate::network::{Network, PassageKind};
 use crate::osm::facts::Policy;
 use crate::rows::{Bounds, StoredPlan, TurnCertificate, TurnCount, TurnRow};
-use crate::turns::{KerbSource, TurnFacts};
+use crate::turns::{JunctionArea, KerbSource, TurnFacts};
 use crate::words::VerdictKind;
 
 use super::blob;
 use super::bulk::Bulk;
 use super::database::Database;
 use super::error::{StoreError, content};
+use super::junctions;
 use super::names::corridor_no;
 use super::network_read::{line, verdict, word};
 use super::numbers::{self, centimetres};
@@ -43,6 +44,8 @@ pub struct TurnSet<'a> {
     pub network: &'a Network,
     /// All turns of the network, in order.
     pub facts: &'a [TurnFacts],
+    /// The areas of its junctions. They are written with the turns if the database has none yet.
+    pub junctions: &'a [JunctionArea],
     /// One certificate per turn, in any order.
     pub certificates: Vec<TurnCertificate>,
 }
@@ -259,6 +262,7 @@ pub(super) async fn insert_set(
     .await?;
     if layers == 0 {
         add(c, &records(set.network, set.facts.to_vec()), time).await?;
+        junctions::add(c, set.junctions, time).await?;
     } else if kept != set.facts.len() as i64 {
         return Err(content(format!("{kept} turns are stored, the network has {}", set.facts.len())));
     }

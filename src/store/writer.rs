@@ -13,7 +13,7 @@ use crate::network::{Area, Network};
 use crate::osm::facts::Policy;
 use crate::rows::{Bounds, EdgeCertificate, EdgeMeasure, StoredPlan, TurnCertificate};
 use crate::settings::Settings;
-use crate::turns::TurnFacts;
+use crate::turns::{JunctionArea, TurnFacts};
 use crate::words::{Named, verdict_words};
 
 use super::areas;
@@ -21,6 +21,7 @@ use super::contents;
 use super::database::Database;
 use super::error::{StoreError, content};
 use super::evidence::{self, Register, RegisterState};
+use super::junctions;
 use super::names::{VERDICTS, corridor_no};
 use super::network_write;
 use super::part::{Part, with_suffix};
@@ -60,6 +61,7 @@ pub struct Writer {
     areas: Vec<Area>,
     /// The turns, and the spool of their certificates. Also written last.
     turns: Option<(Vec<turns::Record>, Spool)>,
+    junctions: Vec<JunctionArea>,
     turn_plans: BTreeMap<(u32, u8), Vec<StoredPlan>>,
     /// Nothing if there is no older database, or none with measurements that can be read.
     older: Option<Older>,
@@ -123,6 +125,7 @@ impl Database {
             restrictions: Restrictions::default(),
             areas: Vec::new(),
             turns: None,
+            junctions: Vec::new(),
             turn_plans: BTreeMap::new(),
             older,
             evidence: Register::default(),
@@ -191,10 +194,16 @@ impl Writer {
         self.plans.entry((vehicle.0, corridor_no(policy))).or_default().extend(plans);
     }
 
-    /// Adds the turns of the network. Call it once, before adding their certificates.
-    pub fn turns(&mut self, network: &Network, facts: Vec<TurnFacts>) -> Result<(), StoreError> {
+    /// Adds the turns of the network and the areas of its junctions. Call it once, before adding the turns' certificates.
+    pub fn turns(
+        &mut self,
+        network: &Network,
+        facts: Vec<TurnFacts>,
+        junctions: Vec<JunctionArea>,
+    ) -> Result<(), StoreError> {
         let spool = Spool::create(with_suffix(&self.part.path, "-turns"))?;
         self.turns = Some((turns::records(network, facts), spool));
+        self.junctions = junctions;
         Ok(())
     }
 
@@ -276,9 +285,11 @@ impl Writer {
     /// Writes turns, their layer and their certificates.
     fn finish_turns(&mut self, run: &Run, run_id: i64) -> Result<(), StoreError> {
         let Some((records, mut spool)) = self.turns.take() else { return Ok(()) };
+        let junctions = std::mem::take(&mut self.junctions);
         self.session.run(async |c| {
             sqlx::query("BEGIN").execute(&mut *c).await?;
-            turns::add(c, &records, &run.finished).await
+            turns::add(c, &records, &run.finished).await?;
+            junctions::add(c, &junctions, &run.finished).await
         })?;
         while let Some(((vehicle_no, corridor), rows)) = spool.take_first(&self.session.path)? {
             sets::check_complete(&rows, records.len() as u32)

@@ -50,17 +50,36 @@ pub(super) fn parts(
     mapped: Option<&MultiPolygon>,
 ) -> Vec<Polygon> {
     let Some(node) = network.edges.get(own[0] as usize).map(|edge| edge.to_node) else { return Vec::new() };
-    let mouths = mouths(network, node, own, frame, params);
+    let mouths = mouths(network, node, &own, frame, params);
     if mouths.iter().any(|mouth| mouth.road.roundabout) {
         return Vec::new();
     }
+    parts_of(&mouths, node, params, mapped)
+}
+
+/// All that the crossing at a node covers, and the number of its roads. A ring's arcs are roads like others, but have no corner between
+/// them.
+pub(super) fn whole(
+    network: &Network,
+    node: i64,
+    frame: Frame,
+    params: &TurnParams,
+    mapped: Option<&MultiPolygon>,
+) -> (Vec<Polygon>, usize) {
+    let mouths = mouths(network, node, &[], frame, params);
+    (parts_of(&mouths, node, params, mapped), mouths.len())
+}
+
+/// The mouths of roads that are not the turn's own, what they share, the outsides of bends, and the corners.
+fn parts_of(mouths: &[Mouth<'_>], node: i64, params: &TurnParams, mapped: Option<&MultiPolygon>) -> Vec<Polygon> {
     let mut parts: Vec<Polygon> =
         mouths.iter().filter(|mouth| !mouth.own).filter_map(|mouth| mouth.outline(MOUTH_M, 0.0)).collect();
     for (i, a) in mouths.iter().enumerate() {
         for b in &mouths[i + 1..] {
             if wrapped(a.bearing - b.bearing).sin().abs() >= LEAST_ANGLE_RAD.sin() {
-                parts.extend(shared(a, b));
-                parts.extend(shared(b, a));
+                // A mouth that is a part has what it shares with others.
+                parts.extend(a.own.then(|| shared(a, b)).into_iter().flatten());
+                parts.extend(b.own.then(|| shared(b, a)).into_iter().flatten());
             }
             if wrapped(a.bearing - b.bearing).abs() >= GOES_ON_RAD {
                 parts.extend(joint(a, b));
@@ -70,7 +89,8 @@ pub(super) fn parts(
     for (i, a) in mouths.iter().enumerate() {
         let b = &mouths[(i + 1) % mouths.len()];
         // The turn's own corner is made from its corridors.
-        if !(a.own && b.own) {
+        let of_ring = a.road.roundabout && b.road.roundabout;
+        if !(a.own && b.own) && !of_ring {
             parts.extend(corner(node, [a, b], params, mapped));
         }
     }
@@ -88,7 +108,7 @@ pub(super) fn passed(network: &Network, own: [u32; 2], frame: Frame, params: &Tu
     if !network.crossings.at(before.to_node).iter().any(meets) {
         return Vec::new();
     }
-    let mapped = surface(network, before.to_node, [network.road(before), network.road(after)], frame);
+    let mapped = surface(network, before.to_node, &[network.road(before), network.road(after)], frame);
     parts(network, own, frame, params, mapped.as_ref())
 }
 
@@ -100,8 +120,8 @@ pub(super) fn carriageways(network: &Network, edges: &[u32], frame: Frame, param
 }
 
 /// The mouths around a node, counter-clockwise.
-fn mouths<'a>(network: &'a Network, node: i64, own: [u32; 2], frame: Frame, params: &TurnParams) -> Vec<Mouth<'a>> {
-    let own: Vec<&Edge> = own.into_iter().filter_map(|edge| network.edges.get(edge as usize)).collect();
+fn mouths<'a>(network: &'a Network, node: i64, own: &[u32], frame: Frame, params: &TurnParams) -> Vec<Mouth<'a>> {
+    let own: Vec<&Edge> = own.iter().filter_map(|&edge| network.edges.get(edge as usize)).collect();
     let mut pieces: Vec<&Edge> = Vec::new();
     for edge in network.crossings.at(node).iter().filter_map(|&edge| network.edges.get(edge as usize)) {
         if !pieces.iter().any(|known| known.road == edge.road && known.shape == edge.shape) {

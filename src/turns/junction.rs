@@ -52,7 +52,7 @@ impl Junction {
         let before_m = reach.run_in_m() + reach.counted_before_m() + LEAVE_M;
         let after_m = reach.counted_after_m() + MEET_M + JOIN_M;
         let strip = params.strip.max(policy);
-        let surface = surface(network, node, [from, to], frame);
+        let surface = surface(network, node, &[from, to], frame);
         let arriving = Arm::arriving(lines[0], movement.from, frame, strip, [before_m, MEET_M])?;
         let leaving = Arm::leaving(lines[1], movement.to, frame, strip, [MEET_M, after_m])?;
         Ok(Self {

@@ -28,6 +28,7 @@
 //! | `family` | the paths with which the search begins |
 //! | `planner` | the search for the path with the most room for a vehicle |
 //! | `facts` | facts of a turn from the map: id, angle, line |
+//! | `junction_area` | the area of a junction, for people to look at |
 //!
 //! Surfaces mapped as relations (with holes) and lane markings inside the junction are left out. The vehicle arrives and
 //! leaves in the lanes that its edges are certified for.
@@ -44,6 +45,7 @@ mod facts;
 mod family;
 mod islands;
 mod junction;
+mod junction_area;
 mod kerbs;
 mod path;
 mod planner;
@@ -57,6 +59,7 @@ pub use arm::StrokeLine;
 pub use corridors::TurnCorridors;
 pub use facts::{KerbSource, TurnFacts, turn_facts};
 pub(crate) use islands::cut_out_of_route;
+pub use junction_area::{JunctionArea, Ring, junction_areas, junction_nodes};
 pub use kerbs::Kerbs;
 pub use planner::{Planned, Planner};
 

@@ -12,11 +12,11 @@ use crate::osm::facts::AreaKind;
 
 /// Whether the corners at a node between two roads are mapped.
 pub(super) fn is_mapped(network: &Network, node: i64, roads: [&Road; 2]) -> bool {
-    surfaces(network, node, roads).next().is_some()
+    surfaces(network, node, &roads).next().is_some()
 }
 
-/// The surface around a node between two roads, in a metric frame. `None` if it is not mapped.
-pub(super) fn surface(network: &Network, node: i64, roads: [&Road; 2], frame: Frame) -> Option<MultiPolygon> {
+/// The surface around a node between roads, in a metric frame. `None` if it is not mapped.
+pub(super) fn surface(network: &Network, node: i64, roads: &[&Road], frame: Frame) -> Option<MultiPolygon> {
     let polygon = |area: &Area| {
         let corners = frame.forward(&area.ring).ok()?;
         Some(super::area::polygon(&corners))
@@ -31,7 +31,7 @@ pub(super) fn beside_the_map(network: &Network, node: i64, frame: Frame) -> Vec<
     network.site.surfaces(node).iter().filter_map(polygon).collect()
 }
 
-fn surfaces<'a>(network: &'a Network, node: i64, roads: [&'a Road; 2]) -> impl Iterator<Item = &'a Area> {
+fn surfaces<'a>(network: &'a Network, node: i64, roads: &[&Road]) -> impl Iterator<Item = &'a Area> {
     let of_them = move |area: &&Area| roads.iter().any(|road| area.kind == AreaKind::Road(road.class));
     network.areas.around(node).filter(of_them)
 }

@@ -24,7 +24,7 @@ import pyogrio
 
 DATABASE, EXPORTS, SPATIAL = sys.argv[1:]
 TABLES = {"certificate", "permit", "turn_certificate", "vehicle", "run", "account", "layer_styles"}
-KEYS = {"vehicle": "vehicle_no", "run": "run_id", "account": "account_no", "layer_styles": "id"}
+KEYS = {"junction": "node_id", "vehicle": "vehicle_no", "run": "run_id", "account": "account_no", "layer_styles": "id"}
 
 warnings.simplefilter("error")
 
@@ -53,6 +53,7 @@ def layer(name, has_lines):
         check(frame["edge_id"].to_dict() == wanted, name, "edge_id by pyogrio")
     if has_lines:
         check(frame.crs.to_authority() == ("EPSG", "4326"), name, frame.crs)
+        check(name != "junction" or (frame.geometry.is_valid.all() and not frame.is_empty.any()), name, "has areas that are none")
 
     with fiona.open(DATABASE, layer=name) as features:
         check(len({feature["id"] for feature in features}) == len(ids), name, "by fiona")
@@ -72,7 +73,7 @@ def layers():
     features = {row[0] for row in store.execute("SELECT table_name FROM gpkg_geometry_columns")}
     check({name for name, lines in listed.items() if not lines} == TABLES, "tables:", listed)
     check({name for name, lines in listed.items() if lines} == features, "layers:", listed)
-    check({"edge", "turn"} < features and set(fiona.listlayers(DATABASE)) == listed.keys(), features)
+    check({"edge", "junction", "turn"} < features and set(fiona.listlayers(DATABASE)) == listed.keys(), features)
     for name, has_lines in listed.items():
         layer(name, has_lines)
     print(f"layers: {len(listed)} read by pyogrio, fiona" + ("" if SPATIAL == "-" else " and DuckDB"))

@@ -95,7 +95,7 @@ def picture(shown, box):
         painter.drawText(QPointF(x + 4, y), layer.name())
         painter.setFont(QFont("DejaVu Sans", 10))
         for row, rule in enumerate(layer.renderer().rootRule().children(), 1):
-            if rule.symbol().symbolLayer(0).layerType() == "SimpleLine":
+            if rule.symbol().symbolLayer(0).layerType() in ("SimpleLine", "SimpleFill"):
                 painter.drawImage(x + 4, y + row * LINE - 14, rule.symbol().asImage(QSize(44, 18)))
                 painter.drawText(QPointF(x + 58, y + row * LINE), rule.label())
     painter.end()
@@ -119,7 +119,7 @@ def main():
     found = layers()
     rules = {name: styled(name, layer) for name, layer in found.items()}
     permits = sorted(name for name in found if name.startswith("permit_"))
-    shown = [found["edge"], found["turn"], found[permits[-1]]]
+    shown = [found["edge"], found["junction"], found["turn"], found[permits[-1]]]
     picture(shown, QgsRectangle(*map(float, sys.argv[3:7])) if len(sys.argv) > 3 else found["edge"].extent())
     for layer in shown:
         for expression, label, colour in rules[layer.name()]:

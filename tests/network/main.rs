@@ -10,6 +10,7 @@ mod corridor_extracts;
 mod demo_region;
 mod graph_properties;
 mod islands;
+mod junction_areas;
 mod malformed;
 mod maps;
 mod needs;

@@ -18,7 +18,7 @@ use crate::support::program::Place;
 const VEHICLE: &str = "AU-SEMI19";
 /// What depends on measurements.
 const CERTIFICATES: [&str; 4] = ["certificate_compact", "plan", "turn_certificate_compact", "turn_plan"];
-const NETWORK: [&str; 6] = ["edge", "turn", "section", "road", "evidence", "evidence_place"];
+const NETWORK: [&str; 7] = ["edge", "turn", "junction", "section", "road", "evidence", "evidence_place"];
 
 fn sql<T>(place: &Place, work: impl AsyncFnOnce(&mut SqliteConnection) -> T) -> T {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
@@ -150,7 +150,7 @@ fn what_is_certified_again_is_what_certify_makes() {
     place.netcert("evidence add survey.csv").succeeds().shows("5 measurements added: 5 matched");
     assert_eq!(ids(&place, "SELECT count(*) FROM turn WHERE kerb_source = 'surveyed'").len(), 1);
     let made = rows_of(&place, &all);
-    assert!(made["edge"] != before["edge"] && made["turn"] != before["turn"]);
+    assert!(made["edge"] != before["edge"] && made["turn"] != before["turn"] && made["junction"] != before["junction"]);
     assert_ne!(made["turn_certificate_compact"], before["turn_certificate_compact"]);
     place.netcert(&format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 40")).succeeds();
     let whole = Place::empty().file("demo.gpkg", place.read("demo.gpkg"));

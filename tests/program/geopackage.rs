@@ -458,7 +458,7 @@ fn child_that_is_killed() {
         loop {
             let rows = (0..network.edges.len() as u32).map(|edge| certificate(edge, 9));
             let certificates = (0..facts.len() as u32).map(unknown).collect();
-            let turns = Some(TurnSet { network: &network, facts: &facts, certificates });
+            let turns = Some(TurnSet { network: &network, facts: &facts, junctions: &[], certificates });
             database
                 .replace_certificates(
                     &vehicle("EU-SEMI16.5"),

@@ -62,6 +62,7 @@ fn gdal_lists_what_users_read_without_a_warning() {
         "account",
         "certificate",
         "edge",
+        "junction",
         "layer_styles",
         "permit",
         "permit_au_atriple53",
@@ -103,7 +104,7 @@ fn pyogrio_fiona_and_duckdb_read_what_is_there() {
     let mut command = Command::new(&python);
     command.arg(script("check_geopackage.py")).arg(place.path("demo.gpkg")).arg(place.path("")).arg(spatial.trim());
     let answer = Answer::of("check_geopackage.py", &mut command).succeeds().tells_nothing();
-    let _ = answer.shows("layers: 11 ").shows("one system: ").shows("ids: whole").shows("statistics: ");
+    let _ = answer.shows("layers: 12 ").shows("one system: ").shows("ids: whole").shows("statistics: ");
 }
 
 // --- styles ---------------------------------------------------------------------------------------------------------
@@ -133,6 +134,11 @@ fn styles_have_the_page_s_colours() {
     assert_eq!((room.len(), evidence.len()), (4, 6));
     assert_eq!(style_colours(include_str!("../../data/styles/permit.qml")), room);
     assert_eq!(style_colours(include_str!("../../data/styles/edge.qml")), evidence);
+    let junctions = include_str!("../../data/styles/junction.qml");
+    for rgb in ["1,102,94", "216,179,101", "165,171,178"] {
+        assert_eq!(junctions.matches(rgb).count(), 2, "fill and outline of {rgb}");
+        assert!(include_str!("../../data/styles/turn.qml").contains(rgb), "the colours of turns");
+    }
     let turns = style_colours(include_str!("../../data/styles/turn.qml"));
     let forbidden = "#3b4048".to_owned();
     assert!(include_str!("../../web/src/map/palette.ts").contains("forbidden: \"#3b4048\""));
@@ -147,7 +153,13 @@ fn qgis_opens_every_layer_in_its_style() {
     let place = Place::with_demo();
     python.arg(script("run_qgis.py")).arg(place.path("demo.gpkg")).arg(place.path("roads.png"));
     let out = Answer::of("run_qgis.py", python.env("QT_QPA_PLATFORM", "offscreen")).succeeds().out();
-    for layer in ["edge: 7 rules", "turn: 4 rules", "permit_au_semi19: 5 rules", "permit_au_atriple53: 5 rules"] {
+    for layer in [
+        "edge: 7 rules",
+        "junction: 3 rules",
+        "turn: 4 rules",
+        "permit_au_semi19: 5 rules",
+        "permit_au_atriple53: 5 rules",
+    ] {
         assert!(out.contains(layer), "{layer}: {out}");
     }
     assert!(place.read("roads.png").starts_with(b"\x89PNG"));

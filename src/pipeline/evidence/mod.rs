@@ -22,7 +22,7 @@ use crate::osm::facts::Policy;
 use crate::reporter::Reporter;
 use crate::rows::EdgeMeasure;
 use crate::store::{Database, Register, Renewal, Run, StoreError};
-use crate::turns::{KerbSource, TurnFacts, turn_facts};
+use crate::turns::{KerbSource, TurnFacts, junction_areas, junction_nodes, turn_facts};
 use crate::verdict::Verdict;
 use crate::words::Named as _;
 
@@ -174,11 +174,15 @@ pub fn change_evidence(ask: EvidenceChange<'_>, reporter: &dyn Reporter) -> Resu
         parameters: parameters.1.to_string(),
     };
     let account = account(&register.entries);
+    let mut nodes = junction_nodes(&network, facts.as_deref().unwrap_or_default());
+    nodes.retain(|node| touched.nodes.binary_search(node).is_ok());
+    let junctions = junction_areas(&network, &nodes, &ingest.turn_params());
     let mut renewal = Renewal {
         network: &network,
         register: &register,
         edges: &measured,
         turns: facts.as_deref().filter(|_| !touched.turns.is_empty()),
+        junctions: facts.is_some().then_some((&nodes[..], &junctions[..])),
         sets,
         run: &run,
         account: &account,

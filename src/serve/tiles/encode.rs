@@ -69,9 +69,20 @@ impl Layer {
 
     /// Adds a feature of lines. Adds nothing if `lines` is empty.
     pub(super) fn feature(&mut self, id: Option<u64>, lines: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut Tags<'_>)) {
-        if lines.is_empty() {
-            return;
+        if !lines.is_empty() {
+            self.any(id, LINESTRING, &geometry(lines, false), tag);
         }
+    }
+
+    /// Adds a feature of polygons, given as open rings: outer rings run clockwise on the screen, holes counter-clockwise and after
+    /// their outer ring. Adds nothing if `rings` is empty.
+    pub(super) fn polygons(&mut self, id: Option<u64>, rings: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut Tags<'_>)) {
+        if !rings.is_empty() {
+            self.any(id, POLYGON, &geometry(rings, true), tag);
+        }
+    }
+
+    fn any(&mut self, id: Option<u64>, kind: u64, geometry: &[u8], tag: impl FnOnce(&mut Tags<'_>)) {
         let mut tags = Tags { layer: self, pairs: Vec::new() };
         tag(&mut tags);
         let pairs = tags.pairs;
@@ -81,9 +92,9 @@ impl Layer {
             varint(&mut feature, id);
         }
         bytes(&mut feature, 2, &pairs); // tags
-        varint(&mut feature, field(3, VARINT)); // type: LINESTRING
-        varint(&mut feature, 2);
-        bytes(&mut feature, 4, &geometry(lines)); // geometry
+        varint(&mut feature, field(3, VARINT)); // type
+        varint(&mut feature, kind);
+        bytes(&mut feature, 4, geometry); // geometry
         bytes(&mut self.features, 2, &feature);
     }
 
@@ -144,6 +155,9 @@ impl Layer {
 const VARINT: u64 = 0;
 const FIXED_64: u64 = 1;
 const LENGTH: u64 = 2;
+/// Types of geometries.
+const LINESTRING: u64 = 2;
+const POLYGON: u64 = 3;
 
 fn field(number: u64, wire: u64) -> u64 {
     number << 3 | wire
@@ -167,9 +181,9 @@ fn zigzag(value: i64) -> u64 {
     (value << 1 ^ value >> 63) as u64
 }
 
-/// The commands of the lines: for each line one `MoveTo` (1), then one `LineTo` (2) for the other points. Parameters are
-/// differences between points (section 4.3).
-fn geometry(lines: &[Vec<[i32; 2]>]) -> Vec<u8> {
+/// The commands of the lines: for each line one `MoveTo` (1), then one `LineTo` (2) for the other points, then `ClosePath` (7) for
+/// rings. Parameters are differences between points (section 4.3).
+fn geometry(lines: &[Vec<[i32; 2]>], closed: bool) -> Vec<u8> {
     let mut out = Vec::new();
     let mut cursor = [0_i32; 2];
     let mut go = |out: &mut Vec<u8>, point: [i32; 2]| {
@@ -184,6 +198,9 @@ fn geometry(lines: &[Vec<[i32; 2]>]) -> Vec<u8> {
         go(&mut out, *first);
         varint(&mut out, (rest.len() as u64) << 3 | 2);
         rest.iter().for_each(|&point| go(&mut out, point));
+        if closed {
+            varint(&mut out, 1 << 3 | 7);
+        }
     }
     out
 }
@@ -198,7 +215,22 @@ mod tests {
     #[test]
     fn geometry_is_the_specifications_example() {
         let lines = [vec![[2, 2], [2, 10], [10, 10]], vec![[1, 1], [3, 5]]];
-        assert_eq!(geometry(&lines), [9, 4, 4, 18, 0, 16, 16, 0, 9, 17, 17, 10, 4, 8]);
+        assert_eq!(geometry(&lines, false), [9, 4, 4, 18, 0, 16, 16, 0, 9, 17, 17, 10, 4, 8]);
+    }
+
+    /// The example in section 4.3.5.5 of the specification: two polygons, the second one with a hole.
+    #[test]
+    fn rings_are_the_specifications_example() {
+        let rings = [
+            vec![[0, 0], [10, 0], [10, 10], [0, 10]],
+            vec![[11, 11], [20, 11], [20, 20], [11, 20]],
+            vec![[13, 13], [13, 17], [17, 17], [17, 13]],
+        ];
+        let expected = [
+            9, 0, 0, 26, 20, 0, 0, 20, 19, 0, 15, 9, 22, 2, 26, 18, 0, 0, 18, 17, 0, 15, 9, 4, 13, 26, 0, 8, 8, 0, 0,
+            7, 15,
+        ];
+        assert_eq!(geometry(&rings, true), expected);
     }
 
     #[test]

@@ -24,6 +24,8 @@ mod shape;
 
 use std::sync::Arc;
 
+use geo::{Coord, Polygon};
+
 use super::answer::Stored;
 use super::ask::{self, Ask};
 use super::problem::Problem;
@@ -90,6 +92,12 @@ fn bytes(region: &Region, set: (&str, Policy), place: Place) -> Result<Vec<u8>, 
             turn(&mut layer, row, place);
         }
         layer.finish(&mut bytes);
+        let junctions = region.read(|database| database.map_junctions(bounds))?;
+        let mut layer = Layer::new("junction", EXTENT as u16);
+        for (node, polygons) in &junctions {
+            layer.polygons(u64::try_from(*node).ok(), &drawn_polygons(polygons, place), |_| {});
+        }
+        layer.finish(&mut bytes);
     }
     Ok(bytes)
 }
@@ -115,6 +123,15 @@ fn overview_of(region: &Region, set: (&str, Policy)) -> Result<Arc<Overview>, Pr
 fn drawn(line: &[LonLat], place: Place) -> Vec<Vec<[i32; 2]>> {
     let line: Vec<[f64; 2]> = line.iter().map(|&position| place.units(position)).collect();
     shape::drawn(&line, place.z == MOST_ZOOM)
+}
+
+fn drawn_polygons(polygons: &[Vec<Vec<LonLat>>], place: Place) -> Vec<Vec<[i32; 2]>> {
+    let ring = |ring: &Vec<LonLat>| ring.iter().map(|&position| Coord::from(place.units(position))).collect();
+    let polygon = |rings: &Vec<Vec<LonLat>>| {
+        let (outer, holes) = rings.split_first()?;
+        Some(Polygon::new(ring(outer), holes.iter().map(ring).collect()))
+    };
+    shape::drawn_polygons(&polygons.iter().filter_map(polygon).collect())
 }
 
 fn edge(layer: &mut Layer, row: &MapEdge, left: Option<bool>, place: Place) {

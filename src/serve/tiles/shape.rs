@@ -1,6 +1,8 @@
 //! Prepares a line in tile units for drawing: clips it to the tile and its buffer, drops vertices that nobody would see, and
 //! rounds to whole units.
 
+use geo::{BooleanOps as _, BoundingRect as _, LineString, MultiPolygon, Polygon, Rect};
+
 use super::grid::{BUFFER, EXTENT};
 
 type Point = [f64; 2];
@@ -15,6 +17,48 @@ const FINE_TOLERANCE: f64 = 0.5;
 pub(super) fn drawn(line: &[Point], fine: bool) -> Vec<Vec<[i32; 2]>> {
     let tolerance = if fine { FINE_TOLERANCE } else { TOLERANCE };
     clipped(line).into_iter().map(|part| rounded(&simplified(&part, tolerance))).filter(|part| part.len() > 1).collect()
+}
+
+/// The drawn parts of polygons within the tile and its buffer, as open rings: outer rings clockwise on the screen, each followed by
+/// its holes, which run the other way. Rings that rounding leaves without an area are left out.
+pub(super) fn drawn_polygons(polygons: &MultiPolygon) -> Vec<Vec<[i32; 2]>> {
+    let (low, high) = (-BUFFER, EXTENT + BUFFER);
+    let tile = Rect::new((low, low), (high, high)).to_polygon();
+    let within = match polygons.bounding_rect() {
+        Some(around)
+            if around.min().x >= low && around.min().y >= low && around.max().x <= high && around.max().y <= high =>
+        {
+            polygons.clone()
+        }
+        _ => polygons.intersection(&tile),
+    };
+    let ring = |ring: &LineString, clockwise: bool| {
+        let points: Vec<Point> = ring.coords().map(|c| [c.x, c.y]).collect();
+        let mut ring = rounded(&points);
+        if ring.first() == ring.last() {
+            ring.pop();
+        }
+        let doubled = doubled_area(&ring);
+        // The y axis points down, so rings with a positive area run clockwise.
+        if (doubled > 0) != clockwise {
+            ring.reverse();
+        }
+        (doubled != 0).then_some(ring)
+    };
+    let of = |polygon: &Polygon| {
+        let outer = ring(polygon.exterior(), true)?;
+        Some(
+            std::iter::once(outer)
+                .chain(polygon.interiors().iter().filter_map(|hole| ring(hole, false)))
+                .collect::<Vec<_>>(),
+        )
+    };
+    within.iter().filter_map(of).flatten().collect()
+}
+
+fn doubled_area(ring: &[[i32; 2]]) -> i64 {
+    let cross = |a: [i32; 2], b: [i32; 2]| i64::from(a[0]) * i64::from(b[1]) - i64::from(b[0]) * i64::from(a[1]);
+    ring.iter().zip(ring.iter().cycle().skip(1)).map(|(&a, &b)| cross(a, b)).sum()
 }
 
 /// The parts of a line within the tile and its buffer.
@@ -110,6 +154,20 @@ mod tests {
         assert!(drawn(&[[-500.0, 0.0], [-500.0, 4000.0]], false).is_empty());
         let across = drawn(&[[-5000.0, 50.0], [9000.0, 50.0]], false);
         assert_eq!(across, [vec![[-64, 50], [edge, 50]]]);
+    }
+
+    #[test]
+    fn a_polygon_across_the_edge_is_cut_and_runs_clockwise_with_its_hole_the_other_way() {
+        let square =
+            |from: f64, to: f64| LineString::from(vec![(from, from), (from, to), (to, to), (to, from), (from, from)]);
+        let polygon = Polygon::new(square(4000.0, 5000.0), vec![square(4050.0, 4100.0)]);
+        let rings = drawn_polygons(&polygon.into());
+        let edge = (EXTENT + BUFFER) as i32;
+        let areas: Vec<i64> = rings.iter().map(|ring| doubled_area(ring)).collect();
+        assert_eq!(areas, [2 * i64::from(edge - 4000).pow(2), -2 * 50 * 50]);
+        let inside = Polygon::new(square(10.0, 20.0), vec![square(12.0, 12.3)]);
+        assert_eq!(drawn_polygons(&inside.into()).len(), 1, "the hole is less than a unit");
+        assert!(drawn_polygons(&Polygon::new(square(5000.0, 6000.0), vec![]).into()).is_empty());
     }
 
     proptest! {

@@ -163,6 +163,18 @@ function surface(palette: Palette, ground: Ground): LayerSpecification {
   };
 }
 
+/** The surface of junctions with their corners, as assumed, mapped or measured. */
+function junction(palette: Palette): LayerSpecification {
+  return {
+    id: "junction",
+    type: "fill",
+    source: "roads",
+    "source-layer": "junction",
+    minzoom: REAL_ZOOM,
+    paint: { "fill-color": palette.surface },
+  };
+}
+
 function highlight(id: string, layer: "edge" | "turn", palette: Palette, ground: Ground): LayerSpecification {
   const key = layer === "edge" ? "edge_id" : "turn_id";
   return {
@@ -253,6 +265,7 @@ export function style(state: State, ground: Ground): StyleSpecification {
       ...(base ? [{ id: "base", type: "raster", source: "base", paint: { "raster-opacity": 0.45, "raster-saturation": -0.7 } } as LayerSpecification] : []),
       { id: "outside", type: "fill", source: "outside", paint: { "fill-color": palette.outside, "fill-opacity": base ? 0.4 : 1 } },
       surface(palette, ground),
+      junction(palette),
       glowAfar(palette),
       ...fromBest.flatMap((verdict) => {
         const line = overview(verdict, state, palette, ground);

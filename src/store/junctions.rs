@@ -1,0 +1,81 @@
+//! Writes the areas of junctions, and reads them for the map.
+
+use sqlx::Row as _;
+use sqlx::sqlite::SqliteConnection;
+
+use crate::osm::LonLat;
+use crate::rows::Bounds;
+use crate::turns::{JunctionArea, KerbSource};
+
+use super::blob;
+use super::bulk::Bulk;
+use super::database::Database;
+use super::error::{StoreError, content};
+use super::sets;
+use super::styles::{self, Shows};
+
+type Sql<T> = Result<T, sqlx::Error>;
+
+/// A junction on a map: its node, and its polygons, each with its outer ring first.
+pub type MapJunction = (i64, Vec<Vec<Vec<LonLat>>>);
+
+impl Database {
+    /// The areas of the junctions that edges near a box lead to, in order of their nodes.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn map_junctions(&mut self, bounds: Bounds) -> Result<Vec<MapJunction>, StoreError> {
+        let sql = "SELECT node_id, geom FROM junction WHERE node_id IN (SELECT e.to_node FROM rtree_edge_geom AS t \
+                   CROSS JOIN edge AS e ON e.fid = t.id WHERE t.maxx >= ? AND t.minx <= ? AND t.maxy >= ? AND t.miny <= ?) \
+                   ORDER BY node_id";
+        let Bounds { west, south, east, north } = bounds;
+        self.session.run(async |c| {
+            let query = sqlx::query(sql).bind(west).bind(east).bind(south).bind(north);
+            let read = |row: &sqlx::sqlite::SqliteRow| {
+                let node: i64 = row.try_get(0)?;
+                let polygons = blob::decode_polygons(row.try_get(1)?);
+                Ok((node, polygons.ok_or_else(|| content(format!("the area of junction {node}")))?))
+            };
+            query.fetch_all(c).await?.iter().map(read).collect()
+        })
+    }
+}
+
+/// Replaces all areas and registers them as a layer.
+pub(super) async fn add(c: &mut SqliteConnection, areas: &[JunctionArea], time: &str) -> Sql<()> {
+    for sql in [
+        "DELETE FROM junction",
+        "DELETE FROM gpkg_geometry_columns WHERE table_name = 'junction'",
+        "DELETE FROM gpkg_contents WHERE table_name = 'junction'",
+    ] {
+        sqlx::query(sql).execute(&mut *c).await?;
+    }
+    let bounds = insert(c, areas).await?;
+    sets::add_layer_of(c, ("junction", "MULTIPOLYGON"), "Areas of junctions", time, bounds).await?;
+    styles::add(c, "junction", Shows::Junctions, time).await
+}
+
+/// Replaces the areas at some nodes. A node without a new area has none any more.
+pub(super) async fn replace(c: &mut SqliteConnection, nodes: &[i64], areas: &[JunctionArea]) -> Sql<()> {
+    for node in nodes {
+        sqlx::query("DELETE FROM junction WHERE node_id = ?").bind(node).execute(&mut *c).await?;
+    }
+    insert(c, areas).await.map(|_| ())
+}
+
+async fn insert(c: &mut SqliteConnection, areas: &[JunctionArea]) -> Sql<Option<Bounds>> {
+    let mut bulk = Bulk::new("junction", 4);
+    let mut bounds: Option<Bounds> = None;
+    for JunctionArea { node, roads, kerb_source, polygons } in areas {
+        let encoded = blob::encode_polygons(polygons);
+        let (geom, around) = encoded.ok_or_else(|| content(format!("the area of junction {node} is empty")))?;
+        bounds = Some(bounds.map_or(around, |b| b.union(around)));
+        bulk.add(*node)?;
+        bulk.add(*roads as i64)?;
+        bulk.add(kerb_source.map(KerbSource::name))?;
+        bulk.add(geom)?;
+        bulk.end_row(c).await?;
+    }
+    bulk.finish(c).await?;
+    Ok(bounds)
+}
