@@ -14,7 +14,7 @@ use netcert::rows::EdgeRow;
 use netcert::settings::Settings;
 use netcert::stet::Model;
 use netcert::stop::Stop;
-use netcert::store::{CertifiedSet, Database, QueryOptions};
+use netcert::store::{CertifiedSet, Database, Measured, QueryOptions};
 use netcert::turns::{TurnFacts, turn_facts};
 use netcert::vehicle::Vehicle;
 use netcert::words::{Named, highway, verdict_words};
@@ -23,6 +23,7 @@ use super::Session;
 use super::certify_options;
 use super::database::DatabaseArgs;
 use super::fleet::{self, Fleet};
+use super::measured;
 use super::output::{printable, results};
 use super::table::Table;
 use super::values::word;
@@ -89,8 +90,9 @@ impl Explain {
         let network = database.load_network()?;
         let model = Model::new(&vehicle)?;
         if let Some(turn) = self.turn(&network, &settings) {
+            let measured = measured::of_turn(&mut database, &network, &turn)?;
             let turn = explain::explain_turn(&network, &turn, &model, &settings, &Stop::never())?;
-            return self.tell_turn(session, &turn);
+            return self.tell_turn(session, &turn, &measured);
         }
         let edge = self.one_edge(&network, &mut database, settings.policy)?;
         let Some(explanation) = explain::explain_edge(&network, edge, &model, &settings, &Stop::never())? else {
@@ -120,11 +122,19 @@ impl Explain {
             write_picture(out, &explanation)?;
             session.progress.say(&format!("{}: the picture", out.display()));
         }
+        let measured = measured::of_edge(&mut database, &network, edge)?;
         let mut out = results();
         match self.format {
-            Format::Json => writeln!(out, "{:#}", explain::json(&explanation))?,
+            Format::Json => {
+                let mut json = explain::json(&explanation);
+                json["measurements"] = measured::json(&measured);
+                writeln!(out, "{json:#}")?;
+            }
             Format::Geojson => writeln!(out, "{}", explain::edge_geojson(&explanation, &Stop::never())?)?,
-            Format::Text => tell(&mut out, &explanation)?,
+            Format::Text => {
+                tell(&mut out, &explanation)?;
+                measured::tell(&mut out, &measured)?;
+            }
         }
         Ok(out.flush()?)
     }
@@ -135,7 +145,7 @@ impl Explain {
         turn_facts(network, &settings.kerbs).into_iter().find(|turn| turn.id == id)
     }
 
-    fn tell_turn(&self, session: &Session, turn: &TurnExplanation) -> anyhow::Result<()> {
+    fn tell_turn(&self, session: &Session, turn: &TurnExplanation, measured: &[Measured]) -> anyhow::Result<()> {
         if let Some(out) = &self.svg {
             let words = explain::words(&turn.explanation);
             let Some(svg) = picture::turn(turn) else {
@@ -151,6 +161,7 @@ impl Explain {
                 json["turn_id"] = turn.facts.id.into();
                 json["turn"] = turn.title().into();
                 json["turn_corridor"] = turn.strip.name().into();
+                json["measurements"] = measured::json(measured);
                 writeln!(out, "{json:#}")?;
             }
             Format::Geojson => writeln!(out, "{}", explain::turn_geojson(turn, &Stop::never())?)?,
@@ -168,6 +179,7 @@ impl Explain {
                      mapped."
                 );
                 writeln!(out, "{}", wrapped(&note, ""))?;
+                measured::tell(&mut out, measured)?;
             }
         }
         Ok(out.flush()?)

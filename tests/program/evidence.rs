@@ -286,7 +286,14 @@ fn measured_limits_count_in_place_of_the_map_and_removing_them_restores_it() {
     place
         .netcert(&format!("explain {low} --vehicle {VEHICLE}"))
         .succeeds()
-        .shows("maxheight is 4.24 m (measured), the vehicle's height 4.30 m");
+        .shows("maxheight is 4.24 m (measured), the vehicle's height 4.30 m")
+        .shows("1 max_height 4.40 m, of which 4.24 m counts: laser (limits.csv, row 2)");
+    let json = place.netcert(&format!("explain {weak} --vehicle {VEHICLE} --format json")).succeeds().json();
+    let [row] = &json["measurements"].as_array().unwrap()[..] else { panic!("{json}") };
+    assert_eq!((row["evidence_no"].as_i64(), row["quantity"].as_str()), (Some(2), Some("max_weight")));
+    assert_eq!((row["counts"].as_f64(), row["source"].as_str()), (Some(42.0), Some("sign")));
+    let json = place.netcert(&format!("explain {} --vehicle {VEHICLE} --format json", safe[3])).succeeds().json();
+    assert_eq!(json["measurements"].as_array().map(Vec::len), Some(0));
     place.netcert(&format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 150")).succeeds();
     let made = rows_of(&place, &CERTIFICATES);
     let whole = Place::empty().file("demo.gpkg", place.read("demo.gpkg"));
