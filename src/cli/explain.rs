@@ -10,11 +10,11 @@ use netcert::network::Network;
 use netcert::osm::facts::Policy;
 use netcert::picture;
 use netcert::pipeline;
-use netcert::rows::EdgeRow;
+use netcert::rows::{EdgeRow, Measurement};
 use netcert::settings::Settings;
 use netcert::stet::Model;
 use netcert::stop::Stop;
-use netcert::store::{CertifiedSet, Database, Measured, QueryOptions};
+use netcert::store::{CertifiedSet, Database, QueryOptions};
 use netcert::turns::{TurnFacts, turn_facts};
 use netcert::vehicle::Vehicle;
 use netcert::words::{Named, highway, verdict_words};
@@ -23,7 +23,7 @@ use super::Session;
 use super::certify_options;
 use super::database::DatabaseArgs;
 use super::fleet::{self, Fleet};
-use super::measured;
+use super::measurements;
 use super::output::{printable, results};
 use super::table::Table;
 use super::values::word;
@@ -90,7 +90,7 @@ impl Explain {
         let network = database.load_network()?;
         let model = Model::new(&vehicle)?;
         if let Some(turn) = self.turn(&network, &settings) {
-            let measured = measured::of_turn(&mut database, &network, &turn)?;
+            let measured = database.measured_at(&network, &turn)?;
             let turn = explain::explain_turn(&network, &turn, &model, &settings, &Stop::never())?;
             return self.tell_turn(session, &turn, &measured);
         }
@@ -122,18 +122,22 @@ impl Explain {
             write_picture(out, &explanation)?;
             session.progress.say(&format!("{}: the picture", out.display()));
         }
-        let measured = measured::of_edge(&mut database, &network, edge)?;
+        let measured = database.measured_on(&network, edge)?;
         let mut out = results();
         match self.format {
             Format::Json => {
                 let mut json = explain::json(&explanation);
-                json["measurements"] = measured::json(&measured);
+                json["measurements"] = measured.iter().map(Measurement::json).collect();
                 writeln!(out, "{json:#}")?;
             }
-            Format::Geojson => writeln!(out, "{}", explain::edge_geojson(&explanation, &Stop::never())?)?,
+            Format::Geojson => {
+                let mut json = explain::edge_geojson(&explanation, &Stop::never())?;
+                json["netcert"]["measurements"] = measured.iter().map(Measurement::json).collect();
+                writeln!(out, "{json}")?;
+            }
             Format::Text => {
                 tell(&mut out, &explanation)?;
-                measured::tell(&mut out, &measured)?;
+                measurements::tell(&mut out, &measured)?;
             }
         }
         Ok(out.flush()?)
@@ -145,7 +149,7 @@ impl Explain {
         turn_facts(network, &settings.kerbs).into_iter().find(|turn| turn.id == id)
     }
 
-    fn tell_turn(&self, session: &Session, turn: &TurnExplanation, measured: &[Measured]) -> anyhow::Result<()> {
+    fn tell_turn(&self, session: &Session, turn: &TurnExplanation, measured: &[Measurement]) -> anyhow::Result<()> {
         if let Some(out) = &self.svg {
             let words = explain::words(&turn.explanation);
             let Some(svg) = picture::turn(turn) else {
@@ -161,10 +165,14 @@ impl Explain {
                 json["turn_id"] = turn.facts.id.into();
                 json["turn"] = turn.title().into();
                 json["turn_corridor"] = turn.strip.name().into();
-                json["measurements"] = measured::json(measured);
+                json["measurements"] = measured.iter().map(Measurement::json).collect();
                 writeln!(out, "{json:#}")?;
             }
-            Format::Geojson => writeln!(out, "{}", explain::turn_geojson(turn, &Stop::never())?)?,
+            Format::Geojson => {
+                let mut json = explain::turn_geojson(turn, &Stop::never())?;
+                json["netcert"]["measurements"] = measured.iter().map(Measurement::json).collect();
+                writeln!(out, "{json}")?;
+            }
             Format::Text => {
                 writeln!(out, "{}", printable(&turn.title()))?;
                 tell(&mut out, &turn.explanation)?;
@@ -179,7 +187,7 @@ impl Explain {
                      mapped."
                 );
                 writeln!(out, "{}", wrapped(&note, ""))?;
-                measured::tell(&mut out, measured)?;
+                measurements::tell(&mut out, measured)?;
             }
         }
         Ok(out.flush()?)

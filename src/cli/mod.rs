@@ -15,7 +15,7 @@ mod fleet;
 mod ingest;
 mod logger;
 mod manoeuvres;
-mod measured;
+mod measurements;
 mod on_demand;
 pub(crate) mod output;
 mod paper;

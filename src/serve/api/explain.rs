@@ -10,11 +10,12 @@ use super::super::ask::{Ask, policy};
 use super::super::problem::Problem;
 use super::super::region::{Certified, Region};
 use super::super::roads::RoadIndex;
-use super::{GEOJSON, SVG, answered, id, suppose};
+use super::{GEOJSON, SVG, answered, id, relative, suppose};
 use crate::explain::{self, Explanation, MapError};
 use crate::network::Network;
 use crate::osm::LonLat;
 use crate::picture;
+use crate::rows::Measurement;
 use crate::settings::Settings;
 use crate::stet::Model;
 use crate::stop::Stop;
@@ -30,12 +31,16 @@ pub(in super::super) struct Explained {
 
 /// `/api/explain/{id}`
 pub(in super::super) fn explain(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    explained(region, ask).map(|explained| answered(&explained.members))
+    let (explained, id, certified) = explained(region, ask, &["vehicle", "policy", "relative_to"])?;
+    let Some(reference) = ask.parameter("relative_to") else { return Ok(answered(&explained.members)) };
+    let mut members = explained.members.clone();
+    members["relative"] = relative::of(region, id, &certified, reference)?;
+    Ok(answered(&members))
 }
 
 /// `/api/explain/{id}/picture.svg`
 pub(in super::super) fn drawn(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    let explained = explained(region, ask)?;
+    let (explained, ..) = explained(region, ask, &["vehicle", "policy"])?;
     let Some(svg) = &explained.picture else {
         let headline = explained.members["headline"].as_str().unwrap_or_default();
         return Err(Problem::not_found(format!("there is nothing to draw: {headline}")));
@@ -45,16 +50,23 @@ pub(in super::super) fn drawn(region: &Region, ask: &Ask) -> Result<Stored, Prob
 
 /// `/api/explain/{id}/map.geojson`
 pub(in super::super) fn mapped(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    explained(region, ask).map(|explained| Stored::new(GEOJSON, explained.map.to_string().into_bytes()))
+    let (explained, ..) = explained(region, ask, &["vehicle", "policy"])?;
+    Ok(Stored::new(GEOJSON, explained.map.to_string().into_bytes()))
 }
 
-fn explained(region: &Region, ask: &Ask) -> Result<Arc<Explained>, Problem> {
-    ask.only(&["vehicle", "policy"])?;
+/// The explanation, with the id and the set that it is of. `known` are the parameters that may be given.
+fn explained<'r>(
+    region: &'r Region,
+    ask: &Ask,
+    known: &[&str],
+) -> Result<(Arc<Explained>, i64, Certified<'r>), Problem> {
+    ask.only(known)?;
     let id = id(ask.name("id")?)?;
     let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
     let certified = region.certified(ask.required("vehicle")?, policy)?;
     let key = format!("{id} {} {}", certified.vehicle.id, policy.name());
-    region.explained.get(&key, || make(region, id, &certified, &ask.stop))
+    let made = region.explained.get(&key, || make(region, id, &certified, &ask.stop))?;
+    Ok((made, id, certified))
 }
 
 fn make(region: &Region, id: i64, certified: &Certified<'_>, stop: &Stop) -> Result<Explained, Problem> {
@@ -95,9 +107,12 @@ fn of_edge(
     members["kind"] = json!("edge");
     members["at"] = json!(limiting_place(network, edge, &explanation));
     members["suppose"] = suppose::of_edge(network, edge, settings, row.as_ref());
+    let measured = region.read(|database| database.measured_on(network, edge))?;
+    members["measurements"] = measured.iter().map(Measurement::json).collect();
     let line = network.edges.get(edge as usize).map(|edge| network.positions(edge).collect::<Vec<_>>());
     members["geometry"] = geometry(line.as_deref());
-    let map = explain::edge_geojson(&explanation, stop).map_err(unmapped)?;
+    let mut map = explain::edge_geojson(&explanation, stop).map_err(unmapped)?;
+    map["netcert"]["measurements"] = members["measurements"].clone();
     Ok(Explained { members, picture: picture::explanation(&explanation), map })
 }
 
@@ -127,7 +142,10 @@ fn of_turn(
     members["geometry"] = geometry(turns.iter().find(|row| row.turn_id == id).map(|row| row.line.as_slice()));
     members["suppose"] = suppose::of_turn(region, &facts, set, turn.explanation.verdict)?;
     members["note"] = json!(explain::TURN_NOTE);
-    let map = explain::turn_geojson(&turn, stop).map_err(unmapped)?;
+    let measured = region.read(|database| database.measured_at(roads.network(), &facts))?;
+    members["measurements"] = measured.iter().map(Measurement::json).collect();
+    let mut map = explain::turn_geojson(&turn, stop).map_err(unmapped)?;
+    map["netcert"]["measurements"] = members["measurements"].clone();
     Ok(Explained { members, picture: picture::turn(&turn), map })
 }
 

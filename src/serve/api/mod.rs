@@ -6,6 +6,7 @@
 pub(super) mod edges;
 pub(super) mod explain;
 pub(super) mod region;
+mod relative;
 pub(super) mod route;
 pub(super) mod search;
 pub(super) mod stats;

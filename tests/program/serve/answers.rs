@@ -13,6 +13,8 @@ use crate::support::program::Place;
 use crate::support::xml;
 
 const VEHICLE: &str = "AU-SEMI19";
+/// A vehicle that is certified, too.
+const LONG: &str = "AU-ATRIPLE53";
 
 #[test]
 fn the_region_is_the_one_that_was_ingested() {
@@ -116,6 +118,31 @@ fn an_explanation_is_that_of_the_verb() {
     let answer = server.json(&format!("/api/explain/{id}?vehicle={VEHICLE}"));
     assert_eq!((answer["kind"].as_str(), answer["turn_id"].as_str()), (Some("turn"), Some(id)));
     assert_eq!(answer["from_edge"], turn["from_edge"]);
+}
+
+#[test]
+fn an_explanation_beside_a_reference_has_the_numbers_of_query() {
+    let server = Server::demo();
+    let (vehicle, reference) = (VEHICLE, LONG);
+    for (list, turns) in [("edges", ""), ("turns", " --turns")] {
+        let line = format!("query --db demo.gpkg --vehicle {vehicle} --relative-to {reference} --format json{turns}");
+        let answer = server.place.netcert(&line).succeeds().json();
+        let rows = answer[list].as_array().unwrap();
+        let apart = |row: &&Value| row["relative_m"].as_f64().is_some();
+        let asked: Vec<&Value> = rows.iter().filter(apart).take(3).chain(rows.iter().find(|row| !apart(row))).collect();
+        assert!(asked.len() > 2);
+        for row in asked {
+            let id = &row[if turns.is_empty() { "edge_id" } else { "turn_id" }];
+            let target = format!("/api/explain/{id}?vehicle={vehicle}");
+            assert!(server.json(&target).get("relative").is_none());
+            let said = &server.json(&format!("{target}&relative_to={reference}"))["relative"];
+            assert_eq!((&said["relative_m"], &said["as_reference"]), (&row["relative_m"], &row["as_reference"]));
+            assert!(said["scope"].as_str().unwrap().contains("makes nothing safe"));
+            server.problem(&format!("{target}&relative_to=nobody"), 404);
+            let map = format!("/api/explain/{id}/map.geojson?vehicle={vehicle}&relative_to={reference}");
+            server.problem(&map, 400);
+        }
+    }
 }
 
 #[test]

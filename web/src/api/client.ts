@@ -60,8 +60,9 @@ export const api = {
   region: () => get<Region>("/api/region", {}),
   vehicles: () => get<Vehicle[]>("/api/vehicles", {}),
   search: (q: string, signal?: AbortSignal) => get<SearchHit[]>("/api/search", { q }, signal),
-  explain: (id: string, question: Question, signal?: AbortSignal) =>
-    get<Explanation>(`/api/explain/${encodeURIComponent(id)}`, asked(question), signal),
+  /** `beside` is a vehicle to compare with. */
+  explain: (id: string, question: Question, signal?: AbortSignal, beside?: string) =>
+    get<Explanation>(`/api/explain/${encodeURIComponent(id)}`, { ...asked(question), ...(beside ? { relative_to: beside } : {}) }, signal),
   shapes: (id: string, question: Question, signal?: AbortSignal) =>
     get<Shapes>(`/api/explain/${encodeURIComponent(id)}/map.geojson`, asked(question), signal),
   pictureUrl: (id: string, question: Question) =>

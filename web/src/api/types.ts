@@ -85,6 +85,8 @@ export interface Explanation {
   /** The roads of a turn. */
   turn?: string;
   note?: string;
+  /** Beside a reference vehicle, if one was asked for. It says nothing of `safe`. */
+  relative?: { relative_to: string; relative_m: number | null; as_reference: boolean; scope: string };
   /** Whether there is a picture. */
   picture: boolean;
   /** What may be supposed of it; null if neither a width nor a kerb radius decides. */

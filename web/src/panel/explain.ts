@@ -40,7 +40,12 @@ export class ExplainPanel {
     try {
       const other = this.around.other();
       const [own, beside] = await Promise.all([
-        api.explain(id, question, running.signal),
+        // Two policies do not compare.
+        api.explain(id, question, running.signal, other?.policy === question.policy ? other.vehicle : undefined).catch((error: unknown) => {
+          // Vehicles that were certified with other settings do not compare either; each has its own explanation still.
+          if (!other || running.signal.aborted) throw error;
+          return api.explain(id, question, running.signal);
+        }),
         other ? api.explain(id, other, running.signal).catch(() => null) : null,
       ]);
       this.element.replaceChildren(...this.#content(id, question, own, other && beside ? { other, beside } : null));
@@ -81,7 +86,7 @@ export class ExplainPanel {
       h("p", { class: "sub" }, more.join(" · ")),
       ...verdict(own),
     ];
-    if (compared) nodes.push(h("h3", {}, compared.other.vehicle), ...verdict(compared.beside));
+    if (compared) nodes.push(h("h3", {}, compared.other.vehicle), ...verdict(compared.beside), ...relative(question.vehicle, own));
     if (own.picture) {
       const alt = `The swept path where it is tightest: ${own.headline}`;
       nodes.push(this.#picture.show(api.pictureUrl(id, question), alt, this.#running!.signal));
@@ -93,6 +98,21 @@ export class ExplainPanel {
     nodes.push(h("p", { class: "scope" }, prose([own.note, own.scope].filter(Boolean).join(" "))));
     return nodes;
   }
+}
+
+/** One vehicle beside the other, in words that cannot be taken for a verdict. */
+function relative(vehicle: string, { relative: found }: Explanation): Node[] {
+  if (!found) return [];
+  const { relative_to: reference, relative_m: metres, as_reference: alike } = found;
+  if (metres === null) return [h("p", { class: "sub relative" }, `${vehicle} and ${reference} do not compare here: one of them has no number.`)];
+  const apart = `${Math.abs(metres).toFixed(2)} m`;
+  const less = metres < 0 ? `${vehicle} has ${apart} less room here than ${reference}.` : `${vehicle} has ${apart} more room here than ${reference}.`;
+  const words = alike
+    ? `${vehicle} needs no more room here than ${reference}: it has ${apart} more.`
+    : metres < 0
+      ? less
+      : `${less} A hinge, the steering or the law decides all the same.`;
+  return [h("p", { class: "sub relative" }, `${words} That makes nothing certified.`)];
 }
 
 /** The verdict as a label, the number, and the server's sentence. */

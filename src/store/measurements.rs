@@ -2,39 +2,40 @@
 
 use sqlx::{AssertSqlSafe, Row as _};
 
+use crate::network::Network;
+use crate::rows::Measurement;
+use crate::turns::TurnFacts;
+
 use super::database::Database;
 use super::error::StoreError;
 
-/// A measurement that counts at a place.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
-    /// Its number in the register.
-    pub evidence_no: i64,
-    /// What was measured, such as `lane_width`.
-    pub quantity: String,
-    /// What was measured: metres, or tonnes of masses. `None` for surfaces.
-    pub value: Option<f64>,
-    /// What of it counts, in the same unit.
-    pub lower: Option<f64>,
-    /// Who measured it.
-    pub source: String,
-    /// The day.
-    pub date: Option<String>,
-    /// Name of the file that it came from.
-    pub file: String,
-    /// Its row there.
-    pub file_row: i64,
-}
-
-/// A corner of a junction: its node, and the edges before and after the turn (`edge_id`).
-pub type MeasuredCorner = (i64, [i64; 2]);
-
 impl Database {
-    /// The measurements that count on some edges (`edge_id`), and at the corner of a turn if one is given, in order of their numbers.
+    /// The measurements that count on an edge, in order of their numbers.
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn measured(&mut self, edges: &[i64], corner: Option<MeasuredCorner>) -> Result<Vec<Measured>, StoreError> {
+    pub fn measured_on(&mut self, network: &Network, edge: u32) -> Result<Vec<Measurement>, StoreError> {
+        let ids: Vec<i64> = network.edges.get(edge as usize).map(|edge| edge.id).into_iter().collect();
+        self.measured(&ids, None)
+    }
+
+    /// The measurements that count on the edges of a turn, those between included, and at its first corner, in order of their numbers.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn measured_at(&mut self, network: &Network, turn: &TurnFacts) -> Result<Vec<Measurement>, StoreError> {
+        let edge = |index: u32| network.edges.get(index as usize);
+        let way = [turn.movement.from].into_iter().chain(turn.through.iter().copied()).chain([turn.movement.to]);
+        let way: Vec<_> = way.filter_map(edge).collect();
+        let corner = match way[..] {
+            [first, second, ..] => Some((first.to_node, [first.id, second.id])),
+            _ => None,
+        };
+        self.measured(&way.iter().map(|edge| edge.id).collect::<Vec<_>>(), corner)
+    }
+
+    /// On some edges (`edge_id`), and at the corner of a node between two edges.
+    fn measured(&mut self, edges: &[i64], corner: Option<(i64, [i64; 2])>) -> Result<Vec<Measurement>, StoreError> {
         let edges: Vec<String> = edges.iter().map(i64::to_string).collect();
         let at_corner = corner.map_or(String::new(), |(node, [from, to])| {
             format!(" OR p.node = {node} AND (p.from_edge IS NULL OR p.from_edge = {from} AND p.to_edge = {to})")
@@ -49,7 +50,7 @@ impl Database {
         self.session.run(async |c| {
             let rows = sqlx::query(AssertSqlSafe(sql)).fetch_all(c).await?;
             let read = |row: &sqlx::sqlite::SqliteRow| {
-                Ok(Measured {
+                Ok(Measurement {
                     evidence_no: row.try_get(0)?,
                     quantity: row.try_get(1)?,
                     value: row.try_get(2)?,
