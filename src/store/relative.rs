@@ -240,7 +240,7 @@ impl ReferenceReader {
     /// # Errors
     /// The file cannot be read.
     pub fn edges(&mut self) -> Result<Beside<'_>, StoreError> {
-        self.beside(|database, id, policy| database.edge_standings(id, policy), |known| &known.edges)
+        self.beside(Database::edge_standings, |known| &known.edges)
     }
 
     /// The reference's turns, to be read beside those of the set.
@@ -251,7 +251,7 @@ impl ReferenceReader {
         if let Some(database) = self.databases.first_mut() {
             self.reference.check_turns(database)?;
         }
-        self.beside(|database, id, policy| database.turn_standings(id, policy), |known| &known.turns)
+        self.beside(Database::turn_standings, |known| &known.turns)
     }
 
     fn beside(

@@ -88,9 +88,9 @@ fn parts_of(mouths: &[Mouth<'_>], node: i64, params: &TurnParams, mapped: Option
     }
     for (i, a) in mouths.iter().enumerate() {
         let b = &mouths[(i + 1) % mouths.len()];
-        // The turn's own corner is made from its corridors.
-        let of_ring = a.road.roundabout && b.road.roundabout;
-        if !(a.own && b.own) && !of_ring {
+        // The turn's own corner is made from its corridors. Two arcs of a ring have none.
+        let left_out = (a.own && b.own) || (a.road.roundabout && b.road.roundabout);
+        if !left_out {
             parts.extend(corner(node, [a, b], params, mapped));
         }
     }
