@@ -6,7 +6,7 @@ use anyhow::anyhow;
 use netcert::osm::facts::Policy;
 use netcert::pipeline;
 use netcert::settings::Settings;
-use netcert::store::{CertifiedSet, DRIVABLE_BY, Database, Reference};
+use netcert::store::{CertifiedSet, Database, Reference};
 use netcert::vehicle::Vehicle;
 use netcert::words::Named;
 use serde_json::json;
@@ -49,8 +49,7 @@ pub(crate) fn reference(
     (set, id): (&CertifiedSet, &str),
 ) -> anyhow::Result<(Database, Reference)> {
     let settings = set.settings()?;
-    let vehicles = if id == DRIVABLE_BY { database.known_vehicle_ids()? } else { vec![id.to_owned()] };
-    for vehicle in &vehicles {
+    for vehicle in &database.reference_ids(id)? {
         if let Some(kept) = database.certified_set(vehicle, set.policy)? {
             // Checked as it will be, before its turns are made.
             let kept = kept.settings()?;

@@ -26,8 +26,7 @@ impl RelativeArgs {
         let Some(id) = self.relative_to.as_deref().filter(|id| *id != vehicle) else { return Ok(()) };
         let mut database = Database::open(path)?;
         let policy = certify_options::policy_of(&mut database, asked)?;
-        let ids = if id == DRIVABLE_BY { database.known_vehicle_ids()? } else { vec![id.to_owned()] };
-        for id in ids.iter().filter(|id| *id != vehicle) {
+        for id in database.reference_ids(id)?.iter().filter(|id| *id != vehicle) {
             let set = database.certified_set(id, policy)?.ok_or_else(|| StoreError::not_certified(path, id, policy))?;
             database.reference(&set, id)?.check_turns(&mut database)?;
         }

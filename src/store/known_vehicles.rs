@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use super::database::Database;
 use super::error::StoreError;
+use super::relative::DRIVABLE_BY;
 
 /// Where one vehicle is known to go: sorted indices into the network's edges and turns.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -53,11 +54,14 @@ impl Database {
         Ok(known)
     }
 
-    /// The ids of the vehicles that the register knows to go somewhere.
+    /// The ids of the vehicles that a reference stands for: of [`DRIVABLE_BY`], those that the register knows to go somewhere.
     ///
     /// # Errors
-    /// As for `--relative-to drivable_by`: there are none ([`StoreError::NotThere`]); the file cannot be read.
-    pub fn known_vehicle_ids(&mut self) -> Result<Vec<String>, StoreError> {
-        Ok(self.known_vehicles()?.into_keys().collect())
+    /// The register knows none ([`StoreError::NotThere`]); the file cannot be read.
+    pub fn reference_ids(&mut self, reference: &str) -> Result<Vec<String>, StoreError> {
+        match reference {
+            DRIVABLE_BY => Ok(self.known_vehicles()?.into_keys().collect()),
+            _ => Ok(vec![reference.to_owned()]),
+        }
     }
 }

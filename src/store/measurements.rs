@@ -16,10 +16,10 @@ impl Database {
     /// The file cannot be read.
     pub fn measured_on(&mut self, network: &Network, edge: u32) -> Result<Vec<Measurement>, StoreError> {
         let ids: Vec<i64> = network.edges.get(edge as usize).map(|edge| edge.id).into_iter().collect();
-        self.measured(&ids, None)
+        self.measured(&ids, &[])
     }
 
-    /// The measurements that count on the edges of a turn, those between included, and at its first corner, in order of their numbers.
+    /// The measurements that count on the edges of a turn, those between included, and at its corners, in order of their numbers.
     ///
     /// # Errors
     /// The file cannot be read.
@@ -27,23 +27,21 @@ impl Database {
         let edge = |index: u32| network.edges.get(index as usize);
         let way = [turn.movement.from].into_iter().chain(turn.through.iter().copied()).chain([turn.movement.to]);
         let way: Vec<_> = way.filter_map(edge).collect();
-        let corner = match way[..] {
-            [first, second, ..] => Some((first.to_node, [first.id, second.id])),
-            _ => None,
-        };
-        self.measured(&way.iter().map(|edge| edge.id).collect::<Vec<_>>(), corner)
+        let corners: Vec<_> = way.array_windows().map(|[from, to]| (from.to_node, [from.id, to.id])).collect();
+        self.measured(&way.iter().map(|edge| edge.id).collect::<Vec<_>>(), &corners)
     }
 
-    /// On some edges (`edge_id`), and at the corner of a node between two edges.
-    fn measured(&mut self, edges: &[i64], corner: Option<(i64, [i64; 2])>) -> Result<Vec<Measurement>, StoreError> {
+    /// On some edges (`edge_id`), and at corners: each a node, and the edges before and after it.
+    fn measured(&mut self, edges: &[i64], corners: &[(i64, [i64; 2])]) -> Result<Vec<Measurement>, StoreError> {
         let edges: Vec<String> = edges.iter().map(i64::to_string).collect();
-        let at_corner = corner.map_or(String::new(), |(node, [from, to])| {
+        let corner = |(node, [from, to]): &(i64, [i64; 2])| {
             format!(" OR p.node = {node} AND (p.from_edge IS NULL OR p.from_edge = {from} AND p.to_edge = {to})")
-        });
+        };
+        let at_corners: String = corners.iter().map(corner).collect();
         // Only numbers are put into the text.
         let sql = format!(
             "SELECT evidence_no, quantity, value, lower, source, date, file, file_row FROM evidence WHERE evidence_no IN \
-             (SELECT p.evidence_no FROM evidence_place AS p WHERE p.counts AND (p.edge_id IN ({}){at_corner})) \
+             (SELECT p.evidence_no FROM evidence_place AS p WHERE p.counts AND (p.edge_id IN ({}){at_corners})) \
              ORDER BY evidence_no",
             edges.join(", ")
         );

@@ -152,6 +152,14 @@ fn what_is_certified_again_is_what_certify_makes() {
     let made = rows_of(&place, &all);
     assert!(made["edge"] != before["edge"] && made["turn"] != before["turn"] && made["junction"] != before["junction"]);
     assert_ne!(made["turn_certificate_compact"], before["turn_certificate_compact"]);
+    let turn = format!(
+        "SELECT turn_id FROM turn AS t JOIN edge AS a ON a.fid = from_fid JOIN edge AS b ON b.fid = to_fid \
+         WHERE a.edge_id = {from} AND b.edge_id = {to}"
+    );
+    let line = format!("explain {} --vehicle {VEHICLE} --format json", ids(&place, &turn)[0][0]);
+    let said = place.netcert(&line).succeeds().json()["measurements"].clone();
+    let kerb = |row: &&Value| row["quantity"] == "kerb_radius" && row["value"] == 14.0;
+    assert!(said.as_array().unwrap().iter().any(|row| kerb(&row)), "{said}");
     place.netcert(&format!("verify --db demo.gpkg --vehicle {VEHICLE} --sample 40")).succeeds();
     let whole = Place::empty().file("demo.gpkg", place.read("demo.gpkg"));
     whole.netcert("certify").succeeds();

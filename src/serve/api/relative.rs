@@ -12,15 +12,10 @@ use crate::store::{QueryOptions, TurnQuery};
 pub(super) fn of(region: &Region, id: i64, own: &Certified<'_>, reference: &str) -> Result<Value, Problem> {
     let policy = own.settings.policy;
     let other = region.certified(reference, policy)?;
-    // The comparison of two sets needs equal settings.
-    region.read(|database| database.reference(own.set, reference)).map_err(|problem| {
-        if own.settings == other.settings {
-            problem
-        } else {
-            let detail = format!("{reference} was certified with other settings than {}", own.vehicle.id);
-            Problem::parameter("relative_to", detail)
-        }
-    })?;
+    if own.settings != other.settings {
+        let detail = format!("{reference} was certified with other settings than {}", own.vehicle.id);
+        return Err(Problem::parameter("relative_to", detail));
+    }
     let [vehicle, beside] = [&own.vehicle.id, &other.vehicle.id];
     let standing = |id_of: &str| standing(region, id, id_of, policy);
     let relative = match [standing(vehicle)?, standing(beside)?] {
