@@ -1,10 +1,10 @@
 //! How many of the turns that can be driven are safe. For turns between safe main roads it draws a crossing of two straight
-//! roads with the same carriageways, angle and kerb. A planner that knows nothing of certificates searches a path on it
+//! roads with the same strips, angle and kerb. A planner that knows nothing of certificates searches a path on it
 //! (`crates/oracle/src/planner.rs`). The drawn crossing has none of the bends and other arms of the map, so some turns are
 //! safe that cannot be driven on it, and the other way round.
 //!
-//! `cargo run --release --example turn_recall -- REGION.gpkg VEHICLE TURNS`, with a database that certifies the vehicle's
-//! edges and turns for the whole carriageway.
+//! `cargo run --release --example turn_recall -- REGION.gpkg VEHICLE POLICY TURNS`, with a database that certifies the vehicle's
+//! edges and turns for this policy. In its lane a vehicle may use all lanes of its direction near a turn, and all of the crossing.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout)]
 
 use std::collections::BTreeMap;
@@ -15,6 +15,7 @@ use netcert::rows::TurnRow;
 use netcert::store::Database;
 use netcert::vehicle::Vehicle;
 use netcert::verdict::Verdict;
+use netcert::words::Named as _;
 use netcert_oracle::crossing::{Crossing, Pose};
 use netcert_oracle::planner::drivable;
 use rayon::prelude::*;
@@ -32,18 +33,21 @@ struct Tried {
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [file, id, count] = arguments.as_slice() else { panic!("usage: turn_recall REGION.gpkg VEHICLE TURNS") };
+    let [file, id, policy, count] = arguments.as_slice() else {
+        panic!("usage: turn_recall REGION.gpkg VEHICLE POLICY TURNS")
+    };
+    let policy = Policy::named(policy).expect("lane, direction or carriageway");
     let mut database = Database::open(file.as_ref()).unwrap();
     let record = database.vehicles().unwrap().into_iter().find(|record| &record.id == id).expect("certified");
     let vehicle = Vehicle::from_json(&record.definition).unwrap();
     let network = database.load_network().unwrap();
     let edges: BTreeMap<i64, u32> = (0..).zip(&network.edges).map(|(index, edge)| (edge.id, index)).collect();
     let mut safe = vec![false; network.edges.len()];
-    for row in database.query(&netcert::store::QueryOptions::new(id, Policy::Carriageway)).unwrap() {
+    for row in database.query(&netcert::store::QueryOptions::new(id, policy)).unwrap() {
         let row = row.unwrap();
         safe[row.edge as usize] = row.certificate.verdict == Verdict::Safe;
     }
-    let rows = database.turn_rows(id, Policy::Carriageway).unwrap().map(|row| row.unwrap());
+    let rows = database.turn_rows(id, policy).unwrap().map(|row| row.unwrap());
     let main = |edge: u32| network.road(&network.edges[edge as usize]).class <= RoadClass::Tertiary;
     let wanted = |row: &TurnRow| {
         let ends = [edges[&row.from_edge], edges[&row.to_edge]];
@@ -59,7 +63,7 @@ fn main() {
     let tried = |row: TurnRow| {
         let ends = [edges[&row.from_edge], edges[&row.to_edge]];
         let beyond = movements.after(ends[0]).iter().any(|movement| movement.kind == MovementKind::StraightOn);
-        let crossing = crossing(&network, ends, &row, beyond)?;
+        let crossing = crossing(&network, ends, &row, beyond, policy)?;
         Some(Tried { room_m: drivable(&crossing, &vehicle, row.turn_id as u64).room_m, row })
     };
     let tried: Vec<Tried> = rows.into_par_iter().filter_map(tried).collect();
@@ -86,23 +90,26 @@ fn main() {
 }
 
 /// The turn on straight roads, drawn to the left.
-fn crossing(network: &Network, ends: [u32; 2], row: &TurnRow, beyond: bool) -> Option<Crossing> {
-    let strip = |edge: u32| {
+fn crossing(network: &Network, ends: [u32; 2], row: &TurnRow, beyond: bool, policy: Policy) -> Option<Crossing> {
+    let strip = |edge: u32, policy: Policy| {
         let edge = &network.edges[edge as usize];
         let section = network.road(edge).sections[usize::from(edge.direction == Direction::Backward)];
-        let strip = section.carriageway?;
+        let strip = section.strip(policy)?;
         let [right_m, left_m] = [f64::from(strip.right_m), f64::from(strip.left_m)];
         Some(if row.angle_deg > 0.0 { [right_m, left_m] } else { [-left_m, -right_m] })
     };
-    let strips = [strip(ends[0])?, strip(ends[1])?];
-    Some(Crossing {
-        strips,
-        lanes: strips,
+    // What turns may use where the policy is the lane.
+    let near_turns = policy.max(Policy::Direction);
+    let mut crossing = Crossing {
+        strips: [strip(ends[0], Policy::Carriageway)?, strip(ends[1], Policy::Carriageway)?],
+        lanes: [strip(ends[0], near_turns)?, strip(ends[1], near_turns)?],
         angle: row.angle_deg.abs().to_radians(),
         kerb_m: row.kerb_radius_m?,
         beyond,
         split: false,
         islands: Vec::new(),
         pose: Pose { mirrored: false, heading: 0.0, at: [0.0; 2] },
-    })
+    };
+    crossing.islands = crossing.beside_lanes();
+    Some(crossing)
 }

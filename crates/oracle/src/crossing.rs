@@ -32,6 +32,8 @@ const NARROW_M: f64 = 0.5;
 /// Sharpest curvature of a move aside on a straight, 1/m, and its least length, metres.
 const ASIDE: f64 = 1.0 / 25.0;
 const ASIDE_LEAST_M: f64 = 12.0;
+/// Less than this beside a lane is no island, metres.
+const LEAST_BESIDE_M: f64 = 0.01;
 
 /// A crossing of two straight roads, and the turn to the left from the first into the second.
 #[derive(Debug, Clone)]
@@ -132,11 +134,7 @@ impl Crossing {
 
     /// An island on a road, pointed at both ends, between two distances from the crossing.
     fn island(&self, road: usize, (middle, thin_m): (f64, f64), (from_m, to_m): (f64, f64)) -> Vec<V2> {
-        let corners = [0, 1].map(|side| self.meet(self.strips[0][side], self.strips[1][side]));
-        let u = if road == 0 { [-1.0, 0.0] } else { direction(self.angle) };
-        let left = if road == 0 { [0.0, 1.0] } else { left_of(u) };
-        let mouth_m = corners.iter().map(|corner| dot(*corner, u)).fold(0.0, f64::max);
-        let place = |ahead: f64, aside: f64| along(along([0.0; 2], mouth_m + ahead, u), aside, left);
+        let place = self.from_mouth(road);
         vec![
             place(from_m, middle),
             place(from_m + thin_m, middle + thin_m),
@@ -145,6 +143,30 @@ impl Crossing {
             place(to_m - thin_m, middle - thin_m),
             place(from_m + thin_m, middle - thin_m),
         ]
+    }
+
+    /// Places on a road by their distance from where the other road's edge crosses it, and metres to the left of its line.
+    fn from_mouth(&self, road: usize) -> impl Fn(f64, f64) -> V2 + use<> {
+        let corners = [0, 1].map(|side| self.meet(self.strips[0][side], self.strips[1][side]));
+        let u = if road == 0 { [-1.0, 0.0] } else { direction(self.angle) };
+        let left = if road == 0 { [0.0, 1.0] } else { left_of(u) };
+        let mouth_m = corners.iter().map(|corner| dot(*corner, u)).fold(0.0, f64::max);
+        move |ahead, aside| along(along([0.0; 2], mouth_m + ahead, u), aside, left)
+    }
+
+    /// What the strips have beside the lanes, from where the other road's edge crosses them to where the roads end: islands for a
+    /// vehicle that keeps to the lanes away from the crossing.
+    pub fn beside_lanes(&self) -> Vec<Vec<V2>> {
+        let beside = |road: usize| {
+            let ([right, left], [lane_right, lane_left]) = (self.strips[road], self.lanes[road]);
+            let place = self.from_mouth(road);
+            let far_m = ARMS_M[road] - BEYOND_M;
+            [[right, lane_right], [lane_left, left]]
+                .into_iter()
+                .filter(|[a, b]| b - a > LEAST_BESIDE_M)
+                .map(move |[a, b]| vec![place(0.0, a), place(0.0, b), place(far_m, b), place(far_m, a)])
+        };
+        [0, 1].into_iter().flat_map(beside).collect()
     }
 
     /// Where a line aside on the first road meets a line aside on the second.
@@ -373,6 +395,31 @@ mod tests {
                 assert!(ground.room(centre).0 < -0.29, "{crossing:?}");
             }
         }
+    }
+
+    #[test]
+    fn what_is_beside_the_lanes_is_closed_away_from_the_crossing_only() {
+        let strips = [[-5.0, 5.0], [-4.0, 4.0]];
+        let lanes = [[-5.0, 0.5], [-4.0, 4.0]];
+        let pose = Pose { mirrored: false, heading: 0.0, at: [0.0; 2] };
+        let open = Crossing {
+            strips,
+            lanes,
+            angle: FRAC_PI_2,
+            kerb_m: 6.0,
+            beyond: true,
+            split: false,
+            islands: Vec::new(),
+            pose,
+        };
+        let closed = Crossing { islands: open.beside_lanes(), ..open.clone() };
+        let room = |crossing: &Crossing, at: V2| Ground::new(&crossing.unposed()).room(at).0;
+        assert_eq!(closed.islands.len(), 1, "the second road's lanes are all of it");
+        for (at, before, after) in [([-30.0, -2.0], 3.0, 2.5), ([-30.0, 2.5], 2.5, -2.0), ([0.0, 40.0], 4.0, 4.0)] {
+            assert!((room(&open, at) - before).abs() < 1e-6);
+            assert!((room(&closed, at) - after).abs() < 1e-6, "{at:?}: {}", room(&closed, at));
+        }
+        assert!(room(&closed, [0.0, 3.0]) > 2.0, "the crossing itself is open");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::network::{EARTH_RADIUS_M, Edge, Network, Road, offset_m};
 use crate::osm::LonLat;
@@ -55,9 +55,15 @@ impl<'n> Index<'n> {
                 nodes.entry(node).or_insert_with(|| Node { at, arms: Vec::new() }).arms.push(index);
             }
         }
+        let bends = stroke_ends(network);
+        let is_junction = |id: &i64, node: &Node| match node.arms.len() {
+            0 | 1 => false,
+            2 => bends.contains(id),
+            _ => true,
+        };
         let mut junctions: Vec<Junction> = nodes
             .iter()
-            .filter(|(_, node)| node.arms.len() >= 3)
+            .filter(|(id, node)| is_junction(id, node))
             .map(|(&id, node)| GeomWithData::new(corner(node.at), id))
             .collect();
         junctions.sort_unstable_by_key(|junction| junction.data);
@@ -114,7 +120,8 @@ impl<'n> Index<'n> {
         found
     }
 
-    /// Junctions with at least three ends of road in a box around these positions, with their places; sorted by id.
+    /// Junctions in a box around these positions, with their places; sorted by id. A junction has at least three ends of road, or two
+    /// between which a vehicle turns.
     pub(super) fn junctions_near(&self, positions: &[LonLat], reach_m: f64) -> Vec<(i64, LonLat)> {
         let near = |around: &AABB<[f64; 2]>| {
             let found = self.junctions.locate_in_envelope(around).map(|junction| junction.data);
@@ -133,6 +140,17 @@ impl<'n> Index<'n> {
         let word = if ids.len() == 1 { "edge" } else { "edges" };
         format!("way {} ({word} {})", self.road(piece).way_id, ids.join(", "))
     }
+}
+
+/// The nodes at which strokes begin or end. Where only two roads meet, such a node is a sharp bend.
+fn stroke_ends(network: &Network) -> FxHashSet<i64> {
+    let edge = |index: &u32| network.edges.get(*index as usize);
+    let open = network.strokes.iter().filter(|stroke| !stroke.closed);
+    let edges = open.map(|stroke| &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize]);
+    let ends = edges.flat_map(|edges| {
+        [edges.first().and_then(edge).map(|edge| edge.from_node), edges.last().and_then(edge).map(|edge| edge.to_node)]
+    });
+    ends.flatten().collect()
 }
 
 /// Groups the directions of each stretch. They are neighbours in the network.

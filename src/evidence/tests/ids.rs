@@ -1,7 +1,7 @@
 //! Rows whose place is given by ids, and surfaces.
 
 use super::super::{Along, Place, Quantity, Row, Value};
-use super::drawn::{Drawing, at, edge_id, row, told};
+use super::drawn::{Drawing, at, edge_id, point, row, told};
 use crate::network::Network;
 
 /// A main road 1-2-3-4, a side road 2-5, a one-way road 3-6, and a ring 10-11-12.
@@ -108,4 +108,21 @@ fn a_surface_is_that_of_the_junctions_on_it() {
     let named = |node| Row { place: Place::Junction { node, edges: None }, ..ring(100.0, false) };
     assert_eq!(told(&network, &named(2)), "area [2]");
     assert_eq!(told(&network, &named(3)), "unmatched: node 3 does not lie on the surface");
+}
+
+#[test]
+fn a_sharp_bend_is_a_junction_and_a_gentle_one_is_not() {
+    let bent = |aside: f64| {
+        let drawing = Drawing::default().node(1, [0.0, 0.0]).node(2, [100.0, 0.0]).node(3, [110.0, aside]);
+        drawing.way(1, &[1, 2], "").way(2, &[2, 3], "highway=tertiary").network()
+    };
+    let ring: Vec<_> = [[90.0, -10.0], [120.0, -10.0], [120.0, 10.0], [90.0, 10.0], [90.0, -10.0]].map(at).to_vec();
+    let surface =
+        Row { quantity: Quantity::Surface, value: Value::Polygon(vec![ring.clone()]), ..row(Place::Polygon(ring)) };
+    let kerb = Row { quantity: Quantity::KerbRadius, ..point([103.0, 2.0]) };
+    let [sharp, gentle] = [bent(90.0), bent(0.5)];
+    assert_eq!(told(&sharp, &surface), "area [2]");
+    assert_eq!(told(&sharp, &kerb), "corner 2");
+    assert_eq!(told(&gentle, &surface), "unmatched: no junction lies on the surface");
+    assert_eq!(told(&gentle, &kerb), "unmatched: no junction within 25 m");
 }
