@@ -492,16 +492,29 @@ fn between_points(before: &mut Sample, sample: &mut Sample, s: &States, gap: f64
     let ends = [&*before, &*sample];
     let [most, least] = bends(&ends, s, gap);
     let [part_most, part_least] = bends(&ends, s, gap / parts);
-    let sag = |bend: V, part_bend: V, f: V, g: V| {
-        let side = lowest_between(sharpest(bend, gap) + bulge, gap, (f - g).abs());
-        select_negative(V::splat(BULGE_MOST) - bulge, whole_sagitta(part_bend, gap / parts), side)
-    };
-    let left = sag(most, part_most, before.left, sample.left);
-    let right = sag(-least, -part_least, before.right, sample.right);
+    let side = Between { bulge, gap, part_m: gap / parts };
+    let left = side.sag(most, part_most, before.left, sample.left);
+    let right = side.sag(-least, -part_least, before.right, sample.right);
     before.lowered_left = before.lowered_left.min(before.left - left);
     before.lowered_right = before.lowered_right.min(before.right - right);
     sample.lowered_left = sample.left - left;
     sample.lowered_right = sample.right - right;
+}
+
+/// A side between two body points `gap` apart, examined in parts where half-widths bulge. Metres.
+struct Between {
+    bulge: V,
+    gap: f64,
+    part_m: f64,
+}
+
+impl Between {
+    /// How far leeway may fall between the ends, where it is `f` and `g`.
+    #[inline(always)]
+    fn sag(&self, bend: V, part_bend: V, f: V, g: V) -> V {
+        let side = lowest_between(sharpest(bend, self.gap) + self.bulge, self.gap, (f - g).abs());
+        select_negative(V::splat(BULGE_MOST) - self.bulge, whole_sagitta(part_bend, self.part_m), side)
+    }
 }
 
 /// Bounds at a body point and at its neighbours, and the distances to the neighbours (0: no neighbour).
@@ -518,12 +531,16 @@ impl Knots {
     /// below its chords between points, and its slope is nowhere greater than the bound of the heading.
     #[inline(always)]
     fn lean(&self, by: V, cos: V, heading: V) -> V {
-        let to = |other: V, gap: f64| {
-            let chord = (other - self.own) * (1.0 / gap.max(1e-9));
-            // Negative beyond the neighbour, or without a neighbour.
-            select_negative(cos * gap - by.abs(), heading, chord.min(heading))
-        };
-        select_negative(by, to(self.behind, self.gap_behind), to(self.ahead, self.gap_ahead)) * by.abs()
+        let ahead = self.to(self.ahead, self.gap_ahead, by, cos, heading);
+        select_negative(by, self.to(self.behind, self.gap_behind, by, cos, heading), ahead) * by.abs()
+    }
+
+    /// The slope of the bound towards a neighbour.
+    #[inline(always)]
+    fn to(&self, other: V, gap: f64, by: V, cos: V, heading: V) -> V {
+        let chord = (other - self.own) * (1.0 / gap.max(1e-9));
+        // Negative beyond the neighbour, or without a neighbour.
+        select_negative(cos * gap - by.abs(), heading, chord.min(heading))
     }
 }
 
@@ -583,22 +600,13 @@ fn leeways<const CERTIFY: bool, const REFINED: bool>(
     // Second order: `along` is how far the point may slide along the corridor. Its foot slides farther where normals
     // crowd.
     let along = c * a * body.half_width + t * (axle + a * reach);
-    let bend = at.curvature.abs();
     let second = (c * s.remainder + t * a2 * 0.5) * reach;
     let common = base + second;
     let parallel = edges.map(|edge| at.curvature * edge.spread);
     let passing = Passing { s, at, cos, sin, ahead: spot.ahead, step2: track.spacing * track.spacing };
-    let side = |edge: &Edge, lean: V, aside: f64| {
-        let crowd = edge.spread.max(V::splat(1.0));
-        let slide = crowd * along;
-        // Terms of the foot's series beyond third order: κ³σ⁴/8, times 1 + |κb| on the outside.
-        let on2 = edge.on * edge.on;
-        let bent = bend * slide * along * 0.5 + bend * bend * bend * on2 * on2 * 0.3;
-        edge.room - common - lean - bent - edge.excess(slide) - passing.sag(edge, aside)
-    };
     Sides {
-        left: side(&edges[0], lean_left, body.half_width),
-        right: side(&edges[1], lean_right, -body.half_width),
+        left: passing.left_over(&edges[0], [common, lean_left, along], body.half_width),
+        right: passing.left_over(&edges[1], [common, lean_right, along], -body.half_width),
         parallel,
     }
 }
@@ -614,6 +622,19 @@ struct Passing<'a> {
 }
 
 impl Passing<'_> {
+    /// The room of one side point less its bounds: what both sides have in common, what the lean of the body adds, and what a slide
+    /// by `along` costs.
+    #[inline(always)]
+    fn left_over(&self, edge: &Edge, [common, lean, along]: [V; 3], aside: f64) -> V {
+        let bend = self.at.curvature.abs();
+        let crowd = edge.spread.max(V::splat(1.0));
+        let slide = crowd * along;
+        // Terms of the foot's series beyond third order: κ³σ⁴/8, times 1 + |κb| on the outside.
+        let on2 = edge.on * edge.on;
+        let bent = bend * slide * along * 0.5 + bend * bend * bend * on2 * on2 * 0.3;
+        edge.room - common - lean - bent - edge.excess(slide) - self.sag(edge, aside)
+    }
+
     /// How far the clearance of the side point `aside` metres to the left may lie below its chord between two head stations:
     /// an eighth of its second derivative, where that is positive (docs/proof.md, section 7, "between head stations"). Per metre of
     /// the axle, the unit turns by `w`, and the point moves by `along` along the road.

@@ -163,34 +163,48 @@ pub(super) fn chord_bulge(step: &Step) -> V {
 /// the axle's deviation, `coupled` the coupling's deviation over cos δ.
 #[inline(always)]
 pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) -> (V, V) {
-    let a2 = a * a;
-    let lean = of.length * a;
-    let own = step.tangent * of.length * a2 * 0.5 + of.length * a2 * a * (1.0 / 6.0);
-    let bent = |across: V| {
-        let swing = across * step.sine + lean * a * 0.5;
-        own + step.path_curvature * step.secant * swing * swing * 0.5
-    };
-    // y + Lα equals the coupling's deviation, except for the remainder itself.
-    let across = axle + lean;
-    let r1 = bent(across.min(coupled + bent(across)));
+    let r1 = coupling_remainder(of, step, a, axle, coupled);
     let slip = a + of.sway;
     let slip3 = slip_tangent_excess(slip);
     (r1, r1 + step.tangent * axle * (slip + slip3) + of.length * slip3)
+}
+
+/// R1 alone. `y + Lα` equals the coupling's deviation, except for the remainder itself.
+#[inline(always)]
+fn coupling_remainder(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) -> V {
+    let a2 = a * a;
+    let lean = of.length * a;
+    let own = step.tangent * of.length * a2 * 0.5 + of.length * a2 * a * (1.0 / 6.0);
+    let across = axle + lean;
+    let nearer = across.min(coupled + bent(step, own, lean * a, across));
+    bent(step, own, lean * a, nearer)
+}
+
+/// R1 of a coupling that deviates by `across`, from the part `own` without the bend of its path.
+#[inline(always)]
+fn bent(step: &Step, own: V, lean_a: V, across: V) -> V {
+    let swing = across * step.sine + lean_a * 0.5;
+    own + step.path_curvature * step.secant * swing * swing * 0.5
 }
 
 /// A bound of the heading with R1 (`L α = e/cos δ − y + R`), from its first-order bound. The second value is negative
 /// if the bound does not reproduce itself.
 #[inline(always)]
 pub(super) fn heading(of: &UnitLanes, step: &Step, first_order: V, axle: V, coupled: V) -> (V, V) {
-    let with = |more: V| (first_order + more).min(V::splat(MOST));
-    let implied = |more: V| remainder(of, step, with(more), axle, coupled).0 * of.inverse_length;
-    let first = implied(ZERO);
-    let second = implied(first);
-    let third = implied(second);
+    let first = implied_heading(of, step, first_order, axle, coupled);
+    let second = implied_heading(of, step, first_order + first, axle, coupled);
+    let third = implied_heading(of, step, first_order + second, axle, coupled);
     // Each growth is less than the one before: this covers the rest of a series that at least halves, and a little
     // more.
     let more = third + (third - second) * 1.5;
-    (with(more), more - implied(more))
+    let bound = first_order + more;
+    (bound.min(V::splat(MOST)), more - implied_heading(of, step, bound, axle, coupled))
+}
+
+/// What R1 adds to a heading that is bounded by `a`.
+#[inline(always)]
+fn implied_heading(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) -> V {
+    coupling_remainder(of, step, a.min(V::splat(MOST)), axle, coupled) * of.inverse_length
 }
 
 /// Second-order remainder of the next coupling, with the foot shift against its follower.
