@@ -17,7 +17,7 @@ use crate::vehicle::Vehicle;
 /// Paths told at most, and seeds that are refined.
 const KEPT: usize = 3;
 /// A path with this score is good enough, metres.
-const EASY_M: f64 = 0.5;
+const EASY_M: f64 = 0.3;
 /// Turns whose best seed scores less are given up, metres: for vehicles up to 20 m, and for longer ones. On Sydney and Heidelberg no turn
 /// became safe whose best seed scored less than -0.84 m, and -1.42 m for a B-double.
 const HOPELESS_M: [f64; 2] = [-1.1, -1.5];

@@ -27,13 +27,17 @@ impl<'c> Course<'c> {
         (!corridor.is_empty()).then(|| Self { corridor, model, span: span.clone(), track: prepared() })
     }
 
-    /// Certifies the vehicle along the best plan. `None` if it would have less leeway than `above_m` even if it followed that plan exactly.
+    /// Certifies the vehicle along the best plan. `None` if it would have less leeway than `above_m` even if it followed that plan exactly,
+    /// or if corrections are allowed and none is better than none: options without corrections give that certificate.
     #[must_use]
     pub fn certify(&self, options: &Options, above_m: f64) -> Option<Planned> {
         let never = Stop::default();
         let spans = std::slice::from_ref(&self.span);
         let plans = |track: &Track, group: &_| plan::best(track, group, spans, options, &[], &never);
         let (mut swept, shift) = Swept::ready(Rc::clone(&self.track), &[self.model], &never, &plans);
+        if options.correct() && swept.plans.iter().all(super::Plan::is_centred) {
+            return None;
+        }
         if self.corridor.areas.is_empty() {
             swept.measure(spans, &shift);
         } else if !swept.measure_least(&self.span, &shift, above_m) {
