@@ -5,9 +5,9 @@
 
 use super::polyline::Polyline;
 use super::profile::Profile;
-use super::resample::{ArcLength, Track};
+use super::resample::{ArcLength, Curve, Track};
 use super::smooth::{Smoothing, smooth};
-use super::spline::{Interpolant, Jet};
+use super::spline::Interpolant;
 use super::{Corridor, Params};
 
 /// Why a given centreline cannot be used.
@@ -69,11 +69,11 @@ pub fn from_centreline(
         if worst_m > tolerance_m {
             return Err(CentrelineError::Kink { tolerance_m, worst_m });
         }
-        return sampled(&line, |u| smoothed.curve.at(u), &left, &right, spacing_m);
+        return sampled(&line, &smoothed.curve, &left, &right, spacing_m);
     }
     check_turns(&line)?;
     let curve = Interpolant::through(&line.points, &line.at);
-    sampled(&line, |u| curve.at(u), &left, &right, spacing_m)
+    sampled(&line, &curve, &left, &right, spacing_m)
 }
 
 fn check_number(field: &str, value: f64, range: std::ops::RangeInclusive<f64>) -> Result<(), CentrelineError> {
@@ -137,14 +137,14 @@ fn check_turns(line: &Polyline) -> Result<(), CentrelineError> {
 
 fn sampled(
     line: &Polyline,
-    curve: impl Fn(f64) -> Jet<2>,
+    curve: &impl Curve,
     left: &[f64],
     right: &[f64],
     spacing_m: f64,
 ) -> Result<Corridor, CentrelineError> {
     // The curve itself is the centreline. Its edges follow below.
     let profile = Profile { knot_m: line.length(), coefficients: vec![[1.0, -1.0, 0.0]; 4] };
-    let track = Track { curve: &curve, profile: &profile };
+    let track = Track { curve, profile: &profile };
     let (mut corridor, arc) = track.resample(0.0, line.length(), spacing_m);
     corridor.left_m = below(&line.at, left, &arc, &corridor);
     corridor.right_m = below(&line.at, right, &arc, &corridor);

@@ -5,10 +5,38 @@
 
 use super::Corridor;
 use super::profile::Profile;
-use super::spline::Jet;
+use super::spline::{Interpolant, Jet, Spline};
 
 /// Below this factor 1 − κ·o the offset curve is about to fold, and the edge is unknown.
 pub(crate) const LEAST_OFFSET_FACTOR: f64 = 0.3;
+
+/// A plane curve over a parameter.
+pub(crate) trait Curve {
+    /// Position and derivatives.
+    fn at(&self, u: f64) -> Jet<2>;
+
+    /// First and second derivative.
+    fn bend(&self, u: f64) -> [[f64; 2]; 2] {
+        let [_, first, second, _] = self.at(u);
+        [first, second]
+    }
+}
+
+impl Curve for Spline<2> {
+    fn at(&self, u: f64) -> Jet<2> {
+        self.at(u)
+    }
+
+    fn bend(&self, u: f64) -> [[f64; 2]; 2] {
+        self.derivatives::<1, 2>(u)
+    }
+}
+
+impl Curve for Interpolant {
+    fn at(&self, u: f64) -> Jet<2> {
+        self.at(u)
+    }
+}
 
 /// A parametrised curve with edges across it.
 pub(crate) struct Track<'c, C> {
@@ -29,11 +57,11 @@ struct Point {
     right_m: f64,
 }
 
-impl<C: Fn(f64) -> Jet<2>> Track<'_, C> {
+impl<C: Curve> Track<'_, C> {
     /// The offset curve is C = c + o·n, with t and n the unit tangent and normal of c. Let v = |c′| be the speed, a =
     /// v(1 − κo) and b = o′. Then C′ = a·t + b·n and C″ = (a′ − bκv)·t + (aκv + b′)·n.
     fn at(&self, u: f64) -> Point {
-        let [p, d1, d2, d3] = (self.curve)(u);
+        let [p, d1, d2, d3] = self.curve.at(u);
         let [[left, right, o], [.., b], [.., b1], _] = self.profile.at(u);
         let speed = (d1[0] * d1[0] + d1[1] * d1[1]).sqrt().max(1e-9);
         let t = [d1[0] / speed, d1[1] / speed];
@@ -54,8 +82,8 @@ impl<C: Fn(f64) -> Jet<2>> Track<'_, C> {
     }
 
     fn speed(&self, u: f64) -> f64 {
-        let [_, d1, d2, _] = (self.curve)(u);
-        let [[.., o], [.., b], ..] = self.profile.at(u);
+        let [d1, d2] = self.curve.bend(u);
+        let [[.., o], [.., b]] = self.profile.derivatives::<0, 2>(u);
         let squared = (d1[0] * d1[0] + d1[1] * d1[1]).max(1e-18);
         let speed = squared.sqrt();
         let kappa = (d1[0] * d2[1] - d1[1] * d2[0]) / (squared * speed);

@@ -23,11 +23,17 @@ impl<const N: usize> Spline<N> {
 
     /// Value and derivatives at `u`. Outside the range the first or last cell's cubic continues.
     pub(crate) fn at(&self, u: f64) -> Jet<N> {
+        self.derivatives::<0, 4>(u)
+    }
+
+    /// `D` derivatives from the `FIRST`-th on, as in [`Self::at`].
+    pub(crate) fn derivatives<const FIRST: usize, const D: usize>(&self, u: f64) -> [[f64; N]; D] {
         let (cell, t) = locate(u, self.knot_m, self.cells());
-        let mut out = [[0.0; N]; 4];
+        let mut out = [[0.0; N]; D];
         let Some(active) = self.coefficients.get(cell..cell + 4) else { return out };
-        let mut scale = 1.0;
-        for (row, weights) in out.iter_mut().zip(basis(t)) {
+        let weights = basis(t);
+        let mut scale = (0..FIRST).fold(1.0, |scale, _| scale / self.knot_m);
+        for (row, weights) in out.iter_mut().zip(&weights[FIRST..]) {
             for (coefficient, weight) in active.iter().zip(weights) {
                 for (sum, value) in row.iter_mut().zip(coefficient) {
                     *sum += scale * weight * value;

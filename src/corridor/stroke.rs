@@ -74,7 +74,7 @@ pub fn stroke_corridor_on(
     let (mut profile, ramps) = profile(&stretches, &aside, &gaps);
     let folded = limit_offset(&mut profile, &smoothed.curve, 1.0 - LEAST_OFFSET_FACTOR, LEAST_SPEED);
 
-    let track = Track { curve: &|u| smoothed.curve.at(u), profile: &profile };
+    let track = Track { curve: &smoothed.curve, profile: &profile };
     let (corridor, arc) = track.resample(0.0, course.end, params.spacing_m);
     if !(arc.total() >= 0.5 * LEAST_LENGTH_M && all_finite(&corridor)) {
         return Err(UnknownReason::Geometry);
@@ -152,7 +152,7 @@ impl Untapered<'_> {
                 let strip =
                     near.map(|s| [s.strip.left_m, s.strip.right_m]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
                 let Some([left_m, right_m]) = strip else { return own };
-                let [_, _, middle_m] = self.profile.at(u)[0];
+                let [[_, _, middle_m]] = self.profile.derivatives::<0, 1>(u);
                 let by_m = self.aside.iter().map(|ramp| ramp.at(u)).sum::<f64>() - middle_m;
                 let [left_m, right_m] = [left_m + by_m, right_m + by_m];
                 let narrow = self.gaps.iter().any(|gap| (gap.at - u).abs() < CHANGE_M);

@@ -1,7 +1,7 @@
 //! Checks that the stations lie on the curve that a certificate assumes (proof, A1): linear curvature leads from each
 //! station to the next.
 
-use super::{Corridor, clothoid_step};
+use super::{Corridor, gentle_clothoid_step};
 
 /// Largest distance (metres) and heading difference (radians) between a station and where the station before it leads,
 /// per metre of spacing. Sampling a smooth line leaves as much.
@@ -38,12 +38,17 @@ fn follows(c: &Corridor, k: usize) -> bool {
     let (h, before) = (c.spacing_m, k - 1);
     let [from, to] = [c.curvature[before], c.curvature[k]];
     let turn = 0.5 * h * (from + to);
+    let sharpest = turn.abs().max(h * to.abs()).max(h * from.abs());
+    if sharpest.is_nan() || sharpest > MOST_TURN_RAD {
+        return false;
+    }
     let turned = c.heading[k] - c.heading[before] - turn;
     let turned = turned - std::f64::consts::TAU * (turned / std::f64::consts::TAU).round();
-    let (dx, dy) = clothoid_step(h, c.heading[before], from, to);
-    let off = (c.x[before] + dx - c.x[k]).hypot(c.y[before] + dy - c.y[k]);
-    let sharpest = turn.abs().max(h * to.abs()).max(h * from.abs());
-    sharpest <= MOST_TURN_RAD && turned.abs() <= HEADING * h && off <= PLACE * h
+    let (sin, cos) = c.heading[before].sin_cos();
+    let (along, across) = gentle_clothoid_step(h, from, to);
+    let (dx, dy) = (cos * along - sin * across, sin * along + cos * across);
+    let [off_x, off_y] = [c.x[before] + dx - c.x[k], c.y[before] + dy - c.y[k]];
+    turned.abs() <= HEADING * h && off_x * off_x + off_y * off_y <= PLACE * h * (PLACE * h)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ mod fit;
 
 pub use area::{Area, AreaSpan};
 pub use closed::CurvatureProfile;
-pub(crate) use closed::clothoid_step;
+pub(crate) use closed::gentle_clothoid_step;
 
 /// A route corridor, sampled at uniform arc length along its C¹ centreline. Units are metres and radians. Arc length
 /// grows in driving direction, and lateral is positive to the left. All vectors have one entry per station.

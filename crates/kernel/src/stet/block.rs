@@ -85,7 +85,7 @@ pub(super) struct Minima {
     pub(super) mark_left: Vec<f64>,
     pub(super) mark_right: Vec<f64>,
     /// By station of the steer axle, left and right: the least leeway in areas over the step that begins there, tagged, and the
-    /// foot of its point.
+    /// foot of its point. Empty on a track without areas.
     pub(super) area: [Vec<f64>; 2],
     pub(super) area_foot: [Vec<u32>; 2],
     /// The least leeway in areas over the steps of `counted`, or what it is known to be below. Steps with more are not noted. Without
@@ -107,14 +107,16 @@ pub(super) struct Minima {
 }
 
 impl Minima {
-    pub(super) fn new(stations: usize) -> Self {
+    /// Nothing is noted yet. `areas` says whether the track has any.
+    pub(super) fn new(stations: usize, areas: bool) -> Self {
+        let steps = if areas { stations } else { 0 };
         Self {
             left: vec![UNVISITED_M; stations],
             right: vec![UNVISITED_M; stations],
             mark_left: vec![UNVISITED_M; stations],
             mark_right: vec![UNVISITED_M; stations],
-            area: [vec![UNVISITED_M; stations], vec![UNVISITED_M; stations]],
-            area_foot: [vec![0; stations], vec![0; stations]],
+            area: [vec![UNVISITED_M; steps], vec![UNVISITED_M; steps]],
+            area_foot: [vec![0; steps], vec![0; steps]],
             floor: f64::INFINITY,
             counted: 0..0,
             keep: f64::NEG_INFINITY,
@@ -128,8 +130,8 @@ impl Minima {
 
     /// Minima of a cancelled sweep: nothing fits anywhere, so a caller that does not check for cancellation gets no
     /// false `safe`.
-    pub(super) fn lost(stations: usize) -> Self {
-        let mut lost = Self::new(stations);
+    pub(super) fn lost(stations: usize, areas: bool) -> Self {
+        let mut lost = Self::new(stations, areas);
         (0..stations).for_each(|k| lost.lose(k));
         lost
     }

@@ -102,7 +102,7 @@ pub(super) fn sweep<const CERTIFY: bool>(
         _ if CERTIFY => sweep_blocks::<CERTIFY, true>(track, group, shift, wanted, stop),
         _ => sweep_blocks::<CERTIFY, false>(track, group, shift, wanted, stop),
     };
-    let swept = swept.unwrap_or_else(|_| vec![Minima::lost(track.len()); group.models.len()]);
+    let swept = swept.unwrap_or_else(|_| vec![Minima::lost(track.len(), !track.areas.is_empty()); group.models.len()]);
     match wanted.hopeless {
         Some(Hopeless { below_m }) if below_m.is_finite() && swept.last().is_some_and(|m| m.floor >= below_m) => {
             let wanted = Wanted { hopeless: Some(Hopeless { below_m: f64::INFINITY }), ..*wanted };
@@ -119,7 +119,7 @@ fn sweep_blocks<const CERTIFY: bool, const REFINE: bool>(
     wanted: &Wanted<'_>,
     stop: &Stop,
 ) -> Result<Vec<Minima>, Stopped> {
-    let mut minima = vec![Minima::new(track.len()); group.models.len()];
+    let mut minima = vec![Minima::new(track.len(), !track.areas.is_empty()); group.models.len()];
     if let Some(span) = wanted.only {
         for (minima, model) in minima.iter_mut().zip(&group.models) {
             (minima.counted, minima.keep) = (spans::straight(track, model, span), wanted.keep);

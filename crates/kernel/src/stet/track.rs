@@ -83,7 +83,8 @@ impl Track {
         let lead = (lead_m / h).ceil() as usize + LANES;
         let first_head = lead - (front_m / h).ceil() as usize - 2;
         let total = lead + count + (tail_m / h).ceil() as usize + LANES;
-        let at = |k: usize| Place::of(corridor, k as isize - lead as isize);
+        let tangents: Vec<(f64, f64)> = corridor.heading.iter().map(|heading| heading.sin_cos()).collect();
+        let at = |k: usize| Place::of(corridor, &tangents, k as isize - lead as isize);
         let places: Vec<Place> = (0..total).map(at).collect();
         let slope = |value: &dyn Fn(&Place) -> f64| -> Vec<f64> {
             (0..total)
@@ -106,8 +107,8 @@ impl Track {
         let fields = Fields {
             x: column(&|p| p.x),
             y: column(&|p| p.y),
-            tangent_x: column(&|p| p.heading.cos()),
-            tangent_y: column(&|p| p.heading.sin()),
+            tangent_x: column(&|p| p.tangent[0]),
+            tangent_y: column(&|p| p.tangent[1]),
             curvature: column(&|p| p.curvature),
             curvature_slope: slope(&|p| p.curvature),
             left: sampled_width(&places, &left_dips, |p| p.left, 1.0),
@@ -260,7 +261,8 @@ fn bulge(left: &[f64], right: &[f64], spacing: f64) -> Vec<f64> {
 struct Place {
     x: f64,
     y: f64,
-    heading: f64,
+    /// Along the corridor.
+    tangent: [f64; 2],
     curvature: f64,
     left: f64,
     right: f64,
@@ -268,20 +270,21 @@ struct Place {
 }
 
 impl Place {
-    /// Station `k` of the corridor, or of its straight extension before 0 and after the last.
-    fn of(corridor: &Corridor, k: isize) -> Self {
+    /// Station `k` of the corridor, or of its straight extension before 0 and after the last. `tangents` holds the sine and the cosine of
+    /// each station's heading.
+    fn of(corridor: &Corridor, tangents: &[(f64, f64)], k: isize) -> Self {
         let last = corridor.len() as isize - 1;
         let i = k.clamp(0, last);
         let beyond = (k - i) as f64 * corridor.spacing_m;
         let i = i as usize;
-        let heading = corridor.heading[i];
+        let (sin, cos) = tangents[i];
         // A side that straddles an end is bounded by both its points, so the end's half-width continues under the point
         // beyond.
         let open = beyond.abs() > MOST_GAP_M + 1.5 * corridor.spacing_m;
         Self {
-            x: corridor.x[i] + beyond * heading.cos(),
-            y: corridor.y[i] + beyond * heading.sin(),
-            heading,
+            x: corridor.x[i] + beyond * cos,
+            y: corridor.y[i] + beyond * sin,
+            tangent: [cos, sin],
             curvature: if beyond != 0.0 { 0.0 } else { corridor.curvature[i] },
             left: if open { OPEN_M } else { corridor.left_m[i] },
             right: if open { OPEN_M } else { corridor.right_m[i] },
