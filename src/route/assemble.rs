@@ -15,7 +15,7 @@ use crate::corridor::{CentrelineError, Corridor, Frame, FrameError, open_ends};
 use crate::network::{Movement, MovementKind, Movements, Network, PassageKind};
 use crate::osm::LonLat;
 use crate::stop::{Stop, Stopped};
-use crate::turns::{Joint, Reach, StrokeLine, cut_out_of_route};
+use crate::turns::{Joint, Opening, Reach, StrokeLine, cut_out_of_route};
 use crate::verdict::UnknownReason;
 
 /// The greatest spacing of the route's stations, metres, as on strokes. A route with a sharp turn has the turn's spacing.
@@ -302,9 +302,12 @@ impl Leg {
         let strip = strokes.turn_params().strip.max(strokes.settings().policy);
         let metres = |stations: usize| stations as f64 * corridor.spacing_m;
         for (station, sample) in (low..).zip(&mut samples) {
-            let share_after = before.map_or(0.0, |turn| turn.reach.share_after(metres(station.saturating_sub(from))));
-            let share_before = after.map_or(0.0, |turn| turn.reach.share_before(metres(to.saturating_sub(station))));
-            [sample.left_m, sample.right_m] = line.half_widths(strip, station, share_after.max(share_before));
+            let opening = |turn: Option<&Between>, of: &dyn Fn(Reach) -> Opening| {
+                line.half_widths(strip, station, turn.map_or(Opening::NONE, |turn| of(turn.reach)))
+            };
+            let after_turn = opening(before, &|reach| reach.opening_after(metres(station.saturating_sub(from))));
+            let before_turn = opening(after, &|reach| reach.opening_before(metres(to.saturating_sub(station))));
+            [sample.left_m, sample.right_m] = [0, 1].map(|side| after_turn[side].max(before_turn[side]));
         }
         let ends = (0..edges.len()).map(|i| Ok((edges[i], span(i)?.end - 1))).collect::<Result<_, AssemblyError>>()?;
         Ok(Self { samples, first: low, from, to: to.min(last_station), edges: ends })

@@ -4,8 +4,8 @@
 //! from one into the other without a seam. Road edges are measured from the strip's edges without tapers: a road that
 //! goes on narrower beyond the junction is as wide as mapped up to it. A narrow place narrows the junction with it.
 
-use super::Reach;
 use super::path::{Pose, hermite};
+use super::{Opening, Reach};
 use crate::corridor::{Corridor, Frame, Params, Sections, StrokeCorridor, stroke_corridor_on};
 use crate::network::Network;
 use crate::osm::facts::{Policy, Strip};
@@ -79,9 +79,9 @@ impl StrokeLine {
     }
 
     /// Half-widths at a station of the stroke, left and right: the corridor's own, and of what `strip` has beyond them the
-    /// given share.
-    pub(crate) fn half_widths(&self, strip: Policy, station: usize, share: f64) -> [f64; 2] {
-        widened(&self.made.corridor, station, self.gradual(strip, station), share)
+    /// given part.
+    pub(crate) fn half_widths(&self, strip: Policy, station: usize, opening: Opening) -> [f64; 2] {
+        widened(&self.made.corridor, station, self.gradual(strip, station), opening)
     }
 
     /// Edges of a strip at a station for half-widths: as [`Self::strip`], without steps.
@@ -111,15 +111,15 @@ impl StrokeLine {
     }
 }
 
-/// Half-widths of a corridor at a station, left and right, with the given share of what a strip has beyond them. The strip counts
+/// Half-widths of a corridor at a station, left and right, with the given part of what a strip has beyond them. The strip counts
 /// only where normals do not cross.
-fn widened(c: &Corridor, k: usize, strip: Across, share: f64) -> [f64; 2] {
+fn widened(c: &Corridor, k: usize, strip: Across, opening: Opening) -> [f64; 2] {
     let own = [c.left_m[k], c.right_m[k]];
     let wide = [strip[0], -strip[1]];
     [0, 1].map(|side| {
         let towards = if side == 0 { c.curvature[k] } else { -c.curvature[k] };
         let clear = if towards > 0.0 { MOST_CROSSING / towards } else { f64::INFINITY };
-        own[side].max((own[side] + share * (wide[side] - own[side])).min(clear))
+        own[side].max((own[side] + opening.of(wide[side] - own[side])).min(clear))
     })
 }
 
@@ -255,22 +255,35 @@ impl Arm {
 
     /// Half-widths of the turn's strip.
     pub(super) fn wide(&self, k: usize) -> [f64; 2] {
-        widened(&self.line, k, self.gradual[k], 1.0)
+        widened(&self.line, k, self.gradual[k], Opening::WHOLE)
     }
 
-    /// Half-widths at a station on the approach to a joint, or on the departure from it.
-    pub(super) fn near_joint(&self, k: usize, joint: usize, reach: Reach) -> [f64; 2] {
-        let away_m = k.abs_diff(joint) as f64 * self.line.spacing_m;
-        let share = if k < joint { reach.share_before(away_m) } else { reach.share_after(away_m) };
-        widened(&self.line, k, self.gradual[k], share)
+    /// Half-widths at a station, so far before a joint.
+    pub(super) fn before_joint(&self, k: usize, joint: usize, reach: Reach) -> [f64; 2] {
+        widened(
+            &self.line,
+            k,
+            self.gradual[k],
+            reach.opening_before(joint.saturating_sub(k) as f64 * self.line.spacing_m),
+        )
+    }
+
+    /// Half-widths at a station, so far behind a joint.
+    pub(super) fn after_joint(&self, k: usize, joint: usize, reach: Reach) -> [f64; 2] {
+        widened(
+            &self.line,
+            k,
+            self.gradual[k],
+            reach.opening_after(k.saturating_sub(joint) as f64 * self.line.spacing_m),
+        )
     }
 
     /// Edges of the turn's strip at a station, wherever paths leave and join: the whole strip near the node, and the
     /// corridor's own far from it.
     pub(super) fn near_node(&self, k: usize, reach: Reach) -> Across {
         let away_m = k.abs_diff(self.node) as f64 * self.line.spacing_m - WHOLE_STRIP_M;
-        let share = if k < self.node { reach.share_before(away_m) } else { reach.share_after(away_m) };
-        let [left, right] = widened(&self.line, k, self.strip[k], share);
+        let opening = if k < self.node { reach.opening_before(away_m) } else { reach.opening_after(away_m) };
+        let [left, right] = widened(&self.line, k, self.strip[k], opening.of_an_area());
         [left, -right]
     }
 

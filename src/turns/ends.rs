@@ -46,15 +46,15 @@ impl Ends<'_> {
     ) -> Option<TurnPath> {
         let [from, to] = self.arms;
         let [leave, join] = self.stations;
-        // At the joints the corridor has the half-widths of the turn's strip.
-        widths.gentle(points, [from.wide(leave), to.wide(join)]);
+        // No steps at the joints.
+        widths.gentle(points, [from.before_joint(leave, leave, self.reach), to.after_joint(join, join, self.reach)]);
         let before = ((self.reach.run_in_m() + self.reach.counted_before_m()) / from.line.spacing_m) as usize;
         let after = (self.reach.counted_after_m() / to.line.spacing_m) as usize;
         let lead = leave.saturating_sub(before)..leave;
         let tail = join + 1..(join + 1 + after).min(to.len());
         let mut line = Line::default();
         for k in lead.clone() {
-            let [left_m, right_m] = from.near_joint(k, leave, self.reach);
+            let [left_m, right_m] = from.before_joint(k, leave, self.reach);
             line.push(from.point(k), left_m, right_m);
         }
         let begins = line.length_m;
@@ -63,7 +63,7 @@ impl Ends<'_> {
         }
         let ends = line.length_m;
         for k in tail.clone() {
-            let [left_m, right_m] = to.near_joint(k, join, self.reach);
+            let [left_m, right_m] = to.after_joint(k, join, self.reach);
             line.push(to.point(k), left_m, right_m);
         }
         let min_radius_m = 1.0 / path::sharpest(points).max(1e-9);

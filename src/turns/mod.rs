@@ -140,15 +140,49 @@ impl Reach {
         }
     }
 
-    /// Share of the turn's strip beyond the policy's own that counts at a distance before a path begins: all of it at the
-    /// joint, none where the vehicle's rear is when its front begins to turn.
-    pub(crate) fn share_before(self, before_m: f64) -> f64 {
-        (1.0 - before_m / self.counted_before_m()).clamp(0.0, 1.0)
+    /// What counts of the turn's strip at a distance before a path begins: all of it at the joint, nothing where the vehicle's rear is
+    /// when its front begins to turn.
+    pub(crate) fn opening_before(self, before_m: f64) -> Opening {
+        Opening::new(1.0 - before_m / self.counted_before_m(), self.counted_before_m() - before_m)
     }
 
-    /// The same at a distance after a path has ended: all of it for half the way that counts, none at its end.
-    pub(crate) fn share_after(self, after_m: f64) -> f64 {
-        (2.0 - 2.0 * after_m / self.counted_after_m()).clamp(0.0, 1.0)
+    /// The same at a distance after a path has ended: all of it for half the way that counts, nothing at its end.
+    pub(crate) fn opening_after(self, after_m: f64) -> Opening {
+        Opening::new(2.0 - 2.0 * after_m / self.counted_after_m(), self.counted_after_m() - after_m)
+    }
+}
+
+/// What counts of a strip beyond the policy's own.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Opening {
+    /// Share of what the strip has beyond.
+    share: f64,
+    /// At most this for half-widths, metres. A certificate deducts the change of a half-width along a body, so a lane that opened into
+    /// a wide road at once would be lost where it begins to open.
+    most_m: f64,
+}
+
+/// Largest change of a half-width per metre where a strip opens.
+const OPENING: f64 = 0.05;
+
+impl Opening {
+    /// Nothing counts.
+    pub(crate) const NONE: Self = Self { share: 0.0, most_m: 0.0 };
+    /// All of the strip counts.
+    pub(super) const WHOLE: Self = Self { share: 1.0, most_m: f64::INFINITY };
+
+    fn new(share: f64, way_m: f64) -> Self {
+        Self { share: share.clamp(0.0, 1.0), most_m: (OPENING * way_m).max(0.0) }
+    }
+
+    /// The same for an area's edges, which no slope costs anything.
+    pub(super) fn of_an_area(self) -> Self {
+        Self { most_m: f64::INFINITY, ..self }
+    }
+
+    /// What counts of `beyond_m`, metres.
+    pub(super) fn of(self, beyond_m: f64) -> f64 {
+        (self.share * beyond_m).min(self.most_m)
     }
 }
 
