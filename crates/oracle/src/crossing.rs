@@ -134,7 +134,7 @@ impl Crossing {
 
     /// An island on a road, pointed at both ends, between two distances from the crossing.
     fn island(&self, road: usize, (middle, thin_m): (f64, f64), (from_m, to_m): (f64, f64)) -> Vec<V2> {
-        let place = self.from_mouth(road);
+        let place = self.past_mouth(road);
         vec![
             place(from_m, middle),
             place(from_m + thin_m, middle + thin_m),
@@ -146,7 +146,7 @@ impl Crossing {
     }
 
     /// Places on a road by their distance from where the other road's edge crosses it, and metres to the left of its line.
-    fn from_mouth(&self, road: usize) -> impl Fn(f64, f64) -> V2 + use<> {
+    fn past_mouth(&self, road: usize) -> impl Fn(f64, f64) -> V2 + use<> {
         let corners = [0, 1].map(|side| self.meet(self.strips[0][side], self.strips[1][side]));
         let u = if road == 0 { [-1.0, 0.0] } else { direction(self.angle) };
         let left = if road == 0 { [0.0, 1.0] } else { left_of(u) };
@@ -159,7 +159,7 @@ impl Crossing {
     pub fn beside_lanes(&self) -> Vec<Vec<V2>> {
         let beside = |road: usize| {
             let ([right, left], [lane_right, lane_left]) = (self.strips[road], self.lanes[road]);
-            let place = self.from_mouth(road);
+            let place = self.past_mouth(road);
             let far_m = ARMS_M[road] - BEYOND_M;
             [[right, lane_right], [lane_left, left]]
                 .into_iter()
