@@ -336,7 +336,14 @@ fn a_route_in_the_lane_has_the_turns_strip_around_a_turn() {
     let c = &route.path.corridor;
     let width = |k: usize| c.left_m[k] + c.right_m[k];
     let turn = route.path.parts.iter().find(|part| matches!(part.kind, PartKind::Turn { .. })).unwrap();
-    assert!(width(turn.stations.start) > 2.0 * width(0), "{} {}", width(turn.stations.start), width(0));
+    // Five centimetres a metre on each side over the 20 m that count before the path, and all of the strip round the corner.
+    assert!(
+        (0.9..2.1).contains(&(width(turn.stations.start) - width(0))),
+        "{} {}",
+        width(turn.stations.start),
+        width(0)
+    );
+    assert!(turn.stations.clone().any(|k| width(k) > 2.0 * width(0)));
     // Nowhere does the width jump.
     assert!((1..c.len()).all(|k| (width(k) - width(k - 1)).abs() < 1.0 * c.spacing_m));
     whole::hold(&driver.model.vehicle, c, &route.certificate, 3);

@@ -352,16 +352,22 @@ fn near_a_turn_all_lanes_of_the_direction_count_where_the_settings_say_so() {
 }
 
 #[test]
-fn the_strip_narrows_to_the_lane_away_from_the_turn() {
+fn the_strip_opens_slowly_and_narrows_to_the_lane_away_from_the_turn() {
     let made = wide_streets(Policy::Direction).corridors("EBC", Policy::Lane, Reach::Short).unwrap();
     let lane = wide_streets(Policy::Lane).corridors("EBC", Policy::Lane, Reach::Short).unwrap();
     let width = |path: &netcert::turns::TurnPath, k: usize| path.corridor.left_m[k] + path.corridor.right_m[k];
     let lane_m = width(&lane.on_road()[0], 0);
+    let mut widest_m = 0.0_f64;
     for path in &made.on_road() {
         let last = path.corridor.len() - 1;
         assert!((width(path, 0) - lane_m).abs() < 0.01 && (width(path, last) - lane_m).abs() < 0.4, "{}", path.code);
-        assert!(width(path, path.turn.start) > 2.0 * lane_m, "{}", path.code);
+        // Five centimetres a metre on each side over the 20 m that count before the path.
+        assert!((0.9..2.1).contains(&(width(path, path.turn.start) - lane_m)), "{}", path.code);
+        let step_m = 0.12 * path.corridor.spacing_m;
+        assert!((1..path.turn.start).all(|k| (width(path, k) - width(path, k - 1)).abs() < step_m), "{}", path.code);
+        widest_m = path.turn.clone().map(|k| width(path, k)).fold(widest_m, f64::max);
     }
+    assert!(widest_m > 2.0 * lane_m, "{widest_m}");
 }
 
 #[test]
