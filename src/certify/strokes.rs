@@ -1,25 +1,29 @@
 //! Corridors and certificates of a whole network: strokes spread over threads, results in order.
 //!
-//! A stroke becomes a corridor once, and all vehicles sweep that corridor. The result does not depend on the number of
-//! threads.
+//! A stroke becomes a corridor once, and all vehicles sweep that corridor. The kernel sweeps eight rides at a time, whichever strokes
+//! they are on. The result does not depend on the number of threads.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use rayon::prelude::*;
 
 use super::needs::{Narrow, edge_needs};
 use crate::account::AccountRow;
-use crate::corridor::{EdgeSpan, StrokeCorridor, stroke_corridor};
+use crate::corridor::{Corridor, EdgeSpan, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::reporter::Reporter;
 use crate::rows::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StoredPlan};
 use crate::settings::{Needs, Settings};
-use crate::stet::{Model, Planned, SpanResult, certify_spans};
+use crate::stet::{Model, Planned, SpanResult, certify_corridors};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use crate::words::{Named, VerdictKind, verdict_words};
 
-/// Strokes per batch: enough to keep the threads busy, few enough to hold in memory.
-const BATCH: usize = 512;
+/// Rides (a vehicle on a stroke) that are certified together: enough to fill the lanes of the kernel's sweeps with roads of the same
+/// length, few enough to hold in memory.
+const RIDES: usize = 256;
+/// Groups of strokes per thread and batch: enough to keep the threads busy.
+const GROUPS: usize = 8;
 
 /// Inputs of a certification.
 #[derive(Clone, Copy)]
@@ -108,9 +112,11 @@ pub fn certify_strokes<E>(
     let strokes: Vec<&Stroke> = strokes.iter().filter_map(|&stroke| network.strokes.get(stroke as usize)).collect();
     reporter.begin("certificates", strokes.iter().map(|stroke| stroke.edges.len() as u64).sum());
     let mut done = 0;
-    for batch in strokes.chunks(BATCH) {
-        let results: Vec<StrokeResult> = batch.par_iter().map(|stroke| certify_stroke(job, stroke)).collect();
-        for result in results {
+    let together = (RIDES / job.models.len().max(1)).max(1);
+    for batch in strokes.chunks(together * GROUPS * rayon::current_num_threads()) {
+        let groups: Vec<Vec<StrokeResult>> =
+            batch.par_chunks(together).map(|strokes| certify_together(job, strokes)).collect();
+        for result in groups.into_iter().flatten() {
             done += result.measures.len() as u64;
             for (edge, measure, why) in result.measures {
                 if let Some(slot) = outcome.measures.get_mut(edge as usize) {
@@ -130,18 +136,24 @@ pub fn certify_strokes<E>(
     Ok(outcome)
 }
 
-fn certify_stroke(job: &Job<'_>, stroke: &Stroke) -> StrokeResult {
-    let made = stroke_corridor(job.network, stroke, job.settings.policy, &job.settings.corridor);
-    match made {
-        Ok(made) => with_corridor(job, stroke, &made),
-        Err(reason) => without_corridor(job, stroke, reason),
-    }
+/// The results of some strokes, in their order. No stroke matters to another one.
+fn certify_together(job: &Job<'_>, strokes: &[&Stroke]) -> Vec<StrokeResult> {
+    let corridor = |stroke: &&Stroke| stroke_corridor(job.network, stroke, job.settings.policy, &job.settings.corridor);
+    let made: Vec<Result<StrokeCorridor, UnknownReason>> = strokes.iter().map(corridor).collect();
+    let stations = |made: &StrokeCorridor| made.spans.iter().map(|span| span.stations.clone()).collect();
+    let spans: Vec<Vec<Range<usize>>> = made.iter().flatten().map(stations).collect();
+    let corridors: Vec<(&Corridor, &[Range<usize>])> =
+        made.iter().flatten().zip(&spans).map(|(made, spans)| (&made.corridor, spans.as_slice())).collect();
+    let models: Vec<&Model> = job.models.iter().collect();
+    let mut rows = certify_corridors(&corridors, &models, &job.settings.stet).into_iter();
+    let result = |(stroke, made): (&&Stroke, &Result<StrokeCorridor, UnknownReason>)| match made {
+        Ok(made) => with_corridor(job, stroke, made, &rows.next().unwrap_or_default()),
+        Err(reason) => without_corridor(job, stroke, *reason),
+    };
+    strokes.iter().zip(&made).map(result).collect()
 }
 
-fn with_corridor(job: &Job<'_>, stroke: &Stroke, made: &StrokeCorridor) -> StrokeResult {
-    let spans: Vec<_> = made.spans.iter().map(|s| s.stations.clone()).collect();
-    let models: Vec<&Model> = job.models.iter().collect();
-    let rows = certify_spans(&made.corridor, &models, &spans, &job.settings.stet);
+fn with_corridor(job: &Job<'_>, stroke: &Stroke, made: &StrokeCorridor, rows: &[Planned]) -> StrokeResult {
     let mut certificates: Vec<(usize, EdgeCertificate)> = rows
         .iter()
         .enumerate()
@@ -155,7 +167,7 @@ fn with_corridor(job: &Job<'_>, stroke: &Stroke, made: &StrokeCorridor) -> Strok
         })
         .collect();
     if job.settings.needs != Needs::Off {
-        add_needs(job, stroke, made, &rows, &mut certificates);
+        add_needs(job, stroke, made, rows, &mut certificates);
     }
     let measures = made.spans.iter().map(|span| {
         let measure = EdgeMeasure {

@@ -8,7 +8,7 @@
 use super::block::{BLOCK, FIELDS, NOT_CLOSED_RAD, row};
 use super::group::Group;
 use super::lanes::{LANES, V, ZERO, by_instruction_set};
-use super::model::{MAX_UNITS, Model, UnitModel};
+use super::model::{MAX_UNITS, UnitModel};
 use super::step::{
     Filter, MOST, Step, Straying, UnitLanes, foot_shift, heading, hinge_margin, hitch_remainder, remainder, validity,
 };
@@ -80,9 +80,10 @@ struct History {
     closed: Vec<bool>,
 }
 
-/// The last [`MEMORY`] stations of every vehicle of a group. The adjoint runs back along them.
+/// The last [`MEMORY`] stations of every vehicle of a group. The adjoint runs back along them. A trail serves one sweep after the
+/// other, because making one takes longer than many a sweep.
 pub(super) struct Trail {
-    /// By vehicle, then by stride. Stations share places modulo [`MEMORY`].
+    /// By vehicle, then by stride. Stations share places modulo [`MEMORY`]. There may be more than the group has vehicles.
     histories: Vec<[History; STRIDES.len()]>,
     /// The steps and joints of the last block.
     steps: Vec<[Step; MAX_UNITS]>,
@@ -103,8 +104,8 @@ pub(super) struct Refined {
 }
 
 impl Refined {
-    pub(super) fn new() -> Self {
-        Self { points: std::array::from_fn(|_| Vec::new()) }
+    pub(super) const fn new() -> Self {
+        Self { points: [const { Vec::new() }; MAX_UNITS] }
     }
 
     /// The unit's bounds: [`BLOCK`] values per body point.
@@ -158,24 +159,33 @@ by_instruction_set! {
 }
 
 impl Trail {
-    /// `used` says whether the trail will ever be read.
-    pub(super) fn new(group: &Group<'_>, used: bool) -> Self {
-        let (memory, block) = if used { (MEMORY, BLOCK) } else { (0, 0) };
-        let models: &[&Model] = if used { &group.models } else { &[] };
-        let history = |_| History {
-            past: vec![[Past::default(); MAX_UNITS]; memory],
-            steer: vec![0.0; memory],
-            closed: vec![true; memory],
-        };
+    pub(super) const fn new() -> Self {
         Self {
-            histories: models.iter().map(|_| std::array::from_fn(history)).collect(),
-            steps: vec![[Step::NONE; MAX_UNITS]; block],
-            joints: vec![[ZERO; MAX_UNITS]; block],
+            histories: Vec::new(),
+            steps: Vec::new(),
+            joints: Vec::new(),
             before: [(ZERO, ZERO); MAX_UNITS],
             count: 0,
-            outputs: models.iter().map(|model| model.units.iter().map(outputs).collect()).collect(),
+            outputs: Vec::new(),
             extra: [ZERO; MAX_UNITS],
         }
+    }
+
+    /// Begins again for these vehicles. What the histories hold is of no more use: every station is written before it is read.
+    pub(super) fn begin_again(&mut self, group: &Group<'_>) {
+        let history = |_| History {
+            past: vec![[Past::default(); MAX_UNITS]; MEMORY],
+            steer: vec![0.0; MEMORY],
+            closed: vec![true; MEMORY],
+        };
+        let lanes = group.models.len();
+        if self.histories.len() < lanes {
+            self.histories.resize_with(lanes, || std::array::from_fn(history));
+        }
+        self.steps.resize(BLOCK, [Step::NONE; MAX_UNITS]);
+        self.joints.resize(BLOCK, [ZERO; MAX_UNITS]);
+        self.count = 0;
+        self.outputs = group.models.iter().map(|model| model.units.iter().map(outputs).collect()).collect();
     }
 
     /// Starts a block.
@@ -213,7 +223,7 @@ impl Trail {
         let turned = step.advance * of.inverse_length;
         self.before[unit] = (step.advance, step.mid_tangent);
         let at = (self.count - 1) % MEMORY;
-        for (lane, history) in self.histories.iter_mut().enumerate() {
+        for (lane, history) in self.histories.iter_mut().enumerate().take(group.models.len()) {
             history[0].closed[at] = closed.0[lane] >= 0.0;
             history[0].past[at][unit] = Past {
                 rate: rate.0[lane],

@@ -9,15 +9,15 @@
 //! balance every station. The best plan instead gives away room before and after a bend to gain room in it
 //! (`tests/certificate/corrcen.rs`).
 //!
-//! Each vehicle has its own lane. The ascent decides nothing: the next sweep measures the result.
+//! The ascent decides nothing: the next sweep measures the result.
 
 use super::block::{Minima, UNVISITED_M};
-use super::group::{Group, gamma};
-use super::lanes::{TAG_MASK, V, ZERO, by_instruction_set};
+use super::group::gamma;
+use super::lanes::{TAG_MASK, by_instruction_set};
 use super::model::Model;
 use super::response::Response;
 use super::shift::{self, KNOT_STATIONS};
-use super::sweep::reach_m;
+use super::sweep::Reach;
 use super::track::Track;
 
 /// Steps of one ascent.
@@ -57,7 +57,7 @@ struct Row {
     relief: f64,
 }
 
-/// A row reduced to what the ascent needs. It is small because there are four per knot and vehicle.
+/// A row reduced to what the ascent needs. It is small because there are four per knot.
 #[derive(Clone, Copy)]
 struct Pull {
     foot: u32,
@@ -70,8 +70,8 @@ struct Pull {
 /// The rows of the sweeps so far, and the response of the bodies.
 pub(super) struct Ascent {
     response: Response,
-    /// By vehicle, in the order of the feet.
-    rows: Vec<Vec<Row>>,
+    /// In the order of the feet.
+    rows: Vec<Row>,
     spacing: f64,
     knots: usize,
     count: usize,
@@ -80,21 +80,21 @@ pub(super) struct Ascent {
 
 by_instruction_set! {
     /// Returns better coefficients than `start`.
-    pub(super) fn climb(ascent: &mut Ascent, start: Vec<V>) -> Vec<V> {
+    pub(super) fn climb(ascent: &mut Ascent, start: Vec<f64>) -> Vec<f64> {
         ascent.climb(start)
     }
 }
 
 impl Ascent {
-    pub(super) fn new(track: &Track, group: &Group<'_>, max_shift_m: f64) -> Self {
+    pub(super) fn new(track: &Track, model: &Model, max_shift_m: f64) -> Self {
         let spacing = track.spacing * KNOT_STATIONS as f64;
         let count = shift::count(track.count);
-        // Until the rear of the longest vehicle has left.
-        let (length, front) = reach_m(group);
-        let grid = count + ((length + front) / spacing).ceil() as usize + 2;
+        // Until the rear has left.
+        let reach = Reach::of(model);
+        let grid = count + ((reach.length_m + reach.front_m) / spacing).ceil() as usize + 2;
         Self {
-            response: Response::new(group, spacing, grid),
-            rows: vec![Vec::new(); group.models.len()],
+            response: Response::new(model, spacing, grid),
+            rows: Vec::new(),
             spacing,
             knots: count - 3,
             count,
@@ -103,29 +103,27 @@ impl Ascent {
     }
 
     /// Takes up the result of a sweep of the plan with these coefficients.
-    pub(super) fn note(&mut self, coarse: &Track, group: &Group<'_>, minima: &[Minima], coefficients: &[V]) {
+    pub(super) fn note(&mut self, coarse: &Track, model: &Model, minima: &Minima, coefficients: &[f64]) {
         self.response.follow(&steer(coefficients, self.response.knots()));
-        for (lane, (minima, model)) in minima.iter().zip(&group.models).enumerate() {
-            let mut old = std::mem::take(&mut self.rows[lane]).into_iter().peekable();
-            let mut rows = Vec::with_capacity(3 * self.knots);
-            for foot in 0..self.knots {
-                let begin = rows.len();
-                for left in [true, false] {
-                    let least = least_at(coarse, minima, foot, left);
-                    if least < UNVISITED_M {
-                        let row = self.row(model, least.to_bits() & TAG_MASK, foot, left);
-                        rows.push(Row { leeway: least - self.response.change(&row.pull(0.0), lane), ..row });
-                    }
-                }
-                let end = rows.len();
-                while let Some(row) = old.next_if(|row| row.foot as usize == foot) {
-                    if !rows[begin..end].iter().any(|new: &Row| (new.tag, new.left) == (row.tag, row.left)) {
-                        rows.push(row);
-                    }
+        let mut old = std::mem::take(&mut self.rows).into_iter().peekable();
+        let mut rows = Vec::with_capacity(3 * self.knots);
+        for foot in 0..self.knots {
+            let begin = rows.len();
+            for left in [true, false] {
+                let least = least_at(coarse, minima, foot, left);
+                if least < UNVISITED_M {
+                    let row = self.row(model, least.to_bits() & TAG_MASK, foot, left);
+                    rows.push(Row { leeway: least - self.response.change(&row.pull(0.0)), ..row });
                 }
             }
-            self.rows[lane] = rows;
+            let end = rows.len();
+            while let Some(row) = old.next_if(|row| row.foot as usize == foot) {
+                if !rows[begin..end].iter().any(|new: &Row| (new.tag, new.left) == (row.tag, row.left)) {
+                    rows.push(row);
+                }
+            }
         }
+        self.rows = rows;
     }
 
     fn row(&self, model: &Model, tag: u64, foot: usize, left: bool) -> Row {
@@ -152,21 +150,18 @@ impl Ascent {
     }
 
     #[inline(always)]
-    fn climb(&mut self, start: Vec<V>) -> Vec<V> {
+    fn climb(&mut self, start: Vec<f64>) -> Vec<f64> {
         let mut limits = Limits::new(self.knots, RISE * self.spacing);
         let pulls = self.chosen(&start, &mut limits);
-        let empty = || pulls.iter().map(|pulls| vec![0.0; pulls.len()]).collect::<Vec<_>>();
-        let (mut slopes, mut bends) = (empty(), empty());
+        let (mut slopes, mut bends) = (vec![0.0; pulls.len()], vec![0.0; pulls.len()]);
         let mut stiffness = Vec::new();
         let mut now = start.clone();
         let mut before = start;
         for step in 0..STEPS {
             let tau = TAU_FIRST_M * (TAU_LAST_M / TAU_FIRST_M).powf(step as f64 / (STEPS - 1) as f64);
-            let ahead: Vec<V> = now.iter().zip(&before).map(|(c, b)| *c + (*c - *b) * MOMENTUM).collect();
+            let ahead: Vec<f64> = now.iter().zip(&before).map(|(c, b)| *c + (*c - *b) * MOMENTUM).collect();
             self.response.follow(&steer(&ahead, self.response.knots()));
-            for (lane, pulls) in pulls.iter().enumerate() {
-                self.weigh(lane, pulls, tau, &mut limits, &mut slopes[lane], &mut bends[lane]);
-            }
+            self.weigh(&pulls, tau, &mut limits, &mut slopes, &mut bends);
             let gradient = self.asked(&pulls, &slopes, |weight| weight);
             if step % STIFF_STEPS == 0 {
                 stiffness = self.asked(&pulls, &bends, f32::abs);
@@ -179,9 +174,9 @@ impl Ascent {
 
     /// First and second derivative of each row's term of the sum, at the current deviations.
     #[inline(always)]
-    fn weigh(&self, lane: usize, pulls: &[Pull], tau: f64, limits: &mut Limits, slopes: &mut [f64], bends: &mut [f64]) {
+    fn weigh(&self, pulls: &[Pull], tau: f64, limits: &mut Limits, slopes: &mut [f64], bends: &mut [f64]) {
         for (leeway, pull) in slopes.iter_mut().zip(pulls) {
-            *leeway = pull.leeway + self.response.change(pull, lane);
+            *leeway = pull.leeway + self.response.change(pull);
         }
         limits.set(pulls.iter().map(|pull| pull.foot).zip(slopes.iter().copied()), tau);
         for ((slope, bend), pull) in slopes.iter_mut().zip(bends).zip(pulls) {
@@ -196,53 +191,47 @@ impl Ascent {
     /// Takes one step from `ahead`. Responses are nearly averages, so the rows of Rᵀ W R sum to Rᵀ W 1. A diagonal of
     /// these sums is stiffer than the matrix, and the step does not overshoot.
     #[inline(always)]
-    fn stepped(&self, ahead: &[V], gradient: &[V], stiffness: &[V], least: f64) -> Vec<V> {
-        let by: Vec<V> = gradient.iter().zip(stiffness).map(|(g, h)| *g / (*h + least)).collect();
+    fn stepped(&self, ahead: &[f64], gradient: &[f64], stiffness: &[f64], least: f64) -> Vec<f64> {
+        let by: Vec<f64> = gradient.iter().zip(stiffness).map(|(g, h)| *g / (*h + least)).collect();
         let by = smoothed(&smoothed(&by));
-        let (low, high) = (V::splat(-self.max_shift_m), V::splat(self.max_shift_m));
-        let mut out: Vec<V> = ahead.iter().zip(&by).map(|(c, by)| (*c + *by).max(low).min(high)).collect();
+        let most = self.max_shift_m;
+        let mut out: Vec<f64> = ahead.iter().zip(&by).map(|(c, by)| (*c + *by).max(-most).min(most)).collect();
         let (entry, exit) = (out[2], out[self.count - 4]);
         shift::level(&mut out, entry, exit);
         out
     }
 
-    /// The rows of each vehicle that may matter. Their leeway is eased by the least shrinking with which the vehicle
-    /// fits there: a plan should pass with γ = 1, or with as little shrinking as possible.
-    fn chosen(&mut self, start: &[V], limits: &mut Limits) -> Vec<Vec<Pull>> {
+    /// The rows that may matter. Their leeway is eased by the least shrinking with which the vehicle fits there: a plan
+    /// should pass with γ = 1, or with as little shrinking as possible.
+    fn chosen(&mut self, start: &[f64], limits: &mut Limits) -> Vec<Pull> {
         self.response.follow(&steer(start, self.response.knots()));
-        let mut chosen = Vec::with_capacity(self.rows.len());
-        for (lane, rows) in self.rows.iter().enumerate() {
-            let leeway = |row: &Row| row.leeway + self.response.change(&row.pull(0.0), lane);
-            limits.set(rows.iter().map(|row| (row.foot, leeway(row) + row.relief)), TAU_FIRST_M);
-            let shrunk = limits.near.clone();
-            limits.set(rows.iter().map(|row| (row.foot, leeway(row))), TAU_FIRST_M);
-            let parts: Vec<f64> = limits.near.iter().zip(shrunk).map(|(full, least)| part(*full, least)).collect();
-            let eased = |row: &Row| parts[row.foot as usize] * row.relief;
-            limits.set(rows.iter().map(|row| (row.foot, leeway(row) + eased(row))), TAU_FIRST_M);
-            let pulls = rows.iter().filter_map(|row| {
-                let least = limits.at[row.foot as usize].0 + FAR_M;
-                (leeway(row) + eased(row) < least).then(|| row.pull(eased(row)))
-            });
-            chosen.push(pulls.collect());
-        }
-        chosen
+        let leeway = |row: &Row| row.leeway + self.response.change(&row.pull(0.0));
+        limits.set(self.rows.iter().map(|row| (row.foot, leeway(row) + row.relief)), TAU_FIRST_M);
+        let shrunk = limits.near.clone();
+        limits.set(self.rows.iter().map(|row| (row.foot, leeway(row))), TAU_FIRST_M);
+        let parts: Vec<f64> = limits.near.iter().zip(shrunk).map(|(full, least)| part(*full, least)).collect();
+        let eased = |row: &Row| parts[row.foot as usize] * row.relief;
+        limits.set(self.rows.iter().map(|row| (row.foot, leeway(row) + eased(row))), TAU_FIRST_M);
+        let chosen = self.rows.iter().filter_map(|row| {
+            let least = limits.at[row.foot as usize].0 + FAR_M;
+            (leeway(row) + eased(row) < least).then(|| row.pull(eased(row)))
+        });
+        chosen.collect()
     }
 
     /// Gradient with respect to the coefficients, from the rows' shares.
     #[inline(always)]
-    fn asked(&mut self, pulls: &[Vec<Pull>], shares: &[Vec<f64>], of: impl Fn(f32) -> f32) -> Vec<V> {
+    fn asked(&mut self, pulls: &[Pull], shares: &[f64], of: impl Fn(f32) -> f32) -> Vec<f64> {
         self.response.clear();
-        for (lane, (pulls, shares)) in pulls.iter().zip(shares).enumerate() {
-            for (pull, &share) in pulls.iter().zip(shares).filter(|(_, share)| **share > 0.0) {
-                self.response.ask(pull, pull.weights.map(|weight| f64::from(of(weight)) * share), lane);
-            }
+        for (pull, &share) in pulls.iter().zip(shares).filter(|(_, share)| **share > 0.0) {
+            self.response.ask(pull, pull.weights.map(|weight| f64::from(of(weight)) * share));
         }
-        let mut out = vec![ZERO; self.count];
+        let mut out = vec![0.0; self.count];
         for (knot, v) in self.response.trace_back().iter().enumerate() {
             let j = knot.min(self.count - 3);
-            out[j] = out[j] + *v * (1.0 / 6.0);
-            out[j + 1] = out[j + 1] + *v * (4.0 / 6.0);
-            out[j + 2] = out[j + 2] + *v * (1.0 / 6.0);
+            out[j] += *v * (1.0 / 6.0);
+            out[j + 1] += *v * (4.0 / 6.0);
+            out[j + 2] += *v * (1.0 / 6.0);
         }
         shift::tie(&mut out);
         out
@@ -271,21 +260,21 @@ fn part(full: f64, shrunk: f64) -> f64 {
 impl Response {
     /// Change of a row's leeway at the current deviations.
     #[inline(always)]
-    fn change(&self, row: &Pull, lane: usize) -> f64 {
+    fn change(&self, row: &Pull) -> f64 {
         let (y, e) = (&self.axle[row.unit as usize], &self.coupling[row.unit as usize]);
         let [a, b, c, d] = row.weights.map(f64::from);
         let (head, next) = (row.head as usize, row.head as usize + 1);
-        a * y[head].0[lane] + b * y[next].0[lane] + c * e[head].0[lane] + d * e[next].0[lane]
+        a * y[head] + b * y[next] + c * e[head] + d * e[next]
     }
 
     #[inline(always)]
-    fn ask(&mut self, row: &Pull, [a, b, c, d]: [f64; 4], lane: usize) {
+    fn ask(&mut self, row: &Pull, [a, b, c, d]: [f64; 4]) {
         let (y, e) = (&mut self.axle[row.unit as usize], &mut self.coupling[row.unit as usize]);
         let (head, next) = (row.head as usize, row.head as usize + 1);
-        y[head].0[lane] += a;
-        y[next].0[lane] += b;
-        e[head].0[lane] += c;
-        e[next].0[lane] += d;
+        y[head] += a;
+        y[next] += b;
+        e[head] += c;
+        e[next] += d;
     }
 }
 
@@ -336,7 +325,7 @@ impl Limits {
 
 /// The steer axle's shift at the knots of the plan and beyond.
 #[inline(always)]
-fn steer(coefficients: &[V], knots: usize) -> Vec<V> {
+fn steer(coefficients: &[f64], knots: usize) -> Vec<f64> {
     let last = coefficients.len() - 3;
     let at = |j: usize| (coefficients[j] + coefficients[j + 1] * 4.0 + coefficients[j + 2]) * (1.0 / 6.0);
     (0..knots).map(|knot| at(knot.min(last))).collect()
@@ -344,7 +333,7 @@ fn steer(coefficients: &[V], knots: usize) -> Vec<V> {
 
 /// Smooths with weights (1, 2, 1)/4; the end values are continued.
 #[inline(always)]
-fn smoothed(values: &[V]) -> Vec<V> {
+fn smoothed(values: &[f64]) -> Vec<f64> {
     let last = values.len() - 1;
     (0..=last).map(|k| (values[k.saturating_sub(1)] + values[k] * 2.0 + values[(k + 1).min(last)]) * 0.25).collect()
 }

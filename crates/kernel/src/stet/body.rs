@@ -197,14 +197,14 @@ impl Way {
 impl LastAxle {
     /// Raises the offsets to the axle's distance from the planned path, at its own feet.
     #[inline(always)]
-    pub(super) fn follow(&mut self, track: &Track, [x, y]: [V; 2], shift: &[V], lane: usize, minima: &mut Minima) {
+    pub(super) fn follow(&mut self, track: &Track, [x, y]: [V; 2], shift: &[f64], minima: &mut Minima) {
         let feet = follow(track, self.foot, x, y);
         let seen = place(track.fields.gather(&feet), x, y);
         let spread = V::splat(1.0) / narrow(&seen.at, seen.lateral);
         let (on, lateral) = foot(&seen.at, seen.along, seen.lateral, spread);
         for (i, &k) in feet.iter().enumerate() {
             let other = if on.0[i] < 0.0 { k.saturating_sub(1) } else { (k + 1).min(track.len() - 1) };
-            let [own, next] = [k, other].map(|k| shift[k].0[lane]);
+            let [own, next] = [k, other].map(|k| shift[k]);
             let planned = own + (next - own) * (on.0[i].abs() / track.spacing).min(1.0);
             minima.offset[k] = minima.offset[k].max((lateral.0[i] - planned).abs());
         }

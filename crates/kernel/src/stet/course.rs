@@ -6,9 +6,11 @@ use std::rc::Rc;
 use netcert_base::corridor::Corridor;
 use netcert_base::stop::Stop;
 
+use super::plan::Unplanned;
 use super::plane::Grounds;
+use super::swept::Swept;
 use super::track::Track;
-use super::{Marks, Model, Options, Planned, Swept, held, plan, track};
+use super::{Marks, Model, Options, Planned, held, plan, track};
 
 /// A corridor prepared for one vehicle and one span of stations. Its certificates are those of [`super::certify_spans`].
 pub struct Course<'c> {
@@ -23,7 +25,7 @@ impl<'c> Course<'c> {
     #[must_use]
     pub fn new(corridor: &'c Corridor, model: &'c Model, span: &Range<usize>, grounds: &Grounds) -> Option<Self> {
         let spans = std::slice::from_ref(span);
-        let prepared = || track(corridor, &[model], spans, Marks::Ends, grounds);
+        let prepared = || track(corridor, model, spans, Marks::Ends, grounds);
         (!corridor.is_empty()).then(|| Self { corridor, model, span: span.clone(), track: prepared() })
     }
 
@@ -33,21 +35,22 @@ impl<'c> Course<'c> {
     pub fn certify(&self, options: &Options, above_m: f64) -> Option<Planned> {
         let never = Stop::default();
         let spans = std::slice::from_ref(&self.span);
-        let plans = |track: &Track, group: &_| plan::best(track, group, spans, options, &[], &never);
-        let (mut swept, shift) = Swept::ready(Rc::clone(&self.track), &[self.model], &never, &plans);
-        if options.correct() && swept.plans.iter().all(super::Plan::is_centred) {
+        let unplanned = Unplanned { track: &self.track, model: self.model, spans, held: &[] };
+        let plan = plan::best_one(&unplanned, options, &never);
+        if options.correct() && plan.is_centred() {
             return None;
         }
+        let mut swept = Swept::ready(Rc::clone(&self.track), self.model, plan, spans, &never);
         if self.corridor.areas.is_empty() {
-            swept.measure(spans, &shift);
-        } else if !swept.measure_least(&self.span, &shift, above_m) {
+            swept.measure_spans();
+        } else if !swept.measure_least(&self.span, above_m) {
             return None;
         }
-        let results = vec![swept.result(0, &self.span)];
+        let results = swept.results();
         let held = held(self.corridor, self.model, spans, Marks::Ends, options, &results, &never);
         Some(match held {
-            Some((held, spans)) => Planned { plan: held.plans[0].clone(), spans },
-            None => Planned { plan: swept.plans[0].clone(), spans: results },
+            Some((held, spans)) => Planned { plan: held.plan, spans },
+            None => Planned { plan: swept.plan, spans: results },
         })
     }
 }

@@ -8,7 +8,8 @@ use thiserror::Error;
 
 use super::model::Model;
 use super::shift::{Plan, STEP_M, count};
-use super::{Certificate, Marks, Swept};
+use super::swept::Swept;
+use super::{Certificate, Marks};
 use netcert_base::corridor::Corridor;
 use netcert_base::stop::Stop;
 
@@ -57,8 +58,8 @@ pub fn certify_plan(corridor: &Corridor, model: &Model, plan: &Plan) -> Result<C
     let whole = 0..corridor.len();
     let spans = std::slice::from_ref(&whole);
     let never = Stop::default();
-    let swept = Swept::along(corridor, &[model], spans, Marks::All, &never, &|_, _| vec![plan.clone()]);
-    Ok(swept.certificate(corridor, spans).0)
+    let swept = Swept::along(corridor, model, spans, Marks::All, &never, |_| plan.clone());
+    Ok(swept.certificate(corridor).0)
 }
 
 fn check(stations: usize, plan: &Plan) -> Result<(), PlanError> {

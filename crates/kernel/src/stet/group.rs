@@ -1,4 +1,4 @@
-//! The constants of up to eight vehicles in lanes, so that one sweep serves them all.
+//! The constants of up to eight vehicles in lanes, so that one sweep serves them all. A vehicle may be in several lanes.
 
 use super::lanes::V;
 use super::model::{MAX_UNITS, Model, UnitModel};
@@ -11,8 +11,6 @@ pub(super) const SHRINK_STEPS: f64 = 1000.0;
 /// Vehicles that sweep together. Empty lanes repeat the last vehicle and are not read.
 pub(super) struct Group<'m> {
     pub(super) models: Vec<&'m Model>,
-    /// γ wanted of each vehicle. Each keeps to its own γ_min.
-    pub(super) shrinks: Vec<f64>,
     /// Largest number of units of any vehicle.
     pub(super) units: usize,
     pub(super) chain: [UnitLanes; MAX_UNITS],
@@ -23,13 +21,9 @@ pub(super) struct Group<'m> {
 }
 
 impl<'m> Group<'m> {
-    /// `models` holds one to eight vehicles; `shrink` is the γ wanted of each.
-    pub(super) fn new(models: &[&'m Model], shrink: f64) -> Self {
-        Self::mixed(models, vec![shrink; models.len()])
-    }
-
-    /// As [`Self::new`], with a γ for each. A vehicle may be there several times.
-    pub(super) fn mixed(models: &[&'m Model], shrinks: Vec<f64>) -> Self {
+    /// One to eight vehicles, each with the γ wanted of it. Each keeps to its own γ_min.
+    pub(super) fn new(vehicles: &[(&'m Model, f64)]) -> Self {
+        let (models, shrinks): (Vec<&Model>, Vec<f64>) = vehicles.iter().copied().unzip();
         let per_vehicle = |f: &dyn Fn(&Model, f64) -> f64| {
             let lane = |i: usize| i.min(models.len() - 1);
             V(std::array::from_fn(|i| f(models[lane(i)], shrinks[lane(i)])))
@@ -59,24 +53,7 @@ impl<'m> Group<'m> {
         let units = models.iter().map(|m| m.units.len()).max().unwrap_or(0);
         let settled = run_in::settled(&chain, units, tolerance);
         chain.iter_mut().zip(settled).for_each(|(unit, settled)| unit.settled = settled);
-        Self {
-            models: models.to_vec(),
-            units,
-            chain,
-            tolerance,
-            course: per_vehicle(&|m, _| m.vehicle.tracking_heading_rad),
-            shrinks,
-        }
-    }
-
-    /// Greatest distance from steer axle to rear, metres.
-    pub(super) fn length(&self) -> f64 {
-        self.models.iter().fold(0.0, |l, m| l.max(m.length))
-    }
-
-    /// Greatest distance from steer axle to front, metres.
-    pub(super) fn front(&self) -> f64 {
-        self.models.iter().fold(0.0, |l, m| l.max(m.front))
+        Self { units, chain, tolerance, course: per_vehicle(&|m, _| m.vehicle.tracking_heading_rad), models }
     }
 }
 

@@ -70,8 +70,7 @@ by_instruction_set! {
         body: &mut Body,
         block: &[f64],
         refined: &[f64],
-        shift: &[V],
-        lane: usize,
+        shift: &[f64],
         head: usize,
         minima: &mut Minima,
     ) {
@@ -104,7 +103,7 @@ by_instruction_set! {
             };
             if alone {
                 if CERTIFY && let Some(axle) = &mut body.last_axle {
-                    axle.follow(track, [s.x, s.y], shift, lane, minima);
+                    axle.follow(track, [s.x, s.y], shift, minima);
                 }
                 continue;
             }
@@ -162,7 +161,7 @@ by_instruction_set! {
                 last.lower(minima);
             }
             if CERTIFY && let Some(axle) = &mut body.last_axle {
-                axle.follow(track, [s.x, s.y], shift, lane, minima);
+                axle.follow(track, [s.x, s.y], shift, minima);
             }
         }
         if let Some(axle) = &mut body.last_axle {

@@ -8,6 +8,7 @@ mod ascent;
 mod block;
 mod body;
 mod course;
+mod drive;
 mod external_plan;
 mod gains;
 mod group;
@@ -25,6 +26,7 @@ mod spans;
 mod step;
 mod stretches;
 mod sweep;
+mod swept;
 mod track;
 mod tube;
 
@@ -43,10 +45,8 @@ pub use plane::Grounds;
 pub use shift::{KNOT_STATIONS, Plan, STEP_M};
 pub use tube::{Tube, tubes};
 
-use block::{BLOCK, Minima};
-use group::Group;
-use lanes::{LANES, V};
-use sweep::{Refining, Wanted, sweep};
+use plan::Unplanned;
+use swept::Swept;
 use track::Track;
 
 /// An edge of the corridor, seen in driving direction.
@@ -203,28 +203,55 @@ pub fn certify_spans(
     spans: &[Range<usize>],
     options: &Options,
 ) -> Vec<Planned> {
-    if corridor.is_empty() {
-        return Vec::new();
-    }
+    certify_corridors(&[(corridor, spans)], models, options).pop().unwrap_or_default()
+}
+
+/// Certifies vehicles on several corridors, each as [`certify_spans`] does, and faster: eight rides share a sweep, whichever
+/// corridors they are on. The rows of one corridor do not depend on the other corridors.
+#[must_use]
+pub fn certify_corridors(
+    corridors: &[(&Corridor, &[Range<usize>])],
+    models: &[&Model],
+    options: &Options,
+) -> Vec<Vec<Planned>> {
     let never = Stop::default();
-    // Vehicles with similar numbers of units share a group: a lane costs as much as the longest vehicle in the group.
-    let mut order: Vec<usize> = (0..models.len()).collect();
-    order.sort_by_key(|&i| models[i].units.len());
-    let mut rows: Vec<(usize, Planned)> = Vec::with_capacity(models.len());
-    for chunk in order.chunks(LANES) {
-        let members: Vec<&Model> = chunk.iter().map(|&i| models[i]).collect();
-        let swept = Swept::new(corridor, &members, spans, Marks::Ends, options, &never);
-        for (lane, (&i, plan)) in chunk.iter().zip(&swept.plans).enumerate() {
-            let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(lane, span)).collect();
-            let held = held(corridor, members[lane], spans, Marks::Ends, options, &results, &never);
-            rows.push(match held {
-                Some((held, spans)) => (i, Planned { plan: held.plans[0].clone(), spans }),
-                None => (i, Planned { plan: plan.clone(), spans: results }),
+    let mut rides: Vec<(Rc<Track>, usize, &Model)> = Vec::with_capacity(corridors.len() * models.len());
+    for (number, (corridor, spans)) in corridors.iter().enumerate().filter(|(_, (corridor, _))| !corridor.is_empty()) {
+        let mut tracks: Vec<(sweep::Reach, Rc<Track>)> = Vec::new();
+        for model in models {
+            let reach = sweep::Reach::of(model);
+            let known = tracks.iter().find(|(of, _)| *of == reach).map(|(_, track)| Rc::clone(track));
+            let track = known.unwrap_or_else(|| {
+                let made = track(corridor, model, spans, Marks::Ends, &Grounds::default());
+                tracks.push((reach, Rc::clone(&made)));
+                made
             });
+            rides.push((track, number, model));
         }
     }
-    rows.sort_by_key(|(i, _)| *i);
-    rows.into_iter().map(|(_, row)| row).collect()
+    let spans = |number: usize| corridors[number].1;
+    let unplanned: Vec<Unplanned<'_>> = rides
+        .iter()
+        .map(|(track, number, model)| Unplanned { track, model, spans: spans(*number), held: &[] })
+        .collect();
+    let plans = plan::best(&unplanned, options, &never);
+    let mut swept: Vec<Swept<'_>> = rides
+        .iter()
+        .zip(plans)
+        .map(|((track, number, model), plan)| Swept::ready(Rc::clone(track), model, plan, spans(*number), &never))
+        .collect();
+    swept::measure(&mut swept, Marks::Ends, &never);
+    let mut rows: Vec<Vec<Planned>> = vec![Vec::new(); corridors.len()];
+    for ((_, number, model), swept) in rides.iter().zip(swept) {
+        let (corridor, spans) = corridors[*number];
+        let results = swept.results();
+        let held = held(corridor, model, spans, Marks::Ends, options, &results, &never);
+        rows[*number].push(match held {
+            Some((held, spans)) => Planned { plan: held.plan, spans },
+            None => Planned { plan: swept.plan, spans: results },
+        });
+    }
+    rows
 }
 
 /// The certificate of one vehicle over a whole corridor.
@@ -283,7 +310,7 @@ pub fn certify_planned(
         return Ok(None);
     }
     let (swept, _) = best_swept(corridor, model, spans, Marks::All, options, stop);
-    let certified = swept.certificate(corridor, spans);
+    let certified = swept.certificate(corridor);
     // A cancelled sweep ends early and its numbers mean nothing. `stop` stays told.
     stop.check()?;
     Ok(Some(certified))
@@ -293,15 +320,15 @@ pub fn certify_planned(
 fn best_swept<'m>(
     corridor: &Corridor,
     model: &'m Model,
-    spans: &[Range<usize>],
+    spans: &'m [Range<usize>],
     marks: Marks,
     options: &Options,
     stop: &'m Stop,
 ) -> (Swept<'m>, Vec<SpanResult>) {
     let safe = |results: &[SpanResult]| results.iter().filter(|result| result.safe()).count();
     let joined = stretches::plan(corridor, model, spans, options, stop).map(|plan| {
-        let swept = Swept::along(corridor, &[model], spans, marks, stop, &|_, _| vec![plan.clone()]);
-        let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
+        let swept = Swept::along(corridor, model, spans, marks, stop, |_| plan);
+        let results = swept.results();
         (swept, results)
     });
     match joined {
@@ -318,13 +345,13 @@ fn best_swept<'m>(
 fn swept_as_one<'m>(
     corridor: &Corridor,
     model: &'m Model,
-    spans: &[Range<usize>],
+    spans: &'m [Range<usize>],
     marks: Marks,
     options: &Options,
     stop: &'m Stop,
 ) -> (Swept<'m>, Vec<SpanResult>) {
-    let swept = Swept::new(corridor, &[model], spans, marks, options, stop);
-    let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
+    let swept = Swept::held(corridor, model, spans, marks, options, &[], stop);
+    let results = swept.results();
     held(corridor, model, spans, marks, options, &results, stop).unwrap_or((swept, results))
 }
 
@@ -334,7 +361,7 @@ fn swept_as_one<'m>(
 fn held<'m>(
     corridor: &Corridor,
     model: &'m Model,
-    spans: &[Range<usize>],
+    spans: &'m [Range<usize>],
     marks: Marks,
     options: &Options,
     results: &[SpanResult],
@@ -344,24 +371,21 @@ fn held<'m>(
         return None;
     }
     let without = |held: &[Range<usize>]| {
-        let swept = Swept::along(corridor, &[model], spans, marks, stop, &|track, group| {
-            plan::best(track, group, spans, options, held, stop)
-        });
-        let results: Vec<SpanResult> = spans.iter().map(|span| swept.result(0, span)).collect();
+        let swept = Swept::held(corridor, model, spans, marks, options, held, stop);
+        let results = swept.results();
         (swept, results)
     };
     let safe = |results: &[SpanResult]| results.iter().filter(|result| result.safe()).count();
     let all: Vec<Range<usize>> = corridor.areas.iter().map(|area| area.heads.clone()).collect();
     let mut best = Some(without(&all)).filter(|(_, held)| safe(held) > safe(results));
     let mut most = best.as_ref().map_or(safe(results), |(_, held)| safe(held));
-    // By itself and not from `results`, which may come from a group: no other vehicle may matter.
     let mut held: Vec<Range<usize>> = Vec::new();
     for _ in 0..HOLDS {
         if most == spans.len() || all.len() < 2 || held.len() == all.len() || stop.told() {
             break;
         }
         let (swept, results) = without(&held);
-        let folding: Vec<_> = all.iter().filter(|area| swept.result(0, area).folds()).cloned().collect();
+        let folding: Vec<_> = all.iter().filter(|area| swept.result(area).folds()).cloned().collect();
         if safe(&results) > most {
             most = safe(&results);
             best = Some((swept, results));
@@ -375,23 +399,12 @@ fn held<'m>(
     best
 }
 
-/// All leeways at γ = 1, refined by the adjoint where that is worth its time.
-fn thorough(track: &Track, group: &Group<'_>, shift: &[V], stop: &Stop) -> Vec<Minima> {
-    let full = sweep::<true>(track, group, shift, &Wanted::ALL, stop);
-    if full.iter().all(|m| m.loose.iter().all(|&unit| unit == usize::MAX)) {
-        return full;
-    }
-    let loose = |lane: usize, head: usize| full[lane].loose[head / BLOCK];
-    sweep::<true>(track, group, shift, &Wanted { refining: Refining::From(&loose), ..Wanted::ALL }, stop)
-}
-
 /// How often a vehicle is certified with corrections taken back over some areas only.
 const HOLDS: usize = 4;
 
-/// The corridor, prepared for vehicles and spans.
-fn track(corridor: &Corridor, models: &[&Model], spans: &[Range<usize>], marks: Marks, grounds: &Grounds) -> Rc<Track> {
-    let group = Group::new(models, 1.0);
-    let mut track = Track::on(corridor, sweep::extensions(&group, corridor.spacing_m), grounds);
+/// The corridor, prepared for a vehicle and spans.
+fn track(corridor: &Corridor, model: &Model, spans: &[Range<usize>], marks: Marks, grounds: &Grounds) -> Rc<Track> {
+    let mut track = Track::on(corridor, sweep::Reach::of(model).extensions(corridor.spacing_m), grounds);
     match marks {
         Marks::Ends => track.mark(spans.iter().flat_map(|span| spans::marks(corridor.spacing_m, span))),
         Marks::All => track.mark(0..corridor.len()),
@@ -406,220 +419,4 @@ enum Marks {
     Ends,
     /// All stations. A certificate gives the leeway of each station by itself.
     All,
-}
-
-/// A group of vehicles after its sweeps.
-struct Swept<'m> {
-    track: Rc<Track>,
-    group: Group<'m>,
-    stop: &'m Stop,
-    plans: Vec<Plan>,
-    /// At γ = 1, by the filter.
-    full: Vec<Minima>,
-    /// By vehicle: whether areas were left out at γ = 1. Nothing fits then.
-    bare: Vec<bool>,
-    /// Without any disturbance, at a few points. Only present if the filter is loose somewhere.
-    nominal: Option<Vec<Minima>>,
-    /// At γ = 1, by the adjoint where the filter is loose. Only for spans near such places.
-    refined: Option<Vec<Minima>>,
-    /// At γ_min. Only near spans that fail.
-    least: Option<Vec<Minima>>,
-}
-
-impl<'m> Swept<'m> {
-    fn new(
-        corridor: &Corridor,
-        models: &[&'m Model],
-        spans: &[Range<usize>],
-        marks: Marks,
-        options: &Options,
-        stop: &'m Stop,
-    ) -> Self {
-        Self::along(corridor, models, spans, marks, stop, &|track, group| {
-            plan::best(track, group, spans, options, &[], stop)
-        })
-    }
-
-    /// `plans` returns one plan per vehicle, in the group's order.
-    fn along(
-        corridor: &Corridor,
-        models: &[&'m Model],
-        spans: &[Range<usize>],
-        marks: Marks,
-        stop: &'m Stop,
-        plans: &dyn Fn(&Track, &Group<'m>) -> Vec<Plan>,
-    ) -> Self {
-        let (mut swept, shift) =
-            Self::ready(track(corridor, models, spans, marks, &Grounds::default()), models, stop, plans);
-        match (marks, spans) {
-            (Marks::Ends, [only]) if !corridor.areas.is_empty() => {
-                swept.measure_least(only, &shift, f64::NEG_INFINITY);
-            }
-            _ => swept.measure(spans, &shift),
-        }
-        swept
-    }
-
-    /// Before any sweep along the plans, which it returns as shifts.
-    fn ready(
-        track: Rc<Track>,
-        models: &[&'m Model],
-        stop: &'m Stop,
-        plans: &dyn Fn(&Track, &Group<'m>) -> Vec<Plan>,
-    ) -> (Self, Vec<V>) {
-        let group = Group::new(models, 1.0);
-        let plans = plans(&track, &group);
-        let shift = shift::lanes(&plans, track.lead, track.len(), track.count);
-        let swept = Self {
-            track,
-            group,
-            stop,
-            plans,
-            full: Vec::new(),
-            bare: vec![false; models.len()],
-            nominal: None,
-            refined: None,
-            least: None,
-        };
-        (swept, shift)
-    }
-
-    /// The sweeps along the plans.
-    fn measure(&mut self, spans: &[Range<usize>], shift: &[V]) {
-        self.full = sweep::<true>(&self.track, &self.group, shift, &Wanted::ALL, self.stop);
-        if self.full.iter().any(|m| m.loose.iter().any(|&unit| unit < usize::MAX)) {
-            self.nominal = Some(sweep::<false>(&self.track, &self.group, shift, &Wanted::PLAIN, self.stop));
-        }
-        let near = self.blocks(spans, |lane, span| self.worth(lane, span));
-        self.refine(&near, shift);
-        let failing = self.blocks(spans, |lane, span| self.at_full(lane, span).fails());
-        self.tighten(&failing, &near, shift);
-    }
-
-    /// Refines by the adjoint what is `near`, by vehicle and block.
-    fn refine(&mut self, near: &[Vec<bool>], shift: &[V]) {
-        if near.iter().flatten().any(|&near| near) {
-            let blocks = |lane: usize, head: usize| near[lane][head / BLOCK];
-            let loose = |lane: usize, head: usize| self.full[lane].loose[head / BLOCK];
-            let wanted = Wanted { blocks: &blocks, refining: Refining::From(&loose), ..Wanted::ALL };
-            self.refined = Some(sweep::<true>(&self.track, &self.group, shift, &wanted, self.stop));
-        }
-    }
-
-    /// Sweeps at γ_min what fails at γ = 1, by vehicle and block.
-    fn tighten(&mut self, failing: &[Vec<bool>], near: &[Vec<bool>], shift: &[V]) {
-        if !failing.iter().flatten().any(|&fails| fails) {
-            return;
-        }
-        let tight = Group::new(&self.group.models, 0.0);
-        let blocks = |lane: usize, head: usize| failing[lane][head / BLOCK];
-        // Each block uses the same kind of bound as at γ = 1: only then is the leeway concave in γ. Each vehicle is
-        // treated separately, because it must not matter whether another vehicle of the group is refined.
-        let any: Vec<bool> = near.iter().map(|blocks| blocks.contains(&true)).collect();
-        let loose = |lane: usize, head: usize| self.full[lane].loose[head / BLOCK];
-        let own = |lane: usize, head: usize| if any[lane] { loose(lane, head) } else { usize::MAX };
-        let refining = if self.refined.is_some() { Refining::From(&own) } else { Refining::Nowhere };
-        let wanted = Wanted { blocks: &blocks, refining, ..Wanted::ALL };
-        self.least = Some(sweep::<true>(&self.track, &tight, shift, &wanted, self.stop));
-    }
-
-    /// The first vehicle's certificate over the whole corridor, and its result for each span.
-    fn certificate(&self, corridor: &Corridor, spans: &[Range<usize>]) -> (Certificate, Vec<SpanResult>) {
-        let whole = 0..corridor.len();
-        let track = &self.track;
-        let centred = thorough(track, &self.group, &vec![V::splat(0.0); track.len()], self.stop);
-        let full = if self.worth(0, &whole) { self.refined.as_ref().unwrap_or(&self.full) } else { &self.full };
-        let own = |points: &[f64], marks: &[f64]| spans::alone(track, &whole, points, marks);
-        // If the bounds do not close somewhere, leeways elsewhere are not claimed either.
-        let centred_closes = spans::least(track, self.group.models[0], &whole, &centred[0]).result().closes();
-        let own_centred = |points: &[f64], marks: &[f64]| {
-            if centred_closes { own(points, marks) } else { vec![spans::NOTHING_M; whole.len()] }
-        };
-        let shift = self.plans[0].clone();
-        let shift_m: Vec<f64> = (0..track.count).map(|k| shift.at_m(k)).collect();
-        let plan = (0..track.count)
-            .map(|k| {
-                let (sin, cos) = corridor.heading[k].sin_cos();
-                [corridor.x[k] - shift_m[k] * sin, corridor.y[k] + shift_m[k] * cos]
-            })
-            .collect();
-        let results = spans.iter().map(|span| self.result(0, span)).collect();
-        let (mut left_m, mut right_m) =
-            (own(&full[0].left, &full[0].mark_left), own(&full[0].right, &full[0].mark_right));
-        for span in spans {
-            // The leeways that the span's result rests on; refined if that was worth its time.
-            let best = self.best(0, span);
-            left_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.left, &best.mark_left));
-            right_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.right, &best.mark_right));
-        }
-        spans::lower_by_areas(track, [&mut left_m, &mut right_m], self.best(0, &whole));
-        let (mut left_centred_m, mut right_centred_m) = (
-            own_centred(&centred[0].left, &centred[0].mark_left),
-            own_centred(&centred[0].right, &centred[0].mark_right),
-        );
-        spans::lower_by_areas(track, [&mut left_centred_m, &mut right_centred_m], &centred[0]);
-        let certificate = Certificate {
-            result: self.result(0, &whole),
-            plan,
-            shift_m,
-            shift,
-            left_m,
-            right_m,
-            left_centred_m,
-            right_centred_m,
-        };
-        (certificate, results)
-    }
-
-    /// Blocks of head stations in which some unit of a vehicle may touch the span. No other vehicle of the group matters.
-    fn touching(&self, lane: usize, span: &Range<usize>) -> Range<usize> {
-        let heads = spans::touching(&self.track, self.group.models[lane], span);
-        heads.start / BLOCK..(heads.end.div_ceil(BLOCK)).min(self.track.len() / BLOCK + 1)
-    }
-
-    /// By vehicle and block of head stations: whether the vehicle may then touch a span that `meant` accepts.
-    fn blocks(&self, spans: &[Range<usize>], meant: impl Fn(usize, &Range<usize>) -> bool) -> Vec<Vec<bool>> {
-        let of = |lane: usize| {
-            let mut blocks = vec![false; self.track.len() / BLOCK + 1];
-            for span in spans.iter().filter(|span| meant(lane, span)) {
-                blocks[self.touching(lane, span)].iter_mut().for_each(|block| *block = true);
-            }
-            blocks
-        };
-        (0..self.plans.len()).map(of).collect()
-    }
-
-    /// Whether the adjoint is worth its time: the filter is loose where some unit may touch the span, and the vehicle
-    /// would fit if it kept to its path exactly. ε and σ do not decide, because raising them must not bring a better
-    /// bound.
-    fn worth(&self, lane: usize, span: &Range<usize>) -> bool {
-        let Some(nominal) = &self.nominal else { return false };
-        let nominal = &nominal[lane];
-        self.full[lane].loose[self.touching(lane, span)].iter().any(|&unit| unit < usize::MAX)
-            && nominal.room_on(spans::stations(&self.track, span))
-    }
-
-    /// The best known result at γ = 1.
-    fn at_full(&self, lane: usize, span: &Range<usize>) -> spans::Least {
-        let least = spans::least(&self.track, self.group.models[lane], span, self.best(lane, span));
-        if self.bare[lane] { least.unmeasured() } else { least }
-    }
-
-    fn best(&self, lane: usize, span: &Range<usize>) -> &Minima {
-        match &self.refined {
-            Some(refined) if self.worth(lane, span) => &refined[lane],
-            _ => &self.full[lane],
-        }
-    }
-
-    fn result(&self, lane: usize, span: &Range<usize>) -> SpanResult {
-        let at_full = self.at_full(lane, span);
-        match &self.least {
-            Some(least) if at_full.fails() => {
-                let model = self.group.models[lane];
-                spans::shrunk(&self.track, model, span, (self.best(lane, span), &least[lane]), &at_full).result()
-            }
-            _ => at_full.result(),
-        }
-    }
 }

@@ -10,12 +10,11 @@ use std::ops::Range;
 use super::Options;
 use super::ascent::{Ascent, climb, relief};
 use super::block::{Minima, UNVISITED_M};
-use super::group::Group;
-use super::lanes::{LANES, TAG_MASK, V, ZERO};
+use super::lanes::TAG_MASK;
 use super::model::Model;
 use super::shift::{self, KNOT_STATIONS, Plan};
 use super::spans;
-use super::sweep::{Wanted, sweep};
+use super::sweep::{Ride, Wanted, sweep};
 use super::track::Track;
 use netcert_base::stop::Stop;
 
@@ -24,59 +23,106 @@ const ENOUGH_M: f64 = 0.5;
 /// Stations of the coarse track between two knots.
 const KNOT_STEP: usize = KNOT_STATIONS / 2;
 
-/// The best plan of each vehicle, out of the centred one and its corrections. The last correction is not always the
-/// best. The plan is the centreline near the stations `held`.
-pub(super) fn best(
-    track: &Track,
-    group: &Group<'_>,
-    spans: &[Range<usize>],
-    options: &Options,
-    held: &[Range<usize>],
-    stop: &Stop,
-) -> Vec<Plan> {
-    let centred = vec![Plan::centred(track.count); group.models.len()];
+/// A vehicle that needs a plan for a track.
+#[derive(Clone, Copy)]
+pub(super) struct Unplanned<'r> {
+    pub(super) track: &'r Track,
+    pub(super) model: &'r Model,
+    pub(super) spans: &'r [Range<usize>],
+    /// The plan is the centreline near these stations.
+    pub(super) held: &'r [Range<usize>],
+}
+
+/// A plan in the making, with coefficients in metres.
+struct Draft<'r> {
+    of: Unplanned<'r>,
+    coarse: &'r Track,
+    /// Spans in stations of the coarse track.
+    spans: Vec<Range<usize>>,
+    ascent: Ascent,
+    now: Vec<f64>,
+    shift: Vec<f64>,
+    best: Vec<f64>,
+    best_score: f64,
+    done: bool,
+}
+
+/// The best plan of each vehicle, out of the centred one and its corrections. The last correction is not always the best.
+pub(super) fn best(unplanned: &[Unplanned<'_>], options: &Options, stop: &Stop) -> Vec<Plan> {
     if !options.correct() {
-        return centred;
+        return unplanned.iter().map(|of| Plan::centred(of.track.count)).collect();
     }
-    let coarse = track.coarse();
-    let spans: Vec<_> = spans.iter().map(|s| s.start / 2..s.end.div_ceil(2)).collect();
-    let most = ENOUGH_M * spans.iter().map(|span| span.len() as f64).sum::<f64>();
-    let mut ascent = Ascent::new(track, group, options.max_shift_m);
-    let mut now = vec![ZERO; shift::count(track.count)];
-    let mut best = now.clone();
-    let mut best_score = [f64::NEG_INFINITY; LANES];
+    let mut drafts: Vec<Draft<'_>> = unplanned.iter().map(|of| Draft::new(*of, options)).collect();
     for round in 0..=options.correction_sweeps {
-        let minima = sweep::<false>(&coarse, group, &sampled(&coarse, &now), &Wanted::ALL, stop);
-        for (lane, m) in minima.iter().enumerate() {
-            let score = score(&coarse, group.models[lane], &spans, m);
-            if score > best_score[lane] {
-                best_score[lane] = score;
-                for (b, c) in best.iter_mut().zip(&now) {
-                    b.0[lane] = c.0[lane];
-                }
+        let mut open: Vec<&mut Draft<'_>> = drafts.iter_mut().filter(|draft| !draft.done).collect();
+        for draft in &mut open {
+            draft.shift = sampled(draft.coarse, &draft.now);
+        }
+        let rides: Vec<Ride<'_>> = open.iter().map(|draft| draft.ride()).collect();
+        let swept = sweep::<false>(&rides, stop);
+        for (draft, minima) in open.iter_mut().zip(&swept) {
+            draft.rate(minima);
+            draft.done |= round == options.correction_sweeps || stop.told();
+            if !draft.done {
+                draft.correct(minima, (round == 0).then_some(options.max_shift_m));
             }
         }
-        // No plan scores more than one with enough leeway everywhere.
-        let enough = best_score.iter().take(minima.len()).all(|&score| score >= most);
-        if round == options.correction_sweeps || enough || stop.told() {
-            break;
-        }
-        ascent.note(&coarse, group, &minima, &now);
-        if round == 0 {
-            now = centred_between(&coarse, group, &minima, &now, options.max_shift_m);
-        }
-        now = climb(&mut ascent, now);
-        hold(track, held, &mut now);
     }
-    let coefficient = |lane: usize| {
-        let best = &best;
-        move |knot: usize| best[knot + 1].0[lane]
-    };
-    (0..group.models.len()).map(|lane| Plan::through(track.count, coefficient(lane))).collect()
+    drafts.iter().map(|draft| Plan::through(draft.of.track.count, |knot| draft.best[knot + 1])).collect()
+}
+
+/// As [`best`], for one vehicle.
+pub(super) fn best_one(unplanned: &Unplanned<'_>, options: &Options, stop: &Stop) -> Plan {
+    let plans = best(std::slice::from_ref(unplanned), options, stop).pop();
+    plans.unwrap_or_else(|| Plan::centred(unplanned.track.count))
+}
+
+impl<'r> Draft<'r> {
+    fn new(of: Unplanned<'r>, options: &Options) -> Self {
+        let now = vec![0.0; shift::count(of.track.count)];
+        Self {
+            of,
+            coarse: of.track.coarse(),
+            spans: of.spans.iter().map(|s| s.start / 2..s.end.div_ceil(2)).collect(),
+            ascent: Ascent::new(of.track, of.model, options.max_shift_m),
+            best: now.clone(),
+            now,
+            shift: Vec::new(),
+            best_score: f64::NEG_INFINITY,
+            done: false,
+        }
+    }
+
+    fn ride(&self) -> Ride<'_> {
+        Ride { track: self.coarse, model: self.of.model, shrink: 1.0, shift: &self.shift, wanted: Wanted::ALL }
+    }
+
+    /// Keeps the coefficients if they are the best so far. No plan scores more than one with enough leeway everywhere.
+    fn rate(&mut self, minima: &Minima) {
+        let score = score(self.coarse, self.of.model, &self.spans, minima);
+        if score > self.best_score {
+            self.best_score = score;
+            self.best.clone_from(&self.now);
+        }
+        let most = ENOUGH_M * self.spans.iter().map(|span| span.len() as f64).sum::<f64>();
+        self.done = self.best_score >= most;
+    }
+
+    /// The next coefficients. In the first round the ascent begins at half the difference of the leeways.
+    fn correct(&mut self, minima: &Minima, first_within_m: Option<f64>) {
+        let Unplanned { track, model, held, .. } = self.of;
+        self.ascent.note(self.coarse, model, minima, &self.now);
+        let start = match first_within_m {
+            Some(max_shift_m) => centred_between(self.coarse, model, minima, self.now.len(), max_shift_m),
+            None => std::mem::take(&mut self.now),
+        };
+        self.now = climb(&mut self.ascent, start);
+        hold(track, held, &mut self.now);
+    }
 }
 
 /// Takes back corrections at the knots whose splines reach into some stations.
-fn hold(track: &Track, held: &[Range<usize>], coefficients: &mut [V]) {
+fn hold(track: &Track, held: &[Range<usize>], coefficients: &mut [f64]) {
     for (i, coefficient) in coefficients.iter_mut().enumerate() {
         let at = (track.lead + KNOT_STATIONS * i).saturating_sub(KNOT_STATIONS);
         let reach = 2 * KNOT_STATIONS;
@@ -84,16 +130,16 @@ fn hold(track: &Track, held: &[Range<usize>], coefficients: &mut [V]) {
             track.lead + held.start <= at + reach && at.saturating_sub(reach) < track.lead + held.end
         };
         if held.iter().any(touch) {
-            *coefficient = ZERO;
+            *coefficient = 0.0;
         }
     }
 }
 
 /// The shift at every station of the coarse track.
-fn sampled(coarse: &Track, coefficients: &[V]) -> Vec<V> {
+fn sampled(coarse: &Track, coefficients: &[f64]) -> Vec<f64> {
     let at = |k: usize| {
         let station = 2 * k.saturating_sub(coarse.lead).min(coarse.count - 1);
-        shift::lanes_at(coefficients, station)
+        shift::at(coefficients, station)
     };
     (0..coarse.len()).map(at).collect()
 }
@@ -118,22 +164,16 @@ fn score(track: &Track, model: &Model, spans: &[Range<usize>], minima: &Minima) 
 
 /// The first correction, from the centred plan's sweep: half the difference of the leeways, smoothed over about the
 /// prime mover's length.
-fn centred_between(coarse: &Track, group: &Group<'_>, minima: &[Minima], centred: &[V], max_shift_m: f64) -> Vec<V> {
-    let mut out = centred.to_vec();
-    let count = out.len();
-    for (lane, (m, model)) in minima.iter().zip(&group.models).enumerate() {
-        let half = |i: usize| {
-            let k = coarse.lead + (KNOT_STEP * i.saturating_sub(1)).min(coarse.count - 1);
-            if m.left[k] < UNVISITED_M { 0.5 * (m.left[k] - m.right[k]) } else { 0.0 }
-        };
-        let wanted: Vec<f64> = (0..count).map(half).collect();
-        let length = model.units[0].length + model.front;
-        let about = ((length / (2.0 * KNOT_STEP as f64 * coarse.spacing)).round() as usize).max(1);
-        let smooth = running_mean(&running_mean(&wanted, about), about);
-        for (o, q) in out.iter_mut().zip(smooth) {
-            o.0[lane] = q.clamp(-max_shift_m, max_shift_m);
-        }
-    }
+fn centred_between(coarse: &Track, model: &Model, minima: &Minima, count: usize, max_shift_m: f64) -> Vec<f64> {
+    let half = |i: usize| {
+        let k = coarse.lead + (KNOT_STEP * i.saturating_sub(1)).min(coarse.count - 1);
+        if minima.left[k] < UNVISITED_M { 0.5 * (minima.left[k] - minima.right[k]) } else { 0.0 }
+    };
+    let wanted: Vec<f64> = (0..count).map(half).collect();
+    let length = model.units[0].length + model.front;
+    let about = ((length / (2.0 * KNOT_STEP as f64 * coarse.spacing)).round() as usize).max(1);
+    let mut out = running_mean(&running_mean(&wanted, about), about);
+    out.iter_mut().for_each(|q| *q = q.clamp(-max_shift_m, max_shift_m));
     let (entry, exit) = (out[2], out[count - 4]);
     shift::level(&mut out, entry, exit);
     out

@@ -63,7 +63,7 @@ mod tests {
     fn the_second_order_of_a_straight_is_millimetres_for_catalogued_vehicles() {
         for vehicle in Catalogue::builtin().unwrap().iter() {
             let model = Model::new(vehicle).unwrap();
-            let group = Group::new(&[&model], 1.0);
+            let group = Group::new(&[(&model, 1.0)]);
             let last = group.chain[group.units - 1].settled.0[0];
             assert!((0.0..0.03).contains(&last), "{}: {last}", vehicle.id);
         }
@@ -76,7 +76,7 @@ mod tests {
             unit.sway_rad = 0.2;
         }
         let model = Model::new(&vehicle).unwrap();
-        let group = Group::new(&[&model], 1.0);
+        let group = Group::new(&[(&model, 1.0)]);
         assert_eq!(group.chain[group.units - 1].settled.0[0], MOST);
     }
 }

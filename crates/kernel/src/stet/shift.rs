@@ -6,8 +6,6 @@
 //! outside the range of its coefficients. It is level at both ends, so the vehicle enters and leaves along the
 //! corridor.
 
-use super::lanes::V;
-
 /// Stations between two knots.
 pub const KNOT_STATIONS: usize = 4;
 /// Value of one coefficient step, metres: 2⁻¹² (a quarter of a millimetre).
@@ -87,8 +85,8 @@ pub(super) fn count(stations: usize) -> usize {
     stations.saturating_sub(1) / KNOT_STATIONS + 4
 }
 
-/// The shift at a station from coefficients in metres, with vehicles in lanes.
-pub(super) fn lanes_at(coefficients: &[V], station: usize) -> V {
+/// The shift at a station from coefficients in metres.
+pub(super) fn at(coefficients: &[f64], station: usize) -> f64 {
     let (knot, [a, b, c, d]) = (station / KNOT_STATIONS, WEIGHTS[station % KNOT_STATIONS]);
     coefficients[knot] * a + coefficients[knot + 1] * b + coefficients[knot + 2] * c + coefficients[knot + 3] * d
 }
@@ -101,35 +99,27 @@ pub(super) fn level<T: Copy>(coefficients: &mut [T], entry: T, exit: T) {
 }
 
 /// Gives each coefficient of an end the sum of the end's gradients, because they must stay equal.
-pub(super) fn tie(asked: &mut [V]) {
+pub(super) fn tie(asked: &mut [f64]) {
     let last = asked.len() - 1;
-    let sum = |part: &[V]| part.iter().fold(V::splat(0.0), |sum, v| sum + *v);
+    let sum = |part: &[f64]| part.iter().fold(0.0, |sum, v| sum + *v);
     let (entry, exit) = (sum(&asked[..3]), sum(&asked[last - 3..]));
     asked[..3].fill(entry);
     asked[last - 3..].fill(exit);
 }
 
-/// The shifts of up to eight vehicles at every station of a track. `lead` stations come before the corridor's first.
-pub(super) fn lanes(plans: &[Plan], lead: usize, total: usize, stations: usize) -> Vec<V> {
-    let at = |k: usize| {
-        let station = k.saturating_sub(lead).min(stations - 1);
-        V(std::array::from_fn(|lane| plans[lane.min(plans.len() - 1)].at_m(station)))
-    };
-    let mut out = Vec::with_capacity(total);
-    for k in 0..total {
-        let held = k < lead || k >= lead + stations;
-        let shift = match out.last() {
-            Some(&before) if held => before,
-            _ => at(k),
-        };
-        out.push(shift);
+impl Plan {
+    /// The shift at every station of a track. `lead` stations come before the corridor's first, which `stations` counts.
+    pub(super) fn along(&self, lead: usize, total: usize, stations: usize) -> Vec<f64> {
+        let mut out = Vec::with_capacity(total);
+        out.resize(lead, self.at_m(0));
+        out.extend((0..stations).map(|station| self.at_m(station)));
+        out.resize(total, self.at_m(stations - 1));
+        out
     }
-    out
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::lanes::LANES;
     use super::*;
 
     #[test]
@@ -150,13 +140,13 @@ mod tests {
     }
 
     #[test]
-    fn lanes_hold_the_ends() {
+    fn a_track_holds_the_ends_of_a_plan() {
         let plan = Plan::through(40, |knot| 0.1 * knot as f64);
-        let q = lanes(std::slice::from_ref(&plan), 10, 70, 40);
+        let q = plan.along(10, 70, 40);
         assert_eq!(q.len(), 70);
-        assert!(q[..10].iter().all(|v| v.0 == [plan.at_m(0); LANES]));
-        assert!(q[50..].iter().all(|v| v.0 == [plan.at_m(39); LANES]));
-        assert_eq!(q[10 + 17].0[3], plan.at_m(17));
+        assert!(q[..10].iter().all(|q| *q == plan.at_m(0)));
+        assert!(q[50..].iter().all(|q| *q == plan.at_m(39)));
+        assert_eq!(q[10 + 17], plan.at_m(17));
     }
 
     #[test]

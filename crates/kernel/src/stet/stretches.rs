@@ -39,7 +39,7 @@ pub(super) fn plan(
         let parts: Vec<Range<usize>> = spans.iter().map(within).filter(|part| part.start < part.end).collect();
         let (swept, _) = swept_as_one(&sliced(corridor, slice.clone()), model, &parts, Marks::Ends, options, stop);
         let faded = (own.start > 0, own.end < corridor.len());
-        for (i, &coefficient) in swept.plans[0].coefficients.iter().enumerate() {
+        for (i, &coefficient) in swept.plan.coefficients.iter().enumerate() {
             let at = (KNOT_STATIONS * i).min(slice.len());
             let share = |stations: usize| (stations + 1) as f64 / (2 * beyond + 1) as f64;
             let before = if faded.0 { share(at).min(1.0) } else { 1.0 };

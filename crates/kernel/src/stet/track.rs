@@ -1,6 +1,8 @@
 //! A corridor prepared for the sweep: extended straight at both ends, with derivatives, and with half-widths that hold
 //! between samples.
 
+use std::cell::OnceCell;
+
 use super::lanes::{LANES, V};
 use super::model::POINT_SPACING_M as MOST_GAP_M;
 use super::plane::{Areas, Grounds};
@@ -34,6 +36,7 @@ pub(super) struct Track {
     pub(super) areas: Areas,
     /// The next marked station from each station on. At marked stations the leeway between two points of a side counts.
     next_mark: Vec<u32>,
+    coarse: OnceCell<Box<Track>>,
 }
 
 /// Lengths of the extensions, metres.
@@ -131,11 +134,15 @@ impl Track {
         let torn = corridor.torn().into_iter().map(|k| lead + k).collect();
         let next_mark = vec![u32::MAX; fields.x.len() + 1];
         let areas = Areas::new(corridor, lead, grounds);
-        Self { spacing: h, lead, first_head, count, fields, torn, areas, next_mark }
+        Self { spacing: h, lead, first_head, count, fields, torn, areas, next_mark, coarse: OnceCell::new() }
     }
 
     /// Every second station, the corridor's first among them, for planning. Torn stations do not matter there.
-    pub(super) fn coarse(&self) -> Self {
+    pub(super) fn coarse(&self) -> &Self {
+        self.coarse.get_or_init(|| Box::new(self.coarsened()))
+    }
+
+    fn coarsened(&self) -> Self {
         let first = self.lead % 2;
         let of = |column: &Vec<f64>| column.iter().skip(first).step_by(2).copied().collect::<Vec<f64>>();
         let f = &self.fields;
@@ -164,6 +171,7 @@ impl Track {
             torn: Vec::new(),
             areas: self.areas.coarse(first),
             next_mark: Vec::new(),
+            coarse: OnceCell::new(),
         }
     }
 
@@ -207,8 +215,13 @@ fn dips(places: &[Place], width: impl Fn(&Place) -> f64) -> Vec<f64> {
 fn excess(places: &[Place], spacing: f64, width: fn(&Place) -> f64, slope: &[f64]) -> Vec<[f64; 2]> {
     let last = places.len() - 1;
     let most = (READ_M / spacing).ceil() as usize;
+    // A half-width that does not change within reach is read exactly.
+    let alike = alike(places, most, width);
     let of = |(k, own): (usize, &Place)| {
         let mut at = [0.0_f64; 2];
+        if alike[k] && slope[k] == 0.0 {
+            return at;
+        }
         for j in (1..=most).filter(|_| !own.open) {
             let way = j as f64 * spacing;
             for (other, slope) in [(k.checked_sub(j), -slope[k]), (Some(k + j).filter(|&o| o <= last), slope[k])] {
@@ -225,6 +238,17 @@ fn excess(places: &[Place], spacing: f64, width: fn(&Place) -> f64, slope: &[f64
         at.map(|x| if x > 1e-9 { x } else { 0.0 })
     };
     places.iter().enumerate().map(of).collect()
+}
+
+/// Whether all stations up to `most` before and after a station have its half-width.
+fn alike(places: &[Place], most: usize, width: fn(&Place) -> f64) -> Vec<bool> {
+    let mut out = vec![true; places.len()];
+    let changes = places.windows(2).enumerate().filter(|(_, pair)| width(&pair[0]) != width(&pair[1]));
+    for (k, _) in changes {
+        let end = (k + most + 1).min(out.len());
+        out[(k + 1).saturating_sub(most)..end].fill(false);
+    }
+    out
 }
 
 /// A half-width that may be read anywhere within one station. If the width dips between two samples of a body point (a

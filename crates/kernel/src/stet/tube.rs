@@ -3,11 +3,12 @@
 use super::Certificate;
 use super::adjoint::{Refined, Trail, first_loose, refine};
 use super::block::{BLOCK, FIELDS, row};
+use super::drive::{Motion, SteerPaths, drive};
 use super::group::Group;
-use super::lanes::{LANES, V};
+use super::lanes::LANES;
 use super::model::Model;
 use super::step::MOST;
-use super::sweep::{self, Motion, drive};
+use super::sweep::{Reach, Ride, Wanted};
 use super::track::Track;
 use netcert_base::corridor::Corridor;
 
@@ -40,17 +41,22 @@ pub fn tubes(corridor: &Corridor, model: &Model, certificate: &Certificate) -> V
     let mut tubes: Vec<Tube> =
         (0..units).map(|unit| Tube { unit, centre: Vec::new(), heading: Vec::new(), lateral_m: Vec::new() }).collect();
     let Some(last) = certificate.shift_m.len().checked_sub(1) else { return tubes };
-    let group = Group::new(&[model], certificate.result.shrink);
-    let track = Track::new(corridor, sweep::extensions(&group, corridor.spacing_m));
-    let shift: Vec<V> =
-        (0..track.len()).map(|k| V::splat(certificate.shift_m[k.saturating_sub(track.lead).min(last)])).collect();
-    let mut motion = Motion::new(&track, &group);
-    let mut trail = Trail::new(&group, true);
+    let shrink = certificate.result.shrink;
+    let group = Group::new(&[(model, shrink)]);
+    let track = Track::new(corridor, Reach::of(model).extensions(corridor.spacing_m));
+    let shift: Vec<f64> =
+        (0..track.len()).map(|k| certificate.shift_m[k.saturating_sub(track.lead).min(last)]).collect();
+    let ride = Ride { track: &track, model, shrink, shift: &shift, wanted: Wanted::ALL };
+    let mut paths = SteerPaths::new(&[&ride]);
+    let mut motion = Motion::new(&group, &paths);
+    let mut trail = Trail::new();
+    trail.begin_again(&group);
     let mut refined = Refined::new();
     let mut rows = vec![0.0; units * LANES * FIELDS * BLOCK];
     let (mut head, mut after) = (track.first_head, usize::MAX);
     while head <= track.lead + last {
-        drive::<true, true>(&mut motion, &track, &group, &shift, head, &mut rows, &mut trail);
+        paths.next_block(&[&ride]);
+        drive::<true, true>(&mut motion, &group, &paths, &mut rows, &mut trail);
         let loose = first_loose(&group, 0, &rows);
         if loose.min(after) < units {
             refine(&mut trail, &group, 0, loose.min(after), &mut motion.extra, &mut rows, &mut refined);

@@ -1,0 +1,317 @@
+//! The nominal motion and the curved tubes of a block of head stations (docs/proof.md, sections 2 to 5), with rides in lanes.
+
+use super::adjoint::Trail;
+use super::block::{BLOCK, NOT_CLOSED_RAD, row, store};
+use super::group::Group;
+use super::lanes::{V, ZERO, by_instruction_set, select_negative};
+use super::model::MAX_UNITS;
+use super::step::{
+    Filter, MOST, Step, Straying, chord_bulge, chord_lag, decay, foot_shift, heading, hinge_margin, hitch_remainder,
+    remainder, validity,
+};
+use super::sweep::Ride;
+use super::track::Track;
+
+/// The steer axles of a block's lanes at its head stations and at the next two.
+pub(super) struct SteerPaths {
+    x: [V; BLOCK + 2],
+    y: [V; BLOCK + 2],
+    /// The tracks' first headings.
+    heading: [V; 2],
+    /// 1 over the square of the spacing, 1/m².
+    per_step2: V,
+    /// Stations driven.
+    driven: usize,
+}
+
+impl SteerPaths {
+    /// Before the first block.
+    pub(super) fn new(rides: &[&Ride<'_>]) -> Self {
+        let lanes =
+            |of: &dyn Fn(&Track) -> f64| V(std::array::from_fn(|lane| of(rides[lane.min(rides.len() - 1)].track)));
+        let per_step2 = lanes(&|track| 1.0 / (track.spacing * track.spacing));
+        let heading =
+            [lanes(&|track| track.fields.tangent_x[track.lead]), lanes(&|track| track.fields.tangent_y[track.lead])];
+        Self { x: [ZERO; BLOCK + 2], y: [ZERO; BLOCK + 2], heading, per_step2, driven: 0 }
+    }
+
+    /// Moves on to the next block. A ride that has ended goes straight on.
+    pub(super) fn next_block(&mut self, rides: &[&Ride<'_>]) {
+        for (lane, ride) in rides.iter().enumerate() {
+            let (f, shift, last) = (&ride.track.fields, ride.shift, ride.track.len() - 1);
+            let head = ride.track.first_head + self.driven;
+            for (k, (x, y)) in self.x.iter_mut().zip(&mut self.y).enumerate() {
+                let at = (head + k).min(last);
+                let beyond = (head + k - at) as f64 * ride.track.spacing;
+                x.0[lane] = f.x[at] - shift[at] * f.tangent_y[at] + beyond * f.tangent_x[at];
+                y.0[lane] = f.y[at] + shift[at] * f.tangent_x[at] + beyond * f.tangent_y[at];
+            }
+        }
+        for place in self.x.iter_mut().chain(&mut self.y) {
+            let last = place.0[rides.len() - 1];
+            place.0[rides.len()..].fill(last);
+        }
+        self.driven += BLOCK;
+    }
+
+    #[inline(always)]
+    fn at(&self, k: usize) -> (V, V) {
+        (self.x[k], self.y[k])
+    }
+}
+
+/// State of the chain between two head stations, vehicles in lanes.
+pub(super) struct Motion {
+    heading_x: [V; MAX_UNITS],
+    heading_y: [V; MAX_UNITS],
+    /// Last displacement of each front coupling, as a unit vector.
+    along_x: [V; MAX_UNITS],
+    along_y: [V; MAX_UNITS],
+    /// Last turn of each front coupling's chord, radians.
+    bend: [V; MAX_UNITS],
+    /// Last heading change of each unit, radians.
+    turned: [V; MAX_UNITS],
+    turned_change: [V; MAX_UNITS],
+    /// Last change of each hinge's angle, radians, and its difference from the change before.
+    folding: [V; MAX_UNITS],
+    folding_change: [V; MAX_UNITS],
+    /// What curvature adds to the bound of each axle's deviation.
+    pub(super) extra: [V; MAX_UNITS],
+}
+
+by_instruction_set! {
+    /// Drives the [`BLOCK`] stations of the paths and writes every unit's rows.
+    pub(super) fn drive<const CERTIFY: bool, const REFINE: bool>(
+        motion: &mut Motion,
+        group: &Group<'_>,
+        paths: &SteerPaths,
+        rows: &mut [f64],
+        trail: &mut Trail,
+    ) {
+        if REFINE {
+            trail.enter(&motion.extra);
+        }
+        for k in 0..BLOCK {
+            let plan = [paths.at(k), paths.at(k + 1), paths.at(k + 2)];
+            motion.station::<CERTIFY, REFINE>(group, plan, paths.per_step2, k, rows, trail);
+        }
+    }
+}
+
+impl Motion {
+    /// All units stand straight behind the steer axle's first station, along the corridor's first heading, after a
+    /// straight run-in.
+    #[inline(always)]
+    pub(super) fn new(group: &Group<'_>, paths: &SteerPaths) -> Self {
+        let [x, y] = paths.heading;
+        Self {
+            heading_x: [x; MAX_UNITS],
+            heading_y: [y; MAX_UNITS],
+            along_x: [x; MAX_UNITS],
+            along_y: [y; MAX_UNITS],
+            bend: [ZERO; MAX_UNITS],
+            turned: [ZERO; MAX_UNITS],
+            turned_change: [ZERO; MAX_UNITS],
+            folding: [ZERO; MAX_UNITS],
+            folding_change: [ZERO; MAX_UNITS],
+            extra: std::array::from_fn(|unit| group.chain[unit].settled),
+        }
+    }
+
+    /// One head station: writes the rows of every unit, then steps to the next station. `plan` is the steer axle's
+    /// place at this station and at the next two.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)] // One call, in the innermost loop: a struct would be taken apart at once.
+    fn station<const CERTIFY: bool, const REFINE: bool>(
+        &mut self,
+        group: &Group<'_>,
+        plan: [(V, V); 3],
+        per_step2: V,
+        k: usize,
+        rows: &mut [f64],
+        trail: &mut Trail,
+    ) {
+        let [place, next, after] = plan;
+        let (mut x, mut y) = place;
+        let (mut vx, mut vy) = (next.0 - place.0, next.1 - place.1);
+        // The plan may bend more after the step than before it, above all at the corridor's first station.
+        let (later_x, later_y) = (after.0 - next.0, after.1 - next.1);
+        let mut bend_after = (vx * later_y - vy * later_x).abs() / (vx * vx + vy * vy + 1e-30);
+        let mut steps = [Step::NONE; MAX_UNITS];
+        let mut joints = [ZERO; MAX_UNITS];
+        let (mut ahead_x, mut ahead_y) = (ZERO, ZERO);
+        let mut turned_ahead = ZERO;
+        for unit in 0..group.units {
+            let of = &group.chain[unit];
+            let (ux, uy) = (self.heading_x[unit], self.heading_y[unit]);
+            // First the axle, then the next coupling.
+            x = x - ux * of.length;
+            y = y - uy * of.length;
+            let mut store = |field: usize, value: V| store(rows, unit, field, k, value);
+            store(row::X, x);
+            store(row::Y, y);
+            store(row::UX, ux);
+            store(row::UY, uy);
+            x = x - ux * (of.reach - of.length);
+            y = y - uy * (of.reach - of.length);
+
+            // The exact chord step: N/D = tan(β/2)·exp(−ℓ/L).
+            let sine = ux * vy - uy * vx;
+            let cosine = ux * vx + uy * vy;
+            let moved = (vx * vx + vy * vy + 1e-30).sqrt();
+            let (pn, pd) = decay(moved * of.inverse_length);
+            let n = sine * pn;
+            let d = (moved + cosine).max(V::splat(1e-12)) * pd;
+            let (nn, dd, nd2) = (n * n, d * d, n * d * 2.0);
+            let norm = V::splat(1.0) / ((nn + dd) * moved);
+            let (c, s) = ((dd - nn) * norm, nd2 * norm);
+            let (mut wx, mut wy) = (vx * c + vy * s, vy * c - vx * s);
+            if CERTIFY {
+                let inverse = V::splat(1.0) / (moved * (moved + cosine));
+                let half_tangent = if unit == 0 {
+                    sine.abs() * (inverse * moved)
+                } else {
+                    let cross = (ahead_x * uy - ahead_y * ux).abs();
+                    let dot = ahead_x * ux + ahead_y * uy;
+                    cross / (dot + 1.0).max(V::splat(1e-12))
+                };
+                let bounded = cosine.max(moved * 0.05);
+                let both = V::splat(1.0) / (moved * bounded);
+                let (inverse_moved, inverse_cosine) = (bounded * both, moved * both);
+                let tangent = sine * inverse_cosine;
+                let hitch_tangent = tangent * of.ratio;
+                let (ax, ay) = (vx * inverse_moved, vy * inverse_moved);
+                let bend = self.along_x[unit] * ay - self.along_y[unit] * ax;
+                // A curve turns the unit more than its chords do.
+                let lengths = moved * of.inverse_length;
+                let more = bend * chord_lag(lengths);
+                let swerve = (bend - self.bend[unit]).abs();
+                self.bend[unit] = bend;
+                (wx, wy) = (wx - more * wy, wy + more * wx);
+                let after = vx * wx + vy * wy;
+                let mid_tangent = if REFINE { (sine + wx * vy - wy * vx) / (cosine + after) } else { ZERO };
+                steps[unit] = Step {
+                    moved,
+                    advance: (cosine + after) * 0.5,
+                    mid_tangent,
+                    sine: sine.abs() * inverse_moved,
+                    cosine: cosine * inverse_moved,
+                    tangent: tangent.abs(),
+                    secant: moved * inverse_cosine,
+                    hitch_cosine: V::splat(1.0) / (hitch_tangent * hitch_tangent + 1.0).sqrt(),
+                    path_curvature: bend.abs().max(bend_after) * inverse_moved,
+                    chord_rest: moved * (bend.abs() * (lengths * 0.025 + 0.004) + swerve * (1.0 / 24.0))
+                        + bend * bend * (sine.abs() * inverse_moved * of.length * (1.0 / 24.0)),
+                };
+                bend_after = ZERO;
+                self.along_x[unit] = ax;
+                self.along_y[unit] = ay;
+                let turned = ux * wy - uy * wx;
+                // The plan's chord turns at the station. The unit ahead turns during the step.
+                let folding = if unit == 0 { bend - self.turned[0] } else { turned_ahead - turned };
+                joints[unit] = double_atan(half_tangent) + self.overshoot(unit, folding);
+                turned_ahead = turned;
+                let change = (turned - self.turned[unit]).abs();
+                store(row::CURVATURE, tangent * of.inverse_length);
+                store(row::WAY2, steps[unit].advance * steps[unit].advance);
+                store(row::JERK, change.max(self.turned_change[unit]) * per_step2);
+                self.turned[unit] = turned;
+                self.turned_change[unit] = change;
+            }
+            (ahead_x, ahead_y) = (ux, uy);
+            vx = vx - of.reach * (wx - ux);
+            vy = vy - of.reach * (wy - uy);
+            self.heading_x[unit] = wx;
+            self.heading_y[unit] = wy;
+        }
+        if CERTIFY {
+            self.tubes::<REFINE>(group, &steps, &joints, k, rows, trail);
+        }
+    }
+
+    /// How much farther a hinge may fold between two head stations than at either: an eighth of the second difference.
+    /// The factor is a little larger, because sines of a step's turn are smaller than its angle.
+    #[inline(always)]
+    fn overshoot(&mut self, unit: usize, folding: V) -> V {
+        let change = (folding - self.folding[unit]).abs();
+        let most = change.max(self.folding_change[unit]);
+        self.folding[unit] = folding;
+        self.folding_change[unit] = change;
+        most * 0.14
+    }
+
+    /// Computes what curvature adds to the straight gains (docs/proof.md, section 5), and the hinge margins.
+    #[inline(always)]
+    fn tubes<const REFINE: bool>(
+        &mut self,
+        group: &Group<'_>,
+        steps: &[Step; MAX_UNITS],
+        joints: &[V; MAX_UNITS],
+        k: usize,
+        rows: &mut [f64],
+        trail: &mut Trail,
+    ) {
+        let one = V::splat(1.0);
+        let bulge = chord_bulge(&steps[0]);
+        let mut filter = Filter::begin(&group.chain[..group.units], steps);
+        let mut straying = Straying::of_the_steer_axle(group.tolerance + bulge);
+        let (mut heading_ahead, mut shift_ahead) = (group.course, ZERO);
+        // Negative from the first unit on whose bounds do not close.
+        let mut closed = one;
+        if REFINE {
+            trail.begin(k, steps, joints, group.tolerance + bulge);
+        }
+        for unit in 0..group.units {
+            let of = &group.chain[unit];
+            let step = &steps[unit];
+            let y = self.extra[unit];
+            let mut coupled = filter.coupled(of, step, y);
+            let axle = of.axle + y;
+            let coupling = of.coupling + coupled.extra;
+            let (a, short) = heading(of, step, coupled.heading, axle, coupling);
+            coupled.heading = a;
+            let extra_coupling = coupled.extra;
+            let (r1, z) = remainder(of, step, a, axle, coupling);
+            let extra = filter.grown(of, step, &coupled, z);
+            // Nothing is certified where the bounds do not close. Behind that place they begin anew, as after a
+            // straight, because a vehicle certified there did not come through this place. A stand-in always closes.
+            let valid = validity(of, step, a, coupling).min(short);
+            closed = closed.min(select_negative(of.present - V::splat(0.5), one, valid));
+            self.extra[unit] = select_negative(closed, of.settled, extra);
+            let y = y.max(extra);
+
+            let mut store = |field: usize, value: V| store(rows, unit, field, k, value);
+            store(row::EXTRA_AXLE, select_negative(closed, V::splat(MOST), y));
+            store(row::EXTRA_COUPLING, extra_coupling);
+            store(row::REMAINDER, r1 * of.inverse_length);
+            let own_shift = foot_shift(of, step, of.coupling + extra_coupling);
+            let margin = hinge_margin(
+                of,
+                joints[unit],
+                heading_ahead + a + shift_ahead,
+                if unit == 0 { ZERO } else { own_shift },
+            );
+            store(row::HINGE, select_negative(closed, V::splat(NOT_CLOSED_RAD), margin));
+            (heading_ahead, shift_ahead) = (a, own_shift);
+
+            // Continues at the next coupling.
+            straying = straying.next(of, step, a);
+            let follower = (unit + 1 < group.units).then(|| (&group.chain[unit + 1], &steps[unit + 1]));
+            let zh = hitch_remainder(of, step, follower, a, axle, r1, &straying);
+            if REFINE {
+                trail.record(group, unit, step, z, zh, of.axle + y, closed);
+            }
+            filter.pass_on(of, step, &coupled, y, zh);
+            filter.coupling = select_negative(closed, ZERO, filter.coupling);
+        }
+    }
+}
+
+/// 2·atan t for 0 ≤ t ≤ 1, never too small (Abramowitz and Stegun 4.4.47, error 1e-5, with an allowance of twice that).
+/// For t > 1, an angle over 90°, it is four radians, which no hinge allows.
+#[inline(always)]
+fn double_atan(t: V) -> V {
+    let t2 = t * t;
+    let p = t * ((((t2 * 0.020_835_1 - 0.085_133_0) * t2 + 0.180_141_0) * t2 - 0.330_299_5) * t2 + 0.999_866_0);
+    select_negative(V::splat(1.0) - t, V::splat(4.0), p * 2.0 + 4e-5)
+}

@@ -1,0 +1,278 @@
+//! The sweeps of a vehicle along its plan, and what they leave of each span.
+
+use std::ops::Range;
+use std::rc::Rc;
+
+use netcert_base::corridor::Corridor;
+use netcert_base::stop::Stop;
+
+use super::block::{BLOCK, Minima};
+use super::model::Model;
+use super::plan::{self, Unplanned};
+use super::plane::Grounds;
+use super::shift::Plan;
+use super::sweep::{Refining, Ride, Wanted, sweep};
+use super::track::Track;
+use super::{Certificate, Marks, Options, SpanResult, spans, track};
+
+/// A vehicle with its plan, and its sweeps.
+pub(super) struct Swept<'m> {
+    pub(super) track: Rc<Track>,
+    pub(super) model: &'m Model,
+    pub(super) plan: Plan,
+    pub(super) spans: &'m [Range<usize>],
+    pub(super) stop: &'m Stop,
+    /// The plan at each extended station, metres.
+    pub(super) shift: Vec<f64>,
+    /// At γ = 1, by the filter.
+    pub(super) full: Minima,
+    /// Whether areas were left out at γ = 1. Nothing fits then.
+    pub(super) bare: bool,
+    /// Without any disturbance, at a few points. Only present if the filter is loose somewhere.
+    pub(super) nominal: Option<Minima>,
+    /// At γ = 1, by the adjoint where the filter is loose. Only for spans near such places.
+    refined: Option<Minima>,
+    /// At γ_min. Only near spans that fail.
+    pub(super) least: Option<Minima>,
+}
+
+/// The sweeps of several vehicles along their plans, eight rides at a time.
+pub(super) fn measure(all: &mut [Swept<'_>], marks: Marks, stop: &Stop) {
+    let mut rest: Vec<&mut Swept<'_>> = Vec::with_capacity(all.len());
+    for swept in all {
+        match (marks, swept.spans) {
+            (Marks::Ends, [only]) if !swept.track.areas.is_empty() => {
+                swept.measure_least(only, f64::NEG_INFINITY);
+            }
+            _ => rest.push(swept),
+        }
+    }
+    measure_spans(&mut rest, stop);
+}
+
+/// The sweeps of several vehicles, for all of their spans.
+fn measure_spans(all: &mut [&mut Swept<'_>], stop: &Stop) {
+    let rides: Vec<Ride<'_>> = all.iter().map(|swept| swept.ride(1.0, Wanted::ALL)).collect();
+    let full = sweep::<true>(&rides, stop);
+    all.iter_mut().zip(full).for_each(|(swept, full)| swept.full = full);
+
+    let is_loose = |swept: &Swept<'_>| swept.full.loose.iter().any(|&unit| unit < usize::MAX);
+    let mut loose: Vec<_> = all.iter_mut().filter(|swept| is_loose(swept)).collect();
+    let rides: Vec<Ride<'_>> = loose.iter().map(|swept| swept.ride(1.0, Wanted::PLAIN)).collect();
+    let nominal = sweep::<false>(&rides, stop);
+    loose.iter_mut().zip(nominal).for_each(|(swept, nominal)| swept.nominal = Some(nominal));
+
+    let near: Vec<Vec<bool>> = all.iter().map(|swept| swept.blocks(|span| swept.worth(span))).collect();
+    let refined = sweep_where(all, &near, 1.0, |swept| Refining::From(&swept.full.loose), stop);
+    all.iter_mut().zip(refined).for_each(|(swept, refined)| swept.refined = refined);
+
+    let failing: Vec<Vec<bool>> = all.iter().map(|swept| swept.blocks(|span| swept.at_full(span).fails())).collect();
+    // Each block uses the same kind of bound as at γ = 1: only then is the leeway concave in γ.
+    let alike = |swept: &'_ Swept<'_>| swept.refined.is_some();
+    let least = sweep_where(
+        all,
+        &failing,
+        0.0,
+        |swept| if alike(swept) { Refining::From(&swept.full.loose) } else { Refining::Nowhere },
+        stop,
+    );
+    all.iter_mut().zip(least).for_each(|(swept, least)| swept.least = least);
+}
+
+/// Sweeps each vehicle of which some blocks are asked for.
+fn sweep_where<'s>(
+    all: &'s [&mut Swept<'_>],
+    blocks: &'s [Vec<bool>],
+    shrink: f64,
+    refining: impl Fn(&'s Swept<'_>) -> Refining<'s>,
+    stop: &Stop,
+) -> Vec<Option<Minima>> {
+    let asked: Vec<usize> = (0..all.len()).filter(|&i| blocks[i].contains(&true)).collect();
+    let ride = |&i: &usize| {
+        all[i].ride(shrink, Wanted { blocks: Some(&blocks[i]), refining: refining(&*all[i]), ..Wanted::ALL })
+    };
+    let rides: Vec<Ride<'_>> = asked.iter().map(ride).collect();
+    let mut out = vec![None; all.len()];
+    asked.iter().zip(sweep::<true>(&rides, stop)).for_each(|(&i, minima)| out[i] = Some(minima));
+    out
+}
+
+/// All leeways along the centreline at γ = 1, refined by the adjoint where that is worth its time.
+fn centred(track: &Track, model: &Model, stop: &Stop) -> Minima {
+    let shift = vec![0.0; track.len()];
+    let swept = |wanted| {
+        let ride = Ride { track, model, shrink: 1.0, shift: &shift, wanted };
+        sweep::<true>(&[ride], stop).pop().unwrap_or_default()
+    };
+    let full = swept(Wanted::ALL);
+    if full.loose.iter().all(|&unit| unit == usize::MAX) {
+        return full;
+    }
+    swept(Wanted { refining: Refining::From(&full.loose), ..Wanted::ALL })
+}
+
+impl<'m> Swept<'m> {
+    /// Before any sweep along the plan.
+    pub(super) fn ready(
+        track: Rc<Track>,
+        model: &'m Model,
+        plan: Plan,
+        spans: &'m [Range<usize>],
+        stop: &'m Stop,
+    ) -> Self {
+        let shift = plan.along(track.lead, track.len(), track.count);
+        Self {
+            track,
+            model,
+            plan,
+            spans,
+            stop,
+            shift,
+            full: Minima::default(),
+            bare: false,
+            nominal: None,
+            refined: None,
+            least: None,
+        }
+    }
+
+    /// Along a plan made for the track.
+    pub(super) fn along(
+        corridor: &Corridor,
+        model: &'m Model,
+        spans: &'m [Range<usize>],
+        marks: Marks,
+        stop: &'m Stop,
+        plan: impl FnOnce(&Track) -> Plan,
+    ) -> Self {
+        let track = track(corridor, model, spans, marks, &Grounds::default());
+        let plan = plan(&track);
+        let mut swept = Self::ready(track, model, plan, spans, stop);
+        measure(std::slice::from_mut(&mut swept), marks, stop);
+        swept
+    }
+
+    /// Along the best plan that keeps to the centreline near the stations `held`.
+    pub(super) fn held(
+        corridor: &Corridor,
+        model: &'m Model,
+        spans: &'m [Range<usize>],
+        marks: Marks,
+        options: &Options,
+        held: &[Range<usize>],
+        stop: &'m Stop,
+    ) -> Self {
+        Self::along(corridor, model, spans, marks, stop, |track| {
+            plan::best_one(&Unplanned { track, model, spans, held }, options, stop)
+        })
+    }
+
+    pub(super) fn ride<'r>(&'r self, shrink: f64, wanted: Wanted<'r>) -> Ride<'r> {
+        Ride { track: &self.track, model: self.model, shrink, shift: &self.shift, wanted }
+    }
+
+    /// One sweep, as `wanted`.
+    pub(super) fn swept<const CERTIFY: bool>(&self, shrink: f64, wanted: Wanted<'_>) -> Minima {
+        sweep::<CERTIFY>(&[self.ride(shrink, wanted)], self.stop).pop().unwrap_or_default()
+    }
+
+    /// The sweeps for all spans.
+    pub(super) fn measure_spans(&mut self) {
+        let stop = self.stop;
+        measure_spans(&mut [self], stop);
+    }
+
+    /// The certificate over the whole corridor, and the result for each span.
+    pub(super) fn certificate(&self, corridor: &Corridor) -> (Certificate, Vec<SpanResult>) {
+        let whole = 0..corridor.len();
+        let track = &self.track;
+        let centred = centred(track, self.model, self.stop);
+        let full = if self.worth(&whole) { self.refined.as_ref().unwrap_or(&self.full) } else { &self.full };
+        let own = |points: &[f64], marks: &[f64]| spans::alone(track, &whole, points, marks);
+        // If the bounds do not close somewhere, leeways elsewhere are not claimed either.
+        let centred_closes = spans::least(track, self.model, &whole, &centred).result().closes();
+        let own_centred = |points: &[f64], marks: &[f64]| {
+            if centred_closes { own(points, marks) } else { vec![spans::NOTHING_M; whole.len()] }
+        };
+        let shift_m: Vec<f64> = (0..track.count).map(|k| self.plan.at_m(k)).collect();
+        let plan = (0..track.count)
+            .map(|k| {
+                let (sin, cos) = corridor.heading[k].sin_cos();
+                [corridor.x[k] - shift_m[k] * sin, corridor.y[k] + shift_m[k] * cos]
+            })
+            .collect();
+        let (mut left_m, mut right_m) = (own(&full.left, &full.mark_left), own(&full.right, &full.mark_right));
+        for span in self.spans {
+            // The leeways that the span's result rests on; refined if that was worth its time.
+            let best = self.best(span);
+            left_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.left, &best.mark_left));
+            right_m[span.clone()].copy_from_slice(&spans::alone(track, span, &best.right, &best.mark_right));
+        }
+        spans::lower_by_areas(track, [&mut left_m, &mut right_m], self.best(&whole));
+        let (mut left_centred_m, mut right_centred_m) =
+            (own_centred(&centred.left, &centred.mark_left), own_centred(&centred.right, &centred.mark_right));
+        spans::lower_by_areas(track, [&mut left_centred_m, &mut right_centred_m], &centred);
+        let certificate = Certificate {
+            result: self.result(&whole),
+            plan,
+            shift_m,
+            shift: self.plan.clone(),
+            left_m,
+            right_m,
+            left_centred_m,
+            right_centred_m,
+        };
+        (certificate, self.results())
+    }
+
+    /// Blocks of head stations in which some unit may touch the span.
+    fn touching(&self, span: &Range<usize>) -> Range<usize> {
+        let heads = spans::touching(&self.track, self.model, span);
+        heads.start / BLOCK..(heads.end.div_ceil(BLOCK)).min(self.track.len() / BLOCK + 1)
+    }
+
+    /// By block of head stations: whether the vehicle may then touch a span that `meant` accepts.
+    pub(super) fn blocks(&self, meant: impl Fn(&Range<usize>) -> bool) -> Vec<bool> {
+        let mut blocks = vec![false; self.track.len() / BLOCK + 1];
+        for span in self.spans.iter().filter(|span| meant(span)) {
+            blocks[self.touching(span)].fill(true);
+        }
+        blocks
+    }
+
+    /// Whether the adjoint is worth its time: the filter is loose where some unit may touch the span, and the vehicle
+    /// would fit if it kept to its path exactly. ε and σ do not decide, because raising them must not bring a better
+    /// bound.
+    fn worth(&self, span: &Range<usize>) -> bool {
+        let Some(nominal) = &self.nominal else { return false };
+        self.full.loose[self.touching(span)].iter().any(|&unit| unit < usize::MAX)
+            && nominal.room_on(spans::stations(&self.track, span))
+    }
+
+    /// The best known result at γ = 1.
+    pub(super) fn at_full(&self, span: &Range<usize>) -> spans::Least {
+        let least = spans::least(&self.track, self.model, span, self.best(span));
+        if self.bare { least.unmeasured() } else { least }
+    }
+
+    fn best(&self, span: &Range<usize>) -> &Minima {
+        match &self.refined {
+            Some(refined) if self.worth(span) => refined,
+            _ => &self.full,
+        }
+    }
+
+    pub(super) fn result(&self, span: &Range<usize>) -> SpanResult {
+        let at_full = self.at_full(span);
+        match &self.least {
+            Some(least) if at_full.fails() => {
+                spans::shrunk(&self.track, self.model, span, (self.best(span), least), &at_full).result()
+            }
+            _ => at_full.result(),
+        }
+    }
+
+    pub(super) fn results(&self) -> Vec<SpanResult> {
+        self.spans.iter().map(|span| self.result(span)).collect()
+    }
+}
