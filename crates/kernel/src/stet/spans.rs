@@ -6,7 +6,6 @@ use super::block::{BLOCK, Minima, NOT_CLOSED_RAD, UNVISITED_M};
 use super::group::{SHRINK_STEPS, gamma};
 use super::lanes::TAG_MASK;
 use super::model::{Model, POINT_SPACING_M};
-use super::sweep::LEAST_LENGTH_M;
 use super::track::Track;
 use super::{Limiting, Side, SpanResult};
 
@@ -15,6 +14,9 @@ use super::{Limiting, Side, SpanResult};
 const STEP_STATIONS: usize = 3;
 /// Least length of these stations, metres. A point may be pushed this far along, and stations may be centimetres apart.
 const BESIDE_M: f64 = 0.6;
+
+/// Vehicles from half this length on fall behind by no more than what it exceeds their length by, metres.
+const LONG_M: f64 = 56.0;
 
 /// Vehicle lengths after which an earlier disturbance has faded to a few hundredths. No unit is longer than half a
 /// vehicle.
@@ -162,8 +164,8 @@ pub(super) fn straight(track: &Track, model: &Model, span: &Range<usize>) -> Ran
 pub(super) fn touching(track: &Track, model: &Model, span: &Range<usize>) -> Range<usize> {
     let stations_of = |metres: f64| (metres / track.spacing).ceil() as usize;
     let touched = stations(track, span);
-    // No unit falls behind by its whole length, and the reach of a group is enough for every vehicle.
-    let behind_m = (2.0 * model.length).min(model.length.max(LEAST_LENGTH_M));
+    // No unit falls behind by its whole length, and those of long vehicles by little of it.
+    let behind_m = (2.0 * model.length).min(model.length.max(LONG_M));
     let ahead = stations_of(model.front) + BLOCK;
     touched.start().saturating_sub(ahead)..touched.end() + stations_of(behind_m) + BLOCK + 1
 }

@@ -21,8 +21,9 @@ use super::spans;
 use super::track::{Extensions, Track};
 use netcert_base::stop::Stop;
 
-/// Vehicles up to this length and front overhang get the same extensions. The longest vehicle of the catalogue has 52 m and 3 m.
-pub(super) const LEAST_LENGTH_M: f64 = 56.0;
+/// Vehicles share a track whose lengths, in steps of this, are the same, metres.
+const LENGTH_STEP_M: f64 = 8.0;
+/// Vehicles up to this front overhang share a track. The longest of the catalogue is 3 m.
 const LEAST_FRONT_M: f64 = 4.0;
 
 /// Assumed reach of a vehicle behind and ahead of its steer axle, metres. Vehicles of the same reach share a track.
@@ -34,7 +35,8 @@ pub(super) struct Reach {
 
 impl Reach {
     pub(super) fn of(model: &Model) -> Self {
-        Self { length_m: model.length.max(LEAST_LENGTH_M), front_m: model.front.max(LEAST_FRONT_M) }
+        let length_m = (model.length / LENGTH_STEP_M).ceil() * LENGTH_STEP_M;
+        Self { length_m, front_m: model.front.max(LEAST_FRONT_M) }
     }
 
     /// The extensions before and behind the corridor.
@@ -42,7 +44,7 @@ impl Reach {
         let Self { length_m, front_m } = self;
         let slack = (BLOCK + 2 * LANES) as f64 * spacing;
         Extensions {
-            lead_m: length_m + front_m + slack,
+            lead_m: length_m + front_m + 2.0 * LANES as f64 * spacing,
             tail_m: length_m + 2.0 * front_m + 2.0 * slack + 10.0,
             front_m,
         }

@@ -28,7 +28,7 @@ pub(super) struct Swept<'m> {
     pub(super) full: Minima,
     /// Whether areas were left out at γ = 1. Nothing fits then.
     pub(super) bare: bool,
-    /// Without any disturbance, at a few points. Only present if the filter is loose somewhere.
+    /// Without any disturbance, at a few points. Only near spans where the filter is loose and leaves too little.
     pub(super) nominal: Option<Minima>,
     /// At γ = 1, by the adjoint where the filter is loose. Only for spans near such places.
     refined: Option<Minima>,
@@ -56,44 +56,41 @@ fn measure_spans(all: &mut [&mut Swept<'_>], stop: &Stop) {
     let full = sweep::<true>(&rides, stop);
     all.iter_mut().zip(full).for_each(|(swept, full)| swept.full = full);
 
-    let is_loose = |swept: &Swept<'_>| swept.full.loose.iter().any(|&unit| unit < usize::MAX);
-    let mut loose: Vec<_> = all.iter_mut().filter(|swept| is_loose(swept)).collect();
-    let rides: Vec<Ride<'_>> = loose.iter().map(|swept| swept.ride(1.0, Wanted::PLAIN)).collect();
-    let nominal = sweep::<false>(&rides, stop);
-    loose.iter_mut().zip(nominal).for_each(|(swept, nominal)| swept.nominal = Some(nominal));
+    let in_doubt = blocks(all, |swept, span| swept.loose(span) && !swept.has_room(span));
+    let nominal = sweep_where::<false>(all, &in_doubt, |_| (1.0, Wanted::PLAIN), stop);
+    all.iter_mut().zip(nominal).for_each(|(swept, nominal)| swept.nominal = nominal);
 
-    let near: Vec<Vec<bool>> = all.iter().map(|swept| swept.blocks(|span| swept.worth(span))).collect();
-    let refined = sweep_where(all, &near, 1.0, |swept| Refining::From(&swept.full.loose), stop);
+    let near = blocks(all, |swept, span| swept.worth(span));
+    let refined = sweep_where::<true>(all, &near, |swept| (1.0, swept.refining()), stop);
     all.iter_mut().zip(refined).for_each(|(swept, refined)| swept.refined = refined);
 
-    let failing: Vec<Vec<bool>> = all.iter().map(|swept| swept.blocks(|span| swept.at_full(span).fails())).collect();
     // Each block uses the same kind of bound as at γ = 1: only then is the leeway concave in γ.
-    let alike = |swept: &'_ Swept<'_>| swept.refined.is_some();
-    let least = sweep_where(
-        all,
-        &failing,
-        0.0,
-        |swept| if alike(swept) { Refining::From(&swept.full.loose) } else { Refining::Nowhere },
-        stop,
-    );
+    let failing = blocks(all, |swept, span| swept.at_full(span).fails());
+    let alike = |swept| if Swept::is_refined(swept) { swept.refining() } else { Wanted::ALL };
+    let least = sweep_where::<true>(all, &failing, |swept| (0.0, alike(swept)), stop);
     all.iter_mut().zip(least).for_each(|(swept, least)| swept.least = least);
 }
 
-/// Sweeps each vehicle of which some blocks are asked for.
-fn sweep_where<'s>(
+/// By vehicle and block of head stations: whether the vehicle may then touch a span that is `meant`.
+fn blocks(all: &[&mut Swept<'_>], meant: impl Fn(&Swept<'_>, &Range<usize>) -> bool) -> Vec<Vec<bool>> {
+    all.iter().map(|swept| swept.blocks(|span| meant(swept, span))).collect()
+}
+
+/// Sweeps some blocks of each vehicle of which any are asked for, at the γ and with the refining that `how` says.
+fn sweep_where<'s, const CERTIFY: bool>(
     all: &'s [&mut Swept<'_>],
     blocks: &'s [Vec<bool>],
-    shrink: f64,
-    refining: impl Fn(&'s Swept<'_>) -> Refining<'s>,
+    how: impl Fn(&'s Swept<'_>) -> (f64, Wanted<'s>),
     stop: &Stop,
 ) -> Vec<Option<Minima>> {
     let asked: Vec<usize> = (0..all.len()).filter(|&i| blocks[i].contains(&true)).collect();
     let ride = |&i: &usize| {
-        all[i].ride(shrink, Wanted { blocks: Some(&blocks[i]), refining: refining(&*all[i]), ..Wanted::ALL })
+        let (shrink, wanted) = how(&*all[i]);
+        all[i].ride(shrink, Wanted { blocks: Some(&blocks[i]), ..wanted })
     };
     let rides: Vec<Ride<'_>> = asked.iter().map(ride).collect();
     let mut out = vec![None; all.len()];
-    asked.iter().zip(sweep::<true>(&rides, stop)).for_each(|(&i, minima)| out[i] = Some(minima));
+    asked.iter().zip(sweep::<CERTIFY>(&rides, stop)).for_each(|(&i, minima)| out[i] = Some(minima));
     out
 }
 
@@ -240,13 +237,31 @@ impl<'m> Swept<'m> {
         blocks
     }
 
-    /// Whether the adjoint is worth its time: the filter is loose where some unit may touch the span, and the vehicle
-    /// would fit if it kept to its path exactly. ε and σ do not decide, because raising them must not bring a better
-    /// bound.
-    fn worth(&self, span: &Range<usize>) -> bool {
-        let Some(nominal) = &self.nominal else { return false };
+    /// Whether the filter is loose where some unit may touch the span.
+    fn loose(&self, span: &Range<usize>) -> bool {
         self.full.loose[self.touching(span)].iter().any(|&unit| unit < usize::MAX)
-            && nominal.room_on(spans::stations(&self.track, span))
+    }
+
+    /// Whether the filter's leeway is nowhere negative on the span.
+    fn has_room(&self, span: &Range<usize>) -> bool {
+        self.full.room_on(spans::stations(&self.track, span))
+    }
+
+    /// Whether the adjoint is worth its time: the filter is loose, and the vehicle would fit if it kept to its path exactly, as it
+    /// does where the filter's leeway is enough. A greater ε or σ must not bring a better bound, and takes room away at most.
+    fn worth(&self, span: &Range<usize>) -> bool {
+        let nominal =
+            || self.nominal.as_ref().is_some_and(|nominal| nominal.room_on(spans::stations(&self.track, span)));
+        self.loose(span) && (self.has_room(span) || nominal())
+    }
+
+    /// All leeways, by the adjoint where the filter is loose at γ = 1.
+    fn refining(&self) -> Wanted<'_> {
+        Wanted { refining: Refining::From(&self.full.loose), ..Wanted::ALL }
+    }
+
+    fn is_refined(&self) -> bool {
+        self.refined.is_some()
     }
 
     /// The best known result at γ = 1.
