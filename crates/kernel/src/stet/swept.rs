@@ -242,9 +242,9 @@ impl<'m> Swept<'m> {
         self.full.loose[self.touching(span)].iter().any(|&unit| unit < usize::MAX)
     }
 
-    /// Whether the filter's leeway is nowhere negative on the span.
+    /// Whether the filter's leeway is known to be nowhere negative on the span. Leeway in areas is noted elsewhere.
     fn has_room(&self, span: &Range<usize>) -> bool {
-        self.full.room_on(spans::stations(&self.track, span))
+        self.track.areas.is_empty() && self.full.room_on(spans::stations(&self.track, span))
     }
 
     /// Whether the adjoint is worth its time: the filter is loose, and the vehicle would fit if it kept to its path exactly, as it
