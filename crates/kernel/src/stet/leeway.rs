@@ -284,6 +284,11 @@ fn inside<const REFINED: bool>(
 #[inline(always)]
 fn sags(before: &Sample, sample: &Sample, s: &States, gap: f64) -> bool {
     let [most, least] = bends(&[before, sample], s, gap);
+    // The sagitta of the whole gap is never less, and costs no division.
+    let whole = whole_sagitta(most, gap).max(whole_sagitta(-least, gap));
+    if whole.0.iter().all(|&sag| sag < 0.999 * SAG_M) {
+        return false;
+    }
     let left = lowest_between(sharpest(most, gap), gap, (before.left - sample.left).abs());
     let right = lowest_between(sharpest(-least, gap), gap, (before.right - sample.right).abs());
     left.max(right).0.iter().any(|&sag| sag > SAG_M)
@@ -471,10 +476,11 @@ fn lowest_between(bend: V, gap: f64, apart: V) -> V {
     let c = bend + 1e-9;
     let z = c * gap;
     let z2 = z * z;
+    let per_z = V::splat(1.0) / z;
     // Up to z = 2, ln cosh z ≤ (z²/2)/(1 + z²/8), and tanh z ≥ z/(1 + z²/3).
-    let rise = z2 * 0.5 / ((z2 * 0.125 + 1.0) * c);
-    let solved = (rise - apart) * (z2 * (1.0 / 3.0) + 1.0) / z;
-    let parabola = V::splat(0.5 * gap) - apart / z;
+    let rise = z * (0.5 * gap) / (z2 * 0.125 + 1.0);
+    let solved = (rise - apart) * (z2 * (1.0 / 3.0) + 1.0) * per_z;
+    let parabola = V::splat(0.5 * gap) - apart * per_z;
     let nearer = select_negative(V::splat(2.0) - z, parabola, parabola.min(solved)).max(ZERO);
     c * nearer * nearer * 0.5
 }
