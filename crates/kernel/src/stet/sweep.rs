@@ -138,7 +138,14 @@ impl Ride<'_> {
         let track = self.track;
         let ahead = ((self.model.front + 4.0) / track.spacing).ceil() as usize + LANES;
         let last = track.len() - ahead - BLOCK;
-        self.wanted.only.map_or(last, |span| last.min(spans::touching(track, self.model, span).end))
+        let last = self.wanted.only.map_or(last, |span| last.min(spans::touching(track, self.model, span).end));
+        self.asked_end().map_or(last, |end| last.min(end))
+    }
+
+    /// The head station behind the last block that is asked for, if not all are.
+    fn asked_end(&self) -> Option<usize> {
+        let blocks = self.wanted.blocks?;
+        Some(blocks.iter().rposition(|&asked| asked).map_or(0, |block| (block + 1) * BLOCK))
     }
 }
 
@@ -284,6 +291,10 @@ impl<'r> Lane<'r> {
 
     fn finish(mut self) -> Minima {
         let track = self.ride.track;
+        if self.ride.asked_end().is_some_and(|end| self.head >= end) {
+            // Stations farther on are not asked for, and not lost.
+            self.bodies.iter_mut().for_each(|body| body::skip(track, body, track.len()));
+        }
         self.bodies.iter().for_each(|body| body::finish(track, body, &mut self.minima));
         track.torn.iter().for_each(|&k| self.minima.lose(k));
         self.minima
