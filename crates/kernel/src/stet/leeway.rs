@@ -202,25 +202,25 @@ fn sample<const CERTIFY: bool, const REFINED: bool>(
     sample_apart::<CERTIFY, REFINED>(track, body, index, s, knots)
 }
 
-/// As [`sample`], with each point at its own nearest station. It is a function of its own so that the common case stays
-/// in registers.
-#[cold]
-#[inline(never)]
-fn sample_apart<const CERTIFY: bool, const REFINED: bool>(
-    track: &Track,
-    body: &mut Body,
-    index: usize,
-    s: &States,
-    knots: &Knots,
-) -> Sample {
-    let point = &body.points[index];
-    let (tag, spot) = (point.tag, point.spot);
-    let (x, y) = (s.x + s.ux * spot.ahead, s.y + s.uy * spot.ahead);
-    let feet = follow(track, point.foot, x, y);
-    let (sample, seen) = sample_at::<CERTIFY, REFINED>(track, body, &spot, s, knots, feet, tag);
-    let last = LANES - 1;
-    body.points[index].foot = next_foot(track, feet[last], seen.along.0[last]);
-    sample
+by_instruction_set! {
+    /// As [`sample`], with each point at its own nearest station.
+    /// A function of its own leaves the registers to the common case.
+    fn sample_apart<const CERTIFY: bool, const REFINED: bool>(
+        track: &Track,
+        body: &mut Body,
+        index: usize,
+        s: &States,
+        knots: &Knots,
+    ) -> Sample {
+        let point = &body.points[index];
+        let (tag, spot) = (point.tag, point.spot);
+        let (x, y) = (s.x + s.ux * spot.ahead, s.y + s.uy * spot.ahead);
+        let feet = follow(track, point.foot, x, y);
+        let (sample, seen) = sample_at::<CERTIFY, REFINED>(track, body, &spot, s, knots, feet, tag);
+        let last = LANES - 1;
+        body.points[index].foot = next_foot(track, feet[last], seen.along.0[last]);
+        sample
+    }
 }
 
 /// A place of a body at eight head stations with given feet.
@@ -252,32 +252,33 @@ fn sample_at<const CERTIFY: bool, const REFINED: bool>(
     )
 }
 
-/// Examines the side between a body point and the previous one in `parts` parts, where half-widths bulge.
-#[cold]
-#[inline(never)]
-#[allow(clippy::too_many_arguments)] // As above.
-fn inside<const REFINED: bool>(
-    track: &Track,
-    body: &Body,
-    index: usize,
-    s: &States,
-    knots: &Knots,
-    (before, after): (&Sample, &Sample),
-    parts: f64,
-    minima: &mut Minima,
-) {
-    let part_m = body.points[index].gap / parts;
-    let mut last: Option<Sample> = None;
-    for number in 1..parts as usize {
-        let mut sample = inner::<REFINED>(track, body, index, s, knots, (before, after), number as f64 / parts);
-        let [most, least] = bends(&[before, &sample, after], s, part_m);
-        sample.lowered_left = sample.left - whole_sagitta(most, part_m);
-        sample.lowered_right = sample.right - whole_sagitta(-least, part_m);
-        sample.lower(minima);
-        at_marks(track, (last.as_ref().unwrap_or(before), &sample), s, part_m, minima);
-        last = Some(sample);
+by_instruction_set! {
+    /// Examines the side between a body point and the previous one in `parts` parts, where half-widths bulge.
+    #[allow(clippy::too_many_arguments)] // As above.
+    fn inside<const REFINED: bool>(
+        track: &Track,
+        body: &Body,
+        index: usize,
+        s: &States,
+        knots: &Knots,
+        ends: (&Sample, &Sample),
+        parts: f64,
+        minima: &mut Minima,
+    ) {
+        let (before, after) = ends;
+        let part_m = body.points[index].gap / parts;
+        let mut last: Option<Sample> = None;
+        for number in 1..parts as usize {
+            let mut sample = inner::<REFINED>(track, body, index, s, knots, (before, after), number as f64 / parts);
+            let [most, least] = bends(&[before, &sample, after], s, part_m);
+            sample.lowered_left = sample.left - whole_sagitta(most, part_m);
+            sample.lowered_right = sample.right - whole_sagitta(-least, part_m);
+            sample.lower(minima);
+            at_marks(track, (last.as_ref().unwrap_or(before), &sample), s, part_m, minima);
+            last = Some(sample);
+        }
+        at_marks(track, (last.as_ref().unwrap_or(before), after), s, part_m, minima);
     }
-    at_marks(track, (last.as_ref().unwrap_or(before), after), s, part_m, minima);
 }
 
 /// Whether the bound between two body points would take more than [`SAG_M`] off either side.
@@ -294,36 +295,37 @@ fn sags(before: &Sample, sample: &Sample, s: &States, gap: f64) -> bool {
     left.max(right).0.iter().any(|&sag| sag > SAG_M)
 }
 
-/// Covers the side between a body point and the previous one in parts of at most [`PART_M`]. The bound between two points counts
-/// the sharpest parallel under either of them; where a side is half in a bend, that is much for the whole gap.
-#[cold]
-#[inline(never)]
-fn piecewise<const REFINED: bool>(
-    track: &Track,
-    body: &Body,
-    index: usize,
-    s: &States,
-    knots: &Knots,
-    (before, after): (&mut Sample, &mut Sample),
-    minima: &mut Minima,
-) {
-    let parts = (body.points[index].gap / PART_M).ceil();
-    let part_m = body.points[index].gap / parts;
-    let mut last: Option<Sample> = None;
-    for number in 1..parts as usize {
-        let mut inner = inner::<REFINED>(track, body, index, s, knots, (before, after), number as f64 / parts);
+by_instruction_set! {
+    /// Covers the side between a body point and the previous one in parts of at most [`PART_M`]. The bound between two points counts
+    /// the sharpest parallel under either of them; where a side is half in a bend, that is much for the whole gap.
+    fn piecewise<const REFINED: bool>(
+        track: &Track,
+        body: &Body,
+        index: usize,
+        s: &States,
+        knots: &Knots,
+        ends: (&mut Sample, &mut Sample),
+        minima: &mut Minima,
+    ) {
+        let (before, after) = ends;
+        let parts = (body.points[index].gap / PART_M).ceil();
+        let part_m = body.points[index].gap / parts;
+        let mut last: Option<Sample> = None;
+        for number in 1..parts as usize {
+            let mut inner = inner::<REFINED>(track, body, index, s, knots, (before, after), number as f64 / parts);
+            let previous = last.as_mut().unwrap_or(before);
+            between_points(previous, &mut inner, s, part_m, 1.0);
+            at_marks(track, (previous, &inner), s, part_m, minima);
+            if let Some(passed) = last.replace(inner) {
+                passed.lower(minima);
+            }
+        }
         let previous = last.as_mut().unwrap_or(before);
-        between_points(previous, &mut inner, s, part_m, 1.0);
-        at_marks(track, (previous, &inner), s, part_m, minima);
-        if let Some(passed) = last.replace(inner) {
+        between_points(previous, after, s, part_m, 1.0);
+        at_marks(track, (previous, after), s, part_m, minima);
+        if let Some(passed) = last {
             passed.lower(minima);
         }
-    }
-    let previous = last.as_mut().unwrap_or(before);
-    between_points(previous, after, s, part_m, 1.0);
-    at_marks(track, (previous, after), s, part_m, minima);
-    if let Some(passed) = last {
-        passed.lower(minima);
     }
 }
 
