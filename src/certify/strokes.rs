@@ -21,7 +21,7 @@ use crate::words::{Named, VerdictKind, verdict_words};
 
 /// Rides (a vehicle on a stroke) that are certified together: enough to fill the lanes of the kernel's sweeps with roads of the same
 /// length, few enough to hold in memory.
-const RIDES: usize = 256;
+const RIDES: usize = 128;
 /// Groups of strokes per thread and batch: enough to keep the threads busy.
 const GROUPS: usize = 8;
 
