@@ -3,6 +3,7 @@
 //! Each value is certified: with it, the edge or turn is safe. The search goes in steps, because nobody measures a road to the millimetre,
 //! and it ends with a value that does. A value one step lower need not fail.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::least::least_of;
@@ -13,7 +14,7 @@ use crate::network::{Network, Stroke};
 use crate::osm::facts::Policy;
 use crate::rows::TurnNeed;
 use crate::settings::Settings;
-use crate::stet::{Model, SpanResult, certify_spans};
+use crate::stet::{Case, Model, SpanResult, certify_cases, certify_spans};
 use crate::turns::{Reach, StrokeLine, TurnFacts, TurnParams, turn_on};
 use crate::verdict::UnknownReason;
 
@@ -104,27 +105,68 @@ impl Search {
     }
 }
 
-/// Edges with the least width in metres with which each would be safe, if its stroke were nowhere narrower. An edge for which no width
-/// up to [`MOST_MORE_M`] more would do is left out.
-pub(super) fn edge_needs(job: &Job<'_>, stroke: &Stroke, model: &Model, narrow: &[Narrow<'_>]) -> Vec<(u32, f64)> {
-    let policy = job.settings.policy;
+/// The edges of a stroke that are too narrow for a vehicle.
+pub(super) struct Lacking<'r> {
+    pub(super) stroke: &'r Stroke,
+    pub(super) model: &'r Model,
+    pub(super) narrow: Vec<Narrow<'r>>,
+}
+
+/// For each stroke and vehicle: edges with the least width in metres with which each would be safe, if its stroke were nowhere narrower.
+/// An edge for which no width up to [`MOST_MORE_M`] more would do is left out. All searches take their next step together, so that
+/// the kernel certifies many widened strokes side by side.
+pub(super) fn edge_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(u32, f64)>> {
     let least_m = |edge: u32| {
-        let strip = job.network.edges.get(edge as usize).and_then(|edge| job.network.section(edge).strip(policy));
+        let strip = job.network.edges.get(edge as usize);
+        let strip = strip.and_then(|edge| job.network.section(edge).strip(job.settings.policy));
         strip.map(|strip| f64::from(strip.width_m()))
     };
-    let mut searches: Vec<Option<Search>> =
-        narrow.iter().map(|narrow| Search::begin(narrow, least_m(narrow.edge)?)).collect();
+    let begin = |lacking: &Lacking<'_>| -> Vec<Search> {
+        lacking.narrow.iter().filter_map(|narrow| Search::begin(narrow, least_m(narrow.edge)?)).collect()
+    };
+    let mut searches: Vec<Vec<Search>> = lacking.iter().map(begin).collect();
     for _ in 0..ROUNDS {
-        let mut wanted: Vec<i64> = searches.iter().flatten().filter_map(|search| search.next).collect();
-        wanted.sort_unstable();
-        let Some(&steps) = wanted.get(wanted.len() / 2) else { break };
-        let results = with_width(job, stroke, model, steps as f64 / WIDTHS);
-        for search in searches.iter_mut().flatten().filter(|search| search.next.is_some()) {
-            let result = results.iter().find(|(edge, _)| *edge == search.edge).map(|(_, result)| result);
-            search.take(steps, result);
+        let mut asked: Vec<(u32, i64, usize)> = Vec::new();
+        for (i, (searches, lacking)) in searches.iter().zip(lacking).enumerate() {
+            let mut wanted: Vec<i64> = searches.iter().filter_map(|search| search.next).collect();
+            wanted.sort_unstable();
+            asked.extend(wanted.get(wanted.len() / 2).map(|&steps| (lacking.stroke.edges.start, steps, i)));
+        }
+        if asked.is_empty() {
+            break;
+        }
+        asked.sort_unstable();
+        // Vehicles that ask for the same width of a stroke share its corridor.
+        let alike: Vec<&[(u32, i64, usize)]> = asked.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).collect();
+        let wide: Vec<Option<(StrokeCorridor, Vec<Range<usize>>)>> =
+            alike.iter().map(|same| widened(job, lacking[same[0].2].stroke, same[0].1 as f64 / WIDTHS)).collect();
+        let cases: Vec<Case<'_>> = alike
+            .iter()
+            .zip(&wide)
+            .filter_map(|(same, wide)| Some((same, wide.as_ref()?)))
+            .flat_map(|(same, (made, spans))| {
+                let case =
+                    |&(.., i): &(u32, i64, usize)| Case { corridor: &made.corridor, spans, model: lacking[i].model };
+                same.iter().map(case)
+            })
+            .collect();
+        let mut rows = certify_cases(&cases, &job.settings.stet).into_iter();
+        for (same, wide) in alike.iter().zip(&wide) {
+            for &(_, steps, i) in *same {
+                let row = wide.as_ref().and_then(|(made, _)| Some((made, rows.next()?)));
+                for search in searches[i].iter_mut().filter(|search| search.next.is_some()) {
+                    let result = row.as_ref().and_then(|(made, row)| {
+                        let mut spans = made.spans.iter().zip(&row.spans);
+                        let known = spans.find(|(span, _)| span.edge == search.edge && span.unknown.is_none());
+                        known.map(|(_, result)| result)
+                    });
+                    search.take(steps, result);
+                }
+            }
         }
     }
-    searches.into_iter().flatten().filter_map(|search| Some((search.edge, search.does? as f64 / WIDTHS))).collect()
+    let found = |search: Search| Some((search.edge, search.does? as f64 / WIDTHS));
+    searches.into_iter().map(|searches| searches.into_iter().filter_map(found).collect()).collect()
 }
 
 /// The least width in metres with which an edge that lacks room would be safe, if its stroke were nowhere narrower. `stroke` is an index
@@ -137,19 +179,17 @@ pub fn edge_need(network: &Network, (stroke, edge): (u32, u32), model: &Model, s
     let rows = certify_spans(&made.corridor, &[model], std::slice::from_ref(&span.stations), &settings.stet);
     let narrow = Narrow::of(&made, edge, rows.first()?.spans.first()?);
     let job = Job { network, models: std::slice::from_ref(model), settings };
-    edge_needs(&job, stroke, model, &[narrow]).pop().map(|(_, need_m)| need_m)
+    let lacking = Lacking { stroke, model, narrow: vec![narrow] };
+    edge_needs(&job, &[lacking]).pop()?.pop().map(|(_, need_m)| need_m)
 }
 
-/// The results of a stroke that is nowhere narrower than a width, by edge. Edges without a corridor there are left out.
-fn with_width(job: &Job<'_>, stroke: &Stroke, model: &Model, width_m: f64) -> Vec<(u32, SpanResult)> {
-    let Settings { policy, corridor, stet, .. } = job.settings;
+/// A stroke that is nowhere narrower than a width, and the stations of its edges. `None` if it has no corridor then.
+fn widened(job: &Job<'_>, stroke: &Stroke, width_m: f64) -> Option<(StrokeCorridor, Vec<Range<usize>>)> {
+    let Settings { policy, corridor, .. } = job.settings;
     let sections = |edge: &_| job.network.section(edge).at_least(*policy, width_m);
-    let Ok(made) = stroke_corridor_on(job.network, stroke, &sections, *policy, corridor) else { return Vec::new() };
-    let spans: Vec<_> = made.spans.iter().map(|span| span.stations.clone()).collect();
-    let row = certify_spans(&made.corridor, &[model], &spans, stet).into_iter().next();
-    let results = row.map_or_else(Vec::new, |row| row.spans);
-    let known = made.spans.iter().zip(results).filter(|(span, _)| span.unknown.is_none());
-    known.map(|(span, result)| (span.edge, result)).collect()
+    let made = stroke_corridor_on(job.network, stroke, &sections, *policy, corridor).ok()?;
+    let spans = made.spans.iter().map(|span| span.stations.clone()).collect();
+    Some((made, spans))
 }
 
 /// The lines of strokes, by edge.

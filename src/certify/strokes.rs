@@ -8,14 +8,14 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::needs::{Narrow, edge_needs};
+use super::needs::{Lacking, Narrow, edge_needs};
 use crate::account::AccountRow;
-use crate::corridor::{Corridor, EdgeSpan, StrokeCorridor, stroke_corridor};
+use crate::corridor::{EdgeSpan, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::reporter::Reporter;
 use crate::rows::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StoredPlan};
 use crate::settings::{Needs, Settings};
-use crate::stet::{Model, Planned, SpanResult, certify_corridors};
+use crate::stet::{Case, Model, Planned, SpanResult, certify_cases};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
 use crate::words::{Named, VerdictKind, verdict_words};
 
@@ -142,19 +142,30 @@ fn certify_together(job: &Job<'_>, strokes: &[&Stroke]) -> Vec<StrokeResult> {
     let made: Vec<Result<StrokeCorridor, UnknownReason>> = strokes.iter().map(corridor).collect();
     let stations = |made: &StrokeCorridor| made.spans.iter().map(|span| span.stations.clone()).collect();
     let spans: Vec<Vec<Range<usize>>> = made.iter().flatten().map(stations).collect();
-    let corridors: Vec<(&Corridor, &[Range<usize>])> =
-        made.iter().flatten().zip(&spans).map(|(made, spans)| (&made.corridor, spans.as_slice())).collect();
-    let models: Vec<&Model> = job.models.iter().collect();
-    let mut rows = certify_corridors(&corridors, &models, &job.settings.stet).into_iter();
-    let result = |(stroke, made): (&&Stroke, &Result<StrokeCorridor, UnknownReason>)| match made {
-        Ok(made) => with_corridor(job, stroke, made, &rows.next().unwrap_or_default()),
+    let cases: Vec<Case<'_>> = made
+        .iter()
+        .flatten()
+        .zip(&spans)
+        .flat_map(|(made, spans)| job.models.iter().map(move |model| Case { corridor: &made.corridor, spans, model }))
+        .collect();
+    let all = certify_cases(&cases, &job.settings.stet);
+    let mut rows = all.chunks(job.models.len().max(1));
+    let rows: Vec<&[Planned]> =
+        made.iter().map(|made| if made.is_ok() { rows.next().unwrap_or_default() } else { &[] }).collect();
+    let result = |((stroke, made), rows): ((&&Stroke, &Result<StrokeCorridor, UnknownReason>), &&[Planned])| match made
+    {
+        Ok(made) => with_corridor(job, made, rows),
         Err(reason) => without_corridor(job, stroke, *reason),
     };
-    strokes.iter().zip(&made).map(result).collect()
+    let mut results: Vec<StrokeResult> = strokes.iter().zip(&made).zip(&rows).map(result).collect();
+    if job.settings.needs != Needs::Off {
+        add_needs(job, strokes, &made, &rows, &mut results);
+    }
+    results
 }
 
-fn with_corridor(job: &Job<'_>, stroke: &Stroke, made: &StrokeCorridor, rows: &[Planned]) -> StrokeResult {
-    let mut certificates: Vec<(usize, EdgeCertificate)> = rows
+fn with_corridor(job: &Job<'_>, made: &StrokeCorridor, rows: &[Planned]) -> StrokeResult {
+    let certificates: Vec<(usize, EdgeCertificate)> = rows
         .iter()
         .enumerate()
         .flat_map(|(vehicle, row)| made.spans.iter().zip(&row.spans).map(move |(span, result)| (vehicle, span, result)))
@@ -166,9 +177,6 @@ fn with_corridor(job: &Job<'_>, stroke: &Stroke, made: &StrokeCorridor, rows: &[
             Some((vehicle, EdgeCertificate { edge: span.edge, conclusion, need_width_m: None }))
         })
         .collect();
-    if job.settings.needs != Needs::Off {
-        add_needs(job, stroke, made, rows, &mut certificates);
-    }
     let measures = made.spans.iter().map(|span| {
         let measure = EdgeMeasure {
             length_m: None,
@@ -186,29 +194,32 @@ fn with_corridor(job: &Job<'_>, stroke: &Stroke, made: &StrokeCorridor, rows: &[
 /// Adds what the edges need that lack room.
 fn add_needs(
     job: &Job<'_>,
-    stroke: &Stroke,
-    made: &StrokeCorridor,
-    rows: &[Planned],
-    certificates: &mut [(usize, EdgeCertificate)],
+    strokes: &[&Stroke],
+    made: &[Result<StrokeCorridor, UnknownReason>],
+    rows: &[&[Planned]],
+    results: &mut [StrokeResult],
 ) {
-    for (vehicle, row) in rows.iter().enumerate() {
-        let mut lacking: Vec<&mut EdgeCertificate> = certificates
-            .iter_mut()
-            .filter(|(of, known)| *of == vehicle && known.conclusion.verdict == Verdict::Unsafe(UnsafeReason::Width))
-            .map(|(_, known)| known)
-            .collect();
-        if lacking.is_empty() {
-            continue;
+    let lacks = |known: &EdgeCertificate| known.conclusion.verdict == Verdict::Unsafe(UnsafeReason::Width);
+    let mut lacking = Vec::new();
+    let mut places = Vec::new();
+    for (place, (made, result)) in made.iter().zip(results.iter()).enumerate() {
+        let Ok(made) = made else { continue };
+        for (vehicle, row) in rows[place].iter().enumerate() {
+            let of_vehicle = result.certificates.iter().filter(|(of, known)| *of == vehicle && lacks(known));
+            let narrow: Vec<Narrow<'_>> = of_vehicle
+                .filter_map(|(_, known)| {
+                    let (_, result) = made.spans.iter().zip(&row.spans).find(|(span, _)| span.edge == known.edge)?;
+                    Some(Narrow::of(made, known.edge, result))
+                })
+                .collect();
+            if !narrow.is_empty() {
+                lacking.push(Lacking { stroke: strokes[place], model: &job.models[vehicle], narrow });
+                places.push((place, vehicle));
+            }
         }
-        let narrow: Vec<Narrow<'_>> = lacking
-            .iter()
-            .filter_map(|known| {
-                let (_, result) = made.spans.iter().zip(&row.spans).find(|(span, _)| span.edge == known.edge)?;
-                Some(Narrow::of(made, known.edge, result))
-            })
-            .collect();
-        let needs = edge_needs(job, stroke, &job.models[vehicle], &narrow);
-        for known in &mut lacking {
+    }
+    for ((place, vehicle), needs) in places.into_iter().zip(edge_needs(job, &lacking)) {
+        for (_, known) in results[place].certificates.iter_mut().filter(|(of, known)| *of == vehicle && lacks(known)) {
             known.need_width_m = needs.iter().find(|(edge, _)| *edge == known.edge).map(|(_, need_m)| *need_m);
         }
     }

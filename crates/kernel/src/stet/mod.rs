@@ -203,55 +203,65 @@ pub fn certify_spans(
     spans: &[Range<usize>],
     options: &Options,
 ) -> Vec<Planned> {
-    certify_corridors(&[(corridor, spans)], models, options).pop().unwrap_or_default()
+    let cases: Vec<Case<'_>> = models.iter().map(|model| Case { corridor, spans, model }).collect();
+    if corridor.is_empty() { Vec::new() } else { certify_cases(&cases, options) }
 }
 
-/// Certifies vehicles on several corridors, each as [`certify_spans`] does, and faster: eight rides share a sweep, whichever
-/// corridors they are on. The rows of one corridor do not depend on the other corridors.
+/// A vehicle on a corridor, with the spans of stations that are asked for.
+#[derive(Clone, Copy)]
+pub struct Case<'c> {
+    /// The corridor.
+    pub corridor: &'c Corridor,
+    /// Spans of its stations.
+    pub spans: &'c [Range<usize>],
+    /// The vehicle.
+    pub model: &'c Model,
+}
+
+/// Certifies each case as [`certify_spans`] does, and faster: eight vehicles share a sweep, whichever corridors they are on. No case
+/// matters to another one. The result of an empty corridor has no spans.
 #[must_use]
-pub fn certify_corridors(
-    corridors: &[(&Corridor, &[Range<usize>])],
-    models: &[&Model],
-    options: &Options,
-) -> Vec<Vec<Planned>> {
+pub fn certify_cases(cases: &[Case<'_>], options: &Options) -> Vec<Planned> {
     let never = Stop::default();
-    let mut rides: Vec<(Rc<Track>, usize, &Model)> = Vec::with_capacity(corridors.len() * models.len());
-    for (number, (corridor, spans)) in corridors.iter().enumerate().filter(|(_, (corridor, _))| !corridor.is_empty()) {
-        let mut tracks: Vec<(sweep::Reach, Rc<Track>)> = Vec::new();
-        for model in models {
-            let reach = sweep::Reach::of(model);
-            let known = tracks.iter().find(|(of, _)| *of == reach).map(|(_, track)| Rc::clone(track));
-            let track = known.unwrap_or_else(|| {
-                let made = track(corridor, model, spans, Marks::Ends, &Grounds::default());
-                tracks.push((reach, Rc::clone(&made)));
-                made
-            });
-            rides.push((track, number, model));
-        }
+    let known: Vec<&Case<'_>> = cases.iter().filter(|case| !case.corridor.is_empty()).collect();
+    let mut tracks: Vec<Rc<Track>> = Vec::with_capacity(known.len());
+    for (i, case) in known.iter().enumerate() {
+        let alike = |other: &&Case<'_>| {
+            std::ptr::eq(other.corridor, case.corridor)
+                && std::ptr::eq(other.spans, case.spans)
+                && sweep::Reach::of(other.model) == sweep::Reach::of(case.model)
+        };
+        // Cases of one corridor follow each other.
+        let recent =
+            known[..i].iter().zip(&tracks).rev().take_while(|(other, _)| std::ptr::eq(other.corridor, case.corridor));
+        let shared = recent.into_iter().find(|(other, _)| alike(other)).map(|(_, track)| Rc::clone(track));
+        let made = || track(case.corridor, case.model, case.spans, Marks::Ends, &Grounds::default());
+        tracks.push(shared.unwrap_or_else(made));
     }
-    let spans = |number: usize| corridors[number].1;
-    let unplanned: Vec<Unplanned<'_>> = rides
+    let unplanned: Vec<Unplanned<'_>> = known
         .iter()
-        .map(|(track, number, model)| Unplanned { track, model, spans: spans(*number), held: &[] })
+        .zip(&tracks)
+        .map(|(case, track)| Unplanned { track, model: case.model, spans: case.spans, held: &[] })
         .collect();
     let plans = plan::best(&unplanned, options, &never);
-    let mut swept: Vec<Swept<'_>> = rides
+    let mut swept: Vec<Swept<'_>> = known
         .iter()
+        .zip(&tracks)
         .zip(plans)
-        .map(|((track, number, model), plan)| Swept::ready(Rc::clone(track), model, plan, spans(*number), &never))
+        .map(|((case, track), plan)| Swept::ready(Rc::clone(track), case.model, plan, case.spans, &never))
         .collect();
     swept::measure(&mut swept, Marks::Ends, &never);
-    let mut rows: Vec<Vec<Planned>> = vec![Vec::new(); corridors.len()];
-    for ((_, number, model), swept) in rides.iter().zip(swept) {
-        let (corridor, spans) = corridors[*number];
+    let mut swept = swept.into_iter();
+    let planned = |case: &Case<'_>| {
+        let swept = if case.corridor.is_empty() { None } else { swept.next() };
+        let Some(swept) = swept else { return Planned { plan: Plan::centred(0), spans: Vec::new() } };
         let results = swept.results();
-        let held = held(corridor, model, spans, Marks::Ends, options, &results, &never);
-        rows[*number].push(match held {
+        match held(case.corridor, case.model, case.spans, Marks::Ends, options, &results, &never) {
             Some((held, spans)) => Planned { plan: held.plan, spans },
             None => Planned { plan: swept.plan, spans: results },
-        });
-    }
-    rows
+        }
+    };
+    cases.iter().map(planned).collect()
 }
 
 /// The certificate of one vehicle over a whole corridor.
