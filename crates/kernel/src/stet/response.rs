@@ -85,8 +85,8 @@ impl Response {
             if let Some(next) = behind.first() {
                 let ratio = self.ratio[unit];
                 for ((next, e), y) in next.iter().zip(e.iter_mut()).zip(y.iter_mut()) {
-                    *y = *y + *next * (ratio + 1.0);
-                    *e = *e - *next * ratio;
+                    *y += *next * (ratio + 1.0);
+                    *e -= *next * ratio;
                 }
             }
             let mut later = 0.0;

@@ -60,7 +60,7 @@ fn measure_spans(all: &mut [&mut Swept<'_>], stop: &Stop) {
     let nominal = sweep_where::<false>(all, &in_doubt, |_| (1.0, Wanted::PLAIN), stop);
     all.iter_mut().zip(nominal).for_each(|(swept, nominal)| swept.nominal = nominal);
 
-    let near = blocks(all, |swept, span| swept.worth(span));
+    let near = blocks(all, Swept::worth);
     let refined = sweep_where::<true>(all, &near, |swept| (1.0, swept.refining()), stop);
     all.iter_mut().zip(refined).for_each(|(swept, refined)| swept.refined = refined);
 
@@ -72,7 +72,7 @@ fn measure_spans(all: &mut [&mut Swept<'_>], stop: &Stop) {
 }
 
 /// By vehicle and block of head stations: whether the vehicle may then touch a span that is `meant`.
-fn blocks(all: &[&mut Swept<'_>], meant: impl Fn(&Swept<'_>, &Range<usize>) -> bool) -> Vec<Vec<bool>> {
+fn blocks<'m>(all: &[&mut Swept<'m>], meant: impl Fn(&Swept<'m>, &Range<usize>) -> bool) -> Vec<Vec<bool>> {
     all.iter().map(|swept| swept.blocks(|span| meant(swept, span))).collect()
 }
 
@@ -289,5 +289,62 @@ impl<'m> Swept<'m> {
 
     pub(super) fn results(&self) -> Vec<SpanResult> {
         self.spans.iter().map(|span| self.result(span)).collect()
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use netcert_base::corridor::CurvatureProfile;
+    use netcert_base::vehicle::Catalogue;
+
+    use super::*;
+    use crate::stet::{Case, certify_cases, certify_spans};
+
+    /// A bend with as much room on both sides, between straights.
+    fn bend(straight_m: f64, curvature: f64, half_m: f64) -> Corridor {
+        let profile = CurvatureProfile::new(1.0)
+            .straight(straight_m)
+            .clothoid(curvature, 15.0)
+            .arc(curvature, 20.0)
+            .clothoid(0.0, 15.0)
+            .straight(straight_m);
+        Corridor::from_curvature(1.0, [3.0, 4.0], 1.0, &profile.curvature, half_m, half_m)
+    }
+
+    #[test]
+    fn no_case_matters_to_another_one() {
+        let catalogue = Catalogue::builtin().unwrap();
+        let model = |id: &str| Model::new(catalogue.get(id).unwrap()).unwrap();
+        let models = ["EU-SEMI16.5", "AU-ATRIPLE53", "US-WB67D"].map(model);
+        let corridors: Vec<Corridor> = (0..11)
+            .map(|i| bend(20.0 + 37.0 * f64::from(i % 4), 0.004 * f64::from(i), 1.6 + 0.15 * f64::from(i % 5)))
+            .collect();
+        let spans: Vec<Vec<Range<usize>>> =
+            corridors.iter().map(|corridor| vec![0..corridor.len() / 2, corridor.len() / 2..corridor.len()]).collect();
+        let all = || corridors.iter().zip(&spans);
+        let cases: Vec<Case<'_>> = all()
+            .flat_map(|(corridor, spans)| models.iter().map(move |model| Case { corridor, spans, model }))
+            .collect();
+        let options = Options::default();
+        let together = certify_cases(&cases, &options);
+        let alone: Vec<_> =
+            cases.iter().flat_map(|case| certify_spans(case.corridor, &[case.model], case.spans, &options)).collect();
+        assert_eq!(together, alone);
+        let results = || together.iter().flat_map(|planned| &planned.spans);
+        assert!(results().any(SpanResult::safe) && results().any(SpanResult::too_narrow));
+        assert!(results().any(|result| result.safe() && result.shrink < 1.0));
+    }
+
+    #[test]
+    fn an_empty_corridor_has_no_spans_and_disturbs_no_other_one() {
+        let model = Model::new(Catalogue::builtin().unwrap().get("EU-SEMI16.5").unwrap()).unwrap();
+        let corridor = bend(60.0, 0.01, 2.5);
+        let empty = Corridor { x: Vec::new(), ..Corridor::straight(0.0, 2.0, 2.0) };
+        let spans = [0..corridor.len()];
+        let case = |corridor| Case { corridor, spans: &spans, model: &model };
+        let rows = certify_cases(&[case(&empty), case(&corridor)], &Options::default());
+        assert!(rows[0].spans.is_empty());
+        assert_eq!(rows[1..], certify_spans(&corridor, &[&model], &spans, &Options::default()));
     }
 }
