@@ -341,10 +341,10 @@ mod tests {
         let model = Model::new(Catalogue::builtin().unwrap().get("EU-SEMI16.5").unwrap()).unwrap();
         let corridor = bend(60.0, 0.01, 2.5);
         let empty = Corridor { x: Vec::new(), ..Corridor::straight(0.0, 2.0, 2.0) };
-        let spans = [0..corridor.len()];
-        let case = |corridor| Case { corridor, spans: &spans, model: &model };
+        let whole = 0..corridor.len();
+        let case = |corridor| Case { corridor, spans: std::slice::from_ref(&whole), model: &model };
         let rows = certify_cases(&[case(&empty), case(&corridor)], &Options::default());
         assert!(rows[0].spans.is_empty());
-        assert_eq!(rows[1..], certify_spans(&corridor, &[&model], &spans, &Options::default()));
+        assert_eq!(rows[1..], certify_spans(&corridor, &[&model], std::slice::from_ref(&whole), &Options::default()));
     }
 }
