@@ -83,11 +83,30 @@ pub struct Swept<'a> {
     poses: HashMap<(usize, usize), Option<[f64; 2]>>,
 }
 
+/// Where a foot is searched from.
+#[derive(Debug, Clone, Copy)]
+struct Hint {
+    /// Stations of the road. NaN: nowhere yet.
+    s: f64,
+    /// The road there, if it is known.
+    place: Option<Place>,
+}
+
+impl Hint {
+    const NONE: Hint = Hint { s: f64::NAN, place: None };
+
+    fn at(s: f64) -> Self {
+        Self { s, place: None }
+    }
+}
+
 /// A corner of a cell.
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     /// Foot, in stations of the road.
     s: f64,
+    /// The road there.
+    place: Place,
     /// Nominal leeway, metres: half-width less lateral place.
     clear: f64,
     /// Most that the tubes take away, metres.
@@ -99,6 +118,12 @@ struct Corner {
     slope: f64,
     /// Stations by which the foot may be off.
     reach: f64,
+}
+
+impl Corner {
+    fn hint(&self) -> Hint {
+        Hint { s: self.s, place: Some(self.place) }
+    }
 }
 
 /// A cell: one side of one unit in one step.
@@ -196,11 +221,11 @@ impl<'a> Swept<'a> {
             return Vec::new();
         };
         let mut found = Shortfalls::new(stretches);
-        let mut feet = vec![f64::NAN; self.chain.links.len() * 4];
+        let mut feet = vec![Hint::NONE; self.chain.links.len() * 4];
         for step in self.steps(first..last + 1) {
             if self.road.plane.decides(step) {
                 // Feet move on unseen.
-                feet.fill(f64::NAN);
+                feet.fill(Hint::NONE);
                 continue;
             }
             for unit in only.map_or(0..self.chain.links.len(), |unit| unit..unit + 1) {
@@ -218,11 +243,11 @@ impl<'a> Swept<'a> {
     }
 
     /// Decides a cell. Returns the feet of its ends at its end in time.
-    fn cell(&mut self, cell: &Cell, hints: [f64; 2], targets: &Targets, found: &mut Shortfalls) -> [f64; 2] {
+    fn cell(&mut self, cell: &Cell, hints: [Hint; 2], targets: &Targets, found: &mut Shortfalls) -> [Hint; 2] {
         let poses = cell.t.map(|t| self.pose(cell.step, cell.unit, t));
         // Rough feet: the hint, or the place on a straight road.
         let guess = |k: usize| {
-            if hints[k].is_nan() { self.rough_foot(cell.step, cell.unit, cell.a[k]) } else { hints[k] }
+            if hints[k].s.is_nan() { Hint::at(self.rough_foot(cell.step, cell.unit, cell.a[k])) } else { hints[k] }
         };
         let mut feet = [guess(0), guess(1)];
         let mut corners = [[None; 2]; 2];
@@ -230,7 +255,7 @@ impl<'a> Swept<'a> {
             for k in 0..2 {
                 corners[t][k] = self.corner(cell, *pose, cell.a[k], feet[k]);
                 if let Some(corner) = corners[t][k] {
-                    feet[k] = corner.s;
+                    feet[k] = corner.hint();
                 }
             }
         }
@@ -240,12 +265,12 @@ impl<'a> Swept<'a> {
                 let middle = f64::midpoint(cell.a[0], cell.a[1]);
                 for a in [[cell.a[0], middle], [middle, cell.a[1]]] {
                     let half = Cell { a, halvings: cell.halvings + 1, ..*cell };
-                    self.cell(&half, [f64::NAN; 2], targets, found);
+                    self.cell(&half, [Hint::NONE; 2], targets, found);
                 }
             } else {
                 found.unbounded(cell, &self.touched(cell, &poses), targets);
             }
-            return [f64::NAN; 2];
+            return [Hint::NONE; 2];
         };
         let all = [c00, c01, c10, c11];
         let range = all.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], c| [lo.min(c.s), hi.max(c.s)]);
@@ -281,7 +306,7 @@ impl<'a> Swept<'a> {
         let short = (cell.a[1] - cell.a[0]).abs() <= SHARP_M;
         if dull && short {
             self.sharpen(step, unit, knots);
-            let hints = [all[0].s, all[1].s];
+            let hints = [all[0].hint(), all[1].hint()];
             self.cell(cell, hints, targets, found);
             return;
         }
@@ -299,7 +324,11 @@ impl<'a> Swept<'a> {
                 (halves[0].t[1], halves[1].t[0]) = (middle, middle);
             }
             for half in &halves {
-                let hints = half.a.map(|a| all[0].s + (all[1].s - all[0].s) * (a - a0) / (a1 - a0).max(1e-9));
+                let hints = half.a.map(|a| match a {
+                    _ if a == a0 => all[0].hint(),
+                    _ if a == a1 => all[1].hint(),
+                    _ => Hint::at(all[0].s + (all[1].s - all[0].s) * (a - a0) / (a1 - a0).max(1e-9)),
+                });
                 self.cell(half, hints, targets, found);
             }
             return;
@@ -358,12 +387,12 @@ impl<'a> Swept<'a> {
     }
 
     /// A body point on the side of a cell. `None` without a foot near the guess, or without a bound.
-    fn corner(&self, cell: &Cell, pose: Pose, a: f64, guess: f64) -> Option<Corner> {
+    fn corner(&self, cell: &Cell, pose: Pose, a: f64, guess: Hint) -> Option<Corner> {
         let link = &self.chain.links[cell.unit];
         let sign = if cell.side == 0 { 1.0 } else { -1.0 };
         let b = sign * link.half_width;
         let x = point(pose, a, b);
-        let (s, place, lateral) = foot(self.road, x, guess)?;
+        let (s, place, lateral) = foot_from(self.road, x, guess)?;
         // Newton's method may have reached another leg of the road, where the vehicle is not.
         let away = (s - self.rough_foot(cell.step, cell.unit, a)).abs() * self.road.spacing;
         if away > ASTRAY_PART * self.chain.reach_m().1 + ASTRAY_M {
@@ -403,7 +432,7 @@ impl<'a> Swept<'a> {
         let bend = (across - place.curvature * along_road * along_road / (1.0 - place.curvature * lateral)).abs()
             + slope.abs() * feet;
         let dev = dev + self.road.slack(s).max(self.road.slack(s - 0.1)) + beside_m(x, &place);
-        Some(Corner { s, clear: width - sign * lateral, dev, bend, lateral, sin, slope, reach })
+        Some(Corner { s, place, clear: width - sign * lateral, dev, bend, lateral, sin, slope, reach })
     }
 
     /// The first-order bound at `a` throughout a step.
@@ -570,14 +599,18 @@ impl<'a> Swept<'a> {
 fn beside_m(x: [f64; 2], place: &Place) -> f64 {
     let r = [x[0] - place.c[0], x[1] - place.c[1]];
     let off = r[0] * place.t[0] + r[1] * place.t[1];
-    off * off / (r[0].hypot(r[1]) + 1e-9)
+    off * off / ((r[0] * r[0] + r[1] * r[1]).sqrt() + 1e-9)
 }
 
 /// The foot of a point by Newton's method, to 1e-10 m, with its place and the point's lateral place.
 pub(crate) fn foot(road: &Road, x: [f64; 2], guess: f64) -> Option<(f64, Place, f64)> {
-    let mut s = guess;
+    foot_from(road, x, Hint::at(guess))
+}
+
+fn foot_from(road: &Road, x: [f64; 2], guess: Hint) -> Option<(f64, Place, f64)> {
+    let (mut s, mut known) = (guess.s, guess.place);
     for round in 0..30 {
-        let place = road.place(s);
+        let place = known.take().unwrap_or_else(|| road.place(s));
         let r = [x[0] - place.c[0], x[1] - place.c[1]];
         let (off, lateral) = (r[0] * place.t[0] + r[1] * place.t[1], r[1] * place.t[0] - r[0] * place.t[1]);
         // A foot may fall into the gap between two stretches that do not quite meet. The gap grows with the distance if
