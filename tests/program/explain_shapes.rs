@@ -13,7 +13,7 @@ use crate::support::program::{Answer, Place};
 
 const VEHICLE: &str = "AU-SEMI19";
 
-/// Ids of edges or turns, one of each verdict and reason, and three of what is safe.
+/// Ids of edges or turns, one of each verdict and reason, and three of what is safe. The turn without room lacks half a metre.
 fn some_of_each(place: &Place, kind: &str) -> Vec<(String, String)> {
     let option = if kind == "turn" { " --turns" } else { "" };
     let csv =
@@ -24,9 +24,14 @@ fn some_of_each(place: &Place, kind: &str) -> Vec<(String, String)> {
     let column =
         |name: &str| head.iter().position(|column| *column == name).unwrap_or_else(|| panic!("{name}: {head:?}"));
     let (id, verdict, reason) = (column(&format!("{kind}_id")), column("verdict"), column("reason"));
+    let rsc = column("rsc_m");
     let mut found: Vec<(String, String)> = Vec::new();
     for line in lines {
         let said = format!("{} {}", line[verdict], line[reason]);
+        let lacks_much = line[rsc].parse::<f64>().is_ok_and(|rsc_m| rsc_m < -0.5);
+        if kind == "turn" && said == "unsafe width" && !lacks_much {
+            continue;
+        }
         let most = if line[verdict] == "safe" { 3 } else { 1 };
         if found.iter().filter(|one| one.1 == said).count() < most {
             found.push((line[id].to_owned(), said));
