@@ -10,7 +10,7 @@ use super::plan::Unplanned;
 use super::plane::Grounds;
 use super::swept::Swept;
 use super::track::Track;
-use super::{Marks, Model, Options, Planned, held, plan, track};
+use super::{Case, Marks, Model, Options, Planned, finished, plan, track};
 
 /// A corridor prepared for one vehicle and one span of stations. Its certificates are those of [`super::certify_spans`].
 pub struct Course<'c> {
@@ -46,11 +46,7 @@ impl<'c> Course<'c> {
         } else if !swept.measure_least(&self.span, above_m) {
             return None;
         }
-        let results = swept.results();
-        let held = held(self.corridor, self.model, spans, Marks::Ends, options, &results, &never);
-        Some(match held {
-            Some((held, spans)) => Planned { plan: held.plan, spans },
-            None => Planned { plan: swept.plan, spans: results },
-        })
+        let case = Case { corridor: self.corridor, spans, model: self.model };
+        Some(finished(swept, &case, Marks::Ends, options, &never))
     }
 }

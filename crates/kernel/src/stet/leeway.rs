@@ -203,8 +203,7 @@ fn sample<const CERTIFY: bool, const REFINED: bool>(
 }
 
 by_instruction_set! {
-    /// As [`sample`], with each point at its own nearest station.
-    /// A function of its own leaves the registers to the common case.
+    /// As [`sample`], with each point at its own nearest station. A function of its own leaves the registers to the common case.
     fn sample_apart<const CERTIFY: bool, const REFINED: bool>(
         track: &Track,
         body: &mut Body,

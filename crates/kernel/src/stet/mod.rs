@@ -226,15 +226,13 @@ pub fn certify_cases(cases: &[Case<'_>], options: &Options) -> Vec<Planned> {
     let known: Vec<&Case<'_>> = cases.iter().filter(|case| !case.corridor.is_empty()).collect();
     let mut tracks: Vec<Rc<Track>> = Vec::with_capacity(known.len());
     for (i, case) in known.iter().enumerate() {
-        let alike = |other: &&Case<'_>| {
-            std::ptr::eq(other.corridor, case.corridor)
-                && std::ptr::eq(other.spans, case.spans)
-                && sweep::Reach::of(other.model) == sweep::Reach::of(case.model)
-        };
         // Cases of one corridor follow each other.
-        let recent =
-            known[..i].iter().zip(&tracks).rev().take_while(|(other, _)| std::ptr::eq(other.corridor, case.corridor));
-        let shared = recent.into_iter().find(|(other, _)| alike(other)).map(|(_, track)| Rc::clone(track));
+        let same = |other: &Case<'_>| std::ptr::eq(other.corridor, case.corridor);
+        let alike = |other: &Case<'_>| {
+            std::ptr::eq(other.spans, case.spans) && sweep::Reach::of(other.model) == sweep::Reach::of(case.model)
+        };
+        let mut before = known[..i].iter().zip(&tracks).rev().take_while(|(other, _)| same(other));
+        let shared = before.find(|(other, _)| alike(other)).map(|(_, track)| Rc::clone(track));
         let made = || track(case.corridor, case.model, case.spans, Marks::Ends, &Grounds::default());
         tracks.push(shared.unwrap_or_else(made));
     }
@@ -254,14 +252,19 @@ pub fn certify_cases(cases: &[Case<'_>], options: &Options) -> Vec<Planned> {
     let mut swept = swept.into_iter();
     let planned = |case: &Case<'_>| {
         let swept = if case.corridor.is_empty() { None } else { swept.next() };
-        let Some(swept) = swept else { return Planned { plan: Plan::centred(0), spans: Vec::new() } };
-        let results = swept.results();
-        match held(case.corridor, case.model, case.spans, Marks::Ends, options, &results, &never) {
-            Some((held, spans)) => Planned { plan: held.plan, spans },
-            None => Planned { plan: swept.plan, spans: results },
-        }
+        let nothing = || Planned { plan: Plan::centred(0), spans: Vec::new() };
+        swept.map_or_else(nothing, |swept| finished(swept, case, Marks::Ends, options, &never))
     };
     cases.iter().map(planned).collect()
+}
+
+/// The results along the plan that was swept, or along one with corrections taken back.
+fn finished(swept: Swept<'_>, case: &Case<'_>, marks: Marks, options: &Options, stop: &Stop) -> Planned {
+    let results = swept.results();
+    match held(case.corridor, case.model, case.spans, marks, options, &results, stop) {
+        Some((held, spans)) => Planned { plan: held.plan, spans },
+        None => Planned { plan: swept.plan, spans: results },
+    }
 }
 
 /// The certificate of one vehicle over a whole corridor.

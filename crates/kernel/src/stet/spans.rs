@@ -15,7 +15,8 @@ const STEP_STATIONS: usize = 3;
 /// Least length of these stations, metres. A point may be pushed this far along, and stations may be centimetres apart.
 const BESIDE_M: f64 = 0.6;
 
-/// Vehicles from half this length on fall behind by no more than what it exceeds their length by, metres.
+/// A point of the vehicle is never farther behind the steer axle than twice the vehicle's length or this, whichever is less, metres.
+/// A vehicle longer than this counts by its length.
 const LONG_M: f64 = 56.0;
 
 /// Vehicle lengths after which an earlier disturbance has faded to a few hundredths. No unit is longer than half a
