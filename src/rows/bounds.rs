@@ -34,4 +34,10 @@ impl Bounds {
             north: self.north.max(other.north),
         }
     }
+
+    /// Whether the boxes have a point in common, their borders included.
+    #[must_use]
+    pub fn touches(self, other: Self) -> bool {
+        self.west <= other.east && self.east >= other.west && self.south <= other.north && self.north >= other.south
+    }
 }

@@ -19,6 +19,15 @@ pub struct MapEdge {
     pub highway: String,
     pub name: Option<String>,
     pub reference: Option<String>,
+    pub numbers: MapNumbers,
+    /// The map's line in direction of travel.
+    pub line: Vec<LonLat>,
+}
+
+/// What a map says of an edge and a vehicle, beside the edge's names and line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)] // the columns of `edge` and `certificate`
+pub struct MapNumbers {
     pub length_m: f64,
     /// The width under the query's policy.
     pub width_m: Option<f64>,
@@ -28,8 +37,6 @@ pub struct MapEdge {
     pub rsc_mm: Option<i64>,
     /// The least width with which the edge would be safe, if its stroke were nowhere narrower, metres.
     pub need_width_m: Option<f64>,
-    /// The map's line in direction of travel.
-    pub line: Vec<LonLat>,
 }
 
 /// A turn as a map draws it.

@@ -80,11 +80,11 @@ impl App {
         let _ = self.slow.run(move |stop| tiles::prepare(&region, &stop)).await;
     }
 
-    /// Loads names and roads in advance, which the first explanation, route and search need.
+    /// Loads in advance what tiles of deeper zooms, and the first explanation, route and search need.
     pub(super) async fn warm_up(self: Arc<Self>) {
         let Ok(region) = self.region().await else { return };
         // An error is ignored here; the first request that needs the roads gets it.
-        let _ = self.slow.run(move |_| region.names().and_then(|_| region.roads()).map(|_| ())).await;
+        let _ = self.slow.run(move |stop| region.warm_up(&stop)).await;
     }
 
     /// Answers from the cache, or does the work and caches the answer.

@@ -23,6 +23,11 @@ impl<T: Clone> Late<T> {
             None => Ok(slot.insert(make()?).clone()),
         }
     }
+
+    /// The value, if it is made. Never waits.
+    pub(super) fn known(&self) -> Option<T> {
+        self.0.try_lock().ok()?.clone()
+    }
 }
 
 /// A value with its key.

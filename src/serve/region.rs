@@ -18,7 +18,7 @@ use super::problem::Problem;
 use super::roads::RoadIndex;
 use super::tiles::Overview;
 use crate::osm::facts::Policy;
-use crate::rows::{Bounds, DrivingSides};
+use crate::rows::{Bounds, DrivingSides, MapNumbers};
 use crate::settings::Settings;
 use crate::stop::Stop;
 use crate::store::{CertifiedSet, Database, Run, StoreError};
@@ -31,6 +31,8 @@ const MOST_IDLE: usize = 4;
 const MOST_EXPLAINED: usize = 16;
 /// Number of overviews to keep, one for each vehicle and policy. An overview takes about 60 bytes per vertex.
 pub(super) const MOST_OVERVIEWS: usize = 6;
+/// Number of sets to keep the numbers of all edges of.
+const MOST_NUMBERS: usize = 6;
 /// Number of answers of planners to keep, so that a route and the sheets of its conditions are planned once. An answer with a long drive
 /// has some megabytes.
 const MOST_PLANNED: usize = 4;
@@ -90,6 +92,8 @@ pub(super) struct Region {
     roads: Late<Arc<RoadIndex>>,
     names: Late<Arc<[NamedRoad]>>,
     sides: Late<Arc<DrivingSides>>,
+    /// The numbers of all edges in the last sets, by vehicle and policy.
+    numbers: Recent<Vec<MapNumbers>>,
     /// The last overviews, by vehicle and policy.
     pub(super) overviews: Recent<Overview>,
     /// The last explanations, by id, vehicle and policy.
@@ -135,6 +139,7 @@ impl Region {
             roads: Late::default(),
             names: Late::default(),
             sides: Late::default(),
+            numbers: Recent::new(MOST_NUMBERS),
             overviews: Recent::new(MOST_OVERVIEWS),
             explained: Recent::new(MOST_EXPLAINED),
             planned: Recent::new(MOST_PLANNED),
@@ -189,6 +194,27 @@ impl Region {
     /// The network in memory; the first call loads it.
     pub(super) fn roads(&self) -> Result<Arc<RoadIndex>, Problem> {
         self.roads.get(|| self.read(Database::load_network).map(|network| Arc::new(RoadIndex::new(network))))
+    }
+
+    /// The network in memory, if it is loaded.
+    pub(super) fn roads_if_loaded(&self) -> Option<Arc<RoadIndex>> {
+        self.roads.known()
+    }
+
+    /// The numbers of every edge in a set; the first call reads them.
+    pub(super) fn numbers(&self, set: (&str, Policy)) -> Result<Arc<Vec<MapNumbers>>, Problem> {
+        let key = format!("{} {}", set.0, set.1.name());
+        self.numbers.get(&key, || self.read(|database| database.map_numbers(set)))
+    }
+
+    /// Loads the roads and their names, and the numbers of the first sets.
+    pub(super) fn warm_up(&self, stop: &Stop) -> Result<(), Problem> {
+        self.roads()?;
+        for set in self.sets.iter().take(MOST_NUMBERS) {
+            stop.check()?;
+            self.numbers((&set.vehicle_id, set.policy))?;
+        }
+        self.names().map(|_| ())
     }
 
     /// All ways with their names, sorted by way id; the first call reads them.

@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
+use rstar::primitives::{GeomWithData, Rectangle};
+use rstar::{AABB, RTree};
 use rustc_hash::FxHashMap;
 
 use super::made_once::Recent;
 use super::problem::Problem;
 use crate::network::Network;
 use crate::route::Roads;
+use crate::rows::Bounds;
 use crate::settings::Settings;
 use crate::turns::{TurnFacts, turn_facts};
 
@@ -16,6 +19,8 @@ pub(super) struct RoadIndex {
     /// The roads, which the planners share.
     pub(super) roads: Arc<Roads>,
     by_id: FxHashMap<i64, u32>,
+    /// The boxes of the edges, in degrees.
+    by_place: RTree<GeomWithData<Rectangle<[f64; 2]>, u32>>,
     /// The turns by kerb settings. One entry suffices, because all sets of a database have the same kerbs.
     turns: Recent<Vec<TurnFacts>>,
 }
@@ -23,7 +28,12 @@ pub(super) struct RoadIndex {
 impl RoadIndex {
     pub(super) fn new(network: Network) -> Self {
         let by_id = (0..).zip(&network.edges).map(|(index, edge)| (edge.id, index)).collect();
-        Self { roads: Roads::new(network), by_id, turns: Recent::new(1) }
+        let boxes = (0..).zip(&network.edges).filter_map(|(index, edge)| {
+            let own = Bounds::around(network.positions(edge))?;
+            Some(GeomWithData::new(Rectangle::from_corners([own.west, own.south], [own.east, own.north]), index))
+        });
+        let by_place = RTree::bulk_load(boxes.collect());
+        Self { roads: Roads::new(network), by_id, by_place, turns: Recent::new(1) }
     }
 
     pub(super) fn network(&self) -> &Network {
@@ -33,6 +43,15 @@ impl RoadIndex {
     /// The index of the edge with this `edge_id`.
     pub(super) fn edge(&self, id: i64) -> Option<u32> {
         self.by_id.get(&id).copied()
+    }
+
+    /// The edges whose own box touches a box, sorted.
+    pub(super) fn near(&self, Bounds { west, south, east, north }: Bounds) -> Vec<u32> {
+        let around = AABB::from_corners([west, south], [east, north]);
+        let mut edges: Vec<u32> =
+            self.by_place.locate_in_envelope_intersecting(&around).map(|edge| edge.data).collect();
+        edges.sort_unstable();
+        edges
     }
 
     /// The turn with this `turn_id`, with kerbs by `settings`.

@@ -29,7 +29,7 @@ const MOST_HEAD_BYTES: usize = 16 << 10;
 /// The pause after an error of `accept`, such as no file handle left. Meanwhile some connections end.
 const PAUSE: Duration = Duration::from_millis(100);
 /// The delay before the network is loaded for explanations and routes. By then the first map is likely to be shown.
-const WARM_UP_AFTER: Duration = Duration::from_secs(3);
+const WARM_UP_AFTER: Duration = Duration::from_secs(1);
 
 /// Why the server cannot start.
 #[derive(Debug, thiserror::Error)]

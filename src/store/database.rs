@@ -44,6 +44,9 @@ const CACHE_KIB: u32 = 65_536;
 /// no slower with this small cache.
 const STREAM_CACHE_KIB: u32 = 2048;
 
+/// Rows that SQLite's thread reads ahead of the thread that uses them. With sqlx's own 50, the two threads wake each other too often.
+const ROWS_AHEAD: usize = 1000;
+
 impl Database {
     /// Opens a database for reading only.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
@@ -79,6 +82,7 @@ impl Database {
         check_header(path)?;
         let options = options
             .filename(path)
+            .row_buffer_size(ROWS_AHEAD)
             .create_if_missing(false)
             .busy_timeout(Duration::from_secs(5))
             .pragma("cache_size", format!("-{cache_kib}"))

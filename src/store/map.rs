@@ -1,13 +1,13 @@
 //! Reads the edges and turns within a box for a map, through the spatial index, with only the columns that are drawn.
 //!
-//! Rows come in order of the network. Every row that touches the box is there, and some rows that only come near it, because
-//! the index has boxes in single precision. `query` reads rows with all columns.
+//! Rows come in order of the network. `query` reads rows with all columns.
 
+use futures_util::{StreamExt as _, TryStreamExt as _};
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Row as _};
 
 use crate::osm::facts::{Policy, RoadClass};
-use crate::rows::{Bounds, MapEdge, MapTurn, RscBin};
+use crate::rows::{Bounds, MapEdge, MapNumbers, MapTurn, RscBin};
 use crate::words::Named;
 
 use super::database::Database;
@@ -66,7 +66,7 @@ impl Database {
         self.session.run(async |c| sqlx::query(sql).fetch_one(c).await?.try_get(0))
     }
 
-    /// The edges of these classes (with their links) near a box, with a vehicle's certificates.
+    /// The edges of these classes (with their links) whose own box touches a box, with a vehicle's certificates.
     ///
     /// # Errors
     /// The file cannot be read. A vehicle that is not certified under this policy has no rows.
@@ -78,8 +78,8 @@ impl Database {
     ) -> Result<Vec<MapEdge>, StoreError> {
         let [width, source] = width_columns(policy);
         let mut sql = format!(
-            "SELECT e.fid, e.edge_id, e.way_id, e.direction, e.oneway, e.highway, e.name, e.ref, e.length_m, \
-             e.{width}, e.{source}, c.verdict_no, c.rsc_mm, e.geom, c.need_cm FROM rtree_edge_geom AS t \
+            "SELECT e.fid, e.length_m, e.{width}, e.{source}, c.verdict_no, c.rsc_mm, c.need_cm, e.edge_id, e.way_id, \
+             e.direction, e.oneway, e.highway, e.name, e.ref, e.geom FROM rtree_edge_geom AS t \
              CROSS JOIN edge AS e ON e.fid = t.id \
              CROSS JOIN certificate_compact AS c \
              ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
@@ -95,8 +95,28 @@ impl Database {
             let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle).bind(corridor_no(policy));
             query.bind(west).bind(east).bind(south).bind(north).fetch_all(c).await?.iter().map(map_edge).collect()
         })?;
+        // The index has boxes in single precision, and finds some edges that only come near.
+        rows.retain(|row| Bounds::around(row.line.iter().copied()).is_some_and(|own| own.touches(bounds)));
         rows.sort_unstable_by_key(|row| row.edge);
         Ok(rows)
+    }
+
+    /// The numbers of every edge with a vehicle's certificates, by index into `Network::edges`.
+    ///
+    /// # Errors
+    /// The file cannot be read. A vehicle that is not certified under this policy has no numbers.
+    pub fn map_numbers(&mut self, (vehicle, policy): (&str, Policy)) -> Result<Vec<MapNumbers>, StoreError> {
+        let [width, source] = width_columns(policy);
+        let sql = format!(
+            "SELECT e.fid, e.length_m, e.{width}, e.{source}, c.verdict_no, c.rsc_mm, c.need_cm FROM edge AS e \
+             CROSS JOIN certificate_compact AS c \
+             ON c.vehicle_no = (SELECT vehicle_no FROM vehicle WHERE vehicle_id = ?) \
+             AND c.corridor_no = ? AND c.fid = e.fid ORDER BY e.fid"
+        );
+        self.session.run(async |c| {
+            let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle).bind(corridor_no(policy));
+            query.fetch(c).map(|row| map_numbers(&row?)).try_collect().await
+        })
     }
 
     /// Turns with a vehicle's certificates.
@@ -151,20 +171,29 @@ fn map_edge(row: &SqliteRow) -> Sql<MapEdge> {
     let fid: u32 = row.try_get(0)?;
     Ok(MapEdge {
         edge: fid.saturating_sub(1),
-        edge_id: row.try_get(1)?,
-        way_id: row.try_get(2)?,
-        direction: word(row, 3)?,
-        oneway: word(row, 4)?,
-        highway: row.try_get(5)?,
-        name: row.try_get(6)?,
-        reference: row.try_get(7)?,
-        length_m: row.try_get(8)?,
-        width_m: row.try_get(9)?,
-        width_source: word_or_none(row, 10)?,
-        verdict: verdict(row, 11, || format!("edge {fid}"))?,
-        rsc_mm: row.try_get(12)?,
-        line: line(row, 13, || format!("edge {fid}"))?,
-        need_width_m: numbers::centimetres(row, 14)?,
+        numbers: map_numbers(row)?,
+        edge_id: row.try_get(7)?,
+        way_id: row.try_get(8)?,
+        direction: word(row, 9)?,
+        oneway: word(row, 10)?,
+        highway: row.try_get(11)?,
+        name: row.try_get(12)?,
+        reference: row.try_get(13)?,
+        line: line(row, 14, || format!("edge {fid}"))?,
+    })
+}
+
+/// The numbers of a row that begins with its `fid`.
+fn map_numbers(row: &SqliteRow) -> Sql<MapNumbers> {
+    Ok(MapNumbers {
+        length_m: row.try_get(1)?,
+        width_m: row.try_get(2)?,
+        width_source: word_or_none(row, 3)?,
+        verdict: verdict(row, 4, || {
+            row.try_get::<i64, _>(0).map_or_else(|_| "an edge".to_owned(), |fid| format!("edge {fid}"))
+        })?,
+        rsc_mm: row.try_get(5)?,
+        need_width_m: numbers::centimetres(row, 6)?,
     })
 }
 

@@ -1,7 +1,8 @@
 //! Encodes layers and features as protobuf by <https://github.com/mapbox/vector-tile-spec/tree/master/2.1>. Comments name
 //! the specification's fields.
 //!
-//! The same features in the same order give the same bytes. Each key and each value is written once per layer.
+//! The same features in the same order give the same bytes. Each key is written once per layer, and so is each value that several
+//! features may have.
 
 use rustc_hash::FxHashMap;
 
@@ -22,22 +23,43 @@ pub(super) struct Layer {
     keys: Vec<&'static str>,
     /// Encoded values, in the order of their first use.
     values: Vec<u8>,
+    /// Number of `values`.
+    count: u32,
     places: FxHashMap<Vec<u8>, u32>,
     features: Vec<u8>,
+    scratch: Scratch,
+}
+
+/// Buffers for parts of messages, whose lengths must be known before they are written. All features share them.
+#[derive(Default)]
+struct Scratch {
+    pairs: Vec<u8>,
+    geometry: Vec<u8>,
+    feature: Vec<u8>,
+    value: Vec<u8>,
 }
 
 /// The tags of one feature.
 pub(super) struct Tags<'l> {
     layer: &'l mut Layer,
-    pairs: Vec<u8>,
 }
 
 impl Tags<'_> {
     pub(super) fn add(&mut self, key: &'static str, value: Value<'_>) {
-        let key = self.layer.key(key);
         let value = self.layer.value(value);
-        varint(&mut self.pairs, key.into());
-        varint(&mut self.pairs, value.into());
+        self.pair(key, value);
+    }
+
+    /// Adds a value that no other feature has. The layer does not look for it.
+    pub(super) fn only(&mut self, key: &'static str, value: Value<'_>) {
+        let value = self.layer.new_value(value);
+        self.pair(key, value);
+    }
+
+    fn pair(&mut self, key: &'static str, value: u32) {
+        let key = self.layer.key(key);
+        varint(&mut self.layer.scratch.pairs, key.into());
+        varint(&mut self.layer.scratch.pairs, value.into());
     }
 
     /// Adds a text, if there is one.
@@ -64,13 +86,22 @@ impl Tags<'_> {
 
 impl Layer {
     pub(super) fn new(name: &'static str, extent: u16) -> Self {
-        Self { name, extent, keys: Vec::new(), values: Vec::new(), places: FxHashMap::default(), features: Vec::new() }
+        Self {
+            name,
+            extent,
+            keys: Vec::new(),
+            values: Vec::new(),
+            count: 0,
+            places: FxHashMap::default(),
+            features: Vec::new(),
+            scratch: Scratch::default(),
+        }
     }
 
     /// Adds a feature of lines. Adds nothing if `lines` is empty.
     pub(super) fn feature(&mut self, id: Option<u64>, lines: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut Tags<'_>)) {
         if !lines.is_empty() {
-            self.any(id, LINESTRING, &geometry(lines, false), tag);
+            self.any(id, LINESTRING, (lines, false), tag);
         }
     }
 
@@ -78,24 +109,32 @@ impl Layer {
     /// their outer ring. Adds nothing if `rings` is empty.
     pub(super) fn polygons(&mut self, id: Option<u64>, rings: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut Tags<'_>)) {
         if !rings.is_empty() {
-            self.any(id, POLYGON, &geometry(rings, true), tag);
+            self.any(id, POLYGON, (rings, true), tag);
         }
     }
 
-    fn any(&mut self, id: Option<u64>, kind: u64, geometry: &[u8], tag: impl FnOnce(&mut Tags<'_>)) {
-        let mut tags = Tags { layer: self, pairs: Vec::new() };
-        tag(&mut tags);
-        let pairs = tags.pairs;
-        let mut feature = Vec::with_capacity(pairs.len() + 40);
+    fn any(
+        &mut self,
+        id: Option<u64>,
+        kind: u64,
+        (lines, closed): (&[Vec<[i32; 2]>], bool),
+        tag: impl FnOnce(&mut Tags<'_>),
+    ) {
+        self.scratch.pairs.clear();
+        tag(&mut Tags { layer: self });
+        let Scratch { pairs, geometry: shape, feature, .. } = &mut self.scratch;
+        feature.clear();
         if let Some(id) = id {
-            varint(&mut feature, field(1, VARINT)); // id
-            varint(&mut feature, id);
+            varint(feature, field(1, VARINT)); // id
+            varint(feature, id);
         }
-        bytes(&mut feature, 2, &pairs); // tags
-        varint(&mut feature, field(3, VARINT)); // type
-        varint(&mut feature, kind);
-        bytes(&mut feature, 4, geometry); // geometry
-        bytes(&mut self.features, 2, &feature);
+        bytes(feature, 2, pairs); // tags
+        varint(feature, field(3, VARINT)); // type
+        varint(feature, kind);
+        shape.clear();
+        geometry(shape, lines, closed);
+        bytes(feature, 4, shape); // geometry
+        bytes(&mut self.features, 2, feature);
     }
 
     /// Appends the layer to a tile. An empty layer is left out, as the specification requires.
@@ -125,30 +164,47 @@ impl Layer {
         }) as u32
     }
 
+    /// The place of a value, which is added if it is new.
     fn value(&mut self, value: Value<'_>) -> u32 {
-        let mut message = Vec::with_capacity(24);
-        match value {
-            Value::Text(text) => bytes(&mut message, 1, text.as_bytes()), // string_value
-            Value::Number(number) => {
-                varint(&mut message, field(3, FIXED_64)); // double_value
-                message.extend(number.to_le_bytes());
-            }
-            Value::Whole(whole) => {
-                varint(&mut message, field(6, VARINT)); // sint_value
-                varint(&mut message, zigzag(whole));
-            }
-            Value::Truth(truth) => {
-                varint(&mut message, field(7, VARINT)); // bool_value
-                varint(&mut message, truth.into());
-            }
-        }
-        let next = self.places.len() as u32;
-        if let Some(&place) = self.places.get(&message) {
+        self.scratch.value.clear();
+        message(&mut self.scratch.value, value);
+        if let Some(&place) = self.places.get(&self.scratch.value) {
             return place;
         }
-        bytes(&mut self.values, 4, &message);
-        self.places.insert(message, next);
-        next
+        let place = self.add_value();
+        self.places.insert(self.scratch.value.clone(), place);
+        place
+    }
+
+    /// Adds a value.
+    fn new_value(&mut self, value: Value<'_>) -> u32 {
+        self.scratch.value.clear();
+        message(&mut self.scratch.value, value);
+        self.add_value()
+    }
+
+    fn add_value(&mut self) -> u32 {
+        bytes(&mut self.values, 4, &self.scratch.value);
+        self.count += 1;
+        self.count - 1
+    }
+}
+
+fn message(out: &mut Vec<u8>, value: Value<'_>) {
+    match value {
+        Value::Text(text) => bytes(out, 1, text.as_bytes()), // string_value
+        Value::Number(number) => {
+            varint(out, field(3, FIXED_64)); // double_value
+            out.extend(number.to_le_bytes());
+        }
+        Value::Whole(whole) => {
+            varint(out, field(6, VARINT)); // sint_value
+            varint(out, zigzag(whole));
+        }
+        Value::Truth(truth) => {
+            varint(out, field(7, VARINT)); // bool_value
+            varint(out, truth.into());
+        }
     }
 }
 
@@ -183,8 +239,7 @@ fn zigzag(value: i64) -> u64 {
 
 /// The commands of the lines: for each line one `MoveTo` (1), then one `LineTo` (2) for the other points, then `ClosePath` (7) for
 /// rings. Parameters are differences between points (section 4.3).
-fn geometry(lines: &[Vec<[i32; 2]>], closed: bool) -> Vec<u8> {
-    let mut out = Vec::new();
+fn geometry(out: &mut Vec<u8>, lines: &[Vec<[i32; 2]>], closed: bool) {
     let mut cursor = [0_i32; 2];
     let mut go = |out: &mut Vec<u8>, point: [i32; 2]| {
         for axis in 0..2 {
@@ -194,15 +249,14 @@ fn geometry(lines: &[Vec<[i32; 2]>], closed: bool) -> Vec<u8> {
     };
     for line in lines {
         let Some((first, rest)) = line.split_first() else { continue };
-        varint(&mut out, 1 << 3 | 1);
-        go(&mut out, *first);
-        varint(&mut out, (rest.len() as u64) << 3 | 2);
-        rest.iter().for_each(|&point| go(&mut out, point));
+        varint(out, 1 << 3 | 1);
+        go(out, *first);
+        varint(out, (rest.len() as u64) << 3 | 2);
+        rest.iter().for_each(|&point| go(out, point));
         if closed {
-            varint(&mut out, 1 << 3 | 7);
+            varint(out, 1 << 3 | 7);
         }
     }
-    out
 }
 
 #[cfg(test)]
@@ -210,6 +264,12 @@ mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
     use fast_mvt::{MvtReaderRef, MvtValueRef};
+
+    fn geometry(lines: &[Vec<[i32; 2]>], closed: bool) -> Vec<u8> {
+        let mut out = Vec::new();
+        super::geometry(&mut out, lines, closed);
+        out
+    }
 
     /// The example in section 4.3.5.3 of the specification: (2,2) (2,10) (10,10), then (1,1) (3,5).
     #[test]
@@ -238,6 +298,7 @@ mod tests {
         let mut layer = Layer::new("edge", 4096);
         for id in [7_u64, 1 << 40] {
             layer.feature(Some(id), &[vec![[-64, 0], [4160, 4096]]], |tags| {
+                tags.only("edge_id", Value::Text(&id.to_string()));
                 tags.add("name", Value::Text("Großer Weg"));
                 tags.number("rsc_m", Some(-0.125));
                 tags.add("way", Value::Whole(-5_000_000_000));
@@ -254,10 +315,12 @@ mod tests {
         assert_eq!(features.iter().map(|f| f.id()).collect::<Vec<_>>(), [Some(7), Some(1 << 40)]);
         for feature in features {
             let properties: Vec<_> = feature.properties().map(Result::unwrap).collect();
-            assert_eq!(properties.len(), 3);
-            assert!(matches!(properties[0], ("name", MvtValueRef::String("Großer Weg"))), "{properties:?}");
-            assert!(matches!(properties[1], ("rsc_m", MvtValueRef::Double(m)) if m == -0.125), "{properties:?}");
-            assert!(matches!(properties[2], ("way", MvtValueRef::SInt(-5_000_000_000))), "{properties:?}");
+            assert_eq!(properties.len(), 4);
+            let id = feature.id().unwrap().to_string();
+            assert!(matches!(properties[0], ("edge_id", MvtValueRef::String(own)) if own == id), "{properties:?}");
+            assert!(matches!(properties[1], ("name", MvtValueRef::String("Großer Weg"))), "{properties:?}");
+            assert!(matches!(properties[2], ("rsc_m", MvtValueRef::Double(m)) if m == -0.125), "{properties:?}");
+            assert!(matches!(properties[3], ("way", MvtValueRef::SInt(-5_000_000_000))), "{properties:?}");
         }
     }
 }

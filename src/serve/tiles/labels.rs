@@ -112,6 +112,7 @@ fn cosine([ax, ay]: [f64; 2], [bx, by]: [f64; 2]) -> f64 {
 mod tests {
     use super::*;
     use crate::osm::facts::{Direction, Oneway};
+    use crate::rows::MapNumbers;
     use crate::verdict::{UnknownReason, Verdict};
 
     fn edge(number: u32, name: &str, points: &[(i32, i32)]) -> MapEdge {
@@ -124,12 +125,14 @@ mod tests {
             highway: "primary".to_owned(),
             name: Some(name.to_owned()),
             reference: None,
-            length_m: 1.0,
-            width_m: None,
-            width_source: None,
-            verdict: Verdict::Unknown(UnknownReason::Width),
-            rsc_mm: None,
-            need_width_m: None,
+            numbers: MapNumbers {
+                length_m: 1.0,
+                width_m: None,
+                width_source: None,
+                verdict: Verdict::Unknown(UnknownReason::Width),
+                rsc_mm: None,
+                need_width_m: None,
+            },
             line: points.iter().map(|&(lon_e7, lat_e7)| LonLat { lon_e7, lat_e7 }).collect(),
         }
     }

@@ -11,6 +11,7 @@
 //! | `shape` | clipping, simplifying, rounding |
 //! | `overview` | main roads at low zooms: many edges as one line |
 //! | `raster` | joins lines on a raster; each piece shows the worst verdict that falls on it |
+//! | `near` | the edges near a tile, from memory or from the file |
 //! | `labels` | lines for the names of roads |
 //! | `encode` | layers and features as protobuf |
 
@@ -18,6 +19,7 @@ mod classes;
 mod encode;
 mod grid;
 mod labels;
+mod near;
 mod overview;
 mod raster;
 mod shape;
@@ -32,7 +34,7 @@ use super::problem::Problem;
 use super::region::{MOST_OVERVIEWS, Region};
 use crate::osm::LonLat;
 use crate::osm::facts::{Policy, WidthSource};
-use crate::rows::{MapEdge, MapTurn};
+use crate::rows::{MapEdge, MapNumbers, MapTurn};
 use crate::stop::Stop;
 use crate::store::TurnsOf;
 use crate::words::{Named, verdict_words};
@@ -48,7 +50,7 @@ const KIND: &str = "application/vnd.mapbox-vector-tile";
 
 /// From this zoom on, edges have all their tags. At lower zooms a tile holds thousands of edges, so tags that the map does
 /// not use are left out.
-const FIRST_IN_FULL: u8 = 12;
+const FIRST_IN_FULL: u8 = 13;
 
 /// `/tiles/{policy}/{vehicle}/{z}/{x}/{y}.mvt`
 pub(super) fn tile(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
@@ -66,7 +68,7 @@ fn bytes(region: &Region, set: (&str, Policy), place: Place) -> Result<Vec<u8>, 
         return Ok(bytes);
     }
     let bounds = place.bounds();
-    let edges = region.read(|database| database.map_edges(set, bounds, classes(place.z)))?;
+    let edges = near::edges(region, set, bounds, classes(place.z))?;
     let mut layer = Layer::new("edge", EXTENT as u16);
     let sides = region.sides()?;
     for row in &edges {
@@ -136,9 +138,10 @@ fn drawn_polygons(polygons: &[Vec<Vec<LonLat>>], place: Place) -> Vec<Vec<[i32; 
 
 fn edge(layer: &mut Layer, row: &MapEdge, left: Option<bool>, place: Place) {
     let lines = drawn(&row.line, place);
-    let (verdict, reason) = verdict_words(row.verdict);
+    let MapNumbers { length_m, width_m, width_source, verdict, rsc_mm, need_width_m } = row.numbers;
+    let (verdict, reason) = verdict_words(verdict);
     layer.feature(Some(u64::from(row.edge) + 1), &lines, |tags| {
-        tags.add("edge_id", Value::Text(&row.edge_id.to_string()));
+        tags.only("edge_id", Value::Text(&row.edge_id.to_string()));
         tags.text("name", row.name.as_deref());
         tags.text("ref", row.reference.as_deref());
         tags.add("highway", Value::Text(&row.highway));
@@ -146,14 +149,14 @@ fn edge(layer: &mut Layer, row: &MapEdge, left: Option<bool>, place: Place) {
         tags.add("oneway", Value::Text(row.oneway.name()));
         tags.add("verdict", Value::Text(verdict));
         tags.text("reason", Some(reason).filter(|reason| !reason.is_empty()));
-        tags.number("rsc_m", row.rsc_mm.map(metres));
+        tags.number("rsc_m", rsc_mm.map(metres));
         tags.truth("left", left);
-        tags.text("width_source", row.width_source.map(WidthSource::name));
+        tags.text("width_source", width_source.map(WidthSource::name));
         if place.z >= FIRST_IN_FULL {
             tags.add("way_id", Value::Whole(row.way_id));
-            tags.number("width_m", row.width_m.map(centimetre));
-            tags.number("need_width_m", row.need_width_m);
-            tags.number("length_m", Some(centimetre(row.length_m)));
+            tags.number("width_m", width_m.map(centimetre));
+            tags.number("need_width_m", need_width_m);
+            tags.number("length_m", Some(centimetre(length_m)));
         }
     });
 }
@@ -162,7 +165,7 @@ fn turn(layer: &mut Layer, row: &MapTurn, place: Place) {
     let lines = drawn(&row.line, place);
     let (verdict, reason) = verdict_words(row.verdict);
     layer.feature(Some(u64::from(row.turn) + 1), &lines, |tags| {
-        tags.add("turn_id", Value::Text(&row.turn_id.to_string()));
+        tags.only("turn_id", Value::Text(&row.turn_id.to_string()));
         tags.add("from_edge", Value::Text(&row.from_edge.to_string()));
         tags.add("to_edge", Value::Text(&row.to_edge.to_string()));
         tags.add("kind", Value::Text(&row.kind));

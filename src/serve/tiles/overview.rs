@@ -14,7 +14,7 @@ use super::shape;
 use crate::osm::facts::WidthSource;
 use crate::rows::MainRoad;
 use crate::verdict::Verdict;
-use crate::words::{Named, verdict_words};
+use crate::words::{Named, highway, verdict_words};
 
 /// The last zoom of the overview. Tiles of deeper zooms show each edge.
 pub(super) const LAST_ZOOM: u8 = 10;
@@ -106,7 +106,7 @@ impl Overview {
             return;
         };
         let (verdict, reason) = verdict_words(verdict);
-        let highway = format!("{}{}", class.name(), if link { "_link" } else { "" });
+        let highway = highway(*class, link);
         layer.feature(None, lines, |tags| {
             tags.add("highway", Value::Text(&highway));
             tags.add("verdict", Value::Text(verdict));

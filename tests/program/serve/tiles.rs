@@ -149,6 +149,21 @@ fn distance(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     (v[0] - along * u[0]).hypot(v[1] - along * u[1])
 }
 
+/// One server makes its tiles from the file, because it has no network in memory yet. The other one has loaded it for an explanation.
+#[test]
+fn tiles_from_memory_have_the_bytes_of_tiles_from_the_file() {
+    let (fresh, loaded) = (Server::demo(), Server::demo());
+    let rows = fresh.place.rows(VEHICLE);
+    let addresses: Vec<String> = (11..=16)
+        .flat_map(|z| tiles(&rows, z).into_iter().map(move |(x, y)| format!("/tiles/lane/{VEHICLE}/{z}/{x}/{y}.mvt")))
+        .collect();
+    let from_file: Vec<Vec<u8>> = addresses.iter().map(|address| fresh.get(address).body).collect();
+    loaded.json(&format!("/api/explain/{}?vehicle={VEHICLE}", rows[0].edge_id));
+    for (address, from_file) in addresses.iter().zip(from_file) {
+        assert!(loaded.get(address).body == from_file, "{address}");
+    }
+}
+
 #[test]
 fn turns_are_in_the_tiles_from_zoom_15_on() {
     let server = Server::demo();

@@ -1,0 +1,46 @@
+//! The edges near a tile: from the network in memory if it is loaded, otherwise from the file through its spatial index. Both
+//! ways give the same rows.
+
+use super::super::problem::Problem;
+use super::super::region::Region;
+use crate::network::Network;
+use crate::osm::facts::{Policy, RoadClass};
+use crate::rows::{Bounds, MapEdge, MapNumbers};
+use crate::words::highway;
+
+/// The greatest number of edges of which a set's numbers are held in memory. Each takes 64 bytes for each set.
+const MOST_HELD: usize = 2_000_000;
+
+/// The edges of these classes (with their links) whose own box touches a box, in order of the network.
+pub(super) fn edges(
+    region: &Region,
+    set: (&str, Policy),
+    bounds: Bounds,
+    classes: &[RoadClass],
+) -> Result<Vec<MapEdge>, Problem> {
+    let Some(roads) = region.roads_if_loaded().filter(|roads| roads.network().edges.len() <= MOST_HELD) else {
+        return region.read(|database| database.map_edges(set, bounds, classes));
+    };
+    let numbers = region.numbers(set)?;
+    let network = roads.network();
+    let row = |&index: &u32| map_edge(network, index, *numbers.get(index as usize)?, classes);
+    Ok(roads.near(bounds).iter().filter_map(row).collect())
+}
+
+/// `None` if the edge is of another class.
+fn map_edge(network: &Network, index: u32, numbers: MapNumbers, classes: &[RoadClass]) -> Option<MapEdge> {
+    let edge = network.edges.get(index as usize)?;
+    let road = network.road(edge);
+    classes.contains(&road.class).then(|| MapEdge {
+        edge: index,
+        edge_id: edge.id,
+        way_id: road.way_id,
+        direction: edge.direction,
+        oneway: road.oneway,
+        highway: highway(road.class, road.link),
+        name: road.name.map(|text| network.strings.text(text).to_owned()),
+        reference: road.reference.map(|text| network.strings.text(text).to_owned()),
+        numbers,
+        line: network.positions(edge).collect(),
+    })
+}
