@@ -45,7 +45,7 @@ CREATE TABLE road (
     maxspeed_backward_kmh INTEGER
 );
 
--- One row per directed edge; `geom` runs in direction of travel. `edge_id` is stable from extract to extract, `fid` is
+-- One row per directed edge; `geom` runs in direction of travel. No geometry of this file has an envelope in its header. `edge_id` is stable from extract to extract, `fid` is
 -- not. Limits are those of the way and of its nodes on this edge together. `min_radius_m` is NULL on a straight and
 -- where no corridor could be laid (then `centreline_deviation_m` is NULL too). `width_source` belongs to
 -- `lane_width_m`. `maxspeed_kmh`: the lowest tagged limit for heavy vehicles. `barred`: a barrier on it stops heavy

@@ -8,6 +8,7 @@ mod evidence;
 mod select;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Instant;
 
 use thiserror::Error;
@@ -243,9 +244,9 @@ fn certify_into(
         return Ok(());
     }
     let clock = Instant::now();
-    let turns = turn_facts(network, &settings.kerbs);
+    let turns: Arc<[TurnFacts]> = turn_facts(network, &settings.kerbs).into();
     let junctions = junction_areas(network, &junction_nodes(network, &turns), &settings.turn_params());
-    writer.turns(network, turns.clone(), junctions)?;
+    writer.turns(network, Arc::clone(&turns), junctions)?;
     let job = TurnJob { network, turns: &turns, models, edges: &verdicts.0, settings };
     let outcome = certify_turns(&job, reporter, |vehicle, certificate| {
         writer.turn_certificate(numbers[vehicle], settings.policy, certificate)

@@ -1,23 +1,23 @@
-//! Encodes and decodes geometries as GeoPackage blobs: `GP`, version 0, XY envelope, WGS 84, then a WKB line string or multipolygon, all
+//! Encodes and decodes geometries as GeoPackage blobs: `GP`, version 0, no envelope, WGS 84, then a WKB line string or multipolygon, all
 //! little endian (GeoPackage 1.3, clause 2.1.3). Positions are multiples of 1e-7 degree and are preserved exactly.
 
 use crate::osm::LonLat;
 use crate::rows::Bounds;
 
-/// The flags: an XY envelope (code 1 in bits 1 to 3), little endian (bit 0).
-const FLAGS: u8 = 0b0000_0011;
+/// The flags: no envelope (code 0 in bits 1 to 3), little endian (bit 0). An envelope would take 32 bytes of each geometry.
+const FLAGS: u8 = 0b0000_0001;
 const SRS: i32 = 4326;
 const WKB_LINESTRING: u32 = 2;
 const WKB_POLYGON: u32 = 3;
 const WKB_MULTIPOLYGON: u32 = 6;
-const HEADER_BYTES: usize = 8 + 4 * 8;
+const HEADER_BYTES: usize = 8;
 const WKB_BYTES: usize = 1 + 4 + 4;
 
 /// The blob of a line, and the box around the line. An empty line has no blob.
 pub(super) fn encode(positions: impl ExactSizeIterator<Item = LonLat> + Clone) -> Option<(Vec<u8>, Bounds)> {
     let bounds = Bounds::around(positions.clone())?;
     let mut blob = Vec::with_capacity(HEADER_BYTES + WKB_BYTES + 16 * positions.len());
-    header(&mut blob, bounds);
+    header(&mut blob);
     begin(&mut blob, WKB_LINESTRING);
     put_line(&mut blob, positions);
     Some((blob, bounds))
@@ -30,7 +30,7 @@ pub(super) fn encode_polygons(polygons: &[Vec<Vec<LonLat>>]) -> Option<(Vec<u8>,
     let vertices: usize = rings().map(Vec::len).sum();
     let mut blob =
         Vec::with_capacity(HEADER_BYTES + WKB_BYTES * (1 + polygons.len()) + 4 * rings().count() + 16 * vertices);
-    header(&mut blob, bounds);
+    header(&mut blob);
     begin(&mut blob, WKB_MULTIPOLYGON);
     blob.extend((polygons.len() as u32).to_le_bytes());
     for rings in polygons {
@@ -41,13 +41,10 @@ pub(super) fn encode_polygons(polygons: &[Vec<Vec<LonLat>>]) -> Option<(Vec<u8>,
     Some((blob, bounds))
 }
 
-fn header(blob: &mut Vec<u8>, bounds: Bounds) {
+fn header(blob: &mut Vec<u8>) {
     blob.extend(b"GP");
     blob.extend([0, FLAGS]);
     blob.extend(SRS.to_le_bytes());
-    for side in [bounds.west, bounds.east, bounds.south, bounds.north] {
-        blob.extend(side.to_le_bytes());
-    }
 }
 
 /// The byte order and the type of a geometry.

@@ -68,24 +68,23 @@ impl TurnSet<'_> {
     }
 }
 
-/// A turn with all that is needed to write it without the network.
+/// What the table says of a turn beside its facts.
 pub(super) struct Record {
-    facts: TurnFacts,
     via_node: i64,
     /// The tagged words of the restriction that forbids the turn.
     restriction: Option<String>,
     passage: Option<PassageKind>,
 }
 
-/// The records of turns, ready to be written.
-pub(super) fn records(network: &Network, turns: Vec<TurnFacts>) -> Vec<Record> {
-    let record = |facts: TurnFacts| {
+/// The records of turns, with which they can be written without the network.
+pub(super) fn records(network: &Network, turns: &[TurnFacts]) -> Vec<Record> {
+    let record = |facts: &TurnFacts| {
         let via_node = network.edges.get(facts.movement.from as usize).map_or(0, |edge| edge.to_node);
         let forbids = facts.movement.forbidden.and_then(|no| network.restrictions.get(no as usize));
         let restriction = forbids.map(|restriction| restriction.kind.name());
-        Record { via_node, restriction, passage: network.passage_kind(&facts.through), facts }
+        Record { via_node, restriction, passage: network.passage_kind(&facts.through) }
     };
-    turns.into_iter().map(record).collect()
+    turns.iter().map(record).collect()
 }
 
 /// The kind of a turn by its angle, such as `left` or `slight_right`. A passage has the kind of its junction.
@@ -102,10 +101,13 @@ fn kind(facts: &TurnFacts, passage: Option<PassageKind>) -> &'static str {
 }
 
 /// Writes the table `turn` and returns the box around it. Turns keep their order: `fid` is the index + 1.
-pub(super) async fn write(c: &mut SqliteConnection, turns: &[Record]) -> Sql<Option<Bounds>> {
+pub(super) async fn write(
+    c: &mut SqliteConnection,
+    (turns, records): (&[TurnFacts], &[Record]),
+) -> Sql<Option<Bounds>> {
     let mut bulk = Bulk::new("turn", 13);
     let mut bounds: Option<Bounds> = None;
-    for (fid, Record { facts, via_node, restriction, passage }) in (1_i64..).zip(turns) {
+    for ((fid, facts), Record { via_node, restriction, passage }) in (1_i64..).zip(turns).zip(records) {
         let (geom, around) = blob::encode(facts.line.iter().copied()).ok_or_else(|| content("a turn has no line"))?;
         bounds = Some(bounds.map_or(around, |b| b.union(around)));
         bulk.add(fid)?;
@@ -129,7 +131,7 @@ pub(super) async fn write(c: &mut SqliteConnection, turns: &[Record]) -> Sql<Opt
 }
 
 /// Replaces the turns in the database and registers them as a layer.
-pub(super) async fn add(c: &mut SqliteConnection, records: &[Record], time: &str) -> Sql<()> {
+pub(super) async fn add(c: &mut SqliteConnection, turns: (&[TurnFacts], &[Record]), time: &str) -> Sql<()> {
     for sql in [
         "DELETE FROM turn",
         "DELETE FROM gpkg_geometry_columns WHERE table_name = 'turn'",
@@ -137,7 +139,7 @@ pub(super) async fn add(c: &mut SqliteConnection, records: &[Record], time: &str
     ] {
         sqlx::query(sql).execute(&mut *c).await?;
     }
-    let bounds = write(c, records).await?;
+    let bounds = write(c, turns).await?;
     sets::add_layer(c, "turn", "Turns at junctions", time, bounds).await?;
     styles::add(c, "turn", Shows::Turns, time).await
 }
@@ -261,7 +263,7 @@ pub(super) async fn insert_set(
     .fetch_one(&mut *c)
     .await?;
     if layers == 0 {
-        add(c, &records(set.network, set.facts.to_vec()), time).await?;
+        add(c, (set.facts, &records(set.network, set.facts)), time).await?;
         junctions::add(c, set.junctions, time).await?;
     } else if kept != set.facts.len() as i64 {
         return Err(content(format!("{kept} turns are stored, the network has {}", set.facts.len())));

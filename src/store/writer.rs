@@ -4,6 +4,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqliteLockingMode, SqliteSynchronous};
@@ -60,7 +61,7 @@ pub struct Writer {
     restrictions: Restrictions,
     areas: Vec<Area>,
     /// The turns, and the spool of their certificates. Also written last.
-    turns: Option<(Vec<turns::Record>, Spool)>,
+    turns: Option<(Arc<[TurnFacts]>, Vec<turns::Record>, Spool)>,
     junctions: Vec<JunctionArea>,
     turn_plans: BTreeMap<(u32, u8), Vec<StoredPlan>>,
     /// Nothing if there is no older database, or none with measurements that can be read.
@@ -198,11 +199,12 @@ impl Writer {
     pub fn turns(
         &mut self,
         network: &Network,
-        facts: Vec<TurnFacts>,
+        facts: Arc<[TurnFacts]>,
         junctions: Vec<JunctionArea>,
     ) -> Result<(), StoreError> {
         let spool = Spool::create(with_suffix(&self.part.path, "-turns"))?;
-        self.turns = Some((turns::records(network, facts), spool));
+        let records = turns::records(network, &facts);
+        self.turns = Some((facts, records, spool));
         self.junctions = junctions;
         Ok(())
     }
@@ -217,7 +219,7 @@ impl Writer {
     ) -> Result<(), StoreError> {
         let packed =
             certificate.pack().map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.turn, detail))?;
-        let Some((_, spool)) = &mut self.turns else { return Ok(()) };
+        let Some((.., spool)) = &mut self.turns else { return Ok(()) };
         let set = (vehicle.0, corridor_no(policy));
         if let Some(plan) = &certificate.plan {
             self.turn_plans.entry(set).or_default().push(plan.clone());
@@ -284,15 +286,15 @@ impl Writer {
 impl Writer {
     /// Writes turns, their layer and their certificates.
     fn finish_turns(&mut self, run: &Run, run_id: i64) -> Result<(), StoreError> {
-        let Some((records, mut spool)) = self.turns.take() else { return Ok(()) };
+        let Some((facts, records, mut spool)) = self.turns.take() else { return Ok(()) };
         let junctions = std::mem::take(&mut self.junctions);
         self.session.run(async |c| {
             sqlx::query("BEGIN").execute(&mut *c).await?;
-            turns::add(c, &records, &run.finished).await?;
+            turns::add(c, (&facts, &records), &run.finished).await?;
             junctions::add(c, &junctions, &run.finished).await
         })?;
         while let Some(((vehicle_no, corridor), rows)) = spool.take_first(&self.session.path)? {
-            sets::check_complete(&rows, records.len() as u32)
+            sets::check_complete(&rows, facts.len() as u32)
                 .map_err(|(turn, detail)| unsound(&self.vehicles, vehicle_no, turn, detail.to_owned()))?;
             let policy = Policy::ALL[usize::from(corridor)];
             let mut plans = self.turn_plans.remove(&(vehicle_no, corridor)).unwrap_or_default();
