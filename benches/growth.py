@@ -58,7 +58,7 @@ def panel(title, across, up, points, left, top):
     most_x, most_y = max(x for x, _ in points) * 1.08, max(y for _, y in points) * 1.12
     at = lambda x, y: (left + 48 + width * x / most_x, top + 28 + height * (1 - y / most_y))
     (x0, y0), (x1, y1) = at(0, 0), at(*points[-1])
-    shapes = [f'<text class="title" x="{left + 48}" y="{top + 16}">{escape(title)}</text>']
+    shapes = [f'<text class="title" x="{left + 48}" y="{top + 16}">{escape(title)}, {escape(up)}</text>']
     shapes.append(f'<path class="axis" d="M{x0:.1f} {top + 28}V{y0:.1f}h{width}"/>')
     shapes.append(f'<path class="line" d="M{x0:.1f} {y0:.1f}L{x1:.1f} {y1:.1f}"/>')
     for x, y in points:
@@ -69,7 +69,6 @@ def panel(title, across, up, points, left, top):
     shapes.append(f'<text x="{x0 - 5:.1f}" y="{y1 + 4:.1f}" text-anchor="end">{last_y:.3g}</text>')
     shapes.append(f'<text x="{x0:.1f}" y="{y0 + 14:.1f}" text-anchor="middle">0</text>')
     shapes.append(f'<text x="{x0 + width / 2:.1f}" y="{y0 + 30:.1f}" text-anchor="middle">{escape(across)}</text>')
-    shapes.append(f'<text x="{left + 6}" y="{top + 22}">{escape(up)}</text>')
     return "\n".join(shapes)
 
 
@@ -119,9 +118,9 @@ def main():
     speed = [(n, threads[0][1] / wall) for n, wall in threads]
     plot(
         [
-            ("Roads", "km of directed edges", "user s", roads),
-            ("Vehicles", "vehicles", "user s", vehicles),
-            ("Units", "units of one vehicle", "user s", by_units),
+            ("Roads", "km of directed edges", "user seconds", roads),
+            ("Vehicles", "vehicles", "user seconds", vehicles),
+            ("Units", "units of one vehicle", "user seconds", by_units),
             ("Threads", "threads", "times as fast", speed),
         ],
         picture,

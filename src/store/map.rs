@@ -11,7 +11,7 @@ use crate::rows::{Bounds, MapEdge, MapNumbers, MapTurn, RscBin};
 use crate::words::Named;
 
 use super::database::Database;
-use super::error::StoreError;
+use super::error::{StoreError, content};
 use super::names::{corridor_no, width_columns};
 use super::network_read::{line, verdict, word, word_or_none};
 use super::numbers;
@@ -104,7 +104,8 @@ impl Database {
     /// The numbers of every edge with a vehicle's certificates, by index into `Network::edges`.
     ///
     /// # Errors
-    /// The file cannot be read. A vehicle that is not certified under this policy has no numbers.
+    /// The file cannot be read, or an edge before the last certified one has no certificate. A vehicle that is not certified under this
+    /// policy has no numbers.
     pub fn map_numbers(&mut self, (vehicle, policy): (&str, Policy)) -> Result<Vec<MapNumbers>, StoreError> {
         let [width, source] = width_columns(policy);
         let sql = format!(
@@ -115,7 +116,17 @@ impl Database {
         );
         self.session.run(async |c| {
             let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle).bind(corridor_no(policy));
-            query.fetch(c).map(|row| map_numbers(&row?)).try_collect().await
+            let mut expected = 0_u32;
+            let read = |row: Sql<SqliteRow>| {
+                let row = row?;
+                expected += 1;
+                // The index of a row is that of its edge.
+                if row.try_get::<u32, _>(0)? != expected {
+                    return Err(content(format!("edge {expected} of the network has no certificate")));
+                }
+                map_numbers(&row)
+            };
+            query.fetch(c).map(read).try_collect().await
         })
     }
 

@@ -18,13 +18,15 @@ pub(super) fn edges(
     bounds: Bounds,
     classes: &[RoadClass],
 ) -> Result<Vec<MapEdge>, Problem> {
-    let Some(roads) = region.roads_if_loaded().filter(|roads| roads.network().edges.len() <= MOST_HELD) else {
-        return region.read(|database| database.map_edges(set, bounds, classes));
-    };
-    let numbers = region.numbers(set)?;
-    let network = roads.network();
-    let row = |&index: &u32| map_edge(network, index, *numbers.get(index as usize)?, classes);
-    Ok(roads.near(bounds).iter().filter_map(row).collect())
+    if let Some(roads) = region.roads_if_loaded().filter(|roads| roads.network().edges.len() <= MOST_HELD) {
+        let (network, numbers) = (roads.network(), region.numbers(set)?);
+        // Otherwise the file is damaged, and has rows for some edges only.
+        if numbers.len() == network.edges.len() {
+            let row = |&index: &u32| map_edge(network, index, *numbers.get(index as usize)?, classes);
+            return Ok(roads.near(bounds).iter().filter_map(row).collect());
+        }
+    }
+    region.read(|database| database.map_edges(set, bounds, classes))
 }
 
 /// `None` if the edge is of another class.
