@@ -31,8 +31,9 @@ const MOST_IDLE: usize = 4;
 const MOST_EXPLAINED: usize = 16;
 /// Number of overviews to keep, one for each vehicle and policy. An overview takes about 60 bytes per vertex.
 pub(super) const MOST_OVERVIEWS: usize = 6;
-/// Number of sets to keep the numbers of all edges of.
+/// Number of sets to keep the numbers of all edges of, and the greatest number of edges for that. An edge takes 64 bytes in each set.
 const MOST_NUMBERS: usize = 6;
+const MOST_NUMBERED: usize = 2_000_000;
 /// Number of answers of planners to keep, so that a route and the sheets of its conditions are planned once. An answer with a long drive
 /// has some megabytes.
 const MOST_PLANNED: usize = 4;
@@ -201,18 +202,28 @@ impl Region {
         self.roads.known()
     }
 
-    /// The numbers of every edge in a set; the first call reads them.
-    pub(super) fn numbers(&self, set: (&str, Policy)) -> Result<Arc<Vec<MapNumbers>>, Problem> {
+    /// The numbers of every edge of `roads` in a set; the first call reads them. `None` if there are too many edges to hold, or if a damaged
+    /// file has numbers of some edges only.
+    pub(super) fn numbers(
+        &self,
+        roads: &RoadIndex,
+        set: (&str, Policy),
+    ) -> Result<Option<Arc<Vec<MapNumbers>>>, Problem> {
+        let edges = roads.network().edges.len();
+        if edges > MOST_NUMBERED {
+            return Ok(None);
+        }
         let key = format!("{} {}", set.0, set.1.name());
-        self.numbers.get(&key, || self.read(|database| database.map_numbers(set)))
+        let numbers = self.numbers.get(&key, || self.read(|database| database.map_numbers(set)))?;
+        Ok(Some(numbers).filter(|numbers| numbers.len() == edges))
     }
 
     /// Loads the roads and their names, and the numbers of the first sets.
     pub(super) fn warm_up(&self, stop: &Stop) -> Result<(), Problem> {
-        self.roads()?;
+        let roads = self.roads()?;
         for set in self.sets.iter().take(MOST_NUMBERS) {
             stop.check()?;
-            self.numbers((&set.vehicle_id, set.policy))?;
+            self.numbers(&roads, (&set.vehicle_id, set.policy))?;
         }
         self.names().map(|_| ())
     }

@@ -8,9 +8,6 @@ use crate::osm::facts::{Policy, RoadClass};
 use crate::rows::{Bounds, MapEdge, MapNumbers};
 use crate::words::highway;
 
-/// The greatest number of edges of which a set's numbers are held in memory. Each takes 64 bytes for each set.
-const MOST_HELD: usize = 2_000_000;
-
 /// The edges of these classes (with their links) whose own box touches a box, in order of the network.
 pub(super) fn edges(
     region: &Region,
@@ -18,13 +15,12 @@ pub(super) fn edges(
     bounds: Bounds,
     classes: &[RoadClass],
 ) -> Result<Vec<MapEdge>, Problem> {
-    if let Some(roads) = region.roads_if_loaded().filter(|roads| roads.network().edges.len() <= MOST_HELD) {
-        let (network, numbers) = (roads.network(), region.numbers(set)?);
-        // Otherwise the file is damaged, and has rows for some edges only.
-        if numbers.len() == network.edges.len() {
-            let row = |&index: &u32| map_edge(network, index, *numbers.get(index as usize)?, classes);
-            return Ok(roads.near(bounds).iter().filter_map(row).collect());
-        }
+    if let Some(roads) = region.roads_if_loaded()
+        && let Some(numbers) = region.numbers(&roads, set)?
+    {
+        let network = roads.network();
+        let row = |&index: &u32| map_edge(network, index, *numbers.get(index as usize)?, classes);
+        return Ok(roads.near(bounds).iter().filter_map(row).collect());
     }
     region.read(|database| database.map_edges(set, bounds, classes))
 }
