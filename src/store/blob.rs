@@ -12,11 +12,18 @@ const WKB_POLYGON: u32 = 3;
 const WKB_MULTIPOLYGON: u32 = 6;
 const HEADER_BYTES: usize = 8;
 const WKB_BYTES: usize = 1 + 4 + 4;
+const POSITION_BYTES: usize = 16;
+
+/// How many positions a line has whose blob takes this many bytes; `None` if no blob of a line takes so many.
+pub(super) fn positions_of(blob_bytes: usize) -> Option<u32> {
+    let bytes = blob_bytes.checked_sub(HEADER_BYTES + WKB_BYTES)?;
+    u32::try_from(bytes / POSITION_BYTES).ok().filter(|_| bytes.is_multiple_of(POSITION_BYTES))
+}
 
 /// The blob of a line, and the box around the line. An empty line has no blob.
 pub(super) fn encode(positions: impl ExactSizeIterator<Item = LonLat> + Clone) -> Option<(Vec<u8>, Bounds)> {
     let bounds = Bounds::around(positions.clone())?;
-    let mut blob = Vec::with_capacity(HEADER_BYTES + WKB_BYTES + 16 * positions.len());
+    let mut blob = Vec::with_capacity(HEADER_BYTES + WKB_BYTES + POSITION_BYTES * positions.len());
     header(&mut blob);
     begin(&mut blob, WKB_LINESTRING);
     put_line(&mut blob, positions);
@@ -28,8 +35,9 @@ pub(super) fn encode_polygons(polygons: &[Vec<Vec<LonLat>>]) -> Option<(Vec<u8>,
     let rings = || polygons.iter().flatten();
     let bounds = rings().filter_map(|ring| Bounds::around(ring.iter().copied())).reduce(Bounds::union)?;
     let vertices: usize = rings().map(Vec::len).sum();
-    let mut blob =
-        Vec::with_capacity(HEADER_BYTES + WKB_BYTES * (1 + polygons.len()) + 4 * rings().count() + 16 * vertices);
+    let mut blob = Vec::with_capacity(
+        HEADER_BYTES + WKB_BYTES * (1 + polygons.len()) + 4 * rings().count() + POSITION_BYTES * vertices,
+    );
     header(&mut blob);
     begin(&mut blob, WKB_MULTIPOLYGON);
     blob.extend((polygons.len() as u32).to_le_bytes());
@@ -74,7 +82,7 @@ pub(super) fn decode_polygons(blob: &[u8]) -> Option<Vec<Vec<Vec<LonLat>>>> {
         let mut polygon = Vec::new();
         for _ in 0..rings {
             let points = count_of(&mut wkb, None)? as usize;
-            let (line, rest) = wkb.split_at_checked(points.checked_mul(16)?)?;
+            let (line, rest) = wkb.split_at_checked(points.checked_mul(POSITION_BYTES)?)?;
             wkb = rest;
             polygon.push(positions(line)?);
         }
@@ -103,14 +111,14 @@ pub(super) fn decode(blob: &[u8]) -> Option<Vec<LonLat>> {
     let (wkb, points) = wkb.split_at_checked(WKB_BYTES)?;
     let expected = header.starts_with(&[b'G', b'P', 0, FLAGS]) && wkb.starts_with(&[1, WKB_LINESTRING as u8, 0, 0, 0]);
     let count = u32::from_le_bytes(wkb.get(5..9)?.try_into().ok()?);
-    if !expected || points.len() != (count as usize).checked_mul(16)? {
+    if !expected || points.len() != (count as usize).checked_mul(POSITION_BYTES)? {
         return None;
     }
     positions(points)
 }
 
 fn positions(bytes: &[u8]) -> Option<Vec<LonLat>> {
-    let (points, []) = bytes.as_chunks::<16>() else { return None };
+    let (points, []) = bytes.as_chunks::<POSITION_BYTES>() else { return None };
     points.iter().map(|point| Some(LonLat { lon_e7: e7(&point[..8])?, lat_e7: e7(&point[8..])? })).collect()
 }
 
@@ -134,6 +142,8 @@ mod tests {
             let line: Vec<LonLat> = places.into_iter().map(|(lon_e7, lat_e7)| LonLat { lon_e7, lat_e7 }).collect();
             let (blob, bounds) = encode(line.iter().copied()).unwrap();
             prop_assert_eq!(decode(&blob).unwrap(), line.clone());
+            prop_assert_eq!(positions_of(blob.len()), Some(line.len() as u32));
+            prop_assert_eq!(positions_of(blob.len() + 1), None);
             for place in line {
                 let (lon, lat) = place.degrees();
                 prop_assert!(bounds.west <= lon && lon <= bounds.east && bounds.south <= lat && lat <= bounds.north);

@@ -13,8 +13,9 @@ use tokio::runtime::Runtime;
 use crate::osm::facts::Policy;
 use crate::rows::{EdgeStep, TurnRow, TurnStep};
 
+use super::blob;
 use super::database::Database;
-use super::error::StoreError;
+use super::error::{StoreError, content};
 use super::names::{corridor_no, width_columns};
 use super::network_read::{verdict, word, word_or_none};
 use super::turns::{self, TurnQuery};
@@ -143,14 +144,10 @@ fn straight_on(row: &SqliteRow) -> Sql<StraightOn> {
     Ok((row.try_get::<u32, _>(0)?.saturating_sub(1), next.map(|fid| fid.saturating_sub(1))))
 }
 
-/// Bytes of a geometry before its positions: see `blob`.
-const GEOMETRY_HEAD: u32 = 49;
-/// Bytes of one position.
-const POSITION_BYTES: u32 = 16;
-
 fn edge_step(row: &SqliteRow) -> Sql<EdgeStep> {
     let fid: u32 = row.try_get(0)?;
-    let bytes: u32 = row.try_get(6)?;
+    let positions = blob::positions_of(row.try_get::<u32, _>(6)? as usize)
+        .ok_or_else(|| content(format!("edge {fid} has a geometry that is no line")))?;
     Ok(EdgeStep {
         edge: fid.saturating_sub(1),
         way_id: row.try_get(1)?,
@@ -158,7 +155,7 @@ fn edge_step(row: &SqliteRow) -> Sql<EdgeStep> {
         to_node: row.try_get(3)?,
         direction: word(row, 4)?,
         shape_start: row.try_get(5)?,
-        positions: bytes.saturating_sub(GEOMETRY_HEAD) / POSITION_BYTES,
+        positions,
         verdict: verdict(row, 7, || format!("edge {fid}"))?,
         rsc_m: metres(row, 8)?,
         width_source: word_or_none(row, 9)?,
