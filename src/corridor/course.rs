@@ -19,7 +19,10 @@ const MOST_TURNS: usize = 12;
 pub(super) struct Link<'n> {
     pub(super) index: u32,
     pub(super) edge: &'n Edge,
+    /// The positions that are driven, in direction of travel.
     pub(super) points: Vec<[f64; 2]>,
+    /// How many positions of the edge lie before them: the approach begins within its first edge.
+    pub(super) skipped: usize,
     /// `None` if no width is known.
     pub(super) room: Option<Room>,
     /// All lanes of the direction of travel.

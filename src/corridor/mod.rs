@@ -43,7 +43,8 @@ pub struct Params {
     /// Cut-off wavelength, metres. Longer waves of the map's line belong to the road. Shorter waves are the mapper's
     /// and are smoothed away as far as the tolerance allows.
     pub cutoff_m: f64,
-    /// Length driven round a closed stroke before the counted turn, metres.
+    /// Least length driven before the first edge of a stroke, as far as its approach goes: along the approach, or round a closed stroke;
+    /// metres.
     pub lead_in_m: f64,
 }
 

@@ -11,7 +11,7 @@ use super::resample::{ArcLength, LEAST_OFFSET_FACTOR, Track};
 use super::smooth::{Smoothed, Smoothing, smooth};
 use super::taper::{Ramp, guideline_ratio};
 use super::{Corridor, EdgeSpan, Params, StrokeCorridor, Taper, TaperCause};
-use crate::network::{Edge, Network, Stroke};
+use crate::network::{Edge, Network, Stroke, offset_m};
 use crate::osm::LonLat;
 use crate::osm::facts::{CrossSection, Direction, Oneway, Policy, Strip};
 use crate::verdict::UnknownReason;
@@ -218,11 +218,13 @@ fn links<'n>(
     if edges.is_empty() {
         return Err(UnknownReason::Geometry);
     }
+    let (approach, skipped) = lead_in(network, approach, params.lead_in_m);
     let chain: Vec<u32> = approach.iter().chain(edges).copied().collect();
     let mut positions: Vec<LonLat> = Vec::new();
     let mut ends = Vec::with_capacity(chain.len());
-    for &index in &chain {
-        positions.extend(network.positions(&network.edges[index as usize]));
+    for (place, &index) in chain.iter().enumerate() {
+        let skipped = if place == 0 { skipped } else { 0 };
+        positions.extend(network.positions(&network.edges[index as usize]).skip(skipped));
         ends.push(positions.len());
     }
     let metric = Frame::around(&positions).and_then(|frame| Ok((frame, frame.forward(&positions)?)));
@@ -232,18 +234,38 @@ fn links<'n>(
         .iter()
         .zip(ends)
         .map(|(&index, end)| {
-            let points = metric[start..end].to_vec();
+            let (points, skipped) = (metric[start..end].to_vec(), if start == 0 { skipped } else { 0 });
             start = end;
-            link(network, index, points, sections, policy, params.map_tolerance_m)
+            link(network, index, (points, skipped), sections, policy, params.map_tolerance_m)
         })
         .collect();
     Ok((frame, links, approach.len()))
 }
 
+/// The part of an approach that is driven, and how many positions of its first edge lie before it. It begins at the position nearest to the
+/// stroke from which it is long enough. What lies before it, and may lie beyond the end of a file, has no influence.
+fn lead_in<'n>(network: &Network, approach: &'n [u32], least_m: f64) -> (&'n [u32], usize) {
+    let mut length_m = 0.0;
+    for (place, &index) in approach.iter().enumerate().rev() {
+        let mut after: Option<LonLat> = None;
+        for (from_end, position) in network.positions(&network.edges[index as usize]).rev().enumerate() {
+            if let Some(after) = after.replace(position) {
+                let [x, y] = offset_m(position, after);
+                length_m += x.hypot(y);
+                if length_m >= least_m {
+                    let positions = network.positions(&network.edges[index as usize]).len();
+                    return (&approach[place..], positions - 1 - from_end);
+                }
+            }
+        }
+    }
+    (approach, 0)
+}
+
 fn link<'n>(
     network: &'n Network,
     index: u32,
-    points: Vec<[f64; 2]>,
+    (points, skipped): (Vec<[f64; 2]>, usize),
     sections: &Sections<'_>,
     policy: Policy,
     map_tolerance_m: f64,
@@ -255,6 +277,7 @@ fn link<'n>(
         index,
         edge,
         points,
+        skipped,
         room: room(section, policy, map_tolerance_m),
         direction: section.direction.and_then(|strip| across(strip, 0.0)),
         two_way: road.oneway == Oneway::No,
@@ -307,9 +330,10 @@ fn gaps(network: &Network, links: &[Link<'_>], course: &Course, smoothed: &Smoot
         let link = &links[piece.link];
         let range = link.edge.narrowings.start as usize..link.edge.narrowings.end as usize;
         for narrowing in network.narrowings.get(range).unwrap_or_default() {
-            let last = link.points.len() - 1;
+            let last = link.skipped + link.points.len() - 1;
             let vertex = (narrowing.vertex as usize).min(last);
             let vertex = if link.edge.direction == Direction::Forward { vertex } else { last - vertex };
+            let Some(vertex) = vertex.checked_sub(link.skipped) else { continue };
             let at = piece.at[vertex];
             let [c, d, ..] = smoothed.curve.at(at);
             let off = [link.points[vertex][0] - c[0], link.points[vertex][1] - c[1]];

@@ -44,6 +44,8 @@ pub struct NetworkAccount {
     pub closed_strokes: u64,
     /// Strokes that begin because the previous one became too long.
     pub strokes_split: u64,
+    /// Strokes that begin where a road comes into another cell.
+    pub strokes_split_at_cells: u64,
     /// Open strokes with an approach.
     pub strokes_with_approach: u64,
     /// Nodes with too many edges for any of them to be called straight on.
@@ -142,6 +144,7 @@ impl NetworkAccount {
             ("stroke", "read", "", self.strokes),
             ("stroke", "noted", "closed", self.closed_strokes),
             ("stroke", "noted", "split_by_length", self.strokes_split),
+            ("stroke", "noted", "split_at_cell", self.strokes_split_at_cells),
             ("stroke", "noted", "with_approach", self.strokes_with_approach),
             ("area", "read", "", self.areas_read),
             ("area", "kept", "", self.areas_kept),

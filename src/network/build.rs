@@ -5,7 +5,7 @@
 
 use super::edges::Source;
 use super::vertices::Vertices;
-use super::{Crossings, Network, NetworkAccount, Splits, StrokeOptions, areas, edge_id, restrictions, stroke};
+use super::{Crossings, Network, NetworkAccount, Splits, StrokeOptions, areas, border, edge_id, restrictions, stroke};
 use crate::osm::facts::{CrossSection, Place, WayFacts};
 use crate::osm::{Extract, LonLat};
 
@@ -29,7 +29,7 @@ pub fn build_with(
     sections: &(impl Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync),
     options: &StrokeOptions,
 ) -> (Network, NetworkAccount) {
-    let Extract { ways, refs, nodes, points, restrictions, areas, strings, .. } = extract;
+    let Extract { ways, refs, nodes, points, restrictions, areas, strings, account: read } = extract;
     let vertices = Vertices::resolve(&ways, &refs, &nodes, &points);
     drop((refs, points));
     let mut account = NetworkAccount {
@@ -40,6 +40,7 @@ pub fn build_with(
     let mut network = Network { strings, ..Network::default() };
     Source { nodes: &nodes, vertices: &vertices, places, sections }.build(&ways, &mut network, &mut account);
     drop(ways);
+    border::mark(&mut network, read.header.bbox_deg(), &mut account);
     restrictions::resolve(&mut network, &restrictions, &nodes, &vertices, &mut account);
     areas::resolve(&mut network, areas, &nodes, &mut account);
     drop((nodes, vertices));

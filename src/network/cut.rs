@@ -1,4 +1,4 @@
-//! Cuts a way's vertices into pieces: at junctions, at sharp corners, at reversals, and where the file lacks a node.
+//! Cuts a way's vertices into pieces: at junctions, at sharp corners, at borders of cells, at reversals, and where the file lacks a node.
 //!
 //! A piece has at least two vertices. Consecutive vertices differ, and no inner vertex is a junction.
 
@@ -36,13 +36,13 @@ pub(super) struct CutWay {
 }
 
 impl CutWay {
-    /// Cuts the way with these vertices, which may include [`MISSING`]. `is_corner` tells whether a line has a sharp corner at
-    /// the inner vertex of an index.
+    /// Cuts the way with these vertices, which may include [`MISSING`]. `ends_at` tells whether a piece ends at the inner vertex of an
+    /// index of a line that is no junction.
     pub(super) fn cut(
         &mut self,
         vertices: &[u32],
         is_junction: impl Fn(u32) -> bool,
-        is_corner: impl Fn(&[u32], usize) -> bool,
+        ends_at: impl Fn(&[u32], usize) -> bool,
     ) -> Result<(), Unusable> {
         self.line.clear();
         self.pieces.clear();
@@ -53,7 +53,7 @@ impl CutWay {
             from += run.len() + 1;
             located |= !run.is_empty();
             consecutive |= run.len() > 1;
-            self.cut_run(run, cut, &|line, i| is_junction(line[i]) || is_corner(line, i));
+            self.cut_run(run, cut, &|line, i| is_junction(line[i]) || ends_at(line, i));
         }
         match (self.pieces.is_empty(), located, consecutive) {
             (false, ..) => Ok(()),

@@ -5,6 +5,7 @@
 
 use rayon::prelude::*;
 
+use super::cell::Cell;
 use super::corners;
 use super::cut::{CutWay, Piece};
 use super::edge_id::edge_id;
@@ -49,8 +50,13 @@ where
         for way in ways {
             part.account.ways_read += 1;
             let vertices = of_way(&self.vertices.of_refs, way);
-            let corner = |line: &[u32], at| !way.facts.roundabout && corners::cuts(line, at, &|v| self.position(v));
-            match cut.cut(vertices, |v| self.vertices.is_junction(v), corner) {
+            // Rings are never cut.
+            let whole = way.facts.roundabout;
+            let leaves = !whole && self.leaves_its_cell(vertices);
+            let ends_at = |line: &[u32], at| {
+                !whole && ((leaves && self.enters_a_cell(line, at)) || corners::cuts(line, at, &|v| self.position(v)))
+            };
+            match cut.cut(vertices, |v| self.vertices.is_junction(v), ends_at) {
                 Ok(()) => {
                     part.account.ways_kept += 1;
                     self.add_way(way, vertices, &cut, &mut part);
@@ -115,6 +121,20 @@ where
             part.account.count_edge(&edge, limits.is_some_and(|limits| limits != Legal::default()));
             part.network.edges.push(edge);
         }
+    }
+
+    /// Whether vertices, some of which may be [`MISSING`], are in several cells.
+    fn leaves_its_cell(&self, vertices: &[u32]) -> bool {
+        let places = || vertices.iter().filter(|&&v| v != MISSING).map(|&v| self.position(v));
+        let range = |of: fn(LonLat) -> i32| places().map(of).min().zip(places().map(of).max());
+        let (Some(lon_e7), Some(lat_e7)) = (range(|p| p.lon_e7), range(|p| p.lat_e7)) else { return false };
+        Cell::of(LonLat { lon_e7: lon_e7.0, lat_e7: lat_e7.0 })
+            != Cell::of(LonLat { lon_e7: lon_e7.1, lat_e7: lat_e7.1 })
+    }
+
+    /// Whether a line comes into another cell with the vertex of an index.
+    fn enters_a_cell(&self, line: &[u32], at: usize) -> bool {
+        Cell::of(self.position(line[at])) != Cell::of(self.position(line[at - 1]))
     }
 
     /// Vertices are located; others would be [`MISSING`].

@@ -5,7 +5,9 @@
 
 mod account;
 mod areas;
+mod border;
 mod build;
+mod cell;
 mod complexes;
 mod corners;
 mod crossings;
@@ -29,6 +31,7 @@ use std::ops::Range;
 pub use account::NetworkAccount;
 pub use areas::{Area, Areas};
 pub use build::{build, build_with};
+pub use cell::Cell;
 pub use crossings::Crossings;
 pub(crate) use geometry::{EARTH_RADIUS_M, offset_m};
 pub use movements::{Movement, MovementKind, Movements};
@@ -93,7 +96,8 @@ pub struct Edge {
     pub legal: Legal,
     /// Whether a barrier on the edge bars heavy vehicles.
     pub barred: bool,
-    /// Whether the file ends here: a node of the way is missing at the edge's start or end.
+    /// Whether the file ends here: a node of the way is missing at the edge's start or end, or the edge is so near the border of the file
+    /// that roads which meet it may be missing.
     pub cut: bool,
 }
 
@@ -175,6 +179,12 @@ impl Network {
         let n = shape.len();
         let forward = edge.direction == Direction::Forward;
         (0..n).map(move |i| shape[if forward { i } else { n - 1 - i }])
+    }
+
+    /// The cell that owns an edge: that of its first position in the order of its way.
+    #[must_use]
+    pub fn cell(&self, edge: &Edge) -> Cell {
+        Cell::of(self.shapes[edge.shape.start as usize])
     }
 
     /// By edge: its stroke, as an index into `strokes`.

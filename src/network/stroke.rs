@@ -54,7 +54,10 @@ const APPROACH_EDGES: usize = 256;
 pub(super) fn chain(network: &mut Network, options: &StrokeOptions, account: &mut NetworkAccount) {
     let geometry = Geometry::measure(network, options.heading_reach_m);
     let pairing = Pairing::find(network, &geometry, options);
-    let chains = chains(&pairing, &geometry, options.max_length_m);
+    let road = Road { network, pairing: &pairing, geometry: &geometry, max_length_m: options.max_length_m };
+    let chains = road.chains();
+    account.strokes_split_at_cells =
+        chains.iter().filter(|chain| road.comes_from_another_cell(chain.first)).count() as u64;
     for chain in &chains {
         let start = network.stroke_edges.len() as u32;
         if !chain.closed {
@@ -82,51 +85,67 @@ struct Chain {
     split: bool,
 }
 
-fn chains(pairing: &Pairing, geometry: &Geometry, max_length_m: f64) -> Vec<Chain> {
-    let edges = pairing.next.len() as u32;
-    let mut done = vec![false; edges as usize];
-    let mut chains = Vec::new();
-    for first in (0..edges).filter(|&edge| !pairing.continues(edge)) {
-        follow(first, pairing, geometry, max_length_m, &mut done, &mut chains);
-    }
-    // The remaining edges form rings: the first edge found is the smallest of its ring.
-    for first in 0..edges {
-        if !done[first as usize] {
-            let strokes = chains.len();
-            follow(first, pairing, geometry, max_length_m, &mut done, &mut chains);
-            if let [ring] = &mut chains[strokes..] {
-                ring.closed = true;
-            }
-        }
-    }
-    chains.sort_unstable_by_key(|chain| chain.first);
-    chains
+/// What strokes are made of.
+struct Road<'n> {
+    network: &'n Network,
+    pairing: &'n Pairing,
+    geometry: &'n Geometry,
+    max_length_m: f64,
 }
 
-/// Follows the road from `first` to its end or back to `first`, as one chain or as several of limited length.
-fn follow(
-    first: u32,
-    pairing: &Pairing,
-    geometry: &Geometry,
-    max_length_m: f64,
-    done: &mut [bool],
-    chains: &mut Vec<Chain>,
-) {
-    let mut chain = Chain { first, edges: 0, closed: false, split: false };
-    let mut length_m = 0.0;
-    let mut edge = first;
-    while edge != NONE && !done[edge as usize] {
-        done[edge as usize] = true;
-        let edge_m = f64::from(geometry.length_m[edge as usize]);
-        if chain.edges > 0 && length_m + edge_m > max_length_m {
-            chains.push(std::mem::replace(&mut chain, Chain { first: edge, edges: 0, closed: false, split: true }));
-            length_m = 0.0;
+impl Road<'_> {
+    fn chains(&self) -> Vec<Chain> {
+        let edges = self.pairing.next.len() as u32;
+        let mut done = vec![false; edges as usize];
+        let mut chains = Vec::new();
+        for first in (0..edges).filter(|&edge| self.begins(edge)) {
+            self.follow(first, &mut done, &mut chains);
         }
-        chain.edges += 1;
-        length_m += edge_m;
-        edge = pairing.next[edge as usize];
+        // The remaining edges form rings: the first edge found is the smallest of its ring.
+        for first in 0..edges {
+            if !done[first as usize] {
+                let strokes = chains.len();
+                self.follow(first, &mut done, &mut chains);
+                if let [ring] = &mut chains[strokes..] {
+                    ring.closed = true;
+                }
+            }
+        }
+        chains.sort_unstable_by_key(|chain| chain.first);
+        chains
     }
-    chains.push(chain);
+
+    /// Whether a stroke begins with an edge: nothing continues into it, or what does is in another cell.
+    fn begins(&self, edge: u32) -> bool {
+        !self.pairing.continues(edge) || self.comes_from_another_cell(edge)
+    }
+
+    /// Whether the edge that continues into an edge is in another cell. Rings are never cut.
+    fn comes_from_another_cell(&self, edge: u32) -> bool {
+        let edges = |edge: u32| &self.network.edges[edge as usize];
+        self.pairing.continues(edge)
+            && !self.network.road(edges(edge)).roundabout
+            && self.network.cell(edges(self.pairing.before[edge as usize])) != self.network.cell(edges(edge))
+    }
+
+    /// Follows the road from `first` to where another stroke begins or back to `first`, as one chain or as several of limited length.
+    fn follow(&self, first: u32, done: &mut [bool], chains: &mut Vec<Chain>) {
+        let mut chain = Chain { first, edges: 0, closed: false, split: false };
+        let mut length_m = 0.0;
+        let mut edge = first;
+        while edge != NONE && !done[edge as usize] && (edge == first || !self.begins(edge)) {
+            done[edge as usize] = true;
+            let edge_m = f64::from(self.geometry.length_m[edge as usize]);
+            if chain.edges > 0 && length_m + edge_m > self.max_length_m {
+                chains.push(std::mem::replace(&mut chain, Chain { first: edge, edges: 0, closed: false, split: true }));
+                length_m = 0.0;
+            }
+            chain.edges += 1;
+            length_m += edge_m;
+            edge = self.pairing.next[edge as usize];
+        }
+        chains.push(chain);
+    }
 }
 
 /// Appends the edges that lead to `first`, in driving order. They go back along what continues into it, then along what

@@ -3,6 +3,7 @@
 
 mod areas;
 mod bends;
+mod cells;
 mod complexes;
 mod conditions;
 mod corners;
