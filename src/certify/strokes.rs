@@ -13,7 +13,7 @@ use crate::account::AccountRow;
 use crate::corridor::{EdgeSpan, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::reporter::Reporter;
-use crate::rows::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StoredPlan};
+use crate::rows::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StoredPlan, StrokeMade};
 use crate::settings::{Needs, Settings};
 use crate::stet::{Case, Model, Planned, SpanResult, certify_cases};
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
@@ -50,6 +50,35 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// The outcome on a network of which no stroke is certified.
+    #[must_use]
+    pub fn new(network: &Network) -> Self {
+        Self { measures: vec![EdgeMeasure::default(); network.edges.len()], ..Self::default() }
+    }
+
+    /// Adds a stroke. `sink` gets each certificate with its vehicle's index.
+    ///
+    /// # Errors
+    /// The first error of `sink`.
+    pub fn add<E>(
+        &mut self,
+        made: StrokeMade,
+        sink: &mut impl FnMut(usize, &EdgeCertificate) -> Result<(), E>,
+    ) -> Result<(), E> {
+        for (edge, measure, why) in made.edges {
+            if let Some(slot) = self.measures.get_mut(edge as usize) {
+                *slot = measure;
+            }
+            *self.corridors.entry(why.map(reason_name)).or_default() += 1;
+        }
+        self.plans.extend(made.plans.into_iter().map(|(vehicle, plan)| (vehicle as usize, plan)));
+        for (vehicle, certificate) in &made.certificates {
+            *self.verdicts.entry(verdict_words(certificate.conclusion.verdict)).or_default() += 1;
+            sink(*vehicle as usize, certificate)?;
+        }
+        Ok(())
+    }
+
     /// Number of certificates made.
     #[must_use]
     pub fn certificates(&self) -> u64 {
@@ -75,70 +104,85 @@ impl Outcome {
     }
 }
 
-/// The results of one stroke.
-struct StrokeResult {
-    measures: Vec<(u32, EdgeMeasure, Option<&'static str>)>,
-    /// Vehicle index and certificate.
-    certificates: Vec<(usize, EdgeCertificate)>,
-    plans: Vec<(usize, StoredPlan)>,
-}
-
 /// Certifies every edge of the network for every vehicle. `sink` gets each certificate with its vehicle's index, in a
 /// fixed order.
 ///
 /// # Errors
 /// The first error of `sink`.
-pub fn certify_network<E>(
+pub fn certify_network<E: Send>(
     job: &Job<'_>,
     reporter: &dyn Reporter,
     sink: impl FnMut(usize, &EdgeCertificate) -> Result<(), E>,
 ) -> Result<Outcome, E> {
-    let all: Vec<u32> = (0..).take(job.network.strokes.len()).collect();
-    certify_strokes(job, &all, reporter, sink)
+    certify_strokes(job, &by_cell(job.network), reporter, sink)
+}
+
+/// Indices of all strokes, those of a cell one after the other.
+#[must_use]
+pub fn by_cell(network: &Network) -> Vec<u32> {
+    let cell = |stroke: &Stroke| {
+        let first = network.stroke_edges.get(stroke.edges.start as usize)?;
+        Some(network.cell(network.edges.get(*first as usize)?))
+    };
+    let mut order: Vec<_> = (0_u32..).zip(&network.strokes).map(|(index, stroke)| (cell(stroke), index)).collect();
+    order.sort_unstable();
+    order.into_iter().map(|(_, index)| index).collect()
 }
 
 /// Certifies the edges of some strokes, given as indices into [`Network::strokes`], as [`certify_network`] does.
 ///
 /// # Errors
 /// The first error of `sink`.
-pub fn certify_strokes<E>(
+pub fn certify_strokes<E: Send>(
     job: &Job<'_>,
     strokes: &[u32],
     reporter: &dyn Reporter,
     mut sink: impl FnMut(usize, &EdgeCertificate) -> Result<(), E>,
 ) -> Result<Outcome, E> {
+    let mut outcome = Outcome::new(job.network);
+    make_strokes(job, strokes, reporter, &|_| Ok(()), |made| outcome.add(made, &mut sink))?;
+    Ok(outcome)
+}
+
+/// Certifies some strokes. `keep` gets strokes as soon as they are done, from any thread. `sink` gets all of them in the order given.
+///
+/// # Errors
+/// The first error of `keep` or `sink`.
+pub fn make_strokes<E: Send>(
+    job: &Job<'_>,
+    strokes: &[u32],
+    reporter: &dyn Reporter,
+    keep: &(dyn Fn(&[StrokeMade]) -> Result<(), E> + Sync),
+    mut sink: impl FnMut(StrokeMade) -> Result<(), E>,
+) -> Result<(), E> {
     let network = job.network;
-    let mut outcome = Outcome { measures: vec![EdgeMeasure::default(); network.edges.len()], ..Outcome::default() };
-    let strokes: Vec<&Stroke> = strokes.iter().filter_map(|&stroke| network.strokes.get(stroke as usize)).collect();
-    reporter.begin("certificates", strokes.iter().map(|stroke| stroke.edges.len() as u64).sum());
+    let strokes: Vec<Numbered<'_>> =
+        strokes.iter().filter_map(|&s| Some((s, network.strokes.get(s as usize)?))).collect();
+    reporter.begin("certificates", strokes.iter().map(|(_, stroke)| stroke.edges.len() as u64).sum());
     let mut done = 0;
     let together = (RIDES / job.models.len().max(1)).max(1);
     for batch in strokes.chunks(together * GROUPS * rayon::current_num_threads()) {
-        let groups: Vec<Vec<StrokeResult>> =
-            batch.par_chunks(together).map(|strokes| certify_together(job, strokes)).collect();
-        for result in groups.into_iter().flatten() {
-            done += result.measures.len() as u64;
-            for (edge, measure, why) in result.measures {
-                if let Some(slot) = outcome.measures.get_mut(edge as usize) {
-                    *slot = measure;
-                }
-                *outcome.corridors.entry(why).or_default() += 1;
-            }
-            outcome.plans.extend(result.plans);
-            for (vehicle, certificate) in &result.certificates {
-                *outcome.verdicts.entry(verdict_words(certificate.conclusion.verdict)).or_default() += 1;
-                sink(*vehicle, certificate)?;
-            }
+        let made = batch.par_chunks(together).map(|strokes| {
+            let made = certify_together(job, strokes);
+            keep(&made).map(|()| made)
+        });
+        for made in made.collect::<Result<Vec<_>, E>>()?.into_iter().flatten() {
+            done += made.edges.len() as u64;
+            sink(made)?;
         }
         reporter.advance(done);
     }
     reporter.end();
-    Ok(outcome)
+    Ok(())
 }
 
+/// A stroke with its index in the network.
+type Numbered<'n> = (u32, &'n Stroke);
+
 /// The results of some strokes, in their order. No stroke matters to another one.
-fn certify_together(job: &Job<'_>, strokes: &[&Stroke]) -> Vec<StrokeResult> {
-    let corridor = |stroke: &&Stroke| stroke_corridor(job.network, stroke, job.settings.policy, &job.settings.corridor);
+fn certify_together(job: &Job<'_>, strokes: &[Numbered<'_>]) -> Vec<StrokeMade> {
+    let corridor =
+        |(_, stroke): &Numbered<'_>| stroke_corridor(job.network, stroke, job.settings.policy, &job.settings.corridor);
     let made: Vec<Result<StrokeCorridor, UnknownReason>> = strokes.iter().map(corridor).collect();
     let stations = |made: &StrokeCorridor| made.spans.iter().map(|span| span.stations.clone()).collect();
     let spans: Vec<Vec<Range<usize>>> = made.iter().flatten().map(stations).collect();
@@ -152,20 +196,20 @@ fn certify_together(job: &Job<'_>, strokes: &[&Stroke]) -> Vec<StrokeResult> {
     let mut rows = all.chunks(job.models.len().max(1));
     let rows: Vec<&[Planned]> =
         made.iter().map(|made| if made.is_ok() { rows.next().unwrap_or_default() } else { &[] }).collect();
-    let result = |((stroke, made), rows): ((&&Stroke, &Result<StrokeCorridor, UnknownReason>), &&[Planned])| match made
-    {
-        Ok(made) => with_corridor(job, made, rows),
-        Err(reason) => without_corridor(job, stroke, *reason),
-    };
-    let mut results: Vec<StrokeResult> = strokes.iter().zip(&made).zip(&rows).map(result).collect();
+    let result =
+        |((stroke, made), rows): ((&Numbered<'_>, &Result<StrokeCorridor, UnknownReason>), &&[Planned])| match made {
+            Ok(made) => with_corridor(job, stroke.0, made, rows),
+            Err(reason) => without_corridor(job, *stroke, *reason),
+        };
+    let mut results: Vec<StrokeMade> = strokes.iter().zip(&made).zip(&rows).map(result).collect();
     if job.settings.needs != Needs::Off {
         add_needs(job, strokes, &made, &rows, &mut results);
     }
     results
 }
 
-fn with_corridor(job: &Job<'_>, made: &StrokeCorridor, rows: &[Planned]) -> StrokeResult {
-    let certificates: Vec<(usize, EdgeCertificate)> = rows
+fn with_corridor(job: &Job<'_>, stroke: u32, made: &StrokeCorridor, rows: &[Planned]) -> StrokeMade {
+    let certificates: Vec<(u32, EdgeCertificate)> = rows
         .iter()
         .enumerate()
         .flat_map(|(vehicle, row)| made.spans.iter().zip(&row.spans).map(move |(span, result)| (vehicle, span, result)))
@@ -174,30 +218,30 @@ fn with_corridor(job: &Job<'_>, made: &StrokeCorridor, rows: &[Planned]) -> Stro
             let verdict = verdict((job.network, edge), &job.models[vehicle], span.unknown, Some(result));
             let measured = span.unknown.is_none().then(|| measured(made, span, result)).flatten();
             let conclusion = Conclusion { verdict, measured };
-            Some((vehicle, EdgeCertificate { edge: span.edge, conclusion, need_width_m: None }))
+            Some((vehicle as u32, EdgeCertificate { edge: span.edge, conclusion, need_width_m: None }))
         })
         .collect();
-    let measures = made.spans.iter().map(|span| {
+    let edges = made.spans.iter().map(|span| {
         let measure = EdgeMeasure {
             length_m: None,
             min_radius_m: Some(span.min_radius_m),
             centreline_deviation_m: Some(span.centreline_deviation_m),
         };
-        (span.edge, measure, span.unknown.map(reason_name))
+        (span.edge, measure, span.unknown)
     });
     let first = made.spans.first().map_or(0, |span| span.edge);
-    let plan = |(vehicle, row): (usize, &Planned)| Some((vehicle, StoredPlan::new(first, &row.plan.coefficients)?));
-    let plans = rows.iter().enumerate().filter_map(plan).collect();
-    StrokeResult { measures: measures.collect(), certificates, plans }
+    let plan = |(vehicle, row): (u32, &Planned)| Some((vehicle, StoredPlan::new(first, &row.plan.coefficients)?));
+    let plans = (0..).zip(rows).filter_map(plan).collect();
+    StrokeMade { stroke, edges: edges.collect(), certificates, plans }
 }
 
 /// Adds what the edges need that lack room.
 fn add_needs(
     job: &Job<'_>,
-    strokes: &[&Stroke],
+    strokes: &[Numbered<'_>],
     made: &[Result<StrokeCorridor, UnknownReason>],
     rows: &[&[Planned]],
-    results: &mut [StrokeResult],
+    results: &mut [StrokeMade],
 ) {
     let lacks = |known: &EdgeCertificate| known.conclusion.verdict == Verdict::Unsafe(UnsafeReason::Width);
     let mut lacking = Vec::new();
@@ -205,7 +249,7 @@ fn add_needs(
     for (place, (made, result)) in made.iter().zip(results.iter()).enumerate() {
         let Ok(made) = made else { continue };
         for (vehicle, row) in rows[place].iter().enumerate() {
-            let of_vehicle = result.certificates.iter().filter(|(of, known)| *of == vehicle && lacks(known));
+            let of_vehicle = result.certificates.iter().filter(|(of, known)| *of as usize == vehicle && lacks(known));
             let narrow: Vec<Narrow<'_>> = of_vehicle
                 .filter_map(|(_, known)| {
                     let (_, result) = made.spans.iter().zip(&row.spans).find(|(span, _)| span.edge == known.edge)?;
@@ -213,30 +257,32 @@ fn add_needs(
                 })
                 .collect();
             if !narrow.is_empty() {
-                lacking.push(Lacking { stroke: strokes[place], model: &job.models[vehicle], narrow });
+                lacking.push(Lacking { stroke: strokes[place].1, model: &job.models[vehicle], narrow });
                 places.push((place, vehicle));
             }
         }
     }
     for ((place, vehicle), needs) in places.into_iter().zip(edge_needs(job, &lacking)) {
-        for (_, known) in results[place].certificates.iter_mut().filter(|(of, known)| *of == vehicle && lacks(known)) {
+        for (_, known) in
+            results[place].certificates.iter_mut().filter(|(of, known)| *of as usize == vehicle && lacks(known))
+        {
             known.need_width_m = needs.iter().find(|(edge, _)| *edge == known.edge).map(|(_, need_m)| *need_m);
         }
     }
 }
 
-fn without_corridor(job: &Job<'_>, stroke: &Stroke, reason: UnknownReason) -> StrokeResult {
+fn without_corridor(job: &Job<'_>, (number, stroke): Numbered<'_>, reason: UnknownReason) -> StrokeMade {
     let network = job.network;
     let edges = &network.stroke_edges[stroke.edges.start as usize..stroke.edges.end as usize];
-    let certificates = (0..job.models.len()).flat_map(|vehicle| edges.iter().map(move |&edge| (vehicle, edge))).map(
-        |(vehicle, edge)| {
-            let at = (network, &network.edges[edge as usize]);
-            let verdict = verdict(at, &job.models[vehicle], Some(reason), None);
+    let of_vehicle = |(vehicle, model)| {
+        edges.iter().map(move |&edge| {
+            let verdict = verdict((network, &network.edges[edge as usize]), model, Some(reason), None);
             (vehicle, EdgeCertificate::bare(edge, verdict))
-        },
-    );
-    let measures = edges.iter().map(|&edge| (edge, EdgeMeasure::default(), Some(reason_name(reason))));
-    StrokeResult { measures: measures.collect(), certificates: certificates.collect(), plans: Vec::new() }
+        })
+    };
+    let certificates = (0..).zip(job.models).flat_map(of_vehicle).collect();
+    let edges = edges.iter().map(|&edge| (edge, EdgeMeasure::default(), Some(reason))).collect();
+    StrokeMade { stroke: number, edges, certificates, plans: Vec::new() }
 }
 
 fn reason_name(reason: UnknownReason) -> &'static str {

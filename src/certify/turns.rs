@@ -14,7 +14,7 @@ use crate::account::AccountRow;
 use crate::network::Network;
 use crate::osm::LonLat;
 use crate::reporter::Reporter;
-use crate::rows::{Conclusion, Measured, StoredPlan, TurnCertificate, TurnNeed};
+use crate::rows::{Conclusion, Measured, StoredPlan, TurnCertificate, TurnMade, TurnNeed};
 use crate::settings::{Needs, Settings};
 use crate::stet::{Course, Grounds, Model, Options, Plan, SpanResult};
 use crate::turns::{Planner, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnPath, turn_on};
@@ -62,6 +62,24 @@ pub struct TurnOutcome {
 }
 
 impl TurnOutcome {
+    /// Adds a turn. `sink` gets each certificate with its vehicle's index.
+    ///
+    /// # Errors
+    /// The first error of `sink`.
+    pub fn add<E>(
+        &mut self,
+        made: TurnMade,
+        sink: &mut impl FnMut(usize, &TurnCertificate) -> Result<(), E>,
+    ) -> Result<(), E> {
+        self.turns += 1;
+        self.laid_out += u64::from(made.laid_out);
+        for (vehicle, certificate) in made.certificates.iter().enumerate() {
+            *self.verdicts.entry(verdict_words(certificate.conclusion.verdict)).or_default() += 1;
+            sink(vehicle, certificate)?;
+        }
+        Ok(())
+    }
+
     /// Number of certificates made, including those with an edge's verdict.
     #[must_use]
     pub fn certificates(&self) -> u64 {
@@ -91,7 +109,7 @@ type Lines = FxHashMap<u32, (usize, Result<Arc<StrokeLine>, UnknownReason>)>;
 ///
 /// # Errors
 /// The first error of `sink`.
-pub fn certify_turns<E>(
+pub fn certify_turns<E: Send>(
     job: &TurnJob<'_>,
     reporter: &dyn Reporter,
     sink: impl FnMut(usize, &TurnCertificate) -> Result<(), E>,
@@ -104,33 +122,45 @@ pub fn certify_turns<E>(
 ///
 /// # Errors
 /// The first error of `sink`.
-pub fn certify_some_turns<E>(
+pub fn certify_some_turns<E: Send>(
     job: &TurnJob<'_>,
     turns: &[u32],
     reporter: &dyn Reporter,
     mut sink: impl FnMut(usize, &TurnCertificate) -> Result<(), E>,
 ) -> Result<TurnOutcome, E> {
-    let mut outcome = TurnOutcome { turns: turns.len() as u64, ..TurnOutcome::default() };
+    let mut outcome = TurnOutcome::default();
+    make_turns(job, turns, reporter, &|_| Ok(()), |made| outcome.add(made, &mut sink))?;
+    Ok(outcome)
+}
+
+/// Certifies some turns. `keep` gets each turn that took corridors as soon as it is done, from any thread. `sink` gets all turns in an
+/// order of their places.
+///
+/// # Errors
+/// The first error of `keep` or `sink`.
+pub fn make_turns<E: Send>(
+    job: &TurnJob<'_>,
+    turns: &[u32],
+    reporter: &dyn Reporter,
+    keep: &(dyn Fn(&TurnMade) -> Result<(), E> + Sync),
+    mut sink: impl FnMut(TurnMade) -> Result<(), E>,
+) -> Result<(), E> {
     reporter.begin("turns", turns.len() as u64);
     let strokes = job.network.strokes_of_edges();
     let mut lines = Lines::default();
     let mut done = 0;
     for (number, batch) in neighbours(job.turns, turns).chunks(BATCH).enumerate() {
         lay_lines(job, batch, &strokes, &mut lines, number);
-        let results: Vec<(bool, Vec<TurnCertificate>)> =
-            batch.par_iter().map(|&turn| certify_turn(job, turn, &strokes, &lines)).collect();
-        for (laid_out, certificates) in results {
-            outcome.laid_out += u64::from(laid_out);
-            for (vehicle, certificate) in certificates.iter().enumerate() {
-                *outcome.verdicts.entry(verdict_words(certificate.conclusion.verdict)).or_default() += 1;
-                sink(vehicle, certificate)?;
-            }
-        }
+        let made = batch.par_iter().map(|&turn| {
+            let made = certify_turn(job, turn, &strokes, &lines);
+            if made.laid_out { keep(&made).map(|()| made) } else { Ok(made) }
+        });
+        made.collect::<Result<Vec<_>, E>>()?.into_iter().try_for_each(&mut sink)?;
         done += batch.len() as u64;
         reporter.advance(done);
     }
     reporter.end();
-    Ok(outcome)
+    Ok(())
 }
 
 /// Indices of the turns `which`, sorted so that neighbouring turns are close to each other. Few strokes are then made twice.
@@ -197,8 +227,8 @@ fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict>
         .or_else(arcs)
 }
 
-/// One certificate per vehicle, and whether any vehicle needed a corridor.
-fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -> (bool, Vec<TurnCertificate>) {
+/// One certificate per vehicle.
+fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -> TurnMade {
     let turn = &job.turns[index as usize];
     let bare = |verdict: Verdict| TurnCertificate::bare(index, verdict);
     let mut out: Vec<TurnCertificate> = (0..job.models.len())
@@ -238,7 +268,7 @@ fn certify_turn(job: &TurnJob<'_>, index: u32, strokes: &[u32], lines: &Lines) -
             }
         }
     }
-    (laid_out, out)
+    TurnMade { turn: index, laid_out, certificates: out }
 }
 
 /// For each vehicle the path with the best certificate, and its result.

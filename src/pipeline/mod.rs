@@ -5,10 +5,11 @@
 //! Progress is reported through [`Reporter`], so this module does not depend on command lines or terminals.
 
 mod evidence;
+mod identity;
 mod select;
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use thiserror::Error;
@@ -17,19 +18,22 @@ pub use evidence::{EvidenceChange, EvidenceChanged, SetChanged, VerdictChanges, 
 pub use select::{Selection, own_countries, selected};
 
 use crate::account::AccountRow;
-use crate::certify::{Job, TurnJob, certify_network, certify_turns};
+use crate::certify::{
+    Job, Outcome, TurnJob, TurnOutcome, by_cell, certify_network, certify_turns, make_strokes, make_turns,
+};
 use crate::network::{self, Network};
 use crate::osm::facts::{Countries, CountriesError, RulesError, cross_sections};
 use crate::osm::pbf::{HeaderInfo, ReadError};
 use crate::osm::{self};
 use crate::reporter::Reporter;
-use crate::rows::EdgeCertificate;
+use crate::rows::{EdgeCertificate, StrokeMade, TurnCertificate, TurnMade};
 use crate::settings::Settings;
 use crate::stet::{Model, ModelError};
-use crate::store::{Database, Run, StoreError, TurnSet, VehicleRecord, Writer};
+use crate::store::{Database, Finished, Run, Stage, StoreError, TurnSet, VehicleRecord, Writer};
 use crate::turns::{TurnFacts, junction_areas, junction_nodes, turn_facts};
 use crate::vehicle::{Catalogue, Vehicle, VehicleError};
 use crate::verdict::{UnknownReason, Verdict};
+use identity::Identity;
 
 /// Why a run fails.
 #[derive(Debug, Error)]
@@ -129,15 +133,14 @@ pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunE
     let mut summary = Summary::default();
     // Created first, so that a path that cannot be written is reported before the work.
     let mut writer = Database::create(ask.db, ask.settings)?;
-    if writer.replaced_leftover() {
-        reporter.note("an earlier run was cut short: beginning afresh");
-    }
     let (mut network, header, hash) = read_network(ask.input, ask.countries, reporter, &mut summary)?;
     let mut parameters = ask.parameters.clone();
     if let Some(why) = writer.register_lost() {
         reporter.note(&format!("the measurements of the older database are lost, because it cannot be read: {why}"));
     }
+    let mut identity = Identity::new(&hash, ask.countries, ask.settings)?;
     if let Some(register) = writer.older_register() {
+        identity.add(&format!("{register:?}"));
         let (register, account) = evidence::carried_over(&mut network, register, reporter);
         summary.account.extend(account);
         if let Some(parameters) = parameters.as_object_mut() {
@@ -147,7 +150,16 @@ pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunE
     }
     let vehicles = selected(ask.catalogue, ask.selection, &network)?;
     let models = vehicles.iter().map(|v| Model::new(v)).collect::<Result<Vec<_>, _>>()?;
-    certify_into(&mut writer, &network, &models, ask.settings, reporter, &mut summary)?;
+    models.iter().try_for_each(|model| Ok::<(), RunError>(identity.add(&record(&model.vehicle)?.definition)))?;
+    let mut finished = writer.finished(&identity.finish())?;
+    match (finished.is_empty(), writer.replaced_leftover()) {
+        (false, _) => reporter.note("an earlier run was cut short: going on where it stopped"),
+        (true, true) => {
+            reporter.note("an earlier run was cut short: beginning afresh, because nothing of it can be used")
+        }
+        (true, false) => {}
+    }
+    certify_into(&mut writer, &mut finished, (&network, &models, ask.settings), reporter, &mut summary)?;
 
     let clock = Instant::now();
     reporter.begin("store", 0);
@@ -162,6 +174,7 @@ pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunE
         finished: (ask.now)(),
         parameters: parameters.to_string(),
     })?;
+    finished.remove()?;
     reporter.end();
     let certificates = network.edges.len() as u64 * models.len() as u64;
     summary.stage("store", clock, certificates, "certificates");
@@ -203,9 +216,9 @@ pub fn read_network(
 }
 
 fn read_reporting(input: &Path, reporter: &dyn Reporter) -> Result<osm::Extract, ReadError> {
-    let begun = std::sync::Mutex::new(None);
+    let begun = Mutex::new(None);
     let extract = osm::pbf::read_extract(input, &|p| {
-        let mut begun = begun.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut begun = locked(&begun);
         if *begun != Some(p.stage) {
             reporter.begin(p.stage.name(), p.total);
             *begun = Some(p.stage);
@@ -216,12 +229,11 @@ fn read_reporting(input: &Path, reporter: &dyn Reporter) -> Result<osm::Extract,
     extract
 }
 
-/// Stages three and four: makes the certificates and adds them to a new database.
+/// Stages three and four: makes the certificates and adds them to a new database. Takes what an earlier run has finished.
 fn certify_into(
     writer: &mut Writer,
-    network: &Network,
-    models: &[Model],
-    settings: &Settings,
+    finished: &mut Finished,
+    (network, models, settings): (&Network, &[Model], &Settings),
     reporter: &dyn Reporter,
     summary: &mut Summary,
 ) -> Result<(), RunError> {
@@ -230,10 +242,18 @@ fn certify_into(
         models.iter().map(|m| Ok(writer.vehicle(record(&m.vehicle)?))).collect::<Result<Vec<_>, RunError>>()?;
     let job = Job { network, models, settings };
     let mut verdicts = EdgeVerdicts::new(network, models, settings);
-    let outcome = certify_network(&job, reporter, |vehicle, certificate| {
+    let mut outcome = Outcome::new(network);
+    let mut sink = |vehicle: usize, certificate: &EdgeCertificate| {
         verdicts.note(vehicle, certificate);
         writer.certificate(numbers[vehicle], settings.policy, certificate)
+    };
+    let mut left = Left::new(by_cell(network));
+    finished.each(Stage::Strokes, |batch: Vec<StrokeMade>| {
+        batch.into_iter().filter(|made| left.take(made.stroke)).try_for_each(|made| outcome.add(made, &mut sink))
     })?;
+    let finished = Mutex::new(finished);
+    let keep = |made: &[StrokeMade]| locked(&finished).keep(Stage::Strokes, made);
+    make_strokes(&job, &left.all(), reporter, &keep, |made| outcome.add(made, &mut sink))?;
     summary.account.extend(outcome.rows());
     summary.stage("certificates", clock, outcome.certificates(), "certificates");
     for (vehicle, plan) in outcome.plans {
@@ -248,12 +268,44 @@ fn certify_into(
     let junctions = junction_areas(network, &junction_nodes(network, &turns), &settings.turn_params());
     writer.turns(network, Arc::clone(&turns), junctions)?;
     let job = TurnJob { network, turns: &turns, models, edges: &verdicts.0, settings };
-    let outcome = certify_turns(&job, reporter, |vehicle, certificate| {
+    let mut outcome = TurnOutcome::default();
+    let mut sink = |vehicle: usize, certificate: &TurnCertificate| {
         writer.turn_certificate(numbers[vehicle], settings.policy, certificate)
+    };
+    let mut left = Left::new((0..).take(turns.len()).collect());
+    locked(&finished).each(Stage::Turns, |batch: Vec<TurnMade>| {
+        batch.into_iter().filter(|made| left.take(made.turn)).try_for_each(|made| outcome.add(made, &mut sink))
     })?;
+    let keep = |made: &TurnMade| locked(&finished).keep(Stage::Turns, std::slice::from_ref(made));
+    make_turns(&job, &left.all(), reporter, &keep, |made| outcome.add(made, &mut sink))?;
     summary.account.extend(outcome.rows());
     summary.stage("turns", clock, outcome.certificates(), "turn certificates");
     Ok(())
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What is not finished yet: indices in the order in which they are to be done.
+struct Left {
+    order: Vec<u32>,
+    finished: Vec<bool>,
+}
+
+impl Left {
+    fn new(order: Vec<u32>) -> Self {
+        Self { finished: vec![false; order.len()], order }
+    }
+
+    /// Notes that an index is finished. `false` if it was before, or is none.
+    fn take(&mut self, index: u32) -> bool {
+        self.finished.get_mut(index as usize).is_some_and(|finished| !std::mem::replace(finished, true))
+    }
+
+    fn all(self) -> Vec<u32> {
+        self.order.into_iter().filter(|&index| !self.finished[index as usize]).collect()
+    }
 }
 
 /// The verdicts by vehicle and edge, which certificates of turns need. Empty if no turns are certified.

@@ -1,12 +1,14 @@
 //! Certificates as they are computed, at full precision. `store` rounds them to the safe side when it writes them.
 
+use serde::{Deserialize, Serialize};
+
 use crate::stet::Side;
-use crate::verdict::Verdict;
+use crate::verdict::{UnknownReason, Verdict};
 
 use super::plan::StoredPlan;
 
 /// The certificate of one edge, for a vehicle and policy that the caller knows.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EdgeCertificate {
     /// Index into `Network::edges`.
     pub edge: u32,
@@ -17,7 +19,7 @@ pub struct EdgeCertificate {
 }
 
 /// The verdict and the numbers that certificates of edges and turns have in common.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Conclusion {
     /// The verdict with its reason.
     pub verdict: Verdict,
@@ -42,7 +44,7 @@ impl Conclusion {
 }
 
 /// The numbers of a certificate. A number that is not finite is stored as missing.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
     /// The RSC, metres. Stored rounded down to 1 mm.
     pub rsc_m: f64,
@@ -61,7 +63,7 @@ pub struct Measured {
 }
 
 /// The certificate of one turn, for a vehicle and policy that the caller knows.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TurnCertificate {
     /// Index into the network's turns ([`crate::turns::turn_facts`]).
     pub turn: u32,
@@ -84,7 +86,7 @@ impl TurnCertificate {
 }
 
 /// What would be enough for a turn that lacks room. At most one of both is there.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct TurnNeed {
     /// The least radius of the kerbs on the inside with which the turn would be safe at the widths there are, metres.
     pub kerb_radius_m: Option<f64>,
@@ -93,7 +95,7 @@ pub struct TurnNeed {
 }
 
 /// Measures of an edge from the corridor stage.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct EdgeMeasure {
     /// Length, metres. With `None` the geodesic length of the map's line is stored.
     pub length_m: Option<f64>,
@@ -101,4 +103,28 @@ pub struct EdgeMeasure {
     pub min_radius_m: Option<f64>,
     /// Largest distance of the centreline from the map's line, metres.
     pub centreline_deviation_m: Option<f64>,
+}
+
+/// All that certification says of one stroke. Numbers of vehicles are indices into the vehicles of the run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StrokeMade {
+    /// Index into `Network::strokes`.
+    pub stroke: u32,
+    /// The stroke's edges, each with its measures, and why it has no corridor.
+    pub edges: Vec<(u32, EdgeMeasure, Option<UnknownReason>)>,
+    /// One certificate for every vehicle and edge.
+    pub certificates: Vec<(u32, EdgeCertificate)>,
+    /// Plans that differ from the centreline.
+    pub plans: Vec<(u32, StoredPlan)>,
+}
+
+/// All that certification says of one turn.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TurnMade {
+    /// Index into the network's turns.
+    pub turn: u32,
+    /// Whether corridors were made for it.
+    pub laid_out: bool,
+    /// One certificate for every vehicle of the run.
+    pub certificates: Vec<TurnCertificate>,
 }

@@ -22,7 +22,7 @@ pub use cell::{Cell, Column, Kind};
 pub use certificate::CertificateRow;
 pub use counts::{NeedCount, RelativeCount, RscBin, Stats, StatsRow, TurnCount};
 pub use edge::{EdgeFacts, EdgeRow, EdgeStep};
-pub use made::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, TurnCertificate, TurnNeed};
+pub use made::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StrokeMade, TurnCertificate, TurnMade, TurnNeed};
 pub use map::{MainRoad, MapEdge, MapNumbers, MapTurn, RoadRow};
 pub use measurement::Measurement;
 pub use plan::StoredPlan;

@@ -14,7 +14,7 @@ use flate2::write::DeflateEncoder;
 const MOST_COEFFICIENTS: usize = 1 << 22;
 
 /// A packed plan of a stroke or turn.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct StoredPlan {
     /// Index of the stroke's first edge in `Network::edges`, or of the turn.
     pub at: u32,

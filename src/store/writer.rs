@@ -22,6 +22,7 @@ use super::contents;
 use super::database::Database;
 use super::error::{StoreError, content};
 use super::evidence::{self, Register, RegisterState};
+use super::finished::{self, Finished};
 use super::junctions;
 use super::names::{VERDICTS, corridor_no};
 use super::network_write;
@@ -140,6 +141,14 @@ impl Writer {
     #[must_use]
     pub fn replaced_leftover(&self) -> bool {
         self.part.leftover
+    }
+
+    /// The work that a killed run with this identity has finished; empty if there is none.
+    ///
+    /// # Errors
+    /// The file beside the database cannot be written.
+    pub fn finished(&self, identity: &[u8; 32]) -> Result<Finished, StoreError> {
+        Finished::open(finished::path_of(&self.part.target), identity)
     }
 
     /// The register of the older database; `None` if it has no measurements and never had any, or cannot be read.

@@ -22,6 +22,7 @@ mod oracle;
 mod pages;
 mod paper;
 mod relative;
+mod resume;
 mod route_cli;
 mod serve;
 mod settings;

@@ -88,6 +88,13 @@ impl Countries {
         &self.rules
     }
 
+    /// All that the user can change of this lookup, as text: equal texts, equal places and widths.
+    #[must_use]
+    pub fn identity(&self) -> String {
+        let Self { boundaries: _, rules, country, left_hand_traffic } = self;
+        format!("{rules:?} {country:?} {left_hand_traffic:?}")
+    }
+
     /// Country and driving side of a position. Overrides take precedence.
     #[must_use]
     pub fn place(&self, position: LonLat) -> Place {

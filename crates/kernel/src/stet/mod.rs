@@ -50,7 +50,7 @@ use swept::Swept;
 use track::Track;
 
 /// An edge of the corridor, seen in driving direction.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Side {
     /// Left of travel.
     Left,

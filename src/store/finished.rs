@@ -1,0 +1,221 @@
+//! Keeps finished work of an `ingest` beside its database, so that the next run goes on where a killed one stopped.
+//!
+//! `REGION.gpkg.done` begins with the identity of all that the work depends on. Then come blocks: length, check sum, and the strokes or
+//! turns of a batch. A block that was cut by a kill, and all after it, is dropped. A file of another identity is emptied.
+
+use std::fs::{File, OpenOptions};
+use std::io::{BufReader, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use super::error::StoreError;
+
+const MAGIC: &[u8; 8] = b"netcert1";
+const HEAD_BYTES: u64 = 8 + 32;
+/// Length and check sum before each block.
+const BLOCK_HEAD_BYTES: usize = 4 + 8;
+/// Blocks are batches of some megabytes at most. A greater length is damage.
+const MOST_BLOCK_BYTES: u32 = 1 << 30;
+
+/// What the blocks of a file hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Stage {
+    /// [`crate::rows::StrokeMade`]
+    Strokes,
+    /// [`crate::rows::TurnMade`]
+    Turns,
+}
+
+/// The finished work of one run. The run must hold the lock of its unfinished database.
+pub struct Finished {
+    path: PathBuf,
+    file: File,
+    length: u64,
+}
+
+impl Finished {
+    /// Opens the file at `path`, or begins it. `identity` stands for everything on which the work depends.
+    pub(super) fn open(path: PathBuf, identity: &[u8; 32]) -> Result<Self, StoreError> {
+        let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
+        let mut finished = Self { file: opened.map_err(|e| StoreError::io(&path, e))?, path, length: 0 };
+        let mut head = [0; HEAD_BYTES as usize];
+        let known = finished.file.read_exact(&mut head).is_ok() && head[..8] == *MAGIC && head[8..] == *identity;
+        if known {
+            finished.length = HEAD_BYTES;
+            while let Some(bytes) = finished.block(finished.length) {
+                finished.length += (BLOCK_HEAD_BYTES + bytes.len()) as u64;
+            }
+        }
+        finished.file.set_len(finished.length).map_err(|e| finished.error(e))?;
+        if !known {
+            finished.append(&[&MAGIC[..], identity].concat())?;
+        }
+        Ok(finished)
+    }
+
+    /// Whether there is any finished work.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.length <= HEAD_BYTES
+    }
+
+    /// Adds a batch.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn keep<T: Serialize>(&mut self, stage: Stage, batch: &[T]) -> Result<(), StoreError> {
+        let text = |e: postcard::Error| std::io::Error::other(e);
+        let mut block = vec![0; BLOCK_HEAD_BYTES];
+        block = postcard::to_extend(&(stage, batch), block).map_err(|e| self.error(text(e)))?;
+        let (head, body) = block.split_at_mut(BLOCK_HEAD_BYTES);
+        head[..4].copy_from_slice(&(body.len() as u32).to_le_bytes());
+        head[4..].copy_from_slice(&check_sum(body));
+        self.append(&block)
+    }
+
+    /// Gives every batch of a stage to `take`, in the order in which they were kept.
+    ///
+    /// # Errors
+    /// The first error of `take`, or a block is no longer what it was.
+    pub fn each<T: DeserializeOwned, E: From<StoreError>>(
+        &mut self,
+        stage: Stage,
+        mut take: impl FnMut(Vec<T>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut at = HEAD_BYTES;
+        while at < self.length {
+            let changed = || std::io::Error::other("the file was changed by another program; remove it");
+            let block = self.block(at).ok_or_else(|| self.error(changed()))?;
+            at += (BLOCK_HEAD_BYTES + block.len()) as u64;
+            let (of, rest): (Stage, _) = postcard::take_from_bytes(&block).map_err(|_| self.error(changed()))?;
+            if of == stage {
+                take(postcard::from_bytes(rest).map_err(|_| self.error(changed()))?)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Removes the file: the work is in the database.
+    ///
+    /// # Errors
+    /// The file cannot be removed.
+    pub fn remove(self) -> Result<(), StoreError> {
+        std::fs::remove_file(&self.path).map_err(|e| self.error(e))
+    }
+
+    /// The block at an offset, if it is whole.
+    fn block(&mut self, at: u64) -> Option<Vec<u8>> {
+        let mut file = BufReader::with_capacity(1 << 16, &self.file);
+        file.seek(SeekFrom::Start(at)).ok()?;
+        let mut head = [0; BLOCK_HEAD_BYTES];
+        file.read_exact(&mut head).ok()?;
+        let (length, sum) = head.split_first_chunk::<4>()?;
+        let length = Some(u32::from_le_bytes(*length)).filter(|&length| length <= MOST_BLOCK_BYTES)?;
+        let mut body = Vec::new();
+        file.take(u64::from(length)).read_to_end(&mut body).ok()?;
+        (body.len() == length as usize && *sum == check_sum(&body)).then_some(body)
+    }
+
+    fn append(&mut self, bytes: &[u8]) -> Result<(), StoreError> {
+        let mut write = || {
+            self.file.seek(SeekFrom::Start(self.length))?;
+            self.file.write_all(bytes)
+        };
+        write().map_err(|e| self.error(e))?;
+        self.length += bytes.len() as u64;
+        Ok(())
+    }
+
+    fn error(&self, error: std::io::Error) -> StoreError {
+        StoreError::io(&self.path, error)
+    }
+}
+
+impl Drop for Finished {
+    fn drop(&mut self) {
+        if self.is_empty() {
+            // An error is ignored, because the next run empties the file.
+            let _ = std::fs::remove_file(&self.path);
+        }
+    }
+}
+
+fn check_sum(bytes: &[u8]) -> [u8; 8] {
+    let hash = blake3::hash(bytes);
+    std::array::from_fn(|i| hash.as_bytes()[i])
+}
+
+/// The file of the finished work for a database at `target`.
+pub(super) fn path_of(target: &Path) -> PathBuf {
+    super::part::with_suffix(target, ".done")
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    type Batches = Vec<Vec<u32>>;
+
+    fn kept(finished: &mut Finished, stage: Stage) -> Batches {
+        let mut all = Batches::new();
+        finished
+            .each(stage, |batch: Vec<u32>| {
+                all.push(batch);
+                Ok::<(), StoreError>(())
+            })
+            .unwrap();
+        all
+    }
+
+    #[test]
+    fn what_was_kept_comes_back_up_to_where_the_file_was_cut() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.done");
+        let mut finished = Finished::open(path.clone(), &[7; 32]).unwrap();
+        assert!(finished.is_empty());
+        let batches: Batches = (0..9).map(|k| (k..300 * k).collect()).collect();
+        for batch in &batches {
+            finished.keep(Stage::Strokes, batch).unwrap();
+            finished.keep(Stage::Turns, &batch[batch.len() / 2..]).unwrap();
+        }
+        drop(finished);
+        let whole = std::fs::read(&path).unwrap();
+        let mut last = 0;
+        for cut in (40..=whole.len()).step_by(97).chain([whole.len()]) {
+            std::fs::write(&path, &whole[..cut]).unwrap();
+            let mut finished = Finished::open(path.clone(), &[7; 32]).unwrap();
+            let strokes = kept(&mut finished, Stage::Strokes);
+            assert_eq!(strokes, batches[..strokes.len()]);
+            assert!(strokes.len() >= last);
+            last = strokes.len();
+            // It goes on behind the last whole block.
+            finished.keep(Stage::Strokes, &[1_u32]).unwrap();
+            assert_eq!(kept(&mut finished, Stage::Strokes).last().unwrap(), &[1]);
+        }
+        assert_eq!(last, 9);
+    }
+
+    #[test]
+    fn damage_is_noticed_and_another_identity_begins_afresh() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.done");
+        let mut finished = Finished::open(path.clone(), &[7; 32]).unwrap();
+        (0..4).for_each(|k| finished.keep(Stage::Turns, &[k, 5_u32, 6]).unwrap());
+        drop(finished);
+        let whole = std::fs::read(&path).unwrap();
+        for at in 40..whole.len() {
+            let mut bytes = whole.clone();
+            bytes[at] ^= 0x10;
+            std::fs::write(&path, bytes).unwrap();
+            let mut finished = Finished::open(path.clone(), &[7; 32]).unwrap();
+            let turns = kept(&mut finished, Stage::Turns);
+            assert!(turns.len() < 4 && turns.iter().zip(0..).all(|(batch, k)| *batch == [k, 5, 6]));
+        }
+        std::fs::write(&path, &whole).unwrap();
+        assert!(Finished::open(path.clone(), &[8; 32]).unwrap().is_empty());
+        assert!(!path.exists(), "an empty file is removed");
+    }
+}

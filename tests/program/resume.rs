@@ -1,0 +1,101 @@
+//! A killed `ingest` goes on where it stopped, and the database is that of a run that nothing disturbed.
+
+use std::process::Stdio;
+use std::time::Duration;
+
+use crate::support::program::{Answer, Place};
+
+const LINE: &str = "ingest {demo} --vehicle AU-SEMI19 EU-SEMI16.5 --needs off";
+const KILLS: u32 = 100;
+/// The longest run before a kill, milliseconds, by turns: soon after the start, and where several groups of strokes are done.
+const LONGEST_MS: [u32; 2] = [300, 2500];
+
+fn command(place: &Place, line: &str) -> std::process::Command {
+    let mut command = place.command(line);
+    command.env("SOURCE_DATE_EPOCH", "1700000000");
+    command
+}
+
+/// The same moments in every run of the test, up to the machine's speed.
+fn moments() -> impl Iterator<Item = Duration> {
+    let next = |drawn: &u32| Some((u64::from(*drawn) * 48_271 % 0x7fff_ffff) as u32);
+    std::iter::successors(Some(77_u32), next)
+        .skip(9)
+        .zip(LONGEST_MS.iter().cycle())
+        .map(|(drawn, longest)| Duration::from_millis(u64::from(drawn % longest)))
+}
+
+#[test]
+fn killed_at_a_hundred_moments_it_ends_with_the_same_bytes() {
+    let undisturbed = Place::empty();
+    Answer::of(LINE, &mut command(&undisturbed, LINE)).succeeds();
+    let expected = undisturbed.read("demo.gpkg");
+
+    let place = Place::empty();
+    let (mut whole, mut went_on) = (0, 0);
+    for (kill, moment) in (0..KILLS).zip(moments()) {
+        let threads = format!("{LINE} --threads {}", 1 + kill % 2);
+        let mut run = command(&place, &threads).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(moment);
+        run.kill().unwrap();
+        if run.wait().unwrap().success() {
+            assert!(place.read("demo.gpkg") == expected, "after {kill} kills");
+            assert_eq!(place.files(), ["demo.gpkg"]);
+            std::fs::remove_file(place.path("demo.gpkg")).unwrap();
+            whole += 1;
+        } else {
+            let done = std::fs::metadata(place.path("demo.gpkg.done")).is_ok_and(|file| file.len() > 1000);
+            went_on += u32::from(done);
+        }
+    }
+    let last = Answer::of(LINE, &mut command(&place, LINE)).succeeds();
+    assert!(place.read("demo.gpkg") == expected, "{}", last.err());
+    assert_eq!(place.files(), ["demo.gpkg"]);
+    assert!(went_on > 20, "{went_on} of {KILLS} runs left finished work; {whole} were whole");
+}
+
+#[test]
+fn work_of_other_vehicles_or_settings_is_not_taken() {
+    let place = Place::empty();
+    let kill = || {
+        let mut run = place.command(LINE).stderr(Stdio::null()).spawn().unwrap();
+        while !std::fs::metadata(place.path("demo.gpkg.done")).is_ok_and(|file| file.len() > 1000) {
+            assert!(run.try_wait().unwrap().is_none(), "it was over before it could be killed");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        run.kill().unwrap();
+        run.wait().unwrap();
+    };
+    kill();
+    for other in ["--vehicle AU-SEMI19 --no-turns", "--vehicle AU-SEMI19 --no-turns --country AU"] {
+        place.netcert(&format!("ingest {{demo}} {other}")).succeeds().tells("beginning afresh");
+        assert_eq!(place.files(), ["demo.gpkg"]);
+        kill();
+    }
+    place.netcert(LINE).succeeds().tells("going on where it stopped");
+    assert_eq!(place.files(), ["demo.gpkg"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn finished_work_outlives_a_full_disk() {
+    use std::process::Command;
+    let place = Place::empty();
+    let small = place.path("small");
+    std::fs::create_dir(&small).unwrap();
+    let mount = Command::new("mount").args(["-t", "tmpfs", "-o", "size=200k", "tmpfs"]).arg(&small).output();
+    if !mount.is_ok_and(|out| out.status.success()) {
+        eprintln!("skipped: may not mount a small file system here");
+        return;
+    }
+    let line = format!("{LINE} --db small/demo.gpkg");
+    let full = std::panic::catch_unwind(|| {
+        place.netcert(&line).fails().tells("free some space");
+        let resized = Command::new("mount").args(["-o", "remount,size=64m"]).arg(&small).output().unwrap();
+        assert!(resized.status.success());
+        place.netcert(&line).succeeds();
+        std::fs::read_dir(&small).unwrap().map(|entry| entry.unwrap().file_name()).collect::<Vec<_>>()
+    });
+    assert!(Command::new("umount").arg(&small).output().unwrap().status.success());
+    assert_eq!(full.unwrap(), ["demo.gpkg"]);
+}
