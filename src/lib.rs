@@ -66,6 +66,7 @@
 //! | store | [`store`] | network, turns and certificates → a GeoPackage |
 //! | routes | [`route`] | a network with permits, two places → the shortest way that certifies as a whole |
 //! | files | [`certificate`] | a certificate → the file that `verify` checks |
+//! | what changed | [`diff`] | two databases and a vehicle → what became safe, unsafe, forbidden, conditional |
 //! | exports | [`export`] | a database and a vehicle → what routing engines and map programs read |
 //! | reasons | [`explain`] | an edge or corridor and a vehicle → what limits, where, and what would do |
 //! | manoeuvres | [`manoeuvres`] | a vehicle → swept paths of the turns that regulators ask for, beside their limits |
@@ -84,6 +85,7 @@ pub mod certificate;
 pub mod certify;
 pub mod check;
 pub mod corridor;
+pub mod diff;
 pub mod evidence;
 pub mod explain;
 #[cfg(feature = "export")]

@@ -29,6 +29,7 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Verb::Certify(verb) => verb.run(&session),
         Verb::Evidence(verb) => verb.run(&session),
         Verb::Query(verb) => verb.run(&session),
+        Verb::Diff(verb) => verb.run(&session),
         Verb::Explain(verb) => verb.run(&session),
         Verb::Route(verb) => verb.run(&session),
         Verb::Reach(verb) => verb.run(&session),

@@ -1,6 +1,7 @@
 //! The words for the program's enumerations in databases, exports, answers and options. They are stable, because users
 //! filter by them.
 
+use crate::diff::Standing;
 use crate::evidence::{Along, Quantity, State, Usage};
 use crate::osm::facts::{Direction, Oneway, Permission, Policy, RoadClass, WidthSource};
 use crate::settings::Needs;
@@ -57,6 +58,13 @@ named!(WidthSource {
     Surveyed = "surveyed",
 });
 named!(Policy { Lane = "lane", Direction = "direction", Carriageway = "carriageway" });
+named!(Standing {
+    Safe = "safe",
+    Conditional = "conditional",
+    Unsafe = "unsafe",
+    Forbidden = "forbidden",
+    Unknown = "unknown",
+});
 named!(Needs { Off = "off", Edges = "edges", All = "all" });
 named!(Permission { Yes = "yes", Restricted = "restricted", No = "no" });
 named!(Side { Left = "left", Right = "right" });

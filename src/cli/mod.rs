@@ -8,6 +8,7 @@ mod certify_options;
 mod clock;
 mod corridor;
 mod database;
+mod diff;
 mod evidence;
 mod explain;
 mod export;
@@ -77,6 +78,7 @@ pub(crate) enum Verb {
     Certify(certify::Certify),
     Evidence(evidence::Evidence),
     Query(query::Query),
+    Diff(diff::Diff),
     Explain(explain::Explain),
     Route(route::Route),
     Reach(reach::Reach),

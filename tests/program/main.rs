@@ -6,6 +6,7 @@ mod all_outputs;
 mod cli;
 mod columns;
 mod conditional;
+mod diff;
 mod engines;
 mod evidence;
 mod explain;
