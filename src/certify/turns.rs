@@ -68,7 +68,7 @@ impl TurnOutcome {
     /// The first error of `sink`.
     pub fn add<E>(
         &mut self,
-        made: TurnMade,
+        made: &TurnMade,
         sink: &mut impl FnMut(usize, &TurnCertificate) -> Result<(), E>,
     ) -> Result<(), E> {
         self.turns += 1;
@@ -129,7 +129,7 @@ pub fn certify_some_turns<E: Send>(
     mut sink: impl FnMut(usize, &TurnCertificate) -> Result<(), E>,
 ) -> Result<TurnOutcome, E> {
     let mut outcome = TurnOutcome::default();
-    make_turns(job, turns, reporter, &|_| Ok(()), |made| outcome.add(made, &mut sink))?;
+    make_turns(job, turns, reporter, &|_| Ok(()), |made| outcome.add(&made, &mut sink))?;
     Ok(outcome)
 }
 

@@ -150,12 +150,14 @@ pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunE
     }
     let vehicles = selected(ask.catalogue, ask.selection, &network)?;
     let models = vehicles.iter().map(|v| Model::new(v)).collect::<Result<Vec<_>, _>>()?;
-    models.iter().try_for_each(|model| Ok::<(), RunError>(identity.add(&record(&model.vehicle)?.definition)))?;
+    for model in &models {
+        identity.add(&record(&model.vehicle)?.definition);
+    }
     let mut finished = writer.finished(&identity.finish())?;
     match (finished.is_empty(), writer.replaced_leftover()) {
         (false, _) => reporter.note("an earlier run was cut short: going on where it stopped"),
         (true, true) => {
-            reporter.note("an earlier run was cut short: beginning afresh, because nothing of it can be used")
+            reporter.note("an earlier run was cut short: beginning afresh, because nothing of it can be used");
         }
         (true, false) => {}
     }
@@ -274,10 +276,10 @@ fn certify_into(
     };
     let mut left = Left::new((0..).take(turns.len()).collect());
     locked(&finished).each(Stage::Turns, |batch: Vec<TurnMade>| {
-        batch.into_iter().filter(|made| left.take(made.turn)).try_for_each(|made| outcome.add(made, &mut sink))
+        batch.into_iter().filter(|made| left.take(made.turn)).try_for_each(|made| outcome.add(&made, &mut sink))
     })?;
     let keep = |made: &TurnMade| locked(&finished).keep(Stage::Turns, std::slice::from_ref(made));
-    make_turns(&job, &left.all(), reporter, &keep, |made| outcome.add(made, &mut sink))?;
+    make_turns(&job, &left.all(), reporter, &keep, |made| outcome.add(&made, &mut sink))?;
     summary.account.extend(outcome.rows());
     summary.stage("turns", clock, outcome.certificates(), "turn certificates");
     Ok(())
