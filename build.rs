@@ -1,4 +1,5 @@
-//! Embeds the page in the program: lists every file of `web/dist` in a table that `src/serve/assets.rs` includes.
+//! Embeds the page in the program: lists every file of `web/dist` in a table that `src/serve/assets.rs` includes. Gives the program a
+//! hash of its sources, which tells two builds of one version apart.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -6,7 +7,9 @@ use std::{env, fs};
 
 fn main() {
     println!("cargo:rerun-if-changed=web/dist");
-    let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default()).join("web/dist");
+    let project = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default());
+    name_the_sources(&project);
+    let root = project.join("web/dist");
     let mut addresses = Vec::new();
     collect(&root, "", &mut addresses);
     addresses.sort();
@@ -34,4 +37,27 @@ fn collect(folder: &Path, address: &str, addresses: &mut Vec<String>) {
             addresses.push(address);
         }
     }
+}
+
+/// What certificates depend on: the code, the data and the versions of the packages.
+const SOURCES: [&str; 5] = ["Cargo.lock", "Cargo.toml", "crates", "data", "src"];
+
+/// Sets `NETCERT_SOURCES` to a hash of the sources: FNV-1a over 64 bits, which suffices against chance.
+fn name_the_sources(project: &Path) {
+    let mut files = Vec::new();
+    for source in SOURCES {
+        println!("cargo:rerun-if-changed={source}");
+        let path = project.join(source);
+        if path.is_dir() { collect(&path, source, &mut files) } else { files.push(source.to_owned()) }
+    }
+    files.sort();
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let mut add = |bytes: &[u8]| {
+        bytes.iter().for_each(|&byte| hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
+    };
+    for file in files {
+        add(file.as_bytes());
+        add(&fs::read(project.join(&file)).unwrap_or_default());
+    }
+    println!("cargo:rustc-env=NETCERT_SOURCES={hash:016x}");
 }

@@ -26,6 +26,7 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
     let session = cli::Session::begin(cli)?;
     match &cli.verb {
         Verb::Ingest(verb) => verb.run(&session),
+        Verb::Update(verb) => verb.run(&session),
         Verb::Certify(verb) => verb.run(&session),
         Verb::Evidence(verb) => verb.run(&session),
         Verb::Query(verb) => verb.run(&session),

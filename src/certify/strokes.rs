@@ -79,6 +79,19 @@ impl Outcome {
         Ok(())
     }
 
+    /// Adds an edge whose certificates stand.
+    pub fn keep(&mut self, edge: u32, measure: EdgeMeasure) {
+        if let Some(slot) = self.measures.get_mut(edge as usize) {
+            *slot = measure;
+        }
+        *self.corridors.entry(None).or_default() += 1;
+    }
+
+    /// Counts a certificate that stands.
+    pub fn count(&mut self, verdict: Verdict) {
+        *self.verdicts.entry(verdict_words(verdict)).or_default() += 1;
+    }
+
     /// Number of certificates made.
     #[must_use]
     pub fn certificates(&self) -> u64 {

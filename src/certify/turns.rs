@@ -80,6 +80,14 @@ impl TurnOutcome {
         Ok(())
     }
 
+    /// Adds a turn whose certificates stand.
+    pub fn keep(&mut self, verdicts: impl Iterator<Item = Verdict>) {
+        self.turns += 1;
+        for verdict in verdicts {
+            *self.verdicts.entry(verdict_words(verdict)).or_default() += 1;
+        }
+    }
+
     /// Number of certificates made, including those with an edge's verdict.
     #[must_use]
     pub fn certificates(&self) -> u64 {

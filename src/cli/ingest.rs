@@ -65,7 +65,7 @@ struct Which {
 
 #[derive(Args)]
 #[command(next_help_heading = "Assumptions about the roads")]
-struct Roads {
+pub(super) struct Roads {
     /// Treat all roads as in this country (ISO 3166-1, two letters) [default: looked up by position].
     #[arg(long, value_name = "CC", value_parser = country_code)]
     country: Option<String>,
@@ -145,7 +145,13 @@ fn selection_words(selection: &Selection) -> serde_json::Value {
 }
 
 impl Roads {
-    fn countries(&self) -> anyhow::Result<Countries> {
+    /// The options of an earlier run.
+    pub(super) fn of(parameters: &serde_json::Value) -> Self {
+        let text = |name: &str| parameters.get(name).and_then(serde_json::Value::as_str).map(str::to_owned);
+        Self { country: text("country"), driving_side: text("driving_side"), rules: text("roads").map(PathBuf::from) }
+    }
+
+    pub(super) fn countries(&self) -> anyhow::Result<Countries> {
         let rules = match &self.rules {
             Some(path) => Rules::from_path(path)?,
             None => Rules::builtin()?,

@@ -36,6 +36,7 @@ mod stop;
 mod survey;
 mod table;
 mod turn_rows;
+mod update;
 mod values;
 mod vehicles;
 mod verify;
@@ -75,6 +76,7 @@ pub(crate) struct Cli {
 #[derive(Subcommand)]
 pub(crate) enum Verb {
     Ingest(ingest::Ingest),
+    Update(update::Update),
     Certify(certify::Certify),
     Evidence(evidence::Evidence),
     Query(query::Query),

@@ -75,6 +75,11 @@ impl Site {
         self.surfaces.entry(node).or_default().push(ring);
     }
 
+    /// The nodes of junctions that have a kerb or a surface of their own.
+    pub fn junctions(&self) -> impl Iterator<Item = i64> {
+        self.kerbs.keys().map(|corner| corner.0).chain(self.surfaces.keys().copied())
+    }
+
     /// The paved surfaces of the junction at a node.
     pub fn surfaces(&self, node: i64) -> &[Vec<LonLat>] {
         self.surfaces.get(&node).map_or(&[], Vec::as_slice)

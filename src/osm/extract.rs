@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::osm::facts::{AreaKind, PointFacts, TurnRule, WayFacts};
 
 /// A position on WGS 84 in units of 1e-7 degree, the file's own resolution.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub struct LonLat {
     /// Longitude, 1e-7 degree, −180°..=180°.
     pub lon_e7: i32,

@@ -3,6 +3,7 @@
 //! The file is read in two passes: ways first, then only the nodes that they name. Every dropped object has a counted
 //! reason. A damaged file is an error with a byte offset, never a shorter result.
 
+pub mod changes;
 mod extract;
 pub mod facts;
 pub mod pbf;

@@ -17,7 +17,7 @@ impl Identity {
     pub(super) fn new(extract: &str, countries: &Countries, settings: &Settings) -> Result<Self, RunError> {
         let refused = |detail| StoreError::SettingsRefused { path: "the settings".into(), detail };
         let mut identity = Self(blake3::Hasher::new());
-        identity.add(&program());
+        identity.add(PROGRAM);
         identity.add(extract);
         identity.add(&countries.identity());
         identity.add(&settings.written().map_err(refused)?);
@@ -34,10 +34,13 @@ impl Identity {
     }
 }
 
-/// The version of the program, and the size and time of its file: two builds of one version may differ. Without these, every process has
-/// an identity of its own.
-fn program() -> String {
-    let file = std::env::current_exe().and_then(std::fs::metadata).and_then(|file| Ok((file.len(), file.modified()?)));
-    let file = file.map_or_else(|_| format!("process {}", std::process::id()), |file| format!("{file:?}"));
-    format!("{} {file}", env!("CARGO_PKG_VERSION"))
+/// The version of the program and a hash of its sources: two builds of one version may differ.
+pub(super) const PROGRAM: &str = concat!(env!("CARGO_PKG_VERSION"), "+", env!("NETCERT_SOURCES"));
+
+/// The member of a run's parameters that has the road rules.
+pub(super) const ROAD_RULES: &str = "road_rules";
+
+/// A hash of the road rules, which tells whether two runs had the same.
+pub(super) fn of_rules(countries: &Countries) -> String {
+    blake3::hash(countries.identity().as_bytes()).to_hex()[..16].to_owned()
 }

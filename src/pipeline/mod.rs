@@ -6,34 +6,35 @@
 
 mod evidence;
 mod identity;
+mod making;
+mod reuse;
 mod select;
+mod update;
 
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Mutex;
 use std::time::Instant;
 
 use thiserror::Error;
 
 pub use evidence::{EvidenceChange, EvidenceChanged, SetChanged, VerdictChanges, What, change_evidence};
 pub use select::{Selection, own_countries, selected};
+pub use update::{Newer, Update, run_of_extract, update};
 
 use crate::account::AccountRow;
-use crate::certify::{
-    Job, Outcome, TurnJob, TurnOutcome, by_cell, certify_network, certify_turns, make_strokes, make_turns,
-};
+use crate::certify::{Job, TurnJob, certify_network, certify_turns};
 use crate::network::{self, Network};
+use crate::osm::changes::{ChangeError, Changes};
 use crate::osm::facts::{Countries, CountriesError, RulesError, cross_sections};
 use crate::osm::pbf::{HeaderInfo, ReadError};
 use crate::osm::{self};
 use crate::reporter::Reporter;
-use crate::rows::{EdgeCertificate, StrokeMade, TurnCertificate, TurnMade};
 use crate::settings::Settings;
 use crate::stet::{Model, ModelError};
-use crate::store::{Database, Finished, Run, Stage, StoreError, TurnSet, VehicleRecord, Writer};
+use crate::store::{Database, MapChanges, Run, StoreError, TurnSet, VehicleRecord};
 use crate::turns::{TurnFacts, junction_areas, junction_nodes, turn_facts};
 use crate::vehicle::{Catalogue, Vehicle, VehicleError};
-use crate::verdict::{UnknownReason, Verdict};
-use identity::Identity;
+use making::{EdgeVerdicts, Making, locked};
 
 /// Why a run fails.
 #[derive(Debug, Error)]
@@ -50,6 +51,12 @@ pub enum RunError {
     /// The certificate's model does not cover a vehicle.
     #[error(transparent)]
     Model(#[from] ModelError),
+    /// A file of changes cannot be read.
+    #[error(transparent)]
+    Changes(#[from] ChangeError),
+    /// Changes do not fit the database.
+    #[error("{0}")]
+    Misfit(String),
     /// The road rules are wrong.
     #[error(transparent)]
     Rules(#[from] RulesError),
@@ -129,59 +136,14 @@ impl Summary {
 /// # Errors
 /// See [`RunError`]. An older database at `db` is then unchanged.
 pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunError> {
-    let started = (ask.now)();
-    let mut summary = Summary::default();
-    // Created first, so that a path that cannot be written is reported before the work.
-    let mut writer = Database::create(ask.db, ask.settings)?;
-    let (mut network, header, hash) = read_network(ask.input, ask.countries, reporter, &mut summary)?;
-    let mut parameters = ask.parameters.clone();
-    if let Some(why) = writer.register_lost() {
-        reporter.note(&format!("the measurements of the older database are lost, because it cannot be read: {why}"));
-    }
-    let mut identity = Identity::new(&hash, ask.countries, ask.settings)?;
-    if let Some(register) = writer.older_register() {
-        identity.add(&format!("{register:?}"));
-        let (register, account) = evidence::carried_over(&mut network, register, reporter);
-        summary.account.extend(account);
-        if let Some(parameters) = parameters.as_object_mut() {
-            parameters.insert("measurements".to_owned(), register.entries.len().into());
-        }
-        writer.evidence(register);
-    }
-    let vehicles = selected(ask.catalogue, ask.selection, &network)?;
-    let models = vehicles.iter().map(|v| Model::new(v)).collect::<Result<Vec<_>, _>>()?;
-    for model in &models {
-        identity.add(&record(&model.vehicle)?.definition);
-    }
-    let mut finished = writer.finished(&identity.finish())?;
-    match (finished.is_empty(), writer.replaced_leftover()) {
-        (false, _) => reporter.note("an earlier run was cut short: going on where it stopped"),
-        (true, true) => {
-            reporter.note("an earlier run was cut short: beginning afresh, because nothing of it can be used");
-        }
-        (true, false) => {}
-    }
-    certify_into(&mut writer, &mut finished, (&network, &models, ask.settings), reporter, &mut summary)?;
-
-    let clock = Instant::now();
-    reporter.begin("store", 0);
-    writer.account(&summary.account);
-    writer.finish(&Run {
-        command: "ingest".to_owned(),
-        input_name: ask.input.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-        input_blake3: Some(hash),
-        replication_timestamp: header.replication_timestamp_s.and_then(utc),
-        netcert_version: env!("CARGO_PKG_VERSION").to_owned(),
-        started,
-        finished: (ask.now)(),
-        parameters: parameters.to_string(),
-    })?;
-    finished.remove()?;
-    reporter.end();
-    let certificates = network.edges.len() as u64 * models.len() as u64;
-    summary.stage("store", clock, certificates, "certificates");
-    summary.vehicles = models.iter().map(|m| m.vehicle.id.clone()).collect();
-    Ok(summary)
+    let Ingest { input, db, countries, settings, now, .. } = *ask;
+    let (parameters, changes) = (ask.parameters.clone(), MapChanges::default());
+    let making = Making { command: "ingest", input, db, countries, settings, changes, parameters, now };
+    let choose = |network: &Network| {
+        let vehicles = selected(ask.catalogue, ask.selection, network)?;
+        vehicles.iter().map(|vehicle| Ok(Model::new(vehicle)?)).collect()
+    };
+    making.run(choose, None, reporter)
 }
 
 /// Stages one and two: reads the extract and builds the network.
@@ -194,8 +156,18 @@ pub fn read_network(
     reporter: &dyn Reporter,
     summary: &mut Summary,
 ) -> Result<(Network, HeaderInfo, String), RunError> {
+    read_changed_network((input, &Changes::default()), countries, reporter, summary)
+}
+
+/// As [`read_network`], of the extract as it is after changes.
+fn read_changed_network(
+    (input, changes): (&Path, &Changes),
+    countries: &Countries,
+    reporter: &dyn Reporter,
+    summary: &mut Summary,
+) -> Result<(Network, HeaderInfo, String), RunError> {
     let clock = Instant::now();
-    let extract = read_reporting(input, reporter)?;
+    let extract = read_reporting(input, changes, reporter)?;
     let (header, hash) = (extract.account.header.clone(), extract.account.blake3.clone());
     summary.account.extend(extract.account.rows());
     summary.stage("read", clock, extract.account.ways_read, "ways");
@@ -217,9 +189,9 @@ pub fn read_network(
     Ok((network, header, hash))
 }
 
-fn read_reporting(input: &Path, reporter: &dyn Reporter) -> Result<osm::Extract, ReadError> {
+fn read_reporting(input: &Path, changes: &Changes, reporter: &dyn Reporter) -> Result<osm::Extract, ReadError> {
     let begun = Mutex::new(None);
-    let extract = osm::pbf::read_extract(input, &|p| {
+    let extract = osm::pbf::read_changed_extract(input, changes, &|p| {
         let mut begun = locked(&begun);
         if *begun != Some(p.stage) {
             reporter.begin(p.stage.name(), p.total);
@@ -229,102 +201,6 @@ fn read_reporting(input: &Path, reporter: &dyn Reporter) -> Result<osm::Extract,
     });
     reporter.end();
     extract
-}
-
-/// Stages three and four: makes the certificates and adds them to a new database. Takes what an earlier run has finished.
-fn certify_into(
-    writer: &mut Writer,
-    finished: &mut Finished,
-    (network, models, settings): (&Network, &[Model], &Settings),
-    reporter: &dyn Reporter,
-    summary: &mut Summary,
-) -> Result<(), RunError> {
-    let clock = Instant::now();
-    let numbers =
-        models.iter().map(|m| Ok(writer.vehicle(record(&m.vehicle)?))).collect::<Result<Vec<_>, RunError>>()?;
-    let job = Job { network, models, settings };
-    let mut verdicts = EdgeVerdicts::new(network, models, settings);
-    let mut outcome = Outcome::new(network);
-    let mut sink = |vehicle: usize, certificate: &EdgeCertificate| {
-        verdicts.note(vehicle, certificate);
-        writer.certificate(numbers[vehicle], settings.policy, certificate)
-    };
-    let mut left = Left::new(by_cell(network));
-    finished.each(Stage::Strokes, |batch: Vec<StrokeMade>| {
-        batch.into_iter().filter(|made| left.take(made.stroke)).try_for_each(|made| outcome.add(made, &mut sink))
-    })?;
-    let finished = Mutex::new(finished);
-    let keep = |made: &[StrokeMade]| locked(&finished).keep(Stage::Strokes, made);
-    make_strokes(&job, &left.all(), reporter, &keep, |made| outcome.add(made, &mut sink))?;
-    summary.account.extend(outcome.rows());
-    summary.stage("certificates", clock, outcome.certificates(), "certificates");
-    for (vehicle, plan) in outcome.plans {
-        writer.plans(numbers[vehicle], settings.policy, vec![plan]);
-    }
-    writer.network(network, &outcome.measures)?;
-    if !settings.turns {
-        return Ok(());
-    }
-    let clock = Instant::now();
-    let turns: Arc<[TurnFacts]> = turn_facts(network, &settings.kerbs).into();
-    let junctions = junction_areas(network, &junction_nodes(network, &turns), &settings.turn_params());
-    writer.turns(network, Arc::clone(&turns), junctions)?;
-    let job = TurnJob { network, turns: &turns, models, edges: &verdicts.0, settings };
-    let mut outcome = TurnOutcome::default();
-    let mut sink = |vehicle: usize, certificate: &TurnCertificate| {
-        writer.turn_certificate(numbers[vehicle], settings.policy, certificate)
-    };
-    let mut left = Left::new((0..).take(turns.len()).collect());
-    locked(&finished).each(Stage::Turns, |batch: Vec<TurnMade>| {
-        batch.into_iter().filter(|made| left.take(made.turn)).try_for_each(|made| outcome.add(&made, &mut sink))
-    })?;
-    let keep = |made: &TurnMade| locked(&finished).keep(Stage::Turns, std::slice::from_ref(made));
-    make_turns(&job, &left.all(), reporter, &keep, |made| outcome.add(&made, &mut sink))?;
-    summary.account.extend(outcome.rows());
-    summary.stage("turns", clock, outcome.certificates(), "turn certificates");
-    Ok(())
-}
-
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// What is not finished yet: indices in the order in which they are to be done.
-struct Left {
-    order: Vec<u32>,
-    finished: Vec<bool>,
-}
-
-impl Left {
-    fn new(order: Vec<u32>) -> Self {
-        Self { finished: vec![false; order.len()], order }
-    }
-
-    /// Notes that an index is finished. `false` if it was before, or is none.
-    fn take(&mut self, index: u32) -> bool {
-        self.finished.get_mut(index as usize).is_some_and(|finished| !std::mem::replace(finished, true))
-    }
-
-    fn all(self) -> Vec<u32> {
-        self.order.into_iter().filter(|&index| !self.finished[index as usize]).collect()
-    }
-}
-
-/// The verdicts by vehicle and edge, which certificates of turns need. Empty if no turns are certified.
-struct EdgeVerdicts(Vec<Vec<Verdict>>);
-
-impl EdgeVerdicts {
-    fn new(network: &Network, models: &[Model], settings: &Settings) -> Self {
-        let edges = if settings.turns { network.edges.len() } else { 0 };
-        Self(vec![vec![Verdict::Unknown(UnknownReason::Geometry); edges]; models.len()])
-    }
-
-    fn note(&mut self, vehicle: usize, certificate: &EdgeCertificate) {
-        let slot = self.0.get_mut(vehicle).and_then(|edges| edges.get_mut(certificate.edge as usize));
-        if let Some(slot) = slot {
-            *slot = certificate.conclusion.verdict;
-        }
-    }
 }
 
 /// The input of [`certify`].
@@ -363,7 +239,7 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
     let job = Job { network: &network, models: &models, settings: ask.settings };
     let mut verdicts = EdgeVerdicts::new(&network, &models, ask.settings);
     let mut outcome = certify_network(&job, reporter, |vehicle, certificate| {
-        verdicts.note(vehicle, certificate);
+        verdicts.set(vehicle, certificate.edge, certificate.conclusion.verdict);
         certificates[vehicle].push(certificate.clone());
         Ok::<(), StoreError>(())
     })?;
@@ -403,7 +279,7 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
             input_name: ask.db.file_name().unwrap_or_default().to_string_lossy().into_owned(),
             input_blake3: None,
             replication_timestamp: None,
-            netcert_version: env!("CARGO_PKG_VERSION").to_owned(),
+            netcert_version: identity::PROGRAM.to_owned(),
             started: started.clone(),
             finished: (ask.now)(),
             parameters: ask.parameters.to_string(),

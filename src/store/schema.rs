@@ -19,6 +19,7 @@ const FILES: &[(i64, &str, &str)] = &[
     (9, "areas", include_str!("../../migrations/0009_areas.sql")),
     (10, "evidence", include_str!("../../migrations/0010_evidence.sql")),
     (11, "junctions", include_str!("../../migrations/0011_junctions.sql")),
+    (12, "map changes", include_str!("../../migrations/0012_map_changes.sql")),
 ];
 
 /// The table of applied migrations. sqlx uses an existing table. Its own table would have types that GDAL does not know

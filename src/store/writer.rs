@@ -24,8 +24,10 @@ use super::error::{StoreError, content};
 use super::evidence::{self, Register, RegisterState};
 use super::finished::{self, Finished};
 use super::junctions;
+use super::map_changes::{self, MapChanges};
 use super::names::{VERDICTS, corridor_no};
 use super::network_write;
+use super::packed::Packed;
 use super::part::{Part, with_suffix};
 use super::plans;
 use super::records::{self, Run, VehicleRecord};
@@ -69,6 +71,7 @@ pub struct Writer {
     older: Option<Older>,
     /// The register to write.
     evidence: Register,
+    map_changes: MapChanges,
     part: Part,
 }
 
@@ -131,6 +134,7 @@ impl Database {
             turn_plans: BTreeMap::new(),
             older,
             evidence: Register::default(),
+            map_changes: MapChanges::default(),
             part,
         })
     }
@@ -169,6 +173,11 @@ impl Writer {
         self.evidence = register;
     }
 
+    /// Adds what was applied to the extract before it was read.
+    pub fn map_changes(&mut self, changes: MapChanges) {
+        self.map_changes = changes;
+    }
+
     /// Writes the network; call it once. `measures` has one entry per edge, or is empty. The call may follow those of the
     /// certificates, because the measures are known only then.
     pub fn network(&mut self, network: &Network, measures: &[EdgeMeasure]) -> Result<(), StoreError> {
@@ -196,6 +205,10 @@ impl Writer {
     ) -> Result<(), StoreError> {
         let packed =
             certificate.pack().map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.edge, detail))?;
+        self.push(vehicle, policy, packed)
+    }
+
+    pub(super) fn push(&mut self, vehicle: VehicleNo, policy: Policy, packed: Packed) -> Result<(), StoreError> {
         self.spool.push((vehicle.0, corridor_no(policy)), packed, &self.session.path)
     }
 
@@ -228,11 +241,19 @@ impl Writer {
     ) -> Result<(), StoreError> {
         let packed =
             certificate.pack().map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.turn, detail))?;
+        self.push_turn(vehicle, policy, packed, certificate.plan.clone())
+    }
+
+    pub(super) fn push_turn(
+        &mut self,
+        vehicle: VehicleNo,
+        policy: Policy,
+        packed: Packed,
+        plan: Option<StoredPlan>,
+    ) -> Result<(), StoreError> {
         let Some((.., spool)) = &mut self.turns else { return Ok(()) };
         let set = (vehicle.0, corridor_no(policy));
-        if let Some(plan) = &certificate.plan {
-            self.turn_plans.entry(set).or_default().push(plan.clone());
-        }
+        self.turn_plans.entry(set).or_default().extend(plan);
         spool.push(set, packed, &self.session.path)
     }
 
@@ -269,7 +290,7 @@ impl Writer {
             self.session.run(async |c| set.insert(c, &rows).await)?;
         }
         let (all_plans, all_restrictions, all_areas) = (&mut self.plans, &self.restrictions, &self.areas);
-        let register = &self.evidence;
+        let (register, map_changes) = (&self.evidence, &self.map_changes);
         self.session.run(async |c| {
             sqlx::query("COMMIT").execute(&mut *c).await?;
             migrate(c, None).await?;
@@ -277,6 +298,7 @@ impl Writer {
             restrictions::insert(c, all_restrictions).await?;
             areas::insert(c, all_areas).await?;
             evidence::write(c, register, &run.finished).await?;
+            map_changes::insert(c, map_changes).await?;
             for (&(vehicle_no, corridor), plans) in all_plans {
                 plans::insert(c, plans::STROKES, (vehicle_no, corridor), plans).await?;
             }

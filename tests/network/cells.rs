@@ -324,10 +324,7 @@ fn owned_of(network: &Network, all: &Owned, own: &BTreeSet<Cell>) -> Owned {
 /// Certificates depend on what is compared here alone: see the drawn roads above.
 #[test]
 fn a_real_region_has_the_same_edges_strokes_and_turns_however_it_is_cut_into_files() {
-    let Some(path) = extracts::extract("rhein_neckar_de") else {
-        println!("skipped: no extract rhein_neckar_de");
-        return;
-    };
+    let Some(path) = extracts::extract("rhein_neckar_de.osm.pbf") else { return };
     let extract = read_extract(&path, &|_| ()).unwrap();
     let whole = network(extract.clone());
     let all = cells(&extract);

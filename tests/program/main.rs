@@ -30,6 +30,7 @@ mod settings;
 mod support;
 mod survey;
 mod turns_program;
+mod update;
 mod vehicle_pictures;
 mod verify_database;
 mod verify_independence;

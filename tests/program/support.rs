@@ -4,6 +4,8 @@
 pub(crate) mod catalogue;
 #[path = "../support/demo.rs"]
 pub(crate) mod demo;
+#[path = "../support/extracts.rs"]
+pub(crate) mod extracts;
 #[path = "../support/program.rs"]
 pub(crate) mod program;
 #[path = "../support/python.rs"]

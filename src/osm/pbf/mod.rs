@@ -33,6 +33,7 @@ pub use wire::WireError;
 
 use crate::osm::{
     Extract,
+    changes::Changes,
     facts::{self, PointFacts, Tags, WayDraft},
 };
 
@@ -83,6 +84,18 @@ pub fn read_extract(path: &Path, progress: &(dyn Fn(Progress) + Sync)) -> Result
     read_extract_with(path, progress, facts::way_facts, facts::point_facts)
 }
 
+/// Reads an extract as it is after changes.
+///
+/// # Errors
+/// [`ReadError`] if anything in the file is damaged, truncated or not supported.
+pub fn read_changed_extract(
+    path: &Path,
+    changes: &Changes,
+    progress: &(dyn Fn(Progress) + Sync),
+) -> Result<Extract, ReadError> {
+    read(path, changes, progress, facts::way_facts, facts::point_facts)
+}
+
 /// As [`read_extract`], with other facts. `way` returns a way's facts, or why the way is left out. `point` returns the
 /// facts of a node on a kept way, if any. Both are called from many threads.
 ///
@@ -98,13 +111,27 @@ where
     W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str> + Sync,
     P: Fn(&Tags<'_>) -> Option<PointFacts> + Sync,
 {
+    read(path, &Changes::default(), progress, way, point)
+}
+
+fn read<W, P>(
+    path: &Path,
+    changes: &Changes,
+    progress: &(dyn Fn(Progress) + Sync),
+    way: W,
+    point: P,
+) -> Result<Extract, ReadError>
+where
+    W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str> + Sync,
+    P: Fn(&Tags<'_>) -> Option<PointFacts> + Sync,
+{
     let mut source = Source::open(path)?;
     let total = source.len;
     let (frames, hash) = source.frames(|done| progress(Progress { stage: Stage::Check, done, total }))?;
     let header = read_headers(&mut source, &frames)?;
     let data: Vec<Frame> = frames.iter().copied().filter(|frame| frame.kind == Kind::Data).collect();
     let node_blobs = if header.sorted { leading_node_blobs(&mut source, &data)? } else { 0 };
-    let mut reading = Reading { source, data, progress, way, point };
+    let mut reading = Reading { source, data, changes, progress, way, point };
     let mut extract = match reading.run(node_blobs)? {
         Some(extract) => extract,
         // The header's claim was wrong: read every blob in the first pass.
@@ -117,6 +144,16 @@ where
     account.blake3 = hash.to_hex().to_string();
     account.blobs_passed_over = frames.iter().filter(|frame| frame.kind == Kind::Other).count() as u64;
     Ok(extract)
+}
+
+/// The header of an extract.
+///
+/// # Errors
+/// The file cannot be read, or its header is damaged or not supported.
+pub fn header_of(path: &Path) -> Result<HeaderInfo, ReadError> {
+    let mut source = Source::open(path)?;
+    let (frames, _) = source.frames(|_| ())?;
+    read_headers(&mut source, &frames)
 }
 
 /// Checks every header of the file (concatenated files have several) and returns the data of the first one.
@@ -168,6 +205,8 @@ fn with_block<T>(
 struct Reading<'p, W, P> {
     source: Source,
     data: Vec<Frame>,
+    /// Objects of the file that are changed do not count; those of the changes do.
+    changes: &'p Changes,
     progress: &'p (dyn Fn(Progress) + Sync),
     way: W,
     point: P,
@@ -184,7 +223,7 @@ where
         let (presumed, rest) = self.data.split_at_checked(node_blobs).unwrap_or_default();
         let mut with_nodes = presumed.to_vec();
         let mut ways = WayGatherer::default();
-        let read_ways = |bytes: &[u8]| ways::read(&Block::parse(bytes)?, &self.way);
+        let read_ways = |bytes: &[u8]| ways::read(&Block::parse(bytes)?, &self.way, self.changes);
         let take_ways = |frame: Frame, compression: Compression, batch: ways::WayBatch| {
             *account.blobs.entry(compression.name()).or_default() += 1;
             if batch.has_nodes {
@@ -193,13 +232,18 @@ where
             ways.add(batch)
         };
         pass::run(&mut self.source, rest, read_ways, take_ways, report(self.progress, Stage::Ways, rest))?;
+        let changed = write::blocks_of(self.changes);
+        for block in &changed {
+            let batch = Block::parse(block).and_then(|block| ways::read(&block, &self.way, &Changes::default()));
+            batch.and_then(|batch| ways.add(batch)).map_err(|problem| self.source.error(None, problem))?;
+        }
         ways.finish();
 
         let ids = ways.node_ids();
         let mut nodes = NodeGatherer::new(ids.len());
         let mut mistaken = false;
         let mut presumed_left = node_blobs;
-        let read_nodes = |bytes: &[u8]| nodes::read(&Block::parse(bytes)?, &ids, &self.point);
+        let read_nodes = |bytes: &[u8]| nodes::read(&Block::parse(bytes)?, &ids, &self.point, self.changes);
         let take_nodes = |_: Frame, compression: Compression, batch: nodes::NodeBatch| {
             if presumed_left > 0 {
                 presumed_left -= 1;
@@ -218,6 +262,11 @@ where
         )?;
         if mistaken {
             return Ok(None);
+        }
+        for block in &changed {
+            let block = Block::parse(block);
+            let batch = block.and_then(|block| nodes::read(&block, &ids, &self.point, &Changes::default()));
+            nodes.add(&batch.map_err(|problem| self.source.error(None, problem))?);
         }
         let (nodes, points, tally) = nodes.finish(ids, &ways.inline_places);
         account.ways_read = ways.read;

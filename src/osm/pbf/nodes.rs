@@ -7,6 +7,7 @@ use protobuf::Message;
 
 use crate::osm::{
     LonLat,
+    changes::{Changes, Kind},
     facts::{PointFacts, Tags},
 };
 
@@ -37,13 +38,19 @@ pub(super) struct NodeBatch {
     pub(super) has_others: bool,
 }
 
-/// Reads the nodes of a block. `ids` are the named nodes, sorted and distinct.
-pub(super) fn read<P>(block: &Block<'_>, ids: &[i64], facts: &P) -> Result<NodeBatch, Problem>
+/// Reads the nodes of a block. `ids` are the named nodes, sorted and distinct. Nodes that are `changed` are passed over.
+pub(super) fn read<P>(block: &Block<'_>, ids: &[i64], facts: &P, changed: &Changes) -> Result<NodeBatch, Problem>
 where
     P: Fn(&Tags<'_>) -> Option<PointFacts>,
 {
-    let mut reader =
-        NodeReader { block, facts, named: Named { ids, at: 0 }, tags: Vec::new(), batch: NodeBatch::default() };
+    let mut reader = NodeReader {
+        block,
+        facts,
+        changed,
+        named: Named { ids, at: 0 },
+        tags: Vec::new(),
+        batch: NodeBatch::default(),
+    };
     for group in &block.groups {
         let mut dense_groups = 0;
         let mut cursor = Cursor::new(group);
@@ -119,6 +126,7 @@ impl Named<'_> {
 struct NodeReader<'b, 'a, P> {
     block: &'b Block<'a>,
     facts: &'b P,
+    changed: &'b Changes,
     named: Named<'b>,
     tags: Vec<(&'a str, &'a str)>,
     batch: NodeBatch,
@@ -131,6 +139,9 @@ where
     /// Counts a node. Returns its index if it is named and part of the map.
     #[inline]
     fn count(&mut self, id: i64, visible: bool) -> Option<u32> {
+        if self.changed.has(Kind::Node, id) {
+            return None;
+        }
         self.batch.read += 1;
         if visible {
             return self.named.index(id);

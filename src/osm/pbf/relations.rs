@@ -5,6 +5,7 @@
 use osmpbfreader::osmformat::{Relation, relation::MemberType};
 use protobuf::Message;
 
+use crate::osm::changes::{Changes, Kind};
 use crate::osm::facts::{NoRule, TurnRule, turn_rules};
 use crate::osm::{Restriction, Via};
 
@@ -62,8 +63,13 @@ pub(super) struct RelationBatch {
     pub(super) vias: Vec<i64>,
 }
 
-/// Checks and counts one relation, and keeps it if it restricts turns of heavy goods vehicles.
-pub(super) fn read(message: &[u8], strings: &Strings<'_>, batch: &mut RelationBatch) -> Result<(), Problem> {
+/// Checks and counts one relation, and keeps it if it restricts turns of heavy goods vehicles. One that is `changed` is passed over.
+pub(super) fn read(
+    message: &[u8],
+    strings: &Strings<'_>,
+    changed: &Changes,
+    batch: &mut RelationBatch,
+) -> Result<(), Problem> {
     use Shape::{Bytes, Number, Numbers};
     wire::check(
         message,
@@ -83,6 +89,9 @@ pub(super) fn read(message: &[u8], strings: &Strings<'_>, batch: &mut RelationBa
         tags.push((strings.text(key.into(), object)?, strings.text(value.into(), object)?));
     }
     let members = Members::of(&relation, strings, object)?;
+    if changed.has(Kind::Relation, relation.id()) {
+        return Ok(());
+    }
     batch.tally.read += 1;
     let Some(rules) = turn_rules(&tags) else { return Ok(()) };
     batch.tally.restrictions += 1;

@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 
 use crate::osm::{
     LonLat, RoadArea, StringPool,
+    changes::{Changes, Kind},
     facts::{self, Tags, WayDraft, WayFacts},
 };
 
@@ -56,8 +57,8 @@ pub(super) struct WayBatch {
     pub(super) relations: RelationBatch,
 }
 
-/// Reads the ways and relations of a block.
-pub(super) fn read<W>(block: &Block<'_>, facts: &W) -> Result<WayBatch, Problem>
+/// Reads the ways and relations of a block. Those that are `changed` are passed over.
+pub(super) fn read<W>(block: &Block<'_>, facts: &W, changed: &Changes) -> Result<WayBatch, Problem>
 where
     W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str>,
 {
@@ -70,11 +71,14 @@ where
                 1 | 2 => reader.batch.has_nodes = true,
                 3 => {
                     reader.count()?;
-                    reader.way(&RawWay::parse(field.bytes()?)?)?;
+                    let way = RawWay::parse(field.bytes()?)?;
+                    if !changed.has(Kind::Way, way.id) {
+                        reader.way(&way)?;
+                    }
                 }
                 4 => {
                     reader.count()?;
-                    relations::read(field.bytes()?, &block.strings, &mut reader.batch.relations)?;
+                    relations::read(field.bytes()?, &block.strings, changed, &mut reader.batch.relations)?;
                 }
                 _ => {}
             }

@@ -11,6 +11,7 @@ use protobuf::Message;
 use rustc_hash::FxHashMap;
 
 use crate::osm::LonLat;
+use crate::osm::changes::{Changes, Kind, Object};
 
 /// Most objects of a block, as in other writers.
 const BLOCK_OBJECTS: usize = 8000;
@@ -159,6 +160,57 @@ fn way_block(ways: &[WayRecord]) -> osmformat::PrimitiveBlock {
         let mut last = 0;
         way.refs = record.refs.iter().map(|&node| delta(&mut last, node)).collect();
         group.ways.push(way);
+    }
+    strings.block(group)
+}
+
+/// The objects that exist after changes, as blocks without frames.
+pub(super) fn blocks_of(changes: &Changes) -> Vec<Vec<u8>> {
+    let objects: Vec<(i64, &Object)> = changes.objects().collect();
+    objects.chunks(BLOCK_OBJECTS).map(|objects| bytes_of(&block_of(objects))).collect()
+}
+
+fn block_of(objects: &[(i64, &Object)]) -> osmformat::PrimitiveBlock {
+    let mut strings = Strings::default();
+    let mut group = osmformat::PrimitiveGroup::new();
+    for &(id, object) in objects {
+        let (Object::Node { tags, .. } | Object::Way { tags, .. } | Object::Relation { tags, .. }) = object;
+        let keys: Vec<u32> = tags.iter().map(|(key, _)| strings.number(key)).collect();
+        let vals: Vec<u32> = tags.iter().map(|(_, value)| strings.number(value)).collect();
+        let mut last = 0;
+        match object {
+            Object::Node { place, .. } => {
+                let mut node = osmformat::Node::new();
+                node.set_id(id);
+                node.set_lat(i64::from(place.lat_e7));
+                node.set_lon(i64::from(place.lon_e7));
+                (node.keys, node.vals) = (keys, vals);
+                group.nodes.push(node);
+            }
+            Object::Way { refs, .. } => {
+                let mut way = osmformat::Way::new();
+                way.set_id(id);
+                way.refs = refs.iter().map(|&node| delta(&mut last, node)).collect();
+                (way.keys, way.vals) = (keys, vals);
+                group.ways.push(way);
+            }
+            Object::Relation { members, .. } => {
+                let mut relation = osmformat::Relation::new();
+                relation.set_id(id);
+                for (kind, member, role) in members {
+                    let kind = match kind {
+                        Kind::Node => osmformat::relation::MemberType::NODE,
+                        Kind::Way => osmformat::relation::MemberType::WAY,
+                        Kind::Relation => osmformat::relation::MemberType::RELATION,
+                    };
+                    relation.types.push(kind.into());
+                    relation.memids.push(delta(&mut last, *member));
+                    relation.roles_sid.push(strings.number(role) as i32);
+                }
+                (relation.keys, relation.vals) = (keys, vals);
+                group.relations.push(relation);
+            }
+        }
     }
     strings.block(group)
 }

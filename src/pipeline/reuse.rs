@@ -1,0 +1,184 @@
+//! What an earlier database has of the same roads: its certificates stand where nothing changed on which they depend.
+//!
+//! They stand only if the earlier database was made by the same program with the same road rules, settings and vehicles.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use crate::certify::Touched;
+use crate::network::{Differences, Network};
+use crate::reporter::Reporter;
+use crate::rows::{EdgeMeasure, StoredPlan};
+use crate::stet::Model;
+use crate::store::{CertifiedSet, Database, Kept};
+use crate::turns::{TurnFacts, turn_facts};
+
+use super::identity;
+use super::making::Making;
+use super::{RunError, Summary, record};
+
+/// The certificates of one vehicle.
+struct Set {
+    edges: Vec<Kept>,
+    turns: Vec<Kept>,
+    /// By first edge of the stroke, and by turn.
+    plans: BTreeMap<u32, Vec<i32>>,
+    turn_plans: BTreeMap<u32, Vec<i32>>,
+}
+
+/// What stands of an earlier database.
+pub(super) struct Earlier {
+    differences: Differences,
+    measures: Vec<EdgeMeasure>,
+    /// By vehicle of the run.
+    sets: Vec<Set>,
+    /// Turns of the earlier network.
+    facts: Vec<TurnFacts>,
+}
+
+impl Earlier {
+    /// Reads what stands. `None` if nothing does; the reporter says why.
+    pub(super) fn read(
+        database: &mut Database,
+        network: &Network,
+        models: &[Model],
+        making: &Making<'_>,
+        reporter: &dyn Reporter,
+        summary: &mut Summary,
+    ) -> Result<Option<Self>, RunError> {
+        if let Some(why) = differs(database, models, making)? {
+            reporter.note(&format!("all is certified again: {why}"));
+            return Ok(None);
+        }
+        let clock = Instant::now();
+        reporter.begin("load", 0);
+        let (settings, policy) = (making.settings, making.settings.policy);
+        let old = database.load_network()?;
+        let mut sets = Vec::new();
+        for model in models {
+            let id = &model.vehicle.id;
+            sets.push(Set {
+                edges: database.kept_edges(id, policy)?,
+                turns: database.kept_turns(id, policy)?,
+                plans: database.plans(id, policy)?,
+                turn_plans: database.turn_plans(id, policy)?,
+            });
+        }
+        let facts = if settings.turns { turn_facts(&old, &settings.kerbs) } else { Vec::new() };
+        let differences = Differences::find(&old, network);
+        let measures = database.edge_measures()?;
+        reporter.end();
+        summary.stage("load", clock, old.edges.len() as u64, "directed edges");
+        let whole =
+            |set: &Set| set.edges.len() == old.edges.len() && (!settings.turns || set.turns.len() == facts.len());
+        if measures.len() != old.edges.len() || !sets.iter().all(whole) {
+            reporter.note("all is certified again: the older database lacks certificates");
+            return Ok(None);
+        }
+        Ok(Some(Self { differences, measures, sets, facts }))
+    }
+
+    /// The strokes that stand, as indices into the new network.
+    pub(super) fn strokes(&self, network: &Network) -> impl Iterator<Item = u32> {
+        let touched = Touched::find(network, &[], &self.differences.edges, &self.differences.nodes);
+        let touched: FxHashSet<u32> = touched.strokes.into_iter().collect();
+        (0_u32..).take(network.strokes.len()).filter(move |stroke| !touched.contains(stroke))
+    }
+
+    fn older(&self, edge: u32) -> Option<u32> {
+        self.differences.older.get(edge as usize).copied().flatten()
+    }
+
+    /// The edges of a stroke that stands: measures, and one certificate for each vehicle.
+    pub(super) fn edges<'a>(
+        &'a self,
+        network: &'a Network,
+        stroke: u32,
+    ) -> impl Iterator<Item = (u32, EdgeMeasure, Vec<&'a Kept>)> {
+        edges_of(network, stroke).iter().filter_map(|&edge| {
+            let older = self.older(edge)? as usize;
+            let kept = self.sets.iter().map(|set| set.edges.get(older)).collect::<Option<Vec<_>>>()?;
+            Some((edge, *self.measures.get(older)?, kept))
+        })
+    }
+
+    /// The plans of a stroke that stands, with their vehicle's index.
+    pub(super) fn plans(&self, network: &Network, stroke: u32) -> Vec<(usize, StoredPlan)> {
+        let Some(&first) = edges_of(network, stroke).first() else { return Vec::new() };
+        let Some(older) = self.older(first) else { return Vec::new() };
+        let plan = |(vehicle, set): (usize, &Set)| Some((vehicle, StoredPlan::new(first, set.plans.get(&older)?)?));
+        self.sets.iter().enumerate().filter_map(plan).collect()
+    }
+
+    /// The turns that stand: one certificate and plan for each vehicle.
+    pub(super) fn turns<'a>(
+        &'a self,
+        network: &Network,
+        turns: &'a [TurnFacts],
+    ) -> impl Iterator<Item = (u32, Vec<(&'a Kept, Option<StoredPlan>)>)> {
+        let touched = Touched::find(network, turns, &self.differences.edges, &self.differences.nodes);
+        let touched: FxHashSet<u32> = touched.turns.into_iter().collect();
+        let by_id: FxHashMap<i64, u32> = (0_u32..).zip(&self.facts).map(|(index, turn)| (turn.id, index)).collect();
+        (0_u32..).zip(turns).filter_map(move |(index, turn)| {
+            let older = *by_id.get(&turn.id)?;
+            let stands = !touched.contains(&index) && self.same_turn(self.facts.get(older as usize)?, turn);
+            let of = |set: &'a Set| {
+                let plan = set.turn_plans.get(&older).and_then(|plan| StoredPlan::new(index, plan));
+                Some((set.turns.get(older as usize)?, plan))
+            };
+            stands.then(|| self.sets.iter().map(of).collect::<Option<Vec<_>>>()).flatten().map(|kept| (index, kept))
+        })
+    }
+
+    /// Whether two turns of one id are the same movement with the same kerb and the same restriction.
+    fn same_turn(&self, old: &TurnFacts, new: &TurnFacts) -> bool {
+        let TurnFacts { id, movement, through, angle_deg, kerb_radius_m, kerb_source, line } = new;
+        let same = |edge: u32, older: u32| self.older(edge) == Some(older);
+        *id == old.id
+            && same(movement.from, old.movement.from)
+            && same(movement.to, old.movement.to)
+            && movement.kind == old.movement.kind
+            && movement.forbidden.is_some() == old.movement.forbidden.is_some()
+            && through.len() == old.through.len()
+            && through.iter().zip(&old.through).all(|(&edge, &older)| same(edge, older))
+            && (angle_deg, kerb_radius_m, kerb_source, line)
+                == (&old.angle_deg, &old.kerb_radius_m, &old.kerb_source, &old.line)
+    }
+}
+
+fn edges_of(network: &Network, stroke: u32) -> &[u32] {
+    let range =
+        network.strokes.get(stroke as usize).map(|stroke| stroke.edges.start as usize..stroke.edges.end as usize);
+    range.and_then(|range| network.stroke_edges.get(range)).unwrap_or_default()
+}
+
+/// Why nothing of a database can stand.
+fn differs(database: &mut Database, models: &[Model], making: &Making<'_>) -> Result<Option<String>, RunError> {
+    let runs = database.runs()?;
+    if let Some((run, _)) = runs.iter().find(|(run, _)| run.netcert_version != identity::PROGRAM) {
+        return Ok(Some(format!("the older database is by netcert {}", run.netcert_version)));
+    }
+    let rules = identity::of_rules(making.countries);
+    let known = |run: &crate::store::Run| {
+        let parameters: serde_json::Value = serde_json::from_str(&run.parameters).ok()?;
+        Some(parameters.get(identity::ROAD_RULES)?.as_str()? == rules)
+    };
+    if !runs.iter().filter_map(|(run, _)| known(run)).next_back().unwrap_or(false) {
+        return Ok(Some("the road rules are others".to_owned()));
+    }
+    let sets = database.certified()?;
+    let records = database.vehicles()?;
+    for model in models {
+        let id = &model.vehicle.id;
+        let definition = record(&model.vehicle)?.definition;
+        let vehicle = records.iter().any(|record| record.id == *id && record.definition == definition);
+        let mut of_vehicle = sets.iter().filter(|set| set.vehicle_id == *id && set.policy == making.settings.policy);
+        let settings = of_vehicle.next().map(CertifiedSet::settings).transpose()?;
+        if !vehicle || settings.as_ref() != Some(making.settings) {
+            return Ok(Some(format!("{id} is not certified in the older database with the same settings")));
+        }
+    }
+    Ok(None)
+}

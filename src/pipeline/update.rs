@@ -1,0 +1,165 @@
+//! Brings a database up to newer map data. What nothing touched is taken over, and the result is that of ingesting the newer data.
+
+mod sequence;
+
+use std::path::{Path, PathBuf};
+
+use crate::network::Network;
+use crate::osm::changes::{ChangeError, Changes};
+use crate::osm::facts::Countries;
+use crate::reporter::Reporter;
+use crate::settings::Settings;
+use crate::stet::Model;
+use crate::store::{Database, MapChanges, Run, StoreError};
+use crate::vehicle::Vehicle;
+use crate::words::Named as _;
+
+use super::making::Making;
+use super::{Certify, RunError, Summary, certify};
+
+/// Where newer data come from.
+#[derive(Debug, Clone)]
+pub enum Newer {
+    /// Files of changes, the earliest first.
+    Files(Vec<PathBuf>),
+    /// A folder of changes in the layout of planet replication, with `state.txt`.
+    Folder(PathBuf),
+    /// A newer extract.
+    Extract(PathBuf),
+}
+
+/// The input of [`update`].
+pub struct Update<'a> {
+    /// The database to bring up to date.
+    pub db: &'a Path,
+    /// The extract that the database was made from.
+    pub extract: &'a Path,
+    /// The newer data.
+    pub newer: &'a Newer,
+    /// The number in the sequence that the extract has, if its header does not say it.
+    pub after: Option<i64>,
+    /// The road rules of the database's `ingest`. With other rules all is certified again.
+    pub countries: &'a Countries,
+    /// The options of the database's `ingest` as JSON, for the `run` record.
+    pub parameters: serde_json::Value,
+    /// The time now in UTC.
+    pub now: &'a dyn Fn() -> String,
+}
+
+/// The run that read the extract of a database.
+#[must_use]
+pub fn run_of_extract(runs: &[Run]) -> Option<&Run> {
+    runs.iter().rfind(|run| run.input_blake3.is_some())
+}
+
+/// Makes the database anew from newer data, with the vehicles and settings that it has. Certificates of roads and turns that the newer data
+/// have in the same form are taken over. `None` if the database has all changes of a folder already.
+///
+/// # Errors
+/// See [`RunError`]. The older database is then unchanged.
+pub fn update(ask: &Update<'_>, reporter: &dyn Reporter) -> Result<Option<Summary>, RunError> {
+    let mut old = Database::open(ask.db)?;
+    let (input, changes) = match ask.newer {
+        Newer::Extract(path) => (path.as_path(), MapChanges::default()),
+        Newer::Files(files) => {
+            is_the_extract(&mut old, ask)?;
+            let mut known = old.map_changes()?;
+            for file in files {
+                known.changes.merge(Changes::read(file)?);
+            }
+            // Nobody knows how these files stand to a sequence.
+            (ask.extract, MapChanges { sequence: None, ..known })
+        }
+        Newer::Folder(folder) => {
+            is_the_extract(&mut old, ask)?;
+            let mut known = old.map_changes()?;
+            let from = match (known.sequence, known.changes.is_empty()) {
+                (Some(sequence), _) => Some(sequence),
+                (None, true) => ask.after.or(crate::osm::pbf::header_of(ask.extract)?.replication_sequence),
+                (None, false) => ask.after,
+            };
+            let (files, last) = sequence::files_after(folder, from)?;
+            if files.is_empty() {
+                return Ok(None);
+            }
+            for file in files {
+                known.changes.merge(Changes::read(&file)?);
+            }
+            (ask.extract, MapChanges { sequence: Some(last), ..known })
+        }
+    };
+    make(ask, old, input, changes, reporter).map(Some)
+}
+
+/// Refuses an extract that the database was not made from.
+fn is_the_extract(old: &mut Database, ask: &Update<'_>) -> Result<(), RunError> {
+    let io = |error: std::io::Error| RunError::Changes(ChangeError::new(ask.extract, None, error.to_string()));
+    let mut hasher = blake3::Hasher::new();
+    hasher.update_reader(std::fs::File::open(ask.extract).map_err(io)?).map_err(io)?;
+    let runs: Vec<Run> = old.runs()?.into_iter().map(|(run, _)| run).collect();
+    let Some(run) = run_of_extract(&runs) else {
+        return Err(RunError::Misfit(format!("{}: no run says which extract it was made from", ask.db.display())));
+    };
+    if run.input_blake3.as_deref() == Some(hasher.finalize().to_hex().as_str()) {
+        return Ok(());
+    }
+    Err(RunError::Misfit(format!(
+        "{}: this is not the {} that {} was made from; name that file with --extract, or update to a newer one with --new-extract",
+        ask.extract.display(),
+        run.input_name,
+        ask.db.display()
+    )))
+}
+
+fn make(
+    ask: &Update<'_>,
+    mut old: Database,
+    input: &Path,
+    changes: MapChanges,
+    reporter: &dyn Reporter,
+) -> Result<Summary, RunError> {
+    let settings = old.settings_of_new_sets()?;
+    let mut own: Vec<String> = Vec::new();
+    let mut others: Vec<(String, Settings)> = Vec::new();
+    for set in old.certified()? {
+        let of_set = set.settings()?;
+        if of_set == settings { own.push(set.vehicle_id) } else { others.push((set.vehicle_id, of_set)) }
+    }
+    let records = old.vehicles()?;
+    let vehicle = |id: &String| {
+        let record = records.iter().find(|record| record.id == *id);
+        let missing = || StoreError::NotThere {
+            path: ask.db.to_owned(),
+            detail: format!("vehicle {id} is missing; run `netcert ingest` again"),
+        };
+        Ok::<Vehicle, RunError>(Vehicle::from_json(&record.ok_or_else(missing)?.definition)?)
+    };
+    let models = own.iter().map(|id| Ok(Model::new(&vehicle(id)?)?)).collect::<Result<Vec<_>, RunError>>()?;
+    let making = Making {
+        command: "update",
+        input,
+        db: ask.db,
+        countries: ask.countries,
+        settings: &settings,
+        changes,
+        parameters: ask.parameters.clone(),
+        now: ask.now,
+    };
+    let mut summary = making.run(|_: &Network| Ok(models), Some(&mut old), reporter)?;
+    for (id, settings) in others {
+        reporter.note(&format!("{id}, corridor {}: certified again, with its own settings", settings.policy.name()));
+        let vehicle = vehicle(&id)?;
+        let certify_again = Certify {
+            db: ask.db,
+            vehicles: &[&vehicle],
+            settings: &settings,
+            command: "update",
+            parameters: ask.parameters.clone(),
+            now: ask.now,
+        };
+        let more = certify(&certify_again, reporter)?;
+        summary.stages.extend(more.stages);
+        summary.vehicles.extend(more.vehicles);
+    }
+    Ok(summary)
+}

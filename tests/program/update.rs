@@ -1,0 +1,262 @@
+//! Tests of `netcert update`: the database is that of ingesting what osmium makes of the extract and the changes.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::process::Command;
+
+use netcert::osm::LonLat;
+use netcert::osm::pbf::write::{NodeRecord, WayRecord, write_extract};
+
+use crate::support::extracts;
+use crate::support::program::{Answer, Place};
+
+/// Vehicle and options of every database.
+const MADE: &str = "--vehicle AU-SEMI19 --corridor carriageway --country AU --needs off";
+
+fn run(place: &Place, line: &str) -> Answer {
+    Answer::of(line, place.command(line).env("SOURCE_DATE_EPOCH", "1700000000"))
+}
+
+fn osmium(place: &Place, arguments: &[&str]) -> Option<()> {
+    let done = Command::new("osmium").args(arguments).current_dir(place.path(".")).output().ok()?;
+    assert!(done.status.success(), "osmium {arguments:?}: {}", String::from_utf8_lossy(&done.stderr));
+    Some(())
+}
+
+/// Whether two databases say the same, but for their runs, the account of what was read, and what the next update needs.
+fn same(a: &Path, b: &Path) {
+    let sql = |text: &str| {
+        let done = Command::new("sqlite3").arg(a).arg(text).output().expect("the sqlite3 program");
+        assert!(done.status.success(), "{text}: {}", String::from_utf8_lossy(&done.stderr));
+        String::from_utf8(done.stdout).unwrap()
+    };
+    let tables =
+        sql("SELECT name FROM sqlite_schema WHERE type = 'table' AND sql NOT LIKE 'CREATE VIRTUAL%' ORDER BY name");
+    let mut compared = 0;
+    for table in tables.lines().filter(|t| !["run", "account", "map_change", "sqlite_sequence"].contains(t)) {
+        let attached = format!("ATTACH '{}' AS b;", b.display());
+        let differ = sql(&format!(
+            "{attached} SELECT 'a', * FROM (SELECT * FROM {table} EXCEPT SELECT * FROM b.{table}) LIMIT 3; \
+             SELECT 'b', * FROM (SELECT * FROM b.{table} EXCEPT SELECT * FROM {table}) LIMIT 3; \
+             SELECT 'rows differ' WHERE (SELECT count(*) FROM {table}) <> (SELECT count(*) FROM b.{table});"
+        ));
+        assert!(differ.is_empty(), "{table}: {differ}");
+        compared += 1;
+    }
+    assert!(compared > 20, "{compared} tables");
+}
+
+fn place_of(east_m: f64, north_m: f64) -> LonLat {
+    let e7 = |metres: f64| (metres / 111_319.5 * 1e7).round() as i32;
+    LonLat { lon_e7: e7(east_m), lat_e7: e7(north_m) }
+}
+
+/// A grid of wide roads, 5 by 5, 200 m apart: way 1 to 5 from west to east, 6 to 10 from south to north. Node 10 · row + column.
+fn grid() -> Vec<u8> {
+    let nodes: Vec<NodeRecord> = (0..25)
+        .map(|k| (k / 5, k % 5))
+        .map(|(row, column)| NodeRecord {
+            id: 10 * row + column + 1,
+            place: place_of(200.0 * column as f64, 200.0 * row as f64),
+            tags: Vec::new(),
+        })
+        .collect();
+    let tags = || vec![("highway".to_owned(), "primary".to_owned()), ("width".to_owned(), "14".to_owned())];
+    let along = |row: i64| (0..5).map(|column| 10 * row + column + 1).collect();
+    let across = |column: i64| (0..5).map(|row| 10 * row + column + 1).collect();
+    let ways = (0..5).map(|row| WayRecord { id: row + 1, refs: along(row), tags: tags() });
+    let ways: Vec<WayRecord> =
+        ways.chain((0..5).map(|column| WayRecord { id: column + 6, refs: across(column), tags: tags() })).collect();
+    write_extract(&nodes, &ways)
+}
+
+const HEAD: &str = "<?xml version='1.0' encoding='UTF-8'?>\n<osmChange version=\"0.6\">\n";
+
+/// A road gets narrow, a node moves, a way goes, a way comes, and a left turn is forbidden.
+fn changes() -> String {
+    let at = |east_m, north_m| {
+        let (lon, lat) = place_of(east_m, north_m).degrees();
+        format!("lon=\"{lon:.7}\" lat=\"{lat:.7}\"")
+    };
+    let narrow =
+        "<tag k=\"highway\" v=\"primary\"/><tag k=\"width\" v=\"2.4\"/><tag k=\"name\" v=\"A &amp; &quot;B&quot;\"/>";
+    let refs = |ids: [i64; 5]| ids.map(|id| format!("<nd ref=\"{id}\"/>")).concat();
+    format!(
+        "{HEAD}<modify><way id=\"2\" version=\"2\">{}{narrow}</way><node id=\"33\" version=\"2\" {}/></modify>\n\
+         <delete><way id=\"10\" version=\"3\"/></delete>\n\
+         <create><node id=\"90\" version=\"1\" {}/><way id=\"20\" version=\"1\"><nd ref=\"1\"/><nd ref=\"90\"/>{narrow}</way>\
+         <relation id=\"7\" version=\"1\"><member type=\"way\" ref=\"3\" role=\"from\"/><member type=\"node\" ref=\"22\" role=\"via\"/>\
+         <member type=\"way\" ref=\"7\" role=\"to\"/><tag k=\"type\" v=\"restriction\"/>\
+         <tag k=\"restriction\" v=\"no_left_turn\"/></relation></create>\n</osmChange>\n",
+        refs([11, 12, 13, 14, 15]),
+        at(412.0, 607.0),
+        at(-150.0, -90.0),
+    )
+}
+
+fn place() -> Place {
+    let place = Place::empty().file("grid.osm.pbf", grid()).file("1.osc", changes());
+    run(&place, &format!("ingest grid.osm.pbf {MADE}")).succeeds();
+    place
+}
+
+#[test]
+fn the_result_is_that_of_ingesting_what_osmium_makes() {
+    let place = place();
+    let back = format!(
+        "{HEAD}<modify><way id=\"2\" version=\"3\">{}<tag k=\"highway\" v=\"primary\"/><tag k=\"width\" v=\"14\"/></way></modify>\
+         <delete><relation id=\"7\" version=\"2\"/></delete></osmChange>",
+        [11, 12, 13, 14, 15].map(|id| format!("<nd ref=\"{id}\"/>")).concat()
+    );
+    let place = place.file("2.osc", back);
+    let Some(()) = osmium(&place, &["apply-changes", "grid.osm.pbf", "1.osc", "-o", "one.osm.pbf"]) else {
+        println!("skipped: no osmium");
+        return;
+    };
+    osmium(&place, &["apply-changes", "grid.osm.pbf", "1.osc", "2.osc", "-o", "two.osm.pbf"]).unwrap();
+    for name in ["one", "two"] {
+        run(&place, &format!("ingest {name}.osm.pbf {MADE}")).succeeds();
+        let again = run(&place, &format!("update --db grid.gpkg {}.osc", if name == "one" { 1 } else { 2 }));
+        again.succeeds().tells("up to date");
+        same(&place.path(&format!("{name}.gpkg")), &place.path("grid.gpkg"));
+    }
+    // Applied again, an old change changes nothing, because a later version is known.
+    run(&place, "update --db grid.gpkg 1.osc").succeeds();
+    same(&place.path("two.gpkg"), &place.path("grid.gpkg"));
+    // A newer extract gives the same.
+    run(&place, &format!("ingest grid.osm.pbf {MADE}")).succeeds();
+    run(&place, "update --db grid.gpkg --new-extract two.osm.pbf").succeeds();
+    same(&place.path("two.gpkg"), &place.path("grid.gpkg"));
+}
+
+/// A number for each step, the same in every run.
+fn drawn(last: &mut u64) -> u64 {
+    *last = *last * 48_271 % 0x7fff_ffff;
+    *last / 8
+}
+
+/// Changes of a real region, made from osmium's text form: nodes move by some metres, ways get a width or go.
+fn real_changes(opl: &str, seed: u64) -> String {
+    let mut last = seed;
+    let mut text = format!("{HEAD}<modify>\n");
+    let mut gone = String::new();
+    for line in opl.lines() {
+        let mut fields = line.split(' ');
+        let id = &fields.next().unwrap_or_default()[1..];
+        let field = |letter: char| line.split(' ').skip(1).find_map(|field| field.strip_prefix(letter));
+        match (line.as_bytes().first(), drawn(&mut last) % 40) {
+            (Some(b'n'), 0) if field('T').is_none_or(str::is_empty) => {
+                let (Some(x), Some(y)) = (field('x'), field('y')) else { continue };
+                let moved = |at: &str, by: u64| at.parse::<f64>().unwrap() + (by % 100) as f64 * 1e-6 - 5e-5;
+                let (x, y) = (moved(x, drawn(&mut last)), moved(y, drawn(&mut last)));
+                let _ = writeln!(text, "<node id=\"{id}\" version=\"9999\" lon=\"{x:.7}\" lat=\"{y:.7}\"/>");
+            }
+            (Some(b'w'), 1) => {
+                let _ = writeln!(gone, "<way id=\"{id}\" version=\"9999\"/>");
+            }
+            (Some(b'w'), 2) => {
+                let tags = field('T').unwrap_or_default();
+                let Some(class) = tags.split(',').find_map(|tag| tag.strip_prefix("highway=")) else { continue };
+                let refs = field('N').unwrap_or_default().split(',').filter(|node| !node.is_empty());
+                let refs: String = refs.map(|node| format!("<nd ref=\"{}\"/>", &node[1..])).collect();
+                let width = 4 + drawn(&mut last) % 9;
+                let _ = writeln!(
+                    text,
+                    "<way id=\"{id}\" version=\"9999\">{refs}<tag k=\"highway\" v=\"{class}\"/><tag k=\"width\" v=\"{width}\"/></way>"
+                );
+            }
+            _ => {}
+        }
+    }
+    format!("{text}</modify><delete>{gone}</delete></osmChange>")
+}
+
+#[test]
+fn a_real_region_with_hundreds_of_changes_is_that_of_ingesting_it_anew() {
+    let Some(path) = extracts::extract("sydney_au.osm.pbf") else { return };
+    let place = Place::empty().file("none.osc", format!("{HEAD}</osmChange>"));
+    // osmium does not keep the box of the header, by which edges near the border are marked.
+    let Some(()) = osmium(&place, &["apply-changes", path.to_str().unwrap(), "none.osc", "-o", "old.osm.pbf"]) else {
+        println!("skipped: no osmium");
+        return;
+    };
+    osmium(&place, &["cat", "old.osm.pbf", "-o", "old.opl"]).unwrap();
+    let opl = String::from_utf8(place.read("old.opl")).unwrap();
+    std::fs::write(place.path("c.osc"), real_changes(&opl, 5)).unwrap();
+    osmium(&place, &["apply-changes", "old.osm.pbf", "c.osc", "-o", "new.osm.pbf"]).unwrap();
+    for name in ["old", "new"] {
+        run(&place, &format!("ingest {name}.osm.pbf {MADE}")).succeeds();
+    }
+    run(&place, "update --db old.gpkg c.osc").succeeds();
+    same(&place.path("new.gpkg"), &place.path("old.gpkg"));
+}
+
+#[test]
+fn a_folder_is_applied_in_its_sequence_and_nothing_may_be_missing() {
+    let place = place();
+    let folder = place.path("minutes/000/000");
+    std::fs::create_dir_all(&folder).unwrap();
+    let put = |name: &str, bytes: &str| std::fs::write(folder.join(name), bytes).unwrap();
+    let state = |last: i64| {
+        std::fs::write(place.path("minutes/state.txt"), format!("#today\nsequenceNumber={last}\ntimestamp=x\n"))
+            .unwrap();
+    };
+    put("201.osc.gz", &changes());
+    state(201);
+    let update = "update --db grid.gpkg --from minutes";
+    let before = place.read("grid.gpkg");
+    run(&place, update).fails().tells("--after NUMBER");
+    run(&place, &format!("{update} --after 199")).fails().tells("change 200 is missing").tells("000/000/200.osc.gz");
+    run(&place, &format!("{update} --after 202")).fails().tells("older or of another sequence");
+    assert!(place.read("grid.gpkg") == before, "a refused update changes nothing");
+    run(&place, &format!("{update} --after 200")).succeeds().tells("up to date");
+    run(&place, update).succeeds().tells("already");
+    put("202.osc.gz", &format!("{HEAD}<delete><way id=\"9\" version=\"2\"/></delete></osmChange>"));
+    state(202);
+    run(&place, update).succeeds();
+    run(&place, "query --db grid.gpkg --vehicle AU-SEMI19 --format csv").succeeds();
+    let left = String::from_utf8(
+        Command::new("sqlite3")
+            .arg(place.path("grid.gpkg"))
+            .arg("SELECT DISTINCT way_id FROM edge ORDER BY 1")
+            .output()
+            .unwrap()
+            .stdout,
+    )
+    .unwrap();
+    assert_eq!(left.split_whitespace().collect::<Vec<_>>(), ["1", "2", "3", "4", "5", "6", "7", "8", "20"]);
+}
+
+#[test]
+fn broken_changes_and_another_extract_are_refused_and_the_database_stays() {
+    let place = place();
+    let before = place.read("grid.gpkg");
+    let whole = changes();
+    let broken = [
+        (whole[..whole.len() / 2].to_owned(), "broken.osc"),
+        ("<osm version=\"0.6\"></osm>".to_owned(), "no osmChange"),
+        (String::new(), "ends too soon"),
+        (whole.replace("id=\"33\"", "id=\"x\""), "id=\"x\" cannot be read"),
+        (whole.replace("lon=", "long="), "a node has no lon"),
+        (whole.replace("type=\"way\"", "type=\"path\""), "a member is neither"),
+    ];
+    for (text, told) in broken {
+        std::fs::write(place.path("broken.osc"), text).unwrap();
+        run(&place, "update --db grid.gpkg 1.osc broken.osc").fails().tells("broken.osc").tells(told);
+    }
+    run(&place, "update --db grid.gpkg gone.osc").fails().tells("gone.osc");
+    run(&place, "update --db grid.gpkg").ends_as_misuse();
+    std::fs::write(place.path("other.osm.pbf"), write_extract(&[], &[])).unwrap();
+    run(&place, "update --db grid.gpkg --extract other.osm.pbf 1.osc").fails().tells("not the grid.osm.pbf");
+    assert!(place.read("grid.gpkg") == before);
+}
+
+#[test]
+fn vehicles_and_their_settings_stay() {
+    let place = place();
+    run(&place, "certify --db grid.gpkg --vehicle EU-SEMI16.5 --corridor lane --needs off").succeeds();
+    run(&place, "update --db grid.gpkg 1.osc").succeeds().tells("certified again, with its own settings");
+    let sets = run(&place, "stats --db grid.gpkg --format json").succeeds().out();
+    assert!(sets.contains("EU-SEMI16.5") && sets.contains("AU-SEMI19"), "{sets}");
+    run(&place, "query --db grid.gpkg --vehicle EU-SEMI16.5 --corridor lane --turns").succeeds().shows("safe");
+}
