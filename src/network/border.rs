@@ -1,34 +1,45 @@
 //! Edges near the border of their file are marked: roads that meet them beyond it are not in the file.
 //!
-//! Their junctions, approaches and turns may differ in a larger file. A file says where it ends by the box in its header.
+//! Their junctions, approaches and turns may differ in a larger file. A file says where it ends by the box in its header. Some files have a
+//! box that is too small, such as that of the first download of several. Every road of a file that ends at a box has a part inside; where many
+//! have none, the box is not believed.
 
 use super::geometry::offset_m;
-use super::{Network, NetworkAccount};
+use super::{Edge, Network, NetworkAccount};
 use crate::osm::LonLat;
 
 /// How far roads matter to an edge, metres: the approach of its stroke (250 m), a junction of several nodes, and the window of a turn.
 const REACH_M: f64 = 500.0;
 
+/// A box is believed if at most one road in so many lies outside. Some files keep whole relations, which reach beyond.
+const ONE_OUTSIDE_IN: usize = 20;
+
 /// Marks the edges that come within reach of the border of a box (west, south, east, north; degrees), or leave it.
 pub(super) fn mark(network: &mut Network, bbox_deg: Option<[f64; 4]>, account: &mut NetworkAccount) {
-    let Some(inner) = bbox_deg.and_then(Inner::of) else { return };
+    let Some(bbox_deg) = bbox_deg else { return };
+    let (Some(whole), Some(inner)) = (Part::of(bbox_deg, 0.0), Part::of(bbox_deg, REACH_M)) else { return };
     let Network { edges, shapes, .. } = network;
+    let positions = |edge: &Edge| shapes.get(edge.shape.start as usize..edge.shape.end as usize).unwrap_or_default();
+    let inside = |edge: &Edge| positions(edge).iter().any(|&at| whole.has(at));
+    let roads = || edges.chunk_by(|a, b| a.road == b.road);
+    if roads().filter(|road| !road.iter().any(inside)).count() * ONE_OUTSIDE_IN > roads().count() {
+        return;
+    }
     for edge in edges.iter_mut().filter(|edge| !edge.cut) {
-        let positions = shapes.get(edge.shape.start as usize..edge.shape.end as usize).unwrap_or_default();
-        edge.cut = positions.iter().any(|&position| !inner.has(position));
+        edge.cut = positions(edge).iter().any(|&position| !inner.has(position));
         account.cut_edges += u64::from(edge.cut);
     }
 }
 
-/// The part of a box that is out of reach of its border.
-struct Inner {
+/// The part of a box that is farther from its border than some metres.
+struct Part {
     lon_e7: [i32; 2],
     lat_e7: [i32; 2],
 }
 
-impl Inner {
+impl Part {
     /// `None` for a box that is no part of the world.
-    fn of([west, south, east, north]: [f64; 4]) -> Option<Self> {
+    fn of([west, south, east, north]: [f64; 4], within_m: f64) -> Option<Self> {
         let e7 = |degrees: f64, most: f64| (degrees.abs() <= most).then(|| (degrees * 1e7).round() as i32);
         let [west, east] = [e7(west, 180.0)?, e7(east, 180.0)?];
         let [south, north] = [e7(south, 90.0)?, e7(north, 90.0)?];
@@ -36,7 +47,7 @@ impl Inner {
         let far = if south.abs() > north.abs() { south } else { north };
         let degree =
             |lon_e7, lat_e7| offset_m(LonLat { lon_e7: 0, lat_e7: far }, LonLat { lon_e7, lat_e7: far + lat_e7 });
-        let steps = |metres: f64| (1e5 * REACH_M / metres.abs().max(1.0)).ceil() as i32;
+        let steps = |metres: f64| (1e5 * within_m / metres.abs().max(1.0)).ceil() as i32;
         let [lon, lat] = [steps(degree(100_000, 0)[0]), steps(degree(0, 100_000)[1])];
         Some(Self { lon_e7: [west.saturating_add(lon), east.saturating_sub(lon)], lat_e7: [south + lat, north - lat] })
     }

@@ -10,7 +10,7 @@ use crate::osm::LonLat;
 /// Zoom of the grid: 2^zoom cells span the world from west to east (20 km at the equator, 12 km at 50° north).
 pub(super) const ZOOM: u8 = 11;
 
-/// A square of the grid: the tile of zoom [`ZOOM`] in web Mercator, as maps on the web have it.
+/// A square of the grid: a tile of zoom 11 in web Mercator, as maps on the web have it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Cell {
     /// Row, from the north.

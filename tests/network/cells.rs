@@ -341,10 +341,19 @@ fn a_real_region_has_the_same_edges_strokes_and_turns_however_it_is_cut_into_fil
 #[test]
 fn edges_near_the_border_of_their_file_are_marked() {
     let mut extract = drawn(1);
-    let [near, far] = [-3000.0, 9000.0].map(|metres| offset(ORIGIN, metres, metres).degrees());
     let nano = |degrees: f64| (degrees * 1e9) as i64;
-    extract.account.header.bbox_nanodegrees = Some([nano(near.0), nano(near.1), nano(far.0), nano(far.1)]);
-    let network = network(extract);
+    let bbox = |near_m: f64, far_m: f64| {
+        let [near, far] = [near_m, far_m].map(|metres| offset(ORIGIN, metres, metres).degrees());
+        Some([nano(near.0), nano(near.1), nano(far.0), nano(far.1)])
+    };
+    extract.account.header.bbox_nanodegrees = bbox(-3000.0, 9000.0);
+    extract = complete_ways(&extract, |p| {
+        let end = offset(ORIGIN, 9000.0, 9000.0);
+        p.lon_e7 < end.lon_e7 && p.lat_e7 < end.lat_e7
+    });
+    let mut small = extract.clone();
+    let network_of = network;
+    let network = network_of(extract);
     let limit = offset(ORIGIN, 9000.0 - 500.0, 9000.0 - 500.0);
     for edge in &network.edges {
         let beyond =
@@ -355,4 +364,7 @@ fn edges_near_the_border_of_their_file_are_marked() {
         assert!(!within || !edge.cut, "{edge:?}");
     }
     assert!(network.edges.iter().any(|edge| edge.cut) && network.edges.iter().any(|edge| !edge.cut));
+    // A box that most roads lie outside of is not where the file ends.
+    small.account.header.bbox_nanodegrees = bbox(0.0, 3000.0);
+    assert!(network_of(small).edges.iter().all(|edge| !edge.cut));
 }

@@ -260,3 +260,23 @@ fn vehicles_and_their_settings_stay() {
     assert!(sets.contains("EU-SEMI16.5") && sets.contains("AU-SEMI19"), "{sets}");
     run(&place, "query --db grid.gpkg --vehicle EU-SEMI16.5 --corridor lane --turns").succeeds().shows("safe");
 }
+
+#[test]
+fn measurements_stay_and_count_on_what_is_taken_over_and_on_what_is_new() {
+    let place = place();
+    let Some(()) = osmium(&place, &["apply-changes", "grid.osm.pbf", "1.osc", "-o", "new.osm.pbf"]) else {
+        println!("skipped: no osmium");
+        return;
+    };
+    // One on a road that stays, one on the road that gets narrow.
+    let mut rows = "quantity,value,sigma,source,way_id\n".to_owned();
+    for way in [1, 2] {
+        let _ = writeln!(rows, "carriageway_width,9.5,0.05,tape,{way}");
+    }
+    std::fs::write(place.path("m.csv"), rows).unwrap();
+    run(&place, "evidence add m.csv --db grid.gpkg").succeeds();
+    std::fs::copy(place.path("grid.gpkg"), place.path("anew.gpkg")).unwrap();
+    run(&place, &format!("ingest new.osm.pbf --db anew.gpkg {MADE}")).succeeds();
+    run(&place, "update --db grid.gpkg 1.osc").succeeds().tells("2 measurements taken over");
+    same(&place.path("anew.gpkg"), &place.path("grid.gpkg"));
+}
