@@ -141,11 +141,14 @@ export function edgePixel(page, verdict, least_m = -1e9) {
   return page.evaluate(([wanted, least]) => {
     const { map } = globalThis.netcert;
     const layer = `edge-${wanted}`;
+    const edges = map.getStyle().layers.map((one) => one.id).filter((id) => id.startsWith("edge-"));
+    // No edge of another verdict lies so near that the pointer could mean it.
+    const alone = (x, y) => map.queryRenderedFeatures([[x - 6, y - 6], [x + 6, y + 6]], { layers: edges }).every((one) => one.layer.id === layer);
     const canvas = map.getCanvas().getBoundingClientRect();
     for (let y = canvas.height * 0.2; y < canvas.height * 0.8; y += 3) {
       for (let x = canvas.width * 0.35; x < canvas.width * 0.65; x += 3) {
         const found = map.queryRenderedFeatures([x, y], { layers: [layer] });
-        if (found.length > 0 && (found[0].properties.rsc_m ?? least) >= least) return { x: canvas.left + x, y: canvas.top + y, id: String(found[0].properties.edge_id) };
+        if (found.length > 0 && (found[0].properties.rsc_m ?? least) >= least && alone(x, y)) return { x: canvas.left + x, y: canvas.top + y, id: String(found[0].properties.edge_id) };
       }
     }
     return null;
