@@ -65,29 +65,24 @@ impl Outcome {
         made: StrokeMade,
         sink: &mut impl FnMut(usize, &EdgeCertificate) -> Result<(), E>,
     ) -> Result<(), E> {
-        for (edge, measure, why) in made.edges {
-            if let Some(slot) = self.measures.get_mut(edge as usize) {
-                *slot = measure;
-            }
-            *self.corridors.entry(why.map(reason_name)).or_default() += 1;
-        }
+        made.edges.into_iter().for_each(|(edge, measure, why)| self.edge(edge, measure, why));
         self.plans.extend(made.plans.into_iter().map(|(vehicle, plan)| (vehicle as usize, plan)));
         for (vehicle, certificate) in &made.certificates {
-            *self.verdicts.entry(verdict_words(certificate.conclusion.verdict)).or_default() += 1;
+            self.count(certificate.conclusion.verdict);
             sink(*vehicle as usize, certificate)?;
         }
         Ok(())
     }
 
-    /// Adds an edge whose certificates stand.
-    pub fn keep(&mut self, edge: u32, measure: EdgeMeasure) {
+    /// Notes an edge, and why it has no corridor.
+    pub fn edge(&mut self, edge: u32, measure: EdgeMeasure, why: Option<UnknownReason>) {
         if let Some(slot) = self.measures.get_mut(edge as usize) {
             *slot = measure;
         }
-        *self.corridors.entry(None).or_default() += 1;
+        *self.corridors.entry(why.map(reason_name)).or_default() += 1;
     }
 
-    /// Counts a certificate that stands.
+    /// Counts a certificate.
     pub fn count(&mut self, verdict: Verdict) {
         *self.verdicts.entry(verdict_words(verdict)).or_default() += 1;
     }

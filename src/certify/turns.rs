@@ -71,13 +71,9 @@ impl TurnOutcome {
         made: &TurnMade,
         sink: &mut impl FnMut(usize, &TurnCertificate) -> Result<(), E>,
     ) -> Result<(), E> {
-        self.turns += 1;
         self.laid_out += u64::from(made.laid_out);
-        for (vehicle, certificate) in made.certificates.iter().enumerate() {
-            *self.verdicts.entry(verdict_words(certificate.conclusion.verdict)).or_default() += 1;
-            sink(vehicle, certificate)?;
-        }
-        Ok(())
+        self.keep(made.certificates.iter().map(|certificate| certificate.conclusion.verdict));
+        made.certificates.iter().enumerate().try_for_each(|(vehicle, certificate)| sink(vehicle, certificate))
     }
 
     /// Adds a turn whose certificates stand.

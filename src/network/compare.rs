@@ -4,7 +4,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::areas::Area;
 use super::geometry::EARTH_RADIUS_M;
-use super::{Edge, Network, Stroke};
+use super::{Edge, Network, Road, Stroke};
 use crate::osm::LonLat;
 
 /// Nodes within this distance of an area that changed are named, metres.
@@ -58,6 +58,22 @@ fn same_edge((old, a): (&Network, u32), (new, b): (&Network, u32)) -> bool {
     // The patterns have no `..`, so a new field does not compile until it is compared or left out here.
     let Edge { id, road: _, from_node, to_node, direction, shape: _, narrowings: _, legal: _, barred, cut: _ } = x;
     let (road, other) = (old.road(x), new.road(y));
+    // Names, lanes and speeds are for display and for pairing, and strokes are compared by themselves.
+    let Road {
+        way_id,
+        class,
+        link,
+        roundabout,
+        oneway,
+        name: _,
+        reference: _,
+        lanes: _,
+        country,
+        left_hand_traffic,
+        sections,
+        legal,
+        max_speed_km_h: _,
+    } = road;
     let narrow = |network: &Network, edge: &Edge| {
         let range = edge.narrowings.start as usize..edge.narrowings.end as usize;
         network.narrowings.get(range).unwrap_or_default().to_vec()
@@ -67,10 +83,10 @@ fn same_edge((old, a): (&Network, u32), (new, b): (&Network, u32)) -> bool {
         && old.section(x) == new.section(y)
         && old.legal(x) == new.legal(y)
         && narrow(old, x) == narrow(new, y)
-        && (road.way_id, road.class, road.link, road.roundabout, road.oneway)
-            == (other.way_id, other.class, other.link, other.roundabout, other.oneway)
-        && (road.country, road.left_hand_traffic) == (other.country, other.left_hand_traffic)
-        && (road.sections, road.legal) == (other.sections, other.legal)
+        && (way_id, class, link) == (&other.way_id, &other.class, &other.link)
+        && (roundabout, oneway) == (&other.roundabout, &other.oneway)
+        && (country, left_hand_traffic) == (&other.country, &other.left_hand_traffic)
+        && (sections, legal) == (&other.sections, &other.legal)
         && [old.splits.parts_after(a), old.splits.joined_before(a)]
             == [new.splits.parts_after(b), new.splits.joined_before(b)]
 }

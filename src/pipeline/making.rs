@@ -8,10 +8,10 @@ use crate::certify::{Job, Outcome, TurnJob, TurnOutcome, by_cell, make_strokes, 
 use crate::network::Network;
 use crate::osm::facts::Countries;
 use crate::reporter::Reporter;
-use crate::rows::{EdgeCertificate, StrokeMade, TurnCertificate, TurnMade};
+use crate::rows::{EdgeCertificate, EdgeMeasure, StrokeMade, TurnCertificate, TurnMade};
 use crate::settings::Settings;
 use crate::stet::Model;
-use crate::store::{Database, Finished, MapChanges, Run, Stage, VehicleNo, Writer};
+use crate::store::{Database, Finished, Kept, MapChanges, Run, Stage, VehicleNo, Writer};
 use crate::turns::{TurnFacts, junction_areas, junction_nodes, turn_facts};
 use crate::verdict::{UnknownReason, Verdict};
 
@@ -129,7 +129,7 @@ impl Making<'_> {
         if let Some(earlier) = earlier {
             for stroke in earlier.strokes(network).filter(|&stroke| left.take(stroke)) {
                 for (edge, measure, kept) in earlier.edges(network, stroke) {
-                    outcome.keep(edge, measure);
+                    outcome.edge(edge, measure, without_corridor(measure, &kept));
                     for (vehicle, kept) in kept.into_iter().enumerate() {
                         outcome.count(kept.verdict());
                         verdicts.set(vehicle, edge, kept.verdict());
@@ -187,6 +187,16 @@ impl Making<'_> {
         summary.stage("turns", clock, outcome.certificates(), "turn certificates");
         Ok(())
     }
+}
+
+/// Why an edge that is taken over has no corridor, as far as its rows tell.
+fn without_corridor(measure: EdgeMeasure, kept: &[&Kept]) -> Option<UnknownReason> {
+    let reason = |kept: &&Kept| match kept.verdict() {
+        Verdict::Unknown(reason @ (UnknownReason::Geometry | UnknownReason::Width)) => Some(reason),
+        _ => None,
+    };
+    let missing = measure == EdgeMeasure::default();
+    kept.iter().find_map(reason).or(missing.then_some(UnknownReason::Geometry))
 }
 
 pub(super) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {

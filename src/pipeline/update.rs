@@ -5,8 +5,9 @@ mod sequence;
 use std::path::{Path, PathBuf};
 
 use crate::network::Network;
-use crate::osm::changes::{ChangeError, Changes};
+use crate::osm::changes::Changes;
 use crate::osm::facts::Countries;
+use crate::osm::pbf::{HeaderInfo, header_and_hash};
 use crate::reporter::Reporter;
 use crate::settings::Settings;
 use crate::stet::Model;
@@ -15,7 +16,7 @@ use crate::vehicle::Vehicle;
 use crate::words::Named as _;
 
 use super::making::Making;
-use super::{Certify, RunError, Summary, certify};
+use super::{Certify, RunError, Summary, certify, utc};
 
 /// Where newer data come from.
 #[derive(Debug, Clone)]
@@ -62,20 +63,21 @@ pub fn update(ask: &Update<'_>, reporter: &dyn Reporter) -> Result<Option<Summar
     let (input, changes) = match ask.newer {
         Newer::Extract(path) => (path.as_path(), MapChanges::default()),
         Newer::Files(files) => {
-            is_the_extract(&mut old, ask)?;
+            let header = header_of_extract(&mut old, ask)?;
             let mut known = old.map_changes()?;
             for file in files {
                 known.changes.merge(Changes::read(file)?);
             }
+            are_newer(&known.changes, &header, ask.extract)?;
             // Nobody knows how these files stand to a sequence.
             (ask.extract, MapChanges { sequence: None, ..known })
         }
         Newer::Folder(folder) => {
-            is_the_extract(&mut old, ask)?;
+            let header = header_of_extract(&mut old, ask)?;
             let mut known = old.map_changes()?;
             let from = match (known.sequence, known.changes.is_empty()) {
                 (Some(sequence), _) => Some(sequence),
-                (None, true) => ask.after.or(crate::osm::pbf::header_of(ask.extract)?.replication_sequence),
+                (None, true) => ask.after.or(header.replication_sequence),
                 (None, false) => ask.after,
             };
             let (files, last) = sequence::files_after(folder, from)?;
@@ -91,17 +93,15 @@ pub fn update(ask: &Update<'_>, reporter: &dyn Reporter) -> Result<Option<Summar
     make(ask, old, input, changes, reporter).map(Some)
 }
 
-/// Refuses an extract that the database was not made from.
-fn is_the_extract(old: &mut Database, ask: &Update<'_>) -> Result<(), RunError> {
-    let io = |error: std::io::Error| RunError::Changes(ChangeError::new(ask.extract, None, error.to_string()));
-    let mut hasher = blake3::Hasher::new();
-    hasher.update_reader(std::fs::File::open(ask.extract).map_err(io)?).map_err(io)?;
+/// The header of the extract that the database was made from. Refuses any other extract.
+fn header_of_extract(old: &mut Database, ask: &Update<'_>) -> Result<HeaderInfo, RunError> {
+    let (header, hash) = header_and_hash(ask.extract)?;
     let runs: Vec<Run> = old.runs()?.into_iter().map(|(run, _)| run).collect();
     let Some(run) = run_of_extract(&runs) else {
         return Err(RunError::Misfit(format!("{}: no run says which extract it was made from", ask.db.display())));
     };
-    if run.input_blake3.as_deref() == Some(hasher.finalize().to_hex().as_str()) {
-        return Ok(());
+    if run.input_blake3.as_deref() == Some(hash.as_str()) {
+        return Ok(header);
     }
     Err(RunError::Misfit(format!(
         "{}: this is not the {} that {} was made from; name that file with --extract, or update to a newer one with --new-extract",
@@ -109,6 +109,17 @@ fn is_the_extract(old: &mut Database, ask: &Update<'_>) -> Result<(), RunError> 
         run.input_name,
         ask.db.display()
     )))
+}
+
+/// Refuses changes that all were made before the extract: they would bring back what the extract has replaced.
+fn are_newer(changes: &Changes, header: &HeaderInfo, extract: &Path) -> Result<(), RunError> {
+    match (changes.newest(), header.replication_timestamp_s.and_then(utc)) {
+        (Some(newest), Some(of_extract)) if newest < of_extract.as_str() => Err(RunError::Misfit(format!(
+            "{}: it has the map of {of_extract}, and the latest of the changes is of {newest}; fetch newer changes",
+            extract.display()
+        ))),
+        _ => Ok(()),
+    }
 }
 
 fn make(

@@ -251,6 +251,26 @@ fn broken_changes_and_another_extract_are_refused_and_the_database_stays() {
     assert!(place.read("grid.gpkg") == before);
 }
 
+/// An extract of yesterday is not brought back to the day before.
+#[test]
+fn changes_that_are_older_than_the_extract_are_refused() {
+    let place = place();
+    let header = "--output-header=osmosis_replication_timestamp=2026-11-20T00:00:00Z";
+    let Some(()) = osmium(&place, &["cat", "grid.osm.pbf", header, "-o", "dated.osm.pbf"]) else {
+        println!("skipped: no osmium");
+        return;
+    };
+    run(&place, &format!("ingest dated.osm.pbf {MADE}")).succeeds();
+    let at = |time: &str| changes().replace("version=\"2\"", &format!("version=\"2\" timestamp=\"{time}\""));
+    std::fs::write(place.path("early.osc"), at("2026-11-19T23:59:59Z")).unwrap();
+    std::fs::write(place.path("late.osc"), at("2026-11-20T00:00:01Z")).unwrap();
+    let before = place.read("dated.gpkg");
+    run(&place, "update --db dated.gpkg early.osc").fails().tells("2026-11-19T23:59:59Z").tells("fetch newer changes");
+    assert!(place.read("dated.gpkg") == before);
+    // What follows may make up for it, so only the latest change counts.
+    run(&place, "update --db dated.gpkg early.osc late.osc").succeeds();
+}
+
 #[test]
 fn vehicles_and_their_settings_stay() {
     let place = place();

@@ -78,6 +78,8 @@ pub struct Change {
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Changes {
     objects: BTreeMap<(Kind, i64), Change>,
+    /// The latest time stamp of a change, as the files have it; nothing if none has one.
+    newest: Option<String>,
 }
 
 impl Changes {
@@ -103,7 +105,21 @@ impl Changes {
 
     /// Adds later changes.
     pub fn merge(&mut self, later: Self) {
+        self.newest = later.newest.max(self.newest.take());
         later.objects.into_iter().for_each(|((kind, id), change)| self.add(kind, id, change));
+    }
+
+    /// Notes the time stamp of a change, such as `2026-11-21T08:00:00Z`. Their order is that of time.
+    fn note_time(&mut self, time: &str) {
+        if self.newest.as_deref().is_none_or(|newest| newest < time) {
+            self.newest = Some(time.to_owned());
+        }
+    }
+
+    /// The latest time stamp of a change; nothing if no file had any.
+    #[must_use]
+    pub fn newest(&self) -> Option<&str> {
+        self.newest.as_deref()
     }
 
     /// Whether an object of this kind and id was changed, so that an older one does not count.

@@ -119,6 +119,9 @@ impl<'p, R: BufRead> Parser<'p, R> {
     fn object(&mut self, kind: Kind, action: Action, element: &BytesStart<'_>) -> Result<(), ChangeError> {
         let id: i64 = self.required(element, "id", kind.name())?;
         let version = self.number(element, "version")?.unwrap_or(0);
+        if let Some(time) = self.attribute(element, "timestamp")? {
+            self.changes.note_time(&time);
+        }
         let gone = action == Action::Delete || self.attribute(element, "visible")?.as_deref() == Some("false");
         let object = match kind {
             _ if gone => None,

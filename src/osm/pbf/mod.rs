@@ -146,14 +146,14 @@ where
     Ok(extract)
 }
 
-/// The header of an extract.
+/// The header of an extract, and the blake3 hash of the file in hexadecimal digits.
 ///
 /// # Errors
-/// The file cannot be read, or its header is damaged or not supported.
-pub fn header_of(path: &Path) -> Result<HeaderInfo, ReadError> {
+/// The file cannot be read, or its frames or its header are damaged or not supported.
+pub fn header_and_hash(path: &Path) -> Result<(HeaderInfo, String), ReadError> {
     let mut source = Source::open(path)?;
-    let (frames, _) = source.frames(|_| ())?;
-    read_headers(&mut source, &frames)
+    let (frames, hash) = source.frames(|_| ())?;
+    Ok((read_headers(&mut source, &frames)?, hash.to_hex().to_string()))
 }
 
 /// Checks every header of the file (concatenated files have several) and returns the data of the first one.
