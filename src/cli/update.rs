@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Context as _;
+use anyhow::{Context as _, bail};
 use clap::Args;
 use netcert::pipeline::{self, Newer, run_of_extract};
 use netcert::store::{Database, Run};
@@ -49,6 +49,9 @@ pub(crate) struct Update {
 
 impl Update {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
+        if let Some(extract) = self.changes.iter().find(|path| path.extension().is_some_and(|end| end == "pbf")) {
+            bail!("{0}: this is an extract, not a file of changes; give it as --new-extract {0}", extract.display());
+        }
         let db = self.db.path()?;
         let runs: Vec<Run> = Database::open(&db)?.runs()?.into_iter().map(|(run, _)| run).collect();
         let run = run_of_extract(&runs)

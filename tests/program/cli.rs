@@ -353,6 +353,29 @@ fn threads_and_time_of_day_leave_no_trace() {
     Answer::of("epoch", wrong.env("SOURCE_DATE_EPOCH", "yesterday")).fails().tells("SOURCE_DATE_EPOCH=yesterday");
 }
 
+/// The script of README's first command, with this program in place of the one that it would build.
+#[cfg(unix)]
+#[test]
+fn the_demo_ends_with_a_road_that_only_the_shorter_vehicle_fits() {
+    use std::os::unix::fs::{PermissionsExt as _, symlink};
+    let place = Place::empty();
+    for folder in ["data", "tools", "target/release", "bin"] {
+        std::fs::create_dir_all(place.path(folder)).unwrap();
+    }
+    std::fs::copy(demo(), place.path("data/demo.osm.pbf")).unwrap();
+    std::fs::copy(concat!(env!("CARGO_MANIFEST_DIR"), "/demo"), place.path("demo")).unwrap();
+    symlink(env!("CARGO_BIN_EXE_netcert"), place.path("target/release/netcert")).unwrap();
+    let cargo = "#!/bin/sh\n[ \"$1\" = build ] || echo \"{\\\"target_directory\\\":\\\"$PWD/target\\\"}\"\n";
+    let place = place.file("tools/setup.sh", "").file("bin/cargo", cargo);
+    std::fs::set_permissions(place.path("bin/cargo"), std::fs::Permissions::from_mode(0o755)).unwrap();
+    let mut script = std::process::Command::new("sh");
+    let path = format!("{}:{}", place.path("bin").display(), std::env::var("PATH").unwrap());
+    script.arg("demo").current_dir(place.path(".")).env("PATH", path);
+    let told = Answer::of("./demo", &mut script).succeeds();
+    let told = told.shows("AU-SEMI19     safe, RSC +").shows("AU-ATRIPLE53  unsafe: width, RSC -").shows("demo.svg");
+    assert!(place.path("target/demo.svg").exists(), "{}", told.out());
+}
+
 #[test]
 fn killed_in_the_middle_the_old_database_is_whole_and_the_next_run_works() {
     let place = Place::with_demo();

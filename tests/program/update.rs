@@ -246,6 +246,7 @@ fn broken_changes_and_another_extract_are_refused_and_the_database_stays() {
     }
     run(&place, "update --db grid.gpkg gone.osc").fails().tells("gone.osc");
     run(&place, "update --db grid.gpkg").ends_as_misuse();
+    run(&place, "update --db grid.gpkg grid.osm.pbf").fails().tells("--new-extract grid.osm.pbf");
     std::fs::write(place.path("other.osm.pbf"), write_extract(&[], &[])).unwrap();
     run(&place, "update --db grid.gpkg --extract other.osm.pbf 1.osc").fails().tells("not the grid.osm.pbf");
     assert!(place.read("grid.gpkg") == before);
