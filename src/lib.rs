@@ -100,6 +100,7 @@ pub mod region;
 pub mod reporter;
 pub mod route;
 pub mod rows;
+mod scratch;
 pub mod seal;
 #[cfg(feature = "serve")]
 pub mod serve;

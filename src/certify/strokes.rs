@@ -53,7 +53,15 @@ impl Outcome {
     /// The outcome on a network of which no stroke is certified.
     #[must_use]
     pub fn new(network: &Network) -> Self {
-        Self { measures: vec![EdgeMeasure::default(); network.edges.len()], ..Self::default() }
+        let mut outcome = Self::default();
+        outcome.go_on(network);
+        outcome
+    }
+
+    /// Goes on with another network. Measures and plans are then those of this network; the account is that of all.
+    pub fn go_on(&mut self, network: &Network) {
+        self.measures = vec![EdgeMeasure::default(); network.edges.len()];
+        self.plans = Vec::new();
     }
 
     /// Adds a stroke. `sink` gets each certificate with its vehicle's index.

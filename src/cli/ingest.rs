@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 use clap::{Args, ValueHint};
 use netcert::osm::facts::{Countries, Rules};
-use netcert::pipeline::{self, Selection};
+use netcert::pipeline::{self, EDGES_AT_ONCE, Selection};
 use serde_json::json;
 
 use super::Session;
@@ -44,6 +44,9 @@ pub(crate) struct Ingest {
     how: CertifyOptions,
     #[command(flatten)]
     roads: Roads,
+    /// How many directed edges to certify at a time. Fewer take less memory, more take less time; certificates are the same.
+    #[arg(long, value_name = "N", default_value_t = EDGES_AT_ONCE, value_parser = clap::value_parser!(u64).range(1..))]
+    edges_at_once: u64,
 }
 
 #[derive(Args)]
@@ -100,6 +103,7 @@ impl Ingest {
             selection: &selection,
             countries: &countries,
             settings: &settings,
+            edges_at_once: self.edges_at_once,
             parameters: parameters.into(),
             now: &|| session.clock.now(),
         };

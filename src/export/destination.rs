@@ -11,7 +11,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::ExportError;
-use super::sorter::Scratch;
+use crate::scratch::Scratch;
 use super::unfinished::{self, Unfinished};
 use crate::output_lock::{self, OutputLock};
 

@@ -7,7 +7,8 @@
 use geo::{ConvexHull, LineString, MultiPoint, Point, Polygon, Validation};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::{EARTH_RADIUS_M, Network, NetworkAccount};
+use super::extent::Extent;
+use super::{Network, NetworkAccount};
 use crate::osm::facts::AreaKind;
 use crate::osm::{LonLat, NodeTable, RoadArea};
 
@@ -50,7 +51,7 @@ impl Areas {
         nodes.dedup();
         let (mut around, mut islands) = (FxHashMap::<i64, Vec<u32>>::default(), Vec::new());
         for (index, area) in (0..).zip(&all) {
-            let Some(extent) = Extent::of(&area.ring) else { continue };
+            let Some(extent) = Extent::of(area.ring.iter().copied()) else { continue };
             if area.kind == AreaKind::Island {
                 islands.push((extent, index));
                 continue;
@@ -87,7 +88,7 @@ impl Areas {
 
     /// The islands that may lie within the box around the given places, from south to north.
     pub fn islands(&self, places: &[LonLat]) -> impl Iterator<Item = &Area> {
-        let around = Extent::of(places);
+        let around = Extent::of(places.iter().copied());
         self.islands_in(around).filter_map(|index| self.all.get(index as usize))
     }
 
@@ -102,8 +103,8 @@ impl Areas {
     }
 }
 
-/// Keeps the surfaces of an extract that lie around the network's nodes, and the islands near its roads.
-pub(super) fn resolve(network: &mut Network, areas: Vec<RoadArea>, nodes: &NodeTable, account: &mut NetworkAccount) {
+/// The areas of an extract with a usable ring, sorted by way id.
+pub(super) fn usable(areas: Vec<RoadArea>, nodes: &NodeTable, account: &mut NetworkAccount) -> Vec<Area> {
     account.areas_read = areas.len() as u64;
     let mut usable = Vec::new();
     for RoadArea { id: way_id, kind, refs } in areas {
@@ -123,14 +124,17 @@ pub(super) fn resolve(network: &mut Network, areas: Vec<RoadArea>, nodes: &NodeT
             None => account.areas_invalid += 1,
         }
     }
+    usable
+}
+
+/// Keeps the surfaces that lie around the network's nodes, and the islands near its roads. `usable` is sorted by way id.
+pub(super) fn keep(network: &mut Network, usable: Vec<Area>) {
     let found = Areas::new(usable, network);
     let mut used: FxHashSet<u32> = found.around.values().flatten().copied().collect();
     if !found.without_islands() {
         used.extend(near_roads(&found, network));
     }
-    let kept = (0..).zip(found.all).filter(|(index, _)| used.contains(index)).map(|(_, area)| area).collect::<Vec<_>>();
-    account.areas_kept = kept.len() as u64;
-    account.islands_kept = kept.iter().filter(|area| area.kind == AreaKind::Island).count() as u64;
+    let kept = (0..).zip(found.all).filter(|(index, _)| used.contains(index)).map(|(_, area)| area).collect();
     network.areas = Areas::new(kept, network);
 }
 
@@ -140,7 +144,7 @@ fn near_roads(areas: &Areas, network: &Network) -> FxHashSet<u32> {
     for edge in &network.edges {
         let line: Vec<LonLat> = network.positions(edge).collect();
         for segment in line.windows(2) {
-            near.extend(areas.islands_in(Extent::of(segment).map(|extent| extent.wider_by(NEAR_ROAD_M))));
+            near.extend(areas.islands_in(Extent::of(segment.iter().copied()).map(|extent| extent.wider_by(NEAR_ROAD_M))));
         }
     }
     near
@@ -171,39 +175,6 @@ fn is_simple(ring: &[LonLat]) -> bool {
         i128::from(w[0].lon_e7) * i128::from(w[1].lat_e7) - i128::from(w[1].lon_e7) * i128::from(w[0].lat_e7)
     };
     ring.windows(2).map(twice).sum::<i128>() != 0 && Polygon::new(corners, Vec::new()).is_valid()
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Extent {
-    west: i32,
-    south: i32,
-    east: i32,
-    north: i32,
-}
-
-impl Extent {
-    fn of(ring: &[LonLat]) -> Option<Self> {
-        let (lons, lats) = (ring.iter().map(|at| at.lon_e7), ring.iter().map(|at| at.lat_e7));
-        Some(Self { west: lons.clone().min()?, south: lats.clone().min()?, east: lons.max()?, north: lats.max()? })
-    }
-
-    /// The extent with this much around it.
-    fn wider_by(self, metres: f64) -> Self {
-        let north = (metres / EARTH_RADIUS_M).to_degrees() * 1e7;
-        let lat = f64::from(self.south).abs().max(f64::from(self.north).abs()) * 1e-7;
-        let east = (north / lat.to_radians().cos().max(1e-6)).min(3.6e9);
-        let (east, north) = (east as i32, north as i32);
-        Self {
-            west: self.west.saturating_sub(east),
-            south: self.south.saturating_sub(north),
-            east: self.east.saturating_add(east),
-            north: self.north.saturating_add(north),
-        }
-    }
-
-    fn meets(self, other: Self) -> bool {
-        self.west <= other.east && other.west <= self.east && self.south <= other.north && other.south <= self.north
-    }
 }
 
 /// Whether a place is inside a closed ring, in integer arithmetic. A place on the ring is outside.

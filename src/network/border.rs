@@ -5,7 +5,7 @@
 //! have none, the box is not believed.
 
 use super::geometry::offset_m;
-use super::{Edge, Network, NetworkAccount};
+use super::{Edge, Network};
 use crate::osm::LonLat;
 
 /// How far roads matter to an edge, metres: the approach of its stroke (250 m), a junction of several nodes, and the window of a turn.
@@ -14,21 +14,44 @@ const REACH_M: f64 = 500.0;
 /// A box is believed if at most one road in so many lies outside. Some files keep whole relations, which reach beyond.
 const ONE_OUTSIDE_IN: usize = 20;
 
-/// Marks the edges that come within reach of the border of a box (west, south, east, north; degrees), or leave it.
-pub(super) fn mark(network: &mut Network, bbox_deg: Option<[f64; 4]>, account: &mut NetworkAccount) {
-    let Some(bbox_deg) = bbox_deg else { return };
-    let (Some(whole), Some(inner)) = (Part::of(bbox_deg, 0.0), Part::of(bbox_deg, REACH_M)) else { return };
-    let Network { edges, shapes, .. } = network;
-    let positions = |edge: &Edge| shapes.get(edge.shape.start as usize..edge.shape.end as usize).unwrap_or_default();
-    let inside = |edge: &Edge| positions(edge).iter().any(|&at| whole.has(at));
-    let roads = || edges.chunk_by(|a, b| a.road == b.road);
-    if roads().filter(|road| !road.iter().any(inside)).count() * ONE_OUTSIDE_IN > roads().count() {
-        return;
+/// The border of a file, and how many roads speak for it.
+pub(super) struct Border {
+    whole: Part,
+    inner: Part,
+    roads: usize,
+    outside: usize,
+}
+
+impl Border {
+    /// The border of a box (west, south, east, north; degrees). `None` for a box that is no part of the world.
+    pub(super) fn of(bbox_deg: Option<[f64; 4]>) -> Option<Self> {
+        let bbox_deg = bbox_deg?;
+        let (whole, inner) = (Part::of(bbox_deg, 0.0)?, Part::of(bbox_deg, REACH_M)?);
+        Some(Self { whole, inner, roads: 0, outside: 0 })
     }
-    for edge in edges.iter_mut().filter(|edge| !edge.cut) {
-        edge.cut = positions(edge).iter().any(|&position| !inner.has(position));
-        account.cut_edges += u64::from(edge.cut);
+
+    /// Counts the roads of a network that lie in the box.
+    pub(super) fn count(&mut self, network: &Network) {
+        let inside = |edge: &Edge| positions(&network.shapes, edge).iter().any(|&at| self.whole.has(at));
+        let roads = || network.edges.chunk_by(|a, b| a.road == b.road);
+        self.outside += roads().filter(|road| !road.iter().any(inside)).count();
+        self.roads += roads().count();
     }
+
+    /// Marks the edges that come within reach of the border or leave the box, if the roads that were counted speak for it.
+    pub(super) fn mark(&self, network: &mut Network) {
+        if self.outside * ONE_OUTSIDE_IN > self.roads {
+            return;
+        }
+        let Network { edges, shapes, .. } = network;
+        for edge in edges.iter_mut().filter(|edge| !edge.cut) {
+            edge.cut = positions(shapes, edge).iter().any(|&position| !self.inner.has(position));
+        }
+    }
+}
+
+fn positions<'s>(shapes: &'s [LonLat], edge: &Edge) -> &'s [LonLat] {
+    shapes.get(edge.shape.start as usize..edge.shape.end as usize).unwrap_or_default()
 }
 
 /// The part of a box that is farther from its border than some metres.

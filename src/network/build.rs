@@ -1,11 +1,6 @@
-//! From an extract to a network: the steps in order.
-//!
-//! The same extract gives the same network with any number of threads. The builder takes the extract by value and frees
-//! each part as soon as it is no longer needed.
+//! From an extract to a network.
 
-use super::edges::Source;
-use super::vertices::Vertices;
-use super::{Crossings, Network, NetworkAccount, Splits, StrokeOptions, areas, border, edge_id, restrictions, stroke};
+use super::{Ground, Network, NetworkAccount, StrokeOptions};
 use crate::osm::facts::{CrossSection, Place, WayFacts};
 use crate::osm::{Extract, LonLat};
 
@@ -29,24 +24,5 @@ pub fn build_with(
     sections: &(impl Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync),
     options: &StrokeOptions,
 ) -> (Network, NetworkAccount) {
-    let Extract { ways, refs, nodes, points, restrictions, areas, strings, account: read } = extract;
-    let vertices = Vertices::resolve(&ways, &refs, &nodes, &points);
-    drop((refs, points));
-    let mut account = NetworkAccount {
-        missing_references: vertices.missing,
-        same_place_nodes: vertices.merged,
-        ..NetworkAccount::default()
-    };
-    let mut network = Network { strings, ..Network::default() };
-    Source { nodes: &nodes, vertices: &vertices, places, sections }.build(&ways, &mut network, &mut account);
-    drop(ways);
-    border::mark(&mut network, read.header.bbox_deg(), &mut account);
-    restrictions::resolve(&mut network, &restrictions, &nodes, &vertices, &mut account);
-    areas::resolve(&mut network, areas, &nodes, &mut account);
-    drop((nodes, vertices));
-    account.id_collisions = edge_id::resolve_collisions(&mut network.edges);
-    stroke::chain(&mut network, options, &mut account);
-    network.splits = Splits::find(&network);
-    network.crossings = Crossings::find(&network);
-    (network, account)
+    Ground::new(extract, places, sections, *options).whole()
 }

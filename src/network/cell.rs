@@ -31,6 +31,12 @@ impl Cell {
     }
 }
 
+/// The place of the grid's line between a cell and its neighbours to the west or north, degrees: longitude of a column, latitude of a row.
+pub(super) fn corner_deg(x: u32, y: u32) -> (f64, f64) {
+    let share = |index: u32| f64::from(index) / f64::from(1_u32 << ZOOM);
+    ((share(x) - 0.5) * 360.0, (PI * (1.0 - 2.0 * share(y))).sinh().atan().to_degrees())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -45,6 +51,14 @@ mod tests {
         assert_eq!(cell(8.7096, 49.4144), Cell { y: 699, x: 1073 });
         assert_eq!(cell(0.0, 0.0), Cell { y: 1024, x: 1024 });
         assert_eq!(cell(-1e-7, 1e-7), Cell { y: 1023, x: 1023 });
+    }
+
+    #[test]
+    fn a_cell_lies_between_its_corners() {
+        let ((west, north), (east, south)) = (corner_deg(1073, 699), corner_deg(1074, 700));
+        assert_eq!(cell(west + 1e-6, north - 1e-6), Cell { y: 699, x: 1073 });
+        assert_eq!(cell(east - 1e-6, south + 1e-6), Cell { y: 699, x: 1073 });
+        assert_eq!(cell(east + 1e-6, south - 1e-6), Cell { y: 700, x: 1074 });
     }
 
     #[test]

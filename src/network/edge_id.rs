@@ -33,22 +33,30 @@ fn positive(hash: u64) -> i64 {
     ((hash >> 1) as i64).max(1)
 }
 
-/// Makes all ids distinct. The first edge with an id keeps it; each later one takes the next free id from repeated
-/// hashing. Returns the number of changed ids.
+/// Makes all ids distinct. Returns the number of changed ids.
 pub(super) fn resolve_collisions(edges: &mut [Edge]) -> u64 {
-    let mut by_id: Vec<(i64, u32)> = edges.par_iter().enumerate().map(|(i, e)| (e.id, i as u32)).collect();
+    let changed = changed_ids(edges.par_iter().map(|edge| edge.id));
+    for &(edge, id) in &changed {
+        edges[edge as usize].id = id;
+    }
+    changed.len() as u64
+}
+
+/// The ids that must change so that all are distinct, with their edges' indices. The first edge with an id keeps it; each later one
+/// takes the next free id from repeated hashing.
+pub(super) fn changed_ids(ids: impl IndexedParallelIterator<Item = i64>) -> Vec<(u32, i64)> {
+    let mut by_id: Vec<(i64, u32)> = ids.enumerate().map(|(i, id)| (id, i as u32)).collect();
     by_id.par_sort_unstable();
-    let late: Vec<u32> = by_id.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1].1).collect();
+    let late: Vec<(i64, u32)> = by_id.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1]).collect();
     let mut taken = FxHashSet::default();
-    for &i in &late {
-        let mut id = edges[i as usize].id;
+    let free = |(mut id, edge): (i64, u32)| {
         while by_id.binary_search_by_key(&id, |&(id, _)| id).is_ok() || taken.contains(&id) {
             id = positive(scramble(id as u64));
         }
         taken.insert(id);
-        edges[i as usize].id = id;
-    }
-    late.len() as u64
+        (edge, id)
+    };
+    late.into_iter().map(free).collect()
 }
 
 #[cfg(test)]

@@ -34,20 +34,31 @@ where
     S: Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync,
 {
     /// Appends the roads and edges of all ways to the network.
-    pub(super) fn build(&self, ways: &[Way], network: &mut Network, account: &mut NetworkAccount) {
+    pub(super) fn build(&self, ways: &[&Way], network: &mut Network, account: &mut NetworkAccount) {
         for batch in ways.chunks(WAYS_PER_TASK * TASKS_PER_BATCH) {
-            let parts: Vec<Part> = batch.par_chunks(WAYS_PER_TASK).map(|ways| self.part(ways)).collect();
-            for part in parts {
+            for part in self.parts(batch) {
                 account.add_part(&part.account);
                 join(network, part.network);
             }
         }
     }
 
-    fn part(&self, ways: &[Way]) -> Part {
+    /// Gives the roads and edges of some ways after the other to `look`, with ranges and indices from 0.
+    pub(super) fn look_through(&self, ways: &[Way], mut look: impl FnMut(&Network, &NetworkAccount)) {
+        for batch in ways.chunks(WAYS_PER_TASK * TASKS_PER_BATCH) {
+            let ways: Vec<&Way> = batch.iter().collect();
+            self.parts(&ways).iter().for_each(|part| look(&part.network, &part.account));
+        }
+    }
+
+    fn parts(&self, ways: &[&Way]) -> Vec<Part> {
+        ways.par_chunks(WAYS_PER_TASK).map(|ways| self.part(ways)).collect()
+    }
+
+    fn part(&self, ways: &[&Way]) -> Part {
         let mut part = Part::default();
         let mut cut = CutWay::default();
-        for way in ways {
+        for &way in ways {
             part.account.ways_read += 1;
             let vertices = of_way(&self.vertices.of_refs, way);
             // Rings are never cut.

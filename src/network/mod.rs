@@ -5,6 +5,7 @@
 
 mod account;
 mod areas;
+mod blocks;
 mod border;
 mod build;
 mod cell;
@@ -15,10 +16,13 @@ mod crossings;
 mod cut;
 mod edge_id;
 mod edges;
+mod extent;
 mod geometry;
+mod ground;
 mod movements;
 mod pairing;
 mod passages;
+mod portion;
 mod restrictions;
 mod roundabouts;
 mod site;
@@ -36,8 +40,10 @@ pub use cell::Cell;
 pub use compare::Differences;
 pub use crossings::Crossings;
 pub(crate) use geometry::{EARTH_RADIUS_M, offset_m};
+pub use ground::{Division, Ground};
 pub use movements::{Movement, MovementKind, Movements};
 pub use passages::{Passage, PassageKind};
+pub use portion::{Portion, PortionRestriction};
 pub use site::Site;
 pub(crate) use site::{Pieces, pieces};
 pub use splits::Splits;
@@ -47,7 +53,7 @@ use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, RestrictionKind,
 use crate::osm::{LonLat, StringId, StringPool};
 
 /// Values of a way that all its edges share.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Road {
     /// OSM way id.
     pub way_id: i64,
@@ -78,7 +84,7 @@ pub struct Road {
 }
 
 /// A directed edge of the network.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Edge {
     /// Stable id: the same way, node pair and direction give the same id in the next extract. Positive.
     pub id: i64,
@@ -104,7 +110,7 @@ pub struct Edge {
 }
 
 /// A place where the road is narrower than its cross section, such as a barrier node or a choker.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Narrowing {
     /// Index of the node in the edge's shape (way order, from the shape's start).
     pub vertex: u32,

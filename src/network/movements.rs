@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::{Network, Passage, pairing, reverse};
 
 /// Kind of a movement at a node.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub enum MovementKind {
     /// Along a stroke. The certificates of its edges cover it.
     StraightOn,
@@ -20,7 +20,7 @@ pub enum MovementKind {
 }
 
 /// A movement from one edge into the next.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Movement {
     /// The edge before the movement.
     pub from: u32,

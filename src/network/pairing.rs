@@ -5,7 +5,7 @@
 //! holds where the road bends: a trailer does not follow the lane round the bend. The way on is a movement with a certificate of its
 //! own, so the edge beyond does not have it as its approach. At a sharp corner the road ends, too.
 
-use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
 
@@ -33,8 +33,8 @@ pub(super) struct Pairing {
     pub(super) next: Vec<u32>,
     /// By edge: the edge that it continues, otherwise the edge that a vehicle most plausibly comes from, or [`NONE`].
     pub(super) before: Vec<u32>,
-    /// Number of nodes with more than [`CROWD`] edges.
-    pub(super) crowded: u64,
+    /// Nodes with more than [`CROWD`] edges, by an edge that begins or ends there.
+    pub(super) crowded: Vec<u32>,
 }
 
 impl Pairing {
@@ -57,16 +57,14 @@ impl Pairing {
         // Every slot belongs to one node, so no two tasks write the same slot.
         let slots = || (0..network.edges.len()).map(|_| AtomicU32::new(NONE)).collect::<Vec<_>>();
         let (next, before) = (slots(), slots());
-        let crowded = AtomicU64::new(0);
-        ends.par_chunk_by(|a, b| a.node == b.node).for_each(|ends| {
-            if ends.len() > CROWD {
-                crowded.fetch_add(1, Ordering::Relaxed);
-            } else {
-                Junction::new(network, geometry, options, ends).pair(&next, &before);
-            }
+        let at_nodes = || ends.par_chunk_by(|a, b| a.node == b.node);
+        at_nodes().filter(|ends| ends.len() <= CROWD).for_each(|ends| {
+            Junction::new(network, geometry, options, ends).pair(&next, &before);
         });
+        let first = |ends: &[End]| (ends.len() > CROWD).then(|| ends.first().map(|end| end.edge)).flatten();
+        let crowded = at_nodes().filter_map(first).collect();
         let plain = |slots: Vec<AtomicU32>| slots.into_iter().map(AtomicU32::into_inner).collect();
-        Self { next: plain(next), before: plain(before), crowded: crowded.into_inner() }
+        Self { next: plain(next), before: plain(before), crowded }
     }
 }
 

@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use super::Network;
 
 /// The junction that a passage leads over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum PassageKind {
     /// A roundabout. The edges between are its arcs.
     Roundabout,
@@ -41,16 +41,17 @@ pub struct Passage {
 }
 
 impl Network {
-    /// All passages: those of roundabouts, then those of complexes.
+    /// All passages, by the edge before them and the edge after them.
     #[must_use]
     pub fn passages(&self) -> Vec<Passage> {
         let bans = Bans::of(self);
-        let ways = self.over_rings().into_iter().chain(self.over_complexes());
-        ways.map(|(from, through, to)| {
+        let mut ways: Vec<_> = self.over_rings().into_iter().chain(self.over_complexes()).collect();
+        ways.sort_by(|a, b| (a.0, a.2, &a.1).cmp(&(b.0, b.2, &b.1)));
+        let passage = |(from, through, to): (u32, Vec<u32>, u32)| {
             let forbidden = bans.first(self, from, &through, to);
             Passage { from, to, through, forbidden }
-        })
-        .collect()
+        };
+        ways.into_iter().map(passage).collect()
     }
 
     /// The kind of a passage over these edges. `None` if there are none.

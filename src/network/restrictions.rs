@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use super::vertices::Vertices;
-use super::{Network, NetworkAccount, Restriction, reverse};
+use super::{Network, Restriction, reverse};
 use crate::osm::facts::{RestrictedTurn, RestrictionKind};
 use crate::osm::{self, NodeTable, Via};
 
@@ -17,39 +17,47 @@ use crate::osm::{self, NodeTable, Via};
 const MOST_SEQUENCES: usize = 1024;
 const MOST_VIA_EDGES: usize = 256;
 
-/// Fills `restrictions` and `restriction_edges` of a network without restrictions.
+/// What is found of an extract's restrictions in a network.
+#[derive(Debug, Default)]
+pub(super) struct Resolved {
+    /// By restriction of the network: the relation and its rule, as indices.
+    pub(super) rules: Vec<(u32, u32)>,
+    /// Relations whose members can be driven one after the other, as indices.
+    pub(super) on_network: Vec<u32>,
+}
+
+/// Fills `restrictions` and `restriction_edges` of a network without restrictions. Takes the relations with an index that `takes` accepts.
 pub(super) fn resolve(
     network: &mut Network,
     restrictions: &[osm::Restriction],
     nodes: &NodeTable,
     vertices: &Vertices,
-    account: &mut NetworkAccount,
-) {
-    account.restrictions_read = restrictions.len() as u64;
+    takes: impl Fn(&osm::Restriction) -> bool,
+) -> Resolved {
+    let mut resolved = Resolved::default();
     if restrictions.is_empty() {
-        return;
+        return resolved;
     }
     let found: Vec<(usize, usize, Vec<u32>)> = {
         let resolver = Resolver { leaving: Leaving::of(network), network, nodes, vertices };
         let mut found = Vec::new();
-        for (no, restriction) in restrictions.iter().enumerate() {
-            let before = found.len();
+        for (no, restriction) in restrictions.iter().enumerate().filter(|(_, restriction)| takes(restriction)) {
             let mut on_network = false;
             for (rule, sequences) in resolver.sequences(restriction).into_iter().enumerate() {
                 let Some(sequences) = sequences else { continue };
                 on_network = true;
                 found.extend(sequences.into_iter().map(|edges| (no, rule, edges)));
             }
-            account.count_restriction(on_network, found.len() > before);
+            if on_network {
+                resolved.on_network.push(no as u32);
+            }
         }
         found
     };
-    for (no, rule, edges) in found {
-        let Some((of, rule)) = restrictions.get(no).and_then(|of| Some((of, of.rules.get(rule)?))) else { continue };
+    for (no, rule_no, edges) in found {
+        let Some((of, rule)) = restrictions.get(no).and_then(|of| Some((of, of.rules.get(rule_no)?))) else { continue };
+        resolved.rules.push((no as u32, rule_no as u32));
         let start = network.restriction_edges.len() as u32;
-        account.forbidden_sequences += 1;
-        account.conditional_sequences += u64::from(rule.conditional);
-        account.long_sequences += u64::from(edges.len() > 2);
         network.restriction_edges.extend(edges);
         let edges = start..network.restriction_edges.len() as u32;
         network.restrictions.push(Restriction {
@@ -59,6 +67,7 @@ pub(super) fn resolve(
             edges,
         });
     }
+    resolved
 }
 
 /// Edges, sorted by the node that they leave.

@@ -5,7 +5,7 @@
 
 use super::geometry::Geometry;
 use super::pairing::{NONE, Pairing};
-use super::{Network, NetworkAccount, Stroke};
+use super::{Network, Stroke};
 
 /// Limits of straight continuations, and lengths of strokes and approaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,15 +49,38 @@ impl Default for StrokeOptions {
 /// Most edges of an approach.
 const APPROACH_EDGES: usize = 256;
 
+/// Why a stroke begins where it does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Beginning {
+    /// Nothing continues into it.
+    Open,
+    /// The road comes from another cell.
+    AtCell,
+    /// The stroke before became too long.
+    AfterLength,
+}
+
+/// What is counted of the strokes of a network.
+pub(super) struct Chained {
+    /// By stroke.
+    pub(super) beginnings: Vec<Beginning>,
+    /// Nodes with too many edges for any of them to be called straight on, by an edge that begins or ends there.
+    pub(super) crowded: Vec<u32>,
+}
+
 /// Fills `strokes` and `stroke_edges` of a network without strokes. Strokes are sorted by their first edge. A closed
 /// stroke starts at its first edge in the network's order. It has no approach, because its own last edges serve as one.
-pub(super) fn chain(network: &mut Network, options: &StrokeOptions, account: &mut NetworkAccount) {
+pub(super) fn chain(network: &mut Network, options: &StrokeOptions) -> Chained {
     let geometry = Geometry::measure(network, options.heading_reach_m);
     let pairing = Pairing::find(network, &geometry, options);
     let road = Road { network, pairing: &pairing, geometry: &geometry, max_length_m: options.max_length_m };
     let chains = road.chains();
-    account.strokes_split_at_cells =
-        chains.iter().filter(|chain| road.comes_from_another_cell(chain.first)).count() as u64;
+    let beginning = |chain: &Chain| match () {
+        () if road.comes_from_another_cell(chain.first) => Beginning::AtCell,
+        () if chain.split => Beginning::AfterLength,
+        () => Beginning::Open,
+    };
+    let beginnings = chains.iter().map(beginning).collect();
     for chain in &chains {
         let start = network.stroke_edges.len() as u32;
         if !chain.closed {
@@ -68,12 +91,8 @@ pub(super) fn chain(network: &mut Network, options: &StrokeOptions, account: &mu
         network.stroke_edges.extend(std::iter::successors(Some(chain.first), following).take(chain.edges as usize));
         let end = network.stroke_edges.len() as u32;
         network.strokes.push(Stroke { approach: start..first, edges: first..end, closed: chain.closed });
-        account.strokes += 1;
-        account.closed_strokes += u64::from(chain.closed);
-        account.strokes_split += u64::from(chain.split);
-        account.strokes_with_approach += u64::from(first > start);
     }
-    account.crowded_nodes = pairing.crowded;
+    Chained { beginnings, crowded: pairing.crowded }
 }
 
 /// A stroke before it is written out.

@@ -4,13 +4,17 @@
 //! same stages on the same network, so the same edge and vehicle get the same bytes. [`crate::certify`] makes the certificates.
 //! Progress is reported through [`Reporter`], so this module does not depend on command lines or terminals.
 
+mod certifying;
 mod evidence;
 mod identity;
 mod making;
 mod reuse;
+mod roads;
 mod select;
+mod share;
 mod update;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::Instant;
@@ -18,14 +22,15 @@ use std::time::Instant;
 use thiserror::Error;
 
 pub use evidence::{EvidenceChange, EvidenceChanged, SetChanged, VerdictChanges, What, change_evidence};
+pub use roads::EDGES_AT_ONCE;
 pub use select::{Selection, own_countries, selected};
 pub use update::{Newer, Update, run_of_extract, update};
 
 use crate::account::AccountRow;
 use crate::certify::{Job, TurnJob, certify_network, certify_turns};
-use crate::network::{self, Network};
+use crate::network::Network;
 use crate::osm::changes::{ChangeError, Changes};
-use crate::osm::facts::{Countries, CountriesError, RulesError, cross_sections};
+use crate::osm::facts::{Countries, CountriesError, RulesError};
 use crate::osm::pbf::{HeaderInfo, ReadError};
 use crate::osm::{self};
 use crate::reporter::Reporter;
@@ -35,6 +40,7 @@ use crate::store::{Database, MapChanges, Run, StoreError, TurnSet, VehicleRecord
 use crate::turns::{TurnFacts, junction_areas, junction_nodes, turn_facts};
 use crate::vehicle::{Catalogue, Vehicle, VehicleError};
 use making::{EdgeVerdicts, Making, locked};
+use roads::Roads;
 
 /// Why a run fails.
 #[derive(Debug, Error)]
@@ -95,6 +101,8 @@ pub struct Ingest<'a> {
     pub countries: &'a Countries,
     /// Settings of the certificates.
     pub settings: &'a Settings,
+    /// How many directed edges to certify at once, which bounds the memory ([`EDGES_AT_ONCE`]). Certificates do not depend on it.
+    pub edges_at_once: u64,
     /// The options of the command line as JSON, for the `run` record.
     pub parameters: serde_json::Value,
     /// The time now in UTC, such as `2026-11-21T08:00:00.000Z`. No other clock reaches the file.
@@ -136,11 +144,11 @@ impl Summary {
 /// # Errors
 /// See [`RunError`]. An older database at `db` is then unchanged.
 pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunError> {
-    let Ingest { input, db, countries, settings, now, .. } = *ask;
+    let Ingest { input, db, countries, settings, edges_at_once, now, .. } = *ask;
     let (parameters, changes) = (ask.parameters.clone(), MapChanges::default());
-    let making = Making { command: "ingest", input, db, countries, settings, changes, parameters, now };
-    let choose = |network: &Network| {
-        let vehicles = selected(ask.catalogue, ask.selection, network)?;
+    let making = Making { command: "ingest", input, db, countries, settings, edges_at_once, changes, parameters, now };
+    let choose = |roads: &BTreeMap<[u8; 2], usize>| {
+        let vehicles = selected(ask.catalogue, ask.selection, roads)?;
         vehicles.iter().map(|vehicle| Ok(Model::new(vehicle)?)).collect()
     };
     making.run(choose, None, reporter)
@@ -156,16 +164,20 @@ pub fn read_network(
     reporter: &dyn Reporter,
     summary: &mut Summary,
 ) -> Result<(Network, HeaderInfo, String), RunError> {
-    read_changed_network((input, &Changes::default()), countries, reporter, summary)
+    let input = (input, &Changes::default());
+    let (roads, header, hash) = read_roads(input, countries, (u64::MAX, true), reporter, summary)?;
+    summary.account.extend(roads.account());
+    Ok((roads.into_whole(), header, hash))
 }
 
-/// As [`read_network`], of the extract as it is after changes.
-fn read_changed_network(
+/// Reads an extract as it is after changes. `edges_at_once` and `whole` are those of [`Roads::new`].
+fn read_roads<'c>(
     (input, changes): (&Path, &Changes),
-    countries: &Countries,
+    countries: &'c Countries,
+    (edges_at_once, whole): (u64, bool),
     reporter: &dyn Reporter,
     summary: &mut Summary,
-) -> Result<(Network, HeaderInfo, String), RunError> {
+) -> Result<(Roads<'c>, HeaderInfo, String), RunError> {
     let clock = Instant::now();
     let extract = read_reporting(input, changes, reporter)?;
     let (header, hash) = (extract.account.header.clone(), extract.account.blake3.clone());
@@ -179,14 +191,10 @@ fn read_changed_network(
     }
     let clock = Instant::now();
     reporter.begin("network", 0);
-    let rules = countries.rules();
-    let (network, account) = network::build(extract, &|p| countries.place(p), &|facts, place, ring_radius_m| {
-        cross_sections(facts, place, ring_radius_m, rules)
-    });
+    let roads = Roads::new(extract, countries, edges_at_once, whole);
     reporter.end();
-    summary.account.extend(account.rows());
-    summary.stage("network", clock, network.edges.len() as u64, "directed edges");
-    Ok((network, header, hash))
+    summary.stage("network", clock, u64::from(roads.edges()), "directed edges");
+    Ok((roads, header, hash))
 }
 
 fn read_reporting(input: &Path, changes: &Changes, reporter: &dyn Reporter) -> Result<osm::Extract, ReadError> {
@@ -237,7 +245,7 @@ pub fn certify(ask: &Certify<'_>, reporter: &dyn Reporter) -> Result<Summary, Ru
     let models = ask.vehicles.iter().map(|v| Model::new(v)).collect::<Result<Vec<_>, _>>()?;
     let mut certificates = vec![Vec::new(); models.len()];
     let job = Job { network: &network, models: &models, settings: ask.settings };
-    let mut verdicts = EdgeVerdicts::new(&network, &models, ask.settings);
+    let mut verdicts = EdgeVerdicts::new(network.edges.len(), &models, ask.settings);
     let mut outcome = certify_network(&job, reporter, |vehicle, certificate| {
         verdicts.set(vehicle, certificate.edge, certificate.conclusion.verdict);
         certificates[vehicle].push(certificate.clone());

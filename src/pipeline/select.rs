@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use super::RunError;
-use crate::network::Network;
 use crate::vehicle::{Catalogue, Regions, Vehicle};
 
 /// The least share of the roads with which a country counts as one of the extract's countries.
@@ -22,27 +21,23 @@ pub enum Selection {
     None,
 }
 
-/// The countries with at least a tenth of the network's roads, those with most roads first.
+/// The countries with at least a tenth of the roads, those with most roads first. `roads` counts roads by country.
 #[must_use]
-pub fn own_countries(network: &Network) -> Vec<[u8; 2]> {
-    let mut counts: BTreeMap<[u8; 2], usize> = BTreeMap::new();
-    for road in &network.roads {
-        *counts.entry(road.country).or_default() += 1;
-    }
-    let least = (network.roads.len() as f64 * OWN_SHARE) as usize;
-    let mut own: Vec<_> = counts.into_iter().filter(|&(_, n)| n >= least.max(1)).collect();
+pub fn own_countries(roads: &BTreeMap<[u8; 2], usize>) -> Vec<[u8; 2]> {
+    let least = (roads.values().sum::<usize>() as f64 * OWN_SHARE) as usize;
+    let mut own: Vec<_> = roads.iter().map(|(&country, &n)| (country, n)).filter(|&(_, n)| n >= least.max(1)).collect();
     own.sort_by_key(|&(country, n)| (std::cmp::Reverse(n), country));
     own.into_iter().map(|(country, _)| country).collect()
 }
 
-/// The vehicles of a selection, in catalogue order, each once.
+/// The vehicles of a selection, in catalogue order, each once. `roads` counts roads by country.
 ///
 /// # Errors
 /// An id is unknown. The error names similar ids.
 pub fn selected<'c>(
     catalogue: &'c Catalogue,
     selection: &Selection,
-    network: &Network,
+    roads: &BTreeMap<[u8; 2], usize>,
 ) -> Result<Vec<&'c Vehicle>, RunError> {
     let ids: Vec<&str> = match selection {
         Selection::None => return Ok(Vec::new()),
@@ -51,7 +46,7 @@ pub fn selected<'c>(
         Selection::Region(also) => {
             let regions = Regions::builtin()?;
             let of = |country| catalogue.for_country(&regions, country);
-            let own = own_countries(network).into_iter().flat_map(of).map(|v| v.id.as_str());
+            let own = own_countries(roads).into_iter().flat_map(of).map(|v| v.id.as_str());
             own.chain(known(catalogue, also)?).collect()
         }
     };

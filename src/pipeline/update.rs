@@ -4,7 +4,6 @@ mod sequence;
 
 use std::path::{Path, PathBuf};
 
-use crate::network::Network;
 use crate::osm::changes::Changes;
 use crate::osm::facts::Countries;
 use crate::osm::pbf::{HeaderInfo, header_and_hash};
@@ -16,7 +15,7 @@ use crate::vehicle::Vehicle;
 use crate::words::Named as _;
 
 use super::making::Making;
-use super::{Certify, RunError, Summary, certify, utc};
+use super::{Certify, EDGES_AT_ONCE, RunError, Summary, certify, utc};
 
 /// Where newer data come from.
 #[derive(Debug, Clone)]
@@ -152,11 +151,12 @@ fn make(
         db: ask.db,
         countries: ask.countries,
         settings: &settings,
+        edges_at_once: EDGES_AT_ONCE,
         changes,
         parameters: ask.parameters.clone(),
         now: ask.now,
     };
-    let mut summary = making.run(|_: &Network| Ok(models), Some(&mut old), reporter)?;
+    let mut summary = making.run(|_| Ok(models), Some(&mut old), reporter)?;
     for (id, settings) in others {
         reporter.note(&format!("{id}, corridor {}: certified again, with its own settings", settings.policy.name()));
         let vehicle = vehicle(&id)?;

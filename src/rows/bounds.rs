@@ -3,7 +3,7 @@
 use crate::osm::LonLat;
 
 /// A box in degrees.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Bounds {
     /// Least longitude.
     pub west: f64,

@@ -267,10 +267,13 @@ async fn replace(
     };
     let run_id = records::add_run(c, run, account).await?;
     let (vehicle_id, vehicle_name) = (&vehicle.id, &vehicle.name);
-    plans::insert(c, plans::STROKES, (vehicle_no, corridor_no(policy)), &mut renewed.plans).await?;
+    let plans = plans::sorted(&mut renewed.plans);
+    plans::insert(c, plans::STROKES, (vehicle_no, corridor_no(policy)), plans).await?;
     let set =
         Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished, settings: &renewed.settings };
-    set.insert(c, &renewed.rows).await?;
+    let rows = renewed.rows.iter().copied().map(Ok);
+    // The rows are known to be complete.
+    let _ = set.insert(c, rows, renewed.rows.len() as u32).await?;
     contents::touch_tables(c, &run.finished).await?;
     match &mut renewed.turns {
         Some((turns, packed)) => turns::insert_set(c, (vehicle_no, policy, run_id), turns, packed, &run.finished).await,

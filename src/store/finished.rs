@@ -5,6 +5,7 @@
 
 use std::fs::{File, OpenOptions};
 use std::io::{BufReader, Read, Seek, SeekFrom, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use serde::de::DeserializeOwned;
@@ -28,24 +29,30 @@ pub enum Stage {
     Turns,
 }
 
+/// Of which part of the work a block is: a stage, and the number of a portion of the network.
+pub type PartOfWork = (Stage, u32);
+
 /// The finished work of one run. The run must hold the lock of its unfinished database.
 pub struct Finished {
     path: PathBuf,
     file: File,
     length: u64,
+    /// Where blocks of one part of the work follow each other.
+    stretches: Vec<(PartOfWork, Range<u64>)>,
 }
 
 impl Finished {
     /// Opens the file at `path`, or begins it. `identity` stands for everything on which the work depends.
     pub(super) fn open(path: PathBuf, identity: &[u8; 32]) -> Result<Self, StoreError> {
         let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
-        let mut finished = Self { file: opened.map_err(|e| StoreError::io(&path, e))?, path, length: 0 };
+        let mut finished = Self { file: opened.map_err(|e| StoreError::io(&path, e))?, path, length: 0, stretches: Vec::new() };
         let mut head = [0; HEAD_BYTES as usize];
         let known = finished.file.read_exact(&mut head).is_ok() && head[..8] == *MAGIC && head[8..] == *identity;
         if known {
             finished.length = HEAD_BYTES;
             while let Some(bytes) = finished.block(finished.length) {
-                finished.length += (BLOCK_HEAD_BYTES + bytes.len()) as u64;
+                let Ok((part, _)) = postcard::take_from_bytes(&bytes) else { break };
+                finished.note(part, (BLOCK_HEAD_BYTES + bytes.len()) as u64);
             }
         }
         finished.file.set_len(finished.length).map_err(|e| finished.error(e))?;
@@ -65,33 +72,49 @@ impl Finished {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn keep<T: Serialize>(&mut self, stage: Stage, batch: &[T]) -> Result<(), StoreError> {
+    pub fn keep<T: Serialize>(&mut self, part: PartOfWork, batch: &[T]) -> Result<(), StoreError> {
         let text = |e: postcard::Error| std::io::Error::other(e);
         let mut block = vec![0; BLOCK_HEAD_BYTES];
-        block = postcard::to_extend(&(stage, batch), block).map_err(|e| self.error(text(e)))?;
+        block = postcard::to_extend(&(part, batch), block).map_err(|e| self.error(text(e)))?;
         let (head, body) = block.split_at_mut(BLOCK_HEAD_BYTES);
         head[..4].copy_from_slice(&(body.len() as u32).to_le_bytes());
         head[4..].copy_from_slice(&check_sum(body));
-        self.append(&block)
+        let start = self.length;
+        self.append(&block)?;
+        self.length = start;
+        self.note(part, block.len() as u64);
+        Ok(())
     }
 
-    /// Gives every batch of a stage to `take`, in the order in which they were kept.
+    /// Notes a block that follows the others.
+    fn note(&mut self, part: PartOfWork, bytes: u64) {
+        let end = self.length + bytes;
+        match self.stretches.last_mut() {
+            Some((last, stretch)) if *last == part => stretch.end = end,
+            _ => self.stretches.push((part, self.length..end)),
+        }
+        self.length = end;
+    }
+
+    /// Gives every batch of a part of the work to `take`, in the order in which they were kept.
     ///
     /// # Errors
     /// The first error of `take`, or a block is no longer what it was.
     pub fn each<T: DeserializeOwned, E: From<StoreError>>(
         &mut self,
-        stage: Stage,
+        part: PartOfWork,
         mut take: impl FnMut(Vec<T>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let mut at = HEAD_BYTES;
-        while at < self.length {
-            let changed = || std::io::Error::other("the file was changed by another program; remove it");
-            let block = self.block(at).ok_or_else(|| self.error(changed()))?;
-            at += (BLOCK_HEAD_BYTES + block.len()) as u64;
-            let (of, rest): (Stage, _) = postcard::take_from_bytes(&block).map_err(|_| self.error(changed()))?;
-            if of == stage {
-                take(postcard::from_bytes(rest).map_err(|_| self.error(changed()))?)?;
+        let changed = || std::io::Error::other("the file was changed by another program; remove it");
+        let of_part = |(of, stretch): &(PartOfWork, Range<u64>)| (*of == part).then(|| stretch.clone());
+        let stretches: Vec<Range<u64>> = self.stretches.iter().filter_map(of_part).collect();
+        for Range { start: mut at, end } in stretches {
+            while at < end {
+                let block = self.block(at).ok_or_else(|| self.error(changed()))?;
+                at += (BLOCK_HEAD_BYTES + block.len()) as u64;
+                let block = postcard::take_from_bytes::<PartOfWork>(&block);
+                let batch = block.and_then(|(_, rest)| postcard::from_bytes(rest));
+                take(batch.map_err(|_| self.error(changed()))?)?;
             }
         }
         Ok(())
@@ -159,10 +182,12 @@ mod tests {
 
     type Batches = Vec<Vec<u32>>;
 
-    fn kept(finished: &mut Finished, stage: Stage) -> Batches {
+    const STROKES: PartOfWork = (Stage::Strokes, 2);
+
+    fn kept(finished: &mut Finished, part: PartOfWork) -> Batches {
         let mut all = Batches::new();
         finished
-            .each(stage, |batch: Vec<u32>| {
+            .each(part, |batch: Vec<u32>| {
                 all.push(batch);
                 Ok::<(), StoreError>(())
             })
@@ -178,8 +203,9 @@ mod tests {
         assert!(finished.is_empty());
         let batches: Batches = (0..9).map(|k| (k..300 * k).collect()).collect();
         for batch in &batches {
-            finished.keep(Stage::Strokes, batch).unwrap();
-            finished.keep(Stage::Turns, &batch[batch.len() / 2..]).unwrap();
+            finished.keep(STROKES, batch).unwrap();
+            finished.keep((Stage::Turns, 3), &batch[batch.len() / 2..]).unwrap();
+            finished.keep((Stage::Strokes, 7), &[9_u32]).unwrap();
         }
         drop(finished);
         let whole = std::fs::read(&path).unwrap();
@@ -187,13 +213,13 @@ mod tests {
         for cut in (40..=whole.len()).step_by(97).chain([whole.len()]) {
             std::fs::write(&path, &whole[..cut]).unwrap();
             let mut finished = Finished::open(path.clone(), &[7; 32]).unwrap();
-            let strokes = kept(&mut finished, Stage::Strokes);
+            let strokes = kept(&mut finished, STROKES);
             assert_eq!(strokes, batches[..strokes.len()]);
             assert!(strokes.len() >= last);
             last = strokes.len();
             // It goes on behind the last whole block.
-            finished.keep(Stage::Strokes, &[1_u32]).unwrap();
-            assert_eq!(kept(&mut finished, Stage::Strokes).last().unwrap(), &[1]);
+            finished.keep(STROKES, &[1_u32]).unwrap();
+            assert_eq!(kept(&mut finished, STROKES).last().unwrap(), &[1]);
         }
         assert_eq!(last, 9);
     }
@@ -203,7 +229,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.done");
         let mut finished = Finished::open(path.clone(), &[7; 32]).unwrap();
-        (0..4).for_each(|k| finished.keep(Stage::Turns, &[k, 5_u32, 6]).unwrap());
+        (0..4).for_each(|k| finished.keep((Stage::Turns, 0), &[k, 5_u32, 6]).unwrap());
         drop(finished);
         let whole = std::fs::read(&path).unwrap();
         for at in 40..whole.len() {
@@ -211,7 +237,7 @@ mod tests {
             bytes[at] ^= 0x10;
             std::fs::write(&path, bytes).unwrap();
             let mut finished = Finished::open(path.clone(), &[7; 32]).unwrap();
-            let turns = kept(&mut finished, Stage::Turns);
+            let turns = kept(&mut finished, (Stage::Turns, 0));
             assert!(turns.len() < 4 && turns.iter().zip(0..).all(|(batch, k)| *batch == [k, 5, 6]));
         }
         std::fs::write(&path, &whole).unwrap();

@@ -1,5 +1,7 @@
 //! Writes the areas of junctions, and reads them for the map.
 
+use std::io;
+
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteConnection;
 
@@ -42,7 +44,11 @@ impl Database {
 }
 
 /// Replaces all areas and registers them as a layer.
-pub(super) async fn add(c: &mut SqliteConnection, areas: &[JunctionArea], time: &str) -> Sql<()> {
+pub(super) async fn add(
+    c: &mut SqliteConnection,
+    areas: impl Iterator<Item = io::Result<JunctionArea>>,
+    time: &str,
+) -> Sql<()> {
     for sql in [
         "DELETE FROM junction",
         "DELETE FROM gpkg_geometry_columns WHERE table_name = 'junction'",
@@ -60,18 +66,22 @@ pub(super) async fn replace(c: &mut SqliteConnection, nodes: &[i64], areas: &[Ju
     for node in nodes {
         sqlx::query("DELETE FROM junction WHERE node_id = ?").bind(node).execute(&mut *c).await?;
     }
-    insert(c, areas).await.map(|_| ())
+    insert(c, areas.iter().cloned().map(Ok)).await.map(|_| ())
 }
 
-async fn insert(c: &mut SqliteConnection, areas: &[JunctionArea]) -> Sql<Option<Bounds>> {
+async fn insert(
+    c: &mut SqliteConnection,
+    areas: impl Iterator<Item = io::Result<JunctionArea>>,
+) -> Sql<Option<Bounds>> {
     let mut bulk = Bulk::new("junction", 4);
     let mut bounds: Option<Bounds> = None;
-    for JunctionArea { node, roads, kerb_source, polygons } in areas {
-        let encoded = blob::encode_polygons(polygons);
+    for area in areas {
+        let JunctionArea { node, roads, kerb_source, polygons } = area?;
+        let encoded = blob::encode_polygons(&polygons);
         let (geom, around) = encoded.ok_or_else(|| content(format!("the area of junction {node} is empty")))?;
         bounds = Some(bounds.map_or(around, |b| b.union(around)));
-        bulk.add(*node)?;
-        bulk.add(*roads as i64)?;
+        bulk.add(node)?;
+        bulk.add(roads as i64)?;
         bulk.add(kerb_source.map(KerbSource::name))?;
         bulk.add(geom)?;
         bulk.end_row(c).await?;

@@ -110,7 +110,7 @@ impl Writer {
     /// Adds a certificate of an older database for the edge with this index.
     ///
     /// # Errors
-    /// The spool cannot be written.
+    /// A temporary file cannot be written.
     pub fn kept(&mut self, vehicle: VehicleNo, policy: Policy, edge: u32, kept: &Kept) -> Result<(), StoreError> {
         self.push(vehicle, policy, Packed { fid: edge + 1, ..kept.packed })
     }
@@ -118,7 +118,7 @@ impl Writer {
     /// Adds a certificate of an older database for the turn with this index.
     ///
     /// # Errors
-    /// The spool cannot be written.
+    /// A temporary file cannot be written.
     pub fn kept_turn(
         &mut self,
         vehicle: VehicleNo,

@@ -1,55 +1,90 @@
 //! Writes the network into its tables. Arrays keep their order, so that [`super::network_read`] reads the same network.
 
+use std::ops::Range;
+use std::path::Path;
+
 use rustc_hash::FxHashMap;
 use sqlx::sqlite::SqliteConnection;
 
-use crate::network::{Edge, Network, Road};
+use crate::network::Edge;
 use crate::osm::LonLat;
-use crate::osm::facts::{CrossSection, Legal, Limit, Strip};
-use crate::rows::{Bounds, EdgeMeasure};
+use crate::osm::facts::{CrossSection, Direction, Legal, Limit, Strip};
+use crate::rows::Bounds;
 use crate::words::{Named, highway};
 
 use super::blob;
 use super::bulk::Bulk;
 use super::error::content;
+use super::gathered::{EdgeRow, RoadRow, StrokeRow};
+use super::part::with_suffix;
+use super::sorter::{Sorted, Sorter};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
-/// Writes all tables of the network and returns the box around it. `measures` has one entry per edge, or is empty.
-pub(super) async fn write(
-    c: &mut SqliteConnection,
-    network: &Network,
-    measures: &[EdgeMeasure],
-) -> Sql<Option<Bounds>> {
-    if !measures.is_empty() && measures.len() != network.edges.len() {
-        return Err(content(format!("{} measures for {} edges", measures.len(), network.edges.len())));
-    }
-    roads(c, network).await?;
-    let bounds = edges(c, network, measures).await?;
-    narrowings_and_strokes(c, network).await?;
-    spatial_index(c, &bounds).await?;
-    Ok(bounds.into_iter().reduce(Bounds::union))
+/// The network as it was written.
+pub(super) struct Written {
+    /// Number of edges.
+    pub(super) edges: u32,
+    /// The box around all edges.
+    pub(super) bounds: Option<Bounds>,
 }
 
-async fn roads(c: &mut SqliteConnection, network: &Network) -> Sql<()> {
-    let mut sections = Distinct::new("section", 10);
-    let mut legals = Distinct::new("legal", 9);
-    let mut bulk = Bulk::new("road", 16);
-    for (no, road) in (1_i64..).zip(&network.roads) {
+/// Writes all tables of the network except those of restrictions and areas. A temporary file is made beside `path`.
+pub(super) async fn write(
+    c: &mut SqliteConnection,
+    (roads, edges, strokes): (Sorter<u32, RoadRow>, Sorter<u32, EdgeRow>, Sorter<u32, StrokeRow>),
+    path: &Path,
+) -> Sql<Written> {
+    let mut boxes = Sorter::create(with_suffix(path, "-boxes"))?;
+    let written = roads_and_edges(c, roads.sorted()?, edges.sorted()?, &mut boxes).await?;
+    write_strokes(c, strokes.sorted()?).await?;
+    spatial_index(c, boxes.sorted()?).await?;
+    Ok(written)
+}
+
+/// Writes the table of roads.
+struct Roads {
+    rows: Sorted<u32, RoadRow>,
+    /// The road that was written last, with its index.
+    current: Option<(u32, RoadRow)>,
+    sections: Distinct<[Option<(u32, u32, u8)>; 3]>,
+    legals: Distinct<([(u8, u32); 5], u8, u8)>,
+    bulk: Bulk,
+}
+
+impl Roads {
+    fn new(rows: Sorted<u32, RoadRow>) -> Self {
+        let (sections, legals) = (Distinct::new("section", 10), Distinct::new("legal", 9));
+        Self { rows, current: None, sections, legals, bulk: Bulk::new("road", 16) }
+    }
+
+    /// Writes the roads up to one.
+    async fn up_to(&mut self, c: &mut SqliteConnection, wanted: u32) -> Sql<&RoadRow> {
+        while self.current.as_ref().is_none_or(|(no, _)| *no != wanted) {
+            let (no, row) = self.rows.next().ok_or_else(|| content(format!("road {wanted} is missing")))??;
+            self.write(c, no, &row).await?;
+            self.current = Some((no, row));
+        }
+        self.current.as_ref().map(|(_, row)| row).ok_or_else(|| content("a road is missing"))
+    }
+
+    async fn write(&mut self, c: &mut SqliteConnection, no: u32, row: &RoadRow) -> Sql<()> {
+        let road = &row.road;
         let mut section = [0; 2];
         let mut legal = [0; 2];
         for i in 0..2 {
-            section[i] = sections.number(c, section_key(&road.sections[i]), &road.sections[i], add_section).await?;
-            legal[i] = legals.number(c, legal_key(&road.legal[i]), &road.legal[i], add_legal).await?;
+            section[i] = self.sections.number(c, section_key(&road.sections[i]), &road.sections[i], add_section).await?;
+            legal[i] = self.legals.number(c, legal_key(&road.legal[i]), &road.legal[i], add_legal).await?;
         }
         let country = std::str::from_utf8(&road.country).map_err(|_| content("a country code is not text"))?;
-        bulk.add(no)?;
+        let bulk = &mut self.bulk;
+        bulk.add(i64::from(no) + 1)?;
         bulk.add(road.way_id)?;
         bulk.add(highway(road.class, road.link))?;
         bulk.add(road.roundabout)?;
         bulk.add(road.oneway.name())?;
-        bulk.add(road.name.map(|id| network.strings.text(id)))?;
-        bulk.add(road.reference.map(|id| network.strings.text(id)))?;
+        bulk.add(row.name.as_deref())?;
+        bulk.add(row.reference.as_deref())?;
         bulk.add(road.lanes)?;
         bulk.add(country)?;
         bulk.add(road.left_hand_traffic)?;
@@ -59,84 +94,114 @@ async fn roads(c: &mut SqliteConnection, network: &Network) -> Sql<()> {
         for limit in road.max_speed_km_h {
             bulk.add(limit)?;
         }
-        bulk.end_row(c).await?;
+        bulk.end_row(c).await
     }
-    sections.bulk.finish(c).await?;
-    legals.bulk.finish(c).await?;
-    bulk.finish(c).await
+
+    async fn finish(self, c: &mut SqliteConnection) -> Sql<()> {
+        self.sections.bulk.finish(c).await?;
+        self.legals.bulk.finish(c).await?;
+        self.bulk.finish(c).await
+    }
 }
 
-async fn edges(c: &mut SqliteConnection, network: &Network, measures: &[EdgeMeasure]) -> Sql<Vec<Bounds>> {
+/// Where an edge's positions and narrow places are, among those of all edges. Both directions of a piece of road share theirs, and a piece
+/// shares its first position with the piece before. Positions that no edge uses do not count.
+#[derive(Default)]
+struct Ranges {
+    road: Option<u32>,
+    place: u32,
+    shape: Range<u32>,
+    narrowings: Range<u32>,
+    /// End of all positions.
+    end: u32,
+}
+
+impl Ranges {
+    /// Goes on to the next edge. Returns whether its piece of road is a new one.
+    fn next(&mut self, row: &EdgeRow) -> bool {
+        let same_road = self.road == Some(row.road);
+        if same_road && row.place == self.place {
+            return false;
+        }
+        let start = if same_road { (self.shape.start + row.place.saturating_sub(self.place)).min(self.end) } else { self.end };
+        self.shape = start..start + row.shape.len() as u32;
+        self.end = self.end.max(self.shape.end);
+        self.narrowings = self.narrowings.end..self.narrowings.end + row.narrowings.len() as u32;
+        (self.road, self.place) = (Some(row.road), row.place);
+        true
+    }
+}
+
+async fn roads_and_edges(
+    c: &mut SqliteConnection,
+    roads: Sorted<u32, RoadRow>,
+    edges: Sorted<u32, EdgeRow>,
+    boxes: &mut Sorter<(u64, u32), Bounds>,
+) -> Sql<Written> {
+    let mut roads = Roads::new(roads);
     let mut bulk = Bulk::new("edge", 37);
-    let mut boxes = Vec::with_capacity(network.edges.len());
-    let mut line = Vec::new();
-    let starts = shape_starts(network)?;
-    for (index, edge) in network.edges.iter().enumerate() {
-        line.clear();
-        line.extend(network.positions(edge));
-        let (geom, bounds) = blob::encode(line.iter().copied()).ok_or_else(|| content("an edge has no shape"))?;
-        boxes.push(bounds);
-        let measure = measures.get(index).copied().unwrap_or_default();
-        bulk.add(index as i64 + 1)?;
+    let mut narrowings = Bulk::new("narrowing", 3);
+    let mut ranges = Ranges::default();
+    let mut written = Written { edges: 0, bounds: None };
+    for row in edges {
+        let (index, row) = row?;
+        if index != written.edges {
+            return Err(content(format!("edge {} is missing or there twice", written.edges)));
+        }
+        written.edges += 1;
+        if ranges.next(&row) {
+            for (no, narrowing) in (i64::from(ranges.narrowings.start) + 1..).zip(&row.narrowings) {
+                narrowings.add(no)?;
+                narrowings.add(narrowing.vertex)?;
+                narrowings.add(decimal(narrowing.passage_m))?;
+                narrowings.end_row(c).await?;
+            }
+        }
+        let road = roads.up_to(c, row.road).await?;
+        let EdgeRow { edge, mut shape, section, measure, .. } = row;
+        if edge.direction == Direction::Backward {
+            shape.reverse();
+        }
+        let (geom, bounds) = blob::encode(shape.iter().copied()).ok_or_else(|| content("an edge has no shape"))?;
+        boxes.push((morton(&bounds), index), &bounds)?;
+        written.bounds = Some(written.bounds.map_or(bounds, |all| all.union(bounds)));
+        bulk.add(i64::from(index) + 1)?;
         bulk.add(edge.id)?;
-        let road = network.road(edge);
-        bulk.add(road.way_id)?;
+        bulk.add(road.road.way_id)?;
         bulk.add(edge.from_node)?;
         bulk.add(edge.to_node)?;
         bulk.add(edge.direction.name())?;
         bulk.add(geom)?;
-        bulk.add(measure.length_m.filter(|length| length.is_finite()).unwrap_or_else(|| geodesic_length_m(&line)))?;
-        add_road_columns(&mut bulk, network, road, edge)?;
+        bulk.add(measure.length_m.filter(|length| length.is_finite()).unwrap_or_else(|| geodesic_length_m(&shape)))?;
+        add_road_columns(&mut bulk, road, &edge, &section)?;
         bulk.add(measure.min_radius_m.filter(|radius| radius.is_finite()))?;
         bulk.add(measure.centreline_deviation_m.filter(|deviation| deviation.is_finite()))?;
         add_legal(&mut bulk, &edge.legal)?;
         bulk.add(edge.barred)?;
         bulk.add(edge.cut)?;
-        bulk.add(i64::from(edge.road) + 1)?;
-        bulk.add(starts[index])?;
-        bulk.add(edge.narrowings.start)?;
-        bulk.add(edge.narrowings.end)?;
+        bulk.add(i64::from(row.road) + 1)?;
+        bulk.add(ranges.shape.start)?;
+        bulk.add(ranges.narrowings.start)?;
+        bulk.add(ranges.narrowings.end)?;
         bulk.end_row(c).await?;
     }
+    roads.finish(c).await?;
     bulk.finish(c).await?;
-    Ok(boxes)
-}
-
-/// The start of each edge's shape, not counting positions that no edge uses (those of pieces that were left out). The shapes
-/// must be in the order of the edges, because the edges are read one after the other by these starts.
-fn shape_starts(network: &Network) -> Sql<Vec<u32>> {
-    let mut used = vec![false; network.shapes.len()];
-    for edge in &network.edges {
-        let shape = used.get_mut(edge.shape.start as usize..edge.shape.end as usize);
-        shape.ok_or_else(|| content("an edge's shape is out of range"))?.fill(true);
-    }
-    let before: Vec<u32> = used
-        .iter()
-        .scan(0, |count, &used| {
-            *count += u32::from(used);
-            Some(*count - u32::from(used))
-        })
-        .collect();
-    let mut end = 0;
-    let start = |edge: &Edge| {
-        let start = before.get(edge.shape.start as usize).copied().filter(|&start| start <= end);
-        let start = start.ok_or_else(|| content("the shapes are not in the order of the edges"))?;
-        end = end.max(start + edge.shape.len() as u32);
-        Ok(start)
-    };
-    network.edges.iter().map(start).collect()
+    narrowings.finish(c).await?;
+    Ok(written)
 }
 
 /// Adds the columns of the road that users want with each edge.
-fn add_road_columns(bulk: &mut Bulk, network: &Network, road: &Road, edge: &Edge) -> Sql<()> {
+fn add_road_columns(bulk: &mut Bulk, row: &RoadRow, edge: &Edge, section: &CrossSection) -> Sql<()> {
+    let road = &row.road;
     bulk.add(highway(road.class, road.link))?;
-    bulk.add(road.name.map(|id| network.strings.text(id)))?;
-    bulk.add(road.reference.map(|id| network.strings.text(id)))?;
+    bulk.add(row.name.as_deref())?;
+    bulk.add(row.reference.as_deref())?;
     bulk.add(road.oneway.name())?;
     bulk.add(road.left_hand_traffic)?;
     bulk.add(road.lanes)?;
     bulk.add(road.max_speed_km_h[edge.direction as usize])?;
-    add_widths(bulk, &network.section(edge))
+    add_widths(bulk, section)
 }
 
 /// Adds the columns of an edge's widths.
@@ -149,42 +214,35 @@ pub(super) fn add_widths(bulk: &mut Bulk, section: &CrossSection) -> Sql<()> {
     Ok(())
 }
 
-async fn narrowings_and_strokes(c: &mut SqliteConnection, network: &Network) -> Sql<()> {
-    let mut narrowings = Bulk::new("narrowing", 3);
-    for (no, narrowing) in (1_i64..).zip(&network.narrowings) {
-        narrowings.add(no)?;
-        narrowings.add(narrowing.vertex)?;
-        narrowings.add(decimal(narrowing.passage_m))?;
-        narrowings.end_row(c).await?;
-    }
-    narrowings.finish(c).await?;
-    let mut strokes = Bulk::new("stroke", 6);
-    for (no, stroke) in (1_i64..).zip(&network.strokes) {
-        strokes.add(no)?;
-        for range in [&stroke.approach, &stroke.edges] {
-            strokes.add(range.start)?;
-            strokes.add(range.end)?;
-        }
-        strokes.add(stroke.closed)?;
-        strokes.end_row(c).await?;
-    }
-    strokes.finish(c).await?;
+async fn write_strokes(c: &mut SqliteConnection, strokes: Sorted<u32, StrokeRow>) -> Sql<()> {
+    let mut bulk = Bulk::new("stroke", 6);
     let mut stroke_edges = Bulk::new("stroke_edge", 2);
-    for (no, &edge) in (1_i64..).zip(&network.stroke_edges) {
-        stroke_edges.add(no)?;
-        stroke_edges.add(i64::from(edge) + 1)?;
-        stroke_edges.end_row(c).await?;
+    let mut position = 0_i64;
+    for (no, row) in (1_i64..).zip(strokes) {
+        let (_, StrokeRow { approach, edges, closed }) = row?;
+        bulk.add(no)?;
+        for list in [&approach, &edges] {
+            bulk.add(position)?;
+            for &edge in list {
+                position += 1;
+                stroke_edges.add(position)?;
+                stroke_edges.add(i64::from(edge) + 1)?;
+                stroke_edges.end_row(c).await?;
+            }
+            bulk.add(position)?;
+        }
+        bulk.add(closed)?;
+        bulk.end_row(c).await?;
     }
+    bulk.finish(c).await?;
     stroke_edges.finish(c).await
 }
 
 /// Fills the spatial index along a space-filling curve, so that neighbours share pages and pages fill one after the other.
-async fn spatial_index(c: &mut SqliteConnection, boxes: &[Bounds]) -> Sql<()> {
-    let mut order: Vec<(u64, u32)> = (0_u32..).zip(boxes).map(|(index, bounds)| (morton(bounds), index)).collect();
-    order.sort_unstable();
+async fn spatial_index(c: &mut SqliteConnection, boxes: Sorted<(u64, u32), Bounds>) -> Sql<()> {
     let mut bulk = Bulk::new("rtree_edge_geom", 5);
-    for (_, index) in order {
-        let bounds = boxes[index as usize];
+    for row in boxes {
+        let ((_, index), bounds) = row?;
         bulk.add(i64::from(index) + 1)?;
         for side in [bounds.west, bounds.east, bounds.south, bounds.north] {
             bulk.add(side)?;

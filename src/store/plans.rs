@@ -1,6 +1,7 @@
 //! The tables of the plans of strokes and of turns.
 
 use std::collections::BTreeMap;
+use std::io;
 
 use sqlx::AssertSqlSafe;
 use sqlx::sqlite::SqliteConnection;
@@ -20,20 +21,26 @@ pub(super) const STROKES: &str = "plan (vehicle_no, corridor_no, fid, coefficien
 /// The table of plans of turns, with its columns.
 pub(super) const TURNS: &str = "turn_plan (vehicle_no, corridor_no, fid, coefficients)";
 
-/// Sorts the plans of a set by edge or turn and inserts them.
+/// Sorts the plans of a set by edge or turn.
+pub(super) fn sorted(plans: &mut [StoredPlan]) -> impl Iterator<Item = io::Result<StoredPlan>> {
+    plans.sort_unstable_by_key(|plan| plan.at);
+    plans.iter().cloned().map(Ok)
+}
+
+/// Inserts plans of a set, which are sorted by edge or turn.
 pub(super) async fn insert(
     c: &mut SqliteConnection,
     into: &'static str,
     (vehicle_no, corridor): (u32, u8),
-    plans: &mut [StoredPlan],
+    plans: impl Iterator<Item = io::Result<StoredPlan>>,
 ) -> Sql<()> {
-    plans.sort_unstable_by_key(|plan| plan.at);
     let mut bulk = Bulk::new(into, 4);
-    for plan in plans.iter() {
+    for plan in plans {
+        let plan = plan?;
         bulk.add(vehicle_no)?;
         bulk.add(corridor)?;
         bulk.add(plan.at + 1)?;
-        bulk.add(plan.packed.clone())?;
+        bulk.add(plan.packed)?;
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await

@@ -183,11 +183,11 @@ async fn replace(
 ) -> Sql<()> {
     let of = (vehicle_no, corridor);
     remove(c, ["certificate_compact", "plan"], of, &packed.edges).await?;
-    sets::insert_rows(c, of, &packed.edges).await?;
-    plans::insert(c, plans::STROKES, of, &mut set.plans).await?;
+    sets::insert_rows(c, of, packed.edges.iter().copied().map(Ok)).await?;
+    plans::insert(c, plans::STROKES, of, plans::sorted(&mut set.plans)).await?;
     remove(c, ["turn_certificate_compact", "turn_plan"], of, &packed.turns).await?;
-    turns::insert_rows(c, of, &packed.turns).await?;
-    plans::insert(c, plans::TURNS, of, &mut packed.turn_plans.clone()).await
+    turns::insert_rows(c, of, packed.turns.iter().copied().map(Ok)).await?;
+    plans::insert(c, plans::TURNS, of, plans::sorted(&mut packed.turn_plans.clone())).await
 }
 
 async fn remove(

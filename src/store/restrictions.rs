@@ -3,7 +3,7 @@
 use sqlx::Row as _;
 use sqlx::sqlite::SqliteConnection;
 
-use crate::network::Restriction;
+use crate::network::{PortionRestriction, Restriction};
 use crate::osm::facts::RestrictionKind;
 
 use super::bulk::Bulk;
@@ -19,21 +19,24 @@ pub(super) struct Restrictions {
     pub(super) edges: Vec<u32>,
 }
 
-/// Inserts the restrictions. Their edges must be in the database already.
-pub(super) async fn insert(c: &mut SqliteConnection, restrictions: &Restrictions) -> Sql<()> {
+/// Inserts the restrictions in their order in the whole network. Their edges must be in the database already.
+pub(super) async fn insert(c: &mut SqliteConnection, restrictions: &mut [PortionRestriction]) -> Sql<()> {
+    restrictions.sort_by(|a, b| (a.rule, &a.edges).cmp(&(b.rule, &b.edges)));
     let mut bulk = Bulk::new("restriction", 6);
-    for (no, restriction) in (1_i64..).zip(&restrictions.all) {
+    let mut end = 0;
+    for (no, PortionRestriction { restriction, edges, .. }) in (1_i64..).zip(restrictions.iter()) {
         bulk.add(no)?;
         bulk.add(restriction.relation_id)?;
         bulk.add(restriction.kind.name())?;
         bulk.add(restriction.conditional)?;
-        bulk.add(restriction.edges.start)?;
-        bulk.add(restriction.edges.end)?;
+        bulk.add(end)?;
+        end += edges.len() as i64;
+        bulk.add(end)?;
         bulk.end_row(c).await?;
     }
     bulk.finish(c).await?;
     let mut bulk = Bulk::new("restriction_edge", 2);
-    for (position, &edge) in (1_i64..).zip(&restrictions.edges) {
+    for (position, &edge) in (1_i64..).zip(restrictions.iter().flat_map(|restriction| &restriction.edges)) {
         bulk.add(position)?;
         bulk.add(i64::from(edge) + 1)?;
         bulk.end_row(c).await?;

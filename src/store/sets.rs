@@ -1,5 +1,7 @@
 //! A set holds all certificates of one vehicle under one policy. A set is complete or absent. A layer shows each set.
 
+use std::io;
+
 use sqlx::AssertSqlSafe;
 use sqlx::sqlite::SqliteConnection;
 
@@ -17,20 +19,46 @@ type Sql<T> = Result<T, sqlx::Error>;
 const COLUMNS: &str = "certificate_compact (vehicle_no, corridor_no, fid, verdict_no, rsc_mm, rsc_published_mm, \
                        hinge_margin_cdeg, shrink_milli, limiting_s_dm, limiting_at, need_cm)";
 
-/// Checks that the rows, sorted by edge, have every edge exactly once. The error names an edge and the reason.
-pub(super) fn check_complete(rows: &[Packed], edges: u32) -> Result<(), (u32, &'static str)> {
-    for (row, expected) in rows.iter().zip(1..) {
-        if row.fid < expected {
-            return Err((row.fid - 1, "it has two certificates"));
-        }
-        if row.fid > expected {
-            return Err((expected - 1, "it has no certificate"));
+/// Why a set may not be stored: an edge or turn, and what is wrong with it.
+pub(super) type Fault = (u32, &'static str);
+
+/// Checks that the rows, sorted by edge, have every edge exactly once.
+pub(super) fn check_complete(rows: &[Packed], edges: u32) -> Result<(), Fault> {
+    let mut complete = Complete::new(edges);
+    rows.iter().for_each(|row| complete.look_at(row));
+    complete.finish().map(|_| ())
+}
+
+/// Looks at the rows of a set in order, to find whether every edge is there exactly once.
+pub(super) struct Complete {
+    edges: u32,
+    rows: u32,
+    fault: Option<Fault>,
+}
+
+impl Complete {
+    pub(super) fn new(edges: u32) -> Self {
+        Self { edges, rows: 0, fault: None }
+    }
+
+    pub(super) fn look_at(&mut self, row: &Packed) {
+        self.rows += 1;
+        if row.fid != self.rows && self.fault.is_none() {
+            let twice = row.fid < self.rows;
+            let (fid, detail) =
+                if twice { (row.fid, "it has two certificates") } else { (self.rows, "it has no certificate") };
+            self.fault = Some((fid.saturating_sub(1), detail));
         }
     }
-    match rows.len() as u32 {
-        n if n < edges => Err((n, "it has no certificate")),
-        n if n > edges => Err((edges, "the network has no such edge")),
-        _ => Ok(()),
+
+    /// The number of rows.
+    pub(super) fn finish(self) -> Result<u32, Fault> {
+        match self.fault {
+            Some(fault) => Err(fault),
+            None if self.rows < self.edges => Err((self.rows, "it has no certificate")),
+            None if self.rows > self.edges => Err((self.edges, "the network has no such edge")),
+            None => Ok(self.rows),
+        }
     }
 }
 
@@ -38,10 +66,11 @@ pub(super) fn check_complete(rows: &[Packed], edges: u32) -> Result<(), (u32, &'
 pub(super) async fn insert_rows(
     c: &mut SqliteConnection,
     (vehicle_no, corridor): (u32, u8),
-    rows: &[Packed],
+    rows: impl Iterator<Item = io::Result<Packed>>,
 ) -> Sql<()> {
     let mut bulk = Bulk::new(COLUMNS, 11);
     for row in rows {
+        let row = row?;
         bulk.add(vehicle_no)?;
         bulk.add(corridor)?;
         row.add_to(&mut bulk)?;
@@ -64,21 +93,33 @@ pub(super) struct Set<'a> {
 }
 
 impl Set<'_> {
-    /// Inserts the rows and registers their layer. The database must not have the set yet.
-    pub(super) async fn insert(&self, c: &mut SqliteConnection, rows: &[Packed]) -> Sql<()> {
+    /// Inserts the rows of all edges and registers their layer. The database must not have the set yet. After a fault, what was inserted
+    /// must be thrown away.
+    pub(super) async fn insert(
+        &self,
+        c: &mut SqliteConnection,
+        rows: impl Iterator<Item = io::Result<Packed>>,
+        edges: u32,
+    ) -> Sql<Result<(), Fault>> {
         let corridor = corridor_no(self.policy);
+        let mut complete = Complete::new(edges);
+        let rows = rows.inspect(|row| row.iter().for_each(|row| complete.look_at(row)));
         insert_rows(c, (self.vehicle_no, corridor), rows).await?;
+        let rows = match complete.finish() {
+            Ok(rows) => rows,
+            Err(fault) => return Ok(Err(fault)),
+        };
         let layer = self.layer_name(c).await?;
         sqlx::query("INSERT INTO certified_set VALUES (?, ?, ?, ?, ?, ?)")
             .bind(self.vehicle_no)
             .bind(corridor)
             .bind(self.run_id)
-            .bind(rows.len() as i64)
+            .bind(rows)
             .bind(&layer)
             .bind(self.settings)
             .execute(&mut *c)
             .await?;
-        self.register(c, &layer).await
+        self.register(c, &layer).await.map(Ok)
     }
 
     /// The layer's name: `permit_<vehicle>`, followed by the policy unless that is `lane`. A number follows if the name is

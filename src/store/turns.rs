@@ -2,10 +2,13 @@
 //!
 //! A set of certificates of turns is complete or absent, like a set of certificates of edges.
 
+use std::io;
+
+use serde::{Deserialize, Serialize};
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{AssertSqlSafe, Row as _};
 
-use crate::network::{Network, PassageKind};
+use crate::network::{Movement, Network, PassageKind};
 use crate::osm::facts::Policy;
 use crate::rows::{Bounds, StoredPlan, TurnCertificate, TurnCount, TurnRow};
 use crate::turns::{JunctionArea, KerbSource, TurnFacts};
@@ -22,7 +25,7 @@ use super::numbers::{self, centimetres};
 use super::packed::{Packed, need_cm};
 use super::plans;
 use super::query::{Area, polygons};
-use super::sets;
+use super::sets::{self, Complete, Fault};
 use super::styles::{self, Shows};
 
 type Sql<T> = Result<T, sqlx::Error>;
@@ -68,23 +71,39 @@ impl TurnSet<'_> {
     }
 }
 
-/// What the table says of a turn beside its facts.
+/// A turn with all that its row says: it can be written without the network.
+#[derive(Serialize, Deserialize)]
 pub(super) struct Record {
+    /// With indices of the whole network.
+    facts: TurnFacts,
     via_node: i64,
     /// The tagged words of the restriction that forbids the turn.
     restriction: Option<String>,
     passage: Option<PassageKind>,
 }
 
-/// The records of turns, with which they can be written without the network.
-pub(super) fn records(network: &Network, turns: &[TurnFacts]) -> Vec<Record> {
-    let record = |facts: &TurnFacts| {
+/// The place of a turn in the order of the whole network ([`crate::turns::turn_facts`]): passages last, then by node, by edge before and by
+/// edge after. Passages have no node.
+pub(super) type TurnKey = (bool, i64, u32, u32);
+
+impl Record {
+    /// The record of a turn of a network. `number` returns the number of an edge in the whole network.
+    pub(super) fn new(network: &Network, facts: &TurnFacts, number: impl Fn(u32) -> u32) -> Self {
         let via_node = network.edges.get(facts.movement.from as usize).map_or(0, |edge| edge.to_node);
         let forbids = facts.movement.forbidden.and_then(|no| network.restrictions.get(no as usize));
         let restriction = forbids.map(|restriction| restriction.kind.name());
-        Record { via_node, restriction, passage: network.passage_kind(&facts.through) }
-    };
-    turns.iter().map(record).collect()
+        let passage = network.passage_kind(&facts.through);
+        let Movement { from, to, .. } = facts.movement;
+        let movement = Movement { from: number(from), to: number(to), ..facts.movement };
+        let through = facts.through.iter().map(|&edge| number(edge)).collect();
+        Self { facts: TurnFacts { movement, through, ..facts.clone() }, via_node, restriction, passage }
+    }
+
+    pub(super) fn key(&self) -> TurnKey {
+        let Movement { from, to, .. } = self.facts.movement;
+        let passage = !self.facts.through.is_empty();
+        (passage, if passage { 0 } else { self.via_node }, from, to)
+    }
 }
 
 /// The kind of a turn by its angle, such as `left` or `slight_right`. A passage has the kind of its junction.
@@ -103,21 +122,22 @@ fn kind(facts: &TurnFacts, passage: Option<PassageKind>) -> &'static str {
 /// Writes the table `turn` and returns the box around it. Turns keep their order: `fid` is the index + 1.
 pub(super) async fn write(
     c: &mut SqliteConnection,
-    (turns, records): (&[TurnFacts], &[Record]),
+    turns: impl Iterator<Item = io::Result<Record>>,
 ) -> Sql<Option<Bounds>> {
     let mut bulk = Bulk::new("turn", 13);
     let mut bounds: Option<Bounds> = None;
-    for ((fid, facts), Record { via_node, restriction, passage }) in (1_i64..).zip(turns).zip(records) {
+    for (fid, turn) in (1_i64..).zip(turns) {
+        let Record { facts, via_node, restriction, passage } = turn?;
         let (geom, around) = blob::encode(facts.line.iter().copied()).ok_or_else(|| content("a turn has no line"))?;
         bounds = Some(bounds.map_or(around, |b| b.union(around)));
         bulk.add(fid)?;
         bulk.add(facts.id)?;
         bulk.add(i64::from(facts.movement.from) + 1)?;
         bulk.add(i64::from(facts.movement.to) + 1)?;
-        bulk.add(*via_node)?;
+        bulk.add(via_node)?;
         bulk.add(geom)?;
         bulk.add((facts.angle_deg * 10.0).round() / 10.0)?;
-        bulk.add(kind(facts, *passage))?;
+        bulk.add(kind(&facts, passage))?;
         bulk.add(facts.kerb_radius_m)?;
         bulk.add(facts.kerb_source.map(KerbSource::name))?;
         bulk.add(restriction.as_deref())?;
@@ -131,7 +151,11 @@ pub(super) async fn write(
 }
 
 /// Replaces the turns in the database and registers them as a layer.
-pub(super) async fn add(c: &mut SqliteConnection, turns: (&[TurnFacts], &[Record]), time: &str) -> Sql<()> {
+pub(super) async fn add(
+    c: &mut SqliteConnection,
+    turns: impl Iterator<Item = io::Result<Record>>,
+    time: &str,
+) -> Sql<()> {
     for sql in [
         "DELETE FROM turn",
         "DELETE FROM gpkg_geometry_columns WHERE table_name = 'turn'",
@@ -148,10 +172,11 @@ pub(super) async fn add(c: &mut SqliteConnection, turns: (&[TurnFacts], &[Record
 pub(super) async fn insert_rows(
     c: &mut SqliteConnection,
     (vehicle_no, corridor): (u32, u8),
-    rows: &[Packed],
+    rows: impl Iterator<Item = io::Result<Packed>>,
 ) -> Sql<()> {
     let mut bulk = Bulk::new(COLUMNS, 13);
     for row in rows {
+        let row = row?;
         bulk.add(vehicle_no)?;
         bulk.add(corridor)?;
         row.add_to(&mut bulk)?;
@@ -162,19 +187,27 @@ pub(super) async fn insert_rows(
     bulk.finish(c).await
 }
 
-/// Inserts a complete set. The database must not have the set yet.
+/// Inserts a set with the certificates of this number of turns. The database must not have the set yet. After a fault, what was inserted
+/// must be thrown away.
 pub(super) async fn insert(
     c: &mut SqliteConnection,
     (vehicle_no, policy, run_id): (u32, Policy, i64),
-    rows: &[Packed],
-    plans: &mut [StoredPlan],
-) -> Sql<()> {
+    rows: impl Iterator<Item = io::Result<Packed>>,
+    plans: impl Iterator<Item = io::Result<StoredPlan>>,
+    turns: u32,
+) -> Sql<Result<(), Fault>> {
     let corridor = corridor_no(policy);
+    let mut complete = Complete::new(turns);
+    let rows = rows.inspect(|row| row.iter().for_each(|row| complete.look_at(row)));
     insert_rows(c, (vehicle_no, corridor), rows).await?;
     plans::insert(c, plans::TURNS, (vehicle_no, corridor), plans).await?;
+    let rows = match complete.finish() {
+        Ok(rows) => rows,
+        Err(fault) => return Ok(Err(fault)),
+    };
     let set = sqlx::query("INSERT INTO certified_turns VALUES (?, ?, ?, ?)").bind(vehicle_no).bind(corridor);
-    set.bind(run_id).bind(rows.len() as i64).execute(c).await?;
-    Ok(())
+    set.bind(run_id).bind(rows).execute(c).await?;
+    Ok(Ok(()))
 }
 
 /// Removes a set, if there is one.
@@ -263,12 +296,16 @@ pub(super) async fn insert_set(
     .fetch_one(&mut *c)
     .await?;
     if layers == 0 {
-        add(c, (set.facts, &records(set.network, set.facts)), time).await?;
-        junctions::add(c, set.junctions, time).await?;
+        let record = |facts| Ok(Record::new(set.network, facts, |edge| edge));
+        add(c, set.facts.iter().map(record), time).await?;
+        junctions::add(c, set.junctions.iter().cloned().map(Ok), time).await?;
     } else if kept != set.facts.len() as i64 {
         return Err(content(format!("{kept} turns are stored, the network has {}", set.facts.len())));
     }
-    insert(c, (vehicle_no, policy, run_id), &packed.rows, &mut packed.plans).await
+    let (rows, plans) = (packed.rows.iter().copied().map(Ok), plans::sorted(&mut packed.plans));
+    // The rows are known to be complete.
+    let _ = insert(c, (vehicle_no, policy, run_id), rows, plans, packed.rows.len() as u32).await?;
+    Ok(())
 }
 
 async fn fetch(c: &mut SqliteConnection, options: &TurnQuery) -> Sql<Vec<TurnRow>> {

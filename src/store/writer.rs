@@ -2,17 +2,16 @@
 //!
 //! The same calls give the same bytes, in whatever order certificates come. The caller gives the time stamps.
 
-use std::collections::BTreeMap;
-use std::path::Path;
-use std::sync::Arc;
+use std::io;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, SqliteLockingMode, SqliteSynchronous};
 
 use crate::account::AccountRow;
-use crate::network::{Area, Network};
+use crate::network::{Area, Portion};
 use crate::osm::facts::Policy;
-use crate::rows::{Bounds, EdgeCertificate, EdgeMeasure, StoredPlan, TurnCertificate};
+use crate::rows::{EdgeCertificate, EdgeMeasure, StoredPlan, TurnCertificate};
 use crate::settings::Settings;
 use crate::turns::{JunctionArea, TurnFacts};
 use crate::words::{Named, verdict_words};
@@ -23,6 +22,7 @@ use super::database::Database;
 use super::error::{StoreError, content};
 use super::evidence::{self, Register, RegisterState};
 use super::finished::{self, Finished};
+use super::gathered::Gathered;
 use super::junctions;
 use super::map_changes::{self, MapChanges};
 use super::names::{VERDICTS, corridor_no};
@@ -31,14 +31,15 @@ use super::packed::Packed;
 use super::part::{Part, with_suffix};
 use super::plans;
 use super::records::{self, Run, VehicleRecord};
-use super::restrictions::{self, Restrictions};
+use super::restrictions;
 use super::schema::{APPLIED, BEFORE_DATA, MIGRATIONS};
 use super::session::Session;
 use super::sets::{self, Set};
 use super::settings;
-use super::spool::Spool;
+use super::sorter::Sorter;
 use super::styles::{self, Shows};
-use super::turns;
+use super::turns::{self, TurnKey};
+use super::waiting::{SetNo, Waiting};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -55,24 +56,37 @@ pub struct Writer {
     session: Session,
     /// The stored text of the settings, by the policy's number.
     settings: Vec<String>,
-    spool: Spool,
     vehicles: Vec<VehicleRecord>,
     account: Vec<AccountRow>,
-    plans: BTreeMap<(u32, u8), Vec<StoredPlan>>,
-    network: Option<(u32, Option<Bounds>)>,
-    /// Written last, because a later migration creates their table.
-    restrictions: Restrictions,
-    areas: Vec<Area>,
-    /// The turns, and the spool of their certificates. Also written last.
-    turns: Option<(Arc<[TurnFacts]>, Vec<turns::Record>, Spool)>,
-    junctions: Vec<JunctionArea>,
-    turn_plans: BTreeMap<(u32, u8), Vec<StoredPlan>>,
+    network: Gathered,
+    certificates: Waiting,
+    turns: Option<Turns>,
     /// Nothing if there is no older database, or none with measurements that can be read.
     older: Option<Older>,
     /// The register to write.
     evidence: Register,
     map_changes: MapChanges,
     part: Part,
+}
+
+/// Turns and the areas of their junctions, as portions bring them.
+struct Turns {
+    /// By their places in the whole network: the turns with their numbers in the order of their arrival.
+    rows: Sorter<TurnKey, (u32, turns::Record)>,
+    count: u32,
+    /// By node.
+    junctions: Sorter<i64, JunctionArea>,
+    /// By the turns' numbers.
+    certificates: Waiting,
+}
+
+impl Turns {
+    fn create(path: &Path) -> io::Result<Self> {
+        let rows = Sorter::create(with_suffix(path, "-turns"))?;
+        let junctions = Sorter::create(with_suffix(path, "-junctions"))?;
+        let certificates = Waiting::create(&with_suffix(path, "-turn"))?;
+        Ok(Self { rows, count: 0, junctions, certificates })
+    }
 }
 
 impl Database {
@@ -118,20 +132,15 @@ impl Database {
             add_words(c).await?;
             settings::keep(c, &written).await
         })?;
-        let spool = Spool::create(with_suffix(&part.path, "-spool"))?;
+        let at = |e| StoreError::io(path, e);
         Ok(Writer {
             session,
             settings: by_policy,
-            spool,
             vehicles: Vec::new(),
             account: Vec::new(),
-            plans: BTreeMap::new(),
-            network: None,
-            restrictions: Restrictions::default(),
-            areas: Vec::new(),
+            network: Gathered::create(&part.path).map_err(at)?,
+            certificates: Waiting::create(&part.path).map_err(at)?,
             turns: None,
-            junctions: Vec::new(),
-            turn_plans: BTreeMap::new(),
             older,
             evidence: Register::default(),
             map_changes: MapChanges::default(),
@@ -178,15 +187,15 @@ impl Writer {
         self.map_changes = changes;
     }
 
-    /// Writes the network; call it once. `measures` has one entry per edge, or is empty. The call may follow those of the
-    /// certificates, because the measures are known only then.
-    pub fn network(&mut self, network: &Network, measures: &[EdgeMeasure]) -> Result<(), StoreError> {
-        let bounds = self.session.run(async |c| network_write::write(c, network, measures).await)?;
-        self.network = Some((network.edges.len() as u32, bounds));
-        self.restrictions =
-            Restrictions { all: network.restrictions.clone(), edges: network.restriction_edges.clone() };
-        self.areas = network.areas.all().to_vec();
-        Ok(())
+    /// Adds what a portion owns of the network. `measures` has one entry per edge of the portion's network, or is empty. The call may
+    /// follow those of the certificates, because the measures are known only then.
+    pub fn portion(&mut self, portion: &Portion, measures: &[EdgeMeasure]) -> Result<(), StoreError> {
+        self.network.add(portion, measures).map_err(|e| StoreError::io(&self.session.path, e))
+    }
+
+    /// Adds the areas of the whole network.
+    pub fn areas(&mut self, areas: Vec<Area>) {
+        self.network.areas = areas;
     }
 
     /// Adds a vehicle. Ids must be distinct.
@@ -195,7 +204,7 @@ impl Writer {
         VehicleNo(self.vehicles.len() as u32)
     }
 
-    /// Adds the certificate of one edge; edges may come in any order. A vehicle and policy with any certificate must get
+    /// Adds the certificate of one edge, given by its index in the whole network; edges may come in any order. A vehicle and policy with any certificate must get
     /// exactly one for every edge. Refuses a `safe` certificate whose numbers do not support it.
     pub fn certificate(
         &mut self,
@@ -209,39 +218,53 @@ impl Writer {
     }
 
     pub(super) fn push(&mut self, vehicle: VehicleNo, policy: Policy, packed: Packed) -> Result<(), StoreError> {
-        self.spool.push((vehicle.0, corridor_no(policy)), packed, &self.session.path)
+        let waiting = self.certificates.certificate((vehicle.0, corridor_no(policy)), packed);
+        waiting.map_err(|e| StoreError::io(&self.session.path, e))
     }
 
-    /// Adds the plans of strokes whose plan is not the centreline, in any order, at most one per stroke.
-    pub fn plans(&mut self, vehicle: VehicleNo, policy: Policy, plans: Vec<StoredPlan>) {
-        self.plans.entry((vehicle.0, corridor_no(policy))).or_default().extend(plans);
+    /// Adds the plan of a stroke whose plan is not the centreline, by the index of its first edge in the whole network. A stroke has at most
+    /// one.
+    pub fn plan(&mut self, vehicle: VehicleNo, policy: Policy, plan: &StoredPlan) -> Result<(), StoreError> {
+        let waiting = self.certificates.plan((vehicle.0, corridor_no(policy)), plan);
+        waiting.map_err(|e| StoreError::io(&self.session.path, e))
     }
 
-    /// Adds the turns of the network and the areas of its junctions. Call it once, before adding the turns' certificates.
+    /// Adds turns that a portion owns, and the areas of junctions in it. Returns the number of the first turn; the others follow it. Their
+    /// certificates come by these numbers.
     pub fn turns(
         &mut self,
-        network: &Network,
-        facts: Arc<[TurnFacts]>,
-        junctions: Vec<JunctionArea>,
-    ) -> Result<(), StoreError> {
-        let spool = Spool::create(with_suffix(&self.part.path, "-turns"))?;
-        let records = turns::records(network, &facts);
-        self.turns = Some((facts, records, spool));
-        self.junctions = junctions;
-        Ok(())
+        portion: &Portion,
+        facts: &[TurnFacts],
+        junctions: &[JunctionArea],
+    ) -> Result<u32, StoreError> {
+        let at = |e| StoreError::io(&self.session.path, e);
+        let turns = match &mut self.turns {
+            Some(turns) => turns,
+            none => none.insert(Turns::create(&self.part.path).map_err(at)?),
+        };
+        let first = turns.count;
+        for facts in facts {
+            let record = turns::Record::new(&portion.network, facts, |edge| portion.edge(edge));
+            turns.rows.push(record.key(), &(turns.count, record)).map_err(at)?;
+            turns.count += 1;
+        }
+        junctions.iter().try_for_each(|area| turns.junctions.push(area.node, area)).map_err(at)?;
+        Ok(first)
     }
 
-    /// Adds the certificate of one turn; turns may come in any order. A vehicle and policy with any certificate of a turn must
-    /// get exactly one for every turn.
+    /// Adds the certificate of one turn; turns may come in any order. `first` is what [`Writer::turns`] returned for its portion. A vehicle
+    /// and policy with any certificate of a turn must get exactly one for every turn.
     pub fn turn_certificate(
         &mut self,
         vehicle: VehicleNo,
         policy: Policy,
+        first: u32,
         certificate: &TurnCertificate,
     ) -> Result<(), StoreError> {
         let packed =
             certificate.pack().map_err(|detail| unsound(&self.vehicles, vehicle.0, certificate.turn, detail))?;
-        self.push_turn(vehicle, policy, packed, certificate.plan.clone())
+        let plan = certificate.plan.clone().map(|plan| StoredPlan { at: plan.at + first, ..plan });
+        self.push_turn(vehicle, policy, Packed { fid: packed.fid + first, ..packed }, plan)
     }
 
     pub(super) fn push_turn(
@@ -251,10 +274,13 @@ impl Writer {
         packed: Packed,
         plan: Option<StoredPlan>,
     ) -> Result<(), StoreError> {
-        let Some((.., spool)) = &mut self.turns else { return Ok(()) };
+        let Some(turns) = &mut self.turns else { return Ok(()) };
         let set = (vehicle.0, corridor_no(policy));
-        self.turn_plans.entry(set).or_default().extend(plan);
-        spool.push(set, packed, &self.session.path)
+        let mut waiting = turns.certificates.certificate(set, packed);
+        if let Some(plan) = plan {
+            waiting = waiting.and_then(|()| turns.certificates.plan(set, &plan));
+        }
+        waiting.map_err(|e| StoreError::io(&self.session.path, e))
     }
 
     /// Adds to the account of the run.
@@ -264,12 +290,12 @@ impl Writer {
 
     /// Writes what is left, checks the file, and puts it in place of the old one.
     pub fn finish(mut self, run: &Run) -> Result<(), StoreError> {
-        let Some((edges, bounds)) = self.network else {
-            return Err(StoreError::NotThere {
-                path: self.part.target.clone(),
-                detail: "no network was written".into(),
-            });
-        };
+        let path = self.session.path.clone();
+        let at = |e| StoreError::io(&path, e);
+        let Gathered { roads, edges, strokes, mut restrictions, areas } = self.network;
+        let scratch = &self.part.path;
+        let network = self.session.run(async |c| network_write::write(c, (roads, edges, strokes), scratch).await)?;
+        let network_write::Written { edges, bounds } = network;
         let (vehicles, account) = (&self.vehicles, &self.account);
         let run_id = self.session.run(async |c| {
             sets::add_layer(c, "edge", "Directed edges of the road network", &run.finished, bounds).await?;
@@ -279,32 +305,35 @@ impl Writer {
             }
             records::add_run(c, run, account).await
         })?;
-        while let Some(((vehicle_no, corridor), rows)) = self.spool.take_first(&self.session.path)? {
-            sets::check_complete(&rows, edges)
-                .map_err(|(edge, detail)| unsound(&self.vehicles, vehicle_no, edge, detail.to_owned()))?;
+        let (mut certificates, mut all_plans) = self.certificates.sorted().map_err(at)?;
+        while let Some((vehicle_no, corridor)) = certificates.next_set().map_err(at)? {
+            let rows = certificates.of((vehicle_no, corridor));
+            let known = self.vehicles.get(vehicle_no as usize - 1).zip(self.settings.get(usize::from(corridor)));
+            let Some((vehicle, settings)) = known else { continue };
             let policy = Policy::ALL[usize::from(corridor)];
-            let Some(vehicle) = self.vehicles.get(vehicle_no as usize - 1) else { continue };
             let (vehicle_id, vehicle_name) = (&vehicle.id, &vehicle.name);
-            let Some(settings) = self.settings.get(usize::from(corridor)) else { continue };
             let set = Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished, settings };
-            self.session.run(async |c| set.insert(c, &rows).await)?;
+            let inserted = self.session.run(async |c| set.insert(c, rows, edges).await)?;
+            inserted.map_err(|(edge, detail)| unsound(&self.vehicles, vehicle_no, edge, detail.to_owned()))?;
         }
-        let (all_plans, all_restrictions, all_areas) = (&mut self.plans, &self.restrictions, &self.areas);
         let (register, map_changes) = (&self.evidence, &self.map_changes);
         self.session.run(async |c| {
             sqlx::query("COMMIT").execute(&mut *c).await?;
             migrate(c, None).await?;
             sqlx::query("BEGIN").execute(&mut *c).await?;
-            restrictions::insert(c, all_restrictions).await?;
-            areas::insert(c, all_areas).await?;
+            restrictions::insert(c, &mut restrictions).await?;
+            areas::insert(c, &areas).await?;
             evidence::write(c, register, &run.finished).await?;
             map_changes::insert(c, map_changes).await?;
-            for (&(vehicle_no, corridor), plans) in all_plans {
-                plans::insert(c, plans::STROKES, (vehicle_no, corridor), plans).await?;
+            while let Some(set) = all_plans.next_set()? {
+                plans::insert(c, plans::STROKES, set, all_plans.of(set)).await?;
             }
             sqlx::query("COMMIT").execute(c).await
         })?;
-        self.finish_turns(run, run_id)?;
+        if let Some(turns) = self.turns {
+            let finishing = FinishTurns { session: &mut self.session, path: &self.part.path, vehicles: &self.vehicles };
+            finishing.run(turns, run, run_id)?;
+        }
         self.session.run(async |c| contents::add_tables(c, &run.finished).await)?;
         self.session.run(async |c| check(c).await)?;
         self.session.close()?;
@@ -314,24 +343,43 @@ impl Writer {
     }
 }
 
-impl Writer {
-    /// Writes turns, their layer and their certificates.
-    fn finish_turns(&mut self, run: &Run, run_id: i64) -> Result<(), StoreError> {
-        let Some((facts, records, mut spool)) = self.turns.take() else { return Ok(()) };
-        let junctions = std::mem::take(&mut self.junctions);
-        self.session.run(async |c| {
+/// Writes turns, their layer and their certificates.
+struct FinishTurns<'w> {
+    session: &'w mut Session,
+    path: &'w PathBuf,
+    vehicles: &'w [VehicleRecord],
+}
+
+impl FinishTurns<'_> {
+    fn run(self, turns: Turns, run: &Run, run_id: i64) -> Result<(), StoreError> {
+        let Self { session, path, vehicles } = self;
+        let name = session.path.clone();
+        let at = |e| StoreError::io(&name, e);
+        // By a turn's number in the order of arrival: its index in the order of the whole network.
+        let mut numbers = vec![0_u32; turns.count as usize];
+        let rows = turns.rows.sorted().map_err(at)?.enumerate().map(|(index, row)| {
+            let (_, (arrival, record)) = row?;
+            numbers[arrival as usize] = index as u32;
+            Ok(record)
+        });
+        let junctions = turns.junctions.sorted().map_err(at)?.map(|row| row.map(|(_, area)| area));
+        session.run(async |c| {
             sqlx::query("BEGIN").execute(&mut *c).await?;
-            turns::add(c, (&facts, &records), &run.finished).await?;
-            junctions::add(c, &junctions, &run.finished).await
+            turns::add(c, rows, &run.finished).await?;
+            junctions::add(c, junctions, &run.finished).await
         })?;
-        while let Some(((vehicle_no, corridor), rows)) = spool.take_first(&self.session.path)? {
-            sets::check_complete(&rows, facts.len() as u32)
-                .map_err(|(turn, detail)| unsound(&self.vehicles, vehicle_no, turn, detail.to_owned()))?;
-            let policy = Policy::ALL[usize::from(corridor)];
-            let mut plans = self.turn_plans.remove(&(vehicle_no, corridor)).unwrap_or_default();
-            self.session.run(async |c| turns::insert(c, (vehicle_no, policy, run_id), &rows, &mut plans).await)?;
+        let in_order = numbers.is_sorted();
+        let waiting = turns.certificates;
+        let waiting = if in_order { Ok(waiting) } else { waiting.renumbered(&with_suffix(path, "-ordered"), &numbers) };
+        let (mut certificates, mut plans) = waiting.and_then(Waiting::sorted).map_err(at)?;
+        while let Some((vehicle_no, corridor)) = certificates.next_set().map_err(at)? {
+            let set: SetNo = (vehicle_no, corridor);
+            let of = (vehicle_no, Policy::ALL[usize::from(corridor)], run_id);
+            let (rows, plans) = (certificates.of(set), plans.of(set));
+            let inserted = session.run(async |c| turns::insert(c, of, rows, plans, turns.count).await)?;
+            inserted.map_err(|(turn, detail)| unsound(vehicles, vehicle_no, turn, detail.to_owned()))?;
         }
-        self.session.run(async |c| sqlx::query("COMMIT").execute(c).await)?;
+        session.run(async |c| sqlx::query("COMMIT").execute(c).await)?;
         Ok(())
     }
 }

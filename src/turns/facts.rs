@@ -13,7 +13,7 @@ use crate::osm::LonLat;
 const LINE_M: f64 = 12.0;
 
 /// Origin of a corner's kerb.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum KerbSource {
     /// A radius by class and country.
     Assumed,
@@ -36,7 +36,7 @@ impl KerbSource {
 }
 
 /// A turn as mapped.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct TurnFacts {
     /// Stable id: the same edges give the same id in the next extract. Positive.
     pub id: i64,

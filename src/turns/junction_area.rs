@@ -25,7 +25,7 @@ const MOST_UNIONS: usize = 4;
 pub type Ring = Vec<LonLat>;
 
 /// The area of a junction.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct JunctionArea {
     /// The node in OpenStreetMap.
     pub node: i64,
@@ -40,13 +40,21 @@ pub struct JunctionArea {
 /// The nodes at which turns begin or end, sorted.
 #[must_use]
 pub fn junction_nodes(network: &Network, turns: &[TurnFacts]) -> Vec<i64> {
+    junction_places(network, turns).into_iter().map(|(node, _)| node).collect()
+}
+
+/// The nodes at which turns begin or end, with their positions, sorted by node.
+#[must_use]
+pub fn junction_places(network: &Network, turns: &[TurnFacts]) -> Vec<(i64, LonLat)> {
     let edge = |index: u32| network.edges.get(index as usize);
     let ends = |turn: &TurnFacts| {
-        [edge(turn.movement.from).map(|edge| edge.to_node), edge(turn.movement.to).map(|edge| edge.from_node)]
+        let first = edge(turn.movement.from).and_then(|edge| Some((edge.to_node, network.positions(edge).next_back()?)));
+        let last = edge(turn.movement.to).and_then(|edge| Some((edge.from_node, network.positions(edge).next()?)));
+        [first, last]
     };
-    let mut nodes: Vec<i64> = turns.iter().flat_map(ends).flatten().collect();
+    let mut nodes: Vec<(i64, LonLat)> = turns.iter().flat_map(ends).flatten().collect();
     nodes.sort_unstable();
-    nodes.dedup();
+    nodes.dedup_by_key(|(node, _)| *node);
     nodes
 }
 

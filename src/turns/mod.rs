@@ -59,7 +59,7 @@ pub use arm::StrokeLine;
 pub use corridors::TurnCorridors;
 pub use facts::{KerbSource, TurnFacts, turn_facts};
 pub(crate) use islands::cut_out_of_route;
-pub use junction_area::{JunctionArea, Ring, junction_areas, junction_nodes};
+pub use junction_area::{JunctionArea, Ring, junction_areas, junction_nodes, junction_places};
 pub use kerbs::Kerbs;
 pub use planner::{Planned, Planner};
 

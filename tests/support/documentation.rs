@@ -17,6 +17,7 @@ pub fn demo_region(turns: bool) -> (tempfile::TempDir, std::path::PathBuf) {
             turns,
             ..netcert::settings::Settings::default()
         },
+        edges_at_once: netcert::pipeline::EDGES_AT_ONCE,
         parameters: "{}".parse().expect("an object"),
         now: &|| "2026-01-01T00:00:00.000Z".to_owned(),
     };

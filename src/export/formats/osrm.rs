@@ -14,7 +14,7 @@ use osmpbfreader::osmformat::PrimitiveBlock;
 use rustc_hash::FxHashSet;
 
 use super::{Options, Target};
-use crate::export::sorter::Scratch;
+use crate::scratch::Scratch;
 use crate::export::ways::{OnWay, Piece, WayEdges, ids};
 use crate::export::{ExportError, Layout, Place, Sink, Source};
 use crate::osm::pbf::copy::Contents;

@@ -5,7 +5,8 @@
 
 use std::io::{self, Write};
 
-use crate::export::sorter::{Scratch, Sorted, Sorter};
+use crate::export::sorter::{Sorted, Sorter};
+use crate::scratch::Scratch;
 use crate::export::{ExportError, Place};
 use crate::rows::Bounds;
 

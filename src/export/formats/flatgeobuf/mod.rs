@@ -15,7 +15,7 @@ use flatgeobuf::{
 
 use super::layers::{Row, asked};
 use super::{Layer, Options, Target, one_file_a_layer};
-use crate::export::sorter::Scratch;
+use crate::scratch::Scratch;
 use crate::export::{ExportError, Layout, Place, Sink, Source};
 use crate::rows::Bounds;
 use crate::rows::{Cell, Kind};

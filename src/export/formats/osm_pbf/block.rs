@@ -7,7 +7,7 @@ use protobuf::Message;
 use rustc_hash::FxHashMap;
 
 use crate::export::ExportError;
-use crate::export::sorter::Scratch;
+use crate::scratch::Scratch;
 use crate::osm::pbf::write::{frame, zlib_blob};
 
 /// The greatest number of objects in a block, as in other writers.

@@ -3,7 +3,7 @@
 
 use std::io::Write as _;
 
-use crate::export::sorter::Scratch;
+use crate::scratch::Scratch;
 use crate::export::{ExportError, Source};
 use crate::osm::facts::Direction;
 use crate::rows::EdgeStep;

@@ -1,0 +1,211 @@
+//! Certifies the roads of a new database, portion by portion: all strokes, then all turns.
+
+use std::sync::Mutex;
+use std::time::Instant;
+
+use crate::account::AccountRow;
+use crate::certify::{Job, Outcome, TurnJob, TurnOutcome, by_cell, make_strokes, make_turns};
+use crate::network::Portion;
+use crate::reporter::Reporter;
+use crate::rows::{EdgeCertificate, EdgeMeasure, StoredPlan, StrokeMade, TurnCertificate, TurnMade};
+use crate::settings::Settings;
+use crate::stet::Model;
+use crate::store::{Finished, Kept, Stage, VehicleNo, Writer};
+use crate::turns::{TurnFacts, junction_areas, junction_places, turn_facts};
+use crate::verdict::{UnknownReason, Verdict};
+
+use super::making::{EdgeVerdicts, locked};
+use super::reuse::Earlier;
+use super::roads::Roads;
+use super::share::Share;
+use super::{RunError, Summary};
+
+/// How to certify, and for whom.
+pub(super) struct Certifying<'a> {
+    pub(super) settings: &'a Settings,
+    pub(super) models: &'a [Model],
+    /// The numbers of the vehicles in the new database.
+    pub(super) numbers: &'a [VehicleNo],
+    /// What an earlier database has; only if the roads are whole.
+    pub(super) earlier: Option<&'a Earlier>,
+    pub(super) reporter: &'a dyn Reporter,
+}
+
+impl Certifying<'_> {
+    /// Certifies all edges. Takes what an earlier database or an earlier run has. Returns the verdicts, and the account.
+    pub(super) fn strokes(
+        &self,
+        roads: &mut Roads<'_>,
+        writer: &mut Writer,
+        finished: &mut Finished,
+        summary: &mut Summary,
+    ) -> Result<(EdgeVerdicts, Vec<AccountRow>), RunError> {
+        let clock = Instant::now();
+        let mut verdicts = EdgeVerdicts::new(roads.edges() as usize, self.models, self.settings);
+        let mut outcome = Outcome::default();
+        self.reporter.begin("certificates", u64::from(roads.edges()));
+        let mut done = 0;
+        for number in 0..roads.portions() {
+            let portion = roads.portion(number);
+            outcome.go_on(&portion.network);
+            let own = portion.edges().count() as u64;
+            let share = Share::new(self.reporter, done, own);
+            self.strokes_of((number, portion), writer, finished, (&mut outcome, &mut verdicts), &share)?;
+            for (vehicle, plan) in std::mem::take(&mut outcome.plans) {
+                let plan = StoredPlan { at: portion.edge(plan.at), ..plan };
+                writer.plan(self.numbers[vehicle], self.settings.policy, &plan)?;
+            }
+            writer.portion(portion, &outcome.measures)?;
+            done += own;
+            roads.count();
+        }
+        self.reporter.end();
+        summary.stage("certificates", clock, outcome.certificates(), "certificates");
+        Ok((verdicts, outcome.rows()))
+    }
+
+    fn strokes_of(
+        &self,
+        (number, portion): (usize, &Portion),
+        writer: &mut Writer,
+        finished: &mut Finished,
+        (outcome, verdicts): (&mut Outcome, &mut EdgeVerdicts),
+        share: &Share<'_>,
+    ) -> Result<(), RunError> {
+        let (network, policy) = (&portion.network, self.settings.policy);
+        let job = Job { network, models: self.models, settings: self.settings };
+        let own = by_cell(network).into_iter().filter(|&stroke| portion.owns_stroke(stroke)).collect();
+        let mut left = Left::new(own, network.strokes.len());
+        if let Some(earlier) = self.earlier {
+            for stroke in earlier.strokes(network).filter(|&stroke| left.take(stroke)) {
+                for (edge, measure, kept) in earlier.edges(network, stroke) {
+                    outcome.edge(edge, measure, without_corridor(measure, &kept));
+                    for (vehicle, kept) in kept.into_iter().enumerate() {
+                        outcome.count(kept.verdict());
+                        verdicts.set(vehicle, edge, kept.verdict());
+                        writer.kept(self.numbers[vehicle], policy, edge, kept)?;
+                    }
+                }
+                outcome.plans.extend(earlier.plans(network, stroke));
+            }
+        }
+        let mut sink = |vehicle: usize, certificate: &EdgeCertificate| {
+            let edge = portion.edge(certificate.edge);
+            verdicts.set(vehicle, edge, certificate.conclusion.verdict);
+            writer.certificate(self.numbers[vehicle], policy, &EdgeCertificate { edge, ..certificate.clone() })
+        };
+        let part = (Stage::Strokes, number as u32);
+        finished.each(part, |batch: Vec<StrokeMade>| {
+            batch.into_iter().filter(|made| left.take(made.stroke)).try_for_each(|made| outcome.add(made, &mut sink))
+        })?;
+        let finished = Mutex::new(finished);
+        let keep = |made: &[StrokeMade]| locked(&finished).keep(part, made);
+        make_strokes(&job, &left.all(), share, &keep, |made| outcome.add(made, &mut sink))?;
+        Ok(())
+    }
+
+    /// Certifies all turns. Takes what an earlier database or an earlier run has.
+    pub(super) fn turns(
+        &self,
+        roads: &mut Roads<'_>,
+        verdicts: &EdgeVerdicts,
+        writer: &mut Writer,
+        finished: &mut Finished,
+        summary: &mut Summary,
+    ) -> Result<(), RunError> {
+        let clock = Instant::now();
+        let mut outcome = TurnOutcome::default();
+        let (portions, edges) = (roads.portions(), u64::from(roads.edges()));
+        self.reporter.begin("turns", edges);
+        let mut done = 0;
+        // From the last portion backwards, because that one is still there.
+        for number in (0..portions).rev() {
+            let portion = roads.portion(number);
+            let own = portion.edges().count() as u64;
+            let share = Share::new(self.reporter, done, own);
+            self.turns_of((number, portion), &verdicts.of(portion), writer, finished, &mut outcome, &share)?;
+            done += own;
+        }
+        self.reporter.end();
+        summary.account.extend(outcome.rows());
+        summary.stage("turns", clock, outcome.certificates(), "turn certificates");
+        Ok(())
+    }
+
+    fn turns_of(
+        &self,
+        (number, portion): (usize, &Portion),
+        verdicts: &EdgeVerdicts,
+        writer: &mut Writer,
+        finished: &mut Finished,
+        outcome: &mut TurnOutcome,
+        share: &Share<'_>,
+    ) -> Result<(), RunError> {
+        let (network, policy) = (&portion.network, self.settings.policy);
+        let mut turns: Vec<TurnFacts> = turn_facts(network, &self.settings.kerbs);
+        let places = junction_places(network, &turns).into_iter().filter(|&(_, place)| portion.has(place));
+        let nodes: Vec<i64> = places.map(|(node, _)| node).collect();
+        let junctions = junction_areas(network, &nodes, &self.settings.turn_params());
+        turns.retain(|turn| portion.owns(turn.movement.from));
+        let first = writer.turns(portion, &turns, &junctions)?;
+        drop(junctions);
+        let edges = &verdicts.0[..];
+        let job = TurnJob { network, turns: &turns, models: self.models, edges, settings: self.settings };
+        let mut left = Left::new((0..).take(turns.len()).collect(), turns.len());
+        if let Some(earlier) = self.earlier {
+            for (turn, kept) in earlier.turns(network, &turns) {
+                if left.take(turn) {
+                    outcome.keep(kept.iter().map(|(kept, _)| kept.verdict()));
+                    for (&number, (kept, plan)) in self.numbers.iter().zip(kept) {
+                        writer.kept_turn(number, policy, (turn, kept), plan)?;
+                    }
+                }
+            }
+        }
+        let mut sink = |vehicle: usize, certificate: &TurnCertificate| {
+            writer.turn_certificate(self.numbers[vehicle], policy, first, certificate)
+        };
+        let part = (Stage::Turns, number as u32);
+        finished.each(part, |batch: Vec<TurnMade>| {
+            batch.into_iter().filter(|made| left.take(made.turn)).try_for_each(|made| outcome.add(&made, &mut sink))
+        })?;
+        let finished = Mutex::new(finished);
+        let keep = |made: &TurnMade| locked(&finished).keep(part, std::slice::from_ref(made));
+        make_turns(&job, &left.all(), share, &keep, |made| outcome.add(&made, &mut sink))?;
+        Ok(())
+    }
+}
+
+/// Why an edge that is taken over has no corridor, as far as its rows tell.
+fn without_corridor(measure: EdgeMeasure, kept: &[&Kept]) -> Option<UnknownReason> {
+    let reason = |kept: &&Kept| match kept.verdict() {
+        Verdict::Unknown(reason @ (UnknownReason::Geometry | UnknownReason::Width)) => Some(reason),
+        _ => None,
+    };
+    let missing = measure == EdgeMeasure::default();
+    kept.iter().find_map(reason).or(missing.then_some(UnknownReason::Geometry))
+}
+
+/// What is not finished yet: indices in the order in which they are to be done.
+struct Left {
+    order: Vec<u32>,
+    finished: Vec<bool>,
+}
+
+impl Left {
+    /// `order`: what is to be done, as indices below `count`.
+    fn new(order: Vec<u32>, count: usize) -> Self {
+        let mut finished = vec![true; count];
+        order.iter().for_each(|&index| finished[index as usize] = false);
+        Self { order, finished }
+    }
+
+    /// Notes that an index is finished. `false` if it was before, or is none.
+    fn take(&mut self, index: u32) -> bool {
+        self.finished.get_mut(index as usize).is_some_and(|finished| !std::mem::replace(finished, true))
+    }
+
+    fn all(self) -> Vec<u32> {
+        self.order.into_iter().filter(|&index| !self.finished[index as usize]).collect()
+    }
+}

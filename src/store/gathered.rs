@@ -1,0 +1,110 @@
+//! Rows of the network as portions bring them, kept outside memory until they can be written in the order of the whole network.
+
+use std::io;
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use crate::network::{Area, Edge, Narrowing, Portion, PortionRestriction, Road};
+use crate::osm::LonLat;
+use crate::osm::facts::CrossSection;
+use crate::rows::EdgeMeasure;
+
+use super::part::with_suffix;
+use super::sorter::Sorter;
+
+/// A road with its texts.
+#[derive(Serialize, Deserialize)]
+pub(super) struct RoadRow {
+    pub(super) road: Road,
+    pub(super) name: Option<String>,
+    pub(super) reference: Option<String>,
+}
+
+/// A directed edge. Ranges of `edge` mean nothing here.
+#[derive(Serialize, Deserialize)]
+pub(super) struct EdgeRow {
+    pub(super) edge: Edge,
+    /// The edge's road, as an index into the whole network.
+    pub(super) road: u32,
+    /// Positions of its way before the edge's shape.
+    pub(super) place: u32,
+    /// Positions in way order.
+    pub(super) shape: Vec<LonLat>,
+    pub(super) narrowings: Vec<Narrowing>,
+    pub(super) section: CrossSection,
+    pub(super) measure: EdgeMeasure,
+}
+
+/// A stroke: edges of the whole network, in driving order.
+#[derive(Serialize, Deserialize)]
+pub(super) struct StrokeRow {
+    pub(super) approach: Vec<u32>,
+    pub(super) edges: Vec<u32>,
+    pub(super) closed: bool,
+}
+
+/// The rows of a network by their indices in it; strokes by their first edge.
+pub(super) struct Gathered {
+    pub(super) roads: Sorter<u32, RoadRow>,
+    pub(super) edges: Sorter<u32, EdgeRow>,
+    pub(super) strokes: Sorter<u32, StrokeRow>,
+    pub(super) restrictions: Vec<PortionRestriction>,
+    pub(super) areas: Vec<Area>,
+}
+
+impl Gathered {
+    /// No rows yet. Temporary files are made beside `path`.
+    pub(super) fn create(path: &Path) -> io::Result<Self> {
+        Ok(Self {
+            roads: Sorter::create(with_suffix(path, "-roads"))?,
+            edges: Sorter::create(with_suffix(path, "-edges"))?,
+            strokes: Sorter::create(with_suffix(path, "-strokes"))?,
+            restrictions: Vec::new(),
+            areas: Vec::new(),
+        })
+    }
+
+    /// Adds what a portion owns. `measures` has one entry per edge of its network, or is empty.
+    pub(super) fn add(&mut self, portion: &Portion, measures: &[EdgeMeasure]) -> io::Result<()> {
+        let network = &portion.network;
+        for of_road in network.edges.chunk_by(|a, b| a.road == b.road) {
+            let Some(first) = of_road.first() else { continue };
+            for edge in of_road {
+                let index = network.edges.element_offset(edge).unwrap_or_default() as u32;
+                if !portion.owns(index) {
+                    continue;
+                }
+                if std::ptr::eq(edge, first) {
+                    let text = |id: Option<_>| id.map(|id| network.strings.text(id).to_owned());
+                    let road = network.road(edge);
+                    let row = RoadRow { road: road.clone(), name: text(road.name), reference: text(road.reference) };
+                    self.roads.push(portion.road(edge.road), &row)?;
+                }
+                let row = EdgeRow {
+                    edge: edge.clone(),
+                    road: portion.road(edge.road),
+                    place: edge.shape.start - first.shape.start,
+                    shape: network.shapes[edge.shape.start as usize..edge.shape.end as usize].to_vec(),
+                    narrowings: network.narrowings[edge.narrowings.start as usize..edge.narrowings.end as usize].to_vec(),
+                    section: network.section(edge),
+                    measure: measures.get(index as usize).copied().unwrap_or_default(),
+                };
+                self.edges.push(portion.edge(index), &row)?;
+            }
+        }
+        for stroke in portion.strokes() {
+            let stroke = &network.strokes[stroke as usize];
+            let edges = |range: &std::ops::Range<u32>| -> Vec<u32> {
+                let edges = &network.stroke_edges[range.start as usize..range.end as usize];
+                edges.iter().map(|&edge| portion.edge(edge)).collect()
+            };
+            let row = StrokeRow { approach: edges(&stroke.approach), edges: edges(&stroke.edges), closed: stroke.closed };
+            if let Some(&first) = row.edges.first() {
+                self.strokes.push(first, &row)?;
+            }
+        }
+        self.restrictions.extend(portion.restrictions());
+        Ok(())
+    }
+}
