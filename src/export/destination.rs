@@ -11,9 +11,9 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use super::ExportError;
-use crate::scratch::Scratch;
 use super::unfinished::{self, Unfinished};
 use crate::output_lock::{self, OutputLock};
+use crate::scratch::Scratch;
 
 /// The file that marks a folder as an export.
 const MARK: &str = "netcert.json";

@@ -144,7 +144,9 @@ fn near_roads(areas: &Areas, network: &Network) -> FxHashSet<u32> {
     for edge in &network.edges {
         let line: Vec<LonLat> = network.positions(edge).collect();
         for segment in line.windows(2) {
-            near.extend(areas.islands_in(Extent::of(segment.iter().copied()).map(|extent| extent.wider_by(NEAR_ROAD_M))));
+            near.extend(
+                areas.islands_in(Extent::of(segment.iter().copied()).map(|extent| extent.wider_by(NEAR_ROAD_M))),
+            );
         }
     }
     near

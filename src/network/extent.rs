@@ -15,12 +15,8 @@ pub(super) struct Extent {
 impl Extent {
     /// The extent of some places. `None` if there are none.
     pub(super) fn of(places: impl Iterator<Item = LonLat>) -> Option<Self> {
-        let at = |place: LonLat| Self {
-            west: place.lon_e7,
-            south: place.lat_e7,
-            east: place.lon_e7,
-            north: place.lat_e7,
-        };
+        let at =
+            |place: LonLat| Self { west: place.lon_e7, south: place.lat_e7, east: place.lon_e7, north: place.lat_e7 };
         places.map(at).reduce(|a, b| Self {
             west: a.west.min(b.west),
             south: a.south.min(b.south),

@@ -73,9 +73,7 @@ impl Making<'_> {
             identity.add(&record(&model.vehicle)?.definition);
         }
         let earlier = match (earlier, roads.whole()) {
-            (Some(earlier), Some(network)) => {
-                Earlier::read(earlier, network, &models, &self, reporter, &mut summary)?
-            }
+            (Some(earlier), Some(network)) => Earlier::read(earlier, network, &models, &self, reporter, &mut summary)?,
             _ => None,
         };
         let mut finished = writer.finished(&identity.finish())?;
@@ -95,8 +93,7 @@ impl Making<'_> {
             earlier: earlier.as_ref(),
             reporter,
         };
-        let (verdicts, of_strokes) =
-            certifying.strokes(&mut roads, &mut writer, &mut finished, &mut summary)?;
+        let (verdicts, of_strokes) = certifying.strokes(&mut roads, &mut writer, &mut finished, &mut summary)?;
         summary.account.extend(roads.account());
         summary.account.append(&mut of_measurements);
         summary.account.extend(of_strokes);

@@ -45,7 +45,8 @@ impl Finished {
     /// Opens the file at `path`, or begins it. `identity` stands for everything on which the work depends.
     pub(super) fn open(path: PathBuf, identity: &[u8; 32]) -> Result<Self, StoreError> {
         let opened = OpenOptions::new().read(true).write(true).create(true).truncate(false).open(&path);
-        let mut finished = Self { file: opened.map_err(|e| StoreError::io(&path, e))?, path, length: 0, stretches: Vec::new() };
+        let mut finished =
+            Self { file: opened.map_err(|e| StoreError::io(&path, e))?, path, length: 0, stretches: Vec::new() };
         let mut head = [0; HEAD_BYTES as usize];
         let known = finished.file.read_exact(&mut head).is_ok() && head[..8] == *MAGIC && head[8..] == *identity;
         if known {

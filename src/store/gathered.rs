@@ -86,7 +86,8 @@ impl Gathered {
                     road: portion.road(edge.road),
                     place: edge.shape.start - first.shape.start,
                     shape: network.shapes[edge.shape.start as usize..edge.shape.end as usize].to_vec(),
-                    narrowings: network.narrowings[edge.narrowings.start as usize..edge.narrowings.end as usize].to_vec(),
+                    narrowings: network.narrowings[edge.narrowings.start as usize..edge.narrowings.end as usize]
+                        .to_vec(),
                     section: network.section(edge),
                     measure: measures.get(index as usize).copied().unwrap_or_default(),
                 };
@@ -99,7 +100,8 @@ impl Gathered {
                 let edges = &network.stroke_edges[range.start as usize..range.end as usize];
                 edges.iter().map(|&edge| portion.edge(edge)).collect()
             };
-            let row = StrokeRow { approach: edges(&stroke.approach), edges: edges(&stroke.edges), closed: stroke.closed };
+            let row =
+                StrokeRow { approach: edges(&stroke.approach), edges: edges(&stroke.edges), closed: stroke.closed };
             if let Some(&first) = row.edges.first() {
                 self.strokes.push(first, &row)?;
             }

@@ -73,7 +73,8 @@ impl Roads {
         let mut section = [0; 2];
         let mut legal = [0; 2];
         for i in 0..2 {
-            section[i] = self.sections.number(c, section_key(&road.sections[i]), &road.sections[i], add_section).await?;
+            section[i] =
+                self.sections.number(c, section_key(&road.sections[i]), &road.sections[i], add_section).await?;
             legal[i] = self.legals.number(c, legal_key(&road.legal[i]), &road.legal[i], add_legal).await?;
         }
         let country = std::str::from_utf8(&road.country).map_err(|_| content("a country code is not text"))?;
@@ -123,7 +124,8 @@ impl Ranges {
         if same_road && row.place == self.place {
             return false;
         }
-        let start = if same_road { (self.shape.start + row.place.saturating_sub(self.place)).min(self.end) } else { self.end };
+        let start =
+            if same_road { (self.shape.start + row.place.saturating_sub(self.place)).min(self.end) } else { self.end };
         self.shape = start..start + row.shape.len() as u32;
         self.end = self.end.max(self.shape.end);
         self.narrowings = self.narrowings.end..self.narrowings.end + row.narrowings.len() as u32;

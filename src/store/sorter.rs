@@ -34,7 +34,14 @@ impl<K: Ord + Copy + Serialize + DeserializeOwned, T: Serialize + DeserializeOwn
     /// A sorter without rows, with a temporary file at `path`.
     pub(super) fn create(path: PathBuf) -> io::Result<Self> {
         let scratch = Scratch::create(path)?;
-        Ok(Self { scratch, run: Vec::new(), bytes: Vec::new(), run_bytes: RUN_BYTES, ends: Vec::new(), rows: PhantomData })
+        Ok(Self {
+            scratch,
+            run: Vec::new(),
+            bytes: Vec::new(),
+            run_bytes: RUN_BYTES,
+            ends: Vec::new(),
+            rows: PhantomData,
+        })
     }
 
     /// Adds a row.
@@ -115,7 +122,8 @@ impl<K: Ord + DeserializeOwned, T: DeserializeOwned> Sorted<K, T> {
         if run.at == run.buffer.len() && run.place == run.end {
             return Ok(());
         }
-        let length = run.bytes(&mut self.scratch, LENGTH_BYTES)?.first_chunk().map_or(0, |&bytes| u32::from_le_bytes(bytes));
+        let length =
+            run.bytes(&mut self.scratch, LENGTH_BYTES)?.first_chunk().map_or(0, |&bytes| u32::from_le_bytes(bytes));
         let row = run.bytes(&mut self.scratch, length as usize)?;
         let (key, row) = postcard::from_bytes(row).map_err(io::Error::other)?;
         run.head = Some(row);

@@ -73,7 +73,8 @@ where
 {
     /// The set of the next row. `None` if there is none.
     pub(super) fn next_set(&mut self) -> io::Result<Option<SetNo>> {
-        let set = self.0.peek().and_then(|row| row.as_ref().ok()).map(|((vehicle, corridor, _), _)| (*vehicle, *corridor));
+        let set =
+            self.0.peek().and_then(|row| row.as_ref().ok()).map(|((vehicle, corridor, _), _)| (*vehicle, *corridor));
         match set {
             Some(set) => Ok(Some(set)),
             None => self.0.next().transpose().map(|_| None),
@@ -82,7 +83,8 @@ where
 
     /// The rows that come next, as long as they are of a set.
     pub(super) fn of(&mut self, set: SetNo) -> impl Iterator<Item = io::Result<T>> {
-        let next = move || self.0.next_if(|row| row.as_ref().is_ok_and(|((v, c, _), _)| (*v, *c) == set) || row.is_err());
+        let next =
+            move || self.0.next_if(|row| row.as_ref().is_ok_and(|((v, c, _), _)| (*v, *c) == set) || row.is_err());
         std::iter::from_fn(next).map(|row| row.map(|(_, row)| row))
     }
 }

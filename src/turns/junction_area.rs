@@ -48,7 +48,8 @@ pub fn junction_nodes(network: &Network, turns: &[TurnFacts]) -> Vec<i64> {
 pub fn junction_places(network: &Network, turns: &[TurnFacts]) -> Vec<(i64, LonLat)> {
     let edge = |index: u32| network.edges.get(index as usize);
     let ends = |turn: &TurnFacts| {
-        let first = edge(turn.movement.from).and_then(|edge| Some((edge.to_node, network.positions(edge).next_back()?)));
+        let first =
+            edge(turn.movement.from).and_then(|edge| Some((edge.to_node, network.positions(edge).next_back()?)));
         let last = edge(turn.movement.to).and_then(|edge| Some((edge.from_node, network.positions(edge).next()?)));
         [first, last]
     };

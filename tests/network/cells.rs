@@ -25,7 +25,7 @@ use crate::support::extracts;
 const HALO_M: f64 = 1000.0;
 
 /// Where drawn roads begin: the south-western corner of a cell.
-const ORIGIN: LonLat = LonLat { lon_e7: 10_546_875, lat_e7: 800_094_900 };
+pub(crate) const ORIGIN: LonLat = LonLat { lon_e7: 10_546_875, lat_e7: 800_094_900 };
 /// Roads cross about this far apart, metres; and how many there are each way.
 const MESH_M: f64 = 3400.0;
 const ROADS: usize = 6;
@@ -47,7 +47,7 @@ impl Drawn {
 }
 
 /// A mesh of winding roads with short cuts, a roundabout and roads that end.
-fn drawn(seed: u64) -> Extract {
+pub(crate) fn drawn(seed: u64) -> Extract {
     let mut rng = Drawn(seed);
     let mut nodes: BTreeMap<i64, LonLat> = BTreeMap::new();
     let crossing = |i: usize, j: usize| (1000 * (i + 1) + j) as i64;

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use geo::{Area as _, BooleanOps as _};
-use netcert::network::{Network, build};
+use netcert::network::{Network, Portion, build};
 use netcert::osm::facts::{AreaKind, Policy, RoadClass};
 use netcert::rows::TurnCertificate;
 use netcert::settings::Settings;
@@ -61,7 +61,8 @@ fn stored(network: &Network) -> Network {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("region.gpkg");
     let mut writer = Database::create(&path, &Settings::default()).unwrap();
-    writer.network(network, &[]).unwrap();
+    writer.portion(&Portion::whole(network.clone()), &[]).unwrap();
+    writer.areas(network.areas.all().to_vec());
     let time = || "2026-11-21T08:00:00.000Z".to_owned();
     let run = Run {
         command: "ingest".to_owned(),

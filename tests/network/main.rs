@@ -17,6 +17,7 @@ mod maps;
 mod needs;
 #[path = "../oracle/mod.rs"]
 mod oracle;
+mod portions;
 mod reader_rules;
 mod restrictions;
 mod roundabouts;

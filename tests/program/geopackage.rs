@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use netcert::account::AccountRow;
-use netcert::network::{Edge, Network};
+use netcert::network::{Edge, Network, Portion};
 use netcert::osm::facts::{Policy, WidthSource};
 use netcert::rows::EdgeRow;
 use netcert::rows::{Bounds, EdgeCertificate, EdgeMeasure, TurnCertificate};
 use netcert::settings::Settings;
-use netcert::store::{Area, Database, QueryOptions, Run, StoreError, TurnSet, VehicleRecord};
+use netcert::store::{Area, Database, QueryOptions, Run, StoreError, TurnSet, VehicleRecord, Writer};
 use netcert::turns::{Kerbs, turn_facts};
 use netcert::verdict::{UnknownReason, Verdict};
 use netcert::words::{VerdictKind, verdict_words};
@@ -39,6 +39,12 @@ fn account() -> Vec<AccountRow> {
     vec![AccountRow::new("read", "way", "read", "", 12), AccountRow::new("read", "way", "left_out", "no_width", 2)]
 }
 
+/// Adds a whole network.
+fn add(writer: &mut Writer, network: &Network, measures: &[EdgeMeasure]) -> Result<(), StoreError> {
+    writer.areas(network.areas.all().to_vec());
+    writer.portion(&Portion::whole(network.clone()), measures)
+}
+
 /// A database of `ways` roads and three sets; `order` turns the edges' numbers into another order of arrival.
 fn build(path: &Path, ways: u32, order: impl Fn(u32, u32) -> u32) -> Network {
     let network = network(ways);
@@ -52,7 +58,7 @@ fn build(path: &Path, ways: u32, order: impl Fn(u32, u32) -> u32) -> Network {
             writer.certificate(vehicle, policy, &certificate(order(i, edges), seed)).unwrap();
         }
     }
-    writer.network(&network, &[]).unwrap();
+    add(&mut writer, &network, &[]).unwrap();
     writer.account(&account());
     writer.finish(&run()).unwrap();
     network
@@ -90,7 +96,7 @@ fn the_network_comes_back_as_it_was_written_and_makes_the_same_file_again() {
     let written = network(400);
     let write = |path: &Path, network: &Network| {
         let mut writer = Database::create(path, &Settings::default()).unwrap();
-        writer.network(network, &[]).unwrap();
+        add(&mut writer, network, &[]).unwrap();
         writer.finish(&run()).unwrap();
     };
     write(&a, &written);
@@ -226,7 +232,7 @@ fn lengths_and_radii_are_the_corridors_where_there_is_one() {
     for edge in 0..network.edges.len() as u32 {
         writer.certificate(semi, Policy::Lane, &certificate(edge, 0)).unwrap();
     }
-    writer.network(&network, &measures).unwrap();
+    add(&mut writer, &network, &measures).unwrap();
     writer.finish(&run()).unwrap();
     let rows = all(&path, &QueryOptions::new("semi", Policy::Lane));
     assert_eq!((rows[0].length_m, rows[0].min_radius_m, rows[1].min_radius_m), (123.25, None, Some(80.5)));
@@ -418,7 +424,7 @@ fn an_unfinished_writer_leaves_the_old_file_and_nothing_else() {
     build(&path, 20, |i, _| i);
     let before = std::fs::read(&path).unwrap();
     let mut writer = Database::create(&path, &Settings::default()).unwrap();
-    writer.network(&network(500), &[]).unwrap();
+    add(&mut writer, &network(500), &[]).unwrap();
     assert!(
         matches!(Database::create(&path, &Settings::default()), Err(StoreError::Busy(_))),
         "a second run at the same time"
@@ -434,7 +440,7 @@ fn a_vehicle_with_missing_certificates_does_not_become_a_database() {
     let path = folder.path().join("a.gpkg");
     let mut writer = Database::create(&path, &Settings::default()).unwrap();
     let semi = writer.vehicle(vehicle("semi"));
-    writer.network(&network(4), &[]).unwrap();
+    add(&mut writer, &network(4), &[]).unwrap();
     writer.certificate(semi, Policy::Lane, &certificate(0, 0)).unwrap();
     let error = writer.finish(&run()).unwrap_err().to_string();
     assert!(error.contains("edge 1, vehicle semi: it has no certificate"), "{error}");
@@ -530,7 +536,7 @@ fn a_full_disk_is_a_clear_error_and_the_old_file_stands() {
         let before = std::fs::read(&path).unwrap();
         let error = (|| {
             let mut writer = Database::create(&path, &Settings::default())?;
-            writer.network(&network(20_000), &[])?;
+            add(&mut writer, &network(20_000), &[])?;
             writer.finish(&run())
         })()
         .unwrap_err();

@@ -7,6 +7,8 @@ use crate::support::program::{Answer, Place};
 
 const LINE: &str = "ingest {demo} --vehicle AU-SEMI19 EU-SEMI16.5 --needs off";
 const KILLS: u32 = 100;
+/// Portion by portion, too. The drawn region lies in four cells.
+const IN_PORTIONS: &str = "--edges-at-once 1";
 /// The longest run before a kill, milliseconds, by turns: soon after the start, and where several groups of strokes are done.
 const LONGEST_MS: [u32; 2] = [300, 2500];
 
@@ -31,26 +33,29 @@ fn killed_at_a_hundred_moments_it_ends_with_the_same_bytes() {
     Answer::of(LINE, &mut command(&undisturbed, LINE)).succeeds();
     let expected = undisturbed.read("demo.gpkg");
 
-    let place = Place::empty();
     let (mut whole, mut went_on) = (0, 0);
-    for (kill, moment) in (0..KILLS).zip(moments()) {
-        let threads = format!("{LINE} --threads {}", 1 + kill % 2);
-        let mut run = command(&place, &threads).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
-        std::thread::sleep(moment);
-        run.kill().unwrap();
-        if run.wait().unwrap().success() {
-            assert!(place.read("demo.gpkg") == expected, "after {kill} kills");
-            assert_eq!(place.files(), ["demo.gpkg"]);
-            std::fs::remove_file(place.path("demo.gpkg")).unwrap();
-            whole += 1;
-        } else {
-            let done = std::fs::metadata(place.path("demo.gpkg.done")).is_ok_and(|file| file.len() > 1000);
-            went_on += u32::from(done);
+    let mut moments = moments();
+    for line in [LINE.to_owned(), format!("{LINE} {IN_PORTIONS}")] {
+        let place = Place::empty();
+        for (kill, moment) in (0..KILLS / 2).zip(moments.by_ref()) {
+            let threads = format!("{line} --threads {}", 1 + kill % 2);
+            let mut run = command(&place, &threads).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
+            std::thread::sleep(moment);
+            run.kill().unwrap();
+            if run.wait().unwrap().success() {
+                assert!(place.read("demo.gpkg") == expected, "after {kill} kills");
+                assert_eq!(place.files(), ["demo.gpkg"]);
+                std::fs::remove_file(place.path("demo.gpkg")).unwrap();
+                whole += 1;
+            } else {
+                let done = std::fs::metadata(place.path("demo.gpkg.done")).is_ok_and(|file| file.len() > 1000);
+                went_on += u32::from(done);
+            }
         }
+        let last = Answer::of(&line, &mut command(&place, &line)).succeeds();
+        assert!(place.read("demo.gpkg") == expected, "{}", last.err());
+        assert_eq!(place.files(), ["demo.gpkg"]);
     }
-    let last = Answer::of(LINE, &mut command(&place, LINE)).succeeds();
-    assert!(place.read("demo.gpkg") == expected, "{}", last.err());
-    assert_eq!(place.files(), ["demo.gpkg"]);
     assert!(went_on > 20, "{went_on} of {KILLS} runs left finished work; {whole} were whole");
 }
 

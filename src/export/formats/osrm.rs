@@ -14,10 +14,10 @@ use osmpbfreader::osmformat::PrimitiveBlock;
 use rustc_hash::FxHashSet;
 
 use super::{Options, Target};
-use crate::scratch::Scratch;
 use crate::export::ways::{OnWay, Piece, WayEdges, ids};
 use crate::export::{ExportError, Layout, Place, Sink, Source};
 use crate::osm::pbf::copy::Contents;
+use crate::scratch::Scratch;
 
 /// The penalty of a refused turn, seconds. It is the greatest that OSRM can store (2^15 − 1 tenths).
 const PENALTY_S: f64 = 3276.7;

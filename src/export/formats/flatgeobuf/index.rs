@@ -6,9 +6,9 @@
 use std::io::{self, Write};
 
 use crate::export::sorter::{Sorted, Sorter};
-use crate::scratch::Scratch;
 use crate::export::{ExportError, Place};
 use crate::rows::Bounds;
+use crate::scratch::Scratch;
 
 /// Boxes per node, as in other writers.
 pub(super) const FANOUT: u64 = 16;

@@ -15,10 +15,10 @@ use flatgeobuf::{
 
 use super::layers::{Row, asked};
 use super::{Layer, Options, Target, one_file_a_layer};
-use crate::scratch::Scratch;
 use crate::export::{ExportError, Layout, Place, Sink, Source};
 use crate::rows::Bounds;
 use crate::rows::{Cell, Kind};
+use crate::scratch::Scratch;
 use index::{Index, Located};
 
 /// `flatgeobuf`

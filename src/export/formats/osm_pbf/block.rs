@@ -7,8 +7,8 @@ use protobuf::Message;
 use rustc_hash::FxHashMap;
 
 use crate::export::ExportError;
-use crate::scratch::Scratch;
 use crate::osm::pbf::write::{frame, zlib_blob};
+use crate::scratch::Scratch;
 
 /// The greatest number of objects in a block, as in other writers.
 const BLOCK_OBJECTS: usize = 8000;

@@ -13,10 +13,10 @@ use super::block::{Spool, Texts};
 use super::relations::{Kind, Refused, refusal_word, refused};
 use super::split::Cuts;
 use super::{FIRST_NEW_ID, Flavour};
-use crate::scratch::Scratch;
 use crate::export::ways::ids;
 use crate::export::{ExportError, Place, Sink, Source};
 use crate::osm::pbf::copy::Contents;
+use crate::scratch::Scratch;
 
 const ALL: &str = "restriction";
 const HGV: &str = "restriction:hgv";

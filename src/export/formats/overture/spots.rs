@@ -3,10 +3,10 @@
 
 use std::io::Write as _;
 
-use crate::scratch::Scratch;
 use crate::export::{ExportError, Source};
 use crate::osm::facts::Direction;
 use crate::rows::EdgeStep;
+use crate::scratch::Scratch;
 
 /// The place of one edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
