@@ -51,15 +51,26 @@ impl Touched {
     }
 }
 
-struct TouchedTurns {
-    of_edge: Vec<u32>,
-    strokes: FxHashSet<u32>,
-    /// Nodes at which a road's width or a kerb differs, degrees.
+/// Places near nodes at which something differs.
+pub struct NearNodes {
+    /// The nodes, degrees.
     nodes: RTree<[f64; 2]>,
 }
 
-impl TouchedTurns {
-    fn new(network: &Network, strokes: &[u32], nodes: &FxHashSet<i64>) -> Self {
+struct TouchedTurns {
+    of_edge: Vec<u32>,
+    strokes: FxHashSet<u32>,
+    nodes: NearNodes,
+}
+
+impl NearNodes {
+    /// What is near some nodes of a network, given by their ids.
+    #[must_use]
+    pub fn new(network: &Network, nodes: &[i64]) -> Self {
+        Self::of(network, &nodes.iter().copied().collect())
+    }
+
+    fn of(network: &Network, nodes: &FxHashSet<i64>) -> Self {
         let ends = network.edges.iter().filter_map(|edge| {
             let mut line = network.positions(edge);
             let (first, last) = (line.next()?, line.next_back()?);
@@ -69,18 +80,12 @@ impl TouchedTurns {
         let mut places: Vec<LonLat> = ends.flatten().collect();
         places.sort_unstable_by_key(|at| (at.lon_e7, at.lat_e7));
         places.dedup();
-        let nodes = RTree::bulk_load(places.into_iter().map(|at| at.degrees().into()).collect());
-        Self { of_edge: network.strokes_of_edges(), strokes: strokes.iter().copied().collect(), nodes }
+        Self { nodes: RTree::bulk_load(places.into_iter().map(|at| at.degrees().into()).collect()) }
     }
 
-    fn has(&self, turn: &TurnFacts) -> bool {
-        let mut edges = [turn.movement.from, turn.movement.to].into_iter().chain(turn.through.iter().copied());
-        let stroke = |edge: u32| self.of_edge.get(edge as usize);
-        edges.any(|edge| stroke(edge).is_none_or(|stroke| self.strokes.contains(stroke))) || self.near(&turn.line)
-    }
-
-    /// Whether a node is near a line, on either side of the antimeridian.
-    fn near(&self, line: &[LonLat]) -> bool {
+    /// Whether a node is within 150 m of a line's positions, on either side of the antimeridian.
+    #[must_use]
+    pub fn has(&self, line: &[LonLat]) -> bool {
         let north = (NEAR_M / EARTH_RADIUS_M).to_degrees();
         line.iter().any(|place| {
             let (lon, lat) = place.degrees();
@@ -90,5 +95,18 @@ impl TouchedTurns {
                 self.nodes.locate_in_envelope(&around).next().is_some()
             })
         })
+    }
+}
+
+impl TouchedTurns {
+    fn new(network: &Network, strokes: &[u32], nodes: &FxHashSet<i64>) -> Self {
+        let nodes = NearNodes::of(network, nodes);
+        Self { of_edge: network.strokes_of_edges(), strokes: strokes.iter().copied().collect(), nodes }
+    }
+
+    fn has(&self, turn: &TurnFacts) -> bool {
+        let mut edges = [turn.movement.from, turn.movement.to].into_iter().chain(turn.through.iter().copied());
+        let stroke = |edge: u32| self.of_edge.get(edge as usize);
+        edges.any(|edge| stroke(edge).is_none_or(|stroke| self.strokes.contains(stroke))) || self.nodes.has(&turn.line)
     }
 }

@@ -105,7 +105,7 @@ mod tests {
         let extent = block.surroundings();
         let has = |(lon, lat): (f64, f64)| {
             let at = LonLat { lon_e7: (lon * 1e7) as i32, lat_e7: (lat * 1e7) as i32 };
-            Extent::of([at].into_iter()).unwrap().meets(extent)
+            Extent::of([at].into_iter()).is_some_and(|place| place.meets(extent))
         };
         let ((west, north), (east, south)) = (corner_deg(1072, 698), corner_deg(1076, 701));
         let degree = 111_195.0;

@@ -5,13 +5,14 @@ use std::time::Instant;
 
 use crate::account::AccountRow;
 use crate::certify::{Job, Outcome, TurnJob, TurnOutcome, by_cell, make_strokes, make_turns};
-use crate::network::Portion;
+use crate::network::{Network, Portion};
+use crate::osm::LonLat;
 use crate::reporter::Reporter;
 use crate::rows::{EdgeCertificate, EdgeMeasure, StoredPlan, StrokeMade, TurnCertificate, TurnMade};
 use crate::settings::Settings;
 use crate::stet::Model;
 use crate::store::{Finished, Kept, Stage, VehicleNo, Writer};
-use crate::turns::{TurnFacts, junction_areas, junction_places, turn_facts};
+use crate::turns::{JunctionArea, TurnFacts, junction_areas, junction_places, turn_facts};
 use crate::verdict::{UnknownReason, Verdict};
 
 use super::making::{EdgeVerdicts, locked};
@@ -132,6 +133,16 @@ impl Certifying<'_> {
         Ok(())
     }
 
+    /// The areas of the junctions at some nodes.
+    fn junctions(&self, network: &Network, places: Vec<(i64, LonLat)>) -> Vec<JunctionArea> {
+        let (mut areas, nodes) = match self.earlier {
+            Some(earlier) => earlier.junctions(network, &places),
+            None => (Vec::new(), places.into_iter().map(|(node, _)| node).collect()),
+        };
+        areas.extend(junction_areas(network, &nodes, &self.settings.turn_params()));
+        areas
+    }
+
     fn turns_of(
         &self,
         (number, portion): (usize, &Portion),
@@ -143,9 +154,8 @@ impl Certifying<'_> {
     ) -> Result<(), RunError> {
         let (network, policy) = (&portion.network, self.settings.policy);
         let mut turns: Vec<TurnFacts> = turn_facts(network, &self.settings.kerbs);
-        let places = junction_places(network, &turns).into_iter().filter(|&(_, place)| portion.has(place));
-        let nodes: Vec<i64> = places.map(|(node, _)| node).collect();
-        let junctions = junction_areas(network, &nodes, &self.settings.turn_params());
+        let places = junction_places(network, &turns).into_iter().filter(|&(_, place)| portion.has(place)).collect();
+        let junctions = self.junctions(network, places);
         turns.retain(|turn| portion.owns(turn.movement.from));
         let first = writer.turns(portion, &turns, &junctions)?;
         drop(junctions);

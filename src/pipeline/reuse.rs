@@ -2,18 +2,18 @@
 //!
 //! They stand only if the earlier database was made by the same program with the same road rules, settings and vehicles.
 
-use std::collections::BTreeMap;
 use std::time::Instant;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use crate::certify::Touched;
+use crate::certify::{NearNodes, Touched};
 use crate::network::{Differences, Network};
+use crate::osm::LonLat;
 use crate::reporter::Reporter;
 use crate::rows::{EdgeMeasure, StoredPlan};
 use crate::stet::Model;
-use crate::store::{CertifiedSet, Database, Kept};
-use crate::turns::{TurnFacts, turn_facts};
+use crate::store::{CertifiedSet, Database, Kept, KeptPlans};
+use crate::turns::{JunctionArea, TurnFacts, turn_facts};
 
 use super::identity;
 use super::making::Making;
@@ -24,8 +24,8 @@ struct Set {
     edges: Vec<Kept>,
     turns: Vec<Kept>,
     /// By first edge of the stroke, and by turn.
-    plans: BTreeMap<u32, Vec<i32>>,
-    turn_plans: BTreeMap<u32, Vec<i32>>,
+    plans: KeptPlans,
+    turn_plans: KeptPlans,
 }
 
 /// What stands of an earlier database.
@@ -36,6 +36,8 @@ pub(super) struct Earlier {
     sets: Vec<Set>,
     /// Turns of the earlier network.
     facts: Vec<TurnFacts>,
+    /// Areas of its junctions, by node.
+    junctions: Vec<JunctionArea>,
 }
 
 impl Earlier {
@@ -59,12 +61,9 @@ impl Earlier {
         let mut sets = Vec::new();
         for model in models {
             let id = &model.vehicle.id;
-            sets.push(Set {
-                edges: database.kept_edges(id, policy)?,
-                turns: database.kept_turns(id, policy)?,
-                plans: database.plans(id, policy)?,
-                turn_plans: database.turn_plans(id, policy)?,
-            });
+            let [plans, turn_plans] = database.kept_plans(id, policy)?;
+            let (edges, turns) = (database.kept_edges(id, policy)?, database.kept_turns(id, policy)?);
+            sets.push(Set { edges, turns, plans, turn_plans });
         }
         let facts = if settings.turns { turn_facts(&old, &settings.kerbs) } else { Vec::new() };
         let differences = Differences::find(&old, network);
@@ -77,7 +76,8 @@ impl Earlier {
             reporter.note("all is certified again: the older database lacks certificates");
             return Ok(None);
         }
-        Ok(Some(Self { differences, measures, sets, facts }))
+        let junctions = if settings.turns { database.junction_areas()? } else { Vec::new() };
+        Ok(Some(Self { differences, measures, sets, facts, junctions }))
     }
 
     /// The strokes that stand, as indices into the new network.
@@ -108,7 +108,7 @@ impl Earlier {
     pub(super) fn plans(&self, network: &Network, stroke: u32) -> Vec<(usize, StoredPlan)> {
         let Some(&first) = edges_of(network, stroke).first() else { return Vec::new() };
         let Some(older) = self.older(first) else { return Vec::new() };
-        let plan = |(vehicle, set): (usize, &Set)| Some((vehicle, StoredPlan::new(first, set.plans.get(&older)?)?));
+        let plan = |(vehicle, set): (usize, &Set)| Some((vehicle, set.plans.at(older, first)?));
         self.sets.iter().enumerate().filter_map(plan).collect()
     }
 
@@ -125,11 +125,30 @@ impl Earlier {
             let older = *by_id.get(&turn.id)?;
             let stands = !touched.contains(&index) && self.same_turn(self.facts.get(older as usize)?, turn);
             let of = |set: &'a Set| {
-                let plan = set.turn_plans.get(&older).and_then(|plan| StoredPlan::new(index, plan));
+                let plan = set.turn_plans.at(older, index);
                 Some((set.turns.get(older as usize)?, plan))
             };
             stands.then(|| self.sets.iter().map(of).collect::<Option<Vec<_>>>()).flatten().map(|kept| (index, kept))
         })
+    }
+
+    /// The areas that stand of the junctions at some nodes, and the nodes whose areas do not.
+    pub(super) fn junctions(&self, network: &Network, places: &[(i64, LonLat)]) -> (Vec<JunctionArea>, Vec<i64>) {
+        let touched = Touched::find(network, &[], &self.differences.edges, &self.differences.nodes);
+        let touched = NearNodes::new(network, &touched.nodes);
+        let (mut stand, mut others) = (Vec::new(), Vec::new());
+        for &(node, place) in places {
+            match self
+                .junctions
+                .binary_search_by_key(&node, |area| area.node)
+                .ok()
+                .and_then(|at| self.junctions.get(at))
+            {
+                Some(area) if !touched.has(&[place]) => stand.push(area.clone()),
+                _ => others.push(node),
+            }
+        }
+        (stand, others)
     }
 
     /// Whether two turns of one id are the same movement with the same kerb and the same restriction.

@@ -45,17 +45,18 @@ mod tests {
 
     use super::*;
 
+    /// What it hears; a stage that begins or ends as a number that no progress is.
     struct Heard(Mutex<Vec<u64>>);
 
     impl Reporter for Heard {
         fn begin(&self, _: &'static str, _: u64) {
-            panic!("a portion begins no stage");
+            self.advance(u64::MAX);
         }
         fn advance(&self, done: u64) {
             self.0.lock().unwrap().push(done);
         }
         fn end(&self) {
-            panic!("a portion ends no stage");
+            self.advance(u64::MAX);
         }
         fn note(&self, _: &str) {}
     }

@@ -13,6 +13,7 @@ use super::blob;
 use super::bulk::Bulk;
 use super::database::Database;
 use super::error::{StoreError, content};
+use super::network_read::rows;
 use super::sets;
 use super::styles::{self, Shows};
 
@@ -22,6 +23,25 @@ type Sql<T> = Result<T, sqlx::Error>;
 pub type MapJunction = (i64, Vec<Vec<Vec<LonLat>>>);
 
 impl Database {
+    /// The areas of all junctions, in order of their nodes.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn junction_areas(&mut self) -> Result<Vec<JunctionArea>, StoreError> {
+        self.session.run(async |c| {
+            rows(c, "SELECT node_id, roads, kerb_source, geom FROM junction ORDER BY node_id", |row| {
+                let node: i64 = row.try_get(0)?;
+                let damaged = || content(format!("the area of junction {node}"));
+                let kerb_source =
+                    row.try_get::<Option<&str>, _>(2)?.map(|word| KerbSource::named(word).ok_or_else(damaged));
+                let roads = usize::try_from(row.try_get::<i64, _>(1)?).map_err(|_| damaged())?;
+                let polygons = blob::decode_polygons(row.try_get(3)?).ok_or_else(damaged)?;
+                Ok(JunctionArea { node, roads, kerb_source: kerb_source.transpose()?, polygons })
+            })
+            .await
+        })
+    }
+
     /// The areas of the junctions that edges near a box lead to, in order of their nodes.
     ///
     /// # Errors

@@ -1,5 +1,7 @@
 //! Certificates as they are stored, to be written again unchanged: what an update keeps of the older database.
 
+use std::collections::BTreeMap;
+
 use sqlx::sqlite::SqliteRow;
 use sqlx::{AssertSqlSafe, Row as _};
 
@@ -20,6 +22,18 @@ type Sql<T> = Result<T, sqlx::Error>;
 pub struct Kept {
     packed: Packed,
     verdict: Verdict,
+}
+
+/// Stored plans by their places, to be written again unchanged.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct KeptPlans(BTreeMap<u32, Vec<u8>>);
+
+impl KeptPlans {
+    /// The plan of a place, for another place.
+    #[must_use]
+    pub fn at(&self, place: u32, now: u32) -> Option<StoredPlan> {
+        Some(StoredPlan { at: now, packed: self.0.get(&place)?.clone() })
+    }
 }
 
 impl Kept {
@@ -45,6 +59,15 @@ impl Database {
     /// The file cannot be read, or a certificate is missing.
     pub fn kept_turns(&mut self, vehicle: &str, policy: Policy) -> Result<Vec<Kept>, StoreError> {
         self.kept("turn_certificate_compact", "need_kerb_cm, need_flare_cm, path_no", vehicle, policy)
+    }
+
+    /// The plans of a set as they are stored: of strokes by the index of their first edge, and of turns by their index.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn kept_plans(&mut self, vehicle: &str, policy: Policy) -> Result<[KeptPlans; 2], StoreError> {
+        let mut plans = |table| Ok(KeptPlans(self.packed_plans(table, vehicle, policy)?));
+        Ok([plans("plan")?, plans("turn_plan")?])
     }
 
     fn kept(

@@ -53,7 +53,7 @@ pub use error::StoreError;
 pub use evidence::Register;
 pub use finished::{Finished, PartOfWork, Stage};
 pub use junctions::MapJunction;
-pub use kept::Kept;
+pub use kept::{Kept, KeptPlans};
 pub use map::TurnsOf;
 pub use map_changes::MapChanges;
 pub use query::{Area, QueryOptions, Rows};

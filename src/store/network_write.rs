@@ -48,7 +48,7 @@ struct Roads {
     /// The road that was written last, with its index.
     current: Option<(u32, RoadRow)>,
     sections: Distinct<[Option<(u32, u32, u8)>; 3]>,
-    legals: Distinct<([(u8, u32); 5], u8, u8)>,
+    legals: Distinct<LegalKey>,
     bulk: Bulk,
 }
 
@@ -331,7 +331,10 @@ fn limits(legal: &Legal) -> [(Limit, &'static str); 5] {
     ]
 }
 
-fn legal_key(legal: &Legal) -> ([(u8, u32); 5], u8, u8) {
+/// The bits of limits and access.
+type LegalKey = ([(u8, u32); 5], u8, u8);
+
+fn legal_key(legal: &Legal) -> LegalKey {
     let key = |limit| match limit {
         Limit::None => (0, 0),
         Limit::At(value) => (1, value.to_bits()),

@@ -64,6 +64,19 @@ impl Database {
         vehicle: &str,
         policy: Policy,
     ) -> Result<BTreeMap<u32, Vec<i32>>, StoreError> {
+        let path = self.session.path.clone();
+        let damaged = |at: u32| StoreError::sql(&path, content(format!("row {} of {table}", at + 1)));
+        let unpacked = |(at, packed): (u32, Vec<u8>)| Ok((at, unpack(&packed).ok_or_else(|| damaged(at))?));
+        self.packed_plans(table, vehicle, policy)?.into_iter().map(unpacked).collect()
+    }
+
+    /// The plans of a table as they are stored, by index of the edge or turn.
+    pub(super) fn packed_plans(
+        &mut self,
+        table: &'static str,
+        vehicle: &str,
+        policy: Policy,
+    ) -> Result<BTreeMap<u32, Vec<u8>>, StoreError> {
         self.session.run(async |c| {
             let sql = format!(
                 "SELECT fid, coefficients FROM {table} JOIN vehicle USING (vehicle_no) \
@@ -71,11 +84,7 @@ impl Database {
             );
             let rows: Vec<(u32, Vec<u8>)> =
                 sqlx::query_as(AssertSqlSafe(sql)).bind(vehicle).bind(corridor_no(policy)).fetch_all(c).await?;
-            let plan = |(fid, packed): (u32, Vec<u8>)| {
-                let coefficients = unpack(&packed).ok_or_else(|| content(format!("row {fid} of {table}")))?;
-                Ok((fid.saturating_sub(1), coefficients))
-            };
-            rows.into_iter().map(plan).collect()
+            Ok(rows.into_iter().map(|(fid, packed)| (fid.saturating_sub(1), packed)).collect())
         })
     }
 }

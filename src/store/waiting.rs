@@ -107,7 +107,7 @@ mod tests {
                 let edge = (i * 4001 + set.0) % edges;
                 let packed = Conclusion::bare(Verdict::Unknown(UnknownReason::Cut)).pack(edge).unwrap();
                 waiting.certificate(set, packed).unwrap();
-                if edge % 10 == 0 {
+                if edge.is_multiple_of(10) {
                     waiting.plan(set, &StoredPlan::new(edge, &[1, 2]).unwrap()).unwrap();
                 }
             }

@@ -24,6 +24,12 @@ pub enum KerbSource {
 }
 
 impl KerbSource {
+    /// The source with this name in the database.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        [Self::Assumed, Self::Surveyed, Self::Mapped].into_iter().find(|source| source.name() == name)
+    }
+
     /// Name in the database.
     #[must_use]
     pub fn name(self) -> &'static str {

@@ -11,13 +11,15 @@ use crate::cells::{ORIGIN, drawn};
 use crate::support::ascii_map::offset;
 use crate::support::extracts;
 
-fn ground(
-    extract: Extract,
-    countries: &Countries,
-) -> Ground<impl Fn(LonLat) -> Place + Sync, impl Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync> {
+type Places<'c> = Box<dyn Fn(LonLat) -> Place + Sync + 'c>;
+type Sections<'c> = Box<dyn Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync + 'c>;
+
+fn ground(extract: Extract, countries: &Countries) -> Ground<Places<'_>, Sections<'_>> {
     let rules = countries.rules();
-    let sections = |way: &WayFacts, place: &Place, ring: Option<f64>| cross_sections(way, place, ring, rules);
-    Ground::new(extract, |position| countries.place(position), sections, StrokeOptions::default())
+    let places: Places<'_> = Box::new(|position| countries.place(position));
+    let sections: Sections<'_> =
+        Box::new(move |way, place, ring_radius_m| cross_sections(way, place, ring_radius_m, rules));
+    Ground::new(extract, places, sections, StrokeOptions::default())
 }
 
 /// An edge with all that its row says, its road included.
