@@ -38,6 +38,7 @@ impl Scratch {
     }
 
     /// Copies the whole file to `out`.
+    #[cfg(feature = "export")]
     pub(crate) fn copy_to(&mut self, out: &mut dyn Write) -> io::Result<u64> {
         self.file.flush()?;
         let file = self.file.get_mut();

@@ -1,6 +1,7 @@
 //! Tests of the built program as a user sees it: its answers, the files that it leaves, and its errors.
 
 use crate::support::demo::demo;
+use crate::support::extracts;
 use crate::support::program;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -334,6 +335,24 @@ fn a_file_of_someone_elses_is_not_overwritten() {
         .tells("letters.gpkg: exists and is not a netcert database");
     assert_eq!(place.read("letters.gpkg"), b"dear reader");
     assert_eq!(place.files(), ["letters.gpkg"]);
+}
+
+/// Sydney lies in several cells; `tests/network/portions.rs` counts them.
+#[test]
+fn a_region_made_portion_by_portion_has_the_same_bytes() {
+    let Some(path) = extracts::extract("sydney_au.osm.pbf") else { return };
+    let ingest = |options: &str| {
+        let place = Place::empty();
+        let line = format!("ingest {} --db region.gpkg --vehicle AU-SEMI19 AU-BDOUBLE26 {options}", path.display());
+        let mut command = place.command(&line);
+        Answer::of(&line, command.env("SOURCE_DATE_EPOCH", "1700000000")).succeeds();
+        assert_eq!(place.files(), ["region.gpkg"]);
+        place.read("region.gpkg")
+    };
+    let whole = ingest("");
+    for options in ["--edges-at-once 1", "--edges-at-once 1500 --threads 1"] {
+        assert!(ingest(options) == whole, "{options}");
+    }
 }
 
 #[test]
