@@ -10,7 +10,8 @@ use super::corners;
 use super::cut::{CutWay, Piece};
 use super::edge_id::edge_id;
 use super::geometry::mean_radius_m;
-use super::vertices::{MISSING, Vertices, of_way};
+use super::vertices::{MISSING, Vertices};
+use super::ways::Ways;
 use super::{Edge, Narrowing, Network, NetworkAccount, Road};
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, Place, WayFacts};
 use crate::osm::{LonLat, NodeTable, Way};
@@ -22,6 +23,7 @@ const TASKS_PER_BATCH: usize = 128;
 
 /// The inputs for building ways.
 pub(super) struct Source<'s, P, S> {
+    pub(super) ways: &'s Ways,
     pub(super) nodes: &'s NodeTable,
     pub(super) vertices: &'s Vertices,
     pub(super) places: &'s P,
@@ -33,8 +35,8 @@ where
     P: Fn(LonLat) -> Place + Sync,
     S: Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync,
 {
-    /// Appends the roads and edges of all ways to the network.
-    pub(super) fn build(&self, ways: &[&Way], network: &mut Network, account: &mut NetworkAccount) {
+    /// Appends the roads and edges of some ways, given by their indices, to the network.
+    pub(super) fn build(&self, ways: &[u32], network: &mut Network, account: &mut NetworkAccount) {
         for batch in ways.chunks(WAYS_PER_TASK * TASKS_PER_BATCH) {
             for part in self.parts(batch) {
                 account.add_part(&part.account);
@@ -43,24 +45,25 @@ where
         }
     }
 
-    /// Gives the roads and edges of some ways after the other to `look`, with ranges and indices from 0.
-    pub(super) fn look_through(&self, ways: &[Way], mut look: impl FnMut(&Network, &NetworkAccount)) {
+    /// Gives the roads and edges of all ways to `look`, some ways after the other, with ranges and indices from 0.
+    pub(super) fn look_through(&self, mut look: impl FnMut(&Network, &NetworkAccount)) {
+        let ways: Vec<u32> = (0..self.ways.len() as u32).collect();
         for batch in ways.chunks(WAYS_PER_TASK * TASKS_PER_BATCH) {
-            let ways: Vec<&Way> = batch.iter().collect();
-            self.parts(&ways).iter().for_each(|part| look(&part.network, &part.account));
+            self.parts(batch).iter().for_each(|part| look(&part.network, &part.account));
         }
     }
 
-    fn parts(&self, ways: &[&Way]) -> Vec<Part> {
+    fn parts(&self, ways: &[u32]) -> Vec<Part> {
         ways.par_chunks(WAYS_PER_TASK).map(|ways| self.part(ways)).collect()
     }
 
-    fn part(&self, ways: &[&Way]) -> Part {
+    fn part(&self, ways: &[u32]) -> Part {
         let mut part = Part::default();
         let mut cut = CutWay::default();
         for &way in ways {
             part.account.ways_read += 1;
-            let vertices = of_way(&self.vertices.of_refs, way);
+            let vertices = self.vertices.of_refs.get(self.ways.refs(way)).unwrap_or_default();
+            let way = &self.ways.get(way);
             // Rings are never cut.
             let whole = way.facts.roundabout;
             let leaves = !whole && self.leaves_its_cell(vertices);

@@ -15,14 +15,15 @@ use super::extent::Extent;
 use super::portion::{Place, Portion};
 use super::restrictions::{self, Resolved};
 use super::stroke::{self, Chained};
-use super::vertices::{MISSING, Vertices, of_way};
+use super::vertices::{MISSING, Vertices};
+use super::ways::Ways;
 use super::{Area, Crossings, Network, NetworkAccount, Splits, StrokeOptions, areas, edge_id};
 use crate::osm::facts::{AreaKind, CrossSection, Place as Country, WayFacts};
-use crate::osm::{self, Extract, LonLat, NodeTable, StringPool, Way};
+use crate::osm::{self, Extract, LonLat, NodeTable, StringPool};
 
 /// An extract made ready. `places` and `sections` are those of [`super::build_with`].
 pub struct Ground<P, S> {
-    ways: Vec<Way>,
+    ways: Ways,
     nodes: NodeTable,
     vertices: Vertices,
     restrictions: Vec<osm::Restriction>,
@@ -66,6 +67,7 @@ where
         let Extract { ways, refs, nodes, points, restrictions, areas, strings, account: read } = extract;
         let vertices = Vertices::resolve(&ways, &refs, &nodes, &points);
         drop((refs, points));
+        let ways = Ways::new(ways);
         let mut account = NetworkAccount {
             missing_references: vertices.missing,
             same_place_nodes: vertices.merged,
@@ -88,10 +90,10 @@ where
     pub fn whole(mut self) -> (Network, NetworkAccount) {
         let mut account = std::mem::take(&mut self.account);
         let mut network = Network { strings: std::mem::take(&mut self.strings), ..Network::default() };
-        let ways: Vec<&Way> = self.ways.iter().collect();
-        self.source().build(&ways, &mut network, &mut account);
-        drop(ways);
-        self.ways = Vec::new();
+        let all: Vec<u32> = (0..self.ways.len() as u32).collect();
+        self.source().build(&all, &mut network, &mut account);
+        drop(all);
+        self.ways = Ways::default();
         let mut border = Border::of(self.bbox_deg);
         if let Some(border) = &mut border {
             border.count(&network);
@@ -115,7 +117,7 @@ where
         let mut border = Border::of(self.bbox_deg);
         let (mut ids, mut countries, mut cells) = (Vec::new(), BTreeMap::new(), BTreeMap::new());
         let mut numbers = Numbers::new(&self.ways);
-        self.source().look_through(&self.ways, |network, part| {
+        self.source().look_through(|network, part| {
             account.add_part(part);
             if let Some(border) = &mut border {
                 border.count(network);
@@ -131,9 +133,9 @@ where
         let changed_ids = edge_id::changed_ids(ids.into_par_iter());
         account.id_collisions = changed_ids.len() as u64;
         account.cut_edges = 0;
-        let positions = |way: &Way| of_way(&self.vertices.of_refs, way).iter().filter(|&&vertex| vertex != MISSING);
-        let position = |&vertex: &u32| self.nodes.places[vertex as usize];
-        let extents = self.ways.par_iter().map(|way| Extent::of(positions(way).filter_map(position))).collect();
+        let position = |&vertex: &u32| if vertex == MISSING { None } else { self.nodes.places[vertex as usize] };
+        let extent = |way| Extent::of(self.vertices.of_refs[self.ways.refs(way)].iter().filter_map(position));
+        let extents = (0..self.ways.len() as u32).into_par_iter().map(extent).collect();
         Division {
             blocks: blocks::divide(&cells, most),
             edges_before,
@@ -155,8 +157,8 @@ where
         let block = division.blocks[block].clone();
         let around = block.surroundings();
         let near = |extent: &Option<Extent>| extent.is_some_and(|extent| extent.meets(around));
-        let ways: Vec<&Way> =
-            self.ways.iter().zip(&division.extents).filter(|(_, extent)| near(extent)).map(|(way, _)| way).collect();
+        let ways: Vec<u32> =
+            (0..).zip(&division.extents).filter(|(_, extent)| near(extent)).map(|(way, _)| way).collect();
         let mut network = Network::default();
         self.source().build(&ways, &mut network, &mut NetworkAccount::default());
         self.take_names(&mut network);
@@ -194,7 +196,8 @@ where
     }
 
     fn source(&self) -> Source<'_, P, S> {
-        Source { nodes: &self.nodes, vertices: &self.vertices, places: &self.places, sections: &self.sections }
+        let Self { ways, nodes, vertices, places, sections, .. } = self;
+        Source { ways, nodes, vertices, places, sections }
     }
 
     /// The steps from edges to a network.
@@ -255,8 +258,8 @@ impl Division {
     }
 
     /// By road and by edge of a portion's network: the index in the whole network.
-    fn numbers(&self, ways: &[Way], network: &Network) -> (Vec<u32>, Vec<u32>) {
-        let way = |road: &super::Road| ways.partition_point(|way| way.id < road.way_id);
+    fn numbers(&self, ways: &Ways, network: &Network) -> (Vec<u32>, Vec<u32>) {
+        let way = |road: &super::Road| ways.first_from(road.way_id);
         let of_road: Vec<usize> = network.roads.iter().map(way).collect();
         let roads = of_road.iter().map(|&way| self.roads_before[way]).collect();
         let mut edges = Vec::with_capacity(network.edges.len());
@@ -270,7 +273,7 @@ impl Division {
 
 /// Numbers of edges and roads by way, found as networks of some ways after the other are looked through.
 struct Numbers<'w> {
-    ways: &'w [Way],
+    ways: &'w Ways,
     edges_before: Vec<u32>,
     roads_before: Vec<u32>,
     edges: u32,
@@ -278,7 +281,7 @@ struct Numbers<'w> {
 }
 
 impl<'w> Numbers<'w> {
-    fn new(ways: &'w [Way]) -> Self {
+    fn new(ways: &'w Ways) -> Self {
         Self { ways, edges_before: Vec::new(), roads_before: Vec::new(), edges: 0, roads: 0 }
     }
 
@@ -293,8 +296,8 @@ impl<'w> Numbers<'w> {
 
     /// Notes the numbers before each way up to one of this id, or before all that are left.
     fn up_to(&mut self, id: Option<i64>) {
-        let left = &self.ways[self.edges_before.len()..];
-        let count = id.map_or(left.len(), |id| left.partition_point(|way| way.id <= id));
+        let end = id.map_or(self.ways.len(), |id| self.ways.first_from(id) + 1);
+        let count = end - self.edges_before.len();
         self.edges_before.extend(std::iter::repeat_n(self.edges, count));
         self.roads_before.extend(std::iter::repeat_n(self.roads, count));
     }

@@ -29,6 +29,7 @@ mod site;
 mod splits;
 mod stroke;
 mod vertices;
+mod ways;
 
 use std::num::NonZeroU8;
 use std::ops::Range;

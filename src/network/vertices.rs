@@ -116,7 +116,7 @@ impl Buckets {
 }
 
 /// A way's slice of an array parallel to `Extract::refs`.
-pub(super) fn of_way<'v>(of_refs: &'v [u32], way: &Way) -> &'v [u32] {
+fn of_way<'v>(of_refs: &'v [u32], way: &Way) -> &'v [u32] {
     &of_refs[way.refs.start as usize..way.refs.end as usize]
 }
 

@@ -206,7 +206,7 @@ pub enum Permission {
 
 /// Facts from the tags of a way, independent of the country. Widths, lanes and kerb-side uses are private to this
 /// folder; `facts::cross_sections` reads them.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct WayFacts {
     /// Road class.
     pub class: RoadClass,

@@ -5,6 +5,8 @@
 
 use std::num::NonZeroU16;
 
+use serde::Serialize;
+
 use crate::osm::facts::{Direction, WidthSource};
 
 /// Most lanes with given widths per direction.
@@ -13,7 +15,7 @@ pub(super) const LISTED: usize = 8;
 pub(super) const LANE_STEP_M: f32 = 0.05;
 
 /// A length up to 65 m, rounded down. It is exact for lengths in tags.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub(super) struct Millimetres(NonZeroU16);
 
 impl Millimetres {
@@ -29,7 +31,7 @@ impl Millimetres {
 }
 
 /// Cars parked on the carriageway. The more room they take, the greater the value.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize)]
 pub(super) enum Parking {
     #[default]
     None,
@@ -43,7 +45,7 @@ pub(super) type Decimetres = u8;
 pub(super) const UNTAGGED: Decimetres = u8::MAX;
 
 /// Uses that take room between the lanes and one edge of the carriageway.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub(super) struct Kerb {
     pub(super) parking: Parking,
     pub(super) parking_dm: Decimetres,
@@ -52,7 +54,7 @@ pub(super) struct Kerb {
 }
 
 /// Lanes of one direction of travel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub(super) struct LaneTags {
     /// `lanes:forward` and similar keys; 0 if untagged.
     pub(super) count: u8,
@@ -79,7 +81,7 @@ impl LaneTags {
 }
 
 /// The line of a lane that the way's line follows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 pub(super) enum Placement {
     /// The middle of the carriageway.
     #[default]
@@ -91,7 +93,7 @@ pub(super) enum Placement {
 }
 
 /// The line of a lane, for [`Placement::At`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub(super) enum LaneLine {
     Left,
     Middle,
@@ -99,7 +101,7 @@ pub(super) enum LaneLine {
 }
 
 /// All tags of the cross section.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub(super) struct SectionTags {
     /// Width between the edges of the carriageway.
     pub(super) carriageway: Option<Millimetres>,
