@@ -63,7 +63,7 @@ def panel(title, across, up, points, left, top):
     shapes.append(f'<path class="line" d="M{x0:.1f} {y0:.1f}L{x1:.1f} {y1:.1f}"/>')
     for x, y in points:
         px, py = at(x, y)
-        shapes.append(f'<circle cx="{px:.1f}" cy="{py:.1f}" r="3.5"><title>{x:.4g}: {y:.3g} s</title></circle>')
+        shapes.append(f'<circle cx="{px:.1f}" cy="{py:.1f}" r="3.5"><title>{x:.4g}: {y:.3g}</title></circle>')
     last_x, last_y = points[-1]
     shapes.append(f'<text x="{x1:.1f}" y="{y0 + 14:.1f}" text-anchor="middle">{last_x:,.0f}</text>')
     shapes.append(f'<text x="{x0 - 5:.1f}" y="{y1 + 4:.1f}" text-anchor="end">{last_y:.3g}</text>')
