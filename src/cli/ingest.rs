@@ -45,7 +45,7 @@ pub(crate) struct Ingest {
     #[command(flatten)]
     roads: Roads,
     /// How many directed edges to certify at a time. Fewer take less memory, more take less time; certificates are the same.
-    #[arg(long, value_name = "N", default_value_t = EDGES_AT_ONCE, value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", help_heading = "Memory", default_value_t = EDGES_AT_ONCE, value_parser = clap::value_parser!(u64).range(1..))]
     edges_at_once: u64,
 }
 
