@@ -105,6 +105,7 @@ pub mod seal;
 #[cfg(feature = "serve")]
 pub mod serve;
 pub mod settings;
+mod sorter;
 pub mod store;
 pub mod turns;
 pub mod words;

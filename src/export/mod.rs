@@ -18,7 +18,6 @@
 //! | `ways` | the extract's ways beside the network's edges |
 //! | `destination` | the output: a file, a folder or a stream |
 //! | `unfinished` | what to remove if the program is stopped |
-//! | `sorter` | sorting outside memory |
 //! | `formats` | one file or folder for each target |
 //!
 //! An export does not certify whole routes. An engine joins edges and turns that are each safe by themselves; only `netcert
@@ -33,7 +32,6 @@ mod measurements;
 mod permit;
 mod rings;
 mod sequences;
-mod sorter;
 mod source;
 mod unfinished;
 mod ways;

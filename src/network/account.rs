@@ -96,7 +96,7 @@ impl NetworkAccount {
         self.node_limited_edges += u64::from(limited);
     }
 
-    /// Counts a restriction of the map.
+    /// Counts a restriction.
     pub(super) fn count_restriction(&mut self, on_network: bool, forbids: bool) {
         match (on_network, forbids) {
             (_, true) => self.restrictions_kept += 1,

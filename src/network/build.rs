@@ -24,5 +24,6 @@ pub fn build_with(
     sections: &(impl Fn(&WayFacts, &Place, Option<f64>) -> [CrossSection; 2] + Sync),
     options: &StrokeOptions,
 ) -> (Network, NetworkAccount) {
-    Ground::new(extract, places, sections, *options).whole()
+    let (portion, account) = Ground::new(extract, places, sections, *options).whole();
+    (portion.network, account)
 }

@@ -85,9 +85,9 @@ where
         self.vertices.of_refs.len()
     }
 
-    /// The network of all roads.
+    /// The network of all roads, as the only portion.
     #[must_use]
-    pub fn whole(mut self) -> (Network, NetworkAccount) {
+    pub fn whole(mut self) -> (Portion, NetworkAccount) {
         let mut account = std::mem::take(&mut self.account);
         let mut network = Network { strings: std::mem::take(&mut self.strings), ..Network::default() };
         let all: Vec<u32> = (0..self.ways.len() as u32).collect();
@@ -108,7 +108,7 @@ where
         let forbidding = portion.restrictions().map(|restriction| restriction.rule.0).collect();
         self.count_restrictions(&mut account, &portion.on_network().iter().copied().collect(), &forbidding);
         count_areas(&mut account, portion.network.areas.all().iter());
-        (portion.network, account)
+        (portion, account)
     }
 
     /// Divides the network into blocks of at most `most` directed edges each, except where a single cell has more.

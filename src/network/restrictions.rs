@@ -26,7 +26,7 @@ pub(super) struct Resolved {
     pub(super) on_network: Vec<u32>,
 }
 
-/// Fills `restrictions` and `restriction_edges` of a network without restrictions. Takes the relations with an index that `takes` accepts.
+/// Fills `restrictions` and `restriction_edges` of a network without restrictions. Leaves out the relations that `takes` refuses.
 pub(super) fn resolve(
     network: &mut Network,
     restrictions: &[osm::Restriction],

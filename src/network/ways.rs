@@ -30,6 +30,7 @@ impl Ways {
         for Way { id, refs, mut facts } in ways {
             let (name, reference) = (facts.name.take(), facts.reference.take());
             let next = all.facts.len() as u32;
+            // Facts without a form in bytes would be shared with no other way.
             let known = postcard::to_allocvec(&facts).ok().map(|bytes| *numbers.entry(bytes).or_insert(next));
             let number = known.unwrap_or(next);
             if number == next {

@@ -38,6 +38,8 @@ pub(super) struct Earlier {
     facts: Vec<TurnFacts>,
     /// Areas of its junctions, by node.
     junctions: Vec<JunctionArea>,
+    /// Strokes and nodes of the new network that do not stand. It has no turns.
+    touched: Touched,
 }
 
 impl Earlier {
@@ -77,13 +79,13 @@ impl Earlier {
             return Ok(None);
         }
         let junctions = if settings.turns { database.junction_areas()? } else { Vec::new() };
-        Ok(Some(Self { differences, measures, sets, facts, junctions }))
+        let touched = Touched::find(network, &[], &differences.edges, &differences.nodes);
+        Ok(Some(Self { differences, measures, sets, facts, junctions, touched }))
     }
 
     /// The strokes that stand, as indices into the new network.
     pub(super) fn strokes(&self, network: &Network) -> impl Iterator<Item = u32> {
-        let touched = Touched::find(network, &[], &self.differences.edges, &self.differences.nodes);
-        let touched: FxHashSet<u32> = touched.strokes.into_iter().collect();
+        let touched: FxHashSet<u32> = self.touched.strokes.iter().copied().collect();
         (0_u32..).take(network.strokes.len()).filter(move |stroke| !touched.contains(stroke))
     }
 
@@ -134,8 +136,7 @@ impl Earlier {
 
     /// The areas that stand of the junctions at some nodes, and the nodes whose areas do not.
     pub(super) fn junctions(&self, network: &Network, places: &[(i64, LonLat)]) -> (Vec<JunctionArea>, Vec<i64>) {
-        let touched = Touched::find(network, &[], &self.differences.edges, &self.differences.nodes);
-        let touched = NearNodes::new(network, &touched.nodes);
+        let touched = NearNodes::new(network, &self.touched.nodes);
         let (mut stand, mut others) = (Vec::new(), Vec::new());
         for &(node, place) in places {
             match self

@@ -32,8 +32,8 @@ impl<'c> Roads<'c> {
         let ground = Ground::new(extract, places, sections, StrokeOptions::default());
         // A way has about two references for each directed edge.
         if whole || ground.references() as u64 <= 2 * edges_at_once {
-            let (network, account) = ground.whole();
-            return Self { divided: None, current: Some((0, Portion::whole(network))), account: account.rows() };
+            let (portion, account) = ground.whole();
+            return Self { divided: None, current: Some((0, portion)), account: account.rows() };
         }
         let division = ground.divide(edges_at_once);
         Self { divided: Some(Box::new((ground, division))), current: None, account: Vec::new() }

@@ -16,7 +16,7 @@ use crate::settings::Settings;
 use crate::words::Named;
 
 use super::contents;
-use super::error::StoreError;
+use super::error::{StoreError, content};
 use super::evidence::{self, RegisterState};
 use super::names::corridor_no;
 use super::network_read;
@@ -272,8 +272,8 @@ async fn replace(
     let set =
         Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished, settings: &renewed.settings };
     let rows = renewed.rows.iter().copied().map(Ok);
-    // The rows are known to be complete.
-    let _ = set.insert(c, rows, renewed.rows.len() as u32).await?;
+    let inserted = set.insert(c, rows, renewed.rows.len() as u32).await?;
+    inserted.map_err(|(edge, detail)| content(format!("edge {edge}: {detail}")))?;
     contents::touch_tables(c, &run.finished).await?;
     match &mut renewed.turns {
         Some((turns, packed)) => turns::insert_set(c, (vehicle_no, policy, run_id), turns, packed, &run.finished).await,

@@ -59,6 +59,7 @@ impl Finished {
         finished.file.set_len(finished.length).map_err(|e| finished.error(e))?;
         if !known {
             finished.append(&[&MAGIC[..], identity].concat())?;
+            finished.length = HEAD_BYTES;
         }
         Ok(finished)
     }
@@ -80,9 +81,7 @@ impl Finished {
         let (head, body) = block.split_at_mut(BLOCK_HEAD_BYTES);
         head[..4].copy_from_slice(&(body.len() as u32).to_le_bytes());
         head[4..].copy_from_slice(&check_sum(body));
-        let start = self.length;
         self.append(&block)?;
-        self.length = start;
         self.note(part, block.len() as u64);
         Ok(())
     }
@@ -142,14 +141,13 @@ impl Finished {
         (body.len() == length as usize && *sum == check_sum(&body)).then_some(body)
     }
 
+    /// Writes behind the last block.
     fn append(&mut self, bytes: &[u8]) -> Result<(), StoreError> {
         let mut write = || {
             self.file.seek(SeekFrom::Start(self.length))?;
             self.file.write_all(bytes)
         };
-        write().map_err(|e| self.error(e))?;
-        self.length += bytes.len() as u64;
-        Ok(())
+        write().map_err(|e| self.error(e))
     }
 
     fn error(&self, error: std::io::Error) -> StoreError {

@@ -10,8 +10,8 @@ use crate::osm::LonLat;
 use crate::osm::facts::CrossSection;
 use crate::rows::EdgeMeasure;
 
-use super::part::with_suffix;
-use super::sorter::Sorter;
+use super::part::sorter;
+use crate::sorter::Sorter;
 
 /// A road with its texts.
 #[derive(Serialize, Deserialize)]
@@ -57,9 +57,9 @@ impl Gathered {
     /// No rows yet. Temporary files are made beside `path`.
     pub(super) fn create(path: &Path) -> io::Result<Self> {
         Ok(Self {
-            roads: Sorter::create(with_suffix(path, "-roads"))?,
-            edges: Sorter::create(with_suffix(path, "-edges"))?,
-            strokes: Sorter::create(with_suffix(path, "-strokes"))?,
+            roads: sorter(path, "-roads")?,
+            edges: sorter(path, "-edges")?,
+            strokes: sorter(path, "-strokes")?,
             restrictions: Vec::new(),
             areas: Vec::new(),
         })

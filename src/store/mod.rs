@@ -40,7 +40,6 @@ mod session;
 mod sets;
 mod settings;
 mod sides;
-mod sorter;
 mod stats;
 mod stream;
 mod styles;

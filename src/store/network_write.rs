@@ -16,8 +16,8 @@ use super::blob;
 use super::bulk::Bulk;
 use super::error::content;
 use super::gathered::{EdgeRow, RoadRow, StrokeRow};
-use super::part::with_suffix;
-use super::sorter::{Sorted, Sorter};
+use super::part::sorter;
+use crate::sorter::{Sorted, Sorter};
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -35,7 +35,7 @@ pub(super) async fn write(
     (roads, edges, strokes): (Sorter<u32, RoadRow>, Sorter<u32, EdgeRow>, Sorter<u32, StrokeRow>),
     path: &Path,
 ) -> Sql<Written> {
-    let mut boxes = Sorter::create(with_suffix(path, "-boxes"))?;
+    let mut boxes = sorter(path, "-boxes")?;
     let written = roads_and_edges(c, roads.sorted()?, edges.sorted()?, &mut boxes).await?;
     write_strokes(c, strokes.sorted()?).await?;
     spatial_index(c, boxes.sorted()?).await?;

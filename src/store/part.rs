@@ -4,10 +4,16 @@
 
 use std::ffi::OsString;
 use std::fs::File;
+use std::io;
 use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use super::error::StoreError;
 use crate::output_lock::{self, OutputLock};
+use crate::scratch::Scratch;
+use crate::sorter::Sorter;
 
 /// A locked `.part` file, empty at first. Dropping it removes the file unless the file became the target.
 pub(super) struct Part {
@@ -24,6 +30,15 @@ pub(super) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     let mut name: OsString = path.as_os_str().to_owned();
     name.push(suffix);
     name.into()
+}
+
+/// A sorter with a temporary file at `path` with `suffix` after its name.
+pub(super) fn sorter<K, T>(path: &Path, suffix: &str) -> io::Result<Sorter<K, T>>
+where
+    K: Ord + Copy + Serialize + DeserializeOwned,
+    T: Serialize + DeserializeOwned,
+{
+    Ok(Sorter::new(Scratch::create(with_suffix(path, suffix))?))
 }
 
 impl Part {

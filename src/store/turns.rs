@@ -303,9 +303,8 @@ pub(super) async fn insert_set(
         return Err(content(format!("{kept} turns are stored, the network has {}", set.facts.len())));
     }
     let (rows, plans) = (packed.rows.iter().copied().map(Ok), plans::sorted(&mut packed.plans));
-    // The rows are known to be complete.
-    let _ = insert(c, (vehicle_no, policy, run_id), rows, plans, packed.rows.len() as u32).await?;
-    Ok(())
+    let inserted = insert(c, (vehicle_no, policy, run_id), rows, plans, packed.rows.len() as u32).await?;
+    inserted.map_err(|(turn, detail)| content(format!("turn {turn}: {detail}")))
 }
 
 async fn fetch(c: &mut SqliteConnection, options: &TurnQuery) -> Sql<Vec<TurnRow>> {

@@ -8,8 +8,8 @@ use std::path::Path;
 use crate::rows::StoredPlan;
 
 use super::packed::Packed;
-use super::part::with_suffix;
-use super::sorter::{Sorted, Sorter};
+use super::part::sorter;
+use crate::sorter::{Sorted, Sorter};
 
 /// Vehicle number and corridor number.
 pub(super) type SetNo = (u32, u8);
@@ -26,8 +26,8 @@ pub(super) struct Waiting {
 impl Waiting {
     /// Nothing waits yet. Temporary files are made at `path` with a word after it.
     pub(super) fn create(path: &Path) -> io::Result<Self> {
-        let certificates = Sorter::create(with_suffix(path, "-certificates"))?;
-        Ok(Self { certificates, plans: Sorter::create(with_suffix(path, "-plans"))? })
+        let certificates = sorter(path, "-certificates")?;
+        Ok(Self { certificates, plans: sorter(path, "-plans")? })
     }
 
     pub(super) fn certificate(&mut self, (vehicle, corridor): SetNo, packed: Packed) -> io::Result<()> {

@@ -28,7 +28,7 @@ use super::map_changes::{self, MapChanges};
 use super::names::{VERDICTS, corridor_no};
 use super::network_write;
 use super::packed::Packed;
-use super::part::{Part, with_suffix};
+use super::part::{Part, sorter, with_suffix};
 use super::plans;
 use super::records::{self, Run, VehicleRecord};
 use super::restrictions;
@@ -36,10 +36,10 @@ use super::schema::{APPLIED, BEFORE_DATA, MIGRATIONS};
 use super::session::Session;
 use super::sets::{self, Set};
 use super::settings;
-use super::sorter::Sorter;
 use super::styles::{self, Shows};
 use super::turns::{self, TurnKey};
 use super::waiting::{SetNo, Waiting};
+use crate::sorter::Sorter;
 
 type Sql<T> = Result<T, sqlx::Error>;
 
@@ -82,8 +82,8 @@ struct Turns {
 
 impl Turns {
     fn create(path: &Path) -> io::Result<Self> {
-        let rows = Sorter::create(with_suffix(path, "-turns"))?;
-        let junctions = Sorter::create(with_suffix(path, "-junctions"))?;
+        let rows = sorter(path, "-turns")?;
+        let junctions = sorter(path, "-junctions")?;
         let certificates = Waiting::create(&with_suffix(path, "-turn"))?;
         Ok(Self { rows, count: 0, junctions, certificates })
     }
@@ -309,7 +309,8 @@ impl Writer {
         while let Some((vehicle_no, corridor)) = certificates.next_set().map_err(at)? {
             let rows = certificates.of((vehicle_no, corridor));
             let known = self.vehicles.get(vehicle_no as usize - 1).zip(self.settings.get(usize::from(corridor)));
-            let Some((vehicle, settings)) = known else { continue };
+            let unknown = || unsound(&self.vehicles, vehicle_no, 0, "the vehicle was never added".to_owned());
+            let (vehicle, settings) = known.ok_or_else(unknown)?;
             let policy = Policy::ALL[usize::from(corridor)];
             let (vehicle_id, vehicle_name) = (&vehicle.id, &vehicle.name);
             let set = Set { vehicle_no, vehicle_id, vehicle_name, policy, run_id, time: &run.finished, settings };

@@ -5,10 +5,12 @@
 
 use std::io::{self, Write};
 
-use crate::export::sorter::{Sorted, Sorter};
+use serde::{Deserialize, Serialize};
+
 use crate::export::{ExportError, Place};
 use crate::rows::Bounds;
 use crate::scratch::Scratch;
+use crate::sorter::{Sorted, Sorter};
 
 /// Boxes per node, as in other writers.
 pub(super) const FANOUT: u64 = 16;
@@ -17,11 +19,9 @@ pub(super) const FANOUT: u64 = 16;
 const NODE_BYTES: usize = 40;
 /// Bytes of a [`Located`]: a box, an offset and a length.
 const LOCATED_BYTES: usize = 48;
-/// Bytes of a [`Located`] with its key and number before it.
-const KEYED_BYTES: usize = 12 + LOCATED_BYTES;
 
 /// A feature's box on earth, and its offset and length in the file of features.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct Located {
     pub(super) around: Bounds,
     pub(super) place: u64,
@@ -80,11 +80,9 @@ impl Index {
         let mut ordered = place.scratch(".ordered")?;
         let mut leaves = place.scratch(".level0")?;
         let mut end = 0;
-        for record in sorted {
-            let record = record?;
-            let Some(bytes) = record.last_chunk::<LOCATED_BYTES>() else { continue };
-            ordered.write_all(bytes)?;
-            let found = Located::of(bytes);
+        for row in sorted {
+            let (_, found) = row?;
+            ordered.write_all(&found.to_bytes())?;
             leaves.write_all(&found.node(end))?;
             end += found.bytes;
         }
@@ -124,21 +122,16 @@ fn sizes(features: u64) -> Vec<u64> {
     }
 }
 
-/// Sorts features along the curve. Features with the same key stay in their order.
+/// Sorts features along the curve. Features with the same place on the curve stay in their order.
 fn sort(
     located: &mut Scratch,
     features: u64,
     bounds: Bounds,
-    mut sorter: Sorter<KEYED_BYTES>,
-) -> io::Result<Sorted<KEYED_BYTES>> {
+    mut sorter: Sorter<(u32, u64), Located>,
+) -> io::Result<Sorted<(u32, u64), Located>> {
     for (number, bytes) in (0_u64..).zip(records::<LOCATED_BYTES>(located, features)) {
-        let bytes = bytes?;
-        let mut record = [0; KEYED_BYTES];
-        let key = along_curve(Located::of(&bytes).around, bounds);
-        record[..4].copy_from_slice(&key.to_be_bytes());
-        record[4..12].copy_from_slice(&number.to_be_bytes());
-        record[12..].copy_from_slice(&bytes);
-        sorter.push(record)?;
+        let found = Located::of(&bytes?);
+        sorter.push((along_curve(found.around, bounds), number), &found)?;
     }
     sorter.sorted()
 }

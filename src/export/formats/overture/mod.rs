@@ -17,9 +17,9 @@ use std::io::Write as _;
 use serde_json::json;
 
 use super::{Options, Target};
-use crate::export::sorter::{Sorted, Sorter};
 use crate::export::{ExportError, Layout, Place, Sink, Source};
 use crate::osm::LonLat;
+use crate::sorter::{Sorted, Sorter};
 use crate::vehicle::Vehicle;
 use segment::{Piece, Segment};
 use spots::{Spot, Spots};
@@ -78,11 +78,11 @@ fn end(mut sink: Sink) -> Result<(), ExportError> {
     sink.close()
 }
 
-fn write_connectors(source: &Source<'_>, nodes: Sorted<NODE_BYTES>, place: &mut Place) -> Result<(), ExportError> {
+fn write_connectors(source: &Source<'_>, nodes: Sorted<i64, LonLat>, place: &mut Place) -> Result<(), ExportError> {
     let mut sink = begin(source, place.create("connector.geojson")?)?;
     let mut last = None;
-    for record in nodes {
-        let (node, at) = node_of(&record?);
+    for row in nodes {
+        let (node, at) = row?;
         if last == Some(node) {
             continue;
         }
@@ -100,30 +100,10 @@ fn write_connectors(source: &Source<'_>, nodes: Sorted<NODE_BYTES>, place: &mut 
     end(sink)
 }
 
-/// Bytes of an id and a position.
-const NODE_BYTES: usize = 16;
-
-/// The record of a node, which sorts by id.
-fn node_record(node: i64, at: LonLat) -> [u8; NODE_BYTES] {
-    let mut record = [0; NODE_BYTES];
-    // With its highest bit inverted, a signed number sorts as bytes.
-    record[..8].copy_from_slice(&(node.cast_unsigned() ^ 1 << 63).to_be_bytes());
-    record[8..12].copy_from_slice(&at.lon_e7.to_be_bytes());
-    record[12..].copy_from_slice(&at.lat_e7.to_be_bytes());
-    record
-}
-
-fn node_of(record: &[u8; NODE_BYTES]) -> (i64, LonLat) {
-    let half = u64::from_be_bytes(*record.first_chunk::<8>().unwrap_or(&[0; 8]));
-    let at = u64::from_be_bytes(*record.last_chunk::<8>().unwrap_or(&[0; 8]));
-    let lon_e7 = ((at >> 32) as u32).cast_signed();
-    ((half ^ 1 << 63).cast_signed(), LonLat { lon_e7, lat_e7: (at as u32).cast_signed() })
-}
-
 /// The transitions that are prohibited, by the first edge.
 struct Transitions {
     /// The edges of refused turns: from and to, both permitted.
-    turns: std::iter::Peekable<Sorted<8>>,
+    turns: std::iter::Peekable<Sorted<(u32, u32), ()>>,
     /// The sequences of [`Source::sequences`], by their first edge. They are few.
     sequences: BTreeMap<u32, Vec<Vec<u32>>>,
 }
@@ -135,7 +115,7 @@ impl Transitions {
         for step in source.told(database.turn_steps(&source.ask.vehicle, source.ask.policy)?) {
             let step = step?;
             if source.refuses_turn(&step) {
-                turns.push((u64::from(step.from) << 32 | u64::from(step.to)).to_be_bytes())?;
+                turns.push((step.from, step.to), &())?;
             }
         }
         let mut sequences: BTreeMap<u32, Vec<Vec<u32>>> = BTreeMap::new();
@@ -149,12 +129,10 @@ impl Transitions {
     /// The prohibited sequences after an edge, each without that edge. Edges must come in order.
     fn of(&mut self, edge: u32) -> Result<Vec<Vec<u32>>, ExportError> {
         let mut out = Vec::new();
-        let halves = |record: &[u8; 8]| {
-            let both = u64::from_be_bytes(*record);
-            ((both >> 32) as u32, both as u32)
-        };
-        while let Some(record) = self.turns.next_if(|next| next.as_ref().map_or(true, |next| halves(next).0 <= edge)) {
-            let (from, to) = halves(&record?);
+        let reached =
+            |next: &std::io::Result<((u32, u32), ())>| next.as_ref().map_or(true, |((from, _), ())| *from <= edge);
+        while let Some(row) = self.turns.next_if(reached) {
+            let ((from, to), ()) = row?;
             if from == edge {
                 out.push(vec![to]);
             }
@@ -168,7 +146,7 @@ struct Writer<'w, 'r> {
     scope: segment::Scope,
     spots: &'w mut Spots,
     transitions: &'w mut Transitions,
-    connectors: &'w mut Sorter<NODE_BYTES>,
+    connectors: &'w mut Sorter<i64, LonLat>,
     source: &'w Source<'r>,
     sink: &'w mut Sink,
     written: u64,
@@ -218,27 +196,11 @@ impl Writer<'_, '_> {
 
     fn write(&mut self, segment: &Segment) -> Result<(), ExportError> {
         for (node, at) in segment.nodes() {
-            self.connectors.push(node_record(node, at))?;
+            self.connectors.push(node, &at)?;
         }
         let between = if self.written == 0 { "\n" } else { ",\n" };
         self.written += 1;
         write!(self.sink, "{between}{}", segment.feature(&self.scope))?;
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn nodes_sort_by_their_ids_and_come_back() {
-        let nodes = [(-7, -5, 900_000_000), (-1, 4, 2), (0, 0, 0), (1, -1_800_000_000, -1), (i64::MAX, 7, 7)];
-        let records: Vec<_> =
-            nodes.iter().map(|&(id, lon_e7, lat_e7)| node_record(id, LonLat { lon_e7, lat_e7 })).collect();
-        assert!(records.is_sorted());
-        for (record, (id, lon_e7, lat_e7)) in records.iter().zip(nodes) {
-            assert_eq!(node_of(record), (id, LonLat { lon_e7, lat_e7 }));
-        }
     }
 }

@@ -4,7 +4,6 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::io::{self, Write as _};
 use std::marker::PhantomData;
-use std::path::PathBuf;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -18,8 +17,8 @@ const BUFFER_BYTES: usize = 1 << 15;
 /// The length before each row of a run.
 const LENGTH_BYTES: usize = 4;
 
-/// Takes rows in any order and returns them sorted by their keys, which are distinct.
-pub(super) struct Sorter<K, T> {
+/// Takes rows in any order and returns them sorted by their keys. Rows of one key come in any order.
+pub(crate) struct Sorter<K, T> {
     scratch: Scratch,
     /// Keys of the current run, and where their rows end in `bytes`.
     run: Vec<(K, std::ops::Range<usize>)>,
@@ -31,21 +30,13 @@ pub(super) struct Sorter<K, T> {
 }
 
 impl<K: Ord + Copy + Serialize + DeserializeOwned, T: Serialize + DeserializeOwned> Sorter<K, T> {
-    /// A sorter without rows, with a temporary file at `path`.
-    pub(super) fn create(path: PathBuf) -> io::Result<Self> {
-        let scratch = Scratch::create(path)?;
-        Ok(Self {
-            scratch,
-            run: Vec::new(),
-            bytes: Vec::new(),
-            run_bytes: RUN_BYTES,
-            ends: Vec::new(),
-            rows: PhantomData,
-        })
+    /// A sorter without rows. `scratch` must be empty.
+    pub(crate) fn new(scratch: Scratch) -> Self {
+        Self { scratch, run: Vec::new(), bytes: Vec::new(), run_bytes: RUN_BYTES, ends: Vec::new(), rows: PhantomData }
     }
 
     /// Adds a row.
-    pub(super) fn push(&mut self, key: K, row: &T) -> io::Result<()> {
+    pub(crate) fn push(&mut self, key: K, row: &T) -> io::Result<()> {
         let start = self.bytes.len();
         let bytes = std::mem::take(&mut self.bytes);
         self.bytes = postcard::to_extend(&(key, row), bytes).map_err(io::Error::other)?;
@@ -65,7 +56,7 @@ impl<K: Ord + Copy + Serialize + DeserializeOwned, T: Serialize + DeserializeOwn
     }
 
     /// All rows, sorted.
-    pub(super) fn sorted(mut self) -> io::Result<Sorted<K, T>> {
+    pub(crate) fn sorted(mut self) -> io::Result<Sorted<K, T>> {
         if !self.run.is_empty() {
             self.spill()?;
         }
@@ -109,7 +100,7 @@ impl<T> Run<T> {
 }
 
 /// Rows in the order of their keys.
-pub(super) struct Sorted<K, T> {
+pub(crate) struct Sorted<K, T> {
     scratch: Scratch,
     runs: Vec<Run<T>>,
     heads: BinaryHeap<Reverse<(K, usize)>>,
@@ -146,13 +137,14 @@ impl<K: Ord + DeserializeOwned, T: DeserializeOwned> Iterator for Sorted<K, T> {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use crate::osm::LonLat;
 
     #[test]
     fn any_number_of_rows_comes_back_sorted_and_the_file_goes() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scratch");
         for run_bytes in [1, 700, 20_000, 10_000_000] {
-            let mut sorter = Sorter::<u64, Vec<u8>>::create(path.clone()).unwrap();
+            let mut sorter = Sorter::<u64, Vec<u8>>::new(Scratch::create(path.clone()).unwrap());
             sorter.run_bytes = run_bytes;
             let row = |key: u64| vec![(key % 251) as u8; (key % 97) as usize * if key % 1000 == 1 { 999 } else { 1 }];
             let mut wanted = Vec::new();
@@ -167,6 +159,32 @@ mod tests {
             assert!(sorted.iter().all(|(key, bytes)| *bytes == row(*key)));
             assert!(!cfg!(unix) || !path.exists());
         }
-        assert_eq!(Sorter::<u64, u8>::create(path).unwrap().sorted().unwrap().count(), 0);
+        assert_eq!(Sorter::<u64, u8>::new(Scratch::create(path).unwrap()).sorted().unwrap().count(), 0);
+    }
+
+    #[test]
+    fn nodes_sort_by_their_ids_and_come_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let nodes = [(-7, -5, 900_000_000), (-1, 4, 2), (0, 0, 0), (1, -1_800_000_000, -1), (i64::MAX, 7, 7)];
+        let mut sorter = Sorter::<i64, LonLat>::new(Scratch::create(folder.path().join("scratch")).unwrap());
+        for &(id, lon_e7, lat_e7) in nodes.iter().rev() {
+            sorter.push(id, &LonLat { lon_e7, lat_e7 }).unwrap();
+        }
+        let sorted = sorter.sorted().unwrap().map(Result::unwrap);
+        assert!(sorted.map(|(id, at)| (id, at.lon_e7, at.lat_e7)).eq(nodes));
+    }
+
+    #[test]
+    fn rows_of_one_key_all_come_back() {
+        let folder = tempfile::tempdir().unwrap();
+        for run_bytes in [1, 10_000_000] {
+            let mut sorter = Sorter::<u32, u32>::new(Scratch::create(folder.path().join("scratch")).unwrap());
+            sorter.run_bytes = run_bytes;
+            (0..300_u32).for_each(|row| sorter.push(row % 3, &row).unwrap());
+            let mut rows: Vec<(u32, u32)> = sorter.sorted().unwrap().map(Result::unwrap).collect();
+            assert!(rows.is_sorted_by_key(|row| row.0));
+            rows.sort_unstable_by_key(|row| row.1);
+            assert!(rows.into_iter().eq((0..300).map(|row| (row % 3, row))));
+        }
     }
 }
