@@ -68,6 +68,7 @@
 //! | files | [`certificate`] | a certificate → the file that `verify` checks |
 //! | what changed | [`diff`] | two databases and a vehicle → what became safe, unsafe, forbidden, conditional |
 //! | exports | [`export`] | a database and a vehicle → what routing engines and map programs read |
+//! | many machines | [`cluster`] | the tasks of a region, and their results, as tables |
 //! | reasons | [`explain`] | an edge or corridor and a vehicle → what limits, where, and what would do |
 //! | manoeuvres | [`manoeuvres`] | a vehicle → swept paths of the turns that regulators ask for, beside their limits |
 //! | pictures | [`picture`] | corridors, vehicles and certificates → SVG; of the library only `serve` depends on it |
@@ -84,6 +85,8 @@ pub mod account;
 pub mod certificate;
 pub mod certify;
 pub mod check;
+#[cfg(feature = "export")]
+pub mod cluster;
 pub mod corridor;
 pub mod diff;
 pub mod evidence;

@@ -42,6 +42,8 @@ fn run(cli: &Cli) -> anyhow::Result<()> {
         Verb::Paper(verb) => verb.run(&session),
         Verb::Stats(verb) => verb.run(),
         Verb::Serve(verb) => verb.run(&session),
+        Verb::Cells(verb) => verb.run(&session),
+        Verb::Assemble(verb) => verb.run(&session),
         Verb::Verify(verb) => verb.run(&session),
     }
 }

@@ -9,9 +9,10 @@ use std::sync::Arc;
 use crate::explain::{self, Explanation, TurnExplanation};
 use crate::osm::facts::Policy;
 use crate::route::{Driver, Measure, NoDriver, Peer, Planner, Roads, Speeds, SpeedsError};
+use crate::rows::TurnRow;
 use crate::stet::{Model, ModelError};
 use crate::stop::{Stop, Stopped};
-use crate::store::{CertifiedSet, Database, QueryOptions, Rows, StoreError};
+use crate::store::{CertifiedSet, Database, QueryOptions, Rows, StoreError, TurnQuery};
 use crate::turns::turn_facts;
 use crate::vehicle::{Vehicle, VehicleError};
 
@@ -146,6 +147,14 @@ impl Region {
         Ok(self.database.certified()?)
     }
 
+    /// The policy that counts where none is named: that of the database's `ingest`.
+    ///
+    /// # Errors
+    /// The file or its settings cannot be read.
+    pub fn usual_policy(&mut self) -> Result<Policy, RegionError> {
+        Ok(self.database.settings_of_new_sets()?.policy)
+    }
+
     /// The vehicle's definition in the database, with which its certificates were made. `None` if the database does not have
     /// the vehicle.
     ///
@@ -162,6 +171,14 @@ impl Region {
     /// The vehicle is not certified under this policy; the file cannot be read.
     pub fn edges(&mut self, options: &QueryOptions) -> Result<Rows<'_>, RegionError> {
         Ok(self.database.query(options)?)
+    }
+
+    /// The turns with their certificates, in order of the network.
+    ///
+    /// # Errors
+    /// The vehicle's turns are not certified under this policy; the file cannot be read.
+    pub fn turns(&mut self, options: &TurnQuery) -> Result<Vec<TurnRow>, RegionError> {
+        Ok(self.database.query_turns(options)?)
     }
 
     /// The network with its movements. The first call loads it; memory grows with the roads.

@@ -151,6 +151,7 @@ pub const fn verdict_words(verdict: Verdict) -> (&'static str, &'static str) {
                 UnknownReason::Geometry => "geometry",
                 UnknownReason::Cut => "cut",
                 UnknownReason::Limit => "limit",
+                UnknownReason::Failed => "failed",
             };
             ("unknown", reason)
         }

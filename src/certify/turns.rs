@@ -223,7 +223,9 @@ fn given(job: &TurnJob<'_>, turn: &TurnFacts, vehicle: usize) -> Option<Verdict>
     let of = |edge: u32| verdicts.get(edge as usize).copied().unwrap_or(Verdict::Unknown(UnknownReason::Geometry));
     let both = [of(turn.movement.from), of(turn.movement.to)];
     let first = |wanted: fn(&Verdict) -> bool| both.into_iter().find(wanted);
-    let barred = |v: &Verdict| matches!(v, Verdict::Forbidden(_) | Verdict::Unknown(UnknownReason::Limit));
+    let barred = |v: &Verdict| {
+        matches!(v, Verdict::Forbidden(_) | Verdict::Unknown(UnknownReason::Limit | UnknownReason::Failed))
+    };
     let arcs = || turn.through.iter().map(|&arc| of(arc)).find(barred);
     first(|v| matches!(v, Verdict::Forbidden(_)))
         .or_else(|| first(|v| matches!(v, Verdict::Unsafe(_))))

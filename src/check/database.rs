@@ -149,6 +149,10 @@ impl SetClaim<'_> {
         let Some(edge) = self.network.edges.get(row.edge as usize) else {
             return Outcome::Malformed("there is no such edge".to_owned());
         };
+        // A machine that failed claims nothing.
+        if row.certificate.verdict == Verdict::Unknown(UnknownReason::Failed) && !row.certificate.has_numbers() {
+            return Outcome::Confirmed;
+        }
         let expected = expected((self.network, edge), self.vehicle, unknown, row);
         if unknown.is_some() && row.certificate.has_numbers() {
             return wrong("it has numbers, but nothing can be computed there".to_owned());

@@ -97,8 +97,9 @@ impl TurnsClaim<'_> {
         if worse != Verdict::Safe {
             return Some(worse);
         }
-        let stops =
-            |verdict: &Verdict| matches!(verdict, Verdict::Forbidden(_) | Verdict::Unknown(UnknownReason::Limit));
+        let stops = |verdict: &Verdict| {
+            matches!(verdict, Verdict::Forbidden(_) | Verdict::Unknown(UnknownReason::Limit | UnknownReason::Failed))
+        };
         turn.through.iter().map(|&arc| of(arc)).find(stops)
     }
 
@@ -109,6 +110,10 @@ impl TurnsClaim<'_> {
         };
         if let Some(wrong) = self.misdescribed(turn, row) {
             return (Outcome::Malformed(wrong), 0.0);
+        }
+        // A machine that failed claims nothing.
+        if row.certificate.verdict == Verdict::Unknown(UnknownReason::Failed) && !row.certificate.has_numbers() {
+            return (Outcome::Confirmed, 0.0);
         }
         let made = match self.barred(turn) {
             Some(verdict) => Err(verdict),

@@ -155,6 +155,11 @@ impl Roads {
         Self { country: text("country"), driving_side: text("driving_side"), rules: text("roads").map(PathBuf::from) }
     }
 
+    /// The options as they were given: country, driving side, file of road rules.
+    pub(super) fn given(&self) -> (Option<String>, Option<String>, Option<PathBuf>) {
+        (self.country.clone(), self.driving_side.clone(), self.rules.clone())
+    }
+
     pub(super) fn countries(&self) -> anyhow::Result<Countries> {
         let rules = match &self.rules {
             Some(path) => Rules::from_path(path)?,

@@ -3,6 +3,8 @@
 //! Results go to standard output; progress, counts and warnings go to standard error.
 
 mod area;
+mod assemble;
+mod cells;
 mod certify;
 mod certify_options;
 mod clock;
@@ -92,6 +94,8 @@ pub(crate) enum Verb {
     Paper(paper::Paper),
     Stats(stats::Stats),
     Serve(serve::Serve),
+    Cells(cells::Cells),
+    Assemble(assemble::Assemble),
     Verify(verify::Verify),
 }
 

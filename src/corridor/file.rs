@@ -1,13 +1,13 @@
-//! The corridor file: a corridor drawn by a user, in metres or in degrees.
+//! A corridor drawn by a user, in metres or in degrees, as values or as a corridor file.
 //!
-//! The format is stable for users. An error names the field and index; nothing is repaired.
+//! The file's format is stable for users. An error names the field and index; nothing is repaired.
 
 use serde::Deserialize;
 
 use super::centreline::{CentrelineError, from_centreline};
 use super::{Corridor, Frame, FrameError, Params};
 
-/// Why a corridor file cannot be used.
+/// Why a drawn corridor cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// Not JSON, or not of this form. The message gives line and column.
@@ -72,35 +72,70 @@ impl Widths {
     }
 }
 
-/// Reads the corridor that a JSON text describes (frame, points, widths, smoothing tolerance), with stations a metre
-/// apart. `smoothing_tolerance_m` defaults to 0.5 m.
-pub fn corridor_from_file(json: &str) -> Result<FileCorridor, FileError> {
-    let form: Form = serde_json::from_str(json)?;
-    let (left, right) = half_widths(form.width_m, form.left_m, form.right_m)?;
-    let (frame, points) = match form.frame {
-        FormFrame::Metres => (None, form.points),
-        FormFrame::LonLat => {
-            let degrees: Vec<(f64, f64)> = form.points.iter().map(|p| (p[0], p[1])).collect();
+/// A corridor as a user draws it. Either `width_m`, or `left_m` and `right_m`, are needed: one value, or one for each point.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Drawn {
+    /// Whether the points are longitudes and latitudes in degrees. Otherwise they are metres.
+    pub degrees: bool,
+    /// The centreline in driving direction.
+    pub points: Vec<[f64; 2]>,
+    /// Widths, metres. The centreline is in the middle.
+    pub width_m: Option<Vec<f64>>,
+    /// Widths to the left of the centreline, metres.
+    pub left_m: Option<Vec<f64>>,
+    /// Widths to the right of the centreline, metres.
+    pub right_m: Option<Vec<f64>>,
+    /// The vehicle follows the smoothest line within this distance of the points, metres. Default 0.5.
+    pub smoothing_tolerance_m: Option<f64>,
+}
+
+impl Drawn {
+    /// The corridor, with stations a metre apart.
+    ///
+    /// # Errors
+    /// A field is wrong, or points in degrees have no common metric frame.
+    pub fn corridor(self) -> Result<FileCorridor, FileError> {
+        let (left, right) = half_widths(self.width_m, self.left_m, self.right_m)?;
+        let (frame, points) = if self.degrees {
+            let degrees: Vec<(f64, f64)> = self.points.iter().map(|p| (p[0], p[1])).collect();
             let frame = Frame::around_degrees(degrees.iter().copied())?;
             (Some(frame), frame.forward_degrees(degrees)?)
-        }
+        } else {
+            (None, self.points)
+        };
+        let params = Params::default();
+        let tolerance_m = self.smoothing_tolerance_m.unwrap_or(params.tolerance_m);
+        let corridor = from_centreline(&points, &left, &right, tolerance_m, params.spacing_m)?;
+        Ok(FileCorridor { corridor, frame })
+    }
+}
+
+/// Reads the corridor that a JSON text describes: the members of [`Drawn`], with `frame` in place of `degrees`.
+///
+/// # Errors
+/// As [`Drawn::corridor`], or the text has another form.
+pub fn corridor_from_file(json: &str) -> Result<FileCorridor, FileError> {
+    let form: Form = serde_json::from_str(json)?;
+    let drawn = Drawn {
+        degrees: matches!(form.frame, FormFrame::LonLat),
+        points: form.points,
+        width_m: form.width_m.map(Widths::into_vec),
+        left_m: form.left_m.map(Widths::into_vec),
+        right_m: form.right_m.map(Widths::into_vec),
+        smoothing_tolerance_m: form.smoothing_tolerance_m,
     };
-    let params = Params::default();
-    let tolerance_m = form.smoothing_tolerance_m.unwrap_or(params.tolerance_m);
-    let corridor = from_centreline(&points, &left, &right, tolerance_m, params.spacing_m)?;
-    Ok(FileCorridor { corridor, frame })
+    drawn.corridor()
 }
 
 type HalfWidths = (Vec<f64>, Vec<f64>);
 
 fn half_widths(
-    width: Option<Widths>,
-    left: Option<Widths>,
-    right: Option<Widths>,
+    width: Option<Vec<f64>>,
+    left: Option<Vec<f64>>,
+    right: Option<Vec<f64>>,
 ) -> Result<HalfWidths, CentrelineError> {
     match (width, left, right) {
         (Some(width), None, None) => {
-            let width = width.into_vec();
             if let Some(i) = width.iter().position(|w| !(*w > 0.0 && w.is_finite())) {
                 let field = if width.len() == 1 { "width_m".to_owned() } else { format!("width_m[{i}]") };
                 return Err(CentrelineError::value(
@@ -111,7 +146,7 @@ fn half_widths(
             let half: Vec<f64> = width.iter().map(|w| 0.5 * w).collect();
             Ok((half.clone(), half))
         }
-        (None, Some(left), Some(right)) => Ok((left.into_vec(), right.into_vec())),
+        (None, Some(left), Some(right)) => Ok((left, right)),
         (Some(_), ..) => {
             Err(CentrelineError::value("width_m", "is given with left_m or right_m; give width_m, or both of them"))
         }

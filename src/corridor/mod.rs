@@ -23,7 +23,7 @@ pub(crate) mod tests;
 use std::ops::Range;
 
 pub use centreline::{CentrelineError, from_centreline};
-pub use file::{FileCorridor, FileError, corridor_from_file};
+pub use file::{Drawn, FileCorridor, FileError, corridor_from_file};
 pub use frame::{Frame, FrameError, HALF_WIDTH_M};
 pub use netcert_base::corridor::{Area, AreaSpan, Corridor, CurvatureProfile};
 pub(crate) use outline::{from_chord_m, open_ends, outline};

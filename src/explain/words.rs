@@ -255,6 +255,7 @@ fn unknown(e: &Explanation, reason: UnknownReason) -> String {
             format!("unknown: {} is tagged with a value that cannot be read", c.tag)
         }
         (UnknownReason::Limit, None) => "unknown: a limit is tagged with a value that cannot be read".to_owned(),
+        (UnknownReason::Failed, _) => "unknown: the machine that was to certify it failed".to_owned(),
     };
     format!("{said}{on}")
 }

@@ -16,7 +16,7 @@ use crate::osm::{LonLat, NodeTable, RoadArea};
 const NEAR_ROAD_M: f64 = 100.0;
 
 /// The surface of roads at a junction, or an island.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Area {
     /// OSM way id.
     pub way_id: i64,
@@ -27,7 +27,7 @@ pub struct Area {
 }
 
 /// The areas of a network.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Areas {
     /// Sorted by way id.
     all: Vec<Area>,

@@ -10,7 +10,7 @@ use super::extent::Extent;
 const HALO_M: f64 = 1000.0;
 
 /// A rectangle of cells.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Block {
     x: RangeInclusive<u32>,
     y: RangeInclusive<u32>,
@@ -28,6 +28,21 @@ impl Block {
 
     pub(super) fn has(&self, cell: Cell) -> bool {
         self.x.contains(&cell.x) && self.y.contains(&cell.y)
+    }
+
+    /// The first and last column and row of its cells.
+    pub(super) fn corners(&self) -> [u32; 4] {
+        [*self.x.start(), *self.y.start(), *self.x.end(), *self.y.end()]
+    }
+
+    /// Whether a stroke in the surroundings of this block may begin in the other one. Surroundings end within the second cell beyond a
+    /// block, and a stroke begins at most one cell before.
+    pub(super) fn needs(&self, other: &Self) -> bool {
+        const CELLS: u32 = 3;
+        let meet = |a: &RangeInclusive<u32>, b: &RangeInclusive<u32>| {
+            a.start().saturating_sub(CELLS) <= *b.end() && b.start().saturating_sub(CELLS) <= *a.end()
+        };
+        meet(&self.x, &other.x) && meet(&self.y, &other.y)
     }
 
     /// The extent of all that its edges, strokes and turns depend on: its cells, their neighbours and 1 km more.

@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::Network;
 
 /// Edges by node, in order of their indices.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Crossings {
     /// By node: its range in `edges`.
     ranges: FxHashMap<i64, (u32, u32)>,

@@ -4,7 +4,7 @@ use super::EARTH_RADIUS_M;
 use crate::osm::LonLat;
 
 /// A box that is closed on all sides, 1e-7 degree.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Extent {
     pub(super) west: i32,
     pub(super) south: i32,

@@ -237,6 +237,20 @@ impl Division {
         self.blocks.len()
     }
 
+    /// The first column and row, and the last column and row of a block's cells.
+    #[must_use]
+    pub fn corners(&self, block: usize) -> [u32; 4] {
+        self.blocks[block].corners()
+    }
+
+    /// The blocks that may own edges in a block's surroundings, without the block itself.
+    #[must_use]
+    pub fn needs(&self, block: usize) -> Vec<u32> {
+        let own = &self.blocks[block];
+        let needed = |(number, other): &(u32, &blocks::Block)| *number as usize != block && own.needs(other);
+        (0..).zip(&self.blocks).filter(needed).map(|(number, _)| number).collect()
+    }
+
     /// Number of directed edges of the whole network.
     #[must_use]
     pub fn edges(&self) -> u32 {

@@ -120,7 +120,7 @@ pub struct Narrowing {
 }
 
 /// A chain of edges, each continuing straight on into the next.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
 pub struct Stroke {
     /// The edges driven before the first one: the best approach, not certified with this stroke. Range in
     /// [`Network::stroke_edges`], in driving order.
@@ -132,7 +132,7 @@ pub struct Stroke {
 }
 
 /// A sequence of edges that no heavy goods vehicle may drive one right after the other.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Restriction {
     /// OSM relation id.
     pub relation_id: i64,
@@ -145,7 +145,7 @@ pub struct Restriction {
 }
 
 /// The road network.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct Network {
     /// Roads, sorted by way id.
     pub roads: Vec<Road>,

@@ -9,7 +9,8 @@ use super::stroke::{Beginning, Chained};
 use super::{Edge, Network, NetworkAccount, Restriction};
 use crate::osm::LonLat;
 
-/// A network with its place in the whole network.
+/// A network with its place in the whole network. It can be written and read, so that another machine certifies it.
+#[derive(serde::Serialize, serde::Deserialize)]
 pub struct Portion {
     /// The network of the portion's cells and what surrounds them.
     pub network: Network,
@@ -20,6 +21,7 @@ pub struct Portion {
 }
 
 /// How a portion's indices continue in the whole network.
+#[derive(serde::Serialize, serde::Deserialize)]
 pub(super) struct Place {
     pub(super) block: Block,
     /// By road.

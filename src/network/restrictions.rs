@@ -18,7 +18,7 @@ const MOST_SEQUENCES: usize = 1024;
 const MOST_VIA_EDGES: usize = 256;
 
 /// What is found of an extract's restrictions in a network.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Resolved {
     /// By restriction of the network: the relation and its rule, as indices.
     pub(super) rules: Vec<(u32, u32)>,

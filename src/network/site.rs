@@ -14,7 +14,7 @@ use crate::osm::facts::{CrossSection, Direction, Legal, Limit};
 pub(crate) type Pieces = [(u32, u32); 2];
 
 /// Limits of an edge that count in place of the map's. `None` leaves the map's limit.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SiteLimits {
     /// Greatest height of a vehicle, metres.
     pub height_m: Option<f32>,
@@ -23,7 +23,7 @@ pub struct SiteLimits {
 }
 
 /// Entries for single places.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Site {
     /// By `edge_id`.
     sections: FxHashMap<i64, CrossSection>,

@@ -8,7 +8,7 @@ use super::{Network, reverse};
 use crate::osm::facts::Oneway;
 
 /// Two-way edges at whose end or start the road parts.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Splits {
     /// Edges that end where the road parts; sorted.
     ends: Vec<u32>,

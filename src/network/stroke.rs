@@ -50,7 +50,7 @@ impl Default for StrokeOptions {
 const APPROACH_EDGES: usize = 256;
 
 /// Why a stroke begins where it does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(super) enum Beginning {
     /// Nothing continues into it.
     Open,
@@ -61,6 +61,7 @@ pub(super) enum Beginning {
 }
 
 /// What is counted of the strokes of a network.
+#[derive(serde::Serialize, serde::Deserialize)]
 pub(super) struct Chained {
     /// By stroke.
     pub(super) beginnings: Vec<Beginning>,

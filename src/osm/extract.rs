@@ -103,10 +103,24 @@ impl NodeTable {
 pub struct StringId(pub u32);
 
 /// Interned strings. The same text has the same id, and ids follow first use in way order.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
+#[serde(from = "Vec<Box<str>>", into = "Vec<Box<str>>")]
 pub struct StringPool {
     texts: Vec<Box<str>>,
     ids: rustc_hash::FxHashMap<Box<str>, u32>,
+}
+
+impl From<Vec<Box<str>>> for StringPool {
+    fn from(texts: Vec<Box<str>>) -> Self {
+        let ids = texts.iter().cloned().zip(0..).collect();
+        Self { texts, ids }
+    }
+}
+
+impl From<StringPool> for Vec<Box<str>> {
+    fn from(pool: StringPool) -> Self {
+        pool.texts
+    }
 }
 
 impl StringPool {

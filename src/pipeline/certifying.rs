@@ -1,5 +1,6 @@
 //! Certifies the roads of a new database, portion by portion: all strokes, then all turns.
 
+use std::collections::BTreeSet;
 use std::sync::Mutex;
 use std::time::Instant;
 
@@ -11,10 +12,11 @@ use crate::reporter::Reporter;
 use crate::rows::{EdgeCertificate, EdgeMeasure, StoredPlan, StrokeMade, TurnCertificate, TurnMade};
 use crate::settings::Settings;
 use crate::stet::Model;
-use crate::store::{Finished, Kept, Stage, VehicleNo, Writer};
+use crate::store::{Finished, Kept, PartOfWork, Stage, VehicleNo, Writer};
 use crate::turns::{JunctionArea, TurnFacts, junction_areas, junction_places, turn_facts};
 use crate::verdict::{UnknownReason, Verdict};
 
+use super::assemble::{Rest, failed_stroke, failed_turn};
 use super::making::{EdgeVerdicts, locked};
 use super::reuse::Earlier;
 use super::roads::Roads;
@@ -29,6 +31,8 @@ pub(super) struct Certifying<'a> {
     pub(super) numbers: &'a [VehicleNo],
     /// What an earlier database has; only if the roads are whole.
     pub(super) earlier: Option<&'a Earlier>,
+    /// What failed on other machines, if those have certified the portions.
+    pub(super) failed: Option<&'a BTreeSet<PartOfWork>>,
     pub(super) reporter: &'a dyn Reporter,
 }
 
@@ -99,9 +103,19 @@ impl Certifying<'_> {
         finished.each(part, |batch: Vec<StrokeMade>| {
             batch.into_iter().filter(|made| left.take(made.stroke)).try_for_each(|made| outcome.add(made, &mut sink))
         })?;
+        let left = left.all();
+        if let Rest::Failed = Rest::of(self.failed, part, left.len())? {
+            let edges = |stroke: u32| {
+                let edges = &network.strokes[stroke as usize].edges;
+                &network.stroke_edges[edges.start as usize..edges.end as usize]
+            };
+            let made = |&stroke: &u32| failed_stroke(stroke, edges(stroke), self.models.len());
+            left.iter().map(made).try_for_each(|made| outcome.add(made, &mut sink))?;
+            return Ok(());
+        }
         let finished = Mutex::new(finished);
         let keep = |made: &[StrokeMade]| locked(&finished).keep(part, made);
-        make_strokes(&job, &left.all(), share, &keep, |made| outcome.add(made, &mut sink))?;
+        make_strokes(&job, &left, share, &keep, |made| outcome.add(made, &mut sink))?;
         Ok(())
     }
 
@@ -179,9 +193,15 @@ impl Certifying<'_> {
         finished.each(part, |batch: Vec<TurnMade>| {
             batch.into_iter().filter(|made| left.take(made.turn)).try_for_each(|made| outcome.add(&made, &mut sink))
         })?;
+        let left = left.all();
+        if let Rest::Failed = Rest::of(self.failed, part, left.len())? {
+            let made = |&turn: &u32| failed_turn(turn, self.models.len());
+            left.iter().map(made).try_for_each(|made| outcome.add(&made, &mut sink))?;
+            return Ok(());
+        }
         let finished = Mutex::new(finished);
         let keep = |made: &TurnMade| locked(&finished).keep(part, std::slice::from_ref(made));
-        make_turns(&job, &left.all(), share, &keep, |made| outcome.add(&made, &mut sink))?;
+        make_turns(&job, &left, share, &keep, |made| outcome.add(&made, &mut sink))?;
         Ok(())
     }
 }

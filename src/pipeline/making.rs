@@ -13,6 +13,7 @@ use crate::stet::Model;
 use crate::store::{Database, MapChanges, Run, VehicleNo};
 use crate::verdict::{UnknownReason, Verdict};
 
+use super::assemble::Results;
 use super::certifying::Certifying;
 use super::identity::{self, Identity};
 use super::reuse::Earlier;
@@ -36,9 +37,20 @@ impl Making<'_> {
     /// Makes the database and puts it in place. `choose` says which vehicles to certify, given the number of roads by country. What
     /// `earlier` has of the same roads is taken over.
     pub(super) fn run(
+        self,
+        choose: impl FnOnce(&BTreeMap<[u8; 2], usize>) -> Result<Vec<Model>, RunError>,
+        earlier: Option<&mut Database>,
+        reporter: &dyn Reporter,
+    ) -> Result<Summary, RunError> {
+        self.run_with(choose, earlier, None, reporter)
+    }
+
+    /// As [`Self::run`]. With `results`, other machines have certified the portions.
+    pub(super) fn run_with(
         mut self,
         choose: impl FnOnce(&BTreeMap<[u8; 2], usize>) -> Result<Vec<Model>, RunError>,
         earlier: Option<&mut Database>,
+        mut results: Option<Results<'_>>,
         reporter: &dyn Reporter,
     ) -> Result<Summary, RunError> {
         let started = (self.now)();
@@ -46,6 +58,13 @@ impl Making<'_> {
         // Created first, so that a path that cannot be written is reported before the work.
         let mut writer = Database::create(self.db, self.settings)?;
         let register = writer.older_register();
+        if register.is_some() && results.is_some() {
+            return Err(RunError::Misfit(format!(
+                "{}: it has measurements, which tasks do not know; assemble into another file, then `netcert evidence add` the \
+                 measurements there",
+                self.db.display()
+            )));
+        }
         // Measurements, and what an earlier database has, are matched with the whole network.
         let whole = register.is_some() || earlier.is_some();
         let input = (self.input, &self.changes.changes);
@@ -77,7 +96,10 @@ impl Making<'_> {
             _ => None,
         };
         let mut finished = writer.finished(&identity.finish())?;
-        match (finished.is_empty(), writer.replaced_leftover()) {
+        if let Some(results) = &mut results {
+            results.take_over(&mut finished, (self.input, &hash), roads.portions())?;
+        }
+        match (finished.is_empty() || results.is_some(), writer.replaced_leftover()) {
             (false, _) => reporter.note("an earlier run was cut short: going on where it stopped"),
             (true, true) => {
                 reporter.note("an earlier run was cut short: beginning afresh, because nothing of it can be used");
@@ -91,6 +113,7 @@ impl Making<'_> {
             models: &models,
             numbers: &numbers,
             earlier: earlier.as_ref(),
+            failed: results.as_ref().map(|results| &results.failed),
             reporter,
         };
         let (verdicts, of_strokes) = certifying.strokes(&mut roads, &mut writer, &mut finished, &mut summary)?;

@@ -4,6 +4,7 @@
 //! same stages on the same network, so the same edge and vehicle get the same bytes. [`crate::certify`] makes the certificates.
 //! Progress is reported through [`Reporter`], so this module does not depend on command lines or terminals.
 
+mod assemble;
 mod certifying;
 mod evidence;
 mod identity;
@@ -12,6 +13,7 @@ mod reuse;
 mod roads;
 mod select;
 mod share;
+mod tasks;
 mod update;
 
 use std::collections::BTreeMap;
@@ -21,9 +23,11 @@ use std::time::Instant;
 
 use thiserror::Error;
 
+pub use assemble::{Assemble, TaskResult, assemble};
 pub use evidence::{EvidenceChange, EvidenceChanged, SetChanged, VerdictChanges, What, change_evidence};
 pub use roads::EDGES_AT_ONCE;
 pub use select::{Selection, own_countries, selected};
+pub use tasks::{Divided, EDGES_OF_A_TASK, Job as TaskJob, StrokesDone, Task, TaskError, divide};
 pub use update::{Newer, Update, run_of_extract, update};
 
 use crate::account::AccountRow;

@@ -55,6 +55,14 @@ impl<'c> Roads<'c> {
         self.divided.as_ref().map_or(1, |divided| divided.1.blocks())
     }
 
+    /// The cells of a portion, as [`Division::corners`] has them, and the portions that may own edges around it. The whole network is in
+    /// all cells.
+    pub(super) fn around(&self, number: usize) -> ([u32; 4], Vec<u32>) {
+        const LAST: u32 = (1 << 11) - 1;
+        let of = |divided: &(Ground<_, _>, Division)| (divided.1.corners(number), divided.1.needs(number));
+        self.divided.as_ref().map_or(([0, 0, LAST, LAST], Vec::new()), |divided| of(divided))
+    }
+
     /// Number of directed edges.
     pub(super) fn edges(&self) -> u32 {
         let whole = || self.current.as_ref().map_or(0, |(_, portion)| portion.network.edges.len() as u32);

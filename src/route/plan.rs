@@ -154,7 +154,7 @@ impl Planner {
 
     /// The vehicle of the planner, with its permits.
     #[must_use]
-    pub fn driver(&self) -> &Driver {
+    pub fn driver(&self) -> &Arc<Driver> {
         &self.driver
     }
 

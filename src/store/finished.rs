@@ -21,7 +21,7 @@ const BLOCK_HEAD_BYTES: usize = 4 + 8;
 const MOST_BLOCK_BYTES: u32 = 1 << 30;
 
 /// What the blocks of a file hold.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Stage {
     /// [`crate::rows::StrokeMade`]
     Strokes,
@@ -83,6 +83,37 @@ impl Finished {
         head[4..].copy_from_slice(&check_sum(body));
         self.append(&block)?;
         self.note(part, block.len() as u64);
+        Ok(())
+    }
+
+    /// Adds a batch of another machine: a part of the work and its batch, as [`Self::keep`] writes them.
+    ///
+    /// # Errors
+    /// The bytes are of another part of the work, or the file cannot be written.
+    pub fn take_over(&mut self, part: PartOfWork, body: &[u8]) -> Result<(), StoreError> {
+        let known = postcard::take_from_bytes::<PartOfWork>(body).is_ok_and(|(of, _)| of == part);
+        if !known || body.len() > MOST_BLOCK_BYTES as usize {
+            let detail = format!("the result of task {} is damaged; certify the task again", part.1);
+            return Err(self.error(std::io::Error::other(detail)));
+        }
+        let head = [&(body.len() as u32).to_le_bytes()[..], &check_sum(body)].concat();
+        self.append(&head)?;
+        self.length += head.len() as u64;
+        let written = self.append(body);
+        self.length -= head.len() as u64;
+        written?;
+        self.note(part, (head.len() + body.len()) as u64);
+        Ok(())
+    }
+
+    /// Forgets all finished work.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn begin_again(&mut self) -> Result<(), StoreError> {
+        self.file.set_len(HEAD_BYTES).map_err(|e| self.error(e))?;
+        self.length = HEAD_BYTES;
+        self.stretches.clear();
         Ok(())
     }
 

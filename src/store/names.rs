@@ -23,6 +23,7 @@ pub(super) const VERDICTS: &[(u8, Verdict)] = &[
     (31, Verdict::Unknown(UnknownReason::Geometry)),
     (32, Verdict::Unknown(UnknownReason::Cut)),
     (33, Verdict::Unknown(UnknownReason::Limit)),
+    (34, Verdict::Unknown(UnknownReason::Failed)),
 ];
 
 /// The number of [`Verdict::Safe`]. The views in `migrations/` use this number.

@@ -29,6 +29,7 @@ mod serve;
 mod settings;
 mod support;
 mod survey;
+mod tasks;
 mod turns_program;
 mod update;
 mod vehicle_pictures;

@@ -63,4 +63,6 @@ pub enum UnknownReason {
     Cut,
     /// A tagged limit has a value that cannot be read.
     Limit,
+    /// The machine that was to certify it failed.
+    Failed,
 }

@@ -10,7 +10,7 @@ use super::notes::Notes;
 use super::{Direction, Permission, RoadClass, Tags};
 
 /// Kind of an area.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub enum AreaKind {
     /// The surface of roads of this class (`area:highway=primary`, or its `_link`).
     Road(RoadClass),

@@ -1,0 +1,166 @@
+"""A database that `netcert ingest` made."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from ._netcert import Explanation, RegionFile, Vehicle
+from .routes import Routes
+from .table import Table
+
+Corridor = Literal["lane", "direction", "carriageway"]
+Verdict = Literal["safe", "unsafe", "forbidden", "unknown"]
+WidthSource = Literal["assumed", "from_lanes", "estimated", "tagged", "surveyed"]
+Place = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class CertifiedSet:
+    """The certificates of one vehicle under one corridor policy."""
+
+    vehicle_id: str
+    corridor: Corridor
+    """The width that the vehicle may use: its lane, all lanes of its direction, or the whole carriageway."""
+    turns: bool
+    """Whether turns are certified, too."""
+    layer: str
+    """The layer of the GeoPackage that shows the edges."""
+    settings: dict[str, Any]
+    """All settings that the certificates depend on, with units in their names."""
+
+
+class Region:
+    """A region: its roads and the certificates of its vehicles.
+
+    `corridor` names the width that a vehicle may use in every method: "lane", "direction" or "carriageway". Without it, the policy of
+    the database's `ingest` counts. Long calls release the interpreter's lock, and Ctrl-C cancels them. After a fork, open the region
+    again in the new process.
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self._file = RegionFile(path)
+
+    @property
+    def path(self) -> str:
+        """The file."""
+        return os.fspath(self._file.path)
+
+    @property
+    def usual_corridor(self) -> str:
+        """The corridor policy that counts where none is named."""
+        return self._file.usual_corridor()
+
+    def sets(self) -> list[CertifiedSet]:
+        """The sets of certificates."""
+        return [CertifiedSet(**known) for known in self._file.sets()]
+
+    def vehicle(self, vehicle_id: str) -> Vehicle:
+        """A vehicle as its certificates were made for it.
+
+        Raises NotFound if the database does not have it.
+        """
+        return self._file.vehicle(vehicle_id)
+
+    def edges(
+        self,
+        vehicle_id: str,
+        *,
+        corridor: Corridor | None = None,
+        bbox: tuple[float, float, float, float] | None = None,
+        verdict: Verdict | None = None,
+        min_rsc_m: float | None = None,
+        needs_at_most_m: float | None = None,
+        min_width_source: WidthSource | None = None,
+        edge_id: int | None = None,
+    ) -> Table:
+        """Directed edges with their certificates, in order of the network.
+
+        bbox              only edges that touch (west, south, east, north), degrees
+        verdict           only edges with this verdict
+        min_rsc_m         only edges with at least this RSC, metres
+        needs_at_most_m   only edges that would be safe with at most this much more width, metres
+        min_width_source  only edges whose width comes from this source or a better one
+        edge_id           only this edge
+
+        Raises NotFound if the vehicle is not certified under this policy.
+        """
+        rows = self._file.edges(
+            vehicle_id, corridor, bbox, verdict, min_rsc_m, needs_at_most_m, min_width_source, edge_id
+        )
+        return Table(rows)
+
+    def turns(
+        self,
+        vehicle_id: str,
+        *,
+        corridor: Corridor | None = None,
+        bbox: tuple[float, float, float, float] | None = None,
+        verdict: Verdict | None = None,
+        min_rsc_m: float | None = None,
+        needs_at_most_m: float | None = None,
+        turn_id: int | None = None,
+    ) -> Table:
+        """Turns with their certificates, in order of the network. Options are as in `edges`; `needs_at_most_m` is about kerb radii.
+
+        Raises NotFound if the vehicle's turns are not certified under this policy.
+        """
+        return Table(self._file.turns(vehicle_id, corridor, bbox, verdict, min_rsc_m, needs_at_most_m, turn_id))
+
+    def explain_edge(self, edge_id: int, vehicle_id: str, *, corridor: Corridor | None = None) -> Explanation:
+        """Why an edge is safe or unsafe: what limits, where, and what would do. The certificate is computed again.
+
+        Raises NotFound if there is no such edge.
+        """
+        return self._file.explain_edge(edge_id, vehicle_id, corridor)
+
+    def explain_turn(self, turn_id: int, vehicle_id: str, *, corridor: Corridor | None = None) -> Explanation:
+        """Why a turn is safe or unsafe. The verdict is that of the turn alone, not of the roads before and after it.
+
+        Raises NotFound if there is no such turn.
+        """
+        return self._file.explain_turn(turn_id, vehicle_id, corridor)
+
+    def route(
+        self,
+        vehicle_id: str,
+        start: Place,
+        end: Place,
+        *,
+        via: Sequence[Place] = (),
+        corridor: Corridor | None = None,
+        least: Literal["time", "distance"] = "time",
+        snap_m: float = 100.0,
+        alternatives: int = 0,
+        tries: int = 30,
+        conditions: bool = True,
+    ) -> Routes:
+        """Routes with one certificate over the whole way each, or what blocks them.
+
+        start, end, via  places as (longitude, latitude), degrees
+        snap_m           the greatest distance of a place from a road, metres
+        alternatives     number of routes beside the best one
+        tries            number of whole routes that may fail to certify
+        conditions       whether to look for a route that holds under conditions, if none is certified; that takes longer
+
+        The first question loads the network. Later ones for the same vehicle are faster, because corridors are kept.
+
+        Raises PlaceError if a place is too far from a road, NotFound if the vehicle or its turns are not certified.
+        """
+        places = [start, *via, end]
+        return Routes(
+            self._file.route(vehicle_id, places, corridor, least, snap_m, alternatives, tries, conditions)
+        )
+
+    def __repr__(self) -> str:
+        return f"<Region {self.path}>"
+
+
+def open(path: str | os.PathLike[str]) -> Region:  # noqa: A001
+    """Opens a database that `netcert ingest` made, for reading.
+
+    Raises RegionError if there is no such file, another program made it, or it is damaged.
+    """
+    return Region(path)

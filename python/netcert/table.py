@@ -1,0 +1,90 @@
+"""Rows of a database, as other packages read them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import geopandas
+    import pandas
+    import polars
+    import pyarrow
+
+    from ._netcert import RowBatches
+
+
+class Table:
+    """Rows in memory as Arrow record batches.
+
+    Every package that reads Arrow's C stream interface takes a table as it is and copies nothing: `pyarrow.table(t)`,
+    `polars.from_arrow(t)`, `duckdb.from_arrow(t)`. `docs/columns.md` describes the columns. Where rows have a place, the column
+    `geometry` holds lines of longitudes and latitudes (GeoArrow, OGC:CRS84).
+    """
+
+    def __init__(self, rows: RowBatches) -> None:
+        self._rows = rows
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        return self._rows.__arrow_c_stream__(requested_schema)
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    @property
+    def column_names(self) -> list[str]:
+        """Names of the columns."""
+        return self._rows.column_names
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of all columns."""
+        return self._rows.nbytes
+
+    def to_pyarrow(self) -> pyarrow.Table:
+        """The rows as a pyarrow table. Nothing is copied."""
+        import pyarrow
+
+        return pyarrow.table(self)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The rows as a DataFrame without `geometry`. `to_geopandas` has the lines, too."""
+        table = self.to_pyarrow()
+        if "geometry" in table.column_names:
+            table = table.drop_columns(["geometry"])
+        return table.to_pandas()
+
+    def to_polars(self) -> polars.DataFrame:
+        """The rows as a polars DataFrame."""
+        import polars
+
+        frame = polars.from_arrow(self.to_pyarrow())
+        if not isinstance(frame, polars.DataFrame):
+            raise TypeError("polars made no DataFrame of the rows")
+        return frame
+
+    def to_geopandas(self) -> geopandas.GeoDataFrame:
+        """The rows as a GeoDataFrame in OGC:CRS84 (longitude, latitude)."""
+        import geopandas
+
+        if "geometry" not in self.column_names:
+            raise ValueError("these rows have no place; use to_pandas()")
+        return geopandas.GeoDataFrame.from_arrow(self.to_pyarrow())
+
+    def explore(self, **options: Any) -> Any:
+        """The rows on a map that one can move (folium), coloured by verdict. Options are those of `folium.Map`.
+
+        The map's background comes from the internet; `tiles=None` leaves it out.
+        """
+        from .maps import table
+
+        return table(self, **options)
+
+    def __repr__(self) -> str:
+        return f"<Table: {len(self)} rows, {len(self.column_names)} columns>"
+
+    def _repr_html_(self) -> str:
+        head = self.to_pyarrow().slice(0, 10)
+        if "geometry" in head.column_names:
+            head = head.drop_columns(["geometry"])
+        shown = head.to_pandas().to_html(index=False, border=0)
+        return f"{shown}<p>{len(self)} rows × {len(self.column_names)} columns</p>"

@@ -1,0 +1,70 @@
+//! Routes, or what blocks them.
+
+use std::sync::Arc;
+
+use netcert::corridor::FileCorridor;
+use netcert::route::{self as library, Driver, Roads, Route};
+use netcert::{certificate, picture};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+
+use crate::{as_python, error, work};
+
+/// The answer to a question for a route. Python's `netcert.Routes` stands on it.
+#[pyclass(frozen, module = "netcert")]
+pub(crate) struct Answer {
+    answer: library::Answer,
+    roads: Arc<Roads>,
+    driver: Arc<Driver>,
+}
+
+impl Answer {
+    pub(crate) fn new(answer: library::Answer, roads: Arc<Roads>, driver: Arc<Driver>) -> Self {
+        Self { answer, roads, driver }
+    }
+
+    /// A route by its number: the certified ones, then the one under conditions.
+    fn route(&self, number: usize) -> PyResult<(&Route, bool)> {
+        let certified = self.answer.routes.iter().map(|route| (route, false));
+        let conditional = self.answer.conditional.as_ref().map(|conditional| (&conditional.route, true));
+        let found = certified.chain(conditional).nth(number);
+        found.ok_or_else(|| PyIndexError::new_err(format!("there is no route {number}")))
+    }
+
+    fn conditions(&self, conditional: bool) -> Vec<serde_json::Value> {
+        let known = self.answer.conditional.as_ref().filter(|_| conditional);
+        known.map_or_else(Vec::new, |known| library::condition_members(&self.roads.network, known))
+    }
+}
+
+#[pymethods]
+impl Answer {
+    /// The answer as `netcert route --format json` writes it.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        as_python(py, &library::json(&self.roads.network, &self.driver.model, &self.answer))
+    }
+
+    /// Routes and their parts as lines; obstacles and conditions as points: a GeoJSON collection.
+    fn to_geojson<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let made = library::geojson(&self.roads.network, &self.driver.model, &self.answer);
+        as_python(py, &made.map_err(|e| error::RegionError::new_err(e.to_string()))?)
+    }
+
+    /// The certificate file of a route, as text.
+    fn certificate(&self, py: Python<'_>, number: usize) -> PyResult<String> {
+        let (route, conditional) = self.route(number)?;
+        let conditions = self.conditions(conditional);
+        let given = FileCorridor { corridor: route.path.corridor.clone(), frame: Some(route.path.frame) };
+        let (model, options) = (&self.driver.model, &self.driver.permits.settings.stet);
+        let text = work::run(py, |_| certificate::text_under(conditions, &given, model, &route.certificate, options))?;
+        text.map_err(|e| error::NetcertError::new_err(e.to_string()))
+    }
+
+    /// A picture of a route, as SVG.
+    fn svg(&self, py: Python<'_>, number: usize) -> PyResult<String> {
+        let (route, conditional) = self.route(number)?;
+        let conditions = self.conditions(conditional).len();
+        let (network, vehicle) = (&self.roads.network, &self.driver.model.vehicle);
+        work::run(py, |_| picture::route(network, vehicle, route, conditions))
+    }
+}

@@ -1,0 +1,257 @@
+//! A database of certificates.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use netcert::osm::facts::{Policy, WidthSource};
+use netcert::region::Region;
+use netcert::route::{Measure, Planner, Position, Question};
+use netcert::rows::{Bounds, EdgeRow, TurnRow};
+use netcert::store::{Area, QueryOptions, TurnQuery};
+use netcert::words::{Named, VerdictKind};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::answer::Answer;
+use crate::explanation::Explanation;
+use crate::rows::{Columns, RowBatches, of_arrow};
+use crate::vehicle::Vehicle;
+use crate::{as_python, error, work};
+
+/// Planners are kept, because they keep the corridors that they have made. More than this many would take too much memory.
+const MOST_PLANNERS: usize = 4;
+
+/// A database that `netcert ingest` made, open for reading. Python's `netcert.Region` stands on it.
+#[pyclass(frozen, module = "netcert")]
+pub(crate) struct RegionFile {
+    /// The file.
+    #[pyo3(get)]
+    path: PathBuf,
+    region: Mutex<Region>,
+    planners: Mutex<HashMap<(String, &'static str, bool), Planner>>,
+}
+
+impl RegionFile {
+    fn region(&self) -> MutexGuard<'_, Region> {
+        self.region.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The corridor policy of a word, or the database's usual one.
+    fn policy(&self, word: Option<&str>) -> PyResult<Policy> {
+        match word {
+            Some(word) => named("corridor", word),
+            None => self.region().usual_policy().map_err(|e| error::of_region(&e)),
+        }
+    }
+}
+
+/// The value with this word.
+pub(crate) fn named<T: Named>(argument: &str, word: &str) -> PyResult<T> {
+    T::named(word).ok_or_else(|| {
+        let all = T::ALL.iter().map(|value| format!("{:?}", value.name())).collect::<Vec<_>>().join(", ");
+        PyValueError::new_err(format!("{argument}: {word:?}; expected one of {all}"))
+    })
+}
+
+/// An area from `(west, south, east, north)`. West is greater than east in a box over the 180th meridian.
+fn area(bbox: Option<[f64; 4]>) -> PyResult<Option<Area>> {
+    let Some([west, south, east, north]) = bbox else { return Ok(None) };
+    let (lon, lat) = (|x: f64| (-180.0..=180.0).contains(&x), |y: f64| (-90.0..=90.0).contains(&y));
+    if !(lon(west) && lon(east) && lat(south) && lat(north) && south <= north) {
+        return Err(PyValueError::new_err(format!(
+            "bbox: ({west}, {south}, {east}, {north}); expected degrees: (west, south, east, north)"
+        )));
+    }
+    Ok(Some(Area::Bounds(Bounds { west, south, east, north })))
+}
+
+fn position((lon, lat): (f64, f64)) -> PyResult<Position> {
+    if (-180.0..=180.0).contains(&lon) && (-90.0..=90.0).contains(&lat) {
+        return Ok(Position { lon, lat });
+    }
+    Err(PyValueError::new_err(format!("({lon}, {lat}) is no place; expected (longitude, latitude) in degrees")))
+}
+
+#[pymethods]
+impl RegionFile {
+    #[new]
+    fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let region = work::run(py, |_| Region::open(&path))?.map_err(|e| error::of_region(&e))?;
+        Ok(Self { path, region: Mutex::new(region), planners: Mutex::new(HashMap::new()) })
+    }
+
+    /// The sets of certificates, each as a dict: vehicle, corridor policy, whether turns are certified, settings.
+    fn sets<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let sets = work::run(py, |_| self.region().sets())?.map_err(|e| error::of_region(&e))?;
+        let set = |set: &netcert::store::CertifiedSet| {
+            let settings = set.settings().map_err(|e| error::of_store(&e))?;
+            let written = settings.options().map_err(error::RegionError::new_err)?;
+            let known = PyDict::new(py);
+            known.set_item("vehicle_id", &set.vehicle_id)?;
+            known.set_item("corridor", set.policy.name())?;
+            known.set_item("turns", settings.turns)?;
+            known.set_item("layer", &set.layer)?;
+            known.set_item("settings", as_python(py, &written.into())?)?;
+            Ok(known)
+        };
+        sets.iter().map(set).collect()
+    }
+
+    /// The corridor policy that counts where none is named: that of the `ingest`.
+    fn usual_corridor(&self) -> PyResult<&'static str> {
+        Ok(self.policy(None)?.name())
+    }
+
+    /// A vehicle as its certificates were made for it.
+    fn vehicle(&self, py: Python<'_>, vehicle_id: &str) -> PyResult<Vehicle> {
+        let found = work::run(py, |_| self.region().vehicle(vehicle_id))?.map_err(|e| error::of_region(&e))?;
+        let missing = || error::NotFound::new_err(format!("{}: it has no vehicle {vehicle_id}", self.path.display()));
+        found.map(Vehicle::of).ok_or_else(missing)
+    }
+
+    #[pyo3(signature = (vehicle_id, corridor, bbox, verdict, min_rsc_m, needs_at_most_m, min_width_source, edge_id))]
+    #[allow(clippy::too_many_arguments)] // all are named in `Region.edges`
+    fn edges(
+        &self,
+        py: Python<'_>,
+        vehicle_id: &str,
+        corridor: Option<&str>,
+        bbox: Option<[f64; 4]>,
+        verdict: Option<&str>,
+        min_rsc_m: Option<f64>,
+        needs_at_most_m: Option<f64>,
+        min_width_source: Option<&str>,
+        edge_id: Option<i64>,
+    ) -> PyResult<RowBatches> {
+        let options = QueryOptions {
+            area: area(bbox)?,
+            edge_id,
+            verdict: verdict.map(|word| named::<VerdictKind>("verdict", word)).transpose()?,
+            min_rsc_m,
+            needs_at_most_m,
+            min_width_source: min_width_source
+                .map(|word| named::<WidthSource>("min_width_source", word))
+                .transpose()?,
+            ..QueryOptions::new(vehicle_id, self.policy(corridor)?)
+        };
+        work::run(py, |stop| {
+            let mut columns = Columns::new(&EdgeRow::COLUMNS, true);
+            let mut region = self.region();
+            for row in region.edges(&options).map_err(|e| error::of_region(&e))? {
+                stop.check().map_err(|_| error::stopped())?;
+                let row = row.map_err(|e| error::of_store(&e))?;
+                columns.push(row.cells(&options.vehicle, options.policy), &row.line).map_err(|e| of_arrow(&e))?;
+            }
+            columns.finish().map_err(|e| of_arrow(&e))
+        })?
+    }
+
+    #[pyo3(signature = (vehicle_id, corridor, bbox, verdict, min_rsc_m, needs_at_most_m, turn_id))]
+    #[allow(clippy::too_many_arguments)] // all are named in `Region.turns`
+    fn turns(
+        &self,
+        py: Python<'_>,
+        vehicle_id: &str,
+        corridor: Option<&str>,
+        bbox: Option<[f64; 4]>,
+        verdict: Option<&str>,
+        min_rsc_m: Option<f64>,
+        needs_at_most_m: Option<f64>,
+        turn_id: Option<i64>,
+    ) -> PyResult<RowBatches> {
+        let options = TurnQuery {
+            area: area(bbox)?,
+            turn_id,
+            verdict: verdict.map(|word| named::<VerdictKind>("verdict", word)).transpose()?,
+            min_rsc_m,
+            needs_at_most_m,
+            ..TurnQuery::new(vehicle_id, self.policy(corridor)?)
+        };
+        work::run(py, |_| {
+            let mut columns = Columns::new(&TurnRow::COLUMNS, true);
+            for row in self.region().turns(&options).map_err(|e| error::of_region(&e))? {
+                columns.push(row.cells(&options.vehicle, options.policy), &row.line).map_err(|e| of_arrow(&e))?;
+            }
+            columns.finish().map_err(|e| of_arrow(&e))
+        })?
+    }
+
+    #[pyo3(signature = (edge_id, vehicle_id, corridor))]
+    fn explain_edge(
+        &self,
+        py: Python<'_>,
+        edge_id: i64,
+        vehicle_id: &str,
+        corridor: Option<&str>,
+    ) -> PyResult<Explanation> {
+        let policy = self.policy(corridor)?;
+        let made = work::run(py, |stop| self.region().explain(edge_id, vehicle_id, policy, stop))?;
+        made.map(Explanation::of_edge).map_err(|e| error::of_region(&e))
+    }
+
+    #[pyo3(signature = (turn_id, vehicle_id, corridor))]
+    fn explain_turn(
+        &self,
+        py: Python<'_>,
+        turn_id: i64,
+        vehicle_id: &str,
+        corridor: Option<&str>,
+    ) -> PyResult<Explanation> {
+        let policy = self.policy(corridor)?;
+        let made = work::run(py, |stop| self.region().explain_turn(turn_id, vehicle_id, policy, stop))?;
+        made.map(Explanation::of_turn).map_err(|e| error::of_region(&e))
+    }
+
+    #[pyo3(signature = (vehicle_id, places, corridor, least, snap_m, alternatives, tries, conditions))]
+    #[allow(clippy::too_many_arguments)] // all are named in `Region.route`
+    fn route(
+        &self,
+        py: Python<'_>,
+        vehicle_id: &str,
+        places: Vec<(f64, f64)>,
+        corridor: Option<&str>,
+        least: &str,
+        snap_m: f64,
+        alternatives: usize,
+        tries: usize,
+        conditions: bool,
+    ) -> PyResult<Answer> {
+        let policy = self.policy(corridor)?;
+        let distance = match least {
+            "time" => false,
+            "distance" => true,
+            other => return Err(PyValueError::new_err(format!("least: {other:?}; expected \"time\" or \"distance\""))),
+        };
+        if !(0.0..=10_000.0).contains(&snap_m) {
+            return Err(PyValueError::new_err(format!("snap_m: {snap_m}; expected 0 to 10000 metres")));
+        }
+        let places = places.into_iter().map(position).collect::<PyResult<Vec<_>>>()?;
+        let question = Question { places, snap_m, alternatives, tries };
+        work::run(py, |stop| {
+            let key = (vehicle_id.to_owned(), policy.name(), distance);
+            let mut planners = self.planners.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut planner = match planners.remove(&key) {
+                Some(planner) => planner,
+                None => {
+                    let measure = if distance { Measure::Distance } else { Measure::Time };
+                    self.region().planner(vehicle_id, policy, measure).map_err(|e| error::of_region(&e))?
+                }
+            };
+            let answer =
+                if conditions { planner.best_answer(&question, stop, || ()) } else { planner.answer(&question, stop) };
+            let answer = answer.map_err(|e| error::of_question(&e));
+            let (roads, driver) = (Arc::clone(planner.roads()), Arc::clone(planner.driver()));
+            if planners.len() >= MOST_PLANNERS {
+                planners.clear();
+            }
+            planners.insert(key, planner);
+            answer.map(|answer| Answer::new(answer, roads, driver))
+        })?
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<RegionFile {}>", self.path.display())
+    }
+}

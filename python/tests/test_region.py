@@ -1,0 +1,163 @@
+"""A database that the program made, read from Python."""
+
+import csv
+import io
+import json
+
+import netcert
+import pytest
+
+TRUCK, TUG = "AU-SEMI19", "AGV-TUG4"
+
+
+def test_edges_and_turns_are_those_of_the_program(demo, demo_path, run):
+    for vehicle_id in (TRUCK, TUG):
+        shown = list(csv.DictReader(io.StringIO(run("query", "-q", "--db", demo_path, "--vehicle", vehicle_id, "--format", "csv"))))
+        rows = demo.edges(vehicle_id).to_pyarrow().to_pylist()
+        assert len(rows) == len(shown) > 100
+        for row, known in zip(rows, shown, strict=True):
+            for name, text in known.items():
+                value = row[name]
+                same = text == "" if value is None else (str(value) == text or float(text) == value)
+                assert same, (name, value, text)
+        turns = demo.turns(vehicle_id)
+        assert len(turns) > 100 and "turn_id" in turns.column_names
+
+
+def test_filters_are_those_of_the_program(demo):
+    everything = demo.edges(TRUCK).to_pandas()
+    safe = demo.edges(TRUCK, verdict="safe", min_rsc_m=0.3).to_pandas()
+    wanted = everything[(everything.verdict == "safe") & (everything.rsc_m >= 0.3)]
+    assert safe.edge_id.tolist() == wanted.edge_id.tolist() and 0 < len(safe) < len(everything)
+    one = int(everything.edge_id.iloc[5])
+    assert demo.edges(TRUCK, edge_id=one).to_pandas().edge_id.tolist() == [one]
+    frame = demo.edges(TRUCK).to_geopandas()
+    west, south, east, north = frame.total_bounds
+    half = (west, south, (west + east) / 2, north)
+    inside = demo.edges(TRUCK, bbox=half).to_geopandas()
+    assert inside.edge_id.tolist() == frame[frame.intersects(_box(half))].edge_id.tolist()
+
+
+def _box(bounds):
+    import shapely
+
+    return shapely.box(*bounds)
+
+
+def test_other_packages_take_the_rows_as_they_are(demo):
+    import duckdb
+    import polars
+    import pyarrow
+
+    table = demo.edges(TRUCK)
+    arrow = pyarrow.table(table)
+    assert arrow.num_rows == len(table) == len(polars.from_arrow(arrow)) == len(table.to_polars())
+    counted = duckdb.sql("SELECT count(*) FILTER (verdict = 'safe') FROM arrow").fetchall()
+    assert counted == [(len(demo.edges(TRUCK, verdict="safe")),)]
+    # The stream can be read again, and its columns are not copied.
+    again = pyarrow.table(table)
+    address = [each.column("rsc_m").chunk(0).buffers()[1].address for each in (arrow, again)]
+    assert address[0] == address[1]
+
+
+def test_lines_have_a_place_on_earth(demo):
+    frame = demo.edges(TRUCK).to_geopandas()
+    assert frame.crs == "OGC:CRS84" and set(frame.geom_type) == {"LineString"}
+    metres = frame.to_crs(frame.estimate_utm_crs()).length
+    assert ((metres - frame.length_m).abs() < 0.02 * frame.length_m + 2).mean() > 0.95
+
+
+def test_sets_and_vehicles_are_named(demo, catalogue):
+    sets = {known.vehicle_id: known for known in demo.sets()}
+    assert set(sets) == {TRUCK, TUG} and sets[TUG].corridor == demo.usual_corridor == "carriageway"
+    assert sets[TUG].turns and sets[TUG].settings["station_spacing_m"] == 1.0
+    assert demo.vehicle(TRUCK) == catalogue[TRUCK]
+    with pytest.raises(netcert.NotFound, match="no vehicle EU-SEMI16.5"):
+        demo.vehicle("EU-SEMI16.5")
+
+
+def safe_turn(demo):
+    turn = demo.turns(TUG, verdict="safe").to_pandas().iloc[0]
+    places = []
+    for edge_id in (turn.from_edge, turn.to_edge):
+        line = demo.edges(TUG, edge_id=int(edge_id)).to_geopandas().geometry.iloc[0]
+        point = line.interpolate(0.5, normalized=True)
+        places.append((point.x, point.y))
+    return turn, places
+
+
+def test_a_route_is_that_of_the_program(demo, demo_path, run, tmp_path):
+    _, (start, end) = safe_turn(demo)
+    found = demo.route(TUG, start, end)
+    asked = [",".join(map(str, place)) for place in (start, end)]
+    told = json.loads(run("route", "-q", "--db", demo_path, "--vehicle", TUG, "--from", asked[0], "--to", asked[1], "--format", "json"))
+    assert found.to_dict() == told and len(found) == 1
+    best = found[0]
+    assert best.safe and best.verdict == "safe" and best.conditions == [] and best.rsc_m > 0
+    assert best.parts[0].from_m == 0 and best.parts[-1].to_m == pytest.approx(best.length_m, abs=1.5)
+    assert {part.kind for part in best.parts} >= {"edge", "turn"}
+    path = tmp_path / "route.json"
+    best.to_file(path)
+    assert netcert.verify(path).confirmed
+    assert best.to_svg().startswith("<svg")
+    frame = found.to_geopandas()
+    assert (frame.kind == "route").sum() == 1
+
+
+def test_a_route_that_is_not_there_names_what_blocks(demo):
+    _, (start, end) = safe_turn(demo)
+    frame = demo.edges(TRUCK).to_geopandas()
+    answers = []
+    for line in frame.geometry.iloc[:: max(1, len(frame) // 12)]:
+        middle = line.interpolate(0.5, normalized=True)
+        answers.append(demo.route(TRUCK, start, (middle.x, middle.y), conditions=False))
+    blocked = [answer for answer in answers if answer.obstacles]
+    assert blocked, "one of these places should be out of reach"
+    obstacle = blocked[0].obstacles[0]
+    assert obstacle.title and obstacle.verdict in ("unsafe", "unknown", "forbidden", "refuted")
+    assert obstacle.place is not None and len(blocked[0]) == 0 and blocked[0].conditional is None
+
+
+def test_a_conditional_route_is_never_safe(demo):
+    frame = demo.edges(TRUCK, verdict="unsafe").to_geopandas()
+    _, (start, _) = safe_turn(demo)
+    for line in frame.geometry.iloc[:: max(1, len(frame) // 12)]:
+        middle = line.interpolate(0.5, normalized=True)
+        answer = demo.route(TRUCK, start, (middle.x, middle.y))
+        if answer.conditional is not None:
+            break
+    else:
+        pytest.fail("none of these places has a conditional route")
+    route = answer.conditional
+    assert (route.verdict, route.safe, len(answer)) == ("conditional", False, 0)
+    assert route.conditions and all(condition.needed > 0 for condition in route.conditions)
+    assert json.loads(route.certificate())["verdict"] == "conditional"
+
+
+def test_what_a_region_lacks_is_named(demo, tmp_path):
+    with pytest.raises(netcert.NotFound, match="netcert certify --vehicle EU-SEMI16.5"):
+        demo.edges("EU-SEMI16.5")
+    with pytest.raises(netcert.NotFound, match="no edge or turn 7"):
+        demo.explain_edge(7, TRUCK)
+    with pytest.raises(netcert.PlaceError, match="road that may be used"):
+        demo.route(TUG, (0.0, 0.0), (1.0, 1.0))
+    for wrong in ({"verdict": "good"}, {"bbox": (0, 9, 1, 2)}, {"corridor": "road"}, {"min_width_source": "?"}):
+        with pytest.raises(ValueError, match=next(iter(wrong))):
+            demo.edges(TRUCK, **wrong)
+    with pytest.raises(ValueError, match="is no place"):
+        demo.route(TUG, (500.0, 0.0), (1.0, 1.0))
+    other = tmp_path / "other.gpkg"
+    other.write_bytes(b"not a database")
+    for path in (other, tmp_path / "missing.gpkg"):
+        with pytest.raises(netcert.RegionError, match=path.name):
+            netcert.open(path)
+
+
+def test_an_explanation_says_what_the_program_says(demo, demo_path, run):
+    edge_id = int(demo.edges(TRUCK, verdict="unsafe").to_pandas().edge_id.iloc[0])
+    why = demo.explain_edge(edge_id, TRUCK)
+    told = json.loads(run("explain", "-q", edge_id, "--db", demo_path, "--vehicle", TRUCK, "--format", "json"))
+    assert why.headline in json.dumps(told) and why.verdict == "unsafe"
+    assert why.to_geojson()["type"] == "FeatureCollection"
+    turn, _ = safe_turn(demo)
+    assert demo.explain_turn(int(turn.turn_id), TUG).verdict == "safe"
