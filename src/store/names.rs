@@ -94,7 +94,8 @@ mod tests {
             V::Unknown(N::Width) => V::Unknown(N::Geometry),
             V::Unknown(N::Geometry) => V::Unknown(N::Cut),
             V::Unknown(N::Cut) => V::Unknown(N::Limit),
-            V::Unknown(N::Limit) => return None,
+            V::Unknown(N::Limit) => V::Unknown(N::Failed),
+            V::Unknown(N::Failed) => return None,
         })
     }
 
