@@ -3,6 +3,8 @@
 //! Sums count all changes. Of the changes themselves, the longest ones are kept as finished features, so that the memory is bounded
 //! however much changed.
 
+use std::sync::Arc;
+
 use serde_json::{Value, json};
 
 use super::problem::Problem;
@@ -10,7 +12,7 @@ use super::region::{Certified, Region};
 use crate::diff::{self, Change, Changed, Row, Sums};
 use crate::osm::LonLat;
 use crate::osm::facts::Policy;
-use crate::rows::{Bounds, EdgeRow, TurnRow};
+use crate::rows::{Bounds, DrivingSides, EdgeRow, TurnRow};
 use crate::stop::Stop;
 use crate::store::{QueryOptions, StoreError};
 use crate::words::Named;
@@ -54,7 +56,12 @@ impl Changes {
     ) -> Result<Self, Problem> {
         let (vehicle, policy) = (after.vehicle.id.as_str(), after.settings.policy);
         let turned = before.settings.turns && after.settings.turns;
-        let mut gathered = Gathered { set: (vehicle, policy), sums: Sums::default(), longest: Longest::default() };
+        let mut gathered = Gathered {
+            set: (vehicle, policy),
+            sides: [old.sides()?, new.sides()?],
+            sums: Sums::default(),
+            longest: Longest::default(),
+        };
         // Both files are read at the same time, row beside row.
         new.read_until(stop, |new| {
             Ok(old.read_until(stop, |old| {
@@ -76,6 +83,8 @@ impl Changes {
 /// Changes while they come.
 struct Gathered<'g> {
     set: (&'g str, Policy),
+    /// The driving sides of the older and of the newer database.
+    sides: [Arc<DrivingSides>; 2],
     sums: Sums,
     longest: Longest,
 }
@@ -108,18 +117,21 @@ impl Gathered<'_> {
     fn edge(&mut self, changed: &Changed<EdgeRow>) -> Result<(), StoreError> {
         self.sums.add_edge(changed);
         let length_m = changed.row().map_or(0.0, |row| row.length_m);
-        self.keep(Row::of_edge(self.set, changed), length_m, changed.two_way);
+        let own = &self.sides[usize::from(changed.after.is_some())];
+        let left = changed.row().and_then(|row| own.left(row.edge));
+        self.keep(Row::of_edge(self.set, changed), length_m, changed.two_way, left);
         Ok(())
     }
 
     fn turn(&mut self, changed: &Changed<TurnRow>) -> Result<(), StoreError> {
         self.sums.add_turn(changed);
         let length_m = changed.row().map_or(0.0, |row| length_m(&row.line));
-        self.keep(Row::of_turn(self.set, changed), length_m, false);
+        self.keep(Row::of_turn(self.set, changed), length_m, false, None);
         Ok(())
     }
 
-    fn keep(&mut self, row: Option<Row>, length_m: f64, two_way: bool) {
+    /// `left` is the driving side, if the region has both.
+    fn keep(&mut self, row: Option<Row>, length_m: f64, two_way: bool, left: Option<bool>) {
         let Some(mut row) = row else { return };
         let Some(bounds) = Bounds::around(row.line.iter().copied()) else { return };
         let id = row.members["id"].as_i64().unwrap_or_default();
@@ -130,6 +142,7 @@ impl Gathered<'_> {
             }
         }
         row.members.insert("two_way".to_owned(), json!(two_way));
+        row.members.extend(left.map(|left| ("left".to_owned(), json!(left))));
         let feature = row.feature().to_string().into_boxed_str();
         self.longest.add(Kept { bounds, length_m, id, feature });
     }

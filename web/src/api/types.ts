@@ -53,6 +53,8 @@ export interface Changed {
   length_m: number | null;
   /** Whether the way has edges in both directions. */
   two_way: boolean;
+  /** Whether traffic keeps left there; only where a region has both sides. */
+  left?: boolean;
   before: Standing | null;
   before_reason: string | null;
   before_rsc_m: number | null;

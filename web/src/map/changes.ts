@@ -64,20 +64,20 @@ function layers(palette: Palette, ground: Ground, selected: string | null): Line
   });
   const one = (kind: ChangeName, colour: string, factor: number, more: Paint = {}, cap: "round" | "butt" = "round"): Line =>
     line(kind, of(kind), { "line-color": colour, "line-width": width(factor), ...more }, cap);
-  const ground_ = (kind: ChangeName, colour: string, factor: number): Line =>
+  const under = (kind: ChangeName, colour: string, factor: number): Line =>
     line(`${kind}-ground`, of(kind), { "line-color": colour, "line-width": width(factor) });
   return [
     line("glow", ["==", ["get", "id"], selected ?? ""] as unknown as FilterSpecification, { "line-color": palette.glow, "line-width": width(3.4), "line-blur": 1.5 }),
     line("casing", seen as unknown as FilterSpecification, { "line-color": palette.casing, "line-width": width(1.7) }),
     one("went", palette.went, 0.9, { "line-dasharray": [0.5, 0.7] }, "butt"),
-    ground_("appeared", palette.appeared, 1.15),
+    under("appeared", palette.appeared, 1.15),
     // Hollow: the middle in the colour of the paper.
     one("appeared", palette.paper, 0.4),
     one("became_safe", palette.room[2], 1),
     one("became_unknown", palette.unknown, 0.9, { "line-dasharray": [0.1, 1.7] }),
     one("became_forbidden", palette.forbidden, 0.9, { "line-dasharray": [1.8, 1] }, "butt"),
     one("became_unsafe", palette.missing[3], 0.75),
-    ground_("became_conditional", palette.conditionalGap, 1.15),
+    under("became_conditional", palette.conditionalGap, 1.15),
     one("became_conditional", palette.conditional, 0.75, { "line-dasharray": [1.6, 0.8] }, "butt"),
   ];
 }
