@@ -162,8 +162,8 @@ inPage("where not all changes are drawn, those in view are asked for", "#v=AU-SE
     await route.fulfill({ response: await route.fetch({ url: url.href }) });
   });
   await page.reload();
-  await page.waitForFunction(() => /longest changes in view/.test(document.querySelector(".changes").innerText));
-  await page.waitForFunction(() => globalThis.netcert.map.loaded());
+  await page.waitForFunction(() => /longest changes in view/.test(document.querySelector(".changes")?.innerText ?? ""));
+  await page.waitForFunction(() => globalThis.netcert?.map.loaded());
   await page.evaluate(() => globalThis.netcert.map.jumpTo({ center: [126.0519, -30.2815], zoom: 16 }));
   const begin = Date.now();
   while (!boxes.some((box) => box?.startsWith("126.0")) && Date.now() < begin + 20_000) await page.waitForTimeout(50);
