@@ -2,6 +2,7 @@
 
 use std::io::Write as _;
 use std::net::SocketAddr;
+use std::path::PathBuf;
 
 use clap::Args;
 use netcert::serve::{BaseMap, Limits, Options, Server};
@@ -13,20 +14,24 @@ use super::stop::stop;
 
 /// Show the database on a map in the browser, with vector tiles and a JSON interface.
 ///
-/// The server prints its address when it is ready; Ctrl-C ends it. It only reads the database. Unless options say
+/// The server prints its address when it is ready; Ctrl-C ends it. It only reads its databases. Unless options say
 /// otherwise, only this machine can reach the server, and the page sends requests to no other server.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   netcert serve
   netcert serve --db region.gpkg --addr 127.0.0.1:0         listen on any free port
+  netcert serve --db region.gpkg --before old.gpkg          what changed since then is a layer on the map
   netcert serve --base-map 'https://tile.example.org/{z}/{x}/{y}.png'
 
-/api/openapi.json describes the JSON interface. If the database is replaced while the server runs,
+/api/openapi.json describes the JSON interface. If a database is replaced while the server runs,
 the next request is answered from the new one.")]
 pub(crate) struct Serve {
     #[command(flatten)]
     db: DatabaseArgs,
+    /// An older database. The page then shows what changed since; both files must have a vehicle in common.
+    #[arg(long, value_name = "OLD.gpkg")]
+    before: Option<PathBuf>,
     /// The address and port to listen on; port 0 picks a free port.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080")]
     addr: SocketAddr,
@@ -51,6 +56,7 @@ impl Serve {
         super::logger::install();
         let server = Server::bind(Options {
             db: self.db.path()?,
+            before: self.before.clone(),
             addr: self.addr,
             allow_remote: self.allow_remote,
             base_map,

@@ -4,16 +4,19 @@
 //! change as long as their verdict is that of the edges that they replace.
 
 mod roads;
+mod row;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter::Peekable;
 
 use rustc_hash::FxHashMap;
 
-pub use roads::{ByRoad, Road, Sum};
+pub use roads::{OnRoad, Road, Sum, Sums};
+pub use row::Row;
 
 use crate::osm::facts::Direction;
 use crate::rows::{CertificateRow, EdgeRow, TurnRow};
+use crate::settings::Settings;
 use crate::verdict::{UnsafeReason, Verdict};
 
 /// What a vehicle's certificate comes to.
@@ -80,6 +83,24 @@ impl Change {
             Self::Went(_) => "went",
         }
     }
+
+    /// What it came to, or had come to before it went.
+    #[must_use]
+    pub fn standing(self) -> Standing {
+        match self {
+            Self::Became(standing) | Self::Appeared(standing) | Self::Went(standing) => standing,
+        }
+    }
+}
+
+/// Why two sets of certificates may differ although the map does not. The older set comes first. `definitions` are the hashes of both
+/// definitions of the vehicle.
+#[must_use]
+pub fn notes(definitions: [&str; 2], settings: [&Settings; 2]) -> Vec<&'static str> {
+    let vehicle = definitions[0] != definitions[1];
+    let settings = settings[0] != settings[1];
+    let vehicle = vehicle.then_some("the vehicle is defined otherwise in both files");
+    vehicle.into_iter().chain(settings.then_some("certified with other settings in both files")).collect()
 }
 
 /// One edge or turn that changed. At least one of both rows is there.
@@ -91,12 +112,23 @@ pub struct Changed<R> {
     pub before: Option<R>,
     /// The newer row.
     pub after: Option<R>,
+    /// Whether the way of an edge has edges in both directions, so that maps draw the two side by side. False for turns.
+    pub two_way: bool,
 }
 
 impl<R> Changed<R> {
     fn became(standings: [Standing; 2], before: R, after: R) -> Option<Self> {
         let change = Change::Became(standings[1]);
-        (standings[0] != standings[1]).then_some(Self { change, before: Some(before), after: Some(after) })
+        let changed = Self { change, before: Some(before), after: Some(after), two_way: false };
+        (standings[0] != standings[1]).then_some(changed)
+    }
+
+    fn appeared(standing: Standing, row: R) -> Self {
+        Self { change: Change::Appeared(standing), before: None, after: Some(row), two_way: false }
+    }
+
+    fn went(standing: Standing, row: R) -> Self {
+        Self { change: Change::Went(standing), before: Some(row), after: None, two_way: false }
     }
 
     /// The newer row, or else the older one.
@@ -139,6 +171,7 @@ fn of_way<E>(rows: &mut Peekable<impl Iterator<Item = Result<EdgeRow, E>>>, way:
 
 /// The changes on one way.
 fn way_changes(before: Vec<EdgeRow>, after: Vec<EdgeRow>) -> Vec<Changed<EdgeRow>> {
+    let two_way = [&before, &after].map(|rows| both_directions(rows));
     let mut known: BTreeMap<i64, EdgeRow> = before.into_iter().map(|row| (row.edge_id, row)).collect();
     let mut changes = Vec::new();
     let mut others = Vec::new();
@@ -156,7 +189,15 @@ fn way_changes(before: Vec<EdgeRow>, after: Vec<EdgeRow>) -> Vec<Changed<EdgeRow
         };
         changes.extend(cut_anew(of(&left), of(&others)));
     }
+    for changed in &mut changes {
+        changed.two_way = two_way[usize::from(changed.after.is_some())];
+    }
     changes
+}
+
+fn both_directions(rows: &[EdgeRow]) -> bool {
+    let has = |direction| rows.iter().any(|row| row.direction == direction);
+    has(Direction::Forward) && has(Direction::Backward)
 }
 
 /// The changes of edges of one way and direction, none of which has an id of the other side. If all the older ones had one standing, they
@@ -170,9 +211,8 @@ fn cut_anew(gone: Vec<EdgeRow>, come: Vec<EdgeRow>) -> Vec<Changed<EdgeRow>> {
         };
         return come.into_iter().filter_map(changed).collect();
     }
-    let went = |row: EdgeRow| Changed { change: Change::Went(Standing::of_edge(&row)), before: Some(row), after: None };
-    let appeared =
-        |row: EdgeRow| Changed { change: Change::Appeared(Standing::of_edge(&row)), before: None, after: Some(row) };
+    let went = |row: EdgeRow| Changed::went(Standing::of_edge(&row), row);
+    let appeared = |row: EdgeRow| Changed::appeared(Standing::of_edge(&row), row);
     gone.into_iter().map(went).chain(come.into_iter().map(appeared)).collect()
 }
 
@@ -195,15 +235,12 @@ pub fn turns<E>(
         let row = row?;
         let changed = match known.remove(&row.turn_id) {
             Some(old) => Changed::became([&old, &row].map(Standing::of_turn), old, row),
-            None => {
-                let change = Change::Appeared(Standing::of_turn(&row));
-                Some(Changed { change, before: None, after: Some(row) })
-            }
+            None => Some(Changed::appeared(Standing::of_turn(&row), row)),
         };
         changed.into_iter().try_for_each(&mut sink)?;
     }
     let mut gone: Vec<TurnRow> = known.into_values().collect();
     gone.sort_unstable_by_key(|row| row.turn);
-    let went = |row: TurnRow| Changed { change: Change::Went(Standing::of_turn(&row)), before: Some(row), after: None };
+    let went = |row: TurnRow| Changed::went(Standing::of_turn(&row), row);
     gone.into_iter().map(went).try_for_each(&mut sink)
 }

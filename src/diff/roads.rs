@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::{Change, Changed};
-use crate::rows::EdgeRow;
+use crate::rows::{Bounds, EdgeRow, TurnRow};
 
 /// A road as people name it.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -25,13 +25,15 @@ impl Road {
     }
 }
 
-/// How much of a road changed.
+/// How much changed.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Sum {
     /// Directed edges.
     pub edges: u64,
     /// Their length, metres.
     pub length_m: f64,
+    /// Turns.
+    pub turns: u64,
 }
 
 impl Sum {
@@ -41,31 +43,61 @@ impl Sum {
     }
 }
 
-/// Sums of changes, by change and by road.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct ByRoad {
-    roads: BTreeMap<(Change, Road), Sum>,
-    all: BTreeMap<Change, Sum>,
+/// The changed edges of one road.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct OnRoad {
+    /// How much they are.
+    pub sum: Sum,
+    /// The box around them.
+    pub bounds: Option<Bounds>,
+    /// The `edge_id` of the longest one, and its length in metres.
+    pub longest: Option<(i64, f64)>,
 }
 
-impl ByRoad {
-    /// Adds a change.
-    pub fn add(&mut self, changed: &Changed<EdgeRow>) {
+impl OnRoad {
+    fn add(&mut self, row: &EdgeRow) {
+        self.sum.add(row.length_m);
+        let own = Bounds::around(row.line.iter().copied());
+        self.bounds = [self.bounds, own].into_iter().flatten().reduce(Bounds::union);
+        if self.longest.is_none_or(|(_, length_m)| length_m < row.length_m) {
+            self.longest = Some((row.edge_id, row.length_m));
+        }
+    }
+}
+
+/// Sums of changes, by change and by road.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Sums {
+    roads: BTreeMap<(Change, Road), OnRoad>,
+    by_name: BTreeMap<&'static str, Sum>,
+}
+
+impl Sums {
+    /// Adds a changed edge.
+    pub fn add_edge(&mut self, changed: &Changed<EdgeRow>) {
         let Some(row) = changed.row() else { return };
-        self.roads.entry((changed.change, Road::of(row))).or_default().add(row.length_m);
-        self.all.entry(changed.change).or_default().add(row.length_m);
+        self.roads.entry((changed.change, Road::of(row))).or_default().add(row);
+        self.by_name.entry(changed.change.name()).or_default().add(row.length_m);
     }
 
-    /// The sum of each change.
-    pub fn all(&self) -> impl Iterator<Item = (Change, Sum)> {
-        self.all.iter().map(|(change, sum)| (*change, *sum))
+    /// Adds a changed turn.
+    pub fn add_turn(&mut self, changed: &Changed<TurnRow>) {
+        self.by_name.entry(changed.change.name()).or_default().turns += 1;
+    }
+
+    /// Sums by the word for the change.
+    #[must_use]
+    pub fn by_name(&self) -> &BTreeMap<&'static str, Sum> {
+        &self.by_name
     }
 
     /// The roads of each change, the longest first.
     #[must_use]
-    pub fn roads(&self) -> Vec<(Change, &Road, Sum)> {
-        let mut roads: Vec<_> = self.roads.iter().map(|((change, road), sum)| (*change, road, *sum)).collect();
-        roads.sort_by(|a, b| a.0.cmp(&b.0).then(b.2.length_m.total_cmp(&a.2.length_m)).then(a.1.cmp(b.1)));
+    pub fn roads(&self) -> Vec<(Change, &Road, &OnRoad)> {
+        let mut roads: Vec<_> = self.roads.iter().map(|((change, road), changes)| (*change, road, changes)).collect();
+        roads.sort_by(|a, b| {
+            a.0.cmp(&b.0).then(b.2.sum.length_m.total_cmp(&a.2.sum.length_m)).then_with(|| a.1.cmp(b.1))
+        });
         roads
     }
 }

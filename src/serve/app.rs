@@ -8,6 +8,7 @@ use super::answer::{Keep, Stored};
 use super::ask::{Ask, STATE};
 use super::cache::Cache;
 use super::lines;
+use super::older::Older;
 use super::options::Options;
 use super::problem::Problem;
 use super::region::{Identity, Region};
@@ -59,7 +60,10 @@ impl App {
             if let Some(read) = app.unchanged()? {
                 return Ok(read);
             }
-            let region = Arc::new(Region::open(&app.options.db)?);
+            let known = Arc::clone(&app.region.read().unwrap_or_else(PoisonError::into_inner));
+            let before = app.options.before.as_deref();
+            let older = before.map(|path| Older::open(path, known.older.as_ref())).transpose()?;
+            let region = Arc::new(Region::open(&app.options.db, older)?);
             *app.region.write().unwrap_or_else(PoisonError::into_inner) = Arc::clone(&region);
             lines::read_anew(&app.options.db);
             Ok(region)
@@ -67,10 +71,13 @@ impl App {
         self.quick.run(read).await
     }
 
-    /// The known region, if the file has not changed since it was read.
+    /// The known region, if neither the file nor the older one has changed since they were read.
     fn unchanged(&self) -> Result<Option<Arc<Region>>, Problem> {
         let known = Arc::clone(&self.region.read().unwrap_or_else(PoisonError::into_inner));
-        Ok((Identity::of(&self.options.db)? == known.identity).then_some(known))
+        let same = Identity::of(&self.options.db)? == known.identity;
+        let older = self.options.before.as_deref().map(|path| Identity::of(path).ok());
+        let same_older = older.as_ref() == known.older.as_ref().map(|older| &older.identity);
+        Ok((same && same_older).then_some(known))
     }
 
     /// Makes the overviews in advance, which the first map of each vehicle needs.

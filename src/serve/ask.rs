@@ -11,6 +11,7 @@ use axum::http::request::Parts;
 use super::problem::Problem;
 use crate::osm::facts::Policy;
 use crate::route::Position;
+use crate::rows::Bounds;
 use crate::stop::Stop;
 use crate::words::Named;
 
@@ -156,6 +157,20 @@ impl Ask {
         value.map(Some).ok_or_else(|| Problem::parameter(name, format!("give a number from {low} to {high}")))
     }
 
+    /// The box of a parameter, `west,south,east,north` in degrees. A box whose west is east of its east goes over 180°. `None` if the
+    /// parameter is missing.
+    pub(super) fn bounds(&self, name: &str) -> Result<Option<Bounds>, Problem> {
+        let Some(text) = self.parameter(name) else { return Ok(None) };
+        let numbers: Option<Vec<f64>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
+        let on_earth = |lon: f64, lat: f64| lon.abs() <= 180.0 && lat.abs() <= 90.0;
+        match numbers.as_deref() {
+            Some(&[west, south, east, north]) if on_earth(west, south) && on_earth(east, north) && south <= north => {
+                Ok(Some(Bounds { west, south, east, north }))
+            }
+            _ => Err(Problem::parameter(name, "give degrees: west,south,east,north, such as 8.6,49.3,8.8,49.5")),
+        }
+    }
+
     /// The places of a parameter, each `lon,lat` in degrees.
     pub(super) fn places(&self, name: &str) -> Result<Vec<Position>, Problem> {
         self.all(name)
@@ -222,6 +237,11 @@ mod tests {
         assert_eq!(ask("/", "from=8.5,%2049").places("from").unwrap(), [Position { lon: 8.5, lat: 49.0 }]);
         for wrong in ["1", "1,2,3", "181,0", "0,91", "NaN,1", "inf,1", "a,b", "1,,2", ""] {
             assert!(ask("/", &format!("from={wrong}")).places("from").is_err(), "{wrong}");
+        }
+        assert_eq!(ask("/", "").bounds("bbox").unwrap(), None);
+        assert_eq!(ask("/", "bbox=170,-10,-170,10").bounds("bbox").unwrap().unwrap().west, 170.0);
+        for wrong in ["", "1,2,3", "1,2,3,4,5", "1,5,2,4", "181,0,1,1", "0,NaN,1,1", "0,0,inf,1", "a,b,c,d"] {
+            assert!(ask("/", &format!("bbox={wrong}")).bounds("bbox").is_err(), "{wrong}");
         }
         assert!(ask("/", "n=NaN").number("n", 0.0, 1.0).is_err());
         assert!(ask("/", "n=-1").whole("n", 0..=9).is_err());

@@ -107,6 +107,7 @@ mod tests {
     fn only_loopback_names_are_ones_own() {
         let options = Options {
             db: PathBuf::new(),
+            before: None,
             addr: std::net::SocketAddr::from(([127, 0, 0, 1], 8080)),
             allow_remote: false,
             base_map: None,

@@ -18,6 +18,7 @@
 //! | `problem` | errors, as problem+json |
 //! | `app`, `work` | the state that requests share; lanes for work that blocks |
 //! | `region`, `roads` | one state of the database file; the network in memory |
+//! | `older`, `changes` | the older database beside it; what changed since then |
 //! | `planning`, `drive` | routes, and how a vehicle drives along one |
 //! | `made_once` | values that are made on first use; the last results of long work |
 //! | `names` | comparison of road names with what people type |
@@ -31,11 +32,13 @@ mod app;
 mod ask;
 mod assets;
 mod cache;
+mod changes;
 mod drive;
 mod gate;
 mod lines;
 mod made_once;
 mod names;
+mod older;
 mod options;
 mod planning;
 mod problem;

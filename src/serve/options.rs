@@ -9,6 +9,8 @@ use std::time::Duration;
 pub struct Options {
     /// The database.
     pub db: PathBuf,
+    /// An older database, whose differences from `db` the server tells.
+    pub before: Option<PathBuf>,
     /// The address to listen on. Port 0 picks a free port.
     pub addr: SocketAddr,
     /// Whether the server may listen on an address that other machines can reach, and answer to any host name.

@@ -11,8 +11,10 @@ use serde_json::json;
 
 use super::api::explain::Explained;
 use super::ask::shortened;
+use super::changes::Changes;
 use super::made_once::{Late, Recent};
 use super::names::NamedRoad;
+use super::older::Older;
 use super::planning::{Planned, Router};
 use super::problem::Problem;
 use super::roads::RoadIndex;
@@ -37,6 +39,8 @@ const MOST_NUMBERED: usize = 2_000_000;
 /// Number of answers of planners to keep, so that a route and the sheets of its conditions are planned once. An answer with a long drive
 /// has some megabytes.
 const MOST_PLANNED: usize = 4;
+/// Number of comparisons with the older database to keep, one for each vehicle and policy. Each has up to 50 MB; see `changes`.
+const MOST_COMPARED: usize = 2;
 /// Number of planners to keep. Each holds an index of all roads and the corridors that it has made.
 const MOST_ROUTERS: usize = 4;
 
@@ -64,6 +68,11 @@ impl Identity {
         let (device, inode) = (0, 0);
         Ok(Self { device, inode, bytes: facts.len(), modified: facts.modified().ok() })
     }
+
+    /// Whether both are states of one file. Other systems than Unix do not say.
+    pub(super) fn same_file(&self, other: &Self) -> bool {
+        self.inode != 0 && (self.device, self.inode) == (other.device, other.inode)
+    }
 }
 
 /// A vehicle with its set of certificates under a policy, and the settings of that set.
@@ -77,6 +86,8 @@ pub(super) struct Certified<'r> {
 pub(super) struct Region {
     path: PathBuf,
     pub(super) identity: Identity,
+    /// The older database, if the server was given one.
+    pub(super) older: Option<Older>,
     /// The name of this state; see `answer`.
     pub(super) state: String,
     /// Hash of the runs and the sets of certificates. It does not depend on the file's path or modification time.
@@ -99,6 +110,8 @@ pub(super) struct Region {
     pub(super) overviews: Recent<Overview>,
     /// The last explanations, by id, vehicle and policy.
     pub(super) explained: Recent<Explained>,
+    /// What changed since the older database for the last sets, by vehicle and policy.
+    pub(super) changes: Recent<Changes>,
     /// The last answers of planners, by the whole question.
     pub(super) planned: Recent<Planned>,
     /// The last planners, by vehicle, policy and measure.
@@ -106,8 +119,8 @@ pub(super) struct Region {
 }
 
 impl Region {
-    /// Opens the file and reads the facts of the whole file.
-    pub(super) fn open(path: &Path) -> Result<Self, StoreError> {
+    /// Opens the file and reads the facts of the whole file. The state's name covers the older database, so no answer outlives either.
+    pub(super) fn open(path: &Path, older: Option<Older>) -> Result<Self, StoreError> {
         let identity = Identity::of(path)?;
         let mut database = Database::open(path)?;
         let policy = database.settings_of_new_sets()?.policy;
@@ -124,10 +137,13 @@ impl Region {
             vehicles.push(vehicle.map_err(|error| damaged(format!("vehicle {}: {error}", record.id)))?);
         }
         let content = content(&runs, &sets);
-        let state = blake3::hash(format!("{} {identity:?} {content}", env!("CARGO_PKG_VERSION")).as_bytes());
+        let beside = older.as_ref().map_or("", Older::state);
+        let state = format!("{} {identity:?} {content} {beside}", env!("CARGO_PKG_VERSION"));
+        let state = blake3::hash(state.as_bytes());
         let region = Self {
             path: path.to_owned(),
             identity,
+            older,
             state: state.to_hex().chars().take(16).collect(),
             content,
             extent: database.extent()?,
@@ -143,15 +159,26 @@ impl Region {
             numbers: Recent::new(MOST_NUMBERS),
             overviews: Recent::new(MOST_OVERVIEWS),
             explained: Recent::new(MOST_EXPLAINED),
+            changes: Recent::new(MOST_COMPARED),
             planned: Recent::new(MOST_PLANNED),
             routers: Recent::new(MOST_ROUTERS),
         };
         Ok(region)
     }
 
+    /// The run that made the database from its extract.
+    pub(super) fn ingest(&self) -> Option<&Run> {
+        self.runs.iter().rev().find(|run| run.command == "ingest")
+    }
+
+    /// The file's name, without its folder.
+    pub(super) fn file(&self) -> String {
+        self.path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
     /// The name of the extract's file, without its endings.
     pub(super) fn name(&self) -> &str {
-        let ingest = self.runs.iter().rev().find(|run| run.command == "ingest").or(self.runs.last());
+        let ingest = self.ingest().or(self.runs.last());
         ingest.map_or("region", |run| run.input_name.split('.').next().unwrap_or(&run.input_name))
     }
 

@@ -23,6 +23,7 @@ type Work = fn(&Region, &Ask) -> Result<Stored, Problem>;
 const ENDPOINTS: &[(&str, Pace, Work)] = &[
     ("/api/vehicles", Pace::Quick, api::vehicles::list),
     ("/api/vehicles/{id}/drawing.svg", Pace::Quick, api::vehicles::drawing),
+    ("/api/changes", Pace::Slow, api::changes::changes),
     ("/api/edges/{id}", Pace::Quick, api::edges::edge),
     ("/api/explain/{id}", Pace::Slow, api::explain::explain),
     ("/api/explain/{id}/map.geojson", Pace::Slow, api::explain::mapped),

@@ -5,6 +5,7 @@
 //! bound on time; then the other connections are cut.
 
 use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
 use std::pin::pin;
 use std::sync::Arc;
 use std::time::Duration;
@@ -19,10 +20,12 @@ use tokio::sync::{Semaphore, watch};
 use tokio::task::JoinSet;
 
 use super::app::App;
+use super::older::{Older, common};
 use super::options::{Limits, Options};
-use super::region::Region;
+use super::region::{Identity, Region};
 use super::routes;
 use crate::store::StoreError;
+use crate::words::Named as _;
 
 /// The greatest size of request line and headers, bytes. A larger request is answered with 431.
 const MOST_HEAD_BYTES: usize = 16 << 10;
@@ -37,6 +40,17 @@ pub enum ServeError {
     /// The database cannot be opened.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// The older database is the served one.
+    #[error(
+        "{0}: --before names the database that is served; name an older one, such as a copy made before `netcert update`"
+    )]
+    SameFile(PathBuf),
+    /// No vehicle is certified under the same policy in both databases.
+    #[error(
+        "no vehicle is certified under the same corridor in both databases, so there is nothing to compare; {}; {}; \
+         `netcert certify --db FILE --vehicle ID` adds one", .0[0], .0[1]
+    )]
+    NothingInCommon(Box<[String; 2]>),
     /// Other machines could reach the address, and that was not allowed.
     #[error(
         "{0}: other machines could reach this address, and the server has no log-in and no encryption; add \
@@ -70,12 +84,14 @@ impl Server {
     /// Opens the database and the port.
     ///
     /// # Errors
-    /// The database or the port cannot be opened. The address is not loopback and `allow_remote` is false.
+    /// A database or the port cannot be opened. The older database is the served one, or has no vehicle in common with it. The address
+    /// is not loopback and `allow_remote` is false.
     pub fn bind(mut options: Options) -> Result<Self, ServeError> {
         if !options.addr.ip().is_loopback() && !options.allow_remote {
             return Err(ServeError::Remote(options.addr));
         }
-        let region = Region::open(&options.db)?;
+        let older = options.before.as_deref().map(|before| older(before, &options.db)).transpose()?;
+        let region = Region::open(&options.db, older)?;
         let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().thread_name("serve").build()?;
         let listen = |source| ServeError::Listen { addr: options.addr, source };
         let listener = runtime.block_on(TcpListener::bind(options.addr)).map_err(listen)?;
@@ -105,6 +121,27 @@ impl Server {
         // Work that nobody waits for any more is cut.
         runtime.shutdown_timeout(Duration::from_millis(200));
     }
+}
+
+/// Opens the older database. The two must be two files with a vehicle in common; otherwise there is nothing to compare.
+fn older(before: &Path, db: &Path) -> Result<Older, ServeError> {
+    let canonical = |path: &Path| std::fs::canonicalize(path).ok();
+    let same_path = canonical(before).is_some_and(|path| canonical(db) == Some(path));
+    if same_path || Identity::of(before)?.same_file(&Identity::of(db)?) {
+        return Err(ServeError::SameFile(before.to_owned()));
+    }
+    let (old, new) = (Region::open(before, None)?, Region::open(db, None)?);
+    if common(&old.sets, &new.sets).is_empty() {
+        return Err(ServeError::NothingInCommon(Box::new([listed(before, &old), listed(db, &new)])));
+    }
+    Ok(old.into())
+}
+
+/// A database with the sets of certificates that it has.
+fn listed(path: &Path, region: &Region) -> String {
+    let sets: Vec<String> =
+        region.sets.iter().map(|set| format!("{} ({})", set.vehicle_id, set.policy.name())).collect();
+    format!("{}: {}", path.display(), if sets.is_empty() { "none".to_owned() } else { sets.join(", ") })
 }
 
 async fn accept(listener: TcpListener, router: Router, limits: Limits, stop: impl Future<Output = ()>) {

@@ -30,10 +30,10 @@ fn extract(ways: &[(i64, &[(&str, &str)])], side_road_at: Option<(i64, i64)>) ->
     write_extract(&nodes, &records)
 }
 
-const VEHICLE: &str = "AU-SEMI19";
+pub(crate) const VEHICLE: &str = "AU-SEMI19";
 
 /// Way 1 becomes narrow, 2 wide, 3 gets a limit of weight, 4 goes, 5 appears, 6 gets a side road, 7 stays.
-fn place() -> Place {
+pub(crate) fn place() -> Place {
     let old = [(1, &WIDE[..]), (2, &NARROW), (3, &WIDE), (4, &WIDE), (6, &WIDE), (7, &WIDE)];
     let new = [(1, &NARROW[..]), (2, &WIDE), (3, &LIGHT), (5, &WIDE), (6, &WIDE), (7, &WIDE)];
     let place =

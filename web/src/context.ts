@@ -16,6 +16,12 @@ export function vehicleOf({ vehicles }: Context, id: string): Vehicle | undefine
   return vehicles.find((vehicle) => vehicle.id === id);
 }
 
+/** Whether both databases have the vehicle under the policy of the first map, so that they can be compared. */
+export function comparable(context: Context): boolean {
+  const { vehicle, policy } = question(context);
+  return context.region.before?.sets.some((set) => set.vehicle === vehicle && set.policy === policy) ?? false;
+}
+
 /** The vehicle and policy of the first map. */
 export function question({ store }: Context): Question {
   return { vehicle: store.state.vehicle, policy: store.state.policy };

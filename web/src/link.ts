@@ -9,6 +9,8 @@ import { CLASSES, EVIDENCE, VERDICTS } from "./words.ts";
 export interface Possible {
   vehicles: readonly string[];
   policies: readonly Policy[];
+  /** Whether there is an older database. */
+  changes: boolean;
 }
 
 const COLOURINGS: readonly ColourBy[] = ["margin", "reason", "evidence"];
@@ -28,6 +30,7 @@ export function write(state: State, first: State): string {
   put("id", state.selected);
   if (state.route) parts.set("route", state.route.map(position).join(";"));
   if (state.stats) parts.set("stats", "1");
+  if (state.changes) parts.set("changes", "1");
   if (state.camera) parts.set("at", camera(state.camera));
   // Commas and semicolons need no escape behind `#`, and links without escapes are easier to read.
   return `#${parts.toString().replaceAll("%2C", ",").replaceAll("%3B", ";")}`;
@@ -50,6 +53,7 @@ export function read(hash: string, first: State, possible: Possible): State {
     selected: /^[0-9]{1,20}$/.test(get("id")) ? get("id") : null,
     route: places(parts.get("route")),
     stats: get("stats") === "1",
+    changes: possible.changes && get("changes") === "1",
     camera: readCamera(get("at")),
   };
 }

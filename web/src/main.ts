@@ -21,6 +21,7 @@ async function start(): Promise<void> {
   const possible = {
     vehicles: vehicles.filter((vehicle) => vehicle.certified.length > 0).map((vehicle) => vehicle.id),
     policies: region.policies,
+    changes: region.before !== null,
   };
   const context: Context = { store: new Store(read(location.hash, first, possible)), region, vehicles, theme };
   // Labels are drawn with the page's own font, so the font must be loaded before the first label.

@@ -26,6 +26,8 @@ export interface State {
   /** The places of a route. The list is empty at first, then has one place, then two. */
   route: Position[] | null;
   stats: boolean;
+  /** Whether the changes since the older database are drawn over a muted map. */
+  changes: boolean;
   baseMap: boolean;
 }
 
@@ -43,6 +45,7 @@ export function beginning(vehicle: string, policy: Policy): State {
     selected: null,
     route: null,
     stats: false,
+    changes: false,
     baseMap: false,
   };
 }

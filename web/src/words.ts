@@ -3,7 +3,7 @@
 // `safe` is an identifier of the database. The page says "certified" and shows the scope, or shows a sentence of the server that
 // has its scope.
 
-import type { Evidence, Policy, VerdictName } from "./api/types.ts";
+import type { ChangeName, Changed, Evidence, Policy, Standing, VerdictName } from "./api/types.ts";
 
 export const VERDICTS: readonly VerdictName[] = ["safe", "unsafe", "forbidden", "unknown"];
 export const EVIDENCE: readonly Evidence[] = ["assumed", "from_lanes", "estimated", "tagged", "surveyed"];
@@ -34,6 +34,48 @@ export const routeWords: Record<"certified" | "conditional" | "blocked", string>
   conditional: "Only under conditions: not certified",
   blocked: "Blocked: what stands in its way",
 };
+
+/** The changes since the older database, in the order of the legend. */
+export const CHANGES: readonly ChangeName[] = ["became_safe", "became_conditional", "became_unsafe", "became_forbidden", "became_unknown", "appeared", "went"];
+
+export const changeWords: Record<ChangeName, { name: string; meaning: string }> = {
+  became_safe: { name: "Now certified", meaning: "it was not certified before" },
+  became_conditional: { name: "Now only under conditions", meaning: "not certified: it lacks room, and it is known how much more would do" },
+  became_unsafe: { name: "Now not certified", meaning: "too narrow, or a hinge or the steering beyond its limit" },
+  became_forbidden: { name: "Now forbidden", meaning: "a tagged limit, access rule or barrier excludes the vehicle" },
+  became_unknown: { name: "Now unknown", meaning: "nothing can be said any more" },
+  appeared: { name: "New on the map", meaning: "the older database does not have it" },
+  went: { name: "Gone from the map", meaning: "the newer database does not have it" },
+};
+
+export const standingWords: Record<Standing, string> = {
+  safe: "Certified",
+  conditional: "Only under conditions",
+  unsafe: "Not certified",
+  forbidden: "Forbidden",
+  unknown: "Unknown",
+};
+
+/** One side of a change, with its reason: `Forbidden: weight limit`. */
+export function sideWords(changed: Changed, side: "before" | "after"): string {
+  const standing = changed[side];
+  if (standing === null) return side === "before" ? "Not in the older database" : "Not in the newer database";
+  const verdict = standing === "conditional" ? "unsafe" : standing;
+  const reason = changed[`${side}_reason`];
+  const rsc_m = changed[`${side}_rsc_m`];
+  const need_m = changed[`${side}_need_width_m`];
+  const width_m = changed[`${side}_width_m`];
+  const why = reason ? reasonWords(verdict, reason) : null;
+  const measured = verdict === "safe" || (verdict === "unsafe" && reason === "width");
+  const room = measured && rsc_m !== null ? margin(rsc_m) : null;
+  const first = [standingWords[standing], why ? lower(why) : room].filter(Boolean).join(": ");
+  const more = [why ? room : null, width_m === null ? null : `${width_m.toFixed(2)} m wide`, need_m === null ? null : `${need_m.toFixed(2)} m would do`];
+  return [first, ...more].filter(Boolean).join(", ");
+}
+
+function lower(text: string): string {
+  return text.charAt(0).toLowerCase() + text.slice(1);
+}
 
 export const policyWords: Record<Policy, { name: string; meaning: string }> = {
   lane: { name: "Own lane", meaning: "Every part of the vehicle stays in its own lane." },
@@ -67,6 +109,7 @@ const reasons: Record<string, string> = {
   "unknown/geometry": "Broken geometry",
   "unknown/cut": "Edge of the extract",
   "unknown/limit": "Unreadable limit",
+  "unknown/failed": "Machine failed",
 };
 
 export function reasonWords(verdict: string, reason: string | null | undefined): string {

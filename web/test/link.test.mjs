@@ -8,7 +8,7 @@ const { read, write } = await load("link.ts");
 const { beginning } = await load("state.ts");
 
 const first = beginning("AU-SEMI19", "lane");
-const possible = { vehicles: ["AU-SEMI19", "AU-ATRIPLE53"], policies: ["lane", "carriageway"] };
+const possible = { vehicles: ["AU-SEMI19", "AU-ATRIPLE53"], policies: ["lane", "carriageway"], changes: true };
 
 test("everything in a link comes back", () => {
   const state = {
@@ -24,8 +24,14 @@ test("everything in a link comes back", () => {
     selected: "8103123456789012345",
     route: [[144.1, -36.7], [144.2, -36.8]],
     stats: true,
+    changes: true,
   };
   assert.deepEqual(read(write(state, first), first, possible), state);
+});
+
+test("without an older database a link shows no changes", () => {
+  assert.equal(read("#changes=1", first, { ...possible, changes: false }).changes, false);
+  assert.deepEqual(read("#changes=yes", first, possible), first);
 });
 
 test("the first state is a short link", () => {

@@ -5,7 +5,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
-import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { copyFileSync, existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { test } from "node:test";
 import { dirname, join } from "node:path";
@@ -43,6 +43,27 @@ export function demoDatabase(folder) {
   run("ingest", join(root, "data/demo.osm.pbf"), "--db", db, ...vehicles);
   run("certify", "--db", db, ...vehicles, "--corridor", "carriageway", "--needs", "all");
   return db;
+}
+
+/**
+ * Two databases of the drawn region, `old.gpkg` and `new.gpkg`: in the newer one a road is measured narrower and another one wider, a
+ * third one has a limit of weight, a fourth one is gone, and there is a new one.
+ */
+export function twoDatabases(folder) {
+  const [before, db] = ["old.gpkg", "new.gpkg"].map((name) => join(folder, name));
+  const run = (...args) => execFileSync(program, ["--quiet", ...args], { stdio: "ignore" });
+  const extract = join(root, "data/demo.osm.pbf");
+  run("ingest", extract, "--db", before, "--vehicle", "AU-SEMI19", "--vehicle", "AU-ATRIPLE53");
+  copyFileSync(before, db);
+  const measured = ["quantity,value,unit,way_id,source", "carriageway_width,5.4,m,15,tape", "carriageway_width,9,m,57,tape", "max_weight,12,t,36,sign"];
+  writeFileSync(join(folder, "measured.csv"), measured.join("\n"));
+  run("evidence", "add", join(folder, "measured.csv"), "--db", db);
+  const gone = '<delete><way id="49" version="99"/></delete>';
+  const node = '<node id="900001" version="1" lat="-30.2" lon="126.06"/>';
+  const way = '<way id="900002" version="1"><nd ref="158"/><nd ref="900001"/><tag k="highway" v="primary"/><tag k="width" v="12"/><tag k="name" v="New Ring Road"/></way>';
+  writeFileSync(join(folder, "later.osc"), `<osmChange version="0.6">${gone}<create>${node}${way}</create></osmChange>`);
+  run("update", "--db", db, join(folder, "later.osc"), "--extract", extract);
+  return { before, db };
 }
 
 /**
@@ -91,11 +112,11 @@ export function launch() {
   });
 }
 
-/** Database, server and browser together; `close` ends all three. */
-export async function everything() {
+/** Database, server and browser together; `close` ends all three. `compared` adds an older database. */
+export async function everything({ compared = false } = {}) {
   const folder = mkdtempSync(join(tmpdir(), "netcert-page-"));
-  const db = demoDatabase(folder);
-  const server = await serve(db);
+  const { before, db } = compared ? twoDatabases(folder) : { db: demoDatabase(folder) };
+  const server = await serve(db, ...(before ? ["--before", before] : []));
   const browser = await launch();
   const close = async () => {
     await browser.close();

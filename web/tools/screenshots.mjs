@@ -1,12 +1,14 @@
 // Takes the pictures of docs/serve.md and docs/how-to/survey.md, with databases of the drawn region and of three real extracts:
 //
-//     node tools/screenshots.mjs FOLDER [NAME…]      FOLDER holds demo.gpkg, heidelberg.gpkg, columbus.gpkg, victoria.gpkg
+//     node tools/screenshots.mjs FOLDER [NAME…]      FOLDER holds demo.gpkg, heidelberg.gpkg, columbus.gpkg, victoria.gpkg; of
+//                                                    `changes`, old.gpkg and new.gpkg, which are made if they are missing
 //
 // The extracts are not part of the repository; each picture says in its scene what it shows of them.
 
+import { existsSync } from "node:fs";
 import { mkdir, writeFile } from "node:fs/promises";
 import { dirname, join } from "node:path";
-import { edgePixel, idle, launch, open, root, serve } from "../test/support.mjs";
+import { edgePixel, idle, launch, open, root, serve, twoDatabases } from "../test/support.mjs";
 
 const size = { width: 1280, height: 800 };
 const wait = (page, ms) => page.waitForTimeout(ms);
@@ -63,6 +65,17 @@ const scenes = {
     hash: "#v=AU-ATRIPLE53&at=11,-37.69,145.44&route=145.46054,-37.68349;145.41485,-37.70221",
     play: (page) => drive(page, 0.52),
   },
+  changes: {
+    db: "new",
+    before: "old",
+    hash: "#v=AU-SEMI19&changes=1",
+    async play(page) {
+      await page.locator(".change-roads button", { hasText: "Bypass" }).click();
+      await page.waitForSelector(".scene img");
+      await page.locator(".changes").evaluate((section) => section.scrollIntoView());
+      await page.mouse.move(180, 30);
+    },
+  },
   numbers: { db: "columbus", hash: "#v=US-WB67&stats=1", play: (page) => page.waitForSelector(".stats table") },
   drive: {
     db: "heidelberg-whole",
@@ -105,8 +118,10 @@ const out = join(root, "docs/serve");
 await mkdir(out, { recursive: true });
 const browser = await launch();
 for (const name of names.length > 0 ? names : Object.keys(scenes)) {
-  const { db, hash, dark, png, play } = scenes[name];
-  const server = await serve(join(folder, `${db}.gpkg`));
+  const { db, before, hash, dark, png, play } = scenes[name];
+  const [file, older] = [db, before].map((one) => one && join(folder, `${one}.gpkg`));
+  if (older && !existsSync(older)) twoDatabases(folder);
+  const server = await serve(file, ...(older ? ["--before", older] : []));
   const { page, close } = await open(browser, server.address, hash, { viewport: size, colorScheme: dark ? "dark" : "light" });
   await idle(page);
   const shown = (await play(page)) ?? page;
@@ -114,10 +129,10 @@ for (const name of names.length > 0 ? names : Object.keys(scenes)) {
   await wait(page, 600);
   const picture = await shown.screenshot();
   const bytes = png ? picture : await webp(page, picture);
-  const file = `${name}.${png ? "png" : "webp"}`;
-  await mkdir(dirname(join(out, file)), { recursive: true });
-  await writeFile(join(out, file), bytes);
-  console.log(`${file} ${bytes.length} bytes`);
+  const image = `${name}.${png ? "png" : "webp"}`;
+  await mkdir(dirname(join(out, image)), { recursive: true });
+  await writeFile(join(out, image), bytes);
+  console.log(`${image} ${bytes.length} bytes`);
   await close();
   await server.stop();
 }

@@ -3,6 +3,7 @@
 //! The names of members say their units: metres, degrees, seconds. Ids of edges, turns and ways are text, because
 //! JavaScript's numbers hold only 53 bits.
 
+pub(super) mod changes;
 pub(super) mod edges;
 pub(super) mod explain;
 pub(super) mod region;

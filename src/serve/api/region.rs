@@ -11,7 +11,7 @@ use super::super::ask::Ask;
 use super::super::options::Options;
 use super::super::region::Region;
 use super::super::tiles::MOST_ZOOM;
-use super::{SCOPE, answered};
+use super::{SCOPE, answered, changes};
 use crate::osm::facts::Policy;
 use crate::rows::Bounds;
 use crate::store::Database;
@@ -34,7 +34,7 @@ pub(in super::super) async fn region(State(app): State<Arc<App>>, ask: Ask) -> R
 }
 
 fn members(region: &Region, focus: Option<Bounds>, options: &Options) -> Value {
-    let ingest = region.runs.iter().rev().find(|run| run.command == "ingest");
+    let ingest = region.ingest();
     let policies: Vec<&str> = Policy::ALL
         .iter()
         .filter(|policy| region.sets.iter().any(|set| set.policy == **policy))
@@ -62,6 +62,7 @@ fn members(region: &Region, focus: Option<Bounds>, options: &Options) -> Value {
         "tiles": format!("/tiles/{{policy}}/{{vehicle}}/{{z}}/{{x}}/{{y}}.mvt?state={}", region.state),
         "max_zoom": MOST_ZOOM,
         "base_map": options.base_map.as_ref().map(|map| json!({"url": map.url, "attribution": map.attribution})),
+        "before": region.older.as_ref().map(|older| changes::members(older, region)),
         "scope": SCOPE,
     })
 }

@@ -91,7 +91,15 @@ fn every_answer_has_the_described_form() {
     let wide = Server::over(Place::with_wide_demo(LONG), "serve --db demo.gpkg --addr 127.0.0.1:0");
     let asked: Vec<_> = asked(&server).into_iter().map(|asked| (&server, asked)).collect();
     let under_conditions = asked_under_conditions(&wide).into_iter().map(|asked| (&wide, asked));
-    let asked: Vec<(&Server, (String, String))> = asked.into_iter().chain(under_conditions).collect();
+    let two = Server::over(crate::diff::place(), "serve --db new.gpkg --before old.gpkg --addr 127.0.0.1:0");
+    let changes = format!("/api/changes?vehicle={VEHICLE}&policy=carriageway");
+    let of_changes = [
+        ("/api/changes", changes.clone()),
+        ("/api/changes", changes + "&limit=2"),
+        ("/api/region", "/api/region".to_owned()),
+    ];
+    let of_changes = of_changes.into_iter().map(|(path, target)| (&two, (path.to_owned(), target)));
+    let asked: Vec<(&Server, (String, String))> = asked.into_iter().chain(under_conditions).chain(of_changes).collect();
     for (server, (path, target)) in &asked {
         let answers = &document["paths"][path]["get"]["responses"]["200"]["content"];
         let (kind, schema) =

@@ -4,6 +4,7 @@
 
 mod answers;
 mod caching;
+mod changes;
 mod conditional;
 mod cut_off;
 mod described;

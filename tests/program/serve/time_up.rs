@@ -25,6 +25,7 @@ impl Narrow {
         let slow = LaneLimits { at_a_time: 1, waiting: 8, time };
         let server = Server::bind(Options {
             db: place.path("demo.gpkg"),
+            before: None,
             addr: "127.0.0.1:0".parse().unwrap(),
             allow_remote: false,
             base_map: None,

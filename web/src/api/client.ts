@@ -1,6 +1,7 @@
 // The server's API with types. Every call can be aborted. A refusal becomes a `ServerProblem` whose message can be shown.
 
 import type {
+  Changes,
   Explanation,
   Policy,
   Position,
@@ -43,6 +44,9 @@ export interface Question {
   policy: Policy;
 }
 
+/** The greatest number of changes that the server gives at once. */
+export const MOST_CHANGES = 5000;
+
 /** The greatest distance from a clicked place to a usable road, metres. It is large because a click is not exact. */
 export const SNAP_M = 500;
 
@@ -79,6 +83,9 @@ export const api = {
     get<RouteAnswer>("/api/route", { ...ride(from, to, question), conditions }, signal),
   sheetUrl: (form: "html" | "csv" | "geojson", from: Position, to: Position, question: Question) =>
     `/api/sheet.${form}?${new URLSearchParams(ride(from, to, question))}`,
+  /** What changed since the older database, of the box `west,south,east,north` or everywhere. */
+  changes: (question: Question, bbox: string | null, signal?: AbortSignal) =>
+    get<Changes>("/api/changes", { ...asked(question), limit: String(MOST_CHANGES), ...(bbox ? { bbox } : {}) }, signal),
   stats: async (policy: Policy, signal?: AbortSignal): Promise<Stats> =>
     digest(await get<StatsRows>("/api/stats", { policy }, signal)),
   tilesPath: ({ tiles }: Region, { vehicle, policy }: Question) =>

@@ -25,6 +25,71 @@ export interface Region {
   max_zoom: number;
   left_hand_traffic?: boolean;
   base_map: { url: string; attribution: string } | null;
+  /** The older database that the server was started with. */
+  before: Before | null;
+}
+
+export interface Before {
+  /** The name of its file. */
+  file: string;
+  timestamp: string | null;
+  /** What both databases have certificates of. */
+  sets: { vehicle: string; policy: Policy }[];
+}
+
+export type ChangeName = "became_safe" | "became_conditional" | "became_unsafe" | "became_forbidden" | "became_unknown" | "appeared" | "went";
+/** What a certificate comes to. `conditional` is unsafe for want of room, and it is known how much more would be enough. */
+export type Standing = "safe" | "conditional" | "unsafe" | "forbidden" | "unknown";
+
+/** A changed edge or turn. `before` or `after` is null if that database does not have it. */
+export interface Changed {
+  kind: "edge" | "turn";
+  change: ChangeName;
+  id: string;
+  way_id: string | null;
+  highway: string | null;
+  name: string | null;
+  ref: string | null;
+  length_m: number | null;
+  /** Whether the way has edges in both directions. */
+  two_way: boolean;
+  /** Whether traffic keeps left there; only where a region has both sides. */
+  left?: boolean;
+  before: Standing | null;
+  before_reason: string | null;
+  before_rsc_m: number | null;
+  before_width_m: number | null;
+  before_need_width_m: number | null;
+  after: Standing | null;
+  after_reason: string | null;
+  after_rsc_m: number | null;
+  after_width_m: number | null;
+  after_need_width_m: number | null;
+}
+
+/** The changes of one kind on one road. */
+export interface ChangedRoad {
+  change: ChangeName;
+  standing: Standing;
+  highway: string;
+  road: string;
+  edges: number;
+  km: number;
+  /** The longest of the edges. */
+  edge_id: string;
+  bbox: [west: number, south: number, east: number, north: number];
+}
+
+/** The answer of `/api/changes`. Sums and roads count all changes, whatever features there are. */
+export interface Changes {
+  type: "FeatureCollection";
+  sums: { change: ChangeName; edges: number; km: number; turns: number }[];
+  roads: ChangedRoad[];
+  notes: string[];
+  turns_compared: boolean;
+  /** Whether the features are all changes that were asked for. */
+  complete: boolean;
+  features: { type: "Feature"; geometry: { type: "LineString"; coordinates: Position[] }; properties: Changed }[];
 }
 
 export interface Unit {

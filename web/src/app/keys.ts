@@ -9,6 +9,8 @@ export interface Commands {
   showStats(): void;
   copyLink(): void;
   help(): void;
+  /** Returns whether there is an older database. */
+  toggleChanges(): boolean;
   toggleTheme(): void;
   /** Returns whether there was a drive. */
   toggleDrive(): boolean;
@@ -21,6 +23,7 @@ export const keys: readonly [key: string, does: string][] = [
   ["R", "route: click where it begins and where it goes"],
   ["Space", "start and stop the drive"],
   ["N", "the region in numbers"],
+  ["S", "what changed since the older database"],
   ["L", "copy a link to what you see"],
   ["D", "dark or light"],
   ["← ↑ ↓ → + −", "move and zoom the map, when it has the focus"],
@@ -51,6 +54,7 @@ export function listenToKeys(commands: Commands): void {
       return;
     }
     const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (event.key.toLowerCase() === "s" && commands.toggleChanges()) event.preventDefault();
     if (!action) return;
     event.preventDefault();
     action();

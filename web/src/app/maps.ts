@@ -3,7 +3,7 @@
 import { Marker } from "maplibre-gl";
 import type { VehicleStats } from "../api/stats.ts";
 import type { Position, Shapes } from "../api/types.ts";
-import { question, vehicleOf, type Context } from "../context.ts";
+import { comparable, question, vehicleOf, type Context } from "../context.ts";
 import { HoverCard } from "../map/hovercard.ts";
 import { ShapesLayer } from "../map/shapes.ts";
 import { sync } from "../map/sync.ts";
@@ -48,11 +48,11 @@ export class Maps {
   update(changed: ReadonlySet<keyof State>): void {
     const { store, theme } = this.context;
     const { state } = store;
-    this.first.update(state, question(this.context), theme.theme);
+    this.first.update(this.#muted(), question(this.context), theme.theme);
     this.#shapes.recolour(theme.theme);
     if (changed.has("other")) this.#compare(state.other);
     if (this.#second && state.other) {
-      this.#second.view.update(state, { ...question(this.context), vehicle: state.other }, theme.theme);
+      this.#second.view.update(unchanged(state), { ...question(this.context), vehicle: state.other }, theme.theme);
       if (changed.has("other")) this.#card.show(vehicleOf(this.context, state.other), null);
     }
   }
@@ -131,7 +131,8 @@ export class Maps {
   #view(pane: HTMLElement, vehicle: string): View {
     const { region, store, theme } = this.context;
     const own = { ...question(this.context), vehicle };
-    return new View(pane, region, store.state, own, theme.theme, {
+    const state = this.first ? unchanged(store.state) : this.#muted();
+    return new View(pane, region, state, own, theme.theme, {
       hover: (under, x, y) => this.#hover.show(under, x, y),
       click: (under, lon, lat) => {
         this.#hover.show(null, 0, 0);
@@ -139,6 +140,12 @@ export class Maps {
       },
       moved: () => this.#moved(),
     });
+  }
+
+  /** The state of the first map. Roads are muted only where changes can lie over them. */
+  #muted(): State {
+    const { state } = this.context.store;
+    return comparable(this.context) ? state : unchanged(state);
   }
 
   #moved(): void {
@@ -165,4 +172,9 @@ export class Maps {
     }
     this.first.map.resize();
   }
+}
+
+/** Changes are drawn on the first map only, so the second one is not muted. */
+function unchanged(state: State): State {
+  return { ...state, changes: false };
 }

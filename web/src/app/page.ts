@@ -2,7 +2,7 @@
 
 import { api } from "../api/client.ts";
 import type { Stats } from "../api/stats.ts";
-import type { Explanation, SearchHit } from "../api/types.ts";
+import type { ChangedRoad, Explanation, SearchHit } from "../api/types.ts";
 import { question, vehicleOf, type Context } from "../context.ts";
 import { write, read, type Possible } from "../link.ts";
 import type { Under } from "../map/view.ts";
@@ -12,6 +12,7 @@ import { VehicleDialog, fittingPolicy } from "../panel/vehicle.ts";
 import type { State } from "../state.ts";
 import { toast } from "../ui/toast.ts";
 import { title } from "../words.ts";
+import { ChangesSince } from "./changes.ts";
 import { Drawer } from "./drawer.ts";
 import { HelpDialog } from "./help.ts";
 import { listenToKeys } from "./keys.ts";
@@ -28,13 +29,16 @@ export class Page {
   readonly #routing: Routing;
   readonly #vehicles: VehicleDialog;
   readonly #stats: StatsDialog;
-  readonly #help = new HelpDialog();
+  readonly #help: HelpDialog;
+  /** Null without an older database. */
+  readonly #changes: ChangesSince | null;
   readonly #tools: Tools;
   #numbers: Promise<Stats> | null = null;
   #written = "";
 
   constructor(private readonly context: Context, private readonly first: State, private readonly possible: Possible) {
-    const { store, theme } = context;
+    const { region, store, theme } = context;
+    this.#help = new HelpDialog(region.before !== null);
     this.#vehicles = new VehicleDialog(context);
     this.#stats = new StatsDialog(context);
     this.#drawer = new Drawer(() => this.#close(), () => store.set({ selected: null }));
@@ -49,9 +53,16 @@ export class Page {
       shapes: (shapes) => this.#maps.shapes(shapes),
       select: (selected) => store.set({ selected }),
       other: () => (store.state.other ? { ...question(context), vehicle: store.state.other } : null),
+      changed: (id) => {
+        const changed = this.#changes?.of(id);
+        const note = this.#changes?.note(id);
+        return changed && note ? { changed, note } : null;
+      },
     });
+    const { before } = region;
+    this.#changes = before && new ChangesSince(context, before, this.#maps.first, { go: (road) => this.#goToChange(road), known: () => this.#changesKnown() });
     this.#routing = new Routing(context, this.#maps.first, this.#drawer);
-    this.#side = new Side(context, { chooseVehicle: () => this.chooseVehicle(), go: (hit) => this.#search(hit), help: () => this.#help.open() });
+    this.#side = new Side(context, { chooseVehicle: () => this.chooseVehicle(), go: (hit) => this.#search(hit), help: () => this.#help.open() }, this.#changes?.panel.element ?? null);
     this.#tools = new Tools(context, {
       route: () => this.route(),
       compare: () => this.compare(),
@@ -120,6 +131,11 @@ export class Page {
     this.context.store.set({ stats: true });
   }
 
+  toggleChanges(): boolean {
+    this.#changes?.toggle();
+    return this.#changes !== null;
+  }
+
   help(): void {
     this.#help.open();
   }
@@ -164,6 +180,26 @@ export class Page {
     if (hit.kind !== "edge") toast(`${title(hit)}: one part of it is chosen; click on the road for another.`);
   }
 
+  /** Chooses the longest edge of a changed road, and shows all that changed of it. */
+  #goToChange({ edge_id, bbox }: ChangedRoad): void {
+    if (innerWidth < 760) this.#side.close();
+    this.context.store.set({ selected: edge_id });
+    this.#maps.fit(bbox, 16);
+  }
+
+  /** The explanation tells of the change of its road, which may be known later than the explanation. */
+  #changesKnown(): void {
+    const { selected } = this.context.store.state;
+    if (selected && this.#changes) void this.#explain.changesKnown(selected, question(this.context));
+    this.#outlineGone();
+  }
+
+  /** A road that is gone has no explanation with a line, so its change tells the line. */
+  #outlineGone(): void {
+    const { selected } = this.context.store.state;
+    if (selected && this.#changes?.of(selected)?.change === "went") this.#maps.outline(this.#changes.line(selected));
+  }
+
   #place(explanation: Explanation | null, goTo: boolean): void {
     this.#maps.mark(explanation && explanation.verdict !== "forbidden" ? explanation.at : null);
     this.#maps.outline(explanation?.geometry?.coordinates ?? []);
@@ -184,6 +220,7 @@ export class Page {
     if (certificates || changed.has("other")) this.#number(changed.has("policy"));
     this.#side.draw(certificates);
     this.#maps.update(changed);
+    this.#changes?.update(changed);
     this.#tools.draw();
     if (changed.has("route") || (certificates && state.route)) this.#routing.update();
     const again = (certificates || changed.has("other")) && state.selected;
@@ -200,6 +237,7 @@ export class Page {
     if (state.selected) {
       this.#drawer.show(this.#explain.element, state.route !== null);
       void this.#explain.show(state.selected, question(this.context), goTo);
+      this.#outlineGone();
     } else {
       this.#explain.end();
       if (!this.#routing.present()) this.#drawer.hide();
@@ -226,6 +264,7 @@ export class Page {
   #recolour(): void {
     this.#side.draw(false);
     this.#maps.update(new Set());
+    this.#changes?.update(new Set());
     this.#routing.recolour();
     this.#tools.draw();
   }

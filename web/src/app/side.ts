@@ -25,11 +25,13 @@ export class Side {
   readonly #policyNote = h("p", { class: "note" });
   readonly #theme: HTMLButtonElement;
   readonly #filterPlace = h("div");
+  readonly #foldButton: HTMLButtonElement;
   #policies: Segmented<Policy>;
   #policyPlace = h("div");
   #filters: Filters | undefined;
 
-  constructor(private readonly context: Context, actions: SideActions) {
+  /** `changes` is the panel of the changes since an older database, if there is one. */
+  constructor(private readonly context: Context, actions: SideActions, changes: HTMLElement | null) {
     this.search = new Search(actions.go);
     this.#card = new VehicleCard(actions.chooseVehicle);
     this.#legend = new Legend(context);
@@ -37,17 +39,18 @@ export class Side {
     this.#policies = this.#makePolicies();
     const { region } = context;
     const help = h("button", { class: "plain", type: "button", "aria-label": "Help and keys", title: "Help and keys (?)", onclick: actions.help }, icon("help"));
-    const fold = h(
+    const fold = (this.#foldButton = h(
       "button",
-      { class: "plain fold", type: "button", "aria-expanded": "false", "aria-label": "Legend and filters", onclick: () => this.#fold(fold) },
+      { class: "plain fold", type: "button", "aria-expanded": "false", "aria-label": "Legend and filters", onclick: () => this.#fold(!byId("side").classList.contains("is-open")) },
       icon("chevron"),
-    );
+    ));
     const brand = h("header", { class: "brand" }, h("h1", {}, "netcert", h("span", {}, regionName(region.name))), this.#theme, help, fold);
     const more = h(
       "div",
       { class: "side-more" },
       h("div", { class: "policy" }, this.#policyPlace, this.#policyNote),
       this.#legend.element,
+      changes,
       this.#filterPlace,
       this.#base(),
       h("footer", {}, h("p", { class: "scope" }, prose(region.scope)), h("p", { class: "scope" }, attribution(region.attribution, region.timestamp))),
@@ -109,9 +112,14 @@ export class Side {
     return h("label", { class: "legend-row", title: `Asks ${host} for pictures of what you look at` }, input, h("span", { class: "legend-name" }, `Base map from ${host}`));
   }
 
-  #fold(button: HTMLButtonElement): void {
-    const open = byId("side").classList.toggle("is-open");
-    button.setAttribute("aria-expanded", String(open));
+  /** Folds the panel where it would cover the map. */
+  close(): void {
+    this.#fold(false);
+  }
+
+  #fold(open: boolean): void {
+    byId("side").classList.toggle("is-open", open);
+    this.#foldButton.setAttribute("aria-expanded", String(open));
   }
 }
 

@@ -1,8 +1,8 @@
 // The card with the margin of the road under the pointer.
 
 import { h, styled } from "../ui/dom.ts";
-import { className, evidenceWords, leastMargin, margin, reasonWords, title, verdictWords } from "../words.ts";
-import type { Evidence, VerdictName } from "../api/types.ts";
+import { changeWords, className, evidenceWords, leastMargin, margin, reasonWords, sideWords, title, verdictWords } from "../words.ts";
+import type { Changed, Evidence, VerdictName } from "../api/types.ts";
 import type { Under } from "./view.ts";
 
 export class HoverCard {
@@ -25,6 +25,7 @@ export class HoverCard {
 }
 
 function content({ kind, properties }: Under): Node[] {
+  if (kind === "change") return changeContent(properties as unknown as Changed);
   const text = (key: string): string | null => (typeof properties[key] === "string" ? properties[key] : null);
   const verdict = (text("verdict") ?? "unknown") as VerdictName;
   const rsc = properties["rsc_m"];
@@ -46,4 +47,17 @@ function content({ kind, properties }: Under): Node[] {
     h("div", { class: "hover-more" }, [verdictWords[verdict].name, ...parts].join(" · ")),
     kind === "overview" ? h("div", { class: "hover-more" }, "Click to go nearer.") : null,
   ].filter((node) => node !== null);
+}
+
+/** Before and after. MapLibre leaves out members that are null. */
+function changeContent(properties: Partial<Changed> & Pick<Changed, "kind" | "change">): Node[] {
+  const nulls = { before: null, before_reason: null, before_rsc_m: null, before_width_m: null, before_need_width_m: null };
+  const after = { after: null, after_reason: null, after_rsc_m: null, after_width_m: null, after_need_width_m: null };
+  const changed = { ...nulls, ...after, ...properties } as Changed;
+  return [
+    h("div", { class: "hover-number" }, h("i", { class: `line line-change line-${changed.change}` }), changeWords[changed.change].name),
+    h("div", { class: "hover-name" }, changed.kind === "turn" ? `Turn ${changed.name ?? ""}` : title(changed)),
+    h("div", { class: "hover-more" }, `Before: ${sideWords(changed, "before").toLowerCase()}`),
+    h("div", { class: "hover-more" }, `Now: ${sideWords(changed, "after").toLowerCase()}`),
+  ];
 }

@@ -75,6 +75,6 @@ export function offset(factor: number, ground: Ground): Numeric {
 }
 
 /** Whether traffic keeps left. If a region has both sides, its tiles say the side of each road. */
-function drivesLeft(region: Region): ExpressionSpecification {
+export function drivesLeft(region: Region): ExpressionSpecification {
   return ["to-boolean", ["coalesce", ["get", "left"], region.left_hand_traffic ?? false]];
 }

@@ -49,6 +49,9 @@ export interface Palette {
   /** The stripes of a route under conditions. No verdict has their hue, nor has any line of roads two colours. */
   conditional: string;
   conditionalGap: string;
+  /** Roads that only the newer database has, and roads that only the older one has. No verdict has their hues. */
+  appeared: string;
+  went: string;
   units: readonly string[];
   /** The surface of roads in their real width. */
   surface: string;
@@ -74,6 +77,8 @@ export const palettes: Record<Theme, Palette> = {
     routeCasing: "#ffffff",
     conditional: "#ffdd00",
     conditionalGap: "#111417",
+    appeared: "#00805f",
+    went: "#a0208f",
     units: ["#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#c9bb1c"],
     surface: "#e6e3dc",
     corridor: "#d6d3cb",
@@ -96,6 +101,8 @@ export const palettes: Record<Theme, Palette> = {
     routeCasing: "#15181c",
     conditional: "#ffee11",
     conditionalGap: "#000000",
+    appeared: "#35d0a0",
+    went: "#ff7ac1",
     units: ["#3d9bd8", "#e69f00", "#1fb489", "#d48fb6", "#7cc6f0", "#e0702a", "#f0e442"],
     surface: "#22262b",
     corridor: "#2c3138",
@@ -104,12 +111,13 @@ export const palettes: Record<Theme, Palette> = {
 };
 
 /** The colours that the style sheet uses, as custom properties. */
-export function properties({ room, missing, forbidden, unknown, units, corridor, ink, route, routeCasing, conditional, conditionalGap }: Palette): Record<string, string> {
+export function properties({ room, missing, forbidden, unknown, units, corridor, ink, route, routeCasing, conditional, conditionalGap, appeared, went }: Palette): Record<string, string> {
   const numbered = units.map((colour, index) => [`--unit-${index}`, colour]);
   const verdicts = { "--safe": room[2], "--unsafe": missing[2], "--forbidden": forbidden, "--unknown": unknown };
   const shapes = { "--ground": corridor, "--edge": ink, "--path": route, "--path-casing": routeCasing };
   const routes = { "--conditional": conditional, "--conditional-gap": conditionalGap, "--obstacle": missing[3] };
-  return { ...verdicts, ...shapes, ...routes, ...Object.fromEntries(numbered) };
+  const changes = { "--worse": missing[3], "--appeared": appeared, "--went": went };
+  return { ...verdicts, ...shapes, ...routes, ...changes, ...Object.fromEntries(numbered) };
 }
 
 /** The colour of each reason, by `verdict/reason`. */

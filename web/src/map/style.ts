@@ -55,6 +55,9 @@ function colour(verdict: VerdictName, state: State, palette: Palette, theme: The
 const dashes: Partial<Record<VerdictName, number[]>> = { forbidden: [2.2, 1.4], unknown: [0.1, 2] };
 const breadth: Record<VerdictName, number> = { safe: 1.25, unsafe: 0.72, forbidden: 0.6, unknown: 0.75 };
 
+/** How strong roads are drawn while changes lie over them. */
+const muted = (state: State): number => (state.changes ? 0.24 : 1);
+
 /** The filter for one verdict, combined with the user's filters. */
 export function filter(verdict: VerdictName, state: State): ExpressionSpecification {
   const all: unknown[] = ["all", ["==", ["get", "verdict"], verdict]];
@@ -83,6 +86,7 @@ function edge(verdict: VerdictName, state: State, palette: Palette, ground: Grou
       "line-color": colour(verdict, state, palette, ground.theme),
       "line-width": width(breadth[verdict]),
       "line-offset": offset(breadth[verdict], ground),
+      "line-opacity": muted(state),
       ...(dash ? { "line-dasharray": dash } : {}),
     },
   };
@@ -123,7 +127,7 @@ function turn(verdict: VerdictName, state: State, palette: Palette, ground: Grou
     paint: {
       "line-color": colour(verdict, { ...state, colourBy: "margin" }, palette, ground.theme),
       "line-width": ["interpolate", ["exponential", 1.5], ["zoom"], 15.5, verdict === "safe" ? 1.4 : 0.7, 20, verdict === "safe" ? 5 : 2.5],
-      "line-opacity": verdict === "safe" ? 0.95 : verdict === "unsafe" ? 0.6 : 0.35,
+      "line-opacity": (verdict === "safe" ? 0.95 : verdict === "unsafe" ? 0.6 : 0.35) * muted(state),
       ...(dash ? { "line-dasharray": dash } : {}),
     },
   };

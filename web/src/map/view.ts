@@ -4,15 +4,18 @@ import { AttributionControl, Map as Base, ScaleControl, type GeoJSONSource, type
 import type { Position, Region } from "../api/types.ts";
 import { api, type Question } from "../api/client.ts";
 import type { State } from "../state.ts";
+import { CHANGES, changeLayers } from "./changes.ts";
 import type { Theme } from "./palette.ts";
 import { tileAddress } from "./tiles.ts";
 import { OUTLINE, edgeLayers, overviewLayers, style, turnLayers } from "./style.ts";
 
-/** The tags of an edge or turn in a tile. In an overview, those of all roads that fall on one line, without an id. */
+/**
+ * The tags of an edge or turn in a tile, or of a change. In an overview, those of all roads that fall on one line, without an id.
+ */
 export interface Under {
-  kind: "edge" | "turn" | "overview";
+  kind: "edge" | "turn" | "overview" | "change";
   id: string | null;
-  properties: Record<string, string | number | boolean | undefined>;
+  properties: Record<string, string | number | boolean | null | undefined>;
 }
 
 export interface Events {
@@ -118,8 +121,8 @@ export class View {
   }
 
   #styleKey(): string {
-    const { colourBy, hidden, hiddenClasses, evidence, baseMap } = this.state;
-    return JSON.stringify([this.question, this.theme, colourBy, [...hidden], [...hiddenClasses], evidence, baseMap]);
+    const { colourBy, hidden, hiddenClasses, evidence, changes, baseMap } = this.state;
+    return JSON.stringify([this.question, this.theme, colourBy, [...hidden], [...hiddenClasses], evidence, changes, baseMap]);
   }
 
   #select(id: string | null): void {
@@ -138,7 +141,7 @@ export class View {
 
   #at(event: MapMouseEvent, near: number): Under | null {
     const { x, y } = event.point;
-    const layers = [...turnLayers, ...edgeLayers, ...overviewLayers].filter((id) => this.map.getLayer(id));
+    const layers = [...changeLayers, ...turnLayers, ...edgeLayers, ...overviewLayers].filter((id) => this.map.getLayer(id));
     const box: [[number, number], [number, number]] = [[x - near, y - near], [x + near, y + near]];
     const exact = this.map.queryRenderedFeatures(event.point, { layers });
     return under(exact[0] ?? this.map.queryRenderedFeatures(box, { layers })[0]);
@@ -172,6 +175,7 @@ export class View {
 function under(feature: MapGeoJSONFeature | undefined): Under | null {
   if (!feature) return null;
   const properties = feature.properties as Under["properties"];
+  if (feature.source === CHANGES) return { kind: "change", id: String(properties["id"]), properties };
   const kind = feature.sourceLayer as Under["kind"];
   return { kind, id: kind === "overview" ? null : String(properties[`${kind}_id`]), properties };
 }

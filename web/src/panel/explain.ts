@@ -1,7 +1,7 @@
 // The explanation of a road or turn: the server's sentences and scope, and the picture of the swept path.
 
 import { api, type Question } from "../api/client.ts";
-import type { Explanation, Shapes, VerdictName } from "../api/types.ts";
+import type { Changed, Explanation, Shapes, VerdictName } from "../api/types.ts";
 import { h, prose } from "../ui/dom.ts";
 import { className, evidenceWords, margin, policyWords, reasonWords, title, verdictWords } from "../words.ts";
 import { labelled, mapKey } from "./mapkey.ts";
@@ -18,6 +18,8 @@ export interface Around {
   other(): Question | null;
   /** Opens another road. */
   select(id: string): void;
+  /** The change of a road or turn since the older database while changes are shown, and the words for it. */
+  changed(id: string): { changed: Changed; note: HTMLElement } | null;
 }
 
 export class ExplainPanel {
@@ -25,6 +27,8 @@ export class ExplainPanel {
   readonly #picture = new Picture();
   /** The place of the key to the shapes on the map. */
   readonly #key = h("div", { class: "map-key" });
+  /** The place of what changed since the older database. */
+  readonly #changed = h("div", { class: "changed-place" });
   #running: AbortController | undefined;
 
   constructor(private readonly around: Around) {}
@@ -36,7 +40,15 @@ export class ExplainPanel {
     this.around.place(null, false);
     this.around.shapes(null);
     this.#key.replaceChildren();
-    this.element.replaceChildren(h("p", { class: "waiting" }, "Certifying again, to explain why …"));
+    this.#tell(id);
+    const { changed } = this.around.changed(id) ?? {};
+    if (changed?.change === "went") {
+      const name = changed.kind === "turn" ? `Turn ${changed.name ?? ""}` : title(changed);
+      const why = "This database does not have it, so there is nothing to explain.";
+      this.element.replaceChildren(h("h2", {}, name), this.#changed, h("p", { class: "note" }, why));
+      return;
+    }
+    this.element.replaceChildren(this.#changed, h("p", { class: "waiting" }, "Certifying again, to explain why …"));
     try {
       const other = this.around.other();
       const [own, beside] = await Promise.all([
@@ -55,6 +67,17 @@ export class ExplainPanel {
       if (running.signal.aborted) return;
       this.element.replaceChildren(h("h2", {}, "Nothing to explain"), h("p", { class: "problem", role: "alert" }, (error as Error).message));
     }
+  }
+
+  /** Tells of the change of what is shown. What is gone has no explanation. */
+  async changesKnown(id: string, question: Question): Promise<void> {
+    if (this.around.changed(id)?.changed.change === "went") await this.show(id, question, false);
+    else this.#tell(id);
+  }
+
+  #tell(id: string): void {
+    const known = this.around.changed(id);
+    this.#changed.replaceChildren(...(known ? [known.note] : []));
   }
 
   /** Ends what is under way, because nothing is chosen any more. */
@@ -84,6 +107,7 @@ export class ExplainPanel {
     const nodes: Node[] = [
       h("h2", {}, own.turn ?? (road ? title(road) : "Turn at a junction")),
       h("p", { class: "sub" }, more.join(" · ")),
+      this.#changed,
       ...verdict(own),
     ];
     if (compared) nodes.push(h("h3", {}, compared.other.vehicle), ...verdict(compared.beside), ...relative(question.vehicle, own));

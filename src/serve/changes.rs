@@ -1,0 +1,225 @@
+//! What changed for one vehicle under one policy since the older database.
+//!
+//! Sums count all changes. Of the changes themselves, the longest ones are kept as finished features, so that the memory is bounded
+//! however much changed.
+
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+
+use super::problem::Problem;
+use super::region::{Certified, Region};
+use crate::diff::{self, Change, Changed, Row, Sums};
+use crate::osm::LonLat;
+use crate::osm::facts::Policy;
+use crate::rows::{Bounds, DrivingSides, EdgeRow, TurnRow};
+use crate::stop::Stop;
+use crate::store::{QueryOptions, StoreError};
+use crate::words::Named;
+
+/// The greatest number of changes to keep. Each takes about a kilobyte.
+const MOST_KEPT: usize = 50_000;
+/// The greatest number of roads in the list of the largest changes.
+const MOST_ROADS: usize = 100;
+
+/// A changed edge or turn.
+pub(super) struct Kept {
+    pub(super) bounds: Bounds,
+    length_m: f64,
+    id: i64,
+    /// The feature, as JSON.
+    pub(super) feature: Box<str>,
+}
+
+/// The changes of one set.
+pub(super) struct Changes {
+    /// Edges, kilometres and turns by change.
+    pub(super) sums: Vec<Value>,
+    /// The roads with the longest changes.
+    pub(super) roads: Vec<Value>,
+    /// Why the sets may differ although the map does not.
+    pub(super) notes: Vec<&'static str>,
+    /// Whether both sets have certificates of turns.
+    pub(super) turns_compared: bool,
+    /// The changes, the longest first.
+    pub(super) kept: Vec<Kept>,
+    /// Whether all changes are kept.
+    pub(super) complete: bool,
+}
+
+impl Changes {
+    /// Compares a set with that of the older database.
+    pub(super) fn between(
+        (old, before): (&Region, &Certified<'_>),
+        (new, after): (&Region, &Certified<'_>),
+        stop: &Stop,
+    ) -> Result<Self, Problem> {
+        let (vehicle, policy) = (after.vehicle.id.as_str(), after.settings.policy);
+        let turned = before.settings.turns && after.settings.turns;
+        let mut gathered = Gathered {
+            set: (vehicle, policy),
+            sides: [old.sides()?, new.sides()?],
+            sums: Sums::default(),
+            longest: Longest::default(),
+        };
+        // Both files are read at the same time, row beside row.
+        new.read_until(stop, |new| {
+            Ok(old.read_until(stop, |old| {
+                let options = QueryOptions::new(vehicle, policy);
+                diff::edges(old.query(&options)?, new.query(&options)?, |changed| gathered.edge(&changed))?;
+                if turned {
+                    let (before, after) = (old.turn_rows(vehicle, policy)?, new.turn_rows(vehicle, policy)?);
+                    diff::turns(before, after, |changed| gathered.turn(&changed))?;
+                }
+                Ok(())
+            }))
+        })??;
+        let definitions = [before, after].map(|one| one.set.vehicle_blake3.as_str());
+        let notes = diff::notes(definitions, [&before.settings, &after.settings]);
+        Ok(gathered.finish(notes, turned))
+    }
+}
+
+/// Changes while they come.
+struct Gathered<'g> {
+    set: (&'g str, Policy),
+    /// The driving sides of the older and of the newer database.
+    sides: [Arc<DrivingSides>; 2],
+    sums: Sums,
+    longest: Longest,
+}
+
+/// The longest changes so far.
+#[derive(Default)]
+struct Longest {
+    kept: Vec<Kept>,
+    /// How many there were.
+    all: usize,
+}
+
+impl Longest {
+    fn add(&mut self, change: Kept) {
+        self.all += 1;
+        self.kept.push(change);
+        // Sorting as seldom as that keeps the work per change small.
+        if self.kept.len() >= 2 * MOST_KEPT {
+            self.shorten();
+        }
+    }
+
+    fn shorten(&mut self) {
+        self.kept.sort_by(|a, b| b.length_m.total_cmp(&a.length_m).then(a.id.cmp(&b.id)));
+        self.kept.truncate(MOST_KEPT);
+    }
+}
+
+impl Gathered<'_> {
+    fn edge(&mut self, changed: &Changed<EdgeRow>) -> Result<(), StoreError> {
+        self.sums.add_edge(changed);
+        let length_m = changed.row().map_or(0.0, |row| row.length_m);
+        let own = &self.sides[usize::from(changed.after.is_some())];
+        let left = changed.row().and_then(|row| own.left(row.edge));
+        self.keep(Row::of_edge(self.set, changed), length_m, changed.two_way, left);
+        Ok(())
+    }
+
+    fn turn(&mut self, changed: &Changed<TurnRow>) -> Result<(), StoreError> {
+        self.sums.add_turn(changed);
+        let length_m = changed.row().map_or(0.0, |row| length_m(&row.line));
+        self.keep(Row::of_turn(self.set, changed), length_m, false, None);
+        Ok(())
+    }
+
+    /// `left` is the driving side, if the region has both.
+    fn keep(&mut self, row: Option<Row>, length_m: f64, two_way: bool, left: Option<bool>) {
+        let Some(mut row) = row else { return };
+        let Some(bounds) = Bounds::around(row.line.iter().copied()) else { return };
+        let id = row.members["id"].as_i64().unwrap_or_default();
+        // Numbers in JavaScript hold fewer bits than an id.
+        for name in ["id", "way_id"] {
+            if let Some(number) = row.members.get_mut(name).filter(|value| value.is_number()) {
+                *number = json!(number.to_string());
+            }
+        }
+        row.members.insert("two_way".to_owned(), json!(two_way));
+        row.members.extend(left.map(|left| ("left".to_owned(), json!(left))));
+        let feature = row.feature().to_string().into_boxed_str();
+        self.longest.add(Kept { bounds, length_m, id, feature });
+    }
+
+    fn finish(mut self, notes: Vec<&'static str>, turns_compared: bool) -> Changes {
+        self.longest.shorten();
+        let Longest { kept, all } = self.longest;
+        let sum = |(name, sum): (&&str, &diff::Sum)| json!({"change": name, "edges": sum.edges, "km": km(sum.length_m), "turns": sum.turns});
+        let mut roads = self.sums.roads();
+        roads.sort_by(|a, b| b.2.sum.length_m.total_cmp(&a.2.sum.length_m));
+        Changes {
+            sums: self.sums.by_name().iter().map(sum).collect(),
+            roads: roads.into_iter().take(MOST_ROADS).map(road).collect(),
+            notes,
+            turns_compared,
+            complete: all == kept.len(),
+            kept,
+        }
+    }
+}
+
+fn road((change, road, changes): (Change, &diff::Road, &diff::OnRoad)) -> Value {
+    json!({
+        "change": change.name(),
+        "standing": change.standing().name(),
+        "highway": road.highway,
+        "road": road.name,
+        "edges": changes.sum.edges,
+        "km": km(changes.sum.length_m),
+        "edge_id": changes.longest.map(|(edge_id, _)| edge_id.to_string()),
+        "bbox": changes.bounds.map(|b| [b.west, b.south, b.east, b.north].map(|side| (side * 1e7).round() / 1e7)),
+    })
+}
+
+/// Kilometres, rounded to a metre.
+fn km(length_m: f64) -> f64 {
+    length_m.round() / 1000.0
+}
+
+/// The length of a line in metres, to the per cent: it orders changes and decides nothing.
+fn length_m(line: &[LonLat]) -> f64 {
+    let places: Vec<(f64, f64)> = line.iter().map(|place| place.degrees()).collect();
+    let metres = |pair: &[(f64, f64)]| {
+        let shrink = pair[0].1.to_radians().cos();
+        111_320.0 * ((pair[1].0 - pair[0].0) * shrink).hypot(pair[1].1 - pair[0].1)
+    };
+    places.windows(2).map(metres).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_longest_are_kept_however_many_come() {
+        let bounds = Bounds { west: 0.0, south: 0.0, east: 1.0, north: 1.0 };
+        let mut longest = Longest::default();
+        let count = 3 * MOST_KEPT as i64 + 7;
+        // Each length comes twice.
+        for id in 0..count {
+            longest.add(Kept { bounds, length_m: (id / 2 * 7919 % count) as f64, id, feature: "".into() });
+            assert!(longest.kept.len() < 2 * MOST_KEPT);
+        }
+        longest.shorten();
+        assert_eq!((longest.kept.len(), longest.all as i64), (MOST_KEPT, count));
+        let ordered = |a: &Kept, b: &Kept| a.length_m > b.length_m || (a.length_m == b.length_m && a.id < b.id);
+        assert!(longest.kept.is_sorted_by(ordered));
+        let least = longest.kept.last().map_or(0.0, |change| change.length_m);
+        let longer = (0..count).filter(|id| (id / 2 * 7919 % count) as f64 > least).count();
+        assert!(longer < MOST_KEPT);
+    }
+
+    #[test]
+    fn a_line_is_as_long_as_on_the_ground() {
+        let at = |lon_e7, lat_e7| LonLat { lon_e7, lat_e7 };
+        assert!((length_m(&[at(0, 0), at(10_000_000, 0), at(10_000_000, 10_000_000)]) - 222_640.0).abs() < 500.0);
+        assert!((length_m(&[at(0, 600_000_000), at(10_000_000, 600_000_000)]) - 55_660.0).abs() < 100.0);
+        assert_eq!(length_m(&[at(0, 0)]), 0.0);
+    }
+}
