@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """A planet on paper: the schedule of its tasks on a cluster, from the measured tasks of a region.
 
-    benches/planet.py TASKS.csv [--km 120e6] [--vehicles 35] [--price 0.02] [--lost 0.05]
+    benches/planet.py TASKS.csv [--km 120e6] [--vehicles 35] [--price 0.0162] [--lost 0.05]
 
 TASKS.csv is what benches/spark.py writes. Tasks are drawn from it until they have the length of the planet's directed edges. A core that is free takes the
 next task, the dearest first. `--lost`: the share of cores that are taken away in an hour, as spot machines are; what they were doing is done again.
-`--price`: dollars for a core and hour.
+`--price`: dollars for a core and hour. By default that of a spot machine of 96 cores in an example of AWS (EC2 Auto Scaling user guide, "Spot price per
+unit hour example": c5.24xlarge, 1.555 dollars).
 """
 
 import argparse
@@ -36,7 +37,7 @@ def main():
     parser.add_argument("tasks")
     parser.add_argument("--km", type=float, default=120e6, help="kilometres of directed edges")
     parser.add_argument("--vehicles", type=int, default=35)
-    parser.add_argument("--price", type=float, default=0.02)
+    parser.add_argument("--price", type=float, default=0.0162)
     parser.add_argument("--lost", type=float, default=0.05)
     asked = parser.parse_args()
     with open(asked.tasks, newline="", encoding="utf-8") as file:

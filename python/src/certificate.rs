@@ -8,7 +8,7 @@ use netcert::stet::{self, Model, Options, known_m, tubes};
 use netcert::words::{Named as _, verdict_words};
 use netcert::{certificate as files, check};
 use numpy::{PyArray1, PyArray2};
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::corridor::{Corridor, pairs};
@@ -200,8 +200,7 @@ impl Certificate {
     /// Writes the certificate file.
     fn to_file(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let text = self.to_json(py)?;
-        let written = std::fs::write(&path, text);
-        written.map_err(|e| PyOSError::new_err(format!("{}: cannot write the certificate: {e}", path.display())))
+        std::fs::write(&path, text).map_err(|e| error::of_io(&path, "cannot write the certificate", &e))
     }
 
     /// Checks the certificate with the independent checker.

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use netcert::corridor::{self as library, Drawn, FileCorridor};
 use numpy::{AllowTypeChange, PyArray1, PyArray2, PyArrayLike1, PyArrayLike2, PyArrayMethods as _};
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
@@ -95,8 +95,7 @@ impl Corridor {
     #[classmethod]
     fn from_file(_: &Bound<'_, PyType>, path: PathBuf) -> PyResult<Self> {
         let text = std::fs::read_to_string(&path);
-        let text =
-            text.map_err(|e| PyOSError::new_err(format!("{}: cannot read the corridor: {e}", path.display())))?;
+        let text = text.map_err(|e| error::of_io(&path, "cannot read the corridor", &e))?;
         let read = library::corridor_from_file(&text);
         let given = read.map_err(|e| error::CorridorError::new_err(format!("{}: {e}", path.display())))?;
         Ok(Self { given })

@@ -1,5 +1,8 @@
 //! The library's errors as exceptions of `netcert.errors`, with the words of the program.
 
+use std::io;
+use std::path::Path;
+
 use netcert::corridor::FileError;
 use netcert::region::RegionError as LibraryRegionError;
 use netcert::route::Unanswered;
@@ -7,7 +10,7 @@ use netcert::stet::ModelError;
 use netcert::store::StoreError;
 use netcert::vehicle::VehicleError as LibraryVehicleError;
 use pyo3::PyErr;
-use pyo3::exceptions::PyKeyboardInterrupt;
+use pyo3::exceptions::{PyFileNotFoundError, PyKeyboardInterrupt, PyOSError, PyPermissionError};
 use pyo3::import_exception;
 
 import_exception!(netcert.errors, CorridorError);
@@ -57,6 +60,16 @@ pub(crate) fn of_question(error: &Unanswered) -> PyErr {
     match error {
         Unanswered::Place(error) => PlaceError::new_err(error.to_string()),
         Unanswered::Stopped(_) => stopped(),
+    }
+}
+
+/// An error of reading or writing a file, as the exception that Python has for its kind.
+pub(crate) fn of_io(path: &Path, what: &str, error: &io::Error) -> PyErr {
+    let words = format!("{}: {what}: {error}", path.display());
+    match error.kind() {
+        io::ErrorKind::NotFound => PyFileNotFoundError::new_err(words),
+        io::ErrorKind::PermissionDenied => PyPermissionError::new_err(words),
+        _ => PyOSError::new_err(words),
     }
 }
 

@@ -38,11 +38,11 @@ impl RegionFile {
         self.region.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The corridor policy of a word, or the database's usual one.
-    fn policy(&self, word: Option<&str>) -> PyResult<Policy> {
+    /// The corridor policy of a word, or the database's usual one. Another thread may be using the database.
+    fn policy(&self, py: Python<'_>, word: Option<&str>) -> PyResult<Policy> {
         match word {
             Some(word) => named("corridor", word),
-            None => self.region().usual_policy().map_err(|e| error::of_region(&e)),
+            None => py.detach(|| self.region().usual_policy()).map_err(|e| error::of_region(&e)),
         }
     }
 }
@@ -100,8 +100,8 @@ impl RegionFile {
     }
 
     /// The corridor policy that counts where none is named: that of the `ingest`.
-    fn usual_corridor(&self) -> PyResult<&'static str> {
-        Ok(self.policy(None)?.name())
+    fn usual_corridor(&self, py: Python<'_>) -> PyResult<&'static str> {
+        Ok(self.policy(py, None)?.name())
     }
 
     /// A vehicle as its certificates were made for it.
@@ -134,7 +134,7 @@ impl RegionFile {
             min_width_source: min_width_source
                 .map(|word| named::<WidthSource>("min_width_source", word))
                 .transpose()?,
-            ..QueryOptions::new(vehicle_id, self.policy(corridor)?)
+            ..QueryOptions::new(vehicle_id, self.policy(py, corridor)?)
         };
         work::run(py, |stop| {
             let mut columns = Columns::new(&EdgeRow::COLUMNS, true);
@@ -167,7 +167,7 @@ impl RegionFile {
             verdict: verdict.map(|word| named::<VerdictKind>("verdict", word)).transpose()?,
             min_rsc_m,
             needs_at_most_m,
-            ..TurnQuery::new(vehicle_id, self.policy(corridor)?)
+            ..TurnQuery::new(vehicle_id, self.policy(py, corridor)?)
         };
         work::run(py, |_| {
             let mut columns = Columns::new(&TurnRow::COLUMNS, true);
@@ -186,7 +186,7 @@ impl RegionFile {
         vehicle_id: &str,
         corridor: Option<&str>,
     ) -> PyResult<Explanation> {
-        let policy = self.policy(corridor)?;
+        let policy = self.policy(py, corridor)?;
         let made = work::run(py, |stop| self.region().explain(edge_id, vehicle_id, policy, stop))?;
         made.map(Explanation::of_edge).map_err(|e| error::of_region(&e))
     }
@@ -199,7 +199,7 @@ impl RegionFile {
         vehicle_id: &str,
         corridor: Option<&str>,
     ) -> PyResult<Explanation> {
-        let policy = self.policy(corridor)?;
+        let policy = self.policy(py, corridor)?;
         let made = work::run(py, |stop| self.region().explain_turn(turn_id, vehicle_id, policy, stop))?;
         made.map(Explanation::of_turn).map_err(|e| error::of_region(&e))
     }
@@ -218,7 +218,7 @@ impl RegionFile {
         tries: usize,
         conditions: bool,
     ) -> PyResult<Answer> {
-        let policy = self.policy(corridor)?;
+        let policy = self.policy(py, corridor)?;
         let distance = match least {
             "time" => false,
             "distance" => true,

@@ -6,7 +6,7 @@ use netcert::check::{self, Outcome};
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 
-use crate::work;
+use crate::{error, work};
 
 /// A certificate of a million stations has about 700 MB.
 const MOST_BYTES: u64 = 1 << 30;
@@ -16,8 +16,7 @@ const MOST_BYTES: u64 = 1 << 30;
 /// Raises OSError if the file cannot be read. A file that is no certificate is a report that is not confirmed.
 #[pyfunction]
 pub(crate) fn verify(py: Python<'_>, path: PathBuf) -> PyResult<Report> {
-    let cannot =
-        |e: std::io::Error| PyOSError::new_err(format!("{}: cannot read the certificate: {e}", path.display()));
+    let cannot = |e: std::io::Error| error::of_io(&path, "cannot read the certificate", &e);
     let bytes = std::fs::metadata(&path).map_err(cannot)?.len();
     if bytes > MOST_BYTES {
         return Err(PyOSError::new_err(format!("{}: {bytes} bytes are too many for a certificate", path.display())));

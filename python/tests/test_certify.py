@@ -96,7 +96,7 @@ def test_the_checker_refutes_a_changed_file(catalogue, bend, tmp_path):
     path.write_text(made.to_json().replace('"safe":true', '"safe":false'))
     report = netcert.verify(path)
     assert not report.confirmed and report.findings
-    with pytest.raises(OSError, match="no-such-file"):
+    with pytest.raises(FileNotFoundError, match="no-such-file"):
         netcert.verify(tmp_path / "no-such-file")
 
 
