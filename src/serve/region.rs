@@ -166,9 +166,10 @@ impl Region {
         Ok(region)
     }
 
-    /// The run that made the database from its extract.
+    /// The run that made the database from its extract. After `netcert update` that is the first of its runs; others certified more.
     pub(super) fn ingest(&self) -> Option<&Run> {
-        self.runs.iter().rev().find(|run| run.command == "ingest")
+        let ingest = self.runs.iter().rev().find(|run| run.command == "ingest");
+        ingest.or_else(|| self.runs.iter().find(|run| run.command == "update"))
     }
 
     /// The file's name, without its folder.
