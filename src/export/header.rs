@@ -67,8 +67,8 @@ impl Provenance {
         let (ingest, _) = runs
             .into_iter()
             .rev()
-            .find(|(run, _)| run.command == "ingest")
-            .ok_or_else(|| damaged("no run of `ingest` is recorded".to_owned()))?;
+            .find(|(run, _)| run.read_extract())
+            .ok_or_else(|| damaged("no run of `ingest` or `update` is recorded".to_owned()))?;
         Ok(Self {
             database: ask.db.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
             database_blake3: hash_of(&ask.db)?,

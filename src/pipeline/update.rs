@@ -49,7 +49,7 @@ pub struct Update<'a> {
 /// The run that read the extract of a database.
 #[must_use]
 pub fn run_of_extract(runs: &[Run]) -> Option<&Run> {
-    runs.iter().rfind(|run| run.input_blake3.is_some())
+    runs.iter().rfind(|run| run.read_extract())
 }
 
 /// Makes the database anew from newer data, with the vehicles and settings that it has. Certificates of roads and turns that the newer data

@@ -166,10 +166,9 @@ impl Region {
         Ok(region)
     }
 
-    /// The run that made the database from its extract. After `netcert update` that is the first of its runs; others certified more.
+    /// The run that made the database from its extract.
     pub(super) fn ingest(&self) -> Option<&Run> {
-        let ingest = self.runs.iter().rev().find(|run| run.command == "ingest");
-        ingest.or_else(|| self.runs.iter().find(|run| run.command == "update"))
+        self.runs.iter().rfind(|run| run.read_extract())
     }
 
     /// The file's name, without its folder.

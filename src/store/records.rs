@@ -30,7 +30,7 @@ impl VehicleRecord {
 /// One run of a command that writes the database. The caller gives the times; nothing else in the file depends on a clock.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Run {
-    /// The command: `ingest`, `certify`, or a command that certified on demand, such as `query`.
+    /// The command: `ingest`, `update`, `certify`, or a command that certified on demand, such as `query`.
     pub command: String,
     /// Name of the file read.
     pub input_name: String,
@@ -46,6 +46,14 @@ pub struct Run {
     pub finished: String,
     /// Every parameter, as JSON.
     pub parameters: String,
+}
+
+impl Run {
+    /// Whether the run made the database of an extract: `ingest`, and after it `update`. Others certified on what it made.
+    #[must_use]
+    pub fn read_extract(&self) -> bool {
+        self.input_blake3.is_some()
+    }
 }
 
 /// Adds a run with its account and returns the run's number.

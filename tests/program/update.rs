@@ -273,6 +273,16 @@ fn changes_that_are_older_than_the_extract_are_refused() {
 }
 
 #[test]
+fn an_updated_database_is_exported() {
+    let place = place();
+    run(&place, "update --db grid.gpkg 1.osc").succeeds();
+    let rows =
+        run(&place, "export csv --db grid.gpkg --vehicle AU-SEMI19 --corridor carriageway --layer edges --out -")
+            .succeeds();
+    assert!(rows.out().lines().count() > 10);
+}
+
+#[test]
 fn vehicles_and_their_settings_stay() {
     let place = place();
     run(&place, "certify --db grid.gpkg --vehicle EU-SEMI16.5 --corridor lane --needs off").succeeds();
