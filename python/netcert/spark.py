@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from ._netcert import Vehicle
 
 # Seconds a vehicle of a task: measured on Rhein-Neckar with EU-SEMI16.5 (docs/decisions/cluster.md). Only their ratio matters.
-_SECONDS_A_KM = 0.0019
-_SECONDS_A_TURN = 0.0016
+_SECONDS_A_KM = 0.0103
+_SECONDS_A_TURN = 0.00095
 # Parts for each core. More let a machine that is done early take over; each costs some 10 ms.
 _BINS_A_CORE = 8
 
