@@ -154,6 +154,22 @@ class Region:
             self._file.route(vehicle_id, places, corridor, least, snap_m, alternatives, tries, conditions)
         )
 
+    def to_dataset(
+        self, folder: str | os.PathLike[str], *, vehicles: Sequence[str] | None = None, zoom: int = 8
+    ) -> None:
+        """Writes the permits of all vehicles as one data set of GeoParquet files, by cell and vehicle (see `netcert.dataset`).
+
+        vehicles  ids of the vehicles [default: all that are certified]
+        zoom      zoom of the tiles that divide it; 8 has tiles of some 100 km
+
+        The folder is complete or absent. Needs GeoPandas.
+
+        Raises NotFound if a vehicle is not certified, FileExistsError if the folder has other files.
+        """
+        from .dataset import write
+
+        write(self, folder, None if vehicles is None else list(vehicles), zoom)
+
     def __repr__(self) -> str:
         return f"<Region {self.path}>"
 

@@ -32,22 +32,28 @@ pub(crate) struct Corridor {
     pub(crate) given: FileCorridor,
 }
 
-/// One width, or one per point.
-#[derive(FromPyObject)]
-enum Widths<'py> {
-    #[pyo3(transparent)]
-    All(f64),
-    #[pyo3(transparent)]
-    Each(PyArrayLike1<'py, f64, AllowTypeChange>),
+/// Points from an array, or anything that numpy makes one of.
+fn points(given: &Bound<'_, PyAny>) -> PyResult<Vec<[f64; 2]>> {
+    let wrong = |what: &str| error::CorridorError::new_err(format!("points: {what}; expected numbers of shape (n, 2)"));
+    let array: PyArrayLike2<'_, f64, AllowTypeChange> =
+        given.extract().map_err(|_| wrong("no array of two dimensions"))?;
+    let array = array.as_array();
+    if array.ncols() != 2 {
+        return Err(wrong(&format!("an array of shape ({}, {})", array.nrows(), array.ncols())));
+    }
+    Ok(array.rows().into_iter().map(|row| [row[0], row[1]]).collect())
 }
 
-impl Widths<'_> {
-    fn into_vec(self) -> Vec<f64> {
-        match self {
-            Self::All(width_m) => vec![width_m],
-            Self::Each(widths_m) => widths_m.as_array().to_vec(),
-        }
+/// One width, or one per point.
+fn widths(name: &str, given: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Vec<f64>>> {
+    let Some(given) = given else { return Ok(None) };
+    if let Ok(width_m) = given.extract::<f64>() {
+        return Ok(Some(vec![width_m]));
     }
+    let each = given.extract::<PyArrayLike1<'_, f64, AllowTypeChange>>().map(|each| each.as_array().to_vec());
+    each.map(Some).map_err(|_| {
+        error::CorridorError::new_err(format!("{name}: expected a number of metres, or one number per point"))
+    })
 }
 
 #[pymethods]
@@ -56,21 +62,13 @@ impl Corridor {
     #[pyo3(signature = (points, *, width_m = None, left_m = None, right_m = None, crs = "metres", smoothing_tolerance_m = None))]
     fn new(
         py: Python<'_>,
-        points: PyArrayLike2<'_, f64, AllowTypeChange>,
-        width_m: Option<Widths<'_>>,
-        left_m: Option<Widths<'_>>,
-        right_m: Option<Widths<'_>>,
+        points: &Bound<'_, PyAny>,
+        width_m: Option<&Bound<'_, PyAny>>,
+        left_m: Option<&Bound<'_, PyAny>>,
+        right_m: Option<&Bound<'_, PyAny>>,
         crs: &str,
         smoothing_tolerance_m: Option<f64>,
     ) -> PyResult<Self> {
-        let points = points.as_array();
-        if points.ncols() != 2 {
-            return Err(error::CorridorError::new_err(format!(
-                "points: an array of shape ({}, {}); expected (n, 2)",
-                points.nrows(),
-                points.ncols()
-            )));
-        }
         let drawn = Drawn {
             degrees: match crs {
                 "metres" => false,
@@ -79,10 +77,10 @@ impl Corridor {
                     return Err(PyValueError::new_err(format!("crs: {other:?}; expected \"metres\" or \"lonlat\"")));
                 }
             },
-            points: points.rows().into_iter().map(|row| [row[0], row[1]]).collect(),
-            width_m: width_m.map(Widths::into_vec),
-            left_m: left_m.map(Widths::into_vec),
-            right_m: right_m.map(Widths::into_vec),
+            points: self::points(points)?,
+            width_m: widths("width_m", width_m)?,
+            left_m: widths("left_m", left_m)?,
+            right_m: widths("right_m", right_m)?,
             smoothing_tolerance_m,
         };
         let given = py.detach(|| drawn.corridor()).map_err(|e| error::of_corridor(&e))?;

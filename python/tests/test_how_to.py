@@ -20,7 +20,7 @@ def blocks(page):
     return re.findall(r"^```(sh|python)\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
 
 
-@pytest.mark.parametrize("page", ["python.md", "spark.md"])
+@pytest.mark.parametrize("page", ["python.md", "spark.md", "dataset.md"])
 def test_a_page_does_what_it_says(page, tmp_path, monkeypatch):
     if page == "spark.md":
         pytest.importorskip("pyspark", reason="pip install pyspark")

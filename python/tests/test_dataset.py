@@ -1,0 +1,111 @@
+"""Permits of all vehicles as a data set of GeoParquet files."""
+
+import json
+import shutil
+
+import duckdb
+import geopandas
+import netcert
+import netcert.dataset
+import numpy as np
+import pyarrow.dataset
+import pyarrow.parquet
+import pytest
+import shapely
+
+TRUCK, TUG = "AU-SEMI19", "AGV-TUG4"
+# The drawn region lies in four of them.
+ZOOM = 11
+
+
+@pytest.fixture(scope="module")
+def folder(demo_path, tmp_path_factory):
+    path = tmp_path_factory.mktemp("dataset") / "permits"
+    netcert.open(demo_path).to_dataset(path, zoom=ZOOM)
+    return path
+
+
+def test_every_row_is_there_once_in_the_cell_where_it_begins(demo, folder):
+    for vehicle_id in (TRUCK, TUG):
+        for layer, id_name, rows in (("edges", "edge_id", demo.edges(vehicle_id)), ("turns", "turn_id", demo.turns(vehicle_id))):
+            known = rows.to_geopandas().set_index(id_name)
+            files = list(folder.glob(f"{layer}/cell=*/vehicle_id={vehicle_id}/carriageway.parquet"))
+            parts = [geopandas.read_parquet(file, partitioning=None) for file in files]
+            assert sum(map(len, parts)) == len(known) and len(parts) > 1
+            for file, part in zip(files, parts, strict=True):
+                zoom, column, row = map(int, file.parts[-3].removeprefix("cell=").split("-"))
+                first = shapely.get_point(part.geometry.values, 0)
+                x, y = netcert.dataset.tiles(shapely.get_x(first), shapely.get_y(first), zoom)
+                assert zoom == ZOOM and set(x) == {column} and set(y) == {row}
+                same = known.loc[part[id_name]]
+                assert part.verdict.tolist() == same.verdict.tolist()
+                assert part.permitted.tolist() == (same.verdict == "safe").tolist()
+                assert shapely.equals_exact(part.geometry.values, same.geometry.values).all()
+
+
+def test_files_are_geoparquet_with_boxes_that_readers_skip_by(folder):
+    for file in folder.glob("edges/*/*/*.parquet"):
+        metadata = pyarrow.parquet.read_metadata(file)
+        geo = json.loads(metadata.metadata[b"geo"])
+        column = geo["columns"]["geometry"]
+        assert geo["version"] == "1.1.0" and column["encoding"] == "WKB" and column["geometry_types"] == ["LineString"]
+        assert column["covering"]["bbox"]["xmin"] == ["bbox", "xmin"]
+        frame = geopandas.read_parquet(file, partitioning=None)
+        names = [metadata.schema.column(i).path for i in range(metadata.num_columns)]
+        low = metadata.row_group(0).column(names.index("bbox.xmin")).statistics.min
+        assert low == pytest.approx(frame.total_bounds[0])
+
+
+def test_a_reader_reads_only_the_files_of_a_cell_and_vehicle(folder, tmp_path):
+    """All other files are broken, and nobody notices. DuckDB takes the columns from the first file, so that one is asked for."""
+    broken = tmp_path / "permits"
+    shutil.copytree(folder, broken)
+    files = sorted(broken.glob("edges/*/*/*.parquet"))
+    wanted, others = files[0], files[1:]
+    count = pyarrow.parquet.read_metadata(wanted).num_rows
+    for other in others:
+        other.write_bytes(b"no Parquet")
+    cell, vehicle_id = (part.split("=")[1] for part in wanted.parts[-3:-1])
+    assert vehicle_id == TUG and len(others) == 7
+    rows = f"read_parquet('{broken}/edges/*/*/*.parquet', hive_partitioning = true)"
+    counted = duckdb.sql(f"SELECT count(*) FROM {rows} WHERE cell = '{cell}' AND vehicle_id = '{vehicle_id}'").fetchall()
+    assert counted == [(count,)]
+    some = (pyarrow.dataset.field("cell") == cell) & (pyarrow.dataset.field("vehicle_id") == vehicle_id)
+    assert pyarrow.dataset.dataset(broken / "edges", partitioning="hive").to_table(filter=some).num_rows == count
+
+
+def test_geopandas_reads_a_box(demo, folder):
+    frame = demo.edges(TRUCK).to_geopandas()
+    west, south, east, north = frame.total_bounds
+    box = (west, south, (west + east) / 2, (south + north) / 2)
+    found = geopandas.read_parquet(folder / "edges", bbox=box, filters=[("vehicle_id", "==", TRUCK)])
+    assert set(found.edge_id) >= set(frame[frame.intersects(shapely.box(*box))].edge_id) and len(found) < len(frame)
+
+
+def test_it_says_what_it_depends_on_and_is_replaced_whole(demo, folder, tmp_path):
+    about = json.loads((folder / "netcert.json").read_text())
+    assert "no permit to drive" in about["scope"] and {known["vehicle_id"] for known in about["sets"]} == {TRUCK, TUG}
+    target = tmp_path / "permits"
+    demo.to_dataset(target, vehicles=[TUG], zoom=ZOOM)
+    first = {file.relative_to(target): file.read_bytes() for file in target.rglob("*.parquet")}
+    demo.to_dataset(target, vehicles=[TUG], zoom=ZOOM)
+    assert first == {file.relative_to(target): file.read_bytes() for file in target.rglob("*.parquet")}
+    assert not list(tmp_path.glob("*.part"))
+
+
+def test_what_cannot_be_written_is_refused(demo, tmp_path):
+    with pytest.raises(netcert.NotFound, match="EU-SEMI16.5 not certified"):
+        demo.to_dataset(tmp_path / "a", vehicles=["EU-SEMI16.5"])
+    with pytest.raises(ValueError, match="zoom"):
+        demo.to_dataset(tmp_path / "a", zoom=99)
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine/letter.txt").write_text("dear")
+    with pytest.raises(FileExistsError, match="mine"):
+        demo.to_dataset(tmp_path / "mine")
+    assert (tmp_path / "mine/letter.txt").read_text() == "dear" and not (tmp_path / "a").exists()
+
+
+def test_tiles_are_those_of_maps_on_the_web():
+    lon, lat = np.array([-180.0, 179.9999, 0.0, 13.4]), np.array([85.05, -85.05, 0.0, 52.52])
+    x, y = netcert.dataset.tiles(lon, lat, 10)
+    assert x.tolist() == [0, 1023, 512, 550] and y.tolist() == [0, 1023, 512, 335]
