@@ -91,7 +91,7 @@ def test_a_task_that_cannot_be_done_is_named_and_the_others_are_certified(spark,
         pandas.testing.assert_frame_equal(after[~failed], before[~failed], check_dtype=False)
         turns = some.turns(vehicle.id).to_pandas()
         assert (turns.reason == "failed").sum() >= owned.turns
-    run("verify", "--db", path)
+    assert "unknown" in run("verify", "--db", path, "--vehicle", VEHICLES[0])
 
 
 def test_results_of_another_extract_or_job_are_refused(spark, fleet, cells, run, tmp_path):
