@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, anyhow};
+use anyhow::anyhow;
 use clap::Args;
 use netcert::cluster::{RESULTS, RegionFolder, Results};
 use netcert::pipeline::{self, RunError, TaskJob};
@@ -42,7 +42,7 @@ impl Assemble {
         let region = RegionFolder::read(&self.folder)?;
         let folder = self.results.clone().unwrap_or_else(|| self.folder.join(RESULTS));
         let mut results = Results::open(&folder)?;
-        let job = TaskJob::read(results.job()).with_context(|| format!("{}", folder.display()))?;
+        let job = TaskJob::read(results.job()).map_err(|e| anyhow!("{}: {e}", folder.display()))?;
         let origin = &region.origin;
         let extract = self.extract.clone().unwrap_or_else(|| origin.extract.clone());
         let mut parameters = certify_options::parameters(&job.settings)?;

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context as _, bail};
+use anyhow::{anyhow, bail};
 use clap::{Args, ValueHint};
 use netcert::cluster::{ABOUT, Origin, RegionFolder, TASKS, TaskWriter};
 use netcert::export::{ExportError, Layout, Out, Place, Unfinished};
@@ -62,7 +62,7 @@ impl From<ExportError> for Failed {
 impl Cells {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         let countries = self.roads.countries()?;
-        let extract = self.input.canonicalize().with_context(|| format!("{}: cannot read", self.input.display()))?;
+        let extract = self.input.canonicalize().map_err(|e| anyhow!("{}: {e}", self.input.display()))?;
         let unfinished = Unfinished::default();
         let on_disk = unfinished.clone();
         when_stopped(move || on_disk.remove());

@@ -1,5 +1,6 @@
 //! `netcert.json` of a region's folder: what its tasks were made from.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -48,6 +49,10 @@ impl RegionFolder {
         let path = folder.join(ABOUT);
         let text = match std::fs::read_to_string(&path) {
             Ok(text) => text,
+            Err(source) if source.kind() == ErrorKind::NotFound => {
+                let detail = "there is no such file; name a folder that `netcert cells` wrote".to_owned();
+                return Err(FolderError::Damaged { path, detail });
+            }
             Err(source) => return Err(FolderError::Io { path, source }),
         };
         serde_json::from_str(&text).map_err(|e| {

@@ -37,7 +37,9 @@ impl Results {
     /// The folder or a file cannot be read, or there is no result.
     pub fn open(folder: &Path) -> Result<Self, FolderError> {
         let mut files = Vec::new();
-        collect(folder, &mut files)?;
+        if folder.exists() {
+            collect(folder, &mut files)?;
+        }
         files.sort();
         let mut results = Self { files: files.into_iter(), open: None, job: None, first: None, failed: Vec::new() };
         results.first = results.read()?;
