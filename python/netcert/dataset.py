@@ -59,8 +59,12 @@ def write(region: Region, folder: str | os.PathLike[str], vehicles: list[str] | 
         about = {"database": Path(region.path).name, "zoom": zoom, "scope": _SCOPE, "sets": [vars(known) for known in sets]}
         part.mkdir(parents=True, exist_ok=True)
         (part / "netcert.json").write_text(json.dumps(about, indent=2) + "\n", encoding="utf-8")
-        shutil.rmtree(target, ignore_errors=True)
+        old = target.with_name(target.name + ".old")
+        shutil.rmtree(old, ignore_errors=True)
+        if target.exists():
+            target.rename(old)
         part.rename(target)
+        shutil.rmtree(old, ignore_errors=True)
     finally:
         shutil.rmtree(part, ignore_errors=True)
 

@@ -2,7 +2,7 @@
 
 
 class NetcertError(Exception):
-    """Any error of netcert. What Python itself refuses, such as a text in place of a number, is a `TypeError` or `ValueError`."""
+    """What netcert refuses. Files raise `OSError`; options that do not exist or are out of range raise `ValueError` or `TypeError`."""
 
 
 class VehicleError(NetcertError, ValueError):

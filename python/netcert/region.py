@@ -36,7 +36,7 @@ class Region:
     """A region: its roads and the certificates of its vehicles.
 
     `corridor` names the width that a vehicle may use in every method: "lane", "direction" or "carriageway". Without it, the policy of
-    the database's `ingest` counts. Long calls release the interpreter's lock, and Ctrl-C cancels them. After a fork, open the region
+    the database's `ingest` counts. Long calls release the interpreter's lock. Ctrl-C cancels routes and explanations. After a fork, open the region
     again in the new process.
     """
 

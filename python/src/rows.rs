@@ -22,7 +22,6 @@ const ROWS_AT_ONCE: usize = 65_536;
 /// A table in the making.
 pub(crate) struct Columns {
     schema: SchemaRef,
-    kinds: Vec<Kind>,
     /// The values of the batch in the making, by column.
     values: Vec<Values>,
     lines: Option<Lines>,
@@ -125,7 +124,6 @@ impl Columns {
         let fields: Vec<Field> = columns.iter().map(field).chain(lines.then(geometry)).collect();
         Self {
             schema: Arc::new(Schema::new(fields)),
-            kinds: columns.iter().map(|column| column.1).collect(),
             values: columns.iter().map(|column| Values::new(column.1)).collect(),
             lines: lines.then(Lines::new),
             rows: 0,
@@ -155,7 +153,6 @@ impl Columns {
             arrays.push(lines.finish()?);
         }
         self.batches.push(RecordBatch::try_new(Arc::clone(&self.schema), arrays)?);
-        self.values = self.kinds.iter().map(|kind| Values::new(*kind)).collect();
         self.rows = 0;
         Ok(())
     }

@@ -30,11 +30,6 @@ impl Block {
         self.x.contains(&cell.x) && self.y.contains(&cell.y)
     }
 
-    /// The first and last column and row of its cells.
-    pub(super) fn corners(&self) -> [u32; 4] {
-        [*self.x.start(), *self.y.start(), *self.x.end(), *self.y.end()]
-    }
-
     /// Whether a stroke in the surroundings of this block may begin in the other one. Surroundings end within the second cell beyond a
     /// block, and a stroke begins at most one cell before.
     pub(super) fn needs(&self, other: &Self) -> bool {

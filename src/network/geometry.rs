@@ -61,7 +61,8 @@ pub(super) fn deflection_deg(back: f64, ahead: f64) -> f64 {
     180.0 - between.min(360.0 - between)
 }
 
-fn length_m(positions: impl Iterator<Item = LonLat>) -> f64 {
+/// Length of a line, metres, accurate to 0.6 %.
+pub(crate) fn length_m(positions: impl Iterator<Item = LonLat>) -> f64 {
     let mut last = None;
     let mut sum = 0.0;
     for position in positions {

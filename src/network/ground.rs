@@ -237,12 +237,6 @@ impl Division {
         self.blocks.len()
     }
 
-    /// The first column and row, and the last column and row of a block's cells.
-    #[must_use]
-    pub fn corners(&self, block: usize) -> [u32; 4] {
-        self.blocks[block].corners()
-    }
-
     /// The blocks that may own edges in a block's surroundings, without the block itself.
     #[must_use]
     pub fn needs(&self, block: usize) -> Vec<u32> {

@@ -111,30 +111,21 @@ pub fn assemble(
     making.run_with(|_| Ok(job.models.clone()), None, Some(results), reporter)
 }
 
-/// What is left of a task's work after its results were taken over.
-pub(super) enum Rest {
-    /// It is to be certified here.
-    Certify,
-    /// The task failed.
-    Failed,
-}
-
-impl Rest {
-    /// What to do with `left` items of a part, if the results are those of other machines.
-    pub(super) fn of(failed: Option<&BTreeSet<PartOfWork>>, part: PartOfWork, left: usize) -> Result<Self, RunError> {
-        let Some(failed) = failed else { return Ok(Self::Certify) };
-        if left == 0 || failed.contains(&part) {
-            return Ok(Self::Failed);
-        }
-        let what = match part.0 {
-            Stage::Strokes => "edges",
-            Stage::Turns => "turns",
-        };
-        Err(RunError::Misfit(format!(
-            "the results of task {} lack {left} strokes or turns ({what}); certify it again",
-            part.1
-        )))
+/// Whether what is left of a task's work is unknown because the task failed. `failed` is `None` where this machine certifies.
+pub(super) fn unknown_rest(
+    failed: Option<&BTreeSet<PartOfWork>>,
+    part: PartOfWork,
+    left: usize,
+) -> Result<bool, RunError> {
+    let Some(failed) = failed.filter(|_| left > 0) else { return Ok(false) };
+    if failed.contains(&part) {
+        return Ok(true);
     }
+    let what = match part.0 {
+        Stage::Strokes => "strokes",
+        Stage::Turns => "turns",
+    };
+    Err(RunError::Misfit(format!("the results of task {} lack {left} {what}; certify it again", part.1)))
 }
 
 const FAILED: Verdict = Verdict::Unknown(UnknownReason::Failed);

@@ -16,7 +16,7 @@ use crate::store::{Finished, Kept, PartOfWork, Stage, VehicleNo, Writer};
 use crate::turns::{JunctionArea, TurnFacts, junction_areas, junction_places, turn_facts};
 use crate::verdict::{UnknownReason, Verdict};
 
-use super::assemble::{Rest, failed_stroke, failed_turn};
+use super::assemble::{failed_stroke, failed_turn, unknown_rest};
 use super::making::{EdgeVerdicts, locked};
 use super::reuse::Earlier;
 use super::roads::Roads;
@@ -104,7 +104,7 @@ impl Certifying<'_> {
             batch.into_iter().filter(|made| left.take(made.stroke)).try_for_each(|made| outcome.add(made, &mut sink))
         })?;
         let left = left.all();
-        if let Rest::Failed = Rest::of(self.failed, part, left.len())? {
+        if unknown_rest(self.failed, part, left.len())? {
             let edges = |stroke: u32| {
                 let edges = &network.strokes[stroke as usize].edges;
                 &network.stroke_edges[edges.start as usize..edges.end as usize]
@@ -194,7 +194,7 @@ impl Certifying<'_> {
             batch.into_iter().filter(|made| left.take(made.turn)).try_for_each(|made| outcome.add(&made, &mut sink))
         })?;
         let left = left.all();
-        if let Rest::Failed = Rest::of(self.failed, part, left.len())? {
+        if unknown_rest(self.failed, part, left.len())? {
             let made = |&turn: &u32| failed_turn(turn, self.models.len());
             left.iter().map(made).try_for_each(|made| outcome.add(&made, &mut sink))?;
             return Ok(());

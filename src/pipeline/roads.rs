@@ -55,12 +55,9 @@ impl<'c> Roads<'c> {
         self.divided.as_ref().map_or(1, |divided| divided.1.blocks())
     }
 
-    /// The cells of a portion, as [`Division::corners`] has them, and the portions that may own edges around it. The whole network is in
-    /// all cells.
-    pub(super) fn around(&self, number: usize) -> ([u32; 4], Vec<u32>) {
-        const LAST: u32 = (1 << 11) - 1;
-        let of = |divided: &(Ground<_, _>, Division)| (divided.1.corners(number), divided.1.needs(number));
-        self.divided.as_ref().map_or(([0, 0, LAST, LAST], Vec::new()), |divided| of(divided))
+    /// The portions that may own edges around a portion.
+    pub(super) fn needs(&self, number: usize) -> Vec<u32> {
+        self.divided.as_ref().map_or_else(Vec::new, |divided| divided.1.needs(number))
     }
 
     /// Number of directed edges.

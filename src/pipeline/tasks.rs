@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use super::{RunError, Summary, identity, read_roads};
 use crate::certify::{Job as StrokeJob, TurnJob, by_cell, make_strokes, make_turns};
-use crate::network::{Portion, offset_m};
+use crate::network::{Cell, Portion};
 use crate::osm::changes::Changes;
 use crate::osm::facts::Countries;
 use crate::reporter::{Reporter, Silent};
@@ -32,7 +32,7 @@ pub const EDGES_OF_A_TASK: u64 = 40_000;
 pub struct Task {
     /// The task's number, from 0.
     pub number: u32,
-    /// Its cells, tiles of zoom 11: the first column and row, the last column and row.
+    /// The cells in which its edges begin, tiles of zoom 11: the first column and row, the last column and row.
     pub corners: [u32; 4],
     /// Directed edges that it owns.
     pub edges: u64,
@@ -76,28 +76,19 @@ pub fn divide<E: From<RunError>>(
     reporter.begin("tasks", u64::from(edges));
     let mut done = 0;
     for number in 0..roads.portions() {
-        let (corners, needs) = roads.around(number);
+        let needs = roads.needs(number);
         let portion = roads.portion(number);
         let own: Vec<_> = portion.edges().map(|(_, edge)| edge).collect();
-        let length_m = |edge| {
-            let places: Vec<_> = portion.network.positions(edge).collect();
-            places
-                .windows(2)
-                .map(|pair| {
-                    let [east, north] = offset_m(pair[0], pair[1]);
-                    east.hypot(north)
-                })
-                .sum::<f64>()
-        };
+        let cells = own.iter().map(|edge| portion.network.cell(edge));
         let turns = turn_facts(&portion.network, &Kerbs::default());
         let task = Task {
             number: number as u32,
-            corners,
+            corners: corners(cells),
             edges: own.len() as u64,
-            length_km: own.iter().map(|edge| length_m(edge)).sum::<f64>() / 1000.0,
+            length_km: own.iter().map(|edge| portion.network.length_m(edge)).sum::<f64>() / 1000.0,
             turns: turns.iter().filter(|turn| portion.owns(turn.movement.from)).count() as u64,
             needs,
-            bytes: packed(&(identity::PROGRAM, number as u32, portion)).map_err(RunError::from)?,
+            bytes: packed(&(identity::PROGRAM, number as u32, portion)).map_err(|e| RunError::Misfit(e.to_string()))?,
         };
         done += task.edges;
         sink(task)?;
@@ -266,7 +257,7 @@ impl Job {
             done.push(made);
             Ok(())
         })?;
-        packed(&((Stage::Turns, number), done)).map_err(Into::into)
+        packed(&((Stage::Turns, number), done))
     }
 }
 
@@ -287,21 +278,13 @@ fn damaged(what: &'static str, error: &postcard::Error) -> TaskError {
     TaskError::Damaged { what, detail: error.to_string() }
 }
 
-fn packed<T: Serialize>(value: &T) -> Result<Vec<u8>, Unpacked> {
-    postcard::to_stdvec(value).map_err(Unpacked)
+fn packed<T: Serialize>(value: &T) -> Result<Vec<u8>, TaskError> {
+    postcard::to_stdvec(value).map_err(|e| damaged("result", &e))
 }
 
-/// A value without a form in bytes, which no value here is.
-struct Unpacked(postcard::Error);
-
-impl From<Unpacked> for TaskError {
-    fn from(Unpacked(error): Unpacked) -> Self {
-        damaged("result", &error)
-    }
-}
-
-impl From<Unpacked> for RunError {
-    fn from(Unpacked(error): Unpacked) -> Self {
-        Self::Misfit(format!("a task cannot be written: {error}"))
-    }
+/// The first column and row, and the last column and row.
+fn corners(cells: impl Iterator<Item = Cell>) -> [u32; 4] {
+    cells.fold([u32::MAX, u32::MAX, 0, 0], |[west, north, east, south], Cell { y, x }| {
+        [west.min(x), north.min(y), east.max(x), south.max(y)]
+    })
 }
