@@ -6,10 +6,12 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use rustc_hash::FxHashMap;
+
 use super::least::least_of;
 use super::strokes::Job;
 use super::turns::fits;
-use crate::corridor::{StrokeCorridor, stroke_corridor, stroke_corridor_on};
+use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor, stroke_corridor_on};
 use crate::network::{Network, Stroke};
 use crate::osm::facts::Policy;
 use crate::rows::TurnNeed;
@@ -24,7 +26,9 @@ const WIDTHS: f64 = 20.0;
 pub const MOST_MORE_M: f64 = 8.0;
 /// A width that leaves less than this is close enough to the least one, metres.
 const CLOSE_M: f64 = 0.05;
-/// How many widths of a stroke are tried for one vehicle.
+/// Widths that differ by fewer steps are tried as one: half of the difference is leeway, and it is close enough.
+const SHARED: i64 = (2.0 * CLOSE_M * WIDTHS) as i64;
+/// How many widths are tried for one edge and vehicle.
 const ROUNDS: usize = 12;
 /// The kerb radii that are tried, metres.
 pub const KERBS_M: [f64; 14] = [2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 14.0, 16.0, 20.0, MOST_KERB_M];
@@ -112,6 +116,42 @@ pub(super) struct Lacking<'r> {
     pub(super) narrow: Vec<Narrow<'r>>,
 }
 
+/// A width of a stroke that is tried for one vehicle, and the edges that ask for it or for a little less.
+struct Probe {
+    /// The first entry of the stroke in `Network::stroke_edges`.
+    stroke: u32,
+    steps: i64,
+    /// Index of the stroke and vehicle.
+    of: usize,
+    edges: Vec<u32>,
+}
+
+impl Probe {
+    /// What the searches of a stroke and vehicle ask for next. An edge that fits with [`CLOSE_M`] to spare or less is done, so
+    /// edges that ask for nearly the same width share a probe.
+    fn of(stroke: u32, of: usize, searches: &[Search]) -> Vec<Self> {
+        let mut wanted: Vec<(i64, u32)> =
+            searches.iter().filter_map(|search| Some((search.next?, search.edge))).collect();
+        wanted.sort_unstable_by(|a, b| b.cmp(a));
+        let mut probes: Vec<Self> = Vec::new();
+        for (steps, edge) in wanted {
+            match probes.last_mut() {
+                Some(probe) if probe.steps - steps < SHARED => probe.edges.push(edge),
+                _ => probes.push(Self { stroke, steps, of, edges: vec![edge] }),
+            }
+        }
+        probes
+    }
+}
+
+/// A stroke that is nowhere narrower than a width, for the edges of one probe: their numbers and stations.
+struct Widened<'w> {
+    probe: &'w Probe,
+    corridor: &'w Corridor,
+    edges: Vec<u32>,
+    spans: Vec<Range<usize>>,
+}
+
 /// For each stroke and vehicle: edges with the least width in metres with which each would be safe, if its stroke were nowhere narrower.
 /// An edge for which no width up to [`MOST_MORE_M`] more would do is left out. All searches take their next step together, so that
 /// the kernel certifies many widened strokes side by side.
@@ -126,47 +166,44 @@ pub(super) fn edge_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(u32
     };
     let mut searches: Vec<Vec<Search>> = lacking.iter().map(begin).collect();
     for _ in 0..ROUNDS {
-        let mut asked: Vec<(u32, i64, usize)> = Vec::new();
-        for (i, (searches, lacking)) in searches.iter().zip(lacking).enumerate() {
-            let mut wanted: Vec<i64> = searches.iter().filter_map(|search| search.next).collect();
-            wanted.sort_unstable();
-            asked.extend(wanted.get(wanted.len() / 2).map(|&steps| (lacking.stroke.edges.start, steps, i)));
-        }
-        if asked.is_empty() {
+        let of_stroke = |(of, lacking): (usize, &Lacking<'_>)| Probe::of(lacking.stroke.edges.start, of, &searches[of]);
+        let mut probes: Vec<Probe> = lacking.iter().enumerate().flat_map(of_stroke).collect();
+        if probes.is_empty() {
             break;
         }
-        asked.sort_unstable();
-        // Vehicles that ask for the same width of a stroke share its corridor.
-        let alike: Vec<&[(u32, i64, usize)]> = asked.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).collect();
-        let wide: Vec<Option<(StrokeCorridor, Vec<Range<usize>>)>> =
-            alike.iter().map(|same| widened(job, lacking[same[0].2].stroke, same[0].1 as f64 / WIDTHS)).collect();
-        let cases: Vec<Case<'_>> = alike
+        probes.sort_by_key(|probe| (probe.stroke, probe.steps, probe.of));
+        // Probes of the same width of a stroke share its corridor.
+        let alike: Vec<&[Probe]> = probes.chunk_by(|a, b| (a.stroke, a.steps) == (b.stroke, b.steps)).collect();
+        let made: Vec<Option<StrokeCorridor>> =
+            alike.iter().map(|same| widened(job, lacking[same[0].of].stroke, same[0].steps as f64 / WIDTHS)).collect();
+        let wide = alike.iter().zip(&made).filter_map(|(same, made)| Some((same, made.as_ref()?)));
+        let wide: Vec<Widened<'_>> =
+            wide.flat_map(|(same, made)| same.iter().map(move |probe| Widened::of(probe, made))).collect();
+        let cases: Vec<Case<'_>> = wide
             .iter()
-            .zip(&wide)
-            .filter_map(|(same, wide)| Some((same, wide.as_ref()?)))
-            .flat_map(|(same, (made, spans))| {
-                let case =
-                    |&(.., i): &(u32, i64, usize)| Case { corridor: &made.corridor, spans, model: lacking[i].model };
-                same.iter().map(case)
-            })
+            .map(|wide| Case { corridor: wide.corridor, spans: &wide.spans, model: lacking[wide.probe.of].model })
             .collect();
-        let mut rows = certify_cases(&cases, &job.settings.stet).into_iter();
-        for (same, wide) in alike.iter().zip(&wide) {
-            for &(_, steps, i) in *same {
-                let row = wide.as_ref().and_then(|(made, _)| Some((made, rows.next()?)));
-                for search in searches[i].iter_mut().filter(|search| search.next.is_some()) {
-                    let result = row.as_ref().and_then(|(made, row)| {
-                        let mut spans = made.spans.iter().zip(&row.spans);
-                        let known = spans.find(|(span, _)| span.edge == search.edge && span.unknown.is_none());
-                        known.map(|(_, result)| result)
-                    });
-                    search.take(steps, result);
-                }
-            }
+        let rows = certify_cases(&cases, &job.settings.stet);
+        let mut results: FxHashMap<(usize, u32), &SpanResult> = FxHashMap::default();
+        for (wide, row) in wide.iter().zip(&rows) {
+            results.extend(wide.edges.iter().zip(&row.spans).map(|(&edge, result)| ((wide.probe.of, edge), result)));
+        }
+        for probe in &probes {
+            let of_probe = searches[probe.of].iter_mut().filter(|search| probe.edges.contains(&search.edge));
+            of_probe.for_each(|search| search.take(probe.steps, results.get(&(probe.of, search.edge)).copied()));
         }
     }
     let found = |search: Search| Some((search.edge, search.does? as f64 / WIDTHS));
     searches.into_iter().map(|searches| searches.into_iter().filter_map(found).collect()).collect()
+}
+
+impl<'w> Widened<'w> {
+    /// The edges of the probe that have a corridor.
+    fn of(probe: &'w Probe, made: &'w StrokeCorridor) -> Self {
+        let asked = made.spans.iter().filter(|span| span.unknown.is_none() && probe.edges.contains(&span.edge));
+        let (edges, spans) = asked.map(|span| (span.edge, span.stations.clone())).unzip();
+        Self { probe, corridor: &made.corridor, edges, spans }
+    }
 }
 
 /// The least width in metres with which an edge that lacks room would be safe, if its stroke were nowhere narrower. `stroke` is an index
@@ -183,13 +220,11 @@ pub fn edge_need(network: &Network, (stroke, edge): (u32, u32), model: &Model, s
     edge_needs(&job, &[lacking]).pop()?.pop().map(|(_, need_m)| need_m)
 }
 
-/// A stroke that is nowhere narrower than a width, and the stations of its edges. `None` if it has no corridor then.
-fn widened(job: &Job<'_>, stroke: &Stroke, width_m: f64) -> Option<(StrokeCorridor, Vec<Range<usize>>)> {
+/// A stroke that is nowhere narrower than a width. `None` if it has no corridor then.
+fn widened(job: &Job<'_>, stroke: &Stroke, width_m: f64) -> Option<StrokeCorridor> {
     let Settings { policy, corridor, .. } = job.settings;
     let sections = |edge: &_| job.network.section(edge).at_least(*policy, width_m);
-    let made = stroke_corridor_on(job.network, stroke, &sections, *policy, corridor).ok()?;
-    let spans = made.spans.iter().map(|span| span.stations.clone()).collect();
-    Some((made, spans))
+    stroke_corridor_on(job.network, stroke, &sections, *policy, corridor).ok()
 }
 
 /// The lines of strokes, by edge.

@@ -122,9 +122,72 @@ pub(crate) fn select_negative(sign: V, yes: V, no: V) -> V {
 /// The bits of a [`V::tagged`] number that hold the tag.
 pub(crate) const TAG_MASK: u64 = 0x7f;
 
-/// Compiles functions twice, for machines with AVX2 and for any machine, and chooses at each call. Functions that they
-/// call must be `#[inline(always)]` to use AVX2. Each function is a piece of the sweep: the whole sweep inlined into
-/// one function takes the compiler minutes.
+/// The instruction sets that functions are compiled for, from the narrowest on. Development builds leave the widest one to the tests
+/// of this crate: it takes the compiler half as long again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum InstructionSet {
+    /// What every processor of its kind has.
+    Any,
+    /// Four lanes in a register.
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    /// All eight lanes in a register.
+    #[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))]
+    Avx512,
+}
+
+impl InstructionSet {
+    /// The widest one that this processor has.
+    #[inline]
+    pub(crate) fn widest() -> Self {
+        let widest = Self::of_the_processor();
+        #[cfg(test)]
+        let widest = widest.min(WIDEST_ALLOWED.get());
+        widest
+    }
+
+    #[inline]
+    fn of_the_processor() -> Self {
+        #[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))]
+        if is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512vl")
+        {
+            return Self::Avx512;
+        }
+        #[cfg(target_arch = "x86_64")]
+        if is_x86_feature_detected!("avx2") {
+            return Self::Avx2;
+        }
+        Self::Any
+    }
+}
+
+#[cfg(test)]
+thread_local! {
+    /// Tests compare narrower instruction sets with the widest one.
+    pub(crate) static WIDEST_ALLOWED: std::cell::Cell<InstructionSet> = const { std::cell::Cell::new(InstructionSet::MOST) };
+}
+
+#[cfg(test)]
+impl InstructionSet {
+    #[cfg(target_arch = "x86_64")]
+    const MOST: Self = Self::Avx512;
+    #[cfg(not(target_arch = "x86_64"))]
+    const MOST: Self = Self::Any;
+
+    /// Runs `work` on this thread with this instruction set or a narrower one.
+    pub(crate) fn at_most<T>(self, work: impl FnOnce() -> T) -> T {
+        WIDEST_ALLOWED.set(self);
+        let out = work();
+        WIDEST_ALLOWED.set(Self::MOST);
+        out
+    }
+}
+
+/// Compiles functions for each [`InstructionSet`], and chooses the widest at each call. Functions that they call must be
+/// `#[inline(always)]` to use it. Each function is a piece of the sweep: the whole sweep inlined into one function takes the
+/// compiler minutes.
 macro_rules! by_instruction_set {
     ($(
         $(#[$about:meta])*
@@ -150,12 +213,23 @@ macro_rules! by_instruction_set {
                 either$(::<$($flag),+>)?($($argument),*)
             }
 
-            #[cfg(target_arch = "x86_64")]
-            if std::arch::is_x86_feature_detected!("avx2") {
-                // SAFETY: the processor has AVX2, as tested above.
-                return unsafe { avx2$(::<$($flag),+>)?($($argument),*) };
+            #[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))]
+            #[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
+            #[inline(never)]
+            #[allow(clippy::too_many_arguments)]
+            fn avx512$(<$(const $flag: bool),+>)?($($argument: $type),*) $(-> $out)? {
+                either$(::<$($flag),+>)?($($argument),*)
             }
-            any$(::<$($flag),+>)?($($argument),*)
+
+            match super::lanes::InstructionSet::widest() {
+                // SAFETY: the processor has what the function is compiled for.
+                #[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))]
+                super::lanes::InstructionSet::Avx512 => unsafe { avx512$(::<$($flag),+>)?($($argument),*) },
+                // SAFETY: as above.
+                #[cfg(target_arch = "x86_64")]
+                super::lanes::InstructionSet::Avx2 => unsafe { avx2$(::<$($flag),+>)?($($argument),*) },
+                super::lanes::InstructionSet::Any => any$(::<$($flag),+>)?($($argument),*),
+            }
         }
     )+};
 }

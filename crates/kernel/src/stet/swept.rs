@@ -47,12 +47,21 @@ pub(super) fn measure(all: &mut [Swept<'_>], marks: Marks, stop: &Stop) {
             _ => rest.push(swept),
         }
     }
-    measure_spans(&mut rest, stop);
+    measure_spans(&mut rest, marks, stop);
 }
 
-/// The sweeps of several vehicles, for all of their spans.
-fn measure_spans(all: &mut [&mut Swept<'_>], stop: &Stop) {
-    let rides: Vec<Ride<'_>> = all.iter().map(|swept| swept.ride(1.0, Wanted::ALL)).collect();
+/// The sweeps of several vehicles, for all of their spans. Only a certificate that gives the leeway of each station looks at stations
+/// that no span rests on.
+fn measure_spans(all: &mut [&mut Swept<'_>], marks: Marks, stop: &Stop) {
+    let touched = blocks(all, |_, _| true);
+    let rides: Vec<Ride<'_>> = all
+        .iter()
+        .zip(&touched)
+        .map(|(swept, touched)| {
+            let blocks = matches!(marks, Marks::Ends).then_some(touched.as_slice());
+            swept.ride(1.0, Wanted { blocks, ..Wanted::ALL })
+        })
+        .collect();
     let full = sweep::<true>(&rides, stop);
     all.iter_mut().zip(full).for_each(|(swept, full)| swept.full = full);
 
@@ -176,7 +185,7 @@ impl<'m> Swept<'m> {
     /// The sweeps for all spans.
     pub(super) fn measure_spans(&mut self) {
         let stop = self.stop;
-        measure_spans(&mut [self], stop);
+        measure_spans(&mut [self], Marks::Ends, stop);
     }
 
     /// The certificate over the whole corridor, and the result for each span.
@@ -299,6 +308,7 @@ mod tests {
     use netcert_base::vehicle::Catalogue;
 
     use super::*;
+    use crate::stet::lanes::InstructionSet;
     use crate::stet::{Case, certify_cases, certify_spans};
 
     /// A bend with as much room on both sides, between straights.
@@ -312,16 +322,53 @@ mod tests {
         Corridor::from_curvature(1.0, [3.0, 4.0], 1.0, &profile.curvature, half_m, half_m)
     }
 
+    fn models() -> [Model; 3] {
+        let catalogue = Catalogue::builtin().unwrap();
+        ["EU-SEMI16.5", "AU-ATRIPLE53", "US-WB67D"].map(|id| Model::new(catalogue.get(id).unwrap()).unwrap())
+    }
+
+    fn bends() -> Vec<Corridor> {
+        let bend = |i| bend(20.0 + 37.0 * f64::from(i % 4), 0.004 * f64::from(i), 1.6 + 0.15 * f64::from(i % 5));
+        (0..11).map(bend).collect()
+    }
+
+    fn halves(corridor: &Corridor) -> Vec<Range<usize>> {
+        vec![0..corridor.len() / 2, corridor.len() / 2..corridor.len()]
+    }
+
+    #[test]
+    fn every_instruction_set_gives_the_same_bytes() {
+        let (models, corridors) = (models(), bends());
+        let models: Vec<&Model> = models.iter().collect();
+        let certified = || -> Vec<_> {
+            let options = Options::default();
+            corridors.iter().map(|corridor| certify_spans(corridor, &models, &halves(corridor), &options)).collect()
+        };
+        let narrowest = InstructionSet::Any.at_most(certified);
+        #[cfg(target_arch = "x86_64")]
+        assert_eq!(InstructionSet::Avx2.at_most(certified), narrowest);
+        assert_eq!(certified(), narrowest);
+    }
+
+    #[test]
+    fn a_span_has_the_same_result_whichever_other_spans_are_asked_for() {
+        let model = Model::new(Catalogue::builtin().unwrap().get("AU-BDOUBLE26").unwrap()).unwrap();
+        // Without corrections the plan does not depend on the spans.
+        let options = Options { correction_sweeps: 0, ..Options::default() };
+        for corridor in bends() {
+            let spans = halves(&corridor);
+            let both = certify_spans(&corridor, &[&model], &spans, &options);
+            for (span, together) in spans.iter().zip(&both[0].spans) {
+                let alone = certify_spans(&corridor, &[&model], std::slice::from_ref(span), &options);
+                assert_eq!(alone[0].spans[0], *together, "{span:?}");
+            }
+        }
+    }
+
     #[test]
     fn no_case_matters_to_another_one() {
-        let catalogue = Catalogue::builtin().unwrap();
-        let model = |id: &str| Model::new(catalogue.get(id).unwrap()).unwrap();
-        let models = ["EU-SEMI16.5", "AU-ATRIPLE53", "US-WB67D"].map(model);
-        let corridors: Vec<Corridor> = (0..11)
-            .map(|i| bend(20.0 + 37.0 * f64::from(i % 4), 0.004 * f64::from(i), 1.6 + 0.15 * f64::from(i % 5)))
-            .collect();
-        let spans: Vec<Vec<Range<usize>>> =
-            corridors.iter().map(|corridor| vec![0..corridor.len() / 2, corridor.len() / 2..corridor.len()]).collect();
+        let (models, corridors) = (models(), bends());
+        let spans: Vec<Vec<Range<usize>>> = corridors.iter().map(halves).collect();
         let all = || corridors.iter().zip(&spans);
         let cases: Vec<Case<'_>> = all()
             .flat_map(|(corridor, spans)| models.iter().map(move |model| Case { corridor, spans, model }))
