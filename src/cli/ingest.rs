@@ -187,7 +187,8 @@ fn default_db(inputs: &[PathBuf]) -> anyhow::Result<PathBuf> {
     let Some(name) = input.file_name().and_then(|name| name.to_str()) else {
         bail!("{}: cannot name the database after this file; give a name with --db", input.display());
     };
-    let stem = [".osm.pbf", ".pbf", ".parquet", ".geojson"].iter().find_map(|end| name.strip_suffix(end)).unwrap_or(name);
+    let stem =
+        [".osm.pbf", ".pbf", ".parquet", ".geojson"].iter().find_map(|end| name.strip_suffix(end)).unwrap_or(name);
     if stem.is_empty() {
         bail!("{}: cannot name the database after this file; give a name with --db", input.display());
     }

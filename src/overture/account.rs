@@ -63,7 +63,8 @@ impl Account {
 
     /// Segments left out, by reason.
     pub fn segments_left_out(&self) -> impl Iterator<Item = (&'static str, u64)> {
-        let left_out = |((item, outcome, _), _): &(&(&str, Outcome, &str), &u64)| *item == SEGMENT && *outcome == Outcome::LeftOut;
+        let left_out =
+            |((item, outcome, _), _): &(&(&str, Outcome, &str), &u64)| *item == SEGMENT && *outcome == Outcome::LeftOut;
         self.counts.iter().filter(left_out).map(|(&(_, _, reason), &count)| (reason, count))
     }
 

@@ -107,7 +107,9 @@ impl Problem {
     pub fn way_out(&self) -> &'static str {
         match self {
             Self::Io(_) => "check that the path is right and the file readable",
-            Self::OtherFormat => "give GeoParquet files of Overture's transportation theme, or one OpenStreetMap extract",
+            Self::OtherFormat => {
+                "give GeoParquet files of Overture's transportation theme, or one OpenStreetMap extract"
+            }
             Self::EmptyFolder | Self::NoSegments => {
                 "fetch them with `overturemaps download --type segment -f geoparquet --bbox W,S,E,N -o segment.parquet`"
             }
@@ -119,7 +121,9 @@ impl Problem {
             Self::Schema(_) => "fetch a release of September 2024 or later, with all columns",
             Self::OtherFeatures(_) => "leave this file out; netcert reads segments and connectors",
             Self::Value(_) => "fetch the file again, or report the value to Overture",
-            Self::Geometry(_) => "write the file in longitude and latitude (OGC:CRS84), with lines for segments and points for connectors",
+            Self::Geometry(_) => {
+                "write the file in longitude and latitude (OGC:CRS84), with lines for segments and points for connectors"
+            }
             Self::Collision { .. } => "cut the region into parts that do not hold both",
             Self::TooLarge(_) => "cut the region into parts",
         }

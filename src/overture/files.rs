@@ -75,7 +75,10 @@ fn walk(folder: &Path, files: &mut Vec<(PathBuf, Format)>) -> Result<(), Overtur
         let path = entry.map_err(failed)?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let other = |key: &str, known: &[&str]| name.strip_prefix(key).is_some_and(|value| !known.contains(&value));
-        if name.starts_with(['.', '_']) || other("theme=", &["transportation"]) || other("type=", &["segment", "connector"]) {
+        if name.starts_with(['.', '_'])
+            || other("theme=", &["transportation"])
+            || other("type=", &["segment", "connector"])
+        {
             continue;
         }
         if path.is_dir() {

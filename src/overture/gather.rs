@@ -10,14 +10,15 @@ use super::error::{OvertureError, Problem};
 use super::segment::Road;
 use super::turns;
 use crate::osm::{Extract, LonLat, NodeTable, StringPool, Way};
+use crate::rows::SegmentRow;
 
-/// Makes the extract. `path` names the source in errors.
+/// Makes the extract, and says which segment each way is of. `path` names the source in errors.
 pub(super) fn extract(
     mut roads: Vec<Road>,
     connectors: &Connectors,
     account: &mut Account,
     path: &Path,
-) -> Result<Extract, OvertureError> {
+) -> Result<(Extract, Vec<SegmentRow>), OvertureError> {
     let failed = |problem: Problem| OvertureError::of_file(path, problem);
     roads.par_sort_by_key(|road| (road.key.number(), road.key));
     let before = roads.len();
@@ -41,6 +42,7 @@ pub(super) fn extract(
     let mut extract = Extract { restrictions, ..Extract::default() };
     let mut places: Vec<(i64, LonLat)> = Vec::new();
     let mut strings = StringPool::default();
+    let mut segments = Vec::with_capacity(parts.len());
     for &(id, index, from, to) in &parts {
         let road = &roads[index as usize];
         let begin = u32::try_from(extract.refs.len()).map_err(|_| failed(Problem::TooLarge("node references")))?;
@@ -61,11 +63,13 @@ pub(super) fn extract(
         facts.name = road.name.as_deref().map(|name| strings.intern(name));
         facts.reference = reference.as_deref().map(|reference| strings.intern(reference));
         extract.ways.push(Way { id, refs: begin..end, facts });
+        let share = [road.line.share(from), road.line.share(to)];
+        segments.push(SegmentRow { way_id: id, segment_id: road.id.to_string(), share });
     }
     extract.strings = strings;
     extract.nodes = nodes(places).map_err(failed)?;
     connectors.count(account, |node| extract.nodes.index(node).is_some());
-    Ok(extract)
+    Ok((extract, segments))
 }
 
 /// The table of nodes. A connector that no file has lies where the first road has it; elsewhere it would be another node.

@@ -59,7 +59,9 @@ mod tests {
         // python3 -c 'import hashlib; print(int(hashlib.sha256(b"0a1b").hexdigest()[:16], 16) >> 2)'
         assert_eq!(Key::segment("0a1b").number(), 4_404_467_892_295_702_980);
         assert_eq!((Key::segment("w17").number(), Key::connector("n17").number()), (17, 17));
-        assert!([Key::segment("n17"), Key::segment("w17.1"), Key::segment("w-7")].iter().all(|key| key.number() > 1 << 40));
+        assert!(
+            [Key::segment("n17"), Key::segment("w17.1"), Key::segment("w-7")].iter().all(|key| key.number() > 1 << 40)
+        );
         let key = Key::connector("c");
         assert!(key.of_part([1, 2]) > 0 && key.of_part([1, 2]) != key.of_part([2, 1]));
     }

@@ -28,6 +28,7 @@ pub use error::{OvertureError, Place, Problem};
 pub use files::{hash, is_source};
 
 use crate::osm::Extract;
+use crate::rows::SegmentRow;
 use connectors::Connectors;
 use files::Format;
 use ids::Key;
@@ -41,6 +42,8 @@ pub struct Read {
     pub extract: Extract,
     /// What became of everything read.
     pub account: Account,
+    /// The segment of each way, by way.
+    pub segments: Vec<SegmentRow>,
 }
 
 /// Reads files of segments and of connectors, or folders of them. `progress` gets the name of each stage.
@@ -54,7 +57,8 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
     for (path, _) in files.iter().filter(|(_, format)| *format == Format::Parquet) {
         tables.push(Table::open(path)?);
     }
-    let drawn: Vec<&PathBuf> = files.iter().filter(|(_, format)| *format == Format::GeoJson).map(|(path, _)| path).collect();
+    let drawn: Vec<&PathBuf> =
+        files.iter().filter(|(_, format)| *format == Format::GeoJson).map(|(path, _)| path).collect();
 
     let (mut connectors, mut account, mut roads) = (Connectors::default(), Account::default(), Vec::new());
     let (mut of_connectors, mut of_segments) = (false, false);
@@ -95,7 +99,8 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
         let groups = table.each(|some: &mut Vec<(Option<Road>, Account)>, record| {
             let id = record.id.clone();
             let road = || {
-                let segment = record::Segment::deserialize(record.columns).map_err(|e| Problem::Schema(e.to_string()))?;
+                let segment =
+                    record::Segment::deserialize(record.columns).map_err(|e| Problem::Schema(e.to_string()))?;
                 let places = wkb::line(&record.geometry)?;
                 made(Feature { id: record.id, places, segment }, &connectors)
             };
@@ -117,22 +122,22 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
                 let segment = record::Segment::deserialize(std::mem::take(&mut feature.properties));
                 Ok((places, segment.map_err(|e| Problem::Schema(e.to_string()))?))
             })?;
-            let (road, of_road) =
-                made(Feature { id: id.clone(), places, segment }, &connectors).map_err(|problem| (Some(id), problem))?;
+            let (road, of_road) = made(Feature { id: id.clone(), places, segment }, &connectors)
+                .map_err(|problem| (Some(id), problem))?;
             roads.extend(road);
             account.add(&of_road);
             Ok(())
         })?;
     }
 
-    let mut extract = gather::extract(roads, &connectors, &mut account, first)?;
+    let (mut extract, segments) = gather::extract(roads, &connectors, &mut account, first)?;
     extract.account.blake3 = hash;
     // Segments of a download by box reach beyond it, and their connectors there are missing. The box is then where the data end.
     if account.has_noted(account::CONNECTOR, "missing") {
         let nanodegrees = |bounds: [i32; 4]| bounds.map(|side| i64::from(side) * 100);
         extract.account.header.bbox_nanodegrees = connectors.bounds().map(nanodegrees);
     }
-    Ok(Read { extract, account })
+    Ok(Read { extract, account, segments })
 }
 
 fn made(feature: Feature, connectors: &Connectors) -> Result<(Option<Road>, Account), Problem> {

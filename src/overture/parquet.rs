@@ -16,12 +16,27 @@ use serde_json::{Map, Value};
 
 use super::error::{OvertureError, Place, Problem};
 
-/// Columns of segments that are read. The first ones must be there.
+/// Columns of segments that are read. The first ones must be there: without them a closed road would look open.
 const SEGMENT: [&str; 17] = [
-    "id", "geometry", "class", "connectors", "subtype", "subclass", "names", "routes", "subclass_rules", "access_restrictions",
-    "prohibited_transitions", "speed_limits", "width_rules", "road_flags", "road_surface", "level_rules", "destinations",
+    "id",
+    "geometry",
+    "subtype",
+    "class",
+    "connectors",
+    "access_restrictions",
+    "prohibited_transitions",
+    "road_flags",
+    "subclass",
+    "names",
+    "routes",
+    "subclass_rules",
+    "speed_limits",
+    "width_rules",
+    "road_surface",
+    "level_rules",
+    "destinations",
 ];
-const SEGMENT_NEEDS: usize = 10;
+const SEGMENT_NEEDS: usize = 8;
 const CONNECTOR: [&str; 2] = ["id", "geometry"];
 
 /// What a file holds.
@@ -72,8 +87,14 @@ impl<'p> Table<'p> {
         group: usize,
         make: &impl Fn(&mut Vec<T>, Record) -> Result<(), (Option<String>, Problem)>,
     ) -> Result<Vec<T>, OvertureError> {
-        let at = |place: Place, (id, problem): (Option<String>, Problem)| OvertureError { path: self.path.to_owned(), place, id, problem };
-        let rows = guarded(|| self.reader.get_row_group(group)).map_err(|problem| at(Place::Group(group), (None, problem)))?;
+        let at = |place: Place, (id, problem): (Option<String>, Problem)| OvertureError {
+            path: self.path.to_owned(),
+            place,
+            id,
+            problem,
+        };
+        let rows =
+            guarded(|| self.reader.get_row_group(group)).map_err(|problem| at(Place::Group(group), (None, problem)))?;
         let number = usize::try_from(rows.metadata().num_rows()).unwrap_or_default();
         let mut iterator = guarded(|| RowIter::from_row_group(Some(self.projection.clone()), &*rows))
             .map_err(|problem| at(Place::Group(group), (None, problem)))?;
@@ -112,7 +133,8 @@ fn check_geometry(geo: Option<&str>) -> Result<(), Problem> {
     {
         return Err(Problem::Geometry(format!("encoding {encoding} in place of WKB")));
     }
-    let id = |member: &str| column.pointer(&format!("/crs/id/{member}")).map(|value| value.to_string().replace('"', ""));
+    let id =
+        |member: &str| column.pointer(&format!("/crs/id/{member}")).map(|value| value.to_string().replace('"', ""));
     match (id("authority"), id("code")) {
         (Some(authority), Some(code)) if !matches!((&*authority, &*code), ("OGC", "CRS84") | ("EPSG", "4326")) => {
             Err(Problem::Geometry(format!("reference system {authority}:{code} in place of OGC:CRS84")))
@@ -146,7 +168,10 @@ fn columns(schema: &Type) -> Result<(Kind, Type), Problem> {
             _ => field.is_group() && is_list(field),
         };
         if !right {
-            return Err(Problem::Schema(format!("the column {} has another type than in Overture's schema", field.name())));
+            return Err(Problem::Schema(format!(
+                "the column {} has another type than in Overture's schema",
+                field.name()
+            )));
         }
     }
     let damaged = |e: ParquetError| Problem::Damaged(e.to_string());
@@ -155,7 +180,8 @@ fn columns(schema: &Type) -> Result<(Kind, Type), Problem> {
 
 fn is_text(field: &Type) -> bool {
     let info = field.get_basic_info();
-    field.is_primitive() && (info.logical_type_ref() == Some(&LogicalType::String) || info.converted_type() == ConvertedType::UTF8)
+    field.is_primitive()
+        && (info.logical_type_ref() == Some(&LogicalType::String) || info.converted_type() == ConvertedType::UTF8)
 }
 
 fn is_list(field: &Type) -> bool {

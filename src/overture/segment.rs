@@ -53,17 +53,19 @@ impl Road {
         let Feature { id, places, mut segment } = feature;
         let mut of_rules = Account::default();
         let rules = Rules::of(&segment, &mut of_rules);
-        let (class, mut line) = match class(&segment, &rules).and_then(|class| Ok((class, Line::new(places).ok_or(TOO_FEW_PLACES)?))) {
-            Ok(both) => both,
-            Err(reason) => {
-                account.left_out(SEGMENT, reason, 1);
-                return Ok(None);
-            }
-        };
+        let (class, mut line) =
+            match class(&segment, &rules).and_then(|class| Ok((class, Line::new(places).ok_or(TOO_FEW_PLACES)?))) {
+                Ok(both) => both,
+                Err(reason) => {
+                    account.left_out(SEGMENT, reason, 1);
+                    return Ok(None);
+                }
+            };
         account.kept(SEGMENT, 1);
         account.add(&of_rules);
         let key = Key::segment(&id);
-        let ends = segment.connectors.take().ok_or_else(|| Problem::Value("the segment has no connectors".to_owned()))?;
+        let ends =
+            segment.connectors.take().ok_or_else(|| Problem::Value("the segment has no connectors".to_owned()))?;
         for connector in ends {
             if connector.at.is_some_and(|at| !(0.0..=1.0).contains(&at)) {
                 return Err(Problem::Value(format!("connector {} is not within 0 to 1", connector.connector_id)));

@@ -73,7 +73,9 @@ fn turn(
     });
     let mut steps = Vec::new();
     for step in transition.sequence.iter().flatten() {
-        let (Some(connector), Some(segment)) = (&step.connector_id, &step.segment_id) else { return Err("not_understood") };
+        let (Some(connector), Some(segment)) = (&step.connector_id, &step.segment_id) else {
+            return Err("not_understood");
+        };
         steps.push((Key::connector(connector).number(), Key::segment(segment)));
     }
     let (Some(&(first, _)), Some(&(via, last))) = (steps.first(), steps.last()) else { return Err("not_understood") };
@@ -84,7 +86,9 @@ fn turn(
     };
     let arrives = headings(when);
     let itself = steps.len() == 1 && roads[from].key == last;
-    if itself && ((arrives, leaves) == ([true, false], [false, true]) || (arrives, leaves) == ([false, true], [true, false])) {
+    if itself
+        && ((arrives, leaves) == ([true, false], [false, true]) || (arrives, leaves) == ([false, true], [true, false]))
+    {
         // No vehicle turns back on the road here.
         return Err("turning_back");
     }
@@ -124,17 +128,16 @@ fn vertices(road: &Road, node: i64) -> Vec<usize> {
 fn passing(road: &Road, node: i64, headings: [bool; 2]) -> Vec<(usize, usize)> {
     let last = road.line.nodes.len() - 1;
     let arrives = |vertex: usize| [headings[0] && vertex > 0, headings[1] && vertex < last];
-    let of_vertex = |vertex| arrives(vertex).into_iter().enumerate().filter(|(_, on)| *on).map(move |(heading, _)| (vertex, heading));
+    let of_vertex = |vertex| {
+        arrives(vertex).into_iter().enumerate().filter(|(_, on)| *on).map(move |(heading, _)| (vertex, heading))
+    };
     vertices(road, node).into_iter().flat_map(of_vertex).collect()
 }
 
 /// The way on the side of a cut from which vehicles with this heading come.
 fn way(road: &Road, (vertex, heading): (usize, usize)) -> i64 {
-    let begins = if heading == 0 {
-        road.cuts.iter().rev().find(|cut| **cut < vertex).copied().unwrap_or(0)
-    } else {
-        vertex
-    };
+    let begins =
+        if heading == 0 { road.cuts.iter().rev().find(|cut| **cut < vertex).copied().unwrap_or(0) } else { vertex };
     road.way(begins)
 }
 
@@ -174,7 +177,8 @@ fn between(road: &Road, enter: i64, leave: i64) -> Vec<i64> {
     let pairs = starts.iter().flat_map(|&start| ends.iter().map(move |&end| (start, end)));
     let Some((start, end)) = pairs.min_by_key(|(start, end)| start.abs_diff(*end)) else { return Vec::new() };
     let inside = |from: usize, to: usize| start.min(end) <= from && to <= start.max(end);
-    let mut ways: Vec<i64> = road.parts().filter(|(from, to, _)| inside(*from, *to)).map(|(from, ..)| road.way(from)).collect();
+    let mut ways: Vec<i64> =
+        road.parts().filter(|(from, to, _)| inside(*from, *to)).map(|(from, ..)| road.way(from)).collect();
     if end < start {
         ways.reverse();
     }

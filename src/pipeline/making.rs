@@ -69,7 +69,7 @@ impl Making<'_> {
         // Measurements, and what an earlier database has, are matched with the whole network.
         let whole = register.is_some() || earlier.is_some();
         let source = (self.inputs, &self.changes.changes);
-        let (mut roads, Origin { header, blake3: hash, overture }) =
+        let (mut roads, Origin { header, blake3: hash, segments }) =
             read_roads(source, self.countries, (self.edges_at_once, whole), reporter, &mut summary)?;
         if let Some(why) = writer.register_lost() {
             reporter
@@ -136,12 +136,13 @@ impl Making<'_> {
             if let Some(measurements) = measurements {
                 parameters.insert("measurements".to_owned(), measurements.into());
             }
-            if overture {
+            if segments.is_some() {
                 parameters.insert(source::SOURCE.to_owned(), source::OVERTURE.into());
             }
             parameters.insert(identity::ROAD_RULES.to_owned(), identity::of_rules(self.countries).into());
         }
         writer.map_changes(std::mem::take(&mut self.changes));
+        writer.segments(segments.unwrap_or_default());
         writer.finish(&Run {
             command: self.command.to_owned(),
             input_name: source::name(self.inputs),

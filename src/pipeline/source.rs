@@ -10,6 +10,7 @@ use crate::osm::changes::Changes;
 use crate::osm::pbf::{HeaderInfo, ReadError};
 use crate::osm::{self, Extract};
 use crate::reporter::Reporter;
+use crate::rows::SegmentRow;
 
 /// The member of a run's parameters that says what was read, if it was no extract.
 pub(super) const SOURCE: &str = "source";
@@ -22,7 +23,8 @@ pub(super) struct Origin {
     pub(super) header: HeaderInfo,
     /// Hash of its content.
     pub(super) blake3: String,
-    pub(super) overture: bool,
+    /// By way: the segment of Overture. `None` for an extract.
+    pub(super) segments: Option<Vec<SegmentRow>>,
 }
 
 /// A source that was read.
@@ -33,7 +35,7 @@ struct Source {
     read: (u64, &'static str),
     /// Those left out, by reason.
     left_out: Vec<(&'static str, u64)>,
-    overture: bool,
+    segments: Option<Vec<SegmentRow>>,
 }
 
 /// Reads a source and fills the first stage of the summary.
@@ -43,13 +45,13 @@ pub(super) fn read(
     summary: &mut Summary,
 ) -> Result<(Extract, Origin), RunError> {
     let clock = std::time::Instant::now();
-    let Source { extract, account, read, left_out, overture } = match of_overture(inputs, changes, reporter)? {
+    let Source { extract, account, read, left_out, segments } = match of_overture(inputs, changes, reporter)? {
         Some(source) => source,
         None => of_osm(inputs, changes, reporter)?,
     };
     summary.account.extend(account);
     summary.stage("read", clock, read.0, read.1);
-    let origin = Origin { header: extract.account.header.clone(), blake3: extract.account.blake3.clone(), overture };
+    let origin = Origin { header: extract.account.header.clone(), blake3: extract.account.blake3.clone(), segments };
     if extract.ways.is_empty() {
         let left_out = left_out.iter().map(|(why, n)| format!("{why} {n}")).collect::<Vec<_>>().join(", ");
         let account = if left_out.is_empty() { format!("no {} at all", read.1) } else { left_out };
@@ -71,7 +73,7 @@ fn of_osm(inputs: &[&Path], changes: &Changes, reporter: &dyn Reporter) -> Resul
         account: read.rows(),
         read: (read.ways_read, "ways"),
         left_out: read.ways_left_out.iter().map(|(why, n)| (*why, *n)).collect(),
-        overture: false,
+        segments: None,
         extract,
     })
 }
@@ -111,12 +113,12 @@ fn of_overture(inputs: &[&Path], changes: &Changes, reporter: &dyn Reporter) -> 
         }
     });
     reporter.end();
-    let crate::overture::Read { extract, account } = read?;
+    let crate::overture::Read { extract, account, segments } = read?;
     Ok(Some(Source {
         account: account.rows(),
         read: (account.segments_read(), "segments"),
         left_out: account.segments_left_out().collect(),
-        overture: true,
+        segments: Some(segments),
         extract,
     }))
 }

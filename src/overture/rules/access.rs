@@ -96,7 +96,12 @@ impl Effect {
         Self::Allow { rank, headings: headings(Some(when)), to }
     }
 
-    fn deny(when: Option<&When>, rank: Option<Rank>, strange_mode: bool, strange: bool) -> (Self, Option<&'static str>) {
+    fn deny(
+        when: Option<&When>,
+        rank: Option<Rank>,
+        strange_mode: bool,
+        strange: bool,
+    ) -> (Self, Option<&'static str>) {
         let rank = match rank {
             Some(rank) => rank,
             None if strange_mode => Rank::Lorry,
@@ -119,11 +124,17 @@ impl Effect {
             return match usable {
                 Some((kind, limit)) => (Self::Limit { headings, kind, limit }, note),
                 // Every vehicle has a length, so this makes every verdict unknown.
-                None => (Self::Limit { headings, kind: LimitKind::Length, limit: Limit::Unreadable }, Some("size_undecided")),
+                None => (
+                    Self::Limit { headings, kind: LimitKind::Length, limit: Limit::Unreadable },
+                    Some("size_undecided"),
+                ),
             };
         }
         if times {
-            return (Self::Deny { rank, headings, to: Permission::Restricted, direction: false }, Some("condition_undecided"));
+            return (
+                Self::Deny { rank, headings, to: Permission::Restricted, direction: false },
+                Some("condition_undecided"),
+            );
         }
         let one = headings[0] != headings[1];
         (Self::Deny { rank, headings, to: Permission::No, direction: one && rank == Rank::All }, None)

@@ -120,7 +120,11 @@ impl Rules {
     fn add_speed(&mut self, rule: &SpeedLimit, account: &mut Account) {
         let when = rule.when.as_ref();
         let conditional = when.is_some_and(|when| {
-            when.is_strange() || when.during.is_some() || when.using.is_some() || when.recognized.is_some() || when.vehicle.is_some()
+            when.is_strange()
+                || when.during.is_some()
+                || when.using.is_some()
+                || when.recognized.is_some()
+                || when.vehicle.is_some()
         });
         let concerns = concerns_lorries(when);
         let speed = rule.max_speed.as_ref().and_then(measures::km_h);
