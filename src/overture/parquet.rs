@@ -1,4 +1,6 @@
 //! Rows of GeoParquet files, as JSON values of the columns that are used, and their geometry.
+//!
+//! Row groups are read on all threads. The error of a file is that of its first faulty group.
 
 use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -56,7 +58,7 @@ pub(super) struct Record {
 /// An open file whose columns are as they should be.
 pub(super) struct Table<'p> {
     path: &'p Path,
-    reader: SerializedFileReader<File>,
+    groups: usize,
     pub(super) kind: Kind,
     projection: Type,
 }
@@ -64,13 +66,12 @@ pub(super) struct Table<'p> {
 impl<'p> Table<'p> {
     pub(super) fn open(path: &'p Path) -> Result<Self, OvertureError> {
         let failed = |problem: Problem| OvertureError::of_file(path, problem);
-        let file = File::open(path).map_err(|e| failed(e.into()))?;
-        let reader = guarded(|| SerializedFileReader::new(file)).map_err(failed)?;
+        let reader = open(path).map_err(failed)?;
         let metadata = reader.metadata().file_metadata();
         let geo = metadata.key_value_metadata().into_iter().flatten().find(|entry| entry.key == "geo");
         check_geometry(geo.and_then(|entry| entry.value.as_deref())).map_err(failed)?;
         let (kind, projection) = columns(metadata.schema()).map_err(failed)?;
-        Ok(Self { path, reader, kind, projection })
+        Ok(Self { path, groups: reader.num_row_groups(), kind, projection })
     }
 
     /// Makes something of every row, group by group on all threads. The results are in the order of the file.
@@ -78,8 +79,9 @@ impl<'p> Table<'p> {
         &self,
         make: impl Fn(&mut Vec<T>, Record) -> Result<(), (Option<String>, Problem)> + Sync,
     ) -> Result<Vec<Vec<T>>, OvertureError> {
-        let groups = 0..self.reader.num_row_groups();
-        groups.into_par_iter().map(|group| self.group(group, &make)).collect()
+        let groups: Vec<_> = (0..self.groups).into_par_iter().map(|group| self.group(group, &make)).collect();
+        // The first error in the file, whichever thread was first.
+        groups.into_iter().collect()
     }
 
     fn group<T>(
@@ -93,8 +95,10 @@ impl<'p> Table<'p> {
             id,
             problem,
         };
+        // Each group has a file of its own: copies of one would share their place in it.
+        let reader = open(self.path).map_err(|problem| at(Place::Group(group), (None, problem)))?;
         let rows =
-            guarded(|| self.reader.get_row_group(group)).map_err(|problem| at(Place::Group(group), (None, problem)))?;
+            guarded(|| reader.get_row_group(group)).map_err(|problem| at(Place::Group(group), (None, problem)))?;
         let number = usize::try_from(rows.metadata().num_rows()).unwrap_or_default();
         let mut iterator = guarded(|| RowIter::from_row_group(Some(self.projection.clone()), &*rows))
             .map_err(|problem| at(Place::Group(group), (None, problem)))?;
@@ -108,6 +112,11 @@ impl<'p> Table<'p> {
         }
         Ok(made)
     }
+}
+
+fn open(path: &Path) -> Result<SerializedFileReader<File>, Problem> {
+    let file = File::open(path)?;
+    guarded(|| SerializedFileReader::new(file))
 }
 
 /// Calls the library of the format. On some damaged files it panics; such a file is an error like any other.
