@@ -221,10 +221,10 @@ impl Verify {
         for (k, (run, account)) in runs.iter().enumerate() {
             complaints
                 .extend(unbalanced(account).into_iter().map(|what| format!("malformed      run {}: {what}", k + 1)));
-            if let (Some(input), Some(said)) = (&self.input, &run.input_blake3) {
-                if hash_of(input)? != *said {
-                    complaints.push(format!("not confirmed  run {}: {} has another hash", k + 1, input.display()));
-                }
+            if let (Some(input), Some(said)) = (&self.input, &run.input_blake3)
+                && hash_of(input)? != *said
+            {
+                complaints.push(format!("not confirmed  run {}: {} has another hash", k + 1, input.display()));
             }
         }
         Ok(complaints)

@@ -28,6 +28,7 @@ fn id(number: u32) -> String {
     format!("{number:08x}-7b1d-4c5e-9a1b-2f3e4d5c6b7a")
 }
 
+#[allow(clippy::needless_pass_by_value)] // as `json!` gives it
 fn line(id: &str, places: &[[f64; 2]], connectors: &[(u32, f64)], more: Value) -> Value {
     let connectors: Vec<Value> =
         connectors.iter().map(|(c, at)| json!({"connector_id": self::id(*c), "at": at})).collect();
@@ -201,7 +202,7 @@ fn parquet_and_geojson_of_a_release_make_the_same_database() {
     assert_eq!(of("lake.gpkg"), of("files.gpkg"));
     assert!(of("lake.gpkg").len() > 10);
     // Renamed files in another order are the same source.
-    run(&format!("verify --db lake.gpkg --input lake"));
+    run("verify --db lake.gpkg --input lake");
     let other = place.command("verify --db lake.gpkg --input release").output().unwrap();
     assert!(!other.status.success());
 }
@@ -339,10 +340,12 @@ fn damaged_parquet_is_an_error_and_never_a_panic() {
 /// The commands of the page, as they stand there.
 #[test]
 fn the_page_does_what_it_says() {
-    let page = include_str!("../../docs/how-to/overture.md");
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/how-to/overture.md");
+    let page = std::fs::read_to_string(page).unwrap();
     let place = Place::empty();
     std::fs::create_dir(place.path("data")).unwrap();
-    let place = place.file("data/demo.osm.pbf", include_bytes!("../../data/demo.osm.pbf"));
+    let place = place
+        .file("data/demo.osm.pbf", std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/data/demo.osm.pbf")).unwrap());
     let program = Path::new(env!("CARGO_BIN_EXE_netcert")).parent().unwrap();
     let path = std::env::join_paths(
         [program.into()].into_iter().chain(std::env::split_paths(&std::env::var_os("PATH").unwrap())),
@@ -388,8 +391,8 @@ fn assert_same_network([ours, again]: &[BTreeMap<Vec<[i32; 2]>, EdgeRow>; 2], pe
         assert_eq!(back.reference, row.reference);
         assert_eq!((back.from_node, back.to_node, back.maxspeed_kmh), (row.from_node, row.to_node, row.maxspeed_kmh));
         match row.width_source {
-            Some(WidthSource::Tagged) => {
-                assert!((back.width_m.unwrap() - row.width_m.unwrap()).abs() < 2e-3, "way {}", row.way_id)
+            Some(WidthSource::Tagged | WidthSource::Surveyed) => {
+                assert!((back.width_m.unwrap() - row.width_m.unwrap()).abs() < 2e-3, "way {}", row.way_id);
             }
             source => assert_ne!(back.width_source, Some(WidthSource::Tagged), "way {}: {source:?}", row.way_id),
         }

@@ -1,4 +1,5 @@
-#![allow(clippy::unwrap_used)]
+// `json!` takes what it is given.
+#![allow(clippy::unwrap_used, clippy::needless_pass_by_value)]
 use proptest::prelude::*;
 use serde_json::{Value, json};
 
@@ -183,11 +184,9 @@ fn any_rule() -> impl Strategy<Value = Value> {
         let unit = if dimension == 3 { "t" } else { "m" };
         // A tenth and a bit: no vehicle has such a size, so rounding of limits does not matter.
         let value = f64::from(value) + 0.137;
-        json!({
-            "dimension": ["length", "width", "height", "weight"][dimension],
-            "comparison": ["greater_than", "greater_than_equal", "less_than", "less_than_equal"][comparison],
-            "value": value, "unit": unit,
-        })
+        let dimension = ["length", "width", "height", "weight"][dimension];
+        let comparison = ["greater_than", "greater_than_equal", "less_than", "less_than_equal"][comparison];
+        json!({"dimension": dimension, "comparison": comparison, "value": value, "unit": unit})
     });
     let modes = prop::sample::subsequence(vec!["vehicle", "motor_vehicle", "hgv", "truck", "bus", "foot", "car"], 1..3);
     let heading = prop::sample::select(vec!["forward", "backward"]);

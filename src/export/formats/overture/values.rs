@@ -13,9 +13,9 @@ pub(super) struct Values {
     /// By heading: whether the direction of travel exists.
     pub(super) exists: [bool; 2],
     /// By heading, km/h.
-    speed_km_h: [Option<u8>; 2],
+    pub(super) speed_km_h: [Option<u8>; 2],
     /// The mapped width of the carriageway, metres.
-    width_m: Option<f64>,
+    pub(super) width_m: Option<f64>,
 }
 
 impl Values {
