@@ -43,6 +43,7 @@
 //! | --- | --- |
 //! | `cli` (default) | the program, and all below |
 //! | `export` | [`export`]: what routing engines and map programs read (Parquet, FlatGeobuf) |
+//! | `overture` | [`overture`]: Overture's files as a source (Parquet) |
 //! | `serve` | [`serve`]: the map's web server (hyper, axum) |
 //!
 //! Some modules come from crates that need neither PROJ nor SQLite nor a web server; take those where they do.
@@ -56,6 +57,7 @@
 //! | stage | folder | from → to |
 //! | --- | --- | --- |
 //! | read | [`osm`] | a `.osm.pbf` file → [`osm::Extract`]: drivable ways as facts, and where their nodes are |
+//! | read | [`overture`] | Overture's segments and connectors → the same `Extract` |
 //! | network | [`network`] | `Extract` → [`network::Network`]: directed edges, cross sections, strokes |
 //! | corridors | [`corridor`] | a stroke → [`corridor::StrokeCorridor`]: C¹ centreline and width profile, in metres |
 //! | certificates | [`stet`] | a corridor and a [`vehicle`] → [`stet::Certificate`] |
@@ -97,6 +99,8 @@ pub mod manoeuvres;
 pub mod network;
 pub mod osm;
 mod output_lock;
+#[cfg(feature = "overture")]
+pub mod overture;
 pub mod picture;
 pub mod pipeline;
 pub mod region;

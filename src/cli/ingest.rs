@@ -1,4 +1,4 @@
-//! `netcert ingest`: reads an extract and writes a database with certificates.
+//! `netcert ingest`: reads an extract, or files of Overture, and writes a database with certificates.
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ use super::fleet::Fleet;
 use super::progress::human;
 use super::values::country_code;
 
-/// Read an OpenStreetMap extract, certify its roads, and write a GeoPackage.
+/// Read an OpenStreetMap extract or Overture's files, certify the roads, and write a GeoPackage.
 ///
 /// Every drivable road of the extract becomes directed edges. Each edge has one certificate per vehicle: safe, unsafe,
 /// forbidden by a tagged limit, or unknown; every verdict but safe comes with a reason. Unless options choose others,
@@ -22,20 +22,24 @@ use super::values::country_code;
 ///
 /// The database replaces an older one only when it is complete: a run that fails or is killed leaves the older one
 /// as it was. A file that netcert did not make is never overwritten.
+///
+/// Overture's segments and connectors are read from GeoParquet or GeoJSON files, or from a folder with both; docs/how-to/overture.md
+/// goes through it.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   netcert ingest data/demo.osm.pbf
   netcert ingest victoria.osm.pbf --db roads.gpkg --vehicle AU-BDOUBLE26 AU-ATRIPLE53
   netcert ingest island.osm.pbf --country NZ --vehicle-file ours.toml
+  netcert ingest segment.parquet connector.parquet --db region.gpkg
 
 If the environment variable SOURCE_DATE_EPOCH is set (seconds since 1970), all time stamps have that
 value, and the same input gives a database of the same bytes.")]
 pub(crate) struct Ingest {
-    /// The OpenStreetMap extract.
-    #[arg(value_name = "REGION.osm.pbf", value_hint = ValueHint::FilePath)]
-    input: PathBuf,
-    /// The database to write [default: the extract's name with .gpkg, in the current directory].
+    /// The OpenStreetMap extract; or Overture's files of segments and connectors, or a folder with them.
+    #[arg(value_name = "REGION.osm.pbf", value_hint = ValueHint::AnyPath, required = true, num_args = 1..)]
+    inputs: Vec<PathBuf>,
+    /// The database to write [default: the input's name with .gpkg, in the current directory].
     #[arg(long, value_name = "REGION.gpkg")]
     db: Option<PathBuf>,
     #[command(flatten)]
@@ -85,7 +89,7 @@ impl Ingest {
     pub(crate) fn run(&self, session: &Session) -> anyhow::Result<()> {
         let db = match &self.db {
             Some(db) => db.clone(),
-            None => default_db(&self.input)?,
+            None => default_db(&self.inputs)?,
         };
         let fleet = Fleet::new(&self.which.vehicle_file)?;
         let selection = self.which.selection(&fleet);
@@ -96,8 +100,9 @@ impl Ingest {
         parameters.insert("country".into(), json!(self.roads.country));
         parameters.insert("driving_side".into(), json!(self.roads.driving_side));
         parameters.insert("roads".into(), json!(self.roads.rules));
+        let inputs: Vec<&Path> = self.inputs.iter().map(PathBuf::as_path).collect();
         let ask = pipeline::Ingest {
-            input: &self.input,
+            inputs: &inputs,
             db: &db,
             catalogue: &fleet.catalogue,
             selection: &selection,
@@ -177,11 +182,13 @@ impl Roads {
 }
 
 /// `x/region.osm.pbf` → `region.gpkg`.
-fn default_db(input: &Path) -> anyhow::Result<PathBuf> {
+fn default_db(inputs: &[PathBuf]) -> anyhow::Result<PathBuf> {
+    let [input] = inputs else { bail!("several files are given; name the database with --db") };
     let Some(name) = input.file_name().and_then(|name| name.to_str()) else {
         bail!("{}: cannot name the database after this file; give a name with --db", input.display());
     };
-    let stem = [".osm.pbf", ".pbf"].iter().find_map(|end| name.strip_suffix(end)).unwrap_or(name);
+    let stem =
+        [".osm.pbf", ".pbf", ".parquet", ".geojson"].iter().find_map(|end| name.strip_suffix(end)).unwrap_or(name);
     if stem.is_empty() {
         bail!("{}: cannot name the database after this file; give a name with --db", input.display());
     }

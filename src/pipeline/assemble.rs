@@ -97,7 +97,7 @@ pub fn assemble(
     let Assemble { input, db, countries, edges_at_once, divided, job, now, .. } = *ask;
     let making = Making {
         command: "ingest",
-        input,
+        inputs: &[input],
         db,
         countries,
         settings: &job.settings,

@@ -17,12 +17,13 @@ use super::assemble::Results;
 use super::certifying::Certifying;
 use super::identity::{self, Identity};
 use super::reuse::Earlier;
+use super::source::{self, Origin};
 use super::{RunError, Summary, evidence, read_roads, record, utc};
 
 /// What a database is made from.
 pub(super) struct Making<'a> {
     pub(super) command: &'static str,
-    pub(super) input: &'a Path,
+    pub(super) inputs: &'a [&'a Path],
     pub(super) db: &'a Path,
     pub(super) countries: &'a Countries,
     pub(super) settings: &'a Settings,
@@ -67,9 +68,9 @@ impl Making<'_> {
         }
         // Measurements, and what an earlier database has, are matched with the whole network.
         let whole = register.is_some() || earlier.is_some();
-        let input = (self.input, &self.changes.changes);
-        let (mut roads, header, hash) =
-            read_roads(input, self.countries, (self.edges_at_once, whole), reporter, &mut summary)?;
+        let source = (self.inputs, &self.changes.changes);
+        let (mut roads, Origin { header, blake3: hash, segments }) =
+            read_roads(source, self.countries, (self.edges_at_once, whole), reporter, &mut summary)?;
         if let Some(why) = writer.register_lost() {
             reporter
                 .note(&format!("the measurements of the older database are lost, because it cannot be read: {why}"));
@@ -97,7 +98,8 @@ impl Making<'_> {
         };
         let mut finished = writer.finished(&identity.finish())?;
         if let Some(results) = &mut results {
-            results.take_over(&mut finished, (self.input, &hash), roads.portions())?;
+            let first = self.inputs.first().copied().unwrap_or(Path::new(""));
+            results.take_over(&mut finished, (first, &hash), roads.portions())?;
         }
         match (finished.is_empty() || results.is_some(), writer.replaced_leftover()) {
             (false, _) => reporter.note("an earlier run was cut short: going on where it stopped"),
@@ -134,12 +136,16 @@ impl Making<'_> {
             if let Some(measurements) = measurements {
                 parameters.insert("measurements".to_owned(), measurements.into());
             }
+            if segments.is_some() {
+                parameters.insert(source::SOURCE.to_owned(), source::OVERTURE.into());
+            }
             parameters.insert(identity::ROAD_RULES.to_owned(), identity::of_rules(self.countries).into());
         }
         writer.map_changes(std::mem::take(&mut self.changes));
+        writer.segments(segments.unwrap_or_default());
         writer.finish(&Run {
             command: self.command.to_owned(),
-            input_name: self.input.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+            input_name: source::name(self.inputs),
             input_blake3: Some(hash),
             replication_timestamp: header.replication_timestamp_s.and_then(utc),
             netcert_version: identity::PROGRAM.to_owned(),

@@ -13,12 +13,12 @@ mod reuse;
 mod roads;
 mod select;
 mod share;
+mod source;
 mod tasks;
 mod update;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 use std::time::Instant;
 
 use thiserror::Error;
@@ -35,16 +35,16 @@ use crate::certify::{Job, TurnJob, certify_network, certify_turns};
 use crate::network::Network;
 use crate::osm::changes::{ChangeError, Changes};
 use crate::osm::facts::{Countries, CountriesError, RulesError};
-use crate::osm::pbf::{HeaderInfo, ReadError};
-use crate::osm::{self};
+use crate::osm::pbf::ReadError;
 use crate::reporter::Reporter;
 use crate::settings::Settings;
 use crate::stet::{Model, ModelError};
 use crate::store::{Database, MapChanges, Run, StoreError, TurnSet, VehicleRecord};
 use crate::turns::{TurnFacts, junction_areas, junction_nodes, turn_facts};
 use crate::vehicle::{Catalogue, Vehicle, VehicleError};
-use making::{EdgeVerdicts, Making, locked};
+use making::{EdgeVerdicts, Making};
 use roads::Roads;
+use source::Origin;
 
 /// Why a run fails.
 #[derive(Debug, Error)]
@@ -52,6 +52,10 @@ pub enum RunError {
     /// The extract cannot be read.
     #[error(transparent)]
     Read(#[from] ReadError),
+    /// Overture's files cannot be read.
+    #[cfg(feature = "overture")]
+    #[error(transparent)]
+    Overture(#[from] crate::overture::OvertureError),
     /// The database cannot be read or written.
     #[error(transparent)]
     Store(#[from] StoreError),
@@ -82,19 +86,19 @@ pub enum RunError {
         cause: serde_json::Error,
     },
     /// The extract has no road to certify.
-    #[error("{path}: no way of this file is a road that a heavy vehicle could use; the account: {account}")]
+    #[error("{path}: nothing in it is a road that a heavy vehicle could use; the account: {account}")]
     NoRoads {
         /// The extract.
         path: PathBuf,
-        /// Ways left out, by reason.
+        /// What was left out, by reason.
         account: String,
     },
 }
 
 /// The input of [`ingest`].
 pub struct Ingest<'a> {
-    /// The extract.
-    pub input: &'a Path,
+    /// The extract; or files or folders of Overture.
+    pub inputs: &'a [&'a Path],
     /// The database to make.
     pub db: &'a Path,
     /// The catalogue, including the user's vehicles.
@@ -148,9 +152,9 @@ impl Summary {
 /// # Errors
 /// See [`RunError`]. An older database at `db` is then unchanged.
 pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunError> {
-    let Ingest { input, db, countries, settings, edges_at_once, now, .. } = *ask;
+    let Ingest { inputs, db, countries, settings, edges_at_once, now, .. } = *ask;
     let (parameters, changes) = (ask.parameters.clone(), MapChanges::default());
-    let making = Making { command: "ingest", input, db, countries, settings, edges_at_once, changes, parameters, now };
+    let making = Making { command: "ingest", inputs, db, countries, settings, edges_at_once, changes, parameters, now };
     let choose = |roads: &BTreeMap<[u8; 2], usize>| {
         let vehicles = selected(ask.catalogue, ask.selection, roads)?;
         vehicles.iter().map(|vehicle| Ok(Model::new(vehicle)?)).collect()
@@ -167,52 +171,28 @@ pub fn read_network(
     countries: &Countries,
     reporter: &dyn Reporter,
     summary: &mut Summary,
-) -> Result<(Network, HeaderInfo, String), RunError> {
-    let input = (input, &Changes::default());
-    let (roads, header, hash) = read_roads(input, countries, (u64::MAX, true), reporter, summary)?;
+) -> Result<(Network, String), RunError> {
+    let input = (&[input][..], &Changes::default());
+    let (roads, origin) = read_roads(input, countries, (u64::MAX, true), reporter, summary)?;
     summary.account.extend(roads.account());
-    Ok((roads.into_whole(), header, hash))
+    Ok((roads.into_whole(), origin.blake3))
 }
 
-/// Reads an extract as it is after changes. `edges_at_once` and `whole` are those of [`Roads::new`].
+/// Reads a source as it is after changes. `edges_at_once` and `whole` are those of [`Roads::new`].
 fn read_roads<'c>(
-    (input, changes): (&Path, &Changes),
+    source: (&[&Path], &Changes),
     countries: &'c Countries,
     (edges_at_once, whole): (u64, bool),
     reporter: &dyn Reporter,
     summary: &mut Summary,
-) -> Result<(Roads<'c>, HeaderInfo, String), RunError> {
-    let clock = Instant::now();
-    let extract = read_reporting(input, changes, reporter)?;
-    let (header, hash) = (extract.account.header.clone(), extract.account.blake3.clone());
-    summary.account.extend(extract.account.rows());
-    summary.stage("read", clock, extract.account.ways_read, "ways");
-    if extract.ways.is_empty() {
-        let left_out = extract.account.ways_left_out.iter().map(|(why, n)| format!("{why} {n}"));
-        let account = left_out.collect::<Vec<_>>().join(", ");
-        let account = if account.is_empty() { "no ways at all".to_owned() } else { account };
-        return Err(RunError::NoRoads { path: input.to_owned(), account });
-    }
+) -> Result<(Roads<'c>, Origin), RunError> {
+    let (extract, origin) = source::read(source, reporter, summary)?;
     let clock = Instant::now();
     reporter.begin("network", 0);
     let roads = Roads::new(extract, countries, edges_at_once, whole);
     reporter.end();
     summary.stage("network", clock, u64::from(roads.edges()), "directed edges");
-    Ok((roads, header, hash))
-}
-
-fn read_reporting(input: &Path, changes: &Changes, reporter: &dyn Reporter) -> Result<osm::Extract, ReadError> {
-    let begun = Mutex::new(None);
-    let extract = osm::pbf::read_changed_extract(input, changes, &|p| {
-        let mut begun = locked(&begun);
-        if *begun != Some(p.stage) {
-            reporter.begin(p.stage.name(), p.total);
-            *begun = Some(p.stage);
-        }
-        reporter.advance(p.done);
-    });
-    reporter.end();
-    extract
+    Ok((roads, origin))
 }
 
 /// The input of [`certify`].

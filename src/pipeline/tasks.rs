@@ -70,8 +70,8 @@ pub fn divide<E: From<RunError>>(
     reporter: &dyn Reporter,
     mut sink: impl FnMut(Task) -> Result<(), E>,
 ) -> Result<Divided, E> {
-    let from = (input, &Changes::default());
-    let (mut roads, _, hash) = read_roads(from, countries, (edges_at_once, false), reporter, &mut Summary::default())?;
+    let from = (&[input][..], &Changes::default());
+    let (mut roads, origin) = read_roads(from, countries, (edges_at_once, false), reporter, &mut Summary::default())?;
     let edges = roads.edges();
     reporter.begin("tasks", u64::from(edges));
     let mut done = 0;
@@ -96,7 +96,7 @@ pub fn divide<E: From<RunError>>(
     }
     reporter.end();
     let (program, tasks) = (identity::PROGRAM.to_owned(), roads.portions() as u32);
-    Ok(Divided { program, extract_blake3: hash, tasks, edges })
+    Ok(Divided { program, extract_blake3: origin.blake3, tasks, edges })
 }
 
 /// Why a task cannot be done.

@@ -15,6 +15,7 @@ use crate::vehicle::Vehicle;
 use crate::words::Named as _;
 
 use super::making::Making;
+use super::source;
 use super::{Certify, EDGES_AT_ONCE, RunError, Summary, certify, utc};
 
 /// Where newer data come from.
@@ -94,11 +95,15 @@ pub fn update(ask: &Update<'_>, reporter: &dyn Reporter) -> Result<Option<Summar
 
 /// The header of the extract that the database was made from. Refuses any other extract.
 fn header_of_extract(old: &mut Database, ask: &Update<'_>) -> Result<HeaderInfo, RunError> {
-    let (header, hash) = header_and_hash(ask.extract)?;
     let runs: Vec<Run> = old.runs()?.into_iter().map(|(run, _)| run).collect();
     let Some(run) = run_of_extract(&runs) else {
         return Err(RunError::Misfit(format!("{}: no run says which extract it was made from", ask.db.display())));
     };
+    let parameters: serde_json::Value = serde_json::from_str(&run.parameters).unwrap_or_default();
+    if parameters.get(source::SOURCE).is_some_and(|source| source == source::OVERTURE) {
+        return Err(RunError::Misfit(source::no_changes(ask.db)));
+    }
+    let (header, hash) = header_and_hash(ask.extract)?;
     if run.input_blake3.as_deref() == Some(hash.as_str()) {
         return Ok(header);
     }
@@ -147,7 +152,7 @@ fn make(
     let models = own.iter().map(|id| Ok(Model::new(&vehicle(id)?)?)).collect::<Result<Vec<_>, RunError>>()?;
     let making = Making {
         command: "update",
-        input,
+        inputs: &[input],
         db: ask.db,
         countries: ask.countries,
         settings: &settings,

@@ -14,6 +14,7 @@ mod map;
 mod measurement;
 mod plan;
 mod relative;
+mod segment;
 mod sides;
 mod turn;
 
@@ -28,5 +29,6 @@ pub use measurement::Measurement;
 pub use plan::StoredPlan;
 pub(crate) use plan::unpack;
 pub use relative::{Relative, Standing};
+pub use segment::SegmentRow;
 pub use sides::DrivingSides;
 pub use turn::{TurnRow, TurnStep};

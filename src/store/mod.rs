@@ -36,6 +36,7 @@ mod renewal;
 mod restrictions;
 mod roads;
 mod schema;
+mod segments;
 mod session;
 mod sets;
 mod settings;

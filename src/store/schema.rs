@@ -20,6 +20,7 @@ const FILES: &[(i64, &str, &str)] = &[
     (10, "evidence", include_str!("../../migrations/0010_evidence.sql")),
     (11, "junctions", include_str!("../../migrations/0011_junctions.sql")),
     (12, "map changes", include_str!("../../migrations/0012_map_changes.sql")),
+    (13, "segments", include_str!("../../migrations/0013_segments.sql")),
 ];
 
 /// The table of applied migrations. sqlx uses an existing table. Its own table would have types that GDAL does not know

@@ -11,7 +11,7 @@ use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, Sq
 use crate::account::AccountRow;
 use crate::network::{Area, Portion};
 use crate::osm::facts::Policy;
-use crate::rows::{EdgeCertificate, EdgeMeasure, StoredPlan, TurnCertificate};
+use crate::rows::{EdgeCertificate, EdgeMeasure, SegmentRow, StoredPlan, TurnCertificate};
 use crate::settings::Settings;
 use crate::turns::{JunctionArea, TurnFacts};
 use crate::words::{Named, verdict_words};
@@ -33,6 +33,7 @@ use super::plans;
 use super::records::{self, Run, VehicleRecord};
 use super::restrictions;
 use super::schema::{APPLIED, BEFORE_DATA, MIGRATIONS};
+use super::segments;
 use super::session::Session;
 use super::sets::{self, Set};
 use super::settings;
@@ -66,6 +67,7 @@ pub struct Writer {
     /// The register to write.
     evidence: Register,
     map_changes: MapChanges,
+    segments: Vec<SegmentRow>,
     part: Part,
 }
 
@@ -144,6 +146,7 @@ impl Database {
             older,
             evidence: Register::default(),
             map_changes: MapChanges::default(),
+            segments: Vec::new(),
             part,
         })
     }
@@ -185,6 +188,11 @@ impl Writer {
     /// Adds what was applied to the extract before it was read.
     pub fn map_changes(&mut self, changes: MapChanges) {
         self.map_changes = changes;
+    }
+
+    /// Adds the segments that the ways were made from, in the order of the ways.
+    pub fn segments(&mut self, segments: Vec<SegmentRow>) {
+        self.segments = segments;
     }
 
     /// Adds what a portion owns of the network. `measures` has one entry per edge of the portion's network, or is empty. The call may
@@ -317,7 +325,7 @@ impl Writer {
             let inserted = self.session.run(async |c| set.insert(c, rows, edges).await)?;
             inserted.map_err(|(edge, detail)| unsound(&self.vehicles, vehicle_no, edge, detail.to_owned()))?;
         }
-        let (register, map_changes) = (&self.evidence, &self.map_changes);
+        let (register, map_changes, of_ways) = (&self.evidence, &self.map_changes, &self.segments);
         self.session.run(async |c| {
             sqlx::query("COMMIT").execute(&mut *c).await?;
             migrate(c, None).await?;
@@ -326,6 +334,7 @@ impl Writer {
             areas::insert(c, &areas).await?;
             evidence::write(c, register, &run.finished).await?;
             map_changes::insert(c, map_changes).await?;
+            segments::insert(c, of_ways).await?;
             while let Some(set) = all_plans.next_set()? {
                 plans::insert(c, plans::STROKES, set, all_plans.of(set)).await?;
             }

@@ -44,7 +44,9 @@ for name, segment in segments.items():
     for rule in properties.get("access_restrictions", []) + properties.get("prohibited_transitions", []):
         low, high = rule.get("between", [0.0, 1.0])
         check(low in at and high in at, name, "a rule begins or ends between connectors")
-        check(rule["when"]["vehicle"][0]["comparison"] == "greater_than_equal", name, rule)
+        # A direction that does not exist is closed to everybody.
+        everybody = rule["access_type"] == "denied" and list(rule["when"]) == ["heading"] if "access_type" in rule else False
+        check(everybody or rule["when"]["vehicle"][0]["comparison"] == "greater_than_equal", name, rule)
     for rule in properties.get("prohibited_transitions", []):
         before = name
         for step in rule["sequence"]:

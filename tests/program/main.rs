@@ -20,6 +20,7 @@ mod gis;
 mod manoeuvres;
 #[path = "../oracle/mod.rs"]
 mod oracle;
+mod overture;
 mod pages;
 mod paper;
 mod relative;

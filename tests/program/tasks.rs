@@ -93,7 +93,7 @@ fn assembled(divided: &Divided, job: &str, results: Vec<TaskResult>, db: &Path) 
 
 fn ingested(db: &Path) {
     let ask = Ingest {
-        input: &extract(),
+        inputs: &[&extract()],
         db,
         catalogue: &Catalogue::builtin().unwrap(),
         selection: &Selection::Ids(VEHICLES.map(str::to_owned).to_vec()),

@@ -7,7 +7,7 @@ pub fn demo_region(turns: bool) -> (tempfile::TempDir, std::path::PathBuf) {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let path = folder.path().join("demo.gpkg");
     let ask = Ingest {
-        input: std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/demo.osm.pbf")),
+        inputs: &[std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/data/demo.osm.pbf"))],
         db: &path,
         catalogue: &netcert::vehicle::Catalogue::builtin().expect("the catalogue"),
         selection: &Selection::Ids(vec!["AGV-TUG4".to_owned()]),

@@ -73,11 +73,16 @@ impl Legal {
 
 /// The quantity that a limit bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+pub enum Kind {
+    /// Height, metres.
     Height,
+    /// Gross mass of the combination, tonnes.
     Weight,
+    /// Axle load, tonnes.
     AxleLoad,
+    /// Length, metres.
     Length,
+    /// Width, metres.
     Width,
 }
 
@@ -105,16 +110,42 @@ impl Kind {
         })
     }
 
-    /// Reads a value. Values above what any sign shows are refused, because their unit is missing (kilograms,
-    /// centimetres).
-    fn read(self, text: &str) -> Limit {
+    /// The greatest value that a sign shows. Greater ones are refused, because their unit is missing (kilograms, centimetres).
+    fn greatest(self) -> f32 {
         match self {
-            Kind::Height => value::limit(text, value::metres, 15.0),
-            Kind::Weight => value::limit(text, value::tonnes, 500.0),
-            Kind::AxleLoad => value::limit(text, value::tonnes, 60.0),
-            Kind::Length => value::limit(text, value::metres, 150.0),
-            Kind::Width => value::limit(text, value::metres, 30.0),
+            Kind::Height => 15.0,
+            Kind::Weight => 500.0,
+            Kind::AxleLoad => 60.0,
+            Kind::Length => 150.0,
+            Kind::Width => 30.0,
         }
+    }
+
+    fn read(self, text: &str) -> Limit {
+        let number = match self {
+            Kind::Weight | Kind::AxleLoad => value::tonnes,
+            Kind::Height | Kind::Length | Kind::Width => value::metres,
+        };
+        value::limit(text, number, self.greatest())
+    }
+
+    /// A limit of metres or tonnes, under the same bounds as a tag.
+    #[must_use]
+    pub fn at(self, value: f64) -> Limit {
+        let most = value as f32;
+        if most > 0.0 && most <= self.greatest() { Limit::At(most) } else { Limit::Unreadable }
+    }
+
+    /// A limit that bars sizes from this one on, where [`Self::at`] bars greater ones only.
+    #[must_use]
+    pub fn below(self, value: f64) -> Limit {
+        self.at(value - 2.0 * SLACK)
+    }
+
+    /// Adds a limit of this kind. The stricter one counts.
+    pub fn add(self, legal: &mut Legal, limit: Limit) {
+        let slot = self.slot(legal);
+        *slot = slot.stricter(limit);
     }
 
     fn slot(self, legal: &mut Legal) -> &mut Limit {
@@ -184,8 +215,7 @@ impl LegalTags {
         }
         for (legal, on) in self.limits.iter_mut().zip(directions) {
             if on {
-                let slot = kind.slot(legal);
-                *slot = slot.stricter(limit);
+                kind.add(legal, limit);
             }
         }
     }

@@ -75,6 +75,11 @@ impl SectionReader {
         self.widths.iter().any(Option::is_some)
     }
 
+    /// Takes a width of the carriageway that is no tag, metres. The same bounds hold.
+    pub(super) fn given_width(&mut self, metres: f64, notes: &mut Notes) {
+        self.widths[1] = usable_width(metres as f32, notes);
+    }
+
     fn origin(&mut self, text: &str) {
         let text = text.to_ascii_lowercase();
         let says = |words: &[&str]| words.iter().any(|word| text.contains(word));
@@ -291,7 +296,11 @@ impl Lists {
 }
 
 fn width(text: &str, notes: &mut Notes) -> Option<Millimetres> {
-    let width = value::metres(text).filter(|width| CARRIAGEWAY_M.contains(width)).and_then(Millimetres::from_metres);
+    usable_width(value::metres(text).unwrap_or_default(), notes)
+}
+
+fn usable_width(metres: f32, notes: &mut Notes) -> Option<Millimetres> {
+    let width = Some(metres).filter(|width| CARRIAGEWAY_M.contains(width)).and_then(Millimetres::from_metres);
     if width.is_none() {
         notes.add(Note::BadWidth);
     }

@@ -2,7 +2,8 @@
 //! way, with connectors at its junctions, `access_restrictions` on the stretches that the vehicle may not use and
 //! `prohibited_transitions` for the turns that it may not make.
 //!
-//! Every rule applies to lorries at least as long as the vehicle and says nothing about shorter ones. Ids are those of
+//! Every rule about permits applies to lorries at least as long as the vehicle and says nothing about shorter ones. One-way roads, speed
+//! limits and mapped widths (`values`) are those of the map. Ids are those of
 //! OpenStreetMap (`w` or `n` and the number), not of GERS. Memory holds one way; facts of other ways are in a temporary file.
 //!
 //! What the schema cannot express is refused: an edge that is not permitted by itself stays denied even to a permitted passage
@@ -10,6 +11,7 @@
 
 mod segment;
 mod spots;
+mod values;
 
 use std::collections::BTreeMap;
 use std::io::Write as _;
@@ -19,6 +21,7 @@ use serde_json::json;
 use super::{Options, Target};
 use crate::export::{ExportError, Layout, Place, Sink, Source};
 use crate::osm::LonLat;
+use crate::osm::facts::Policy;
 use crate::sorter::{Sorted, Sorter};
 use crate::vehicle::Vehicle;
 use segment::{Piece, Segment};
@@ -167,6 +170,9 @@ impl Writer<'_, '_> {
             let segment = open.get_or_insert_with(|| Segment::new(&edge.row, &spot));
             if segment.pieces.last().is_none_or(|piece| piece.shape_start != spot.shape_start) {
                 segment.pieces.push(Piece::new(&edge.row, &spot));
+            }
+            if let Some(piece) = segment.pieces.last_mut() {
+                piece.values.take(&edge.row, spot.heading, source.ask.policy == Policy::Carriageway);
             }
             if edge.refusal.is_none() {
                 let forbidden = self.forbidden(edge.row.edge, edge.row.to_node)?;

@@ -7,6 +7,7 @@ use geo::{Distance as _, Geodesic, Point};
 use serde_json::{Map, Value, json};
 
 use super::spots::Spot;
+use super::values::{self, Values};
 use crate::osm::LonLat;
 use crate::osm::facts::Direction;
 use crate::rows::EdgeRow;
@@ -29,6 +30,8 @@ pub(super) struct Piece {
     nodes: [i64; 2],
     /// The line, in way order.
     line: Vec<LonLat>,
+    /// What the map says of it.
+    pub(super) values: Values,
     /// By heading: the prohibited sequences after it. `None` if the stretch may not be used in this heading.
     pub(super) permitted: [Option<Vec<Forbidden>>; 2],
 }
@@ -42,7 +45,7 @@ impl Piece {
             line.reverse();
             nodes.reverse();
         }
-        Self { shape_start: spot.shape_start, nodes, line, permitted: [None, None] }
+        Self { shape_start: spot.shape_start, nodes, line, values: Values::default(), permitted: [None, None] }
     }
 }
 
@@ -52,6 +55,7 @@ pub(super) struct Segment {
     pub(super) chain: u32,
     highway: String,
     name: Option<String>,
+    reference: Option<String>,
     pub(super) pieces: Vec<Piece>,
 }
 
@@ -69,7 +73,14 @@ impl Segment {
     /// A segment without stretches.
     pub(super) fn new(row: &EdgeRow, spot: &Spot) -> Self {
         let Spot { way_id, chain, .. } = *spot;
-        Self { way_id, chain, highway: row.highway.clone(), name: row.name.clone(), pieces: Vec::new() }
+        Self {
+            way_id,
+            chain,
+            highway: row.highway.clone(),
+            name: row.name.clone(),
+            reference: row.reference.clone(),
+            pieces: Vec::new(),
+        }
     }
 
     /// The nodes at which the segment meets others.
@@ -83,7 +94,7 @@ impl Segment {
     /// The segment as a GeoJSON feature.
     pub(super) fn feature(&self, scope: &Scope) -> Value {
         let at = self.at();
-        let (class, link) = class(&self.highway);
+        let (class, link) = values::class(&self.highway);
         let mut properties = json!({
             "theme": "transportation",
             "type": "segment",
@@ -105,9 +116,14 @@ impl Segment {
             if let Some(name) = self.name.as_deref().map(str::trim).filter(|name| !name.is_empty()) {
                 members.insert("names".to_owned(), json!({"primary": name}));
             }
+            if let Some(reference) = self.reference.as_deref().map(str::trim).filter(|text| !text.is_empty()) {
+                members.insert("routes".to_owned(), json!([{"ref": reference}]));
+            }
             for (member, rules) in [
                 ("access_restrictions", self.denials(&at, scope)),
                 ("prohibited_transitions", self.transitions(&at, scope)),
+                ("speed_limits", values::speed_limits(&self.pieces, &at)),
+                ("width_rules", values::widths(&self.pieces, &at)),
             ] {
                 if !rules.is_empty() {
                     members.insert(member.to_owned(), Value::Array(rules));
@@ -153,11 +169,16 @@ impl Segment {
         begin.into_iter().chain(ends).zip(at).map(connector).collect()
     }
 
-    /// The rules for stretches that may not be used. Neighbouring stretches share a rule, and a rule for both headings names none.
+    /// The rules for directions that do not exist, and for stretches that may not be used. Neighbouring stretches share a rule, and a rule for both headings names none.
     fn denials(&self, at: &[f64], scope: &Scope) -> Vec<Value> {
         let denied = |heading: usize| -> Vec<[usize; 2]> {
             let mut ranges: Vec<[usize; 2]> = Vec::new();
-            for (i, _) in self.pieces.iter().enumerate().filter(|(_, piece)| piece.permitted[heading].is_none()) {
+            let refused = |piece: &Piece| {
+                // A direction that does not exist has a rule of its own, unless neither has an edge.
+                let gone = !piece.values.exists[heading] && piece.values.exists[1 - heading];
+                piece.permitted[heading].is_none() && !gone
+            };
+            for (i, _) in self.pieces.iter().enumerate().filter(|(_, piece)| refused(piece)) {
                 match ranges.last_mut() {
                     Some(range) if range[1] == i => range[1] = i + 1,
                     _ => ranges.push([i, i + 1]),
@@ -172,12 +193,15 @@ impl Segment {
             rule.insert("when".to_owned(), scope.when(heading));
             Value::Object(rule)
         };
+        let mut rules = values::oneways(&self.pieces, at);
         let [forward, backward] = [denied(0), denied(1)];
         if forward == backward {
-            return forward.into_iter().map(|range| rule(range, None)).collect();
+            rules.extend(forward.into_iter().map(|range| rule(range, None)));
+            return rules;
         }
-        let forward = forward.into_iter().map(|range| rule(range, Some(Direction::Forward)));
-        forward.chain(backward.into_iter().map(|range| rule(range, Some(Direction::Backward)))).collect()
+        rules.extend(forward.into_iter().map(|range| rule(range, Some(Direction::Forward))));
+        rules.extend(backward.into_iter().map(|range| rule(range, Some(Direction::Backward))));
+        rules
     }
 
     /// The prohibited transitions of each stretch, including turning back on the road.
@@ -225,7 +249,7 @@ impl Scope {
 
 /// Adds the range of a rule. The range is left out if it is the whole segment, or if rounding makes it empty; the rule then holds
 /// for the whole segment.
-fn between(rule: &mut Map<String, Value>, at: &[f64], [from, to]: [usize; 2]) {
+pub(super) fn between(rule: &mut Map<String, Value>, at: &[f64], [from, to]: [usize; 2]) {
     if let (Some(&from), Some(&to)) = (at.get(from), at.get(to))
         && from < to
         && (from > 0.0 || to < 1.0)
@@ -239,12 +263,6 @@ fn length_m(line: &[LonLat]) -> f64 {
     line.windows(2).map(|pair| Geodesic.distance(point(&pair[0]), point(&pair[1]))).sum()
 }
 
-/// The schema's class, and whether the road is a slip road. The schema has no class for busways.
-fn class(highway: &str) -> (&str, bool) {
-    let (class, link) = highway.strip_suffix("_link").map_or((highway, false), |class| (class, true));
-    (if class == "busway" { "unknown" } else { class }, link)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -252,11 +270,13 @@ mod tests {
     fn piece(from: i32, to: i32, permitted: [bool; 2]) -> Piece {
         let line = [from, to].map(|lon_e7| LonLat { lon_e7: lon_e7 * 1000, lat_e7: 0 }).to_vec();
         let permitted = permitted.map(|yes| yes.then(Vec::new));
-        Piece { shape_start: 0, nodes: [i64::from(from), i64::from(to)], line, permitted }
+        let values = Values { exists: [true; 2], ..Values::default() };
+        Piece { shape_start: 0, nodes: [i64::from(from), i64::from(to)], line, values, permitted }
     }
 
     fn segment(pieces: Vec<Piece>) -> Value {
-        let segment = Segment { way_id: 7, chain: 0, highway: "primary_link".to_owned(), name: None, pieces };
+        let segment =
+            Segment { way_id: 7, chain: 0, highway: "primary_link".to_owned(), name: None, reference: None, pieces };
         segment.feature(&Scope { length_m: 16.5 })["properties"].clone()
     }
 

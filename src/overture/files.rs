@@ -1,0 +1,91 @@
+//! Which files a source has. Content decides, not names: GeoParquet begins with `PAR1`, GeoJSON with its collection.
+
+use std::fs::{self, File};
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+use super::error::{OvertureError, Problem};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Format {
+    Parquet,
+    GeoJson,
+}
+
+/// The format of a file, if it is one of Overture's.
+fn format(path: &Path) -> std::io::Result<Option<Format>> {
+    let mut head = Vec::new();
+    File::open(path)?.take(1024).read_to_end(&mut head)?;
+    let text = String::from_utf8_lossy(&head);
+    Ok(if head.starts_with(b"PAR1") {
+        Some(Format::Parquet)
+    } else if text.trim_start().starts_with('{') && text.contains("\"FeatureCollection\"") {
+        Some(Format::GeoJson)
+    } else {
+        None
+    })
+}
+
+/// Whether a path is a source for this reader: a folder, or a file of one of the formats.
+#[must_use]
+pub fn is_source(path: &Path) -> bool {
+    path.is_dir() || (path.is_file() && matches!(format(path), Ok(Some(_))))
+}
+
+/// The hash of a source, as databases keep it.
+///
+/// # Errors
+/// [`OvertureError`] if a file cannot be read, or is none of Overture's.
+pub fn hash(inputs: &[&Path]) -> Result<String, OvertureError> {
+    Ok(find(inputs)?.1)
+}
+
+/// The files of a source, and the hash of all their content. It depends neither on names nor on order.
+pub(super) fn find(inputs: &[&Path]) -> Result<(Vec<(PathBuf, Format)>, String), OvertureError> {
+    let mut files = Vec::new();
+    for &input in inputs {
+        let before = files.len();
+        if input.is_dir() {
+            walk(input, &mut files)?;
+            if files.len() == before {
+                return Err(OvertureError::of_file(input, Problem::EmptyFolder));
+            }
+        } else {
+            let format = format(input).map_err(|e| OvertureError::of_file(input, e))?;
+            files.push((input.to_owned(), format.ok_or_else(|| OvertureError::of_file(input, Problem::OtherFormat))?));
+        }
+    }
+    files.sort_by(|a, b| a.0.cmp(&b.0));
+    files.dedup_by(|a, b| a.0 == b.0);
+    let mut hashes = Vec::with_capacity(files.len());
+    for (path, _) in &files {
+        let mut hasher = blake3::Hasher::new();
+        let read = File::open(path).and_then(|file| hasher.update_reader(file).map(|_| ()));
+        read.map_err(|e| OvertureError::of_file(path, e))?;
+        hashes.push(*hasher.finalize().as_bytes());
+    }
+    hashes.sort_unstable();
+    Ok((files, blake3::hash(&hashes.concat()).to_hex().to_string()))
+}
+
+/// Collects the files below a folder. Partitions of other types and files of other formats are passed over.
+fn walk(folder: &Path, files: &mut Vec<(PathBuf, Format)>) -> Result<(), OvertureError> {
+    let failed = |e: std::io::Error| OvertureError::of_file(folder, e);
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let other = |key: &str, known: &[&str]| name.strip_prefix(key).is_some_and(|value| !known.contains(&value));
+        if name.starts_with(['.', '_'])
+            || other("theme=", &["transportation"])
+            || other("type=", &["segment", "connector"])
+        {
+            continue;
+        }
+        if path.is_dir() {
+            walk(&path, files)?;
+        } else if let Some(format) = format(&path).map_err(|e| OvertureError::of_file(&path, e))? {
+            files.push((path, format));
+        }
+    }
+    Ok(())
+}

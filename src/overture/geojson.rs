@@ -1,0 +1,109 @@
+//! Features of GeoJSON files, one after the other: `export overture` and `overturemaps download -f geojson` write them.
+
+use std::fmt;
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+
+use serde::Deserialize;
+use serde::de::{DeserializeSeed, Deserializer, IgnoredAny, MapAccess, SeqAccess, Visitor};
+use serde_json::Value;
+
+use super::error::{OvertureError, Place, Problem};
+
+/// A feature.
+#[derive(Deserialize)]
+pub(super) struct Feature {
+    pub(super) id: Option<String>,
+    #[serde(default)]
+    pub(super) geometry: Value,
+    #[serde(default)]
+    pub(super) properties: Value,
+}
+
+impl Feature {
+    /// `segment` or `connector`.
+    pub(super) fn kind(&self) -> &str {
+        self.properties.get("type").and_then(Value::as_str).unwrap_or_default()
+    }
+}
+
+/// Calls `take` for each feature of a file.
+pub(super) fn each(
+    path: &Path,
+    take: &mut dyn FnMut(Feature) -> Result<(), (Option<String>, Problem)>,
+) -> Result<(), OvertureError> {
+    let file = File::open(path).map_err(|e| OvertureError::of_file(path, e))?;
+    let mut walk = Walk { take, number: 0, failed: None };
+    let mut json = serde_json::Deserializer::from_reader(BufReader::with_capacity(1 << 16, file));
+    let done = (&mut walk).deserialize(&mut json).and_then(|()| json.end());
+    let (number, failed) = (walk.number, walk.failed);
+    let at = |place, (id, problem)| OvertureError { path: path.to_owned(), place, id, problem };
+    match (done, failed) {
+        (_, Some(failed)) => Err(at(Place::Feature(number), failed)),
+        (Err(error), None) => Err(at(Place::Feature(number), (None, Problem::Damaged(error.to_string())))),
+        (Ok(()), None) => Ok(()),
+    }
+}
+
+struct Walk<'t> {
+    take: &'t mut dyn FnMut(Feature) -> Result<(), (Option<String>, Problem)>,
+    number: usize,
+    failed: Option<(Option<String>, Problem)>,
+}
+
+impl<'de> DeserializeSeed<'de> for &mut Walk<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, json: D) -> Result<(), D::Error> {
+        json.deserialize_map(self)
+    }
+}
+
+impl<'de> Visitor<'de> for &mut Walk<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a FeatureCollection")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut members: A) -> Result<(), A::Error> {
+        while let Some(name) = members.next_key::<String>()? {
+            if name == "features" {
+                members.next_value_seed(Features(self))?;
+            } else {
+                members.next_value::<IgnoredAny>()?;
+            }
+        }
+        Ok(())
+    }
+}
+
+struct Features<'w, 't>(&'w mut Walk<'t>);
+
+impl<'de> DeserializeSeed<'de> for Features<'_, '_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, json: D) -> Result<(), D::Error> {
+        json.deserialize_seq(self)
+    }
+}
+
+impl<'de> Visitor<'de> for Features<'_, '_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("features")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut features: A) -> Result<(), A::Error> {
+        while let Some(feature) = features.next_element::<Feature>()? {
+            if let Err(failed) = (self.0.take)(feature) {
+                self.0.failed = Some(failed);
+                return Err(serde::de::Error::custom("a feature"));
+            }
+            self.0.number += 1;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,158 @@
+//! Overture as a source: segments and connectors of the transportation theme become the same [`Extract`] as an OpenStreetMap file.
+//!
+//! Connectors are read first, then segments, row group by row group on all threads. The result depends neither on the number of threads
+//! nor on names and order of the files. Rules become the facts that tags become (`rules/`). A damaged file is an error, never a shorter
+//! result.
+
+mod account;
+mod connectors;
+mod error;
+mod files;
+mod gather;
+mod geojson;
+mod ids;
+mod line;
+mod parquet;
+mod record;
+mod rules;
+mod segment;
+mod turns;
+mod wkb;
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize as _;
+
+pub use account::Account;
+pub use error::{OvertureError, Place, Problem};
+pub use files::{hash, is_source};
+
+use crate::osm::Extract;
+use crate::rows::SegmentRow;
+use connectors::Connectors;
+use files::Format;
+use ids::Key;
+use parquet::{Kind, Table};
+use segment::{Feature, Road};
+
+/// What was read.
+#[derive(Debug)]
+pub struct Read {
+    /// Roads. Of its own account only hash and box are filled.
+    pub extract: Extract,
+    /// What became of everything read.
+    pub account: Account,
+    /// The segment of each way, by way.
+    pub segments: Vec<SegmentRow>,
+}
+
+/// Reads files of segments and of connectors, or folders of them. `progress` gets the name of each stage.
+///
+/// # Errors
+/// [`OvertureError`] if a file is damaged, has another schema, or connectors or segments are missing.
+pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, OvertureError> {
+    let first = inputs.first().copied().unwrap_or(Path::new(""));
+    let (files, hash) = files::find(inputs)?;
+    let mut tables = Vec::new();
+    for (path, _) in files.iter().filter(|(_, format)| *format == Format::Parquet) {
+        tables.push(Table::open(path)?);
+    }
+    let drawn: Vec<&PathBuf> =
+        files.iter().filter(|(_, format)| *format == Format::GeoJson).map(|(path, _)| path).collect();
+
+    let (mut connectors, mut account, mut roads) = (Connectors::default(), Account::default(), Vec::new());
+    let (mut of_connectors, mut of_segments) = (false, false);
+    progress("connectors");
+    for table in tables.iter().filter(|table| table.kind == Kind::Connectors) {
+        of_connectors = true;
+        let groups = table.each(|some, record| {
+            let place = wkb::point(&record.geometry).map_err(|problem| (Some(record.id.clone()), problem))?;
+            some.push((Key::connector(&record.id), place));
+            Ok(())
+        })?;
+        groups.into_iter().for_each(|some| connectors.add(some));
+    }
+    for path in &drawn {
+        geojson::each(path, &mut |feature| {
+            match feature.kind() {
+                "connector" => of_connectors = true,
+                "segment" => {
+                    of_segments = true;
+                    return Ok(());
+                }
+                other => return Err((feature.id.clone(), Problem::OtherFeatures(format!("type {other:?}")))),
+            }
+            let (id, place) = id_and(feature, |feature| wkb::of_json(&feature.geometry, "Point"))?;
+            connectors.add(place.first().map(|place| (Key::connector(&id), *place)).into_iter().collect());
+            Ok(())
+        })?;
+    }
+    of_segments |= tables.iter().any(|table| table.kind == Kind::Segments);
+    for (there, problem) in [(of_segments, Problem::NoSegments), (of_connectors, Problem::NoConnectors)] {
+        if !there {
+            return Err(OvertureError::of_file(first, problem));
+        }
+    }
+
+    progress("segments");
+    for table in tables.iter().filter(|table| table.kind == Kind::Segments) {
+        let groups = table.each(|some: &mut Vec<(Option<Road>, Account)>, record| {
+            let id = record.id.clone();
+            let road = || {
+                let segment =
+                    record::Segment::deserialize(record.columns).map_err(|e| Problem::Schema(e.to_string()))?;
+                let places = wkb::line(&record.geometry)?;
+                made(Feature { id: record.id, places, segment }, &connectors)
+            };
+            some.push(road().map_err(|problem| (Some(id), problem))?);
+            Ok(())
+        })?;
+        for (road, of_road) in groups.into_iter().flatten() {
+            roads.extend(road);
+            account.add(&of_road);
+        }
+    }
+    for path in &drawn {
+        geojson::each(path, &mut |feature| {
+            if feature.kind() != "segment" {
+                return Ok(());
+            }
+            let (id, (places, segment)) = id_and(feature, |feature| {
+                let places = wkb::of_json(&feature.geometry, "LineString")?;
+                let segment = record::Segment::deserialize(std::mem::take(&mut feature.properties));
+                Ok((places, segment.map_err(|e| Problem::Schema(e.to_string()))?))
+            })?;
+            let (road, of_road) = made(Feature { id: id.clone(), places, segment }, &connectors)
+                .map_err(|problem| (Some(id), problem))?;
+            roads.extend(road);
+            account.add(&of_road);
+            Ok(())
+        })?;
+    }
+
+    let (mut extract, segments) = gather::extract(roads, &connectors, &mut account, first)?;
+    extract.account.blake3 = hash;
+    // Segments of a download by box reach beyond it, and their connectors there are missing. The box is then where the data end.
+    if account.has_noted(account::CONNECTOR, "missing") {
+        let nanodegrees = |bounds: [i32; 4]| bounds.map(|side| i64::from(side) * 100);
+        extract.account.header.bbox_nanodegrees = connectors.bounds().map(nanodegrees);
+    }
+    Ok(Read { extract, account, segments })
+}
+
+fn made(feature: Feature, connectors: &Connectors) -> Result<(Option<Road>, Account), Problem> {
+    let mut account = Account::default();
+    Ok((Road::of(feature, connectors, &mut account)?, account))
+}
+
+/// The id of a feature, and what `read` makes of it.
+fn id_and<T>(
+    mut feature: geojson::Feature,
+    read: impl FnOnce(&mut geojson::Feature) -> Result<T, Problem>,
+) -> Result<(String, T), (Option<String>, Problem)> {
+    let Some(id) = feature.id.take() else { return Err((None, Problem::Value("a feature without id".to_owned()))) };
+    match read(&mut feature) {
+        Ok(value) => Ok((id, value)),
+        Err(problem) => Err((Some(id), problem)),
+    }
+}

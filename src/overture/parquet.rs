@@ -1,0 +1,237 @@
+//! Rows of GeoParquet files, as JSON values of the columns that are used, and their geometry.
+//!
+//! Row groups are read on all threads. The error of a file is that of its first faulty group.
+
+use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::Arc;
+
+use ::parquet::basic::{ConvertedType, LogicalType, Type as Physical};
+use ::parquet::errors::ParquetError;
+use ::parquet::file::reader::{FileReader as _, SerializedFileReader};
+use ::parquet::record::reader::RowIter;
+use ::parquet::record::{Field, Row};
+use ::parquet::schema::types::Type;
+use rayon::prelude::*;
+use serde_json::{Map, Value};
+
+use super::error::{OvertureError, Place, Problem};
+
+/// Columns of segments that are read. The first ones must be there: without them a closed road would look open.
+const SEGMENT: [&str; 17] = [
+    "id",
+    "geometry",
+    "subtype",
+    "class",
+    "connectors",
+    "access_restrictions",
+    "prohibited_transitions",
+    "road_flags",
+    "subclass",
+    "names",
+    "routes",
+    "subclass_rules",
+    "speed_limits",
+    "width_rules",
+    "road_surface",
+    "level_rules",
+    "destinations",
+];
+const SEGMENT_NEEDS: usize = 8;
+const CONNECTOR: [&str; 2] = ["id", "geometry"];
+
+/// What a file holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Segments,
+    Connectors,
+}
+
+/// A row: its id, its geometry as well-known binary, its other columns.
+pub(super) struct Record {
+    pub(super) id: String,
+    pub(super) geometry: Vec<u8>,
+    pub(super) columns: Value,
+}
+
+/// An open file whose columns are as they should be.
+pub(super) struct Table<'p> {
+    path: &'p Path,
+    groups: usize,
+    pub(super) kind: Kind,
+    projection: Type,
+}
+
+impl<'p> Table<'p> {
+    pub(super) fn open(path: &'p Path) -> Result<Self, OvertureError> {
+        let failed = |problem: Problem| OvertureError::of_file(path, problem);
+        let reader = open(path).map_err(failed)?;
+        let metadata = reader.metadata().file_metadata();
+        let geo = metadata.key_value_metadata().into_iter().flatten().find(|entry| entry.key == "geo");
+        check_geometry(geo.and_then(|entry| entry.value.as_deref())).map_err(failed)?;
+        let (kind, projection) = columns(metadata.schema()).map_err(failed)?;
+        Ok(Self { path, groups: reader.num_row_groups(), kind, projection })
+    }
+
+    /// Makes something of every row, group by group on all threads. The results are in the order of the file.
+    pub(super) fn each<T: Send>(
+        &self,
+        make: impl Fn(&mut Vec<T>, Record) -> Result<(), (Option<String>, Problem)> + Sync,
+    ) -> Result<Vec<Vec<T>>, OvertureError> {
+        let groups: Vec<_> = (0..self.groups).into_par_iter().map(|group| self.group(group, &make)).collect();
+        // The first error in the file, whichever thread was first.
+        groups.into_iter().collect()
+    }
+
+    fn group<T>(
+        &self,
+        group: usize,
+        make: &impl Fn(&mut Vec<T>, Record) -> Result<(), (Option<String>, Problem)>,
+    ) -> Result<Vec<T>, OvertureError> {
+        let at = |place: Place, (id, problem): (Option<String>, Problem)| OvertureError {
+            path: self.path.to_owned(),
+            place,
+            id,
+            problem,
+        };
+        // Each group has a file of its own: copies of one would share their place in it.
+        let reader = open(self.path).map_err(|problem| at(Place::Group(group), (None, problem)))?;
+        let rows =
+            guarded(|| reader.get_row_group(group)).map_err(|problem| at(Place::Group(group), (None, problem)))?;
+        let number = usize::try_from(rows.metadata().num_rows()).unwrap_or_default();
+        let mut iterator = guarded(|| RowIter::from_row_group(Some(self.projection.clone()), &*rows))
+            .map_err(|problem| at(Place::Group(group), (None, problem)))?;
+        let mut made = Vec::new();
+        for row_number in 0..number {
+            let place = Place::Row(group, row_number);
+            let row = guarded(|| iterator.next().transpose()).map_err(|problem| at(place, (None, problem)))?;
+            let ends = || (None, Problem::Damaged("the rows end too early".to_owned()));
+            let record = record(row.ok_or_else(|| at(place, ends()))?).map_err(|problem| at(place, (None, problem)))?;
+            make(&mut made, record).map_err(|problem| at(place, problem))?;
+        }
+        Ok(made)
+    }
+}
+
+fn open(path: &Path) -> Result<SerializedFileReader<File>, Problem> {
+    let file = File::open(path)?;
+    guarded(|| SerializedFileReader::new(file))
+}
+
+/// Calls the library of the format. On some damaged files it panics; such a file is an error like any other.
+fn guarded<T>(call: impl FnOnce() -> Result<T, ParquetError>) -> Result<T, Problem> {
+    match catch_unwind(AssertUnwindSafe(call)) {
+        Ok(Ok(value)) => Ok(value),
+        Ok(Err(error)) => {
+            let text = error.to_string();
+            let codec = text.contains("Disabled feature at compile time");
+            Err(if codec { Problem::Codec(text) } else { Problem::Damaged(text) })
+        }
+        Err(_) => Err(Problem::Damaged("its parts do not fit together".to_owned())),
+    }
+}
+
+/// Refuses geometry that is no well-known binary on WGS 84. Without metadata the rows decide.
+fn check_geometry(geo: Option<&str>) -> Result<(), Problem> {
+    let Some(geo) = geo else { return Ok(()) };
+    let geo: Value = serde_json::from_str(geo).map_err(|e| Problem::Damaged(format!("its metadata `geo`: {e}")))?;
+    let column = geo.pointer("/columns/geometry").unwrap_or(&Value::Null);
+    if let Some(encoding) = column.get("encoding").and_then(Value::as_str)
+        && encoding != "WKB"
+    {
+        return Err(Problem::Geometry(format!("encoding {encoding} in place of WKB")));
+    }
+    let id =
+        |member: &str| column.pointer(&format!("/crs/id/{member}")).map(|value| value.to_string().replace('"', ""));
+    match (id("authority"), id("code")) {
+        (Some(authority), Some(code)) if !matches!((&*authority, &*code), ("OGC", "CRS84") | ("EPSG", "4326")) => {
+            Err(Problem::Geometry(format!("reference system {authority}:{code} in place of OGC:CRS84")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// What the columns say that the file holds, and those of them that are read.
+fn columns(schema: &Type) -> Result<(Kind, Type), Problem> {
+    let fields = schema.get_fields();
+    let has = |name: &str| fields.iter().any(|field| field.name() == name);
+    if has("connector_ids") || has("road") {
+        let old = if has("road") { "road" } else { "connector_ids" };
+        return Err(Problem::Schema(format!("the column {old} is of an older schema, which netcert does not know")));
+    }
+    let kind = if has("connectors") || has("class") { Kind::Segments } else { Kind::Connectors };
+    let (wanted, needed): (&[&str], _) = match kind {
+        Kind::Segments => (&SEGMENT, SEGMENT_NEEDS),
+        Kind::Connectors => (&CONNECTOR, CONNECTOR.len()),
+    };
+    if let Some(missing) = wanted.iter().take(needed).find(|name| !has(name)) {
+        return Err(Problem::Schema(format!("the column {missing} is missing")));
+    }
+    let used: Vec<Arc<Type>> = fields.iter().filter(|field| wanted.contains(&field.name())).cloned().collect();
+    for field in &used {
+        let right = match field.name() {
+            "id" | "class" | "subtype" | "subclass" => is_text(field),
+            "geometry" => field.is_primitive() && field.get_physical_type() == Physical::BYTE_ARRAY,
+            "names" => field.is_group(),
+            _ => field.is_group() && is_list(field),
+        };
+        if !right {
+            return Err(Problem::Schema(format!(
+                "the column {} has another type than in Overture's schema",
+                field.name()
+            )));
+        }
+    }
+    let damaged = |e: ParquetError| Problem::Damaged(e.to_string());
+    Ok((kind, Type::group_type_builder(schema.name()).with_fields(used).build().map_err(damaged)?))
+}
+
+fn is_text(field: &Type) -> bool {
+    let info = field.get_basic_info();
+    field.is_primitive()
+        && (info.logical_type_ref() == Some(&LogicalType::String) || info.converted_type() == ConvertedType::UTF8)
+}
+
+fn is_list(field: &Type) -> bool {
+    let info = field.get_basic_info();
+    info.logical_type_ref() == Some(&LogicalType::List) || info.converted_type() == ConvertedType::LIST
+}
+
+fn record(row: Row) -> Result<Record, Problem> {
+    let (mut id, mut geometry, mut columns) = (None, None, Map::new());
+    for (name, field) in row.into_columns() {
+        match (name.as_str(), field) {
+            ("id", Field::Str(text)) => id = Some(text),
+            ("geometry", Field::Bytes(bytes)) => geometry = Some(bytes.data().to_vec()),
+            ("id" | "geometry", _) => {}
+            (_, field) => {
+                columns.insert(name, value(field));
+            }
+        }
+    }
+    let id = id.ok_or_else(|| Problem::Value("a row without id".to_owned()))?;
+    let geometry = geometry.ok_or_else(|| Problem::Geometry(format!("{id} has none")))?;
+    Ok(Record { id, geometry, columns: Value::Object(columns) })
+}
+
+/// A value as JSON. Bytes and times are in no member that is read.
+fn value(field: Field) -> Value {
+    match field {
+        Field::Bool(value) => value.into(),
+        Field::Byte(value) => value.into(),
+        Field::Short(value) => value.into(),
+        Field::Int(value) => value.into(),
+        Field::Long(value) => value.into(),
+        Field::UByte(value) => value.into(),
+        Field::UShort(value) => value.into(),
+        Field::UInt(value) => value.into(),
+        Field::ULong(value) => value.into(),
+        Field::Float(value) => f64::from(value).into(),
+        Field::Double(value) => value.into(),
+        Field::Str(value) => value.into(),
+        Field::Group(row) => row.into_columns().into_iter().map(|(name, field)| (name, value(field))).collect(),
+        Field::ListInternal(list) => list.elements().iter().cloned().map(value).collect(),
+        _ => Value::Null,
+    }
+}

@@ -1,0 +1,124 @@
+//! Segments and connectors as the schema has them
+//! (<https://docs.overturemaps.org/schema/reference/transportation/segment/>). Members that netcert does not use are not read.
+
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+
+/// A segment without id and geometry.
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct Segment {
+    pub(super) subtype: Option<String>,
+    pub(super) class: Option<String>,
+    pub(super) subclass: Option<String>,
+    pub(super) names: Option<Names>,
+    pub(super) connectors: Option<Vec<ConnectorAt>>,
+    pub(super) routes: Option<Vec<Route>>,
+    pub(super) access_restrictions: Option<Vec<Access>>,
+    pub(super) prohibited_transitions: Option<Vec<Transition>>,
+    pub(super) speed_limits: Option<Vec<SpeedLimit>>,
+    pub(super) subclass_rules: Option<Vec<Text>>,
+    pub(super) width_rules: Option<Vec<Width>>,
+    pub(super) road_flags: Option<Vec<Flags>>,
+    pub(super) road_surface: Option<Vec<IgnoredAny>>,
+    pub(super) level_rules: Option<Vec<IgnoredAny>>,
+    pub(super) destinations: Option<Vec<IgnoredAny>>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Names {
+    pub(super) primary: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct ConnectorAt {
+    pub(super) connector_id: String,
+    pub(super) at: Option<f64>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Route {
+    #[serde(rename = "ref")]
+    pub(super) reference: Option<String>,
+    pub(super) between: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Access {
+    pub(super) access_type: Option<String>,
+    pub(super) when: Option<When>,
+    pub(super) between: Option<Vec<f64>>,
+}
+
+/// The conditions of a rule. All must hold together.
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct When {
+    pub(super) heading: Option<String>,
+    pub(super) during: Option<String>,
+    pub(super) mode: Option<Vec<String>>,
+    pub(super) using: Option<Vec<String>>,
+    pub(super) recognized: Option<Vec<String>>,
+    pub(super) vehicle: Option<Vec<Comparison>>,
+    /// Conditions that this program does not know.
+    #[serde(flatten)]
+    pub(super) others: serde_json::Map<String, serde_json::Value>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Comparison {
+    pub(super) dimension: Option<String>,
+    pub(super) comparison: Option<String>,
+    pub(super) value: Option<f64>,
+    pub(super) unit: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct SpeedLimit {
+    pub(super) max_speed: Option<Speed>,
+    pub(super) when: Option<When>,
+    pub(super) between: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Speed {
+    pub(super) value: Option<f64>,
+    pub(super) unit: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Text {
+    pub(super) value: Option<String>,
+    pub(super) between: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Width {
+    pub(super) value: Option<f64>,
+    pub(super) between: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Flags {
+    pub(super) values: Option<Vec<String>>,
+    pub(super) between: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Transition {
+    pub(super) sequence: Option<Vec<Step>>,
+    pub(super) final_heading: Option<String>,
+    pub(super) when: Option<When>,
+    pub(super) between: Option<Vec<f64>>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Step {
+    pub(super) connector_id: Option<String>,
+    pub(super) segment_id: Option<String>,
+}
+
+impl When {
+    /// Whether it has a condition that this program does not know.
+    pub(super) fn is_strange(&self) -> bool {
+        self.others.values().any(|value| !value.is_null())
+    }
+}

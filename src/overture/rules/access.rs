@@ -1,0 +1,205 @@
+//! Access restrictions: what each does to an articulated lorry, and what all of them do together.
+
+use super::measures;
+use super::{Limit, LimitKind, Oneway, Permission, headings};
+use crate::osm::facts::Legal;
+use crate::overture::record::{Access as Rule, When};
+
+/// How specific the modes of a rule are for a lorry. The more specific one is the greater.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Rank {
+    /// No modes are named.
+    All,
+    /// `vehicle`
+    Vehicle,
+    /// `motor_vehicle`
+    MotorVehicle,
+    /// `truck`, `hgv`
+    Lorry,
+}
+
+/// Modes that are no lorries.
+const OTHERS: [&str; 9] = ["bicycle", "bus", "car", "emergency", "foot", "hov", "motorcycle", "pedestrian", "taxi"];
+
+/// The rank of a rule's modes, and whether some of them are unknown. `None` if it concerns no lorry.
+fn rank(when: Option<&When>) -> (Option<Rank>, bool) {
+    let Some(modes) = when.and_then(|when| when.mode.as_ref()).filter(|modes| !modes.is_empty()) else {
+        return (Some(Rank::All), false);
+    };
+    let mut strange = false;
+    let of_mode = |mode: &String| match mode.as_str() {
+        "vehicle" => Some(Rank::Vehicle),
+        "motor_vehicle" => Some(Rank::MotorVehicle),
+        "truck" | "hgv" => Some(Rank::Lorry),
+        other => {
+            strange |= !OTHERS.contains(&other);
+            None
+        }
+    };
+    (modes.iter().filter_map(of_mode).max(), strange)
+}
+
+/// Whether a rule that closes or slows may concern a lorry. An unknown mode may be one.
+pub(in crate::overture) fn concerns_lorries(when: Option<&When>) -> bool {
+    let (rank, strange) = rank(when);
+    rank.is_some() || strange
+}
+
+/// What a rule does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Effect {
+    /// Closes the headings, whole or to through traffic. `direction`: the rule says that this direction of travel does not exist.
+    Deny { rank: Rank, headings: [bool; 2], to: Permission, direction: bool },
+    /// Lifts denials.
+    Allow { rank: Rank, headings: [bool; 2], to: Permission },
+    /// Bars large vehicles.
+    Limit { headings: [bool; 2], kind: LimitKind, limit: Limit },
+    /// Nothing, and why.
+    None(&'static str),
+}
+
+impl Effect {
+    /// The effect of a rule, and a remark on it.
+    pub(super) fn of(rule: &Rule) -> (Self, Option<&'static str>) {
+        let when = rule.when.as_ref();
+        let (rank, strange_mode) = rank(when);
+        let strange = strange_mode || when.is_some_and(When::is_strange);
+        match rule.access_type.as_deref() {
+            Some("allowed" | "designated") => (Self::allow(when, rank, strange), None),
+            Some("denied") => Self::deny(when, rank, strange_mode, strange),
+            // An unknown kind of rule may close the road.
+            _ => Self::deny(when, rank, strange_mode, true),
+        }
+    }
+
+    fn allow(when: Option<&When>, rank: Option<Rank>, strange: bool) -> Self {
+        let Some(rank) = rank else { return Self::None("other_vehicles") };
+        let Some(when) = when else { return Self::Allow { rank, headings: [true; 2], to: Permission::Yes } };
+        let known_heading = matches!(when.heading.as_deref(), None | Some("forward" | "backward"));
+        if strange || !known_heading {
+            return Self::None("not_understood");
+        }
+        // When and for which sizes it opens is not decided, so it opens nothing.
+        if when.during.is_some() || when.vehicle.as_ref().is_some_and(|sizes| !sizes.is_empty()) {
+            return Self::None("opens_under_conditions");
+        }
+        let any = |words: &Option<Vec<String>>, known: &[&str]| {
+            words.as_ref().map(|words| words.iter().any(|word| known.contains(&word.as_str())))
+        };
+        let using = any(&when.using, &["as_customer", "at_destination", "to_deliver"]);
+        let recognized = any(&when.recognized, &["as_permitted"]);
+        let to = match (using, recognized) {
+            (None, None) => Permission::Yes,
+            (Some(false), _) | (_, Some(false)) => return Self::None("opens_under_conditions"),
+            _ => Permission::Restricted,
+        };
+        Self::Allow { rank, headings: headings(Some(when)), to }
+    }
+
+    fn deny(
+        when: Option<&When>,
+        rank: Option<Rank>,
+        strange_mode: bool,
+        strange: bool,
+    ) -> (Self, Option<&'static str>) {
+        let rank = match rank {
+            Some(rank) => rank,
+            None if strange_mode => Rank::Lorry,
+            None => return (Self::None("other_vehicles"), None),
+        };
+        let Some(when) = when else {
+            let note = strange.then_some("not_understood");
+            return (Self::Deny { rank, headings: [true; 2], to: Permission::No, direction: false }, note);
+        };
+        let headings = headings(Some(when));
+        let sizes = when.vehicle.as_deref().unwrap_or_default();
+        let times = when.during.is_some() || when.using.is_some() || when.recognized.is_some();
+        if strange {
+            return (Self::Deny { rank, headings, to: Permission::No, direction: false }, Some("not_understood"));
+        }
+        if !sizes.is_empty() {
+            // All comparisons hold together, so each of them bars at least what the rule bars. Sizes that are always known come first.
+            let usable = sizes.iter().filter_map(measures::limit).min_by_key(|(kind, _)| order(*kind));
+            let note = if sizes.len() > 1 { Some("several_sizes") } else { times.then_some("condition_undecided") };
+            return match usable {
+                Some((kind, limit)) => (Self::Limit { headings, kind, limit }, note),
+                // Every vehicle has a length, so this makes every verdict unknown.
+                None => (
+                    Self::Limit { headings, kind: LimitKind::Length, limit: Limit::Unreadable },
+                    Some("size_undecided"),
+                ),
+            };
+        }
+        if times {
+            return (
+                Self::Deny { rank, headings, to: Permission::Restricted, direction: false },
+                Some("condition_undecided"),
+            );
+        }
+        let one = headings[0] != headings[1];
+        (Self::Deny { rank, headings, to: Permission::No, direction: one && rank == Rank::All }, None)
+    }
+}
+
+/// The order in which sizes are preferred: height and masses of a vehicle may be unknown.
+fn order(kind: LimitKind) -> u8 {
+    match kind {
+        LimitKind::Length => 0,
+        LimitKind::Width => 1,
+        LimitKind::Height => 2,
+        LimitKind::Weight => 3,
+        LimitKind::AxleLoad => 4,
+    }
+}
+
+/// Access of a part of a road, while its rules are applied in order.
+#[derive(Debug, Default)]
+pub(super) struct Access {
+    limits: [Legal; 2],
+    /// By heading and rank.
+    denied: [[Permission; 4]; 2],
+    /// By heading: whether a rule says that the direction does not exist.
+    absent: [bool; 2],
+}
+
+impl Access {
+    pub(super) fn apply(&mut self, effect: Effect) {
+        match effect {
+            Effect::None(_) => {}
+            Effect::Limit { headings, kind, limit } => {
+                for (legal, _) in self.limits.iter_mut().zip(headings).filter(|(_, on)| *on) {
+                    kind.add(legal, limit);
+                }
+            }
+            Effect::Deny { rank, headings, to, direction } => {
+                for (heading, _) in headings.into_iter().enumerate().filter(|(_, on)| *on) {
+                    let slot = &mut self.denied[heading][rank as usize];
+                    *slot = (*slot).max(to);
+                    self.absent[heading] |= direction;
+                }
+            }
+            Effect::Allow { rank, headings, to } => {
+                for (heading, _) in headings.into_iter().enumerate().filter(|(_, on)| *on) {
+                    self.denied[heading].iter_mut().take(rank as usize + 1).for_each(|slot| *slot = (*slot).min(to));
+                    self.absent[heading] = false;
+                }
+            }
+        }
+    }
+
+    /// Limits and access by heading, and the directions that exist.
+    pub(super) fn finish(self) -> ([Legal; 2], Oneway) {
+        let mut legal = self.limits;
+        for (legal, denied) in legal.iter_mut().zip(self.denied) {
+            let [general @ .., lorry] = denied;
+            legal.motor_vehicle = general.into_iter().max().unwrap_or_default();
+            legal.hgv = lorry;
+        }
+        let oneway = match self.absent {
+            [false, true] => Oneway::Forward,
+            [true, false] => Oneway::Backward,
+            _ => Oneway::No,
+        };
+        (legal, oneway)
+    }
+}

@@ -1,0 +1,154 @@
+//! One segment becomes a road: its line with numbered vertices, and facts for each part on which no rule changes.
+
+use super::account::{Account, CONNECTOR, RULE, SEGMENT};
+use super::connectors::Connectors;
+use super::error::Problem;
+use super::ids::Key;
+use super::line::Line;
+use super::record::{Segment, Transition};
+use super::rules::Rules;
+use crate::osm::LonLat;
+use crate::osm::facts::{Notes, RoadClass, WayFacts, given_class};
+
+/// Left out: fewer than two places.
+const TOO_FEW_PLACES: &str = "too_few_places";
+/// Left out: a railway or waterway.
+const NOT_A_ROAD: &str = "not_a_road";
+/// Left out: nobody knows what kind of road it is.
+const UNKNOWN_CLASS: &str = "unknown_class";
+/// Left out as in extracts: ways in car parks and to houses, tracks.
+const MINOR_SERVICE: &str = "minor_service";
+const TRACK: &str = "track";
+
+/// A segment that is a road for heavy vehicles.
+#[derive(Debug)]
+pub(super) struct Road {
+    pub(super) id: Box<str>,
+    pub(super) key: Key,
+    pub(super) line: Line,
+    pub(super) name: Option<String>,
+    /// Vertices at which rules change, ascending, without the ends.
+    changes: Vec<usize>,
+    /// Facts and refs of the parts between them.
+    facts: Vec<(WayFacts, Option<String>)>,
+    pub(super) transitions: Vec<Transition>,
+    /// Vertices at which the road is cut: where rules change, and where a prohibited transition begins or ends.
+    pub(super) cuts: Vec<usize>,
+}
+
+/// A segment with its geometry, as a file has it.
+pub(super) struct Feature {
+    pub(super) id: String,
+    pub(super) places: Vec<LonLat>,
+    pub(super) segment: Segment,
+}
+
+impl Road {
+    /// Makes a road of a segment, or counts why it is none.
+    pub(super) fn of(
+        feature: Feature,
+        connectors: &Connectors,
+        account: &mut Account,
+    ) -> Result<Option<Self>, Problem> {
+        let Feature { id, places, mut segment } = feature;
+        let mut of_rules = Account::default();
+        let rules = Rules::of(&segment, &mut of_rules);
+        let (class, mut line) =
+            match class(&segment, &rules).and_then(|class| Ok((class, Line::new(places).ok_or(TOO_FEW_PLACES)?))) {
+                Ok(both) => both,
+                Err(reason) => {
+                    account.left_out(SEGMENT, reason, 1);
+                    return Ok(None);
+                }
+            };
+        account.kept(SEGMENT, 1);
+        account.add(&of_rules);
+        let key = Key::segment(&id);
+        let ends =
+            segment.connectors.take().ok_or_else(|| Problem::Value("the segment has no connectors".to_owned()))?;
+        for connector in ends {
+            if connector.at.is_some_and(|at| !(0.0..=1.0).contains(&at)) {
+                return Err(Problem::Value(format!("connector {} is not within 0 to 1", connector.connector_id)));
+            }
+            let of_connector = Key::connector(&connector.connector_id);
+            let place = connectors.place(of_connector);
+            if place.is_none() {
+                account.noted(CONNECTOR, "missing", 1);
+            }
+            if !line.join(of_connector.number(), place, connector.at) {
+                account.noted(CONNECTOR, "off_its_line", 1);
+            }
+        }
+        let shares = rules.changes();
+        for share in &shares {
+            line.vertex_at(*share);
+        }
+        let mut changes: Vec<usize> = shares.iter().map(|share| line.vertex_at(*share)).collect();
+        changes.retain(|vertex| (1..line.places.len() - 1).contains(vertex));
+        changes.dedup();
+        let mut bounds = vec![0];
+        bounds.extend(&changes);
+        bounds.push(line.places.len() - 1);
+        let mut notes = Notes::default();
+        let part = |pair: &[usize]| {
+            let range = [line.share(pair[0]), line.share(pair[1])];
+            (rules.road(class, range).facts(&mut notes), rules.reference(range))
+        };
+        let facts: Vec<_> = bounds.windows(2).map(part).collect();
+        for note in notes.names() {
+            account.noted(RULE, note, 1);
+        }
+        line.number_rest(key);
+        let name = segment.names.and_then(|names| names.primary).filter(|name| !name.trim().is_empty());
+        let cuts = changes.clone();
+        let transitions = segment.prohibited_transitions.unwrap_or_default();
+        Ok(Some(Self { id: id.into(), key, line, name, changes, facts, transitions, cuts }))
+    }
+
+    /// The parts of the road between its cuts: first and last vertex, and their facts.
+    pub(super) fn parts(&self) -> impl Iterator<Item = (usize, usize, &(WayFacts, Option<String>))> {
+        let ends = self.cuts.iter().copied().chain([self.line.places.len() - 1]);
+        std::iter::once(0).chain(self.cuts.iter().copied()).zip(ends).filter_map(|(from, to)| {
+            let part = self.changes.partition_point(|change| *change <= from);
+            Some((from, to, self.facts.get(part)?))
+        })
+    }
+
+    /// The number of the way that begins at a cut. The first part has the segment's number.
+    pub(super) fn way(&self, from: usize) -> i64 {
+        if from == 0 {
+            return self.key.number();
+        }
+        let node = self.line.nodes[from];
+        let earlier = self.line.nodes[..from].iter().filter(|other| **other == node).count();
+        self.key.of_part([node.cast_unsigned(), earlier as u64])
+    }
+
+    /// Cuts the road at a vertex.
+    pub(super) fn cut(&mut self, vertex: usize) {
+        if (1..self.line.places.len() - 1).contains(&vertex)
+            && let Err(place) = self.cuts.binary_search(&vertex)
+        {
+            self.cuts.insert(place, vertex);
+        }
+    }
+}
+
+/// The class of a segment that is a road for heavy vehicles, by the rules for extracts.
+fn class(segment: &Segment, rules: &Rules) -> Result<RoadClass, &'static str> {
+    if segment.subtype.as_deref().is_some_and(|subtype| subtype != "road") {
+        return Err(NOT_A_ROAD);
+    }
+    let class = match segment.class.as_deref() {
+        None | Some("unknown") => return Err(UNKNOWN_CLASS),
+        Some(name) => given_class(name)?,
+    };
+    let minor = matches!(segment.subclass.as_deref(), Some("parking_aisle" | "driveway"));
+    if class == RoadClass::Service && minor && !rules.open_to_lorries() {
+        return Err(MINOR_SERVICE);
+    }
+    if class == RoadClass::Track && !rules.open_with_width() {
+        return Err(TRACK);
+    }
+    Ok(class)
+}

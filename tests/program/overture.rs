@@ -1,0 +1,436 @@
+//! Overture as a source: drawn files as a release has them, what `export overture` wrote, damaged files, and the verbs on such a database.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::process::Command;
+
+use netcert::osm::facts::{Direction, Limit, Oneway, Permission, Policy, WidthSource};
+use netcert::osm::{Extract, Via};
+use netcert::overture::{self, Account, OvertureError};
+use netcert::rows::EdgeRow;
+use netcert::store::{Database, QueryOptions};
+use netcert::verdict::{ForbiddenReason, Verdict};
+use serde_json::{Value, json};
+
+use crate::support::extracts;
+use crate::support::program::{Answer, Place};
+use crate::support::python;
+
+/// Vehicles and options of every database.
+const MADE: &str = "--vehicle AU-SEMI19 AU-ATRIPLE53 --corridor carriageway";
+
+/// Metres east and north of a place in New South Wales, as degrees.
+fn at(east_m: f64, north_m: f64) -> [f64; 2] {
+    [(150.0 + east_m / 95_500.0) * 1e7, (-31.0 + north_m / 111_000.0) * 1e7].map(|e7| e7.round() / 1e7)
+}
+
+fn id(number: u32) -> String {
+    format!("{number:08x}-7b1d-4c5e-9a1b-2f3e4d5c6b7a")
+}
+
+#[allow(clippy::needless_pass_by_value)] // as `json!` gives it
+fn line(id: &str, places: &[[f64; 2]], connectors: &[(u32, f64)], more: Value) -> Value {
+    let connectors: Vec<Value> =
+        connectors.iter().map(|(c, at)| json!({"connector_id": self::id(*c), "at": at})).collect();
+    let mut properties = json!({
+        "theme": "transportation", "type": "segment", "version": 1, "subtype": "road", "class": "secondary",
+        "connectors": connectors,
+        "sources": [{"property": "", "dataset": "OpenStreetMap", "record_id": "w123@4", "confidence": null}],
+    });
+    properties.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+    json!({"type": "Feature", "id": id, "geometry": {"type": "LineString", "coordinates": places}, "properties": properties})
+}
+
+fn point(number: u32, place: [f64; 2]) -> Value {
+    let properties = json!({"theme": "transportation", "type": "connector", "version": 1});
+    json!({"type": "Feature", "id": id(number), "geometry": {"type": "Point", "coordinates": place}, "properties": properties})
+}
+
+fn collection(features: &[Value]) -> String {
+    json!({"type": "FeatureCollection", "features": features}).to_string()
+}
+
+/// A main road of 800 m that is no shorter segment between its four junctions, a side road with rules, one that goes under the main road
+/// without a connector, a footpath, a railway.
+fn drawn() -> (Vec<Value>, Vec<Value>) {
+    let (main, side, under) = (id(1), id(2), id(3));
+    let segments = vec![
+        line(
+            &main,
+            &[at(0.0, 0.0), at(200.0, 0.0), at(400.0, 0.0), at(800.0, 0.0)],
+            &[(101, 0.0), (102, 0.25), (103, 0.5), (104, 1.0)],
+            json!({
+                "names": {"primary": "Main Road"}, "routes": [{"ref": "A1", "network": "AU:A"}],
+                "width_rules": [{"value": 9.0}, {"value": 6.5, "between": [0.75, 1.0]}],
+                "access_restrictions": [{"access_type": "denied", "when": {"vehicle": [
+                    {"dimension": "length", "comparison": "greater_than", "value": 26.0, "unit": "m"}]}}],
+                "road_surface": [{"value": "paved"}],
+                "prohibited_transitions": [
+                    {"sequence": [{"connector_id": id(102), "segment_id": side}], "final_heading": "forward", "when": {"heading": "forward"}},
+                    {"sequence": [{"connector_id": id(103), "segment_id": main}], "final_heading": "backward", "when": {"heading": "forward"}},
+                    {"sequence": [{"connector_id": id(103), "segment_id": id(99)}], "final_heading": "backward"}],
+            }),
+        ),
+        line(
+            &side,
+            &[at(200.0, 0.0), at(200.0, 300.0)],
+            &[(102, 0.0), (105, 1.0)],
+            json!({"class": "residential", "access_restrictions": [
+                {"access_type": "denied", "when": {"heading": "backward"}},
+                {"access_type": "denied", "when": {"mode": ["hgv"]}, "between": [0.5, 1.0]}]}),
+        ),
+        line(
+            &under,
+            &[at(300.0, -200.0), at(300.0, 200.0)],
+            &[(106, 0.0), (107, 1.0)],
+            json!({"level_rules": [{"value": -1}]}),
+        ),
+        line(&id(4), &[at(400.0, 0.0), at(400.0, 90.0)], &[(103, 0.0), (108, 1.0)], json!({"class": "footway"})),
+        line(
+            &id(5),
+            &[at(0.0, 50.0), at(400.0, 50.0)],
+            &[(109, 0.0), (110, 1.0)],
+            json!({"subtype": "rail", "class": "standard_gauge"}),
+        ),
+    ];
+    let points = [
+        (101, at(0.0, 0.0)),
+        (102, at(200.0, 0.0)),
+        (103, at(400.0, 0.0)),
+        (104, at(800.0, 0.0)),
+        (105, at(200.0, 300.0)),
+        (106, at(300.0, -200.0)),
+        (107, at(300.0, 200.0)),
+        (108, at(400.0, 90.0)),
+    ];
+    (segments, points.into_iter().map(|(number, place)| point(number, place)).collect())
+}
+
+/// With `release/segment.geojson` and `release/connector.geojson`.
+fn with(segments: &[Value], connectors: &[Value]) -> Place {
+    let place = Place::empty();
+    std::fs::create_dir(place.path("release")).unwrap();
+    place
+        .file("release/segment.geojson", collection(segments))
+        .file("release/connector.geojson", collection(connectors))
+}
+
+fn read(path: &Path) -> Result<(Extract, Account), OvertureError> {
+    overture::read(&[path], &|_| ()).map(|read| (read.extract, read.account))
+}
+
+fn count(account: &Account, item: &str, outcome: &str, reason: &str) -> u64 {
+    let rows = account.rows();
+    rows.iter()
+        .find(|row| (&*row.item, &*row.outcome, &*row.reason) == (item, outcome, reason))
+        .map_or(0, |row| row.count)
+}
+
+/// Releases as GeoParquet, if there is pyarrow.
+fn parquet(place: &Place, folder: &str, out: &str) -> Option<()> {
+    let python = python::python("formats", &["duckdb", "pyarrow", "overture-schema"])?;
+    let mut command = Command::new(python);
+    command.arg(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/engines/overture_parquet.py"));
+    command.arg(place.path(folder)).arg(place.path(out)).arg("2");
+    Answer::of("overture_parquet.py", &mut command).succeeds();
+    Some(())
+}
+
+#[test]
+fn a_segment_meets_others_where_its_connectors_lie_and_is_cut_where_rules_change() {
+    let (segments, connectors) = drawn();
+    let place = with(&segments, &connectors);
+    let (extract, account) = read(&place.path("release")).unwrap();
+    for item in ["segment", "connector", "rule"] {
+        let rows: Vec<_> = account.rows().into_iter().filter(|row| row.item == item).collect();
+        let of = |outcome: &str| rows.iter().filter(|row| row.outcome == outcome).map(|row| row.count).sum::<u64>();
+        assert_eq!(of("read"), of("kept") + of("left_out"), "{item}: {rows:?}");
+    }
+    assert_eq!((count(&account, "segment", "kept", ""), count(&account, "segment", "left_out", "not_a_road")), (3, 2));
+    assert_eq!(
+        (count(&account, "connector", "kept", ""), count(&account, "connector", "left_out", "not_on_a_road")),
+        (7, 1)
+    );
+    assert_eq!(count(&account, "rule", "left_out", "turning_back"), 1);
+    assert_eq!(count(&account, "rule", "left_out", "transition_off_road"), 1);
+    // The main road: cut at the side road, where a transition begins, and where it becomes narrower. The side road: where lorries end.
+    let of_main = |way: &&netcert::osm::Way| way.facts.name.is_some();
+    let mut main: Vec<_> = extract.ways.iter().filter(of_main).collect();
+    main.sort_by_key(|way| extract.nodes.place(extract.refs[way.refs.start as usize]).unwrap().lon_e7);
+    let widths: Vec<_> = main.iter().map(|way| way.facts.tagged_width_m().unwrap()).collect();
+    assert_eq!(widths, [9.0, 9.0, 6.5]);
+    assert!(main.iter().all(|way| way.facts.legal_forward.max_length == Limit::At(26.0)));
+    assert!(main.iter().all(|way| extract.strings.text(way.facts.reference.unwrap()) == "A1"));
+    let side: Vec<_> = extract.ways.iter().filter(|way| way.facts.oneway == Oneway::Forward).collect();
+    let closed: BTreeSet<_> = side.iter().map(|way| way.facts.legal_forward.hgv == Permission::No).collect();
+    assert_eq!((extract.ways.len(), side.len(), closed.len()), (6, 2, 2));
+    // Only the connector joins the main road and the side road; the road under it has no node of theirs.
+    let nodes = |way: &netcert::osm::Way| extract.refs[way.refs.start as usize..way.refs.end as usize].to_vec();
+    let joint: BTreeSet<i64> = main.iter().flat_map(|way| nodes(way)).collect();
+    let met: BTreeSet<i64> = side.iter().flat_map(|way| nodes(way)).filter(|node| joint.contains(node)).collect();
+    let [restriction] = &extract.restrictions[..] else { panic!("{:?}", extract.restrictions) };
+    assert_eq!(restriction.via, Via::Nodes(met.into_iter().collect()));
+    assert_eq!(
+        (&restriction.from[..], restriction.rules[0].kind.name()),
+        (&[main[0].id][..], "no_left_turn".to_owned())
+    );
+    assert!(side.iter().any(|way| restriction.to == [way.id]));
+}
+
+/// Edges of a database by their line in direction of travel.
+fn by_line(db: &Path, vehicle: &str) -> BTreeMap<Vec<[i32; 2]>, EdgeRow> {
+    let mut database = Database::open(db).unwrap();
+    let rows = database.query(&QueryOptions::new(vehicle, Policy::Carriageway)).unwrap().map(Result::unwrap);
+    rows.map(|row| (row.line.iter().map(|at| [at.lon_e7, at.lat_e7]).collect(), row)).collect()
+}
+
+#[test]
+fn parquet_and_geojson_of_a_release_make_the_same_database() {
+    let (segments, connectors) = drawn();
+    let place = with(&segments, &connectors);
+    if parquet(&place, "release", "lake").is_none() {
+        return;
+    }
+    let run = |line: &str| Answer::of(line, place.command(line).env("SOURCE_DATE_EPOCH", "1700000000")).succeeds();
+    run(&format!("ingest release {MADE}"));
+    run(&format!("ingest lake {MADE}"));
+    let files =
+        ["connector", "segment"].map(|kind| format!("lake/theme=transportation/type={kind}/part-00000.zstd.parquet"));
+    run(&format!("ingest {} {} --db files.gpkg {MADE}", files[0], files[1]));
+    let of = |db: &str| by_line(&place.path(db), "AU-SEMI19");
+    assert_eq!(of("release.gpkg"), of("lake.gpkg"));
+    assert_eq!(of("lake.gpkg"), of("files.gpkg"));
+    assert!(of("lake.gpkg").len() > 10);
+    // Renamed files in another order are the same source.
+    run("verify --db lake.gpkg --input lake");
+    let other = place.command("verify --db lake.gpkg --input release").output().unwrap();
+    assert!(!other.status.success());
+}
+
+#[test]
+fn the_verbs_work_on_such_a_database_or_refuse_in_words() {
+    let (segments, connectors) = drawn();
+    let place = with(&segments, &connectors);
+    place.netcert(&format!("ingest release {MADE}")).succeeds();
+    let stats = place.netcert("stats --db release.gpkg").succeeds();
+    stats.shows("ingest of release").shows("transition_off_road");
+    let rows = by_line(&place.path("release.gpkg"), "AU-ATRIPLE53");
+    let long = |row: &&EdgeRow| row.name.is_some();
+    let forbidden = Verdict::Forbidden(ForbiddenReason::Length);
+    assert!(
+        rows.values().filter(long).count() > 4
+            && rows.values().filter(long).all(|row| row.certificate.verdict == forbidden)
+    );
+    place.netcert("verify --db release.gpkg").succeeds();
+    let edge = by_line(&place.path("release.gpkg"), "AU-SEMI19").into_values().find(|row| row.name.is_some()).unwrap();
+    place.netcert(&format!("explain {} --db release.gpkg --vehicle AU-SEMI19", edge.edge_id)).succeeds();
+    place.netcert("cells release --out tasks").succeeds();
+    let changes =
+        "<osmChange version=\"0.6\"><modify><node id=\"1\" version=\"2\" lat=\"1\" lon=\"1\"/></modify></osmChange>";
+    let place = place.file("1.osc", changes);
+    place.netcert("update --db release.gpkg 1.osc").fails().tells("changes of OpenStreetMap do not fit");
+    place.netcert("update --db release.gpkg --new-extract release").succeeds().tells("up to date");
+    place
+        .netcert(
+            "export osm-pbf --db release.gpkg --vehicle AU-SEMI19 --extract release/segment.geojson --out x.osm.pbf",
+        )
+        .fails();
+}
+
+#[test]
+fn what_is_missing_is_named_with_a_way_out() {
+    let (segments, connectors) = drawn();
+    let place = with(&segments, &connectors).file("broken.geojson", &collection(&segments)[..900]);
+    let place = place.file("notes.txt", "nothing").file(
+        "other.geojson",
+        collection(&[json!({
+        "type": "Feature", "id": "b", "geometry": null, "properties": {"type": "building"}})]),
+    );
+    let ingest = |what: &str| place.netcert(&format!("ingest {what} --db x.gpkg {MADE}")).fails();
+    ingest("release/segment.geojson").tells("no file of connectors; give them too");
+    ingest("release/connector.geojson").tells("no file of segments; fetch them");
+    ingest("release broken.geojson").tells("broken.geojson: feature 0: damaged or truncated");
+    ingest("release notes.txt").tells("notes.txt: neither GeoParquet nor GeoJSON");
+    ingest("release other.geojson").tells("other.geojson: feature 0: b: neither segments nor connectors");
+    ingest("{demo} {demo}").tells("one extract makes a database");
+    place
+        .netcert("ingest release/segment.geojson release/connector.geojson")
+        .fails()
+        .tells("name the database with --db");
+    std::fs::create_dir(place.path("empty")).unwrap();
+    ingest("empty").tells("no GeoParquet and no GeoJSON file in this folder");
+    let mut far = segments.clone();
+    far[0]["geometry"]["coordinates"][1] = json!([500_000.0, 6_500_000.0]);
+    with(&far, &connectors)
+        .netcert(&format!("ingest release {MADE}"))
+        .fails()
+        .tells("500000, 6500000 is no longitude and latitude");
+}
+
+#[test]
+fn what_lies_beyond_a_download_is_told_and_cut() {
+    let (segments, mut connectors) = drawn();
+    connectors.retain(|connector| connector["id"] != id(104));
+    let place = with(&segments, &connectors);
+    let (extract, account) = read(&place.path("release")).unwrap();
+    assert_eq!(count(&account, "connector", "noted", "missing"), 1);
+    assert!(extract.account.header.bbox_deg().is_some());
+    assert!(extract.refs.iter().all(|&node| extract.nodes.place(node).is_some()));
+}
+
+/// Columns that are missing, of another type, or of an older schema; what pyarrow makes of them.
+#[test]
+fn columns_are_checked_before_rows() {
+    let (segments, connectors) = drawn();
+    let place = with(&segments, &connectors);
+    let Some(()) = parquet(&place, "release", "lake") else { return };
+    let python = python::python("formats", &["duckdb", "pyarrow", "overture-schema"]).unwrap();
+    let path = "lake/theme=transportation/type=segment/part-00000.zstd.parquet";
+    for (change, said) in [
+        ("t.drop_columns(['access_restrictions'])", "the column access_restrictions is missing"),
+        ("t.drop_columns(['connectors'])", "the column connectors is missing"),
+        (
+            "t.set_column(t.schema.get_field_index('id'), 'id', pa.array(range(len(t))))",
+            "the column id has another type",
+        ),
+        ("t.append_column('road', pa.array([''] * len(t)))", "of an older schema"),
+        (
+            "t.replace_schema_metadata({'geo': '{\"columns\":{\"geometry\":{\"crs\":{\"id\":{\"authority\":\"EPSG\",\"code\":28355}}}}}'})",
+            "reference system EPSG:28355",
+        ),
+    ] {
+        let script = format!(
+            "import pyarrow as pa, pyarrow.parquet as pq; t = pq.ParquetFile({path:?}).read(); pq.write_table({change}, 'changed.parquet')"
+        );
+        let done = Command::new(&python).args(["-c", &script]).current_dir(place.path(".")).output().unwrap();
+        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+        let line = format!("ingest changed.parquet release/connector.geojson --db x.gpkg {MADE}");
+        place.netcert(&line).fails().tells("changed.parquet: ").tells(said);
+    }
+}
+
+/// Cut anywhere and changed anywhere: an error that names the file, or the same rows; never a panic, which would end this test.
+#[test]
+fn damaged_parquet_is_an_error_and_never_a_panic() {
+    let (segments, connectors) = drawn();
+    let place = with(&segments, &connectors);
+    let Some(()) = parquet(&place, "release", "lake") else { return };
+    let whole = place.path("lake/theme=transportation/type=segment/part-00000.zstd.parquet");
+    let bytes = std::fs::read(&whole).unwrap();
+    let others = place.path("release/connector.geojson");
+    let damaged = place.path("damaged.parquet");
+    let attempt = |bytes: &[u8]| {
+        std::fs::write(&damaged, bytes).unwrap();
+        overture::read(&[damaged.as_path(), others.as_path()], &|_| ()).map(|read| read.extract.ways.len())
+    };
+    assert_eq!(attempt(&bytes).unwrap(), 6);
+    let mut refused = 0;
+    for cut in (4..bytes.len()).step_by(97) {
+        let error = attempt(&bytes[..cut]).unwrap_err().to_string();
+        assert!(error.contains("damaged.parquet: ") && error.contains("damaged or truncated"), "{cut}: {error}");
+    }
+    for place in (4..bytes.len() - 4).step_by(13) {
+        let mut changed = bytes.clone();
+        changed[place] ^= 0x55;
+        refused += u32::from(attempt(&changed).is_err());
+    }
+    assert!(refused > 100, "{refused}");
+}
+
+/// The commands of the page, as they stand there.
+#[test]
+fn the_page_does_what_it_says() {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/how-to/overture.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let place = Place::empty();
+    std::fs::create_dir(place.path("data")).unwrap();
+    let place = place
+        .file("data/demo.osm.pbf", std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/data/demo.osm.pbf")).unwrap());
+    let program = Path::new(env!("CARGO_BIN_EXE_netcert")).parent().unwrap();
+    let path = std::env::join_paths(
+        [program.into()].into_iter().chain(std::env::split_paths(&std::env::var_os("PATH").unwrap())),
+    )
+    .unwrap();
+    let mut typed = 0;
+    let mut before = "";
+    let mut lines = page.lines();
+    while let Some(line) = lines.next() {
+        if line == "```sh" {
+            let block: Vec<&str> = lines.by_ref().take_while(|line| *line != "```").collect();
+            if !before.starts_with("<!-- not run") {
+                let mut bash = Command::new("bash");
+                bash.args(["-euo", "pipefail", "-c", &block.join("\n")])
+                    .env("PATH", &path)
+                    .current_dir(place.path("."));
+                Answer::of(&block.join("\n"), &mut bash).succeeds();
+                typed += block.len();
+            }
+        }
+        before = line;
+    }
+    assert_eq!(typed, 7);
+    let number = overture::read(&[&place.path("sample")], &|_| ()).unwrap().segments[0].way_id;
+    assert!(number < 1 << 40, "the sample keeps OpenStreetMap's numbers");
+}
+
+/// Exports a region for a vehicle and makes a database of that. Returns the edges of both by line.
+fn round_trip(place: &Place, made: &str) -> [BTreeMap<Vec<[i32; 2]>, EdgeRow>; 2] {
+    let export = "export overture --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway --out sample";
+    place.netcert(export).succeeds();
+    place.netcert(&format!("ingest sample --db again.gpkg {made}")).succeeds();
+    ["demo.gpkg", "again.gpkg"].map(|db| by_line(&place.path(db), "AU-SEMI19"))
+}
+
+/// Lines, classes, names, directions and speeds are the same; widths where the format has them. What the vehicle of the sample may not use
+/// is forbidden.
+fn assert_same_network([ours, again]: &[BTreeMap<Vec<[i32; 2]>, EdgeRow>; 2], permitted: &BTreeSet<i64>) {
+    let mut closed = 0;
+    for (line, row) in ours.iter().filter(|(_, row)| row.highway != "busway") {
+        let back = again.get(line).unwrap_or_else(|| panic!("{} of way {} is missing", row.edge_id, row.way_id));
+        assert_eq!((&back.highway, &back.name, back.direction), (&row.highway, &row.name, row.direction));
+        assert_eq!(back.reference, row.reference);
+        assert_eq!((back.from_node, back.to_node, back.maxspeed_kmh), (row.from_node, row.to_node, row.maxspeed_kmh));
+        match row.width_source {
+            Some(WidthSource::Tagged | WidthSource::Surveyed) => {
+                assert!((back.width_m.unwrap() - row.width_m.unwrap()).abs() < 2e-3, "way {}", row.way_id);
+            }
+            source => assert_ne!(back.width_source, Some(WidthSource::Tagged), "way {}: {source:?}", row.way_id),
+        }
+        if !permitted.contains(&row.edge_id) {
+            assert_eq!(back.certificate.verdict, Verdict::Forbidden(ForbiddenReason::Length), "way {}", row.way_id);
+            closed += 1;
+        } else {
+            assert!(!matches!(back.certificate.verdict, Verdict::Forbidden(_)), "way {}", row.way_id);
+        }
+    }
+    assert!(closed > 0 && closed < ours.len());
+    let more: Vec<_> = again.iter().filter(|(line, _)| !ours.contains_key(*line)).map(|(_, row)| row.way_id).collect();
+    assert!(more.is_empty(), "{more:?}");
+    assert!(again.values().any(|row| row.direction == Direction::Backward));
+}
+
+fn permitted(place: &Place) -> BTreeSet<i64> {
+    place.netcert("export csv --db demo.gpkg --vehicle AU-SEMI19 --corridor carriageway --out csv").succeeds();
+    let mut table = csv::Reader::from_path(place.path("csv/edges.csv")).unwrap();
+    let head = table.headers().unwrap().clone();
+    let [id, open] = ["edge_id", "permitted"].map(|name| head.iter().position(|column| column == name).unwrap());
+    let rows = table.records().map(Result::unwrap);
+    rows.filter(|row| &row[open] == "true").map(|row| row[id].parse().unwrap()).collect()
+}
+
+#[test]
+fn a_sample_of_the_drawn_region_reads_back_as_the_same_network() {
+    let place = Place::with_wide_demo("AU-SEMI19 AU-ATRIPLE53");
+    let both = round_trip(&place, MADE);
+    assert_same_network(&both, &permitted(&place));
+}
+
+#[test]
+fn a_sample_of_a_real_city_reads_back_as_the_same_network() {
+    let Some(sydney) = extracts::extract("sydney_au.osm.pbf") else { return };
+    let place = Place::empty();
+    let made = "--vehicle AU-SEMI19 --corridor carriageway --needs off";
+    place.netcert(&format!("ingest {} --db demo.gpkg {made}", sydney.display())).succeeds();
+    let both = round_trip(&place, made);
+    assert_same_network(&both, &permitted(&place));
+}
