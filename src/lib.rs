@@ -10,6 +10,7 @@
 //! | query roads, plan certified routes, ask why | [`region::Region`] |
 //! | certify one corridor | [`corridor::corridor_from_file`], [`stet::certify`] |
 //! | write a certificate file, and check one | [`certificate::text`], [`check::certificate`] |
+//! | check a database | [`verify::verify`] |
 //! | draw any of it | [`picture`] |
 //! | cancel long work | [`stop::Stop`], which every long function takes |
 //!
@@ -115,4 +116,5 @@ pub mod settings;
 mod sorter;
 pub mod store;
 pub mod turns;
+pub mod verify;
 pub mod words;

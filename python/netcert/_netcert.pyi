@@ -249,6 +249,15 @@ class Report:
 
 def verify(path: _Path) -> Report: ...
 @final
+class Verification:
+    @property
+    def confirmed(self) -> bool: ...
+    @property
+    def counts(self) -> list[dict[str, Any]]: ...
+    @property
+    def complaints(self) -> list[str]: ...
+
+@final
 class Explanation:
     @property
     def verdict(self) -> str: ...
@@ -325,3 +334,11 @@ class RegionFile:
         tries: int,
         conditions: bool,
     ) -> Answer: ...
+    def verify(
+        self,
+        vehicles: Sequence[str],
+        corridor: str | None,
+        bbox: Sequence[float] | None,
+        sample: int | None,
+        source: _Path | None,
+    ) -> Verification: ...

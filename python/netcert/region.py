@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from ._netcert import Explanation, RegionFile, Vehicle
+from ._netcert import Explanation, RegionFile, Vehicle, Verification
 from .routes import Routes
 from .table import Table
 
@@ -36,7 +36,7 @@ class Region:
     """A region: its roads and the certificates of its vehicles.
 
     `corridor` names the width that a vehicle may use in every method: "lane", "direction" or "carriageway". Without it, the policy of
-    the database's `ingest` counts. Long calls release the interpreter's lock. Ctrl-C cancels routes and explanations. After a fork, open the region
+    the database's `ingest` counts. Long calls release the interpreter's lock. Ctrl-C cancels routes, explanations and `verify`. After a fork, open the region
     again in the new process.
     """
 
@@ -153,6 +153,29 @@ class Region:
         return Routes(
             self._file.route(vehicle_id, places, corridor, least, snap_m, alternatives, tries, conditions)
         )
+
+    def verify(
+        self,
+        *,
+        vehicles: Sequence[str] = (),
+        corridor: Corridor | None = None,
+        bbox: tuple[float, float, float, float] | None = None,
+        sample: int | None = None,
+        source: str | os.PathLike[str] | None = None,
+    ) -> Verification:
+        """Checks certificates again with code that is independent of the code that made them, as `netcert verify` does.
+
+        vehicles  only those of these vehicles [default: all]
+        corridor  only those under this policy [default: all]
+        bbox      only edges and turns that touch (west, south, east, north), degrees
+        sample    only so many edges and so many turns of each vehicle and policy, always the same ones
+        source    the extract that the database was made from: its hash is compared, too
+
+        A claim is confirmed if the bound that is computed is at most 1 mm below the claimed one.
+
+        Raises NotFound if there are no such certificates, FileNotFoundError without the source.
+        """
+        return self._file.verify(list(vehicles), corridor, bbox, sample, source)
 
     def to_dataset(
         self, folder: str | os.PathLike[str], *, vehicles: Sequence[str] | None = None, zoom: int = 8

@@ -9,6 +9,7 @@ use netcert::route::Unanswered;
 use netcert::stet::ModelError;
 use netcert::store::StoreError;
 use netcert::vehicle::VehicleError as LibraryVehicleError;
+use netcert::verify::VerifyError;
 use pyo3::PyErr;
 use pyo3::exceptions::{PyFileNotFoundError, PyKeyboardInterrupt, PyOSError, PyPermissionError};
 use pyo3::import_exception;
@@ -53,6 +54,17 @@ pub(crate) fn of_region(error: &LibraryRegionError) -> PyErr {
         LibraryRegionError::NoSuchId { .. } => NotFound::new_err(error.to_string()),
         LibraryRegionError::Stopped(_) => stopped(),
         LibraryRegionError::Speeds(_) => RegionError::new_err(error.to_string()),
+    }
+}
+
+pub(crate) fn of_verification(error: &VerifyError) -> PyErr {
+    match error {
+        VerifyError::Store(error) => of_store(error),
+        VerifyError::Vehicle(error) => of_vehicle(error),
+        VerifyError::Source { path, error } => of_io(path, "cannot read the source", error),
+        VerifyError::NoSuchCertificates { .. } => NotFound::new_err(error.to_string()),
+        VerifyError::Stopped(_) => stopped(),
+        _ => RegionError::new_err(error.to_string()),
     }
 }
 

@@ -31,6 +31,7 @@ mod report;
 mod rows;
 mod tasks;
 mod vehicle;
+mod verification;
 mod work;
 
 use pyo3::prelude::*;
@@ -59,6 +60,8 @@ mod _netcert {
     use crate::tasks::{certify_strokes, certify_turns, write_job};
     #[pymodule_export]
     use crate::vehicle::{Catalogue, Unit, Vehicle, vehicles};
+    #[pymodule_export]
+    use crate::verification::Verification;
 
     use pyo3::prelude::*;
 

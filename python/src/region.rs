@@ -9,6 +9,7 @@ use netcert::region::Region;
 use netcert::route::{Measure, Planner, Position, Question};
 use netcert::rows::{Bounds, EdgeRow, TurnRow};
 use netcert::store::{Area, QueryOptions, TurnQuery};
+use netcert::verify::{Request, verify};
 use netcert::words::{Named, VerdictKind};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -18,6 +19,7 @@ use crate::answer::Answer;
 use crate::explanation::Explanation;
 use crate::rows::{Columns, RowBatches, of_arrow};
 use crate::vehicle::Vehicle;
+use crate::verification::Verification;
 use crate::{as_python, error, work};
 
 /// Planners are kept, because they keep the corridors that they have made. More than this many would take too much memory.
@@ -55,8 +57,12 @@ pub(crate) fn named<T: Named>(argument: &str, word: &str) -> PyResult<T> {
     })
 }
 
-/// An area from `(west, south, east, north)`. West is greater than east in a box over the 180th meridian.
 fn area(bbox: Option<[f64; 4]>) -> PyResult<Option<Area>> {
+    Ok(bounds(bbox)?.map(Area::Bounds))
+}
+
+/// A box from `(west, south, east, north)`. West is greater than east in a box over the 180th meridian.
+fn bounds(bbox: Option<[f64; 4]>) -> PyResult<Option<Bounds>> {
     let Some([west, south, east, north]) = bbox else { return Ok(None) };
     let (lon, lat) = (|x: f64| (-180.0..=180.0).contains(&x), |y: f64| (-90.0..=90.0).contains(&y));
     if !(lon(west) && lon(east) && lat(south) && lat(north) && south <= north) {
@@ -64,7 +70,7 @@ fn area(bbox: Option<[f64; 4]>) -> PyResult<Option<Area>> {
             "bbox: ({west}, {south}, {east}, {north}); expected degrees: (west, south, east, north)"
         )));
     }
-    Ok(Some(Area::Bounds(Bounds { west, south, east, north })))
+    Ok(Some(Bounds { west, south, east, north }))
 }
 
 fn position((lon, lat): (f64, f64)) -> PyResult<Position> {
@@ -249,6 +255,27 @@ impl RegionFile {
             planners.insert(key, planner);
             answer.map(|answer| Answer::new(answer, roads, driver))
         })?
+    }
+
+    /// The independent checker's opinion of the certificates.
+    fn verify(
+        &self,
+        py: Python<'_>,
+        vehicles: Vec<String>,
+        corridor: Option<&str>,
+        bbox: Option<[f64; 4]>,
+        sample: Option<usize>,
+        source: Option<PathBuf>,
+    ) -> PyResult<Verification> {
+        let request = Request {
+            vehicles,
+            policy: corridor.map(|word| named("corridor", word)).transpose()?,
+            area: bounds(bbox)?,
+            sample,
+            source,
+        };
+        let found = work::run(py, |stop| verify(&self.path, &request, stop, &mut |_| {}))?;
+        found.map(Verification).map_err(|e| error::of_verification(&e))
     }
 
     fn __repr__(&self) -> String {

@@ -161,3 +161,34 @@ def test_an_explanation_says_what_the_program_says(demo, demo_path, run):
     assert why.to_geojson()["type"] == "FeatureCollection"
     turn, _ = safe_turn(demo)
     assert demo.explain_turn(int(turn.turn_id), TUG).verdict == "safe"
+
+
+def test_the_checker_says_what_the_program_says(demo, demo_path, run, tmp_path):
+    found = demo.verify(vehicles=[TRUCK], sample=40)
+    assert found.confirmed and found.complaints == [] and "all confirmed" in repr(found)
+    said = run("verify", "-q", "--db", demo_path, "--vehicle", TRUCK, "--sample", "40").splitlines()[1:]
+    counted = [[row["vehicle_id"], row["corridor"], row["of"] + "s", row["verdict"], *(str(row[name]) for name in
+               ("confirmed", "not_confirmed", "malformed"))] for row in found.counts]
+    assert [line.split() for line in said] == counted
+    assert sum(row["confirmed"] for row in found.counts) == 80
+    with pytest.raises(netcert.NotFound, match="no such certificates"):
+        demo.verify(vehicles=["NOBODY"])
+    with pytest.raises(FileNotFoundError):
+        demo.verify(sample=1, source=tmp_path / "no-such-file")
+
+
+def test_the_checker_refutes_a_certificate_that_promises_too_much(demo_path, tmp_path):
+    import shutil
+    import sqlite3
+
+    path = tmp_path / "bold.gpkg"
+    shutil.copy(demo_path, path)
+    with sqlite3.connect(path) as database:
+        database.execute(
+            "UPDATE certificate_compact SET rsc_mm = rsc_mm + 50 WHERE certificate_no = (SELECT min(fid) FROM certificate"
+            " WHERE verdict = 'safe' AND vehicle_id = ?)",
+            [TRUCK],
+        )
+    found = netcert.open(path).verify(vehicles=[TRUCK])
+    assert not found.confirmed and len(found.complaints) == 1
+    assert found.complaints[0].startswith(f"not confirmed: {TRUCK} edge ")

@@ -11,6 +11,7 @@ use crate::corridor::{EdgeSpan, Params, StrokeCorridor, stroke_corridor};
 use crate::network::{Edge, Network, Stroke};
 use crate::osm::facts::{Policy, Strip};
 use crate::rows::EdgeRow;
+use crate::stop::{Stop, Stopped};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
 use netcert_check::Chain;
@@ -63,16 +64,19 @@ pub struct SetReport {
 
 impl SetClaim<'_> {
     /// Checks all rows. Strokes are spread over threads, and the outcomes are in order.
-    #[must_use]
-    pub fn check(&self) -> SetReport {
+    ///
+    /// # Errors
+    /// `stop` was told. Each stroke polls it.
+    pub fn check(&self, stop: &Stop) -> Result<SetReport, Stopped> {
         let chain = Chain::new(self.vehicle);
-        let parts: Vec<SetReport> = self.network.strokes.par_iter().map(|stroke| self.stroke(&chain, stroke)).collect();
+        let part = |stroke| stop.check().map(|()| self.stroke(&chain, stroke));
+        let parts: Vec<SetReport> = self.network.strokes.par_iter().map(part).collect::<Result<_, _>>()?;
         let mut report = SetReport::default();
         for part in parts {
             report.rows.extend(part.rows);
             report.swept_km += part.swept_km;
         }
-        report
+        Ok(report)
     }
 
     fn stroke(&self, chain: &Chain, stroke: &Stroke) -> SetReport {

@@ -13,6 +13,7 @@ use super::database::{RowOutcome, SetReport};
 use crate::network::Network;
 use crate::osm::facts::Policy;
 use crate::rows::{CertificateRow, TurnRow};
+use crate::stop::{Stop, Stopped};
 use crate::turns::{KerbSource, Reach, StrokeLine, TurnCorridors, TurnFacts, TurnParams, turn_on};
 use crate::vehicle::Vehicle;
 use crate::verdict::{ForbiddenReason, UnknownReason, Verdict};
@@ -47,8 +48,10 @@ type Lines = FxHashMap<u32, Result<StrokeLine, UnknownReason>>;
 
 impl TurnsClaim<'_> {
     /// Checks all rows. Rows are spread over threads, and the outcomes are in order.
-    #[must_use]
-    pub fn check(&self) -> SetReport {
+    ///
+    /// # Errors
+    /// `stop` was told. Each turn polls it.
+    pub fn check(&self, stop: &Stop) -> Result<SetReport, Stopped> {
         let chain = Chain::new(self.vehicle);
         let mut stroke_of = FxHashMap::default();
         for (stroke, facts) in (0_u32..).zip(&self.network.strokes) {
@@ -59,15 +62,15 @@ impl TurnsClaim<'_> {
         let mut report = SetReport::default();
         for batch in rows.chunks(BATCH) {
             let lines = self.lines(batch, &stroke_of);
-            let checked: Vec<(Outcome, f64)> =
-                batch.par_iter().map(|row| self.row(&chain, row, &stroke_of, &lines)).collect();
+            let check = |row: &&TurnRow| stop.check().map(|()| self.row(&chain, row, &stroke_of, &lines));
+            let checked: Vec<(Outcome, f64)> = batch.par_iter().map(check).collect::<Result<_, _>>()?;
             for (row, (outcome, km)) in batch.iter().zip(checked) {
                 report.swept_km += km;
                 let verdict = row.certificate.verdict;
                 report.rows.push(RowOutcome { index: row.turn, id: row.turn_id, verdict, outcome });
             }
         }
-        report
+        Ok(report)
     }
 
     fn lines(&self, batch: &[&TurnRow], stroke_of: &FxHashMap<u32, u32>) -> Lines {
