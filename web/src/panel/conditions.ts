@@ -24,7 +24,7 @@ function words({ kind, needed }: Condition): string {
 export function conditionItems(route: ConditionalRoute): Item[] {
   return route.conditions.map((condition) => {
     const { number, place, title, assumed, length_m } = condition;
-    const more = [assumed === null ? "" : `assumed ${length(assumed, "down")}`, length_m ? `over ${distance(length_m)}` : ""];
+    const more = [assumed === null ? "" : `assumed ${length(assumed)}`, length_m ? `over ${distance(length_m)}` : ""];
     return { number, place, title, what: words(condition), more: more.filter(Boolean).join(" · "), road: roadOf(route, condition) };
   });
 }

@@ -211,7 +211,7 @@ function width(e: Explanation): Node {
   if (!e.road) return document.createTextNode("");
   const source = evidenceWords[e.road.width_source ?? "none"].toLowerCase();
   const width_m = e.limiting?.place.width_m;
-  const metres = typeof width_m === "number" ? `${length(width_m, "down")} where it is tightest, ` : "";
+  const metres = typeof width_m === "number" ? `${length(width_m)} where it is tightest, ` : "";
   const row = (name: string, value: string) => h("div", {}, h("dt", {}, name), h("dd", {}, value));
   return h(
     "dl",
