@@ -149,7 +149,7 @@ inPage("other certified ways are asked for, and GPX and GeoJSON say what they ho
   const line = () => page.evaluate(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["own-route-line"] }).length);
   await idle(page);
   assert.ok((await line()) > 0);
-  const others = page.waitForResponse(/alternatives=2/);
+  const others = page.waitForResponse(/alternatives=2/, { timeout: 120_000 });
   await page.click(".others");
   const answer = await (await others).json();
   await page.waitForSelector(answer.routes.length > 1 ? ".other-way" : ".route-content .note", { timeout: 120_000 });
