@@ -60,7 +60,7 @@ pub use conditions::{
 pub use drive::{Drive, Join};
 pub use driver::Driver;
 pub use graph::{Access, BARRED, Graph};
-pub use obstacles::{BlockedWay, Obstacle, Refutation};
+pub use obstacles::{Basis, BlockedWay, Obstacle, Refutation};
 pub use permits::{Permit, Permits};
 pub use pieces::{Menu, NoTurns, Strokes, TurnPiece, Turns};
 pub use plan::{Answer, Planner, Question, Route, Unanswered};

@@ -3,11 +3,12 @@
 //! The cost counts both number and size: each place costs one metre plus the metres that are missing there. Two places with 0.1
 //! m missing are cheaper than one place with 3 m missing. Among sets of equal cost, the one with the shortest way is taken.
 
-use super::assemble::{AssemblyError, PartKind};
+use super::assemble::{AssemblyError, PartKind, passes_over};
 use super::drive::Drive;
 use super::graph::{Access, BARRED};
 use super::permits::{Permit, Permits};
 use crate::network::{Movements, Network};
+use crate::osm::facts::{Policy, WidthSource};
 use crate::osm::rounded;
 
 /// The price of a missing centimetre. It exceeds the cost of any way on earth (40,000 km are 2³⁶ millimetres; in milliseconds
@@ -38,6 +39,8 @@ pub struct Refutation {
 pub struct Obstacle {
     /// The edge or turn.
     pub at: PartKind,
+    /// The strip that the vehicle may use.
+    pub policy: Policy,
     /// The permit of the place by itself.
     pub permit: Permit,
     /// Whether the place passed by itself, but a whole route failed there.
@@ -100,6 +103,39 @@ fn cut(line: &[[f64; 2]], from: f64, to: f64) -> Vec<[f64; 2]> {
     piece
 }
 
+/// What the verdict of a place rests on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Basis {
+    /// Where the width of an edge's strip comes from. `None` if it has no width.
+    Width(Option<WidthSource>),
+    /// The kerb radius of a turn's corner.
+    Kerb {
+        /// Whether it is assumed, because nobody has measured or mapped it.
+        assumed: bool,
+    },
+    /// The area of a passage over a roundabout or over several nodes.
+    Area,
+}
+
+impl Obstacle {
+    /// What the verdict rests on.
+    #[must_use]
+    pub fn basis(&self, network: &Network) -> Option<Basis> {
+        let edge = |edge: u32| network.edges.get(edge as usize);
+        Some(match self.at {
+            PartKind::Edge(own) => {
+                let strip = network.section(edge(own)?).strip(self.policy);
+                Basis::Width(strip.map(|strip| strip.source))
+            }
+            at if passes_over(network, at).is_some() => Basis::Area,
+            PartKind::Turn { from, to } => {
+                let (from, to) = (edge(from)?, edge(to)?);
+                Basis::Kerb { assumed: network.site_kerb_m(from.to_node, [from, to]).is_none() }
+            }
+        })
+    }
+}
+
 /// The missing width if the RSC is negative, metres.
 fn missing_m(rsc_m: Option<f64>) -> Option<f64> {
     rsc_m.filter(|rsc_m| rsc_m.is_finite() && *rsc_m < 0.0).map(|rsc_m| -rsc_m)
@@ -145,7 +181,8 @@ pub(super) fn on(
         let permit = permit(permits, movements, at)?;
         let refuted_here = refuted.iter().any(|refutation| refutation.left_out && refutation.at == at);
         let missing_m = if refuted_here { refuted_missing_m(refuted, at) } else { missing_m(permit.rsc_m) };
-        Some(Obstacle { at, permit, refuted: refuted_here, missing_m })
+        let policy = permits.settings.policy;
+        Some(Obstacle { at, policy, permit, refuted: refuted_here, missing_m })
     });
     places.collect()
 }

@@ -6,10 +6,11 @@ use serde_json::{Value, json};
 
 use super::assemble::{PartKind, passes_over};
 use super::conditions::Conditional;
-use super::obstacles::{Obstacle, Refutation};
+use super::obstacles::{Basis, Obstacle, Refutation};
 use super::plan::{Answer, Route};
 use crate::corridor::FrameError;
 use crate::network::{Edge, Network, PassageKind};
+use crate::osm::facts::WidthSource;
 use crate::osm::rounded;
 use crate::stet::{Model, known_m};
 use crate::words::{Named, verdict_words};
@@ -159,11 +160,18 @@ fn conditional_part_members(network: &Network, part: &PartResult) -> Value {
 #[must_use]
 pub fn obstacle_members(network: &Network, obstacle: &Obstacle) -> Value {
     let (verdict, reason) = verdict_words(obstacle.permit.verdict);
+    let (width_source, kerb_assumed) = match obstacle.basis(network) {
+        Some(Basis::Width(source)) => (source.map(WidthSource::name), None),
+        Some(Basis::Kerb { assumed }) => (None, Some(assumed)),
+        Some(Basis::Area) | None => (None, None),
+    };
     let own = json!({
         "verdict": if obstacle.refuted { "refuted" } else { verdict },
         "reason": (!reason.is_empty()).then_some(reason),
         "rsc_m": obstacle.permit.rsc_m,
         "missing_m": obstacle.missing_m,
+        "width_source": width_source,
+        "kerb_assumed": kerb_assumed,
         "place": place(network, obstacle.at),
     });
     with(ids(network, obstacle.at), own)

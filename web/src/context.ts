@@ -3,6 +3,7 @@
 import type { Region, Vehicle } from "./api/types.ts";
 import type { Question } from "./api/client.ts";
 import type { Store } from "./state.ts";
+import type { Units } from "./units.ts";
 import type { ThemeSwitch } from "./ui/theme.ts";
 
 export interface Context {
@@ -14,6 +15,12 @@ export interface Context {
 
 export function vehicleOf({ vehicles }: Context, id: string): Vehicle | undefined {
   return vehicles.find((vehicle) => vehicle.id === id);
+}
+
+/** The units of the reader's choice, else those that are usual where the vehicle comes from. */
+export function unitsOf(context: Context): Units {
+  const { units, vehicle } = context.store.state;
+  return units ?? (vehicleOf(context, vehicle)?.region === "US" ? "feet" : "metres");
 }
 
 /** Whether both databases have the vehicle under the policy of the first map, so that they can be compared. */

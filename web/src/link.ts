@@ -3,7 +3,8 @@
 // A link may come from anywhere. What cannot be read is ignored, and what the database does not have is replaced by a default.
 
 import type { Evidence, Policy, Position, VerdictName } from "./api/types.ts";
-import type { Camera, ColourBy, State } from "./state.ts";
+import { MOST_VIA, UNPLACED, type Camera, type ColourBy, type Places, type State } from "./state.ts";
+import { UNITS } from "./units.ts";
 import { CLASSES, EVIDENCE, VERDICTS } from "./words.ts";
 
 export interface Possible {
@@ -28,9 +29,10 @@ export function write(state: State, first: State): string {
   put("without", [...state.hiddenClasses].join(","));
   if (state.evidence !== "assumed") parts.set("width", state.evidence);
   put("id", state.selected);
-  if (state.route) parts.set("route", state.route.map(position).join(";"));
+  if (state.route) parts.set("route", state.route.map((place) => (place ? position(place) : "")).join(";"));
   if (state.stats) parts.set("stats", "1");
   if (state.changes) parts.set("changes", "1");
+  put("units", state.units);
   if (state.camera) parts.set("at", camera(state.camera));
   // Commas and semicolons need no escape behind `#`, and links without escapes are easier to read.
   return `#${parts.toString().replaceAll("%2C", ",").replaceAll("%3B", ";")}`;
@@ -55,6 +57,7 @@ export function read(hash: string, first: State, possible: Possible): State {
     stats: get("stats") === "1",
     changes: possible.changes && get("changes") === "1",
     camera: readCamera(get("at")),
+    units: known(UNITS, get("units")) ?? first.units,
   };
 }
 
@@ -80,12 +83,17 @@ function onEarth(lon: number, lat: number): boolean {
   return Math.abs(lon) <= 180 && Math.abs(lat) <= 85;
 }
 
-function places(text: string | null): Position[] | null {
+/** The places of a route; an empty part is a place that is not chosen yet. */
+function places(text: string | null): Places | null {
   if (text === null) return null;
-  if (text === "") return [];
-  const all = text.split(";").slice(0, 2).map((one) => numbers(one, 2));
-  const good = all.filter((one): one is [number, number] => one !== null && onEarth(one[0]!, one[1]!));
-  return good.length === all.length ? good : null;
+  const parts = text.split(";").slice(0, MOST_VIA + 2);
+  const all = parts.map((one): Position | null | undefined => {
+    if (one === "") return null;
+    const [lon, lat] = numbers(one, 2) ?? [];
+    return lon !== undefined && lat !== undefined && onEarth(lon, lat) ? [lon, lat] : undefined;
+  });
+  const good = all.filter((one): one is Position | null => one !== undefined);
+  return good.length === all.length ? [...good, ...UNPLACED.slice(good.length)] : null;
 }
 
 function readCamera(text: string): Camera | null {

@@ -5,6 +5,7 @@ import { api } from "./api/client.ts";
 import { Page } from "./app/page.ts";
 import type { Context } from "./context.ts";
 import { read } from "./link.ts";
+import { storedUnits } from "./units.ts";
 import { Store, beginning, type State } from "./state.ts";
 import { byId, h } from "./ui/dom.ts";
 import { ThemeSwitch } from "./ui/theme.ts";
@@ -29,16 +30,23 @@ async function start(): Promise<void> {
   new Page(context, first, possible);
 }
 
-/** The state without a link: the whole region, and the shortest certified vehicle of the vehicle region with most of them. */
+/** Vehicles that people know from the road. */
+const FAMILIAR: readonly string[] = ["EU-SEMI16.5", "US-WB67", "US-WB62", "AU-SEMI19", "CA-SEMI23"];
+
+/**
+ * The state without a link: the whole region, and a vehicle that people know, of the vehicle region with most certified ones. If it has
+ * none of them, its shortest.
+ */
 function usual(region: Region, vehicles: Vehicle[]): State {
   const certified = vehicles.filter((vehicle) => vehicle.certified.length > 0);
   const alike = (vehicle: Vehicle): number => certified.filter((other) => other.region === vehicle.region).length;
   const most = Math.max(...certified.map(alike));
   const among = certified.filter((vehicle) => alike(vehicle) === most).sort((a, b) => a.length_m - b.length_m);
-  const one = among.find((vehicle) => vehicle.certified.includes(region.default_policy)) ?? among[0];
+  const ready = among.filter((vehicle) => vehicle.certified.includes(region.default_policy));
+  const one = ready.find((vehicle) => FAMILIAR.includes(vehicle.id)) ?? among.find((vehicle) => vehicle.certified.includes(region.default_policy)) ?? among[0];
   if (!one) throw new Error("The database has no certificates yet: run `netcert certify`, then reload this page.");
   const { id, certified: own } = one;
-  return beginning(id, own.includes(region.default_policy) ? region.default_policy : own[0]!);
+  return { ...beginning(id, own.includes(region.default_policy) ? region.default_policy : own[0]!), units: storedUnits() };
 }
 
 start().catch((error: unknown) => {

@@ -1,6 +1,7 @@
 // The state of the page. Every part reads it, changes it through `set`, and is told of changes.
 
 import type { Evidence, Policy, Position, VerdictName } from "./api/types.ts";
+import type { Units } from "./units.ts";
 
 export type ColourBy = "margin" | "reason" | "evidence";
 
@@ -8,6 +9,20 @@ export interface Camera {
   lon: number;
   lat: number;
   zoom: number;
+}
+
+/** The places of a route: where it begins, through what it leads, where it goes. A place that is not chosen yet is null. */
+export type Places = readonly (Position | null)[];
+
+/** A route of which nothing is chosen yet. */
+export const UNPLACED: Places = [null, null];
+/** The greatest number of places between beginning and end; the server allows no more. */
+export const MOST_VIA = 8;
+
+/** The places, if all of them are chosen. */
+export function complete(places: Places | null): readonly Position[] | null {
+  const chosen = (places ?? []).filter((place): place is Position => place !== null);
+  return places && places.length > 1 && chosen.length === places.length ? chosen : null;
 }
 
 export interface State {
@@ -23,12 +38,14 @@ export interface State {
   camera: Camera | null;
   /** Id of the selected edge or turn. */
   selected: string | null;
-  /** The places of a route. The list is empty at first, then has one place, then two. */
-  route: Position[] | null;
+  /** The places of a route, at least two; null if no route is asked for. */
+  route: Places | null;
   stats: boolean;
   /** Whether the changes since the older database are drawn over a muted map. */
   changes: boolean;
   baseMap: boolean;
+  /** Metres or feet; null: as is usual where the vehicle comes from. */
+  units: Units | null;
 }
 
 /** The state at the beginning. */
@@ -47,6 +64,7 @@ export function beginning(vehicle: string, policy: Policy): State {
     stats: false,
     changes: false,
     baseMap: false,
+    units: null,
   };
 }
 

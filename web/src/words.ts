@@ -4,6 +4,7 @@
 // has its scope.
 
 import type { ChangeName, Changed, Evidence, Policy, Standing, VerdictName } from "./api/types.ts";
+import { length, roadLength } from "./units.ts";
 
 export const VERDICTS: readonly VerdictName[] = ["safe", "unsafe", "forbidden", "unknown"];
 export const EVIDENCE: readonly Evidence[] = ["assumed", "from_lanes", "estimated", "tagged", "surveyed"];
@@ -69,7 +70,7 @@ export function sideWords(changed: Changed, side: "before" | "after"): string {
   const measured = verdict === "safe" || (verdict === "unsafe" && reason === "width");
   const room = measured && rsc_m !== null ? margin(rsc_m) : null;
   const first = [standingWords[standing], why ? lower(why) : room].filter(Boolean).join(": ");
-  const more = [why ? room : null, width_m === null ? null : `${width_m.toFixed(2)} m wide`, need_m === null ? null : `${need_m.toFixed(2)} m would do`];
+  const more = [why ? room : null, width_m === null ? null : `${length(width_m)} wide`, need_m === null ? null : `${length(need_m, "up")} would do`];
   return [first, ...more].filter(Boolean).join(", ");
 }
 
@@ -128,8 +129,13 @@ export function mainClass(highway: string): string {
   return highway.replace(/_link$/, "");
 }
 
+/** The numbers of a road: `I 405;US 30` is two. */
+export function refs(ref: string | null | undefined): string[] {
+  return (ref ?? "").split(";").map((one) => one.trim()).filter(Boolean);
+}
+
 export function title(road: { ref?: string | null; name?: string | null; highway?: string | null; way_id?: unknown }): string {
-  const texts = [road.ref, road.name].filter(Boolean);
+  const texts = [refs(road.ref).join(" / "), road.name].filter(Boolean);
   if (texts.length > 0) return texts.join(" · ");
   return road.highway ? `Unnamed ${className(road.highway).toLowerCase()}` : "Unnamed road";
 }
@@ -140,43 +146,28 @@ const FAR_M = -100;
 /** Room to spare or missing, cautiously rounded: `0.31 m to spare`, `0.42 m missing`. */
 export function margin(rsc_m: number): string {
   if (rsc_m <= FAR_M) return "far too narrow";
-  return rsc_m < 0 ? `${careful(rsc_m)} m missing` : `${careful(rsc_m)} m to spare`;
+  return rsc_m < 0 ? `${careful(rsc_m)} missing` : `${careful(rsc_m)} to spare`;
 }
 
 /** The margin of an overview's road. Its tiles have quarters of a metre, rounded down, from −1.25 m to 1 m. */
 export function leastMargin(rsc_m: number): string {
-  if (rsc_m < -1) return "more than 1 m missing";
-  return rsc_m < 0 ? `up to ${careful(rsc_m)} m missing` : `${careful(rsc_m)} m or more to spare`;
+  if (rsc_m < -1) return `more than ${length(1, "down")} missing`;
+  return rsc_m < 0 ? `up to ${careful(rsc_m)} missing` : `${careful(rsc_m)} or more to spare`;
 }
 
 /** The amount alone. Room to spare is rounded down, missing room is rounded up. */
 export function careful(rsc_m: number): string {
-  const hundredths = rsc_m * 100;
-  const whole = rsc_m < 0 ? Math.ceil(-hundredths - 1e-6) : Math.floor(hundredths + 1e-6);
-  return (whole / 100).toFixed(2);
+  return length(Math.abs(rsc_m), rsc_m < 0 ? "up" : "down");
 }
 
 export function signed(rsc_m: number): string {
-  return `${rsc_m < 0 ? "−" : "+"}${careful(rsc_m)} m`;
+  return `${rsc_m < 0 ? "−" : "+"}${careful(rsc_m)}`;
 }
 
 /** `547 km certified, 23 %` */
 export function certifiedWords(lengths: Record<VerdictName, number>): string {
   const all = VERDICTS.reduce((sum, name) => sum + lengths[name], 0);
-  return `${kilometres(lengths.safe)} certified, ${percent(lengths.safe, all)}`;
-}
-
-const whole = new Intl.NumberFormat("en", { maximumFractionDigits: 0 });
-
-export function kilometres(metres: number): string {
-  const km = metres / 1000;
-  if (km === 0) return "0 km";
-  if (km < 0.1) return "< 0.1 km";
-  return km < 10 ? `${km.toFixed(1)} km` : `${whole.format(km)} km`;
-}
-
-export function distance(metres: number): string {
-  return metres < 1000 ? `${whole.format(metres)} m` : `${(metres / 1000).toFixed(metres < 10000 ? 2 : 1)} km`;
+  return `${roadLength(lengths.safe)} certified, ${percent(lengths.safe, all)}`;
 }
 
 export function percent(part: number, all: number): string {

@@ -25,6 +25,7 @@ test("everything in a link comes back", () => {
     route: [[144.1, -36.7], [144.2, -36.8]],
     stats: true,
     changes: true,
+    units: "feet",
   };
   assert.deepEqual(read(write(state, first), first, possible), state);
 });
@@ -44,12 +45,15 @@ for (const hash of [
   "#id=12;drop table edge&at=1e999,0,0&route=1,2,3",
   "#at=,,&id=&route=NaN,1;2,3",
   "#at=3,95,10",
+  "#units=furlongs",
   "#%E0%A4%A",
 ]) {
   test(`${hash} changes nothing`, () => assert.deepEqual(read(hash, first, possible), first));
 }
 
 test("a route may wait for its places", () => {
-  assert.deepEqual(read("#route=", first, possible).route, []);
-  assert.deepEqual(read("#route=144.1,-36.7", first, possible).route, [[144.1, -36.7]]);
+  assert.deepEqual(read("#route=", first, possible).route, [null, null]);
+  assert.deepEqual(read("#route=144.1,-36.7", first, possible).route, [[144.1, -36.7], null]);
+  const waiting = { ...first, route: [null, [144.1, -36.7], [144.2, -36.8]] };
+  assert.deepEqual(read(write(waiting, first), first, possible), waiting);
 });

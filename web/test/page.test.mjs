@@ -17,7 +17,7 @@ const inPage = tests(() => all);
 const text = (page, selector) => page.locator(selector).innerText();
 const ask = (path) => fetch(all.address + path).then((answer) => answer.json());
 
-inPage("shows roads, a vehicle and how much of the roads it may use", "", async (page) => {
+inPage("shows roads, a vehicle and how much of the roads it may use", "#v=AU-SEMI19", async (page) => {
   const drawn = await page.evaluate(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-safe", "edge-unsafe"] }).length);
   assert.ok(drawn > 20, `${drawn} edges`);
   assert.match(await text(page, ".vehicle-name"), /\S/);
@@ -47,7 +47,7 @@ inPage("a vehicle is chosen with the keyboard; the map, the link and the numbers
   await page.waitForFunction(() => globalThis.netcert.store.state.vehicle === "AU-SEMI19");
 });
 
-inPage("hovering tells the number, clicking tells why", "", async (page) => {
+inPage("hovering tells the number, clicking tells why", "#v=AU-SEMI19", async (page) => {
   const at = await edgePixel(page, "unsafe");
   await page.mouse.move(at.x, at.y);
   await page.waitForSelector(".hovercard:not([hidden])");
@@ -58,6 +58,7 @@ inPage("hovering tells the number, clicking tells why", "", async (page) => {
   const { vehicle, policy } = await page.evaluate(() => globalThis.netcert.store.state);
   const said = await ask(`/api/explain/${id}?vehicle=${vehicle}&policy=${policy}`);
   assert.equal(said.verdict, "unsafe");
+  await page.click(".explain-details summary");
   const shown = await text(page, ".explain");
   for (const sentence of said.reasons) assert.ok(shown.includes(sentence.replaceAll("`", "")), sentence);
   assert.ok(shown.includes(said.scope.replaceAll("`", "")), "the scope is said");
@@ -66,7 +67,7 @@ inPage("hovering tells the number, clicking tells why", "", async (page) => {
   await page.waitForSelector("#drawer", { state: "hidden" });
 });
 
-inPage("verdicts can be hidden, and the filter is part of the link", "", async (page) => {
+inPage("verdicts can be hidden, and the filter is part of the link", "#v=AU-SEMI19", async (page) => {
   await page.locator("[data-verdict=unsafe]").uncheck();
   await page.waitForFunction(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-unsafe"] }).length === 0);
   assert.match(page.url(), /hide=unsafe/);
@@ -74,7 +75,7 @@ inPage("verdicts can be hidden, and the filter is part of the link", "", async (
   await page.waitForFunction(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-unsafe"] }).length > 0);
 });
 
-inPage("a road is found by name and by id", "", async (page) => {
+inPage("a road is found by name and by id", "#v=AU-SEMI19", async (page) => {
   const at = await edgePixel(page, "safe");
   await page.keyboard.press("/");
   await page.keyboard.type(at.id);
@@ -99,7 +100,7 @@ const chosen = (page) =>
     return Object.fromEntries(layers.map((layer) => [layer, map.queryRenderedFeatures({ layers: [layer] }).length]));
   });
 
-inPage("a road found by its name is chosen as by a click, seen near by and from afar, and part of the link", "", async (page) => {
+inPage("a road found by its name is chosen as by a click, seen near by and from afar, and part of the link", "#v=AU-SEMI19", async (page) => {
   const [hit] = await ask("/api/search?q=highway");
   assert.notEqual(hit.kind, "edge");
   await page.keyboard.press("/");
@@ -186,7 +187,7 @@ inPage("an explained turn is drawn on the map with a key, in both themes, and cl
   assert.equal(await page.locator(".limit").count(), 0);
 });
 
-inPage("a search without result says so", "", async (page) => {
+inPage("a search without result says so", "#v=AU-SEMI19", async (page) => {
   await page.keyboard.press("/");
   await page.keyboard.type("no such road anywhere");
   await page.waitForSelector(".hits .nothing");
@@ -270,7 +271,7 @@ inPage("two vehicles side by side move as one", "#v=AU-SEMI19&with=AU-ATRIPLE53"
   await page.waitForFunction(() => document.querySelectorAll(".maplibregl-canvas").length === 1);
 });
 
-inPage("the region in numbers, for every vehicle", "", async (page) => {
+inPage("the region in numbers, for every vehicle", "#v=AU-SEMI19", async (page) => {
   await page.keyboard.press("n");
   await page.waitForSelector(".stats table");
   const rows = await page.locator(".stats table >> nth=0 >> tbody >> tr").count();
@@ -281,7 +282,7 @@ inPage("the region in numbers, for every vehicle", "", async (page) => {
   await page.waitForFunction(() => !location.hash.includes("stats"));
 });
 
-inPage("`safe` is never said without its scope", "", async (page) => {
+inPage("`safe` is never said without its scope", "#v=AU-SEMI19", async (page) => {
   await page.keyboard.press("?");
   await page.waitForSelector(".help[open]");
   await page.keyboard.press("Escape");
@@ -325,7 +326,7 @@ inPage("a server that is busy for a moment is asked again, for tiles and for num
   opened.errors.length = 0;
 });
 
-inPage("narrow screens: nothing beside the screen, the legend unfolds", "", async (page) => {
+inPage("narrow screens: nothing beside the screen, the legend unfolds", "#v=AU-SEMI19", async (page) => {
   const wide = await page.evaluate(() => document.documentElement.scrollWidth);
   assert.ok(wide <= 390, `${wide} px`);
   assert.ok(await page.locator(".legend").isHidden());
@@ -333,7 +334,7 @@ inPage("narrow screens: nothing beside the screen, the legend unfolds", "", asyn
   assert.ok(await page.locator(".legend").isVisible());
 }, { viewport: { width: 390, height: 780 } });
 
-inPage("every control has a name, and dark follows the system", "", async (page) => {
+inPage("every control has a name, and dark follows the system", "#v=AU-SEMI19", async (page) => {
   assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), "dark");
   const token = (name) => page.evaluate((property) => getComputedStyle(document.documentElement).getPropertyValue(property), name);
   assert.ok(palettes.dark.room.includes(await token("--safe")), "the panel's colours are the map's");

@@ -58,7 +58,7 @@ for (const [theme, palette] of Object.entries(palettes)) {
   test(`${theme}: roads that are new or gone have colours that no verdict has, whoever looks`, () => {
     // Hollow and short dashes set both apart from the lines of verdicts, too.
     for (const [name, matrix] of Object.entries(simulations)) {
-      for (const [own, others] of [[palette.appeared, [palette.went, palette.missing[3], palette.forbidden, palette.conditional, palette.paper]], [palette.went, [palette.missing[3], palette.conditional, palette.unknown, palette.paper]]]) {
+      for (const [own, others] of [[palette.appeared, [palette.went, palette.alarm, palette.forbidden, palette.conditional, palette.paper]], [palette.went, [palette.alarm, palette.conditional, palette.unknown, palette.paper]]]) {
         for (const colour of others) {
           const apart = difference(own, colour, matrix);
           assert.ok(apart > 15, `${own} and ${colour} under ${name}: ΔE ${apart.toFixed(1)}`);

@@ -93,7 +93,17 @@ fn without_a_search_for_conditions_the_answer_says_what_blocks_and_on_which_way(
     let server = wide();
     let answer = server.json(&format!("/api/route?{}&conditions=none", asked(CORNER)));
     assert_eq!((&answer["routes"], &answer["conditional"]), (&json!([]), &Value::Null));
-    assert!(!answer["obstacles"].as_array().unwrap().is_empty());
+    let obstacles = answer["obstacles"].as_array().unwrap();
+    assert!(!obstacles.is_empty());
+    for obstacle in obstacles {
+        // An edge rests on a width, a turn on a kerb. Nobody has measured a kerb of the drawn region.
+        let (width, kerb) = (&obstacle["width_source"], &obstacle["kerb_assumed"]);
+        let edge = obstacle["kind"] == "edge";
+        assert!(
+            if edge { width.is_string() && kerb.is_null() } else { width.is_null() && *kerb == json!(true) },
+            "{obstacle}"
+        );
+    }
     let line = answer["blocked_way"]["coordinates"].as_array().unwrap();
     let near = |place: &Value, wanted: &str| {
         let wanted: Vec<f64> = wanted.split(',').map(|text| text.parse().unwrap()).collect();

@@ -23,8 +23,16 @@ export class ServerProblem extends Error {
   }
 }
 
-async function get<T>(path: string, query: Record<string, string>, signal?: AbortSignal): Promise<T> {
-  const parameters = new URLSearchParams(query).toString();
+/** Parameters; a list is one that is given several times. */
+type Query = Record<string, string | string[]>;
+
+function written(query: Query): string {
+  const parts = Object.entries(query).flatMap(([name, value]) => [value].flat().map((one): [string, string] => [name, one]));
+  return new URLSearchParams(parts).toString();
+}
+
+async function get<T>(path: string, query: Query, signal?: AbortSignal): Promise<T> {
+  const parameters = written(query);
   const url = parameters ? `${path}?${parameters}` : path;
   let answer: Response;
   try {
@@ -50,9 +58,15 @@ export const MOST_CHANGES = 5000;
 /** The greatest distance from a clicked place to a usable road, metres. It is large because a click is not exact. */
 export const SNAP_M = 500;
 
+/** The greatest number of routes beside the best one that are asked for. */
+const MOST_OTHERS = 2;
+
 const place = ([lon, lat]: Position): string => `${lon.toFixed(6)},${lat.toFixed(6)}`;
 const asked = ({ vehicle, policy }: Question): Record<string, string> => ({ vehicle, policy });
-const ride = (from: Position, to: Position, question: Question): Record<string, string> => ({ ...asked(question), from: place(from), to: place(to), snap: String(SNAP_M) });
+function ride(places: readonly Position[], question: Question): Query {
+  const all = places.map(place);
+  return { ...asked(question), from: all[0] ?? "", via: all.slice(1, -1), to: all.at(-1) ?? "", snap: String(SNAP_M) };
+}
 
 interface Turn {
   turn_id: string;
@@ -79,10 +93,13 @@ export const api = {
     return turns.find((turn) => turn.from_edge === from && turn.to_edge === to)?.turn_id ?? null;
   },
   /** `conditions` says whether to look for a route under conditions where none is certified. */
-  route: (from: Position, to: Position, question: Question, conditions: "search" | "none", signal?: AbortSignal) =>
-    get<RouteAnswer>("/api/route", { ...ride(from, to, question), conditions }, signal),
-  sheetUrl: (form: "html" | "csv" | "geojson", from: Position, to: Position, question: Question) =>
-    `/api/sheet.${form}?${new URLSearchParams(ride(from, to, question))}`,
+  route: (places: readonly Position[], question: Question, conditions: "search" | "none", signal?: AbortSignal) =>
+    get<RouteAnswer>("/api/route", { ...ride(places, question), conditions }, signal),
+  /** Routes that differ from the best one, after it. Each has its drive. */
+  otherRoutes: (places: readonly Position[], question: Question, signal?: AbortSignal) =>
+    get<RouteAnswer>("/api/route", { ...ride(places, question), conditions: "none", alternatives: String(MOST_OTHERS), drive: "all" }, signal),
+  sheetUrl: (form: "html" | "csv" | "geojson", places: readonly Position[], question: Question) =>
+    `/api/sheet.${form}?${written(ride(places, question))}`,
   /** What changed since the older database, of the box `west,south,east,north` or everywhere. */
   changes: (question: Question, bbox: string | null, signal?: AbortSignal) =>
     get<Changes>("/api/changes", { ...asked(question), limit: String(MOST_CHANGES), ...(bbox ? { bbox } : {}) }, signal),

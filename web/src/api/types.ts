@@ -145,7 +145,15 @@ export interface Explanation {
   hints_in_words: string[];
   scope: string;
   /** `rsc_m` is null if no bound holds, `width_m` where the area of a junction limits. */
-  limiting: { length_m: number; rsc_m: number | null; place: { s_m: number; unit: number; side: string; width_m: number | null } } | null;
+  limiting: { length_m: number; rsc_m: number | null; place: Limiting } | null;
+  /** What would make it certified; each is null if it is not known to help. */
+  hints: {
+    width_m: number | null;
+    kerb_radius_m: number | null;
+    hinge_limit_deg: number | null;
+    shorter_vehicle: { id: string; length_m: number } | null;
+    other_strips: { corridor: Policy; width_m: number; safe: boolean; rsc_m: number | null }[];
+  };
   kind: "edge" | "turn";
   /** The roads of a turn. */
   turn?: string;
@@ -159,6 +167,18 @@ export interface Explanation {
   geometry?: { type: "LineString"; coordinates: Position[] } | null;
   /** The place that decides, or the turn's node. */
   at: Position | null;
+}
+
+/** The part of the vehicle that comes closest to the edge, or goes furthest beyond it. */
+export interface Limiting {
+  s_m: number;
+  unit: number;
+  unit_name: string | null;
+  side: "left" | "right";
+  part: "front_corner" | "rear_corner" | "axle" | "side";
+  /** Distance of a place on the side ahead of the axle; null of a corner. */
+  ahead_of_axle_m: number | null;
+  width_m: number | null;
 }
 
 export type Quantity = "kerb_radius" | "lane_width" | "direction_width" | "carriageway_width";
@@ -300,10 +320,14 @@ export interface Obstacle {
   reason: string | null;
   rsc_m: number | null;
   place: Position | null;
+  /** Of an edge: where its width comes from. Of a turn: whether the kerb radius of its corner is assumed. */
+  width_source?: Evidence | null;
+  kerb_assumed?: boolean | null;
 }
 
 export interface RouteAnswer {
   vehicle_id: string;
+  scope: string;
   routes: Route[];
   places: { position: Position; distance_m: number }[];
   gave_up: boolean;
@@ -331,4 +355,7 @@ export interface Problem {
   status: number;
   detail?: string;
   parameter?: string;
+  /** Of a place that is too far from a road that may be used: the place, and the nearest such road. */
+  place?: { lon: number; lat: number };
+  nearest?: { lon: number; lat: number; distance_m: number } | null;
 }

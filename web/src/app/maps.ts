@@ -5,9 +5,11 @@ import type { VehicleStats } from "../api/stats.ts";
 import type { Position, Shapes } from "../api/types.ts";
 import { comparable, question, vehicleOf, type Context } from "../context.ts";
 import { HoverCard } from "../map/hovercard.ts";
+import { MapNote } from "../map/note.ts";
 import { ShapesLayer } from "../map/shapes.ts";
 import { sync } from "../map/sync.ts";
 import { View, type Under } from "../map/view.ts";
+import { verdictKey } from "../panel/legend.ts";
 import { VehicleCard } from "../panel/vehicle.ts";
 import type { Camera, State } from "../state.ts";
 import { byId, h } from "../ui/dom.ts";
@@ -43,6 +45,9 @@ export class Maps {
     const pane = this.#root.appendChild(h("div", { class: "pane" }));
     this.first = this.#view(pane, context.store.state.vehicle);
     this.#shapes = new ShapesLayer(this.first);
+    const note = new MapNote(this.first, context.region, () => this.home());
+    // Before the maps, because the style sheet asks which map is the last child.
+    this.#root.prepend(note.element, verdictKey());
   }
 
   update(changed: ReadonlySet<keyof State>): void {
@@ -164,7 +169,7 @@ export class Maps {
     } else if (other !== null && !this.#second) {
       const close = h("button", { class: "plain", type: "button", "aria-label": "End comparing", onclick: () => this.actions.endComparing() }, icon("close"));
       const place = h("div", { class: "map" });
-      const pane = h("div", { class: "pane is-second" }, place, h("div", { class: "pane-head" }, this.#card.element, close));
+      const pane = h("div", { class: "pane is-second", role: "group", "aria-label": "Second map" }, place, h("div", { class: "pane-head" }, this.#card.element, close));
       this.#root.append(pane);
       const view = this.#view(place, other);
       this.#second = { view, pane, stop: sync(this.first.map, view.map) };

@@ -3,23 +3,27 @@
 import { api } from "../api/client.ts";
 import type { Stats } from "../api/stats.ts";
 import type { ChangedRoad, Explanation, SearchHit } from "../api/types.ts";
-import { question, vehicleOf, type Context } from "../context.ts";
-import { write, read, type Possible } from "../link.ts";
+import { question, unitsOf, vehicleOf, type Context } from "../context.ts";
+import type { Possible } from "../link.ts";
 import type { Under } from "../map/view.ts";
 import { ExplainPanel } from "../panel/explain.ts";
 import { StatsDialog } from "../panel/stats.ts";
 import { VehicleDialog, fittingPolicy } from "../panel/vehicle.ts";
-import type { State } from "../state.ts";
+import { UNPLACED, complete, type State } from "../state.ts";
+import { h } from "../ui/dom.ts";
 import { toast } from "../ui/toast.ts";
+import { speakIn } from "../units.ts";
 import { title } from "../words.ts";
 import { ChangesSince } from "./changes.ts";
 import { Drawer } from "./drawer.ts";
+import { History } from "./history.ts";
 import { HelpDialog } from "./help.ts";
 import { listenToKeys } from "./keys.ts";
 import { Maps } from "./maps.ts";
 import { Routing } from "./routing.ts";
 import { Side } from "./side.ts";
 import { Tools } from "./tools.ts";
+import { Welcome, welcomed } from "./welcome.ts";
 
 export class Page {
   readonly #maps: Maps;
@@ -33,10 +37,13 @@ export class Page {
   /** Null without an older database. */
   readonly #changes: ChangesSince | null;
   readonly #tools: Tools;
+  readonly #welcome: Welcome;
+  readonly #history: History;
   #numbers: Promise<Stats> | null = null;
-  #written = "";
 
-  constructor(private readonly context: Context, private readonly first: State, private readonly possible: Possible) {
+  constructor(private readonly context: Context, first: State, possible: Possible) {
+    // Read before the state is written into it.
+    const bare = location.hash.length <= 1;
     const { region, store, theme } = context;
     this.#help = new HelpDialog(region.before !== null);
     this.#vehicles = new VehicleDialog(context);
@@ -52,6 +59,8 @@ export class Page {
       place: (explanation, goTo) => this.#place(explanation, goTo),
       shapes: (shapes) => this.#maps.shapes(shapes),
       select: (selected) => store.set({ selected }),
+      source: () => this.#source(),
+      route: (end, place, name) => this.#routing.from(end, place, name),
       other: () => (store.state.other ? { ...question(context), vehicle: store.state.other } : null),
       changed: (id) => {
         const changed = this.#changes?.of(id);
@@ -71,11 +80,16 @@ export class Page {
       home: () => this.#maps.home(),
       zoom: (by) => this.#maps.zoom(by),
     });
+    this.#welcome = new Welcome(context, this.#maps.first, { chooseVehicle: () => this.chooseVehicle(), help: () => this.#help.open() });
     store.listen((_, changed) => this.#changed(changed));
     theme.listen(() => this.#recolour());
-    addEventListener("hashchange", () => this.#link());
+    this.#history = new History(store, first, possible, (camera) => this.#maps.jump(camera));
     listenToKeys(this);
     this.#changed(new Set(Object.keys(store.state) as (keyof State)[]), true);
+    if (bare && !welcomed()) {
+      this.#drawer.show(this.#welcome.element);
+      this.#maps.home();
+    }
     // For tests and for people who use the console.
     Object.assign(globalThis, { netcert: { map: this.#maps.first.map, store } });
   }
@@ -83,15 +97,27 @@ export class Page {
   /** Goes one step back. What is on top is closed first. */
   escape(): void {
     const { store } = this.context;
-    if (this.#routing.driving) this.#routing.endDrive();
+    if (this.#routing.drive.under) this.#routing.drive.end();
     else if (store.state.selected || store.state.route) this.#close();
     else if (store.state.other) store.set({ other: null });
+    else this.#close();
   }
 
-  /** Closes the explanation, and if there is none, the route. */
+  /** Closes the explanation; if there is none, the route or the welcome. */
   #close(): void {
     const { store } = this.context;
-    store.set(store.state.selected ? { selected: null } : { route: null });
+    if (store.state.selected) return store.set({ selected: null });
+    store.set({ route: null });
+    this.#drawer.hide();
+    this.#welcome.end();
+  }
+
+  /** What a printed sheet says of the database. */
+  #source(): Node {
+    const { region } = this.context;
+    const made = [region.attribution, region.timestamp ? `map data of ${region.timestamp.slice(0, 10)}` : null, `netcert ${region.netcert}`, `database ${region.database_hash.slice(0, 16)}`];
+    const printed = new Date().toISOString().slice(0, 10);
+    return h("p", { class: "scope" }, `${made.filter(Boolean).join("; ")}. Printed ${printed} from ${location.href}`);
   }
 
   find(): void {
@@ -124,7 +150,10 @@ export class Page {
 
   route(): void {
     const { store } = this.context;
-    store.set({ selected: null, route: store.state.route ? null : [] });
+    const open = store.state.route !== null;
+    store.set({ selected: null, route: open ? null : UNPLACED });
+    // On a touch screen the keyboard would cover the map.
+    if (!open && !matchMedia("(pointer: coarse)").matches) this.#routing.focus();
   }
 
   showStats(): void {
@@ -145,7 +174,7 @@ export class Page {
   }
 
   toggleDrive(): boolean {
-    return this.#routing.toggleDrive();
+    return this.#routing.drive.toggle();
   }
 
   async copyLink(): Promise<void> {
@@ -161,9 +190,9 @@ export class Page {
     const { store } = this.context;
     const { route } = store.state;
     const id = under?.id ?? null;
-    if (route && route.length < 2) store.set({ route: [...route, [lon, lat]] });
+    if (route && !complete(route)) this.#routing.take([lon, lat]);
     else if (under?.kind === "overview") this.#maps.approach(lon, lat);
-    else if (!this.#routing.driving) {
+    else if (!this.#routing.drive.under) {
       store.set({ selected: id });
       if (id) this.#maps.reveal(lon, lat);
     }
@@ -172,8 +201,7 @@ export class Page {
   /** Selects a search result as a click would. For a road with many edges, the edge that the result names is selected. */
   #search(hit: SearchHit): void {
     // Set first, so that the drawer is open when the map is fitted to the visible area.
-    const { route } = this.context.store.state;
-    this.context.store.set({ selected: hit.edge_id, route: route?.length === 2 ? route : null });
+    this.context.store.set({ selected: hit.edge_id });
     this.#maps.fit(hit.bbox);
     // With the focus on the map, the arrow keys, + and − work.
     this.#maps.first.map.getCanvas().focus({ preventScroll: true });
@@ -217,19 +245,23 @@ export class Page {
   #changed(changed: ReadonlySet<keyof State>, first = false): void {
     const { state } = this.context.store;
     const certificates = changed.has("vehicle") || changed.has("policy");
+    const respelt = speakIn(unitsOf(this.context)) && !first;
+    if (respelt) this.#respell();
     if (certificates || changed.has("other")) this.#number(changed.has("policy"));
     this.#side.draw(certificates);
     this.#maps.update(changed);
     this.#changes?.update(changed);
     this.#tools.draw();
+    this.#welcome.draw();
+    if (!first && (changed.has("selected") || changed.has("route"))) this.#welcome.end();
     if (changed.has("route") || (certificates && state.route)) this.#routing.update();
-    const again = (certificates || changed.has("other")) && state.selected;
+    const again = (certificates || respelt || changed.has("other")) && state.selected;
     if (changed.has("selected") || changed.has("route") || again) this.#select(first && !state.camera);
     if (changed.has("stats")) {
       if (state.stats) void this.#stats.open();
       else this.#stats.close();
     }
-    this.#rewrite(changed);
+    this.#history.write(changed);
   }
 
   #select(goTo: boolean): void {
@@ -261,29 +293,18 @@ export class Page {
       });
   }
 
+  /** Puts all words anew, because units are other ones. */
+  #respell(): void {
+    this.#side.respell();
+    this.#routing.recolour();
+    this.#number(false);
+  }
+
   #recolour(): void {
     this.#side.draw(false);
     this.#maps.update(new Set());
     this.#changes?.update(new Set());
     this.#routing.recolour();
     this.#tools.draw();
-  }
-
-  /** Writes the state into the link. Moving the map replaces the link; other changes add a step to the history. */
-  #rewrite(changed: ReadonlySet<keyof State>): void {
-    const link = write(this.context.store.state, this.first);
-    if (link === this.#written) return;
-    const step = [...changed].some((key) => key !== "camera") && this.#written !== "";
-    this.#written = link;
-    if (step) history.pushState(null, "", link);
-    else history.replaceState(null, "", link);
-  }
-
-  #link(): void {
-    if (location.hash === this.#written) return;
-    const next = read(location.hash, this.first, this.possible);
-    this.#written = location.hash;
-    this.context.store.set(next);
-    if (next.camera) this.#maps.jump(next.camera);
   }
 }

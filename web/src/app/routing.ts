@@ -1,11 +1,10 @@
 // From two clicks to a route on the map, its panel, and the drive along it. Where no route is certified, the way that is blocked is shown
 // at once, and the route under conditions when it is found.
 
-import { Marker } from "maplibre-gl";
 import { SNAP_M, ServerProblem, api } from "../api/client.ts";
-import type { Position, Route, RouteAnswer } from "../api/types.ts";
+import type { Position, RouteAnswer } from "../api/types.ts";
 import { question, vehicleOf, type Context } from "../context.ts";
-import { Dock } from "../drive/dock.ts";
+import { Ends } from "../map/ends.ts";
 import { palettes } from "../map/palette.ts";
 import { Pins, type Pin } from "../map/pins.ts";
 import { RouteLine } from "../map/routeline.ts";
@@ -13,54 +12,100 @@ import type { View } from "../map/view.ts";
 import { obstacleItems } from "../panel/blocked.ts";
 import { conditionItems } from "../panel/conditions.ts";
 import type { Item } from "../panel/numbered.ts";
-import { RoutePanel, type Search } from "../panel/route.ts";
-import { byId, h } from "../ui/dom.ts";
+import { RoutePanel, type Around, type Search } from "../panel/route.ts";
+import type { About } from "../panel/takealong.ts";
+import { Trip, letter, roleOf } from "../panel/trip.ts";
+import { UNPLACED, complete, type Places } from "../state.ts";
+import { byId } from "../ui/dom.ts";
+import { distance } from "../units.ts";
 import { toast } from "../ui/toast.ts";
+import { Driving } from "./driving.ts";
 import type { Drawer } from "./drawer.ts";
 
+/** An answer with what the panel shows of it. */
+interface Shown {
+  answer: RouteAnswer;
+  places: readonly Position[];
+  search: Search;
+  chosen: number;
+  others: Around["others"];
+}
+
 export class Routing {
+  readonly drive: Driving;
   readonly #panel: RoutePanel;
+  readonly #trip: Trip;
   readonly #pins: Pins;
+  readonly #ends: Ends;
   readonly #line: RouteLine;
-  readonly #markers: Marker[] = [];
   #items: Item[] = [];
-  #route: Route | null = null;
-  #dock: Dock | null = null;
+  #shown: Shown | null = null;
   #running: AbortController | undefined;
 
   constructor(private readonly context: Context, private readonly view: View, private readonly drawer: Drawer) {
-    const { store } = context;
+    const set = (route: Places) => context.store.set({ route, selected: null });
     this.#line = new RouteLine(view);
     this.#pins = new Pins(view, (number) => this.#choose(number));
-    this.#panel = new RoutePanel({
-      drive: () => this.drive(),
-      seek: (s) => this.#seek(s),
-      go: (place) => this.#go(place, 16),
-      fly: (number) => this.#fly(number),
-      explain: (item) => void this.#explain(item),
-      swap: () => store.set({ route: store.state.route ? [...store.state.route].reverse() : null, selected: null }),
-      clear: () => store.set({ route: [], selected: null }),
-    });
+    this.#ends = new Ends(view, (index, count) => [letter(index), `${letter(index)}: ${roleOf(index, count)}`], (index, place) => set(this.#places.map((one, other) => (other === index ? place : one))));
+    this.#trip = new Trip(set);
+    this.drive = new Driving(context, view);
+    this.#panel = new RoutePanel(
+      {
+        drive: () => this.drive.start(),
+        seek: (s) => this.drive.seek(s),
+        go: (place) => this.#go(place, 16),
+        fly: (number) => this.#fly(number),
+        explain: (item) => void this.#explain(item),
+        others: () => void this.#others(),
+        choose: (chosen) => this.#redraw({ chosen }),
+        clear: () => {
+          set(UNPLACED);
+          this.focus();
+        },
+      },
+      this.#trip.element,
+    );
   }
 
-  get driving(): boolean {
-    return this.#dock !== null;
+  get #places(): Position[] {
+    return [...(this.context.store.state.route ?? UNPLACED)] as Position[];
+  }
+
+  /** Puts the focus into the first field without a place. */
+  focus(): void {
+    this.#trip.focus();
+  }
+
+  /** Takes a place for the first that is not chosen yet. */
+  take(place: Position): void {
+    const places: (Position | null)[] = this.#places;
+    places[places.indexOf(null)] = place;
+    this.context.store.set({ route: places });
+  }
+
+  /** Lets the route begin or end at a place. Another end that is chosen stays. */
+  from(end: "from" | "to", place: Position, name: string): void {
+    this.#trip.name(place, name);
+    const places: (Position | null)[] = this.#places;
+    places[end === "from" ? 0 : places.length - 1] = place;
+    this.context.store.set({ route: places, selected: null });
   }
 
   update(): void {
     const { route } = this.context.store.state;
+    const all = complete(route);
     this.#running?.abort();
-    this.#route = null;
-    this.endDrive();
-    this.#mark(route ?? []);
-    this.#line.show("certified", [], this.context.theme.theme);
+    this.#shown = null;
+    this.drive.offer(null);
+    this.#ends.show(route ?? []);
+    this.#line.show("certified", [], [], this.context.theme.theme);
     this.#pin("obstacle", []);
-    document.body.classList.toggle("is-routing", route !== null && route.length < 2);
+    document.body.classList.toggle("is-routing", route !== null && !all);
     document.body.classList.toggle("has-route", route !== null);
     if (route === null) return;
-    this.#panel.waiting(route.length);
-    const [from, to] = route;
-    if (from && to) void this.#ask(from, to);
+    this.#trip.show(route);
+    this.#panel.waiting(route);
+    if (all) void this.#ask(all);
   }
 
   /** Shows the route's panel, if there is a route or one is being chosen. Returns whether there is. */
@@ -70,96 +115,110 @@ export class Routing {
     return true;
   }
 
-  async #ask(from: Position, to: Position): Promise<void> {
+  /** Draws everything anew, because theme or units are other ones. */
+  recolour(): void {
+    this.#line.recolour(this.context.theme.theme);
+    this.drive.recolour();
+    this.#redraw({});
+  }
+
+  async #ask(places: readonly Position[]): Promise<void> {
     const running = (this.#running = new AbortController());
     const { signal } = running;
     const own = question(this.context);
     let blocked: RouteAnswer | null = null;
     try {
-      blocked = await this.#first(from, to, signal);
-      if (blocked?.routes[0]) return this.#show(blocked, from, to);
-      if (blocked) this.#show(blocked, from, to, "searching");
+      blocked = await this.#first(places, signal);
+      if (blocked?.routes[0]) return this.#show(blocked, places);
+      if (blocked) this.#show(blocked, places, "searching");
       else this.#panel.searching();
-      const answer = await api.route(from, to, own, "search", signal);
-      this.#show(answer, from, to, answer.conditional || answer.routes[0] ? undefined : "none");
+      const answer = await api.route(places, own, "search", signal);
+      this.#show(answer, places, answer.conditional || answer.routes[0] ? undefined : "none");
     } catch (error) {
       if (signal.aborted) return;
       const message = (error as Error).message;
-      if (blocked) return this.#show(blocked, from, to, { failed: message });
-      this.#panel.failed(named(message, [from, to]));
-      this.#fit([from, to]);
+      if (blocked) return this.#show(blocked, places, { failed: message });
+      this.#panel.failed(named(message, places), this.#offer(error, places));
+      this.#fit(places);
     }
   }
 
   /** The answer without conditions. Null if a place is near no certified road: it may be near one that a condition opens. */
-  async #first(from: Position, to: Position, signal: AbortSignal): Promise<RouteAnswer | null> {
+  async #first(places: readonly Position[], signal: AbortSignal): Promise<RouteAnswer | null> {
     try {
-      return await api.route(from, to, question(this.context), "none", signal);
+      return await api.route(places, question(this.context), "none", signal);
     } catch (error) {
       if (error instanceof ServerProblem && error.problem.status === 422) return null;
       throw error;
     }
   }
 
-  #show(answer: RouteAnswer, from: Position, to: Position, search?: Search): void {
-    const { theme } = this.context.theme;
-    const own = question(this.context);
-    const [best] = answer.routes;
-    const { conditional } = answer;
-    this.#route = best ?? null;
-    this.#items = best ? [] : conditional ? conditionItems(conditional) : obstacleItems(answer.obstacles ?? []);
-    const place = (p: Position) => p.map((degrees) => degrees.toFixed(6)).join(",");
-    const command = `netcert route --vehicle ${own.vehicle} --corridor ${own.policy} --from ${place(from)} --to ${place(to)} --snap ${SNAP_M}`;
-    const sheet = (form: "html" | "csv" | "geojson") => api.sheetUrl(form, from, to, own);
-    this.#panel.show(answer, this.#items, { palette: palettes[theme], command, sheet, search });
-    const line = best?.geometry ?? conditional?.geometry ?? answer.blocked_way;
-    this.#line.show(best ? "certified" : conditional ? "conditional" : "blocked", line?.coordinates ?? [], theme);
-    this.#pin(conditional ? "condition" : "obstacle", this.#items);
+  /** The nearest certified road, in place of one of the places that is too far away from all. */
+  #offer(error: unknown, places: readonly Position[]): { text: string; take(): void } | null {
+    const { nearest, place } = error instanceof ServerProblem ? error.problem : {};
+    // The server rounds places to micrometres or less.
+    const at = place ? places.findIndex(([lon, lat]) => Math.hypot(lon - place.lon, lat - place.lat) < 1e-5) : -1;
+    if (!nearest || at < 0) return null;
+    const near: Position = [nearest.lon, nearest.lat];
+    const route = places.map((one, other) => (other === at ? near : one));
+    const text = `Move ${letter(at)} to the nearest certified road, ${distance(nearest.distance_m)} away`;
+    return { text, take: () => this.context.store.set({ route }) };
+  }
+
+  /** Asks for other certified ways. The best one stays on the map meanwhile. */
+  async #others(): Promise<void> {
+    const places = this.#shown?.places;
+    const signal = this.#running?.signal;
+    if (!places) return;
+    this.#redraw({ others: "waiting" });
+    try {
+      const answer = await api.otherRoutes(places, question(this.context), signal);
+      this.#redraw({ answer, others: "asked" });
+      byId("drawer").querySelector<HTMLElement>(".other-way")?.focus();
+    } catch (error) {
+      if (!signal?.aborted) this.#redraw({ others: { failed: (error as Error).message } });
+    }
+  }
+
+  #show(answer: RouteAnswer, places: readonly Position[], search?: Search): void {
+    this.#shown = { answer, places, search, chosen: 0, others: "unasked" };
+    const line = this.#redraw({});
     // The map stays where the reader has gone meanwhile.
     const gone = this.context.store.state.selected !== null || search === "none" || typeof search === "object";
-    if (!gone) this.#fit([from, to, ...(line?.coordinates ?? [])]);
+    if (!gone) this.#fit([...places, ...line]);
   }
 
-  drive(): void {
-    const vehicle = vehicleOf(this.context, this.context.store.state.vehicle);
-    if (!this.#route || !vehicle) return;
-    this.#dock ??= this.#open(this.#route, vehicle);
-    this.#dock.start();
-  }
-
-  endDrive(): void {
-    this.#dock?.remove();
-    this.#dock = null;
-    document.body.classList.remove("is-driving");
-  }
-
-  /** Returns whether there was a drive. */
-  toggleDrive(): boolean {
-    if (this.#dock) this.#dock.toggle();
-    else if (this.#route) this.drive();
-    return this.#route !== null;
-  }
-
-  recolour(): void {
+  /** Draws panel, line and pins, with what has changed. Returns the line. */
+  #redraw(changed: Partial<Shown>): Position[] {
+    if (!this.#shown) return [];
+    this.#shown = { ...this.#shown, ...changed };
+    const { answer, places, search, chosen, others } = this.#shown;
     const { theme } = this.context.theme;
-    this.#line.recolour(theme);
-    this.#dock?.recolour(palettes[theme]);
+    const own = question(this.context);
+    const { conditional, routes, blocked_way: way } = answer;
+    const best = routes[chosen];
+    this.drive.offer(best ?? null);
+    this.#items = best ? [] : conditional ? conditionItems(conditional) : obstacleItems(answer.obstacles ?? []);
+    const sheet = (form: "html" | "csv" | "geojson") => api.sheetUrl(form, places, own);
+    this.#panel.show(answer, this.#items, { palette: palettes[theme], command: this.#command(places), sheet, search, chosen, others, about: this.#about(answer) });
+    const line = (best?.geometry ?? conditional?.geometry ?? way)?.coordinates ?? [];
+    const beside = routes.filter((one) => one !== best).map(({ geometry }) => geometry.coordinates);
+    this.#line.show(best ? "certified" : conditional ? "conditional" : "blocked", line, beside, theme);
+    this.#pin(conditional ? "condition" : "obstacle", this.#items);
+    return line;
   }
 
-  #open(route: Route, vehicle: NonNullable<ReturnType<typeof vehicleOf>>): Dock {
-    const dock = new Dock(this.view, route, vehicle, palettes[this.context.theme.theme], () => this.endDrive());
-    byId("bottom").append(dock.element);
-    document.body.classList.add("is-driving");
-    return dock;
+  #command(places: readonly Position[]): string {
+    const { vehicle, policy } = question(this.context);
+    const at = places.map((place) => place.map((degrees) => degrees.toFixed(6)).join(","));
+    const via = at.slice(1, -1).map((one) => ` --via ${one}`).join("");
+    return `netcert route --vehicle ${vehicle} --corridor ${policy} --from ${at[0]}${via} --to ${at.at(-1)} --snap ${SNAP_M}`;
   }
 
-  #seek(s: number): void {
-    if (!this.#dock) {
-      const vehicle = vehicleOf(this.context, this.context.store.state.vehicle);
-      if (!this.#route || !vehicle) return;
-      this.#dock = this.#open(this.#route, vehicle);
-    }
-    this.#dock.seek(s);
+  #about({ scope }: RouteAnswer): About {
+    const { region } = this.context;
+    const { vehicle, policy } = question(this.context);
+    return { vehicle, vehicleName: vehicleOf(this.context, vehicle)?.name ?? vehicle, policy, database: region.database_hash, timestamp: region.timestamp, scope };
   }
 
   /** Flies to the pin of a line of the list. */
@@ -201,7 +260,7 @@ export class Routing {
     return wide ? { left: byId("side").offsetWidth + 60, right: byId("drawer").offsetWidth + 80, top: 60, bottom: 60 } : { left: 30, right: 95, top: 60, bottom: Math.min(byId("drawer").offsetHeight, innerHeight * 0.6) + 40 };
   }
 
-  #fit(line: Position[]): void {
+  #fit(line: readonly Position[]): void {
     const [lons, lats] = [line.map(([lon]) => lon), line.map(([, lat]) => lat)];
     const [w, s, e, n] = [Math.min(...lons), Math.min(...lats), Math.max(...lons), Math.max(...lats)];
     this.view.map.fitBounds([w, s, e, n], { padding: this.#padding(), maxZoom: 17, duration: 700 });
@@ -210,29 +269,12 @@ export class Routing {
   #pin(kind: "condition" | "obstacle", items: Item[]): void {
     this.#pins.show(kind, items.filter((item): item is Item & Pin => item.place !== null));
   }
-
-  /** Draws pins that can be dragged to another place. */
-  #mark(places: Position[]): void {
-    while (this.#markers.length > 0) this.#markers.pop()?.remove();
-    places.forEach((place, index) => {
-      const name = index === 0 ? "A" : "B";
-      const element = h("div", { class: "pin", role: "img", "aria-label": index === 0 ? "Where it begins" : "Where it goes" }, name);
-      const marker = new Marker({ element, draggable: true }).setLngLat(place).addTo(this.view.map);
-      marker.on("dragend", () => {
-        const { lng, lat } = marker.getLngLat();
-        const route = [...(this.context.store.state.route ?? [])];
-        route[index] = [lng, lat];
-        this.context.store.set({ route, selected: null });
-      });
-      this.#markers.push(marker);
-    });
-  }
 }
 
 /** Replaces the degrees of a place in a message of the server by the name of its pin. */
-function named(message: string, places: Position[]): string {
+function named(message: string, places: readonly Position[]): string {
   const at = places.findIndex((place) => message.startsWith(`${place.map((degrees) => degrees.toFixed(5)).join(",")}: `));
   if (at < 0) return message;
   const rest = message.replace(/^[^:]*: /, "").replace(/, at [-\d.]+,[-\d.]+/, "");
-  return `At ${"AB"[at]} ${rest}. Drag the pin to a road that is drawn as certified.`;
+  return `At ${letter(at)} ${rest}. Drag the pin to a road that is drawn as certified.`;
 }

@@ -2,7 +2,7 @@
 
 import type { Policy, SearchHit } from "../api/types.ts";
 import type { VehicleStats } from "../api/stats.ts";
-import { vehicleOf, type Context } from "../context.ts";
+import { unitsOf, vehicleOf, type Context } from "../context.ts";
 import { Filters } from "../panel/filters.ts";
 import { Legend } from "../panel/legend.ts";
 import { Search } from "../panel/search.ts";
@@ -10,6 +10,7 @@ import { VehicleCard } from "../panel/vehicle.ts";
 import { byId, h, prose } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
 import { Segmented } from "../ui/segmented.ts";
+import { storeUnits, type Units } from "../units.ts";
 import { certifiedWords, mainClass, policyWords, regionName } from "../words.ts";
 
 export interface SideActions {
@@ -27,7 +28,9 @@ export class Side {
   readonly #filterPlace = h("div");
   readonly #foldButton: HTMLButtonElement;
   #policies: Segmented<Policy>;
+  readonly #units: Segmented<Units>;
   #policyPlace = h("div");
+  #stats: VehicleStats | null = null;
   #filters: Filters | undefined;
 
   /** `changes` is the panel of the changes since an older database, if there is one. */
@@ -37,6 +40,15 @@ export class Side {
     this.#legend = new Legend(context);
     this.#theme = h("button", { class: "plain", type: "button", onclick: () => context.theme.toggle() });
     this.#policies = this.#makePolicies();
+    this.#units = new Segmented<Units>(
+      "units",
+      "Lengths in",
+      [{ value: "metres", name: "Metres" }, { value: "feet", name: "Feet, inches", title: "The server’s own sentences, under Details, stay in metres" }],
+      (units) => {
+        storeUnits(units);
+        context.store.set({ units });
+      },
+    );
     const { region } = context;
     const help = h("button", { class: "plain", type: "button", "aria-label": "Help and keys", title: "Help and keys (?)", onclick: actions.help }, icon("help"));
     const fold = (this.#foldButton = h(
@@ -53,12 +65,14 @@ export class Side {
       changes,
       this.#filterPlace,
       this.#base(),
+      h("div", { class: "labelled" }, h("span", { class: "label", "aria-hidden": "true" }, "Lengths in"), this.#units.element),
       h("footer", {}, h("p", { class: "scope" }, prose(region.scope)), h("p", { class: "scope" }, attribution(region.attribution, region.timestamp))),
     );
     byId("side").append(brand, this.search.element, this.#card.element, more);
   }
 
   number(stats: VehicleStats | null): void {
+    this.#stats = stats;
     this.#legend.show(stats);
     const vehicle = vehicleOf(this.context, this.context.store.state.vehicle);
     this.#card.show(vehicle, stats ? certifiedWords(stats.verdicts) : null);
@@ -66,6 +80,11 @@ export class Side {
       this.#filters = new Filters(this.context, new Set(stats.classes.map(({ highway }) => mainClass(highway))));
       this.#filterPlace.append(this.#filters.element);
     }
+  }
+
+  /** Puts the words anew, because units are other ones. */
+  respell(): void {
+    this.number(this.#stats);
   }
 
   draw(certificates: boolean): void {
@@ -78,6 +97,7 @@ export class Side {
       this.#policies = this.#makePolicies();
     }
     this.#policies.value = store.state.policy;
+    this.#units.value = unitsOf(this.context);
     const { name, meaning } = policyWords[store.state.policy];
     const one = this.context.region.policies.length < 2;
     this.#policyPlace.hidden = one;

@@ -2,6 +2,7 @@
 
 import type { Vehicle } from "../api/types.ts";
 import { styled, svg } from "../ui/dom.ts";
+import { length as inWords } from "../units.ts";
 import { heightOf, shapes, straight, type Block } from "./shape.ts";
 
 /** Room above and at the ends, metres. */
@@ -36,7 +37,7 @@ export function sideView(vehicle: Vehicle, metres = vehicle.length_m): SVGSVGEle
       class: "vehicle",
       viewBox: `${-ROOM} ${-ROOM} ${wide} ${tall}`,
       role: "img",
-      "aria-label": `${vehicle.name}, ${vehicle.length_m.toFixed(2)} m long, from the side`,
+      "aria-label": `${vehicle.name}, ${inWords(vehicle.length_m)} long, from the side`,
       preserveAspectRatio: "xMinYMax meet",
     },
     ground,

@@ -6,7 +6,8 @@ import type { Palette } from "../map/palette.ts";
 import { h } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
 import { Segmented } from "../ui/segmented.ts";
-import { distance, duration } from "../words.ts";
+import { distance } from "../units.ts";
+import { duration } from "../words.ts";
 import { Player, type Look } from "./player.ts";
 import { Samples } from "./samples.ts";
 import { Scene } from "./scene.ts";
@@ -26,6 +27,9 @@ export class Dock {
   readonly #time = h("span", { class: "dock-time" });
   readonly #look: Segmented<Look>;
   readonly #speed: Segmented<string>;
+  #begin: ReturnType<typeof setTimeout> | undefined;
+  /** Where the map was before the drive. */
+  readonly #before: { center: [number, number]; zoom: number; bearing: number; pitch: number };
 
   constructor(
     private readonly view: View,
@@ -34,6 +38,8 @@ export class Dock {
     palette: Palette,
     close: () => void,
   ) {
+    const { map } = view;
+    this.#before = { center: map.getCenter().toArray() as [number, number], zoom: map.getZoom(), bearing: map.getBearing(), pitch: map.getPitch() };
     this.#samples = new Samples(route.drive);
     this.#scene = new Scene(route, this.#samples, vehicle, palette);
     this.#strip = new Strip(route, vehicle.length_m, palette, (s) => this.#player.seek(s));
@@ -64,7 +70,7 @@ export class Dock {
   start(): void {
     this.#player.seek(Math.min(this.vehicle.length_m, this.#samples.length));
     this.#player.look = "chase";
-    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) setTimeout(() => this.#player.play(), 750);
+    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) this.#begin = setTimeout(() => this.#player.play(), 750);
   }
 
   tightest(): void {
@@ -89,9 +95,10 @@ export class Dock {
   }
 
   remove(): void {
+    clearTimeout(this.#begin);
     this.#player.remove();
     if (this.view.map.getLayer(this.#scene.id)) this.view.map.removeLayer(this.#scene.id);
-    this.view.map.easeTo({ pitch: 0, bearing: 0, duration: 500 });
+    this.view.map.easeTo({ ...this.#before, duration: 700 });
     this.element.remove();
   }
 

@@ -4,7 +4,8 @@
 import type { Route } from "../api/types.ts";
 import { marginColour, type Palette } from "../map/palette.ts";
 import { h } from "../ui/dom.ts";
-import { careful, distance } from "../words.ts";
+import { distance, length } from "../units.ts";
+import { careful } from "../words.ts";
 import { OPEN_M, leewayAt } from "./samples.ts";
 
 /** The limits of the leeway that fills half of the band, metres. More leeway is cut off. */
@@ -41,7 +42,7 @@ export class Strip {
     const all = [...route.leeway.left_m, ...route.leeway.right_m].map((leeway) => leeway ?? OPEN_M).sort((a, b) => a - b);
     this.#full = Math.min(Math.max(all[Math.floor(0.9 * all.length)] ?? 0, LEAST_FULL_M), MOST_FULL_M);
     const whole = h("div", { class: "strip-track" }, this.#whole, this.#slider);
-    const scale = h("span", { class: "strip-scale", "aria-hidden": "true" }, `full height ${this.#full.toFixed(1)} m`);
+    const scale = h("span", { class: "strip-scale", "aria-hidden": "true" }, `full height ${length(this.#full)}`);
     const near = h("div", { class: "strip-window" }, this.#near, this.#numbers, scale);
     this.element = h("div", { class: "strip" }, near, whole);
     new ResizeObserver(() => this.#redraw()).observe(this.element);
@@ -56,7 +57,7 @@ export class Strip {
     this.#s = s;
     this.#slider.value = String(Math.round(s));
     const { left, right } = leewayAt(this.route.leeway, s);
-    const words = (leeway: number) => (leeway >= OPEN_M ? "open" : `${careful(leeway)} m`);
+    const words = (leeway: number) => (leeway >= OPEN_M ? "open" : careful(leeway));
     this.#slider.setAttribute("aria-valuetext", `${distance(s)}: ${words(left)} to spare left, ${words(right)} right`);
     this.#numbers.replaceChildren(h("span", {}, `left ${words(left)}`), h("span", {}, `right ${words(right)}`));
     this.#redraw();
@@ -106,7 +107,7 @@ export class Strip {
 
   #marks(context: CanvasRenderingContext2D, x: (s: number) => number, tall: number, near: boolean): void {
     const tightest = x(this.route.limiting_s_m);
-    context.strokeStyle = this.palette.missing[3];
+    context.strokeStyle = this.palette.alarm;
     context.lineWidth = 2;
     context.beginPath();
     context.moveTo(tightest, 0);

@@ -76,7 +76,7 @@ function layers(palette: Palette, ground: Ground, selected: string | null): Line
     one("became_safe", palette.room[2], 1),
     one("became_unknown", palette.unknown, 0.9, { "line-dasharray": [0.1, 1.7] }),
     one("became_forbidden", palette.forbidden, 0.9, { "line-dasharray": [1.8, 1] }, "butt"),
-    one("became_unsafe", palette.missing[3], 0.75),
+    one("became_unsafe", palette.alarm, 0.75),
     under("became_conditional", palette.conditionalGap, 1.15),
     one("became_conditional", palette.conditional, 0.75, { "line-dasharray": [1.6, 0.8] }, "butt"),
   ];

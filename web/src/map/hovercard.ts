@@ -1,6 +1,7 @@
 // The card with the margin of the road under the pointer.
 
 import { h, styled } from "../ui/dom.ts";
+import { length } from "../units.ts";
 import { changeWords, className, evidenceWords, leastMargin, margin, reasonWords, sideWords, title, verdictWords } from "../words.ts";
 import type { Changed, Evidence, VerdictName } from "../api/types.ts";
 import type { Under } from "./view.ts";
@@ -43,7 +44,7 @@ function content({ kind, properties }: Under): Node[] {
   return [
     h("div", { class: `hover-number is-${verdict}` }, h("i", { class: `line line-${verdict}` }), number),
     h("div", { class: "hover-name" }, name),
-    typeof need === "number" ? h("div", { class: "hover-more" }, `${need.toFixed(2)} m would do, nowhere narrower along the road`) : null,
+    typeof need === "number" ? h("div", { class: "hover-more" }, `${length(need, "up")} would do, nowhere narrower along the road`) : null,
     h("div", { class: "hover-more" }, [verdictWords[verdict].name, ...parts].join(" · ")),
     kind === "overview" ? h("div", { class: "hover-more" }, "Click to go nearer.") : null,
   ].filter((node) => node !== null);

@@ -1,7 +1,7 @@
 // Colours of the map, for light and dark.
 //
-// Room to spare is blue, and more room differs more in lightness from the paper. Missing room is orange, and fades with the amount
-// that is missing, because people ask about what nearly fits. Blue and orange stay apart under deuteranopia and protanopia
+// Room to spare is blue, and more room differs more in lightness from the paper. Missing room is orange, and the more is missing, the
+// more it differs from the paper: what is most impossible must not look harmless. Blue and orange stay apart under deuteranopia and protanopia
 // (`test/palette.test.mjs` simulates both). Verdicts also differ in line width and dashes, so that nothing depends on colour alone.
 // Categories have the colours of Okabe and Ito (Color Universal Design, 2008).
 
@@ -39,6 +39,8 @@ export interface Palette {
   soft: string;
   room: readonly [string, string, string, string];
   missing: readonly [string, string, string, string];
+  /** What stands in the way, what is tightest, what has become worse. */
+  alarm: string;
   forbidden: string;
   unknown: string;
   selected: string;
@@ -68,7 +70,8 @@ export const palettes: Record<Theme, Palette> = {
     halo: "#fbfaf7",
     soft: "#6a717a",
     room: ["#2f93d8", "#1a6fb8", "#0d4c90", "#07285a"],
-    missing: ["#bfa894", "#cd9d72", "#dd843f", "#d95f0e"],
+    missing: ["#7d2600", "#ad4300", "#dd6a10", "#eb9d58"],
+    alarm: "#d95f0e",
     forbidden: "#3b4048",
     unknown: "#8d949c",
     selected: "#111417",
@@ -92,7 +95,8 @@ export const palettes: Record<Theme, Palette> = {
     halo: "#15181c",
     soft: "#949ba5",
     room: ["#2b78b8", "#4ba0e2", "#8bc6f6", "#dcefff"],
-    missing: ["#62503f", "#8a6340", "#bd7437", "#f58a32"],
+    missing: ["#ffb27d", "#f08434", "#b9601f", "#84481c"],
+    alarm: "#f58a32",
     forbidden: "#8f96a0",
     unknown: "#69717b",
     selected: "#ffffff",
@@ -111,12 +115,12 @@ export const palettes: Record<Theme, Palette> = {
 };
 
 /** The colours that the style sheet uses, as custom properties. */
-export function properties({ room, missing, forbidden, unknown, units, corridor, ink, route, routeCasing, conditional, conditionalGap, appeared, went }: Palette): Record<string, string> {
+export function properties({ room, missing, alarm, forbidden, unknown, units, corridor, ink, route, routeCasing, conditional, conditionalGap, appeared, went }: Palette): Record<string, string> {
   const numbered = units.map((colour, index) => [`--unit-${index}`, colour]);
-  const verdicts = { "--safe": room[2], "--unsafe": missing[2], "--forbidden": forbidden, "--unknown": unknown };
+  const verdicts = { "--safe": room[2], "--unsafe": missing[1], "--forbidden": forbidden, "--unknown": unknown };
   const shapes = { "--ground": corridor, "--edge": ink, "--path": route, "--path-casing": routeCasing };
-  const routes = { "--conditional": conditional, "--conditional-gap": conditionalGap, "--obstacle": missing[3] };
-  const changes = { "--worse": missing[3], "--appeared": appeared, "--went": went };
+  const routes = { "--conditional": conditional, "--conditional-gap": conditionalGap, "--obstacle": alarm };
+  const changes = { "--worse": alarm, "--appeared": appeared, "--went": went };
   return { ...verdicts, ...shapes, ...routes, ...changes, ...Object.fromEntries(numbered) };
 }
 

@@ -16,7 +16,7 @@ type Line = Extract<LayerSpecification, { type: "line" }>;
 
 /** The layers from below to above. */
 function layers(palette: Palette): Line[] {
-  const line = (name: string, kind: RouteKind, paint: Line["paint"], cap: "round" | "butt" = "round"): Line => ({
+  const line = (name: string, kind: RouteKind | "other", paint: Line["paint"], cap: "round" | "butt" = "round"): Line => ({
     id: `${ROUTE}-${name}`,
     type: "line",
     source: ROUTE,
@@ -28,8 +28,12 @@ function layers(palette: Palette): Line[] {
   const fading: NonNullable<Line["paint"]> = { "line-opacity": ["interpolate", ["linear"], ["zoom"], 16.5, 0.9, 18, 0] };
   const kept: NonNullable<Line["paint"]> = { "line-opacity": ["interpolate", ["linear"], ["zoom"], 16.5, 1, 19, 0.6] };
   return [
-    line("casing", "certified", { ...fading, "line-color": palette.routeCasing, "line-width": 7 }),
-    line("line", "certified", { ...fading, "line-color": palette.route, "line-width": 3.2 }),
+    line("other-casing", "other", { ...fading, "line-color": palette.routeCasing, "line-width": 7 }),
+    line("other", "other", { ...fading, "line-color": palette.soft, "line-width": 4 }),
+    // Three lines, so that it is told from the dark lines of roads by its edges, whatever the colour vision.
+    line("edge", "certified", { ...fading, "line-color": palette.route, "line-width": 12 }),
+    line("casing", "certified", { ...fading, "line-color": palette.routeCasing, "line-width": 10 }),
+    line("line", "certified", { ...fading, "line-color": palette.route, "line-width": 5.5 }),
     line("conditional-casing", "conditional", { ...kept, "line-color": palette.routeCasing, "line-width": 9 }),
     line("conditional-ground", "conditional", { ...kept, "line-color": palette.conditionalGap, "line-width": 6.5 }),
     line("conditional", "conditional", { ...kept, "line-color": palette.conditional, "line-width": 4.2, "line-dasharray": [2, 1] }, "butt"),
@@ -38,18 +42,18 @@ function layers(palette: Palette): Line[] {
   ];
 }
 
-/** Draws one line at a time. */
+/** Draws one route at a time, and other certified ways beside it. */
 export class RouteLine {
   #drawn = false;
 
   constructor(private readonly view: View) {}
 
   /** Draws another line; fewer than two positions remove it. */
-  show(kind: RouteKind, coordinates: Position[], theme: Theme): void {
-    const line: GeoJSON.Feature = { type: "Feature", properties: { kind }, geometry: { type: "LineString", coordinates } };
+  show(kind: RouteKind, coordinates: Position[], others: Position[][], theme: Theme): void {
+    const feature = (own: string, line: Position[]): GeoJSON.Feature => ({ type: "Feature", properties: { kind: own }, geometry: { type: "LineString", coordinates: line } });
     this.#drawn = coordinates.length > 1;
     void this.view.ready.then(() => {
-      this.view.overlay(ROUTE, this.#drawn ? { ...nothing, features: [line] } : nothing);
+      this.view.overlay(ROUTE, this.#drawn ? { ...nothing, features: [...others.map((line) => feature("other", line)), feature(kind, coordinates)] } : nothing);
       this.#draw(theme);
     });
   }

@@ -11,7 +11,7 @@ import type {
   StyleSpecification,
 } from "maplibre-gl";
 import type { Region, VerdictName } from "../api/types.ts";
-import type { State } from "../state.ts";
+import { complete, type State } from "../state.ts";
 import { h } from "../ui/dom.ts";
 import { CLASSES, EVIDENCE } from "../words.ts";
 import { REAL_ZOOM, major, middle, offset, pixelsPerMetre, width, type Ground, type Numeric } from "./lines.ts";
@@ -55,8 +55,8 @@ function colour(verdict: VerdictName, state: State, palette: Palette, theme: The
 const dashes: Partial<Record<VerdictName, number[]>> = { forbidden: [2.2, 1.4], unknown: [0.1, 2] };
 const breadth: Record<VerdictName, number> = { safe: 1.25, unsafe: 0.72, forbidden: 0.6, unknown: 0.75 };
 
-/** How strong roads are drawn while changes lie over them. */
-const muted = (state: State): number => (state.changes ? 0.24 : 1);
+/** How strong roads are drawn while changes or a route lie over them. */
+export const muted = (state: State): number => (state.changes ? 0.24 : complete(state.route) ? 0.5 : 1);
 
 /** The filter for one verdict, combined with the user's filters. */
 export function filter(verdict: VerdictName, state: State): ExpressionSpecification {
@@ -75,13 +75,15 @@ export function filter(verdict: VerdictName, state: State): ExpressionSpecificat
 
 function edge(verdict: VerdictName, state: State, palette: Palette, ground: Ground): LayerSpecification {
   const dash = dashes[verdict];
+  // Round ends that overlap would show as dots where lines let the paper through.
+  const butt = verdict === "forbidden" || (verdict !== "unknown" && muted(state) < 1);
   return {
     id: `edge-${verdict}`,
     type: "line",
     source: "roads",
     "source-layer": "edge",
     filter: filter(verdict, state),
-    layout: { "line-cap": verdict === "forbidden" ? "butt" : "round", "line-join": "round" },
+    layout: { "line-cap": butt ? "butt" : "round", "line-join": "round" },
     paint: {
       "line-color": colour(verdict, state, palette, ground.theme),
       "line-width": width(breadth[verdict]),
@@ -212,6 +214,15 @@ function glowAfar(palette: Palette): LayerSpecification {
   return { id: "glow-afar", type: "line", source: OUTLINE, maxzoom: EDGE_ZOOM, layout: { "line-cap": "round", "line-join": "round" }, paint: shine(palette) };
 }
 
+const NAME = ["coalesce", ["get", "name"], ""] as unknown as ExpressionSpecification;
+/** A road's number; of several, the first two: `I 405;US 30` is `I 405 / US 30`. Empty if it has none. */
+const REF = [
+  "let",
+  "ref",
+  ["coalesce", ["get", "ref"], ""],
+  ["let", "at", ["index-of", ";", ["var", "ref"]], ["case", ["<", ["var", "at"], 0], ["var", "ref"], ["concat", ["slice", ["var", "ref"], 0, ["var", "at"]], " / ", ["slice", ["var", "ref"], ["+", ["var", "at"], 1]]]]],
+] as unknown as ExpressionSpecification;
+
 function labels(palette: Palette): LayerSpecification {
   return {
     id: "names",
@@ -223,14 +234,14 @@ function labels(palette: Palette): LayerSpecification {
       "symbol-placement": "line",
       "symbol-spacing": 320,
       "text-font": [LABEL_FONT],
-      "text-field": ["step", ["zoom"], ["coalesce", ["get", "ref"], ["get", "name"], ""], 13, ["coalesce", ["get", "name"], ["get", "ref"], ""]],
+      "text-field": ["step", ["zoom"], ["case", ["has", "ref"], REF, NAME], 13, ["case", ["has", "name"], NAME, REF]],
       "text-size": ["interpolate", ["linear"], ["zoom"], 11, 10, 16, 12.5, 19, 15],
       "text-letter-spacing": 0.01,
       "text-max-angle": 35,
       "text-padding": 6,
       "symbol-sort-key": ["match", ["get", "highway"], major, 0, middle, 1, ["tertiary"], 2, 3],
     },
-    paint: { "text-color": palette.ink, "text-halo-color": palette.halo, "text-halo-width": 1.6 },
+    paint: { "text-color": palette.ink, "text-halo-color": palette.halo, "text-halo-width": 2.6 },
   };
 }
 
@@ -268,6 +279,8 @@ export function style(state: State, ground: Ground): StyleSpecification {
       { id: "paper", type: "background", paint: { "background-color": palette.paper } },
       ...(base ? [{ id: "base", type: "raster", source: "base", paint: { "raster-opacity": 0.45, "raster-saturation": -0.7 } } as LayerSpecification] : []),
       { id: "outside", type: "fill", source: "outside", paint: { "fill-color": palette.outside, "fill-opacity": base ? 0.4 : 1 } },
+      // At low zooms the box keeps a small region from being lost.
+      { id: "region", type: "line", source: "outside", maxzoom: 9, paint: { "line-color": palette.soft, "line-width": 2 } },
       surface(palette, ground),
       junction(palette),
       glowAfar(palette),

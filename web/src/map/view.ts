@@ -1,13 +1,15 @@
 // One map for a vehicle and a policy. It is restyled when the state changes, and reports what is under the pointer.
 
-import { AttributionControl, Map as Base, ScaleControl, type GeoJSONSource, type MapGeoJSONFeature, type MapMouseEvent, type Source } from "maplibre-gl";
+import { AttributionControl, Map as Base, ScaleControl, type GeoJSONSource, type MapGeoJSONFeature, type Point, type Source } from "maplibre-gl";
 import type { Position, Region } from "../api/types.ts";
 import { api, type Question } from "../api/client.ts";
 import type { State } from "../state.ts";
+import { h } from "../ui/dom.ts";
+import { spoken } from "../units.ts";
 import { CHANGES, changeLayers } from "./changes.ts";
 import type { Theme } from "./palette.ts";
 import { tileAddress } from "./tiles.ts";
-import { OUTLINE, edgeLayers, overviewLayers, style, turnLayers } from "./style.ts";
+import { OUTLINE, edgeLayers, muted, overviewLayers, style, turnLayers } from "./style.ts";
 
 /**
  * The tags of an edge or turn in a tile, or of a change. In an overview, those of all roads that fall on one line, without an id.
@@ -30,6 +32,7 @@ const NEAR_TOUCH = 14;
 
 export class View {
   readonly map: Base;
+  readonly #scale = new ScaleControl({ maxWidth: 90 });
   #key: string;
   #hovered = "";
   #ready: Promise<void>;
@@ -57,8 +60,9 @@ export class View {
       canvasContextAttributes: { antialias: true },
     });
     this.map.addControl(new AttributionControl({ compact: false }), "bottom-right");
-    this.map.addControl(new ScaleControl({ maxWidth: 90 }), "bottom-right");
-    this.map.getCanvas().setAttribute("aria-label", "Map of roads");
+    this.map.addControl(this.#scale, "bottom-right");
+    container.append(h("div", { class: "crosshair", "aria-hidden": "true" }));
+    this.#name();
     this.#ready = new Promise((done) => this.map.once("load", () => done()));
     this.#listen();
   }
@@ -85,7 +89,13 @@ export class View {
         }),
       });
     }
+    this.#name();
+    this.#scale.setUnit(spoken() === "feet" ? "imperial" : "metric");
     void this.#ready.then(() => this.#select(state.selected));
+  }
+
+  #name(): void {
+    this.map.getCanvas().setAttribute("aria-label", `Map of roads for ${this.question.vehicle}. Arrows move it; Enter takes what is under the cross.`);
   }
 
   /** Sets the line of the selected road. Overview tiles have no single roads with ids, so the line is set separately. */
@@ -121,8 +131,8 @@ export class View {
   }
 
   #styleKey(): string {
-    const { colourBy, hidden, hiddenClasses, evidence, changes, baseMap } = this.state;
-    return JSON.stringify([this.question, this.theme, colourBy, [...hidden], [...hiddenClasses], evidence, changes, baseMap]);
+    const { colourBy, hidden, hiddenClasses, evidence, baseMap } = this.state;
+    return JSON.stringify([this.question, this.theme, colourBy, [...hidden], [...hiddenClasses], evidence, muted(this.state), baseMap]);
   }
 
   #select(id: string | null): void {
@@ -139,11 +149,11 @@ export class View {
     this.map.setFilter("hover-turn", ["==", ["get", "turn_id"], under?.kind === "turn" ? under.id : ""]);
   }
 
-  #at(event: MapMouseEvent, near: number): Under | null {
-    const { x, y } = event.point;
+  #at(point: Point, near: number): Under | null {
+    const { x, y } = point;
     const layers = [...changeLayers, ...turnLayers, ...edgeLayers, ...overviewLayers].filter((id) => this.map.getLayer(id));
     const box: [[number, number], [number, number]] = [[x - near, y - near], [x + near, y + near]];
-    const exact = this.map.queryRenderedFeatures(event.point, { layers });
+    const exact = this.map.queryRenderedFeatures(point, { layers });
     return under(exact[0] ?? this.map.queryRenderedFeatures(box, { layers })[0]);
   }
 
@@ -155,7 +165,7 @@ export class View {
       if (roads) roads.calculateTileZoom = (zoom) => zoom;
     });
     map.on("mousemove", (event) => {
-      const found = this.#at(event, NEAR_MOUSE);
+      const found = this.#at(event.point, NEAR_MOUSE);
       this.#hover(found);
       map.getCanvas().style.cursor = found ? "pointer" : "";
       events.hover(found, event.originalEvent.clientX, event.originalEvent.clientY);
@@ -166,9 +176,25 @@ export class View {
     });
     map.on("click", (event) => {
       const touch = matchMedia("(pointer: coarse)").matches;
-      events.click(this.#at(event, touch ? NEAR_TOUCH : NEAR_MOUSE), event.lngLat.lng, event.lngLat.lat);
+      events.click(this.#at(event.point, touch ? NEAR_TOUCH : NEAR_MOUSE), event.lngLat.lng, event.lngLat.lat);
     });
-    map.on("moveend", () => events.moved());
+    const canvas = map.getCanvas();
+    const middle = () => map.project(map.getCenter());
+    map.on("moveend", () => {
+      events.moved();
+      // For the keyboard the cross is the pointer.
+      if (!canvas.matches(":focus-visible")) return;
+      const { x, y } = middle();
+      const { left, top } = canvas.getBoundingClientRect();
+      events.hover(this.#at(middle(), NEAR_MOUSE), left + x, top + y);
+    });
+    canvas.addEventListener("blur", () => events.hover(null, 0, 0));
+    canvas.addEventListener("keydown", (event) => {
+      if (event.key !== "Enter" || event.altKey || event.ctrlKey || event.metaKey) return;
+      event.preventDefault();
+      const { lng, lat } = map.getCenter();
+      events.click(this.#at(middle(), NEAR_TOUCH), lng, lat);
+    });
   }
 }
 

@@ -2,7 +2,8 @@
 
 import type { Before, ChangeName, Changed, ChangedRoad, Changes, Region } from "../api/types.ts";
 import { h } from "../ui/dom.ts";
-import { CHANGES, changeWords, className, kilometres, sideWords, standingWords } from "../words.ts";
+import { roadLength } from "../units.ts";
+import { CHANGES, changeWords, className, sideWords, standingWords } from "../words.ts";
 
 export interface ChangesActions {
   toggle(on: boolean): void;
@@ -85,7 +86,7 @@ export class ChangesPanel {
         { type: "button", tabindex: index === 0 ? 0 : -1, onclick: () => this.#go(index), onkeydown: (event: KeyboardEvent) => this.#key(event, index) },
         changeLine(road.change),
         h("span", { class: "change-road" }, road.road),
-        h("span", { class: "legend-km" }, kilometres(1000 * road.km)),
+        h("span", { class: "legend-km" }, roadLength(1000 * road.km)),
         h("span", { class: "change-kind" }, `${changeWords[road.change].name}${more(road)} · ${className(road.highway).toLowerCase()}`),
       ),
     );
@@ -121,7 +122,7 @@ function more({ change, standing }: ChangedRoad): string {
 }
 
 function row(name: ChangeName, { edges, km, turns }: Changes["sums"][number]): HTMLElement {
-  const counts = [edges > 0 ? kilometres(1000 * km) : null, turns > 0 ? `${turns} ${turns === 1 ? "turn" : "turns"}` : null];
+  const counts = [edges > 0 ? roadLength(1000 * km) : null, turns > 0 ? `${turns} ${turns === 1 ? "turn" : "turns"}` : null];
   const { name: title, meaning } = changeWords[name];
   return h(
     "li",
@@ -137,7 +138,7 @@ function told({ sums, turns_compared: turned }: Changes, drawn: Changes): string
   const [edges, turns] = [sum(({ edges: count }) => count), sum(({ turns: count }) => count)];
   const without = turned ? "" : " Turns are not compared, because one of the databases has no certificates of them.";
   if (edges + turns === 0) return `Nothing changed for this vehicle.${without}`;
-  const words = [edges > 0 ? `${kilometres(1000 * sum(({ km }) => km))} of roads (each direction counted)` : null, turns > 0 ? `${turns} turns` : null];
+  const words = [edges > 0 ? `${roadLength(1000 * sum(({ km }) => km))} of roads (each direction counted)` : null, turns > 0 ? `${turns} turns` : null];
   const part = drawn.complete ? "" : ` The map shows the ${drawn.features.length} longest changes in view; zoom in for the others.`;
   return `Changed: ${words.filter(Boolean).join(" and ")}.${part}${without}`;
 }

@@ -3,7 +3,8 @@
 import type { Condition, ConditionalRoute, Position, RoutePart } from "../api/types.ts";
 import { h } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
-import { careful, distance, duration } from "../words.ts";
+import { distance, length, spoken } from "../units.ts";
+import { careful, duration } from "../words.ts";
 import type { Item } from "./numbered.ts";
 
 const quantities: Record<Condition["kind"], string> = {
@@ -14,19 +15,16 @@ const quantities: Record<Condition["kind"], string> = {
   carriageway_width: "Road",
 };
 
-/** A value that has to be reached, rounded up to centimetres. */
-const atLeast = (m: number): string => (Math.ceil(m * 100 - 1e-6) / 100).toFixed(2);
-
 /** `Kerb radius at least 7.50 m` */
 function words({ kind, needed }: Condition): string {
-  if (kind === "surface") return `${quantities.surface} up to ${Math.ceil(needed - 1e-6)} m from the node`;
-  return `${quantities[kind]} at least ${atLeast(needed)} m${kind === "kerb_radius" ? "" : " wide"}`;
+  if (kind === "surface") return `${quantities.surface} up to ${spoken() === "metres" ? `${Math.ceil(needed - 1e-6)} m` : length(needed, "up")} from the node`;
+  return `${quantities[kind]} at least ${length(needed, "up")}${kind === "kerb_radius" ? "" : " wide"}`;
 }
 
 export function conditionItems(route: ConditionalRoute): Item[] {
   return route.conditions.map((condition) => {
     const { number, place, title, assumed, length_m } = condition;
-    const more = [assumed === null ? "" : `assumed ${assumed.toFixed(2)} m`, length_m ? `over ${distance(length_m)}` : ""];
+    const more = [assumed === null ? "" : `assumed ${length(assumed)}`, length_m ? `over ${distance(length_m)}` : ""];
     return { number, place, title, what: words(condition), more: more.filter(Boolean).join(" · "), road: roadOf(route, condition) };
   });
 }
@@ -58,10 +56,10 @@ export function along({ geometry, length_m }: ConditionalRoute, s_m: number): Po
 const hold = (count: number): string => (count === 1 ? "one condition holds" : `${count} conditions hold`);
 
 /** The head of the panel: the badge, and what the route is not. */
-export function conditionalHead(route: ConditionalRoute): Node[] {
+export function conditionalHead(route: ConditionalRoute): [string, ...Node[]] {
   const count = route.conditions.length;
   return [
-    h("h2", {}, "Route under conditions"),
+    "Route under conditions",
     h(
       "div",
       { class: "verdict is-conditional" },
@@ -92,7 +90,7 @@ export function conditionalFoot(route: ConditionalRoute, sheet: (form: "html" | 
       { class: "facts columns" },
       fact("Length", distance(route.length_m)),
       fact("Time", duration(route.time_s)),
-      fact("Room then", `${careful(route.rsc_m)} m`),
+      fact("Room then", careful(route.rsc_m)),
     ),
     h(
       "p",

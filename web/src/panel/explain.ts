@@ -1,11 +1,14 @@
 // The explanation of a road or turn: the server's sentences and scope, and the picture of the swept path.
 
 import { api, type Question } from "../api/client.ts";
-import type { Changed, Explanation, Shapes, VerdictName } from "../api/types.ts";
-import { h, prose } from "../ui/dom.ts";
-import { className, evidenceWords, margin, policyWords, reasonWords, title, verdictWords } from "../words.ts";
+import type { Changed, Explanation, Policy, Position, Shapes, VerdictName } from "../api/types.ts";
+import { h, prose, shielded } from "../ui/dom.ts";
+import { icon } from "../ui/icons.ts";
+import { distance, length } from "../units.ts";
+import { className, evidenceWords, margin, policyWords, reasonWords, refs, title, verdictWords } from "../words.ts";
 import { labelled, mapKey } from "./mapkey.ts";
 import { Picture } from "./picture.ts";
+import { headline, help, sentence } from "./plain.ts";
 import { suppose } from "./suppose.ts";
 
 /** The functions of the page that the panel uses. */
@@ -18,6 +21,10 @@ export interface Around {
   other(): Question | null;
   /** Opens another road. */
   select(id: string): void;
+  /** Lets a route begin or end here. */
+  route(end: "from" | "to", place: Position, name: string): void;
+  /** What a printed sheet says of the database. */
+  source(): Node;
   /** The change of a road or turn since the older database while changes are shown, and the words for it. */
   changed(id: string): { changed: Changed; note: HTMLElement } | null;
 }
@@ -105,23 +112,63 @@ export class ExplainPanel {
       ? [className(road.highway), `way ${road.way_id}`, road.direction === "backward" ? "against the way’s direction" : "along the way’s direction"]
       : [];
     const nodes: Node[] = [
-      h("h2", {}, own.turn ?? (road ? title(road) : "Turn at a junction")),
+      h("p", { class: "print-only sheet-head" }, `Evidence sheet: ${question.vehicle}, ${policyWords[question.policy].name.toLowerCase()}`),
+      h("h2", {}, ...(own.turn || !road ? [own.turn ?? "Turn at a junction"] : roadTitle(road))),
       h("p", { class: "sub" }, more.join(" · ")),
       this.#changed,
-      ...verdict(own),
+      ...verdict(own, question.policy),
     ];
-    if (compared) nodes.push(h("h3", {}, compared.other.vehicle), ...verdict(compared.beside), ...relative(question.vehicle, own));
+    if (compared) nodes.push(h("h3", {}, compared.other.vehicle), ...verdict(compared.beside, compared.other.policy), ...relative(question.vehicle, own));
     if (own.picture) {
       const alt = `The swept path where it is tightest: ${own.headline}`;
       nodes.push(this.#picture.show(api.pictureUrl(id, question), alt, this.#running!.signal));
     }
-    nodes.push(list("What decides", own.reasons), list("What would do", own.hints_in_words));
+    nodes.push(list("What else would do", help(own, question.policy)), this.#actions(own));
     if (own.suppose && own.verdict === "unsafe") nodes.push(suppose(id, question, own.suppose, (other) => this.around.select(other), this.#running!.signal));
     nodes.push(this.#key);
-    if (road) nodes.push(width(own), h("p", { class: "ids" }, "Edge ", h("code", {}, road.edge_id)));
-    nodes.push(h("p", { class: "scope" }, prose([own.note, own.scope].filter(Boolean).join(" "))));
+    nodes.push(details(own, id));
+    nodes.push(h("p", { class: "scope" }, prose([own.note, own.scope].filter(Boolean).join(" "))), h("div", { class: "print-only" }, this.around.source()));
     return nodes;
   }
+
+  /** A route from here or to here, and the sheet to print. */
+  #actions(own: Explanation): HTMLElement {
+    const line = own.geometry?.coordinates ?? [];
+    const place = line[Math.floor(line.length / 2)] ?? own.at;
+    const name = own.turn ?? (own.road ? title(own.road) : "Turn at a junction");
+    const route = (end: "from" | "to", text: string) =>
+      place ? h("button", { class: "small", type: "button", onclick: () => this.around.route(end, place, name) }, icon("route"), text) : null;
+    const print = () => {
+      for (const more of this.element.querySelectorAll("details")) more.open = true;
+      window.print();
+    };
+    return h(
+      "div",
+      { class: "tools" },
+      route("from", "Route from here"),
+      route("to", "Route to here"),
+      h("button", { class: "small", type: "button", onclick: print }, icon("sheet"), "Print the evidence"),
+    );
+  }
+}
+
+function roadTitle(road: NonNullable<Explanation["road"]>): (Node | string)[] {
+  const numbers = refs(road.ref);
+  return numbers.length > 0 ? shielded(numbers, road.name ?? "") : [title(road)];
+}
+
+/** The server's own sentences, which name every bound, and the numbers behind them. */
+function details(own: Explanation, id: string): HTMLElement {
+  return h(
+    "details",
+    { class: "explain-details" },
+    h("summary", {}, "Details"),
+    h("p", {}, headline(own)),
+    list("What decides", own.reasons),
+    list("What would do", own.hints_in_words),
+    width(own),
+    h("p", { class: "ids" }, own.road ? "Edge " : "Turn ", h("code", {}, own.road?.edge_id ?? id)),
+  );
 }
 
 /** One vehicle beside the other, in words that cannot be taken for a verdict. */
@@ -129,7 +176,7 @@ function relative(vehicle: string, { relative: found }: Explanation): Node[] {
   if (!found) return [];
   const { relative_to: reference, relative_m: metres, as_reference: alike } = found;
   if (metres === null) return [h("p", { class: "sub relative" }, `${vehicle} and ${reference} do not compare here: one of them has no number.`)];
-  const apart = `${Math.abs(metres).toFixed(2)} m`;
+  const apart = length(Math.abs(metres));
   const less = metres < 0 ? `${vehicle} has ${apart} less room here than ${reference}.` : `${vehicle} has ${apart} more room here than ${reference}.`;
   const words = alike
     ? `${vehicle} needs no more room here than ${reference}: it has ${apart} more.`
@@ -140,7 +187,7 @@ function relative(vehicle: string, { relative: found }: Explanation): Node[] {
 }
 
 /** The verdict as a label, the number, and the server's sentence. */
-function verdict(e: Explanation): Node[] {
+function verdict(e: Explanation, policy: Policy): Node[] {
   const decided = (e.verdict === "safe" || e.verdict === "unsafe") && e.limiting !== null && e.reason !== "articulation" && e.reason !== "steering_lock";
   const unbounded = e.verdict === "unsafe" && e.limiting !== null && e.limiting.rsc_m === null;
   const number = unbounded ? "Too sharp a bend" : decided && e.limiting ? margin(e.limiting.rsc_m ?? -Infinity) : reasonWords(e.verdict, e.reason);
@@ -151,14 +198,8 @@ function verdict(e: Explanation): Node[] {
       h("span", { class: "badge" }, h("i", { class: `line line-${e.verdict}` }), verdictWords[e.verdict as VerdictName].name),
       h("strong", {}, number),
     ),
-    h("p", { class: "headline-words" }, sentence(e.headline)),
+    h("p", { class: "headline-words" }, sentence(e, policy)),
   ];
-}
-
-/** The headline without the verdict, which the badge shows already. */
-function sentence(headline: string): string {
-  const rest = headline.replace(/^(safe|unsafe|forbidden|unknown): /, "");
-  return `${rest.charAt(0).toUpperCase()}${rest.slice(1)}.`;
 }
 
 function list(heading: string, items: string[]): Node {
@@ -170,13 +211,13 @@ function width(e: Explanation): Node {
   if (!e.road) return document.createTextNode("");
   const source = evidenceWords[e.road.width_source ?? "none"].toLowerCase();
   const width_m = e.limiting?.place.width_m;
-  const metres = typeof width_m === "number" ? `${width_m.toFixed(2)} m where it is tightest, ` : "";
+  const metres = typeof width_m === "number" ? `${length(width_m)} where it is tightest, ` : "";
   const row = (name: string, value: string) => h("div", {}, h("dt", {}, name), h("dd", {}, value));
   return h(
     "dl",
     { class: "facts" },
     row("May use", policyWords[e.road.corridor].meaning),
     row("Width", `${metres}${source}`),
-    e.limiting ? row("Length", `${e.limiting.length_m.toFixed(0)} m`) : null,
+    e.limiting ? row("Length", distance(e.limiting.length_m)) : null,
   );
 }

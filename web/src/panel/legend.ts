@@ -7,7 +7,8 @@ import { evidenceColours, missingSteps, palettes, reasonColours, roomSteps, type
 import type { ColourBy } from "../state.ts";
 import { h, styled } from "../ui/dom.ts";
 import { Segmented } from "../ui/segmented.ts";
-import { EVIDENCE, VERDICTS, evidenceWords, kilometres, percent, reasonWords, routeWords, verdictWords } from "../words.ts";
+import { length, roadLength, spoken } from "../units.ts";
+import { EVIDENCE, VERDICTS, evidenceWords, percent, reasonWords, routeWords, verdictWords } from "../words.ts";
 
 export class Legend {
   readonly element = h("section", { class: "legend", "aria-label": "Roads by verdict" });
@@ -46,8 +47,8 @@ export class Legend {
     if (this.#stats) {
       const { safe } = this.#stats.verdicts;
       this.#headline.replaceChildren(
-        h("strong", {}, kilometres(safe)),
-        h("span", {}, ` certified, ${percent(safe, all)} of ${kilometres(all)} (each direction counted)`),
+        h("strong", {}, roadLength(safe)),
+        h("span", {}, ` certified, ${percent(safe, all)} of ${roadLength(all)} (each direction counted)`),
       );
     }
     this.#bar.replaceChildren(
@@ -65,7 +66,7 @@ export class Legend {
       if (!hidden.delete(name)) hidden.add(name);
       store.set({ hidden });
     };
-    const length = this.#stats ? kilometres(this.#stats.verdicts[name]) : "";
+    const length = this.#stats ? roadLength(this.#stats.verdicts[name]) : "";
     return h(
       "label",
       { class: "legend-row", title: verdictWords[name].meaning },
@@ -84,8 +85,8 @@ export class Legend {
       const colours = evidenceColours[theme];
       return [key([...EVIDENCE].map((source) => [evidenceWords[source], colours[source]] as const))];
     }
-    const room = scale("Metres to spare", roomSteps, palette.room);
-    if (colourBy === "margin") return [scale("Metres missing", missingSteps, palette.missing), room];
+    const room = scale("Room to spare", roomSteps, palette.room);
+    if (colourBy === "margin") return [scale("Room missing", missingSteps, palette.missing), room];
     const reasons = Object.entries(reasonColours).filter(([name]) => name.includes("/"));
     return [
       key(reasons.map(([name, colour]) => [reasonWords(...(name.split("/") as [string, string])), colour] as const)),
@@ -94,17 +95,28 @@ export class Legend {
   }
 }
 
+/** The lower end of a step. The label of the palette is in metres. */
+function stepLabel({ from_m, label }: Step): string {
+  return spoken() === "feet" && Number.isFinite(from_m) ? length(Math.abs(from_m)).replace(" ft", "′").replace(" in", "″") : label;
+}
+
 function scale(name: string, steps: readonly Step[], colours: readonly string[]): HTMLElement {
   const cells = steps.map((step, index) =>
-    h("span", { class: "scale-cell" }, styled(h("i", {}), { background: colours[index] ?? "" }), h("span", {}, step.label)),
+    h("span", { class: "scale-cell" }, styled(h("i", {}), { background: colours[index] ?? "" }), h("span", {}, stepLabel(step))),
   );
   return h("div", { class: "scale" }, h("span", { class: "scale-name" }, name), h("div", { class: "scale-cells" }, ...cells));
+}
+
+/** The lines of verdicts with their names, where the panel with the legend is folded. */
+export function verdictKey(): HTMLElement {
+  const row = (name: VerdictName) => h("span", { class: "key-item" }, h("i", { class: `line line-${name}`, "aria-hidden": "true" }), verdictWords[name].name);
+  return h("div", { class: "compare-key", role: "group", "aria-label": "Lines of both maps" }, ...VERDICTS.map(row));
 }
 
 /** The lines of routes, which are seen while there is one. */
 function routeKey(): HTMLElement {
   const row = ([kind, text]: readonly [string, string]) => h("span", { class: "key-item" }, h("i", { class: `line line-${kind}`, "aria-hidden": "true" }), text);
-  return h("div", { class: "route-key", "aria-label": "Lines of a route" }, ...Object.entries(routeWords).map(row));
+  return h("div", { class: "route-key", role: "group", "aria-label": "Lines of a route" }, ...Object.entries(routeWords).map(row));
 }
 
 function key(entries: readonly (readonly [string, string])[]): HTMLElement {

@@ -2,19 +2,25 @@
 
 import type { ConditionalRoute, Position, Route, RouteAnswer, RoutePart } from "../api/types.ts";
 import { marginColour, type Palette } from "../map/palette.ts";
+import type { Places } from "../state.ts";
 import { h, styled } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
-import { distance, duration, margin, signed } from "../words.ts";
+import { distance } from "../units.ts";
+import { duration, margin, signed } from "../words.ts";
 import { reasons } from "./blocked.ts";
 import { along, conditionalFoot, conditionalHead } from "./conditions.ts";
 import { NumberedList, type Item, type NumberedActions } from "./numbered.ts";
+import { takeAlong, type About } from "./takealong.ts";
 
 /** The functions of the page that the panel uses. */
 export interface Actions extends NumberedActions {
   drive(): void;
   seek(s: number): void;
   go(place: Position): void;
-  swap(): void;
+  /** Asks for other certified ways. */
+  others(): void;
+  /** Shows another one of the certified ways. */
+  choose(index: number): void;
   clear(): void;
 }
 
@@ -29,42 +35,60 @@ export interface Around {
   /** The address of a sheet of the conditions. */
   sheet(form: "html" | "csv" | "geojson"): string;
   search: Search;
+  /** Which of the certified ways is shown, and what is known of others. */
+  chosen: number;
+  others: "unasked" | "waiting" | "asked" | { failed: string };
+  about: About;
 }
 
 const ways = "Lawful turns and one-way roads considered; traffic is not.";
 const longer = "Looking for a route under conditions, which may take a minute …";
 
 export class RoutePanel {
-  readonly element = h("div", { class: "route" });
+  readonly element: HTMLElement;
+  readonly #heading = h("h2", {});
+  readonly #content = h("div", { class: "route-content" });
   #list: NumberedList | null = null;
 
-  constructor(private readonly actions: Actions) {}
+  /** `trip` are the fields of the places, which stay while the answer changes. */
+  constructor(private readonly actions: Actions, trip: HTMLElement) {
+    this.element = h("div", { class: "route" }, this.#heading, trip, this.#content);
+  }
 
-  waiting(chosen: number): void {
-    const text = ["Click on the map where it begins.", "Now click where it is to go."][chosen] ?? "Searching, and certifying the whole way …";
+  waiting(places: Places): void {
+    const empty = places.indexOf(null);
+    const where = empty === 0 ? "where it begins" : empty === places.length - 1 ? "where it is to go" : "through what place it leads";
+    const text = empty < 0 ? "Searching, and certifying the whole way …" : `Click on the map ${where}, or type it above.`;
     this.#list = null;
-    this.element.replaceChildren(h("h2", {}, "Certified route"), h("p", { class: chosen < 2 ? "prompt" : "waiting", role: "status" }, text), this.#tools(false));
+    this.#put("Certified route", h("p", { class: empty < 0 ? "waiting" : "prompt", role: "status" }, text), empty < 0 ? null : byKeyboard());
+  }
+
+  #put(heading: string, ...content: (Node | null)[]): void {
+    this.#heading.textContent = heading;
+    this.#content.replaceChildren(...content.filter((node) => node !== null));
   }
 
   /** No place for a certified route is near, and the search for one under conditions is under way. */
   searching(): void {
-    this.element.replaceChildren(h("h2", {}, "No certified route"), h("p", { class: "waiting", role: "status" }, longer), this.#tools(true));
+    this.#put("No certified route", h("p", { class: "waiting", role: "status" }, longer));
   }
 
-  failed(message: string): void {
-    this.element.replaceChildren(h("h2", {}, "No route"), h("p", { class: "problem", role: "alert" }, message), this.#tools(true));
+  /** `offer` takes the nearest certified road in place of one that is too far away. */
+  failed(message: string, offer: { text: string; take(): void } | null): void {
+    this.#put("No route", h("p", { class: "problem", role: "alert" }, message), offer && h("button", { class: "primary offer", type: "button", onclick: offer.take }, offer.text));
   }
 
   show(answer: RouteAnswer, items: readonly Item[], around: Around): void {
-    const best = answer.routes[0];
+    const best = answer.routes[around.chosen];
     this.#list = best ? null : new NumberedList(answer.conditional ? "condition" : "obstacle", items, this.actions);
-    const content = best
-      ? this.#found(best, around.palette)
+    const [heading, ...content] = best
+      ? this.#found(best, answer, around)
       : answer.conditional
         ? this.#conditional(answer.conditional, around)
         : this.#blocked(answer, around.search);
     const same = h("details", { class: "command" }, h("summary", {}, "The same on the command line"), h("code", {}, around.command));
-    this.element.replaceChildren(...content, ...away(answer), same, this.#tools(true));
+    const clear = h("button", { class: "small", type: "button", onclick: () => this.actions.clear() }, "New route");
+    this.#put(heading, ...content, ...away(answer), same, h("div", { class: "tools" }, clear));
   }
 
   /** Shows which line belongs to the chosen pin. */
@@ -72,19 +96,13 @@ export class RoutePanel {
     this.#list?.mark(number);
   }
 
-  #tools(both: boolean): HTMLElement {
-    const swap = h("button", { class: "small", type: "button", onclick: () => this.actions.swap() }, icon("swap"), "Reverse");
-    const clear = h("button", { class: "small", type: "button", onclick: () => this.actions.clear() }, "New route");
-    return h("div", { class: "tools" }, both ? swap : null, clear);
-  }
-
-  #found(route: Route, palette: Palette): Node[] {
+  #found(route: Route, { routes }: RouteAnswer, { palette, chosen, others, about }: Around): [string, ...Node[]] {
     const go = h("button", { class: "primary", type: "button", onclick: () => this.actions.drive() }, icon("play"), "Drive it");
     const fact = (name: string, value: string) => h("div", {}, h("dt", {}, name), h("dd", {}, value));
     const tolerance = route.shrink < 1 ? `With ${(100 * route.shrink).toFixed(0)} % of the tracking tolerance. ` : "";
     const where = route.limiting_at ? ` on ${route.limiting_at}` : "";
     return [
-      h("h2", {}, "Certified as a whole"),
+      "Certified as a whole",
       h(
         "div",
         { class: "verdict is-safe" },
@@ -93,6 +111,8 @@ export class RoutePanel {
       ),
       h("p", { class: "headline-words" }, `Tightest after ${distance(route.limiting_s_m)}${where}: ${route.limiting_unit_name ?? "a unit"}, ${route.limiting_side} side.`),
       go,
+      ...this.#others(routes, chosen, others),
+      takeAlong(route, about),
       h("dl", { class: "facts columns" }, fact("Length", distance(route.length_m)), fact("Time", duration(route.time_s)), fact("Hinges", `${(Math.floor(route.hinge_margin_deg * 10) / 10).toFixed(1)}° left`)),
       h("h3", {}, "Along the way"),
       this.#parts(route.parts, palette, (part) => this.actions.seek(part.from_m)),
@@ -100,7 +120,20 @@ export class RoutePanel {
     ];
   }
 
-  #conditional(route: ConditionalRoute, { palette, sheet }: Around): Node[] {
+  /** A button that asks for other certified ways, then a choice among them. */
+  #others(routes: readonly Route[], chosen: number, others: Around["others"]): Node[] {
+    if (others === "waiting") return [h("p", { class: "waiting", role: "status" }, "Looking for other certified ways …")];
+    if (typeof others === "object") return [h("p", { class: "note", role: "alert" }, `No other way was found: ${others.failed}`)];
+    if (others === "unasked") return [h("button", { class: "small others", type: "button", onclick: () => this.actions.others() }, icon("route"), "Other certified ways")];
+    if (routes.length < 2) return [h("p", { class: "note", role: "status" }, "No other certified way differs enough from this one.")];
+    const rows = routes.map((one, index) => {
+      const words = `${distance(one.length_m)} · ${duration(one.time_s)} · ${margin(one.rsc_m)}`;
+      return h("button", { class: "other-way", type: "button", "aria-pressed": String(index === chosen), onclick: () => this.actions.choose(index) }, h("b", {}, String(index + 1)), words);
+    });
+    return [h("div", { class: "other-ways", role: "group", "aria-label": "Certified ways" }, ...rows)];
+  }
+
+  #conditional(route: ConditionalRoute, { palette, sheet }: Around): [string, ...Node[]] {
     return [
       ...conditionalHead(route),
       this.#list!.element,
@@ -129,14 +162,14 @@ export class RoutePanel {
     return h("ol", { class: "parts" }, ...rows);
   }
 
-  #blocked(answer: RouteAnswer, search: Search): Node[] {
+  #blocked(answer: RouteAnswer, search: Search): [string, ...Node[]] {
     if (answer.obstacles === null) {
-      return [h("h2", {}, "No route"), h("p", { class: "headline-words" }, `No roads lead there at all. ${ways}`)];
+      return ["No route", h("p", { class: "headline-words" }, `No roads lead there at all. ${ways}`)];
     }
     const count = answer.obstacles.length;
     const what = count === 1 ? "one place is not certified for this vehicle" : `${count} places are not certified for this vehicle`;
     return [
-      h("h2", {}, "No certified route"),
+      "No certified route",
       h(
         "div",
         { class: "verdict is-blocked" },
@@ -148,6 +181,11 @@ export class RoutePanel {
       h("p", { class: "scope" }, `Each of them would have to be certified first. ${answer.gave_up ? "The search was given up before all ways were tried. " : ""}${ways}`),
     ];
   }
+}
+
+/** What the mouse does on the map, for the keyboard. */
+function byKeyboard(): HTMLElement {
+  return h("p", { class: "note" }, "By keyboard: go to the map with the Tab key, move it with the arrows, and press Enter to take the place under the cross.");
 }
 
 /** What became of the search for a route under conditions. */

@@ -8,23 +8,42 @@ import { className, title } from "../words.ts";
 
 const PAUSE_MS = 160;
 
+/** What sets one field apart from another. */
+export interface SearchOptions {
+  /** The id of the field; those of its list begin with it. */
+  id: string;
+  label: string;
+  placeholder: string;
+  /** Whether it is a field of a form, with a label beside it, and keeps what was chosen. */
+  field?: boolean;
+  /** Takes what Enter was pressed on. Returns whether that was no road to look for. */
+  entered?(text: string): boolean;
+}
+
+const main: SearchOptions = { id: "search", label: "Find a road by name, number or id", placeholder: "Road, number or id" };
+
 export class Search {
   readonly element: HTMLElement;
   readonly #input: HTMLInputElement;
-  readonly #list = h("ul", { class: "hits", id: "hits", role: "listbox", "aria-label": "Roads found", hidden: true });
+  readonly #list: HTMLElement;
+  /** What a field of a form shows if nothing else is chosen. */
+  #kept = "";
   #hits: SearchHit[] = [];
   #active = -1;
   #timer: ReturnType<typeof setTimeout> | undefined;
   #running: AbortController | undefined;
 
-  constructor(private readonly go: (hit: SearchHit) => void) {
+  constructor(private readonly go: (hit: SearchHit) => void, private readonly options: SearchOptions = main) {
+    const { id, label, placeholder, field } = options;
+    this.#list = h("ul", { class: "hits", id: `${id}-hits`, role: "listbox", "aria-label": `Roads found: ${label}`, hidden: true });
     this.#input = h("input", {
       type: "search",
-      placeholder: "Road, number or id",
-      "aria-label": "Find a road by name, number or id",
+      id,
+      placeholder,
+      "aria-label": field ? null : label,
       role: "combobox",
       "aria-expanded": "false",
-      "aria-controls": "hits",
+      "aria-controls": `${id}-hits`,
       "aria-autocomplete": "list",
       autocomplete: "off",
       spellcheck: "false",
@@ -32,14 +51,33 @@ export class Search {
       oninput: () => this.#later(),
       onkeydown: (event: KeyboardEvent) => this.#key(event),
       onfocus: () => this.#draw(),
-      onblur: () => setTimeout(() => this.#close(), 150),
+      onblur: () => this.#left(),
     });
-    this.element = h("div", { class: "search", role: "search" }, icon("search"), this.#input, h("kbd", {}, "/"), this.#list);
+    this.element = field
+      ? h("div", { class: "search is-field" }, this.#input, this.#list)
+      : h("div", { class: "search", role: "search" }, icon("search"), this.#input, h("kbd", {}, "/"), this.#list);
   }
 
   focus(): void {
     this.#input.focus();
     this.#input.select();
+  }
+
+  /** Puts a text into the field, and keeps it when the reader leaves without a choice. */
+  put(text: string): void {
+    this.#kept = text;
+    this.#input.value = text;
+    this.#hits = [];
+    this.#close();
+  }
+
+  #left(): void {
+    setTimeout(() => this.#close(), 150);
+    if (!this.options.field) return;
+    clearTimeout(this.#timer);
+    // Who empties a field takes its place away.
+    if (this.#input.value.trim() === "" && this.#kept !== "") this.options.entered?.("");
+    else this.#input.value = this.#kept;
   }
 
   #later(): void {
@@ -67,6 +105,7 @@ export class Search {
 
   #draw(): void {
     if (this.#input.value.trim() === "") return;
+    if (this.options.field && this.#input.value === this.#kept) return;
     if (this.#hits.length === 0) return this.#say("Nothing found");
     const rows = this.#hits.map((hit, index) => this.#row(hit, index));
     this.#list.replaceChildren(...rows);
@@ -79,7 +118,7 @@ export class Search {
     return h(
       "li",
       {
-        id: `hit-${index}`,
+        id: `${this.options.id}-hit-${index}`,
         role: "option",
         "aria-selected": String(chosen),
         onmousedown: (event: MouseEvent) => {
@@ -100,7 +139,7 @@ export class Search {
   #open(): void {
     this.#list.hidden = false;
     this.#input.setAttribute("aria-expanded", "true");
-    this.#input.setAttribute("aria-activedescendant", this.#active >= 0 ? `hit-${this.#active}` : "");
+    this.#input.setAttribute("aria-activedescendant", this.#active >= 0 ? `${this.options.id}-hit-${this.#active}` : "");
   }
 
   #close(): void {
@@ -122,6 +161,8 @@ export class Search {
       event.preventDefault();
       this.#active = (this.#active + step + this.#hits.length) % this.#hits.length;
       this.#draw();
+    } else if (event.key === "Enter" && this.options.entered?.(this.#input.value.trim())) {
+      this.#close();
     } else if (event.key === "Enter") {
       this.#choose(Math.max(this.#active, 0));
     } else if (event.key === "Escape") {

@@ -7,7 +7,8 @@ import { sideView } from "../draw/vehicle.ts";
 import { marginColour, palettes } from "../map/palette.ts";
 import { Dialog } from "../ui/dialog.ts";
 import { h, prose, styled } from "../ui/dom.ts";
-import { CLASSES, VERDICTS, className, kilometres, mainClass, percent, policyWords, reasonWords, regionName, verdictWords } from "../words.ts";
+import { length, roadLength } from "../units.ts";
+import { CLASSES, VERDICTS, className, mainClass, percent, policyWords, reasonWords, regionName, signed, verdictWords } from "../words.ts";
 
 export class StatsDialog {
   readonly #dialog: Dialog;
@@ -34,7 +35,7 @@ export class StatsDialog {
 
   #content(stats: Stats, own: VehicleStats | undefined): Node[] {
     const { region } = this.context;
-    const intro = `${kilometres(stats.total_m)} of road, each direction counted; ${policyWords[stats.policy].name.toLowerCase()}.${region.timestamp ? ` Data of ${region.timestamp.slice(0, 10)}.` : ""}`;
+    const intro = `${roadLength(stats.total_m)} of road, each direction counted; ${policyWords[stats.policy].name.toLowerCase()}.${region.timestamp ? ` Data of ${region.timestamp.slice(0, 10)}.` : ""}`;
     const nodes: Node[] = [h("p", { class: "sub" }, intro), legend(), this.#vehicles(stats)];
     if (own) {
       nodes.push(
@@ -60,7 +61,7 @@ export class StatsDialog {
         "tr",
         { class: current ? "is-current" : null },
         h("th", { scope: "row" }, h("button", { type: "button", onclick: choose }, vehicle ? sideView(vehicle, longest) : null, h("span", {}, vehicle?.name ?? row.id))),
-        h("td", { class: "number" }, kilometres(row.verdicts.safe)),
+        h("td", { class: "number" }, roadLength(row.verdicts.safe)),
         h("td", { class: "number" }, percent(row.verdicts.safe, total(row.verdicts))),
         h("td", { class: "wide" }, bar(row.verdicts, total(row.verdicts))),
       );
@@ -74,18 +75,18 @@ export class StatsDialog {
     const most = Math.max(...lengths_m, 1);
     const columns = lengths_m.map((length, index) => {
       const low = from_m + index * step_m;
-      const words = `${low.toFixed(2)} to ${(low + step_m).toFixed(2)} m: ${kilometres(length)}`;
+      const words = `${signed(low)} to ${signed(low + step_m)}: ${roadLength(length)}`;
       const column = styled(h("i", { title: words }), { height: length > 0 ? `max(1px, ${(100 * length) / most}%)` : "0", background: marginColour(palette, low) });
       return h("span", { class: Math.abs(low) < step_m / 2 ? "is-zero" : null }, column);
     });
     const to = from_m + lengths_m.length * step_m;
-    const label = `Kilometres of road by margin: ${kilometres(below_m)} lack more than ${(-from_m).toFixed(1)} m, ${kilometres(above_m)} have more than ${to.toFixed(1)} m to spare.`;
+    const label = `Road by margin: ${roadLength(below_m)} lack more than ${length(-from_m)}, ${roadLength(above_m)} have more than ${length(to)} to spare.`;
     return h(
       "figure",
       { class: "histogram" },
       h("figcaption", {}, "Roads by margin"),
       h("div", { class: "columns-chart", role: "img", "aria-label": label }, ...columns),
-      h("div", { class: "axis", "aria-hidden": "true" }, h("span", {}, `${from_m} m`), h("span", {}, "just fits"), h("span", {}, `+${to} m`)),
+      h("div", { class: "axis", "aria-hidden": "true" }, h("span", {}, signed(from_m)), h("span", {}, "just fits"), h("span", {}, signed(to))),
       h("p", { class: "sub" }, label),
     );
   }
@@ -97,7 +98,7 @@ function total(lengths: Lengths): number {
 
 /** A stacked bar; `most` is the length that fills the cell. */
 function bar(lengths: Lengths, most: number): HTMLElement {
-  const words = VERDICTS.map((name) => `${verdictWords[name].name} ${kilometres(lengths[name])}`).join(", ");
+  const words = VERDICTS.map((name) => `${verdictWords[name].name} ${roadLength(lengths[name])}`).join(", ");
   const parts = VERDICTS.filter((name) => lengths[name] > 0).map((name) => styled(h("i", { class: `fill-${name}` }), { "flex-grow": lengths[name] }));
   const shown = h("div", { class: "bar", role: "img", "aria-label": words, title: words }, ...parts);
   return styled(shown, { width: `${Math.max((100 * total(lengths)) / Math.max(most, 1), 0.5)}%` });
@@ -123,12 +124,12 @@ function classes(own: VehicleStats): HTMLElement {
       "tr",
       {},
       h("th", { scope: "row" }, className(name)),
-      h("td", { class: "number" }, kilometres(lengths.safe)),
+      h("td", { class: "number" }, roadLength(lengths.safe)),
       h("td", { class: "number" }, percent(lengths.safe, total(lengths))),
       h("td", { class: "wide" }, bar(lengths, most)),
     ),
   );
-  return table("By class of road", ["Class", "Certified", "Share", "Kilometres"], rows);
+  return table("By class of road", ["Class", "Certified", "Share", "Length"], rows);
 }
 
 function limits(own: VehicleStats): HTMLElement {
@@ -140,11 +141,11 @@ function limits(own: VehicleStats): HTMLElement {
       "tr",
       {},
       h("th", { scope: "row" }, reasonWords(row.verdict, row.reason)),
-      h("td", { class: "number" }, kilometres(row.length_m)),
+      h("td", { class: "number" }, roadLength(row.length_m)),
       h("td", { class: "wide" }, shown),
     );
   });
-  return table("What limits most", ["Reason", "Road", "Kilometres"], rows);
+  return table("What limits most", ["Reason", "Road", "Length"], rows);
 }
 
 function table(caption: string, columns: string[], rows: HTMLElement[]): HTMLElement {

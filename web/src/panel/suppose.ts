@@ -4,7 +4,8 @@
 import { api, type Question } from "../api/client.ts";
 import type { Quantity, Supposable, Supposed } from "../api/types.ts";
 import { h } from "../ui/dom.ts";
-import { careful, distance, reasonWords } from "../words.ts";
+import { distance, length } from "../units.ts";
+import { careful, reasonWords } from "../words.ts";
 
 /** The server is asked when the slider has rested for so long, milliseconds. */
 const REST_MS = 250;
@@ -18,7 +19,7 @@ const things: Record<Quantity, string> = {
   carriageway_width: "the road",
 };
 
-const wide = (quantity: Quantity, m: number): string => `${m.toFixed(2)} m${quantity === "kerb_radius" ? "" : " wide"}`;
+const wide = (quantity: Quantity, m: number): string => `${length(m)}${quantity === "kerb_radius" ? "" : " wide"}`;
 
 /** The section of an explanation. `select` opens another road. `signal` ends what is under way. */
 export function suppose(id: string, question: Question, own: Supposable, select: (id: string) => void, signal: AbortSignal): HTMLElement {
@@ -80,15 +81,15 @@ function need({ quantity, need, need_flare }: Supposable, set: (metres: number) 
   if (need !== null) {
     const along = quantity === "kerb_radius" ? "" : ", nowhere narrower along this road,";
     const more = h("button", { class: "small", type: "button", onclick: () => set(need) }, "Suppose it");
-    return h("p", { class: "suppose-need" }, h("span", {}, `${what} of at least ${need.toFixed(2)} m${along} would do.`), more);
+    return h("p", { class: "suppose-need" }, h("span", {}, `${what} of at least ${length(need, "up")}${along} would do.`), more);
   }
-  if (need_flare !== null) return h("p", { class: "suppose-need" }, `No kerb radius up to 25 m would do, but roads ${need_flare.toFixed(2)} m wide before and after the corner would.`);
+  if (need_flare !== null) return h("p", { class: "suppose-need" }, `No kerb radius up to ${length(25)} would do, but roads ${length(need_flare, "up")} wide before and after the corner would.`);
   const unknown = quantity === "kerb_radius" ? "Which kerb radius would do is not in the database (netcert certify --needs all puts it there)." : "The database names no width that would do.";
   return h("p", { class: "suppose-need" }, `${unknown} Look with the slider.`);
 }
 
 function verdict({ quantity, supposed, enough, reason, rsc_m }: Supposed): (Node | string)[] {
-  const room = rsc_m === null || rsc_m < -100 ? "far too little room" : `${careful(rsc_m)} m ${rsc_m < 0 ? "missing" : "to spare"}`;
+  const room = rsc_m === null || rsc_m < -100 ? "far too little room" : `${careful(rsc_m)} ${rsc_m < 0 ? "missing" : "to spare"}`;
   const number = enough || reason === "width" ? room : reasonWords("unsafe", reason);
   return [
     h("strong", {}, number),

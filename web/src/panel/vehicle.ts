@@ -6,6 +6,7 @@ import { sideView } from "../draw/vehicle.ts";
 import { Dialog } from "../ui/dialog.ts";
 import { h } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
+import { length } from "../units.ts";
 
 const regions: Record<string, string> = {
   EU: "Europe",
@@ -18,9 +19,9 @@ const regions: Record<string, string> = {
 
 export function facts(vehicle: Vehicle): string {
   const known = [
-    `${vehicle.length_m.toFixed(2)} m`,
+    length(vehicle.length_m),
     vehicle.gross_mass_t === null ? null : `${vehicle.gross_mass_t} t`,
-    vehicle.height_m === null ? null : `${vehicle.height_m.toFixed(2)} m high`,
+    vehicle.height_m === null ? null : `${length(vehicle.height_m)} high`,
     `${vehicle.units.length} ${vehicle.units.length === 1 ? "unit" : "units"}`,
   ];
   return known.filter(Boolean).join(" · ");
@@ -35,12 +36,15 @@ export class VehicleCard {
   /** `certified` is the text about the roads that the vehicle may use, if it is known yet. */
   show(vehicle: Vehicle | undefined, certified: string | null): void {
     if (!vehicle) return;
-    this.element.setAttribute("aria-label", `Vehicle: ${vehicle.name}. Choose another`);
+    const picture = sideView(vehicle);
+    // The words beside it say the same.
+    picture.setAttribute("aria-hidden", "true");
     this.element.replaceChildren(
-      sideView(vehicle),
+      picture,
       h("span", { class: "vehicle-name" }, vehicle.name, icon("chevron")),
       h("span", { class: "vehicle-facts" }, facts(vehicle)),
       certified ? h("span", { class: "vehicle-certified" }, h("i", { class: "line line-safe" }), certified) : "",
+      h("span", { class: "sr-only" }, "Choose another vehicle"),
     );
   }
 }

@@ -5,7 +5,8 @@ import { icon } from "./icons.ts";
 
 export class Dialog {
   readonly element: HTMLDialogElement;
-  readonly body = h("div", { class: "dialog-body" });
+  /** It scrolls, so the keyboard must reach it. */
+  readonly body = h("div", { class: "dialog-body", tabindex: 0 });
   readonly #heading: HTMLElement;
 
   constructor(kind: string, title: string, onClose: () => void = () => {}) {

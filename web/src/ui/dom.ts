@@ -45,6 +45,11 @@ export function byId(id: string): HTMLElement {
   return element;
 }
 
+/** A road's numbers as shields, then its name. */
+export function shielded(numbers: readonly string[], name: string): (Node | string)[] {
+  return [...numbers.flatMap((one) => [h("span", { class: "shield" }, one), " "]), name];
+}
+
 /** A text in which words between backticks become identifiers. */
 export function prose(text: string): DocumentFragment {
   const fragment = document.createDocumentFragment();
