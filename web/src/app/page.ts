@@ -8,10 +8,10 @@ import { write, read, type Possible } from "../link.ts";
 import type { Under } from "../map/view.ts";
 import { ExplainPanel } from "../panel/explain.ts";
 import { StatsDialog } from "../panel/stats.ts";
+import { WholeRoadCard } from "../panel/wholeroad.ts";
 import { VehicleDialog, fittingPolicy } from "../panel/vehicle.ts";
 import type { State } from "../state.ts";
 import { toast } from "../ui/toast.ts";
-import { title } from "../words.ts";
 import { ChangesSince } from "./changes.ts";
 import { Drawer } from "./drawer.ts";
 import { HelpDialog } from "./help.ts";
@@ -33,6 +33,7 @@ export class Page {
   /** Null without an older database. */
   readonly #changes: ChangesSince | null;
   readonly #tools: Tools;
+  readonly #whole: WholeRoadCard;
   #numbers: Promise<Stats> | null = null;
   #written = "";
 
@@ -63,6 +64,11 @@ export class Page {
     this.#changes = before && new ChangesSince(context, before, this.#maps.first, { go: (road) => this.#goToChange(road), known: () => this.#changesKnown() });
     this.#routing = new Routing(context, this.#maps.first, this.#drawer);
     this.#side = new Side(context, { chooseVehicle: () => this.chooseVehicle(), go: (hit) => this.#search(hit), help: () => this.#help.open() }, this.#changes?.panel.element ?? null);
+    this.#whole = new WholeRoadCard(context, this.#maps.first, (edge, lon, lat) => {
+      store.set({ selected: edge });
+      this.#maps.fit([lon, lat, lon, lat]);
+    });
+    this.#side.search.element.after(this.#whole.element);
     this.#tools = new Tools(context, {
       route: () => this.route(),
       compare: () => this.compare(),
@@ -169,15 +175,16 @@ export class Page {
     }
   }
 
-  /** Selects a search result as a click would. For a road with many edges, the edge that the result names is selected. */
+  /** Selects a search result as a click would. Of a road the edge that the result names is selected, and the whole of it is shown. A place has a ring. */
   #search(hit: SearchHit): void {
     // Set first, so that the drawer is open when the map is fitted to the visible area.
     const { route } = this.context.store.state;
-    this.context.store.set({ selected: hit.edge_id, route: route?.length === 2 ? route : null });
+    this.context.store.set({ selected: hit.kind === "place" ? null : hit.edge_id, route: route?.length === 2 ? route : null });
     this.#maps.fit(hit.bbox);
     // With the focus on the map, the arrow keys, + and − work.
     this.#maps.first.map.getCanvas().focus({ preventScroll: true });
-    if (hit.kind !== "edge") toast(`${title(hit)}: one part of it is chosen; click on the road for another.`);
+    if (hit.kind === "edge") this.#whole.close();
+    else void this.#whole.show(hit);
   }
 
   /** Chooses the longest edge of a changed road, and shows all that changed of it. */
