@@ -28,7 +28,7 @@ fn interchange() -> AsciiMap {
     .way("de", "highway=primary_link")
     .way("TeU", "highway=residential name=Gasse")
     .way("fg", "highway=service")
-    .way("xy", "highway=track")
+    .way("xy", "highway=service")
 }
 
 #[test]
@@ -43,5 +43,5 @@ fn a_road_without_name_is_called_by_what_it_joins() {
     assert_eq!(title("ed"), title("de"));
     assert_eq!(title("fg"), "service road at B3/B4");
     let lonely = network.edges[edge(&network, "xy") as usize].clone();
-    assert_eq!(network.title(&lonely), format!("track (way {})", network.road(&lonely).way_id));
+    assert_eq!(network.title(&lonely), format!("service road (way {})", network.road(&lonely).way_id));
 }

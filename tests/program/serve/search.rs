@@ -89,7 +89,7 @@ fn a_road_is_whole_and_its_summary_is_that_of_its_pieces() {
         asked += 1;
     }
     assert!(asked > 5, "{asked}");
-    server.problem("/api/road?way=1", 404);
+    server.problem("/api/road?way=999999999", 404);
     server.problem("/api/road?way=x", 404);
     server.problem("/api/road", 400);
 }
