@@ -313,7 +313,7 @@ pub(super) fn tell(out: &mut dyn Write, explanation: &Explanation) -> std::io::R
         writeln!(
             out,
             "{}, {}{along}, edge {} ({} along way {}, node {} to {})",
-            printable(&road.title()),
+            printable(&road.title),
             road.highway,
             road.edge_id,
             road.direction.name(),

@@ -224,6 +224,7 @@ fn road_facts(network: &Network, edge: &Edge, policy: Policy) -> RoadFacts {
         highway: highway(road.class, road.link),
         name: text(road.name),
         reference: text(road.reference),
+        title: network.title(edge),
         policy,
         width_source: section.strip(policy).map(|strip| strip.source),
         line: network.positions(edge).collect(),

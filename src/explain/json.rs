@@ -25,6 +25,7 @@ pub fn json(e: &Explanation) -> Value {
             "highway": road.highway,
             "name": road.name,
             "ref": road.reference,
+            "title": road.title,
             "corridor": road.policy.name(),
             "width_source": road.width_source.map(WidthSource::name),
         })

@@ -99,6 +99,8 @@ pub struct RoadFacts {
     pub highway: String,
     pub name: Option<String>,
     pub reference: Option<String>,
+    /// Ref and name, or what the road joins; see [`Network::title`](crate::network::Network::title).
+    pub title: String,
     /// The policy of the certificate.
     pub policy: Policy,
     /// The source of the width under that policy. `None` if there is no width.
@@ -112,15 +114,6 @@ impl Explanation {
     #[must_use]
     pub fn hinge_decides(&self) -> bool {
         matches!(self.verdict, Verdict::Unsafe(UnsafeReason::Articulation | UnsafeReason::SteeringLock))
-    }
-}
-
-impl RoadFacts {
-    /// Ref and name, such as `A87 Great Inland Highway`. If both are missing, the way, such as `way 12345`.
-    #[must_use]
-    pub fn title(&self) -> String {
-        let named: Vec<&str> = [&self.reference, &self.name].into_iter().flatten().map(String::as_str).collect();
-        if named.is_empty() { format!("way {}", self.way_id) } else { named.join(" ") }
     }
 }
 

@@ -52,7 +52,7 @@ pub fn explain_turn(
 ) -> Result<TurnExplanation, Stopped> {
     stop.check()?;
     let roads = [facts.movement.from, facts.movement.to]
-        .map(|edge| network.edges.get(edge as usize).map_or(String::new(), |edge| title(network, edge)));
+        .map(|edge| network.edges.get(edge as usize).map_or(String::new(), |edge| network.title(edge)));
     let made = match Reach::of(&model.vehicle) {
         Some(reach) => corridors_of(network, facts, settings.policy, &settings.turn_params(), reach),
         None => Err(UnknownReason::Geometry),
@@ -178,13 +178,13 @@ fn roads_that_decide(
         let Some(edge) = network.edges.get(index as usize) else { continue };
         let Some(verdict) = edge_verdict(network, index, model, settings, stop)? else { continue };
         if verdict == own && !matches!(own, Verdict::Safe | Verdict::Unsafe(_)) && named.decides.is_none() {
-            named.decides = Some(title(network, edge));
+            named.decides = Some(network.title(edge));
             conflict = Conflict::of(network, edge, &model.vehicle);
         }
         // The edges that a passage leads over need no certificates of their own.
         let ends = [facts.movement.from, facts.movement.to].contains(&index);
         if ends && verdict != Verdict::Safe && matches!(own, Verdict::Safe | Verdict::Unsafe(_)) {
-            named.refused.push((format!("{} (edge {})", title(network, edge), edge.id), verdict));
+            named.refused.push((format!("{} (edge {})", network.title(edge), edge.id), verdict));
         }
     }
     // The order in which `certify` lets roads decide.
@@ -201,13 +201,6 @@ fn forbids(network: &Network, edge: &Edge, model: &Model) -> Option<Verdict> {
         Some(forbidden @ Verdict::Forbidden(_)) => Some(forbidden),
         _ => edge.barred.then_some(Verdict::Forbidden(ForbiddenReason::Barrier)),
     }
-}
-
-fn title(network: &Network, edge: &Edge) -> String {
-    let road = network.road(edge);
-    let named: Vec<&str> =
-        [road.reference, road.name].into_iter().flatten().map(|id| network.strings.text(id)).collect();
-    if named.is_empty() { format!("way {}", road.way_id) } else { named.join(" ") }
 }
 
 impl TurnExplanation {

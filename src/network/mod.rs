@@ -28,6 +28,7 @@ mod roundabouts;
 mod site;
 mod splits;
 mod stroke;
+mod title;
 mod vertices;
 mod ways;
 
@@ -51,6 +52,7 @@ pub use site::Site;
 pub(crate) use site::{Pieces, pieces};
 pub use splits::Splits;
 pub use stroke::StrokeOptions;
+pub use title::Ends;
 
 use crate::osm::facts::{CrossSection, Direction, Legal, Oneway, RestrictionKind, RoadClass};
 use crate::osm::{LonLat, StringId, StringPool};
@@ -173,6 +175,9 @@ pub struct Network {
     pub crossings: Crossings,
     /// What is known of single places beside the map.
     pub site: Site,
+    /// Edges at the ends of unnamed roads, for titles.
+    #[serde(skip)]
+    pub ends: Ends,
     /// Names and refs.
     pub strings: StringPool,
 }

@@ -99,7 +99,7 @@ impl NodeTable {
 }
 
 /// An interned string (names, refs) of a [`StringPool`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
 pub struct StringId(pub u32);
 
 /// Interned strings. The same text has the same id, and ids follow first use in way order.

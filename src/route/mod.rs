@@ -21,6 +21,7 @@
 //! | `plan` | searches, certifies, leaves out what failed, and searches again; alternatives |
 //! | `obstacles` | what blocks a route, and on which way |
 //! | `conditions` | a route that is certified if widths and radii are as it says |
+//! | `beside` | the road beside a place, and why it may not be used |
 //! | `best` | certified routes, else one under conditions |
 //! | `report` | an answer as JSON and GeoJSON |
 //! | `relative` | an answer beside a reference vehicle |
@@ -29,6 +30,7 @@
 
 mod assemble;
 mod bans;
+mod beside;
 mod best;
 mod blend;
 mod conditions;
@@ -54,6 +56,7 @@ mod whole;
 
 pub use assemble::{AssemblyError, Part, PartKind, RoutePath, Way, assemble, passes_over};
 pub use bans::{Bans, Within};
+pub use beside::Beside;
 pub use conditions::{
     Condition, ConditionAt, Conditional, Hopeless, SHEET_COLUMNS, sheet_csv, sheet_features, sheet_geojson,
 };
@@ -69,6 +72,8 @@ pub use relative::{Comparison, Peer, Standings};
 pub use report::{CONDITIONAL, PartResult, condition_members, geojson, json, obstacle_members, place, title};
 pub use roads::Roads;
 pub use search::{Found, Goal, Start, search, search_over};
+#[cfg(feature = "serve")]
+pub(crate) use snap::foot;
 pub use snap::{Position, SnapError, Snapped, Snapper};
 pub use speeds::{Measure, Speeds, SpeedsError};
 pub use stored::NoDriver;

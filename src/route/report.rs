@@ -9,7 +9,7 @@ use super::conditions::Conditional;
 use super::obstacles::{Basis, Obstacle, Refutation};
 use super::plan::{Answer, Route};
 use crate::corridor::FrameError;
-use crate::network::{Edge, Network, PassageKind};
+use crate::network::{Network, PassageKind};
 use crate::osm::facts::WidthSource;
 use crate::osm::rounded;
 use crate::stet::{Model, known_m};
@@ -81,7 +81,7 @@ impl Route {
 /// the roundabout into High Street`.
 #[must_use]
 pub fn title(network: &Network, at: PartKind) -> String {
-    let of = |edge: u32| network.edges.get(edge as usize).map_or_else(String::new, |edge| road_title(network, edge));
+    let of = |edge: u32| network.edges.get(edge as usize).map_or_else(String::new, |edge| network.title(edge));
     match at {
         PartKind::Edge(edge) => of(edge),
         PartKind::Turn { from, to } if passes_over(network, at) == Some(PassageKind::Roundabout) => {
@@ -89,13 +89,6 @@ pub fn title(network: &Network, at: PartKind) -> String {
         }
         PartKind::Turn { from, to } => format!("{} into {}", of(from), of(to)),
     }
-}
-
-fn road_title(network: &Network, edge: &Edge) -> String {
-    let road = network.road(edge);
-    let texts: Vec<&str> =
-        [road.reference, road.name].into_iter().flatten().map(|id| network.strings.text(id)).collect();
-    if texts.is_empty() { format!("way {}", road.way_id) } else { texts.join(" ") }
 }
 
 /// Longitude and latitude of an edge's middle vertex, or of the node where a turn or passage begins, degrees.

@@ -184,7 +184,7 @@ impl Snapper {
 }
 
 /// The distance of the origin from a segment, and the share of the segment before the foot.
-fn foot([a, b]: [[f64; 2]; 2]) -> (f64, f64) {
+pub(crate) fn foot([a, b]: [[f64; 2]; 2]) -> (f64, f64) {
     let u = [b[0] - a[0], b[1] - a[1]];
     let squared = u[0] * u[0] + u[1] * u[1];
     let along = if squared > 0.0 { (-(a[0] * u[0] + a[1] * u[1]) / squared).clamp(0.0, 1.0) } else { 0.0 };

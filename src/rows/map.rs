@@ -1,24 +1,24 @@
-//! Rows for maps, with only the columns that are drawn, and ways with their names for the search.
+//! Rows for maps, with only the columns that are drawn.
+
+use std::borrow::Cow;
 
 use crate::osm::LonLat;
 use crate::osm::facts::{Direction, Oneway, RoadClass, WidthSource};
 use crate::verdict::Verdict;
 
-use super::bounds::Bounds;
-
-/// An edge as a map draws it.
+/// An edge as a map draws it. Its texts may be those of a network in memory.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)] // the columns of `edge` and `certificate`
-pub struct MapEdge {
+pub struct MapEdge<'r> {
     /// Index into `Network::edges`.
     pub edge: u32,
     pub edge_id: i64,
     pub way_id: i64,
     pub direction: Direction,
     pub oneway: Oneway,
-    pub highway: String,
-    pub name: Option<String>,
-    pub reference: Option<String>,
+    pub highway: Cow<'r, str>,
+    pub name: Option<Cow<'r, str>>,
+    pub reference: Option<Cow<'r, str>>,
     pub numbers: MapNumbers,
     /// The map's line in direction of travel.
     pub line: Vec<LonLat>,
@@ -77,18 +77,4 @@ pub struct MainRoad {
     pub rsc_mm: Option<i64>,
     /// The map's line in direction of travel.
     pub line: Vec<LonLat>,
-}
-
-/// A way that has edges.
-#[derive(Debug, Clone, PartialEq)]
-#[allow(missing_docs)] // the columns of `road`
-pub struct RoadRow {
-    pub way_id: i64,
-    pub highway: String,
-    pub name: Option<String>,
-    pub reference: Option<String>,
-    /// The way's first edge in order of the network.
-    pub edge_id: i64,
-    /// The box around all edges of the way, in single precision, rounded outwards.
-    pub bounds: Bounds,
 }

@@ -63,7 +63,8 @@ impl App {
             let known = Arc::clone(&app.region.read().unwrap_or_else(PoisonError::into_inner));
             let before = app.options.before.as_deref();
             let older = before.map(|path| Older::open(path, known.older.as_ref())).transpose()?;
-            let region = Arc::new(Region::open(&app.options.db, older)?);
+            let region = Region::open(&app.options.db, older)?.holding(app.options.limits.held_edges);
+            let region = Arc::new(region);
             *app.region.write().unwrap_or_else(PoisonError::into_inner) = Arc::clone(&region);
             lines::read_anew(&app.options.db);
             Ok(region)
@@ -78,6 +79,13 @@ impl App {
         let older = self.options.before.as_deref().map(|path| Identity::of(path).ok());
         let same_older = older.as_ref() == known.older.as_ref().map(|older| &older.identity);
         Ok((same && same_older).then_some(known))
+    }
+
+    /// Loads in advance what the first tiles need.
+    pub(super) async fn first_map(self: &Arc<Self>) {
+        let Ok(region) = self.region().await else { return };
+        // An error is ignored here; the first request that needs the roads gets it.
+        let _ = self.slow.run(move |_| region.first_map()).await;
     }
 
     /// Makes the overviews in advance, which the first map of each vehicle needs.

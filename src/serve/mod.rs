@@ -21,7 +21,7 @@
 //! | `older`, `changes` | the older database beside it; what changed since then |
 //! | `planning`, `drive` | routes, and how a vehicle drives along one |
 //! | `made_once` | values that are made on first use; the last results of long work |
-//! | `names` | comparison of road names with what people type |
+//! | `search` | roads by what people type |
 //! | `tiles` | vector tiles |
 //! | `api` | all other endpoints, one file each |
 //! | `assets` | the page |
@@ -37,7 +37,6 @@ mod drive;
 mod gate;
 mod lines;
 mod made_once;
-mod names;
 mod older;
 mod options;
 mod planning;
@@ -46,6 +45,7 @@ mod region;
 mod roads;
 mod routes;
 mod run;
+mod search;
 mod tiles;
 mod work;
 

@@ -82,6 +82,8 @@ pub struct Limits {
     pub slow: LaneLimits,
     /// Size of the cache of finished answers, bytes.
     pub cache_bytes: usize,
+    /// The greatest number of edges whose numbers are held in memory, for tiles and summaries.
+    pub held_edges: usize,
     /// Connections at the same time. Further connections wait to be accepted.
     pub connections: usize,
     /// The longest time until a request's line and headers have arrived, and between two requests.
@@ -99,6 +101,7 @@ impl Default for Limits {
             quick: LaneLimits { at_a_time: processors.clamp(2, 16), waiting: 256, time: Duration::from_secs(15) },
             slow: LaneLimits { at_a_time: (processors / 2).clamp(1, 8), waiting: 16, time: Duration::from_secs(60) },
             cache_bytes: 128 << 20,
+            held_edges: 2_000_000,
             connections: 256,
             header_time: Duration::from_secs(20),
             connection_time: Duration::from_secs(600),

@@ -9,15 +9,19 @@ use super::drive;
 use super::problem::Problem;
 use super::region::{Certified, Region};
 use crate::picture::{self, SheetStyle};
-use crate::route::{self, Conditional, Driver, Measure, NoDriver, Planner, Question, Roads, Speeds, Unanswered};
+use crate::route::{
+    self, Conditional, Driver, Measure, NoDriver, Planner, Question, Roads, SnapError, Speeds, Unanswered,
+};
 use crate::stop::Stop;
-use crate::words::Named as _;
+use crate::words::{Named as _, verdict_words};
 use serde_json::{Value, json};
 
 /// After this many answers a planner is replaced by a new one, because the corridors that it keeps grow with every answer.
 const ANSWERS: usize = 100;
 /// Questions that may wait for one planner. The slow lane lets fewer through.
 const MOST_WAITING: usize = 64;
+/// A road farther than this is not beside a place, metres.
+const MOST_BESIDE_M: f64 = 500.0;
 
 /// A question, and the number of drives wanted in the answer.
 #[derive(Debug, Clone)]
@@ -108,7 +112,7 @@ impl Wanted {
             false => planner.answer(&ride.question, &ride.stop),
         };
         let answer = answer.map_err(|unanswered| match unanswered {
-            Unanswered::Place(error) => Problem::no_road(error.to_string()),
+            Unanswered::Place(error) => self.no_road(planner, ride, &error),
             Unanswered::Stopped(stopped) => stopped.into(),
         })?;
         let (network, model) = (&self.roads.network, &self.driver.model);
@@ -132,6 +136,44 @@ impl Wanted {
         ids_as_text(&mut members);
         let sheets = answer.conditional.as_ref().map(|conditional| self.sheets(conditional));
         Ok(Planned { members, sheets })
+    }
+
+    /// Which place is too far from a road that may be used, the nearest such road, and why the road beside the place is none.
+    fn no_road(&self, planner: &Planner, ride: &Ride, error: &SnapError) -> Problem {
+        let (place, nearest) = match *error {
+            SnapError::TooFar { place, nearest, distance_m, .. } => (place, Some((nearest, distance_m))),
+            SnapError::Nothing { place } => (place, None),
+        };
+        let last = ride.question.places.len().saturating_sub(1);
+        let at = ride.question.places.iter().position(|&one| one == place);
+        let parameter = match at {
+            Some(0) => "from",
+            Some(at) if at == last => "to",
+            _ => "via",
+        };
+        let network = &self.roads.network;
+        let beside =
+            planner.beside(place, nearest.map_or(MOST_BESIDE_M, |(_, distance_m)| distance_m.min(MOST_BESIDE_M)));
+        let known = beside.and_then(|beside| Some((beside, network.edges.get(beside.edge as usize)?)));
+        let mut detail = error.to_string();
+        let beside = known.map(|(beside, edge)| {
+            let ((verdict, reason), title) = (verdict_words(beside.permit.verdict), network.title(edge));
+            let why = if reason.is_empty() { String::new() } else { format!(": {}", reason.replace('_', " ")) };
+            detail += &format!("; {title}, {:.0} m away, is {verdict}{why}", beside.distance_m);
+            json!({
+                "edge_id": edge.id,
+                "title": title,
+                "distance_m": beside.distance_m,
+                "verdict": verdict,
+                "reason": (!reason.is_empty()).then_some(reason),
+                "rsc_m": beside.permit.rsc_m,
+            })
+        });
+        let nearest = nearest.map(|(at, distance_m)| json!({"lon": at.lon, "lat": at.lat, "distance_m": distance_m}));
+        let place = json!({"lon": place.lon, "lat": place.lat});
+        let mut members = json!({"parameter": parameter, "place": place, "nearest": nearest, "beside": beside});
+        ids_as_text(&mut members);
+        Problem::no_road(detail, members)
     }
 
     fn sheets(&self, conditional: &Conditional) -> Sheets {

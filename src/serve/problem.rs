@@ -2,7 +2,7 @@
 
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::lines::Refused;
 use crate::stop::Stopped;
@@ -18,12 +18,22 @@ pub(super) struct Problem {
     detail: String,
     /// The parameter at fault.
     parameter: Option<String>,
+    /// Further members, which programs read.
+    more: serde_json::Map<String, Value>,
     retry_after_s: Option<u32>,
 }
 
 impl Problem {
     pub(super) fn new(status: StatusCode, kind: &'static str, title: &'static str, detail: impl Into<String>) -> Self {
-        Self { status, kind, title, detail: detail.into(), parameter: None, retry_after_s: None }
+        Self {
+            status,
+            kind,
+            title,
+            detail: detail.into(),
+            parameter: None,
+            more: serde_json::Map::new(),
+            retry_after_s: None,
+        }
     }
 
     /// A parameter is missing, unknown, out of range or cannot be read.
@@ -43,6 +53,11 @@ impl Problem {
         Self { retry_after_s: Some(1), ..problem }
     }
 
+    /// The server has too much to do, and is likely to have a place again after this time.
+    pub(super) fn busy_for(detail: impl Into<String>, time: std::time::Duration) -> Self {
+        Self { retry_after_s: Some(time.as_secs_f64().ceil() as u32), ..Self::busy(detail) }
+    }
+
     /// The work took longer than its lane allows.
     pub(super) fn too_slow(limit_s: f64) -> Self {
         Self::cut_off(format!("not done within {limit_s} s; ask for less, or ask again when the server is less busy"))
@@ -52,9 +67,12 @@ impl Problem {
         Self::new(StatusCode::GATEWAY_TIMEOUT, "too-slow", "It takes too long", detail)
     }
 
-    /// A place is near no road that may be used.
-    pub(super) fn no_road(detail: impl Into<String>) -> Self {
-        Self::new(StatusCode::UNPROCESSABLE_ENTITY, "no-road", "There is no road that may be used", detail)
+    /// A place is near no road that may be used. `members` say where the nearest one is, and what is beside the place.
+    pub(super) fn no_road(detail: impl Into<String>, members: Value) -> Self {
+        let title = "There is no road that may be used";
+        let problem = Self::new(StatusCode::UNPROCESSABLE_ENTITY, "no-road", title, detail);
+        let Value::Object(more) = members else { return problem };
+        Self { more, ..problem }
     }
 
     /// The certificates were made by another version of the program.
@@ -124,6 +142,9 @@ impl IntoResponse for Problem {
         });
         if let Some(parameter) = &self.parameter {
             body["parameter"] = json!(parameter);
+        }
+        for (name, member) in self.more {
+            body[name] = member;
         }
         let mut response = (self.status, body.to_string()).into_response();
         response.extensions_mut().insert(Refused(format!("{} {}: {}", self.status.as_u16(), self.title, self.detail)));

@@ -13,11 +13,12 @@ use super::api::explain::Explained;
 use super::ask::shortened;
 use super::changes::Changes;
 use super::made_once::{Late, Recent};
-use super::names::NamedRoad;
 use super::older::Older;
+use super::options::Limits;
 use super::planning::{Planned, Router};
 use super::problem::Problem;
 use super::roads::RoadIndex;
+use super::search::Finder;
 use super::tiles::Overview;
 use crate::osm::facts::Policy;
 use crate::rows::{Bounds, DrivingSides, MapNumbers};
@@ -33,9 +34,10 @@ const MOST_IDLE: usize = 4;
 const MOST_EXPLAINED: usize = 16;
 /// Number of overviews to keep, one for each vehicle and policy. An overview takes about 60 bytes per vertex.
 pub(super) const MOST_OVERVIEWS: usize = 6;
-/// Number of sets to keep the numbers of all edges of, and the greatest number of edges for that. An edge takes 64 bytes in each set.
+/// Number of sets to keep the numbers of all edges of. An edge takes 64 bytes in each set.
 const MOST_NUMBERS: usize = 6;
-const MOST_NUMBERED: usize = 2_000_000;
+/// A tile waits for the network of a region with at most so many edges. It is loaded sooner than a handful of tiles are made from the file.
+const MOST_WAITED_FOR: usize = 500_000;
 /// Number of answers of planners to keep, so that a route and the sheets of its conditions are planned once. An answer with a long drive
 /// has some megabytes.
 const MOST_PLANNED: usize = 4;
@@ -93,6 +95,9 @@ pub(super) struct Region {
     /// Hash of the runs and the sets of certificates. It does not depend on the file's path or modification time.
     pub(super) content: String,
     pub(super) extent: Option<Bounds>,
+    edges: usize,
+    /// The greatest number of edges whose numbers are held in memory.
+    held_edges: usize,
     pub(super) runs: Vec<Run>,
     pub(super) vehicles: Vec<Vehicle>,
     pub(super) sets: Vec<CertifiedSet>,
@@ -102,7 +107,7 @@ pub(super) struct Region {
     pub(super) policy: Policy,
     idle: Mutex<Vec<Database>>,
     roads: Late<Arc<RoadIndex>>,
-    names: Late<Arc<[NamedRoad]>>,
+    finder: Late<Arc<Finder>>,
     sides: Late<Arc<DrivingSides>>,
     /// The numbers of all edges in the last sets, by vehicle and policy.
     numbers: Recent<Vec<MapNumbers>>,
@@ -147,6 +152,8 @@ impl Region {
             state: state.to_hex().chars().take(16).collect(),
             content,
             extent: database.extent()?,
+            edges: database.edges()? as usize,
+            held_edges: Limits::default().held_edges,
             runs,
             vehicles,
             sets,
@@ -154,7 +161,7 @@ impl Region {
             policy,
             idle: Mutex::new(vec![database]),
             roads: Late::default(),
-            names: Late::default(),
+            finder: Late::default(),
             sides: Late::default(),
             numbers: Recent::new(MOST_NUMBERS),
             overviews: Recent::new(MOST_OVERVIEWS),
@@ -164,6 +171,12 @@ impl Region {
             routers: Recent::new(MOST_ROUTERS),
         };
         Ok(region)
+    }
+
+    /// With another bound on the edges whose numbers are held in memory.
+    pub(super) fn holding(mut self, held_edges: usize) -> Self {
+        self.held_edges = held_edges;
+        self
     }
 
     /// The run that made the database from its extract.
@@ -224,9 +237,14 @@ impl Region {
         self.roads.get(|| self.read(Database::load_network).map(|network| Arc::new(RoadIndex::new(network))))
     }
 
-    /// The network in memory, if it is loaded.
-    pub(super) fn roads_if_loaded(&self) -> Option<Arc<RoadIndex>> {
-        self.roads.known()
+    /// The network in memory, for a tile. A small region's network is loaded first; otherwise `None` if it is not loaded yet, or if the region
+    /// has too many edges to hold.
+    pub(super) fn roads_for_tiles(&self) -> Result<Option<Arc<RoadIndex>>, Problem> {
+        match self.edges {
+            edges if edges > self.held_edges => Ok(None),
+            edges if edges <= MOST_WAITED_FOR => self.roads().map(Some),
+            _ => Ok(self.roads.known()),
+        }
     }
 
     /// The numbers of every edge of `roads` in a set; the first call reads them. `None` if there are too many edges to hold, or if a damaged
@@ -237,12 +255,19 @@ impl Region {
         set: (&str, Policy),
     ) -> Result<Option<Arc<Vec<MapNumbers>>>, Problem> {
         let edges = roads.network().edges.len();
-        if edges > MOST_NUMBERED {
+        if edges > self.held_edges {
             return Ok(None);
         }
         let key = format!("{} {}", set.0, set.1.name());
         let numbers = self.numbers.get(&key, || self.read(|database| database.map_numbers(set)))?;
         Ok(Some(numbers).filter(|numbers| numbers.len() == edges))
+    }
+
+    /// Loads what the first map needs: the roads and the numbers of the first set.
+    pub(super) fn first_map(&self) -> Result<(), Problem> {
+        let roads = self.roads()?;
+        let Some(set) = self.sets.first() else { return Ok(()) };
+        self.numbers(&roads, (&set.vehicle_id, set.policy)).map(|_| ())
     }
 
     /// Loads the roads and their names, and the numbers of the first sets.
@@ -252,13 +277,14 @@ impl Region {
             stop.check()?;
             self.numbers(&roads, (&set.vehicle_id, set.policy))?;
         }
-        self.names().map(|_| ())
+        self.finder().map(|_| ())
     }
 
-    /// All ways with their names, sorted by way id; the first call reads them.
-    pub(super) fn names(&self) -> Result<Arc<[NamedRoad]>, Problem> {
-        let read = || Ok(self.read(Database::roads)?.into_iter().map(NamedRoad::new).collect());
-        self.names.get(read)
+    /// The index of all roads by their names and refs; the first call makes it.
+    pub(super) fn finder(&self) -> Result<Arc<Finder>, Problem> {
+        let make =
+            || Finder::new(self.roads()?.network()).map(Arc::new).map_err(|error| Problem::fault(error.to_string()));
+        self.finder.get(make)
     }
 
     /// The driving side of every edge; the first call reads them.

@@ -8,8 +8,9 @@ use rustc_hash::FxHashMap;
 
 use super::made_once::Recent;
 use super::problem::Problem;
-use crate::network::Network;
-use crate::route::Roads;
+use crate::network::{EARTH_RADIUS_M, Network, offset_m};
+use crate::osm::LonLat;
+use crate::route::{Position, Roads, foot};
 use crate::rows::Bounds;
 use crate::settings::Settings;
 use crate::turns::{TurnFacts, turn_facts};
@@ -52,6 +53,24 @@ impl RoadIndex {
             self.by_place.locate_in_envelope_intersecting(&around).map(|edge| edge.data).collect();
         edges.sort_unstable();
         edges
+    }
+
+    /// The edge whose line is nearest to a place, with the distance in metres, if there is one within `most_m`.
+    pub(super) fn nearest(&self, place: Position, most_m: f64) -> Option<(u32, f64)> {
+        let (here, network) = (LonLat::from(place), self.network());
+        let dy = (most_m / EARTH_RADIUS_M).to_degrees();
+        let dx = dy / place.lat.to_radians().cos().max(0.01);
+        let around =
+            Bounds { west: place.lon - dx, south: place.lat - dy, east: place.lon + dx, north: place.lat + dy };
+        let distance = |index: u32| {
+            let line: Vec<[f64; 2]> = network
+                .positions(network.edges.get(index as usize)?)
+                .map(|position| offset_m(here, position))
+                .collect();
+            let nearest = line.windows(2).map(|pair| foot([pair[0], pair[1]]).0).min_by(f64::total_cmp)?;
+            (nearest <= most_m).then_some((index, nearest))
+        };
+        self.near(around).into_iter().filter_map(distance).min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// The turn with this `turn_id`, with kerbs by `settings`.

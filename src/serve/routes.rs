@@ -33,6 +33,7 @@ const ENDPOINTS: &[(&str, Pace, Work)] = &[
     ("/api/sheet.csv", Pace::Slow, api::route::sheet_csv),
     ("/api/sheet.geojson", Pace::Slow, api::route::sheet_geojson),
     ("/api/sheet.html", Pace::Slow, api::route::sheet_html),
+    ("/api/road", Pace::Quick, api::road::road),
     ("/api/search", Pace::Quick, api::search::search),
     ("/api/stats", Pace::Slow, api::stats::stats),
     ("/api/suppose/{id}", Pace::Slow, api::suppose::suppose),

@@ -31,7 +31,7 @@ use crate::words::Named as _;
 const MOST_HEAD_BYTES: usize = 16 << 10;
 /// The pause after an error of `accept`, such as no file handle left. Meanwhile some connections end.
 const PAUSE: Duration = Duration::from_millis(100);
-/// The delay before the network is loaded for explanations and routes. By then the first map is likely to be shown.
+/// The delay before the rest is loaded, for other vehicles and the search. By then the first map is likely to be shown.
 const WARM_UP_AFTER: Duration = Duration::from_secs(1);
 
 /// Why the server cannot start.
@@ -91,7 +91,7 @@ impl Server {
             return Err(ServeError::Remote(options.addr));
         }
         let older = options.before.as_deref().map(|before| older(before, &options.db)).transpose()?;
-        let region = Region::open(&options.db, older)?;
+        let region = Region::open(&options.db, older)?.holding(options.limits.held_edges);
         let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().thread_name("serve").build()?;
         let listen = |source| ServeError::Listen { addr: options.addr, source };
         let listener = runtime.block_on(TcpListener::bind(options.addr)).map_err(listen)?;
@@ -113,6 +113,7 @@ impl Server {
     pub fn run(self, stop: impl Future<Output = ()>) {
         let Self { runtime, listener, router, limits, app, .. } = self;
         runtime.spawn(async move {
+            app.first_map().await;
             app.prepare().await;
             tokio::time::sleep(WARM_UP_AFTER).await;
             app.warm_up().await;

@@ -6,7 +6,7 @@
 //! work has a lane of its own, so that it does not delay the map.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use tokio::sync::Semaphore;
@@ -22,6 +22,9 @@ pub(super) struct Lane {
     waiting: AtomicUsize,
     most_waiting: usize,
     limit: Duration,
+    at_a_time: usize,
+    /// How long the last pieces of work took, a moving mean, milliseconds.
+    mean_ms: AtomicU64,
 }
 
 /// Counts one waiting request while it lives.
@@ -46,7 +49,22 @@ impl Lane {
     /// A lane that runs `at_a_time` pieces of work and lets `most_waiting` more wait. Each is answered within `limit`.
     pub(super) fn new(at_a_time: usize, most_waiting: usize, limit: Duration) -> Self {
         let places = Arc::new(Semaphore::new(at_a_time.max(1)));
-        Self { places, waiting: AtomicUsize::new(0), most_waiting, limit }
+        let (waiting, mean_ms) = (AtomicUsize::new(0), AtomicU64::new(0));
+        Self { places, waiting, most_waiting, limit, at_a_time: at_a_time.max(1), mean_ms }
+    }
+
+    /// When half of a full queue is likely to be done: 1 to 10 seconds, which is as long as the page waits.
+    fn relief(&self) -> Duration {
+        let mean = Duration::from_millis(self.mean_ms.load(Ordering::Relaxed));
+        let half = mean.mul_f64(self.most_waiting as f64 / (2 * self.at_a_time) as f64);
+        half.clamp(Duration::from_secs(1), Duration::from_secs(10))
+    }
+
+    /// Takes the time of a piece of work into the mean.
+    fn took(&self, time: Duration) {
+        let (own, mean) = (u64::try_from(time.as_millis()).unwrap_or(u64::MAX), self.mean_ms.load(Ordering::Relaxed));
+        let mean = if mean == 0 { own } else { (3 * (mean / 4)).saturating_add(own / 4) };
+        self.mean_ms.store(mean, Ordering::Relaxed);
     }
 
     /// Runs `work` on a thread that may block. The given [`Stop`] tells the work when nobody waits for it any more.
@@ -58,26 +76,29 @@ impl Lane {
         let place = {
             let waiting = Waiting(&self.waiting);
             if self.waiting.fetch_add(1, Ordering::Relaxed) >= self.most_waiting + self.places.available_permits() {
-                return Err(Problem::busy(format!(
-                    "{} requests wait already; ask again in a moment",
-                    self.most_waiting
-                )));
+                let detail = format!("{} requests wait already; ask again in a moment", self.most_waiting);
+                return Err(Problem::busy_for(detail, self.relief()));
             }
             let place = timeout(self.limit, Arc::clone(&self.places).acquire_owned()).await;
             drop(waiting);
             match place {
                 Ok(Ok(place)) => place,
                 Ok(Err(_)) => return Err(Problem::busy("the server is stopping")),
-                Err(_) => return Err(Problem::busy("no place became free in time; ask again in a moment")),
+                Err(_) => {
+                    let detail = "no place became free in time; ask again in a moment";
+                    return Err(Problem::busy_for(detail, self.relief()));
+                }
             }
         };
-        let wanted = Wanted(Stop::default());
+        let (wanted, started) = (Wanted(Stop::default()), Instant::now());
         let stop = wanted.0.clone();
         let done = tokio::task::spawn_blocking(move || {
             let _place = place;
             work(stop)
         });
-        match timeout(self.limit.saturating_sub(begin.elapsed()), done).await {
+        let done = timeout(self.limit.saturating_sub(begin.elapsed()), done).await;
+        self.took(started.elapsed());
+        match done {
             Ok(Ok(result)) => result,
             Ok(Err(panicked)) => Err(Problem::fault(format!("the work was cut short: {panicked}"))),
             Err(_) => Err(Problem::too_slow(self.limit.as_secs_f64())),
@@ -139,6 +160,18 @@ mod tests {
         });
         assert!(refused.len() >= 15, "{}", refused.len());
         assert!(refused.iter().all(|&status| status == StatusCode::SERVICE_UNAVAILABLE));
+    }
+
+    #[test]
+    fn the_busier_a_lane_the_later_one_may_ask_again() {
+        let lane = Lane::new(2, 16, Duration::from_secs(60));
+        assert_eq!(lane.relief(), Duration::from_secs(1));
+        lane.took(Duration::from_millis(800));
+        assert_eq!(lane.relief(), Duration::from_millis(3200));
+        for _ in 0..20 {
+            lane.took(Duration::from_secs(30));
+        }
+        assert_eq!(lane.relief(), Duration::from_secs(10));
     }
 
     #[test]

@@ -57,6 +57,16 @@ impl Database {
         Ok(row.filter(|b| b.west < b.east && b.south < b.north))
     }
 
+    /// The number of edges.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn edges(&mut self) -> Result<u32, StoreError> {
+        // Edges are numbered from 1 on.
+        let sql = "SELECT coalesce(max(fid), 0) FROM edge";
+        self.session.run(async |c| sqlx::query_scalar(sql).fetch_one(c).await)
+    }
+
     /// Whether traffic keeps left on most ways.
     ///
     /// # Errors
@@ -75,7 +85,7 @@ impl Database {
         (vehicle, policy): (&str, Policy),
         bounds: Bounds,
         classes: &[RoadClass],
-    ) -> Result<Vec<MapEdge>, StoreError> {
+    ) -> Result<Vec<MapEdge<'static>>, StoreError> {
         let [width, source] = width_columns(policy);
         let mut sql = format!(
             "SELECT e.fid, e.length_m, e.{width}, e.{source}, c.verdict_no, c.rsc_mm, c.need_cm, e.edge_id, e.way_id, \
@@ -91,7 +101,7 @@ impl Database {
             sql += &format!(" AND e.highway IN ({})", words.join(","));
         }
         let Bounds { west, south, east, north } = bounds;
-        let mut rows: Vec<MapEdge> = self.session.run(async |c| {
+        let mut rows: Vec<MapEdge<'static>> = self.session.run(async |c| {
             let query = sqlx::query(AssertSqlSafe(sql)).bind(vehicle).bind(corridor_no(policy));
             query.bind(west).bind(east).bind(south).bind(north).fetch_all(c).await?.iter().map(map_edge).collect()
         })?;
@@ -178,7 +188,7 @@ fn sides(row: &SqliteRow) -> Sql<Option<Bounds>> {
     Ok(Some(Bounds { west, south, east, north }))
 }
 
-fn map_edge(row: &SqliteRow) -> Sql<MapEdge> {
+fn map_edge(row: &SqliteRow) -> Sql<MapEdge<'static>> {
     let fid: u32 = row.try_get(0)?;
     Ok(MapEdge {
         edge: fid.saturating_sub(1),
@@ -187,9 +197,9 @@ fn map_edge(row: &SqliteRow) -> Sql<MapEdge> {
         way_id: row.try_get(8)?,
         direction: word(row, 9)?,
         oneway: word(row, 10)?,
-        highway: row.try_get(11)?,
-        name: row.try_get(12)?,
-        reference: row.try_get(13)?,
+        highway: row.try_get::<String, _>(11)?.into(),
+        name: row.try_get::<Option<String>, _>(12)?.map(Into::into),
+        reference: row.try_get::<Option<String>, _>(13)?.map(Into::into),
         line: line(row, 14, || format!("edge {fid}"))?,
     })
 }

@@ -34,7 +34,6 @@ mod records;
 mod relative;
 mod renewal;
 mod restrictions;
-mod roads;
 mod schema;
 mod segments;
 mod session;

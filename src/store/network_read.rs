@@ -7,7 +7,7 @@ use futures_util::TryStreamExt as _;
 use sqlx::sqlite::{SqliteConnection, SqliteRow};
 use sqlx::{Row as _, Sqlite};
 
-use crate::network::{Areas, Crossings, Edge, Narrowing, Network, Road, Site, Splits, Stroke};
+use crate::network::{Areas, Crossings, Edge, Ends, Narrowing, Network, Road, Site, Splits, Stroke};
 use crate::osm::facts::{CrossSection, Legal, Limit, Strip};
 use crate::osm::{LonLat, StringPool};
 use crate::verdict::Verdict;
@@ -65,6 +65,7 @@ pub(super) async fn read(c: &mut SqliteConnection) -> Sql<Network> {
         splits: Splits::default(),
         crossings: Crossings::default(),
         site: Site::default(),
+        ends: Ends::default(),
         strings,
     };
     check_ranges(&network)?;

@@ -25,4 +25,5 @@ mod route_junctions;
 mod routes;
 mod support;
 mod tapers;
+mod titles;
 mod turns;

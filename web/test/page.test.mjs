@@ -187,6 +187,39 @@ inPage("an explained turn is drawn on the map with a key, in both themes, and cl
   assert.equal(await page.locator(".limit").count(), 0);
 });
 
+inPage("a road that was found is shown whole, with what is certified of it and the way to its worst piece", "#v=AU-SEMI19", async (page) => {
+  const [hit] = await ask("/api/search?q=highway");
+  await page.keyboard.press("/");
+  await page.keyboard.type("highway");
+  await page.waitForSelector(".hits [role=option]");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector(".whole-road:not([hidden]) button.link");
+  const { vehicle, policy } = await page.evaluate(() => globalThis.netcert.store.state);
+  const ref = hit.by_ref === null ? "" : `&ref=${encodeURIComponent(hit.by_ref)}`;
+  const { summary, scope } = await ask(`/api/road?way=${hit.id}${ref}&vehicle=${vehicle}&policy=${policy}`);
+  const shown = await text(page, ".whole-road");
+  assert.ok(shown.includes(`${summary.pieces} pieces`) && shown.includes("certified"), shown);
+  assert.ok(shown.includes(scope.replaceAll("`", "")), "the scope is said");
+  await idle(page);
+  assert.ok((await page.evaluate(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["own-whole-road"] }).length)) > 0);
+  await page.locator(".whole-road button.link").click();
+  await page.waitForFunction((id) => globalThis.netcert.store.state.selected === id, summary.worst.edge_id);
+  await page.locator(".whole-road header button").click();
+  await page.waitForSelector(".whole-road", { state: "hidden" });
+  await idle(page);
+  assert.equal(await page.evaluate(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["own-whole-road"] }).length), 0);
+});
+
+inPage("coordinates lead to the place", "#v=AU-SEMI19", async (page) => {
+  await page.keyboard.press("/");
+  await page.keyboard.type("-30.2, 126.03");
+  await page.waitForSelector(".hits [role=option]");
+  await page.keyboard.press("Enter");
+  await page.waitForSelector(".whole-road:not([hidden])");
+  await page.waitForFunction(() => Math.abs(globalThis.netcert.map.getCenter().lat + 30.2) < 0.01);
+  assert.equal(await page.evaluate(() => globalThis.netcert.store.state.selected), null);
+});
+
 inPage("a search without result says so", "#v=AU-SEMI19", async (page) => {
   await page.keyboard.press("/");
   await page.keyboard.type("no such road anywhere");

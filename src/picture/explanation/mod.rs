@@ -107,7 +107,7 @@ impl Head {
         let vehicle = format!("{} {}", e.vehicle.id, e.vehicle.name);
         let subtitle = match &e.road {
             Some(road) => {
-                let title = road.title();
+                let title = &road.title;
                 format!("{title}, {}, edge {} · {vehicle}", road.highway, road.edge_id)
             }
             None => format!("a corridor of one's own · {vehicle}"),

@@ -6,6 +6,7 @@ use super::super::answer::Stored;
 use super::super::ask::{Ask, policy};
 use super::super::problem::Problem;
 use super::super::region::Region;
+use super::super::roads::RoadIndex;
 use super::{SCOPE, answered, id};
 use crate::osm::facts::WidthSource;
 use crate::rows::{CertificateRow, EdgeRow};
@@ -34,15 +35,16 @@ pub(in super::super) fn edge(region: &Region, ask: &Ask) -> Result<Stored, Probl
     };
     let wanted = |c: &&Value| vehicle.is_some_and(|v| c["vehicle"] == json!(v.id)) && c["policy"] == policy.name();
     let own = certificates.iter().find(wanted).cloned();
-    let mut members = members(&facts);
+    let roads = region.roads()?;
+    let mut members = members(&facts, &title(&roads, edge_id));
     members.insert("certificate".to_owned(), json!(own));
     members.insert("certificates".to_owned(), json!(certificates));
-    members.insert("turns".to_owned(), turns.iter().map(|row| turn(row, edge_id)).collect());
+    members.insert("turns".to_owned(), turns.iter().map(|row| turn(&roads, row, edge_id)).collect());
     members.insert("scope".to_owned(), json!(SCOPE));
     Ok(answered(&Value::Object(members)))
 }
 
-fn members(e: &EdgeFacts) -> Map<String, Value> {
+fn members(e: &EdgeFacts, title: &str) -> Map<String, Value> {
     let line: Vec<_> = e.line.iter().map(|position| position.degrees()).collect();
     let widths = e.widths.iter().map(|(policy, width_m, source)| {
         let source = source.map(WidthSource::name);
@@ -68,6 +70,7 @@ fn members(e: &EdgeFacts) -> Map<String, Value> {
         "highway": e.highway,
         "name": e.name,
         "ref": e.reference,
+        "title": title,
         "lanes": e.lanes,
         "maxspeed_kmh": e.maxspeed_kmh,
         "length_m": e.length_m,
@@ -84,6 +87,13 @@ fn members(e: &EdgeFacts) -> Map<String, Value> {
     }
 }
 
+/// What the road of an edge is called, or what it joins.
+fn title(roads: &RoadIndex, edge_id: i64) -> String {
+    let network = roads.network();
+    let edge = roads.edge(edge_id).and_then(|edge| network.edges.get(edge as usize));
+    edge.map_or_else(String::new, |edge| network.title(edge))
+}
+
 fn certificate(vehicle: &str, policy: &str, row: &EdgeRow) -> Value {
     let shown = CertificateRow { hinge_margin_deg: row.certificate.hinge_angle_deg(), ..row.certificate };
     let columns = CertificateRow::COLUMNS.iter().zip(shown.cells());
@@ -96,7 +106,7 @@ fn certificate(vehicle: &str, policy: &str, row: &EdgeRow) -> Value {
     Value::Object(members)
 }
 
-fn turn(row: &MapTurn, edge_id: i64) -> Value {
+fn turn(roads: &RoadIndex, row: &MapTurn, edge_id: i64) -> Value {
     let (verdict, reason) = verdict_words(row.verdict);
     let line: Vec<_> = row.line.iter().map(|position| position.degrees()).collect();
     json!({
@@ -106,6 +116,7 @@ fn turn(row: &MapTurn, edge_id: i64) -> Value {
         "to_edge": row.to_edge.to_string(),
         "from_name": row.from_name,
         "to_name": row.to_name,
+        "title": format!("{} into {}", title(roads, row.from_edge), title(roads, row.to_edge)),
         "kind": row.kind,
         "angle_deg": row.angle_deg,
         "kerb_radius_m": row.kerb_radius_m,

@@ -8,9 +8,11 @@ pub(super) mod edges;
 pub(super) mod explain;
 pub(super) mod region;
 mod relative;
+pub(super) mod road;
 pub(super) mod route;
 pub(super) mod search;
 pub(super) mod stats;
+mod summary;
 pub(super) mod suppose;
 pub(super) mod vehicles;
 

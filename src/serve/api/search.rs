@@ -1,125 +1,145 @@
-//! Finds an edge or way by its id, or a road by its name or ref.
+//! Finds an edge or way by its id, a place by its coordinates, or a road by what people type of its name or ref.
 //!
-//! Ways of one name that lie near each other are one road, so the `Hauptstraße` of each village is a separate answer.
-//! Results are sorted by how well they match, then by their number of ways.
+//! A road is found whole; see `search/whole.rs`. With a vehicle, each result has a summary of its certificates.
 
 use serde_json::{Value, json};
 
 use super::super::answer::Stored;
 use super::super::ask::Ask;
-use super::super::names::{NamedRoad, folded};
 use super::super::problem::Problem;
 use super::super::region::Region;
+use super::super::roads::RoadIndex;
+use super::super::search::{WholeRoad, coordinates};
 use super::answered;
-use crate::rows::{Bounds, RoadRow};
+use super::road::{Told, edges_of_way, told};
+use super::summary::Numbers;
+use crate::route::Position;
+use crate::rows::Bounds;
 
 /// The longest search text, characters.
 const LONGEST: usize = 80;
 const DEFAULT_LIMIT: u32 = 12;
 const MOST: u32 = 50;
-/// At most this many matching ways are looked at.
-const MOST_WAYS: usize = 5000;
-/// Ways of one name that are closer than this belong to one road, degrees. 0.01° is 1.1 km of latitude.
-const NEAR_DEG: f64 = 0.01;
+/// How far the nearest road of a place is searched, metres.
+const NEAR_M: f64 = 2000.0;
 
 /// `/api/search?q=`
 pub(in super::super) fn search(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    ask.only(&["q", "limit"])?;
+    ask.only(&["q", "limit", "vehicle", "policy"])?;
     let asked = ask.required("q")?.trim();
     if asked.is_empty() || asked.chars().count() > LONGEST {
-        return Err(Problem::parameter("q", format!("give 1 to {LONGEST} characters of a name, a ref or an id")));
+        return Err(Problem::parameter(
+            "q",
+            format!("give 1 to {LONGEST} characters of a name, a ref, an id or a place"),
+        ));
     }
     let limit = ask.whole("limit", 1..=MOST)?.unwrap_or(DEFAULT_LIMIT) as usize;
+    let roads = region.roads()?;
+    let numbers = Numbers::asked(region, &roads, ask)?;
+    let finder = region.finder()?;
     let mut results = Vec::new();
     if let Ok(number) = asked.parse::<i64>() {
-        results.extend(edge(region, number)?);
-        results.extend(way(region, number)?);
+        results.extend(edge(&roads, number));
+        results.extend(way(&roads, number));
     }
-    results.extend(named(region, &folded(asked))?);
+    if let Some(place) = coordinates(asked, region.extent) {
+        results.push(of_place(&roads, place));
+    }
+    let left = limit.saturating_sub(results.len());
+    results.extend(finder.find(asked).iter().take(left).map(|hit| whole(&roads, hit.road)));
     results.truncate(limit);
-    Ok(answered(&json!(results)))
-}
-
-fn edge(region: &Region, edge_id: i64) -> Result<Option<Value>, Problem> {
-    let Some(facts) = region.read(|database| database.edge_facts(edge_id))? else { return Ok(None) };
-    let Some(bounds) = Bounds::around(facts.line.iter().copied()) else { return Ok(None) };
-    let middle = facts.line.get(facts.line.len() / 2).map_or((0.0, 0.0), |position| position.degrees());
-    let members = json!({
-        "kind": "edge", "id": edge_id.to_string(), "edge_id": edge_id.to_string(),
-        "name": facts.name, "ref": facts.reference, "highway": facts.highway, "ways": 1,
-    });
-    Ok(Some(placed(members, bounds, middle)))
-}
-
-fn way(region: &Region, way_id: i64) -> Result<Option<Value>, Problem> {
-    let roads = region.names()?;
-    let found = roads.binary_search_by_key(&way_id, |road| road.row.way_id).ok().and_then(|i| roads.get(i));
-    Ok(found.map(|road| result("way", &[&road.row])))
-}
-
-fn named(region: &Region, asked: &str) -> Result<Vec<Value>, Problem> {
-    let roads = region.names()?;
-    let mut found: Vec<(u8, &NamedRoad)> =
-        roads.iter().filter_map(|road| Some((road.rank(asked)?, road))).take(MOST_WAYS).collect();
-    // The sort is stable, so ways of one name and ref stay in order of the network.
-    found.sort_by(|a, b| (a.0, &a.1.row.name, &a.1.row.reference).cmp(&(b.0, &b.1.row.name, &b.1.row.reference)));
-    let same = |a: &(u8, &NamedRoad), b: &(u8, &NamedRoad)| {
-        a.0 == b.0 && a.1.row.name == b.1.row.name && a.1.row.reference == b.1.row.reference
+    let members = |(mut members, edges): (Value, Vec<u32>)| {
+        let numbers = numbers.as_ref().filter(|_| !edges.is_empty());
+        members["summary"] = json!(numbers.map(|numbers| numbers.summary(&roads, edges.into_iter())));
+        members
     };
-    let mut results: Vec<(u8, usize, Value)> = Vec::new();
-    for group in found.chunk_by(same) {
-        let rows: Vec<&RoadRow> = group.iter().map(|(_, road)| &road.row).collect();
-        let rank = group.first().map_or(u8::MAX, |first| first.0);
-        results.extend(clusters(&rows).iter().map(|cluster| (rank, cluster.len(), result("road", cluster))));
-    }
-    results.sort_by_key(|(rank, ways, _)| (*rank, std::cmp::Reverse(*ways)));
-    Ok(results.into_iter().map(|(_, _, value)| value).collect())
+    Ok(answered(&results.into_iter().map(members).collect()))
 }
 
-/// Groups of rows that are near each other, directly or through other rows of the group.
-fn clusters<'r>(rows: &[&'r RoadRow]) -> Vec<Vec<&'r RoadRow>> {
-    let mut left: Vec<&RoadRow> = rows.to_vec();
-    let mut clusters = Vec::new();
-    while let Some(first) = left.first().copied() {
-        left.remove(0);
-        let mut cluster = vec![first];
-        let mut next = 0;
-        while let Some(from) = cluster.get(next).copied() {
-            next += 1;
-            let (near, far): (Vec<&RoadRow>, Vec<&RoadRow>) =
-                left.iter().partition(|row| are_near(&row.bounds, &from.bounds));
-            cluster.extend(near);
-            left = far;
-        }
-        clusters.push(cluster);
-    }
-    clusters
+/// A result, and the edges that belong to it.
+type Found = (Value, Vec<u32>);
+
+fn edge(roads: &RoadIndex, id: i64) -> Option<Found> {
+    let index = roads.edge(id)?;
+    let network = roads.network();
+    let bounds = Bounds::around(network.positions(network.edges.get(index as usize)?))?;
+    found(roads, "edge", &id.to_string(), bounds, vec![index])
 }
 
-fn are_near(a: &Bounds, b: &Bounds) -> bool {
-    a.west - b.east < NEAR_DEG
-        && b.west - a.east < NEAR_DEG
-        && a.south - b.north < NEAR_DEG
-        && b.south - a.north < NEAR_DEG
+fn way(roads: &RoadIndex, id: i64) -> Option<Found> {
+    let edges: Vec<u32> = edges_of_way(roads.network(), id)?.collect();
+    let network = roads.network();
+    let positions = edges.iter().filter_map(|&edge| network.edges.get(edge as usize));
+    let bounds = Bounds::around(positions.flat_map(|edge| network.positions(edge)))?;
+    found(roads, "way", &id.to_string(), bounds, edges)
 }
 
-fn result(kind: &str, rows: &[&RoadRow]) -> Value {
-    let Some(first) = rows.first() else { return Value::Null };
-    let bounds = rows.iter().fold(first.bounds, |bounds, row| bounds.union(row.bounds));
-    // The point for a label: the middle of the box of the middle way.
-    let b = rows.get(rows.len() / 2).map_or(first.bounds, |row| row.bounds);
-    let middle = (f64::midpoint(b.west, b.east), f64::midpoint(b.south, b.north));
-    let members = json!({
-        "kind": kind, "id": first.way_id.to_string(), "edge_id": first.edge_id.to_string(),
-        "name": first.name, "ref": first.reference, "highway": first.highway, "ways": rows.len(),
+fn whole(roads: &RoadIndex, road: &WholeRoad) -> Found {
+    let network = roads.network();
+    let edges: Vec<u32> = road.edges(network).collect();
+    let id = road.ways.first().and_then(|&way| network.roads.get(way as usize)).map_or(0, |way| way.way_id);
+    let Some((mut members, edges)) = found(roads, "road", &id.to_string(), road.bounds, edges) else {
+        return (Value::Null, Vec::new());
+    };
+    let Told { name, reference, title, .. } = told(network, road);
+    members["name"] = json!(name);
+    members["ref"] = json!(reference);
+    members["title"] = json!(title);
+    members["by_ref"] = json!(road.by_ref.then_some(&road.text));
+    members["ways"] = json!(road.ways.len());
+    (members, edges)
+}
+
+/// A place with the road nearest to it.
+fn of_place(roads: &RoadIndex, place: Position) -> Found {
+    let here = Bounds { west: place.lon, south: place.lat, east: place.lon, north: place.lat };
+    let name = format!("{:.5}, {:.5}", place.lat, place.lon);
+    let nearest = roads.nearest(place, NEAR_M);
+    let network = roads.network();
+    let edge = nearest.and_then(|(edge, _)| network.edges.get(edge as usize));
+    let beside = edge.zip(nearest).map(|(edge, (_, m))| format!("{name}: {m:.0} m from {}", network.title(edge)));
+    let mut members = json!({
+        "kind": "place",
+        "id": format!("{:.6},{:.6}", place.lon, place.lat),
+        "edge_id": edge.map(|edge| edge.id.to_string()),
+        "name": name,
+        "ref": null,
+        "title": beside.unwrap_or(name),
+        "by_ref": null,
+        "highway": edge.map(|edge| network.road(edge)).map(|road| crate::words::highway(road.class, road.link)),
+        "ways": 0,
+        "pieces": 0,
     });
-    placed(members, bounds, middle)
+    placed(&mut members, here, (place.lon, place.lat));
+    (members, Vec::new())
 }
 
-fn placed(mut members: Value, b: Bounds, (lon, lat): (f64, f64)) -> Value {
+/// The members of a result. Its point is a vertex of its middle edge.
+fn found(roads: &RoadIndex, kind: &str, id: &str, bounds: Bounds, edges: Vec<u32>) -> Option<Found> {
+    let network = roads.network();
+    let middle = network.edges.get(*edges.get(edges.len() / 2)? as usize)?;
+    let line: Vec<_> = network.positions(middle).collect();
+    let road = network.road(middle);
+    let text = |id: Option<crate::osm::StringId>| id.map(|id| network.strings.text(id));
+    let mut members = json!({
+        "kind": kind,
+        "id": id,
+        "edge_id": middle.id.to_string(),
+        "name": text(road.name),
+        "ref": text(road.reference),
+        "title": network.title(middle),
+        "by_ref": null,
+        "highway": crate::words::highway(road.class, road.link),
+        "ways": 1,
+        "pieces": edges.len(),
+    });
+    placed(&mut members, bounds, line.get(line.len() / 2)?.degrees());
+    Some((members, edges))
+}
+
+fn placed(members: &mut Value, b: Bounds, (lon, lat): (f64, f64)) {
     let rounded = |degrees: f64| (degrees * 1e6).round() / 1e6;
     members["bbox"] = json!([b.west, b.south, b.east, b.north].map(rounded));
     members["lon"] = json!(rounded(lon));
     members["lat"] = json!(rounded(lat));
-    members
 }

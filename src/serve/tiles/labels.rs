@@ -17,7 +17,7 @@ const LEAST_COSINE: f64 = 0.5;
 /// A line with the road whose name it shows.
 pub(super) struct Label<'r> {
     /// The first edge of the line, which has the name.
-    pub(super) road: &'r MapEdge,
+    pub(super) road: &'r MapEdge<'r>,
     pub(super) line: Vec<LonLat>,
 }
 
@@ -25,8 +25,8 @@ type Name<'r> = (&'r str, Option<&'r str>, Option<&'r str>);
 type Ends = BTreeMap<(i32, i32), Vec<usize>>;
 
 /// The labels of the rows at zoom `z`. Rows of one class, name and ref are joined.
-pub(super) fn labels(rows: &[MapEdge], z: u8) -> Vec<Label<'_>> {
-    let mut roads: BTreeMap<Name<'_>, Vec<&MapEdge>> = BTreeMap::new();
+pub(super) fn labels<'r>(rows: &'r [MapEdge<'r>], z: u8) -> Vec<Label<'r>> {
+    let mut roads: BTreeMap<Name<'r>, Vec<&'r MapEdge<'r>>> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.line.len() > 1 && is_named(row, z)) {
         roads.entry((&row.highway, row.name.as_deref(), row.reference.as_deref())).or_default().push(row);
     }
@@ -34,7 +34,7 @@ pub(super) fn labels(rows: &[MapEdge], z: u8) -> Vec<Label<'_>> {
 }
 
 /// Whether the row's name is shown at zoom `z`. As on general maps, names of main roads appear first.
-fn is_named(row: &MapEdge, z: u8) -> bool {
+fn is_named(row: &MapEdge<'_>, z: u8) -> bool {
     let first = match row.highway.trim_end_matches("_link") {
         "motorway" | "trunk" | "primary" => FIRST_WITH_LABELS,
         "secondary" => 12,
@@ -44,7 +44,7 @@ fn is_named(row: &MapEdge, z: u8) -> bool {
     z >= first && (row.name.is_some() || row.reference.is_some())
 }
 
-fn joined<'r>(edges: &mut Vec<&'r MapEdge>) -> Vec<Label<'r>> {
+fn joined<'r>(edges: &mut Vec<&'r MapEdge<'r>>) -> Vec<Label<'r>> {
     // The two directions of a road are the same line, so one of them is dropped.
     let mut seen = std::collections::BTreeSet::new();
     edges.retain(|edge| {
@@ -76,7 +76,7 @@ fn joined<'r>(edges: &mut Vec<&'r MapEdge>) -> Vec<Label<'r>> {
 }
 
 /// The unused edge that continues the line most nearly straight, with its positions in the line's direction.
-fn onward(line: &[LonLat], edges: &[&MapEdge], ends: &Ends, used: &[bool]) -> Option<(usize, Vec<LonLat>)> {
+fn onward(line: &[LonLat], edges: &[&MapEdge<'_>], ends: &Ends, used: &[bool]) -> Option<(usize, Vec<LonLat>)> {
     let [.., before, end] = line else { return None };
     let mut best: Option<(f64, usize, Vec<LonLat>)> = None;
     for &i in ends.get(&key(Some(end)))?.iter().filter(|&&i| !used[i]) {
@@ -115,15 +115,15 @@ mod tests {
     use crate::rows::MapNumbers;
     use crate::verdict::{UnknownReason, Verdict};
 
-    fn edge(number: u32, name: &str, points: &[(i32, i32)]) -> MapEdge {
+    fn edge(number: u32, name: &str, points: &[(i32, i32)]) -> MapEdge<'static> {
         MapEdge {
             edge: number,
             edge_id: i64::from(number),
             way_id: 1,
             direction: Direction::Forward,
             oneway: Oneway::No,
-            highway: "primary".to_owned(),
-            name: Some(name.to_owned()),
+            highway: "primary".into(),
+            name: Some(name.to_owned().into()),
             reference: None,
             numbers: MapNumbers {
                 length_m: 1.0,
@@ -137,7 +137,7 @@ mod tests {
         }
     }
 
-    fn lines(rows: &[MapEdge]) -> Vec<Vec<i32>> {
+    fn lines(rows: &[MapEdge<'_>]) -> Vec<Vec<i32>> {
         labels(rows, 14).into_iter().map(|label| label.line.iter().map(|p| p.lon_e7).collect()).collect()
     }
 
@@ -167,7 +167,7 @@ mod tests {
     #[test]
     fn a_ring_ends() {
         let points = [(0, 0), (100, 0), (170, 70), (170, 170), (100, 240), (0, 240), (-70, 170), (-70, 70), (0, 0)];
-        let ring: Vec<MapEdge> = (0..8_u32).map(|i| edge(i, "Ring", &points[i as usize..i as usize + 2])).collect();
+        let ring: Vec<MapEdge<'_>> = (0..8_u32).map(|i| edge(i, "Ring", &points[i as usize..i as usize + 2])).collect();
         assert_eq!(lines(&ring).len(), 1);
         assert!(labels(&ring, 10).is_empty());
     }

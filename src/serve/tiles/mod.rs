@@ -1,6 +1,7 @@
 //! Vector tiles (Mapbox Vector Tile 2.1) of a vehicle's certificates, made from the database on request.
 //!
-//! From zoom 11 on, a tile holds every edge of the zoom's classes whose line crosses the tile, with the database's numbers.
+//! From zoom 11 on, a tile holds every edge of the zoom's classes whose line crosses the tile, with the database's numbers: at zooms 11
+//! and 12 the RSC in whole centimetres, rounded down.
 //! Only lines of less than a sixteenth of a pixel are left out. At lower zooms, nothing is drawn as certified that is not
 //! certified (`overview`). The same state of the database gives the same bytes.
 //!
@@ -27,6 +28,7 @@ mod shape;
 use std::sync::Arc;
 
 use geo::{Coord, Polygon};
+use rayon::prelude::*;
 
 use super::answer::Stored;
 use super::ask::{self, Ask};
@@ -43,7 +45,7 @@ use encode::{Layer, Value};
 pub(super) use grid::MOST_ZOOM;
 use grid::{EXTENT, Place};
 use labels::{FIRST_WITH_LABELS, Label, labels};
-pub(super) use overview::Overview;
+pub(super) use overview::{Overview, severity};
 
 /// The media type: <https://www.iana.org/assignments/media-types/application/vnd.mapbox-vector-tile>
 const KIND: &str = "application/vnd.mapbox-vector-tile";
@@ -68,11 +70,13 @@ fn bytes(region: &Region, set: (&str, Policy), place: Place) -> Result<Vec<u8>, 
         return Ok(bytes);
     }
     let bounds = place.bounds();
-    let edges = near::edges(region, set, bounds, classes(place.z))?;
+    let roads = region.roads_for_tiles()?;
+    let edges = near::edges(region, roads.as_deref(), set, bounds, classes(place.z))?;
     let mut layer = Layer::new("edge", EXTENT as u16);
     let sides = region.sides()?;
-    for row in &edges {
-        edge(&mut layer, row, sides.left(row.edge), place);
+    let lines = edges.par_iter().with_min_len(near::LEAST_IN_PARALLEL).map(|row| drawn(&row.line, place));
+    for (row, lines) in edges.iter().zip(lines.collect::<Vec<_>>()) {
+        edge(&mut layer, row, &lines, sides.left(row.edge), place.z);
     }
     let mut bytes = Vec::new();
     layer.finish(&mut bytes);
@@ -136,11 +140,10 @@ fn drawn_polygons(polygons: &[Vec<Vec<LonLat>>], place: Place) -> Vec<Vec<[i32; 
     shape::drawn_polygons(&polygons.iter().filter_map(polygon).collect())
 }
 
-fn edge(layer: &mut Layer, row: &MapEdge, left: Option<bool>, place: Place) {
-    let lines = drawn(&row.line, place);
+fn edge(layer: &mut Layer, row: &MapEdge<'_>, lines: &[Vec<[i32; 2]>], left: Option<bool>, z: u8) {
     let MapNumbers { length_m, width_m, width_source, verdict, rsc_mm, need_width_m } = row.numbers;
     let (verdict, reason) = verdict_words(verdict);
-    layer.feature(Some(u64::from(row.edge) + 1), &lines, |tags| {
+    layer.feature(Some(u64::from(row.edge) + 1), lines, |tags| {
         tags.only("edge_id", Value::Text(&row.edge_id.to_string()));
         tags.text("name", row.name.as_deref());
         tags.text("ref", row.reference.as_deref());
@@ -149,10 +152,12 @@ fn edge(layer: &mut Layer, row: &MapEdge, left: Option<bool>, place: Place) {
         tags.add("oneway", Value::Text(row.oneway.name()));
         tags.add("verdict", Value::Text(verdict));
         tags.text("reason", Some(reason).filter(|reason| !reason.is_empty()));
+        // Whole centimetres are as much as the page shows, and many edges share them.
+        let rsc_mm = rsc_mm.map(|mm| if z < FIRST_IN_FULL { mm.div_euclid(10) * 10 } else { mm });
         tags.number("rsc_m", rsc_mm.map(metres));
         tags.truth("left", left);
         tags.text("width_source", width_source.map(WidthSource::name));
-        if place.z >= FIRST_IN_FULL {
+        if z >= FIRST_IN_FULL {
             tags.add("way_id", Value::Whole(row.way_id));
             tags.number("width_m", width_m.map(centimetre));
             tags.number("need_width_m", need_width_m);

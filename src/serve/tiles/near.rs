@@ -1,32 +1,42 @@
 //! The edges near a tile: from the network in memory if it is loaded, otherwise from the file through its spatial index. Both
 //! ways give the same rows.
 
+use std::borrow::Cow;
+
+use rayon::prelude::*;
+
 use super::super::problem::Problem;
 use super::super::region::Region;
+use super::super::roads::RoadIndex;
 use crate::network::Network;
 use crate::osm::facts::{Policy, RoadClass};
 use crate::rows::{Bounds, MapEdge, MapNumbers};
-use crate::words::highway;
+use crate::words::{Named as _, highway};
 
-/// The edges of these classes (with their links) whose own box touches a box, in order of the network.
-pub(super) fn edges(
+/// Fewer edges are not worth a second thread.
+pub(super) const LEAST_IN_PARALLEL: usize = 500;
+
+/// The edges of these classes (with their links) whose own box touches a box, in order of the network. `roads` is the network in memory,
+/// if there is one. The rows borrow its texts.
+pub(super) fn edges<'r>(
     region: &Region,
+    roads: Option<&'r RoadIndex>,
     set: (&str, Policy),
     bounds: Bounds,
     classes: &[RoadClass],
-) -> Result<Vec<MapEdge>, Problem> {
-    if let Some(roads) = region.roads_if_loaded()
-        && let Some(numbers) = region.numbers(&roads, set)?
+) -> Result<Vec<MapEdge<'r>>, Problem> {
+    if let Some(roads) = roads
+        && let Some(numbers) = region.numbers(roads, set)?
     {
         let network = roads.network();
         let row = |&index: &u32| map_edge(network, index, *numbers.get(index as usize)?, classes);
-        return Ok(roads.near(bounds).iter().filter_map(row).collect());
+        return Ok(roads.near(bounds).par_iter().with_min_len(LEAST_IN_PARALLEL).filter_map(row).collect());
     }
     region.read(|database| database.map_edges(set, bounds, classes))
 }
 
 /// `None` if the edge is of another class.
-fn map_edge(network: &Network, index: u32, numbers: MapNumbers, classes: &[RoadClass]) -> Option<MapEdge> {
+fn map_edge<'r>(network: &'r Network, index: u32, numbers: MapNumbers, classes: &[RoadClass]) -> Option<MapEdge<'r>> {
     let edge = network.edges.get(index as usize)?;
     let road = network.road(edge);
     classes.contains(&road.class).then(|| MapEdge {
@@ -35,9 +45,9 @@ fn map_edge(network: &Network, index: u32, numbers: MapNumbers, classes: &[RoadC
         way_id: road.way_id,
         direction: edge.direction,
         oneway: road.oneway,
-        highway: highway(road.class, road.link),
-        name: road.name.map(|text| network.strings.text(text).to_owned()),
-        reference: road.reference.map(|text| network.strings.text(text).to_owned()),
+        highway: if road.link { highway(road.class, true).into() } else { road.class.name().into() },
+        name: road.name.map(|text| Cow::Borrowed(network.strings.text(text))),
+        reference: road.reference.map(|text| Cow::Borrowed(network.strings.text(text))),
         numbers,
         line: network.positions(edge).collect(),
     })

@@ -124,7 +124,7 @@ fn simplified(row: &MainRoad) -> Vec<grid::World> {
 }
 
 /// How strongly a verdict shows over others: a known obstacle over an unknown one, anything over safe.
-fn severity(verdict: Verdict) -> u8 {
+pub(in super::super) fn severity(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::Safe => 0,
         Verdict::Unknown(_) => 1,

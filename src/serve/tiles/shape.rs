@@ -115,9 +115,9 @@ pub(super) fn simplified(line: &[Point], tolerance: f64) -> Vec<Point> {
     let mut spans = vec![(0, last)];
     while let Some((from, to)) = spans.pop() {
         let far = (from + 1..to)
-            .map(|i| (i, distance(line[i], line[from], line[to])))
+            .map(|i| (i, squared(line[i], line[from], line[to])))
             .max_by(|a, b| a.1.total_cmp(&b.1))
-            .filter(|far| far.1 > tolerance);
+            .filter(|far| far.1 > tolerance * tolerance);
         if let Some((middle, _)) = far {
             keep[middle] = true;
             spans.extend([(from, middle), (middle, to)]);
@@ -126,11 +126,12 @@ pub(super) fn simplified(line: &[Point], tolerance: f64) -> Vec<Point> {
     line.iter().zip(keep).filter(|(_, keep)| *keep).map(|(&point, _)| point).collect()
 }
 
-fn distance(p: Point, a: Point, b: Point) -> f64 {
+/// The squared distance of a point from a segment.
+fn squared(p: Point, a: Point, b: Point) -> f64 {
     let (u, v) = ([b[0] - a[0], b[1] - a[1]], [p[0] - a[0], p[1] - a[1]]);
     let squared = u[0] * u[0] + u[1] * u[1];
     let along = if squared > 0.0 { ((u[0] * v[0] + u[1] * v[1]) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    (v[0] - along * u[0]).hypot(v[1] - along * u[1])
+    (v[0] - along * u[0]).powi(2) + (v[1] - along * u[1]).powi(2)
 }
 
 fn rounded(line: &[Point]) -> Vec<[i32; 2]> {
@@ -144,6 +145,10 @@ fn rounded(line: &[Point]) -> Vec<[i32; 2]> {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    fn distance(p: Point, a: Point, b: Point) -> f64 {
+        squared(p, a, b).sqrt()
+    }
 
     #[test]
     fn a_line_that_leaves_and_comes_back_is_two() {

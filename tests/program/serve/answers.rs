@@ -209,23 +209,3 @@ fn statistics_are_those_of_the_verb() {
         assert!(there, "{rsc_m}");
     }
 }
-
-#[test]
-fn a_search_finds_edges_ways_and_names() {
-    let server = Server::demo();
-    let rows = server.place.rows(VEHICLE);
-    let row = rows.iter().find(|row| row.name.is_some()).unwrap();
-    let edge = &server.json(&format!("/api/search?q={}", row.edge_id))[0];
-    assert_eq!((edge["kind"].as_str(), edge["id"].as_str()), (Some("edge"), Some(row.edge_id.to_string().as_str())));
-    let way = &server.json(&format!("/api/search?q={}", row.way_id))[0];
-    assert_eq!((way["kind"].as_str(), way["id"].as_str()), (Some("way"), Some(row.way_id.to_string().as_str())));
-    let name = row.name.clone().unwrap();
-    let asked = name.to_uppercase().replace(' ', "%20");
-    let found = server.json(&format!("/api/search?q={asked}"));
-    assert_eq!(found[0]["name"], json!(name), "{found}");
-    let bbox: Vec<f64> = serde_json::from_value(found[0]["bbox"].clone()).unwrap();
-    let (lon, lat) = (found[0]["lon"].as_f64().unwrap(), found[0]["lat"].as_f64().unwrap());
-    assert!(bbox[0] <= lon && lon <= bbox[2] && bbox[1] <= lat && lat <= bbox[3]);
-    assert_eq!(server.json("/api/search?q=a&limit=2").as_array().unwrap().len(), 2);
-    assert_eq!(server.json("/api/search?q=no%20such%20road").as_array().unwrap().len(), 0);
-}

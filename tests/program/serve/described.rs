@@ -118,8 +118,10 @@ fn every_answer_has_the_described_form() {
         assert!(asked.iter().any(|(_, (asked, _))| asked == path), "{path} was not asked");
     }
     let mut found = Vec::new();
-    let problem = server.problem("/api/search?q=", 400);
-    faults(&document, &document["components"]["schemas"]["Problem"], &problem, "problem", &mut found);
+    let far = format!("/api/route?vehicle={VEHICLE}&from=126.03,-30.5&to=126.03,-30.2&conditions=none");
+    for problem in [server.problem("/api/search?q=", 400), server.problem(&far, 422)] {
+        faults(&document, &document["components"]["schemas"]["Problem"], &problem, "problem", &mut found);
+    }
     assert_eq!(found, Vec::<String>::new());
 }
 
@@ -190,6 +192,10 @@ fn asked(server: &Server) -> Vec<(String, String)> {
     }
     add("/api/vehicles/{id}/drawing.svg", format!("/api/vehicles/{VEHICLE}/drawing.svg"));
     add("/api/search", "/api/search?q=a".to_owned());
+    add("/api/search", format!("/api/search?q=road&vehicle={VEHICLE}"));
+    add("/api/search", "/api/search?q=-30.2,126.03".to_owned());
+    add("/api/road", format!("/api/road?way={}&vehicle={VEHICLE}", safe.way_id));
+    add("/api/road", format!("/api/road?way={}", safe.way_id));
     add("/api/search", format!("/api/search?q={}", safe.edge_id));
     add("/tiles/{policy}/{vehicle}/{z}/{x}/{y}.mvt", format!("/tiles/lane/{VEHICLE}/0/0/0.mvt"));
     asked

@@ -12,6 +12,8 @@ pub(crate) mod http;
 mod load;
 mod refusals;
 mod rides;
+mod schemathesis;
+mod search;
 mod stopping;
 mod tiles;
 mod time_up;

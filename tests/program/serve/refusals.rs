@@ -3,6 +3,8 @@
 
 use std::io::Write as _;
 
+use serde_json::Value;
+
 use super::http::Server;
 
 #[test]
@@ -167,6 +169,7 @@ fn what_is_not_there_is_said_with_the_way_out() {
     }
     let far = server.problem("/api/route?vehicle=AU-SEMI19&from=0,0&to=1,1", 422);
     assert!(far["detail"].as_str().unwrap().contains("road"), "{far}");
+    assert_eq!((&far["parameter"], &far["nearest"], &far["beside"]), (&"from".into(), &Value::Null, &Value::Null));
 }
 
 #[test]

@@ -1,14 +1,16 @@
 //! Reads tiles with another program's reader. Every edge must be in them, at its place, with the numbers of `query`.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write as _;
 
 use fast_mvt::{MvtReaderRef, MvtValueRef};
 use netcert::osm::facts::Policy;
 use netcert::rows::EdgeRow;
+use netcert::serve::{Limits, Options};
 use netcert::store::TurnQuery;
 use netcert::words::{Named, verdict_words};
 
-use super::http::Server;
+use super::http::{Reply, Server};
 
 const VEHICLE: &str = "AU-SEMI19";
 
@@ -149,19 +151,36 @@ fn distance(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     (v[0] - along * u[0]).hypot(v[1] - along * u[1])
 }
 
-/// One server makes its tiles from the file, because it has no network in memory yet. The other one has loaded it for an explanation.
+/// One server may hold no edges in memory, so it makes its tiles from the file. The other one holds them all.
 #[test]
 fn tiles_from_memory_have_the_bytes_of_tiles_from_the_file() {
-    let (fresh, loaded) = (Server::demo(), Server::demo());
-    let rows = fresh.place.rows(VEHICLE);
+    let loaded = Server::demo();
+    let rows = loaded.place.rows(VEHICLE);
     let addresses: Vec<String> = (11..=16)
         .flat_map(|z| tiles(&rows, z).into_iter().map(move |(x, y)| format!("/tiles/lane/{VEHICLE}/{z}/{x}/{y}.mvt")))
         .collect();
-    let from_file: Vec<Vec<u8>> = addresses.iter().map(|address| fresh.get(address).body).collect();
-    loaded.json(&format!("/api/explain/{}?vehicle={VEHICLE}", rows[0].edge_id));
-    for (address, from_file) in addresses.iter().zip(from_file) {
-        assert!(loaded.get(address).body == from_file, "{address}");
+    let options = Options {
+        db: loaded.place.path("demo.gpkg"),
+        before: None,
+        addr: ([127, 0, 0, 1], 0).into(),
+        allow_remote: false,
+        base_map: None,
+        limits: Limits { held_edges: 0, ..Limits::default() },
+    };
+    let from_file = netcert::serve::Server::bind(options).unwrap();
+    let address = from_file.address();
+    let (stop, stopped) = tokio::sync::oneshot::channel::<()>();
+    let running = std::thread::spawn(move || from_file.run(async { stopped.await.unwrap_or(()) }));
+    for target in &addresses {
+        let mut stream = std::net::TcpStream::connect(address).unwrap();
+        let request = format!("GET {target} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
+        stream.write_all(request.as_bytes()).unwrap();
+        let reply = Reply::read(&mut std::io::BufReader::new(stream));
+        assert_eq!(reply.status, 200, "{target}");
+        assert!(loaded.get(target).body == reply.body, "{target}");
     }
+    stop.send(()).unwrap();
+    running.join().unwrap();
 }
 
 #[test]

@@ -13,6 +13,7 @@ import type {
   Supposed,
   StatsRows,
   Vehicle,
+  WholeRoad,
 } from "./types.ts";
 import { patient } from "./patient.ts";
 import { digest, type Stats } from "./stats.ts";
@@ -78,6 +79,9 @@ export const api = {
   region: () => get<Region>("/api/region", {}),
   vehicles: () => get<Vehicle[]>("/api/vehicles", {}),
   search: (q: string, signal?: AbortSignal) => get<SearchHit[]>("/api/search", { q }, signal),
+  /** The whole road of a way or road that was found, with a summary of its certificates. */
+  wholeRoad: (hit: SearchHit, question: Question, signal?: AbortSignal) =>
+    get<WholeRoad>("/api/road", { way: hit.id, ...(hit.by_ref === null ? {} : { ref: hit.by_ref }), ...asked(question) }, signal),
   /** `beside` is a vehicle to compare with. */
   explain: (id: string, question: Question, signal?: AbortSignal, beside?: string) =>
     get<Explanation>(`/api/explain/${encodeURIComponent(id)}`, { ...asked(question), ...(beside ? { relative_to: beside } : {}) }, signal),

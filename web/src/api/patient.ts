@@ -1,7 +1,7 @@
 // Repeats a request that a busy server refuses (503) after the time in `Retry-After`, a few times at most.
 
 /** The greatest number of tries of one request. */
-const MOST_TRIES = 4;
+const MOST_TRIES = 8;
 /** The longest wait, seconds. If the server asks for more, the reader is told at once. */
 const MOST_WAIT_S = 10;
 

@@ -113,16 +113,43 @@ export interface Vehicle {
 }
 
 export interface SearchHit {
-  kind: "edge" | "way" | "road";
+  kind: "edge" | "way" | "road" | "place";
   id: string;
-  /** The edge, or one of the edges of a way or road. */
-  edge_id: string;
+  /** The edge, one of the edges of a way or road, or the edge nearest to a place. */
+  edge_id: string | null;
   name: string | null;
   ref: string | null;
+  /** Ref and name, or what the road joins. */
+  title: string;
+  /** Of a road by its ref: this ref. */
+  by_ref: string | null;
+  pieces: number;
   highway: string | null;
   bbox: [number, number, number, number];
   lon: number;
   lat: number;
+}
+
+/** A part of a road by its verdict. */
+export interface Share {
+  pieces: number;
+  length_m: number;
+}
+
+/** What the certificates say of a whole road. Turns are not in it. */
+export interface RoadSummary extends Share {
+  verdicts: Record<VerdictName, Share>;
+  worst: { edge_id: string; verdict: VerdictName; reason: string | null; rsc_m: number | null; lon: number; lat: number } | null;
+}
+
+/** A whole road, each edge a feature. */
+export interface WholeRoad {
+  title: string;
+  pieces: number;
+  /** Null in regions with too many edges to sum. */
+  summary: RoadSummary | null;
+  scope: string;
+  features: { id: string; geometry: { type: "LineString"; coordinates: Position[] } }[];
 }
 
 /** The answer of `netcert explain --format json`, with its place on the map. */

@@ -8,12 +8,12 @@ import type { Possible } from "../link.ts";
 import type { Under } from "../map/view.ts";
 import { ExplainPanel } from "../panel/explain.ts";
 import { StatsDialog } from "../panel/stats.ts";
+import { WholeRoadCard } from "../panel/wholeroad.ts";
 import { VehicleDialog, fittingPolicy } from "../panel/vehicle.ts";
 import { UNPLACED, complete, type State } from "../state.ts";
 import { h } from "../ui/dom.ts";
 import { toast } from "../ui/toast.ts";
 import { speakIn } from "../units.ts";
-import { title } from "../words.ts";
 import { ChangesSince } from "./changes.ts";
 import { Drawer } from "./drawer.ts";
 import { History } from "./history.ts";
@@ -39,6 +39,7 @@ export class Page {
   readonly #tools: Tools;
   readonly #welcome: Welcome;
   readonly #history: History;
+  readonly #whole: WholeRoadCard;
   #numbers: Promise<Stats> | null = null;
 
   constructor(private readonly context: Context, first: State, possible: Possible) {
@@ -72,6 +73,11 @@ export class Page {
     this.#changes = before && new ChangesSince(context, before, this.#maps.first, { go: (road) => this.#goToChange(road), known: () => this.#changesKnown() });
     this.#routing = new Routing(context, this.#maps.first, this.#drawer);
     this.#side = new Side(context, { chooseVehicle: () => this.chooseVehicle(), go: (hit) => this.#search(hit), help: () => this.#help.open() }, this.#changes?.panel.element ?? null);
+    this.#whole = new WholeRoadCard(context, this.#maps.first, (edge, lon, lat) => {
+      store.set({ selected: edge });
+      this.#maps.fit([lon, lat, lon, lat]);
+    });
+    this.#side.search.element.after(this.#whole.element);
     this.#tools = new Tools(context, {
       route: () => this.route(),
       compare: () => this.compare(),
@@ -198,14 +204,15 @@ export class Page {
     }
   }
 
-  /** Selects a search result as a click would. For a road with many edges, the edge that the result names is selected. */
+  /** Selects a search result as a click would. Of a road the edge that the result names is selected, and the whole of it is shown. A place has a ring. */
   #search(hit: SearchHit): void {
     // Set first, so that the drawer is open when the map is fitted to the visible area.
-    this.context.store.set({ selected: hit.edge_id });
+    this.context.store.set({ selected: hit.kind === "place" ? null : hit.edge_id });
     this.#maps.fit(hit.bbox);
     // With the focus on the map, the arrow keys, + and − work.
     this.#maps.first.map.getCanvas().focus({ preventScroll: true });
-    if (hit.kind !== "edge") toast(`${title(hit)}: one part of it is chosen; click on the road for another.`);
+    if (hit.kind === "edge") this.#whole.close();
+    else void this.#whole.show(hit);
   }
 
   /** Chooses the longest edge of a changed road, and shows all that changed of it. */

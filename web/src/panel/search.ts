@@ -1,10 +1,10 @@
-// The search for a road by name, number or id. It is a combobox: arrows choose, Enter goes to the road, Escape leaves.
+// The search for a road by name, number or id, or a place by its coordinates. It is a combobox: arrows choose, Enter goes to the road, Escape leaves.
 
 import { api } from "../api/client.ts";
 import type { SearchHit } from "../api/types.ts";
 import { h } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
-import { className, title } from "../words.ts";
+import { className } from "../words.ts";
 
 const PAUSE_MS = 160;
 
@@ -20,7 +20,7 @@ export interface SearchOptions {
   entered?(text: string): boolean;
 }
 
-const main: SearchOptions = { id: "search", label: "Find a road by name, number or id", placeholder: "Road, number or id" };
+const main: SearchOptions = { id: "search", label: "Find a road by name, number or id, or a place by its coordinates", placeholder: "Road, number or place" };
 
 export class Search {
   readonly element: HTMLElement;
@@ -114,7 +114,8 @@ export class Search {
 
   #row(hit: SearchHit, index: number): HTMLElement {
     const chosen = index === this.#active;
-    const more = [hit.highway ? className(hit.highway) : null, hit.kind === "road" ? null : `${hit.kind} ${hit.id}`];
+    const which = { road: `${hit.pieces} pieces`, way: `way ${hit.id}`, edge: `edge ${hit.id}`, place: "place" }[hit.kind];
+    const more = [hit.highway ? className(hit.highway) : null, which];
     return h(
       "li",
       {
@@ -126,7 +127,7 @@ export class Search {
           this.#choose(index);
         },
       },
-      h("span", {}, title(hit)),
+      h("span", {}, hit.title),
       h("small", {}, more.filter(Boolean).join(" · ")),
     );
   }

@@ -5,7 +5,6 @@ import { coordinate, coordinateText } from "../coordinate.ts";
 import { MOST_VIA, type Places } from "../state.ts";
 import { h } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
-import { title } from "../words.ts";
 import { Search } from "./search.ts";
 
 /** The letter of a place on its pin, in its field and in messages. */
@@ -80,7 +79,7 @@ export class Trip {
     return new Search(
       (hit) => {
         const place: Position = [hit.lon, hit.lat];
-        this.name(place, title(hit));
+        this.name(place, hit.title);
         set(place);
       },
       {

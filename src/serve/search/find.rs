@@ -1,0 +1,401 @@
+//! The index of all roads by their words, and the search in it.
+//!
+//! Every word of the region's names stands in one sorted list. For each typed word, every word of the list gets a [`Fit`]. Then all roads
+//! are looked at. What fits worse is tried only if nothing fits better: first whole words, beginnings and middles, then slips, then
+//! words that the road does not have.
+
+use rustc_hash::FxHashMap;
+
+use super::abbreviations::Abbreviations;
+use super::whole::{WholeRoad, refs, whole_roads};
+use super::{fold, typo};
+use crate::network::Network;
+
+/// More typed words are not looked at.
+const MOST_WORDS: usize = 8;
+/// Where fewer roads fit as typed, those are looked for, too, that fit with a slip.
+const FEW: usize = 4;
+/// Parts of words are looked for from this number of letters on.
+const LEAST_WITHIN: usize = 3;
+
+/// How a word of a road fits a typed word, the best first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Fit {
+    Whole,
+    Beginning,
+    Within,
+    /// So many half slips.
+    Slip(u8),
+    Not,
+}
+
+/// How a road fits what was typed, the best first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(in super::super) enum Rank {
+    /// All of the name, or the ref.
+    Exact,
+    /// The name begins so.
+    Prefix,
+    /// Words of the name, or their beginnings.
+    Words,
+    /// Parts of words.
+    Within,
+    /// With so many half slips.
+    Slips(u8),
+    /// Without so many of the typed words.
+    Without(u8),
+}
+
+/// A road that was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in super::super) struct Hit<'f> {
+    pub(in super::super) rank: Rank,
+    pub(in super::super) road: &'f WholeRoad,
+}
+
+/// The words of a road. `words` are pairs of a position in the name and a word of the list, which may stand there.
+struct Entry {
+    road: WholeRoad,
+    /// The number of words of the name. The words of refs come after it.
+    named: u8,
+    words: Box<[(u8, u32)]>,
+    /// The folded ref without spaces, if the road is one by its ref.
+    reference: Option<Box<str>>,
+}
+
+/// A typed word.
+struct Typed {
+    /// How each word of the list fits.
+    fits: Vec<Fit>,
+    /// Whether the word tells one road from others: no number, no short form, no `street`.
+    telling: bool,
+    /// Whether that is so, too, if it fits with a slip.
+    slips_tell: bool,
+}
+
+/// The roads of a region, to be searched.
+pub(in super::super) struct Finder {
+    abbreviations: Abbreviations,
+    /// All words of all roads, sorted.
+    words: Vec<Box<str>>,
+    entries: Vec<Entry>,
+}
+
+impl Finder {
+    /// # Errors
+    /// The shipped table of short forms cannot be read, which a test rules out.
+    pub(in super::super) fn new(network: &Network) -> Result<Self, toml::de::Error> {
+        // A road by its name is also found by the refs of its ways.
+        let with_refs = |road: WholeRoad| {
+            let refs = if road.by_ref { Vec::new() } else { refs_of(network, &road) };
+            (road, refs)
+        };
+        Self::of(whole_roads(network).into_iter().map(with_refs))
+    }
+
+    /// Of roads with further words.
+    fn of(roads: impl Iterator<Item = (WholeRoad, Vec<String>)>) -> Result<Self, toml::de::Error> {
+        let abbreviations = Abbreviations::builtin()?;
+        let mut numbers: FxHashMap<Box<str>, u32> = FxHashMap::default();
+        let mut words: Vec<Box<str>> = Vec::new();
+        let mut number = |word: String| {
+            *numbers.entry(word.into_boxed_str()).or_insert_with_key(|word| {
+                words.push(word.clone());
+                words.len() as u32 - 1
+            })
+        };
+        let mut entries = Vec::new();
+        for (road, of_refs) in roads {
+            let name = fold::words(&road.text);
+            let named = name.len().min(usize::from(u8::MAX / 2));
+            // `Goethe Straße` is also found as `goethestr`.
+            let joined = (0..).zip(name.windows(2).take(named).map(<[String]>::concat));
+            let of_refs = (named as u8..).zip(of_refs.into_iter().take(usize::from(u8::MAX / 2)));
+            let all = (0..).zip(name.iter().take(named).cloned()).chain(joined).chain(of_refs);
+            let words =
+                all.flat_map(|(at, word)| abbreviations.meanings(&word).into_iter().map(move |word| (at, word)));
+            let words = words.map(|(at, word)| (at, number(word))).collect();
+            let reference = road.by_ref.then(|| name.concat().into_boxed_str());
+            entries.push(Entry { road, named: named as u8, words, reference });
+        }
+        // Sorted, so that beginnings are found by halving.
+        let mut order: Vec<u32> = (0..words.len() as u32).collect();
+        order.sort_by(|&a, &b| words[a as usize].cmp(&words[b as usize]));
+        let mut place = vec![0; words.len()];
+        for (new, &old) in (0..).zip(&order) {
+            place[old as usize] = new;
+        }
+        for entry in &mut entries {
+            for word in &mut entry.words {
+                word.1 = place[word.1 as usize];
+            }
+        }
+        words.sort_unstable();
+        Ok(Self { abbreviations, words, entries })
+    }
+
+    /// All roads, in the order of their names.
+    pub(in super::super) fn roads(&self) -> impl Iterator<Item = &WholeRoad> {
+        self.entries.iter().map(|entry| &entry.road)
+    }
+
+    /// The roads that fit a text, the best first: by rank, then by length.
+    pub(in super::super) fn find(&self, text: &str) -> Vec<Hit<'_>> {
+        let mut typed = fold::words(text);
+        typed.truncate(MOST_WORDS);
+        if typed.is_empty() {
+            return Vec::new();
+        }
+        let asked_ref = self.abbreviations.reference(&typed);
+        let typed = self.with_refs(typed);
+        let exact: Vec<Typed> = typed.iter().map(|word| self.typed(word, false)).collect();
+        let mut found = self.ranked(&exact, &asked_ref, 0);
+        let few = found.len() < FEW;
+        if few {
+            let slips: Vec<Typed> = typed.iter().map(|word| self.typed(word, true)).collect();
+            let without = (0..typed.len() as u8).map(|without| self.ranked(&slips, &asked_ref, without));
+            // Words are left out only where nothing else is found.
+            let most = if found.is_empty() { typed.len() } else { 1 };
+            let more = without.take(most).find(|found| !found.is_empty()).unwrap_or_default();
+            let new: Vec<Hit<'_>> =
+                more.into_iter().filter(|hit| !found.iter().any(|one| one.road == hit.road)).collect();
+            found.extend(new);
+        }
+        found.sort_by(|a, b| a.rank.cmp(&b.rank).then(b.road.length_m.total_cmp(&a.road.length_m)));
+        found
+    }
+
+    /// Joins the two words of a ref, such as `us 30`, if there is such a ref. A number by itself may be that of a house.
+    fn with_refs(&self, typed: Vec<String>) -> Vec<String> {
+        let mut joined: Vec<String> = Vec::new();
+        for word in typed {
+            let both = joined
+                .last()
+                .filter(|_| word.starts_with(|c: char| c.is_ascii_digit()))
+                .map(|letters| format!("{letters}{word}"));
+            let known = both.filter(|both| self.words.binary_search_by(|known| (**known).cmp(both)).is_ok());
+            if known.is_some() {
+                joined.pop();
+            }
+            joined.push(known.unwrap_or(word));
+        }
+        joined
+    }
+
+    fn typed(&self, word: &str, slips: bool) -> Typed {
+        let letters = word.chars().count();
+        let plain = letters >= 4 && word.chars().all(char::is_alphabetic) && !self.abbreviations.knows(word);
+        // `5th`, not the `12a` of a house.
+        let ordinal =
+            ["st", "nd", "rd", "th"].iter().any(|end| word.strip_suffix(end).is_some_and(|n| n.parse::<u16>().is_ok()));
+        Typed { fits: self.fits(word, slips), telling: plain || ordinal, slips_tell: letters >= 6 }
+    }
+
+    /// How each word of the list fits a typed word. With `slips`, also the words that nearly fit.
+    fn fits(&self, typed: &str, slips: bool) -> Vec<Fit> {
+        let mut fits = vec![Fit::Not; self.words.len()];
+        let letters: Vec<char> = typed.chars().collect();
+        if letters.len() >= LEAST_WITHIN {
+            for (fit, word) in fits.iter_mut().zip(&self.words) {
+                if word.contains(typed) {
+                    *fit = Fit::Within;
+                }
+            }
+        }
+        let begin = self.words.partition_point(|word| &**word < typed);
+        for (fit, word) in fits.iter_mut().zip(&self.words).skip(begin) {
+            if !word.starts_with(typed) {
+                break;
+            }
+            *fit = Fit::Beginning;
+        }
+        for meaning in self.abbreviations.meanings(typed) {
+            if let Ok(at) = self.words.binary_search_by(|word| (**word).cmp(&meaning)) {
+                fits[at] = Fit::Whole;
+            }
+        }
+        let most = typo::allowed(letters.len());
+        if slips && most > 0 {
+            let mut word_letters = Vec::new();
+            for (fit, word) in fits.iter_mut().zip(&self.words).filter(|(fit, _)| **fit == Fit::Not) {
+                word_letters.clear();
+                word_letters.extend(word.chars());
+                // The first letter is rarely wrong, and one that fits spares most comparisons.
+                let near = word_letters.iter().take(2).any(|letter| letters.first() == Some(letter));
+                let slips =
+                    |beginning| typo::slips(&letters, &word_letters, most, beginning).map(|slips| 2 * slips as u8);
+                // A word that fits only at its beginning is half a slip worse.
+                if let Some(slips) = near.then(|| slips(false).or_else(|| Some(slips(true)? + 1))).flatten() {
+                    *fit = Fit::Slip(slips);
+                }
+            }
+        }
+        fits
+    }
+
+    /// The roads that have all typed words but `without` of them.
+    fn ranked(&self, typed: &[Typed], asked_ref: &str, without: u8) -> Vec<Hit<'_>> {
+        let rank = |entry: &Entry| match &entry.reference {
+            Some(own) if **own == *asked_ref => Some(Rank::Exact),
+            Some(own) if own.starts_with(asked_ref) && without == 0 => Some(Rank::Within),
+            // The same number with other letters: `OH 315` for `SR 315`.
+            Some(own) if without == 1 && same_number(own, asked_ref) => Some(Rank::Without(1)),
+            _ => entry.rank(typed, without),
+        };
+        self.entries.iter().filter_map(|entry| Some(Hit { rank: rank(entry)?, road: &entry.road })).collect()
+    }
+}
+
+/// Whether two folded refs have letters and then the same number.
+fn same_number(a: &str, b: &str) -> bool {
+    let parts = |text: &str| text.find(|c: char| c.is_ascii_digit()).filter(|&at| (1..=3).contains(&at));
+    parts(a).zip(parts(b)).is_some_and(|(at_a, at_b)| a[at_a..] == b[at_b..])
+}
+
+impl Entry {
+    fn rank(&self, typed: &[Typed], without: u8) -> Option<Rank> {
+        let (mut worst, mut slips, mut missing) = (Fit::Whole, 0_u8, 0_u8);
+        let (mut in_order, mut known) = (true, false);
+        for (i, Typed { fits, telling, slips_tell }) in (0..).zip(typed) {
+            let best = self.words.iter().map(|&(at, word)| (fits[word as usize], at != i)).min();
+            let (fit, elsewhere) = best.unwrap_or((Fit::Not, true));
+            match fit {
+                Fit::Not => missing += 1,
+                Fit::Slip(number) => slips += number,
+                _ => {}
+            }
+            known |= *telling && (fit < Fit::Within || (*slips_tell && matches!(fit, Fit::Slip(_))));
+            in_order &= !elsewhere;
+            if fit != Fit::Not {
+                worst = worst.max(fit);
+            }
+        }
+        let all_named = typed.len() == usize::from(self.named);
+        match () {
+            () if missing > without || (missing > 0 && !known) => None,
+            () if missing > 0 => Some(Rank::Without(missing)),
+            () if slips > 0 => Some(Rank::Slips(slips)),
+            () if worst == Fit::Within => Some(Rank::Within),
+            () if in_order && all_named && worst == Fit::Whole => Some(Rank::Exact),
+            () if in_order && typed.len() <= usize::from(self.named) => Some(Rank::Prefix),
+            () => Some(Rank::Words),
+        }
+    }
+}
+
+/// The refs of a road's ways, folded and without spaces.
+fn refs_of(network: &Network, road: &WholeRoad) -> Vec<String> {
+    let mut ids: Vec<u32> = Vec::new();
+    for way in &road.ways {
+        let id = network.roads.get(*way as usize).and_then(|road| road.reference).map(|id| id.0);
+        if let Some(id) = id.filter(|id| !ids.contains(id)) {
+            ids.push(id);
+        }
+    }
+    let texts = ids.iter().map(|&id| network.strings.text(crate::osm::StringId(id)));
+    let mut words: Vec<String> = texts.flat_map(refs).map(fold::reference).collect();
+    words.sort_unstable();
+    words.dedup();
+    words
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::rows::Bounds;
+
+    const NAMES: &[&str] = &[
+        "Northwest Cornell Road",
+        "Southwest 5th Avenue",
+        "Sixth Street",
+        "West Burnside Street",
+        "Burnside Court",
+        "Saint Helens Road",
+        "Main Street",
+        "Old Main Street",
+        "Main Street Extension",
+        "Domain Road",
+        "Hauptstraße",
+        "Goethe Straße",
+        "Römerstraße",
+        "Willy-Brandt-Platz",
+        "Avinguda de la Mare de Déu",
+        "Łódzka",
+        "Carrer de l'Estany",
+    ];
+    const REFS: &[&str] = &["I 5", "A 5", "A 5a", "US 30", "L 551"];
+
+    fn finder() -> Finder {
+        let road = |number: u32, text: &str, by_ref| WholeRoad {
+            text: text.into(),
+            by_ref,
+            ways: Box::new([number]),
+            bounds: Bounds { west: 0.0, south: 0.0, east: 0.0, north: 0.0 },
+            pieces: 1,
+            length_m: 100.0 - number as f32,
+        };
+        let names = (0..).zip(NAMES).map(|(number, text)| (road(number, text, false), Vec::new()));
+        let refs = (50..).zip(REFS).map(|(number, text)| (road(number, text, true), Vec::new()));
+        let other = (road(99, "Pacific Highway", false), vec!["i5".to_owned(), "ca12".to_owned()]);
+        Finder::of(names.chain(refs).chain([other])).unwrap()
+    }
+
+    #[test]
+    fn roads_are_found_as_people_type_them() {
+        let finder = finder();
+        for (typed, text, rank) in [
+            ("NW Cornell Rd", "Northwest Cornell Road", Rank::Exact),
+            ("nw cornell", "Northwest Cornell Road", Rank::Prefix),
+            ("north west cornell", "Northwest Cornell Road", Rank::Within),
+            ("cornell", "Northwest Cornell Road", Rank::Words),
+            ("SW 5th Ave", "Southwest 5th Avenue", Rank::Exact),
+            ("Southwest Fifth", "Southwest 5th Avenue", Rank::Prefix),
+            ("6th st", "Sixth Street", Rank::Exact),
+            ("burnsde", "West Burnside Street", Rank::Slips(2)),
+            ("St. Helens", "Saint Helens Road", Rank::Prefix),
+            ("hauptstr 12", "Hauptstraße", Rank::Without(1)),
+            ("Hauptstr. 12a, Heidelberg", "Hauptstraße", Rank::Without(2)),
+            ("E 5th Ave", "Southwest 5th Avenue", Rank::Without(1)),
+            ("OH 30", "US 30", Rank::Without(1)),
+            ("US Highway 30", "US 30", Rank::Exact),
+            ("CA 12 Pacific", "Pacific Highway", Rank::Words),
+            ("pacific hwy 12", "Pacific Highway", Rank::Without(1)),
+            ("haupstrasse", "Hauptstraße", Rank::Slips(2)),
+            ("HAUPTSTRASSE", "Hauptstraße", Rank::Exact),
+            ("goethestr", "Goethe Straße", Rank::Prefix),
+            ("roemerstrasse", "Römerstraße", Rank::Slips(2)),
+            ("willy brandt pl", "Willy-Brandt-Platz", Rank::Exact),
+            ("avda mare de deu", "Avinguda de la Mare de Déu", Rank::Words),
+            ("lodzka", "Łódzka", Rank::Exact),
+            ("lestany", "Carrer de l'Estany", Rank::Words),
+            ("I-5", "I 5", Rank::Exact),
+            ("Interstate 5", "I 5", Rank::Exact),
+            ("a5", "A 5", Rank::Exact),
+            ("Autobahn 5", "A 5", Rank::Exact),
+            ("l551", "L 551", Rank::Exact),
+        ] {
+            let found = finder.find(typed);
+            let first = found.first().map(|hit| (&*hit.road.text, hit.rank));
+            assert_eq!(first, Some((text, rank)), "{typed}");
+        }
+        for nothing in ["no such road", "xyzzy", "street 12 zzz", "12", "", "…"] {
+            assert!(finder.find(nothing).is_empty(), "{nothing}: {:?}", finder.find(nothing));
+        }
+    }
+
+    #[test]
+    fn the_whole_name_is_before_its_beginning_its_words_and_parts_of_words() {
+        let finder = finder();
+        let found = finder.find("main street");
+        let texts: Vec<&str> = found.iter().map(|hit| &*hit.road.text).collect();
+        assert_eq!(texts, ["Main Street", "Main Street Extension", "Old Main Street"]);
+        let found = finder.find("main");
+        let ranks: Vec<(&str, Rank)> = found.iter().map(|hit| (&*hit.road.text, hit.rank)).collect();
+        assert_eq!(ranks.last(), Some(&("Domain Road", Rank::Within)));
+        // The ref itself is before the roads that carry it, and these before others of similar refs.
+        let of_ref: Vec<&str> = finder.find("i5").iter().map(|hit| &*hit.road.text).collect();
+        assert_eq!(of_ref, ["I 5", "Pacific Highway"]);
+        assert_eq!(finder.find("a5").len(), 2);
+    }
+}

@@ -1,0 +1,94 @@
+//! schemathesis (PyPI) reads the OpenAPI document, invents requests by it, right ones and wrong ones, and judges every answer by it.
+//!
+//! The document gets the ids and places of the demo region, so that edges are explained and routes are made. The seed is fixed and the
+//! time bounded. Without Python or PyPI the test is skipped.
+
+use std::process::Command;
+
+use netcert::words::verdict_words;
+use serde_json::{Value, json};
+
+use super::http::Server;
+use crate::support::python::python;
+
+const VEHICLE: &str = "AU-SEMI19";
+const PACKAGES: &[&str] = &["schemathesis==4.32.5"];
+
+/// Replaces the schemas of parameters by those of what the region has.
+fn with_real_ids(document: &mut Value, server: &Server) {
+    let rows = server.place.rows(VEHICLE);
+    let safe = rows.iter().filter(|row| verdict_words(row.certificate.verdict).0 == "safe" && row.length_m > 50.0);
+    let places: Vec<String> = safe
+        .step_by(9)
+        .take(8)
+        .map(|row| {
+            let (lon, lat) = row.line[row.line.len() / 2].degrees();
+            format!("{lon:.7},{lat:.7}")
+        })
+        .collect();
+    let ids: Vec<String> = rows.iter().step_by(40).take(8).map(|row| row.edge_id.to_string()).collect();
+    let ways: Vec<String> = rows.iter().step_by(40).take(8).map(|row| row.way_id.to_string()).collect();
+    document["components"]["schemas"]["PlaceText"] = json!({"type": "string", "enum": places});
+    let real = |name: &str, path: &str| match name {
+        "vehicle" | "relative_to" => Some(json!([VEHICLE, "AU-ATRIPLE53"])),
+        "id" if path.contains("vehicles") => Some(json!([VEHICLE])),
+        "id" => Some(json!(ids)),
+        "way" => Some(json!(ways)),
+        "policy" => Some(json!(["lane"])),
+        // Searching under conditions takes too long for hundreds of requests; `conditional.rs` tests it.
+        "conditions" => Some(json!(["none"])),
+        _ => None,
+    };
+    let set = |parameter: &mut Value, path: &str| {
+        let name = parameter["name"].as_str().unwrap_or_default().to_owned();
+        // Without this parameter the server searches under conditions.
+        if name == "conditions" {
+            parameter["required"] = json!(true);
+        }
+        // No schema can say that south is not north of north.
+        if name == "bbox" {
+            parameter["schema"] = json!({"type": "string", "enum": ["126,-30.3,126.1,-30.2", "125,-31,127,-30"]});
+        }
+        if let Some(values) = real(&name, path) {
+            parameter["schema"] = json!({"type": "string", "enum": values});
+        }
+    };
+    for parameter in document["components"]["parameters"].as_object_mut().unwrap().values_mut() {
+        set(parameter, "");
+    }
+    for (path, operation) in document["paths"].as_object_mut().unwrap() {
+        for parameter in operation["get"]["parameters"].as_array_mut().unwrap() {
+            set(parameter, path);
+        }
+    }
+}
+
+#[test]
+fn every_answer_to_invented_requests_is_as_described() {
+    let Some(python) = python("schemathesis", PACKAGES) else { return };
+    let server = Server::demo();
+    let mut document = server.json("/api/openapi.json");
+    with_real_ids(&mut document, &server);
+    let place = server.place.path("openapi.json");
+    std::fs::write(&place, document.to_string()).unwrap();
+    let places: Vec<String> =
+        serde_json::from_value(document["components"]["schemas"]["PlaceText"]["enum"].clone()).unwrap();
+    let route =
+        |from: &String, to: &String| format!("/api/route?vehicle={VEHICLE}&from={from}&to={to}&conditions=none");
+    let made = |(from, to)| server.json(&route(from, to))["routes"].as_array().is_some_and(|routes| !routes.is_empty());
+    let pairs = places.iter().flat_map(|from| places.iter().map(move |to| (from, to))).filter(|(from, to)| from != to);
+    assert!(pairs.into_iter().any(made), "no two of the places have a route: {places:?}");
+    // A question in good form may still have no answer (404, 422), or wait too long on a busy machine (503, 504).
+    let config = "[checks.positive_data_acceptance]\nexpected-statuses = [200, 304, 404, 409, 422, 503, 504]\n";
+    std::fs::write(server.place.path("schemathesis.toml"), config).unwrap();
+    let url = format!("http://{}", server.address);
+    let mut command = Command::new(&python);
+    command.args(["-m", "schemathesis.cli"]).arg("--config-file").arg(server.place.path("schemathesis.toml"));
+    command.arg("run").arg(&place).args(["--url", &url, "--seed", "20", "--max-examples", "12", "--max-time", "45"]);
+    command.args(["--phases", "examples,coverage,fuzzing", "--no-shrink", "--suppress-health-check", "all"]);
+    let output = command.env("NO_COLOR", "1").current_dir(server.place.path("")).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stdout);
+    println!("{said}");
+    assert!(output.status.success(), "{said}\n{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(server.get("/healthz").status, 200);
+}
