@@ -79,7 +79,8 @@ fn every_answer_to_invented_requests_is_as_described() {
     let pairs = places.iter().flat_map(|from| places.iter().map(move |to| (from, to))).filter(|(from, to)| from != to);
     assert!(pairs.into_iter().any(made), "no two of the places have a route: {places:?}");
     // A question in good form may still have no answer (404, 422), or wait too long on a busy machine (503, 504).
-    let config = "[checks.positive_data_acceptance]\nexpected-statuses = [200, 304, 404, 409, 422, 503, 504]\n";
+    let config = "[checks.positive_data_acceptance]\nexpected-statuses = [200, 304, 404, 409, 422, 503, 504]\n\
+                  [checks.negative_data_rejection]\nexpected-statuses = [400, 404, 409, 414, 422, 503, 504]\n";
     std::fs::write(server.place.path("schemathesis.toml"), config).unwrap();
     let url = format!("http://{}", server.address);
     let mut command = Command::new(&python);
