@@ -18,22 +18,14 @@ pub(super) struct Problem {
     detail: String,
     /// The parameter at fault.
     parameter: Option<String>,
-    /// Further members, which programs read.
-    more: serde_json::Map<String, Value>,
+    /// Further members, which programs read. Boxed, because a result is as large as its error.
+    more: Box<serde_json::Map<String, Value>>,
     retry_after_s: Option<u32>,
 }
 
 impl Problem {
     pub(super) fn new(status: StatusCode, kind: &'static str, title: &'static str, detail: impl Into<String>) -> Self {
-        Self {
-            status,
-            kind,
-            title,
-            detail: detail.into(),
-            parameter: None,
-            more: serde_json::Map::new(),
-            retry_after_s: None,
-        }
+        Self { status, kind, title, detail: detail.into(), parameter: None, more: Box::default(), retry_after_s: None }
     }
 
     /// A parameter is missing, unknown, out of range or cannot be read.
@@ -72,7 +64,7 @@ impl Problem {
         let title = "There is no road that may be used";
         let problem = Self::new(StatusCode::UNPROCESSABLE_ENTITY, "no-road", title, detail);
         let Value::Object(more) = members else { return problem };
-        Self { more, ..problem }
+        Self { more: Box::new(more), ..problem }
     }
 
     /// The certificates were made by another version of the program.
@@ -143,7 +135,7 @@ impl IntoResponse for Problem {
         if let Some(parameter) = &self.parameter {
             body["parameter"] = json!(parameter);
         }
-        for (name, member) in self.more {
+        for (name, member) in *self.more {
             body[name] = member;
         }
         let mut response = (self.status, body.to_string()).into_response();

@@ -84,7 +84,7 @@ fn members(roads: &RoadIndex, edges: &[u32], told: &Told, numbers: Option<&Numbe
 
 fn feature(network: &Network, index: u32, numbers: Option<&Numbers>) -> Option<Value> {
     let edge = network.edges.get(index as usize)?;
-    let line: Vec<(f64, f64)> = network.positions(edge).map(|position| position.degrees()).collect();
+    let line: Vec<(f64, f64)> = network.positions(edge).map(crate::osm::LonLat::degrees).collect();
     let own = numbers.and_then(|numbers| numbers.of(index));
     let words = own.map(|own| verdict_words(own.verdict));
     let id = edge.id.to_string();
