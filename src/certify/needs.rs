@@ -150,6 +150,8 @@ struct Widened<'w> {
     corridor: &'w Corridor,
     edges: Vec<u32>,
     spans: Vec<Range<usize>>,
+    /// Of all edges of the stroke: its plan serves them, too.
+    planned: &'w [Range<usize>],
 }
 
 /// For each stroke and vehicle: edges with the least width in metres with which each would be safe, if its stroke were nowhere narrower.
@@ -174,14 +176,19 @@ pub(super) fn edge_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(u32
         probes.sort_by_key(|probe| (probe.stroke, probe.steps, probe.of));
         // Probes of the same width of a stroke share its corridor.
         let alike: Vec<&[Probe]> = probes.chunk_by(|a, b| (a.stroke, a.steps) == (b.stroke, b.steps)).collect();
-        let made: Vec<Option<StrokeCorridor>> =
+        let made: Vec<Option<(StrokeCorridor, Vec<Range<usize>>)>> =
             alike.iter().map(|same| widened(job, lacking[same[0].of].stroke, same[0].steps as f64 / WIDTHS)).collect();
         let wide = alike.iter().zip(&made).filter_map(|(same, made)| Some((same, made.as_ref()?)));
         let wide: Vec<Widened<'_>> =
             wide.flat_map(|(same, made)| same.iter().map(move |probe| Widened::of(probe, made))).collect();
         let cases: Vec<Case<'_>> = wide
             .iter()
-            .map(|wide| Case { corridor: wide.corridor, spans: &wide.spans, model: lacking[wide.probe.of].model })
+            .map(|Widened { probe, corridor, spans, planned, .. }| Case {
+                corridor,
+                spans,
+                planned,
+                model: lacking[probe.of].model,
+            })
             .collect();
         let rows = certify_cases(&cases, &job.settings.stet);
         let mut results: FxHashMap<(usize, u32), &SpanResult> = FxHashMap::default();
@@ -199,10 +206,10 @@ pub(super) fn edge_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(u32
 
 impl<'w> Widened<'w> {
     /// The edges of the probe that have a corridor.
-    fn of(probe: &'w Probe, made: &'w StrokeCorridor) -> Self {
+    fn of(probe: &'w Probe, (made, planned): &'w (StrokeCorridor, Vec<Range<usize>>)) -> Self {
         let asked = made.spans.iter().filter(|span| span.unknown.is_none() && probe.edges.contains(&span.edge));
         let (edges, spans) = asked.map(|span| (span.edge, span.stations.clone())).unzip();
-        Self { probe, corridor: &made.corridor, edges, spans }
+        Self { probe, corridor: &made.corridor, edges, spans, planned }
     }
 }
 
@@ -220,11 +227,13 @@ pub fn edge_need(network: &Network, (stroke, edge): (u32, u32), model: &Model, s
     edge_needs(&job, &[lacking]).pop()?.pop().map(|(_, need_m)| need_m)
 }
 
-/// A stroke that is nowhere narrower than a width. `None` if it has no corridor then.
-fn widened(job: &Job<'_>, stroke: &Stroke, width_m: f64) -> Option<StrokeCorridor> {
+/// A stroke that is nowhere narrower than a width, and the stations of its edges. `None` if it has no corridor then.
+fn widened(job: &Job<'_>, stroke: &Stroke, width_m: f64) -> Option<(StrokeCorridor, Vec<Range<usize>>)> {
     let Settings { policy, corridor, .. } = job.settings;
     let sections = |edge: &_| job.network.section(edge).at_least(*policy, width_m);
-    stroke_corridor_on(job.network, stroke, &sections, *policy, corridor).ok()
+    let made = stroke_corridor_on(job.network, stroke, &sections, *policy, corridor).ok()?;
+    let stations = made.spans.iter().map(|span| span.stations.clone()).collect();
+    Some((made, stations))
 }
 
 /// The lines of strokes, by edge.

@@ -206,7 +206,9 @@ fn certify_together(job: &Job<'_>, strokes: &[Numbered<'_>]) -> Vec<StrokeMade> 
         .iter()
         .flatten()
         .zip(&spans)
-        .flat_map(|(made, spans)| job.models.iter().map(move |model| Case { corridor: &made.corridor, spans, model }))
+        .flat_map(|(made, spans)| {
+            job.models.iter().map(move |model| Case { corridor: &made.corridor, spans, planned: spans, model })
+        })
         .collect();
     let all = certify_cases(&cases, &job.settings.stet);
     let mut rows = all.chunks(job.models.len().max(1));

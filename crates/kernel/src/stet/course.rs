@@ -46,7 +46,7 @@ impl<'c> Course<'c> {
         } else if !swept.measure_least(&self.span, above_m) {
             return None;
         }
-        let case = Case { corridor: self.corridor, spans, model: self.model };
+        let case = Case { corridor: self.corridor, spans, planned: spans, model: self.model };
         Some(finished(swept, &case, Marks::Ends, options, &never))
     }
 }

@@ -203,7 +203,7 @@ pub fn certify_spans(
     spans: &[Range<usize>],
     options: &Options,
 ) -> Vec<Planned> {
-    let cases: Vec<Case<'_>> = models.iter().map(|model| Case { corridor, spans, model }).collect();
+    let cases: Vec<Case<'_>> = models.iter().map(|model| Case { corridor, spans, planned: spans, model }).collect();
     if corridor.is_empty() { Vec::new() } else { certify_cases(&cases, options) }
 }
 
@@ -212,8 +212,10 @@ pub fn certify_spans(
 pub struct Case<'c> {
     /// The corridor.
     pub corridor: &'c Corridor,
-    /// Spans of its stations.
+    /// Spans of its stations for which results are asked.
     pub spans: &'c [Range<usize>],
+    /// Spans that the plan serves. The plan does not depend on which of them are asked for.
+    pub planned: &'c [Range<usize>],
     /// The vehicle.
     pub model: &'c Model,
 }
@@ -239,7 +241,7 @@ pub fn certify_cases(cases: &[Case<'_>], options: &Options) -> Vec<Planned> {
     let unplanned: Vec<Unplanned<'_>> = known
         .iter()
         .zip(&tracks)
-        .map(|(case, track)| Unplanned { track, model: case.model, spans: case.spans, held: &[] })
+        .map(|(case, track)| Unplanned { track, model: case.model, spans: case.planned, held: &[] })
         .collect();
     let plans = plan::best(&unplanned, options, &never);
     let mut swept: Vec<Swept<'_>> = known

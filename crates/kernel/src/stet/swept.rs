@@ -352,15 +352,17 @@ mod tests {
 
     #[test]
     fn a_span_has_the_same_result_whichever_other_spans_are_asked_for() {
-        let model = Model::new(Catalogue::builtin().unwrap().get("AU-BDOUBLE26").unwrap()).unwrap();
-        // Without corrections the plan does not depend on the spans.
-        let options = Options { correction_sweeps: 0, ..Options::default() };
+        let [_, _, model] = models();
         for corridor in bends() {
-            let spans = halves(&corridor);
-            let both = certify_spans(&corridor, &[&model], &spans, &options);
-            for (span, together) in spans.iter().zip(&both[0].spans) {
-                let alone = certify_spans(&corridor, &[&model], std::slice::from_ref(span), &options);
-                assert_eq!(alone[0].spans[0], *together, "{span:?}");
+            let planned = halves(&corridor);
+            let result = |spans| {
+                let case = Case { corridor: &corridor, spans, planned: &planned, model: &model };
+                certify_cases(&[case], &Options::default()).remove(0)
+            };
+            let both = result(&planned);
+            for (span, together) in planned.iter().zip(&both.spans) {
+                let alone = result(std::slice::from_ref(span));
+                assert_eq!((&alone.plan, &alone.spans[0]), (&both.plan, together), "{span:?}");
             }
         }
     }
@@ -371,7 +373,9 @@ mod tests {
         let spans: Vec<Vec<Range<usize>>> = corridors.iter().map(halves).collect();
         let all = || corridors.iter().zip(&spans);
         let cases: Vec<Case<'_>> = all()
-            .flat_map(|(corridor, spans)| models.iter().map(move |model| Case { corridor, spans, model }))
+            .flat_map(|(corridor, spans)| {
+                models.iter().map(move |model| Case { corridor, spans, planned: spans, model })
+            })
             .collect();
         let options = Options::default();
         let together = certify_cases(&cases, &options);
@@ -389,7 +393,8 @@ mod tests {
         let corridor = bend(60.0, 0.01, 2.5);
         let empty = Corridor { x: Vec::new(), ..Corridor::straight(0.0, 2.0, 2.0) };
         let whole = 0..corridor.len();
-        let case = |corridor| Case { corridor, spans: std::slice::from_ref(&whole), model: &model };
+        let spans = std::slice::from_ref(&whole);
+        let case = |corridor| Case { corridor, spans, planned: spans, model: &model };
         let rows = certify_cases(&[case(&empty), case(&corridor)], &Options::default());
         assert!(rows[0].spans.is_empty());
         assert_eq!(rows[1..], certify_spans(&corridor, &[&model], std::slice::from_ref(&whole), &Options::default()));

@@ -1,0 +1,99 @@
+//! The search over drawn names.
+
+#![allow(clippy::unwrap_used)]
+use super::*;
+use crate::rows::Bounds;
+
+const NAMES: &[&str] = &[
+    "Northwest Cornell Road",
+    "Southwest 5th Avenue",
+    "Sixth Street",
+    "West Burnside Street",
+    "Burnside Court",
+    "Saint Helens Road",
+    "Main Street",
+    "Old Main Street",
+    "Main Street Extension",
+    "Domain Road",
+    "Hauptstraße",
+    "Goethe Straße",
+    "Römerstraße",
+    "Willy-Brandt-Platz",
+    "Avinguda de la Mare de Déu",
+    "Łódzka",
+    "Carrer de l'Estany",
+];
+const REFS: &[&str] = &["I 5", "A 5", "A 5a", "US 30", "L 551"];
+
+fn finder() -> Finder {
+    let road = |number: u32, text: &str, by_ref| WholeRoad {
+        text: text.into(),
+        by_ref,
+        ways: Box::new([number]),
+        bounds: Bounds { west: 0.0, south: 0.0, east: 0.0, north: 0.0 },
+        pieces: 1,
+        length_m: 100.0 - number as f32,
+    };
+    let names = (0..).zip(NAMES).map(|(number, text)| (road(number, text, false), Vec::new()));
+    let refs = (50..).zip(REFS).map(|(number, text)| (road(number, text, true), Vec::new()));
+    let other = (road(99, "Pacific Highway", false), vec!["i5".to_owned(), "ca12".to_owned()]);
+    Finder::of(names.chain(refs).chain([other])).unwrap()
+}
+
+#[test]
+fn roads_are_found_as_people_type_them() {
+    let finder = finder();
+    for (typed, text, rank) in [
+        ("NW Cornell Rd", "Northwest Cornell Road", Rank::Exact),
+        ("nw cornell", "Northwest Cornell Road", Rank::Prefix),
+        ("north west cornell", "Northwest Cornell Road", Rank::Within),
+        ("cornell", "Northwest Cornell Road", Rank::Words),
+        ("SW 5th Ave", "Southwest 5th Avenue", Rank::Exact),
+        ("Southwest Fifth", "Southwest 5th Avenue", Rank::Prefix),
+        ("6th st", "Sixth Street", Rank::Exact),
+        ("burnsde", "West Burnside Street", Rank::Slips(2)),
+        ("St. Helens", "Saint Helens Road", Rank::Prefix),
+        ("hauptstr 12", "Hauptstraße", Rank::Without(1)),
+        ("Hauptstr. 12a, Heidelberg", "Hauptstraße", Rank::Without(2)),
+        ("E 5th Ave", "Southwest 5th Avenue", Rank::Without(1)),
+        ("OH 30", "US 30", Rank::Without(1)),
+        ("US Highway 30", "US 30", Rank::Exact),
+        ("CA 12 Pacific", "Pacific Highway", Rank::Words),
+        ("pacific hwy 12", "Pacific Highway", Rank::Without(1)),
+        ("haupstrasse", "Hauptstraße", Rank::Slips(2)),
+        ("HAUPTSTRASSE", "Hauptstraße", Rank::Exact),
+        ("goethestr", "Goethe Straße", Rank::Prefix),
+        ("roemerstrasse", "Römerstraße", Rank::Slips(2)),
+        ("willy brandt pl", "Willy-Brandt-Platz", Rank::Exact),
+        ("avda mare de deu", "Avinguda de la Mare de Déu", Rank::Words),
+        ("lodzka", "Łódzka", Rank::Exact),
+        ("lestany", "Carrer de l'Estany", Rank::Words),
+        ("I-5", "I 5", Rank::Exact),
+        ("Interstate 5", "I 5", Rank::Exact),
+        ("a5", "A 5", Rank::Exact),
+        ("Autobahn 5", "A 5", Rank::Exact),
+        ("l551", "L 551", Rank::Exact),
+    ] {
+        let found = finder.find(typed);
+        let first = found.first().map(|hit| (&*hit.road.text, hit.rank));
+        assert_eq!(first, Some((text, rank)), "{typed}");
+    }
+    for nothing in ["no such road", "xyzzy", "street 12 zzz", "12", "", "…"] {
+        assert!(finder.find(nothing).is_empty(), "{nothing}: {:?}", finder.find(nothing));
+    }
+}
+
+#[test]
+fn the_whole_name_is_before_its_beginning_its_words_and_parts_of_words() {
+    let finder = finder();
+    let found = finder.find("main street");
+    let texts: Vec<&str> = found.iter().map(|hit| &*hit.road.text).collect();
+    assert_eq!(texts, ["Main Street", "Main Street Extension", "Old Main Street"]);
+    let found = finder.find("main");
+    let ranks: Vec<(&str, Rank)> = found.iter().map(|hit| (&*hit.road.text, hit.rank)).collect();
+    assert_eq!(ranks.last(), Some(&("Domain Road", Rank::Within)));
+    // The ref itself is before the roads that carry it, and these before others of similar refs.
+    let of_ref: Vec<&str> = finder.find("i5").iter().map(|hit| &*hit.road.text).collect();
+    assert_eq!(of_ref, ["I 5", "Pacific Highway"]);
+    assert_eq!(finder.find("a5").len(), 2);
+}
