@@ -49,7 +49,7 @@ pub(crate) fn certify_many(
     let pairs: Vec<_> = corridors.iter().copied().zip(spans.iter().map(std::slice::from_ref)).collect();
     let cases: Vec<Case<'_>> = pairs
         .iter()
-        .flat_map(|&(corridor, spans)| models.iter().map(move |model| Case { corridor, spans, model }))
+        .flat_map(|&(corridor, spans)| models.iter().map(move |model| Case { corridor, spans, planned: spans, model }))
         .collect();
     let planned = work::run(py, |stop| {
         let some = |cases: &[Case<'_>]| if stop.told() { Vec::new() } else { certify_cases(cases, &options) };
