@@ -144,7 +144,7 @@ inPage("what the older database does not have cannot be switched on", "#v=AU-SEM
 inPage("what the server refuses is said in its words", "#v=AU-SEMI19", async (page, opened) => {
   const detail = "its file is gone; put it back";
   await page.route("**/api/changes*", (route) => route.fulfill({ status: 503, contentType: "application/problem+json", json: { title: "x", status: 503, detail } }));
-  await page.keyboard.press("s");
+  await page.locator("#changes").check();
   await page.waitForSelector(".changes [role=alert]");
   assert.equal(await text(page, ".changes [role=alert]"), detail);
   // The browser itself tells of the refusal.
