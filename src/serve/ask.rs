@@ -72,8 +72,9 @@ fn read_query(query: &str) -> Result<Vec<(String, String)>, Problem> {
         if parameters.len() == MOST_PARAMETERS {
             return Err(Problem::parameter("query", format!("more than {MOST_PARAMETERS} parameters")));
         }
-        if value.len() > LONGEST_VALUE || name.len() > LONGEST_VALUE {
-            return Err(Problem::parameter(&shortened(&name), format!("longer than {LONGEST_VALUE} bytes")));
+        let long = |text: &str| text.chars().nth(LONGEST_VALUE).is_some();
+        if long(&value) || long(&name) {
+            return Err(Problem::parameter(&shortened(&name), format!("longer than {LONGEST_VALUE} characters")));
         }
         parameters.push((name.into_owned(), value.into_owned()));
     }
