@@ -17,7 +17,7 @@ use crate::words::Named;
 
 /// The greatest number of parameters of a request; no endpoint has as many.
 const MOST_PARAMETERS: usize = 24;
-/// Longest value of one parameter, bytes.
+/// Longest value of one parameter, characters.
 const LONGEST_VALUE: usize = 200;
 /// A parameter that every endpoint accepts: the state of the database that the client has seen. See `answer`.
 pub(super) const STATE: &str = "state";
