@@ -190,5 +190,5 @@ def test_the_checker_refutes_a_certificate_that_promises_too_much(demo_path, tmp
             [TRUCK],
         )
     found = netcert.open(path).verify(vehicles=[TRUCK])
-    assert not found.confirmed and len(found.complaints) == 1
-    assert found.complaints[0].startswith(f"not confirmed: {TRUCK} edge ")
+    edges = [complaint for complaint in found.complaints if f"{TRUCK} edge " in complaint]
+    assert not found.confirmed and len(edges) == 1 and edges[0].startswith("not confirmed: ")
