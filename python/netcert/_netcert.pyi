@@ -20,6 +20,7 @@ __all__ = [
     "Tube",
     "Unit",
     "Vehicle",
+    "Verification",
     "__version__",
     "certify",
     "certify_many",
