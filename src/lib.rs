@@ -113,6 +113,7 @@ pub mod seal;
 #[cfg(feature = "serve")]
 pub mod serve;
 pub mod settings;
+mod shape;
 mod sorter;
 pub mod store;
 pub mod turns;

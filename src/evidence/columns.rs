@@ -3,7 +3,7 @@
 //! Every format gives its cells as text and its geometry as a shape. What they mean is read in one place, `read.rs`.
 
 use super::error::Fault;
-use super::shape::Shape;
+use crate::shape::Shape;
 
 /// A column with a meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

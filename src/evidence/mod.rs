@@ -12,7 +12,6 @@ mod places;
 mod read;
 mod register;
 mod row;
-mod shape;
 mod stored;
 mod surface;
 #[cfg(test)]

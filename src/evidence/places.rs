@@ -6,8 +6,8 @@
 use super::cells::Cells;
 use super::columns::Column;
 use super::row::{Along, Place, Quantity};
-use super::shape::{self, Shape};
 use crate::osm::LonLat;
+use crate::shape::{self, Shape};
 use crate::words::Named as _;
 
 /// The place of a row, and where its geometry begins if ids give the place.

@@ -3,9 +3,9 @@
 //! The geometry is a GeoPackage's blob: the drawn place; for a surface its polygon; beside ids the position that the row gave.
 
 use super::row::{Place, Quantity, Row, Value};
-use super::shape::{self, Shape};
 use crate::osm::LonLat;
 use crate::rows::Bounds;
+use crate::shape::{self, Shape};
 
 /// Value and place as columns.
 #[derive(Debug, Clone, Default, PartialEq)]

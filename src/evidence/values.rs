@@ -3,7 +3,7 @@
 use super::cells::Cells;
 use super::columns::Column;
 use super::row::{Quantity, Value};
-use super::shape::{self, Shape};
+use crate::shape::{self, Shape};
 use crate::words::Named as _;
 
 /// Units by name, with what they are in metres or tonnes.

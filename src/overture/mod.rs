@@ -10,6 +10,7 @@ mod error;
 mod files;
 mod gather;
 mod geojson;
+mod geometry;
 mod ids;
 mod line;
 mod parquet;
@@ -17,7 +18,6 @@ mod record;
 mod rules;
 mod segment;
 mod turns;
-mod wkb;
 
 use std::path::{Path, PathBuf};
 
@@ -66,7 +66,7 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
     for table in tables.iter().filter(|table| table.kind == Kind::Connectors) {
         of_connectors = true;
         let groups = table.each(|some, record| {
-            let place = wkb::point(&record.geometry).map_err(|problem| (Some(record.id.clone()), problem))?;
+            let place = geometry::point(&record.geometry).map_err(|problem| (Some(record.id.clone()), problem))?;
             some.push((Key::connector(&record.id), place));
             Ok(())
         })?;
@@ -82,7 +82,7 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
                 }
                 other => return Err((feature.id.clone(), Problem::OtherFeatures(format!("type {other:?}")))),
             }
-            let (id, place) = id_and(feature, |feature| wkb::of_json(&feature.geometry, "Point"))?;
+            let (id, place) = id_and(feature, |feature| geometry::of_json(&feature.geometry, "Point"))?;
             connectors.add(place.first().map(|place| (Key::connector(&id), *place)).into_iter().collect());
             Ok(())
         })?;
@@ -101,7 +101,7 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
             let road = || {
                 let segment =
                     record::Segment::deserialize(record.columns).map_err(|e| Problem::Schema(e.to_string()))?;
-                let places = wkb::line(&record.geometry)?;
+                let places = geometry::line(&record.geometry)?;
                 made(Feature { id: record.id, places, segment }, &connectors)
             };
             some.push(road().map_err(|problem| (Some(id), problem))?);
@@ -118,7 +118,7 @@ pub fn read(inputs: &[&Path], progress: &dyn Fn(&'static str)) -> Result<Read, O
                 return Ok(());
             }
             let (id, (places, segment)) = id_and(feature, |feature| {
-                let places = wkb::of_json(&feature.geometry, "LineString")?;
+                let places = geometry::of_json(&feature.geometry, "LineString")?;
                 let segment = record::Segment::deserialize(std::mem::take(&mut feature.properties));
                 Ok((places, segment.map_err(|e| Problem::Schema(e.to_string()))?))
             })?;

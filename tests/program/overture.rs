@@ -264,7 +264,7 @@ fn what_is_missing_is_named_with_a_way_out() {
     with(&far, &connectors)
         .netcert(&format!("ingest release {MADE}"))
         .fails()
-        .tells("500000, 6500000 is no longitude and latitude");
+        .tells("x 500000, y 6500000 are no longitude and latitude");
 }
 
 #[test]

@@ -5,7 +5,7 @@
 
 use crate::evidence::columns::{Column, Record, columns};
 use crate::evidence::error::Failure;
-use crate::evidence::shape;
+use crate::shape;
 
 /// Columns of words. A last cell of any other kind needs the end of its line, as its last digits may be missing.
 const WORDS: [Column; 7] =

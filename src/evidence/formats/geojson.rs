@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use crate::evidence::columns::{Column, Record, columns, is_geometry, real_text};
 use crate::evidence::error::Failure;
-use crate::evidence::shape::{Shape, Xy};
+use crate::shape::{Shape, Xy};
 
 /// All records of a file.
 pub(super) fn records(bytes: &[u8]) -> Result<Vec<Record>, Failure> {

@@ -11,7 +11,7 @@ use sqlx::{AssertSqlSafe, ConnectOptions as _, Connection as _, Row as _};
 use super::reference::Transform;
 use crate::evidence::columns::{Column, Record, columns, is_geometry, real_text};
 use crate::evidence::error::Failure;
-use crate::evidence::shape::from_geopackage;
+use crate::shape::from_geopackage;
 
 /// All records of a file, table after table, numbered through.
 pub(super) fn records(path: &Path) -> Result<Vec<Record>, Failure> {

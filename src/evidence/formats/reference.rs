@@ -5,7 +5,7 @@
 
 use proj::Proj;
 
-use crate::evidence::shape::{Shape, Xy};
+use crate::shape::{Shape, Xy};
 
 /// Least accuracy of a transformation, metres.
 const ACCURACY_M: f64 = 5.0;

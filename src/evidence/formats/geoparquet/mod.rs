@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use crate::evidence::columns::{Column, Record, columns, is_geometry};
 use crate::evidence::error::Failure;
-use crate::evidence::shape::from_wkb;
+use crate::shape::from_wkb;
 use cells::Cell;
 
 /// All records of a file, numbered from 1. The crate panics on pages whose sizes contradict each other; that is an error here.

@@ -5,17 +5,17 @@
 mod wkb;
 mod wkt;
 
-pub(super) use wkb::{from_geopackage, from_wkb};
-pub(super) use wkt::from_text;
+pub(crate) use wkb::{from_geopackage, from_wkb};
+pub(crate) use wkt::from_text;
 
 use crate::osm::LonLat;
 
 /// x is longitude and y latitude, degrees, unless a reader has yet to transform them.
-pub(super) type Xy = [f64; 2];
+pub(crate) type Xy = [f64; 2];
 
 /// A geometry.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Shape {
+pub(crate) enum Shape {
     Point(Xy),
     Line(Vec<Xy>),
     /// The outer ring, then holes.
@@ -24,7 +24,7 @@ pub(super) enum Shape {
 
 impl Shape {
     /// The one part of a geometry that may have several.
-    pub(super) fn only<T>(mut parts: Vec<T>, make: impl Fn(T) -> Self) -> Result<Option<Self>, String> {
+    pub(crate) fn only<T>(mut parts: Vec<T>, make: impl Fn(T) -> Self) -> Result<Option<Self>, String> {
         let last = parts.pop();
         match (last, parts.len()) {
             (last, 0) => Ok(last.map(make)),
@@ -33,7 +33,7 @@ impl Shape {
     }
 
     /// All its positions.
-    pub(super) fn positions_mut(&mut self) -> Vec<&mut Xy> {
+    pub(crate) fn positions_mut(&mut self) -> Vec<&mut Xy> {
         match self {
             Self::Point(at) => vec![at],
             Self::Line(line) => line.iter_mut().collect(),
@@ -43,7 +43,7 @@ impl Shape {
 }
 
 /// A position, if it is one.
-pub(super) fn position([lon, lat]: Xy) -> Result<LonLat, String> {
+pub(crate) fn position([lon, lat]: Xy) -> Result<LonLat, String> {
     if !lon.is_finite() || !lat.is_finite() {
         return Err("a coordinate is no finite number; correct it".to_owned());
     }
@@ -61,7 +61,7 @@ pub(super) fn position([lon, lat]: Xy) -> Result<LonLat, String> {
 }
 
 /// Positions of a line, at least two different ones.
-pub(super) fn line(line: &[Xy]) -> Result<Vec<LonLat>, String> {
+pub(crate) fn line(line: &[Xy]) -> Result<Vec<LonLat>, String> {
     let mut places: Vec<LonLat> = line.iter().map(|&at| position(at)).collect::<Result<_, _>>()?;
     places.dedup();
     if places.len() < 2 {
@@ -71,7 +71,7 @@ pub(super) fn line(line: &[Xy]) -> Result<Vec<LonLat>, String> {
 }
 
 /// Rings of a polygon, each closed and with at least three corners.
-pub(super) fn rings(rings: &[Vec<Xy>]) -> Result<Vec<Vec<LonLat>>, String> {
+pub(crate) fn rings(rings: &[Vec<Xy>]) -> Result<Vec<Vec<LonLat>>, String> {
     let ring = |ring: &Vec<Xy>| -> Result<Vec<LonLat>, String> {
         let mut places: Vec<LonLat> = ring.iter().map(|&at| position(at)).collect::<Result<_, _>>()?;
         places.dedup();
