@@ -3,8 +3,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
-import { after, before } from "node:test";
-import { edgePixel, everything, missing, tests } from "./support.mjs";
+import { drawnRegion, edgePixel } from "./support.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const options = {
@@ -13,12 +12,7 @@ const options = {
   rules: { "label-content-name-mismatch": { enabled: true }, "target-size": { enabled: true } },
 };
 
-let all;
-before(async () => {
-  if (!missing) all = await everything();
-});
-after(() => all?.close());
-const inPage = tests(() => all);
+const { inPage } = drawnRegion();
 
 const CORNER = "v=AU-ATRIPLE53&policy=carriageway&route=126.026942,-30.203315;126.046615,-30.205563";
 const narrow = { viewport: { width: 390, height: 780 } };

@@ -1,18 +1,10 @@
 // What changed since an older database, on the map and in the panel: as the server says, with the keyboard, and part of the link.
 
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { everything, idle, missing, open, serve, tests } from "./support.mjs";
+import { test } from "node:test";
+import { drawnRegion, idle, missing, open, serve, text } from "./support.mjs";
 
-let all;
-before(async () => {
-  if (!missing) all = await everything({ compared: true });
-});
-after(() => all?.close());
-
-const inPage = tests(() => all);
-const text = (page, selector) => page.locator(selector).innerText();
-const ask = (path) => fetch(all.address + path).then((answer) => answer.json());
+const { all, ask, inPage } = drawnRegion({ compared: true });
 const asked = "/api/changes?vehicle=AU-SEMI19&policy=lane";
 
 /** How many changes of each kind are drawn in sight. */

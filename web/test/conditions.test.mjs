@@ -2,15 +2,9 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { after, before } from "node:test";
-import { everything, idle, missing, program, tests } from "./support.mjs";
+import { drawnRegion, idle, program, text } from "./support.mjs";
 
-let all;
-before(async () => {
-  if (!missing) all = await everything();
-});
-after(() => all?.close());
-const inPage = tests(() => all);
+const { all, ask, inPage } = drawnRegion();
 
 const FROM = "126.026942,-30.203315";
 const TO = "126.046615,-30.205563";
@@ -18,8 +12,6 @@ const SET = "vehicle=AU-ATRIPLE53&policy=carriageway";
 /** Round a corner whose assumed kerb is too sharp. */
 const CORNER = `#v=AU-ATRIPLE53&policy=carriageway&route=${FROM};${TO}`;
 
-const text = (page, selector) => page.locator(selector).innerText();
-const ask = (path) => fetch(all.address + path).then((answer) => answer.json());
 const routed = () => ask(`/api/route?${SET}&from=${FROM}&to=${TO}&snap=500`);
 
 /** How many pieces of each line of a route are seen. */

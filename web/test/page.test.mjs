@@ -1,21 +1,12 @@
 // The page in a real browser, on the drawn region: what people do, and what may go wrong.
 
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { edgePixel, everything, idle, load, missing, open, tests } from "./support.mjs";
+import { test } from "node:test";
+import { drawnRegion, edgePixel, idle, load, missing, open, text } from "./support.mjs";
 
 const { palettes } = await load("map/palette.ts");
 
-let all;
-before(async () => {
-  if (!missing) all = await everything();
-});
-after(() => all?.close());
-
-const inPage = tests(() => all);
-
-const text = (page, selector) => page.locator(selector).innerText();
-const ask = (path) => fetch(all.address + path).then((answer) => answer.json());
+const { all, ask, inPage } = drawnRegion();
 
 inPage("shows roads, a vehicle and how much of the roads it may use", "#v=AU-SEMI19", async (page) => {
   const drawn = await page.evaluate(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["edge-safe", "edge-unsafe"] }).length);

@@ -1,21 +1,13 @@
 // Plain words first, units by choice, notes on the map, the welcome, and the printed sheet.
 
 import assert from "node:assert/strict";
-import { after, before, test } from "node:test";
-import { edgePixel, everything, idle, load, missing, open, tests } from "./support.mjs";
+import { test } from "node:test";
+import { drawnRegion, edgePixel, idle, load, open, text } from "./support.mjs";
 
-let all;
-before(async () => {
-  if (!missing) all = await everything();
-});
-after(() => all?.close());
-const inPage = tests(() => all);
-
-const text = (page, selector) => page.locator(selector).innerText();
-const ask = (path) => fetch(all.address + path).then((answer) => answer.json());
+const { all, ask, inPage } = drawnRegion();
 
 const { length, distance, roadLength, speakIn } = await load("units.ts");
-const { coordinate, coordinateText } = await load("coordinate.ts");
+const { coordinateText } = await load("coordinate.ts");
 const { refs, title } = await load("words.ts");
 
 test("lengths are rounded to the cautious side, in metres and in feet", () => {
@@ -28,11 +20,8 @@ test("lengths are rounded to the cautious side, in metres and in feet", () => {
   assert.deepEqual([distance(100), distance(3218.688), roadLength(160_934.4)], ["328 ft", "2.00 mi", "100 mi"]);
 });
 
-test("a coordinate is read as people type it, and nothing else is", () => {
-  assert.deepEqual(coordinate("-33.8571, 151.2152"), [151.2152, -33.8571]);
-  assert.deepEqual(coordinate(" −33.8571° 151.2152° "), [151.2152, -33.8571]);
-  for (const no of ["12", "I 405", "33.8", "95, 10", "10, 200", "Road 1, 2", "", "1,2,3"]) assert.equal(coordinate(no), null, no);
-  assert.deepEqual(coordinate(coordinateText([151.2152, -33.8571])), [151.2152, -33.8571]);
+test("a place is written latitude first", () => {
+  assert.equal(coordinateText([151.2152, -33.8571]), "−33.85710, 151.21520");
 });
 
 test("every number of a road is one of its own", () => {

@@ -2,17 +2,10 @@
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
-import { after, before } from "node:test";
-import { edgePixel, everything, idle, missing, tests } from "./support.mjs";
+import { drawnRegion, edgePixel, idle, text } from "./support.mjs";
 
-let all;
-before(async () => {
-  if (!missing) all = await everything();
-});
-after(() => all?.close());
-const inPage = tests(() => all);
+const { all, inPage } = drawnRegion();
 
-const text = (page, selector) => page.locator(selector).innerText();
 const route = (page) => page.evaluate(() => globalThis.netcert.store.state.route);
 const certified = (page) => page.waitForSelector(".route .verdict.is-safe", { timeout: 120_000 });
 const fields = (page) => page.locator(".trip input").evaluateAll((inputs) => inputs.map(({ value }) => value));
@@ -36,6 +29,7 @@ inPage("a coordinate and a road are typed, the ends are swapped, and a stop is p
   assert.equal(await page.evaluate(() => document.activeElement.id), "place-0", "the first field has the focus");
   await page.keyboard.type(typed(A));
   await page.keyboard.press("Enter");
+  await page.waitForFunction(() => globalThis.netcert.store.state.route?.[0]);
   assert.deepEqual(await route(page), [A, null]);
   assert.equal(await page.evaluate(() => document.activeElement.id), "place-1", "and then the next");
   await page.keyboard.type("highway");

@@ -7,7 +7,7 @@ import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
 import { copyFileSync, existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { test } from "node:test";
+import { after, before, test } from "node:test";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
@@ -113,10 +113,10 @@ export function launch() {
 }
 
 /** Database, server and browser together; `close` ends all three. `compared` adds an older database. */
-export async function everything({ compared = false } = {}) {
+async function everything({ compared = false } = {}) {
   const folder = mkdtempSync(join(tmpdir(), "netcert-page-"));
-  const { before, db } = compared ? twoDatabases(folder) : { db: demoDatabase(folder) };
-  const server = await serve(db, ...(before ? ["--before", before] : []));
+  const { before: older, db } = compared ? twoDatabases(folder) : { db: demoDatabase(folder) };
+  const server = await serve(db, ...(older ? ["--before", older] : []));
   const browser = await launch();
   const close = async () => {
     await browser.close();
@@ -176,11 +176,25 @@ export function edgePixel(page, verdict, least_m = -1e9) {
   }, [verdict, least_m]);
 }
 
-/** Makes tests with a page of their own, after which no error may have been seen and nothing asked of strangers. */
-export function tests(all) {
-  return (name, hash, run, options) =>
+/** The text that is seen of an element. */
+export function text(page, selector) {
+  return page.locator(selector).innerText();
+}
+
+/**
+ * The drawn region for one file of tests, from its first test to its last. `inPage` makes tests with a page of their own, after which no
+ * error may have been seen and nothing asked of strangers. `ask` asks the server. `all` is empty before the first test.
+ */
+export function drawnRegion(options) {
+  const all = {};
+  before(async () => {
+    if (!missing) Object.assign(all, await everything(options));
+  });
+  after(() => all.close?.());
+  const ask = (path) => fetch(all.address + path).then((answer) => answer.json());
+  const inPage = (name, hash, run, context) =>
     test(name, { skip: missing }, async () => {
-      const opened = await open(all().browser, all().address, hash, options);
+      const opened = await open(all.browser, all.address, hash, context);
       try {
         await idle(opened.page);
         await run(opened.page, opened);
@@ -190,4 +204,5 @@ export function tests(all) {
         await opened.close();
       }
     });
+  return { all, ask, inPage };
 }
