@@ -16,8 +16,8 @@ export interface SearchOptions {
   placeholder: string;
   /** Whether it is a field of a form, with a label beside it, and keeps what was chosen. */
   field?: boolean;
-  /** Takes what Enter was pressed on. Returns whether that was no road to look for. */
-  entered?(text: string): boolean;
+  /** The field was emptied. */
+  emptied?(): void;
 }
 
 const main: SearchOptions = { id: "search", label: "Find a road by name, number or id, or a place by its coordinates", placeholder: "Road, number or place" };
@@ -29,6 +29,8 @@ export class Search {
   /** What a field of a form shows if nothing else is chosen. */
   #kept = "";
   #hits: SearchHit[] = [];
+  /** The text that the hits are for. */
+  #found = "";
   #active = -1;
   #timer: ReturnType<typeof setTimeout> | undefined;
   #running: AbortController | undefined;
@@ -68,6 +70,7 @@ export class Search {
     this.#kept = text;
     this.#input.value = text;
     this.#hits = [];
+    this.#found = "";
     this.#close();
   }
 
@@ -76,7 +79,7 @@ export class Search {
     if (!this.options.field) return;
     clearTimeout(this.#timer);
     // Who empties a field takes its place away.
-    if (this.#input.value.trim() === "" && this.#kept !== "") this.options.entered?.("");
+    if (this.#input.value.trim() === "" && this.#kept !== "") this.options.emptied?.();
     else this.#input.value = this.#kept;
   }
 
@@ -96,6 +99,7 @@ export class Search {
     const running = (this.#running = new AbortController());
     try {
       this.#hits = await api.search(text, running.signal);
+      this.#found = text;
       this.#active = this.#hits.length > 0 ? 0 : -1;
       this.#draw();
     } catch (error) {
@@ -148,6 +152,17 @@ export class Search {
     this.#input.setAttribute("aria-expanded", "false");
   }
 
+  /** Takes the first hit, or the one that the arrows chose. Who types fast has the hits of an older text, or none yet. */
+  async #enter(): Promise<void> {
+    const text = this.#input.value.trim();
+    if (text === "") return this.options.emptied?.();
+    if (text !== this.#found) {
+      clearTimeout(this.#timer);
+      await this.#ask();
+    }
+    if (text === this.#found && text === this.#input.value.trim()) this.#choose(Math.max(this.#active, 0));
+  }
+
   #choose(index: number): void {
     const hit = this.#hits[index];
     if (!hit) return;
@@ -162,10 +177,8 @@ export class Search {
       event.preventDefault();
       this.#active = (this.#active + step + this.#hits.length) % this.#hits.length;
       this.#draw();
-    } else if (event.key === "Enter" && this.options.entered?.(this.#input.value.trim())) {
-      this.#close();
     } else if (event.key === "Enter") {
-      this.#choose(Math.max(this.#active, 0));
+      void this.#enter();
     } else if (event.key === "Escape") {
       event.stopPropagation();
       this.#close();

@@ -1,7 +1,7 @@
 // The places of a route as fields of text: a road by its name or number, or a coordinate. Between beginning and end there may be stops.
 
 import type { Position } from "../api/types.ts";
-import { coordinate, coordinateText } from "../coordinate.ts";
+import { coordinateText } from "../coordinate.ts";
 import { MOST_VIA, type Places } from "../state.ts";
 import { h } from "../ui/dom.ts";
 import { icon } from "../ui/icons.ts";
@@ -79,7 +79,7 @@ export class Trip {
     return new Search(
       (hit) => {
         const place: Position = [hit.lon, hit.lat];
-        this.name(place, hit.title);
+        if (hit.kind !== "place") this.name(place, hit.title);
         set(place);
       },
       {
@@ -87,12 +87,7 @@ export class Trip {
         label: roleOf(index, count),
         placeholder: "Road, or latitude, longitude",
         field: true,
-        entered: (text) => {
-          const place = coordinate(text);
-          if (text !== "" && !place) return false;
-          set(place);
-          return true;
-        },
+        emptied: () => set(null),
       },
     );
   }
