@@ -149,7 +149,9 @@ export class Search {
 
   #close(): void {
     this.#list.hidden = true;
+    this.#list.replaceChildren();
     this.#input.setAttribute("aria-expanded", "false");
+    this.#input.setAttribute("aria-activedescendant", "");
   }
 
   /** Takes the first hit, or the one that the arrows chose. Who types fast has the hits of an older text, or none yet. */
