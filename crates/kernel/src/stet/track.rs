@@ -2,6 +2,7 @@
 //! between samples.
 
 use std::cell::OnceCell;
+use std::ops::Range;
 
 use super::lanes::{LANES, V};
 use super::model::POINT_SPACING_M as MOST_GAP_M;
@@ -86,50 +87,29 @@ impl Track {
         let lead = (lead_m / h).ceil() as usize + LANES;
         let first_head = lead - (front_m / h).ceil() as usize - 2;
         let total = lead + count + (tail_m / h).ceil() as usize + LANES;
-        let tangents: Vec<(f64, f64)> = corridor.heading.iter().map(|heading| heading.sin_cos()).collect();
-        let at = |k: usize| Place::of(corridor, &tangents, k as isize - lead as isize);
-        let places: Vec<Place> = (0..total).map(at).collect();
-        let slope = |value: &dyn Fn(&Place) -> f64| -> Vec<f64> {
-            (0..total)
-                .map(|k| {
-                    // One-sided at the corridor's ends, zero beyond them: the extension does not belong to the
-                    // corridor.
-                    let inside = |k: usize| k >= lead && k < lead + count;
-                    let a = if k > 0 && inside(k - 1) { k - 1 } else { k };
-                    let b = if inside(k + 1) { k + 1 } else { k };
-                    if !inside(k) || a == b {
-                        0.0
-                    } else {
-                        (value(&places[b]) - value(&places[a])) / ((b - a) as f64 * h)
-                    }
-                })
-                .collect()
-        };
-        let column = |value: &dyn Fn(&Place) -> f64| -> Vec<f64> { places.iter().map(value).collect() };
-        let (left_dips, right_dips) = (dips(&places, |p| p.left), dips(&places, |p| p.right));
+        let places = Places::of(corridor, lead, total);
+        let inside = lead..lead + count;
+        let Places { left, right, curvature, .. } = &places;
+        let [left_slope, right_slope, curvature_slope] =
+            [left, right, curvature].map(|values| slopes(values, &inside, h));
+        let (left_excess, left_rounding) = excess(&places.closed(left), h, &left_slope);
+        let (right_excess, right_rounding) = excess(&places.closed(right), h, &right_slope);
+        let (left_dips, right_dips) = (places.dips(left), places.dips(right));
         let fields = Fields {
-            x: column(&|p| p.x),
-            y: column(&|p| p.y),
-            tangent_x: column(&|p| p.tangent[0]),
-            tangent_y: column(&|p| p.tangent[1]),
-            curvature: column(&|p| p.curvature),
-            curvature_slope: slope(&|p| p.curvature),
-            left: sampled_width(&places, &left_dips, |p| p.left, 1.0),
-            right: sampled_width(&places, &right_dips, |p| p.right, -1.0),
-            left_slope: slope(&|p| p.left),
-            right_slope: slope(&|p| p.right),
+            curvature_slope,
+            left: sampled_width(left, &left_dips, curvature, 1.0),
+            right: sampled_width(right, &right_dips, curvature, -1.0),
+            left_slope,
+            right_slope,
             bulge: bulge(&left_dips, &right_dips, h),
-            left_excess: Vec::new(),
-            right_excess: Vec::new(),
-            rounding: Vec::new(),
-        };
-        let left = excess(&places, h, |p| p.left, &fields.left_slope);
-        let right = excess(&places, h, |p| p.right, &fields.right_slope);
-        let fields = Fields {
-            rounding: left.iter().zip(&right).map(|(l, r)| l[1].max(r[1])).collect(),
-            left_excess: left.into_iter().map(|[excess, _]| excess).collect(),
-            right_excess: right.into_iter().map(|[excess, _]| excess).collect(),
-            ..fields
+            left_excess,
+            right_excess,
+            rounding: left_rounding.iter().zip(&right_rounding).map(|(left, right)| left.max(*right)).collect(),
+            x: places.x,
+            y: places.y,
+            tangent_x: places.tangent_x,
+            tangent_y: places.tangent_y,
+            curvature: places.curvature,
         };
         let torn = corridor.torn().into_iter().map(|k| lead + k).collect();
         let next_mark = vec![u32::MAX; fields.x.len() + 1];
@@ -195,72 +175,60 @@ impl Track {
     }
 }
 
-/// Δ²w of each station's half-width where it is positive: twice how far the half-width lies below the mean of its
-/// neighbours.
-fn dips(places: &[Place], width: impl Fn(&Place) -> f64) -> Vec<f64> {
-    (0..places.len())
-        .map(|k| {
-            let (a, b) = (&places[k.saturating_sub(1)], &places[(k + 1).min(places.len() - 1)]);
-            if a.open || places[k].open || b.open {
-                return 0.0;
-            }
-            (width(a) - 2.0 * width(&places[k]) + width(b)).max(0.0)
-        })
-        .collect()
-}
-
-/// Bounds `[e, q]` on how much a half-width read by a station's slope exceeds the true one, which is linear between
-/// stations. The excess divided by the way σ is greatest at a station. It is at most e up to the first station on
-/// either side, and at most e + q(j − 1)h up to the j-th, so at most e + qσ.
-fn excess(places: &[Place], spacing: f64, width: fn(&Place) -> f64, slope: &[f64]) -> Vec<[f64; 2]> {
-    let last = places.len() - 1;
-    let most = (READ_M / spacing).ceil() as usize;
-    // A half-width that does not change within reach is read exactly.
-    let alike = alike(places, most, width);
-    let of = |(k, own): (usize, &Place)| {
-        let mut at = [0.0_f64; 2];
-        if alike[k] && slope[k] == 0.0 {
-            return at;
+/// Slopes of values between a station's neighbours. They are one-sided at the ends of `inside` and zero beyond: the extension does not belong
+/// to the corridor.
+fn slopes(values: &[f64], inside: &Range<usize>, spacing: f64) -> Vec<f64> {
+    let mut out = vec![0.0; values.len()];
+    for k in inside.clone() {
+        let (a, b) = (inside.start.max(k.saturating_sub(1)), (k + 1).min(inside.end - 1));
+        if a < b {
+            out[k] = (values[b] - values[a]) / ((b - a) as f64 * spacing);
         }
-        for j in (1..=most).filter(|_| !own.open) {
-            let way = j as f64 * spacing;
-            for (other, slope) in [(k.checked_sub(j), -slope[k]), (Some(k + j).filter(|&o| o <= last), slope[k])] {
-                let Some(other) = other.map(|o| &places[o]).filter(|other| !other.open) else { continue };
-                let over = (width(own) - width(other)) / way + slope;
-                if j == 1 {
-                    at[0] = at[0].max(over);
-                } else {
-                    at[1] = at[1].max((over - at[0]) / (way - spacing));
-                }
-            }
-        }
-        // Values up to 1e-9 are rounding errors.
-        at.map(|x| if x > 1e-9 { x } else { 0.0 })
-    };
-    places.iter().enumerate().map(of).collect()
-}
-
-/// Whether all stations up to `most` before and after a station have its half-width.
-fn alike(places: &[Place], most: usize, width: fn(&Place) -> f64) -> Vec<bool> {
-    let mut out = vec![true; places.len()];
-    let changes = places.windows(2).enumerate().filter(|(_, pair)| width(&pair[0]) != width(&pair[1]));
-    for (k, _) in changes {
-        let end = (k + most + 1).min(out.len());
-        out[(k + 1).saturating_sub(most)..end].fill(false);
     }
     out
+}
+
+/// Bounds `e` and `q` on how much a half-width read by a station's slope exceeds the true one, which is linear between
+/// stations. The excess divided by the way σ is greatest at a station. It is at most e up to the first station on
+/// either side, and at most e + q(j − 1)h up to the j-th, so at most e + qσ. Half-widths that are not a number bound nothing.
+fn excess(widths: &[f64], spacing: f64, slopes: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    let n = widths.len();
+    let most = (READ_M / spacing).ceil() as usize;
+    let nothing = || std::iter::repeat_n(f64::NAN, most);
+    let padded: Vec<f64> = nothing().chain(widths.iter().copied()).chain(nothing()).collect();
+    let (mut e, mut q) = (vec![0.0_f64; n], vec![0.0_f64; n]);
+    for j in 1..=most {
+        let way = j as f64 * spacing;
+        let (before, after) = (&padded[most - j..][..n], &padded[most + j..][..n]);
+        let others = before.iter().zip(after).zip(widths.iter().zip(slopes));
+        // `max` takes the other value where one is not a number.
+        let over = others.map(|((before, after), (own, slope))| {
+            let [before, after] = [(own - before) / way - slope, (own - after) / way + slope];
+            before.max(after)
+        });
+        if j == 1 {
+            e.iter_mut().zip(over).for_each(|(e, over)| *e = e.max(over));
+        } else {
+            let rest = 1.0 / (way - spacing);
+            q.iter_mut().zip(&e).zip(over).for_each(|((q, e), over)| *q = q.max((over - e) * rest));
+        }
+    }
+    // Values up to 1e-9 are rounding errors.
+    e.iter_mut().chain(&mut q).for_each(|x| *x = if *x > 1e-9 { *x } else { 0.0 });
+    (e, q)
 }
 
 /// A half-width that may be read anywhere within one station. If the width dips between two samples of a body point (a
 /// kink of slope change Δ²w), the samples miss at most Δ²w/4 of the dip. On the inside of a curve the half-width ends
 /// before the centre of curvature.
-fn sampled_width(places: &[Place], dips: &[f64], width: impl Fn(&Place) -> f64, side: f64) -> Vec<f64> {
-    (0..places.len())
+fn sampled_width(widths: &[f64], dips: &[f64], curvature: &[f64], side: f64) -> Vec<f64> {
+    let last = widths.len() - 1;
+    (0..widths.len())
         .map(|k| {
-            let worst = dips[k.saturating_sub(1)].max(dips[k]).max(dips[(k + 1).min(places.len() - 1)]);
-            let inward = places[k].curvature * side;
+            let worst = dips[k.saturating_sub(1)].max(dips[k]).max(dips[(k + 1).min(last)]);
+            let inward = curvature[k] * side;
             let reach = if inward > 0.0 { REACH / inward } else { f64::INFINITY };
-            (width(&places[k]) - worst / 4.0).min(reach)
+            (widths[k] - worst / 4.0).min(reach)
         })
         .collect()
 }
@@ -282,38 +250,81 @@ fn bulge(left: &[f64], right: &[f64], spacing: f64) -> Vec<f64> {
     out
 }
 
-struct Place {
-    x: f64,
-    y: f64,
-    /// Along the corridor.
-    tangent: [f64; 2],
-    curvature: f64,
-    left: f64,
-    right: f64,
-    open: bool,
+/// The corridor with its straight extensions, one column per field.
+struct Places {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    tangent_x: Vec<f64>,
+    tangent_y: Vec<f64>,
+    curvature: Vec<f64>,
+    left: Vec<f64>,
+    right: Vec<f64>,
+    /// Stations whose half-widths belong to the corridor. All others are open.
+    bounded: Range<usize>,
 }
 
-impl Place {
-    /// Station `k` of the corridor, or of its straight extension before 0 and after the last. `tangents` holds the sine and the cosine of
-    /// each station's heading.
-    fn of(corridor: &Corridor, tangents: &[(f64, f64)], k: isize) -> Self {
-        let last = corridor.len() as isize - 1;
-        let i = k.clamp(0, last);
-        let beyond = (k - i) as f64 * corridor.spacing_m;
-        let i = i as usize;
-        let (sin, cos) = tangents[i];
+impl Places {
+    /// `lead` stations before the corridor's first, `total` in all.
+    fn of(corridor: &Corridor, lead: usize, total: usize) -> Self {
+        let (h, last) = (corridor.spacing_m, corridor.len() - 1);
         // A side that straddles an end is bounded by both its points, so the end's half-width continues under the point
         // beyond.
-        let open = beyond.abs() > MOST_GAP_M + 1.5 * corridor.spacing_m;
-        Self {
-            x: corridor.x[i] + beyond * cos,
-            y: corridor.y[i] + beyond * sin,
-            tangent: [cos, sin],
-            curvature: if beyond != 0.0 { 0.0 } else { corridor.curvature[i] },
-            left: if open { OPEN_M } else { corridor.left_m[i] },
-            right: if open { OPEN_M } else { corridor.right_m[i] },
-            open,
+        let under = (0..lead).take_while(|&k| (k + 1) as f64 * h <= MOST_GAP_M + 1.5 * h).count();
+        let bounded = lead - under..(lead + last + under + 1).min(total);
+        let mut places = Self {
+            x: vec![0.0; total],
+            y: vec![0.0; total],
+            tangent_x: vec![0.0; total],
+            tangent_y: vec![0.0; total],
+            curvature: vec![0.0; total],
+            left: vec![OPEN_M; total],
+            right: vec![OPEN_M; total],
+            bounded: bounded.clone(),
+        };
+        let own = lead..lead + last + 1;
+        for (k, heading) in own.clone().zip(&corridor.heading) {
+            (places.tangent_y[k], places.tangent_x[k]) = heading.sin_cos();
         }
+        let columns = [
+            (&mut places.x, &corridor.x),
+            (&mut places.y, &corridor.y),
+            (&mut places.curvature, &corridor.curvature),
+            (&mut places.left, &corridor.left_m),
+            (&mut places.right, &corridor.right_m),
+        ];
+        columns.into_iter().for_each(|(to, from)| to[own.clone()].copy_from_slice(from));
+        for (beyond, end) in [(0..lead, lead), (lead + last + 1..total, lead + last)] {
+            let tangent = [places.tangent_x[end], places.tangent_y[end]];
+            for k in beyond {
+                let way = (k as f64 - end as f64) * h;
+                places.x[k] = places.x[end] + way * tangent[0];
+                places.y[k] = places.y[end] + way * tangent[1];
+                [places.tangent_x[k], places.tangent_y[k]] = tangent;
+                if bounded.contains(&k) {
+                    (places.left[k], places.right[k]) = (places.left[end], places.right[end]);
+                }
+            }
+        }
+        places
+    }
+
+    /// Half-widths, not a number where the place is open.
+    fn closed(&self, widths: &[f64]) -> Vec<f64> {
+        let mut closed = vec![f64::NAN; widths.len()];
+        closed[self.bounded.clone()].copy_from_slice(&widths[self.bounded.clone()]);
+        closed
+    }
+
+    /// Δ²w of each station's half-width where it is positive: twice how far the half-width lies below the mean of its
+    /// neighbours.
+    fn dips(&self, widths: &[f64]) -> Vec<f64> {
+        let mut dips = vec![0.0; widths.len()];
+        let bounded = &self.bounded;
+        let inner = dips[bounded.clone()].iter_mut().skip(1);
+        for (dip, w) in inner.zip(widths[bounded.clone()].windows(3)) {
+            *dip = (w[0] - 2.0 * w[1] + w[2]).max(0.0);
+        }
+        dips
     }
 }
 
