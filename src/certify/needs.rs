@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 use super::least::least_of;
 use super::strokes::Job;
 use super::turns::fits;
-use crate::corridor::{Corridor, StrokeCorridor, stroke_corridor, stroke_corridor_on};
+use crate::corridor::{Corridor, LaidOut, StrokeCorridor, stroke_corridor};
 use crate::network::{Network, Stroke};
 use crate::osm::facts::Policy;
 use crate::rows::TurnNeed;
@@ -167,6 +167,7 @@ pub(super) fn edge_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(u32
         lacking.narrow.iter().filter_map(|narrow| Search::begin(narrow, least_m(narrow.edge)?)).collect()
     };
     let mut searches: Vec<Vec<Search>> = lacking.iter().map(begin).collect();
+    let mut laid: FxHashMap<u32, Option<LaidOut<'_>>> = FxHashMap::default();
     for _ in 0..ROUNDS {
         let of_stroke = |(of, lacking): (usize, &Lacking<'_>)| Probe::of(lacking.stroke.edges.start, of, &searches[of]);
         let mut probes: Vec<Probe> = lacking.iter().enumerate().flat_map(of_stroke).collect();
@@ -176,8 +177,12 @@ pub(super) fn edge_needs(job: &Job<'_>, lacking: &[Lacking<'_>]) -> Vec<Vec<(u32
         probes.sort_by_key(|probe| (probe.stroke, probe.steps, probe.of));
         // Probes of the same width of a stroke share its corridor.
         let alike: Vec<&[Probe]> = probes.chunk_by(|a, b| (a.stroke, a.steps) == (b.stroke, b.steps)).collect();
-        let made: Vec<Option<(StrokeCorridor, Vec<Range<usize>>)>> =
-            alike.iter().map(|same| widened(job, lacking[same[0].of].stroke, same[0].steps as f64 / WIDTHS)).collect();
+        let widened = |same: &&[Probe]| {
+            let Probe { stroke, of, steps, .. } = same[0];
+            let lay = || LaidOut::new(job.network, lacking[of].stroke, &job.settings.corridor).ok();
+            widened(job, laid.entry(stroke).or_insert_with(lay).as_ref()?, steps as f64 / WIDTHS)
+        };
+        let made: Vec<Option<(StrokeCorridor, Vec<Range<usize>>)>> = alike.iter().map(widened).collect();
         let wide = alike.iter().zip(&made).filter_map(|(same, made)| Some((same, made.as_ref()?)));
         let wide: Vec<Widened<'_>> =
             wide.flat_map(|(same, made)| same.iter().map(move |probe| Widened::of(probe, made))).collect();
@@ -228,10 +233,10 @@ pub fn edge_need(network: &Network, (stroke, edge): (u32, u32), model: &Model, s
 }
 
 /// A stroke that is nowhere narrower than a width, and the stations of its edges. `None` if it has no corridor then.
-fn widened(job: &Job<'_>, stroke: &Stroke, width_m: f64) -> Option<(StrokeCorridor, Vec<Range<usize>>)> {
-    let Settings { policy, corridor, .. } = job.settings;
-    let sections = |edge: &_| job.network.section(edge).at_least(*policy, width_m);
-    let made = stroke_corridor_on(job.network, stroke, &sections, *policy, corridor).ok()?;
+fn widened(job: &Job<'_>, laid: &LaidOut<'_>, width_m: f64) -> Option<(StrokeCorridor, Vec<Range<usize>>)> {
+    let policy = job.settings.policy;
+    let sections = |edge: &_| job.network.section(edge).at_least(policy, width_m);
+    let made = laid.corridor(&sections, policy).ok()?;
     let stations = made.spans.iter().map(|span| span.stations.clone()).collect();
     Some((made, stations))
 }

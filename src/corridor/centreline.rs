@@ -143,7 +143,7 @@ fn sampled(
     spacing_m: f64,
 ) -> Result<Corridor, CentrelineError> {
     // The curve itself is the centreline. Its edges follow below.
-    let profile = Profile { knot_m: line.length(), coefficients: vec![[1.0, -1.0, 0.0]; 4] };
+    let profile = Profile { knot_m: line.length(), coefficients: vec![[1.0, -1.0, 0.0]; 4] }.cubics();
     let track = Track { curve, profile: &profile };
     let (mut corridor, arc) = track.resample(0.0, line.length(), spacing_m);
     corridor.left_m = below(&line.at, left, &arc, &corridor);

@@ -20,7 +20,7 @@ pub(super) struct Link<'n> {
     pub(super) index: u32,
     pub(super) edge: &'n Edge,
     /// The positions that are driven, in direction of travel.
-    pub(super) points: Vec<[f64; 2]>,
+    pub(super) points: &'n [[f64; 2]],
     /// How many positions of the edge lie before them: the approach begins within its first edge.
     pub(super) skipped: usize,
     /// `None` if no width is known.

@@ -7,6 +7,7 @@ mod centreline;
 mod course;
 mod file;
 mod frame;
+mod laid;
 mod merge;
 mod observation;
 mod outline;
@@ -25,9 +26,10 @@ use std::ops::Range;
 pub use centreline::{CentrelineError, from_centreline};
 pub use file::{Drawn, FileCorridor, FileError, corridor_from_file};
 pub use frame::{Frame, FrameError, HALF_WIDTH_M};
+pub use laid::{LaidOut, Sections};
 pub use netcert_base::corridor::{Area, AreaSpan, Corridor, CurvatureProfile};
 pub(crate) use outline::{from_chord_m, open_ends, outline};
-pub use stroke::{Sections, stroke_corridor, stroke_corridor_on};
+pub use stroke::stroke_corridor;
 
 use crate::verdict::UnknownReason;
 

@@ -119,7 +119,7 @@ pub(crate) fn observations(
     let mut out = Vec::with_capacity(2 * cells + line.at.len());
     let mut make = |u: f64, before: usize, after: usize, extra: f64| {
         let (cell, t) = locate(u, knot, cells);
-        let [value, slope, ..] = basis(t);
+        let [value, slope] = basis(t);
         let slope = slope.map(|s| s / knot);
         let near = |target: [f64; 2], weights: &[f64; 4]| {
             let there = combine(weights, cell, reference, [0.0; 2]);

@@ -5,7 +5,7 @@
 //! There are two exceptions: a taper may use the surface that the strip moves across, and a lane may change places
 //! within the lanes of its direction. No width is invented.
 
-use super::spline::Spline;
+use super::spline::{Cubics, Spline};
 use super::taper::{Ramp, take_jumps};
 
 /// Positions across the way's line, metres, positive left of travel.
@@ -65,6 +65,9 @@ pub(crate) struct Gap {
 
 /// Left edge, right edge and centreline of the corridor across the way's line: `[left, right, middle]`.
 pub(crate) type Profile = Spline<3>;
+
+/// Index of the centreline in a [`Profile`].
+pub(crate) const MIDDLE: usize = 2;
 
 /// Knot spacing of the profile, metres. A narrow place affects four knots to each side.
 pub(crate) const KNOT_M: f64 = 2.5;
@@ -285,13 +288,14 @@ fn narrow(coefficients: &mut [[f64; 2]], gaps: &[Gap], knot_m: f64) {
 /// `most`), or where the line folds. Returns the arc lengths of these places.
 ///
 /// These places get no certificate, but the corridor must stay a curve there.
-pub(crate) fn limit_offset(profile: &mut Profile, line: &Spline<2>, most: f64, least_speed: f64) -> Vec<f64> {
-    let bad: Vec<f64> = (0..=2 * line.cells())
-        .map(|i| 0.5 * i as f64 * line.knot_m)
+pub(crate) fn limit_offset(profile: &mut Profile, line: &Cubics<2>, most: f64, least_speed: f64) -> Vec<f64> {
+    let across = profile.cubics();
+    let bad: Vec<f64> = line
+        .half_cells()
         .filter(|&u| {
-            let [_, d1, d2, _] = line.at(u);
+            let [d1, d2] = line.bend(u);
             let speed = (d1[0] * d1[0] + d1[1] * d1[1]).sqrt();
-            let [_, _, middle] = profile.at(u)[0];
+            let [middle, _] = across.component(MIDDLE, u);
             let curvature = (d1[0] * d2[1] - d1[1] * d2[0]) / (speed * speed * speed).max(1e-9);
             !(speed >= least_speed && curvature * middle <= most)
         })

@@ -4,8 +4,8 @@
 //! derivatives in closed form, not from differences of positions.
 
 use super::Corridor;
-use super::profile::Profile;
-use super::spline::{Interpolant, Jet, Spline};
+use super::profile::MIDDLE;
+use super::spline::{Cubics, Interpolant, Jet};
 
 /// Below this factor 1 − κ·o the offset curve is about to fold, and the edge is unknown.
 pub(crate) const LEAST_OFFSET_FACTOR: f64 = 0.3;
@@ -20,21 +20,33 @@ pub(crate) trait Curve {
         let [_, first, second, _] = self.at(u);
         [first, second]
     }
+
+    /// Within steps of this length arc length is nearly a cubic of the parameter, metres.
+    fn step_m(&self) -> f64;
 }
 
-impl Curve for Spline<2> {
+impl Curve for Cubics<2> {
     fn at(&self, u: f64) -> Jet<2> {
         self.at(u)
     }
 
     fn bend(&self, u: f64) -> [[f64; 2]; 2] {
-        self.derivatives::<1, 2>(u)
+        self.bend(u)
+    }
+
+    /// Where the line follows a sharp corner, knots are close, and the speed changes within a metre.
+    fn step_m(&self) -> f64 {
+        (0.25 * self.knot_m()).clamp(0.5, 1.0)
     }
 }
 
 impl Curve for Interpolant {
     fn at(&self, u: f64) -> Jet<2> {
         self.at(u)
+    }
+
+    fn step_m(&self) -> f64 {
+        0.5
     }
 }
 
@@ -43,7 +55,7 @@ pub(crate) struct Track<'c, C> {
     /// Position and derivatives of the curve.
     pub(crate) curve: &'c C,
     /// Edges and centreline across the curve, over the same parameter.
-    pub(crate) profile: &'c Profile,
+    pub(crate) profile: &'c Cubics<3>,
 }
 
 /// One point of the corridor's centreline.
@@ -83,7 +95,7 @@ impl<C: Curve> Track<'_, C> {
 
     fn speed(&self, u: f64) -> f64 {
         let [d1, d2] = self.curve.bend(u);
-        let [[.., o], [.., b]] = self.profile.derivatives::<0, 2>(u);
+        let [o, b] = self.profile.component(MIDDLE, u);
         let squared = (d1[0] * d1[0] + d1[1] * d1[1]).max(1e-18);
         let speed = squared.sqrt();
         let kappa = (d1[0] * d2[1] - d1[1] * d2[0]) / (squared * speed);
@@ -93,7 +105,7 @@ impl<C: Curve> Track<'_, C> {
 
     /// Stations about `spacing_m` apart for parameters `from..=to`, and the arc length at steps of the parameter.
     pub(crate) fn resample(&self, from: f64, to: f64, spacing_m: f64) -> (Corridor, ArcLength) {
-        let arc = ArcLength::measure(from, to, |u| self.speed(u));
+        let arc = ArcLength::measure(from, to, self.curve.step_m(), |u| self.speed(u));
         let steps = ((arc.total() / spacing_m).round() as usize).max(1);
         let n = steps + 1;
         let spacing_m = arc.total() / steps as f64;
@@ -126,8 +138,8 @@ impl<C: Curve> Track<'_, C> {
     }
 }
 
-/// Arc length as a function of a parameter, and its inverse, from a table with steps of about half a metre. Round a
-/// sharp corner the speed changes within a metre, and stations at a wrong arc length would not follow from each other.
+/// Arc length as a function of a parameter, and its inverse, from a table ([`Curve::step_m`]). Stations at a wrong arc length would not
+/// follow from each other.
 #[derive(Debug, Clone)]
 pub(crate) struct ArcLength {
     from: f64,
@@ -137,10 +149,8 @@ pub(crate) struct ArcLength {
 }
 
 impl ArcLength {
-    const STEP_M: f64 = 0.5;
-
-    fn measure(from: f64, to: f64, speed: impl Fn(f64) -> f64) -> Self {
-        let steps = (((to - from) / Self::STEP_M).ceil() as usize).max(1);
+    fn measure(from: f64, to: f64, step_m: f64, speed: impl Fn(f64) -> f64) -> Self {
+        let steps = (((to - from) / step_m).ceil() as usize).max(1);
         let step = (to - from) / steps as f64;
         let mut before = speed(from);
         let mut nodes = Vec::with_capacity(steps + 1);

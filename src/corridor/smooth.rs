@@ -11,7 +11,7 @@ use std::ops::Range;
 use super::band::Band;
 use super::observation::{BASE, Observation, norm, observations, observe, reference, squared};
 use super::polyline::Polyline;
-use super::spline::Spline;
+use super::spline::{Cubics, Spline};
 
 /// What the curve must satisfy.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,10 +23,10 @@ pub(crate) struct Smoothing {
 }
 
 /// A smoothed polyline.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub(crate) struct Smoothed {
     /// The curve, over the polyline's arc length.
-    pub(crate) curve: Spline<2>,
+    pub(crate) curve: Cubics<2>,
     /// End of each piece (arc length), and a bound on the curve's distance from the polyline on the piece, metres.
     pub(crate) pieces: Vec<(f64, f64)>,
 }
@@ -159,7 +159,7 @@ impl Fit {
         let coefficients =
             self.reference.iter().zip(&self.difference).map(|(r, d)| [r[0] + d[0], r[1] + d[1]]).collect();
         let pieces = self.observations.iter().skip(1).map(|o| o.u).zip(self.pieces).collect();
-        Smoothed { curve: Spline { knot_m: self.knot, coefficients }, pieces }
+        Smoothed { curve: Spline { knot_m: self.knot, coefficients }.cubics(), pieces }
     }
 
     /// Solves for the coefficients of a window and keeps those around it.

@@ -16,45 +16,90 @@ pub(crate) struct Spline<const N: usize> {
 }
 
 impl<const N: usize> Spline<N> {
-    /// Number of cells between knots.
-    pub(crate) fn cells(&self) -> usize {
-        self.coefficients.len().saturating_sub(3)
+    /// The cubic of each cell.
+    pub(crate) fn cubics(&self) -> Cubics<N> {
+        let h = self.knot_m;
+        let cubic = |c: &[[f64; N]]| {
+            // Differences from one coefficient keep a constant exactly constant.
+            let from = |i: usize| -> [f64; N] { std::array::from_fn(|k| c[i][k] - c[1][k]) };
+            let (before, after, last) = (from(0), from(2), from(3));
+            let of = |value: &dyn Fn(usize) -> f64| std::array::from_fn(value);
+            [
+                of(&|k| c[1][k] + (before[k] + after[k]) / 6.0),
+                of(&|k| (after[k] - before[k]) * (0.5 / h)),
+                of(&|k| (before[k] + after[k]) * (0.5 / (h * h))),
+                of(&|k| (last[k] - 3.0 * after[k] - before[k]) / (6.0 * h * h * h)),
+            ]
+        };
+        Cubics { knot_m: h, per_m: 1.0 / h, cells: self.coefficients.windows(4).map(cubic).collect() }
+    }
+}
+
+/// A spline as the cubics of its cells, to be evaluated at many places.
+#[derive(Debug)]
+pub(crate) struct Cubics<const N: usize> {
+    knot_m: f64,
+    per_m: f64,
+    /// By cell, the coefficients of 1, t, t² and t³, with t in metres from the cell's start. Not empty.
+    cells: Vec<[[f64; N]; 4]>,
+}
+
+impl<const N: usize> Cubics<N> {
+    /// Distance between knots, metres.
+    pub(crate) fn knot_m(&self) -> f64 {
+        self.knot_m
     }
 
-    /// Value and derivatives at `u`. Outside the range the first or last cell's cubic continues.
+    /// The ends and middles of all cells.
+    pub(crate) fn half_cells(&self) -> impl Iterator<Item = f64> {
+        (0..=2 * self.cells.len()).map(|i| 0.5 * i as f64 * self.knot_m)
+    }
+
+    /// The cubic at `u`, and the distance from its start. Outside the range the first or last cell's cubic continues.
+    #[inline]
+    fn cell(&self, u: f64) -> (&[[f64; N]; 4], f64) {
+        let cell = ((u * self.per_m).max(0.0) as usize).min(self.cells.len() - 1);
+        (&self.cells[cell], u - cell as f64 * self.knot_m)
+    }
+
+    /// Value and derivatives at `u`.
+    #[inline]
     pub(crate) fn at(&self, u: f64) -> Jet<N> {
-        self.derivatives::<0, 4>(u)
+        let ([a, b, c, d], t) = self.cell(u);
+        [
+            std::array::from_fn(|k| a[k] + t * (b[k] + t * (c[k] + t * d[k]))),
+            std::array::from_fn(|k| b[k] + t * (2.0 * c[k] + t * (3.0 * d[k]))),
+            std::array::from_fn(|k| 2.0 * c[k] + t * (6.0 * d[k])),
+            std::array::from_fn(|k| 6.0 * d[k]),
+        ]
     }
 
-    /// `D` derivatives from the `FIRST`-th on, as in [`Self::at`].
-    pub(crate) fn derivatives<const FIRST: usize, const D: usize>(&self, u: f64) -> [[f64; N]; D] {
-        let (cell, t) = locate(u, self.knot_m, self.cells());
-        let mut out = [[0.0; N]; D];
-        let Some(active) = self.coefficients.get(cell..cell + 4) else { return out };
-        let weights = basis(t);
-        let mut scale = (0..FIRST).fold(1.0, |scale, _| scale / self.knot_m);
-        for (row, weights) in out.iter_mut().zip(&weights[FIRST..]) {
-            for (coefficient, weight) in active.iter().zip(weights) {
-                for (sum, value) in row.iter_mut().zip(coefficient) {
-                    *sum += scale * weight * value;
-                }
-            }
-            scale /= self.knot_m;
-        }
-        out
+    /// First and second derivative at `u`.
+    #[inline]
+    pub(crate) fn bend(&self, u: f64) -> [[f64; N]; 2] {
+        let ([_, b, c, d], t) = self.cell(u);
+        [
+            std::array::from_fn(|k| b[k] + t * (2.0 * c[k] + t * (3.0 * d[k]))),
+            std::array::from_fn(|k| 2.0 * c[k] + t * (6.0 * d[k])),
+        ]
+    }
+
+    /// One component and its first derivative at `u`.
+    #[inline]
+    pub(crate) fn component(&self, k: usize, u: f64) -> [f64; 2] {
+        let ([a, b, c, d], t) = self.cell(u);
+        [a[k] + t * (b[k] + t * (c[k] + t * d[k])), b[k] + t * (2.0 * c[k] + t * (3.0 * d[k]))]
     }
 }
 
 /// `basis(t)[d][k]` is the d-th derivative (in units of the knot spacing) of the basis function of the k-th of a cell's
 /// four active coefficients, at fraction `t` of the cell.
-pub(crate) fn basis(t: f64) -> [[f64; 4]; 4] {
+pub(crate) fn basis(t: f64) -> [[f64; 4]; 2] {
     let u = 1.0 - t;
     let (t2, u2) = (t * t, u * u);
     [
         [u2 * u / 6.0, (3.0 * t2 * t - 6.0 * t2 + 4.0) / 6.0, (3.0 * u2 * u - 6.0 * u2 + 4.0) / 6.0, t2 * t / 6.0],
         [-0.5 * u2, 1.5 * t2 - 2.0 * t, 2.0 * u - 1.5 * u2, 0.5 * t2],
-        [u, 3.0 * t - 2.0, 3.0 * u - 2.0, t],
-        [-1.0, 3.0, -3.0, 1.0],
     ]
 }
 
@@ -155,7 +200,7 @@ mod tests {
         // The blossom of u³ at (k−1, k, k+1)·h gives the coefficients (k³ − k)·h³, with k from −1.
         let h = 2.5_f64;
         let coefficients = (-1..=13).map(f64::from).map(|k| [(k * k * k - k) * h * h * h]).collect();
-        let spline = Spline { knot_m: h, coefficients };
+        let spline = Spline { knot_m: h, coefficients }.cubics();
         for i in 0..=60 {
             assert_is_the_cubic(spline.at(f64::from(i) * 0.5), f64::from(i) * 0.5);
         }

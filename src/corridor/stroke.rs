@@ -3,17 +3,17 @@
 //! Only the part between a stroke's first and last edge is certified. Approach, lead-in and tail are driven. An edge
 //! that the extract cuts is entered straight, like any first edge. Turns off the stroke have corridors of their own.
 
-use super::course::{Course, Link, Piece, Room, closed_course, open_course};
-use super::frame::Frame;
+use super::course::{Course, Link, Piece};
+use super::laid::{LaidOut, Sections};
 use super::merge::Jog;
-use super::profile::{Across, CHANGE_M, Gap, Profile, Stretch, limit_offset, profile};
+use super::profile::{Across, CHANGE_M, Gap, MIDDLE, Stretch, limit_offset, profile};
 use super::resample::{ArcLength, LEAST_OFFSET_FACTOR, Track};
-use super::smooth::{Smoothed, Smoothing, smooth};
-use super::taper::{Ramp, guideline_ratio};
+use super::smooth::Smoothed;
+use super::spline::Cubics;
+use super::taper::Ramp;
 use super::{Corridor, EdgeSpan, Params, StrokeCorridor, Taper, TaperCause};
-use crate::network::{Edge, Network, Stroke, offset_m};
-use crate::osm::LonLat;
-use crate::osm::facts::{CrossSection, Direction, Oneway, Policy, Strip};
+use crate::network::{Network, Stroke};
+use crate::osm::facts::{Direction, Policy};
 use crate::verdict::UnknownReason;
 
 /// Shortest stroke with a usable direction, metres.
@@ -31,65 +31,55 @@ const MOST_CROSSING: f64 = 0.98;
 
 /// The corridor of a stroke, in a metric frame of its own.
 ///
-/// It fails only if every edge of the stroke is unknown: the stroke is shorter than two metres, folded or wider than a
-/// metric frame (`Geometry`), or has no width at all (`Width`). A single bad edge among good ones is `unknown` in its
-/// span.
+/// # Errors
+/// As [`LaidOut::new`] and [`LaidOut::corridor`].
 pub fn stroke_corridor(
     network: &Network,
     stroke: &Stroke,
     policy: Policy,
     params: &Params,
 ) -> Result<StrokeCorridor, UnknownReason> {
-    stroke_corridor_on(network, stroke, &|edge| network.section(edge), policy, params)
+    LaidOut::new(network, stroke, params)?.corridor(&|edge| network.section(edge), policy)
 }
 
-/// The cross section of each edge.
-pub type Sections<'a> = dyn Fn(&Edge) -> CrossSection + Sync + 'a;
+impl LaidOut<'_> {
+    /// The corridor with the cross sections that `sections` gives.
+    ///
+    /// # Errors
+    /// It fails only if every edge of the stroke is unknown: the stroke is shorter than two metres or folded (`Geometry`), or has no
+    /// width at all (`Width`). A single bad edge among good ones is `unknown` in its span.
+    pub fn corridor(&self, sections: &Sections<'_>, policy: Policy) -> Result<StrokeCorridor, UnknownReason> {
+        let params = self.params;
+        let links = self.links(sections, policy);
+        let (mut course, splits) = (self.course(&links), &self.network.splits);
+        if course.line.length() < LEAST_LENGTH_M {
+            return Err(UnknownReason::Geometry);
+        }
+        let (jogs, aside) = course.straighten(&links, splits);
+        let smoothed = self.smoothed(&course.line);
+        let smoothed = smoothed.as_ref();
+        let stretches = stretches(&links, &course.pieces).ok_or(UnknownReason::Width)?;
+        let gaps = gaps(self.network, &links, &course, smoothed);
+        let (mut profile, ramps) = profile(&stretches, &aside, &gaps);
+        let folded = limit_offset(&mut profile, &smoothed.curve, 1.0 - LEAST_OFFSET_FACTOR, LEAST_SPEED);
+        let profile = profile.cubics();
 
-/// The corridor of a stroke, as [`stroke_corridor`], with other cross sections.
-///
-/// # Errors
-/// As [`stroke_corridor`].
-pub fn stroke_corridor_on(
-    network: &Network,
-    stroke: &Stroke,
-    sections: &Sections<'_>,
-    policy: Policy,
-    params: &Params,
-) -> Result<StrokeCorridor, UnknownReason> {
-    let (frame, mut links, approach) = links(network, stroke, sections, policy, params)?;
-    if stroke.closed {
-        // A loop is its own approach.
-        links.drain(..approach);
+        let track = Track { curve: &smoothed.curve, profile: &profile };
+        let (corridor, arc) = track.resample(0.0, course.end, params.spacing_m);
+        if !(arc.total() >= 0.5 * LEAST_LENGTH_M && all_finite(&corridor)) {
+            return Err(UnknownReason::Geometry);
+        }
+        let cut = Cut { corridor: &corridor, arc: &arc, smoothed, folded: &folded, torn: &corridor.torn(), params };
+        let spans = course.pieces.iter().filter(|p| p.counted).map(|p| cut.span(p, &links[p.link])).collect();
+        let stations = |from: f64, to: f64| {
+            let station = |u: f64| ((arc.at(u) / corridor.spacing_m).round() as usize).min(corridor.len() - 1);
+            station(from)..station(to) + 1
+        };
+        let tapers = tapers(&stretches, &jogs, &ramps, &stations);
+        let untapered = Untapered { stretches: &stretches, aside: &aside, gaps: &gaps, profile: &profile, arc: &arc };
+        let untapered = untapered.edges(&corridor);
+        Ok(StrokeCorridor { frame: self.frame, corridor, untapered, spans, tapers })
     }
-    let mut course = if stroke.closed { closed_course(&links, params) } else { open_course(&links, approach) };
-    if course.line.length() < LEAST_LENGTH_M {
-        return Err(UnknownReason::Geometry);
-    }
-    let (jogs, aside) = course.straighten(&links, &network.splits);
-    let asked = Smoothing { tolerance_m: params.tolerance_m, cutoff_m: params.cutoff_m };
-    let smoothed = smooth(&course.line, asked);
-    let stretches = stretches(&links, &course.pieces).ok_or(UnknownReason::Width)?;
-    let gaps = gaps(network, &links, &course, &smoothed);
-    let (mut profile, ramps) = profile(&stretches, &aside, &gaps);
-    let folded = limit_offset(&mut profile, &smoothed.curve, 1.0 - LEAST_OFFSET_FACTOR, LEAST_SPEED);
-
-    let track = Track { curve: &smoothed.curve, profile: &profile };
-    let (corridor, arc) = track.resample(0.0, course.end, params.spacing_m);
-    if !(arc.total() >= 0.5 * LEAST_LENGTH_M && all_finite(&corridor)) {
-        return Err(UnknownReason::Geometry);
-    }
-    let cut =
-        Cut { corridor: &corridor, arc: &arc, smoothed: &smoothed, folded: &folded, torn: &corridor.torn(), params };
-    let spans = course.pieces.iter().filter(|p| p.counted).map(|p| cut.span(p, &links[p.link])).collect();
-    let stations = |from: f64, to: f64| {
-        let station = |u: f64| ((arc.at(u) / corridor.spacing_m).round() as usize).min(corridor.len() - 1);
-        station(from)..station(to) + 1
-    };
-    let tapers = tapers(&stretches, &jogs, &ramps, &stations);
-    let untapered = Untapered { stretches: &stretches, aside: &aside, gaps: &gaps, profile: &profile, arc: &arc };
-    let untapered = untapered.edges(&corridor);
-    Ok(StrokeCorridor { frame, corridor, untapered, spans, tapers })
 }
 
 /// The tapers, in the order of the line.
@@ -131,7 +121,7 @@ struct Untapered<'c> {
     stretches: &'c [Stretch],
     aside: &'c [Ramp],
     gaps: &'c [Gap],
-    profile: &'c Profile,
+    profile: &'c Cubics<3>,
     arc: &'c ArcLength,
 }
 
@@ -152,7 +142,7 @@ impl Untapered<'_> {
                 let strip =
                     near.map(|s| [s.strip.left_m, s.strip.right_m]).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
                 let Some([left_m, right_m]) = strip else { return own };
-                let [[_, _, middle_m]] = self.profile.derivatives::<0, 1>(u);
+                let [middle_m, _] = self.profile.component(MIDDLE, u);
                 let by_m = self.aside.iter().map(|ramp| ramp.at(u)).sum::<f64>() - middle_m;
                 let [left_m, right_m] = [left_m + by_m, right_m + by_m];
                 let narrow = self.gaps.iter().any(|gap| (gap.at - u).abs() < CHANGE_M);
@@ -201,105 +191,6 @@ impl Cut<'_> {
 
 fn all_finite(c: &Corridor) -> bool {
     [&c.x, &c.y, &c.heading, &c.curvature, &c.left_m, &c.right_m].iter().all(|v| v.iter().all(|x| x.is_finite()))
-}
-
-/// The stroke's frame, its approach and edges in it, and the number of approach edges.
-fn links<'n>(
-    network: &'n Network,
-    stroke: &Stroke,
-    sections: &Sections<'_>,
-    policy: Policy,
-    params: &Params,
-) -> Result<(Frame, Vec<Link<'n>>, usize), UnknownReason> {
-    let range = |r: &std::ops::Range<u32>| network.stroke_edges.get(r.start as usize..r.end as usize);
-    let (Some(approach), Some(edges)) = (range(&stroke.approach), range(&stroke.edges)) else {
-        return Err(UnknownReason::Geometry);
-    };
-    if edges.is_empty() {
-        return Err(UnknownReason::Geometry);
-    }
-    let (approach, skipped) = lead_in(network, approach, params.lead_in_m);
-    let chain: Vec<u32> = approach.iter().chain(edges).copied().collect();
-    let mut positions: Vec<LonLat> = Vec::new();
-    let mut ends = Vec::with_capacity(chain.len());
-    for (place, &index) in chain.iter().enumerate() {
-        let skipped = if place == 0 { skipped } else { 0 };
-        positions.extend(network.positions(&network.edges[index as usize]).skip(skipped));
-        ends.push(positions.len());
-    }
-    let metric = Frame::around(&positions).and_then(|frame| Ok((frame, frame.forward(&positions)?)));
-    let (frame, metric) = metric.map_err(|_| UnknownReason::Geometry)?;
-    let mut start = 0;
-    let links = chain
-        .iter()
-        .zip(ends)
-        .map(|(&index, end)| {
-            let (points, skipped) = (metric[start..end].to_vec(), if start == 0 { skipped } else { 0 });
-            start = end;
-            link(network, index, (points, skipped), sections, policy, params.map_tolerance_m)
-        })
-        .collect();
-    Ok((frame, links, approach.len()))
-}
-
-/// The part of an approach that is driven, and how many positions of its first edge lie before it. It begins at the position nearest to the
-/// stroke from which it is long enough. What lies before it, and may lie beyond the end of a file, has no influence.
-fn lead_in<'n>(network: &Network, approach: &'n [u32], least_m: f64) -> (&'n [u32], usize) {
-    let mut length_m = 0.0;
-    for (place, &index) in approach.iter().enumerate().rev() {
-        let mut after: Option<LonLat> = None;
-        for (from_end, position) in network.positions(&network.edges[index as usize]).rev().enumerate() {
-            if let Some(after) = after.replace(position) {
-                let [x, y] = offset_m(position, after);
-                length_m += x.hypot(y);
-                if length_m >= least_m {
-                    let positions = network.positions(&network.edges[index as usize]).len();
-                    return (&approach[place..], positions - 1 - from_end);
-                }
-            }
-        }
-    }
-    (approach, 0)
-}
-
-fn link<'n>(
-    network: &'n Network,
-    index: u32,
-    (points, skipped): (Vec<[f64; 2]>, usize),
-    sections: &Sections<'_>,
-    policy: Policy,
-    map_tolerance_m: f64,
-) -> Link<'n> {
-    let edge = &network.edges[index as usize];
-    let road = network.road(edge);
-    let section = sections(edge);
-    Link {
-        index,
-        edge,
-        points,
-        skipped,
-        room: room(section, policy, map_tolerance_m),
-        direction: section.direction.and_then(|strip| across(strip, 0.0)),
-        two_way: road.oneway == Oneway::No,
-        ratio: guideline_ratio(road.class),
-    }
-}
-
-fn across(strip: Strip, map_tolerance_m: f64) -> Option<Across> {
-    let (left_m, right_m) = (f64::from(strip.left_m), f64::from(strip.right_m));
-    let usable = (left_m - right_m).is_finite() && left_m > right_m;
-    usable.then_some(Across { left_m: left_m - map_tolerance_m, right_m: right_m + map_tolerance_m })
-}
-
-/// The strips of an edge under a policy: the strip itself, the lanes of its direction in which a lane may shift, and
-/// the paved surface.
-fn room(section: CrossSection, policy: Policy, map_tolerance_m: f64) -> Option<Room> {
-    let across = |strip: Strip| across(strip, map_tolerance_m);
-    let strip = section.strip(policy).and_then(across)?;
-    let wider = (policy == Policy::Lane).then_some(section.direction).flatten().and_then(across);
-    let shift = wider.filter(|w| strip.within(*w)).unwrap_or(strip);
-    let paved = section.carriageway.and_then(across);
-    Some(Room { strip, shift, surface: paved.filter(|paved| shift.within(*paved)).unwrap_or(shift) })
 }
 
 /// One stretch per piece. A piece without width continues the previous one, or else the next one: the piece itself is

@@ -6,7 +6,7 @@
 
 use super::path::{Pose, hermite};
 use super::{Opening, Reach};
-use crate::corridor::{Corridor, Frame, Params, Sections, StrokeCorridor, stroke_corridor_on};
+use crate::corridor::{Corridor, Frame, LaidOut, Params, Sections, StrokeCorridor};
 use crate::network::Network;
 use crate::osm::facts::{Policy, Strip};
 use crate::verdict::UnknownReason;
@@ -59,7 +59,7 @@ impl StrokeLine {
         params: &Params,
     ) -> Result<Self, UnknownReason> {
         let facts = network.strokes.get(stroke as usize).ok_or(UnknownReason::Geometry)?;
-        let made = stroke_corridor_on(network, facts, sections, policy, params)?;
+        let made = LaidOut::new(network, facts, params)?.corridor(sections, policy)?;
         let c = &made.corridor;
         let own: Vec<Across> = c.left_m.iter().zip(&c.right_m).map(|(l, r)| [*l, -*r]).collect();
         let (mut direction, mut carriageway) = (own.clone(), own.clone());
