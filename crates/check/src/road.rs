@@ -178,8 +178,8 @@ impl Road {
 
     /// The least half-width on a side between `from` and `to` (stations).
     pub(crate) fn narrowest(&self, side: usize, from: f64, to: f64) -> f64 {
-        let first = (from.max(0.0).floor() as usize + 1).min(self.len());
-        let end = (to.max(0.0).ceil() as usize).clamp(first, self.len().max(first));
+        let first = (from.max(0.0) as usize + 1).min(self.len());
+        let end = up(to).clamp(first, self.len().max(first));
         let ends = self.width(side, from).0.min(self.width(side, to).0);
         self.widths[first..end].iter().fold(ends, |least, widths| least.min(widths[side]))
     }
@@ -188,8 +188,8 @@ impl Road {
     /// `reach` of s. w lies below the straight line between any two of its values by at most a quarter of the growth of
     /// the slope times the length. Taking the least around a place moves and splits that growth but adds nothing.
     pub(crate) fn dip(&self, side: usize, from: f64, to: f64, reach: f64) -> f64 {
-        let first = ((from - reach).max(0.0).floor() as usize + 1).min(self.len());
-        let end = ((to + reach).max(0.0).ceil() as usize).min(self.len() - 1);
+        let first = ((from - reach).max(0.0) as usize + 1).min(self.len());
+        let end = up(to + reach).min(self.len() - 1);
         let mut growth = 0.0;
         for k in first.max(1)..end {
             let [a, b, c] = [k - 1, k, k + 1].map(|k| self.widths[k][side]);
@@ -219,11 +219,19 @@ impl Road {
     }
 }
 
-/// Sine and cosine of at most half a radian, to 1e-11.
+/// The first station at or after `s`. The library's `ceil` is a call for old processors.
+fn up(s: f64) -> usize {
+    let whole = s.max(0.0) as usize;
+    whole.saturating_add(usize::from(whole as f64 != s.max(0.0)))
+}
+
+/// Sine and cosine of at most half a radian, to 1e-11. Their series are written without divisions, which would take most of the time.
 fn small_sin_cos(x: f64) -> (f64, f64) {
+    const SIN: [f64; 4] = [-1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0, 1.0 / 362_880.0];
+    const COS: [f64; 5] = [-0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0];
     let q = x * x;
-    let sin = x * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0))));
-    let cos = 1.0 - q / 2.0 * (1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0 * (1.0 - q / 90.0))));
+    let sin = x + x * q * (SIN[0] + q * (SIN[1] + q * (SIN[2] + q * SIN[3])));
+    let cos = 1.0 + q * (COS[0] + q * (COS[1] + q * (COS[2] + q * (COS[3] + q * COS[4]))));
     (sin, cos)
 }
 
