@@ -126,6 +126,25 @@ inPage("a road found by its name is chosen as by a click, seen near by and from 
   assert.deepEqual(await chosen(page), { glow: 0, "selected-edge": 0, "glow-afar": 0 });
 });
 
+inPage("numbers of roads stand on shields, in light and dark", "#v=AU-SEMI19", async (page) => {
+  const { edge_id } = (await ask("/api/search?q=A87"))[0];
+  const [edge] = await ask(`/api/search?q=${edge_id}`);
+  await page.evaluate(({ lon, lat }) => globalThis.netcert.map.jumpTo({ center: [lon, lat], zoom: 13 }), edge);
+  for (const theme of ["light", "dark"]) {
+    if (theme === "dark") await page.keyboard.press("d");
+    await page.waitForFunction((id) => globalThis.netcert.map.hasImage(id), `shield-${theme}`);
+    await idle(page);
+    const shown = await page.evaluate(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["shields"] }).map((one) => one.properties.ref));
+    assert.ok(shown.includes("A87"), `${theme}: ${shown}`);
+  }
+});
+
+inPage("each tile of the first view is asked for once", "#v=AU-SEMI19", async (page) => {
+  const tiles = await page.evaluate(() => performance.getEntriesByType("resource").map((one) => one.name).filter((name) => name.includes("/tiles/")));
+  assert.ok(tiles.length > 0);
+  assert.deepEqual(tiles, [...new Set(tiles)]);
+});
+
 /** What the map shows of an explanation: how many shapes, by layer. */
 const shapes = (page) =>
   page.evaluate(() => {

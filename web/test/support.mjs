@@ -201,6 +201,8 @@ export function drawnRegion(options) {
         assert.deepEqual(opened.errors, []);
         assert.deepEqual(opened.strangers, []);
       } finally {
+        // A request that a test has taken over may still be under way.
+        await opened.page.unrouteAll({ behavior: "ignoreErrors" });
         await opened.close();
       }
     });

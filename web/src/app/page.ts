@@ -285,7 +285,7 @@ export class Page {
 
   #number(policyChanged: boolean): void {
     const { policy, vehicle } = this.context.store.state;
-    if (policyChanged || !this.#numbers) this.#numbers = api.stats(policy);
+    if (policyChanged || !this.#numbers) this.#numbers = this.#maps.first.drawn.then(() => api.stats(policy));
     this.#numbers
       .then((stats) => {
         const { state } = this.context.store;

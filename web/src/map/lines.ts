@@ -18,6 +18,9 @@ export interface Ground {
   latitude: number;
 }
 
+/** From this zoom on, tiles have each road by itself (`src/serve/tiles/mod.rs`). */
+export const EDGE_ZOOM = 11;
+
 export const major = ["motorway", "trunk"];
 export const middle = ["primary", "secondary"];
 

@@ -3,7 +3,7 @@
 import type { AllPaintProperties, ExpressionSpecification, LayerSpecification } from "maplibre-gl";
 import type { Part, Shapes } from "../api/types.ts";
 import { palettes, type Palette, type Theme } from "./palette.ts";
-import { LABEL_FONT } from "./style.ts";
+import { LABEL_FONT } from "./labels.ts";
 import type { View } from "./view.ts";
 
 /** The source of all shapes. The names of their layers begin with it. */

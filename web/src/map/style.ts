@@ -14,18 +14,16 @@ import type { Region, VerdictName } from "../api/types.ts";
 import { complete, type State } from "../state.ts";
 import { h } from "../ui/dom.ts";
 import { CLASSES, EVIDENCE } from "../words.ts";
-import { REAL_ZOOM, major, middle, offset, pixelsPerMetre, width, type Ground, type Numeric } from "./lines.ts";
+import { labels } from "./labels.ts";
+import { EDGE_ZOOM, REAL_ZOOM, offset, pixelsPerMetre, width, type Ground, type Numeric } from "./lines.ts";
 import { evidenceColours, missingSteps, palettes, reasonColours, roomSteps, type Palette, type Theme } from "./palette.ts";
 
-export const LABEL_FONT = "Inter Variable";
 /** The verdicts in drawing order. What may be used is on top. */
 export const verdictLayers: readonly VerdictName[] = ["unknown", "forbidden", "unsafe", "safe"];
 export const edgeLayers = verdictLayers.map((verdict) => `edge-${verdict}`);
 /** The drawing order of overviews, where one line stands for many roads. What may not be used is on top. */
 const fromBest: readonly VerdictName[] = ["safe", "unknown", "unsafe", "forbidden"];
 export const overviewLayers = fromBest.map((verdict) => `overview-${verdict}`);
-/** From this zoom on, tiles have each road by itself (`src/serve/tiles/mod.rs`). */
-const EDGE_ZOOM = 11;
 /** The source with the line of the selected road. Sources whose names begin with `own-` survive a change of the style. */
 export const OUTLINE = "own-outline";
 export const turnLayers = verdictLayers.map((verdict) => `turn-${verdict}`);
@@ -214,37 +212,6 @@ function glowAfar(palette: Palette): LayerSpecification {
   return { id: "glow-afar", type: "line", source: OUTLINE, maxzoom: EDGE_ZOOM, layout: { "line-cap": "round", "line-join": "round" }, paint: shine(palette) };
 }
 
-const NAME = ["coalesce", ["get", "name"], ""] as unknown as ExpressionSpecification;
-/** A road's number; of several, the first two: `I 405;US 30` is `I 405 / US 30`. Empty if it has none. */
-const REF = [
-  "let",
-  "ref",
-  ["coalesce", ["get", "ref"], ""],
-  ["let", "at", ["index-of", ";", ["var", "ref"]], ["case", ["<", ["var", "at"], 0], ["var", "ref"], ["concat", ["slice", ["var", "ref"], 0, ["var", "at"]], " / ", ["slice", ["var", "ref"], ["+", ["var", "at"], 1]]]]],
-] as unknown as ExpressionSpecification;
-
-function labels(palette: Palette): LayerSpecification {
-  return {
-    id: "names",
-    type: "symbol",
-    source: "roads",
-    "source-layer": "label",
-    minzoom: EDGE_ZOOM,
-    layout: {
-      "symbol-placement": "line",
-      "symbol-spacing": 320,
-      "text-font": [LABEL_FONT],
-      "text-field": ["step", ["zoom"], ["case", ["has", "ref"], REF, NAME], 13, ["case", ["has", "name"], NAME, REF]],
-      "text-size": ["interpolate", ["linear"], ["zoom"], 11, 10, 16, 12.5, 19, 15],
-      "text-letter-spacing": 0.01,
-      "text-max-angle": 35,
-      "text-padding": 6,
-      "symbol-sort-key": ["match", ["get", "highway"], major, 0, middle, 1, ["tertiary"], 2, 3],
-    },
-    paint: { "text-color": palette.ink, "text-halo-color": palette.halo, "text-halo-width": 2.6 },
-  };
-}
-
 /** Escapes a text, because MapLibre treats attributions as HTML. */
 function plain(text: string): string {
   return h("span", {}, text).innerHTML;
@@ -296,7 +263,7 @@ export function style(state: State, ground: Ground): StyleSpecification {
       highlight("hover-turn", "turn", palette, ground),
       highlight("selected-turn", "turn", palette, ground),
       ...each(turn),
-      labels(palette),
+      ...labels(palette, theme),
     ],
   };
 }

@@ -7,8 +7,9 @@ import type { State } from "../state.ts";
 import { h } from "../ui/dom.ts";
 import { spoken } from "../units.ts";
 import { CHANGES, changeLayers } from "./changes.ts";
+import { labelImage } from "./labels.ts";
 import type { Theme } from "./palette.ts";
-import { tileAddress } from "./tiles.ts";
+import { askEarly, tileAddress } from "./tiles.ts";
 import { OUTLINE, edgeLayers, muted, overviewLayers, style, turnLayers } from "./style.ts";
 
 /**
@@ -29,6 +30,19 @@ export interface Events {
 /** The greatest distance at which the pointer counts as on a line, pixels. It is greater for a finger. */
 const NEAR_MOUSE = 5;
 const NEAR_TOUCH = 14;
+/** How long a first view may take, milliseconds. */
+const LATEST_MS = 4000;
+
+/** Whether there is no graphics card. Smoothing every pixel then takes longer than all roads, and lines are smooth without it. */
+function drawnByProcessor(): boolean {
+  const canvas = document.createElement("canvas");
+  [canvas.width, canvas.height] = [1, 1];
+  const context = canvas.getContext("webgl2", { antialias: false, depth: false });
+  const named = context?.getExtension("WEBGL_debug_renderer_info");
+  const renderer: unknown = context?.getParameter(named ? named.UNMASKED_RENDERER_WEBGL : context.RENDERER);
+  context?.getExtension("WEBGL_lose_context")?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(String(renderer));
+}
 
 export class View {
   readonly map: Base;
@@ -57,8 +71,9 @@ export class View {
       maxPitch: 70,
       attributionControl: false,
       fadeDuration: 150,
-      canvasContextAttributes: { antialias: true },
+      canvasContextAttributes: { antialias: !drawnByProcessor() },
     });
+    this.#askEarly();
     this.map.addControl(new AttributionControl({ compact: false }), "bottom-right");
     this.map.addControl(this.#scale, "bottom-right");
     container.append(h("div", { class: "crosshair", "aria-hidden": "true" }));
@@ -70,6 +85,18 @@ export class View {
   /** Resolves when the style is loaded, so that sources and layers can be added. */
   get ready(): Promise<void> {
     return this.#ready;
+  }
+
+  /** Resolves when the first view is drawn, or after a while if it is not. What can wait leaves the server to the tiles until then. */
+  get drawn(): Promise<void> {
+    return Promise.race([this.#ready, new Promise<void>((done) => setTimeout(done, LATEST_MS))]);
+  }
+
+  #askEarly(): void {
+    const { region, map } = this;
+    const [seen, [west, south, east, north]] = [map.getBounds(), region.bbox];
+    const within = [Math.max(seen.getWest(), west), Math.max(seen.getSouth(), south), Math.min(seen.getEast(), east), Math.min(seen.getNorth(), north)] as const;
+    askEarly(api.tilesPath(region, this.question), Math.min(Math.floor(map.getZoom()), region.max_zoom), within);
   }
 
   update(state: State, question: Question, theme: Theme): void {
@@ -163,6 +190,10 @@ export class View {
     map.on("styledata", () => {
       const roads = map.getSource("roads") as Source | undefined;
       if (roads) roads.calculateTileZoom = (zoom) => zoom;
+    });
+    map.setMissingStyleImageResolver((id) => {
+      const image = labelImage(id);
+      if (image) map.addImage(id, image.data, image);
     });
     map.on("mousemove", (event) => {
       const found = this.#at(event.point, NEAR_MOUSE);
