@@ -320,6 +320,13 @@ inPage("the region in numbers, for every vehicle", "#v=AU-SEMI19", async (page) 
   const rows = await page.locator(".stats table >> nth=0 >> tbody >> tr").count();
   assert.equal(rows, 2);
   assert.match(await text(page, ".stats"), /What limits most/);
+  // Each amount stands in its column, under its heading.
+  const aside_px = await page.evaluate(() => {
+    const table = document.querySelector(".stats table");
+    const [heads, cells] = ["thead th", "tbody tr:first-child > *"].map((cell) => [...table.querySelectorAll(cell)].map((one) => one.getBoundingClientRect()));
+    return heads.map((head, column) => Math.abs(head.right - cells[column].right));
+  });
+  assert.ok(Math.max(...aside_px) < 1, `${aside_px}`);
   assert.match(page.url(), /stats=1/);
   await page.keyboard.press("Escape");
   await page.waitForFunction(() => !location.hash.includes("stats"));

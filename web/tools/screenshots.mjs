@@ -76,7 +76,7 @@ const scenes = {
       await page.mouse.move(180, 30);
     },
   },
-  numbers: { db: "columbus", hash: "#v=US-WB67&stats=1", play: (page) => page.waitForSelector(".stats table") },
+  numbers: { db: "columbus", hash: "#v=US-WB67&stats=1", play: (page) => page.waitForSelector(".stats table").then(() => page) },
   drive: {
     db: "heidelberg-whole",
     hash: "#v=EU-SEMI16.5&policy=carriageway&route=8.6585,49.4065;8.675,49.41",

@@ -61,8 +61,8 @@ export class StatsDialog {
         "tr",
         { class: current ? "is-current" : null },
         h("th", { scope: "row" }, h("button", { type: "button", onclick: choose }, vehicle ? sideView(vehicle, longest) : null, h("span", {}, vehicle?.name ?? row.id))),
-        h("td", { class: "number" }, roadLength(row.verdicts.safe)),
-        h("td", { class: "number" }, percent(row.verdicts.safe, total(row.verdicts))),
+        h("td", { class: "amount" }, roadLength(row.verdicts.safe)),
+        h("td", { class: "amount" }, percent(row.verdicts.safe, total(row.verdicts))),
         h("td", { class: "wide" }, bar(row.verdicts, total(row.verdicts))),
       );
     });
@@ -124,8 +124,8 @@ function classes(own: VehicleStats): HTMLElement {
       "tr",
       {},
       h("th", { scope: "row" }, className(name)),
-      h("td", { class: "number" }, roadLength(lengths.safe)),
-      h("td", { class: "number" }, percent(lengths.safe, total(lengths))),
+      h("td", { class: "amount" }, roadLength(lengths.safe)),
+      h("td", { class: "amount" }, percent(lengths.safe, total(lengths))),
       h("td", { class: "wide" }, bar(lengths, most)),
     ),
   );
@@ -141,7 +141,7 @@ function limits(own: VehicleStats): HTMLElement {
       "tr",
       {},
       h("th", { scope: "row" }, reasonWords(row.verdict, row.reason)),
-      h("td", { class: "number" }, roadLength(row.length_m)),
+      h("td", { class: "amount" }, roadLength(row.length_m)),
       h("td", { class: "wide" }, shown),
     );
   });
