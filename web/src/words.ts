@@ -170,9 +170,12 @@ export function certifiedWords(lengths: Record<VerdictName, number>): string {
   return `${roadLength(lengths.safe)} certified, ${percent(lengths.safe, all)}`;
 }
 
+/** A share in whole per cent; below 10 % with a decimal. */
 export function percent(part: number, all: number): string {
   if (all <= 0 || part <= 0) return "0 %";
   const share = (100 * part) / all;
+  // What is not whole must not read as whole.
+  if (share >= 99.5 && part < all * (1 - 1e-9)) return "> 99 %";
   return share < 0.1 ? "< 0.1 %" : `${share.toFixed(share < 10 ? 1 : 0)} %`;
 }
 

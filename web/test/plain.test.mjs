@@ -2,13 +2,28 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { createExpression } from "@maplibre/maplibre-gl-style-spec";
 import { drawnRegion, edgePixel, idle, load, open, text } from "./support.mjs";
 
 const { all, ask, inPage } = drawnRegion();
 
 const { length, distance, roadLength, speakIn } = await load("units.ts");
 const { coordinateText } = await load("coordinate.ts");
-const { refs, title } = await load("words.ts");
+const { percent, refs, title } = await load("words.ts");
+const { labels } = await load("map/labels.ts");
+
+test("what is not whole does not read as whole", () => {
+  const shares = [[0, 10], [0.001, 10], [0.5, 10], [7, 10], [9.94, 10], [9.99, 10], [10, 10], [0.1 + 0.2, 0.3]];
+  assert.deepEqual(shares.map(([part, all]) => percent(part, all)), ["0 %", "< 0.1 %", "5.0 %", "70 %", "99 %", "> 99 %", "100 %", "100 %"]);
+});
+
+test("a shield has the first two numbers of a road", () => {
+  const shields = labels({}, "light").find(({ id }) => id === "shields");
+  const { result, value } = createExpression(shields.layout["text-field"], "layers[0].layout.text-field");
+  assert.equal(result, "success", JSON.stringify(value));
+  const shown = (ref) => value.evaluate({ zoom: 12 }, { type: "LineString", properties: { ref } }).toString();
+  assert.deepEqual(["A 5", "I 405;US 30", "US 40;US 62;SR 16"].map(shown), ["A 5", "I 405 / US 30", "US 40 / US 62"]);
+});
 
 test("lengths are rounded to the cautious side, in metres and in feet", () => {
   speakIn("metres");

@@ -12,12 +12,15 @@ const SHIELD = "shield-";
 
 const NAME = ["get", "name"] as unknown as ExpressionSpecification;
 /** A road's number; of several, the first two: `I 405;US 30` is `I 405 / US 30`. */
-const REF = [
-  "let",
-  "ref",
-  ["get", "ref"],
-  ["let", "at", ["index-of", ";", ["var", "ref"]], ["case", ["<", ["var", "at"], 0], ["var", "ref"], ["concat", ["slice", ["var", "ref"], 0, ["var", "at"]], " / ", ["slice", ["var", "ref"], ["+", ["var", "at"], 1]]]]],
-] as unknown as ExpressionSpecification;
+const REF = ["let", "ref", ["concat", ["get", "ref"], ";"], [
+  "let", "first", ["index-of", ";", ["var", "ref"]], [
+    "let", "second", ["index-of", ";", ["var", "ref"], ["+", ["var", "first"], 1]], [
+      "case",
+      ["<", ["var", "second"], 0], ["slice", ["var", "ref"], 0, ["var", "first"]],
+      ["concat", ["slice", ["var", "ref"], 0, ["var", "first"]], " / ", ["slice", ["var", "ref"], ["+", ["var", "first"], 1], ["var", "second"]]],
+    ],
+  ],
+]] as unknown as ExpressionSpecification;
 
 const along: Pick<SymbolLayerSpecification, "type" | "source" | "source-layer"> = { type: "symbol", source: "roads", "source-layer": "label" };
 const order = ["match", ["get", "highway"], major, 0, middle, 1, ["tertiary"], 2, 3] as unknown as ExpressionSpecification;
