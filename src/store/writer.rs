@@ -93,14 +93,14 @@ impl Turns {
 
 impl Database {
     /// Begins a new database that will replace an older database at `path`. Refuses to replace a file that netcert did not
-    /// make. All certificates must be made with `settings`, except its policy.
+    /// make, unless it is empty. All certificates must be made with `settings`, except its policy.
     pub fn create(path: &Path, settings: &Settings) -> Result<Writer, StoreError> {
         let refused = |detail| StoreError::SettingsRefused { path: path.to_owned(), detail };
         let written = settings.written().map_err(refused)?;
         let under = |&policy: &Policy| Settings { policy, ..settings.clone() }.written();
         let by_policy: Vec<String> = Policy::ALL.iter().map(under).collect::<Result<_, _>>().map_err(refused)?;
         let mut older = None;
-        if path.exists() {
+        if path.exists() && !holds_nothing(path) {
             // Opening also rolls back the changes of a killed `certify`, so that its journal is no longer needed.
             match Self::open_to_change(path) {
                 Ok(mut old) => {
@@ -413,6 +413,12 @@ fn has_measurements(path: &Path) -> bool {
         session.run(async |c| sqlx::query_scalar::<_, i64>("SELECT count(*) FROM evidence").fetch_one(c).await)
     });
     count.is_ok_and(|count| count > 0)
+}
+
+/// Whether a file has no bytes, as `mktemp` makes it, and none of SQLite's journals lies beside it.
+fn holds_nothing(path: &Path) -> bool {
+    let journals = ["-journal", "-wal"].iter().any(|suffix| with_suffix(path, suffix).exists());
+    !journals && path.metadata().is_ok_and(|file| file.is_file() && file.len() == 0)
 }
 
 /// Waits until no process is changing the old database, because replacing the file removes its journal. A journal alone does
