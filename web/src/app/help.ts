@@ -22,7 +22,7 @@ export class HelpDialog {
       h(
         "p",
         {},
-        "Every line is one direction of a road, drawn on the side on which it is driven. Certified means: driven forward, with the errors of steering and of every axle within their stated bounds, no part of the combination leaves the strip of road that it may use. The margin says by how much, in metres; where it is negative, so much is missing.",
+        "Every line is one direction of a road, drawn on the side on which it is driven. Certified means: driven forward, with the errors of steering and of every axle within their stated bounds, no part of the combination leaves the strip of road that it may use. The margin says by how much; where it is negative, so much is missing.",
       ),
       h("dl", { class: "meanings" }, ...verdicts, ...routes),
       h("p", {}, "A certificate is worth no more than the width that it rests on: colour by evidence to see where widths come from. Bridges, loads, crests and what the map does not know are not in it. No permit comes from this page: an authority gives it."),
