@@ -415,17 +415,21 @@ fn has_measurements(path: &Path) -> bool {
     count.is_ok_and(|count| count > 0)
 }
 
-/// Whether a file has no bytes, as `mktemp` makes it, and none of SQLite's journals lies beside it.
+/// Whether a file has no bytes, as `mktemp` makes it, and no journal beside it.
 fn holds_nothing(path: &Path) -> bool {
-    let journals = ["-journal", "-wal"].iter().any(|suffix| with_suffix(path, suffix).exists());
-    !journals && path.metadata().is_ok_and(|file| file.is_file() && file.len() == 0)
+    !has_journal(path) && path.metadata().is_ok_and(|file| file.is_file() && file.len() == 0)
+}
+
+/// Whether a journal lies beside a database: that of a change in progress, or of a killed one.
+fn has_journal(path: &Path) -> bool {
+    ["-journal", "-wal"].iter().any(|suffix| with_suffix(path, suffix).exists())
 }
 
 /// Waits until no process is changing the old database, because replacing the file removes its journal. A journal alone does
 /// not prove a change in progress: a killed program leaves one, too, which opening the database rolls back or ignores.
 fn settle(target: &Path) -> Result<(), StoreError> {
     const LONGEST: Duration = Duration::from_secs(60);
-    let pending = ["-journal", "-wal"].iter().any(|suffix| with_suffix(target, suffix).exists());
+    let pending = has_journal(target);
     let start = Instant::now();
     while pending && target.exists() {
         let alone = Database::open_to_change(target).and_then(|mut old| {

@@ -1,6 +1,6 @@
 // A protocol of its own for tiles, so that requests for tiles are repeated when the server is busy, like all other requests.
 
-import { addProtocol } from "maplibre-gl";
+import { MercatorCoordinate, addProtocol } from "maplibre-gl";
 import { patient } from "../api/patient.ts";
 
 /** MapLibre fetches in a worker, where relative addresses do not work. `netcert://tiles/…` is handled here. */
@@ -20,11 +20,13 @@ const MOST_EARLY = 16;
  * the processor draws. `template` has `{z}`, `{x}` and `{y}`; `bounds` are west, south, east, north in degrees.
  */
 export function askEarly(template: string, zoom: number, [west, south, east, north]: readonly [number, number, number, number]): void {
-  const side = 2 ** zoom;
-  const column = (lon: number) => Math.floor(((lon + 180) / 360) * side);
-  const row = (lat: number) => Math.floor((0.5 - Math.asinh(Math.tan((lat * Math.PI) / 180)) / (2 * Math.PI)) * side);
-  for (let x = column(west); x <= column(east); x += 1) {
-    for (let y = row(north); y <= row(south); y += 1) {
+  const tile = (lon: number, lat: number): [number, number] => {
+    const { x, y } = MercatorCoordinate.fromLngLat([lon, lat]);
+    return [Math.floor(x * 2 ** zoom), Math.floor(y * 2 ** zoom)];
+  };
+  const [[left, top], [right, bottom]] = [tile(west, north), tile(east, south)];
+  for (let x = left; x <= right; x += 1) {
+    for (let y = top; y <= bottom; y += 1) {
       if (early.size >= MOST_EARLY) return;
       const path = template.replace("{z}", String(zoom)).replace("{x}", String(x)).replace("{y}", String(y));
       // If this fails, MapLibre's own request says why.
