@@ -115,6 +115,7 @@ pub mod serve;
 pub mod settings;
 mod shape;
 mod sorter;
+mod sqlite;
 pub mod store;
 pub mod turns;
 pub mod verify;

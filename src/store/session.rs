@@ -4,11 +4,12 @@
 
 use std::path::{Path, PathBuf};
 
+use sqlx::Connection as _;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
-use sqlx::{ConnectOptions, Connection};
 use tokio::runtime::Runtime;
 
 use super::error::StoreError;
+use crate::sqlite;
 
 /// A connection, its runtime, and the name of the file for messages.
 pub(super) struct Session {
@@ -22,7 +23,7 @@ impl Session {
     pub(super) fn open(path: &Path, options: &SqliteConnectOptions) -> Result<Self, StoreError> {
         let runtime =
             tokio::runtime::Builder::new_current_thread().enable_time().build().map_err(|e| StoreError::io(path, e))?;
-        let connection = runtime.block_on(options.connect()).map_err(|e| StoreError::sql(path, e))?;
+        let connection = runtime.block_on(sqlite::connect(options)).map_err(|e| StoreError::sql(path, e))?;
         Ok(Self { path: path.to_owned(), runtime, connection })
     }
 

@@ -3,6 +3,8 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use netcert::account::AccountRow;
 use netcert::network::{Edge, Network, Portion};
@@ -401,6 +403,7 @@ fn a_damaged_database_is_an_error_never_a_panic() {
     build(&path, 60, |i, _| i);
     let good = std::fs::read(&path).unwrap();
     let bad = folder.path().join("bad.gpkg");
+    let panics = panics_of_sqlite_threads();
     let mut noticed = 0;
     let cuts = (0..good.len()).step_by(good.len() / 40).map(|at| good[..at].to_vec());
     let flips = (0..400).map(|i| {
@@ -420,6 +423,41 @@ fn a_damaged_database_is_an_error_never_a_panic() {
         noticed += usize::from(read().is_err());
     }
     assert!(noticed >= 40, "{noticed}");
+    assert_eq!(panics.load(Ordering::Relaxed), 0, "a thread of sqlx panicked");
+}
+
+/// Counts the panics of the threads that sqlx runs SQLite on. Their panics reach no caller.
+fn panics_of_sqlite_threads() -> Arc<AtomicUsize> {
+    let count = Arc::new(AtomicUsize::new(0));
+    let (seen, before) = (Arc::clone(&count), std::panic::take_hook());
+    std::panic::set_hook(Box::new(move |info| {
+        if std::thread::current().name().is_some_and(|name| name.starts_with("sqlx-")) {
+            seen.fetch_add(1, Ordering::Relaxed);
+        }
+        before(info);
+    }));
+    count
+}
+
+/// A query on such a file ended like one without rows, and the next one sometimes never.
+#[test]
+fn a_schema_with_a_name_that_is_no_text_is_refused_every_time() {
+    let folder = folder();
+    let path = folder.path().join("a.gpkg");
+    build(&path, 2, |i, _| i);
+    let mut bytes = std::fs::read(&path).unwrap();
+    let name = b"oneway";
+    let at: Vec<usize> = (0..bytes.len() - name.len()).filter(|&at| bytes[at..].starts_with(name)).collect();
+    assert!(!at.is_empty());
+    for at in at {
+        bytes[at] |= 0x80;
+    }
+    std::fs::write(&path, bytes).unwrap();
+    for _ in 0..100 {
+        let error = Database::open(&path).map(|_| ()).unwrap_err();
+        assert!(matches!(error, StoreError::Damaged { .. }), "{error}");
+        assert!(error.to_string().contains("a name in its schema is not UTF-8; run `netcert ingest` again"), "{error}");
+    }
 }
 
 // --- killed, crowded and full ---------------------------------------------------------------------------------------

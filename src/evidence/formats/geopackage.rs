@@ -6,12 +6,13 @@ use std::io::Read as _;
 use std::path::Path;
 
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteRow};
-use sqlx::{AssertSqlSafe, ConnectOptions as _, Connection as _, Row as _};
+use sqlx::{AssertSqlSafe, Connection as _, Row as _};
 
 use super::reference::Transform;
 use crate::evidence::columns::{Column, Record, columns, is_geometry, real_text};
 use crate::evidence::error::Failure;
 use crate::shape::from_geopackage;
+use crate::sqlite;
 
 /// All records of a file, table after table, numbered through.
 pub(super) fn records(path: &Path) -> Result<Vec<Record>, Failure> {
@@ -19,7 +20,7 @@ pub(super) fn records(path: &Path) -> Result<Vec<Record>, Failure> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build()?;
     runtime.block_on(async {
         let options = SqliteConnectOptions::new().filename(path).read_only(true).create_if_missing(false);
-        let mut connection = options.connect().await.map_err(|error| failed(&error))?;
+        let mut connection = sqlite::connect(&options).await.map_err(|error| failed(&error))?;
         let records = all(&mut connection).await;
         connection.close().await.map_err(|error| failed(&error))?;
         records

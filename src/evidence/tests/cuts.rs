@@ -69,7 +69,9 @@ fn damaged(name: &str, write: impl Fn(&Table, &Path), step: usize, mask: u8) {
 fn a_changed_byte_panics_nowhere() {
     damaged("rows.csv", csv, 1, 0x55);
     damaged("rows.geojson", geojson, 1, 0x55);
-    damaged("rows.gpkg", |table, path| geopackage(table, path, 4326, ""), 37, 0x55);
+    for mask in [0x55, 0x80] {
+        damaged("rows.gpkg", |table, path| geopackage(table, path, 4326, ""), 37, mask);
+    }
     #[cfg(feature = "export")]
     for mask in [0x02, 0x55, 0xff] {
         let plain = parquet::basic::Compression::UNCOMPRESSED;

@@ -120,6 +120,20 @@ fn another_sqlite_file_is_refused() {
     assert!(database.contains("no GeoPackage, or one that was cut off"), "{database}");
 }
 
+/// A query of such a table ended like one without rows.
+#[test]
+fn a_column_whose_name_is_no_text_is_refused() {
+    let (_folder, path) = temporary("rows.gpkg");
+    geopackage(&table(), &path, 4326, "");
+    let mut bytes = std::fs::read(&path).unwrap();
+    let name = b"\"quantity\" NUMERIC";
+    let at = (0..bytes.len() - name.len()).find(|&at| bytes[at..].starts_with(name)).unwrap();
+    bytes[at + 3] |= 0x80;
+    std::fs::write(&path, bytes).unwrap();
+    let refused = refusal(read(&path));
+    assert!(refused.contains("a name in its schema is not UTF-8"), "{refused}");
+}
+
 /// GDAL keeps the text of a CSV file's geometry beside the geometry that it makes of it.
 #[test]
 fn a_copy_of_the_geometry_does_not_matter() {
