@@ -11,8 +11,6 @@ use sqlx::{ConnectOptions as _, Connection as _};
 /// # Errors
 /// The file cannot be opened. `sqlx::Error::Decode` means that its schema is damaged.
 pub(crate) async fn connect(options: &SqliteConnectOptions) -> Result<SqliteConnection, sqlx::Error> {
-    // No command is ever left in a queue that nobody reads any more: SQLite's thread takes each from the sender's hand.
-    let options = options.clone().command_buffer_size(0);
     let mut connection = options.connect().await?;
     match check_names(&mut connection).await {
         Ok(()) => Ok(connection),

@@ -3,7 +3,7 @@
 
 use crate::diff::Standing;
 use crate::evidence::{Along, Quantity, State, Usage};
-use crate::osm::facts::{Direction, Oneway, Permission, Policy, RoadClass, WidthSource};
+use crate::osm::facts::{BackdropKind, Direction, Oneway, Permission, Policy, RoadClass, WidthSource};
 use crate::settings::Needs;
 use crate::stet::Side;
 use crate::verdict::{ForbiddenReason, UnknownReason, UnsafeReason, Verdict};
@@ -78,6 +78,19 @@ named!(Quantity {
     MaxWeight = "max_weight",
     DrivableBy = "drivable_by",
     Surface = "surface",
+});
+
+named!(BackdropKind {
+    Wood = "wood",
+    Water = "water",
+    Coast = "coast",
+    River = "river",
+    Canal = "canal",
+    City = "city",
+    Town = "town",
+    Suburb = "suburb",
+    Village = "village",
+    Hamlet = "hamlet",
 });
 
 named!(State { Matched = "matched", Unmatched = "unmatched", Ambiguous = "ambiguous" });

@@ -64,7 +64,7 @@ where
 {
     /// Makes an extract ready.
     pub fn new(extract: Extract, places: P, sections: S, options: StrokeOptions) -> Self {
-        let Extract { ways, refs, nodes, points, restrictions, areas, strings, account: read } = extract;
+        let Extract { ways, refs, nodes, points, restrictions, areas, backdrop: _, strings, account: read } = extract;
         let vertices = Vertices::resolve(&ways, &refs, &nodes, &points);
         drop((refs, points));
         let ways = Ways::new(ways);

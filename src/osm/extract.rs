@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::backdrop::Backdrop;
 use crate::osm::facts::{AreaKind, PointFacts, TurnRule, WayFacts};
 
 /// A position on WGS 84 in units of 1e-7 degree, the file's own resolution.
@@ -162,6 +163,8 @@ pub struct Extract {
     pub areas: Vec<RoadArea>,
     /// Turn restrictions for heavy goods vehicles, sorted by relation id.
     pub restrictions: Vec<Restriction>,
+    /// What a map shows behind the roads.
+    pub backdrop: Vec<Backdrop>,
     /// Names and refs of the ways.
     pub strings: StringPool,
     /// The account of everything read: how many ways were left out, by reason.

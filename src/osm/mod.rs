@@ -3,9 +3,11 @@
 //! The file is read in two passes: ways first, then only the nodes that they name. Every dropped object has a counted
 //! reason. A damaged file is an error with a byte offset, never a shorter result.
 
+mod backdrop;
 pub mod changes;
 mod extract;
 pub mod facts;
 pub mod pbf;
 
+pub use backdrop::{Backdrop, BackdropShape};
 pub use extract::{Extract, LonLat, NodeTable, Restriction, RoadArea, StringId, StringPool, Via, Way, rounded};

@@ -69,8 +69,10 @@ impl Making<'_> {
         // Measurements, and what an earlier database has, are matched with the whole network.
         let whole = register.is_some() || earlier.is_some();
         let source = (self.inputs, &self.changes.changes);
-        let (mut roads, Origin { header, blake3: hash, segments }) =
+        let (mut roads, Origin { header, blake3: hash, segments, backdrop }) =
             read_roads(source, self.countries, (self.edges_at_once, whole), reporter, &mut summary)?;
+        writer.backdrop(&backdrop)?;
+        drop(backdrop);
         if let Some(why) = writer.register_lost() {
             reporter
                 .note(&format!("the measurements of the older database are lost, because it cannot be read: {why}"));

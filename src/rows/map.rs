@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use crate::osm::LonLat;
-use crate::osm::facts::{Direction, Oneway, RoadClass, WidthSource};
+use crate::osm::facts::{BackdropKind, Direction, Oneway, RoadClass, WidthSource};
+use crate::osm::{BackdropShape, LonLat};
 use crate::verdict::Verdict;
 
 /// An edge as a map draws it. Its texts may be those of a network in memory.
@@ -37,6 +37,19 @@ pub struct MapNumbers {
     pub rsc_mm: Option<i64>,
     /// The least width with which the edge would be safe, if its stroke were nowhere narrower, metres.
     pub need_width_m: Option<f64>,
+}
+
+/// A thing behind the roads.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct MapBackdrop {
+    /// Its number in the database.
+    pub number: i64,
+    /// What it is.
+    pub kind: BackdropKind,
+    /// Its name, if it has one.
+    pub name: Option<String>,
+    /// Where it is.
+    pub shape: BackdropShape,
 }
 
 /// A turn as a map draws it.

@@ -24,7 +24,7 @@ pub use certificate::CertificateRow;
 pub use counts::{NeedCount, RelativeCount, RscBin, Stats, StatsRow, TurnCount};
 pub use edge::{EdgeFacts, EdgeRow, EdgeStep};
 pub use made::{Conclusion, EdgeCertificate, EdgeMeasure, Measured, StrokeMade, TurnCertificate, TurnMade, TurnNeed};
-pub use map::{MainRoad, MapEdge, MapNumbers, MapTurn};
+pub use map::{MainRoad, MapBackdrop, MapEdge, MapNumbers, MapTurn};
 pub use measurement::Measurement;
 pub use plan::StoredPlan;
 pub(crate) use plan::unpack;

@@ -95,6 +95,8 @@ pub(super) struct Region {
     /// Hash of the runs and the sets of certificates. It does not depend on the file's path or modification time.
     pub(super) content: String,
     pub(super) extent: Option<Bounds>,
+    /// Whether there is anything behind the roads to draw.
+    pub(super) backdrop: bool,
     edges: usize,
     /// The greatest number of edges whose numbers are held in memory.
     held_edges: usize,
@@ -152,6 +154,7 @@ impl Region {
             state: state.to_hex().chars().take(16).collect(),
             content,
             extent: database.extent()?,
+            backdrop: database.has_backdrop()?,
             edges: database.edges()? as usize,
             held_edges: Limits::default().held_edges,
             runs,

@@ -1,14 +1,16 @@
-//! Encodes and decodes geometries as GeoPackage blobs: `GP`, version 0, no envelope, WGS 84, then a WKB line string or multipolygon, all
-//! little endian (GeoPackage 1.3, clause 2.1.3). Positions are multiples of 1e-7 degree and are preserved exactly.
+//! Encodes and decodes geometries as GeoPackage blobs: `GP`, version 0, no envelope, WGS 84, then a geometry as WKB, all little endian
+//! (GeoPackage 1.3, clause 2.1.3). Positions are multiples of 1e-7 degree and are preserved exactly.
 
-use crate::osm::LonLat;
+use crate::osm::{BackdropShape, LonLat};
 use crate::rows::Bounds;
 
 /// The flags: no envelope (code 0 in bits 1 to 3), little endian (bit 0). An envelope would take 32 bytes of each geometry.
 const FLAGS: u8 = 0b0000_0001;
 const SRS: i32 = 4326;
+const WKB_POINT: u32 = 1;
 const WKB_LINESTRING: u32 = 2;
 const WKB_POLYGON: u32 = 3;
+const WKB_MULTILINESTRING: u32 = 5;
 const WKB_MULTIPOLYGON: u32 = 6;
 const HEADER_BYTES: usize = 8;
 const WKB_BYTES: usize = 1 + 4 + 4;
@@ -49,6 +51,58 @@ pub(super) fn encode_polygons(polygons: &[Vec<Vec<LonLat>>]) -> Option<(Vec<u8>,
     Some((blob, bounds))
 }
 
+/// The blob of a shape of the backdrop, and the box around it. Without a position there is no blob.
+pub(super) fn encode_shape(shape: &BackdropShape) -> Option<(Vec<u8>, Bounds)> {
+    let mut blob = Vec::new();
+    header(&mut blob);
+    match shape {
+        BackdropShape::Areas(polygons) => encode_polygons(polygons),
+        BackdropShape::Lines(lines) => {
+            begin(&mut blob, WKB_MULTILINESTRING);
+            blob.extend((lines.len() as u32).to_le_bytes());
+            for line in lines {
+                begin(&mut blob, WKB_LINESTRING);
+                put_line(&mut blob, line.iter().copied());
+            }
+            let bounds = lines.iter().filter_map(|line| Bounds::around(line.iter().copied())).reduce(Bounds::union)?;
+            Some((blob, bounds))
+        }
+        BackdropShape::Place(place) => {
+            begin(&mut blob, WKB_POINT);
+            put_position(&mut blob, *place);
+            Some((blob, Bounds::around(std::iter::once(*place))?))
+        }
+    }
+}
+
+/// The shape of a blob that [`encode_shape`] wrote; `None` for anything else.
+pub(super) fn decode_shape(blob: &[u8]) -> Option<BackdropShape> {
+    let (header, mut wkb) = blob.split_at_checked(HEADER_BYTES)?;
+    if !header.starts_with(&[b'G', b'P', 0, FLAGS]) {
+        return None;
+    }
+    match u32::from_le_bytes(wkb.get(1..5)?.try_into().ok()?) {
+        WKB_MULTIPOLYGON => decode_polygons(blob).map(BackdropShape::Areas),
+        WKB_MULTILINESTRING => {
+            let lines = count_of(&mut wkb, Some(WKB_MULTILINESTRING))?;
+            let mut all = Vec::new();
+            for _ in 0..lines {
+                let points = count_of(&mut wkb, Some(WKB_LINESTRING))? as usize;
+                let (line, rest) = wkb.split_at_checked(points.checked_mul(POSITION_BYTES)?)?;
+                wkb = rest;
+                all.push(positions(line)?);
+            }
+            wkb.is_empty().then_some(BackdropShape::Lines(all))
+        }
+        WKB_POINT => {
+            let point = wkb.strip_prefix(&[1, WKB_POINT as u8, 0, 0, 0])?;
+            let [place] = positions(point)?.try_into().ok()?;
+            Some(BackdropShape::Place(place))
+        }
+        _ => None,
+    }
+}
+
 fn header(blob: &mut Vec<u8>) {
     blob.extend(b"GP");
     blob.extend([0, FLAGS]);
@@ -63,10 +117,13 @@ fn begin(blob: &mut Vec<u8>, wkb_type: u32) {
 
 fn put_line(blob: &mut Vec<u8>, positions: impl ExactSizeIterator<Item = LonLat>) {
     blob.extend((positions.len() as u32).to_le_bytes());
-    for (lon, lat) in positions.map(LonLat::degrees) {
-        blob.extend(lon.to_le_bytes());
-        blob.extend(lat.to_le_bytes());
-    }
+    positions.for_each(|position| put_position(blob, position));
+}
+
+fn put_position(blob: &mut Vec<u8>, position: LonLat) {
+    let (lon, lat) = position.degrees();
+    blob.extend(lon.to_le_bytes());
+    blob.extend(lat.to_le_bytes());
 }
 
 /// The polygons of a blob that [`encode_polygons`] wrote; `None` for anything else.
@@ -166,8 +223,24 @@ mod tests {
         }
 
         #[test]
+        fn shapes_come_back_exactly_and_cut_anywhere_are_none(
+            places in prop::collection::vec(prop::collection::vec(
+                (-1_800_000_000..=1_800_000_000, -900_000_000..=900_000_000), 1..9), 1..4)
+        ) {
+            let place = |&(lon_e7, lat_e7): &(i32, i32)| LonLat { lon_e7, lat_e7 };
+            let lines: Vec<Vec<LonLat>> = places.iter().map(|line| line.iter().map(place).collect()).collect();
+            let point = BackdropShape::Place(lines[0][0]);
+            for shape in [point, BackdropShape::Areas(vec![lines.clone()]), BackdropShape::Lines(lines)] {
+                let (blob, _) = encode_shape(&shape).unwrap();
+                prop_assert_eq!(decode_shape(&blob), Some(shape));
+                prop_assert!((0..blob.len()).all(|cut| decode_shape(&blob[..cut]).is_none()));
+                prop_assert!(decode(&blob).is_none());
+            }
+        }
+
+        #[test]
         fn anything_else_is_no_geometry(bytes in prop::collection::vec(any::<u8>(), 0..120)) {
-            prop_assert!(decode(&bytes).is_none() && decode_polygons(&bytes).is_none());
+            prop_assert!(decode(&bytes).is_none() && decode_polygons(&bytes).is_none() && decode_shape(&bytes).is_none());
         }
     }
 

@@ -6,8 +6,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::network::{Area, Edge, Narrowing, Portion, PortionRestriction, Road};
-use crate::osm::LonLat;
 use crate::osm::facts::CrossSection;
+use crate::osm::{Backdrop, LonLat};
 use crate::rows::EdgeMeasure;
 
 use super::part::sorter;
@@ -51,6 +51,9 @@ pub(super) struct Gathered {
     pub(super) strokes: Sorter<u32, StrokeRow>,
     pub(super) restrictions: Vec<PortionRestriction>,
     pub(super) areas: Vec<Area>,
+    /// By their places in drawing order.
+    pub(super) backdrop: Sorter<u32, Backdrop>,
+    things: u32,
 }
 
 impl Gathered {
@@ -62,7 +65,18 @@ impl Gathered {
             strokes: sorter(path, "-strokes")?,
             restrictions: Vec::new(),
             areas: Vec::new(),
+            backdrop: sorter(path, "-backdrop")?,
+            things: 0,
         })
+    }
+
+    /// Adds what lies behind the roads, in drawing order.
+    pub(super) fn add_backdrop(&mut self, things: &[Backdrop]) -> io::Result<()> {
+        for thing in things {
+            self.backdrop.push(self.things, thing)?;
+            self.things += 1;
+        }
+        Ok(())
     }
 
     /// Adds what a portion owns. `measures` has one entry per edge of its network, or is empty.

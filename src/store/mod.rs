@@ -5,6 +5,7 @@
 //! more than was computed. Rows are written and read as the types of `rows`.
 
 mod areas;
+mod backdrop;
 mod blob;
 mod bulk;
 mod contents;

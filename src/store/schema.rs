@@ -21,6 +21,7 @@ const FILES: &[(i64, &str, &str)] = &[
     (11, "junctions", include_str!("../../migrations/0011_junctions.sql")),
     (12, "map changes", include_str!("../../migrations/0012_map_changes.sql")),
     (13, "segments", include_str!("../../migrations/0013_segments.sql")),
+    (14, "backdrop", include_str!("../../migrations/0014_backdrop.sql")),
 ];
 
 /// The table of applied migrations. sqlx uses an existing table. Its own table would have types that GDAL does not know

@@ -10,6 +10,7 @@ use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection, SqliteJournalMode, Sq
 
 use crate::account::AccountRow;
 use crate::network::{Area, Portion};
+use crate::osm::Backdrop;
 use crate::osm::facts::Policy;
 use crate::rows::{EdgeCertificate, EdgeMeasure, SegmentRow, StoredPlan, TurnCertificate};
 use crate::settings::Settings;
@@ -17,6 +18,7 @@ use crate::turns::{JunctionArea, TurnFacts};
 use crate::words::{Named, verdict_words};
 
 use super::areas;
+use super::backdrop;
 use super::contents;
 use super::database::Database;
 use super::error::{StoreError, content};
@@ -206,6 +208,11 @@ impl Writer {
         self.network.areas = areas;
     }
 
+    /// Adds what lies behind the roads, in drawing order.
+    pub fn backdrop(&mut self, things: &[Backdrop]) -> Result<(), StoreError> {
+        self.network.add_backdrop(things).map_err(|e| StoreError::io(&self.session.path, e))
+    }
+
     /// Adds a vehicle. Ids must be distinct.
     pub fn vehicle(&mut self, vehicle: VehicleRecord) -> VehicleNo {
         self.vehicles.push(vehicle);
@@ -300,7 +307,8 @@ impl Writer {
     pub fn finish(mut self, run: &Run) -> Result<(), StoreError> {
         let path = self.session.path.clone();
         let at = |e| StoreError::io(&path, e);
-        let Gathered { roads, edges, strokes, mut restrictions, areas } = self.network;
+        let Gathered { roads, edges, strokes, mut restrictions, areas, backdrop: things, .. } = self.network;
+        let things = things.sorted().map_err(at)?.map(|row| row.map(|(_, thing)| thing));
         let scratch = &self.part.path;
         let network = self.session.run(async |c| network_write::write(c, (roads, edges, strokes), scratch).await)?;
         let network_write::Written { edges, bounds } = network;
@@ -335,6 +343,7 @@ impl Writer {
             evidence::write(c, register, &run.finished).await?;
             map_changes::insert(c, map_changes).await?;
             segments::insert(c, of_ways).await?;
+            backdrop::insert(c, things).await?;
             while let Some(set) = all_plans.next_set()? {
                 plans::insert(c, plans::STROKES, set, all_plans.of(set)).await?;
             }

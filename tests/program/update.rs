@@ -13,7 +13,7 @@ use crate::support::program::{Answer, Place};
 /// Vehicle and options of every database.
 const MADE: &str = "--vehicle AU-SEMI19 --corridor carriageway --country AU --needs off";
 
-fn run(place: &Place, line: &str) -> Answer {
+pub(crate) fn run(place: &Place, line: &str) -> Answer {
     Answer::of(line, place.command(line).env("SOURCE_DATE_EPOCH", "1700000000"))
 }
 
@@ -23,13 +23,16 @@ fn osmium(place: &Place, arguments: &[&str]) -> Option<()> {
     Some(())
 }
 
+/// What SQLite's shell answers to a statement.
+fn sql(db: &Path, text: &str) -> String {
+    let done = Command::new("sqlite3").arg(db).arg(text).output().expect("the sqlite3 program");
+    assert!(done.status.success(), "{text}: {}", String::from_utf8_lossy(&done.stderr));
+    String::from_utf8(done.stdout).unwrap()
+}
+
 /// Whether two databases say the same, but for their runs, the account of what was read, and what the next update needs.
 fn same(a: &Path, b: &Path) {
-    let sql = |text: &str| {
-        let done = Command::new("sqlite3").arg(a).arg(text).output().expect("the sqlite3 program");
-        assert!(done.status.success(), "{text}: {}", String::from_utf8_lossy(&done.stderr));
-        String::from_utf8(done.stdout).unwrap()
-    };
+    let sql = |text: &str| sql(a, text);
     let tables =
         sql("SELECT name FROM sqlite_schema WHERE type = 'table' AND sql NOT LIKE 'CREATE VIRTUAL%' ORDER BY name");
     let mut compared = 0;
@@ -46,7 +49,7 @@ fn same(a: &Path, b: &Path) {
     assert!(compared > 20, "{compared} tables");
 }
 
-fn place_of(east_m: f64, north_m: f64) -> LonLat {
+pub(crate) fn place_of(east_m: f64, north_m: f64) -> LonLat {
     let e7 = |metres: f64| (metres / 111_319.5 * 1e7).round() as i32;
     LonLat { lon_e7: e7(east_m), lat_e7: e7(north_m) }
 }
@@ -70,6 +73,42 @@ fn grid() -> Vec<u8> {
     write_extract(&nodes, &ways)
 }
 
+/// Woods with a clearing, in two ways, around the grid's middle; a pond, a river, a town, and a lake that the file has in part.
+pub(crate) fn backdrop() -> String {
+    let node = |id: i64, east_m: f64, north_m: f64, tags: &str| {
+        let (lon, lat) = place_of(east_m, north_m).degrees();
+        format!("<node id=\"{id}\" version=\"1\" lon=\"{lon:.7}\" lat=\"{lat:.7}\">{tags}</node>")
+    };
+    let square = |first: i64, from_m: f64, to_m: f64| -> String {
+        let corners = [(from_m, from_m), (to_m, from_m), (to_m, to_m), (from_m, to_m)];
+        (first..).zip(corners).map(|(id, (east_m, north_m))| node(id, east_m, north_m, "")).collect()
+    };
+    let way = |id: i64, refs: &[i64], tags: &str| {
+        let refs: String = refs.iter().map(|id| format!("<nd ref=\"{id}\"/>")).collect();
+        format!("<way id=\"{id}\" version=\"1\">{refs}{tags}</way>")
+    };
+    let relation = |id: i64, members: &[(i64, &str)], tags: &str| {
+        let member = |(id, role): &(i64, &str)| format!("<member type=\"way\" ref=\"{id}\" role=\"{role}\"/>");
+        let members: String = members.iter().map(member).collect();
+        format!("<relation id=\"{id}\" version=\"1\">{members}<tag k=\"type\" v=\"multipolygon\"/>{tags}</relation>")
+    };
+    let tag = |key: &str, value: &str| format!("<tag k=\"{key}\" v=\"{value}\"/>");
+    [
+        square(200, 250.0, 550.0),
+        square(210, 350.0, 450.0),
+        square(220, 20.0, 120.0),
+        node(230, 700.0, 100.0, &[tag("place", "town"), tag("name", "Midgrid")].concat()),
+        way(100, &[200, 201, 202], ""),
+        way(101, &[200, 203, 202], ""),
+        way(102, &[210, 211, 212, 213, 210], ""),
+        way(103, &[220, 221, 222, 223, 220], &tag("natural", "water")),
+        way(104, &[220, 202, 999], &[tag("waterway", "river"), tag("name", "Gridder")].concat()),
+        relation(8, &[(100, "outer"), (101, "outer"), (102, "inner")], &tag("landuse", "forest")),
+        relation(9, &[(104, "outer"), (998, "outer")], &tag("natural", "water")),
+    ]
+    .concat()
+}
+
 const HEAD: &str = "<?xml version='1.0' encoding='UTF-8'?>\n<osmChange version=\"0.6\">\n";
 
 /// A road gets narrow, a node moves, a way goes, a way comes, and a left turn is forbidden.
@@ -87,14 +126,15 @@ fn changes() -> String {
          <create><node id=\"90\" version=\"1\" {}/><way id=\"20\" version=\"1\"><nd ref=\"1\"/><nd ref=\"90\"/>{narrow}</way>\
          <relation id=\"7\" version=\"1\"><member type=\"way\" ref=\"3\" role=\"from\"/><member type=\"node\" ref=\"22\" role=\"via\"/>\
          <member type=\"way\" ref=\"7\" role=\"to\"/><tag k=\"type\" v=\"restriction\"/>\
-         <tag k=\"restriction\" v=\"no_left_turn\"/></relation></create>\n</osmChange>\n",
+         <tag k=\"restriction\" v=\"no_left_turn\"/></relation>{}</create>\n</osmChange>\n",
         refs([11, 12, 13, 14, 15]),
         at(412.0, 607.0),
         at(-150.0, -90.0),
+        backdrop(),
     )
 }
 
-fn place() -> Place {
+pub(crate) fn place() -> Place {
     let place = Place::empty().file("grid.osm.pbf", grid()).file("1.osc", changes());
     run(&place, &format!("ingest grid.osm.pbf {MADE}")).succeeds();
     place
@@ -105,7 +145,7 @@ fn the_result_is_that_of_ingesting_what_osmium_makes() {
     let place = place();
     let back = format!(
         "{HEAD}<modify><way id=\"2\" version=\"3\">{}<tag k=\"highway\" v=\"primary\"/><tag k=\"width\" v=\"14\"/></way></modify>\
-         <delete><relation id=\"7\" version=\"2\"/></delete></osmChange>",
+         <delete><relation id=\"7\" version=\"2\"/><way id=\"103\" version=\"2\"/><node id=\"230\" version=\"2\"/></delete></osmChange>",
         [11, 12, 13, 14, 15].map(|id| format!("<nd ref=\"{id}\"/>")).concat()
     );
     let place = place.file("2.osc", back);
@@ -119,6 +159,17 @@ fn the_result_is_that_of_ingesting_what_osmium_makes() {
         let again = run(&place, &format!("update --db grid.gpkg {}.osc", if name == "one" { 1 } else { 2 }));
         again.succeeds().tells("up to date");
         same(&place.path(&format!("{name}.gpkg")), &place.path("grid.gpkg"));
+        let things = sql(&place.path("grid.gpkg"), "SELECT kind, object, name FROM backdrop ORDER BY fid");
+        let rest = "river|way 104|Gridder\ntown|node 230|Midgrid\n";
+        match name {
+            "one" => assert_eq!(things, format!("wood|relation 8|\nwater|way 103|\n{rest}")),
+            _ => assert_eq!(things, "wood|relation 8|\nriver|way 104|Gridder\n"),
+        }
+        let account = "SELECT outcome, reason, count FROM account WHERE item = 'backdrop' AND run_id = \
+                       (SELECT max(run_id) FROM account) ORDER BY account_no";
+        let kept = if name == "one" { 4 } else { 2 };
+        let expected = format!("read||{}\nkept||{kept}\nleft_out|incomplete|1\n", kept + 1);
+        assert_eq!(sql(&place.path("grid.gpkg"), account), expected);
     }
     // Applied again, an old change changes nothing, because a later version is known.
     run(&place, "update --db grid.gpkg 1.osc").succeeds();

@@ -47,7 +47,7 @@ export function demoDatabase(folder) {
 
 /**
  * Two databases of the drawn region, `old.gpkg` and `new.gpkg`: in the newer one a road is measured narrower and another one wider, a
- * third one has a limit of weight, a fourth one is gone, and there is a new one.
+ * third one has a limit of weight, a fourth one is gone, and there is a new one. The newer one has a lake and a town, too.
  */
 export function twoDatabases(folder) {
   const [before, db] = ["old.gpkg", "new.gpkg"].map((name) => join(folder, name));
@@ -61,7 +61,11 @@ export function twoDatabases(folder) {
   const gone = '<delete><way id="49" version="99"/></delete>';
   const node = '<node id="900001" version="1" lat="-30.2" lon="126.06"/>';
   const way = '<way id="900002" version="1"><nd ref="158"/><nd ref="900001"/><tag k="highway" v="primary"/><tag k="width" v="12"/><tag k="name" v="New Ring Road"/></way>';
-  writeFileSync(join(folder, "later.osc"), `<osmChange version="0.6">${gone}<create>${node}${way}</create></osmChange>`);
+  const shore = [[126, -30.25], [126.05, -30.25], [126.05, -30.22], [126, -30.22]].map(([lon, lat], k) => `<node id="${900010 + k}" version="1" lat="${lat}" lon="${lon}"/>`);
+  const round = [0, 1, 2, 3, 0].map((k) => `<nd ref="${900010 + k}"/>`).join("");
+  const lake = `${shore.join("")}<way id="900020" version="1">${round}<tag k="natural" v="water"/></way>`;
+  const town = '<node id="900030" version="1" lat="-30.22" lon="126"><tag k="place" v="town"/><tag k="name" v="Laketon"/></node>';
+  writeFileSync(join(folder, "later.osc"), `<osmChange version="0.6">${gone}<create>${node}${way}${lake}${town}</create></osmChange>`);
   run("update", "--db", db, join(folder, "later.osc"), "--extract", extract);
   return { before, db };
 }

@@ -5,6 +5,7 @@
 
 mod access;
 mod areas;
+mod backdrop;
 mod class;
 mod country;
 mod given;
@@ -33,6 +34,7 @@ use serde::{Deserialize, Serialize};
 use crate::osm::StringId;
 
 pub use areas::{AreaKind, area_kind};
+pub use backdrop::{BackdropForm, BackdropKind, backdrop_kind, place_of};
 pub use class::{LEFT_OUT_REASONS, way_facts};
 pub use country::{Countries, CountriesError, Place};
 pub use given::{GivenRoad, given_class};

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::account::AccountRow;
 
-use super::{header::HeaderInfo, relations::RelationTally};
+use super::{backdrop::BackdropTally, header::HeaderInfo, relations::RelationTally};
 
 /// Counts of every object read. `ways_read = ways_kept + Σ ways_left_out`, and nodes add up likewise.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -29,6 +29,8 @@ pub struct ReadAccount {
     pub nodes: NodeTally,
     /// Relations in the file.
     pub relations: RelationTally,
+    /// What lies behind the roads.
+    pub backdrop: BackdropTally,
     /// Blobs of data, by compression.
     pub blobs: BTreeMap<&'static str, u64>,
     /// Blobs of an unknown type, skipped as the format demands.
@@ -117,6 +119,14 @@ impl ReadAccount {
         row("relation", "left_out", "restriction_broken", relations.broken_restrictions);
         row("relation", "noted", "restriction", relations.restrictions);
         row("relation", "noted", "restriction_off_road", relations.restrictions_off_road);
+        let BackdropTally { kept, incomplete, too_small, off_file } = self.backdrop;
+        if self.backdrop.read() > 0 {
+            row("backdrop", "read", "", self.backdrop.read());
+            row("backdrop", "kept", "", kept);
+            row("backdrop", "left_out", "incomplete", incomplete);
+            row("backdrop", "left_out", "missing_nodes", off_file);
+            row("backdrop", "left_out", "too_small", too_small);
+        }
         for (compression, &count) in &self.blobs {
             row("blob", "noted", compression, count);
         }

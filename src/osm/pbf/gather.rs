@@ -10,7 +10,14 @@ use rustc_hash::FxHashMap;
 
 use crate::osm::{LonLat, NodeTable, RoadArea, StringPool, Way, facts::PointFacts};
 
-use super::{account::NodeTally, error::Problem, nodes::NodeBatch, relations::RelationBatch, ways::WayBatch};
+use super::{
+    account::NodeTally,
+    backdrop::{BackdropWay, PlaceNode},
+    error::Problem,
+    nodes::NodeBatch,
+    relations::RelationBatch,
+    ways::WayBatch,
+};
 
 /// Left out because another way with the same id follows in the file.
 const DUPLICATE_ID: &str = "duplicate_id";
@@ -27,6 +34,7 @@ pub(super) struct WayGatherer {
     pub(super) notes: BTreeMap<&'static str, u64>,
     pub(super) relations: RelationBatch,
     pub(super) areas: Vec<RoadArea>,
+    pub(super) backdrop: Vec<BackdropWay>,
     /// Parallel to the areas: whether `overrides` has an entry for them.
     overriding: Vec<bool>,
     /// Largest id so far.
@@ -57,6 +65,7 @@ impl WayGatherer {
         self.relations.tally.add(batch.relations.tally);
         self.relations.restrictions.extend(batch.relations.restrictions);
         self.relations.vias.extend(batch.relations.vias);
+        self.backdrop.extend(batch.backdrop);
         let Some((first, last)) = batch.ends else { return Ok(()) };
         let in_order = batch.ascending && self.largest.is_none_or(|largest| largest < first);
         self.disordered |= !in_order;
@@ -160,36 +169,61 @@ impl WayGatherer {
         }
     }
 
+    /// The distinct nodes that the ways of the backdrop name.
+    pub(super) fn backdrop_node_ids(&self) -> Vec<i64> {
+        distinct(self.backdrop.iter().flat_map(|way| way.refs.iter().copied()).collect())
+    }
+
     /// The distinct nodes that the ways name.
     pub(super) fn node_ids(&self) -> Vec<i64> {
         let mut ids = self.refs.clone();
         ids.extend(self.areas.iter().flat_map(|area| &area.refs));
-        ids.par_sort_unstable();
-        ids.dedup();
-        ids.shrink_to_fit();
-        ids
+        distinct(ids)
     }
+}
+
+fn distinct(mut ids: Vec<i64>) -> Vec<i64> {
+    ids.par_sort_unstable();
+    ids.dedup();
+    ids.shrink_to_fit();
+    ids
 }
 
 /// The positions of named nodes found so far, parallel to their sorted ids.
 #[derive(Debug)]
 pub(super) struct NodeGatherer {
     places: Vec<Option<LonLat>>,
+    /// Those of the backdrop, parallel to their own ids.
+    backdrop: Vec<Option<LonLat>>,
+    pub(super) place_nodes: Vec<PlaceNode>,
     seen: Vec<bool>,
     points: FxHashMap<u32, PointFacts>,
     tally: NodeTally,
 }
 
 impl NodeGatherer {
-    pub(super) fn new(named: usize) -> Self {
+    pub(super) fn new(named: usize, backdrop: usize) -> Self {
         let tally = NodeTally { named: named as u64, ..NodeTally::default() };
-        Self { places: vec![None; named], seen: vec![false; named], points: FxHashMap::default(), tally }
+        Self {
+            places: vec![None; named],
+            backdrop: vec![None; backdrop],
+            place_nodes: Vec::new(),
+            seen: vec![false; named],
+            points: FxHashMap::default(),
+            tally,
+        }
     }
 
-    pub(super) fn add(&mut self, batch: &NodeBatch) {
+    pub(super) fn add(&mut self, batch: NodeBatch) {
         self.tally.read += batch.read;
         self.tally.deleted += batch.deleted;
         self.tally.unnamed += batch.read - batch.deleted - batch.hits.len() as u64;
+        for hit in &batch.backdrop {
+            if let Some(place) = self.backdrop.get_mut(hit.index as usize) {
+                *place = hit.place;
+            }
+        }
+        self.place_nodes.extend(batch.place_nodes);
         let mut points = batch.points.iter().peekable();
         for (number, hit) in batch.hits.iter().enumerate() {
             let index = hit.index as usize;
@@ -203,6 +237,17 @@ impl NodeGatherer {
                 self.points.insert(hit.index, *facts);
             }
         }
+    }
+
+    /// The table of the backdrop's nodes.
+    pub(super) fn backdrop(&mut self, ids: Vec<i64>, inline_places: &[(i64, LonLat)]) -> NodeTable {
+        let mut table = NodeTable { ids, places: std::mem::take(&mut self.backdrop) };
+        for &(id, place) in inline_places {
+            if let Some(slot) = table.index(id).and_then(|index| table.places.get_mut(index)) {
+                slot.get_or_insert(place);
+            }
+        }
+        table
     }
 
     /// The table, the facts of its tagged nodes, and the counts. A position from a way counts if the file has no such

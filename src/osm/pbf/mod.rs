@@ -1,14 +1,16 @@
-//! The file: framing, inflating, index checks, two passes.
+//! The file: framing, inflating, index checks, passes over the blobs.
 //!
 //! A file is read whole or not at all. Every blob is inflated and every message checked, even those that are not kept.
 //! The result is the same for any number of threads. The first pass takes ways and relations, the second pass the nodes
-//! that kept ways name. Most files claim to be sorted (nodes, ways, relations). The first pass then skips the leading
-//! blobs that look like nodes, and the second pass verifies that they hold nothing else.
+//! that kept ways name. Before them, a pass over the blobs with relations takes the multipolygons of the backdrop, whose ways have no tags
+//! of their own. Most files claim to be sorted (nodes, ways, relations). The passes then skip the leading blobs that look as if they
+//! held nothing for them, and a later pass verifies that.
 //!
 //! `wire` reads bulk data (ways, dense nodes) in place. Headers, plain nodes and relations are read through the
 //! messages of `osmpbfreader`, after `wire` has checked what those messages do not check.
 
 mod account;
+mod backdrop;
 mod block;
 pub mod copy;
 mod error;
@@ -26,6 +28,7 @@ pub mod write;
 use std::path::Path;
 
 pub use account::{NodeTally, ReadAccount};
+pub use backdrop::BackdropTally;
 pub use error::{ObjectId, Problem, ReadError};
 pub use header::HeaderInfo;
 pub use relations::RelationTally;
@@ -37,6 +40,7 @@ use crate::osm::{
     facts::{self, PointFacts, Tags, WayDraft},
 };
 
+use backdrop::AreaGatherer;
 use block::Block;
 use frame::{Frame, Kind, Source};
 use gather::{NodeGatherer, WayGatherer};
@@ -130,12 +134,12 @@ where
     let (frames, hash) = source.frames(|done| progress(Progress { stage: Stage::Check, done, total }))?;
     let header = read_headers(&mut source, &frames)?;
     let data: Vec<Frame> = frames.iter().copied().filter(|frame| frame.kind == Kind::Data).collect();
-    let node_blobs = if header.sorted { leading_node_blobs(&mut source, &data)? } else { 0 };
+    let leading = if header.sorted { Leading::find(&mut source, &data)? } else { Leading::default() };
     let mut reading = Reading { source, data, changes, progress, way, point };
-    let mut extract = match reading.run(node_blobs)? {
+    let mut extract = match reading.run(leading)? {
         Some(extract) => extract,
-        // The header's claim was wrong: read every blob in the first pass.
-        None => reading.run(0)?.unwrap_or_default(),
+        // The header's claim was wrong: read every blob on every pass.
+        None => reading.run(Leading::default())?.unwrap_or_default(),
     };
     reading.source.check_unchanged()?;
     let account = &mut extract.account;
@@ -173,13 +177,30 @@ fn read_headers(source: &mut Source, frames: &[Frame]) -> Result<HeaderInfo, Rea
     first.ok_or_else(|| source.error(None, Problem::NoHeader))
 }
 
-/// Number of leading node blobs in a file that is sorted as claimed, found by bisection.
-fn leading_node_blobs(source: &mut Source, data: &[Frame]) -> Result<usize, ReadError> {
+/// Numbers of leading blobs in a file that is sorted as claimed.
+#[derive(Debug, Clone, Copy, Default)]
+struct Leading {
+    /// Those that hold nodes only.
+    nodes: usize,
+    /// Those that hold no relation.
+    no_relations: usize,
+}
+
+impl Leading {
+    fn find(source: &mut Source, data: &[Frame]) -> Result<Self, ReadError> {
+        let nodes = leading(source, data, nodes::only_nodes)?;
+        let rest = data.get(nodes..).unwrap_or_default();
+        Ok(Self { nodes, no_relations: nodes + leading(source, rest, backdrop::no_relations)? })
+    }
+}
+
+/// Number of leading blobs for which `holds`, found by bisection.
+fn leading(source: &mut Source, data: &[Frame], holds: fn(&[u8]) -> Result<bool, Problem>) -> Result<usize, ReadError> {
     let (mut low, mut high) = (0, data.len());
     while low < high {
         let middle = low.midpoint(high);
         let Some(frame) = data.get(middle) else { break };
-        if with_block(source, frame, nodes::only_nodes)? {
+        if with_block(source, frame, holds)? {
             low = middle + 1;
         } else {
             high = middle;
@@ -217,40 +238,64 @@ where
     W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str> + Sync,
     P: Fn(&Tags<'_>) -> Option<PointFacts> + Sync,
 {
-    /// Runs both passes. The first pass skips the first `node_blobs` blobs. `None` if those hold more than nodes.
-    fn run(&mut self, node_blobs: usize) -> Result<Option<Extract>, ReadError> {
+    /// Runs all passes. `None` if the `leading` blobs hold more than they should.
+    fn run(&mut self, leading: Leading) -> Result<Option<Extract>, ReadError> {
+        let changed = write::blocks_of(self.changes);
+        let mut areas = AreaGatherer::default();
+        let read_areas = |bytes: &[u8]| backdrop::areas(&Block::parse(bytes)?, self.changes);
+        let take_areas = |_: Frame, _: Compression, batch| {
+            areas.add(batch);
+            Ok(())
+        };
+        let with_relations = self.data.get(leading.no_relations..).unwrap_or_default();
+        pass::run(&mut self.source, with_relations, read_areas, take_areas, |_| ())?;
+        for block in &changed {
+            let batch = Block::parse(block).and_then(|block| backdrop::areas(&block, &Changes::default()));
+            areas.add(batch.map_err(|problem| self.source.error(None, problem))?);
+        }
+        let members = areas.members();
+
         let mut account = ReadAccount::default();
-        let (presumed, rest) = self.data.split_at_checked(node_blobs).unwrap_or_default();
+        let (presumed, rest) = self.data.split_at_checked(leading.nodes).unwrap_or_default();
         let mut with_nodes = presumed.to_vec();
         let mut ways = WayGatherer::default();
-        let read_ways = |bytes: &[u8]| ways::read(&Block::parse(bytes)?, &self.way, self.changes);
+        let mut mistaken = false;
+        let mut without_relations = leading.no_relations - presumed.len();
+        let read_ways = |bytes: &[u8]| ways::read(&Block::parse(bytes)?, &self.way, &members, self.changes);
         let take_ways = |frame: Frame, compression: Compression, batch: ways::WayBatch| {
             *account.blobs.entry(compression.name()).or_default() += 1;
             if batch.has_nodes {
                 with_nodes.push(frame);
             }
+            if without_relations > 0 {
+                without_relations -= 1;
+                mistaken |= batch.relations.found;
+            }
             ways.add(batch)
         };
         pass::run(&mut self.source, rest, read_ways, take_ways, report(self.progress, Stage::Ways, rest))?;
-        let changed = write::blocks_of(self.changes);
+        if mistaken {
+            return Ok(None);
+        }
         for block in &changed {
-            let batch = Block::parse(block).and_then(|block| ways::read(&block, &self.way, &Changes::default()));
+            let read = |block: Block<'_>| ways::read(&block, &self.way, &members, &Changes::default());
+            let batch = Block::parse(block).and_then(read);
             batch.and_then(|batch| ways.add(batch)).map_err(|problem| self.source.error(None, problem))?;
         }
         ways.finish();
 
-        let ids = ways.node_ids();
-        let mut nodes = NodeGatherer::new(ids.len());
-        let mut mistaken = false;
-        let mut presumed_left = node_blobs;
-        let read_nodes = |bytes: &[u8]| nodes::read(&Block::parse(bytes)?, &ids, &self.point, self.changes);
+        let (ids, backdrop_ids) = (ways.node_ids(), ways.backdrop_node_ids());
+        let wanted = nodes::Ids { named: &ids, backdrop: &backdrop_ids };
+        let mut nodes = NodeGatherer::new(ids.len(), backdrop_ids.len());
+        let mut presumed_left = presumed.len();
+        let read_nodes = |bytes: &[u8]| nodes::read(&Block::parse(bytes)?, wanted, &self.point, self.changes);
         let take_nodes = |_: Frame, compression: Compression, batch: nodes::NodeBatch| {
             if presumed_left > 0 {
                 presumed_left -= 1;
                 mistaken |= batch.has_others;
                 *account.blobs.entry(compression.name()).or_default() += 1;
             }
-            nodes.add(&batch);
+            nodes.add(batch);
             Ok(())
         };
         pass::run(
@@ -265,9 +310,14 @@ where
         }
         for block in &changed {
             let block = Block::parse(block);
-            let batch = block.and_then(|block| nodes::read(&block, &ids, &self.point, &Changes::default()));
-            nodes.add(&batch.map_err(|problem| self.source.error(None, problem))?);
+            let batch = block.and_then(|block| nodes::read(&block, wanted, &self.point, &Changes::default()));
+            nodes.add(batch.map_err(|problem| self.source.error(None, problem))?);
         }
+        let of_backdrop = nodes.backdrop(backdrop_ids, &ways.inline_places);
+        let places = std::mem::take(&mut nodes.place_nodes);
+        let (backdrop, tally) = areas.finish(std::mem::take(&mut ways.backdrop), places, &of_backdrop);
+        drop(of_backdrop);
+        account.backdrop = tally;
         let (nodes, points, tally) = nodes.finish(ids, &ways.inline_places);
         account.ways_read = ways.read;
         account.ways_kept = ways.ways.len() as u64;
@@ -284,6 +334,7 @@ where
             nodes,
             points,
             areas: ways.areas,
+            backdrop,
             restrictions: ways.relations.restrictions,
             strings: ways.strings,
             account,

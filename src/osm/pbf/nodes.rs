@@ -8,10 +8,11 @@ use protobuf::Message;
 use crate::osm::{
     LonLat,
     changes::{Changes, Kind},
-    facts::{PointFacts, Tags},
+    facts::{PointFacts, Tags, place_of},
 };
 
 use super::{
+    backdrop::PlaceNode,
     block::{self, Block},
     error::{ObjectId, Problem},
     wire::{self, Cursor, Packed, Shape},
@@ -32,14 +33,26 @@ pub(super) struct NodeBatch {
     pub(super) hits: Vec<Hit>,
     /// Facts of named nodes with tags: index in `hits` (ascending) and the facts.
     pub(super) points: Vec<(u32, PointFacts)>,
+    /// Nodes of the backdrop's ways, by their own table.
+    pub(super) backdrop: Vec<Hit>,
+    pub(super) place_nodes: Vec<PlaceNode>,
     pub(super) read: u64,
     pub(super) deleted: u64,
     /// Whether the block also holds ways or relations.
     pub(super) has_others: bool,
 }
 
-/// Reads the nodes of a block. `ids` are the named nodes, sorted and distinct. Nodes that are `changed` are passed over.
-pub(super) fn read<P>(block: &Block<'_>, ids: &[i64], facts: &P, changed: &Changes) -> Result<NodeBatch, Problem>
+/// The ids of the nodes to keep, each list sorted and distinct.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Ids<'n> {
+    /// Those that kept ways name.
+    pub(super) named: &'n [i64],
+    /// Those that ways of the backdrop name.
+    pub(super) backdrop: &'n [i64],
+}
+
+/// Reads the nodes of a block. Nodes that are `changed` are passed over.
+pub(super) fn read<P>(block: &Block<'_>, ids: Ids<'_>, facts: &P, changed: &Changes) -> Result<NodeBatch, Problem>
 where
     P: Fn(&Tags<'_>) -> Option<PointFacts>,
 {
@@ -47,7 +60,8 @@ where
         block,
         facts,
         changed,
-        named: Named { ids, at: 0 },
+        named: Named { ids: ids.named, at: 0 },
+        backdrop: Named { ids: ids.backdrop, at: 0 },
         tags: Vec::new(),
         batch: NodeBatch::default(),
     };
@@ -128,6 +142,7 @@ struct NodeReader<'b, 'a, P> {
     facts: &'b P,
     changed: &'b Changes,
     named: Named<'b>,
+    backdrop: Named<'b>,
     tags: Vec<(&'a str, &'a str)>,
     batch: NodeBatch,
 }
@@ -136,18 +151,29 @@ impl<P> NodeReader<'_, '_, P>
 where
     P: Fn(&Tags<'_>) -> Option<PointFacts>,
 {
-    /// Counts a node. Returns its index if it is named and part of the map.
+    /// Counts a node, whose tags are in `self.tags`, and takes what is kept of it.
     #[inline]
-    fn count(&mut self, id: i64, visible: bool) -> Option<u32> {
+    fn node(&mut self, id: i64, visible: bool, (lat, lon): (i64, i64)) {
         if self.changed.has(Kind::Node, id) {
-            return None;
+            return;
         }
         self.batch.read += 1;
-        if visible {
-            return self.named.index(id);
+        if !visible {
+            self.batch.deleted += 1;
+            return;
         }
-        self.batch.deleted += 1;
-        None
+        if let Some(index) = self.named.index(id) {
+            self.take(index, self.block.grid.place(lat, lon));
+        }
+        if let Some(index) = self.backdrop.index(id) {
+            self.batch.backdrop.push(Hit { index, place: self.block.grid.place(lat, lon) });
+        }
+        if !self.tags.is_empty()
+            && let Some((kind, name)) = place_of(&self.tags)
+            && let Some(place) = self.block.grid.place(lat, lon)
+        {
+            self.batch.place_nodes.push(PlaceNode { id, kind, name: name.into(), place });
+        }
     }
 
     /// Takes a named node, whose tags are in `self.tags`.
@@ -176,9 +202,7 @@ where
             self.tags.push((strings.text(key.into(), object)?, strings.text(value.into(), object)?));
         }
         let visible = node.info.as_ref().is_none_or(|info| info.visible.unwrap_or(true));
-        if let Some(index) = self.count(node.id(), visible) {
-            self.take(index, self.block.grid.place(node.lat(), node.lon()));
-        }
+        self.node(node.id(), visible, (node.lat(), node.lon()));
         Ok(())
     }
 
@@ -197,9 +221,7 @@ where
                 self.dense_tags(&mut keys_values, object)?;
             }
             let visible = !known_visible || visibles.varint()? != 0;
-            if let Some(index) = self.count(id, visible) {
-                self.take(index, self.block.grid.place(lat, lon));
-            }
+            self.node(id, visible, (lat, lon));
         }
         let object = ObjectId::DenseNodes;
         if !(ids.is_empty() && lats.is_empty() && lons.is_empty()) {

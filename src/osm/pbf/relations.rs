@@ -6,10 +6,11 @@ use osmpbfreader::osmformat::{Relation, relation::MemberType};
 use protobuf::Message;
 
 use crate::osm::changes::{Changes, Kind};
-use crate::osm::facts::{NoRule, TurnRule, turn_rules};
+use crate::osm::facts::{BackdropForm, NoRule, TurnRule, backdrop_kind, turn_rules};
 use crate::osm::{Restriction, Via};
 
 use super::{
+    backdrop::AreaRelation,
     block::Strings,
     error::{ObjectId, Problem},
     wire::{self, Shape},
@@ -57,19 +58,22 @@ impl RelationTally {
 /// Results from a block's relations.
 #[derive(Debug, Default)]
 pub(super) struct RelationBatch {
+    /// Whether there was any relation at all.
+    pub(super) found: bool,
     pub(super) tally: RelationTally,
     pub(super) restrictions: Vec<Restriction>,
     /// `via` nodes of whole restrictions, for any vehicle.
     pub(super) vias: Vec<i64>,
 }
 
-/// Checks and counts one relation, and keeps it if it restricts turns of heavy goods vehicles. One that is `changed` is passed over.
-pub(super) fn read(
-    message: &[u8],
-    strings: &Strings<'_>,
-    changed: &Changes,
-    batch: &mut RelationBatch,
-) -> Result<(), Problem> {
+/// A relation whose message was checked, and its tags.
+struct Checked<'a> {
+    relation: Relation,
+    object: ObjectId,
+    tags: Vec<(&'a str, &'a str)>,
+}
+
+fn checked<'a>(message: &[u8], strings: &Strings<'a>) -> Result<Checked<'a>, Problem> {
     use Shape::{Bytes, Number, Numbers};
     wire::check(
         message,
@@ -88,6 +92,37 @@ pub(super) fn read(
     for (&key, &value) in relation.keys.iter().zip(&relation.vals) {
         tags.push((strings.text(key.into(), object)?, strings.text(value.into(), object)?));
     }
+    Ok(Checked { relation, object, tags })
+}
+
+/// The multipolygon that a relation is, if its tags make it part of the backdrop and it is not `changed`.
+pub(super) fn area(message: &[u8], strings: &Strings<'_>, changed: &Changes) -> Result<Option<AreaRelation>, Problem> {
+    let Checked { relation, object, tags } = checked(message, strings)?;
+    let value = |wanted: &str| tags.iter().find(|(key, _)| *key == wanted).map(|tag| tag.1);
+    if value("type") != Some("multipolygon") || changed.has(Kind::Relation, relation.id()) {
+        return Ok(None);
+    }
+    let Some(kind) = backdrop_kind(&tags).filter(|kind| kind.form() == BackdropForm::Area) else { return Ok(None) };
+    let mut members = Vec::new();
+    let mut member = 0;
+    for ((&difference, kind), &role) in relation.memids.iter().zip(&relation.types).zip(&relation.roles_sid) {
+        super::block::add(&mut member, difference, object, "a member")?;
+        if kind.enum_value() == Ok(MemberType::WAY) {
+            members.push((member, strings.text(role as u64, object)? == "inner"));
+        }
+    }
+    Ok(Some(AreaRelation { id: relation.id(), kind, name: value("name").map(Into::into), members }))
+}
+
+/// Checks and counts one relation, and keeps it if it restricts turns of heavy goods vehicles. One that is `changed` is passed over.
+pub(super) fn read(
+    message: &[u8],
+    strings: &Strings<'_>,
+    changed: &Changes,
+    batch: &mut RelationBatch,
+) -> Result<(), Problem> {
+    let Checked { relation, object, tags } = checked(message, strings)?;
+    batch.found = true;
     let members = Members::of(&relation, strings, object)?;
     if changed.has(Kind::Relation, relation.id()) {
         return Ok(());

@@ -9,10 +9,11 @@ use std::collections::BTreeMap;
 use crate::osm::{
     LonLat, RoadArea, StringPool,
     changes::{Changes, Kind},
-    facts::{self, Tags, WayDraft, WayFacts},
+    facts::{self, BackdropForm, BackdropKind, Tags, WayDraft, WayFacts},
 };
 
 use super::{
+    backdrop::BackdropWay,
     block::{self, Block},
     error::{ObjectId, Problem},
     relations::{self, RelationBatch},
@@ -44,6 +45,8 @@ pub(super) struct WayBatch {
     pub(super) strings: StringPool,
     /// Ways left out as roads that map the surface of a road.
     pub(super) areas: Vec<RoadArea>,
+    /// Ways of the backdrop, roads or not.
+    pub(super) backdrop: Vec<BackdropWay>,
     /// Ways left out: the number of kept ways before it, and its id.
     pub(super) left_out: Vec<(u32, i64)>,
     pub(super) reasons: BTreeMap<&'static str, u64>,
@@ -57,12 +60,13 @@ pub(super) struct WayBatch {
     pub(super) relations: RelationBatch,
 }
 
-/// Reads the ways and relations of a block. Those that are `changed` are passed over.
-pub(super) fn read<W>(block: &Block<'_>, facts: &W, changed: &Changes) -> Result<WayBatch, Problem>
+/// Reads the ways and relations of a block. Those that are `changed` are passed over. `members` are the sorted ids of ways that
+/// multipolygons of the backdrop name.
+pub(super) fn read<W>(block: &Block<'_>, facts: &W, members: &[i64], changed: &Changes) -> Result<WayBatch, Problem>
 where
     W: for<'t> Fn(&Tags<'t>) -> Result<WayDraft<'t>, &'static str>,
 {
-    let mut reader = WayReader { block, facts, tags: Vec::new(), batch: WayBatch::default(), entities: 0 };
+    let mut reader = WayReader { block, facts, members, tags: Vec::new(), batch: WayBatch::default(), entities: 0 };
     reader.batch.ascending = true;
     for group in &block.groups {
         let mut cursor = Cursor::new(group);
@@ -90,6 +94,7 @@ where
 struct WayReader<'b, 'a, W> {
     block: &'b Block<'a>,
     facts: &'b W,
+    members: &'b [i64],
     tags: Vec<(&'a str, &'a str)>,
     batch: WayBatch,
     entities: usize,
@@ -111,6 +116,9 @@ where
         let start = self.batch.refs.len();
         self.references(way, object)?;
         let refs = self.batch.refs.len() - start;
+        if !way.deleted {
+            self.backdrop(way, start, object)?;
+        }
         let draft = if way.deleted {
             Err(DELETED)
         } else if refs < 2 {
@@ -139,6 +147,25 @@ where
                 *self.batch.reasons.entry(reason).or_default() += 1;
             }
         }
+        Ok(())
+    }
+
+    /// Keeps a way as part of the backdrop, if it is. Its references begin at `start`.
+    fn backdrop(&mut self, way: &RawWay<'_>, start: usize, object: ObjectId) -> Result<(), Problem> {
+        let refs = self.batch.refs.get(start..).unwrap_or_default();
+        let fits = |kind: &BackdropKind| match kind.form() {
+            BackdropForm::Area => refs.len() >= 4 && refs.first() == refs.last(),
+            BackdropForm::Line => refs.len() >= 2,
+            BackdropForm::Place => false,
+        };
+        let kind = facts::backdrop_kind(&self.tags).filter(fits);
+        if kind.is_none() && self.members.binary_search(&way.id).is_err() {
+            return Ok(());
+        }
+        let name = self.tags.iter().find(|tag| kind.is_some() && tag.0 == "name").map(|tag| tag.1.into());
+        let refs = refs.to_vec();
+        self.inline_places(way, object)?;
+        self.batch.backdrop.push(BackdropWay { id: way.id, kind, name, refs });
         Ok(())
     }
 

@@ -10,7 +10,7 @@ use super::super::app::{App, Pace};
 use super::super::ask::Ask;
 use super::super::options::Options;
 use super::super::region::Region;
-use super::super::tiles::MOST_ZOOM;
+use super::super::tiles::{MOST_ZOOM, backdrop};
 use super::{SCOPE, answered, changes};
 use crate::osm::facts::Policy;
 use crate::rows::Bounds;
@@ -61,6 +61,10 @@ fn members(region: &Region, focus: Option<Bounds>, options: &Options) -> Value {
         "vehicles_certified": certified,
         "tiles": format!("/tiles/{{policy}}/{{vehicle}}/{{z}}/{{x}}/{{y}}.mvt?state={}", region.state),
         "max_zoom": MOST_ZOOM,
+        "backdrop": region.backdrop.then(|| json!({
+            "tiles": format!("/backdrop/{{z}}/{{x}}/{{y}}.mvt?state={}", region.state),
+            "max_zoom": backdrop::MOST_ZOOM,
+        })),
         "base_map": options.base_map.as_ref().map(|map| json!({"url": map.url, "attribution": map.attribution})),
         "before": region.older.as_ref().map(|older| changes::members(older, region)),
         "scope": SCOPE,

@@ -105,6 +105,11 @@ impl Layer {
         }
     }
 
+    /// Adds a feature of one point.
+    pub(super) fn point(&mut self, id: Option<u64>, point: [i32; 2], tag: impl FnOnce(&mut Tags<'_>)) {
+        self.any(id, POINT, (&[vec![point]], false), tag);
+    }
+
     /// Adds a feature of polygons, given as open rings: outer rings run clockwise on the screen, holes counter-clockwise and after
     /// their outer ring. Adds nothing if `rings` is empty.
     pub(super) fn polygons(&mut self, id: Option<u64>, rings: &[Vec<[i32; 2]>], tag: impl FnOnce(&mut Tags<'_>)) {
@@ -212,6 +217,7 @@ const VARINT: u64 = 0;
 const FIXED_64: u64 = 1;
 const LENGTH: u64 = 2;
 /// Types of geometries.
+const POINT: u64 = 1;
 const LINESTRING: u64 = 2;
 const POLYGON: u64 = 3;
 
@@ -237,7 +243,7 @@ fn zigzag(value: i64) -> u64 {
     (value << 1 ^ value >> 63) as u64
 }
 
-/// The commands of the lines: for each line one `MoveTo` (1), then one `LineTo` (2) for the other points, then `ClosePath` (7) for
+/// The commands of the lines: for each line one `MoveTo` (1), then one `LineTo` (2) for the other points, if any, then `ClosePath` (7) for
 /// rings. Parameters are differences between points (section 4.3).
 fn geometry(out: &mut Vec<u8>, lines: &[Vec<[i32; 2]>], closed: bool) {
     let mut cursor = [0_i32; 2];
@@ -251,7 +257,9 @@ fn geometry(out: &mut Vec<u8>, lines: &[Vec<[i32; 2]>], closed: bool) {
         let Some((first, rest)) = line.split_first() else { continue };
         varint(out, 1 << 3 | 1);
         go(out, *first);
-        varint(out, (rest.len() as u64) << 3 | 2);
+        if !rest.is_empty() {
+            varint(out, (rest.len() as u64) << 3 | 2);
+        }
         rest.iter().for_each(|&point| go(out, point));
         if closed {
             varint(out, 1 << 3 | 7);
@@ -269,6 +277,12 @@ mod tests {
         let mut out = Vec::new();
         super::geometry(&mut out, lines, closed);
         out
+    }
+
+    /// The example in section 4.3.5.1 of the specification: (25,17).
+    #[test]
+    fn a_point_is_the_specifications_example() {
+        assert_eq!(geometry(&[vec![[25, 17]]], false), [9, 50, 34]);
     }
 
     /// The example in section 4.3.5.3 of the specification: (2,2) (2,10) (10,10), then (1,1) (3,5).

@@ -64,6 +64,12 @@ impl Place {
         [corner(x - beyond, y - beyond), corner(x + 1.0 + beyond, y + 1.0 + beyond)]
     }
 
+    /// So many units of the tile, in degrees of latitude.
+    pub(super) fn degrees_of(self, units: f64) -> f64 {
+        let Bounds { south, north, .. } = self.bounds();
+        units / EXTENT * 360.0 / self.side() * (0.5 * (south + north)).to_radians().cos()
+    }
+
     /// The box of the tile and its buffer, degrees. The box ends at the 180th meridian, because no edge crosses it.
     pub(super) fn bounds(self) -> Bounds {
         let lon = |x: f64| (x * 360.0 - 180.0).clamp(-180.0, 180.0);

@@ -14,8 +14,10 @@
 //! | `raster` | joins lines on a raster; each piece shows the worst verdict that falls on it |
 //! | `near` | the edges near a tile, from memory or from the file |
 //! | `labels` | lines for the names of roads |
+//! | `backdrop` | what lies behind the roads |
 //! | `encode` | layers and features as protobuf |
 
+pub(super) mod backdrop;
 mod classes;
 mod encode;
 mod grid;

@@ -9,7 +9,7 @@ type Point = [f64; 2];
 
 /// The greatest distance of the drawn line from the true line, units. Two units are a quarter of a pixel of a tile of 512
 /// pixels.
-const TOLERANCE: f64 = 2.0;
+pub(super) const TOLERANCE: f64 = 2.0;
 /// The tolerance at the deepest zoom, which clients enlarge. Rounding alone moves points by as much.
 const FINE_TOLERANCE: f64 = 0.5;
 

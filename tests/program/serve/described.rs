@@ -197,6 +197,7 @@ fn asked(server: &Server) -> Vec<(String, String)> {
     add("/api/road", format!("/api/road?way={}&vehicle={VEHICLE}", safe.way_id));
     add("/api/road", format!("/api/road?way={}", safe.way_id));
     add("/api/search", format!("/api/search?q={}", safe.edge_id));
+    add("/backdrop/{z}/{x}/{y}.mvt", "/backdrop/0/0/0.mvt".to_owned());
     add("/tiles/{policy}/{vehicle}/{z}/{x}/{y}.mvt", format!("/tiles/lane/{VEHICLE}/0/0/0.mvt"));
     asked
 }

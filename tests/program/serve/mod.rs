@@ -3,6 +3,7 @@
 //! The tests cover its answers, its refusals, and its behaviour under load and when it is stopped.
 
 mod answers;
+mod backdrop;
 mod caching;
 mod changes;
 mod conditional;

@@ -23,6 +23,8 @@ export interface Region {
   /** Template of the tiles' address, with `{policy}` and `{vehicle}`; it changes when the database does. */
   tiles: string;
   max_zoom: number;
+  /** Tiles of woods, water and places; `null` if the extract has none. */
+  backdrop: { tiles: string; max_zoom: number } | null;
   left_hand_traffic?: boolean;
   base_map: { url: string; attribution: string } | null;
   /** The older database that the server was started with. */

@@ -33,6 +33,9 @@ export const missingSteps: readonly Step[] = [
 export interface Palette {
   outside: string;
   paper: string;
+  /** What lies behind the roads: greyer and paler than any verdict. */
+  wood: string;
+  water: string;
   casing: string;
   ink: string;
   halo: string;
@@ -65,6 +68,8 @@ export const palettes: Record<Theme, Palette> = {
   light: {
     outside: "#e9e7e1",
     paper: "#f7f5f0",
+    wood: "#eaede0",
+    water: "#d3dee4",
     casing: "#f7f5f0",
     ink: "#1b1f24",
     halo: "#fbfaf7",
@@ -90,6 +95,8 @@ export const palettes: Record<Theme, Palette> = {
   dark: {
     outside: "#0e1013",
     paper: "#15181c",
+    wood: "#191f1c",
+    water: "#1b252c",
     casing: "#15181c",
     ink: "#e8eaed",
     halo: "#15181c",

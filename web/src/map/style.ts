@@ -14,6 +14,7 @@ import type { Region, VerdictName } from "../api/types.ts";
 import { complete, type State } from "../state.ts";
 import { h } from "../ui/dom.ts";
 import { CLASSES, EVIDENCE } from "../words.ts";
+import { backdropSource, ground as behind, places } from "./backdrop.ts";
 import { labels } from "./labels.ts";
 import { EDGE_ZOOM, REAL_ZOOM, offset, pixelsPerMetre, width, type Ground, type Numeric } from "./lines.ts";
 import { evidenceColours, missingSteps, palettes, reasonColours, roomSteps, type Palette, type Theme } from "./palette.ts";
@@ -239,12 +240,14 @@ export function style(state: State, ground: Ground): StyleSpecification {
     sources: {
       roads: { type: "vector", tiles: [tilesUrl], maxzoom: region.max_zoom, bounds: region.bbox, attribution: region.attribution },
       outside: { type: "geojson", data: extent(region.bbox) },
+      ...(base ? {} : backdropSource(region)),
       [OUTLINE]: { type: "geojson", data: { type: "FeatureCollection", features: [] } },
       ...(base ? { base: { type: "raster", tiles: [base.url], tileSize: 256, attribution: plain(base.attribution) } } : {}),
     },
     layers: [
       { id: "paper", type: "background", paint: { "background-color": palette.paper } },
       ...(base ? [{ id: "base", type: "raster", source: "base", paint: { "raster-opacity": 0.45, "raster-saturation": -0.7 } } as LayerSpecification] : []),
+      ...(base ? [] : behind(region, palette)),
       { id: "outside", type: "fill", source: "outside", paint: { "fill-color": palette.outside, "fill-opacity": base ? 0.4 : 1 } },
       // At low zooms the box keeps a small region from being lost.
       { id: "region", type: "line", source: "outside", maxzoom: 9, paint: { "line-color": palette.soft, "line-width": 2 } },
@@ -264,6 +267,7 @@ export function style(state: State, ground: Ground): StyleSpecification {
       highlight("selected-turn", "turn", palette, ground),
       ...each(turn),
       ...labels(palette, theme),
+      ...(base ? [] : places(region, palette)),
     ],
   };
 }

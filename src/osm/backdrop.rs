@@ -1,0 +1,162 @@
+//! Things behind the roads as shapes: ways of multipolygons joined into rings, and lines without points that no map shows.
+
+use geo::{Contains as _, Coord, LineString, Point, Polygon, SimplifyIdx as _};
+use rustc_hash::FxHashMap;
+use serde::{Deserialize, Serialize};
+
+use super::changes::Kind;
+use super::extract::LonLat;
+use super::facts::BackdropKind;
+
+/// A thing behind the roads.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Backdrop {
+    /// What it is.
+    pub kind: BackdropKind,
+    /// The object in OpenStreetMap.
+    pub object: (Kind, i64),
+    /// Its name, if it has one.
+    pub name: Option<Box<str>>,
+    /// Where it is.
+    pub shape: BackdropShape,
+}
+
+/// The shape of a thing behind the roads, within two metres of the map.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum BackdropShape {
+    /// Polygons, each with its outer ring first. Rings are closed.
+    Areas(Vec<Vec<Vec<LonLat>>>),
+    /// Lines of at least two positions.
+    Lines(Vec<Vec<LonLat>>),
+    /// A position.
+    Place(LonLat),
+}
+
+/// The greatest distance of a shape from the map's, metres.
+const TOLERANCE_M: f64 = 2.0;
+/// Areas that are smaller in both directions are left out, metres: four pixels at the deepest zoom that shows them.
+const LEAST_SIDE_M: f64 = 10.0;
+const METRES_PER_E7: f64 = 0.011_131_949;
+
+/// The rings that ways form, end to end; `None` if some do not close. Ways are node ids.
+pub(super) fn rings(ways: &[&[i64]]) -> Option<Vec<Vec<i64>>> {
+    let mut at_end: FxHashMap<i64, Vec<usize>> = FxHashMap::default();
+    for (number, way) in ways.iter().enumerate() {
+        for end in [way.first(), way.last()].into_iter().flatten() {
+            at_end.entry(*end).or_default().push(number);
+        }
+    }
+    let mut rings = Vec::new();
+    let mut used = vec![false; ways.len()];
+    for (number, way) in ways.iter().enumerate() {
+        if way.is_empty() || std::mem::replace(&mut used[number], true) {
+            continue;
+        }
+        let mut chain = way.to_vec();
+        while let (Some(first), Some(last)) = (chain.first(), chain.last())
+            && first != last
+        {
+            let next = at_end.get(last).and_then(|ends| ends.iter().copied().find(|&next| !used[next]));
+            let Some(next) = next else { break };
+            used[next] = true;
+            let next = ways[next];
+            if next.first() == Some(last) {
+                chain.extend_from_slice(&next[1..]);
+            } else {
+                chain.extend(next.iter().rev().skip(1));
+            }
+        }
+        if chain.len() < 4 || chain.first() != chain.last() {
+            return None;
+        }
+        rings.push(chain);
+    }
+    Some(rings)
+}
+
+/// Polygons of outer rings and the holes within them. A hole in no outer ring is left out, and so is a polygon that is too small to be
+/// seen.
+pub(super) fn polygons(outer: Vec<Vec<LonLat>>, inner: &[Vec<LonLat>]) -> Vec<Vec<Vec<LonLat>>> {
+    let plane = |ring: &Vec<LonLat>| Polygon::new(line_of(ring), Vec::new());
+    let outlines: Vec<Polygon> = outer.iter().map(plane).collect();
+    let mut polygons: Vec<Vec<Vec<LonLat>>> = outer.into_iter().map(|ring| vec![ring]).collect();
+    for hole in inner {
+        let within = |outline: &Polygon| hole.iter().any(|&vertex| outline.contains(&Point(coord(vertex))));
+        if let Some(polygon) = outlines.iter().position(within).and_then(|at| polygons.get_mut(at)) {
+            polygon.push(hole.clone());
+        }
+    }
+    for polygon in &mut polygons {
+        let mut first = true;
+        polygon.iter_mut().for_each(|ring| *ring = simplified(ring));
+        polygon.retain(|ring| std::mem::take(&mut first) || is_seen(ring));
+    }
+    polygons.retain(|polygon| polygon.first().is_some_and(|outer| is_seen(outer)));
+    polygons
+}
+
+fn is_seen(ring: &[LonLat]) -> bool {
+    let Some(first) = ring.first().filter(|_| ring.len() >= 4) else { return false };
+    let scale = east_scale(*first);
+    let span = |of: fn(&LonLat) -> i32| {
+        let (low, high) = ring.iter().map(of).fold((i32::MAX, i32::MIN), |(low, high), at| (low.min(at), high.max(at)));
+        (f64::from(high) - f64::from(low)) * METRES_PER_E7
+    };
+    (span(|p| p.lon_e7) * scale).max(span(|p| p.lat_e7)) >= LEAST_SIDE_M
+}
+
+/// The line without vertices that are closer than [`TOLERANCE_M`] to what is left.
+pub(super) fn simplified(line: &[LonLat]) -> Vec<LonLat> {
+    let Some(first) = line.first() else { return Vec::new() };
+    let scale = east_scale(*first);
+    let plane: LineString =
+        line.iter().map(|&p| Coord { x: f64::from(p.lon_e7) * scale, y: f64::from(p.lat_e7) }).collect();
+    plane.simplify_idx(TOLERANCE_M / METRES_PER_E7).into_iter().filter_map(|at| line.get(at).copied()).collect()
+}
+
+fn east_scale(at: LonLat) -> f64 {
+    at.degrees().1.to_radians().cos()
+}
+
+fn coord(position: LonLat) -> Coord {
+    Coord { x: f64::from(position.lon_e7), y: f64::from(position.lat_e7) }
+}
+
+fn line_of(ring: &[LonLat]) -> LineString {
+    ring.iter().map(|&position| coord(position)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ways_form_rings_whatever_their_directions() {
+        let found = rings(&[&[1, 2, 3], &[7, 8, 9, 7], &[1, 5, 4], &[3, 4]]);
+        assert_eq!(found, Some(vec![vec![1, 2, 3, 4, 5, 1], vec![7, 8, 9, 7]]));
+        assert_eq!(rings(&[&[7, 8, 9, 7], &[20, 21, 22]]), None);
+        assert_eq!(rings(&[]), Some(vec![]));
+    }
+
+    #[test]
+    fn a_hole_is_in_the_outline_around_it() {
+        let square = |from: i32, to: i32| {
+            [(from, from), (to, from), (to, to), (from, to), (from, from)]
+                .map(|(lon_e7, lat_e7)| LonLat { lon_e7, lat_e7 })
+                .to_vec()
+        };
+        let found = polygons(
+            vec![square(0, 10_000), square(20_000, 40_000), square(50_000, 50_100)],
+            &[square(25_000, 30_000), square(90_000, 99_000), square(26_000, 26_010)],
+        );
+        // The third outline is a metre wide, and so is the last hole; the second hole is nowhere.
+        assert_eq!(found, [vec![square(0, 10_000)], vec![square(20_000, 40_000), square(25_000, 30_000)]]);
+    }
+
+    #[test]
+    fn vertices_that_nobody_sees_are_left_out() {
+        let line =
+            [(0, 0), (10_000, 150), (20_000, 0), (30_000, 5_000)].map(|(lon_e7, lat_e7)| LonLat { lon_e7, lat_e7 });
+        assert_eq!(simplified(&line), [line[0], line[2], line[3]]);
+    }
+}

@@ -1,0 +1,196 @@
+//! What lies behind the roads, gathered on the passes over the file: multipolygons first, then the ways that they or their own tags make
+//! part of the backdrop, then the nodes of those ways. None of it is part of the account of roads.
+
+use std::collections::BTreeMap;
+
+use crate::osm::backdrop::{self, Backdrop, BackdropShape};
+use crate::osm::changes::{Changes, Kind};
+use crate::osm::facts::{BackdropForm, BackdropKind};
+use crate::osm::{LonLat, NodeTable};
+
+use super::block::Block;
+use super::error::Problem;
+use super::relations;
+use super::wire::Cursor;
+
+/// Counts of the backdrop's things: `kept + incomplete + too_small + off_file` is all that was read.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct BackdropTally {
+    /// Things in the extract.
+    pub kept: u64,
+    /// Areas of which the file lacks a way or a node, or whose ways do not close.
+    pub incomplete: u64,
+    /// Areas that are too small to be seen on any map.
+    pub too_small: u64,
+    /// Lines of which the file has no two nodes in a row.
+    pub off_file: u64,
+}
+
+impl BackdropTally {
+    /// All things that were read.
+    #[must_use]
+    pub fn read(&self) -> u64 {
+        self.kept + self.incomplete + self.too_small + self.off_file
+    }
+}
+
+/// A multipolygon whose tags make it part of the backdrop.
+#[derive(Debug)]
+pub(super) struct AreaRelation {
+    pub(super) id: i64,
+    pub(super) kind: BackdropKind,
+    pub(super) name: Option<Box<str>>,
+    /// The ways, and whether each is part of a hole.
+    pub(super) members: Vec<(i64, bool)>,
+}
+
+/// A way of the backdrop. Its kind is `None` if only a multipolygon makes it part of it.
+#[derive(Debug)]
+pub(super) struct BackdropWay {
+    pub(super) id: i64,
+    pub(super) kind: Option<BackdropKind>,
+    pub(super) name: Option<Box<str>>,
+    pub(super) refs: Vec<i64>,
+}
+
+/// A node that names a place.
+#[derive(Debug)]
+pub(super) struct PlaceNode {
+    pub(super) id: i64,
+    pub(super) kind: BackdropKind,
+    pub(super) name: Box<str>,
+    pub(super) place: LonLat,
+}
+
+/// The multipolygons of a block. Those that are `changed` are passed over.
+pub(super) fn areas(block: &Block<'_>, changed: &Changes) -> Result<Vec<AreaRelation>, Problem> {
+    let mut found = Vec::new();
+    for group in &block.groups {
+        let mut cursor = Cursor::new(group);
+        while let Some(field) = cursor.field()? {
+            if field.number == 4 {
+                found.extend(relations::area(field.bytes()?, &block.strings, changed)?);
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Whether a block holds no relation, judged by the kinds of its objects.
+pub(super) fn no_relations(bytes: &[u8]) -> Result<bool, Problem> {
+    for group in Block::parse(bytes)?.groups {
+        let mut cursor = Cursor::new(group);
+        while let Some(field) = cursor.field()? {
+            if field.number == 4 {
+                return Ok(false);
+            }
+        }
+    }
+    Ok(true)
+}
+
+/// Multipolygons and the ways that they name.
+#[derive(Debug, Default)]
+pub(super) struct AreaGatherer {
+    areas: BTreeMap<i64, AreaRelation>,
+}
+
+impl AreaGatherer {
+    /// Of several with the same id, the file's last one counts.
+    pub(super) fn add(&mut self, areas: Vec<AreaRelation>) {
+        self.areas.extend(areas.into_iter().map(|area| (area.id, area)));
+    }
+
+    /// The ids of all members, sorted and distinct.
+    pub(super) fn members(&self) -> Vec<i64> {
+        let mut ids: Vec<i64> = self.areas.values().flat_map(|area| &area.members).map(|member| member.0).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        ids
+    }
+
+    /// The backdrop, sorted by kind and object. `nodes` are those of the ways.
+    pub(super) fn finish(
+        self,
+        mut ways: Vec<BackdropWay>,
+        mut places: Vec<PlaceNode>,
+        nodes: &NodeTable,
+    ) -> (Vec<Backdrop>, BackdropTally) {
+        let mut tally = BackdropTally::default();
+        let mut all = Vec::new();
+        ways.sort_by_key(|way| way.id);
+        keep_last(&mut ways, |way| way.id);
+        places.sort_by_key(|node| node.id);
+        keep_last(&mut places, |node| node.id);
+        for AreaRelation { id, kind, name, members } in self.areas.into_values() {
+            let of = |hole: bool| {
+                let known = |member: &&(i64, bool)| member.1 == hole;
+                let refs = |member: &(i64, bool)| {
+                    let at = ways.binary_search_by_key(&member.0, |way| way.id).ok()?;
+                    ways.get(at).map(|way| way.refs.as_slice())
+                };
+                let members: Vec<&[i64]> = members.iter().filter(known).map(refs).collect::<Option<_>>()?;
+                placed_rings(&backdrop::rings(&members)?, nodes)
+            };
+            if let Some(shape) = area(of(false).zip(of(true)), &mut tally) {
+                all.push(Backdrop { kind, object: (Kind::Relation, id), name, shape });
+            }
+        }
+        for BackdropWay { id, kind, name, refs } in ways {
+            let Some(kind) = kind else { continue };
+            let shape = if kind.form() == BackdropForm::Area {
+                area(placed_rings(&[refs], nodes).zip(Some(Vec::new())), &mut tally)
+            } else {
+                line(&refs, nodes, &mut tally)
+            };
+            all.extend(shape.map(|shape| Backdrop { kind, object: (Kind::Way, id), name, shape }));
+        }
+        all.extend(places.into_iter().map(|PlaceNode { id, kind, name, place }| Backdrop {
+            kind,
+            object: (Kind::Node, id),
+            name: Some(name),
+            shape: BackdropShape::Place(place),
+        }));
+        all.sort_by_key(|thing| (thing.kind, thing.object));
+        tally.kept = all.len() as u64;
+        (all, tally)
+    }
+}
+
+/// Of several in a row with the same id, the last one stays.
+fn keep_last<T>(sorted: &mut Vec<T>, id: impl Fn(&T) -> i64) {
+    sorted.dedup_by(|later, earlier| {
+        let same = id(later) == id(earlier);
+        if same {
+            std::mem::swap(later, earlier);
+        }
+        same
+    });
+}
+
+/// The rings as positions; `None` if a node is missing.
+fn placed_rings(rings: &[Vec<i64>], nodes: &NodeTable) -> Option<Vec<Vec<LonLat>>> {
+    rings.iter().map(|ring| ring.iter().map(|&id| nodes.place(id)).collect()).collect()
+}
+
+/// The shape of an area with these outlines and holes. Without one of them nobody knows what is inside.
+fn area(rings: Option<(Vec<Vec<LonLat>>, Vec<Vec<LonLat>>)>, tally: &mut BackdropTally) -> Option<BackdropShape> {
+    let Some((outer, inner)) = rings.filter(|rings| !rings.0.is_empty()) else {
+        tally.incomplete += 1;
+        return None;
+    };
+    let polygons = backdrop::polygons(outer, &inner);
+    tally.too_small += u64::from(polygons.is_empty());
+    (!polygons.is_empty()).then_some(BackdropShape::Areas(polygons))
+}
+
+/// A line has a gap where nodes are missing.
+fn line(refs: &[i64], nodes: &NodeTable, tally: &mut BackdropTally) -> Option<BackdropShape> {
+    let places: Vec<Option<LonLat>> = refs.iter().map(|&id| nodes.place(id)).collect();
+    let parts = places.split(Option::is_none).filter(|part| part.len() > 1);
+    let simplified =
+        |part: &[Option<LonLat>]| backdrop::simplified(&part.iter().flatten().copied().collect::<Vec<_>>());
+    let lines: Vec<_> = parts.map(simplified).collect();
+    tally.off_file += u64::from(lines.is_empty());
+    (!lines.is_empty()).then_some(BackdropShape::Lines(lines))
+}
