@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::bail;
 use netcert::network::Network;
-use netcert::picture::{self, SheetStyle};
+use netcert::picture::{self, SheetStyle, Units};
 use netcert::route::{Conditional, sheet_csv, sheet_geojson};
 use netcert::vehicle::Vehicle;
 
@@ -39,6 +39,6 @@ pub(super) fn text(
     Ok(match Kind::of(path)? {
         Kind::Table => sheet_csv(network, conditional),
         Kind::Geojson => sheet_geojson(network, vehicle, conditional),
-        Kind::Page => picture::sheet(network, vehicle, conditional, SheetStyle::Within),
+        Kind::Page => picture::sheet(network, vehicle, conditional, Units::Metres, SheetStyle::Within),
     })
 }

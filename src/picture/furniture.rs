@@ -1,5 +1,6 @@
 //! Dimension lines, arrows, a scale bar and a legend. Units are page units unless metres are named.
 
+use super::lengths::Units;
 use super::palette::{self, Colour};
 use super::style::{Anchor, Style, TextStyle};
 use super::svg::Picture;
@@ -69,8 +70,14 @@ pub fn callout(picture: &mut Picture, target: Point, corner: Point, lines: &[Str
 
 /// Draws a scale bar of a round number of metres, at most `most` page units long, with its left end at `at`.
 pub fn scale_bar(picture: &mut Picture, view: &View, at: Point, most: f64) {
-    let metres = round_below(most / view.scale);
-    let length = view.length(metres);
+    scale_bar_in(picture, view, at, most, Units::Metres);
+}
+
+/// As [`scale_bar`], of a round number of these units.
+pub(super) fn scale_bar_in(picture: &mut Picture, view: &View, at: Point, most: f64, units: Units) {
+    let (unit_m, name) = units.of_scale();
+    let many = round_below(most / view.scale / unit_m);
+    let length = view.length(many * unit_m);
     let [x, y] = at;
     picture.group("scale", |p| {
         p.rect(
@@ -81,7 +88,7 @@ pub fn scale_bar(picture: &mut Picture, view: &View, at: Point, most: f64) {
         p.rect(Frame { x, y: y - 5.0, width: 0.5 * length, height: 5.0 }, 0.0, Style::area(palette::INK));
         let style = TextStyle::size(12.0).haloed();
         p.text([x, y - 10.0], "0", style);
-        p.text([x + length, y - 10.0], &format!("{metres} m"), style.anchored(Anchor::Middle));
+        p.text([x + length, y - 10.0], &format!("{many} {name}"), style.anchored(Anchor::Middle));
     });
 }
 

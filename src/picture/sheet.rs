@@ -4,16 +4,19 @@
 
 use std::fmt::Write as _;
 
-use super::furniture::scale_bar;
+use super::furniture::{scale_bar, scale_bar_in};
+use super::lengths::Units;
 use super::palette;
 use super::style::{Anchor, Style, TextStyle};
 use super::svg::{Picture, escaped};
 use super::{Bounds, Frame, Point, View};
+use crate::evidence::Quantity;
 use crate::network::{Network, offset_m};
 use crate::osm::LonLat;
 use crate::osm::facts::{Direction, RoadClass};
 use crate::route::{Condition, ConditionAt, Conditional, Opens, Position, SURVEY_SCOPE, Survey, SurveyLine};
 use crate::vehicle::Vehicle;
+use crate::words::Named as _;
 
 /// How far the map of a survey goes beyond its places, metres.
 const AROUND_M: f64 = 300.0;
@@ -37,10 +40,17 @@ pub enum SheetStyle<'a> {
 
 /// The sheet of a route under conditions, as a whole HTML document.
 #[must_use]
-pub fn sheet(network: &Network, vehicle: &Vehicle, conditional: &Conditional, style: SheetStyle<'_>) -> String {
+pub fn sheet(
+    network: &Network,
+    vehicle: &Vehicle,
+    conditional: &Conditional,
+    units: Units,
+    style: SheetStyle<'_>,
+) -> String {
     let route = &conditional.route;
     let count = conditional.conditions.len();
-    let title = format!("{}: a route of {:.1} km if {count} conditions hold", vehicle.id, route.length_m / 1000.0);
+    let length = units.route(route.length_m);
+    let title = format!("{}: a route of {length} if {count} conditions hold", vehicle.id);
     let style = match style {
         SheetStyle::Within => format!("<style>{SHEET_STYLE}</style>"),
         // The empty icon keeps browsers from asking the server for one.
@@ -49,7 +59,7 @@ pub fn sheet(network: &Network, vehicle: &Vehicle, conditional: &Conditional, st
         }
     };
     let mut page = format!("{HEAD}<title>{0}</title>{style}</head><body><h1>{0}</h1>", escaped(&title));
-    let rsc = route.certificate.result.rsc_m.map_or("unknown".to_owned(), |rsc_m| format!("{rsc_m:.2} m"));
+    let rsc = route.certificate.result.rsc_m.map_or("unknown".to_owned(), |rsc_m| units.at_most(rsc_m));
     let _ = write!(
         page,
         "<p>{}. RSC {rsc} under the conditions: what the worst body point has to spare, all error bounds deducted.</p>\
@@ -57,8 +67,11 @@ pub fn sheet(network: &Network, vehicle: &Vehicle, conditional: &Conditional, st
          no permit. What counts of a measurement is its value less 1.64 times its standard uncertainty.</p>",
         escaped(&vehicle.name)
     );
-    page += &map(network, conditional);
-    page += &table(network, (1..).zip(&conditional.conditions));
+    page += &map(network, conditional, units);
+    page += &table(network, (1..).zip(&conditional.conditions), units);
+    if units == Units::Feet {
+        page += "<p>In the CSV below, give the unit of each value: <code>ft</code> or <code>in</code>.</p>";
+    }
     page += "<p>Write the measurements into the sheet as CSV (<code>netcert route --sheet conditions.csv</code>), then \
              <code>netcert evidence add conditions.csv</code>.</p></body></html>\n";
     page
@@ -86,7 +99,7 @@ pub fn survey_sheet(network: &Network, vehicle: &Vehicle, survey: &Survey) -> St
         let Some(first) = step.first() else { continue };
         let (opens, total) = (amount(first.opens), amount(first.total));
         let _ = write!(page, "<h2>{}. Opens {opens}; {total} with those before</h2>", first.rank);
-        page += &table(network, step.iter().map(|line| (line.number, line.condition)));
+        page += &table(network, step.iter().map(|line| (line.number, line.condition)), Units::Metres);
     }
     page += "<p>Write the measurements into the sheet as CSV (<code>netcert survey --sheet survey.csv</code>), then \
              <code>netcert evidence add survey.csv</code>.</p></body></html>\n";
@@ -94,10 +107,15 @@ pub fn survey_sheet(network: &Network, vehicle: &Vehicle, survey: &Survey) -> St
 }
 
 /// A row for each condition, with room for what is measured.
-fn table<'c>(network: &Network, conditions: impl Iterator<Item = (usize, &'c Condition)>) -> String {
-    let mut page = "<table><thead><tr><th>No.</th><th>Where</th><th>What has to be so</th><th>Measured, m</th><th>Uncertainty, m</th>\
-                    <th>Date, by</th><th>Photo</th></tr></thead><tbody>"
-        .to_owned();
+fn table<'c>(network: &Network, conditions: impl Iterator<Item = (usize, &'c Condition)>, units: Units) -> String {
+    let [value, uncertainty] = match units {
+        Units::Metres => ["m", "m"],
+        Units::Feet => ["ft and in", "in"],
+    };
+    let mut page = format!(
+        "<table><thead><tr><th>No.</th><th>Where</th><th>What has to be so</th><th>Measured, {value}</th>\
+         <th>Uncertainty, {uncertainty}</th><th>Date, by</th><th>Photo</th></tr></thead><tbody>"
+    );
     for (number, condition) in conditions {
         let place = condition.place(network).map_or_else(String::new, |[lon, lat]| {
             format!(
@@ -107,7 +125,7 @@ fn table<'c>(network: &Network, conditions: impl Iterator<Item = (usize, &'c Con
         });
         let length_m = condition.length_m(network);
         let over = match &condition.at {
-            ConditionAt::Road(_) => format!("<br>over {length_m:.0} m"),
+            ConditionAt::Road(_) => format!("<br>over {}", units.along(length_m)),
             ConditionAt::Corner { node, .. } | ConditionAt::Junction(node) => format!("<br>OpenStreetMap node {node}"),
         };
         let _ = write!(
@@ -115,14 +133,27 @@ fn table<'c>(network: &Network, conditions: impl Iterator<Item = (usize, &'c Con
             "<tr><td>{number}</td><td>{}{place}{over}</td><td>{}</td><td class=\"fill\"></td><td class=\"fill\"></td>\
              <td class=\"fill\"></td><td class=\"fill\"></td></tr>",
             escaped(&condition.title(network)),
-            escaped(&condition.words())
+            escaped(&wanted(condition, units))
         );
     }
     page + "</tbody></table>"
 }
 
+/// What has to be so. In feet, metres stand beside them, because the CSV and the database have metres.
+fn wanted(condition: &Condition, units: Units) -> String {
+    if units == Units::Metres {
+        return condition.words();
+    }
+    let needed = format!("{} ({:.2} m)", units.at_least(condition.needed_m), condition.needed_m);
+    let what = match condition.quantity {
+        Quantity::Surface => format!("paved and free of kerbs up to {needed} from the node"),
+        quantity => format!("{} at least {needed}", quantity.name().replace('_', " ")),
+    };
+    condition.assumed_m.map_or(what.clone(), |m| format!("{what}; assumed {}", units.at_most(m)))
+}
+
 /// The route with the conditions as numbered pins.
-fn map(network: &Network, conditional: &Conditional) -> String {
+fn map(network: &Network, conditional: &Conditional, units: Units) -> String {
     let path = &conditional.route.path;
     let line: Vec<Point> = path.corridor.x.iter().zip(&path.corridor.y).map(|(&x, &y)| [x, y]).collect();
     let places = conditional.conditions.iter().map(|condition| condition.place(network));
@@ -145,7 +176,7 @@ fn map(network: &Network, conditional: &Conditional) -> String {
     }
     let numbered: Vec<_> = (1..).zip(&pins).filter_map(|(number, pin)| Some((number, (*pin)?))).collect();
     pin_down(&mut picture, &view, &numbered);
-    scale_bar(&mut picture, &view, [40.0, 480.0], 160.0);
+    scale_bar_in(&mut picture, &view, [40.0, 480.0], 160.0, units);
     picture.finish()
 }
 

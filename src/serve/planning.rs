@@ -8,7 +8,7 @@ use std::sync::{Arc, mpsc};
 use super::drive;
 use super::problem::Problem;
 use super::region::{Certified, Region};
-use crate::picture::{self, SheetStyle};
+use crate::picture::{self, SheetStyle, Units};
 use crate::route::{
     self, Conditional, Driver, Measure, NoDriver, Planner, Question, Roads, SnapError, Speeds, Unanswered,
 };
@@ -46,6 +46,8 @@ pub(super) struct Planned {
 #[derive(Debug)]
 pub(super) struct Sheets {
     pub(super) html: String,
+    /// The same in feet and inches.
+    pub(super) html_in_feet: String,
     pub(super) csv: String,
     pub(super) geojson: String,
 }
@@ -178,8 +180,10 @@ impl Wanted {
 
     fn sheets(&self, conditional: &Conditional) -> Sheets {
         let (network, vehicle) = (&self.roads.network, &self.driver.model.vehicle);
+        let style = SheetStyle::At(SHEET_STYLE_AT);
         Sheets {
-            html: picture::sheet(network, vehicle, conditional, SheetStyle::At(SHEET_STYLE_AT)),
+            html: picture::sheet(network, vehicle, conditional, Units::Metres, style),
+            html_in_feet: picture::sheet(network, vehicle, conditional, Units::Feet, style),
             csv: route::sheet_csv(network, conditional),
             geojson: route::sheet_geojson(network, vehicle, conditional),
         }

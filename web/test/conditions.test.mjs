@@ -93,6 +93,10 @@ inPage("the sheet opens as a page of its own and can be taken along", CORNER, as
   assert.equal(await sheet.locator("table").evaluate((table) => getComputedStyle(table).borderCollapse), "collapse", "the policy lets its style in");
   assert.deepEqual(errors, []);
   await sheet.close();
+  await page.locator("[name=units][value=feet]").check({ force: true });
+  await page.waitForFunction(() => document.querySelector(".sheets a")?.getAttribute("href").includes("units=feet"));
+  const inFeet = await fetch(all.address + (await page.locator(".sheets a").first().getAttribute("href")));
+  assert.ok(/ \d+ ft( \d+ in)? \(\d+\.\d\d m\)/.test(await inFeet.text()));
   for (const [name, begins] of [["CSV", "id,quantity,value"], ["GeoJSON", "{\"type\":\"FeatureCollection\""]]) {
     const href = await page.locator(".sheets a", { hasText: new RegExp(`^${name}$`) }).getAttribute("href");
     const answer = await fetch(all.address + href);

@@ -27,22 +27,27 @@ const PARAMETERS: [&str; 11] =
 
 /// `/api/route`
 pub(in super::super) fn route(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    Ok(answered(&planned(region, ask)?.members))
+    Ok(answered(&planned(region, ask, &[])?.members))
 }
 
 /// `/api/sheet.html`
 pub(in super::super) fn sheet_html(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    sheet(region, ask, "text/html; charset=utf-8", |sheets| &sheets.html)
+    let html: fn(&Sheets) -> &String = match ask.parameter("units").unwrap_or("metres") {
+        "metres" => |sheets| &sheets.html,
+        "feet" => |sheets| &sheets.html_in_feet,
+        _ => return Err(Problem::parameter("units", "give metres or feet")),
+    };
+    sheet(region, ask, &["units"], "text/html; charset=utf-8", html)
 }
 
 /// `/api/sheet.csv`
 pub(in super::super) fn sheet_csv(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    sheet(region, ask, "text/csv; charset=utf-8", |sheets| &sheets.csv)
+    sheet(region, ask, &[], "text/csv; charset=utf-8", |sheets| &sheets.csv)
 }
 
 /// `/api/sheet.geojson`
 pub(in super::super) fn sheet_geojson(region: &Region, ask: &Ask) -> Result<Stored, Problem> {
-    sheet(region, ask, GEOJSON, |sheets| &sheets.geojson)
+    sheet(region, ask, &[], GEOJSON, |sheets| &sheets.geojson)
 }
 
 /// `/api/sheet.css`
@@ -51,8 +56,15 @@ pub(in super::super) fn sheet_css(_: &Region, ask: &Ask) -> Result<Stored, Probl
     Ok(Stored::new("text/css; charset=utf-8", picture::SHEET_STYLE.as_bytes().to_vec()))
 }
 
-fn sheet(region: &Region, ask: &Ask, kind: &'static str, form: fn(&Sheets) -> &String) -> Result<Stored, Problem> {
-    let planned = planned(region, ask)?;
+/// A sheet. `more` are parameters beside those of a route.
+fn sheet(
+    region: &Region,
+    ask: &Ask,
+    more: &[&str],
+    kind: &'static str,
+    form: fn(&Sheets) -> &String,
+) -> Result<Stored, Problem> {
+    let planned = planned(region, ask, more)?;
     let Some(sheets) = &planned.sheets else {
         let detail = "there is no route under conditions between these places, so there is nothing to check; /api/route has the answer";
         return Err(Problem::not_found(detail));
@@ -61,8 +73,8 @@ fn sheet(region: &Region, ask: &Ask, kind: &'static str, form: fn(&Sheets) -> &S
 }
 
 /// The answer to a question. The last ones are kept.
-fn planned(region: &Region, ask: &Ask) -> Result<Arc<Planned>, Problem> {
-    ask.only(&PARAMETERS)?;
+fn planned(region: &Region, ask: &Ask, more: &[&str]) -> Result<Arc<Planned>, Problem> {
+    ask.only(&[&PARAMETERS, more].concat())?;
     let policy = ask.parameter("policy").map_or(Ok(region.policy), policy)?;
     let certified = region.certified(ask.required("vehicle")?, policy)?;
     let vehicle = certified.vehicle;

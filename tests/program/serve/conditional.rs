@@ -89,6 +89,31 @@ fn a_route_under_conditions_is_that_of_the_verb_with_its_sheets() {
 }
 
 #[test]
+fn the_sheet_in_feet_asks_for_no_less_than_the_sheet_in_metres() {
+    let server = wide();
+    let answer = server.json(&format!("/api/route?{}", asked(CORNER)));
+    let reply = server.get(&format!("/api/sheet.html?{}&units=feet", asked(CORNER)));
+    assert_eq!(reply.status, 200, "{}", reply.text());
+    let page = reply.text();
+    for condition in answer["conditions"].as_array().unwrap() {
+        let needed_m = condition["needed"].as_f64().unwrap();
+        let (before, _) =
+            page.split_once(&format!(" ({needed_m:.2} m)")).unwrap_or_else(|| panic!("{needed_m}: {page}"));
+        let words: Vec<&str> = before.rsplit([' ', '>']).take(4).collect();
+        let inches = match words[..] {
+            ["in", inches, "ft", feet] => 12.0 * feet.parse::<f64>().unwrap() + inches.parse::<f64>().unwrap(),
+            ["ft", feet, ..] => 12.0 * feet.parse::<f64>().unwrap(),
+            _ => panic!("{words:?}"),
+        };
+        let more_m = inches * 0.0254 - needed_m;
+        assert!((-1e-6..0.0254).contains(&more_m), "{words:?} for {needed_m} m");
+    }
+    assert!(page.contains("Measured, ft and in") && page.contains(" mi if ") && !page.contains(" km if "));
+    server.problem(&format!("/api/sheet.html?{}&units=miles", asked(CORNER)), 400);
+    server.problem(&format!("/api/sheet.csv?{}&units=feet", asked(CORNER)), 400);
+}
+
+#[test]
 fn without_a_search_for_conditions_the_answer_says_what_blocks_and_on_which_way() {
     let server = wide();
     let answer = server.json(&format!("/api/route?{}&conditions=none", asked(CORNER)));

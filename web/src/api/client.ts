@@ -17,6 +17,7 @@ import type {
 } from "./types.ts";
 import { patient } from "./patient.ts";
 import { digest, type Stats } from "./stats.ts";
+import { spoken } from "../units.ts";
 
 export class ServerProblem extends Error {
   constructor(readonly problem: Problem) {
@@ -103,7 +104,7 @@ export const api = {
   otherRoutes: (places: readonly Position[], question: Question, signal?: AbortSignal) =>
     get<RouteAnswer>("/api/route", { ...ride(places, question), conditions: "none", alternatives: String(MOST_OTHERS), drive: "all" }, signal),
   sheetUrl: (form: "html" | "csv" | "geojson", places: readonly Position[], question: Question) =>
-    `/api/sheet.${form}?${written(ride(places, question))}`,
+    `/api/sheet.${form}?${written({ ...ride(places, question), ...(form === "html" && spoken() === "feet" ? { units: "feet" } : {}) })}`,
   /** What changed since the older database, of the box `west,south,east,north` or everywhere. */
   changes: (question: Question, bbox: string | null, signal?: AbortSignal) =>
     get<Changes>("/api/changes", { ...asked(question), limit: String(MOST_CHANGES), ...(bbox ? { bbox } : {}) }, signal),
