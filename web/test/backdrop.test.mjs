@@ -7,7 +7,7 @@ const { ask, inPage } = drawnRegion({ compared: true });
 
 const layers = (page) => page.evaluate(() => globalThis.netcert.map.getStyle().layers.map(({ id }) => id));
 
-inPage("a lake lies under the roads, and the town's name over them", "#v=AU-SEMI19&at=10.5,-30.23,126.01", async (page) => {
+inPage("a lake lies under the roads, and the town's name over them", "#v=AU-SEMI19&at=10.5,-30.226,126.01", async (page) => {
   const found = await page.evaluate(() => {
     const { map } = globalThis.netcert;
     const seen = (layer) => map.queryRenderedFeatures({ layers: [layer] }).map(({ properties }) => properties);
@@ -19,7 +19,7 @@ inPage("a lake lies under the roads, and the town's name over them", "#v=AU-SEMI
   assert.ok(order.indexOf("backdrop-water") < Math.min(...roads) && order.indexOf("backdrop-places") > Math.max(...roads), order.join());
 });
 
-inPage("it changes its colours with the theme and asks for no tile beyond its deepest zoom", "#v=AU-SEMI19&at=15.5,-30.23,126.01", async (page) => {
+inPage("it changes its colours with the theme and asks for no tile beyond its deepest zoom", "#v=AU-SEMI19&at=15.5,-30.226,126.01", async (page) => {
   const colour = () => page.evaluate(() => globalThis.netcert.map.getPaintProperty("backdrop-water", "fill-color"));
   const before = await colour();
   assert.equal((await page.evaluate(() => globalThis.netcert.map.queryRenderedFeatures({ layers: ["backdrop-water"] }).length)) > 0, true);

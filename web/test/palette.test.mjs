@@ -74,10 +74,12 @@ for (const [theme, palette] of Object.entries(palettes)) {
       }
     }
   });
-  test(`${theme}: every line stands out from the paper`, () => {
+  test(`${theme}: every line stands out from the paper, and from woods and water on it`, () => {
     for (const colour of [...palette.room, ...palette.missing, palette.forbidden, palette.unknown]) {
-      const apart = difference(colour, palette.paper, simulations.normal);
-      assert.ok(apart > 25, `${colour} on ${palette.paper}: ΔE ${apart.toFixed(1)}`);
+      for (const [ground, least] of [[palette.paper, 25], [palette.wood, 20], [palette.water, 20]]) {
+        const apart = difference(colour, ground, simulations.normal);
+        assert.ok(apart > least, `${colour} on ${ground}: ΔE ${apart.toFixed(1)}`);
+      }
     }
   });
 }

@@ -61,10 +61,13 @@ export function twoDatabases(folder) {
   const gone = '<delete><way id="49" version="99"/></delete>';
   const node = '<node id="900001" version="1" lat="-30.2" lon="126.06"/>';
   const way = '<way id="900002" version="1"><nd ref="158"/><nd ref="900001"/><tag k="highway" v="primary"/><tag k="width" v="12"/><tag k="name" v="New Ring Road"/></way>';
-  const shore = [[126, -30.25], [126.05, -30.25], [126.05, -30.22], [126, -30.22]].map(([lon, lat], k) => `<node id="${900010 + k}" version="1" lat="${lat}" lon="${lon}"/>`);
-  const round = [0, 1, 2, 3, 0].map((k) => `<nd ref="${900010 + k}"/>`).join("");
-  const lake = `${shore.join("")}<way id="900020" version="1">${round}<tag k="natural" v="water"/></way>`;
-  const town = '<node id="900030" version="1" lat="-30.22" lon="126"><tag k="place" v="town"/><tag k="name" v="Laketon"/></node>';
+  const shore = Array.from({ length: 24 }, (_, k) => {
+    const [angle, reach] = [(2 * Math.PI * k) / 24, 1 + 0.15 * Math.sin(k * 1.7)];
+    return [126.02 + 0.02 * reach * Math.cos(angle), -30.226 + 0.007 * reach * Math.sin(angle)];
+  }).map(([lon, lat], k) => `<node id="${900010 + k}" version="1" lat="${lat.toFixed(7)}" lon="${lon.toFixed(7)}"/>`);
+  const round = [...shore.keys(), 0].map((k) => `<nd ref="${900010 + k}"/>`).join("");
+  const lake = `${shore.join("")}<way id="900050" version="1">${round}<tag k="natural" v="water"/></way>`;
+  const town = '<node id="900060" version="1" lat="-30.215" lon="126"><tag k="place" v="town"/><tag k="name" v="Laketon"/></node>';
   writeFileSync(join(folder, "later.osc"), `<osmChange version="0.6">${gone}<create>${node}${way}${lake}${town}</create></osmChange>`);
   run("update", "--db", db, join(folder, "later.osc"), "--extract", extract);
   return { before, db };

@@ -1,6 +1,6 @@
-// Takes the pictures of docs/serve.md and docs/how-to/survey.md, with databases of the drawn region and of three real extracts:
+// Takes the pictures of docs/serve.md and docs/how-to/survey.md, with databases of the drawn region and of four real extracts:
 //
-//     node tools/screenshots.mjs FOLDER [NAME…]      FOLDER holds demo.gpkg, heidelberg.gpkg, columbus.gpkg, victoria.gpkg; of
+//     node tools/screenshots.mjs FOLDER [NAME…]      FOLDER holds demo.gpkg, heidelberg.gpkg, andorra.gpkg, columbus.gpkg, victoria.gpkg; of
 //                                                    `changes`, old.gpkg and new.gpkg, which are made if they are missing
 //
 // The extracts are not part of the repository; each picture says in its scene what it shows of them.
@@ -59,6 +59,7 @@ const scenes = {
       await page.mouse.move(180, 30); // where nothing is to hover over
     },
   },
+  andorra: { db: "andorra", hash: "#v=EU-SEMI16.5", play: (page) => wait(page, 2500) },
   columbus: { db: "columbus", hash: "#v=US-WB40&with=US-WB67&at=12.2,39.968,-82.99", dark: true, play: (page) => wait(page, 2500) },
   victoria: {
     db: "victoria",

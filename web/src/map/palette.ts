@@ -95,8 +95,8 @@ export const palettes: Record<Theme, Palette> = {
   dark: {
     outside: "#0e1013",
     paper: "#15181c",
-    wood: "#191f1c",
-    water: "#1b252c",
+    wood: "#1a231d",
+    water: "#20313c",
     casing: "#15181c",
     ink: "#e8eaed",
     halo: "#15181c",
