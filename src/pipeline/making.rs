@@ -6,6 +6,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 use crate::network::Portion;
+use crate::osm::Backdrop;
 use crate::osm::facts::Countries;
 use crate::reporter::Reporter;
 use crate::settings::Settings;
@@ -69,10 +70,11 @@ impl Making<'_> {
         // Measurements, and what an earlier database has, are matched with the whole network.
         let whole = register.is_some() || earlier.is_some();
         let source = (self.inputs, &self.changes.changes);
-        let (mut roads, Origin { header, blake3: hash, segments, backdrop }) =
-            read_roads(source, self.countries, (self.edges_at_once, whole), reporter, &mut summary)?;
-        writer.backdrop(&backdrop)?;
-        drop(backdrop);
+        // Written at once, so that it leaves memory before the network is built.
+        let mut behind = |things: &[Backdrop]| Ok(writer.backdrop(things)?);
+        let division = (self.edges_at_once, whole);
+        let (mut roads, Origin { header, blake3: hash, segments }) =
+            read_roads(source, self.countries, division, &mut behind, reporter, &mut summary)?;
         if let Some(why) = writer.register_lost() {
             reporter
                 .note(&format!("the measurements of the older database are lost, because it cannot be read: {why}"));

@@ -33,6 +33,7 @@ pub use update::{Newer, Update, run_of_extract, update};
 use crate::account::AccountRow;
 use crate::certify::{Job, TurnJob, certify_network, certify_turns};
 use crate::network::Network;
+use crate::osm::Backdrop;
 use crate::osm::changes::{ChangeError, Changes};
 use crate::osm::facts::{Countries, CountriesError, RulesError};
 use crate::osm::pbf::ReadError;
@@ -173,20 +174,22 @@ pub fn read_network(
     summary: &mut Summary,
 ) -> Result<(Network, String), RunError> {
     let input = (&[input][..], &Changes::default());
-    let (roads, origin) = read_roads(input, countries, (u64::MAX, true), reporter, summary)?;
+    let (roads, origin) = read_roads(input, countries, (u64::MAX, true), &mut |_| Ok(()), reporter, summary)?;
     summary.account.extend(roads.account());
     Ok((roads.into_whole(), origin.blake3))
 }
 
-/// Reads a source as it is after changes. `edges_at_once` and `whole` are those of [`Roads::new`].
+/// Reads a source as it is after changes. `behind` takes what a map shows behind its roads. `edges_at_once` and `whole` are those of [`Roads::new`].
 fn read_roads<'c>(
     source: (&[&Path], &Changes),
     countries: &'c Countries,
     (edges_at_once, whole): (u64, bool),
+    behind: &mut dyn FnMut(&[Backdrop]) -> Result<(), RunError>,
     reporter: &dyn Reporter,
     summary: &mut Summary,
 ) -> Result<(Roads<'c>, Origin), RunError> {
-    let (extract, origin) = source::read(source, reporter, summary)?;
+    let (mut extract, origin) = source::read(source, reporter, summary)?;
+    behind(&std::mem::take(&mut extract.backdrop))?;
     let clock = Instant::now();
     reporter.begin("network", 0);
     let roads = Roads::new(extract, countries, edges_at_once, whole);

@@ -8,7 +8,7 @@ use super::{RunError, Summary};
 use crate::account::AccountRow;
 use crate::osm::changes::Changes;
 use crate::osm::pbf::{HeaderInfo, ReadError};
-use crate::osm::{self, Backdrop, Extract};
+use crate::osm::{self, Extract};
 use crate::reporter::Reporter;
 use crate::rows::SegmentRow;
 
@@ -25,8 +25,6 @@ pub(super) struct Origin {
     pub(super) blake3: String,
     /// By way: the segment of Overture. `None` for an extract.
     pub(super) segments: Option<Vec<SegmentRow>>,
-    /// What a map shows behind its roads.
-    pub(super) backdrop: Vec<Backdrop>,
 }
 
 /// A source that was read.
@@ -47,18 +45,13 @@ pub(super) fn read(
     summary: &mut Summary,
 ) -> Result<(Extract, Origin), RunError> {
     let clock = std::time::Instant::now();
-    let Source { mut extract, account, read, left_out, segments } = match of_overture(inputs, changes, reporter)? {
+    let Source { extract, account, read, left_out, segments } = match of_overture(inputs, changes, reporter)? {
         Some(source) => source,
         None => of_osm(inputs, changes, reporter)?,
     };
     summary.account.extend(account);
     summary.stage("read", clock, read.0, read.1);
-    let origin = Origin {
-        header: extract.account.header.clone(),
-        blake3: extract.account.blake3.clone(),
-        segments,
-        backdrop: std::mem::take(&mut extract.backdrop),
-    };
+    let origin = Origin { header: extract.account.header.clone(), blake3: extract.account.blake3.clone(), segments };
     if extract.ways.is_empty() {
         let left_out = left_out.iter().map(|(why, n)| format!("{why} {n}")).collect::<Vec<_>>().join(", ");
         let account = if left_out.is_empty() { format!("no {} at all", read.1) } else { left_out };

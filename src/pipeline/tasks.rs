@@ -71,7 +71,8 @@ pub fn divide<E: From<RunError>>(
     mut sink: impl FnMut(Task) -> Result<(), E>,
 ) -> Result<Divided, E> {
     let from = (&[input][..], &Changes::default());
-    let (mut roads, origin) = read_roads(from, countries, (edges_at_once, false), reporter, &mut Summary::default())?;
+    let (mut roads, origin) =
+        read_roads(from, countries, (edges_at_once, false), &mut |_| Ok(()), reporter, &mut Summary::default())?;
     let edges = roads.edges();
     reporter.begin("tasks", u64::from(edges));
     let mut done = 0;

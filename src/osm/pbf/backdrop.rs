@@ -168,13 +168,16 @@ fn keep_last<T>(sorted: &mut Vec<T>, id: impl Fn(&T) -> i64) {
     });
 }
 
+/// Closed lines of positions.
+type Rings = Vec<Vec<LonLat>>;
+
 /// The rings as positions; `None` if a node is missing.
-fn placed_rings(rings: &[Vec<i64>], nodes: &NodeTable) -> Option<Vec<Vec<LonLat>>> {
+fn placed_rings(rings: &[Vec<i64>], nodes: &NodeTable) -> Option<Rings> {
     rings.iter().map(|ring| ring.iter().map(|&id| nodes.place(id)).collect()).collect()
 }
 
 /// The shape of an area with these outlines and holes. Without one of them nobody knows what is inside.
-fn area(rings: Option<(Vec<Vec<LonLat>>, Vec<Vec<LonLat>>)>, tally: &mut BackdropTally) -> Option<BackdropShape> {
+fn area(rings: Option<(Rings, Rings)>, tally: &mut BackdropTally) -> Option<BackdropShape> {
     let Some((outer, inner)) = rings.filter(|rings| !rings.0.is_empty()) else {
         tally.incomplete += 1;
         return None;
