@@ -1,6 +1,8 @@
 //! Things behind the roads as shapes: ways of multipolygons joined into rings, and lines without points that no map shows.
 
-use geo::{Contains as _, Coord, LineString, Point, Polygon, SimplifyIdx as _};
+use geo::{BoundingRect as _, Contains as _, Coord, LineString, Point, Polygon, SimplifyIdx as _};
+use rstar::RTree;
+use rstar::primitives::{GeomWithData, Rectangle};
 use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
 
@@ -36,12 +38,16 @@ pub enum BackdropShape {
 const TOLERANCE_M: f64 = 2.0;
 /// Areas that are smaller in both directions are left out, metres: four pixels at the deepest zoom that shows them.
 const LEAST_SIDE_M: f64 = 10.0;
+/// Vertices of a hole that are looked for in outlines.
+const MOST_VERTICES: usize = 16;
+/// Vertices that are simplified together. The time for so many grows with their square.
+const TOGETHER: usize = 500;
 const METRES_PER_E7: f64 = 0.011_131_949;
 
 /// The rings that ways form, end to end; `None` if some do not close. Ways are node ids.
 pub(super) fn rings(ways: &[&[i64]]) -> Option<Vec<Vec<i64>>> {
     let mut at_end: FxHashMap<i64, Vec<usize>> = FxHashMap::default();
-    for (number, way) in ways.iter().enumerate() {
+    for (number, way) in ways.iter().enumerate().filter(|(_, way)| way.first() != way.last()) {
         for end in [way.first(), way.last()].into_iter().flatten() {
             at_end.entry(*end).or_default().push(number);
         }
@@ -56,9 +62,14 @@ pub(super) fn rings(ways: &[&[i64]]) -> Option<Vec<Vec<i64>>> {
         while let (Some(first), Some(last)) = (chain.first(), chain.last())
             && first != last
         {
-            let next = at_end.get(last).and_then(|ends| ends.iter().copied().find(|&next| !used[next]));
-            let Some(next) = next else { break };
-            used[next] = true;
+            let ends = at_end.get_mut(last)?;
+            // Each end is looked at once, however many ways meet there.
+            let next = loop {
+                let next = ends.pop()?;
+                if !std::mem::replace(&mut used[next], true) {
+                    break next;
+                }
+            };
             let next = ways[next];
             if next.first() == Some(last) {
                 chain.extend_from_slice(&next[1..]);
@@ -79,10 +90,21 @@ pub(super) fn rings(ways: &[&[i64]]) -> Option<Vec<Vec<i64>>> {
 pub(super) fn polygons(outer: Vec<Vec<LonLat>>, inner: &[Vec<LonLat>]) -> Vec<Vec<Vec<LonLat>>> {
     let plane = |ring: &Vec<LonLat>| Polygon::new(line_of(ring), Vec::new());
     let outlines: Vec<Polygon> = outer.iter().map(plane).collect();
+    let around = |(at, outline): (usize, &Polygon)| {
+        let around = outline.bounding_rect()?;
+        Some(GeomWithData::new(Rectangle::from_corners(around.min().x_y(), around.max().x_y()), at))
+    };
+    let boxes = RTree::bulk_load(outlines.iter().enumerate().filter_map(around).collect());
     let mut polygons: Vec<Vec<Vec<LonLat>>> = outer.into_iter().map(|ring| vec![ring]).collect();
     for hole in inner {
-        let within = |outline: &Polygon| hole.iter().any(|&vertex| outline.contains(&Point(coord(vertex))));
-        if let Some(polygon) = outlines.iter().position(within).and_then(|at| polygons.get_mut(at)) {
+        let inside = |&vertex: &LonLat| {
+            let point = Point(coord(vertex));
+            let near = boxes.locate_all_at_point(&point.x_y()).map(|found| found.data);
+            near.filter(|&at| outlines.get(at).is_some_and(|outline| outline.contains(&point))).min()
+        };
+        // A hole may touch its outline at some vertices. One that touches it at so many is no hole that anybody would see.
+        let at = if outlines.len() == 1 { Some(0) } else { hole.iter().take(MOST_VERTICES).find_map(inside) };
+        if let Some(polygon) = at.and_then(|at| polygons.get_mut(at)) {
             polygon.push(hole.clone());
         }
     }
@@ -109,9 +131,17 @@ fn is_seen(ring: &[LonLat]) -> bool {
 pub(super) fn simplified(line: &[LonLat]) -> Vec<LonLat> {
     let Some(first) = line.first() else { return Vec::new() };
     let scale = east_scale(*first);
-    let plane: LineString =
-        line.iter().map(|&p| Coord { x: f64::from(p.lon_e7) * scale, y: f64::from(p.lat_e7) }).collect();
-    plane.simplify_idx(TOLERANCE_M / METRES_PER_E7).into_iter().filter_map(|at| line.get(at).copied()).collect()
+    let mut kept = vec![*first];
+    let mut rest = line;
+    while rest.len() > 1 {
+        let (part, _) = rest.split_at(rest.len().min(TOGETHER));
+        let plane: LineString =
+            part.iter().map(|&p| Coord { x: f64::from(p.lon_e7) * scale, y: f64::from(p.lat_e7) }).collect();
+        let seen = plane.simplify_idx(TOLERANCE_M / METRES_PER_E7);
+        kept.extend(seen.into_iter().skip(1).filter_map(|at| part.get(at)));
+        rest = rest.get(part.len() - 1..).unwrap_or_default();
+    }
+    kept
 }
 
 fn east_scale(at: LonLat) -> f64 {
@@ -151,6 +181,17 @@ mod tests {
         );
         // The third outline is a metre wide, and so is the last hole; the second hole is nowhere.
         assert_eq!(found, [vec![square(0, 10_000)], vec![square(20_000, 40_000), square(25_000, 30_000)]]);
+    }
+
+    /// Each tooth is a little larger than the one before, so that every step of the algorithm finds its vertex at the end.
+    #[test]
+    fn so_many_teeth_and_so_many_ways_between_two_nodes_are_no_trap() {
+        let saw = |k: i32| LonLat { lon_e7: 1000 * k, lat_e7: if k % 2 == 0 { 0 } else { 1000 + k } };
+        let line: Vec<LonLat> = (0..200_000).map(saw).collect();
+        assert_eq!(simplified(&line), line);
+        let ways: Vec<[i64; 3]> = (0..200_000).map(|k| [1, 10 + k, 2]).collect();
+        let ways: Vec<&[i64]> = ways.iter().map(<[i64; 3]>::as_slice).collect();
+        assert_eq!(rings(&ways).map(|rings| rings.len()), Some(100_000));
     }
 
     #[test]

@@ -10,6 +10,8 @@ type Point = [f64; 2];
 /// The greatest distance of the drawn line from the true line, units. Two units are a quarter of a pixel of a tile of 512
 /// pixels.
 pub(super) const TOLERANCE: f64 = 2.0;
+/// Vertices that are simplified together.
+const TOGETHER: usize = 4096;
 /// The tolerance at the deepest zoom, which clients enlarge. Rounding alone moves points by as much.
 const FINE_TOLERANCE: f64 = 0.5;
 
@@ -112,7 +114,10 @@ pub(super) fn simplified(line: &[Point], tolerance: f64) -> Vec<Point> {
     let mut keep = vec![false; line.len()];
     keep[0] = true;
     keep[last] = true;
-    let mut spans = vec![(0, last)];
+    // The time for a span grows with its square at worst, so long lines are simplified part by part.
+    let mut spans: Vec<(usize, usize)> =
+        (0..last).step_by(TOGETHER).map(|from| (from, last.min(from + TOGETHER))).collect();
+    spans.iter().for_each(|span| keep[span.1] = true);
     while let Some((from, to)) = spans.pop() {
         let far = (from + 1..to)
             .map(|i| (i, squared(line[i], line[from], line[to])))
