@@ -1,4 +1,4 @@
-//! Things behind the roads as shapes: ways of multipolygons joined into rings, and lines without points that no map shows.
+//! Things behind the roads as shapes. The ways of multipolygons are joined into rings, and vertices that nobody would see are left out.
 
 use geo::{BoundingRect as _, Contains as _, Coord, LineString, Point, Polygon, SimplifyIdx as _};
 use rstar::RTree;
@@ -38,7 +38,7 @@ pub enum BackdropShape {
 const TOLERANCE_M: f64 = 2.0;
 /// Areas that are smaller in both directions are left out, metres: four pixels at the deepest zoom that shows them.
 const LEAST_SIDE_M: f64 = 10.0;
-/// Vertices of a hole that are looked for in outlines.
+/// The greatest number of a hole's vertices that are tried, to find the outline around the hole.
 const MOST_VERTICES: usize = 16;
 /// Vertices that are simplified together. The time for so many grows with their square.
 const TOGETHER: usize = 500;
@@ -102,7 +102,7 @@ pub(super) fn polygons(outer: Vec<Vec<LonLat>>, inner: &[Vec<LonLat>]) -> Vec<Ve
             let near = boxes.locate_all_at_point(&point.x_y()).map(|found| found.data);
             near.filter(|&at| outlines.get(at).is_some_and(|outline| outline.contains(&point))).min()
         };
-        // A hole may touch its outline at some vertices. One that touches it at so many is no hole that anybody would see.
+        // A vertex on the outline tells nothing, so some are tried. Their number is bounded, and so is the time.
         let at = if outlines.len() == 1 { Some(0) } else { hole.iter().take(MOST_VERTICES).find_map(inside) };
         if let Some(polygon) = at.and_then(|at| polygons.get_mut(at)) {
             polygon.push(hole.clone());

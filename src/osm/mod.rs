@@ -1,6 +1,7 @@
 //! Reading: a `.osm.pbf` becomes drivable ways, as facts, and the positions of their nodes.
 //!
-//! The file is read in two passes: ways first, then only the nodes that they name. Every dropped object has a counted
+//! The file is read in two passes: ways first, then only the nodes that they name. A pass over relations comes before, for what lies
+//! behind the roads. Every dropped object has a counted
 //! reason. A damaged file is an error with a byte offset, never a shorter result.
 
 mod backdrop;

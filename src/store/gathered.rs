@@ -6,7 +6,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::network::{Area, Edge, Narrowing, Portion, PortionRestriction, Road};
-use crate::osm::facts::CrossSection;
+use crate::osm::changes::Kind;
+use crate::osm::facts::{BackdropKind, CrossSection};
 use crate::osm::{Backdrop, LonLat};
 use crate::rows::EdgeMeasure;
 
@@ -51,9 +52,8 @@ pub(super) struct Gathered {
     pub(super) strokes: Sorter<u32, StrokeRow>,
     pub(super) restrictions: Vec<PortionRestriction>,
     pub(super) areas: Vec<Area>,
-    /// By their places in drawing order.
-    pub(super) backdrop: Sorter<u32, Backdrop>,
-    things: u32,
+    /// By kind and object, the order of drawing.
+    pub(super) backdrop: Sorter<(BackdropKind, (Kind, i64)), Backdrop>,
 }
 
 impl Gathered {
@@ -66,17 +66,12 @@ impl Gathered {
             restrictions: Vec::new(),
             areas: Vec::new(),
             backdrop: sorter(path, "-backdrop")?,
-            things: 0,
         })
     }
 
-    /// Adds what lies behind the roads, in drawing order.
+    /// Adds what lies behind the roads.
     pub(super) fn add_backdrop(&mut self, things: &[Backdrop]) -> io::Result<()> {
-        for thing in things {
-            self.backdrop.push(self.things, thing)?;
-            self.things += 1;
-        }
-        Ok(())
+        things.iter().try_for_each(|thing| self.backdrop.push((thing.kind, thing.object), thing))
     }
 
     /// Adds what a portion owns. `measures` has one entry per edge of its network, or is empty.

@@ -208,7 +208,7 @@ impl Writer {
         self.network.areas = areas;
     }
 
-    /// Adds what lies behind the roads, in drawing order.
+    /// Adds what lies behind the roads.
     pub fn backdrop(&mut self, things: &[Backdrop]) -> Result<(), StoreError> {
         self.network.add_backdrop(things).map_err(|e| StoreError::io(&self.session.path, e))
     }
@@ -307,7 +307,7 @@ impl Writer {
     pub fn finish(mut self, run: &Run) -> Result<(), StoreError> {
         let path = self.session.path.clone();
         let at = |e| StoreError::io(&path, e);
-        let Gathered { roads, edges, strokes, mut restrictions, areas, backdrop: things, .. } = self.network;
+        let Gathered { roads, edges, strokes, mut restrictions, areas, backdrop: things } = self.network;
         let things = things.sorted().map_err(at)?.map(|row| row.map(|(_, thing)| thing));
         let scratch = &self.part.path;
         let network = self.session.run(async |c| network_write::write(c, (roads, edges, strokes), scratch).await)?;

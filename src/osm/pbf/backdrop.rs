@@ -10,6 +10,7 @@ use crate::osm::{LonLat, NodeTable};
 
 use super::block::Block;
 use super::error::Problem;
+use super::gather::keep_last;
 use super::relations;
 use super::wire::Cursor;
 
@@ -109,7 +110,7 @@ impl AreaGatherer {
         ids
     }
 
-    /// The backdrop, sorted by kind and object. `nodes` are those of the ways.
+    /// The backdrop: multipolygons, ways, then nodes, each by id. `nodes` are those of the ways.
     pub(super) fn finish(
         self,
         mut ways: Vec<BackdropWay>,
@@ -151,21 +152,9 @@ impl AreaGatherer {
             name: Some(name),
             shape: BackdropShape::Place(place),
         }));
-        all.sort_by_key(|thing| (thing.kind, thing.object));
         tally.kept = all.len() as u64;
         (all, tally)
     }
-}
-
-/// Of several in a row with the same id, the last one stays.
-fn keep_last<T>(sorted: &mut Vec<T>, id: impl Fn(&T) -> i64) {
-    sorted.dedup_by(|later, earlier| {
-        let same = id(later) == id(earlier);
-        if same {
-            std::mem::swap(later, earlier);
-        }
-        same
-    });
 }
 
 /// Closed lines of positions.

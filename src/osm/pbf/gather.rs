@@ -108,13 +108,7 @@ impl WayGatherer {
         let before = self.ways.len();
         // References grow in the order of the file, so they tell earlier ways from later ones.
         self.ways.par_sort_unstable_by_key(|way| (way.id, way.refs.start));
-        self.ways.dedup_by(|later, earlier| {
-            let same = later.id == earlier.id;
-            if same {
-                std::mem::swap(later, earlier);
-            }
-            same
-        });
+        keep_last(&mut self.ways, |way| way.id);
         let mut overrides: FxHashMap<i64, Overrides> = FxHashMap::default();
         for (id, refs_before) in self.overrides.drain(..) {
             let of_id = overrides.entry(id).or_default();
@@ -145,13 +139,7 @@ impl WayGatherer {
         let restrictions = &mut self.relations.restrictions;
         let before = restrictions.len();
         restrictions.sort_by_key(|restriction| restriction.id);
-        restrictions.dedup_by(|later, earlier| {
-            let same = later.id == earlier.id;
-            if same {
-                std::mem::swap(later, earlier);
-            }
-            same
-        });
+        keep_last(restrictions, |restriction| restriction.id);
         self.relations.tally.superseded += (before - restrictions.len()) as u64;
     }
 
@@ -180,6 +168,17 @@ impl WayGatherer {
         ids.extend(self.areas.iter().flat_map(|area| &area.refs));
         distinct(ids)
     }
+}
+
+/// Of several in a row with the same id, the last one stays.
+pub(super) fn keep_last<T>(sorted: &mut Vec<T>, id: impl Fn(&T) -> i64) {
+    sorted.dedup_by(|later, earlier| {
+        let same = id(later) == id(earlier);
+        if same {
+            std::mem::swap(later, earlier);
+        }
+        same
+    });
 }
 
 fn distinct(mut ids: Vec<i64>) -> Vec<i64> {
