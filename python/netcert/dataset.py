@@ -1,4 +1,4 @@
-"""Permits of all vehicles as one data set of GeoParquet files, which DuckDB, GeoPandas and Spark filter by place without reading it all.
+"""Permits of all vehicles as one data set of GeoParquet files, which DuckDB, SedonaDB, GeoPandas and Spark filter by place without reading it all.
 
     FOLDER/netcert.json                                            what the permits depend on
     FOLDER/edges/cell=8-134-87/vehicle_id=EU-SEMI16.5/lane.parquet  edges that begin in a cell, with verdicts for a vehicle
@@ -71,6 +71,7 @@ def write(region: Region, folder: str | os.PathLike[str], vehicles: list[str] | 
 
 def _layer(rows: Table, folder: Path, known: CertifiedSet, zoom: int) -> None:
     import geopandas
+    import pandas
     import pyarrow
     import pyarrow.compute
 
@@ -89,7 +90,9 @@ def _layer(rows: Table, folder: Path, known: CertifiedSet, zoom: int) -> None:
         column, row = cells[begin]
         place = folder / f"cell={zoom}-{column}-{row}" / f"vehicle_id={known.vehicle_id}"
         place.mkdir(parents=True, exist_ok=True)
-        some = geopandas.GeoDataFrame.from_arrow(table.take(pyarrow.array(order[begin:end])))
+        # Arrow's own types, so that a column without a number is of the same type in every file.
+        rows_here = table.take(pyarrow.array(order[begin:end]))
+        some = geopandas.GeoDataFrame.from_arrow(rows_here, to_pandas_kwargs={"types_mapper": pandas.ArrowDtype})
         some.to_parquet(
             place / f"{known.corridor}.parquet",
             index=False,

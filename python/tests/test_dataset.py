@@ -1,6 +1,7 @@
 """Permits of all vehicles as a data set of GeoParquet files."""
 
 import json
+import re
 import shutil
 
 import duckdb
@@ -54,6 +55,36 @@ def test_files_are_geoparquet_with_boxes_that_readers_skip_by(folder):
         names = [metadata.schema.column(i).path for i in range(metadata.num_columns)]
         low = metadata.row_group(0).column(names.index("bbox.xmin")).statistics.min
         assert low == pytest.approx(frame.total_bounds[0])
+
+
+def test_a_column_has_the_same_type_in_every_file(folder):
+    """Also where a cell has no number in it: engines take the types from any of the files."""
+    for layer in ("edges", "turns"):
+        files = list(folder.glob(f"{layer}/*/*/*.parquet"))
+        schemas = [pyarrow.parquet.read_schema(file).remove_metadata() for file in files]
+        assert len(files) > 4 and all(schema.equals(schemas[0]) for schema in schemas)
+        some = [pyarrow.parquet.read_table(file, partitioning=None) for file in files]
+        empty = {name for part in some for name in part.column_names if part[name].null_count == len(part)}
+        assert empty, "no file lacks all values of a column"
+
+
+def test_sedona_reads_only_files_that_meet_a_box(folder):
+    sedonadb = pytest.importorskip("sedonadb", reason="pip install sedonadb geoarrow-pyarrow")
+    session = sedonadb.connect()
+    session.read_parquet(f"{folder}/edges/").to_view("edges")
+    frame = geopandas.read_parquet(folder / "edges")
+    west, south, east, north = geopandas.read_parquet(next(folder.glob("edges/*/*/*.parquet")), partitioning=None).total_bounds
+    box = shapely.box(west, south, (2 * west + east) / 3, (2 * south + north) / 3)
+    query = (
+        "SELECT vehicle_id, count(*) AS edges FROM edges WHERE permitted AND "
+        f"ST_Intersects(geometry, ST_SetSRID(ST_GeomFromWKT('{box.wkt}'), 4326)) GROUP BY vehicle_id ORDER BY vehicle_id"
+    )
+    found = session.sql(query).to_arrow_table().to_pydict()
+    known = frame[frame.permitted & frame.intersects(box)].groupby("vehicle_id", observed=True).size()
+    assert dict(zip(found["vehicle_id"], found["edges"], strict=True)) == known.to_dict() and len(known) == 2
+    plan = str(session.sql(f"EXPLAIN ANALYZE {query}").to_arrow_table().to_pydict())
+    files, met = map(int, re.search(r"files_ranges_spatial_pruned=(\d+) total → (\d+) matched", plan).groups())
+    assert 0 < met < files
 
 
 def test_a_reader_reads_only_the_files_of_a_cell_and_vehicle(folder, tmp_path):

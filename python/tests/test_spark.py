@@ -126,3 +126,15 @@ def test_bins_are_even():
     chosen = netcert.spark.bins(costs, 3)
     filled = [sum(costs[task] for task in costs if chosen[task] == number) for number in range(3)]
     assert sorted(chosen) == sorted(costs) and max(filled) <= 4 / 3 * max(sum(costs.values()) / 3, 90)
+
+
+def test_spark_reads_a_data_set_as_one_table(spark, ingested, tmp_path):
+    folder = tmp_path / "permits"
+    netcert.open(ingested).to_dataset(folder, zoom=11)
+    read = spark.read.parquet(f"{folder}/edges").where("permitted").groupBy("vehicle_id").agg({"limiting_unit": "max", "edge_id": "count"})
+    found = {row["vehicle_id"]: (row["count(edge_id)"], row["max(limiting_unit)"]) for row in read.collect()}
+    region = netcert.open(ingested)
+    for vehicle in VEHICLES:
+        edges = region.edges(vehicle).to_pandas()
+        safe = edges[edges.verdict == "safe"]
+        assert found[vehicle] == (len(safe), safe.limiting_unit.max())
