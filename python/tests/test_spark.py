@@ -69,6 +69,20 @@ def test_the_database_has_the_bytes_of_one_machine(spark, fleet, cells, ingested
     assert path.read_bytes() == ingested.read_bytes()
 
 
+def test_overture_files_make_the_bytes_of_one_machine_too(spark, fleet, ingested, same_time, run, tmp_path):
+    source, folder = tmp_path / "overture", tmp_path / "cells"
+    run("export", "overture", "-q", "--db", ingested, "--vehicle", VEHICLES[0], "--out", source)
+    run("cells", "-q", source, "--out", folder, "--edges-at-once", 40)
+    summary = netcert.spark.certify(folder, fleet[:1], spark=spark)
+    assert summary.tasks == 4 and summary.failed == {}
+    assembled, whole = tmp_path / "assembled.gpkg", tmp_path / "whole.gpkg"
+    run("assemble", "-q", folder, "--db", assembled)
+    run("ingest", "-q", source, "--db", whole, "--vehicle", VEHICLES[0])
+    assert assembled.read_bytes() == whole.read_bytes()
+    run("certify", "-q", "--db", assembled, "--vehicle", VEHICLES[1])
+    assert [known.vehicle_id for known in netcert.open(assembled).sets()] == list(VEHICLES)
+
+
 def test_a_task_that_cannot_be_done_is_named_and_the_others_are_certified(spark, fleet, cells, ingested, run, tmp_path):
     from pyspark.sql import functions
 

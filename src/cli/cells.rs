@@ -26,8 +26,8 @@ Examples:
 
 All machines need the same build of netcert. docs/how-to/spark.md goes through it step by step.")]
 pub(crate) struct Cells {
-    /// The OpenStreetMap extract.
-    #[arg(value_name = "REGION.osm.pbf", value_hint = ValueHint::FilePath)]
+    /// The OpenStreetMap extract; or a folder with Overture's files of segments and connectors.
+    #[arg(value_name = "REGION.osm.pbf", value_hint = ValueHint::AnyPath)]
     input: PathBuf,
     /// The folder to write: tasks.parquet and netcert.json. An older folder of tasks is replaced, results included.
     #[arg(long, value_name = "FOLDER")]
