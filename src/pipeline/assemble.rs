@@ -11,7 +11,7 @@ use crate::rows::{EdgeCertificate, EdgeMeasure, StrokeMade, TurnCertificate, Tur
 use crate::store::{Finished, MapChanges, PartOfWork, Stage};
 use crate::verdict::{UnknownReason, Verdict};
 
-use super::making::Making;
+use super::making::{Making, Whom};
 use super::tasks::{Divided, Job};
 use super::{RunError, Summary};
 
@@ -108,7 +108,7 @@ pub fn assemble(
     };
     let Divided { tasks, extract_blake3, .. } = divided;
     let results = Results { each, tasks: *tasks, extract_blake3, failed: BTreeSet::new() };
-    making.run_with(|_| Ok(job.models.clone()), None, Some(results), reporter)
+    making.run(Whom::Chosen(&|_| Ok(job.models.clone())), Some(results), reporter)
 }
 
 /// Whether what is left of a task's work is unknown because the task failed. `failed` is `None` where this machine certifies.

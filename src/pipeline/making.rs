@@ -17,7 +17,7 @@ use crate::verdict::{UnknownReason, Verdict};
 use super::assemble::Results;
 use super::certifying::Certifying;
 use super::identity::{self, Identity};
-use super::reuse::Earlier;
+use super::reuse::{self, Earlier, Older, Stored};
 use super::source::{self, Origin};
 use super::{RunError, Summary, evidence, read_roads, record, utc};
 
@@ -35,23 +35,22 @@ pub(super) struct Making<'a> {
     pub(super) now: &'a dyn Fn() -> String,
 }
 
-impl Making<'_> {
-    /// Makes the database and puts it in place. `choose` says which vehicles to certify, given the number of roads by country. What
-    /// `earlier` has of the same roads is taken over.
-    pub(super) fn run(
-        self,
-        choose: impl FnOnce(&BTreeMap<[u8; 2], usize>) -> Result<Vec<Model>, RunError>,
-        earlier: Option<&mut Database>,
-        reporter: &dyn Reporter,
-    ) -> Result<Summary, RunError> {
-        self.run_with(choose, earlier, None, reporter)
-    }
+/// Chooses vehicles, given the number of roads by country.
+pub(super) type Choose<'a> = dyn Fn(&BTreeMap<[u8; 2], usize>) -> Result<Vec<Model>, RunError> + 'a;
 
-    /// As [`Self::run`]. With `results`, other machines have certified the portions.
-    pub(super) fn run_with(
+/// Which vehicles to certify.
+pub(super) enum Whom<'a> {
+    /// Those that a function chooses.
+    Chosen(&'a Choose<'a>),
+    /// Those of an earlier database. What it has of the same roads is taken over.
+    Earlier(Older<'a>, Vec<Model>),
+}
+
+impl Making<'_> {
+    /// Makes the database and puts it in place. With `results`, other machines have certified the portions.
+    pub(super) fn run(
         mut self,
-        choose: impl FnOnce(&BTreeMap<[u8; 2], usize>) -> Result<Vec<Model>, RunError>,
-        earlier: Option<&mut Database>,
+        whom: Whom<'_>,
         mut results: Option<Results<'_>>,
         reporter: &dyn Reporter,
     ) -> Result<Summary, RunError> {
@@ -68,13 +67,25 @@ impl Making<'_> {
             )));
         }
         // Measurements, and what an earlier database has, are matched with the whole network.
-        let whole = register.is_some() || earlier.is_some();
+        let whole = register.is_some() || matches!(whom, Whom::Earlier(..));
         let source = (self.inputs, &self.changes.changes);
         // Written at once, so that it leaves memory before the network is built.
         let mut behind = |things: &[Backdrop]| Ok(writer.backdrop(things)?);
         let division = (self.edges_at_once, whole);
-        let (mut roads, Origin { header, blake3: hash, segments }) =
-            read_roads(source, self.countries, division, &mut behind, reporter, &mut summary)?;
+        let mut read = || read_roads(source, self.countries, division, &mut behind, reporter, &mut summary);
+        let (mut roads, Origin { header, blake3: hash, segments }, models, stored) = match whom {
+            Whom::Chosen(choose) => {
+                let (roads, origin) = read()?;
+                let models = choose(&roads.countries())?;
+                (roads, origin, models, None)
+            }
+            Whom::Earlier(older, models) => {
+                let (read, stored) = self.beside(older, &models, read, reporter)?;
+                let (roads, origin) = read?;
+                (roads, origin, models, stored)
+            }
+        };
+        summary.stages.extend(stored.iter().map(Stored::stage));
         if let Some(why) = writer.register_lost() {
             reporter
                 .note(&format!("the measurements of the older database are lost, because it cannot be read: {why}"));
@@ -92,12 +103,17 @@ impl Making<'_> {
             measurements = Some(register.entries.len());
             writer.evidence(register);
         }
-        let models = choose(&roads.countries())?;
         for model in &models {
             identity.add(&record(&model.vehicle)?.definition);
         }
-        let earlier = match (earlier, roads.whole()) {
-            (Some(earlier), Some(network)) => Earlier::read(earlier, network, &models, &self, reporter, &mut summary)?,
+        let earlier = match (stored, roads.whole()) {
+            (Some(stored), Some(network)) => {
+                let found = Earlier::find(stored, network, self.settings.turns);
+                if found.is_none() {
+                    reporter.note("all is certified again: the older database lacks certificates");
+                }
+                found
+            }
             _ => None,
         };
         let mut finished = writer.finished(&identity.finish())?;
@@ -162,6 +178,27 @@ impl Making<'_> {
         summary.stage("store", clock, certificates, "certificates");
         summary.vehicles = models.iter().map(|m| m.vehicle.id.clone()).collect();
         Ok(summary)
+    }
+
+    /// Reads roads, and beside that what an earlier database has, if any of it can stand.
+    fn beside<T>(
+        &self,
+        older: Older<'_>,
+        models: &[Model],
+        read: impl FnOnce() -> T,
+        reporter: &dyn Reporter,
+    ) -> Result<(T, Option<Stored>), RunError> {
+        if let Some(why) = reuse::differs(older.database, models, self)? {
+            reporter.note(&format!("all is certified again: {why}"));
+            return Ok((read(), None));
+        }
+        let (countries, settings) = (self.countries, self.settings);
+        std::thread::scope(|scope| {
+            let stored = scope.spawn(move || Stored::read(older, countries, settings));
+            let read = read();
+            let stored = stored.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+            Ok((read, Some(stored)))
+        })
     }
 }
 

@@ -43,7 +43,7 @@ use crate::stet::{Model, ModelError};
 use crate::store::{Database, MapChanges, Run, StoreError, TurnSet, VehicleRecord};
 use crate::turns::{TurnFacts, junction_areas, junction_nodes, turn_facts};
 use crate::vehicle::{Catalogue, Vehicle, VehicleError};
-use making::{EdgeVerdicts, Making};
+use making::{EdgeVerdicts, Making, Whom};
 use roads::Roads;
 use source::Origin;
 
@@ -160,7 +160,7 @@ pub fn ingest(ask: &Ingest<'_>, reporter: &dyn Reporter) -> Result<Summary, RunE
         let vehicles = selected(ask.catalogue, ask.selection, roads)?;
         vehicles.iter().map(|vehicle| Ok(Model::new(vehicle)?)).collect()
     };
-    making.run(choose, None, reporter)
+    making.run(Whom::Chosen(&choose), None, reporter)
 }
 
 /// Stages one and two: reads the extract and builds the network.

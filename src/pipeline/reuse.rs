@@ -2,6 +2,7 @@
 //!
 //! They stand only if the earlier database was made by the same program with the same road rules, settings and vehicles.
 
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -9,15 +10,18 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use crate::certify::{NearNodes, Touched};
 use crate::network::{Differences, Network};
 use crate::osm::LonLat;
-use crate::reporter::Reporter;
+use crate::osm::changes::Changes;
+use crate::osm::facts::Countries;
+use crate::reporter::Silent;
 use crate::rows::{EdgeMeasure, StoredPlan};
+use crate::settings::Settings;
 use crate::stet::Model;
 use crate::store::{CertifiedSet, Database, Kept, KeptPlans};
 use crate::turns::{JunctionArea, TurnFacts, turn_facts};
 
 use super::identity;
 use super::making::Making;
-use super::{RunError, Summary, record};
+use super::{RunError, StageSummary, Summary, read_roads, record};
 
 /// The certificates of one vehicle.
 struct Set {
@@ -42,45 +46,84 @@ pub(super) struct Earlier {
     touched: Touched,
 }
 
-impl Earlier {
-    /// Reads what stands. `None` if nothing does; the reporter says why.
-    pub(super) fn read(
-        database: &mut Database,
-        network: &Network,
-        models: &[Model],
-        making: &Making<'_>,
-        reporter: &dyn Reporter,
-        summary: &mut Summary,
-    ) -> Result<Option<Self>, RunError> {
-        if let Some(why) = differs(database, models, making)? {
-            reporter.note(&format!("all is certified again: {why}"));
-            return Ok(None);
-        }
+/// An earlier database.
+pub(super) struct Older<'a> {
+    pub(super) database: &'a mut Database,
+    /// Ids of the vehicles whose certificates may stand.
+    pub(super) vehicles: Vec<String>,
+    /// The extract and the changes that it was made from, if nothing else is in its network.
+    pub(super) made_from: Option<(PathBuf, Changes)>,
+}
+
+/// What an earlier database has, before it is compared with newer roads.
+pub(super) struct Stored {
+    network: Network,
+    /// By edge: its id, and what its corridor measures.
+    measures: Vec<(i64, EdgeMeasure)>,
+    sets: Vec<Set>,
+    facts: Vec<TurnFacts>,
+    junctions: Vec<JunctionArea>,
+    /// How long it took to read, seconds.
+    seconds: f64,
+}
+
+impl Stored {
+    /// Reads everything, network and certificates beside each other. If the extract is known, the network is built from it again, which takes
+    /// a third of the time of loading it.
+    pub(super) fn read(older: Older<'_>, countries: &Countries, settings: &Settings) -> Result<Self, RunError> {
         let clock = Instant::now();
-        reporter.begin("load", 0);
-        let (settings, policy) = (making.settings, making.settings.policy);
-        let old = database.load_network()?;
-        let mut sets = Vec::new();
-        for model in models {
-            let id = &model.vehicle.id;
-            let [plans, turn_plans] = database.kept_plans(id, policy)?;
-            let (edges, turns) = (database.kept_edges(id, policy)?, database.kept_turns(id, policy)?);
-            sets.push(Set { edges, turns, plans, turn_plans });
+        let Older { database, vehicles, made_from } = older;
+        let path = database.path().to_owned();
+        let certificates = || {
+            let mut database = Database::open(&path)?;
+            let mut sets = Vec::new();
+            for id in &vehicles {
+                let [plans, turn_plans] = database.kept_plans(id, settings.policy)?;
+                let edges = database.kept_edges(id, settings.policy)?;
+                let turns = database.kept_turns(id, settings.policy)?;
+                sets.push(Set { edges, turns, plans, turn_plans });
+            }
+            let measures = database.edge_measures()?;
+            let junctions = if settings.turns { database.junction_areas()? } else { Vec::new() };
+            Ok::<_, RunError>((sets, measures, junctions))
+        };
+        // Not on rayon's threads, which build the newer network meanwhile: these wait for SQLite most of the time.
+        let (roads, certificates) = std::thread::scope(|scope| {
+            let certificates = scope.spawn(certificates);
+            let network = match &made_from {
+                Some((extract, changes)) => built(extract, changes, countries),
+                None => database.load_network().map_err(RunError::from),
+            };
+            let facts =
+                |network: &Network| if settings.turns { turn_facts(network, &settings.kerbs) } else { Vec::new() };
+            let roads = network.map(|network| (facts(&network), network));
+            (roads, certificates.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+        });
+        let ((facts, network), (sets, measures, junctions)) = (roads?, certificates?);
+        let seconds = clock.elapsed().as_secs_f64();
+        Ok(Self { network, measures, sets, facts, junctions, seconds })
+    }
+
+    /// The summary of loading.
+    pub(super) fn stage(&self) -> StageSummary {
+        let items = self.network.edges.len() as u64;
+        StageSummary { stage: "load", seconds: self.seconds, items, what: "directed edges" }
+    }
+}
+
+impl Earlier {
+    /// Finds what stands in a newer network. `None` if the earlier database lacks certificates.
+    pub(super) fn find(stored: Stored, network: &Network, turns: bool) -> Option<Self> {
+        let Stored { network: old, measures, sets, facts, junctions, .. } = stored;
+        let whole = |set: &Set| set.edges.len() == old.edges.len() && (!turns || set.turns.len() == facts.len());
+        let same_edges = measures.iter().map(|(id, _)| *id).eq(old.edges.iter().map(|edge| edge.id));
+        if !same_edges || !sets.iter().all(whole) {
+            return None;
         }
-        let facts = if settings.turns { turn_facts(&old, &settings.kerbs) } else { Vec::new() };
         let differences = Differences::find(&old, network);
-        let measures = database.edge_measures()?;
-        reporter.end();
-        summary.stage("load", clock, old.edges.len() as u64, "directed edges");
-        let whole =
-            |set: &Set| set.edges.len() == old.edges.len() && (!settings.turns || set.turns.len() == facts.len());
-        if measures.len() != old.edges.len() || !sets.iter().all(whole) {
-            reporter.note("all is certified again: the older database lacks certificates");
-            return Ok(None);
-        }
-        let junctions = if settings.turns { database.junction_areas()? } else { Vec::new() };
         let touched = Touched::find(network, &[], &differences.edges, &differences.nodes);
-        Ok(Some(Self { differences, measures, sets, facts, junctions, touched }))
+        let measures = measures.into_iter().map(|(_, measure)| measure).collect();
+        Some(Self { differences, measures, sets, facts, junctions, touched })
     }
 
     /// The strokes that stand, as indices into the new network.
@@ -168,14 +211,26 @@ impl Earlier {
     }
 }
 
+/// The network of an extract with changes.
+fn built(extract: &Path, changes: &Changes, countries: &Countries) -> Result<Network, RunError> {
+    let source = (&[extract][..], changes);
+    let whole = (u64::MAX, true);
+    let (roads, _) = read_roads(source, countries, whole, &mut |_| Ok(()), &Silent, &mut Summary::default())?;
+    Ok(roads.into_whole())
+}
+
 fn edges_of(network: &Network, stroke: u32) -> &[u32] {
     let range =
         network.strokes.get(stroke as usize).map(|stroke| stroke.edges.start as usize..stroke.edges.end as usize);
     range.and_then(|range| network.stroke_edges.get(range)).unwrap_or_default()
 }
 
-/// Why nothing of a database can stand.
-fn differs(database: &mut Database, models: &[Model], making: &Making<'_>) -> Result<Option<String>, RunError> {
+/// Why nothing of a database can stand, if so.
+pub(super) fn differs(
+    database: &mut Database,
+    models: &[Model],
+    making: &Making<'_>,
+) -> Result<Option<String>, RunError> {
     let runs = database.runs()?;
     if let Some((run, _)) = runs.iter().find(|(run, _)| run.netcert_version != identity::PROGRAM) {
         return Ok(Some(format!("the older database is by netcert {}", run.netcert_version)));

@@ -14,7 +14,8 @@ use crate::store::{Database, MapChanges, Run, StoreError};
 use crate::vehicle::Vehicle;
 use crate::words::Named as _;
 
-use super::making::Making;
+use super::making::{Making, Whom};
+use super::reuse::Older;
 use super::source;
 use super::{Certify, EDGES_AT_ONCE, RunError, Summary, certify, utc};
 
@@ -60,11 +61,13 @@ pub fn run_of_extract(runs: &[Run]) -> Option<&Run> {
 /// See [`RunError`]. The older database is then unchanged.
 pub fn update(ask: &Update<'_>, reporter: &dyn Reporter) -> Result<Option<Summary>, RunError> {
     let mut old = Database::open(ask.db)?;
+    let mut made_from = None;
     let (input, changes) = match ask.newer {
         Newer::Extract(path) => (path.as_path(), MapChanges::default()),
         Newer::Files(files) => {
             let header = header_of_extract(&mut old, ask)?;
             let mut known = old.map_changes()?;
+            made_from = Some((ask.extract.to_owned(), known.changes.clone()));
             for file in files {
                 known.changes.merge(Changes::read(file)?);
             }
@@ -84,13 +87,16 @@ pub fn update(ask: &Update<'_>, reporter: &dyn Reporter) -> Result<Option<Summar
             if files.is_empty() {
                 return Ok(None);
             }
+            made_from = Some((ask.extract.to_owned(), known.changes.clone()));
             for file in files {
                 known.changes.merge(Changes::read(&file)?);
             }
             (ask.extract, MapChanges { sequence: Some(last), ..known })
         }
     };
-    make(ask, old, input, changes, reporter).map(Some)
+    // The network of a database with measurements is not that of its extract alone.
+    let made_from = made_from.filter(|_| old.register().is_ok_and(|register| register.entries.is_empty()));
+    make(ask, old, (input, changes), made_from, reporter).map(Some)
 }
 
 /// The header of the extract that the database was made from. Refuses any other extract.
@@ -129,8 +135,8 @@ fn are_newer(changes: &Changes, header: &HeaderInfo, extract: &Path) -> Result<(
 fn make(
     ask: &Update<'_>,
     mut old: Database,
-    input: &Path,
-    changes: MapChanges,
+    (input, changes): (&Path, MapChanges),
+    made_from: Option<(PathBuf, Changes)>,
     reporter: &dyn Reporter,
 ) -> Result<Summary, RunError> {
     let settings = old.settings_of_new_sets()?;
@@ -161,7 +167,8 @@ fn make(
         parameters: ask.parameters.clone(),
         now: ask.now,
     };
-    let mut summary = making.run(|_| Ok(models), Some(&mut old), reporter)?;
+    let older = Older { database: &mut old, vehicles: own, made_from };
+    let mut summary = making.run(Whom::Earlier(older, models), None, reporter)?;
     for (id, settings) in others {
         reporter.note(&format!("{id}, corridor {}: certified again, with its own settings", settings.policy.name()));
         let vehicle = vehicle(&id)?;

@@ -119,6 +119,12 @@ impl Database {
         Ok(())
     }
 
+    /// The file's path.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.session.path
+    }
+
     /// Closes the file and reports errors of closing. Dropping the database closes the file without a report.
     pub fn close(self) -> Result<(), StoreError> {
         self.session.close()

@@ -10,7 +10,7 @@ use crate::rows::Bounds;
 use crate::turns::{JunctionArea, KerbSource};
 
 use super::blob;
-use super::bulk::Bulk;
+use super::bulk::{Bulk, Takes};
 use super::database::Database;
 use super::error::{StoreError, content};
 use super::network_read::rows;
@@ -63,20 +63,8 @@ impl Database {
     }
 }
 
-/// Replaces all areas and registers them as a layer.
-pub(super) async fn add(
-    c: &mut SqliteConnection,
-    areas: impl Iterator<Item = io::Result<JunctionArea>>,
-    time: &str,
-) -> Sql<()> {
-    for sql in [
-        "DELETE FROM junction",
-        "DELETE FROM gpkg_geometry_columns WHERE table_name = 'junction'",
-        "DELETE FROM gpkg_contents WHERE table_name = 'junction'",
-    ] {
-        sqlx::query(sql).execute(&mut *c).await?;
-    }
-    let bounds = insert(c, areas).await?;
+/// Registers the areas as a layer.
+pub(super) async fn register(c: &mut SqliteConnection, bounds: Option<Bounds>, time: &str) -> Sql<()> {
     sets::add_layer_of(c, ("junction", "MULTIPOLYGON"), "Areas of junctions", time, bounds).await?;
     styles::add(c, "junction", Shows::Junctions, time).await
 }
@@ -89,8 +77,9 @@ pub(super) async fn replace(c: &mut SqliteConnection, nodes: &[i64], areas: &[Ju
     insert(c, areas.iter().cloned().map(Ok)).await.map(|_| ())
 }
 
-async fn insert(
-    c: &mut SqliteConnection,
+/// Writes areas and returns the box around them.
+pub(super) async fn insert(
+    to: &mut impl Takes,
     areas: impl Iterator<Item = io::Result<JunctionArea>>,
 ) -> Sql<Option<Bounds>> {
     let mut bulk = Bulk::new("junction", 4);
@@ -104,8 +93,8 @@ async fn insert(
         bulk.add(roads as i64)?;
         bulk.add(kerb_source.map(KerbSource::name))?;
         bulk.add(geom)?;
-        bulk.end_row(c).await?;
+        bulk.end_row(to).await?;
     }
-    bulk.finish(c).await?;
+    bulk.finish(to).await?;
     Ok(bounds)
 }

@@ -4,7 +4,6 @@ use std::ops::Range;
 use std::path::Path;
 
 use rustc_hash::FxHashMap;
-use sqlx::sqlite::SqliteConnection;
 
 use crate::network::Edge;
 use crate::osm::LonLat;
@@ -13,7 +12,7 @@ use crate::rows::Bounds;
 use crate::words::{Named, highway};
 
 use super::blob;
-use super::bulk::Bulk;
+use super::bulk::{Bulk, Takes};
 use super::error::content;
 use super::gathered::{EdgeRow, RoadRow, StrokeRow};
 use super::part::sorter;
@@ -31,14 +30,14 @@ pub(super) struct Written {
 
 /// Writes all tables of the network except those of restrictions and areas. A temporary file is made beside `path`.
 pub(super) async fn write(
-    c: &mut SqliteConnection,
+    to: &mut impl Takes,
     (roads, edges, strokes): (Sorter<u32, RoadRow>, Sorter<u32, EdgeRow>, Sorter<u32, StrokeRow>),
     path: &Path,
 ) -> Sql<Written> {
     let mut boxes = sorter(path, "-boxes")?;
-    let written = roads_and_edges(c, roads.sorted()?, edges.sorted()?, &mut boxes).await?;
-    write_strokes(c, strokes.sorted()?).await?;
-    spatial_index(c, boxes.sorted()?).await?;
+    let written = roads_and_edges(to, roads.sorted()?, edges.sorted()?, &mut boxes).await?;
+    write_strokes(to, strokes.sorted()?).await?;
+    spatial_index(to, boxes.sorted()?).await?;
     Ok(written)
 }
 
@@ -59,23 +58,23 @@ impl Roads {
     }
 
     /// Writes the roads up to one.
-    async fn up_to(&mut self, c: &mut SqliteConnection, wanted: u32) -> Sql<&RoadRow> {
+    async fn up_to(&mut self, to: &mut impl Takes, wanted: u32) -> Sql<&RoadRow> {
         while self.current.as_ref().is_none_or(|(no, _)| *no != wanted) {
             let (no, row) = self.rows.next().ok_or_else(|| content(format!("road {wanted} is missing")))??;
-            self.write(c, no, &row).await?;
+            self.write(to, no, &row).await?;
             self.current = Some((no, row));
         }
         self.current.as_ref().map(|(_, row)| row).ok_or_else(|| content("a road is missing"))
     }
 
-    async fn write(&mut self, c: &mut SqliteConnection, no: u32, row: &RoadRow) -> Sql<()> {
+    async fn write(&mut self, to: &mut impl Takes, no: u32, row: &RoadRow) -> Sql<()> {
         let road = &row.road;
         let mut section = [0; 2];
         let mut legal = [0; 2];
         for i in 0..2 {
             section[i] =
-                self.sections.number(c, section_key(&road.sections[i]), &road.sections[i], add_section).await?;
-            legal[i] = self.legals.number(c, legal_key(&road.legal[i]), &road.legal[i], add_legal).await?;
+                self.sections.number(to, section_key(&road.sections[i]), &road.sections[i], add_section).await?;
+            legal[i] = self.legals.number(to, legal_key(&road.legal[i]), &road.legal[i], add_legal).await?;
         }
         let country = std::str::from_utf8(&road.country).map_err(|_| content("a country code is not text"))?;
         let bulk = &mut self.bulk;
@@ -95,13 +94,13 @@ impl Roads {
         for limit in road.max_speed_km_h {
             bulk.add(limit)?;
         }
-        bulk.end_row(c).await
+        bulk.end_row(to).await
     }
 
-    async fn finish(self, c: &mut SqliteConnection) -> Sql<()> {
-        self.sections.bulk.finish(c).await?;
-        self.legals.bulk.finish(c).await?;
-        self.bulk.finish(c).await
+    async fn finish(self, to: &mut impl Takes) -> Sql<()> {
+        self.sections.bulk.finish(to).await?;
+        self.legals.bulk.finish(to).await?;
+        self.bulk.finish(to).await
     }
 }
 
@@ -135,7 +134,7 @@ impl Ranges {
 }
 
 async fn roads_and_edges(
-    c: &mut SqliteConnection,
+    to: &mut impl Takes,
     roads: Sorted<u32, RoadRow>,
     edges: Sorted<u32, EdgeRow>,
     boxes: &mut Sorter<(u64, u32), Bounds>,
@@ -156,10 +155,10 @@ async fn roads_and_edges(
                 narrowings.add(no)?;
                 narrowings.add(narrowing.vertex)?;
                 narrowings.add(decimal(narrowing.passage_m))?;
-                narrowings.end_row(c).await?;
+                narrowings.end_row(to).await?;
             }
         }
-        let road = roads.up_to(c, row.road).await?;
+        let road = roads.up_to(to, row.road).await?;
         let EdgeRow { edge, mut shape, section, measure, .. } = row;
         if edge.direction == Direction::Backward {
             shape.reverse();
@@ -185,11 +184,11 @@ async fn roads_and_edges(
         bulk.add(ranges.shape.start)?;
         bulk.add(ranges.narrowings.start)?;
         bulk.add(ranges.narrowings.end)?;
-        bulk.end_row(c).await?;
+        bulk.end_row(to).await?;
     }
-    roads.finish(c).await?;
-    bulk.finish(c).await?;
-    narrowings.finish(c).await?;
+    roads.finish(to).await?;
+    bulk.finish(to).await?;
+    narrowings.finish(to).await?;
     Ok(written)
 }
 
@@ -216,7 +215,7 @@ pub(super) fn add_widths(bulk: &mut Bulk, section: &CrossSection) -> Sql<()> {
     Ok(())
 }
 
-async fn write_strokes(c: &mut SqliteConnection, strokes: Sorted<u32, StrokeRow>) -> Sql<()> {
+async fn write_strokes(to: &mut impl Takes, strokes: Sorted<u32, StrokeRow>) -> Sql<()> {
     let mut bulk = Bulk::new("stroke", 6);
     let mut stroke_edges = Bulk::new("stroke_edge", 2);
     let mut position = 0_i64;
@@ -229,19 +228,19 @@ async fn write_strokes(c: &mut SqliteConnection, strokes: Sorted<u32, StrokeRow>
                 position += 1;
                 stroke_edges.add(position)?;
                 stroke_edges.add(i64::from(edge) + 1)?;
-                stroke_edges.end_row(c).await?;
+                stroke_edges.end_row(to).await?;
             }
             bulk.add(position)?;
         }
         bulk.add(closed)?;
-        bulk.end_row(c).await?;
+        bulk.end_row(to).await?;
     }
-    bulk.finish(c).await?;
-    stroke_edges.finish(c).await
+    bulk.finish(to).await?;
+    stroke_edges.finish(to).await
 }
 
 /// Fills the spatial index along a space-filling curve, so that neighbours share pages and pages fill one after the other.
-async fn spatial_index(c: &mut SqliteConnection, boxes: Sorted<(u64, u32), Bounds>) -> Sql<()> {
+async fn spatial_index(to: &mut impl Takes, boxes: Sorted<(u64, u32), Bounds>) -> Sql<()> {
     let mut bulk = Bulk::new("rtree_edge_geom", 5);
     for row in boxes {
         let ((_, index), bounds) = row?;
@@ -249,9 +248,9 @@ async fn spatial_index(c: &mut SqliteConnection, boxes: Sorted<(u64, u32), Bound
         for side in [bounds.west, bounds.east, bounds.south, bounds.north] {
             bulk.add(side)?;
         }
-        bulk.end_row(c).await?;
+        bulk.end_row(to).await?;
     }
-    bulk.finish(c).await
+    bulk.finish(to).await
 }
 
 /// The position of a box's middle on the Z-order curve.
@@ -290,7 +289,7 @@ impl<K: std::hash::Hash + Eq> Distinct<K> {
 
     async fn number<T>(
         &mut self,
-        c: &mut SqliteConnection,
+        to: &mut impl Takes,
         key: K,
         value: &T,
         add: fn(&mut Bulk, &T) -> Sql<()>,
@@ -300,7 +299,7 @@ impl<K: std::hash::Hash + Eq> Distinct<K> {
         if number == next {
             self.bulk.add(number)?;
             add(&mut self.bulk, value)?;
-            self.bulk.end_row(c).await?;
+            self.bulk.end_row(to).await?;
         }
         Ok(number)
     }

@@ -3,13 +3,18 @@
 //! Calls block the thread, so asynchronous callers must use a blocking task. Every error names the file.
 
 use std::path::{Path, PathBuf};
+use std::sync::mpsc;
 
 use sqlx::Connection as _;
 use sqlx::sqlite::{SqliteConnectOptions, SqliteConnection};
 use tokio::runtime::Runtime;
 
+use super::bulk::{Ahead, Insert};
 use super::error::StoreError;
 use crate::sqlite;
+
+/// Statements that wait for SQLite, some thousand rows each.
+const STATEMENTS_AHEAD: usize = 2;
 
 /// A connection, its runtime, and the name of the file for messages.
 pub(super) struct Session {
@@ -33,6 +38,34 @@ impl Session {
         work: impl AsyncFnOnce(&mut SqliteConnection) -> Result<T, sqlx::Error>,
     ) -> Result<T, StoreError> {
         self.runtime.block_on(work(&mut self.connection)).map_err(|e| StoreError::sql(&self.path, e))
+    }
+
+    /// Adds the rows that `make` makes, while another thread hands them to SQLite. Statements keep their order.
+    pub(super) fn fill<T>(
+        &mut self,
+        make: impl AsyncFnOnce(&mut Ahead) -> Result<T, sqlx::Error>,
+    ) -> Result<T, StoreError> {
+        let Self { path, runtime, connection } = self;
+        let makes = tokio::runtime::Builder::new_current_thread().build().map_err(|e| StoreError::io(path, e))?;
+        let (send, statements) = mpsc::sync_channel::<Insert>(STATEMENTS_AHEAD);
+        let done = std::thread::scope(|scope| {
+            let writes = scope.spawn(move || {
+                runtime.block_on(async {
+                    for insert in statements {
+                        insert.execute(connection).await?;
+                    }
+                    Ok(())
+                })
+            });
+            let made = makes.block_on(async {
+                let mut ahead = Ahead(send);
+                make(&mut ahead).await
+            });
+            let written = writes.join().unwrap_or(Err(sqlx::Error::WorkerCrashed));
+            // Where SQLite failed, the maker knows only that nobody takes its rows.
+            written.and(made)
+        });
+        done.map_err(|e| StoreError::sql(path, e))
     }
 
     /// Closes the file and reports errors of closing.

@@ -15,7 +15,7 @@ use crate::turns::{JunctionArea, KerbSource, TurnFacts};
 use crate::words::VerdictKind;
 
 use super::blob;
-use super::bulk::Bulk;
+use super::bulk::{Bulk, Takes};
 use super::database::Database;
 use super::error::{StoreError, content};
 use super::junctions;
@@ -120,10 +120,7 @@ fn kind(facts: &TurnFacts, passage: Option<PassageKind>) -> &'static str {
 }
 
 /// Writes the table `turn` and returns the box around it. Turns keep their order: `fid` is the index + 1.
-pub(super) async fn write(
-    c: &mut SqliteConnection,
-    turns: impl Iterator<Item = io::Result<Record>>,
-) -> Sql<Option<Bounds>> {
+pub(super) async fn write(to: &mut impl Takes, turns: impl Iterator<Item = io::Result<Record>>) -> Sql<Option<Bounds>> {
     let mut bulk = Bulk::new("turn", 13);
     let mut bounds: Option<Bounds> = None;
     for (fid, turn) in (1_i64..).zip(turns) {
@@ -144,26 +141,14 @@ pub(super) async fn write(
         for arc in [facts.through.first(), facts.through.last()] {
             bulk.add(arc.map(|&arc| i64::from(arc) + 1))?;
         }
-        bulk.end_row(c).await?;
+        bulk.end_row(to).await?;
     }
-    bulk.finish(c).await?;
+    bulk.finish(to).await?;
     Ok(bounds)
 }
 
-/// Replaces the turns in the database and registers them as a layer.
-pub(super) async fn add(
-    c: &mut SqliteConnection,
-    turns: impl Iterator<Item = io::Result<Record>>,
-    time: &str,
-) -> Sql<()> {
-    for sql in [
-        "DELETE FROM turn",
-        "DELETE FROM gpkg_geometry_columns WHERE table_name = 'turn'",
-        "DELETE FROM gpkg_contents WHERE table_name = 'turn'",
-    ] {
-        sqlx::query(sql).execute(&mut *c).await?;
-    }
-    let bounds = write(c, turns).await?;
+/// Registers the turns as a layer.
+pub(super) async fn register(c: &mut SqliteConnection, bounds: Option<Bounds>, time: &str) -> Sql<()> {
     sets::add_layer(c, "turn", "Turns at junctions", time, bounds).await?;
     styles::add(c, "turn", Shows::Turns, time).await
 }
@@ -297,8 +282,10 @@ pub(super) async fn insert_set(
     .await?;
     if layers == 0 {
         let record = |facts| Ok(Record::new(set.network, facts, |edge| edge));
-        add(c, set.facts.iter().map(record), time).await?;
-        junctions::add(c, set.junctions.iter().cloned().map(Ok), time).await?;
+        let bounds = write(c, set.facts.iter().map(record)).await?;
+        register(c, bounds, time).await?;
+        let around = junctions::insert(c, set.junctions.iter().cloned().map(Ok)).await?;
+        junctions::register(c, around, time).await?;
     } else if kept != set.facts.len() as i64 {
         return Err(content(format!("{kept} turns are stored, the network has {}", set.facts.len())));
     }

@@ -310,7 +310,7 @@ impl Writer {
         let Gathered { roads, edges, strokes, mut restrictions, areas, backdrop: things } = self.network;
         let things = things.sorted().map_err(at)?.map(|row| row.map(|(_, thing)| thing));
         let scratch = &self.part.path;
-        let network = self.session.run(async |c| network_write::write(c, (roads, edges, strokes), scratch).await)?;
+        let network = self.session.fill(async |to| network_write::write(to, (roads, edges, strokes), scratch).await)?;
         let network_write::Written { edges, bounds } = network;
         let (vehicles, account) = (&self.vehicles, &self.account);
         let run_id = self.session.run(async |c| {
@@ -354,8 +354,8 @@ impl Writer {
             finishing.run(turns, run, run_id)?;
         }
         self.session.run(async |c| contents::add_tables(c, &run.finished).await)?;
-        self.session.run(async |c| check(c).await)?;
         self.session.close()?;
+        check(&self.part.path, &path)?;
         settle(&self.part.target)?;
         nothing_added_meanwhile(&self.part.target, self.older.as_ref())?;
         self.part.place()
@@ -382,10 +382,12 @@ impl FinishTurns<'_> {
             Ok(record)
         });
         let junctions = turns.junctions.sorted().map_err(at)?.map(|row| row.map(|(_, area)| area));
+        session.run(async |c| sqlx::query("BEGIN").execute(c).await)?;
+        let bounds = session.fill(async |to| turns::write(to, rows).await)?;
+        let around = session.fill(async |to| junctions::insert(to, junctions).await)?;
         session.run(async |c| {
-            sqlx::query("BEGIN").execute(&mut *c).await?;
-            turns::add(c, rows, &run.finished).await?;
-            junctions::add(c, junctions, &run.finished).await
+            turns::register(c, bounds, &run.finished).await?;
+            junctions::register(c, around, &run.finished).await
         })?;
         let in_order = numbers.is_sorted();
         let waiting = turns.certificates;
@@ -499,13 +501,23 @@ async fn migrate(c: &mut SqliteConnection, up_to: Option<i64>) -> Sql<()> {
     Ok(())
 }
 
-/// Checks the integrity of the file and its foreign keys, which readers rely on.
-async fn check(c: &mut SqliteConnection) -> Sql<()> {
-    let quick: String = sqlx::query_scalar("PRAGMA quick_check(1)").fetch_one(&mut *c).await?;
-    if quick != "ok" {
-        return Err(content(format!("SQLite's check says: {quick}")));
-    }
-    match sqlx::query("PRAGMA foreign_key_check").fetch_optional(&mut *c).await? {
+/// Checks the integrity of a file and its foreign keys, which readers rely on: both at the same time. Messages name `target`.
+fn check(part: &Path, target: &Path) -> Result<(), StoreError> {
+    let options = SqliteConnectOptions::new().filename(part).read_only(true);
+    let (one, other) = rayon::join(
+        || Session::open(target, &options)?.run(async |c| integrity(c).await),
+        || Session::open(target, &options)?.run(async |c| references(c).await),
+    );
+    one.and(other)
+}
+
+async fn integrity(c: &mut SqliteConnection) -> Sql<()> {
+    let quick: String = sqlx::query_scalar("PRAGMA quick_check(1)").fetch_one(c).await?;
+    if quick == "ok" { Ok(()) } else { Err(content(format!("SQLite's check says: {quick}"))) }
+}
+
+async fn references(c: &mut SqliteConnection) -> Sql<()> {
+    match sqlx::query("PRAGMA foreign_key_check").fetch_optional(c).await? {
         Some(_) => Err(content("a row refers to one that is missing")),
         None => Ok(()),
     }
