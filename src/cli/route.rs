@@ -86,6 +86,9 @@ pub(crate) struct Route {
     /// evidence add`.
     #[arg(long, value_name = "OUT.html|.csv|.geojson", conflicts_with = "certified_only")]
     sheet: Option<PathBuf>,
+    /// The units of lengths on the page. What is asked for is rounded to the cautious side.
+    #[arg(long, value_enum, default_value_t = sheet::PageUnits::Metres, requires = "sheet")]
+    sheet_units: sheet::PageUnits,
     /// Draw the best route into this file: its shape and the leeway along it.
     #[arg(long, value_name = "OUT.svg")]
     svg: Option<PathBuf>,
@@ -188,7 +191,8 @@ impl Route {
             let Some(conditional) = conditional else {
                 bail!("{}: there are no conditions to write; run without --sheet", path.display());
             };
-            write(path, sheet::text(path, network, &inputs.driver.model.vehicle, conditional)?)?;
+            let vehicle = &inputs.driver.model.vehicle;
+            write(path, sheet::text(path, self.sheet_units, network, vehicle, conditional)?)?;
             session.progress.say(&format!("{}: {} conditions to check", path.display(), conditional.conditions.len()));
         }
         Ok(())

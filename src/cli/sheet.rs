@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use anyhow::bail;
+use clap::ValueEnum;
 use netcert::network::Network;
 use netcert::picture::{self, SheetStyle, Units};
 use netcert::route::{Conditional, sheet_csv, sheet_geojson};
@@ -29,16 +30,31 @@ impl Kind {
     }
 }
 
+/// The units of a page.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum PageUnits {
+    Metres,
+    Feet,
+}
+
 /// The sheet in the form that the file's name asks for.
 pub(super) fn text(
     path: &Path,
+    units: PageUnits,
     network: &Network,
     vehicle: &Vehicle,
     conditional: &Conditional,
 ) -> anyhow::Result<String> {
+    let units = match units {
+        PageUnits::Metres => Units::Metres,
+        PageUnits::Feet => Units::Feet,
+    };
     Ok(match Kind::of(path)? {
+        Kind::Table | Kind::Geojson if units == Units::Feet => {
+            bail!("{}: a table for `netcert evidence add` is in metres; a page (.html) may be in feet", path.display())
+        }
         Kind::Table => sheet_csv(network, conditional),
         Kind::Geojson => sheet_geojson(network, vehicle, conditional),
-        Kind::Page => picture::sheet(network, vehicle, conditional, Units::Metres, SheetStyle::Within),
+        Kind::Page => picture::sheet(network, vehicle, conditional, units, SheetStyle::Within),
     })
 }

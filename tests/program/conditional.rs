@@ -99,6 +99,12 @@ fn the_sheet_has_a_row_for_each_measurement() {
     assert_eq!(features["features"].as_array().unwrap().len(), table.lines().count() - 1);
     let page = read("sheet.html");
     assert!(page.starts_with("<!doctype html>") && page.contains("certified only if every line below is so on site"));
+    assert!(!page.contains("ft and in"), "metres are usual");
+    place.netcert(&format!("{corner} --sheet feet.html --sheet-units feet")).succeeds();
+    assert!(
+        read("feet.html").contains("Measured, ft and in") && read("feet.html").contains(" ft (14.00 m) from the node")
+    );
+    place.netcert(&format!("{corner} --sheet feet.csv --sheet-units feet")).fails().tells("is in metres");
     place.netcert(&format!("{corner} --sheet sheet.pdf")).fails().tells(".html, .csv or .geojson");
     place
         .netcert(&format!("route --vehicle {VEHICLE} {ALONG} --sheet none.csv"))
