@@ -86,7 +86,7 @@ pub(crate) struct Route {
     /// evidence add`.
     #[arg(long, value_name = "OUT.html|.csv|.geojson", conflicts_with = "certified_only")]
     sheet: Option<PathBuf>,
-    /// The units of lengths on the page. What is asked for is rounded to the cautious side.
+    /// The units of a sheet that is a page. A needed width is rounded up, and an assumed one down. Tables are in metres.
     #[arg(long, value_enum, default_value_t = sheet::PageUnits::Metres, requires = "sheet")]
     sheet_units: sheet::PageUnits,
     /// Draw the best route into this file: its shape and the leeway along it.

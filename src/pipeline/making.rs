@@ -110,7 +110,8 @@ impl Making<'_> {
             (Some(stored), Some(network)) => {
                 let found = Earlier::find(stored, network, self.settings.turns);
                 if found.is_none() {
-                    reporter.note("all is certified again: the older database lacks certificates");
+                    reporter
+                        .note("all is certified again: the older database lacks certificates, or its edges are others");
                 }
                 found
             }

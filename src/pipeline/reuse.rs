@@ -112,7 +112,8 @@ impl Stored {
 }
 
 impl Earlier {
-    /// Finds what stands in a newer network. `None` if the earlier database lacks certificates.
+    /// Finds what stands in a newer network. `None` if the earlier database lacks certificates, or has other edges than the network that was
+    /// read for it.
     pub(super) fn find(stored: Stored, network: &Network, turns: bool) -> Option<Self> {
         let Stored { network: old, measures, sets, facts, junctions, .. } = stored;
         let whole = |set: &Set| set.edges.len() == old.edges.len() && (!turns || set.turns.len() == facts.len());
