@@ -7,7 +7,7 @@
 
 use super::block::{BLOCK, FIELDS, NOT_CLOSED_RAD, row};
 use super::group::Group;
-use super::lanes::{LANES, V, ZERO, by_instruction_set};
+use super::lanes::{LANES, Vector, by_instruction_set};
 use super::model::{MAX_UNITS, UnitModel};
 use super::step::{
     Filter, MOST, Step, Straying, UnitLanes, foot_shift, heading, hinge_margin, hitch_remainder, remainder, validity,
@@ -59,14 +59,14 @@ struct Past {
 }
 
 /// Eight outputs of one unit: weights of its axle's deviation and of its coupling's deviation over cos δ.
-struct Outputs {
+struct Outputs<V> {
     axle: V,
     coupling: V,
 }
 
 /// Bounds of eight outputs of a unit at a guess of the unit's own remainder, and the growth of each bound per metre of
 /// that remainder.
-struct Reach {
+struct Reach<V> {
     bound: V,
     per_remainder: V,
 }
@@ -80,20 +80,23 @@ struct History {
     closed: Vec<bool>,
 }
 
-/// The last [`MEMORY`] stations of every vehicle of a group. The adjoint runs back along them. A trail serves one sweep after the
-/// other, because making one takes longer than many a sweep.
-pub(super) struct Trail {
-    /// By vehicle, then by stride. Stations share places modulo [`MEMORY`]. There may be more than the group has vehicles.
-    histories: Vec<[History; STRIDES.len()]>,
+/// The histories of vehicles, by stride. They serve one sweep after the other, because making them takes longer than many a sweep.
+#[derive(Default)]
+pub(super) struct Histories(Vec<[History; STRIDES.len()]>);
+
+/// The last [`MEMORY`] stations of every vehicle of a group. The adjoint runs back along them.
+pub(super) struct Trail<'h, V> {
+    /// Stations share places modulo [`MEMORY`]. There may be more than the group has vehicles.
+    histories: &'h mut [[History; STRIDES.len()]],
     /// The steps and joints of the last block.
-    steps: Vec<[Step; MAX_UNITS]>,
+    steps: Vec<[Step<V>; MAX_UNITS]>,
     joints: Vec<[V; MAX_UNITS]>,
     /// Arc length and tan δ of the previous step.
     before: [(V, V); MAX_UNITS],
     /// Number of stations begun.
     count: usize,
     /// By vehicle and unit: the outputs for its heading, its axle and its body points.
-    outputs: Vec<Vec<Vec<Outputs>>>,
+    outputs: Vec<Vec<Vec<Outputs<V>>>>,
     /// The filter's `extra` at the start of the block.
     extra: [V; MAX_UNITS],
 }
@@ -119,14 +122,14 @@ const HEADING: usize = 0;
 const AXLE: usize = 1;
 const POINTS: usize = 2;
 
-fn outputs(unit: &UnitModel) -> Vec<Outputs> {
+fn outputs<V: Vector>(unit: &UnitModel) -> Vec<Outputs<V>> {
     let per_length = 1.0 / unit.length;
     let point = |&a: &f64| (1.0 - a * per_length, a * per_length);
     let all: Vec<(f64, f64)> =
         [(-per_length, per_length), (1.0, 0.0)].into_iter().chain(unit.points.iter().map(point)).collect();
     let batch = |some: &[(f64, f64)]| {
         let at = |i: usize| some[i.min(some.len() - 1)];
-        Outputs { axle: V(std::array::from_fn(|i| at(i).0)), coupling: V(std::array::from_fn(|i| at(i).1)) }
+        Outputs { axle: V::from(std::array::from_fn(|i| at(i).0)), coupling: V::from(std::array::from_fn(|i| at(i).1)) }
     };
     all.chunks(LANES).map(batch).collect()
 }
@@ -135,9 +138,9 @@ by_instruction_set! {
     /// Refines the last block for one vehicle's units from `first_unit` on. The bounds at body points go to `out`, and
     /// the units' rows get the adjoint's values. The filter repeats the block beside the adjoint, with the adjoint's
     /// second order.
-    pub(super) fn refine(
-        trail: &mut Trail,
-        group: &Group<'_>,
+    pub(super) fn refine<V>(
+        trail: &mut Trail<'_, V>,
+        group: &Group<'_, V>,
         lane: usize,
         first_unit: usize,
         extra: &mut [V; MAX_UNITS],
@@ -150,7 +153,7 @@ by_instruction_set! {
             points.resize(unit.points.len() * BLOCK, MOST);
         }
         for (extra, entered) in extra.iter_mut().zip(&trail.extra) {
-            extra.0[lane] = entered.0[lane];
+            extra.set(lane, entered.lane(lane));
         }
         for k in 0..BLOCK {
             trail.station(group, lane, first_unit, first + k, k, extra, rows, out);
@@ -158,34 +161,44 @@ by_instruction_set! {
     }
 }
 
-impl Trail {
+impl Histories {
     pub(super) const fn new() -> Self {
-        Self {
-            histories: Vec::new(),
-            steps: Vec::new(),
-            joints: Vec::new(),
-            before: [(ZERO, ZERO); MAX_UNITS],
-            count: 0,
-            outputs: Vec::new(),
-            extra: [ZERO; MAX_UNITS],
-        }
+        Self(Vec::new())
     }
 
-    /// Begins again for these vehicles. What the histories hold is of no more use: every station is written before it is read.
-    pub(super) fn begin_again(&mut self, group: &Group<'_>) {
+    /// A trail for these vehicles. What the histories hold is of no more use: every station is written before it is read.
+    pub(super) fn trail<V: Vector>(&mut self, group: &Group<'_, V>) -> Trail<'_, V> {
         let history = |_| History {
             past: vec![[Past::default(); MAX_UNITS]; MEMORY],
             steer: vec![0.0; MEMORY],
             closed: vec![true; MEMORY],
         };
         let lanes = group.models.len();
-        if self.histories.len() < lanes {
-            self.histories.resize_with(lanes, || std::array::from_fn(history));
+        if self.0.len() < lanes {
+            self.0.resize_with(lanes, || std::array::from_fn(history));
         }
-        self.steps.resize(BLOCK, [Step::NONE; MAX_UNITS]);
-        self.joints.resize(BLOCK, [ZERO; MAX_UNITS]);
-        self.count = 0;
-        self.outputs = group.models.iter().map(|model| model.units.iter().map(outputs).collect()).collect();
+        Trail {
+            histories: &mut self.0,
+            steps: vec![[Step::NONE; MAX_UNITS]; BLOCK],
+            joints: vec![[V::ZERO; MAX_UNITS]; BLOCK],
+            outputs: group.models.iter().map(|model| model.units.iter().map(outputs).collect()).collect(),
+            ..Trail::none()
+        }
+    }
+}
+
+impl<V: Vector> Trail<'_, V> {
+    /// The trail of a sweep without the adjoint.
+    pub(super) fn none() -> Self {
+        Self {
+            histories: &mut [],
+            steps: Vec::new(),
+            joints: Vec::new(),
+            before: [(V::ZERO, V::ZERO); MAX_UNITS],
+            count: 0,
+            outputs: Vec::new(),
+            extra: [V::ZERO; MAX_UNITS],
+        }
     }
 
     /// Starts a block.
@@ -196,11 +209,11 @@ impl Trail {
 
     /// Records the steps of another station, the `k`-th of its block.
     #[inline(always)]
-    pub(super) fn begin(&mut self, k: usize, steps: &[Step; MAX_UNITS], joints: &[V; MAX_UNITS], steer: V) {
+    pub(super) fn begin(&mut self, k: usize, steps: &[Step<V>; MAX_UNITS], joints: &[V; MAX_UNITS], steer: V) {
         if self.count == 0 {
             self.before = std::array::from_fn(|unit| (steps[unit].advance, steps[unit].mid_tangent));
         }
-        for (history, steer) in self.histories.iter_mut().zip(steer.0) {
+        for (history, steer) in self.histories.iter_mut().zip(steer.array()) {
             history[0].steer[self.count % MEMORY] = steer;
         }
         self.steps[k] = *steps;
@@ -211,7 +224,16 @@ impl Trail {
     /// Records the filter's bounds of one unit at the station begun last.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)] // All bounds of one station, in the innermost loop.
-    pub(super) fn record(&mut self, group: &Group<'_>, unit: usize, step: &Step, z: V, zh: V, axle: V, closed: V) {
+    pub(super) fn record(
+        &mut self,
+        group: &Group<'_, V>,
+        unit: usize,
+        step: &Step<V>,
+        z: V,
+        zh: V,
+        axle: V,
+        closed: V,
+    ) {
         let of = &group.chain[unit];
         let (advance, tangent) = self.before[unit];
         let rate = (advance + step.advance) * (of.inverse_length * 0.5);
@@ -224,18 +246,18 @@ impl Trail {
         self.before[unit] = (step.advance, step.mid_tangent);
         let at = (self.count - 1) % MEMORY;
         for (lane, history) in self.histories.iter_mut().enumerate().take(group.models.len()) {
-            history[0].closed[at] = closed.0[lane] >= 0.0;
+            history[0].closed[at] = closed.lane(lane) >= 0.0;
             history[0].past[at][unit] = Past {
-                rate: rate.0[lane],
-                rate_secant: rate.0[lane] * secant.0[lane],
-                secant: secant.0[lane],
-                couple: couple.0[lane],
-                pass: pass.0[lane],
-                z: z.0[lane],
-                push: rate.0[lane] * (of.length.0[lane] * of.sway.0[lane] + z.0[lane]),
-                hitch: zh.0[lane],
-                axle: axle.0[lane],
-                ..Past::over(turned.0[lane], 1)
+                rate: rate.lane(lane),
+                rate_secant: rate.lane(lane) * secant.lane(lane),
+                secant: secant.lane(lane),
+                couple: couple.lane(lane),
+                pass: pass.lane(lane),
+                z: z.lane(lane),
+                push: rate.lane(lane) * (of.length.lane(lane) * of.sway.lane(lane) + z.lane(lane)),
+                hitch: zh.lane(lane),
+                axle: axle.lane(lane),
+                ..Past::over(turned.lane(lane), 1)
             };
         }
     }
@@ -266,7 +288,7 @@ impl Trail {
     #[allow(clippy::too_many_arguments)] // As above.
     fn station(
         &mut self,
-        group: &Group<'_>,
+        group: &Group<'_, V>,
         lane: usize,
         first_unit: usize,
         station: usize,
@@ -279,7 +301,7 @@ impl Trail {
         let units = group.models[lane].units.len();
         let steer = self.histories[lane][0].steer[station % MEMORY];
         let mut straying = Straying::of_the_steer_axle(V::splat(steer));
-        let (mut heading_ahead, mut shift_ahead) = (group.course, ZERO);
+        let (mut heading_ahead, mut shift_ahead) = (group.course, V::ZERO);
         let mut closes = true;
         let mut beside = Filter::begin(&group.chain[..group.units], &steps);
         let mut coupling = V::splat(steer);
@@ -292,14 +314,14 @@ impl Trail {
                 // The filter's bounds stay in use. The units behind need only their effect.
                 let at = |field: usize| V::splat(rows[start + field * BLOCK + k]);
                 let (axle, own) = (at(row::EXTRA_AXLE), at(row::EXTRA_COUPLING));
-                closes &= axle.0[lane] < MOST;
+                closes &= axle.lane(lane) < MOST;
                 let a = of.heading + (axle + own) * of.inverse_length + at(row::REMAINDER);
                 (heading_ahead, shift_ahead) = (a, foot_shift(of, step, of.coupling + own));
                 straying = straying.next(of, step, a);
                 let past = &self.histories[lane][0].past[station % MEMORY][unit];
                 coupling = of.axle + axle + of.hitch * a + past.hitch;
-                extra[unit].0[lane] =
-                    beside.step(of, step, filtered, a, V::splat(past.z), V::splat(past.hitch)).0[lane];
+                extra[unit]
+                    .set(lane, beside.step(of, step, filtered, a, V::splat(past.z), V::splat(past.hitch)).lane(lane));
                 continue;
             }
             let mut store = |field: usize, value: f64| rows[start + field * BLOCK + k] = value;
@@ -312,8 +334,8 @@ impl Trail {
                 closes = false;
                 store(row::EXTRA_AXLE, MOST);
                 store(row::HINGE, NOT_CLOSED_RAD);
-                extra[unit].0[lane] = of.settled.0[lane];
-                beside.coupling = ZERO;
+                extra[unit].set(lane, of.settled.lane(lane));
+                beside.coupling = V::ZERO;
                 continue;
             };
             let (a, axle) = (V::splat(a), V::splat(axle));
@@ -321,19 +343,19 @@ impl Trail {
             let more = axle - of.axle;
             let own_shift = foot_shift(of, step, axle + of.length * a);
             let ahead = heading_ahead + a + shift_ahead;
-            let margin = hinge_margin(of, joints[unit], ahead, if unit == 0 { ZERO } else { own_shift });
+            let margin = hinge_margin(of, joints[unit], ahead, if unit == 0 { V::ZERO } else { own_shift });
             (heading_ahead, shift_ahead) = (a, own_shift);
-            store(row::EXTRA_AXLE, more.0[lane]);
-            store(row::EXTRA_COUPLING, ((a - of.heading) * of.length - more).0[lane]);
-            store(row::REMAINDER, (r1 * of.inverse_length).0[lane]);
-            store(row::HINGE, margin.0[lane]);
+            store(row::EXTRA_AXLE, more.lane(lane));
+            store(row::EXTRA_COUPLING, ((a - of.heading) * of.length - more).lane(lane));
+            store(row::REMAINDER, (r1 * of.inverse_length).lane(lane));
+            store(row::HINGE, margin.lane(lane));
             straying = straying.next(of, step, a);
             let follower = (unit + 1 < units).then(|| (&group.chain[unit + 1], &steps[unit + 1]));
             let zh = hitch_remainder(of, step, follower, a, axle, r1, &straying);
             coupling = axle + of.hitch * a + zh;
             let past = &mut self.histories[lane][0].past[station % MEMORY][unit];
-            past.note(of, lane, z.0[lane], zh.0[lane], axle.0[lane]);
-            extra[unit].0[lane] = beside.step(of, step, filtered, a, z, zh).0[lane];
+            past.note(of, lane, z.lane(lane), zh.lane(lane), axle.lane(lane));
+            extra[unit].set(lane, beside.step(of, step, filtered, a, z, zh).lane(lane));
         }
         self.histories[lane][0].closed[station % MEMORY] = closes;
     }
@@ -345,11 +367,11 @@ impl Trail {
     #[allow(clippy::too_many_arguments)] // As above.
     fn settle(
         &mut self,
-        group: &Group<'_>,
+        group: &Group<'_, V>,
         lane: usize,
         station: usize,
         unit: usize,
-        step: &Step,
+        step: &Step<V>,
         coupled: V,
         points: &mut [f64],
     ) -> Option<(f64, f64)> {
@@ -362,19 +384,19 @@ impl Trail {
         let first = self.reach(group, lane, station, unit, 0);
         let at = |z: f64, output: usize| {
             let more = (z - guess).max(0.0);
-            (first.bound.0[output] + first.per_remainder.0[output] * more) * SURE
+            (first.bound.lane(output) + first.per_remainder.lane(output) * more) * SURE
         };
         let mut z = guess;
         let mut rounds = 0;
         let (a, axle) = loop {
             let axle = at(z, AXLE);
             let (a, short) = heading(of, step, V::splat(at(z, HEADING)), V::splat(axle), coupled);
-            let valid = validity(of, step, a, coupled * step.cosine).min(short).0[lane] >= 0.0;
+            let valid = validity(of, step, a, coupled * step.cosine).min(short).lane(lane) >= 0.0;
             if rounds == ROUNDS || !valid || !axle.is_finite() {
                 return None;
             }
-            let implied = remainder(of, step, a, V::splat(axle), coupled).1.0[lane];
-            let a = a.0[lane];
+            let implied = remainder(of, step, a, V::splat(axle), coupled).1.lane(lane);
+            let a = a.lane(lane);
             if implied <= z {
                 break (a, axle);
             }
@@ -385,7 +407,7 @@ impl Trail {
         for batch in 0..count {
             let reach = if batch == 0 { Reach { ..first } } else { self.reach(group, lane, station, unit, batch) };
             let bounds = (reach.bound + reach.per_remainder * more) * SURE;
-            for (i, bound) in bounds.0.into_iter().enumerate() {
+            for (i, bound) in bounds.array().into_iter().enumerate() {
                 if let Some(point) = (batch * LANES + i).checked_sub(POINTS)
                     && let Some(place) = points.get_mut(point * BLOCK)
                 {
@@ -398,16 +420,16 @@ impl Trail {
 
     /// Runs the adjoint of eight outputs of a unit backwards from `station`.
     #[inline(always)]
-    fn reach(&self, group: &Group<'_>, lane: usize, station: usize, unit: usize, batch: usize) -> Reach {
+    fn reach(&self, group: &Group<'_, V>, lane: usize, station: usize, unit: usize, batch: usize) -> Reach<V> {
         let outputs = &self.outputs[lane][unit][batch];
         let histories = &self.histories[lane];
         let now = &histories[0].past[station % MEMORY];
         let steer = histories[0].steer[station % MEMORY];
-        let mut mu = [ZERO; MAX_UNITS];
+        let mut mu = [V::ZERO; MAX_UNITS];
         mu[unit] = outputs.axle;
         // Couplings pass a deviation on without lag.
         let mut nu = outputs.coupling * now[unit].secant;
-        let mut bound = ZERO;
+        let mut bound = V::ZERO;
         for j in (0..unit).rev() {
             bound = bound + nu.abs() * now[j].hitch;
             mu[j] = nu * now[j].couple;
@@ -416,10 +438,10 @@ impl Trail {
         bound = bound + nu.abs() * steer;
         let per_remainder = outputs.axle.abs() * (0.6 * now[unit].rate);
 
-        let mut sources = [ZERO; MAX_UNITS];
-        let mut older = [ZERO; MAX_UNITS];
-        let mut last = ZERO;
-        nu = ZERO;
+        let mut sources = [V::ZERO; MAX_UNITS];
+        let mut older = [V::ZERO; MAX_UNITS];
+        let mut last = V::ZERO;
+        nu = V::ZERO;
         for j in (0..=unit).rev() {
             last = last + mu[j].abs() * now[j].push + nu.abs() * now[j].hitch;
             sources[j] = nu * now[j].couple;
@@ -431,12 +453,11 @@ impl Trail {
         let floor = station.saturating_sub(MEMORY - BLOCK - 4);
         let closed_blocks = self.count - BLOCK;
         let (mut at, mut taken) = (station, STRIDES.len());
-        let straight = |j: usize| group.chain[j].axle.0[lane] + group.chain[j].settled.0[lane];
+        let straight = |j: usize| group.chain[j].axle.lane(lane) + group.chain[j].settled.lane(lane);
         let rest = loop {
-            let sum = |of: &dyn Fn(usize) -> f64| (0..=unit).fold(ZERO, |sum, j| sum + mu[j].abs() * of(j));
             let past = &histories[0].past[at % MEMORY];
             if at <= floor {
-                break sum(&|j| if at == 0 { straight(j) } else { past[j].axle });
+                break weighted(&mu[..=unit], |j| if at == 0 { straight(j) } else { past[j].axle });
             }
             let gone = station - at;
             let mut stride = 0;
@@ -452,11 +473,11 @@ impl Trail {
             if !histories[stride].closed[(at - STRIDES[stride]) % MEMORY] {
                 // The bounds begin anew at a place where they did not close, and nothing is claimed of a vehicle that
                 // came through it.
-                break sum(&straight);
+                break weighted(&mu[..=unit], straight);
             }
             if gone % CUT_STATIONS == CUT_STATIONS - 1 || stride > 1 {
-                let rest = sum(&|j| past[j].axle);
-                if rest.0.iter().all(|&r| r < REST_M) {
+                let rest = weighted(&mu[..=unit], |j| past[j].axle);
+                if rest.all_below(REST_M) {
                     break rest;
                 }
             }
@@ -466,8 +487,8 @@ impl Trail {
             // The second difference needs three steps of the same stride.
             let bent = taken == stride;
             taken = stride;
-            let mut rate = ZERO;
-            nu = ZERO;
+            let mut rate = V::ZERO;
+            nu = V::ZERO;
             for j in (0..=unit).rev() {
                 let p = &past[j];
                 let source = nu * p.couple;
@@ -485,7 +506,7 @@ impl Trail {
             let length = STRIDES[stride] as f64;
             bound = bound + (rate + last) * (0.5 * length);
             if bent {
-                bound = bound + (last * 2.0 - rate - before_last).max(ZERO) * (length / 12.0);
+                bound = bound + (last * 2.0 - rate - before_last).max(V::ZERO) * (length / 12.0);
             }
             before_last = last;
             last = rate;
@@ -512,23 +533,33 @@ impl Past {
 
     /// Replaces the filter's bounds.
     #[inline(always)]
-    fn note(&mut self, of: &UnitLanes, lane: usize, z: f64, hitch: f64, axle: f64) {
+    fn note<V: Vector>(&mut self, of: &UnitLanes<V>, lane: usize, z: f64, hitch: f64, axle: f64) {
         self.z = z;
-        self.push = self.rate * (of.length.0[lane] * of.sway.0[lane] + z);
+        self.push = self.rate * (of.length.lane(lane) * of.sway.lane(lane) + z);
         self.hitch = hitch;
         self.axle = axle;
     }
 }
 
+/// The bounds of deviations, weighted by the size of what an output takes from each.
+#[inline(always)]
+fn weighted<V: Vector>(weights: &[V], bound: impl Fn(usize) -> f64) -> V {
+    let mut sum = V::ZERO;
+    for (j, weight) in weights.iter().enumerate() {
+        sum = sum + weight.abs() * bound(j);
+    }
+    sum
+}
+
 /// The first unit of a vehicle for which a block of rows bends enough to make the adjoint worth its time.
 #[inline(always)]
-pub(super) fn first_loose(group: &Group<'_>, lane: usize, rows: &[f64]) -> usize {
+pub(super) fn first_loose<V: Vector>(group: &Group<'_, V>, lane: usize, rows: &[f64]) -> usize {
     let mut sum = 0.0;
     for unit in 0..group.models[lane].units.len() {
         let start = ((unit * LANES + lane) * FIELDS + row::CURVATURE) * BLOCK;
         let most =
             rows[start..start + BLOCK].iter().fold(0.0, |most: f64, &k| if k.abs() > most { k.abs() } else { most });
-        let tangent = most * group.chain[unit].length.0[lane];
+        let tangent = most * group.chain[unit].length.lane(lane);
         sum += 0.5 * tangent * tangent;
         if sum > WORTH {
             return unit;

@@ -13,7 +13,7 @@
 
 use super::block::{Minima, UNVISITED_M};
 use super::group::gamma;
-use super::lanes::{TAG_MASK, by_instruction_set};
+use super::lanes::{TAG_MASK, Vector, by_instruction_set};
 use super::model::Model;
 use super::response::Response;
 use super::shift::{self, KNOT_STATIONS};
@@ -50,7 +50,7 @@ const FAR_M: f64 = 0.4;
 /// The leeway to one edge at one body point, in the linear response.
 #[derive(Clone, Copy)]
 struct Row {
-    /// Unit and point, as in [`super::lanes::V::tagged`].
+    /// Unit and point, as in [`super::lanes::tagged`].
     tag: u64,
     /// Knot of the point's foot.
     foot: u32,
@@ -90,7 +90,7 @@ pub(super) struct Ascent {
 
 by_instruction_set! {
     /// Returns better coefficients than `start`.
-    pub(super) fn climb(ascent: &mut Ascent, start: Vec<f64>) -> Vec<f64> {
+    pub(super) fn climb<V>(ascent: &mut Ascent, start: Vec<f64>) -> Vec<f64> {
         ascent.climb(start)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::ops::{Range, RangeInclusive};
 
-use super::lanes::{LANES, V};
+use super::lanes::{LANES, Vector, tagged};
 
 /// Head stations per block.
 pub(super) const BLOCK: usize = 32;
@@ -41,9 +41,9 @@ pub(super) mod row {
 
 /// Writes a value with vehicles in lanes to the vehicles' own rows.
 #[inline(always)]
-pub(super) fn store(rows: &mut [f64], unit: usize, field: usize, k: usize, value: V) {
-    for lane in 0..LANES {
-        rows[((unit * LANES + lane) * FIELDS + field) * BLOCK + k] = value.0[lane];
+pub(super) fn store<V: Vector>(rows: &mut [f64], unit: usize, field: usize, k: usize, value: V) {
+    for (lane, value) in value.array().into_iter().enumerate() {
+        rows[((unit * LANES + lane) * FIELDS + field) * BLOCK + k] = value;
     }
 }
 
@@ -78,7 +78,7 @@ impl Feet {
 /// Least leeways and margins at every extended station, for one vehicle.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Minima {
-    /// Tagged (see [`super::lanes::V::tagged`]) with `unit · 16 + point`.
+    /// Tagged (see [`super::lanes::tagged`]) with `unit · 16 + point`.
     pub(super) left: Vec<f64>,
     pub(super) right: Vec<f64>,
     /// As `left` and `right`, for sides between two of their points; at marked stations only.
@@ -137,8 +137,8 @@ impl Minima {
     }
 
     pub(super) fn lose(&mut self, k: usize) {
-        self.hinge[k] = V::splat(NOT_CLOSED_RAD).tagged(0).0[0];
-        [self.left[k], self.right[k]] = [V::splat(LOST_M).tagged(0).0[0]; 2];
+        self.hinge[k] = tagged(NOT_CLOSED_RAD, 0);
+        [self.left[k], self.right[k]] = [tagged(LOST_M, 0); 2];
     }
 
     /// Whether no leeway at these stations is negative.

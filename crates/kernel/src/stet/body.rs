@@ -3,7 +3,7 @@
 
 use super::block::{BLOCK, Feet, LOST_M, Minima};
 use super::group::gamma;
-use super::lanes::{LANES, V};
+use super::lanes::{LANES, Vector, tagged};
 use super::model::Model;
 use super::plane::{Rooms, Stand};
 use super::track::{Fields, Track};
@@ -157,7 +157,7 @@ pub(super) fn bodies<const CERTIFY: bool>(model: &Model, track: &Track, shrink: 
 }
 
 /// Eight points relative to their foot stations.
-pub(super) struct Seen {
+pub(super) struct Seen<V> {
     pub(super) at: Fields<V>,
     pub(super) along: V,
     pub(super) lateral: V,
@@ -197,18 +197,18 @@ impl Way {
 impl LastAxle {
     /// Raises the offsets to the axle's distance from the planned path, at its own feet.
     #[inline(always)]
-    pub(super) fn follow(&mut self, track: &Track, [x, y]: [V; 2], shift: &[f64], minima: &mut Minima) {
+    pub(super) fn follow<V: Vector>(&mut self, track: &Track, [x, y]: [V; 2], shift: &[f64], minima: &mut Minima) {
         let feet = follow(track, self.foot, x, y);
         let seen = place(track.fields.gather(&feet), x, y);
         let spread = V::splat(1.0) / narrow(&seen.at, seen.lateral);
         let (on, lateral) = foot(&seen.at, seen.along, seen.lateral, spread);
         for (i, &k) in feet.iter().enumerate() {
-            let other = if on.0[i] < 0.0 { k.saturating_sub(1) } else { (k + 1).min(track.len() - 1) };
+            let other = if on.lane(i) < 0.0 { k.saturating_sub(1) } else { (k + 1).min(track.len() - 1) };
             let [own, next] = [k, other].map(|k| shift[k]);
-            let planned = own + (next - own) * (on.0[i].abs() / track.spacing).min(1.0);
-            minima.offset[k] = minima.offset[k].max((lateral.0[i] - planned).abs());
+            let planned = own + (next - own) * (on.lane(i).abs() / track.spacing).min(1.0);
+            minima.offset[k] = minima.offset[k].max((lateral.lane(i) - planned).abs());
         }
-        self.foot = next_foot(track, feet[LANES - 1], seen.along.0[LANES - 1]);
+        self.foot = next_foot(track, feet[LANES - 1], seen.along.lane(LANES - 1));
     }
 }
 
@@ -254,7 +254,7 @@ impl Point {
         if self.covered == FRESH {
             return;
         }
-        let lost = V::splat(LOST_M).tagged(self.tag).0[0];
+        let lost = tagged(LOST_M, self.tag);
         for k in self.covered + 1..end.min(minima.left.len()) {
             minima.left[k] = least(minima.left[k], lost);
             minima.right[k] = least(minima.right[k], lost);
@@ -263,7 +263,7 @@ impl Point {
 }
 
 #[inline(always)]
-pub(super) fn place(at: Fields<V>, x: V, y: V) -> Seen {
+pub(super) fn place<V: Vector>(at: Fields<V>, x: V, y: V) -> Seen<V> {
     let (dx, dy) = (x - at.x, y - at.y);
     let along = dx * at.tangent_x + dy * at.tangent_y;
     let lateral = dy * at.tangent_x - dx * at.tangent_y;
@@ -271,25 +271,20 @@ pub(super) fn place(at: Fields<V>, x: V, y: V) -> Seen {
 }
 
 #[inline(always)]
-pub(super) fn near(along: V) -> bool {
-    // A NaN counts as far, because it compares false.
-    let mut all = true;
-    for a in along.0 {
-        all &= a.abs() <= NEAR_M;
-    }
-    all
+pub(super) fn near<V: Vector>(along: V) -> bool {
+    along.abs().all_below(NEAR_M.next_up())
 }
 
 /// The nearest station of each point, found by walking from `first`. The walk goes step by step because neighbouring
 /// points have neighbouring feet.
-pub(super) fn follow(track: &Track, first: usize, x: V, y: V) -> [usize; LANES] {
+pub(super) fn follow<V: Vector>(track: &Track, first: usize, x: V, y: V) -> [usize; LANES] {
     let f = &track.fields;
     let last = track.len() - 1;
     let mut feet = [first; LANES];
     let mut k = first.min(last);
     for (i, foot) in feet.iter_mut().enumerate() {
         for _ in 0..MOST_STEPS {
-            let (dx, dy) = (x.0[i] - f.x[k], y.0[i] - f.y[k]);
+            let (dx, dy) = (x.lane(i) - f.x[k], y.lane(i) - f.y[k]);
             let along = dx * f.tangent_x[k] + dy * f.tangent_y[k];
             let lateral = dy * f.tangent_x[k] - dx * f.tangent_y[k];
             // On the outside of a curve stations are farther apart at the point than on the line.
@@ -318,14 +313,14 @@ pub(super) fn next_foot(track: &Track, foot: usize, along: f64) -> usize {
 /// Metres a point moves along the corridor while its foot moves a metre, 1 − κb. It is below 1 on the inside of a bend.
 /// The least value is 0.1; half-widths end before that.
 #[inline(always)]
-pub(super) fn narrow(at: &Fields<V>, lateral: V) -> V {
+pub(super) fn narrow<V: Vector>(at: &Fields<V>, lateral: V) -> V {
     (V::splat(1.0) - at.curvature * lateral).max(V::splat(0.1))
 }
 
 /// Arc length from the station to the foot of a point at (`along`, `lateral`), and the lateral place at that foot.
 /// `spread` is 1/(1 − κb): σ = a/(1 − κb), lat = b − (κ/2 + κ'σ/6)·a·σ.
 #[inline(always)]
-pub(super) fn foot(at: &Fields<V>, along: V, lateral: V, spread: V) -> (V, V) {
+pub(super) fn foot<V: Vector>(at: &Fields<V>, along: V, lateral: V, spread: V) -> (V, V) {
     let sigma = along * spread;
     (sigma, lateral - (at.curvature * 0.5 + at.curvature_slope * sigma * (1.0 / 6.0)) * along * sigma)
 }

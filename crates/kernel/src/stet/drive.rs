@@ -3,7 +3,7 @@
 use super::adjoint::Trail;
 use super::block::{BLOCK, NOT_CLOSED_RAD, row, store};
 use super::group::Group;
-use super::lanes::{V, ZERO, by_instruction_set, select_negative};
+use super::lanes::{LANES, Vector, by_instruction_set};
 use super::model::MAX_UNITS;
 use super::step::{
     Filter, MOST, Step, Straying, chord_bulge, chord_lag, decay, foot_shift, heading, hinge_margin, hitch_remainder,
@@ -14,12 +14,12 @@ use super::track::Track;
 
 /// The steer axles of a block's lanes at its head stations and at the next two.
 pub(super) struct SteerPaths {
-    x: [V; BLOCK + 2],
-    y: [V; BLOCK + 2],
+    x: [[f64; LANES]; BLOCK + 2],
+    y: [[f64; LANES]; BLOCK + 2],
     /// The tracks' first headings.
-    heading: [V; 2],
+    heading: [[f64; LANES]; 2],
     /// 1 over the square of the spacing, 1/m².
-    per_step2: V,
+    per_step2: [f64; LANES],
     /// Stations driven.
     driven: usize,
 }
@@ -27,12 +27,11 @@ pub(super) struct SteerPaths {
 impl SteerPaths {
     /// Before the first block.
     pub(super) fn new(rides: &[&Ride<'_>]) -> Self {
-        let lanes =
-            |of: &dyn Fn(&Track) -> f64| V(std::array::from_fn(|lane| of(rides[lane.min(rides.len() - 1)].track)));
+        let lanes = |of: &dyn Fn(&Track) -> f64| std::array::from_fn(|lane| of(rides[lane.min(rides.len() - 1)].track));
         let per_step2 = lanes(&|track| 1.0 / (track.spacing * track.spacing));
         let heading =
             [lanes(&|track| track.fields.tangent_x[track.lead]), lanes(&|track| track.fields.tangent_y[track.lead])];
-        Self { x: [ZERO; BLOCK + 2], y: [ZERO; BLOCK + 2], heading, per_step2, driven: 0 }
+        Self { x: [[0.0; LANES]; BLOCK + 2], y: [[0.0; LANES]; BLOCK + 2], heading, per_step2, driven: 0 }
     }
 
     /// Moves on to the next block. A ride that has ended goes straight on.
@@ -43,25 +42,25 @@ impl SteerPaths {
             for (k, (x, y)) in self.x.iter_mut().zip(&mut self.y).enumerate() {
                 let at = (head + k).min(last);
                 let beyond = (head + k - at) as f64 * ride.track.spacing;
-                x.0[lane] = f.x[at] - shift[at] * f.tangent_y[at] + beyond * f.tangent_x[at];
-                y.0[lane] = f.y[at] + shift[at] * f.tangent_x[at] + beyond * f.tangent_y[at];
+                x[lane] = f.x[at] - shift[at] * f.tangent_y[at] + beyond * f.tangent_x[at];
+                y[lane] = f.y[at] + shift[at] * f.tangent_x[at] + beyond * f.tangent_y[at];
             }
         }
         for place in self.x.iter_mut().chain(&mut self.y) {
-            let last = place.0[rides.len() - 1];
-            place.0[rides.len()..].fill(last);
+            let last = place[rides.len() - 1];
+            place[rides.len()..].fill(last);
         }
         self.driven += BLOCK;
     }
 
     #[inline(always)]
-    fn at(&self, k: usize) -> (V, V) {
-        (self.x[k], self.y[k])
+    fn at<V: Vector>(&self, k: usize) -> (V, V) {
+        (V::from(self.x[k]), V::from(self.y[k]))
     }
 }
 
 /// State of the chain between two head stations, vehicles in lanes.
-pub(super) struct Motion {
+pub(super) struct Motion<V> {
     heading_x: [V; MAX_UNITS],
     heading_y: [V; MAX_UNITS],
     /// Last displacement of each front coupling, as a unit vector.
@@ -81,39 +80,40 @@ pub(super) struct Motion {
 
 by_instruction_set! {
     /// Drives the [`BLOCK`] stations of the paths and writes every unit's rows.
-    pub(super) fn drive<const CERTIFY: bool, const REFINE: bool>(
-        motion: &mut Motion,
-        group: &Group<'_>,
+    pub(super) fn drive<V, const CERTIFY: bool, const REFINE: bool>(
+        motion: &mut Motion<V>,
+        group: &Group<'_, V>,
         paths: &SteerPaths,
         rows: &mut [f64],
-        trail: &mut Trail,
+        trail: &mut Trail<'_, V>,
     ) {
         if REFINE {
             trail.enter(&motion.extra);
         }
+        let per_step2 = V::from(paths.per_step2);
         for k in 0..BLOCK {
             let plan = [paths.at(k), paths.at(k + 1), paths.at(k + 2)];
-            motion.station::<CERTIFY, REFINE>(group, plan, paths.per_step2, k, rows, trail);
+            motion.station::<CERTIFY, REFINE>(group, plan, per_step2, k, rows, trail);
         }
     }
 }
 
-impl Motion {
+impl<V: Vector> Motion<V> {
     /// All units stand straight behind the steer axle's first station, along the corridor's first heading, after a
     /// straight run-in.
     #[inline(always)]
-    pub(super) fn new(group: &Group<'_>, paths: &SteerPaths) -> Self {
-        let [x, y] = paths.heading;
+    pub(super) fn new(group: &Group<'_, V>, paths: &SteerPaths) -> Self {
+        let [x, y] = paths.heading.map(V::from);
         Self {
             heading_x: [x; MAX_UNITS],
             heading_y: [y; MAX_UNITS],
             along_x: [x; MAX_UNITS],
             along_y: [y; MAX_UNITS],
-            bend: [ZERO; MAX_UNITS],
-            turned: [ZERO; MAX_UNITS],
-            turned_change: [ZERO; MAX_UNITS],
-            folding: [ZERO; MAX_UNITS],
-            folding_change: [ZERO; MAX_UNITS],
+            bend: [V::ZERO; MAX_UNITS],
+            turned: [V::ZERO; MAX_UNITS],
+            turned_change: [V::ZERO; MAX_UNITS],
+            folding: [V::ZERO; MAX_UNITS],
+            folding_change: [V::ZERO; MAX_UNITS],
             extra: std::array::from_fn(|unit| group.chain[unit].settled),
         }
     }
@@ -124,12 +124,12 @@ impl Motion {
     #[allow(clippy::too_many_arguments)] // One call, in the innermost loop: a struct would be taken apart at once.
     fn station<const CERTIFY: bool, const REFINE: bool>(
         &mut self,
-        group: &Group<'_>,
+        group: &Group<'_, V>,
         plan: [(V, V); 3],
         per_step2: V,
         k: usize,
         rows: &mut [f64],
-        trail: &mut Trail,
+        trail: &mut Trail<'_, V>,
     ) {
         let [place, next, after] = plan;
         let (mut x, mut y) = place;
@@ -138,9 +138,9 @@ impl Motion {
         let (later_x, later_y) = (after.0 - next.0, after.1 - next.1);
         let mut bend_after = (vx * later_y - vy * later_x).abs() / (vx * vx + vy * vy + 1e-30);
         let mut steps = [Step::NONE; MAX_UNITS];
-        let mut joints = [ZERO; MAX_UNITS];
-        let (mut ahead_x, mut ahead_y) = (ZERO, ZERO);
-        let mut turned_ahead = ZERO;
+        let mut joints = [V::ZERO; MAX_UNITS];
+        let (mut ahead_x, mut ahead_y) = (V::ZERO, V::ZERO);
+        let mut turned_ahead = V::ZERO;
         for unit in 0..group.units {
             let of = &group.chain[unit];
             let (ux, uy) = (self.heading_x[unit], self.heading_y[unit]);
@@ -189,7 +189,7 @@ impl Motion {
                 self.bend[unit] = bend;
                 (wx, wy) = (wx - more * wy, wy + more * wx);
                 let after = vx * wx + vy * wy;
-                let mid_tangent = if REFINE { (sine + wx * vy - wy * vx) / (cosine + after) } else { ZERO };
+                let mid_tangent = if REFINE { (sine + wx * vy - wy * vx) / (cosine + after) } else { V::ZERO };
                 steps[unit] = Step {
                     moved,
                     advance: (cosine + after) * 0.5,
@@ -203,7 +203,7 @@ impl Motion {
                     chord_rest: moved * (bend.abs() * (lengths * 0.025 + 0.004) + swerve * (1.0 / 24.0))
                         + bend * bend * (sine.abs() * inverse_moved * of.length * (1.0 / 24.0)),
                 };
-                bend_after = ZERO;
+                bend_after = V::ZERO;
                 self.along_x[unit] = ax;
                 self.along_y[unit] = ay;
                 let turned = ux * wy - uy * wx;
@@ -244,18 +244,18 @@ impl Motion {
     #[inline(always)]
     fn tubes<const REFINE: bool>(
         &mut self,
-        group: &Group<'_>,
-        steps: &[Step; MAX_UNITS],
+        group: &Group<'_, V>,
+        steps: &[Step<V>; MAX_UNITS],
         joints: &[V; MAX_UNITS],
         k: usize,
         rows: &mut [f64],
-        trail: &mut Trail,
+        trail: &mut Trail<'_, V>,
     ) {
         let one = V::splat(1.0);
         let bulge = chord_bulge(&steps[0]);
         let mut filter = Filter::begin(&group.chain[..group.units], steps);
         let mut straying = Straying::of_the_steer_axle(group.tolerance + bulge);
-        let (mut heading_ahead, mut shift_ahead) = (group.course, ZERO);
+        let (mut heading_ahead, mut shift_ahead) = (group.course, V::ZERO);
         // Negative from the first unit on whose bounds do not close.
         let mut closed = one;
         if REFINE {
@@ -276,12 +276,12 @@ impl Motion {
             // Nothing is certified where the bounds do not close. Behind that place they begin anew, as after a
             // straight, because a vehicle certified there did not come through this place. A stand-in always closes.
             let valid = validity(of, step, a, coupling).min(short);
-            closed = closed.min(select_negative(of.present - V::splat(0.5), one, valid));
-            self.extra[unit] = select_negative(closed, of.settled, extra);
+            closed = closed.min((of.present - V::splat(0.5)).if_negative(one, valid));
+            self.extra[unit] = closed.if_negative(of.settled, extra);
             let y = y.max(extra);
 
             let mut store = |field: usize, value: V| store(rows, unit, field, k, value);
-            store(row::EXTRA_AXLE, select_negative(closed, V::splat(MOST), y));
+            store(row::EXTRA_AXLE, closed.if_negative(V::splat(MOST), y));
             store(row::EXTRA_COUPLING, extra_coupling);
             store(row::REMAINDER, r1 * of.inverse_length);
             let own_shift = foot_shift(of, step, of.coupling + extra_coupling);
@@ -289,9 +289,9 @@ impl Motion {
                 of,
                 joints[unit],
                 heading_ahead + a + shift_ahead,
-                if unit == 0 { ZERO } else { own_shift },
+                if unit == 0 { V::ZERO } else { own_shift },
             );
-            store(row::HINGE, select_negative(closed, V::splat(NOT_CLOSED_RAD), margin));
+            store(row::HINGE, closed.if_negative(V::splat(NOT_CLOSED_RAD), margin));
             (heading_ahead, shift_ahead) = (a, own_shift);
 
             // Continues at the next coupling.
@@ -302,7 +302,7 @@ impl Motion {
                 trail.record(group, unit, step, z, zh, of.axle + y, closed);
             }
             filter.pass_on(of, step, &coupled, y, zh);
-            filter.coupling = select_negative(closed, ZERO, filter.coupling);
+            filter.coupling = closed.if_negative(V::ZERO, filter.coupling);
         }
     }
 }
@@ -310,8 +310,8 @@ impl Motion {
 /// 2·atan t for 0 ≤ t ≤ 1, never too small (Abramowitz and Stegun 4.4.47, error 1e-5, with an allowance of twice that).
 /// For t > 1, an angle over 90°, it is four radians, which no hinge allows.
 #[inline(always)]
-fn double_atan(t: V) -> V {
+fn double_atan<V: Vector>(t: V) -> V {
     let t2 = t * t;
     let p = t * ((((t2 * 0.020_835_1 - 0.085_133_0) * t2 + 0.180_141_0) * t2 - 0.330_299_5) * t2 + 0.999_866_0);
-    select_negative(V::splat(1.0) - t, V::splat(4.0), p * 2.0 + 4e-5)
+    (V::splat(1.0) - t).if_negative(V::splat(4.0), p * 2.0 + 4e-5)
 }

@@ -1,6 +1,6 @@
 //! The constants of up to eight vehicles in lanes, so that one sweep serves them all. A vehicle may be in several lanes.
 
-use super::lanes::V;
+use super::lanes::Vector;
 use super::model::{MAX_UNITS, Model, UnitModel};
 use super::run_in;
 use super::step::UnitLanes;
@@ -9,24 +9,24 @@ use super::step::UnitLanes;
 pub(super) const SHRINK_STEPS: f64 = 1000.0;
 
 /// Vehicles that sweep together. Empty lanes repeat the last vehicle and are not read.
-pub(super) struct Group<'m> {
+pub(super) struct Group<'m, V> {
     pub(super) models: Vec<&'m Model>,
     /// Largest number of units of any vehicle.
     pub(super) units: usize,
-    pub(super) chain: [UnitLanes; MAX_UNITS],
+    pub(super) chain: [UnitLanes<V>; MAX_UNITS],
     /// γ ε, metres.
     pub(super) tolerance: V,
     /// m, the allowance for the prime mover's course, radians.
     pub(super) course: V,
 }
 
-impl<'m> Group<'m> {
+impl<'m, V: Vector> Group<'m, V> {
     /// One to eight vehicles, each with the γ wanted of it. Each keeps to its own γ_min.
     pub(super) fn new(vehicles: &[(&'m Model, f64)]) -> Self {
         let (models, shrinks): (Vec<&Model>, Vec<f64>) = vehicles.iter().copied().unzip();
         let per_vehicle = |f: &dyn Fn(&Model, f64) -> f64| {
             let lane = |i: usize| i.min(models.len() - 1);
-            V(std::array::from_fn(|i| f(models[lane(i)], shrinks[lane(i)])))
+            V::from(std::array::from_fn(|i| f(models[lane(i)], shrinks[lane(i)])))
         };
         let tolerance = |m: &Model, shrink: f64| m.vehicle.tracking_tolerance_m * gamma(m, shrink);
         let unit = |u: usize| {
@@ -49,7 +49,7 @@ impl<'m> Group<'m> {
             }
         };
         let tolerance = per_vehicle(&tolerance);
-        let mut chain: [UnitLanes; MAX_UNITS] = std::array::from_fn(unit);
+        let mut chain: [UnitLanes<V>; MAX_UNITS] = std::array::from_fn(unit);
         let units = models.iter().map(|m| m.units.len()).max().unwrap_or(0);
         let settled = run_in::settled(&chain, units, tolerance);
         chain.iter_mut().zip(settled).for_each(|(unit, settled)| unit.settled = settled);

@@ -1,125 +1,86 @@
-//! Eight numbers side by side, and functions compiled for more than one instruction set. Plain arrays let one source
-//! serve every instruction set. There is no fused multiply-add, so every machine gives the same bytes.
+//! Eight numbers side by side, and functions compiled for more than one instruction set.
+//!
+//! Vector code is generic over a [`Vector`]: one type for each instruction set, which holds the numbers as registers do. Left to itself, the
+//! compiler takes arrays of eight numbers apart and puts them together again in narrower registers. There is no fused multiply-add, so
+//! every machine gives the same bytes.
 
-// The compiler turns index loops over fixed arrays into vector instructions.
-#![allow(clippy::needless_range_loop)]
+mod registers;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
+
+#[cfg(target_arch = "x86_64")]
+pub(super) use registers::Avx2;
+#[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))]
+pub(super) use registers::Avx512;
+pub(super) use registers::Portable;
 
 /// Number of lanes: vehicles in the motion, stations at the body points.
 pub(crate) const LANES: usize = 8;
 
-/// Eight `f64`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct V(pub(crate) [f64; LANES]);
+/// Eight `f64`. Code outside of [`by_instruction_set`] may use any implementation that [`on_widest`] chose.
+pub(crate) trait Vector:
+    Copy
+    + From<[f64; LANES]>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+{
+    /// What the processor must have for this type.
+    const SET: InstructionSet;
+    const ZERO: Self;
+    const ONE: Self;
 
-macro_rules! lanewise {
-    ($trait:ident, $method:ident, $op:tt) => {
-        impl $trait for V {
-            type Output = V;
-            #[inline(always)]
-            fn $method(self, other: V) -> V {
-                let mut out = [0.0; LANES];
-                for i in 0..LANES {
-                    out[i] = self.0[i] $op other.0[i];
-                }
-                V(out)
-            }
-        }
-        impl $trait<f64> for V {
-            type Output = V;
-            #[inline(always)]
-            fn $method(self, other: f64) -> V {
-                let mut out = [0.0; LANES];
-                for i in 0..LANES {
-                    out[i] = self.0[i] $op other;
-                }
-                V(out)
-            }
-        }
-    };
-}
+    fn splat(x: f64) -> Self;
 
-lanewise!(Add, add, +);
-lanewise!(Sub, sub, -);
-lanewise!(Mul, mul, *);
-lanewise!(Div, div, /);
+    fn array(self) -> [f64; LANES];
 
-impl Neg for V {
-    type Output = V;
-    #[inline(always)]
-    fn neg(self) -> V {
-        self.map(|x| -x)
-    }
-}
+    fn abs(self) -> Self;
 
-pub(crate) const ZERO: V = V([0.0; LANES]);
-pub(crate) const ONE: V = V([1.0; LANES]);
-
-impl V {
-    #[inline(always)]
-    pub(crate) fn splat(x: f64) -> V {
-        V([x; LANES])
-    }
-
-    #[inline(always)]
-    fn map(self, f: impl Fn(f64) -> f64) -> V {
-        let mut out = [0.0; LANES];
-        for i in 0..LANES {
-            out[i] = f(self.0[i]);
-        }
-        V(out)
-    }
-
-    #[inline(always)]
-    fn zip(self, other: V, f: impl Fn(f64, f64) -> f64) -> V {
-        let mut out = [0.0; LANES];
-        for i in 0..LANES {
-            out[i] = f(self.0[i], other.0[i]);
-        }
-        V(out)
-    }
-
-    #[inline(always)]
-    pub(crate) fn abs(self) -> V {
-        self.map(f64::abs)
-    }
-
-    #[inline(always)]
-    pub(crate) fn sqrt(self) -> V {
-        self.map(f64::sqrt)
-    }
+    fn sqrt(self) -> Self;
 
     /// The greater of each pair. It is one instruction, unlike `f64::max`; the order of a NaN is undefined.
-    #[inline(always)]
-    pub(crate) fn max(self, other: V) -> V {
-        self.zip(other, |a, b| if a > b { a } else { b })
-    }
+    fn max(self, other: Self) -> Self;
 
     /// The lesser of each pair.
+    fn min(self, other: Self) -> Self;
+
+    /// `yes` where this number is negative, else `no`.
+    fn if_negative(self, yes: Self, no: Self) -> Self;
+
+    /// As [`tagged`], in each lane.
+    fn tagged(self, tag: u64) -> Self;
+
+    /// A NaN is above nothing.
+    fn any_above(self, limit: f64) -> bool;
+
+    /// A NaN is below nothing.
+    fn all_below(self, limit: f64) -> bool;
+
     #[inline(always)]
-    pub(crate) fn min(self, other: V) -> V {
-        self.zip(other, |a, b| if a < b { a } else { b })
+    fn lane(self, lane: usize) -> f64 {
+        self.array()[lane]
     }
 
-    /// Replaces the lowest seven bits of each mantissa by `tag`. The number moves by less than 3e-14 of itself.
     #[inline(always)]
-    pub(crate) fn tagged(self, tag: u64) -> V {
-        self.map(|x| f64::from_bits((x.to_bits() & !TAG_MASK) | tag))
+    fn set(&mut self, lane: usize, x: f64) {
+        let mut array = self.array();
+        array[lane] = x;
+        *self = Self::from(array);
     }
 }
 
-/// `yes` where `sign` is negative, else `no`.
+/// Replaces the lowest seven bits of the mantissa by `tag`. The number moves by less than 3e-14 of itself.
 #[inline(always)]
-pub(crate) fn select_negative(sign: V, yes: V, no: V) -> V {
-    let mut out = [0.0; LANES];
-    for i in 0..LANES {
-        out[i] = if sign.0[i] < 0.0 { yes.0[i] } else { no.0[i] };
-    }
-    V(out)
+pub(crate) fn tagged(x: f64, tag: u64) -> f64 {
+    f64::from_bits((x.to_bits() & !TAG_MASK) | tag)
 }
 
-/// The bits of a [`V::tagged`] number that hold the tag.
+/// The bits of a [`tagged`] number that hold the tag.
 pub(crate) const TAG_MASK: u64 = 0x7f;
 
 /// The instruction sets that functions are compiled for, from the narrowest on. Development builds leave the widest one to the tests
@@ -185,50 +146,74 @@ impl InstructionSet {
     }
 }
 
-/// Compiles functions for each [`InstructionSet`], and chooses the widest at each call. Functions that they call must be
-/// `#[inline(always)]` to use it. Each function is a piece of the sweep: the whole sweep inlined into one function takes the
-/// compiler minutes.
+/// Evaluates an expression with a type that stands for the [`Vector`] of the widest instruction set of this processor.
+macro_rules! on_widest {
+    ($vector:ident => $run:expr) => {
+        match $crate::stet::lanes::InstructionSet::widest() {
+            #[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))]
+            $crate::stet::lanes::InstructionSet::Avx512 => {
+                type $vector = $crate::stet::lanes::Avx512;
+                $run
+            }
+            #[cfg(target_arch = "x86_64")]
+            $crate::stet::lanes::InstructionSet::Avx2 => {
+                type $vector = $crate::stet::lanes::Avx2;
+                $run
+            }
+            $crate::stet::lanes::InstructionSet::Any => {
+                type $vector = $crate::stet::lanes::Portable;
+                $run
+            }
+        }
+    };
+}
+pub(super) use on_widest;
+
+/// Compiles functions with the instructions that their [`Vector`] stands for. Functions that they call must be `#[inline(always)]` to use
+/// them. Each function is a piece of the sweep: the whole sweep inlined into one function takes the compiler minutes.
 macro_rules! by_instruction_set {
     ($(
         $(#[$about:meta])*
-        $vis:vis fn $name:ident$(<$(const $flag:ident: bool),+>)?($($argument:ident: $type:ty),* $(,)?) $(-> $out:ty)? $body:block
+        $vis:vis fn $name:ident<$vector:ident $(, const $flag:ident: bool)*>(
+            $($argument:ident: $type:ty),* $(,)?
+        ) $(-> $out:ty)? $body:block
     )+) => {$(
         $(#[$about])*
-        $vis fn $name$(<$(const $flag: bool),+>)?($($argument: $type),*) $(-> $out)? {
+        $vis fn $name<$vector: Vector $(, const $flag: bool)*>($($argument: $type),*) $(-> $out)? {
             #[inline(always)]
             #[allow(clippy::too_many_arguments)]
-            fn either$(<$(const $flag: bool),+>)?($($argument: $type),*) $(-> $out)? $body
+            fn either<$vector: Vector $(, const $flag: bool)*>($($argument: $type),*) $(-> $out)? $body
 
             #[inline(never)]
             #[allow(clippy::too_many_arguments)]
-            fn any$(<$(const $flag: bool),+>)?($($argument: $type),*) $(-> $out)? {
-                either$(::<$($flag),+>)?($($argument),*)
+            fn any<$vector: Vector $(, const $flag: bool)*>($($argument: $type),*) $(-> $out)? {
+                either::<$vector $(, $flag)*>($($argument),*)
             }
 
             #[cfg(target_arch = "x86_64")]
             #[target_feature(enable = "avx2")]
             #[inline(never)]
             #[allow(clippy::too_many_arguments)]
-            fn avx2$(<$(const $flag: bool),+>)?($($argument: $type),*) $(-> $out)? {
-                either$(::<$($flag),+>)?($($argument),*)
+            fn avx2<$vector: Vector $(, const $flag: bool)*>($($argument: $type),*) $(-> $out)? {
+                either::<$vector $(, $flag)*>($($argument),*)
             }
 
             #[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))]
             #[target_feature(enable = "avx2,avx512f,avx512dq,avx512vl")]
             #[inline(never)]
             #[allow(clippy::too_many_arguments)]
-            fn avx512$(<$(const $flag: bool),+>)?($($argument: $type),*) $(-> $out)? {
-                either$(::<$($flag),+>)?($($argument),*)
+            fn avx512<$vector: Vector $(, const $flag: bool)*>($($argument: $type),*) $(-> $out)? {
+                either::<$vector $(, $flag)*>($($argument),*)
             }
 
-            match super::lanes::InstructionSet::widest() {
-                // SAFETY: the processor has what the function is compiled for.
+            match $vector::SET {
+                // SAFETY: `on_widest` chose the vector, so the processor has what the function is compiled for.
                 #[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))]
-                super::lanes::InstructionSet::Avx512 => unsafe { avx512$(::<$($flag),+>)?($($argument),*) },
+                super::lanes::InstructionSet::Avx512 => unsafe { avx512::<$vector $(, $flag)*>($($argument),*) },
                 // SAFETY: as above.
                 #[cfg(target_arch = "x86_64")]
-                super::lanes::InstructionSet::Avx2 => unsafe { avx2$(::<$($flag),+>)?($($argument),*) },
-                super::lanes::InstructionSet::Any => any$(::<$($flag),+>)?($($argument),*),
+                super::lanes::InstructionSet::Avx2 => unsafe { avx2::<$vector $(, $flag)*>($($argument),*) },
+                super::lanes::InstructionSet::Any => any::<$vector $(, $flag)*>($($argument),*),
             }
         }
     )+};

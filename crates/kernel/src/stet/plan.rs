@@ -10,7 +10,7 @@ use std::ops::Range;
 use super::Options;
 use super::ascent::{Ascent, climb, relief};
 use super::block::{Minima, UNVISITED_M};
-use super::lanes::TAG_MASK;
+use super::lanes::{TAG_MASK, on_widest};
 use super::model::Model;
 use super::shift::{self, KNOT_STATIONS, Plan};
 use super::spans;
@@ -116,7 +116,7 @@ impl<'r> Draft<'r> {
             Some(max_shift_m) => centred_between(self.coarse, model, minima, self.now.len(), max_shift_m),
             None => std::mem::take(&mut self.now),
         };
-        self.now = climb(&mut self.ascent, start);
+        self.now = on_widest!(V => climb::<V>(&mut self.ascent, start));
         hold(track, held, &mut self.now);
     }
 }

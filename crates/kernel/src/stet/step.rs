@@ -1,6 +1,6 @@
 //! One unit's step: what it adds to the bounds of the unit ahead (docs/proof.md, sections 3 and 5).
 
-use super::lanes::{ONE, V, ZERO};
+use super::lanes::Vector;
 use super::model::MAX_UNITS;
 
 /// Bounds beyond this (metres, radians) bound nothing any more.
@@ -10,7 +10,7 @@ const CURLED: f64 = 0.8;
 
 /// Constants of one unit across the vehicles. A vehicle without this unit has a harmless stand-in.
 #[derive(Clone, Copy)]
-pub(super) struct UnitLanes {
+pub(super) struct UnitLanes<V> {
     /// 1 where the vehicle has this unit, else 0.
     pub(super) present: V,
     pub(super) length: V,
@@ -34,7 +34,7 @@ pub(super) struct UnitLanes {
 
 /// One unit's step, as its tubes need it.
 #[derive(Clone, Copy)]
-pub(super) struct Step {
+pub(super) struct Step<V> {
     pub(super) moved: V,
     /// Arc length of the axle, metres.
     pub(super) advance: V,
@@ -51,27 +51,27 @@ pub(super) struct Step {
     pub(super) chord_rest: V,
 }
 
-impl Step {
-    pub(super) const NONE: Step = Step {
-        moved: ZERO,
-        advance: ZERO,
-        sine: ZERO,
-        cosine: ZERO,
-        tangent: ZERO,
-        secant: ZERO,
-        mid_tangent: ZERO,
-        hitch_cosine: ZERO,
-        path_curvature: ZERO,
-        chord_rest: ZERO,
+impl<V: Vector> Step<V> {
+    pub(super) const NONE: Step<V> = Step {
+        moved: V::ZERO,
+        advance: V::ZERO,
+        sine: V::ZERO,
+        cosine: V::ZERO,
+        tangent: V::ZERO,
+        secant: V::ZERO,
+        mid_tangent: V::ZERO,
+        hitch_cosine: V::ZERO,
+        path_curvature: V::ZERO,
+        chord_rest: V::ZERO,
     };
 
     /// A metre straight on.
-    pub(super) const STRAIGHT: Step =
-        Step { moved: ONE, advance: ONE, cosine: ONE, secant: ONE, hitch_cosine: ONE, ..Self::NONE };
+    pub(super) const STRAIGHT: Step<V> =
+        Step { moved: V::ONE, advance: V::ONE, cosine: V::ONE, secant: V::ONE, hitch_cosine: V::ONE, ..Self::NONE };
 }
 
 /// The recursion of what curvature adds (docs/proof.md, section 5) over one step, front to rear.
-pub(super) struct Filter {
+pub(super) struct Filter<V> {
     /// E − E⁰ of the next coupling.
     pub(super) coupling: V,
     hitch_cosine: V,
@@ -80,7 +80,7 @@ pub(super) struct Filter {
 }
 
 /// Bounds at a unit's coupling in a step.
-pub(super) struct Coupled {
+pub(super) struct Coupled<V> {
     /// Y − Y⁰ when the step begins.
     y: V,
     /// Ẽ − E⁰
@@ -89,9 +89,9 @@ pub(super) struct Coupled {
     pub(super) heading: V,
 }
 
-impl Filter {
+impl<V: Vector> Filter<V> {
     #[inline(always)]
-    pub(super) fn begin(chain: &[UnitLanes], steps: &[Step; MAX_UNITS]) -> Self {
+    pub(super) fn begin(chain: &[UnitLanes<V>], steps: &[Step<V>; MAX_UNITS]) -> Self {
         let (mut least, mut most) = (steps[0].advance, steps[0].advance);
         for (step, of) in steps.iter().zip(chain).skip(1) {
             // A stand-in must not count: a certificate depends on no other vehicle of the group.
@@ -108,7 +108,7 @@ impl Filter {
 
     /// `y` is the unit's Y − Y⁰ when the step begins.
     #[inline(always)]
-    pub(super) fn coupled(&self, of: &UnitLanes, step: &Step, y: V) -> Coupled {
+    pub(super) fn coupled(&self, of: &UnitLanes<V>, step: &Step<V>, y: V) -> Coupled<V> {
         // η: relative growth of the coupling's deviation against the straight.
         let eta = (step.secant - 1.0).max((self.hitch_cosine * step.secant - 1.0).abs());
         let extra = (self.coupling + eta * (of.coupling + self.coupling)).min(V::splat(MOST));
@@ -118,18 +118,18 @@ impl Filter {
 
     /// Y − Y⁰ at the end of the step, from the remainder z.
     #[inline(always)]
-    pub(super) fn grown(&self, of: &UnitLanes, step: &Step, coupled: &Coupled, z: V) -> V {
+    pub(super) fn grown(&self, of: &UnitLanes<V>, step: &Step<V>, coupled: &Coupled<V>, z: V) -> V {
         let rho = (step.advance * self.per_reference - 1.0).abs();
         let input = coupled.extra + z + rho * of.length * (coupled.heading + of.sway);
         // y' = (input − y)/L. Growth uses the coupling's arc length, decay the axle's, which is shorter.
         let (pn, pd) = decay(step.moved * of.inverse_length);
         let change = (input - coupled.y) * (V::splat(1.0) - pn / pd);
-        (coupled.y + change.max(change * step.cosine.max(ZERO))).min(V::splat(MOST))
+        (coupled.y + change.max(change * step.cosine.max(V::ZERO))).min(V::splat(MOST))
     }
 
     /// Continues at the next coupling.
     #[inline(always)]
-    pub(super) fn pass_on(&mut self, of: &UnitLanes, step: &Step, coupled: &Coupled, y: V, zh: V) {
+    pub(super) fn pass_on(&mut self, of: &UnitLanes<V>, step: &Step<V>, coupled: &Coupled<V>, y: V, zh: V) {
         let next = (of.ratio + 1.0).abs() * y + of.ratio.abs() * coupled.extra + zh;
         self.coupling = next.min(V::splat(MOST));
         self.hitch_cosine = step.hitch_cosine;
@@ -137,7 +137,7 @@ impl Filter {
 
     /// A unit's whole step with known second order and bounded heading. Returns Y − Y⁰ at its end.
     #[inline(always)]
-    pub(super) fn step(&mut self, of: &UnitLanes, step: &Step, mut coupled: Coupled, a: V, z: V, zh: V) -> V {
+    pub(super) fn step(&mut self, of: &UnitLanes<V>, step: &Step<V>, mut coupled: Coupled<V>, a: V, z: V, zh: V) -> V {
         coupled.heading = coupled.heading.min(a);
         let coupled = &coupled;
         let extra = self.grown(of, step, coupled, z);
@@ -149,20 +149,20 @@ impl Filter {
 /// Share of the chords' turn by which a unit turns less along chords than along the curve through their ends. `x` is
 /// chord over unit length. The share is x²/12 with its next order (docs/proof.md, section 2).
 #[inline(always)]
-pub(super) fn chord_lag(x: V) -> V {
+pub(super) fn chord_lag<V: Vector>(x: V) -> V {
     x * x / (x * 6.0 + 12.0)
 }
 
 /// Largest distance of the plan from its chord, κℓ²/8: the plan is a smooth curve through the vertices.
 #[inline(always)]
-pub(super) fn chord_bulge(step: &Step) -> V {
+pub(super) fn chord_bulge<V: Vector>(step: &Step<V>) -> V {
     step.path_curvature * step.moved * step.moved * 0.125
 }
 
 /// Second-order remainders of the coupling's relation (R1) and of the axle's motion (z). `a` bounds the heading, `axle`
 /// the axle's deviation, `coupled` the coupling's deviation over cos δ.
 #[inline(always)]
-pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) -> (V, V) {
+pub(super) fn remainder<V: Vector>(of: &UnitLanes<V>, step: &Step<V>, a: V, axle: V, coupled: V) -> (V, V) {
     let r1 = coupling_remainder(of, step, a, axle, coupled);
     let slip = a + of.sway;
     let slip3 = slip_tangent_excess(slip);
@@ -171,7 +171,7 @@ pub(super) fn remainder(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) 
 
 /// R1 alone. `y + Lα` equals the coupling's deviation, except for the remainder itself.
 #[inline(always)]
-fn coupling_remainder(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) -> V {
+fn coupling_remainder<V: Vector>(of: &UnitLanes<V>, step: &Step<V>, a: V, axle: V, coupled: V) -> V {
     let a2 = a * a;
     let lean = of.length * a;
     let own = step.tangent * of.length * a2 * 0.5 + of.length * a2 * a * (1.0 / 6.0);
@@ -182,7 +182,7 @@ fn coupling_remainder(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) ->
 
 /// R1 of a coupling that deviates by `across`, from the part `own` without the bend of its path.
 #[inline(always)]
-fn bent(step: &Step, own: V, lean_a: V, across: V) -> V {
+fn bent<V: Vector>(step: &Step<V>, own: V, lean_a: V, across: V) -> V {
     let swing = across * step.sine + lean_a * 0.5;
     own + step.path_curvature * step.secant * swing * swing * 0.5
 }
@@ -190,7 +190,7 @@ fn bent(step: &Step, own: V, lean_a: V, across: V) -> V {
 /// A bound of the heading with R1 (`L α = e/cos δ − y + R`), from its first-order bound. The second value is negative
 /// if the bound does not reproduce itself.
 #[inline(always)]
-pub(super) fn heading(of: &UnitLanes, step: &Step, first_order: V, axle: V, coupled: V) -> (V, V) {
+pub(super) fn heading<V: Vector>(of: &UnitLanes<V>, step: &Step<V>, first_order: V, axle: V, coupled: V) -> (V, V) {
     let first = implied_heading(of, step, first_order, axle, coupled);
     let second = implied_heading(of, step, first_order + first, axle, coupled);
     let third = implied_heading(of, step, first_order + second, axle, coupled);
@@ -203,20 +203,20 @@ pub(super) fn heading(of: &UnitLanes, step: &Step, first_order: V, axle: V, coup
 
 /// What R1 adds to a heading that is bounded by `a`.
 #[inline(always)]
-fn implied_heading(of: &UnitLanes, step: &Step, a: V, axle: V, coupled: V) -> V {
+fn implied_heading<V: Vector>(of: &UnitLanes<V>, step: &Step<V>, a: V, axle: V, coupled: V) -> V {
     coupling_remainder(of, step, a.min(V::splat(MOST)), axle, coupled) * of.inverse_length
 }
 
 /// Second-order remainder of the next coupling, with the foot shift against its follower.
 #[inline(always)]
-pub(super) fn hitch_remainder(
-    of: &UnitLanes,
-    step: &Step,
-    follower: Option<(&UnitLanes, &Step)>,
+pub(super) fn hitch_remainder<V: Vector>(
+    of: &UnitLanes<V>,
+    step: &Step<V>,
+    follower: Option<(&UnitLanes<V>, &Step<V>)>,
     a: V,
     axle: V,
     r1: V,
-    straying: &Straying,
+    straying: &Straying<V>,
 ) -> V {
     let ratio = of.ratio.abs();
     let hitch_tangent = step.tangent * ratio;
@@ -234,19 +234,19 @@ pub(super) fn hitch_remainder(
 /// How fast a coupling's deviation may change along its path: the slope of the part that has passed through axles, and
 /// the size of the steer axle's deviation that has passed through none.
 #[derive(Clone, Copy)]
-pub(super) struct Straying {
+pub(super) struct Straying<V> {
     slope: V,
     rough: V,
 }
 
-impl Straying {
+impl<V: Vector> Straying<V> {
     #[inline(always)]
     pub(super) fn of_the_steer_axle(rough: V) -> Self {
-        Self { slope: ZERO, rough }
+        Self { slope: V::ZERO, rough }
     }
 
     #[inline(always)]
-    pub(super) fn next(self, of: &UnitLanes, step: &Step, a: V) -> Self {
+    pub(super) fn next(self, of: &UnitLanes<V>, step: &Step<V>, a: V) -> Self {
         let through = of.ratio.abs() * step.secant;
         Self { slope: (of.ratio + 1.0).abs() * (a + of.sway) + through * self.slope, rough: through * self.rough }
     }
@@ -256,7 +256,7 @@ impl Straying {
 /// 0.6, which the series of the tangent needs. They hold while the coupling's deviation is less than the radius of its path;
 /// beyond, the deviating coupling would turn back. [`CURLED`] leaves room for what the path bends more between stations.
 #[inline(always)]
-pub(super) fn validity(of: &UnitLanes, step: &Step, a: V, coupling: V) -> V {
+pub(super) fn validity<V: Vector>(of: &UnitLanes<V>, step: &Step<V>, a: V, coupling: V) -> V {
     let slip = a + of.sway;
     (step.cosine - slip).min(V::splat(0.6) - slip).min(V::splat(CURLED) - step.path_curvature * coupling)
 }
@@ -264,21 +264,21 @@ pub(super) fn validity(of: &UnitLanes, step: &Step, a: V, coupling: V) -> V {
 /// Largest heading difference of a path between a unit's own foot and its coupling's foot, if the coupling deviates by
 /// `coupling`.
 #[inline(always)]
-pub(super) fn foot_shift(of: &UnitLanes, step: &Step, coupling: V) -> V {
+pub(super) fn foot_shift<V: Vector>(of: &UnitLanes<V>, step: &Step<V>, coupling: V) -> V {
     coupling * step.sine * step.tangent * of.inverse_length
 }
 
 /// Margin to the limit of the hinge ahead of a unit, less nominal articulation (`joint`), heading errors and foot
 /// shifts.
 #[inline(always)]
-pub(super) fn hinge_margin(of: &UnitLanes, joint: V, ahead: V, own_shift: V) -> V {
+pub(super) fn hinge_margin<V: Vector>(of: &UnitLanes<V>, joint: V, ahead: V, own_shift: V) -> V {
     of.max_articulation - joint - ahead - own_shift
 }
 
 /// exp(−x) as a fraction, by the square of the Padé form (3,3) at x/2. The error is 3e-8 at x = 0.8; the form is
 /// monotone up to x = 9.
 #[inline(always)]
-pub(super) fn decay(x: V) -> (V, V) {
+pub(super) fn decay<V: Vector>(x: V) -> (V, V) {
     let x = x * 0.5;
     let x2 = x * x;
     let even = x2 * 12.0 + 120.0;
@@ -289,7 +289,7 @@ pub(super) fn decay(x: V) -> (V, V) {
 
 /// tan x − x for 0 ≤ x ≤ 0.6, never too small.
 #[inline(always)]
-fn slip_tangent_excess(x: V) -> V {
+fn slip_tangent_excess<V: Vector>(x: V) -> V {
     let x2 = x * x;
     x * x2 * ((x2 * 0.07 + 2.0 / 15.0) * x2 + 1.0 / 3.0)
 }

@@ -9,12 +9,12 @@ use std::cell::RefCell;
 use std::cmp::Reverse;
 use std::ops::Range;
 
-use super::adjoint::{self, Refined, Trail, first_loose};
+use super::adjoint::{self, Histories, Refined, Trail, first_loose};
 use super::block::{BLOCK, FIELDS, Minima, NOT_CLOSED_RAD};
 use super::body::{self, Body};
 use super::drive::{Motion, SteerPaths, drive};
 use super::group::Group;
-use super::lanes::LANES;
+use super::lanes::{LANES, Vector, on_widest};
 use super::leeway;
 use super::model::{MAX_UNITS, Model};
 use super::spans;
@@ -163,13 +163,13 @@ struct Lane<'r> {
 /// What sweeps write and no other sweep reads. Each thread keeps its own.
 struct Scratch {
     rows: Vec<f64>,
-    trail: Trail,
+    histories: Histories,
     tight: Refined,
 }
 
 thread_local! {
     static SCRATCH: RefCell<Scratch> =
-        const { RefCell::new(Scratch { rows: Vec::new(), trail: Trail::new(), tight: Refined::new() }) };
+        const { RefCell::new(Scratch { rows: Vec::new(), histories: Histories::new(), tight: Refined::new() }) };
 }
 
 fn sweep_lanes<const CERTIFY: bool, const REFINE: bool>(
@@ -177,24 +177,22 @@ fn sweep_lanes<const CERTIFY: bool, const REFINE: bool>(
     hopeless: Option<f64>,
     stop: &Stop,
 ) -> Vec<Minima> {
-    SCRATCH.with_borrow_mut(|scratch| sweep_with::<CERTIFY, REFINE>(scratch, rides, hopeless, stop))
+    SCRATCH.with_borrow_mut(|scratch| on_widest!(V => sweep_with::<V, CERTIFY, REFINE>(scratch, rides, hopeless, stop)))
 }
 
-fn sweep_with<const CERTIFY: bool, const REFINE: bool>(
-    Scratch { rows, trail, tight }: &mut Scratch,
+fn sweep_with<V: Vector, const CERTIFY: bool, const REFINE: bool>(
+    Scratch { rows, histories, tight }: &mut Scratch,
     rides: &[&Ride<'_>],
     hopeless: Option<f64>,
     stop: &Stop,
 ) -> Vec<Minima> {
-    let group = Group::new(&rides.iter().map(|ride| (ride.model, ride.shrink)).collect::<Vec<_>>());
+    let group = Group::<V>::new(&rides.iter().map(|ride| (ride.model, ride.shrink)).collect::<Vec<_>>());
     let mut lanes: Vec<Lane<'_>> = rides.iter().map(|ride| Lane::new::<CERTIFY>(ride)).collect();
     if let (Some(below_m), [full, least]) = (hopeless, lanes.as_mut_slice()) {
         (full.minima.bare, least.minima.floor) = (true, below_m);
     }
     rows.resize(MAX_UNITS * LANES * FIELDS * BLOCK, 0.0);
-    if REFINE {
-        trail.begin_again(&group);
-    }
+    let mut trail = if REFINE { histories.trail(&group) } else { Trail::none() };
     let mut paths = SteerPaths::new(rides);
     let mut motion = Motion::new(&group, &paths);
     while lanes.iter().any(|lane| !lane.done) {
@@ -202,7 +200,7 @@ fn sweep_with<const CERTIFY: bool, const REFINE: bool>(
             return rides.iter().map(|ride| Minima::lost(ride.track.len(), !ride.track.areas.is_empty())).collect();
         }
         paths.next_block(rides);
-        drive::<CERTIFY, REFINE>(&mut motion, &group, &paths, rows, trail);
+        drive::<V, CERTIFY, REFINE>(&mut motion, &group, &paths, rows, &mut trail);
         for (index, lane) in lanes.iter_mut().enumerate().filter(|(_, lane)| !lane.done) {
             let wanted = lane.ride.wanted;
             if CERTIFY && !matches!(wanted.refining, Refining::From(_)) {
@@ -216,12 +214,12 @@ fn sweep_with<const CERTIFY: bool, const REFINE: bool>(
                 _ => usize::MAX,
             };
             if tight_from < lane.bodies.len() {
-                adjoint::refine(trail, &group, index, tight_from, &mut motion.extra, rows, tight);
+                adjoint::refine(&mut trail, &group, index, tight_from, &mut motion.extra, rows, tight);
             }
             if REFINE {
                 trail.close(index, lane.bodies.len());
             }
-            lane.look::<CERTIFY>(index, asked, tight_from, rows, tight);
+            lane.look::<V, CERTIFY>(index, asked, tight_from, rows, tight);
         }
         if hopeless.is_some() && lanes[0].open_ended() {
             for lane in &mut lanes {
@@ -248,7 +246,7 @@ impl<'r> Lane<'r> {
     }
 
     /// Looks at the points over the block that was driven last, if it is `asked` for.
-    fn look<const CERTIFY: bool>(
+    fn look<V: Vector, const CERTIFY: bool>(
         &mut self,
         index: usize,
         asked: bool,
@@ -264,9 +262,9 @@ impl<'r> Lane<'r> {
             if !asked {
                 body::skip(track, body, head);
             } else if unit >= tight_from {
-                leeway::points::<CERTIFY, true>(track, body, block, tight.unit(unit), shift, head, minima);
+                leeway::points::<V, CERTIFY, true>(track, body, block, tight.unit(unit), shift, head, minima);
             } else {
-                leeway::points::<CERTIFY, false>(track, body, block, &[], shift, head, minima);
+                leeway::points::<V, CERTIFY, false>(track, body, block, &[], shift, head, minima);
             }
         }
         self.head += BLOCK;

@@ -4,7 +4,7 @@
 use std::cell::OnceCell;
 use std::ops::Range;
 
-use super::lanes::{LANES, V};
+use super::lanes::{LANES, Vector};
 use super::model::POINT_SPACING_M as MOST_GAP_M;
 use super::plane::{Areas, Grounds};
 use netcert_base::corridor::Corridor;
@@ -331,30 +331,30 @@ impl Places {
 impl Fields<Vec<f64>> {
     /// Eight consecutive stations from `first`, which must be at most the number of stations less eight.
     #[inline(always)]
-    pub(super) fn run(&self, first: usize) -> Fields<V> {
+    pub(super) fn run<V: Vector>(&self, first: usize) -> Fields<V> {
         let of = |column: &[f64]| -> V {
             let mut out = [0.0; LANES];
             out.copy_from_slice(&column[first..first + LANES]);
-            V(out)
+            V::from(out)
         };
         self.each(of)
     }
 
     /// Eight stations anywhere.
     #[inline(always)]
-    pub(super) fn gather(&self, at: &[usize; LANES]) -> Fields<V> {
+    pub(super) fn gather<V: Vector>(&self, at: &[usize; LANES]) -> Fields<V> {
         let of = |column: &[f64]| -> V {
             let mut out = [0.0; LANES];
             for (o, &k) in out.iter_mut().zip(at) {
                 *o = column[k];
             }
-            V(out)
+            V::from(out)
         };
         self.each(of)
     }
 
     #[inline(always)]
-    fn each(&self, of: impl Fn(&[f64]) -> V) -> Fields<V> {
+    fn each<V: Vector>(&self, of: impl Fn(&[f64]) -> V) -> Fields<V> {
         Fields {
             x: of(&self.x),
             y: of(&self.y),

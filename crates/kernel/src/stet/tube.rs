@@ -1,11 +1,11 @@
 //! The tubes, for files and pictures: each axle's nominal place and the bound of its deviation.
 
 use super::Certificate;
-use super::adjoint::{Refined, Trail, first_loose, refine};
+use super::adjoint::{Histories, Refined, first_loose, refine};
 use super::block::{BLOCK, FIELDS, row};
 use super::drive::{Motion, SteerPaths, drive};
 use super::group::Group;
-use super::lanes::LANES;
+use super::lanes::{LANES, Vector, on_widest};
 use super::model::Model;
 use super::step::MOST;
 use super::sweep::{Reach, Ride, Wanted};
@@ -37,26 +37,30 @@ impl Tube {
 /// The tubes of a certificate that [`super::certify`] made from this corridor and model.
 #[must_use]
 pub fn tubes(corridor: &Corridor, model: &Model, certificate: &Certificate) -> Vec<Tube> {
+    on_widest!(V => driven::<V>(corridor, model, certificate))
+}
+
+fn driven<V: Vector>(corridor: &Corridor, model: &Model, certificate: &Certificate) -> Vec<Tube> {
     let units = model.units.len();
     let mut tubes: Vec<Tube> =
         (0..units).map(|unit| Tube { unit, centre: Vec::new(), heading: Vec::new(), lateral_m: Vec::new() }).collect();
     let Some(last) = certificate.shift_m.len().checked_sub(1) else { return tubes };
     let shrink = certificate.result.shrink;
-    let group = Group::new(&[(model, shrink)]);
+    let group = Group::<V>::new(&[(model, shrink)]);
     let track = Track::new(corridor, Reach::of(model).extensions(corridor.spacing_m));
     let shift: Vec<f64> =
         (0..track.len()).map(|k| certificate.shift_m[k.saturating_sub(track.lead).min(last)]).collect();
     let ride = Ride { track: &track, model, shrink, shift: &shift, wanted: Wanted::ALL };
     let mut paths = SteerPaths::new(&[&ride]);
     let mut motion = Motion::new(&group, &paths);
-    let mut trail = Trail::new();
-    trail.begin_again(&group);
+    let mut histories = Histories::default();
+    let mut trail = histories.trail(&group);
     let mut refined = Refined::new();
     let mut rows = vec![0.0; units * LANES * FIELDS * BLOCK];
     let (mut head, mut after) = (track.first_head, usize::MAX);
     while head <= track.lead + last {
         paths.next_block(&[&ride]);
-        drive::<true, true>(&mut motion, &group, &paths, &mut rows, &mut trail);
+        drive::<V, true, true>(&mut motion, &group, &paths, &mut rows, &mut trail);
         let loose = first_loose(&group, 0, &rows);
         if loose.min(after) < units {
             refine(&mut trail, &group, 0, loose.min(after), &mut motion.extra, &mut rows, &mut refined);
@@ -68,7 +72,7 @@ pub fn tubes(corridor: &Corridor, model: &Model, certificate: &Certificate) -> V
             for k in track.lead.saturating_sub(head)..BLOCK.min(track.lead + last + 1 - head) {
                 tube.centre.push([at(row::X, k), at(row::Y, k)]);
                 tube.heading.push([at(row::UX, k), at(row::UY, k)]);
-                tube.lateral_m.push(group.chain[tube.unit].axle.0[0] + at(row::EXTRA_AXLE, k));
+                tube.lateral_m.push(group.chain[tube.unit].axle.lane(0) + at(row::EXTRA_AXLE, k));
             }
         }
         head += BLOCK;

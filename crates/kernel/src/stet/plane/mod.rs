@@ -13,7 +13,7 @@ use netcert_base::corridor::{Area, AreaSpan, Corridor};
 
 use super::block::{BLOCK, Minima, NOT_CLOSED_RAD, row};
 use super::body::{Body, FRESH, Point as BodyPoint, least};
-use super::lanes::{LANES, V};
+use super::lanes::{LANES, tagged};
 use super::track::Track;
 use ground::{Ground, Point, Swept};
 
@@ -214,7 +214,7 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
         }
         if CERTIFY {
             if alone {
-                let hinge = V::splat(block[row::HINGE * BLOCK + k]).tagged(body.points[0].tag).0[0];
+                let hinge = tagged(block[row::HINGE * BLOCK + k], body.points[0].tag);
                 minima.hinge[station] = least(minima.hinge[station], hinge);
                 let [from, to] = &mut minima.under[station];
                 for &foot in &feet[..body.points.len()] {
@@ -236,7 +236,7 @@ pub(super) fn pass<const CERTIFY: bool, const REFINED: bool>(
                 };
                 for (side, lowest) in lowest.into_iter().enumerate() {
                     let Some(point) = lowest.point else { continue };
-                    minima.area[side][before.head] = V::splat(lowest.leeway).tagged(body.points[point].tag).0[0];
+                    minima.area[side][before.head] = tagged(lowest.leeway, body.points[point].tag);
                     minima.area_foot[side][before.head] = feet[point] as u32;
                     if minima.counted.contains(&before.head) {
                         minima.floor = minima.floor.min(lowest.leeway);
@@ -597,7 +597,7 @@ fn plan(track: &Track, body: &mut Body, stand: &Stand, feet: &[usize; MOST_POINT
                 if minima.counted.contains(&stand.head) {
                     minima.floor = minima.floor.min(leeway);
                 }
-                let tagged = V::splat(leeway).tagged(point.tag).0[0];
+                let tagged = tagged(leeway, point.tag);
                 let column = if side == 0 { &mut minima.left } else { &mut minima.right };
                 column[feet[near]] = least(column[feet[near]], tagged);
             }
