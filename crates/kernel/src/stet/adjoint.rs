@@ -10,7 +10,8 @@ use super::group::Group;
 use super::lanes::{LANES, Vector, by_instruction_set};
 use super::model::{MAX_UNITS, UnitModel};
 use super::step::{
-    Filter, MOST, Step, Straying, UnitLanes, foot_shift, heading, hinge_margin, hitch_remainder, remainder, validity,
+    Filter, MOST, Step, Straying, UnitLanes, decay, foot_shift, heading, hinge_margin, hitch_remainder, remainder,
+    validity,
 };
 
 /// The adjoint is used from the unit on at which Σ tan² δ_j/2 over the units up to it exceeds this. Bends alone decide,
@@ -23,8 +24,12 @@ const MEMORY: usize = 512;
 const REST_M: f64 = 2e-3;
 /// Stations between two tests of whether the history can be cut.
 const CUT_STATIONS: usize = 8;
-/// Factor that covers the errors of interpolation and trapezoids.
+/// Factor that covers the errors of interpolation, trapezoids and exponentials.
 const SURE: f64 = 1.002;
+/// Largest step, in lengths of a unit, over which [`decay`] stands for the exponential: there it errs by 2e-7.
+const PADE_MOST: f64 = 1.0;
+/// Largest step, in lengths of a unit, over which series give the weights of sources.
+const SERIES_MOST: f64 = 0.05;
 /// Most rounds in which a guess of the remainder must settle.
 const ROUNDS: usize = 12;
 
@@ -35,6 +40,7 @@ const STRIDE_AFTER: [usize; 3] = [0, 12, 36];
 
 /// Coefficients and bounds of one unit at one station, as the adjoint reads them.
 #[derive(Debug, Clone, Copy, Default)]
+#[repr(C, align(64))]
 struct Past {
     /// ℓ/L over the step to the next station.
     turned: f64,
@@ -56,6 +62,8 @@ struct Past {
     push: f64,
     hitch: f64,
     axle: f64,
+    /// Fills two registers of eight numbers.
+    spare: [f64; 2],
 }
 
 /// Eight outputs of one unit: weights of its axle's deviation and of its coupling's deviation over cos δ.
@@ -73,7 +81,9 @@ struct Reach<V> {
 
 /// A vehicle's steps of one stride, by station.
 struct History {
-    past: Vec<[Past; MAX_UNITS]>,
+    /// By station and unit; close together for vehicles of few units.
+    past: Vec<Past>,
+    units: usize,
     /// Bound of the steer axle's deviation, with the bulge of the plan over its chord.
     steer: Vec<f64>,
     /// Whether the bounds closed over the whole step.
@@ -135,6 +145,41 @@ fn outputs<V: Vector>(unit: &UnitModel) -> Vec<Outputs<V>> {
 }
 
 by_instruction_set! {
+    /// Completes one vehicle's history after a block: fills the longer strides.
+    pub(super) fn close<V>(trail: &mut Trail<'_, V>, lane: usize, units: usize) {
+        let first = trail.count - BLOCK;
+        for stride in 1..STRIDES.len() {
+            let (shorter, longer) = trail.histories[lane].split_at_mut(stride);
+            let (from, to) = (&shorter[stride - 1], &mut longer[0]);
+            let starts = |eight: usize| -> [[usize; 2]; LANES] {
+                std::array::from_fn(|i| {
+                    let station = first + (eight * LANES + i) * STRIDES[stride];
+                    [station % MEMORY, (station + STRIDES[stride - 1]) % MEMORY]
+                })
+            };
+            for eight in 0..BLOCK / (LANES * STRIDES[stride]) {
+                let starts = starts(eight);
+                for [a, b] in starts {
+                    to.steer[a] = from.steer[a].max(from.steer[b]);
+                    to.closed[a] = from.closed[a] && from.closed[b];
+                }
+                for unit in 0..units {
+                    let steps = starts.map(|[a, b]| [&from.at(a)[unit], &from.at(b)[unit]]);
+                    let turned = V::from(steps.map(|[p, q]| p.turned + q.turned));
+                    let decay = V::from(steps.map(|[p, q]| p.decay * q.decay));
+                    let weights = weights(turned, decay, STRIDES[stride] as f64).map(V::array);
+                    let (turned, decay) = (turned.array(), decay.array());
+                    for (i, ([a, _], [p, q])) in starts.into_iter().zip(steps).enumerate() {
+                        let [early, late, bend] = [weights[0][i], weights[1][i], weights[2][i]];
+                        let (turned, decay) = (turned[i], decay[i]);
+                        let (push, hitch) = (p.push.max(q.push), p.hitch.max(q.hitch));
+                        to.at_mut(a)[unit] = Past { turned, decay, early, late, bend, push, hitch, ..*p };
+                    }
+                }
+            }
+        }
+    }
+
     /// Refines the last block for one vehicle's units from `first_unit` on. The bounds at body points go to `out`, and
     /// the units' rows get the adjoint's values. The filter repeats the block beside the adjoint, with the adjoint's
     /// second order.
@@ -161,6 +206,19 @@ by_instruction_set! {
     }
 }
 
+impl History {
+    /// The units at a station.
+    #[inline(always)]
+    fn at(&self, station: usize) -> &[Past] {
+        &self.past[station % MEMORY * self.units..][..self.units]
+    }
+
+    #[inline(always)]
+    fn at_mut(&mut self, station: usize) -> &mut [Past] {
+        &mut self.past[station % MEMORY * self.units..][..self.units]
+    }
+}
+
 impl Histories {
     pub(super) const fn new() -> Self {
         Self(Vec::new())
@@ -169,7 +227,8 @@ impl Histories {
     /// A trail for these vehicles. What the histories hold is of no more use: every station is written before it is read.
     pub(super) fn trail<V: Vector>(&mut self, group: &Group<'_, V>) -> Trail<'_, V> {
         let history = |_| History {
-            past: vec![[Past::default(); MAX_UNITS]; MEMORY],
+            past: vec![Past::default(); MAX_UNITS * MEMORY],
+            units: MAX_UNITS,
             steer: vec![0.0; MEMORY],
             closed: vec![true; MEMORY],
         };
@@ -177,6 +236,7 @@ impl Histories {
         if self.0.len() < lanes {
             self.0.resize_with(lanes, || std::array::from_fn(history));
         }
+        self.0.iter_mut().flatten().for_each(|history| history.units = group.units);
         Trail {
             histories: &mut self.0,
             steps: vec![[Step::NONE; MAX_UNITS]; BLOCK],
@@ -245,41 +305,22 @@ impl<V: Vector> Trail<'_, V> {
         let turned = step.advance * of.inverse_length;
         self.before[unit] = (step.advance, step.mid_tangent);
         let at = (self.count - 1) % MEMORY;
+        let decay = if turned.any_above(PADE_MOST) {
+            V::from(turned.array().map(|x| (-x).exp()))
+        } else {
+            let (n, d) = decay(turned);
+            n / d
+        };
+        let [early, late, bend] = weights(turned, decay, 1.0);
+        let push = rate * (of.length * of.sway + z);
+        let halves = [
+            V::transposed([turned, decay, early, late, bend, rate, rate * secant, secant]),
+            V::transposed([couple, pass, z, push, zh, axle, V::ZERO, V::ZERO]),
+        ];
+        let closed = closed.array();
         for (lane, history) in self.histories.iter_mut().enumerate().take(group.models.len()) {
-            history[0].closed[at] = closed.lane(lane) >= 0.0;
-            history[0].past[at][unit] = Past {
-                rate: rate.lane(lane),
-                rate_secant: rate.lane(lane) * secant.lane(lane),
-                secant: secant.lane(lane),
-                couple: couple.lane(lane),
-                pass: pass.lane(lane),
-                z: z.lane(lane),
-                push: rate.lane(lane) * (of.length.lane(lane) * of.sway.lane(lane) + z.lane(lane)),
-                hitch: zh.lane(lane),
-                axle: axle.lane(lane),
-                ..Past::over(turned.lane(lane), 1)
-            };
-        }
-    }
-
-    /// Completes one vehicle's history after a block: fills the longer strides.
-    pub(super) fn close(&mut self, lane: usize, units: usize) {
-        let first = self.count - BLOCK;
-        for stride in 1..STRIDES.len() {
-            let (shorter, longer) = self.histories[lane].split_at_mut(stride);
-            let (from, to) = (&shorter[stride - 1], &mut longer[0]);
-            for station in (first..self.count).step_by(STRIDES[stride]) {
-                let (a, b) = (station % MEMORY, (station + STRIDES[stride - 1]) % MEMORY);
-                to.steer[a] = from.steer[a].max(from.steer[b]);
-                to.closed[a] = from.closed[a] && from.closed[b];
-                for unit in 0..units {
-                    let (p, q) = (&from.past[a][unit], &from.past[b][unit]);
-                    let whole = Past::over(p.turned + q.turned, STRIDES[stride]);
-                    let Past { turned, decay, early, late, bend, .. } = whole;
-                    let (push, hitch) = (p.push.max(q.push), p.hitch.max(q.hitch));
-                    to.past[a][unit] = Past { turned, decay, early, late, bend, push, hitch, ..*p };
-                }
-            }
+            history[0].closed[at] = closed[lane] >= 0.0;
+            history[0].at_mut(at)[unit] = Past::from_columns(halves[0][lane].array(), halves[1][lane].array());
         }
     }
 
@@ -318,7 +359,7 @@ impl<V: Vector> Trail<'_, V> {
                 let a = of.heading + (axle + own) * of.inverse_length + at(row::REMAINDER);
                 (heading_ahead, shift_ahead) = (a, foot_shift(of, step, of.coupling + own));
                 straying = straying.next(of, step, a);
-                let past = &self.histories[lane][0].past[station % MEMORY][unit];
+                let past = &self.histories[lane][0].at(station)[unit];
                 coupling = of.axle + axle + of.hitch * a + past.hitch;
                 extra[unit]
                     .set(lane, beside.step(of, step, filtered, a, V::splat(past.z), V::splat(past.hitch)).lane(lane));
@@ -353,7 +394,7 @@ impl<V: Vector> Trail<'_, V> {
             let follower = (unit + 1 < units).then(|| (&group.chain[unit + 1], &steps[unit + 1]));
             let zh = hitch_remainder(of, step, follower, a, axle, r1, &straying);
             coupling = axle + of.hitch * a + zh;
-            let past = &mut self.histories[lane][0].past[station % MEMORY][unit];
+            let past = &mut self.histories[lane][0].at_mut(station)[unit];
             past.note(of, lane, z.lane(lane), zh.lane(lane), axle.lane(lane));
             extra[unit].set(lane, beside.step(of, step, filtered, a, z, zh).lane(lane));
         }
@@ -376,9 +417,9 @@ impl<V: Vector> Trail<'_, V> {
         points: &mut [f64],
     ) -> Option<(f64, f64)> {
         let of = &group.chain[unit];
-        let past = &mut self.histories[lane][0].past;
-        let guess = if station > 0 { past[(station - 1) % MEMORY][unit].z } else { 0.0 };
-        let own = &mut past[station % MEMORY][unit];
+        let history = &mut self.histories[lane][0];
+        let guess = if station > 0 { history.at(station - 1)[unit].z } else { 0.0 };
+        let own = &mut history.at_mut(station)[unit];
         own.note(of, lane, guess, own.hitch, own.axle);
         let count = self.outputs[lane][unit].len();
         let first = self.reach(group, lane, station, unit, 0);
@@ -423,7 +464,7 @@ impl<V: Vector> Trail<'_, V> {
     fn reach(&self, group: &Group<'_, V>, lane: usize, station: usize, unit: usize, batch: usize) -> Reach<V> {
         let outputs = &self.outputs[lane][unit][batch];
         let histories = &self.histories[lane];
-        let now = &histories[0].past[station % MEMORY];
+        let now = histories[0].at(station);
         let steer = histories[0].steer[station % MEMORY];
         let mut mu = [V::ZERO; MAX_UNITS];
         mu[unit] = outputs.axle;
@@ -455,7 +496,7 @@ impl<V: Vector> Trail<'_, V> {
         let (mut at, mut taken) = (station, STRIDES.len());
         let straight = |j: usize| group.chain[j].axle.lane(lane) + group.chain[j].settled.lane(lane);
         let rest = loop {
-            let past = &histories[0].past[at % MEMORY];
+            let past = histories[0].at(at);
             if at <= floor {
                 break weighted(&mu[..=unit], |j| if at == 0 { straight(j) } else { past[j].axle });
             }
@@ -483,7 +524,7 @@ impl<V: Vector> Trail<'_, V> {
             }
             at -= STRIDES[stride];
             let history = &histories[stride];
-            let (past, steer) = (&history.past[at % MEMORY], history.steer[at % MEMORY]);
+            let (past, steer) = (history.at(at), history.steer[at % MEMORY]);
             // The second difference needs three steps of the same stride.
             let bent = taken == stride;
             taken = stride;
@@ -515,20 +556,42 @@ impl<V: Vector> Trail<'_, V> {
     }
 }
 
+/// Weights of a step over `stride` stations in which a unit's axle moves by `a` of its lengths and deviations decay by `decay`: of a source
+/// when the step begins, of one when it ends, and of its second difference. They are ∫₀¹ e^{−aθ} of the source's parabola through both
+/// ends of the step and the next station.
+#[inline(always)]
+fn weights<V: Vector>(a: V, decay: V, stride: f64) -> [V; 3] {
+    let per_a2 = V::splat(stride) / (a * a);
+    let (early, late) = ((a - 1.0 + decay) * per_a2, (V::ONE - decay * (a + 1.0)) * per_a2);
+    // Where `a` is small the differences would cancel.
+    let small = a - SERIES_MOST;
+    let early_small = (V::splat(0.5) - a * (V::splat(1.0 / 6.0) - a * (1.0 / 24.0))) * stride;
+    let late_small = (V::splat(0.5) - a * (V::splat(1.0 / 3.0) - a * (V::splat(0.125) - a * (1.0 / 30.0)))) * stride;
+    [small.if_negative(early_small, early), small.if_negative(late_small, late), decay.sqrt() * (stride / 12.0)]
+}
+
 impl Past {
-    /// Weights of a step over `stride` stations in which the unit's axle moves by `a` of its lengths. They are ∫₀¹
-    /// e^{−aθ} of the source's parabola through both ends of the step and the next station.
     #[inline(always)]
-    fn over(a: f64, stride: usize) -> Self {
-        let (decay, length) = ((-a).exp(), stride as f64);
-        let (early, late) = if a > 0.05 {
-            let a2 = a * a;
-            ((a - 1.0 + decay) / a2, (1.0 - decay * (1.0 + a)) / a2)
-        } else {
-            (0.5 - a * (1.0 / 6.0 - a / 24.0), 0.5 - a * (1.0 / 3.0 - a * (0.125 - a / 30.0)))
-        };
-        let bend = decay.sqrt() / 12.0;
-        Self { turned: a, decay, early: early * length, late: late * length, bend: bend * length, ..Self::default() }
+    fn from_columns(a: [f64; LANES], b: [f64; LANES]) -> Self {
+        let [turned, decay, early, late, bend, rate, rate_secant, secant] = a;
+        let [couple, pass, z, push, hitch, axle, ..] = b;
+        Self {
+            turned,
+            decay,
+            early,
+            late,
+            bend,
+            rate,
+            rate_secant,
+            secant,
+            couple,
+            pass,
+            z,
+            push,
+            hitch,
+            axle,
+            spare: [0.0; 2],
+        }
     }
 
     /// Replaces the filter's bounds.
@@ -567,3 +630,5 @@ pub(super) fn first_loose<V: Vector>(group: &Group<'_, V>, lane: usize, rows: &[
     }
     usize::MAX
 }
+
+const _: () = assert!(BLOCK.is_multiple_of(LANES * STRIDES[STRIDES.len() - 1]));

@@ -24,6 +24,8 @@ pub(super) mod row {
     pub(crate) const Y: usize = 1;
     pub(crate) const UX: usize = 2;
     pub(crate) const UY: usize = 3;
+    /// Number of the rows above, which planning needs.
+    pub(crate) const NOMINAL: usize = 4;
     /// Curvature of the axle's path, signed, 1/m.
     pub(crate) const CURVATURE: usize = 4;
     /// Change of the curvature per metre, 1/m².
@@ -39,11 +41,31 @@ pub(super) mod row {
     pub(crate) const WAY2: usize = 10;
 }
 
-/// Writes a value with vehicles in lanes to the vehicles' own rows.
-#[inline(always)]
-pub(super) fn store<V: Vector>(rows: &mut [f64], unit: usize, field: usize, k: usize, value: V) {
-    for (lane, value) in value.array().into_iter().enumerate() {
-        rows[((unit * LANES + lane) * FIELDS + field) * BLOCK + k] = value;
+/// The fields of all units at eight stations, with vehicles in lanes.
+pub(super) struct Staged<V>(Vec<[V; LANES]>);
+
+impl<V: Vector> Staged<V> {
+    pub(super) fn new(units: usize) -> Self {
+        Self(vec![[V::ZERO; LANES]; units * FIELDS])
+    }
+
+    /// Notes the value at the `k`-th station of the block.
+    #[inline(always)]
+    pub(super) fn note(&mut self, unit: usize, k: usize, field: usize, value: V) {
+        self.0[unit * FIELDS + field][k % LANES] = value;
+    }
+
+    /// Writes the first fields of eight stations, of which the `k`-th of the block is the last one, to the vehicles' own rows.
+    #[inline(always)]
+    pub(super) fn write(&self, rows: &mut [f64], fields: usize, k: usize) {
+        for (unit, staged) in self.0.chunks_exact(FIELDS).enumerate() {
+            for (field, stations) in staged[..fields].iter().enumerate() {
+                for (lane, stations) in V::transposed(*stations).into_iter().enumerate() {
+                    let start = ((unit * LANES + lane) * FIELDS + field) * BLOCK + k + 1 - LANES;
+                    rows[start..start + LANES].copy_from_slice(&stations.array());
+                }
+            }
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The nominal motion and the curved tubes of a block of head stations (docs/proof.md, sections 2 to 5), with rides in lanes.
 
 use super::adjoint::Trail;
-use super::block::{BLOCK, NOT_CLOSED_RAD, row, store};
+use super::block::{BLOCK, FIELDS, NOT_CLOSED_RAD, Staged, row};
 use super::group::Group;
 use super::lanes::{LANES, Vector, by_instruction_set};
 use super::model::MAX_UNITS;
@@ -76,6 +76,7 @@ pub(super) struct Motion<V> {
     folding_change: [V; MAX_UNITS],
     /// What curvature adds to the bound of each axle's deviation.
     pub(super) extra: [V; MAX_UNITS],
+    staged: Staged<V>,
 }
 
 by_instruction_set! {
@@ -93,7 +94,10 @@ by_instruction_set! {
         let per_step2 = V::from(paths.per_step2);
         for k in 0..BLOCK {
             let plan = [paths.at(k), paths.at(k + 1), paths.at(k + 2)];
-            motion.station::<CERTIFY, REFINE>(group, plan, per_step2, k, rows, trail);
+            motion.station::<CERTIFY, REFINE>(group, plan, per_step2, k, trail);
+            if k % LANES == LANES - 1 {
+                motion.staged.write(rows, if CERTIFY { FIELDS } else { row::NOMINAL }, k);
+            }
         }
     }
 }
@@ -115,6 +119,7 @@ impl<V: Vector> Motion<V> {
             folding: [V::ZERO; MAX_UNITS],
             folding_change: [V::ZERO; MAX_UNITS],
             extra: std::array::from_fn(|unit| group.chain[unit].settled),
+            staged: Staged::new(group.units),
         }
     }
 
@@ -128,7 +133,6 @@ impl<V: Vector> Motion<V> {
         plan: [(V, V); 3],
         per_step2: V,
         k: usize,
-        rows: &mut [f64],
         trail: &mut Trail<'_, V>,
     ) {
         let [place, next, after] = plan;
@@ -147,11 +151,10 @@ impl<V: Vector> Motion<V> {
             // First the axle, then the next coupling.
             x = x - ux * of.length;
             y = y - uy * of.length;
-            let mut store = |field: usize, value: V| store(rows, unit, field, k, value);
-            store(row::X, x);
-            store(row::Y, y);
-            store(row::UX, ux);
-            store(row::UY, uy);
+            self.staged.note(unit, k, row::X, x);
+            self.staged.note(unit, k, row::Y, y);
+            self.staged.note(unit, k, row::UX, ux);
+            self.staged.note(unit, k, row::UY, uy);
             x = x - ux * (of.reach - of.length);
             y = y - uy * (of.reach - of.length);
 
@@ -212,9 +215,9 @@ impl<V: Vector> Motion<V> {
                 joints[unit] = double_atan(half_tangent) + self.overshoot(unit, folding);
                 turned_ahead = turned;
                 let change = (turned - self.turned[unit]).abs();
-                store(row::CURVATURE, tangent * of.inverse_length);
-                store(row::WAY2, steps[unit].advance * steps[unit].advance);
-                store(row::JERK, change.max(self.turned_change[unit]) * per_step2);
+                self.staged.note(unit, k, row::CURVATURE, tangent * of.inverse_length);
+                self.staged.note(unit, k, row::WAY2, steps[unit].advance * steps[unit].advance);
+                self.staged.note(unit, k, row::JERK, change.max(self.turned_change[unit]) * per_step2);
                 self.turned[unit] = turned;
                 self.turned_change[unit] = change;
             }
@@ -225,7 +228,7 @@ impl<V: Vector> Motion<V> {
             self.heading_y[unit] = wy;
         }
         if CERTIFY {
-            self.tubes::<REFINE>(group, &steps, &joints, k, rows, trail);
+            self.tubes::<REFINE>(group, &steps, &joints, k, trail);
         }
     }
 
@@ -248,7 +251,6 @@ impl<V: Vector> Motion<V> {
         steps: &[Step<V>; MAX_UNITS],
         joints: &[V; MAX_UNITS],
         k: usize,
-        rows: &mut [f64],
         trail: &mut Trail<'_, V>,
     ) {
         let one = V::splat(1.0);
@@ -280,10 +282,9 @@ impl<V: Vector> Motion<V> {
             self.extra[unit] = closed.if_negative(of.settled, extra);
             let y = y.max(extra);
 
-            let mut store = |field: usize, value: V| store(rows, unit, field, k, value);
-            store(row::EXTRA_AXLE, closed.if_negative(V::splat(MOST), y));
-            store(row::EXTRA_COUPLING, extra_coupling);
-            store(row::REMAINDER, r1 * of.inverse_length);
+            self.staged.note(unit, k, row::EXTRA_AXLE, closed.if_negative(V::splat(MOST), y));
+            self.staged.note(unit, k, row::EXTRA_COUPLING, extra_coupling);
+            self.staged.note(unit, k, row::REMAINDER, r1 * of.inverse_length);
             let own_shift = foot_shift(of, step, of.coupling + extra_coupling);
             let margin = hinge_margin(
                 of,
@@ -291,7 +292,7 @@ impl<V: Vector> Motion<V> {
                 heading_ahead + a + shift_ahead,
                 if unit == 0 { V::ZERO } else { own_shift },
             );
-            store(row::HINGE, closed.if_negative(V::splat(NOT_CLOSED_RAD), margin));
+            self.staged.note(unit, k, row::HINGE, closed.if_negative(V::splat(NOT_CLOSED_RAD), margin));
             (heading_ahead, shift_ahead) = (a, own_shift);
 
             // Continues at the next coupling.

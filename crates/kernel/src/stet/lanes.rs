@@ -55,6 +55,9 @@ pub(crate) trait Vector:
     /// As [`tagged`], in each lane.
     fn tagged(self, tag: u64) -> Self;
 
+    /// Rows become columns.
+    fn transposed(rows: [Self; LANES]) -> [Self; LANES];
+
     /// A NaN is above nothing.
     fn any_above(self, limit: f64) -> bool;
 

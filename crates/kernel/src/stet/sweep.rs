@@ -217,7 +217,7 @@ fn sweep_with<V: Vector, const CERTIFY: bool, const REFINE: bool>(
                 adjoint::refine(&mut trail, &group, index, tight_from, &mut motion.extra, rows, tight);
             }
             if REFINE {
-                trail.close(index, lane.bodies.len());
+                adjoint::close(&mut trail, index, lane.bodies.len());
             }
             lane.look::<V, CERTIFY>(index, asked, tight_from, rows, tight);
         }

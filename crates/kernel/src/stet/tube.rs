@@ -1,7 +1,7 @@
 //! The tubes, for files and pictures: each axle's nominal place and the bound of its deviation.
 
 use super::Certificate;
-use super::adjoint::{Histories, Refined, first_loose, refine};
+use super::adjoint::{Histories, Refined, close, first_loose, refine};
 use super::block::{BLOCK, FIELDS, row};
 use super::drive::{Motion, SteerPaths, drive};
 use super::group::Group;
@@ -65,7 +65,7 @@ fn driven<V: Vector>(corridor: &Corridor, model: &Model, certificate: &Certifica
         if loose.min(after) < units {
             refine(&mut trail, &group, 0, loose.min(after), &mut motion.extra, &mut rows, &mut refined);
         }
-        trail.close(0, units);
+        close(&mut trail, 0, units);
         after = loose;
         for tube in &mut tubes {
             let at = |field: usize, k: usize| rows[(tube.unit * LANES * FIELDS + field) * BLOCK + k];

@@ -5,14 +5,15 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 #[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::{
     __m256d, _CMP_GT_OQ, _CMP_LT_OQ, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_blendv_pd, _mm256_cmp_pd,
-    _mm256_div_pd, _mm256_max_pd, _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_or_pd, _mm256_set1_pd,
-    _mm256_sqrt_pd, _mm256_sub_pd, _mm256_xor_pd,
+    _mm256_div_pd, _mm256_max_pd, _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_or_pd,
+    _mm256_permute2f128_pd, _mm256_set1_pd, _mm256_sqrt_pd, _mm256_sub_pd, _mm256_unpackhi_pd, _mm256_unpacklo_pd,
+    _mm256_xor_pd,
 };
 #[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))]
 use std::arch::x86_64::{
     __m512d, _mm512_abs_pd, _mm512_add_pd, _mm512_and_pd, _mm512_cmp_pd_mask, _mm512_div_pd, _mm512_mask_blend_pd,
-    _mm512_max_pd, _mm512_min_pd, _mm512_mul_pd, _mm512_or_pd, _mm512_set1_pd, _mm512_sqrt_pd, _mm512_sub_pd,
-    _mm512_xor_pd,
+    _mm512_max_pd, _mm512_min_pd, _mm512_mul_pd, _mm512_or_pd, _mm512_set1_pd, _mm512_shuffle_f64x2, _mm512_sqrt_pd,
+    _mm512_sub_pd, _mm512_unpackhi_pd, _mm512_unpacklo_pd, _mm512_xor_pd,
 };
 
 use super::{InstructionSet, LANES, TAG_MASK, Vector, tagged};
@@ -83,6 +84,11 @@ impl Vector for Portable {
     #[inline(always)]
     fn tagged(self, tag: u64) -> Self {
         self.map(|x| tagged(x, tag))
+    }
+
+    #[inline(always)]
+    fn transposed(rows: [Self; LANES]) -> [Self; LANES] {
+        std::array::from_fn(|i| Self(std::array::from_fn(|j| rows[j].0[i])))
     }
 
     #[inline(always)]
@@ -189,6 +195,40 @@ impl From<[f64; LANES]> for Avx2 {
     }
 }
 
+/// The columns of four rows.
+#[cfg(target_arch = "x86_64")]
+#[inline(always)]
+fn four_by_four([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
+    // SAFETY: `on_widest` chose the caller's type, so the processor has its instructions.
+    unsafe {
+        let (ab, cd) = (_mm256_unpacklo_pd(a, b), _mm256_unpacklo_pd(c, d));
+        let (ab_odd, cd_odd) = (_mm256_unpackhi_pd(a, b), _mm256_unpackhi_pd(c, d));
+        [
+            _mm256_permute2f128_pd::<0x20>(ab, cd),
+            _mm256_permute2f128_pd::<0x20>(ab_odd, cd_odd),
+            _mm256_permute2f128_pd::<0x31>(ab, cd),
+            _mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd),
+        ]
+    }
+}
+
+/// The first quarters of four registers side by side, then their second quarters, and so on.
+#[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))]
+#[inline(always)]
+fn quarters(a: __m512d, b: __m512d, c: __m512d, d: __m512d) -> [__m512d; 4] {
+    // SAFETY: `on_widest` chose the caller's type, so the processor has its instructions.
+    unsafe {
+        let (ab, cd) = (_mm512_shuffle_f64x2::<0x88>(a, b), _mm512_shuffle_f64x2::<0x88>(c, d));
+        let (ab_odd, cd_odd) = (_mm512_shuffle_f64x2::<0xdd>(a, b), _mm512_shuffle_f64x2::<0xdd>(c, d));
+        [
+            _mm512_shuffle_f64x2::<0x88>(ab, cd),
+            _mm512_shuffle_f64x2::<0x88>(ab_odd, cd_odd),
+            _mm512_shuffle_f64x2::<0xdd>(ab, cd),
+            _mm512_shuffle_f64x2::<0xdd>(ab_odd, cd_odd),
+        ]
+    }
+}
+
 #[cfg(target_arch = "x86_64")]
 impl Vector for Avx2 {
     const SET: InstructionSet = InstructionSet::Avx2;
@@ -251,6 +291,23 @@ impl Vector for Avx2 {
             let bare = _mm256_and_pd(x, _mm256_set1_pd(f64::from_bits(!TAG_MASK)));
             _mm256_or_pd(bare, _mm256_set1_pd(f64::from_bits(tag)))
         })
+    }
+
+    #[inline(always)]
+    fn transposed(rows: [Self; LANES]) -> [Self; LANES] {
+        let [a, b, c, d, e, f, g, h] = rows.map(|row| row.0);
+        let [p, q] = [four_by_four([a[0], b[0], c[0], d[0]]), four_by_four([e[0], f[0], g[0], h[0]])];
+        let [r, s] = [four_by_four([a[1], b[1], c[1], d[1]]), four_by_four([e[1], f[1], g[1], h[1]])];
+        [
+            Self([p[0], q[0]]),
+            Self([p[1], q[1]]),
+            Self([p[2], q[2]]),
+            Self([p[3], q[3]]),
+            Self([r[0], s[0]]),
+            Self([r[1], s[1]]),
+            Self([r[2], s[2]]),
+            Self([r[3], s[3]]),
+        ]
     }
 
     #[inline(always)]
@@ -343,6 +400,36 @@ impl Vector for Avx512 {
     }
 
     #[inline(always)]
+    fn transposed(rows: [Self; LANES]) -> [Self; LANES] {
+        let [a, b, c, d, e, f, g, h] = rows.map(|row| row.0);
+        // SAFETY: `on_widest` chose the type, so the processor has its instructions.
+        unsafe {
+            let even = quarters(
+                _mm512_unpacklo_pd(a, b),
+                _mm512_unpacklo_pd(c, d),
+                _mm512_unpacklo_pd(e, f),
+                _mm512_unpacklo_pd(g, h),
+            );
+            let odd = quarters(
+                _mm512_unpackhi_pd(a, b),
+                _mm512_unpackhi_pd(c, d),
+                _mm512_unpackhi_pd(e, f),
+                _mm512_unpackhi_pd(g, h),
+            );
+            [
+                Self(even[0]),
+                Self(odd[0]),
+                Self(even[1]),
+                Self(odd[1]),
+                Self(even[2]),
+                Self(odd[2]),
+                Self(even[3]),
+                Self(odd[3]),
+            ]
+        }
+    }
+
+    #[inline(always)]
     fn any_above(self, limit: f64) -> bool {
         // SAFETY: `on_widest` chose the type, so the processor has its instructions.
         unsafe { _mm512_cmp_pd_mask::<_CMP_GT_OQ>(self.0, _mm512_set1_pd(limit)) != 0 }
@@ -398,5 +485,39 @@ impl Neg for Avx512 {
     fn neg(self) -> Self {
         // SAFETY: `on_widest` chose the type, so the processor has its instructions.
         Self(unsafe { _mm512_xor_pd(self.0, _mm512_set1_pd(-0.0)) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stet::lanes::on_widest;
+
+    /// What every operation makes of a few numbers.
+    fn results<V: Vector>() -> Vec<[u64; LANES]> {
+        let a = V::from([1.5, -2.0, 0.0, -0.0, 1e-300, 4.0, -7.25, 3.0]);
+        let b = V::from([-1.5, -2.0, 5.0, 0.0, 2.0, f64::NAN, f64::INFINITY, 3.0]);
+        let rows = std::array::from_fn(|i| V::from(std::array::from_fn(|j| (LANES * i + j) as f64)));
+        let both = [a + b, a - b, a * b, a / b, a + 0.1, a - 0.1, a * 0.1, -a, a.abs(), a.abs().sqrt()];
+        let chosen = [a.max(b), a.min(b), b.max(a), b.min(a), a.if_negative(b, V::ONE), a.tagged(0x55)];
+        let tests = [a.any_above(3.9), a.any_above(4.0), b.any_above(1e300), a.all_below(4.1), a.all_below(4.0)];
+        let tests = tests.map(|test| V::splat(f64::from(u8::from(test))));
+        // A NaN of one instruction set may have another payload.
+        let bits = |x: f64| if x.is_nan() { f64::NAN.to_bits() } else { x.to_bits() };
+        both.into_iter()
+            .chain(chosen)
+            .chain(tests)
+            .chain([V::ZERO, V::ONE])
+            .chain(V::transposed(rows))
+            .map(|v| v.array().map(bits))
+            .collect()
+    }
+
+    #[test]
+    fn all_vectors_compute_the_same_numbers() {
+        let portable = results::<Portable>();
+        #[cfg(target_arch = "x86_64")]
+        assert_eq!(InstructionSet::Avx2.at_most(|| on_widest!(V => results::<V>())), portable);
+        assert_eq!(on_widest!(V => results::<V>()), portable);
     }
 }
