@@ -4,11 +4,11 @@
 //!
 //! A plan that is the centreline is not stored.
 
-use std::io::{Read as _, Write as _};
+use std::cell::RefCell;
+use std::io::Read as _;
 
-use flate2::Compression;
 use flate2::read::DeflateDecoder;
-use flate2::write::DeflateEncoder;
+use flate2::{Compress, Compression, FlushCompress, Status};
 
 /// The greatest number of coefficients, enough for 16 million stations.
 const MOST_COEFFICIENTS: usize = 1 << 22;
@@ -46,9 +46,24 @@ fn pack(coefficients: &[i32]) -> Vec<u8> {
         }
         plain.push(zigzag as u8);
     }
-    let mut deflated = DeflateEncoder::new(vec![1], Compression::best());
-    let done = deflated.write_all(&plain[1..]).and_then(|()| deflated.finish());
-    done.ok().filter(|deflated| deflated.len() < plain.len()).unwrap_or(plain)
+    shorter(&plain[1..]).unwrap_or(plain)
+}
+
+thread_local! {
+    /// Making one takes as long as packing a plan.
+    static DEFLATE: RefCell<Compress> = RefCell::new(Compress::new(Compression::best(), false));
+}
+
+/// The deflated bytes behind a 1, if they are fewer than the bytes.
+fn shorter(bytes: &[u8]) -> Option<Vec<u8>> {
+    DEFLATE.with_borrow_mut(|deflate| {
+        deflate.reset();
+        let mut deflated = vec![0; bytes.len().max(1)];
+        deflated[0] = 1;
+        let done = deflate.compress(bytes, &mut deflated[1..], FlushCompress::Finish).ok()?;
+        deflated.truncate(1 + usize::try_from(deflate.total_out()).ok()?);
+        (done == Status::StreamEnd).then_some(deflated)
+    })
 }
 
 /// The coefficients of a packed plan. `None` for bytes that are no plan.

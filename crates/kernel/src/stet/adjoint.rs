@@ -151,29 +151,36 @@ by_instruction_set! {
         for stride in 1..STRIDES.len() {
             let (shorter, longer) = trail.histories[lane].split_at_mut(stride);
             let (from, to) = (&shorter[stride - 1], &mut longer[0]);
-            let starts = |eight: usize| -> [[usize; 2]; LANES] {
-                std::array::from_fn(|i| {
-                    let station = first + (eight * LANES + i) * STRIDES[stride];
-                    [station % MEMORY, (station + STRIDES[stride - 1]) % MEMORY]
-                })
-            };
             for eight in 0..BLOCK / (LANES * STRIDES[stride]) {
-                let starts = starts(eight);
+                let mut starts = [[0; 2]; LANES];
+                for (i, [a, b]) in starts.iter_mut().enumerate() {
+                    let station = first + (eight * LANES + i) * STRIDES[stride];
+                    (*a, *b) = (station % MEMORY, (station + STRIDES[stride - 1]) % MEMORY);
+                }
                 for [a, b] in starts {
                     to.steer[a] = from.steer[a].max(from.steer[b]);
                     to.closed[a] = from.closed[a] && from.closed[b];
                 }
                 for unit in 0..units {
-                    let steps = starts.map(|[a, b]| [&from.at(a)[unit], &from.at(b)[unit]]);
-                    let turned = V::from(steps.map(|[p, q]| p.turned + q.turned));
-                    let decay = V::from(steps.map(|[p, q]| p.decay * q.decay));
-                    let weights = weights(turned, decay, STRIDES[stride] as f64).map(V::array);
-                    let (turned, decay) = (turned.array(), decay.array());
-                    for (i, ([a, _], [p, q])) in starts.into_iter().zip(steps).enumerate() {
-                        let [early, late, bend] = [weights[0][i], weights[1][i], weights[2][i]];
-                        let (turned, decay) = (turned[i], decay[i]);
-                        let (push, hitch) = (p.push.max(q.push), p.hitch.max(q.hitch));
-                        to.at_mut(a)[unit] = Past { turned, decay, early, late, bend, push, hitch, ..*p };
+                    let (mut turned, mut decay) = ([0.0; LANES], [0.0; LANES]);
+                    for ([a, b], (turned, decay)) in starts.iter().zip(turned.iter_mut().zip(&mut decay)) {
+                        let (p, q) = (&from.at(*a)[unit], &from.at(*b)[unit]);
+                        (*turned, *decay) = (p.turned + q.turned, p.decay * q.decay);
+                    }
+                    let [early, late, bend] = weights(V::from(turned), V::from(decay), STRIDES[stride] as f64);
+                    let (early, late, bend) = (early.array(), late.array(), bend.array());
+                    for (i, [a, b]) in starts.iter().enumerate() {
+                        let (p, q) = (&from.at(*a)[unit], &from.at(*b)[unit]);
+                        to.at_mut(*a)[unit] = Past {
+                            turned: turned[i],
+                            decay: decay[i],
+                            early: early[i],
+                            late: late[i],
+                            bend: bend[i],
+                            push: p.push.max(q.push),
+                            hitch: p.hitch.max(q.hitch),
+                            ..*p
+                        };
                     }
                 }
             }
@@ -200,9 +207,11 @@ by_instruction_set! {
         for (extra, entered) in extra.iter_mut().zip(&trail.extra) {
             extra.set(lane, entered.lane(lane));
         }
-        for k in 0..BLOCK {
-            trail.station(group, lane, first_unit, first + k, k, extra, rows, out);
+        let (steps, joints) = (std::mem::take(&mut trail.steps), std::mem::take(&mut trail.joints));
+        for (k, driven) in steps.iter().zip(&joints).enumerate() {
+            trail.station(group, lane, first_unit, first + k, k, driven, extra, rows, out);
         }
+        (trail.steps, trail.joints) = (steps, joints);
     }
 }
 
@@ -269,15 +278,16 @@ impl<V: Vector> Trail<'_, V> {
 
     /// Records the steps of another station, the `k`-th of its block.
     #[inline(always)]
-    pub(super) fn begin(&mut self, k: usize, steps: &[Step<V>; MAX_UNITS], joints: &[V; MAX_UNITS], steer: V) {
+    pub(super) fn begin(&mut self, k: usize, steps: &[Step<V>], joints: &[V], steer: V) {
         if self.count == 0 {
-            self.before = std::array::from_fn(|unit| (steps[unit].advance, steps[unit].mid_tangent));
+            let first = steps.iter().map(|step| (step.advance, step.mid_tangent));
+            self.before.iter_mut().zip(first).for_each(|(before, step)| *before = step);
         }
         for (history, steer) in self.histories.iter_mut().zip(steer.array()) {
             history[0].steer[self.count % MEMORY] = steer;
         }
-        self.steps[k] = *steps;
-        self.joints[k] = *joints;
+        self.steps[k][..steps.len()].copy_from_slice(steps);
+        self.joints[k][..joints.len()].copy_from_slice(joints);
         self.count += 1;
     }
 
@@ -334,17 +344,17 @@ impl<V: Vector> Trail<'_, V> {
         first_unit: usize,
         station: usize,
         k: usize,
+        (steps, joints): (&[Step<V>; MAX_UNITS], &[V; MAX_UNITS]),
         extra: &mut [V; MAX_UNITS],
         rows: &mut [f64],
         out: &mut Refined,
     ) {
-        let (steps, joints) = (self.steps[k], self.joints[k]);
         let units = group.models[lane].units.len();
         let steer = self.histories[lane][0].steer[station % MEMORY];
         let mut straying = Straying::of_the_steer_axle(V::splat(steer));
         let (mut heading_ahead, mut shift_ahead) = (group.course, V::ZERO);
         let mut closes = true;
-        let mut beside = Filter::begin(&group.chain[..group.units], &steps);
+        let mut beside = Filter::begin(&group.chain[..group.units], steps);
         let mut coupling = V::splat(steer);
         for unit in 0..units {
             let (of, step) = (&group.chain[unit], &steps[unit]);

@@ -76,6 +76,9 @@ pub(super) struct Motion<V> {
     folding_change: [V; MAX_UNITS],
     /// What curvature adds to the bound of each axle's deviation.
     pub(super) extra: [V; MAX_UNITS],
+    /// The last step, by unit.
+    steps: [Step<V>; MAX_UNITS],
+    joints: [V; MAX_UNITS],
     staged: Staged<V>,
 }
 
@@ -119,6 +122,8 @@ impl<V: Vector> Motion<V> {
             folding: [V::ZERO; MAX_UNITS],
             folding_change: [V::ZERO; MAX_UNITS],
             extra: std::array::from_fn(|unit| group.chain[unit].settled),
+            steps: [Step::NONE; MAX_UNITS],
+            joints: [V::ZERO; MAX_UNITS],
             staged: Staged::new(group.units),
         }
     }
@@ -141,8 +146,6 @@ impl<V: Vector> Motion<V> {
         // The plan may bend more after the step than before it, above all at the corridor's first station.
         let (later_x, later_y) = (after.0 - next.0, after.1 - next.1);
         let mut bend_after = (vx * later_y - vy * later_x).abs() / (vx * vx + vy * vy + 1e-30);
-        let mut steps = [Step::NONE; MAX_UNITS];
-        let mut joints = [V::ZERO; MAX_UNITS];
         let (mut ahead_x, mut ahead_y) = (V::ZERO, V::ZERO);
         let mut turned_ahead = V::ZERO;
         for unit in 0..group.units {
@@ -193,7 +196,7 @@ impl<V: Vector> Motion<V> {
                 (wx, wy) = (wx - more * wy, wy + more * wx);
                 let after = vx * wx + vy * wy;
                 let mid_tangent = if REFINE { (sine + wx * vy - wy * vx) / (cosine + after) } else { V::ZERO };
-                steps[unit] = Step {
+                let step = Step {
                     moved,
                     advance: (cosine + after) * 0.5,
                     mid_tangent,
@@ -212,11 +215,12 @@ impl<V: Vector> Motion<V> {
                 let turned = ux * wy - uy * wx;
                 // The plan's chord turns at the station. The unit ahead turns during the step.
                 let folding = if unit == 0 { bend - self.turned[0] } else { turned_ahead - turned };
-                joints[unit] = double_atan(half_tangent) + self.overshoot(unit, folding);
+                self.joints[unit] = double_atan(half_tangent) + self.overshoot(unit, folding);
                 turned_ahead = turned;
                 let change = (turned - self.turned[unit]).abs();
                 self.staged.note(unit, k, row::CURVATURE, tangent * of.inverse_length);
-                self.staged.note(unit, k, row::WAY2, steps[unit].advance * steps[unit].advance);
+                self.staged.note(unit, k, row::WAY2, step.advance * step.advance);
+                self.steps[unit] = step;
                 self.staged.note(unit, k, row::JERK, change.max(self.turned_change[unit]) * per_step2);
                 self.turned[unit] = turned;
                 self.turned_change[unit] = change;
@@ -228,7 +232,7 @@ impl<V: Vector> Motion<V> {
             self.heading_y[unit] = wy;
         }
         if CERTIFY {
-            self.tubes::<REFINE>(group, &steps, &joints, k, trail);
+            self.tubes::<REFINE>(group, k, trail);
         }
     }
 
@@ -245,15 +249,9 @@ impl<V: Vector> Motion<V> {
 
     /// Computes what curvature adds to the straight gains (docs/proof.md, section 5), and the hinge margins.
     #[inline(always)]
-    fn tubes<const REFINE: bool>(
-        &mut self,
-        group: &Group<'_, V>,
-        steps: &[Step<V>; MAX_UNITS],
-        joints: &[V; MAX_UNITS],
-        k: usize,
-        trail: &mut Trail<'_, V>,
-    ) {
+    fn tubes<const REFINE: bool>(&mut self, group: &Group<'_, V>, k: usize, trail: &mut Trail<'_, V>) {
         let one = V::splat(1.0);
+        let Self { steps, joints, extra, staged, .. } = self;
         let bulge = chord_bulge(&steps[0]);
         let mut filter = Filter::begin(&group.chain[..group.units], steps);
         let mut straying = Straying::of_the_steer_axle(group.tolerance + bulge);
@@ -261,12 +259,12 @@ impl<V: Vector> Motion<V> {
         // Negative from the first unit on whose bounds do not close.
         let mut closed = one;
         if REFINE {
-            trail.begin(k, steps, joints, group.tolerance + bulge);
+            trail.begin(k, &steps[..group.units], &joints[..group.units], group.tolerance + bulge);
         }
         for unit in 0..group.units {
             let of = &group.chain[unit];
             let step = &steps[unit];
-            let y = self.extra[unit];
+            let y = extra[unit];
             let mut coupled = filter.coupled(of, step, y);
             let axle = of.axle + y;
             let coupling = of.coupling + coupled.extra;
@@ -274,17 +272,17 @@ impl<V: Vector> Motion<V> {
             coupled.heading = a;
             let extra_coupling = coupled.extra;
             let (r1, z) = remainder(of, step, a, axle, coupling);
-            let extra = filter.grown(of, step, &coupled, z);
+            let grown = filter.grown(of, step, &coupled, z);
             // Nothing is certified where the bounds do not close. Behind that place they begin anew, as after a
             // straight, because a vehicle certified there did not come through this place. A stand-in always closes.
             let valid = validity(of, step, a, coupling).min(short);
             closed = closed.min((of.present - V::splat(0.5)).if_negative(one, valid));
-            self.extra[unit] = closed.if_negative(of.settled, extra);
-            let y = y.max(extra);
+            extra[unit] = closed.if_negative(of.settled, grown);
+            let y = y.max(grown);
 
-            self.staged.note(unit, k, row::EXTRA_AXLE, closed.if_negative(V::splat(MOST), y));
-            self.staged.note(unit, k, row::EXTRA_COUPLING, extra_coupling);
-            self.staged.note(unit, k, row::REMAINDER, r1 * of.inverse_length);
+            staged.note(unit, k, row::EXTRA_AXLE, closed.if_negative(V::splat(MOST), y));
+            staged.note(unit, k, row::EXTRA_COUPLING, extra_coupling);
+            staged.note(unit, k, row::REMAINDER, r1 * of.inverse_length);
             let own_shift = foot_shift(of, step, of.coupling + extra_coupling);
             let margin = hinge_margin(
                 of,
@@ -292,7 +290,7 @@ impl<V: Vector> Motion<V> {
                 heading_ahead + a + shift_ahead,
                 if unit == 0 { V::ZERO } else { own_shift },
             );
-            self.staged.note(unit, k, row::HINGE, closed.if_negative(V::splat(NOT_CLOSED_RAD), margin));
+            staged.note(unit, k, row::HINGE, closed.if_negative(V::splat(NOT_CLOSED_RAD), margin));
             (heading_ahead, shift_ahead) = (a, own_shift);
 
             // Continues at the next coupling.
