@@ -22,6 +22,10 @@ const NOTHING_M: f64 = 50.0;
 /// amounts for what lies between their steps.
 const LIMITING_TOLERANCE_M: f64 = 0.06;
 
+/// In areas the prover looks at boundaries up to 4 m away only, and measures only the pieces of bodies that may have the least room. An
+/// RSC of this much is therefore a bound, but its place may have more room, metres.
+const ROOMY_M: f64 = 2.0;
+
 /// Vehicle lengths by which the rear may lag behind the steer axle: the arc of a quarter turn instead of its chord
 /// (proof, section 7).
 const FARTHEST: f64 = 1.6;
@@ -185,8 +189,10 @@ impl<'a> Subject<'a> {
     /// decide, because the prover may have used the filter.
     fn limiting(&self, filtered: &mut Swept<'_>, claim: &SpanClaim) -> Option<Finding> {
         let ((at_m, unit, side), rsc_m) = (claim.limiting?, claim.rsc_m.filter(|rsc_m| *rsc_m > -NOTHING_M)?);
-        // How far a body is outside of an area is not measured here (`plane`).
-        if rsc_m < 0.0 && self.in_area(&claim.stations) {
+        // How far a body is outside of an area is not measured here (`plane`). Far inside, the prover measures roughly. Between γ = 1 and
+        // γ_min it takes chords, which may lie far below the room at that γ.
+        let measured = (0.0..ROOMY_M).contains(&rsc_m) && claim.shrink >= 1.0;
+        if !measured && self.in_area(&claim.stations) {
             return None;
         }
         let own = self.stretches(&claim.stations);

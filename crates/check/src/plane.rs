@@ -74,6 +74,12 @@ const STRIPS: usize = 64;
 const MOST_WORK: usize = 10_000_000;
 /// A comparison in a direction counts as so many.
 const DIRECTED_WORK: usize = 8;
+/// What a turned direction may gain where it is tried, metres.
+const ASLANT_M: f64 = 0.05;
+/// Small cells are also held apart from a segment in directions that are turned by these tangents from the shortest way, then by these
+/// steps from the best one of them.
+const TURNS: [f64; 7] = [0.0, -0.6, -0.3, -0.1, 0.1, 0.3, 0.6];
+const TURN_STEPS: [f64; 3] = [0.1, 0.05, 0.025];
 /// Once a claim has failed, only places that are worse by this are looked for, metres.
 const WORSE_M: f64 = 0.01;
 
@@ -344,12 +350,18 @@ impl Swept<'_> {
             let corners = self.corners(&piece);
             let hull = hull(&corners);
             work += 1 + near.iter().map(Vec::len).sum::<usize>();
+            let small = piece.size(&corners) <= SMALL_M;
+            let kept = |piece: &Piece, taken: &Taken, hull: &[Point], segment, way, target| {
+                let straight = self.kept(piece, taken, hull, segment, way);
+                let close = small && (target - ASLANT_M..target).contains(&straight);
+                if close { self.kept_aslant(piece, taken, hull, segment, way) } else { straight }
+            };
             // What is far enough from the whole piece is far enough from its parts.
             let close = |(b, near): (&&Boundary, &Vec<u32>)| -> Vec<(u32, f64)> {
                 let apart = near.iter().map(|&k| (k, way(&hull, b.segments[k as usize])));
                 let within = apart.filter(|(_, way)| length(*way) < needed);
                 let kept =
-                    within.map(|(k, way)| (k, way, self.kept(&piece, &taken, &hull, b.segments[k as usize], way)));
+                    within.map(|(k, way)| (k, way, kept(&piece, &taken, &hull, b.segments[k as usize], way, target)));
                 let close = kept.filter(|(_, way, kept)| *kept < target || strict && length(*way) < ROUNDING_M);
                 close.map(|(k, _, kept)| (k, kept)).collect()
             };
@@ -364,7 +376,7 @@ impl Swept<'_> {
                 let room = |(b, near): (&&Boundary, &Vec<u32>)| {
                     let to = |&k: &u32| {
                         let (segment, way) = (b.segments[k as usize], way(points, b.segments[k as usize]));
-                        (self.kept(piece, taken, points, segment, way), way)
+                        (kept(piece, taken, points, segment, way, target), way)
                     };
                     let least = |x: (f64, Point), y: (f64, Point)| if y.0 < x.0 { y } else { x };
                     b.contains(points[0]).then(|| near.iter().map(to).fold((f64::INFINITY, [0.0; 2]), least))
@@ -443,6 +455,16 @@ impl Swept<'_> {
         let beyond = |s: Point| hull.iter().map(move |x| m[0] * (s[0] - x[0]) + m[1] * (s[1] - x[1]));
         let apart = segment.into_iter().flat_map(beyond).fold(f64::INFINITY, f64::min);
         apart - self.toward(piece, taken, m) - taken.bow[0] - taken.bow[1] - ROUNDING_M
+    }
+
+    /// As [`Self::kept`], in the best of several directions. Before a corner of the boundary, a longer way may be one in which the body
+    /// moves less.
+    fn kept_aslant(&self, piece: &Piece, taken: &Taken, hull: &[Point], segment: Segment, way: Point) -> f64 {
+        let at = |tangent: f64| (self.kept(piece, taken, hull, segment, turned(way, tangent)), tangent);
+        let better = |x: (f64, f64), y: (f64, f64)| if y.0 > x.0 { y } else { x };
+        let coarse = TURNS.into_iter().map(at).fold((f64::NEG_INFINITY, 0.0), better);
+        let refined = |best: (f64, f64), step: f64| better(better(best, at(best.1 - step)), at(best.1 + step));
+        TURN_STEPS.into_iter().fold(coarse, refined).0
     }
 
     /// Bound of how far a piece's places are off towards a unit vector, metres.
@@ -551,6 +573,12 @@ impl Taken {
     fn still(self) -> Self {
         Self { bow: [0.0; 2], ..self }
     }
+}
+
+/// A vector of the same length, turned by the angle of this tangent.
+fn turned([x, y]: Point, tangent: f64) -> Point {
+    let cosine = 1.0 / 1.0_f64.hypot(tangent);
+    [(x - y * tangent) * cosine, (y + x * tangent) * cosine]
 }
 
 /// The parts of a vector along a heading, and to its left.
