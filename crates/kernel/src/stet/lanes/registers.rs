@@ -186,7 +186,6 @@ impl Avx2 {
 }
 
 #[cfg(target_arch = "x86_64")]
-
 impl From<[f64; LANES]> for Avx2 {
     #[inline(always)]
     fn from(array: [f64; LANES]) -> Self {
@@ -328,7 +327,6 @@ impl Vector for Avx2 {
 }
 
 #[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))]
-
 impl From<[f64; LANES]> for Avx512 {
     #[inline(always)]
     fn from(array: [f64; LANES]) -> Self {
