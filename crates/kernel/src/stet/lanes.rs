@@ -4,15 +4,21 @@
 //! compiler takes arrays of eight numbers apart and puts them together again in narrower registers. There is no fused multiply-add, so
 //! every machine gives the same bytes.
 
-mod registers;
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))]
+mod avx512;
+mod portable;
+#[cfg(test)]
+mod tests;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 #[cfg(target_arch = "x86_64")]
-pub(super) use registers::Avx2;
+pub(super) use avx2::Avx2;
 #[cfg(all(target_arch = "x86_64", any(test, not(debug_assertions))))]
-pub(super) use registers::Avx512;
-pub(super) use registers::Portable;
+pub(super) use avx512::Avx512;
+pub(super) use portable::Portable;
 
 /// Number of lanes: vehicles in the motion, stations at the body points.
 pub(crate) const LANES: usize = 8;
@@ -85,6 +91,49 @@ pub(crate) fn tagged(x: f64, tag: u64) -> f64 {
 
 /// The bits of a [`tagged`] number that hold the tag.
 pub(crate) const TAG_MASK: u64 = 0x7f;
+
+/// Implements the operators of a vector: of two, then of a vector and a number.
+macro_rules! operators {
+    ($vector:ident, $($trait:ident $method:ident $lanes:expr;)+) => {$(
+        impl $trait for $vector {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                let lanes = $lanes;
+                lanes(self, other)
+            }
+        }
+    )+
+        impl Add<f64> for $vector {
+            type Output = Self;
+
+            #[inline(always)]
+            fn add(self, other: f64) -> Self {
+                self + Self::splat(other)
+            }
+        }
+
+        impl Sub<f64> for $vector {
+            type Output = Self;
+
+            #[inline(always)]
+            fn sub(self, other: f64) -> Self {
+                self - Self::splat(other)
+            }
+        }
+
+        impl Mul<f64> for $vector {
+            type Output = Self;
+
+            #[inline(always)]
+            fn mul(self, other: f64) -> Self {
+                self * Self::splat(other)
+            }
+        }
+    };
+}
+use operators;
 
 /// The instruction sets that functions are compiled for, from the narrowest on. Development builds leave the widest one to the tests
 /// of this crate: it takes the compiler half as long again.
