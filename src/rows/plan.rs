@@ -50,7 +50,7 @@ fn pack(coefficients: &[i32]) -> Vec<u8> {
 }
 
 thread_local! {
-    /// Making one takes as long as packing a plan.
+    /// Making one allocates and clears its tables, which takes longer than packing most plans.
     static DEFLATE: RefCell<Compress> = RefCell::new(Compress::new(Compression::best(), false));
 }
 

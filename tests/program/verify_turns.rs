@@ -57,7 +57,7 @@ fn turns_of_a_cart_train_in_its_lane_are_confirmed() {
     assert!(safe[4].parse::<u32>().unwrap() > 50, "{told}");
 }
 
-/// Fronts pass corners of junctions by centimetres there: a direction in which the body moves little keeps it apart, and not the shortest way.
+/// Fronts pass corners of junctions by centimetres there. The checker confirms them only if it also tries other directions than the shortest way.
 #[test]
 fn safe_turns_of_a_town_are_confirmed() {
     let Some(path) = extracts::extract("sydney_au.osm.pbf") else { return };

@@ -74,7 +74,7 @@ const STRIPS: usize = 64;
 const MOST_WORK: usize = 10_000_000;
 /// A comparison in a direction counts as so many.
 const DIRECTED_WORK: usize = 8;
-/// What a turned direction may gain where it is tried, metres.
+/// Turned directions are tried where the shortest way falls short of a claim by no more than this, metres.
 const ASLANT_M: f64 = 0.05;
 /// Small cells are also held apart from a segment in directions that are turned by these tangents from the shortest way, then by these
 /// steps from the best one of them.

@@ -91,7 +91,6 @@ struct History {
 }
 
 /// The histories of vehicles, by stride. They serve one sweep after the other, because making them takes longer than many a sweep.
-#[derive(Default)]
 pub(super) struct Histories(Vec<[History; STRIDES.len()]>);
 
 /// The last [`MEMORY`] stations of every vehicle of a group. The adjoint runs back along them.

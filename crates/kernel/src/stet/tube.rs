@@ -53,7 +53,7 @@ fn driven<V: Vector>(corridor: &Corridor, model: &Model, certificate: &Certifica
     let ride = Ride { track: &track, model, shrink, shift: &shift, wanted: Wanted::ALL };
     let mut paths = SteerPaths::new(&[&ride]);
     let mut motion = Motion::new(&group, &paths);
-    let mut histories = Histories::default();
+    let mut histories = Histories::new();
     let mut trail = histories.trail(&group);
     let mut refined = Refined::new();
     let mut rows = vec![0.0; units * LANES * FIELDS * BLOCK];
